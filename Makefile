@@ -1,0 +1,343 @@
+# starcontour: builds, tests and installs everything. `make help` lists targets and variables.
+#
+# SPDX-License-Identifier: MIT
+#
+# What is compiled into the library stands in lib/sources.list, which CMakeLists.txt reads as well;
+# version numbers stand in include/starcontour.h. Nothing is configured beforehand: libraries that
+# only parts need (METIS, assimp, cJSON) are looked for on each run; one line says what is left out.
+
+# The default goal, whatever comes first below.
+all:
+
+# ------------------------------------------------------------------------------------------------
+# `make deps test`: what is installed can only be seen by a make that starts after it was, so the
+# other goals are handed to a second make.
+
+later := $(filter-out deps,$(MAKECMDGOALS))
+ifneq ($(and $(filter deps,$(MAKECMDGOALS)),$(later)),)
+
+.PHONY: deps after-deps $(later)
+$(later): after-deps
+	@:
+after-deps: deps
+	@$(MAKE) --no-print-directory $(later)
+deps:
+	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' tools/deps.sh
+
+else
+
+# ------------------------------------------------------------------------------------------------
+# Variables. Those that `make help` lists are the caller's.
+
+config ?= release
+BUILD ?= build
+PREFIX ?= /usr/local
+BINDIR ?= $(PREFIX)/bin
+LIBDIR ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+WERROR ?= 0
+V ?= 0
+INSTALL ?= install
+
+# Make's versions differ in what they take for a comment within $(shell ...).
+hash := \#
+
+Q := $(if $(filter 1,$(V)),,@)
+
+warnings := -Wall -Wextra -Wpedantic -Wshadow -Wundef -Wvla -Wcast-qual -Wcast-align \
+    -Wwrite-strings -Wmissing-prototypes -Wstrict-prototypes -Wconversion -Wdouble-promotion \
+    -Wc++-compat
+cxx_warnings := -Wall -Wextra -Wpedantic -Wshadow -Wundef -Wold-style-cast -Wconversion
+werror := $(if $(filter 1,$(WERROR)),-Werror)
+
+# The exact predicates and the error bounds count every rounding: no contraction of a * b + c into
+# one operation with one rounding, and never -ffast-math.
+exact := -ffp-contract=off
+
+ifeq ($(config),release)
+    mode := -O3 -g -DNDEBUG
+    test_mode := -O2 -g
+    out := $(BUILD)
+else ifeq ($(config),debug)
+    mode := -O0 -g
+    test_mode := $(mode)
+    out := $(BUILD)/debug
+else ifeq ($(config),sanitize)
+    mode := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all
+    test_mode := $(mode)
+    out := $(BUILD)/sanitize
+else
+    $(error config=$(config): must be release, debug or sanitize)
+endif
+
+# One set of objects serves the static and the shared library, so all are position-independent.
+common := -std=c99 $(exact) -fPIC -fvisibility=hidden $(warnings) $(werror)
+link_mode := $(filter -fsanitize%,$(mode))
+
+work := $(BUILD)/$(config)
+obj := $(work)/obj
+bin := $(out)/bin
+lib := $(out)/lib
+
+# ------------------------------------------------------------------------------------------------
+# Version and names.
+
+number = $(shell sed -n 's/^$(hash)define SC_VERSION_$(1) \([0-9][0-9]*\)$$/\1/p' include/starcontour.h)
+major := $(call number,MAJOR)
+minor := $(call number,MINOR)
+version := $(major).$(minor).$(call number,PATCH)
+# Before 1.0 a new minor number may break the binary interface.
+abi := $(if $(filter 0,$(major)),$(major).$(minor),$(major))
+
+static := $(lib)/libstarcontour.a
+ifeq ($(shell uname -s),Darwin)
+    shared_name := libstarcontour.$(version).dylib
+    soname := libstarcontour.$(abi).dylib
+    shared_link := libstarcontour.dylib
+    shared_flags = -dynamiclib -Wl,-install_name,$(LIBDIR)/$(soname)
+else
+    shared_name := libstarcontour.so.$(version)
+    soname := libstarcontour.so.$(abi)
+    shared_link := libstarcontour.so
+    shared_flags = -shared -Wl,-soname,$(soname)
+endif
+shared := $(lib)/$(shared_name)
+metis_static := $(lib)/libstarcontour_metis.a
+
+# ------------------------------------------------------------------------------------------------
+# What is there.
+
+has = $(shell echo '$(hash)include <$(1)>' | \
+    $(CC) $(CPPFLAGS) $(CFLAGS) -E -x c - >/dev/null 2>&1 && echo yes)
+metis := $(call has,metis.h)
+assimp := $(call has,assimp/cimport.h)
+cjson := $(call has,cjson/cJSON.h)
+gmp := $(call has,gmp.h)
+ccd := $(call has,ccd/ccd.h)
+
+core_sources := $(shell sed -e 's/$(hash).*//' lib/sources.list)
+# Without METIS this small library is there all the same, and answers SC_ERROR_UNSUPPORTED.
+metis_source := $(wildcard lib/build/partition_metis.c)
+metis_library := $(if $(metis_source),$(metis_static))
+with_metis := $(if $(metis),-DSC_WITH_METIS)
+metis_link := $(metis_library) $(static) $(if $(metis),-lmetis)
+
+program_sources := tools/sc_query.c tools/sc_partition.c bench/demo.c meshes/make_meshes.c \
+    meshes/subdivide.c
+tools_support := $(filter-out $(program_sources),$(wildcard tools/*.c))
+bench_support := $(filter-out $(program_sources),$(wildcard bench/*.c))
+tests := $(sort $(wildcard tests/test_*.c))
+tests_support := $(filter-out $(tests),$(wildcard tests/*.c))
+test_scripts := $(sort $(wildcard tests/test_*.sh))
+
+# A program is built if its source is there and what it needs is: those that read meshes share
+# tools/, which reads by assimp and writes JSON by cJSON.
+missing_for_programs := $(if $(assimp),,assimp) $(if $(cjson),,cJSON)
+offered = $(if $(wildcard $(2)),$(bin)/$(1))
+mesh_readers := $(call offered,sc-query,tools/sc_query.c) \
+    $(call offered,sc-partition,tools/sc_partition.c) $(call offered,sc-demo,bench/demo.c) \
+    $(call offered,subdivide,meshes/subdivide.c)
+programs := $(call offered,make-meshes,meshes/make_meshes.c) \
+    $(if $(strip $(missing_for_programs)),,$(mesh_readers))
+installed := $(filter %/sc-query %/sc-partition,$(programs))
+
+objects = $(patsubst %.c,$(obj)/%.o,$(1))
+
+# ------------------------------------------------------------------------------------------------
+# The library and the programs.
+
+.PHONY: all
+all: $(static) $(lib)/$(shared_link) $(metis_library) $(programs) ## libraries, programs (default)
+ifeq ($(metis),)
+	@echo "not found: METIS; libstarcontour_metis.a can only say so ('make deps')"
+endif
+ifneq ($(strip $(missing_for_programs)),)
+	@echo "not found: $(strip $(missing_for_programs)); left out: $(notdir $(mesh_readers)) ('make deps')"
+endif
+
+# Objects are made again when compiler or flags change.
+.PHONY: FORCE
+$(obj)/flags: FORCE
+	@mkdir -p $(@D)
+	@echo '$(subst ','\'',$(CC) $(CXX) $(CPPFLAGS) $(CFLAGS) $(common) $(mode) $(with_metis))' > $@.new
+	@cmp -s $@.new $@ && rm -f $@.new || mv -f $@.new $@
+
+$(obj)/lib/%.o: own = -Iinclude -Ilib $(mode)
+$(obj)/lib/build/partition_metis.o: own = -Iinclude -Ilib $(mode) $(with_metis)
+$(obj)/tools/%.o: own = -Iinclude -Itools $(mode)
+$(obj)/bench/%.o: own = -Iinclude -Itools -Ibench $(mode)
+$(obj)/meshes/%.o: own = -Iinclude -Itools -Imeshes $(mode)
+$(obj)/tests/%.o: own = -Iinclude -Ilib -Itests $(test_mode) $(with_metis)
+
+$(obj)/%.o: %.c $(obj)/flags
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  cc   $<")
+	$(Q)$(CC) $(common) $(own) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
+$(static): $(call objects,$(core_sources)) lib/sources.list
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  ar   $@")
+	$(Q)rm -f $@ && $(AR) rcs $@ $(filter %.o,$^)
+
+$(shared): $(call objects,$(core_sources)) lib/sources.list
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  ld   $@")
+	$(Q)$(CC) $(shared_flags) $(link_mode) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(LDLIBS) -lm
+
+$(lib)/$(shared_link): $(shared)
+	@ln -sf $(shared_name) $(lib)/$(soname)
+	@ln -sf $(soname) $@
+
+$(metis_static): $(call objects,$(metis_source))
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  ar   $@")
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
+
+# $(call link,libraries): links the objects among the prerequisites.
+define link
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  ld   $@")
+	$(Q)$(CC) $(link_mode) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(1) $(LDLIBS) -lm
+endef
+
+mesh_libs := $(metis_link) -lassimp -lcjson
+$(bin)/sc-query: $(call objects,tools/sc_query.c $(tools_support))
+$(bin)/sc-partition: $(call objects,tools/sc_partition.c $(tools_support))
+$(bin)/sc-demo: $(call objects,bench/demo.c $(bench_support) $(tools_support))
+$(bin)/subdivide: $(call objects,meshes/subdivide.c $(tools_support))
+$(bin)/make-meshes: $(call objects,meshes/make_meshes.c)
+$(mesh_readers): $(static) $(metis_library)
+	$(call link,$(mesh_libs))
+$(bin)/make-meshes:
+	$(call link)
+
+# ------------------------------------------------------------------------------------------------
+# Dependencies, demo, meshes.
+
+.PHONY: deps
+deps: ## install what is missing to build and test everything (says first what that is)
+	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' tools/deps.sh
+
+.PHONY: demo
+ifneq ($(strip $(missing_for_programs)),)
+demo: ## collisions of deforming cloth and bunny, frame by frame; worst frame as PLY
+	@echo "make demo needs $(strip $(missing_for_programs)): run 'make deps' first" >&2; exit 1
+else
+demo: $(programs)
+	@meshes/fetch.sh build/meshes $(bin)/subdivide || echo "no downloaded meshes: the demo goes on with what is there" >&2
+	$(bin)/sc-demo
+endif
+
+.PHONY: meshes
+meshes: $(programs) ## fetch real meshes into build/meshes (Debian packages, no root needed)
+	@meshes/fetch.sh build/meshes $(bin)/subdivide
+
+# ------------------------------------------------------------------------------------------------
+# Tests: each tests/test_*.c is a program, linked with the other tests/*.c; tests/test_*.sh are
+# scripts; header_cxx.cpp uses the header from C++.
+
+missing_for_tests := $(if $(gmp),,gmp) $(if $(ccd),,libccd)
+test_programs := $(patsubst tests/%.c,$(work)/tests/%,$(tests)) \
+    $(patsubst tests/%.cpp,$(work)/tests/%,$(wildcard tests/header_cxx.cpp))
+test_libs := $(metis_link) -lgmp -lccd -lpthread
+
+.PHONY: test
+ifneq ($(strip $(missing_for_tests)),)
+test: ## build and run all tests
+	@echo "make test needs $(strip $(missing_for_tests)): run 'make deps' first" >&2; exit 1
+else
+test: all $(test_programs)
+	@meshes/fetch.sh build/meshes $(bin)/subdivide >$(work)/fetch.log 2>&1 || \
+	    echo "not all real meshes could be fetched (see $(work)/fetch.log): tests with them are skipped"
+	@CC='$(CC)' SC_CONFIG='$(config)' SC_BIN='$(bin)' SC_LIB='$(lib)' \
+	    SC_METIS='$(metis)' SC_FLAGS='$(link_mode) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' \
+	    tests/run.sh $(test_programs) $(test_scripts)
+endif
+
+$(patsubst tests/%.c,$(work)/tests/%,$(tests)): $(work)/tests/%: $(obj)/tests/%.o \
+    $(call objects,$(tests_support)) $(static) $(metis_library)
+	$(call link,$(test_libs))
+
+$(work)/tests/header_cxx: tests/header_cxx.cpp include/starcontour.h $(obj)/flags $(static)
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  c++  $<")
+	$(Q)$(CXX) $(cxx_warnings) $(werror) $(exact) $(test_mode) -Iinclude $(CPPFLAGS) $(CXXFLAGS) \
+	    $(LDFLAGS) -o $@ $< $(static) $(LDLIBS) -lm
+
+.PHONY: check-layering
+check-layering: ## who may include whom, file names, source list
+	@tools/check_layering.sh
+
+.PHONY: format
+format: ## clang-format on all C and C++ files, in place
+	clang-format -i $(wildcard include/*.h lib/*.[ch] lib/*/*.[ch] tools/*.[ch] tests/*.[ch] \
+	    tests/*.cpp bench/*.[ch] meshes/*.[ch])
+
+# ------------------------------------------------------------------------------------------------
+# Installing.
+
+headers := include/starcontour.h $(if $(metis),include/starcontour_metis.h)
+pkgconfigs := starcontour.pc $(if $(metis),starcontour_metis.pc)
+
+.PHONY: install
+install: all ## install headers, libraries, pkg-config files and programs below DESTDIR and PREFIX
+	$(INSTALL) -d '$(DESTDIR)$(INCLUDEDIR)' '$(DESTDIR)$(LIBDIR)/pkgconfig' '$(DESTDIR)$(BINDIR)'
+	$(INSTALL) -m 644 $(headers) '$(DESTDIR)$(INCLUDEDIR)'
+	$(INSTALL) -m 644 $(static) $(if $(metis),$(metis_library)) '$(DESTDIR)$(LIBDIR)'
+	$(INSTALL) -m 755 $(shared) '$(DESTDIR)$(LIBDIR)'
+	ln -sf $(shared_name) '$(DESTDIR)$(LIBDIR)/$(soname)'
+	ln -sf $(soname) '$(DESTDIR)$(LIBDIR)/$(shared_link)'
+	for pc in $(pkgconfigs); do \
+	    sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(LIBDIR)|' -e 's|@version@|$(version)|' \
+	        -e 's|@includedir@|$(INCLUDEDIR)|' tools/$$pc.in \
+	        > '$(DESTDIR)$(LIBDIR)/pkgconfig/'$$pc || exit 1; \
+	done
+ifneq ($(installed),)
+	$(INSTALL) -m 755 $(installed) '$(DESTDIR)$(BINDIR)'
+endif
+
+.PHONY: uninstall
+uninstall: ## remove what install installs
+	for name in starcontour.h starcontour_metis.h; do \
+	    rm -f '$(DESTDIR)$(INCLUDEDIR)/'$$name || exit 1; done
+	for name in libstarcontour.a libstarcontour_metis.a $(shared_name) $(soname) $(shared_link) \
+	    pkgconfig/starcontour.pc pkgconfig/starcontour_metis.pc; do \
+	    rm -f '$(DESTDIR)$(LIBDIR)/'$$name || exit 1; done
+	for name in sc-query sc-partition; do rm -f '$(DESTDIR)$(BINDIR)/'$$name || exit 1; done
+
+.PHONY: clean
+clean: ## remove everything built; downloaded meshes stay
+	@if [ -d '$(BUILD)' ]; then \
+	    find '$(BUILD)' -mindepth 1 -maxdepth 1 ! -name meshes -exec rm -rf {} +; fi
+
+# The list is made of the ## comments at the targets and the #: comments here.
+.PHONY: help
+help: ## this list
+	@echo "starcontour $(version)"; echo
+	@echo "Targets:"
+	@sed -n 's/^\([a-z][a-z-]*\):.*## \(.*\)$$/\1#\2/p' Makefile | sort -u | \
+	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
+	@echo; echo "Variables:"
+	@sed -n 's/^#: \([A-Za-z]*\) *\(.*\)$$/\1#\2/p' Makefile | \
+	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
+
+#: config      release (the default), debug, or sanitize (address and undefined behaviour)
+#: CC          C compiler [cc]
+#: CXX         C++ compiler, for one test of the header [g++]
+#: CPPFLAGS    added when preprocessing, such as -I of a library in an unusual place
+#: CFLAGS      added after our own flags when compiling and linking C
+#: CXXFLAGS    the same for C++
+#: LDFLAGS     added when linking
+#: LDLIBS      libraries added when linking
+#: WERROR      1: warnings are errors
+#: V           1: show commands
+#: BUILD       where everything goes [build]
+#: DESTDIR     put before every path of install and uninstall
+#: PREFIX      where install installs [/usr/local]; also BINDIR, LIBDIR, INCLUDEDIR
+#: BINDIR      [PREFIX/bin]
+#: LIBDIR      [PREFIX/lib]
+#: INCLUDEDIR  [PREFIX/include]
+
+-include $(shell find $(obj) -name '*.d' 2>/dev/null)
+
+endif

@@ -1,0 +1,353 @@
+/*
+ * sc-demo: the main job on two deforming meshes, frame by frame, methods side by side.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * A cloth twists and rolls up until it passes through itself; the bunny of glmark2, or a closed
+ * surface if it is not there, is bent until its ends do. Each frame is a new pose of one model. All
+ * methods run on a frame in turn, several times, and the shortest time counts. Exact methods must
+ * find the same pairs; the program fails if they do not.
+ */
+#define _POSIX_C_SOURCE 200809L
+
+#include "mesh_file.h"
+#include "ply_write.h"
+#include "shape.h"
+#include "spatial_hash.h"
+#include "tool.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { FRAMES = 12, REPEATS = 3, HASH = 3, METHODS = 4 };
+
+static const char *const method_names[METHODS] = {"star", "aabb-sctt", "aabb", "hash"};
+static const uint32_t method_values[HASH] = {SC_METHOD_SCTT, SC_METHOD_AABB_SCTT, SC_METHOD_AABB};
+
+/* Makes the pose of a moment from 0 (rest) to 1. */
+typedef void (*deformation)(const mesh_file *rest, double time, float *positions);
+
+/* What a scene needs from frame to frame. */
+typedef struct demo_scene {
+    const char *name;
+    const mesh_file *mesh;
+    sc_model *model;
+    sc_workspace *workspaces[HASH]; /* of each exact method, for what it keeps between poses */
+    spatial_hash *hash;
+    float *positions, *worst_positions;
+    uint64_t worst_count;
+    int worst_frame;
+    double sums[METHODS]; /* of the shortest times, over all frames */
+} demo_scene;
+
+/*
+ * Cross sections turn, more towards the ends, and their two halves roll up towards each other: in the
+ * section at x the point at distance y from the middle turns by an angle that grows with x and y. The
+ * sheet has no self-collision until the halves meet, when the ends have rolled a quarter turn each.
+ */
+static void twist_cloth(const mesh_file *rest, double time, float *positions)
+{
+    const double twist = 4.0 * time, roll = 4.5 * time;
+    for (size_t v = 0; v < rest->vertex_count; v++) {
+        const double x = (double)rest->positions[3 * v], y = (double)rest->positions[3 * v + 1];
+        const double angle = twist * x + roll * x * y;
+        positions[3 * v] = (float)(x * (1.0 - 0.25 * time));
+        positions[3 * v + 1] = (float)(y * cos(angle));
+        positions[3 * v + 2] = (float)(y * sin(angle));
+    }
+}
+
+/* Bends the longest axis of the mesh's box to an arc, in the plane of that and the next axis. */
+static void bend_solid(const mesh_file *rest, double time, float *positions)
+{
+    float low[3], high[3];
+    for (size_t k = 0; k < 3; k++) low[k] = high[k] = rest->positions[k];
+    for (size_t i = 3; i < 3 * (size_t)rest->vertex_count; i++) {
+        const float x = rest->positions[i];
+        if (x < low[i % 3]) low[i % 3] = x;
+        if (x > high[i % 3]) high[i % 3] = x;
+    }
+    size_t along = 0;
+    for (size_t k = 1; k < 3; k++) along = high[k] - low[k] > high[along] - low[along] ? k : along;
+    const size_t across = (along + 1) % 3;
+    const double middle = 0.5 * ((double)low[along] + (double)high[along]);
+    const double length = (double)high[along] - (double)low[along];
+    const double total = 9.0 * time; /* the angle between the ends */
+    for (size_t v = 0; v < rest->vertex_count; v++) {
+        const float *p = rest->positions + 3 * v;
+        float *out = positions + 3 * v;
+        memcpy(out, p, 3 * sizeof *out);
+        if (total <= 0.0) continue;
+        const double radius = length / total;
+        const double height = (double)p[across] - (double)high[across]; /* 0 or less: outside */
+        const double angle = ((double)p[along] - middle) / radius;
+        out[along] = (float)(middle + (radius - height) * sin(angle));
+        out[across] = (float)((double)high[across] + radius - (radius - height) * cos(angle));
+    }
+}
+
+static bool report(sc_status status, const char *what)
+{
+    if (status != SC_OK) tool_error("%s: %s", what, sc_status_string(status));
+    return status == SC_OK;
+}
+
+/* One timed query. method: an index of method_names. */
+static bool run_method(demo_scene *scene, int method, uint64_t *count, double *milliseconds)
+{
+    const double start = tool_clock();
+    if (method == HASH) {
+        const bool done = spatial_hash_query(scene->hash, scene->positions, count);
+        *milliseconds = tool_clock() - start;
+        if (!done) tool_error("spatial hash: out of memory");
+        return done;
+    }
+    const sc_pose pose = tool_pose(scene->positions, scene->mesh->vertex_count);
+    sc_query_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.output = SC_OUTPUT_COUNT;
+    options.pairs = SC_PAIRS_EDGE;
+    options.method = method_values[method];
+    options.contour =
+        method_values[method] == SC_METHOD_SCTT ? SC_CONTOUR_STAR : SC_CONTOUR_DEFAULT;
+    sc_result result;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    const sc_status status =
+        sc_query(scene->model, scene->workspaces[method], &pose, &options, &result);
+    *milliseconds = tool_clock() - start;
+    *count = result.count;
+    return report(status, method_names[method]);
+}
+
+/* One frame: all methods in turn, several times. */
+static bool run_frame(demo_scene *scene, int frame)
+{
+    uint64_t counts[METHODS];
+    double shortest[METHODS];
+    for (int repeat = 0; repeat < REPEATS; repeat++) {
+        for (int method = 0; method < METHODS; method++) {
+            double milliseconds;
+            if (!run_method(scene, method, &counts[method], &milliseconds)) return false;
+            if (repeat == 0 || milliseconds < shortest[method]) shortest[method] = milliseconds;
+        }
+    }
+    printf("%5d %9.0f ", frame, (double)counts[0]);
+    for (int method = 0; method < METHODS; method++) {
+        printf(" %10.2f", shortest[method]);
+        scene->sums[method] += shortest[method];
+    }
+    printf(" %12.0f\n", (double)counts[HASH]);
+    fflush(stdout);
+    for (int method = 1; method < HASH; method++) {
+        if (counts[method] == counts[0]) continue;
+        tool_error("%s finds %.0f pairs and %s %.0f: this is a bug, please report it",
+                   method_names[0], (double)counts[0], method_names[method],
+                   (double)counts[method]);
+        return false;
+    }
+    if (counts[0] >= scene->worst_count) {
+        scene->worst_count = counts[0];
+        scene->worst_frame = frame;
+        memcpy(scene->worst_positions, scene->positions,
+               3 * (size_t)scene->mesh->vertex_count * sizeof(float));
+    }
+    return true;
+}
+
+/* Asks once more for the pairs of the worst frame, of triangles now, and draws them. */
+static bool draw_worst(demo_scene *scene, const char *folder)
+{
+    const sc_pose pose = tool_pose(scene->worst_positions, scene->mesh->vertex_count);
+    const uint32_t triangles = scene->mesh->triangle_count;
+    sc_result result;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    sc_status status = sc_query(scene->model, scene->workspaces[0], &pose, NULL, &result);
+    if (status == SC_ERROR_SHORT_BUFFER) {
+        result.pairs = (sc_pair *)malloc((size_t)result.count * sizeof *result.pairs);
+        result.capacity = result.pairs ? result.count : 0;
+        status = result.pairs ? sc_query(scene->model, scene->workspaces[0], &pose, NULL, &result)
+                              : SC_ERROR_MEMORY;
+    }
+    uint8_t *colors = (uint8_t *)malloc(3 * (size_t)triangles);
+    if (!colors) status = SC_ERROR_MEMORY;
+    bool done = report(status, "worst frame");
+    if (done) {
+        static const uint8_t red[3] = {220, 30, 30};
+        char path[1024];
+        memset(colors, 200, 3 * (size_t)triangles);
+        for (uint64_t i = 0; i < result.count; i++) {
+            memcpy(colors + 3 * (size_t)result.pairs[i].a, red, 3);
+            memcpy(colors + 3 * (size_t)result.pairs[i].b, red, 3);
+        }
+        snprintf(path, sizeof path, "%s/%s.ply", folder, scene->name);
+        errno = 0;
+        done = ply_write(path, scene->worst_positions, scene->mesh->vertex_count,
+                         scene->mesh->indices, triangles, colors);
+        if (done)
+            printf("Frame %d, colliding triangles in red: %s\n\n", scene->worst_frame, path);
+        else
+            tool_error("%s: cannot be written: %s", path, strerror(errno));
+    }
+    free(colors);
+    free(result.pairs);
+    return done;
+}
+
+static bool scene_open(demo_scene *scene, const mesh_file *mesh, const char *name, double *build_ms)
+{
+    memset(scene, 0, sizeof *scene);
+    scene->name = name;
+    scene->mesh = mesh;
+    const size_t size = 3 * (size_t)mesh->vertex_count * sizeof(float);
+    scene->positions = (float *)malloc(size);
+    scene->worst_positions = (float *)malloc(size);
+    scene->hash = spatial_hash_create(mesh);
+    sc_status status = tool_build(mesh, SC_WELD_REST, TOOL_PARTITION_FAST, &scene->model, build_ms);
+    for (int i = 0; i < HASH && status == SC_OK; i++) {
+        status = sc_workspace_create(scene->model, NULL, &scene->workspaces[i]);
+    }
+    if (!scene->positions || !scene->worst_positions || !scene->hash) status = SC_ERROR_MEMORY;
+    return report(status, name);
+}
+
+static void scene_close(demo_scene *scene)
+{
+    for (int i = 0; i < HASH; i++) sc_workspace_free(scene->workspaces[i]);
+    sc_model_free(scene->model);
+    spatial_hash_free(scene->hash);
+    free(scene->positions);
+    free(scene->worst_positions);
+}
+
+/* All frames of a scene. */
+static bool run_scene(const mesh_file *mesh, const char *name, deformation deform,
+                      const char *folder)
+{
+    demo_scene scene;
+    double build_ms;
+    bool done = scene_open(&scene, mesh, name, &build_ms);
+    if (done) {
+        printf("%lu triangles; model built once in %.0f ms.\n\n",
+               (unsigned long)mesh->triangle_count, build_ms);
+        printf("%5s %9s  %43s %12s\n", "", "", "------- milliseconds for the frame -------",
+               "hash's");
+        printf("%5s %9s  %10s %10s %10s %10s %12s\n", "frame", "pairs", method_names[0],
+               method_names[1], method_names[2], method_names[3], "pairs");
+    }
+    for (int frame = 0; frame < FRAMES && done; frame++) {
+        deform(mesh, (double)frame / (FRAMES - 1), scene.positions);
+        done = run_frame(&scene, frame);
+    }
+    if (done) {
+        printf("\nAll frames:");
+        for (int method = 0; method < METHODS; method++) {
+            printf("  %s %.1f ms", method_names[method], scene.sums[method]);
+        }
+        printf("\nSpeed of star: ");
+        for (int method = 1; method < METHODS; method++) {
+            printf("%s%.2f times that of %s", method > 1 ? ", " : "",
+                   scene.sums[method] / scene.sums[0], method_names[method]);
+        }
+        printf(".\n");
+        if (scene.worst_count > 0)
+            done = draw_worst(&scene, folder);
+        else
+            printf("No frame collides.\n\n");
+    }
+    scene_close(&scene);
+    return done;
+}
+
+static bool run_cloth(const char *folder)
+{
+    mesh_file mesh;
+    printf("A cloth twists and rolls up until it passes through itself.\n");
+    if (!shape_make_grid(&mesh, 181)) {
+        tool_error("cloth: out of memory");
+        return false;
+    }
+    const bool done = run_scene(&mesh, "cloth", twist_cloth, folder);
+    mesh_file_free(&mesh);
+    return done;
+}
+
+/* The bunny, or, if its file is not there, a sphere drawn out to a loaf. */
+static bool run_bunny(const char *meshes, const char *folder)
+{
+    char path[1024], error[MESH_FILE_ERROR_SIZE];
+    struct stat found;
+    mesh_file mesh;
+    bool is_bunny = false, ready;
+    snprintf(path, sizeof path, "%s/bunny.obj", meshes);
+    if (stat(path, &found) == 0) {
+        is_bunny = mesh_file_read(&mesh, path, error);
+        if (!is_bunny) {
+            tool_error("%s", error);
+            return false;
+        }
+        printf("The bunny of glmark2 is bent until its ends meet.\n");
+        ready = mesh_file_join(&mesh);
+    } else {
+        printf("%s is not there ('make meshes' gets it): a generated closed surface instead,\n"
+               "bent until its ends meet.\n",
+               path);
+        ready = shape_make_sphere(&mesh, 6);
+        for (size_t v = 0; ready && v < mesh.vertex_count; v++) mesh.positions[3 * v] *= 3.0f;
+    }
+    if (!ready)
+        tool_error("out of memory");
+    else
+        ready = run_scene(&mesh, is_bunny ? "bunny" : "loaf", bend_solid, folder);
+    mesh_file_free(&mesh);
+    return ready;
+}
+
+/* Makes a folder and those above it. */
+static bool make_folder(const char *path)
+{
+    char part[1024];
+    if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part) return false;
+    for (char *at = part + 1;; at++) {
+        if (*at && *at != '/') continue;
+        const char end = *at;
+        *at = 0;
+        if (mkdir(part, 0777) != 0 && errno != EEXIST) return false;
+        if (!end) return true;
+        *at = end;
+    }
+}
+
+int main(int argc, char **argv)
+{
+    tool_set_name("sc-demo");
+    if (argc > 3 || (argc > 1 && argv[1][0] == '-')) {
+        fputs("Usage: sc-demo [MESHES [OUTPUT]]\n"
+              "MESHES: folder that may hold bunny.obj (build/meshes); OUTPUT: folder for pictures\n"
+              "(build/demo)\n",
+              stderr);
+        return TOOL_FAILED;
+    }
+    const char *meshes = argc > 1 ? argv[1] : "build/meshes";
+    const char *folder = argc > 2 ? argv[2] : "build/demo";
+    if (!make_folder(folder)) {
+        tool_error("%s: cannot be made: %s", folder, strerror(errno));
+        return TOOL_FAILED;
+    }
+    printf(
+        "starcontour %s: every self-collision of a deforming mesh, exactly\n\n"
+        "Pairs are those of an edge and a triangle that touch and share no vertex. The methods:\n"
+        "  star       self-collision test tree with orientation and star-contour tests\n"
+        "  aabb-sctt  boxes only, started at the non-adjacent patches of that tree\n"
+        "  aabb       a plain tree of boxes\n"
+        "  hash       an optimised spatial hash in plain double arithmetic; not exact\n"
+        "The first three are exact and must agree. One thread; the shortest of %d runs.\n\n",
+        sc_version_string(), REPEATS);
+    const bool done = run_cloth(folder) && run_bunny(meshes, folder);
+    return tool_finish(done ? TOOL_CLEAN : TOOL_FAILED);
+}

@@ -1,0 +1,454 @@
+/*
+ * starcontour: every self-collision of a deforming triangle mesh, exactly and fast.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * In five lines:
+ *
+ *     sc_build           once per topology: a mesh in its rest pose becomes an immutable sc_model
+ *     sc_workspace_*     once per instance or thread: everything that a query writes to
+ *     sc_query           once per pose: new vertex positions in, all intersecting pairs out
+ *     sc_workspace_free, sc_model_free
+ *
+ * What is promised. A query reports the pairs that exact arithmetic on the given coordinates
+ * reports: none is missed and none is added, for every finite float or double, touching, coplanar,
+ * degenerate and duplicate triangles included. The one exception is asked for by name:
+ * SC_CONTOUR_NONE, which is there for measuring and can miss pairs.
+ *
+ * Any triangle soup is a mesh: boundaries, several components (collisions between components are
+ * self-collisions of the mesh), non-manifold edges, inconsistent orientation, duplicate and
+ * degenerate triangles. What is irregular is only culled less.
+ *
+ * Threads. The library has no global state and starts no threads. An sc_model is never written to
+ * after sc_build and may be shared by any number of threads. An sc_workspace belongs to one call
+ * at a time. Calls on different workspaces may run concurrently.
+ *
+ * Memory. sc_build and sc_workspace_create allocate through the caller's sc_allocator, if there is
+ * one. sc_query allocates nothing.
+ *
+ * Errors. Calls return an sc_status. On an error nothing is leaked, outputs are as each call says,
+ * and the model and workspace remain usable. The library never prints, exits, aborts or raises, and
+ * installs no signal handlers.
+ *
+ * Structures. The first member of each structure that may grow is struct_size: set it to
+ * sizeof(the structure) and every member you do not use to zero, which is its default. A library
+ * newer than the caller accepts the caller's smaller size and takes the missing members as zero; an
+ * older one accepts a larger size if what it does not know is zero. Structures that the library
+ * fills are filled as far as their struct_size reaches. A size is a multiple of the size of a
+ * pointer and reaches at least to the end of the members of version 0.1 that have no default.
+ *
+ * Versions. Before 1.0 a change of the minor number may break the binary interface, afterwards only
+ * a change of the major number; the shared library's soname follows that number. Enumerators keep
+ * their values and are never reused.
+ *
+ * Source: S. C. Schvartzman, A. G. Perez, M. A. Otaduy, "Star-Contours for Efficient Hierarchical
+ * Self-Collision Detection", ACM Transactions on Graphics 29(4) (SIGGRAPH 2010).
+ */
+#ifndef STARCONTOUR_H
+#define STARCONTOUR_H
+
+#include <stdint.h>
+
+/* The version of this header; sc_version is that of the library that runs. */
+#define SC_VERSION_MAJOR 0
+#define SC_VERSION_MINOR 1
+#define SC_VERSION_PATCH 0
+#define SC_VERSION_NUMBER (SC_VERSION_MAJOR * 10000 + SC_VERSION_MINOR * 100 + SC_VERSION_PATCH)
+
+/* Define SC_SHARED where the shared library is used on Windows, and SC_BUILDING to build it. */
+#if defined(_WIN32) && defined(SC_SHARED)
+#  if defined(SC_BUILDING)
+#    define SC_API __declspec(dllexport)
+#  else
+#    define SC_API __declspec(dllimport)
+#  endif
+#elif defined(__GNUC__)
+#  define SC_API __attribute__((visibility("default")))
+#else
+#  define SC_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ------------------------------------------------------------------------------------------------
+ * Status
+ */
+
+/* One of the values below. */
+typedef int32_t sc_status;
+
+enum {
+    SC_OK = 0,
+    SC_ERROR_NULL = 1,         /* a pointer that the call needs is NULL */
+    SC_ERROR_STRUCT_SIZE = 2,  /* a struct_size this library cannot read */
+    SC_ERROR_OPTION = 3,       /* a member has a value that is not one of its enumerators */
+    SC_ERROR_EMPTY = 4,        /* a mesh without triangles or without vertices */
+    SC_ERROR_COUNT = 5,        /* more vertices or triangles than can be indexed or addressed */
+    SC_ERROR_STRIDE = 6,       /* a stride smaller than what it steps over */
+    SC_ERROR_INDEX = 7,        /* a triangle names a vertex that does not exist */
+    SC_ERROR_NOT_FINITE = 8,   /* NaN or infinity at a vertex that a triangle uses */
+    SC_ERROR_VERTEX_COUNT = 9, /* the pose's number of vertices is not the model's */
+    SC_ERROR_MEMORY = 10,      /* an allocation failed */
+    SC_ERROR_SHORT_BUFFER = 11, /* the caller's array is too short; the count needed is reported */
+    SC_ERROR_WORKSPACE = 12,   /* the workspace was made for another model or is too small */
+    SC_ERROR_WELD_MAP = 13,    /* a weld map entry out of range or not a representative */
+    SC_ERROR_TREE = 14,        /* the caller's leaf order or tree is not one, or is too deep */
+    SC_ERROR_PARTITION = 15,   /* the caller's bisection function failed or broke its contract */
+    SC_ERROR_UNSUPPORTED = 16, /* not part of this build of the library */
+    SC_ERROR_ALIGNMENT = 17,   /* memory that must be aligned to SC_ALIGNMENT is not */
+    SC_ERROR_LEVEL = 18        /* the model has no such level */
+};
+
+/* A short English text for a status, never NULL, owned by the library. */
+SC_API const char *sc_status_string(sc_status status);
+
+/* SC_VERSION_NUMBER and "major.minor.patch" of the library that runs. */
+SC_API uint32_t sc_version(void);
+SC_API const char *sc_version_string(void);
+
+/* ------------------------------------------------------------------------------------------------
+ * Memory
+ */
+
+/* Alignment, in bytes, of all memory the library asks for or is given to keep. */
+#define SC_ALIGNMENT 64
+
+/*
+ * The caller's memory functions. Calls come from the thread that called the library.
+ *   allocate  size > 0 bytes aligned to alignment (a power of two, at most SC_ALIGNMENT), or NULL
+ *   release   memory got from allocate with this size; never NULL
+ *   user      passed through
+ * Where a pointer to an sc_allocator is NULL, malloc and free are used.
+ */
+typedef struct sc_allocator {
+    void *(*allocate)(void *user, uint64_t size, uint64_t alignment);
+    void (*release)(void *user, void *memory, uint64_t size);
+    void *user;
+} sc_allocator;
+
+/* ------------------------------------------------------------------------------------------------
+ * Meshes and poses
+ */
+
+/* Scalar types of position arrays. */
+enum { SC_FLOAT = 0, SC_DOUBLE = 1 };
+
+/* Integer types of index arrays. */
+enum { SC_UINT32 = 0, SC_UINT16 = 1 };
+
+/* "None" wherever an index is expected. */
+#define SC_NONE 0xffffffffu
+
+/*
+ * A triangle mesh in its rest pose. The arrays are the caller's and are only read, during the call.
+ * They need no alignment. The rest pose decides welding and partition, and what counts as
+ * "unlikely to be culled" (rest-shape caching); it has no influence on which pairs a query reports.
+ */
+typedef struct sc_mesh {
+    uint32_t struct_size;
+    uint32_t vertex_count;    /* 1 or more */
+    uint32_t triangle_count;  /* 1 to 0x55555554, so that a corner number 3 t + k fits 32 bits */
+    uint32_t position_type;   /* SC_FLOAT or SC_DOUBLE */
+    uint32_t position_stride; /* bytes from a vertex to the next, 0: packed, else at least 3 scalars */
+    uint32_t index_type;      /* SC_UINT32 or SC_UINT16 */
+    uint32_t index_stride;    /* bytes from a triangle to the next, 0: packed, else at least 3 indices */
+    uint32_t reserved;        /* 0 */
+    const void *positions;    /* vertex_count times x, y, z */
+    const void *indices;      /* triangle_count times three vertex numbers below vertex_count */
+} sc_mesh;
+
+/*
+ * New positions for a model's vertices, in the order of the mesh it was built from. Type and stride
+ * may differ from the mesh's. The array is only read, during the call.
+ */
+typedef struct sc_pose {
+    uint32_t struct_size;
+    uint32_t vertex_count;    /* as in the mesh */
+    uint32_t position_type;   /* SC_FLOAT or SC_DOUBLE */
+    uint32_t position_stride; /* bytes from a vertex to the next, 0: packed, else at least 3 scalars */
+    const void *positions;    /* vertex_count times x, y, z */
+} sc_pose;
+
+/* ------------------------------------------------------------------------------------------------
+ * Building
+ */
+
+/* Which vertices are one. Welded vertices have the position of their representative in every pose. */
+enum {
+    SC_WELD_REST = 0, /* those with equal rest positions (-0 equals 0); the lowest number represents */
+    SC_WELD_MAP = 1,  /* those with the same weld_map entry */
+    SC_WELD_NONE = 2  /* none */
+};
+
+/* Where the hierarchy of patches comes from. */
+enum {
+    SC_PARTITION_FAST = 0,   /* the built-in recursive bisection */
+    SC_PARTITION_ORDER = 1,  /* the caller's order: consecutive triangles form patches */
+    SC_PARTITION_TREE = 2,   /* the caller's binary tree, balanced or not */
+    SC_PARTITION_BISECT = 3  /* recursive bisection by the caller's function, such as sc_metis_bisect
+                                of starcontour_metis.h */
+};
+
+/*
+ * A node of a caller's tree. An inner node names its two children. A leaf has left == right ==
+ * SC_NONE and owns order[first] to order[first + count - 1]; its count is 1 or more. Leaves with
+ * more triangles than the library's clusters hold are split on, in order.
+ */
+typedef struct sc_tree_node {
+    uint32_t left, right;
+    uint32_t first, count; /* read in leaves only */
+} sc_tree_node;
+
+/*
+ * The dual graph of a patch that is to be cut in two: one node per triangle, an arc each way between
+ * triangles that share an edge.
+ */
+typedef struct sc_dual_graph {
+    uint32_t struct_size;
+    uint32_t node_count;      /* 2 or more */
+    const int32_t *offsets;   /* node_count + 1: node i has the arcs offsets[i] to offsets[i + 1] - 1 */
+    const int32_t *neighbors; /* offsets[node_count] node numbers */
+    const int32_t *weights;   /* offsets[node_count] weights from 1 to 1000: rest length of the edge */
+} sc_dual_graph;
+
+/*
+ * Cuts a patch in two: writes 0 or 1 to side[0 .. node_count - 1] so that about left_target nodes
+ * get 0. Returns SC_OK, or any other status to give up, which ends sc_build with that status. The
+ * library evens out sizes and mends what is not connected afterwards.
+ */
+typedef sc_status (*sc_bisect)(void *user, const sc_dual_graph *graph, uint32_t left_target,
+                               uint8_t *side);
+
+typedef struct sc_build_options {
+    uint32_t struct_size;
+    uint32_t weld;               /* SC_WELD_... */
+    uint32_t partition;          /* SC_PARTITION_... */
+    uint32_t tree_count;         /* nodes of tree */
+    const uint32_t *weld_map;    /* SC_WELD_MAP: vertex_count representatives r with weld_map[r] == r */
+    const uint32_t *order;       /* SC_PARTITION_ORDER, _TREE: triangle_count, a permutation */
+    const sc_tree_node *tree;    /* SC_PARTITION_TREE: tree_count nodes, node 0 the root, at most 60
+                                    nodes from the root to a leaf */
+    sc_bisect bisect;            /* SC_PARTITION_BISECT */
+    void *bisect_user;           /* passed to bisect */
+    const sc_allocator *allocator; /* copied; its functions must outlive the model */
+} sc_build_options;
+
+/* A mesh made ready for queries: one block of flat arrays, immutable. */
+typedef struct sc_model sc_model;
+
+/*
+ * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
+ * with sc_model_free; otherwise *model is NULL. About half a microsecond to a few microseconds a
+ * triangle and, while it runs, a few hundred bytes a triangle.
+ */
+SC_API sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model);
+
+/* Frees a model, which no call may be using. NULL is allowed. */
+SC_API void sc_model_free(sc_model *model);
+
+/* What there is to know about a model. */
+typedef struct sc_model_info {
+    uint32_t struct_size;
+    uint32_t vertex_count;      /* as in the mesh */
+    uint32_t point_count;       /* distinct vertices that triangles use, after welding */
+    uint32_t triangle_count;    /* as in the mesh */
+    uint32_t edge_count;        /* distinct edges, after welding */
+    uint32_t component_count;   /* parts that share no vertex, after welding */
+    uint32_t boundary_edges;    /* edges of one triangle */
+    uint32_t irregular_edges;   /* edges of three or more triangles, or of two that run the same way */
+    uint32_t leaf_count;        /* leaf clusters */
+    uint32_t level_count;       /* levels of the patch hierarchy; level 0 is the whole mesh */
+    uint32_t node_count;        /* nodes of the self-collision test tree */
+    uint32_t segment_count;     /* nodes of the contour segment forest */
+    uint64_t topology_hash;     /* equal for equal triangles, welding and partition */
+    uint64_t model_bytes;       /* size of the model */
+    uint64_t workspace_bytes;   /* size of a workspace for it */
+} sc_model_info;
+
+/* Fills *info, as far as info->struct_size reaches. */
+SC_API sc_status sc_model_get_info(const sc_model *model, sc_model_info *info);
+
+/* One level of the patch hierarchy, as the rest pose saw it. */
+typedef struct sc_level_info {
+    uint32_t struct_size;
+    uint32_t patch_count;         /* patches at this level */
+    uint32_t connected_patches;   /* those that are connected through edges */
+    uint32_t segment_count;       /* contour segments at this level */
+    uint32_t self_nodes;          /* test-tree nodes of one patch against itself */
+    uint32_t self_oriented;       /* of these, how many passed the orientation test in the rest pose */
+    uint32_t self_culled;         /* of these, how many passed the star-contour test as well */
+    uint32_t pair_nodes;          /* the same for nodes of two adjacent patches */
+    uint32_t pair_oriented;
+    uint32_t pair_culled;
+} sc_level_info;
+
+/* Fills *info for a level from 0 to level_count - 1; SC_ERROR_LEVEL for any other. */
+SC_API sc_status sc_model_get_level(const sc_model *model, uint32_t level, sc_level_info *info);
+
+/*
+ * Writes to patch_of_triangle[t], for every triangle t of the mesh, the number of its patch at a
+ * level. The array has capacity entries; fewer than triangle_count: SC_ERROR_SHORT_BUFFER, and
+ * nothing is written.
+ */
+SC_API sc_status sc_model_get_patches(const sc_model *model, uint32_t level,
+                                      uint32_t *patch_of_triangle, uint64_t capacity);
+
+/* ------------------------------------------------------------------------------------------------
+ * Workspaces
+ */
+
+/* All that a query writes to. It fits the model it was made for and belongs to one call at a time. */
+typedef struct sc_workspace sc_workspace;
+
+/* Writes the number of bytes that a workspace for this model takes. */
+SC_API sc_status sc_workspace_size(const sc_model *model, uint64_t *size);
+
+/*
+ * Makes a workspace in the caller's memory: size bytes, at least sc_workspace_size, aligned to
+ * SC_ALIGNMENT. It needs no freeing and must not be moved.
+ */
+SC_API sc_status sc_workspace_init(const sc_model *model, void *memory, uint64_t size,
+                                   sc_workspace **workspace);
+
+/* Allocates a workspace. allocator may be NULL. On an error *workspace is NULL. */
+SC_API sc_status sc_workspace_create(const sc_model *model, const sc_allocator *allocator,
+                                     sc_workspace **workspace);
+
+/* Frees what sc_workspace_create made; does nothing to what sc_workspace_init made. NULL is allowed. */
+SC_API void sc_workspace_free(sc_workspace *workspace);
+
+/* ------------------------------------------------------------------------------------------------
+ * Queries
+ */
+
+/* What a query answers. */
+enum {
+    SC_OUTPUT_PAIRS = 0, /* all pairs, and their number */
+    SC_OUTPUT_COUNT = 1, /* the number of pairs */
+    SC_OUTPUT_ANY = 2    /* whether there is a pair; stops at the first */
+};
+
+/*
+ * What a pair is. Triangles and edges are closed sets: with their boundaries.
+ *
+ * SC_PAIRS_TRIANGLE: two triangles, a < b, that meet elsewhere than in what they share:
+ *   - sharing no vertex: they have a common point;
+ *   - sharing one vertex: the edge opposite to it in one of them meets the other triangle;
+ *   - sharing two vertices: they have a common point off the common edge, that is, they are folded
+ *     flat onto each other;
+ *   - sharing three vertices: always.
+ * SC_PAIRS_EDGE: an edge a and a triangle b that have a common point and share no vertex. The edge
+ * is given by a corner of a triangle: a = 3 t + k is the edge from vertex k to vertex (k + 1) % 3 of
+ * triangle t. An edge of several triangles is named by the one with the lowest number and then the
+ * lowest k. A side from a vertex to itself is no edge.
+ *
+ * "Share" is said of vertex numbers after welding.
+ */
+enum { SC_PAIRS_TRIANGLE = 0, SC_PAIRS_EDGE = 1 };
+
+/* What contact is enough. */
+enum {
+    SC_CONTACT_TOUCHING = 0, /* any common point */
+    SC_CONTACT_PROPER = 1    /* a proper crossing: the interior of an edge passes through the interior
+                                of a triangle from one side to the other, none of its vertices shared.
+                                Triangle pairs: an edge of one does so with the other */
+};
+
+/* How pairs are sought. The answer is the same for all, but for contour SC_CONTOUR_NONE. */
+enum {
+    SC_METHOD_DEFAULT = 0,
+    SC_METHOD_SCTT = 1,      /* self-collision test tree with orientation and contour tests */
+    SC_METHOD_AABB_SCTT = 2, /* box recursion from the non-adjacent children of the test tree's nodes:
+                                the paper's optimised tree of axis-aligned bounding boxes (AABB) */
+    SC_METHOD_AABB = 3       /* the plain tree of boxes, for comparison */
+};
+
+/* The contour test of SC_METHOD_SCTT. */
+enum {
+    SC_CONTOUR_DEFAULT = 0,
+    SC_CONTOUR_STAR = 1, /* the paper's star-contour test */
+    SC_CONTOUR_NONE = 2  /* no contour test: MISSES PAIRS; a floor to measure against */
+};
+
+/* Rest-shape caching (paper, section 8): tests that failed in the rest pose are taken as failed. */
+enum { SC_REST_CACHE_ON = 0, SC_REST_CACHE_OFF = 1 };
+
+typedef struct sc_query_options {
+    uint32_t struct_size;
+    uint32_t output;     /* SC_OUTPUT_... */
+    uint32_t pairs;      /* SC_PAIRS_... */
+    uint32_t contact;    /* SC_CONTACT_... */
+    uint32_t method;     /* SC_METHOD_... */
+    uint32_t contour;    /* SC_CONTOUR_... */
+    uint32_t rest_cache; /* SC_REST_CACHE_... */
+    uint32_t reserved;   /* 0 */
+} sc_query_options;
+
+/* A pair, as sc_query_options.pairs says. */
+typedef struct sc_pair {
+    uint32_t a, b;
+} sc_pair;
+
+/* The nine tasks of a query (paper, table 1). */
+enum {
+    SC_TASK_UPDATE_BOXES = 0,        /* reading the pose and refitting boxes; counts boxes */
+    SC_TASK_UPDATE_NORMALS = 1,      /* discrete normal cones; counts patches */
+    SC_TASK_ORIENTATION = 2,         /* orientation tests; counts nodes */
+    SC_TASK_BOXES_ORIENTATION = 3,   /* box tests after failed orientation; counts pairs of boxes */
+    SC_TASK_PRIMITIVES_ORIENTATION = 4, /* primitive tests after that; counts pairs of triangles */
+    SC_TASK_UPDATE_CONTOURS = 5,     /* bounds of contour segments; counts segments */
+    SC_TASK_CONTOUR = 6,             /* contour tests; counts nodes */
+    SC_TASK_BOXES_CONTOUR = 7,       /* box tests after a failed contour test */
+    SC_TASK_PRIMITIVES_CONTOUR = 8,  /* primitive tests after that */
+    SC_TASK_COUNT = 9
+};
+
+/* Statistics of one query. SC_METHOD_AABB and _AABB_SCTT file their work under ..._ORIENTATION. */
+typedef struct sc_stats {
+    uint32_t struct_size;
+    uint32_t reserved;
+    uint64_t total_nanoseconds;
+    uint64_t nanoseconds[SC_TASK_COUNT];
+    uint64_t counts[SC_TASK_COUNT];
+    uint64_t nodes_visited;      /* nodes of the self-collision test tree that were reached */
+    uint64_t nodes_oriented;     /* orientation tests passed */
+    uint64_t nodes_culled;       /* contour tests passed */
+    uint64_t leaf_pairs;         /* pairs of leaf clusters whose triangles were compared */
+    uint64_t exact_fallbacks;    /* orientation signs that floating point could not decide */
+} sc_stats;
+
+/*
+ * The answer of a query. The caller sets struct_size and, for SC_OUTPUT_PAIRS, pairs and capacity,
+ * and may set stats; the library sets the rest. pairs may be NULL when capacity is 0.
+ */
+typedef struct sc_result {
+    uint32_t struct_size;
+    uint32_t collides;  /* out: 1 if there is a pair, else 0 */
+    uint64_t count;     /* out: the number of pairs; 0 or 1 for SC_OUTPUT_ANY */
+    uint64_t capacity;  /* in: entries of pairs */
+    sc_pair *pairs;     /* in: the caller's array. Each pair is written once, sorted by a, then b */
+    sc_stats *stats;    /* in: where to put statistics (its struct_size set), or NULL. Clocks are read
+                           only if it is not NULL */
+} sc_result;
+
+/*
+ * Finds the self-collisions of a model in a pose. options may be NULL: triangle pairs, touching,
+ * the default method.
+ *
+ * Returns SC_OK, or SC_ERROR_SHORT_BUFFER when there are more pairs than fit: result->count is then
+ * the number needed, and the array holds the first capacity pairs of the sorted list. On any other
+ * error count and collides are 0 and the array is as it was.
+ *
+ * Pairs and their order depend on the mesh, the welding, the pose and the kind of pair asked for,
+ * and on nothing else: not on partition, method, compiler or machine.
+ */
+SC_API sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
+                          const sc_query_options *options, sc_result *result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* STARCONTOUR_H */

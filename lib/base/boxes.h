@@ -1,0 +1,79 @@
+/*
+ * Axis-aligned boxes in single precision that bound double coordinates, stored as six arrays, and the
+ * test of one box against eight.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * A box is closed. Rounding goes outwards, so that boxes of sets that meet overlap.
+ */
+#ifndef SC_BASE_BOXES_H
+#define SC_BASE_BOXES_H
+
+#include <float.h>
+#include <stdint.h>
+
+#if defined(__SSE2__)
+#  include <emmintrin.h>
+#endif
+
+/* Boxes that eight-wide reads may start at must be followed by this many readable ones. */
+enum { SC_BOXES_PADDING = 8 };
+
+/* Six arrays of equal length: lower bounds x, y, z, upper bounds x, y, z. */
+typedef struct sc_boxes {
+    float *side[6];
+} sc_boxes;
+
+/*
+ * A float not above (below) d. The conversion is off by half a unit in the last place, at most
+ * 2^-24 |f|; one step of 2^-23 |f| or more undoes it, and FLT_MIN does so where f is denormal or zero.
+ * Beyond the range of float the clamp gives FLT_MAX on the inner side and the step infinity on the
+ * outer.
+ */
+static inline float sc_boxes_clamp(double d)
+{
+    return d > (double)FLT_MAX ? FLT_MAX : d < (double)-FLT_MAX ? -FLT_MAX : (float)d;
+}
+
+static inline float sc_boxes_below(double d)
+{
+    float f = sc_boxes_clamp(d);
+    return f - ((f < 0 ? -f : f) * 1.1920929e-7f + FLT_MIN);
+}
+
+static inline float sc_boxes_above(double d)
+{
+    float f = sc_boxes_clamp(d);
+    return f + ((f < 0 ? -f : f) * 1.1920929e-7f + FLT_MIN);
+}
+
+static inline int sc_boxes_overlap(const sc_boxes *a, uint64_t i, const sc_boxes *b, uint64_t j)
+{
+    return (a->side[0][i] <= b->side[3][j]) & (b->side[0][j] <= a->side[3][i]) &
+           (a->side[1][i] <= b->side[4][j]) & (b->side[1][j] <= a->side[4][i]) &
+           (a->side[2][i] <= b->side[5][j]) & (b->side[2][j] <= a->side[5][i]);
+}
+
+/* Bit k: box i of a overlaps box j + k of b, for k from 0 to 7. */
+static inline unsigned sc_boxes_overlap8(const sc_boxes *a, uint64_t i, const sc_boxes *b, uint64_t j)
+{
+#if defined(__SSE2__)
+    __m128 low = _mm_cmpeq_ps(_mm_setzero_ps(), _mm_setzero_ps()), high = low;
+    int axis;
+    for (axis = 0; axis < 3; axis++) {
+        __m128 lower = _mm_set1_ps(a->side[axis][i]), upper = _mm_set1_ps(a->side[axis + 3][i]);
+        const float *lowers = b->side[axis] + j, *uppers = b->side[axis + 3] + j;
+        low = _mm_and_ps(low, _mm_and_ps(_mm_cmple_ps(lower, _mm_loadu_ps(uppers)),
+                                         _mm_cmple_ps(_mm_loadu_ps(lowers), upper)));
+        high = _mm_and_ps(high, _mm_and_ps(_mm_cmple_ps(lower, _mm_loadu_ps(uppers + 4)),
+                                           _mm_cmple_ps(_mm_loadu_ps(lowers + 4), upper)));
+    }
+    return (unsigned)_mm_movemask_ps(low) | (unsigned)_mm_movemask_ps(high) << 4;
+#else
+    unsigned mask = 0, k;
+    for (k = 0; k < 8; k++) mask |= (unsigned)sc_boxes_overlap(a, i, b, j + k) << k;
+    return mask;
+#endif
+}
+
+#endif

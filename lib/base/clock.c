@@ -1,0 +1,32 @@
+/*
+ * The one place that is not C99: a monotonic clock where the system has one, processor time elsewhere.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)
+#  define _POSIX_C_SOURCE 199309L
+#endif
+#include "base/clock.h"
+
+#include <time.h>
+
+#if defined(_WIN32)
+#  define WIN32_LEAN_AND_MEAN
+#  include <windows.h>
+#endif
+
+uint64_t sc_clock_nanoseconds(void)
+{
+#if defined(_WIN32)
+    LARGE_INTEGER ticks, rate;
+    QueryPerformanceCounter(&ticks);
+    QueryPerformanceFrequency(&rate);
+    return (uint64_t)((double)ticks.QuadPart * 1e9 / (double)rate.QuadPart);
+#elif defined(CLOCK_MONOTONIC)
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+#else
+    return (uint64_t)((double)clock() * (1e9 / CLOCKS_PER_SEC));
+#endif
+}

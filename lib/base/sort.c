@@ -1,0 +1,99 @@
+/*
+ * Sorting in place. See sort.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "base/sort.h"
+
+enum { INSERTION_MAX = 24 };
+
+void sc_sort_sift(sc_pair *heap, uint64_t count, uint64_t at)
+{
+    sc_pair moved = heap[at];
+    for (;;) {
+        uint64_t child = 2 * at + 1;
+        if (child >= count) break;
+        if (child + 1 < count && sc_sort_less(heap[child], heap[child + 1])) child++;
+        if (!sc_sort_less(moved, heap[child])) break;
+        heap[at] = heap[child];
+        at = child;
+    }
+    heap[at] = moved;
+}
+
+void sc_sort_heapify(sc_pair *pairs, uint64_t count)
+{
+    uint64_t at = count / 2;
+    while (at > 0) sc_sort_sift(pairs, count, --at);
+}
+
+static void heapsort_pairs(sc_pair *pairs, uint64_t count)
+{
+    sc_sort_heapify(pairs, count);
+    while (count > 1) {
+        sc_pair last = pairs[--count];
+        pairs[count] = pairs[0];
+        pairs[0] = last;
+        sc_sort_sift(pairs, count, 0);
+    }
+}
+
+static void insertion_sort(sc_pair *pairs, uint64_t count)
+{
+    uint64_t i, j;
+    for (i = 1; i < count; i++) {
+        sc_pair moved = pairs[i];
+        for (j = i; j > 0 && sc_sort_less(moved, pairs[j - 1]); j--) pairs[j] = pairs[j - 1];
+        pairs[j] = moved;
+    }
+}
+
+static sc_pair median(sc_pair x, sc_pair y, sc_pair z)
+{
+    if (sc_sort_less(y, x)) {
+        sc_pair t = x;
+        x = y;
+        y = t;
+    }
+    if (sc_sort_less(z, x)) return x;
+    return sc_sort_less(z, y) ? z : y;
+}
+
+static void quicksort(sc_pair *pairs, uint64_t count, int depth)
+{
+    while (count > INSERTION_MAX) {
+        sc_pair pivot = median(pairs[0], pairs[count / 2], pairs[count - 1]);
+        uint64_t i = 0, j = count - 1;
+        if (depth-- == 0) {
+            heapsort_pairs(pairs, count);
+            return;
+        }
+        for (;;) { /* both ends stop at the pivot, so neither runs out of the array */
+            sc_pair t;
+            while (sc_sort_less(pairs[i], pivot)) i++;
+            while (sc_sort_less(pivot, pairs[j])) j--;
+            if (i >= j) break;
+            t = pairs[i];
+            pairs[i++] = pairs[j];
+            pairs[j--] = t;
+        }
+        /* [0, i) <= pivot <= [i, count): go on with the longer part, recurse into the shorter */
+        if (i < count - i) {
+            quicksort(pairs, i, depth);
+            pairs += i;
+            count -= i;
+        } else {
+            quicksort(pairs + i, count - i, depth);
+            count = i;
+        }
+    }
+    insertion_sort(pairs, count);
+}
+
+void sc_sort_pairs(sc_pair *pairs, uint64_t count)
+{
+    int depth = 2;
+    uint64_t n;
+    for (n = count; n > 1; n >>= 1) depth += 2;
+    quicksort(pairs, count, depth);
+}

@@ -1,0 +1,26 @@
+/*
+ * Sorting in place without allocation: quicksort with a heapsort behind it, O(n log n) always.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * A pair is ordered by a, then b.
+ */
+#ifndef SC_BASE_SORT_H
+#define SC_BASE_SORT_H
+
+#include "starcontour.h"
+
+static inline int sc_sort_less(sc_pair x, sc_pair y)
+{
+    return x.a != y.a ? x.a < y.a : x.b < y.b;
+}
+
+void sc_sort_pairs(sc_pair *pairs, uint64_t count);
+
+/* Restores the heap (greatest pair first) below position at, where alone it may be broken. */
+void sc_sort_sift(sc_pair *heap, uint64_t count, uint64_t at);
+
+/* Makes a heap, greatest pair first. */
+void sc_sort_heapify(sc_pair *pairs, uint64_t count);
+
+#endif

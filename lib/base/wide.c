@@ -1,0 +1,215 @@
+/*
+ * Orientation signs by big integers: schoolbook arithmetic on sign and magnitude.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * A finite double is an integer times a power of two. Dividing all coordinates by the least of
+ * these powers leaves integers and does not change the sign. Their length is that of the span of
+ * the exponents: from 2^-1074 to below 2^1024 at most, 2098 bits. A difference has one bit more, a
+ * product of two differences 4198, a difference of such products 4199, a product with a third
+ * difference 6298, a sum of three 6300 bits.
+ */
+#include "base/wide.h"
+
+#include <stdint.h>
+#include <string.h>
+
+enum { SMALL_LIMBS = 66, MIDDLE_LIMBS = 132, LARGE_LIMBS = 198 }; /* limbs of 32 bits */
+
+/* sign times the sum of limb[i] 2^(32 i). Zero has sign 0 and count 0; the last limb is not 0. */
+typedef struct number {
+    int sign;
+    int count;
+    uint32_t *limb; /* the caller says where */
+} number;
+
+/* A finite double: sign times mantissa times 2^(exponent - 1074). */
+typedef struct parts {
+    int sign; /* 1 or -1, also of 0 */
+    int exponent;
+    uint64_t mantissa; /* below 2^53 */
+} parts;
+
+static parts decode(double value)
+{
+    const uint64_t leading_one = UINT64_C(1) << 52;
+    parts result;
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    result.sign = bits >> 63 ? -1 : 1;
+    result.exponent = (int)(bits >> 52 & 0x7ff);
+    result.mantissa = bits & (leading_one - 1);
+    if (result.exponent != 0) { /* else subnormal */
+        result.mantissa |= leading_one;
+        --result.exponent;
+    }
+    return result;
+}
+
+/* The least exponent of the coordinates that are not zero, lowered to the given one. */
+static int least_exponent(const double *coordinates, int count, int least)
+{
+    for (int i = 0; i < count; ++i) {
+        parts p = decode(coordinates[i]);
+        if (p.mantissa != 0 && p.exponent < least) least = p.exponent;
+    }
+    return least;
+}
+
+static void trim(number *n)
+{
+    while (n->count > 0 && n->limb[n->count - 1] == 0) --n->count;
+    if (n->count == 0) n->sign = 0;
+}
+
+/* The integer value / 2^(least - 1074). Touches three limbs from that of the lowest bit on. */
+static void set_double(number *n, double value, int least)
+{
+    parts p = decode(value);
+    n->sign = 0;
+    n->count = 0;
+    if (p.mantissa == 0) return;
+
+    int shift = p.exponent - least, first = shift / 32;
+    uint64_t low = (p.mantissa & UINT32_MAX) << shift % 32;
+    uint64_t middle = ((p.mantissa >> 32) << shift % 32) + (low >> 32);
+    memset(n->limb, 0, (size_t)first * sizeof *n->limb);
+    n->limb[first] = (uint32_t)(low & UINT32_MAX);
+    n->limb[first + 1] = (uint32_t)(middle & UINT32_MAX);
+    n->limb[first + 2] = (uint32_t)(middle >> 32);
+    n->count = first + 3;
+    n->sign = p.sign;
+    trim(n);
+}
+
+static int compare_magnitudes(const number *a, const number *b)
+{
+    if (a->count != b->count) return a->count < b->count ? -1 : 1;
+    for (int i = a->count - 1; i >= 0; --i) {
+        if (a->limb[i] != b->limb[i]) return a->limb[i] < b->limb[i] ? -1 : 1;
+    }
+    return 0;
+}
+
+static void copy(number *result, const number *a, int factor)
+{
+    memcpy(result->limb, a->limb, (size_t)a->count * sizeof *a->limb);
+    result->count = a->count;
+    result->sign = factor * a->sign;
+}
+
+/* result = a + factor b, factor 1 or -1; result is neither. */
+static void add(number *result, const number *a, const number *b, int factor)
+{
+    if (b->sign == 0) {
+        copy(result, a, 1);
+        return;
+    }
+    if (a->sign == 0) {
+        copy(result, b, factor);
+        return;
+    }
+    int a_is_larger = compare_magnitudes(a, b) >= 0;
+    const number *large = a_is_larger ? a : b, *small = a_is_larger ? b : a;
+    int carry = 0, same_sign = a->sign == factor * b->sign;
+    result->sign = a_is_larger ? a->sign : factor * b->sign;
+    for (int i = 0; i < large->count; ++i) {
+        int64_t limb = i < small->count ? (int64_t)small->limb[i] : 0;
+        int64_t sum = (int64_t)large->limb[i] + (same_sign ? limb : -limb) + carry;
+        carry = sum > (int64_t)UINT32_MAX ? 1 : sum < 0 ? -1 : 0;
+        result->limb[i] = (uint32_t)((uint64_t)sum & UINT32_MAX);
+    }
+    result->count = large->count;
+    if (carry > 0) result->limb[result->count++] = 1;
+    trim(result);
+}
+
+/* result = a b; result is neither. */
+static void multiply(number *result, const number *a, const number *b)
+{
+    result->sign = a->sign * b->sign;
+    result->count = a->count + b->count;
+    memset(result->limb, 0, (size_t)result->count * sizeof *result->limb);
+    for (int i = 0; i < a->count; ++i) {
+        uint64_t carry = 0;
+        for (int j = 0; j < b->count; ++j) {
+            carry += (uint64_t)a->limb[i] * b->limb[j] + result->limb[i + j];
+            result->limb[i + j] = (uint32_t)(carry & UINT32_MAX);
+            carry >>= 32;
+        }
+        result->limb[i + b->count] = (uint32_t)carry;
+    }
+    trim(result);
+}
+
+/* A difference of two coordinates. */
+typedef struct difference {
+    number value;
+    uint32_t limb[SMALL_LIMBS];
+} difference;
+
+static void subtract(difference *result, double a, double b, int least)
+{
+    uint32_t a_limb[SMALL_LIMBS], b_limb[SMALL_LIMBS];
+    number a_number = {0, 0, a_limb}, b_number = {0, 0, b_limb};
+    set_double(&a_number, a, least);
+    set_double(&b_number, b, least);
+    result->value.limb = result->limb;
+    add(&result->value, &a_number, &b_number, -1);
+}
+
+/* result = ax by - ay bx, of at most MIDDLE_LIMBS */
+static void minor(number *result, const difference *ax, const difference *by, const difference *ay,
+                  const difference *bx)
+{
+    uint32_t left_limb[MIDDLE_LIMBS], right_limb[MIDDLE_LIMBS];
+    number left = {0, 0, left_limb}, right = {0, 0, right_limb};
+    multiply(&left, &ax->value, &by->value);
+    multiply(&right, &ay->value, &bx->value);
+    add(result, &left, &right, -1);
+}
+
+int sc_wide_orient2d(const double a[2], const double b[2], const double c[2])
+{
+    int least = least_exponent(a, 2, 2047);
+    least = least_exponent(b, 2, least);
+    least = least_exponent(c, 2, least);
+
+    difference u[2], v[2];
+    for (int i = 0; i < 2; ++i) {
+        subtract(&u[i], b[i], a[i], least);
+        subtract(&v[i], c[i], a[i], least);
+    }
+    uint32_t limb[MIDDLE_LIMBS];
+    number result = {0, 0, limb};
+    minor(&result, &u[0], &v[1], &u[1], &v[0]);
+    return result.sign;
+}
+
+int sc_wide_orient3d(const double a[3], const double b[3], const double c[3], const double d[3])
+{
+    int least = least_exponent(a, 3, 2047);
+    least = least_exponent(b, 3, least);
+    least = least_exponent(c, 3, least);
+    least = least_exponent(d, 3, least);
+
+    difference u[3], v[3], w[3];
+    for (int i = 0; i < 3; ++i) {
+        subtract(&u[i], b[i], a[i], least);
+        subtract(&v[i], c[i], a[i], least);
+        subtract(&w[i], d[i], a[i], least);
+    }
+    uint32_t limbs[2][LARGE_LIMBS], product_limb[LARGE_LIMBS], minor_limb[MIDDLE_LIMBS];
+    number sum = {0, 0, limbs[0]}, next = {0, 0, limbs[1]};
+    number product = {0, 0, product_limb}, cross = {0, 0, minor_limb};
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        minor(&cross, &u[j], &v[k], &u[k], &v[j]);
+        multiply(&product, &cross, &w[i].value);
+        add(&next, &sum, &product, 1);
+        number swap = sum;
+        sum = next;
+        next = swap;
+    }
+    return sum.sign;
+}

@@ -1,0 +1,437 @@
+/*
+ * Partition by recursive bisection. See bisection.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/bisection.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/sort.h"
+
+/* Deeper than this, patches are halved as they stand, which ends within SC_DEPTH_MAX. */
+enum { DEPTH_MEASURED = 32 };
+
+enum { SMOOTHING_PASSES = 3 };
+
+typedef struct bisection {
+    const sc_points *points;
+    const sc_adjacency *adjacency;
+    sc_bisect cut;
+    void *user;
+    sc_hierarchy *hierarchy;
+    float *centers;      /* 3 * triangle_count */
+    float *lengths;      /* 3 * triangle_count: rest length of each side over the mean */
+    uint32_t *patch;     /* triangle_count: the number of the patch at hand it belongs to */
+    uint8_t *side;       /* triangle_count */
+    uint32_t *component; /* triangle_count */
+    uint32_t *queue;     /* triangle_count */
+    sc_pair *keys;       /* triangle_count */
+    uint32_t *sizes;     /* triangle_count: of components */
+    int32_t *graph;      /* 7 * triangle_count + 1, for the caller's cut: offsets, neighbors, weights */
+    uint32_t patches;    /* numbers given out */
+} bisection;
+
+/* The triangle across side k of t if it is in the same patch, else SC_NONE. */
+static uint32_t neighbor(const bisection *b, uint32_t t, uint32_t k)
+{
+    uint32_t h = b->adjacency->opposite[3 * (uint64_t)t + k];
+    if (h == SC_NONE || b->patch[h / 3] != b->patch[t]) return SC_NONE;
+    return h / 3;
+}
+
+/* A float's order as an unsigned integer's. */
+static uint32_t order_bits(float f)
+{
+    uint32_t bits;
+    memcpy(&bits, &f, sizeof bits);
+    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
+}
+
+/* Numbers the components of a patch, where crossing from side 0 to side 1 does or does not count as
+   connected, and writes their sizes. */
+static uint32_t find_components(bisection *b, const uint32_t *triangles, uint32_t count, int by_side)
+{
+    uint32_t found = 0, i;
+    for (i = 0; i < count; i++) b->component[triangles[i]] = SC_NONE;
+    for (i = 0; i < count; i++) {
+        uint32_t head = 0, tail = 0, k;
+        if (b->component[triangles[i]] != SC_NONE) continue;
+        b->component[triangles[i]] = found;
+        b->queue[tail++] = triangles[i];
+        while (head < tail) {
+            uint32_t t = b->queue[head++];
+            for (k = 0; k < 3; k++) {
+                uint32_t u = neighbor(b, t, k);
+                if (u == SC_NONE || b->component[u] != SC_NONE) continue;
+                if (by_side && b->side[u] != b->side[t]) continue;
+                b->component[u] = found;
+                b->queue[tail++] = u;
+            }
+        }
+        b->sizes[found++] = tail;
+    }
+    return found;
+}
+
+/* The direction in which the centers of some triangles spread most, by power iteration on their
+   covariance from the longest axis of their box. */
+static void longest_direction(const bisection *b, const uint32_t *triangles, uint32_t count,
+                              double direction[3])
+{
+    double mean[3] = {0, 0, 0}, low[3], high[3], m[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    uint32_t i;
+    int j, k, round, axis = 0;
+    for (k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
+    for (i = 0; i < count; i++) {
+        const float *c = b->centers + 3 * (uint64_t)triangles[i];
+        for (k = 0; k < 3; k++) {
+            double x = (double)c[k];
+            mean[k] += x / count;
+            if (x < low[k]) low[k] = x;
+            if (x > high[k]) high[k] = x;
+        }
+    }
+    for (i = 0; i < count; i++) {
+        const float *c = b->centers + 3 * (uint64_t)triangles[i];
+        for (j = 0; j < 3; j++)
+            for (k = j; k < 3; k++) m[j][k] += ((double)c[j] - mean[j]) * ((double)c[k] - mean[k]);
+    }
+    m[1][0] = m[0][1];
+    m[2][0] = m[0][2];
+    m[2][1] = m[1][2];
+    for (k = 1; k < 3; k++)
+        if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+    for (k = 0; k < 3; k++) direction[k] = k == axis;
+    for (round = 0; round < 6; round++) {
+        double next[3], size;
+        for (k = 0; k < 3; k++)
+            next[k] = m[k][0] * direction[0] + m[k][1] * direction[1] + m[k][2] * direction[2];
+        size = fabs(next[0]) + fabs(next[1]) + fabs(next[2]);
+        if (!(size > 0) || size > 1e300) break;
+        for (k = 0; k < 3; k++) direction[k] = next[k] / size;
+    }
+}
+
+/* Moves the lowest `left` of count keys to the front. */
+static void select_lowest(sc_pair *keys, uint32_t count, uint32_t left)
+{
+    int64_t low = 0, high = (int64_t)count - 1;
+    while (low < high) {
+        sc_pair pivot = keys[low + (high - low) / 2];
+        int64_t i = low, j = high;
+        while (i <= j) {
+            while (sc_sort_less(keys[i], pivot)) i++;
+            while (sc_sort_less(pivot, keys[j])) j--;
+            if (i <= j) {
+                sc_pair swapped = keys[i];
+                keys[i++] = keys[j];
+                keys[j--] = swapped;
+            }
+        }
+        if ((int64_t)left <= j)
+            high = j;
+        else if ((int64_t)left >= i)
+            low = i;
+        else
+            return;
+    }
+}
+
+/* The built-in cut: the left_target triangles lowest along the longest direction get side 0. */
+static void cut_across(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t left_target)
+{
+    double direction[3];
+    uint32_t i;
+    longest_direction(b, triangles, count, direction);
+    for (i = 0; i < count; i++) {
+        const float *c = b->centers + 3 * (uint64_t)triangles[i];
+        double along = (double)c[0] * direction[0] + (double)c[1] * direction[1] +
+                       (double)c[2] * direction[2];
+        b->keys[i].a = order_bits((float)along);
+        b->keys[i].b = triangles[i];
+    }
+    select_lowest(b->keys, count, left_target);
+    for (i = 0; i < count; i++) b->side[b->keys[i].b] = i >= left_target;
+}
+
+/* The caller's cut. */
+static sc_status cut_by_caller(bisection *b, const uint32_t *triangles, uint32_t count,
+                               uint32_t left_target)
+{
+    sc_dual_graph graph;
+    uint8_t *side = (uint8_t *)b->keys; /* not in use meanwhile */
+    int32_t *offsets = b->graph, *neighbors = offsets + count + 1;
+    int32_t *weights = neighbors + 3 * (uint64_t)count;
+    uint32_t i, k, zeros = 0;
+    int32_t arcs = 0;
+    sc_status status;
+    for (i = 0; i < count; i++) b->queue[triangles[i]] = i; /* local numbers */
+    for (i = 0; i < count; i++) {
+        offsets[i] = arcs;
+        for (k = 0; k < 3; k++) {
+            uint32_t t = triangles[i], u = neighbor(b, t, k);
+            float weight = 100 * b->lengths[3 * (uint64_t)t + k];
+            if (u == SC_NONE || u == t) continue;
+            neighbors[arcs] = (int32_t)b->queue[u];
+            weights[arcs++] = weight > 999 ? 1000 : weight >= 1 ? (int32_t)weight : 1;
+        }
+    }
+    offsets[count] = arcs;
+    graph.struct_size = (uint32_t)sizeof graph;
+    graph.node_count = count;
+    graph.offsets = offsets;
+    graph.neighbors = neighbors;
+    graph.weights = weights;
+    memset(side, 2, count);
+    status = b->cut(b->user, &graph, left_target, side);
+    if (status) return status;
+    for (i = 0; i < count; i++) {
+        if (side[i] > 1) return SC_ERROR_PARTITION;
+        zeros += side[i] == 0;
+        b->side[triangles[i]] = side[i];
+    }
+    return zeros == 0 || zeros == count ? SC_ERROR_PARTITION : SC_OK;
+}
+
+/* If a side has more than its capacity, triangles next to the other side, then those next to them,
+   change over. */
+static void even_out(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
+                     const uint32_t capacity[2])
+{
+    uint8_t heavy = size[0] > capacity[0] ? 0 : 1;
+    uint32_t excess, head = 0, tail = 0, i, k;
+    if (size[heavy] <= capacity[heavy]) return;
+    excess = size[heavy] - capacity[heavy];
+    size[heavy] -= excess;
+    size[!heavy] += excess;
+    for (i = 0; i < count && tail < count; i++)
+        if (b->side[triangles[i]] != heavy) b->queue[tail++] = triangles[i];
+    while (excess && head < tail) {
+        uint32_t t = b->queue[head++];
+        for (k = 0; k < 3 && excess; k++) {
+            uint32_t u = neighbor(b, t, k);
+            if (u == SC_NONE || b->side[u] != heavy) continue;
+            b->side[u] = !heavy;
+            b->queue[tail++] = u;
+            excess--;
+        }
+    }
+}
+
+/* Moves triangles whose sides lie more along the cut than off it. */
+static void smooth(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
+                   const uint32_t capacity[2])
+{
+    uint32_t pass, i, k, moved = 1;
+    for (pass = 0; pass < SMOOTHING_PASSES && moved; pass++) {
+        moved = 0;
+        for (i = 0; i < count; i++) {
+            uint32_t t = triangles[i];
+            uint8_t from = b->side[t], to = !from;
+            float gain = 0;
+            if (size[to] >= capacity[to] || size[from] == 1) continue;
+            for (k = 0; k < 3; k++) {
+                uint32_t u = neighbor(b, t, k);
+                float length = b->lengths[3 * (uint64_t)t + k];
+                if (u != SC_NONE) gain += b->side[u] == to ? length : -length;
+            }
+            if (gain <= 1e-4f) continue;
+            b->side[t] = to;
+            size[from]--;
+            size[to]++;
+            moved++;
+        }
+    }
+}
+
+/* Gives the smaller components of each side to the other side. */
+static void connect(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
+                    const uint32_t capacity[2])
+{
+    uint32_t found = find_components(b, triangles, count, 1), largest[2] = {SC_NONE, SC_NONE}, i;
+    if (found == 2) return;
+    for (i = 0; i < count; i++) {
+        uint32_t c = b->component[triangles[i]], s = b->side[triangles[i]];
+        if (largest[s] == SC_NONE || b->sizes[c] > b->sizes[largest[s]]) largest[s] = c;
+    }
+    for (i = 0; i < count; i++) {
+        uint32_t t = triangles[i], c = b->component[t], s = b->side[t];
+        if (c == largest[s]) continue;
+        if (b->sizes[c] & 0x80000000u) { /* decided at its first triangle */
+            b->side[t] = (uint8_t)(b->sizes[c] & 1u);
+        } else if (size[!s] + b->sizes[c] <= capacity[!s]) {
+            size[s] -= b->sizes[c];
+            size[!s] += b->sizes[c];
+            b->sizes[c] = 0x80000000u | !s;
+            b->side[t] = !s;
+        } else {
+            b->sizes[c] = 0x80000000u | s;
+        }
+    }
+}
+
+/* Deals the components of a patch out to two sides, none cut: the largest against the rest if it is
+   half of all, else by their order along the longest direction of one triangle of each. */
+static void deal_components(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t found)
+{
+    uint32_t largest = 0, i, taken = 0, n = 0;
+    double direction[3];
+    for (i = 1; i < found; i++)
+        if (b->sizes[i] > b->sizes[largest]) largest = i;
+    if (2 * (uint64_t)b->sizes[largest] >= count) {
+        for (i = 0; i < count; i++) b->side[triangles[i]] = b->component[triangles[i]] != largest;
+        return;
+    }
+    for (i = 0; i < found; i++) b->queue[i] = SC_NONE;
+    for (i = 0; i < count; i++)
+        if (b->queue[b->component[triangles[i]]] == SC_NONE)
+            b->queue[b->component[triangles[i]]] = triangles[i];
+    longest_direction(b, b->queue, found, direction);
+    for (i = 0; i < found; i++) {
+        const float *c = b->centers + 3 * (uint64_t)b->queue[i];
+        b->keys[i].a = order_bits((float)((double)c[0] * direction[0] + (double)c[1] * direction[1] +
+                                          (double)c[2] * direction[2]));
+        b->keys[i].b = i;
+    }
+    sc_sort_pairs(b->keys, found);
+    /* the prefix nearest to half; b->queue[component] becomes its side */
+    while (n + 1 < found) {
+        uint32_t more = b->sizes[b->keys[n].b];
+        if (n > 0 && 2 * (uint64_t)taken + more > count) break;
+        taken += more;
+        n++;
+    }
+    for (i = 0; i < found; i++) b->queue[b->keys[i].b] = i >= n;
+    for (i = 0; i < count; i++) b->side[triangles[i]] = (uint8_t)b->queue[b->component[triangles[i]]];
+}
+
+/* Writes side for a patch of more than SC_LEAF_MAX triangles; both sides get some. */
+static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count)
+{
+    uint32_t leaves = sc_hierarchy_leaves(count), left_leaves = (leaves + 1) / 2, found, i;
+    uint32_t left_target = (uint32_t)((uint64_t)count * left_leaves / leaves);
+    uint32_t size[2] = {0, 0}, capacity[2];
+    sc_status status;
+    capacity[0] = left_leaves * SC_LEAF_MAX;
+    capacity[1] = (leaves - left_leaves) * SC_LEAF_MAX;
+    b->patches++;
+    for (i = 0; i < count; i++) b->patch[triangles[i]] = b->patches;
+    found = find_components(b, triangles, count, 0);
+    if (found > 1) {
+        deal_components(b, triangles, count, found);
+        return SC_OK;
+    }
+    if (b->cut) {
+        status = cut_by_caller(b, triangles, count, left_target);
+        if (status) return status;
+    } else {
+        cut_across(b, triangles, count, left_target);
+    }
+    for (i = 0; i < count; i++) size[b->side[triangles[i]]]++;
+    even_out(b, triangles, count, size, capacity);
+    smooth(b, triangles, count, size, capacity);
+    connect(b, triangles, count, size, capacity);
+    return SC_OK;
+}
+
+static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint32_t depth,
+                              uint32_t *node)
+{
+    sc_hierarchy *hierarchy = b->hierarchy;
+    uint32_t *triangles = hierarchy->order + first, i, left = 0, right = 0, child;
+    sc_status status;
+    if (count <= SC_LEAF_MAX || depth > DEPTH_MEASURED) {
+        *node = sc_hierarchy_add_balanced(hierarchy, first, count, depth);
+        return SC_OK;
+    }
+    *node = sc_hierarchy_add(hierarchy, first, count, depth);
+    status = divide(b, triangles, count);
+    if (status) return status;
+    for (i = 0; i < count; i++) {
+        uint32_t t = triangles[i];
+        if (b->side[t])
+            b->queue[right++] = t;
+        else
+            triangles[left++] = t;
+    }
+    memcpy(triangles + left, b->queue, right * sizeof *triangles);
+    status = bisect_patch(b, first, left, depth + 1, &child);
+    if (status) return status;
+    hierarchy->nodes[*node].left = child;
+    status = bisect_patch(b, first + left, right, depth + 1, &child);
+    hierarchy->nodes[*node].right = child;
+    return status;
+}
+
+static void measure(bisection *b)
+{
+    const sc_points *points = b->points;
+    double scale = 0, mean = 0;
+    uint64_t i, corners = 3 * (uint64_t)points->triangle_count;
+    int k;
+    /* everything relative to the largest coordinate, so that nothing overflows */
+    for (i = 0; i < 3 * (uint64_t)points->point_count; i++)
+        if (fabs(points->rest[i]) > scale) scale = fabs(points->rest[i]);
+    if (!(scale > 0)) scale = 1;
+    for (i = 0; i < corners; i++) {
+        const double *p = points->rest + 3 * (uint64_t)points->triangles[i];
+        const double *q = points->rest + 3 * (uint64_t)points->triangles[sc_adjacency_next((uint32_t)i)];
+        double square = 0;
+        for (k = 0; k < 3; k++) {
+            double d = q[k] / scale - p[k] / scale;
+            square += d * d;
+        }
+        b->lengths[i] = (float)sqrt(square);
+        mean += sqrt(square) / (double)corners;
+    }
+    for (i = 0; i < corners; i++) b->lengths[i] = mean > 0 ? b->lengths[i] / (float)mean : 1;
+    for (i = 0; i < points->triangle_count; i++) {
+        const uint32_t *corner = points->triangles + 3 * i;
+        for (k = 0; k < 3; k++)
+            b->centers[3 * i + (uint64_t)k] = (float)((points->rest[3 * (uint64_t)corner[0] + (uint64_t)k] / scale +
+                                                       points->rest[3 * (uint64_t)corner[1] + (uint64_t)k] / scale +
+                                                       points->rest[3 * (uint64_t)corner[2] + (uint64_t)k] / scale));
+    }
+}
+
+sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjacency, sc_bisect bisect,
+                             void *user, sc_scratch *scratch, sc_hierarchy *hierarchy)
+{
+    uint32_t count = points->triangle_count, t, root;
+    bisection b;
+    sc_status status = sc_hierarchy_init(hierarchy, count, scratch);
+    if (status) return status;
+    memset(&b, 0, sizeof b);
+    b.points = points;
+    b.adjacency = adjacency;
+    b.cut = bisect;
+    b.user = user;
+    b.hierarchy = hierarchy;
+    b.centers = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(float));
+    b.lengths = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(float));
+    b.patch = (uint32_t *)sc_scratch_take_filled(scratch, count, sizeof(uint32_t), 0);
+    b.side = (uint8_t *)sc_scratch_take(scratch, count, 1);
+    b.component = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
+    b.queue = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
+    b.keys = (sc_pair *)sc_scratch_take(scratch, count, sizeof(sc_pair));
+    b.sizes = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
+    if (bisect) b.graph = (int32_t *)sc_scratch_take(scratch, 7 * (uint64_t)count + 1, sizeof(int32_t));
+    if (!b.centers || !b.lengths || !b.patch || !b.side || !b.component || !b.queue || !b.keys ||
+        !b.sizes || (bisect && !b.graph))
+        return SC_ERROR_MEMORY;
+    measure(&b);
+    for (t = 0; t < count; t++) hierarchy->order[t] = t;
+    status = bisect_patch(&b, 0, count, 1, &root);
+    sc_scratch_give(scratch, b.graph);
+    sc_scratch_give(scratch, b.sizes);
+    sc_scratch_give(scratch, b.keys);
+    sc_scratch_give(scratch, b.queue);
+    sc_scratch_give(scratch, b.component);
+    sc_scratch_give(scratch, b.side);
+    sc_scratch_give(scratch, b.patch);
+    sc_scratch_give(scratch, b.lengths);
+    sc_scratch_give(scratch, b.centers);
+    return status;
+}

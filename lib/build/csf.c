@@ -1,0 +1,430 @@
+/*
+ * The contour segment forest. See csf.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/csf.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NOT_CUT = 255 };
+
+/* The cosine up to which a run may turn from its first half-edge. */
+static const double TURN_COSINE = 0.25;
+
+/* The contour half-edges of one level, where each leads, and which start a run. */
+typedef struct contour_level {
+    uint32_t count;
+    uint32_t *half_edges; /* count */
+    uint32_t *next;       /* count: places in half_edges */
+    uint8_t *start;       /* count */
+} contour_level;
+
+typedef struct builder {
+    const sc_points *points;
+    const sc_adjacency *adjacency;
+    const sc_xbvh *xbvh;
+    const sc_sctt *sctt;
+    sc_scratch *scratch;
+    uint32_t *leaf_of;      /* triangle_count: leaf cluster */
+    uint32_t *patch_at;     /* leaf_count: patch of the level at hand */
+    uint32_t *place;        /* 3 * triangle_count: place in the half_edges of the level at hand */
+    uint8_t *cut;           /* 3 * triangle_count: first level at which a run starts here regardless */
+    contour_level *levels;  /* level_count */
+    uint32_t *segment_from; /* 3 * triangle_count: segment of the level at hand that starts here */
+    sc_list last;           /* last half-edge of each segment */
+    sc_list points_first, points_list, child_first, children;
+    sc_list contours;                                  /* node lists, deepest level first */
+    uint32_t *node_first, *node_count;                 /* node_count: a node's part of contours */
+    uint32_t *run_patch, *run_out, *run_segment;       /* the runs of the level at hand */
+    uint32_t *patch_first, *patch_runs;                /* the same sorted by patch */
+} builder;
+
+static void enter_level(builder *b, uint32_t level)
+{
+    const sc_xbvh *xbvh = b->xbvh;
+    uint32_t p, leaf;
+    for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++)
+        for (leaf = xbvh->leaf[p]; leaf < xbvh->leaf[p + 1]; leaf++) b->patch_at[leaf] = p;
+}
+
+static uint32_t patch_of(const builder *b, uint32_t h)
+{
+    return b->patch_at[b->leaf_of[h / 3]];
+}
+
+/* The patch across a half-edge, SC_NONE for the outside. */
+static uint32_t patch_across(const builder *b, uint32_t h)
+{
+    uint32_t opposite = b->adjacency->opposite[h];
+    return opposite == SC_NONE ? SC_NONE : patch_of(b, opposite);
+}
+
+/* Half-edge i of all, in the order of the leaves: so that segments that are near have near numbers. */
+static uint32_t half_edge_of(const uint32_t *order, uint32_t i)
+{
+    return 3 * order[i / 3] + i % 3;
+}
+
+/* Keeps, of the candidates or of all, the half-edges between different patches of the level that was
+   entered. */
+static sc_status collect_level(builder *b, const uint32_t *order, const contour_level *below,
+                               contour_level *level)
+{
+    uint32_t i, h, count = below ? below->count : 3 * b->points->triangle_count;
+    level->count = 0;
+    for (i = 0; i < count; i++) {
+        h = below ? below->half_edges[i] : half_edge_of(order, i);
+        level->count += patch_across(b, h) != patch_of(b, h);
+    }
+    level->half_edges = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
+    level->next = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
+    level->start = (uint8_t *)sc_scratch_take_filled(b->scratch, level->count, 1, 0);
+    if (!level->half_edges || !level->next || !level->start) return SC_ERROR_MEMORY;
+    level->count = 0;
+    for (i = 0; i < count; i++) {
+        h = below ? below->half_edges[i] : half_edge_of(order, i);
+        if (patch_across(b, h) != patch_of(b, h)) level->half_edges[level->count++] = h;
+    }
+    return SC_OK;
+}
+
+static void find_places(builder *b, const contour_level *level)
+{
+    uint32_t e;
+    for (e = 0; e < level->count; e++) b->place[level->half_edges[e]] = e;
+}
+
+/* The contour half-edge that follows: turns round the end point through triangles of the patch. */
+static void find_next(builder *b, const contour_level *level)
+{
+    uint32_t e;
+    for (e = 0; e < level->count; e++) {
+        uint32_t h = level->half_edges[e], patch = patch_of(b, h);
+        h = sc_adjacency_next(h);
+        while (patch_across(b, h) == patch) h = sc_adjacency_next(b->adjacency->opposite[h]);
+        level->next[e] = b->place[h];
+    }
+}
+
+static void direction_of(const builder *b, uint32_t h, double direction[3])
+{
+    const double *p = b->points->rest + 3 * (uint64_t)b->points->triangles[h];
+    const double *q = b->points->rest + 3 * (uint64_t)b->points->triangles[sc_adjacency_next(h)];
+    int k;
+    for (k = 0; k < 3; k++) direction[k] = q[k] - p[k];
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Walks the run that starts at place e, marks it seen and, if asked, cuts it where it turns. */
+static void walk_run(builder *b, contour_level *level, uint32_t number, uint32_t e, int cut_turns,
+                     uint8_t *seen)
+{
+    double first[3], now[3];
+    direction_of(b, level->half_edges[e], first);
+    seen[e] = 1;
+    for (e = level->next[e]; !level->start[e]; e = level->next[e]) {
+        seen[e] = 1;
+        if (!cut_turns) continue;
+        direction_of(b, level->half_edges[e], now);
+        if (dot(first, now) < TURN_COSINE * sqrt(dot(first, first)) * sqrt(dot(now, now))) {
+            b->cut[level->half_edges[e]] = (uint8_t)number;
+            level->start[e] = 1;
+            memcpy(first, now, sizeof first);
+        }
+    }
+}
+
+/* Decides where runs start, from the cuts of the levels above and its own. */
+static sc_status find_starts(builder *b, contour_level *level, uint32_t number)
+{
+    uint32_t e, f, lowest;
+    uint8_t *seen = (uint8_t *)sc_scratch_take_filled(b->scratch, level->count, 1, 0);
+    if (!seen) return SC_ERROR_MEMORY;
+    for (e = 0; e < level->count; e++) {
+        uint32_t h = level->half_edges[e], following = level->half_edges[level->next[e]];
+        if (b->cut[h] <= number) level->start[e] = 1;
+        if (patch_across(b, h) != patch_across(b, following)) level->start[level->next[e]] = 1;
+    }
+    for (e = 0; e < level->count; e++)
+        if (level->start[e] && !seen[e])
+            walk_run(b, level, number, e, b->adjacency->opposite[level->half_edges[e]] == SC_NONE, seen);
+    for (e = 0; e < level->count; e++) { /* what is left are closed loops */
+        if (seen[e]) continue;
+        for (lowest = e, f = level->next[e]; f != e; f = level->next[f])
+            if (level->half_edges[f] < level->half_edges[lowest]) lowest = f;
+        b->cut[level->half_edges[lowest]] = (uint8_t)number;
+        level->start[lowest] = 1;
+        walk_run(b, level, number, lowest, 1, seen);
+    }
+    sc_scratch_give(b->scratch, seen);
+    return SC_OK;
+}
+
+static int add_leaf_segment(builder *b, const contour_level *level, uint32_t e)
+{
+    uint32_t h = level->half_edges[e];
+    if (!sc_list_reserve(b->scratch, &b->last, 1) || !sc_list_reserve(b->scratch, &b->points_first, 1))
+        return 0;
+    b->segment_from[h] = (uint32_t)b->last.count;
+    sc_list_add(&b->points_first, (uint32_t)b->points_list.count);
+    do {
+        h = level->half_edges[e];
+        if (!sc_list_reserve(b->scratch, &b->points_list, 2)) return 0;
+        sc_list_add(&b->points_list, b->points->triangles[h]);
+        e = level->next[e];
+    } while (!level->start[e]);
+    sc_list_add(&b->points_list, b->points->triangles[sc_adjacency_next(h)]);
+    sc_list_add(&b->last, h);
+    return 1;
+}
+
+static int add_parent_segment(builder *b, const contour_level *level, uint32_t e)
+{
+    uint32_t h = level->half_edges[e], child = b->segment_from[h];
+    uint32_t following = level->next[b->place[b->last.items[child]]];
+    if (level->start[following]) return 1; /* one child: the segment stays */
+    if (!sc_list_reserve(b->scratch, &b->last, 1) || !sc_list_reserve(b->scratch, &b->child_first, 1))
+        return 0;
+    sc_list_add(&b->child_first, (uint32_t)b->children.count);
+    for (;;) {
+        if (!sc_list_reserve(b->scratch, &b->children, 1)) return 0;
+        sc_list_add(&b->children, child);
+        following = level->next[b->place[b->last.items[child]]];
+        if (level->start[following]) break;
+        child = b->segment_from[level->half_edges[following]];
+    }
+    b->segment_from[h] = (uint32_t)b->last.count;
+    sc_list_add(&b->last, b->last.items[child]);
+    return 1;
+}
+
+/* Sorts the runs of the level by patch. */
+static void sort_runs(builder *b, uint32_t level, uint32_t runs)
+{
+    uint32_t begin = b->xbvh->level_first[level], count = sc_xbvh_patches(b->xbvh, level), i;
+    uint32_t *first = b->patch_first;
+    memset(first, 0, ((size_t)count + 2) * sizeof *first);
+    for (i = 0; i < runs; i++) first[b->run_patch[i] - begin + 2]++;
+    for (i = 0; i < count; i++) first[i + 2] += first[i + 1];
+    for (i = 0; i < runs; i++) b->patch_runs[first[b->run_patch[i] - begin + 1]++] = i;
+}
+
+/* Lists the segments of a patch, but for those towards another; returns their number or SC_NONE. */
+static uint32_t list_patch(builder *b, uint32_t begin, uint32_t patch, uint32_t other)
+{
+    uint32_t i, from = b->patch_first[patch - begin], to = b->patch_first[patch - begin + 1], count = 0;
+    if (!sc_list_reserve(b->scratch, &b->contours, (uint64_t)(to - from) + 2)) return SC_NONE;
+    for (i = from; i < to; i++) {
+        uint32_t run = b->patch_runs[i];
+        if (b->run_out[run] == other) continue;
+        sc_list_add(&b->contours, b->run_segment[run]);
+        count++;
+    }
+    return count;
+}
+
+static int list_node(builder *b, uint32_t begin, uint32_t n)
+{
+    uint32_t p = b->sctt->patches[n].a, q = b->sctt->patches[n].b, count;
+    uint64_t at = b->contours.count;
+    b->node_first[n] = (uint32_t)at;
+    if (b->sctt->touch[n] != SC_NONE) {
+        if (!sc_list_reserve(b->scratch, &b->contours, 2)) return 0;
+        sc_list_add(&b->contours, b->sctt->touch[n]);
+        sc_list_add(&b->contours, 0);
+    }
+    /* no patch has the number patch_end, so that self nodes leave nothing out */
+    count = list_patch(b, begin, p, p == q ? b->xbvh->patch_end : q);
+    if (count == SC_NONE) return 0;
+    if (b->sctt->touch[n] != SC_NONE) b->contours.items[at + 1] = count;
+    if (p != q && list_patch(b, begin, q, p) == SC_NONE) return 0;
+    b->node_count[n] = (uint32_t)(b->contours.count - at);
+    return b->contours.count <= 0xfffffff0u;
+}
+
+static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
+{
+    contour_level *level = &b->levels[number];
+    uint32_t e, n, runs = 0, last = b->xbvh->level_count - 1;
+    enter_level(b, number);
+    find_places(b, level);
+    for (e = 0; e < level->count; e++) {
+        uint32_t h = level->half_edges[e];
+        if (!level->start[e]) continue;
+        if (!(number == last ? add_leaf_segment(b, level, e) : add_parent_segment(b, level, e)))
+            return SC_ERROR_MEMORY;
+        b->run_patch[runs] = patch_of(b, h);
+        b->run_out[runs] = patch_across(b, h);
+        b->run_segment[runs++] = b->segment_from[h];
+    }
+    csf->level_segments[number] = runs;
+    if (number == last) csf->leaf_count = (uint32_t)b->last.count;
+    sort_runs(b, number, runs);
+    for (n = b->sctt->level_first[number]; n < b->sctt->level_first[number + 1]; n++)
+        if (!list_node(b, b->xbvh->level_first[number], n)) return SC_ERROR_MEMORY;
+    return SC_OK;
+}
+
+/* The node lists in the order of the nodes. */
+static sc_status order_contours(builder *b, sc_csf *csf)
+{
+    uint32_t n, nodes = b->sctt->node_count, at = 0;
+    csf->contour_first = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)nodes + 1, sizeof(uint32_t));
+    csf->contours = (uint32_t *)sc_scratch_take(b->scratch, b->contours.count, sizeof(uint32_t));
+    if (!csf->contour_first || !csf->contours) return SC_ERROR_MEMORY;
+    for (n = 0; n < nodes; n++) {
+        csf->contour_first[n] = at;
+        if (b->node_count[n])
+            memcpy(csf->contours + at, b->contours.items + b->node_first[n],
+                   b->node_count[n] * sizeof *csf->contours);
+        at += b->node_count[n];
+    }
+    csf->contour_first[nodes] = at;
+    return SC_OK;
+}
+
+static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
+{
+    uint64_t corners = 3 * (uint64_t)b->points->triangle_count;
+    uint32_t leaf, i, level_count = b->xbvh->level_count, contour;
+    b->leaf_of = (uint32_t *)sc_scratch_take(b->scratch, b->points->triangle_count, sizeof(uint32_t));
+    b->patch_at = (uint32_t *)sc_scratch_take(b->scratch, b->xbvh->leaf_count, sizeof(uint32_t));
+    b->place = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
+    b->segment_from = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
+    b->cut = (uint8_t *)sc_scratch_take_filled(b->scratch, corners, 1, NOT_CUT);
+    b->levels = (contour_level *)sc_scratch_take_filled(b->scratch, level_count, sizeof *b->levels, 0);
+    b->node_first = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
+    b->node_count = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
+    csf->level_segments = (uint32_t *)sc_scratch_take(b->scratch, level_count, sizeof(uint32_t));
+    if (!b->leaf_of || !b->patch_at || !b->place || !b->segment_from || !b->cut || !b->levels ||
+        !b->node_first || !b->node_count || !csf->level_segments)
+        return SC_ERROR_MEMORY;
+    for (leaf = 0; leaf < b->xbvh->leaf_count; leaf++)
+        for (i = b->xbvh->leaf_first[leaf]; i < b->xbvh->leaf_first[leaf + 1]; i++)
+            b->leaf_of[order[i]] = leaf;
+    for (i = level_count; i-- > 0;) {
+        const contour_level *below = i + 1 < level_count ? &b->levels[i + 1] : NULL;
+        sc_status status;
+        enter_level(b, i);
+        status = collect_level(b, order, below, &b->levels[i]);
+        if (status) return status;
+    }
+    contour = b->levels[level_count - 1].count;
+    b->run_patch = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
+    b->run_out = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
+    b->run_segment = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
+    b->patch_runs = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
+    b->patch_first =
+        (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->xbvh->leaf_count + 2, sizeof(uint32_t));
+    return b->run_patch && b->run_out && b->run_segment && b->patch_runs && b->patch_first
+               ? SC_OK
+               : SC_ERROR_MEMORY;
+}
+
+static void give_back(builder *b)
+{
+    uint32_t i;
+    for (i = 0; i < b->xbvh->level_count; i++) {
+        sc_scratch_give(b->scratch, b->levels[i].half_edges);
+        sc_scratch_give(b->scratch, b->levels[i].next);
+        sc_scratch_give(b->scratch, b->levels[i].start);
+    }
+    sc_scratch_give(b->scratch, b->leaf_of);
+    sc_scratch_give(b->scratch, b->patch_at);
+    sc_scratch_give(b->scratch, b->place);
+    sc_scratch_give(b->scratch, b->segment_from);
+    sc_scratch_give(b->scratch, b->cut);
+    sc_scratch_give(b->scratch, b->levels);
+    sc_scratch_give(b->scratch, b->node_first);
+    sc_scratch_give(b->scratch, b->node_count);
+    sc_scratch_give(b->scratch, b->run_patch);
+    sc_scratch_give(b->scratch, b->run_out);
+    sc_scratch_give(b->scratch, b->run_segment);
+    sc_scratch_give(b->scratch, b->patch_first);
+    sc_scratch_give(b->scratch, b->patch_runs);
+    sc_scratch_give(b->scratch, b->last.items);
+    sc_scratch_give(b->scratch, b->contours.items);
+}
+
+sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency, const uint32_t *order,
+                       const sc_xbvh *xbvh, const sc_sctt *sctt, sc_scratch *scratch, sc_csf *csf)
+{
+    builder b;
+    uint32_t level;
+    sc_status status;
+    memset(&b, 0, sizeof b);
+    b.points = points;
+    b.adjacency = adjacency;
+    b.xbvh = xbvh;
+    b.sctt = sctt;
+    b.scratch = scratch;
+    status = prepare(&b, order, csf);
+    if (status) return status;
+    for (level = 0; level < xbvh->level_count; level++) { /* cuts go down */
+        enter_level(&b, level);
+        find_places(&b, &b.levels[level]);
+        find_next(&b, &b.levels[level]);
+        status = find_starts(&b, &b.levels[level], level);
+        if (status) return status;
+    }
+    for (level = xbvh->level_count; level-- > 0;) { /* segments grow up */
+        status = build_level(&b, level, csf);
+        if (status) return status;
+    }
+    csf->segment_count = (uint32_t)b.last.count;
+    if (!sc_list_reserve(scratch, &b.points_first, 1) || !sc_list_reserve(scratch, &b.child_first, 1) ||
+        !sc_list_reserve(scratch, &b.points_list, 1) || !sc_list_reserve(scratch, &b.children, 1))
+        return SC_ERROR_MEMORY;
+    sc_list_add(&b.points_first, (uint32_t)b.points_list.count);
+    sc_list_add(&b.child_first, (uint32_t)b.children.count);
+    csf->point_first = b.points_first.items;
+    csf->points = b.points_list.items;
+    csf->child_first = b.child_first.items;
+    csf->children = b.children.items;
+    status = order_contours(&b, csf);
+    give_back(&b);
+    return status;
+}
+
+static uint32_t end_point(const sc_csf *csf, uint32_t segment, int last)
+{
+    while (segment >= csf->leaf_count) {
+        const uint32_t *first = csf->child_first + (segment - csf->leaf_count);
+        segment = csf->children[last ? first[1] - 1 : first[0]];
+    }
+    return csf->points[last ? csf->point_first[segment + 1] - 1 : csf->point_first[segment]];
+}
+
+int sc_csf_validate(const sc_csf *csf, const sc_sctt *sctt, sc_scratch *scratch)
+{
+    uint32_t s, i, n;
+    uint8_t *has_parent = (uint8_t *)sc_scratch_take_filled(scratch, csf->segment_count, 1, 0);
+    if (!has_parent) return 0;
+    for (s = 0; s < csf->leaf_count; s++)
+        if (csf->point_first[s + 1] < csf->point_first[s] + 2) return 0;
+    for (; s < csf->segment_count; s++) {
+        const uint32_t *first = csf->child_first + (s - csf->leaf_count);
+        if (first[1] < first[0] + 2) return 0;
+        for (i = first[0]; i < first[1]; i++) {
+            uint32_t child = csf->children[i];
+            if (child >= s || has_parent[child]) return 0;
+            has_parent[child] = 1;
+            if (i > first[0] && end_point(csf, csf->children[i - 1], 1) != end_point(csf, child, 0))
+                return 0;
+        }
+    }
+    for (n = 0; n < sctt->node_count; n++) {
+        uint32_t skip = sctt->touch[n] == SC_NONE ? 0 : 2;
+        if (csf->contour_first[n] + skip > csf->contour_first[n + 1]) return 0;
+        for (i = csf->contour_first[n] + skip; i < csf->contour_first[n + 1]; i++)
+            if (csf->contours[i] >= csf->segment_count) return 0;
+    }
+    sc_scratch_give(scratch, has_parent);
+    return 1;
+}

@@ -1,0 +1,49 @@
+/*
+ * The contour segment forest (CSF; paper, section 6.1): the contours of all patches, shared between
+ * levels.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * A contour segment is a maximal run of half-edges of a patch that all border on the same other patch
+ * of its level, or on the outside, one half-edge leading to the next. Invariant: the half-edges of a
+ * segment are the ordered union of its children's, which are segments of the level below; a segment
+ * that a level leaves as it was is the same segment.
+ *
+ * Two cuts are added, at every level from the first that needs them downwards: a run that is a closed
+ * loop starts somewhere, and such a loop and the free boundary are cut where the rest shape turns by
+ * more than about 75 degrees from the run's start, for a segment that turns right round fails every
+ * contour test.
+ *
+ * Half-edges of irregular edges border on the outside, so a contour may hold an edge and its reverse;
+ * that culls less and loses nothing, since they cancel in every winding number.
+ *
+ * Segments 0 to leaf_count - 1 are lists of points: a segment with n half-edges has n + 1. The others
+ * are lists of two or more children with lower numbers.
+ */
+#ifndef SC_BUILD_CSF_H
+#define SC_BUILD_CSF_H
+
+#include "build/sctt.h"
+
+/* Scratch memory. */
+typedef struct sc_csf {
+    uint32_t segment_count, leaf_count;
+    uint32_t *point_first; /* leaf_count + 1: points of segment s start here in points */
+    uint32_t *points;      /* point_first[leaf_count] */
+    uint32_t *child_first; /* segment_count - leaf_count + 1: children of segment leaf_count + i */
+    uint32_t *children;    /* child_first[segment_count - leaf_count] */
+    /* The segments round the patches of each node of the self-collision test tree: around their
+       union, or, for a pair that shares one point (sctt.touch), that point, the number of segments of
+       its first patch, those, and those of its second. */
+    uint32_t *contour_first;  /* node_count + 1 */
+    uint32_t *contours;       /* contour_first[node_count] */
+    uint32_t *level_segments; /* level_count: segments of each level */
+} sc_csf;
+
+sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency, const uint32_t *order,
+                       const sc_xbvh *xbvh, const sc_sctt *sctt, sc_scratch *scratch, sc_csf *csf);
+
+/* For debug builds and tests: 1 if children lead into each other and have one parent at most. */
+int sc_csf_validate(const sc_csf *csf, const sc_sctt *sctt, sc_scratch *scratch);
+
+#endif

@@ -1,0 +1,179 @@
+/*
+ * Reading, checking and welding the caller's mesh. See mesh.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/mesh.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MAX_TRIANGLES 0x55555554u
+#define MAX_VERTICES 0xfffffff0u
+
+void sc_mesh_read_position(const void *positions, uint32_t type, uint64_t stride, uint64_t e,
+                           double position[3])
+{
+    const unsigned char *at = (const unsigned char *)positions + stride * e;
+    if (type == SC_DOUBLE) {
+        memcpy(position, at, 3 * sizeof(double));
+    } else {
+        float f[3];
+        memcpy(f, at, sizeof f);
+        position[0] = (double)f[0];
+        position[1] = (double)f[1];
+        position[2] = (double)f[2];
+    }
+}
+
+sc_status sc_mesh_position_stride(uint32_t type, uint32_t given, uint64_t *stride)
+{
+    uint64_t packed = 3 * (type == SC_DOUBLE ? sizeof(double) : sizeof(float));
+    if (type != SC_FLOAT && type != SC_DOUBLE) return SC_ERROR_OPTION;
+    if (given != 0 && given < packed) return SC_ERROR_STRIDE;
+    *stride = given ? given : packed;
+    return SC_OK;
+}
+
+static sc_status read_triangles(const sc_mesh *mesh, uint32_t *triangles)
+{
+    const unsigned char *at = (const unsigned char *)mesh->indices;
+    uint64_t packed = 3 * (mesh->index_type == SC_UINT16 ? sizeof(uint16_t) : sizeof(uint32_t));
+    uint64_t stride = mesh->index_stride ? mesh->index_stride : packed;
+    uint32_t t;
+    int k;
+    for (t = 0; t < mesh->triangle_count; t++, at += stride, triangles += 3) {
+        if (mesh->index_type == SC_UINT16) {
+            uint16_t narrow[3];
+            memcpy(narrow, at, sizeof narrow);
+            for (k = 0; k < 3; k++) triangles[k] = narrow[k];
+        } else {
+            memcpy(triangles, at, 3 * sizeof(uint32_t));
+        }
+        for (k = 0; k < 3; k++)
+            if (triangles[k] >= mesh->vertex_count) return SC_ERROR_INDEX;
+    }
+    return SC_OK;
+}
+
+static uint64_t hash_position(const double position[3])
+{
+    uint64_t hash = 0x9e3779b97f4a7c15u, bits;
+    int k;
+    for (k = 0; k < 3; k++) {
+        double x = position[k] == 0 ? 0 : position[k]; /* -0 equals 0 */
+        memcpy(&bits, &x, sizeof bits);
+        hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+/* representative[v] for all used vertices: the lowest used vertex at the same position. */
+static sc_status weld_rest(const sc_mesh *mesh, uint64_t stride, const uint8_t *used,
+                           sc_scratch *scratch, uint32_t *representative)
+{
+    uint64_t size = 16, at;
+    uint32_t *table, v;
+    while (size < 2 * (uint64_t)mesh->vertex_count) size *= 2;
+    table = (uint32_t *)sc_scratch_take_filled(scratch, size, sizeof *table, 0xff);
+    if (!table) return SC_ERROR_MEMORY;
+    for (v = 0; v < mesh->vertex_count; v++) {
+        double p[3], q[3];
+        if (!used[v]) continue;
+        sc_mesh_read_position(mesh->positions, mesh->position_type, stride, v, p);
+        for (at = hash_position(p) & (size - 1);; at = (at + 1) & (size - 1)) {
+            if (table[at] == SC_NONE) {
+                table[at] = representative[v] = v;
+                break;
+            }
+            sc_mesh_read_position(mesh->positions, mesh->position_type, stride, table[at], q);
+            if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
+                representative[v] = table[at];
+                break;
+            }
+        }
+    }
+    sc_scratch_give(scratch, table);
+    return SC_OK;
+}
+
+static sc_status check_weld_map(const uint32_t *map, uint32_t count)
+{
+    uint32_t v;
+    if (!map) return SC_ERROR_NULL;
+    for (v = 0; v < count; v++)
+        if (map[v] >= count || map[map[v]] != map[v]) return SC_ERROR_WELD_MAP;
+    return SC_OK;
+}
+
+sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_scratch *scratch,
+                       sc_points *points)
+{
+    uint64_t position_stride, index_bytes, h, corners;
+    uint32_t *representative, v;
+    uint8_t *used;
+    sc_status status;
+
+    if (mesh->reserved) return SC_ERROR_OPTION;
+    if (!mesh->vertex_count || !mesh->triangle_count) return SC_ERROR_EMPTY;
+    if (mesh->vertex_count > MAX_VERTICES || mesh->triangle_count > MAX_TRIANGLES)
+        return SC_ERROR_COUNT;
+    if (!mesh->positions || !mesh->indices) return SC_ERROR_NULL;
+    status = sc_mesh_position_stride(mesh->position_type, mesh->position_stride, &position_stride);
+    if (status) return status;
+    if (mesh->index_type != SC_UINT32 && mesh->index_type != SC_UINT16) return SC_ERROR_OPTION;
+    index_bytes = 3 * (mesh->index_type == SC_UINT16 ? sizeof(uint16_t) : sizeof(uint32_t));
+    if (mesh->index_stride && mesh->index_stride < index_bytes) return SC_ERROR_STRIDE;
+    if (position_stride > SIZE_MAX / mesh->vertex_count ||
+        (mesh->index_stride ? mesh->index_stride : index_bytes) > SIZE_MAX / mesh->triangle_count)
+        return SC_ERROR_COUNT;
+    if (options->weld > SC_WELD_NONE) return SC_ERROR_OPTION;
+    if (options->weld == SC_WELD_MAP) {
+        status = check_weld_map(options->weld_map, mesh->vertex_count);
+        if (status) return status;
+    }
+
+    corners = 3 * (uint64_t)mesh->triangle_count;
+    points->vertex_count = mesh->vertex_count;
+    points->triangle_count = mesh->triangle_count;
+    points->triangles = (uint32_t *)sc_scratch_take(scratch, corners, sizeof(uint32_t));
+    points->slot = (uint32_t *)sc_scratch_take(scratch, mesh->vertex_count, sizeof(uint32_t));
+    representative = (uint32_t *)sc_scratch_take(scratch, mesh->vertex_count, sizeof(uint32_t));
+    used = (uint8_t *)sc_scratch_take_filled(scratch, mesh->vertex_count, 1, 0);
+    if (!points->triangles || !points->slot || !representative || !used) return SC_ERROR_MEMORY;
+    status = read_triangles(mesh, points->triangles);
+    if (status) return status;
+
+    for (h = 0; h < corners; h++) used[points->triangles[h]] = 1;
+    if (options->weld == SC_WELD_MAP) /* what stands for a used vertex is used */
+        for (h = 0; h < corners; h++) used[options->weld_map[points->triangles[h]]] = 1;
+    for (v = 0; v < mesh->vertex_count; v++) {
+        double p[3];
+        if (!used[v]) continue;
+        sc_mesh_read_position(mesh->positions, mesh->position_type, position_stride, v, p);
+        if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))) return SC_ERROR_NOT_FINITE;
+        representative[v] = options->weld == SC_WELD_MAP ? options->weld_map[v] : v;
+    }
+    if (options->weld == SC_WELD_REST) {
+        status = weld_rest(mesh, position_stride, used, scratch, representative);
+        if (status) return status;
+    }
+
+    points->point_count = 0;
+    for (v = 0; v < mesh->vertex_count; v++)
+        points->slot[v] = !used[v]                ? SC_SLOT_UNUSED
+                          : representative[v] != v ? SC_SLOT_WELDED
+                                                   : points->point_count++;
+    for (h = 0; h < corners; h++)
+        points->triangles[h] = points->slot[representative[points->triangles[h]]];
+    points->rest = (double *)sc_scratch_take(scratch, 3 * (uint64_t)points->point_count, sizeof(double));
+    if (!points->rest) return SC_ERROR_MEMORY;
+    for (v = 0; v < mesh->vertex_count; v++)
+        if (points->slot[v] < SC_SLOT_WELDED)
+            sc_mesh_read_position(mesh->positions, mesh->position_type, position_stride, v,
+                                  points->rest + 3 * (uint64_t)points->slot[v]);
+    sc_scratch_give(scratch, representative);
+    sc_scratch_give(scratch, used);
+    return SC_OK;
+}

@@ -1,0 +1,36 @@
+/*
+ * Reads the caller's mesh: checks it, welds it and numbers what is used.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * A point is a vertex that represents itself and those welded to it, and that a triangle uses.
+ */
+#ifndef SC_BUILD_MESH_H
+#define SC_BUILD_MESH_H
+
+#include "base/memory.h"
+
+/* What a query does with a vertex of the caller's: a point number to store it at, or one of these. */
+#define SC_SLOT_UNUSED 0xffffffffu /* no triangle uses it: not even read */
+#define SC_SLOT_WELDED 0xfffffffeu /* another vertex stands for it: only checked to be finite */
+
+/* All arrays are scratch memory. */
+typedef struct sc_points {
+    uint32_t vertex_count, triangle_count, point_count;
+    uint32_t *slot;      /* vertex_count */
+    uint32_t *triangles; /* 3 * triangle_count point numbers, in the caller's order */
+    double *rest;        /* 3 * point_count */
+} sc_points;
+
+/* Element e (of three scalars) of a strided position array of either type. */
+void sc_mesh_read_position(const void *positions, uint32_t type, uint64_t stride, uint64_t e,
+                           double position[3]);
+
+/* Checks a position array's type and stride and gives the stride in bytes. */
+sc_status sc_mesh_position_stride(uint32_t type, uint32_t given, uint64_t *stride);
+
+/* options may have any weld value; linear time but for unlucky hashing. */
+sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_scratch *scratch,
+                       sc_points *points);
+
+#endif

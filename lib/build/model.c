@@ -1,0 +1,282 @@
+/*
+ * Putting the model together. See model.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/model.h"
+
+#include <string.h>
+
+/* Stands before the model and fills one alignment unit. */
+typedef struct sc_model_owner {
+    sc_allocator allocator;
+    uint64_t bytes; /* with this */
+} sc_model_owner;
+
+/* Box recursion visits the last level and every third above it. */
+enum { HOP = 3 };
+
+/* One array of the model while it is being written. */
+#define NEW_ARRAY(model, name, type)                                                                   \
+    ((type *)(void *)((unsigned char *)(model) + (model)->offset[SC_ARRAY_##name]))
+
+static sc_status lay_out(sc_model *m)
+{
+    uint64_t at = (sizeof *m + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
+    uint32_t vertex_count = m->vertex_count, triangle_count = m->triangle_count;
+    uint32_t point_count = m->point_count, leaf_count = m->leaf_count, level_count = m->level_count;
+    uint32_t patch_end = m->patch_end, ring_total = m->ring_total, node_count = m->node_count;
+    uint32_t box_count = m->box_count, contour_total = m->contour_total;
+    uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
+    uint32_t segment_point_total = m->segment_point_total;
+    uint32_t segment_child_total = m->segment_child_total;
+#define LAY_OUT(name, type, count)                                                                     \
+    m->offset[SC_ARRAY_##name] = at;                                                                   \
+    at += ((uint64_t)(count) * sizeof(type) + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
+    SC_MODEL_ARRAYS(LAY_OUT)
+#undef LAY_OUT
+    m->bytes = at;
+    return at > SIZE_MAX - SC_ALIGNMENT ? SC_ERROR_COUNT : SC_OK;
+}
+
+static void copy(void *to, const void *from, uint64_t bytes)
+{
+    if (bytes) memcpy(to, from, (size_t)bytes);
+}
+
+static uint64_t mix(uint64_t hash, uint64_t value)
+{
+    hash = (hash ^ value) * 0x9fb21c651e98df25u;
+    return hash ^ (hash >> 29);
+}
+
+static uint64_t hash_topology(const sc_model *m)
+{
+    const uint32_t *slot = sc_model_slot(m), *triangle = sc_model_triangle(m);
+    const uint32_t *id = sc_model_triangle_id(m), *leaf = sc_model_leaf_first(m);
+    const uint32_t *child = sc_model_child(m);
+    uint64_t hash = 0x51ed270b7a1c4e35u, i;
+    hash = mix(mix(mix(hash, m->vertex_count), m->triangle_count), m->level_count);
+    for (i = 0; i < m->vertex_count; i++) hash = mix(hash, slot[i]);
+    for (i = 0; i < 3 * (uint64_t)m->triangle_count; i++) hash = mix(hash, triangle[i]);
+    for (i = 0; i < m->triangle_count; i++) hash = mix(hash, id[i]);
+    for (i = 0; i <= m->leaf_count; i++) hash = mix(hash, leaf[i]);
+    for (i = 0; i < m->patch_end; i++) hash = mix(hash, child[i]);
+    return hash;
+}
+
+/* Points in the order in which the leaves first use them, so that a leaf's lie close together. */
+static void renumber(const sc_points *points, const uint32_t *order, uint32_t *number)
+{
+    uint32_t i, next = 0;
+    int k;
+    memset(number, 0xff, (size_t)points->point_count * sizeof *number);
+    for (i = 0; i < points->triangle_count; i++)
+        for (k = 0; k < 3; k++) {
+            uint32_t p = points->triangles[3 * (uint64_t)order[i] + (uint64_t)k];
+            if (number[p] == SC_NONE) number[p] = next++;
+        }
+}
+
+static void write_triangles(const sc_points *points, const sc_adjacency *adjacency,
+                            const uint32_t *order, const uint32_t *number, sc_model *m)
+{
+    uint32_t *triangle = NEW_ARRAY(m, triangle, uint32_t), *slot = NEW_ARRAY(m, slot, uint32_t);
+    uint32_t *id = NEW_ARRAY(m, triangle_id, uint32_t), i;
+    uint8_t *owned = NEW_ARRAY(m, edge_owned, uint8_t);
+    int k;
+    for (i = 0; i < m->triangle_count; i++) {
+        for (k = 0; k < 3; k++)
+            *triangle++ = number[points->triangles[3 * (uint64_t)order[i] + (uint64_t)k]];
+        id[i] = order[i];
+        owned[i] = adjacency->owned[order[i]];
+    }
+    for (i = 0; i < m->vertex_count; i++)
+        slot[i] = points->slot[i] < SC_SLOT_WELDED ? number[points->slot[i]] : points->slot[i];
+}
+
+static void write_hops(const sc_xbvh *xbvh, sc_model *m)
+{
+    uint32_t *hop = NEW_ARRAY(m, hop, uint32_t), level, p, step;
+    for (level = 0; level < xbvh->level_count; level++) {
+        uint32_t steps = (xbvh->level_count - 1 - level) % HOP;
+        if (steps == 0) steps = HOP;
+        for (p = xbvh->level_first[level]; p < xbvh->level_first[level + 1]; p++) {
+            hop[p] = p;
+            for (step = 0; step < steps; step++) hop[p] = xbvh->child[hop[p]];
+        }
+    }
+}
+
+static void write_segments(const sc_csf *csf, const uint32_t *number, const sc_sctt *sctt, sc_model *m)
+{
+    uint32_t *list = NEW_ARRAY(m, points, uint32_t), *contours = NEW_ARRAY(m, contours, uint32_t), i;
+    uint8_t *touches = NEW_ARRAY(m, node_touches, uint8_t);
+    for (i = 0; i < m->segment_point_total; i++) list[i] = number[csf->points[i]];
+    copy(contours, csf->contours, m->contour_total * sizeof(uint32_t));
+    for (i = 0; i < m->node_count; i++) {
+        touches[i] = sctt->touch[i] != SC_NONE;
+        if (touches[i]) contours[csf->contour_first[i]] = number[contours[csf->contour_first[i]]];
+    }
+}
+
+/* Patches that are connected through edges: a search from the first triangle of each. */
+static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarchy *hierarchy,
+                                 const sc_xbvh *xbvh, sc_scratch *scratch, sc_level *levels)
+{
+    uint32_t count = hierarchy->triangle_count, level, p, i, k, *place, *seen, *queue;
+    place = (uint32_t *)sc_scratch_take(scratch, count, sizeof *place);
+    queue = (uint32_t *)sc_scratch_take(scratch, count, sizeof *queue);
+    seen = (uint32_t *)sc_scratch_take_filled(scratch, count, sizeof *seen, 0xff);
+    if (!place || !queue || !seen) return SC_ERROR_MEMORY;
+    for (i = 0; i < count; i++) place[hierarchy->order[i]] = i;
+    for (level = 0; level < xbvh->level_count; level++)
+        for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++) {
+            uint32_t begin = xbvh->leaf_first[xbvh->leaf[p]], end = xbvh->leaf_first[xbvh->leaf[p + 1]];
+            uint32_t head = 0, tail = 0;
+            queue[tail++] = begin;
+            seen[begin] = p;
+            while (head < tail) {
+                uint32_t t = hierarchy->order[queue[head++]];
+                for (k = 0; k < 3; k++) {
+                    uint32_t h = adjacency->opposite[3 * (uint64_t)t + k];
+                    if (h == SC_NONE) continue;
+                    h = place[h / 3];
+                    if (h < begin || h >= end || seen[h] == p) continue;
+                    seen[h] = p;
+                    queue[tail++] = h;
+                }
+            }
+            levels[level].connected_patches += tail == end - begin;
+        }
+    sc_scratch_give(scratch, seen);
+    sc_scratch_give(scratch, queue);
+    sc_scratch_give(scratch, place);
+    return SC_OK;
+}
+
+static void write_levels(const sc_xbvh *xbvh, const sc_sctt *sctt, const sc_csf *csf, sc_level *levels)
+{
+    uint32_t level, n;
+    for (level = 0; level < xbvh->level_count; level++) {
+        levels[level].patch_count = sc_xbvh_patches(xbvh, level);
+        levels[level].segment_count = csf->level_segments[level];
+        for (n = sctt->level_first[level]; n < sctt->level_first[level + 1]; n++)
+            if (sctt->patches[n].a == sctt->patches[n].b)
+                levels[level].self_nodes++;
+            else
+                levels[level].pair_nodes++;
+    }
+}
+
+static void count_arrays(const sc_points *points, const sc_adjacency *adjacency, const sc_xbvh *xbvh,
+                         const sc_sctt *sctt, const sc_csf *csf, sc_model *m)
+{
+    m->vertex_count = points->vertex_count;
+    m->point_count = points->point_count;
+    m->triangle_count = points->triangle_count;
+    m->edge_count = adjacency->edge_count;
+    m->component_count = adjacency->component_count;
+    m->boundary_edges = adjacency->boundary_edges;
+    m->irregular_edges = adjacency->irregular_edges;
+    m->leaf_count = xbvh->leaf_count;
+    m->level_count = xbvh->level_count;
+    m->patch_end = xbvh->patch_end;
+    m->node_count = sctt->node_count;
+    m->box_count = sctt->box_count;
+    m->contour_total = csf->contour_first[sctt->node_count];
+    m->segment_count = csf->segment_count;
+    m->leaf_segment_count = csf->leaf_count;
+    m->segment_point_total = csf->point_first[csf->leaf_count];
+    m->segment_child_total = csf->child_first[csf->segment_count - csf->leaf_count];
+}
+
+sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacency,
+                            const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
+                            const sc_csf *csf, sc_scratch *scratch, sc_model **model)
+{
+    sc_model counts, *m;
+    sc_model_owner *owner;
+    uint32_t *number, *ring_first, *ring, p, i;
+    uint64_t bytes;
+    sc_status status;
+
+    memset(&counts, 0, sizeof counts);
+    count_arrays(points, adjacency, xbvh, sctt, csf, &counts);
+    number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
+    ring_first = (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)points->point_count + 1,
+                                                    sizeof *ring_first, 0);
+    ring = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)points->triangle_count, sizeof *ring);
+    if (!number || !ring_first || !ring) return SC_ERROR_MEMORY;
+    renumber(points, hierarchy->order, number);
+    for (p = 0; p < points->point_count; p++) /* lengths first, by new numbers */
+        ring_first[number[p] + 1] = sc_adjacency_ring(points, adjacency, p, ring);
+    for (p = 0; p < points->point_count; p++) ring_first[p + 1] += ring_first[p];
+    counts.ring_total = ring_first[points->point_count];
+    status = lay_out(&counts);
+    if (status) return status;
+
+    bytes = counts.bytes + SC_ALIGNMENT;
+    owner = (sc_model_owner *)scratch->allocator.allocate(scratch->allocator.user, bytes, SC_ALIGNMENT);
+    if (!owner) return SC_ERROR_MEMORY;
+    memset(owner, 0, (size_t)bytes);
+    owner->allocator = scratch->allocator;
+    owner->bytes = bytes;
+    m = (sc_model *)(void *)((unsigned char *)owner + SC_ALIGNMENT);
+    *m = counts;
+    for (p = 0; p < points->point_count; p++)
+        if (ring_first[number[p] + 1] > ring_first[number[p]]) {
+            uint32_t *to = NEW_ARRAY(m, ring, uint32_t) + ring_first[number[p]];
+            uint32_t n = sc_adjacency_ring(points, adjacency, p, ring);
+            for (i = 0; i < n; i++) to[i] = number[ring[i]];
+        }
+    copy(NEW_ARRAY(m, ring_first, uint32_t), ring_first,
+         ((uint64_t)points->point_count + 1) * sizeof(uint32_t));
+    write_triangles(points, adjacency, hierarchy->order, number, m);
+    copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
+         ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, level_first, uint32_t), xbvh->level_first,
+         ((uint64_t)m->level_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, child, uint32_t), xbvh->child, m->patch_end * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, leaf, uint32_t), xbvh->leaf, m->patch_end * sizeof(uint32_t));
+    write_hops(xbvh, m);
+    copy(NEW_ARRAY(m, node_patches, sc_pair), sctt->patches, m->node_count * sizeof(sc_pair));
+    copy(NEW_ARRAY(m, node_child, uint32_t), sctt->child, ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, node_boxes, uint32_t), sctt->boxes_first,
+         ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, boxes, sc_pair), sctt->boxes, m->box_count * sizeof(sc_pair));
+    copy(NEW_ARRAY(m, node_contour, uint32_t), csf->contour_first,
+         ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, segment_points, uint32_t), csf->point_first,
+         ((uint64_t)m->leaf_segment_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, segment_children, uint32_t), csf->child_first,
+         ((uint64_t)m->segment_count - m->leaf_segment_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, children, uint32_t), csf->children, m->segment_child_total * sizeof(uint32_t));
+    write_segments(csf, number, sctt, m);
+    write_levels(xbvh, sctt, csf, NEW_ARRAY(m, level_info, sc_level));
+    status = count_connected(adjacency, hierarchy, xbvh, scratch, NEW_ARRAY(m, level_info, sc_level));
+    if (status) {
+        sc_model_release(m);
+        return status;
+    }
+    m->topology_hash = hash_topology(m);
+    *model = m;
+    return SC_OK;
+}
+
+uint8_t *sc_model_flags_of_new(sc_model *model)
+{
+    return NEW_ARRAY(model, node_flags, uint8_t);
+}
+
+sc_level *sc_model_levels_of_new(sc_model *model)
+{
+    return NEW_ARRAY(model, level_info, sc_level);
+}
+
+void sc_model_release(sc_model *model)
+{
+    sc_model_owner *owner = (sc_model_owner *)(void *)((unsigned char *)model - SC_ALIGNMENT);
+    sc_allocator allocator = owner->allocator;
+    allocator.release(allocator.user, owner, owner->bytes);
+}

@@ -1,0 +1,129 @@
+/*
+ * The model: one block of flat arrays, without pointers, that every query of every thread reads.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ *     | sc_model_owner | sc_model (counts and offsets) | array | array | ... |
+ *
+ * Arrays start at multiples of SC_ALIGNMENT from the sc_model, which can be moved as a block of
+ * sc_model.bytes bytes. What frees it stands before it.
+ */
+#ifndef SC_BUILD_MODEL_H
+#define SC_BUILD_MODEL_H
+
+#include "build/csf.h"
+
+/* One level of patches, and how its nodes fared in the rest pose. */
+typedef struct sc_level {
+    uint32_t patch_count, connected_patches, segment_count;
+    uint32_t self_nodes, self_oriented, self_culled;
+    uint32_t pair_nodes, pair_oriented, pair_culled;
+} sc_level;
+
+/* Flags of nodes. */
+enum {
+    SC_NODE_REST_TURNED = 1, /* failed the orientation test in the rest pose */
+    SC_NODE_REST_CROSSED = 2 /* passed it and failed the contour test */
+};
+
+/*
+ * All arrays: name, type, number of elements. "Places" are triangles in leaf order.
+ *
+ *   slot            what to do with each of the caller's vertices: see build/mesh.h
+ *   triangle        three point numbers a place
+ *   triangle_id     the caller's number of the triangle at a place
+ *   edge_owned      bit k: side k of the triangle at a place names its edge
+ *   leaf_first      first place of each leaf cluster
+ *   level_first, child, leaf   see build/xbvh.h
+ *   hop             first descendant of a patch at the next level down of those that box recursion
+ *                   visits: every third, ending with the last
+ *   ring_first, ring  the points round each closed fan, in order; empty where there is none
+ *   node_...        see build/sctt.h (patches, child, boxes) and build/csf.h (contour)
+ *   boxes           BVTT children
+ *   segment_...     see build/csf.h
+ *   level_info      see above
+ */
+#define SC_MODEL_ARRAYS(X)                                                                             \
+    X(slot, uint32_t, vertex_count)                                                                    \
+    X(triangle, uint32_t, 3 * (uint64_t)triangle_count)                                                \
+    X(triangle_id, uint32_t, triangle_count)                                                           \
+    X(edge_owned, uint8_t, triangle_count)                                                             \
+    X(leaf_first, uint32_t, (uint64_t)leaf_count + 1)                                                  \
+    X(level_first, uint32_t, (uint64_t)level_count + 1)                                                \
+    X(child, uint32_t, patch_end)                                                                      \
+    X(leaf, uint32_t, patch_end)                                                                       \
+    X(hop, uint32_t, patch_end)                                                                        \
+    X(ring_first, uint32_t, (uint64_t)point_count + 1)                                                 \
+    X(ring, uint32_t, ring_total)                                                                      \
+    X(node_patches, sc_pair, node_count)                                                               \
+    X(node_child, uint32_t, (uint64_t)node_count + 1)                                                  \
+    X(node_boxes, uint32_t, (uint64_t)node_count + 1)                                                  \
+    X(boxes, sc_pair, box_count)                                                                       \
+    X(node_contour, uint32_t, (uint64_t)node_count + 1)                                                \
+    X(contours, uint32_t, contour_total)                                                               \
+    X(node_flags, uint8_t, node_count)                                                                 \
+    X(node_touches, uint8_t, node_count) /* 1: shares one point, see build/csf.h */                    \
+    X(segment_points, uint32_t, (uint64_t)leaf_segment_count + 1)                                      \
+    X(points, uint32_t, segment_point_total)                                                           \
+    X(segment_children, uint32_t, (uint64_t)segment_count - leaf_segment_count + 1)                    \
+    X(children, uint32_t, segment_child_total)                                                         \
+    X(level_info, sc_level, level_count)
+
+enum {
+#define SC_MODEL_NUMBER(name, type, count) SC_ARRAY_##name,
+    SC_MODEL_ARRAYS(SC_MODEL_NUMBER)
+#undef SC_MODEL_NUMBER
+    SC_ARRAY_COUNT
+};
+
+struct sc_model {
+    uint64_t bytes; /* from here on, with all arrays */
+    uint64_t topology_hash;
+    uint32_t vertex_count, point_count, triangle_count, edge_count;
+    uint32_t component_count, boundary_edges, irregular_edges;
+    uint32_t leaf_count, level_count, patch_end;
+    uint32_t node_count, box_count, contour_total;
+    uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
+    uint32_t ring_total;
+    uint64_t offset[SC_ARRAY_COUNT]; /* in bytes from the start of the sc_model */
+};
+
+/* sc_model_<name>(model) is the array of that name. */
+#define SC_MODEL_ACCESSOR(name, type, count)                                                           \
+    static inline const type *sc_model_##name(const sc_model *model)                                   \
+    {                                                                                                  \
+        return (const type *)(const void *)((const unsigned char *)model +                             \
+                                            model->offset[SC_ARRAY_##name]);                           \
+    }
+SC_MODEL_ARRAYS(SC_MODEL_ACCESSOR)
+#undef SC_MODEL_ACCESSOR
+
+static inline uint32_t sc_model_patches(const sc_model *model, uint32_t level)
+{
+    const uint32_t *first = sc_model_level_first(model);
+    return first[level + 1] - 1 - first[level];
+}
+
+/* The patch of the last level that is leaf cluster 0; leaf k is this plus k. */
+static inline uint32_t sc_model_first_leaf_patch(const sc_model *model)
+{
+    return sc_model_level_first(model)[model->level_count - 1];
+}
+
+static inline int sc_model_is_leaf(const sc_model *model, uint32_t patch)
+{
+    return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch] == 1;
+}
+
+/* Puts everything together. Node flags and what the rest pose says of levels are left at zero. */
+sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacency,
+                            const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
+                            const sc_csf *csf, sc_scratch *scratch, sc_model **model);
+
+/* While the model is being built, its arrays may be written to. */
+uint8_t *sc_model_flags_of_new(sc_model *model);
+sc_level *sc_model_levels_of_new(sc_model *model);
+
+void sc_model_release(sc_model *model);
+
+#endif

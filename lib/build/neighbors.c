@@ -1,0 +1,209 @@
+/*
+ * Which patches of a level are adjacent. See neighbors.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/neighbors.h"
+
+#include <string.h>
+
+#include "base/sort.h"
+
+/*
+ * The points at which several patches meet, as records of a point, a number n and n different patches
+ * of the level at hand in ascending order.
+ */
+typedef struct meetings {
+    uint32_t *words;
+    uint64_t count;
+} meetings;
+
+/* Sorts a short list and drops repeats; returns what is left. */
+static uint32_t sort_unique(uint32_t *list, uint32_t count, sc_pair *keys)
+{
+    uint32_t i, n = 0;
+    for (i = 0; i < count; i++) {
+        keys[i].a = list[i];
+        keys[i].b = 0;
+    }
+    sc_sort_pairs(keys, count);
+    for (i = 0; i < count; i++)
+        if (n == 0 || list[n - 1] != keys[i].a) list[n++] = keys[i].a;
+    return n;
+}
+
+static sc_status meet_at_leaves(const sc_points *points, const sc_adjacency *adjacency,
+                                const uint32_t *order, const sc_xbvh *xbvh, sc_pair *keys,
+                                sc_scratch *scratch, meetings *met)
+{
+    uint32_t leaf, i, p, *patch_of, base = xbvh->level_first[xbvh->level_count - 1];
+    patch_of = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof *patch_of);
+    met->words = (uint32_t *)sc_scratch_take(
+        scratch, 3 * (uint64_t)points->triangle_count + 2 * (uint64_t)points->point_count,
+        sizeof *met->words);
+    met->count = 0;
+    if (!patch_of || !met->words) return SC_ERROR_MEMORY;
+    for (leaf = 0; leaf < xbvh->leaf_count; leaf++)
+        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++)
+            patch_of[order[i]] = base + leaf;
+    for (p = 0; p < points->point_count; p++) {
+        uint32_t *record = met->words + met->count, n = 0;
+        for (i = adjacency->corner_first[p]; i < adjacency->corner_first[p + 1]; i++)
+            record[2 + n++] = patch_of[adjacency->corners[i] / 3];
+        n = sort_unique(record + 2, n, keys);
+        if (n < 2) continue;
+        record[0] = p;
+        record[1] = n;
+        met->count += 2 + n;
+    }
+    sc_scratch_give(scratch, patch_of);
+    return SC_OK;
+}
+
+/* Replaces patches by their parents. */
+static void ascend(meetings *met, const uint32_t *parent, uint32_t level_first, sc_pair *keys)
+{
+    uint64_t from = 0, to = 0;
+    while (from < met->count) {
+        uint32_t p = met->words[from], count = met->words[from + 1], i, n;
+        uint32_t *record = met->words + to; /* never ahead of what is read */
+        for (i = 0; i < count; i++) record[2 + i] = parent[met->words[from + 2 + i] - level_first];
+        from += 2 + count;
+        n = sort_unique(record + 2, count, keys);
+        if (n < 2) continue;
+        record[0] = p;
+        record[1] = n;
+        to += 2 + n;
+    }
+    met->count = to;
+}
+
+static sc_status reserve_entries(sc_neighbors *neighbors, sc_scratch *scratch, uint64_t more)
+{
+    uint64_t capacity = neighbors->entry_count + more;
+    sc_pair *entries;
+    if (capacity <= neighbors->capacity) return SC_OK;
+    if (capacity > 0xfffffff0u) return SC_ERROR_COUNT;
+    if (capacity < 2 * neighbors->capacity) capacity = 2 * neighbors->capacity;
+    entries = (sc_pair *)sc_scratch_take(scratch, capacity, sizeof *entries);
+    if (!entries) return SC_ERROR_MEMORY;
+    if (neighbors->entry_count)
+        memcpy(entries, neighbors->entries, (size_t)neighbors->entry_count * sizeof *entries);
+    sc_scratch_give(scratch, neighbors->entries);
+    neighbors->entries = entries;
+    neighbors->capacity = capacity;
+    return SC_OK;
+}
+
+/* Lists the neighbors of all patches of a level. */
+static sc_status list_level(const meetings *met, uint32_t begin, uint32_t end, sc_scratch *scratch,
+                            sc_neighbors *neighbors)
+{
+    uint32_t *count = neighbors->count, *first = neighbors->first, p;
+    uint64_t at, total = 0, i, j;
+    sc_status status;
+    sc_pair *entries;
+    for (p = begin; p < end; p++) count[p] = 0;
+    for (at = 0; at < met->count; at += 2 + met->words[at + 1]) {
+        const uint32_t *record = met->words + at;
+        if (record[1] > SC_NEIGHBORS_HUB) continue;
+        for (i = 0; i + 1 < record[1]; i++) count[record[2 + i]] += record[1] - 1 - (uint32_t)i;
+    }
+    for (p = begin; p < end; p++) total += count[p];
+    status = reserve_entries(neighbors, scratch, total);
+    if (status) return status;
+    entries = neighbors->entries;
+    total = neighbors->entry_count;
+    for (p = begin; p < end; p++) {
+        first[p] = (uint32_t)total;
+        total += count[p];
+        count[p] = 0;
+    }
+    for (at = 0; at < met->count; at += 2 + met->words[at + 1]) {
+        const uint32_t *record = met->words + at;
+        if (record[1] > SC_NEIGHBORS_HUB) continue;
+        for (i = 0; i < record[1]; i++) {
+            p = record[2 + i];
+            for (j = i + 1; j < record[1]; j++) {
+                entries[first[p] + count[p]].a = record[2 + j];
+                entries[first[p] + count[p]++].b = record[0];
+            }
+        }
+    }
+    total = neighbors->entry_count;
+    for (p = begin; p < end; p++) { /* one entry for equal neighbors */
+        uint32_t n = 0, k;
+        sc_pair *list = entries + first[p];
+        sc_sort_pairs(list, count[p]);
+        for (k = 0; k < count[p]; k++) {
+            sc_pair entry = list[k];
+            if (n > 0 && entries[total + n - 1].a == entry.a)
+                entries[total + n - 1].b = SC_NONE;
+            else
+                entries[total + n++] = entry;
+        }
+        first[p] = (uint32_t)total;
+        count[p] = n;
+        total += n;
+    }
+    neighbors->entry_count = total;
+    return SC_OK;
+}
+
+sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjacency,
+                             const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
+                             sc_neighbors *neighbors)
+{
+    uint32_t level, p, longest = 0, *parent;
+    meetings met;
+    sc_pair *keys;
+    sc_status status;
+    memset(neighbors, 0, sizeof *neighbors);
+    for (p = 0; p < points->point_count; p++)
+        if (adjacency->corner_first[p + 1] - adjacency->corner_first[p] > longest)
+            longest = adjacency->corner_first[p + 1] - adjacency->corner_first[p];
+    keys = (sc_pair *)sc_scratch_take(scratch, longest, sizeof *keys);
+    parent = (uint32_t *)sc_scratch_take(scratch, xbvh->leaf_count, sizeof *parent);
+    neighbors->first = (uint32_t *)sc_scratch_take(scratch, xbvh->patch_end, sizeof(uint32_t));
+    neighbors->count =
+        (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof(uint32_t), 0);
+    if (!keys || !parent || !neighbors->first || !neighbors->count) return SC_ERROR_MEMORY;
+    status = meet_at_leaves(points, adjacency, order, xbvh, keys, scratch, &met);
+    if (status) return status;
+    for (level = xbvh->level_count - 1;; level--) {
+        uint32_t begin = xbvh->level_first[level], end = xbvh->level_first[level + 1] - 1;
+        status = list_level(&met, begin, end, scratch, neighbors);
+        if (status) return status;
+        if (level == 0) break;
+        for (p = xbvh->level_first[level - 1]; p + 1 < begin; p++) {
+            uint32_t c;
+            for (c = xbvh->child[p]; c < xbvh->child[p + 1]; c++) parent[c - begin] = p;
+        }
+        ascend(&met, parent, begin, keys);
+    }
+    sc_scratch_give(scratch, met.words);
+    sc_scratch_give(scratch, parent);
+    sc_scratch_give(scratch, keys);
+    return SC_OK;
+}
+
+void sc_neighbors_free(sc_neighbors *neighbors, sc_scratch *scratch)
+{
+    sc_scratch_give(scratch, neighbors->first);
+    sc_scratch_give(scratch, neighbors->count);
+    sc_scratch_give(scratch, neighbors->entries);
+}
+
+const sc_pair *sc_neighbors_find(const sc_neighbors *neighbors, uint32_t a, uint32_t b)
+{
+    const sc_pair *list = neighbors->entries + neighbors->first[a];
+    uint32_t low = 0, high = neighbors->count[a];
+    while (low < high) {
+        uint32_t middle = (low + high) / 2;
+        if (list[middle].a < b)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < neighbors->count[a] && list[low].a == b ? &list[low] : NULL;
+}

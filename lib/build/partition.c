@@ -1,0 +1,114 @@
+/*
+ * Where the hierarchy of patches comes from. See partition.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/partition.h"
+
+#include <string.h>
+
+#include "build/bisection.h"
+
+/* Nodes from the root to a leaf of a caller's tree at most; splitting large leaves adds up to 28. */
+enum { CALLER_DEPTH_MAX = 60 };
+
+static sc_status check_order(const uint32_t *order, uint32_t count, sc_scratch *scratch)
+{
+    uint8_t *seen;
+    uint32_t i;
+    if (!order) return SC_ERROR_NULL;
+    seen = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
+    if (!seen) return SC_ERROR_MEMORY;
+    for (i = 0; i < count; i++) {
+        if (order[i] >= count || seen[order[i]]) return SC_ERROR_TREE;
+        seen[order[i]] = 1;
+    }
+    sc_scratch_give(scratch, seen);
+    return SC_OK;
+}
+
+typedef struct caller_tree {
+    const sc_build_options *options;
+    sc_hierarchy *hierarchy;
+    uint8_t *node_seen, *place_seen; /* tree_count; triangle_count places of order */
+    uint32_t taken;                  /* triangles put into the hierarchy's order */
+} caller_tree;
+
+static sc_status copy_node(caller_tree *tree, uint32_t at, uint32_t depth, uint32_t *node)
+{
+    const sc_build_options *options = tree->options;
+    sc_hierarchy *hierarchy = tree->hierarchy;
+    const sc_tree_node *given;
+    uint32_t i, child, first = tree->taken;
+    sc_status status;
+    if (at >= options->tree_count || tree->node_seen[at] || depth > CALLER_DEPTH_MAX)
+        return SC_ERROR_TREE;
+    tree->node_seen[at] = 1;
+    given = &options->tree[at];
+    if (given->left == SC_NONE && given->right == SC_NONE) {
+        if (given->count < 1 || given->count > hierarchy->triangle_count ||
+            given->first > hierarchy->triangle_count - given->count)
+            return SC_ERROR_TREE;
+        for (i = 0; i < given->count; i++) {
+            if (tree->place_seen[given->first + i]) return SC_ERROR_TREE;
+            tree->place_seen[given->first + i] = 1;
+            hierarchy->order[tree->taken++] = options->order[given->first + i];
+        }
+        *node = sc_hierarchy_add_balanced(hierarchy, first, given->count, depth);
+        return SC_OK;
+    }
+    *node = sc_hierarchy_add(hierarchy, first, 0, depth);
+    status = copy_node(tree, given->left, depth + 1, &child);
+    if (status) return status;
+    hierarchy->nodes[*node].left = child;
+    status = copy_node(tree, given->right, depth + 1, &child);
+    if (status) return status;
+    hierarchy->nodes[*node].right = child;
+    hierarchy->nodes[*node].count = tree->taken - first;
+    return SC_OK;
+}
+
+static sc_status copy_tree(const sc_build_options *options, sc_scratch *scratch,
+                           sc_hierarchy *hierarchy)
+{
+    caller_tree tree;
+    uint32_t root;
+    sc_status status;
+    if (!options->tree) return SC_ERROR_NULL;
+    if (!options->tree_count) return SC_ERROR_TREE;
+    tree.options = options;
+    tree.hierarchy = hierarchy;
+    tree.taken = 0;
+    tree.node_seen = (uint8_t *)sc_scratch_take_filled(scratch, options->tree_count, 1, 0);
+    tree.place_seen = (uint8_t *)sc_scratch_take_filled(scratch, hierarchy->triangle_count, 1, 0);
+    if (!tree.node_seen || !tree.place_seen) return SC_ERROR_MEMORY;
+    status = copy_node(&tree, 0, 1, &root);
+    if (!status && tree.taken != hierarchy->triangle_count) status = SC_ERROR_TREE;
+    sc_scratch_give(scratch, tree.place_seen);
+    sc_scratch_give(scratch, tree.node_seen);
+    return status;
+}
+
+sc_status sc_partition_build(const sc_points *points, const sc_adjacency *adjacency,
+                             const sc_build_options *options, sc_scratch *scratch,
+                             sc_hierarchy *hierarchy)
+{
+    uint32_t count = points->triangle_count;
+    sc_status status;
+    if (options->partition == SC_PARTITION_FAST)
+        return sc_bisection_build(points, adjacency, NULL, NULL, scratch, hierarchy);
+    if (options->partition == SC_PARTITION_BISECT) {
+        if (!options->bisect) return SC_ERROR_NULL;
+        return sc_bisection_build(points, adjacency, options->bisect, options->bisect_user, scratch,
+                                  hierarchy);
+    }
+    if (options->partition > SC_PARTITION_BISECT) return SC_ERROR_OPTION;
+    status = check_order(options->order, count, scratch);
+    if (status) return status;
+    status = sc_hierarchy_init(hierarchy, count, scratch);
+    if (status) return status;
+    if (options->partition == SC_PARTITION_TREE) return copy_tree(options, scratch, hierarchy);
+    memcpy(hierarchy->order, options->order, count * sizeof *hierarchy->order);
+    sc_hierarchy_add_balanced(hierarchy, 0, count, 1);
+    return SC_OK;
+}

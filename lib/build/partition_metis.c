@@ -1,0 +1,103 @@
+/*
+ * Bisection by METIS: a library of its own, so that the core needs none. See starcontour_metis.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)
+#  define _POSIX_C_SOURCE 200809L
+#endif
+#include "starcontour_metis.h"
+
+#if defined(SC_WITH_METIS)
+
+#include <metis.h>
+#include <signal.h>
+#include <stdlib.h>
+
+/* METIS's integers may be wider than ours. */
+static idx_t *widen(const int32_t *from, int32_t count)
+{
+    idx_t *to = (idx_t *)malloc(((size_t)count + 1) * sizeof *to);
+    int32_t i;
+    for (i = 0; to && i < count; i++) to[i] = from[i];
+    return to;
+}
+
+#if defined(_WIN32)
+typedef void (*disposition)(int);
+#  define SAVE(number, saved)    (*(saved) = signal(number, SIG_DFL))
+#  define RESTORE(number, saved) signal(number, *(saved))
+#else
+typedef struct sigaction disposition;
+#  define SAVE(number, saved)    sigaction(number, NULL, saved)
+#  define RESTORE(number, saved) sigaction(number, saved, NULL)
+#endif
+
+static int bisect(const sc_dual_graph *graph, uint32_t left_target, idx_t *offsets, idx_t *neighbors,
+                  idx_t *weights, idx_t *part)
+{
+    idx_t options[METIS_NOPTIONS], nodes = (idx_t)graph->node_count, constraints = 1, parts = 2, cut;
+    real_t share[2];
+    disposition abort_action, terminate_action;
+    int result;
+    METIS_SetDefaultOptions(options);
+    options[METIS_OPTION_SEED] = 1;
+    options[METIS_OPTION_UFACTOR] = nodes > 200 ? 20 : 40; /* imbalance allowed, in thousandths */
+    options[METIS_OPTION_NCUTS] = nodes < 200 ? 4 : nodes < 2000 ? 2 : 1;
+    share[0] = (real_t)left_target / (real_t)graph->node_count;
+    share[1] = 1 - share[0];
+    SAVE(SIGABRT, &abort_action);
+    SAVE(SIGTERM, &terminate_action);
+    result = METIS_PartGraphRecursive(&nodes, &constraints, offsets, neighbors, NULL, NULL, weights,
+                                      &parts, share, NULL, options, &cut, part);
+    RESTORE(SIGABRT, &abort_action);
+    RESTORE(SIGTERM, &terminate_action);
+    return result;
+}
+
+sc_status sc_metis_bisect(void *user, const sc_dual_graph *graph, uint32_t left_target, uint8_t *side)
+{
+    int32_t arcs;
+    idx_t *offsets, *neighbors, *weights, *part;
+    sc_status status = SC_ERROR_MEMORY;
+    uint32_t i, zeros = 0;
+    int result;
+    (void)user;
+    if (!graph || !side) return SC_ERROR_NULL;
+    arcs = graph->offsets[graph->node_count];
+    offsets = widen(graph->offsets, (int32_t)graph->node_count + 1);
+    neighbors = widen(graph->neighbors, arcs);
+    weights = widen(graph->weights, arcs);
+    part = (idx_t *)malloc(graph->node_count * sizeof *part);
+    if (offsets && neighbors && weights && part) {
+        result = bisect(graph, left_target, offsets, neighbors, weights, part);
+        status = result == METIS_OK              ? SC_OK
+                 : result == METIS_ERROR_MEMORY ? SC_ERROR_MEMORY
+                                                : SC_ERROR_PARTITION;
+    }
+    for (i = 0; !status && i < graph->node_count; i++) {
+        side[i] = part[i] != 0;
+        zeros += side[i] == 0;
+    }
+    /* small graphs are at times put on one side: the first nodes then go to the other */
+    for (i = 0; !status && (zeros == 0 || zeros == graph->node_count) && i < graph->node_count; i++)
+        side[i] = i >= left_target;
+    free(part);
+    free(weights);
+    free(neighbors);
+    free(offsets);
+    return status;
+}
+
+#else
+
+sc_status sc_metis_bisect(void *user, const sc_dual_graph *graph, uint32_t left_target, uint8_t *side)
+{
+    (void)user;
+    (void)graph;
+    (void)left_target;
+    (void)side;
+    return SC_ERROR_UNSUPPORTED;
+}
+
+#endif

@@ -1,0 +1,130 @@
+/*
+ * The self-collision test tree. See sctt.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/sctt.h"
+
+#include <string.h>
+
+/* The tree while it grows: pairs as two items each. */
+typedef struct growth {
+    const sc_xbvh *xbvh;
+    const sc_neighbors *neighbors;
+    sc_scratch *scratch;
+    sc_list patches, child, boxes_first, boxes, touch;
+} growth;
+
+static int add_node(growth *g, uint32_t a, uint32_t b, uint32_t touch)
+{
+    if (!sc_list_reserve(g->scratch, &g->patches, 2) || !sc_list_reserve(g->scratch, &g->touch, 1))
+        return 0;
+    sc_list_add(&g->patches, a);
+    sc_list_add(&g->patches, b);
+    sc_list_add(&g->touch, touch);
+    return 1;
+}
+
+/* A pair of children becomes a node or a BVTT child. */
+static int add_pair(growth *g, uint32_t a, uint32_t b)
+{
+    const sc_pair *entry = sc_neighbors_find(g->neighbors, a, b);
+    if (entry) return add_node(g, a, b, entry->b);
+    if (!sc_list_reserve(g->scratch, &g->boxes, 2)) return 0;
+    sc_list_add(&g->boxes, a);
+    sc_list_add(&g->boxes, b);
+    return 1;
+}
+
+static int expand(growth *g, uint32_t a, uint32_t b)
+{
+    const uint32_t *child = g->xbvh->child;
+    uint32_t c, d;
+    if (sc_xbvh_is_leaf(g->xbvh, a) && sc_xbvh_is_leaf(g->xbvh, b)) return 1;
+    if (a == b) {
+        for (c = child[a]; c < child[a + 1]; c++)
+            if (!add_node(g, c, c, SC_NONE)) return 0;
+        for (c = child[a]; c < child[a + 1]; c++)
+            for (d = c + 1; d < child[a + 1]; d++)
+                if (!add_pair(g, c, d)) return 0;
+    } else {
+        for (c = child[a]; c < child[a + 1]; c++)
+            for (d = child[b]; d < child[b + 1]; d++)
+                if (!add_pair(g, c, d)) return 0;
+    }
+    return 1;
+}
+
+/* Moves a list to an array of its own length. */
+static void *shrink(sc_scratch *scratch, sc_list *list, uint64_t count, size_t size)
+{
+    void *array = sc_scratch_take(scratch, count, size);
+    if (array && count) memcpy(array, list->items, (size_t)count * size);
+    sc_scratch_give(scratch, list->items);
+    return array;
+}
+
+sc_status sc_sctt_build(const sc_xbvh *xbvh, const sc_neighbors *neighbors, sc_scratch *scratch,
+                        sc_sctt *sctt)
+{
+    growth g;
+    uint32_t level;
+    uint64_t n, end, count;
+    memset(&g, 0, sizeof g);
+    g.xbvh = xbvh;
+    g.neighbors = neighbors;
+    g.scratch = scratch;
+    sctt->level_first =
+        (uint32_t *)sc_scratch_take(scratch, (uint64_t)xbvh->level_count + 1, sizeof(uint32_t));
+    if (!sctt->level_first || !add_node(&g, 0, 0, SC_NONE)) return SC_ERROR_MEMORY;
+    for (n = 0, level = 0; level < xbvh->level_count; level++) {
+        sctt->level_first[level] = (uint32_t)n;
+        for (end = g.touch.count; n < end; n++) {
+            if (!sc_list_reserve(scratch, &g.child, 2) || !sc_list_reserve(scratch, &g.boxes_first, 2))
+                return SC_ERROR_MEMORY;
+            sc_list_add(&g.child, (uint32_t)g.touch.count);
+            sc_list_add(&g.boxes_first, (uint32_t)(g.boxes.count / 2));
+            if (!expand(&g, g.patches.items[2 * n], g.patches.items[2 * n + 1])) return SC_ERROR_MEMORY;
+            if (g.touch.count > 0xfffffff0u || g.boxes.count / 2 > 0xfffffff0u) return SC_ERROR_COUNT;
+        }
+    }
+    sctt->level_first[xbvh->level_count] = (uint32_t)n;
+    sc_list_add(&g.child, (uint32_t)n);
+    sc_list_add(&g.boxes_first, (uint32_t)(g.boxes.count / 2));
+    count = n;
+    sctt->node_count = (uint32_t)count;
+    sctt->box_count = (uint32_t)(g.boxes.count / 2);
+    sctt->patches = (sc_pair *)shrink(scratch, &g.patches, count, sizeof(sc_pair));
+    sctt->touch = (uint32_t *)shrink(scratch, &g.touch, count, sizeof(uint32_t));
+    sctt->child = (uint32_t *)shrink(scratch, &g.child, count + 1, sizeof(uint32_t));
+    sctt->boxes_first = (uint32_t *)shrink(scratch, &g.boxes_first, count + 1, sizeof(uint32_t));
+    sctt->boxes = (sc_pair *)shrink(scratch, &g.boxes, sctt->box_count, sizeof(sc_pair));
+    return sctt->patches && sctt->touch && sctt->child && sctt->boxes_first && sctt->boxes
+               ? SC_OK
+               : SC_ERROR_MEMORY;
+}
+
+int sc_sctt_validate(const sc_xbvh *xbvh, const sc_neighbors *neighbors, const sc_sctt *sctt)
+{
+    uint32_t n;
+    if (sctt->patches[0].a != 0 || sctt->patches[0].b != 0 || sctt->child[0] != 1) return 0;
+    if (sctt->child[sctt->node_count] != sctt->node_count) return 0;
+    for (n = 0; n < sctt->node_count; n++) {
+        uint32_t a = sctt->patches[n].a, b = sctt->patches[n].b, c, d;
+        uint32_t node = sctt->child[n], box = sctt->boxes_first[n];
+        if (!(sc_xbvh_is_leaf(xbvh, a) && sc_xbvh_is_leaf(xbvh, b))) {
+            for (c = xbvh->child[a]; a == b && c < xbvh->child[a + 1]; c++, node++)
+                if (sctt->patches[node].a != c || sctt->patches[node].b != c) return 0;
+            for (c = xbvh->child[a]; c < xbvh->child[a + 1]; c++)
+                for (d = a == b ? c + 1 : xbvh->child[b]; d < xbvh->child[b + 1]; d++) {
+                    if (sc_neighbors_find(neighbors, c, d)) {
+                        if (sctt->patches[node].a != c || sctt->patches[node++].b != d) return 0;
+                    } else {
+                        if (sctt->boxes[box].a != c || sctt->boxes[box++].b != d) return 0;
+                    }
+                }
+        }
+        if (node != sctt->child[n + 1] || box != sctt->boxes_first[n + 1]) return 0;
+    }
+    return 1;
+}

@@ -1,0 +1,259 @@
+/*
+ * Bounds of contour segments under a projection. See contour_bounds.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "pose/contour_bounds.h"
+
+#include <math.h>
+
+/* Rounding of the few operations in each step below: five or fewer, each 2^-53, of the sum of the
+   absolute terms. */
+static const double ROUNDING = 1e-15;
+
+static const sc_ray_bound NO_LINES = {INFINITY, INFINITY, -INFINITY, INFINITY, INFINITY, -INFINITY};
+
+void sc_contour_bounds_project(const sc_workspace *w, const sc_projection *projection, int line,
+                               uint32_t point, double *x, double *y)
+{
+    const double *p = w->position + 3 * (uint64_t)point;
+    double d0 = p[0] - projection->origin[0], d1 = p[1] - projection->origin[1];
+    double d2 = p[2] - projection->origin[2];
+    double u = projection->u[0] * d0 + projection->u[1] * d1 + projection->u[2] * d2;
+    double v = projection->w[0] * d0 + projection->w[1] * d1 + projection->w[2] * d2;
+    *x = line == SC_LINE_VERTICAL ? u : v;
+    *y = line == SC_LINE_VERTICAL ? v : -u;
+}
+
+double sc_contour_bounds_lowest(const sc_ray_bound *bound, double x)
+{
+    double ax = (double)bound->ax, ay = (double)bound->ay, bx = (double)bound->bx;
+    double by = (double)bound->by, base, rise;
+    if (ax > bx) return HUGE_VAL;
+    if (x <= ax) {
+        base = ay;
+        rise = x == ax ? 0 : (double)bound->most * (x - ax);
+    } else if (x >= bx) {
+        base = by;
+        rise = x == bx ? 0 : (double)bound->least * (x - bx);
+    } else {
+        base = ay;
+        rise = (by - ay) * ((x - ax) / (bx - ax));
+    }
+    base = base + rise - ROUNDING * (fabs(ay) + fabs(by) + fabs(rise));
+    return base == base ? base : -HUGE_VAL; /* infinities that met */
+}
+
+/* A segment whose lines are not known: bounded in extent only. */
+static void make_unbounded(sc_segment_bounds *bounds, double low, double high)
+{
+    int side;
+    for (side = 0; side < 2; side++) {
+        sc_ray_bound *b = &bounds->side[side];
+        b->ax = sc_boxes_below(low);
+        b->bx = sc_boxes_above(high);
+        if (!(b->ax >= -FLT_MAX)) b->ax = -FLT_MAX; /* infinite minus infinite is NaN, which would */
+        if (!(b->bx <= FLT_MAX)) b->bx = FLT_MAX;   /* not lower a parent's bound */
+        b->ay = b->by = -INFINITY;
+        b->least = b->most = 0;
+    }
+}
+
+enum { EDGES_AT_ONCE = 64 };
+
+/* Edges must be this many times longer than the error of a coordinate, along the axis, to have a
+   slope; so that in what follows the errors of dx are below 2^-19 of it. */
+static const double LEAST_RUN = 0x1p20;
+
+/* The lines of the edges of one side, as they are collected. */
+typedef struct edge_lines {
+    double x[EDGES_AT_ONCE], y[EDGES_AT_ONCE], slope[EDGES_AT_ONCE];
+    double low, high, least, most, steepness, slope_error, height;
+    uint32_t count;
+} edge_lines;
+
+static void start_lines(edge_lines *lines)
+{
+    lines->low = lines->least = HUGE_VAL;
+    lines->high = lines->most = -HUGE_VAL;
+    lines->steepness = lines->slope_error = lines->height = 0;
+    lines->count = 0;
+}
+
+/*
+ * The line of one edge from (x, y), whose run is along the axis from low to high. The true slope
+ * (dy + 2 y_error) / (dx + 2 x_error) differs from the computed one by at most
+ * 2 (y_error + |slope| x_error) / (|dx| - 2 x_error), and rounding.
+ */
+static inline void add_line(edge_lines *lines, double x, double y, double slope, double inverse_run,
+                            double low, double high, double x_error, double y_error)
+{
+    double steepness = fabs(slope);
+    double error = 2.0001 * (y_error + steepness * x_error) * fabs(inverse_run) + ROUNDING * steepness;
+    uint32_t i = lines->count++;
+    lines->x[i] = x;
+    lines->y[i] = y;
+    lines->slope[i] = slope;
+    if (low < lines->low) lines->low = low;
+    if (high > lines->high) lines->high = high;
+    if (slope - error < lines->least) lines->least = slope - error;
+    if (slope + error > lines->most) lines->most = slope + error;
+    if (steepness > lines->steepness) lines->steepness = steepness;
+    if (error > lines->slope_error) lines->slope_error = error;
+    if (fabs(y) > lines->height) lines->height = fabs(y);
+}
+
+/*
+ * The bound of collected lines. At x = a the true line is at
+ * y + slope (a - x), off by at most y_error + |slope| x_error + slope_error (|a - x| + x_error) and
+ * rounding; |a - x| is at most bx - ax.
+ */
+static int bound_lines(const edge_lines *lines, double x_error, double y_error, sc_ray_bound *b)
+{
+    double ax, bx, at_a = HUGE_VAL, at_b = HUGE_VAL, error, reach;
+    uint32_t i;
+    if (!lines->count) {
+        *b = NO_LINES;
+        return 1;
+    }
+    b->ax = sc_boxes_below(lines->low - x_error);
+    b->bx = sc_boxes_above(lines->high + x_error);
+    b->least = sc_boxes_below(lines->least);
+    b->most = sc_boxes_above(lines->most);
+    ax = (double)b->ax;
+    bx = (double)b->bx;
+    for (i = 0; i < lines->count; i++) {
+        double at = lines->y[i] + lines->slope[i] * (ax - lines->x[i]);
+        if (at < at_a) at_a = at;
+        at = lines->y[i] + lines->slope[i] * (bx - lines->x[i]);
+        if (at < at_b) at_b = at;
+    }
+    reach = bx - ax;
+    error = y_error + (lines->steepness + lines->slope_error) * x_error + lines->slope_error * reach +
+            ROUNDING * (lines->height + lines->steepness * (fabs(ax) + fabs(bx)));
+    b->ay = sc_boxes_below(at_a - error);
+    b->by = sc_boxes_below(at_b - error);
+    /* all of it finite: so no later sum or product is NaN */
+    return b->ax > -FLT_MAX && b->bx < FLT_MAX && b->least > -FLT_MAX && b->most < FLT_MAX &&
+           b->ay > -FLT_MAX && b->by > -FLT_MAX;
+}
+
+/* From edges (paper, section 6.4); 0 if an edge's side or slope is not certain. */
+static int bound_edges(const sc_workspace *w, const sc_projection *projection, int line,
+                       const uint32_t *points, uint32_t edges, sc_segment_bounds *bounds)
+{
+    double x_error = line == SC_LINE_VERTICAL ? projection->x_error : projection->y_error;
+    double y_error = line == SC_LINE_VERTICAL ? projection->y_error : projection->x_error;
+    edge_lines top, bottom;
+    double x0, y0;
+    uint32_t i;
+    start_lines(&top);
+    start_lines(&bottom);
+    sc_contour_bounds_project(w, projection, line, points[0], &x0, &y0);
+    for (i = 1; i <= edges; i++) {
+        double x1, y1, dx, inverse;
+        sc_contour_bounds_project(w, projection, line, points[i], &x1, &y1);
+        dx = x1 - x0;
+        inverse = 1 / dx;
+        if (dx < -LEAST_RUN * x_error)
+            add_line(&top, x0, y0, (y1 - y0) * inverse, inverse, x1, x0, x_error, y_error);
+        else if (dx > LEAST_RUN * x_error)
+            add_line(&bottom, x0, -y0, (y0 - y1) * inverse, inverse, x0, x1, x_error, y_error);
+        else
+            return 0;
+        x0 = x1;
+        y0 = y1;
+    }
+    return bound_lines(&top, x_error, y_error, &bounds->side[SC_SIDE_TOP]) &&
+           bound_lines(&bottom, x_error, y_error, &bounds->side[SC_SIDE_BOTTOM]);
+}
+
+/* Widens a bound so that it holds for a child's lines too: slopes and extent. */
+static inline void unite_extent(sc_ray_bound *b, const sc_ray_bound *child)
+{
+    if (child->ax < b->ax) b->ax = child->ax;
+    if (child->bx > b->bx) b->bx = child->bx;
+    if (child->least < b->least) b->least = child->least;
+    if (child->most > b->most) b->most = child->most;
+}
+
+/* Then lowers its ends to the child's lines, which they are not inside of: left of a child, its
+   greatest slope counts, right of it its least. */
+static inline void unite_ends(sc_ray_bound *b, const sc_ray_bound *child)
+{
+    double ax, bx, at_a, at_b, rise_a, rise_b;
+    if (child->ax > child->bx) return;
+    ax = (double)b->ax;
+    bx = (double)b->bx;
+    rise_a = (double)child->most * (ax - (double)child->ax);
+    rise_b = (double)child->least * (bx - (double)child->bx);
+    at_a = (double)child->ay + rise_a - ROUNDING * (fabs((double)child->ay) + fabs(rise_a));
+    at_b = (double)child->by + rise_b - ROUNDING * (fabs((double)child->by) + fabs(rise_b));
+    if (at_a < (double)b->ay) b->ay = sc_boxes_below(at_a);
+    if (at_b < (double)b->by) b->by = sc_boxes_below(at_b);
+}
+
+static void bound_leaf(const sc_model *model, const sc_workspace *w, const sc_projection *projection,
+                       int line, uint32_t segment, sc_segment_bounds *bounds)
+{
+    const uint32_t *first = sc_model_segment_points(model) + segment;
+    const uint32_t *points = sc_model_points(model) + first[0];
+    uint32_t edges = first[1] - first[0] - 1, from = 0, i;
+    int side;
+    double low = HUGE_VAL, high = -HUGE_VAL, x, y;
+    sc_segment_bounds piece, all;
+    if (edges <= EDGES_AT_ONCE) {
+        if (bound_edges(w, projection, line, points, edges, bounds)) return;
+    } else {
+        int bounded = 1, pass;
+        all.side[0] = all.side[1] = NO_LINES;
+        for (pass = 0; pass < 2 && bounded; pass++) /* extents first, ends then */
+            for (from = 0; from < edges && bounded; from += EDGES_AT_ONCE) {
+                uint32_t count = edges - from < EDGES_AT_ONCE ? edges - from : EDGES_AT_ONCE;
+                bounded = bound_edges(w, projection, line, points + from, count, &piece);
+                for (side = 0; side < 2 && bounded; side++)
+                    if (pass == 0)
+                        unite_extent(&all.side[side], &piece.side[side]);
+                    else
+                        unite_ends(&all.side[side], &piece.side[side]);
+            }
+        if (bounded) {
+            *bounds = all;
+            return;
+        }
+    }
+    for (i = 0; i <= edges; i++) {
+        sc_contour_bounds_project(w, projection, line, points[i], &x, &y);
+        if (x < low) low = x;
+        if (x > high) high = x;
+    }
+    x = line == SC_LINE_VERTICAL ? projection->x_error : projection->y_error;
+    make_unbounded(bounds, low - x, high + x);
+}
+
+uint32_t sc_contour_bounds_update(const sc_model *model, sc_workspace *w,
+                                  const sc_projection *projection, int line, uint32_t segment)
+{
+    sc_segment_bounds *bounds = &w->bounds[line][segment];
+    const uint32_t *first, *children = sc_model_children(model);
+    uint32_t i, updated = 1;
+    int side;
+    if (w->bounds_tick[line][segment] == w->tick) return 0;
+    w->bounds_tick[line][segment] = w->tick;
+    if (segment < model->leaf_segment_count) {
+        bound_leaf(model, w, projection, line, segment, bounds);
+        return 1;
+    }
+    first = sc_model_segment_children(model) + (segment - model->leaf_segment_count);
+    for (i = first[0]; i < first[1]; i++)
+        updated += sc_contour_bounds_update(model, w, projection, line, children[i]);
+    for (side = 0; side < 2; side++) {
+        sc_ray_bound all = NO_LINES;
+        for (i = first[0]; i < first[1]; i++)
+            unite_extent(&all, &w->bounds[line][children[i]].side[side]);
+        for (i = first[0]; i < first[1]; i++)
+            unite_ends(&all, &w->bounds[line][children[i]].side[side]);
+        bounds->side[side] = all;
+    }
+    return updated;
+}

@@ -1,0 +1,111 @@
+/*
+ * Discrete normal cones. See dnc.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "pose/dnc.h"
+
+#include <math.h>
+
+enum { HALF = SC_DNC_DIRECTIONS / 2 };
+
+/* The first half of the directions; the second half are their negatives. */
+static const int direction[HALF][3] = {{1, 0, 0},  {0, 1, 0},   {0, 0, 1}, {1, 1, 1},
+                                       {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
+
+/*
+ * The error of a dot product of a computed normal e x f with a direction, whose components are 0 or
+ * +-1. Written out, it is a sum of at most six products of a component of e and one of f. Each product
+ * collects the rounding of two differences, one multiplication, one subtraction and two additions: an
+ * error of ((1 + u)^6 - 1) < 6.01 u times its absolute value, u = 2^-53; the sum of the absolute
+ * values is at most |e|1 |f|1, computed to within 8 u. Hence 8 u |e|1 |f|1; the second term is for
+ * products that underflow. If anything overflows, the bound is infinite or NaN and nothing passes.
+ */
+static const double ERROR_RELATIVE = 8 * 1.1102230246251565e-16;
+static const double ERROR_ABSOLUTE = 1e-300;
+
+static uint32_t leaf_mask(const sc_model *model, const sc_workspace *w, uint32_t leaf)
+{
+    const uint32_t *corner = sc_model_triangle(model) + 3 * (uint64_t)sc_model_leaf_first(model)[leaf];
+    uint32_t count = sc_model_leaf_first(model)[leaf + 1] - sc_model_leaf_first(model)[leaf], i, mask = 0;
+    double e[3][SC_LEAF_MAX], f[3][SC_LEAF_MAX], n[3][SC_LEAF_MAX], error[SC_LEAF_MAX];
+    double dot[HALF][SC_LEAF_MAX];
+    int k, d;
+    for (i = 0; i < SC_LEAF_MAX; i++) { /* the last triangle fills the row */
+        const uint32_t *t = corner + 3 * (i < count ? i : count - 1);
+        const double *a = w->position + 3 * (uint64_t)t[0], *b = w->position + 3 * (uint64_t)t[1];
+        const double *c = w->position + 3 * (uint64_t)t[2];
+        for (k = 0; k < 3; k++) {
+            e[k][i] = b[k] - a[k];
+            f[k][i] = c[k] - a[k];
+        }
+    }
+    for (i = 0; i < SC_LEAF_MAX; i++) {
+        n[0][i] = e[1][i] * f[2][i] - e[2][i] * f[1][i];
+        n[1][i] = e[2][i] * f[0][i] - e[0][i] * f[2][i];
+        n[2][i] = e[0][i] * f[1][i] - e[1][i] * f[0][i];
+        error[i] = ERROR_RELATIVE * ((fabs(e[0][i]) + fabs(e[1][i]) + fabs(e[2][i])) *
+                                     (fabs(f[0][i]) + fabs(f[1][i]) + fabs(f[2][i]))) +
+                   ERROR_ABSOLUTE;
+    }
+    for (i = 0; i < SC_LEAF_MAX; i++) {
+        double sum = n[0][i] + n[1][i], difference = n[0][i] - n[1][i];
+        dot[0][i] = n[0][i];
+        dot[1][i] = n[1][i];
+        dot[2][i] = n[2][i];
+        dot[3][i] = sum + n[2][i];
+        dot[4][i] = sum - n[2][i];
+        dot[5][i] = difference + n[2][i];
+        dot[6][i] = difference - n[2][i];
+    }
+    for (d = 0; d < HALF; d++) {
+        int positive = 1, negative = 1;
+        for (i = 0; i < SC_LEAF_MAX; i++) {
+            positive &= dot[d][i] > error[i];
+            negative &= dot[d][i] < -error[i];
+        }
+        mask |= (uint32_t)positive << d | (uint32_t)negative << (d + HALF);
+    }
+    return mask;
+}
+
+void sc_dnc_update(const sc_model *model, sc_workspace *w)
+{
+    const uint32_t *level_first = sc_model_level_first(model), *child = sc_model_child(model);
+    uint32_t level, p, leaf;
+    for (leaf = 0; leaf < model->leaf_count; leaf++)
+        w->mask[sc_model_first_leaf_patch(model) + leaf] = (uint16_t)leaf_mask(model, w, leaf);
+    for (level = model->level_count - 1; level-- > 0;)
+        for (p = level_first[level]; p + 1 < level_first[level + 1]; p++)
+            w->mask[p] = w->mask[child[p]] & w->mask[child[p + 1] - 1];
+}
+
+/*
+ * The direction s is a sum of integer vectors, faces and diagonals weighted by 7 and 4 because
+ * 7 is about 4 sqrt(3). With u = s x h for an integer h and w = s x u, all of them integers,
+ * u x w = |u|^2 s exactly: so a triangle whose normal has positive dot products with the summed
+ * directions has a positive area in (u . p, w . p). h is oblique so that edges along the axes become
+ * neither vertical nor horizontal. |s| <= 23, |u| <= 506, |w| <= 23276 in each component.
+ *
+ * A computed coordinate u . (p - origin) collects one difference, one product, two additions: an error
+ * of 4.01 * 2^-53 times the sum of |u_k| |p_k - origin_k|, at most |u|1 radius.
+ */
+void sc_dnc_projection(const sc_workspace *w, uint32_t mask, sc_projection *projection)
+{
+    static const double oblique[2][3] = {{5, 2, 11}, {11, 3, 2}};
+    const double *h = oblique[0];
+    double s[3] = {0, 0, 0}, *u = projection->u, *v = projection->w;
+    int d, k;
+    for (d = 0; d < SC_DNC_DIRECTIONS; d++) {
+        const int *one = direction[d % HALF];
+        int weight = (one[0] && one[1]) ? 4 : 7;
+        if (!(mask >> d & 1)) continue;
+        for (k = 0; k < 3; k++) s[k] += (d < HALF ? weight : -weight) * one[k];
+    }
+    if (s[1] * h[2] == s[2] * h[1] && s[2] * h[0] == s[0] * h[2]) h = oblique[1];
+    for (k = 0; k < 3; k++) u[k] = s[(k + 1) % 3] * h[(k + 2) % 3] - s[(k + 2) % 3] * h[(k + 1) % 3];
+    for (k = 0; k < 3; k++) v[k] = s[(k + 1) % 3] * u[(k + 2) % 3] - s[(k + 2) % 3] * u[(k + 1) % 3];
+    for (k = 0; k < 3; k++) projection->origin[k] = w->center[k];
+    projection->x_error = 5 * 1.1102230246251565e-16 * (fabs(u[0]) + fabs(u[1]) + fabs(u[2])) * w->radius;
+    projection->y_error = 5 * 1.1102230246251565e-16 * (fabs(v[0]) + fabs(v[1]) + fabs(v[2])) * w->radius;
+}

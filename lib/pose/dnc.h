@@ -1,0 +1,27 @@
+/*
+ * Discrete normal cones (DNC; Volino and Magnenat-Thalmann 1994) of all patches.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * 14 directions: the six face normals and eight diagonals of a cube. Bit i of a patch's mask is set
+ * only if every triangle of the patch has a normal with a positive dot product with direction i, in
+ * exact arithmetic; it may be clear although that is so, within rounding. The cone of a patch is the
+ * intersection (AND) of its children's.
+ */
+#ifndef SC_POSE_DNC_H
+#define SC_POSE_DNC_H
+
+#include "pose/workspace.h"
+
+enum { SC_DNC_DIRECTIONS = 14 };
+
+/* Fills mask. About 10 ns a triangle. */
+void sc_dnc_update(const sc_model *model, sc_workspace *workspace);
+
+/*
+ * A projection along the average of the directions in a mask that is not 0: every triangle of a patch
+ * with these bits keeps a positive area, exactly.
+ */
+void sc_dnc_projection(const sc_workspace *workspace, uint32_t mask, sc_projection *projection);
+
+#endif

@@ -1,0 +1,29 @@
+/*
+ * Closed fans that project one to one: the contour test at the smallest scale.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * If the triangles round a point keep a positive area under some projection and turn round the point
+ * just once, any two of them meet only in what they share. So the five or so pairs per triangle that
+ * share a vertex need one test a vertex, and the pairs that share an edge none.
+ */
+#ifndef SC_POSE_FAN_H
+#define SC_POSE_FAN_H
+
+#include "pose/workspace.h"
+
+/* The test itself: 1 if the fan round a point certainly projects one to one in this pose. */
+int sc_fan_test(const sc_model *model, const sc_workspace *workspace, uint32_t point);
+
+/* The same, computed once a pose. */
+static inline int sc_fan_is_plain(const sc_model *model, sc_workspace *workspace, uint32_t point)
+{
+    uint32_t known = workspace->fan[point];
+    if (known >> 1 != workspace->pose_tick) {
+        known = 2 * workspace->pose_tick + (uint32_t)sc_fan_test(model, workspace, point);
+        workspace->fan[point] = known;
+    }
+    return (int)(known & 1);
+}
+
+#endif

@@ -1,0 +1,59 @@
+/*
+ * Reads the caller's pose. See positions.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "pose/positions.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Stores one point and widens the box of all. */
+static inline void store(const double p[3], uint32_t at, sc_workspace *w, double low[3], double high[3])
+{
+    double *position = w->position + 3 * (uint64_t)at;
+    float *rounded = w->rounded + 4 * (uint64_t)at;
+    int k;
+    for (k = 0; k < 3; k++) {
+        position[k] = p[k];
+        rounded[k] = sc_boxes_clamp(p[k]);
+        low[k] = p[k] < low[k] ? p[k] : low[k];
+        high[k] = p[k] > high[k] ? p[k] : high[k];
+    }
+}
+
+sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
+                            sc_workspace *w)
+{
+    const unsigned char *at = (const unsigned char *)pose->positions;
+    const uint32_t *slot = sc_model_slot(model);
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    double p[3], not_finite = 0; /* stays 0 unless something is NaN or infinite */
+    uint32_t v;
+    int k;
+    if (pose->position_type == SC_DOUBLE) {
+        for (v = 0; v < model->vertex_count; v++, at += stride) {
+            if (slot[v] == SC_SLOT_UNUSED) continue;
+            memcpy(p, at, sizeof p);
+            not_finite += (p[0] - p[0]) + (p[1] - p[1]) + (p[2] - p[2]);
+            if (slot[v] != SC_SLOT_WELDED) store(p, slot[v], w, low, high);
+        }
+    } else {
+        for (v = 0; v < model->vertex_count; v++, at += stride) {
+            float f[3];
+            if (slot[v] == SC_SLOT_UNUSED) continue;
+            memcpy(f, at, sizeof f);
+            for (k = 0; k < 3; k++) p[k] = (double)f[k];
+            not_finite += (p[0] - p[0]) + (p[1] - p[1]) + (p[2] - p[2]);
+            if (slot[v] != SC_SLOT_WELDED) store(p, slot[v], w, low, high);
+        }
+    }
+    if (not_finite != 0) return SC_ERROR_NOT_FINITE; /* NaN is not 0 */
+    w->radius = 0;
+    for (k = 0; k < 3; k++) {
+        w->center[k] = low[k] / 2 + high[k] / 2;
+        if (high[k] - w->center[k] > w->radius) w->radius = high[k] - w->center[k];
+        if (w->center[k] - low[k] > w->radius) w->radius = w->center[k] - low[k];
+    }
+    return SC_OK;
+}

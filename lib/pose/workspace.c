@@ -1,0 +1,92 @@
+/*
+ * The workspace. See workspace.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "pose/workspace.h"
+
+#include <math.h>
+#include <string.h>
+
+static uint64_t align(uint64_t bytes)
+{
+    return (bytes + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
+}
+
+/* The next array of the block: NULL if block is, as when only its size is wanted. */
+static void *place(unsigned char *block, uint64_t *at, uint64_t count, size_t size)
+{
+    unsigned char *array = block ? block + *at : NULL;
+    *at += align(count * size);
+    return array;
+}
+
+static uint64_t lay_out(const sc_model *model, unsigned char *block, sc_workspace *w)
+{
+    uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
+    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
+    int k;
+    w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count, sizeof(double));
+    w->rounded = (float *)place(block, &at, 4 * (uint64_t)model->point_count, sizeof(float));
+    for (k = 0; k < 6; k++) w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
+    for (k = 0; k < 6; k++)
+        w->triangle_boxes.side[k] = (float *)place(block, &at, triangles, sizeof(float));
+    w->mask = (uint16_t *)place(block, &at, model->patch_end, sizeof(uint16_t));
+    w->fan = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));
+    for (k = 0; k < 2; k++) {
+        w->bounds[k] =
+            (sc_segment_bounds *)place(block, &at, model->segment_count, sizeof(sc_segment_bounds));
+        w->bounds_tick[k] = (uint32_t *)place(block, &at, model->segment_count, sizeof(uint32_t));
+    }
+    w->candidates = (sc_pair *)place(block, &at, SC_CANDIDATES_MAX, sizeof(sc_pair));
+    return at;
+}
+
+uint64_t sc_workspace_bytes(const sc_model *model)
+{
+    sc_workspace sizes;
+    return lay_out(model, NULL, &sizes);
+}
+
+sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
+{
+    sc_workspace *w = (sc_workspace *)memory;
+    uint64_t i, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
+    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
+    int k;
+    memset(w, 0, sizeof *w);
+    w->bytes = lay_out(model, (unsigned char *)memory, w);
+    w->topology_hash = model->topology_hash;
+    w->model_bytes = model->bytes;
+    for (k = 0; k < 6; k++) {
+        for (i = 0; i < patches; i++) w->patch_boxes.side[k][i] = (float)NAN;
+        for (i = 0; i < triangles; i++) w->triangle_boxes.side[k][i] = (float)NAN;
+    }
+    memset(w->mask, 0, model->patch_end * sizeof *w->mask);
+    memset(w->rounded, 0, 4 * (size_t)model->point_count * sizeof *w->rounded);
+    memset(w->fan, 0, model->point_count * sizeof *w->fan);
+    for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
+    return w;
+}
+
+void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
+{
+    if (workspace->pose_tick == 0x7fffffff) {
+        memset(workspace->fan, 0, model->point_count * sizeof *workspace->fan);
+        workspace->pose_tick = 0;
+    }
+    workspace->pose_tick++;
+    workspace->boxes_ready = 0;
+    workspace->candidate_count = 0;
+}
+
+void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace)
+{
+    int k;
+    if (workspace->tick == 0xffffffff) {
+        for (k = 0; k < 2; k++)
+            memset(workspace->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
+        workspace->tick = 0;
+    }
+    workspace->tick++;
+}

@@ -1,0 +1,82 @@
+/*
+ * The workspace: everything that a query writes to, in one block.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ *     | sc_workspace | position | rounded | patch boxes | triangle boxes | mask | fan | bounds |
+ *       bounds_tick | candidates |
+ *
+ * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
+ * ticks, by which what an earlier query left is known to be stale.
+ */
+#ifndef SC_POSE_WORKSPACE_H
+#define SC_POSE_WORKSPACE_H
+
+#include "base/boxes.h"
+#include "build/model.h"
+
+/*
+ * The lower bound of a bundle of lines (paper, section 6.4): none of the lines is below
+ *   the line through (ax, ay) with slope most for x <= ax,
+ *   the chord from (ax, ay) to (bx, by) between,
+ *   the line through (bx, by) with slope least for x >= bx;
+ * and the edges that the lines prolong lie within [ax, bx]. No edges: ax > bx. Unbounded: ay is
+ * -infinity.
+ */
+typedef struct sc_ray_bound {
+    float ax, ay, bx, by, least, most;
+} sc_ray_bound;
+
+/* Of a contour segment under one projection, for one search line: its top edges, and its bottom edges
+   turned upside down. */
+typedef struct sc_segment_bounds {
+    sc_ray_bound side[2];
+} sc_segment_bounds;
+
+/* A projection R^3 -> R^2: x = u . (p - origin), y = w . (p - origin), u and w small integers. */
+typedef struct sc_projection {
+    double u[3], w[3], origin[3];
+    double x_error, y_error; /* |computed - true| at most */
+} sc_projection;
+
+enum { SC_CANDIDATES_MAX = 1024 };
+
+struct sc_workspace {
+    uint64_t bytes;
+    uint64_t topology_hash; /* of the model it is for */
+    uint64_t model_bytes;
+    sc_allocator allocator;
+    uint32_t owned; /* allocated by sc_workspace_create */
+
+    /* the pose; all but position valid only in a query */
+    double *position;       /* 3 * point_count */
+    float *rounded;         /* 4 * point_count: positions to the nearest float, and padding */
+    double center[3];       /* of the box of all points */
+    double radius;          /* largest distance of a coordinate from center */
+    sc_boxes patch_boxes;   /* patch_end */
+    sc_boxes triangle_boxes; /* SC_LEAF_MAX per leaf; what is no triangle is NaN and overlaps nothing */
+    uint32_t boxes_ready;
+    uint16_t *mask; /* patch_end: discrete normal cones, see pose/dnc.h */
+    uint32_t pose_tick;
+    uint32_t *fan; /* point_count: 2 * pose_tick + whether the fan projects one to one, if tested */
+
+    /* contours under the projection at hand */
+    uint32_t tick;
+    sc_segment_bounds *bounds[2]; /* segment_count, for the vertical and the horizontal line */
+    uint32_t *bounds_tick[2];     /* segment_count: tick at which they were computed */
+
+    sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
+    uint32_t candidate_count;
+};
+
+/* Bytes for a workspace, which fit size_t. */
+uint64_t sc_workspace_bytes(const sc_model *model);
+
+/* Makes a workspace in aligned memory of that many bytes. */
+sc_workspace *sc_workspace_place(const sc_model *model, void *memory);
+
+/* Starts a pose and a projection, whose ticks make everything older stale. */
+void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace);
+void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace);
+
+#endif

@@ -1,0 +1,270 @@
+/*
+ * Pairs of triangles whose boxes overlap. See candidates.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * What happens to a pair depends on the vertices it shares. None: a test of all vertices against both
+ * planes, eight pairs at a time, for flat pairs another along their sides, then the exact primitives.
+ * One or two: nothing if the fan round a shared vertex projects one to one, else the exact primitives.
+ */
+#include "query/candidates.h"
+
+#include <math.h>
+
+#include "base/bits.h"
+#include "pose/fan.h"
+#include "query/pairs.h"
+#include "query/primitives.h"
+
+enum { LANES = 8 };
+
+/* Collected pairs are decided when there are this many: fewer if the first hit ends the query. */
+static uint32_t batch_size(const sc_query_state *state)
+{
+    return state->options.output == SC_OUTPUT_ANY ? 64 : SC_CANDIDATES_MAX - SC_LEAF_MAX;
+}
+
+static void collect_row(sc_query_state *state, uint32_t a, uint32_t first_b, unsigned mask)
+{
+    sc_workspace *w = state->workspace;
+    while (mask) {
+        sc_pair *candidate = &w->candidates[w->candidate_count++];
+        candidate->a = a;
+        candidate->b = first_b + sc_bits_lowest(mask);
+        mask &= mask - 1;
+    }
+    if (w->candidate_count >= batch_size(state)) sc_candidates_decide(state);
+}
+
+void sc_candidates_of_pair(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b)
+{
+    const sc_model *model = state->model;
+    const sc_workspace *w = state->workspace;
+    const uint32_t *first = sc_model_leaf_first(model);
+    uint64_t row_a = (uint64_t)leaf_a * SC_LEAF_MAX, row_b = (uint64_t)leaf_b * SC_LEAF_MAX;
+    uint32_t patch_b = sc_model_first_leaf_patch(model) + leaf_b;
+    unsigned rows = sc_boxes_overlap8(&w->patch_boxes, patch_b, &w->triangle_boxes, row_a);
+    state->stats.leaf_pairs++;
+    state->stats.counts[sc_state_box_task(state)]++;
+    while (rows && !state->stop) {
+        unsigned i = sc_bits_lowest(rows);
+        unsigned mask = sc_boxes_overlap8(&w->triangle_boxes, row_a + i, &w->triangle_boxes, row_b);
+        rows &= rows - 1;
+        state->stats.counts[sc_state_box_task(state)]++;
+        if (mask) collect_row(state, first[leaf_a] + i, first[leaf_b], mask);
+    }
+}
+
+void sc_candidates_of_leaf(sc_query_state *state, uint32_t leaf)
+{
+    const sc_workspace *w = state->workspace;
+    const uint32_t *first = sc_model_leaf_first(state->model);
+    uint64_t row = (uint64_t)leaf * SC_LEAF_MAX;
+    uint32_t count = first[leaf + 1] - first[leaf], i;
+    state->stats.leaf_pairs++;
+    for (i = 0; i + 1 < count && !state->stop; i++) {
+        unsigned mask = sc_boxes_overlap8(&w->triangle_boxes, row + i, &w->triangle_boxes, row);
+        mask &= ~((2u << i) - 1u);
+        state->stats.counts[sc_state_box_task(state)]++;
+        if (mask) collect_row(state, first[leaf] + i, first[leaf], mask);
+    }
+}
+
+/* What the planes of the two triangles say of LANES pairs, a bit each. */
+typedef struct plane_test {
+    unsigned undecided; /* neither plane certainly separates them */
+    unsigned flat;      /* of these: one triangle is in the other's plane, as far as can be told */
+} plane_test;
+
+/*
+ *
+ * A computed distance n . (p - a), n = e x f, is a sum of six products of components of e, f and
+ * p - a. Each collects the rounding of three differences, two products, one subtraction and two
+ * additions, 8.01 * 2^-53 of its absolute value; the absolute values sum to at most |p - a|max |e|1
+ * |f|1, computed to within 8 * 2^-53. Hence 9 * 2^-53 |p - a|max |e|1 |f|1; the absolute term is for
+ * products that underflow.
+ */
+static plane_test test_planes(const double x[LANES][2][3][3])
+{
+    const double relative = 9 * 1.1102230246251565e-16, absolute = 1e-290;
+    plane_test result = {0, 0};
+    int lane, s, k;
+    for (lane = 0; lane < LANES; lane++) {
+        int apart = 0, flat = 0;
+        for (s = 0; s < 2; s++) {
+            const double(*t)[3] = x[lane][s], (*o)[3] = x[lane][1 - s];
+            double e0 = t[1][0] - t[0][0], e1 = t[1][1] - t[0][1], e2 = t[1][2] - t[0][2];
+            double f0 = t[2][0] - t[0][0], f1 = t[2][1] - t[0][1], f2 = t[2][2] - t[0][2];
+            double n0 = e1 * f2 - e2 * f1, n1 = e2 * f0 - e0 * f2, n2 = e0 * f1 - e1 * f0;
+            double low = HUGE_VAL, high = -HUGE_VAL, reach = 0, bound;
+            for (k = 0; k < 3; k++) {
+                double p0 = o[k][0] - t[0][0], p1 = o[k][1] - t[0][1], p2 = o[k][2] - t[0][2];
+                double d = n0 * p0 + n1 * p1 + n2 * p2;
+                p0 = fabs(p0);
+                p1 = fabs(p1);
+                p2 = fabs(p2);
+                p0 = p0 > p1 ? p0 : p1;
+                p0 = p0 > p2 ? p0 : p2;
+                reach = reach > p0 ? reach : p0;
+                low = d < low ? d : low;
+                high = d > high ? d : high;
+                apart |= d != d ? 2 : 0;
+            }
+            bound = relative * (reach * ((fabs(e0) + fabs(e1) + fabs(e2)) *
+                                         (fabs(f0) + fabs(f1) + fabs(f2)))) +
+                    absolute * (1 + reach);
+            apart |= (low > bound) | (high < -bound);
+            flat |= (low >= -bound) & (high <= bound);
+        }
+        result.undecided |= (unsigned)(apart != 1) << lane;
+        result.flat |= (unsigned)(flat & (apart != 1)) << lane;
+    }
+    return result;
+}
+
+/*
+ * Whether a direction in the plane of one of two triangles, across one of its sides, certainly
+ * separates them. Any direction m will do, so the rounding of m does not matter; m . (p - a) collects
+ * one difference, one product and two additions: 5 * 2^-53 |m|1 |p - a|max is more. This spares flat
+ * regions the exact primitives, which are slow there.
+ */
+static int side_separates(const double x[2][3][3])
+{
+    const double relative = 5 * 1.1102230246251565e-16, absolute = 1e-290;
+    int s, k, i, c;
+    for (s = 0; s < 2; s++) {
+        const double(*t)[3] = x[s], (*o)[3] = x[1 - s];
+        double e[3][3], n[3];
+        for (k = 0; k < 3; k++)
+            for (c = 0; c < 3; c++) e[k][c] = t[(k + 1) % 3][c] - t[k][c];
+        for (c = 0; c < 3; c++)
+            n[c] = e[0][(c + 1) % 3] * e[1][(c + 2) % 3] - e[0][(c + 2) % 3] * e[1][(c + 1) % 3];
+        for (k = 0; k < 3; k++) {
+            double m[3], own = HUGE_VAL, other = -HUGE_VAL, reach = 0, bound;
+            for (c = 0; c < 3; c++)
+                m[c] = n[(c + 1) % 3] * e[k][(c + 2) % 3] - n[(c + 2) % 3] * e[k][(c + 1) % 3];
+            for (i = 0; i < 6; i++) {
+                const double *p = i < 3 ? t[i] : o[i - 3];
+                double d0 = p[0] - t[k][0], d1 = p[1] - t[k][1], d2 = p[2] - t[k][2];
+                double along = m[0] * d0 + m[1] * d1 + m[2] * d2;
+                if (along != along) return 0;
+                if (fabs(d0) > reach) reach = fabs(d0);
+                if (fabs(d1) > reach) reach = fabs(d1);
+                if (fabs(d2) > reach) reach = fabs(d2);
+                if (i < 3)
+                    own = along < own ? along : own;
+                else
+                    other = along > other ? along : other;
+            }
+            bound = relative * (fabs(m[0]) + fabs(m[1]) + fabs(m[2])) * reach + absolute * (1 + reach);
+            if (own - other > 2.0001 * bound) return 1;
+        }
+    }
+    return 0;
+}
+
+static void decide_pair(sc_query_state *state, const sc_pair *places)
+{
+    const sc_model *model = state->model;
+    const uint32_t *triangle = sc_model_triangle(model), *id = sc_model_triangle_id(model);
+    const double *position = state->workspace->position;
+    int proper = state->options.contact == SC_CONTACT_PROPER, k;
+    sc_triangle_pair pair;
+    for (k = 0; k < 3; k++) {
+        pair.va[k] = triangle[3 * (uint64_t)places->a + (uint64_t)k];
+        pair.vb[k] = triangle[3 * (uint64_t)places->b + (uint64_t)k];
+        pair.a[k] = position + 3 * (uint64_t)pair.va[k];
+        pair.b[k] = position + 3 * (uint64_t)pair.vb[k];
+    }
+    if (state->options.pairs == SC_PAIRS_EDGE) {
+        const uint8_t *owned = sc_model_edge_owned(model);
+        unsigned edges = (unsigned)owned[places->a] | (unsigned)owned[places->b] << 3, hits;
+        hits = sc_primitives_edge_hits(&pair, proper, edges, &state->stats.exact_fallbacks);
+        for (; hits; hits &= hits - 1) {
+            uint32_t bit = sc_bits_lowest(hits);
+            if (bit < 3)
+                sc_pairs_take(state, 3 * id[places->a] + bit, id[places->b]);
+            else
+                sc_pairs_take(state, 3 * id[places->b] + bit - 3, id[places->a]);
+        }
+    } else if (sc_primitives_triangles_meet(&pair, proper, &state->stats.exact_fallbacks)) {
+        uint32_t a = id[places->a], b = id[places->b];
+        sc_pairs_take(state, a < b ? a : b, a < b ? b : a);
+    }
+}
+
+/* Whether two triangles share a vertex, without branches: most that overlap do or are near. */
+static inline int share_any(const uint32_t *a, const uint32_t *b)
+{
+    return (a[0] == b[0]) | (a[0] == b[1]) | (a[0] == b[2]) | (a[1] == b[0]) | (a[1] == b[1]) |
+           (a[1] == b[2]) | (a[2] == b[0]) | (a[2] == b[1]) | (a[2] == b[2]);
+}
+
+/* Lists the vertices that two triangles share; returns how many. */
+static int list_shared(const uint32_t *a, const uint32_t *b, uint32_t shared[3])
+{
+    int i, count = 0;
+    for (i = 0; i < 3; i++) {
+        shared[count] = a[i];
+        count += (a[i] == b[0]) | (a[i] == b[1]) | (a[i] == b[2]);
+    }
+    return count;
+}
+
+/* Whether two triangles that share vertices can have anything to report. */
+static int neighbors_matter(sc_query_state *state, const uint32_t *a, const uint32_t *b)
+{
+    uint32_t shared[3] = {0, 0, 0};
+    int i, count = list_shared(a, b, shared);
+    /* with two different vertices shared, so does every edge share one */
+    if (count >= 2 && shared[0] != shared[1] &&
+        (state->options.pairs == SC_PAIRS_EDGE || state->options.contact == SC_CONTACT_PROPER))
+        return 0;
+    for (i = 0; i < count; i++)
+        if (sc_fan_is_plain(state->model, state->workspace, shared[i])) return 0;
+    return 1;
+}
+
+void sc_candidates_decide(sc_query_state *state)
+{
+    const uint32_t *triangle = sc_model_triangle(state->model);
+    sc_workspace *w = state->workspace;
+    const double *position = w->position;
+    uint32_t i, j, disjoint = 0, previous;
+    int s, k, c;
+    if (!w->candidate_count) return;
+    previous = sc_state_switch(state, sc_state_primitive_task(state));
+    state->stats.counts[sc_state_primitive_task(state)] += w->candidate_count;
+    for (i = 0; i < w->candidate_count && !state->stop; i++) {
+        const sc_pair pair = w->candidates[i];
+        const uint32_t *a = triangle + 3 * (uint64_t)pair.a, *b = triangle + 3 * (uint64_t)pair.b;
+        if (!share_any(a, b))
+            w->candidates[disjoint++] = pair;
+        else if (neighbors_matter(state, a, b))
+            decide_pair(state, &pair);
+    }
+    for (i = 0; i < disjoint && !state->stop; i += LANES) {
+        double x[LANES][2][3][3];
+        plane_test planes;
+        unsigned rest;
+        for (j = 0; j < LANES; j++) { /* the last pair fills the row */
+            const sc_pair *pair = &w->candidates[i + j < disjoint ? i + j : disjoint - 1];
+            for (s = 0; s < 2; s++)
+                for (k = 0; k < 3; k++) {
+                    uint64_t corner = 3 * (uint64_t)(s ? pair->b : pair->a) + (uint64_t)k;
+                    const double *p = position + 3 * (uint64_t)triangle[corner];
+                    for (c = 0; c < 3; c++) x[j][s][k][c] = p[c];
+                }
+        }
+        planes = test_planes((const double(*)[2][3][3])x);
+        rest = planes.undecided;
+        if (disjoint - i < LANES) rest &= (1u << (disjoint - i)) - 1u;
+        for (; rest && !state->stop; rest &= rest - 1) {
+            unsigned lane = sc_bits_lowest(rest);
+            if ((planes.flat >> lane & 1u) && side_separates((const double(*)[3][3])x[lane])) continue;
+            decide_pair(state, &w->candidates[i + lane]);
+        }
+    }
+    w->candidate_count = 0;
+    sc_state_switch(state, previous);
+}

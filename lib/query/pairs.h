@@ -1,0 +1,19 @@
+/*
+ * The caller's array of pairs: filled in any order, sorted at the end.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * An array that is too short keeps the first pairs of the sorted list: once full, it is a heap with
+ * the last pair on top, which a lower one replaces.
+ */
+#ifndef SC_QUERY_PAIRS_H
+#define SC_QUERY_PAIRS_H
+
+#include "query/state.h"
+
+/* Takes a pair that was not taken before. */
+void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b);
+
+void sc_pairs_finish(sc_query_state *state);
+
+#endif

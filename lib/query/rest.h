@@ -1,0 +1,14 @@
+/*
+ * Rest-shape caching (paper, section 8): which nodes fail which test in the rest pose.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef SC_QUERY_REST_H
+#define SC_QUERY_REST_H
+
+#include "build/model.h"
+
+/* Tests every node of a new model in its rest pose and fills node_flags and the counts per level. */
+sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc_scratch *scratch);
+
+#endif

@@ -1,0 +1,50 @@
+/*
+ * One query on its way: what it was asked, where its answer goes, what it counted.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef SC_QUERY_STATE_H
+#define SC_QUERY_STATE_H
+
+#include "base/clock.h"
+#include "pose/workspace.h"
+
+typedef struct sc_query_state {
+    const sc_model *model;
+    sc_workspace *workspace;
+    sc_query_options options;
+    sc_pair *pairs; /* the caller's array */
+    uint64_t capacity;
+    uint64_t count; /* pairs found */
+    int stop;       /* enough is known */
+    int after_contour; /* box and primitive tests count as following a failed contour test */
+    uint32_t task;  /* what the clock runs for */
+    int timed;
+    uint64_t last_time;
+    sc_stats stats;
+} sc_query_state;
+
+/* Lets the clock run for another task; returns the one it ran for. */
+static inline uint32_t sc_state_switch(sc_query_state *state, uint32_t task)
+{
+    uint32_t previous = state->task;
+    if (state->timed && task != previous) {
+        uint64_t now = sc_clock_nanoseconds();
+        state->stats.nanoseconds[previous] += now - state->last_time;
+        state->last_time = now;
+        state->task = task;
+    }
+    return previous;
+}
+
+static inline uint32_t sc_state_box_task(const sc_query_state *state)
+{
+    return state->after_contour ? SC_TASK_BOXES_CONTOUR : SC_TASK_BOXES_ORIENTATION;
+}
+
+static inline uint32_t sc_state_primitive_task(const sc_query_state *state)
+{
+    return state->after_contour ? SC_TASK_PRIMITIVES_CONTOUR : SC_TASK_PRIMITIVES_ORIENTATION;
+}
+
+#endif

@@ -1,0 +1,315 @@
+/*
+ * The entry points: arguments are checked, steps put in order, errors passed on. What the calls promise
+ * is in starcontour.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "starcontour.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/structs.h"
+#include "build/model.h"
+#include "build/partition.h"
+#include "pose/positions.h"
+#include "query/pairs.h"
+#include "query/rest.h"
+#include "query/traversal.h"
+
+/* The size up to the end of a member. */
+#define UP_TO(type, member) (uint32_t)(offsetof(type, member) + sizeof(((type *)0)->member))
+
+/* The least struct_size of structures all of whose members have defaults. */
+#define LEAST_OPTIONS 8u
+
+/* ---- building ---- */
+
+/* What building makes, in order. */
+typedef struct steps {
+    sc_points points;
+    sc_adjacency adjacency;
+    sc_hierarchy hierarchy;
+    sc_xbvh xbvh;
+    sc_neighbors neighbors;
+    sc_sctt sctt;
+    sc_csf csf;
+} steps;
+
+static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *options, sc_scratch *scratch,
+                             sc_model **model)
+{
+    steps s;
+    sc_pose rest;
+    uint64_t stride;
+    sc_status status;
+    if ((status = sc_mesh_read(mesh, options, scratch, &s.points))) return status;
+    if ((status = sc_adjacency_build(&s.points, scratch, &s.adjacency))) return status;
+    if ((status = sc_partition_build(&s.points, &s.adjacency, options, scratch, &s.hierarchy)))
+        return status;
+    if ((status = sc_xbvh_build(&s.hierarchy, scratch, &s.xbvh))) return status;
+    if ((status = sc_neighbors_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, scratch,
+                                     &s.neighbors)))
+        return status;
+    if ((status = sc_sctt_build(&s.xbvh, &s.neighbors, scratch, &s.sctt))) return status;
+    sc_neighbors_free(&s.neighbors, scratch);
+    if ((status = sc_csf_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, &s.sctt, scratch,
+                               &s.csf)))
+        return status;
+    if ((status = sc_model_assemble(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
+                                    scratch, model)))
+        return status;
+    sc_scratch_clear(scratch); /* make room for the workspace of the rest pose */
+    memset(&rest, 0, sizeof rest);
+    rest.vertex_count = mesh->vertex_count;
+    rest.position_type = mesh->position_type;
+    rest.positions = mesh->positions;
+    status = sc_mesh_position_stride(mesh->position_type, mesh->position_stride, &stride);
+    if (!status) status = sc_rest_mark(*model, &rest, stride, scratch);
+    if (status) {
+        sc_model_release(*model);
+        *model = NULL;
+    }
+    return status;
+}
+
+sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model)
+{
+    sc_mesh m;
+    sc_build_options o;
+    sc_allocator allocator;
+    sc_scratch scratch;
+    sc_status status;
+    if (!model) return SC_ERROR_NULL;
+    *model = NULL;
+    if (!mesh) return SC_ERROR_NULL;
+    status = sc_structs_read(&m, sizeof m, mesh, UP_TO(sc_mesh, indices));
+    if (status) return status;
+    memset(&o, 0, sizeof o);
+    if (options) {
+        status = sc_structs_read(&o, sizeof o, options, LEAST_OPTIONS);
+        if (status) return status;
+    }
+    allocator = sc_memory_allocator(o.allocator);
+    if (!allocator.allocate || !allocator.release) return SC_ERROR_NULL;
+    sc_scratch_init(&scratch, &allocator);
+    status = build_steps(&m, &o, &scratch, model);
+    sc_scratch_clear(&scratch);
+    return status;
+}
+
+void sc_model_free(sc_model *model)
+{
+    if (model) sc_model_release(model);
+}
+
+sc_status sc_model_get_info(const sc_model *model, sc_model_info *info)
+{
+    sc_model_info i;
+    sc_status status;
+    if (!model || !info) return SC_ERROR_NULL;
+    status = sc_structs_check(info, sizeof i, LEAST_OPTIONS);
+    if (status) return status;
+    memset(&i, 0, sizeof i);
+    i.vertex_count = model->vertex_count;
+    i.point_count = model->point_count;
+    i.triangle_count = model->triangle_count;
+    i.edge_count = model->edge_count;
+    i.component_count = model->component_count;
+    i.boundary_edges = model->boundary_edges;
+    i.irregular_edges = model->irregular_edges;
+    i.leaf_count = model->leaf_count;
+    i.level_count = model->level_count;
+    i.node_count = model->node_count;
+    i.segment_count = model->segment_count;
+    i.topology_hash = model->topology_hash;
+    i.model_bytes = model->bytes + SC_ALIGNMENT; /* with what frees it */
+    i.workspace_bytes = sc_workspace_bytes(model);
+    sc_structs_write(info, &i, sizeof i);
+    return SC_OK;
+}
+
+sc_status sc_model_get_level(const sc_model *model, uint32_t level, sc_level_info *info)
+{
+    sc_level_info i;
+    const sc_level *l;
+    sc_status status;
+    if (!model || !info) return SC_ERROR_NULL;
+    status = sc_structs_check(info, sizeof i, LEAST_OPTIONS);
+    if (status) return status;
+    if (level >= model->level_count) return SC_ERROR_LEVEL;
+    l = &sc_model_level_info(model)[level];
+    memset(&i, 0, sizeof i);
+    i.patch_count = l->patch_count;
+    i.connected_patches = l->connected_patches;
+    i.segment_count = l->segment_count;
+    i.self_nodes = l->self_nodes;
+    i.self_oriented = l->self_oriented;
+    i.self_culled = l->self_culled;
+    i.pair_nodes = l->pair_nodes;
+    i.pair_oriented = l->pair_oriented;
+    i.pair_culled = l->pair_culled;
+    sc_structs_write(info, &i, sizeof i);
+    return SC_OK;
+}
+
+sc_status sc_model_get_patches(const sc_model *model, uint32_t level, uint32_t *patch_of_triangle,
+                               uint64_t capacity)
+{
+    const uint32_t *leaf, *leaf_first, *id;
+    uint32_t first, p, i;
+    if (!model || !patch_of_triangle) return SC_ERROR_NULL;
+    if (level >= model->level_count) return SC_ERROR_LEVEL;
+    if (capacity < model->triangle_count) return SC_ERROR_SHORT_BUFFER;
+    leaf = sc_model_leaf(model);
+    leaf_first = sc_model_leaf_first(model);
+    id = sc_model_triangle_id(model);
+    first = sc_model_level_first(model)[level];
+    for (p = 0; p < sc_model_patches(model, level); p++)
+        for (i = leaf_first[leaf[first + p]]; i < leaf_first[leaf[first + p + 1]]; i++)
+            patch_of_triangle[id[i]] = p;
+    return SC_OK;
+}
+
+/* ---- workspaces ---- */
+
+sc_status sc_workspace_size(const sc_model *model, uint64_t *size)
+{
+    if (!model || !size) return SC_ERROR_NULL;
+    *size = sc_workspace_bytes(model);
+    return SC_OK;
+}
+
+sc_status sc_workspace_init(const sc_model *model, void *memory, uint64_t size, sc_workspace **workspace)
+{
+    if (!workspace) return SC_ERROR_NULL;
+    *workspace = NULL;
+    if (!model || !memory) return SC_ERROR_NULL;
+    if ((uintptr_t)memory % SC_ALIGNMENT) return SC_ERROR_ALIGNMENT;
+    if (size < sc_workspace_bytes(model)) return SC_ERROR_WORKSPACE;
+    *workspace = sc_workspace_place(model, memory);
+    return SC_OK;
+}
+
+sc_status sc_workspace_create(const sc_model *model, const sc_allocator *allocator,
+                              sc_workspace **workspace)
+{
+    sc_allocator a = sc_memory_allocator(allocator);
+    void *memory;
+    if (!workspace) return SC_ERROR_NULL;
+    *workspace = NULL;
+    if (!model || !a.allocate || !a.release) return SC_ERROR_NULL;
+    memory = a.allocate(a.user, sc_workspace_bytes(model), SC_ALIGNMENT);
+    if (!memory) return SC_ERROR_MEMORY;
+    *workspace = sc_workspace_place(model, memory);
+    (*workspace)->allocator = a;
+    (*workspace)->owned = 1;
+    return SC_OK;
+}
+
+void sc_workspace_free(sc_workspace *workspace)
+{
+    if (workspace && workspace->owned)
+        workspace->allocator.release(workspace->allocator.user, workspace, workspace->bytes);
+}
+
+/* ---- queries ---- */
+
+static sc_status check_options(sc_query_options *o)
+{
+    if (o->output > SC_OUTPUT_ANY || o->pairs > SC_PAIRS_EDGE || o->contact > SC_CONTACT_PROPER ||
+        o->method > SC_METHOD_AABB || o->contour > SC_CONTOUR_NONE ||
+        o->rest_cache > SC_REST_CACHE_OFF || o->reserved)
+        return SC_ERROR_OPTION;
+    if (o->method == SC_METHOD_DEFAULT) o->method = SC_METHOD_SCTT;
+    if (o->contour == SC_CONTOUR_DEFAULT) o->contour = SC_CONTOUR_STAR;
+    return SC_OK;
+}
+
+static sc_status check_pose(const sc_model *model, const sc_pose *pose, uint64_t *stride)
+{
+    sc_status status;
+    if (pose->vertex_count != model->vertex_count) return SC_ERROR_VERTEX_COUNT;
+    if (!pose->positions) return SC_ERROR_NULL;
+    status = sc_mesh_position_stride(pose->position_type, pose->position_stride, stride);
+    if (status) return status;
+    return *stride > SIZE_MAX / pose->vertex_count ? SC_ERROR_COUNT : SC_OK;
+}
+
+/* Everything about a query that can be wrong; afterwards only the positions can be. */
+static sc_status check_query(const sc_model *model, const sc_workspace *workspace, const sc_pose *pose,
+                             const sc_query_options *options, const sc_result *result,
+                             sc_query_state *state, sc_pose *checked_pose, uint64_t *stride)
+{
+    sc_status status;
+    if (!model || !workspace || !pose) return SC_ERROR_NULL;
+    if (workspace->topology_hash != model->topology_hash || workspace->model_bytes != model->bytes)
+        return SC_ERROR_WORKSPACE;
+    if (options) {
+        status = sc_structs_read(&state->options, sizeof state->options, options, LEAST_OPTIONS);
+        if (status) return status;
+    }
+    status = check_options(&state->options);
+    if (status) return status;
+    status = sc_structs_read(checked_pose, sizeof *checked_pose, pose, UP_TO(sc_pose, positions));
+    if (status) return status;
+    status = check_pose(model, checked_pose, stride);
+    if (status) return status;
+    if (state->options.output == SC_OUTPUT_PAIRS && result->capacity && !result->pairs)
+        return SC_ERROR_NULL;
+    if (result->stats) return sc_structs_check(result->stats, sizeof(sc_stats), LEAST_OPTIONS);
+    return SC_OK;
+}
+
+static sc_status run_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
+                           uint64_t stride, sc_query_state *state)
+{
+    uint64_t start = 0;
+    sc_status status;
+    state->model = model;
+    state->workspace = workspace;
+    state->task = SC_TASK_UPDATE_BOXES;
+    if (state->timed) start = state->last_time = sc_clock_nanoseconds();
+    sc_workspace_new_pose(model, workspace);
+    status = sc_positions_read(model, pose, stride, workspace);
+    if (status) return status;
+    sc_traversal_run(state);
+    sc_pairs_finish(state);
+    if (state->timed) {
+        uint64_t now = sc_clock_nanoseconds();
+        state->stats.nanoseconds[state->task] += now - state->last_time;
+        state->stats.total_nanoseconds = now - start;
+    }
+    if (state->options.output == SC_OUTPUT_PAIRS && state->count > state->capacity)
+        return SC_ERROR_SHORT_BUFFER;
+    return SC_OK;
+}
+
+sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
+                   const sc_query_options *options, sc_result *result)
+{
+    sc_query_state state;
+    sc_result r;
+    sc_pose p;
+    uint64_t stride;
+    sc_status status;
+    if (!result) return SC_ERROR_NULL;
+    status = sc_structs_read(&r, sizeof r, result, UP_TO(sc_result, pairs));
+    if (status) return status;
+    r.collides = 0;
+    r.count = 0;
+    memset(&state, 0, sizeof state);
+    state.pairs = r.pairs;
+    state.capacity = r.capacity;
+    state.timed = r.stats != NULL;
+    status = check_query(model, workspace, pose, options, &r, &state, &p, &stride);
+    if (!status) status = run_query(model, workspace, &p, stride, &state);
+    if (!status || status == SC_ERROR_SHORT_BUFFER) {
+        r.count = state.options.output == SC_OUTPUT_ANY ? state.count > 0 : state.count;
+        r.collides = state.count > 0;
+        if (r.stats) sc_structs_write(r.stats, &state.stats, sizeof state.stats);
+    }
+    sc_structs_write(result, &r, sizeof r);
+    return status;
+}

@@ -1,0 +1,50 @@
+# What the test scripts share: sourced by tests/test_*.sh, from the top of the repository.
+#
+#     check "what should be true" command [argument...]
+#     skip "what was not checked, and why"
+#     finish                             last: prints "<script>: N passed, N failed" and exits
+#
+# A command's output is shown only if it fails. $scratch is a directory that is removed at the end.
+# From `make test` come CC, SC_CONFIG, SC_BIN, SC_LIB, SC_METIS (yes if METIS is there) and SC_FLAGS
+# (flags that whatever is linked with this build of the library needs); by hand, the release build is
+# taken.
+#
+# SPDX-License-Identifier: MIT
+set -u
+export LC_ALL=C
+
+CC=${CC:-cc}
+MAKE=${MAKE:-make}
+SC_CONFIG=${SC_CONFIG:-release}
+SC_BIN=${SC_BIN:-build/bin}
+SC_LIB=${SC_LIB:-build/lib}
+SC_FLAGS=${SC_FLAGS:-}
+export CC MAKE SC_CONFIG SC_BIN SC_LIB SC_FLAGS
+
+checks_passed=0
+checks_failed=0
+scratch=$(mktemp -d) || exit 1
+trap 'rm -rf "$scratch"' EXIT
+trap 'exit 1' HUP INT TERM
+
+check() {
+    check_name=$1
+    shift
+    if "$@" >"$scratch/check.log" 2>&1; then
+        checks_passed=$((checks_passed + 1))
+    else
+        checks_failed=$((checks_failed + 1))
+        echo "failed: $check_name"
+        sed 's/^/    /' "$scratch/check.log"
+    fi
+}
+
+skip() {
+    echo "skipped: $1"
+}
+
+finish() {
+    echo "$(basename "$0" .sh): $checks_passed passed, $checks_failed failed"
+    [ "$checks_failed" -eq 0 ] && [ "$checks_passed" -gt 0 ]
+    exit
+}

@@ -1,0 +1,185 @@
+#!/bin/sh
+# The build itself: `make help`, the bare compile, `make install` and what is linked with it, CMake.
+#
+# SPDX-License-Identifier: MIT
+. tests/script.sh
+
+# The surrounding make, if any, has handed its variables down in MAKEFLAGS: this is the same build.
+remake() {
+    "$MAKE" --no-print-directory -j1 config="$SC_CONFIG" "$@"
+}
+
+# ------------------------------------------------------------------------------------------------
+# make help
+
+remake help 2>/dev/null |
+    sed -n -e '/^Targets:/,/^Variables:/s/^  \([a-z-]*\) .*/\1/p' | sort >"$scratch/listed"
+sed -n 's/^\.PHONY: //p' Makefile | tr ' ' '\n' | grep -v -x -e FORCE -e after-deps -e '\$.*' |
+    sort -u >"$scratch/phony"
+remake -p -n -q help 2>/dev/null | sed -n 's/^\([a-z][a-z-]*\):.*/\1/p' | sort -u >"$scratch/rules"
+
+check "make help lists targets" test -s "$scratch/listed"
+check "each target that make help lists exists" \
+    test -z "$(comm -23 "$scratch/listed" "$scratch/rules")"
+check "make help lists all targets" diff "$scratch/phony" "$scratch/listed"
+
+variables_exist() {
+    for variable in $(remake help 2>/dev/null |
+        sed -n -e '1,/^Variables:/d' -e 's/^  \([A-Za-z]*\) .*/\1/p'); do
+        grep -q "\$($variable)" Makefile || { echo "$variable is not used"; return 1; }
+    done
+}
+check "each variable that make help lists is used" variables_exist
+
+wrong_config() {
+    "$MAKE" --no-print-directory -n config=fastest all 2>&1 | grep -q 'must be release, debug or sanitize'
+}
+check "a wrong config is refused" wrong_config
+
+# ------------------------------------------------------------------------------------------------
+# No build system at all.
+
+bare() {
+    root=$PWD
+    mkdir "$scratch/bare"
+    # shellcheck disable=SC2086
+    (cd "$scratch/bare" && $CC -std=c99 -O2 -I"$root/include" -I"$root/lib" \
+        -c "$root"/lib/*.c "$root"/lib/*/*.c) &&
+        ar rcs "$scratch/bare.a" "$scratch"/bare/*.o &&
+        $CC -std=c99 -Iinclude "$scratch/use.c" "$scratch/bare.a" -lm -o "$scratch/use_bare" &&
+        "$scratch/use_bare"
+}
+cat >"$scratch/use.c" <<'END'
+#include <starcontour.h>
+#include <string.h>
+int main(void)
+{
+    const float at[] = {0, 0, 0, 2, 0, 0, 0, 2, 0, 0.5f, 0.5f, -1, 0.5f, 0.5f, 1, 3, 3, 1};
+    const uint16_t triangles[] = {0, 1, 2, 3, 4, 5};
+    const sc_mesh mesh = {.struct_size = sizeof(mesh), .vertex_count = 6, .triangle_count = 2,
+                          .positions = at, .index_type = SC_UINT16, .indices = triangles};
+    const sc_pose pose = {.struct_size = sizeof(pose), .vertex_count = 6, .positions = at};
+    sc_result result = {.struct_size = sizeof(result)};
+    sc_model *model;
+    sc_workspace *workspace;
+    if (sc_version() != SC_VERSION_NUMBER) return 1;
+    if (sc_build(&mesh, NULL, &model)) return 2;
+    if (sc_workspace_create(model, NULL, &workspace)) return 3;
+    if (sc_query(model, workspace, &pose, NULL, &result) != SC_ERROR_SHORT_BUFFER) return 4;
+    sc_workspace_free(workspace);
+    sc_model_free(model);
+    return result.count == 1 ? 0 : 5;
+}
+END
+check "one bare cc compiles the library" bare
+
+# ------------------------------------------------------------------------------------------------
+# The small meshes
+
+if [ -x "$SC_BIN/make-meshes" ]; then
+    same_meshes() {
+        mkdir "$scratch/meshes"
+        "$SC_BIN/make-meshes" "$scratch/meshes" || return 1
+        for mesh in meshes/*.obj; do
+            cmp "$mesh" "$scratch/meshes/$(basename "$mesh")" || return 1
+        done
+    }
+    check "make-meshes writes the meshes in meshes/" same_meshes
+else
+    skip "make-meshes: it was not built"
+fi
+
+# ------------------------------------------------------------------------------------------------
+# make install
+
+version=$(sed -n 's/^#define SC_VERSION_[MP][A-Z]* \([0-9]*\)$/\1/p' include/starcontour.h |
+    paste -sd. -)
+root=$scratch/root
+check "make install" remake install DESTDIR="$root" PREFIX=/opt/sc
+home=$root/opt/sc
+check "only PREFIX is written to" test "$(ls "$root")$(ls "$root/opt")" = optsc
+check "the header is installed" cmp include/starcontour.h "$home/include/starcontour.h"
+check "the static library is installed" cmp "$SC_LIB/libstarcontour.a" "$home/lib/libstarcontour.a"
+for program in sc-query sc-partition; do
+    [ ! -x "$SC_BIN/$program" ] ||
+        check "$program is installed" test -x "$home/bin/$program"
+done
+
+no_build_paths() {
+    ! grep -r -F -e "$root" -e "$PWD" "$home/lib/pkgconfig"
+}
+check "pkg-config files name no directory of this build" no_build_paths
+
+if command -v readelf >/dev/null 2>&1 && [ -e "$home/lib/libstarcontour.so" ]; then
+    soname=$(readelf -d "$home/lib/libstarcontour.so" | sed -n 's/.*(SONAME).*\[\(.*\)\]/\1/p')
+    case $version in
+    0.*) expected=libstarcontour.so.${version%.*} ;;
+    *) expected=libstarcontour.so.${version%%.*} ;;
+    esac
+    check "the soname is $expected, not $soname" test "$soname" = "$expected"
+    check "the soname can be loaded" test -e "$home/lib/$soname"
+else
+    skip "soname: no readelf or no ELF library"
+fi
+
+# link_with NAME FLAGS...: builds and runs use.c against the installed library.
+link_with() {
+    name=$1
+    shift
+    # shellcheck disable=SC2086
+    $CC -std=c99 "$scratch/use.c" -o "$scratch/$name" "$@" $SC_FLAGS &&
+        LD_LIBRARY_PATH=$home/lib "$scratch/$name"
+}
+
+if command -v pkg-config >/dev/null 2>&1; then
+    config() {
+        PKG_CONFIG_PATH=$home/lib/pkgconfig pkg-config --define-variable=prefix="$home" \
+            --define-variable=includedir="$home/include" --define-variable=libdir="$home/lib" "$@"
+    }
+    check "pkg-config knows the version" test "$(config --modversion starcontour)" = "$version"
+    # shellcheck disable=SC2046
+    check "the shared library works by pkg-config" \
+        link_with use_shared $(config --cflags --libs starcontour)
+    [ ! -e "$home/lib/libstarcontour_metis.a" ] ||
+        check "pkg-config knows starcontour_metis" config --exists starcontour_metis
+else
+    skip "pkg-config: not installed"
+fi
+check "the static library works" link_with use_static -I"$home/include" "$home/lib/libstarcontour.a" -lm
+
+check "make uninstall" remake uninstall DESTDIR="$root" PREFIX=/opt/sc
+check "nothing is left" test -z "$(find "$root" ! -type d)"
+
+# ------------------------------------------------------------------------------------------------
+# CMake
+
+if ! command -v cmake >/dev/null 2>&1; then
+    skip "CMake: not installed"
+elif [ "$SC_CONFIG" != release ]; then
+    skip "CMake: once is enough, with config=release"
+else
+    mkdir "$scratch/user"
+    cat >"$scratch/user/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.12)
+project(user LANGUAGES C)
+find_package(starcontour REQUIRED)
+add_executable(user ../use.c)
+target_link_libraries(user PRIVATE starcontour::starcontour)
+END
+    for shared in OFF ON; do
+        at=$scratch/cmake_$shared
+        check "CMake configures, shared $shared" cmake -S . -B "$at" -DCMAKE_BUILD_TYPE=Debug \
+            -DBUILD_SHARED_LIBS=$shared -DCMAKE_INSTALL_PREFIX="$at/installed" \
+            -DCMAKE_C_COMPILER="$CC"
+        check "CMake builds" cmake --build "$at"
+        check "CMake installs" cmake --build "$at" --target install
+        check "find_package finds it" cmake -S "$scratch/user" -B "$at/user" \
+            -DCMAKE_PREFIX_PATH="$at/installed" -DCMAKE_C_COMPILER="$CC"
+        check "a user of it builds" cmake --build "$at/user"
+        check "and runs" "$at/user/user"
+        check "CMake's package has the header's version" \
+            grep -qF "PACKAGE_VERSION \"$version\"" "$at/starcontour-config-version.cmake"
+    done
+fi
+
+finish

@@ -1,0 +1,635 @@
+/*
+ * The heart of the promise: on every mesh, pose, type, stride, welding, partition and method, sc_query
+ * reports the pairs that the oracle reports, sorted, each once, in all four kinds.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness.h"
+#include "inputs.h"
+#include "oracle.h"
+#include "soups.h"
+#include "starcontour.h"
+
+/* Ways to search that must all give the same answer. */
+typedef struct way {
+    const char *name;
+    uint32_t method, contour, rest_cache;
+} way;
+
+static const way ways[] = {
+    {"default", SC_METHOD_DEFAULT, SC_CONTOUR_DEFAULT, SC_REST_CACHE_ON},
+    {"sctt", SC_METHOD_SCTT, SC_CONTOUR_DEFAULT, SC_REST_CACHE_ON},
+    {"sctt, no cache", SC_METHOD_SCTT, SC_CONTOUR_DEFAULT, SC_REST_CACHE_OFF},
+    {"sctt, star", SC_METHOD_SCTT, SC_CONTOUR_STAR, SC_REST_CACHE_ON},
+    {"sctt, star, no cache", SC_METHOD_SCTT, SC_CONTOUR_STAR, SC_REST_CACHE_OFF},
+    {"aabb sctt", SC_METHOD_AABB_SCTT, SC_CONTOUR_DEFAULT, SC_REST_CACHE_ON},
+    {"aabb", SC_METHOD_AABB, SC_CONTOUR_DEFAULT, SC_REST_CACHE_ON},
+};
+enum { WAYS = sizeof(ways) / sizeof(ways[0]) };
+
+/* What is being compared, for messages. */
+typedef struct trial {
+    const char *name;
+    const soup *mesh;
+    const double *pose;
+    uint64_t state; /* of the random numbers before the soup was made */
+    const sc_model *model;
+    sc_workspace *workspace;
+    const sc_pose *input;
+    const char *partition;
+    uint32_t weld;
+    const oracle_answer *answer;
+} trial;
+
+static const sc_pair guard_pair = {0xdeadbeefu, 0xfeedfaceu};
+
+/* Prints a soup small enough to be a reproducer. */
+static void print_reproducer(const trial *t)
+{
+    if (t->mesh->triangle_count > 40) return;
+    for (uint32_t v = 0; v < t->mesh->vertex_count; ++v) {
+        const double *r = t->mesh->positions + 3 * (size_t)v, *p = t->pose + 3 * (size_t)v;
+        printf("    vertex %" PRIu32 ": rest %.17g %.17g %.17g, pose %.17g %.17g %.17g\n", v, r[0],
+               r[1], r[2], p[0], p[1], p[2]);
+    }
+    for (uint32_t i = 0; i < t->mesh->triangle_count; ++i) {
+        const uint32_t *v = t->mesh->triangles + 3 * (size_t)i;
+        printf("    triangle %" PRIu32 ": %" PRIu32 " %" PRIu32 " %" PRIu32 "\n", i, v[0], v[1],
+               v[2]);
+    }
+}
+
+static int is_same(const sc_pair *x, const sc_pair *y)
+{
+    return x->a == y->a && x->b == y->b;
+}
+
+/* One query into an array of capacity pairs, which must come out as the head of the expected list. */
+static int check_pairs(const trial *t, const way *w, uint32_t kind, uint32_t contact,
+                       uint64_t capacity)
+{
+    const oracle_list *expected = &t->answer->lists[kind][contact];
+    uint64_t written = capacity < expected->count ? capacity : expected->count, i = 0, k = 0;
+    sc_pair *pairs = (sc_pair *)test_allocate((capacity + 1) * sizeof(sc_pair));
+    sc_query_options options;
+    sc_result result;
+    sc_status status, wanted = capacity < expected->count ? SC_ERROR_SHORT_BUFFER : SC_OK;
+    int ok;
+
+    for (uint64_t j = 0; j <= capacity; ++j) pairs[j] = guard_pair;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.pairs = kind;
+    options.contact = contact;
+    options.method = w->method;
+    options.contour = w->contour;
+    options.rest_cache = w->rest_cache;
+    memset(&result, 0, sizeof(result));
+    result.struct_size = sizeof(result);
+    result.capacity = capacity;
+    result.pairs = pairs;
+    result.collides = 7;
+    result.count = 77;
+    status = sc_query(t->model, t->workspace, t->input, &options, &result);
+
+    while (i < written && is_same(&pairs[i], &expected->pairs[i])) ++i;
+    for (k = written; k <= capacity && is_same(&pairs[k], &guard_pair);) ++k;
+    ok = CHECK_MSG(status == wanted && result.count == expected->count &&
+                       result.collides == (expected->count != 0) && i == written && k > capacity,
+                   "%s, partition %s, weld %" PRIu32 ", method %s, pairs %" PRIu32
+                   ", contact %" PRIu32 ", capacity %" PRIu64 ": status %d, collides %" PRIu32
+                   ", count %" PRIu64 " instead of %" PRIu64 ", %" PRIu64
+                   " right at the head, %" PRIu64 " untouched behind; soup's random state %" PRIu64,
+                   t->name, t->partition, t->weld, w->name, kind, contact, capacity, (int)status,
+                   result.collides, result.count, expected->count, i, k - written, t->state);
+    if (!ok && test_failures() <= 3) {
+        if (i < written && status == wanted)
+            printf("    pair %" PRIu64 " is (%" PRIu32 ", %" PRIu32 ") instead of (%" PRIu32
+                   ", %" PRIu32 ")\n",
+                   i, pairs[i].a, pairs[i].b, expected->pairs[i].a, expected->pairs[i].b);
+        print_reproducer(t);
+    }
+    free(pairs);
+    return ok;
+}
+
+/* Count and any. */
+static void check_number(const trial *t, const way *w, uint32_t kind, uint32_t contact,
+                         uint32_t output)
+{
+    uint64_t expected = t->answer->lists[kind][contact].count;
+    sc_query_options options;
+    sc_result result;
+    sc_status status;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.output = output;
+    options.pairs = kind;
+    options.contact = contact;
+    options.method = w->method;
+    options.contour = w->contour;
+    options.rest_cache = w->rest_cache;
+    memset(&result, 0, sizeof(result));
+    result.struct_size = sizeof(result);
+    status = sc_query(t->model, t->workspace, t->input, &options, &result);
+    if (output == SC_OUTPUT_ANY && expected > 1) expected = 1;
+    if (!CHECK_MSG(status == SC_OK && result.count == expected &&
+                       result.collides == (expected != 0),
+                   "%s, partition %s, weld %" PRIu32 ", method %s, output %" PRIu32
+                   ", pairs %" PRIu32 ", contact %" PRIu32 ": status %d, collides %" PRIu32
+                   ", count %" PRIu64 " instead of %" PRIu64 "; soup's random state %" PRIu64,
+                   t->name, t->partition, t->weld, w->name, output, kind, contact, (int)status,
+                   result.collides, result.count, expected, t->state) &&
+        test_failures() <= 3)
+        print_reproducer(t);
+}
+
+/* Whether contour none reports only true pairs, sorted: it may miss some but adds none. */
+static void check_none(const trial *t, uint32_t kind, uint32_t contact)
+{
+    const oracle_list *expected = &t->answer->lists[kind][contact];
+    sc_pair *pairs = (sc_pair *)test_allocate((expected->count + 1) * sizeof(sc_pair));
+    uint64_t i = 0, k = 0;
+    sc_query_options options;
+    sc_result result;
+    sc_status status;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.pairs = kind;
+    options.contact = contact;
+    options.method = SC_METHOD_SCTT;
+    options.contour = SC_CONTOUR_NONE;
+    memset(&result, 0, sizeof(result));
+    result.struct_size = sizeof(result);
+    result.capacity = expected->count;
+    result.pairs = pairs;
+    status = sc_query(t->model, t->workspace, t->input, &options, &result);
+    if (CHECK_MSG(status == SC_OK && result.count <= expected->count,
+                  "%s: status %d, count %" PRIu64, t->name, (int)status, result.count)) {
+        for (; i < result.count; ++i) {
+            while (k < expected->count && !is_same(&pairs[i], &expected->pairs[k])) ++k;
+            if (k++ >= expected->count) break;
+        }
+        CHECK_MSG(i == result.count, "%s: contour none adds a pair", t->name);
+    }
+    free(pairs);
+}
+
+/* Everything that can be asked of a model in a pose. */
+static void check_pose(const trial *t)
+{
+    for (uint32_t kind = 0; kind < 2; ++kind) {
+        for (uint32_t contact = 0; contact < 2; ++contact) {
+            uint64_t count = t->answer->lists[kind][contact].count;
+            uint32_t chosen = test_random_below(WAYS);
+            for (uint32_t i = 0; i < WAYS; ++i) {
+                check_pairs(t, &ways[i], kind, contact, count + i % 2);
+                if (i != chosen) continue;
+                check_number(t, &ways[i], kind, contact, SC_OUTPUT_COUNT);
+                check_number(t, &ways[i], kind, contact, SC_OUTPUT_ANY);
+                if (count > 0)
+                    check_pairs(t, &ways[i], kind, contact,
+                                test_random_below(count > 1000000 ? 1000000 : (uint32_t)count));
+            }
+            check_none(t, kind, contact);
+        }
+    }
+}
+
+/*
+ * A mesh in its rest pose and in another, both in random types, strides and places of memory, built
+ * with a welding and a partition and asked everything.
+ */
+static void check_mesh(const char *name, uint64_t state, const soup *mesh, const double *pose,
+                       uint32_t weld, uint32_t partition)
+{
+    static const uint32_t gaps[] = {0, 1, 4, 7, 8, 20};
+    uint32_t rest_type = test_random_below(2), pose_type = test_random_below(2);
+    uint32_t index_type = mesh->vertex_count <= 65536 ? test_random_below(2) : SC_UINT32;
+    soup rest = soup_copy(mesh);
+    soup posed = soup_copy(mesh);
+    input_array positions, indices;
+    input_choices choices;
+    sc_model *model = NULL;
+    sc_workspace *workspace = NULL;
+    sc_mesh input;
+    uint32_t *map;
+    sc_status status;
+
+    memcpy(posed.positions, pose, 3 * (size_t)mesh->vertex_count * sizeof(double));
+    if (rest_type == SC_FLOAT) soup_round_to_float(rest.positions, rest.vertex_count);
+    if (pose_type == SC_FLOAT) soup_round_to_float(posed.positions, posed.vertex_count);
+    choices = input_choose(&rest, weld, partition);
+    map = input_weld_of(&choices, &rest);
+    positions =
+        input_positions(rest.positions, rest.vertex_count, rest_type, gaps[test_random_below(6)]);
+    indices =
+        input_indices(rest.triangles, rest.triangle_count, index_type, gaps[test_random_below(6)]);
+    input = input_mesh(&rest, &positions, &indices);
+    status =
+        sc_build(&input,
+                 weld == SC_WELD_REST && partition == SC_PARTITION_FAST && test_random_below(2) != 0
+                     ? NULL
+                     : &choices.options,
+                 &model);
+    input_free(&positions); /* the model needs none of its inputs any more */
+    input_free(&indices);
+    if (CHECK_MSG(status == SC_OK && model != NULL,
+                  "%s: sc_build with weld %" PRIu32 ", partition %s: %s; soup's random state "
+                  "%" PRIu64,
+                  name, weld, choices.partition_name, sc_status_string(status), state)) {
+        status = sc_workspace_create(model, NULL, &workspace);
+        CHECK(status == SC_OK && workspace != NULL);
+    }
+    for (int round = 0; round < 2 && workspace != NULL; ++round) {
+        const soup *in = round == 0 ? &posed : &rest;
+        oracle_answer answer;
+        sc_pose pose_input;
+        trial t;
+        positions = input_positions(in->positions, in->vertex_count,
+                                    round == 0 ? pose_type : rest_type, gaps[test_random_below(6)]);
+        pose_input = input_pose(in->vertex_count, &positions);
+        oracle_solve(in->positions, in->vertex_count, in->triangles, in->triangle_count, map,
+                     &answer);
+        t.name = name;
+        t.mesh = &rest;
+        t.pose = in->positions;
+        t.state = state;
+        t.model = model;
+        t.workspace = workspace;
+        t.input = &pose_input;
+        t.partition = choices.partition_name;
+        t.weld = weld;
+        t.answer = &answer;
+        check_pose(&t);
+        oracle_free(&answer);
+        input_free(&positions);
+    }
+    sc_workspace_free(workspace);
+    sc_model_free(model);
+    input_free_choices(&choices);
+    free(map);
+    soup_free(&rest);
+    soup_free(&posed);
+}
+
+static void check_random_build(const char *name, uint64_t state, const soup *mesh,
+                               const double *pose)
+{
+    check_mesh(name, state, mesh, pose, test_random_below(3), test_random_below(4));
+}
+
+/* A soup whose pose is another soup's points: far from rest. */
+static double *other_positions(const soup *s, uint32_t range)
+{
+    double *pose = (double *)test_allocate(3 * (size_t)s->vertex_count * sizeof(double));
+    for (size_t i = 0; i < 3 * (size_t)s->vertex_count; ++i)
+        pose[i] = range == 0 ? test_random_unit() : test_random_below(range + 1);
+    return pose;
+}
+
+static void small_soups_on_a_grid(void)
+{
+    uint32_t rounds = test_iterations(2500);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        static const uint32_t ranges[] = {1, 2, 2, 4, 4, 9};
+        uint64_t state = test_random_state();
+        uint32_t range = ranges[test_random_below(6)];
+        soup s = soup_on_grid(range);
+        double *pose = other_positions(&s, range);
+        check_random_build("grid soup", state, &s, pose);
+        free(pose);
+        soup_free(&s);
+    }
+}
+
+static void scattered_soups(void)
+{
+    uint32_t rounds = test_iterations(300);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        soup s = soup_scattered();
+        double *pose = other_positions(&s, i % 2 == 0 ? 0 : 3);
+        check_random_build("scattered soup", state, &s, pose);
+        free(pose);
+        soup_free(&s);
+    }
+}
+
+/*
+ * The ends of the range of float and double: products overflow and underflow, sums lose all but one
+ * bit, but the answer is that of exact arithmetic.
+ */
+static void extreme_coordinates(void)
+{
+    static const double factors[] = {
+        1e-30, 1e30, 1e-150, 1e150, 1e-300, 1e300, 4.94065645841e-324, 1e-310, 1.4012984643e-45,
+        1e-40, 3e37, 4e306};
+    uint32_t rounds = test_iterations(300);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        soup s = i % 2 == 0 ? soup_on_grid(4) : soup_scattered();
+        double *pose, factor = factors[test_random_below(12)];
+        uint32_t kind = test_random_below(5);
+        /* Positions that float cannot hold would become infinite. */
+        double limit = factor > 1e38 ? DBL_MAX / 40 : (double)FLT_MAX / 40;
+        if (kind == 1 && factor < 1e30) soup_move(s.positions, s.vertex_count, 0x1p20);
+        if (kind == 2) soup_nudge(s.positions, s.vertex_count);
+        soup_scale(s.positions, s.vertex_count, factor);
+        if (kind == 3) soup_move(s.positions, s.vertex_count, 1 / 3.0 * factor);
+        pose = other_positions(&s, i % 3 == 0 ? 0 : 2);
+        soup_scale(pose, s.vertex_count, factor);
+        if (kind == 4) { /* exponents from one end to the other in one mesh */
+            for (size_t c = 0; c < 3 * (size_t)s.vertex_count; ++c) {
+                double x = ldexp(pose[c] / factor, (int)test_random_below(200) - 100);
+                pose[c] = x > limit ? limit : x;
+            }
+        }
+        if (kind == 2) soup_nudge(pose, s.vertex_count);
+        if (factor > 1e38) { /* too large for float */
+            input_choices none = input_choose(&s, SC_WELD_REST, SC_PARTITION_FAST);
+            uint32_t *map = input_weld_of(&none, &s);
+            sc_mesh mesh = input_plain_mesh(&s);
+            sc_pose input = input_plain_pose(pose, s.vertex_count);
+            sc_model *model = NULL;
+            sc_workspace *workspace = NULL;
+            if (CHECK(sc_build(&mesh, NULL, &model) == SC_OK) &&
+                CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK)) {
+                oracle_answer answer;
+                trial t = {"huge soup", &s, pose, state, model, workspace, &input, "fast", 0, NULL};
+                oracle_solve(pose, s.vertex_count, s.triangles, s.triangle_count, map, &answer);
+                t.answer = &answer;
+                check_pose(&t);
+                oracle_free(&answer);
+            }
+            sc_workspace_free(workspace);
+            sc_model_free(model);
+            free(map);
+            input_free_choices(&none);
+        } else {
+            check_random_build("extreme soup", state, &s, pose);
+        }
+        free(pose);
+        soup_free(&s);
+    }
+}
+
+/* Points in a plane that is oblique and not quite one: every orientation is a matter of rounding. */
+static void nearly_coplanar(void)
+{
+    uint32_t rounds = test_iterations(400);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        soup s = soup_on_grid(3);
+        double *pose = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
+        double u = test_random_unit(), v = test_random_unit();
+        for (uint32_t k = 0; k < s.vertex_count; ++k) {
+            double *p = pose + 3 * (size_t)k;
+            p[0] = s.positions[3 * k] / 3 + 0.1;
+            p[1] = s.positions[3 * k + 1] / 7 + 0.1;
+            p[2] = u * p[0] + v * p[1];
+        }
+        if (i % 2 == 0) soup_nudge(pose, s.vertex_count);
+        check_random_build("nearly coplanar soup", state, &s, pose);
+        free(pose);
+        soup_free(&s);
+    }
+}
+
+static void deformed_meshes(void)
+{
+    uint32_t rounds = test_iterations(200);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        const char *name = NULL;
+        soup s = soup_any_mesh(i % 4 == 0 ? 300 : 120, &name);
+        double *pose = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
+        memcpy(pose, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
+        soup_any_pose(pose, s.vertex_count);
+        if (test_random_below(6) == 0)
+            soup_any_pose(s.positions, s.vertex_count); /* the rest too */
+        check_random_build(name, state, &s, pose);
+        free(pose);
+        soup_free(&s);
+    }
+}
+
+/*
+ * Sheets in which all normals agree and only the contour tells that they lie on themselves: spirals,
+ * and petals around a shared vertex; flat, or with just enough height to cross.
+ */
+static void what_only_contours_tell(void)
+{
+    uint32_t rounds = test_iterations(300);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t across = 1 + test_random_below(5);
+        soup s = i % 3 == 0
+                     ? soup_spiral(10 + test_random_below(50), across, test_random_range(0.7, 2.2))
+                 : i % 3 == 1 ? soup_flower(1 + test_random_below(4), across)
+                              : soup_moebius(12 + test_random_below(30), across);
+        double *pose = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
+        uint32_t heights = test_random_below(3);
+        if (i % 3 == 2) { /* cut open: no longer one-sided, but overlapping when crushed */
+            s.triangle_count -= 2 * across;
+            for (uint32_t v = 0; v < s.vertex_count; ++v) s.positions[3 * v + 2] = 0;
+        }
+        memcpy(pose, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
+        for (uint32_t v = 0; v < s.vertex_count && heights != 0; ++v)
+            pose[3 * v + 2] +=
+                heights == 1 ? test_random_range(0, 0.01) : 0.05 * sin(9 * pose[3 * v]);
+        if (test_random_below(3) == 0) soup_smooth(pose, s.vertex_count, 0.1);
+        if (test_random_below(3) == 0) /* turned: other projections */
+            for (uint32_t v = 0; v < s.vertex_count; ++v) {
+                double x = pose[3 * v], z = pose[3 * v + 2];
+                pose[3 * v] = 0.8 * x - 0.6 * z;
+                pose[3 * v + 2] = 0.6 * x + 0.8 * z;
+            }
+        check_random_build("contour", state, &s, pose);
+        free(pose);
+        soup_free(&s);
+    }
+}
+
+/* Larger meshes with many pairs, each with every partition; all partitions report the same. */
+static void every_partition(void)
+{
+    for (uint32_t shape = 0; shape < 4; ++shape) {
+        soup s = shape == 0   ? soup_cloth(16, 40)
+                 : shape == 1 ? soup_sphere(24, 20)
+                 : shape == 2 ? soup_tube(16, 40)
+                              : soup_moebius(60, 8);
+        double *pose = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
+        uint64_t state = test_random_state();
+        memcpy(pose, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
+        if (shape == 0) soup_twist(pose, s.vertex_count, 2.2);
+        if (shape == 1) soup_smooth(pose, s.vertex_count, 0.6);
+        if (shape >= 2) soup_fold(pose, s.vertex_count);
+        soup_smooth(pose, s.vertex_count, 0.03);
+        for (uint32_t partition = 0; partition < 4; ++partition)
+            check_mesh("large mesh", state, &s, pose, SC_WELD_REST, partition);
+        free(pose);
+        soup_free(&s);
+    }
+}
+
+/* One model and one workspace through a whole motion. */
+static void one_workspace_many_poses(void)
+{
+    soup s = soup_cloth(8, 24);
+    uint32_t frames = test_iterations(24);
+    sc_mesh mesh = input_plain_mesh(&s);
+    sc_model *model = NULL;
+    sc_workspace *workspace = NULL;
+    if (!CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) return;
+    if (CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK)) {
+        double *pose = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
+        sc_pose input = input_plain_pose(pose, s.vertex_count);
+        for (uint32_t frame = 0; frame < frames; ++frame) {
+            oracle_answer answer;
+            trial t = {"motion", &s, pose, 0, model, workspace, &input, "fast", 0, NULL};
+            memcpy(pose, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
+            soup_twist(pose, s.vertex_count, 3.0 * (frames - frame) / frames);
+            oracle_solve(pose, s.vertex_count, s.triangles, s.triangle_count, NULL, &answer);
+            t.answer = &answer;
+            check_pose(&t);
+            oracle_free(&answer);
+        }
+        free(pose);
+    }
+    sc_workspace_free(workspace);
+    sc_model_free(model);
+    soup_free(&s);
+}
+
+/* Every capacity from none to one more than needed. */
+static void short_buffers(void)
+{
+    uint32_t rounds = test_iterations(40);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        const char *name = "grid soup";
+        soup s = i % 4 == 0 ? soup_any_mesh(60, &name) : soup_on_grid(2);
+        sc_mesh mesh = input_plain_mesh(&s);
+        sc_pose pose;
+        sc_model *model = NULL;
+        sc_workspace *workspace = NULL;
+        if (CHECK(sc_build(&mesh, NULL, &model) == SC_OK) &&
+            CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK)) {
+            oracle_answer answer;
+            trial t = {name, &s, s.positions, state, model, workspace, &pose, "fast", 0, NULL};
+            uint32_t *map = (uint32_t *)test_allocate(s.vertex_count * sizeof(uint32_t));
+            oracle_weld(s.positions, s.vertex_count, s.triangles, s.triangle_count, map);
+            if (i % 4 == 0) soup_fold(s.positions, s.vertex_count);
+            pose = input_plain_pose(s.positions, s.vertex_count);
+            oracle_solve(s.positions, s.vertex_count, s.triangles, s.triangle_count, map, &answer);
+            t.answer = &answer;
+            for (uint32_t kind = 0; kind < 4; ++kind) {
+                uint64_t count = answer.lists[kind / 2][kind % 2].count;
+                for (uint64_t capacity = 0; capacity <= count + 1; ++capacity)
+                    check_pairs(&t, &ways[capacity % WAYS], kind / 2, kind % 2, capacity);
+            }
+            free(map);
+            oracle_free(&answer);
+        }
+        sc_workspace_free(workspace);
+        sc_model_free(model);
+        soup_free(&s);
+    }
+}
+
+/* A vertex that no triangle uses may be anything. */
+static void unused_vertices(void)
+{
+    double rest[8 * 3] = {0, 0, 0, 4, 0, 0, 0, 4, 0, 0, 0, 0, 1, 1, -1, 1, 1, 1, 9, 9, 1, 0, 0, 0};
+    uint32_t triangles[6] = {0, 1, 2, 4, 5, 6};
+    double nothings[3];
+    nothings[0] = (double)NAN;
+    nothings[1] = HUGE_VAL;
+    nothings[2] = -HUGE_VAL;
+    for (int i = 0; i < 27; ++i) {
+        soup s;
+        sc_mesh mesh;
+        sc_pose pose;
+        sc_model *model = NULL;
+        sc_workspace *workspace = NULL;
+        oracle_answer answer;
+        s.vertex_count = 8;
+        s.triangle_count = 2;
+        s.positions = rest;
+        s.triangles = triangles;
+        for (int k = 0; k < 2; ++k) {
+            rest[3 * (3 + 4 * k)] = nothings[i % 3];
+            rest[3 * (3 + 4 * k) + 1] = nothings[i / 3 % 3];
+            rest[3 * (3 + 4 * k) + 2] = nothings[i / 9];
+        }
+        mesh = input_plain_mesh(&s);
+        pose = input_plain_pose(rest, 8);
+        oracle_solve(rest, 8, triangles, 2, NULL, &answer);
+        CHECK(answer.lists[0][0].count == 1);
+        if (CHECK(sc_build(&mesh, NULL, &model) == SC_OK) &&
+            CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK)) {
+            trial t = {"unused vertices", &s, rest, 0, model, workspace, &pose, "fast", 0, NULL};
+            t.answer = &answer;
+            check_pose(&t);
+        }
+        sc_workspace_free(workspace);
+        sc_model_free(model);
+        oracle_free(&answer);
+    }
+}
+
+/* The mesh folder, against the oracle and against the counts that its maker knows. */
+static void meshes_of_the_folder(void)
+{
+    const char *folder = getenv("SC_MESHES") != NULL ? getenv("SC_MESHES") : "meshes";
+    char path[512], line[512], name[256];
+    uint32_t found = 0;
+    FILE *file;
+    snprintf(path, sizeof(path), "%s/expected.csv", folder);
+    file = fopen(path, "r");
+    if (!CHECK_MSG(file != NULL, "cannot read %s", path)) return;
+    while (fgets(line, sizeof(line), file) != NULL) {
+        unsigned vertices, triangles, counts[4];
+        soup s;
+        uint32_t *map;
+        oracle_answer answer;
+        size_t length;
+        if (sscanf(line, "%255[^,],%u,%u,%u,%u,%u,%u", name, &vertices, &triangles, &counts[0],
+                   &counts[1], &counts[2], &counts[3]) != 7)
+            continue; /* the head line, a comment */
+        length = strlen(name);
+        snprintf(path, sizeof(path), "%s/%s%s", folder, name,
+                 length > 4 && strcmp(name + length - 4, ".obj") == 0 ? "" : ".obj");
+        if (!CHECK_MSG(input_read_obj(path, &s), "cannot read %s", path)) continue;
+        ++found;
+        CHECK_MSG(s.vertex_count == vertices && s.triangle_count == triangles,
+                  "%s: %" PRIu32 " vertices, %" PRIu32 " triangles", name, s.vertex_count,
+                  s.triangle_count);
+        map = (uint32_t *)test_allocate(s.vertex_count * sizeof(uint32_t));
+        oracle_weld(s.positions, s.vertex_count, s.triangles, s.triangle_count, map);
+        oracle_solve(s.positions, s.vertex_count, s.triangles, s.triangle_count, map, &answer);
+        for (int k = 0; k < 4; ++k) /* touching triangle, touching edge, proper triangle, edge */
+            CHECK_MSG(answer.lists[k % 2][k / 2].count == counts[k],
+                      "%s: the oracle finds %" PRIu64 ", expected.csv has %u in column %d", name,
+                      answer.lists[k % 2][k / 2].count, counts[k], k + 4);
+        check_mesh(name, 0, &s, s.positions, SC_WELD_REST, test_random_below(4));
+        oracle_free(&answer);
+        free(map);
+        soup_free(&s);
+    }
+    fclose(file);
+    CHECK_MSG(found >= 1, "no mesh in %s", folder);
+}
+
+SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
+             SC_TEST(nearly_coplanar), SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell),
+             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses), SC_TEST(short_buffers),
+             SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))

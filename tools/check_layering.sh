@@ -1,0 +1,164 @@
+#!/bin/sh
+# Checks what no compiler checks: who includes whom, names, and lib/sources.list.
+#
+#     tools/check_layering.sh [DIRECTORY]      default: the directory above this script
+#
+#   - Folders include only what `may` below allows: lib/ in the order base, build, pose, query, and
+#     programs only the public headers. No "../", no circles, nothing that does not exist.
+#   - The oracle of the tests reaches no header of lib/, however indirectly.
+#   - File names are unique (but README.md), and the top level holds only what belongs there.
+#   - lib/sources.list names each C file in lib/ once, in the order of the layers.
+#
+# Prints offenders, one a line; exit status 1 if there is one. Needs sh, find, sort and awk.
+#
+# SPDX-License-Identifier: MIT
+set -u
+export LC_ALL=C
+
+cd "${1:-$(dirname "$0")/..}" || exit 2
+if [ ! -f lib/sources.list ]; then
+    echo "check_layering: no lib/sources.list in $PWD" >&2
+    exit 2
+fi
+
+files() {
+    find . -name .git -prune -o -path ./build -prune -o -type f -print | sed 's|^\./||' | sort
+}
+
+offenders=$(
+    # Top level.
+    for entry in *; do
+        case $entry in
+        Makefile | CMakeLists.txt | README.md | CHANGELOG.md | LICENSE) ;;
+        include | lib | tools | tests | bench | meshes | build) ;;
+        *) echo "$entry: does not belong at the top level" ;;
+        esac
+    done
+
+    # Names.
+    files | awk -F/ '
+        $NF == "README.md" { next }
+        $NF in first { print $0 ": same name as " first[$NF]; next }
+        { first[$NF] = $0 }' || echo "check_layering: awk failed"
+
+    # The source list.
+    {
+        sed -e 's/#.*//' -e 's/[[:space:]]*$//' -e '/^$/d' -e 's/^/listed /' lib/sources.list
+        files | sed -n -e '/^lib\/build\/partition_metis\.c$/d' -e 's/^\(lib\/.*\.c\)$/found \1/p'
+    } | awk '
+        function layer(path) {
+            if (path ~ /^lib\/base\//) return 1
+            if (path ~ /^lib\/build\//) return 2
+            if (path ~ /^lib\/pose\//) return 3
+            if (path ~ /^lib\/query\//) return 4
+            return 5
+        }
+        $1 == "listed" {
+            if ($2 in listed) print "lib/sources.list: names " $2 " twice"
+            if (layer($2) < last) print "lib/sources.list: " $2 " stands after a higher layer"
+            listed[$2] = 1
+            last = layer($2)
+        }
+        $1 == "found" {
+            found[$2] = 1
+            if (!($2 in listed)) print "lib/sources.list: lacks " $2
+        }
+        END { for (path in listed) if (!(path in found)) print "lib/sources.list: no file " path }
+    ' || echo "check_layering: awk failed"
+
+    # Includes.
+    files | grep -E '^(include|lib|tools|tests|bench|meshes)/.*\.(c|h|cpp|hpp|inc)$' | awk '
+        function folder(path) { sub(/\/[^\/]*$/, "", path); return path }
+
+        # The file of the repository that path means by name, or "".
+        function resolve(path, name,    i, candidate) {
+            for (i = 0; i <= search_count; ++i) {
+                candidate = (i == 0 ? folder(path) : search[i]) "/" name
+                if (candidate in known) return candidate
+            }
+            return ""
+        }
+
+        function visit(path,    i) {
+            state[path] = 1
+            stack[++depth] = path
+            for (i = 1; i <= edges[path]; ++i) {
+                if (!(edge[path, i] in state)) visit(edge[path, i])
+                else if (state[edge[path, i]] == 1) circle(edge[path, i])
+            }
+            --depth
+            state[path] = 2
+        }
+
+        function circle(path,    i, text) {
+            for (i = depth; stack[i] != path; --i) text = " -> " stack[i] text
+            print path ": includes itself:" text " -> " path
+        }
+
+        function oracle(root, path,    i, to) {
+            reached[root, path] = 1
+            for (i = 1; i <= edges[path]; ++i) {
+                to = edge[path, i]
+                if (to ~ /^lib\//) print root ": the oracle must not reach " to " (by " path ")"
+                if (!((root, to) in reached)) oracle(root, to)
+            }
+        }
+
+        BEGIN {
+            search_count = split("include lib tools bench meshes tests", search, " ")
+            may["include"] = "include"
+            may["lib/base"] = "include lib/base"
+            may["lib/build"] = may["lib/base"] " lib/build"
+            may["lib/pose"] = may["lib/build"] " lib/pose"
+            may["lib/query"] = may["lib/pose"] " lib/query"
+            may["lib"] = may["lib/query"] " lib"
+            may["tools"] = "include tools"
+            may["bench"] = "include tools bench"
+            may["meshes"] = "include tools meshes"
+            may["tests"] = may["lib"] " tests"
+        }
+
+        { known[$0] = 1; order[++count] = $0 }
+
+        END {
+            for (f = 1; f <= count; ++f) {
+                path = order[f]
+                home = folder(path)
+                if (!(home in may)) {
+                    print path ": no files here, as no rule says what they may include"
+                    continue
+                }
+                number = 0
+                while ((getline line < path) > 0) {
+                    ++number
+                    if (line !~ /^[ \t]*#[ \t]*include[ \t]*["<]/) continue
+                    quoted = line ~ /^[ \t]*#[ \t]*include[ \t]*"/
+                    split(line, part, /["<>]/)
+                    name = part[2]
+                    where = path ":" number ": "
+                    if (name ~ /(^|\/)\.\.?\//) {
+                        print where "names " name " by a relative path"
+                        continue
+                    }
+                    to = resolve(path, name)
+                    if (to == "") {
+                        if (quoted) print where "there is no " name " in the repository"
+                        continue
+                    }
+                    if (to !~ /\.(h|hpp|inc)$/) print where "includes " to ", not a header"
+                    if (index(" " may[home] " ", " " folder(to) " ") == 0)
+                        print where home " must not include " to
+                    edge[path, ++edges[path]] = to
+                }
+                close(path)
+            }
+            for (f = 1; f <= count; ++f) if (!(order[f] in state)) visit(order[f])
+            for (f = 1; f <= count; ++f)
+                if (order[f] ~ /^tests\/oracle[^\/]*$/) oracle(order[f], order[f])
+        }' || echo "check_layering: awk failed"
+)
+
+if [ -n "$offenders" ]; then
+    printf '%s\n' "$offenders"
+    exit 1
+fi

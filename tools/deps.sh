@@ -1,0 +1,91 @@
+#!/bin/sh
+# Installs what is missing to build and test everything. Says first what that is, asks nothing.
+#
+#     tools/deps.sh      CC, CXX, CPPFLAGS: the compilers and flags that look for headers
+#
+# Debian and Ubuntu: by apt-get, through sudo only if need be. Elsewhere: prints the names of the
+# packages, and fails if something is missing.
+#
+# SPDX-License-Identifier: MIT
+set -u
+
+CC=${CC:-cc}
+CXX=${CXX:-g++}
+
+# What is needed: how it is looked for; its package in Debian, Fedora, Arch Linux and Homebrew (a dash:
+# it comes with the system's compilers).
+needs="\
+compiler CC gcc gcc gcc -
+compiler CXX g++ gcc-c++ gcc -
+program pkg-config pkg-config pkgconf-pkg-config pkgconf pkgconf
+header metis.h libmetis-dev metis-devel metis metis
+header assimp/cimport.h libassimp-dev assimp-devel assimp assimp
+header cjson/cJSON.h libcjson-dev cjson-devel cjson cjson
+header ccd/ccd.h libccd-dev libccd-devel libccd libccd
+header gmp.h libgmp-dev gmp-devel gmp gmp"
+
+there() {
+    case $1 in
+    compiler)
+        # Without the options it may hold.
+        eval "set -- \$$2"
+        command -v "$1" >/dev/null 2>&1
+        ;;
+    program) command -v "$2" >/dev/null 2>&1 ;;
+    header) echo "#include <$2>" | $CC ${CPPFLAGS:-} -E -x c - >/dev/null 2>&1 ;;
+    esac
+}
+
+# The packages, in the system's column, of all that is missing.
+missing() {
+    echo "$needs" | while read -r kind what debian fedora arch brew; do
+        there "$kind" "$what" </dev/null && continue
+        eval "package=\$$1"
+        [ "$package" = - ] || printf ' %s' "$package"
+    done
+}
+
+found=$(echo "$needs" | while read -r kind what rest; do
+    there "$kind" "$what" </dev/null && continue
+    [ "$kind" = compiler ] && eval "what=\$$what"
+    printf ' %s' "$what"
+done)
+if [ -z "$found" ]; then
+    echo "make deps: nothing is missing"
+    exit 0
+fi
+echo "make deps: missing:$found"
+
+if ! command -v apt-get >/dev/null 2>&1; then
+    echo "make deps: this is neither Debian nor Ubuntu; please install with your system's means:"
+    echo "  Fedora:     dnf install$(missing fedora)"
+    echo "  Arch Linux: pacman -S$(missing arch)"
+    echo "  Homebrew:   brew install$(missing brew)"
+    exit 1
+fi
+
+packages=$(missing debian)
+run='env DEBIAN_FRONTEND=noninteractive'
+if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null 2>&1; then
+        echo "make deps: not root, and there is no sudo; as root: apt-get install$packages" >&2
+        exit 1
+    fi
+    run="sudo $run"
+fi
+echo "make deps: installs$packages"
+echo "make deps: by $run apt-get install --no-install-recommends"
+
+# Old lists are better than none: whether they suffice, install will say.
+$run apt-get update -q || echo "make deps: apt-get update failed; using old lists" >&2
+# shellcheck disable=SC2086
+$run apt-get install -q -y --no-install-recommends $packages </dev/null || {
+    echo "make deps: apt-get install failed" >&2
+    exit 1
+}
+
+left=$(missing debian)
+if [ -n "$left" ]; then
+    echo "make deps: installed, yet not found by $CC:$left" >&2
+    exit 1
+fi

@@ -1,0 +1,637 @@
+/*
+ * sc-query: finds the self-collisions of mesh files.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Each file is a mesh of its own, or, with --rest, a pose of one mesh that is built once. A file that
+ * cannot be done is reported and the others are still done. See usage below, and sc_query in
+ * starcontour.h for what a pair is.
+ */
+#include "mesh_file.h"
+#include "ply_write.h"
+#include "tool.h"
+
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] =
+    "Usage: sc-query [options] MESH...\n"
+    "Finds every self-collision of triangle meshes, exactly.\n"
+    "\n"
+    "Reads OBJ, OFF and all other formats that assimp reads. Vertices at equal positions are "
+    "joined,\n"
+    "polygons are triangulated, points and lines left out. Coordinates are rounded to the nearest\n"
+    "float on reading (text formats other than OBJ and OFF: as assimp does it), and the answer is\n"
+    "exact for those. Triangles are numbered from 0 in the order of the file's faces (assimp: in "
+    "that\n"
+    "of the scene's meshes).\n"
+    "\n"
+    "What is sought\n"
+    "  --pairs triangle|edge|none  the pairs that --out and --ply show and that decide the exit\n"
+    "                              status: of triangles (default), or of an edge and a triangle "
+    "that\n"
+    "                              share no vertex; none: only count, triangles decide\n"
+    "  --proper                    only edges' interiors that pass through triangles' interiors;\n"
+    "                              without it touching is enough\n"
+    "  --any                       stop at the first pair: whether there is one, not how many\n"
+    "  --weld rest|none            join vertices at equal positions (default), or take them as "
+    "assimp\n"
+    "                              delivers them, which for some formats is one a corner of a "
+    "face\n"
+    "  --rest MESH                 build once from MESH; the files are poses of it, with the same\n"
+    "                              vertices and faces in the same order\n"
+    "Output\n"
+    "  --json                      a JSON object a line for each file, in place of the table\n"
+    "  --out FILE                  write the pairs as comma-separated values. An edge is a number\n"
+    "                              3 t + k: from vertex k to vertex k + 1 (mod 3) of triangle t\n"
+    "  --ply FILE                  write the mesh with colliding triangles in red; one MESH only\n"
+    "  --stats                     time and count of the nine tasks of the query\n"
+    "How it is sought (the answer is the same, but for --contour none)\n"
+    "  --method sctt|aabb-sctt|aabb  self-collision test tree (default), boxes from that tree on, "
+    "or\n"
+    "                              the plain tree of boxes\n"
+    "  --contour star|none         contour test of method sctt; none MISSES PAIRS and is for "
+    "measuring\n"
+    "  --partition fast|metis      where the patches come from\n"
+    "  --no-rest-cache             test again what failed in the rest pose\n"
+    "\n"
+    "  --version, --help\n"
+    "\n"
+    "Exit status: 0 no self-collision, 1 at least one, 2 something could not be done; the reason "
+    "is\n"
+    "on standard error.\n";
+
+static const tool_choice pair_choices[] = {
+    {"triangle", SC_PAIRS_TRIANGLE}, {"edge", SC_PAIRS_EDGE}, {"none", 2}, {NULL, 0}};
+static const tool_choice method_choices[] = {{"sctt", SC_METHOD_SCTT},
+                                             {"aabb-sctt", SC_METHOD_AABB_SCTT},
+                                             {"aabb", SC_METHOD_AABB},
+                                             {NULL, 0}};
+static const tool_choice contour_choices[] = {
+    {"star", SC_CONTOUR_STAR}, {"none", SC_CONTOUR_NONE}, {NULL, 0}};
+
+static const char *const task_names[SC_TASK_COUNT] = {"update_boxes",
+                                                      "update_normals",
+                                                      "orientation_tests",
+                                                      "box_tests_after_orientation",
+                                                      "primitive_tests_after_orientation",
+                                                      "update_contours",
+                                                      "contour_tests",
+                                                      "box_tests_after_contour",
+                                                      "primitive_tests_after_contour"};
+
+typedef struct settings {
+    uint32_t pairs; /* a value of pair_choices */
+    uint32_t method, contour, partition, weld;
+    bool proper, any, json, stats, no_rest_cache;
+    const char *rest_path, *out_path, *ply_path;
+} settings;
+
+/* What there is to know about one file. Index SC_PAIRS_TRIANGLE and SC_PAIRS_EDGE. */
+typedef struct file_answer {
+    const char *path;
+    sc_model_info info;
+    double build_ms;
+    double query_ms[2];
+    uint64_t counts[2];
+    bool known[2]; /* whether counts and query_ms are there */
+    bool collides;
+    sc_stats stats;
+} file_answer;
+
+/* A model with its workspace and the mesh it was built from. */
+typedef struct query_subject {
+    mesh_file mesh;
+    uint32_t *weld_map; /* with --rest, unless nothing is welded */
+    sc_model *model;
+    sc_workspace *workspace;
+    double build_ms;
+} query_subject;
+
+/* Pairs of one query; grows and is kept. */
+typedef struct pair_list {
+    sc_pair *pairs;
+    uint64_t count, capacity;
+} pair_list;
+
+/* The kind of pair that decides. */
+static uint32_t chosen_pairs(const settings *set)
+{
+    return set->pairs == SC_PAIRS_EDGE ? SC_PAIRS_EDGE : SC_PAIRS_TRIANGLE;
+}
+
+static bool wants_list(const settings *set)
+{
+    return set->out_path || set->ply_path;
+}
+
+static void subject_free(query_subject *subject)
+{
+    sc_workspace_free(subject->workspace);
+    sc_model_free(subject->model);
+    mesh_file_free(&subject->mesh);
+    free(subject->weld_map);
+    memset(subject, 0, sizeof *subject);
+}
+
+/* Reads and builds. On failure error says why and *subject is empty. */
+static bool subject_load(query_subject *subject, const char *path, const settings *set,
+                         char error[MESH_FILE_ERROR_SIZE])
+{
+    memset(subject, 0, sizeof *subject);
+    if (!mesh_file_read(&subject->mesh, path, error)) return false;
+    sc_status status =
+        tool_build(&subject->mesh, set->weld, set->partition, &subject->model, &subject->build_ms);
+    if (status == SC_OK) status = sc_workspace_create(subject->model, NULL, &subject->workspace);
+    if (status == SC_OK && set->rest_path && set->weld == SC_WELD_REST) {
+        subject->weld_map = mesh_file_weld_map(&subject->mesh);
+        if (!subject->weld_map) status = SC_ERROR_MEMORY;
+    }
+    if (status == SC_OK) return true;
+    snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
+    subject_free(subject);
+    return false;
+}
+
+/* Welded vertices that a pose takes apart would be read from one of them only: refuse that. */
+static bool check_welds(const query_subject *subject, const char *path, const float *positions,
+                        char error[MESH_FILE_ERROR_SIZE])
+{
+    if (!subject->weld_map) return true;
+    for (size_t c = 0; c < 3 * (size_t)subject->mesh.triangle_count; c++) {
+        const uint32_t vertex = subject->mesh.indices[c], joined = subject->weld_map[vertex];
+        const float *a = positions + 3 * (size_t)vertex, *b = positions + 3 * (size_t)joined;
+        if (vertex == joined || (a[0] == b[0] && a[1] == b[1] && a[2] == b[2])) continue;
+        snprintf(error, MESH_FILE_ERROR_SIZE,
+                 "%s: vertices %lu and %lu are at one place in the rest mesh but not in this pose; "
+                 "is it another mesh? If they are to move apart, use --weld none",
+                 path, (unsigned long)joined, (unsigned long)vertex);
+        return false;
+    }
+    return true;
+}
+
+/* One query of one kind of pair. With list the pairs are kept, else only counted. */
+static sc_status run_query(const query_subject *subject, const float *positions,
+                           const settings *set, uint32_t kind, pair_list *list, file_answer *answer)
+{
+    const sc_pose pose = tool_pose(positions, subject->mesh.vertex_count);
+    sc_query_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.output = set->any ? SC_OUTPUT_ANY : list ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT;
+    options.pairs = kind;
+    options.contact = set->proper ? SC_CONTACT_PROPER : SC_CONTACT_TOUCHING;
+    options.method = set->method;
+    options.contour = set->method == SC_METHOD_SCTT ? set->contour : SC_CONTOUR_DEFAULT;
+    options.rest_cache = set->no_rest_cache ? SC_REST_CACHE_OFF : SC_REST_CACHE_ON;
+
+    sc_result result;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    if (set->stats && kind == chosen_pairs(set)) {
+        memset(&answer->stats, 0, sizeof answer->stats);
+        answer->stats.struct_size = sizeof answer->stats;
+        result.stats = &answer->stats;
+    }
+    for (;;) {
+        if (list) {
+            result.pairs = list->pairs;
+            result.capacity = list->capacity;
+        }
+        const double start = tool_clock();
+        const sc_status status =
+            sc_query(subject->model, subject->workspace, &pose, &options, &result);
+        answer->query_ms[kind] = tool_clock() - start;
+        answer->counts[kind] = result.count;
+        answer->known[kind] = status == SC_OK;
+        if (status == SC_OK && list) list->count = result.count;
+        if (status != SC_ERROR_SHORT_BUFFER || !list) return status;
+        if (result.count > SIZE_MAX / sizeof(sc_pair)) return SC_ERROR_MEMORY;
+        sc_pair *pairs = (sc_pair *)realloc(list->pairs, (size_t)result.count * sizeof *pairs);
+        if (!pairs) return SC_ERROR_MEMORY;
+        list->pairs = pairs;
+        list->capacity = result.count;
+    }
+}
+
+/* All queries of one pose. */
+static bool run_pose(const query_subject *subject, const char *path, const float *positions,
+                     const settings *set, pair_list *list, file_answer *answer,
+                     char error[MESH_FILE_ERROR_SIZE])
+{
+    const uint32_t chosen = chosen_pairs(set);
+    answer->build_ms = subject->build_ms;
+    answer->info.struct_size = sizeof answer->info;
+    sc_status status = sc_model_get_info(subject->model, &answer->info);
+    list->count = 0;
+    for (uint32_t kind = 0; kind < 2 && status == SC_OK; kind++) {
+        if (set->any && kind != chosen) continue;
+        pair_list *const kept = kind == chosen && wants_list(set) ? list : NULL;
+        status = run_query(subject, positions, set, kind, kept, answer);
+    }
+    answer->collides = answer->counts[chosen] > 0;
+    if (status != SC_OK) {
+        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
+    }
+    return status == SC_OK;
+}
+
+static bool write_ply(const query_subject *subject, const float *positions, const settings *set,
+                      const pair_list *list)
+{
+    const uint32_t count = subject->mesh.triangle_count;
+    uint8_t *colors = (uint8_t *)malloc(3 * (size_t)count);
+    if (!colors) {
+        tool_error("%s: out of memory", set->ply_path);
+        return false;
+    }
+    memset(colors, 200, 3 * (size_t)count);
+    for (uint64_t i = 0; i < list->count; i++) {
+        const sc_pair pair = list->pairs[i];
+        const uint32_t first = chosen_pairs(set) == SC_PAIRS_EDGE ? pair.a / 3 : pair.a;
+        const uint8_t red[3] = {220, 30, 30};
+        memcpy(colors + 3 * (size_t)first, red, 3);
+        memcpy(colors + 3 * (size_t)pair.b, red, 3);
+    }
+    errno = 0;
+    const bool written = ply_write(set->ply_path, positions, subject->mesh.vertex_count,
+                                   subject->mesh.indices, count, colors);
+    if (!written) tool_error("%s: cannot be written: %s", set->ply_path, strerror(errno));
+    free(colors);
+    return written;
+}
+
+/* A field of comma-separated values (RFC 4180): quoted where it must be. */
+static void write_field(FILE *out, const char *text)
+{
+    if (!text[strcspn(text, ",\"\r\n")]) {
+        fputs(text, out);
+        return;
+    }
+    fputc('"', out);
+    for (; *text; text++) {
+        if (*text == '"') fputc('"', out);
+        fputc(*text, out);
+    }
+    fputc('"', out);
+}
+
+static void write_pairs(FILE *out, const char *path, const pair_list *list)
+{
+    for (uint64_t i = 0; i < list->count; i++) {
+        write_field(out, path);
+        fprintf(out, ",%lu,%lu\n", (unsigned long)list->pairs[i].a,
+                (unsigned long)list->pairs[i].b);
+    }
+}
+
+/* To a tenth of a microsecond. */
+static double rounded(double milliseconds)
+{
+    return floor(milliseconds * 1e4 + 0.5) / 1e4;
+}
+
+static void add_count(cJSON *object, const char *name, const file_answer *answer, uint32_t kind,
+                      bool any)
+{
+    if (any || !answer->known[kind])
+        cJSON_AddNullToObject(object, name);
+    else
+        cJSON_AddNumberToObject(object, name, (double)answer->counts[kind]);
+}
+
+static void add_time(cJSON *object, const char *name, const file_answer *answer, uint32_t kind)
+{
+    if (!answer->known[kind])
+        cJSON_AddNullToObject(object, name);
+    else
+        cJSON_AddNumberToObject(object, name, rounded(answer->query_ms[kind]));
+}
+
+static void add_stats(cJSON *object, const sc_stats *stats)
+{
+    cJSON *tasks = cJSON_AddArrayToObject(object, "tasks");
+    for (int i = 0; i < SC_TASK_COUNT; i++) {
+        cJSON *task = cJSON_CreateObject();
+        cJSON_AddStringToObject(task, "task", task_names[i]);
+        cJSON_AddNumberToObject(task, "ms", rounded(1e-6 * (double)stats->nanoseconds[i]));
+        cJSON_AddNumberToObject(task, "count", (double)stats->counts[i]);
+        cJSON_AddItemToArray(tasks, task);
+    }
+    cJSON_AddNumberToObject(object, "total_ms", rounded(1e-6 * (double)stats->total_nanoseconds));
+    cJSON_AddNumberToObject(object, "nodes_visited", (double)stats->nodes_visited);
+    cJSON_AddNumberToObject(object, "nodes_oriented", (double)stats->nodes_oriented);
+    cJSON_AddNumberToObject(object, "nodes_culled", (double)stats->nodes_culled);
+    cJSON_AddNumberToObject(object, "leaf_pairs", (double)stats->leaf_pairs);
+    cJSON_AddNumberToObject(object, "exact_fallbacks", (double)stats->exact_fallbacks);
+}
+
+/* Prints an object on a line of its own and frees it. */
+static bool print_json(cJSON *object)
+{
+    char *text = cJSON_PrintUnformatted(object);
+    if (text)
+        puts(text);
+    else
+        tool_error("out of memory");
+    cJSON_free(text);
+    cJSON_Delete(object);
+    return text != NULL;
+}
+
+static bool print_json_answer(const file_answer *answer, const settings *set)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "file", answer->path);
+    cJSON_AddStringToObject(object, "status", answer->collides ? "collides" : "clean");
+    cJSON_AddBoolToObject(object, "collides", answer->collides);
+    cJSON_AddNumberToObject(object, "vertices", answer->info.point_count);
+    cJSON_AddNumberToObject(object, "vertices_read", answer->info.vertex_count);
+    cJSON_AddNumberToObject(object, "triangles", answer->info.triangle_count);
+    cJSON_AddNumberToObject(object, "components", answer->info.component_count);
+    add_count(object, "triangle_pairs", answer, SC_PAIRS_TRIANGLE, set->any);
+    add_count(object, "edge_triangle_pairs", answer, SC_PAIRS_EDGE, set->any);
+    cJSON_AddNumberToObject(object, "build_ms", rounded(answer->build_ms));
+    add_time(object, "query_ms", answer, chosen_pairs(set));
+    add_time(object, "triangle_query_ms", answer, SC_PAIRS_TRIANGLE);
+    add_time(object, "edge_query_ms", answer, SC_PAIRS_EDGE);
+    cJSON_AddStringToObject(object, "pairs", tool_choice_name(pair_choices, set->pairs));
+    cJSON_AddBoolToObject(object, "proper", set->proper);
+    cJSON_AddBoolToObject(object, "any", set->any);
+    cJSON_AddStringToObject(object, "weld", tool_choice_name(tool_welds, set->weld));
+    cJSON_AddStringToObject(object, "partition", tool_choice_name(tool_partitions, set->partition));
+    cJSON_AddStringToObject(object, "method", tool_choice_name(method_choices, set->method));
+    if (set->method == SC_METHOD_SCTT) {
+        cJSON_AddStringToObject(object, "contour", tool_choice_name(contour_choices, set->contour));
+    } else {
+        cJSON_AddNullToObject(object, "contour");
+    }
+    cJSON_AddBoolToObject(object, "rest_cache", !set->no_rest_cache);
+    if (set->rest_path) cJSON_AddStringToObject(object, "rest", set->rest_path);
+    if (set->stats) add_stats(cJSON_AddObjectToObject(object, "stats"), &answer->stats);
+    return print_json(object);
+}
+
+static bool print_json_error(const char *path, const char *error)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "file", path);
+    cJSON_AddStringToObject(object, "status", "error");
+    cJSON_AddStringToObject(object, "error", error);
+    return print_json(object);
+}
+
+static void print_table_head(const settings *set)
+{
+    printf("%10s %10s %6s %14s %14s %9s %9s  %s\n", "vertices", "triangles", "parts",
+           set->any ? "collides" : "triangle pairs", set->any ? "" : "edge-tri pairs", "build ms",
+           "query ms", "file");
+}
+
+static void print_table_row(const file_answer *answer, const settings *set)
+{
+    printf("%10lu %10lu %6lu ", (unsigned long)answer->info.point_count,
+           (unsigned long)answer->info.triangle_count, (unsigned long)answer->info.component_count);
+    if (set->any) {
+        printf("%14s %14s", answer->collides ? "yes" : "no", "");
+    } else {
+        printf("%14.0f %14.0f", (double)answer->counts[SC_PAIRS_TRIANGLE],
+               (double)answer->counts[SC_PAIRS_EDGE]);
+    }
+    printf(" %9.2f %9.3f  %s\n", answer->build_ms, answer->query_ms[chosen_pairs(set)],
+           answer->path);
+    if (!set->stats) return;
+    const sc_stats *stats = &answer->stats;
+    printf("    %-34s %10s %12s\n", "task", "ms", "count");
+    for (int i = 0; i < SC_TASK_COUNT; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s", task_names[i]);
+        for (char *c = name; *c; c++) *c = *c == '_' ? ' ' : *c;
+        printf("    %-34s %10.4f %12.0f\n", name, 1e-6 * (double)stats->nanoseconds[i],
+               (double)stats->counts[i]);
+    }
+    printf("    %-34s %10.4f\n", "total", 1e-6 * (double)stats->total_nanoseconds);
+    printf("    test tree: %.0f nodes visited, %.0f oriented, %.0f culled; %.0f leaf pairs; "
+           "%.0f signs decided exactly\n",
+           (double)stats->nodes_visited, (double)stats->nodes_oriented, (double)stats->nodes_culled,
+           (double)stats->leaf_pairs, (double)stats->exact_fallbacks);
+}
+
+/* Does one file. rest is the common subject of --rest, or NULL. Returns an exit status. */
+static int do_file(const char *path, const settings *set, const query_subject *rest,
+                   float *pose_positions, FILE *out, pair_list *list)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    query_subject own;
+    memset(&own, 0, sizeof own);
+    file_answer answer;
+    memset(&answer, 0, sizeof answer);
+    answer.path = path;
+
+    const query_subject *subject = rest ? rest : &own;
+    const float *positions = pose_positions;
+    bool done;
+    if (rest) {
+        done = mesh_file_read_pose(&rest->mesh, path, pose_positions, error) &&
+               check_welds(rest, path, pose_positions, error);
+    } else {
+        done = subject_load(&own, path, set, error);
+        positions = own.mesh.positions;
+    }
+    if (done) done = run_pose(subject, path, positions, set, list, &answer, error);
+
+    bool written = true;
+    if (!done) {
+        tool_error("%s", error);
+        if (set->json) print_json_error(path, error);
+    } else {
+        if (set->json)
+            written = print_json_answer(&answer, set);
+        else
+            print_table_row(&answer, set);
+        if (out) write_pairs(out, path, list);
+        if (set->ply_path) written = write_ply(subject, positions, set, list) && written;
+    }
+    fflush(stdout);
+    subject_free(&own);
+    if (!done || !written) return TOOL_FAILED;
+    return answer.collides ? TOOL_COLLIDES : TOOL_CLEAN;
+}
+
+static int do_files(char **paths, int path_count, const settings *set)
+{
+    query_subject rest;
+    memset(&rest, 0, sizeof rest);
+    pair_list list = {NULL, 0, 0};
+    float *pose_positions = NULL;
+    FILE *out = NULL;
+    int status = TOOL_CLEAN;
+
+    if (set->rest_path) {
+        char error[MESH_FILE_ERROR_SIZE];
+        if (!subject_load(&rest, set->rest_path, set, error)) {
+            tool_error("%s", error);
+            return TOOL_FAILED;
+        }
+        pose_positions = (float *)malloc(3 * (size_t)rest.mesh.vertex_count * sizeof(float));
+        if (!pose_positions) {
+            tool_error("%s: out of memory", set->rest_path);
+            status = TOOL_FAILED;
+        }
+    }
+    if (status == TOOL_CLEAN && set->out_path) {
+        out = fopen(set->out_path, "w");
+        if (!out) {
+            tool_error("%s: cannot be written: %s", set->out_path, strerror(errno));
+            status = TOOL_FAILED;
+        } else {
+            fputs(chosen_pairs(set) == SC_PAIRS_EDGE ? "file,edge,triangle\n"
+                                                     : "file,triangle_a,triangle_b\n",
+                  out);
+        }
+    }
+    if (status == TOOL_CLEAN) {
+        if (!set->json) print_table_head(set);
+        for (int i = 0; i < path_count; i++) {
+            const int done =
+                do_file(paths[i], set, set->rest_path ? &rest : NULL, pose_positions, out, &list);
+            if (done > status) status = done;
+        }
+    }
+    if (out) {
+        const bool written = !ferror(out);
+        if (fclose(out) != 0 || !written) {
+            tool_error("%s: could not be written to the end", set->out_path);
+            status = TOOL_FAILED;
+        }
+    }
+    free(pose_positions);
+    free(list.pairs);
+    subject_free(&rest);
+    return status;
+}
+
+/* What cannot be asked for together. */
+static bool check_settings(const settings *set, int path_count)
+{
+    const char *reason = NULL;
+    if (path_count == 0)
+        reason = "no mesh given";
+    else if (wants_list(set) && set->any)
+        reason = "--any finds no list for --out or --ply";
+    else if (wants_list(set) && set->pairs == 2)
+        reason = "--pairs none leaves no list for --out or --ply";
+    else if (set->ply_path && path_count > 1)
+        reason = "--ply takes one mesh only";
+    if (!reason) return true;
+    tool_error("%s; see sc-query --help", reason);
+    return false;
+}
+
+int main(int argc, char **argv)
+{
+    enum {
+        OPTION_PAIRS = 256,
+        OPTION_PROPER,
+        OPTION_ANY,
+        OPTION_WELD,
+        OPTION_REST,
+        OPTION_JSON,
+        OPTION_OUT,
+        OPTION_PLY,
+        OPTION_STATS,
+        OPTION_METHOD,
+        OPTION_CONTOUR,
+        OPTION_PARTITION,
+        OPTION_NO_REST_CACHE,
+        OPTION_VERSION,
+        OPTION_HELP
+    };
+    static const struct option options[] = {
+        {"pairs", required_argument, NULL, OPTION_PAIRS},
+        {"proper", no_argument, NULL, OPTION_PROPER},
+        {"any", no_argument, NULL, OPTION_ANY},
+        {"weld", required_argument, NULL, OPTION_WELD},
+        {"rest", required_argument, NULL, OPTION_REST},
+        {"json", no_argument, NULL, OPTION_JSON},
+        {"out", required_argument, NULL, OPTION_OUT},
+        {"ply", required_argument, NULL, OPTION_PLY},
+        {"stats", no_argument, NULL, OPTION_STATS},
+        {"method", required_argument, NULL, OPTION_METHOD},
+        {"contour", required_argument, NULL, OPTION_CONTOUR},
+        {"partition", required_argument, NULL, OPTION_PARTITION},
+        {"no-rest-cache", no_argument, NULL, OPTION_NO_REST_CACHE},
+        {"version", no_argument, NULL, OPTION_VERSION},
+        {"help", no_argument, NULL, OPTION_HELP},
+        {NULL, 0, NULL, 0}};
+
+    tool_set_name("sc-query");
+    settings set;
+    memset(&set, 0, sizeof set);
+    set.method = SC_METHOD_SCTT;
+    set.contour = SC_CONTOUR_STAR;
+    bool valid = true;
+    int option;
+    while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
+        switch (option) {
+        case OPTION_PAIRS:
+            valid &= tool_choose("--pairs", optarg, pair_choices, &set.pairs);
+            break;
+        case OPTION_PROPER:
+            set.proper = true;
+            break;
+        case OPTION_ANY:
+            set.any = true;
+            break;
+        case OPTION_WELD:
+            valid &= tool_choose("--weld", optarg, tool_welds, &set.weld);
+            break;
+        case OPTION_REST:
+            set.rest_path = optarg;
+            break;
+        case OPTION_JSON:
+            set.json = true;
+            break;
+        case OPTION_OUT:
+            set.out_path = optarg;
+            break;
+        case OPTION_PLY:
+            set.ply_path = optarg;
+            break;
+        case OPTION_STATS:
+            set.stats = true;
+            break;
+        case OPTION_METHOD:
+            valid &= tool_choose("--method", optarg, method_choices, &set.method);
+            break;
+        case OPTION_CONTOUR:
+            valid &= tool_choose("--contour", optarg, contour_choices, &set.contour);
+            break;
+        case OPTION_PARTITION:
+            valid &= tool_choose("--partition", optarg, tool_partitions, &set.partition);
+            break;
+        case OPTION_NO_REST_CACHE:
+            set.no_rest_cache = true;
+            break;
+        case OPTION_VERSION:
+            printf("sc-query (starcontour) %s\n", sc_version_string());
+            return tool_finish(TOOL_CLEAN);
+        case OPTION_HELP:
+            fputs(usage, stdout);
+            return tool_finish(TOOL_CLEAN);
+        default:
+            valid = false;
+            break;
+        }
+    }
+    if (!valid || !check_settings(&set, argc - optind)) return tool_finish(TOOL_FAILED);
+    if (set.method == SC_METHOD_SCTT && set.contour == SC_CONTOUR_NONE) {
+        tool_error("note: --contour none can miss pairs");
+    }
+    return tool_finish(do_files(argv + optind, argc - optind, &set));
+}

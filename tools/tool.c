@@ -1,0 +1,128 @@
+/*
+ * What the command-line programs share; see tool.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#define _POSIX_C_SOURCE 200809L
+
+#include "tool.h"
+
+#include "starcontour_metis.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+const tool_choice tool_partitions[] = {
+    {"fast", TOOL_PARTITION_FAST}, {"metis", TOOL_PARTITION_METIS}, {NULL, 0}};
+
+const tool_choice tool_welds[] = {{"rest", SC_WELD_REST}, {"none", SC_WELD_NONE}, {NULL, 0}};
+
+static const char *tool_name = "starcontour";
+
+void tool_set_name(const char *name)
+{
+    tool_name = name;
+}
+
+void tool_error(const char *format, ...)
+{
+    fflush(stdout);
+    fprintf(stderr, "%s: ", tool_name);
+    va_list arguments;
+    va_start(arguments, format);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fputc('\n', stderr);
+}
+
+double tool_clock(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
+}
+
+bool tool_choose(const char *option, const char *text, const tool_choice *choices, uint32_t *value)
+{
+    char names[256] = "";
+    for (const tool_choice *choice = choices; choice->name; choice++) {
+        if (strcmp(choice->name, text) == 0) {
+            *value = choice->value;
+            return true;
+        }
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", choice->name);
+    }
+    tool_error("%s: '%s' is not one of: %s", option, text, names);
+    return false;
+}
+
+const char *tool_choice_name(const tool_choice *choices, uint32_t value)
+{
+    while (choices->name && choices->value != value) choices++;
+    return choices->name ? choices->name : "?";
+}
+
+bool tool_parse_number(const char *option, const char *text, uint32_t low, uint32_t high,
+                       uint32_t *value)
+{
+    char *end;
+    errno = 0;
+    const unsigned long number = strtoul(text, &end, 10);
+    if (errno || text[0] < '0' || text[0] > '9' || *end || number < low || number > high) {
+        tool_error("%s: '%s' is not a whole number from %lu to %lu", option, text,
+                   (unsigned long)low, (unsigned long)high);
+        return false;
+    }
+    *value = (uint32_t)number;
+    return true;
+}
+
+sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, sc_model **model,
+                     double *milliseconds)
+{
+    sc_mesh input;
+    memset(&input, 0, sizeof input);
+    input.struct_size = sizeof input;
+    input.vertex_count = mesh->vertex_count;
+    input.triangle_count = mesh->triangle_count;
+    input.position_type = SC_FLOAT;
+    input.index_type = SC_UINT32;
+    input.positions = mesh->positions;
+    input.indices = mesh->indices;
+
+    sc_build_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.weld = weld;
+    if (partition == TOOL_PARTITION_METIS) {
+        options.partition = SC_PARTITION_BISECT;
+        options.bisect = sc_metis_bisect;
+    }
+    const double start = tool_clock();
+    const sc_status status = sc_build(&input, &options, model);
+    *milliseconds = tool_clock() - start;
+    return status;
+}
+
+sc_pose tool_pose(const float *positions, uint32_t vertex_count)
+{
+    sc_pose pose;
+    memset(&pose, 0, sizeof pose);
+    pose.struct_size = sizeof pose;
+    pose.vertex_count = vertex_count;
+    pose.position_type = SC_FLOAT;
+    pose.positions = positions;
+    return pose;
+}
+
+int tool_finish(int status)
+{
+    const bool written = !ferror(stdout);
+    if (fclose(stdout) == 0 && written) return status;
+    fprintf(stderr, "%s: cannot write to standard output\n", tool_name);
+    return TOOL_FAILED;
+}

@@ -1,0 +1,67 @@
+/*
+ * What the command-line programs share: messages, a clock, option values, building a model.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef TOOLS_TOOL_H
+#define TOOLS_TOOL_H
+
+#include "mesh_file.h"
+
+#include "starcontour.h"
+
+#include <stdio.h>
+
+/* Exit statuses of sc-query; the other programs use the first and the last. */
+enum { TOOL_CLEAN = 0, TOOL_COLLIDES = 1, TOOL_FAILED = 2 };
+
+/* Lets compilers check format strings. */
+#if defined(__GNUC__)
+#    define TOOL_PRINTF __attribute__((format(printf, 1, 2)))
+#else
+#    define TOOL_PRINTF
+#endif
+
+/* The name that begins every message; set by main. */
+void tool_set_name(const char *name);
+
+/* Prints "name: message" and a line end to stderr, after what stands in stdout. */
+void tool_error(const char *format, ...) TOOL_PRINTF;
+
+/* Milliseconds on a clock that never goes back. */
+double tool_clock(void);
+
+/* A word and what it stands for. Lists of these end with a NULL name. */
+typedef struct tool_choice {
+    const char *name;
+    uint32_t value;
+} tool_choice;
+
+/* Looks text up among choices; if it is not there, says so and which there are. */
+bool tool_choose(const char *option, const char *text, const tool_choice *choices, uint32_t *value);
+
+/* The name of a value. */
+const char *tool_choice_name(const tool_choice *choices, uint32_t value);
+
+/* Reads a whole number from low to high; otherwise says what is wrong. */
+bool tool_parse_number(const char *option, const char *text, uint32_t low, uint32_t high,
+                       uint32_t *value);
+
+/* Values of --partition. */
+enum { TOOL_PARTITION_FAST = 0, TOOL_PARTITION_METIS = 1 };
+extern const tool_choice tool_partitions[];
+
+/* Values of --weld. */
+extern const tool_choice tool_welds[];
+
+/* Builds a model with a partition of the list above; *milliseconds is how long it took. */
+sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, sc_model **model,
+                     double *milliseconds);
+
+/* A pose of floats, packed. */
+sc_pose tool_pose(const float *positions, uint32_t vertex_count);
+
+/* Closes stdout and returns status, or, if not all could be written, says so and TOOL_FAILED. */
+int tool_finish(int status);
+
+#endif /* TOOLS_TOOL_H */
