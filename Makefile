@@ -59,11 +59,11 @@ ifeq ($(config),release)
     test_mode := -O2 -g
     out := $(BUILD)
 else ifeq ($(config),debug)
-    mode := -O0 -g
+    mode := -O0 -g -DSC_VALIDATE
     test_mode := $(mode)
     out := $(BUILD)/debug
 else ifeq ($(config),sanitize)
-    mode := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all
+    mode := -O1 -g -DSC_VALIDATE -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all
     test_mode := $(mode)
     out := $(BUILD)/sanitize
 else

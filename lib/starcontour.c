@@ -18,6 +18,10 @@
 #include "query/rest.h"
 #include "query/traversal.h"
 
+#ifdef SC_VALIDATE
+#  include <assert.h>
+#endif
+
 /* The size up to the end of a member. */
 #define UP_TO(type, member) (uint32_t)(offsetof(type, member) + sizeof(((type *)0)->member))
 
@@ -37,8 +41,26 @@ typedef struct steps {
     sc_csf csf;
 } steps;
 
-static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *options, sc_scratch *scratch,
-                             sc_model **model)
+/* In builds with SC_VALIDATE (make config=debug or sanitize): everything is as its header says. Uses
+   memory of its own, so that the caller's allocator may fail where it likes. */
+static void validate(const steps *s)
+{
+#ifdef SC_VALIDATE
+    sc_allocator standard = sc_memory_allocator(NULL);
+    sc_scratch scratch;
+    sc_scratch_init(&scratch, &standard);
+    assert(sc_hierarchy_validate(&s->hierarchy, &scratch));
+    assert(sc_xbvh_validate(&s->xbvh));
+    assert(sc_sctt_validate(&s->xbvh, &s->neighbors, &s->sctt));
+    assert(sc_csf_validate(&s->csf, &s->sctt, &scratch));
+    sc_scratch_clear(&scratch);
+#else
+    (void)s;
+#endif
+}
+
+static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *options,
+                             sc_scratch *scratch, sc_model **model)
 {
     steps s;
     sc_pose rest;
@@ -53,10 +75,11 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
                                      &s.neighbors)))
         return status;
     if ((status = sc_sctt_build(&s.xbvh, &s.neighbors, scratch, &s.sctt))) return status;
-    sc_neighbors_free(&s.neighbors, scratch);
-    if ((status = sc_csf_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, &s.sctt, scratch,
-                               &s.csf)))
+    if ((status = sc_csf_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, &s.sctt,
+                               scratch, &s.csf)))
         return status;
+    validate(&s);
+    sc_neighbors_free(&s.neighbors, scratch);
     if ((status = sc_model_assemble(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
                                     scratch, model)))
         return status;
@@ -181,7 +204,8 @@ sc_status sc_workspace_size(const sc_model *model, uint64_t *size)
     return SC_OK;
 }
 
-sc_status sc_workspace_init(const sc_model *model, void *memory, uint64_t size, sc_workspace **workspace)
+sc_status sc_workspace_init(const sc_model *model, void *memory, uint64_t size,
+                            sc_workspace **workspace)
 {
     if (!workspace) return SC_ERROR_NULL;
     *workspace = NULL;
@@ -238,9 +262,10 @@ static sc_status check_pose(const sc_model *model, const sc_pose *pose, uint64_t
 }
 
 /* Everything about a query that can be wrong; afterwards only the positions can be. */
-static sc_status check_query(const sc_model *model, const sc_workspace *workspace, const sc_pose *pose,
-                             const sc_query_options *options, const sc_result *result,
-                             sc_query_state *state, sc_pose *checked_pose, uint64_t *stride)
+static sc_status check_query(const sc_model *model, const sc_workspace *workspace,
+                             const sc_pose *pose, const sc_query_options *options,
+                             const sc_result *result, sc_query_state *state, sc_pose *checked_pose,
+                             uint64_t *stride)
 {
     sc_status status;
     if (!model || !workspace || !pose) return SC_ERROR_NULL;

@@ -12,10 +12,10 @@
 #include <string.h>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#    define TEST_DEFAULT_SCALE 10
+#    define TEST_DEFAULT_SCALE 20
 #elif defined(__has_feature)
 #    if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#        define TEST_DEFAULT_SCALE 10
+#        define TEST_DEFAULT_SCALE 20
 #    endif
 #endif
 #ifndef TEST_DEFAULT_SCALE

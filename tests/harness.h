@@ -13,7 +13,7 @@
  *
  * Arguments: words that select the test functions whose names contain one of them; --seed N for the
  * random numbers; --scale P to run P percent of the random trials (default: SC_TEST_SCALE of the
- * environment, else 100, or 10 under sanitizers); --list.
+ * environment, else 100, or 20 under sanitizers); --list.
  * The last line printed is "<program>: N passed, N failed", where functions are counted; the exit
  * status is 1 if one failed, 2 for wrong arguments. A function without any CHECK fails.
  *

@@ -374,6 +374,30 @@ soup soup_flower(uint32_t petals, uint32_t across)
     return s;
 }
 
+soup soup_branched(uint32_t around, uint32_t rings)
+{
+    uint32_t triangle = 0;
+    soup s = soup_make(1 + around * rings, around * (2 * rings - 1));
+    set_point(&s, 0, 0, 0, 0);
+    for (uint32_t j = 0; j < rings; ++j) {
+        double radius = 0.5 * (j + 1) / rings;
+        for (uint32_t i = 0; i < around; ++i) {
+            double angle = 4 * pi * i / around;
+            set_point(&s, 1 + j * around + i, radius * cos(angle), radius * sin(angle), 0);
+        }
+    }
+    for (uint32_t i = 0; i < around; ++i)
+        set_triangle(&s, triangle++, 0, 1 + i, 1 + (i + 1) % around);
+    for (uint32_t j = 0; j + 1 < rings; ++j) {
+        for (uint32_t i = 0; i < around; ++i) {
+            uint32_t a = 1 + j * around + i, b = 1 + j * around + (i + 1) % around;
+            set_triangle(&s, triangle++, a, a + around, b + around);
+            set_triangle(&s, triangle++, a, b + around, b);
+        }
+    }
+    return s;
+}
+
 soup soup_seams(uint32_t across)
 {
     soup cloth = soup_cloth(across, across);

@@ -28,7 +28,7 @@ soup soup_on_grid(uint32_t range);
 /* 2 to 40 triangles with random coordinates, some of them slivers or of very unequal size. */
 soup soup_scattered(void);
 
-/* Meshes about 1 in size. */
+/* Meshes about 1 in size. Those that are flat lie in z = 0. */
 soup soup_cloth(uint32_t across, uint32_t along);   /* a square grid in z = 0 */
 soup soup_tube(uint32_t around, uint32_t along);    /* open at both ends */
 soup soup_sphere(uint32_t around, uint32_t rings);  /* closed, two poles */
@@ -39,8 +39,9 @@ soup soup_fins(uint32_t along);      /* strips of four sheets that share a line 
 soup soup_many(uint32_t components); /* single triangles, cloths and spheres in the unit cube */
 soup soup_slivers(uint32_t count);   /* long thin triangles of one fan */
 soup soup_spiral(uint32_t along, uint32_t across,
-                 double turns);                     /* a ribbon, flat: lies on itself */
-soup soup_flower(uint32_t petals, uint32_t across); /* flat, at random angles around one vertex */
+                 double turns);                      /* a ribbon, flat: lies on itself */
+soup soup_flower(uint32_t petals, uint32_t across);  /* flat, at random angles around one vertex */
+soup soup_branched(uint32_t around, uint32_t rings); /* a disc that goes twice around its centre */
 soup soup_seams(uint32_t across); /* a cloth in which each triangle has its own vertices */
 soup soup_join(const soup *a, const soup *b); /* both, with the vertices of b after those of a */
 

@@ -205,10 +205,10 @@ static void check_pose(const trial *t)
 
 /*
  * A mesh in its rest pose and in another, both in random types, strides and places of memory, built
- * with a welding and a partition and asked everything.
+ * as chosen (randomly by input_choose for a weld and a partition if own is NULL) and asked everything.
  */
-static void check_mesh(const char *name, uint64_t state, const soup *mesh, const double *pose,
-                       uint32_t weld, uint32_t partition)
+static void check_chosen(const char *name, uint64_t state, const soup *mesh, const double *pose,
+                         uint32_t weld, uint32_t partition, const input_choices *own)
 {
     static const uint32_t gaps[] = {0, 1, 4, 7, 8, 20};
     uint32_t rest_type = test_random_below(2), pose_type = test_random_below(2);
@@ -226,7 +226,11 @@ static void check_mesh(const char *name, uint64_t state, const soup *mesh, const
     memcpy(posed.positions, pose, 3 * (size_t)mesh->vertex_count * sizeof(double));
     if (rest_type == SC_FLOAT) soup_round_to_float(rest.positions, rest.vertex_count);
     if (pose_type == SC_FLOAT) soup_round_to_float(posed.positions, posed.vertex_count);
-    choices = input_choose(&rest, weld, partition);
+    if (own != NULL) {
+        choices = *own;
+    } else {
+        choices = input_choose(&rest, weld, partition);
+    }
     map = input_weld_of(&choices, &rest);
     positions =
         input_positions(rest.positions, rest.vertex_count, rest_type, gaps[test_random_below(6)]);
@@ -274,10 +278,16 @@ static void check_mesh(const char *name, uint64_t state, const soup *mesh, const
     }
     sc_workspace_free(workspace);
     sc_model_free(model);
-    input_free_choices(&choices);
+    if (own == NULL) input_free_choices(&choices);
     free(map);
     soup_free(&rest);
     soup_free(&posed);
+}
+
+static void check_mesh(const char *name, uint64_t state, const soup *mesh, const double *pose,
+                       uint32_t weld, uint32_t partition)
+{
+    check_chosen(name, state, mesh, pose, weld, partition, NULL);
 }
 
 static void check_random_build(const char *name, uint64_t state, const soup *mesh,
@@ -297,7 +307,7 @@ static double *other_positions(const soup *s, uint32_t range)
 
 static void small_soups_on_a_grid(void)
 {
-    uint32_t rounds = test_iterations(2500);
+    uint32_t rounds = test_iterations(2000);
     for (uint32_t i = 0; i < rounds; ++i) {
         static const uint32_t ranges[] = {1, 2, 2, 4, 4, 9};
         uint64_t state = test_random_state();
@@ -332,7 +342,7 @@ static void extreme_coordinates(void)
     static const double factors[] = {
         1e-30, 1e30, 1e-150, 1e150, 1e-300, 1e300, 4.94065645841e-324, 1e-310, 1.4012984643e-45,
         1e-40, 3e37, 4e306};
-    uint32_t rounds = test_iterations(300);
+    uint32_t rounds = test_iterations(200);
     for (uint32_t i = 0; i < rounds; ++i) {
         uint64_t state = test_random_state();
         soup s = i % 2 == 0 ? soup_on_grid(4) : soup_scattered();
@@ -384,7 +394,7 @@ static void extreme_coordinates(void)
 /* Points in a plane that is oblique and not quite one: every orientation is a matter of rounding. */
 static void nearly_coplanar(void)
 {
-    uint32_t rounds = test_iterations(400);
+    uint32_t rounds = test_iterations(200);
     for (uint32_t i = 0; i < rounds; ++i) {
         uint64_t state = test_random_state();
         soup s = soup_on_grid(3);
@@ -405,7 +415,7 @@ static void nearly_coplanar(void)
 
 static void deformed_meshes(void)
 {
-    uint32_t rounds = test_iterations(200);
+    uint32_t rounds = test_iterations(140);
     for (uint32_t i = 0; i < rounds; ++i) {
         uint64_t state = test_random_state();
         const char *name = NULL;
@@ -427,7 +437,7 @@ static void deformed_meshes(void)
  */
 static void what_only_contours_tell(void)
 {
-    uint32_t rounds = test_iterations(300);
+    uint32_t rounds = test_iterations(80);
     for (uint32_t i = 0; i < rounds; ++i) {
         uint64_t state = test_random_state();
         uint32_t across = 1 + test_random_below(5);
@@ -453,6 +463,89 @@ static void what_only_contours_tell(void)
                 pose[3 * v + 2] = 0.6 * x + 0.8 * z;
             }
         check_random_build("contour", state, &s, pose);
+        free(pose);
+        soup_free(&s);
+    }
+}
+
+/*
+ * Discs that go twice around their centre, all normals up: the contour of an inner disc, and of two
+ * sectors that lie on each other, in partitions that leave them one neighbor, so that a contour segment
+ * is as long and as winding as can be.
+ */
+static void branched_discs(void)
+{
+    uint32_t rounds = test_iterations(80);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t around = 6 + 2 * test_random_below(8), rings = 1 + test_random_below(4);
+        soup s = soup_branched(around, rings);
+        double *pose = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
+        uint32_t *order = (uint32_t *)test_allocate(s.triangle_count * sizeof(uint32_t));
+        uint32_t count = s.triangle_count, a = 0, b = 0, place = 0;
+        sc_tree_node tree[5];
+        input_choices choices;
+        memset(&choices, 0, sizeof(choices));
+        choices.options.struct_size = sizeof(choices.options);
+        choices.options.weld = SC_WELD_NONE;
+        choices.options.partition = SC_PARTITION_TREE;
+        choices.options.order = order;
+        choices.options.tree = tree;
+        choices.partition_name = "own tree";
+        if (i % 2 == 0) { /* an inner disc and the rings around it */
+            a = around + 2 * around * test_random_below(rings);
+            for (uint32_t t = 0; t < count; ++t) order[t] = t;
+            tree[0].left = 1;
+            tree[0].right = 2;
+            tree[1].first = 0;
+            tree[1].count = a;
+            tree[2].first = a;
+            tree[2].count = count - a;
+            choices.options.tree_count = 3;
+            for (int n = 1; n < 3; ++n) tree[n].left = tree[n].right = SC_NONE;
+            if (a == count) { /* nothing around it */
+                tree[0] = tree[1];
+                choices.options.tree_count = 1;
+            }
+        } else { /* two sectors opposite in angle, which lie on each other, and the rest */
+            uint32_t first = test_random_below(around / 2);
+            uint32_t width = 1 + test_random_below(around / 2 - first);
+            for (uint32_t part = 0; part < 3; ++part) {
+                for (uint32_t t = 0; t < count; ++t) {
+                    uint32_t sector = t < around ? t : (t - around) / 2 % around;
+                    uint32_t half = sector / (around / 2), within = sector % (around / 2);
+                    uint32_t mine = within >= first && within < first + width ? half : 2;
+                    if (mine == part) order[place++] = t;
+                }
+                if (part == 0) a = place;
+                if (part == 1) b = place;
+            }
+            tree[0].left = 1;
+            tree[0].right = 2;
+            tree[1].left = 3;
+            tree[1].right = 4;
+            tree[3].first = 0;
+            tree[3].count = a;
+            tree[4].first = a;
+            tree[4].count = b - a;
+            tree[2].first = b;
+            tree[2].count = count - b;
+            choices.options.tree_count = 5;
+            for (int n = 2; n < 5; ++n) tree[n].left = tree[n].right = SC_NONE;
+            if (b == count) {
+                tree[0] = tree[1];
+                tree[1] = tree[3];
+                tree[2] = tree[4];
+                tree[0].left = 1;
+                tree[0].right = 2;
+                choices.options.tree_count = 3;
+            }
+        }
+        memcpy(pose, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
+        for (uint32_t v = 0; v < s.vertex_count; ++v)
+            pose[3 * v + 2] = i % 4 < 2 ? test_random_range(0, 0.01) : 0.02 * pose[3 * v];
+        check_chosen("branched disc", state, &s, pose, SC_WELD_NONE, SC_PARTITION_TREE, &choices);
+        free(order);
         free(pose);
         soup_free(&s);
     }
@@ -631,5 +724,5 @@ static void meshes_of_the_folder(void)
 
 SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
              SC_TEST(nearly_coplanar), SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell),
-             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses), SC_TEST(short_buffers),
-             SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))
+             SC_TEST(branched_discs), SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
+             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))

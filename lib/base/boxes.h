@@ -55,7 +55,8 @@ static inline int sc_boxes_overlap(const sc_boxes *a, uint64_t i, const sc_boxes
 }
 
 /* Bit k: box i of a overlaps box j + k of b, for k from 0 to 7. */
-static inline unsigned sc_boxes_overlap8(const sc_boxes *a, uint64_t i, const sc_boxes *b, uint64_t j)
+static inline unsigned sc_boxes_overlap8(const sc_boxes *a, uint64_t i, const sc_boxes *b,
+                                         uint64_t j)
 {
 #if defined(__SSE2__)
     __m128 low = _mm_cmpeq_ps(_mm_setzero_ps(), _mm_setzero_ps()), high = low;

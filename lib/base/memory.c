@@ -92,7 +92,8 @@ void sc_scratch_give(sc_scratch *scratch, void *memory)
 
 void sc_scratch_clear(sc_scratch *scratch)
 {
-    while (scratch->blocks) sc_scratch_give(scratch, (unsigned char *)scratch->blocks + SC_ALIGNMENT);
+    while (scratch->blocks)
+        sc_scratch_give(scratch, (unsigned char *)scratch->blocks + SC_ALIGNMENT);
 }
 
 int sc_list_reserve(sc_scratch *scratch, sc_list *list, uint64_t more)

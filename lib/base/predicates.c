@@ -19,9 +19,9 @@
 
 /* A contracted product and sum would spoil the error terms. GCC does not contract with -std=c99. */
 #if defined(__clang__)
-#    pragma STDC FP_CONTRACT OFF
+#  pragma STDC FP_CONTRACT OFF
 #elif defined(_MSC_VER)
-#    pragma fp_contract(off)
+#  pragma fp_contract(off)
 #endif
 
 enum {

@@ -26,10 +26,10 @@
 #include <stdint.h>
 
 #ifdef __FAST_MATH__
-#    error "exact signs need strict floating-point arithmetic: compile without -ffast-math"
+#  error "exact signs need strict floating-point arithmetic: compile without -ffast-math"
 #endif
 #if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD < 0 || FLT_EVAL_METHOD == 2
-#    error "exact signs need doubles evaluated as doubles: on 32-bit x86 use -msse2 -mfpmath=sse"
+#  error "exact signs need doubles evaluated as doubles: on 32-bit x86 use -msse2 -mfpmath=sse"
 #endif
 
 /*
@@ -56,8 +56,8 @@
  * Overflow: the computed M is never less than the computed determinant, rounding being monotonic.
  * If anything overflows, then M is infinite or NaN, and the comparison with the bound fails.
  */
-#define SC_PREDICATES_BOUND_2D   (5.0 * 0x1p-53)
-#define SC_PREDICATES_BOUND_3D   (9.0 * 0x1p-53)
+#define SC_PREDICATES_BOUND_2D (5.0 * 0x1p-53)
+#define SC_PREDICATES_BOUND_3D (9.0 * 0x1p-53)
 #define SC_PREDICATES_BOUND_TINY 0x1p-900
 
 /* Stages 2 and 3; arguments and results as below. */

@@ -6,31 +6,51 @@
 #include "starcontour.h"
 
 #define TEXT_OF(number) #number
-#define TEXT(number)    TEXT_OF(number)
+#define TEXT(number) TEXT_OF(number)
 
 const char *sc_status_string(sc_status status)
 {
     switch (status) {
-    case SC_OK: return "no error";
-    case SC_ERROR_NULL: return "a required pointer is NULL";
-    case SC_ERROR_STRUCT_SIZE: return "struct_size is none this library can read";
-    case SC_ERROR_OPTION: return "an option or type has an unknown value";
-    case SC_ERROR_EMPTY: return "the mesh has no triangles or no vertices";
-    case SC_ERROR_COUNT: return "too many vertices or triangles";
-    case SC_ERROR_STRIDE: return "a stride is smaller than its element";
-    case SC_ERROR_INDEX: return "a triangle refers to a vertex that does not exist";
-    case SC_ERROR_NOT_FINITE: return "a position is NaN or infinite";
-    case SC_ERROR_VERTEX_COUNT: return "the pose has not as many vertices as the model";
-    case SC_ERROR_MEMORY: return "out of memory";
-    case SC_ERROR_SHORT_BUFFER: return "the array is too short for the result";
-    case SC_ERROR_WORKSPACE: return "the workspace is too small or made for another model";
-    case SC_ERROR_WELD_MAP: return "the weld map has an entry that is not a representative";
-    case SC_ERROR_TREE: return "the leaf order or tree does not cover every triangle once, or is too deep";
-    case SC_ERROR_PARTITION: return "the bisection function failed";
-    case SC_ERROR_UNSUPPORTED: return "not supported by this build of the library";
-    case SC_ERROR_ALIGNMENT: return "memory is not aligned as required";
-    case SC_ERROR_LEVEL: return "the model has no such level";
-    default: return "unknown status";
+    case SC_OK:
+        return "no error";
+    case SC_ERROR_NULL:
+        return "a required pointer is NULL";
+    case SC_ERROR_STRUCT_SIZE:
+        return "struct_size is none this library can read";
+    case SC_ERROR_OPTION:
+        return "an option or type has an unknown value";
+    case SC_ERROR_EMPTY:
+        return "the mesh has no triangles or no vertices";
+    case SC_ERROR_COUNT:
+        return "too many vertices or triangles";
+    case SC_ERROR_STRIDE:
+        return "a stride is smaller than its element";
+    case SC_ERROR_INDEX:
+        return "a triangle refers to a vertex that does not exist";
+    case SC_ERROR_NOT_FINITE:
+        return "a position is NaN or infinite";
+    case SC_ERROR_VERTEX_COUNT:
+        return "the pose has not as many vertices as the model";
+    case SC_ERROR_MEMORY:
+        return "out of memory";
+    case SC_ERROR_SHORT_BUFFER:
+        return "the array is too short for the result";
+    case SC_ERROR_WORKSPACE:
+        return "the workspace is too small or made for another model";
+    case SC_ERROR_WELD_MAP:
+        return "the weld map has an entry that is not a representative";
+    case SC_ERROR_TREE:
+        return "the leaf order or tree does not cover every triangle once, or is too deep";
+    case SC_ERROR_PARTITION:
+        return "the bisection function failed";
+    case SC_ERROR_UNSUPPORTED:
+        return "not supported by this build of the library";
+    case SC_ERROR_ALIGNMENT:
+        return "memory is not aligned as required";
+    case SC_ERROR_LEVEL:
+        return "the model has no such level";
+    default:
+        return "unknown status";
     }
 }
 

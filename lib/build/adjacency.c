@@ -8,7 +8,8 @@
 #include "base/sort.h"
 
 /* Half-edges in a bucket by the lower end of their edge, sorted by the upper end, then by number. */
-static sc_status pair_half_edges(const sc_points *points, sc_scratch *scratch, sc_adjacency *adjacency)
+static sc_status pair_half_edges(const sc_points *points, sc_scratch *scratch,
+                                 sc_adjacency *adjacency)
 {
     uint64_t corners = 3 * (uint64_t)points->triangle_count, h;
     const uint32_t *from = points->triangles;
@@ -78,7 +79,8 @@ static uint32_t find_root(uint32_t *parent, uint32_t p)
     return p;
 }
 
-static sc_status find_components(const sc_points *points, sc_scratch *scratch, sc_adjacency *adjacency)
+static sc_status find_components(const sc_points *points, sc_scratch *scratch,
+                                 sc_adjacency *adjacency)
 {
     uint32_t *parent, *number, p, t;
     parent = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *parent);
@@ -121,7 +123,8 @@ sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_ad
     adjacency->corner_first = (uint32_t *)sc_scratch_take_filled(
         scratch, (uint64_t)points->point_count + 1, sizeof(uint32_t), 0);
     adjacency->corners = (uint32_t *)sc_scratch_take(scratch, corners, sizeof(uint32_t));
-    adjacency->component = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof(uint32_t));
+    adjacency->component =
+        (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof(uint32_t));
     if (!adjacency->opposite || !adjacency->owned || !adjacency->corner_first ||
         !adjacency->corners || !adjacency->component)
         return SC_ERROR_MEMORY;
@@ -145,7 +148,8 @@ uint32_t sc_adjacency_ring(const sc_points *points, const sc_adjacency *adjacenc
         if (ring[i] == p) return 0;
         for (j = 0; j < i; j++)
             if (ring[j] == ring[i]) return 0;
-        h = adjacency->opposite[sc_adjacency_previous(h)]; /* the next triangle, counter-clockwise */
+        h = adjacency
+                ->opposite[sc_adjacency_previous(h)]; /* the next triangle, counter-clockwise */
         if (h == SC_NONE || (h == start) != (i + 1 == count)) return 0;
     }
     return count;

@@ -29,8 +29,8 @@ typedef struct bisection {
     uint32_t *queue;     /* triangle_count */
     sc_pair *keys;       /* triangle_count */
     uint32_t *sizes;     /* triangle_count: of components */
-    int32_t *graph;      /* 7 * triangle_count + 1, for the caller's cut: offsets, neighbors, weights */
-    uint32_t patches;    /* numbers given out */
+    int32_t *graph; /* 7 * triangle_count + 1, for the caller's cut: offsets, neighbors, weights */
+    uint32_t patches; /* numbers given out */
 } bisection;
 
 /* The triangle across side k of t if it is in the same patch, else SC_NONE. */
@@ -51,7 +51,8 @@ static uint32_t order_bits(float f)
 
 /* Numbers the components of a patch, where crossing from side 0 to side 1 does or does not count as
    connected, and writes their sizes. */
-static uint32_t find_components(bisection *b, const uint32_t *triangles, uint32_t count, int by_side)
+static uint32_t find_components(bisection *b, const uint32_t *triangles, uint32_t count,
+                                int by_side)
 {
     uint32_t found = 0, i;
     for (i = 0; i < count; i++) b->component[triangles[i]] = SC_NONE;
@@ -140,15 +141,16 @@ static void select_lowest(sc_pair *keys, uint32_t count, uint32_t left)
 }
 
 /* The built-in cut: the left_target triangles lowest along the longest direction get side 0. */
-static void cut_across(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t left_target)
+static void cut_across(bisection *b, const uint32_t *triangles, uint32_t count,
+                       uint32_t left_target)
 {
     double direction[3];
     uint32_t i;
     longest_direction(b, triangles, count, direction);
     for (i = 0; i < count; i++) {
         const float *c = b->centers + 3 * (uint64_t)triangles[i];
-        double along = (double)c[0] * direction[0] + (double)c[1] * direction[1] +
-                       (double)c[2] * direction[2];
+        double along =
+            (double)c[0] * direction[0] + (double)c[1] * direction[1] + (double)c[2] * direction[2];
         b->keys[i].a = order_bits((float)along);
         b->keys[i].b = triangles[i];
     }
@@ -291,8 +293,9 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
     longest_direction(b, b->queue, found, direction);
     for (i = 0; i < found; i++) {
         const float *c = b->centers + 3 * (uint64_t)b->queue[i];
-        b->keys[i].a = order_bits((float)((double)c[0] * direction[0] + (double)c[1] * direction[1] +
-                                          (double)c[2] * direction[2]));
+        b->keys[i].a =
+            order_bits((float)((double)c[0] * direction[0] + (double)c[1] * direction[1] +
+                               (double)c[2] * direction[2]));
         b->keys[i].b = i;
     }
     sc_sort_pairs(b->keys, found);
@@ -304,7 +307,8 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
         n++;
     }
     for (i = 0; i < found; i++) b->queue[b->keys[i].b] = i >= n;
-    for (i = 0; i < count; i++) b->side[triangles[i]] = (uint8_t)b->queue[b->component[triangles[i]]];
+    for (i = 0; i < count; i++)
+        b->side[triangles[i]] = (uint8_t)b->queue[b->component[triangles[i]]];
 }
 
 /* Writes side for a patch of more than SC_LEAF_MAX triangles; both sides get some. */
@@ -377,7 +381,8 @@ static void measure(bisection *b)
     if (!(scale > 0)) scale = 1;
     for (i = 0; i < corners; i++) {
         const double *p = points->rest + 3 * (uint64_t)points->triangles[i];
-        const double *q = points->rest + 3 * (uint64_t)points->triangles[sc_adjacency_next((uint32_t)i)];
+        const double *q =
+            points->rest + 3 * (uint64_t)points->triangles[sc_adjacency_next((uint32_t)i)];
         double square = 0;
         for (k = 0; k < 3; k++) {
             double d = q[k] / scale - p[k] / scale;
@@ -390,14 +395,16 @@ static void measure(bisection *b)
     for (i = 0; i < points->triangle_count; i++) {
         const uint32_t *corner = points->triangles + 3 * i;
         for (k = 0; k < 3; k++)
-            b->centers[3 * i + (uint64_t)k] = (float)((points->rest[3 * (uint64_t)corner[0] + (uint64_t)k] / scale +
-                                                       points->rest[3 * (uint64_t)corner[1] + (uint64_t)k] / scale +
-                                                       points->rest[3 * (uint64_t)corner[2] + (uint64_t)k] / scale));
+            b->centers[3 * i + (uint64_t)k] =
+                (float)((points->rest[3 * (uint64_t)corner[0] + (uint64_t)k] / scale +
+                         points->rest[3 * (uint64_t)corner[1] + (uint64_t)k] / scale +
+                         points->rest[3 * (uint64_t)corner[2] + (uint64_t)k] / scale));
     }
 }
 
-sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjacency, sc_bisect bisect,
-                             void *user, sc_scratch *scratch, sc_hierarchy *hierarchy)
+sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjacency,
+                             sc_bisect bisect, void *user, sc_scratch *scratch,
+                             sc_hierarchy *hierarchy)
 {
     uint32_t count = points->triangle_count, t, root;
     bisection b;
@@ -417,7 +424,8 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.queue = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
     b.keys = (sc_pair *)sc_scratch_take(scratch, count, sizeof(sc_pair));
     b.sizes = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
-    if (bisect) b.graph = (int32_t *)sc_scratch_take(scratch, 7 * (uint64_t)count + 1, sizeof(int32_t));
+    if (bisect)
+        b.graph = (int32_t *)sc_scratch_take(scratch, 7 * (uint64_t)count + 1, sizeof(int32_t));
     if (!b.centers || !b.lengths || !b.patch || !b.side || !b.component || !b.queue || !b.keys ||
         !b.sizes || (bisect && !b.graph))
         return SC_ERROR_MEMORY;

@@ -16,7 +16,8 @@
 #include "build/hierarchy.h"
 
 /* bisect NULL: the built-in cut. */
-sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjacency, sc_bisect bisect,
-                             void *user, sc_scratch *scratch, sc_hierarchy *hierarchy);
+sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjacency,
+                             sc_bisect bisect, void *user, sc_scratch *scratch,
+                             sc_hierarchy *hierarchy);
 
 #endif

@@ -27,18 +27,18 @@ typedef struct builder {
     const sc_xbvh *xbvh;
     const sc_sctt *sctt;
     sc_scratch *scratch;
-    uint32_t *leaf_of;      /* triangle_count: leaf cluster */
-    uint32_t *patch_at;     /* leaf_count: patch of the level at hand */
-    uint32_t *place;        /* 3 * triangle_count: place in the half_edges of the level at hand */
-    uint8_t *cut;           /* 3 * triangle_count: first level at which a run starts here regardless */
+    uint32_t *leaf_of;  /* triangle_count: leaf cluster */
+    uint32_t *patch_at; /* leaf_count: patch of the level at hand */
+    uint32_t *place;    /* 3 * triangle_count: place in the half_edges of the level at hand */
+    uint8_t *cut;       /* 3 * triangle_count: first level at which a run starts here regardless */
     contour_level *levels;  /* level_count */
     uint32_t *segment_from; /* 3 * triangle_count: segment of the level at hand that starts here */
     sc_list last;           /* last half-edge of each segment */
     sc_list points_first, points_list, child_first, children;
-    sc_list contours;                                  /* node lists, deepest level first */
-    uint32_t *node_first, *node_count;                 /* node_count: a node's part of contours */
-    uint32_t *run_patch, *run_out, *run_segment;       /* the runs of the level at hand */
-    uint32_t *patch_first, *patch_runs;                /* the same sorted by patch */
+    sc_list contours;                            /* node lists, deepest level first */
+    uint32_t *node_first, *node_count;           /* node_count: a node's part of contours */
+    uint32_t *run_patch, *run_out, *run_segment; /* the runs of the level at hand */
+    uint32_t *patch_first, *patch_runs;          /* the same sorted by patch */
 } builder;
 
 static void enter_level(builder *b, uint32_t level)
@@ -153,7 +153,8 @@ static sc_status find_starts(builder *b, contour_level *level, uint32_t number)
     }
     for (e = 0; e < level->count; e++)
         if (level->start[e] && !seen[e])
-            walk_run(b, level, number, e, b->adjacency->opposite[level->half_edges[e]] == SC_NONE, seen);
+            walk_run(b, level, number, e, b->adjacency->opposite[level->half_edges[e]] == SC_NONE,
+                     seen);
     for (e = 0; e < level->count; e++) { /* what is left are closed loops */
         if (seen[e]) continue;
         for (lowest = e, f = level->next[e]; f != e; f = level->next[f])
@@ -169,7 +170,8 @@ static sc_status find_starts(builder *b, contour_level *level, uint32_t number)
 static int add_leaf_segment(builder *b, const contour_level *level, uint32_t e)
 {
     uint32_t h = level->half_edges[e];
-    if (!sc_list_reserve(b->scratch, &b->last, 1) || !sc_list_reserve(b->scratch, &b->points_first, 1))
+    if (!sc_list_reserve(b->scratch, &b->last, 1) ||
+        !sc_list_reserve(b->scratch, &b->points_first, 1))
         return 0;
     b->segment_from[h] = (uint32_t)b->last.count;
     sc_list_add(&b->points_first, (uint32_t)b->points_list.count);
@@ -189,7 +191,8 @@ static int add_parent_segment(builder *b, const contour_level *level, uint32_t e
     uint32_t h = level->half_edges[e], child = b->segment_from[h];
     uint32_t following = level->next[b->place[b->last.items[child]]];
     if (level->start[following]) return 1; /* one child: the segment stays */
-    if (!sc_list_reserve(b->scratch, &b->last, 1) || !sc_list_reserve(b->scratch, &b->child_first, 1))
+    if (!sc_list_reserve(b->scratch, &b->last, 1) ||
+        !sc_list_reserve(b->scratch, &b->child_first, 1))
         return 0;
     sc_list_add(&b->child_first, (uint32_t)b->children.count);
     for (;;) {
@@ -218,7 +221,8 @@ static void sort_runs(builder *b, uint32_t level, uint32_t runs)
 /* Lists the segments of a patch, but for those towards another; returns their number or SC_NONE. */
 static uint32_t list_patch(builder *b, uint32_t begin, uint32_t patch, uint32_t other)
 {
-    uint32_t i, from = b->patch_first[patch - begin], to = b->patch_first[patch - begin + 1], count = 0;
+    uint32_t i, from = b->patch_first[patch - begin], to = b->patch_first[patch - begin + 1],
+                count = 0;
     if (!sc_list_reserve(b->scratch, &b->contours, (uint64_t)(to - from) + 2)) return SC_NONE;
     for (i = from; i < to; i++) {
         uint32_t run = b->patch_runs[i];
@@ -275,7 +279,8 @@ static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
 static sc_status order_contours(builder *b, sc_csf *csf)
 {
     uint32_t n, nodes = b->sctt->node_count, at = 0;
-    csf->contour_first = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)nodes + 1, sizeof(uint32_t));
+    csf->contour_first =
+        (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)nodes + 1, sizeof(uint32_t));
     csf->contours = (uint32_t *)sc_scratch_take(b->scratch, b->contours.count, sizeof(uint32_t));
     if (!csf->contour_first || !csf->contours) return SC_ERROR_MEMORY;
     for (n = 0; n < nodes; n++) {
@@ -293,12 +298,14 @@ static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
 {
     uint64_t corners = 3 * (uint64_t)b->points->triangle_count;
     uint32_t leaf, i, level_count = b->xbvh->level_count, contour;
-    b->leaf_of = (uint32_t *)sc_scratch_take(b->scratch, b->points->triangle_count, sizeof(uint32_t));
+    b->leaf_of =
+        (uint32_t *)sc_scratch_take(b->scratch, b->points->triangle_count, sizeof(uint32_t));
     b->patch_at = (uint32_t *)sc_scratch_take(b->scratch, b->xbvh->leaf_count, sizeof(uint32_t));
     b->place = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
     b->segment_from = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
     b->cut = (uint8_t *)sc_scratch_take_filled(b->scratch, corners, 1, NOT_CUT);
-    b->levels = (contour_level *)sc_scratch_take_filled(b->scratch, level_count, sizeof *b->levels, 0);
+    b->levels =
+        (contour_level *)sc_scratch_take_filled(b->scratch, level_count, sizeof *b->levels, 0);
     b->node_first = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
     b->node_count = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
     csf->level_segments = (uint32_t *)sc_scratch_take(b->scratch, level_count, sizeof(uint32_t));
@@ -320,8 +327,8 @@ static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
     b->run_out = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
     b->run_segment = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
     b->patch_runs = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
-    b->patch_first =
-        (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->xbvh->leaf_count + 2, sizeof(uint32_t));
+    b->patch_first = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->xbvh->leaf_count + 2,
+                                                 sizeof(uint32_t));
     return b->run_patch && b->run_out && b->run_segment && b->patch_runs && b->patch_first
                ? SC_OK
                : SC_ERROR_MEMORY;
@@ -352,8 +359,9 @@ static void give_back(builder *b)
     sc_scratch_give(b->scratch, b->contours.items);
 }
 
-sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency, const uint32_t *order,
-                       const sc_xbvh *xbvh, const sc_sctt *sctt, sc_scratch *scratch, sc_csf *csf)
+sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
+                       const uint32_t *order, const sc_xbvh *xbvh, const sc_sctt *sctt,
+                       sc_scratch *scratch, sc_csf *csf)
 {
     builder b;
     uint32_t level;
@@ -378,7 +386,8 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency, c
         if (status) return status;
     }
     csf->segment_count = (uint32_t)b.last.count;
-    if (!sc_list_reserve(scratch, &b.points_first, 1) || !sc_list_reserve(scratch, &b.child_first, 1) ||
+    if (!sc_list_reserve(scratch, &b.points_first, 1) ||
+        !sc_list_reserve(scratch, &b.child_first, 1) ||
         !sc_list_reserve(scratch, &b.points_list, 1) || !sc_list_reserve(scratch, &b.children, 1))
         return SC_ERROR_MEMORY;
     sc_list_add(&b.points_first, (uint32_t)b.points_list.count);

@@ -40,8 +40,9 @@ typedef struct sc_csf {
     uint32_t *level_segments; /* level_count: segments of each level */
 } sc_csf;
 
-sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency, const uint32_t *order,
-                       const sc_xbvh *xbvh, const sc_sctt *sctt, sc_scratch *scratch, sc_csf *csf);
+sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
+                       const uint32_t *order, const sc_xbvh *xbvh, const sc_sctt *sctt,
+                       sc_scratch *scratch, sc_csf *csf);
 
 /* For debug builds and tests: 1 if children lead into each other and have one parent at most. */
 int sc_csf_validate(const sc_csf *csf, const sc_sctt *sctt, sc_scratch *scratch);

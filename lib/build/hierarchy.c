@@ -10,8 +10,8 @@ sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, uint32_t triangle_count, sc
     hierarchy->triangle_count = triangle_count;
     hierarchy->node_count = hierarchy->leaf_count = hierarchy->depth = 0;
     hierarchy->order = (uint32_t *)sc_scratch_take(scratch, triangle_count, sizeof(uint32_t));
-    hierarchy->nodes =
-        (sc_tree_node *)sc_scratch_take(scratch, 2 * (uint64_t)triangle_count, sizeof(sc_tree_node));
+    hierarchy->nodes = (sc_tree_node *)sc_scratch_take(scratch, 2 * (uint64_t)triangle_count,
+                                                       sizeof(sc_tree_node));
     return hierarchy->order && hierarchy->nodes ? SC_OK : SC_ERROR_MEMORY;
 }
 

@@ -162,12 +162,13 @@ sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_
 
     points->point_count = 0;
     for (v = 0; v < mesh->vertex_count; v++)
-        points->slot[v] = !used[v]                ? SC_SLOT_UNUSED
+        points->slot[v] = !used[v]                 ? SC_SLOT_UNUSED
                           : representative[v] != v ? SC_SLOT_WELDED
                                                    : points->point_count++;
     for (h = 0; h < corners; h++)
         points->triangles[h] = points->slot[representative[points->triangles[h]]];
-    points->rest = (double *)sc_scratch_take(scratch, 3 * (uint64_t)points->point_count, sizeof(double));
+    points->rest =
+        (double *)sc_scratch_take(scratch, 3 * (uint64_t)points->point_count, sizeof(double));
     if (!points->rest) return SC_ERROR_MEMORY;
     for (v = 0; v < mesh->vertex_count; v++)
         if (points->slot[v] < SC_SLOT_WELDED)

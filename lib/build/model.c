@@ -17,8 +17,8 @@ typedef struct sc_model_owner {
 enum { HOP = 3 };
 
 /* One array of the model while it is being written. */
-#define NEW_ARRAY(model, name, type)                                                                   \
-    ((type *)(void *)((unsigned char *)(model) + (model)->offset[SC_ARRAY_##name]))
+#define NEW_ARRAY(model, name, type)                                                               \
+  ((type *)(void *)((unsigned char *)(model) + (model)->offset[SC_ARRAY_##name]))
 
 static sc_status lay_out(sc_model *m)
 {
@@ -30,9 +30,9 @@ static sc_status lay_out(sc_model *m)
     uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
     uint32_t segment_point_total = m->segment_point_total;
     uint32_t segment_child_total = m->segment_child_total;
-#define LAY_OUT(name, type, count)                                                                     \
-    m->offset[SC_ARRAY_##name] = at;                                                                   \
-    at += ((uint64_t)(count) * sizeof(type) + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
+#define LAY_OUT(name, type, count)                                                                 \
+  m->offset[SC_ARRAY_##name] = at;                                                                 \
+  at += ((uint64_t)(count) * sizeof(type) + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
     SC_MODEL_ARRAYS(LAY_OUT)
 #undef LAY_OUT
     m->bytes = at;
@@ -108,9 +108,11 @@ static void write_hops(const sc_xbvh *xbvh, sc_model *m)
     }
 }
 
-static void write_segments(const sc_csf *csf, const uint32_t *number, const sc_sctt *sctt, sc_model *m)
+static void write_segments(const sc_csf *csf, const uint32_t *number, const sc_sctt *sctt,
+                           sc_model *m)
 {
-    uint32_t *list = NEW_ARRAY(m, points, uint32_t), *contours = NEW_ARRAY(m, contours, uint32_t), i;
+    uint32_t *list = NEW_ARRAY(m, points, uint32_t), *contours = NEW_ARRAY(m, contours, uint32_t),
+             i;
     uint8_t *touches = NEW_ARRAY(m, node_touches, uint8_t);
     for (i = 0; i < m->segment_point_total; i++) list[i] = number[csf->points[i]];
     copy(contours, csf->contours, m->contour_total * sizeof(uint32_t));
@@ -132,7 +134,8 @@ static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarc
     for (i = 0; i < count; i++) place[hierarchy->order[i]] = i;
     for (level = 0; level < xbvh->level_count; level++)
         for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++) {
-            uint32_t begin = xbvh->leaf_first[xbvh->leaf[p]], end = xbvh->leaf_first[xbvh->leaf[p + 1]];
+            uint32_t begin = xbvh->leaf_first[xbvh->leaf[p]],
+                     end = xbvh->leaf_first[xbvh->leaf[p + 1]];
             uint32_t head = 0, tail = 0;
             queue[tail++] = begin;
             seen[begin] = p;
@@ -155,7 +158,8 @@ static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarc
     return SC_OK;
 }
 
-static void write_levels(const sc_xbvh *xbvh, const sc_sctt *sctt, const sc_csf *csf, sc_level *levels)
+static void write_levels(const sc_xbvh *xbvh, const sc_sctt *sctt, const sc_csf *csf,
+                         sc_level *levels)
 {
     uint32_t level, n;
     for (level = 0; level < xbvh->level_count; level++) {
@@ -169,8 +173,8 @@ static void write_levels(const sc_xbvh *xbvh, const sc_sctt *sctt, const sc_csf 
     }
 }
 
-static void count_arrays(const sc_points *points, const sc_adjacency *adjacency, const sc_xbvh *xbvh,
-                         const sc_sctt *sctt, const sc_csf *csf, sc_model *m)
+static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
+                         const sc_xbvh *xbvh, const sc_sctt *sctt, const sc_csf *csf, sc_model *m)
 {
     m->vertex_count = points->vertex_count;
     m->point_count = points->point_count;
@@ -217,7 +221,8 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     if (status) return status;
 
     bytes = counts.bytes + SC_ALIGNMENT;
-    owner = (sc_model_owner *)scratch->allocator.allocate(scratch->allocator.user, bytes, SC_ALIGNMENT);
+    owner =
+        (sc_model_owner *)scratch->allocator.allocate(scratch->allocator.user, bytes, SC_ALIGNMENT);
     if (!owner) return SC_ERROR_MEMORY;
     memset(owner, 0, (size_t)bytes);
     owner->allocator = scratch->allocator;
@@ -241,7 +246,8 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, leaf, uint32_t), xbvh->leaf, m->patch_end * sizeof(uint32_t));
     write_hops(xbvh, m);
     copy(NEW_ARRAY(m, node_patches, sc_pair), sctt->patches, m->node_count * sizeof(sc_pair));
-    copy(NEW_ARRAY(m, node_child, uint32_t), sctt->child, ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, node_child, uint32_t), sctt->child,
+         ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, node_boxes, uint32_t), sctt->boxes_first,
          ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, boxes, sc_pair), sctt->boxes, m->box_count * sizeof(sc_pair));
@@ -251,10 +257,12 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
          ((uint64_t)m->leaf_segment_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, segment_children, uint32_t), csf->child_first,
          ((uint64_t)m->segment_count - m->leaf_segment_count + 1) * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, children, uint32_t), csf->children, m->segment_child_total * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, children, uint32_t), csf->children,
+         m->segment_child_total * sizeof(uint32_t));
     write_segments(csf, number, sctt, m);
     write_levels(xbvh, sctt, csf, NEW_ARRAY(m, level_info, sc_level));
-    status = count_connected(adjacency, hierarchy, xbvh, scratch, NEW_ARRAY(m, level_info, sc_level));
+    status =
+        count_connected(adjacency, hierarchy, xbvh, scratch, NEW_ARRAY(m, level_info, sc_level));
     if (status) {
         sc_model_release(m);
         return status;

@@ -43,37 +43,37 @@ enum {
  *   segment_...     see build/csf.h
  *   level_info      see above
  */
-#define SC_MODEL_ARRAYS(X)                                                                             \
-    X(slot, uint32_t, vertex_count)                                                                    \
-    X(triangle, uint32_t, 3 * (uint64_t)triangle_count)                                                \
-    X(triangle_id, uint32_t, triangle_count)                                                           \
-    X(edge_owned, uint8_t, triangle_count)                                                             \
-    X(leaf_first, uint32_t, (uint64_t)leaf_count + 1)                                                  \
-    X(level_first, uint32_t, (uint64_t)level_count + 1)                                                \
-    X(child, uint32_t, patch_end)                                                                      \
-    X(leaf, uint32_t, patch_end)                                                                       \
-    X(hop, uint32_t, patch_end)                                                                        \
-    X(ring_first, uint32_t, (uint64_t)point_count + 1)                                                 \
-    X(ring, uint32_t, ring_total)                                                                      \
-    X(node_patches, sc_pair, node_count)                                                               \
-    X(node_child, uint32_t, (uint64_t)node_count + 1)                                                  \
-    X(node_boxes, uint32_t, (uint64_t)node_count + 1)                                                  \
-    X(boxes, sc_pair, box_count)                                                                       \
-    X(node_contour, uint32_t, (uint64_t)node_count + 1)                                                \
-    X(contours, uint32_t, contour_total)                                                               \
-    X(node_flags, uint8_t, node_count)                                                                 \
-    X(node_touches, uint8_t, node_count) /* 1: shares one point, see build/csf.h */                    \
-    X(segment_points, uint32_t, (uint64_t)leaf_segment_count + 1)                                      \
-    X(points, uint32_t, segment_point_total)                                                           \
-    X(segment_children, uint32_t, (uint64_t)segment_count - leaf_segment_count + 1)                    \
-    X(children, uint32_t, segment_child_total)                                                         \
-    X(level_info, sc_level, level_count)
+#define SC_MODEL_ARRAYS(X)                                                                         \
+  X(slot, uint32_t, vertex_count)                                                                  \
+  X(triangle, uint32_t, 3 * (uint64_t)triangle_count)                                              \
+  X(triangle_id, uint32_t, triangle_count)                                                         \
+  X(edge_owned, uint8_t, triangle_count)                                                           \
+  X(leaf_first, uint32_t, (uint64_t)leaf_count + 1)                                                \
+  X(level_first, uint32_t, (uint64_t)level_count + 1)                                              \
+  X(child, uint32_t, patch_end)                                                                    \
+  X(leaf, uint32_t, patch_end)                                                                     \
+  X(hop, uint32_t, patch_end)                                                                      \
+  X(ring_first, uint32_t, (uint64_t)point_count + 1)                                               \
+  X(ring, uint32_t, ring_total)                                                                    \
+  X(node_patches, sc_pair, node_count)                                                             \
+  X(node_child, uint32_t, (uint64_t)node_count + 1)                                                \
+  X(node_boxes, uint32_t, (uint64_t)node_count + 1)                                                \
+  X(boxes, sc_pair, box_count)                                                                     \
+  X(node_contour, uint32_t, (uint64_t)node_count + 1)                                              \
+  X(contours, uint32_t, contour_total)                                                             \
+  X(node_flags, uint8_t, node_count)                                                               \
+  X(node_touches, uint8_t, node_count) /* 1: shares one point, see build/csf.h */                  \
+  X(segment_points, uint32_t, (uint64_t)leaf_segment_count + 1)                                    \
+  X(points, uint32_t, segment_point_total)                                                         \
+  X(segment_children, uint32_t, (uint64_t)segment_count - leaf_segment_count + 1)                  \
+  X(children, uint32_t, segment_child_total)                                                       \
+  X(level_info, sc_level, level_count)
 
 enum {
 #define SC_MODEL_NUMBER(name, type, count) SC_ARRAY_##name,
     SC_MODEL_ARRAYS(SC_MODEL_NUMBER)
 #undef SC_MODEL_NUMBER
-    SC_ARRAY_COUNT
+        SC_ARRAY_COUNT
 };
 
 struct sc_model {
@@ -89,12 +89,12 @@ struct sc_model {
 };
 
 /* sc_model_<name>(model) is the array of that name. */
-#define SC_MODEL_ACCESSOR(name, type, count)                                                           \
-    static inline const type *sc_model_##name(const sc_model *model)                                   \
-    {                                                                                                  \
-        return (const type *)(const void *)((const unsigned char *)model +                             \
-                                            model->offset[SC_ARRAY_##name]);                           \
-    }
+#define SC_MODEL_ACCESSOR(name, type, count)                                                       \
+  static inline const type *sc_model_##name(const sc_model *model)                                 \
+  {                                                                                                \
+    return (const type *)(const void *)((const unsigned char *)model +                             \
+                                        model->offset[SC_ARRAY_##name]);                           \
+  }
 SC_MODEL_ARRAYS(SC_MODEL_ACCESSOR)
 #undef SC_MODEL_ACCESSOR
 

@@ -82,7 +82,7 @@ static sc_status reserve_entries(sc_neighbors *neighbors, sc_scratch *scratch, u
 {
     uint64_t capacity = neighbors->entry_count + more;
     sc_pair *entries;
-    if (capacity <= neighbors->capacity) return SC_OK;
+    if (neighbors->entries && capacity <= neighbors->capacity) return SC_OK;
     if (capacity > 0xfffffff0u) return SC_ERROR_COUNT;
     if (capacity < 2 * neighbors->capacity) capacity = 2 * neighbors->capacity;
     entries = (sc_pair *)sc_scratch_take(scratch, capacity, sizeof *entries);
@@ -150,11 +150,28 @@ static sc_status list_level(const meetings *met, uint32_t begin, uint32_t end, s
     return SC_OK;
 }
 
+/* Patches that share a point and a hub share more than one point. */
+static void unmark_at_hubs(const meetings *met, uint32_t *hub_of, sc_neighbors *neighbors)
+{
+    uint64_t at;
+    uint32_t i, k;
+    for (at = 0; at < met->count; at += 2 + met->words[at + 1]) {
+        const uint32_t *record = met->words + at;
+        if (record[1] <= SC_NEIGHBORS_HUB) continue;
+        for (i = 0; i < record[1]; i++) hub_of[record[2 + i]] = record[0];
+        for (i = 0; i < record[1]; i++) {
+            sc_pair *list = neighbors->entries + neighbors->first[record[2 + i]];
+            for (k = 0; k < neighbors->count[record[2 + i]]; k++)
+                if (hub_of[list[k].a] == record[0]) list[k].b = SC_NONE;
+        }
+    }
+}
+
 sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjacency,
                              const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
                              sc_neighbors *neighbors)
 {
-    uint32_t level, p, longest = 0, *parent;
+    uint32_t level, p, longest = 0, *parent, *hub_of;
     meetings met;
     sc_pair *keys;
     sc_status status;
@@ -167,13 +184,16 @@ sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjace
     neighbors->first = (uint32_t *)sc_scratch_take(scratch, xbvh->patch_end, sizeof(uint32_t));
     neighbors->count =
         (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof(uint32_t), 0);
-    if (!keys || !parent || !neighbors->first || !neighbors->count) return SC_ERROR_MEMORY;
+    hub_of = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *hub_of, 0xff);
+    if (!keys || !parent || !hub_of || !neighbors->first || !neighbors->count)
+        return SC_ERROR_MEMORY;
     status = meet_at_leaves(points, adjacency, order, xbvh, keys, scratch, &met);
     if (status) return status;
     for (level = xbvh->level_count - 1;; level--) {
         uint32_t begin = xbvh->level_first[level], end = xbvh->level_first[level + 1] - 1;
         status = list_level(&met, begin, end, scratch, neighbors);
         if (status) return status;
+        unmark_at_hubs(&met, hub_of, neighbors);
         if (level == 0) break;
         for (p = xbvh->level_first[level - 1]; p + 1 < begin; p++) {
             uint32_t c;
@@ -182,6 +202,7 @@ sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjace
         ascend(&met, parent, begin, keys);
     }
     sc_scratch_give(scratch, met.words);
+    sc_scratch_give(scratch, hub_of);
     sc_scratch_give(scratch, parent);
     sc_scratch_give(scratch, keys);
     return SC_OK;

@@ -10,9 +10,9 @@
 
 #if defined(SC_WITH_METIS)
 
-#include <metis.h>
-#include <signal.h>
-#include <stdlib.h>
+#  include <metis.h>
+#  include <signal.h>
+#  include <stdlib.h>
 
 /* METIS's integers may be wider than ours. */
 static idx_t *widen(const int32_t *from, int32_t count)
@@ -23,20 +23,21 @@ static idx_t *widen(const int32_t *from, int32_t count)
     return to;
 }
 
-#if defined(_WIN32)
+#  if defined(_WIN32)
 typedef void (*disposition)(int);
-#  define SAVE(number, saved)    (*(saved) = signal(number, SIG_DFL))
-#  define RESTORE(number, saved) signal(number, *(saved))
-#else
+#    define SAVE(number, saved) (*(saved) = signal(number, SIG_DFL))
+#    define RESTORE(number, saved) signal(number, *(saved))
+#  else
 typedef struct sigaction disposition;
-#  define SAVE(number, saved)    sigaction(number, NULL, saved)
-#  define RESTORE(number, saved) sigaction(number, saved, NULL)
-#endif
+#    define SAVE(number, saved) sigaction(number, NULL, saved)
+#    define RESTORE(number, saved) sigaction(number, saved, NULL)
+#  endif
 
-static int bisect(const sc_dual_graph *graph, uint32_t left_target, idx_t *offsets, idx_t *neighbors,
-                  idx_t *weights, idx_t *part)
+static int bisect(const sc_dual_graph *graph, uint32_t left_target, idx_t *offsets,
+                  idx_t *neighbors, idx_t *weights, idx_t *part)
 {
-    idx_t options[METIS_NOPTIONS], nodes = (idx_t)graph->node_count, constraints = 1, parts = 2, cut;
+    idx_t options[METIS_NOPTIONS], nodes = (idx_t)graph->node_count, constraints = 1, parts = 2,
+                                   cut;
     real_t share[2];
     disposition abort_action, terminate_action;
     int result;
@@ -55,7 +56,8 @@ static int bisect(const sc_dual_graph *graph, uint32_t left_target, idx_t *offse
     return result;
 }
 
-sc_status sc_metis_bisect(void *user, const sc_dual_graph *graph, uint32_t left_target, uint8_t *side)
+sc_status sc_metis_bisect(void *user, const sc_dual_graph *graph, uint32_t left_target,
+                          uint8_t *side)
 {
     int32_t arcs;
     idx_t *offsets, *neighbors, *weights, *part;
@@ -71,7 +73,7 @@ sc_status sc_metis_bisect(void *user, const sc_dual_graph *graph, uint32_t left_
     part = (idx_t *)malloc(graph->node_count * sizeof *part);
     if (offsets && neighbors && weights && part) {
         result = bisect(graph, left_target, offsets, neighbors, weights, part);
-        status = result == METIS_OK              ? SC_OK
+        status = result == METIS_OK             ? SC_OK
                  : result == METIS_ERROR_MEMORY ? SC_ERROR_MEMORY
                                                 : SC_ERROR_PARTITION;
     }
@@ -91,7 +93,8 @@ sc_status sc_metis_bisect(void *user, const sc_dual_graph *graph, uint32_t left_
 
 #else
 
-sc_status sc_metis_bisect(void *user, const sc_dual_graph *graph, uint32_t left_target, uint8_t *side)
+sc_status sc_metis_bisect(void *user, const sc_dual_graph *graph, uint32_t left_target,
+                          uint8_t *side)
 {
     (void)user;
     (void)graph;

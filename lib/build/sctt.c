@@ -80,12 +80,15 @@ sc_status sc_sctt_build(const sc_xbvh *xbvh, const sc_neighbors *neighbors, sc_s
     for (n = 0, level = 0; level < xbvh->level_count; level++) {
         sctt->level_first[level] = (uint32_t)n;
         for (end = g.touch.count; n < end; n++) {
-            if (!sc_list_reserve(scratch, &g.child, 2) || !sc_list_reserve(scratch, &g.boxes_first, 2))
+            if (!sc_list_reserve(scratch, &g.child, 2) ||
+                !sc_list_reserve(scratch, &g.boxes_first, 2))
                 return SC_ERROR_MEMORY;
             sc_list_add(&g.child, (uint32_t)g.touch.count);
             sc_list_add(&g.boxes_first, (uint32_t)(g.boxes.count / 2));
-            if (!expand(&g, g.patches.items[2 * n], g.patches.items[2 * n + 1])) return SC_ERROR_MEMORY;
-            if (g.touch.count > 0xfffffff0u || g.boxes.count / 2 > 0xfffffff0u) return SC_ERROR_COUNT;
+            if (!expand(&g, g.patches.items[2 * n], g.patches.items[2 * n + 1]))
+                return SC_ERROR_MEMORY;
+            if (g.touch.count > 0xfffffff0u || g.boxes.count / 2 > 0xfffffff0u)
+                return SC_ERROR_COUNT;
         }
     }
     sctt->level_first[xbvh->level_count] = (uint32_t)n;

@@ -84,7 +84,8 @@ sc_status sc_xbvh_build(const sc_hierarchy *hierarchy, sc_scratch *scratch, sc_x
 int sc_xbvh_validate(const sc_xbvh *xbvh)
 {
     uint32_t level, p, last = xbvh->level_count - 1;
-    if (xbvh->level_first[0] != 0 || xbvh->level_first[xbvh->level_count] != xbvh->patch_end) return 0;
+    if (xbvh->level_first[0] != 0 || xbvh->level_first[xbvh->level_count] != xbvh->patch_end)
+        return 0;
     if (sc_xbvh_patches(xbvh, 0) != 1 || sc_xbvh_patches(xbvh, last) != xbvh->leaf_count) return 0;
     for (level = 0; level <= last; level++) {
         uint32_t first = xbvh->level_first[level], end = xbvh->level_first[level + 1] - 1;
@@ -96,9 +97,8 @@ int sc_xbvh_validate(const sc_xbvh *xbvh)
             if (xbvh->leaf[xbvh->child[p]] != xbvh->leaf[p]) return 0;
             if (xbvh->leaf[xbvh->child[p + 1]] != xbvh->leaf[p + 1]) return 0;
         }
-        if (level != last &&
-            (xbvh->child[first] != xbvh->level_first[level + 1] ||
-             xbvh->child[end] != xbvh->level_first[level + 2] - 1))
+        if (level != last && (xbvh->child[first] != xbvh->level_first[level + 1] ||
+                              xbvh->child[end] != xbvh->level_first[level + 2] - 1))
             return 0;
     }
     return 1;

@@ -52,8 +52,9 @@ static void make_unbounded(sc_segment_bounds *bounds, double low, double high)
         sc_ray_bound *b = &bounds->side[side];
         b->ax = sc_boxes_below(low);
         b->bx = sc_boxes_above(high);
-        if (!(b->ax >= -FLT_MAX)) b->ax = -FLT_MAX; /* infinite minus infinite is NaN, which would */
-        if (!(b->bx <= FLT_MAX)) b->bx = FLT_MAX;   /* not lower a parent's bound */
+        if (!(b->ax >= -FLT_MAX))
+            b->ax = -FLT_MAX;                     /* infinite minus infinite is NaN, which would */
+        if (!(b->bx <= FLT_MAX)) b->bx = FLT_MAX; /* not lower a parent's bound */
         b->ay = b->by = -INFINITY;
         b->least = b->most = 0;
     }
@@ -89,7 +90,8 @@ static inline void add_line(edge_lines *lines, double x, double y, double slope,
                             double low, double high, double x_error, double y_error)
 {
     double steepness = fabs(slope);
-    double error = 2.0001 * (y_error + steepness * x_error) * fabs(inverse_run) + ROUNDING * steepness;
+    double error =
+        2.0001 * (y_error + steepness * x_error) * fabs(inverse_run) + ROUNDING * steepness;
     uint32_t i = lines->count++;
     lines->x[i] = x;
     lines->y[i] = y;
@@ -129,7 +131,8 @@ static int bound_lines(const edge_lines *lines, double x_error, double y_error, 
         if (at < at_b) at_b = at;
     }
     reach = bx - ax;
-    error = y_error + (lines->steepness + lines->slope_error) * x_error + lines->slope_error * reach +
+    error = y_error + (lines->steepness + lines->slope_error) * x_error +
+            lines->slope_error * reach +
             ROUNDING * (lines->height + lines->steepness * (fabs(ax) + fabs(bx)));
     b->ay = sc_boxes_below(at_a - error);
     b->by = sc_boxes_below(at_b - error);
@@ -193,8 +196,9 @@ static inline void unite_ends(sc_ray_bound *b, const sc_ray_bound *child)
     if (at_b < (double)b->by) b->by = sc_boxes_below(at_b);
 }
 
-static void bound_leaf(const sc_model *model, const sc_workspace *w, const sc_projection *projection,
-                       int line, uint32_t segment, sc_segment_bounds *bounds)
+static void bound_leaf(const sc_model *model, const sc_workspace *w,
+                       const sc_projection *projection, int line, uint32_t segment,
+                       sc_segment_bounds *bounds)
 {
     const uint32_t *first = sc_model_segment_points(model) + segment;
     const uint32_t *points = sc_model_points(model) + first[0];
@@ -256,4 +260,48 @@ uint32_t sc_contour_bounds_update(const sc_model *model, sc_workspace *w,
         bounds->side[side] = all;
     }
     return updated;
+}
+
+static int is_edge_bounded(const sc_segment_bounds *bounds, double x0, double y0, double x1,
+                           double y1)
+{
+    int side = x1 < x0 ? SC_SIDE_TOP : SC_SIDE_BOTTOM;
+    const sc_ray_bound *b = &bounds->side[side];
+    double flip = side == SC_SIDE_TOP ? 1 : -1, slope = flip * (y1 - y0) / (x1 - x0);
+    if (b->ay == -INFINITY) return 1;
+    return x0 >= (double)b->ax && x0 <= (double)b->bx && x1 >= (double)b->ax &&
+           x1 <= (double)b->bx && slope >= (double)b->least && slope <= (double)b->most &&
+           flip * y0 + slope * ((double)b->ax - x0) >= (double)b->ay &&
+           flip * y0 + slope * ((double)b->bx - x0) >= (double)b->by;
+}
+
+/* The edges below a segment against the bounds of one above. */
+static int are_edges_bounded(const sc_model *model, const sc_workspace *w,
+                             const sc_projection *projection, int line, uint32_t segment,
+                             const sc_segment_bounds *bounds)
+{
+    const uint32_t *first;
+    uint32_t i;
+    double x0, y0, x1, y1;
+    if (segment >= model->leaf_segment_count) {
+        first = sc_model_segment_children(model) + (segment - model->leaf_segment_count);
+        for (i = first[0]; i < first[1]; i++)
+            if (!are_edges_bounded(model, w, projection, line, sc_model_children(model)[i], bounds))
+                return 0;
+        return 1;
+    }
+    first = sc_model_segment_points(model) + segment;
+    for (i = first[0]; i + 1 < first[1]; i++) {
+        sc_contour_bounds_project(w, projection, line, sc_model_points(model)[i], &x0, &y0);
+        sc_contour_bounds_project(w, projection, line, sc_model_points(model)[i + 1], &x1, &y1);
+        if (!is_edge_bounded(bounds, x0, y0, x1, y1)) return 0;
+    }
+    return 1;
+}
+
+int sc_contour_bounds_validate(const sc_model *model, const sc_workspace *w,
+                               const sc_projection *projection, int line, uint32_t segment)
+{
+    return w->bounds_tick[line][segment] == w->tick &&
+           are_edges_bounded(model, w, projection, line, segment, &w->bounds[line][segment]);
 }

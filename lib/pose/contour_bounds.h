@@ -27,13 +27,18 @@ uint32_t sc_contour_bounds_update(const sc_model *model, sc_workspace *workspace
 /* A value not above any line of the bundle at x; infinity for no lines. */
 double sc_contour_bounds_lowest(const sc_ray_bound *bound, double x);
 
+/* For debug builds and tests: 1 if the bounds of a segment are of this projection, hold its edges, and
+   are above none of their lines at its ends. */
+int sc_contour_bounds_validate(const sc_model *model, const sc_workspace *workspace,
+                               const sc_projection *projection, int line, uint32_t segment);
+
 static inline int sc_contour_bounds_empty(const sc_ray_bound *bound)
 {
     return bound->ax > bound->bx;
 }
 
 /* A point under a projection, with the plane turned for a line. */
-void sc_contour_bounds_project(const sc_workspace *workspace, const sc_projection *projection, int line,
-                               uint32_t point, double *x, double *y);
+void sc_contour_bounds_project(const sc_workspace *workspace, const sc_projection *projection,
+                               int line, uint32_t point, double *x, double *y);
 
 #endif

@@ -10,7 +10,7 @@
 enum { HALF = SC_DNC_DIRECTIONS / 2 };
 
 /* The first half of the directions; the second half are their negatives. */
-static const int direction[HALF][3] = {{1, 0, 0},  {0, 1, 0},   {0, 0, 1}, {1, 1, 1},
+static const int direction[HALF][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 1},
                                        {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
 
 /*
@@ -24,10 +24,10 @@ static const int direction[HALF][3] = {{1, 0, 0},  {0, 1, 0},   {0, 0, 1}, {1, 1
 static const double ERROR_RELATIVE = 8 * 1.1102230246251565e-16;
 static const double ERROR_ABSOLUTE = 1e-300;
 
-static uint32_t leaf_mask(const sc_model *model, const sc_workspace *w, uint32_t leaf)
+/* The mask of 1 to SC_LEAF_MAX triangles, given by their corners. */
+static uint32_t mask_of(const sc_workspace *w, const uint32_t *corner, uint32_t count)
 {
-    const uint32_t *corner = sc_model_triangle(model) + 3 * (uint64_t)sc_model_leaf_first(model)[leaf];
-    uint32_t count = sc_model_leaf_first(model)[leaf + 1] - sc_model_leaf_first(model)[leaf], i, mask = 0;
+    uint32_t i, mask = 0;
     double e[3][SC_LEAF_MAX], f[3][SC_LEAF_MAX], n[3][SC_LEAF_MAX], error[SC_LEAF_MAX];
     double dot[HALF][SC_LEAF_MAX];
     int k, d;
@@ -72,12 +72,29 @@ static uint32_t leaf_mask(const sc_model *model, const sc_workspace *w, uint32_t
 void sc_dnc_update(const sc_model *model, sc_workspace *w)
 {
     const uint32_t *level_first = sc_model_level_first(model), *child = sc_model_child(model);
-    uint32_t level, p, leaf;
+    const uint32_t *leaf_first = sc_model_leaf_first(model), *corner = sc_model_triangle(model);
+    uint32_t level, p, leaf, last = sc_model_first_leaf_patch(model);
     for (leaf = 0; leaf < model->leaf_count; leaf++)
-        w->mask[sc_model_first_leaf_patch(model) + leaf] = (uint16_t)leaf_mask(model, w, leaf);
+        w->mask[last + leaf] = (uint16_t)mask_of(w, corner + 3 * (uint64_t)leaf_first[leaf],
+                                                 leaf_first[leaf + 1] - leaf_first[leaf]);
     for (level = model->level_count - 1; level-- > 0;)
         for (p = level_first[level]; p + 1 < level_first[level + 1]; p++)
             w->mask[p] = w->mask[child[p]] & w->mask[child[p + 1] - 1];
+}
+
+int sc_dnc_validate(const sc_model *model, const sc_workspace *w)
+{
+    const uint32_t *level_first = sc_model_level_first(model), *leaf = sc_model_leaf(model);
+    uint32_t level, p, i;
+    for (level = 0; level < model->level_count; level++)
+        for (p = level_first[level]; p + 1 < level_first[level + 1]; p++) {
+            uint32_t mask = (1u << SC_DNC_DIRECTIONS) - 1u;
+            for (i = sc_model_leaf_first(model)[leaf[p]];
+                 i < sc_model_leaf_first(model)[leaf[p + 1]]; i++)
+                mask &= mask_of(w, sc_model_triangle(model) + 3 * (uint64_t)i, 1);
+            if (mask != w->mask[p]) return 0;
+        }
+    return 1;
 }
 
 /*
@@ -103,9 +120,13 @@ void sc_dnc_projection(const sc_workspace *w, uint32_t mask, sc_projection *proj
         for (k = 0; k < 3; k++) s[k] += (d < HALF ? weight : -weight) * one[k];
     }
     if (s[1] * h[2] == s[2] * h[1] && s[2] * h[0] == s[0] * h[2]) h = oblique[1];
-    for (k = 0; k < 3; k++) u[k] = s[(k + 1) % 3] * h[(k + 2) % 3] - s[(k + 2) % 3] * h[(k + 1) % 3];
-    for (k = 0; k < 3; k++) v[k] = s[(k + 1) % 3] * u[(k + 2) % 3] - s[(k + 2) % 3] * u[(k + 1) % 3];
+    for (k = 0; k < 3; k++)
+        u[k] = s[(k + 1) % 3] * h[(k + 2) % 3] - s[(k + 2) % 3] * h[(k + 1) % 3];
+    for (k = 0; k < 3; k++)
+        v[k] = s[(k + 1) % 3] * u[(k + 2) % 3] - s[(k + 2) % 3] * u[(k + 1) % 3];
     for (k = 0; k < 3; k++) projection->origin[k] = w->center[k];
-    projection->x_error = 5 * 1.1102230246251565e-16 * (fabs(u[0]) + fabs(u[1]) + fabs(u[2])) * w->radius;
-    projection->y_error = 5 * 1.1102230246251565e-16 * (fabs(v[0]) + fabs(v[1]) + fabs(v[2])) * w->radius;
+    projection->x_error =
+        5 * 1.1102230246251565e-16 * (fabs(u[0]) + fabs(u[1]) + fabs(u[2])) * w->radius;
+    projection->y_error =
+        5 * 1.1102230246251565e-16 * (fabs(v[0]) + fabs(v[1]) + fabs(v[2])) * w->radius;
 }

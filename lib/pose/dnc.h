@@ -18,6 +18,10 @@ enum { SC_DNC_DIRECTIONS = 14 };
 /* Fills mask. About 10 ns a triangle. */
 void sc_dnc_update(const sc_model *model, sc_workspace *workspace);
 
+/* For debug builds and tests: 1 if every patch's mask is the AND of those of its triangles, each
+   computed alone. */
+int sc_dnc_validate(const sc_model *model, const sc_workspace *workspace);
+
 /*
  * A projection along the average of the directions in a mask that is not 0: every triangle of a patch
  * with these bits keeps a positive area, exactly.

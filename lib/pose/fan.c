@@ -52,7 +52,8 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
     for (i = 0; i < count; i++) {
         double sum = size[i] + size[i + 1 < count ? i + 1 : 0];
         double area = d[0] * n[i][0] + d[1] * n[i][1] + d[2] * n[i][2];
-        if (!(area > ERROR_RELATIVE * d_size * (sum * sum) + ERROR_ABSOLUTE * (1 + d_size))) return 0;
+        if (!(area > ERROR_RELATIVE * d_size * (sum * sum) + ERROR_ABSOLUTE * (1 + d_size)))
+            return 0;
     }
     for (k = 1; k < 3; k++)
         if (fabs(d[k]) < fabs(d[axis])) axis = k;

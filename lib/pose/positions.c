@@ -9,7 +9,8 @@
 #include <string.h>
 
 /* Stores one point and widens the box of all. */
-static inline void store(const double p[3], uint32_t at, sc_workspace *w, double low[3], double high[3])
+static inline void store(const double p[3], uint32_t at, sc_workspace *w, double low[3],
+                         double high[3])
 {
     double *position = w->position + 3 * (uint64_t)at;
     float *rounded = w->rounded + 4 * (uint64_t)at;

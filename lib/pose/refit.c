@@ -36,7 +36,8 @@ static inline void store_box(const sc_boxes *boxes, uint64_t at, __m128 low, __m
 
 static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf, uint32_t patch)
 {
-    const uint32_t *corner = sc_model_triangle(model) + 3 * (uint64_t)sc_model_leaf_first(model)[leaf];
+    const uint32_t *corner =
+        sc_model_triangle(model) + 3 * (uint64_t)sc_model_leaf_first(model)[leaf];
     uint32_t count = sc_model_leaf_first(model)[leaf + 1] - sc_model_leaf_first(model)[leaf], i;
     __m128 low = _mm_set1_ps(FLT_MAX), high = _mm_set1_ps(-FLT_MAX);
     for (i = 0; i < count; i++, corner += 3) {
@@ -61,7 +62,8 @@ static inline float step(float f)
 
 static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf, uint32_t patch)
 {
-    const uint32_t *corner = sc_model_triangle(model) + 3 * (uint64_t)sc_model_leaf_first(model)[leaf];
+    const uint32_t *corner =
+        sc_model_triangle(model) + 3 * (uint64_t)sc_model_leaf_first(model)[leaf];
     uint32_t count = sc_model_leaf_first(model)[leaf + 1] - sc_model_leaf_first(model)[leaf], i;
     uint64_t at = (uint64_t)leaf * SC_LEAF_MAX;
     float low[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, high[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};

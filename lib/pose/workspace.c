@@ -28,7 +28,8 @@ static uint64_t lay_out(const sc_model *model, unsigned char *block, sc_workspac
     int k;
     w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count, sizeof(double));
     w->rounded = (float *)place(block, &at, 4 * (uint64_t)model->point_count, sizeof(float));
-    for (k = 0; k < 6; k++) w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
+    for (k = 0; k < 6; k++)
+        w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
     for (k = 0; k < 6; k++)
         w->triangle_boxes.side[k] = (float *)place(block, &at, triangles, sizeof(float));
     w->mask = (uint16_t *)place(block, &at, model->patch_end, sizeof(uint16_t));

@@ -49,12 +49,13 @@ struct sc_workspace {
     uint32_t owned; /* allocated by sc_workspace_create */
 
     /* the pose; all but position valid only in a query */
-    double *position;       /* 3 * point_count */
-    float *rounded;         /* 4 * point_count: positions to the nearest float, and padding */
-    double center[3];       /* of the box of all points */
-    double radius;          /* largest distance of a coordinate from center */
-    sc_boxes patch_boxes;   /* patch_end */
-    sc_boxes triangle_boxes; /* SC_LEAF_MAX per leaf; what is no triangle is NaN and overlaps nothing */
+    double *position;     /* 3 * point_count */
+    float *rounded;       /* 4 * point_count: positions to the nearest float, and padding */
+    double center[3];     /* of the box of all points */
+    double radius;        /* largest distance of a coordinate from center */
+    sc_boxes patch_boxes; /* patch_end */
+    sc_boxes
+        triangle_boxes; /* SC_LEAF_MAX per leaf; what is no triangle is NaN and overlaps nothing */
     uint32_t boxes_ready;
     uint16_t *mask; /* patch_end: discrete normal cones, see pose/dnc.h */
     uint32_t pose_tick;

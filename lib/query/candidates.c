@@ -156,7 +156,8 @@ static int side_separates(const double x[2][3][3])
                 else
                     other = along > other ? along : other;
             }
-            bound = relative * (fabs(m[0]) + fabs(m[1]) + fabs(m[2])) * reach + absolute * (1 + reach);
+            bound =
+                relative * (fabs(m[0]) + fabs(m[1]) + fabs(m[2])) * reach + absolute * (1 + reach);
             if (own - other > 2.0001 * bound) return 1;
         }
     }
@@ -261,7 +262,8 @@ void sc_candidates_decide(sc_query_state *state)
         if (disjoint - i < LANES) rest &= (1u << (disjoint - i)) - 1u;
         for (; rest && !state->stop; rest &= rest - 1) {
             unsigned lane = sc_bits_lowest(rest);
-            if ((planes.flat >> lane & 1u) && side_separates((const double(*)[3][3])x[lane])) continue;
+            if ((planes.flat >> lane & 1u) && side_separates((const double(*)[3][3])x[lane]))
+                continue;
             decide_pair(state, &w->candidates[i + lane]);
         }
     }

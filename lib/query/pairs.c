@@ -29,5 +29,6 @@ void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b)
 void sc_pairs_finish(sc_query_state *state)
 {
     if (state->options.output == SC_OUTPUT_PAIRS)
-        sc_sort_pairs(state->pairs, state->count < state->capacity ? state->count : state->capacity);
+        sc_sort_pairs(state->pairs,
+                      state->count < state->capacity ? state->count : state->capacity);
 }

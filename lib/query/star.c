@@ -18,13 +18,22 @@
 
 #include "pose/contour_bounds.h"
 
+#ifdef SC_VALIDATE
+#  include <assert.h>
+#endif
+
 static void update(sc_query_state *state, const sc_projection *projection, int line,
                    const uint32_t *segments, uint32_t count)
 {
     uint32_t i, previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
     for (i = 0; i < count; i++)
-        state->stats.counts[SC_TASK_UPDATE_CONTOURS] += sc_contour_bounds_update(
-            state->model, state->workspace, projection, line, segments[i]);
+        state->stats.counts[SC_TASK_UPDATE_CONTOURS] +=
+            sc_contour_bounds_update(state->model, state->workspace, projection, line, segments[i]);
+#ifdef SC_VALIDATE
+    for (i = 0; i < count; i++)
+        assert(sc_contour_bounds_validate(state->model, state->workspace, projection, line,
+                                          segments[i]));
+#endif
     sc_state_switch(state, previous);
 }
 
@@ -80,7 +89,8 @@ static int is_beside(const sc_model *model, const sc_segment_bounds *bounds, uin
                      uint32_t point, double x, double error, int sign)
 {
     const sc_ray_bound *top = &bounds->side[SC_SIDE_TOP], *bottom = &bounds->side[SC_SIDE_BOTTOM];
-    int starts = end_point(model, segment, 0) == point, ends = end_point(model, segment, 1) == point;
+    int starts = end_point(model, segment, 0) == point,
+        ends = end_point(model, segment, 1) == point;
     if (top->ay == -INFINITY || bottom->ay == -INFINITY) return 0;
     if (!starts && !ends) {
         double low = (double)(top->ax < bottom->ax ? top->ax : bottom->ax);
@@ -95,7 +105,8 @@ static int is_beside(const sc_model *model, const sc_segment_bounds *bounds, uin
 
 /* Appendix: a line through the shared point that has the two patches on different sides. */
 static int is_separated(const sc_query_state *state, const sc_projection *projection, int line,
-                        uint32_t point, const uint32_t *segments, uint32_t first_count, uint32_t count)
+                        uint32_t point, const uint32_t *segments, uint32_t first_count,
+                        uint32_t count)
 {
     double x, y, error = line == SC_LINE_VERTICAL ? projection->x_error : projection->y_error;
     uint32_t i;
@@ -103,8 +114,8 @@ static int is_separated(const sc_query_state *state, const sc_projection *projec
     sc_contour_bounds_project(state->workspace, projection, line, point, &x, &y);
     for (sign = -1; sign <= 1; sign += 2) {
         for (i = 0; i < count; i++)
-            if (!is_beside(state->model, &state->workspace->bounds[line][segments[i]], segments[i], point,
-                           x, error, i < first_count ? sign : -sign))
+            if (!is_beside(state->model, &state->workspace->bounds[line][segments[i]], segments[i],
+                           point, x, error, i < first_count ? sign : -sign))
                 break;
         if (i == count) return 1;
     }
@@ -127,8 +138,9 @@ int sc_star_test(sc_query_state *state, const sc_projection *projection, uint32_
     }
     for (line = 0; line < 2 && !passed; line++) {
         update(state, projection, line, segments, count);
-        passed = touches ? is_separated(state, projection, line, point, segments, first_count, count)
-                         : is_star(state->workspace->bounds[line], segments, count);
+        passed = touches
+                     ? is_separated(state, projection, line, point, segments, first_count, count)
+                     : is_star(state->workspace->bounds[line], segments, count);
     }
     sc_state_switch(state, previous);
     return passed;

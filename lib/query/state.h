@@ -15,10 +15,10 @@ typedef struct sc_query_state {
     sc_query_options options;
     sc_pair *pairs; /* the caller's array */
     uint64_t capacity;
-    uint64_t count; /* pairs found */
-    int stop;       /* enough is known */
+    uint64_t count;    /* pairs found */
+    int stop;          /* enough is known */
     int after_contour; /* box and primitive tests count as following a failed contour test */
-    uint32_t task;  /* what the clock runs for */
+    uint32_t task;     /* what the clock runs for */
     int timed;
     uint64_t last_time;
     sc_stats stats;

@@ -14,6 +14,10 @@
 #include "query/candidates.h"
 #include "query/star.h"
 
+#ifdef SC_VALIDATE
+#  include <assert.h>
+#endif
+
 static int is_last_level(const sc_model *model, uint32_t patch)
 {
     return patch >= sc_model_first_leaf_patch(model);
@@ -53,7 +57,8 @@ static void query_boxes(sc_query_state *state, uint32_t a, uint32_t b)
         uint32_t c = hop[a] + sc_bits_lowest(rows);
         unsigned mask = sc_boxes_overlap8(boxes, c, boxes, hop[b]) & row_mask(b_count);
         state->stats.counts[sc_state_box_task(state)]++;
-        for (; mask && !state->stop; mask &= mask - 1) query_boxes(state, c, hop[b] + sc_bits_lowest(mask));
+        for (; mask && !state->stop; mask &= mask - 1)
+            query_boxes(state, c, hop[b] + sc_bits_lowest(mask));
     }
 }
 
@@ -71,10 +76,12 @@ static void query_boxes_of_self(sc_query_state *state, uint32_t a)
     count = hop[a + 1] - hop[a];
     for (i = 0; i < count && !state->stop; i++) {
         uint32_t c = hop[a] + i;
-        unsigned mask = sc_boxes_overlap8(boxes, c, boxes, hop[a]) & row_mask(count) & ~row_mask(i + 1);
+        unsigned mask =
+            sc_boxes_overlap8(boxes, c, boxes, hop[a]) & row_mask(count) & ~row_mask(i + 1);
         state->stats.counts[sc_state_box_task(state)]++;
         query_boxes_of_self(state, c);
-        for (; mask && !state->stop; mask &= mask - 1) query_boxes(state, c, hop[a] + sc_bits_lowest(mask));
+        for (; mask && !state->stop; mask &= mask - 1)
+            query_boxes(state, c, hop[a] + sc_bits_lowest(mask));
     }
 }
 
@@ -89,7 +96,8 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
     if (!state->workspace->boxes_ready) {
         previous = sc_state_switch(state, SC_TASK_UPDATE_BOXES);
         sc_refit_boxes(model, state->workspace);
-        state->stats.counts[SC_TASK_UPDATE_BOXES] += model->triangle_count + (uint64_t)model->patch_end;
+        state->stats.counts[SC_TASK_UPDATE_BOXES] +=
+            model->triangle_count + (uint64_t)model->patch_end;
         sc_state_switch(state, previous);
     }
     previous = sc_state_switch(state, sc_state_box_task(state));
@@ -140,7 +148,8 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
         state->stats.nodes_culled++;
         return;
     }
-    for (c = child[node]; c < child[node + 1] && !state->stop; c++) query_contour(state, c, projection);
+    for (c = child[node]; c < child[node + 1] && !state->stop; c++)
+        query_contour(state, c, projection);
     follow_contour(state, 1);
     query_rest_of_node(state, node);
 }
@@ -181,6 +190,9 @@ void sc_traversal_run(sc_query_state *state)
     if (state->options.method == SC_METHOD_SCTT) {
         sc_state_switch(state, SC_TASK_UPDATE_NORMALS);
         sc_dnc_update(model, state->workspace);
+#ifdef SC_VALIDATE
+        assert(sc_dnc_validate(model, state->workspace));
+#endif
         state->stats.counts[SC_TASK_UPDATE_NORMALS] += model->patch_end;
         sc_state_switch(state, SC_TASK_ORIENTATION);
         query_orientation(state, 0);
@@ -189,7 +201,8 @@ void sc_traversal_run(sc_query_state *state)
         query_all_nodes(state);
     } else {
         sc_refit_boxes(model, state->workspace);
-        state->stats.counts[SC_TASK_UPDATE_BOXES] += model->triangle_count + (uint64_t)model->patch_end;
+        state->stats.counts[SC_TASK_UPDATE_BOXES] +=
+            model->triangle_count + (uint64_t)model->patch_end;
         sc_state_switch(state, SC_TASK_BOXES_ORIENTATION);
         query_boxes_of_self(state, 0);
     }
