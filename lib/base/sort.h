@@ -8,11 +8,21 @@
 #ifndef SC_BASE_SORT_H
 #define SC_BASE_SORT_H
 
+#include <string.h>
+
 #include "starcontour.h"
 
 static inline int sc_sort_less(sc_pair x, sc_pair y)
 {
     return x.a != y.a ? x.a < y.a : x.b < y.b;
+}
+
+/* Unsigned integers in the order of floats, NaN aside. */
+static inline uint32_t sc_sort_key(float f)
+{
+    uint32_t bits;
+    memcpy(&bits, &f, sizeof bits);
+    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
 void sc_sort_pairs(sc_pair *pairs, uint64_t count);

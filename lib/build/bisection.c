@@ -9,11 +9,14 @@
 #include <string.h>
 
 #include "base/sort.h"
+#include "build/refinement.h"
 
 /* Deeper than this, patches are halved as they stand, which ends within SC_DEPTH_MAX. */
 enum { DEPTH_MEASURED = 32 };
 
-enum { SMOOTHING_PASSES = 3 };
+/* A cut may be off its target by one triangle in this many. Tuned on the bunny: of the patches of level
+   10, 53 % pass the tests in the rest pose, 49 % with 64; without this limit, leaves are 6 % more. */
+enum { SLACK = 32 };
 
 typedef struct bisection {
     const sc_points *points;
@@ -31,6 +34,7 @@ typedef struct bisection {
     uint32_t *sizes;     /* triangle_count: of components */
     int32_t *graph; /* 7 * triangle_count + 1, for the caller's cut: offsets, neighbors, weights */
     uint32_t patches; /* numbers given out */
+    sc_refinement refinement;
 } bisection;
 
 /* The triangle across side k of t if it is in the same patch, else SC_NONE. */
@@ -39,14 +43,6 @@ static uint32_t neighbor(const bisection *b, uint32_t t, uint32_t k)
     uint32_t h = b->adjacency->opposite[3 * (uint64_t)t + k];
     if (h == SC_NONE || b->patch[h / 3] != b->patch[t]) return SC_NONE;
     return h / 3;
-}
-
-/* A float's order as an unsigned integer's. */
-static uint32_t order_bits(float f)
-{
-    uint32_t bits;
-    memcpy(&bits, &f, sizeof bits);
-    return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
 /* Numbers the components of a patch, where crossing from side 0 to side 1 does or does not count as
@@ -151,7 +147,7 @@ static void cut_across(bisection *b, const uint32_t *triangles, uint32_t count,
         const float *c = b->centers + 3 * (uint64_t)triangles[i];
         double along =
             (double)c[0] * direction[0] + (double)c[1] * direction[1] + (double)c[2] * direction[2];
-        b->keys[i].a = order_bits((float)along);
+        b->keys[i].a = sc_sort_key((float)along);
         b->keys[i].b = triangles[i];
     }
     select_lowest(b->keys, count, left_target);
@@ -222,32 +218,6 @@ static void even_out(bisection *b, const uint32_t *triangles, uint32_t count, ui
     }
 }
 
-/* Moves triangles whose sides lie more along the cut than off it. */
-static void smooth(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
-                   const uint32_t capacity[2])
-{
-    uint32_t pass, i, k, moved = 1;
-    for (pass = 0; pass < SMOOTHING_PASSES && moved; pass++) {
-        moved = 0;
-        for (i = 0; i < count; i++) {
-            uint32_t t = triangles[i];
-            uint8_t from = b->side[t], to = !from;
-            float gain = 0;
-            if (size[to] >= capacity[to] || size[from] == 1) continue;
-            for (k = 0; k < 3; k++) {
-                uint32_t u = neighbor(b, t, k);
-                float length = b->lengths[3 * (uint64_t)t + k];
-                if (u != SC_NONE) gain += b->side[u] == to ? length : -length;
-            }
-            if (gain <= 1e-4f) continue;
-            b->side[t] = to;
-            size[from]--;
-            size[to]++;
-            moved++;
-        }
-    }
-}
-
 /* Gives the smaller components of each side to the other side. */
 static void connect(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
                     const uint32_t capacity[2])
@@ -294,8 +264,8 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
     for (i = 0; i < found; i++) {
         const float *c = b->centers + 3 * (uint64_t)b->queue[i];
         b->keys[i].a =
-            order_bits((float)((double)c[0] * direction[0] + (double)c[1] * direction[1] +
-                               (double)c[2] * direction[2]));
+            sc_sort_key((float)((double)c[0] * direction[0] + (double)c[1] * direction[1] +
+                                (double)c[2] * direction[2]));
         b->keys[i].b = i;
     }
     sc_sort_pairs(b->keys, found);
@@ -318,8 +288,11 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count)
     uint32_t left_target = (uint32_t)((uint64_t)count * left_leaves / leaves);
     uint32_t size[2] = {0, 0}, capacity[2];
     sc_status status;
-    capacity[0] = left_leaves * SC_LEAF_MAX;
-    capacity[1] = (leaves - left_leaves) * SC_LEAF_MAX;
+    for (i = 0; i < 2; i++) { /* slack that is used here is missing further down */
+        uint32_t full = (i ? leaves - left_leaves : left_leaves) * SC_LEAF_MAX;
+        capacity[i] = (i ? count - left_target : left_target) + 1 + count / SLACK;
+        if (capacity[i] > full) capacity[i] = full;
+    }
     b->patches++;
     for (i = 0; i < count; i++) b->patch[triangles[i]] = b->patches;
     found = find_components(b, triangles, count, 0);
@@ -335,7 +308,7 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count)
     }
     for (i = 0; i < count; i++) size[b->side[triangles[i]]]++;
     even_out(b, triangles, count, size, capacity);
-    smooth(b, triangles, count, size, capacity);
+    sc_refinement_run(&b->refinement, triangles, count, size, capacity);
     connect(b, triangles, count, size, capacity);
     return SC_OK;
 }
@@ -424,15 +397,27 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.queue = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
     b.keys = (sc_pair *)sc_scratch_take(scratch, count, sizeof(sc_pair));
     b.sizes = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
+    b.refinement.opposite = adjacency->opposite;
+    b.refinement.lengths = b.lengths;
+    b.refinement.patch = b.patch;
+    b.refinement.side = b.side;
+    b.refinement.gain = (float *)sc_scratch_take(scratch, count, sizeof(float));
+    b.refinement.moved = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
+    b.refinement.moves = b.queue; /* not in use meanwhile */
+    b.refinement.heap = (sc_pair *)sc_scratch_take(scratch, 4 * (uint64_t)count, sizeof(sc_pair));
     if (bisect)
         b.graph = (int32_t *)sc_scratch_take(scratch, 7 * (uint64_t)count + 1, sizeof(int32_t));
     if (!b.centers || !b.lengths || !b.patch || !b.side || !b.component || !b.queue || !b.keys ||
-        !b.sizes || (bisect && !b.graph))
+        !b.sizes || !b.refinement.gain || !b.refinement.moved || !b.refinement.heap ||
+        (bisect && !b.graph))
         return SC_ERROR_MEMORY;
     measure(&b);
     for (t = 0; t < count; t++) hierarchy->order[t] = t;
     status = bisect_patch(&b, 0, count, 1, &root);
     sc_scratch_give(scratch, b.graph);
+    sc_scratch_give(scratch, b.refinement.heap);
+    sc_scratch_give(scratch, b.refinement.moved);
+    sc_scratch_give(scratch, b.refinement.gain);
     sc_scratch_give(scratch, b.sizes);
     sc_scratch_give(scratch, b.keys);
     sc_scratch_give(scratch, b.queue);

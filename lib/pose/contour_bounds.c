@@ -44,23 +44,15 @@ double sc_contour_bounds_lowest(const sc_ray_bound *bound, double x)
     return base == base ? base : -HUGE_VAL; /* infinities that met */
 }
 
-/* A segment whose lines are not known: bounded in extent only. */
-static void make_unbounded(sc_segment_bounds *bounds, double low, double high)
+/* A segment whose lines are not known, or not numbers: anything, anywhere. */
+static void make_unbounded(sc_segment_bounds *bounds)
 {
-    int side;
-    for (side = 0; side < 2; side++) {
-        sc_ray_bound *b = &bounds->side[side];
-        b->ax = sc_boxes_below(low);
-        b->bx = sc_boxes_above(high);
-        if (!(b->ax >= -FLT_MAX))
-            b->ax = -FLT_MAX;                     /* infinite minus infinite is NaN, which would */
-        if (!(b->bx <= FLT_MAX)) b->bx = FLT_MAX; /* not lower a parent's bound */
-        b->ay = b->by = -INFINITY;
-        b->least = b->most = 0;
-    }
+    static const sc_ray_bound anything = {-FLT_MAX, -INFINITY, FLT_MAX, -INFINITY, 0, 0};
+    bounds->side[SC_SIDE_TOP] = bounds->side[SC_SIDE_BOTTOM] = anything;
 }
 
-enum { EDGES_AT_ONCE = 64 };
+/* Edges of a segment without children at most: all sides of a leaf cluster. */
+enum { EDGES_MAX = 3 * SC_LEAF_MAX };
 
 /* Edges must be this many times longer than the error of a coordinate, along the axis, to have a
    slope; so that in what follows the errors of dx are below 2^-19 of it. */
@@ -68,18 +60,11 @@ static const double LEAST_RUN = 0x1p20;
 
 /* The lines of the edges of one side, as they are collected. */
 typedef struct edge_lines {
-    double x[EDGES_AT_ONCE], y[EDGES_AT_ONCE], slope[EDGES_AT_ONCE];
+    double x[EDGES_MAX], y[EDGES_MAX], slope[EDGES_MAX];
     double low, high, least, most, steepness, slope_error, height;
+    double not_finite; /* stays 0 unless a slope or a height is NaN or infinite */
     uint32_t count;
 } edge_lines;
-
-static void start_lines(edge_lines *lines)
-{
-    lines->low = lines->least = HUGE_VAL;
-    lines->high = lines->most = -HUGE_VAL;
-    lines->steepness = lines->slope_error = lines->height = 0;
-    lines->count = 0;
-}
 
 /*
  * The line of one edge from (x, y), whose run is along the axis from low to high. The true slope
@@ -96,6 +81,17 @@ static inline void add_line(edge_lines *lines, double x, double y, double slope,
     lines->x[i] = x;
     lines->y[i] = y;
     lines->slope[i] = slope;
+    lines->not_finite += 0 * slope + 0 * y;
+    if (i == 0) {
+        lines->low = low;
+        lines->high = high;
+        lines->least = slope - error;
+        lines->most = slope + error;
+        lines->steepness = steepness;
+        lines->slope_error = error;
+        lines->height = fabs(y);
+        return;
+    }
     if (low < lines->low) lines->low = low;
     if (high > lines->high) lines->high = high;
     if (slope - error < lines->least) lines->least = slope - error;
@@ -137,8 +133,8 @@ static int bound_lines(const edge_lines *lines, double x_error, double y_error, 
     b->ay = sc_boxes_below(at_a - error);
     b->by = sc_boxes_below(at_b - error);
     /* all of it finite: so no later sum or product is NaN */
-    return b->ax > -FLT_MAX && b->bx < FLT_MAX && b->least > -FLT_MAX && b->most < FLT_MAX &&
-           b->ay > -FLT_MAX && b->by > -FLT_MAX;
+    return lines->not_finite == 0 && b->ax > -FLT_MAX && b->bx < FLT_MAX && b->least > -FLT_MAX &&
+           b->most < FLT_MAX && b->ay > -FLT_MAX && b->by > -FLT_MAX;
 }
 
 /* From edges (paper, section 6.4); 0 if an edge's side or slope is not certain. */
@@ -150,8 +146,9 @@ static int bound_edges(const sc_workspace *w, const sc_projection *projection, i
     edge_lines top, bottom;
     double x0, y0;
     uint32_t i;
-    start_lines(&top);
-    start_lines(&bottom);
+    if (edges > EDGES_MAX) return 0;
+    top.count = bottom.count = 0;
+    top.not_finite = bottom.not_finite = 0;
     sc_contour_bounds_project(w, projection, line, points[0], &x0, &y0);
     for (i = 1; i <= edges; i++) {
         double x1, y1, dx, inverse;
@@ -196,45 +193,6 @@ static inline void unite_ends(sc_ray_bound *b, const sc_ray_bound *child)
     if (at_b < (double)b->by) b->by = sc_boxes_below(at_b);
 }
 
-static void bound_leaf(const sc_model *model, const sc_workspace *w,
-                       const sc_projection *projection, int line, uint32_t segment,
-                       sc_segment_bounds *bounds)
-{
-    const uint32_t *first = sc_model_segment_points(model) + segment;
-    const uint32_t *points = sc_model_points(model) + first[0];
-    uint32_t edges = first[1] - first[0] - 1, from = 0, i;
-    int side;
-    double low = HUGE_VAL, high = -HUGE_VAL, x, y;
-    sc_segment_bounds piece, all;
-    if (edges <= EDGES_AT_ONCE) {
-        if (bound_edges(w, projection, line, points, edges, bounds)) return;
-    } else {
-        int bounded = 1, pass;
-        all.side[0] = all.side[1] = NO_LINES;
-        for (pass = 0; pass < 2 && bounded; pass++) /* extents first, ends then */
-            for (from = 0; from < edges && bounded; from += EDGES_AT_ONCE) {
-                uint32_t count = edges - from < EDGES_AT_ONCE ? edges - from : EDGES_AT_ONCE;
-                bounded = bound_edges(w, projection, line, points + from, count, &piece);
-                for (side = 0; side < 2 && bounded; side++)
-                    if (pass == 0)
-                        unite_extent(&all.side[side], &piece.side[side]);
-                    else
-                        unite_ends(&all.side[side], &piece.side[side]);
-            }
-        if (bounded) {
-            *bounds = all;
-            return;
-        }
-    }
-    for (i = 0; i <= edges; i++) {
-        sc_contour_bounds_project(w, projection, line, points[i], &x, &y);
-        if (x < low) low = x;
-        if (x > high) high = x;
-    }
-    x = line == SC_LINE_VERTICAL ? projection->x_error : projection->y_error;
-    make_unbounded(bounds, low - x, high + x);
-}
-
 uint32_t sc_contour_bounds_update(const sc_model *model, sc_workspace *w,
                                   const sc_projection *projection, int line, uint32_t segment)
 {
@@ -245,7 +203,10 @@ uint32_t sc_contour_bounds_update(const sc_model *model, sc_workspace *w,
     if (w->bounds_tick[line][segment] == w->tick) return 0;
     w->bounds_tick[line][segment] = w->tick;
     if (segment < model->leaf_segment_count) {
-        bound_leaf(model, w, projection, line, segment, bounds);
+        first = sc_model_segment_points(model) + segment;
+        if (!bound_edges(w, projection, line, sc_model_points(model) + first[0],
+                         first[1] - first[0] - 1, bounds))
+            make_unbounded(bounds);
         return 1;
     }
     first = sc_model_segment_children(model) + (segment - model->leaf_segment_count);

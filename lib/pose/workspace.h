@@ -20,8 +20,8 @@
  *   the line through (ax, ay) with slope most for x <= ax,
  *   the chord from (ax, ay) to (bx, by) between,
  *   the line through (bx, by) with slope least for x >= bx;
- * and the edges that the lines prolong lie within [ax, bx]. No edges: ax > bx. Unbounded: ay is
- * -infinity.
+ * and the edges that the lines prolong lie within [ax, bx]. No edges: ax > bx. Nothing known, not even
+ * the extent: ay is -infinity, and [ax, bx] all there is.
  */
 typedef struct sc_ray_bound {
     float ax, ay, bx, by, least, most;

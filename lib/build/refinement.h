@@ -1,0 +1,32 @@
+/*
+ * Shortens the border between two sides of a patch.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * C. M. Fiduccia, R. M. Mattheyses, "A linear-time heuristic for improving network partitions", 1982:
+ * triangles change sides one at a time, each once, always the one that shortens the border most or
+ * lengthens it least; then the moves after the shortest border are taken back. Going through longer
+ * borders is what turns the zigzag of a straight cut into a line along edges. A heap stands for the
+ * paper's buckets, since gains are lengths. Work grows with the border, times a logarithm.
+ */
+#ifndef SC_BUILD_REFINEMENT_H
+#define SC_BUILD_REFINEMENT_H
+
+#include "build/adjacency.h"
+
+typedef struct sc_refinement {
+    const uint32_t *opposite; /* 3 per triangle: half-edges, see build/adjacency.h */
+    const float *lengths;     /* 3 per triangle: of its sides */
+    const uint32_t *patch;    /* per triangle: those of other patches do not count */
+    uint8_t *side;            /* per triangle: 0 or 1 */
+    float *gain;              /* per triangle, scratch */
+    uint8_t *moved;           /* per triangle, scratch; 0 before and after */
+    uint32_t *moves;          /* as many as triangles, scratch */
+    sc_pair *heap;            /* four times as many, scratch */
+} sc_refinement;
+
+/* size and capacity of the two sides; no side becomes empty or grows beyond its capacity. */
+void sc_refinement_run(sc_refinement *refinement, const uint32_t *triangles, uint32_t count,
+                       uint32_t size[2], const uint32_t capacity[2]);
+
+#endif
