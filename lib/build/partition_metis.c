@@ -3,8 +3,8 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)
-#  define _POSIX_C_SOURCE 200809L
+#if !defined(_WIN32) && !defined(_XOPEN_SOURCE)
+#  define _XOPEN_SOURCE 700 /* sigaction, initstate */
 #endif
 #include "starcontour_metis.h"
 
@@ -33,13 +33,41 @@ typedef struct sigaction disposition;
 #    define RESTORE(number, saved) sigaction(number, saved, NULL)
 #  endif
 
+/* What METIS changes in the process. The GNU C library's rand draws from the state of random, which
+   can be put aside; that of other libraries' rand cannot. */
+typedef struct process_state {
+    disposition abort_action, terminate_action;
+#  if defined(__GLIBC__)
+    char *random_state;
+    char scratch_state[128];
+#  endif
+} process_state;
+
+static void save_process(process_state *state)
+{
+    SAVE(SIGABRT, &state->abort_action);
+    SAVE(SIGTERM, &state->terminate_action);
+#  if defined(__GLIBC__)
+    state->random_state = initstate(1, state->scratch_state, sizeof state->scratch_state);
+#  endif
+}
+
+static void restore_process(const process_state *state)
+{
+#  if defined(__GLIBC__)
+    setstate(state->random_state);
+#  endif
+    RESTORE(SIGTERM, &state->terminate_action);
+    RESTORE(SIGABRT, &state->abort_action);
+}
+
 static int bisect(const sc_dual_graph *graph, uint32_t left_target, idx_t *offsets,
                   idx_t *neighbors, idx_t *weights, idx_t *part)
 {
     idx_t options[METIS_NOPTIONS], nodes = (idx_t)graph->node_count, constraints = 1, parts = 2,
                                    cut;
     real_t share[2];
-    disposition abort_action, terminate_action;
+    process_state process;
     int result;
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = 1;
@@ -47,12 +75,10 @@ static int bisect(const sc_dual_graph *graph, uint32_t left_target, idx_t *offse
     options[METIS_OPTION_NCUTS] = nodes < 200 ? 4 : nodes < 2000 ? 2 : 1;
     share[0] = (real_t)left_target / (real_t)graph->node_count;
     share[1] = 1 - share[0];
-    SAVE(SIGABRT, &abort_action);
-    SAVE(SIGTERM, &terminate_action);
+    save_process(&process);
     result = METIS_PartGraphRecursive(&nodes, &constraints, offsets, neighbors, NULL, NULL, weights,
                                       &parts, share, NULL, options, &cut, part);
-    RESTORE(SIGABRT, &abort_action);
-    RESTORE(SIGTERM, &terminate_action);
+    restore_process(&process);
     return result;
 }
 
