@@ -1,0 +1,1044 @@
+/*
+ * What culls, against exact rational arithmetic and the oracle: discrete normal cones and the projections
+ * made of them, bounds of contour segments, the star-contour test, closed fans.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include <float.h>
+#include <gmp.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness.h"
+#include "inputs.h"
+#include "oracle.h"
+#include "pose/contour_bounds.h"
+#include "pose/dnc.h"
+#include "pose/fan.h"
+#include "pose/positions.h"
+#include "query/star.h"
+#include "shapes.h"
+#include "starcontour.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* A model with a pose in its workspace, as within a query. */
+typedef struct scene {
+    const char *name;
+    soup mesh; /* its positions are the rest pose */
+    double *pose;
+    input_choices choices;
+    sc_model *model;
+    sc_workspace *workspace;
+    sc_query_state state;
+} scene;
+
+static int load_pose(scene *s)
+{
+    sc_pose pose = input_plain_pose(s->pose, s->mesh.vertex_count);
+    sc_workspace_new_pose(s->model, s->workspace);
+    if (!CHECK(sc_positions_read(s->model, &pose, 24, s->workspace) == SC_OK)) return 0;
+    sc_dnc_update(s->model, s->workspace);
+    memset(&s->state, 0, sizeof(s->state));
+    s->state.model = s->model;
+    s->state.workspace = s->workspace;
+    return 1;
+}
+
+/* Shares and numbers of cases are asked for where there are cases enough. */
+static int is_full(void)
+{
+    return test_iterations(100) >= 100;
+}
+
+static double *copy_positions(const soup *mesh)
+{
+    double *p = (double *)test_allocate(3 * (size_t)mesh->vertex_count * sizeof(double));
+    memcpy(p, mesh->positions, 3 * (size_t)mesh->vertex_count * sizeof(double));
+    return p;
+}
+
+/* Takes the mesh. */
+static int open_scene(scene *s, const char *name, const soup *mesh, uint32_t weld,
+                      uint32_t partition)
+{
+    sc_mesh m;
+    memset(s, 0, sizeof(*s));
+    s->name = name;
+    s->mesh = *mesh;
+    s->pose = copy_positions(mesh);
+    s->choices = input_choose(mesh, weld, partition);
+    m = input_plain_mesh(mesh);
+    return CHECK(sc_build(&m, &s->choices.options, &s->model) == SC_OK) &&
+           CHECK(sc_workspace_create(s->model, NULL, &s->workspace) == SC_OK);
+}
+
+static void close_scene(scene *s)
+{
+    sc_workspace_free(s->workspace);
+    sc_model_free(s->model);
+    input_free_choices(&s->choices);
+    free(s->pose);
+    soup_free(&s->mesh);
+}
+
+/* About a random axis, so that flat meshes look in any direction. */
+static void rotate(double *positions, uint32_t count)
+{
+    double axis[3], size = 0, angle = test_random_range(0, 2 * pi), c = cos(angle), d = sin(angle);
+    for (int k = 0; k < 3; ++k) axis[k] = test_random_range(-1, 1);
+    for (int k = 0; k < 3; ++k) size += axis[k] * axis[k];
+    for (int k = 0; k < 3; ++k) axis[k] /= sqrt(size);
+    for (uint32_t v = 0; v < count; ++v) {
+        double *p = positions + 3 * (size_t)v, q[3];
+        double along = (1 - c) * (axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2]);
+        for (int k = 0; k < 3; ++k)
+            q[k] = c * p[k] + along * axis[k] +
+                   d * (axis[(k + 1) % 3] * p[(k + 2) % 3] - axis[(k + 2) % 3] * p[(k + 1) % 3]);
+        memcpy(p, q, sizeof(q));
+    }
+}
+
+/* A pose that often leaves all normals within a half-space although it folds or overlaps. */
+static void random_pose(double *positions, uint32_t count)
+{
+    switch (test_random_below(6)) {
+    case 0:
+        soup_any_pose(positions, count);
+        break;
+    case 1:
+        soup_smooth(positions, count, 0.03);
+        break;
+    case 2: /* bent in its plane, up to twice round */
+        for (uint32_t v = 0; v < count; ++v) positions[3 * (size_t)v + 1] *= 0.1;
+        shape_bend(positions, count, test_random_range(0.3, 2));
+        break;
+    case 3: /* sheared and nearly flat */
+        for (uint32_t v = 0; v < count; ++v) {
+            double *p = positions + 3 * (size_t)v;
+            p[0] += 2 * p[1];
+            p[2] *= 0.1;
+        }
+        soup_smooth(positions, count, 0.05);
+        break;
+    case 4:
+        soup_twist(positions, count, test_random_range(0.1, 1));
+        break;
+    default:
+        break;
+    }
+    rotate(positions, count);
+    if (test_random_below(6) == 0) soup_noise(positions, count, 0.02);
+    if (test_random_below(6) == 0) soup_round_to_float(positions, count);
+    if (test_random_below(8) == 0) soup_snap(positions, count, 0.0625);
+    if (test_random_below(8) == 0) soup_move(positions, count, 1e5);
+}
+
+static void open_random_scene(scene *s, uint32_t maximum)
+{
+    const char *name = "soup";
+    soup mesh = test_random_below(8) == 0 ? soup_on_grid(2) : shape_any(maximum, &name);
+    open_scene(s, name, &mesh, test_random_below(3), test_random_below(4));
+}
+
+/* ---- exact arithmetic ---- */
+
+static double part(const sc_workspace *w, uint32_t point, int k)
+{
+    return w->position[3 * (size_t)point + (size_t)k];
+}
+
+/* result = v . (p - q); q NULL: the origin given. */
+static void exact_dot(mpq_t result, const double v[3], const double *p, const double *q)
+{
+    mpq_t a, b;
+    mpq_inits(a, b, NULL);
+    mpq_set_ui(result, 0, 1);
+    for (int k = 0; k < 3; ++k) {
+        mpq_set_d(a, p[k]);
+        mpq_set_d(b, q[k]);
+        mpq_sub(a, a, b);
+        mpq_set_d(b, v[k]);
+        mpq_mul(a, a, b);
+        mpq_add(result, result, a);
+    }
+    mpq_clears(a, b, NULL);
+}
+
+/* The sign of ((b - a) x (c - a)) . (u x w), times a positive number: the area under u, w. */
+static int exact_area_sign(const sc_workspace *w, const uint32_t *corner, const double u[3],
+                           const double v[3])
+{
+    const double *a = w->position + 3 * (size_t)corner[0];
+    const double *b = w->position + 3 * (size_t)corner[1], *c = w->position + 3 * (size_t)corner[2];
+    mpq_t ub, vb, uc, vc;
+    int sign;
+    mpq_inits(ub, vb, uc, vc, NULL);
+    exact_dot(ub, u, b, a);
+    exact_dot(vb, v, b, a);
+    exact_dot(uc, u, c, a);
+    exact_dot(vc, v, c, a);
+    mpq_mul(ub, ub, vc);
+    mpq_mul(vb, vb, uc);
+    sign = mpq_cmp(ub, vb);
+    mpq_clears(ub, vb, uc, vc, NULL);
+    return (sign > 0) - (sign < 0);
+}
+
+/* ---- cones ---- */
+
+/* The projection along one direction alone has it as u x w: which one each bit is. */
+static void find_directions(const sc_workspace *w, double directions[SC_DNC_DIRECTIONS][3])
+{
+    for (int d = 0; d < SC_DNC_DIRECTIONS; ++d) {
+        sc_projection p;
+        sc_dnc_projection(w, 1u << d, &p);
+        for (int k = 0; k < 3; ++k) {
+            double c = p.u[(k + 1) % 3] * p.w[(k + 2) % 3] - p.u[(k + 2) % 3] * p.w[(k + 1) % 3];
+            directions[d][k] = (c > 0) - (c < 0);
+        }
+    }
+}
+
+static void directions_of_the_cone(void)
+{
+    soup mesh = soup_cloth(2, 2);
+    scene s;
+    double d[SC_DNC_DIRECTIONS][3];
+    uint32_t faces = 0;
+    if (!open_scene(&s, "cloth", &mesh, SC_WELD_REST, SC_PARTITION_FAST) || !load_pose(&s)) return;
+    find_directions(s.workspace, d);
+    for (int i = 0; i < SC_DNC_DIRECTIONS; ++i) {
+        int zeros = (d[i][0] == 0) + (d[i][1] == 0) + (d[i][2] == 0);
+        CHECK(zeros == 0 || zeros == 2);
+        faces += zeros == 2;
+        for (int k = 0; k < i; ++k) CHECK(memcmp(d[i], d[k], sizeof(d[i])) != 0);
+    }
+    CHECK(faces == 6);
+    close_scene(&s);
+}
+
+/* Whether the dot product is beyond doubt in floating point; 0 outside of moderate sizes. */
+static int is_clear(const sc_workspace *w, const uint32_t *t, const double d[3])
+{
+    double e[3], f[3], e_size = 0, f_size = 0, dot = 0;
+    for (int k = 0; k < 3; ++k) {
+        e[k] = part(w, t[1], k) - part(w, t[0], k);
+        f[k] = part(w, t[2], k) - part(w, t[0], k);
+        e_size += fabs(e[k]);
+        f_size += fabs(f[k]);
+    }
+    for (int k = 0; k < 3; ++k)
+        dot += d[k] * (e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3]);
+    return dot > 1e-12 * e_size * f_size && e_size > 1e-100 && f_size > 1e-100 && e_size < 1e100 &&
+           f_size < 1e100;
+}
+
+static void check_cones(scene *s)
+{
+    const sc_model *m = s->model;
+    const sc_workspace *w = s->workspace;
+    double d[SC_DNC_DIRECTIONS][3];
+    uint32_t leaf, p, level, bit, i, wrong = 0;
+    find_directions(w, d);
+    for (leaf = 0; leaf < m->leaf_count; ++leaf) {
+        uint32_t mask = w->mask[sc_model_first_leaf_patch(m) + leaf];
+        for (bit = 0; bit < SC_DNC_DIRECTIONS; ++bit) {
+            uint32_t clear = 1, set = mask >> bit & 1;
+            sc_projection one;
+            sc_dnc_projection(w, 1u << bit, &one);
+            for (i = sc_model_leaf_first(m)[leaf]; i < sc_model_leaf_first(m)[leaf + 1]; ++i) {
+                const uint32_t *t = sc_model_triangle(m) + 3 * (size_t)i;
+                clear &= (uint32_t)is_clear(w, t, d[bit]);
+                if (set) wrong += exact_area_sign(w, t, one.u, one.w) <= 0;
+            }
+            wrong += clear && !set;
+        }
+    }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " bits of leaves wrong", s->name, wrong);
+    for (level = 0; level < m->level_count; ++level)
+        for (p = sc_model_level_first(m)[level]; p + 1 < sc_model_level_first(m)[level + 1]; ++p) {
+            uint32_t all = (1u << SC_DNC_DIRECTIONS) - 1;
+            for (leaf = sc_model_leaf(m)[p]; leaf < sc_model_leaf(m)[p + 1]; ++leaf)
+                all &= w->mask[sc_model_first_leaf_patch(m) + leaf];
+            wrong += w->mask[p] != all;
+        }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " cones are not their leaves'", s->name, wrong);
+}
+
+static uint32_t random_part(uint32_t mask)
+{
+    uint32_t some = mask & (uint32_t)test_random();
+    return some ? some : mask;
+}
+
+/* Projections of random parts of cones leave all areas positive, and coordinates are as exact as said.
+   Returns the number of projections. */
+static uint32_t check_projections(scene *s)
+{
+    const sc_model *m = s->model;
+    const sc_workspace *w = s->workspace;
+    uint32_t p, i, k, tried = 0, wrong = 0;
+    for (p = 0; p < m->patch_end && tried < 40; ++p) {
+        uint32_t from, to;
+        sc_projection projection;
+        if (w->mask[p] == 0 || p + 1 == m->patch_end) continue;
+        if (sc_model_leaf(m)[p] >= sc_model_leaf(m)[p + 1]) continue; /* no patch */
+        ++tried;
+        sc_dnc_projection(w, random_part(w->mask[p]), &projection);
+        for (k = 0; k < 3; ++k) /* what makes the projection exact */
+            CHECK(projection.u[k] == floor(projection.u[k]) && fabs(projection.u[k]) <= 506 &&
+                  projection.w[k] == floor(projection.w[k]) && fabs(projection.w[k]) <= 23276);
+        from = sc_model_leaf_first(m)[sc_model_leaf(m)[p]];
+        to = sc_model_leaf_first(m)[sc_model_leaf(m)[p + 1]];
+        for (i = from; i < to; ++i)
+            wrong += exact_area_sign(w, sc_model_triangle(m) + 3 * (size_t)i, projection.u,
+                                     projection.w) <= 0;
+        for (i = from; i < to && i < from + 8; ++i) {
+            uint32_t point = sc_model_triangle(m)[3 * (size_t)i];
+            const double *at = w->position + 3 * (size_t)point;
+            double x, y;
+            mpq_t exact, computed, error;
+            sc_contour_bounds_project(w, &projection, SC_LINE_VERTICAL, point, &x, &y);
+            mpq_inits(exact, computed, error, NULL);
+            for (k = 0; k < 2; ++k) {
+                exact_dot(exact, k ? projection.w : projection.u, at, projection.origin);
+                if (!isfinite(k ? y : x)) continue;
+                mpq_set_d(computed, k ? y : x);
+                mpq_sub(exact, exact, computed);
+                mpq_abs(exact, exact);
+                mpq_set_d(error, k ? projection.y_error : projection.x_error);
+                wrong += mpq_cmp(exact, error) > 0;
+            }
+            mpq_clears(exact, computed, error, NULL);
+        }
+    }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " areas or errors wrong", s->name, wrong);
+    return tried;
+}
+
+static void cones_and_projections(void)
+{
+    uint32_t tried = 0;
+    for (uint32_t i = 0; i < test_iterations(80); ++i) {
+        scene s;
+        open_random_scene(&s, 60);
+        random_pose(s.pose, s.mesh.vertex_count);
+        if (i % 8 == 0) soup_scale(s.pose, s.mesh.vertex_count, i % 16 == 0 ? 1e-60 : 1e60);
+        if (i % 8 == 1) soup_crush(s.pose, s.mesh.vertex_count);
+        if (i % 8 == 2) { /* a plane of exactly zero dot products, moved by rounding errors */
+            for (uint32_t v = 0; v < s.mesh.vertex_count; ++v) {
+                double *p = s.pose + 3 * (size_t)v;
+                p[2] = -(p[0] + p[1]);
+            }
+            soup_nudge(s.pose, s.mesh.vertex_count);
+        }
+        if (load_pose(&s)) {
+            check_cones(&s);
+            tried += check_projections(&s);
+        }
+        close_scene(&s);
+    }
+    CHECK_MSG(!is_full() || tried > 200, "only %" PRIu32 " projections", tried);
+}
+
+/* Triangles that contain a direction but for rounding: floating point cannot tell the sign. */
+static void cones_at_zero(void)
+{
+    soup mesh = soup_cloth(1, 1);
+    scene s;
+    double d[SC_DNC_DIRECTIONS][3];
+    uint32_t wrong = 0, set = 0;
+    mesh.triangle_count = 1;
+    if (!open_scene(&s, "a triangle", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) || !load_pose(&s))
+        return;
+    find_directions(s.workspace, d);
+    for (uint32_t i = 0; i < test_iterations(6000); ++i) {
+        const uint32_t *corner = s.mesh.triangles;
+        double x = test_random_range(-2, 2), y = test_random_range(-2, 2);
+        uint32_t bit = test_random_below(SC_DNC_DIRECTIONS);
+        sc_projection one;
+        for (int k = 0; k < 3; ++k) {
+            double *p = s.pose, e = test_random_range(-1, 1);
+            p[3 * corner[0] + (uint32_t)k] = i % 2 ? test_random_range(-1, 1) : 0;
+            p[3 * corner[1] + (uint32_t)k] = p[3 * corner[0] + (uint32_t)k] + e;
+            p[3 * corner[2] + (uint32_t)k] =
+                p[3 * corner[0] + (uint32_t)k] + (x * e + y * d[bit][k]);
+        }
+        if (!load_pose(&s)) break;
+        sc_dnc_projection(s.workspace, 1u << bit, &one);
+        if (s.workspace->mask[0] >> bit & 1) {
+            ++set;
+            wrong += exact_area_sign(s.workspace, sc_model_triangle(s.model), one.u, one.w) <= 0;
+        }
+    }
+    CHECK_MSG(wrong == 0, "%" PRIu32 " of %" PRIu32 " signs wrong", wrong, set);
+    close_scene(&s);
+}
+
+/* ---- bounds of segments ---- */
+
+typedef struct bounds_check {
+    scene *s;
+    const sc_projection *projection;
+    int line;
+    const sc_segment_bounds *bounds;
+    double samples[10];
+    uint32_t wrong_extent, wrong_line, edges;
+    double gap[2]; /* least distance of a line from the bound at the samples, by side */
+} bounds_check;
+
+static void exact_point(const bounds_check *c, uint32_t point, mpq_t x, mpq_t y)
+{
+    const double *at = c->s->workspace->position + 3 * (size_t)point;
+    const sc_projection *p = c->projection;
+    exact_dot(c->line == SC_LINE_VERTICAL ? x : y, p->u, at, p->origin);
+    exact_dot(c->line == SC_LINE_VERTICAL ? y : x, p->w, at, p->origin);
+    if (c->line == SC_LINE_HORIZONTAL) mpq_neg(y, y);
+}
+
+/* Whether low <= x <= high, where the outermost floats stand for everything beyond. */
+static int is_within(mpq_t x, float low, float high)
+{
+    int inside;
+    mpq_t bound;
+    if (!(low <= high)) return 0;
+    mpq_init(bound);
+    if (low > -FLT_MAX) mpq_set_d(bound, (double)low);
+    inside = low <= -FLT_MAX || (low <= FLT_MAX && mpq_cmp(bound, x) <= 0);
+    if (high < FLT_MAX) mpq_set_d(bound, (double)high);
+    inside = inside && (high >= FLT_MAX || mpq_cmp(x, bound) <= 0);
+    mpq_clear(bound);
+    return inside;
+}
+
+static void check_edge(bounds_check *c, uint32_t from, uint32_t to)
+{
+    mpq_t x0, y0, x1, y1, slope, at, bound;
+    int run, side;
+    const sc_ray_bound *b;
+    mpq_inits(x0, y0, x1, y1, slope, at, bound, NULL);
+    exact_point(c, from, x0, y0);
+    exact_point(c, to, x1, y1);
+    run = mpq_cmp(x1, x0);
+    side = run < 0 ? SC_SIDE_TOP : SC_SIDE_BOTTOM;
+    b = &c->bounds->side[side];
+    ++c->edges;
+    if (run == 0) {
+        const sc_ray_bound *o = &c->bounds->side[SC_SIDE_TOP];
+        c->wrong_extent +=
+            !is_within(x0, o->ax < b->ax ? o->ax : b->ax, o->bx > b->bx ? o->bx : b->bx);
+        c->wrong_line += b->ay != -INFINITY || o->ay != -INFINITY;
+    } else {
+        c->wrong_extent += !is_within(x0, b->ax, b->bx) || !is_within(x1, b->ax, b->bx);
+        if (side == SC_SIDE_BOTTOM) {
+            mpq_neg(y0, y0);
+            mpq_neg(y1, y1);
+        }
+        mpq_sub(y1, y1, y0);
+        mpq_sub(x1, x1, x0);
+        mpq_div(slope, y1, x1);
+        for (int i = 0; i < 10; ++i) {
+            double lowest = sc_contour_bounds_lowest(b, c->samples[i]);
+            if (lowest == -HUGE_VAL) continue;
+            if (!isfinite(lowest)) {
+                ++c->wrong_line;
+                continue;
+            }
+            mpq_set_d(at, c->samples[i]);
+            mpq_sub(at, at, x0);
+            mpq_mul(at, at, slope);
+            mpq_add(at, at, y0);
+            mpq_set_d(bound, lowest);
+            c->wrong_line += mpq_cmp(bound, at) > 0;
+            mpq_sub(at, at, bound);
+            if (i < 3) c->gap[side] = fmin(c->gap[side], mpq_get_d(at));
+        }
+    }
+    mpq_clears(x0, y0, x1, y1, slope, at, bound, NULL);
+}
+
+static void check_edges_of(bounds_check *c, uint32_t segment)
+{
+    const sc_model *m = c->s->model;
+    const uint32_t *first;
+    if (segment < m->leaf_segment_count) {
+        first = sc_model_segment_points(m) + segment;
+        for (uint32_t i = first[0]; i + 1 < first[1]; ++i)
+            check_edge(c, sc_model_points(m)[i], sc_model_points(m)[i + 1]);
+        return;
+    }
+    first = sc_model_segment_children(m) + (segment - m->leaf_segment_count);
+    for (uint32_t i = first[0]; i < first[1]; ++i) check_edges_of(c, sc_model_children(m)[i]);
+}
+
+/* Some places along a line: the ends of the bounds, between them, beside them, far away. */
+static void choose_samples(bounds_check *c)
+{
+    const sc_ray_bound *b = &c->bounds->side[test_random_below(2)];
+    double low = fmax((double)b->ax, -1e300), high = fmin((double)b->bx, 1e300), length;
+    if (!(low <= high)) low = high = 0;
+    length = high - low + c->s->workspace->radius * 0x1p-20;
+    c->samples[0] = low;
+    c->samples[1] = high;
+    c->samples[2] = low / 2 + high / 2;
+    c->samples[3] = low + length * test_random_unit();
+    c->samples[4] = low - length;
+    c->samples[5] = high + length;
+    c->samples[6] = low - 1e6 * length * test_random_unit();
+    c->samples[7] = high + 1e6 * length * test_random_unit();
+    c->samples[8] = 0;
+    c->samples[9] = test_random_range(-1, 1) * c->s->workspace->radius * 1e3;
+    for (int i = 0; i < 10; ++i)
+        if (!isfinite(c->samples[i])) c->samples[i] = 0;
+}
+
+typedef struct bounds_tally {
+    uint32_t segments, bounded, leaves, tight;
+} bounds_tally;
+
+/* A random projection, of a node if any is oriented, else of nobody. */
+static void random_projection(scene *s, sc_projection *projection)
+{
+    uint32_t p = test_random_below(s->model->patch_end), mask = s->workspace->mask[p];
+    if (mask == 0) { /* the normals of a random half-space */
+        double d[SC_DNC_DIRECTIONS][3], n[3];
+        for (int k = 0; k < 3; ++k) n[k] = test_random_range(-1, 1);
+        find_directions(s->workspace, d);
+        for (int i = 0; i < SC_DNC_DIRECTIONS; ++i)
+            mask |= (uint32_t)(d[i][0] * n[0] + d[i][1] * n[1] + d[i][2] * n[2] > 0) << i;
+    }
+    sc_dnc_projection(s->workspace, random_part(mask), projection);
+    sc_workspace_new_projection(s->model, s->workspace);
+}
+
+static void check_bounds(scene *s, bounds_tally *tally)
+{
+    const sc_model *m = s->model;
+    uint32_t stride = 1 + m->segment_count / 60;
+    sc_projection projection;
+    random_projection(s, &projection);
+    for (int line = 0; line < 2; ++line)
+        for (uint32_t i = test_random_below(stride); i < m->segment_count; i += stride) {
+            /* the last ones have children; not in order, as in a query */
+            uint32_t segment = i % 2 ? m->segment_count - 1 - i / 2 : i / 2;
+            bounds_check c;
+            memset(&c, 0, sizeof(c));
+            c.s = s;
+            c.projection = &projection;
+            c.line = line;
+            c.gap[0] = c.gap[1] = HUGE_VAL;
+            sc_contour_bounds_update(m, s->workspace, &projection, line, segment);
+            CHECK(sc_contour_bounds_update(m, s->workspace, &projection, line, segment) == 0);
+            c.bounds = &s->workspace->bounds[line][segment];
+            choose_samples(&c);
+            check_edges_of(&c, segment);
+            CHECK_MSG(c.wrong_extent == 0,
+                      "%s: segment %" PRIu32 ", line %d: %" PRIu32 " of %" PRIu32 " edges outside",
+                      s->name, segment, line, c.wrong_extent, c.edges);
+            CHECK_MSG(c.wrong_line == 0,
+                      "%s: segment %" PRIu32 ", line %d: %" PRIu32 " lines of %" PRIu32
+                      " edges below",
+                      s->name, segment, line, c.wrong_line, c.edges);
+            ++tally->segments;
+            if (c.bounds->side[0].ay == -INFINITY) continue;
+            ++tally->bounded;
+            for (int side = 0; side < 2; ++side) {
+                if (segment >= m->leaf_segment_count || c.gap[side] == HUGE_VAL) continue;
+                ++tally->leaves;
+                tally->tight +=
+                    c.gap[side] < 1e-4 * fabs(projection.w[0] + 1e3) * s->workspace->radius;
+            }
+        }
+}
+
+static void bounds_of_segments(void)
+{
+    bounds_tally tally;
+    memset(&tally, 0, sizeof(tally));
+    for (uint32_t i = 0; i < test_iterations(60); ++i) {
+        scene s;
+        open_random_scene(&s, 60 + 2 * i);
+        for (int k = 0; k < 2; ++k) {
+            memcpy(s.pose, s.mesh.positions, 3 * (size_t)s.mesh.vertex_count * sizeof(double));
+            random_pose(s.pose, s.mesh.vertex_count);
+            if (i % 10 == 0) soup_scale(s.pose, s.mesh.vertex_count, k ? 1e-30 : 1e-45);
+            if (i % 10 == 1) soup_scale(s.pose, s.mesh.vertex_count, k ? 1e30 : 1e38);
+            if (load_pose(&s)) check_bounds(&s, &tally);
+        }
+        close_scene(&s);
+    }
+    CHECK_MSG(!is_full() || 3 * tally.bounded > tally.segments, "%" PRIu32 " of %" PRIu32,
+              tally.bounded, tally.segments);
+    CHECK_MSG(!is_full() || 10 * (uint64_t)tally.tight > 7 * (uint64_t)tally.leaves,
+              "%" PRIu32 " of %" PRIu32 " bounds of leaves are tight", tally.tight, tally.leaves);
+}
+
+/* Segments longer than leaf clusters of today can have, put into a copy of a model. */
+static void bounds_of_long_segments(void)
+{
+    enum { LONGEST = 300 };
+    for (uint32_t i = 0; i < test_iterations(20); ++i) {
+        soup mesh = soup_cloth(9, 9);
+        scene s;
+        bounds_tally tally;
+        memset(&tally, 0, sizeof(tally));
+        if (!open_scene(&s, "long", &mesh, SC_WELD_REST, SC_PARTITION_FAST)) continue;
+        random_pose(s.pose, s.mesh.vertex_count);
+        if (load_pose(&s)) {
+            sc_model *model = s.model;
+            size_t size = (size_t)model->bytes;
+            uint32_t extra[LONGEST + 3], edges = 1 + test_random_below(i % 4 ? 28 : LONGEST - 1);
+            sc_model *longer = (sc_model *)test_allocate(size + sizeof(extra));
+            extra[0] = 0;
+            extra[1] = edges + 1;
+            for (uint32_t k = 0; k <= edges; ++k)
+                extra[2 + k] = test_random_below(model->point_count);
+            for (uint32_t k = 3; k < edges + 3; ++k) /* no edge from a point to itself */
+                while (extra[k] == extra[k - 1]) extra[k] = test_random_below(model->point_count);
+            memcpy(longer, model, size);
+            memcpy((unsigned char *)longer + size, extra, sizeof(extra));
+            longer->segment_count = longer->leaf_segment_count = 1;
+            longer->offset[SC_ARRAY_segment_points] = size;
+            longer->offset[SC_ARRAY_points] = size + 2 * sizeof(uint32_t);
+            s.model = longer;
+            check_bounds(&s, &tally);
+            CHECK(tally.segments == 2);
+            free(longer);
+            s.model = model;
+        }
+        close_scene(&s);
+    }
+}
+
+/* Coordinates at the end of the range of doubles, where projected ones overflow. */
+static void bounds_of_huge_coordinates(void)
+{
+    for (uint32_t i = 0; i < test_iterations(40); ++i) {
+        scene s;
+        bounds_tally tally;
+        soup mesh = soup_cloth(3, 3);
+        double size = exp2(test_random_range(960, 1023.9));
+        memset(&tally, 0, sizeof(tally));
+        if (!open_scene(&s, "huge", &mesh, SC_WELD_REST, SC_PARTITION_FAST)) continue;
+        for (uint32_t v = 0; v < 1 + i % 4 || (i % 3 == 0 && v < s.mesh.vertex_count); ++v) {
+            double *p = s.pose + 3 * (size_t)test_random_below(s.mesh.vertex_count);
+            for (int k = 0; k < 3; ++k)
+                if (test_random_below(3)) p[k] = size * test_random_range(-1, 1);
+        }
+        if (load_pose(&s)) check_bounds(&s, &tally);
+        close_scene(&s);
+    }
+}
+
+/* What was found for the last pose or projection is not taken for the next one's, even when ticks start
+   anew: a workspace answers as a fresh one does. */
+static void ticks(void)
+{
+    soup mesh = soup_cloth(6, 6);
+    scene s;
+    bounds_tally tally;
+    uint32_t wrong = 0, plain = 0, points = 0;
+    memset(&tally, 0, sizeof(tally));
+    if (!open_scene(&s, "cloth", &mesh, SC_WELD_REST, SC_PARTITION_FAST)) return;
+    for (uint32_t i = 0; i < 12; ++i) {
+        sc_workspace *old = s.workspace;
+        uint8_t found[49];
+        if (i == 4) s.workspace->tick = 0xfffffffe;
+        if (i == 8) s.workspace->pose_tick = 0x7ffffffe;
+        random_pose(s.pose, s.mesh.vertex_count);
+        if (i % 2) soup_shuffle(s.pose, s.mesh.vertex_count);
+        if (load_pose(&s)) check_bounds(&s, &tally);
+        points = s.model->point_count;
+        for (uint32_t p = 0; p < points; ++p)
+            found[p] = (uint8_t)sc_fan_is_plain(s.model, s.workspace, p);
+        if (!CHECK(sc_workspace_create(s.model, NULL, &s.workspace) == SC_OK)) break;
+        if (load_pose(&s))
+            for (uint32_t p = 0; p < points; ++p) {
+                plain += found[p];
+                wrong += found[p] != sc_fan_is_plain(s.model, s.workspace, p);
+            }
+        sc_workspace_free(s.workspace);
+        s.workspace = old;
+        if (i % 4 == 3) memcpy(s.pose, s.mesh.positions, 49 * 3 * sizeof(double));
+    }
+    CHECK_MSG(wrong == 0 && plain > 0, "%" PRIu32 " fans are of another pose", wrong);
+    close_scene(&s);
+}
+
+/* ---- the star-contour test ---- */
+
+typedef struct star_tally {
+    uint64_t oriented, passed, touching, touching_passed;
+    uint64_t colliding; /* oriented nodes with a pair inside, which must not pass */
+} star_tally;
+
+static int is_in(const sc_model *m, uint32_t patch, uint32_t place)
+{
+    return place >= sc_model_leaf_first(m)[sc_model_leaf(m)[patch]] &&
+           place < sc_model_leaf_first(m)[sc_model_leaf(m)[patch + 1]];
+}
+
+/* Whether the oracle's pairs, in places, have one within a node. */
+static int has_pair(const sc_model *m, uint32_t node, const sc_pair *pairs, uint64_t count)
+{
+    uint32_t a = sc_model_node_patches(m)[node].a, b = sc_model_node_patches(m)[node].b;
+    int touches = sc_model_node_touches(m)[node];
+    for (uint64_t i = 0; i < count; ++i) {
+        int first_a = is_in(m, a, pairs[i].a), first_b = is_in(m, b, pairs[i].a);
+        int second_a = is_in(m, a, pairs[i].b), second_b = is_in(m, b, pairs[i].b);
+        if (touches ? (first_a && second_b) || (first_b && second_a)
+                    : (first_a || first_b) && (second_a || second_b))
+            return 1;
+    }
+    return 0;
+}
+
+/* The oracle's touching triangle pairs of the pose, as places. */
+static oracle_answer solve_in_places(const scene *s)
+{
+    oracle_answer answer;
+    uint32_t *weld = input_weld_of(&s->choices, &s->mesh), i;
+    uint32_t *place = (uint32_t *)test_allocate(s->mesh.triangle_count * sizeof(uint32_t));
+    oracle_list *list = &answer.lists[SC_PAIRS_TRIANGLE][SC_CONTACT_TOUCHING];
+    oracle_solve(s->pose, s->mesh.vertex_count, s->mesh.triangles, s->mesh.triangle_count, weld,
+                 &answer);
+    for (i = 0; i < s->mesh.triangle_count; ++i) place[sc_model_triangle_id(s->model)[i]] = i;
+    for (uint64_t k = 0; k < list->count; ++k) {
+        list->pairs[k].a = place[list->pairs[k].a];
+        list->pairs[k].b = place[list->pairs[k].b];
+    }
+    free(place);
+    free(weld);
+    return answer;
+}
+
+/* Every oriented node, under projections of some parts of its cone. */
+static void check_stars(scene *s, star_tally *tally)
+{
+    const sc_model *m = s->model;
+    oracle_answer answer = solve_in_places(s);
+    const oracle_list *list = &answer.lists[SC_PAIRS_TRIANGLE][SC_CONTACT_TOUCHING];
+    uint32_t wrong = 0, node;
+    for (node = 0; node < m->node_count; ++node) {
+        const sc_pair *patches = &sc_model_node_patches(m)[node];
+        uint32_t mask = (uint32_t)s->workspace->mask[patches->a] & s->workspace->mask[patches->b];
+        int bad, tries, touches = sc_model_node_touches(m)[node];
+        if (mask == 0) continue;
+        bad = has_pair(m, node, list->pairs, list->count);
+        for (tries = 0; tries < 3; ++tries) {
+            sc_projection projection;
+            int passed;
+            sc_dnc_projection(s->workspace, tries == 0 ? mask : random_part(mask), &projection);
+            sc_workspace_new_projection(m, s->workspace);
+            passed = sc_star_test(&s->state, &projection, node);
+            wrong += passed && bad;
+            tally->oriented++;
+            tally->passed += (uint64_t)passed;
+            tally->touching += (uint64_t)touches;
+            tally->touching_passed += (uint64_t)(touches && passed);
+            tally->colliding += (uint64_t)bad;
+        }
+    }
+    CHECK_MSG(wrong == 0,
+              "%s, partition %s, weld %" PRIu32 ": %" PRIu32 " nodes passed in spite of %" PRIu64
+              " pairs",
+              s->name, s->choices.partition_name, s->choices.options.weld, wrong, list->count);
+    oracle_free(&answer);
+}
+
+/* Projected coordinates beyond the range of float, in which bounds are kept. */
+static void stars_beyond_float(void)
+{
+    star_tally tally;
+    memset(&tally, 0, sizeof(tally));
+    for (uint32_t i = 0; i < test_iterations(100); ++i) {
+        scene s;
+        open_random_scene(&s, 30 + i % 90);
+        random_pose(s.pose, s.mesh.vertex_count);
+        soup_scale(s.pose, s.mesh.vertex_count, exp2(test_random_range(105, 140)));
+        if (load_pose(&s)) check_stars(&s, &tally);
+        close_scene(&s);
+    }
+    CHECK(!is_full() || (tally.passed > 0 && tally.colliding > 100));
+}
+
+static void stars_have_no_pairs(void)
+{
+    star_tally tally;
+    memset(&tally, 0, sizeof(tally));
+    for (uint32_t i = 0; i < test_iterations(300); ++i) {
+        scene s;
+        open_random_scene(&s, 30 + i % 120);
+        random_pose(s.pose, s.mesh.vertex_count);
+        if (load_pose(&s)) check_stars(&s, &tally);
+        close_scene(&s);
+    }
+    test_note("%" PRIu64 " of %" PRIu64 " passed, %" PRIu64 " of %" PRIu64
+              " with one shared point; %" PRIu64 " had pairs inside",
+              tally.passed, tally.oriented, tally.touching_passed, tally.touching, tally.colliding);
+    CHECK(!is_full() ||
+          (6 * tally.passed > tally.oriented && 8 * tally.touching_passed > tally.touching));
+    CHECK(!is_full() || tally.colliding > 500);
+}
+
+/* Flat, all normals up, and more than once round: the contour alone can tell. */
+static void spirals_overlap(void)
+{
+    star_tally tally;
+    memset(&tally, 0, sizeof(tally));
+    for (uint32_t i = 0; i < test_iterations(24); ++i) {
+        scene s;
+        soup mesh = shape_spiral(30 + i, 1 + i % 3, test_random_range(0.3, 2.2), i % 2 ? 0.1 : 0);
+        if (!open_scene(&s, "spiral", &mesh, SC_WELD_NONE, i / 2 % 4)) continue;
+        rotate(s.pose, s.mesh.vertex_count);
+        if (load_pose(&s)) check_stars(&s, &tally);
+        close_scene(&s);
+    }
+    CHECK(!is_full() || (tally.colliding > 500 && tally.passed > 1000));
+}
+
+/* A disc that goes twice round its center, and so lies over itself, in a ring of which one patch borders
+   on most of it: one segment that is crossed twice, and from the center everything looks like a star. */
+static void branched_discs(void)
+{
+    enum { SECTORS = 16 };
+    star_tally tally;
+    memset(&tally, 0, sizeof(tally));
+    for (uint32_t turn = 0; turn < 16; ++turn) {
+        soup mesh = soup_make(1 + 2 * SECTORS, 3 * SECTORS);
+        uint32_t order[3 * SECTORS], few = 2 + turn % 3 * 2, n = 0;
+        sc_tree_node tree[5];
+        scene s;
+        sc_mesh m;
+        memset(mesh.positions, 0, 3 * sizeof(double));
+        for (uint32_t i = 0; i < SECTORS; ++i) {
+            uint32_t a = 1 + i, b = 1 + (i + 1) % SECTORS;
+            uint32_t corners[3][3] = {
+                {0, a, b}, {a, a + SECTORS, b}, {b, a + SECTORS, b + SECTORS}};
+            for (uint32_t ring = 0; ring < 2; ++ring) {
+                double *p = mesh.positions + 3 * (size_t)(a + ring * SECTORS);
+                double angle = 4 * pi * i / SECTORS + 0.1 + 0.4 * turn;
+                p[0] = (1 + ring) * cos(angle);
+                p[1] = (1 + ring) * sin(angle);
+                p[2] = 0;
+            }
+            memcpy(mesh.triangles + 3 * (size_t)i, corners[0], sizeof(corners[0]));
+            memcpy(mesh.triangles + 3 * (size_t)(SECTORS + 2 * i), corners[1],
+                   2 * sizeof(corners[1]));
+        }
+        for (uint32_t i = 0; i < 3 * SECTORS; ++i) order[i] = i;
+        memset(tree, 0, sizeof(tree)); /* the disc | most of the ring, the rest */
+        tree[0].left = 1;
+        tree[0].right = 2;
+        tree[2].left = 3;
+        tree[2].right = 4;
+        for (uint32_t i = 1; i < 5; i = i == 1 ? 3 : i + 1) {
+            tree[i].left = tree[i].right = SC_NONE;
+            tree[i].first = n;
+            tree[i].count = i == 1 ? SECTORS : i == 3 ? 2 * SECTORS - few : few;
+            n += tree[i].count;
+        }
+        memset(&s, 0, sizeof(s));
+        s.name = "branched disc";
+        s.mesh = mesh;
+        s.pose = copy_positions(&mesh);
+        s.choices.options.struct_size = sizeof(s.choices.options);
+        s.choices.options.weld = SC_WELD_NONE;
+        s.choices.options.partition = SC_PARTITION_TREE;
+        s.choices.options.order = order;
+        s.choices.options.tree = tree;
+        s.choices.options.tree_count = 5;
+        s.choices.partition_name = "tree";
+        m = input_plain_mesh(&mesh);
+        if (turn % 2) rotate(s.pose, mesh.vertex_count);
+        if (CHECK(sc_build(&m, &s.choices.options, &s.model) == SC_OK) &&
+            CHECK(sc_workspace_create(s.model, NULL, &s.workspace) == SC_OK) && load_pose(&s))
+            check_stars(&s, &tally);
+        close_scene(&s);
+    }
+    CHECK(tally.colliding > 0);
+}
+
+/* Two patches that share one point p and, round a loop, points h at which so many patches meet that
+   these make nobody adjacent. The second patch folds over the first. */
+static void patches_that_share_hubs(void)
+{
+    enum { FINS = 30, HUBS = 3, TRIANGLES = 6 + HUBS * FINS };
+    static const double flat[9][2] = {{0, 0},   {10, -5}, {4, 0}, {10, 5}, {9, -6},
+                                      {9, 4.4}, {9.5, 0}, {9, 6}, {0, 0}};
+    static const uint32_t corners[6][3] = {{0, 1, 2}, {0, 2, 3}, {1, 0, 4},
+                                           {2, 1, 5}, {3, 2, 6}, {0, 3, 7}};
+    for (uint32_t turn = 0; turn < 12; ++turn) {
+        soup mesh = soup_make(9 + 2 * HUBS * FINS, TRIANGLES);
+        uint32_t order[TRIANGLES], v = 9, leaves = 2 + HUBS * FINS, count = 1, head;
+        uint32_t first[512], number[512];
+        sc_tree_node tree[512];
+        sc_build_options options;
+        double c = cos(pi * turn / 6 + 0.1), d = sin(pi * turn / 6 + 0.1);
+        star_tally tally;
+        scene s;
+        sc_mesh m;
+        memset(&tally, 0, sizeof(tally));
+        memcpy(mesh.triangles, corners, sizeof(corners));
+        for (uint32_t i = 0; i < 9; ++i) {
+            double *p = mesh.positions + 3 * (size_t)i;
+            p[0] = c * flat[i][0] - d * flat[i][1];
+            p[1] = d * flat[i][0] + c * flat[i][1];
+            p[2] = 0;
+        }
+        for (uint32_t i = 0; i < HUBS * FINS; ++i) {
+            uint32_t *t = mesh.triangles + 3 * (size_t)(6 + i);
+            t[0] = 1 + i % HUBS;
+            t[1] = v++;
+            t[2] = v++;
+            for (uint32_t k = 3 * t[1]; k < 3 * v; ++k)
+                mesh.positions[k] = test_random_range(20, 30);
+        }
+        /* leaves: the first two triangles, the next four, then each fin; halved at every node */
+        for (uint32_t i = 0; i < TRIANGLES; ++i) order[i] = i;
+        memset(tree, 0, sizeof(tree));
+        first[0] = 0;
+        number[0] = leaves;
+        for (head = 0; head < count; ++head) {
+            sc_tree_node *n = &tree[head];
+            if (number[head] == 1) {
+                n->left = n->right = SC_NONE;
+                n->first = first[head] == 0 ? 0 : first[head] == 1 ? 2 : first[head] + 4;
+                n->count = first[head] == 0 ? 2 : first[head] == 1 ? 4 : 1;
+                continue;
+            }
+            n->left = count++;
+            n->right = count++;
+            first[n->left] = first[head];
+            number[n->left] = number[head] / 2;
+            first[n->right] = first[head] + number[n->left];
+            number[n->right] = number[head] - number[n->left];
+        }
+        memset(&options, 0, sizeof(options));
+        options.struct_size = sizeof(options);
+        options.partition = SC_PARTITION_TREE;
+        options.order = order;
+        options.tree = tree;
+        options.tree_count = count;
+        memset(&s, 0, sizeof(s));
+        s.name = "shared hubs";
+        s.mesh = mesh;
+        s.pose = copy_positions(&mesh);
+        s.choices.partition_name = "tree";
+        m = input_plain_mesh(&mesh);
+        if (CHECK(sc_build(&m, &options, &s.model) == SC_OK) &&
+            CHECK(sc_workspace_create(s.model, NULL, &s.workspace) == SC_OK) && load_pose(&s)) {
+            check_stars(&s, &tally);
+            CHECK(tally.colliding > 0);
+        }
+        close_scene(&s);
+    }
+}
+
+/* ---- fans ---- */
+
+static int has_point(const sc_model *m, uint32_t place, uint32_t point)
+{
+    const uint32_t *t = sc_model_triangle(m) + 3 * (size_t)place;
+    return t[0] == point || t[1] == point || t[2] == point;
+}
+
+static void fans_have_no_pairs(void)
+{
+    uint64_t plain = 0, points = 0, sharing = 0;
+    for (uint32_t i = 0; i < test_iterations(250); ++i) {
+        scene s;
+        oracle_answer answer;
+        const oracle_list *list;
+        uint32_t wrong = 0, p;
+        open_random_scene(&s, 40 + i % 60);
+        random_pose(s.pose, s.mesh.vertex_count);
+        if (i % 4 == 0) soup_noise(s.pose, s.mesh.vertex_count, 0.1);
+        if (i % 8 == 1) soup_snap(s.pose, s.mesh.vertex_count, 0.25);
+        if (!load_pose(&s)) continue;
+        answer = solve_in_places(&s);
+        list = &answer.lists[SC_PAIRS_TRIANGLE][SC_CONTACT_TOUCHING];
+        for (p = 0; p < s.model->point_count; ++p) {
+            int is_plain = sc_fan_is_plain(s.model, s.workspace, p);
+            ++points;
+            plain += (uint64_t)is_plain;
+            wrong += sc_fan_is_plain(s.model, s.workspace, p) != is_plain;
+        }
+        for (uint64_t k = 0; k < list->count; ++k)
+            for (int c = 0; c < 3; ++c) {
+                p = sc_model_triangle(s.model)[3 * (size_t)list->pairs[k].a + (size_t)c];
+                if (!has_point(s.model, list->pairs[k].b, p)) continue;
+                ++sharing;
+                wrong += (uint32_t)sc_fan_is_plain(s.model, s.workspace, p);
+            }
+        CHECK_MSG(wrong == 0, "%s: %" PRIu32 " pairs in plain fans", s.name, wrong);
+        oracle_free(&answer);
+        close_scene(&s);
+    }
+    test_note("%" PRIu64 " of %" PRIu64 " fans are plain; %" PRIu64 " pairs share a point", plain,
+              points, sharing);
+    CHECK(!is_full() || (15 * plain > points && sharing > 2000));
+}
+
+/* A star of points round one, once or twice, flat or as a cone, of any number of corners. */
+static void single_fans(void)
+{
+    uint32_t plain = 0, met = 0;
+    for (uint32_t i = 0; i < test_iterations(4000); ++i) {
+        uint32_t n = 3 + test_random_below(i % 5 == 0 ? 62 : 8), turns = 1 + i % 3 / 2;
+        soup mesh = soup_make(n + 1, n);
+        double height = test_random_below(3) ? test_random_range(-1, 1) : 0;
+        double rough = i % 4 == 0 ? 0.4 : 0;
+        scene s;
+        for (uint32_t v = 0; v <= n; ++v) {
+            double angle = 2 * pi * turns * v / n;
+            double *p = mesh.positions + 3 * (size_t)v;
+            p[0] = v == n ? 0 : cos(angle) + test_random_range(-rough, rough);
+            p[1] = v == n ? 0 : sin(angle) + test_random_range(-rough, rough);
+            p[2] = v == n ? height : test_random_range(-rough, rough);
+        }
+        for (uint32_t t = 0; t < n; ++t) {
+            mesh.triangles[3 * t] = n;
+            mesh.triangles[3 * t + 1] = t;
+            mesh.triangles[3 * t + 2] = (t + 1) % n;
+        }
+        if (i % 2) rotate(mesh.positions, n + 1);
+        if (i % 7 == 0) soup_snap(mesh.positions, n + 1, 0.25);
+        if (i % 7 == 1) { /* flat, two corners on one ray but for rounding */
+            uint32_t v = test_random_below(n - 1);
+            double *p = mesh.positions + 3 * (size_t)v, stretch = test_random_range(0.5, 2);
+            for (uint32_t k = 0; k <= n; ++k) mesh.positions[3 * k + 2] = 0.1;
+            for (uint32_t k = 0; k < 2; ++k) {
+                double from = mesh.positions[3 * n + k];
+                p[3 + k] = from + stretch * (p[k] - from);
+            }
+        }
+        if (open_scene(&s, "fan", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) && load_pose(&s)) {
+            uint32_t center = sc_model_slot(s.model)[n];
+            if (sc_fan_is_plain(s.model, s.workspace, center)) {
+                oracle_answer answer = solve_in_places(&s);
+                ++plain;
+                CHECK_MSG(answer.lists[0][0].count == 0, "%" PRIu32 " corners, %" PRIu32 " turns",
+                          n, turns);
+                oracle_free(&answer);
+            } else {
+                ++met;
+                /* once round, flat, and no two corners alike: that is plain */
+                CHECK_MSG(turns > 1 || rough > 0 || i % 7 < 2, "%" PRIu32 " corners, height %g", n,
+                          height);
+            }
+        }
+        close_scene(&s);
+    }
+    CHECK(!is_full() || (plain > 1000 && met > 1000));
+}
+
+SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
+             SC_TEST(cones_at_zero), SC_TEST(bounds_of_segments), SC_TEST(bounds_of_long_segments),
+             SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks), SC_TEST(stars_have_no_pairs),
+             SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap), SC_TEST(branched_discs),
+             SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))

@@ -1,0 +1,815 @@
+/*
+ * What sc_build makes, step by step, against counts made anew from the definitions: patches, adjacency,
+ * the self-collision test tree (SCTT) and its children in the bounding-volume test tree (BVTT), the
+ * contour segment forest (CSF), what the model reports. And validators, on sound structures and on
+ * corrupted ones.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "build/model.h"
+#include "build/partition.h"
+#include "harness.h"
+#include "inputs.h"
+#include "shapes.h"
+#include "starcontour_metis.h"
+
+/* The steps of sc_build. */
+typedef struct steps {
+    sc_scratch scratch;
+    sc_points points;
+    sc_adjacency adjacency;
+    sc_hierarchy hierarchy;
+    sc_xbvh xbvh;
+    sc_neighbors neighbors;
+    sc_sctt sctt;
+    sc_csf csf;
+    const char *name;
+} steps;
+
+static sc_status make_steps(steps *s, const soup *mesh, const sc_build_options *options)
+{
+    sc_mesh m = input_plain_mesh(mesh);
+    const uint32_t *order;
+    sc_status status;
+    sc_allocator allocator = sc_memory_allocator(NULL);
+    memset(s, 0, sizeof(*s));
+    sc_scratch_init(&s->scratch, &allocator);
+    status = sc_mesh_read(&m, options, &s->scratch, &s->points);
+    if (!status) status = sc_adjacency_build(&s->points, &s->scratch, &s->adjacency);
+    if (!status)
+        status = sc_partition_build(&s->points, &s->adjacency, options, &s->scratch, &s->hierarchy);
+    if (!status) status = sc_xbvh_build(&s->hierarchy, &s->scratch, &s->xbvh);
+    order = s->hierarchy.order;
+    if (!status)
+        status = sc_neighbors_build(&s->points, &s->adjacency, order, &s->xbvh, &s->scratch,
+                                    &s->neighbors);
+    if (!status) status = sc_sctt_build(&s->xbvh, &s->neighbors, &s->scratch, &s->sctt);
+    if (!status)
+        status = sc_csf_build(&s->points, &s->adjacency, order, &s->xbvh, &s->sctt, &s->scratch,
+                              &s->csf);
+    return status;
+}
+
+static void free_steps(steps *s)
+{
+    sc_scratch_clear(&s->scratch);
+}
+
+static void *zeroed(size_t size)
+{
+    void *memory = test_allocate(size);
+    memset(memory, 0, size);
+    return memory;
+}
+
+/* ---- triangles, edges ---- */
+
+typedef struct side {
+    uint32_t low, high, half_edge;
+} side;
+
+static int compare_sides(const void *x, const void *y)
+{
+    const side *a = (const side *)x, *b = (const side *)y;
+    if (a->low != b->low) return a->low < b->low ? -1 : 1;
+    if (a->high != b->high) return a->high < b->high ? -1 : 1;
+    return a->half_edge < b->half_edge ? -1 : a->half_edge > b->half_edge;
+}
+
+static uint32_t end_of(const steps *s, uint32_t h)
+{
+    return s->points.triangles[h % 3 == 2 ? h - 2 : h + 1];
+}
+
+/* Edges, their owners and opposite half-edges, by sorting all half-edges. */
+static void check_edges(const steps *s)
+{
+    uint32_t corners = 3 * s->points.triangle_count, n = 0, i, j, k;
+    uint32_t edges = 0, boundary = 0, irregular = 0, wrong = 0;
+    uint32_t *opposite = (uint32_t *)test_allocate(corners * sizeof(uint32_t));
+    uint8_t *owned = (uint8_t *)zeroed(s->points.triangle_count);
+    side *sides = (side *)test_allocate(corners * sizeof(side));
+    for (i = 0; i < corners; ++i) {
+        uint32_t a = s->points.triangles[i], b = end_of(s, i);
+        opposite[i] = SC_NONE;
+        if (a == b) continue;
+        sides[n].low = a < b ? a : b;
+        sides[n].high = a < b ? b : a;
+        sides[n++].half_edge = i;
+    }
+    qsort(sides, n, sizeof(side), compare_sides);
+    for (i = 0; i < n; i = j) {
+        uint32_t forward = 0;
+        for (j = i; j < n && sides[j].low == sides[i].low && sides[j].high == sides[i].high; ++j)
+            forward += s->points.triangles[sides[j].half_edge] == sides[i].low;
+        ++edges;
+        owned[sides[i].half_edge / 3] |= (uint8_t)(1 << sides[i].half_edge % 3);
+        boundary += j - i == 1;
+        if (j - i == 2 && forward == 1) {
+            opposite[sides[i].half_edge] = sides[i + 1].half_edge;
+            opposite[sides[i + 1].half_edge] = sides[i].half_edge;
+        } else if (j - i > 1) {
+            ++irregular;
+        }
+    }
+    for (i = 0; i < corners; ++i) wrong += opposite[i] != s->adjacency.opposite[i];
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " opposite half-edges wrong", s->name, wrong);
+    for (wrong = i = 0; i < s->points.triangle_count; ++i)
+        wrong += owned[i] != s->adjacency.owned[i];
+    CHECK_MSG(wrong == 0, "%s: edges of %" PRIu32 " triangles wrongly owned", s->name, wrong);
+    CHECK(edges == s->adjacency.edge_count && boundary == s->adjacency.boundary_edges &&
+          irregular == s->adjacency.irregular_edges);
+    for (wrong = i = 0; i < s->points.point_count; ++i)
+        for (k = s->adjacency.corner_first[i]; k < s->adjacency.corner_first[i + 1]; ++k)
+            wrong += s->points.triangles[s->adjacency.corners[k]] != i;
+    CHECK(wrong == 0 && s->adjacency.corner_first[s->points.point_count] == corners);
+    free(sides);
+    free(owned);
+    free(opposite);
+}
+
+/* Components that share points, by spreading the lowest triangle number. */
+static void check_components(const steps *s)
+{
+    uint32_t count = s->points.triangle_count, t, k, changed = 1, components = 0, wrong = 0;
+    uint32_t *of_point = (uint32_t *)test_allocate(s->points.point_count * sizeof(uint32_t));
+    uint32_t *of_triangle = (uint32_t *)test_allocate(count * sizeof(uint32_t));
+    for (t = 0; t < s->points.point_count; ++t) of_point[t] = SC_NONE;
+    for (t = 0; t < count; ++t) of_triangle[t] = t;
+    while (changed)
+        for (changed = t = 0; t < count; ++t)
+            for (k = 0; k < 3; ++k) {
+                uint32_t *p = &of_point[s->points.triangles[3 * t + k]];
+                changed += *p != of_triangle[t];
+                if (*p > of_triangle[t]) *p = of_triangle[t];
+                if (*p < of_triangle[t]) of_triangle[t] = *p;
+            }
+    for (t = 0; t < count; ++t) {
+        components += of_triangle[t] == t;
+        wrong += s->adjacency.component[t] != s->adjacency.component[of_triangle[t]];
+        wrong += of_triangle[t] == t && s->adjacency.component[t] != components - 1;
+    }
+    CHECK_MSG(wrong == 0 && components == s->adjacency.component_count, "%s", s->name);
+    free(of_triangle);
+    free(of_point);
+}
+
+/* ---- patches ---- */
+
+/* patch[level * triangle_count + t]: the patch of triangle t, counted from 0 at each level. Leaf
+   clusters reached early are repeated. */
+typedef struct patches {
+    uint32_t levels, triangles;
+    uint32_t *patch;
+    uint32_t *count;   /* levels */
+    uint8_t *finished; /* levels * triangles, by patch: a leaf cluster */
+    uint32_t *parent;  /* levels * triangles, by patch */
+} patches;
+
+static void visit(const sc_hierarchy *h, uint32_t node, uint32_t level, patches *out)
+{
+    const sc_tree_node *n = &h->nodes[node];
+    uint32_t l, i, leaf = n->left == SC_NONE;
+    uint32_t last = leaf ? out->levels - 1 : level;
+    for (l = level; l <= last; ++l) {
+        for (i = n->first; i < n->first + n->count; ++i)
+            out->patch[l * out->triangles + h->order[i]] = out->count[l];
+        out->finished[l * out->triangles + out->count[l]] = (uint8_t)leaf;
+        out->parent[l * out->triangles + out->count[l]] = l > 0 ? out->count[l - 1] - 1 : 0;
+        ++out->count[l];
+    }
+    if (leaf) {
+        CHECK(n->count >= 1 && n->count <= SC_LEAF_MAX);
+        return;
+    }
+    visit(h, n->left, level + 1, out);
+    visit(h, n->right, level + 1, out);
+}
+
+static patches find_patches(const steps *s)
+{
+    patches p;
+    size_t size;
+    p.levels = s->hierarchy.depth;
+    p.triangles = s->points.triangle_count;
+    size = (size_t)p.levels * p.triangles;
+    p.patch = (uint32_t *)zeroed(size * sizeof(uint32_t));
+    p.parent = (uint32_t *)zeroed(size * sizeof(uint32_t));
+    p.finished = (uint8_t *)zeroed(size);
+    p.count = (uint32_t *)zeroed(p.levels * sizeof(uint32_t));
+    visit(&s->hierarchy, 0, 0, &p);
+    return p;
+}
+
+static void free_patches(patches *p)
+{
+    free(p->patch);
+    free(p->parent);
+    free(p->finished);
+    free(p->count);
+}
+
+static void check_xbvh(const steps *s, const patches *p)
+{
+    const sc_xbvh *x = &s->xbvh;
+    uint32_t l, i, k, c, wrong = 0;
+    if (!CHECK(x->level_count == p->levels && x->leaf_count == p->count[p->levels - 1])) return;
+    for (l = 0; l < p->levels; ++l) {
+        uint32_t first = x->level_first[l];
+        if (!CHECK(sc_xbvh_patches(x, l) == p->count[l])) return;
+        for (i = 0; i < p->count[l]; ++i) {
+            for (k = x->leaf_first[x->leaf[first + i]]; k < x->leaf_first[x->leaf[first + i + 1]];
+                 ++k)
+                wrong += p->patch[l * p->triangles + s->hierarchy.order[k]] != i;
+            wrong += sc_xbvh_is_leaf(x, first + i) != p->finished[l * p->triangles + i];
+            if (l + 1 == p->levels) continue;
+            for (c = x->child[first + i]; c < x->child[first + i + 1]; ++c)
+                wrong += p->parent[(l + 1) * p->triangles + c - x->level_first[l + 1]] != i;
+        }
+    }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " patches, leaves or children wrong", s->name, wrong);
+}
+
+/* shared[a * count + b], a < b: how many points two patches of a level share, up to 2, and 0 if all of
+   these are hubs; one that is no hub in which. */
+static void find_shared(const steps *s, const patches *p, uint32_t level, uint8_t *shared,
+                        uint32_t *which)
+{
+    uint32_t count = p->count[level], point, i, j, n;
+    uint8_t *seen = (uint8_t *)test_allocate(count);
+    uint32_t *met = (uint32_t *)test_allocate(count * sizeof(uint32_t));
+    memset(shared, 0, (size_t)count * count);
+    for (int hubs = 0; hubs < 2; ++hubs)
+        for (point = 0; point < s->points.point_count; ++point) {
+            const uint32_t *first = s->adjacency.corner_first + point;
+            memset(seen, 0, count);
+            for (n = 0, i = first[0]; i < first[1]; ++i)
+                seen[p->patch[level * p->triangles + s->adjacency.corners[i] / 3]] = 1;
+            for (i = 0; i < count; ++i)
+                if (seen[i]) met[n++] = i;
+            if ((n > SC_NEIGHBORS_HUB) != hubs) continue;
+            for (i = 0; i < n; ++i)
+                for (j = i + 1; j < n; ++j) {
+                    size_t at = (size_t)met[i] * count + met[j];
+                    if (hubs ? shared[at] == 1 : shared[at] < 2) ++shared[at];
+                    if (!hubs) which[at] = point;
+                }
+        }
+    free(met);
+    free(seen);
+}
+
+/* ---- the test tree ---- */
+
+/* Every adjacent pair of a level is one node, every other pair of children of a tested pair one BVTT
+   child, all of them below the right parents. */
+static void check_sctt(const steps *s, const patches *p)
+{
+    const sc_sctt *t = &s->sctt;
+    size_t most = (size_t)p->count[p->levels - 1] * p->count[p->levels - 1];
+    uint8_t *shared = (uint8_t *)test_allocate(most), *above = (uint8_t *)test_allocate(most);
+    uint8_t *nodes = (uint8_t *)test_allocate(most), *boxes = (uint8_t *)test_allocate(most);
+    uint32_t *which = (uint32_t *)test_allocate(most * sizeof(uint32_t));
+    uint32_t l, n, i, k, wrong = 0, lost = 0;
+    for (l = 0; l < p->levels; ++l) {
+        uint32_t count = p->count[l], base = s->xbvh.level_first[l],
+                 up = l > 0 ? p->count[l - 1] : 0;
+        const uint32_t *parent = p->parent + l * p->triangles;
+        const uint8_t *finished = p->finished + (l > 0 ? l - 1 : 0) * p->triangles;
+        uint8_t *swap = above;
+        above = shared;
+        shared = swap;
+        find_shared(s, p, l, shared, which);
+        memset(nodes, 0, (size_t)count * count);
+        memset(boxes, 0, (size_t)count * count);
+        for (n = t->level_first[l]; n < t->level_first[l + 1]; ++n) {
+            uint32_t a = t->patches[n].a - base, b = t->patches[n].b - base;
+            size_t at = (size_t)a * count + b;
+            if (!CHECK(a <= b && b < count)) goto end;
+            ++nodes[at];
+            wrong += t->touch[n] != (a != b && shared[at] == 1 ? which[at] : SC_NONE);
+        }
+        if (l > 0)
+            for (n = t->level_first[l - 1]; n < t->level_first[l]; ++n) {
+                uint32_t a = t->patches[n].a - s->xbvh.level_first[l - 1];
+                uint32_t b = t->patches[n].b - s->xbvh.level_first[l - 1];
+                for (k = t->child[n]; k < t->child[n + 1]; ++k)
+                    wrong +=
+                        parent[t->patches[k].a - base] != a || parent[t->patches[k].b - base] != b;
+                for (k = t->boxes_first[n]; k < t->boxes_first[n + 1]; ++k) {
+                    uint32_t c = t->boxes[k].a - base, d = t->boxes[k].b - base;
+                    if (!CHECK(c < d && d < count)) goto end;
+                    wrong += parent[c] != a || parent[d] != b;
+                    ++boxes[(size_t)c * count + d];
+                }
+            }
+        for (i = 0; i < count; ++i)
+            for (k = i; k < count; ++k) {
+                size_t at = (size_t)i * count + k;
+                uint32_t over = l > 0, node = 1;
+                if (l > 0) { /* not below two leaf clusters, nor below patches that are apart */
+                    size_t at_above = (size_t)parent[i] * up + parent[k];
+                    over = !(finished[parent[i]] && finished[parent[k]]) &&
+                           (parent[i] == parent[k] || above[at_above] > 0);
+                    node = over && (i == k || shared[at] > 0);
+                    over = over && !node;
+                    /* sharing a point is inherited by parents, so nothing adjacent is left out */
+                    lost += i != k && shared[at] > 0 && !node &&
+                            !(finished[parent[i]] && finished[parent[k]]);
+                }
+                wrong += nodes[at] != node || boxes[at] != over;
+            }
+    }
+    CHECK_MSG(wrong == 0 && lost == 0,
+              "%s: %" PRIu32 " nodes wrong, %" PRIu32 " adjacent pairs lost", s->name, wrong, lost);
+    CHECK(t->level_first[p->levels] == t->node_count && t->child[0] == 1);
+end:
+    free(shared);
+    free(above);
+    free(nodes);
+    free(boxes);
+    free(which);
+}
+
+/* Nodes of leaf clusters and everything below BVTT children: each pair of leaf clusters once. */
+static void check_leaf_pairs(const steps *s)
+{
+    const sc_sctt *t = &s->sctt;
+    const uint32_t *leaf = s->xbvh.leaf;
+    size_t leaves = s->xbvh.leaf_count;
+    uint8_t *reached = (uint8_t *)zeroed(leaves * leaves);
+    uint32_t n, k, i, j, wrong = 0;
+    for (n = 0; n < t->node_count; ++n) {
+        uint32_t a = t->patches[n].a, b = t->patches[n].b;
+        if (t->child[n] == t->child[n + 1] && sc_xbvh_is_leaf(&s->xbvh, a) &&
+            sc_xbvh_is_leaf(&s->xbvh, b))
+            ++reached[leaf[a] * leaves + leaf[b]];
+        for (k = t->boxes_first[n]; k < t->boxes_first[n + 1]; ++k)
+            for (i = leaf[t->boxes[k].a]; i < leaf[t->boxes[k].a + 1]; ++i)
+                for (j = leaf[t->boxes[k].b]; j < leaf[t->boxes[k].b + 1]; ++j)
+                    ++reached[i * leaves + j];
+    }
+    for (i = 0; i < leaves; ++i)
+        for (j = 0; j < leaves; ++j) wrong += reached[i * leaves + j] != (i <= j);
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " of %zu leaf clusters' pairs not reached once", s->name,
+              wrong, leaves);
+    free(reached);
+}
+
+/* ---- contours ---- */
+
+static uint32_t count_edges(const sc_csf *csf, uint32_t segment)
+{
+    uint32_t i, sum = 0;
+    if (segment < csf->leaf_count)
+        return csf->point_first[segment + 1] - csf->point_first[segment] - 1;
+    for (i = csf->child_first[segment - csf->leaf_count];
+         i < csf->child_first[segment - csf->leaf_count + 1]; ++i)
+        sum += count_edges(csf, csf->children[i]);
+    return sum;
+}
+
+/* Writes a segment's edges in order. */
+static sc_pair *flatten(const sc_csf *csf, uint32_t segment, sc_pair *out)
+{
+    uint32_t i;
+    if (segment < csf->leaf_count) {
+        for (i = csf->point_first[segment]; i + 1 < csf->point_first[segment + 1]; ++i, ++out) {
+            out->a = csf->points[i];
+            out->b = csf->points[i + 1];
+        }
+        return out;
+    }
+    for (i = csf->child_first[segment - csf->leaf_count];
+         i < csf->child_first[segment - csf->leaf_count + 1]; ++i)
+        out = flatten(csf, csf->children[i], out);
+    return out;
+}
+
+static int compare_pairs(const void *x, const void *y)
+{
+    const sc_pair *a = (const sc_pair *)x, *b = (const sc_pair *)y;
+    if (a->a != b->a) return a->a < b->a ? -1 : 1;
+    return a->b < b->b ? -1 : a->b > b->b;
+}
+
+/* Whether segments hold, as a multiset, the half-edges of the triangles with patch a or b that do not
+   meet their opposite within these. */
+static int is_contour(const steps *s, const uint32_t *patch, uint32_t a, uint32_t b,
+                      const uint32_t *segments, uint32_t segment_count)
+{
+    uint32_t corners = 3 * s->points.triangle_count, h, expected = 0, found = 0, i;
+    sc_pair *want = (sc_pair *)test_allocate(corners * sizeof(sc_pair)), *have, *end;
+    int same;
+    for (h = 0; h < corners; ++h) {
+        uint32_t o = s->adjacency.opposite[h], p = patch[h / 3];
+        if (p != a && p != b) continue;
+        if (o != SC_NONE && (patch[o / 3] == a || patch[o / 3] == b)) continue;
+        want[expected].a = s->points.triangles[h];
+        want[expected++].b = end_of(s, h);
+    }
+    for (i = 0; i < segment_count; ++i) found += count_edges(&s->csf, segments[i]);
+    have = end = (sc_pair *)test_allocate(found * sizeof(sc_pair));
+    for (i = 0; i < segment_count; ++i) end = flatten(&s->csf, segments[i], end);
+    if (expected) qsort(want, expected, sizeof(sc_pair), compare_pairs);
+    if (found) qsort(have, found, sizeof(sc_pair), compare_pairs);
+    same = found == expected && memcmp(have, want, found * sizeof(sc_pair)) == 0;
+    free(have);
+    free(want);
+    return same;
+}
+
+static void check_contours(const steps *s, const patches *p)
+{
+    const sc_csf *csf = &s->csf;
+    uint32_t l, n, wrong = 0, i, gaps = 0;
+    for (l = 0; l < p->levels; ++l) {
+        const uint32_t *patch = p->patch + l * p->triangles;
+        for (n = s->sctt.level_first[l]; n < s->sctt.level_first[l + 1]; ++n) {
+            const uint32_t *list = csf->contours + csf->contour_first[n];
+            uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n];
+            uint32_t a = s->sctt.patches[n].a - s->xbvh.level_first[l];
+            uint32_t b = s->sctt.patches[n].b - s->xbvh.level_first[l];
+            if (s->sctt.touch[n] == SC_NONE) {
+                wrong += !is_contour(s, patch, a, b, list, count);
+            } else {
+                wrong += list[0] != s->sctt.touch[n];
+                wrong += !is_contour(s, patch, a, a, list + 2, list[1]);
+                wrong += !is_contour(s, patch, b, b, list + 2 + list[1], count - 2 - list[1]);
+            }
+        }
+    }
+    CHECK_MSG(wrong == 0, "%s: contours of %" PRIu32 " nodes wrong", s->name, wrong);
+    for (i = 0; i < csf->segment_count; ++i) { /* one half-edge leads to the next */
+        uint32_t edges = count_edges(csf, i), e;
+        sc_pair *list = (sc_pair *)test_allocate(edges * sizeof(sc_pair));
+        gaps += flatten(csf, i, list) != list + edges || edges == 0;
+        for (e = 0; e + 1 < edges; ++e) gaps += list[e].b != list[e + 1].a;
+        free(list);
+    }
+    CHECK_MSG(gaps == 0, "%s: %" PRIu32 " gaps within segments", s->name, gaps);
+}
+
+/* ---- the model ---- */
+
+/* Patches connected through edges, by spreading the lowest number. */
+static uint32_t count_connected(const steps *s, const uint32_t *patch, uint32_t patch_count)
+{
+    uint32_t count = s->points.triangle_count, h, i, changed = 1, connected = 0;
+    uint32_t *lowest = (uint32_t *)test_allocate(count * sizeof(uint32_t));
+    uint32_t *parts = (uint32_t *)zeroed(patch_count * sizeof(uint32_t));
+    for (i = 0; i < count; ++i) lowest[i] = i;
+    while (changed)
+        for (changed = h = 0; h < 3 * count; ++h) {
+            uint32_t o = s->adjacency.opposite[h];
+            if (o == SC_NONE || patch[o / 3] != patch[h / 3] || lowest[o / 3] <= lowest[h / 3])
+                continue;
+            lowest[o / 3] = lowest[h / 3];
+            changed = 1;
+        }
+    for (i = 0; i < count; ++i) parts[patch[i]] += lowest[i] == i;
+    for (i = 0; i < patch_count; ++i) connected += parts[i] == 1;
+    free(parts);
+    free(lowest);
+    return connected;
+}
+
+/* What box recursion visits: the descendants of each patch, eight at most, some levels down. */
+static void check_hops(const steps *s, const sc_model *model)
+{
+    const uint32_t *hop = sc_model_hop(model), *leaf = sc_model_leaf(model);
+    uint32_t l, p, wrong = 0;
+    for (l = 0; l + 1 < model->level_count; ++l)
+        for (p = sc_model_level_first(model)[l]; p + 1 < sc_model_level_first(model)[l + 1]; ++p) {
+            wrong += hop[p] <= p || hop[p + 1] <= hop[p] || hop[p + 1] - hop[p] > 8;
+            wrong += leaf[hop[p]] != leaf[p] || leaf[hop[p + 1]] != leaf[p + 1];
+        }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " hops wrong", s->name, wrong);
+}
+
+static void check_model(const steps *s, const patches *p, const soup *mesh,
+                        const sc_build_options *options)
+{
+    sc_mesh m = input_plain_mesh(mesh);
+    sc_model *model = NULL;
+    uint32_t *now = (uint32_t *)test_allocate(p->triangles * sizeof(uint32_t));
+    uint32_t *before = (uint32_t *)test_allocate(p->triangles * sizeof(uint32_t));
+    uint32_t l, i, k, n, wrong = 0;
+    sc_model_info info;
+    sc_level_info level;
+    if (!CHECK(sc_build(&m, options, &model) == SC_OK)) goto end;
+    memset(&info, 0, sizeof(info));
+    info.struct_size = sizeof(info);
+    CHECK(sc_model_get_info(model, &info) == SC_OK);
+    CHECK(info.edge_count == s->adjacency.edge_count && info.level_count == p->levels &&
+          info.component_count == s->adjacency.component_count &&
+          info.boundary_edges == s->adjacency.boundary_edges &&
+          info.irregular_edges == s->adjacency.irregular_edges &&
+          info.leaf_count == p->count[p->levels - 1] && info.node_count == s->sctt.node_count &&
+          info.segment_count == s->csf.segment_count && info.point_count == s->points.point_count);
+    for (l = 0; l < p->levels; ++l) {
+        const uint32_t *patch = p->patch + l * p->triangles;
+        uint32_t selves = 0, pairs = 0, self_marks[2] = {0, 0}, pair_marks[2] = {0, 0};
+        memset(&level, 0, sizeof(level));
+        level.struct_size = sizeof(level);
+        CHECK(sc_model_get_level(model, l, &level) == SC_OK);
+        CHECK(sc_model_get_patches(model, l, now, p->triangles) == SC_OK);
+        wrong += memcmp(now, patch, p->triangles * sizeof(uint32_t)) != 0;
+        for (i = 0; l > 0 && i < p->triangles; ++i) /* a patch of this level lies in one above */
+            for (k = 0; k < i && k < 50; ++k) wrong += now[i] == now[k] && before[i] != before[k];
+        for (n = s->sctt.level_first[l]; n < s->sctt.level_first[l + 1]; ++n) {
+            int self = s->sctt.patches[n].a == s->sctt.patches[n].b;
+            uint8_t flags = sc_model_node_flags(model)[n];
+            *(self ? &selves : &pairs) += 1;
+            (self ? self_marks : pair_marks)[0] += !(flags & SC_NODE_REST_TURNED);
+            (self ? self_marks : pair_marks)[1] += flags == 0;
+        }
+        CHECK_MSG(level.patch_count == p->count[l] && level.self_nodes == selves &&
+                      level.pair_nodes == pairs && level.self_oriented == self_marks[0] &&
+                      level.self_culled == self_marks[1] && level.pair_oriented == pair_marks[0] &&
+                      level.pair_culled == pair_marks[1],
+                  "%s: level %" PRIu32, s->name, l);
+        CHECK_MSG(level.connected_patches == count_connected(s, patch, p->count[l]),
+                  "%s: level %" PRIu32 " has %" PRIu32 " connected patches", s->name, l,
+                  level.connected_patches);
+        memcpy(before, now, p->triangles * sizeof(uint32_t));
+    }
+    CHECK_MSG(wrong == 0, "%s: patches of the model are wrong", s->name);
+    for (wrong = i = 0; i < p->triangles; ++i) { /* triangles in leaf order, points renumbered */
+        uint32_t id = sc_model_triangle_id(model)[i];
+        wrong += id != s->hierarchy.order[i];
+        wrong += sc_model_edge_owned(model)[i] != s->adjacency.owned[id];
+        for (k = 0; k < 3; ++k) {
+            uint32_t v = mesh->triangles[3 * id + k];
+            if (sc_model_slot(model)[v] < SC_SLOT_WELDED)
+                wrong += sc_model_triangle(model)[3 * i + k] != sc_model_slot(model)[v];
+        }
+    }
+    CHECK_MSG(wrong == 0, "%s: triangles of the model are wrong", s->name);
+    check_hops(s, model);
+end:
+    sc_model_free(model);
+    free(before);
+    free(now);
+}
+
+/* ---- all of it ---- */
+
+static void check_all(const char *name, const soup *mesh, const sc_build_options *options)
+{
+    steps s;
+    uint64_t state = test_random_state();
+    sc_status status = make_steps(&s, mesh, options);
+    s.name = name;
+    if (CHECK_MSG(status == SC_OK, "%s: status %d", name, (int)status)) {
+        patches p = find_patches(&s);
+        CHECK_MSG(sc_hierarchy_validate(&s.hierarchy, &s.scratch) == 1, "%s", name);
+        CHECK_MSG(sc_xbvh_validate(&s.xbvh) == 1, "%s", name);
+        CHECK_MSG(sc_sctt_validate(&s.xbvh, &s.neighbors, &s.sctt) == 1, "%s", name);
+        CHECK_MSG(sc_csf_validate(&s.csf, &s.sctt, &s.scratch) == 1, "%s", name);
+        check_edges(&s);
+        check_components(&s);
+        check_xbvh(&s, &p);
+        check_sctt(&s, &p);
+        check_leaf_pairs(&s);
+        check_contours(&s, &p);
+        test_random_reset(state); /* a bisection may be random */
+        check_model(&s, &p, mesh, options);
+        free_patches(&p);
+    }
+    free_steps(&s);
+}
+
+/* A caller's tree that is a chain: one triangle leaves at each of 59 nodes, the rest is the last. */
+static void check_chain(const char *name, const soup *mesh, int to_the_left)
+{
+    uint32_t count = mesh->triangle_count, inner = count - 1 < 59 ? count - 1 : 59, i;
+    uint32_t *order = (uint32_t *)test_allocate(count * sizeof(uint32_t));
+    sc_tree_node *tree = (sc_tree_node *)zeroed((2 * (size_t)inner + 1) * sizeof(sc_tree_node));
+    sc_build_options options;
+    for (i = 0; i < count; ++i) order[i] = i;
+    for (i = 0; i < inner; ++i) { /* node 2 i is inner, 2 i + 1 a leaf */
+        tree[2 * i].left = to_the_left ? 2 * i + 2 : 2 * i + 1;
+        tree[2 * i].right = to_the_left ? 2 * i + 1 : 2 * i + 2;
+        tree[2 * i + 1].left = tree[2 * i + 1].right = SC_NONE;
+        tree[2 * i + 1].first = i;
+        tree[2 * i + 1].count = 1;
+    }
+    tree[2 * inner].left = tree[2 * inner].right = SC_NONE;
+    tree[2 * inner].first = inner;
+    tree[2 * inner].count = count - inner;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.partition = SC_PARTITION_TREE;
+    options.order = order;
+    options.tree = tree;
+    options.tree_count = 2 * inner + 1;
+    /* below the chain at most 4 more levels: the mesh must be small */
+    check_all(name, mesh, &options);
+    free(tree);
+    free(order);
+}
+
+static void check_every_partition(const char *name, const soup *mesh)
+{
+    sc_build_options options;
+    for (uint32_t partition = SC_PARTITION_FAST; partition <= SC_PARTITION_BISECT; ++partition) {
+        input_choices c = input_choose(mesh, test_random_below(3), partition);
+        check_all(name, mesh, &c.options);
+        input_free_choices(&c);
+    }
+    check_chain(name, mesh, (int)test_random_below(2));
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.partition = SC_PARTITION_BISECT;
+    options.bisect = sc_metis_bisect;
+#ifdef SC_WITH_METIS
+    check_all(name, mesh, &options);
+#else
+    if (mesh->triangle_count > SC_LEAF_MAX && mesh->triangle_count < 20) {
+        sc_mesh m = input_plain_mesh(mesh);
+        sc_model *model = NULL;
+        sc_status status = sc_build(&m, &options, &model);
+        CHECK(status == SC_ERROR_UNSUPPORTED || status == SC_OK); /* OK: nothing had to be cut */
+        sc_model_free(model);
+    }
+#endif
+}
+
+static void named_meshes(void)
+{
+    soup s;
+#define ON(name, make)                                                                             \
+  s = make;                                                                                        \
+  check_every_partition(name, &s);                                                                 \
+  soup_free(&s)
+    ON("one triangle", soup_many(0 + 1));
+    ON("two triangles", soup_cloth(1, 1));
+    ON("a leaf", soup_cloth(1, 4));
+    ON("just more than a leaf", soup_pinched(2));
+    ON("cloth", soup_cloth(9, 11));
+    ON("long cloth", soup_cloth(1, 60));
+    ON("annulus", soup_annulus(20, 4));
+    ON("tube", soup_tube(12, 9));
+    ON("sphere", soup_sphere(12, 10));
+    ON("moebius", soup_moebius(30, 3));
+    ON("pinched", soup_pinched(6));
+    ON("fins", soup_fins(20));
+    ON("fan of sheets", shape_fan_of_sheets(20));
+    ON("many", soup_many(30));
+    ON("slivers", soup_slivers(150));
+    ON("seams", soup_seams(8));
+    ON("spiral", shape_spiral(40, 3, 1.6, 0));
+    ON("body", shape_body(12, 12));
+    ON("broken cloth", shape_broken_cloth(9));
+    ON("grid soup", soup_on_grid(2));
+    ON("scattered", soup_scattered());
+#undef ON
+}
+
+/* Points at which more patches meet than are called adjacent. */
+static void hubs(void)
+{
+    soup s = shape_hub(230);
+    uint32_t partition, hubs_met = 0;
+    for (partition = SC_PARTITION_FAST; partition <= SC_PARTITION_BISECT; ++partition) {
+        input_choices c = input_choose(&s, SC_WELD_REST, partition);
+        steps made;
+        check_all("hub", &s, &c.options);
+        if (CHECK(make_steps(&made, &s, &c.options) == SC_OK)) {
+            patches p = find_patches(&made);
+            const uint32_t *patch = p.patch + (p.levels - 1) * p.triangles;
+            uint8_t *seen = (uint8_t *)zeroed(p.count[p.levels - 1]);
+            uint32_t i, n = 0;
+            for (i = 0; i < p.triangles; ++i) {
+                const uint32_t *v = made.points.triangles + 3 * i;
+                if (v[0] != 0 && v[1] != 0 && v[2] != 0) continue;
+                n += !seen[patch[i]];
+                seen[patch[i]] = 1;
+            }
+            hubs_met += n > SC_NEIGHBORS_HUB;
+            free(seen);
+            free_patches(&p);
+        }
+        free_steps(&made);
+        input_free_choices(&c);
+    }
+    CHECK(hubs_met == 4);
+    soup_free(&s);
+}
+
+static void random_meshes(void)
+{
+    for (uint32_t i = 0; i < test_iterations(60); ++i) {
+        const char *name = "soup";
+        soup s = i % 4 == 0 ? soup_on_grid(1 + i % 3) : shape_any(40 + 4 * i, &name);
+        input_choices c = input_choose(&s, test_random_below(3), test_random_below(4));
+        check_all(name, &s, &c.options);
+        input_free_choices(&c);
+        soup_free(&s);
+    }
+}
+
+/* ---- validators ---- */
+
+/* Changes *at for a moment. */
+static int is_noticed(const steps *s, int which, uint32_t *at, uint32_t value)
+{
+    uint32_t old = *at;
+    sc_scratch scratch = s->scratch;
+    int found;
+    scratch.blocks = NULL;
+    *at = value;
+    switch (which) {
+    case 0:
+        found = !sc_hierarchy_validate(&s->hierarchy, &scratch);
+        break;
+    case 1:
+        found = !sc_xbvh_validate(&s->xbvh);
+        break;
+    case 2:
+        found = !sc_sctt_validate(&s->xbvh, &s->neighbors, &s->sctt);
+        break;
+    default:
+        found = !sc_csf_validate(&s->csf, &s->sctt, &scratch);
+        break;
+    }
+    *at = old;
+    sc_scratch_clear(&scratch);
+    return found;
+}
+
+static void validators(void)
+{
+    soup mesh = soup_cloth(9, 9);
+    sc_build_options options;
+    steps s;
+    uint32_t i, n, inner = 0, leaf = 0, middle, *order;
+    memset(&options, 0, sizeof(options));
+    if (!CHECK(make_steps(&s, &mesh, &options) == SC_OK)) return;
+    order = s.hierarchy.order;
+    while (s.hierarchy.nodes[leaf].left != SC_NONE) ++leaf;
+    /* the tree: an order that is no permutation; children before parents, out of range, lost; wrong,
+       empty and too large leaves; a wrong number of them */
+    CHECK(is_noticed(&s, 0, &order[3], order[4]));
+    CHECK(is_noticed(&s, 0, &order[3], mesh.triangle_count));
+    CHECK(is_noticed(&s, 0, &s.hierarchy.nodes[0].left, 0));
+    CHECK(is_noticed(&s, 0, &s.hierarchy.nodes[0].left, s.hierarchy.node_count));
+    CHECK(is_noticed(&s, 0, &s.hierarchy.nodes[0].right, 1));
+    CHECK(is_noticed(&s, 0, &s.hierarchy.nodes[leaf].first, s.hierarchy.nodes[leaf].first + 1));
+    CHECK(is_noticed(&s, 0, &s.hierarchy.nodes[leaf].count, 0));
+    CHECK(is_noticed(&s, 0, &s.hierarchy.nodes[leaf].count, SC_LEAF_MAX + 1));
+    CHECK(is_noticed(&s, 0, &s.hierarchy.leaf_count, s.hierarchy.leaf_count + 1));
+    /* patches: levels that do not start where they should, children and leaves off by one */
+    middle = s.xbvh.level_first[2];
+    CHECK(is_noticed(&s, 1, &s.xbvh.level_first[0], 1));
+    CHECK(is_noticed(&s, 1, &s.xbvh.level_first[2], middle - 1));
+    CHECK(is_noticed(&s, 1, &s.xbvh.patch_end, s.xbvh.patch_end - 1));
+    CHECK(is_noticed(&s, 1, &s.xbvh.leaf_count, s.xbvh.leaf_count - 1));
+    for (i = 0; i < s.xbvh.level_first[s.xbvh.level_count - 1]; ++i) {
+        CHECK_MSG(is_noticed(&s, 1, &s.xbvh.child[i], s.xbvh.child[i] + 1), "child %" PRIu32, i);
+        CHECK_MSG(is_noticed(&s, 1, &s.xbvh.leaf[i], s.xbvh.leaf[i] + 1), "leaf %" PRIu32, i);
+    }
+    /* tests: any patch of any node, any child range, any BVTT child; a pair lost from the neighbors */
+    for (n = 0; n < s.sctt.node_count; ++n) {
+        CHECK_MSG(is_noticed(&s, 2, &s.sctt.patches[n].a, s.sctt.patches[n].a + 1), "node %" PRIu32,
+                  n);
+        CHECK_MSG(is_noticed(&s, 2, &s.sctt.patches[n].b, s.sctt.patches[n].b + 1), "node %" PRIu32,
+                  n);
+        CHECK_MSG(is_noticed(&s, 2, &s.sctt.child[n + 1], s.sctt.child[n + 1] - 1), "node %" PRIu32,
+                  n);
+        CHECK_MSG(is_noticed(&s, 2, &s.sctt.boxes_first[n + 1], s.sctt.boxes_first[n + 1] + 1),
+                  "node %" PRIu32, n);
+        if (s.sctt.child[n] != s.sctt.child[n + 1]) inner = n;
+    }
+    for (i = 0; i < s.sctt.box_count; ++i)
+        CHECK(is_noticed(&s, 2, &s.sctt.boxes[i].b, s.sctt.boxes[i].b - 1));
+    i = s.sctt.patches[s.sctt.child[inner + 1] - 1].a;
+    CHECK(s.neighbors.count[i] > 0 && is_noticed(&s, 2, &s.neighbors.count[i], 0));
+    /* segments: a point too few, a child before or twice, a gap between children, a contour of what
+       is no segment */
+    for (i = 0; i < s.csf.leaf_count; i += 7)
+        CHECK(is_noticed(&s, 3, &s.csf.point_first[i + 1], s.csf.point_first[i] + 1));
+    CHECK(s.csf.segment_count > s.csf.leaf_count);
+    for (i = s.csf.leaf_count; i < s.csf.segment_count; ++i) {
+        uint32_t *first = s.csf.child_first + (i - s.csf.leaf_count);
+        CHECK(is_noticed(&s, 3, &first[1], first[0] + 1));
+        CHECK(is_noticed(&s, 3, &s.csf.children[first[0]], i));
+        CHECK(is_noticed(&s, 3, &s.csf.children[first[0]], s.csf.children[first[0] + 1]));
+    }
+    for (n = 0; n < s.sctt.node_count; ++n) {
+        i = s.csf.contour_first[n] + (s.sctt.touch[n] == SC_NONE ? 0 : 2);
+        CHECK(i >= s.csf.contour_first[n + 1] ||
+              is_noticed(&s, 3, &s.csf.contours[i], s.csf.segment_count));
+    }
+    CHECK(is_noticed(&s, 3, &s.csf.contour_first[0], s.csf.contour_first[1] + 1));
+    free_steps(&s);
+    soup_free(&mesh);
+}
+
+SC_TEST_MAIN(SC_TEST(named_meshes), SC_TEST(hubs), SC_TEST(random_meshes), SC_TEST(validators))
