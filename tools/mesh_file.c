@@ -31,6 +31,7 @@ typedef struct scene_walk {
     uint64_t face_hash; /* FNV-1a (Fowler, Noll, Vo) over corner counts and indices */
     bool has_polygons;
     bool bad_index;
+    bool bad_node; /* assimp's reader of RAW files leaves out nodes: NULL */
 } scene_walk;
 
 static const uint64_t face_hash_start = UINT64_C(0xcbf29ce484222325);
@@ -120,6 +121,10 @@ static void walk_mesh(scene_walk *walk, const struct aiMesh *mesh, const affine 
 
 static void walk_node(scene_walk *walk, const struct aiNode *node, const affine *parent)
 {
+    if (!node) {
+        walk->bad_node = true;
+        return;
+    }
     const affine own = affine_from_node(node);
     const affine map = affine_multiply(parent, &own);
     for (uint32_t i = 0; i < node->mNumMeshes; i++) {
@@ -173,7 +178,9 @@ static const struct aiScene *import_scene(const char *path, scene_walk *walk,
     }
     *walk = walk_scene(scene, NULL, NULL);
     const char *reason = NULL;
-    if (walk->bad_index)
+    if (walk->bad_node)
+        reason = "cannot be read as a mesh: assimp gives a scene with missing nodes";
+    else if (walk->bad_index)
         reason = "a face names a vertex that does not exist; is the file truncated?";
     else if (walk->vertex_count >= UINT32_MAX)
         reason = "too many vertices";
