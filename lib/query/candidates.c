@@ -72,9 +72,14 @@ void sc_candidates_of_leaf(sc_query_state *state, uint32_t leaf)
 
 /* What the planes of the two triangles say of LANES pairs, a bit each. */
 typedef struct plane_test {
-    unsigned undecided; /* neither plane certainly separates them */
-    unsigned flat;      /* of these: one triangle is in the other's plane, as far as can be told */
+    unsigned apart; /* one plane certainly separates them */
+    unsigned flat;  /* one triangle is in the other's plane, as far as can be told */
 } plane_test;
+
+/* The corners of LANES pairs of triangles, lane by lane. */
+typedef struct pair_lanes {
+    double corner[2][3][3][LANES]; /* triangle, corner, coordinate */
+} pair_lanes;
 
 /*
  *
@@ -84,40 +89,41 @@ typedef struct plane_test {
  * |f|1, computed to within 8 * 2^-53. Hence 9 * 2^-53 |p - a|max |e|1 |f|1; the absolute term is for
  * products that underflow.
  */
-static plane_test test_planes(const double x[LANES][2][3][3])
+static plane_test test_planes(const pair_lanes *x)
 {
     const double relative = 9 * 1.1102230246251565e-16, absolute = 1e-290;
     plane_test result = {0, 0};
     int lane, s, k;
-    for (lane = 0; lane < LANES; lane++) {
-        int apart = 0, flat = 0;
-        for (s = 0; s < 2; s++) {
-            const double(*t)[3] = x[lane][s], (*o)[3] = x[lane][1 - s];
-            double e0 = t[1][0] - t[0][0], e1 = t[1][1] - t[0][1], e2 = t[1][2] - t[0][2];
-            double f0 = t[2][0] - t[0][0], f1 = t[2][1] - t[0][1], f2 = t[2][2] - t[0][2];
+    for (s = 0; s < 2; s++) {
+        const double(*t)[3][LANES] = x->corner[s], (*o)[3][LANES] = x->corner[1 - s];
+        double apart[LANES], flat[LANES]; /* positive if so */
+        for (lane = 0; lane < LANES; lane++) {
+            double a0 = t[0][0][lane], a1 = t[0][1][lane], a2 = t[0][2][lane];
+            double e0 = t[1][0][lane] - a0, e1 = t[1][1][lane] - a1, e2 = t[1][2][lane] - a2;
+            double f0 = t[2][0][lane] - a0, f1 = t[2][1][lane] - a1, f2 = t[2][2][lane] - a2;
             double n0 = e1 * f2 - e2 * f1, n1 = e2 * f0 - e0 * f2, n2 = e0 * f1 - e1 * f0;
-            double low = HUGE_VAL, high = -HUGE_VAL, reach = 0, bound;
+            double low = HUGE_VAL, high = -HUGE_VAL, reach = 0, not_finite = 0, bound;
             for (k = 0; k < 3; k++) {
-                double p0 = o[k][0] - t[0][0], p1 = o[k][1] - t[0][1], p2 = o[k][2] - t[0][2];
+                double p0 = o[k][0][lane] - a0, p1 = o[k][1][lane] - a1, p2 = o[k][2][lane] - a2;
                 double d = n0 * p0 + n1 * p1 + n2 * p2;
-                p0 = fabs(p0);
-                p1 = fabs(p1);
-                p2 = fabs(p2);
-                p0 = p0 > p1 ? p0 : p1;
-                p0 = p0 > p2 ? p0 : p2;
+                p0 = fabs(p0) > fabs(p1) ? fabs(p0) : fabs(p1);
+                p0 = p0 > fabs(p2) ? p0 : fabs(p2);
                 reach = reach > p0 ? reach : p0;
                 low = d < low ? d : low;
                 high = d > high ? d : high;
-                apart |= d != d ? 2 : 0;
+                not_finite +=
+                    0 * d; /* NaN if d is, or is infinite; a comparison would pass over it */
             }
             bound = relative * (reach * ((fabs(e0) + fabs(e1) + fabs(e2)) *
                                          (fabs(f0) + fabs(f1) + fabs(f2)))) +
-                    absolute * (1 + reach);
-            apart |= (low > bound) | (high < -bound);
-            flat |= (low >= -bound) & (high <= bound);
+                    absolute * (1 + reach) + not_finite;
+            apart[lane] = (low > -high ? low : -high) - bound;
+            flat[lane] = (low < -high ? low : -high) + bound;
         }
-        result.undecided |= (unsigned)(apart != 1) << lane;
-        result.flat |= (unsigned)(flat & (apart != 1)) << lane;
+        for (lane = 0; lane < LANES; lane++) {
+            result.apart |= (unsigned)(apart[lane] > 0) << lane;
+            result.flat |= (unsigned)(flat[lane] >= 0) << lane;
+        }
     }
     return result;
 }
@@ -128,12 +134,16 @@ static plane_test test_planes(const double x[LANES][2][3][3])
  * one difference, one product and two additions: 5 * 2^-53 |m|1 |p - a|max is more. This spares flat
  * regions the exact primitives, which are slow there.
  */
-static int side_separates(const double x[2][3][3])
+static int side_separates(const pair_lanes *lanes, unsigned lane)
 {
     const double relative = 5 * 1.1102230246251565e-16, absolute = 1e-290;
+    double x[2][3][3];
     int s, k, i, c;
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 3; k++)
+            for (c = 0; c < 3; c++) x[s][k][c] = lanes->corner[s][k][c][lane];
     for (s = 0; s < 2; s++) {
-        const double(*t)[3] = x[s], (*o)[3] = x[1 - s];
+        double(*t)[3] = x[s], (*o)[3] = x[1 - s];
         double e[3][3], n[3];
         for (k = 0; k < 3; k++)
             for (c = 0; c < 3; c++) e[k][c] = t[(k + 1) % 3][c] - t[k][c];
@@ -245,7 +255,7 @@ void sc_candidates_decide(sc_query_state *state)
             decide_pair(state, &pair);
     }
     for (i = 0; i < disjoint && !state->stop; i += LANES) {
-        double x[LANES][2][3][3];
+        pair_lanes x;
         plane_test planes;
         unsigned rest;
         for (j = 0; j < LANES; j++) { /* the last pair fills the row */
@@ -254,16 +264,15 @@ void sc_candidates_decide(sc_query_state *state)
                 for (k = 0; k < 3; k++) {
                     uint64_t corner = 3 * (uint64_t)(s ? pair->b : pair->a) + (uint64_t)k;
                     const double *p = position + 3 * (uint64_t)triangle[corner];
-                    for (c = 0; c < 3; c++) x[j][s][k][c] = p[c];
+                    for (c = 0; c < 3; c++) x.corner[s][k][c][j] = p[c];
                 }
         }
-        planes = test_planes((const double(*)[2][3][3])x);
-        rest = planes.undecided;
+        planes = test_planes(&x);
+        rest = ~planes.apart & ((1u << LANES) - 1u);
         if (disjoint - i < LANES) rest &= (1u << (disjoint - i)) - 1u;
         for (; rest && !state->stop; rest &= rest - 1) {
             unsigned lane = sc_bits_lowest(rest);
-            if ((planes.flat >> lane & 1u) && side_separates((const double(*)[3][3])x[lane]))
-                continue;
+            if ((planes.flat >> lane & 1u) && side_separates(&x, lane)) continue;
             decide_pair(state, &w->candidates[i + lane]);
         }
     }
