@@ -22,7 +22,7 @@ $(later): after-deps
 after-deps: deps
 	@$(MAKE) --no-print-directory $(later)
 deps:
-	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' tools/deps.sh
+	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' CGAL='$(cgal)' tools/deps.sh
 
 else
 
@@ -39,6 +39,7 @@ WERROR ?= 0
 V ?= 0
 INSTALL ?= install
 
+comma := ,
 # Make's versions differ in what they take for a comment within $(shell ...).
 hash := \#
 
@@ -216,7 +217,7 @@ $(bin)/make-meshes:
 
 .PHONY: deps
 deps: ## install what is missing to build and test everything (says first what that is)
-	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' tools/deps.sh
+	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' CGAL='$(cgal)' tools/deps.sh
 
 .PHONY: demo
 ifneq ($(strip $(missing_for_programs)),)
@@ -264,6 +265,155 @@ $(work)/tests/header_cxx: tests/header_cxx.cpp include/starcontour.h $(obj)/flag
 	$(Q)$(CXX) $(cxx_warnings) $(werror) $(exact) $(test_mode) -Iinclude $(CPPFLAGS) $(CXXFLAGS) \
 	    $(LDFLAGS) -o $@ $< $(static) $(LDLIBS) -lm
 
+# Comparison with CGAL; by hand, as it takes libraries and meshes that nothing else needs.
+missing_for_cgal := $(if $(call has,CGAL/version.h),,CGAL) $(if $(gmp),,gmp) \
+    $(if $(assimp),,assimp) $(if $(cjson),,cJSON)
+cgal_objects := $(call objects,tools/mesh_file.c tools/text_mesh.c tests/oracle.c tests/harness.c)
+
+.PHONY: test-cgal
+ifneq ($(strip $(missing_for_cgal)),)
+test-cgal: ## compare pairs with CGAL's on hundreds of real meshes (make deps cgal=1 test-cgal)
+	@echo "make test-cgal needs $(strip $(missing_for_cgal)): run 'make deps cgal=1' first" >&2; exit 1
+else
+test-cgal: $(work)/tests/cgal/compare $(programs)
+	@meshes/fetch.sh --models build/meshes $(bin)/subdivide
+	@tests/cgal/compare_all.sh $< build/meshes $(work)/tests/cgal/not_read.log
+endif
+
+$(work)/tests/cgal/compare: tests/cgal/compare.cpp include/starcontour.h tools/mesh_file.h \
+    tests/oracle.h $(obj)/flags $(cgal_objects) $(static)
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  c++  $<")
+	$(Q)$(CXX) -std=c++17 $(cxx_warnings) $(werror) $(exact) -frounding-math $(mode) -Iinclude \
+	    -Itools -Itests $(CPPFLAGS) $(CXXFLAGS) $(LDFLAGS) -o $@ $< $(cgal_objects) $(static) \
+	    -lassimp -lmpfr -lgmp $(LDLIBS) -lm
+
+# ------------------------------------------------------------------------------------------------
+# Beyond `make test`: fuzzing, soak, other sanitizers, analysis. What is compiled with other flags goes
+# into a folder of its own; programs are in tests/fuzz/ and tests/runs/.
+
+CLANG ?= clang
+SECONDS ?= 60
+SOAK ?= 100000
+
+fuzz_targets := fuzz_build fuzz_query fuzz_options
+fuzz_sources := tests/fuzz/fuzz_support.c $(patsubst %,tests/fuzz/%.c,$(fuzz_targets))
+fuzz_programs := $(patsubst %,$(work)/fuzz/%,$(fuzz_targets))
+run_programs := $(patsubst tests/runs/%.c,$(work)/runs/%,$(wildcard tests/runs/*.c))
+
+# $(call variant,FOLDER,VARIABLES,PROGRAMS): builds programs in that folder.
+variant = +$(Q)$(MAKE) --no-print-directory config=debug BUILD='$(BUILD)/$(1)' $(2) \
+    $(patsubst %,'$(BUILD)/$(1)/debug/%',$(3))
+
+# $(call need,PROGRAM,PACKAGE): says so if it is not there.
+need = @command -v $(1) >/dev/null 2>&1 || \
+    { echo "make $@ needs $(1) (Debian: apt-get install $(2))" >&2; exit 1; }
+
+# libFuzzer calls LLVMFuzzerTestOneInput, which becomes another name of the target.
+$(fuzz_programs): fuzz_entry = -fsanitize=fuzzer -Wl,--defsym=LLVMFuzzerTestOneInput=$(@F)
+$(fuzz_programs) $(work)/fuzz/make_seeds: $(call objects,$(fuzz_sources) $(tests_support)) \
+    $(static) $(metis_library)
+	$(call link,$(fuzz_entry) $(test_libs))
+$(work)/fuzz/make_seeds: $(call objects,tests/fuzz/make_seeds.c)
+$(work)/tests/test_reproducers: $(call objects,$(fuzz_sources))
+
+$(run_programs): $(work)/runs/%: $(obj)/tests/runs/%.o $(call objects,$(tests_support)) \
+    $(static) $(metis_library)
+	$(call link,$(test_libs))
+
+.PHONY: fuzz
+fuzz: ## fuzz each target for SECONDS (clang); findings go to tests/fuzz/reproducers
+	$(call need,$(CLANG),clang)
+	$(call variant,fuzz,CC='$(CLANG)' CFLAGS='-O2 -fno-omit-frame-pointer \
+	    -fsanitize=address$(comma)undefined$(comma)fuzzer-no-link -fno-sanitize-recover=all \
+	    -fno-sanitize-coverage=trace-cmp',\
+	    fuzz/make_seeds $(patsubst %,fuzz/%,$(fuzz_targets)))
+	@tests/fuzz/fuzz.sh '$(BUILD)/fuzz/debug/fuzz' '$(SECONDS)'
+
+.PHONY: soak
+soak: $(work)/runs/soak ## SOAK queries on changing poses of one model, in bounded memory
+	$< $(SOAK)
+
+.PHONY: test-thread
+test-thread: ## many threads on one model, under ThreadSanitizer
+	$(call variant,thread,CFLAGS='-O1 -fsanitize=thread',runs/thread)
+	'$(BUILD)/thread/debug/runs/thread'
+
+# Files that take results from libraries without MemorySanitizer are left out, see
+# tests/runs/memory_ignore.txt, and so is test_ccd, which is about such a library.
+memory_tests := $(patsubst tests/%.c,tests/%,$(filter-out tests/test_ccd.c,$(tests)))
+
+.PHONY: test-memory-clang
+test-memory-clang: ## tests, shortened, under MemorySanitizer (clang); all but test_ccd
+	$(call need,$(CLANG),clang)
+	$(call variant,memory,CC='$(CLANG)' CFLAGS='-O1 -fno-omit-frame-pointer -fsanitize=memory \
+	    -fno-sanitize-recover=all -fsanitize-ignorelist=tests/runs/memory_ignore.txt',$(memory_tests) runs/soak)
+	'$(BUILD)/memory/debug/runs/soak' 3000
+	@SC_TEST_SCALE=5 tests/run.sh $(patsubst %,'$(BUILD)/memory/debug/%',$(memory_tests))
+
+valgrind_tests := $(patsubst %,$(work)/tests/test_%,abi memory input structures reproducers)
+
+.PHONY: test-valgrind
+test-valgrind: $(valgrind_tests) ## small tests under valgrind; leaks are errors
+	$(call need,valgrind,valgrind)
+	@for test in $(valgrind_tests); do echo "valgrind $$test" && SC_TEST_SCALE=2 valgrind -q \
+	    --leak-check=full --error-exitcode=9 "$$test" | tail -n 1 || exit 1; done
+
+determinism := $(call objects,tests/runs/determinism.c $(tests_support))
+
+.PHONY: test-determinism
+test-determinism: $(determinism) ## the same pairs by gcc and clang, -O0 to -O3, with and without SIMD
+	@tests/runs/determinism.sh '$(work)/determinism' $(determinism)
+
+# lib/ without optimization, so that each line is one; conditions that no test can bring about are
+# constants, see lib/base/assume.h.
+coverage := $(BUILD)/coverage
+coverage_tests := $(patsubst tests/%.c,$(coverage)/release/tests/%,$(tests))
+
+.PHONY: coverage
+coverage: ## lines and branches of lib/ that the tests run (gcc); fails below 97 % of lines
+	$(call need,gcov,gcc)
+	+$(Q)$(MAKE) --no-print-directory config=release BUILD='$(coverage)' CC=gcc \
+	    mode='-O0 -g -DSC_COVERAGE --coverage' test_mode='-O2 -g' LDFLAGS='$(LDFLAGS) --coverage' \
+	    '$(coverage)/lib/$(shared_link)' $(patsubst %,'%',$(coverage_tests))
+	@find '$(coverage)/release/obj' -name '*.gcda' -exec rm -f {} +
+	@SC_LIB='$(coverage)/lib' tests/run.sh $(coverage_tests)
+	@tests/coverage.sh '$(coverage)/release/obj/lib'
+
+.PHONY: mutants
+mutants: $(programs) ## plant faults in a copy of lib/ one by one: a test has to fail each time
+	@meshes/fetch.sh build/meshes $(bin)/subdivide >/dev/null 2>&1 || echo "not all real meshes could be fetched: tests with them are skipped"
+	@CC='$(CC)' MAKE='$(MAKE)' tests/mutants/mutants.sh
+
+core_check = $(core_sources) $(metis_source)
+bare_flags := -std=c99 $(exact) -Iinclude -Ilib
+
+# gcc 12 warns wrongly in two files: it loses count of a loop over three coordinates, and does not see
+# that a loop's condition asks for NULL.
+analyzer_wrong = $(if $(filter %/bisection.c,$(1)),-Wno-analyzer-use-of-uninitialized-value) \
+    $(if $(filter %/partition_metis.c,$(1)),-Wno-analyzer-possible-null-dereference)
+
+.PHONY: analyze-gcc
+analyze-gcc: ## gcc -fanalyzer over lib/
+	$(call need,gcc,gcc)
+	@$(foreach file,$(core_check),gcc $(bare_flags) $(with_metis) $(warnings) -Werror -O1 -fanalyzer \
+	    $(call analyzer_wrong,$(file)) -c -o /dev/null $(file) &&) echo "gcc -fanalyzer: nothing found"
+
+# What is left out, and why, stands in lib/.clang-tidy and tools/cppcheck_suppressions.txt.
+.PHONY: analyze-tidy
+analyze-tidy: ## clang-tidy over lib/
+	$(call need,clang-tidy,clang-tidy)
+	@clang-tidy --quiet $(core_check) -- $(bare_flags) $(with_metis) 2>/dev/null
+	@echo "clang-tidy: nothing found"
+
+.PHONY: analyze-cppcheck
+analyze-cppcheck: ## cppcheck over lib/
+	$(call need,cppcheck,cppcheck)
+	@cppcheck --quiet --std=c99 --platform=unix64 --enable=warning,style,performance,portability \
+	    --inconclusive --error-exitcode=1 --suppressions-list=tools/cppcheck_suppressions.txt \
+	    -Iinclude -Ilib $(core_check)
+	@echo "cppcheck: nothing found"
+
 .PHONY: check-layering
 check-layering: ## who may include whom, file names, source list
 	@tools/check_layering.sh
@@ -271,7 +421,7 @@ check-layering: ## who may include whom, file names, source list
 .PHONY: format
 format: ## clang-format on all C and C++ files, in place
 	clang-format -i $(wildcard include/*.h lib/*.[ch] lib/*/*.[ch] tools/*.[ch] tests/*.[ch] \
-	    tests/*.cpp bench/*.[ch] meshes/*.[ch])
+	    tests/*.cpp tests/*/*.[ch] tests/cgal/*.cpp bench/*.[ch] meshes/*.[ch])
 
 # ------------------------------------------------------------------------------------------------
 # Installing.
@@ -322,13 +472,17 @@ help: ## this list
 	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
 
 #: config      release (the default), debug, or sanitize (address and undefined behaviour)
+#: cgal        1: make deps also installs what make test-cgal needs
 #: CC          C compiler [cc]
-#: CXX         C++ compiler, for one test of the header [g++]
+#: CLANG       clang, for fuzz and test-memory-clang [clang]
+#: CXX         C++ compiler, for test-cgal and one test of the header [g++]
 #: CPPFLAGS    added when preprocessing, such as -I of a library in an unusual place
 #: CFLAGS      added after our own flags when compiling and linking C
 #: CXXFLAGS    the same for C++
 #: LDFLAGS     added when linking
 #: LDLIBS      libraries added when linking
+#: SECONDS     how long fuzz runs each target [60]
+#: SOAK        how many queries soak asks [100000]
 #: WERROR      1: warnings are errors
 #: V           1: show commands
 #: BUILD       where everything goes [build]

@@ -1,15 +1,21 @@
 #!/bin/sh
 # Gets real meshes into build/meshes, without root: the models of Debian's glmark2-data and the meshes
-# in the data archive of libcgal-demo, as they are, and the former subdivided. What is there already
-# is kept; remove build/meshes to start again.
+# in the data archive of libcgal-demo, as they are, and the former subdivided. With --models also, in
+# build/meshes/models, all models of glmark2-data and of assimp-testmodels, some of them damaged on
+# purpose. What is there already is kept; remove build/meshes to start again.
 #
 # SPDX-License-Identifier: MIT
 #
-# Usage: meshes/fetch.sh [FOLDER [SUBDIVIDE]]     default: build/meshes build/bin/subdivide
+# Usage: meshes/fetch.sh [--models] [FOLDER [SUBDIVIDE]]     default: build/meshes build/bin/subdivide
 # Exit status: 0 all is there, 1 something could not be had (the rest is still done).
 set -u
 
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
+models=no
+if [ "${1:-}" = --models ]; then
+    models=yes
+    shift
+fi
 folder=${1:-$root/build/meshes}
 subdivide=${2:-$root/build/bin/subdivide}
 status=0
@@ -85,6 +91,21 @@ if [ ! -d "$folder/cgal" ]; then
             complain "libcgal-demo has no archive of meshes"
         fi
     fi
+fi
+
+# get_models PACKAGE FOLDER: the folder of models in a package becomes models/PACKAGE.
+get_models() {
+    if [ -d "$folder/models/$1" ]; then return; fi
+    # It may have been unpacked above.
+    if [ ! -d "$work/$1" ]; then get_package "$1" || return; fi
+    if ! { mkdir -p "$folder/models" && cp -R "$work/$1/$2" "$work/models" &&
+        mv "$work/models" "$folder/models/$1"; }; then
+        complain "$1: there is no folder $2, or it cannot be copied"
+    fi
+}
+if [ "$models" = yes ]; then
+    get_models glmark2-data usr/share/glmark2/models
+    get_models assimp-testmodels usr/share/assimp/models
 fi
 
 if [ ! -x "$subdivide" ]; then

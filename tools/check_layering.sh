@@ -115,7 +115,9 @@ offenders=$(
             may["tools"] = "include tools"
             may["bench"] = "include tools bench"
             may["meshes"] = "include tools meshes"
-            may["tests"] = may["lib"] " tests"
+            may["tests"] = may["lib"] " tests tests/fuzz"
+            may["tests/fuzz"] = may["tests/runs"] = may["tests"]
+            may["tests/cgal"] = "include tools tests tests/cgal"
         }
 
         { known[$0] = 1; order[++count] = $0 }

@@ -2,6 +2,7 @@
 # Installs what is missing to build and test everything. Says first what that is, asks nothing.
 #
 #     tools/deps.sh      CC, CXX, CPPFLAGS: the compilers and flags that look for headers
+#                        CGAL=1: also what `make test-cgal` needs
 #
 # Debian and Ubuntu: by apt-get, through sudo only if need be. Elsewhere: prints the names of the
 # packages, and fails if something is missing.
@@ -23,6 +24,8 @@ header assimp/cimport.h libassimp-dev assimp-devel assimp assimp
 header cjson/cJSON.h libcjson-dev cjson-devel cjson cjson
 header ccd/ccd.h libccd-dev libccd-devel libccd libccd
 header gmp.h libgmp-dev gmp-devel gmp gmp"
+[ "${CGAL:-}" != 1 ] || needs="$needs
+header CGAL/version.h libcgal-dev CGAL-devel cgal cgal"
 
 there() {
     case $1 in

@@ -12,8 +12,13 @@
 #include <float.h>
 #include <stdint.h>
 
-#if defined(__SSE2__)
+/* SC_NO_SIMD leaves the plain form of what is also written for SSE2 (streaming SIMD extensions, single
+   instruction, multiple data), for other machines and to compare. */
+#if defined(__SSE2__) && !defined(SC_NO_SIMD)
+#  define SC_BOXES_SSE2 1
 #  include <emmintrin.h>
+#else
+#  define SC_BOXES_SSE2 0
 #endif
 
 /* Boxes that eight-wide reads may start at must be followed by this many readable ones. */
@@ -58,7 +63,7 @@ static inline int sc_boxes_overlap(const sc_boxes *a, uint64_t i, const sc_boxes
 static inline unsigned sc_boxes_overlap8(const sc_boxes *a, uint64_t i, const sc_boxes *b,
                                          uint64_t j)
 {
-#if defined(__SSE2__)
+#if SC_BOXES_SSE2
     __m128 low = _mm_cmpeq_ps(_mm_setzero_ps(), _mm_setzero_ps()), high = low;
     int axis;
     for (axis = 0; axis < 3; axis++) {

@@ -15,7 +15,7 @@ static inline float larger(float a, float b)
     return a > b ? a : b;
 }
 
-#if defined(__SSE2__)
+#if SC_BOXES_SSE2
 
 /* Three lower and three upper bounds, moved one step outwards, as box number at of boxes. */
 static inline void store_box(const sc_boxes *boxes, uint64_t at, __m128 low, __m128 high)
