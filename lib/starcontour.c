@@ -269,7 +269,9 @@ static sc_status check_query(const sc_model *model, const sc_workspace *workspac
 {
     sc_status status;
     if (!model || !workspace || !pose) return SC_ERROR_NULL;
-    if (workspace->topology_hash != model->topology_hash || workspace->model_bytes != model->bytes)
+    /* the rest shape, which the hash leaves out, decides how many segments there are */
+    if (workspace->topology_hash != model->topology_hash ||
+        workspace->bytes != sc_workspace_bytes(model))
         return SC_ERROR_WORKSPACE;
     if (options) {
         status = sc_structs_read(&state->options, sizeof state->options, options, LEAST_OPTIONS);

@@ -996,7 +996,6 @@ static void margins_are_as_documented(void)
     const double u = 0x1p-53;
     for (int step = 0; step < 2; ++step) {
         soup mesh = soup_cloth(1, 1);
-        adversary fan;
         double tilt = 8 * u * (step ? 1.2 : 0.8), thin = 32 * 4 * u * (step ? 1.2 : 0.8);
         double corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
         sc_mesh input;
@@ -1023,7 +1022,6 @@ static void margins_are_as_documented(void)
         /* the fan's corners are 1 2 3 4: sector 1 2 has area thin, between sides 1 and 1 + thin long */
         mesh = soup_make(5, 4);
         memset(mesh.positions, 0, 15 * sizeof(double));
-        memset(&fan, 0, sizeof(fan));
         for (uint32_t i = 0; i < 4; ++i) {
             static const double ring[4][2] = {{1, 0}, {1, 0}, {-1, 1}, {-1, -1}};
             uint32_t *t = mesh.triangles + 3 * (size_t)i;

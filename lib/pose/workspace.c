@@ -58,7 +58,6 @@ sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
     memset(w, 0, sizeof *w);
     w->bytes = lay_out(model, (unsigned char *)memory, w);
     w->topology_hash = model->topology_hash;
-    w->model_bytes = model->bytes;
     for (k = 0; k < 6; k++) {
         for (i = 0; i < patches; i++) w->patch_boxes.side[k][i] = (float)NAN;
         for (i = 0; i < triangles; i++) w->triangle_boxes.side[k][i] = (float)NAN;

@@ -44,7 +44,6 @@ enum { SC_CANDIDATES_MAX = 1024 };
 struct sc_workspace {
     uint64_t bytes;
     uint64_t topology_hash; /* of the model it is for */
-    uint64_t model_bytes;
     sc_allocator allocator;
     uint32_t owned; /* allocated by sc_workspace_create */
 

@@ -1,0 +1,301 @@
+/*
+ * What a query does beside finding pairs: it stops early if one is enough, writes what was asked for and
+ * no more, and refuses what does not fit the model; and coordinates near the end of what floats hold.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness.h"
+#include "inputs.h"
+#include "shapes.h"
+#include "starcontour.h"
+
+static const uint32_t methods[] = {SC_METHOD_SCTT, SC_METHOD_AABB_SCTT, SC_METHOD_AABB};
+enum { METHODS = 3 };
+
+typedef struct subject {
+    sc_model *model;
+    sc_workspace *workspace;
+} subject;
+
+static int open_subject(subject *s, const soup *mesh, const sc_build_options *options)
+{
+    sc_mesh m = input_plain_mesh(mesh);
+    s->model = NULL;
+    s->workspace = NULL;
+    return CHECK(sc_build(&m, options, &s->model) == SC_OK) &&
+           CHECK(sc_workspace_create(s->model, NULL, &s->workspace) == SC_OK);
+}
+
+static void close_subject(subject *s)
+{
+    sc_workspace_free(s->workspace);
+    sc_model_free(s->model);
+}
+
+static sc_status ask(const subject *s, const double *positions, uint32_t vertex_count,
+                     uint32_t method, uint32_t output, sc_result *result)
+{
+    sc_pose pose = input_plain_pose(positions, vertex_count);
+    sc_query_options options;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.method = method;
+    options.output = output;
+    result->struct_size = sizeof(*result);
+    return sc_query(s->model, s->workspace, &pose, &options, result);
+}
+
+/* Two cloths in one plane, askew: thousands of pairs. */
+static soup make_layers(void)
+{
+    soup a = soup_cloth(20, 20), b = soup_cloth(20, 20), both;
+    for (uint32_t v = 0; v < b.vertex_count; ++v) b.positions[3 * (size_t)v] += 0.013;
+    both = soup_join(&a, &b);
+    soup_free(&a);
+    soup_free(&b);
+    return both;
+}
+
+static void any_stops_early(void)
+{
+    soup mesh = make_layers();
+    subject s;
+    if (open_subject(&s, &mesh, NULL))
+        for (uint32_t i = 0; i < METHODS; ++i) {
+            sc_stats all, first;
+            sc_result r;
+            memset(&r, 0, sizeof(r));
+            all.struct_size = first.struct_size = sizeof(all);
+            r.stats = &all;
+            CHECK(ask(&s, mesh.positions, mesh.vertex_count, methods[i], SC_OUTPUT_COUNT, &r) ==
+                  SC_OK);
+            CHECK(r.count > 2000 && r.collides == 1);
+            r.stats = &first;
+            CHECK(ask(&s, mesh.positions, mesh.vertex_count, methods[i], SC_OUTPUT_ANY, &r) ==
+                  SC_OK);
+            CHECK(r.count == 1 && r.collides == 1);
+            CHECK_MSG(4 * first.leaf_pairs < all.leaf_pairs,
+                      "method %" PRIu32 ": %" PRIu64 " of %" PRIu64 " pairs of leaves", methods[i],
+                      first.leaf_pairs, all.leaf_pairs);
+        }
+    close_subject(&s);
+    soup_free(&mesh);
+}
+
+/* The array is for SC_OUTPUT_PAIRS, and of that only as much as there are pairs. */
+static void arrays_are_left_alone(void)
+{
+    soup mesh = make_layers();
+    subject s;
+    if (open_subject(&s, &mesh, NULL))
+        for (uint32_t output = SC_OUTPUT_PAIRS; output <= SC_OUTPUT_ANY; ++output)
+            for (uint32_t i = 0; i < METHODS; ++i) {
+                enum { ROOM = 20000 };
+                sc_pair *pairs = (sc_pair *)test_allocate(ROOM * sizeof(sc_pair));
+                uint64_t k, written;
+                sc_result r;
+                memset(pairs, 0xff, ROOM * sizeof(sc_pair));
+                memset(&r, 0, sizeof(r));
+                r.pairs = pairs;
+                r.capacity = ROOM;
+                CHECK(ask(&s, mesh.positions, mesh.vertex_count, methods[i], output, &r) == SC_OK);
+                written = output == SC_OUTPUT_PAIRS ? r.count : 0;
+                for (k = written; k < ROOM; ++k)
+                    if (pairs[k].a != 0xffffffff || pairs[k].b != 0xffffffff) break;
+                CHECK_MSG(k == ROOM, "output %" PRIu32 " wrote entry %" PRIu64, output, k);
+                free(pairs);
+            }
+    close_subject(&s);
+    soup_free(&mesh);
+}
+
+/*
+ * Where coordinates or their projections leave the range of float or double on one side only, or just
+ * so: each method against the plain tree.
+ */
+static void largest_coordinates(void)
+{
+    uint64_t sum = 0;
+    for (uint32_t round = 0; round < test_iterations(400); ++round) {
+        uint32_t kind = test_random_below(4);
+        soup mesh = kind == 0   ? soup_cloth(5, 6)
+                    : kind == 1 ? shape_spiral(20, 2, 1.4, 0)
+                    : kind == 2 ? soup_pinched(4)
+                                : soup_sphere(6, 5);
+        double size = 1,
+               exponent = round % 2 ? test_random_range(33, 40) : test_random_range(300, 308);
+        double shift = test_random_below(2) ? test_random_range(-1, 1) : 0;
+        uint64_t state = test_random_state();
+        subject s;
+        for (; exponent >= 1; exponent -= 1) size *= 10;
+        size *= 1 + 9 * exponent;
+        if (!open_subject(&s, &mesh, NULL)) return;
+        if (test_random_below(2)) soup_noise(mesh.positions, mesh.vertex_count, 0.02);
+        for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i) {
+            double x = (mesh.positions[i] + shift) * (test_random_below(40) ? 1 : 1.5) * size;
+            mesh.positions[i] = x > 1.7e308 ? 1.7e308 : x < -1.7e308 ? -1.7e308 : x;
+        }
+        for (uint32_t contact = 0; contact < 1; ++contact) {
+            enum { ROOM = 8000 };
+            static sc_pair right[ROOM], pairs[ROOM];
+            sc_result r, q;
+            memset(&r, 0, sizeof(r));
+            memset(&q, 0, sizeof(q));
+            r.pairs = right;
+            q.pairs = pairs;
+            r.capacity = q.capacity = ROOM;
+            CHECK(ask(&s, mesh.positions, mesh.vertex_count, SC_METHOD_AABB, 0, &r) == SC_OK);
+            for (uint32_t i = 0; i < 2; ++i) {
+                CHECK(ask(&s, mesh.positions, mesh.vertex_count, methods[i], 0, &q) == SC_OK);
+                CHECK_MSG(
+                    q.count == r.count &&
+                        (r.count == 0 || memcmp(pairs, right, r.count * sizeof(sc_pair)) == 0),
+                    "method %" PRIu32 ": %" PRIu64 " instead of %" PRIu64 "; started at %" PRIu64,
+                    methods[i], q.count, r.count, state);
+            }
+            sum += r.count;
+        }
+        close_subject(&s);
+        soup_free(&mesh);
+    }
+    CHECK(sum > 100);
+}
+
+/*
+ * The rest shape decides where contours are cut, so that two models of one topology may need workspaces
+ * of different sizes: a smaller one must be refused, although hash and model may be of the same size.
+ */
+static void other_rest_shapes(void)
+{
+    uint32_t different = 0;
+    for (uint32_t round = 0; round < 400; ++round) {
+        uint32_t count = 1 + round % 8, triangles[24], order[8];
+        double positions[2][30];
+        sc_build_options options;
+        sc_mesh mesh;
+        sc_model_info info[2];
+        subject s[2];
+        soup strip;
+        strip.vertex_count = count + 2;
+        strip.triangle_count = count;
+        strip.triangles = triangles;
+        for (uint32_t i = 0; i < count; ++i) {
+            triangles[3 * i] = i;
+            triangles[3 * i + 1] = i % 2 ? i + 2 : i + 1;
+            triangles[3 * i + 2] = i % 2 ? i + 1 : i + 2;
+            order[i] = i;
+        }
+        memset(&options, 0, sizeof(options));
+        options.struct_size = sizeof(options);
+        options.weld = SC_WELD_NONE;
+        options.partition = SC_PARTITION_ORDER;
+        options.order = order;
+        for (int k = 0; k < 2; ++k) {
+            for (uint32_t i = 0; i < 3 * strip.vertex_count; ++i)
+                positions[k][i] = test_random_range(0, 1);
+            strip.positions = positions[k];
+            mesh = input_plain_mesh(&strip);
+            CHECK(sc_build(&mesh, &options, &s[k].model) == SC_OK);
+            CHECK(sc_workspace_create(s[k].model, NULL, &s[k].workspace) == SC_OK);
+            info[k].struct_size = sizeof(info[k]);
+            CHECK(sc_model_get_info(s[k].model, &info[k]) == SC_OK);
+        }
+        CHECK(info[0].topology_hash == info[1].topology_hash);
+        if (info[0].workspace_bytes != info[1].workspace_bytes) {
+            int small = info[0].workspace_bytes < info[1].workspace_bytes ? 0 : 1;
+            subject wrong;
+            sc_result r;
+            memset(&r, 0, sizeof(r));
+            wrong.model = s[1 - small].model;
+            wrong.workspace = s[small].workspace;
+            CHECK_MSG(ask(&wrong, positions[0], strip.vertex_count, 0, SC_OUTPUT_COUNT, &r) ==
+                          SC_ERROR_WORKSPACE,
+                      "%" PRIu32 " triangles: %" PRIu64 " bytes instead of %" PRIu64, count,
+                      info[small].workspace_bytes, info[1 - small].workspace_bytes);
+            ++different;
+        }
+        for (int k = 0; k < 2; ++k) close_subject(&s[k]);
+    }
+    CHECK(different > 20);
+}
+
+static void *allocate(void *user, uint64_t size, uint64_t alignment)
+{
+    (void)user;
+    (void)size;
+    (void)alignment;
+    return NULL;
+}
+
+static void release(void *user, void *memory, uint64_t size)
+{
+    (void)user;
+    (void)memory;
+    (void)size;
+}
+
+static void missing_arguments(void)
+{
+    soup mesh = soup_cloth(3, 3);
+    sc_mesh m = input_plain_mesh(&mesh);
+    sc_build_options options;
+    sc_allocator half;
+    sc_model *model = NULL;
+    subject s;
+    uint32_t order[18];
+    for (uint32_t i = 0; i < 18; ++i) order[i] = i;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.partition = SC_PARTITION_TREE;
+    options.order = order;
+    options.tree_count = 1;
+    CHECK(mesh.triangle_count == 18 && sc_build(&m, &options, &model) == SC_ERROR_NULL);
+    CHECK(model == NULL);
+    if (open_subject(&s, &mesh, NULL)) {
+        sc_workspace *workspace = s.workspace;
+        memset(&half, 0, sizeof(half));
+        half.allocate = allocate;
+        CHECK(sc_workspace_create(s.model, &half, &workspace) == SC_ERROR_NULL && !workspace);
+        half.release = release;
+        CHECK(sc_workspace_create(s.model, &half, &workspace) == SC_ERROR_MEMORY && !workspace);
+        half.allocate = NULL;
+        CHECK(sc_workspace_create(s.model, &half, &workspace) == SC_ERROR_NULL && !workspace);
+    }
+    close_subject(&s);
+    soup_free(&mesh);
+}
+
+/* Two leaves that own the same triangles, as many as there are in all; and two that do not. */
+static void leaves_that_overlap(void)
+{
+    soup mesh = soup_cloth(4, 4);
+    sc_mesh m = input_plain_mesh(&mesh);
+    sc_build_options options;
+    sc_model *model = NULL;
+    uint32_t order[32], half = mesh.triangle_count / 2;
+    sc_tree_node tree[3] = {{1, 2, 0, 0}, {SC_NONE, SC_NONE, 0, 0}, {SC_NONE, SC_NONE, 0, 0}};
+    if (!CHECK(mesh.triangle_count == 32)) return;
+    for (uint32_t i = 0; i < 32; ++i) order[i] = 31 - i;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.partition = SC_PARTITION_TREE;
+    options.order = order;
+    options.tree = tree;
+    options.tree_count = 3;
+    tree[1].count = tree[2].count = half;
+    for (uint32_t first = 0; first <= half; ++first) {
+        tree[2].first = first;
+        CHECK_MSG(sc_build(&m, &options, &model) == (first < half ? SC_ERROR_TREE : SC_OK),
+                  "the second leaf starts at %" PRIu32, first);
+        sc_model_free(model);
+    }
+    soup_free(&mesh);
+}
+
+SC_TEST_MAIN(SC_TEST(any_stops_early), SC_TEST(arrays_are_left_alone), SC_TEST(largest_coordinates),
+             SC_TEST(other_rest_shapes), SC_TEST(missing_arguments), SC_TEST(leaves_that_overlap))

@@ -1,0 +1,222 @@
+/*
+ * The validators that debug builds run: those of a pose, on sound cones and bounds and on changed ones,
+ * and what tests/test_structures.c leaves of those of the model.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "build/partition.h"
+#include "harness.h"
+#include "inputs.h"
+#include "pose/contour_bounds.h"
+#include "pose/dnc.h"
+#include "pose/positions.h"
+#include "pose/refit.h"
+
+/* A waved cloth with its cones. */
+typedef struct scene {
+    soup mesh;
+    sc_model *model;
+    sc_workspace *workspace;
+} scene;
+
+static int open_scene(scene *s)
+{
+    sc_mesh m;
+    sc_pose pose;
+    s->mesh = soup_cloth(12, 12);
+    s->model = NULL;
+    s->workspace = NULL;
+    m = input_plain_mesh(&s->mesh);
+    if (!CHECK(sc_build(&m, NULL, &s->model) == SC_OK) ||
+        !CHECK(sc_workspace_create(s->model, NULL, &s->workspace) == SC_OK))
+        return 0;
+    soup_smooth(s->mesh.positions, s->mesh.vertex_count, 0.05);
+    pose = input_plain_pose(s->mesh.positions, s->mesh.vertex_count);
+    sc_workspace_new_pose(s->model, s->workspace);
+    if (!CHECK(sc_positions_read(s->model, &pose, 24, s->workspace) == SC_OK)) return 0;
+    sc_dnc_update(s->model, s->workspace);
+    return 1;
+}
+
+static void close_scene(scene *s)
+{
+    sc_workspace_free(s->workspace);
+    sc_model_free(s->model);
+    soup_free(&s->mesh);
+}
+
+static void cones(void)
+{
+    scene s;
+    if (open_scene(&s)) {
+        const uint32_t *first = sc_model_level_first(s.model);
+        CHECK(sc_dnc_validate(s.model, s.workspace));
+        for (uint32_t level = 0; level < s.model->level_count; ++level)
+            for (uint32_t p = first[level]; p + 1 < first[level + 1]; ++p) {
+                uint16_t *mask = &s.workspace->mask[p];
+                uint16_t bit = (uint16_t)(1u << test_random_below(SC_DNC_DIRECTIONS));
+                *mask = (uint16_t)(*mask ^ bit);
+                CHECK_MSG(!sc_dnc_validate(s.model, s.workspace), "patch %" PRIu32, p);
+                *mask = (uint16_t)(*mask ^ bit);
+            }
+        CHECK(sc_dnc_validate(s.model, s.workspace));
+    }
+    close_scene(&s);
+}
+
+/* Ends raised, slopes and extents narrowed: each alone is noticed. */
+static void check_changes(const scene *s, const sc_projection *projection, int line,
+                          uint32_t segment)
+{
+    sc_workspace *w = s->workspace;
+    for (int side = 0; side < 2; ++side) {
+        sc_ray_bound *b = &w->bounds[line][segment].side[side], old = *b;
+        float extent = old.bx - old.ax;
+        if (sc_contour_bounds_empty(b) || b->ay == -INFINITY) continue;
+        for (int k = 0; k < 6; ++k) {
+            if (k == 0) b->ax += extent / 2;
+            if (k == 1) b->bx -= extent / 2;
+            if (k == 2) b->ay += 1e8f;
+            if (k == 3) b->by += 1e8f;
+            if (k == 4) b->least = b->most + 1 + fabsf(b->most);
+            if (k == 5) b->most = old.least - 1 - fabsf(old.least);
+            CHECK_MSG(!sc_contour_bounds_validate(s->model, w, projection, line, segment),
+                      "segment %" PRIu32 ", line %d, side %d, member %d", segment, line, side, k);
+            *b = old;
+        }
+    }
+}
+
+static void bounds(void)
+{
+    scene s;
+    if (open_scene(&s)) {
+        sc_workspace *w = s.workspace;
+        uint32_t mask = w->mask[0], parents = 0;
+        sc_projection projection;
+        if (CHECK(mask != 0)) {
+            sc_dnc_projection(w, mask, &projection);
+            sc_workspace_new_projection(s.model, w);
+            for (int line = 0; line < 2; ++line)
+                for (uint32_t i = s.model->segment_count; i-- > 0;) {
+                    uint32_t before = w->bounds_tick[line][i] == w->tick;
+                    CHECK(before ==
+                          (uint32_t)sc_contour_bounds_validate(s.model, w, &projection, line, i));
+                    sc_contour_bounds_update(s.model, w, &projection, line, i);
+                    CHECK_MSG(sc_contour_bounds_validate(s.model, w, &projection, line, i),
+                              "segment %" PRIu32, i);
+                    parents += i >= s.model->leaf_segment_count;
+                    check_changes(&s, &projection, line, i);
+                }
+            CHECK(parents > 10);
+        }
+    }
+    close_scene(&s);
+}
+
+/* Once a pose. */
+static void boxes(void)
+{
+    scene s;
+    if (open_scene(&s)) {
+        float *low = s.workspace->patch_boxes.side[0], right;
+        sc_refit_boxes(s.model, s.workspace);
+        right = low[0];
+        low[0] = 77;
+        sc_refit_boxes(s.model, s.workspace);
+        CHECK(low[0] == 77);
+        sc_workspace_new_pose(s.model, s.workspace);
+        sc_refit_boxes(s.model, s.workspace);
+        CHECK(low[0] == right);
+    }
+    close_scene(&s);
+}
+
+/* ---- what test_structures leaves ---- */
+
+static void *no_memory(void *user, uint64_t size, uint64_t alignment)
+{
+    (void)user;
+    (void)size;
+    (void)alignment;
+    return NULL;
+}
+
+static void structures(void)
+{
+    soup mesh = soup_cloth(9, 9);
+    sc_mesh m = input_plain_mesh(&mesh);
+    sc_build_options options;
+    sc_allocator standard = sc_memory_allocator(NULL), empty = standard;
+    sc_scratch scratch, none;
+    sc_points points;
+    sc_adjacency adjacency;
+    sc_hierarchy hierarchy;
+    sc_xbvh xbvh;
+    sc_neighbors neighbors;
+    sc_sctt sctt;
+    sc_csf csf;
+    uint32_t i, k, old, *first;
+    memset(&options, 0, sizeof(options));
+    empty.allocate = no_memory;
+    sc_scratch_init(&none, &empty);
+    sc_scratch_init(&scratch, &standard);
+    if (!CHECK(!sc_mesh_read(&m, &options, &scratch, &points)) ||
+        !CHECK(!sc_adjacency_build(&points, &scratch, &adjacency)) ||
+        !CHECK(!sc_partition_build(&points, &adjacency, &options, &scratch, &hierarchy)) ||
+        !CHECK(!sc_xbvh_build(&hierarchy, &scratch, &xbvh)) ||
+        !CHECK(!sc_neighbors_build(&points, &adjacency, hierarchy.order, &xbvh, &scratch,
+                                   &neighbors)) ||
+        !CHECK(!sc_sctt_build(&xbvh, &neighbors, &scratch, &sctt)) ||
+        !CHECK(!sc_csf_build(&points, &adjacency, hierarchy.order, &xbvh, &sctt, &scratch, &csf)))
+        return;
+    /* sound; but not without memory to look */
+    CHECK(sc_hierarchy_validate(&hierarchy, &scratch) && !sc_hierarchy_validate(&hierarchy, &none));
+    CHECK(sc_csf_validate(&csf, &sctt, &scratch) && !sc_csf_validate(&csf, &sctt, &none));
+    CHECK(sc_xbvh_validate(&xbvh) && sc_sctt_validate(&xbvh, &neighbors, &sctt));
+    /* the right child that does not exist, the last triangle that nobody owns, a chain of nodes that is
+       too long, which ends in another error */
+    old = hierarchy.nodes[0].right;
+    hierarchy.nodes[0].right = hierarchy.node_count;
+    CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
+    hierarchy.nodes[0].right = old;
+    for (i = hierarchy.node_count; hierarchy.nodes[i - 1].left != SC_NONE;) --i;
+    --hierarchy.nodes[i - 1].count;
+    CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
+    ++hierarchy.nodes[i - 1].count;
+    ++hierarchy.leaf_count;
+    CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
+    --hierarchy.leaf_count;
+    /* a patch without leaves; the first test that has no children */
+    i = xbvh.level_first[1] + 1;
+    old = xbvh.leaf[i];
+    xbvh.leaf[i] = 0;
+    CHECK(!sc_xbvh_validate(&xbvh));
+    xbvh.leaf[i] = old;
+    ++sctt.child[0];
+    CHECK(!sc_sctt_validate(&xbvh, &neighbors, &sctt));
+    --sctt.child[0];
+    /* children of a segment in the wrong order; more than one segment less than there are */
+    for (i = csf.leaf_count; i < csf.segment_count; ++i) {
+        first = csf.child_first + (i - csf.leaf_count);
+        for (k = first[0]; k + 1 < first[1]; ++k) {
+            old = csf.children[k];
+            csf.children[k] = csf.children[k + 1];
+            csf.children[k + 1] = old;
+            CHECK_MSG(!sc_csf_validate(&csf, &sctt, &scratch), "segment %" PRIu32, i);
+            csf.children[k + 1] = csf.children[k];
+            csf.children[k] = old;
+        }
+    }
+    CHECK(csf.segment_count > csf.leaf_count && sc_csf_validate(&csf, &sctt, &scratch));
+    sc_scratch_clear(&scratch);
+    soup_free(&mesh);
+}
+
+SC_TEST_MAIN(SC_TEST(cones), SC_TEST(bounds), SC_TEST(boxes), SC_TEST(structures))
