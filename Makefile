@@ -349,15 +349,16 @@ test-memory-clang: ## tests, shortened, under MemorySanitizer (clang); all but t
 	$(call variant,memory,CC='$(CLANG)' CFLAGS='-O1 -fno-omit-frame-pointer -fsanitize=memory \
 	    -fno-sanitize-recover=all -fsanitize-ignorelist=tests/runs/memory_ignore.txt',$(memory_tests) runs/soak)
 	'$(BUILD)/memory/debug/runs/soak' 3000
-	@SC_TEST_SCALE=5 tests/run.sh $(patsubst %,'$(BUILD)/memory/debug/%',$(memory_tests))
+	@SC_TEST_SCALE=20 tests/run.sh $(patsubst %,'$(BUILD)/memory/debug/%',$(memory_tests))
 
 valgrind_tests := $(patsubst %,$(work)/tests/test_%,abi memory input structures reproducers)
 
 .PHONY: test-valgrind
 test-valgrind: $(valgrind_tests) ## small tests under valgrind; leaks are errors
 	$(call need,valgrind,valgrind)
-	@for test in $(valgrind_tests); do echo "valgrind $$test" && SC_TEST_SCALE=2 valgrind -q \
-	    --leak-check=full --error-exitcode=9 "$$test" | tail -n 1 || exit 1; done
+	@for test in $(valgrind_tests); do echo "valgrind $$test"; SC_TEST_SCALE=2 valgrind -q \
+	    --leak-check=full --error-exitcode=9 "$$test" >'$(work)/valgrind.log' 2>&1 || \
+	    { cat '$(work)/valgrind.log'; exit 1; }; tail -n 1 '$(work)/valgrind.log'; done
 
 determinism := $(call objects,tests/runs/determinism.c $(tests_support))
 

@@ -1,10 +1,11 @@
 /*
  * What a query does beside finding pairs: it stops early if one is enough, writes what was asked for and
- * no more, and refuses what does not fit the model; and coordinates near the end of what floats hold.
+ * no more, and refuses what does not fit the model; and coordinates near the ends of what floats hold.
  *
  * SPDX-License-Identifier: MIT
  */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -224,6 +225,93 @@ static void other_rest_shapes(void)
     CHECK(different > 20);
 }
 
+/*
+ * Multiplied by a power of two, integers answer as before, but products of their differences underflow:
+ * of two, of three, or of what is small only.
+ */
+static void tiny_coordinates(void)
+{
+    uint64_t sum = 0;
+    for (uint32_t round = 0; round < test_iterations(3000); ++round) {
+        enum { ROOM = 8000 };
+        static sc_pair right[ROOM], pairs[ROOM];
+        uint32_t kind = test_random_below(5);
+        uint64_t state = test_random_state();
+        soup mesh = kind == 0   ? soup_cloth(3 + test_random_below(3), 4)
+                    : kind == 1 ? soup_on_grid(2)
+                    : kind == 2 ? soup_pinched(3)
+                    : kind == 3 ? soup_scattered()
+                                : soup_sphere(6, 5);
+        sc_build_options options;
+        sc_result r;
+        subject s;
+        int range = 2 + (int)test_random_below(20), down = 250 + (int)test_random_below(824);
+        memset(&options, 0, sizeof(options));
+        options.struct_size = sizeof(options);
+        options.weld = SC_WELD_NONE;
+        if (open_subject(&s, &mesh, &options)) {
+            soup_any_pose(mesh.positions, mesh.vertex_count);
+            for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i)
+                mesh.positions[i] = rint(fmod(ldexp(mesh.positions[i], range), 0x1p24));
+            memset(&r, 0, sizeof(r));
+            r.capacity = ROOM;
+            r.pairs = right;
+            CHECK(ask(&s, mesh.positions, mesh.vertex_count, SC_METHOD_AABB, 0, &r) == SC_OK);
+            sum += r.count;
+            for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i)
+                mesh.positions[i] = ldexp(mesh.positions[i], -down);
+            for (uint32_t i = 0; i < METHODS; ++i) {
+                sc_result q = r;
+                q.pairs = pairs;
+                CHECK(ask(&s, mesh.positions, mesh.vertex_count, methods[i], 0, &q) == SC_OK);
+                CHECK_MSG(
+                    q.count == r.count &&
+                        (r.count == 0 || memcmp(pairs, right, r.count * sizeof(sc_pair)) == 0),
+                    "kind %" PRIu32 ", 2^%d to 2^-%d, method %" PRIu32 ": %" PRIu64
+                    " instead of %" PRIu64 "; started at %" PRIu64,
+                    kind, range, down, methods[i], q.count, r.count, state);
+            }
+        }
+        close_subject(&s);
+        soup_free(&mesh);
+    }
+    CHECK(sum > 1000);
+}
+
+/* Equal for equal triangles, welding and partition; another for another, whose workspace is refused. */
+static void hashes_of_partitions(void)
+{
+    soup mesh = soup_cloth(4, 4);
+    sc_build_options options;
+    subject s[3];
+    sc_model_info info[3];
+    uint32_t order[32];
+    sc_result r;
+    if (!CHECK(mesh.triangle_count == 32)) return;
+    memset(&options, 0, sizeof(options));
+    memset(&r, 0, sizeof(r));
+    options.struct_size = sizeof(options);
+    options.partition = SC_PARTITION_ORDER;
+    options.order = order;
+    for (int k = 0; k < 3; ++k) {
+        for (uint32_t i = 0; i < 32; ++i) order[i] = k == 2 ? 31 - i : i;
+        if (!open_subject(&s[k], &mesh, &options)) return;
+        info[k].struct_size = sizeof(info[k]);
+        CHECK(sc_model_get_info(s[k].model, &info[k]) == SC_OK);
+    }
+    CHECK(info[0].topology_hash == info[1].topology_hash);
+    CHECK(info[0].topology_hash != info[2].topology_hash);
+    for (int k = 1; k < 3; ++k) {
+        subject mixed;
+        mixed.model = s[0].model;
+        mixed.workspace = s[k].workspace;
+        CHECK(ask(&mixed, mesh.positions, mesh.vertex_count, 0, 0, &r) ==
+              (k == 1 ? SC_OK : SC_ERROR_WORKSPACE));
+    }
+    for (int k = 0; k < 3; ++k) close_subject(&s[k]);
+    soup_free(&mesh);
+}
+
 static void *allocate(void *user, uint64_t size, uint64_t alignment)
 {
     (void)user;
@@ -298,4 +386,5 @@ static void leaves_that_overlap(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_stops_early), SC_TEST(arrays_are_left_alone), SC_TEST(largest_coordinates),
-             SC_TEST(other_rest_shapes), SC_TEST(missing_arguments), SC_TEST(leaves_that_overlap))
+             SC_TEST(tiny_coordinates), SC_TEST(other_rest_shapes), SC_TEST(hashes_of_partitions),
+             SC_TEST(missing_arguments), SC_TEST(leaves_that_overlap))

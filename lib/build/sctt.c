@@ -117,12 +117,16 @@ int sc_sctt_validate(const sc_xbvh *xbvh, const sc_neighbors *neighbors, const s
         uint32_t node = sctt->child[n], box = sctt->boxes_first[n];
         if (!(sc_xbvh_is_leaf(xbvh, a) && sc_xbvh_is_leaf(xbvh, b))) {
             for (c = xbvh->child[a]; a == b && c < xbvh->child[a + 1]; c++, node++)
-                if (sctt->patches[node].a != c || sctt->patches[node].b != c) return 0;
+                if (node >= sctt->node_count || sctt->patches[node].a != c ||
+                    sctt->patches[node].b != c)
+                    return 0;
             for (c = xbvh->child[a]; c < xbvh->child[a + 1]; c++)
                 for (d = a == b ? c + 1 : xbvh->child[b]; d < xbvh->child[b + 1]; d++) {
                     if (sc_neighbors_find(neighbors, c, d)) {
+                        if (node >= sctt->node_count) return 0;
                         if (sctt->patches[node].a != c || sctt->patches[node++].b != d) return 0;
                     } else {
+                        if (box >= sctt->box_count) return 0;
                         if (sctt->boxes[box].a != c || sctt->boxes[box++].b != d) return 0;
                     }
                 }

@@ -94,6 +94,7 @@ int sc_xbvh_validate(const sc_xbvh *xbvh)
             if (xbvh->leaf[p] >= xbvh->leaf[p + 1]) return 0;
             if (level == last) continue;
             if (xbvh->child[p + 1] - xbvh->child[p] - 1u > 1u) return 0;
+            if (xbvh->child[p + 1] >= xbvh->level_first[level + 2]) return 0;
             if (xbvh->leaf[xbvh->child[p]] != xbvh->leaf[p]) return 0;
             if (xbvh->leaf[xbvh->child[p + 1]] != xbvh->leaf[p + 1]) return 0;
         }
