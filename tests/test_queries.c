@@ -232,7 +232,7 @@ static void other_rest_shapes(void)
 static void tiny_coordinates(void)
 {
     uint64_t sum = 0;
-    for (uint32_t round = 0; round < test_iterations(3000); ++round) {
+    for (uint32_t round = 0; round < test_iterations(800); ++round) {
         enum { ROOM = 8000 };
         static sc_pair right[ROOM], pairs[ROOM];
         uint32_t kind = test_random_below(5);
@@ -275,40 +275,99 @@ static void tiny_coordinates(void)
         close_subject(&s);
         soup_free(&mesh);
     }
-    CHECK(sum > 1000);
+    CHECK(sum > 300);
+}
+
+/*
+ * Contours are cut where the rest shape turns. Where it is nothing like the pose, one segment may go
+ * round a patch, or twice round where the pose does, with edges of both kinds.
+ */
+static void rest_shapes_unlike_poses(void)
+{
+    uint64_t sum = 0;
+    for (uint32_t round = 0; round < test_iterations(60); ++round) {
+        enum { ROOM = 20000 };
+        static sc_pair right[ROOM], pairs[ROOM];
+        soup mesh = round % 3 == 0   ? soup_branched(5 + test_random_below(4), 1 + round / 3 % 4)
+                    : round % 3 == 1 ? shape_spiral(20 + round, 1 + round / 3 % 2, 1.3, 0)
+                                     : soup_flower(3, 2);
+        double *pose = (double *)test_allocate(3 * (size_t)mesh.vertex_count * sizeof(double));
+        sc_build_options options;
+        sc_result r, q;
+        subject s;
+        memcpy(pose, mesh.positions, 3 * (size_t)mesh.vertex_count * sizeof(double));
+        for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i)
+            mesh.positions[i] = round % 4 == 0   ? 0 /* nothing turns */
+                                : round % 4 == 1 ? i / 3 * (i % 3 == 0)
+                                                 : test_random_unit();
+        memset(&options, 0, sizeof(options));
+        memset(&r, 0, sizeof(r));
+        options.struct_size = sizeof(options);
+        options.weld = SC_WELD_NONE;
+        r.capacity = ROOM;
+        q = r;
+        r.pairs = right;
+        q.pairs = pairs;
+        if (open_subject(&s, &mesh, &options)) {
+            CHECK(ask(&s, pose, mesh.vertex_count, SC_METHOD_AABB, 0, &r) == SC_OK);
+            CHECK(ask(&s, pose, mesh.vertex_count, SC_METHOD_SCTT, 0, &q) == SC_OK);
+            CHECK_MSG(q.count == r.count &&
+                          (r.count == 0 || memcmp(pairs, right, r.count * sizeof(sc_pair)) == 0),
+                      "round %" PRIu32 ": %" PRIu64 " instead of %" PRIu64, round, q.count,
+                      r.count);
+            sum += r.count;
+        }
+        close_subject(&s);
+        soup_free(&mesh);
+        free(pose);
+    }
+    CHECK(sum > 100);
 }
 
 /* Equal for equal triangles, welding and partition; another for another, whose workspace is refused. */
 static void hashes_of_partitions(void)
 {
-    soup mesh = soup_cloth(4, 4);
+    /* two halves, each of two leaves, as far as an order or sizes of leaves tell them apart */
+    static const uint32_t sizes[3][4] = {{4, 5, 4, 5}, {4, 5, 4, 5}, {5, 4, 4, 5}};
+    soup mesh = soup_cloth(3, 3);
     sc_build_options options;
-    subject s[3];
-    sc_model_info info[3];
-    uint32_t order[32];
+    subject s[4];
+    sc_model_info info[4];
+    uint32_t order[18];
+    sc_tree_node tree[7] = {{1, 2, 0, 0}, {3, 4, 0, 0}, {5, 6, 0, 0}};
     sc_result r;
-    if (!CHECK(mesh.triangle_count == 32)) return;
+    if (!CHECK(mesh.triangle_count == 18)) return;
     memset(&options, 0, sizeof(options));
     memset(&r, 0, sizeof(r));
     options.struct_size = sizeof(options);
-    options.partition = SC_PARTITION_ORDER;
+    options.partition = SC_PARTITION_TREE;
     options.order = order;
-    for (int k = 0; k < 3; ++k) {
-        for (uint32_t i = 0; i < 32; ++i) order[i] = k == 2 ? 31 - i : i;
+    options.tree = tree;
+    options.tree_count = 7;
+    for (uint32_t k = 0; k < 4; ++k) {
+        uint32_t first = 0;
+        for (uint32_t i = 0; i < 18; ++i) order[i] = k == 3 ? 17 - i : i;
+        for (uint32_t leaf = 0; leaf < 4; ++leaf) {
+            tree[3 + leaf].left = tree[3 + leaf].right = SC_NONE;
+            tree[3 + leaf].first = first;
+            tree[3 + leaf].count = sizes[k % 3][leaf];
+            first += sizes[k % 3][leaf];
+        }
         if (!open_subject(&s[k], &mesh, &options)) return;
         info[k].struct_size = sizeof(info[k]);
         CHECK(sc_model_get_info(s[k].model, &info[k]) == SC_OK);
     }
     CHECK(info[0].topology_hash == info[1].topology_hash);
     CHECK(info[0].topology_hash != info[2].topology_hash);
-    for (int k = 1; k < 3; ++k) {
+    CHECK(info[0].topology_hash != info[3].topology_hash);
+    for (int k = 1; k < 4; ++k) {
         subject mixed;
         mixed.model = s[0].model;
         mixed.workspace = s[k].workspace;
         CHECK(ask(&mixed, mesh.positions, mesh.vertex_count, 0, 0, &r) ==
               (k == 1 ? SC_OK : SC_ERROR_WORKSPACE));
     }
-    for (int k = 0; k < 3; ++k) close_subject(&s[k]);
+    for (int k = 0; k < 4; ++k) close_subject(&s[k]);
     soup_free(&mesh);
 }
 
@@ -386,5 +445,6 @@ static void leaves_that_overlap(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_stops_early), SC_TEST(arrays_are_left_alone), SC_TEST(largest_coordinates),
-             SC_TEST(tiny_coordinates), SC_TEST(other_rest_shapes), SC_TEST(hashes_of_partitions),
+             SC_TEST(tiny_coordinates), SC_TEST(other_rest_shapes),
+             SC_TEST(rest_shapes_unlike_poses), SC_TEST(hashes_of_partitions),
              SC_TEST(missing_arguments), SC_TEST(leaves_that_overlap))
