@@ -22,7 +22,7 @@ $(later): after-deps
 after-deps: deps
 	@$(MAKE) --no-print-directory $(later)
 deps:
-	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' CGAL='$(cgal)' tools/deps.sh
+	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' WITH='$(with)' tools/deps.sh
 
 else
 
@@ -217,7 +217,7 @@ $(bin)/make-meshes:
 
 .PHONY: deps
 deps: ## install what is missing to build and test everything (says first what that is)
-	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' CGAL='$(cgal)' tools/deps.sh
+	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' WITH='$(with)' tools/deps.sh
 
 .PHONY: demo
 ifneq ($(strip $(missing_for_programs)),)
@@ -272,8 +272,8 @@ cgal_objects := $(call objects,tools/mesh_file.c tools/text_mesh.c tests/oracle.
 
 .PHONY: test-cgal
 ifneq ($(strip $(missing_for_cgal)),)
-test-cgal: ## compare pairs with CGAL's on hundreds of real meshes (make deps cgal=1 test-cgal)
-	@echo "make test-cgal needs $(strip $(missing_for_cgal)): run 'make deps cgal=1' first" >&2; exit 1
+test-cgal: ## compare pairs with CGAL's on hundreds of real meshes (make deps with=cgal test-cgal)
+	@echo "make test-cgal needs $(strip $(missing_for_cgal)): run 'make deps with=cgal' first" >&2; exit 1
 else
 test-cgal: $(work)/tests/cgal/compare $(programs)
 	@meshes/fetch.sh --models build/meshes $(bin)/subdivide
@@ -473,7 +473,7 @@ help: ## this list
 	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
 
 #: config      release (the default), debug, or sanitize (address and undefined behaviour)
-#: cgal        1: make deps also installs what make test-cgal needs
+#: with        groups of packages that make deps adds: analysis bench cgal docs ffi packages peers
 #: CC          C compiler [cc]
 #: CLANG       clang, for fuzz and test-memory-clang [clang]
 #: CXX         C++ compiler, for test-cgal and one test of the header [g++]

@@ -2,7 +2,7 @@
 # Installs what is missing to build and test everything. Says first what that is, asks nothing.
 #
 #     tools/deps.sh      CC, CXX, CPPFLAGS: the compilers and flags that look for headers
-#                        CGAL=1: also what `make test-cgal` needs
+#                        WITH: groups of what is needed beyond building and testing, see below
 #
 # Debian and Ubuntu: by apt-get, through sudo only if need be. Elsewhere: prints the names of the
 # packages, and fails if something is missing.
@@ -14,7 +14,7 @@ CC=${CC:-cc}
 CXX=${CXX:-g++}
 
 # What is needed: how it is looked for; its package in Debian, Fedora, Arch Linux and Homebrew (a dash:
-# it comes with the system's compilers).
+# it comes with the system's compilers, or is not offered there).
 needs="\
 compiler CC gcc gcc gcc -
 compiler CXX g++ gcc-c++ gcc -
@@ -24,8 +24,33 @@ header assimp/cimport.h libassimp-dev assimp-devel assimp assimp
 header cjson/cJSON.h libcjson-dev cjson-devel cjson cjson
 header ccd/ccd.h libccd-dev libccd-devel libccd libccd
 header gmp.h libgmp-dev gmp-devel gmp gmp"
-[ "${CGAL:-}" != 1 ] || needs="$needs
+
+# What groups need: `make deps with="analysis cgal"`.
+group_cgal="\
 header CGAL/version.h libcgal-dev CGAL-devel cgal cgal"
+group_analysis="\
+program clang clang clang clang llvm
+program clang-tidy clang-tidy clang-tools-extra clang llvm
+program cppcheck cppcheck cppcheck cppcheck cppcheck
+program valgrind valgrind valgrind valgrind -"
+group_bench=
+group_docs=
+group_ffi=
+group_packages=
+group_peers=
+for group in ${WITH:-}; do
+    case $group in
+    analysis | bench | cgal | docs | ffi | packages | peers) ;;
+    *)
+        echo "make deps: with=$group: the groups are analysis, bench, cgal, docs, ffi, packages, peers" >&2
+        exit 2
+        ;;
+    esac
+    eval "more=\$group_$group"
+    # shellcheck disable=SC2154
+    [ -z "$more" ] || needs="$needs
+$more"
+done
 
 there() {
     case $1 in
