@@ -513,8 +513,9 @@ enum { LEFT_POINTS = 3, BENCH_POINTS = 6 }; /* points 0 1 2 and 2 3 4 of segment
 
 static int open_bench(bench *b)
 {
-    static const uint32_t parts[] = {0, 3, 6,          /* segment_points */
-                                     0, 1, 2, 2, 3, 4, /* points */
+    static const uint32_t parts[] = {0, 2, 0,          /* segment_first */
+                                     2, 4, 4,          /* segment_last */
+                                     0, 1, 2, 3, 4, 3, /* points */
                                      0, 2,             /* segment_children */
                                      0, 1,             /* children */
                                      0, 4,             /* node_contour */
@@ -534,13 +535,14 @@ static int open_bench(bench *b)
     memcpy(b->parts, parts, sizeof(parts));
     b->fake->leaf_segment_count = 2;
     b->fake->segment_count = 3;
-    b->fake->offset[SC_ARRAY_segment_points] = b->real->bytes;
-    b->fake->offset[SC_ARRAY_points] = b->real->bytes + 3 * sizeof(uint32_t);
-    b->fake->offset[SC_ARRAY_segment_children] = b->real->bytes + 9 * sizeof(uint32_t);
-    b->fake->offset[SC_ARRAY_children] = b->real->bytes + 11 * sizeof(uint32_t);
-    b->fake->offset[SC_ARRAY_node_contour] = b->real->bytes + 13 * sizeof(uint32_t);
-    b->fake->offset[SC_ARRAY_contours] = b->real->bytes + 15 * sizeof(uint32_t);
-    b->fake->offset[SC_ARRAY_node_touches] = b->real->bytes + 19 * sizeof(uint32_t);
+    b->fake->offset[SC_ARRAY_segment_first] = b->real->bytes;
+    b->fake->offset[SC_ARRAY_segment_last] = b->real->bytes + 3 * sizeof(uint32_t);
+    b->fake->offset[SC_ARRAY_points] = b->real->bytes + 6 * sizeof(uint32_t);
+    b->fake->offset[SC_ARRAY_segment_children] = b->real->bytes + 12 * sizeof(uint32_t);
+    b->fake->offset[SC_ARRAY_children] = b->real->bytes + 14 * sizeof(uint32_t);
+    b->fake->offset[SC_ARRAY_node_contour] = b->real->bytes + 16 * sizeof(uint32_t);
+    b->fake->offset[SC_ARRAY_contours] = b->real->bytes + 18 * sizeof(uint32_t);
+    b->fake->offset[SC_ARRAY_node_touches] = b->real->bytes + 22 * sizeof(uint32_t);
     sc_workspace_new_pose(b->real, b->workspace);
     return 1;
 }
@@ -916,9 +918,8 @@ static void beside_a_point(void)
     memset(&state, 0, sizeof(state));
     state.model = b.fake;
     state.workspace = b.workspace;
-    b.parts[6] = 3; /* segment 1 becomes 3 4 3: there and back, apart from the first */
-    b.parts[7] = 4;
-    b.parts[8] = 3;
+    b.parts[1] = 3; /* segment 1 becomes 3 4 3: there and back, apart from the first */
+    b.parts[4] = 5;
     for (uint32_t i = 0; i < test_iterations(30000); ++i) {
         sc_projection *p = &b.projection;
         double space = test_random_range(0, 4), side = either(1);

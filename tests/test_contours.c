@@ -464,15 +464,8 @@ static void check_edge(bounds_check *c, uint32_t from, uint32_t to)
 static void check_edges_of(bounds_check *c, uint32_t segment)
 {
     const sc_model *m = c->s->model;
-    const uint32_t *first;
-    if (segment < m->leaf_segment_count) {
-        first = sc_model_segment_points(m) + segment;
-        for (uint32_t i = first[0]; i + 1 < first[1]; ++i)
-            check_edge(c, sc_model_points(m)[i], sc_model_points(m)[i + 1]);
-        return;
-    }
-    first = sc_model_segment_children(m) + (segment - m->leaf_segment_count);
-    for (uint32_t i = first[0]; i < first[1]; ++i) check_edges_of(c, sc_model_children(m)[i]);
+    for (uint32_t i = sc_model_segment_first(m)[segment]; i < sc_model_segment_last(m)[segment]; ++i)
+        check_edge(c, sc_model_points(m)[i], sc_model_points(m)[i + 1]);
 }
 
 /* Some places along a line: the ends of the bounds, between them, beside them, far away. */
@@ -594,7 +587,7 @@ static void bounds_of_long_segments(void)
             uint32_t extra[LONGEST + 3], edges = 1 + test_random_below(i % 4 ? 28 : LONGEST - 1);
             sc_model *longer = (sc_model *)test_allocate(size + sizeof(extra));
             extra[0] = 0;
-            extra[1] = edges + 1;
+            extra[1] = edges;
             for (uint32_t k = 0; k <= edges; ++k)
                 extra[2 + k] = test_random_below(model->point_count);
             for (uint32_t k = 3; k < edges + 3; ++k) /* no edge from a point to itself */
@@ -602,7 +595,8 @@ static void bounds_of_long_segments(void)
             memcpy(longer, model, size);
             memcpy((unsigned char *)longer + size, extra, sizeof(extra));
             longer->segment_count = longer->leaf_segment_count = 1;
-            longer->offset[SC_ARRAY_segment_points] = size;
+            longer->offset[SC_ARRAY_segment_first] = size;
+            longer->offset[SC_ARRAY_segment_last] = size + sizeof(uint32_t);
             longer->offset[SC_ARRAY_points] = size + 2 * sizeof(uint32_t);
             s.model = longer;
             check_bounds(&s, &tally);

@@ -365,29 +365,17 @@ static void check_leaf_pairs(const steps *s)
 
 static uint32_t count_edges(const sc_csf *csf, uint32_t segment)
 {
-    uint32_t i, sum = 0;
-    if (segment < csf->leaf_count)
-        return csf->point_first[segment + 1] - csf->point_first[segment] - 1;
-    for (i = csf->child_first[segment - csf->leaf_count];
-         i < csf->child_first[segment - csf->leaf_count + 1]; ++i)
-        sum += count_edges(csf, csf->children[i]);
-    return sum;
+    return csf->point_last[segment] - csf->point_first[segment];
 }
 
 /* Writes a segment's edges in order. */
 static sc_pair *flatten(const sc_csf *csf, uint32_t segment, sc_pair *out)
 {
     uint32_t i;
-    if (segment < csf->leaf_count) {
-        for (i = csf->point_first[segment]; i + 1 < csf->point_first[segment + 1]; ++i, ++out) {
-            out->a = csf->points[i];
-            out->b = csf->points[i + 1];
-        }
-        return out;
+    for (i = csf->point_first[segment]; i < csf->point_last[segment]; ++i, ++out) {
+        out->a = csf->points[i];
+        out->b = csf->points[i + 1];
     }
-    for (i = csf->child_first[segment - csf->leaf_count];
-         i < csf->child_first[segment - csf->leaf_count + 1]; ++i)
-        out = flatten(csf, csf->children[i], out);
     return out;
 }
 
@@ -793,8 +781,10 @@ static void validators(void)
     CHECK(s.neighbors.count[i] > 0 && is_noticed(&s, 2, &s.neighbors.count[i], 0));
     /* segments: a point too few, a child before or twice, a gap between children, a contour of what
        is no segment */
-    for (i = 0; i < s.csf.leaf_count; i += 7)
-        CHECK(is_noticed(&s, 3, &s.csf.point_first[i + 1], s.csf.point_first[i] + 1));
+    for (i = 0; i < s.csf.segment_count; i += 7) {
+        CHECK(is_noticed(&s, 3, &s.csf.point_last[i], s.csf.point_first[i]));
+        CHECK(is_noticed(&s, 3, &s.csf.point_last[i], s.csf.point_count));
+    }
     CHECK(s.csf.segment_count > s.csf.leaf_count);
     for (i = s.csf.leaf_count; i < s.csf.segment_count; ++i) {
         uint32_t *first = s.csf.child_first + (i - s.csf.leaf_count);

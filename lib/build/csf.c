@@ -291,6 +291,51 @@ static sc_status order_contours(builder *b, sc_csf *csf)
         at += b->node_count[n];
     }
     csf->contour_first[nodes] = at;
+    csf->edges_max = 0;
+    for (n = 0; n < nodes; n++) {
+        uint32_t edges = 0, i = csf->contour_first[n] + (b->sctt->touch[n] == SC_NONE ? 0 : 2);
+        for (; i < csf->contour_first[n + 1]; i++)
+            edges += csf->point_last[csf->contours[i]] - csf->point_first[csf->contours[i]];
+        if (edges > csf->edges_max) csf->edges_max = edges;
+    }
+    return SC_OK;
+}
+
+/* Puts the points of all segments below one that has no parent into one range. */
+static sc_status lay_out_points(builder *b, sc_csf *csf)
+{
+    uint32_t s, i, *from = b->points_first.items, *first, *last;
+    uint64_t end = 0;
+    first = (uint32_t *)sc_scratch_take_filled(b->scratch, csf->segment_count, sizeof *first, 0xff);
+    last = (uint32_t *)sc_scratch_take(b->scratch, csf->segment_count, sizeof *last);
+    if (!first || !last) return SC_ERROR_MEMORY;
+    for (s = 0; s < csf->leaf_count; s++) last[s] = from[s + 1] - from[s] - 1;
+    for (; s < csf->segment_count; s++) { /* half-edges, for now */
+        const uint32_t *child = csf->child_first + (s - csf->leaf_count);
+        for (i = child[0], last[s] = 0; i < child[1]; i++) last[s] += last[csf->children[i]];
+    }
+    for (; s-- > 0;) { /* parents come before their children */
+        if (first[s] == SC_NONE) {
+            first[s] = (uint32_t)end;
+            end += (uint64_t)last[s] + 1;
+            if (end > 0xfffffff0u) return SC_ERROR_COUNT;
+        }
+        if (s >= csf->leaf_count) {
+            const uint32_t *child = csf->child_first + (s - csf->leaf_count);
+            uint32_t at = first[s];
+            for (i = child[0]; i < child[1]; at += last[csf->children[i++]])
+                first[csf->children[i]] = at;
+        }
+        last[s] += first[s];
+    }
+    csf->points = (uint32_t *)sc_scratch_take(b->scratch, end, sizeof *csf->points);
+    if (!csf->points) return SC_ERROR_MEMORY;
+    for (s = 0; s < csf->leaf_count; s++)
+        memcpy(csf->points + first[s], b->points_list.items + from[s],
+               (size_t)(from[s + 1] - from[s]) * sizeof *csf->points);
+    csf->point_first = first;
+    csf->point_last = last;
+    csf->point_count = (uint32_t)end;
     return SC_OK;
 }
 
@@ -356,6 +401,8 @@ static void give_back(builder *b)
     sc_scratch_give(b->scratch, b->patch_first);
     sc_scratch_give(b->scratch, b->patch_runs);
     sc_scratch_give(b->scratch, b->last.items);
+    sc_scratch_give(b->scratch, b->points_first.items);
+    sc_scratch_give(b->scratch, b->points_list.items);
     sc_scratch_give(b->scratch, b->contours.items);
 }
 
@@ -392,22 +439,13 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
         return SC_ERROR_MEMORY;
     sc_list_add(&b.points_first, (uint32_t)b.points_list.count);
     sc_list_add(&b.child_first, (uint32_t)b.children.count);
-    csf->point_first = b.points_first.items;
-    csf->points = b.points_list.items;
     csf->child_first = b.child_first.items;
     csf->children = b.children.items;
+    status = lay_out_points(&b, csf);
+    if (status) return status;
     status = order_contours(&b, csf);
     give_back(&b);
     return status;
-}
-
-static uint32_t end_point(const sc_csf *csf, uint32_t segment, int last)
-{
-    while (segment >= csf->leaf_count) {
-        const uint32_t *first = csf->child_first + (segment - csf->leaf_count);
-        segment = csf->children[last ? first[1] - 1 : first[0]];
-    }
-    return csf->points[last ? csf->point_first[segment + 1] - 1 : csf->point_first[segment]];
 }
 
 int sc_csf_validate(const sc_csf *csf, const sc_sctt *sctt, sc_scratch *scratch)
@@ -415,18 +453,20 @@ int sc_csf_validate(const sc_csf *csf, const sc_sctt *sctt, sc_scratch *scratch)
     uint32_t s, i, n;
     uint8_t *has_parent = (uint8_t *)sc_scratch_take_filled(scratch, csf->segment_count, 1, 0);
     if (!has_parent) return 0;
-    for (s = 0; s < csf->leaf_count; s++)
-        if (csf->point_first[s + 1] < csf->point_first[s] + 2) return 0;
-    for (; s < csf->segment_count; s++) {
+    for (s = 0; s < csf->segment_count; s++)
+        if (csf->point_first[s] >= csf->point_last[s] || csf->point_last[s] >= csf->point_count)
+            return 0;
+    for (s = csf->leaf_count; s < csf->segment_count; s++) {
         const uint32_t *first = csf->child_first + (s - csf->leaf_count);
+        uint32_t at = csf->point_first[s];
         if (first[1] < first[0] + 2) return 0;
         for (i = first[0]; i < first[1]; i++) {
             uint32_t child = csf->children[i];
-            if (child >= s || has_parent[child]) return 0;
+            if (child >= s || has_parent[child] || csf->point_first[child] != at) return 0;
             has_parent[child] = 1;
-            if (i > first[0] && end_point(csf, csf->children[i - 1], 1) != end_point(csf, child, 0))
-                return 0;
+            at = csf->point_last[child];
         }
+        if (at != csf->point_last[s]) return 0;
     }
     for (n = 0; n < sctt->node_count; n++) {
         uint32_t skip = sctt->touch[n] == SC_NONE ? 0 : 2;

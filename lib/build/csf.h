@@ -17,8 +17,9 @@
  * Half-edges of irregular edges border on the outside, so a contour may hold an edge and its reverse;
  * that culls less and loses nothing, since they cancel in every winding number.
  *
- * Segments 0 to leaf_count - 1 are lists of points: a segment with n half-edges has n + 1. The others
- * are lists of two or more children with lower numbers.
+ * Segments 0 to leaf_count - 1 have no children; the others are lists of two or more with lower
+ * numbers. The points of every segment, n + 1 for n half-edges, are one range of an array, in which the
+ * ranges of its children follow each other, the last point of one being the first of the next.
  */
 #ifndef SC_BUILD_CSF_H
 #define SC_BUILD_CSF_H
@@ -28,8 +29,10 @@
 /* Scratch memory. */
 typedef struct sc_csf {
     uint32_t segment_count, leaf_count;
-    uint32_t *point_first; /* leaf_count + 1: points of segment s start here in points */
-    uint32_t *points;      /* point_first[leaf_count] */
+    uint32_t *point_first; /* segment_count: place of the segment's first point in points */
+    uint32_t *point_last;  /* segment_count: place of its last */
+    uint32_t *points;      /* point_count */
+    uint32_t point_count;
     uint32_t *child_first; /* segment_count - leaf_count + 1: children of segment leaf_count + i */
     uint32_t *children;    /* child_first[segment_count - leaf_count] */
     /* The segments round the patches of each node of the self-collision test tree: around their
@@ -38,6 +41,7 @@ typedef struct sc_csf {
     uint32_t *contour_first;  /* node_count + 1 */
     uint32_t *contours;       /* contour_first[node_count] */
     uint32_t *level_segments; /* level_count: segments of each level */
+    uint32_t edges_max;       /* half-edges round a node, at most */
 } sc_csf;
 
 sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,

@@ -191,7 +191,8 @@ static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
     m->contour_total = csf->contour_first[sctt->node_count];
     m->segment_count = csf->segment_count;
     m->leaf_segment_count = csf->leaf_count;
-    m->segment_point_total = csf->point_first[csf->leaf_count];
+    m->segment_point_total = csf->point_count;
+    m->contour_edges_max = csf->edges_max;
     m->segment_child_total = csf->child_first[csf->segment_count - csf->leaf_count];
 }
 
@@ -253,8 +254,10 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, boxes, sc_pair), sctt->boxes, m->box_count * sizeof(sc_pair));
     copy(NEW_ARRAY(m, node_contour, uint32_t), csf->contour_first,
          ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, segment_points, uint32_t), csf->point_first,
-         ((uint64_t)m->leaf_segment_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, segment_first, uint32_t), csf->point_first,
+         m->segment_count * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, segment_last, uint32_t), csf->point_last,
+         m->segment_count * sizeof(uint32_t));
     copy(NEW_ARRAY(m, segment_children, uint32_t), csf->child_first,
          ((uint64_t)m->segment_count - m->leaf_segment_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, children, uint32_t), csf->children,

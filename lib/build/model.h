@@ -63,7 +63,8 @@ enum {
   X(contours, uint32_t, contour_total)                                                             \
   X(node_flags, uint8_t, node_count)                                                               \
   X(node_touches, uint8_t, node_count) /* 1: shares one point, see build/csf.h */                  \
-  X(segment_points, uint32_t, (uint64_t)leaf_segment_count + 1)                                    \
+  X(segment_first, uint32_t, segment_count)                                                        \
+  X(segment_last, uint32_t, segment_count)                                                         \
   X(points, uint32_t, segment_point_total)                                                         \
   X(segment_children, uint32_t, (uint64_t)segment_count - leaf_segment_count + 1)                  \
   X(children, uint32_t, segment_child_total)                                                       \
@@ -84,6 +85,7 @@ struct sc_model {
     uint32_t leaf_count, level_count, patch_end;
     uint32_t node_count, box_count, contour_total;
     uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
+    uint32_t contour_edges_max; /* half-edges round a node, at most */
     uint32_t ring_total;
     uint64_t offset[SC_ARRAY_COUNT]; /* in bytes from the start of the sc_model */
 };

@@ -203,9 +203,9 @@ uint32_t sc_contour_bounds_update(const sc_model *model, sc_workspace *w,
     if (w->bounds_tick[line][segment] == w->tick) return 0;
     w->bounds_tick[line][segment] = w->tick;
     if (segment < model->leaf_segment_count) {
-        first = sc_model_segment_points(model) + segment;
-        if (!bound_edges(w, projection, line, sc_model_points(model) + first[0],
-                         first[1] - first[0] - 1, bounds))
+        uint32_t begin = sc_model_segment_first(model)[segment];
+        if (!bound_edges(w, projection, line, sc_model_points(model) + begin,
+                         sc_model_segment_last(model)[segment] - begin, bounds))
             make_unbounded(bounds);
         return 1;
     }
@@ -236,25 +236,18 @@ static int is_edge_bounded(const sc_segment_bounds *bounds, double x0, double y0
            flip * y0 + slope * ((double)b->bx - x0) >= (double)b->by;
 }
 
-/* The edges below a segment against the bounds of one above. */
+/* The edges of a segment against bounds of it. */
 static int are_edges_bounded(const sc_model *model, const sc_workspace *w,
                              const sc_projection *projection, int line, uint32_t segment,
                              const sc_segment_bounds *bounds)
 {
-    const uint32_t *first;
+    const uint32_t *points = sc_model_points(model);
     uint32_t i;
     double x0, y0, x1, y1;
-    if (segment >= model->leaf_segment_count) {
-        first = sc_model_segment_children(model) + (segment - model->leaf_segment_count);
-        for (i = first[0]; i < first[1]; i++)
-            if (!are_edges_bounded(model, w, projection, line, sc_model_children(model)[i], bounds))
-                return 0;
-        return 1;
-    }
-    first = sc_model_segment_points(model) + segment;
-    for (i = first[0]; i + 1 < first[1]; i++) {
-        sc_contour_bounds_project(w, projection, line, sc_model_points(model)[i], &x0, &y0);
-        sc_contour_bounds_project(w, projection, line, sc_model_points(model)[i + 1], &x1, &y1);
+    for (i = sc_model_segment_first(model)[segment]; i < sc_model_segment_last(model)[segment];
+         i++) {
+        sc_contour_bounds_project(w, projection, line, points[i], &x0, &y0);
+        sc_contour_bounds_project(w, projection, line, points[i + 1], &x1, &y1);
         if (!is_edge_bounded(bounds, x0, y0, x1, y1)) return 0;
     }
     return 1;

@@ -70,13 +70,8 @@ static int is_star(const sc_segment_bounds *bounds, const uint32_t *segments, ui
 
 static uint32_t end_point(const sc_model *model, uint32_t segment, int last)
 {
-    const uint32_t *first;
-    while (segment >= model->leaf_segment_count) {
-        first = sc_model_segment_children(model) + (segment - model->leaf_segment_count);
-        segment = sc_model_children(model)[last ? first[1] - 1 : first[0]];
-    }
-    first = sc_model_segment_points(model) + segment;
-    return sc_model_points(model)[last ? first[1] - 1 : first[0]];
+    const uint32_t *at = last ? sc_model_segment_last(model) : sc_model_segment_first(model);
+    return sc_model_points(model)[at[segment]];
 }
 
 /*
