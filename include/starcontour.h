@@ -379,7 +379,9 @@ enum {
 enum {
     SC_CONTOUR_DEFAULT = 0,
     SC_CONTOUR_STAR = 1, /* the paper's star-contour test */
-    SC_CONTOUR_NONE = 2  /* no contour test: MISSES PAIRS; a floor to measure against */
+    SC_CONTOUR_NONE = 2, /* no contour test: MISSES PAIRS; a floor to measure against */
+    SC_CONTOUR_EXACT = 3 /* the default: is the contour simple? Passes nearly everywhere on a smooth
+                                mesh. Keeps nothing from the rest pose */
 };
 
 /* Rest-shape caching (paper, section 8): tests that failed in the rest pose are taken as failed. */

@@ -243,11 +243,11 @@ void sc_workspace_free(sc_workspace *workspace)
 static sc_status check_options(sc_query_options *o)
 {
     if (o->output > SC_OUTPUT_ANY || o->pairs > SC_PAIRS_EDGE || o->contact > SC_CONTACT_PROPER ||
-        o->method > SC_METHOD_AABB || o->contour > SC_CONTOUR_NONE ||
+        o->method > SC_METHOD_AABB || o->contour > SC_CONTOUR_EXACT ||
         o->rest_cache > SC_REST_CACHE_OFF || o->reserved)
         return SC_ERROR_OPTION;
     if (o->method == SC_METHOD_DEFAULT) o->method = SC_METHOD_SCTT;
-    if (o->contour == SC_CONTOUR_DEFAULT) o->contour = SC_CONTOUR_STAR;
+    if (o->contour == SC_CONTOUR_DEFAULT) o->contour = SC_CONTOUR_EXACT;
     return SC_OK;
 }
 

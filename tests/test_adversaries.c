@@ -26,6 +26,7 @@
 #include "pose/fan.h"
 #include "pose/positions.h"
 #include "pose/refit.h"
+#include "query/simple.h"
 #include "query/star.h"
 #include "starcontour.h"
 
@@ -33,6 +34,7 @@
 typedef struct tally {
     uint64_t cases, hits, queries;
     uint64_t turned, passed, failed;     /* nodes, by orientation test and star test */
+    uint64_t simple;                     /* passed the exact contour test */
     uint64_t touching_passed, colliding; /* of the passed and of the failed */
     uint64_t roots_passed, roots_failed; /* the adversary as one node */
     uint64_t plain, not_plain;           /* fans */
@@ -40,13 +42,14 @@ typedef struct tally {
 
 typedef struct way {
     const char *name;
-    uint32_t method, rest_cache;
+    uint32_t method, contour, rest_cache;
 } way;
 
-static const way ways[] = {{"sctt", SC_METHOD_SCTT, SC_REST_CACHE_ON},
-                           {"sctt, no cache", SC_METHOD_SCTT, SC_REST_CACHE_OFF},
-                           {"aabb sctt", SC_METHOD_AABB_SCTT, SC_REST_CACHE_ON},
-                           {"aabb", SC_METHOD_AABB, SC_REST_CACHE_ON}};
+static const way ways[] = {{"exact", SC_METHOD_SCTT, SC_CONTOUR_EXACT, SC_REST_CACHE_ON},
+                           {"star", SC_METHOD_SCTT, SC_CONTOUR_STAR, SC_REST_CACHE_ON},
+                           {"star, no cache", SC_METHOD_SCTT, SC_CONTOUR_STAR, SC_REST_CACHE_OFF},
+                           {"aabb sctt", SC_METHOD_AABB_SCTT, 0, SC_REST_CACHE_ON},
+                           {"aabb", SC_METHOD_AABB, 0, SC_REST_CACHE_ON}};
 enum { WAYS = sizeof(ways) / sizeof(ways[0]) };
 
 /* A model of an adversary, and its pose. */
@@ -99,6 +102,7 @@ static void check_queries(const scene *s, tally *t)
         options.pairs = i & 1;
         options.contact = i >> 1 & 1;
         options.method = w->method;
+        options.contour = w->contour;
         options.rest_cache = w->rest_cache;
         result.struct_size = sizeof(result);
         result.capacity = right->count + 1;
@@ -127,11 +131,13 @@ static int is_in(const sc_model *m, uint32_t patch, uint32_t place)
            place < sc_model_leaf_first(m)[sc_model_leaf(m)[patch + 1]];
 }
 
-/* Whether one of the pairs, given as places, is of a node. */
-static int has_pair(const sc_model *m, uint32_t node, const sc_pair *pairs, uint64_t count)
+/* Whether one of the pairs, given as places, is of a node: of its whole, or, if its patches share one
+   point, at least of one with the other. */
+static int has_pair(const sc_model *m, uint32_t node, int whole, const sc_pair *pairs,
+                    uint64_t count)
 {
     uint32_t a = sc_model_node_patches(m)[node].a, b = sc_model_node_patches(m)[node].b;
-    int touches = sc_model_node_touches(m)[node];
+    int touches = !whole && sc_model_node_kind(m)[node] & SC_NODE_TOUCHES;
     for (uint64_t i = 0; i < count; ++i) {
         int p = is_in(m, a, pairs[i].a), q = is_in(m, b, pairs[i].a);
         int r = is_in(m, a, pairs[i].b), s = is_in(m, b, pairs[i].b);
@@ -157,7 +163,7 @@ static void check_nodes(const scene *s, sc_pair *pairs, uint64_t count, tally *t
     for (uint32_t node = 0; node < m->node_count; ++node) {
         const sc_pair *patches = &sc_model_node_patches(m)[node];
         uint32_t mask = (uint32_t)s->workspace->mask[patches->a] & s->workspace->mask[patches->b];
-        int bad = has_pair(m, node, pairs, count);
+        int bad = has_pair(m, node, 0, pairs, count), worse = has_pair(m, node, 1, pairs, count);
         t->turned += mask == 0;
         for (int tries = 0; tries < 2 && mask != 0; ++tries) {
             sc_projection projection;
@@ -166,9 +172,12 @@ static void check_nodes(const scene *s, sc_pair *pairs, uint64_t count, tally *t
             sc_workspace_new_projection(m, s->workspace);
             passed = sc_star_test(&state, &projection, node);
             wrong += (uint32_t)(passed && bad);
+            t->simple += (uint64_t)sc_simple_test(&state, &projection, node);
+            wrong += (uint32_t)(worse && sc_simple_test(&state, &projection, node));
             *(passed ? &t->passed : &t->failed) += 1;
             if (node == 0) *(passed ? &t->roots_passed : &t->roots_failed) += 1;
-            t->touching_passed += (uint64_t)(passed && sc_model_node_touches(m)[node]);
+            t->touching_passed +=
+                (uint64_t)(passed && sc_model_node_kind(m)[node] & SC_NODE_TOUCHES);
             t->colliding += (uint64_t)bad;
         }
     }
@@ -361,9 +370,10 @@ static void report(const tally *t)
 {
     test_note("%" PRIu64 " cases (%" PRIu64 " with pairs), %" PRIu64 " queries; nodes: %" PRIu64
               " not oriented, contour passed %" PRIu64 " (%" PRIu64
-              " at one point), failed %" PRIu64 "; whole: passed %" PRIu64 ", failed %" PRIu64,
+              " at one point), failed %" PRIu64 ", simple %" PRIu64 "; whole: passed %" PRIu64
+              ", failed %" PRIu64,
               t->cases, t->hits, t->queries, t->turned, t->passed, t->touching_passed, t->failed,
-              t->roots_passed, t->roots_failed);
+              t->simple, t->roots_passed, t->roots_failed);
 }
 
 static void check_both(const tally *t)
@@ -513,14 +523,29 @@ enum { LEFT_POINTS = 3, BENCH_POINTS = 6 }; /* points 0 1 2 and 2 3 4 of segment
 
 static int open_bench(bench *b)
 {
-    static const uint32_t parts[] = {0, 2, 0,          /* segment_first */
-                                     2, 4, 4,          /* segment_last */
-                                     0, 1, 2, 3, 4, 3, /* points */
-                                     0, 2,             /* segment_children */
-                                     0, 1,             /* children */
-                                     0, 4,             /* node_contour */
-                                     5, 1, 0, 1, /* contours: point, count of the first, segments */
-                                     1 /* node_touches, a byte */};
+    static const uint32_t parts[] = {0,
+                                     2,
+                                     0, /* segment_first */
+                                     2,
+                                     4,
+                                     4, /* segment_last */
+                                     0,
+                                     1,
+                                     2,
+                                     3,
+                                     4,
+                                     3, /* points */
+                                     0,
+                                     2, /* segment_children */
+                                     0,
+                                     1, /* children */
+                                     0,
+                                     4, /* node_contour */
+                                     5,
+                                     1,
+                                     0,
+                                     1, /* contours: point, count of the first, segments */
+                                     SC_NODE_TOUCHES /* node_kind, a byte */};
     sc_mesh input;
     memset(b, 0, sizeof(*b));
     b->mesh = soup_cloth(5, 5);
@@ -542,7 +567,7 @@ static int open_bench(bench *b)
     b->fake->offset[SC_ARRAY_children] = b->real->bytes + 14 * sizeof(uint32_t);
     b->fake->offset[SC_ARRAY_node_contour] = b->real->bytes + 16 * sizeof(uint32_t);
     b->fake->offset[SC_ARRAY_contours] = b->real->bytes + 18 * sizeof(uint32_t);
-    b->fake->offset[SC_ARRAY_node_touches] = b->real->bytes + 22 * sizeof(uint32_t);
+    b->fake->offset[SC_ARRAY_node_kind] = b->real->bytes + 22 * sizeof(uint32_t);
     sc_workspace_new_pose(b->real, b->workspace);
     return 1;
 }

@@ -19,6 +19,7 @@
 #include "pose/dnc.h"
 #include "pose/fan.h"
 #include "pose/positions.h"
+#include "query/simple.h"
 #include "query/star.h"
 #include "shapes.h"
 #include "starcontour.h"
@@ -464,7 +465,8 @@ static void check_edge(bounds_check *c, uint32_t from, uint32_t to)
 static void check_edges_of(bounds_check *c, uint32_t segment)
 {
     const sc_model *m = c->s->model;
-    for (uint32_t i = sc_model_segment_first(m)[segment]; i < sc_model_segment_last(m)[segment]; ++i)
+    for (uint32_t i = sc_model_segment_first(m)[segment]; i < sc_model_segment_last(m)[segment];
+         ++i)
         check_edge(c, sc_model_points(m)[i], sc_model_points(m)[i + 1]);
 }
 
@@ -667,6 +669,8 @@ static void ticks(void)
 
 typedef struct star_tally {
     uint64_t oriented, passed, touching, touching_passed;
+    uint64_t simple,
+        pinched;        /* passed the exact contour test; of these, two patches at one point */
     uint64_t colliding; /* oriented nodes with a pair inside, which must not pass */
 } star_tally;
 
@@ -676,11 +680,13 @@ static int is_in(const sc_model *m, uint32_t patch, uint32_t place)
            place < sc_model_leaf_first(m)[sc_model_leaf(m)[patch + 1]];
 }
 
-/* Whether the oracle's pairs, in places, have one within a node. */
-static int has_pair(const sc_model *m, uint32_t node, const sc_pair *pairs, uint64_t count)
+/* Whether the oracle's pairs, in places, have one within a node: within its whole, or, if its patches
+   share one point, at least between the two. */
+static int has_pair(const sc_model *m, uint32_t node, int whole, const sc_pair *pairs,
+                    uint64_t count)
 {
     uint32_t a = sc_model_node_patches(m)[node].a, b = sc_model_node_patches(m)[node].b;
-    int touches = sc_model_node_touches(m)[node];
+    int touches = !whole && sc_model_node_kind(m)[node] & SC_NODE_TOUCHES;
     for (uint64_t i = 0; i < count; ++i) {
         int first_a = is_in(m, a, pairs[i].a), first_b = is_in(m, b, pairs[i].a);
         int second_a = is_in(m, a, pairs[i].b), second_b = is_in(m, b, pairs[i].b);
@@ -720,9 +726,10 @@ static void check_stars(scene *s, star_tally *tally)
     for (node = 0; node < m->node_count; ++node) {
         const sc_pair *patches = &sc_model_node_patches(m)[node];
         uint32_t mask = (uint32_t)s->workspace->mask[patches->a] & s->workspace->mask[patches->b];
-        int bad, tries, touches = sc_model_node_touches(m)[node];
+        int bad, worse, tries, touches = sc_model_node_kind(m)[node] & SC_NODE_TOUCHES;
         if (mask == 0) continue;
-        bad = has_pair(m, node, list->pairs, list->count);
+        bad = has_pair(m, node, 0, list->pairs, list->count);
+        worse = has_pair(m, node, 1, list->pairs, list->count);
         for (tries = 0; tries < 3; ++tries) {
             sc_projection projection;
             int passed;
@@ -730,6 +737,11 @@ static void check_stars(scene *s, star_tally *tally)
             sc_workspace_new_projection(m, s->workspace);
             passed = sc_star_test(&s->state, &projection, node);
             wrong += passed && bad;
+            passed = sc_simple_test(&s->state, &projection, node);
+            wrong += passed && worse;
+            tally->simple += (uint64_t)passed;
+            tally->pinched += (uint64_t)(passed && touches);
+            passed = sc_star_test(&s->state, &projection, node);
             tally->oriented++;
             tally->passed += (uint64_t)passed;
             tally->touching += (uint64_t)touches;
@@ -776,6 +788,9 @@ static void stars_have_no_pairs(void)
               tally.passed, tally.oriented, tally.touching_passed, tally.touching, tally.colliding);
     CHECK(!is_full() ||
           (6 * tally.passed > tally.oriented && 8 * tally.touching_passed > tally.touching));
+    test_note("%" PRIu64 " contours are simple, %" PRIu64 " of these have one shared point",
+              tally.simple, tally.pinched);
+    CHECK(!is_full() || (tally.simple > tally.passed && 4 * tally.pinched > tally.touching));
     CHECK(!is_full() || tally.colliding > 500);
 }
 

@@ -54,8 +54,9 @@ static const char usage[] =
     "  --method sctt|aabb-sctt|aabb  self-collision test tree (default), boxes from that tree on, "
     "or\n"
     "                              the plain tree of boxes\n"
-    "  --contour star|none         contour test of method sctt; none MISSES PAIRS and is for "
-    "measuring\n"
+    "  --contour exact|star|none   contour test of method sctt: is the contour simple (default), "
+    "the\n"
+    "                              star test, or none, which MISSES PAIRS and is for measuring\n"
     "  --partition fast|metis      where the patches come from\n"
     "  --no-rest-cache             test again what failed in the rest pose\n"
     "\n"
@@ -72,7 +73,7 @@ static const tool_choice method_choices[] = {{"sctt", SC_METHOD_SCTT},
                                              {"aabb", SC_METHOD_AABB},
                                              {NULL, 0}};
 static const tool_choice contour_choices[] = {
-    {"star", SC_CONTOUR_STAR}, {"none", SC_CONTOUR_NONE}, {NULL, 0}};
+    {"exact", SC_CONTOUR_EXACT}, {"star", SC_CONTOUR_STAR}, {"none", SC_CONTOUR_NONE}, {NULL, 0}};
 
 static const char *const task_names[SC_TASK_COUNT] = {"update_boxes",
                                                       "update_normals",
@@ -574,7 +575,7 @@ int main(int argc, char **argv)
     settings set;
     memset(&set, 0, sizeof set);
     set.method = SC_METHOD_SCTT;
-    set.contour = SC_CONTOUR_STAR;
+    set.contour = SC_CONTOUR_EXACT;
     bool valid = true;
     int option;
     while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {

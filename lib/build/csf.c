@@ -275,6 +275,58 @@ static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
     return SC_OK;
 }
 
+static uint32_t find_root(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+/* Counts the half-edges round each node, and finds those whose segments hang together. */
+static sc_status measure_contours(builder *b, sc_csf *csf)
+{
+    uint32_t nodes = b->sctt->node_count, n, i, k, longest = 0, *parent, *seen_at, *seen_by;
+    for (n = 0; n < nodes; n++)
+        if (csf->contour_first[n + 1] - csf->contour_first[n] > longest)
+            longest = csf->contour_first[n + 1] - csf->contour_first[n];
+    parent = (uint32_t *)sc_scratch_take(b->scratch, longest, sizeof *parent);
+    seen_at = (uint32_t *)sc_scratch_take_filled(b->scratch, b->points->point_count,
+                                                 sizeof *seen_at, 0xff);
+    seen_by = (uint32_t *)sc_scratch_take(b->scratch, b->points->point_count, sizeof *seen_by);
+    csf->in_pieces = (uint8_t *)sc_scratch_take(b->scratch, nodes, 1);
+    if (!parent || !seen_at || !seen_by || !csf->in_pieces) return SC_ERROR_MEMORY;
+    csf->edges_max = 0;
+    for (n = 0; n < nodes; n++) {
+        uint32_t begin = csf->contour_first[n] + (b->sctt->touch[n] == SC_NONE ? 0 : 2);
+        uint32_t count = csf->contour_first[n + 1] - begin, edges = 0, pieces = count;
+        const uint32_t *segments = csf->contours + begin;
+        for (i = 0; i < count; i++) parent[i] = i;
+        for (i = 0; i < count; i++) {
+            uint32_t end[2];
+            end[0] = csf->points[csf->point_first[segments[i]]];
+            end[1] = csf->points[csf->point_last[segments[i]]];
+            edges += csf->point_last[segments[i]] - csf->point_first[segments[i]];
+            for (k = 0; k < 2; k++) {
+                uint32_t p, q;
+                if (seen_at[end[k]] != n) {
+                    seen_at[end[k]] = n;
+                    seen_by[end[k]] = i;
+                    continue;
+                }
+                p = find_root(parent, i);
+                q = find_root(parent, seen_by[end[k]]);
+                parent[p] = q;
+                pieces -= p != q;
+            }
+        }
+        csf->in_pieces[n] = pieces > 1;
+        if (edges > csf->edges_max) csf->edges_max = edges;
+    }
+    sc_scratch_give(b->scratch, parent);
+    sc_scratch_give(b->scratch, seen_at);
+    sc_scratch_give(b->scratch, seen_by);
+    return SC_OK;
+}
+
 /* The node lists in the order of the nodes. */
 static sc_status order_contours(builder *b, sc_csf *csf)
 {
@@ -291,14 +343,7 @@ static sc_status order_contours(builder *b, sc_csf *csf)
         at += b->node_count[n];
     }
     csf->contour_first[nodes] = at;
-    csf->edges_max = 0;
-    for (n = 0; n < nodes; n++) {
-        uint32_t edges = 0, i = csf->contour_first[n] + (b->sctt->touch[n] == SC_NONE ? 0 : 2);
-        for (; i < csf->contour_first[n + 1]; i++)
-            edges += csf->point_last[csf->contours[i]] - csf->point_first[csf->contours[i]];
-        if (edges > csf->edges_max) csf->edges_max = edges;
-    }
-    return SC_OK;
+    return measure_contours(b, csf);
 }
 
 /* Puts the points of all segments below one that has no parent into one range. */

@@ -38,8 +38,9 @@ typedef struct sc_csf {
     /* The segments round the patches of each node of the self-collision test tree: around their
        union, or, for a pair that shares one point (sctt.touch), that point, the number of segments of
        its first patch, those, and those of its second. */
-    uint32_t *contour_first;  /* node_count + 1 */
-    uint32_t *contours;       /* contour_first[node_count] */
+    uint32_t *contour_first; /* node_count + 1 */
+    uint32_t *contours;      /* contour_first[node_count] */
+    uint8_t *in_pieces; /* node_count: 1 if no chain of segments with common ends joins them all */
     uint32_t *level_segments; /* level_count: segments of each level */
     uint32_t edges_max;       /* half-edges round a node, at most */
 } sc_csf;

@@ -113,12 +113,14 @@ static void write_segments(const sc_csf *csf, const uint32_t *number, const sc_s
 {
     uint32_t *list = NEW_ARRAY(m, points, uint32_t), *contours = NEW_ARRAY(m, contours, uint32_t),
              i;
-    uint8_t *touches = NEW_ARRAY(m, node_touches, uint8_t);
+    uint8_t *kind = NEW_ARRAY(m, node_kind, uint8_t);
     for (i = 0; i < m->segment_point_total; i++) list[i] = number[csf->points[i]];
     copy(contours, csf->contours, m->contour_total * sizeof(uint32_t));
     for (i = 0; i < m->node_count; i++) {
-        touches[i] = sctt->touch[i] != SC_NONE;
-        if (touches[i]) contours[csf->contour_first[i]] = number[contours[csf->contour_first[i]]];
+        kind[i] = csf->in_pieces[i] ? SC_NODE_PIECES : 0;
+        if (sctt->touch[i] == SC_NONE) continue;
+        kind[i] |= SC_NODE_TOUCHES;
+        contours[csf->contour_first[i]] = number[contours[csf->contour_first[i]]];
     }
 }
 

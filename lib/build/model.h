@@ -20,7 +20,14 @@ typedef struct sc_level {
     uint32_t pair_nodes, pair_oriented, pair_culled;
 } sc_level;
 
-/* Flags of nodes. */
+/* What is known of nodes from the topology. */
+enum {
+    SC_NODE_TOUCHES =
+        1, /* its two patches share one point; the contour is listed as build/csf.h says */
+    SC_NODE_PIECES = 2 /* the contour may be in pieces that share no point */
+};
+
+/* What the rest pose says of nodes. */
 enum {
     SC_NODE_REST_TURNED = 1, /* failed the orientation test in the rest pose */
     SC_NODE_REST_CROSSED = 2 /* passed it and failed the contour test */
@@ -62,7 +69,7 @@ enum {
   X(node_contour, uint32_t, (uint64_t)node_count + 1)                                              \
   X(contours, uint32_t, contour_total)                                                             \
   X(node_flags, uint8_t, node_count)                                                               \
-  X(node_touches, uint8_t, node_count) /* 1: shares one point, see build/csf.h */                  \
+  X(node_kind, uint8_t, node_count)                                                                \
   X(segment_first, uint32_t, segment_count)                                                        \
   X(segment_last, uint32_t, segment_count)                                                         \
   X(points, uint32_t, segment_point_total)                                                         \

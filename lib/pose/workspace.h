@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: MIT
  *
  *     | sc_workspace | position | rounded | patch boxes | triangle boxes | mask | fan | bounds |
- *       bounds_tick | candidates |
+ *       bounds_tick | contour | candidates |
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -39,6 +39,22 @@ typedef struct sc_projection {
     double x_error, y_error; /* |computed - true| at most */
 } sc_projection;
 
+/* Edges of a contour, projected, are tested in blocks of this many. */
+enum { SC_CONTOUR_BLOCK = 8 };
+
+/* Sides of boxes in the plane. */
+enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
+
+/* The projected contour of a node, see query/simple.c. Room for model.contour_edges_max edges, rounded up to
+   whole blocks. */
+typedef struct sc_contour_edges {
+    float *from[2], *to[2]; /* x and y of the edges' ends */
+    uint32_t *point[2];     /* what points they are */
+    float *side[4];         /* boxes of edges */
+    float *block_side[4];   /* boxes of blocks, and SC_CONTOUR_BLOCK more */
+    uint32_t *piece;        /* trees of edges that hang together: the parent of each */
+} sc_contour_edges;
+
 enum { SC_CANDIDATES_MAX = 1024 };
 
 struct sc_workspace {
@@ -64,6 +80,8 @@ struct sc_workspace {
     uint32_t tick;
     sc_segment_bounds *bounds[2]; /* segment_count, for the vertical and the horizontal line */
     uint32_t *bounds_tick[2];     /* segment_count: tick at which they were computed */
+
+    sc_contour_edges contour;
 
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     uint32_t candidate_count;

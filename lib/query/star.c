@@ -123,7 +123,7 @@ int sc_star_test(sc_query_state *state, const sc_projection *projection, uint32_
     const uint32_t *segments = sc_model_contours(model) + sc_model_node_contour(model)[node];
     uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
     uint32_t previous = sc_state_switch(state, SC_TASK_CONTOUR), point = 0, first_count = 0;
-    int touches = sc_model_node_touches(model)[node], line, passed = 0;
+    int touches = sc_model_node_kind(model)[node] & SC_NODE_TOUCHES, line, passed = 0;
     state->stats.counts[SC_TASK_CONTOUR]++;
     if (touches) {
         point = segments[0];

@@ -12,6 +12,7 @@
 #include "pose/dnc.h"
 #include "pose/refit.h"
 #include "query/candidates.h"
+#include "query/simple.h"
 #include "query/star.h"
 
 #ifdef SC_VALIDATE
@@ -154,6 +155,31 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
     query_rest_of_node(state, node);
 }
 
+/* The exact contour test keeps nothing from node to node, so that each node has its own projection. */
+static void query_exact(sc_query_state *state, uint32_t node)
+{
+    const sc_model *model = state->model;
+    const uint32_t *child = sc_model_node_child(model);
+    const sc_pair *patches = &sc_model_node_patches(model)[node];
+    uint32_t c;
+    uint32_t mask =
+        (uint32_t)state->workspace->mask[patches->a] & state->workspace->mask[patches->b];
+    state->stats.counts[SC_TASK_ORIENTATION]++;
+    state->stats.nodes_visited++;
+    if (mask) {
+        sc_projection projection;
+        state->stats.nodes_oriented++;
+        sc_dnc_projection(state->workspace, mask, &projection);
+        if (sc_simple_test(state, &projection, node)) {
+            state->stats.nodes_culled++;
+            return;
+        }
+    }
+    for (c = child[node]; c < child[node + 1] && !state->stop; c++) query_exact(state, c);
+    follow_contour(state, mask != 0);
+    query_rest_of_node(state, node);
+}
+
 /* The paper's QueryOrientation. */
 static void query_orientation(sc_query_state *state, uint32_t node)
 {
@@ -195,7 +221,10 @@ void sc_traversal_run(sc_query_state *state)
 #endif
         state->stats.counts[SC_TASK_UPDATE_NORMALS] += model->patch_end;
         sc_state_switch(state, SC_TASK_ORIENTATION);
-        query_orientation(state, 0);
+        if (state->options.contour == SC_CONTOUR_EXACT)
+            query_exact(state, 0);
+        else
+            query_orientation(state, 0);
     } else if (state->options.method == SC_METHOD_AABB_SCTT) {
         sc_state_switch(state, SC_TASK_BOXES_ORIENTATION);
         query_all_nodes(state);

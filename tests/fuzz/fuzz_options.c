@@ -325,7 +325,7 @@ static void call_query(fuzz_bytes *bytes, const sc_model *model, sc_workspace *c
     if (null == 1 || null >= 12) faults |= FUZZ_BIT(SC_ERROR_NULL);
     if (which) faults |= FUZZ_BIT(SC_ERROR_WORKSPACE);
     if (o.output > SC_OUTPUT_ANY || o.pairs > SC_PAIRS_EDGE || o.contact > SC_CONTACT_PROPER ||
-        o.method > SC_METHOD_AABB || o.contour > SC_CONTOUR_NONE ||
+        o.method > SC_METHOD_AABB || o.contour > SC_CONTOUR_EXACT ||
         o.rest_cache > SC_REST_CACHE_OFF || o.reserved || p.position_type > SC_DOUBLE)
         faults |= FUZZ_BIT(SC_ERROR_OPTION);
     if (p.vertex_count != 6) faults |= FUZZ_BIT(SC_ERROR_VERTEX_COUNT);

@@ -85,7 +85,9 @@ static void ask(fuzz_bytes *bytes, const subject *s, const sc_pose *pose,
     o.contact = kind >> 1 & 1;
     o.output = kind >> 2 & 7 ? SC_OUTPUT_PAIRS : 1 + (kind >> 7);
     o.method = how % 4;
-    o.contour = how / 4 % 16 == 0 ? SC_CONTOUR_NONE : how / 4 % 2;
+    o.contour = how / 4 % 16 == 0 ? SC_CONTOUR_NONE
+                : how / 4 % 2     ? SC_CONTOUR_STAR
+                                  : SC_CONTOUR_EXACT;
     o.rest_cache = how / 64 % 2;
     if (wrong) {
         uint32_t *member[6] = {&o.output, &o.pairs,   &o.contact,
