@@ -39,6 +39,7 @@ typedef struct steps {
     sc_neighbors neighbors;
     sc_sctt sctt;
     sc_csf csf;
+    sc_sharing sharing;
 } steps;
 
 /* In builds with SC_VALIDATE (make config=debug or sanitize): everything is as its header says. Uses
@@ -53,6 +54,8 @@ static void validate(const steps *s)
     assert(sc_xbvh_validate(&s->xbvh));
     assert(sc_sctt_validate(&s->xbvh, &s->neighbors, &s->sctt));
     assert(sc_csf_validate(&s->csf, &s->sctt, &scratch));
+    assert(s->points.triangle_count > 2000 || /* quadratic */
+           sc_sharing_validate(&s->points, s->hierarchy.order, &s->xbvh, &s->sharing));
     sc_scratch_clear(&scratch);
 #else
     (void)s;
@@ -78,10 +81,13 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
     if ((status = sc_csf_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, &s.sctt,
                                scratch, &s.csf)))
         return status;
+    if ((status = sc_sharing_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, scratch,
+                                   &s.sharing)))
+        return status;
     validate(&s);
     sc_neighbors_free(&s.neighbors, scratch);
     if ((status = sc_model_assemble(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
-                                    scratch, model)))
+                                    &s.sharing, scratch, model)))
         return status;
     sc_scratch_clear(scratch); /* make room for the workspace of the rest pose */
     memset(&rest, 0, sizeof rest);

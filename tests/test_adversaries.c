@@ -215,6 +215,25 @@ static void check_fans(const scene *s, const sc_pair *pairs, uint64_t count, tal
         print_mesh(s);
 }
 
+/* Whether a point, moved and scaled as boxes are, is within bounds: exactly. */
+static int is_between(const sc_workspace *w, uint32_t point, uint32_t k, float low, float high)
+{
+    mpq_t x, y;
+    int within;
+    mpq_inits(x, y, NULL);
+    mpq_set_d(x, w->position[3 * point + k]);
+    mpq_set_d(y, w->center[k]);
+    mpq_sub(x, x, y);
+    mpq_set_d(y, w->scale);
+    mpq_mul(x, x, y);
+    mpq_set_d(y, (double)low);
+    within = mpq_cmp(y, x) <= 0;
+    mpq_set_d(y, (double)high);
+    within &= mpq_cmp(x, y) <= 0;
+    mpq_clears(x, y, NULL);
+    return within;
+}
+
 /* Boxes hold their triangles' corners, which are doubles. */
 static void check_boxes(const scene *s)
 {
@@ -227,11 +246,11 @@ static void check_boxes(const scene *s)
             for (uint32_t c = 0; c < 9; ++c) {
                 uint32_t at = SC_LEAF_MAX * leaf + i - sc_model_leaf_first(m)[leaf], k = c % 3;
                 uint32_t patch = sc_model_first_leaf_patch(m) + leaf;
-                double p = w->position[3 * sc_model_triangle(m)[3 * i + c / 3] + k];
-                wrong += !((double)w->triangle_boxes.side[k][at] <= p &&
-                           p <= (double)w->triangle_boxes.side[k + 3][at]);
-                wrong += !((double)w->patch_boxes.side[k][patch] <= p &&
-                           p <= (double)w->patch_boxes.side[k + 3][patch]);
+                uint32_t p = sc_model_triangle(m)[3 * i + c / 3];
+                wrong += !is_between(w, p, k, w->triangle_boxes.side[k][at],
+                                     w->triangle_boxes.side[k + 3][at]);
+                wrong += !is_between(w, p, k, w->patch_boxes.side[k][patch],
+                                     w->patch_boxes.side[k + 3][patch]);
             }
     if (!CHECK_MSG(wrong == 0,
                    "%s: %" PRIu32 " bounds of boxes; the adversary's random state "
@@ -1022,7 +1041,9 @@ static void margins_are_as_documented(void)
     const double u = 0x1p-53;
     for (int step = 0; step < 2; ++step) {
         soup mesh = soup_cloth(1, 1);
-        double tilt = 8 * u * (step ? 1.2 : 0.8), thin = 32 * 4 * u * (step ? 1.2 : 0.8);
+        /* 8 u |e|1 |f|1 + 4.1 POINT (|e|1 + |f|1), u of float */
+        double tilt = (8 * 0x1p-24 + 4.1 * 3e-8 * 2) * (step ? 1.2 : 0.8);
+        double thin = 32 * 4 * u * (step ? 1.2 : 0.8);
         double corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
         sc_mesh input;
         sc_model *model = NULL;
@@ -1081,11 +1102,13 @@ static void normals_at_right_angles(void)
                                       {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
     soup mesh = soup_cloth(1, 1);
     sc_mesh input;
+    sc_pose pose;
     sc_model *model = NULL;
     sc_workspace *w = NULL;
     uint32_t wrong = 0, set = 0, unset = 0;
     mesh.triangle_count = 1;
     input = input_plain_mesh(&mesh);
+    pose = input_plain_pose(mesh.positions, mesh.vertex_count);
     if (!CHECK(sc_build(&input, NULL, &model) == SC_OK) ||
         !CHECK(sc_workspace_create(model, NULL, &w) == SC_OK))
         return;
@@ -1094,7 +1117,7 @@ static void normals_at_right_angles(void)
         uint32_t bit = test_random_below(7);
         double size = i % 3 ? 1 : exp2(-540 + (double)test_random_below(16));
         double x = test_random_range(-2, 2), y = test_random_range(-2, 2), p[3][3];
-        double off = pow(10, test_random_range(-16, -12));
+        double off = pow(10, test_random_range(-9, -4));
         mpq_t dot, product, e[3], f[3], n;
         int sign;
         for (int k = 0; k < 3; ++k) {
@@ -1104,7 +1127,9 @@ static void normals_at_right_angles(void)
             p[2][k] = p[0][k] + (x * edge + y * half[bit][k]);
             if (i % 4 == 0) p[2][k] += test_random_range(-1, 1) * off;
         }
-        for (uint32_t c = 0; c < 9; ++c) w->position[3 * t[c / 3] + c % 3] = p[c / 3][c % 3] * size;
+        for (uint32_t c = 0; c < 9; ++c)
+            mesh.positions[3 * mesh.triangles[c / 3] + c % 3] = p[c / 3][c % 3] * size;
+        CHECK(sc_positions_read(model, &pose, 24, w) == SC_OK);
         sc_dnc_update(model, w);
         mpq_inits(dot, product, e[0], e[1], e[2], f[0], f[1], f[2], n, NULL);
         for (uint32_t k = 0; k < 3; ++k) {

@@ -222,7 +222,7 @@ static void directions_of_the_cone(void)
     close_scene(&s);
 }
 
-/* Whether the dot product is beyond doubt in floating point; 0 outside of moderate sizes. */
+/* Whether the dot product is beyond doubt in single precision; 0 outside of moderate sizes. */
 static int is_clear(const sc_workspace *w, const uint32_t *t, const double d[3])
 {
     double e[3], f[3], e_size = 0, f_size = 0, dot = 0;
@@ -234,8 +234,8 @@ static int is_clear(const sc_workspace *w, const uint32_t *t, const double d[3])
     }
     for (int k = 0; k < 3; ++k)
         dot += d[k] * (e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3]);
-    return dot > 1e-12 * e_size * f_size && e_size > 1e-100 && f_size > 1e-100 && e_size < 1e100 &&
-           f_size < 1e100;
+    return dot > 1e-6 * (e_size * f_size + w->radius * (e_size + f_size + 1e-7 * w->radius)) &&
+           e_size > 1e-100 && f_size > 1e-100 && e_size < 1e100 && f_size < 1e100;
 }
 
 static void check_cones(scene *s)

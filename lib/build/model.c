@@ -28,7 +28,7 @@ static sc_status lay_out(sc_model *m)
     uint32_t patch_end = m->patch_end, ring_total = m->ring_total, node_count = m->node_count;
     uint32_t box_count = m->box_count, contour_total = m->contour_total;
     uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
-    uint32_t segment_point_total = m->segment_point_total;
+    uint32_t segment_point_total = m->segment_point_total, share_count = m->share_count;
     uint32_t segment_child_total = m->segment_child_total;
 #define LAY_OUT(name, type, count)                                                                 \
   m->offset[SC_ARRAY_##name] = at;                                                                 \
@@ -200,7 +200,8 @@ static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
 
 sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacency,
                             const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
-                            const sc_csf *csf, sc_scratch *scratch, sc_model **model)
+                            const sc_csf *csf, const sc_sharing *sharing, sc_scratch *scratch,
+                            sc_model **model)
 {
     sc_model counts, *m;
     sc_model_owner *owner;
@@ -219,6 +220,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     for (p = 0; p < points->point_count; p++) /* lengths first, by new numbers */
         ring_first[number[p] + 1] = sc_adjacency_ring(points, adjacency, p, ring);
     for (p = 0; p < points->point_count; p++) ring_first[p + 1] += ring_first[p];
+    counts.share_count = sharing->first[xbvh->leaf_count];
     counts.ring_total = ring_first[points->point_count];
     status = lay_out(&counts);
     if (status) return status;
@@ -243,6 +245,13 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     write_triangles(points, adjacency, hierarchy->order, number, m);
     copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
+         ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, share_rows, uint8_t), sharing->rows, SC_LEAF_MAX * (uint64_t)m->share_count);
+    copy(NEW_ARRAY(m, share_own_rows, uint8_t), sharing->own_rows,
+         SC_LEAF_MAX * (uint64_t)m->leaf_count);
+    copy(NEW_ARRAY(m, share_crowded, uint8_t), sharing->crowded, m->leaf_count);
     copy(NEW_ARRAY(m, level_first, uint32_t), xbvh->level_first,
          ((uint64_t)m->level_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, child, uint32_t), xbvh->child, m->patch_end * sizeof(uint32_t));

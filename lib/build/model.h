@@ -12,6 +12,7 @@
 #define SC_BUILD_MODEL_H
 
 #include "build/csf.h"
+#include "build/sharing.h"
 
 /* One level of patches, and how its nodes fared in the rest pose. */
 typedef struct sc_level {
@@ -41,6 +42,7 @@ enum {
  *   triangle_id     the caller's number of the triangle at a place
  *   edge_owned      bit k: side k of the triangle at a place names its edge
  *   leaf_first      first place of each leaf cluster
+ *   share_...       see build/sharing.h
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
  *                   visits: every third, ending with the last
@@ -56,6 +58,11 @@ enum {
   X(triangle_id, uint32_t, triangle_count)                                                         \
   X(edge_owned, uint8_t, triangle_count)                                                           \
   X(leaf_first, uint32_t, (uint64_t)leaf_count + 1)                                                \
+  X(share_first, uint32_t, (uint64_t)leaf_count + 1)                                               \
+  X(share_leaf, uint32_t, share_count)                                                             \
+  X(share_rows, uint8_t, SC_LEAF_MAX *(uint64_t)share_count)                                       \
+  X(share_own_rows, uint8_t, SC_LEAF_MAX *(uint64_t)leaf_count)                                    \
+  X(share_crowded, uint8_t, leaf_count)                                                            \
   X(level_first, uint32_t, (uint64_t)level_count + 1)                                              \
   X(child, uint32_t, patch_end)                                                                    \
   X(leaf, uint32_t, patch_end)                                                                     \
@@ -93,7 +100,7 @@ struct sc_model {
     uint32_t node_count, box_count, contour_total;
     uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
     uint32_t contour_edges_max; /* half-edges round a node, at most */
-    uint32_t ring_total;
+    uint32_t ring_total, share_count;
     uint64_t offset[SC_ARRAY_COUNT]; /* in bytes from the start of the sc_model */
 };
 
@@ -127,7 +134,8 @@ static inline int sc_model_is_leaf(const sc_model *model, uint32_t patch)
 /* Puts everything together. Node flags and what the rest pose says of levels are left at zero. */
 sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacency,
                             const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
-                            const sc_csf *csf, sc_scratch *scratch, sc_model **model);
+                            const sc_csf *csf, const sc_sharing *sharing, sc_scratch *scratch,
+                            sc_model **model);
 
 /* While the model is being built, its arrays may be written to. */
 uint8_t *sc_model_flags_of_new(sc_model *model);

@@ -5,6 +5,7 @@
  */
 #include "pose/dnc.h"
 
+#include <float.h>
 #include <math.h>
 
 enum { HALF = SC_DNC_DIRECTIONS / 2 };
@@ -14,57 +15,100 @@ static const int direction[HALF][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1
                                        {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
 
 /*
+ * All of it is in single precision on the points in the unit box, each coordinate being off by
+ * POINT at most: 2^-25 for the rounding to float and a little for that to double before.
+ *
  * The error of a dot product of a computed normal e x f with a direction, whose components are 0 or
- * +-1. Written out, it is a sum of at most six products of a component of e and one of f. Each product
- * collects the rounding of two differences, one multiplication, one subtraction and two additions: an
- * error of ((1 + u)^6 - 1) < 6.01 u times its absolute value, u = 2^-53; the sum of the absolute
- * values is at most |e|1 |f|1, computed to within 8 u. Hence 8 u |e|1 |f|1; the second term is for
- * products that underflow. If anything overflows, the bound is infinite or NaN and nothing passes.
+ * +-1. Written out, it is a sum of at most six products of a component of e and one of f, each component
+ * at most twice. A component of e or f is off by 2 POINT and the rounding of a difference, so that the products are
+ * off by 2 (2 POINT) (|e|1 + |f|1) + 6 (2 POINT)^2 in all, and by rounding: two differences, one multiplication, one
+ * subtraction and two additions each, ((1 + u)^6 - 1) < 6.01 u times its absolute value, u = 2^-24; the
+ * sum of the absolute values is at most |e|1 |f|1, computed to within 8 u. Hence 8 u |e|1 |f|1 +
+ * 4.1 POINT (|e|1 + |f|1 + 6 POINT); the last term is for products that underflow.
  */
-static const double ERROR_RELATIVE = 8 * 1.1102230246251565e-16;
-static const double ERROR_ABSOLUTE = 1e-300;
+static const float POINT = 3e-8f;
+static const float ERROR_RELATIVE = 8 * 5.9604644775390625e-8f;
+static const float ERROR_ABSOLUTE = 16 * FLT_MIN;
+
+/* Two sides of each of SC_LEAF_MAX triangles, component by component. */
+typedef struct sides {
+    float e[3][SC_LEAF_MAX], f[3][SC_LEAF_MAX];
+} sides;
+
+#if SC_BOXES_SSE2
+
+/* Four triangles, from number at on. */
+static inline void read_four(const float *unit, const uint32_t *const t[4], int at, sides *s)
+{
+    __m128 a[4], e[4], f[4];
+    int i, k;
+    for (i = 0; i < 4; i++) {
+        a[i] = _mm_loadu_ps(unit + 4 * (uint64_t)t[i][0]);
+        e[i] = _mm_sub_ps(_mm_loadu_ps(unit + 4 * (uint64_t)t[i][1]), a[i]);
+        f[i] = _mm_sub_ps(_mm_loadu_ps(unit + 4 * (uint64_t)t[i][2]), a[i]);
+    }
+    _MM_TRANSPOSE4_PS(e[0], e[1], e[2], e[3]);
+    _MM_TRANSPOSE4_PS(f[0], f[1], f[2], f[3]);
+    for (k = 0; k < 3; k++) {
+        _mm_storeu_ps(s->e[k] + at, e[k]);
+        _mm_storeu_ps(s->f[k] + at, f[k]);
+    }
+}
+
+#else
+
+static inline void read_four(const float *unit, const uint32_t *const t[4], int at, sides *s)
+{
+    int i, k;
+    for (i = 0; i < 4; i++) {
+        const float *a = unit + 4 * (uint64_t)t[i][0], *b = unit + 4 * (uint64_t)t[i][1];
+        const float *c = unit + 4 * (uint64_t)t[i][2];
+        for (k = 0; k < 3; k++) {
+            s->e[k][at + i] = b[k] - a[k];
+            s->f[k][at + i] = c[k] - a[k];
+        }
+    }
+}
+
+#endif
 
 /* The mask of 1 to SC_LEAF_MAX triangles, given by their corners. */
 static uint32_t mask_of(const sc_workspace *w, const uint32_t *corner, uint32_t count)
 {
-    uint32_t i, mask = 0;
-    double e[3][SC_LEAF_MAX], f[3][SC_LEAF_MAX], n[3][SC_LEAF_MAX], error[SC_LEAF_MAX];
-    double dot[HALF][SC_LEAF_MAX];
-    int k, d;
-    for (i = 0; i < SC_LEAF_MAX; i++) { /* the last triangle fills the row */
-        const uint32_t *t = corner + 3 * (i < count ? i : count - 1);
-        const double *a = w->position + 3 * (uint64_t)t[0], *b = w->position + 3 * (uint64_t)t[1];
-        const double *c = w->position + 3 * (uint64_t)t[2];
-        for (k = 0; k < 3; k++) {
-            e[k][i] = b[k] - a[k];
-            f[k][i] = c[k] - a[k];
-        }
-    }
+    uint32_t mask = 0;
+    sides s;
+    float dot[HALF][SC_LEAF_MAX], error[SC_LEAF_MAX];
+    const uint32_t *t[SC_LEAF_MAX];
+    uint32_t i;
+    int d;
+    for (i = 0; i < SC_LEAF_MAX; i++) /* the last triangle fills the row */
+        t[i] = corner + 3 * (i < count ? i : count - 1);
+    for (i = 0; i < SC_LEAF_MAX; i += 4) read_four(w->unit, t + i, (int)i, &s);
     for (i = 0; i < SC_LEAF_MAX; i++) {
-        n[0][i] = e[1][i] * f[2][i] - e[2][i] * f[1][i];
-        n[1][i] = e[2][i] * f[0][i] - e[0][i] * f[2][i];
-        n[2][i] = e[0][i] * f[1][i] - e[1][i] * f[0][i];
-        error[i] = ERROR_RELATIVE * ((fabs(e[0][i]) + fabs(e[1][i]) + fabs(e[2][i])) *
-                                     (fabs(f[0][i]) + fabs(f[1][i]) + fabs(f[2][i]))) +
-                   ERROR_ABSOLUTE;
-    }
-    for (i = 0; i < SC_LEAF_MAX; i++) {
-        double sum = n[0][i] + n[1][i], difference = n[0][i] - n[1][i];
-        dot[0][i] = n[0][i];
-        dot[1][i] = n[1][i];
-        dot[2][i] = n[2][i];
-        dot[3][i] = sum + n[2][i];
-        dot[4][i] = sum - n[2][i];
-        dot[5][i] = difference + n[2][i];
-        dot[6][i] = difference - n[2][i];
+        float e0 = s.e[0][i], e1 = s.e[1][i], e2 = s.e[2][i];
+        float f0 = s.f[0][i], f1 = s.f[1][i], f2 = s.f[2][i];
+        float n0 = e1 * f2 - e2 * f1, n1 = e2 * f0 - e0 * f2, n2 = e0 * f1 - e1 * f0;
+        float e_size = fabsf(e0) + fabsf(e1) + fabsf(e2);
+        float f_size = fabsf(f0) + fabsf(f1) + fabsf(f2);
+        float sum = n0 + n1, difference = n0 - n1;
+        dot[0][i] = n0;
+        dot[1][i] = n1;
+        dot[2][i] = n2;
+        dot[3][i] = sum + n2;
+        dot[4][i] = sum - n2;
+        dot[5][i] = difference + n2;
+        dot[6][i] = difference - n2;
+        error[i] = ERROR_RELATIVE * (e_size * f_size) +
+                   4.1f * POINT * (e_size + f_size + 6 * POINT) + ERROR_ABSOLUTE;
     }
     for (d = 0; d < HALF; d++) {
-        int positive = 1, negative = 1;
-        for (i = 0; i < SC_LEAF_MAX; i++) {
-            positive &= dot[d][i] > error[i];
-            negative &= dot[d][i] < -error[i];
+        float least = dot[d][0] - error[0], most = dot[d][0] + error[0];
+        for (i = 1; i < SC_LEAF_MAX; i++) {
+            float low = dot[d][i] - error[i], high = dot[d][i] + error[i];
+            least = low < least ? low : least;
+            most = high > most ? high : most;
         }
-        mask |= (uint32_t)positive << d | (uint32_t)negative << (d + HALF);
+        mask |= (uint32_t)(least > 0) << d | (uint32_t)(most < 0) << (d + HALF);
     }
     return mask;
 }

@@ -69,3 +69,20 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
     }
     return turns == 1;
 }
+
+unsigned sc_fan_plain_of_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)
+{
+    const uint32_t *first = sc_model_leaf_first(model);
+    const uint32_t *corner = sc_model_triangle(model) + 3 * (uint64_t)first[leaf];
+    uint32_t i, count = first[leaf + 1] - first[leaf];
+    unsigned plain = 0;
+    if (w->plain_tick[leaf] == w->pose_tick) return w->plain[leaf];
+    for (i = 0; i < count; i++, corner += 3)
+        plain |=
+            (unsigned)(sc_fan_is_plain(model, w, corner[0]) & sc_fan_is_plain(model, w, corner[1]) &
+                       sc_fan_is_plain(model, w, corner[2]))
+            << i;
+    w->plain_tick[leaf] = w->pose_tick;
+    w->plain[leaf] = (uint8_t)plain;
+    return plain;
+}

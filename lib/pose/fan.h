@@ -26,4 +26,8 @@ static inline int sc_fan_is_plain(const sc_model *model, sc_workspace *workspace
     return (int)(known & 1);
 }
 
+/* Bit i: the fans at all three corners of triangle i of a leaf cluster project one to one. Computed once a
+   pose. */
+unsigned sc_fan_plain_of_leaf(const sc_model *model, sc_workspace *workspace, uint32_t leaf);
+
 #endif

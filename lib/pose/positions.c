@@ -13,13 +13,31 @@ static inline void store(const double p[3], uint32_t at, sc_workspace *w, double
                          double high[3])
 {
     double *position = w->position + 3 * (uint64_t)at;
-    float *rounded = w->rounded + 4 * (uint64_t)at;
     int k;
     for (k = 0; k < 3; k++) {
         position[k] = p[k];
-        rounded[k] = sc_boxes_clamp(p[k]);
         low[k] = p[k] < low[k] ? p[k] : low[k];
         high[k] = p[k] > high[k] ? p[k] : high[k];
+    }
+}
+
+/*
+ * The points in the unit box, rounded to float: divided by the power of two above the radius, which is
+ * exact but where it underflows. What is rounded is the difference from the center and its conversion.
+ */
+static void scale(const sc_model *model, sc_workspace *w)
+{
+    double c0 = w->center[0], c1 = w->center[1], c2 = w->center[2];
+    const double *p = w->position;
+    float *unit = w->unit;
+    uint32_t i;
+    int exponent;
+    (void)frexp(w->radius, &exponent);
+    w->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
+    for (i = 0; i < model->point_count; i++, p += 3, unit += 4) {
+        unit[0] = (float)((p[0] - c0) * w->scale);
+        unit[1] = (float)((p[1] - c1) * w->scale);
+        unit[2] = (float)((p[2] - c2) * w->scale);
     }
 }
 
@@ -56,5 +74,6 @@ sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t
         if (high[k] - w->center[k] > w->radius) w->radius = high[k] - w->center[k];
         if (w->center[k] - low[k] > w->radius) w->radius = w->center[k] - low[k];
     }
+    scale(model, w);
     return SC_OK;
 }

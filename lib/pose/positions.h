@@ -11,7 +11,7 @@
 
 #include "pose/workspace.h"
 
-/* Fills position, rounded, center and radius. The pose was checked but for what this reports:
+/* Fills position, unit, center, radius and scale. The pose was checked but for what this reports:
    SC_ERROR_NOT_FINITE. About 3 ns a vertex. */
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
                             sc_workspace *workspace);

@@ -41,9 +41,9 @@ static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf, ui
     uint32_t count = sc_model_leaf_first(model)[leaf + 1] - sc_model_leaf_first(model)[leaf], i;
     __m128 low = _mm_set1_ps(FLT_MAX), high = _mm_set1_ps(-FLT_MAX);
     for (i = 0; i < count; i++, corner += 3) {
-        __m128 a = _mm_loadu_ps(w->rounded + 4 * (uint64_t)corner[0]);
-        __m128 b = _mm_loadu_ps(w->rounded + 4 * (uint64_t)corner[1]);
-        __m128 c = _mm_loadu_ps(w->rounded + 4 * (uint64_t)corner[2]);
+        __m128 a = _mm_loadu_ps(w->unit + 4 * (uint64_t)corner[0]);
+        __m128 b = _mm_loadu_ps(w->unit + 4 * (uint64_t)corner[1]);
+        __m128 c = _mm_loadu_ps(w->unit + 4 * (uint64_t)corner[2]);
         __m128 lower = _mm_min_ps(a, _mm_min_ps(b, c)), upper = _mm_max_ps(a, _mm_max_ps(b, c));
         store_box(&w->triangle_boxes, (uint64_t)leaf * SC_LEAF_MAX + i, lower, upper);
         low = _mm_min_ps(low, lower);
@@ -69,9 +69,9 @@ static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf, ui
     float low[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, high[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
     int k;
     for (i = 0; i < count; i++, corner += 3, at++) {
-        const float *a = w->rounded + 4 * (uint64_t)corner[0];
-        const float *b = w->rounded + 4 * (uint64_t)corner[1];
-        const float *c = w->rounded + 4 * (uint64_t)corner[2];
+        const float *a = w->unit + 4 * (uint64_t)corner[0];
+        const float *b = w->unit + 4 * (uint64_t)corner[1];
+        const float *c = w->unit + 4 * (uint64_t)corner[2];
         for (k = 0; k < 3; k++) {
             float lower = smaller(a[k], smaller(b[k], c[k]));
             float upper = larger(a[k], larger(b[k], c[k]));

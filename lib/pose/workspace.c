@@ -29,13 +29,15 @@ static uint64_t lay_out(const sc_model *model, unsigned char *block, sc_workspac
                      SC_CONTOUR_BLOCK * SC_CONTOUR_BLOCK;
     int k;
     w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count, sizeof(double));
-    w->rounded = (float *)place(block, &at, 4 * (uint64_t)model->point_count, sizeof(float));
+    w->unit = (float *)place(block, &at, 4 * (uint64_t)model->point_count, sizeof(float));
     for (k = 0; k < 6; k++)
         w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
     for (k = 0; k < 6; k++)
         w->triangle_boxes.side[k] = (float *)place(block, &at, triangles, sizeof(float));
     w->mask = (uint16_t *)place(block, &at, model->patch_end, sizeof(uint16_t));
     w->fan = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));
+    w->plain_tick = (uint32_t *)place(block, &at, model->leaf_count, sizeof(uint32_t));
+    w->plain = (uint8_t *)place(block, &at, model->leaf_count, 1);
     for (k = 0; k < 2; k++) {
         w->bounds[k] =
             (sc_segment_bounds *)place(block, &at, model->segment_count, sizeof(sc_segment_bounds));
@@ -76,8 +78,10 @@ sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
         for (i = 0; i < triangles; i++) w->triangle_boxes.side[k][i] = (float)NAN;
     }
     memset(w->mask, 0, model->patch_end * sizeof *w->mask);
-    memset(w->rounded, 0, 4 * (size_t)model->point_count * sizeof *w->rounded);
+    memset(w->unit, 0, 4 * (size_t)model->point_count * sizeof *w->unit);
     memset(w->fan, 0, model->point_count * sizeof *w->fan);
+    memset(w->plain_tick, 0, model->leaf_count * sizeof *w->plain_tick);
+    memset(w->plain, 0, model->leaf_count);
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
     return w;
 }
@@ -86,6 +90,7 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
 {
     if (workspace->pose_tick == 0x7fffffff) {
         memset(workspace->fan, 0, model->point_count * sizeof *workspace->fan);
+        memset(workspace->plain_tick, 0, model->leaf_count * sizeof *workspace->plain_tick);
         workspace->pose_tick = 0;
     }
     workspace->pose_tick++;

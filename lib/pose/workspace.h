@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | position | rounded | patch boxes | triangle boxes | mask | fan | bounds |
+ *     | sc_workspace | position | unit | patch boxes | triangle boxes | mask | fan | bounds |
  *       bounds_tick | contour | candidates |
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
@@ -65,9 +65,10 @@ struct sc_workspace {
 
     /* the pose; all but position valid only in a query */
     double *position;     /* 3 * point_count */
-    float *rounded;       /* 4 * point_count: positions to the nearest float, and padding */
     double center[3];     /* of the box of all points */
     double radius;        /* largest distance of a coordinate from center */
+    double scale;         /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 */
+    float *unit;          /* 4 * point_count: scale * (position - center), at most 1, and padding */
     sc_boxes patch_boxes; /* patch_end */
     sc_boxes
         triangle_boxes; /* SC_LEAF_MAX per leaf; what is no triangle is NaN and overlaps nothing */
@@ -75,6 +76,8 @@ struct sc_workspace {
     uint16_t *mask; /* patch_end: discrete normal cones, see pose/dnc.h */
     uint32_t pose_tick;
     uint32_t *fan; /* point_count: 2 * pose_tick + whether the fan projects one to one, if tested */
+    uint32_t *plain_tick; /* leaf_count: pose_tick if plain is known */
+    uint8_t *plain;       /* leaf_count: bit i: the fans at all corners of triangle i are such */
 
     /* contours under the projection at hand */
     uint32_t tick;

@@ -3,9 +3,10 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * What happens to a pair depends on the vertices it shares. None: a test of all vertices against both
- * planes, eight pairs at a time, for flat pairs another along their sides, then the exact primitives.
- * One or two: nothing if the fan round a shared vertex projects one to one, else the exact primitives.
+ * What happens to a pair depends on the vertices it shares. None: it is collected; then a test of all
+ * vertices against both planes, eight pairs at a time, for flat pairs another along their sides, then the
+ * exact primitives. One or more: nothing if the fan round a shared vertex projects one to one, else the
+ * exact primitives.
  */
 #include "query/candidates.h"
 
@@ -17,58 +18,6 @@
 #include "query/primitives.h"
 
 enum { LANES = 8 };
-
-/* Collected pairs are decided when there are this many: fewer if the first hit ends the query. */
-static uint32_t batch_size(const sc_query_state *state)
-{
-    return state->options.output == SC_OUTPUT_ANY ? 64 : SC_CANDIDATES_MAX - SC_LEAF_MAX;
-}
-
-static void collect_row(sc_query_state *state, uint32_t a, uint32_t first_b, unsigned mask)
-{
-    sc_workspace *w = state->workspace;
-    while (mask) {
-        sc_pair *candidate = &w->candidates[w->candidate_count++];
-        candidate->a = a;
-        candidate->b = first_b + sc_bits_lowest(mask);
-        mask &= mask - 1;
-    }
-    if (w->candidate_count >= batch_size(state)) sc_candidates_decide(state);
-}
-
-void sc_candidates_of_pair(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b)
-{
-    const sc_model *model = state->model;
-    const sc_workspace *w = state->workspace;
-    const uint32_t *first = sc_model_leaf_first(model);
-    uint64_t row_a = (uint64_t)leaf_a * SC_LEAF_MAX, row_b = (uint64_t)leaf_b * SC_LEAF_MAX;
-    uint32_t patch_b = sc_model_first_leaf_patch(model) + leaf_b;
-    unsigned rows = sc_boxes_overlap8(&w->patch_boxes, patch_b, &w->triangle_boxes, row_a);
-    state->stats.leaf_pairs++;
-    state->stats.counts[sc_state_box_task(state)]++;
-    while (rows && !state->stop) {
-        unsigned i = sc_bits_lowest(rows);
-        unsigned mask = sc_boxes_overlap8(&w->triangle_boxes, row_a + i, &w->triangle_boxes, row_b);
-        rows &= rows - 1;
-        state->stats.counts[sc_state_box_task(state)]++;
-        if (mask) collect_row(state, first[leaf_a] + i, first[leaf_b], mask);
-    }
-}
-
-void sc_candidates_of_leaf(sc_query_state *state, uint32_t leaf)
-{
-    const sc_workspace *w = state->workspace;
-    const uint32_t *first = sc_model_leaf_first(state->model);
-    uint64_t row = (uint64_t)leaf * SC_LEAF_MAX;
-    uint32_t count = first[leaf + 1] - first[leaf], i;
-    state->stats.leaf_pairs++;
-    for (i = 0; i + 1 < count && !state->stop; i++) {
-        unsigned mask = sc_boxes_overlap8(&w->triangle_boxes, row + i, &w->triangle_boxes, row);
-        mask &= ~((2u << i) - 1u);
-        state->stats.counts[sc_state_box_task(state)]++;
-        if (mask) collect_row(state, first[leaf] + i, first[leaf], mask);
-    }
-}
 
 /* What the planes of the two triangles say of LANES pairs, a bit each. */
 typedef struct plane_test {
@@ -204,13 +153,6 @@ static void decide_pair(sc_query_state *state, const sc_pair *places)
     }
 }
 
-/* Whether two triangles share a vertex, without branches: most that overlap do or are near. */
-static inline int share_any(const uint32_t *a, const uint32_t *b)
-{
-    return (a[0] == b[0]) | (a[0] == b[1]) | (a[0] == b[2]) | (a[1] == b[0]) | (a[1] == b[1]) |
-           (a[1] == b[2]) | (a[2] == b[0]) | (a[2] == b[1]) | (a[2] == b[2]);
-}
-
 /* Lists the vertices that two triangles share; returns how many. */
 static int list_shared(const uint32_t *a, const uint32_t *b, uint32_t shared[3])
 {
@@ -236,30 +178,39 @@ static int neighbors_matter(sc_query_state *state, const uint32_t *a, const uint
     return 1;
 }
 
+/* A triangle and some of a leaf cluster that share vertices with it. */
+static void decide_neighbors(sc_query_state *state, uint32_t a, uint32_t first_b, unsigned mask)
+{
+    const uint32_t *triangle = sc_model_triangle(state->model);
+    uint32_t previous = sc_state_switch(state, sc_state_primitive_task(state));
+    for (; mask && !state->stop; mask &= mask - 1) {
+        sc_pair pair;
+        state->stats.counts[sc_state_primitive_task(state)]++;
+        pair.a = a;
+        pair.b = first_b + sc_bits_lowest(mask);
+        if (neighbors_matter(state, triangle + 3 * (uint64_t)pair.a,
+                             triangle + 3 * (uint64_t)pair.b))
+            decide_pair(state, &pair);
+    }
+    sc_state_switch(state, previous);
+}
+
 void sc_candidates_decide(sc_query_state *state)
 {
     const uint32_t *triangle = sc_model_triangle(state->model);
     sc_workspace *w = state->workspace;
     const double *position = w->position;
-    uint32_t i, j, disjoint = 0, previous;
+    uint32_t i, j, count = w->candidate_count, previous;
     int s, k, c;
-    if (!w->candidate_count) return;
+    if (!count) return;
     previous = sc_state_switch(state, sc_state_primitive_task(state));
-    state->stats.counts[sc_state_primitive_task(state)] += w->candidate_count;
-    for (i = 0; i < w->candidate_count && !state->stop; i++) {
-        const sc_pair pair = w->candidates[i];
-        const uint32_t *a = triangle + 3 * (uint64_t)pair.a, *b = triangle + 3 * (uint64_t)pair.b;
-        if (!share_any(a, b))
-            w->candidates[disjoint++] = pair;
-        else if (neighbors_matter(state, a, b))
-            decide_pair(state, &pair);
-    }
-    for (i = 0; i < disjoint && !state->stop; i += LANES) {
+    state->stats.counts[sc_state_primitive_task(state)] += count;
+    for (i = 0; i < count && !state->stop; i += LANES) {
         pair_lanes x;
         plane_test planes;
         unsigned rest;
         for (j = 0; j < LANES; j++) { /* the last pair fills the row */
-            const sc_pair *pair = &w->candidates[i + j < disjoint ? i + j : disjoint - 1];
+            const sc_pair *pair = &w->candidates[i + j < count ? i + j : count - 1];
             for (s = 0; s < 2; s++)
                 for (k = 0; k < 3; k++) {
                     uint64_t corner = 3 * (uint64_t)(s ? pair->b : pair->a) + (uint64_t)k;
@@ -269,7 +220,7 @@ void sc_candidates_decide(sc_query_state *state)
         }
         planes = test_planes(&x);
         rest = ~planes.apart & ((1u << LANES) - 1u);
-        if (disjoint - i < LANES) rest &= (1u << (disjoint - i)) - 1u;
+        if (count - i < LANES) rest &= (1u << (count - i)) - 1u;
         for (; rest && !state->stop; rest &= rest - 1) {
             unsigned lane = sc_bits_lowest(rest);
             if ((planes.flat >> lane & 1u) && side_separates(&x, lane)) continue;
@@ -278,4 +229,127 @@ void sc_candidates_decide(sc_query_state *state)
     }
     w->candidate_count = 0;
     sc_state_switch(state, previous);
+}
+
+/* Collected pairs are decided when there are this many: fewer if the first hit ends the query. */
+static uint32_t batch_size(const sc_query_state *state)
+{
+    return state->options.output == SC_OUTPUT_ANY ? 64 : SC_CANDIDATES_MAX - SC_LEAF_MAX;
+}
+
+static void collect_row(sc_query_state *state, uint32_t a, uint32_t first_b, unsigned mask)
+{
+    sc_workspace *w = state->workspace;
+    while (mask) {
+        sc_pair *candidate = &w->candidates[w->candidate_count++];
+        candidate->a = a;
+        candidate->b = first_b + sc_bits_lowest(mask);
+        mask &= mask - 1;
+    }
+    if (w->candidate_count >= batch_size(state)) sc_candidates_decide(state);
+}
+
+/* Two leaf clusters, a <= b, and what their triangles share. */
+typedef struct leaf_pair {
+    uint32_t a, b;
+    uint32_t first_a, first_b; /* places of their first triangles */
+    const uint8_t *rows;       /* see build/sharing.h; NULL if they share nothing */
+    int crowded;               /* the rows do not say all */
+    int known;                 /* plain_a and plain_b are known */
+    unsigned plain_a, plain_b; /* see pose/fan.h */
+} leaf_pair;
+
+static leaf_pair pair_of(const sc_model *model, uint32_t a, uint32_t b)
+{
+    const uint32_t *first = sc_model_share_first(model), *leaf = sc_model_share_leaf(model);
+    leaf_pair p;
+    uint32_t i;
+    p.a = a < b ? a : b;
+    p.b = a < b ? b : a;
+    p.first_a = sc_model_leaf_first(model)[p.a];
+    p.first_b = sc_model_leaf_first(model)[p.b];
+    p.crowded = sc_model_share_crowded(model)[a] & sc_model_share_crowded(model)[b];
+    p.known = 0;
+    p.plain_a = p.plain_b = 0;
+    p.rows = NULL;
+    if (p.a == p.b) {
+        p.rows = sc_model_share_own_rows(model) + SC_LEAF_MAX * (uint64_t)a;
+        return p;
+    }
+    for (i = first[p.a]; i < first[p.a + 1] && !p.rows; i++)
+        if (leaf[i] == p.b) p.rows = sc_model_share_rows(model) + SC_LEAF_MAX * (uint64_t)i;
+    return p;
+}
+
+/* Whether two triangles share a vertex, without branches. */
+static inline unsigned share_any(const uint32_t *a, const uint32_t *b)
+{
+    return (unsigned)((a[0] == b[0]) | (a[0] == b[1]) | (a[0] == b[2]) | (a[1] == b[0]) |
+                      (a[1] == b[1]) | (a[1] == b[2]) | (a[2] == b[0]) | (a[2] == b[1]) |
+                      (a[2] == b[2]));
+}
+
+/* The triangles of cluster b, among some, that share with triangle i of cluster a. */
+static unsigned shared_of_row(const sc_model *model, const leaf_pair *p, uint32_t i, unsigned some)
+{
+    const uint32_t *triangle = sc_model_triangle(model);
+    unsigned shared = p->rows ? p->rows[i] & some : 0;
+    if (!p->crowded) return shared;
+    for (shared = 0; some; some &= some - 1)
+        shared |= share_any(triangle + 3 * (uint64_t)(p->first_a + i),
+                            triangle + 3 * (uint64_t)(p->first_b + sc_bits_lowest(some)))
+                  << sc_bits_lowest(some);
+    return shared;
+}
+
+/* Triangle i of cluster a and those of cluster b whose boxes overlap its. */
+static void take_row(sc_query_state *state, leaf_pair *p, uint32_t i, unsigned overlapping)
+{
+    unsigned shared = shared_of_row(state->model, p, i, overlapping);
+    if (shared) {
+        if (!p->known) {
+            p->plain_a = sc_fan_plain_of_leaf(state->model, state->workspace, p->a);
+            p->plain_b = sc_fan_plain_of_leaf(state->model, state->workspace, p->b);
+            p->known = 1;
+        }
+        /* one plain fan round a shared point is enough */
+        if (!(p->plain_a >> i & 1u) && shared & ~p->plain_b)
+            decide_neighbors(state, p->first_a + i, p->first_b, shared & ~p->plain_b);
+    }
+    if (overlapping & ~shared)
+        collect_row(state, p->first_a + i, p->first_b, overlapping & ~shared);
+}
+
+void sc_candidates_of_pair(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b)
+{
+    const sc_model *model = state->model;
+    const sc_workspace *w = state->workspace;
+    leaf_pair p = pair_of(model, leaf_a, leaf_b);
+    uint64_t row_a = (uint64_t)p.a * SC_LEAF_MAX, row_b = (uint64_t)p.b * SC_LEAF_MAX;
+    uint32_t patch_b = sc_model_first_leaf_patch(model) + p.b;
+    unsigned rows = sc_boxes_overlap8(&w->patch_boxes, patch_b, &w->triangle_boxes, row_a);
+    state->stats.leaf_pairs++;
+    state->stats.counts[sc_state_box_task(state)]++;
+    for (; rows && !state->stop; rows &= rows - 1) {
+        uint32_t i = sc_bits_lowest(rows);
+        unsigned mask = sc_boxes_overlap8(&w->triangle_boxes, row_a + i, &w->triangle_boxes, row_b);
+        state->stats.counts[sc_state_box_task(state)]++;
+        if (mask) take_row(state, &p, i, mask);
+    }
+}
+
+void sc_candidates_of_leaf(sc_query_state *state, uint32_t leaf)
+{
+    const sc_workspace *w = state->workspace;
+    const uint32_t *first = sc_model_leaf_first(state->model);
+    leaf_pair p = pair_of(state->model, leaf, leaf);
+    uint64_t row = (uint64_t)leaf * SC_LEAF_MAX;
+    uint32_t count = first[leaf + 1] - first[leaf], i;
+    state->stats.leaf_pairs++;
+    for (i = 0; i + 1 < count && !state->stop; i++) {
+        unsigned mask = sc_boxes_overlap8(&w->triangle_boxes, row + i, &w->triangle_boxes, row);
+        mask &= ~((2u << i) - 1u);
+        state->stats.counts[sc_state_box_task(state)]++;
+        if (mask) take_row(state, &p, i, mask);
+    }
 }

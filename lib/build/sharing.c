@@ -1,0 +1,154 @@
+/*
+ * Which triangles of leaf clusters share points. See sharing.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/sharing.h"
+
+#include <string.h>
+
+/* Where a triangle is: its leaf cluster and its place in that. */
+typedef struct places {
+    uint32_t *leaf; /* triangle_count */
+    uint8_t *row;   /* triangle_count */
+} places;
+
+/* The clusters that share a point with the one at hand, as they turn up. */
+typedef struct found {
+    uint32_t *entry; /* leaf_count: 1 + entry of a cluster in the lists, 0 if it did not turn up */
+    sc_list leaf;
+    sc_list rows; /* two words an entry: the masks of rows 0 to 3 and 4 to 7 */
+} found;
+
+static int note(sc_scratch *scratch, found *f, uint32_t other, unsigned row, unsigned bit)
+{
+    if (!f->entry[other]) {
+        if (!sc_list_reserve(scratch, &f->leaf, 1) || !sc_list_reserve(scratch, &f->rows, 2))
+            return 0;
+        sc_list_add(&f->leaf, other);
+        sc_list_add(&f->rows, 0);
+        sc_list_add(&f->rows, 0);
+        f->entry[other] = (uint32_t)f->leaf.count;
+    }
+    f->rows.items[2 * (f->entry[other] - 1) + row / 4] |= 1u << (8 * (row % 4) + bit);
+    return 1;
+}
+
+/* Follows the corners at the corners of a cluster's triangles. */
+static int follow(const sc_points *points, const sc_adjacency *adjacency, const places *at,
+                  uint32_t leaf, uint32_t t, sc_scratch *scratch, sc_sharing *s, found *f)
+{
+    unsigned row = at->row[t];
+    uint32_t k, i;
+    for (k = 0; k < 3; k++) {
+        uint32_t p = points->triangles[3 * (uint64_t)t + k];
+        uint32_t begin = adjacency->corner_first[p], end = adjacency->corner_first[p + 1];
+        if (end - begin > SC_SHARING_CROWD) {
+            s->crowded[leaf] = 1;
+            continue;
+        }
+        for (i = begin; i < end; i++) {
+            uint32_t other = adjacency->corners[i] / 3;
+            if (at->leaf[other] == leaf && at->row[other] > row)
+                s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row] |= (uint8_t)(1u << at->row[other]);
+            else if (at->leaf[other] > leaf &&
+                     !note(scratch, f, at->leaf[other], row, at->row[other]))
+                return 0;
+        }
+    }
+    return 1;
+}
+
+/* Moves what was found for a cluster into the lists' tail, in ascending order. */
+static void sort_tail(found *f, uint64_t begin)
+{
+    uint64_t i, j;
+    for (i = begin; i < f->leaf.count; i++) {
+        uint32_t leaf = f->leaf.items[i], low = f->rows.items[2 * i],
+                 high = f->rows.items[2 * i + 1];
+        f->entry[leaf] = 0;
+        for (j = i; j > begin && f->leaf.items[j - 1] > leaf; j--) {
+            f->leaf.items[j] = f->leaf.items[j - 1];
+            f->rows.items[2 * j] = f->rows.items[2 * j - 2];
+            f->rows.items[2 * j + 1] = f->rows.items[2 * j - 1];
+        }
+        f->leaf.items[j] = leaf;
+        f->rows.items[2 * j] = low;
+        f->rows.items[2 * j + 1] = high;
+    }
+}
+
+sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacency,
+                           const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
+                           sc_sharing *s)
+{
+    uint32_t leaf, i, k, leaves = xbvh->leaf_count;
+    uint64_t n;
+    places at;
+    found f;
+    memset(&f, 0, sizeof f);
+    at.leaf = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof *at.leaf);
+    at.row = (uint8_t *)sc_scratch_take(scratch, points->triangle_count, 1);
+    f.entry = (uint32_t *)sc_scratch_take_filled(scratch, leaves, sizeof *f.entry, 0);
+    s->first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)leaves + 1, sizeof *s->first);
+    s->own_rows = (uint8_t *)sc_scratch_take_filled(scratch, leaves, SC_LEAF_MAX, 0);
+    s->crowded = (uint8_t *)sc_scratch_take_filled(scratch, leaves, 1, 0);
+    if (!at.leaf || !at.row || !f.entry || !s->first || !s->own_rows || !s->crowded)
+        return SC_ERROR_MEMORY;
+    for (leaf = 0; leaf < leaves; leaf++)
+        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++) {
+            at.leaf[order[i]] = leaf;
+            at.row[order[i]] = (uint8_t)(i - xbvh->leaf_first[leaf]);
+        }
+    for (leaf = 0; leaf < leaves; leaf++) {
+        s->first[leaf] = (uint32_t)f.leaf.count;
+        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++)
+            if (!follow(points, adjacency, &at, leaf, order[i], scratch, s, &f))
+                return SC_ERROR_MEMORY;
+        sort_tail(&f, s->first[leaf]);
+    }
+    s->first[leaves] = (uint32_t)f.leaf.count;
+    s->leaf = (uint32_t *)sc_scratch_take(scratch, f.leaf.count, sizeof *s->leaf);
+    s->rows = (uint8_t *)sc_scratch_take(scratch, f.leaf.count, SC_LEAF_MAX);
+    if (!s->leaf || !s->rows) return SC_ERROR_MEMORY;
+    for (n = 0; n < f.leaf.count; n++) {
+        s->leaf[n] = f.leaf.items[n];
+        for (k = 0; k < SC_LEAF_MAX; k++)
+            s->rows[SC_LEAF_MAX * n + k] = (uint8_t)(f.rows.items[2 * n + k / 4] >> 8 * (k % 4));
+    }
+    sc_scratch_give(scratch, at.leaf);
+    sc_scratch_give(scratch, at.row);
+    sc_scratch_give(scratch, f.entry);
+    sc_scratch_give(scratch, f.leaf.items);
+    sc_scratch_give(scratch, f.rows.items);
+    return SC_OK;
+}
+
+static int share(const sc_points *points, uint32_t t, uint32_t u)
+{
+    const uint32_t *a = points->triangles + 3 * (uint64_t)t,
+                   *b = points->triangles + 3 * (uint64_t)u;
+    int i, k, same = 0;
+    for (i = 0; i < 3; i++)
+        for (k = 0; k < 3; k++) same |= a[i] == b[k];
+    return same;
+}
+
+int sc_sharing_validate(const sc_points *points, const uint32_t *order, const sc_xbvh *xbvh,
+                        const sc_sharing *s)
+{
+    const uint32_t *first = xbvh->leaf_first;
+    uint32_t a, b, i, j, entry, wrong = 0;
+    for (a = 0; a < xbvh->leaf_count; a++)
+        for (b = a, entry = s->first[a]; b < xbvh->leaf_count; b++) {
+            const uint8_t *rows = a == b ? s->own_rows + SC_LEAF_MAX * (uint64_t)a : NULL;
+            if (a != b && entry < s->first[a + 1] && s->leaf[entry] == b)
+                rows = s->rows + SC_LEAF_MAX * (uint64_t)entry++;
+            if (s->crowded[a] && s->crowded[b]) continue;
+            for (i = first[a]; i < first[a + 1]; i++)
+                for (j = a == b ? i + 1 : first[b]; j < first[b + 1]; j++)
+                    wrong += (uint32_t)share(points, order[i], order[j]) !=
+                             (rows ? rows[i - first[a]] >> (j - first[b]) & 1u : 0);
+        }
+    return wrong == 0;
+}
