@@ -126,7 +126,7 @@ metis_link := $(metis_library) $(static) $(if $(metis),-lmetis)
 program_sources := tools/sc_query.c tools/sc_partition.c bench/demo.c meshes/make_meshes.c \
     meshes/subdivide.c
 tools_support := $(filter-out $(program_sources),$(wildcard tools/*.c))
-bench_support := $(filter-out $(program_sources),$(wildcard bench/*.c))
+bench_support := $(filter-out $(program_sources),$(wildcard bench/*.c bench/scenes/*.c))
 tests := $(sort $(wildcard tests/test_*.c))
 tests_support := $(filter-out $(tests),$(wildcard tests/*.c))
 test_scripts := $(sort $(wildcard tests/test_*.sh))
@@ -422,7 +422,7 @@ check-layering: ## who may include whom, file names, source list
 .PHONY: format
 format: ## clang-format on all C and C++ files, in place
 	clang-format -i $(wildcard include/*.h lib/*.[ch] lib/*/*.[ch] tools/*.[ch] tests/*.[ch] \
-	    tests/*.cpp tests/*/*.[ch] tests/cgal/*.cpp bench/*.[ch] meshes/*.[ch])
+	    tests/*.cpp tests/*/*.[ch] tests/cgal/*.cpp bench/*.[ch] bench/*/*.[ch] meshes/*.[ch])
 
 # ------------------------------------------------------------------------------------------------
 # Installing.

@@ -113,7 +113,7 @@ offenders=$(
             may["lib/query"] = may["lib/pose"] " lib/query"
             may["lib"] = may["lib/query"] " lib"
             may["tools"] = "include tools"
-            may["bench"] = "include tools bench"
+            may["bench"] = may["bench/scenes"] = "include tools bench bench/scenes"
             may["meshes"] = "include tools meshes"
             may["tests"] = may["lib"] " tests tests/fuzz"
             may["tests/fuzz"] = may["tests/runs"] = may["tests"]

@@ -1,0 +1,118 @@
+/*
+ * Scenes of simulated cloth: twisted, draped over a sphere, fallen into a heap.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Cloth of up to 128 cells along a side is simulated as it is. Finer cloth shows the motion of 128
+ * cells as a smooth surface, so all finer resolutions of a scene show the same motion, with wrinkles
+ * of the same size. None of them resists passing through itself.
+ */
+#include "scenes/motion.h"
+
+#include "scenes/cloth_mesh.h"
+#include "scenes/cloth_simulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { SIMULATED_CELLS = 128 };
+
+static const double pi = 3.14159265358979323846;
+
+typedef struct cloth_scene {
+    cloth_mesh mesh;
+    cloth_simulation cloth;
+} cloth_scene;
+
+static void pose_cloth(void *state, double time, double *positions)
+{
+    cloth_scene *scene = (cloth_scene *)state;
+    const double *nodes = cloth_simulation_run(&scene->cloth, time);
+    cloth_mesh_evaluate(&scene->mesh, nodes, scene->cloth.cells, positions);
+}
+
+static void free_cloth(void *state)
+{
+    cloth_scene *scene = (cloth_scene *)state;
+    if (scene) cloth_simulation_free(&scene->cloth);
+    free(scene);
+}
+
+/* The mesh, and its simulation with nothing set but the particles' distance: a square of this size. */
+static cloth_scene *start_cloth(scene_motion *motion, uint32_t triangles, uint32_t crossed,
+                                double size, char *error, size_t error_size)
+{
+    cloth_scene *scene = (cloth_scene *)calloc(1, sizeof *scene);
+    motion->state = scene;
+    motion->pose = pose_cloth;
+    motion->free_state = free_cloth;
+    if (scene) {
+        scene->mesh = cloth_mesh_choose(triangles, crossed);
+        const uint32_t cells =
+            scene->mesh.cells < SIMULATED_CELLS ? scene->mesh.cells : SIMULATED_CELLS;
+        if (cloth_simulation_init(&scene->cloth, cells) == 0) {
+            scene->cloth.spacing = size / (double)cells;
+            if (cloth_mesh_fill(&scene->mesh, motion, error, error_size) == 0) return scene;
+            return NULL;
+        }
+    }
+    scene_fail(error, error_size, "cloth: out of memory");
+    return NULL;
+}
+
+/* The particle in a row and column, 3 doubles. */
+static double *particle(cloth_simulation *cloth, uint32_t row, uint32_t column)
+{
+    return cloth->positions + 3 * ((size_t)row * (cloth->cells + 1) + column);
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Twisted cloth: the first and the last column are bars on the x axis, which turn against each other
+ * and come closer as the cloth gets shorter.
+ */
+
+static void hold_bars(cloth_simulation *cloth, double time)
+{
+    const double turn = scene_ease(0.0, 1.0, time) * 1.5 * pi;
+    const double distance = 1.0 - 0.45 * scene_ease(0.0, 0.9, time);
+    const double width = 1.0 - 0.35 * scene_ease(0.0, 0.8, time);
+    for (uint32_t row = 0; row <= cloth->cells; row++) {
+        const double y = width * ((double)row / (double)cloth->cells - 0.5);
+        for (int end = 0; end < 2; end++) {
+            double *p = particle(cloth, row, end ? cloth->cells : 0);
+            const double sign = end ? 1.0 : -1.0;
+            p[0] = sign * 0.5 * distance;
+            p[1] = y * cos(sign * turn);
+            p[2] = y * sin(sign * turn);
+        }
+    }
+}
+
+int scene_start_twisted_cloth(scene_motion *motion, uint32_t triangles, char *error,
+                              size_t error_size)
+{
+    cloth_scene *scene = start_cloth(motion, triangles, 1, 1.0, error, error_size);
+    if (!scene) return -1;
+    cloth_simulation *cloth = &scene->cloth;
+    cloth->hold = hold_bars;
+    cloth->steps = 1180;
+    cloth->duration = 3.0;
+    cloth->drag = 3.0;
+    cloth->gravity = 1.0;
+    cloth->shear = 1e-5;
+    cloth->bending = 1e-4;
+    const uint32_t side = cloth->cells + 1;
+    for (uint32_t row = 0; row < side; row++) {
+        for (uint32_t column = 0; column < side; column++) {
+            const size_t i = (size_t)row * side + column;
+            const double u = (double)column / (double)cloth->cells;
+            const double v = (double)row / (double)cloth->cells;
+            cloth->positions[3 * i] = u - 0.5;
+            cloth->positions[3 * i + 1] = v - 0.5;
+            /* Unequal draughts, without which the cloth would stay without wrinkles. */
+            cloth->push[3 * i + 2] = 2.0 * scene_noise(6.0 * u, 6.0 * v, 0.0, 1);
+            if (column == 0 || column == cloth->cells) cloth->inverse_mass[i] = 0.0;
+        }
+    }
+    return 0;
+}
