@@ -15,12 +15,13 @@ int cloth_simulation_init(cloth_simulation *cloth, uint32_t cells)
     cloth->cells = cells;
     cloth->count = ((size_t)cells + 1) * ((size_t)cells + 1);
     cloth->duration = 1.0;
-    cloth->positions = (double *)calloc(13 * cloth->count, sizeof(double));
+    cloth->positions = (double *)calloc(14 * cloth->count, sizeof(double));
     if (!cloth->positions) return -1;
     cloth->before = cloth->positions + 3 * cloth->count;
     cloth->push = cloth->before + 3 * cloth->count;
     cloth->shown = cloth->push + 3 * cloth->count;
     cloth->inverse_mass = cloth->shown + 3 * cloth->count;
+    cloth->lift = cloth->inverse_mass + cloth->count;
     for (size_t i = 0; i < cloth->count; i++) cloth->inverse_mass[i] = 1.0;
     return 0;
 }

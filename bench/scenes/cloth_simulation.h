@@ -29,6 +29,7 @@ struct cloth_simulation {
     double *before;        /* 3 * count: at the beginning of the step */
     double *push;          /* 3 * count: accelerations beside gravity */
     double *inverse_mass;  /* count: 1, or 0 if held */
+    double *lift;          /* count: for hold; not used here */
     double *shown;         /* 3 * count: at a moment between two steps */
     double spacing;        /* of neighbours at rest */
     double gravity;        /* along -z */
