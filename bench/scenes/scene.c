@@ -22,23 +22,29 @@
 /* Raised whenever a scene changes, so that what is cached is made anew. */
 enum { SCENE_VERSION = 1 };
 
-enum { FRAMES = 60, KINDS = 4 };
+enum { FRAMES = 60, KINDS = 6 };
 
 static const uint32_t sizes_twisted[] = {4096, 16384, 65536, 262144, 1048576, 0};
 static const uint32_t sizes_draped[] = {20000, 80000, 320000, 0};
 static const uint32_t sizes_wrinkled[] = {100352, 0};
 static const uint32_t sizes_sphere[] = {81920, 327680, 0};
 
+static const uint32_t sizes_crushed[] = {92416, 0};
+static const uint32_t sizes_rods[] = {98304, 0};
+
 static const scene_kind kinds[KINDS] = {
     {"twisted-cloth", "square cloth, two ends twisted against each other", sizes_twisted, FRAMES},
     {"cloth-sphere", "cloth that falls on a sphere and wraps round it", sizes_draped, FRAMES},
     {"wrinkled-cloth", "cloth that falls into a heap of many layers", sizes_wrinkled, FRAMES},
     {"sphere", "closed sphere that wobbles, never touching itself", sizes_sphere, FRAMES},
+    {"crushed-cloth", "cloth rolled up and dented: tight layers", sizes_crushed, FRAMES},
+    {"tight-rods", "bundle of rods close to each other, wrung and pinched", sizes_rods, FRAMES},
 };
 
 /* In the same order. */
-static const scene_start starts[KINDS] = {scene_start_twisted_cloth, scene_start_cloth_sphere,
-                                          scene_start_wrinkled_cloth, scene_start_sphere};
+static const scene_start starts[KINDS] = {scene_start_twisted_cloth,  scene_start_cloth_sphere,
+                                          scene_start_wrinkled_cloth, scene_start_sphere,
+                                          scene_start_crushed_cloth,  scene_start_tight_rods};
 
 const scene_kind *scene_kinds(size_t *count)
 {
