@@ -72,8 +72,8 @@ int scene_start_sphere(scene_motion *motion, uint32_t triangles, char *error, si
  * from the dents.
  */
 
-static const double roll_gap = 0.18;   /* of turns, in cells */
-static const double roll_hole = 2.0;  /* radius of the innermost turn, in cells */
+static const double roll_gap = 0.18; /* of turns, in cells */
+static const double roll_hole = 2.0; /* radius of the innermost turn, in cells */
 static const double roll_dent = 0.1; /* the largest, in cells */
 
 enum { ROLL_STEPS = 64 }; /* of integration, a cell */

@@ -22,10 +22,13 @@
 /* Raised whenever a scene changes, so that what is cached is made anew. */
 enum { SCENE_VERSION = 1 };
 
-enum { FRAMES = 60, KINDS = 6 };
+enum { FRAMES = 60, KINDS = 11 };
 
 static const uint32_t sizes_twisted[] = {4096, 16384, 65536, 262144, 1048576, 0};
 static const uint32_t sizes_draped[] = {20000, 80000, 320000, 0};
+static const uint32_t sizes_cat[] = {41000, 165000, 0};
+static const uint32_t sizes_bunny[] = {3400, 13600, 54500, 0};
+static const uint32_t sizes_horse[] = {1600, 6300, 25000, 0};
 static const uint32_t sizes_wrinkled[] = {100352, 0};
 static const uint32_t sizes_sphere[] = {81920, 327680, 0};
 
@@ -35,6 +38,11 @@ static const uint32_t sizes_rods[] = {98304, 0};
 static const scene_kind kinds[KINDS] = {
     {"twisted-cloth", "square cloth, two ends twisted against each other", sizes_twisted, FRAMES},
     {"cloth-sphere", "cloth that falls on a sphere and wraps round it", sizes_draped, FRAMES},
+    {"cat", "cat that walks, by skinning", sizes_cat, FRAMES},
+    {"bunny", "soft bunny that rolls down a hill", sizes_bunny, FRAMES},
+    {"bunny-bumpy", "the same with smooth bumps", sizes_bunny, FRAMES},
+    {"bunny-spiky", "the same with sharp spikes", sizes_bunny, FRAMES},
+    {"horse", "hollow horse that is sucked empty", sizes_horse, FRAMES},
     {"wrinkled-cloth", "cloth that falls into a heap of many layers", sizes_wrinkled, FRAMES},
     {"sphere", "closed sphere that wobbles, never touching itself", sizes_sphere, FRAMES},
     {"crushed-cloth", "cloth rolled up and dented: tight layers", sizes_crushed, FRAMES},
@@ -42,9 +50,12 @@ static const scene_kind kinds[KINDS] = {
 };
 
 /* In the same order. */
-static const scene_start starts[KINDS] = {scene_start_twisted_cloth,  scene_start_cloth_sphere,
-                                          scene_start_wrinkled_cloth, scene_start_sphere,
-                                          scene_start_crushed_cloth,  scene_start_tight_rods};
+static const scene_start starts[KINDS] = {
+    scene_start_twisted_cloth, scene_start_cloth_sphere,   scene_start_cat,
+    scene_start_bunny,         scene_start_bunny_bumpy,    scene_start_bunny_spiky,
+    scene_start_horse,         scene_start_wrinkled_cloth, scene_start_sphere,
+    scene_start_crushed_cloth, scene_start_tight_rods,
+};
 
 const scene_kind *scene_kinds(size_t *count)
 {
