@@ -215,7 +215,7 @@ int scene_start_wrinkled_cloth(scene_motion *motion, uint32_t triangles, char *e
     cloth_simulation *cloth = &scene->cloth;
     cloth->hold = hold_above_ground;
     cloth->steps = 1180;
-    cloth->duration = 1.2;
+    cloth->duration = 0.75;
     cloth->drag = 1.0;
     cloth->gravity = 9.81;
     cloth->shear = 1e-5;

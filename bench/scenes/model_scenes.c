@@ -41,15 +41,17 @@ typedef struct cat_bone {
     double phase;        /* of a swing, 0 to 1 */
 } cat_bone;
 
-enum { CAT_BONES = 7 };
+enum { CAT_BONES = 9 };
 
 static const cat_bone cat_bones[CAT_BONES] = {
     /* head: turned, nodding */
-    {{0.42, -0.1, 0.0}, {0.62, -0.15, 0.35}, 0.22, 0.5, {0, 0, 1}, 0.7, 2.0, 0.0},
-    {{0.42, -0.1, 0.0}, {0.62, -0.15, 0.35}, 0.22, 0.5, {0, 1, 0}, 0.45, 3.0, 0.3},
-    /* front paws */
-    {{0.35, -0.4, -0.3}, {0.85, -0.45, -0.55}, 0.15, 0.4, {0, 1, 0}, 0.5, 4.0, 0.0},
-    {{0.45, 0.1, -0.3}, {0.98, 0.08, -0.55}, 0.15, 0.4, {0, 1, 0}, 0.5, 4.0, 0.5},
+    {{0.42, -0.1, 0.0}, {0.62, -0.15, 0.35}, 0.22, 0.5, {0, 0, 1}, 0.8, 2.0, 0.0},
+    {{0.42, -0.1, 0.0}, {0.62, -0.15, 0.35}, 0.22, 0.5, {0, 1, 0}, 0.8, 3.0, 0.3},
+    /* front paws: forward, and crossing each other */
+    {{0.35, -0.4, -0.3}, {0.85, -0.45, -0.55}, 0.15, 0.4, {0, 1, 0}, 0.6, 4.0, 0.0},
+    {{0.45, 0.1, -0.3}, {0.98, 0.08, -0.55}, 0.15, 0.4, {0, 1, 0}, 0.6, 4.0, 0.5},
+    {{0.35, -0.4, -0.3}, {0.85, -0.45, -0.55}, 0.15, 0.4, {0, 0, 1}, 0.6, 3.0, 0.0},
+    {{0.45, 0.1, -0.3}, {0.98, 0.08, -0.55}, 0.15, 0.4, {0, 0, -1}, 0.6, 3.0, 0.0},
     /* haunches */
     {{-0.5, 0.3, 0.0}, {-0.3, 0.4, -0.5}, 0.2, 0.5, {0, 1, 0}, 0.35, 4.0, 0.25},
     {{-0.5, -0.3, 0.0}, {-0.3, -0.4, -0.5}, 0.2, 0.5, {0, 1, 0}, 0.35, 4.0, 0.75},
@@ -228,7 +230,10 @@ static void hold_above_hill(soft_body *body, double time)
     }
 }
 
-/* Moves the vertices along their normals by height times a function of noise. */
+/*
+ * Moves the vertices along their normals: bumps of a smooth noise, or spikes on its peaks. Where the
+ * surface does not look away from the middle, as between the ears, there is less, as bumps would meet.
+ */
 static int roughen(mesh_file *mesh, bool spikes, char *error, size_t error_size)
 {
     const size_t n = mesh->vertex_count;
@@ -241,7 +246,11 @@ static int roughen(mesh_file *mesh, bool spikes, char *error, size_t error_size)
         const double *p = positions + 3 * v;
         const double noise = scene_noise(4.0 * p[0], 4.0 * p[1], 4.0 * p[2], 7);
         const double peak = fmax(noise, 0.0);
-        const double height = spikes ? 0.45 * peak * peak * peak : 0.05 * noise;
+        const double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        const double *normal = normals + 3 * v;
+        const double outward = (p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2]) / length;
+        const double height = scene_ease(0.3, 0.8, length > 0.0 ? outward : 0.0) *
+                              (spikes ? 0.4 * peak * peak * peak : 0.05 * noise);
         for (size_t k = 0; k < 3; k++) {
             mesh->positions[3 * v + k] = (float)(p[k] + height * normals[3 * v + k]);
         }
@@ -304,7 +313,7 @@ int scene_start_horse(scene_motion *motion, uint32_t triangles, char *error, siz
     soft_scene *scene = start_soft(motion, "horse.3ds", -2, triangles, error, error_size);
     if (!scene || start_body(scene, motion, 1e-5, 1e-3, error, error_size) != 0) return -1;
     soft_body *body = &scene->body;
-    body->push = -8.0;
+    body->push = -40.0;
     body->drag = 3.0;
     body->duration = 2.0;
     body->steps = 590;
