@@ -169,6 +169,7 @@ $(obj)/tools/%.o: own = -Iinclude -Itools $(mode)
 $(obj)/bench/%.o: own = -Iinclude -Itools -Ibench $(mode)
 $(obj)/meshes/%.o: own = -Iinclude -Itools -Imeshes $(mode)
 $(obj)/tests/%.o: own = -Iinclude -Ilib -Itests $(test_mode) $(with_metis)
+$(obj)/tests/bench/%.o: own = -Iinclude -Itools -Ibench -Itests $(test_mode)
 
 $(obj)/%.o: %.c $(obj)/flags
 	@mkdir -p $(@D)
@@ -238,8 +239,11 @@ meshes: $(programs) ## fetch real meshes into build/meshes (Debian packages, no 
 # scripts; header_cxx.cpp uses the header from C++.
 
 missing_for_tests := $(if $(gmp),,gmp) $(if $(ccd),,libccd)
+# Those of bench/ see what it sees, and not the library's inside.
+bench_tests := $(patsubst tests/%.c,$(work)/tests/%,$(wildcard tests/bench/test_*.c))
 test_programs := $(patsubst tests/%.c,$(work)/tests/%,$(tests)) \
-    $(patsubst tests/%.cpp,$(work)/tests/%,$(wildcard tests/header_cxx.cpp))
+    $(patsubst tests/%.cpp,$(work)/tests/%,$(wildcard tests/header_cxx.cpp)) \
+    $(if $(strip $(missing_for_programs)),,$(bench_tests))
 test_libs := $(metis_link) -lgmp -lccd -lpthread
 
 .PHONY: test
@@ -250,6 +254,7 @@ else
 test: all $(test_programs)
 	@meshes/fetch.sh build/meshes $(bin)/subdivide >$(work)/fetch.log 2>&1 || \
 	    echo "not all real meshes could be fetched (see $(work)/fetch.log): tests with them are skipped"
+	@$(if $(strip $(missing_for_programs)),echo "skipped: $(notdir $(bench_tests)): needs $(strip $(missing_for_programs)) ('make deps')")
 	@CC='$(CC)' SC_CONFIG='$(config)' SC_BIN='$(bin)' SC_LIB='$(lib)' \
 	    SC_METIS='$(metis)' SC_FLAGS='$(link_mode) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' \
 	    tests/run.sh $(test_programs) $(test_scripts)
@@ -258,6 +263,10 @@ endif
 $(patsubst tests/%.c,$(work)/tests/%,$(tests)): $(work)/tests/%: $(obj)/tests/%.o \
     $(call objects,$(tests_support)) $(static) $(metis_library)
 	$(call link,$(test_libs))
+
+$(bench_tests): $(work)/tests/%: $(obj)/tests/%.o $(call objects,tests/harness.c \
+    $(bench_support) $(tools_support)) $(static) $(metis_library)
+	$(call link,$(mesh_libs))
 
 $(work)/tests/header_cxx: tests/header_cxx.cpp include/starcontour.h $(obj)/flags $(static)
 	@mkdir -p $(@D)

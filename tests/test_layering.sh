@@ -9,8 +9,8 @@ check "the repository has no offenders" tools/check_layering.sh
 
 copy=$scratch/copy
 mkdir "$copy"
-cp -R Makefile include lib tools tests "$copy"
-mkdir -p "$copy/lib/base" "$copy/lib/build" "$copy/lib/pose" "$copy/lib/query" "$copy/bench"
+cp -R Makefile include lib tools tests bench "$copy"
+mkdir -p "$copy/lib/base" "$copy/lib/build" "$copy/lib/pose" "$copy/lib/query"
 for layer in base build pose query; do
     echo "/* planted */" >"$copy/lib/$layer/planted_$layer.h"
 done

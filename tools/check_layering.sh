@@ -117,6 +117,7 @@ offenders=$(
             may["meshes"] = "include tools meshes"
             may["tests"] = may["lib"] " tests tests/fuzz"
             may["tests/fuzz"] = may["tests/runs"] = may["tests"]
+            may["tests/bench"] = may["bench"] " tests tests/bench"
             may["tests/cgal"] = "include tools tests tests/cgal"
         }
 

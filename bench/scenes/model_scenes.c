@@ -6,7 +6,7 @@
  */
 #include "scenes/motion.h"
 
-#include "scenes/model.h"
+#include "scenes/scene_model.h"
 #include "scenes/soft_body.h"
 
 #include <math.h>
@@ -139,7 +139,7 @@ int scene_start_cat(scene_motion *motion, uint32_t triangles, char *error, size_
     motion->pose = pose_cat;
     motion->free_state = free_cat;
     if (!scene) return scene_fail(error, error_size, "cat: out of memory");
-    if (model_read(&scene->rest, "cat.3ds", -2, triangles, error, error_size) != 0) return -1;
+    if (scene_model_read(&scene->rest, "cat.3ds", -2, triangles, error, error_size) != 0) return -1;
     const size_t n = scene->rest.vertex_count;
     scene->weights = (float *)malloc(CAT_BONES * n * sizeof(float));
     if (!scene->weights) return scene_fail(error, error_size, "cat: out of memory");
@@ -194,7 +194,8 @@ static soft_scene *start_soft(scene_motion *motion, const char *file, int up, ui
         scene_fail(error, error_size, "%s: out of memory", file);
         return NULL;
     }
-    return model_read(&scene->rest, file, up, triangles, error, error_size) == 0 ? scene : NULL;
+    return scene_model_read(&scene->rest, file, up, triangles, error, error_size) == 0 ? scene
+                                                                                       : NULL;
 }
 
 static int start_body(soft_scene *scene, scene_motion *motion, double stretch, double bend,
@@ -241,7 +242,8 @@ static int roughen(mesh_file *mesh, bool spikes, char *error, size_t error_size)
     if (!positions) return scene_fail(error, error_size, "bunny: out of memory");
     double *normals = positions + 3 * n;
     for (size_t i = 0; i < 3 * n; i++) positions[i] = (double)mesh->positions[i];
-    model_normals(mesh->indices, mesh->triangle_count, positions, mesh->vertex_count, normals);
+    scene_model_normals(mesh->indices, mesh->triangle_count, positions, mesh->vertex_count,
+                        normals);
     for (size_t v = 0; v < n; v++) {
         const double *p = positions + 3 * v;
         const double noise = scene_noise(4.0 * p[0], 4.0 * p[1], 4.0 * p[2], 7);

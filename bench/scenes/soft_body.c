@@ -6,7 +6,7 @@
 #include "scenes/soft_body.h"
 
 #include "mesh_edges.h"
-#include "scenes/model.h"
+#include "scenes/scene_model.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -206,8 +206,8 @@ static void step(soft_body *body)
     body->done++;
     const double time = (double)body->done / (double)body->steps;
     if (body->push != 0.0) {
-        model_normals(body->triangles, body->triangle_count, body->positions, body->vertex_count,
-                      body->normals);
+        scene_model_normals(body->triangles, body->triangle_count, body->positions,
+                            body->vertex_count, body->normals);
     }
     for (size_t i = 0; i < 3 * (size_t)body->vertex_count; i++) {
         const double pull =

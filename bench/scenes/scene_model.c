@@ -1,9 +1,9 @@
 /*
- * The models of glmark2 at any resolution; see model.h.
+ * The models of glmark2 at any resolution; see scene_model.h.
  *
  * SPDX-License-Identifier: MIT
  */
-#include "scenes/model.h"
+#include "scenes/scene_model.h"
 
 #include "mesh_edges.h"
 #include "scenes/decimate.h"
@@ -108,8 +108,8 @@ static bool resize(mesh_file *mesh, uint32_t triangles)
     return true;
 }
 
-int model_read(mesh_file *mesh, const char *file, int up, uint32_t triangles, char *error,
-               size_t error_size)
+int scene_model_read(mesh_file *mesh, const char *file, int up, uint32_t triangles, char *error,
+                     size_t error_size)
 {
     char path[4200], message[MESH_FILE_ERROR_SIZE];
     const char *folder = getenv("SC_MESHES");
@@ -134,8 +134,8 @@ int model_read(mesh_file *mesh, const char *file, int up, uint32_t triangles, ch
     return 0;
 }
 
-void model_normals(const uint32_t *triangles, uint32_t triangle_count, const double *positions,
-                   uint32_t vertex_count, double *normals)
+void scene_model_normals(const uint32_t *triangles, uint32_t triangle_count,
+                         const double *positions, uint32_t vertex_count, double *normals)
 {
     memset(normals, 0, 3 * (size_t)vertex_count * sizeof *normals);
     for (size_t t = 0; t < triangle_count; t++) {
