@@ -52,6 +52,9 @@ static cloth_scene *start_cloth(scene_motion *motion, uint32_t triangles, uint32
             scene->mesh.cells < SIMULATED_CELLS ? scene->mesh.cells : SIMULATED_CELLS;
         if (cloth_simulation_init(&scene->cloth, cells) == 0) {
             scene->cloth.spacing = size / (double)cells;
+            /* A sweep carries forces from particle to particle, so finer cloth stretches as little
+               only if steps are shorter. */
+            scene->cloth.steps = 1180 * ((cells + 99) / 100);
             if (cloth_mesh_fill(&scene->mesh, motion, error, error_size) == 0) return scene;
             return NULL;
         }
@@ -95,7 +98,6 @@ int scene_start_twisted_cloth(scene_motion *motion, uint32_t triangles, char *er
     if (!scene) return -1;
     cloth_simulation *cloth = &scene->cloth;
     cloth->hold = hold_bars;
-    cloth->steps = 1180;
     cloth->duration = 3.0;
     cloth->drag = 3.0;
     cloth->gravity = 1.0;
@@ -163,7 +165,6 @@ int scene_start_cloth_sphere(scene_motion *motion, uint32_t triangles, char *err
     if (!scene) return -1;
     cloth_simulation *cloth = &scene->cloth;
     cloth->hold = hold_outside;
-    cloth->steps = 1180;
     cloth->duration = 2.2;
     cloth->drag = 1.0;
     cloth->gravity = 9.81;
@@ -214,7 +215,6 @@ int scene_start_wrinkled_cloth(scene_motion *motion, uint32_t triangles, char *e
     if (!scene) return -1;
     cloth_simulation *cloth = &scene->cloth;
     cloth->hold = hold_above_ground;
-    cloth->steps = 1180;
     cloth->duration = 0.75;
     cloth->drag = 1.0;
     cloth->gravity = 9.81;
