@@ -86,8 +86,8 @@ typedef struct crushed_scene {
 } crushed_scene;
 
 /*
- * The angle of the rolled row's direction at a distance from its inner end: on the spiral of Archimedes,
- * r = hole + gap angle / (2 pi), whose length is about hole angle + gap angle^2 / (4 pi).
+ * The angle of the rolled row's direction at a distance from its inner end: on the spiral of
+ * Archimedes, r = hole + gap angle / (2 pi), whose length is about hole angle + gap angle^2 / (4 pi).
  */
 static double roll_angle(double length)
 {
