@@ -387,6 +387,13 @@ enum {
 /* Rest-shape caching (paper, section 8): tests that failed in the rest pose are taken as failed. */
 enum { SC_REST_CACHE_ON = 0, SC_REST_CACHE_OFF = 1 };
 
+/* Which instructions inner loops use. The answer is the same bit for bit. */
+enum {
+    SC_SIMD_BEST = 0, /* the best that the machine has */
+    SC_SIMD_BASE = 1, /* what the library was compiled for: SSE2 on x86-64 */
+    SC_SIMD_AVX2 = 2  /* SC_ERROR_UNSUPPORTED where there is none */
+};
+
 typedef struct sc_query_options {
     uint32_t struct_size;
     uint32_t output;     /* SC_OUTPUT_... */
@@ -395,7 +402,7 @@ typedef struct sc_query_options {
     uint32_t method;     /* SC_METHOD_... */
     uint32_t contour;    /* SC_CONTOUR_... */
     uint32_t rest_cache; /* SC_REST_CACHE_... */
-    uint32_t reserved;   /* 0 */
+    uint32_t simd;       /* SC_SIMD_... */
 } sc_query_options;
 
 /* A pair, as sc_query_options.pairs says. */

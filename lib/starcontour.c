@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/isa.h"
 #include "base/structs.h"
 #include "build/model.h"
 #include "build/partition.h"
@@ -250,8 +251,10 @@ static sc_status check_options(sc_query_options *o)
 {
     if (o->output > SC_OUTPUT_ANY || o->pairs > SC_PAIRS_EDGE || o->contact > SC_CONTACT_PROPER ||
         o->method > SC_METHOD_AABB || o->contour > SC_CONTOUR_EXACT ||
-        o->rest_cache > SC_REST_CACHE_OFF || o->reserved)
+        o->rest_cache > SC_REST_CACHE_OFF || o->simd > SC_SIMD_AVX2)
         return SC_ERROR_OPTION;
+    if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
+    if (o->simd > (uint32_t)sc_isa_best()) return SC_ERROR_UNSUPPORTED;
     if (o->method == SC_METHOD_DEFAULT) o->method = SC_METHOD_SCTT;
     if (o->contour == SC_CONTOUR_DEFAULT) o->contour = SC_CONTOUR_EXACT;
     return SC_OK;
@@ -303,6 +306,7 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
     state->model = model;
     state->workspace = workspace;
     state->task = SC_TASK_UPDATE_BOXES;
+    workspace->isa = state->options.simd;
     if (state->timed) start = state->last_time = sc_clock_nanoseconds();
     sc_workspace_new_pose(model, workspace);
     status = sc_positions_read(model, pose, stride, workspace);

@@ -124,7 +124,7 @@ static void structures(void)
     MEMBER(sc_query_options, method, 16);
     MEMBER(sc_query_options, contour, 20);
     MEMBER(sc_query_options, rest_cache, 24);
-    MEMBER(sc_query_options, reserved, 28);
+    MEMBER(sc_query_options, simd, 28);
 
     SIZE(sc_pair, 8);
     MEMBER(sc_pair, a, 0);

@@ -625,8 +625,8 @@ static void enumerators(void)
             query.rest_cache = value;
             check_query(&f, f.model, f.workspace, &f.pose, &query, SC_ERROR_OPTION, "rest_cache");
             query = no_options();
-            query.reserved = value;
-            check_query(&f, f.model, f.workspace, &f.pose, &query, SC_ERROR_OPTION, "reserved");
+            query.simd = value;
+            check_query(&f, f.model, f.workspace, &f.pose, &query, SC_ERROR_OPTION, "simd");
         }
     }
     stop(&f);

@@ -1,6 +1,6 @@
 /*
  * Axis-aligned boxes in single precision that bound double coordinates, stored as six arrays, and the
- * test of one box against eight.
+ * test of one against another.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -11,15 +11,6 @@
 
 #include <float.h>
 #include <stdint.h>
-
-/* SC_NO_SIMD leaves the plain form of what is also written for SSE2 (streaming SIMD extensions, single
-   instruction, multiple data), for other machines and to compare. */
-#if defined(__SSE2__) && !defined(SC_NO_SIMD)
-#  define SC_BOXES_SSE2 1
-#  include <emmintrin.h>
-#else
-#  define SC_BOXES_SSE2 0
-#endif
 
 /* Boxes that eight-wide reads may start at must be followed by this many readable ones. */
 enum { SC_BOXES_PADDING = 8 };
@@ -57,29 +48,6 @@ static inline int sc_boxes_overlap(const sc_boxes *a, uint64_t i, const sc_boxes
     return (a->side[0][i] <= b->side[3][j]) & (b->side[0][j] <= a->side[3][i]) &
            (a->side[1][i] <= b->side[4][j]) & (b->side[1][j] <= a->side[4][i]) &
            (a->side[2][i] <= b->side[5][j]) & (b->side[2][j] <= a->side[5][i]);
-}
-
-/* Bit k: box i of a overlaps box j + k of b, for k from 0 to 7. */
-static inline unsigned sc_boxes_overlap8(const sc_boxes *a, uint64_t i, const sc_boxes *b,
-                                         uint64_t j)
-{
-#if SC_BOXES_SSE2
-    __m128 low = _mm_cmpeq_ps(_mm_setzero_ps(), _mm_setzero_ps()), high = low;
-    int axis;
-    for (axis = 0; axis < 3; axis++) {
-        __m128 lower = _mm_set1_ps(a->side[axis][i]), upper = _mm_set1_ps(a->side[axis + 3][i]);
-        const float *lowers = b->side[axis] + j, *uppers = b->side[axis + 3] + j;
-        low = _mm_and_ps(low, _mm_and_ps(_mm_cmple_ps(lower, _mm_loadu_ps(uppers)),
-                                         _mm_cmple_ps(_mm_loadu_ps(lowers), upper)));
-        high = _mm_and_ps(high, _mm_and_ps(_mm_cmple_ps(lower, _mm_loadu_ps(uppers + 4)),
-                                           _mm_cmple_ps(_mm_loadu_ps(lowers + 4), upper)));
-    }
-    return (unsigned)_mm_movemask_ps(low) | (unsigned)_mm_movemask_ps(high) << 4;
-#else
-    unsigned mask = 0, k;
-    for (k = 0; k < 8; k++) mask |= (unsigned)sc_boxes_overlap(a, i, b, j + k) << k;
-    return mask;
-#endif
 }
 
 #endif

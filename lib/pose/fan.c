@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#include "pose/pose_kernels.h"
+
 /* Longer rings are not tested; none are built (build/adjacency.c). */
 enum { RING_MAX = 64 };
 
@@ -68,6 +70,15 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
         last = y;
     }
     return turns == 1;
+}
+
+int sc_fan_test_of_pose(const sc_model *model, const sc_workspace *w, uint32_t point)
+{
+    const uint32_t *ring = sc_model_ring(model) + sc_model_ring_first(model)[point];
+    uint32_t count = sc_model_ring_first(model)[point + 1] - sc_model_ring_first(model)[point];
+    if (count >= 3 && count <= 8 && sc_pose_kernels_of(w)->is_plain(w, ring, count, point))
+        return 1;
+    return sc_fan_test(model, w, point);
 }
 
 unsigned sc_fan_plain_of_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)

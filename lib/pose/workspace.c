@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/isa.h"
+
 static uint64_t align(uint64_t bytes)
 {
     return (bytes + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
@@ -73,6 +75,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
     memset(w, 0, sizeof *w);
     w->bytes = lay_out(model, (unsigned char *)memory, w);
     w->topology_hash = model->topology_hash;
+    w->isa = (uint32_t)sc_isa_best();
     for (k = 0; k < 6; k++) {
         for (i = 0; i < patches; i++) w->patch_boxes.side[k][i] = (float)NAN;
         for (i = 0; i < triangles; i++) w->triangle_boxes.side[k][i] = (float)NAN;

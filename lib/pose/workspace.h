@@ -62,6 +62,7 @@ struct sc_workspace {
     uint64_t topology_hash; /* of the model it is for */
     sc_allocator allocator;
     uint32_t owned; /* allocated by sc_workspace_create */
+    uint32_t isa;   /* of the query, see base/isa.h */
 
     /* the pose; all but position valid only in a query */
     double *position;     /* 3 * point_count */

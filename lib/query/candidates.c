@@ -249,38 +249,6 @@ static void collect_row(sc_query_state *state, uint32_t a, uint32_t first_b, uns
     if (w->candidate_count >= batch_size(state)) sc_candidates_decide(state);
 }
 
-/* Two leaf clusters, a <= b, and what their triangles share. */
-typedef struct leaf_pair {
-    uint32_t a, b;
-    uint32_t first_a, first_b; /* places of their first triangles */
-    const uint8_t *rows;       /* see build/sharing.h; NULL if they share nothing */
-    int crowded;               /* the rows do not say all */
-    int known;                 /* plain_a and plain_b are known */
-    unsigned plain_a, plain_b; /* see pose/fan.h */
-} leaf_pair;
-
-static leaf_pair pair_of(const sc_model *model, uint32_t a, uint32_t b)
-{
-    const uint32_t *first = sc_model_share_first(model), *leaf = sc_model_share_leaf(model);
-    leaf_pair p;
-    uint32_t i;
-    p.a = a < b ? a : b;
-    p.b = a < b ? b : a;
-    p.first_a = sc_model_leaf_first(model)[p.a];
-    p.first_b = sc_model_leaf_first(model)[p.b];
-    p.crowded = sc_model_share_crowded(model)[a] & sc_model_share_crowded(model)[b];
-    p.known = 0;
-    p.plain_a = p.plain_b = 0;
-    p.rows = NULL;
-    if (p.a == p.b) {
-        p.rows = sc_model_share_own_rows(model) + SC_LEAF_MAX * (uint64_t)a;
-        return p;
-    }
-    for (i = first[p.a]; i < first[p.a + 1] && !p.rows; i++)
-        if (leaf[i] == p.b) p.rows = sc_model_share_rows(model) + SC_LEAF_MAX * (uint64_t)i;
-    return p;
-}
-
 /* Whether two triangles share a vertex, without branches. */
 static inline unsigned share_any(const uint32_t *a, const uint32_t *b)
 {
@@ -289,67 +257,46 @@ static inline unsigned share_any(const uint32_t *a, const uint32_t *b)
                       (a[2] == b[2]));
 }
 
-/* The triangles of cluster b, among some, that share with triangle i of cluster a. */
-static unsigned shared_of_row(const sc_model *model, const leaf_pair *p, uint32_t i, unsigned some)
+/* The masks of two clusters that have points of so many triangles that the model has none. */
+static void find_shared(const sc_model *model, sc_leaf_pair *p)
 {
-    const uint32_t *triangle = sc_model_triangle(model);
-    unsigned shared = p->rows ? p->rows[i] & some : 0;
-    if (!p->crowded) return shared;
-    for (shared = 0; some; some &= some - 1)
-        shared |= share_any(triangle + 3 * (uint64_t)(p->first_a + i),
-                            triangle + 3 * (uint64_t)(p->first_b + sc_bits_lowest(some)))
-                  << sc_bits_lowest(some);
-    return shared;
-}
-
-/* Triangle i of cluster a and those of cluster b whose boxes overlap its. */
-static void take_row(sc_query_state *state, leaf_pair *p, uint32_t i, unsigned overlapping)
-{
-    unsigned shared = shared_of_row(state->model, p, i, overlapping);
-    if (shared) {
-        if (!p->known) {
-            p->plain_a = sc_fan_plain_of_leaf(state->model, state->workspace, p->a);
-            p->plain_b = sc_fan_plain_of_leaf(state->model, state->workspace, p->b);
-            p->known = 1;
-        }
-        /* one plain fan round a shared point is enough */
-        if (!(p->plain_a >> i & 1u) && shared & ~p->plain_b)
-            decide_neighbors(state, p->first_a + i, p->first_b, shared & ~p->plain_b);
+    const uint32_t *triangle = sc_model_triangle(model), *first = sc_model_leaf_first(model);
+    uint32_t i, j;
+    for (i = first[p->a]; i < first[p->a + 1]; i++) {
+        uint8_t *row = &p->found[i - first[p->a]];
+        for (j = first[p->b], *row = 0; j < first[p->b + 1]; j++)
+            *row |= (uint8_t)(share_any(triangle + 3 * (uint64_t)i, triangle + 3 * (uint64_t)j)
+                              << (j - first[p->b]));
     }
-    if (overlapping & ~shared)
-        collect_row(state, p->first_a + i, p->first_b, overlapping & ~shared);
+    p->shared = p->found;
 }
 
-void sc_candidates_of_pair(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b)
+void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, sc_leaf_pair *p)
 {
+    static const uint8_t nothing[SC_LEAF_MAX] = {0};
     const sc_model *model = state->model;
-    const sc_workspace *w = state->workspace;
-    leaf_pair p = pair_of(model, leaf_a, leaf_b);
-    uint64_t row_a = (uint64_t)p.a * SC_LEAF_MAX, row_b = (uint64_t)p.b * SC_LEAF_MAX;
-    uint32_t patch_b = sc_model_first_leaf_patch(model) + p.b;
-    unsigned rows = sc_boxes_overlap8(&w->patch_boxes, patch_b, &w->triangle_boxes, row_a);
-    state->stats.leaf_pairs++;
-    state->stats.counts[sc_state_box_task(state)]++;
-    for (; rows && !state->stop; rows &= rows - 1) {
-        uint32_t i = sc_bits_lowest(rows);
-        unsigned mask = sc_boxes_overlap8(&w->triangle_boxes, row_a + i, &w->triangle_boxes, row_b);
-        state->stats.counts[sc_state_box_task(state)]++;
-        if (mask) take_row(state, &p, i, mask);
-    }
+    const uint32_t *first = sc_model_share_first(model), *leaf = sc_model_share_leaf(model);
+    uint32_t i;
+    p->a = a;
+    p->b = b;
+    p->shared = nothing;
+    p->plain_a = p->plain_b = 0;
+    if (sc_model_share_crowded(model)[a] & sc_model_share_crowded(model)[b])
+        find_shared(model, p);
+    else if (a == b)
+        p->shared = sc_model_share_own_rows(model) + SC_LEAF_MAX * (uint64_t)a;
+    else
+        for (i = first[a]; i < first[a + 1] && leaf[i] <= b; i++)
+            if (leaf[i] == b) p->shared = sc_model_share_rows(model) + SC_LEAF_MAX * (uint64_t)i;
+    if (p->shared == nothing) return;
+    p->plain_a = sc_fan_plain_of_leaf(model, state->workspace, a);
+    p->plain_b = sc_fan_plain_of_leaf(model, state->workspace, b);
 }
 
-void sc_candidates_of_leaf(sc_query_state *state, uint32_t leaf)
+void sc_candidates_take(sc_query_state *state, const sc_leaf_pair *p, uint32_t i, unsigned mask)
 {
-    const sc_workspace *w = state->workspace;
     const uint32_t *first = sc_model_leaf_first(state->model);
-    leaf_pair p = pair_of(state->model, leaf, leaf);
-    uint64_t row = (uint64_t)leaf * SC_LEAF_MAX;
-    uint32_t count = first[leaf + 1] - first[leaf], i;
-    state->stats.leaf_pairs++;
-    for (i = 0; i + 1 < count && !state->stop; i++) {
-        unsigned mask = sc_boxes_overlap8(&w->triangle_boxes, row + i, &w->triangle_boxes, row);
-        mask &= ~((2u << i) - 1u);
-        state->stats.counts[sc_state_box_task(state)]++;
-        if (mask) take_row(state, &p, i, mask);
-    }
+    unsigned shared = mask & p->shared[i];
+    if (shared) decide_neighbors(state, first[p->a] + i, first[p->b], shared);
+    if (mask & ~shared) collect_row(state, first[p->a] + i, first[p->b], mask & ~shared);
 }

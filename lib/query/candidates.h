@@ -8,9 +8,21 @@
 
 #include "query/state.h"
 
-/* Compares the triangles of two leaf clusters, or of one with each other. */
-void sc_candidates_of_pair(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b);
-void sc_candidates_of_leaf(sc_query_state *state, uint32_t leaf);
+/* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
+typedef struct sc_leaf_pair {
+    uint32_t a, b;
+    const uint8_t *shared; /* SC_LEAF_MAX rows: triangles of b that share points with one of a */
+    unsigned plain_a, plain_b;  /* triangles whose corners all have plain fans, see pose/fan.h */
+    uint8_t found[SC_LEAF_MAX]; /* room for shared */
+} sc_leaf_pair;
+
+/* Fills *pair. Of pairs of triangles that share points, those of which one is plain have nothing to report. */
+void sc_candidates_enter(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b,
+                         sc_leaf_pair *pair);
+
+/* Takes pairs of triangle i of cluster a and some of cluster b whose boxes overlap: decides those that share
+   points and collects the others. */
+void sc_candidates_take(sc_query_state *state, const sc_leaf_pair *pair, uint32_t i, unsigned some);
 
 /* Decides what has been collected; to be called before the kind of task changes, and at the end. */
 void sc_candidates_decide(sc_query_state *state);

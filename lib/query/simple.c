@@ -14,25 +14,11 @@
 #include <float.h>
 #include <math.h>
 
-#include "base/bits.h"
-#include "base/boxes.h"
+#include "query/query_kernels.h"
 
 /* Half a unit in the last place, relative: of float and of double. */
 #define HALF_ULP_FLOAT 5.9604644775390625e-8f
 #define HALF_ULP 1.1102230246251565e-16
-
-/* Points that a contour passes more than once, at most; more are not looked at. */
-enum { PINCHES_MAX = 24 };
-
-typedef struct contour {
-    const sc_contour_edges *edges;
-    uint32_t count;  /* edges */
-    uint32_t blocks; /* of SC_CONTOUR_BLOCK */
-    float error;     /* |computed - true| of each coordinate, at most */
-    int in_pieces;   /* pieces have to be told apart */
-    uint32_t pinch_count;
-    uint32_t pinch[PINCHES_MAX]; /* points */
-} contour;
 
 /*
  * Projects the edges of a node's contour. x = U . (p - q) with U = u / (2 |u|1 radius), so that |x| <= 1,
@@ -40,8 +26,9 @@ typedef struct contour {
  * difference, one product and two additions: at most 6.01 * 2^-53 |U|1 |p - q|max, and that of the
  * conversion to float, 2^-24 |x|, or less than FLT_MIN if it underflows.
  */
-static void project(contour *c, const sc_query_state *state, const sc_projection *projection,
-                    const uint32_t *segments, uint32_t segment_count)
+static void project(sc_simple_contour *c, const sc_query_state *state,
+                    const sc_projection *projection, const uint32_t *segments,
+                    uint32_t segment_count)
 {
     const sc_model *model = state->model;
     const sc_contour_edges *e = c->edges;
@@ -100,7 +87,7 @@ static void project(contour *c, const sc_query_state *state, const sc_projection
 
 /* Boxes of edges and blocks, two errors larger than computed: one for the places of points, and one,
    2^-24 of the coordinate or more, for the rounding here. */
-static void enclose(contour *c)
+static void enclose(sc_simple_contour *c)
 {
     const sc_contour_edges *e = c->edges;
     float margin = 2 * c->error;
@@ -133,31 +120,6 @@ static void enclose(contour *c)
     }
 }
 
-/* Bit k: box i overlaps box j + k, for k from 0 to 7. */
-static inline unsigned overlap8(float *const side[4], uint32_t i, uint32_t j)
-{
-#if SC_BOXES_SSE2
-    __m128 low = _mm_cmpeq_ps(_mm_setzero_ps(), _mm_setzero_ps()), high = low;
-    int k;
-    for (k = 0; k < 4; k += 2) {
-        __m128 lower = _mm_set1_ps(side[k][i]), upper = _mm_set1_ps(side[k + 1][i]);
-        const float *lowers = side[k] + j, *uppers = side[k + 1] + j;
-        low = _mm_and_ps(low, _mm_and_ps(_mm_cmple_ps(lower, _mm_loadu_ps(uppers)),
-                                         _mm_cmple_ps(_mm_loadu_ps(lowers), upper)));
-        high = _mm_and_ps(high, _mm_and_ps(_mm_cmple_ps(lower, _mm_loadu_ps(uppers + 4)),
-                                           _mm_cmple_ps(_mm_loadu_ps(lowers + 4), upper)));
-    }
-    return (unsigned)_mm_movemask_ps(low) | (unsigned)_mm_movemask_ps(high) << 4;
-#else
-    unsigned mask = 0, k;
-    for (k = 0; k < 8; k++)
-        mask |= (unsigned)((side[0][i] <= side[1][j + k]) & (side[0][j + k] <= side[1][i]) &
-                           (side[2][i] <= side[3][j + k]) & (side[2][j + k] <= side[3][i]))
-                << k;
-    return mask;
-#endif
-}
-
 typedef struct vector2 {
     float x, y;
 } vector2;
@@ -180,7 +142,7 @@ static inline int turn(vector2 a, vector2 b, float error)
     return (cross > bound) - (cross < -bound);
 }
 
-static inline vector2 edge_end(const contour *c, uint32_t i, int end)
+static inline vector2 edge_end(const sc_simple_contour *c, uint32_t i, int end)
 {
     vector2 v;
     v.x = end ? c->edges->to[0][i] : c->edges->from[0][i];
@@ -196,7 +158,7 @@ static inline vector2 minus(vector2 a, vector2 b)
 }
 
 /* Whether edge j is certainly on one side of the line of edge i. */
-static int is_beside(const contour *c, uint32_t i, uint32_t j)
+static int is_beside(const sc_simple_contour *c, uint32_t i, uint32_t j)
 {
     vector2 from = edge_end(c, i, 0), along = minus(edge_end(c, i, 1), from);
     return turn(along, minus(edge_end(c, j, 0), from), c->error) *
@@ -205,22 +167,21 @@ static int is_beside(const contour *c, uint32_t i, uint32_t j)
 }
 
 /* Whether two edges that share a point, the given end of each, certainly do not overlap beyond it. */
-static int is_open(const contour *c, uint32_t i, int end_i, uint32_t j, int end_j)
+static int is_open(const sc_simple_contour *c, uint32_t i, int end_i, uint32_t j, int end_j)
 {
     vector2 at = edge_end(c, i, end_i);
     vector2 a = minus(edge_end(c, i, 1 - end_i), at), b = minus(edge_end(c, j, 1 - end_j), at);
     return turn(a, b, c->error) != 0 || a.x * b.x + a.y * b.y < -bound_of(a, b, c->error);
 }
 
-static uint32_t piece_of(const contour *c, uint32_t i)
+static uint32_t piece_of(const sc_simple_contour *c, uint32_t i)
 {
     uint32_t *piece = c->edges->piece;
     while (piece[i] != i) i = piece[i] = piece[piece[i]];
     return i;
 }
 
-/* Whether two edges whose boxes overlap are as edges of a simple contour: apart, or sharing one point. */
-static int is_fine(contour *c, uint32_t i, uint32_t j)
+int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
     uint32_t a = c->edges->point[0][i], b = c->edges->point[1][i], k;
     uint32_t p = c->edges->point[0][j], q = c->edges->point[1][j];
@@ -231,33 +192,10 @@ static int is_fine(contour *c, uint32_t i, uint32_t j)
     if (a == p) { /* the contour leaves the point twice */
         for (k = 0; k < c->pinch_count && c->pinch[k] != a; k++) {
         }
-        if (k == PINCHES_MAX) return 0;
+        if (k == SC_PINCHES_MAX) return 0;
         c->pinch[k] = a;
         if (k == c->pinch_count) c->pinch_count++;
     }
-    return 1;
-}
-
-static int are_edges_fine(contour *c)
-{
-    const sc_contour_edges *e = c->edges;
-    uint32_t a, b, i;
-    for (a = 0; a < c->blocks; a++)
-        for (b = a; b < c->blocks; b += 8) {
-            unsigned near_blocks = overlap8(e->block_side, a, b);
-            for (; near_blocks; near_blocks &= near_blocks - 1) {
-                uint32_t other = b + sc_bits_lowest(near_blocks);
-                uint32_t end = (a + 1) * SC_CONTOUR_BLOCK;
-                if (end > c->count) end = c->count;
-                for (i = a * SC_CONTOUR_BLOCK; i < end; i++) {
-                    unsigned near = overlap8(e->side, i, other * SC_CONTOUR_BLOCK);
-                    if (other == a) near &= ~((2u << i % SC_CONTOUR_BLOCK) - 1u);
-                    for (; near; near &= near - 1)
-                        if (!is_fine(c, i, other * SC_CONTOUR_BLOCK + sc_bits_lowest(near)))
-                            return 0;
-                }
-            }
-        }
     return 1;
 }
 
@@ -266,7 +204,7 @@ static int are_edges_fine(contour *c)
  * out: else it crosses itself there. That is so if just one of those that come in is between the two
  * that go out. More than four are not looked at.
  */
-static int is_pinch_fine(const contour *c, uint32_t point)
+static int is_pinch_fine(const sc_simple_contour *c, uint32_t point)
 {
     vector2 direction[2][2]; /* out, in */
     uint32_t i, count[2] = {0, 0}, between = 0;
@@ -290,7 +228,7 @@ static int is_pinch_fine(const contour *c, uint32_t point)
 
 /* How often the edges of other pieces go round a point of one; a number that cannot be if that is not
    certain. They pass it at a distance. */
-static int winding(const contour *c, uint32_t piece, vector2 at)
+static int winding(const sc_simple_contour *c, uint32_t piece, vector2 at)
 {
     uint32_t i;
     int sum = 0;
@@ -313,7 +251,7 @@ static int winding(const contour *c, uint32_t piece, vector2 at)
  * other pieces wind round it n times, those are n + 1 and n if it runs counter-clockwise, else n and n - 1. That
  * must be 1 and 0.
  */
-static int are_pieces_fine(const contour *c)
+static int are_pieces_fine(const sc_simple_contour *c)
 {
     uint32_t piece, i;
     for (piece = 0; piece < c->count; piece++) {
@@ -341,7 +279,7 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
     uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
     uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS), i;
     int kind = sc_model_node_kind(model)[node], passed;
-    contour c;
+    sc_simple_contour c;
     if (kind & SC_NODE_TOUCHES) {
         segments += 2;
         count -= 2;
@@ -357,7 +295,7 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
     sc_state_switch(state, SC_TASK_CONTOUR);
     state->stats.counts[SC_TASK_CONTOUR]++;
     /* of an error that large, and of NaN, nothing below holds */
-    passed = count && c.error < 1e-3f && are_edges_fine(&c);
+    passed = count && c.error < 1e-3f && sc_query_kernels_of(state->workspace)->are_edges_fine(&c);
     for (i = 0; passed && i < c.pinch_count; i++) passed = is_pinch_fine(&c, c.pinch[i]);
     passed = passed && (!c.in_pieces || are_pieces_fine(&c));
     sc_state_switch(state, previous);

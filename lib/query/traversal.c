@@ -8,10 +8,9 @@
  */
 #include "query/traversal.h"
 
-#include "base/bits.h"
 #include "pose/dnc.h"
 #include "pose/refit.h"
-#include "query/candidates.h"
+#include "query/query_kernels.h"
 #include "query/simple.h"
 #include "query/star.h"
 
@@ -19,71 +18,10 @@
 #  include <assert.h>
 #endif
 
-static int is_last_level(const sc_model *model, uint32_t patch)
-{
-    return patch >= sc_model_first_leaf_patch(model);
-}
-
-static unsigned row_mask(uint32_t count)
-{
-    return (1u << count) - 1u;
-}
-
 /* The leaf cluster of a patch that is one. */
 static uint32_t leaf_of(const sc_model *model, uint32_t patch)
 {
     return sc_model_leaf(model)[patch];
-}
-
-/*
- * Box recursion (the paper's QueryBVs) on two patches of a level whose boxes overlap: the descendants
- * of each at the next level that is visited, eight at most, against the other's box, then row by row.
- */
-static void query_boxes(sc_query_state *state, uint32_t a, uint32_t b)
-{
-    const sc_model *model = state->model;
-    const sc_boxes *boxes = &state->workspace->patch_boxes;
-    const uint32_t *hop = sc_model_hop(model);
-    uint32_t a_count, b_count;
-    unsigned rows;
-    if (is_last_level(model, a)) {
-        sc_candidates_of_pair(state, leaf_of(model, a), leaf_of(model, b));
-        return;
-    }
-    a_count = hop[a + 1] - hop[a];
-    b_count = hop[b + 1] - hop[b];
-    rows = sc_boxes_overlap8(boxes, b, boxes, hop[a]) & row_mask(a_count);
-    state->stats.counts[sc_state_box_task(state)]++;
-    for (; rows && !state->stop; rows &= rows - 1) {
-        uint32_t c = hop[a] + sc_bits_lowest(rows);
-        unsigned mask = sc_boxes_overlap8(boxes, c, boxes, hop[b]) & row_mask(b_count);
-        state->stats.counts[sc_state_box_task(state)]++;
-        for (; mask && !state->stop; mask &= mask - 1)
-            query_boxes(state, c, hop[b] + sc_bits_lowest(mask));
-    }
-}
-
-/* The plain tree: a patch against itself. */
-static void query_boxes_of_self(sc_query_state *state, uint32_t a)
-{
-    const sc_model *model = state->model;
-    const sc_boxes *boxes = &state->workspace->patch_boxes;
-    const uint32_t *hop = sc_model_hop(model);
-    uint32_t count, i;
-    if (sc_model_is_leaf(model, a)) {
-        sc_candidates_of_leaf(state, leaf_of(model, a));
-        return;
-    }
-    count = hop[a + 1] - hop[a];
-    for (i = 0; i < count && !state->stop; i++) {
-        uint32_t c = hop[a] + i;
-        unsigned mask =
-            sc_boxes_overlap8(boxes, c, boxes, hop[a]) & row_mask(count) & ~row_mask(i + 1);
-        state->stats.counts[sc_state_box_task(state)]++;
-        query_boxes_of_self(state, c);
-        for (; mask && !state->stop; mask &= mask - 1)
-            query_boxes(state, c, hop[a] + sc_bits_lowest(mask));
-    }
 }
 
 /* What a node that is not culled leaves to boxes and primitives: its BVTT children, and the triangles
@@ -93,6 +31,7 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     const sc_pair *patches = &sc_model_node_patches(model)[node];
+    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
     uint32_t i, end = sc_model_node_boxes(model)[node + 1], previous;
     if (!state->workspace->boxes_ready) {
         previous = sc_state_switch(state, SC_TASK_UPDATE_BOXES);
@@ -105,14 +44,15 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
     for (i = sc_model_node_boxes(model)[node]; i < end && !state->stop; i++) {
         const sc_pair *pair = &sc_model_boxes(model)[i];
         state->stats.counts[sc_state_box_task(state)]++;
-        if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b)) query_boxes(state, pair->a, pair->b);
+        if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b))
+            kernels->patch_pair(state, pair->a, pair->b);
     }
     if (sc_model_node_child(model)[node] == sc_model_node_child(model)[node + 1] &&
         sc_model_is_leaf(model, patches->a) && sc_model_is_leaf(model, patches->b)) {
         if (patches->a == patches->b)
-            sc_candidates_of_leaf(state, leaf_of(model, patches->a));
+            kernels->leaf_itself(state, leaf_of(model, patches->a));
         else
-            sc_candidates_of_pair(state, leaf_of(model, patches->a), leaf_of(model, patches->b));
+            kernels->leaf_pair(state, leaf_of(model, patches->a), leaf_of(model, patches->b));
     }
     sc_state_switch(state, previous);
 }
@@ -233,7 +173,7 @@ void sc_traversal_run(sc_query_state *state)
         state->stats.counts[SC_TASK_UPDATE_BOXES] +=
             model->triangle_count + (uint64_t)model->patch_end;
         sc_state_switch(state, SC_TASK_BOXES_ORIENTATION);
-        query_boxes_of_self(state, 0);
+        sc_query_kernels_of(state->workspace)->patch_itself(state, 0);
     }
     sc_candidates_decide(state);
 }

@@ -92,7 +92,7 @@ static void ask(fuzz_bytes *bytes, const subject *s, const sc_pose *pose,
     if (wrong) {
         uint32_t *member[6] = {&o.output, &o.pairs,   &o.contact,
                                &o.method, &o.contour, &o.rest_cache};
-        *(kind - 250 < 6 ? member[kind - 250] : &o.reserved) += 4 + how;
+        *(kind - 250 < 6 ? member[kind - 250] : &o.simd) += 4 + how;
         check_refusal(s, pose, &o, SC_ERROR_OPTION);
         return;
     }

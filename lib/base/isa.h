@@ -1,0 +1,32 @@
+/*
+ * Instruction sets (ISA) that some inner loops are compiled for, and the best one at run time.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Such a loop is written once, in a file named ..._kernel.h, over eight floats at a time (base/lanes.h), and
+ * included by a .c file for each instruction set. All give the same answers.
+ */
+#ifndef SC_BASE_ISA_H
+#define SC_BASE_ISA_H
+
+/* SC_NO_SIMD leaves the plain form alone, for other machines and to compare. SIMD: single instruction,
+   multiple data; SSE and AVX: x86's streaming and advanced vector extensions. */
+#if !defined(SC_NO_SIMD) && defined(__GNUC__) && defined(__x86_64__)
+#  define SC_ISA_X86 1
+#else
+#  define SC_ISA_X86 0
+#endif
+
+/* As SC_SIMD_... in starcontour.h, best last. */
+typedef enum sc_isa { SC_ISA_BASE = 1, SC_ISA_AVX2 = 2 } sc_isa;
+
+/* The best that this machine has. */
+static inline sc_isa sc_isa_best(void)
+{
+#if SC_ISA_X86
+    if (__builtin_cpu_supports("avx2")) return SC_ISA_AVX2;
+#endif
+    return SC_ISA_BASE;
+}
+
+#endif

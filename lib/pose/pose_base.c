@@ -1,0 +1,26 @@
+/*
+ * The inner loops over a pose, for every machine: by SSE2 on x86-64, else in plain C. See pose_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "pose/pose_kernels.h"
+
+#include <float.h>
+
+#define SC_KERNEL(name) name##_base
+#if SC_ISA_X86
+#  include <emmintrin.h>
+#  define SC_LANES 1
+#else
+#  define SC_LANES 0
+#endif
+
+#include "base/lanes.h"
+#include "pose/cones_kernel.h"
+#include "pose/fan_kernel.h"
+#include "pose/refit_kernel.h"
+
+const sc_pose_kernels sc_pose_kernels_base = {mask_of_base, refit_leaf_base, is_plain_base};
+
+#undef SC_KERNEL
+#undef SC_LANES

@@ -1,0 +1,39 @@
+/*
+ * The inner loops of a query that are compiled for several instruction sets.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef SC_QUERY_KERNELS_H
+#define SC_QUERY_KERNELS_H
+
+#include "base/isa.h"
+#include "query/candidates.h"
+#include "query/simple_contour.h"
+
+typedef struct sc_query_kernels {
+    /* Box recursion (the paper's QueryBVs) on two patches of a level whose boxes overlap, and on one. */
+    void (*patch_pair)(sc_query_state *state, uint32_t patch_a, uint32_t patch_b);
+    void (*patch_itself)(sc_query_state *state, uint32_t patch);
+    /* The triangles of two leaf clusters, and of one. */
+    void (*leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b);
+    void (*leaf_itself)(sc_query_state *state, uint32_t leaf);
+    /* Whether sc_simple_are_apart is true of all pairs of edges whose boxes overlap. */
+    int (*are_edges_fine)(sc_simple_contour *contour);
+} sc_query_kernels;
+
+extern const sc_query_kernels sc_query_kernels_base;
+#if SC_ISA_X86
+extern const sc_query_kernels sc_query_kernels_avx2;
+#endif
+
+/* Those for the query at hand. */
+static inline const sc_query_kernels *sc_query_kernels_of(const sc_workspace *workspace)
+{
+#if SC_ISA_X86
+    if (workspace->isa == SC_ISA_AVX2) return &sc_query_kernels_avx2;
+#endif
+    (void)workspace;
+    return &sc_query_kernels_base;
+}
+
+#endif
