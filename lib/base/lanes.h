@@ -331,17 +331,19 @@ static inline float lanes_sum(lanes a)
 /* The least and the greatest of all lanes, none of which is NaN. */
 static inline float lanes_least(lanes a)
 {
-    float v[SC_LANES_COUNT], least;
-    int i;
+    float v[SC_LANES_COUNT];
+    int i, half;
     lanes_store(v, a);
-    for (i = 1, least = v[0]; i < SC_LANES_COUNT; i++) least = v[i] < least ? v[i] : least;
-    return least;
+    for (half = SC_LANES_COUNT / 2; half > 0; half /= 2)
+        for (i = 0; i < half; i++) v[i] = v[i] < v[i + half] ? v[i] : v[i + half];
+    return v[0];
 }
 static inline float lanes_most(lanes a)
 {
-    float v[SC_LANES_COUNT], most;
-    int i;
+    float v[SC_LANES_COUNT];
+    int i, half;
     lanes_store(v, a);
-    for (i = 1, most = v[0]; i < SC_LANES_COUNT; i++) most = v[i] > most ? v[i] : most;
-    return most;
+    for (half = SC_LANES_COUNT / 2; half > 0; half /= 2)
+        for (i = 0; i < half; i++) v[i] = v[i] > v[i + half] ? v[i] : v[i + half];
+    return v[0];
 }

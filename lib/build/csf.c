@@ -281,7 +281,7 @@ static uint32_t find_root(uint32_t *parent, uint32_t i)
     return i;
 }
 
-/* Counts the half-edges round each node, and finds those whose segments hang together. */
+/* Counts the points round each node, and finds those whose segments hang together. */
 static sc_status measure_contours(builder *b, sc_csf *csf)
 {
     uint32_t nodes = b->sctt->node_count, n, i, k, longest = 0, *parent, *seen_at, *seen_by;
@@ -294,17 +294,17 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
     seen_by = (uint32_t *)sc_scratch_take(b->scratch, b->points->point_count, sizeof *seen_by);
     csf->in_pieces = (uint8_t *)sc_scratch_take(b->scratch, nodes, 1);
     if (!parent || !seen_at || !seen_by || !csf->in_pieces) return SC_ERROR_MEMORY;
-    csf->edges_max = 0;
+    csf->contour_max = 0;
     for (n = 0; n < nodes; n++) {
         uint32_t begin = csf->contour_first[n] + (b->sctt->touch[n] == SC_NONE ? 0 : 2);
-        uint32_t count = csf->contour_first[n + 1] - begin, edges = 0, pieces = count;
+        uint32_t count = csf->contour_first[n + 1] - begin, listed = 0, pieces = count;
         const uint32_t *segments = csf->contours + begin;
         for (i = 0; i < count; i++) parent[i] = i;
         for (i = 0; i < count; i++) {
             uint32_t end[2];
             end[0] = csf->points[csf->point_first[segments[i]]];
             end[1] = csf->points[csf->point_last[segments[i]]];
-            edges += csf->point_last[segments[i]] - csf->point_first[segments[i]];
+            listed += csf->point_last[segments[i]] - csf->point_first[segments[i]] + 1;
             for (k = 0; k < 2; k++) {
                 uint32_t p, q;
                 if (seen_at[end[k]] != n) {
@@ -319,7 +319,7 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
             }
         }
         csf->in_pieces[n] = pieces > 1;
-        if (edges > csf->edges_max) csf->edges_max = edges;
+        if (listed > csf->contour_max) csf->contour_max = listed;
     }
     sc_scratch_give(b->scratch, parent);
     sc_scratch_give(b->scratch, seen_at);

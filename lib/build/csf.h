@@ -42,7 +42,7 @@ typedef struct sc_csf {
     uint32_t *contours;      /* contour_first[node_count] */
     uint8_t *in_pieces; /* node_count: 1 if no chain of segments with common ends joins them all */
     uint32_t *level_segments; /* level_count: segments of each level */
-    uint32_t edges_max;       /* half-edges round a node, at most */
+    uint32_t contour_max; /* points of the segments round a node, at most */
 } sc_csf;
 
 sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,

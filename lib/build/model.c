@@ -194,7 +194,7 @@ static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
     m->segment_count = csf->segment_count;
     m->leaf_segment_count = csf->leaf_count;
     m->segment_point_total = csf->point_count;
-    m->contour_edges_max = csf->edges_max;
+    m->contour_max = csf->contour_max;
     m->segment_child_total = csf->child_first[csf->segment_count - csf->leaf_count];
 }
 

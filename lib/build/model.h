@@ -99,7 +99,7 @@ struct sc_model {
     uint32_t leaf_count, level_count, patch_end;
     uint32_t node_count, box_count, contour_total;
     uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
-    uint32_t contour_edges_max; /* half-edges round a node, at most */
+    uint32_t contour_max; /* points of the segments round a node, at most */
     uint32_t ring_total, share_count;
     uint64_t offset[SC_ARRAY_COUNT]; /* in bytes from the start of the sc_model */
 };

@@ -27,8 +27,7 @@ static uint64_t lay_out(const sc_model *model, unsigned char *block, sc_workspac
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
-    uint64_t edges = ((uint64_t)model->contour_edges_max + SC_CONTOUR_BLOCK - 1) /
-                     SC_CONTOUR_BLOCK * SC_CONTOUR_BLOCK;
+    uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
     int k;
     w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count, sizeof(double));
     w->unit = (float *)place(block, &at, 4 * (uint64_t)model->point_count, sizeof(float));
@@ -45,17 +44,15 @@ static uint64_t lay_out(const sc_model *model, unsigned char *block, sc_workspac
             (sc_segment_bounds *)place(block, &at, model->segment_count, sizeof(sc_segment_bounds));
         w->bounds_tick[k] = (uint32_t *)place(block, &at, model->segment_count, sizeof(uint32_t));
     }
-    for (k = 0; k < 2; k++) {
-        w->contour.from[k] = (float *)place(block, &at, edges, sizeof(float));
-        w->contour.to[k] = (float *)place(block, &at, edges, sizeof(float));
-        w->contour.point[k] = (uint32_t *)place(block, &at, edges, sizeof(uint32_t));
-    }
+    w->contour.point = (uint32_t *)place(block, &at, listed, sizeof(uint32_t));
+    for (k = 0; k < 2; k++) w->contour.at[k] = (float *)place(block, &at, listed, sizeof(float));
     for (k = 0; k < 4; k++) {
-        w->contour.side[k] = (float *)place(block, &at, edges, sizeof(float));
+        w->contour.side[k] = (float *)place(block, &at, listed, sizeof(float));
         w->contour.block_side[k] =
-            (float *)place(block, &at, edges / SC_CONTOUR_BLOCK + SC_CONTOUR_BLOCK, sizeof(float));
+            (float *)place(block, &at, listed / SC_CONTOUR_BLOCK + SC_CONTOUR_BLOCK, sizeof(float));
     }
-    w->contour.piece = (uint32_t *)place(block, &at, edges, sizeof(uint32_t));
+    w->contour.is_edge = (uint8_t *)place(block, &at, listed / SC_CONTOUR_BLOCK + 1, 1);
+    w->contour.piece = (uint32_t *)place(block, &at, listed, sizeof(uint32_t));
     w->candidates = (sc_pair *)place(block, &at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     return at;
 }

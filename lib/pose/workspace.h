@@ -45,14 +45,17 @@ enum { SC_CONTOUR_BLOCK = 8 };
 /* Sides of boxes in the plane. */
 enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
 
-/* The projected contour of a node, see query/simple.c. Room for model.contour_edges_max edges, rounded up to
-   whole blocks. */
+/*
+ * The projected contour of a node, see query/simple.c: a list of points, of which point i and the next are
+ * edge i, but where a chain ends. Room for model.contour_max points, and two blocks more.
+ */
 typedef struct sc_contour_edges {
-    float *from[2], *to[2]; /* x and y of the edges' ends */
-    uint32_t *point[2];     /* what points they are */
-    float *side[4];         /* boxes of edges */
-    float *block_side[4];   /* boxes of blocks, and SC_CONTOUR_BLOCK more */
-    uint32_t *piece;        /* trees of edges that hang together: the parent of each */
+    uint32_t *point;      /* what points they are */
+    float *at[2];         /* x and y */
+    float *side[4];       /* boxes of edges */
+    float *block_side[4]; /* boxes of blocks, and SC_CONTOUR_BLOCK more */
+    uint8_t *is_edge;     /* bit i of block b: 8 b + i is an edge */
+    uint32_t *piece;      /* trees of edges that hang together: the parent of each */
 } sc_contour_edges;
 
 enum { SC_CANDIDATES_MAX = 1024 };

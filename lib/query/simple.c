@@ -16,108 +16,68 @@
 
 #include "query/query_kernels.h"
 
-/* Half a unit in the last place, relative: of float and of double. */
-#define HALF_ULP_FLOAT 5.9604644775390625e-8f
-#define HALF_ULP 1.1102230246251565e-16
-
-/*
- * Projects the edges of a node's contour. x = U . (p - q) with U = u / (2 |u|1 radius), so that |x| <= 1,
- * and y likewise, q being a point of the contour. A computed coordinate collects the rounding of U (2), one
- * difference, one product and two additions: at most 6.01 * 2^-53 |U|1 |p - q|max, and that of the
- * conversion to float, 2^-24 |x|, or less than FLT_MIN if it underflows.
- */
-static void project(sc_simple_contour *c, const sc_query_state *state,
-                    const sc_projection *projection, const uint32_t *segments,
-                    uint32_t segment_count)
+/* Lists the points of segments, one that follows where another ended going on with its chain. */
+static void list_points(sc_simple_contour *c, const sc_model *model, const uint32_t *segments,
+                        uint32_t segment_count)
 {
-    const sc_model *model = state->model;
     const sc_contour_edges *e = c->edges;
-    const double *position = state->workspace->position;
     const uint32_t *points = sc_model_points(model);
     const uint32_t *first = sc_model_segment_first(model), *last = sc_model_segment_last(model);
-    const double *q = position + 3 * (uint64_t)points[first[segments[0]]];
-    double u[3], w[3], u_size = 0, w_size = 0, size = 0, extent = 0, error;
-    double not_finite = 0; /* stays 0 unless something is NaN or infinite */
-    uint32_t i, j, n = 0;
-    int k;
-    for (k = 0; k < 3; k++) {
-        u_size += fabs(projection->u[k]);
-        w_size += fabs(projection->w[k]);
-    }
-    for (k = 0; k < 3; k++) {
-        u[k] = projection->u[k] / (2 * u_size * state->workspace->radius);
-        w[k] = projection->w[k] / (2 * w_size * state->workspace->radius);
-    }
+    uint32_t i, j, n = 0, start = 0;
     for (i = 0; i < segment_count; i++) {
-        uint32_t begin = first[segments[i]], end = last[segments[i]], start = n;
-        float x0 = 0, y0 = 0;
+        uint32_t begin = first[segments[i]], end = last[segments[i]];
+        if (n && e->point[n - 1] == points[begin])
+            begin++;
+        else if (n)
+            e->piece[n - 1] = SC_NONE; /* no edge */
+        if (begin == first[segments[i]]) start = n;
         for (j = begin; j <= end; j++) {
-            const double *p = position + 3 * (uint64_t)points[j];
-            double d0 = p[0] - q[0], d1 = p[1] - q[1], d2 = p[2] - q[2];
-            float x = (float)(u[0] * d0 + u[1] * d1 + u[2] * d2);
-            float y = (float)(w[0] * d0 + w[1] * d1 + w[2] * d2);
-            double reach;
-            not_finite += 0 * (double)x + 0 * (double)y;
-            reach = fabs(d0) > fabs(d1) ? fabs(d0) : fabs(d1);
-            reach = reach > fabs(d2) ? reach : fabs(d2);
-            size = size > reach ? size : reach;
-            extent = extent > fabs((double)x) ? extent : fabs((double)x);
-            extent = extent > fabs((double)y) ? extent : fabs((double)y);
-            if (j > begin) {
-                e->from[0][n] = x0;
-                e->from[1][n] = y0;
-                e->to[0][n] = x;
-                e->to[1][n] = y;
-                e->point[0][n] = points[j - 1];
-                e->point[1][n] = points[j];
-                if (c->in_pieces) e->piece[n] = start;
-                n++;
-            }
-            x0 = x;
-            y0 = y;
+            e->piece[n] = start;
+            e->point[n++] = points[j];
         }
     }
+    e->piece[n - 1] = SC_NONE;
     c->count = n;
-    /* |U|1 and |W|1 are 1 / (2 radius) */
-    error = 1.001 * (double)HALF_ULP_FLOAT * extent +
-            7 * HALF_ULP * (size / (2 * state->workspace->radius)) + 2 * (double)FLT_MIN +
-            not_finite;
-    c->error = (float)(1.001 * error);
+    c->blocks = (n + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK;
+    for (i = n; i < (c->blocks + 1) * SC_CONTOUR_BLOCK; i++) e->point[i] = e->point[n - 1];
+    for (i = 0; i < c->blocks; i++) {
+        unsigned bits = 0;
+        for (j = 0; j < SC_CONTOUR_BLOCK; j++)
+            if (SC_CONTOUR_BLOCK * i + j < n)
+                bits |= (unsigned)(e->piece[SC_CONTOUR_BLOCK * i + j] != SC_NONE) << j;
+        e->is_edge[i] = (uint8_t)bits;
+    }
+    e->is_edge[c->blocks] = 0;
 }
 
-/* Boxes of edges and blocks, two errors larger than computed: one for the places of points, and one,
-   2^-24 of the coordinate or more, for the rounding here. */
-static void enclose(sc_simple_contour *c)
+/*
+ * The projection x = U . (p - q) of points in the unit box, q being about the middle of the contour and
+ * U the integer vector u over a power of two, exactly, so that |U|1 <= 1; and y likewise. A computed coordinate is off
+ * by 3e-8 for the place of p, and by the rounding of one difference, one product and two additions: at most
+ * 4.01 * 2^-24 |p - q|max, and what underflows.
+ */
+static void choose_axes(sc_simple_contour *c, const sc_workspace *w,
+                        const sc_projection *projection)
 {
-    const sc_contour_edges *e = c->edges;
-    float margin = 2 * c->error;
-    uint32_t i, b, k;
-    c->blocks = (c->count + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK;
-    for (k = 0; k < 2; k++) {
-        const float *from = e->from[k], *to = e->to[k];
-        float *low = e->side[2 * k], *high = e->side[2 * k + 1];
-        for (i = 0; i < c->count; i++) {
-            low[i] = (from[i] < to[i] ? from[i] : to[i]) - margin;
-            high[i] = (from[i] < to[i] ? to[i] : from[i]) + margin;
-        }
-        for (; i < c->blocks * SC_CONTOUR_BLOCK; i++) { /* nothing overlaps these */
-            low[i] = HUGE_VALF;
-            high[i] = -HUGE_VALF;
-        }
-        for (b = 0; b < c->blocks; b++) {
-            float l = HUGE_VALF, h = -HUGE_VALF;
-            for (i = b * SC_CONTOUR_BLOCK; i < (b + 1) * SC_CONTOUR_BLOCK; i++) {
-                l = low[i] < l ? low[i] : l;
-                h = high[i] > h ? high[i] : h;
-            }
-            e->block_side[2 * k][b] = l;
-            e->block_side[2 * k + 1][b] = h;
-        }
-        for (; b < c->blocks + SC_CONTOUR_BLOCK; b++) {
-            e->block_side[2 * k][b] = HUGE_VALF;
-            e->block_side[2 * k + 1][b] = -HUGE_VALF;
-        }
+    const float *one = w->unit + 4 * (uint64_t)c->edges->point[0];
+    const float *other = w->unit + 4 * (uint64_t)c->edges->point[c->count / 2];
+    double size[2] = {0, 0};
+    int k, exponent[2];
+    for (k = 0; k < 3; k++) {
+        size[0] += fabs(projection->u[k]);
+        size[1] += fabs(projection->w[k]);
+        c->from[k] = one[k] / 2 + other[k] / 2;
     }
+    for (k = 0; k < 2; k++) (void)frexp(size[k], &exponent[k]);
+    for (k = 0; k < 3; k++) {
+        c->axis[0][k] = (float)ldexp(projection->u[k], -exponent[0]);
+        c->axis[1][k] = (float)ldexp(projection->w[k], -exponent[1]);
+    }
+}
+
+static int is_edge(const sc_simple_contour *c, uint32_t i)
+{
+    return c->edges->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1;
 }
 
 typedef struct vector2 {
@@ -132,7 +92,9 @@ typedef struct vector2 {
  */
 static inline float bound_of(vector2 a, vector2 b, float error)
 {
-    return 12 * error * (fabsf(a.x) + fabsf(a.y) + fabsf(b.x) + fabsf(b.y) + 4 * error) + FLT_MIN;
+    return SC_SIMPLE_BOUND * error *
+               (fabsf(a.x) + fabsf(a.y) + fabsf(b.x) + fabsf(b.y) + 4 * error) +
+           FLT_MIN;
 }
 
 /* The certain sign of a x b, 0 if there is none. */
@@ -145,8 +107,8 @@ static inline int turn(vector2 a, vector2 b, float error)
 static inline vector2 edge_end(const sc_simple_contour *c, uint32_t i, int end)
 {
     vector2 v;
-    v.x = end ? c->edges->to[0][i] : c->edges->from[0][i];
-    v.y = end ? c->edges->to[1][i] : c->edges->from[1][i];
+    v.x = c->edges->at[0][i + (uint32_t)end];
+    v.y = c->edges->at[1][i + (uint32_t)end];
     return v;
 }
 
@@ -183,8 +145,8 @@ static uint32_t piece_of(const sc_simple_contour *c, uint32_t i)
 
 int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
-    uint32_t a = c->edges->point[0][i], b = c->edges->point[1][i], k;
-    uint32_t p = c->edges->point[0][j], q = c->edges->point[1][j];
+    uint32_t a = c->edges->point[i], b = c->edges->point[i + 1], k;
+    uint32_t p = c->edges->point[j], q = c->edges->point[j + 1];
     int shared = (a == p) + (a == q) + (b == p) + (b == q);
     if (!shared) return is_beside(c, i, j) || is_beside(c, j, i);
     if (shared > 1 || !is_open(c, i, b == p || b == q, j, a == q || b == q)) return 0;
@@ -211,7 +173,7 @@ static int is_pinch_fine(const sc_simple_contour *c, uint32_t point)
     int end, out, one, other;
     for (i = 0; i < c->count; i++)
         for (end = 0; end < 2; end++) {
-            if (c->edges->point[end][i] != point) continue;
+            if (c->edges->point[i + (uint32_t)end] != point || !is_edge(c, i)) continue;
             if (count[end] == 2) return 0;
             direction[end][count[end]++] = minus(edge_end(c, i, 1 - end), edge_end(c, i, end));
         }
@@ -235,7 +197,8 @@ static int winding(const sc_simple_contour *c, uint32_t piece, vector2 at)
     for (i = 0; i < c->count; i++) {
         vector2 from = edge_end(c, i, 0), to = edge_end(c, i, 1);
         int side;
-        if ((from.y <= at.y) == (to.y <= at.y) || piece_of(c, i) == piece) continue;
+        if (!is_edge(c, i) || (from.y <= at.y) == (to.y <= at.y) || piece_of(c, i) == piece)
+            continue;
         side = turn(minus(to, from), minus(at, from), c->error);
         if (!side) return 1 << 20;
         if (from.y <= at.y)
@@ -257,10 +220,10 @@ static int are_pieces_fine(const sc_simple_contour *c)
     for (piece = 0; piece < c->count; piece++) {
         double area = 0, bound = 0;
         vector2 at = edge_end(c, piece, 0);
-        if (piece_of(c, piece) != piece) continue;
+        if (!is_edge(c, piece) || piece_of(c, piece) != piece) continue;
         for (i = 0; i < c->count; i++) {
             vector2 a, b;
-            if (piece_of(c, i) != piece) continue;
+            if (!is_edge(c, i) || piece_of(c, i) != piece) continue;
             a = minus(edge_end(c, i, 0), at);
             b = minus(edge_end(c, i, 1), at);
             area += (double)a.x * (double)b.y - (double)a.y * (double)b.x;
@@ -275,6 +238,7 @@ static int are_pieces_fine(const sc_simple_contour *c)
 int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
 {
     const sc_model *model = state->model;
+    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
     const uint32_t *segments = sc_model_contours(model) + sc_model_node_contour(model)[node];
     uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
     uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS), i;
@@ -288,14 +252,14 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
     c.in_pieces = kind & SC_NODE_PIECES;
     c.pinch_count = 0;
     if (count) {
-        project(&c, state, projection, segments, count);
-        enclose(&c);
+        list_points(&c, model, segments, count);
+        choose_axes(&c, state->workspace, projection);
+        kernels->project(&c, state->workspace->unit);
         state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.count;
     }
     sc_state_switch(state, SC_TASK_CONTOUR);
     state->stats.counts[SC_TASK_CONTOUR]++;
-    /* of an error that large, and of NaN, nothing below holds */
-    passed = count && c.error < 1e-3f && sc_query_kernels_of(state->workspace)->are_edges_fine(&c);
+    passed = count && kernels->are_edges_fine(&c);
     for (i = 0; passed && i < c.pinch_count; i++) passed = is_pinch_fine(&c, c.pinch[i]);
     passed = passed && (!c.in_pieces || are_pieces_fine(&c));
     sc_state_switch(state, previous);
