@@ -153,6 +153,7 @@ typedef struct lanes {
 } lanes;
 typedef lanes lanes_mask;
 
+#  undef SC_LANES_PAIR
 #  define SC_LANES_PAIR(a, b)                                                                      \
     lanes r;                                                                                       \
     r.low = a;                                                                                     \
@@ -240,6 +241,7 @@ typedef struct lanes {
 } lanes;
 typedef unsigned lanes_mask;
 
+#  undef SC_LANES_EACH
 #  define SC_LANES_EACH(expression)                                                                \
     lanes r;                                                                                       \
     int i;                                                                                         \
@@ -320,30 +322,59 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
 
 #endif
 
-/* The sum of all lanes, in the same order for all instruction sets. */
+/*
+ * Reductions: of the upper and lower halves, then of halves of these. The sum, of which the order matters, is
+ * ((v0 + v4) + (v2 + v6)) + ((v1 + v5) + (v3 + v7)) for all instruction sets; for the least and the greatest no lane
+ * is NaN.
+ */
+#if SC_LANES_AVX2 || SC_LANES_SSE2
+
+#  if SC_LANES_AVX2
+#    define SC_LANES_LOW(a) _mm256_castps256_ps128(a)
+#    define SC_LANES_HIGH(a) _mm256_extractf128_ps(a, 1)
+#  else
+#    define SC_LANES_LOW(a) (a).low
+#    define SC_LANES_HIGH(a) (a).high
+#  endif
+#  define SC_LANES_REDUCE(a, four, one)                                                            \
+    __m128 r = four(SC_LANES_LOW(a), SC_LANES_HIGH(a));                                            \
+    r = four(r, _mm_movehl_ps(r, r));                                                              \
+    return _mm_cvtss_f32(one(r, _mm_shuffle_ps(r, r, 1)))
 static inline float lanes_sum(lanes a)
 {
-    float v[SC_LANES_COUNT];
-    lanes_store(v, a);
-    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+    SC_LANES_REDUCE(a, _mm_add_ps, _mm_add_ss);
 }
-
-/* The least and the greatest of all lanes, none of which is NaN. */
 static inline float lanes_least(lanes a)
 {
-    float v[SC_LANES_COUNT];
-    int i, half;
-    lanes_store(v, a);
-    for (half = SC_LANES_COUNT / 2; half > 0; half /= 2)
-        for (i = 0; i < half; i++) v[i] = v[i] < v[i + half] ? v[i] : v[i + half];
-    return v[0];
+    SC_LANES_REDUCE(a, _mm_min_ps, _mm_min_ss);
 }
 static inline float lanes_most(lanes a)
 {
-    float v[SC_LANES_COUNT];
-    int i, half;
-    lanes_store(v, a);
-    for (half = SC_LANES_COUNT / 2; half > 0; half /= 2)
-        for (i = 0; i < half; i++) v[i] = v[i] > v[i + half] ? v[i] : v[i + half];
-    return v[0];
+    SC_LANES_REDUCE(a, _mm_max_ps, _mm_max_ss);
 }
+#  undef SC_LANES_LOW
+#  undef SC_LANES_HIGH
+#  undef SC_LANES_REDUCE
+
+#else
+
+#  define SC_LANES_REDUCE(expression)                                                              \
+    int i, half;                                                                                   \
+    for (half = SC_LANES_COUNT / 2; half > 0; half /= 2)                                           \
+      for (i = 0; i < half; i++) a.v[i] = (expression);                                            \
+    return a.v[0]
+static inline float lanes_sum(lanes a)
+{
+    SC_LANES_REDUCE(a.v[i] + a.v[i + half]);
+}
+static inline float lanes_least(lanes a)
+{
+    SC_LANES_REDUCE(a.v[i] < a.v[i + half] ? a.v[i] : a.v[i + half]);
+}
+static inline float lanes_most(lanes a)
+{
+    SC_LANES_REDUCE(a.v[i] > a.v[i + half] ? a.v[i] : a.v[i + half]);
+}
+#  undef SC_LANES_REDUCE
+
+#endif
