@@ -14,13 +14,14 @@
 #  include <signal.h>
 #  include <stdlib.h>
 
-/* METIS's integers may be wider than ours. */
-static idx_t *widen(const int32_t *from, int32_t count)
+#  include "base/assume.h"
+
+/* METIS's integers may be wider than ours. Returns the place after the last. */
+static idx_t *widen(const int32_t *from, uint64_t count, idx_t *to)
 {
-    idx_t *to = (idx_t *)malloc(((size_t)count + 1) * sizeof *to);
-    int32_t i;
-    for (i = 0; to && i < count; i++) to[i] = from[i];
-    return to;
+    uint64_t i;
+    for (i = 0; i < count; i++) to[i] = from[i];
+    return to + count;
 }
 
 #  if defined(_WIN32)
@@ -85,36 +86,33 @@ static int bisect(const sc_dual_graph *graph, uint32_t left_target, idx_t *offse
 sc_status sc_metis_bisect(void *user, const sc_dual_graph *graph, uint32_t left_target,
                           uint8_t *side)
 {
-    int32_t arcs;
+    uint64_t nodes, arcs;
     idx_t *offsets, *neighbors, *weights, *part;
-    sc_status status = SC_ERROR_MEMORY;
     uint32_t i, zeros = 0;
     int result;
     (void)user;
     if (!graph || !side) return SC_ERROR_NULL;
-    arcs = graph->offsets[graph->node_count];
-    offsets = widen(graph->offsets, (int32_t)graph->node_count + 1);
-    neighbors = widen(graph->neighbors, arcs);
-    weights = widen(graph->weights, arcs);
-    part = (idx_t *)malloc(graph->node_count * sizeof *part);
-    if (offsets && neighbors && weights && part) {
-        result = bisect(graph, left_target, offsets, neighbors, weights, part);
-        status = result == METIS_OK             ? SC_OK
-                 : result == METIS_ERROR_MEMORY ? SC_ERROR_MEMORY
-                                                : SC_ERROR_PARTITION;
-    }
-    for (i = 0; !status && i < graph->node_count; i++) {
+    nodes = graph->node_count;
+    if (left_target == 0 || left_target >= nodes) return SC_ERROR_PARTITION; /* METIS would print */
+    arcs = (uint64_t)graph->offsets[nodes];
+    offsets = (idx_t *)calloc((size_t)(2 * nodes + 1 + 2 * arcs), sizeof *offsets);
+    if (!offsets) return SC_ERROR_MEMORY;
+    neighbors = widen(graph->offsets, nodes + 1, offsets);
+    weights = widen(graph->neighbors, arcs, neighbors);
+    part = widen(graph->weights, arcs, weights);
+    result = bisect(graph, left_target, offsets, neighbors, weights, part);
+    for (i = 0; i < nodes; i++) {
         side[i] = part[i] != 0;
         zeros += side[i] == 0;
     }
-    /* small graphs are at times put on one side: the first nodes then go to the other */
-    for (i = 0; !status && (zeros == 0 || zeros == graph->node_count) && i < graph->node_count; i++)
-        side[i] = i >= left_target;
-    free(part);
-    free(weights);
-    free(neighbors);
     free(offsets);
-    return status;
+    if (result == METIS_ERROR_MEMORY) return SC_ERROR_MEMORY;
+    if (SC_HARDLY(result != METIS_OK))
+        return SC_ERROR_PARTITION; /* what other versions may refuse */
+    /* small graphs are at times put on one side: the first nodes then go to the other */
+    if (zeros == 0 || zeros == nodes)
+        for (i = 0; i < nodes; i++) side[i] = i >= left_target;
+    return SC_OK;
 }
 
 #else
