@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "base/assume.h"
 #include "base/clock.h"
 #include "base/isa.h"
 #include "base/structs.h"
@@ -96,7 +97,8 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
     rest.position_type = mesh->position_type;
     rest.positions = mesh->positions;
     status = sc_mesh_position_stride(mesh->position_type, mesh->position_stride, &stride);
-    if (!status) status = sc_rest_mark(*model, &rest, stride, scratch);
+    if (SC_ALWAYS(!status)) /* sc_mesh_read has looked */
+        status = sc_rest_mark(*model, &rest, stride, scratch);
     if (status) {
         sc_model_release(*model);
         *model = NULL;
@@ -267,7 +269,8 @@ static sc_status check_pose(const sc_model *model, const sc_pose *pose, uint64_t
     if (!pose->positions) return SC_ERROR_NULL;
     status = sc_mesh_position_stride(pose->position_type, pose->position_stride, stride);
     if (status) return status;
-    return *stride > SIZE_MAX / pose->vertex_count ? SC_ERROR_COUNT : SC_OK;
+    /* where addresses have 32 bits: */
+    return SC_HARDLY(*stride > SIZE_MAX / pose->vertex_count) ? SC_ERROR_COUNT : SC_OK;
 }
 
 /* Everything about a query that can be wrong; afterwards only the positions can be. */

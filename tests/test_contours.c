@@ -665,6 +665,30 @@ static void ticks(void)
     close_scene(&s);
 }
 
+/* Bounds that were found at the first tick, and never since, are none when the first tick comes again. */
+static void first_tick_again(void)
+{
+    soup mesh = soup_cloth(6, 6);
+    scene s;
+    sc_projection projection;
+    if (!open_scene(&s, "cloth", &mesh, SC_WELD_REST, SC_PARTITION_FAST)) return;
+    if (CHECK(load_pose(&s))) {
+        sc_dnc_projection(s.workspace, 1u << 2, &projection);
+        for (int round = 0; round < 2; ++round) {
+            sc_workspace_new_projection(s.model, s.workspace);
+            CHECK(s.workspace->tick == 1);
+            for (int line = 0; line < 2; ++line)
+                for (uint32_t i = 0; i < s.model->segment_count; ++i) {
+                    CHECK(sc_contour_bounds_update(s.model, s.workspace, &projection, line, i) > 0);
+                    CHECK(sc_contour_bounds_update(s.model, s.workspace, &projection, line, i) ==
+                          0);
+                }
+            s.workspace->tick = 0xffffffff;
+        }
+    }
+    close_scene(&s);
+}
+
 /* ---- the star-contour test ---- */
 
 typedef struct star_tally {
@@ -1048,6 +1072,7 @@ static void single_fans(void)
 
 SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
              SC_TEST(cones_at_zero), SC_TEST(bounds_of_segments), SC_TEST(bounds_of_long_segments),
-             SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks), SC_TEST(stars_have_no_pairs),
-             SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap), SC_TEST(branched_discs),
-             SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
+             SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks), SC_TEST(first_tick_again),
+             SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),
+             SC_TEST(branched_discs), SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs),
+             SC_TEST(single_fans))

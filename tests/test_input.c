@@ -794,38 +794,51 @@ static void trees(void)
     stop(&f);
 }
 
-/* What user points to tells how the function below fails. */
+/* How the function below fails, from which call on; and what it spoils meanwhile. */
+typedef struct wrong {
+    int how, calls_before;
+    double *positions;
+} wrong;
+
 static sc_status wrong_bisect(void *user, const sc_dual_graph *graph, uint32_t left_target,
                               uint8_t *side)
 {
-    int how = *(const int *)user;
+    wrong *w = (wrong *)user;
     input_bisect(NULL, graph, left_target, side);
-    if (how == 0) return SC_ERROR_PARTITION;
-    if (how == 1) return SC_ERROR_UNSUPPORTED;
-    if (how == 2) return SC_ERROR_MEMORY;
-    if (how == 3) side[graph->node_count - 1] = 2;
-    if (how == 4) memset(side, 0, graph->node_count);
-    if (how == 5) memset(side, 1, graph->node_count);
+    if (w->calls_before-- > 0) return SC_OK;
+    if (w->how == 0) return SC_ERROR_PARTITION;
+    if (w->how == 1) return SC_ERROR_UNSUPPORTED;
+    if (w->how == 2) return SC_ERROR_MEMORY;
+    if (w->how == 3) side[graph->node_count - 1] = 2;
+    if (w->how == 4) memset(side, 0, graph->node_count);
+    if (w->how == 5) memset(side, 1, graph->node_count);
+    if (w->how == 6) w->positions[1] = NAN;
+    if (w->how == 7) w->positions[1] = HUGE_VAL;
     return SC_OK;
 }
 
 static void bisections(void)
 {
-    static const sc_status expected[] = {SC_ERROR_PARTITION,
-                                         SC_ERROR_UNSUPPORTED,
-                                         SC_ERROR_MEMORY,
-                                         SC_ERROR_PARTITION,
-                                         SC_ERROR_PARTITION,
-                                         SC_ERROR_PARTITION,
-                                         SC_OK};
+    static const sc_status expected[] = {
+        SC_ERROR_PARTITION,  SC_ERROR_UNSUPPORTED, SC_ERROR_MEMORY,
+        SC_ERROR_PARTITION,  SC_ERROR_PARTITION,   SC_ERROR_PARTITION,
+        SC_ERROR_NOT_FINITE, SC_ERROR_NOT_FINITE,  SC_OK};
     fixture f;
     if (start(&f)) {
         sc_build_options options = no_build_options();
-        int how;
+        double old = f.mesh.positions[1];
+        wrong w;
+        w.positions = f.mesh.positions;
         options.partition = SC_PARTITION_BISECT;
         options.bisect = wrong_bisect;
-        options.bisect_user = &how;
-        for (how = 0; how < 7; ++how) check_build(&f, &f.input, &options, expected[how], "bisect");
+        options.bisect_user = &w;
+        for (w.how = 0; w.how < 9; ++w.how)
+            for (int before = 0; before < 4; ++before) {
+                w.calls_before = before;
+                check_build(&f, &f.input, &options, expected[w.how], "bisect");
+                CHECK_MSG(w.calls_before < 0, "%d", before);
+                f.mesh.positions[1] = old;
+            }
         CHECK(is_still_right(&f));
     }
     stop(&f);

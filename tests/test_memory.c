@@ -181,14 +181,17 @@ static void check_failing_build(const char *name, const soup *s, const double *p
 
 static void build_fails_at_every_allocation(void)
 {
-    for (uint32_t i = 0; i < 6; ++i) {
-        const char *const names[] = {"cloth", "sphere", "fins", "pinched", "seams", "many"};
+    for (uint32_t i = 0; i < 8; ++i) {
+        const char *const names[] = {"cloth", "sphere", "fins",       "pinched",
+                                     "seams", "many",   "no contour", "large cloth"};
         soup s = i == 0   ? soup_cloth(5, 12)
                  : i == 1 ? soup_sphere(9, 8)
                  : i == 2 ? soup_fins(9)
                  : i == 3 ? soup_pinched(5)
                  : i == 4 ? soup_seams(6)
-                          : soup_many(8);
+                 : i == 5 ? soup_many(8)
+                 : i == 6 ? soup_sphere(3, 1)
+                          : soup_cloth(11, 12);
         double *posed = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
         memcpy(posed, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
         soup_fold(posed, s.vertex_count);

@@ -480,6 +480,53 @@ static void check_hops(const steps *s, const sc_model *model)
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " hops wrong", s->name, wrong);
 }
 
+/* The ring of the point at a corner, by looking for the triangle that goes on: 0 if there is none. */
+static uint32_t find_ring(const sc_model *model, uint32_t point, uint32_t *ring)
+{
+    const uint32_t *triangles = sc_model_triangle(model);
+    uint32_t corners = 3 * model->triangle_count, count = 0, n = 0, i, k, now = SC_NONE;
+    for (i = 0; i < corners; ++i) {
+        count += triangles[i] == point;
+        if (triangles[i] == point && now == SC_NONE) now = triangles[i % 3 == 2 ? i - 2 : i + 1];
+    }
+    if (count < 3 || count > SC_RING_MAX) return 0;
+    while (n < count) {
+        uint32_t following = SC_NONE, leaving = 0, entering = 0;
+        for (k = 0; k < n; ++k)
+            if (ring[k] == now) return 0;
+        if (now == point) return 0;
+        ring[n++] = now;
+        for (i = 0; i < corners; ++i) { /* the edge to the ring has one triangle on either side */
+            uint32_t after = triangles[i % 3 == 2 ? i - 2 : i + 1];
+            leaving += triangles[i] == point && after == now;
+            entering += triangles[i] == now && after == point;
+            if (triangles[i] == point && after == now)
+                following = triangles[i % 3 == 0 ? i + 2 : i - 1];
+        }
+        if (leaving != 1 || entering != 1) return 0;
+        now = following;
+    }
+    return now == ring[0] ? n : 0;
+}
+
+/* Rings, up to where they start; returns how many there are. */
+static uint32_t check_rings(const steps *s, const sc_model *model)
+{
+    uint32_t ring[SC_RING_MAX], p, i, wrong = 0, rings = 0;
+    for (p = 0; p < model->point_count; ++p) {
+        const uint32_t *first = sc_model_ring_first(model) + p,
+                       *now = sc_model_ring(model) + *first;
+        uint32_t count = first[1] - first[0], n = find_ring(model, p, ring), shift = 0;
+        wrong += n != count;
+        rings += count > 0;
+        if (n != count || n == 0) continue;
+        while (shift < n && now[shift] != ring[0]) ++shift;
+        for (i = 0; i < n; ++i) wrong += now[(i + shift) % n] != ring[i];
+    }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " rings wrong", s->name, wrong);
+    return rings;
+}
+
 static void check_model(const steps *s, const patches *p, const soup *mesh,
                         const sc_build_options *options)
 {
@@ -540,6 +587,7 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
     }
     CHECK_MSG(wrong == 0, "%s: triangles of the model are wrong", s->name);
     check_hops(s, model);
+    if (model->triangle_count < 400) check_rings(s, model);
 end:
     sc_model_free(model);
     free(before);
@@ -691,6 +739,25 @@ static void hubs(void)
     soup_free(&s);
 }
 
+/* The point in the middle of a disc has the longest ring that there can be, and one that is too long. */
+static void long_rings(void)
+{
+    for (uint32_t valence = SC_RING_MAX - 1; valence <= SC_RING_MAX + 1; ++valence) {
+        soup mesh = shape_hub(valence);
+        sc_mesh m = input_plain_mesh(&mesh);
+        sc_model *model = NULL;
+        steps s;
+        s.name = "disc";
+        if (CHECK(sc_build(&m, NULL, &model) == SC_OK)) {
+            uint32_t rings = check_rings(&s, model);
+            CHECK_MSG(rings == valence + (valence <= SC_RING_MAX), "%" PRIu32 ": %" PRIu32, valence,
+                      rings);
+        }
+        sc_model_free(model);
+        soup_free(&mesh);
+    }
+}
+
 static void random_meshes(void)
 {
     for (uint32_t i = 0; i < test_iterations(60); ++i) {
@@ -776,7 +843,8 @@ static void validators(void)
         if (s.sctt.child[n] != s.sctt.child[n + 1]) inner = n;
     }
     for (i = 0; i < s.sctt.box_count; ++i)
-        CHECK(is_noticed(&s, 2, &s.sctt.boxes[i].b, s.sctt.boxes[i].b - 1));
+        CHECK(is_noticed(&s, 2, &s.sctt.boxes[i].a, s.sctt.boxes[i].a + 1) &&
+              is_noticed(&s, 2, &s.sctt.boxes[i].b, s.sctt.boxes[i].b - 1));
     i = s.sctt.patches[s.sctt.child[inner + 1] - 1].a;
     CHECK(s.neighbors.count[i] > 0 && is_noticed(&s, 2, &s.neighbors.count[i], 0));
     /* segments: a point too few, a child before or twice, a gap between children, a contour of what
@@ -802,4 +870,5 @@ static void validators(void)
     soup_free(&mesh);
 }
 
-SC_TEST_MAIN(SC_TEST(named_meshes), SC_TEST(hubs), SC_TEST(random_meshes), SC_TEST(validators))
+SC_TEST_MAIN(SC_TEST(named_meshes), SC_TEST(hubs), SC_TEST(long_rings), SC_TEST(random_meshes),
+             SC_TEST(validators))

@@ -120,6 +120,28 @@ static void bounds(void)
     close_scene(&s);
 }
 
+/* Nothing is known of coordinates beyond float, and that is sound. */
+static void no_bounds(void)
+{
+    scene s;
+    if (open_scene(&s)) {
+        sc_workspace *w = s.workspace;
+        uint32_t mask = w->mask[0], i;
+        sc_projection projection;
+        for (i = 0; i < 3 * s.model->point_count; ++i) w->position[i] *= 1e60;
+        if (CHECK(mask != 0)) {
+            sc_dnc_projection(w, mask, &projection);
+            sc_workspace_new_projection(s.model, w);
+            for (i = 0; i < s.model->segment_count; ++i) {
+                sc_contour_bounds_update(s.model, w, &projection, 0, i);
+                CHECK(w->bounds[0][i].side[0].ay == -INFINITY);
+                CHECK(sc_contour_bounds_validate(s.model, w, &projection, 0, i));
+            }
+        }
+    }
+    close_scene(&s);
+}
+
 /* Once a pose. */
 static void boxes(void)
 {
@@ -146,6 +168,35 @@ static void *no_memory(void *user, uint64_t size, uint64_t alignment)
     (void)size;
     (void)alignment;
     return NULL;
+}
+
+/* Nodes each of which is the left child of the one before. */
+static void check_long_chain(sc_scratch *scratch)
+{
+    enum { NODES = 2 * SC_DEPTH_MAX };
+    static sc_tree_node nodes[2 * NODES + 1];
+    static uint32_t order[NODES + 1];
+    sc_hierarchy hierarchy;
+    for (uint32_t length = SC_DEPTH_MAX - 1; length < NODES; ++length) {
+        uint32_t i;
+        hierarchy.order = order;
+        hierarchy.nodes = nodes;
+        hierarchy.triangle_count = hierarchy.leaf_count = length + 1;
+        hierarchy.node_count = 2 * length + 1;
+        hierarchy.depth = length + 1;
+        for (i = 0; i <= length; ++i) order[i] = i;
+        for (i = 0; i < length; ++i) { /* its right child is a leaf of one triangle */
+            nodes[i].left = i + 1;
+            nodes[i].right = length + 1 + i;
+        }
+        for (i = 0; i <= length; ++i) {
+            nodes[length + i].left = nodes[length + i].right = SC_NONE;
+            nodes[length + i].first = i == 0 ? 0 : length + 1 - i;
+            nodes[length + i].count = 1;
+        }
+        CHECK_MSG(sc_hierarchy_validate(&hierarchy, scratch) == (length < SC_DEPTH_MAX + 1),
+                  "a chain of %" PRIu32, length);
+    }
 }
 
 static void structures(void)
@@ -185,6 +236,8 @@ static void structures(void)
     old = hierarchy.nodes[0].right;
     hierarchy.nodes[0].right = hierarchy.node_count;
     CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
+    hierarchy.nodes[0].right = 0;
+    CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
     hierarchy.nodes[0].right = old;
     for (i = hierarchy.node_count; hierarchy.nodes[i - 1].left != SC_NONE;) --i;
     --hierarchy.nodes[i - 1].count;
@@ -193,12 +246,43 @@ static void structures(void)
     ++hierarchy.leaf_count;
     CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
     --hierarchy.leaf_count;
+    check_long_chain(&scratch);
     /* a patch without leaves; the first test that has no children */
     i = xbvh.level_first[1] + 1;
     old = xbvh.leaf[i];
     xbvh.leaf[i] = 0;
     CHECK(!sc_xbvh_validate(&xbvh));
     xbvh.leaf[i] = old;
+    /* two patches at the top; a level whose children are its own patches, and one that has all children
+       but the last, whose leaves the one before claims */
+    ++xbvh.level_first[1];
+    CHECK(!sc_xbvh_validate(&xbvh));
+    --xbvh.level_first[1];
+    {
+        uint32_t first_patch = xbvh.level_first[1], end = xbvh.level_first[2] - 1;
+        uint32_t *child = (uint32_t *)test_allocate(xbvh.patch_end * sizeof(uint32_t));
+        memcpy(child, xbvh.child, xbvh.patch_end * sizeof(uint32_t));
+        for (i = first_patch; i <= end; ++i) xbvh.child[i] = i;
+        CHECK(!sc_xbvh_validate(&xbvh));
+        memcpy(xbvh.child, child, xbvh.patch_end * sizeof(uint32_t));
+        CHECK(xbvh.child[end] - xbvh.child[end - 1] == 2);
+        --xbvh.child[end];
+        old = xbvh.leaf[xbvh.child[end]];
+        xbvh.leaf[xbvh.child[end]] = xbvh.leaf_count;
+        CHECK(!sc_xbvh_validate(&xbvh));
+        xbvh.leaf[xbvh.child[end]] = old;
+        ++xbvh.child[end];
+        free(child);
+    }
+    CHECK(sc_xbvh_validate(&xbvh));
+    /* tests that end too early, at any node */
+    for (i = 1, k = sctt.node_count; i < k; ++i) {
+        old = sctt.child[i];
+        sctt.child[i] = sctt.node_count = i;
+        CHECK_MSG(!sc_sctt_validate(&xbvh, &neighbors, &sctt), "%" PRIu32 " nodes", i);
+        sctt.child[i] = old;
+        sctt.node_count = k;
+    }
     ++sctt.child[0];
     CHECK(!sc_sctt_validate(&xbvh, &neighbors, &sctt));
     --sctt.child[0];
@@ -219,4 +303,5 @@ static void structures(void)
     soup_free(&mesh);
 }
 
-SC_TEST_MAIN(SC_TEST(cones), SC_TEST(bounds), SC_TEST(boxes), SC_TEST(structures))
+SC_TEST_MAIN(SC_TEST(cones), SC_TEST(bounds), SC_TEST(no_bounds), SC_TEST(boxes),
+             SC_TEST(structures))

@@ -13,6 +13,9 @@
 
 #include "build/mesh.h"
 
+/* Longer rings are not told of: what tests them keeps them on the stack. */
+enum { SC_RING_MAX = 64 };
+
 /* All arrays are scratch memory. */
 typedef struct sc_adjacency {
     uint32_t edge_count, boundary_edges, irregular_edges, component_count;
@@ -38,8 +41,8 @@ sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_ad
 
 /*
  * The ring of a point p: if its triangles form one closed fan (p, r0, r1), (p, r1, r2), ... (p, rn, r0)
- * with different r, writes r0 ... rn and returns their number; otherwise returns 0. ring has room for
- * as many as p has corners.
+ * with different r, and are SC_RING_MAX at most, writes r0 ... rn and returns their number; otherwise
+ * returns 0. ring has room for as many as p has corners.
  */
 uint32_t sc_adjacency_ring(const sc_points *points, const sc_adjacency *adjacency, uint32_t p,
                            uint32_t *ring);

@@ -171,7 +171,7 @@ static int add_leaf_segment(builder *b, const contour_level *level, uint32_t e)
 {
     uint32_t h = level->half_edges[e];
     if (!sc_list_reserve(b->scratch, &b->last, 1) ||
-        !sc_list_reserve(b->scratch, &b->points_first, 1))
+        !sc_list_reserve(b->scratch, &b->points_first, 2)) /* one for the end of all */
         return 0;
     b->segment_from[h] = (uint32_t)b->last.count;
     sc_list_add(&b->points_first, (uint32_t)b->points_list.count);
@@ -192,7 +192,7 @@ static int add_parent_segment(builder *b, const contour_level *level, uint32_t e
     uint32_t following = level->next[b->place[b->last.items[child]]];
     if (level->start[following]) return 1; /* one child: the segment stays */
     if (!sc_list_reserve(b->scratch, &b->last, 1) ||
-        !sc_list_reserve(b->scratch, &b->child_first, 1))
+        !sc_list_reserve(b->scratch, &b->child_first, 2)) /* one for the end of all */
         return 0;
     sc_list_add(&b->child_first, (uint32_t)b->children.count);
     for (;;) {
@@ -223,7 +223,7 @@ static uint32_t list_patch(builder *b, uint32_t begin, uint32_t patch, uint32_t 
 {
     uint32_t i, from = b->patch_first[patch - begin], to = b->patch_first[patch - begin + 1],
                 count = 0;
-    if (!sc_list_reserve(b->scratch, &b->contours, (uint64_t)(to - from) + 2)) return SC_NONE;
+    if (!sc_list_reserve(b->scratch, &b->contours, to - from)) return SC_NONE;
     for (i = from; i < to; i++) {
         uint32_t run = b->patch_runs[i];
         if (b->run_out[run] == other) continue;

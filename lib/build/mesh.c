@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assume.h"
+
 #define MAX_TRIANGLES 0x55555554u
 #define MAX_VERTICES 0xfffffff0u
 
@@ -125,8 +127,10 @@ sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_
     if (mesh->index_type != SC_UINT32 && mesh->index_type != SC_UINT16) return SC_ERROR_OPTION;
     index_bytes = 3 * (mesh->index_type == SC_UINT16 ? sizeof(uint16_t) : sizeof(uint32_t));
     if (mesh->index_stride && mesh->index_stride < index_bytes) return SC_ERROR_STRIDE;
-    if (position_stride > SIZE_MAX / mesh->vertex_count ||
-        (mesh->index_stride ? mesh->index_stride : index_bytes) > SIZE_MAX / mesh->triangle_count)
+    /* where addresses have 32 bits: */
+    if (SC_HARDLY(position_stride > SIZE_MAX / mesh->vertex_count ||
+                  (mesh->index_stride ? mesh->index_stride : index_bytes) >
+                      SIZE_MAX / mesh->triangle_count))
         return SC_ERROR_COUNT;
     if (options->weld > SC_WELD_NONE) return SC_ERROR_OPTION;
     if (options->weld == SC_WELD_MAP) {

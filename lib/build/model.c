@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+#include "base/assume.h"
+
 /* Stands before the model and fills one alignment unit. */
 typedef struct sc_model_owner {
     sc_allocator allocator;
@@ -20,7 +22,7 @@ enum { HOP = 3 };
 #define NEW_ARRAY(model, name, type)                                                               \
   ((type *)(void *)((unsigned char *)(model) + (model)->offset[SC_ARRAY_##name]))
 
-static sc_status lay_out(sc_model *m)
+static void lay_out(sc_model *m)
 {
     uint64_t at = (sizeof *m + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
     uint32_t vertex_count = m->vertex_count, triangle_count = m->triangle_count;
@@ -36,7 +38,6 @@ static sc_status lay_out(sc_model *m)
     SC_MODEL_ARRAYS(LAY_OUT)
 #undef LAY_OUT
     m->bytes = at;
-    return at > SIZE_MAX - SC_ALIGNMENT ? SC_ERROR_COUNT : SC_OK;
 }
 
 static void copy(void *to, const void *from, uint64_t bytes)
@@ -222,10 +223,9 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     for (p = 0; p < points->point_count; p++) ring_first[p + 1] += ring_first[p];
     counts.share_count = sharing->first[xbvh->leaf_count];
     counts.ring_total = ring_first[points->point_count];
-    status = lay_out(&counts);
-    if (status) return status;
-
+    lay_out(&counts);
     bytes = counts.bytes + SC_ALIGNMENT;
+    if (SC_HARDLY(bytes > SIZE_MAX)) return SC_ERROR_COUNT; /* where addresses have 32 bits */
     owner =
         (sc_model_owner *)scratch->allocator.allocate(scratch->allocator.user, bytes, SC_ALIGNMENT);
     if (!owner) return SC_ERROR_MEMORY;

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/assume.h"
 #include "base/sort.h"
 
 /*
@@ -83,7 +84,7 @@ static sc_status reserve_entries(sc_neighbors *neighbors, sc_scratch *scratch, u
     uint64_t capacity = neighbors->entry_count + more;
     sc_pair *entries;
     if (neighbors->entries && capacity <= neighbors->capacity) return SC_OK;
-    if (capacity > 0xfffffff0u) return SC_ERROR_COUNT;
+    if (SC_HARDLY(capacity > 0xfffffff0u)) return SC_ERROR_COUNT; /* 32 gigabytes */
     if (capacity < 2 * neighbors->capacity) capacity = 2 * neighbors->capacity;
     entries = (sc_pair *)sc_scratch_take(scratch, capacity, sizeof *entries);
     if (!entries) return SC_ERROR_MEMORY;

@@ -5,6 +5,7 @@
  */
 #include "build/refinement.h"
 
+#include "base/assume.h"
 #include "base/sort.h"
 
 enum { PASSES_MAX = 4 };
@@ -54,7 +55,9 @@ static uint32_t pop(sc_refinement *r, uint32_t *heap_count, const uint32_t size[
         r->heap[0] = r->heap[--*heap_count];
         if (*heap_count) sc_sort_sift(r->heap, *heap_count, 0);
         if (r->moved[t] || top.a != sc_sort_key(r->gain[t])) continue;
-        if (size[!from] >= capacity[!from] || size[from] == 1) continue;
+        if (size[!from] >= capacity[!from]) continue;
+        if (SC_NEVER(size[from] == 1))
+            continue; /* no side may take all but one, see refinement.h */
         return t;
     }
     return SC_NONE;

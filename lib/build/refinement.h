@@ -25,7 +25,8 @@ typedef struct sc_refinement {
     sc_pair *heap;            /* four times as many, scratch */
 } sc_refinement;
 
-/* size and capacity of the two sides; no side becomes empty or grows beyond its capacity. */
+/* size and capacity of the two sides; no side becomes empty or grows beyond its capacity, which must be
+   less than count. */
 void sc_refinement_run(sc_refinement *refinement, const uint32_t *triangles, uint32_t count,
                        uint32_t size[2], const uint32_t capacity[2]);
 

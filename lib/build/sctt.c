@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+#include "base/assume.h"
+
 /* The tree while it grows: pairs as two items each. */
 typedef struct growth {
     const sc_xbvh *xbvh;
@@ -87,8 +89,8 @@ sc_status sc_sctt_build(const sc_xbvh *xbvh, const sc_neighbors *neighbors, sc_s
             sc_list_add(&g.boxes_first, (uint32_t)(g.boxes.count / 2));
             if (!expand(&g, g.patches.items[2 * n], g.patches.items[2 * n + 1]))
                 return SC_ERROR_MEMORY;
-            if (g.touch.count > 0xfffffff0u || g.boxes.count / 2 > 0xfffffff0u)
-                return SC_ERROR_COUNT;
+            if (SC_HARDLY(g.touch.count > 0xfffffff0u || g.boxes.count / 2 > 0xfffffff0u))
+                return SC_ERROR_COUNT; /* tens of gigabytes */
         }
     }
     sctt->level_first[xbvh->level_count] = (uint32_t)n;

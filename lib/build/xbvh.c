@@ -5,6 +5,8 @@
  */
 #include "build/xbvh.h"
 
+#include "base/assume.h"
+
 sc_status sc_xbvh_build(const sc_hierarchy *hierarchy, sc_scratch *scratch, sc_xbvh *xbvh)
 {
     uint32_t count = 1, level, i, end = 0, *nodes, *next;
@@ -38,7 +40,7 @@ sc_status sc_xbvh_build(const sc_hierarchy *hierarchy, sc_scratch *scratch, sc_x
         next = swapped;
         count = n;
     }
-    if (total > 0xfffffff0u) return SC_ERROR_COUNT;
+    if (SC_HARDLY(total > 0xfffffff0u)) return SC_ERROR_COUNT; /* 32 gigabytes */
     xbvh->patch_end = (uint32_t)total;
     xbvh->child = (uint32_t *)sc_scratch_take(scratch, total, sizeof(uint32_t));
     xbvh->leaf = (uint32_t *)sc_scratch_take(scratch, total, sizeof(uint32_t));

@@ -7,10 +7,8 @@
 
 #include <math.h>
 
+#include "base/assume.h"
 #include "pose/pose_kernels.h"
-
-/* Longer rings are not tested; none are built (build/adjacency.c). */
-enum { RING_MAX = 64 };
 
 /*
  * Let r_i be the ring relative to the point, d the sum of the computed normals r_i x r_(i+1), taken as
@@ -35,9 +33,10 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
     uint32_t count = sc_model_ring_first(model)[point + 1] - sc_model_ring_first(model)[point], i;
     uint32_t turns = 0;
     const double *center = w->position + 3 * (uint64_t)point;
-    double r[RING_MAX][3], n[RING_MAX][3], size[RING_MAX], d[3] = {0, 0, 0}, d_size, c0, c1, last;
+    double r[SC_RING_MAX][3], n[SC_RING_MAX][3], size[SC_RING_MAX], d[3] = {0, 0, 0}, d_size, c0,
+                                                                    c1, last;
     int k, axis = 0, first_axis, second_axis;
-    if (count < 3 || count > RING_MAX) return 0;
+    if (count < 3 || SC_NEVER(count > SC_RING_MAX)) return 0; /* none is longer */
     for (i = 0; i < count; i++) {
         const double *p = w->position + 3 * (uint64_t)ring[i];
         for (k = 0; k < 3; k++) r[i][k] = p[k] - center[k];

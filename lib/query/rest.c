@@ -67,7 +67,7 @@ sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc
     walk.state.workspace = sc_workspace_place(model, memory);
     sc_workspace_new_pose(model, walk.state.workspace);
     status = sc_positions_read(model, rest, stride, walk.state.workspace);
-    if (status) return status;
+    if (status) return status; /* a caller's bisection may have spoiled what was checked */
     sc_dnc_update(model, walk.state.workspace);
     mark(&walk, 0, 0, NULL);
     sc_scratch_give(scratch, memory);
