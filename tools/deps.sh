@@ -32,7 +32,8 @@ group_analysis="\
 program clang clang clang clang llvm
 program clang-tidy clang-tidy clang-tools-extra clang llvm
 program cppcheck cppcheck cppcheck cppcheck cppcheck
-program valgrind valgrind valgrind valgrind -"
+program valgrind valgrind valgrind valgrind -
+sanitizers clang libclang-rt-dev compiler-rt compiler-rt -"
 group_bench=
 group_docs=
 group_ffi=
@@ -61,14 +62,17 @@ there() {
         ;;
     program) command -v "$2" >/dev/null 2>&1 ;;
     header) echo "#include <$2>" | $CC ${CPPFLAGS:-} -E -x c - >/dev/null 2>&1 ;;
+    sanitizers) echo "int main(void) { return 0; }" | "$2" -fsanitize=memory -x c -o /dev/null - 2>/dev/null ;;
     esac
 }
 
-# The packages, in the system's column, of all that is missing.
+# The packages, in the system's column, of all that is missing. What Debian calls libclang-rt-dev comes
+# with clang in older releases.
 missing() {
     echo "$needs" | while read -r kind what debian fedora arch brew; do
         there "$kind" "$what" </dev/null && continue
         eval "package=\$$1"
+        [ "$kind $1" = "sanitizers debian" ] && ! apt-cache show "$package" >/dev/null 2>&1 && continue
         [ "$package" = - ] || printf ' %s' "$package"
     done
 }
@@ -76,6 +80,7 @@ missing() {
 found=$(echo "$needs" | while read -r kind what rest; do
     there "$kind" "$what" </dev/null && continue
     [ "$kind" = compiler ] && eval "what=\$$what"
+    [ "$kind" = sanitizers ] && what="sanitizers of $what"
     printf ' %s' "$what"
 done)
 if [ -z "$found" ]; then
@@ -92,20 +97,20 @@ if ! command -v apt-get >/dev/null 2>&1; then
     exit 1
 fi
 
-packages=$(missing debian)
 run='env DEBIAN_FRONTEND=noninteractive'
 if [ "$(id -u)" -ne 0 ]; then
     if ! command -v sudo >/dev/null 2>&1; then
-        echo "make deps: not root, and there is no sudo; as root: apt-get install$packages" >&2
+        echo "make deps: not root, and there is no sudo; as root: apt-get install$(missing debian)" >&2
         exit 1
     fi
     run="sudo $run"
 fi
-echo "make deps: installs$packages"
-echo "make deps: by $run apt-get install --no-install-recommends"
 
 # Old lists are better than none: whether they suffice, install will say.
 $run apt-get update -q || echo "make deps: apt-get update failed; using old lists" >&2
+packages=$(missing debian)
+echo "make deps: installs$packages"
+echo "make deps: by $run apt-get install --no-install-recommends"
 # shellcheck disable=SC2086
 $run apt-get install -q -y --no-install-recommends $packages </dev/null || {
     echo "make deps: apt-get install failed" >&2
