@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/isa.h"
 #include "harness.h"
 #include "inputs.h"
 #include "oracle.h"
@@ -896,6 +897,199 @@ static void branched_discs(void)
     CHECK(tally.colliding > 0);
 }
 
+/* ---- the exact contour test ---- */
+
+/* A disc that goes twice round its center; its border crosses itself at one point, which both turns
+   have. */
+static soup crossing_at_a_point(void)
+{
+    uint32_t sectors = 2 * (3 + test_random_below(5)), twice = sectors / 2;
+    double depth = test_random_range(0.05, 0.4), start = test_random_range(0, 2 * pi);
+    soup s = soup_make(2 * sectors, 2 * sectors);
+    for (uint32_t i = 0; i < 2 * sectors; ++i) {
+        uint32_t a = i < twice + sectors ? 1 + i : i == twice + sectors ? 1 + twice : i;
+        uint32_t next = (i + 1) % (2 * sectors);
+        uint32_t b = next < twice + sectors ? 1 + next : next == twice + sectors ? 1 + twice : next;
+        double angle = 2 * pi * i / sectors, radius = 1 + depth * cos(angle / 2);
+        s.positions[3 * a] = radius * cos(angle + start);
+        s.positions[3 * a + 1] = radius * sin(angle + start);
+        s.positions[3 * a + 2] = 0;
+        s.triangles[3 * i] = 0;
+        s.triangles[3 * i + 1] = a;
+        s.triangles[3 * i + 2] = b;
+    }
+    memset(s.positions, 0, 3 * sizeof(double));
+    return s;
+}
+
+/* Two discs that share the two points where their borders cross: a part of each is over the other. */
+static soup crossing_at_two_points(void)
+{
+    enum { INNER = 2, OUTER = 4, EACH = INNER + OUTER }; /* edges */
+    double apart = test_random_range(0.5, 1.5), half = acos(apart / 2);
+    soup s = soup_make(2 * EACH, 2 * EACH);
+    for (uint32_t disc = 0; disc < 2; ++disc)
+        for (uint32_t i = 0; i < EACH; ++i) { /* from the lower crossing over the inner border */
+            double angle = i < INNER ? half * (2.0 * i / INNER - 1)
+                                     : half + (2 * pi - 2 * half) * (i - INNER) / OUTER;
+            double sign = disc ? -1 : 1;
+            uint32_t center = disc * (EACH + 1), p[EACH + 1];
+            double *at;
+            for (uint32_t k = 0; k <= EACH; ++k) p[k] = center + 1 + k % EACH;
+            for (uint32_t k = 0; disc && k <= EACH; ++k) /* the first disc's crossings */
+                p[k] = k % EACH == 0       ? 1 + INNER
+                       : k % EACH == INNER ? 1
+                                           : center + k % EACH - (k % EACH > INNER);
+            at = s.positions + 3 * (size_t)p[i];
+            at[0] = disc * apart + sign * cos(angle);
+            at[1] = sign * sin(angle);
+            at[2] = 0;
+            at = s.positions + 3 * (size_t)center;
+            at[0] = disc * apart;
+            at[1] = at[2] = 0;
+            s.triangles[3 * (disc * EACH + i)] = center;
+            s.triangles[3 * (disc * EACH + i) + 1] = p[i];
+            s.triangles[3 * (disc * EACH + i) + 2] = p[i + 1];
+        }
+    return s;
+}
+
+/* A triangle whose side two others share, cut at a point that is on it, or off by very little. */
+static soup side_in_two(void)
+{
+    static const uint32_t triangles[] = {0, 2, 3, 2, 1, 3, 1, 0, 4};
+    soup s = soup_make(5, 3);
+    double off = test_random_below(3) == 0
+                     ? 0
+                     : test_random_range(-1, 1) * exp2(-10 - (double)test_random_below(50));
+    double along = test_random_below(2) ? 0.5 : test_random_range(0.05, 0.95);
+    double positions[] = {0, 0, 0, 1, 0, 0, along, off, 0, 0.5, 1, 0, 0.5, -1, 0};
+    memcpy(s.positions, positions, sizeof(positions));
+    memcpy(s.triangles, triangles, sizeof(triangles));
+    return s;
+}
+
+/* Contours that touch or cross themselves at points they share, and nowhere else. */
+static void contours_at_shared_points(void)
+{
+    star_tally tally;
+    memset(&tally, 0, sizeof(tally));
+    for (uint32_t i = 0; i < test_iterations(300); ++i) {
+        scene s;
+        soup mesh = i % 3 == 0   ? crossing_at_a_point()
+                    : i % 3 == 1 ? crossing_at_two_points()
+                                 : side_in_two();
+        if (!open_scene(&s, "shared points", &mesh, SC_WELD_NONE, i / 3 % 4)) continue;
+        if (i % 2) rotate(s.pose, s.mesh.vertex_count);
+        if (load_pose(&s)) check_stars(&s, &tally);
+        close_scene(&s);
+    }
+    CHECK(!is_full() || (tally.colliding > 300 && tally.simple > 30));
+}
+
+/* x = axis . ((p - center) scale - from), exactly. */
+static void exact_place(mpq_t result, const sc_workspace *w, uint32_t point, const float axis[3],
+                        const float from[3])
+{
+    mpq_t a, b;
+    mpq_inits(a, b, NULL);
+    mpq_set_ui(result, 0, 1);
+    for (int k = 0; k < 3; ++k) {
+        mpq_set_d(a, part(w, point, k));
+        mpq_set_d(b, w->center[k]);
+        mpq_sub(a, a, b);
+        mpq_set_d(b, w->scale);
+        mpq_mul(a, a, b);
+        mpq_set_d(b, (double)from[k]);
+        mpq_sub(a, a, b);
+        mpq_set_d(b, (double)axis[k]);
+        mpq_mul(a, a, b);
+        mpq_add(result, result, a);
+    }
+    mpq_clears(a, b, NULL);
+}
+
+/* The points that a contour has in its list, with those between which there is no edge. */
+static uint32_t count_listed(const sc_model *m, uint32_t node)
+{
+    const uint32_t *contour = sc_model_node_contour(m) + node;
+    uint32_t listed = 0, i = contour[0] + (sc_model_node_kind(m)[node] & SC_NODE_TOUCHES ? 2 : 0);
+    uint32_t before = SC_NONE;
+    for (; i < contour[1]; ++i) {
+        uint32_t segment = sc_model_contours(m)[i];
+        uint32_t first = sc_model_segment_first(m)[segment],
+                 last = sc_model_segment_last(m)[segment];
+        listed += last - first + (sc_model_points(m)[first] != before);
+        before = sc_model_points(m)[last];
+    }
+    return listed;
+}
+
+/* The boxes of edges hold the true places of their ends, however the contour is seen: from above, or from
+   one end, so that it is small for the size that it has; and whatever its size. */
+static void places_of_contours(void)
+{
+    mpq_t exact, bound;
+    mpq_inits(exact, bound, NULL);
+    for (uint32_t round = 0; round < test_iterations(120); ++round) {
+        soup mesh = soup_cloth(5, 5);
+        double flat = exp2(-(double)test_random_below(40)), move = test_random_range(-9, 9);
+        sc_projection projection;
+        scene s;
+        if (!open_scene(&s, "cloth", &mesh, SC_WELD_REST, SC_PARTITION_FAST)) break;
+        sc_dnc_projection(s.workspace, 1 + test_random_below((1 << SC_DNC_DIRECTIONS / 2) - 1),
+                          &projection);
+        for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
+            double along = test_random_range(-1, 1);
+            const double *u = projection.u, *w = projection.w;
+            for (int k = 0; k < 3; ++k) {
+                double down = u[(k + 1) % 3] * w[(k + 2) % 3] - u[(k + 2) % 3] * w[(k + 1) % 3];
+                s.pose[3 * v + (uint32_t)k] =
+                    1e-5 * along * down + flat * test_random_range(-1, 1) + move;
+            }
+        }
+        if (round % 4 == 3)
+            soup_scale(s.pose, mesh.vertex_count,
+                       exp2(test_random_below(2) ? test_random_range(1008, 1012)
+                                                 : test_random_range(-1060, 1012)));
+        if (load_pose(&s)) {
+            const sc_contour_edges *e = &s.workspace->contour;
+            const float *unit = s.workspace->unit;
+            uint32_t wrong = 0, edges = 0;
+            for (uint32_t node = 0; node < s.model->node_count; ++node) {
+                uint32_t listed = count_listed(s.model, node);
+                float from[3];
+                if (listed == 0) continue;
+                s.workspace->isa = 1 + node % (uint32_t)sc_isa_best();
+                sc_simple_test(&s.state, &projection, node);
+                for (int k = 0; k < 3; ++k)
+                    from[k] = unit[4 * e->point[0] + (uint32_t)k] / 2 +
+                              unit[4 * e->point[listed / 2] + (uint32_t)k] / 2;
+                for (uint32_t i = 0; i < listed; ++i) {
+                    if ((e->is_edge[i / 8] >> i % 8 & 1) == 0) continue;
+                    ++edges;
+                    for (uint32_t j = 0; j < 4; ++j) { /* x and y of both ends */
+                        const double *v = j % 2 ? projection.w : projection.u;
+                        float axis[3];
+                        int exponent;
+                        (void)frexp(fabs(v[0]) + fabs(v[1]) + fabs(v[2]), &exponent);
+                        for (int k = 0; k < 3; ++k) axis[k] = (float)ldexp(v[k], -exponent);
+                        exact_place(exact, s.workspace, e->point[i + j / 2], axis, from);
+                        mpq_set_d(bound, (double)e->side[2 * (j % 2)][i]);
+                        wrong += mpq_cmp(exact, bound) < 0;
+                        mpq_set_d(bound, (double)e->side[2 * (j % 2) + 1][i]);
+                        wrong += mpq_cmp(exact, bound) > 0;
+                    }
+                }
+            }
+            CHECK_MSG(wrong == 0 && edges > 100, "flat %g: %" PRIu32 " places of %" PRIu32 " edges",
+                      flat, wrong, edges);
+        }
+        close_scene(&s);
+    }
+    mpq_clears(exact, bound, NULL);
+}
+
 /* Two patches that share one point p and, round a loop, points h at which so many patches meet that
    these make nobody adjacent. The second patch folds over the first. */
 static void patches_that_share_hubs(void)
@@ -1074,5 +1268,6 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
              SC_TEST(cones_at_zero), SC_TEST(bounds_of_segments), SC_TEST(bounds_of_long_segments),
              SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks), SC_TEST(first_tick_again),
              SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),
-             SC_TEST(branched_discs), SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs),
-             SC_TEST(single_fans))
+             SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
+             SC_TEST(places_of_contours), SC_TEST(patches_that_share_hubs),
+             SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
