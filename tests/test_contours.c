@@ -666,7 +666,7 @@ static void ticks(void)
     close_scene(&s);
 }
 
-/* Bounds that were found at the first tick, and never since, are none when the first tick comes again. */
+/* What was found at the first tick, and never since, is not taken for new when that tick comes again. */
 static void first_tick_again(void)
 {
     soup mesh = soup_cloth(6, 6);
@@ -686,6 +686,20 @@ static void first_tick_again(void)
                 }
             s.workspace->tick = 0xffffffff;
         }
+    }
+    for (int round = 0; round < 2; ++round) { /* fans: those of the rest pose are plain */
+        uint32_t plain = 0;
+        s.workspace->pose_tick = round == 0 ? 0 : 0x7fffffff;
+        for (uint32_t i = 0; i < 3 * s.mesh.vertex_count && round == 1; ++i)
+            s.pose[i] = test_random_unit();
+        if (!load_pose(&s)) break;
+        CHECK(s.workspace->pose_tick == 1);
+        for (uint32_t i = 0; i < s.model->leaf_count; ++i)
+            plain += sc_fan_plain_of_leaf(s.model, s.workspace, i) != 0;
+        CHECK(round == 0 ? plain > s.model->leaf_count / 2 : plain == 0);
+        for (uint32_t p = plain = 0; p < s.model->point_count; ++p)
+            plain += (uint32_t)sc_fan_is_plain(s.model, s.workspace, p);
+        CHECK(round == 0 ? plain == 25 : plain < 10);
     }
     close_scene(&s);
 }
@@ -967,6 +981,46 @@ static soup side_in_two(void)
     memcpy(s.positions, positions, sizeof(positions));
     memcpy(s.triangles, triangles, sizeof(triangles));
     return s;
+}
+
+/* Discs round each other, with or without a hole: each fan of them turns left. */
+static soup nested_discs(void)
+{
+    uint32_t sides = 3 + test_random_below(4), rings = 2 + test_random_below(3), n = 0;
+    soup s = soup_make(2 * rings * sides, 2 * rings * sides);
+    for (uint32_t ring = 0; ring < rings; ++ring) {
+        double outer = test_random_range(0.2, 1), inner = outer * test_random_range(0.3, 0.9);
+        double x = test_random_range(-0.6, 0.6), y = test_random_range(-0.6, 0.6);
+        for (uint32_t i = 0; i < sides; ++i) {
+            uint32_t a = 2 * (ring * sides + i), b = 2 * (ring * sides + (i + 1) % sides);
+            double angle = 2 * pi * i / sides;
+            uint32_t corners[2][3] = {{a, a + 1, b}, {a + 1, b + 1, b}};
+            for (uint32_t k = 0; k < 2; ++k) {
+                double *p = s.positions + 3 * (size_t)(a + k);
+                p[0] = x + (k ? outer : inner) * cos(angle);
+                p[1] = y + (k ? outer : inner) * sin(angle);
+                p[2] = 0;
+            }
+            memcpy(s.triangles + 6 * (size_t)n++, corners, sizeof(corners));
+        }
+    }
+    return s;
+}
+
+/* Contours of several loops that lie in each other, beside each other, or across. */
+static void contours_in_pieces(void)
+{
+    star_tally tally;
+    memset(&tally, 0, sizeof(tally));
+    for (uint32_t i = 0; i < test_iterations(300); ++i) {
+        scene s;
+        soup mesh = nested_discs();
+        if (!open_scene(&s, "nested discs", &mesh, SC_WELD_NONE, i % 4)) continue;
+        if (i / 4 % 2) rotate(s.pose, s.mesh.vertex_count);
+        if (load_pose(&s)) check_stars(&s, &tally);
+        close_scene(&s);
+    }
+    CHECK(!is_full() || (tally.colliding > 300 && tally.simple > 300));
 }
 
 /* Contours that touch or cross themselves at points they share, and nowhere else. */
@@ -1269,5 +1323,5 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
              SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks), SC_TEST(first_tick_again),
              SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),
              SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
-             SC_TEST(places_of_contours), SC_TEST(patches_that_share_hubs),
-             SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
+             SC_TEST(contours_in_pieces), SC_TEST(places_of_contours),
+             SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
