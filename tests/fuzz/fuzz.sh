@@ -62,7 +62,7 @@ for target in $all; do
     echo "fuzz: $target: exit status $status, ${runs:-no} inputs, ${covered:-no coverage}"
     if [ "$status" != 0 ]; then
         bad=1
-        grep -e 'FUZZ_CHECK' -e 'ERROR:' -e 'runtime error' -e 'Test unit written' "$at/$target.log" |
+        grep -e 'FUZZ_CHECK' -e 'ERROR:' -e 'runtime error' -e 'Test unit written' -e 'Base64' "$at/$target.log" |
             sed 's/^/    /'
         echo "    the whole of it: $at/$target.log"
     fi
