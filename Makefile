@@ -432,7 +432,72 @@ check-layering: ## who may include whom, file names, source list
 .PHONY: format
 format: ## clang-format on all C and C++ files, in place
 	clang-format -i $(wildcard include/*.h lib/*.[ch] lib/*/*.[ch] tools/*.[ch] tests/*.[ch] \
-	    tests/*.cpp tests/*/*.[ch] tests/cgal/*.cpp bench/*.[ch] bench/*/*.[ch] meshes/*.[ch])
+	    tests/*.cpp tests/*/*.[ch] tests/cgal/*.cpp bench/*.[ch] bench/*/*.[ch] \
+	    bench/*/*.cpp meshes/*.[ch])
+
+# ------------------------------------------------------------------------------------------------
+# Peers: other libraries on the same frames, each left out with a message where it is not installed;
+# see bench/peers/README.md. They are measured one after the other, whatever -j says. Where no SCENES are
+# named, sc-bench writes some into build/.
+
+SCENES ?=
+CSV ?= $(BUILD)/peers/peers.csv
+
+peer_scenes := $(filter %/sc-bench,$(programs))
+peer_programs := $(patsubst %,$(work)/peers/%,cgal embree fcl)
+
+$(obj)/bench/peers/cgal.o: peer_flags = -frounding-math
+$(obj)/bench/peers/fcl.o: peer_flags = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I fcl))
+$(obj)/bench/peers/%.o: bench/peers/%.cpp $(obj)/flags
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  c++  $<")
+	$(Q)$(CXX) -std=c++17 $(cxx_warnings) $(werror) $(exact) $(mode) -Iinclude $(peer_flags) $(CPPFLAGS) \
+	    $(CXXFLAGS) -MMD -MP -c -o $@ $<
+
+$(work)/peers/cgal: peer_libs = -ltbb -ltbbmalloc -lmpfr -lgmp
+$(work)/peers/embree: peer_libs = -lembree3
+$(work)/peers/fcl: peer_libs = $(shell pkg-config --libs fcl)
+$(peer_programs) $(work)/peers/brute: $(work)/peers/%: $(obj)/bench/peers/%.o \
+    $(obj)/bench/peers/driver.o $(obj)/bench/peers/triangle_test.o $(static)
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  ld   $@")
+	$(Q)$(CXX) $(link_mode) $(CXXFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(static) $(peer_libs) \
+	    $(LDLIBS) -lpthread -lm
+
+# $(call compiled_peer,NAME,HEADERS): measured if its headers are there.
+compiled_peer = +@$(if $(filter-out yes,$(foreach header,$(2),$(or $(call has,$(header)),$(header)))), \
+    echo "skipped: peer-$(1): $(2) not found ('make deps with=peers')", \
+    $(MAKE) --no-print-directory '$(work)/peers/$(1)' && \
+    bench/peers/measure_peer.sh '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' '$(work)/peers/$(1)')
+
+# $(call python_peer,PACKAGE): measured if it can be installed into a virtual environment in build/.
+python_peer = @bench/peers/venv.sh '$(BUILD)/peers/venv' $(1) || { test $$? -eq 3 && exit 0; exit 1; }; \
+    bench/peers/measure_peer.sh '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' '$(BUILD)/peers/venv/bin/python' bench/peers/peers.py \
+    --peer $(1) --lib '$(lib)/$(shared_link)'
+
+.PHONY: peer-cgal peer-embree peer-fcl
+peer-cgal: $(peer_scenes) ## time CGAL's self_intersections beside ours on SCENES, into CSV
+	$(call compiled_peer,cgal,CGAL/version.h tbb/scalable_allocator.h gmp.h)
+peer-embree: $(peer_scenes) ## the same for Embree's rtcCollide
+	$(call compiled_peer,embree,embree3/rtcore.h)
+peer-fcl: $(peer_scenes) ## the same for FCL (Flexible Collision Library)
+	$(call compiled_peer,fcl,fcl/config.h)
+
+.PHONY: peer-ipctk peer-libigl peer-meshlib peer-trueform
+peer-ipctk: $(lib)/$(shared_link) $(peer_scenes) ## the same for ipc-toolkit (PyPI)
+	$(call python_peer,ipctk)
+peer-libigl: $(lib)/$(shared_link) $(peer_scenes) ## the same for libigl (PyPI)
+	$(call python_peer,libigl)
+peer-meshlib: $(lib)/$(shared_link) $(peer_scenes) ## the same for MeshLib (PyPI; for non-commercial use)
+	$(call python_peer,meshlib)
+peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (PyPI; for non-commercial use)
+	$(call python_peer,trueform)
+
+.PHONY: peers
+peers: ## all peers that are there, into a new CSV
+	@rm -f '$(CSV)'
+	+@for peer in cgal embree fcl ipctk libigl meshlib trueform; do \
+	    $(MAKE) --no-print-directory peer-$$peer || exit; done
 
 # ------------------------------------------------------------------------------------------------
 # Installing.
@@ -495,6 +560,8 @@ help: ## this list
 #: SECONDS     how long fuzz runs each target [60]
 #: SOAK        how many queries soak asks [100000]
 #: WERROR      1: warnings are errors
+#: SCENES      folders of scenes that peer-... and peers measure [build/peers/scenes/*]
+#: CSV         where they add lines [build/peers/peers.csv]
 #: V           1: show commands
 #: BUILD       where everything goes [build]
 #: DESTDIR     put before every path of install and uninstall

@@ -114,6 +114,7 @@ offenders=$(
             may["lib"] = may["lib/query"] " lib"
             may["tools"] = "include tools"
             may["bench"] = may["bench/scenes"] = "include tools bench bench/scenes"
+            may["bench/peers"] = "include bench/peers"
             may["meshes"] = "include tools meshes"
             may["tests"] = may["lib"] " tests tests/fuzz"
             may["tests/fuzz"] = may["tests/runs"] = may["tests"]

@@ -38,7 +38,12 @@ group_bench=
 group_docs=
 group_ffi=
 group_packages=
-group_peers=
+group_peers="\
+header CGAL/version.h libcgal-dev CGAL-devel cgal cgal
+header tbb/scalable_allocator.h libtbb-dev tbb-devel onetbb tbb
+header embree3/rtcore.h libembree-dev - - -
+header fcl/config.h libfcl-dev fcl-devel fcl fcl
+module ensurepip python3-venv python3 python python"
 for group in ${WITH:-}; do
     case $group in
     analysis | bench | cgal | docs | ffi | packages | peers) ;;
@@ -61,6 +66,7 @@ there() {
         command -v "$1" >/dev/null 2>&1
         ;;
     program) command -v "$2" >/dev/null 2>&1 ;;
+    module) python3 -c "import $2" >/dev/null 2>&1 ;;
     header) echo "#include <$2>" | $CC ${CPPFLAGS:-} -E -x c - >/dev/null 2>&1 ;;
     sanitizers) echo "int main(void) { return 0; }" | "$2" -fsanitize=memory -x c -o /dev/null - 2>/dev/null ;;
     esac

@@ -1,0 +1,441 @@
+/*
+ * Times a peer beside starcontour, in one process, on the same frames, and compares their pairs.
+ *
+ *     PEER [--threads 1|all|N] [--repeats N] [--frames N] [--csv FILE] SCENE...
+ *
+ * A SCENE is a folder: meta.txt ("triangles vertices frames"), tris.u32 (3 little-endian uint32 a
+ * triangle), frames.f64 or frames.f32 (frames x vertices x 3, little-endian).
+ *
+ * All ways of the peer and starcontour's star contours and boxes take turns frame by frame, one query
+ * each, as a simulation would ask: no query meets warm caches. The sequence is walked once untimed, in
+ * which pairs are compared, and then N times. Everything that a new pose costs is in the time: reading
+ * positions, refitting or rebuilding, finding and storing pairs. Building on the first frame is not.
+ *
+ * starcontour gets the same doubles, runs in one thread, and takes vertices as they are numbered
+ * (SC_WELD_NONE), as peers do.
+ *
+ * Writes lines scene, triangles, frame, peer, version, what, threads, ms, pairs, matches, ms_min, missing,
+ * extra, beside: comma-separated, appended to FILE or printed. README.md says what the columns are.
+ *
+ * Exit status: 0 if pairs match, 1 if some do not, 2 if a scene cannot be read or an option is wrong.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#if defined(__linux__) && !defined(_GNU_SOURCE)
+#  define _GNU_SOURCE
+#endif
+
+#include "peer.h"
+
+#include <starcontour.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <stdexcept>
+#include <thread>
+
+#ifdef __linux__
+#  include <sched.h>
+#endif
+
+namespace
+{
+
+using namespace peers;
+
+struct settings {
+    unsigned threads = 1;
+    size_t repeats = 5;
+    size_t frames = SIZE_MAX;
+    const char *csv = nullptr;
+    std::vector<std::string> scenes;
+};
+
+/* A way to find pairs that takes turns with others. */
+struct contender {
+    peer *other = nullptr; /* or starcontour by this method: */
+    uint32_t method = SC_METHOD_DEFAULT;
+    std::string name, version, what;
+    unsigned threads = 1;
+    std::vector<std::vector<double>> times;    /* of each frame: milliseconds of each repeat */
+    std::vector<size_t> pairs, missing, extra; /* of each frame */
+};
+
+/* ------------------------------------------------------------------------------------------------
+ * Scenes
+ */
+
+template <typename number> std::vector<number> read_numbers(const std::string &path, size_t count)
+{
+    std::vector<number> numbers(count);
+    std::FILE *file = std::fopen(path.c_str(), "rb");
+    if (!file) throw std::runtime_error(path + ": cannot be opened");
+    const size_t got = std::fread(numbers.data(), sizeof(number), count, file);
+    const bool more = std::fgetc(file) != EOF;
+    std::fclose(file);
+    if (got != count || more) throw std::runtime_error(path + ": not as long as meta.txt says");
+    return numbers;
+}
+
+scene read_scene(std::string folder)
+{
+    const int32_t one = 1;
+    char first;
+    std::memcpy(&first, &one, 1);
+    if (first != 1) throw std::runtime_error("this machine is not little-endian");
+
+    while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
+    scene s;
+    s.name = folder.substr(folder.rfind('/') + 1); /* npos + 1 is 0 */
+    std::FILE *file = std::fopen((folder + "/meta.txt").c_str(), "r");
+    if (!file) throw std::runtime_error(folder + "/meta.txt: cannot be opened");
+    unsigned long triangles = 0, vertices = 0, frames = 0;
+    const int fields = std::fscanf(file, "%lu %lu %lu", &triangles, &vertices, &frames);
+    std::fclose(file);
+    if (fields != 3 || triangles == 0 || vertices == 0 || frames == 0 || triangles > 0x55555554 ||
+        vertices > 0xffffffff || frames > 1000000) {
+        throw std::runtime_error(folder + "/meta.txt: not three usable numbers");
+    }
+    s.triangles = triangles;
+    s.vertices = vertices;
+    s.frames = frames;
+    s.corners = read_numbers<uint32_t>(folder + "/tris.u32", 3 * s.triangles);
+    for (const uint32_t v : s.corners) {
+        if (v >= s.vertices) throw std::runtime_error(folder + "/tris.u32: no such vertex");
+    }
+    const size_t count = 3 * s.vertices * s.frames;
+    file = std::fopen((folder + "/frames.f64").c_str(), "rb");
+    if (file) {
+        std::fclose(file);
+        s.positions = read_numbers<double>(folder + "/frames.f64", count);
+    } else {
+        const std::vector<float> floats = read_numbers<float>(folder + "/frames.f32", count);
+        s.positions.assign(floats.begin(), floats.end());
+    }
+    for (const double x : s.positions) {
+        if (!std::isfinite(x)) throw std::runtime_error(folder + ": a position is not finite");
+    }
+    return s;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * starcontour
+ */
+
+/* A model of a scene, with a workspace of its own for each method. */
+class starcontour
+{
+    const scene &mesh;
+    sc_model *model = nullptr;
+    sc_workspace *workspaces[SC_METHOD_AABB + 1] = {};
+
+    static void must(sc_status status)
+    {
+        if (status != SC_OK)
+            throw std::runtime_error(std::string("starcontour: ") + sc_status_string(status));
+    }
+
+  public:
+    std::vector<sc_pair> pairs; /* of the latest query, count of them */
+    uint64_t count = 0;
+
+    explicit starcontour(const scene &animation) : mesh(animation), pairs(1024)
+    {
+        sc_mesh input = sc_mesh();
+        input.struct_size = sizeof(input);
+        input.vertex_count = uint32_t(mesh.vertices);
+        input.triangle_count = uint32_t(mesh.triangles);
+        input.position_type = SC_DOUBLE;
+        input.positions = mesh.frame(0);
+        input.indices = mesh.corners.data();
+        sc_build_options options = sc_build_options();
+        options.struct_size = sizeof(options);
+        options.weld = SC_WELD_NONE;
+        must(sc_build(&input, &options, &model));
+    }
+    ~starcontour()
+    {
+        for (sc_workspace *workspace : workspaces) sc_workspace_free(workspace);
+        sc_model_free(model);
+    }
+    starcontour(const starcontour &) = delete;
+    starcontour &operator=(const starcontour &) = delete;
+
+    void query(uint32_t method, const double *positions)
+    {
+        if (!workspaces[method]) must(sc_workspace_create(model, nullptr, &workspaces[method]));
+        sc_pose pose = sc_pose();
+        pose.struct_size = sizeof(pose);
+        pose.vertex_count = uint32_t(mesh.vertices);
+        pose.position_type = SC_DOUBLE;
+        pose.positions = positions;
+        sc_query_options options = sc_query_options();
+        options.struct_size = sizeof(options);
+        options.method = method;
+        for (;;) {
+            sc_result result = sc_result();
+            result.struct_size = sizeof(result);
+            result.pairs = pairs.data();
+            result.capacity = pairs.size();
+            const sc_status status = sc_query(model, workspaces[method], &pose, &options, &result);
+            count = result.count;
+            if (status != SC_ERROR_SHORT_BUFFER) return must(status);
+            pairs.resize(size_t(count)); /* in the untimed walk: the same poses come again */
+        }
+    }
+
+    /* The latest pairs, or those of them that a peer should find. */
+    pair_list select(kind which) const
+    {
+        pair_list list;
+        for (size_t i = 0; i < count; ++i) {
+            if (which == kind::all || !mesh.adjacent(pairs[i].a, pairs[i].b))
+                list.push_back(pair(pairs[i].a, pairs[i].b));
+        }
+        return list;
+    }
+};
+
+/* ------------------------------------------------------------------------------------------------
+ * Turns
+ */
+
+double milliseconds()
+{
+    using namespace std::chrono;
+    return duration<double, std::milli>(steady_clock::now().time_since_epoch()).count();
+}
+
+/* How many members of sorted list a are not in b. */
+size_t count_lacking(const pair_list &a, const pair_list &b)
+{
+    pair_list rest;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(rest));
+    return rest.size();
+}
+
+/* Walks the animation once; compares pairs if first, else records times. */
+void walk(const scene &mesh, starcontour &ours, std::vector<contender> &contenders, size_t frames,
+          bool first)
+{
+    pair_list found, all;
+    for (size_t f = 0; f < frames; ++f) {
+        const double *positions = mesh.frame(f);
+        if (first) {
+            ours.query(SC_METHOD_SCTT, positions);
+            all = ours.select(kind::all);
+        }
+        const pair_list apart = first ? ours.select(kind::apart) : pair_list();
+        for (contender &c : contenders) {
+            found.clear();
+            const double start = milliseconds();
+            if (c.other)
+                c.other->query(positions, found);
+            else
+                ours.query(c.method, positions);
+            const double time = milliseconds() - start;
+            if (!first) {
+                c.times[f].push_back(time);
+                continue;
+            }
+            if (!c.other) found = ours.select(kind::all);
+            std::sort(found.begin(), found.end());
+            c.pairs.push_back(found.size());
+            const bool every = !c.other || c.other->finds() == kind::all;
+            const pair_list &wanted = every ? all : apart;
+            c.missing.push_back(count_lacking(wanted, found));
+            c.extra.push_back(count_lacking(found, wanted));
+        }
+    }
+}
+
+std::vector<contender> line_up(const std::vector<std::unique_ptr<peer>> &list, const scene &mesh,
+                               unsigned threads)
+{
+    std::vector<contender> contenders;
+    for (const auto &p : list) {
+        contender c;
+        c.other = p.get();
+        c.name = p->name();
+        c.version = p->version();
+        c.what = p->what();
+        c.threads = threads;
+        try {
+            if (threads > 1 && !p->threaded()) throw std::runtime_error("it uses one thread only");
+            p->build(mesh, threads);
+        } catch (const std::runtime_error &error) {
+            std::printf("skipped: %s on %s: %s\n", c.name.c_str(), mesh.name.c_str(), error.what());
+            continue;
+        }
+        contenders.push_back(c);
+    }
+    if (contenders.empty()) return contenders;
+    const std::pair<uint32_t, const char *> methods[] = {{SC_METHOD_SCTT, "star"},
+                                                         {SC_METHOD_AABB, "aabb"}};
+    for (const auto &method : methods) {
+        contender c;
+        c.method = method.first;
+        c.name = "starcontour";
+        c.version = sc_version_string();
+        c.what = method.second;
+        contenders.push_back(c);
+    }
+    return contenders;
+}
+
+/* Returns whether all pairs matched. */
+bool run(const scene &mesh, const std::vector<std::unique_ptr<peer>> &list, const settings &s,
+         std::FILE *out)
+{
+    starcontour ours(mesh);
+    std::vector<contender> contenders = line_up(list, mesh, s.threads);
+    if (contenders.empty()) return true;
+    const size_t frames = std::min(s.frames, mesh.frames);
+    for (contender &c : contenders) c.times.resize(frames);
+    for (size_t repeat = 0; repeat <= s.repeats; ++repeat)
+        walk(mesh, ours, contenders, frames, repeat == 0);
+
+    bool same = true;
+    for (contender &c : contenders) {
+        double sum = 0.0;
+        size_t different = 0;
+        for (size_t f = 0; f < frames; ++f) {
+            std::vector<double> &t = c.times[f];
+            std::sort(t.begin(), t.end());
+            const double median = 0.5 * (t[(t.size() - 1) / 2] + t[t.size() / 2]);
+            sum += median;
+            const bool matches = c.missing[f] == 0 && c.extra[f] == 0;
+            different += !matches;
+            std::fprintf(out, "%s,%zu,%zu,%s,%s,%s,%u,%.4f,%zu,%s,%.4f,%zu,%zu,%s\n",
+                         mesh.name.c_str(), mesh.triangles, f, c.name.c_str(), c.version.c_str(),
+                         c.what.c_str(), c.threads, median, c.pairs[f], matches ? "yes" : "no",
+                         t[0], c.missing[f], c.extra[f], list[0]->name().c_str());
+        }
+        std::fflush(out);
+        if (s.csv)
+            std::printf("%-14s %-12s %u thread%s %9.3f ms a frame  %s\n", mesh.name.c_str(),
+                        c.name.c_str(), c.threads, c.threads == 1 ? " " : "s", sum / double(frames),
+                        c.what.c_str());
+        if (different > 0) {
+            same = false;
+            std::printf("different pairs in %zu of %zu frames: %s on %s\n", different, frames,
+                        c.name.c_str(), mesh.name.c_str());
+        }
+    }
+    return same;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Command line
+ */
+
+/* Number of processors this process may use. */
+unsigned processors()
+{
+#ifdef __linux__
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof(set), &set) == 0) return unsigned(CPU_COUNT(&set));
+#endif
+    return std::max(1u, std::thread::hardware_concurrency());
+}
+
+/* Keeps the process on its first processors, so that no library takes more than it should. */
+void keep_to(unsigned threads)
+{
+#ifdef __linux__
+    cpu_set_t set, kept;
+    if (sched_getaffinity(0, sizeof(set), &set) != 0) return;
+    CPU_ZERO(&kept);
+    for (int i = 0; i < CPU_SETSIZE && unsigned(CPU_COUNT(&kept)) < threads; ++i) {
+        if (CPU_ISSET(i, &set)) CPU_SET(i, &kept);
+    }
+    (void)sched_setaffinity(0, sizeof(kept), &kept);
+#else
+    (void)threads;
+#endif
+}
+
+size_t number(const std::string &option, const char *text)
+{
+    char *end = nullptr;
+    const unsigned long value = text ? std::strtoul(text, &end, 10) : 0;
+    if (!text || *end || value < 1 || value > 1000000)
+        throw std::invalid_argument(option + " needs a number from 1 to 1000000");
+    return value;
+}
+
+settings parse(int argc, char **argv)
+{
+    settings s;
+    for (int i = 1; i < argc; ++i) {
+        const std::string option = argv[i];
+        if (option.compare(0, 1, "-") != 0) {
+            s.scenes.push_back(option);
+            continue;
+        }
+        const char *value = ++i < argc ? argv[i] : nullptr;
+        if (option == "--threads" && value && std::strcmp(value, "all") == 0)
+            s.threads = processors();
+        else if (option == "--threads")
+            s.threads = unsigned(number(option, value));
+        else if (option == "--repeats")
+            s.repeats = number(option, value);
+        else if (option == "--frames")
+            s.frames = number(option, value);
+        else if (option == "--csv" && value)
+            s.csv = value;
+        else
+            throw std::invalid_argument("what is " + option + "?");
+    }
+    if (s.scenes.empty()) throw std::invalid_argument("no scene given");
+    return s;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    settings s;
+    try {
+        s = parse(argc, argv);
+    } catch (const std::invalid_argument &error) {
+        std::fprintf(stderr,
+                     "%s\nusage: %s [--threads 1|all|N] [--repeats N] [--frames N] [--csv FILE] "
+                     "SCENE...\n",
+                     error.what(), argv[0]);
+        return 2;
+    }
+    keep_to(s.threads);
+
+    std::FILE *out = s.csv ? std::fopen(s.csv, "a") : stdout;
+    if (!out) {
+        std::fprintf(stderr, "%s: cannot be written\n", s.csv);
+        return 2;
+    }
+    if (!s.csv || (std::fseek(out, 0, SEEK_END) == 0 && std::ftell(out) == 0))
+        std::fputs(
+            "scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,"
+            "extra,beside\n",
+            out);
+
+    int status = 0;
+    try {
+        for (const std::string &folder : s.scenes) {
+            const scene mesh = read_scene(folder);
+            if (!run(mesh, make_peers(), s, out)) status = 1;
+        }
+    } catch (const std::exception &error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        status = 2;
+    }
+    if (s.csv && std::fclose(out) != 0) {
+        std::fprintf(stderr, "%s: cannot be written\n", s.csv);
+        status = 2;
+    }
+    return status;
+}

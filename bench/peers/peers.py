@@ -1,0 +1,520 @@
+#!/usr/bin/env python3
+"""Times peers from PyPI beside starcontour, in one process each, and compares their pairs.
+
+    peers.py [--peer NAME] [--threads 1|all|N] [--repeats N] [--frames N] [--csv FILE] [--lib FILE]
+             SCENE...
+    peers.py --list
+
+What a SCENE is, how turns are taken and what is written is the same as in driver.cpp. Positions are
+brought into the form that a peer asks for (floats, another order in memory) before the clock starts.
+starcontour is asked through its C interface (ctypes); it gets floats where the peer takes floats.
+
+Without --peer all are run, each in a process of its own, since they bring different versions of the
+same libraries. The peer "starcontour" runs nothing else, and needs no package. A peer that cannot be
+had is reported as skipped, with the reason.
+
+Exit status: 0 if pairs match, or differ only where a peer computes with rounded arithmetic; 1 if
+others differ or a peer failed; 2 if a scene cannot be read or an option is wrong.
+
+SPDX-License-Identifier: MIT
+"""
+
+import argparse
+import array
+import ctypes
+import glob
+import importlib.metadata
+import math
+import os
+import statistics
+import subprocess
+import sys
+import time
+
+COLUMNS = ("scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,extra,"
+           "beside")
+
+# What an answer is compared with.
+ALL = "all"  # all pairs of triangles
+APART = "apart"  # pairs of triangles that share no vertex
+ANY_APART = "any apart"  # whether there is one of those
+ANY_EDGE = "any edge"  # whether there is a pair of an edge and a triangle that share no vertex
+EDGES = "edges"  # at least all pairs of an edge and a triangle that share no vertex
+
+
+class Skipped(Exception):
+    """A peer or a scene cannot be measured, for the reason given."""
+
+
+class Unusable(Exception):
+    """A scene or an argument is wrong."""
+
+
+class Scene:
+    """An animation of one mesh, read from a folder."""
+
+    def __init__(self, folder):
+        self.name = os.path.basename(os.path.normpath(folder))
+        try:
+            with open(os.path.join(folder, "meta.txt"), encoding="ascii") as file:
+                self.triangles, self.vertices, self.frames = map(int, file.read().split())
+        except (OSError, ValueError) as error:
+            raise Unusable(f"{folder}/meta.txt: {error}") from None
+        if min(self.triangles, self.vertices, self.frames) < 1:
+            raise Unusable(f"{folder}/meta.txt: not three usable numbers")
+        self.corners = self.read(os.path.join(folder, "tris.u32"), "I", 3 * self.triangles)
+        if max(self.corners) >= self.vertices:
+            raise Unusable(f"{folder}/tris.u32: no such vertex")
+        doubles = os.path.join(folder, "frames.f64")
+        path, scalar = (doubles, "d") if os.path.exists(doubles) else (doubles[:-2] + "32", "f")
+        self.positions = self.read(path, scalar, 3 * self.vertices * self.frames)
+        if not all(map(math.isfinite, self.positions)):
+            raise Unusable(f"{path}: a position is not finite")
+        self.vertex_sets = None
+
+    @staticmethod
+    def read(path, scalar, count):
+        numbers = array.array(scalar)
+        try:
+            with open(path, "rb") as file:
+                numbers.frombytes(file.read())
+        except (OSError, ValueError) as error:
+            raise Unusable(f"{path}: {error}") from None
+        if len(numbers) != count:
+            raise Unusable(f"{path}: not as long as meta.txt says")
+        if sys.byteorder != "little":
+            numbers.byteswap()
+        return numbers
+
+    def frame(self, number, scalar):
+        """Positions of a frame, as an array of floats ("f") or doubles ("d")."""
+        size = 3 * self.vertices
+        return array.array(scalar, self.positions[size * number : size * (number + 1)])
+
+    def adjacent(self, a, b):
+        """Whether two triangles have a vertex in common."""
+        v = self.corners
+        return not {v[3 * a], v[3 * a + 1], v[3 * a + 2]}.isdisjoint(v[3 * b : 3 * b + 3])
+
+
+# --------------------------------------------------------------------------------------------------
+# starcontour, as include/starcontour.h declares it
+
+
+def structure(name, *fields):
+    return type(name, (ctypes.Structure,), {"_fields_": fields})
+
+
+U32, U64, POINTER = ctypes.c_uint32, ctypes.c_uint64, ctypes.c_void_p
+sc_mesh = structure(
+    "sc_mesh",
+    *[(name, U32) for name in ("struct_size", "vertex_count", "triangle_count", "position_type",
+                               "position_stride", "index_type", "index_stride", "reserved")],
+    ("positions", POINTER), ("indices", POINTER))
+sc_pose = structure(
+    "sc_pose",
+    *[(name, U32) for name in ("struct_size", "vertex_count", "position_type", "position_stride")],
+    ("positions", POINTER))
+sc_build_options = structure(
+    "sc_build_options",
+    *[(name, U32) for name in ("struct_size", "weld", "partition", "tree_count")],
+    *[(name, POINTER) for name in ("weld_map", "order", "tree", "bisect", "bisect_user",
+                                   "allocator")])
+sc_query_options = structure(
+    "sc_query_options",
+    *[(name, U32) for name in ("struct_size", "output", "pairs", "contact", "method", "contour",
+                               "rest_cache", "reserved")])
+sc_result = structure(
+    "sc_result", ("struct_size", U32), ("collides", U32), ("count", U64), ("capacity", U64),
+    ("pairs", POINTER), ("stats", POINTER))
+SC_ERROR_SHORT_BUFFER, SC_WELD_NONE, SC_PAIRS_TRIANGLE, SC_PAIRS_EDGE = 11, 2, 0, 1
+SC_METHOD_SCTT, SC_METHOD_AABB = 1, 3
+
+
+class Starcontour:
+    """A model of a scene, with a workspace of its own for each method."""
+
+    def __init__(self, path, scene, scalar):
+        try:
+            self.library = ctypes.CDLL(path)
+        except OSError as error:
+            raise Unusable(f"{path}: {error}") from None
+        self.library.sc_status_string.restype = ctypes.c_char_p
+        self.library.sc_version_string.restype = ctypes.c_char_p
+        self.library.sc_workspace_free.argtypes = self.library.sc_model_free.argtypes = [POINTER]
+        self.library.sc_workspace_create.argtypes = [POINTER, POINTER, POINTER]
+        self.library.sc_query.argtypes = [POINTER] * 5
+        self.version = self.library.sc_version_string().decode()
+        self.scene, self.type = scene, {"f": 0, "d": 1}[scalar]
+        rest = scene.frame(0, scalar)
+        mesh = sc_mesh(struct_size=ctypes.sizeof(sc_mesh), vertex_count=scene.vertices,
+                       triangle_count=scene.triangles, position_type=self.type,
+                       positions=rest.buffer_info()[0], indices=scene.corners.buffer_info()[0])
+        options = sc_build_options(struct_size=ctypes.sizeof(sc_build_options), weld=SC_WELD_NONE)
+        self.model, self.workspaces = POINTER(), {}
+        self.must(self.library.sc_build(ctypes.byref(mesh), ctypes.byref(options),
+                                        ctypes.byref(self.model)))
+        self.pairs = array.array("I", bytes(8 * 1024))
+        self.count = 0
+
+    def __del__(self):
+        for workspace in getattr(self, "workspaces", {}).values():
+            self.library.sc_workspace_free(workspace)
+        if getattr(self, "model", None):
+            self.library.sc_model_free(self.model)
+
+    def must(self, status):
+        if status != 0:
+            raise Unusable("starcontour: " + self.library.sc_status_string(status).decode())
+
+    def query(self, method, positions, kind=SC_PAIRS_TRIANGLE):
+        """Finds pairs in a pose, an array of the scalar type given at first."""
+        if method not in self.workspaces:
+            workspace = POINTER()
+            self.must(self.library.sc_workspace_create(self.model, None, ctypes.byref(workspace)))
+            self.workspaces[method] = workspace
+        pose = sc_pose(struct_size=ctypes.sizeof(sc_pose), vertex_count=self.scene.vertices,
+                       position_type=self.type, positions=positions.buffer_info()[0])
+        options = sc_query_options(struct_size=ctypes.sizeof(sc_query_options), method=method,
+                                   pairs=kind)
+        while True:
+            result = sc_result(struct_size=ctypes.sizeof(sc_result), capacity=len(self.pairs) // 2,
+                               pairs=self.pairs.buffer_info()[0])
+            status = self.library.sc_query(self.model, self.workspaces[method], ctypes.byref(pose),
+                                           ctypes.byref(options), ctypes.byref(result))
+            self.count = result.count
+            if status != SC_ERROR_SHORT_BUFFER:
+                return self.must(status)
+            self.pairs = array.array("I", bytes(8 * self.count))
+
+    def list(self):
+        """The latest pairs."""
+        return list(zip(self.pairs[0 : 2 * self.count : 2], self.pairs[1 : 2 * self.count : 2]))
+
+
+class Expected:
+    """What starcontour says of a pose, in each of the forms that answers are compared with."""
+
+    def __init__(self, ours, positions):
+        self.ours, self.positions, self.scene = ours, positions, ours.scene
+        ours.query(SC_METHOD_SCTT, positions)
+        self.all = ours.list()
+
+    def apart(self):
+        return [pair for pair in self.all if not self.scene.adjacent(*pair)]
+
+    def edges(self):
+        """Pairs of an edge, by its two vertices in ascending order, and a triangle."""
+        self.ours.query(SC_METHOD_SCTT, self.positions, SC_PAIRS_EDGE)
+        corners = self.scene.corners
+
+        def ends(corner):
+            triangle, k = divmod(corner, 3)
+            return tuple(sorted((corners[corner], corners[3 * triangle + (k + 1) % 3])))
+
+        return {(ends(a), b) for a, b in self.ours.list()}
+
+    def judge(self, kind, answer):
+        """How many pairs are missing in an answer, in the form that Way says, and how many extra."""
+        if kind in (ANY_APART, ANY_EDGE):
+            there = bool(self.apart() if kind == ANY_APART else self.edges())
+            return int(there > answer), int(there < answer)
+        wanted = {ALL: lambda: self.all, APART: self.apart, EDGES: self.edges}[kind]()
+        missing = len(set(wanted) - set(answer))
+        return missing, 0 if kind == EDGES else len(answer) - len(wanted) + missing
+
+
+# --------------------------------------------------------------------------------------------------
+# Peers: each is a function that takes a scene and numpy, and returns ways to use the peer.
+
+
+class Way:
+    """One way of using a peer, or starcontour.
+
+    what     says what a query does, without commas
+    kind     what its answer is compared with
+    query    everything there is to do for a new pose, timed: takes what prepare made, and returns
+             anything that answer understands
+    answer   not timed: a list of pairs, or whether there is one, as kind says
+    prepare  not timed: brings an array of positions, vertices x 3, into the peer's form
+    exact    whether it claims exactness, so that a wrong answer is an error and not only reported
+    """
+
+    def __init__(self, what, kind, query, answer=lambda found: found, prepare=lambda p: p,
+                 exact=True):
+        self.what, self.kind, self.query = what, kind, query
+        self.answer, self.prepare, self.exact = answer, prepare, exact
+        self.own = False  # starcontour's
+        self.times, self.counts, self.errors = [], [], []
+
+
+def without_neighbours(scene, pairs):
+    """Pairs of triangles that share no vertex, smaller number first."""
+    return [(min(pair), max(pair)) for pair in pairs if not scene.adjacent(*pair)]
+
+
+def ipctk(scene, np):
+    """Rebuilds a linear bounding-volume hierarchy of edges and of triangles."""
+    import ipctk as ipc
+
+    faces = np.array(scene.corners, dtype=np.int32).reshape(-1, 3)
+    rest = np.asfortranarray(np.array(scene.frame(0, "d")).reshape(-1, 3))
+    edges = ipc.edges(faces)
+    mesh = ipc.CollisionMesh(rest, edges, faces)
+    ends = [tuple(sorted(map(int, edge))) for edge in edges]
+
+    def candidates(vertices):
+        tree = ipc.LBVH()
+        tree.build(vertices, edges, faces)
+        return tree.detect_edge_face_candidates()
+
+    return [
+        Way("has_intersections: trees rebuilt; robust edge-triangle test; yes or no",
+            ANY_EDGE, lambda vertices: ipc.has_intersections(mesh, vertices, ipc.LBVH()),
+            prepare=np.asfortranarray),
+        Way("LBVH: trees rebuilt; edge-triangle candidates only; as a Python list",
+            EDGES, candidates, lambda found: [(ends[c.edge_id], c.face_id) for c in found],
+            np.asfortranarray),
+    ]
+
+
+def meshlib(scene, np):
+    """Refits a tree of boxes of triangles; takes floats and an oriented 2-manifold."""
+    from meshlib import mrmeshnumpy, mrmeshpy
+
+    faces = np.array(scene.corners, dtype=np.int32).reshape(-1, 3)
+    rest = np.array(scene.frame(0, "f")).reshape(-1, 3)
+    mesh = mrmeshnumpy.meshFromFacesVerts(faces, rest)
+    if mesh.points.size() != scene.vertices or not np.array_equal(
+            mrmeshnumpy.getNumpyFaces(mesh.topology), faces):
+        raise Skipped("the mesh is not an oriented 2-manifold")
+    every = mrmeshpy.VertBitSet()
+    every.resize(scene.vertices, True)
+    part = mrmeshpy.MeshPart(mesh)
+    mesh.getAABBTree()
+
+    def query(vertices):
+        ctypes.memmove(mesh.points.vec.data_pointer(), vertices.ctypes.data, vertices.nbytes)
+        mesh.updateCaches(every)
+        return mrmeshpy.findSelfCollidingTriangles(part, touchIsIntersection=True)
+
+    def answer(found):
+        if found.size() == 0:
+            return []
+        numbers = array.array("i", ctypes.string_at(found.data_pointer(), 8 * found.size()))
+        return without_neighbours(scene, zip(numbers[0::2], numbers[1::2]))
+
+    return [Way("findSelfCollidingTriangles: boxes refitted; rounded arithmetic; all pairs",
+                APART, query, answer, exact=False)]
+
+
+def libigl(scene, np):
+    """Rebuilds a tree of boxes of triangles; exact predicates."""
+    from igl import predicates
+
+    faces = np.array(scene.corners, dtype=np.int64).reshape(-1, 3)
+    return [Way("find_self_intersections: tree rebuilt; exact predicates; all pairs",
+                APART, lambda vertices: predicates.find_self_intersections(vertices, faces),
+                lambda found: without_neighbours(scene, found[1].tolist()))]
+
+
+def trueform(scene, np):
+    """Rebuilds a tree of boxes of triangles."""
+    import trueform as tf
+
+    faces = np.array(scene.corners, dtype=np.int32).reshape(-1, 3)
+    rest = np.array(scene.frame(0, "d")).reshape(-1, 3)
+
+    def way(what, kind, ask, answer=lambda found: found, exact=True):
+        mesh = tf.Mesh(faces, rest)
+
+        def query(vertices):
+            mesh.points = vertices
+            return ask(mesh)
+
+        return Way(what, kind, query, answer, exact=exact)
+
+    return [
+        way("has_self_intersections: tree rebuilt; exact; yes or no", ANY_APART,
+            tf.has_self_intersections),
+        way("gather_intersecting_ids of the mesh with itself: tree rebuilt; rounded arithmetic; "
+            "all pairs in both orders and with neighbours", APART,
+            lambda mesh: tf.gather_intersecting_ids(mesh, mesh),
+            lambda found: without_neighbours(scene, (p for p in found.tolist() if p[0] < p[1])),
+            exact=False),
+    ]
+
+
+# Name, which is also the package on PyPI: function, licence, type of coordinates, whether it can
+# use more than one thread.
+PEERS = {
+    "ipctk": (ipctk, "MIT", "d", True),
+    "libigl": (libigl, "MPL-2.0", "d", False),
+    "meshlib": (meshlib, "non-commercial, evaluation, education", "f", True),
+    "trueform": (trueform, "PolyForm Noncommercial 1.0.0", "d", True),
+}
+NOTHING_ELSE = "starcontour"
+
+
+def find_ways(peer, scene):
+    """Version of a peer and ways of using it."""
+    if peer == NOTHING_ELSE:
+        return "-", []
+    try:
+        import numpy as np
+
+        return importlib.metadata.version(peer), PEERS[peer][0](scene, np)
+    except (ImportError, AttributeError) as error:
+        raise Skipped(f"{type(error).__name__}: {error}") from None
+
+
+# --------------------------------------------------------------------------------------------------
+# Turns
+
+
+def walk(scene, scalar, ours, ways, frames, first):
+    """Walks the animation once; compares answers if first, else records times."""
+    for f in range(frames):
+        positions = scene.frame(f, scalar)
+        expected = Expected(ours, positions) if first else None
+        for way in ways:
+            pose = positions
+            if not way.own:
+                import numpy as np
+
+                pose = way.prepare(np.frombuffer(positions, dtype=scalar).reshape(-1, 3))
+            start = time.perf_counter()
+            found = way.query(pose)
+            elapsed = time.perf_counter() - start
+            if not first:
+                way.times[f].append(1000 * elapsed)
+            else:
+                answer = way.answer(found)
+                way.counts.append(int(answer) if isinstance(answer, bool) else len(answer))
+                way.errors.append(expected.judge(way.kind, answer))
+
+
+def measure(peer, scene, arguments, out):
+    """Measures a peer on a scene. Returns whether all answers that claim exactness were right."""
+    scalar = PEERS[peer][2] if peer in PEERS else "d"
+    try:
+        if arguments.threads > 1 and not (peer in PEERS and PEERS[peer][3]):
+            raise Skipped("it uses one thread only")
+        version, ways = find_ways(peer, scene)
+    except Skipped as reason:
+        print(f"skipped: {peer} on {scene.name}: {reason}", flush=True)
+        return True
+    ours = Starcontour(arguments.lib, scene, scalar)
+    for what, method in (("star", SC_METHOD_SCTT), ("aabb", SC_METHOD_AABB)):
+        ways.append(Way(what, ALL, lambda positions, m=method: ours.query(m, positions),
+                        lambda found: ours.list()))
+        ways[-1].own = True
+    frames = min(scene.frames, arguments.frames or scene.frames)
+    for way in ways:
+        way.times = [[] for _ in range(frames)]
+    for repeat in range(arguments.repeats + 1):
+        walk(scene, scalar, ours, ways, frames, repeat == 0)
+
+    same = True
+    for way in ways:
+        name, number = (NOTHING_ELSE, ours.version) if way.own else (peer, version)
+        threads = 1 if way.own else arguments.threads
+        medians = [statistics.median(times) for times in way.times]
+        for f in range(frames):
+            print(scene.name, scene.triangles, f, name, number, way.what, threads,
+                  f"{medians[f]:.4f}", way.counts[f],
+                  "no" if any(way.errors[f]) else "yes", f"{min(way.times[f]):.4f}",
+                  *way.errors[f], peer, sep=",", file=out)
+        if arguments.csv:
+            print(f"{scene.name:<14} {name:<12} {threads} thread{' ' if threads == 1 else 's'}"
+                  f"{statistics.fmean(medians):10.3f} ms a frame  {way.what}")
+        different = frames - way.errors.count((0, 0))
+        if different:
+            same &= not way.exact
+            print(f"different pairs in {different} of {frames} frames: {name} on {scene.name}")
+    sys.stdout.flush()
+    return same
+
+
+# --------------------------------------------------------------------------------------------------
+# Command line
+
+
+def processors():
+    """The processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return sorted(os.sched_getaffinity(0))
+    return list(range(os.cpu_count() or 1))
+
+
+def parse():
+    top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+    names = sorted(PEERS) + [NOTHING_ELSE]
+    parser = argparse.ArgumentParser(description="Times peers beside starcontour.")
+    parser.add_argument("--list", action="store_true", help="peers, their licences, what they do")
+    parser.add_argument("--peer", choices=names, help="only this one")
+    parser.add_argument("--threads", default="1", help="1, all, or how many [1]")
+    parser.add_argument("--repeats", type=int, default=5, help="walks that are timed [5]")
+    parser.add_argument("--frames", type=int, help="only the first frames")
+    parser.add_argument("--csv", help="file to add lines to [standard output]")
+    parser.add_argument("--lib", help="starcontour's shared library [build/lib]")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help="folder of a scene")
+    arguments = parser.parse_args()
+    if not arguments.list:
+        if not arguments.scenes:
+            parser.error("no scene given")
+        count = len(processors())
+        if arguments.threads != "all" and not arguments.threads.isdigit():
+            parser.error("--threads: 1, all, or how many")
+        arguments.threads = count if arguments.threads == "all" else int(arguments.threads)
+        if arguments.threads < 1 or arguments.repeats < 1 or (arguments.frames or 1) < 1:
+            parser.error("threads, repeats and frames are 1 or more")
+        if not arguments.lib:
+            libraries = glob.glob(os.path.join(top, "build", "lib", "libstarcontour.*"))
+            shared = [path for path in sorted(libraries) if not path.endswith(".a")]
+            if not shared:
+                parser.error("no shared library in build/lib: run make, or name it by --lib")
+            arguments.lib = shared[0]
+    return arguments
+
+
+def run_each():
+    """Runs all peers, each in a process of its own."""
+    status = 0
+    for peer in sorted(PEERS):
+        done = subprocess.run([sys.executable, os.path.abspath(__file__), "--peer", peer,
+                               *sys.argv[1:]], check=False)
+        if done.returncode < 0:
+            print(f"failed: {peer} was ended by signal {-done.returncode}", flush=True)
+        status = max(status, 1 if done.returncode < 0 else done.returncode)
+    return status
+
+
+def main():
+    arguments = parse()
+    if arguments.list:
+        for name, (function, licence, _, _) in sorted(PEERS.items()):
+            print(f"{name:<10} {licence:<40} {function.__doc__}")
+        return 0
+    if not arguments.peer:
+        return run_each()
+    # Before a library looks how many processors there are.
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, processors()[: arguments.threads])
+    try:
+        out = open(arguments.csv, "a", encoding="ascii") if arguments.csv else sys.stdout
+        if not arguments.csv or out.tell() == 0:
+            print(COLUMNS, file=out)
+        same = True
+        for folder in arguments.scenes:
+            same &= measure(arguments.peer, Scene(folder), arguments, out)
+        if arguments.csv:
+            out.close()
+        return 0 if same else 1
+    except (OSError, Unusable) as error:
+        print(error, file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,31 @@
+#!/bin/sh
+# Sees to it that a package from PyPI is there, in a virtual environment of its own.
+#
+#     bench/peers/venv.sh DIRECTORY PACKAGE
+#
+# Versions stand in requirements.txt; only wheels are taken. If the package cannot be had, one line
+# says "skipped", with the reason, and the exit status is 3.
+#
+# SPDX-License-Identifier: MIT
+set -u
+
+venv=$1
+package=$2
+versions=${0%/*}/requirements.txt
+log=$venv.log
+
+skip() {
+    echo "skipped: peer-$package: $1"
+    exit 3
+}
+
+command -v python3 >/dev/null 2>&1 || skip "there is no python3 ('make deps with=peers')"
+if [ ! -x "$venv/bin/pip" ]; then
+    mkdir -p "${venv%/*}"
+    python3 -m venv "$venv" >"$log" 2>&1 || skip "python3 -m venv failed, see $log ('make deps with=peers')"
+fi
+"$venv/bin/python" -c 'import importlib.metadata, sys; importlib.metadata.version(sys.argv[1])' \
+    "$package" 2>/dev/null && exit 0
+echo "installing $package into $venv"
+"$venv/bin/pip" install --quiet --disable-pip-version-check --only-binary :all: -c "$versions" \
+    "$package" >"$log" 2>&1 || skip "$(grep -m 1 ERROR "$log" || echo "pip failed, see $log")"

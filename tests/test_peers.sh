@@ -1,0 +1,215 @@
+#!/bin/sh
+# The drivers of bench/peers, without any peer: scenes are read and refused as they say, lines have
+# their columns, and a peer that is absent is skipped with a message. The compiled one is linked with
+# the triangle test of peers that bring none, which must find the pairs that the library finds.
+#
+# SPDX-License-Identifier: MIT
+. tests/script.sh
+
+columns=scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,extra,beside
+scene=$scratch/touching
+
+# Four triangles in a plane, two that stand on it, one that crosses it; then the last three go away. Of
+# the eight bytes of these doubles only the last two are not zero.
+doubles() {
+    for number in "$@"; do
+        case $number in
+        -1) printf '\0\0\0\0\0\0\360\277' ;;
+        0) printf '\0\0\0\0\0\0\0\0' ;;
+        1) printf '\0\0\0\0\0\0\360\077' ;;
+        2) printf '\0\0\0\0\0\0\0\100' ;;
+        3) printf '\0\0\0\0\0\0\010\100' ;;
+        4) printf '\0\0\0\0\0\0\020\100' ;;
+        9) printf '\0\0\0\0\0\0\042\100' ;;
+        nan) printf '\0\0\0\0\0\0\370\177' ;;
+        esac
+    done
+}
+indices() {
+    # shellcheck disable=SC2059
+    for number in "$@"; do printf "\\$(printf %03o "$number")\\0\\0\\0"; done
+}
+still="0 0 0 4 0 0 0 4 0  1 1 0 2 1 0 1 2 0  4 0 0 4 4 0 0 4 0  4 0 0 9 0 0 9 -1 0"
+mkdir "$scene"
+echo "7 21 2" >"$scene/meta.txt"
+indices 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 >"$scene/tris.u32"
+# shellcheck disable=SC2086
+{
+    doubles $still  1 1 0 1 1 2 2 1 2  0 2 0 3 2 0 1 2 3  3 3 -1 3 3 1 4 3 1
+    doubles $still  1 1 1 1 1 2 2 1 2  0 2 1 3 2 1 1 2 3  9 9 -1 9 9 1 9 4 1
+} >"$scene/frames.f64"
+
+# Pairs in frame 0: in the plane 0-1 (inside), 0-2 (along an edge), 0-3, 2-3 (at a corner); a corner of
+# 4 in 0 and on 1; an edge of 5 in 0 and 2 and at 1; 2-6 cross. In frame 1 the first four.
+pairs_0=10
+pairs_1=4
+
+# found FILE PEER WHAT FRAME: pairs and whether they match, in a line of a CSV file.
+found() {
+    awk -F, -v peer="$2" -v what="$3" -v frame="$4" \
+        '$4 == peer && index($6, what) == 1 && $3 == frame { print $9, $10 }' "$1"
+}
+
+# rows FILE: it has the columns, and fourteen fields in each line.
+rows() {
+    test "$(head -n 1 "$1")" = "$columns" && awk -F, 'NF != 14 { exit 1 }' "$1" &&
+        awk -F, 'NR > 1 && !($8 > 0 && $11 > 0 && $11 <= $8) { exit 1 }' "$1"
+}
+
+status() {
+    wanted=$1
+    shift
+    "$@"
+    test $? -eq "$wanted"
+}
+
+# says "words" command...
+says() {
+    words=$1
+    shift
+    "$@" 2>&1 | tee "$scratch/said"
+    grep -qF -e "$words" "$scratch/said"
+}
+
+# refused DRIVER...: what is wrong with a scene or an option is said, and the exit status is 2.
+refused() {
+    mkdir -p "$scratch/wrong"
+    cp "$scene"/* "$scratch/wrong"
+    check "$1: no scene" status 2 "$@"
+    check "$1: an unknown option" status 2 "$@" --speed 3 "$scene"
+    check "$1: no repeats" status 2 "$@" --repeats 0 "$scene"
+    check "$1: no folder" status 2 "$@" "$scratch/absent"
+    echo "7 21" >"$scratch/wrong/meta.txt"
+    check "$1: two numbers in meta.txt" says "meta.txt: " "$@" "$scratch/wrong"
+    echo "7 21 3" >"$scratch/wrong/meta.txt"
+    check "$1: fewer frames than said" says "not as long as" "$@" "$scratch/wrong"
+    echo "7 20 2" >"$scratch/wrong/meta.txt"
+    check "$1: a vertex that does not exist" says "no such vertex" "$@" "$scratch/wrong"
+    cp "$scene/meta.txt" "$scratch/wrong"
+    # shellcheck disable=SC2046
+    doubles $(yes nan | head -n 126) >"$scratch/wrong/frames.f64"
+    check "$1: positions that are no numbers" says "not finite" "$@" "$scratch/wrong"
+    rm "$scratch/wrong/frames.f64"
+    check "$1: no positions" says "frames.f32: " "$@" "$scratch/wrong"
+}
+
+# ------------------------------------------------------------------------------------------------
+# The compiled driver. The folder of the build is two above, or one with another config.
+
+build=$(dirname "$SC_LIB")
+[ "$SC_CONFIG" != release ] || build=$build/release
+brute=$build/peers/brute
+csv=$scratch/brute.csv
+check "the driver builds" "$MAKE" --no-print-directory config="$SC_CONFIG" "$brute"
+check "it measures" "$brute" --repeats 3 --csv "$csv" "$scene/"
+check "its lines have their columns" rows "$csv"
+check "a line for each frame and method" test "$(wc -l <"$csv")" -eq 7
+for frame in 0 1; do
+    eval "pairs=\$pairs_$frame"
+    check "starcontour finds $pairs pairs in frame $frame" \
+        test "$(found "$csv" starcontour star $frame)" = "$pairs yes"
+    check "and with boxes" test "$(found "$csv" starcontour aabb $frame)" = "$pairs yes"
+    check "and so does the triangle test" \
+        test "$(found "$csv" brute "all pairs" $frame)" = "$pairs yes"
+done
+check "it adds to a file" "$brute" --frames 1 --repeats 1 --csv "$csv" "$scene"
+check "with one heading" test "$(grep -c '^scene,' "$csv")/$(wc -l <"$csv")" = 1/10
+check "it prints lines where no file is named" says "touching,7,0,brute," "$brute" "$scene"
+check "one thread is all this one uses" says "skipped: brute" "$brute" --threads 2 "$scene"
+refused "$brute"
+
+# Triangles of random points of a coarse grid, in one plane in some frames: they touch in all ways.
+soup() {
+    python3 -S - "$1" <<'END'
+import os, random, struct, sys
+random.seed(7)
+folder, vertices, triangles, frames = sys.argv[1], 60, 150, 6
+poses = []
+for frame in range(frames):
+    step = 1.0 if frame < 3 else 0.1
+    pose = [[random.randint(0, 6) * step for _ in range(3)] for _ in range(vertices)]
+    for point in pose:
+        if frame % 3 == 0:
+            point[frame % 2] = 3.0
+        elif frame % 3 == 1:
+            point[2] = point[0] + point[1]
+    poses.append(pose)
+
+def flat(a, b, c):
+    u, v = ([q[k] - a[k] for k in range(3)] for q in (b, c))
+    return max(abs(u[k] * v[k - 1] - u[k - 1] * v[k]) for k in range(3)) < 1e-6
+
+chosen = []
+while len(chosen) < triangles:
+    corners = random.sample(range(vertices), 3)
+    if not any(flat(*(pose[v] for v in corners)) for pose in poses):
+        chosen.append(corners)
+os.mkdir(folder)
+with open(folder + "/meta.txt", "w") as file:
+    print(triangles, vertices, frames, file=file)
+with open(folder + "/tris.u32", "wb") as file:
+    file.writelines(struct.pack("<3I", *corners) for corners in chosen)
+with open(folder + "/frames.f64", "wb") as file:
+    file.writelines(struct.pack("<3d", *point) for pose in poses for point in pose)
+END
+}
+if command -v python3 >/dev/null 2>&1; then
+    check "a soup that touches in all ways is made" soup "$scratch/soup"
+    check "the triangle test finds our pairs in it" \
+        "$brute" --repeats 1 --csv "$scratch/soup.csv" "$scratch/soup"
+    check "and there are some in all frames" awk -F, '$9 == 0 { exit 1 }' "$scratch/soup.csv"
+else
+    skip "the triangle test on a soup: there is no python3"
+fi
+
+# ------------------------------------------------------------------------------------------------
+# The Python driver. Without site-packages (-S) there are no peers.
+
+script=bench/peers/peers.py
+if ! command -v python3 >/dev/null 2>&1; then
+    skip "peers.py: there is no python3"
+else
+    python3 -B -S "$script" --list | sed 's/ .*//' >"$scratch/listed"
+    sed -n 's/^peer-\([a-z]*\):.*PyPI.*/\1/p' Makefile | sort >"$scratch/targets"
+    check "peers.py lists what make has targets for" diff "$scratch/listed" "$scratch/targets"
+    check "and there are some" test -s "$scratch/listed"
+    for peer in $(cat "$scratch/listed"); do
+        check "$peer has a version" grep -q "^$peer==[0-9]" bench/peers/requirements.txt
+        check "$peer is skipped where it is absent" says "skipped: $peer on touching: " \
+            python3 -B -S "$script" --peer "$peer" --lib unused --csv "$scratch/skipped.csv" "$scene"
+    done
+    library=$(ls "$SC_LIB/libstarcontour.so" "$SC_LIB/libstarcontour.dylib" 2>/dev/null | head -n 1)
+    if [ -z "$library" ] || [ "$SC_CONFIG" = sanitize ]; then
+        skip "peers.py asking starcontour: no shared library that Python can load"
+    else
+        ask="python3 -B -S $script --peer starcontour --lib $library"
+        csv=$scratch/python.csv
+        # shellcheck disable=SC2086
+        check "peers.py measures" $ask --repeats 3 --csv "$csv" "$scene/"
+        check "its lines have their columns" rows "$csv"
+        check "a line for each frame and method" test "$(wc -l <"$csv")" -eq 5
+        for frame in 0 1; do
+            eval "pairs=\$pairs_$frame"
+            check "starcontour finds $pairs pairs in frame $frame, from Python" \
+                test "$(found "$csv" starcontour star $frame)" = "$pairs yes"
+            check "and with boxes" test "$(found "$csv" starcontour aabb $frame)" = "$pairs yes"
+        done
+        # shellcheck disable=SC2086
+        refused $ask
+    fi
+fi
+
+# ------------------------------------------------------------------------------------------------
+# What make says where something is absent.
+
+check "make skips a library that is absent" says "skipped: peer-fcl: fcl/config.h not found" \
+    "$MAKE" --no-print-directory peer-fcl CPPFLAGS=-nostdinc
+no_python() {
+    PATH=$scratch/empty /bin/sh bench/peers/venv.sh "$scratch/venv" ipctk
+}
+check "no python3 is said" says "skipped: peer-ipctk: there is no python3" no_python
+check "and has a status of its own" status 3 no_python
+check "no scene is said" says "SCENES names folders" bench/peers/measure_peer.sh "$scratch/x.csv" "" absent true
+check "and is an error" status 2 bench/peers/measure_peer.sh "$scratch/x.csv" "" absent true
+
+finish
