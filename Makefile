@@ -38,6 +38,7 @@ INCLUDEDIR ?= $(PREFIX)/include
 WERROR ?= 0
 V ?= 0
 INSTALL ?= install
+PYTHON ?=
 
 comma := ,
 # Make's versions differ in what they take for a comment within $(shell ...).
@@ -123,8 +124,8 @@ metis_library := $(if $(metis_source),$(metis_static))
 with_metis := $(if $(metis),-DSC_WITH_METIS)
 metis_link := $(metis_library) $(static) $(if $(metis),-lmetis)
 
-program_sources := tools/sc_query.c tools/sc_partition.c bench/demo.c meshes/make_meshes.c \
-    meshes/subdivide.c
+program_sources := tools/sc_query.c tools/sc_partition.c bench/demo.c bench/sc_bench.c \
+    meshes/make_meshes.c meshes/subdivide.c
 tools_support := $(filter-out $(program_sources),$(wildcard tools/*.c))
 bench_support := $(filter-out $(program_sources),$(wildcard bench/*.c bench/scenes/*.c))
 tests := $(sort $(wildcard tests/test_*.c))
@@ -137,6 +138,7 @@ missing_for_programs := $(if $(assimp),,assimp) $(if $(cjson),,cJSON)
 offered = $(if $(wildcard $(2)),$(bin)/$(1))
 mesh_readers := $(call offered,sc-query,tools/sc_query.c) \
     $(call offered,sc-partition,tools/sc_partition.c) $(call offered,sc-demo,bench/demo.c) \
+    $(call offered,sc-bench,bench/sc_bench.c) \
     $(call offered,subdivide,meshes/subdivide.c)
 programs := $(call offered,make-meshes,meshes/make_meshes.c) \
     $(if $(strip $(missing_for_programs)),,$(mesh_readers))
@@ -171,6 +173,18 @@ $(obj)/meshes/%.o: own = -Iinclude -Itools -Imeshes $(mode)
 $(obj)/tests/%.o: own = -Iinclude -Ilib -Itests $(test_mode) $(with_metis)
 $(obj)/tests/bench/%.o: own = -Iinclude -Itools -Ibench -Itests $(test_mode)
 
+# What measurements name: commit (+: with changes), compiler and flags.
+quoted = $(subst ",\",$(subst \,\\,$(1)))
+$(work)/build_info.h: FORCE
+	@mkdir -p $(@D)
+	@{ printf '#define BUILD_COMMIT "%s"\n' "$$(git describe --always --abbrev=12 --dirty=+ --exclude='*' 2>/dev/null || echo unknown)"; \
+	    printf '#define BUILD_COMPILER "%s"\n' "$$($(CC) --version | head -n 1 | tr -d '"\\')"; \
+	    printf '#define BUILD_FLAGS "%s"\n' \
+	    '$(subst ','\'',$(call quoted,$(strip $(exact) $(mode) $(CPPFLAGS) $(CFLAGS))))'; } > $@.new
+	@cmp -s $@.new $@ && rm -f $@.new || mv -f $@.new $@
+$(obj)/bench/report.o: $(work)/build_info.h
+$(obj)/bench/report.o: own += -I$(work)
+
 $(obj)/%.o: %.c $(obj)/flags
 	@mkdir -p $(@D)
 	$(if $(Q),@echo "  cc   $<")
@@ -202,10 +216,11 @@ define link
 	$(Q)$(CC) $(link_mode) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(1) $(LDLIBS) -lm
 endef
 
-mesh_libs := $(metis_link) -lassimp -lcjson
+mesh_libs := $(metis_link) -lassimp -lcjson -lpthread
 $(bin)/sc-query: $(call objects,tools/sc_query.c $(tools_support))
 $(bin)/sc-partition: $(call objects,tools/sc_partition.c $(tools_support))
 $(bin)/sc-demo: $(call objects,bench/demo.c $(bench_support) $(tools_support))
+$(bin)/sc-bench: $(call objects,bench/sc_bench.c $(bench_support) $(tools_support))
 $(bin)/subdivide: $(call objects,meshes/subdivide.c $(tools_support))
 $(bin)/make-meshes: $(call objects,meshes/make_meshes.c)
 $(mesh_readers): $(static) $(metis_library)
@@ -228,6 +243,22 @@ else
 demo: $(programs)
 	@meshes/fetch.sh build/meshes $(bin)/subdivide || echo "no downloaded meshes: the demo goes on with what is there" >&2
 	$(bin)/sc-demo
+endif
+
+.PHONY: bench-report
+bench-report: ## make that report anew from its CSV files and build/peers/peers.csv
+	@PYTHON='$(PYTHON)' bench/run_bench.sh report
+
+.PHONY: bench bench-quick
+ifneq ($(strip $(missing_for_programs)),)
+bench: ## measure all methods on all scenes; report and plots in bench/results/<machine>
+bench-quick: ## a small version of bench, in build/bench-quick
+bench bench-quick:
+	@echo "make $@ needs $(strip $(missing_for_programs)): run 'make deps with=bench' first" >&2; exit 1
+else
+bench bench-quick: $(programs)
+	@meshes/fetch.sh build/meshes $(bin)/subdivide >/dev/null 2>&1 || echo "not all real meshes could be fetched: scenes made of them are skipped" >&2
+	@SC_BIN='$(bin)' PYTHON='$(PYTHON)' bench/run_bench.sh $(if $(filter bench,$@),full,quick)
 endif
 
 .PHONY: meshes
@@ -552,6 +583,7 @@ help: ## this list
 #: CC          C compiler [cc]
 #: CLANG       clang, for fuzz and test-memory-clang [clang]
 #: CXX         C++ compiler, for test-cgal and one test of the header [g++]
+#: PYTHON      Python with matplotlib, for the plots of bench [python3, the system's]
 #: CPPFLAGS    added when preprocessing, such as -I of a library in an unusual place
 #: CFLAGS      added after our own flags when compiling and linking C
 #: CXXFLAGS    the same for C++

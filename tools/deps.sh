@@ -34,7 +34,8 @@ program clang-tidy clang-tidy clang-tools-extra clang llvm
 program cppcheck cppcheck cppcheck cppcheck cppcheck
 program valgrind valgrind valgrind valgrind -
 sanitizers clang libclang-rt-dev compiler-rt compiler-rt -"
-group_bench=
+group_bench="\
+module matplotlib python3-matplotlib python3-matplotlib python-matplotlib python-matplotlib"
 group_docs=
 group_ffi=
 group_packages=
@@ -66,7 +67,12 @@ there() {
         command -v "$1" >/dev/null 2>&1
         ;;
     program) command -v "$2" >/dev/null 2>&1 ;;
-    module) python3 -c "import $2" >/dev/null 2>&1 ;;
+    module)
+        for python in python3 /usr/bin/python3; do
+            "$python" -c "import $2" >/dev/null 2>&1 && return 0
+        done
+        return 1
+        ;;
     header) echo "#include <$2>" | $CC ${CPPFLAGS:-} -E -x c - >/dev/null 2>&1 ;;
     sanitizers) echo "int main(void) { return 0; }" | "$2" -fsanitize=memory -x c -o /dev/null - 2>/dev/null ;;
     esac

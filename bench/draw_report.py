@@ -1,0 +1,671 @@
+#!/usr/bin/env python3
+"""Makes tables and plots of what was measured: summary.csv, frames.csv, report.md, SVG and PNG.
+
+    bench/draw_report.py [--command TEXT] [--seconds N] [--readme FILE] RESULTS [RAW]
+
+RAW is a folder with JSON Lines of sc-bench; without it, the CSV files in RESULTS are taken as they are.
+peers.csv in RESULTS, if there is one, is what `make peers` wrote. Every figure in report.md comes from these
+files. Needs matplotlib for plots; without it they are left out, and the report says so.
+
+SPDX-License-Identifier: MIT
+"""
+
+import argparse
+import collections
+import csv
+import glob
+import json
+import math
+import os
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+METHODS = ["exact", "star", "none", "aabb-sctt", "aabb", "hash"]
+
+TASKS = ["update_boxes", "update_normals", "orientation", "boxes_orientation",
+         "primitives_orientation", "update_contours", "contour", "boxes_contour",
+         "primitives_contour"]
+
+TASK_TITLES = ["update boxes", "update normals", "orientation", "boxes (o.)", "primitives (o.)",
+               "update contours", "contour", "boxes (c.)", "primitives (c.)"]
+
+# Okabe and Ito's colours, which the colour-blind can tell apart, and markers for prints without colour.
+STYLES = {
+    "exact": ("#0072B2", "o", "-"),
+    "star": ("#009E73", "s", "-"),
+    "none": ("#999999", "", ":"),
+    "aabb-sctt": ("#E69F00", "^", "--"),
+    "aabb": ("#D55E00", "v", "--"),
+    "hash": ("#CC79A7", "x", "-."),
+}
+
+SUMMARY = (["scene", "triangles", "vertices", "partition", "pairs_kind", "contact", "mode",
+            "threads", "frames", "repeats", "method", "rest_ms", "mean_ms", "worst_ms",
+            "mean_of_minima_ms", "ns_per_triangle", "times_floor", "floor_ns_per_triangle",
+            "rest_pairs", "mean_pairs", "most_pairs", "missed", "most_missed", "missed_percent",
+            "extra"] + [task + "_ms" for task in TASKS] +
+           ["nodes", "boxes", "primitives", "build_ms", "model_bytes", "workspace_bytes",
+            "hash_bytes", "cpu_share"])
+
+# A line a frame: milliseconds of each method.
+FRAMES = ["scene", "triangles", "partition", "frame", "pairs", "missed_by_none"] + METHODS
+
+
+# ---------------------------------------------------------------------------------------------------
+# Reading and condensing
+
+def mean(values):
+    values = list(values)
+    return sum(values) / len(values) if values else 0.0
+
+
+def short(number):
+    """Six digits at most, as text; whole numbers whole."""
+    if number is None:
+        return ""
+    if float(number) == int(number):
+        return str(int(number))
+    return "%.6g" % number
+
+
+def read_runs(folder):
+    """Each run: its description and its records."""
+    runs = []
+    for path in sorted(glob.glob(os.path.join(folder, "*.jsonl"))):
+        with open(path, encoding="utf-8") as file:
+            lines = [json.loads(line) for line in file if line.strip()]
+        if len(lines) > 1:
+            runs.append((lines[0], lines[1:]))
+    return runs
+
+
+def summarize(description, records):
+    """A row for each method of a run."""
+    rows = []
+    for method in METHODS:
+        own = [r for r in records if r["method"] == method]
+        if not own:
+            continue
+        row = {key: description.get(key) for key in
+               ("scene", "triangles", "vertices", "partition", "pairs_kind", "contact", "mode",
+                "threads", "frames", "repeats", "floor_ns_per_triangle", "build_ms", "model_bytes",
+                "workspace_bytes", "hash_bytes", "cpu_share")}
+        average = mean(r["ms"] for r in own)
+        complete = sum(r["pairs"] + r["missed"] - r["extra"] for r in own)
+        missed = sum(r["missed"] for r in own)
+        row.update({
+            "method": method,
+            "rest_ms": own[0]["ms"],
+            "mean_ms": average,
+            "worst_ms": max(r["ms"] for r in own),
+            "mean_of_minima_ms": mean(r["ms_min"] for r in own),
+            "ns_per_triangle": 1e6 * average / description["triangles"],
+            "times_floor": mean(r["times_floor"] for r in own),
+            "rest_pairs": own[0]["pairs"],
+            "mean_pairs": mean(r["pairs"] for r in own),
+            "most_pairs": max(r["pairs"] for r in own),
+            "missed": missed,
+            "most_missed": max(r["missed"] for r in own),
+            "missed_percent": 100.0 * missed / complete if complete else 0.0,
+            "extra": sum(r["extra"] for r in own),
+        })
+        for key in [task + "_ms" for task in TASKS] + ["nodes", "boxes", "primitives"]:
+            values = [r[key] for r in own if r[key] is not None]
+            row[key] = mean(values) if values else None
+        rows.append(row)
+    return rows
+
+
+def write_csv(path, columns, rows, description):
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        for key in ("command", "seconds", "skipped", "commit", "compiler", "flags", "cpu", "cores"):
+            file.write("# %s: %s\n" % (key, description[key]))
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        for row in rows:
+            writer.writerow([row[c] if isinstance(row[c], str) else short(row[c])
+                             for c in columns])
+
+
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return text if text else None
+
+
+def read_csv(path):
+    """The rows, numbers as numbers, and what stands in the lines that begin with #."""
+    description, lines = {}, []
+    with open(path, encoding="utf-8", newline="") as file:
+        for line in file:
+            if line.startswith("#"):
+                key, _, value = line[1:].strip().partition(": ")
+                description[key] = value
+            else:
+                lines.append(line)
+    rows = [{key: number(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+    return rows, description
+
+
+def collect(raw, results, command, seconds):
+    """JSON Lines to summary.csv and frames.csv, which has the main runs alone."""
+    runs = read_runs(raw)
+    if not runs:
+        sys.exit("draw_report.py: nothing was measured: no results in " + raw)
+    if len({d["commit"] for d, _ in runs}) > 1:
+        sys.exit("draw_report.py: results of different commits in " + raw)
+    summary = [row for d, records in runs for row in summarize(d, records)]
+    frames = []
+    for d, records in runs:
+        by_frame = collections.OrderedDict()
+        for r in records:
+            by_frame.setdefault(r["frame"], {})[r["method"]] = r
+        if (d["pairs_kind"], d["mode"], d["threads"]) != ("edge", "once", 1) or \
+                len(by_frame[0]) < len(METHODS):
+            continue
+        for frame, methods in by_frame.items():
+            row = {"scene": d["scene"], "triangles": d["triangles"], "partition": d["partition"],
+                   "frame": frame, "pairs": methods["exact"]["pairs"],
+                   "missed_by_none": methods["none"]["missed"]}
+            row.update({m: float("%.4g" % methods[m]["ms"]) for m in METHODS})
+            frames.append(row)
+    skipped = []
+    log = os.path.join(raw, "skipped.log")
+    if os.path.exists(log):
+        with open(log, encoding="utf-8") as file:
+            skipped = [line.strip() for line in file]
+    description = dict(runs[0][0], command=command, seconds=seconds,
+                       skipped="; ".join(skipped) or "nothing")
+    write_csv(os.path.join(results, "summary.csv"), SUMMARY, summary, description)
+    write_csv(os.path.join(results, "frames.csv"), FRAMES, frames, description)
+
+
+# ---------------------------------------------------------------------------------------------------
+# Tables
+
+class Results:
+    """What was measured: a row of summary.csv by run and method."""
+
+    def __init__(self, folder):
+        self.rows, self.description = read_csv(os.path.join(folder, "summary.csv"))
+        self.frames, _ = read_csv(os.path.join(folder, "frames.csv"))
+        peers = os.path.join(folder, "peers.csv")
+        self.peers = read_csv(peers)[0] if os.path.exists(peers) else []
+        self.runs = collections.OrderedDict()
+        for row in self.rows:
+            key = (row["scene"], row["triangles"], row["partition"], row["pairs_kind"],
+                   row["mode"], row["threads"])
+            self.runs.setdefault(key, {})[row["method"]] = row
+
+    def main_runs(self, pairs="edge"):
+        """One thread, one query a frame, all methods; (scene, triangles): run."""
+        found = collections.OrderedDict()
+        for key, run in self.runs.items():
+            if key[3] == pairs and key[4] == "once" and key[5] == 1 and len(run) == len(METHODS):
+                found.setdefault(key[:2], run)
+        return found
+
+
+def figure(value, digits=3):
+    """A number with so many significant digits, never in exponential form."""
+    if value is None:
+        return "–"
+    if value == 0:
+        return "0"
+    places = max(0, digits - 1 - int(math.floor(math.log10(abs(value)))))
+    return "{:,.{}f}".format(value, places)
+
+
+def times(value):
+    return "–" if value is None else "%.2f" % value if value < 9.995 else "%.1f" % value
+
+
+def whole(value):
+    return "{:,d}".format(int(value))
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |",
+             "|" + "|".join("---" if i == 0 else "--:" for i in range(len(header))) + "|"]
+    lines += ["| " + " | ".join(row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def overview(results):
+    """The table that README.md shows: the largest size of each scene with all methods and 60 frames,
+    or as many as there are."""
+    best = collections.OrderedDict()
+    for (scene, triangles), run in results.main_runs().items():
+        frames = run["exact"]["frames"]
+        if scene not in best or (frames, triangles) >= best[scene][:2]:
+            best[scene] = (frames, triangles, run)
+    rows = []
+    for scene, (_, triangles, run) in best.items():
+        rest, average = run["exact"]["rest_ms"], run["exact"]["mean_ms"]
+        rows.append([scene, whole(triangles)] +
+                    [figure(run[m]["mean_ms"]) for m in METHODS if m != "none"] +
+                    [times(run["aabb"]["rest_ms"] / rest), times(run["aabb"]["mean_ms"] / average),
+                     times(run["hash"]["mean_ms"] / average)])
+    return table(["scene", "triangles"] + [m for m in METHODS if m != "none"] +
+                 ["rest: × aabb", "mean: × aabb", "mean: × hash"], rows)
+
+
+def matches_of_paper(results):
+    """Rows of the paper's table with the run of the same scene and about the same size, or None."""
+    paper, _ = read_csv(os.path.join(HERE, "paper_table1.csv"))
+    runs = results.main_runs()
+    matches = []
+    for row in paper:
+        near = [(abs(math.log(t / row["triangles"])), run) for (scene, t), run in runs.items()
+                if scene == row["scene"] and abs(math.log(t / row["triangles"])) < 0.25]
+        matches.append((row, min(near, key=lambda pair: pair[0])[1] if near else None))
+    return matches
+
+
+def table1_times(results):
+    rows = []
+    for paper, run in matches_of_paper(results):
+        theirs = [paper[m + when] for when in ("_rest", "_mean")
+                  for m in ("hash", "aabb", "star", "none")]
+        rows.append(["%s, paper" % paper["scene"], whole(paper["triangles"])] +
+                    ["%.1f" % v for v in theirs[:4]] + [""] +
+                    ["%.1f" % v for v in theirs[4:]] + [""])
+        if run:
+            order = ("hash", "aabb-sctt", "star", "none", "exact")
+            rows.append(["%s, here" % paper["scene"], whole(run["star"]["triangles"])] +
+                        [figure(run[m][when]) for when in ("rest_ms", "mean_ms") for m in order])
+    return table(["milliseconds", "triangles", "hash (0)", "AABB (0)", "star (0)", "none (0)",
+                  "exact (0)", "hash", "AABB", "star", "none", "exact"], rows)
+
+
+def table1_speed(results):
+    rows = []
+    for paper, run in matches_of_paper(results):
+        row = ["%s %s" % (paper["scene"], whole(paper["triangles"]))]
+        for when in ("_rest", "_mean"):
+            for other, ours in (("hash", "hash"), ("aabb", "aabb-sctt")):
+                row.append(times(paper[other + when] / paper["star" + when]))
+                for method in ("star", "exact"):
+                    row.append(times(run[ours][when[1:] + "_ms"] / run[method][when[1:] + "_ms"])
+                               if run else "–")
+        rows.append(row)
+    names = ["over hash (0)", "over AABB (0)", "over hash", "over AABB"]
+    return table(["scene"] + [title for name in names
+                              for title in (name + ": paper", "star", "exact")], rows)
+
+
+def table1_shares(results):
+    rows = []
+    for paper, run in matches_of_paper(results):
+        name = "%s %s" % (paper["scene"], whole(paper["triangles"]))
+        rows.append([name + ", paper"] + ["%.1f" % paper[task] for task in TASKS])
+        for method in ("star", "exact") if run else ():
+            values = [run[method][task + "_ms"] for task in TASKS]
+            rows.append(["%s, %s" % (name, method)] +
+                        ["%.1f" % (100.0 * v / sum(values)) for v in values])
+    return table(["percent"] + TASK_TITLES, rows)
+
+
+def misses(results):
+    rows = []
+    for (scene, triangles), run in results.main_runs().items():
+        none = run["none"]
+        rows.append([scene, whole(triangles), whole(none["frames"]),
+                     figure(run["exact"]["mean_pairs"]), whole(run["exact"]["most_pairs"]),
+                     whole(none["missed"]), whole(none["most_missed"]),
+                     "%.3f" % none["missed_percent"],
+                     times(run["exact"]["mean_ms"] / none["mean_ms"]),
+                     times(run["star"]["mean_ms"] / none["mean_ms"])])
+    return table(["scene", "triangles", "frames", "pairs, mean", "pairs, most", "missed, all frames",
+                  "missed, worst frame", "missed, %", "exact ÷ none", "star ÷ none"], rows)
+
+
+def floors(results):
+    rows = []
+    for (scene, triangles), run in results.main_runs().items():
+        rows.append([scene, whole(triangles), "%.2f" % run["exact"]["floor_ns_per_triangle"]] +
+                    ["%s (%s)" % (times(run[m]["rest_ms"] * 1e6 / triangles /
+                                        run[m]["floor_ns_per_triangle"]),
+                                  times(run[m]["times_floor"])) for m in METHODS])
+    return table(["scene", "triangles", "floor, ns/triangle"] + METHODS, rows)
+
+
+def slopes(results):
+    """For each scene with three sizes or more, the exponent of each method's time: mean, and at rest."""
+    sizes = collections.OrderedDict()
+    for (scene, triangles), run in results.main_runs().items():
+        sizes.setdefault(scene, []).append((triangles, run))
+    rows, found = [], {}
+    for scene, runs in sizes.items():
+        if len(runs) < 3:
+            continue
+        runs.sort(key=lambda pair: pair[0])
+        row = [scene, "%s – %s" % (whole(runs[0][0]), whole(runs[-1][0]))]
+        for method in METHODS:
+            exponents = []
+            for when in ("mean_ms", "rest_ms"):
+                x = [math.log(t) for t, _ in runs]
+                y = [math.log(run[method][when]) for _, run in runs]
+                mx, my = mean(x), mean(y)
+                exponents.append(sum((a - mx) * (b - my) for a, b in zip(x, y)) /
+                                 sum((a - mx) ** 2 for a in x))
+            found[scene, method] = exponents[0]
+            row.append("%.2f (%.2f)" % tuple(exponents))
+        rows.append(row)
+    return table(["scene", "triangles"] + METHODS, rows), found, sizes
+
+
+def memory(results):
+    rows, seen = [], set()
+    for key, run in results.runs.items():
+        any_row = next(iter(run.values()))
+        if key[:3] in seen:
+            continue
+        seen.add(key[:3])
+        t = any_row["triangles"]
+        size = any_row["hash_bytes"]
+        rows.append([key[0], whole(t), key[2], figure(1e6 * any_row["build_ms"] / t),
+                     figure(any_row["build_ms"]), "%.0f" % (any_row["model_bytes"] / t),
+                     "%.0f" % (any_row["workspace_bytes"] / t),
+                     "%.0f" % (size / t) if size else "–"])
+    return table(["scene", "triangles", "partition", "build, ns/triangle", "build, ms",
+                  "model, bytes/triangle", "workspace, bytes/triangle", "hash, bytes/triangle"],
+                 rows)
+
+
+def partitions(results):
+    groups = collections.OrderedDict()
+    for key, run in results.runs.items():
+        if key[3:] == ("edge", "once", 1.0):
+            groups.setdefault(key[:2], []).append((key[2], run))
+    rows = []
+    for (scene, triangles), runs in groups.items():
+        if len(runs) < 2:
+            continue
+        for partition, run in runs:
+            rows.append([scene, whole(triangles), partition] +
+                        ["%s (%s)" % (figure(run[m]["rest_ms"]), figure(run[m]["mean_ms"]))
+                         for m in ("exact", "star", "aabb-sctt", "aabb")])
+    return table(["scene", "triangles", "partition", "exact", "star", "aabb-sctt", "aabb"], rows)
+
+
+def other_pairs(results):
+    rows = []
+    for (scene, triangles), run in results.main_runs("triangle").items():
+        rows.append([scene, whole(triangles)] +
+                    ["%s (%s)" % (figure(run[m]["rest_ms"]), figure(run[m]["mean_ms"]))
+                     for m in METHODS])
+    return table(["scene", "triangles"] + METHODS, rows)
+
+
+def modes(results):
+    """Repeated queries beside single ones of the same frames where the runs are as long."""
+    rows = []
+    for key, run in results.runs.items():
+        if key[4] != "warm":
+            continue
+        once = results.runs.get(key[:4] + ("once",) + key[5:])
+        if not once:
+            continue
+        same = [m for m in METHODS if m in run and m in once]
+        rows.append([key[0], whole(key[1]), "rest, once"] +
+                    [figure(once[m]["rest_ms"]) for m in same])
+        rows.append(["", "", "rest, repeated"] + [figure(run[m]["rest_ms"]) for m in same])
+    if not rows:
+        return ""
+    return table(["scene", "triangles", ""] + same, rows)
+
+
+def threads(results):
+    rows = []
+    for key, run in results.runs.items():
+        if key[5] == 1:
+            continue
+        single = results.runs.get(key[:5] + (1.0,))
+        for method in run:
+            rows.append([key[0], whole(key[1]), method, whole(key[5]),
+                         figure(run[method]["rest_ms"]),
+                         figure(single[method]["rest_ms"]) if single else "–",
+                         figure(run[method]["mean_ms"])])
+    return table(["scene", "triangles", "method", "threads", "rest, ms a frame",
+                  "rest on one thread", "mean, ms a frame"], rows) if rows else ""
+
+
+def peers_table(results):
+    groups = collections.OrderedDict()
+    for row in results.peers:
+        key = (row["scene"], row["triangles"], row["peer"], row["version"], row["what"],
+               row["threads"])
+        groups.setdefault(key, []).append(row)
+    rows = []
+    for key, own in groups.items():
+        verdicts = sorted({str(r["matches"]) for r in own})
+        counts = [r["pairs"] for r in own if isinstance(r["pairs"], float)]
+        rows.append([str(key[0]), whole(key[1]), str(key[2]),
+                     "–" if key[3] is None else str(key[3]), str(key[4]),
+                     key[5] if isinstance(key[5], str) else whole(key[5]), whole(len({r["frame"] for r in own})),
+                     figure(own[0]["ms"]), figure(mean(r["ms"] for r in own)),
+                     figure(mean(counts)) if counts else "–", ", ".join(verdicts)])
+    return table(["scene", "triangles", "peer", "version", "what it does a frame", "threads",
+                  "frames", "first frame, ms", "mean, ms", "pairs, mean", "pairs match"], rows)
+
+
+# ---------------------------------------------------------------------------------------------------
+# Plots
+
+def save(plot, folder, name):
+    plot.savefig(os.path.join(folder, name + ".svg"), metadata={"Date": None})
+    plot.savefig(os.path.join(folder, name + ".png"), dpi=110, metadata={"Software": None})
+
+
+def draw_frames(pyplot, results, folder):
+    """Figure 8: milliseconds over frames, at the largest size with the most frames."""
+    series = collections.OrderedDict()
+    for row in results.frames:
+        key = (row["scene"], row["triangles"], row["partition"])
+        for method in METHODS:
+            series.setdefault(key, {}).setdefault(method, []).append(row[method])
+    chosen = collections.OrderedDict()
+    for key, methods in series.items():
+        length = len(next(iter(methods.values())))
+        if key[0] not in chosen or (length, key[1]) >= chosen[key[0]][0]:
+            chosen[key[0]] = ((length, key[1]), methods)
+    columns = 3
+    lines = (len(chosen) + columns - 1) // columns
+    plot, axes = pyplot.subplots(lines, columns, figsize=(11, 2.7 * lines + 0.6), squeeze=False)
+    for axis in axes.flat[len(chosen):]:
+        axis.set_axis_off()
+    for axis, (scene, ((length, triangles), methods)) in zip(axes.flat, chosen.items()):
+        for method in METHODS:
+            if method in methods:
+                color, _, line = STYLES[method]
+                axis.plot(range(length), methods[method], color=color, linestyle=line,
+                          linewidth=1.4, label=method)
+        axis.set_yscale("log")
+        axis.minorticks_off()
+        axis.xaxis.set_major_locator(pyplot.MaxNLocator(6, integer=True))
+        axis.set_title("%s, %s triangles" % (scene, whole(triangles)), fontsize=9)
+        axis.tick_params(labelsize=7)
+        axis.grid(True, which="major", color="#dddddd", linewidth=0.6)
+    for axis in axes[:, 0]:
+        axis.set_ylabel("ms", fontsize=8)
+    for axis in axes[-1, :]:
+        axis.set_xlabel("frame", fontsize=8)
+    handles, labels = axes.flat[0].get_legend_handles_labels()
+    plot.legend(handles, labels, loc="upper center", ncol=len(labels), frameon=False, fontsize=9)
+    plot.tight_layout(rect=(0, 0, 1, 1 - 0.35 / (2.7 * lines + 0.6)))
+    save(plot, folder, "frames")
+    pyplot.close(plot)
+
+
+def draw_scaling(pyplot, found, sizes, folder):
+    scenes = [scene for scene, runs in sizes.items() if len(runs) >= 3]
+    if not scenes:
+        return False
+    columns = min(3, len(scenes))
+    lines = (len(scenes) + columns - 1) // columns
+    plot, axes = pyplot.subplots(lines, columns, figsize=(3.8 * columns, 3.3 * lines + 0.3),
+                                 squeeze=False)
+    for axis in axes.flat[len(scenes):]:
+        axis.set_axis_off()
+    for axis, scene in zip(axes.flat, scenes):
+        for method in METHODS:
+            color, marker, line = STYLES[method]
+            axis.loglog([t for t, _ in sizes[scene]],
+                        [run[method]["mean_ms"] for _, run in sizes[scene]], color=color,
+                        marker=marker, linestyle=line, markersize=4, linewidth=1.4,
+                        label="%s %.2f" % (method, found[scene, method]))
+        axis.set_title(scene, fontsize=9)
+        axis.set_xlabel("triangles", fontsize=8)
+        axis.set_ylabel("ms a frame, mean", fontsize=8)
+        axis.tick_params(labelsize=7)
+        axis.grid(True, which="major", color="#dddddd", linewidth=0.6)
+        axis.legend(title="slope", fontsize=7, title_fontsize=7, frameon=False)
+    plot.tight_layout()
+    save(plot, folder, "scaling")
+    pyplot.close(plot)
+    return True
+
+
+def draw_all(results, found, sizes, folder):
+    """The names of the plots that were drawn; none without matplotlib."""
+    try:
+        import matplotlib
+    except ImportError:
+        print("draw_report.py: matplotlib is not there: plots are skipped "
+              "('make deps with=bench')", file=sys.stderr)
+        return []
+    matplotlib.use("Agg")
+    matplotlib.rcParams["svg.fonttype"] = "none"
+    matplotlib.rcParams["svg.hashsalt"] = "starcontour"
+    from matplotlib import pyplot
+    draw_frames(pyplot, results, folder)
+    drawn = ["frames"]
+    if draw_scaling(pyplot, found, sizes, folder):
+        drawn.append("scaling")
+    return drawn
+
+
+# ---------------------------------------------------------------------------------------------------
+# The report
+
+def report(results, drawn, slope_table, reading):
+    d = results.description
+    missing_plot = "(not drawn: matplotlib was not there)\n"
+    out = []
+    out.append("# Measurements on %s, %s cores\n" % (d["cpu"], d["cores"]))
+    out.append("Made by `%s` in %s s at commit %s. Compiler: %s; flags: `%s`.\n" % (
+        d["command"], d["seconds"], d["commit"], d["compiler"], d["flags"]))
+    shares = [row["cpu_share"] for row in results.rows if row["threads"] == 1]
+    if min(shares) < 0.95:
+        out.append("**Disturbed**: other programs ran at the same time. The timed queries had %.0f %% of\n"
+                   "a processor on the whole, and %.0f %% in the worst run; a quiet machine gives 99.\n"
+                   "Single times can be far too long.\n" % (100 * mean(shares), 100 * min(shares)))
+    out.append(
+        "If not said otherwise: one thread, one query a frame in sequence, the methods in turn in each\n"
+        "frame (`sc-bench --once`), the median of several passes over the animation; pairs of an edge\n"
+        "and a triangle, touching ones included, as in the paper; cloth partitioned by structure and all\n"
+        "else by METIS. Milliseconds. *Rest*, or (0), is the first frame, *mean* all of them. All methods\n"
+        "but `none` found the same pairs in every frame: sc-bench fails otherwise. What the columns say is\n"
+        "read in [bench/REPORT.md](%s); `summary.csv` holds the figures below.\n" % reading)
+    if d["skipped"] != "nothing":
+        out.append("**Not measured**, see what `%s` said: %s.\n" % (d["command"], d["skipped"]))
+    out.append("## Overview\n")
+    out.append("Milliseconds a frame, mean over the animation; then how many times as fast `exact` is as\n"
+               "the other.\n")
+    out.append(overview(results))
+    out.append("## The paper's Table 1\n")
+    out.append("Upper part: milliseconds. AABB is the paper's optimised form (`aabb-sctt`). The paper's\n"
+               "processor is an Intel Core 2 Quad at 2.4 GHz.\n")
+    out.append(table1_times(results))
+    out.append("Speed-ups: how many times as fast as the hash, and as the optimised AABB tree.\n")
+    out.append(table1_speed(results))
+    out.append("Lower part: share of the nine tasks, in percent of their sum. (o.): after a failed\n"
+               "orientation test; (c.): after a failed contour test.\n")
+    out.append(table1_shares(results))
+    out.append("## Figure 8: over the animation\n")
+    out.append("![Milliseconds over frames](frames.svg)\n" if "frames" in drawn else missing_plot)
+    out.append("## Resolution\n")
+    out.append("Slope of mean time over triangles, both logarithmic, by least squares: 1 is linear. In brackets\n"
+               "the same at rest.\n")
+    out.append(slope_table)
+    if "scaling" in drawn:
+        out.append("![Time over resolution](scaling.svg)\n")
+    out.append("## Without the contour test\n")
+    out.append("Pairs that `none` misses, and what it gains.\n")
+    out.append(misses(results))
+    out.append("## Multiples of the physical floor\n")
+    out.append("One vectorised pass over positions and indices; methods at rest, in brackets the mean.\n")
+    out.append(floors(results))
+    out.append("## Partitions\n")
+    out.append("Rest, in brackets the mean over the frames of that run.\n")
+    out.append(partitions(results))
+    out.append("## Pairs of triangles\n")
+    out.append("What the library reports unless told otherwise. Rest, in brackets the mean.\n")
+    out.append(other_pairs(results))
+    out.append("## One query a frame, and repeated queries\n")
+    out.append("The same frame asked for again and again, which favours what fits the cache.\n")
+    out.append(modes(results))
+    out.append("## Several threads\n")
+    out.append("Throughput: as many frames at once as there are threads, wall time divided by them.\n"
+               "A single query runs on one thread.\n")
+    out.append(threads(results))
+    out.append("## Peers\n")
+    if results.peers:
+        out.append("Made by `make peers`; see bench/peers/README.md for what the columns mean.\n")
+        out.append(peers_table(results))
+    else:
+        out.append("Not measured: `make peers bench` measures them as well, `make peers bench-report` adds\n"
+                   "them to what is here.\n")
+    out.append("## Memory and build time\n")
+    out.append(memory(results))
+    return "\n".join(out)
+
+
+def update_readme(path, results, folder):
+    """Puts the overview and the plot of methods over frames between README.md's two marks."""
+    begin, end = "<!-- made by make bench -->\n", "<!-- end -->\n"
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    before, found, rest = text.partition(begin)
+    _, closed, after = rest.partition(end)
+    if not found or not closed:
+        sys.exit("draw_report.py: %s has no marks to put the overview between" % path)
+    d = results.description
+    shown = os.path.relpath(folder, os.path.dirname(os.path.abspath(path)))
+    plot = ""
+    if os.path.exists(os.path.join(folder, "frames.png")):
+        plot = "![Milliseconds over frames](%s/frames.png)\n\n" % shown
+    text = "%s%s%s\nBy `%s` at commit %s on %s, %s cores; all tables: [report](%s/report.md).\n%s" % (
+        begin, plot, overview(results), d["command"], d["commit"], d["cpu"], d["cores"], shown, end)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(before + text + after)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--command", default="make bench")
+    parser.add_argument("--seconds", default="?", help="how long it took")
+    parser.add_argument("--readme", help="a README.md to put the overview into")
+    parser.add_argument("results")
+    parser.add_argument("raw", nargs="?")
+    arguments = parser.parse_args()
+    if arguments.raw:
+        collect(arguments.raw, arguments.results, arguments.command, arguments.seconds)
+    if not os.path.exists(os.path.join(arguments.results, "summary.csv")):
+        sys.exit("draw_report.py: no summary.csv in %s: run 'make bench' first" % arguments.results)
+    results = Results(arguments.results)
+    slope_table, found, sizes = slopes(results)
+    drawn = draw_all(results, found, sizes, arguments.results)
+    with open(os.path.join(arguments.results, "report.md"), "w", encoding="utf-8") as file:
+        file.write(report(results, drawn, slope_table,
+                          os.path.relpath(os.path.join(HERE, "REPORT.md"), arguments.results)))
+    if arguments.readme:
+        update_readme(arguments.readme, results, arguments.results)
+    print("report: " + os.path.join(arguments.results, "report.md"))
+
+
+if __name__ == "__main__":
+    main()

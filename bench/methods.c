@@ -1,0 +1,146 @@
+/*
+ * The methods that are measured; see methods.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "methods.h"
+
+#include "tool.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const method_kind method_kinds[] = {
+    {"exact", "test tree with orientation and exact contour tests", NULL, false, false,
+     SC_METHOD_SCTT, SC_CONTOUR_EXACT},
+    {"star", "test tree with orientation and star-contour tests, as in the paper", NULL, false,
+     false, SC_METHOD_SCTT, SC_CONTOUR_STAR},
+    {"none", "test tree without a contour test: MISSES PAIRS, which are counted", NULL, true, false,
+     SC_METHOD_SCTT, SC_CONTOUR_NONE},
+    {"aabb-sctt",
+     "tree of boxes, started at the test tree's non-adjacent children, as in the paper", NULL,
+     false, false, SC_METHOD_AABB_SCTT, SC_CONTOUR_DEFAULT},
+    {"aabb", "a plain tree of boxes", NULL, false, false, SC_METHOD_AABB, SC_CONTOUR_DEFAULT},
+    {"hash", "optimised spatial hashing, cells as long as the average edge", NULL, false, true, 0,
+     0},
+};
+
+const size_t method_count = sizeof method_kinds / sizeof *method_kinds;
+
+const method_kind *method_find(const char *name)
+{
+    for (size_t i = 0; i < method_count; i++) {
+        if (strcmp(method_kinds[i].name, name) == 0) return &method_kinds[i];
+    }
+    return NULL;
+}
+
+bool method_open(method_runner *runner, const method_kind *kind, const method_mesh *mesh,
+                 const double *rest, const char **reason)
+{
+    memset(runner, 0, sizeof *runner);
+    runner->kind = kind;
+    runner->mesh = mesh;
+    *reason = NULL;
+    if (kind->is_hash) {
+        runner->hash = spatial_hash_create(rest, mesh->vertex_count, mesh->triangles,
+                                           mesh->triangle_count, reason);
+    } else {
+        const sc_status status = sc_workspace_create(mesh->model, NULL, &runner->workspace);
+        if (status != SC_OK) *reason = sc_status_string(status);
+    }
+    return *reason == NULL;
+}
+
+void method_close(method_runner *runner)
+{
+    sc_workspace_free(runner->workspace);
+    spatial_hash_free(runner->hash);
+    free(runner->pairs);
+    memset(runner, 0, sizeof *runner);
+}
+
+bool method_reserve(method_runner *runner, uint64_t count)
+{
+    if (count <= runner->room) return true;
+    sc_pair *larger = (sc_pair *)realloc(runner->pairs, (size_t)count * sizeof *larger);
+    if (!larger) return false;
+    runner->pairs = larger;
+    runner->room = count;
+    return true;
+}
+
+/* The hash sorts into its own array, so that is copied, as the library's answer is its caller's. */
+static bool query_hash(method_runner *runner, const double *positions,
+                       const method_question *question, sc_stats *stats, double *milliseconds)
+{
+    spatial_hash_answer answer;
+    const double start = tool_clock();
+    if (!spatial_hash_query(runner->hash, positions, question->pairs, question->contact, &answer))
+        return false;
+    if (!method_reserve(runner, answer.count)) return false;
+    if (answer.count)
+        memcpy(runner->pairs, answer.pairs, (size_t)answer.count * sizeof *runner->pairs);
+    *milliseconds = tool_clock() - start;
+    runner->count = answer.count;
+    if (stats) {
+        stats->counts[SC_TASK_BOXES_ORIENTATION] = answer.box_tests;
+        stats->counts[SC_TASK_PRIMITIVES_ORIENTATION] = answer.primitive_tests;
+        stats->exact_fallbacks = answer.undecided;
+    }
+    return true;
+}
+
+static sc_status query_library(method_runner *runner, const void *positions,
+                               const method_question *question, sc_stats *stats,
+                               double *milliseconds)
+{
+    sc_pose pose;
+    memset(&pose, 0, sizeof pose);
+    pose.struct_size = sizeof pose;
+    pose.vertex_count = runner->mesh->vertex_count;
+    pose.position_type = runner->mesh->position_type;
+    pose.positions = positions;
+    sc_query_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.pairs = question->pairs;
+    options.contact = question->contact;
+    options.method = runner->kind->method;
+    options.contour = runner->kind->contour;
+    sc_result result;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    result.capacity = runner->room;
+    result.pairs = runner->pairs;
+    result.stats = stats;
+    const double start = tool_clock();
+    const sc_status status =
+        sc_query(runner->mesh->model, runner->workspace, &pose, &options, &result);
+    *milliseconds = tool_clock() - start;
+    runner->count = result.count;
+    return status;
+}
+
+bool method_query(method_runner *runner, const void *positions, const double *doubles,
+                  const method_question *question, sc_stats *stats, double *milliseconds,
+                  const char **reason)
+{
+    sc_status status = SC_OK;
+    if (stats) {
+        memset(stats, 0, sizeof *stats);
+        stats->struct_size = sizeof *stats;
+    }
+    if (runner->kind->is_hash) {
+        *reason = "out of memory, or an edge meets too many cells";
+        return query_hash(runner, doubles, question, stats, milliseconds);
+    }
+    status = query_library(runner, positions, question, stats, milliseconds);
+    if (status == SC_ERROR_SHORT_BUFFER) {
+        status = method_reserve(runner, runner->count + runner->count / 4)
+                     ? query_library(runner, positions, question, stats, milliseconds)
+                     : SC_ERROR_MEMORY;
+    }
+    *reason = sc_status_string(status);
+    return status == SC_OK;
+}

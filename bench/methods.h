@@ -1,0 +1,77 @@
+/*
+ * The methods that are measured: those of the library, and a spatial hash to compare with.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * All answer the same question about the same pose, and all but those called unsound must give the
+ * same sorted pairs. A method to be measured gets a runner of its own: whatever it keeps from pose to
+ * pose is not shared.
+ */
+#ifndef BENCH_METHODS_H
+#define BENCH_METHODS_H
+
+#include "spatial_hash.h"
+
+#include "starcontour.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct method_kind {
+    const char *name, *about;
+    const char *missing; /* why it cannot be run, or NULL */
+    bool unsound;        /* misses pairs, and is measured for that */
+    bool is_hash;        /* else a query of the library with the next two */
+    uint32_t method, contour;
+} method_kind;
+
+/* All methods, in the order in which they are listed. */
+extern const method_kind method_kinds[];
+extern const size_t method_count;
+
+/* The method of a name, or NULL. */
+const method_kind *method_find(const char *name);
+
+/* A mesh with its model. Poses are floats where the mesh has floats, else doubles. */
+typedef struct method_mesh {
+    const sc_model *model;
+    const uint32_t *triangles; /* 3 * triangle_count */
+    uint32_t triangle_count, vertex_count;
+    uint32_t position_type;
+} method_mesh;
+
+/* A method at work on a mesh. */
+typedef struct method_runner {
+    const method_kind *kind;
+    const method_mesh *mesh;
+    sc_workspace *workspace;
+    spatial_hash *hash;
+    sc_pair *pairs; /* of the last query, sorted */
+    uint64_t count, room;
+} method_runner;
+
+/* What is asked: SC_PAIRS_..., SC_CONTACT_... */
+typedef struct method_question {
+    uint32_t pairs, contact;
+} method_question;
+
+/* rest: the first frame as doubles. On failure false, a message in *reason and nothing to close. */
+bool method_open(method_runner *runner, const method_kind *kind, const method_mesh *mesh,
+                 const double *rest, const char **reason);
+
+void method_close(method_runner *runner);
+
+/* Makes room for count pairs; false if there is no memory. */
+bool method_reserve(method_runner *runner, uint64_t count);
+
+/*
+ * One query; its pairs are in the runner afterwards, its duration in *milliseconds. A pose is given
+ * twice: in the mesh's type, and as doubles for the hash. stats may be NULL; asking for it costs time.
+ * Where the room for pairs is too small it is enlarged and the query repeated: only the last counts.
+ * On failure false, and a message in *reason.
+ */
+bool method_query(method_runner *runner, const void *positions, const double *doubles,
+                  const method_question *question, sc_stats *stats, double *milliseconds,
+                  const char **reason);
+
+#endif /* BENCH_METHODS_H */

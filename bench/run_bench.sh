@@ -1,0 +1,165 @@
+#!/bin/sh
+# Measures the methods on all scenes and writes a report: CSV files, report.md and plots.
+#
+#     bench/run_bench.sh full|quick|report [FOLDER]
+#
+# FOLDER is where results go; by default bench/results/<machine>, and the overview into README.md, or,
+# for quick, build/bench-quick. report measures nothing and makes the report anew from the CSV files.
+# What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv, if it is there.
+# From make come SC_BIN and PYTHON, the interpreter that draws.
+#
+# Exit status 1 if methods disagree or no report could be made, 2 if nothing could be started.
+#
+# SPDX-License-Identifier: MIT
+set -u
+export LC_ALL=C
+
+SC_BIN=${SC_BIN:-build/bin}
+kind=${1:-full}
+cores=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
+
+# A line a run: scene, triangles, frames, passes, partition, pairs, methods or -, other options.
+# As in the paper, cloth is partitioned by structure, all else automatically; pairs of an edge and a
+# triangle. The other runs compare partitions, resolutions, kinds of pairs, threads, and repeated queries
+# with single ones.
+full="\
+twisted-cloth 4096 60 3 structure edge -
+twisted-cloth 16384 60 3 structure edge -
+twisted-cloth 65536 60 3 structure edge -
+twisted-cloth 262144 20 2 structure edge -
+twisted-cloth 1048576 8 1 structure edge -
+cloth-sphere 20000 60 3 structure edge -
+cloth-sphere 80000 60 3 structure edge -
+cloth-sphere 320000 20 1 structure edge -
+cat 41000 60 3 metis edge -
+cat 165000 60 2 metis edge -
+bunny 3400 60 3 metis edge -
+bunny 13600 60 3 metis edge -
+bunny 54500 60 3 metis edge -
+bunny-bumpy 54500 60 3 metis edge -
+bunny-spiky 54500 60 3 metis edge -
+horse 1600 60 3 metis edge -
+horse 6300 60 3 metis edge -
+horse 25000 60 3 metis edge -
+wrinkled-cloth 100352 60 2 structure edge -
+crushed-cloth 92416 60 2 structure edge -
+tight-rods 98304 60 2 metis edge -
+sphere 81920 60 2 metis edge -
+sphere 327680 20 1 metis edge -
+twisted-cloth 65536 20 3 metis edge exact,star,aabb-sctt,aabb
+twisted-cloth 65536 20 3 fast edge exact,star,aabb-sctt,aabb
+cloth-sphere 80000 20 3 metis edge exact,star,aabb-sctt,aabb
+cloth-sphere 80000 20 3 fast edge exact,star,aabb-sctt,aabb
+bunny 54500 20 3 fast edge exact,star,aabb-sctt,aabb
+cat 41000 20 3 fast edge exact,star,aabb-sctt,aabb
+twisted-cloth 65536 20 3 structure triangle -
+cloth-sphere 80000 20 3 structure triangle -
+bunny 54500 20 3 metis triangle -
+cat 41000 20 3 metis triangle -
+wrinkled-cloth 100352 20 2 structure triangle -
+twisted-cloth 65536 20 3 structure edge exact,star,aabb --threads $cores
+bunny 54500 20 3 metis edge exact,star,aabb --threads $cores
+twisted-cloth 65536 20 5 structure edge exact,star,aabb-sctt,aabb,hash --warm
+bunny 54500 20 5 metis edge exact,star,aabb-sctt,aabb,hash --warm"
+
+quick="\
+twisted-cloth 4096 8 3 structure edge -
+twisted-cloth 16384 8 3 structure edge -
+twisted-cloth 65536 8 1 structure edge -
+cloth-sphere 20000 8 1 structure edge -
+cat 41000 8 1 metis edge -
+bunny 3400 8 3 metis edge -
+bunny 13600 8 1 metis edge -
+bunny-bumpy 13600 8 1 metis edge -
+bunny-spiky 13600 8 1 metis edge -
+horse 1600 8 3 metis edge -
+horse 6300 8 3 metis edge -
+sphere 81920 4 1 metis edge -
+twisted-cloth 16384 8 3 metis edge exact,star,aabb-sctt,aabb
+twisted-cloth 16384 8 3 structure triangle -
+twisted-cloth 16384 8 3 structure edge exact,star,aabb --threads $cores
+bunny 13600 8 3 metis edge exact,star,aabb-sctt,aabb,hash --warm"
+
+case $kind in
+full | report)
+    runs=$full
+    readme=
+    [ $# -gt 1 ] || readme='--readme README.md'
+    results=${2:-bench/results/$(bench/machine.sh)}
+    ;;
+quick)
+    runs=$quick
+    readme=
+    results=${2:-build/bench-quick}
+    ;;
+*)
+    echo "usage: bench/run_bench.sh full|quick|report [FOLDER]" >&2
+    exit 2
+    ;;
+esac
+
+# $PYTHON, or the first that can draw, or any: the report is written without plots then.
+python=
+for candidate in ${PYTHON:-python3 /usr/bin/python3}; do
+    command -v "$candidate" >/dev/null 2>&1 || continue
+    if "$candidate" -c 'import matplotlib' >/dev/null 2>&1; then
+        python=$candidate
+        break
+    fi
+    [ -n "$python" ] || python=$candidate
+done
+if [ -z "$python" ]; then
+    echo "bench: needs python3, and matplotlib for plots: run 'make deps with=bench' first" >&2
+    exit 2
+fi
+
+mkdir -p "$results" || exit 2
+if [ "$kind" != quick ] && [ -f build/peers/peers.csv ]; then
+    cp build/peers/peers.csv "$results" || exit 2
+fi
+if [ "$kind" = report ]; then
+    # shellcheck disable=SC2086
+    exec "$python" bench/draw_report.py $readme "$results"
+fi
+
+raw=build/bench/$kind
+mkdir -p "$raw" || exit 2
+rm -f "$raw"/*.jsonl "$raw"/*.log
+
+count=$(echo "$runs" | wc -l)
+number=0
+status=0
+begin=$(date +%s)
+while read -r scene triangles frames passes partition pairs methods options; do
+    number=$((number + 1))
+    [ "$methods" = - ] && methods=exact,star,none,aabb-sctt,aabb,hash
+    mode=--once
+    [ "$options" = --warm ] && mode= && options=
+    echo "bench: $number of $count, $(($(date +%s) - begin)) s: $scene $triangles $partition $pairs${options:+ $options} ${mode:---warm}" >&2
+    out=$raw/$(printf '%02d' "$number").jsonl
+    # shellcheck disable=SC2086
+    "$SC_BIN/sc-bench" --json --scene "$scene" --triangles "$triangles" --frames "$frames" $mode \
+        --repeats "$passes" --partition "$partition" --pairs "$pairs" --methods "$methods" $options \
+        >"$out" </dev/null
+    case $? in
+    0) ;;
+    1)
+        status=1
+        echo "bench: $scene: METHODS DISAGREE" >&2
+        ;;
+    *)
+        rm -f "$out"
+        echo "bench: skipped: $scene $triangles" >&2
+        echo "$scene $triangles $partition $pairs" >>"$raw/skipped.log"
+        ;;
+    esac
+done <<END
+$runs
+END
+
+command="make bench"
+[ "$kind" = quick ] && command="make bench-quick"
+# shellcheck disable=SC2086
+"$python" bench/draw_report.py --command "$command" --seconds $(($(date +%s) - begin)) $readme \
+    "$results" "$raw" || status=1
+exit $status

@@ -1,0 +1,429 @@
+/*
+ * sc-bench: measures methods on animated scenes.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Reads the command line, gets the scene, and hands it to measure.h and report.h, or writes it out.
+ */
+#define _POSIX_C_SOURCE 200809L
+
+#include "measure.h"
+#include "progress.h"
+#include "report.h"
+#include "scenes/scene.h"
+#include "scene_folder.h"
+#include "tool.h"
+
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] =
+    "Usage: sc-bench --scene NAME [--triangles N] [--frames F] [OPTION...]\n"
+    "       sc-bench --scene-dir DIR [OPTION...]\n"
+    "       sc-bench [OPTION...] FILE... | PATTERN\n"
+    "Measures how long methods take to find the self-collisions of a deforming mesh, frame by "
+    "frame,\n"
+    "and checks that they find the same.\n"
+    "\n"
+    "What is measured:\n"
+    "  --scene NAME       a generated scene (--list); kept in the cache once it is made\n"
+    "  --triangles N      its size; the nearest there is (the smallest that --list shows)\n"
+    "  --frames F         its number of frames (as --list shows); of other sources the first F\n"
+    "  --scene-dir DIR    a folder with meta.txt, tris.u32 and frames.f64 or frames.f32\n"
+    "  FILE...            mesh files, one a frame, in this order, or a pattern such as "
+    "'f%04d.obj'\n"
+    "The model is built from the first frame.\n"
+    "\n"
+    "How:\n"
+    "  --methods A,B,...  exact, star, none, aabb-sctt, aabb, hash (all; --list explains)\n"
+    "  --pairs KIND       triangle or edge: pairs of triangles, or of an edge and a triangle\n"
+    "                     (triangle)\n"
+    "  --proper           only proper crossings, not every common point\n"
+    "  --partition HOW    fast, metis, or structure: the scene's own order (fast)\n"
+    "  --once             one query a frame in sequence, as a simulation runs; with --repeats, so\n"
+    "                     many passes over the animation. Without: all repeats of a frame in a "
+    "row\n"
+    "  --repeats K        queries a frame and method, from 1 to 1000 (5; with --once 1)\n"
+    "  --threads K        K frames at once, on K threads with a workspace each; times are then "
+    "wall\n"
+    "                     time divided by K, that is, throughput: a query runs on one thread (1)\n"
+    "\n"
+    "Output:\n"
+    "  --json             JSON Lines: a description of the run, then an object a frame and method\n"
+    "  --csv              the same as comma-separated values\n"
+    "  --list             names scenes and methods\n"
+    "  --export DIR       writes the scene as a folder that --scene-dir reads, and measures "
+    "nothing\n"
+    "  --export-obj DIR   writes the frames as OBJ files, and measures nothing\n"
+    "  --cache DIR        where generated scenes are kept (build/scenes)\n"
+    "  --version, --help\n"
+    "\n"
+    "Exit status: 0, or 1 if a method that must agree with the others does not, or 2 if the job "
+    "could\n"
+    "not be done.\n";
+
+static const tool_choice pairs_choices[] = {
+    {"triangle", SC_PAIRS_TRIANGLE}, {"edge", SC_PAIRS_EDGE}, {NULL, 0}};
+
+static const tool_choice partition_choices[] = {
+    {"fast", MEASURE_FAST}, {"metis", MEASURE_METIS}, {"structure", MEASURE_STRUCTURE}, {NULL, 0}};
+
+typedef struct bench_settings {
+    const char *scene, *scene_dir, *methods, *export_dir, *export_obj, *cache;
+    uint32_t triangles, frames; /* 0: as the scene has it */
+    uint32_t format;
+    bool list;
+    measure_options measure;
+} bench_settings;
+
+/* ------------------------------------------------------------------------------------------------
+ * The scene
+ */
+
+static void show_making(void *user, uint32_t frame, uint32_t frames)
+{
+    char what[64];
+    snprintf(what, sizeof what, "making %.40s", (const char *)user);
+    progress_show(what, frame, frames);
+}
+
+static const scene_kind *find_scene(const char *name)
+{
+    size_t count;
+    const scene_kind *kinds = scene_kinds(&count);
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(kinds[i].name, name) == 0) return &kinds[i];
+    }
+    tool_error("--scene: there is no scene '%s'; see --list", name);
+    return NULL;
+}
+
+static bool open_generated(const bench_settings *set, scene_folder *scene)
+{
+    char folder[1024], error[MESH_FILE_ERROR_SIZE];
+    const scene_kind *kind = find_scene(set->scene);
+    if (!kind) return false;
+    const uint32_t triangles = set->triangles ? set->triangles : kind->sizes[0];
+    const uint32_t frames = set->frames ? set->frames : kind->frames;
+    char name[64];
+    snprintf(name, sizeof name, "%s", set->scene);
+    int result = scene_cached(set->scene, triangles, frames, set->cache, show_making, name, folder,
+                              sizeof folder, error, sizeof error);
+    progress_end();
+    if (result == 0) result = scene_folder_open(folder, scene, error, sizeof error);
+    if (result != 0) tool_error("%s", error);
+    return result == 0;
+}
+
+static bool open_given(const bench_settings *set, char **paths, int path_count, scene_folder *scene)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    int result;
+    if (set->scene_dir)
+        result = scene_folder_open(set->scene_dir, scene, error, sizeof error);
+    else if (path_count == 1 && strchr(paths[0], '%'))
+        result = scene_folder_open_pattern(paths[0], scene, error, sizeof error);
+    else
+        result = scene_folder_open_files((const char *const *)paths, (uint32_t)path_count, scene,
+                                         error, sizeof error);
+    if (result != 0) {
+        tool_error("%s", error);
+        return false;
+    }
+    if (set->triangles) {
+        tool_error("--triangles: only generated scenes (--scene) come in sizes");
+        scene_folder_close(scene);
+        return false;
+    }
+    if (set->frames && set->frames < scene->frame_count) scene->frame_count = set->frames;
+    return true;
+}
+
+/* The last part of a path, without trailing slashes. */
+static void name_of_path(const char *path, char *name, size_t size)
+{
+    size_t end = strlen(path);
+    while (end > 1 && path[end - 1] == '/') end--;
+    size_t begin = end;
+    while (begin > 0 && path[begin - 1] != '/') begin--;
+    snprintf(name, size, "%.*s", (int)(end - begin), path + begin);
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Measuring
+ */
+
+/* Fills kinds, which has room for all methods, with those that are asked for. */
+static bool choose_methods(const char *text, const method_kind **kinds, size_t *count)
+{
+    *count = 0;
+    if (!text) {
+        for (size_t i = 0; i < method_count; i++) {
+            if (!method_kinds[i].missing) kinds[(*count)++] = &method_kinds[i];
+        }
+        return true;
+    }
+    while (*text) {
+        char name[32];
+        const size_t length = strcspn(text, ",");
+        snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), text);
+        text += length;
+        if (*text == ',') text++;
+        const method_kind *kind = method_find(name);
+        if (!kind) {
+            tool_error("--methods: there is no method '%s'; see --list", name);
+            return false;
+        }
+        if (kind->missing) {
+            tool_error("--methods: %s: %s", name, kind->missing);
+            return false;
+        }
+        for (size_t i = 0; i < *count; i++) {
+            if (kinds[i] != kind) continue;
+            tool_error("--methods: %s is there twice", name);
+            return false;
+        }
+        kinds[(*count)++] = kind;
+    }
+    if (*count == 0) tool_error("--methods: names no method; see --list");
+    return *count > 0;
+}
+
+/* Says which methods disagree, where and by how much. */
+static void show_disagreement(const measurement *m)
+{
+    for (size_t i = 0; i < m->method_count; i++) {
+        for (uint32_t frame = 0; frame < m->frame_count; frame++) {
+            const measure_record *record = &m->records[frame * m->method_count + i];
+            if (!record->extra && (!record->missed || m->methods[i]->unsound)) continue;
+            tool_error("frame %lu: %s misses %.0f pairs and has %.0f that are none: this is a bug, "
+                       "please report it",
+                       (unsigned long)frame, m->methods[i]->name, (double)record->missed,
+                       (double)record->extra);
+            break;
+        }
+    }
+}
+
+static int measure_scene(const bench_settings *set, scene_folder *scene, const char *name)
+{
+    const method_kind *kinds[16];
+    char error[MESH_FILE_ERROR_SIZE];
+    measurement m;
+    memset(&m, 0, sizeof m);
+    m.methods = kinds;
+    if (!choose_methods(set->methods, kinds, &m.method_count)) return TOOL_FAILED;
+    const bool done = measure_run(&m, scene, &set->measure, progress_show, error, sizeof error);
+    progress_end();
+    if (!done) {
+        tool_error("%s", error);
+        return TOOL_FAILED;
+    }
+    const measure_options *options = &set->measure;
+    const report_context context = {
+        name,
+        tool_choice_name(partition_choices, options->partition),
+        options->mode == MEASURE_ONCE ? "once" : "warm",
+        tool_choice_name(pairs_choices, options->question.pairs),
+        options->question.contact == SC_CONTACT_PROPER ? "proper" : "touching",
+        scene->triangle_count,
+        scene->vertex_count,
+        options,
+    };
+    int status = TOOL_CLEAN;
+    if (!report_print(&m, &context, set->format)) {
+        tool_error("out of memory");
+        status = TOOL_FAILED;
+    } else if (m.disagrees) {
+        show_disagreement(&m);
+        status = TOOL_COLLIDES;
+    }
+    measure_free(&m);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Listing, exporting, the command line
+ */
+
+static void list_all(void)
+{
+    size_t count;
+    const scene_kind *kinds = scene_kinds(&count);
+    puts("Scenes (usual frames; usual numbers of triangles):");
+    for (size_t i = 0; i < count; i++) {
+        printf("  %-14s %s\n  %-14s %lu frames;", kinds[i].name, kinds[i].about, "",
+               (unsigned long)kinds[i].frames);
+        for (const uint32_t *size = kinds[i].sizes; *size; size++) {
+            printf(" %lu", (unsigned long)*size);
+        }
+        putchar('\n');
+    }
+    puts("Methods:");
+    for (size_t i = 0; i < method_count; i++) {
+        printf("  %-14s %s%s%s%s\n", method_kinds[i].name, method_kinds[i].about,
+               method_kinds[i].missing ? " (" : "",
+               method_kinds[i].missing ? method_kinds[i].missing : "",
+               method_kinds[i].missing ? ")" : "");
+    }
+}
+
+static int export_scene(const bench_settings *set, scene_folder *scene)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    int result = 0;
+    if (set->export_dir)
+        result = scene_folder_export(scene, set->export_dir, false, error, sizeof error);
+    if (result == 0 && set->export_obj)
+        result = scene_folder_export_obj(scene, set->export_obj, error, sizeof error);
+    if (result != 0) tool_error("%s", error);
+    return result == 0 ? TOOL_CLEAN : TOOL_FAILED;
+}
+
+static int run(const bench_settings *set, char **paths, int path_count)
+{
+    const int sources = (set->scene != NULL) + (set->scene_dir != NULL) + (path_count > 0);
+    if (set->list) {
+        list_all();
+        return TOOL_CLEAN;
+    }
+    if (sources != 1) {
+        tool_error("%s; see sc-bench --help",
+                   sources ? "one of --scene, --scene-dir and files at a time" : "no scene given");
+        return TOOL_FAILED;
+    }
+    scene_folder scene;
+    char name[256];
+    name_of_path(set->scene       ? set->scene
+                 : set->scene_dir ? set->scene_dir
+                                  : paths[0],
+                 name, sizeof name);
+    if (!(set->scene ? open_generated(set, &scene) : open_given(set, paths, path_count, &scene)))
+        return TOOL_FAILED;
+    const int status = set->export_dir || set->export_obj ? export_scene(set, &scene)
+                                                          : measure_scene(set, &scene, name);
+    scene_folder_close(&scene);
+    return status;
+}
+
+int main(int argc, char **argv)
+{
+    enum {
+        OPTION_SCENE = 256,
+        OPTION_TRIANGLES,
+        OPTION_FRAMES,
+        OPTION_SCENE_DIR,
+        OPTION_METHODS,
+        OPTION_PAIRS,
+        OPTION_PROPER,
+        OPTION_PARTITION,
+        OPTION_ONCE,
+        OPTION_REPEATS,
+        OPTION_THREADS,
+        OPTION_JSON,
+        OPTION_CSV,
+        OPTION_LIST,
+        OPTION_EXPORT,
+        OPTION_EXPORT_OBJ,
+        OPTION_CACHE,
+        OPTION_VERSION,
+        OPTION_HELP
+    };
+    static const struct option options[] = {
+        {"scene", required_argument, NULL, OPTION_SCENE},
+        {"triangles", required_argument, NULL, OPTION_TRIANGLES},
+        {"frames", required_argument, NULL, OPTION_FRAMES},
+        {"scene-dir", required_argument, NULL, OPTION_SCENE_DIR},
+        {"methods", required_argument, NULL, OPTION_METHODS},
+        {"pairs", required_argument, NULL, OPTION_PAIRS},
+        {"proper", no_argument, NULL, OPTION_PROPER},
+        {"partition", required_argument, NULL, OPTION_PARTITION},
+        {"once", no_argument, NULL, OPTION_ONCE},
+        {"repeats", required_argument, NULL, OPTION_REPEATS},
+        {"threads", required_argument, NULL, OPTION_THREADS},
+        {"json", no_argument, NULL, OPTION_JSON},
+        {"csv", no_argument, NULL, OPTION_CSV},
+        {"list", no_argument, NULL, OPTION_LIST},
+        {"export", required_argument, NULL, OPTION_EXPORT},
+        {"export-obj", required_argument, NULL, OPTION_EXPORT_OBJ},
+        {"cache", required_argument, NULL, OPTION_CACHE},
+        {"version", no_argument, NULL, OPTION_VERSION},
+        {"help", no_argument, NULL, OPTION_HELP},
+        {NULL, 0, NULL, 0}};
+
+    tool_set_name("sc-bench");
+    bench_settings set;
+    memset(&set, 0, sizeof set);
+    set.cache = "build/scenes";
+    set.measure.mode = MEASURE_WARM;
+    set.measure.threads = 1;
+    bool valid = true;
+    int option;
+    while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
+        switch (option) {
+        case OPTION_SCENE:
+            set.scene = optarg;
+            break;
+        case OPTION_TRIANGLES:
+            valid &= tool_parse_number("--triangles", optarg, 1, 100000000, &set.triangles);
+            break;
+        case OPTION_FRAMES:
+            valid &= tool_parse_number("--frames", optarg, 1, 1000000, &set.frames);
+            break;
+        case OPTION_SCENE_DIR:
+            set.scene_dir = optarg;
+            break;
+        case OPTION_METHODS:
+            set.methods = optarg;
+            break;
+        case OPTION_PAIRS:
+            valid &= tool_choose("--pairs", optarg, pairs_choices, &set.measure.question.pairs);
+            break;
+        case OPTION_PROPER:
+            set.measure.question.contact = SC_CONTACT_PROPER;
+            break;
+        case OPTION_PARTITION:
+            valid &= tool_choose("--partition", optarg, partition_choices, &set.measure.partition);
+            break;
+        case OPTION_ONCE:
+            set.measure.mode = MEASURE_ONCE;
+            break;
+        case OPTION_REPEATS:
+            valid &= tool_parse_number("--repeats", optarg, 1, 1000, &set.measure.repeats);
+            break;
+        case OPTION_THREADS:
+            valid &= tool_parse_number("--threads", optarg, 1, 1024, &set.measure.threads);
+            break;
+        case OPTION_JSON:
+            set.format = REPORT_JSON;
+            break;
+        case OPTION_CSV:
+            set.format = REPORT_CSV;
+            break;
+        case OPTION_LIST:
+            set.list = true;
+            break;
+        case OPTION_EXPORT:
+            set.export_dir = optarg;
+            break;
+        case OPTION_EXPORT_OBJ:
+            set.export_obj = optarg;
+            break;
+        case OPTION_CACHE:
+            set.cache = optarg;
+            break;
+        case OPTION_VERSION:
+            printf("sc-bench (starcontour) %s\n", sc_version_string());
+            return tool_finish(TOOL_CLEAN);
+        case OPTION_HELP:
+            fputs(usage, stdout);
+            return tool_finish(TOOL_CLEAN);
+        default:
+            valid = false;
+            break;
+        }
+    }
+    if (set.measure.repeats == 0) set.measure.repeats = set.measure.mode == MEASURE_ONCE ? 1 : 5;
+    return tool_finish(valid ? run(&set, argv + optind, argc - optind) : TOOL_FAILED);
+}

@@ -1,0 +1,213 @@
+#!/bin/sh
+# sc-bench: what it lists, its JSON Lines and CSV, that methods agree on it, that what it exports is the
+# same scene, that it says what is wrong; and the report made of its output.
+#
+# SPDX-License-Identifier: MIT
+. tests/script.sh
+
+bench=$SC_BIN/sc-bench
+if [ ! -x "$bench" ]; then
+    skip "sc-bench was not built"
+    check "the paper's table has all its columns" \
+        awk -F, '!/^#/ && NF != 19 { exit 1 }' bench/paper_table1.csv
+    finish
+fi
+
+# run OPTION...: sc-bench on a small scene, kept in the scratch directory.
+run() {
+    "$bench" --cache "$scratch/scenes" "$@"
+}
+small() {
+    run --scene twisted-cloth --triangles 2048 --frames 3 --repeats 1 "$@"
+}
+# refuses TEXT OPTION...: fails with status 2 and says TEXT, on standard error alone.
+refuses() {
+    text=$1
+    shift
+    run "$@" >"$scratch/out" 2>"$scratch/err"
+    status=$?
+    cat "$scratch/err"
+    [ $status -eq 2 ] && [ ! -s "$scratch/out" ] && grep -q -e "$text" "$scratch/err"
+}
+
+# ------------------------------------------------------------------------------------------------
+# Lists and messages
+
+"$bench" --list >"$scratch/list"
+for name in twisted-cloth cloth-sphere cat bunny bunny-bumpy bunny-spiky horse wrinkled-cloth sphere \
+    exact star none aabb-sctt aabb hash; do
+    check "--list names $name" grep -q "^  $name " "$scratch/list"
+done
+for option in scene triangles frames methods pairs proper partition threads repeats once json csv list \
+    export export-obj scene-dir; do
+    "$bench" --help >"$scratch/help"
+    check "--help explains --$option" grep -q -e "--$option" "$scratch/help"
+done
+check "--version" "$bench" --version
+
+check "no scene" refuses "no scene given"
+check "two scenes" refuses "at a time" --scene sphere meshes/sphere.obj
+check "an unknown scene" refuses "no scene 'cube'" --scene cube
+check "an unknown method" refuses "no method 'fast'" meshes/sphere.obj --methods star,fast
+check "a method twice" refuses "twice" meshes/sphere.obj --methods star,star
+check "no method" refuses "no method" meshes/sphere.obj --methods ''
+check "an unknown kind of pairs" refuses "is not one of" meshes/sphere.obj --pairs vertex
+check "no frames" refuses "whole number" --scene sphere --frames 0
+check "no threads" refuses "whole number" meshes/sphere.obj --threads 0
+check "sizes of a file" refuses "only generated scenes" meshes/sphere.obj --triangles 100
+check "no order in a file" refuses "without an order" meshes/sphere.obj --partition structure
+check "an absent folder" refuses "absent" --scene-dir "$scratch/absent"
+check "an absent file" refuses "absent" meshes/absent.obj
+check "another mesh as a frame" refuses "not a pose" meshes/sphere.obj meshes/roll.obj
+check "what the hash cannot do" refuses "names a vertex twice" meshes/degenerate_soup.obj
+check "an option that does not exist" refuses "--quickly" --quickly
+
+# ------------------------------------------------------------------------------------------------
+# Output
+
+check "a table" small
+check "JSON Lines" sh -c "'$bench' --cache '$scratch/scenes' --scene twisted-cloth --triangles 2048 \
+    --frames 3 --repeats 1 --once --json >'$scratch/json'"
+check "CSV" sh -c "'$bench' --cache '$scratch/scenes' --scene twisted-cloth --triangles 2048 \
+    --frames 3 --repeats 1 --once --csv >'$scratch/csv'"
+
+cat >"$scratch/lines.py" <<'END'
+import json, sys
+lines = [json.loads(line) for line in open(sys.argv[1])]
+first, records = lines[0], lines[1:]
+for key in ("commit", "compiler", "flags", "cpu", "build_ms", "model_bytes", "workspace_bytes",
+            "floor_ns_per_triangle", "mode", "partition", "repeats"):
+    assert key in first, key
+assert first["compiler"] and "-ffp-contract=off" in first["flags"] and first["mode"] == "once"
+assert first["floor_ns_per_triangle"] > 0 and first["cpu_share"] > 0
+methods = ["exact", "star", "none", "aabb-sctt", "aabb", "hash"]
+assert [(r["frame"], r["method"]) for r in records] == [(f, m) for f in range(3) for m in methods]
+tasks = [t + "_ms" for t in ("update_boxes", "update_normals", "orientation", "boxes_orientation",
+         "primitives_orientation", "update_contours", "contour", "boxes_contour",
+         "primitives_contour")]
+keys = ["scene", "triangles", "frame", "method", "pairs_kind", "threads", "ms", "ms_min", "pairs",
+        "missed", "extra", "times_floor"] + tasks + ["nodes", "boxes", "primitives"]
+for r in records:
+    assert not set(keys) - set(r), set(keys) - set(r)
+    assert r["scene"] == "twisted-cloth" and r["triangles"] == first["triangles"]
+    assert r["ms"] >= r["ms_min"] > 0 and r["times_floor"] > 0
+    assert r["pairs_kind"] == "triangle" and r["threads"] == 1
+    assert (r["method"] == "hash") == (r["nodes"] is None)
+for f in range(3):
+    own = [r for r in records if r["frame"] == f]
+    sound = [r for r in own if r["method"] != "none"]
+    assert len({r["pairs"] for r in sound}) == 1 and not any(r["missed"] for r in sound)
+    assert not any(r["extra"] for r in own)
+    none = next(r for r in own if r["method"] == "none")
+    assert none["pairs"] + none["missed"] == sound[0]["pairs"]
+assert records[-1]["pairs"] > 0, "the last frame should collide"
+assert any(r["missed"] for r in records), "without the contour test pairs should be missed"
+print([r["pairs"] for r in records if r["method"] == "star"])
+END
+cat >"$scratch/columns.py" <<'END'
+import csv, json, sys
+rows = [r for r in csv.DictReader(l for l in open(sys.argv[2]) if not l.startswith("#"))]
+records = [json.loads(line) for line in open(sys.argv[1])][1:]
+assert len(rows) == len(records) and list(rows[0]) == list(records[0])
+for row, record in zip(rows, records):
+    assert row["method"] == record["method"] and float(row["pairs"]) == record["pairs"]
+    assert (row["nodes"] == "") == (record["nodes"] is None)
+assert any(l.startswith("# commit: ") for l in open(sys.argv[2]))
+END
+if command -v python3 >/dev/null 2>&1; then
+    check "JSON Lines hold what they should" python3 "$scratch/lines.py" "$scratch/json"
+    check "CSV holds the same" python3 "$scratch/columns.py" "$scratch/json" "$scratch/csv"
+else
+    skip "JSON and CSV in detail: there is no python3"
+fi
+check "no bar where standard error is no terminal" test -z "$(small 2>&1 >/dev/null)"
+check "each frame's methods are in turn" test "$(grep -c '"method":"star"' "$scratch/json")" -eq 3
+
+# ------------------------------------------------------------------------------------------------
+# Methods agree, whatever is asked for (sc-bench compares sorted pairs and fails otherwise)
+
+for mesh in crossing_tetrahedra crossing_cloths duplicates touching_cubes corner_on_face folded_sheet \
+    moebius roll seam_cloth figure_eight_tube; do
+    for pairs in triangle edge; do
+        check "$mesh: $pairs" run meshes/$mesh.obj --pairs $pairs --repeats 1
+        check "$mesh: $pairs, proper" run meshes/$mesh.obj --pairs $pairs --proper --repeats 1
+    done
+done
+check "the order of the scene" small --partition structure
+[ -z "${SC_METIS:-}" ] || check "METIS" small --partition metis
+check "two threads" small --threads 2 --once
+check "passes over the animation" small --once --repeats 2
+
+pairs_of() {
+    "$@" --json --methods star --repeats 1 | sed -n 's/.*"pairs":\([0-9]*\).*/\1/p'
+}
+counted() {
+    counts=$(pairs_of run meshes/crossing_tetrahedra.obj --pairs "$1")
+    echo "$counts"
+    [ "$counts" = "$2" ]
+}
+triangle=$(sed -n 's/^crossing_tetrahedra,[^,]*,[^,]*,\([0-9]*\),.*/\1/p' meshes/expected.csv)
+edge=$(sed -n 's/^crossing_tetrahedra,[^,]*,[^,]*,[^,]*,\([0-9]*\),.*/\1/p' meshes/expected.csv)
+check "known triangle pairs" counted triangle "$triangle"
+check "known pairs of edge and triangle" counted edge "$edge"
+
+misses_pairs() {
+    run meshes/crossing_tetrahedra.obj meshes/crossing_tetrahedra.obj --json --methods none \
+        --repeats 1 | tail -n 1 | grep -q "\"pairs\":.*\"missed\":"
+}
+check "none alone is compared with a complete set" misses_pairs
+
+# ------------------------------------------------------------------------------------------------
+# Exports
+
+same_pairs() {
+    pairs_of small >"$scratch/pairs"
+    grep -q '[1-9]' "$scratch/pairs" && pairs_of "$@" | diff "$scratch/pairs" -
+}
+check "--export" small --export "$scratch/folder"
+for part in meta.txt tris.u32 frames.f64; do
+    check "--export writes $part" test -s "$scratch/folder/$part"
+done
+check "--scene-dir has the same pairs" same_pairs run --scene-dir "$scratch/folder"
+check "--scene-dir has the scene's order" run --scene-dir "$scratch/folder/" --partition structure \
+    --repeats 1
+check "--export-obj" small --export-obj "$scratch/obj"
+check "files have the same pairs" same_pairs run "$scratch"/obj/*.obj
+check "a pattern has the same pairs" same_pairs run "$scratch/obj/frame_%04d.obj"
+shorter() {
+    test "$(pairs_of run --scene-dir "$scratch/folder" --frames 2 | wc -l)" -eq 2
+}
+check "--frames shortens it" shorter
+head -c 100 "$scratch/folder/frames.f64" >"$scratch/short"
+cp "$scratch/short" "$scratch/folder/frames.f64"
+check "a short file" refuses "frames.f64" --scene-dir "$scratch/folder"
+
+# ------------------------------------------------------------------------------------------------
+# The report
+
+check "the machine's name can be a folder's" sh -c 'bench/machine.sh | grep -qx "[a-z0-9-]*"'
+check "run_bench.sh refuses what it does not know" sh -c '! bench/run_bench.sh some 2>/dev/null'
+if command -v python3 >/dev/null 2>&1; then
+    mkdir "$scratch/raw" "$scratch/results"
+    small --once --json --pairs edge >"$scratch/raw/1.jsonl"
+    run --scene twisted-cloth --triangles 512 --frames 3 --repeats 1 --once --json --pairs edge \
+        >"$scratch/raw/2.jsonl"
+    small --once --json --threads 2 --methods star --pairs edge >"$scratch/raw/3.jsonl"
+    check "a report" python3 bench/draw_report.py "$scratch/results" "$scratch/raw"
+    for part in summary.csv frames.csv report.md; do
+        check "with $part" test -s "$scratch/results/$part"
+    done
+    cp "$scratch/results/report.md" "$scratch/first.md"
+    check "a report from its CSV files" python3 bench/draw_report.py "$scratch/results"
+    check "which is the same" diff "$scratch/first.md" "$scratch/results/report.md"
+    nothing_there() {
+        ! bench/run_bench.sh report "$scratch/empty" 2>"$scratch/err" && grep -q "make bench" "$scratch/err"
+    }
+    check "a report of nothing" nothing_there
+    check "it names the commit" grep -q "at commit $(sed -n 's/^# commit: //p' "$scratch/csv")" \
+        "$scratch/results/report.md"
+else
+    skip "the report: there is no python3"
+fi
+
+finish
