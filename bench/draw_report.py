@@ -226,9 +226,10 @@ def whole(value):
     return "{:,d}".format(int(value))
 
 
-def table(header, rows):
+def table(header, rows, left=1):
+    """A table in Markdown; the first columns are aligned left, numbers right."""
     lines = ["| " + " | ".join(header) + " |",
-             "|" + "|".join("---" if i == 0 else "--:" for i in range(len(header))) + "|"]
+             "|" + "|".join("---" if i < left else "--:" for i in range(len(header))) + "|"]
     lines += ["| " + " | ".join(row) + " |" for row in rows]
     return "\n".join(lines) + "\n"
 
@@ -434,22 +435,29 @@ def threads(results):
 
 
 def peers_table(results):
-    groups = collections.OrderedDict()
+    """A row for each peer and way, ours first; a column a scene: mean milliseconds, first frame."""
+    scenes, groups = [], {}
     for row in results.peers:
-        key = (row["scene"], row["triangles"], row["peer"], row["version"], row["what"],
+        scene = (row["scene"], row["triangles"])
+        if scene not in scenes:
+            scenes.append(scene)
+        key = (row["peer"] != "starcontour", row["peer"], str(row["version"] or "–"), row["what"],
                row["threads"])
-        groups.setdefault(key, []).append(row)
+        groups.setdefault(key, {}).setdefault(scene, []).append(row)
     rows = []
-    for key, own in groups.items():
-        verdicts = sorted({str(r["matches"]) for r in own})
-        counts = [r["pairs"] for r in own if isinstance(r["pairs"], float)]
-        rows.append([str(key[0]), whole(key[1]), str(key[2]),
-                     "–" if key[3] is None else str(key[3]), str(key[4]),
-                     key[5] if isinstance(key[5], str) else whole(key[5]), whole(len({r["frame"] for r in own})),
-                     figure(own[0]["ms"]), figure(mean(r["ms"] for r in own)),
-                     figure(mean(counts)) if counts else "–", ", ".join(verdicts)])
-    return table(["scene", "triangles", "peer", "version", "what it does a frame", "threads",
-                  "frames", "first frame, ms", "mean, ms", "pairs, mean", "pairs match"], rows)
+    for key in sorted(groups, key=lambda k: (k[0], k[1], k[3], k[4])):
+        own = groups[key]
+        verdicts = {r["matches"] for r in sum(own.values(), [])}
+        cells = []
+        for scene in scenes:
+            frames = own.get(scene)
+            cells.append("%s (%s)" % (figure(mean(r["ms"] for r in frames)),
+                                      figure(frames[0]["ms"])) if frames else "–")
+        rows.append(["%s %s" % key[1:3], key[3], whole(key[4])] + cells +
+                    ["yes" if verdicts == {"yes"} else "NO" if "no" in verdicts else "–"])
+    return table(["peer", "what it does a frame", "threads"] +
+                 ["%s %s" % (name, whole(triangles)) for name, triangles in scenes] +
+                 ["pairs match"], rows, left=2)
 
 
 # ---------------------------------------------------------------------------------------------------
@@ -614,7 +622,8 @@ def report(results, drawn, slope_table, reading):
     out.append(threads(results))
     out.append("## Peers\n")
     if results.peers:
-        out.append("Made by `make peers`; see bench/peers/README.md for what the columns mean.\n")
+        out.append("Other libraries on these scenes, made by `make peers` and explained in\n"
+                   "bench/peers/README.md. Mean milliseconds over the frames, in brackets the first frame.\n")
         out.append(peers_table(results))
     else:
         out.append("Not measured: `make peers bench` measures them as well, `make peers bench-report` adds\n"
