@@ -16,66 +16,7 @@
 #include "pose/fan.h"
 #include "query/pairs.h"
 #include "query/primitives.h"
-
-enum { LANES = 8 };
-
-/* What the planes of the two triangles say of LANES pairs, a bit each. */
-typedef struct plane_test {
-    unsigned apart; /* one plane certainly separates them */
-    unsigned flat;  /* one triangle is in the other's plane, as far as can be told */
-} plane_test;
-
-/* The corners of LANES pairs of triangles, lane by lane. */
-typedef struct pair_lanes {
-    double corner[2][3][3][LANES]; /* triangle, corner, coordinate */
-} pair_lanes;
-
-/*
- *
- * A computed distance n . (p - a), n = e x f, is a sum of six products of components of e, f and
- * p - a. Each collects the rounding of three differences, two products, one subtraction and two
- * additions, 8.01 * 2^-53 of its absolute value; the absolute values sum to at most |p - a|max |e|1
- * |f|1, computed to within 8 * 2^-53. Hence 9 * 2^-53 |p - a|max |e|1 |f|1; the absolute term is for
- * products that underflow.
- */
-static plane_test test_planes(const pair_lanes *x)
-{
-    const double relative = 9 * 1.1102230246251565e-16, absolute = 1e-290;
-    plane_test result = {0, 0};
-    int lane, s, k;
-    for (s = 0; s < 2; s++) {
-        const double(*t)[3][LANES] = x->corner[s], (*o)[3][LANES] = x->corner[1 - s];
-        double apart[LANES], flat[LANES]; /* positive if so */
-        for (lane = 0; lane < LANES; lane++) {
-            double a0 = t[0][0][lane], a1 = t[0][1][lane], a2 = t[0][2][lane];
-            double e0 = t[1][0][lane] - a0, e1 = t[1][1][lane] - a1, e2 = t[1][2][lane] - a2;
-            double f0 = t[2][0][lane] - a0, f1 = t[2][1][lane] - a1, f2 = t[2][2][lane] - a2;
-            double n0 = e1 * f2 - e2 * f1, n1 = e2 * f0 - e0 * f2, n2 = e0 * f1 - e1 * f0;
-            double low = HUGE_VAL, high = -HUGE_VAL, reach = 0, not_finite = 0, bound;
-            for (k = 0; k < 3; k++) {
-                double p0 = o[k][0][lane] - a0, p1 = o[k][1][lane] - a1, p2 = o[k][2][lane] - a2;
-                double d = n0 * p0 + n1 * p1 + n2 * p2;
-                p0 = fabs(p0) > fabs(p1) ? fabs(p0) : fabs(p1);
-                p0 = p0 > fabs(p2) ? p0 : fabs(p2);
-                reach = reach > p0 ? reach : p0;
-                low = d < low ? d : low;
-                high = d > high ? d : high;
-                not_finite +=
-                    0 * d; /* NaN if d is, or is infinite; a comparison would pass over it */
-            }
-            bound = relative * (reach * ((fabs(e0) + fabs(e1) + fabs(e2)) *
-                                         (fabs(f0) + fabs(f1) + fabs(f2)))) +
-                    absolute * (1 + reach) + not_finite;
-            apart[lane] = (low > -high ? low : -high) - bound;
-            flat[lane] = (low < -high ? low : -high) + bound;
-        }
-        for (lane = 0; lane < LANES; lane++) {
-            result.apart |= (unsigned)(apart[lane] > 0) << lane;
-            result.flat |= (unsigned)(flat[lane] >= 0) << lane;
-        }
-    }
-    return result;
-}
+#include "query/query_kernels.h"
 
 /*
  * Whether a direction in the plane of one of two triangles, across one of its sides, certainly
@@ -83,7 +24,7 @@ static plane_test test_planes(const pair_lanes *x)
  * one difference, one product and two additions: 5 * 2^-53 |m|1 |p - a|max is more. This spares flat
  * regions the exact primitives, which are slow there.
  */
-static int side_separates(const pair_lanes *lanes, unsigned lane)
+static int side_separates(const sc_pair_lanes *lanes, unsigned lane)
 {
     const double relative = 5 * 1.1102230246251565e-16, absolute = 1e-290;
     double x[2][3][3];
@@ -205,11 +146,11 @@ void sc_candidates_decide(sc_query_state *state)
     if (!count) return;
     previous = sc_state_switch(state, sc_state_primitive_task(state));
     state->stats.counts[sc_state_primitive_task(state)] += count;
-    for (i = 0; i < count && !state->stop; i += LANES) {
-        pair_lanes x;
-        plane_test planes;
+    for (i = 0; i < count && !state->stop; i += SC_PAIR_LANES) {
+        sc_pair_lanes x;
+        sc_plane_test planes;
         unsigned rest;
-        for (j = 0; j < LANES; j++) { /* the last pair fills the row */
+        for (j = 0; j < SC_PAIR_LANES; j++) { /* the last pair fills the row */
             const sc_pair *pair = &w->candidates[i + j < count ? i + j : count - 1];
             for (s = 0; s < 2; s++)
                 for (k = 0; k < 3; k++) {
@@ -218,9 +159,9 @@ void sc_candidates_decide(sc_query_state *state)
                     for (c = 0; c < 3; c++) x.corner[s][k][c][j] = p[c];
                 }
         }
-        planes = test_planes(&x);
-        rest = ~planes.apart & ((1u << LANES) - 1u);
-        if (count - i < LANES) rest &= (1u << (count - i)) - 1u;
+        planes = sc_query_kernels_of(w)->test_planes(&x);
+        rest = ~planes.apart & ((1u << SC_PAIR_LANES) - 1u);
+        if (count - i < SC_PAIR_LANES) rest &= (1u << (count - i)) - 1u;
         for (; rest && !state->stop; rest &= rest - 1) {
             unsigned lane = sc_bits_lowest(rest);
             if ((planes.flat >> lane & 1u) && side_separates(&x, lane)) continue;

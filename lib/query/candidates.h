@@ -24,6 +24,20 @@ void sc_candidates_enter(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b
    points and collects the others. */
 void sc_candidates_take(sc_query_state *state, const sc_leaf_pair *pair, uint32_t i, unsigned some);
 
+/* Pairs that share nothing are decided by so many at a time. */
+enum { SC_PAIR_LANES = 8 };
+
+/* What the planes of the two triangles say of SC_PAIR_LANES pairs, a bit each. */
+typedef struct sc_plane_test {
+    unsigned apart; /* one plane certainly separates them */
+    unsigned flat;  /* one triangle is in the other's plane, as far as can be told */
+} sc_plane_test;
+
+/* The corners of SC_PAIR_LANES pairs of triangles, lane by lane. */
+typedef struct sc_pair_lanes {
+    double corner[2][3][3][SC_PAIR_LANES]; /* triangle, corner, coordinate */
+} sc_pair_lanes;
+
 /* Decides what has been collected; to be called before the kind of task changes, and at the end. */
 void sc_candidates_decide(sc_query_state *state);
 

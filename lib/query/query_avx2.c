@@ -15,11 +15,12 @@
 
 #  include "base/lanes.h"
 #  include "query/walk_kernel.h"
+#  include "query/planes_kernel.h"
 #  include "query/simple_kernel.h"
 
-const sc_query_kernels sc_query_kernels_avx2 = {patch_pair_avx2, patch_itself_avx2,
-                                                leaf_pair_avx2,  leaf_itself_avx2,
-                                                project_avx2,    are_edges_fine_avx2};
+const sc_query_kernels sc_query_kernels_avx2 = {
+    patch_pair_avx2,  patch_itself_avx2, leaf_pair_avx2,     leaf_itself_avx2,
+    test_planes_avx2, project_avx2,      are_edges_fine_avx2};
 
 #  undef SC_KERNEL
 #  undef SC_LANES

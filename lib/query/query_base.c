@@ -17,11 +17,12 @@
 
 #include "base/lanes.h"
 #include "query/walk_kernel.h"
+#include "query/planes_kernel.h"
 #include "query/simple_kernel.h"
 
-const sc_query_kernels sc_query_kernels_base = {patch_pair_base, patch_itself_base,
-                                                leaf_pair_base,  leaf_itself_base,
-                                                project_base,    are_edges_fine_base};
+const sc_query_kernels sc_query_kernels_base = {
+    patch_pair_base,  patch_itself_base, leaf_pair_base,     leaf_itself_base,
+    test_planes_base, project_base,      are_edges_fine_base};
 
 #undef SC_KERNEL
 #undef SC_LANES
