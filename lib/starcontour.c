@@ -6,23 +6,23 @@
  */
 #include "starcontour.h"
 
+#include <inttypes.h>
 #include <stddef.h>
 #include <string.h>
 
 #include "base/assume.h"
 #include "base/clock.h"
+#include "base/hooks.h"
 #include "base/isa.h"
 #include "base/structs.h"
 #include "build/model.h"
 #include "build/partition.h"
+#include "build/saved_model.h"
 #include "pose/positions.h"
 #include "query/pairs.h"
+#include "query/recording.h"
 #include "query/rest.h"
 #include "query/traversal.h"
-
-#ifdef SC_VALIDATE
-#  include <assert.h>
-#endif
 
 /* The size up to the end of a member. */
 #define UP_TO(type, member) (uint32_t)(offsetof(type, member) + sizeof(((type *)0)->member))
@@ -46,22 +46,53 @@ typedef struct steps {
 
 /* In builds with SC_VALIDATE (make config=debug or sanitize): everything is as its header says. Uses
    memory of its own, so that the caller's allocator may fail where it likes. */
-static void validate(const steps *s)
+static void validate(const steps *s, const sc_hooks *hooks)
 {
 #ifdef SC_VALIDATE
     sc_allocator standard = sc_memory_allocator(NULL);
     sc_scratch scratch;
     sc_scratch_init(&scratch, &standard);
-    assert(sc_hierarchy_validate(&s->hierarchy, &scratch));
-    assert(sc_xbvh_validate(&s->xbvh));
-    assert(sc_sctt_validate(&s->xbvh, &s->neighbors, &s->sctt));
-    assert(sc_csf_validate(&s->csf, &s->sctt, &scratch));
-    assert(s->points.triangle_count > 2000 || /* quadratic */
-           sc_sharing_validate(&s->points, s->hierarchy.order, &s->xbvh, &s->sharing));
+    SC_HOOKS_ASSERT(hooks, sc_hierarchy_validate(&s->hierarchy, &scratch));
+    SC_HOOKS_ASSERT(hooks, sc_xbvh_validate(&s->xbvh));
+    SC_HOOKS_ASSERT(hooks, sc_sctt_validate(&s->xbvh, &s->neighbors, &s->sctt));
+    SC_HOOKS_ASSERT(hooks, sc_csf_validate(&s->csf, &s->sctt, &scratch));
+    SC_HOOKS_ASSERT(hooks,
+                    s->points.triangle_count > 2000 || /* quadratic */
+                        sc_sharing_validate(&s->points, s->hierarchy.order, &s->xbvh, &s->sharing));
     sc_scratch_clear(&scratch);
 #else
     (void)s;
+    (void)hooks;
 #endif
+}
+
+/* What the caller may want to know of a mesh that was built. */
+static void log_facts(const sc_hooks *hooks, const sc_model *m)
+{
+    const uint32_t *slot = sc_model_slot(m);
+    const sc_level *last = &sc_model_level_info(m)[m->level_count - 1];
+    uint32_t v, unused = 0, welded = 0, scattered = last->patch_count - last->connected_patches;
+    if (!hooks || !hooks->log) return;
+    for (v = 0; v < m->vertex_count; v++) {
+        unused += slot[v] == SC_SLOT_UNUSED;
+        welded += slot[v] == SC_SLOT_WELDED;
+    }
+    if (unused) sc_hooks_log(hooks, SC_LOG_NOTE, "%" PRIu32 " vertices are in no triangle", unused);
+    if (welded)
+        sc_hooks_log(hooks, SC_LOG_NOTE, "%" PRIu32 " vertices are welded to others", welded);
+    if (m->component_count > 1)
+        sc_hooks_log(hooks, SC_LOG_NOTE, "%" PRIu32 " components", m->component_count);
+    if (m->irregular_edges)
+        sc_hooks_log(hooks, SC_LOG_WARNING,
+                     "%" PRIu32 " of %" PRIu32
+                     " edges have three or more triangles, or two that run the same way: what is "
+                     "round them is culled less",
+                     m->irregular_edges, m->edge_count);
+    if (scattered)
+        sc_hooks_log(hooks, SC_LOG_NOTE,
+                     "%" PRIu32 " of %" PRIu32
+                     " leaf clusters are not connected through edges and culled less",
+                     scattered, last->patch_count);
 }
 
 static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *options,
@@ -86,7 +117,7 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
     if ((status = sc_sharing_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, scratch,
                                    &s.sharing)))
         return status;
-    validate(&s);
+    validate(&s, options->hooks);
     sc_neighbors_free(&s.neighbors, scratch);
     if ((status = sc_model_assemble(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
                                     &s.sharing, scratch, model)))
@@ -98,7 +129,7 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
     rest.positions = mesh->positions;
     status = sc_mesh_position_stride(mesh->position_type, mesh->position_stride, &stride);
     if (SC_ALWAYS(!status)) /* sc_mesh_read has looked */
-        status = sc_rest_mark(*model, &rest, stride, scratch);
+        status = sc_rest_mark(*model, &rest, stride, scratch, options->hooks);
     if (status) {
         sc_model_release(*model);
         *model = NULL;
@@ -110,6 +141,7 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
 {
     sc_mesh m;
     sc_build_options o;
+    sc_hooks hooks;
     sc_allocator allocator;
     sc_scratch scratch;
     sc_status status;
@@ -123,12 +155,18 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
         status = sc_structs_read(&o, sizeof o, options, LEAST_OPTIONS);
         if (status) return status;
     }
+    status = sc_hooks_read(o.hooks, &hooks);
+    if (status) return status;
+    o.hooks = &hooks;
     allocator = sc_memory_allocator(o.allocator);
     if (!allocator.allocate || !allocator.release) return SC_ERROR_NULL;
     sc_scratch_init(&scratch, &allocator);
     status = build_steps(&m, &o, &scratch, model);
     sc_scratch_clear(&scratch);
-    return status;
+    if (status) return status;
+    sc_model_note_memory(*model, &scratch);
+    log_facts(&hooks, *model);
+    return SC_OK;
 }
 
 void sc_model_free(sc_model *model)
@@ -138,12 +176,14 @@ void sc_model_free(sc_model *model)
 
 sc_status sc_model_get_info(const sc_model *model, sc_model_info *info)
 {
+    const sc_model_owner *owner;
     sc_model_info i;
     sc_status status;
     if (!model || !info) return SC_ERROR_NULL;
     status = sc_structs_check(info, sizeof i, LEAST_OPTIONS);
     if (status) return status;
     memset(&i, 0, sizeof i);
+    owner = sc_model_owner_of(model);
     i.vertex_count = model->vertex_count;
     i.point_count = model->point_count;
     i.triangle_count = model->triangle_count;
@@ -158,6 +198,10 @@ sc_status sc_model_get_info(const sc_model *model, sc_model_info *info)
     i.topology_hash = model->topology_hash;
     i.model_bytes = model->bytes + SC_ALIGNMENT; /* with what frees it */
     i.workspace_bytes = sc_workspace_bytes(model);
+    if (owner) {
+        i.peak_bytes = owner->peak_bytes;
+        i.allocations = owner->allocations;
+    }
     sc_structs_write(info, &i, sizeof i);
     return SC_OK;
 }
@@ -204,6 +248,57 @@ sc_status sc_model_get_patches(const sc_model *model, uint32_t level, uint32_t *
     return SC_OK;
 }
 
+/* ---- saved models ---- */
+
+sc_status sc_model_save_size(const sc_model *model, uint64_t *size)
+{
+    if (!model || !size) return SC_ERROR_NULL;
+    *size = sc_saved_model_bytes(model);
+    return SC_OK;
+}
+
+sc_status sc_model_save(const sc_model *model, void *memory, uint64_t size, uint64_t *written)
+{
+    uint64_t bytes;
+    if (written) *written = 0;
+    if (!model) return SC_ERROR_NULL;
+    bytes = sc_saved_model_bytes(model);
+    if (written) *written = bytes;
+    if (size < bytes) return SC_ERROR_SHORT_BUFFER;
+    if (!memory) return SC_ERROR_NULL;
+    sc_saved_model_write(model, memory);
+    return SC_OK;
+}
+
+sc_status sc_model_load(const void *data, uint64_t size, const sc_load_options *options,
+                        sc_model **model)
+{
+    sc_load_options o;
+    sc_hooks hooks;
+    sc_allocator allocator;
+    sc_scratch scratch;
+    sc_status status;
+    if (!model) return SC_ERROR_NULL;
+    *model = NULL;
+    if (!data) return SC_ERROR_NULL;
+    memset(&o, 0, sizeof o);
+    if (options) {
+        status = sc_structs_read(&o, sizeof o, options, LEAST_OPTIONS);
+        if (status) return status;
+    }
+    if (o.mode > SC_LOAD_IN_PLACE) return SC_ERROR_OPTION;
+    status = sc_hooks_read(o.hooks, &hooks);
+    if (status) return status;
+    allocator = sc_memory_allocator(o.allocator);
+    if (!allocator.allocate || !allocator.release) return SC_ERROR_NULL;
+    sc_scratch_init(&scratch, &allocator);
+    status = sc_saved_model_read(data, size, o.mode == SC_LOAD_IN_PLACE, o.topology_hash, &scratch,
+                                 &hooks, model);
+    sc_scratch_clear(&scratch);
+    if (!status && o.mode == SC_LOAD_COPY) sc_model_note_memory(*model, &scratch);
+    return status;
+}
+
 /* ---- workspaces ---- */
 
 sc_status sc_workspace_size(const sc_model *model, uint64_t *size)
@@ -241,6 +336,16 @@ sc_status sc_workspace_create(const sc_model *model, const sc_allocator *allocat
     return SC_OK;
 }
 
+sc_status sc_workspace_set_hooks(sc_workspace *workspace, const sc_hooks *hooks)
+{
+    sc_hooks checked;
+    sc_status status;
+    if (!workspace) return SC_ERROR_NULL;
+    status = sc_hooks_read(hooks, &checked);
+    if (!status) workspace->hooks = checked;
+    return status;
+}
+
 void sc_workspace_free(sc_workspace *workspace)
 {
     if (workspace && workspace->owned)
@@ -274,17 +379,13 @@ static sc_status check_pose(const sc_model *model, const sc_pose *pose, uint64_t
 }
 
 /* Everything about a query that can be wrong; afterwards only the positions can be. */
-static sc_status check_query(const sc_model *model, const sc_workspace *workspace,
-                             const sc_pose *pose, const sc_query_options *options,
-                             const sc_result *result, sc_query_state *state, sc_pose *checked_pose,
-                             uint64_t *stride)
+static sc_status check_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
+                             const sc_query_options *options, const sc_result *result,
+                             sc_query_state *state, sc_pose *checked_pose, uint64_t *stride)
 {
     sc_status status;
     if (!model || !workspace || !pose) return SC_ERROR_NULL;
-    /* the rest shape, which the hash leaves out, decides how many segments there are */
-    if (workspace->topology_hash != model->topology_hash ||
-        workspace->bytes != sc_workspace_bytes(model))
-        return SC_ERROR_WORKSPACE;
+    if (!sc_workspace_fits(workspace, model)) return SC_ERROR_WORKSPACE;
     if (options) {
         status = sc_structs_read(&state->options, sizeof state->options, options, LEAST_OPTIONS);
         if (status) return status;
@@ -352,4 +453,81 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     }
     sc_structs_write(result, &r, sizeof r);
     return status;
+}
+
+/* ---- records ---- */
+
+/* The pose, its stride and the options as the caller meant them. */
+static sc_status check_record(const sc_model *model, const sc_pose *pose,
+                              const sc_query_options *options, sc_pose *p, uint64_t *stride,
+                              sc_query_options *o)
+{
+    sc_query_options checked;
+    sc_status status;
+    if (!model || !pose) return SC_ERROR_NULL;
+    memset(o, 0, sizeof *o);
+    if (options) {
+        status = sc_structs_read(o, sizeof *o, options, LEAST_OPTIONS);
+        if (status) return status;
+    }
+    checked = *o; /* defaults stay defaults */
+    status = check_options(&checked);
+    if (status) return status;
+    status = sc_structs_read(p, sizeof *p, pose, UP_TO(sc_pose, positions));
+    return status ? status : check_pose(model, p, stride);
+}
+
+sc_status sc_record_size(const sc_model *model, const sc_pose *pose,
+                         const sc_query_options *options, uint64_t *size)
+{
+    sc_query_options o;
+    sc_pose p;
+    uint64_t stride;
+    sc_status status;
+    if (!size) return SC_ERROR_NULL;
+    status = check_record(model, pose, options, &p, &stride, &o);
+    if (!status) *size = sc_recording_bytes(model, &p);
+    return status;
+}
+
+sc_status sc_record_write(const sc_model *model, const sc_pose *pose,
+                          const sc_query_options *options, void *memory, uint64_t size,
+                          uint64_t *written)
+{
+    sc_query_options o;
+    sc_pose p;
+    uint64_t stride, bytes;
+    sc_status status;
+    if (written) *written = 0;
+    status = check_record(model, pose, options, &p, &stride, &o);
+    if (status) return status;
+    bytes = sc_recording_bytes(model, &p);
+    if (written) *written = bytes;
+    if (size < bytes) return SC_ERROR_SHORT_BUFFER;
+    if (!memory) return SC_ERROR_NULL;
+    sc_recording_write(model, &p, stride, &o, memory);
+    return SC_OK;
+}
+
+sc_status sc_record_read(const void *data, uint64_t size, sc_record *record)
+{
+    sc_query_options options;
+    sc_record r;
+    sc_pose pose;
+    sc_status status;
+    if (!data || !record) return SC_ERROR_NULL;
+    status = sc_structs_read(&r, sizeof r, record, UP_TO(sc_record, model_size));
+    if (status) return status;
+    if (r.reserved) return SC_ERROR_OPTION;
+    if (!r.pose || !r.options) return SC_ERROR_NULL;
+    status = sc_structs_check(r.pose, sizeof pose, UP_TO(sc_pose, positions));
+    if (status) return status;
+    status = sc_structs_check(r.options, sizeof options, LEAST_OPTIONS);
+    if (status) return status;
+    status = sc_recording_read(data, size, &r.model, &r.model_size, &pose, &options);
+    if (status) return status;
+    sc_structs_write(r.pose, &pose, sizeof pose);
+    sc_structs_write(r.options, &options, sizeof options);
+    sc_structs_write(record, &r, sizeof r);
+    return SC_OK;
 }

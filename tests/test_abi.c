@@ -18,16 +18,16 @@
 #include "starcontour.h"
 
 #if defined(__SANITIZE_ADDRESS__)
-#    define SC_NO_SHARED
+#  define SC_NO_SHARED
 #elif defined(__has_feature)
-#    if __has_feature(address_sanitizer)
-#        define SC_NO_SHARED
-#    endif
+#  if __has_feature(address_sanitizer)
+#    define SC_NO_SHARED
+#  endif
 #endif
 
 #define SIZE(type, bytes) CHECK_MSG(sizeof(type) == (bytes), "%zu", sizeof(type))
 #define MEMBER(type, member, offset)                                                               \
-    CHECK_MSG(offsetof(type, member) == (offset), "%zu", offsetof(type, member))
+  CHECK_MSG(offsetof(type, member) == (offset), "%zu", offsetof(type, member))
 #define VALUE(name, value) CHECK_MSG((name) == (value), "%ld", (long)(name))
 
 static void structures(void)
@@ -75,7 +75,7 @@ static void structures(void)
     MEMBER(sc_dual_graph, neighbors, 16);
     MEMBER(sc_dual_graph, weights, 24);
 
-    SIZE(sc_build_options, 64);
+    SIZE(sc_build_options, 72);
     MEMBER(sc_build_options, struct_size, 0);
     MEMBER(sc_build_options, weld, 4);
     MEMBER(sc_build_options, partition, 8);
@@ -86,8 +86,31 @@ static void structures(void)
     MEMBER(sc_build_options, bisect, 40);
     MEMBER(sc_build_options, bisect_user, 48);
     MEMBER(sc_build_options, allocator, 56);
+    MEMBER(sc_build_options, hooks, 64);
 
-    SIZE(sc_model_info, 72);
+    SIZE(sc_hooks, 32);
+    MEMBER(sc_hooks, struct_size, 0);
+    MEMBER(sc_hooks, reserved, 4);
+    MEMBER(sc_hooks, log, 8);
+    MEMBER(sc_hooks, failed, 16);
+    MEMBER(sc_hooks, user, 24);
+
+    SIZE(sc_record, 40);
+    MEMBER(sc_record, struct_size, 0);
+    MEMBER(sc_record, reserved, 4);
+    MEMBER(sc_record, pose, 8);
+    MEMBER(sc_record, options, 16);
+    MEMBER(sc_record, model, 24);
+    MEMBER(sc_record, model_size, 32);
+
+    SIZE(sc_load_options, 32);
+    MEMBER(sc_load_options, struct_size, 0);
+    MEMBER(sc_load_options, mode, 4);
+    MEMBER(sc_load_options, topology_hash, 8);
+    MEMBER(sc_load_options, allocator, 16);
+    MEMBER(sc_load_options, hooks, 24);
+
+    SIZE(sc_model_info, 88);
     MEMBER(sc_model_info, struct_size, 0);
     MEMBER(sc_model_info, vertex_count, 4);
     MEMBER(sc_model_info, point_count, 8);
@@ -103,6 +126,8 @@ static void structures(void)
     MEMBER(sc_model_info, topology_hash, 48);
     MEMBER(sc_model_info, model_bytes, 56);
     MEMBER(sc_model_info, workspace_bytes, 64);
+    MEMBER(sc_model_info, peak_bytes, 72);
+    MEMBER(sc_model_info, allocations, 80);
 
     SIZE(sc_level_info, 40);
     MEMBER(sc_level_info, struct_size, 0);
@@ -172,6 +197,19 @@ static void enumerators(void)
     VALUE(SC_ERROR_UNSUPPORTED, 16);
     VALUE(SC_ERROR_ALIGNMENT, 17);
     VALUE(SC_ERROR_LEVEL, 18);
+    VALUE(SC_ERROR_NOT_SAVED, 19);
+    VALUE(SC_ERROR_TRUNCATED, 20);
+    VALUE(SC_ERROR_BYTE_ORDER, 21);
+    VALUE(SC_ERROR_TOO_NEW, 22);
+    VALUE(SC_ERROR_TOO_OLD, 23);
+    VALUE(SC_ERROR_CHECKSUM, 24);
+    VALUE(SC_ERROR_INCONSISTENT, 25);
+    VALUE(SC_ERROR_TOPOLOGY, 26);
+    VALUE(SC_LOG_NOTE, 0);
+    VALUE(SC_LOG_WARNING, 1);
+    VALUE(SC_LOG_ERROR, 2);
+    VALUE(SC_LOAD_COPY, 0);
+    VALUE(SC_LOAD_IN_PLACE, 1);
     VALUE(SC_ALIGNMENT, 64);
     VALUE(SC_FLOAT, 0);
     VALUE(SC_DOUBLE, 1);

@@ -162,6 +162,10 @@ static void check_failing_build(const char *name, const soup *s, const double *p
                 CHECK_MSG(build_counter.live_bytes == info.model_bytes,
                           "%s: %u instead of %u bytes", name, (unsigned)build_counter.live_bytes,
                           (unsigned)info.model_bytes);
+                CHECK_MSG(info.peak_bytes == build_counter.peak_bytes &&
+                              info.allocations == build_counter.calls,
+                          "%s: %u bytes in %u calls", name, (unsigned)build_counter.peak_bytes,
+                          (unsigned)build_counter.calls);
                 CHECK(sc_workspace_create(model, &other, &workspace) == SC_OK);
                 if (fails_after == 0) check_answer(s, posed, map, model, workspace);
                 sc_workspace_free(workspace);

@@ -51,6 +51,17 @@ void sc_scratch_init(sc_scratch *scratch, const sc_allocator *allocator)
 {
     scratch->allocator = *allocator;
     scratch->blocks = NULL;
+    scratch->live_bytes = scratch->peak_bytes = scratch->allocations = 0;
+}
+
+void *sc_scratch_allocate(sc_scratch *scratch, uint64_t bytes)
+{
+    void *memory = scratch->allocator.allocate(scratch->allocator.user, bytes, SC_ALIGNMENT);
+    if (!memory) return NULL;
+    scratch->allocations++;
+    scratch->live_bytes += bytes;
+    if (scratch->live_bytes > scratch->peak_bytes) scratch->peak_bytes = scratch->live_bytes;
+    return memory;
 }
 
 void *sc_scratch_take(sc_scratch *scratch, uint64_t count, size_t size)
@@ -59,8 +70,7 @@ void *sc_scratch_take(sc_scratch *scratch, uint64_t count, size_t size)
     uint64_t bytes;
     if (count > (SIZE_MAX - SC_ALIGNMENT) / size) return NULL;
     bytes = count * size + SC_ALIGNMENT;
-    block = (sc_scratch_block *)scratch->allocator.allocate(scratch->allocator.user, bytes,
-                                                            SC_ALIGNMENT);
+    block = (sc_scratch_block *)sc_scratch_allocate(scratch, bytes);
     if (!block) return NULL;
     block->bytes = bytes;
     block->previous = NULL;
@@ -87,6 +97,7 @@ void sc_scratch_give(sc_scratch *scratch, void *memory)
     else
         scratch->blocks = block->next;
     if (block->next) block->next->previous = block->previous;
+    scratch->live_bytes -= block->bytes;
     scratch->allocator.release(scratch->allocator.user, block, block->bytes);
 }
 

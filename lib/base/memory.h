@@ -18,12 +18,17 @@ typedef struct sc_scratch_block sc_scratch_block;
 typedef struct sc_scratch {
     sc_allocator allocator;
     sc_scratch_block *blocks;
+    uint64_t live_bytes, peak_bytes, allocations; /* of these and of sc_scratch_allocate */
 } sc_scratch;
 
 /* The caller's allocator, or malloc and free if there is none. */
 sc_allocator sc_memory_allocator(const sc_allocator *caller);
 
 void sc_scratch_init(sc_scratch *scratch, const sc_allocator *allocator);
+
+/* Memory that is not the scratch's and outlives it, aligned to SC_ALIGNMENT: only counted with it. NULL
+   if there is none. */
+void *sc_scratch_allocate(sc_scratch *scratch, uint64_t bytes);
 
 /* count elements of size bytes, aligned to SC_ALIGNMENT and not cleared; NULL if that overflows or
    the allocator fails. A count of 0 gives a valid pointer to nothing. */

@@ -49,6 +49,22 @@ const char *sc_status_string(sc_status status)
         return "memory is not aligned as required";
     case SC_ERROR_LEVEL:
         return "the model has no such level";
+    case SC_ERROR_NOT_SAVED:
+        return "not a saved model or record, whichever was expected";
+    case SC_ERROR_TRUNCATED:
+        return "saved data end too early";
+    case SC_ERROR_BYTE_ORDER:
+        return "saved on a machine with another byte order";
+    case SC_ERROR_TOO_NEW:
+        return "saved by a newer version of the library";
+    case SC_ERROR_TOO_OLD:
+        return "saved by a version of the library that is too old";
+    case SC_ERROR_CHECKSUM:
+        return "saved data were damaged: the checksum is wrong";
+    case SC_ERROR_INCONSISTENT:
+        return "saved data contradict themselves";
+    case SC_ERROR_TOPOLOGY:
+        return "the saved model is not that of the mesh expected";
     default:
         return "unknown status";
     }

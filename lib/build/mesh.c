@@ -5,10 +5,12 @@
  */
 #include "build/mesh.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/assume.h"
+#include "base/hooks.h"
 
 #define MAX_TRIANGLES 0x55555554u
 #define MAX_VERTICES 0xfffffff0u
@@ -37,7 +39,7 @@ sc_status sc_mesh_position_stride(uint32_t type, uint32_t given, uint64_t *strid
     return SC_OK;
 }
 
-static sc_status read_triangles(const sc_mesh *mesh, uint32_t *triangles)
+static sc_status read_triangles(const sc_mesh *mesh, const sc_hooks *hooks, uint32_t *triangles)
 {
     const unsigned char *at = (const unsigned char *)mesh->indices;
     uint64_t packed = 3 * (mesh->index_type == SC_UINT16 ? sizeof(uint16_t) : sizeof(uint32_t));
@@ -53,7 +55,12 @@ static sc_status read_triangles(const sc_mesh *mesh, uint32_t *triangles)
             memcpy(triangles, at, 3 * sizeof(uint32_t));
         }
         for (k = 0; k < 3; k++)
-            if (triangles[k] >= mesh->vertex_count) return SC_ERROR_INDEX;
+            if (triangles[k] >= mesh->vertex_count) {
+                sc_hooks_log(hooks, SC_LOG_ERROR,
+                             "triangle %" PRIu32 " names vertex %" PRIu32 " of %" PRIu32, t,
+                             triangles[k], mesh->vertex_count);
+                return SC_ERROR_INDEX;
+            }
     }
     return SC_OK;
 }
@@ -146,7 +153,7 @@ sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_
     representative = (uint32_t *)sc_scratch_take(scratch, mesh->vertex_count, sizeof(uint32_t));
     used = (uint8_t *)sc_scratch_take_filled(scratch, mesh->vertex_count, 1, 0);
     if (!points->triangles || !points->slot || !representative || !used) return SC_ERROR_MEMORY;
-    status = read_triangles(mesh, points->triangles);
+    status = read_triangles(mesh, options->hooks, points->triangles);
     if (status) return status;
 
     for (h = 0; h < corners; h++) used[points->triangles[h]] = 1;
@@ -156,7 +163,10 @@ sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_
         double p[3];
         if (!used[v]) continue;
         sc_mesh_read_position(mesh->positions, mesh->position_type, position_stride, v, p);
-        if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))) return SC_ERROR_NOT_FINITE;
+        if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))) {
+            sc_hooks_log(options->hooks, SC_LOG_ERROR, "vertex %" PRIu32 " is NaN or infinite", v);
+            return SC_ERROR_NOT_FINITE;
+        }
         representative[v] = options->weld == SC_WELD_MAP ? options->weld_map[v] : v;
     }
     if (options->weld == SC_WELD_REST) {

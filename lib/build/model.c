@@ -9,20 +9,14 @@
 
 #include "base/assume.h"
 
-/* Stands before the model and fills one alignment unit. */
-typedef struct sc_model_owner {
-    sc_allocator allocator;
-    uint64_t bytes; /* with this */
-} sc_model_owner;
-
-/* Box recursion visits the last level and every third above it. */
-enum { HOP = 3 };
+/* A compiler stops here if the owner does not fit before the model. */
+typedef char owner_fits_one_unit[sizeof(sc_model_owner) <= SC_ALIGNMENT ? 1 : -1];
 
 /* One array of the model while it is being written. */
 #define NEW_ARRAY(model, name, type)                                                               \
   ((type *)(void *)((unsigned char *)(model) + (model)->offset[SC_ARRAY_##name]))
 
-static void lay_out(sc_model *m)
+void sc_model_lay_out(sc_model *m)
 {
     uint64_t at = (sizeof *m + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
     uint32_t vertex_count = m->vertex_count, triangle_count = m->triangle_count;
@@ -38,6 +32,19 @@ static void lay_out(sc_model *m)
     SC_MODEL_ARRAYS(LAY_OUT)
 #undef LAY_OUT
     m->bytes = at;
+}
+
+sc_model *sc_model_allocate(uint64_t bytes, sc_scratch *scratch)
+{
+    sc_model_owner *owner;
+    bytes += SC_ALIGNMENT;
+    owner = (sc_model_owner *)sc_scratch_allocate(scratch, bytes);
+    if (!owner) return NULL;
+    memset(owner, 0, SC_ALIGNMENT);
+    owner->kind = SC_MODEL_OWNED;
+    owner->allocator = scratch->allocator;
+    owner->bytes = bytes;
+    return (sc_model *)(void *)((unsigned char *)owner + SC_ALIGNMENT);
 }
 
 static void copy(void *to, const void *from, uint64_t bytes)
@@ -100,8 +107,7 @@ static void write_hops(const sc_xbvh *xbvh, sc_model *m)
 {
     uint32_t *hop = NEW_ARRAY(m, hop, uint32_t), level, p, step;
     for (level = 0; level < xbvh->level_count; level++) {
-        uint32_t steps = (xbvh->level_count - 1 - level) % HOP;
-        if (steps == 0) steps = HOP;
+        uint32_t steps = sc_model_hop_steps(xbvh->level_count, level);
         for (p = xbvh->level_first[level]; p < xbvh->level_first[level + 1]; p++) {
             hop[p] = p;
             for (step = 0; step < steps; step++) hop[p] = xbvh->child[hop[p]];
@@ -205,9 +211,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
                             sc_model **model)
 {
     sc_model counts, *m;
-    sc_model_owner *owner;
     uint32_t *number, *ring_first, *ring, p, i;
-    uint64_t bytes;
     sc_status status;
 
     memset(&counts, 0, sizeof counts);
@@ -223,16 +227,12 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     for (p = 0; p < points->point_count; p++) ring_first[p + 1] += ring_first[p];
     counts.share_count = sharing->first[xbvh->leaf_count];
     counts.ring_total = ring_first[points->point_count];
-    lay_out(&counts);
-    bytes = counts.bytes + SC_ALIGNMENT;
-    if (SC_HARDLY(bytes > SIZE_MAX)) return SC_ERROR_COUNT; /* where addresses have 32 bits */
-    owner =
-        (sc_model_owner *)scratch->allocator.allocate(scratch->allocator.user, bytes, SC_ALIGNMENT);
-    if (!owner) return SC_ERROR_MEMORY;
-    memset(owner, 0, (size_t)bytes);
-    owner->allocator = scratch->allocator;
-    owner->bytes = bytes;
-    m = (sc_model *)(void *)((unsigned char *)owner + SC_ALIGNMENT);
+    sc_model_lay_out(&counts);
+    if (SC_HARDLY(counts.bytes > SIZE_MAX - SC_ALIGNMENT)) /* where addresses have 32 bits */
+        return SC_ERROR_COUNT;
+    m = sc_model_allocate(counts.bytes, scratch);
+    if (!m) return SC_ERROR_MEMORY;
+    memset(m, 0, (size_t)counts.bytes);
     *m = counts;
     for (p = 0; p < points->point_count; p++)
         if (ring_first[number[p] + 1] > ring_first[number[p]]) {
@@ -296,9 +296,25 @@ sc_level *sc_model_levels_of_new(sc_model *model)
     return NEW_ARRAY(model, level_info, sc_level);
 }
 
+const sc_model_owner *sc_model_owner_of(const sc_model *model)
+{
+    const sc_model_owner *owner =
+        (const sc_model_owner *)(const void *)((const unsigned char *)model - SC_ALIGNMENT);
+    return owner->kind == SC_MODEL_OWNED ? owner : NULL;
+}
+
+void sc_model_note_memory(sc_model *model, const sc_scratch *scratch)
+{
+    sc_model_owner *owner = (sc_model_owner *)(void *)((unsigned char *)model - SC_ALIGNMENT);
+    owner->peak_bytes = scratch->peak_bytes;
+    owner->allocations = scratch->allocations;
+}
+
 void sc_model_release(sc_model *model)
 {
     sc_model_owner *owner = (sc_model_owner *)(void *)((unsigned char *)model - SC_ALIGNMENT);
-    sc_allocator allocator = owner->allocator;
+    sc_allocator allocator;
+    if (owner->kind != SC_MODEL_OWNED) return;
+    allocator = owner->allocator;
     allocator.release(allocator.user, owner, owner->bytes);
 }

@@ -6,7 +6,11 @@
  *     | sc_model_owner | sc_model (counts and offsets) | array | array | ... |
  *
  * Arrays start at multiples of SC_ALIGNMENT from the sc_model, which can be moved as a block of
- * sc_model.bytes bytes. What frees it stands before it.
+ * sc_model.bytes bytes. What frees it stands before it; before a model that is used in place where it
+ * was saved stands the header of the save (build/saved_model.h), and the caller frees it.
+ *
+ * The block is the format of saved models: whoever changes what is in it raises the version in
+ * build/saved_model.c, and makes build/model_check.c check it.
  */
 #ifndef SC_BUILD_MODEL_H
 #define SC_BUILD_MODEL_H
@@ -94,6 +98,8 @@ enum {
 struct sc_model {
     uint64_t bytes; /* from here on, with all arrays */
     uint64_t topology_hash;
+    uint64_t offset[SC_ARRAY_COUNT]; /* in bytes from the start of the sc_model */
+    /* smaller members last, so that all machines have the same gaps: none */
     uint32_t vertex_count, point_count, triangle_count, edge_count;
     uint32_t component_count, boundary_edges, irregular_edges;
     uint32_t leaf_count, level_count, patch_end;
@@ -101,8 +107,18 @@ struct sc_model {
     uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
     uint32_t contour_max; /* points of the segments round a node, at most */
     uint32_t ring_total, share_count;
-    uint64_t offset[SC_ARRAY_COUNT]; /* in bytes from the start of the sc_model */
 };
+
+/* Stands before the model and fills one alignment unit. */
+typedef struct sc_model_owner {
+    uint64_t kind; /* SC_MODEL_OWNED; the header of a save begins otherwise */
+    sc_allocator allocator;
+    uint64_t bytes;       /* with this */
+    uint64_t peak_bytes;  /* most that was allocated at once to make the model, with it */
+    uint64_t allocations; /* how often memory was asked for */
+} sc_model_owner;
+
+#define SC_MODEL_OWNED 1u
 
 /* sc_model_<name>(model) is the array of that name. */
 #define SC_MODEL_ACCESSOR(name, type, count)                                                       \
@@ -126,10 +142,31 @@ static inline uint32_t sc_model_first_leaf_patch(const sc_model *model)
     return sc_model_level_first(model)[model->level_count - 1];
 }
 
+/* How many levels below a patch's own its hop leads: to the last level or one of every third above. */
+static inline uint32_t sc_model_hop_steps(uint32_t level_count, uint32_t level)
+{
+    uint32_t steps = (level_count - 1 - level) % 3;
+    return steps ? steps : 3;
+}
+
 static inline int sc_model_is_leaf(const sc_model *model, uint32_t patch)
 {
     return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch] == 1;
 }
+
+/* Computes offsets and bytes from the counts. Counts must be at least 1, as many segments as leaf
+   segments there at least. */
+void sc_model_lay_out(sc_model *counts);
+
+/* Memory for a model of so many bytes, behind its owner; the model's own is left unset. NULL if there
+   is none. */
+sc_model *sc_model_allocate(uint64_t bytes, sc_scratch *scratch);
+
+/* What frees a model, or NULL if the caller does. */
+const sc_model_owner *sc_model_owner_of(const sc_model *model);
+
+/* Notes in an owned model what its making took. */
+void sc_model_note_memory(sc_model *model, const sc_scratch *scratch);
 
 /* Puts everything together. Node flags and what the rest pose says of levels are left at zero. */
 sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacency,

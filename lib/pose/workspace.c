@@ -86,6 +86,15 @@ sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
     return w;
 }
 
+int sc_workspace_fits(sc_workspace *workspace, const sc_model *model)
+{
+    sc_workspace wanted;
+    memcpy(&wanted, workspace, sizeof wanted);
+    wanted.bytes = lay_out(model, (unsigned char *)workspace, &wanted);
+    wanted.topology_hash = model->topology_hash;
+    return memcmp(&wanted, workspace, sizeof wanted) == 0;
+}
+
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
 {
     if (workspace->pose_tick == 0x7fffffff) {

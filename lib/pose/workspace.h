@@ -66,6 +66,7 @@ struct sc_workspace {
     sc_allocator allocator;
     uint32_t owned; /* allocated by sc_workspace_create */
     uint32_t isa;   /* of the query, see base/isa.h */
+    sc_hooks hooks;
 
     /* the pose; all but position valid only in a query */
     double *position;     /* 3 * point_count */
@@ -99,6 +100,10 @@ uint64_t sc_workspace_bytes(const sc_model *model);
 
 /* Makes a workspace in aligned memory of that many bytes. */
 sc_workspace *sc_workspace_place(const sc_model *model, void *memory);
+
+/* Whether a workspace is for models of this topology hash, and each of its arrays as long as the model
+   needs it: the hash alone does not tell, for it leaves out the rest shape, and may be forged. */
+int sc_workspace_fits(sc_workspace *workspace, const sc_model *model);
 
 /* Starts a pose and a projection, whose ticks make everything older stale. */
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace);

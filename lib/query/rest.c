@@ -53,7 +53,8 @@ static void mark(rest_walk *walk, uint32_t node, uint32_t level, const sc_projec
     for (c = child[node]; c < child[node + 1]; c++) mark(walk, c, level + 1, projection);
 }
 
-sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc_scratch *scratch)
+sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc_scratch *scratch,
+                       const sc_hooks *hooks)
 {
     rest_walk walk;
     void *memory;
@@ -65,6 +66,7 @@ sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc
     walk.levels = sc_model_levels_of_new(model);
     walk.state.model = model;
     walk.state.workspace = sc_workspace_place(model, memory);
+    walk.state.workspace->hooks = *hooks;
     sc_workspace_new_pose(model, walk.state.workspace);
     status = sc_positions_read(model, rest, stride, walk.state.workspace);
     if (status) return status; /* a caller's bisection may have spoiled what was checked */

@@ -16,11 +16,8 @@
 
 #include <math.h>
 
+#include "base/hooks.h"
 #include "pose/contour_bounds.h"
-
-#ifdef SC_VALIDATE
-#  include <assert.h>
-#endif
 
 static void update(sc_query_state *state, const sc_projection *projection, int line,
                    const uint32_t *segments, uint32_t count)
@@ -31,8 +28,9 @@ static void update(sc_query_state *state, const sc_projection *projection, int l
             sc_contour_bounds_update(state->model, state->workspace, projection, line, segments[i]);
 #ifdef SC_VALIDATE
     for (i = 0; i < count; i++)
-        assert(sc_contour_bounds_validate(state->model, state->workspace, projection, line,
-                                          segments[i]));
+        SC_HOOKS_ASSERT(&state->workspace->hooks,
+                        sc_contour_bounds_validate(state->model, state->workspace, projection, line,
+                                                   segments[i]));
 #endif
     sc_state_switch(state, previous);
 }

@@ -8,15 +8,12 @@
  */
 #include "query/traversal.h"
 
+#include "base/hooks.h"
 #include "pose/dnc.h"
 #include "pose/refit.h"
 #include "query/query_kernels.h"
 #include "query/simple.h"
 #include "query/star.h"
-
-#ifdef SC_VALIDATE
-#  include <assert.h>
-#endif
 
 /* The leaf cluster of a patch that is one. */
 static uint32_t leaf_of(const sc_model *model, uint32_t patch)
@@ -156,9 +153,7 @@ void sc_traversal_run(sc_query_state *state)
     if (state->options.method == SC_METHOD_SCTT) {
         sc_state_switch(state, SC_TASK_UPDATE_NORMALS);
         sc_dnc_update(model, state->workspace);
-#ifdef SC_VALIDATE
-        assert(sc_dnc_validate(model, state->workspace));
-#endif
+        SC_HOOKS_ASSERT(&state->workspace->hooks, sc_dnc_validate(model, state->workspace));
         state->stats.counts[SC_TASK_UPDATE_NORMALS] += model->patch_end;
         sc_state_switch(state, SC_TASK_ORIENTATION);
         if (state->options.contour == SC_CONTOUR_EXACT)

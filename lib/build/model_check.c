@@ -1,0 +1,352 @@
+/*
+ * Checks a model that comes from outside. See model_check.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Loops collect what is wrong instead of stopping at it, where that lets them run several elements at
+ * once. Whatever a later check takes as an index has passed an earlier one.
+ */
+#include "build/model_check.h"
+
+#include <string.h>
+
+int sc_model_check_counts(const sc_model *m, uint64_t bytes)
+{
+    sc_model expected = *m;
+    uint32_t limit = 0xfffffff0u; /* what sc_build keeps below, for numbers that are added to */
+    if (!m->vertex_count || m->vertex_count == SC_NONE) return 0;
+    if (!m->triangle_count || m->triangle_count > 0x55555554u) return 0;
+    if (!m->point_count || m->point_count > m->vertex_count) return 0;
+    if (!m->leaf_count || m->leaf_count > m->triangle_count) return 0;
+    if (!m->level_count || m->level_count > SC_DEPTH_MAX) return 0;
+    if (!m->patch_end || !m->node_count || m->segment_count < m->leaf_segment_count) return 0;
+    if (m->patch_end > limit || m->node_count > limit || m->box_count > limit) return 0;
+    sc_model_lay_out(&expected);
+    if (m->bytes != bytes || expected.bytes != bytes) return 0;
+    return memcmp(m->offset, expected.offset, sizeof m->offset) == 0;
+}
+
+static int all_below(const uint32_t *array, uint64_t count, uint32_t limit)
+{
+    uint32_t bad = 0;
+    uint64_t i;
+    for (i = 0; i < count; i++) bad |= array[i] >= limit;
+    return !bad;
+}
+
+static int bytes_below(const uint8_t *array, uint64_t count, uint32_t limit)
+{
+    uint32_t bad = 0;
+    uint64_t i;
+    for (i = 0; i < count; i++) bad |= array[i] >= limit;
+    return !bad;
+}
+
+/* Whether `count` lists that start at first[i] in an array of total elements have from least to most
+   elements each. */
+static int are_lists(const uint32_t *first, uint64_t count, uint32_t total, uint32_t least,
+                     uint32_t most)
+{
+    uint32_t bad = 0;
+    uint64_t i;
+    for (i = 0; i < count; i++) {
+        uint32_t length = first[i + 1] - first[i];
+        bad |= (first[i + 1] < first[i]) | (length < least) | (length > most);
+    }
+    return !bad && first[0] == 0 && first[count] == total;
+}
+
+/* Every point has one vertex to be stored from: no position is left from another pose. */
+static int check_slots(const sc_model *m, uint8_t *seen)
+{
+    const uint32_t *slot = sc_model_slot(m);
+    uint32_t v, stored = 0;
+    memset(seen, 0, m->point_count);
+    for (v = 0; v < m->vertex_count; v++) {
+        if (slot[v] == SC_SLOT_UNUSED || slot[v] == SC_SLOT_WELDED) continue;
+        if (slot[v] >= m->point_count || seen[slot[v]]) return 0;
+        seen[slot[v]] = 1;
+        stored++;
+    }
+    return stored == m->point_count;
+}
+
+/* Every triangle of the caller's once. */
+static int check_ids(const sc_model *m, uint8_t *seen)
+{
+    const uint32_t *id = sc_model_triangle_id(m);
+    uint32_t t;
+    memset(seen, 0, m->triangle_count);
+    for (t = 0; t < m->triangle_count; t++) {
+        if (id[t] >= m->triangle_count || seen[id[t]]) return 0;
+        seen[id[t]] = 1;
+    }
+    return 1;
+}
+
+/* Each level has a patch or more, and the number behind them; the first has one, the last all leaves. */
+static int check_levels(const sc_model *m)
+{
+    const uint32_t *first = sc_model_level_first(m);
+    uint32_t last = m->level_count - 1;
+    return are_lists(first, m->level_count, m->patch_end, 2, SC_NONE) && first[1] == 2 &&
+           first[last + 1] - first[last] - 1 == m->leaf_count;
+}
+
+/* See build/xbvh.h: children are one or two, consecutive, and cover the next level. */
+static int check_child(const sc_model *m)
+{
+    const uint32_t *first = sc_model_level_first(m), *child = sc_model_child(m);
+    uint32_t level, p;
+    for (level = 0; level < m->level_count; level++) {
+        uint32_t begin = first[level], end = first[level + 1] - 1, bad = 0;
+        if (level + 1 == m->level_count) {
+            for (p = begin; p <= end; p++) bad |= child[p] != p;
+        } else {
+            bad = (child[begin] != end + 1) | (child[end] != first[level + 2] - 1);
+            for (p = begin; p < end; p++)
+                bad |= (child[p + 1] <= child[p]) | (child[p + 1] - child[p] > 2);
+        }
+        if (bad) return 0;
+    }
+    return 1;
+}
+
+/* The leaves of a patch are those of its children. */
+static int check_leaf(const sc_model *m)
+{
+    const uint32_t *first = sc_model_level_first(m), *child = sc_model_child(m);
+    const uint32_t *leaf = sc_model_leaf(m);
+    uint32_t level, p;
+    for (level = m->level_count; level-- > 0;) {
+        uint32_t begin = first[level], end = first[level + 1] - 1, bad = 0;
+        if (level + 1 == m->level_count)
+            for (p = begin; p <= end; p++) bad |= leaf[p] != p - begin;
+        else
+            for (p = begin; p <= end; p++) bad |= leaf[p] != leaf[child[p]];
+        if (bad) return 0;
+    }
+    return 1;
+}
+
+static int check_hop(const sc_model *m)
+{
+    const uint32_t *first = sc_model_level_first(m), *child = sc_model_child(m);
+    const uint32_t *hop = sc_model_hop(m);
+    uint32_t level, p, step;
+    for (level = 0; level < m->level_count; level++) {
+        uint32_t steps = sc_model_hop_steps(m->level_count, level);
+        for (p = first[level]; p < first[level + 1]; p++) {
+            uint32_t to = p;
+            for (step = 0; step < steps; step++) to = child[to];
+            if (hop[p] != to) return 0;
+        }
+    }
+    return 1;
+}
+
+/* The pairs that a node has to have among its children, one after the other. */
+typedef struct node_walk {
+    const sc_pair *nodes, *boxes;
+    uint32_t node_count, box_count;
+    uint32_t node, box; /* taken so far */
+} node_walk;
+
+static int take(node_walk *walk, uint32_t a, uint32_t b)
+{
+    const sc_pair *node = walk->nodes + walk->node, *box = walk->boxes + walk->box;
+    if (walk->node < walk->node_count && node->a == a && node->b == b)
+        walk->node++;
+    else if (a != b && walk->box < walk->box_count && box->a == a && box->b == b)
+        walk->box++;
+    else
+        return 0;
+    return 1;
+}
+
+static int take_children(const sc_model *m, node_walk *walk, uint32_t a, uint32_t b)
+{
+    const uint32_t *child = sc_model_child(m);
+    uint32_t c, d;
+    if (sc_model_is_leaf(m, a) && sc_model_is_leaf(m, b)) return 1;
+    for (c = child[a]; a == b && c < child[a + 1]; c++)
+        if (!take(walk, c, c)) return 0;
+    for (c = child[a]; c < child[a + 1]; c++)
+        for (d = a == b ? c + 1 : child[b]; d < child[b + 1]; d++)
+            if (!take(walk, c, d)) return 0;
+    return 1;
+}
+
+/*
+ * The self-collision test tree (build/sctt.h). Node 0 is the mesh against itself, and the children of
+ * each node are all pairs of children of its patches, each once, be it as a node or for boxes. So nodes
+ * are of patches of one level, no deeper than the hierarchy.
+ */
+static const char *check_nodes(const sc_model *m)
+{
+    const sc_pair *patches = sc_model_node_patches(m);
+    const uint32_t *child = sc_model_node_child(m), *boxes = sc_model_node_boxes(m);
+    const sc_level *info = sc_model_level_info(m);
+    node_walk walk;
+    uint32_t n, level, level_end, selves;
+    memset(&walk, 0, sizeof walk);
+    walk.nodes = patches;
+    walk.boxes = sc_model_boxes(m);
+    walk.node_count = m->node_count;
+    walk.box_count = m->box_count;
+    walk.node = 1;
+    if (patches[0].a != 0 || patches[0].b != 0) return "node_patches";
+    for (n = 0, level = 0; level < m->level_count; level++) {
+        uint32_t begin = n;
+        for (level_end = walk.node, selves = 0; n < level_end; n++) {
+            if (child[n] != walk.node) return "node_child";
+            if (boxes[n] != walk.box) return "node_boxes";
+            if (!take_children(m, &walk, patches[n].a, patches[n].b)) return "node_patches";
+            selves += patches[n].a == patches[n].b;
+        }
+        if (info[level].patch_count != sc_model_patches(m, level) ||
+            info[level].connected_patches > info[level].patch_count ||
+            info[level].self_nodes != selves || info[level].pair_nodes != n - begin - selves)
+            return "level_info";
+    }
+    if (walk.node != m->node_count || child[n] != n) return "node_child";
+    return walk.box != m->box_count || boxes[n] != walk.box ? "node_boxes" : NULL;
+}
+
+/* The triangles of a patch. */
+static uint32_t patch_size(const sc_model *m, uint32_t patch)
+{
+    const uint32_t *leaf = sc_model_leaf(m), *first = sc_model_leaf_first(m);
+    return first[leaf[patch + 1]] - first[leaf[patch]];
+}
+
+/* A workspace has room for the points round a node, of which contour_max is exactly the most. No node has
+   more edges than its triangles have sides: so a test is no slower than for any mesh. */
+static int check_contours(const sc_model *m)
+{
+    const uint32_t *begin = sc_model_segment_first(m), *end = sc_model_segment_last(m);
+    const uint32_t *first = sc_model_node_contour(m), *contours = sc_model_contours(m);
+    const sc_pair *patches = sc_model_node_patches(m);
+    const uint8_t *kind = sc_model_node_kind(m);
+    uint64_t most = 0;
+    uint32_t n, i;
+    for (n = 0; n < m->node_count; n++) {
+        uint64_t edges = 0, listed;
+        i = first[n];
+        if (kind[n] & SC_NODE_TOUCHES) {
+            if (first[n + 1] - i < 2 || contours[i] >= m->point_count ||
+                contours[i + 1] > first[n + 1] - i - 2)
+                return 0;
+            i += 2;
+        }
+        for (listed = first[n + 1] - i; i < first[n + 1]; i++) {
+            if (contours[i] >= m->segment_count) return 0;
+            edges += end[contours[i]] - begin[contours[i]];
+        }
+        listed += edges;
+        if (listed > most) most = listed;
+        if (edges > 3 * ((uint64_t)patch_size(m, patches[n].a) + patch_size(m, patches[n].b)))
+            return 0;
+    }
+    return most == m->contour_max;
+}
+
+/* The points of each segment. */
+static int check_segments(const sc_model *m)
+{
+    const uint32_t *first = sc_model_segment_first(m), *last = sc_model_segment_last(m);
+    uint32_t s, bad = 0;
+    for (s = 0; s < m->segment_count; s++)
+        bad |= (first[s] >= last[s]) | (last[s] >= m->segment_point_total);
+    return !bad;
+}
+
+/* The contour segment forest (build/csf.h): children have lower numbers, one parent at most, and are
+   nowhere deeper than the hierarchy, and their points are those of the parent, in order. */
+static int check_children(const sc_model *m, uint8_t *depth)
+{
+    const uint32_t *begin = sc_model_segment_first(m), *end = sc_model_segment_last(m);
+    const uint32_t *first = sc_model_segment_children(m), *children = sc_model_children(m);
+    uint32_t s, i;
+    memset(depth, 1, m->leaf_segment_count);
+    for (s = m->leaf_segment_count; s < m->segment_count; s++, first++) {
+        uint32_t deepest = 0, at = begin[s];
+        for (i = first[0]; i < first[1]; i++) {
+            uint32_t child = children[i];
+            if (child >= s || depth[child] == 0 || begin[child] != at) return 0;
+            at = end[child];
+            if (depth[child] > deepest) deepest = depth[child];
+            depth[child] = 0; /* has a parent */
+        }
+        if (at != end[s] || deepest >= m->level_count) return 0;
+        depth[s] = (uint8_t)(deepest + 1);
+    }
+    return 1;
+}
+
+/* Which clusters a cluster shares points with (build/sharing.h): higher ones, ascending, and no more than a
+   cluster can have, as a query looks through them. */
+static int check_share_leaf(const sc_model *m)
+{
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    uint32_t leaf, i, bad = 0;
+    for (leaf = 0; leaf < m->leaf_count; leaf++) {
+        uint32_t last = leaf;
+        for (i = first[leaf]; i < first[leaf + 1]; i++) {
+            bad |= (other[i] <= last) | (other[i] >= m->leaf_count);
+            last = other[i];
+        }
+    }
+    return !bad;
+}
+
+static const char *check_arrays(const sc_model *m, uint8_t *bytes)
+{
+    const char *wrong;
+    uint32_t points = m->point_count, count = m->triangle_count;
+#define CHECK(name, condition)                                                                     \
+  if (!(condition)) return #name
+    CHECK(slot, check_slots(m, bytes));
+    CHECK(triangle, all_below(sc_model_triangle(m), 3 * (uint64_t)count, points));
+    CHECK(triangle_id, check_ids(m, bytes));
+    CHECK(edge_owned, bytes_below(sc_model_edge_owned(m), count, 8));
+    CHECK(leaf_first, are_lists(sc_model_leaf_first(m), m->leaf_count, count, 1, SC_LEAF_MAX));
+    CHECK(level_first, check_levels(m));
+    CHECK(child, check_child(m));
+    CHECK(leaf, check_leaf(m));
+    CHECK(hop, check_hop(m));
+    CHECK(ring_first, are_lists(sc_model_ring_first(m), points, m->ring_total, 0, SC_NONE));
+    CHECK(ring, all_below(sc_model_ring(m), m->ring_total, points));
+    CHECK(share_first, are_lists(sc_model_share_first(m), m->leaf_count, m->share_count, 0,
+                                 3 * SC_LEAF_MAX * SC_SHARING_CROWD));
+    CHECK(share_leaf, check_share_leaf(m));
+    CHECK(share_crowded, bytes_below(sc_model_share_crowded(m), m->leaf_count, 2));
+    wrong = check_nodes(m);
+    if (wrong) return wrong;
+    CHECK(node_flags, bytes_below(sc_model_node_flags(m), m->node_count, 4));
+    CHECK(node_kind, bytes_below(sc_model_node_kind(m), m->node_count, 4));
+    CHECK(node_contour,
+          are_lists(sc_model_node_contour(m), m->node_count, m->contour_total, 0, SC_NONE));
+    CHECK(segment_first, check_segments(m));
+    CHECK(contours, check_contours(m));
+    CHECK(points, all_below(sc_model_points(m), m->segment_point_total, points));
+    CHECK(segment_children,
+          are_lists(sc_model_segment_children(m), m->segment_count - m->leaf_segment_count,
+                    m->segment_child_total, 2, SC_NONE));
+    CHECK(children, check_children(m, bytes));
+#undef CHECK
+    return NULL;
+}
+
+sc_status sc_model_check(const sc_model *m, sc_scratch *scratch, const char **wrong)
+{
+    uint32_t most = m->triangle_count;
+    uint8_t *bytes;
+    if (m->point_count > most) most = m->point_count;
+    if (m->segment_count > most) most = m->segment_count;
+    bytes = (uint8_t *)sc_scratch_take(scratch, most, 1);
+    if (!bytes) return SC_ERROR_MEMORY;
+    *wrong = check_arrays(m, bytes);
+    sc_scratch_give(scratch, bytes);
+    return *wrong ? SC_ERROR_INCONSISTENT : SC_OK;
+}
