@@ -8,6 +8,7 @@
  */
 #include "mesh_edges.h"
 #include "mesh_file.h"
+#include "model_file.h"
 #include "ply_write.h"
 #include "shape.h"
 #include "tool.h"
@@ -38,6 +39,9 @@ static const char usage[] =
     "  contour segments\n"
     "\n"
     "  --partition fast|metis  where the patches come from\n"
+    "  -o, --output FILE       write the model, for sc-query --model or sc_model_load: with it no "
+    "mesh\n"
+    "                          has to be built, nor METIS be there, where queries run\n"
     "  --ply FILE --level L    write the mesh with one colour for each patch of level L\n"
     "  --json                  one JSON object in place of the tables\n"
     "  --grid N                in place of a file: a flat cloth of N x N cells, 2 N^2 triangles\n"
@@ -53,7 +57,7 @@ typedef struct partition_settings {
     uint32_t grid;  /* 0: read a file */
     uint32_t level; /* for the picture */
     bool has_level, json, scaling;
-    const char *ply_path;
+    const char *ply_path, *output_path;
 } partition_settings;
 
 /* The shape of a level's patches. */
@@ -367,11 +371,26 @@ static bool write_picture(partition_view *view, const partition_settings *set)
     return written;
 }
 
-/* The whole job for one mesh, whose vertices are joined. */
-static bool show_mesh(const mesh_file *mesh, const char *name, const partition_settings *set)
+static bool write_model(const partition_view *view, const char *path)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    const bool written = model_file_write(path, view->model, view->mesh, error);
+    if (!written) tool_error("%s", error);
+    return written;
+}
+
+/* The whole job for one mesh. It is built and saved as it was read, so that poses fit; then its vertices
+   are joined, so that its edges are those of the model. */
+static bool show_mesh(mesh_file *mesh, const char *name, const partition_settings *set)
 {
     partition_view view;
-    bool done = view_open(&view, mesh, set->partition, name) && view_prepare(&view);
+    bool done = view_open(&view, mesh, set->partition, name);
+    if (done && set->output_path) done = write_model(&view, set->output_path);
+    if (done && !mesh_file_join(mesh)) {
+        tool_error("%s: out of memory", name);
+        done = false;
+    }
+    if (done) done = view_prepare(&view);
     if (done && set->json) {
         cJSON *object = json_totals(&view, name, set);
         done = show_levels(&view, cJSON_AddArrayToObject(object, "hierarchy"));
@@ -436,8 +455,8 @@ static bool run(const partition_settings *set, char **paths, int path_count)
         reason = "one MESH, --grid or --scaling at a time";
     else if (set->has_level != (set->ply_path != NULL))
         reason = "--ply and --level go together";
-    else if (set->ply_path && set->scaling)
-        reason = "--scaling draws nothing";
+    else if ((set->ply_path || set->output_path) && set->scaling)
+        reason = "--scaling writes no file";
     if (reason) {
         tool_error("%s; see sc-partition --help", reason);
         return false;
@@ -454,12 +473,7 @@ static bool run(const partition_settings *set, char **paths, int path_count)
         if (!done) tool_error("%s: out of memory", name);
     } else {
         done = mesh_file_read(&mesh, paths[0], error);
-        if (!done) {
-            tool_error("%s", error);
-        } else if (!mesh_file_join(&mesh)) {
-            tool_error("%s: out of memory", paths[0]);
-            done = false;
-        }
+        if (!done) tool_error("%s", error);
     }
     if (done) done = show_mesh(&mesh, set->grid ? name : paths[0], set);
     mesh_file_free(&mesh);
@@ -472,7 +486,8 @@ int main(int argc, char **argv)
         OPTION_PARTITION = 256,
         OPTION_PLY,
         OPTION_LEVEL,
-        OPTION_JSON,
+        OPTION_OUTPUT = 'o',
+        OPTION_JSON = OPTION_LEVEL + 1,
         OPTION_GRID,
         OPTION_SCALING,
         OPTION_VERSION,
@@ -482,6 +497,7 @@ int main(int argc, char **argv)
         {"partition", required_argument, NULL, OPTION_PARTITION},
         {"ply", required_argument, NULL, OPTION_PLY},
         {"level", required_argument, NULL, OPTION_LEVEL},
+        {"output", required_argument, NULL, OPTION_OUTPUT},
         {"json", no_argument, NULL, OPTION_JSON},
         {"grid", required_argument, NULL, OPTION_GRID},
         {"scaling", no_argument, NULL, OPTION_SCALING},
@@ -494,7 +510,7 @@ int main(int argc, char **argv)
     memset(&set, 0, sizeof set);
     bool valid = true;
     int option;
-    while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
+    while ((option = getopt_long(argc, argv, "o:", options, NULL)) != -1) {
         switch (option) {
         case OPTION_PARTITION:
             valid &= tool_choose("--partition", optarg, tool_partitions, &set.partition);
@@ -505,6 +521,9 @@ int main(int argc, char **argv)
         case OPTION_LEVEL:
             valid &= tool_parse_number("--level", optarg, 0, 64, &set.level);
             set.has_level = true;
+            break;
+        case OPTION_OUTPUT:
+            set.output_path = optarg;
             break;
         case OPTION_JSON:
             set.json = true;

@@ -3,11 +3,12 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Each file is a mesh of its own, or, with --rest, a pose of one mesh that is built once. A file that
- * cannot be done is reported and the others are still done. See usage below, and sc_query in
+ * Each file is a mesh of its own, or a pose of one mesh that is built once (--rest) or was built before
+ * (--model). A file that cannot be done is reported and the others are still done. See usage below, and sc_query in
  * starcontour.h for what a pair is.
  */
 #include "mesh_file.h"
+#include "model_file.h"
 #include "ply_write.h"
 #include "tool.h"
 
@@ -44,12 +45,18 @@ static const char usage[] =
     "face\n"
     "  --rest MESH                 build once from MESH; the files are poses of it, with the same\n"
     "                              vertices and faces in the same order\n"
+    "  --model FILE                the same, with the model that sc-partition -o wrote\n"
+    "  --replay FILE               in place of meshes: the query that --record wrote, with its "
+    "options\n"
     "Output\n"
     "  --json                      a JSON object a line for each file, in place of the table\n"
     "  --out FILE                  write the pairs as comma-separated values. An edge is a number\n"
     "                              3 t + k: from vertex k to vertex k + 1 (mod 3) of triangle t\n"
     "  --ply FILE                  write the mesh with colliding triangles in red; one MESH only\n"
     "  --stats                     time and count of the nine tasks of the query\n"
+    "  --record FILE               write the query, with model, pose and options, to report a bug; "
+    "one\n"
+    "                              MESH only\n"
     "How it is sought (the answer is the same, but for --contour none)\n"
     "  --method sctt|aabb-sctt|aabb  self-collision test tree (default), boxes from that tree on, "
     "or\n"
@@ -89,7 +96,8 @@ typedef struct settings {
     uint32_t pairs; /* a value of pair_choices */
     uint32_t method, contour, partition, weld;
     bool proper, any, json, stats, no_rest_cache;
-    const char *rest_path, *out_path, *ply_path;
+    bool is_asked, is_built; /* some option said what to ask or how, or how to build */
+    const char *rest_path, *out_path, *ply_path, *model_path, *record_path, *replay_path;
 } settings;
 
 /* What there is to know about one file. Index SC_PAIRS_TRIANGLE and SC_PAIRS_EDGE. */
@@ -104,10 +112,11 @@ typedef struct file_answer {
     sc_stats stats;
 } file_answer;
 
-/* A model with its workspace and the mesh it was built from. */
+/* A model with its workspace, and the mesh it was built from or for the pose of which it is asked. */
 typedef struct query_subject {
     mesh_file mesh;
-    uint32_t *weld_map; /* with --rest, unless nothing is welded */
+    model_file file;    /* with --model: owns the model */
+    uint32_t *weld_map; /* with --rest and --model, unless nothing is welded or known */
     sc_model *model;
     sc_workspace *workspace;
     double build_ms;
@@ -133,9 +142,12 @@ static bool wants_list(const settings *set)
 static void subject_free(query_subject *subject)
 {
     sc_workspace_free(subject->workspace);
-    sc_model_free(subject->model);
+    if (!subject->file.model) {
+        sc_model_free(subject->model);
+        free(subject->weld_map);
+    }
+    model_file_free(&subject->file);
     mesh_file_free(&subject->mesh);
-    free(subject->weld_map);
     memset(subject, 0, sizeof *subject);
 }
 
@@ -158,13 +170,52 @@ static bool subject_load(query_subject *subject, const char *path, const setting
     return false;
 }
 
+/* Takes a model that was saved; the mesh stays empty. */
+static bool subject_open(query_subject *subject, const char *path, char error[MESH_FILE_ERROR_SIZE])
+{
+    memset(subject, 0, sizeof *subject);
+    const double start = tool_clock();
+    if (!model_file_read(&subject->file, path, error)) return false;
+    subject->build_ms = tool_clock() - start;
+    subject->model = subject->file.model;
+    subject->weld_map = subject->file.weld_map;
+    const sc_status status = sc_workspace_create(subject->model, NULL, &subject->workspace);
+    if (status == SC_OK) return true;
+    snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
+    subject_free(subject);
+    return false;
+}
+
+/* Whether a mesh can be a pose of a saved model. */
+static bool check_fit(const query_subject *subject, const char *path, const mesh_file *mesh,
+                      char error[MESH_FILE_ERROR_SIZE])
+{
+    sc_model_info info;
+    memset(&info, 0, sizeof info);
+    info.struct_size = sizeof info;
+    if (sc_model_get_info(subject->model, &info) != SC_OK) return false;
+    if (mesh->vertex_count != info.vertex_count || mesh->triangle_count != info.triangle_count) {
+        snprintf(error, MESH_FILE_ERROR_SIZE,
+                 "%s: has %lu vertices and %lu triangles, the model %lu and %lu", path,
+                 (unsigned long)mesh->vertex_count, (unsigned long)mesh->triangle_count,
+                 (unsigned long)info.vertex_count, (unsigned long)info.triangle_count);
+        return false;
+    }
+    if (subject->file.face_hash && mesh->face_hash != subject->file.face_hash) {
+        snprintf(error, MESH_FILE_ERROR_SIZE,
+                 "%s: faces differ from those of the mesh that the model was built from", path);
+        return false;
+    }
+    return true;
+}
+
 /* Welded vertices that a pose takes apart would be read from one of them only: refuse that. */
-static bool check_welds(const query_subject *subject, const char *path, const float *positions,
-                        char error[MESH_FILE_ERROR_SIZE])
+static bool check_welds(const query_subject *subject, const mesh_file *mesh, const char *path,
+                        const float *positions, char error[MESH_FILE_ERROR_SIZE])
 {
     if (!subject->weld_map) return true;
-    for (size_t c = 0; c < 3 * (size_t)subject->mesh.triangle_count; c++) {
-        const uint32_t vertex = subject->mesh.indices[c], joined = subject->weld_map[vertex];
+    for (size_t c = 0; c < 3 * (size_t)mesh->triangle_count; c++) {
+        const uint32_t vertex = mesh->indices[c], joined = subject->weld_map[vertex];
         const float *a = positions + 3 * (size_t)vertex, *b = positions + 3 * (size_t)joined;
         if (vertex == joined || (a[0] == b[0] && a[1] == b[1] && a[2] == b[2])) continue;
         snprintf(error, MESH_FILE_ERROR_SIZE,
@@ -176,11 +227,9 @@ static bool check_welds(const query_subject *subject, const char *path, const fl
     return true;
 }
 
-/* One query of one kind of pair. With list the pairs are kept, else only counted. */
-static sc_status run_query(const query_subject *subject, const float *positions,
-                           const settings *set, uint32_t kind, pair_list *list, file_answer *answer)
+/* What to ask for one kind of pair. With list the pairs are wanted, else only their number. */
+static sc_query_options make_options(const settings *set, uint32_t kind, bool list)
 {
-    const sc_pose pose = tool_pose(positions, subject->mesh.vertex_count);
     sc_query_options options;
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
@@ -190,7 +239,14 @@ static sc_status run_query(const query_subject *subject, const float *positions,
     options.method = set->method;
     options.contour = set->method == SC_METHOD_SCTT ? set->contour : SC_CONTOUR_DEFAULT;
     options.rest_cache = set->no_rest_cache ? SC_REST_CACHE_OFF : SC_REST_CACHE_ON;
+    return options;
+}
 
+/* One query of one kind of pair. With list the pairs are kept, else only counted. */
+static sc_status run_query(const query_subject *subject, const sc_pose *pose, const settings *set,
+                           uint32_t kind, pair_list *list, file_answer *answer)
+{
+    const sc_query_options options = make_options(set, kind, list != NULL);
     sc_result result;
     memset(&result, 0, sizeof result);
     result.struct_size = sizeof result;
@@ -206,7 +262,7 @@ static sc_status run_query(const query_subject *subject, const float *positions,
         }
         const double start = tool_clock();
         const sc_status status =
-            sc_query(subject->model, subject->workspace, &pose, &options, &result);
+            sc_query(subject->model, subject->workspace, pose, &options, &result);
         answer->query_ms[kind] = tool_clock() - start;
         answer->counts[kind] = result.count;
         answer->known[kind] = status == SC_OK;
@@ -220,8 +276,32 @@ static sc_status run_query(const query_subject *subject, const float *positions,
     }
 }
 
+/* Writes the query that decides to a file. */
+static bool write_record(const query_subject *subject, const sc_pose *pose, const settings *set)
+{
+    const sc_query_options options = make_options(set, chosen_pairs(set), wants_list(set));
+    char error[MESH_FILE_ERROR_SIZE];
+    uint64_t size = 0;
+    void *bytes = NULL;
+    sc_status status = sc_record_size(subject->model, pose, &options, &size);
+    if (status == SC_OK) {
+        bytes = size <= SIZE_MAX ? malloc((size_t)size) : NULL;
+        status = bytes ? sc_record_write(subject->model, pose, &options, bytes, size, NULL)
+                       : SC_ERROR_MEMORY;
+    }
+    bool written = status == SC_OK;
+    if (!written)
+        tool_error("%s: %s", set->record_path, sc_status_string(status));
+    else if (!model_file_dump(set->record_path, bytes, size, error)) {
+        tool_error("%s", error);
+        written = false;
+    }
+    free(bytes);
+    return written;
+}
+
 /* All queries of one pose. */
-static bool run_pose(const query_subject *subject, const char *path, const float *positions,
+static bool run_pose(const query_subject *subject, const char *path, const sc_pose *pose,
                      const settings *set, pair_list *list, file_answer *answer,
                      char error[MESH_FILE_ERROR_SIZE])
 {
@@ -233,7 +313,7 @@ static bool run_pose(const query_subject *subject, const char *path, const float
     for (uint32_t kind = 0; kind < 2 && status == SC_OK; kind++) {
         if (set->any && kind != chosen) continue;
         pair_list *const kept = kind == chosen && wants_list(set) ? list : NULL;
-        status = run_query(subject, positions, set, kind, kept, answer);
+        status = run_query(subject, pose, set, kind, kept, answer);
     }
     answer->collides = answer->counts[chosen] > 0;
     if (status != SC_OK) {
@@ -242,10 +322,10 @@ static bool run_pose(const query_subject *subject, const char *path, const float
     return status == SC_OK;
 }
 
-static bool write_ply(const query_subject *subject, const float *positions, const settings *set,
+static bool write_ply(const mesh_file *mesh, const float *positions, const settings *set,
                       const pair_list *list)
 {
-    const uint32_t count = subject->mesh.triangle_count;
+    const uint32_t count = mesh->triangle_count;
     uint8_t *colors = (uint8_t *)malloc(3 * (size_t)count);
     if (!colors) {
         tool_error("%s: out of memory", set->ply_path);
@@ -260,8 +340,8 @@ static bool write_ply(const query_subject *subject, const float *positions, cons
         memcpy(colors + 3 * (size_t)pair.b, red, 3);
     }
     errno = 0;
-    const bool written = ply_write(set->ply_path, positions, subject->mesh.vertex_count,
-                                   subject->mesh.indices, count, colors);
+    const bool written =
+        ply_write(set->ply_path, positions, mesh->vertex_count, mesh->indices, count, colors);
     if (!written) tool_error("%s: cannot be written: %s", set->ply_path, strerror(errno));
     free(colors);
     return written;
@@ -280,6 +360,12 @@ static void write_field(FILE *out, const char *text)
         fputc(*text, out);
     }
     fputc('"', out);
+}
+
+static void write_pairs_head(FILE *out, const settings *set)
+{
+    const bool edges = chosen_pairs(set) == SC_PAIRS_EDGE;
+    fputs(edges ? "file,edge,triangle\n" : "file,triangle_a,triangle_b\n", out);
 }
 
 static void write_pairs(FILE *out, const char *path, const pair_list *list)
@@ -364,8 +450,14 @@ static bool print_json_answer(const file_answer *answer, const settings *set)
     cJSON_AddStringToObject(object, "pairs", tool_choice_name(pair_choices, set->pairs));
     cJSON_AddBoolToObject(object, "proper", set->proper);
     cJSON_AddBoolToObject(object, "any", set->any);
-    cJSON_AddStringToObject(object, "weld", tool_choice_name(tool_welds, set->weld));
-    cJSON_AddStringToObject(object, "partition", tool_choice_name(tool_partitions, set->partition));
+    if (set->model_path || set->replay_path) { /* they are the model's */
+        cJSON_AddNullToObject(object, "weld");
+        cJSON_AddNullToObject(object, "partition");
+    } else {
+        cJSON_AddStringToObject(object, "weld", tool_choice_name(tool_welds, set->weld));
+        cJSON_AddStringToObject(object, "partition",
+                                tool_choice_name(tool_partitions, set->partition));
+    }
     cJSON_AddStringToObject(object, "method", tool_choice_name(method_choices, set->method));
     if (set->method == SC_METHOD_SCTT) {
         cJSON_AddStringToObject(object, "contour", tool_choice_name(contour_choices, set->contour));
@@ -374,6 +466,7 @@ static bool print_json_answer(const file_answer *answer, const settings *set)
     }
     cJSON_AddBoolToObject(object, "rest_cache", !set->no_rest_cache);
     if (set->rest_path) cJSON_AddStringToObject(object, "rest", set->rest_path);
+    if (set->model_path) cJSON_AddStringToObject(object, "model", set->model_path);
     if (set->stats) add_stats(cJSON_AddObjectToObject(object, "stats"), &answer->stats);
     return print_json(object);
 }
@@ -423,7 +516,27 @@ static void print_table_row(const file_answer *answer, const settings *set)
            (double)stats->leaf_pairs, (double)stats->exact_fallbacks);
 }
 
-/* Does one file. rest is the common subject of --rest, or NULL. Returns an exit status. */
+/* Prints what came of a query, to be followed by the exit status. */
+static int report(const file_answer *answer, const settings *set, bool done, const char *error,
+                  FILE *out, const pair_list *list)
+{
+    bool written = true;
+    if (!done) {
+        tool_error("%s", error);
+        if (set->json) print_json_error(answer->path, error);
+    } else {
+        if (set->json)
+            written = print_json_answer(answer, set);
+        else
+            print_table_row(answer, set);
+        if (out) write_pairs(out, answer->path, list);
+    }
+    fflush(stdout);
+    if (!done || !written) return TOOL_FAILED;
+    return answer->collides ? TOOL_COLLIDES : TOOL_CLEAN;
+}
+
+/* Does one file. rest is the common subject of --rest or --model, or NULL. Returns an exit status. */
 static int do_file(const char *path, const settings *set, const query_subject *rest,
                    float *pose_positions, FILE *out, pair_list *list)
 {
@@ -435,36 +548,93 @@ static int do_file(const char *path, const settings *set, const query_subject *r
     answer.path = path;
 
     const query_subject *subject = rest ? rest : &own;
+    const mesh_file *mesh = set->rest_path ? &rest->mesh : &own.mesh;
     const float *positions = pose_positions;
     bool done;
-    if (rest) {
+    if (set->rest_path) {
         done = mesh_file_read_pose(&rest->mesh, path, pose_positions, error) &&
-               check_welds(rest, path, pose_positions, error);
+               check_welds(rest, mesh, path, pose_positions, error);
+    } else if (rest) {
+        done = mesh_file_read(&own.mesh, path, error) && check_fit(rest, path, mesh, error) &&
+               check_welds(rest, mesh, path, mesh->positions, error);
+        positions = mesh->positions;
     } else {
         done = subject_load(&own, path, set, error);
         positions = own.mesh.positions;
     }
-    if (done) done = run_pose(subject, path, positions, set, list, &answer, error);
-
-    bool written = true;
-    if (!done) {
-        tool_error("%s", error);
-        if (set->json) print_json_error(path, error);
-    } else {
-        if (set->json)
-            written = print_json_answer(&answer, set);
-        else
-            print_table_row(&answer, set);
-        if (out) write_pairs(out, path, list);
-        if (set->ply_path) written = write_ply(subject, positions, set, list) && written;
-    }
-    fflush(stdout);
+    const sc_pose pose = tool_pose(positions, mesh->vertex_count);
+    const bool recorded = !done || !set->record_path || write_record(subject, &pose, set);
+    if (done) done = run_pose(subject, path, &pose, set, list, &answer, error);
+    int status = report(&answer, set, done, error, out, list);
+    if (!recorded) status = TOOL_FAILED;
+    if (done && set->ply_path && !write_ply(mesh, positions, set, list)) status = TOOL_FAILED;
     subject_free(&own);
-    if (!done || !written) return TOOL_FAILED;
-    return answer.collides ? TOOL_COLLIDES : TOOL_CLEAN;
+    return status;
 }
 
-static int do_files(char **paths, int path_count, const settings *set)
+/* Sets what a record asks for. */
+static bool use_options(settings *set, const sc_query_options *options)
+{
+    set->pairs = options->pairs;
+    set->proper = options->contact == SC_CONTACT_PROPER;
+    set->any = options->output == SC_OUTPUT_ANY;
+    if (options->method != SC_METHOD_DEFAULT) set->method = options->method;
+    if (options->contour != SC_CONTOUR_DEFAULT) set->contour = options->contour;
+    set->no_rest_cache = options->rest_cache == SC_REST_CACHE_OFF;
+    return options->output <= SC_OUTPUT_ANY && options->pairs <= SC_PAIRS_EDGE &&
+           options->contact <= SC_CONTACT_PROPER && options->rest_cache <= SC_REST_CACHE_OFF;
+}
+
+/* Asks the query of --replay again. */
+static int do_replay(settings *set, FILE *out, pair_list *list)
+{
+    char error[MESH_FILE_ERROR_SIZE], reason[256] = "";
+    uint64_t size;
+    file_answer answer;
+    query_subject subject;
+    sc_query_options options;
+    sc_record record;
+    sc_pose pose;
+    memset(&answer, 0, sizeof answer);
+    memset(&subject, 0, sizeof subject);
+    memset(&pose, 0, sizeof pose);
+    memset(&options, 0, sizeof options);
+    memset(&record, 0, sizeof record);
+    pose.struct_size = sizeof pose;
+    options.struct_size = sizeof options;
+    record.struct_size = sizeof record;
+    record.pose = &pose;
+    record.options = &options;
+    answer.path = set->replay_path;
+    void *bytes = model_file_bytes(set->replay_path, &size, error);
+    bool done = bytes != NULL;
+    if (done) {
+        sc_status status = sc_record_read(bytes, size, &record);
+        if (status == SC_OK && !use_options(set, &options)) status = SC_ERROR_OPTION;
+        if (status == SC_OK && wants_list(set) && set->any) {
+            status = SC_ERROR_OPTION;
+            snprintf(reason, sizeof reason, "the record asks for no list");
+        }
+        const double start = tool_clock();
+        if (status == SC_OK)
+            status = model_file_load(record.model, record.model_size, &subject.model, reason);
+        subject.build_ms = tool_clock() - start;
+        if (status == SC_OK) status = sc_workspace_create(subject.model, NULL, &subject.workspace);
+        done = status == SC_OK;
+        if (!done) {
+            snprintf(error, sizeof error, "%s: %s%s%s", set->replay_path, sc_status_string(status),
+                     reason[0] ? ": " : "", reason);
+        }
+    }
+    if (done && out) write_pairs_head(out, set);
+    if (done) done = run_pose(&subject, set->replay_path, &pose, set, list, &answer, error);
+    const int status = report(&answer, set, done, error, out, list);
+    subject_free(&subject);
+    free(bytes);
+    return status;
+}
+
+static int do_files(char **paths, int path_count, settings *set)
 {
     query_subject rest;
     memset(&rest, 0, sizeof rest);
@@ -484,23 +654,28 @@ static int do_files(char **paths, int path_count, const settings *set)
             tool_error("%s: out of memory", set->rest_path);
             status = TOOL_FAILED;
         }
+    } else if (set->model_path) {
+        char error[MESH_FILE_ERROR_SIZE];
+        if (!subject_open(&rest, set->model_path, error)) {
+            tool_error("%s", error);
+            return TOOL_FAILED;
+        }
     }
     if (status == TOOL_CLEAN && set->out_path) {
         out = fopen(set->out_path, "w");
         if (!out) {
             tool_error("%s: cannot be written: %s", set->out_path, strerror(errno));
             status = TOOL_FAILED;
-        } else {
-            fputs(chosen_pairs(set) == SC_PAIRS_EDGE ? "file,edge,triangle\n"
-                                                     : "file,triangle_a,triangle_b\n",
-                  out);
+        } else if (!set->replay_path) {
+            write_pairs_head(out, set);
         }
     }
     if (status == TOOL_CLEAN) {
+        const query_subject *common = set->rest_path || set->model_path ? &rest : NULL;
         if (!set->json) print_table_head(set);
+        if (set->replay_path) status = do_replay(set, out, &list);
         for (int i = 0; i < path_count; i++) {
-            const int done =
-                do_file(paths[i], set, set->rest_path ? &rest : NULL, pose_positions, out, &list);
+            const int done = do_file(paths[i], set, common, pose_positions, out, &list);
             if (done > status) status = done;
         }
     }
@@ -521,8 +696,19 @@ static int do_files(char **paths, int path_count, const settings *set)
 static bool check_settings(const settings *set, int path_count)
 {
     const char *reason = NULL;
-    if (path_count == 0)
+    if (set->replay_path &&
+        (path_count > 0 || set->rest_path || set->model_path || set->record_path))
+        reason = "--replay takes no mesh, rest mesh or model, and makes no record";
+    else if (set->replay_path && set->is_asked)
+        reason = "--replay asks what the record asks, and as it does";
+    else if (set->replay_path && set->ply_path)
+        reason = "--replay has no faces for --ply";
+    else if (path_count == 0 && !set->replay_path)
         reason = "no mesh given";
+    else if (set->model_path && (set->rest_path || set->is_built))
+        reason = "--model is in place of --rest, --weld and --partition";
+    else if (set->record_path && path_count > 1)
+        reason = "--record takes one mesh only";
     else if (wants_list(set) && set->any)
         reason = "--any finds no list for --out or --ply";
     else if (wants_list(set) && set->pairs == 2)
@@ -545,6 +731,9 @@ int main(int argc, char **argv)
         OPTION_JSON,
         OPTION_OUT,
         OPTION_PLY,
+        OPTION_MODEL,
+        OPTION_RECORD,
+        OPTION_REPLAY,
         OPTION_STATS,
         OPTION_METHOD,
         OPTION_CONTOUR,
@@ -562,6 +751,9 @@ int main(int argc, char **argv)
         {"json", no_argument, NULL, OPTION_JSON},
         {"out", required_argument, NULL, OPTION_OUT},
         {"ply", required_argument, NULL, OPTION_PLY},
+        {"model", required_argument, NULL, OPTION_MODEL},
+        {"record", required_argument, NULL, OPTION_RECORD},
+        {"replay", required_argument, NULL, OPTION_REPLAY},
         {"stats", no_argument, NULL, OPTION_STATS},
         {"method", required_argument, NULL, OPTION_METHOD},
         {"contour", required_argument, NULL, OPTION_CONTOUR},
@@ -579,6 +771,11 @@ int main(int argc, char **argv)
     bool valid = true;
     int option;
     while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
+        set.is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
+        set.is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_ANY ||
+                        option == OPTION_WELD || option == OPTION_METHOD ||
+                        option == OPTION_CONTOUR || option == OPTION_PARTITION ||
+                        option == OPTION_NO_REST_CACHE;
         switch (option) {
         case OPTION_PAIRS:
             valid &= tool_choose("--pairs", optarg, pair_choices, &set.pairs);
@@ -603,6 +800,15 @@ int main(int argc, char **argv)
             break;
         case OPTION_PLY:
             set.ply_path = optarg;
+            break;
+        case OPTION_MODEL:
+            set.model_path = optarg;
+            break;
+        case OPTION_RECORD:
+            set.record_path = optarg;
+            break;
+        case OPTION_REPLAY:
+            set.replay_path = optarg;
             break;
         case OPTION_STATS:
             set.stats = true;
