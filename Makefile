@@ -336,7 +336,7 @@ CLANG ?= clang
 SECONDS ?= 60
 SOAK ?= 100000
 
-fuzz_targets := fuzz_build fuzz_query fuzz_options
+fuzz_targets := fuzz_build fuzz_query fuzz_options fuzz_load
 fuzz_sources := tests/fuzz/fuzz_support.c $(patsubst %,tests/fuzz/%.c,$(fuzz_targets))
 fuzz_programs := $(patsubst %,$(work)/fuzz/%,$(fuzz_targets))
 run_programs := $(patsubst tests/runs/%.c,$(work)/runs/%,$(wildcard tests/runs/*.c))

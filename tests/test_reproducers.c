@@ -18,8 +18,10 @@ typedef struct target {
     int (*run)(const uint8_t *data, size_t size);
 } target;
 
-static const target targets[] = {
-    {"fuzz_build", fuzz_build}, {"fuzz_query", fuzz_query}, {"fuzz_options", fuzz_options}};
+static const target targets[] = {{"fuzz_build", fuzz_build},
+                                 {"fuzz_query", fuzz_query},
+                                 {"fuzz_options", fuzz_options},
+                                 {"fuzz_load", fuzz_load}};
 enum { TARGETS = sizeof(targets) / sizeof(targets[0]) };
 
 /* Runs a target on a copy that ends where it ends. */
@@ -61,7 +63,7 @@ static void seeds_of_meshes(void)
     static const char *const meshes[] = {
         "crossing_tetrahedra", "corner_on_face", "degenerate_soup", "duplicates",     "fan",
         "folded_sheet",        "hourglass",      "touching_cubes",  "crossing_cloths"};
-    static uint8_t bytes[FUZZ_SEED_ROOM];
+    static uint8_t bytes[FUZZ_SAVED_ROOM];
     for (size_t i = 0; i < sizeof(meshes) / sizeof(meshes[0]); ++i) {
         char path[64];
         snprintf(path, sizeof(path), "meshes/%s.obj", meshes[i]);
@@ -70,6 +72,8 @@ static void seeds_of_meshes(void)
             if (!CHECK_MSG(size > 0, "%s cannot be read", path)) continue;
             replay(&targets[0], path, bytes, size);
             replay(&targets[1], path, bytes, size);
+            size = fuzz_saved_seed(path, variant, bytes);
+            if (size > 0) replay(&targets[3], path, bytes, size);
         }
     }
 }

@@ -15,7 +15,7 @@ export LC_ALL=C
 at=$1
 seconds=$2
 shift 2
-[ $# -gt 0 ] || set -- fuzz_build fuzz_query fuzz_options
+[ $# -gt 0 ] || set -- fuzz_build fuzz_query fuzz_options fuzz_load
 case $seconds in
 '' | *[!0-9]*)
     echo "fuzz: SECONDS=$seconds: must be a number" >&2
@@ -30,7 +30,9 @@ mkdir -p "$at/corpus/seeds" "$reproducers" || exit 2
 # run TARGET
 run() {
     mkdir -p "$at/corpus/$1"
-    "$at/$1" -max_total_time="$seconds" -max_len=4096 -timeout=60 -report_slow_units=60 \
+    longest=4096
+    [ "$1" != fuzz_load ] || longest=16384 # a saved model has some 5000 bytes at least
+    "$at/$1" -max_total_time="$seconds" -max_len="$longest" -timeout=60 -report_slow_units=60 \
         -rss_limit_mb=4096 -print_final_stats=1 -artifact_prefix="$reproducers/$1-" \
         "$at/corpus/$1" "$at/corpus/seeds" >"$at/$1.log" 2>&1
     echo $? >"$at/$1.status"

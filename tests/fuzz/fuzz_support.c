@@ -191,6 +191,32 @@ size_t fuzz_seed(const char *path, uint32_t variant, uint8_t *bytes)
     return used;
 }
 
+size_t fuzz_saved_seed(const char *path, uint32_t variant, uint8_t *bytes)
+{
+    size_t size = 0;
+    uint64_t needed = 0;
+    sc_model *model = NULL;
+    sc_mesh mesh;
+    sc_pose pose;
+    sc_status status;
+    soup s;
+    if (!input_read_obj(path, &s)) return 0;
+    if (s.triangle_count > MESH_TRIANGLES) s.triangle_count = MESH_TRIANGLES;
+    mesh = input_plain_mesh(&s);
+    pose = input_plain_pose(s.positions, s.vertex_count);
+    bytes[0] = variant % 2 ? 0 : 16; /* as it is, or with the checksum made right */
+    bytes[1] = (uint8_t)variant;
+    status = sc_build(&mesh, NULL, &model);
+    if (status == SC_OK)
+        status = variant / 2
+                     ? sc_record_write(model, &pose, NULL, bytes + 2, FUZZ_SAVED_ROOM - 2, &needed)
+                     : sc_model_save(model, bytes + 2, FUZZ_SAVED_ROOM - 2, &needed);
+    if (status == SC_OK) size = 2 + (size_t)needed;
+    sc_model_free(model);
+    soup_free(&s);
+    return size;
+}
+
 static uint32_t index_at(const sc_mesh *mesh, uint32_t corner)
 {
     uint32_t size = mesh->index_type == SC_UINT16 ? 2 : 4, v = 0;

@@ -22,6 +22,7 @@
 int fuzz_build(const uint8_t *data, size_t size);   /* meshes and build options, right and wrong */
 int fuzz_query(const uint8_t *data, size_t size);   /* poses and query options, one workspace */
 int fuzz_options(const uint8_t *data, size_t size); /* structures of every size and content */
+int fuzz_load(const uint8_t *data, size_t size);    /* saved models and records, right and wrong */
 
 /* Ends the program unless cond holds; the rest as for printf. */
 #define FUZZ_CHECK(cond, ...)                                                                      \
@@ -54,6 +55,11 @@ soup fuzz_mesh(fuzz_bytes *bytes, int wild);
    cannot be read. */
 enum { FUZZ_SEED_VARIANTS = 4, FUZZ_SEED_ROOM = 8192 };
 size_t fuzz_seed(const char *path, uint32_t variant, uint8_t *bytes);
+
+/* Writes bytes for fuzz_load: a saved model or record of the first triangles of an OBJ file; at most
+   FUZZ_SAVED_ROOM. Returns their number, 0 if there is no such file or they are more. */
+enum { FUZZ_SAVED_ROOM = 16384 };
+size_t fuzz_saved_seed(const char *path, uint32_t variant, uint8_t *bytes);
 
 /* Copies of size bytes in a block of exactly that size; never NULL. To be freed. */
 void *fuzz_copy(const void *from, size_t size);

@@ -1,0 +1,206 @@
+/*
+ * Fuzz target: sc_model_load and sc_record_read. Bytes as they are; and saves of small models in which
+ * some bytes are replaced and the checksum is made right again, so that the fuzzer gets behind it. What is
+ * loaded is asked everything there is to ask; it may answer anything.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#define _POSIX_C_SOURCE 200112L /* posix_memalign: data that end where they end */
+
+#include "fuzz_support.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/saved.h"
+#include "harness.h"
+
+enum { MAXIMUM_EDITS = 24 };
+
+/* A copy that is aligned, or off by some bytes. */
+static unsigned char *place(const void *from, size_t size, size_t off, void **memory)
+{
+    unsigned char *data;
+    if (posix_memalign(memory, SC_ALIGNMENT, size + off + 1) != 0) abort();
+    data = (unsigned char *)*memory + off;
+    if (size > 0) memcpy(data, from, size);
+    return data;
+}
+
+/* All methods and kinds, on a pose of small integers. */
+static void ask_all(sc_model *model, const sc_pose *pose, const sc_query_options *options)
+{
+    sc_workspace *workspace = NULL;
+    sc_model_info info;
+    double *positions;
+    memset(&info, 0, sizeof(info));
+    info.struct_size = sizeof(info);
+    FUZZ_CHECK(sc_model_get_info(model, &info) == SC_OK, "a loaded model");
+    FUZZ_CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK, "a loaded model");
+    positions = (double *)test_allocate(3 * (size_t)info.vertex_count * sizeof(double));
+    for (size_t i = 0; i < 3 * (size_t)info.vertex_count; ++i) positions[i] = (double)(i * i % 7);
+    for (uint32_t i = 0; i < 16; ++i) {
+        enum { ROOM = 16 };
+        sc_pair pairs[ROOM];
+        sc_query_options o;
+        sc_result result;
+        sc_pose p = input_plain_pose(positions, info.vertex_count);
+        sc_status status;
+        memset(&o, 0, sizeof(o));
+        o.struct_size = sizeof(o);
+        o.method = i % 4;
+        o.contour = i % 4 < 2 && i >= 8 ? SC_CONTOUR_STAR : SC_CONTOUR_DEFAULT;
+        o.pairs = i / 4 % 2;
+        o.contact = i / 8;
+        memset(&result, 0, sizeof(result));
+        result.struct_size = sizeof(result);
+        result.pairs = pairs;
+        result.capacity = ROOM;
+        status = sc_query(model, workspace, &p, &o, &result);
+        FUZZ_CHECK(status == SC_OK || status == SC_ERROR_SHORT_BUFFER, "status %d", (int)status);
+        if (i == 0 && pose) sc_query(model, workspace, pose, options, &result);
+    }
+    free(positions);
+    for (uint32_t level = 0; level < info.level_count; ++level) {
+        uint32_t *patches = (uint32_t *)test_allocate(info.triangle_count * sizeof(uint32_t));
+        FUZZ_CHECK(sc_model_get_patches(model, level, patches, info.triangle_count) == SC_OK,
+                   "level %u", (unsigned)level);
+        for (uint32_t t = 0; t < info.triangle_count; ++t)
+            FUZZ_CHECK(patches[t] < info.triangle_count, "patch %u", (unsigned)patches[t]);
+        free(patches);
+    }
+    sc_workspace_free(workspace);
+}
+
+static int load(const void *data, size_t size, uint32_t mode, const sc_pose *pose,
+                const sc_query_options *options)
+{
+    sc_load_options load_options;
+    sc_model *model = NULL;
+    sc_status status;
+    memset(&load_options, 0, sizeof(load_options));
+    load_options.struct_size = sizeof(load_options);
+    load_options.mode = mode;
+    status = sc_model_load(data, size, &load_options, &model);
+    FUZZ_CHECK((status == SC_OK) == (model != NULL), "status %d", (int)status);
+    if (model) ask_all(model, pose, options);
+    sc_model_free(model);
+    return status == SC_OK;
+}
+
+/* Whatever the bytes are: a model, a record, neither. */
+static void read_bytes(const void *data, size_t size, uint32_t how)
+{
+    void *memory;
+    unsigned char *copy = place(data, size, how & 1 ? how % 64 : 0, &memory);
+    sc_pose pose;
+    sc_query_options options;
+    sc_record record;
+    load(copy, size, SC_LOAD_COPY, NULL, NULL);
+    if (!(how & 1)) load(copy, size, SC_LOAD_IN_PLACE, NULL, NULL);
+    memset(&pose, 0, sizeof(pose));
+    memset(&options, 0, sizeof(options));
+    memset(&record, 0, sizeof(record));
+    pose.struct_size = sizeof(pose);
+    options.struct_size = sizeof(options);
+    record.struct_size = sizeof(record);
+    record.pose = &pose;
+    record.options = &options;
+    if (sc_record_read(copy, size, &record) == SC_OK)
+        load(record.model, (size_t)record.model_size, SC_LOAD_COPY, &pose, &options);
+    free(memory);
+}
+
+static void seal(unsigned char *data, size_t size)
+{
+    sc_saved_header header;
+    char magic[8];
+    memcpy(&header, data, sizeof(header));
+    memcpy(magic, header.magic, sizeof(magic));
+    sc_saved_seal(&header, magic, header.version, size, data + sizeof(header));
+    memcpy(data, &header, sizeof(header));
+}
+
+/* Replaces numbers and makes the checksum right. */
+static void edit(fuzz_bytes *bytes, unsigned char *data, size_t size, size_t from)
+{
+    for (uint32_t i = 0; i < MAXIMUM_EDITS && bytes->left > 0; ++i) {
+        size_t at = from + (size_t)fuzz_number(bytes, 3) % (size - from);
+        uint32_t how = fuzz_byte(bytes), number;
+        if (how % 4 == 0) {
+            data[at] = (unsigned char)fuzz_byte(bytes);
+            continue;
+        }
+        at = at / 4 * 4;
+        if (at < from || at + 4 > size) continue;
+        memcpy(&number, data + at, 4);
+        if (how % 4 == 1)
+            number = fuzz_byte(bytes);
+        else if (how % 4 == 2)
+            number += (how & 4) ? 1u + how / 8 : (uint32_t)0 - 1u - how / 8;
+        else
+            number = (uint32_t)fuzz_number(bytes, 4);
+        memcpy(data + at, &number, 4);
+    }
+    seal(data, size);
+}
+
+/* A save or a record of a mesh made from the bytes, changed by what follows. */
+static void read_edited(fuzz_bytes *bytes, uint32_t how)
+{
+    soup s = fuzz_mesh(bytes, 0);
+    sc_mesh mesh = input_plain_mesh(&s);
+    sc_pose pose = input_plain_pose(s.positions, s.vertex_count);
+    input_choices choices;
+    sc_model *model = NULL;
+    uint64_t size = 0;
+    unsigned char *data;
+    test_random_reset(how);
+    choices = input_choose(&s, how % 3, how / 4 % 4);
+    FUZZ_CHECK(sc_build(&mesh, &choices.options, &model) == SC_OK, "a good mesh");
+    if (how & 64)
+        FUZZ_CHECK(sc_record_size(model, &pose, NULL, &size) == SC_OK, "a good query");
+    else
+        FUZZ_CHECK(sc_model_save_size(model, &size) == SC_OK, "a good model");
+    data = (unsigned char *)test_allocate((size_t)size);
+    if (how & 64) {
+        FUZZ_CHECK(sc_record_write(model, &pose, NULL, data, size, NULL) == SC_OK, "a good query");
+        /* the model of a record has a checksum of its own */
+        if (how & 128) {
+            const size_t at = 2 * SC_ALIGNMENT;
+            uint64_t model_size;
+            FUZZ_CHECK(sc_model_save_size(model, &model_size) == SC_OK, "a good model");
+            edit(bytes, data + at, (size_t)model_size, sizeof(sc_saved_header));
+            seal(data, (size_t)size);
+        } else {
+            edit(bytes, data, (size_t)size, sizeof(sc_saved_header));
+        }
+    } else {
+        FUZZ_CHECK(sc_model_save(model, data, size, NULL) == SC_OK, "a good model");
+        edit(bytes, data, (size_t)size, sizeof(sc_saved_header));
+    }
+    read_bytes(data, (size_t)size, how & 128 ? how : 0);
+    free(data);
+    sc_model_free(model);
+    input_free_choices(&choices);
+    soup_free(&s);
+}
+
+int fuzz_load(const uint8_t *data, size_t size)
+{
+    fuzz_bytes bytes = {data, size};
+    uint32_t kind = fuzz_byte(&bytes), how = fuzz_byte(&bytes);
+    if (kind == 0x93) { /* saved data begin like this */
+        read_bytes(data, size, how);
+    } else if (kind < 16) {
+        read_bytes(bytes.at, bytes.left, how);
+    } else if (kind < 32 && bytes.left >= sizeof(sc_saved_header)) {
+        uint8_t *copy = (uint8_t *)fuzz_copy(bytes.at, bytes.left);
+        seal(copy, bytes.left);
+        read_bytes(copy, bytes.left, how);
+        free(copy);
+    } else {
+        read_edited(&bytes, how);
+    }
+    return 0;
+}
