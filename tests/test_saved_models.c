@@ -532,6 +532,29 @@ static void forged_counts(void)
     }
 }
 
+/* Points that no vertex sets would be where another pose left them, or nowhere. */
+static void forged_slots(void)
+{
+    soup mesh;
+    sc_model *model = build_small(1, &mesh);
+    save s = save_model(model);
+    uint32_t *slot =
+        (uint32_t *)(void *)(s.data + sizeof(sc_saved_header) + model->offset[SC_ARRAY_slot]);
+    for (uint32_t v = 0; v < model->vertex_count; ++v) {
+        uint32_t old = slot[v];
+        slot[v] = SC_SLOT_UNUSED;
+        CHECK(try_forged(&s, &mesh));
+        slot[v] = SC_SLOT_WELDED;
+        CHECK(try_forged(&s, &mesh));
+        slot[v] = slot[(v + 1) % model->vertex_count];
+        CHECK(try_forged(&s, &mesh));
+        slot[v] = old;
+    }
+    free(s.memory);
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
 /* A header for less than any model, with the right checksum. */
 static void forged_sizes(void)
 {
@@ -552,47 +575,72 @@ static void forged_sizes(void)
     soup_free(&mesh);
 }
 
-/* A chain of segments that would be walked down as deep as it is long. */
-static void forged_chain(void)
-{
-    soup mesh = soup_cloth(12, 12);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST), *m;
-    save s = save_model(model), forged;
-    uint32_t parents = model->segment_count - model->leaf_segment_count, i;
-    uint32_t *first, *children, *begin, *end;
-    forged = copy_save(&s, s.size);
-    m = (sc_model *)(void *)(forged.data + sizeof(sc_saved_header));
-    first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_segment_children]);
-    children = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_children]);
-    begin = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_segment_first]);
-    end = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_segment_last]);
-    /* each parent: the one before, and a leaf segment */
-    if (CHECK(parents > 2 * m->level_count && m->segment_child_total >= 2 * parents &&
-              m->segment_point_total > parents + 1)) {
-        for (i = 0; i < parents; ++i) {
-            uint32_t s_number = m->leaf_segment_count + i;
-            first[i] = 2 * i;
-            children[2 * i] = i ? s_number - 1 : 0;
-            children[2 * i + 1] = i + 1;
-            if (i == 0) begin[0] = 0, end[0] = 1;
-            begin[i + 1] = i + 1;
-            end[i + 1] = i + 2;
-            begin[s_number] = 0;
-            end[s_number] = i + 2;
-        }
-        first[parents] = m->segment_child_total;
-        CHECK(try_forged(&forged, &mesh));
-    }
-    free(forged.memory);
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
-}
-
 static void take_message(void *user, uint32_t level, const char *message)
 {
     CHECK(level == SC_LOG_ERROR);
     snprintf((char *)user, 256, "%s", message);
+}
+
+static sc_hooks message_hooks(char *text)
+{
+    sc_hooks hooks;
+    memset(&hooks, 0, sizeof(hooks));
+    hooks.struct_size = sizeof(hooks);
+    hooks.log = take_message;
+    hooks.user = text;
+    return hooks;
+}
+
+static void *array_of(sc_model *model, uint32_t array)
+{
+    return (unsigned char *)model + model->offset[array];
+}
+
+/*
+ * A chain of segments that would be walked down as deep as it is long: each parent has the one before it and
+ * a segment without children, the first several of these.
+ */
+static void forged_chain(void)
+{
+    soup mesh = soup_cloth(12, 12);
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST), *loaded;
+    save s = save_model(model);
+    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    uint32_t parents = m->segment_count - m->leaf_segment_count, leaf, i, at = 0;
+    uint32_t extra = m->segment_child_total - 2 * parents;
+    uint32_t *first = (uint32_t *)array_of(m, SC_ARRAY_segment_children);
+    uint32_t *children = (uint32_t *)array_of(m, SC_ARRAY_children);
+    uint32_t *begin = (uint32_t *)array_of(m, SC_ARRAY_segment_first);
+    uint32_t *end = (uint32_t *)array_of(m, SC_ARRAY_segment_last);
+    char text[256] = "";
+    sc_hooks hooks = message_hooks(text);
+    sc_load_options o;
+    CHECK(parents > 2 * m->level_count && m->segment_child_total >= 2 * parents);
+    for (leaf = 0; leaf < m->leaf_segment_count; ++leaf) {
+        begin[leaf] = leaf;
+        end[leaf] = leaf + 1;
+    }
+    for (i = leaf = 0; i < parents; ++i) {
+        uint32_t number = m->leaf_segment_count + i, stop = at + (i ? 1 : 2 + extra);
+        first[i] = at;
+        if (i) children[at++] = number - 1, ++stop;
+        while (at < stop) children[at++] = leaf++;
+        begin[number] = 0;
+        end[number] = leaf;
+    }
+    CHECK(at == m->segment_child_total && leaf <= m->leaf_segment_count &&
+          leaf < m->segment_point_total);
+    first[parents] = at;
+    seal(&s);
+    memset(&o, 0, sizeof(o));
+    o.struct_size = sizeof(o);
+    o.hooks = &hooks;
+    CHECK(sc_model_load(s.data, s.size, &o, &loaded) == SC_ERROR_INCONSISTENT);
+    CHECK_MSG(strcmp(text, "saved model: array children is wrong") == 0, "%s", text);
+    sc_model_free(loaded);
+    free(s.memory);
+    sc_model_free(model);
+    soup_free(&mesh);
 }
 
 /* The log says what is wrong. */
@@ -604,12 +652,8 @@ static void messages(void)
     model_array arrays[SC_ARRAY_COUNT];
     uint32_t count = list_arrays(model, arrays);
     char text[256], wanted[256];
-    sc_hooks hooks;
+    sc_hooks hooks = message_hooks(text);
     sc_load_options o;
-    memset(&hooks, 0, sizeof(hooks));
-    hooks.struct_size = sizeof(hooks);
-    hooks.log = take_message;
-    hooks.user = text;
     memset(&o, 0, sizeof(o));
     o.struct_size = sizeof(o);
     o.hooks = &hooks;
@@ -970,6 +1014,6 @@ static void format(void)
 
 SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(truncated),
              SC_TEST(changed), SC_TEST(foreign), SC_TEST(forged_arrays), SC_TEST(forged_counts),
-             SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
+             SC_TEST(forged_slots), SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
              SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments),
              SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))

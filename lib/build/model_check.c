@@ -328,12 +328,12 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(node_contour,
           are_lists(sc_model_node_contour(m), m->node_count, m->contour_total, 0, SC_NONE));
     CHECK(segment_first, check_segments(m));
-    CHECK(contours, check_contours(m));
     CHECK(points, all_below(sc_model_points(m), m->segment_point_total, points));
     CHECK(segment_children,
           are_lists(sc_model_segment_children(m), m->segment_count - m->leaf_segment_count,
                     m->segment_child_total, 2, SC_NONE));
     CHECK(children, check_children(m, bytes));
+    CHECK(contours, check_contours(m));
 #undef CHECK
     return NULL;
 }
