@@ -1,0 +1,277 @@
+"""Every self-collision of a deforming triangle mesh, exactly and fast, on numpy arrays.
+
+    model = starcontour.Model(rest, triangles)      once per topology
+    pairs = model.query(pose)                       once per pose: array of shape (n, 2)
+
+starcontour.h is the manual of the library that does the work: it says what a pair is, what is
+guaranteed, and what the options mean. Here they are keywords with the names of its enumerators:
+
+    pairs       "triangle" (default) or "edge": an edge a = 3 t + k, from vertex k to vertex
+                (k + 1) % 3 of triangle t, and a triangle b
+    contact     "touching" (default) or "proper"
+    method      "default", "sctt", "aabb_sctt" or "aabb": the answer is the same
+    rest_cache  True (default) or False: the answer is the same
+
+Positions are arrays of shape (n, 3). Rows of float32 or float64 whose three numbers are contiguous
+are read in place, whatever lies between the rows; other arrays are copied, if that is exact, and
+refused if it is not. Triangles are arrays of shape (m, 3) of integers; uint32 and uint16 are read in
+place.
+
+A Model never changes and may be used by any number of threads at once. A Workspace belongs to one
+call at a time: another call on it meanwhile raises an Error. Queries release the global lock.
+
+SPDX-License-Identifier: MIT
+"""
+
+import ctypes
+import threading
+import weakref
+from collections import namedtuple
+
+import numpy as np
+
+from . import _binding
+from ._binding import lib
+
+__all__ = ["Error", "Model", "ModelInfo", "Workspace", "version"]
+
+version = lib.sc_version_string().decode()
+
+_WELD = {"rest": 0, "map": 1, "none": 2}
+_PAIRS = {"triangle": 0, "edge": 1}
+_CONTACT = {"touching": 0, "proper": 1}
+_METHOD = {"default": 0, "sctt": 1, "aabb_sctt": 2, "aabb": 3}
+_PARTITION_FAST, _PARTITION_ORDER = 0, 1
+_OUTPUT_PAIRS, _OUTPUT_COUNT, _OUTPUT_ANY = 0, 1, 2
+_SHORT_BUFFER = 11
+_IN_USE = "the workspace is in use by another call"
+
+ModelInfo = namedtuple(
+    "ModelInfo", [name for name, _ in _binding.sc_model_info._fields_ if name != "struct_size"]
+)
+
+
+class Error(Exception):
+    """What the library refused: its text, and its number in `status` (SC_ERROR_... in the header)."""
+
+    def __init__(self, status, text=None):
+        super().__init__(text or lib.sc_status_string(status).decode())
+        self.status = status
+
+
+def _check(status):
+    if status:
+        raise Error(status)
+
+
+def _choice(name, value, choices):
+    if value not in choices:
+        raise ValueError(f"{name} must be one of {', '.join(choices)}, not {value!r}")
+    return choices[value]
+
+
+def _rows(array):
+    """Whether the library can step over the rows of this array of shape (n, 3) as it lies in memory."""
+    step, inner = array.strides
+    return (
+        inner == array.itemsize
+        and 3 * array.itemsize <= step <= 0xFFFFFFFF
+        and array.dtype.isnative
+    )
+
+
+def _shaped(array, what):
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{what} must have the shape (n, 3), not {array.shape}")
+    if len(array) > 0xFFFFFFFF:
+        raise ValueError(f"{what}: more rows than 32 bits can number")
+    return array
+
+
+def _positions(positions):
+    """The same positions as an array that the library can read in place: itself if possible."""
+    if not isinstance(positions, np.ndarray):
+        positions = np.asarray(positions, np.float64)
+    array = _shaped(positions, "positions")
+    kind, size = array.dtype.kind, array.dtype.itemsize
+    if kind == "f" and size <= 8:
+        wanted = np.float64 if size == 8 else np.float32
+    elif kind in "iub" and size <= 4:
+        wanted = np.float64
+    else:
+        raise TypeError(f"positions of type {array.dtype} have no exact float32 or float64 values")
+    if array.dtype == wanted and _rows(array):
+        return array
+    return np.ascontiguousarray(array, wanted)
+
+
+def _indices(values):
+    """The same whole numbers as an array of uint32 or uint16, itself if possible."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"triangles and vertices are numbered by integers, not {array.dtype}")
+    if array.dtype in (np.uint32, np.uint16):
+        return array
+    if array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
+        raise Error(7)
+    return array.astype(np.uint32)
+
+
+def _triangles(triangles):
+    array = _shaped(_indices(triangles), "triangles")
+    return array if _rows(array) else np.ascontiguousarray(array, array.dtype.newbyteorder("="))
+
+
+def _numbers(values, length, what):
+    """A packed array of uint32, as weld maps and orders are."""
+    array = np.ascontiguousarray(_indices(values), np.uint32)
+    if array.shape != (length,):
+        raise ValueError(f"{what} must have the shape ({length},), not {array.shape}")
+    return array
+
+
+class _Scratch:
+    """A workspace of the library, an array for its pairs, and who may use them now."""
+
+    def __init__(self, model):
+        handle = ctypes.c_void_p()
+        _check(lib.sc_workspace_create(model, None, ctypes.byref(handle)))
+        self.handle = handle
+        self.pairs = np.empty((64, 2), np.uint32)
+        self.lock = threading.Lock()
+        weakref.finalize(self, lib.sc_workspace_free, handle)
+
+
+class Workspace:
+    """What one query writes to. Made by Model.workspace(); its queries are those of Model."""
+
+    def __init__(self, model):
+        self.model = model
+        self._scratch = _Scratch(model._handle)
+
+    def query(self, pose, **options):
+        """Like Model.query."""
+        return self.model._query(self._scratch, pose, **options)
+
+    def count(self, pose, **options):
+        """Like Model.count."""
+        return self.model._ask(self._scratch, pose, _OUTPUT_COUNT, **options).count
+
+    def collides(self, pose, **options):
+        """Like Model.collides."""
+        return bool(self.model._ask(self._scratch, pose, _OUTPUT_ANY, **options).collides)
+
+
+class Model:
+    """A triangle mesh in its rest pose, made ready for queries.
+
+    vertices   rest positions, shape (n, 3)
+    triangles  vertex numbers, shape (m, 3)
+    weld       "rest": vertices at equal rest positions are one (default); "none"; or an array of n
+               representatives
+    order      None: the library's partition; or a permutation of the triangles, consecutive ones of
+               which form patches
+    """
+
+    def __init__(self, vertices, triangles, *, weld="rest", order=None):
+        vertices, triangles = _positions(vertices), _triangles(triangles)
+        mesh = _binding.sc_mesh(
+            struct_size=ctypes.sizeof(_binding.sc_mesh),
+            vertex_count=len(vertices),
+            triangle_count=len(triangles),
+            position_type=int(vertices.dtype == np.float64),
+            position_stride=vertices.strides[0],
+            index_type=int(triangles.dtype == np.uint16),
+            index_stride=triangles.strides[0],
+            positions=vertices.ctypes.data,
+            indices=triangles.ctypes.data,
+        )
+        options = _binding.sc_build_options(struct_size=ctypes.sizeof(_binding.sc_build_options))
+        if isinstance(weld, str):
+            options.weld = _choice("weld", weld, {k: v for k, v in _WELD.items() if k != "map"})
+        else:
+            weld = _numbers(weld, len(vertices), "weld")
+            options.weld, options.weld_map = _WELD["map"], weld.ctypes.data
+        if order is not None:
+            order = _numbers(order, len(triangles), "order")
+            options.partition, options.order = _PARTITION_ORDER, order.ctypes.data
+        handle = ctypes.c_void_p()
+        _check(lib.sc_build(ctypes.byref(mesh), ctypes.byref(options), ctypes.byref(handle)))
+        self._adopt(handle)
+
+    def _adopt(self, handle):
+        self._handle = handle
+        self._local = threading.local()
+        weakref.finalize(self, lib.sc_model_free, handle)
+
+    @property
+    def info(self):
+        """A ModelInfo: counts, topology hash, and sizes in bytes; see sc_model_info."""
+        info = _binding.sc_model_info(struct_size=ctypes.sizeof(_binding.sc_model_info))
+        _check(lib.sc_model_get_info(self._handle, ctypes.byref(info)))
+        return ModelInfo(*(getattr(info, name) for name in ModelInfo._fields))
+
+    def patches(self, level):
+        """The number of each triangle's patch at a level from 0 to info.level_count - 1."""
+        patches = np.empty(self.info.triangle_count, np.uint32)
+        _check(lib.sc_model_get_patches(self._handle, level, patches.ctypes.data, len(patches)))
+        return patches
+
+    def workspace(self):
+        """A new Workspace, for queries that run at the same time as others in this thread's name."""
+        return Workspace(self)
+
+    def query(self, pose, **options):
+        """All pairs in a pose, sorted: a new uint32 array of shape (n, 2). Options: see the module."""
+        return self._query(self._own(), pose, **options)
+
+    def count(self, pose, **options):
+        """The number of pairs in a pose."""
+        return self._ask(self._own(), pose, _OUTPUT_COUNT, **options).count
+
+    def collides(self, pose, **options):
+        """Whether there is any pair in a pose. Stops at the first."""
+        return bool(self._ask(self._own(), pose, _OUTPUT_ANY, **options).collides)
+
+    def _own(self):
+        """This thread's workspace."""
+        if not hasattr(self._local, "scratch"):
+            self._local.scratch = _Scratch(self._handle)
+        return self._local.scratch
+
+    def _query(self, scratch, pose, **options):
+        return self._ask(scratch, pose, _OUTPUT_PAIRS, **options)
+
+    def _ask(self, scratch, pose, output, *, pairs="triangle", contact="touching",
+             method="default", rest_cache=True):
+        positions = _positions(pose)
+        given = _binding.sc_pose(
+            struct_size=ctypes.sizeof(_binding.sc_pose),
+            vertex_count=len(positions),
+            position_type=int(positions.dtype == np.float64),
+            position_stride=positions.strides[0],
+            positions=positions.ctypes.data,
+        )
+        options = _binding.sc_query_options(
+            struct_size=ctypes.sizeof(_binding.sc_query_options),
+            output=output,
+            pairs=_choice("pairs", pairs, _PAIRS),
+            contact=_choice("contact", contact, _CONTACT),
+            method=_choice("method", method, _METHOD),
+            rest_cache=0 if rest_cache else 1,
+        )
+        result = _binding.sc_result(struct_size=ctypes.sizeof(_binding.sc_result))
+        if not scratch.lock.acquire(blocking=False):
+            raise Error(12, _IN_USE)
+        try:
+            while True:
+                result.capacity, result.pairs = len(scratch.pairs), scratch.pairs.ctypes.data
+                status = lib.sc_query(self._handle, scratch.handle, ctypes.byref(given),
+                                      ctypes.byref(options), ctypes.byref(result))
+                if status != _SHORT_BUFFER:
+                    break
+                scratch.pairs = np.empty((result.count + result.count // 4, 2), np.uint32)
+            _check(status)
+            return scratch.pairs[: result.count].copy() if output == _OUTPUT_PAIRS else result
+        finally:
+            scratch.lock.release()

@@ -1,0 +1,122 @@
+"""The shared library by ctypes: structures and functions as in starcontour.h, no more.
+
+The library is the one that the environment's STARCONTOUR_LIBRARY names, else the package's own.
+Pointers to arrays are c_void_p, so that numpy's addresses go in as they are.
+
+SPDX-License-Identifier: MIT
+"""
+
+import ctypes
+import os
+import sys
+from ctypes import POINTER, c_char_p, c_int32, c_uint32, c_uint64, c_void_p
+
+
+class sc_mesh(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("vertex_count", c_uint32),
+        ("triangle_count", c_uint32),
+        ("position_type", c_uint32),
+        ("position_stride", c_uint32),
+        ("index_type", c_uint32),
+        ("index_stride", c_uint32),
+        ("reserved", c_uint32),
+        ("positions", c_void_p),
+        ("indices", c_void_p),
+    ]
+
+
+class sc_pose(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("vertex_count", c_uint32),
+        ("position_type", c_uint32),
+        ("position_stride", c_uint32),
+        ("positions", c_void_p),
+    ]
+
+
+class sc_build_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("weld", c_uint32),
+        ("partition", c_uint32),
+        ("tree_count", c_uint32),
+        ("weld_map", c_void_p),
+        ("order", c_void_p),
+        ("tree", c_void_p),
+        ("bisect", c_void_p),
+        ("bisect_user", c_void_p),
+        ("allocator", c_void_p),
+    ]
+
+
+class sc_model_info(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("vertex_count", c_uint32),
+        ("point_count", c_uint32),
+        ("triangle_count", c_uint32),
+        ("edge_count", c_uint32),
+        ("component_count", c_uint32),
+        ("boundary_edges", c_uint32),
+        ("irregular_edges", c_uint32),
+        ("leaf_count", c_uint32),
+        ("level_count", c_uint32),
+        ("node_count", c_uint32),
+        ("segment_count", c_uint32),
+        ("topology_hash", c_uint64),
+        ("model_bytes", c_uint64),
+        ("workspace_bytes", c_uint64),
+    ]
+
+
+class sc_query_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("output", c_uint32),
+        ("pairs", c_uint32),
+        ("contact", c_uint32),
+        ("method", c_uint32),
+        ("contour", c_uint32),
+        ("rest_cache", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class sc_result(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("collides", c_uint32),
+        ("count", c_uint64),
+        ("capacity", c_uint64),
+        ("pairs", c_void_p),
+        ("stats", c_void_p),
+    ]
+
+
+structures = (sc_mesh, sc_pose, sc_build_options, sc_model_info, sc_query_options, sc_result)
+
+_suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+_own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarcontour" + _suffix)
+lib = ctypes.CDLL(os.environ.get("STARCONTOUR_LIBRARY", _own))
+
+
+def _declare(name, result, *parameters):
+    function = getattr(lib, name)
+    function.restype = result
+    function.argtypes = parameters
+
+
+_status = c_int32
+_declare("sc_status_string", c_char_p, _status)
+_declare("sc_version_string", c_char_p)
+_declare("sc_build", _status, POINTER(sc_mesh), POINTER(sc_build_options), POINTER(c_void_p))
+_declare("sc_model_free", None, c_void_p)
+_declare("sc_model_get_info", _status, c_void_p, POINTER(sc_model_info))
+_declare("sc_model_get_patches", _status, c_void_p, c_uint32, c_void_p, c_uint64)
+_declare("sc_workspace_create", _status, c_void_p, c_void_p, POINTER(c_void_p))
+_declare("sc_workspace_free", None, c_void_p)
+_declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_query_options),
+         POINTER(sc_result))
