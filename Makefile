@@ -329,6 +329,21 @@ $(work)/tests/cgal/compare: tests/cgal/compare.cpp include/starcontour.h tools/m
 	    -lassimp -lmpfr -lgmp $(LDLIBS) -lm
 
 # ------------------------------------------------------------------------------------------------
+# Other languages, and one engine, on the shared library.
+
+.PHONY: deps-ffi
+deps-ffi: ## install toolchains and modules that test-ffi needs (as deps with=ffi)
+	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' WITH=ffi tools/deps.sh
+
+.PHONY: test-ffi
+test-ffi: all ## call the library from C++, Python, LuaJIT, LÖVE, C#, Rust, Go, Java (what is there)
+ifeq ($(config),sanitize)
+	@echo "make test-ffi: these programs cannot load a library with sanitizers" >&2; exit 1
+else
+	@CC='$(CC)' CXX='$(CXX)' tests/ffi/ffi.sh '$(lib)' '$(work)/ffi'
+endif
+
+# ------------------------------------------------------------------------------------------------
 # Beyond `make test`: fuzzing, soak, other sanitizers, analysis. What is compiled with other flags goes
 # into a folder of its own; programs are in tests/fuzz/ and tests/runs/.
 

@@ -120,6 +120,7 @@ offenders=$(
             may["tests/fuzz"] = may["tests/runs"] = may["tests"]
             may["tests/bench"] = may["bench"] " tests tests/bench"
             may["tests/cgal"] = "include tools tests tests/cgal"
+            may["tests/ffi/cxx"] = "include"
         }
 
         { known[$0] = 1; order[++count] = $0 }

@@ -37,7 +37,18 @@ sanitizers clang libclang-rt-dev compiler-rt compiler-rt -"
 group_bench="\
 module matplotlib python3-matplotlib python3-matplotlib python-matplotlib python-matplotlib"
 group_docs=
-group_ffi=
+group_ffi="\
+module setuptools,wheel,pip,numpy python3-setuptools,python3-wheel,python3-pip,python3-numpy \
+    python3-setuptools,python3-wheel,python3-pip,python3-numpy \
+    python-setuptools,python-wheel,python-pip,python-numpy numpy
+program luajit luajit luajit luajit luajit
+program love love love love -
+program mcs mono-mcs mono-devel mono mono
+program mono mono-runtime mono-core mono mono
+program cargo cargo cargo rust rust
+program go golang-go golang go go
+program javac default-jdk-headless java-devel jdk-openjdk openjdk
+file /usr/share/java/jna.jar libjna-java jna - -"
 group_packages=
 group_peers="\
 header CGAL/version.h libcgal-dev CGAL-devel cgal cgal
@@ -67,7 +78,9 @@ there() {
         command -v "$1" >/dev/null 2>&1
         ;;
     program) command -v "$2" >/dev/null 2>&1 ;;
+    file) test -e "$2" ;;
     module)
+        # Several are imported in this order.
         for python in python3 /usr/bin/python3; do
             "$python" -c "import $2" >/dev/null 2>&1 && return 0
         done
@@ -85,7 +98,7 @@ missing() {
         there "$kind" "$what" </dev/null && continue
         eval "package=\$$1"
         [ "$kind $1" = "sanitizers debian" ] && ! apt-cache show "$package" >/dev/null 2>&1 && continue
-        [ "$package" = - ] || printf ' %s' "$package"
+        [ "$package" = - ] || printf ' %s' "$package" | tr ',' ' '
     done
 }
 

@@ -1,0 +1,110 @@
+// C#: pairs of two poses, the structures' layout, errors, one model in two threads.
+//
+//     mono ffi_csharp.exe MESH GOLDEN LAYOUT
+//
+// SPDX-License-Identifier: MIT
+using System;
+using System.Collections.Generic;
+using System.Globalization;
+using System.IO;
+using System.Linq;
+using System.Runtime.InteropServices;
+using System.Threading;
+using Starcontour;
+
+static class FfiCsharp
+{
+    static int passed, failed;
+
+    static void Check(string what, bool condition)
+    {
+        if (condition) ++passed;
+        else { ++failed; Console.WriteLine("failed: " + what); }
+    }
+
+    static bool Refused(Status status, string text, Action call)
+    {
+        try { call(); }
+        catch (StarcontourException e) { return e.Status == status && e.Message.Contains(text); }
+        return false;
+    }
+
+    // Each structure has the members of the header, no more and no fewer, where the header has them.
+    static void CheckLayout(string path)
+    {
+        var lines = File.ReadAllLines(path).Select(line => line.Split(' ')).ToList();
+        foreach (var type in new[] { typeof(Native.sc_mesh), typeof(Native.sc_pose),
+            typeof(Native.sc_query_options), typeof(Native.sc_result), typeof(Pair) })
+        {
+            var name = type == typeof(Pair) ? "sc_pair" : type.Name;
+            var size = lines.Single(w => w[0] == "struct" && w[1] == name)[2];
+            var header = lines.Where(w => w[0] == "member" && w[1] == name).Select(w => w[2] + " " + w[3]);
+            var own = type.GetFields().Select(f => f.Name + " " + Marshal.OffsetOf(type, f.Name));
+            Check(name + " is laid out as in the header",
+                Marshal.SizeOf(type).ToString() == size && header.SequenceEqual(own));
+        }
+        var statuses = lines.Where(w => w[0] == "value" && (w[1] == "SC_OK" || w[1].StartsWith("SC_ERROR_")));
+        Check("status values are the header's", statuses.Select(w => int.Parse(w[2])).SequenceEqual(
+            Enum.GetValues(typeof(Status)).Cast<int>()));
+    }
+
+    static int Main(string[] arguments)
+    {
+        var invariant = CultureInfo.InvariantCulture;
+        var lines = File.ReadAllLines(arguments[0]).Select(
+            line => line.Split(new[] { ' ' }, StringSplitOptions.RemoveEmptyEntries)).ToList();
+        var rest = lines.Where(w => w[0] == "v").SelectMany(
+            w => w.Skip(1).Take(3).Select(x => float.Parse(x, invariant))).ToArray();
+        var triangles = lines.Where(w => w[0] == "f").SelectMany(
+            w => w.Skip(1).Take(3).Select(x => uint.Parse(x.Split('/')[0]) - 1)).ToArray();
+        var moved = rest.Select(x => (double)x).ToArray();
+        for (var i = rest.Length / 3 / 2; i < rest.Length / 3; ++i)
+            moved[3 * i + 2] += moved[3 * i] / 4 - 0.25;
+
+        var golden = File.ReadAllLines(arguments[1]).Where(line => !line.StartsWith("#"))
+            .Select(line => line.Split(new[] { ' ' }, 2)).ToLookup(w => w[0], w => w[1]);
+        Func<ArraySegment<Pair>, string, bool> same = (pairs, pose) =>
+            pairs.Select(pair => pair.ToString()).SequenceEqual(golden[pose]);
+        Check("there is something to compare", golden["rest"].Any() && golden["moved"].Any());
+
+        CheckLayout(arguments[2]);
+
+        using (var model = new Model(rest, triangles))
+        {
+            using (var workspace = model.CreateWorkspace())
+            {
+                Check("pairs at rest", same(workspace.Query(rest), "rest"));
+                Check("pairs when moved", same(workspace.Query(moved), "moved"));
+                Check("edges, proper", workspace.Query(rest, PairKind.Edge, Contact.Proper).Count > 0);
+
+                var spoilt = (double[])moved.Clone();
+                spoilt[5] = double.NaN;
+                Check("NaN", Refused(Status.NotFinite, "NaN", () => workspace.Query(spoilt)));
+                Check("number of vertices", Refused(Status.VertexCount, "vert",
+                    () => workspace.Query(rest.Take(rest.Length - 3).ToArray())));
+                Check("vertex out of range", Refused(Status.Index, "vertex",
+                    () => new Model(rest, new uint[] { 0, 1, (uint)rest.Length })));
+                Check("no triangles", Refused(Status.Empty, "triangle", () => new Model(rest, new uint[3 * 0])));
+                Check("usable after errors", same(workspace.Query(rest), "rest"));
+            }
+
+            var right = 0;
+            var threads = new List<Thread>();
+            foreach (var pose in new[] { "rest", "moved" })
+            {
+                threads.Add(new Thread(() => {
+                    using (var own = model.CreateWorkspace())
+                        for (var i = 0; i < 100; ++i)
+                            if (same(pose == "rest" ? own.Query(rest) : own.Query(moved), pose))
+                                Interlocked.Increment(ref right);
+                }));
+            }
+            threads.ForEach(thread => thread.Start());
+            threads.ForEach(thread => thread.Join());
+            Check("two threads, one model", right == 200);
+        }
+
+        Console.WriteLine("c#: {0} passed, {1} failed", passed, failed);
+        return failed == 0 ? 0 : 1;
+    }
+}

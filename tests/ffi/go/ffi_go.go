@@ -1,0 +1,139 @@
+// Go: pairs of two poses, errors, one model in two goroutines.
+//
+//	ffi_go MESH GOLDEN
+//
+// SPDX-License-Identifier: MIT
+
+package main
+
+import (
+	"bufio"
+	"errors"
+	"fmt"
+	"math"
+	"os"
+	"strings"
+	"unsafe"
+)
+
+var passed, failed int
+
+func expect(what string, condition bool) {
+	if condition {
+		passed++
+	} else {
+		failed++
+		fmt.Println("failed:", what)
+	}
+}
+
+func refused(err error, wanted Error, text string) bool {
+	return errors.Is(err, wanted) && strings.Contains(err.Error(), text)
+}
+
+func lines(path string) []string {
+	file, err := os.Open(path)
+	if err != nil {
+		fmt.Println(err)
+		os.Exit(2)
+	}
+	defer file.Close()
+	var all []string
+	for scanner := bufio.NewScanner(file); scanner.Scan(); {
+		all = append(all, scanner.Text())
+	}
+	return all
+}
+
+func same(pairs []Pair, golden []Pair) bool {
+	if len(pairs) != len(golden) {
+		return false
+	}
+	for i := range pairs {
+		if pairs[i] != golden[i] {
+			return false
+		}
+	}
+	return true
+}
+
+func main() {
+	var rest [][3]float32
+	var triangles [][3]uint32
+	for _, line := range lines(os.Args[1]) {
+		var p [3]float32
+		var t [3]uint32
+		if n, _ := fmt.Sscanf(line, "v %g %g %g", &p[0], &p[1], &p[2]); n == 3 {
+			rest = append(rest, p)
+		} else if n, _ := fmt.Sscanf(line, "f %d %d %d", &t[0], &t[1], &t[2]); n == 3 {
+			triangles = append(triangles, [3]uint32{t[0] - 1, t[1] - 1, t[2] - 1})
+		}
+	}
+	moved := make([][3]float64, len(rest))
+	for i, p := range rest {
+		moved[i] = [3]float64{float64(p[0]), float64(p[1]), float64(p[2])}
+		if i >= len(rest)/2 {
+			moved[i][2] += moved[i][0]/4 - 0.25
+		}
+	}
+	golden := map[string][]Pair{}
+	for _, line := range lines(os.Args[2]) {
+		var pose string
+		var pair Pair
+		if n, _ := fmt.Sscan(line, &pose, &pair.A, &pair.B); n == 3 {
+			golden[pose] = append(golden[pose], pair)
+		}
+	}
+	expect("there is something to compare", len(golden["rest"]) > 0 && len(golden["moved"]) > 0)
+	expect("pairs are laid out as in the header", unsafe.Sizeof(Pair{}) == pairSize)
+
+	model, err := Build(rest, triangles)
+	if err != nil {
+		fmt.Println(err)
+		os.Exit(1)
+	}
+	workspace, err := model.Workspace()
+	if err != nil {
+		fmt.Println(err)
+		os.Exit(1)
+	}
+	pairs, err := Query(workspace, rest)
+	expect("pairs at rest", err == nil && same(pairs, golden["rest"]))
+	pairs, err = Query(workspace, moved)
+	expect("pairs when moved", err == nil && same(pairs, golden["moved"]))
+
+	answers := make(chan bool, 2)
+	go func() { answers <- repeat(model, rest, golden["rest"]) }()
+	go func() { answers <- repeat(model, moved, golden["moved"]) }()
+	one, two := <-answers, <-answers
+	expect("two goroutines, one model", one && two)
+
+	_, err = Query(workspace, moved[1:])
+	expect("number of vertices", refused(err, ErrorVertexCount, "vert"))
+	moved[3][2] = math.NaN()
+	_, err = Query(workspace, moved)
+	expect("NaN", refused(err, ErrorNotFinite, "NaN"))
+	_, err = Build(rest, nil)
+	expect("no triangles", refused(err, ErrorEmpty, "triangle"))
+	_, err = Build(rest, [][3]uint32{{0, 1, uint32(len(rest))}})
+	expect("vertex out of range", refused(err, ErrorIndex, "vertex"))
+	pairs, err = Query(workspace, rest)
+	expect("usable after errors", err == nil && same(pairs, golden["rest"]))
+
+	fmt.Printf("go: %d passed, %d failed\n", passed, failed)
+	if failed > 0 {
+		os.Exit(1)
+	}
+}
+
+func repeat[T Scalar](model *Model, pose [][3]T, golden []Pair) bool {
+	workspace, err := model.Workspace()
+	for i := 0; err == nil && i < 200; i++ {
+		var pairs []Pair
+		pairs, err = Query(workspace, pose)
+		if err == nil && !same(pairs, golden) {
+			return false
+		}
+	}
+	return err == nil
+}

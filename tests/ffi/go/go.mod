@@ -1,0 +1,3 @@
+module starcontour.invalid/ffi
+
+go 1.18

@@ -1,0 +1,26 @@
+#!/bin/sh
+# Prints what tests/ffi/golden.txt should hold: the triangle pairs of meshes/crossing_cloths.obj at
+# rest and moved (see moved.awk), as sc-query finds them. To update the file after a change:
+#
+#     tests/ffi/golden.sh > tests/ffi/golden.new && mv tests/ffi/golden.new tests/ffi/golden.txt
+#
+# SPDX-License-Identifier: MIT
+set -eu
+export LC_ALL=C
+
+here=$(dirname "$0")
+mesh=$here/../../meshes/crossing_cloths.obj
+query=${SC_BIN:-$here/../../build/bin}/sc-query
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+awk -f "$here/moved.awk" "$mesh" >"$scratch/moved.obj"
+echo "# pose, triangle a, triangle b: meshes/crossing_cloths.obj by tests/ffi/golden.sh"
+for pose in rest moved; do
+    file=$mesh
+    [ "$pose" = rest ] || file=$scratch/moved.obj
+    status=0
+    "$query" --rest "$mesh" --out "$scratch/pairs" "$file" >/dev/null || status=$?
+    [ "$status" -eq 1 ]
+    sed -n "s/^.*,\([0-9][0-9]*\),\([0-9][0-9]*\)\$/$pose \1 \2/p" "$scratch/pairs"
+done

@@ -1,0 +1,253 @@
+// Java, by JNA: pairs of two poses, the structures' layout, errors, one model in two threads.
+//
+//     java -cp /usr/share/java/jna.jar:. FfiJava MESH GOLDEN LAYOUT
+//
+// SPDX-License-Identifier: MIT
+
+import com.sun.jna.Library;
+import com.sun.jna.Native;
+import com.sun.jna.Pointer;
+import com.sun.jna.Structure;
+import com.sun.jna.ptr.PointerByReference;
+import java.lang.ref.Cleaner;
+import java.nio.ByteBuffer;
+import java.nio.ByteOrder;
+import java.nio.file.Files;
+import java.nio.file.Path;
+import java.util.ArrayList;
+import java.util.HashMap;
+import java.util.List;
+import java.util.Map;
+import java.util.stream.Collectors;
+
+public final class FfiJava {
+    /** The library's functions, as in starcontour.h. */
+    public interface Starcontour extends Library {
+        Starcontour C = Native.load("starcontour", Starcontour.class);
+
+        String sc_status_string(int status);
+        int sc_build(sc_mesh mesh, Pointer options, PointerByReference model);
+        void sc_model_free(Pointer model);
+        int sc_workspace_create(Pointer model, Pointer allocator, PointerByReference workspace);
+        void sc_workspace_free(Pointer workspace);
+        int sc_query(Pointer model, Pointer workspace, sc_pose pose, Pointer options, sc_result result);
+    }
+
+    // Positions, indices and pairs are direct buffers: memory outside Java's heap, read in place.
+
+    @Structure.FieldOrder({"struct_size", "vertex_count", "triangle_count", "position_type",
+        "position_stride", "index_type", "index_stride", "reserved", "positions", "indices"})
+    public static class sc_mesh extends Structure {
+        public int struct_size = size(), vertex_count, triangle_count, position_type, position_stride,
+            index_type, index_stride, reserved;
+        public Pointer positions, indices;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "vertex_count", "position_type", "position_stride", "positions"})
+    public static class sc_pose extends Structure {
+        public int struct_size = size(), vertex_count, position_type, position_stride;
+        public Pointer positions;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "collides", "count", "capacity", "pairs", "stats"})
+    public static class sc_result extends Structure {
+        public int struct_size = size(), collides;
+        public long count, capacity;
+        public Pointer pairs, stats;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    /** What the library refused. */
+    public static final class Refused extends RuntimeException {
+        final int status;
+        Refused(int status) {
+            super(Starcontour.C.sc_status_string(status));
+            this.status = status;
+        }
+    }
+
+    static void check(int status) {
+        if (status != 0) throw new Refused(status);
+    }
+
+    static ByteBuffer direct(int bytes) {
+        return ByteBuffer.allocateDirect(bytes).order(ByteOrder.nativeOrder());
+    }
+
+    static Pointer address(ByteBuffer buffer) {
+        return Native.getDirectBufferPointer(buffer);
+    }
+
+    static final Cleaner cleaner = Cleaner.create();
+
+    /** A mesh made ready for queries: immutable, shared by threads, freed once nothing refers to it. */
+    static final class Model {
+        final Pointer handle;
+
+        Model(ByteBuffer positions, ByteBuffer triangles) {
+            sc_mesh mesh = new sc_mesh();
+            mesh.vertex_count = positions.capacity() / 12;
+            mesh.triangle_count = triangles.capacity() / 12;
+            mesh.positions = address(positions);
+            mesh.indices = address(triangles);
+            PointerByReference out = new PointerByReference();
+            check(Starcontour.C.sc_build(mesh, null, out));
+            Pointer made = out.getValue();
+            handle = made;
+            cleaner.register(this, () -> Starcontour.C.sc_model_free(made));
+        }
+    }
+
+    /** What queries write to; belongs to one call at a time. */
+    static final class Workspace {
+        final Model model;
+        final Pointer handle;
+        ByteBuffer pairs = direct(8 * 16);
+
+        Workspace(Model model) {
+            this.model = model;
+            PointerByReference out = new PointerByReference();
+            check(Starcontour.C.sc_workspace_create(model.handle, null, out));
+            Pointer made = out.getValue();
+            handle = made;
+            cleaner.register(this, () -> Starcontour.C.sc_workspace_free(made));
+        }
+
+        List<String> query(ByteBuffer positions) {
+            sc_pose pose = new sc_pose();
+            pose.vertex_count = positions.capacity() / 12;
+            pose.positions = address(positions);
+            sc_result result = new sc_result();
+            for (;;) {
+                result.capacity = pairs.capacity() / 8;
+                result.pairs = address(pairs);
+                int status = Starcontour.C.sc_query(model.handle, handle, pose, null, result);
+                if (status != 11) {
+                    check(status);
+                    break;
+                }
+                pairs = direct(8 * Math.toIntExact(result.count));
+            }
+            List<String> found = new ArrayList<>();
+            for (int i = 0; i < result.count; ++i) {
+                found.add(Integer.toUnsignedString(pairs.getInt(8 * i)) + " "
+                    + Integer.toUnsignedString(pairs.getInt(8 * i + 4)));
+            }
+            return found;
+        }
+    }
+
+    static int passed, failed;
+
+    static void expect(String what, boolean condition) {
+        if (condition) {
+            ++passed;
+        } else {
+            ++failed;
+            System.out.println("failed: " + what);
+        }
+    }
+
+    static boolean refused(int status, String text, Runnable call) {
+        try {
+            call.run();
+        } catch (Refused e) {
+            return e.status == status && e.getMessage().contains(text);
+        }
+        return false;
+    }
+
+    interface Offset {
+        int at(String member);
+    }
+
+    /** Each structure has the members of the header, no more and no fewer, at their places. */
+    static void expectLayout(List<String> layout, String name, Structure structure, Offset offset) {
+        List<String> own = new ArrayList<>();
+        own.add("struct " + name + " " + structure.size());
+        for (String member : structure.getClass().getAnnotation(Structure.FieldOrder.class).value()) {
+            own.add("member " + name + " " + member + " " + offset.at(member));
+        }
+        List<String> header = layout.stream().map(line -> line.split(" "))
+            .filter(words -> words[1].equals(name))
+            .map(words -> String.join(" ", List.of(words).subList(0, Math.min(4, words.length))))
+            .collect(Collectors.toList());
+        expect(name + " is laid out as in the header", header.equals(own));
+    }
+
+    public static void main(String[] arguments) throws Exception {
+        List<float[]> vertices = new ArrayList<>();
+        List<int[]> faces = new ArrayList<>();
+        for (String line : Files.readAllLines(Path.of(arguments[0]))) {
+            String[] w = line.split(" +");
+            if (w[0].equals("v")) {
+                vertices.add(new float[] {
+                    Float.parseFloat(w[1]), Float.parseFloat(w[2]), Float.parseFloat(w[3])});
+            } else if (w[0].equals("f")) {
+                faces.add(new int[] {
+                    Integer.parseInt(w[1]) - 1, Integer.parseInt(w[2]) - 1, Integer.parseInt(w[3]) - 1});
+            }
+        }
+        int n = vertices.size();
+        ByteBuffer rest = direct(12 * n), moved = direct(12 * n), triangles = direct(12 * faces.size());
+        for (int i = 0; i < n; ++i) {
+            float[] p = vertices.get(i);
+            for (int k = 0; k < 3; ++k) {
+                rest.putFloat(12 * i + 4 * k, p[k]);
+                moved.putFloat(12 * i + 4 * k, p[k] + (k == 2 && i >= n / 2 ? p[0] / 4 - 0.25f : 0));
+            }
+        }
+        for (int[] face : faces) {
+            for (int v : face) triangles.putInt(v);
+        }
+        Map<String, List<String>> golden = new HashMap<>();
+        for (String line : Files.readAllLines(Path.of(arguments[1]))) {
+            if (line.startsWith("#")) continue;
+            String[] w = line.split(" ", 2);
+            golden.computeIfAbsent(w[0], pose -> new ArrayList<>()).add(w[1]);
+        }
+        expect("there is something to compare", !golden.get("rest").equals(golden.get("moved")));
+
+        List<String> layout = Files.readAllLines(Path.of(arguments[2]));
+        sc_mesh mesh = new sc_mesh();
+        expectLayout(layout, "sc_mesh", mesh, mesh::at);
+        sc_pose pose = new sc_pose();
+        expectLayout(layout, "sc_pose", pose, pose::at);
+        sc_result result = new sc_result();
+        expectLayout(layout, "sc_result", result, result::at);
+
+        Model model = new Model(rest, triangles);
+        Workspace workspace = new Workspace(model);
+        expect("pairs at rest", workspace.query(rest).equals(golden.get("rest")));
+        expect("pairs when moved", workspace.query(moved).equals(golden.get("moved")));
+
+        boolean[] right = {true, true};
+        Thread[] threads = new Thread[2];
+        for (int i = 0; i < 2; ++i) {
+            int own = i;
+            threads[i] = new Thread(() -> {
+                Workspace mine = new Workspace(model);
+                for (int k = 0; k < 100; ++k) {
+                    right[own] &= mine.query(own == 0 ? rest : moved)
+                        .equals(golden.get(own == 0 ? "rest" : "moved"));
+                }
+            });
+            threads[i].start();
+        }
+        for (Thread thread : threads) thread.join();
+        expect("two threads, one model", right[0] && right[1]);
+
+        moved.putFloat(4, Float.NaN);
+        expect("NaN", refused(8, "NaN", () -> workspace.query(moved)));
+        expect("number of vertices", refused(9, "vert", () -> workspace.query(direct(12 * (n - 1)))));
+        expect("no triangles", refused(4, "triangle", () -> new Model(rest, direct(0))));
+        triangles.putInt(0, n);
+        expect("vertex out of range", refused(7, "vertex", () -> new Model(rest, triangles)));
+        expect("usable after errors", workspace.query(rest).equals(golden.get("rest")));
+
+        System.out.println("java: " + passed + " passed, " + failed + " failed");
+        System.exit(failed == 0 ? 0 : 1);
+    }
+}

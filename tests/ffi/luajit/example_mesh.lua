@@ -1,0 +1,72 @@
+-- The mesh, the two poses and the golden pairs of these tests, for LuaJIT and LÖVE.
+--
+-- SPDX-License-Identifier: MIT
+local ffi = require("ffi")
+
+local example = {}
+
+-- An OBJ file: float[3 n] and uint32_t[3 m], n and m.
+function example.read(path)
+    local at, corners = {}, {}
+    for line in io.lines(path) do
+        local kind, rest = line:match("^(%a+)%s+(.*)")
+        if kind == "v" then
+            for number in rest:gmatch("%S+") do at[#at + 1] = tonumber(number) end
+        elseif kind == "f" then
+            for number in rest:gmatch("(%d+)%S*") do corners[#corners + 1] = tonumber(number) - 1 end
+        end
+    end
+    return { vertices = ffi.new("float[?]", #at, at), vertex_count = #at / 3,
+             triangles = ffi.new("uint32_t[?]", #corners, corners), triangle_count = #corners / 3 }
+end
+
+-- The second pose, in doubles: the later half of the vertices tilted.
+function example.moved(mesh)
+    local pose = ffi.new("double[?]", 3 * mesh.vertex_count)
+    for i = 0, mesh.vertex_count - 1 do
+        local x, y, z = mesh.vertices[3 * i], mesh.vertices[3 * i + 1], mesh.vertices[3 * i + 2]
+        pose[3 * i], pose[3 * i + 1] = x, y
+        pose[3 * i + 2] = z + (i >= math.floor(mesh.vertex_count / 2) and x / 4 - 0.25 or 0)
+    end
+    return pose
+end
+
+-- { rest = { "a b", ... }, moved = { ... } }
+function example.golden(path)
+    local golden = { rest = {}, moved = {} }
+    for line in io.lines(path) do
+        local pose, pair = line:match("^(%a+) (%d+ %d+)$")
+        if pose then table.insert(golden[pose], pair) end
+    end
+    return golden
+end
+
+-- Whether these are the golden pairs, in the same order.
+function example.same(golden, pairs, count)
+    if count ~= #golden then return false end
+    for i = 1, count do
+        local pair = pairs[i - 1]
+        if golden[i] ~= string.format("%d %d", pair.a, pair.b) then return false end
+    end
+    return true
+end
+
+-- Counts checks: check(what, condition); check.finish(name) prints the sum and returns the failures.
+function example.checks()
+    local passed, failed = 0, 0
+    local checks = {}
+    function checks.finish(name)
+        print(string.format("%s: %d passed, %d failed", name, passed, failed))
+        return failed
+    end
+    return setmetatable(checks, { __call = function(_, what, condition)
+        if condition then
+            passed = passed + 1
+        else
+            failed = failed + 1
+            print("failed: " .. what)
+        end
+    end })
+end
+
+return example

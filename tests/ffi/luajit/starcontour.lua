@@ -1,0 +1,128 @@
+-- starcontour for LuaJIT, as an engine binds it: the declarations are read out of starcontour.h when
+-- the program starts, so structures are the header's and need no copying.
+--
+--     local sc = require("starcontour").load(header, library)
+--     local model = sc.build(vertices, vertex_count, triangles, triangle_count)
+--     local workspace = model:workspace()
+--     local pairs, count = workspace:query(pose, vertex_count)
+--     -- pairs[0] to pairs[count - 1] have the fields a and b
+--
+-- Vertices and poses are cdata arrays of float or double, three a vertex, triangles of uint32_t; they
+-- are read in place. What query returns stays as it is until the next query of the same workspace.
+-- Errors of the library are Lua errors: tables with status and message. What is not wrapped is in
+-- sc.C.
+--
+-- SPDX-License-Identifier: MIT
+local ffi = require("ffi")
+
+local starcontour = {}
+
+-- The header's text without comments, directives, what is for C++ only, and SC_API.
+function starcontour.declarations(header)
+    local file = assert(io.open(header))
+    local text = file:read("*a")
+    file:close()
+    text = text:gsub("/%*.-%*/", " "):gsub("\\\n", " ")
+    local lines, depth, skipped = {}, 0, nil
+    for line in text:gmatch("[^\n]+") do
+        if line:match("^%s*#%s*if") then
+            depth = depth + 1
+            if line:match("__cplusplus") then skipped = depth end
+        elseif line:match("^%s*#%s*endif") then
+            if skipped == depth then skipped = nil end
+            depth = depth - 1
+        elseif not line:match("^%s*#") and not skipped then
+            lines[#lines + 1] = line
+        end
+    end
+    return (table.concat(lines, "\n"):gsub("SC_API", ""))
+end
+
+-- The library's number for the type of a cdata array's elements.
+local function scalar_type(C, positions)
+    local name = tostring(ffi.typeof(positions))
+    if name:match("double") then return C.SC_DOUBLE end
+    if name:match("float") then return C.SC_FLOAT end
+    error("a pose is an array of float or double, not " .. name, 3)
+end
+
+function starcontour.load(header, library)
+    ffi.cdef(starcontour.declarations(header))
+    local C = ffi.load(library)
+    local sc = { C = C, ffi = ffi }
+
+    local function check(status)
+        if status ~= C.SC_OK then
+            error({ status = status, message = ffi.string(C.sc_status_string(status)) }, 0)
+        end
+    end
+
+    local function sized(type, members)
+        local struct = ffi.new(type, members or {})
+        struct.struct_size = ffi.sizeof(type)
+        return struct
+    end
+
+    local Workspace = {}
+    Workspace.__index = Workspace
+
+    -- options: members of sc_query_options by name, or nil.
+    function Workspace:query(positions, vertex_count, options)
+        local pose = sized("sc_pose", {
+            vertex_count = vertex_count, position_type = scalar_type(C, positions),
+            positions = positions })
+        local asked = sized("sc_query_options", options)
+        local result = self.result
+        while true do
+            result.capacity, result.pairs = self.capacity, self.pairs
+            local status = C.sc_query(self.model.handle, self.handle, pose, asked, result)
+            if status ~= C.SC_ERROR_SHORT_BUFFER then
+                check(status)
+                return self.pairs, tonumber(result.count)
+            end
+            self.capacity = tonumber(result.count) * 2
+            self.pairs = ffi.new("sc_pair[?]", self.capacity)
+        end
+    end
+
+    local Model = {}
+    Model.__index = Model
+
+    function Model:workspace()
+        local out = ffi.new("sc_workspace *[1]")
+        check(C.sc_workspace_create(self.handle, nil, out))
+        return setmetatable({
+            model = self, handle = ffi.gc(out[0], C.sc_workspace_free), capacity = 16,
+            pairs = ffi.new("sc_pair[16]"), result = sized("sc_result") }, Workspace)
+    end
+
+    function Model:info()
+        local info = sized("sc_model_info")
+        check(C.sc_model_get_info(self.handle, info))
+        return info
+    end
+
+    -- The model's address, to be handed to another thread's Lua state, and a Model made of one. The
+    -- one that built it has to outlive those.
+    function Model:address()
+        return tonumber(ffi.cast("uintptr_t", self.handle))
+    end
+
+    function sc.borrow(address)
+        return setmetatable({ handle = ffi.cast("sc_model *", address) }, Model)
+    end
+
+    -- vertices: cdata of float or double. triangles: cdata of uint32_t.
+    function sc.build(vertices, vertex_count, triangles, triangle_count, options)
+        local mesh = sized("sc_mesh", {
+            vertex_count = vertex_count, triangle_count = triangle_count,
+            position_type = scalar_type(C, vertices), positions = vertices, indices = triangles })
+        local out = ffi.new("sc_model *[1]")
+        check(C.sc_build(mesh, sized("sc_build_options", options), out))
+        return setmetatable({ handle = ffi.gc(out[0], C.sc_model_free) }, Model)
+    end
+
+    return sc
+end
+
+return starcontour

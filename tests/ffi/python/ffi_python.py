@@ -1,0 +1,165 @@
+"""The Python package on numpy arrays: pairs of two poses, strides, errors, one model in two threads.
+
+    python3 ffi_python.py MESH GOLDEN LAYOUT
+
+SPDX-License-Identifier: MIT
+"""
+
+import ctypes
+import sys
+import threading
+
+import numpy as np
+import starcontour
+from starcontour import _binding
+
+passed = failed = 0
+
+
+def check(what, condition):
+    global passed, failed
+    if condition:
+        passed += 1
+    else:
+        failed += 1
+        print("failed:", what)
+
+
+def raised(status, call):
+    """The text of the Error of this status that the call raises, else None."""
+    try:
+        call()
+    except starcontour.Error as error:
+        return str(error) if error.status == status else None
+    return None
+
+
+def refused(kind, call):
+    try:
+        call()
+    except kind:
+        return True
+    return False
+
+
+mesh_path, golden_path, layout_path = sys.argv[1:4]
+with open(mesh_path) as file:
+    lines = [line.split() for line in file]
+rest = np.array([line[1:4] for line in lines if line[0] == "v"], dtype=np.float32)
+triangles = np.array([[int(c.split("/")[0]) - 1 for c in line[1:4]] for line in lines if line[0] == "f"])
+moved = rest.astype(np.float64)
+later = len(rest) // 2
+moved[later:, 2] += moved[later:, 0] / 4 - 0.25
+
+golden = {"rest": [], "moved": []}
+with open(golden_path) as file:
+    for line in file:
+        if not line.startswith("#"):
+            pose, a, b = line.split()
+            golden[pose].append((int(a), int(b)))
+golden = {pose: np.array(pairs, np.uint32) for pose, pairs in golden.items()}
+
+
+def same(pairs, pose):
+    return pairs.dtype == np.uint32 and np.array_equal(pairs, golden[pose])
+
+
+# The structures are those of the header.
+layout = {"struct": {}, "member": {}}
+with open(layout_path) as file:
+    for line in file:
+        kind, *rest_of_line = line.split()
+        if kind == "struct":
+            layout["struct"][rest_of_line[0]] = int(rest_of_line[1])
+        elif kind == "member":
+            name, member, offset, size = rest_of_line
+            layout["member"].setdefault(name, []).append((member, int(offset), int(size)))
+for structure in _binding.structures:
+    name = structure.__name__
+    mirrored = [(f, getattr(structure, f).offset, getattr(structure, f).size)
+                for f, _ in structure._fields_]
+    check(f"{name} is laid out as in the header",
+          mirrored == layout["member"][name] and ctypes.sizeof(structure) == layout["struct"][name])
+
+model = starcontour.Model(rest, triangles)
+check("info", model.info.vertex_count == len(rest) and model.info.triangle_count == len(triangles))
+check("pairs at rest", same(model.query(rest), "rest"))
+check("pairs when moved", same(model.query(moved), "moved"))
+check("count and any", model.count(moved) == len(golden["moved"]) and model.collides(moved))
+apart = rest.copy()
+apart[later:, 2] += 9
+check("none", model.query(apart).shape == (0, 2) and not model.collides(apart))
+for method in ("sctt", "aabb_sctt", "aabb"):
+    check(method, same(model.query(moved, method=method, rest_cache=False), "moved"))
+many = model.query(moved, pairs="edge")
+check("edges", len(many) == model.count(moved, pairs="edge") and many[:, 0].max() < 3 * len(triangles))
+check("proper", model.count(rest, contact="proper") == len(golden["rest"]))
+
+# What is read in place, what is copied, and what is refused.
+interleaved = np.zeros(len(rest), [("position", np.float32, 3), ("normal", np.float32, 3)])
+interleaved["position"] = rest
+wide = np.full((len(rest), 5), np.nan)
+wide[:, 1:4] = moved
+check("vertex buffers in place", np.shares_memory(
+    starcontour._positions(interleaved["position"]), interleaved) and np.shares_memory(
+    starcontour._positions(wide[:, 1:4]), wide))
+check("interleaved vertices", same(model.query(interleaved["position"]), "rest"))
+check("columns of a wider array", same(model.query(wide[:, 1:4]), "moved"))
+check("Fortran order", same(model.query(np.asfortranarray(moved)), "moved"))
+check("backwards", same(model.query(rest[::-1].copy()[::-1]), "rest"))
+check("other byte order", same(model.query(rest.astype(">f4")), "rest"))
+check("lists", same(model.query(moved.tolist()), "moved"))
+check("one vertex for all", model.count(np.broadcast_to(rest[0], rest.shape)) > 0)
+check("integers that may not fit", refused(TypeError, lambda: model.query(rest.astype(np.int64))))
+check("complex numbers", refused(TypeError, lambda: model.query(rest.astype(complex))))
+check("flat array", refused(ValueError, lambda: model.query(rest.ravel())))
+check("unknown option", refused(ValueError, lambda: model.query(rest, pairs="vertex")))
+for type in (np.uint16, np.uint32, np.int32, np.int64, ">u4"):
+    other = starcontour.Model(rest, triangles.astype(type))
+    check(f"triangles as {type}", same(other.query(moved), "moved"))
+check("strided triangles", same(starcontour.Model(
+    rest, np.pad(triangles.astype(np.uint16), ((0, 0), (0, 1)))[:, :3]).query(moved), "moved"))
+check("caller's order", same(starcontour.Model(
+    rest, triangles, order=np.arange(len(triangles))[::-1], weld=np.arange(len(rest))).query(moved), "moved"))
+check("no welding", same(starcontour.Model(rest, triangles, weld="none").query(rest), "rest"))
+
+# Errors.
+spoilt = rest.copy()
+spoilt[7, 1] = np.nan
+check("NaN", "NaN" in (raised(8, lambda: model.query(spoilt)) or ""))
+check("number of vertices", "vert" in (raised(9, lambda: model.query(rest[:-1])) or ""))
+check("negative vertex", raised(7, lambda: starcontour.Model(rest, [[0, 1, -1]])))
+check("vertex out of range", raised(7, lambda: starcontour.Model(rest, [[0, 1, len(rest)]])))
+check("no triangles", raised(4, lambda: starcontour.Model(rest, np.empty((0, 3), np.uint32))))
+check("patches", len(model.patches(0)) == len(triangles) and raised(18, lambda: model.patches(99)))
+check("usable after errors", same(model.query(rest), "rest"))
+
+# One model, two threads, each with a workspace of its own.
+wrong = []
+
+
+def work(pose, positions):
+    workspace = model.workspace()
+    for _ in range(100):
+        if not same(workspace.query(positions), pose) or not same(model.query(positions), pose):
+            wrong.append(pose)
+
+
+threads = [threading.Thread(target=work, args=arguments) for arguments in (("rest", rest), ("moved", moved))]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+check("two threads, one model", not wrong)
+
+busy = model.workspace()
+with busy._scratch.lock:
+    check("workspace in use", raised(12, lambda: busy.query(rest)))
+check("and free again", same(busy.query(rest), "rest"))
+
+# A workspace keeps its model.
+alone = starcontour.Model(rest, triangles).workspace()
+check("workspace outlives the last name of its model", same(alone.query(rest), "rest"))
+
+print(f"python: {passed} passed, {failed} failed")
+sys.exit(failed > 0)

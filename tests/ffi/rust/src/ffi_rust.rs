@@ -1,0 +1,105 @@
+//! Rust: pairs of two poses, the structures' layout, errors, one model in two threads.
+//!
+//!     ffi_rust MESH GOLDEN LAYOUT
+//!
+//! SPDX-License-Identifier: MIT
+
+use starcontour::{raw, Error, Model, Options, Pair};
+use std::collections::HashMap;
+use std::{env, fs, process, thread};
+
+struct Checks {
+    passed: u32,
+    failed: u32,
+}
+
+impl Checks {
+    fn check(&mut self, what: &str, condition: bool) {
+        if condition {
+            self.passed += 1;
+        } else {
+            self.failed += 1;
+            println!("failed: {what}");
+        }
+    }
+}
+
+fn refused<T>(result: Result<T, Error>, error: Error, text: &str) -> bool {
+    matches!(result, Err(found) if found == error && found.to_string().contains(text))
+}
+
+fn main() {
+    let arguments: Vec<String> = env::args().collect();
+    let read = |i: usize| fs::read_to_string(&arguments[i]).expect("a readable file");
+    let mut checks = Checks { passed: 0, failed: 0 };
+
+    let (mut rest, mut triangles) = (Vec::<[f32; 3]>::new(), Vec::<[u32; 3]>::new());
+    for line in read(1).lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words[0] {
+            "v" => rest.push([1, 2, 3].map(|i| words[i].parse().unwrap())),
+            "f" => triangles.push([1, 2, 3].map(|i| words[i].parse::<u32>().unwrap() - 1)),
+            _ => {}
+        }
+    }
+    let mut moved: Vec<[f64; 3]> = rest.iter().map(|p| p.map(f64::from)).collect();
+    for p in &mut moved[rest.len() / 2..] {
+        p[2] += p[0] / 4.0 - 0.25;
+    }
+    let mut golden = HashMap::<String, Vec<Pair>>::new();
+    for line in read(2).lines().filter(|line| !line.starts_with('#')) {
+        let words: Vec<&str> = line.split(' ').collect();
+        let pair = Pair { a: words[1].parse().unwrap(), b: words[2].parse().unwrap() };
+        golden.entry(words[0].into()).or_default().push(pair);
+    }
+    checks.check("there is something to compare", golden["rest"] != golden["moved"]);
+
+    // Each structure has the members of the header, no more and no fewer, at their places.
+    let layout = read(3);
+    for (name, size, members) in raw::layouts() {
+        let mut lines = vec![format!("struct {name} {size}")];
+        lines.extend(members.iter().map(|(member, at)| format!("member {name} {member} {at}")));
+        let header: Vec<String> = layout
+            .lines()
+            .filter(|line| line.split(' ').nth(1) == Some(name))
+            .map(|line| line.splitn(5, ' ').take(4).collect::<Vec<_>>().join(" "))
+            .collect();
+        checks.check(&format!("{name} is laid out as in the header"), header == lines);
+    }
+
+    let model = Model::build(&rest, &triangles).expect("a model");
+    let options = Options::default();
+    let mut workspace = model.workspace().expect("a workspace");
+    checks.check("pairs at rest", workspace.query(&rest, &options).unwrap() == golden["rest"]);
+    checks.check("pairs when moved", workspace.query(&moved, &options).unwrap() == golden["moved"]);
+    let proper_edges = Options { edges: true, proper: true };
+    checks.check("edges, proper", !workspace.query(&rest, &proper_edges).unwrap().is_empty());
+
+    let right = thread::scope(|scope| {
+        let at_rest = scope.spawn(|| {
+            let mut own = model.workspace().unwrap();
+            (0..200).all(|_| own.query(&rest, &options).unwrap() == golden["rest"])
+        });
+        let when_moved = scope.spawn(|| {
+            let mut own = model.workspace().unwrap();
+            (0..200).all(|_| own.query(&moved, &options).unwrap() == golden["moved"])
+        });
+        at_rest.join().unwrap() & when_moved.join().unwrap()
+    });
+    checks.check("two threads, one model", right);
+
+    let mut spoilt = moved.clone();
+    spoilt[4][0] = f64::NAN;
+    let answer = workspace.query(&spoilt, &options);
+    checks.check("NaN", refused(answer, starcontour::ERROR_NOT_FINITE, "NaN"));
+    let answer = workspace.query(&moved[1..], &options);
+    checks.check("number of vertices", refused(answer, starcontour::ERROR_VERTEX_COUNT, "vert"));
+    let model_of_none = Model::build(&rest, &[]);
+    checks.check("no triangles", refused(model_of_none, starcontour::ERROR_EMPTY, "triangle"));
+    let out_of_range = Model::build(&rest, &[[0, 1, rest.len() as u32]]);
+    checks.check("vertex out of range", refused(out_of_range, starcontour::ERROR_INDEX, "vertex"));
+    checks.check("usable after errors", workspace.query(&rest, &options).unwrap() == golden["rest"]);
+
+    println!("rust: {} passed, {} failed", checks.passed, checks.failed);
+    process::exit((checks.failed > 0).into());
+}

@@ -1,0 +1,121 @@
+//! starcontour.h as Rust sees it: same names, same layout, nothing added.
+//!
+//! SPDX-License-Identifier: MIT
+#![allow(non_camel_case_types)]
+
+use std::mem::{size_of, MaybeUninit};
+use std::os::raw::{c_char, c_void};
+use std::ptr::addr_of;
+
+pub type sc_status = i32;
+
+#[repr(C)]
+pub struct sc_mesh {
+    pub struct_size: u32,
+    pub vertex_count: u32,
+    pub triangle_count: u32,
+    pub position_type: u32,
+    pub position_stride: u32,
+    pub index_type: u32,
+    pub index_stride: u32,
+    pub reserved: u32,
+    pub positions: *const c_void,
+    pub indices: *const c_void,
+}
+
+#[repr(C)]
+pub struct sc_pose {
+    pub struct_size: u32,
+    pub vertex_count: u32,
+    pub position_type: u32,
+    pub position_stride: u32,
+    pub positions: *const c_void,
+}
+
+#[repr(C)]
+pub struct sc_query_options {
+    pub struct_size: u32,
+    pub output: u32,
+    pub pairs: u32,
+    pub contact: u32,
+    pub method: u32,
+    pub contour: u32,
+    pub rest_cache: u32,
+    pub reserved: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct sc_pair {
+    pub a: u32,
+    pub b: u32,
+}
+
+#[repr(C)]
+pub struct sc_result {
+    pub struct_size: u32,
+    pub collides: u32,
+    pub count: u64,
+    pub capacity: u64,
+    pub pairs: *mut sc_pair,
+    pub stats: *mut c_void,
+}
+
+#[repr(C)]
+pub struct sc_model {
+    _opaque: [u8; 0],
+}
+
+#[repr(C)]
+pub struct sc_workspace {
+    _opaque: [u8; 0],
+}
+
+extern "C" {
+    pub fn sc_status_string(status: sc_status) -> *const c_char;
+    pub fn sc_build(
+        mesh: *const sc_mesh,
+        options: *const c_void,
+        model: *mut *mut sc_model,
+    ) -> sc_status;
+    pub fn sc_model_free(model: *mut sc_model);
+    pub fn sc_workspace_create(
+        model: *const sc_model,
+        allocator: *const c_void,
+        workspace: *mut *mut sc_workspace,
+    ) -> sc_status;
+    pub fn sc_workspace_free(workspace: *mut sc_workspace);
+    pub fn sc_query(
+        model: *const sc_model,
+        workspace: *mut sc_workspace,
+        pose: *const sc_pose,
+        options: *const sc_query_options,
+        result: *mut sc_result,
+    ) -> sc_status;
+}
+
+/// Name, size in bytes, and the names and offsets of the members.
+pub type Layout = (&'static str, usize, Vec<(&'static str, usize)>);
+
+/// The layout of each structure above.
+pub fn layouts() -> Vec<Layout> {
+    macro_rules! layout {
+        ($type:ident: $($member:ident)*) => {{
+            let nothing = MaybeUninit::<$type>::uninit();
+            let start = nothing.as_ptr();
+            // SAFETY: addresses are taken, nothing is read.
+            let offsets = vec![$((stringify!($member),
+                unsafe { addr_of!((*start).$member) as usize - start as usize })),*];
+            (stringify!($type), size_of::<$type>(), offsets)
+        }};
+    }
+    vec![
+        layout!(sc_mesh: struct_size vertex_count triangle_count position_type position_stride
+            index_type index_stride reserved positions indices),
+        layout!(sc_pose: struct_size vertex_count position_type position_stride positions),
+        layout!(sc_query_options: struct_size output pairs contact method contour rest_cache
+            reserved),
+        layout!(sc_pair: a b),
+        layout!(sc_result: struct_size collides count capacity pairs stats),
+    ]
+}
