@@ -35,6 +35,7 @@ PREFIX ?= /usr/local
 BINDIR ?= $(PREFIX)/bin
 LIBDIR ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
+MANDIR ?= $(PREFIX)/share/man
 WERROR ?= 0
 V ?= 0
 INSTALL ?= install
@@ -475,10 +476,18 @@ analyze-cppcheck: ## cppcheck over lib/
 check-layering: ## who may include whom, file names, source list
 	@tools/check_layering.sh
 
+.PHONY: docs
+docs: ## API pages and guides in build/docs/html, by Doxygen; warnings are errors
+	$(call need,doxygen,doxygen)
+	@rm -rf '$(BUILD)/docs' && mkdir -p '$(BUILD)/docs'
+	@SC_VERSION='$(version)' SC_DOCS='$(BUILD)/docs' doxygen tools/Doxyfile || \
+	    { cat '$(BUILD)/docs/warnings.log' >&2; exit 1; }
+	@echo '$(BUILD)/docs/html/index.html'
+
 .PHONY: format
 format: ## clang-format on all C and C++ files, in place
 	clang-format -i $(wildcard include/*.h lib/*.[ch] lib/*/*.[ch] tools/*.[ch] tests/*.[ch] \
-	    tests/*.cpp tests/*/*.[ch] tests/cgal/*.cpp bench/*.[ch] bench/*/*.[ch] \
+	    tests/*.cpp tests/*/*.[ch] tests/*/*.cpp tests/*/*/*.cpp bench/*.[ch] bench/*/*.[ch] \
 	    bench/*/*.cpp meshes/*.[ch])
 
 # ------------------------------------------------------------------------------------------------
@@ -566,6 +575,8 @@ install: all ## install headers, libraries, pkg-config files and programs below 
 	done
 ifneq ($(installed),)
 	$(INSTALL) -m 755 $(installed) '$(DESTDIR)$(BINDIR)'
+	$(INSTALL) -d '$(DESTDIR)$(MANDIR)/man1'
+	$(INSTALL) -m 644 $(patsubst %,tools/man/%.1,$(notdir $(installed))) '$(DESTDIR)$(MANDIR)/man1'
 endif
 
 .PHONY: uninstall
@@ -575,7 +586,8 @@ uninstall: ## remove what install installs
 	for name in libstarcontour.a libstarcontour_metis.a $(shared_name) $(soname) $(shared_link) \
 	    pkgconfig/starcontour.pc pkgconfig/starcontour_metis.pc; do \
 	    rm -f '$(DESTDIR)$(LIBDIR)/'$$name || exit 1; done
-	for name in sc-query sc-partition; do rm -f '$(DESTDIR)$(BINDIR)/'$$name || exit 1; done
+	for name in sc-query sc-partition; do rm -f '$(DESTDIR)$(BINDIR)/'$$name \
+	    '$(DESTDIR)$(MANDIR)/man1/'$$name.1 || exit 1; done
 
 .PHONY: clean
 clean: ## remove everything built; downloaded meshes stay
@@ -612,10 +624,11 @@ help: ## this list
 #: V           1: show commands
 #: BUILD       where everything goes [build]
 #: DESTDIR     put before every path of install and uninstall
-#: PREFIX      where install installs [/usr/local]; also BINDIR, LIBDIR, INCLUDEDIR
+#: PREFIX      where install installs [/usr/local]; also BINDIR, LIBDIR, INCLUDEDIR, MANDIR
 #: BINDIR      [PREFIX/bin]
 #: LIBDIR      [PREFIX/lib]
 #: INCLUDEDIR  [PREFIX/include]
+#: MANDIR      [PREFIX/share/man]
 
 -include $(shell find $(obj) -name '*.d' 2>/dev/null)
 

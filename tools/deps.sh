@@ -36,7 +36,9 @@ program valgrind valgrind valgrind valgrind -
 sanitizers clang libclang-rt-dev compiler-rt compiler-rt -"
 group_bench="\
 module matplotlib python3-matplotlib python3-matplotlib python-matplotlib python-matplotlib"
-group_docs=
+group_docs="\
+program doxygen doxygen doxygen doxygen doxygen
+program mandoc mandoc mandoc mandoc mandoc"
 group_ffi="\
 module setuptools,wheel,pip,numpy python3-setuptools,python3-wheel,python3-pip,python3-numpy \
     python3-setuptools,python3-wheel,python3-pip,python3-numpy \

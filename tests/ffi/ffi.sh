@@ -98,6 +98,7 @@ run() {
         passed=$((passed + 1))
         echo "$name: $((${sums% *} + 1)) passed, 0 failed"
     fi
+    return 0
 }
 
 # ------------------------------------------------------------------------------------------------
@@ -156,6 +157,17 @@ distribution() {
         "$work/sdist") && mv "$work"/sdist/starcontour-*.tar.gz "$work/sdist/starcontour.tar.gz"
 }
 
+# The example of tools/python/README.md prints what is said there.
+readme() {
+    awk '/^```python$/ { inside = 1; next } /^```$/ { inside = 0 } inside' tools/python/README.md \
+        >"$work/readme.py"
+    awk '/^```text$/ { inside = 1; next } /^```$/ { inside = 0 } inside' tools/python/README.md \
+        >"$work/readme.txt"
+    test -s "$work/readme.txt" &&
+        PYTHONPATH=$work/site "$python" "$work/readme.py" | diff "$work/readme.txt" - &&
+        passed=$((passed + 1))
+}
+
 if wanted python; then
     if python_with numpy; then
         run python env PYTHONPATH="$top/tools/python" STARCONTOUR_LIBRARY="$library" \
@@ -168,7 +180,7 @@ if wanted python; then
         python_with "setuptools, wheel, pip, numpy"; then
         build "python, pip install ./tools/python" from_source ./tools/python &&
             run "python, pip install ./tools/python" env PYTHONPATH="$work/site" \
-                "$python" "$here/python/ffi_python.py"
+                "$python" "$here/python/ffi_python.py" && build "tools/python/README.md" readme
         build "python, source distribution" distribution &&
             build "python, source distribution" from_source "$work/sdist/starcontour.tar.gz" &&
             run "python, source distribution" env PYTHONPATH="$work/site" \
