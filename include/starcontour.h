@@ -24,7 +24,7 @@
  * at a time. Calls on different workspaces may run concurrently.
  *
  * Memory. sc_build and sc_workspace_create allocate through the caller's sc_allocator, if there is
- * one. sc_query allocates nothing.
+ * one. sc_query allocates nothing. 32 kilobytes of stack are enough for any call.
  *
  * Errors. Calls return an sc_status. On an error nothing is leaked, outputs are as each call says,
  * and the model and workspace remain usable. The library never prints, exits, aborts or raises, and

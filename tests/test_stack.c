@@ -1,0 +1,163 @@
+/*
+ * How much stack the calls take: engines run them on fibers with small ones. What
+ * include/EMBEDDING.md promises, 32 kilobytes, is enough, also where signs need the widest numbers.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#define _XOPEN_SOURCE 700
+
+#include <pthread.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness.h"
+#include "starcontour.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#  define SANITIZED 1
+#elif defined(__has_feature)
+#  if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) ||                       \
+      __has_feature(memory_sanitizer)
+#    define SANITIZED 1
+#  endif
+#endif
+#ifndef SANITIZED
+#  define SANITIZED 0
+#endif
+
+enum {
+    SIDE = 60,
+    VERTICES = SIDE * SIDE,
+    TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1),
+    STACK = 1 << 20,
+    PAINT = 0xa5,
+    PROMISED = 32 * 1024
+};
+
+/* One call, on a stack of its own. */
+typedef struct call {
+    const sc_mesh *mesh;
+    const sc_pose *pose;
+    uint32_t pairs;
+    sc_model *model;
+    sc_workspace *workspace;
+    sc_result result;
+    sc_status status;
+} call;
+
+static void *nothing(void *argument)
+{
+    return argument;
+}
+
+static void *build(void *argument)
+{
+    call *c = (call *)argument;
+    c->status = sc_build(c->mesh, NULL, &c->model);
+    return NULL;
+}
+
+static void *query(void *argument)
+{
+    call *c = (call *)argument;
+    const sc_query_options options = {.struct_size = sizeof(options), .pairs = c->pairs};
+    c->status = sc_query(c->model, c->workspace, c->pose, &options, &c->result);
+    return NULL;
+}
+
+/* Bytes of stack that a thread with this body has written to, 0 if there was no thread. */
+static size_t stack_of(void *(*body)(void *), call *c)
+{
+    unsigned char *stack = NULL;
+    pthread_attr_t attributes;
+    pthread_t thread;
+    size_t untouched = 0;
+    void *memory = NULL;
+    if (posix_memalign(&memory, 4096, STACK)) return 0;
+    stack = (unsigned char *)memory;
+    memset(stack, PAINT, STACK);
+    pthread_attr_init(&attributes);
+    if (pthread_attr_setstack(&attributes, stack, STACK) ||
+        pthread_create(&thread, &attributes, body, c)) {
+        free(stack);
+        return 0;
+    }
+    pthread_join(thread, NULL);
+    pthread_attr_destroy(&attributes);
+    while (untouched < STACK && stack[untouched] == PAINT) ++untouched;
+    free(stack);
+    return STACK - untouched;
+}
+
+/* A cloth folded flat onto itself three times: all contacts are degenerate. */
+static void folded(double *positions, double unit)
+{
+    for (int i = 0; i < VERTICES; ++i) {
+        const int x = i % SIDE, y = i / SIDE, fold = x % 30;
+        positions[3 * i] = unit / 3 * (fold < 15 ? fold : 30 - fold);
+        positions[3 * i + 1] = unit / 7 * (y + 0.25 * (x / 15));
+        positions[3 * i + 2] = unit / 11 * (positions[3 * i] / unit + positions[3 * i + 1] / unit);
+    }
+}
+
+static void calls_take_little_stack(void)
+{
+    static uint32_t triangles[3 * TRIANGLES];
+    static double rest[3 * VERTICES], moved[3 * VERTICES];
+    const double units[] = {1, 1e-107, 1e150};
+    uint32_t *next = triangles;
+    if (SANITIZED) {
+        test_note("skipped: sanitizers take stack of their own");
+        return;
+    }
+    for (uint32_t y = 0; y + 1 < SIDE; ++y) {
+        for (uint32_t x = 0; x + 1 < SIDE; ++x) {
+            const uint32_t a = y * SIDE + x;
+            const uint32_t corners[] = {a, a + 1, a + SIDE, a + 1, a + SIDE + 1, a + SIDE};
+            memcpy(next, corners, sizeof(corners));
+            next += 6;
+        }
+    }
+    for (int i = 0; i < VERTICES; ++i) rest[3 * i] = i % SIDE, rest[3 * i + 1] = i / SIDE;
+
+    const sc_mesh mesh = {.struct_size = sizeof(mesh),
+                          .vertex_count = VERTICES,
+                          .triangle_count = TRIANGLES,
+                          .position_type = SC_DOUBLE,
+                          .positions = rest,
+                          .indices = triangles};
+    const sc_pose pose = {.struct_size = sizeof(pose),
+                          .vertex_count = VERTICES,
+                          .position_type = SC_DOUBLE,
+                          .positions = moved};
+    sc_stats stats = {.struct_size = sizeof(stats)};
+    call c = {.mesh = &mesh, .pose = &pose};
+    const size_t empty = stack_of(nothing, &c);
+    const size_t building = stack_of(build, &c);
+    if (!CHECK(empty > 0 && building > empty) || !CHECK(c.status == SC_OK)) return;
+    CHECK_MSG(building - empty <= PROMISED, "%zu bytes", building - empty);
+    test_note("sc_build: %zu bytes", building - empty);
+    if (!CHECK(sc_workspace_create(c.model, NULL, &c.workspace) == SC_OK)) return;
+
+    size_t most = 0;
+    uint64_t fallbacks = 0;
+    for (size_t u = 0; u < sizeof(units) / sizeof(units[0]); ++u) {
+        folded(moved, units[u]);
+        for (c.pairs = SC_PAIRS_TRIANGLE; c.pairs <= SC_PAIRS_EDGE; ++c.pairs) {
+            c.result = (sc_result){.struct_size = sizeof(c.result), .stats = &stats};
+            const size_t querying = stack_of(query, &c);
+            CHECK_MSG(c.status == SC_ERROR_SHORT_BUFFER, "status %d", (int)c.status);
+            CHECK(querying > empty);
+            if (querying - empty > most) most = querying - empty;
+            fallbacks += stats.exact_fallbacks;
+        }
+    }
+    CHECK_MSG(most <= PROMISED, "%zu bytes", most);
+    CHECK(fallbacks > 0);
+    test_note("sc_query: %zu bytes", most);
+    sc_workspace_free(c.workspace);
+    sc_model_free(c.model);
+}
+
+SC_TEST_MAIN(SC_TEST(calls_take_little_stack))
