@@ -73,8 +73,12 @@ fi
 # ------------------------------------------------------------------------------------------------
 # Man pages
 
+# Options, and those that are a choice with their values: --weld rest|none
 options() {
-    grep -o -e '--[a-z][a-z-]*' | sort -u
+    grep -o -e '--[a-z][a-z-]*\( [a-z-]*|[a-z|-]*\)\{0,1\}' | sort -u >"$scratch/options"
+    # Mentioned elsewhere without its values.
+    awk 'NR == FNR { if (NF > 1) full[$1] = 1; next } NF > 1 || !($1 in full)' "$scratch/options" \
+        "$scratch/options"
 }
 for program in sc-query sc-partition; do
     page=tools/man/$program.1
@@ -91,7 +95,9 @@ for program in sc-query sc-partition; do
     fi
     if [ -x "$SC_BIN/$program" ]; then
         "$SC_BIN/$program" --help 2>&1 | options >"$scratch/has"
-        sed 's/\(^\.It\| \)\( *Fl\) -/ --/g' "$page" | grep -v '^\.Dl' | options >"$scratch/described"
+        # In the page, .It Fl -weld Cm rest | none
+        sed -e '/^\.Dl/d' -e 's/^\.It / /' -e 's/^\.Fl/ Fl/' -e 's/ Fl -/ --/g' \
+            -e 's/ Cm \([a-z-]* | \)/ \1/' -e 's/ | /|/g' "$page" | options >"$scratch/described"
         check "$page has the options of $program --help" diff "$scratch/has" "$scratch/described"
         check "there are options" test "$(wc -l <"$scratch/has")" -gt 5
     else
