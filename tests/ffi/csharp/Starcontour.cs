@@ -48,7 +48,7 @@ namespace Starcontour
         [StructLayout(LayoutKind.Sequential)]
         public struct sc_query_options
         {
-            public uint struct_size, output, pairs, contact, method, contour, rest_cache, reserved;
+            public uint struct_size, output, pairs, contact, method, contour, rest_cache, simd;
         }
 
         [StructLayout(LayoutKind.Sequential)]

@@ -81,7 +81,7 @@ class sc_query_options(ctypes.Structure):
         ("method", c_uint32),
         ("contour", c_uint32),
         ("rest_cache", c_uint32),
-        ("reserved", c_uint32),
+        ("simd", c_uint32),
     ]
 
 

@@ -152,7 +152,7 @@ impl Workspace<'_> {
             method: 0,
             contour: 0,
             rest_cache: 0,
-            reserved: 0,
+            simd: 0,
         };
         loop {
             let mut result = raw::sc_result {

@@ -41,7 +41,7 @@ pub struct sc_query_options {
     pub method: u32,
     pub contour: u32,
     pub rest_cache: u32,
-    pub reserved: u32,
+    pub simd: u32,
 }
 
 #[repr(C)]
@@ -114,7 +114,7 @@ pub fn layouts() -> Vec<Layout> {
             index_type index_stride reserved positions indices),
         layout!(sc_pose: struct_size vertex_count position_type position_stride positions),
         layout!(sc_query_options: struct_size output pairs contact method contour rest_cache
-            reserved),
+            simd),
         layout!(sc_pair: a b),
         layout!(sc_result: struct_size collides count capacity pairs stats),
     ]
