@@ -106,8 +106,9 @@ enum {
     SC_ERROR_TOO_OLD = 23,      /* saved data in an earlier format than this library reads */
     SC_ERROR_CHECKSUM = 24,     /* saved data that were changed since */
     SC_ERROR_INCONSISTENT =
-        25,                /* saved data that nobody saved: whole, but contradicting themselves */
-    SC_ERROR_TOPOLOGY = 26 /* the saved model is not the one that was asked for */
+        25,                 /* saved data that nobody saved: whole, but contradicting themselves */
+    SC_ERROR_TOPOLOGY = 26, /* the saved model is not the one that was asked for */
+    SC_ERROR_PAIRS = 27     /* a list of pairs is not sorted or names what does not exist */
 };
 
 /* A short English text for a status, never NULL, owned by the library. */
@@ -492,21 +493,74 @@ enum {
     SC_SIMD_AVX2 = 2  /* SC_ERROR_UNSUPPORTED where there is none */
 };
 
-typedef struct sc_query_options {
-    uint32_t struct_size;
-    uint32_t output;     /* SC_OUTPUT_... */
-    uint32_t pairs;      /* SC_PAIRS_... */
-    uint32_t contact;    /* SC_CONTACT_... */
-    uint32_t method;     /* SC_METHOD_... */
-    uint32_t contour;    /* SC_CONTOUR_... */
-    uint32_t rest_cache; /* SC_REST_CACHE_... */
-    uint32_t simd;       /* SC_SIMD_... */
-} sc_query_options;
-
 /* A pair, as sc_query_options.pairs says. */
 typedef struct sc_pair {
     uint32_t a, b;
 } sc_pair;
+
+/*
+ * What something is and what it collides with, a bit for each of 32 categories of the caller's. Two
+ * things collide if each has a category that is in the other's mask:
+ * (x.category & y.mask) && (y.category & x.mask). Category 0 collides with nothing.
+ */
+typedef struct sc_group {
+    uint32_t category;
+    uint32_t mask;
+} sc_group;
+
+/* The largest ignore_rings. */
+#define SC_RINGS_MAX 32
+
+/*
+ * Which pairs are not wanted. A pair is reported, counted, or ends a query for SC_OUTPUT_ANY only if
+ * nothing here says no; culling is as without a filter, and so no wanted pair is missed. Arrays are the
+ * caller's and are only read, during the call; they need the alignment of uint32_t. All members but
+ * struct_size may be zero: nothing is left out.
+ *
+ *   ignore_rings    1: leaves out pairs that share a vertex. n: pairs less than n edges of the mesh
+ *                   apart, counted from the vertices of one to those of the other, after welding; so for
+ *                   triangles, those within n rings of each other. At most SC_RINGS_MAX. An edge and a
+ *                   triangle never share a vertex, and 1 is without effect on them
+ *   vertex_groups   vertex_count groups. A triangle or edge is in all categories of its vertices, and its
+ *                   mask is the union of theirs: at a border between groups it belongs to both. For
+ *                   vertices welded together, the group of the one that represents them is read
+ *   triangle_groups triangle_count groups. An edge has the group of the triangle that names it,
+ *                   a / 3. Where there are vertex groups as well, both must collide
+ *   ignore          ignore_count pairs that are left out, in the numbers of this kind of pair, sorted by
+ *                   a, then b, as a query reports them; repeats are allowed. With the pairs of the rest
+ *                   pose here, only new contacts are reported:
+ *                       sc_query(model, workspace, &rest_pose, &options, &result);
+ *                       filter.ignore = result.pairs, filter.ignore_count = result.count;
+ *   accept          called for each pair that nothing else leaves out, once, in any order, from within
+ *                   sc_query; 0 leaves it out. It must not use the workspace of the query. After
+ *                   SC_OUTPUT_ANY found a pair it is called no more
+ *
+ * Cost: groups and the first ring are asked before triangles are tested. Each query reads
+ * ignore once to see that it is sorted (about 1 ns a pair), and looks it up for each pair found. More
+ * rings walk the mesh round pairs found: about 3 ignore_rings^2 vertices each.
+ */
+typedef struct sc_filter {
+    uint32_t struct_size;
+    uint32_t ignore_rings;
+    const sc_group *vertex_groups;
+    const sc_group *triangle_groups;
+    const sc_pair *ignore;
+    uint64_t ignore_count;
+    int32_t (*accept)(void *user, uint32_t a, uint32_t b);
+    void *accept_user; /* passed to accept */
+} sc_filter;
+
+typedef struct sc_query_options {
+    uint32_t struct_size;
+    uint32_t output;         /* SC_OUTPUT_... */
+    uint32_t pairs;          /* SC_PAIRS_... */
+    uint32_t contact;        /* SC_CONTACT_... */
+    uint32_t method;         /* SC_METHOD_... */
+    uint32_t contour;        /* SC_CONTOUR_... */
+    uint32_t rest_cache;     /* SC_REST_CACHE_... */
+    uint32_t simd;           /* SC_SIMD_... */
+    const sc_filter *filter; /* which pairs are not wanted, or NULL */
+} sc_query_options;
 
 /* The nine tasks of a query (paper, table 1). */
 enum {
@@ -558,8 +612,12 @@ typedef struct sc_result {
  * the number needed, and the array holds the first capacity pairs of the sorted list. On any other
  * error count and collides are 0 and the array is as it was.
  *
- * Pairs and their order depend on the mesh, the welding, the pose and the kind of pair asked for,
- * and on nothing else: not on partition, method, compiler or machine.
+ * A filter that cannot be read ends the query: SC_ERROR_STRUCT_SIZE, SC_ERROR_OPTION (ignore_rings),
+ * SC_ERROR_NULL (ignore), or SC_ERROR_PAIRS where ignore is not sorted, names a triangle or edge that
+ * does not exist, or has a >= b for triangles.
+ *
+ * Pairs and their order depend on the mesh, the welding, the pose, the kind of pair asked for and the
+ * filter, and on nothing else: not on partition, method, compiler or machine.
  */
 SC_API sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
                           const sc_query_options *options, sc_result *result);
@@ -577,8 +635,8 @@ SC_API sc_status sc_record_size(const sc_model *model, const sc_pose *pose,
 
 /*
  * Records the query that sc_query would run: writes *written bytes to memory, of which there are size, at
- * any alignment. Coordinates may be anything, also NaN. Errors are as for sc_query, and
- * SC_ERROR_SHORT_BUFFER if the bytes do not fit: nothing is written, and *written is what is needed.
+ * any alignment. Coordinates may be anything, also NaN. A filter is not recorded: what it leaves out is
+ * found when the record is asked. Errors are as for sc_query, and SC_ERROR_SHORT_BUFFER if the bytes do not fit: nothing is written, and *written is what is needed.
  * written may be NULL. Cost: a copy of the model and the pose, and a checksum.
  */
 SC_API sc_status sc_record_write(const sc_model *model, const sc_pose *pose,

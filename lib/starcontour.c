@@ -19,6 +19,7 @@
 #include "build/partition.h"
 #include "build/saved_model.h"
 #include "pose/positions.h"
+#include "query/filter.h"
 #include "query/pairs.h"
 #include "query/recording.h"
 #include "query/rest.h"
@@ -381,7 +382,8 @@ static sc_status check_pose(const sc_model *model, const sc_pose *pose, uint64_t
 /* Everything about a query that can be wrong; afterwards only the positions can be. */
 static sc_status check_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
                              const sc_query_options *options, const sc_result *result,
-                             sc_query_state *state, sc_pose *checked_pose, uint64_t *stride)
+                             sc_query_state *state, sc_pose *checked_pose, sc_filter *filter,
+                             uint64_t *stride)
 {
     sc_status status;
     if (!model || !workspace || !pose) return SC_ERROR_NULL;
@@ -392,6 +394,10 @@ static sc_status check_query(const sc_model *model, sc_workspace *workspace, con
     }
     status = check_options(&state->options);
     if (status) return status;
+    if (state->options.filter) {
+        status = sc_filter_begin(state, model, state->options.filter, filter);
+        if (status) return status;
+    }
     status = sc_structs_read(checked_pose, sizeof *checked_pose, pose, UP_TO(sc_pose, positions));
     if (status) return status;
     status = check_pose(model, checked_pose, stride);
@@ -433,6 +439,7 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     sc_query_state state;
     sc_result r;
     sc_pose p;
+    sc_filter filter;
     uint64_t stride;
     sc_status status;
     if (!result) return SC_ERROR_NULL;
@@ -444,7 +451,7 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     state.pairs = r.pairs;
     state.capacity = r.capacity;
     state.timed = r.stats != NULL;
-    status = check_query(model, workspace, pose, options, &r, &state, &p, &stride);
+    status = check_query(model, workspace, pose, options, &r, &state, &p, &filter, &stride);
     if (!status) status = run_query(model, workspace, &p, stride, &state);
     if (!status || status == SC_ERROR_SHORT_BUFFER) {
         r.count = state.options.output == SC_OUTPUT_ANY ? state.count > 0 : state.count;

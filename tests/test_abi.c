@@ -141,7 +141,21 @@ static void structures(void)
     MEMBER(sc_level_info, pair_oriented, 32);
     MEMBER(sc_level_info, pair_culled, 36);
 
-    SIZE(sc_query_options, 32);
+    SIZE(sc_group, 8);
+    MEMBER(sc_group, category, 0);
+    MEMBER(sc_group, mask, 4);
+
+    SIZE(sc_filter, 56);
+    MEMBER(sc_filter, struct_size, 0);
+    MEMBER(sc_filter, ignore_rings, 4);
+    MEMBER(sc_filter, vertex_groups, 8);
+    MEMBER(sc_filter, triangle_groups, 16);
+    MEMBER(sc_filter, ignore, 24);
+    MEMBER(sc_filter, ignore_count, 32);
+    MEMBER(sc_filter, accept, 40);
+    MEMBER(sc_filter, accept_user, 48);
+
+    SIZE(sc_query_options, 40);
     MEMBER(sc_query_options, struct_size, 0);
     MEMBER(sc_query_options, output, 4);
     MEMBER(sc_query_options, pairs, 8);
@@ -150,6 +164,7 @@ static void structures(void)
     MEMBER(sc_query_options, contour, 20);
     MEMBER(sc_query_options, rest_cache, 24);
     MEMBER(sc_query_options, simd, 28);
+    MEMBER(sc_query_options, filter, 32);
 
     SIZE(sc_pair, 8);
     MEMBER(sc_pair, a, 0);
@@ -210,6 +225,7 @@ static void enumerators(void)
     VALUE(SC_LOG_ERROR, 2);
     VALUE(SC_LOAD_COPY, 0);
     VALUE(SC_LOAD_IN_PLACE, 1);
+    VALUE(SC_ERROR_PAIRS, 27);
     VALUE(SC_ALIGNMENT, 64);
     VALUE(SC_FLOAT, 0);
     VALUE(SC_DOUBLE, 1);
@@ -240,6 +256,7 @@ static void enumerators(void)
     VALUE(SC_CONTOUR_EXACT, 3);
     VALUE(SC_REST_CACHE_ON, 0);
     VALUE(SC_REST_CACHE_OFF, 1);
+    VALUE(SC_RINGS_MAX, 32);
     VALUE(SC_TASK_UPDATE_BOXES, 0);
     VALUE(SC_TASK_UPDATE_NORMALS, 1);
     VALUE(SC_TASK_ORIENTATION, 2);

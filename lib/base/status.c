@@ -65,6 +65,8 @@ const char *sc_status_string(sc_status status)
         return "saved data contradict themselves";
     case SC_ERROR_TOPOLOGY:
         return "the saved model is not that of the mesh expected";
+    case SC_ERROR_PAIRS:
+        return "a list of pairs is not sorted or names what does not exist";
     default:
         return "unknown status";
     }

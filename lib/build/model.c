@@ -26,6 +26,7 @@ void sc_model_lay_out(sc_model *m)
     uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
     uint32_t segment_point_total = m->segment_point_total, share_count = m->share_count;
     uint32_t segment_child_total = m->segment_child_total;
+    uint32_t open_count = m->open_count, open_total = m->open_total;
 #define LAY_OUT(name, type, count)                                                                 \
   m->offset[SC_ARRAY_##name] = at;                                                                 \
   at += ((uint64_t)(count) * sizeof(type) + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
@@ -90,17 +91,60 @@ static void write_triangles(const sc_points *points, const sc_adjacency *adjacen
                             const uint32_t *order, const uint32_t *number, sc_model *m)
 {
     uint32_t *triangle = NEW_ARRAY(m, triangle, uint32_t), *slot = NEW_ARRAY(m, slot, uint32_t);
-    uint32_t *id = NEW_ARRAY(m, triangle_id, uint32_t), i;
+    uint32_t *id = NEW_ARRAY(m, triangle_id, uint32_t), *place = NEW_ARRAY(m, place, uint32_t);
+    uint32_t *vertex = NEW_ARRAY(m, vertex, uint32_t), i;
     uint8_t *owned = NEW_ARRAY(m, edge_owned, uint8_t);
     int k;
     for (i = 0; i < m->triangle_count; i++) {
         for (k = 0; k < 3; k++)
             *triangle++ = number[points->triangles[3 * (uint64_t)order[i] + (uint64_t)k]];
         id[i] = order[i];
+        place[order[i]] = i;
         owned[i] = adjacency->owned[order[i]];
     }
-    for (i = 0; i < m->vertex_count; i++)
+    for (i = 0; i < m->vertex_count; i++) {
         slot[i] = points->slot[i] < SC_SLOT_WELDED ? number[points->slot[i]] : points->slot[i];
+        if (slot[i] < SC_SLOT_WELDED) vertex[slot[i]] = i;
+    }
+}
+
+/*
+ * The points that edges join a point with, by old numbers; returns how many. For each corner there the
+ * next one; the previous one as well if no half-edge runs back to it. around NULL: only counts.
+ */
+static uint32_t list_around(const sc_points *points, const sc_adjacency *adjacency, uint32_t p,
+                            uint32_t *around)
+{
+    uint32_t i, count = 0;
+    for (i = adjacency->corner_first[p]; i < adjacency->corner_first[p + 1]; i++) {
+        uint32_t h = adjacency->corners[i], before = sc_adjacency_previous(h);
+        if (around) around[count] = points->triangles[sc_adjacency_next(h)];
+        count++;
+        if (adjacency->opposite[before] != SC_NONE) continue;
+        if (around) around[count] = points->triangles[before];
+        count++;
+    }
+    return count;
+}
+
+/* old[q] is the old number of the point with the new number q. */
+static void write_open_points(const sc_points *points, const sc_adjacency *adjacency,
+                              const uint32_t *number, const uint32_t *old, sc_model *m)
+{
+    const uint32_t *ring_first = sc_model_ring_first(m);
+    uint32_t *point = NEW_ARRAY(m, open_point, uint32_t);
+    uint32_t *first = NEW_ARRAY(m, open_first, uint32_t);
+    uint32_t *around = NEW_ARRAY(m, open_around, uint32_t), q, i, at = 0, total = 0;
+    for (q = 0; q < m->point_count; q++) {
+        uint32_t count;
+        if (ring_first[q + 1] > ring_first[q]) continue;
+        count = list_around(points, adjacency, old[q], around + total);
+        for (i = 0; i < count; i++) around[total + i] = number[around[total + i]];
+        point[at] = q;
+        first[at++] = total;
+        total += count;
+    }
+    first[at] = total;
 }
 
 static void write_hops(const sc_xbvh *xbvh, sc_model *m)
@@ -211,19 +255,29 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
                             sc_model **model)
 {
     sc_model counts, *m;
-    uint32_t *number, *ring_first, *ring, p, i;
+    uint32_t *number, *old, *ring_first, *ring, p, i;
+    uint64_t open_total = 0;
     sc_status status;
 
     memset(&counts, 0, sizeof counts);
     count_arrays(points, adjacency, xbvh, sctt, csf, &counts);
     number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
+    old = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *old);
     ring_first = (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)points->point_count + 1,
                                                     sizeof *ring_first, 0);
     ring = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)points->triangle_count, sizeof *ring);
-    if (!number || !ring_first || !ring) return SC_ERROR_MEMORY;
+    if (!number || !old || !ring_first || !ring) return SC_ERROR_MEMORY;
     renumber(points, hierarchy->order, number);
-    for (p = 0; p < points->point_count; p++) /* lengths first, by new numbers */
-        ring_first[number[p] + 1] = sc_adjacency_ring(points, adjacency, p, ring);
+    for (p = 0; p < points->point_count; p++) { /* lengths first, by new numbers */
+        uint32_t n = sc_adjacency_ring(points, adjacency, p, ring);
+        old[number[p]] = p;
+        ring_first[number[p] + 1] = n;
+        if (n) continue;
+        counts.open_count++;
+        open_total += list_around(points, adjacency, p, NULL);
+    }
+    if (SC_HARDLY(open_total > UINT32_MAX)) return SC_ERROR_COUNT;
+    counts.open_total = (uint32_t)open_total;
     for (p = 0; p < points->point_count; p++) ring_first[p + 1] += ring_first[p];
     counts.share_count = sharing->first[xbvh->leaf_count];
     counts.ring_total = ring_first[points->point_count];
@@ -242,6 +296,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
         }
     copy(NEW_ARRAY(m, ring_first, uint32_t), ring_first,
          ((uint64_t)points->point_count + 1) * sizeof(uint32_t));
+    write_open_points(points, adjacency, number, old, m);
     write_triangles(points, adjacency, hierarchy->order, number, m);
     copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));

@@ -44,6 +44,8 @@ enum {
  *   slot            what to do with each of the caller's vertices: see build/mesh.h
  *   triangle        three point numbers a place
  *   triangle_id     the caller's number of the triangle at a place
+ *   place           the place of the caller's triangle
+ *   vertex          the caller's number of the vertex that represents a point
  *   edge_owned      bit k: side k of the triangle at a place names its edge
  *   leaf_first      first place of each leaf cluster
  *   share_...       see build/sharing.h
@@ -51,6 +53,8 @@ enum {
  *   hop             first descendant of a patch at the next level down of those that box recursion
  *                   visits: every third, ending with the last
  *   ring_first, ring  the points round each closed fan, in order; empty where there is none
+ *   open_point      the points without a ring, ascending; open_first, open_around: the points that edges
+ *                   join each of them with, some perhaps twice
  *   node_...        see build/sctt.h (patches, child, boxes) and build/csf.h (contour)
  *   boxes           BVTT children
  *   segment_...     see build/csf.h
@@ -60,6 +64,8 @@ enum {
   X(slot, uint32_t, vertex_count)                                                                  \
   X(triangle, uint32_t, 3 * (uint64_t)triangle_count)                                              \
   X(triangle_id, uint32_t, triangle_count)                                                         \
+  X(place, uint32_t, triangle_count)                                                               \
+  X(vertex, uint32_t, point_count)                                                                 \
   X(edge_owned, uint8_t, triangle_count)                                                           \
   X(leaf_first, uint32_t, (uint64_t)leaf_count + 1)                                                \
   X(share_first, uint32_t, (uint64_t)leaf_count + 1)                                               \
@@ -73,6 +79,9 @@ enum {
   X(hop, uint32_t, patch_end)                                                                      \
   X(ring_first, uint32_t, (uint64_t)point_count + 1)                                               \
   X(ring, uint32_t, ring_total)                                                                    \
+  X(open_point, uint32_t, open_count)                                                              \
+  X(open_first, uint32_t, (uint64_t)open_count + 1)                                                \
+  X(open_around, uint32_t, open_total)                                                             \
   X(node_patches, sc_pair, node_count)                                                             \
   X(node_child, uint32_t, (uint64_t)node_count + 1)                                                \
   X(node_boxes, uint32_t, (uint64_t)node_count + 1)                                                \
@@ -106,7 +115,7 @@ struct sc_model {
     uint32_t node_count, box_count, contour_total;
     uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
     uint32_t contour_max; /* points of the segments round a node, at most */
-    uint32_t ring_total, share_count;
+    uint32_t ring_total, open_count, open_total, share_count;
 };
 
 /* Stands before the model and fills one alignment unit. */

@@ -71,6 +71,15 @@ static int check_slots(const sc_model *m, uint8_t *seen)
     return stored == m->point_count;
 }
 
+/* The vertex of each point is the one that it is stored from. */
+static int check_vertices(const sc_model *m)
+{
+    const uint32_t *slot = sc_model_slot(m), *vertex = sc_model_vertex(m);
+    uint32_t v, bad = 0;
+    for (v = 0; v < m->vertex_count; v++) bad |= slot[v] < m->point_count && vertex[slot[v]] != v;
+    return !bad;
+}
+
 /* Every triangle of the caller's once. */
 static int check_ids(const sc_model *m, uint8_t *seen)
 {
@@ -82,6 +91,28 @@ static int check_ids(const sc_model *m, uint8_t *seen)
         seen[id[t]] = 1;
     }
     return 1;
+}
+
+/* Where each of the caller's triangles is. */
+static int check_places(const sc_model *m)
+{
+    const uint32_t *id = sc_model_triangle_id(m), *place = sc_model_place(m);
+    uint32_t i, bad = 0;
+    for (i = 0; i < m->triangle_count; i++) bad |= place[id[i]] != i;
+    return !bad;
+}
+
+/* All points without a ring and no others. */
+static int check_open_points(const sc_model *m)
+{
+    const uint32_t *ring_first = sc_model_ring_first(m), *open = sc_model_open_point(m);
+    uint32_t p, count = 0;
+    for (p = 0; p < m->point_count; p++) {
+        if (ring_first[p + 1] > ring_first[p]) continue;
+        if (count == m->open_count || open[count] != p) return 0;
+        count++;
+    }
+    return count == m->open_count;
 }
 
 /* Each level has a patch or more, and the number behind them; the first has one, the last all leaves. */
@@ -309,6 +340,8 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(slot, check_slots(m, bytes));
     CHECK(triangle, all_below(sc_model_triangle(m), 3 * (uint64_t)count, points));
     CHECK(triangle_id, check_ids(m, bytes));
+    CHECK(place, check_places(m));
+    CHECK(vertex, check_vertices(m));
     CHECK(edge_owned, bytes_below(sc_model_edge_owned(m), count, 8));
     CHECK(leaf_first, are_lists(sc_model_leaf_first(m), m->leaf_count, count, 1, SC_LEAF_MAX));
     CHECK(level_first, check_levels(m));
@@ -317,6 +350,9 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(hop, check_hop(m));
     CHECK(ring_first, are_lists(sc_model_ring_first(m), points, m->ring_total, 0, SC_NONE));
     CHECK(ring, all_below(sc_model_ring(m), m->ring_total, points));
+    CHECK(open_point, check_open_points(m));
+    CHECK(open_first, are_lists(sc_model_open_first(m), m->open_count, m->open_total, 0, SC_NONE));
+    CHECK(open_around, all_below(sc_model_open_around(m), m->open_total, points));
     CHECK(share_first, are_lists(sc_model_share_first(m), m->leaf_count, m->share_count, 0,
                                  3 * SC_LEAF_MAX * SC_SHARING_CROWD));
     CHECK(share_leaf, check_share_leaf(m));

@@ -54,6 +54,8 @@ static uint64_t lay_out(const sc_model *model, unsigned char *block, sc_workspac
     w->contour.is_edge = (uint8_t *)place(block, &at, listed / SC_CONTOUR_BLOCK + 1, 1);
     w->contour.piece = (uint32_t *)place(block, &at, listed, sizeof(uint32_t));
     w->candidates = (sc_pair *)place(block, &at, SC_CANDIDATES_MAX, sizeof(sc_pair));
+    w->ball = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));
+    w->ball_queue = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));
     return at;
 }
 
@@ -83,6 +85,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
     memset(w->plain_tick, 0, model->leaf_count * sizeof *w->plain_tick);
     memset(w->plain, 0, model->leaf_count);
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
+    memset(w->ball, 0, model->point_count * sizeof *w->ball);
     return w;
 }
 
@@ -105,6 +108,7 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
     workspace->pose_tick++;
     workspace->boxes_ready = 0;
     workspace->candidate_count = 0;
+    workspace->ball_center = SC_NONE;
 }
 
 void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace)

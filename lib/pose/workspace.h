@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: MIT
  *
  *     | sc_workspace | position | unit | patch boxes | triangle boxes | mask | fan | bounds |
- *       bounds_tick | contour | candidates |
+ *       bounds_tick | contour | candidates | ball | ball_queue |
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -93,6 +93,12 @@ struct sc_workspace {
 
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     uint32_t candidate_count;
+
+    /* points near a triangle in number of edges, see query/filter.c */
+    uint32_t *ball;       /* point_count: ball_tick if in the ball */
+    uint32_t *ball_queue; /* point_count */
+    uint32_t ball_tick;
+    uint32_t ball_center; /* the caller's number of the triangle, or SC_NONE */
 };
 
 /* Bytes for a workspace, which fit size_t. */

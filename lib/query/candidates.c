@@ -14,6 +14,7 @@
 
 #include "base/bits.h"
 #include "pose/fan.h"
+#include "query/filter.h"
 #include "query/pairs.h"
 #include "query/primitives.h"
 #include "query/query_kernels.h"
@@ -141,8 +142,10 @@ void sc_candidates_decide(sc_query_state *state)
     const uint32_t *triangle = sc_model_triangle(state->model);
     sc_workspace *w = state->workspace;
     const double *position = w->position;
-    uint32_t i, j, count = w->candidate_count, previous;
+    uint32_t i, j, count, previous;
     int s, k, c;
+    if (state->sifts) sc_filter_sift(state);
+    count = w->candidate_count;
     if (!count) return;
     previous = sc_state_switch(state, sc_state_primitive_task(state));
     state->stats.counts[sc_state_primitive_task(state)] += count;
@@ -230,6 +233,10 @@ void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, sc_leaf_
         for (i = first[a]; i < first[a + 1] && leaf[i] <= b; i++)
             if (leaf[i] == b) p->shared = sc_model_share_rows(model) + SC_LEAF_MAX * (uint64_t)i;
     if (p->shared == nothing) return;
+    if (state->drops_neighbors) {
+        p->plain_a = (1u << SC_LEAF_MAX) - 1u; /* as good as plain */
+        return;
+    }
     p->plain_a = sc_fan_plain_of_leaf(model, state->workspace, a);
     p->plain_b = sc_fan_plain_of_leaf(model, state->workspace, b);
 }

@@ -6,10 +6,12 @@
 #include "query/pairs.h"
 
 #include "base/sort.h"
+#include "query/filter.h"
 
 void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b)
 {
     sc_pair pair;
+    if (state->filter && (state->stop || !sc_filter_admits(state, a, b))) return;
     pair.a = a;
     pair.b = b;
     state->count++;

@@ -11,7 +11,7 @@
 
 #include "query/state.h"
 
-/* Takes a pair that was not taken before. */
+/* Takes a pair that was not taken before, unless the caller's filter has it left out. */
 void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b);
 
 void sc_pairs_finish(sc_query_state *state);

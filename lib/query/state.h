@@ -13,7 +13,10 @@ typedef struct sc_query_state {
     const sc_model *model;
     sc_workspace *workspace;
     sc_query_options options;
-    sc_pair *pairs; /* the caller's array */
+    const sc_filter *filter; /* checked, or NULL; what follows comes from it */
+    int sifts;           /* it has groups, which drop pairs of triangles before they are tested */
+    int drops_neighbors; /* of triangles that share a vertex nothing is wanted */
+    sc_pair *pairs;      /* the caller's array */
     uint64_t capacity;
     uint64_t count;    /* pairs found */
     int stop;          /* enough is known */

@@ -180,7 +180,9 @@ static void check_answers(fuzz_bytes *bytes, const soup *s, const sc_mesh *mesh,
     oracle_answer expected = fuzz_expect(s, s->positions, weld, model, workspace);
     for (uint32_t i = 0; i < 8; ++i) {
         uint32_t choice = fuzz_byte(bytes);
-        sc_query_options o = {sizeof(o), 0, 0, 0, 0, 0, 0, 0};
+        sc_query_options o;
+        memset(&o, 0, sizeof(o));
+        o.struct_size = sizeof(o);
         o.pairs = i % 2;
         o.contact = i / 2 % 2;
         o.method = i < 4 ? SC_METHOD_SCTT : choice / 2 % 4;

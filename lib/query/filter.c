@@ -1,0 +1,201 @@
+/*
+ * The caller's filter. See filter.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "query/filter.h"
+
+#include <string.h>
+
+#include "base/sort.h"
+#include "base/structs.h"
+
+static int is_pair(const sc_model *model, uint32_t kind, sc_pair pair)
+{
+    uint32_t count = model->triangle_count;
+    if (kind == SC_PAIRS_EDGE) return pair.a < 3 * count && pair.b < count;
+    return pair.a < pair.b && pair.b < count;
+}
+
+static sc_status check(const sc_model *model, uint32_t kind, const sc_filter *filter)
+{
+    uint64_t i;
+    if (filter->ignore_rings > SC_RINGS_MAX) return SC_ERROR_OPTION;
+    if (filter->ignore_count && !filter->ignore) return SC_ERROR_NULL;
+    for (i = 0; i < filter->ignore_count; i++) {
+        if (!is_pair(model, kind, filter->ignore[i])) return SC_ERROR_PAIRS;
+        if (i && sc_sort_less(filter->ignore[i], filter->ignore[i - 1])) return SC_ERROR_PAIRS;
+    }
+    return SC_OK;
+}
+
+sc_status sc_filter_begin(sc_query_state *state, const sc_model *model, const sc_filter *from,
+                          sc_filter *filter)
+{
+    uint32_t kind = state->options.pairs;
+    sc_status status = sc_structs_read(filter, sizeof *filter, from, sizeof(void *));
+    if (status) return status;
+    status = check(model, kind, filter);
+    if (status) return status;
+    state->filter = filter;
+    state->sifts = filter->vertex_groups || filter->triangle_groups;
+    /* an edge and a triangle that share no vertex are one edge apart if their triangles share one */
+    state->drops_neighbors = filter->ignore_rings > (kind == SC_PAIRS_EDGE);
+    return SC_OK;
+}
+
+/* ---- groups ---- */
+
+static int groups_collide(sc_group a, sc_group b)
+{
+    return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+}
+
+/* The group of some points together. */
+static sc_group group_of_points(const sc_query_state *state, const uint32_t *points, uint32_t count)
+{
+    const uint32_t *vertex = sc_model_vertex(state->model);
+    sc_group all = {0, 0};
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        const sc_group *one = &state->filter->vertex_groups[vertex[points[i]]];
+        all.category |= one->category;
+        all.mask |= one->mask;
+    }
+    return all;
+}
+
+/* ---- rings ---- */
+
+/* The points that edges join p with: writes where they are, returns how many. */
+static uint32_t find_around(const sc_model *model, uint32_t p, const uint32_t **around)
+{
+    const uint32_t *first = sc_model_ring_first(model) + p, *open = sc_model_open_point(model);
+    uint32_t low = 0, high = model->open_count;
+    *around = sc_model_ring(model) + first[0];
+    if (first[1] > first[0]) return first[1] - first[0];
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (open[middle] <= p)
+            low = middle;
+        else
+            high = middle;
+    }
+    first = sc_model_open_first(model) + low;
+    *around = sc_model_open_around(model) + first[0];
+    return first[1] - first[0];
+}
+
+/* Marks the points at most steps edges away from the three of a triangle. */
+static void mark_ball(const sc_model *model, sc_workspace *w, const uint32_t center[3],
+                      uint32_t steps)
+{
+    uint32_t head = 0, tail = 0, end, i;
+    if (w->ball_tick == 0xffffffff) {
+        memset(w->ball, 0, model->point_count * sizeof *w->ball);
+        w->ball_tick = 0;
+    }
+    w->ball_tick++;
+    for (i = 0; i < 3; i++)
+        if (w->ball[center[i]] != w->ball_tick) {
+            w->ball[center[i]] = w->ball_tick;
+            w->ball_queue[tail++] = center[i];
+        }
+    for (; steps && head < tail; steps--)
+        for (end = tail; head < end; head++) {
+            const uint32_t *around;
+            uint32_t count = find_around(model, w->ball_queue[head], &around);
+            for (i = 0; i < count; i++)
+                if (w->ball[around[i]] != w->ball_tick) {
+                    w->ball[around[i]] = w->ball_tick;
+                    w->ball_queue[tail++] = around[i];
+                }
+        }
+}
+
+static const uint32_t *points_of(const sc_model *model, uint32_t triangle)
+{
+    return sc_model_triangle(model) + 3 * (uint64_t)sc_model_place(model)[triangle];
+}
+
+/*
+ * Whether some points are less than ignore_rings edges away from a triangle. The ball round a triangle
+ * serves all pairs with it that follow each other, as they mostly do.
+ */
+static int is_near(const sc_query_state *state, uint32_t center, const uint32_t *points,
+                   uint32_t count)
+{
+    sc_workspace *w = state->workspace;
+    uint32_t i;
+    if (w->ball_center != center) {
+        mark_ball(state->model, w, points_of(state->model, center),
+                  state->filter->ignore_rings - 1);
+        w->ball_center = center;
+    }
+    for (i = 0; i < count; i++)
+        if (w->ball[points[i]] == w->ball_tick) return 1;
+    return 0;
+}
+
+/* ---- all together ---- */
+
+void sc_filter_sift(sc_query_state *state)
+{
+    const sc_filter *f = state->filter;
+    const uint32_t *triangle = sc_model_triangle(state->model);
+    const uint32_t *id = sc_model_triangle_id(state->model);
+    sc_workspace *w = state->workspace;
+    uint32_t i, kept = 0;
+    for (i = 0; i < w->candidate_count; i++) {
+        const sc_pair pair = w->candidates[i];
+        if (f->triangle_groups &&
+            !groups_collide(f->triangle_groups[id[pair.a]], f->triangle_groups[id[pair.b]]))
+            continue;
+        /* an edge's group is part of its triangle's */
+        if (f->vertex_groups &&
+            !groups_collide(group_of_points(state, triangle + 3 * (uint64_t)pair.a, 3),
+                            group_of_points(state, triangle + 3 * (uint64_t)pair.b, 3)))
+            continue;
+        w->candidates[kept++] = pair;
+    }
+    w->candidate_count = kept;
+}
+
+static int is_ignored(const sc_filter *f, uint32_t a, uint32_t b)
+{
+    uint64_t low = 0, high = f->ignore_count;
+    sc_pair pair;
+    pair.a = a;
+    pair.b = b;
+    while (low < high) {
+        uint64_t middle = low + (high - low) / 2;
+        if (sc_sort_less(f->ignore[middle], pair))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < f->ignore_count && f->ignore[low].a == a && f->ignore[low].b == b;
+}
+
+int sc_filter_admits(sc_query_state *state, uint32_t a, uint32_t b)
+{
+    const sc_filter *f = state->filter;
+    int is_edge = state->options.pairs == SC_PAIRS_EDGE;
+    uint32_t triangle = is_edge ? a / 3 : a, count = is_edge ? 2 : 3, points[3], k;
+    const uint32_t *corner = points_of(state->model, triangle);
+    for (k = 0; k < count; k++) points[k] = corner[is_edge ? (a + k) % 3 : k];
+    if (f->triangle_groups && !groups_collide(f->triangle_groups[triangle], f->triangle_groups[b]))
+        return 0;
+    if (f->vertex_groups && !groups_collide(group_of_points(state, points, count),
+                                            group_of_points(state, points_of(state->model, b), 3)))
+        return 0;
+    if (is_ignored(f, a, b)) return 0;
+    if (f->ignore_rings) {
+        if (is_edge || state->workspace->ball_center != a) {
+            if (is_near(state, b, points, count)) return 0;
+        } else if (is_near(state, a, points_of(state->model, b), 3)) {
+            return 0;
+        }
+    }
+    return !f->accept || f->accept(f->accept_user, a, b);
+}
