@@ -418,16 +418,18 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
     state->task = SC_TASK_UPDATE_BOXES;
     workspace->isa = state->options.simd;
     if (state->timed) start = state->last_time = sc_clock_nanoseconds();
+    if (sc_state_stops(state)) return SC_ERROR_INCOMPLETE;
     sc_workspace_new_pose(model, workspace);
     status = sc_positions_read(model, pose, stride, workspace);
     if (status) return status;
-    sc_traversal_run(state);
+    if (!sc_state_stops(state)) sc_traversal_run(state);
     sc_pairs_finish(state);
     if (state->timed) {
         uint64_t now = sc_clock_nanoseconds();
         state->stats.nanoseconds[state->task] += now - state->last_time;
         state->stats.total_nanoseconds = now - start;
     }
+    if (state->incomplete) return SC_ERROR_INCOMPLETE;
     if (state->options.output == SC_OUTPUT_PAIRS && state->count > state->capacity)
         return SC_ERROR_SHORT_BUFFER;
     return SC_OK;
@@ -447,15 +449,20 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     if (status) return status;
     r.collides = 0;
     r.count = 0;
+    r.verdict = SC_VERDICT_NONE;
+    r.reserved = 0;
     memset(&state, 0, sizeof state);
     state.pairs = r.pairs;
     state.capacity = r.capacity;
     state.timed = r.stats != NULL;
     status = check_query(model, workspace, pose, options, &r, &state, &p, &filter, &stride);
     if (!status) status = run_query(model, workspace, &p, stride, &state);
-    if (!status || status == SC_ERROR_SHORT_BUFFER) {
+    if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE) {
         r.count = state.options.output == SC_OUTPUT_ANY ? state.count > 0 : state.count;
         r.collides = state.count > 0;
+        r.verdict = status == SC_ERROR_INCOMPLETE ? SC_VERDICT_INCOMPLETE
+                    : state.count > 0             ? SC_VERDICT_FOUND
+                                                  : SC_VERDICT_CLEAN;
         if (r.stats) sc_structs_write(r.stats, &state.stats, sizeof state.stats);
     }
     sc_structs_write(result, &r, sizeof r);

@@ -155,7 +155,7 @@ static void structures(void)
     MEMBER(sc_filter, accept, 40);
     MEMBER(sc_filter, accept_user, 48);
 
-    SIZE(sc_query_options, 40);
+    SIZE(sc_query_options, 56);
     MEMBER(sc_query_options, struct_size, 0);
     MEMBER(sc_query_options, output, 4);
     MEMBER(sc_query_options, pairs, 8);
@@ -165,6 +165,8 @@ static void structures(void)
     MEMBER(sc_query_options, rest_cache, 24);
     MEMBER(sc_query_options, simd, 28);
     MEMBER(sc_query_options, filter, 32);
+    MEMBER(sc_query_options, cancel, 40);
+    MEMBER(sc_query_options, budget, 48);
 
     SIZE(sc_pair, 8);
     MEMBER(sc_pair, a, 0);
@@ -182,13 +184,15 @@ static void structures(void)
     MEMBER(sc_stats, leaf_pairs, 184);
     MEMBER(sc_stats, exact_fallbacks, 192);
 
-    SIZE(sc_result, 40);
+    SIZE(sc_result, 48);
     MEMBER(sc_result, struct_size, 0);
     MEMBER(sc_result, collides, 4);
     MEMBER(sc_result, count, 8);
     MEMBER(sc_result, capacity, 16);
     MEMBER(sc_result, pairs, 24);
     MEMBER(sc_result, stats, 32);
+    MEMBER(sc_result, verdict, 40);
+    MEMBER(sc_result, reserved, 44);
 }
 
 static void enumerators(void)
@@ -220,12 +224,13 @@ static void enumerators(void)
     VALUE(SC_ERROR_CHECKSUM, 24);
     VALUE(SC_ERROR_INCONSISTENT, 25);
     VALUE(SC_ERROR_TOPOLOGY, 26);
+    VALUE(SC_ERROR_PAIRS, 27);
+    VALUE(SC_ERROR_INCOMPLETE, 28);
     VALUE(SC_LOG_NOTE, 0);
     VALUE(SC_LOG_WARNING, 1);
     VALUE(SC_LOG_ERROR, 2);
     VALUE(SC_LOAD_COPY, 0);
     VALUE(SC_LOAD_IN_PLACE, 1);
-    VALUE(SC_ERROR_PAIRS, 27);
     VALUE(SC_ALIGNMENT, 64);
     VALUE(SC_FLOAT, 0);
     VALUE(SC_DOUBLE, 1);
@@ -257,6 +262,10 @@ static void enumerators(void)
     VALUE(SC_REST_CACHE_ON, 0);
     VALUE(SC_REST_CACHE_OFF, 1);
     VALUE(SC_RINGS_MAX, 32);
+    VALUE(SC_VERDICT_NONE, 0);
+    VALUE(SC_VERDICT_CLEAN, 1);
+    VALUE(SC_VERDICT_FOUND, 2);
+    VALUE(SC_VERDICT_INCOMPLETE, 3);
     VALUE(SC_TASK_UPDATE_BOXES, 0);
     VALUE(SC_TASK_UPDATE_NORMALS, 1);
     VALUE(SC_TASK_ORIENTATION, 2);

@@ -120,6 +120,7 @@ static void round_trips(void)
             options.contact = i / 2 % 2;
             options.method = i % 4;
             options.rest_cache = i / 5 % 2;
+            options.budget = i % 7 == 0 ? 100 : 0;
             if (i % 3) soup_any_pose(mesh.positions, mesh.vertex_count);
             positions = input_positions(mesh.positions, mesh.vertex_count,
                                         i % 2 ? SC_FLOAT : SC_DOUBLE, i % 5);

@@ -67,6 +67,8 @@ const char *sc_status_string(sc_status status)
         return "the saved model is not that of the mesh expected";
     case SC_ERROR_PAIRS:
         return "a list of pairs is not sorted or names what does not exist";
+    case SC_ERROR_INCOMPLETE:
+        return "the query was stopped before its end";
     default:
         return "unknown status";
     }

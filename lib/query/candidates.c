@@ -72,6 +72,7 @@ static void decide_pair(sc_query_state *state, const sc_pair *places)
     const double *position = state->workspace->position;
     int proper = state->options.contact == SC_CONTACT_PROPER, k;
     sc_triangle_pair pair;
+    if (sc_state_cancelled(state)) return;
     for (k = 0; k < 3; k++) {
         pair.va[k] = triangle[3 * (uint64_t)places->a + (uint64_t)k];
         pair.vb[k] = triangle[3 * (uint64_t)places->b + (uint64_t)k];

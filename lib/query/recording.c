@@ -20,7 +20,8 @@ typedef struct question {
     uint64_t model_bytes;
     uint32_t vertex_count, position_type;
     uint32_t output, pairs, contact, method, contour, rest_cache;
-    uint32_t unused[6]; /* 0 */
+    uint64_t budget;
+    uint64_t unused[2]; /* 0 */
 } question;
 
 typedef char question_is_one_unit[sizeof(question) == SC_ALIGNMENT ? 1 : -1];
@@ -67,6 +68,7 @@ void sc_recording_write(const sc_model *model, const sc_pose *pose, uint64_t str
     q.method = options->method;
     q.contour = options->contour;
     q.rest_cache = options->rest_cache;
+    q.budget = options->budget;
     memcpy(at, &q, sizeof q);
     at += sizeof q;
     sc_saved_model_write(model, at);
@@ -103,5 +105,6 @@ sc_status sc_recording_read(const void *data, uint64_t size, const void **model,
     options->method = q.method;
     options->contour = q.contour;
     options->rest_cache = q.rest_cache;
+    options->budget = q.budget;
     return SC_OK;
 }

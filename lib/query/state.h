@@ -19,13 +19,31 @@ typedef struct sc_query_state {
     sc_pair *pairs;      /* the caller's array */
     uint64_t capacity;
     uint64_t count;    /* pairs found */
-    int stop;          /* enough is known */
+    int stop;          /* enough is known, or the query is to end early */
+    int incomplete;    /* it is to end early */
     int after_contour; /* box and primitive tests count as following a failed contour test */
     uint32_t task;     /* what the clock runs for */
     int timed;
     uint64_t last_time;
     sc_stats stats;
 } sc_query_state;
+
+/* Asks the caller's flag; and the budget. Sets stop and incomplete, and returns stop. */
+int sc_state_ask_flag(sc_query_state *state);
+int sc_state_ask_budget(sc_query_state *state);
+
+/* Whether to stop. To be asked at least every 100 us or so. */
+static inline int sc_state_cancelled(sc_query_state *state)
+{
+    return state->stop || (state->options.cancel && sc_state_ask_flag(state));
+}
+
+/* The same, and whether the budget is used up: only where it does not depend on the flag or on statistics
+   that asking comes after the same work in each run. */
+static inline int sc_state_stops(sc_query_state *state)
+{
+    return sc_state_cancelled(state) || (state->options.budget && sc_state_ask_budget(state));
+}
 
 /* Lets the clock run for another task; returns the one it ran for. */
 static inline uint32_t sc_state_switch(sc_query_state *state, uint32_t task)

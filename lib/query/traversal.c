@@ -30,6 +30,7 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
     const sc_pair *patches = &sc_model_node_patches(model)[node];
     const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
     uint32_t i, end = sc_model_node_boxes(model)[node + 1], previous;
+    if (sc_state_stops(state)) return;
     if (!state->workspace->boxes_ready) {
         previous = sc_state_switch(state, SC_TASK_UPDATE_BOXES);
         sc_refit_boxes(model, state->workspace);
@@ -65,11 +66,12 @@ static void query_all_nodes(sc_query_state *state)
 }
 
 /* Whether the box and primitive tests to come follow a failed contour test. What was collected before
-   is decided first, if somebody reads the statistics. */
+   is decided first, if somebody reads the statistics; and with a budget, which is to end a query at the
+   same place whether they are read or not. */
 static void follow_contour(sc_query_state *state, int after_contour)
 {
     if (state->after_contour == after_contour) return;
-    if (state->timed) sc_candidates_decide(state);
+    if (state->timed || state->options.budget) sc_candidates_decide(state);
     state->after_contour = after_contour;
 }
 
@@ -155,6 +157,7 @@ void sc_traversal_run(sc_query_state *state)
         sc_dnc_update(model, state->workspace);
         SC_HOOKS_ASSERT(&state->workspace->hooks, sc_dnc_validate(model, state->workspace));
         state->stats.counts[SC_TASK_UPDATE_NORMALS] += model->patch_end;
+        if (sc_state_stops(state)) return;
         sc_state_switch(state, SC_TASK_ORIENTATION);
         if (state->options.contour == SC_CONTOUR_EXACT)
             query_exact(state, 0);

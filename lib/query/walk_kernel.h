@@ -74,6 +74,7 @@ static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b)
         SC_KERNEL(leaf_pair)(state, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
         return;
     }
+    if (sc_state_stops(state)) return;
     a_count = hop[a + 1] - hop[a];
     b_count = hop[b + 1] - hop[b];
     rows = SC_KERNEL(overlap)(boxes, b, boxes, hop[a]) & ((1u << a_count) - 1u);
@@ -98,6 +99,7 @@ static void SC_KERNEL(patch_itself)(sc_query_state *state, uint32_t a)
         SC_KERNEL(leaf_itself)(state, sc_model_leaf(model)[a]);
         return;
     }
+    if (sc_state_stops(state)) return;
     count = hop[a + 1] - hop[a];
     for (i = 0; i < count && !state->stop; i++) {
         uint32_t c = hop[a] + i;

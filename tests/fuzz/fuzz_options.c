@@ -13,6 +13,7 @@
 
 #include "fuzz_support.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -317,7 +318,7 @@ static void call_query(fuzz_bytes *bytes, const sc_model *model, sc_workspace *c
     memset(pairs, NOISE, (size_t)r.capacity * sizeof(sc_pair));
     r.pairs = null == 3 ? NULL : pairs;
     r.stats = null == 4 ? NULL : (sc_stats *)(void *)stats.block;
-    result = make_sized(bytes, &r, sizeof(r), sizeof(r) - sizeof(r.stats));
+    result = make_sized(bytes, &r, sizeof(r), (uint32_t)offsetof(sc_result, stats));
 
     if (pose.is_refused || result.is_refused || (options.is_refused && null != 2) ||
         (r.stats && stats.is_refused))

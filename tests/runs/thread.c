@@ -25,6 +25,7 @@ typedef struct answer {
 
 static soup rest;
 static sc_model *model; /* shared */
+static uint32_t cancel; /* shared: all queries read it, all threads write it; stays 0 */
 static double *poses[POSES];
 static answer answers[POSES][4];
 
@@ -41,6 +42,8 @@ static answer ask(const sc_model *m, sc_workspace *workspace, uint32_t pose, uin
     o.pairs = kind / 2;
     o.contact = kind % 2;
     o.method = round % 4;
+    o.cancel = &cancel;
+    __atomic_store_n(&cancel, 0, __ATOMIC_RELAXED);
     memset(&r, 0, sizeof(r));
     r.struct_size = sizeof(r);
     r.capacity = CAPACITY;
