@@ -3,11 +3,12 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * In five lines:
+ * In six lines:
  *
  *     sc_build           once per topology: a mesh in its rest pose becomes an immutable sc_model
  *     sc_workspace_*     once per instance or thread: everything that a query writes to
  *     sc_query           once per pose: new vertex positions in, all intersecting pairs out
+ *     sc_contacts        where these meet, if wanted
  *     sc_workspace_free, sc_model_free
  *
  * What is promised. A query reports the pairs that exact arithmetic on the given coordinates
@@ -651,6 +652,57 @@ typedef struct sc_result {
  */
 SC_API sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
                           const sc_query_options *options, sc_result *result);
+
+/* ------------------------------------------------------------------------------------------------
+ * Contacts
+ */
+
+/* What the two of a pair have in common. */
+enum {
+    SC_MEET_NONE = 0,    /* nothing */
+    SC_MEET_POINT = 1,   /* a point */
+    SC_MEET_SEGMENT = 2, /* a segment */
+    SC_MEET_AREA = 3     /* two triangles of a plane: an area */
+};
+
+/*
+ * Where the two of a pair meet: all that they have in common as closed sets, so with the vertex or edge
+ * that two triangles share. points are the two ends of a segment; twice the same point; or of an area
+ * two of its corners that are far apart. Each is given three times: by its coordinates, and by weights
+ * of the vertices of a and of b (barycentric coordinates) in the order of the mesh's triangle. For an
+ * edge the first two weights are those of its two ends, the third is 0.
+ *
+ * kind is exact. A weight is from 0 to 1 and off by at most 2^-49 times its value, however thin the
+ * triangles and however small the angle; weights 0 are exactly so unless they are below 2^-1000. A
+ * coordinate is off by at most 2^-49 times the largest absolute value of that coordinate among the
+ * vertices of the pair, or by 2^-1070. Which end comes first means nothing, but is always the same.
+ */
+typedef struct sc_contact {
+    uint32_t kind;     /* SC_MEET_... */
+    uint32_t reserved; /* 0 */
+    double points[2][3];
+    double weights_a[2][3];
+    double weights_b[2][3];
+} sc_contact;
+
+/*
+ * Finds where pairs meet: contacts[i] is that of pairs[i]. kind is SC_PAIRS_..., pairs and contacts have
+ * count entries. The pairs may be any of the model's triangles or edges, in any order, such as those
+ * that sc_query found, in the numbers it reports:
+ *
+ *     sc_query(model, workspace, &pose, &options, &result);
+ *     sc_contacts(model, &pose, options.pairs, result.pairs, result.count, contacts);
+ *
+ * What has nothing in common in this pose is SC_MEET_NONE, with zeros. No memory is taken and no
+ * workspace, so threads may share a list of pairs. 1 to 3 us a pair; 100 us and more where exponents
+ * differ widely.
+ *
+ * SC_ERROR_PAIRS: a pair names a triangle or edge that does not exist, or a triangle twice.
+ * SC_ERROR_NOT_FINITE: a vertex of a pair is NaN or infinite. On these and other errors contacts may
+ * have been written to in part.
+ */
+SC_API sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_t kind,
+                             const sc_pair *pairs, uint64_t count, sc_contact *contacts);
 
 /* ------------------------------------------------------------------------------------------------
  * Records

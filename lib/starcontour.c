@@ -19,6 +19,7 @@
 #include "build/partition.h"
 #include "build/saved_model.h"
 #include "pose/positions.h"
+#include "query/contacts.h"
 #include "query/filter.h"
 #include "query/pairs.h"
 #include "query/recording.h"
@@ -466,6 +467,55 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
         if (r.stats) sc_structs_write(r.stats, &state.stats, sizeof state.stats);
     }
     sc_structs_write(result, &r, sizeof r);
+    return status;
+}
+
+/* ---- contacts ---- */
+
+/* The positions of corners first to first + count - 1 (mod 3) of a triangle; the last fills up. */
+static sc_status read_corners(const sc_model *model, const sc_pose *pose, uint64_t stride,
+                              uint32_t triangle, uint32_t first, uint32_t count,
+                              double positions[3][3])
+{
+    const uint32_t *corner =
+        sc_model_triangle(model) + 3 * (uint64_t)sc_model_place(model)[triangle];
+    const uint32_t *vertex = sc_model_vertex(model);
+    uint32_t i, k;
+    for (i = 0; i < 3; i++) {
+        uint32_t point = corner[(first + (i < count ? i : count - 1)) % 3];
+        sc_mesh_read_position(pose->positions, pose->position_type, stride, vertex[point],
+                              positions[i]);
+        for (k = 0; k < 3; k++)
+            if (positions[i][k] - positions[i][k] != 0) return SC_ERROR_NOT_FINITE;
+    }
+    return SC_OK;
+}
+
+sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_t kind,
+                      const sc_pair *pairs, uint64_t count, sc_contact *contacts)
+{
+    sc_pose p;
+    sc_status status;
+    uint64_t stride, i;
+    int is_edge = kind == SC_PAIRS_EDGE;
+    if (!model || !pose || (count && (!pairs || !contacts))) return SC_ERROR_NULL;
+    if (kind > SC_PAIRS_EDGE) return SC_ERROR_OPTION;
+    status = sc_structs_read(&p, sizeof p, pose, UP_TO(sc_pose, positions));
+    if (!status) status = check_pose(model, &p, &stride);
+    for (i = 0; !status && i < count; i++) {
+        uint32_t a = is_edge ? pairs[i].a / 3 : pairs[i].a, b = pairs[i].b;
+        double at[2][3][3];
+        const double *corners[2][3];
+        int s, k;
+        if (a >= model->triangle_count || b >= model->triangle_count || (a == b && !is_edge))
+            return SC_ERROR_PAIRS;
+        status = read_corners(model, &p, stride, a, is_edge ? pairs[i].a % 3 : 0, is_edge ? 2 : 3,
+                              at[0]);
+        if (!status) status = read_corners(model, &p, stride, b, 0, 3, at[1]);
+        for (s = 0; s < 2; s++)
+            for (k = 0; k < 3; k++) corners[s][k] = at[s][k];
+        if (!status) sc_contacts_find(corners[0], corners[1], &contacts[i]);
+    }
     return status;
 }
 

@@ -193,6 +193,13 @@ static void structures(void)
     MEMBER(sc_result, stats, 32);
     MEMBER(sc_result, verdict, 40);
     MEMBER(sc_result, reserved, 44);
+
+    SIZE(sc_contact, 152);
+    MEMBER(sc_contact, kind, 0);
+    MEMBER(sc_contact, reserved, 4);
+    MEMBER(sc_contact, points, 8);
+    MEMBER(sc_contact, weights_a, 56);
+    MEMBER(sc_contact, weights_b, 104);
 }
 
 static void enumerators(void)
@@ -266,6 +273,10 @@ static void enumerators(void)
     VALUE(SC_VERDICT_CLEAN, 1);
     VALUE(SC_VERDICT_FOUND, 2);
     VALUE(SC_VERDICT_INCOMPLETE, 3);
+    VALUE(SC_MEET_NONE, 0);
+    VALUE(SC_MEET_POINT, 1);
+    VALUE(SC_MEET_SEGMENT, 2);
+    VALUE(SC_MEET_AREA, 3);
     VALUE(SC_TASK_UPDATE_BOXES, 0);
     VALUE(SC_TASK_UPDATE_NORMALS, 1);
     VALUE(SC_TASK_ORIENTATION, 2);

@@ -410,6 +410,11 @@ static void use(sc_model *model, const soup *mesh)
         result.struct_size = sizeof(result);
         CHECK(sc_query(model, workspace, &pose, &options, &result) == SC_OK);
         free(groups);
+        for (uint32_t t = 1; t < mesh->triangle_count; ++t) {
+            sc_pair pair = {t - 1, t};
+            sc_contact contact;
+            CHECK(sc_contacts(model, &pose, SC_PAIRS_TRIANGLE, &pair, 1, &contact) == SC_OK);
+        }
     }
     sc_workspace_free(workspace);
 }

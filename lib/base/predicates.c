@@ -147,26 +147,40 @@ static int is_moderate(const double *coordinates, int count)
     return 1;
 }
 
-int sc_predicates_orient2d_exact(const double a[2], const double b[2], const double c[2])
+/* The sum, to within 2^-51 of it: the terms before the last two add up to less than the lowest bit of
+   the last but one. */
+static double sum_of_terms(const double *terms, int count)
 {
-    if (!is_moderate(a, 2) || !is_moderate(b, 2) || !is_moderate(c, 2)) {
-        return sc_wide_orient2d(a, b, c);
-    }
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum += terms[i];
+    return sum;
+}
+
+static int all_moderate_2d(const double a[2], const double b[2], const double c[2])
+{
+    return is_moderate(a, 2) && is_moderate(b, 2) && is_moderate(c, 2);
+}
+
+static int all_moderate_3d(const double a[3], const double b[3], const double c[3],
+                           const double d[3])
+{
+    return is_moderate(a, 3) && is_moderate(b, 3) && is_moderate(c, 3) && is_moderate(d, 3);
+}
+
+static int expand_2d(double terms[MINOR_TERMS], const double a[2], const double b[2],
+                     const double c[2])
+{
     /* Points on a line along an axis: common, and quickly seen. */
     if ((a[0] == b[0] && a[0] == c[0]) || (a[1] == b[1] && a[1] == c[1])) return 0;
 
-    double terms[MINOR_TERMS];
     difference ux = subtract(b[0], a[0]), uy = subtract(b[1], a[1]);
     difference vx = subtract(c[0], a[0]), vy = subtract(c[1], a[1]);
-    return sign_of_last(terms, expand_minor(terms, &ux, &vy, &uy, &vx));
+    return expand_minor(terms, &ux, &vy, &uy, &vx);
 }
 
-int sc_predicates_orient3d_exact(const double a[3], const double b[3], const double c[3],
-                                 const double d[3])
+static int expand_3d(double terms[DETERMINANT_TERMS], const double a[3], const double b[3],
+                     const double c[3], const double d[3])
 {
-    if (!is_moderate(a, 3) || !is_moderate(b, 3) || !is_moderate(c, 3) || !is_moderate(d, 3)) {
-        return sc_wide_orient3d(a, b, c, d);
-    }
     /* Points in a plane across an axis, as in flat meshes: common, and quickly seen. */
     for (int i = 0; i < 3; ++i) {
         if (a[i] == b[i] && a[i] == c[i] && a[i] == d[i]) return 0;
@@ -178,7 +192,6 @@ int sc_predicates_orient3d_exact(const double a[3], const double b[3], const dou
         v[i] = subtract(c[i], a[i]);
         w[i] = subtract(d[i], a[i]);
     }
-    double terms[DETERMINANT_TERMS];
     int count = 0;
     for (int i = 0; i < 3; ++i) {
         int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -186,5 +199,44 @@ int sc_predicates_orient3d_exact(const double a[3], const double b[3], const dou
         int minor_count = expand_minor(minor, &u[j], &v[k], &u[k], &v[j]);
         count = add_product(terms, count, 1.0, w[i].term, w[i].count, minor, minor_count);
     }
-    return sign_of_last(terms, count);
+    return count;
+}
+
+int sc_predicates_orient2d_exact(const double a[2], const double b[2], const double c[2])
+{
+    double terms[MINOR_TERMS];
+    if (!all_moderate_2d(a, b, c)) return sc_wide_orient2d(a, b, c);
+    return sign_of_last(terms, expand_2d(terms, a, b, c));
+}
+
+int sc_predicates_orient3d_exact(const double a[3], const double b[3], const double c[3],
+                                 const double d[3])
+{
+    double terms[DETERMINANT_TERMS];
+    if (!all_moderate_3d(a, b, c, d)) return sc_wide_orient3d(a, b, c, d);
+    return sign_of_last(terms, expand_3d(terms, a, b, c, d));
+}
+
+sc_predicates_value sc_predicates_orient2d_value(const double a[2], const double b[2],
+                                                 const double c[2])
+{
+    double terms[MINOR_TERMS];
+    sc_predicates_value value = {0.0, 0};
+    if (all_moderate_2d(a, b, c))
+        value.number = sum_of_terms(terms, expand_2d(terms, a, b, c));
+    else
+        value.number = sc_wide_orient2d_value(a, b, c, &value.exponent);
+    return value;
+}
+
+sc_predicates_value sc_predicates_orient3d_value(const double a[3], const double b[3],
+                                                 const double c[3], const double d[3])
+{
+    double terms[DETERMINANT_TERMS];
+    sc_predicates_value value = {0.0, 0};
+    if (all_moderate_3d(a, b, c, d))
+        value.number = sum_of_terms(terms, expand_3d(terms, a, b, c, d));
+    else
+        value.number = sc_wide_orient3d_value(a, b, c, d, &value.exponent);
+    return value;
 }

@@ -139,4 +139,18 @@ static inline int sc_predicates_orient3d(const double a[3], const double b[3], c
     return sc_predicates_side_of_plane(&plane, d, fallbacks);
 }
 
+/*
+ * The determinants whose signs these are: number times 2^exponent, to within 2^-51 of the true value,
+ * however small it is. A value that is 0 is so exactly. By stages 2 and 3.
+ */
+typedef struct sc_predicates_value {
+    double number;
+    int exponent;
+} sc_predicates_value;
+
+sc_predicates_value sc_predicates_orient2d_value(const double a[2], const double b[2],
+                                                 const double c[2]);
+sc_predicates_value sc_predicates_orient3d_value(const double a[3], const double b[3],
+                                                 const double c[3], const double d[3]);
+
 #endif /* SC_BASE_PREDICATES_H */

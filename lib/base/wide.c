@@ -169,7 +169,8 @@ static void minor(number *result, const difference *ax, const difference *by, co
     add(result, &left, &right, -1);
 }
 
-int sc_wide_orient2d(const double a[2], const double b[2], const double c[2])
+/* Sets *result, of MIDDLE_LIMBS, to the determinant divided by 2^(2 (least - 1074)); returns least. */
+static int find_2d(number *result, const double a[2], const double b[2], const double c[2])
 {
     int least = least_exponent(a, 2, 2047);
     least = least_exponent(b, 2, least);
@@ -180,13 +181,13 @@ int sc_wide_orient2d(const double a[2], const double b[2], const double c[2])
         subtract(&u[i], b[i], a[i], least);
         subtract(&v[i], c[i], a[i], least);
     }
-    uint32_t limb[MIDDLE_LIMBS];
-    number result = {0, 0, limb};
-    minor(&result, &u[0], &v[1], &u[1], &v[0]);
-    return result.sign;
+    minor(result, &u[0], &v[1], &u[1], &v[0]);
+    return least;
 }
 
-int sc_wide_orient3d(const double a[3], const double b[3], const double c[3], const double d[3])
+/* Sets *result, of LARGE_LIMBS, to the determinant divided by 2^(3 (least - 1074)); returns least. */
+static int find_3d(number *result, const double a[3], const double b[3], const double c[3],
+                   const double d[3])
 {
     int least = least_exponent(a, 3, 2047);
     least = least_exponent(b, 3, least);
@@ -211,5 +212,54 @@ int sc_wide_orient3d(const double a[3], const double b[3], const double c[3], co
         sum = next;
         next = swap;
     }
-    return sum.sign;
+    copy(result, &sum, 1);
+    return least;
+}
+
+int sc_wide_orient2d(const double a[2], const double b[2], const double c[2])
+{
+    uint32_t limb[MIDDLE_LIMBS];
+    number result = {0, 0, limb};
+    find_2d(&result, a, b, c);
+    return result.sign;
+}
+
+int sc_wide_orient3d(const double a[3], const double b[3], const double c[3], const double d[3])
+{
+    uint32_t limb[LARGE_LIMBS];
+    number result = {0, 0, limb};
+    find_3d(&result, a, b, c, d);
+    return result.sign;
+}
+
+/* The last four limbs: 97 bits or more, rounded four times. */
+static double round_number(const number *n, int *exponent)
+{
+    double value = 0;
+    int low = n->count > 4 ? n->count - 4 : 0;
+    for (int i = n->count - 1; i >= low; --i) value = value * 4294967296.0 + (double)n->limb[i];
+    *exponent = 32 * low;
+    return n->sign < 0 ? -value : value;
+}
+
+double sc_wide_orient2d_value(const double a[2], const double b[2], const double c[2],
+                              int *exponent)
+{
+    uint32_t limb[MIDDLE_LIMBS];
+    number result = {0, 0, limb};
+    int least = find_2d(&result, a, b, c);
+    double value = round_number(&result, exponent);
+    *exponent += 2 * (least - 1074);
+    return value;
+}
+
+double sc_wide_orient3d_value(const double a[3], const double b[3], const double c[3],
+                              const double d[3], int *exponent)
+{
+    uint32_t limb[LARGE_LIMBS];
+    number result = {0, 0, limb};
+    int least = find_3d(&result, a, b, c, d);
+    double value = round_number(&result, exponent);
+    *exponent += 3 * (least - 1074);
+    return value;
 }
