@@ -39,8 +39,11 @@
  * pointer and reaches at least to the end of the members of version 0.1 that have no default.
  *
  * Versions. Before 1.0 a change of the minor number may break the binary interface, afterwards only
- * a change of the major number; the shared library's soname follows that number. Enumerators keep
- * their values and are never reused.
+ * a change of the major number. The shared library's soname ends in that number: major.minor before
+ * 1.0 (libstarcontour.so.0.1), then major. Under one soname, calls, enumerators and members at the
+ * ends of structures with a struct_size are added; nothing else changes. So a program runs with
+ * every library of the soname it was linked with that is not older. Enumerators keep their values
+ * and are never reused.
  *
  * Source: S. C. Schvartzman, A. G. Perez, M. A. Otaduy, "Star-Contours for Efficient Hierarchical
  * Self-Collision Detection", ACM Transactions on Graphics 29(4) (SIGGRAPH 2010).
@@ -63,7 +66,7 @@
 #  else
 #    define SC_API __declspec(dllimport)
 #  endif
-#elif defined(__GNUC__)
+#elif defined(__GNUC__) && !defined(_WIN32)
 #  define SC_API __attribute__((visibility("default")))
 #else
 #  define SC_API

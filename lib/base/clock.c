@@ -11,17 +11,19 @@
 #include <time.h>
 
 #if defined(_WIN32)
-#  define WIN32_LEAN_AND_MEAN
-#  include <windows.h>
+/* Declared here, as windows.h brings thousands of names, which would be in the way of the library's
+   where all of it is compiled as one file. */
+__declspec(dllimport) int __stdcall QueryPerformanceCounter(int64_t *ticks);
+__declspec(dllimport) int __stdcall QueryPerformanceFrequency(int64_t *ticks_per_second);
 #endif
 
 uint64_t sc_clock_nanoseconds(void)
 {
 #if defined(_WIN32)
-    LARGE_INTEGER ticks, rate;
+    int64_t ticks = 0, rate = 1;
     QueryPerformanceCounter(&ticks);
     QueryPerformanceFrequency(&rate);
-    return (uint64_t)((double)ticks.QuadPart * 1e9 / (double)rate.QuadPart);
+    return (uint64_t)((double)ticks * 1e9 / (double)rate);
 #elif defined(CLOCK_MONOTONIC)
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);

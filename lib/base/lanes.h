@@ -10,37 +10,15 @@
  * first three of four floats at eight places.
  *
  * Included once for each instruction set, by the .c files that include kernels, which define SC_KERNEL(name) to
- * make names of their own; so this has no guard.
+ * make names of their own; so this has no guard. base/lanes_end.h ends it.
  */
 #include <math.h>
 
 #include "base/bits.h"
 
-#undef SC_LANES_AVX2
-#undef SC_LANES_SSE2
 #define SC_LANES_AVX2 (SC_LANES == 2)
 #define SC_LANES_SSE2 (SC_LANES == 1)
 
-#undef lanes
-#undef lanes_all
-#undef lanes_load
-#undef lanes_store
-#undef lanes_add
-#undef lanes_subtract
-#undef lanes_multiply
-#undef lanes_smaller
-#undef lanes_larger
-#undef lanes_absolute
-#undef lanes_mask
-#undef lanes_below
-#undef lanes_not_above
-#undef lanes_both
-#undef lanes_bits
-#undef lanes_next
-#undef lanes_sum
-#undef lanes_least
-#undef lanes_most
-#undef lanes_points
 #define lanes SC_KERNEL(sc_lanes)
 #define lanes_all SC_KERNEL(sc_lanes_all)
 #define lanes_load SC_KERNEL(sc_lanes_load)

@@ -5,8 +5,8 @@
  */
 #include "starcontour.h"
 
-#define TEXT_OF(number) #number
-#define TEXT(number) TEXT_OF(number)
+#define DIGITS_OF(number) #number
+#define DIGITS(number) DIGITS_OF(number)
 
 const char *sc_status_string(sc_status status)
 {
@@ -81,5 +81,5 @@ uint32_t sc_version(void)
 
 const char *sc_version_string(void)
 {
-    return TEXT(SC_VERSION_MAJOR) "." TEXT(SC_VERSION_MINOR) "." TEXT(SC_VERSION_PATCH);
+    return DIGITS(SC_VERSION_MAJOR) "." DIGITS(SC_VERSION_MINOR) "." DIGITS(SC_VERSION_PATCH);
 }

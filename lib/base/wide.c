@@ -91,7 +91,7 @@ static int compare_magnitudes(const number *a, const number *b)
     return 0;
 }
 
-static void copy(number *result, const number *a, int factor)
+static void copy_number(number *result, const number *a, int factor)
 {
     memcpy(result->limb, a->limb, (size_t)a->count * sizeof *a->limb);
     result->count = a->count;
@@ -102,11 +102,11 @@ static void copy(number *result, const number *a, int factor)
 static void add(number *result, const number *a, const number *b, int factor)
 {
     if (b->sign == 0) {
-        copy(result, a, 1);
+        copy_number(result, a, 1);
         return;
     }
     if (a->sign == 0) {
-        copy(result, b, factor);
+        copy_number(result, b, factor);
         return;
     }
     int a_is_larger = compare_magnitudes(a, b) >= 0;
@@ -143,12 +143,12 @@ static void multiply(number *result, const number *a, const number *b)
 }
 
 /* A difference of two coordinates. */
-typedef struct difference {
+typedef struct wide_difference {
     number value;
     uint32_t limb[SMALL_LIMBS];
-} difference;
+} wide_difference;
 
-static void subtract(difference *result, double a, double b, int least)
+static void subtract_doubles(wide_difference *result, double a, double b, int least)
 {
     uint32_t a_limb[SMALL_LIMBS], b_limb[SMALL_LIMBS];
     number a_number = {0, 0, a_limb}, b_number = {0, 0, b_limb};
@@ -159,8 +159,8 @@ static void subtract(difference *result, double a, double b, int least)
 }
 
 /* result = ax by - ay bx, of at most MIDDLE_LIMBS */
-static void minor(number *result, const difference *ax, const difference *by, const difference *ay,
-                  const difference *bx)
+static void minor(number *result, const wide_difference *ax, const wide_difference *by,
+                  const wide_difference *ay, const wide_difference *bx)
 {
     uint32_t left_limb[MIDDLE_LIMBS], right_limb[MIDDLE_LIMBS];
     number left = {0, 0, left_limb}, right = {0, 0, right_limb};
@@ -176,10 +176,10 @@ static int find_2d(number *result, const double a[2], const double b[2], const d
     least = least_exponent(b, 2, least);
     least = least_exponent(c, 2, least);
 
-    difference u[2], v[2];
+    wide_difference u[2], v[2];
     for (int i = 0; i < 2; ++i) {
-        subtract(&u[i], b[i], a[i], least);
-        subtract(&v[i], c[i], a[i], least);
+        subtract_doubles(&u[i], b[i], a[i], least);
+        subtract_doubles(&v[i], c[i], a[i], least);
     }
     minor(result, &u[0], &v[1], &u[1], &v[0]);
     return least;
@@ -194,11 +194,11 @@ static int find_3d(number *result, const double a[3], const double b[3], const d
     least = least_exponent(c, 3, least);
     least = least_exponent(d, 3, least);
 
-    difference u[3], v[3], w[3];
+    wide_difference u[3], v[3], w[3];
     for (int i = 0; i < 3; ++i) {
-        subtract(&u[i], b[i], a[i], least);
-        subtract(&v[i], c[i], a[i], least);
-        subtract(&w[i], d[i], a[i], least);
+        subtract_doubles(&u[i], b[i], a[i], least);
+        subtract_doubles(&v[i], c[i], a[i], least);
+        subtract_doubles(&w[i], d[i], a[i], least);
     }
     uint32_t limbs[2][LARGE_LIMBS], product_limb[LARGE_LIMBS], minor_limb[MIDDLE_LIMBS];
     number sum = {0, 0, limbs[0]}, next = {0, 0, limbs[1]};

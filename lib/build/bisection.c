@@ -50,8 +50,8 @@ static uint32_t neighbor(const bisection *b, uint32_t t, uint32_t k)
 
 /* Numbers the components of a patch, where crossing from side 0 to side 1 does or does not count as
    connected, and writes their sizes. */
-static uint32_t find_components(bisection *b, const uint32_t *triangles, uint32_t count,
-                                int by_side)
+static uint32_t number_components(bisection *b, const uint32_t *triangles, uint32_t count,
+                                  int by_side)
 {
     uint32_t found = 0, i;
     for (i = 0; i < count; i++) b->component[triangles[i]] = SC_NONE;
@@ -227,7 +227,7 @@ static void even_out(bisection *b, const uint32_t *triangles, uint32_t count, ui
 static void connect(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
                     const uint32_t capacity[2])
 {
-    uint32_t found = find_components(b, triangles, count, 1), largest[2] = {SC_NONE, SC_NONE}, i;
+    uint32_t found = number_components(b, triangles, count, 1), largest[2] = {SC_NONE, SC_NONE}, i;
     if (found == 2) return;
     for (i = 0; i < count; i++) {
         uint32_t c = b->component[triangles[i]], s = b->side[triangles[i]];
@@ -300,7 +300,7 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count)
     }
     b->patches++;
     for (i = 0; i < count; i++) b->patch[triangles[i]] = b->patches;
-    found = find_components(b, triangles, count, 0);
+    found = number_components(b, triangles, count, 0);
     if (found > 1) {
         deal_components(b, triangles, count, found);
         return SC_OK;

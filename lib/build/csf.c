@@ -275,7 +275,7 @@ static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
     return SC_OK;
 }
 
-static uint32_t find_root(uint32_t *parent, uint32_t i)
+static uint32_t find_piece(uint32_t *parent, uint32_t i)
 {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
@@ -312,8 +312,8 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
                     seen_by[end[k]] = i;
                     continue;
                 }
-                p = find_root(parent, i);
-                q = find_root(parent, seen_by[end[k]]);
+                p = find_piece(parent, i);
+                q = find_piece(parent, seen_by[end[k]]);
                 parent[p] = q;
                 pieces -= p != q;
             }

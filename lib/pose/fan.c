@@ -24,8 +24,8 @@
  * errors times (|r_i| + |r_(i+1)|). That and the rounding of the area itself, 8 * 2^-53 |d|1 |r_i|1
  * |r_(i+1)|1, are below 32 * 2^-53 |d|1 (|r_i|1 + |r_(i+1)|1)^2.
  */
-static const double ERROR_RELATIVE = 32 * 1.1102230246251565e-16;
-static const double ERROR_ABSOLUTE = 1e-290;
+static const double FAN_ERROR_RELATIVE = 32 * 1.1102230246251565e-16;
+static const double FAN_ERROR_ABSOLUTE = 1e-290;
 
 int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
 {
@@ -53,7 +53,7 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
     for (i = 0; i < count; i++) {
         double sum = size[i] + size[i + 1 < count ? i + 1 : 0];
         double area = d[0] * n[i][0] + d[1] * n[i][1] + d[2] * n[i][2];
-        if (!(area > ERROR_RELATIVE * d_size * (sum * sum) + ERROR_ABSOLUTE * (1 + d_size)))
+        if (!(area > FAN_ERROR_RELATIVE * d_size * (sum * sum) + FAN_ERROR_ABSOLUTE * (1 + d_size)))
             return 0;
     }
     for (k = 1; k < 3; k++)

@@ -10,7 +10,7 @@
 #if SC_ISA_X86
 
 #  include "base/avx2_begin.h"
-#  define SC_KERNEL(name) name##_avx2
+#  define SC_KERNEL(name) name##_pose_avx2
 #  define SC_LANES 2
 
 #  include "base/lanes.h"
@@ -18,10 +18,10 @@
 #  include "pose/fan_kernel.h"
 #  include "pose/refit_kernel.h"
 
-const sc_pose_kernels sc_pose_kernels_avx2 = {mask_of_avx2, refit_leaf_avx2, is_plain_avx2};
+const sc_pose_kernels sc_pose_kernels_avx2 = {SC_KERNEL(mask_of), SC_KERNEL(refit_leaf),
+                                              SC_KERNEL(is_plain)};
 
-#  undef SC_KERNEL
-#  undef SC_LANES
+#  include "base/lanes_end.h"
 #  include "base/avx2_end.h"
 
 #else

@@ -7,7 +7,7 @@
 
 #include <float.h>
 
-#define SC_KERNEL(name) name##_base
+#define SC_KERNEL(name) name##_pose_base
 #if SC_ISA_X86
 #  include <emmintrin.h>
 #  define SC_LANES 1
@@ -20,7 +20,7 @@
 #include "pose/fan_kernel.h"
 #include "pose/refit_kernel.h"
 
-const sc_pose_kernels sc_pose_kernels_base = {mask_of_base, refit_leaf_base, is_plain_base};
+const sc_pose_kernels sc_pose_kernels_base = {SC_KERNEL(mask_of), SC_KERNEL(refit_leaf),
+                                              SC_KERNEL(is_plain)};
 
-#undef SC_KERNEL
-#undef SC_LANES
+#include "base/lanes_end.h"

@@ -23,7 +23,7 @@ static void *place(unsigned char *block, uint64_t *at, uint64_t count, size_t si
     return array;
 }
 
-static uint64_t lay_out(const sc_model *model, unsigned char *block, sc_workspace *w)
+static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_workspace *w)
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
@@ -62,7 +62,7 @@ static uint64_t lay_out(const sc_model *model, unsigned char *block, sc_workspac
 uint64_t sc_workspace_bytes(const sc_model *model)
 {
     sc_workspace sizes;
-    return lay_out(model, NULL, &sizes);
+    return lay_out_arrays(model, NULL, &sizes);
 }
 
 sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
@@ -72,7 +72,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
     uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
     int k;
     memset(w, 0, sizeof *w);
-    w->bytes = lay_out(model, (unsigned char *)memory, w);
+    w->bytes = lay_out_arrays(model, (unsigned char *)memory, w);
     w->topology_hash = model->topology_hash;
     w->isa = (uint32_t)sc_isa_best();
     for (k = 0; k < 6; k++) {

@@ -10,7 +10,7 @@
 #if SC_ISA_X86
 
 #  include "base/avx2_begin.h"
-#  define SC_KERNEL(name) name##_avx2
+#  define SC_KERNEL(name) name##_query_avx2
 #  define SC_LANES 2
 
 #  include "base/lanes.h"
@@ -18,12 +18,12 @@
 #  include "query/planes_kernel.h"
 #  include "query/simple_kernel.h"
 
-const sc_query_kernels sc_query_kernels_avx2 = {
-    patch_pair_avx2,  patch_itself_avx2, leaf_pair_avx2,     leaf_itself_avx2,
-    test_planes_avx2, project_avx2,      are_edges_fine_avx2};
+const sc_query_kernels sc_query_kernels_avx2 = {SC_KERNEL(patch_pair),    SC_KERNEL(patch_itself),
+                                                SC_KERNEL(leaf_pair),     SC_KERNEL(leaf_itself),
+                                                SC_KERNEL(test_planes),   SC_KERNEL(project),
+                                                SC_KERNEL(are_edges_fine)};
 
-#  undef SC_KERNEL
-#  undef SC_LANES
+#  include "base/lanes_end.h"
 #  include "base/avx2_end.h"
 
 #else

@@ -7,7 +7,7 @@
 
 #include <float.h>
 
-#define SC_KERNEL(name) name##_base
+#define SC_KERNEL(name) name##_query_base
 #if SC_ISA_X86
 #  include <emmintrin.h>
 #  define SC_LANES 1
@@ -20,9 +20,9 @@
 #include "query/planes_kernel.h"
 #include "query/simple_kernel.h"
 
-const sc_query_kernels sc_query_kernels_base = {
-    patch_pair_base,  patch_itself_base, leaf_pair_base,     leaf_itself_base,
-    test_planes_base, project_base,      are_edges_fine_base};
+const sc_query_kernels sc_query_kernels_base = {SC_KERNEL(patch_pair),    SC_KERNEL(patch_itself),
+                                                SC_KERNEL(leaf_pair),     SC_KERNEL(leaf_itself),
+                                                SC_KERNEL(test_planes),   SC_KERNEL(project),
+                                                SC_KERNEL(are_edges_fine)};
 
-#undef SC_KERNEL
-#undef SC_LANES
+#include "base/lanes_end.h"

@@ -120,7 +120,7 @@ static inline vector2 minus(vector2 a, vector2 b)
 }
 
 /* Whether edge j is certainly on one side of the line of edge i. */
-static int is_beside(const sc_simple_contour *c, uint32_t i, uint32_t j)
+static int lies_beside(const sc_simple_contour *c, uint32_t i, uint32_t j)
 {
     vector2 from = edge_end(c, i, 0), along = minus(edge_end(c, i, 1), from);
     return turn(along, minus(edge_end(c, j, 0), from), c->error) *
@@ -148,7 +148,7 @@ int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
     uint32_t a = c->edges->point[i], b = c->edges->point[i + 1], k;
     uint32_t p = c->edges->point[j], q = c->edges->point[j + 1];
     int shared = (a == p) + (a == q) + (b == p) + (b == q);
-    if (!shared) return is_beside(c, i, j) || is_beside(c, j, i);
+    if (!shared) return lies_beside(c, i, j) || lies_beside(c, j, i);
     if (shared > 1 || !is_open(c, i, b == p || b == q, j, a == q || b == q)) return 0;
     if (c->in_pieces) c->edges->piece[piece_of(c, i)] = piece_of(c, j);
     if (a == p) { /* the contour leaves the point twice */

@@ -1,0 +1,29 @@
+/*
+ * Ends what base/lanes.h began: its names, SC_KERNEL and SC_LANES mean nothing from here on.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#undef SC_KERNEL
+#undef SC_LANES
+#undef SC_LANES_AVX2
+#undef SC_LANES_SSE2
+#undef lanes
+#undef lanes_all
+#undef lanes_load
+#undef lanes_store
+#undef lanes_add
+#undef lanes_subtract
+#undef lanes_multiply
+#undef lanes_smaller
+#undef lanes_larger
+#undef lanes_absolute
+#undef lanes_mask
+#undef lanes_below
+#undef lanes_not_above
+#undef lanes_both
+#undef lanes_bits
+#undef lanes_next
+#undef lanes_sum
+#undef lanes_least
+#undef lanes_most
+#undef lanes_points
