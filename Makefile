@@ -407,7 +407,7 @@ test-memory-clang: ## tests, shortened, under MemorySanitizer (clang); all but t
 	'$(BUILD)/memory/debug/runs/soak' 3000
 	@SC_TEST_SCALE=20 tests/run.sh $(patsubst %,'$(BUILD)/memory/debug/%',$(memory_tests))
 
-valgrind_tests := $(patsubst %,$(work)/tests/test_%,abi memory input structures reproducers)
+valgrind_tests := $(patsubst %,$(work)/tests/test_%,memory input structures reproducers)
 
 .PHONY: test-valgrind
 test-valgrind: $(valgrind_tests) ## small tests under valgrind; leaks are errors
@@ -483,6 +483,14 @@ docs: ## API pages and guides in build/docs/html, by Doxygen; warnings are error
 	@SC_VERSION='$(version)' SC_DOCS='$(BUILD)/docs' doxygen tools/Doxyfile || \
 	    { cat '$(BUILD)/docs/warnings.log' >&2; exit 1; }
 	@echo '$(BUILD)/docs/html/index.html'
+
+.PHONY: abi-update
+abi-update: $(lib)/$(shared_link) ## write the golden files of the binary interface: review the diff
+	@CC='$(CC)' tests/abi/goldens.sh tests/abi '$(shared)'
+
+.PHONY: abi-check
+abi-check: $(lib)/$(shared_link) ## would programs linked with the last release run with this library?
+	@CC='$(CC)' MAKE='$(MAKE)' tests/abi/compare.sh '$(shared)'
 
 .PHONY: format
 format: ## clang-format on all C and C++ files, in place

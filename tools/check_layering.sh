@@ -119,6 +119,7 @@ offenders=$(
             may["tests"] = may["lib"] " tests tests/fuzz"
             may["tests/fuzz"] = may["tests/runs"] = may["tests"]
             may["tests/bench"] = may["bench"] " tests tests/bench"
+            may["tests/abi"] = "tests tests/abi"
             may["tests/cgal"] = "include tools tests tests/cgal"
             may["tests/ffi/cxx"] = "include"
         }

@@ -52,14 +52,14 @@ reason() {
 
 # Quick programs first; new ones last.
 order_programs() {
-    for program in predicates primitives input structures memory oracle ccd abi metis contours; do
+    for program in predicates primitives input structures memory oracle ccd metis contours; do
         [ -f "$tree/tests/test_$program.c" ] && echo "test_$program"
     done
     for source in "$tree"/tests/test_*.c; do
         program=$(basename "$source" .c)
         case $program in
         test_predicates | test_primitives | test_input | test_structures | test_memory | test_oracle) ;;
-        test_ccd | test_abi | test_metis | test_contours | test_culling | test_pairs) ;;
+        test_ccd | test_metis | test_contours | test_culling | test_pairs) ;;
         *) echo "$program" ;;
         esac
     done
