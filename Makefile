@@ -40,6 +40,7 @@ WERROR ?= 0
 V ?= 0
 INSTALL ?= install
 PYTHON ?=
+MINGW ?= x86_64-w64-mingw32
 
 comma := ,
 # Make's versions differ in what they take for a comment within $(shell ...).
@@ -566,20 +567,25 @@ peers: ## all peers that are there, into a new CSV
 # Installing.
 
 headers := include/starcontour.h $(if $(metis),include/starcontour_metis.h)
+# Written from tools/NAME.in; by folders below LIBDIR.
 pkgconfigs := starcontour.pc $(if $(metis),starcontour_metis.pc)
+cmakes := starcontour-config.cmake starcontour-config-version.cmake
+pointer_bytes = $(shell echo __SIZEOF_POINTER__ | $(CC) $(CPPFLAGS) $(CFLAGS) -E -P -x c -)
 
 .PHONY: install
-install: all ## install headers, libraries, pkg-config files and programs below DESTDIR and PREFIX
-	$(INSTALL) -d '$(DESTDIR)$(INCLUDEDIR)' '$(DESTDIR)$(LIBDIR)/pkgconfig' '$(DESTDIR)$(BINDIR)'
+install: all ## install headers, libraries, pkg-config and CMake files, and programs
+	$(INSTALL) -d '$(DESTDIR)$(INCLUDEDIR)' '$(DESTDIR)$(LIBDIR)/pkgconfig' \
+	    '$(DESTDIR)$(LIBDIR)/cmake/starcontour' '$(DESTDIR)$(BINDIR)'
 	$(INSTALL) -m 644 $(headers) '$(DESTDIR)$(INCLUDEDIR)'
 	$(INSTALL) -m 644 $(static) $(if $(metis),$(metis_library)) '$(DESTDIR)$(LIBDIR)'
 	$(INSTALL) -m 755 $(shared) '$(DESTDIR)$(LIBDIR)'
 	ln -sf $(shared_name) '$(DESTDIR)$(LIBDIR)/$(soname)'
 	ln -sf $(soname) '$(DESTDIR)$(LIBDIR)/$(shared_link)'
-	for pc in $(pkgconfigs); do \
+	for file in $(pkgconfigs:%=pkgconfig/%) $(cmakes:%=cmake/starcontour/%); do \
 	    sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(LIBDIR)|' -e 's|@version@|$(version)|' \
-	        -e 's|@includedir@|$(INCLUDEDIR)|' tools/$$pc.in \
-	        > '$(DESTDIR)$(LIBDIR)/pkgconfig/'$$pc || exit 1; \
+	        -e 's|@includedir@|$(INCLUDEDIR)|' -e 's|@abi@|$(abi)|' -e 's|@soname@|$(soname)|' \
+	        -e 's|@shared_name@|$(shared_name)|' -e 's|@pointer_bytes@|$(pointer_bytes)|' \
+	        "tools/$${file##*/}.in" > '$(DESTDIR)$(LIBDIR)/'"$$file" || exit 1; \
 	done
 ifneq ($(installed),)
 	$(INSTALL) -m 755 $(installed) '$(DESTDIR)$(BINDIR)'
@@ -592,10 +598,34 @@ uninstall: ## remove what install installs
 	for name in starcontour.h starcontour_metis.h; do \
 	    rm -f '$(DESTDIR)$(INCLUDEDIR)/'$$name || exit 1; done
 	for name in libstarcontour.a libstarcontour_metis.a $(shared_name) $(soname) $(shared_link) \
-	    pkgconfig/starcontour.pc pkgconfig/starcontour_metis.pc; do \
+	    pkgconfig/starcontour.pc pkgconfig/starcontour_metis.pc $(cmakes:%=cmake/starcontour/%); do \
 	    rm -f '$(DESTDIR)$(LIBDIR)/'$$name || exit 1; done
 	for name in sc-query sc-partition; do rm -f '$(DESTDIR)$(BINDIR)/'$$name \
 	    '$(DESTDIR)$(MANDIR)/man1/'$$name.1 || exit 1; done
+	rmdir '$(DESTDIR)$(LIBDIR)/cmake/starcontour' 2>/dev/null || true
+
+# ------------------------------------------------------------------------------------------------
+# Other ways to take the library along.
+
+.PHONY: amalgamation
+amalgamation: ## build/amalgamation/starcontour.c and .h: the library as one file
+	@mkdir -p '$(BUILD)/amalgamation'
+	@awk -f tools/amalgamate.awk lib/sources.list > '$(BUILD)/amalgamation/starcontour.c'
+	@cp include/starcontour.h '$(BUILD)/amalgamation/starcontour.h'
+	@ls '$(BUILD)'/amalgamation/starcontour.[ch]
+
+.PHONY: dist
+dist: ## build/starcontour-VERSION.tar.gz: the tracked files, the same bytes each time
+	@tools/dist.sh '$(version)' '$(BUILD)'
+
+.PHONY: mingw
+mingw: ## build for Windows by mingw-w64; run its tests under wine, if that is there
+	$(call need,$(MINGW)-gcc,gcc-mingw-w64-x86-64)
+	@MAKE='$(MAKE)' tests/packages/mingw.sh '$(MINGW)' '$(BUILD)/mingw'
+
+.PHONY: test-packages
+test-packages: ## packages as their users build them: archive, Conan, MSVC's restrictions, mingw
+	@MAKE='$(MAKE)' SC_FLAGS='$(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' tests/run.sh tests/packages/*.sh
 
 .PHONY: clean
 clean: ## remove everything built; downloaded meshes stay
@@ -624,6 +654,7 @@ help: ## this list
 #: CXXFLAGS    the same for C++
 #: LDFLAGS     added when linking
 #: LDLIBS      libraries added when linking
+#: MINGW       what the names of the cross compiler's programs begin with [x86_64-w64-mingw32]
 #: SECONDS     how long fuzz runs each target [60]
 #: SOAK        how many queries soak asks [100000]
 #: WERROR      1: warnings are errors

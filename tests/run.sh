@@ -3,7 +3,7 @@
 #
 #     tests/run.sh PROGRAM...
 #
-# Of a program that succeeds the last line is printed, of one that fails all it said. A program whose
+# Of a program that succeeds the last line is printed and what it skipped, of one that fails all it said. A program whose
 # last line is not "...: N passed, N failed", or whose exit status does not fit that line, counts as
 # one more failure: it crashed or gave up. The last line is the sum, alone: "N passed, N failed".
 # Exit status 1 if anything failed or nothing ran.
@@ -37,6 +37,7 @@ for program in "$@"; do
         broken=1
     fi
     if [ "$status" -eq 0 ] && [ "$broken" -eq 0 ]; then
+        grep '^skipped: ' "$log"
         printf '%s\n' "$last"
     else
         cat "$log"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The build itself: `make help`, the bare compile, `make install` and what is linked with it, CMake.
+# The build itself: `make help`, the bare compile, `make install` and what is linked with it.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
@@ -149,37 +149,5 @@ check "the static library works" link_with use_static -I"$home/include" "$home/l
 
 check "make uninstall" remake uninstall DESTDIR="$root" PREFIX=/opt/sc
 check "nothing is left" test -z "$(find "$root" ! -type d)"
-
-# ------------------------------------------------------------------------------------------------
-# CMake
-
-if ! command -v cmake >/dev/null 2>&1; then
-    skip "CMake: not installed"
-elif [ "$SC_CONFIG" != release ]; then
-    skip "CMake: once is enough, with config=release"
-else
-    mkdir "$scratch/user"
-    cat >"$scratch/user/CMakeLists.txt" <<'END'
-cmake_minimum_required(VERSION 3.12)
-project(user LANGUAGES C)
-find_package(starcontour REQUIRED)
-add_executable(user ../use.c)
-target_link_libraries(user PRIVATE starcontour::starcontour)
-END
-    for shared in OFF ON; do
-        at=$scratch/cmake_$shared
-        check "CMake configures, shared $shared" cmake -S . -B "$at" -DCMAKE_BUILD_TYPE=Debug \
-            -DBUILD_SHARED_LIBS=$shared -DCMAKE_INSTALL_PREFIX="$at/installed" \
-            -DCMAKE_C_COMPILER="$CC"
-        check "CMake builds" cmake --build "$at"
-        check "CMake installs" cmake --build "$at" --target install
-        check "find_package finds it" cmake -S "$scratch/user" -B "$at/user" \
-            -DCMAKE_PREFIX_PATH="$at/installed" -DCMAKE_C_COMPILER="$CC"
-        check "a user of it builds" cmake --build "$at/user"
-        check "and runs" "$at/user/user"
-        check "CMake's package has the header's version" \
-            grep -qF "PACKAGE_VERSION \"$version\"" "$at/starcontour-config-version.cmake"
-    done
-fi
 
 finish

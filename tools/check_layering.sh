@@ -8,6 +8,8 @@
 #   - The oracle of the tests reaches no header of lib/, however indirectly.
 #   - File names are unique (but README.md), and the top level holds only what belongs there.
 #   - lib/sources.list names each C file in lib/ once, in the order of the layers.
+#   - What C files in lib/ keep to themselves has a name that no other one uses: all of them can be
+#     compiled as one (tools/amalgamate.awk). Seen are functions, constants, types and macros.
 #
 # Prints offenders, one a line; exit status 1 if there is one. Needs sh, find, sort and awk.
 #
@@ -66,6 +68,25 @@ offenders=$(
         END { for (path in listed) if (!(path in found)) print "lib/sources.list: no file " path }
     ' || echo "check_layering: awk failed"
 
+    # Names of one file.
+    files | grep '^lib/.*\.c$' | grep -v '^lib/build/partition_metis\.c$' | xargs awk '
+        function found(name) {
+            if (name in first && first[name] != FILENAME)
+                print FILENAME ": " name " is also a name of " first[name]
+            first[name] = FILENAME
+        }
+        # static functions and constants, the end of a structure that is a type, macros (but for SC_KERNEL,
+        # which base/lanes_end.h ends), enumerators
+        /^static / { if (match($0, /[A-Za-z_0-9]+(\(|\[| = )/)) { name = substr($0, RSTART, RLENGTH)
+                     sub(/[^A-Za-z_0-9]+$/, "", name); found(name) } }
+        /^} [A-Za-z_0-9]+;/ { name = $2; sub(/;.*/, "", name); found(name) }
+        /^#define / { name = $2; sub(/\(.*/, "", name); found(name) }
+        /^#include "base\/lanes_end.h"/ { delete first["SC_KERNEL"] }
+        /^enum \{/, /\}/ { line = $0; sub(/^enum \{/, "", line)
+                     while (match(line, /[A-Z][A-Z_0-9]* =/)) {
+                         found(substr(line, RSTART, RLENGTH - 2)); line = substr(line, RSTART + RLENGTH) } }
+    ' || echo "check_layering: awk failed"
+
     # Includes.
     files | grep -E '^(include|lib|tools|tests|bench|meshes)/.*\.(c|h|cpp|hpp|inc)$' | awk '
         function folder(path) { sub(/\/[^\/]*$/, "", path); return path }
@@ -120,6 +141,7 @@ offenders=$(
             may["tests/fuzz"] = may["tests/runs"] = may["tests"]
             may["tests/bench"] = may["bench"] " tests tests/bench"
             may["tests/abi"] = "tests tests/abi"
+            may["tests/packages"] = "include"
             may["tests/cgal"] = "include tools tests tests/cgal"
             may["tests/ffi/cxx"] = "include"
         }

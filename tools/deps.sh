@@ -51,7 +51,12 @@ program cargo cargo cargo rust rust
 program go golang-go golang go go
 program javac default-jdk-headless java-devel jdk-openjdk openjdk
 file /usr/share/java/jna.jar libjna-java jna - -"
-group_packages=
+group_packages="\
+program cmake cmake cmake cmake cmake
+program clang clang clang clang llvm
+program abidiff abigail-tools libabigail - -
+program x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64 mingw64-gcc mingw-w64-gcc mingw-w64
+program wine wine wine wine -"
 group_peers="\
 header CGAL/version.h libcgal-dev CGAL-devel cgal cgal
 header tbb/scalable_allocator.h libtbb-dev tbb-devel onetbb tbb
