@@ -118,6 +118,10 @@ for_header() {
 shared_path=$(cd "$SC_LIB" && pwd)/libstarcontour.so
 check "a member of another size" for_header method "$wider"
 check "is seen" breaks method 'gone or changed: sc_query_options.method'
+check "a reserved member that gets a meaning" for_header taken \
+    '/^typedef struct sc_mesh {/,/^}/s/uint32_t reserved;/uint32_t taken;/'
+check "is allowed" compare taken
+check "has one" grep -q 'uint32_t taken;' "$scratch/taken/include/starcontour.h"
 check "growth without struct_size" for_header pair 's/^    uint32_t a, b;/    uint32_t a, b, c;/'
 check "is seen" breaks pair 'sc_pair: grows, but has no struct_size'
 check "an enumerator with another value" for_header value 's/SC_ERROR_NULL = 1,/SC_ERROR_NULL = 91,/'
