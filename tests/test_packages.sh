@@ -36,7 +36,7 @@ check "the user runs with the library of this build" reference
 # Amalgamation
 
 one=$scratch/one
-warnings='-Wall -Wextra -Wpedantic -Wundef -Wvla -Wcast-qual -Wcast-align -Wwrite-strings
+warnings='-Wall -Wextra -Wpedantic -Wshadow -Wundef -Wvla -Wcast-qual -Wcast-align -Wwrite-strings
     -Wmissing-prototypes -Wstrict-prototypes -Wconversion -Wdouble-promotion -Wc++-compat -Werror'
 check "make amalgamation" remake amalgamation BUILD="$one"
 alone() {
@@ -44,7 +44,6 @@ alone() {
 starcontour.h" && mkdir "$scratch/alone" &&
         cp "$one/amalgamation/starcontour.c" "$one/amalgamation/starcontour.h" "$scratch/alone" &&
         cd "$scratch/alone" || return 1
-    # Only -Wshadow is not for it: names of one file's functions are those of another's variables.
     # shellcheck disable=SC2086
     $CC -std=c99 -ffp-contract=off -O0 $warnings $SC_FLAGS -c starcontour.c
     status=$?

@@ -40,7 +40,7 @@ link() {
 }
 
 # Tests: those that the oracle's big integers and libccd are not needed for.
-tests='base metis queries structures underflow validators'
+tests='base queries structures underflow validators'
 support=$(for file in tests/*.c; do
     case $file in
     tests/test_*.c | tests/oracle.c) ;;
