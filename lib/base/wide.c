@@ -212,7 +212,7 @@ static int find_3d(number *result, const double a[3], const double b[3], const d
         sum = next;
         next = swap;
     }
-    copy(result, &sum, 1);
+    copy_number(result, &sum, 1);
     return least;
 }
 

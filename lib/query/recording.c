@@ -10,10 +10,10 @@
 #include "base/saved.h"
 #include "build/saved_model.h"
 
-static const char MAGIC[8] = {'\x93', 'S', 'C', 'R', '\r', '\n', '\x1a', '\n'};
+static const char RECORD_MAGIC[8] = {'\x93', 'S', 'C', 'R', '\r', '\n', '\x1a', '\n'};
 
 /* Raised whenever what follows the header changes, but for the model, which has a version of its own. */
-enum { VERSION = 1 };
+enum { RECORD_VERSION = 1 };
 
 /* One alignment unit, so that the model behind it is aligned. */
 typedef struct question {
@@ -74,7 +74,7 @@ void sc_recording_write(const sc_model *model, const sc_pose *pose, uint64_t str
     sc_saved_model_write(model, at);
     at += q.model_bytes;
     for (v = 0; v < q.vertex_count; v++, from += stride, at += step) memcpy(at, from, (size_t)step);
-    sc_saved_seal(&header, MAGIC, VERSION, bytes_of(&q), content);
+    sc_saved_seal(&header, RECORD_MAGIC, RECORD_VERSION, bytes_of(&q), content);
     memcpy(memory, &header, sizeof header);
 }
 
@@ -84,7 +84,7 @@ sc_status sc_recording_read(const void *data, uint64_t size, const void **model,
     const unsigned char *at = (const unsigned char *)data + sizeof(sc_saved_header);
     sc_saved_header header;
     question q;
-    sc_status status = sc_saved_open(data, size, MAGIC, VERSION, &header);
+    sc_status status = sc_saved_open(data, size, RECORD_MAGIC, RECORD_VERSION, &header);
     if (!status) status = sc_saved_verify(&header, at);
     if (status) return status;
     if (header.bytes < sizeof header + sizeof q) return SC_ERROR_INCONSISTENT;
