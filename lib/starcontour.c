@@ -74,7 +74,7 @@ static void log_facts(const sc_hooks *hooks, const sc_model *m)
     const uint32_t *slot = sc_model_slot(m);
     const sc_level *last = &sc_model_level_info(m)[m->level_count - 1];
     uint32_t v, unused = 0, welded = 0, scattered = last->patch_count - last->connected_patches;
-    if (!hooks || !hooks->log) return;
+    if (!hooks->log) return;
     for (v = 0; v < m->vertex_count; v++) {
         unused += slot[v] == SC_SLOT_UNUSED;
         welded += slot[v] == SC_SLOT_WELDED;

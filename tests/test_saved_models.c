@@ -581,6 +581,32 @@ static void forged_slots(void)
     soup_free(&mesh);
 }
 
+/* Nodes whose patches share one point begin their lists with two numbers of another kind. */
+static void forged_touches(void)
+{
+    soup mesh;
+    sc_model *model = build_small(1, &mesh);
+    save s = save_model(model);
+    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_node_contour]);
+    const uint8_t *kind = sc_model_node_kind(model);
+    uint32_t touching = 0;
+    for (uint32_t n = 0; n < model->node_count; ++n) {
+        uint32_t old = first[n + 1];
+        if (!(kind[n] & SC_NODE_TOUCHES)) continue;
+        for (uint32_t left = 0; left < 2 && n + 1 < model->node_count; ++left) {
+            first[n + 1] = first[n] + left; /* the rest becomes the next node's */
+            CHECK(try_forged(&s, &mesh));
+        }
+        first[n + 1] = old;
+        ++touching;
+    }
+    CHECK(touching > 2);
+    free(s.memory);
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
 /* A header for less than any model, with the right checksum. */
 static void forged_sizes(void)
 {
@@ -788,6 +814,14 @@ static void workspaces_and_forged_hashes(void)
 
 /* ---- arguments ---- */
 
+static void *no_memory(void *user, uint64_t size, uint64_t alignment)
+{
+    (void)user;
+    (void)size;
+    (void)alignment;
+    return NULL;
+}
+
 static void arguments(void)
 {
     soup mesh;
@@ -839,6 +873,8 @@ static void arguments(void)
     o.topology_hash = 0;
     memset(&half, 0, sizeof(half));
     o.allocator = &half;
+    CHECK(sc_model_load(s.data, s.size, &o, &loaded) == SC_ERROR_NULL);
+    half.allocate = no_memory;
     CHECK(sc_model_load(s.data, s.size, &o, &loaded) == SC_ERROR_NULL);
     o.allocator = NULL;
     memset(&hooks, 0, sizeof(hooks));
@@ -1040,6 +1076,7 @@ static void format(void)
 
 SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(truncated),
              SC_TEST(changed), SC_TEST(foreign), SC_TEST(forged_arrays), SC_TEST(forged_counts),
-             SC_TEST(forged_slots), SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
-             SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments),
-             SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))
+             SC_TEST(forged_slots), SC_TEST(forged_touches), SC_TEST(forged_sizes),
+             SC_TEST(forged_chain), SC_TEST(messages), SC_TEST(workspaces_and_forged_hashes),
+             SC_TEST(arguments), SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared),
+             SC_TEST(format))

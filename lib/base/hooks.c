@@ -26,7 +26,7 @@ void sc_hooks_log(const sc_hooks *hooks, uint32_t level, const char *format, ...
     va_list arguments;
     if (!hooks || !hooks->log) return;
     va_start(arguments, format);
-    if (vsnprintf(text, sizeof text, format, arguments) < 0) text[0] = '\0';
+    (void)vsnprintf(text, sizeof text, format, arguments); /* longer texts are cut off */
     va_end(arguments);
     hooks->log(hooks->user, level, text);
 }
