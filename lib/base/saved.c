@@ -16,7 +16,7 @@ enum { LANES = 4 };
 /* Any odd number keeps the steps below one to one; this one's bits are well mixed. */
 static const uint64_t FACTOR = 0x9fb21c651e98df25u;
 
-static uint64_t mix(uint64_t hash, uint64_t word)
+static uint64_t mix_word(uint64_t hash, uint64_t word)
 {
     hash = (hash ^ word) * FACTOR;
     return hash ^ (hash >> 29);
@@ -42,8 +42,8 @@ static uint64_t sum(uint64_t hash, const void *data, uint64_t bytes)
     }
     memset(word, 0, sizeof word);
     if (left) memcpy(word, at, (size_t)left);
-    hash = mix(hash, bytes);
-    for (k = 0; k < LANES; k++) hash = mix(mix(hash, lane[k]), word[k]);
+    hash = mix_word(hash, bytes);
+    for (k = 0; k < LANES; k++) hash = mix_word(mix_word(hash, lane[k]), word[k]);
     return hash;
 }
 

@@ -93,7 +93,7 @@ int sc_workspace_fits(sc_workspace *workspace, const sc_model *model)
 {
     sc_workspace wanted;
     memcpy(&wanted, workspace, sizeof wanted);
-    wanted.bytes = lay_out(model, (unsigned char *)workspace, &wanted);
+    wanted.bytes = lay_out_arrays(model, (unsigned char *)workspace, &wanted);
     wanted.topology_hash = model->topology_hash;
     return memcmp(&wanted, workspace, sizeof wanted) == 0;
 }

@@ -49,15 +49,15 @@ typedef struct events {
 
 /* ---- points of a plane ---- */
 
-static int next(int k)
+static int corner_after(int k)
 {
     return k == 2 ? 0 : k + 1;
 }
 
 static void project(const double *p, int axis, double q[2])
 {
-    q[0] = p[next(axis)];
-    q[1] = p[next(next(axis))];
+    q[0] = p[corner_after(axis)];
+    q[1] = p[corner_after(corner_after(axis))];
 }
 
 static int sign_along(const double *a, const double *b, const double *c, int axis,
@@ -80,7 +80,7 @@ static sc_predicates_value value_along(const double *a, const double *b, const d
 }
 
 /* An axis along which a, b, c are not on a line; -1 if they are on one. */
-static int find_axis(const double *a, const double *b, const double *c, uint64_t *fallbacks)
+static int find_hull_axis(const double *a, const double *b, const double *c, uint64_t *fallbacks)
 {
     int axis;
     for (axis = 0; axis < 3; axis++)
@@ -109,11 +109,11 @@ static void make_hull(hull *h, const double *const p[3], uint64_t *fallbacks)
     int k, low = 0, high = 0;
     memset(h, 0, sizeof *h);
     h->p = p;
-    if (find_axis(p[0], p[1], p[2], fallbacks) >= 0) {
+    if (find_hull_axis(p[0], p[1], p[2], fallbacks) >= 0) {
         h->corner_count = h->edge_count = 3;
         for (k = 0; k < 3; k++) {
             h->corner[k] = h->edge[k][0] = k;
-            h->edge[k][1] = next(k);
+            h->edge[k][1] = corner_after(k);
         }
         return;
     }
@@ -127,7 +127,7 @@ static void make_hull(hull *h, const double *const p[3], uint64_t *fallbacks)
     h->edge_count = low == high ? 0 : 1;
 }
 
-static void find_sides(hull *h, const hull *other, uint64_t *fallbacks)
+static void find_hull_sides(hull *h, const hull *other, uint64_t *fallbacks)
 {
     sc_predicates_plane plane = sc_predicates_make_plane(other->p[0], other->p[1], other->p[2]);
     int k;
@@ -171,7 +171,7 @@ static void find_events_of(events *e, int of)
 static int segments_cross(const double *p, const double *q, const double *u, const double *v,
                           uint64_t *fallbacks)
 {
-    int axis = find_axis(p, q, u, fallbacks);
+    int axis = find_hull_axis(p, q, u, fallbacks);
     if (axis < 0 || sc_predicates_orient3d(p, q, u, v, fallbacks)) return 0;
     return sign_along(p, q, u, axis, fallbacks) * sign_along(p, q, v, axis, fallbacks) < 0 &&
            sign_along(u, v, p, axis, fallbacks) * sign_along(u, v, q, axis, fallbacks) < 0;
@@ -192,14 +192,15 @@ static void find_crossings(events *e)
    sides. */
 static int interiors_meet(events *e)
 {
-    int axis = find_axis(e->hulls[0].p[0], e->hulls[0].p[1], e->hulls[0].p[2], &e->fallbacks);
+    int axis = find_hull_axis(e->hulls[0].p[0], e->hulls[0].p[1], e->hulls[0].p[2], &e->fallbacks);
     int of, k, i;
     for (of = 0; of < 2; of++) {
         const double *const *p = e->hulls[of].p, *const *o = e->hulls[1 - of].p;
         int inside = sign_along(p[0], p[1], p[2], axis, &e->fallbacks);
         for (k = 0; k < 3; k++) {
             for (i = 0; i < 3; i++)
-                if (sign_along(p[k], p[next(k)], o[i], axis, &e->fallbacks) == inside) break;
+                if (sign_along(p[k], p[corner_after(k)], o[i], axis, &e->fallbacks) == inside)
+                    break;
             if (i == 3) return 0;
         }
     }
@@ -214,11 +215,11 @@ static int is_same(events *e, const event *v, const event *w)
     if (v->kind == CORNER && w->kind == CORNER) return is_equal(vh->p[v->i], wh->p[w->i]);
     if (v->of == w->of) return 0; /* strictly inside an edge, and a corner or inside another edge */
     if (v->kind == CORNER)
-        return find_axis(wh->p[wh->edge[w->i][0]], wh->p[wh->edge[w->i][1]], vh->p[v->i],
-                         &e->fallbacks) < 0;
+        return find_hull_axis(wh->p[wh->edge[w->i][0]], wh->p[wh->edge[w->i][1]], vh->p[v->i],
+                              &e->fallbacks) < 0;
     if (w->kind == CORNER)
-        return find_axis(vh->p[vh->edge[v->i][0]], vh->p[vh->edge[v->i][1]], wh->p[w->i],
-                         &e->fallbacks) < 0;
+        return find_hull_axis(vh->p[vh->edge[v->i][0]], vh->p[vh->edge[v->i][1]], wh->p[w->i],
+                              &e->fallbacks) < 0;
     return sc_predicates_orient3d(vh->p[vh->edge[v->i][0]], vh->p[vh->edge[v->i][1]],
                                   wh->p[wh->edge[w->i][0]], wh->p[wh->edge[w->i][1]],
                                   &e->fallbacks) == 0;
@@ -281,8 +282,10 @@ static void weigh_in_plane(events *e, const double *p, const hull *h, double wei
         weigh_on_segment(p, h, weights);
         return;
     }
-    axis = find_axis(h->p[0], h->p[1], h->p[2], &e->fallbacks);
-    for (k = 0; k < 3; k++) values[k] = value_along(p, h->p[next(k)], h->p[next(next(k))], axis);
+    axis = find_hull_axis(h->p[0], h->p[1], h->p[2], &e->fallbacks);
+    for (k = 0; k < 3; k++)
+        values[k] =
+            value_along(p, h->p[corner_after(k)], h->p[corner_after(corner_after(k))], axis);
     find_shares(values, 3, shares);
     memcpy(weights, shares, sizeof shares);
 }
@@ -301,7 +304,8 @@ static void weigh_passage(const hull *h, const int edge[2], const hull *other, d
     on_edge[edge[0]] = shares[0];
     on_edge[edge[1]] = shares[1];
     for (k = 0; k < 3; k++)
-        values[k] = sc_predicates_orient3d_value(p, q, t[next(k)], t[next(next(k))]);
+        values[k] = sc_predicates_orient3d_value(p, q, t[corner_after(k)],
+                                                 t[corner_after(corner_after(k))]);
     find_shares(values, 3, shares);
     memcpy(in_other, shares, sizeof shares);
 }
@@ -311,7 +315,7 @@ static void weigh_crossing(events *e, const hull *h, const int edge[2], const do
                            const double *v, double on_edge[3])
 {
     const double *p = h->p[edge[0]], *q = h->p[edge[1]];
-    int axis = find_axis(u, v, p, &e->fallbacks);
+    int axis = find_hull_axis(u, v, p, &e->fallbacks);
     sc_predicates_value values[2];
     double shares[2];
     values[0] = value_along(u, v, q, axis);
@@ -396,8 +400,8 @@ void sc_contacts_find(const double *const a[3], const double *const b[3], sc_con
     e.fallbacks = 0;
     make_hull(&e.hulls[0], a, &e.fallbacks);
     make_hull(&e.hulls[1], b, &e.fallbacks);
-    find_sides(&e.hulls[0], &e.hulls[1], &e.fallbacks);
-    find_sides(&e.hulls[1], &e.hulls[0], &e.fallbacks);
+    find_hull_sides(&e.hulls[0], &e.hulls[1], &e.fallbacks);
+    find_hull_sides(&e.hulls[1], &e.hulls[0], &e.fallbacks);
     flat = is_flat(&e.hulls[0]) && is_flat(&e.hulls[1]);
     find_events_of(&e, 0);
     find_events_of(&e, 1);

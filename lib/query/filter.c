@@ -17,7 +17,7 @@ static int is_pair(const sc_model *model, uint32_t kind, sc_pair pair)
     return pair.a < pair.b && pair.b < count;
 }
 
-static sc_status check(const sc_model *model, uint32_t kind, const sc_filter *filter)
+static sc_status check_filter(const sc_model *model, uint32_t kind, const sc_filter *filter)
 {
     uint64_t i;
     if (filter->ignore_rings > SC_RINGS_MAX) return SC_ERROR_OPTION;
@@ -35,7 +35,7 @@ sc_status sc_filter_begin(sc_query_state *state, const sc_model *model, const sc
     uint32_t kind = state->options.pairs;
     sc_status status = sc_structs_read(filter, sizeof *filter, from, sizeof(void *));
     if (status) return status;
-    status = check(model, kind, filter);
+    status = check_filter(model, kind, filter);
     if (status) return status;
     state->filter = filter;
     state->sifts = filter->vertex_groups || filter->triangle_groups;
