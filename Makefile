@@ -530,12 +530,12 @@ $(peer_programs) $(work)/peers/brute: $(work)/peers/%: $(obj)/bench/peers/%.o \
 
 # $(call compiled_peer,NAME,HEADERS): measured if its headers are there.
 compiled_peer = +@$(if $(filter-out yes,$(foreach header,$(2),$(or $(call has,$(header)),$(header)))), \
-    echo "skipped: peer-$(1): $(2) not found ('make deps with=peers')", \
+    bench/peers/skip.sh '$(CSV)' $(1) "$(2) not found ('make deps with=peers')", \
     $(MAKE) --no-print-directory '$(work)/peers/$(1)' && \
     bench/peers/measure_peer.sh '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' '$(work)/peers/$(1)')
 
 # $(call python_peer,PACKAGE): measured if it can be installed into a virtual environment in build/.
-python_peer = @bench/peers/venv.sh '$(BUILD)/peers/venv' $(1) || { test $$? -eq 3 && exit 0; exit 1; }; \
+python_peer = @bench/peers/venv.sh '$(BUILD)/peers/venv' $(1) '$(CSV)' || { test $$? -eq 3 && exit 0; exit 1; }; \
     bench/peers/measure_peer.sh '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' '$(BUILD)/peers/venv/bin/python' bench/peers/peers.py \
     --peer $(1) --lib '$(lib)/$(shared_link)'
 
@@ -559,9 +559,10 @@ peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (Py
 
 .PHONY: peers
 peers: ## all peers that are there, into a new CSV
-	@rm -f '$(CSV)'
-	+@for peer in cgal embree fcl ipctk libigl meshlib trueform; do \
-	    $(MAKE) --no-print-directory peer-$$peer || exit; done
+	@mkdir -p '$(dir $(CSV))' && echo "# commit: $$(git describe --always --abbrev=12 --dirty=+ \
+	    --exclude='*' 2>/dev/null || echo unknown)" >'$(CSV)'
+	+@status=0; for peer in cgal embree fcl ipctk libigl meshlib trueform; do \
+	    $(MAKE) --no-print-directory peer-$$peer || status=1; done; exit $$status
 
 # ------------------------------------------------------------------------------------------------
 # Installing.

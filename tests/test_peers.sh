@@ -6,7 +6,7 @@
 # SPDX-License-Identifier: MIT
 . tests/script.sh
 
-columns=scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,extra,beside
+columns=scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,extra,beside,processors
 scene=$scratch/touching
 
 # Four triangles in a plane, two that stand on it, one that crosses it; then the last three go away. Of
@@ -50,9 +50,9 @@ found() {
         '$4 == peer && index($6, what) == 1 && $3 == frame { print $9, $10 }' "$1"
 }
 
-# rows FILE: it has the columns, and fourteen fields in each line.
+# rows FILE: it has the columns, and fifteen fields in each line.
 rows() {
-    test "$(head -n 1 "$1")" = "$columns" && awk -F, 'NF != 14 { exit 1 }' "$1" &&
+    test "$(head -n 1 "$1")" = "$columns" && awk -F, 'NF != 15 { exit 1 }' "$1" &&
         awk -F, 'NR > 1 && !($8 > 0 && $11 > 0 && $11 <= $8) { exit 1 }' "$1"
 }
 
@@ -103,17 +103,23 @@ csv=$scratch/brute.csv
 check "the driver builds" "$MAKE" --no-print-directory config="$SC_CONFIG" "$brute"
 check "it measures" "$brute" --repeats 3 --csv "$csv" "$scene/"
 check "its lines have their columns" rows "$csv"
-check "a line for each frame and method" test "$(wc -l <"$csv")" -eq 7
+check "a line for each frame and method" test "$(wc -l <"$csv")" -eq 9
 for frame in 0 1; do
     eval "pairs=\$pairs_$frame"
     check "starcontour finds $pairs pairs in frame $frame" \
+        test "$(found "$csv" starcontour exact $frame)" = "$pairs yes"
+    check "and with star contours" \
         test "$(found "$csv" starcontour star $frame)" = "$pairs yes"
     check "and with boxes" test "$(found "$csv" starcontour aabb $frame)" = "$pairs yes"
     check "and so does the triangle test" \
         test "$(found "$csv" brute "all pairs" $frame)" = "$pairs yes"
 done
 check "it adds to a file" "$brute" --frames 1 --repeats 1 --csv "$csv" "$scene"
-check "with one heading" test "$(grep -c '^scene,' "$csv")/$(wc -l <"$csv")" = 1/10
+check "with one heading" test "$(grep -c '^scene,' "$csv")/$(wc -l <"$csv")" = 1/13
+echo "# commit: unknown" >"$scratch/begun.csv"
+check "and to one that has none but remarks" \
+    "$brute" --frames 1 --repeats 1 --csv "$scratch/begun.csv" "$scene"
+check "which gets a heading" test "$(sed -n 2p "$scratch/begun.csv")" = "$columns"
 check "it prints lines where no file is named" says "touching,7,0,brute," "$brute" "$scene"
 check "one thread is all this one uses" says "skipped: brute" "$brute" --threads 2 "$scene"
 refused "$brute"
@@ -177,7 +183,25 @@ else
         check "$peer has a version" grep -q "^$peer==[0-9]" bench/peers/requirements.txt
         check "$peer is skipped where it is absent" says "skipped: $peer on touching: " \
             python3 -B -S "$script" --peer "$peer" --lib unused --csv "$scratch/skipped.csv" "$scene"
+        check "and the file says so" grep -q "^# skipped: $peer on touching: " "$scratch/skipped.csv"
     done
+    cat >"$scratch/members.py" <<'END'
+import re, sys
+sys.path.insert(0, "bench/peers")
+import peers
+header = open("include/starcontour.h").read()
+header = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
+for name in ("sc_mesh", "sc_pose", "sc_build_options", "sc_query_options", "sc_result"):
+    body = re.search(r"typedef struct %s {(.*?)} %s;" % (name, name), header, re.S).group(1)
+    wanted = [re.search(r"(\w+)\s*$", member).group(1)
+              for line in body.split(";") for member in line.split(",") if member.strip()]
+    members = [field[0] for field in getattr(peers, name)._fields_]
+    assert members == wanted[:len(members)], (name, wanted)  # new ones come last and may lack
+for name, value in vars(peers).items():
+    if name.startswith("SC_"):
+        assert re.search(r"\b%s = %d\b" % (name, value), header), name
+END
+    check "its structures and values are the header's" python3 -B -S "$scratch/members.py"
     library=$(ls "$SC_LIB/libstarcontour.so" "$SC_LIB/libstarcontour.dylib" 2>/dev/null | head -n 1)
     if [ -z "$library" ] || [ "$SC_CONFIG" = sanitize ]; then
         skip "peers.py asking starcontour: no shared library that Python can load"
@@ -187,10 +211,16 @@ else
         # shellcheck disable=SC2086
         check "peers.py measures" $ask --repeats 3 --csv "$csv" "$scene/"
         check "its lines have their columns" rows "$csv"
-        check "a line for each frame and method" test "$(wc -l <"$csv")" -eq 5
+        check "a line for each frame and method" test "$(wc -l <"$csv")" -eq 7
+        echo "# commit: unknown" >"$scratch/begun.csv"
+        # shellcheck disable=SC2086
+        check "peers.py adds to a file" $ask --repeats 1 --csv "$scratch/begun.csv" "$scene"
+        check "which gets a heading" test "$(sed -n 2p "$scratch/begun.csv")" = "$columns"
         for frame in 0 1; do
             eval "pairs=\$pairs_$frame"
             check "starcontour finds $pairs pairs in frame $frame, from Python" \
+                test "$(found "$csv" starcontour exact $frame)" = "$pairs yes"
+            check "and with star contours" \
                 test "$(found "$csv" starcontour star $frame)" = "$pairs yes"
             check "and with boxes" test "$(found "$csv" starcontour aabb $frame)" = "$pairs yes"
         done
@@ -203,9 +233,10 @@ fi
 # What make says where something is absent.
 
 check "make skips a library that is absent" says "skipped: peer-fcl: fcl/config.h not found" \
-    "$MAKE" --no-print-directory peer-fcl CPPFLAGS=-nostdinc
+    "$MAKE" --no-print-directory peer-fcl CPPFLAGS=-nostdinc CSV="$scratch/absent/peers.csv"
+check "and so does the file" grep -q "^# skipped: fcl: fcl/config.h" "$scratch/absent/peers.csv"
 no_python() {
-    PATH=$scratch/empty /bin/sh bench/peers/venv.sh "$scratch/venv" ipctk
+    PATH=$scratch/empty /bin/sh bench/peers/venv.sh "$scratch/venv" ipctk "$scratch/absent.csv"
 }
 check "no python3 is said" says "skipped: peer-ipctk: there is no python3" no_python
 check "and has a status of its own" status 3 no_python

@@ -6,16 +6,18 @@
  * A SCENE is a folder: meta.txt ("triangles vertices frames"), tris.u32 (3 little-endian uint32 a
  * triangle), frames.f64 or frames.f32 (frames x vertices x 3, little-endian).
  *
- * All ways of the peer and starcontour's star contours and boxes take turns frame by frame, one query
- * each, as a simulation would ask: no query meets warm caches. The sequence is walked once untimed, in
- * which pairs are compared, and then N times. Everything that a new pose costs is in the time: reading
- * positions, refitting or rebuilding, finding and storing pairs. Building on the first frame is not.
+ * All ways of the peer and three of starcontour (exact contours, the default; star contours; boxes)
+ * take turns frame by frame, one query each, as a simulation would ask: no query meets warm caches. The
+ * sequence is walked once untimed, in which pairs are compared, and then N times. Everything that a new
+ * pose costs is in the time: reading positions, refitting or rebuilding, finding and storing pairs.
+ * Building on the first frame is not.
  *
  * starcontour gets the same doubles, runs in one thread, and takes vertices as they are numbered
  * (SC_WELD_NONE), as peers do.
  *
  * Writes lines scene, triangles, frame, peer, version, what, threads, ms, pairs, matches, ms_min, missing,
- * extra, beside: comma-separated, appended to FILE or printed. README.md says what the columns are.
+ * extra, beside, processors: comma-separated, appended to FILE or printed. README.md says what the columns
+ * are. A mesh that a peer cannot take is a line "# skipped: PEER on SCENE: REASON" in FILE.
  *
  * Exit status: 0 if pairs match, 1 if some do not, 2 if a scene cannot be read or an option is wrong.
  *
@@ -35,6 +37,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <thread>
@@ -56,10 +59,19 @@ struct settings {
     std::vector<std::string> scenes;
 };
 
+/* starcontour's ways, asked for by name so that they stay what they are called. The first is the default. */
+const struct {
+    const char *name;
+    uint32_t method, contour;
+} own_ways[] = {{"exact", SC_METHOD_SCTT, SC_CONTOUR_EXACT},
+                {"star", SC_METHOD_SCTT, SC_CONTOUR_STAR},
+                {"aabb", SC_METHOD_AABB, SC_CONTOUR_DEFAULT}};
+const size_t own_way_count = sizeof(own_ways) / sizeof(*own_ways);
+
 /* A way to find pairs that takes turns with others. */
 struct contender {
-    peer *other = nullptr; /* or starcontour by this method: */
-    uint32_t method = SC_METHOD_DEFAULT;
+    peer *other = nullptr; /* or starcontour in this of own_ways: */
+    size_t way = 0;
     std::string name, version, what;
     unsigned threads = 1;
     std::vector<std::vector<double>> times;    /* of each frame: milliseconds of each repeat */
@@ -127,12 +139,12 @@ scene read_scene(std::string folder)
  * starcontour
  */
 
-/* A model of a scene, with a workspace of its own for each method. */
+/* A model of a scene, with a workspace of its own for each way. */
 class starcontour
 {
     const scene &mesh;
     sc_model *model = nullptr;
-    sc_workspace *workspaces[SC_METHOD_AABB + 1] = {};
+    sc_workspace *workspaces[own_way_count] = {};
 
     static void must(sc_status status)
     {
@@ -166,9 +178,9 @@ class starcontour
     starcontour(const starcontour &) = delete;
     starcontour &operator=(const starcontour &) = delete;
 
-    void query(uint32_t method, const double *positions)
+    void query(size_t way, const double *positions)
     {
-        if (!workspaces[method]) must(sc_workspace_create(model, nullptr, &workspaces[method]));
+        if (!workspaces[way]) must(sc_workspace_create(model, nullptr, &workspaces[way]));
         sc_pose pose = sc_pose();
         pose.struct_size = sizeof(pose);
         pose.vertex_count = uint32_t(mesh.vertices);
@@ -176,13 +188,14 @@ class starcontour
         pose.positions = positions;
         sc_query_options options = sc_query_options();
         options.struct_size = sizeof(options);
-        options.method = method;
+        options.method = own_ways[way].method;
+        options.contour = own_ways[way].contour;
         for (;;) {
             sc_result result = sc_result();
             result.struct_size = sizeof(result);
             result.pairs = pairs.data();
             result.capacity = pairs.size();
-            const sc_status status = sc_query(model, workspaces[method], &pose, &options, &result);
+            const sc_status status = sc_query(model, workspaces[way], &pose, &options, &result);
             count = result.count;
             if (status != SC_ERROR_SHORT_BUFFER) return must(status);
             pairs.resize(size_t(count)); /* in the untimed walk: the same poses come again */
@@ -227,7 +240,7 @@ void walk(const scene &mesh, starcontour &ours, std::vector<contender> &contende
     for (size_t f = 0; f < frames; ++f) {
         const double *positions = mesh.frame(f);
         if (first) {
-            ours.query(SC_METHOD_SCTT, positions);
+            ours.query(0, positions);
             all = ours.select(kind::all);
         }
         const pair_list apart = first ? ours.select(kind::apart) : pair_list();
@@ -237,7 +250,7 @@ void walk(const scene &mesh, starcontour &ours, std::vector<contender> &contende
             if (c.other)
                 c.other->query(positions, found);
             else
-                ours.query(c.method, positions);
+                ours.query(c.way, positions);
             const double time = milliseconds() - start;
             if (!first) {
                 c.times[f].push_back(time);
@@ -255,7 +268,7 @@ void walk(const scene &mesh, starcontour &ours, std::vector<contender> &contende
 }
 
 std::vector<contender> line_up(const std::vector<std::unique_ptr<peer>> &list, const scene &mesh,
-                               unsigned threads)
+                               const settings &s, std::FILE *out)
 {
     std::vector<contender> contenders;
     for (const auto &p : list) {
@@ -264,25 +277,30 @@ std::vector<contender> line_up(const std::vector<std::unique_ptr<peer>> &list, c
         c.name = p->name();
         c.version = p->version();
         c.what = p->what();
-        c.threads = threads;
+        c.threads = s.threads;
+        if (s.threads > 1 && !p->threaded()) {
+            std::printf("skipped: %s on %s: it uses one thread only\n", c.name.c_str(),
+                        mesh.name.c_str());
+            continue;
+        }
         try {
-            if (threads > 1 && !p->threaded()) throw std::runtime_error("it uses one thread only");
-            p->build(mesh, threads);
+            p->build(mesh, s.threads);
         } catch (const std::runtime_error &error) {
             std::printf("skipped: %s on %s: %s\n", c.name.c_str(), mesh.name.c_str(), error.what());
+            if (s.csv)
+                std::fprintf(out, "# skipped: %s on %s: %s\n", c.name.c_str(), mesh.name.c_str(),
+                             error.what());
             continue;
         }
         contenders.push_back(c);
     }
     if (contenders.empty()) return contenders;
-    const std::pair<uint32_t, const char *> methods[] = {{SC_METHOD_SCTT, "star"},
-                                                         {SC_METHOD_AABB, "aabb"}};
-    for (const auto &method : methods) {
+    for (size_t way = 0; way < own_way_count; ++way) {
         contender c;
-        c.method = method.first;
+        c.way = way;
         c.name = "starcontour";
         c.version = sc_version_string();
-        c.what = method.second;
+        c.what = own_ways[way].name;
         contenders.push_back(c);
     }
     return contenders;
@@ -293,7 +311,7 @@ bool run(const scene &mesh, const std::vector<std::unique_ptr<peer>> &list, cons
          std::FILE *out)
 {
     starcontour ours(mesh);
-    std::vector<contender> contenders = line_up(list, mesh, s.threads);
+    std::vector<contender> contenders = line_up(list, mesh, s, out);
     if (contenders.empty()) return true;
     const size_t frames = std::min(s.frames, mesh.frames);
     for (contender &c : contenders) c.times.resize(frames);
@@ -311,10 +329,10 @@ bool run(const scene &mesh, const std::vector<std::unique_ptr<peer>> &list, cons
             sum += median;
             const bool matches = c.missing[f] == 0 && c.extra[f] == 0;
             different += !matches;
-            std::fprintf(out, "%s,%zu,%zu,%s,%s,%s,%u,%.4f,%zu,%s,%.4f,%zu,%zu,%s\n",
+            std::fprintf(out, "%s,%zu,%zu,%s,%s,%s,%u,%.4f,%zu,%s,%.4f,%zu,%zu,%s,%u\n",
                          mesh.name.c_str(), mesh.triangles, f, c.name.c_str(), c.version.c_str(),
                          c.what.c_str(), c.threads, median, c.pairs[f], matches ? "yes" : "no",
-                         t[0], c.missing[f], c.extra[f], list[0]->name().c_str());
+                         t[0], c.missing[f], c.extra[f], list[0]->name().c_str(), s.threads);
         }
         std::fflush(out);
         if (s.csv)
@@ -369,6 +387,16 @@ size_t number(const std::string &option, const char *text)
     return value;
 }
 
+/* Whether the file has more than lines that begin with #. */
+bool has_heading(const char *path)
+{
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) {
+        if (line.compare(0, 1, "#") != 0) return true;
+    }
+    return false;
+}
+
 settings parse(int argc, char **argv)
 {
     settings s;
@@ -412,15 +440,16 @@ int main(int argc, char **argv)
     }
     keep_to(s.threads);
 
+    const bool headed = s.csv && has_heading(s.csv);
     std::FILE *out = s.csv ? std::fopen(s.csv, "a") : stdout;
     if (!out) {
         std::fprintf(stderr, "%s: cannot be written\n", s.csv);
         return 2;
     }
-    if (!s.csv || (std::fseek(out, 0, SEEK_END) == 0 && std::ftell(out) == 0))
+    if (!headed)
         std::fputs(
             "scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,"
-            "extra,beside\n",
+            "extra,beside,processors\n",
             out);
 
     int status = 0;

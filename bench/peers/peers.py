@@ -32,7 +32,7 @@ import sys
 import time
 
 COLUMNS = ("scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,extra,"
-           "beside")
+           "beside,processors")
 
 # What an answer is compared with.
 ALL = "all"  # all pairs of triangles
@@ -123,16 +123,22 @@ sc_build_options = structure(
 sc_query_options = structure(
     "sc_query_options",
     *[(name, U32) for name in ("struct_size", "output", "pairs", "contact", "method", "contour",
-                               "rest_cache", "reserved")])
+                               "rest_cache", "simd")])
 sc_result = structure(
     "sc_result", ("struct_size", U32), ("collides", U32), ("count", U64), ("capacity", U64),
     ("pairs", POINTER), ("stats", POINTER))
 SC_ERROR_SHORT_BUFFER, SC_WELD_NONE, SC_PAIRS_TRIANGLE, SC_PAIRS_EDGE = 11, 2, 0, 1
 SC_METHOD_SCTT, SC_METHOD_AABB = 1, 3
+SC_CONTOUR_DEFAULT, SC_CONTOUR_STAR, SC_CONTOUR_EXACT = 0, 1, 3
+
+# Method and contour test of our ways, asked for by name so that they stay what they are called.
+OWN_WAYS = {"exact": (SC_METHOD_SCTT, SC_CONTOUR_EXACT),  # the default
+            "star": (SC_METHOD_SCTT, SC_CONTOUR_STAR),
+            "aabb": (SC_METHOD_AABB, SC_CONTOUR_DEFAULT)}
 
 
 class Starcontour:
-    """A model of a scene, with a workspace of its own for each method."""
+    """A model of a scene, with a workspace of its own for each way."""
 
     def __init__(self, path, scene, scalar):
         try:
@@ -167,20 +173,21 @@ class Starcontour:
         if status != 0:
             raise Unusable("starcontour: " + self.library.sc_status_string(status).decode())
 
-    def query(self, method, positions, kind=SC_PAIRS_TRIANGLE):
+    def query(self, way, positions, kind=SC_PAIRS_TRIANGLE):
         """Finds pairs in a pose, an array of the scalar type given at first."""
-        if method not in self.workspaces:
+        if way not in self.workspaces:
             workspace = POINTER()
             self.must(self.library.sc_workspace_create(self.model, None, ctypes.byref(workspace)))
-            self.workspaces[method] = workspace
+            self.workspaces[way] = workspace
         pose = sc_pose(struct_size=ctypes.sizeof(sc_pose), vertex_count=self.scene.vertices,
                        position_type=self.type, positions=positions.buffer_info()[0])
+        method, contour = OWN_WAYS[way]
         options = sc_query_options(struct_size=ctypes.sizeof(sc_query_options), method=method,
-                                   pairs=kind)
+                                   contour=contour, pairs=kind)
         while True:
             result = sc_result(struct_size=ctypes.sizeof(sc_result), capacity=len(self.pairs) // 2,
                                pairs=self.pairs.buffer_info()[0])
-            status = self.library.sc_query(self.model, self.workspaces[method], ctypes.byref(pose),
+            status = self.library.sc_query(self.model, self.workspaces[way], ctypes.byref(pose),
                                            ctypes.byref(options), ctypes.byref(result))
             self.count = result.count
             if status != SC_ERROR_SHORT_BUFFER:
@@ -197,7 +204,7 @@ class Expected:
 
     def __init__(self, ours, positions):
         self.ours, self.positions, self.scene = ours, positions, ours.scene
-        ours.query(SC_METHOD_SCTT, positions)
+        ours.query("exact", positions)
         self.all = ours.list()
 
     def apart(self):
@@ -205,7 +212,7 @@ class Expected:
 
     def edges(self):
         """Pairs of an edge, by its two vertices in ascending order, and a triangle."""
-        self.ours.query(SC_METHOD_SCTT, self.positions, SC_PAIRS_EDGE)
+        self.ours.query("exact", self.positions, SC_PAIRS_EDGE)
         corners = self.scene.corners
 
         def ends(corner):
@@ -365,7 +372,7 @@ def find_ways(peer, scene):
 
         return importlib.metadata.version(peer), PEERS[peer][0](scene, np)
     except (ImportError, AttributeError) as error:
-        raise Skipped(f"{type(error).__name__}: {error}") from None
+        raise Skipped(" ".join(f"{type(error).__name__}: {error}".split())) from None
 
 
 # --------------------------------------------------------------------------------------------------
@@ -397,16 +404,19 @@ def walk(scene, scalar, ours, ways, frames, first):
 def measure(peer, scene, arguments, out):
     """Measures a peer on a scene. Returns whether all answers that claim exactness were right."""
     scalar = PEERS[peer][2] if peer in PEERS else "d"
+    if arguments.threads > 1 and not (peer in PEERS and PEERS[peer][3]):
+        print(f"skipped: {peer} on {scene.name}: it uses one thread only", flush=True)
+        return True
     try:
-        if arguments.threads > 1 and not (peer in PEERS and PEERS[peer][3]):
-            raise Skipped("it uses one thread only")
         version, ways = find_ways(peer, scene)
     except Skipped as reason:
         print(f"skipped: {peer} on {scene.name}: {reason}", flush=True)
+        if arguments.csv:
+            print(f"# skipped: {peer} on {scene.name}: {reason}", file=out)
         return True
     ours = Starcontour(arguments.lib, scene, scalar)
-    for what, method in (("star", SC_METHOD_SCTT), ("aabb", SC_METHOD_AABB)):
-        ways.append(Way(what, ALL, lambda positions, m=method: ours.query(m, positions),
+    for what in OWN_WAYS:
+        ways.append(Way(what, ALL, lambda positions, w=what: ours.query(w, positions),
                         lambda found: ours.list()))
         ways[-1].own = True
     frames = min(scene.frames, arguments.frames or scene.frames)
@@ -424,7 +434,7 @@ def measure(peer, scene, arguments, out):
             print(scene.name, scene.triangles, f, name, number, way.what, threads,
                   f"{medians[f]:.4f}", way.counts[f],
                   "no" if any(way.errors[f]) else "yes", f"{min(way.times[f]):.4f}",
-                  *way.errors[f], peer, sep=",", file=out)
+                  *way.errors[f], peer, arguments.threads, sep=",", file=out)
         if arguments.csv:
             print(f"{scene.name:<14} {name:<12} {threads} thread{' ' if threads == 1 else 's'}"
                   f"{statistics.fmean(medians):10.3f} ms a frame  {way.what}")
@@ -445,6 +455,14 @@ def processors():
     if hasattr(os, "sched_getaffinity"):
         return sorted(os.sched_getaffinity(0))
     return list(range(os.cpu_count() or 1))
+
+
+def has_heading(path):
+    """Whether a file has more than lines that begin with #."""
+    if not os.path.exists(path):
+        return False
+    with open(path, encoding="utf-8") as file:
+        return any(not line.startswith("#") for line in file)
 
 
 def parse():
@@ -502,8 +520,9 @@ def main():
     if hasattr(os, "sched_setaffinity"):
         os.sched_setaffinity(0, processors()[: arguments.threads])
     try:
-        out = open(arguments.csv, "a", encoding="ascii") if arguments.csv else sys.stdout
-        if not arguments.csv or out.tell() == 0:
+        headed = arguments.csv and has_heading(arguments.csv)
+        out = open(arguments.csv, "a", encoding="utf-8") if arguments.csv else sys.stdout
+        if not headed:
             print(COLUMNS, file=out)
         same = True
         for folder in arguments.scenes:

@@ -1,21 +1,23 @@
 #!/bin/sh
 # Sees to it that a package from PyPI is there, in a virtual environment of its own.
 #
-#     bench/peers/venv.sh DIRECTORY PACKAGE
+#     bench/peers/venv.sh DIRECTORY PACKAGE CSV
 #
-# Versions stand in requirements.txt; only wheels are taken. If the package cannot be had, one line
-# says "skipped", with the reason, and the exit status is 3.
+# Versions stand in requirements.txt; only wheels are taken. If the package cannot be had, that
+# is said, also in the CSV file (see skip.sh), and the exit status is 3.
 #
 # SPDX-License-Identifier: MIT
 set -u
 
 venv=$1
 package=$2
-versions=${0%/*}/requirements.txt
+csv=$3
+here=${0%/*}
+versions=$here/requirements.txt
 log=$venv.log
 
 skip() {
-    echo "skipped: peer-$package: $1"
+    "$here/skip.sh" "$csv" "$package" "$1"
     exit 3
 }
 
