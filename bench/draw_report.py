@@ -21,6 +21,8 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
+PEERS = ["cgal", "embree", "fcl", "ipctk", "libigl", "meshlib", "trueform"]
+
 METHODS = ["exact", "star", "none", "aabb-sctt", "aabb", "hash"]
 
 TASKS = ["update_boxes", "update_normals", "orientation", "boxes_orientation",
@@ -149,6 +151,20 @@ def read_csv(path):
     return rows, description
 
 
+def read_peers(path):
+    """Rows of peers.csv, its lines "# skipped: ..." and the commit; nothing if it is not there, or has not
+    the columns that are read here."""
+    if not os.path.exists(path):
+        return [], [], "?"
+    with open(path, encoding="utf-8") as file:
+        skipped = [line[len("# skipped: "):].strip() for line in file if line.startswith("# skipped: ")]
+    rows, description = read_csv(path)
+    if rows and "processors" not in rows[0]:
+        print("draw_report.py: %s lacks columns: run 'make peers' again" % path, file=sys.stderr)
+        rows = []
+    return rows, skipped, description.get("commit", "?")
+
+
 def collect(raw, results, command, seconds):
     """JSON Lines to summary.csv and frames.csv, which has the main runs alone."""
     runs = read_runs(raw)
@@ -192,7 +208,7 @@ class Results:
         self.rows, self.description = read_csv(os.path.join(folder, "summary.csv"))
         self.frames, _ = read_csv(os.path.join(folder, "frames.csv"))
         peers = os.path.join(folder, "peers.csv")
-        self.peers = read_csv(peers)[0] if os.path.exists(peers) else []
+        self.peers, self.peers_skipped, self.peers_commit = read_peers(peers)
         self.runs = collections.OrderedDict()
         for row in self.rows:
             key = (row["scene"], row["triangles"], row["partition"], row["pairs_kind"],
@@ -434,30 +450,100 @@ def threads(results):
                   "rest on one thread", "mean, ms a frame"], rows) if rows else ""
 
 
-def peers_table(results):
-    """A row for each peer and way, ours first; a column a scene: mean milliseconds, first frame."""
-    scenes, groups = [], {}
+class PeerRun:
+    """A peer's way beside ours: frames of one process, on one scene."""
+
+    def __init__(self, rows, ours):
+        self.rows = rows
+        self.ms = mean(r["ms"] for r in rows)
+        self.exact_ms = mean(r["ms"] for r in ours) if ours else None
+        self.ratio = self.ms / self.exact_ms if ours else None
+        self.pairs = mean(r["pairs"] for r in ours)
+
+    def verdict(self):
+        """Whether answers match in all frames, or what is wrong in how many."""
+        wrong = [r for r in self.rows if r["matches"] != "yes"]
+        if not wrong:
+            return "match"
+        parts = ["%s %s" % (whole(sum(r[key] for r in wrong)), key)
+                 for key in ("missing", "extra") if any(r[key] for r in wrong)]
+        return "%s in %d of %d frames" % (", ".join(parts), len(wrong), len(self.rows))
+
+
+def peer_runs(results):
+    """By (peer, version, what), then (scene, triangles), then processors of the process: its runs. Only rows
+    of the same process are set beside each other."""
+    groups, ours = collections.OrderedDict(), {}
     for row in results.peers:
         scene = (row["scene"], row["triangles"])
-        if scene not in scenes:
-            scenes.append(scene)
-        key = (row["peer"] != "starcontour", row["peer"], str(row["version"] or "–"), row["what"],
-               row["threads"])
-        groups.setdefault(key, {}).setdefault(scene, []).append(row)
+        process = (row["beside"], scene, row["processors"])
+        if row["peer"] == "starcontour":
+            if row["what"] == "exact":
+                ours.setdefault(process, {})[row["frame"]] = row
+            continue
+        way = (row["peer"], str(row["version"]), row["what"])
+        groups.setdefault(way, collections.OrderedDict()).setdefault(scene, {}).setdefault(
+            process, {})[row["frame"]] = row
+    for scenes in groups.values():
+        for scene, processes in scenes.items():
+            scenes[scene] = {process[2]: PeerRun(list(rows.values()),
+                                                 list(ours.get(process, {}).values()))
+                             for process, rows in processes.items()}
+    return groups
+
+
+def span(values):
+    """The least and the greatest."""
+    low, high = (times(f(values)) for f in (min, max)) if values else ("–", "–")
+    return low if low == high else "%s – %s" % (low, high)
+
+
+def peers_overview(groups):
     rows = []
-    for key in sorted(groups, key=lambda k: (k[0], k[1], k[3], k[4])):
-        own = groups[key]
-        verdicts = {r["matches"] for r in sum(own.values(), [])}
-        cells = []
-        for scene in scenes:
-            frames = own.get(scene)
-            cells.append("%s (%s)" % (figure(mean(r["ms"] for r in frames)),
-                                      figure(frames[0]["ms"])) if frames else "–")
-        rows.append(["%s %s" % key[1:3], key[3], whole(key[4])] + cells +
-                    ["yes" if verdicts == {"yes"} else "NO" if "no" in verdicts else "–"])
-    return table(["peer", "what it does a frame", "threads"] +
-                 ["%s %s" % (name, whole(triangles)) for name, triangles in scenes] +
-                 ["pairs match"], rows, left=2)
+    for (peer, version, what), scenes in groups.items():
+        runs = [run for processes in scenes.values() for run in processes.values()]
+        ratios = [[run.ratio for processes in scenes.values() for count, run in processes.items()
+                   if (count == 1) == single and run.ratio] for single in (True, False)]
+        good = sum(run.verdict() == "match" for run in runs)
+        rows.append(["%s %s" % (peer, version), what, whole(len(scenes)), span(ratios[0]),
+                     span(ratios[1]), "match" if good == len(runs) else
+                     "match in %d of %d runs" % (good, len(runs))])
+    return table(["peer", "what it does a frame", "scenes", "1 thread: × exact",
+                  "all threads: × exact", "pairs"], rows, left=2)
+
+
+def peers_details(groups):
+    """A table for each way of a peer, a row for each scene."""
+    out = []
+    for (peer, version, what), scenes in groups.items():
+        rows = []
+        for (scene, triangles), processes in scenes.items():
+            single = processes.get(1)
+            several = processes.get(max(processes)) if max(processes) > 1 else None
+            both = [run for run in (single, several) if run]
+            row = [scene, whole(triangles), whole(len(both[0].rows)),
+                   whole(both[0].pairs)]
+            for run in (single, several):
+                row += [figure(run.ms), figure(run.exact_ms), times(run.ratio)] if run else ["–"] * 3
+            verdicts = list(collections.OrderedDict.fromkeys(run.verdict() for run in both))
+            rows.append(row + ["; ".join(verdicts)])
+        count = max(max(processes) for processes in scenes.values())
+        several = "%d threads" % count if count > 1 else "all threads"
+        out.append("**%s %s**, %s.\n" % (peer, version, what))
+        out.append(table(["scene", "triangles", "frames", "pairs, mean", "1 thread: ms", "exact, ms",
+                          "× exact", several + ": ms", "exact, ms", "× exact", "pairs"], rows))
+    return "\n".join(out)
+
+
+def peers_absent(results, groups):
+    """What was not measured, and why."""
+    measured = {peer for peer, _, _ in groups}
+    lines = list(collections.OrderedDict.fromkeys(results.peers_skipped))
+    said = {line.split(":")[0] for line in lines}
+    lines += ["%s: no results; `make peers` said why" % peer for peer in PEERS
+              if peer not in measured and
+              not any(name == peer or name.startswith(peer + " on ") for name in said)]
+    return "".join("- %s\n" % line for line in lines)
 
 
 # ---------------------------------------------------------------------------------------------------
@@ -622,12 +708,24 @@ def report(results, drawn, slope_table, reading):
     out.append(threads(results))
     out.append("## Peers\n")
     if results.peers:
-        out.append("Other libraries on these scenes, made by `make peers` and explained in\n"
-                   "bench/peers/README.md. Mean milliseconds over the frames, in brackets the first frame.\n")
-        out.append(peers_table(results))
+        groups = peer_runs(results)
+        out.append("Other libraries beside `exact`, each in a process with it, taking turns on the same\n"
+                   "frames: made by `make peers` at commit %s and explained in bench/peers/README.md.\n"
+                   "Pairs of triangles; built-in partition; doubles, floats beside MeshLib. Milliseconds are\n"
+                   "means over the frames; *× exact* is the peer's time divided by that of `exact` in the same\n"
+                   "process, which runs on one thread even where the peer has all. *Pairs*: whether answers\n"
+                   "match, as far as they are compared (see there). `peers.csv` has `star` and `aabb` too.\n" %
+                   results.peers_commit)
+        out.append("Least and greatest *× exact* over the scenes:\n")
+        out.append(peers_overview(groups))
+        out.append(peers_details(groups))
+        absent = peers_absent(results, groups)
     else:
         out.append("Not measured: `make peers bench` measures them as well, `make peers bench-report` adds\n"
                    "them to what is here.\n")
+        absent = "".join("- %s\n" % line for line in results.peers_skipped)
+    if absent:
+        out.append("Left out:\n\n" + absent)
     out.append("## Memory and build time\n")
     out.append(memory(results))
     return "\n".join(out)

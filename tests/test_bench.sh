@@ -200,6 +200,29 @@ if command -v python3 >/dev/null 2>&1; then
     cp "$scratch/results/report.md" "$scratch/first.md"
     check "a report from its CSV files" python3 bench/draw_report.py "$scratch/results"
     check "which is the same" diff "$scratch/first.md" "$scratch/results/report.md"
+    cat >"$scratch/results/peers.csv" <<'END'
+# commit: abc
+# skipped: libigl: no wheel
+# skipped: cgal on horse: not a manifold
+scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,extra,beside,processors
+rod,500,0,fcl,0.7.0,refitted,1,6,2,yes,6,0,0,fcl,1
+rod,500,1,fcl,0.7.0,refitted,1,10,2,no,10,3,0,fcl,1
+rod,500,0,starcontour,0.1.0,exact,1,2,4,yes,2,0,0,fcl,1
+rod,500,1,starcontour,0.1.0,exact,1,2,6,yes,2,0,0,fcl,1
+rod,500,0,starcontour,0.1.0,star,1,9,4,yes,9,0,0,fcl,1
+rod,500,0,cgal,5.5.1,swept,1,30,4,yes,30,0,0,cgal,1
+rod,500,0,starcontour,0.1.0,exact,1,3,4,yes,3,0,0,cgal,1
+rod,500,0,cgal,5.5.1,swept,2,20,4,yes,20,0,0,cgal,2
+rod,500,0,starcontour,0.1.0,exact,1,5,4,yes,5,0,0,cgal,2
+END
+    check "a report with peers" python3 bench/draw_report.py "$scratch/results"
+    for line in "| rod | 500 | 2 | 5 | 8.00 | 2.00 | 4.00 | – | – | – | 3 missing in 1 of 2 frames |" \
+        "| rod | 500 | 1 | 4 | 30.0 | 3.00 | 10.0 | 20.0 | 5.00 | 4.00 | match |" \
+        "| cgal 5.5.1 | swept | 1 | 10.0 | 4.00 | match |" \
+        "- libigl: no wheel" "- cgal on horse: not a manifold" "- embree: no results"; do
+        check "it says: $line" grep -qF -e "$line" "$scratch/results/report.md"
+    done
+    rm "$scratch/results/peers.csv"
     nothing_there() {
         ! bench/run_bench.sh report "$scratch/empty" 2>"$scratch/err" && grep -q "make bench" "$scratch/err"
     }
