@@ -716,6 +716,12 @@ def report(results, drawn, slope_table, reading):
                    "process, which runs on one thread even where the peer has all. *Pairs*: whether answers\n"
                    "match, as far as they are compared (see there). `peers.csv` has `star` and `aabb` too.\n" %
                    results.peers_commit)
+        exact = [r for r in results.peers if r["what"] == "exact"]
+        spread = sum(r["ms"] for r in exact) / sum(r["ms_min"] for r in exact)
+        if spread > 1.2:
+            out.append("**Disturbed**: the medians of `exact` are %.1f times its minima, so other programs\n"
+                       "ran at the same time. Single figures can be far off, those of several threads most.\n"
+                       % spread)
         out.append("Least and greatest *× exact* over the scenes:\n")
         out.append(peers_overview(groups))
         out.append(peers_details(groups))
