@@ -713,7 +713,8 @@ def report(results, drawn, slope_table, reading):
                    "frames: made by `make peers` at commit %s and explained in bench/peers/README.md.\n"
                    "Pairs of triangles; built-in partition; doubles, floats beside MeshLib. Milliseconds are\n"
                    "means over the frames; *× exact* is the peer's time divided by that of `exact` in the same\n"
-                   "process, which runs on one thread even where the peer has all. *Pairs*: whether answers\n"
+                   "process, which runs on one thread even where the peer has all, and finds all pairs even where\n"
+                   "the peer answers yes or no and stops at the first. *Pairs*: whether answers\n"
                    "match, as far as they are compared (see there). `peers.csv` has `star` and `aabb` too.\n" %
                    results.peers_commit)
         exact = [r for r in results.peers if r["what"] == "exact"]
