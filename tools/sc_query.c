@@ -7,6 +7,7 @@
  * (--model). A file that cannot be done is reported and the others are still done. See usage below, and sc_query in
  * starcontour.h for what a pair is.
  */
+#include "filter_file.h"
 #include "mesh_file.h"
 #include "model_file.h"
 #include "ply_write.h"
@@ -48,11 +49,20 @@ static const char usage[] =
     "  --model FILE                the same, with the model that sc-partition -o wrote\n"
     "  --replay FILE               in place of meshes: the query that --record wrote, with its "
     "options\n"
+    "Which pairs are left out\n"
+    "  --ignore-rings N            those less than N edges of the mesh apart; 1: that share a "
+    "vertex\n"
+    "  --ignore FILE               those in FILE, as --out writes them; only --pairs are sought "
+    "then\n"
+    "  --groups FILE               those whose groups do not collide. Lines: triangle|vertex\n"
+    "                              FIRST[-LAST] CATEGORY MASK; a category has to be in the other's "
+    "mask\n"
     "Output\n"
     "  --json                      a JSON object a line for each file, in place of the table\n"
     "  --out FILE                  write the pairs as comma-separated values. An edge is a number\n"
     "                              3 t + k: from vertex k to vertex k + 1 (mod 3) of triangle t\n"
     "  --ply FILE                  write the mesh with colliding triangles in red; one MESH only\n"
+    "  --contacts                  where each pair meets, and how: a point, a segment, or an area\n"
     "  --stats                     time and count of the nine tasks of the query\n"
     "  --record FILE               write the query, with model, pose and options, to report a bug; "
     "one\n"
@@ -66,12 +76,14 @@ static const char usage[] =
     "                              star test, or none, which MISSES PAIRS and is for measuring\n"
     "  --partition fast|metis      where the patches come from\n"
     "  --no-rest-cache             test again what failed in the rest pose\n"
+    "  --budget N                  stop each query after N tests; what was found so far is "
+    "shown\n"
     "\n"
     "  --version, --help\n"
     "\n"
     "Exit status: 0 no self-collision, 1 at least one, 2 something could not be done; the reason "
     "is\n"
-    "on standard error.\n";
+    "on standard error. 3: a --budget ended a query, whether it had found any or not.\n";
 
 static const tool_choice pair_choices[] = {
     {"triangle", SC_PAIRS_TRIANGLE}, {"edge", SC_PAIRS_EDGE}, {"none", 2}, {NULL, 0}};
@@ -98,6 +110,10 @@ typedef struct settings {
     bool proper, any, json, stats, no_rest_cache;
     bool is_asked, is_built; /* some option said what to ask or how, or how to build */
     const char *rest_path, *out_path, *ply_path, *model_path, *record_path, *replay_path;
+    uint32_t ignore_rings, budget; /* 0: none */
+    const char *ignore_path, *groups_path;
+    bool contacts;
+    filter_file *filters; /* what the two files say */
 } settings;
 
 /* What there is to know about one file. Index SC_PAIRS_TRIANGLE and SC_PAIRS_EDGE. */
@@ -109,6 +125,7 @@ typedef struct file_answer {
     uint64_t counts[2];
     bool known[2]; /* whether counts and query_ms are there */
     bool collides;
+    bool incomplete; /* a budget ended a query */
     sc_stats stats;
 } file_answer;
 
@@ -126,6 +143,7 @@ typedef struct query_subject {
 typedef struct pair_list {
     sc_pair *pairs;
     uint64_t count, capacity;
+    sc_contact *contacts; /* count, with --contacts */
 } pair_list;
 
 /* The kind of pair that decides. */
@@ -136,7 +154,7 @@ static uint32_t chosen_pairs(const settings *set)
 
 static bool wants_list(const settings *set)
 {
-    return set->out_path || set->ply_path;
+    return set->out_path || set->ply_path || set->contacts;
 }
 
 static void subject_free(query_subject *subject)
@@ -239,14 +257,17 @@ static sc_query_options make_options(const settings *set, uint32_t kind, bool li
     options.method = set->method;
     options.contour = set->method == SC_METHOD_SCTT ? set->contour : SC_CONTOUR_DEFAULT;
     options.rest_cache = set->no_rest_cache ? SC_REST_CACHE_OFF : SC_REST_CACHE_ON;
+    options.budget = set->budget;
     return options;
 }
 
 /* One query of one kind of pair. With list the pairs are kept, else only counted. */
 static sc_status run_query(const query_subject *subject, const sc_pose *pose, const settings *set,
-                           uint32_t kind, pair_list *list, file_answer *answer)
+                           const sc_filter *filter, uint32_t kind, pair_list *list,
+                           file_answer *answer)
 {
-    const sc_query_options options = make_options(set, kind, list != NULL);
+    sc_query_options options = make_options(set, kind, list != NULL);
+    options.filter = filter;
     sc_result result;
     memset(&result, 0, sizeof result);
     result.struct_size = sizeof result;
@@ -265,9 +286,11 @@ static sc_status run_query(const query_subject *subject, const sc_pose *pose, co
             sc_query(subject->model, subject->workspace, pose, &options, &result);
         answer->query_ms[kind] = tool_clock() - start;
         answer->counts[kind] = result.count;
-        answer->known[kind] = status == SC_OK;
-        if (status == SC_OK && list) list->count = result.count;
-        if (status != SC_ERROR_SHORT_BUFFER || !list) return status;
+        answer->known[kind] = status == SC_OK || status == SC_ERROR_INCOMPLETE;
+        if (!list || result.count <= list->capacity) {
+            if (answer->known[kind] && list) list->count = result.count;
+            return status;
+        }
         if (result.count > SIZE_MAX / sizeof(sc_pair)) return SC_ERROR_MEMORY;
         sc_pair *pairs = (sc_pair *)realloc(list->pairs, (size_t)result.count * sizeof *pairs);
         if (!pairs) return SC_ERROR_MEMORY;
@@ -300,6 +323,19 @@ static bool write_record(const query_subject *subject, const sc_pose *pose, cons
     return written;
 }
 
+/* Where the pairs of a list meet. */
+static sc_status find_contacts(const query_subject *subject, const sc_pose *pose,
+                               const settings *set, pair_list *list)
+{
+    free(list->contacts);
+    list->contacts = list->count > SIZE_MAX / sizeof(sc_contact)
+                         ? NULL
+                         : (sc_contact *)malloc((size_t)list->count * sizeof(sc_contact) + 1);
+    if (!list->contacts) return SC_ERROR_MEMORY;
+    return sc_contacts(subject->model, pose, chosen_pairs(set), list->pairs, list->count,
+                       list->contacts);
+}
+
 /* All queries of one pose. */
 static bool run_pose(const query_subject *subject, const char *path, const sc_pose *pose,
                      const settings *set, pair_list *list, file_answer *answer,
@@ -309,12 +345,21 @@ static bool run_pose(const query_subject *subject, const char *path, const sc_po
     answer->build_ms = subject->build_ms;
     answer->info.struct_size = sizeof answer->info;
     sc_status status = sc_model_get_info(subject->model, &answer->info);
+    sc_filter filter;
+    if (status == SC_OK && !filter_file_apply(set->filters, answer->info.vertex_count,
+                                              answer->info.triangle_count, &filter, error))
+        return false;
+    filter.ignore_rings = set->ignore_rings;
     list->count = 0;
     for (uint32_t kind = 0; kind < 2 && status == SC_OK; kind++) {
-        if (set->any && kind != chosen) continue;
+        if ((set->any || set->ignore_path) && kind != chosen) continue;
         pair_list *const kept = kind == chosen && wants_list(set) ? list : NULL;
-        status = run_query(subject, pose, set, kind, kept, answer);
+        status = run_query(subject, pose, set, &filter, kind, kept, answer);
+        if (status != SC_ERROR_INCOMPLETE) continue;
+        answer->incomplete = true;
+        status = SC_OK;
     }
+    if (status == SC_OK && set->contacts) status = find_contacts(subject, pose, set, list);
     answer->collides = answer->counts[chosen] > 0;
     if (status != SC_OK) {
         snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
@@ -431,11 +476,38 @@ static bool print_json(cJSON *object)
     return text != NULL;
 }
 
-static bool print_json_answer(const file_answer *answer, const settings *set)
+static void add_numbers(cJSON *object, const char *name, double numbers[2][3])
+{
+    cJSON *both = cJSON_AddArrayToObject(object, name);
+    for (int end = 0; end < 2; end++)
+        cJSON_AddItemToArray(both, cJSON_CreateDoubleArray(numbers[end], 3));
+}
+
+static const char *const meet_names[] = {"none", "point", "segment", "area"};
+
+static void add_contacts(cJSON *object, const pair_list *list)
+{
+    cJSON *contacts = cJSON_AddArrayToObject(object, "contacts");
+    for (uint64_t i = 0; i < list->count; i++) {
+        cJSON *contact = cJSON_CreateObject();
+        cJSON_AddNumberToObject(contact, "a", list->pairs[i].a);
+        cJSON_AddNumberToObject(contact, "b", list->pairs[i].b);
+        cJSON_AddStringToObject(contact, "kind", meet_names[list->contacts[i].kind]);
+        add_numbers(contact, "points", list->contacts[i].points);
+        add_numbers(contact, "weights_a", list->contacts[i].weights_a);
+        add_numbers(contact, "weights_b", list->contacts[i].weights_b);
+        cJSON_AddItemToArray(contacts, contact);
+    }
+}
+
+static bool print_json_answer(const file_answer *answer, const settings *set, const pair_list *list)
 {
     cJSON *object = cJSON_CreateObject();
     cJSON_AddStringToObject(object, "file", answer->path);
-    cJSON_AddStringToObject(object, "status", answer->collides ? "collides" : "clean");
+    cJSON_AddStringToObject(object, "status",
+                            answer->incomplete ? "incomplete"
+                            : answer->collides ? "collides"
+                                               : "clean");
     cJSON_AddBoolToObject(object, "collides", answer->collides);
     cJSON_AddNumberToObject(object, "vertices", answer->info.point_count);
     cJSON_AddNumberToObject(object, "vertices_read", answer->info.vertex_count);
@@ -467,7 +539,12 @@ static bool print_json_answer(const file_answer *answer, const settings *set)
     cJSON_AddBoolToObject(object, "rest_cache", !set->no_rest_cache);
     if (set->rest_path) cJSON_AddStringToObject(object, "rest", set->rest_path);
     if (set->model_path) cJSON_AddStringToObject(object, "model", set->model_path);
+    if (set->ignore_rings) cJSON_AddNumberToObject(object, "ignore_rings", set->ignore_rings);
+    if (set->ignore_path) cJSON_AddStringToObject(object, "ignore", set->ignore_path);
+    if (set->groups_path) cJSON_AddStringToObject(object, "groups", set->groups_path);
+    if (set->budget) cJSON_AddNumberToObject(object, "budget", set->budget);
     if (set->stats) add_stats(cJSON_AddObjectToObject(object, "stats"), &answer->stats);
+    if (set->contacts) add_contacts(object, list);
     return print_json(object);
 }
 
@@ -487,15 +564,38 @@ static void print_table_head(const settings *set)
            "query ms", "file");
 }
 
+/* A number of pairs: with a + if there may be more, a - if they were not sought. */
+static void print_count(const file_answer *answer, uint32_t kind)
+{
+    if (answer->known[kind])
+        printf("%13.0f%s", (double)answer->counts[kind], answer->incomplete ? "+" : " ");
+    else
+        printf("%13s ", "-");
+}
+
+static void print_contacts(const pair_list *list)
+{
+    for (uint64_t i = 0; i < list->count; i++) {
+        const sc_contact *c = &list->contacts[i];
+        printf("    %lu %lu %s %.9g %.9g %.9g", (unsigned long)list->pairs[i].a,
+               (unsigned long)list->pairs[i].b, meet_names[c->kind], c->points[0][0],
+               c->points[0][1], c->points[0][2]);
+        if (c->kind != SC_MEET_POINT)
+            printf(" %.9g %.9g %.9g", c->points[1][0], c->points[1][1], c->points[1][2]);
+        puts("");
+    }
+}
+
 static void print_table_row(const file_answer *answer, const settings *set)
 {
     printf("%10lu %10lu %6lu ", (unsigned long)answer->info.point_count,
            (unsigned long)answer->info.triangle_count, (unsigned long)answer->info.component_count);
     if (set->any) {
-        printf("%14s %14s", answer->collides ? "yes" : "no", "");
+        printf("%14s %14s", answer->collides ? "yes" : answer->incomplete ? "unknown" : "no", "");
     } else {
-        printf("%14.0f %14.0f", (double)answer->counts[SC_PAIRS_TRIANGLE],
-               (double)answer->counts[SC_PAIRS_EDGE]);
+        print_count(answer, SC_PAIRS_TRIANGLE);
+        printf(" ");
+        print_count(answer, SC_PAIRS_EDGE);
     }
     printf(" %9.2f %9.3f  %s\n", answer->build_ms, answer->query_ms[chosen_pairs(set)],
            answer->path);
@@ -526,13 +626,15 @@ static int report(const file_answer *answer, const settings *set, bool done, con
         if (set->json) print_json_error(answer->path, error);
     } else {
         if (set->json)
-            written = print_json_answer(answer, set);
+            written = print_json_answer(answer, set, list);
         else
             print_table_row(answer, set);
+        if (set->contacts && !set->json) print_contacts(list);
         if (out) write_pairs(out, answer->path, list);
     }
     fflush(stdout);
     if (!done || !written) return TOOL_FAILED;
+    if (answer->incomplete) return TOOL_INCOMPLETE;
     return answer->collides ? TOOL_COLLIDES : TOOL_CLEAN;
 }
 
@@ -581,6 +683,7 @@ static bool use_options(settings *set, const sc_query_options *options)
     if (options->method != SC_METHOD_DEFAULT) set->method = options->method;
     if (options->contour != SC_CONTOUR_DEFAULT) set->contour = options->contour;
     set->no_rest_cache = options->rest_cache == SC_REST_CACHE_OFF;
+    set->budget = options->budget < UINT32_MAX ? (uint32_t)options->budget : UINT32_MAX;
     return options->output <= SC_OUTPUT_ANY && options->pairs <= SC_PAIRS_EDGE &&
            options->contact <= SC_CONTACT_PROPER && options->rest_cache <= SC_REST_CACHE_OFF;
 }
@@ -634,11 +737,17 @@ static int do_replay(settings *set, FILE *out, pair_list *list)
     return status;
 }
 
+/* Failures first, then what is not known, then collisions. */
+static int severity(int status)
+{
+    return status == TOOL_FAILED ? 4 : status;
+}
+
 static int do_files(char **paths, int path_count, settings *set)
 {
     query_subject rest;
     memset(&rest, 0, sizeof rest);
-    pair_list list = {NULL, 0, 0};
+    pair_list list = {NULL, 0, 0, NULL};
     float *pose_positions = NULL;
     FILE *out = NULL;
     int status = TOOL_CLEAN;
@@ -676,7 +785,7 @@ static int do_files(char **paths, int path_count, settings *set)
         if (set->replay_path) status = do_replay(set, out, &list);
         for (int i = 0; i < path_count; i++) {
             const int done = do_file(paths[i], set, common, pose_positions, out, &list);
-            if (done > status) status = done;
+            if (severity(done) > severity(status)) status = done;
         }
     }
     if (out) {
@@ -688,6 +797,7 @@ static int do_files(char **paths, int path_count, settings *set)
     }
     free(pose_positions);
     free(list.pairs);
+    free(list.contacts);
     subject_free(&rest);
     return status;
 }
@@ -709,10 +819,12 @@ static bool check_settings(const settings *set, int path_count)
         reason = "--model is in place of --rest, --weld and --partition";
     else if (set->record_path && path_count > 1)
         reason = "--record takes one mesh only";
+    else if (set->record_path && (set->ignore_rings || set->ignore_path || set->groups_path))
+        reason = "--record records no --ignore-rings, --ignore or --groups";
     else if (wants_list(set) && set->any)
-        reason = "--any finds no list for --out or --ply";
+        reason = "--any finds no list for --out, --ply or --contacts";
     else if (wants_list(set) && set->pairs == 2)
-        reason = "--pairs none leaves no list for --out or --ply";
+        reason = "--pairs none leaves no list for --out, --ply or --contacts";
     else if (set->ply_path && path_count > 1)
         reason = "--ply takes one mesh only";
     if (!reason) return true;
@@ -739,6 +851,11 @@ int main(int argc, char **argv)
         OPTION_CONTOUR,
         OPTION_PARTITION,
         OPTION_NO_REST_CACHE,
+        OPTION_IGNORE_RINGS,
+        OPTION_IGNORE,
+        OPTION_GROUPS,
+        OPTION_CONTACTS,
+        OPTION_BUDGET,
         OPTION_VERSION,
         OPTION_HELP
     };
@@ -759,6 +876,11 @@ int main(int argc, char **argv)
         {"contour", required_argument, NULL, OPTION_CONTOUR},
         {"partition", required_argument, NULL, OPTION_PARTITION},
         {"no-rest-cache", no_argument, NULL, OPTION_NO_REST_CACHE},
+        {"ignore-rings", required_argument, NULL, OPTION_IGNORE_RINGS},
+        {"ignore", required_argument, NULL, OPTION_IGNORE},
+        {"groups", required_argument, NULL, OPTION_GROUPS},
+        {"contacts", no_argument, NULL, OPTION_CONTACTS},
+        {"budget", required_argument, NULL, OPTION_BUDGET},
         {"version", no_argument, NULL, OPTION_VERSION},
         {"help", no_argument, NULL, OPTION_HELP},
         {NULL, 0, NULL, 0}};
@@ -775,7 +897,9 @@ int main(int argc, char **argv)
         set.is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_ANY ||
                         option == OPTION_WELD || option == OPTION_METHOD ||
                         option == OPTION_CONTOUR || option == OPTION_PARTITION ||
-                        option == OPTION_NO_REST_CACHE;
+                        option == OPTION_NO_REST_CACHE || option == OPTION_BUDGET ||
+                        option == OPTION_IGNORE_RINGS || option == OPTION_IGNORE ||
+                        option == OPTION_GROUPS;
         switch (option) {
         case OPTION_PAIRS:
             valid &= tool_choose("--pairs", optarg, pair_choices, &set.pairs);
@@ -825,6 +949,22 @@ int main(int argc, char **argv)
         case OPTION_NO_REST_CACHE:
             set.no_rest_cache = true;
             break;
+        case OPTION_IGNORE_RINGS:
+            valid &=
+                tool_parse_number("--ignore-rings", optarg, 0, SC_RINGS_MAX, &set.ignore_rings);
+            break;
+        case OPTION_IGNORE:
+            set.ignore_path = optarg;
+            break;
+        case OPTION_GROUPS:
+            set.groups_path = optarg;
+            break;
+        case OPTION_CONTACTS:
+            set.contacts = true;
+            break;
+        case OPTION_BUDGET:
+            valid &= tool_parse_number("--budget", optarg, 1, UINT32_MAX, &set.budget);
+            break;
         case OPTION_VERSION:
             printf("sc-query (starcontour) %s\n", sc_version_string());
             return tool_finish(TOOL_CLEAN);
@@ -840,5 +980,14 @@ int main(int argc, char **argv)
     if (set.method == SC_METHOD_SCTT && set.contour == SC_CONTOUR_NONE) {
         tool_error("note: --contour none can miss pairs");
     }
-    return tool_finish(do_files(argv + optind, argc - optind, &set));
+    filter_file filters;
+    char error[MESH_FILE_ERROR_SIZE];
+    int status = TOOL_FAILED;
+    set.filters = &filters;
+    if (filter_file_read(&filters, set.ignore_path, set.groups_path, chosen_pairs(&set), error))
+        status = do_files(argv + optind, argc - optind, &set);
+    else
+        tool_error("%s", error);
+    filter_file_free(&filters);
+    return tool_finish(status);
 }

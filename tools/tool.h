@@ -12,14 +12,14 @@
 
 #include <stdio.h>
 
-/* Exit statuses of sc-query; the other programs use the first and the last. */
-enum { TOOL_CLEAN = 0, TOOL_COLLIDES = 1, TOOL_FAILED = 2 };
+/* Exit statuses of sc-query; the other programs use TOOL_CLEAN and TOOL_FAILED. */
+enum { TOOL_CLEAN = 0, TOOL_COLLIDES = 1, TOOL_FAILED = 2, TOOL_INCOMPLETE = 3 };
 
 /* Lets compilers check format strings. */
 #if defined(__GNUC__)
-#    define TOOL_PRINTF __attribute__((format(printf, 1, 2)))
+#  define TOOL_PRINTF __attribute__((format(printf, 1, 2)))
 #else
-#    define TOOL_PRINTF
+#  define TOOL_PRINTF
 #endif
 
 /* The name that begins every message; set by main. */
