@@ -49,6 +49,8 @@ namespace Starcontour
         public struct sc_query_options
         {
             public uint struct_size, output, pairs, contact, method, contour, rest_cache, simd;
+            public void* filter, cancel;
+            public ulong budget;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -58,6 +60,7 @@ namespace Starcontour
             public ulong count, capacity;
             public Pair* pairs;
             public void* stats;
+            public uint verdict, reserved;
         }
 
         [DllImport(Library)] public static extern IntPtr sc_status_string(Status status);

@@ -51,11 +51,13 @@ public final class FfiJava {
         int at(String member) { return fieldOffset(member); }
     }
 
-    @Structure.FieldOrder({"struct_size", "collides", "count", "capacity", "pairs", "stats"})
+    @Structure.FieldOrder({"struct_size", "collides", "count", "capacity", "pairs", "stats",
+        "verdict", "reserved"})
     public static class sc_result extends Structure {
         public int struct_size = size(), collides;
         public long count, capacity;
         public Pointer pairs, stats;
+        public int verdict, reserved;
         int at(String member) { return fieldOffset(member); }
     }
 

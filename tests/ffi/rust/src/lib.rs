@@ -153,6 +153,9 @@ impl Workspace<'_> {
             contour: 0,
             rest_cache: 0,
             simd: 0,
+            filter: ptr::null(),
+            cancel: ptr::null(),
+            budget: 0,
         };
         loop {
             let mut result = raw::sc_result {
@@ -162,6 +165,8 @@ impl Workspace<'_> {
                 capacity: self.pairs.len() as u64,
                 pairs: self.pairs.as_mut_ptr(),
                 stats: ptr::null_mut(),
+                verdict: 0,
+                reserved: 0,
             };
             // SAFETY: model and workspace are alive, the workspace is ours alone, the arrays are as
             // long as stated.

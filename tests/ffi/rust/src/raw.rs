@@ -42,6 +42,9 @@ pub struct sc_query_options {
     pub contour: u32,
     pub rest_cache: u32,
     pub simd: u32,
+    pub filter: *const c_void,
+    pub cancel: *const u32,
+    pub budget: u64,
 }
 
 #[repr(C)]
@@ -59,6 +62,8 @@ pub struct sc_result {
     pub capacity: u64,
     pub pairs: *mut sc_pair,
     pub stats: *mut c_void,
+    pub verdict: u32,
+    pub reserved: u32,
 }
 
 #[repr(C)]
@@ -114,8 +119,8 @@ pub fn layouts() -> Vec<Layout> {
             index_type index_stride reserved positions indices),
         layout!(sc_pose: struct_size vertex_count position_type position_stride positions),
         layout!(sc_query_options: struct_size output pairs contact method contour rest_cache
-            simd),
+            simd filter cancel budget),
         layout!(sc_pair: a b),
-        layout!(sc_result: struct_size collides count capacity pairs stats),
+        layout!(sc_result: struct_size collides count capacity pairs stats verdict reserved),
     ]
 }
