@@ -12,7 +12,9 @@ namespace Starcontour
     {
         Ok = 0, Null = 1, StructSize = 2, Option = 3, Empty = 4, Count = 5, Stride = 6, Index = 7,
         NotFinite = 8, VertexCount = 9, Memory = 10, ShortBuffer = 11, Workspace = 12, WeldMap = 13,
-        Tree = 14, Partition = 15, Unsupported = 16, Alignment = 17, Level = 18
+        Tree = 14, Partition = 15, Unsupported = 16, Alignment = 17, Level = 18, NotSaved = 19,
+        Truncated = 20, ByteOrder = 21, TooNew = 22, TooOld = 23, Checksum = 24, Inconsistent = 25,
+        Topology = 26
     }
 
     public enum PairKind : uint { Triangle = 0, Edge = 1 }

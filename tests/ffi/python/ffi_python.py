@@ -6,7 +6,10 @@ SPDX-License-Identifier: MIT
 """
 
 import ctypes
+import os
+import pickle
 import sys
+import tempfile
 import threading
 
 import numpy as np
@@ -133,6 +136,24 @@ check("vertex out of range", raised(7, lambda: starcontour.Model(rest, [[0, 1, l
 check("no triangles", raised(4, lambda: starcontour.Model(rest, np.empty((0, 3), np.uint32))))
 check("patches", len(model.patches(0)) == len(triangles) and raised(18, lambda: model.patches(99)))
 check("usable after errors", same(model.query(rest), "rest"))
+
+# Saved models.
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "cloths.scm")
+    model.save(path)
+    for in_place in (False, True):
+        loaded = starcontour.Model.load(path, in_place=in_place)
+        check(f"loaded model, in place: {in_place}", same(loaded.query(moved), "moved"))
+    check("saved again", loaded.tobytes() == model.tobytes())
+    check("another mesh's model", raised(26, lambda: starcontour.Model.load(
+        path, topology_hash=model.info.topology_hash ^ 1)))
+    del loaded
+data = model.tobytes()
+check("no model", raised(19, lambda: starcontour.Model.frombytes(bytes(len(data)))))
+check("model cut off", raised(20, lambda: starcontour.Model.frombytes(data[:-1])))
+check("model changed", raised(24, lambda: starcontour.Model.frombytes(
+    data[:-1] + bytes([data[-1] ^ 1]))))
+check("pickled model", same(pickle.loads(pickle.dumps(model)).query(rest), "rest"))
 
 # One model, two threads, each with a workspace of its own.
 wrong = []

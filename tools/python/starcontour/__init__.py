@@ -42,6 +42,7 @@ _PAIRS = {"triangle": 0, "edge": 1}
 _CONTACT = {"touching": 0, "proper": 1}
 _METHOD = {"default": 0, "sctt": 1, "aabb_sctt": 2, "aabb": 3}
 _PARTITION_FAST, _PARTITION_ORDER = 0, 1
+_LOAD_COPY, _LOAD_IN_PLACE = 0, 1
 _OUTPUT_PAIRS, _OUTPUT_COUNT, _OUTPUT_ANY = 0, 1, 2
 _SHORT_BUFFER = 11
 _IN_USE = "the workspace is in use by another call"
@@ -203,6 +204,50 @@ class Model:
         self._handle = handle
         self._local = threading.local()
         weakref.finalize(self, lib.sc_model_free, handle)
+
+    @classmethod
+    def frombytes(cls, data, *, topology_hash=0, in_place=False):
+        """The model that tobytes made `data` of: any bytes-like object. Other data raise an Error.
+
+        topology_hash   0, or refuse a model with any other info.topology_hash
+        in_place        keep the data and use them where they are, aligned to 64 bytes; they must not
+                        change as long as the model lives
+        """
+        data = np.frombuffer(data, np.uint8)
+        options = _binding.sc_load_options(
+            struct_size=ctypes.sizeof(_binding.sc_load_options),
+            mode=_LOAD_IN_PLACE if in_place else _LOAD_COPY,
+            topology_hash=topology_hash,
+        )
+        handle = ctypes.c_void_p()
+        _check(lib.sc_model_load(data.ctypes.data, data.nbytes, ctypes.byref(options),
+                                 ctypes.byref(handle)))
+        model = cls.__new__(cls)
+        model._adopt(handle)
+        model._data = data if in_place else None
+        return model
+
+    @classmethod
+    def load(cls, path, *, topology_hash=0, in_place=False):
+        """The model that save wrote to a file. in_place maps the file, which processes then share."""
+        data = np.memmap(path, np.uint8, "r") if in_place else np.fromfile(path, np.uint8)
+        return cls.frombytes(data, topology_hash=topology_hash, in_place=in_place)
+
+    def tobytes(self):
+        """The model as bytes, for frombytes of the same minor version of the library."""
+        size = ctypes.c_uint64()
+        _check(lib.sc_model_save_size(self._handle, ctypes.byref(size)))
+        data = np.empty(size.value, np.uint8)
+        _check(lib.sc_model_save(self._handle, data.ctypes.data, data.nbytes, None))
+        return data.tobytes()
+
+    def save(self, path):
+        """Writes the model to a file, for load and for `sc-query --model`."""
+        with open(path, "wb") as file:
+            file.write(self.tobytes())
+
+    def __reduce__(self):
+        return Model.frombytes, (self.tobytes(),)
 
     @property
     def info(self):

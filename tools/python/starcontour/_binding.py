@@ -49,6 +49,17 @@ class sc_build_options(ctypes.Structure):
         ("bisect", c_void_p),
         ("bisect_user", c_void_p),
         ("allocator", c_void_p),
+        ("hooks", c_void_p),
+    ]
+
+
+class sc_load_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("mode", c_uint32),
+        ("topology_hash", c_uint64),
+        ("allocator", c_void_p),
+        ("hooks", c_void_p),
     ]
 
 
@@ -69,6 +80,8 @@ class sc_model_info(ctypes.Structure):
         ("topology_hash", c_uint64),
         ("model_bytes", c_uint64),
         ("workspace_bytes", c_uint64),
+        ("peak_bytes", c_uint64),
+        ("allocations", c_uint64),
     ]
 
 
@@ -96,7 +109,8 @@ class sc_result(ctypes.Structure):
     ]
 
 
-structures = (sc_mesh, sc_pose, sc_build_options, sc_model_info, sc_query_options, sc_result)
+structures = (sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info, sc_query_options,
+              sc_result)
 
 _suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarcontour" + _suffix)
@@ -116,6 +130,9 @@ _declare("sc_build", _status, POINTER(sc_mesh), POINTER(sc_build_options), POINT
 _declare("sc_model_free", None, c_void_p)
 _declare("sc_model_get_info", _status, c_void_p, POINTER(sc_model_info))
 _declare("sc_model_get_patches", _status, c_void_p, c_uint32, c_void_p, c_uint64)
+_declare("sc_model_save_size", _status, c_void_p, POINTER(c_uint64))
+_declare("sc_model_save", _status, c_void_p, c_void_p, c_uint64, POINTER(c_uint64))
+_declare("sc_model_load", _status, c_void_p, c_uint64, POINTER(sc_load_options), POINTER(c_void_p))
 _declare("sc_workspace_create", _status, c_void_p, c_void_p, POINTER(c_void_p))
 _declare("sc_workspace_free", None, c_void_p)
 _declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_query_options),
