@@ -104,9 +104,16 @@ run() {
 # ------------------------------------------------------------------------------------------------
 # What all programs are given.
 
-awk -f "$here/layout.awk" "$header" >"$work/layout.c" &&
-    $CC -std=c99 -Iinclude -o "$work/layout" "$work/layout.c" &&
-    "$work/layout" >"$work/layout.txt" || { echo "no layout could be made" >&2; exit 1; }
+# Structures, members and enumerators as a C compiler has them, a line each:
+#     struct NAME BYTES
+#     member STRUCT NAME OFFSET BYTES
+#     value NAME NUMBER
+awk -f tests/abi/interface.awk "$header" >"$work/interface.c" &&
+    $CC -std=c99 -Iinclude -o "$work/interface" "$work/interface.c" ||
+    { echo "the interface cannot be listed" >&2; exit 1; }
+"$work/interface" | sed -n -e 's/^struct \([a-z_0-9]*\): \([0-9]*\) bytes.*/struct \1 \2/p' \
+    -e 's/^\(sc_[a-z_0-9]*\)\.\([a-z_0-9]*\): at \([0-9]*\), \([0-9]*\) bytes.*/member \1 \2 \3 \4/p' \
+    -e 's/^\(SC_[A-Z_0-9]*\) = \(.*\)/value \1 \2/p' >"$work/layout.txt"
 sed 's/^\([a-z]* [0-9]*\)5 /\16 /' "$here/golden.txt" >"$work/damaged.txt"
 
 if [ -x "$SC_LIB/../bin/sc-query" ]; then

@@ -17,7 +17,8 @@ local ffi = require("ffi")
 
 local starcontour = {}
 
--- The header's text without comments, directives, what is for C++ only, and SC_API.
+-- The header's text without comments, directives, what is for C++ only, and SC_API. Macros that are
+-- numbers become constants.
 function starcontour.declarations(header)
     local file = assert(io.open(header))
     local text = file:read("*a")
@@ -31,6 +32,8 @@ function starcontour.declarations(header)
         elseif line:match("^%s*#%s*endif") then
             if skipped == depth then skipped = nil end
             depth = depth - 1
+        elseif line:match("^#define SC_[A-Z_]+ %d%w*$") then
+            lines[#lines + 1] = line:gsub("#define (%S+) (%w-)u?$", "static const uint32_t %1 = %2;")
         elseif not line:match("^%s*#") and not skipped then
             lines[#lines + 1] = line
         end

@@ -67,14 +67,14 @@ def same(pairs, pose):
     return pairs.dtype == np.uint32 and np.array_equal(pairs, golden[pose])
 
 
-# The structures are those of the header.
-layout = {"struct": {}, "member": {}}
+# Structures and enumerators are those of the header.
+layout = {"struct": {}, "member": {}, "value": {}}
 with open(layout_path) as file:
     for line in file:
         kind, *rest_of_line = line.split()
-        if kind == "struct":
-            layout["struct"][rest_of_line[0]] = int(rest_of_line[1])
-        elif kind == "member":
+        if kind in ("struct", "value"):
+            layout[kind][rest_of_line[0]] = int(rest_of_line[1])
+        else:
             name, member, offset, size = rest_of_line
             layout["member"].setdefault(name, []).append((member, int(offset), int(size)))
 for structure in _binding.structures:
@@ -83,6 +83,13 @@ for structure in _binding.structures:
                 for f, _ in structure._fields_]
     check(f"{name} is laid out as in the header",
           mirrored == layout["member"][name] and ctypes.sizeof(structure) == layout["struct"][name])
+dtype = np.dtype(_binding.sc_contact)
+check("sc_contact is laid out as in the header", dtype.itemsize == layout["struct"]["sc_contact"] and [
+    (name, dtype.fields[name][1], dtype.fields[name][0].itemsize) for name in dtype.names
+] == layout["member"]["sc_contact"])
+enumerators = {name: value for name, value in vars(_binding).items() if name.startswith("SC_")}
+for name, value in enumerators.items():
+    check(f"{name} is as in the header", layout["value"].get(name) == value)
 
 model = starcontour.Model(rest, triangles)
 check("info", model.info.vertex_count == len(rest) and model.info.triangle_count == len(triangles))
@@ -129,13 +136,50 @@ check("no welding", same(starcontour.Model(rest, triangles, weld="none").query(r
 # Errors.
 spoilt = rest.copy()
 spoilt[7, 1] = np.nan
-check("NaN", "NaN" in (raised(8, lambda: model.query(spoilt)) or ""))
-check("number of vertices", "vert" in (raised(9, lambda: model.query(rest[:-1])) or ""))
-check("negative vertex", raised(7, lambda: starcontour.Model(rest, [[0, 1, -1]])))
-check("vertex out of range", raised(7, lambda: starcontour.Model(rest, [[0, 1, len(rest)]])))
-check("no triangles", raised(4, lambda: starcontour.Model(rest, np.empty((0, 3), np.uint32))))
-check("patches", len(model.patches(0)) == len(triangles) and raised(18, lambda: model.patches(99)))
+check("NaN", "NaN" in (raised(_binding.SC_ERROR_NOT_FINITE, lambda: model.query(spoilt)) or ""))
+check("number of vertices", "vert" in (raised(_binding.SC_ERROR_VERTEX_COUNT, lambda: model.query(rest[:-1])) or ""))
+check("negative vertex", raised(_binding.SC_ERROR_INDEX, lambda: starcontour.Model(rest, [[0, 1, -1]])))
+check("vertex out of range", raised(_binding.SC_ERROR_INDEX, lambda: starcontour.Model(rest, [[0, 1, len(rest)]])))
+check("no triangles", raised(_binding.SC_ERROR_EMPTY, lambda: starcontour.Model(rest, np.empty((0, 3), np.uint32))))
+check("patches", len(model.patches(0)) == len(triangles) and raised(_binding.SC_ERROR_LEVEL, lambda: model.patches(99)))
 check("usable after errors", same(model.query(rest), "rest"))
+
+# Pairs that are not wanted, and queries that are ended.
+def incomplete(call):
+    """What an ended query found."""
+    try:
+        call()
+    except starcontour.Incomplete as error:
+        return error.found
+    return None
+
+
+check("known contacts", len(model.query(moved, ignore=golden["moved"])) == 0)
+check("all but one", np.array_equal(model.query(moved, ignore=golden["moved"][1:]), golden["moved"][:1]))
+check("list that is not sorted", raised(_binding.SC_ERROR_PAIRS, lambda: model.query(
+    moved, ignore=golden["moved"][::-1])))
+groups = np.zeros((len(rest), 2), np.uint32)
+groups[:later], groups[later:] = (1, 2), (2, 1)
+check("groups that collide", same(model.query(moved, vertex_groups=groups), "moved"))
+groups[:, 1] = groups[:, 0]
+check("groups that do not", model.count(moved, vertex_groups=groups) == 0)
+groups = np.full((len(triangles), 2), (1, 0), np.uint32)
+check("triangle groups", not model.collides(moved, triangle_groups=groups))
+check("rings", len(model.query(np.zeros_like(rest), ignore_rings=2)) < model.count(np.zeros_like(rest)))
+flag = np.ones(1, np.uint32)
+check("cancelled", len(incomplete(lambda: model.query(moved, cancel=flag))) < len(golden["moved"]))
+flag[0] = 0
+check("not cancelled", same(model.query(moved, cancel=flag), "moved"))
+check("budget", incomplete(lambda: model.count(np.zeros_like(rest), budget=1)) is not None)
+
+# Where pairs meet: points by weights of a and of b are the points themselves.
+contacts = model.contacts(moved, golden["moved"])
+corners = moved[triangles]
+for side, weights in ((0, "weights_a"), (1, "weights_b")):
+    mixed = np.einsum("npk,nkx->npx", contacts[weights], corners[golden["moved"][:, side]])
+    check(f"contacts by {weights}", np.allclose(mixed, contacts["points"], rtol=0, atol=1e-14))
+check("kinds of contacts", set(contacts["kind"]) <= {1, 2, 3} and (contacts["kind"] == 2).any())
+check("contacts of none", raised(_binding.SC_ERROR_PAIRS, lambda: model.contacts(moved, [[0, len(triangles)]])))
 
 # Saved models.
 with tempfile.TemporaryDirectory() as folder:
@@ -145,13 +189,13 @@ with tempfile.TemporaryDirectory() as folder:
         loaded = starcontour.Model.load(path, in_place=in_place)
         check(f"loaded model, in place: {in_place}", same(loaded.query(moved), "moved"))
     check("saved again", loaded.tobytes() == model.tobytes())
-    check("another mesh's model", raised(26, lambda: starcontour.Model.load(
+    check("another mesh's model", raised(_binding.SC_ERROR_TOPOLOGY, lambda: starcontour.Model.load(
         path, topology_hash=model.info.topology_hash ^ 1)))
     del loaded
 data = model.tobytes()
-check("no model", raised(19, lambda: starcontour.Model.frombytes(bytes(len(data)))))
-check("model cut off", raised(20, lambda: starcontour.Model.frombytes(data[:-1])))
-check("model changed", raised(24, lambda: starcontour.Model.frombytes(
+check("no model", raised(_binding.SC_ERROR_NOT_SAVED, lambda: starcontour.Model.frombytes(bytes(len(data)))))
+check("model cut off", raised(_binding.SC_ERROR_TRUNCATED, lambda: starcontour.Model.frombytes(data[:-1])))
+check("model changed", raised(_binding.SC_ERROR_CHECKSUM, lambda: starcontour.Model.frombytes(
     data[:-1] + bytes([data[-1] ^ 1]))))
 check("pickled model", same(pickle.loads(pickle.dumps(model)).query(rest), "rest"))
 
@@ -175,7 +219,7 @@ check("two threads, one model", not wrong)
 
 busy = model.workspace()
 with busy._scratch.lock:
-    check("workspace in use", raised(12, lambda: busy.query(rest)))
+    check("workspace in use", raised(_binding.SC_ERROR_WORKSPACE, lambda: busy.query(rest)))
 check("and free again", same(busy.query(rest), "rest"))
 
 # A workspace keeps its model.

@@ -12,6 +12,15 @@ guaranteed, and what the options mean. Here they are keywords with the names of 
     method      "default", "sctt", "aabb_sctt" or "aabb": the answer is the same
     rest_cache  True (default) or False: the answer is the same
 
+    ignore_rings      leave out pairs so near to each other on the mesh; 1: that share a vertex
+    ignore            leave out these pairs: an array of shape (k, 2) as a query returns them
+    vertex_groups     a category and a mask for each vertex, shape (n, 2), see sc_group
+    triangle_groups   the same for each triangle
+    cancel            a uint32 array of one element: another thread ends the query by setting it
+    budget            end the query after so many units of work; 0 (default): no limit
+
+A query that cancel or budget ended raises Incomplete, which has what was found so far.
+
 Positions are arrays of shape (n, 3). Rows of float32 or float64 whose three numbers are contiguous
 are read in place, whatever lies between the rows; other arrays are copied, if that is exact, and
 refused if it is not. Triangles are arrays of shape (m, 3) of integers; uint32 and uint16 are read in
@@ -33,18 +42,19 @@ import numpy as np
 from . import _binding
 from ._binding import lib
 
-__all__ = ["Error", "Model", "ModelInfo", "Workspace", "version"]
+__all__ = ["Error", "Incomplete", "Model", "ModelInfo", "Workspace", "version"]
 
 version = lib.sc_version_string().decode()
 
-_WELD = {"rest": 0, "map": 1, "none": 2}
-_PAIRS = {"triangle": 0, "edge": 1}
-_CONTACT = {"touching": 0, "proper": 1}
-_METHOD = {"default": 0, "sctt": 1, "aabb_sctt": 2, "aabb": 3}
-_PARTITION_FAST, _PARTITION_ORDER = 0, 1
-_LOAD_COPY, _LOAD_IN_PLACE = 0, 1
-_OUTPUT_PAIRS, _OUTPUT_COUNT, _OUTPUT_ANY = 0, 1, 2
-_SHORT_BUFFER = 11
+_WELD = {"rest": _binding.SC_WELD_REST, "none": _binding.SC_WELD_NONE}
+_PAIRS = {"triangle": _binding.SC_PAIRS_TRIANGLE, "edge": _binding.SC_PAIRS_EDGE}
+_CONTACT = {"touching": _binding.SC_CONTACT_TOUCHING, "proper": _binding.SC_CONTACT_PROPER}
+_METHOD = {
+    "default": _binding.SC_METHOD_DEFAULT,
+    "sctt": _binding.SC_METHOD_SCTT,
+    "aabb_sctt": _binding.SC_METHOD_AABB_SCTT,
+    "aabb": _binding.SC_METHOD_AABB,
+}
 _IN_USE = "the workspace is in use by another call"
 
 ModelInfo = namedtuple(
@@ -58,6 +68,17 @@ class Error(Exception):
     def __init__(self, status, text=None):
         super().__init__(text or lib.sc_status_string(status).decode())
         self.status = status
+
+
+class Incomplete(Error):
+    """A query that was ended early. `found`: what it would have returned, as far as it is known.
+
+    Of many pairs those that fitted are there: at least as many as the largest answer before had.
+    """
+
+    def __init__(self, found):
+        super().__init__(_binding.SC_ERROR_INCOMPLETE)
+        self.found = found
 
 
 def _check(status):
@@ -106,6 +127,10 @@ def _positions(positions):
     return np.ascontiguousarray(array, wanted)
 
 
+def _position_type(positions):
+    return _binding.SC_DOUBLE if positions.dtype == np.float64 else _binding.SC_FLOAT
+
+
 def _indices(values):
     """The same whole numbers as an array of uint32 or uint16, itself if possible."""
     array = np.asarray(values)
@@ -114,7 +139,7 @@ def _indices(values):
     if array.dtype in (np.uint32, np.uint16):
         return array
     if array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
-        raise Error(7)
+        raise Error(_binding.SC_ERROR_INDEX)
     return array.astype(np.uint32)
 
 
@@ -129,6 +154,27 @@ def _numbers(values, length, what):
     if array.shape != (length,):
         raise ValueError(f"{what} must have the shape ({length},), not {array.shape}")
     return array
+
+
+def _table(values, rows, what):
+    """A packed array of uint32 of shape (rows, 2), rows None: any number; and its address."""
+    array = np.ascontiguousarray(_indices(values), np.uint32)
+    if array.ndim != 2 or array.shape[1] != 2 or rows not in (None, len(array)):
+        raise ValueError(f"{what} must have the shape ({'k' if rows is None else rows}, 2)")
+    return array, array.ctypes.data
+
+
+def _pose(pose):
+    """An sc_pose, and the array that it refers to."""
+    positions = _positions(pose)
+    structure = _binding.sc_pose(
+        struct_size=ctypes.sizeof(_binding.sc_pose),
+        vertex_count=len(positions),
+        position_type=_position_type(positions),
+        position_stride=positions.strides[0],
+        positions=positions.ctypes.data,
+    )
+    return structure, positions
 
 
 class _Scratch:
@@ -156,11 +202,11 @@ class Workspace:
 
     def count(self, pose, **options):
         """Like Model.count."""
-        return self.model._ask(self._scratch, pose, _OUTPUT_COUNT, **options).count
+        return self.model._count(self._scratch, pose, **options)
 
     def collides(self, pose, **options):
         """Like Model.collides."""
-        return bool(self.model._ask(self._scratch, pose, _OUTPUT_ANY, **options).collides)
+        return self.model._collides(self._scratch, pose, **options)
 
 
 class Model:
@@ -180,22 +226,22 @@ class Model:
             struct_size=ctypes.sizeof(_binding.sc_mesh),
             vertex_count=len(vertices),
             triangle_count=len(triangles),
-            position_type=int(vertices.dtype == np.float64),
+            position_type=_position_type(vertices),
             position_stride=vertices.strides[0],
-            index_type=int(triangles.dtype == np.uint16),
+            index_type=_binding.SC_UINT16 if triangles.dtype == np.uint16 else _binding.SC_UINT32,
             index_stride=triangles.strides[0],
             positions=vertices.ctypes.data,
             indices=triangles.ctypes.data,
         )
         options = _binding.sc_build_options(struct_size=ctypes.sizeof(_binding.sc_build_options))
         if isinstance(weld, str):
-            options.weld = _choice("weld", weld, {k: v for k, v in _WELD.items() if k != "map"})
+            options.weld = _choice("weld", weld, _WELD)
         else:
             weld = _numbers(weld, len(vertices), "weld")
-            options.weld, options.weld_map = _WELD["map"], weld.ctypes.data
+            options.weld, options.weld_map = _binding.SC_WELD_MAP, weld.ctypes.data
         if order is not None:
             order = _numbers(order, len(triangles), "order")
-            options.partition, options.order = _PARTITION_ORDER, order.ctypes.data
+            options.partition, options.order = _binding.SC_PARTITION_ORDER, order.ctypes.data
         handle = ctypes.c_void_p()
         _check(lib.sc_build(ctypes.byref(mesh), ctypes.byref(options), ctypes.byref(handle)))
         self._adopt(handle)
@@ -216,7 +262,7 @@ class Model:
         data = np.frombuffer(data, np.uint8)
         options = _binding.sc_load_options(
             struct_size=ctypes.sizeof(_binding.sc_load_options),
-            mode=_LOAD_IN_PLACE if in_place else _LOAD_COPY,
+            mode=_binding.SC_LOAD_IN_PLACE if in_place else _binding.SC_LOAD_COPY,
             topology_hash=topology_hash,
         )
         handle = ctypes.c_void_p()
@@ -262,6 +308,19 @@ class Model:
         _check(lib.sc_model_get_patches(self._handle, level, patches.ctypes.data, len(patches)))
         return patches
 
+    def contacts(self, pose, found, *, pairs="triangle"):
+        """Where pairs that a query found meet: a structured array, an entry for each.
+
+        Fields: kind (0 nothing, 1 a point, 2 a segment, 3 an area), points (two, three coordinates
+        each), and weights_a and weights_b, their barycentric coordinates. See sc_contact.
+        """
+        found, address = _table(found, None, "found")
+        contacts = np.zeros(len(found), _binding.sc_contact)
+        given, positions = _pose(pose)
+        _check(lib.sc_contacts(self._handle, ctypes.byref(given), _choice("pairs", pairs, _PAIRS),
+                               address, len(found), contacts.ctypes.data))
+        return contacts
+
     def workspace(self):
         """A new Workspace, for queries that run at the same time as others in this thread's name."""
         return Workspace(self)
@@ -272,11 +331,11 @@ class Model:
 
     def count(self, pose, **options):
         """The number of pairs in a pose."""
-        return self._ask(self._own(), pose, _OUTPUT_COUNT, **options).count
+        return self._count(self._own(), pose, **options)
 
     def collides(self, pose, **options):
         """Whether there is any pair in a pose. Stops at the first."""
-        return bool(self._ask(self._own(), pose, _OUTPUT_ANY, **options).collides)
+        return self._collides(self._own(), pose, **options)
 
     def _own(self):
         """This thread's workspace."""
@@ -285,38 +344,68 @@ class Model:
         return self._local.scratch
 
     def _query(self, scratch, pose, **options):
-        return self._ask(scratch, pose, _OUTPUT_PAIRS, **options)
+        def pairs(result):
+            return scratch.pairs[: result.count].copy()
 
-    def _ask(self, scratch, pose, output, *, pairs="triangle", contact="touching",
-             method="default", rest_cache=True):
-        positions = _positions(pose)
-        given = _binding.sc_pose(
-            struct_size=ctypes.sizeof(_binding.sc_pose),
-            vertex_count=len(positions),
-            position_type=int(positions.dtype == np.float64),
-            position_stride=positions.strides[0],
-            positions=positions.ctypes.data,
-        )
+        return self._ask(scratch, pose, _binding.SC_OUTPUT_PAIRS, pairs, **options)
+
+    def _count(self, scratch, pose, **options):
+        return self._ask(scratch, pose, _binding.SC_OUTPUT_COUNT, lambda result: result.count, **options)
+
+    def _collides(self, scratch, pose, **options):
+        return self._ask(scratch, pose, _binding.SC_OUTPUT_ANY, lambda result: bool(result.collides), **options)
+
+    def _filter(self, ignore_rings, ignore, vertex_groups, triangle_groups):
+        """An sc_filter, and the arrays that it refers to."""
+        structure = _binding.sc_filter(
+            struct_size=ctypes.sizeof(_binding.sc_filter), ignore_rings=ignore_rings)
+        arrays = []
+        if ignore is not None:
+            array, structure.ignore = _table(ignore, None, "ignore")
+            structure.ignore_count = len(array)
+            arrays.append(array)
+        if vertex_groups is not None:
+            array, structure.vertex_groups = _table(
+                vertex_groups, self.info.vertex_count, "vertex_groups")
+            arrays.append(array)
+        if triangle_groups is not None:
+            array, structure.triangle_groups = _table(
+                triangle_groups, self.info.triangle_count, "triangle_groups")
+            arrays.append(array)
+        return structure, arrays
+
+    def _ask(self, scratch, pose, output, answer, *, pairs="triangle", contact="touching",
+             method="default", rest_cache=True, ignore_rings=0, ignore=None, vertex_groups=None,
+             triangle_groups=None, cancel=None, budget=0):
+        given, positions = _pose(pose)
+        filter, arrays = self._filter(ignore_rings, ignore, vertex_groups, triangle_groups)
+        if cancel is not None and (cancel.dtype != np.uint32 or cancel.shape != (1,)):
+            raise ValueError("cancel must be a uint32 array of shape (1,)")
         options = _binding.sc_query_options(
             struct_size=ctypes.sizeof(_binding.sc_query_options),
             output=output,
             pairs=_choice("pairs", pairs, _PAIRS),
             contact=_choice("contact", contact, _CONTACT),
             method=_choice("method", method, _METHOD),
-            rest_cache=0 if rest_cache else 1,
+            rest_cache=_binding.SC_REST_CACHE_ON if rest_cache else _binding.SC_REST_CACHE_OFF,
+            filter=ctypes.addressof(filter),
+            cancel=None if cancel is None else cancel.ctypes.data,
+            budget=budget,
         )
         result = _binding.sc_result(struct_size=ctypes.sizeof(_binding.sc_result))
         if not scratch.lock.acquire(blocking=False):
-            raise Error(12, _IN_USE)
+            raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
         try:
             while True:
                 result.capacity, result.pairs = len(scratch.pairs), scratch.pairs.ctypes.data
                 status = lib.sc_query(self._handle, scratch.handle, ctypes.byref(given),
                                       ctypes.byref(options), ctypes.byref(result))
-                if status != _SHORT_BUFFER:
+                if status == _binding.SC_ERROR_INCOMPLETE:
+                    raise Incomplete(answer(result))
+                if status != _binding.SC_ERROR_SHORT_BUFFER:
                     break
                 scratch.pairs = np.empty((result.count + result.count // 4, 2), np.uint32)
             _check(status)
-            return scratch.pairs[: result.count].copy() if output == _OUTPUT_PAIRS else result
+            return answer(result)
         finally:
             scratch.lock.release()

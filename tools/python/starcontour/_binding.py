@@ -11,6 +11,31 @@ import os
 import sys
 from ctypes import POINTER, c_char_p, c_int32, c_uint32, c_uint64, c_void_p
 
+# The enumerators that the package and its tests use.
+SC_ERROR_EMPTY = 4
+SC_ERROR_INDEX = 7
+SC_ERROR_NOT_FINITE = 8
+SC_ERROR_VERTEX_COUNT = 9
+SC_ERROR_SHORT_BUFFER = 11
+SC_ERROR_WORKSPACE = 12
+SC_ERROR_LEVEL = 18
+SC_ERROR_NOT_SAVED = 19
+SC_ERROR_TRUNCATED = 20
+SC_ERROR_CHECKSUM = 24
+SC_ERROR_TOPOLOGY = 26
+SC_ERROR_PAIRS = 27
+SC_ERROR_INCOMPLETE = 28
+SC_FLOAT, SC_DOUBLE = 0, 1
+SC_UINT32, SC_UINT16 = 0, 1
+SC_WELD_REST, SC_WELD_MAP, SC_WELD_NONE = 0, 1, 2
+SC_PARTITION_FAST, SC_PARTITION_ORDER = 0, 1
+SC_LOAD_COPY, SC_LOAD_IN_PLACE = 0, 1
+SC_OUTPUT_PAIRS, SC_OUTPUT_COUNT, SC_OUTPUT_ANY = 0, 1, 2
+SC_PAIRS_TRIANGLE, SC_PAIRS_EDGE = 0, 1
+SC_CONTACT_TOUCHING, SC_CONTACT_PROPER = 0, 1
+SC_METHOD_DEFAULT, SC_METHOD_SCTT, SC_METHOD_AABB_SCTT, SC_METHOD_AABB = 0, 1, 2, 3
+SC_REST_CACHE_ON, SC_REST_CACHE_OFF = 0, 1
+
 
 class sc_mesh(ctypes.Structure):
     _fields_ = [
@@ -95,6 +120,22 @@ class sc_query_options(ctypes.Structure):
         ("contour", c_uint32),
         ("rest_cache", c_uint32),
         ("simd", c_uint32),
+        ("filter", c_void_p),
+        ("cancel", c_void_p),
+        ("budget", c_uint64),
+    ]
+
+
+class sc_filter(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("ignore_rings", c_uint32),
+        ("vertex_groups", c_void_p),
+        ("triangle_groups", c_void_p),
+        ("ignore", c_void_p),
+        ("ignore_count", c_uint64),
+        ("accept", c_void_p),
+        ("accept_user", c_void_p),
     ]
 
 
@@ -106,11 +147,22 @@ class sc_result(ctypes.Structure):
         ("capacity", c_uint64),
         ("pairs", c_void_p),
         ("stats", c_void_p),
+        ("verdict", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
+# An entry of a numpy array of contacts.
+sc_contact = [
+    ("kind", "u4"),
+    ("reserved", "u4"),
+    ("points", "f8", (2, 3)),
+    ("weights_a", "f8", (2, 3)),
+    ("weights_b", "f8", (2, 3)),
+]
+
 structures = (sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info, sc_query_options,
-              sc_result)
+              sc_filter, sc_result)
 
 _suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarcontour" + _suffix)
@@ -137,3 +189,4 @@ _declare("sc_workspace_create", _status, c_void_p, c_void_p, POINTER(c_void_p))
 _declare("sc_workspace_free", None, c_void_p)
 _declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_query_options),
          POINTER(sc_result))
+_declare("sc_contacts", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
