@@ -32,6 +32,7 @@ enum {
     TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1),
     STACK = 1 << 20,
     PAINT = 0xa5,
+    PAIRS = 1000,
     PROMISED = 32 * 1024
 };
 
@@ -43,6 +44,9 @@ typedef struct call {
     sc_model *model;
     sc_workspace *workspace;
     sc_result result;
+    sc_contact *contacts;
+    void *saved;
+    uint64_t saved_size;
     sc_status status;
 } call;
 
@@ -63,6 +67,22 @@ static void *query(void *argument)
     call *c = (call *)argument;
     const sc_query_options options = {.struct_size = sizeof(options), .pairs = c->pairs};
     c->status = sc_query(c->model, c->workspace, c->pose, &options, &c->result);
+    return NULL;
+}
+
+static void *meet(void *argument)
+{
+    call *c = (call *)argument;
+    c->status = sc_contacts(c->model, c->pose, c->pairs, c->result.pairs, PAIRS, c->contacts);
+    return NULL;
+}
+
+static void *load(void *argument)
+{
+    call *c = (call *)argument;
+    sc_model *model;
+    c->status = sc_model_load(c->saved, c->saved_size, NULL, &model);
+    sc_model_free(model);
     return NULL;
 }
 
@@ -140,22 +160,42 @@ static void calls_take_little_stack(void)
     test_note("sc_build: %zu bytes", building - empty);
     if (!CHECK(sc_workspace_create(c.model, NULL, &c.workspace) == SC_OK)) return;
 
-    size_t most = 0;
+    if (!CHECK(sc_model_save_size(c.model, &c.saved_size) == SC_OK)) return;
+    c.saved = malloc(c.saved_size);
+    if (!CHECK(c.saved && !sc_model_save(c.model, c.saved, c.saved_size, NULL))) return;
+    const size_t loading = stack_of(load, &c);
+    CHECK(loading > empty && c.status == SC_OK);
+    CHECK_MSG(loading - empty <= PROMISED, "%zu bytes", loading - empty);
+    test_note("sc_model_load: %zu bytes", loading - empty);
+    free(c.saved);
+
+    static sc_pair pairs[PAIRS];
+    static sc_contact contacts[PAIRS];
+    size_t most = 0, most_meeting = 0;
     uint64_t fallbacks = 0;
     for (size_t u = 0; u < sizeof(units) / sizeof(units[0]); ++u) {
         folded(moved, units[u]);
         for (c.pairs = SC_PAIRS_TRIANGLE; c.pairs <= SC_PAIRS_EDGE; ++c.pairs) {
-            c.result = (sc_result){.struct_size = sizeof(c.result), .stats = &stats};
+            c.result = (sc_result){.struct_size = sizeof(c.result),
+                                   .capacity = PAIRS,
+                                   .pairs = pairs,
+                                   .stats = &stats};
+            c.contacts = contacts;
             const size_t querying = stack_of(query, &c);
             CHECK_MSG(c.status == SC_ERROR_SHORT_BUFFER, "status %d", (int)c.status);
             CHECK(querying > empty);
             if (querying - empty > most) most = querying - empty;
             fallbacks += stats.exact_fallbacks;
+            const size_t meeting = stack_of(meet, &c);
+            CHECK_MSG(meeting > empty && c.status == SC_OK, "status %d", (int)c.status);
+            if (meeting - empty > most_meeting) most_meeting = meeting - empty;
         }
     }
     CHECK_MSG(most <= PROMISED, "%zu bytes", most);
     CHECK(fallbacks > 0);
     test_note("sc_query: %zu bytes", most);
+    CHECK_MSG(most_meeting <= PROMISED, "%zu bytes", most_meeting);
+    test_note("sc_contacts: %zu bytes", most_meeting);
     sc_workspace_free(c.workspace);
     sc_model_free(c.model);
 }
