@@ -13,6 +13,7 @@
 
 #include "build/model.h"
 #include "build/partition.h"
+#include "build/sharing.h"
 #include "harness.h"
 #include "inputs.h"
 #include "shapes.h"
@@ -594,6 +595,59 @@ end:
     free(now);
 }
 
+/* ---- shared points ---- */
+
+static int has_crowd(const steps *s, uint32_t leaf)
+{
+    int found = 0;
+    for (uint32_t i = 3 * s->xbvh.leaf_first[leaf]; i < 3 * s->xbvh.leaf_first[leaf + 1]; ++i) {
+        uint32_t p = s->points.triangles[3 * s->hierarchy.order[i / 3] + i % 3];
+        found |= s->adjacency.corner_first[p + 1] - s->adjacency.corner_first[p] > SC_SHARING_CROWD;
+    }
+    return found;
+}
+
+static int share_point(const steps *s, uint32_t t, uint32_t u)
+{
+    int found = 0;
+    for (uint32_t i = 0; i < 9; ++i)
+        found |= s->points.triangles[3 * t + i / 3] == s->points.triangles[3 * u + i % 3];
+    return found;
+}
+
+/* The masks of all pairs of leaf clusters that are not both crowded, and the validator on them. */
+static void check_sharing(steps *s)
+{
+    const uint32_t *first = s->xbvh.leaf_first, *order = s->hierarchy.order;
+    uint32_t leaves = s->xbvh.leaf_count, wrong = 0, entry;
+    sc_sharing sharing;
+    if (!CHECK(sc_sharing_build(&s->points, &s->adjacency, order, &s->xbvh, &s->scratch,
+                                &sharing) == SC_OK))
+        return;
+    for (uint32_t a = 0; a < leaves; ++a) {
+        wrong += sharing.crowded[a] != has_crowd(s, a);
+        for (entry = sharing.first[a]; entry < sharing.first[a + 1]; ++entry)
+            wrong +=
+                sharing.leaf[entry] <= (entry > sharing.first[a] ? sharing.leaf[entry - 1] : a);
+        for (uint32_t b = a; b < leaves; ++b) {
+            const uint8_t *rows = b == a ? sharing.own_rows + SC_LEAF_MAX * a : NULL;
+            if (sharing.crowded[a] && sharing.crowded[b]) continue;
+            for (entry = sharing.first[a]; entry < sharing.first[a + 1]; ++entry)
+                if (sharing.leaf[entry] == b) rows = sharing.rows + SC_LEAF_MAX * entry;
+            for (uint32_t i = first[a]; i < first[a + 1]; ++i)
+                for (uint32_t j = a == b ? i + 1 : first[b]; j < first[b + 1]; ++j)
+                    wrong += share_point(s, order[i], order[j]) !=
+                             (rows != NULL && rows[i - first[a]] >> (j - first[b]) & 1);
+        }
+    }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " masks of shared points wrong", s->name, wrong);
+    CHECK(sc_sharing_validate(&s->points, order, &s->xbvh, &sharing));
+    if (sharing.first[leaves] > 0 && !sharing.crowded[0]) {
+        sharing.rows[0] ^= 1;
+        CHECK(!sc_sharing_validate(&s->points, order, &s->xbvh, &sharing));
+    }
+}
+
 /* ---- all of it ---- */
 
 static void check_all(const char *name, const soup *mesh, const sc_build_options *options)
@@ -614,6 +668,7 @@ static void check_all(const char *name, const soup *mesh, const sc_build_options
         check_sctt(&s, &p);
         check_leaf_pairs(&s);
         check_contours(&s, &p);
+        if (p.triangles < 500) check_sharing(&s);
         test_random_reset(state); /* a bisection may be random */
         check_model(&s, &p, mesh, options);
         free_patches(&p);
