@@ -363,7 +363,7 @@ static sc_status check_options(sc_query_options *o)
         o->rest_cache > SC_REST_CACHE_OFF || o->simd > SC_SIMD_AVX2)
         return SC_ERROR_OPTION;
     if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
-    if (o->simd > (uint32_t)sc_isa_best()) return SC_ERROR_UNSUPPORTED;
+    if (SC_HARDLY(o->simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;
     if (o->method == SC_METHOD_DEFAULT) o->method = SC_METHOD_SCTT;
     if (o->contour == SC_CONTOUR_DEFAULT) o->contour = SC_CONTOUR_EXACT;
     return SC_OK;

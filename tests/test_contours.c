@@ -1023,6 +1023,20 @@ static void contours_in_pieces(void)
     CHECK(!is_full() || (tally.colliding > 300 && tally.simple > 300));
 }
 
+/* A triangle whose corner is in the middle of the straight border of two others, and of one point with it. */
+static soup corner_at_side(void)
+{
+    static const uint32_t triangles[] = {1, 0, 3, 0, 2, 3, 0, 4, 5};
+    static const double positions[] = {0, 0, 0, -1,   0,  0, 1,   0,  0,
+                                       0, 1, 0, -0.5, -1, 0, 0.5, -1, 0};
+    soup s = soup_make(6, 3);
+    memcpy(s.positions, positions, sizeof(positions));
+    memcpy(s.triangles, triangles, sizeof(triangles));
+    for (uint32_t i = 0; i < 4; ++i) /* not beyond the side; one of them may touch it */
+        s.positions[12 + i % 2 + 3 * (i / 2)] *= test_random_range(0, 1);
+    return s;
+}
+
 /* Contours that touch or cross themselves at points they share, and nowhere else. */
 static void contours_at_shared_points(void)
 {
@@ -1030,11 +1044,12 @@ static void contours_at_shared_points(void)
     memset(&tally, 0, sizeof(tally));
     for (uint32_t i = 0; i < test_iterations(300); ++i) {
         scene s;
-        soup mesh = i % 3 == 0   ? crossing_at_a_point()
-                    : i % 3 == 1 ? crossing_at_two_points()
-                                 : side_in_two();
-        if (!open_scene(&s, "shared points", &mesh, SC_WELD_NONE, i / 3 % 4)) continue;
-        if (i % 2) rotate(s.pose, s.mesh.vertex_count);
+        soup mesh = i % 4 == 0   ? crossing_at_a_point()
+                    : i % 4 == 1 ? crossing_at_two_points()
+                    : i % 4 == 2 ? side_in_two()
+                                 : corner_at_side();
+        if (!open_scene(&s, "shared points", &mesh, SC_WELD_NONE, i / 4 % 4)) continue;
+        if (i / 16 % 2) rotate(s.pose, s.mesh.vertex_count);
         if (load_pose(&s)) check_stars(&s, &tally);
         close_scene(&s);
     }
@@ -1079,6 +1094,37 @@ static uint32_t count_listed(const sc_model *m, uint32_t node)
     return listed;
 }
 
+/* Points in the unit box are in it, and off by what the bounds allow for, whatever the pose's size. */
+static void points_in_the_unit_box(void)
+{
+    static const float axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, origin[3] = {0, 0, 0};
+    double worst = 0, largest = 0;
+    mpq_t exact, place;
+    mpq_inits(exact, place, NULL);
+    for (uint32_t round = 0; round < test_iterations(200); ++round) {
+        scene s;
+        open_random_scene(&s, 40);
+        random_pose(s.pose, s.mesh.vertex_count);
+        soup_move(s.pose, s.mesh.vertex_count, test_random_range(-2, 2));
+        if (round % 2)
+            soup_scale(s.pose, s.mesh.vertex_count, exp2(test_random_range(-1074, 1000)));
+        if (load_pose(&s))
+            for (uint32_t i = 0; i < 3 * s.model->point_count; ++i) {
+                double unit = (double)s.workspace->unit[4 * (i / 3) + i % 3], off;
+                exact_place(exact, s.workspace, i / 3, axis[i % 3], origin);
+                mpq_set_d(place, unit);
+                mpq_sub(place, place, exact);
+                off = fabs(mpq_get_d(place));
+                if (off > worst) worst = off;
+                if (fabs(unit) > largest) largest = fabs(unit);
+            }
+        close_scene(&s);
+    }
+    CHECK_MSG(worst <= 3e-8 && largest <= 1, "off by %g, up to %g", worst, largest);
+    CHECK(!is_full() || (worst > 0x1.8p-26 && largest > 0.9));
+    mpq_clears(exact, place, NULL);
+}
+
 /* The boxes of edges hold the true places of their ends, however the contour is seen: from above, or from
    one end, so that it is small for the size that it has; and whatever its size. */
 static void places_of_contours(void)
@@ -1101,6 +1147,11 @@ static void places_of_contours(void)
                 s.pose[3 * v + (uint32_t)k] =
                     1e-5 * along * down + flat * test_random_range(-1, 1) + move;
             }
+        }
+        if (round % 3 == 2) { /* all but one corner far smaller than the pose's box */
+            double shrink = exp2(-(double)test_random_below(24));
+            for (uint32_t i = 3; i < 3 * mesh.vertex_count; ++i)
+                s.pose[i] = s.pose[i % 3] + 7 * (i % 3 + 1) + shrink * (s.pose[i] - s.pose[i % 3]);
         }
         if (round % 4 == 3)
             soup_scale(s.pose, mesh.vertex_count,
@@ -1323,5 +1374,6 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
              SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks), SC_TEST(first_tick_again),
              SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),
              SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
-             SC_TEST(contours_in_pieces), SC_TEST(places_of_contours),
-             SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
+             SC_TEST(contours_in_pieces), SC_TEST(points_in_the_unit_box),
+             SC_TEST(places_of_contours), SC_TEST(patches_that_share_hubs),
+             SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))

@@ -912,6 +912,10 @@ static void validators(void)
     for (i = s.csf.leaf_count; i < s.csf.segment_count; ++i) {
         uint32_t *first = s.csf.child_first + (i - s.csf.leaf_count);
         CHECK(is_noticed(&s, 3, &first[1], first[0] + 1));
+        uint32_t second = s.csf.children[first[0] + 1];
+        CHECK(is_noticed(&s, 3, &s.csf.point_first[second], s.csf.point_first[second] - 1));
+        CHECK(s.csf.point_last[i] + 1 == s.csf.point_count ||
+              is_noticed(&s, 3, &s.csf.point_last[i], s.csf.point_last[i] + 1));
         CHECK(is_noticed(&s, 3, &s.csf.children[first[0]], i));
         CHECK(is_noticed(&s, 3, &s.csf.children[first[0]], s.csf.children[first[0] + 1]));
     }

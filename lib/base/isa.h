@@ -9,6 +9,8 @@
 #ifndef SC_BASE_ISA_H
 #define SC_BASE_ISA_H
 
+#include "base/assume.h"
+
 /* SC_NO_SIMD leaves the plain form alone, for other machines and to compare. SIMD: single instruction,
    multiple data; SSE and AVX: x86's streaming and advanced vector extensions. */
 #if !defined(SC_NO_SIMD) && defined(__GNUC__) && defined(__x86_64__)
@@ -24,9 +26,10 @@ typedef enum sc_isa { SC_ISA_BASE = 1, SC_ISA_AVX2 = 2 } sc_isa;
 static inline sc_isa sc_isa_best(void)
 {
 #if SC_ISA_X86
-    if (__builtin_cpu_supports("avx2")) return SC_ISA_AVX2;
-#endif
+    return SC_HARDLY(!__builtin_cpu_supports("avx2")) ? SC_ISA_BASE : SC_ISA_AVX2;
+#else
     return SC_ISA_BASE;
+#endif
 }
 
 #endif

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assume.h"
+
 enum { NOT_CUT = 255 };
 
 /* The cosine up to which a run may turn from its first half-edge. */
@@ -363,7 +365,7 @@ static sc_status lay_out_points(builder *b, sc_csf *csf)
         if (first[s] == SC_NONE) {
             first[s] = (uint32_t)end;
             end += (uint64_t)last[s] + 1;
-            if (end > 0xfffffff0u) return SC_ERROR_COUNT;
+            if (SC_HARDLY(end > 0xfffffff0u)) return SC_ERROR_COUNT; /* 16 gigabytes */
         }
         if (s >= csf->leaf_count) {
             const uint32_t *child = csf->child_first + (s - csf->leaf_count);

@@ -14,6 +14,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "base/assume.h"
 #include "query/query_kernels.h"
 
 /* Lists the points of segments, one that follows where another ended going on with its chain. */
@@ -177,8 +178,9 @@ static int is_pinch_fine(const sc_simple_contour *c, uint32_t point)
             if (count[end] == 2) return 0;
             direction[end][count[end]++] = minus(edge_end(c, i, 1 - end), edge_end(c, i, end));
         }
+    if (SC_NEVER(count[0] != 2 || count[1] != 2)) return 0; /* contours are closed */
     out = turn(direction[0][0], direction[0][1], c->error);
-    if (count[1] != 2 || !out) return 0;
+    if (!out) return 0;
     for (i = 0; i < 2; i++) { /* between, on the side where they make less than a half turn */
         one = turn(direction[0][0], direction[1][i], c->error);
         other = turn(direction[1][i], direction[0][1], c->error);
@@ -241,7 +243,7 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
     const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
     const uint32_t *segments = sc_model_contours(model) + sc_model_node_contour(model)[node];
     uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
-    uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS), i;
+    uint32_t previous, i;
     int kind = sc_model_node_kind(model)[node], passed;
     sc_simple_contour c;
     if (kind & SC_NODE_TOUCHES) {
@@ -251,15 +253,15 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
     c.edges = &state->workspace->contour;
     c.in_pieces = kind & SC_NODE_PIECES;
     c.pinch_count = 0;
-    if (count) {
-        list_points(&c, model, segments, count);
-        choose_axes(&c, state->workspace, projection);
-        kernels->project(&c, state->workspace->unit);
-        state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.count;
-    }
+    if (SC_NEVER(!count)) return 0; /* what has no contour has no projection of positive areas */
+    previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
+    list_points(&c, model, segments, count);
+    choose_axes(&c, state->workspace, projection);
+    kernels->project(&c, state->workspace->unit);
+    state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.count;
     sc_state_switch(state, SC_TASK_CONTOUR);
     state->stats.counts[SC_TASK_CONTOUR]++;
-    passed = count && kernels->are_edges_fine(&c);
+    passed = kernels->are_edges_fine(&c);
     for (i = 0; passed && i < c.pinch_count; i++) passed = is_pinch_fine(&c, c.pinch[i]);
     passed = passed && (!c.in_pieces || are_pieces_fine(&c));
     sc_state_switch(state, previous);
