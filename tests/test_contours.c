@@ -940,12 +940,19 @@ static soup crossing_at_a_point(void)
 static soup crossing_at_two_points(void)
 {
     enum { INNER = 2, OUTER = 4, EACH = INNER + OUTER }; /* edges */
-    double apart = test_random_range(0.5, 1.5), half = acos(apart / 2);
+    double apart = test_random_range(0.1, 1.5), half = acos(apart / 2), crowded[2][2];
     soup s = soup_make(2 * EACH, 2 * EACH);
+    for (uint32_t i = 0; i < 4; ++i) /* points close to one end of an arc */
+        crowded[i / 2][i % 2] = test_random_below(3) * 7.0 * (test_random_below(2) ? 1 : -1);
+    for (uint32_t i = 0; i < 4; ++i)
+        if (crowded[i / 2][i % 2] == 0) crowded[i / 2][i % 2] = 1;
     for (uint32_t disc = 0; disc < 2; ++disc)
         for (uint32_t i = 0; i < EACH; ++i) { /* from the lower crossing over the inner border */
-            double angle = i < INNER ? half * (2.0 * i / INNER - 1)
-                                     : half + (2 * pi - 2 * half) * (i - INNER) / OUTER;
+            uint32_t arc = i >= INNER;
+            double f = arc ? (double)(i - INNER) / OUTER : (double)i / INNER;
+            double g = crowded[disc][arc] < 0 ? 1 - pow(1 - f, -crowded[disc][arc])
+                                              : pow(f, crowded[disc][arc]);
+            double angle = arc ? half + (2 * pi - 2 * half) * g : half * (2 * g - 1);
             double sign = disc ? -1 : 1;
             uint32_t center = disc * (EACH + 1), p[EACH + 1];
             double *at;
