@@ -299,6 +299,18 @@ static void structures(void)
         }
     }
     CHECK(csf.segment_count > csf.leaf_count && sc_csf_validate(&csf, &sctt, &scratch));
+    /* two segments with the same children and points */
+    first = csf.child_first;
+    for (i = k = 0; i + 1 < csf.segment_count - csf.leaf_count && k == 0; ++i)
+        if (first[i + 2] - first[i + 1] == first[i + 1] - first[i]) k = i + 1;
+    if (CHECK(k > 0)) {
+        uint32_t one = csf.leaf_count + k - 1, other = one + 1;
+        for (i = first[k]; i < first[k + 1]; ++i)
+            csf.children[i] = csf.children[first[k - 1] + i - first[k]];
+        csf.point_first[other] = csf.point_first[one];
+        csf.point_last[other] = csf.point_last[one];
+        CHECK(!sc_csf_validate(&csf, &sctt, &scratch));
+    }
     sc_scratch_clear(&scratch);
     soup_free(&mesh);
 }
