@@ -103,6 +103,7 @@ EOF
 #include <stdint.h>
 #define PRIu32 "u"
 #define PRIu64 "llu"
+#define PRIx64 "llx"
 EOF
     echo '#include <stddef.h>' >time.h
     status=$?
