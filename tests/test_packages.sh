@@ -213,7 +213,8 @@ if [ -d "$scratch/unpacked" ]; then
 FetchContent_Declare(starcontour URL $scratch/dist/starcontour-$version.tar.gz)
 FetchContent_MakeAvailable(starcontour)"
     # shellcheck disable=SC2086
-    check "FetchContent, of the archive and as a shared library" builds fetched $quick -DBUILD_SHARED_LIBS=ON
+    check "FetchContent, of the archive and as a shared library" builds fetched $quick \
+        -DCMAKE_BUILD_TYPE=Debug -DBUILD_SHARED_LIBS=ON
 else
     skip "FetchContent: no archive"
 fi
