@@ -423,7 +423,7 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
     sc_workspace_new_pose(model, workspace);
     status = sc_positions_read(model, pose, stride, workspace);
     if (status) return status;
-    if (!sc_state_stops(state)) sc_traversal_run(state);
+    sc_traversal_run(state);
     sc_pairs_finish(state);
     if (state->timed) {
         uint64_t now = sc_clock_nanoseconds();

@@ -246,7 +246,7 @@ static void find_shares(const sc_predicates_value *values, int count, double *sh
         shares[i] = shares[i] > 0 ? ldexp(shares[i], exponent[i] - largest) : 0;
         sum += shares[i];
     }
-    for (i = 0; i < count; i++) shares[i] = any ? shares[i] / sum : i == 0;
+    for (i = 0; i < count; i++) shares[i] /= sum; /* one is not 0: they are those of a point */
 }
 
 /* The weights of a point of a segment, by the coordinate in which the ends differ most. */
@@ -332,9 +332,7 @@ static void find_mean(const hull *h, const int edge[2], const double weights[3],
     for (k = 0; k < 3; k++) {
         double p = h->p[edge[0]][k], q = h->p[edge[1]][k];
         double mean = weights[edge[0]] * p + weights[edge[1]] * q;
-        if (mean < (p < q ? p : q)) mean = p < q ? p : q;
-        if (mean > (p < q ? q : p)) mean = p < q ? q : p;
-        point[k] = mean;
+        point[k] = fmin(fmax(mean, fmin(p, q)), fmax(p, q));
     }
 }
 

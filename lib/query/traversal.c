@@ -157,7 +157,6 @@ void sc_traversal_run(sc_query_state *state)
         sc_dnc_update(model, state->workspace);
         SC_HOOKS_ASSERT(&state->workspace->hooks, sc_dnc_validate(model, state->workspace));
         state->stats.counts[SC_TASK_UPDATE_NORMALS] += model->patch_end;
-        if (sc_state_stops(state)) return;
         sc_state_switch(state, SC_TASK_ORIENTATION);
         if (state->options.contour == SC_CONTOUR_EXACT)
             query_exact(state, 0);
