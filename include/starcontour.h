@@ -712,6 +712,8 @@ SC_API sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_
  *
  * One query in one block of bytes: the model, the pose and the options, as a bug report, or to look into
  * later with `sc-query --replay FILE`. The bytes are for machines of one byte order, as saved models.
+ * Of a filter everything is recorded but the caller's function; and a flag to cancel is none. What was left
+ * out is written down in the record.
  */
 
 /* Writes the number of bytes that sc_record_write writes. Errors are as for sc_query. */
@@ -720,29 +722,40 @@ SC_API sc_status sc_record_size(const sc_model *model, const sc_pose *pose,
 
 /*
  * Records the query that sc_query would run: writes *written bytes to memory, of which there are size, at
- * any alignment. Coordinates may be anything, also NaN. Filter and flag are not recorded: what they
- * leave out is found when the record is asked. Errors are as for sc_query, and SC_ERROR_SHORT_BUFFER if
- * the bytes do not fit: nothing is written, and *written is what is needed.
- * written may be NULL. Cost: a copy of the model and the pose, and a checksum.
+ * any alignment. Coordinates may be anything, also NaN. Where options->filter->accept or options->cancel
+ * is not NULL, the record says so (SC_LEFT_OUT_...) and asks without: it finds what accept refuses, too.
+ * Errors are as for sc_query, and SC_ERROR_SHORT_BUFFER if the bytes do not fit: nothing is written, and
+ * *written is what is needed. written may be NULL. Cost: a copy of the model, the pose and the filter's
+ * arrays, and a checksum.
  */
 SC_API sc_status sc_record_write(const sc_model *model, const sc_pose *pose,
                                  const sc_query_options *options, void *memory, uint64_t size,
                                  uint64_t *written);
 
+/* What the recorded query had and the record has not; a sum. */
+enum {
+    SC_LEFT_OUT_ACCEPT = 1, /* sc_filter.accept */
+    SC_LEFT_OUT_CANCEL = 2  /* sc_query_options.cancel */
+};
+
 /* What a record holds. Arrays are in the record. */
 typedef struct sc_record {
     uint32_t struct_size;
-    uint32_t reserved;         /* 0 */
+    uint32_t left_out;         /* out: SC_LEFT_OUT_..., 0 if the record is the whole query */
     sc_pose *pose;             /* in: what to fill, its struct_size set */
-    sc_query_options *options; /* in: the same */
+    sc_query_options *options; /* in: the same. options->filter becomes filter, or NULL */
     const void *model;   /* out: for sc_model_load; aligned to SC_ALIGNMENT if the record is */
     uint64_t model_size; /* out */
+    sc_filter *filter;   /* in: the same; NULL, if records with a filter are to be refused */
 } sc_record;
 
 /*
  * Finds the parts of a record: data, of which there are size bytes; those behind it are ignored. Data
  * that are no record are refused as by sc_model_load. On an error nothing is filled. The model is checked
- * by sc_model_load, and the rest by sc_query.
+ * by sc_model_load, and the rest by sc_query; a filter is good for queries on that model only.
+ *
+ * Of records with a filter: SC_ERROR_NULL, if record->filter is NULL; SC_ERROR_ALIGNMENT, if data are not
+ * aligned as uint32_t. SC_ERROR_STRUCT_SIZE: the record has what a structure of the caller's is too small for.
  */
 SC_API sc_status sc_record_read(const void *data, uint64_t size, sc_record *record);
 

@@ -521,10 +521,11 @@ sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_t kind,
 
 /* ---- records ---- */
 
-/* The pose, its stride and the options as the caller meant them. */
+/* The pose, its stride, the options and the filter, if there is one, as the caller meant them;
+   o->filter is filter then. */
 static sc_status check_record(const sc_model *model, const sc_pose *pose,
                               const sc_query_options *options, sc_pose *p, uint64_t *stride,
-                              sc_query_options *o)
+                              sc_query_options *o, sc_filter *filter)
 {
     sc_query_options checked;
     sc_status status;
@@ -537,6 +538,11 @@ static sc_status check_record(const sc_model *model, const sc_pose *pose,
     checked = *o; /* defaults stay defaults */
     status = check_options(&checked);
     if (status) return status;
+    if (o->filter) {
+        status = sc_filter_read(model, o->pairs, o->filter, filter);
+        if (status) return status;
+        o->filter = filter;
+    }
     status = sc_structs_read(p, sizeof *p, pose, UP_TO(sc_pose, positions));
     return status ? status : check_pose(model, p, stride);
 }
@@ -546,11 +552,12 @@ sc_status sc_record_size(const sc_model *model, const sc_pose *pose,
 {
     sc_query_options o;
     sc_pose p;
+    sc_filter filter;
     uint64_t stride;
     sc_status status;
     if (!size) return SC_ERROR_NULL;
-    status = check_record(model, pose, options, &p, &stride, &o);
-    if (!status) *size = sc_recording_bytes(model, &p);
+    status = check_record(model, pose, options, &p, &stride, &o, &filter);
+    if (!status) *size = sc_recording_bytes(model, &p, o.filter);
     return status;
 }
 
@@ -560,12 +567,13 @@ sc_status sc_record_write(const sc_model *model, const sc_pose *pose,
 {
     sc_query_options o;
     sc_pose p;
+    sc_filter filter;
     uint64_t stride, bytes;
     sc_status status;
     if (written) *written = 0;
-    status = check_record(model, pose, options, &p, &stride, &o);
+    status = check_record(model, pose, options, &p, &stride, &o, &filter);
     if (status) return status;
-    bytes = sc_recording_bytes(model, &p);
+    bytes = sc_recording_bytes(model, &p, o.filter);
     if (written) *written = bytes;
     if (size < bytes) return SC_ERROR_SHORT_BUFFER;
     if (!memory) return SC_ERROR_NULL;
@@ -575,23 +583,32 @@ sc_status sc_record_write(const sc_model *model, const sc_pose *pose,
 
 sc_status sc_record_read(const void *data, uint64_t size, sc_record *record)
 {
-    sc_query_options options;
+    sc_recording found;
     sc_record r;
-    sc_pose pose;
     sc_status status;
     if (!data || !record) return SC_ERROR_NULL;
     status = sc_structs_read(&r, sizeof r, record, UP_TO(sc_record, model_size));
     if (status) return status;
-    if (r.reserved) return SC_ERROR_OPTION;
     if (!r.pose || !r.options) return SC_ERROR_NULL;
-    status = sc_structs_check(r.pose, sizeof pose, UP_TO(sc_pose, positions));
+    status = sc_structs_check(r.pose, sizeof found.pose, UP_TO(sc_pose, positions));
     if (status) return status;
-    status = sc_structs_check(r.options, sizeof options, LEAST_OPTIONS);
+    status = sc_structs_check(r.options, sizeof found.options, LEAST_OPTIONS);
     if (status) return status;
-    status = sc_recording_read(data, size, &r.model, &r.model_size, &pose, &options);
+    if (r.filter) status = sc_structs_check(r.filter, sizeof found.filter, LEAST_OPTIONS);
     if (status) return status;
-    sc_structs_write(r.pose, &pose, sizeof pose);
-    sc_structs_write(r.options, &options, sizeof options);
+    status = sc_recording_read(data, size, &found);
+    if (status) return status;
+    if (found.options.filter && !r.filter) return SC_ERROR_NULL;
+    if (!sc_structs_reach(r.options, &found.options, sizeof found.options) ||
+        (r.filter && !sc_structs_reach(r.filter, &found.filter, sizeof found.filter)))
+        return SC_ERROR_STRUCT_SIZE;
+    if (found.options.filter) found.options.filter = r.filter;
+    r.left_out = found.left_out;
+    r.model = found.model;
+    r.model_size = found.model_size;
+    sc_structs_write(r.pose, &found.pose, sizeof found.pose);
+    sc_structs_write(r.options, &found.options, sizeof found.options);
+    if (r.filter) sc_structs_write(r.filter, &found.filter, sizeof found.filter);
     sc_structs_write(record, &r, sizeof r);
     return SC_OK;
 }

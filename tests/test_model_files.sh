@@ -138,6 +138,41 @@ replay_json() {
     grep -q '"triangle_pairs":' "$scratch/json" && grep -q '"tasks":' "$scratch/json"
 }
 check "replayed as JSON" replay_json
+
+# With a filter and a budget. The pairs to ignore are every third of those there are.
+"$query" --out "$scratch/list" meshes/crossing_cloths.obj >"$scratch/out"
+awk 'NR == 1 || NR % 3 == 0' "$scratch/list" >"$scratch/ignore.csv"
+"$query" --pairs edge --out "$scratch/list" meshes/crossing_cloths.obj >"$scratch/out"
+awk 'NR == 1 || NR % 3 == 0' "$scratch/list" >"$scratch/ignore_edges.csv"
+{ echo "triangle 0-99 1 2" && echo "triangle 100-575 3 3" && echo "vertex 0-9 4 4"; } \
+    >"$scratch/groups.txt"
+check "pairs" pairs "$scratch/all" meshes/crossing_cloths.obj
+for options in "--ignore-rings 3" "--ignore $scratch/ignore.csv" "--groups $scratch/groups.txt" \
+    "--pairs edge --ignore $scratch/ignore_edges.csv --groups $scratch/groups.txt --ignore-rings 1"; do
+    name=$(echo "$options" | sed "s|$scratch/||g")
+    # shellcheck disable=SC2086
+    check "a filtered record is written ($name)" pairs "$scratch/wanted" $options \
+        --record "$scratch/filtered.scq" meshes/crossing_cloths.obj
+    check "it is replayed ($name)" pairs "$scratch/found" --replay "$scratch/filtered.scq"
+    check "it has the same pairs ($name)" diff "$scratch/wanted" "$scratch/found"
+done
+fewer() {
+    test -s "$scratch/wanted" && test "$(wc -l <"$scratch/wanted")" -lt "$(wc -l <"$scratch/all")"
+}
+check "these are fewer than without" fewer
+budget() {
+    "$query" --budget 50 "$@" >"$scratch/out"
+    test $? -eq 3
+}
+check "a record with a budget" budget --record "$scratch/budget.scq" meshes/crossing_cloths.obj
+replayed_budget() {
+    "$query" --replay "$scratch/budget.scq" --json >"$scratch/json"
+    test $? -eq 3 && grep -q '"budget":50' "$scratch/json"
+}
+check "runs out of it again" replayed_budget
+head -c $(($(wc -c <"$scratch/filtered.scq") - 1)) "$scratch/filtered.scq" >"$scratch/cut.scq"
+check "a filtered record without its last byte is refused" refuses "end too early" \
+    "$query" --replay "$scratch/cut.scq"
 "$query" --any --record "$scratch/any.scq" meshes/sphere.obj >"$scratch/out"
 check "a record of --any" "$query" --replay "$scratch/any.scq"
 check "has no list" refuses "no list" "$query" --replay "$scratch/any.scq" --out "$scratch/list"

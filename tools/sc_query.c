@@ -64,9 +64,9 @@ static const char usage[] =
     "  --ply FILE                  write the mesh with colliding triangles in red; one MESH only\n"
     "  --contacts                  where each pair meets, and how: a point, a segment, or an area\n"
     "  --stats                     time and count of the nine tasks of the query\n"
-    "  --record FILE               write the query, with model, pose and options, to report a bug; "
-    "one\n"
-    "                              MESH only\n"
+    "  --record FILE               write the query, with model, pose, options and filter, to "
+    "report\n"
+    "                              a bug; one MESH only\n"
     "How it is sought (the answer is the same, but for --contour none)\n"
     "  --method sctt|aabb-sctt|aabb  self-collision test tree (default), boxes from that tree on, "
     "or\n"
@@ -110,10 +110,13 @@ typedef struct settings {
     bool proper, any, json, stats, no_rest_cache;
     bool is_asked, is_built; /* some option said what to ask or how, or how to build */
     const char *rest_path, *out_path, *ply_path, *model_path, *record_path, *replay_path;
-    uint32_t ignore_rings, budget; /* 0: none */
+    uint32_t ignore_rings; /* 0: none */
+    uint64_t budget;       /* 0: none */
+    uint32_t simd;         /* SC_SIMD_... */
     const char *ignore_path, *groups_path;
     bool contacts;
-    filter_file *filters; /* what the two files say */
+    filter_file *filters;   /* what the two files say */
+    const sc_filter *given; /* in place of these: what a record says */
 } settings;
 
 /* What there is to know about one file. Index SC_PAIRS_TRIANGLE and SC_PAIRS_EDGE. */
@@ -257,6 +260,7 @@ static sc_query_options make_options(const settings *set, uint32_t kind, bool li
     options.method = set->method;
     options.contour = set->method == SC_METHOD_SCTT ? set->contour : SC_CONTOUR_DEFAULT;
     options.rest_cache = set->no_rest_cache ? SC_REST_CACHE_OFF : SC_REST_CACHE_ON;
+    options.simd = set->simd;
     options.budget = set->budget;
     return options;
 }
@@ -299,14 +303,38 @@ static sc_status run_query(const query_subject *subject, const sc_pose *pose, co
     }
 }
 
+/* The filter for a model with this info; its arrays last until the next call. */
+static bool make_filter(const sc_model_info *info, const settings *set, sc_filter *filter,
+                        char error[MESH_FILE_ERROR_SIZE])
+{
+    if (set->given) {
+        *filter = *set->given;
+        return true;
+    }
+    if (!filter_file_apply(set->filters, info->vertex_count, info->triangle_count, filter, error))
+        return false;
+    filter->ignore_rings = set->ignore_rings;
+    return true;
+}
+
 /* Writes the query that decides to a file. */
 static bool write_record(const query_subject *subject, const sc_pose *pose, const settings *set)
 {
-    const sc_query_options options = make_options(set, chosen_pairs(set), wants_list(set));
+    sc_query_options options = make_options(set, chosen_pairs(set), wants_list(set));
     char error[MESH_FILE_ERROR_SIZE];
     uint64_t size = 0;
     void *bytes = NULL;
-    sc_status status = sc_record_size(subject->model, pose, &options, &size);
+    sc_model_info info;
+    sc_filter filter;
+    memset(&info, 0, sizeof info);
+    info.struct_size = sizeof info;
+    sc_status status = sc_model_get_info(subject->model, &info);
+    if (status == SC_OK && !make_filter(&info, set, &filter, error)) {
+        tool_error("%s", error);
+        return false;
+    }
+    if (set->ignore_rings || set->ignore_path || set->groups_path) options.filter = &filter;
+    if (status == SC_OK) status = sc_record_size(subject->model, pose, &options, &size);
     if (status == SC_OK) {
         bytes = size <= SIZE_MAX ? malloc((size_t)size) : NULL;
         status = bytes ? sc_record_write(subject->model, pose, &options, bytes, size, NULL)
@@ -346,13 +374,11 @@ static bool run_pose(const query_subject *subject, const char *path, const sc_po
     answer->info.struct_size = sizeof answer->info;
     sc_status status = sc_model_get_info(subject->model, &answer->info);
     sc_filter filter;
-    if (status == SC_OK && !filter_file_apply(set->filters, answer->info.vertex_count,
-                                              answer->info.triangle_count, &filter, error))
-        return false;
-    filter.ignore_rings = set->ignore_rings;
+    if (status == SC_OK && !make_filter(&answer->info, set, &filter, error)) return false;
     list->count = 0;
     for (uint32_t kind = 0; kind < 2 && status == SC_OK; kind++) {
-        if ((set->any || set->ignore_path) && kind != chosen) continue;
+        /* pairs to ignore are of one kind */
+        if ((set->any || set->ignore_path || filter.ignore_count) && kind != chosen) continue;
         pair_list *const kept = kind == chosen && wants_list(set) ? list : NULL;
         status = run_query(subject, pose, set, &filter, kind, kept, answer);
         if (status != SC_ERROR_INCOMPLETE) continue;
@@ -542,7 +568,7 @@ static bool print_json_answer(const file_answer *answer, const settings *set, co
     if (set->ignore_rings) cJSON_AddNumberToObject(object, "ignore_rings", set->ignore_rings);
     if (set->ignore_path) cJSON_AddStringToObject(object, "ignore", set->ignore_path);
     if (set->groups_path) cJSON_AddStringToObject(object, "groups", set->groups_path);
-    if (set->budget) cJSON_AddNumberToObject(object, "budget", set->budget);
+    if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
     if (set->stats) add_stats(cJSON_AddObjectToObject(object, "stats"), &answer->stats);
     if (set->contacts) add_contacts(object, list);
     return print_json(object);
@@ -683,7 +709,12 @@ static bool use_options(settings *set, const sc_query_options *options)
     if (options->method != SC_METHOD_DEFAULT) set->method = options->method;
     if (options->contour != SC_CONTOUR_DEFAULT) set->contour = options->contour;
     set->no_rest_cache = options->rest_cache == SC_REST_CACHE_OFF;
-    set->budget = options->budget < UINT32_MAX ? (uint32_t)options->budget : UINT32_MAX;
+    set->simd = options->simd;
+    set->budget = options->budget;
+    if (options->filter) {
+        set->given = options->filter;
+        set->ignore_rings = options->filter->ignore_rings;
+    }
     return options->output <= SC_OUTPUT_ANY && options->pairs <= SC_PAIRS_EDGE &&
            options->contact <= SC_CONTACT_PROPER && options->rest_cache <= SC_REST_CACHE_OFF;
 }
@@ -696,18 +727,22 @@ static int do_replay(settings *set, FILE *out, pair_list *list)
     file_answer answer;
     query_subject subject;
     sc_query_options options;
+    sc_filter filter;
     sc_record record;
     sc_pose pose;
     memset(&answer, 0, sizeof answer);
     memset(&subject, 0, sizeof subject);
     memset(&pose, 0, sizeof pose);
     memset(&options, 0, sizeof options);
+    memset(&filter, 0, sizeof filter);
     memset(&record, 0, sizeof record);
     pose.struct_size = sizeof pose;
     options.struct_size = sizeof options;
     record.struct_size = sizeof record;
     record.pose = &pose;
     record.options = &options;
+    filter.struct_size = sizeof filter;
+    record.filter = &filter;
     answer.path = set->replay_path;
     void *bytes = model_file_bytes(set->replay_path, &size, error);
     bool done = bytes != NULL;
@@ -718,6 +753,15 @@ static int do_replay(settings *set, FILE *out, pair_list *list)
             status = SC_ERROR_OPTION;
             snprintf(reason, sizeof reason, "the record asks for no list");
         }
+        if (status == SC_OK && record.left_out & SC_LEFT_OUT_ACCEPT)
+            tool_error(
+                "%s: note: the query had a function to refuse pairs (accept), which is not in "
+                "the record: there may be more pairs here",
+                set->replay_path);
+        if (status == SC_OK && record.left_out & SC_LEFT_OUT_CANCEL)
+            tool_error(
+                "%s: note: the query could be cancelled by a flag, which is not in the record",
+                set->replay_path);
         const double start = tool_clock();
         if (status == SC_OK)
             status = model_file_load(record.model, record.model_size, &subject.model, reason);
@@ -732,6 +776,7 @@ static int do_replay(settings *set, FILE *out, pair_list *list)
     if (done && out) write_pairs_head(out, set);
     if (done) done = run_pose(&subject, set->replay_path, &pose, set, list, &answer, error);
     const int status = report(&answer, set, done, error, out, list);
+    set->given = NULL;
     subject_free(&subject);
     free(bytes);
     return status;
@@ -819,8 +864,6 @@ static bool check_settings(const settings *set, int path_count)
         reason = "--model is in place of --rest, --weld and --partition";
     else if (set->record_path && path_count > 1)
         reason = "--record takes one mesh only";
-    else if (set->record_path && (set->ignore_rings || set->ignore_path || set->groups_path))
-        reason = "--record records no --ignore-rings, --ignore or --groups";
     else if (wants_list(set) && set->any)
         reason = "--any finds no list for --out, --ply or --contacts";
     else if (wants_list(set) && set->pairs == 2)
@@ -891,6 +934,7 @@ int main(int argc, char **argv)
     set.method = SC_METHOD_SCTT;
     set.contour = SC_CONTOUR_EXACT;
     bool valid = true;
+    uint32_t budget = 0;
     int option;
     while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
         set.is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
@@ -963,7 +1007,8 @@ int main(int argc, char **argv)
             set.contacts = true;
             break;
         case OPTION_BUDGET:
-            valid &= tool_parse_number("--budget", optarg, 1, UINT32_MAX, &set.budget);
+            valid &= tool_parse_number("--budget", optarg, 1, UINT32_MAX, &budget);
+            set.budget = budget;
             break;
         case OPTION_VERSION:
             printf("sc-query (starcontour) %s\n", sc_version_string());

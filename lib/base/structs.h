@@ -38,6 +38,16 @@ static inline sc_status sc_structs_read(void *to, uint32_t size, const void *fro
     return SC_OK;
 }
 
+/* Whether the caller's structure takes all of a filled one that is not zero. */
+static inline int sc_structs_reach(const void *to, const void *from, uint32_t size)
+{
+    uint32_t given, i;
+    memcpy(&given, to, sizeof given);
+    for (i = given; i < size; i++)
+        if (((const unsigned char *)from)[i]) return 0;
+    return 1;
+}
+
 /* Copies a filled structure to the caller's, but for its struct_size, as far as that reaches. */
 static inline void sc_structs_write(void *to, const void *from, uint32_t size)
 {

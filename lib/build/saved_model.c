@@ -31,6 +31,18 @@ void sc_saved_model_write(const sc_model *model, void *memory)
     memcpy(memory, &header, sizeof header);
 }
 
+sc_status sc_saved_model_triangles(const void *data, uint64_t size, uint32_t *count)
+{
+    sc_saved_header header;
+    sc_model m;
+    sc_status status = sc_saved_open(data, size, MAGIC, VERSION, &header);
+    if (status) return status;
+    if (header.bytes < sizeof header + sizeof m) return SC_ERROR_INCONSISTENT;
+    memcpy(&m, (const unsigned char *)data + sizeof header, sizeof m);
+    *count = m.triangle_count;
+    return SC_OK;
+}
+
 /* From the checksum on. m is as long as the header says, which may be shorter than any model. */
 static sc_status check(const sc_saved_header *header, const sc_model *m, uint64_t topology_hash,
                        sc_scratch *scratch, const sc_hooks *hooks)

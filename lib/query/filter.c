@@ -29,13 +29,18 @@ static sc_status check_filter(const sc_model *model, uint32_t kind, const sc_fil
     return SC_OK;
 }
 
+sc_status sc_filter_read(const sc_model *model, uint32_t kind, const sc_filter *from,
+                         sc_filter *filter)
+{
+    sc_status status = sc_structs_read(filter, sizeof *filter, from, sizeof(void *));
+    return status ? status : check_filter(model, kind, filter);
+}
+
 sc_status sc_filter_begin(sc_query_state *state, const sc_model *model, const sc_filter *from,
                           sc_filter *filter)
 {
     uint32_t kind = state->options.pairs;
-    sc_status status = sc_structs_read(filter, sizeof *filter, from, sizeof(void *));
-    if (status) return status;
-    status = check_filter(model, kind, filter);
+    sc_status status = sc_filter_read(model, kind, from, filter);
     if (status) return status;
     state->filter = filter;
     state->sifts = filter->vertex_groups || filter->triangle_groups;

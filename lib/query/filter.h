@@ -11,8 +11,12 @@
 
 #include "query/state.h"
 
-/* Checks the caller's filter and makes *filter, a copy, the one of the query. Linear in the list of
-   pairs to ignore. */
+/* Copies the caller's filter to *filter and checks it, for one kind of pair. Linear in the list of pairs
+   to ignore. */
+sc_status sc_filter_read(const sc_model *model, uint32_t kind, const sc_filter *from,
+                         sc_filter *filter);
+
+/* The same, and makes *filter the one of the query. */
 sc_status sc_filter_begin(sc_query_state *state, const sc_model *model, const sc_filter *from,
                           sc_filter *filter);
 

@@ -95,17 +95,21 @@ static void read_bytes(const void *data, size_t size, uint32_t how)
     unsigned char *copy = place(data, size, how & 1 ? how % 64 : 0, &memory);
     sc_pose pose;
     sc_query_options options;
+    sc_filter filter;
     sc_record record;
     load(copy, size, SC_LOAD_COPY, NULL, NULL);
     if (!(how & 1)) load(copy, size, SC_LOAD_IN_PLACE, NULL, NULL);
     memset(&pose, 0, sizeof(pose));
     memset(&options, 0, sizeof(options));
+    memset(&filter, 0, sizeof(filter));
     memset(&record, 0, sizeof(record));
     pose.struct_size = sizeof(pose);
     options.struct_size = sizeof(options);
     record.struct_size = sizeof(record);
     record.pose = &pose;
     record.options = &options;
+    filter.struct_size = sizeof(filter);
+    record.filter = &filter;
     if (sc_record_read(copy, size, &record) == SC_OK)
         load(record.model, (size_t)record.model_size, SC_LOAD_COPY, &pose, &options);
     free(memory);
@@ -145,6 +149,29 @@ static void edit(fuzz_bytes *bytes, unsigned char *data, size_t size, size_t fro
     seal(data, size);
 }
 
+/* A question with some filter, or none. */
+static sc_query_options filtered(const soup *s, uint32_t how, sc_filter *filter, sc_group *groups,
+                                 sc_pair ignore[2])
+{
+    sc_query_options options;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    memset(filter, 0, sizeof(*filter));
+    filter->struct_size = sizeof(*filter);
+    memset(groups, 0xff, (s->vertex_count + (size_t)s->triangle_count) * sizeof(*groups));
+    memset(ignore, 0, 2 * sizeof(*ignore));
+    ignore[0].b = ignore[1].b = 1;
+    if (how & 1) options.filter = filter;
+    if (how & 2) filter->vertex_groups = groups;
+    if (how & 4) filter->triangle_groups = groups + s->vertex_count;
+    if ((how & 8) && s->triangle_count > 1) {
+        filter->ignore = ignore;
+        filter->ignore_count = 2;
+    }
+    filter->ignore_rings = how >> 4 & 3;
+    return options;
+}
+
 /* A save or a record of a mesh made from the bytes, changed by what follows. */
 static void read_edited(fuzz_bytes *bytes, uint32_t how)
 {
@@ -155,19 +182,26 @@ static void read_edited(fuzz_bytes *bytes, uint32_t how)
     sc_model *model = NULL;
     uint64_t size = 0;
     unsigned char *data;
+    sc_filter filter;
+    sc_query_options options;
+    sc_pair ignore[2];
+    sc_group *groups =
+        (sc_group *)test_allocate((s.vertex_count + (size_t)s.triangle_count) * sizeof(*groups));
     test_random_reset(how);
     choices = input_choose(&s, how % 3, how / 4 % 4);
     FUZZ_CHECK(sc_build(&mesh, &choices.options, &model) == SC_OK, "a good mesh");
+    options = filtered(&s, how, &filter, groups, ignore);
     if (how & 64)
-        FUZZ_CHECK(sc_record_size(model, &pose, NULL, &size) == SC_OK, "a good query");
+        FUZZ_CHECK(sc_record_size(model, &pose, &options, &size) == SC_OK, "a good query");
     else
         FUZZ_CHECK(sc_model_save_size(model, &size) == SC_OK, "a good model");
     data = (unsigned char *)test_allocate((size_t)size);
     if (how & 64) {
-        FUZZ_CHECK(sc_record_write(model, &pose, NULL, data, size, NULL) == SC_OK, "a good query");
+        FUZZ_CHECK(sc_record_write(model, &pose, &options, data, size, NULL) == SC_OK,
+                   "a good query");
         /* the model of a record has a checksum of its own */
         if (how & 128) {
-            const size_t at = 2 * SC_ALIGNMENT;
+            const size_t at = 3 * SC_ALIGNMENT;
             uint64_t model_size;
             FUZZ_CHECK(sc_model_save_size(model, &model_size) == SC_OK, "a good model");
             edit(bytes, data + at, (size_t)model_size, sizeof(sc_saved_header));
@@ -181,6 +215,7 @@ static void read_edited(fuzz_bytes *bytes, uint32_t how)
     }
     read_bytes(data, (size_t)size, how & 128 ? how : 0);
     free(data);
+    free(groups);
     sc_model_free(model);
     input_free_choices(&choices);
     soup_free(&s);
