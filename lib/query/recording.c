@@ -71,7 +71,7 @@ uint64_t sc_recording_bytes(const sc_model *model, const sc_pose *pose, const sc
 }
 
 /* Copies an array and returns where the next one goes. */
-static unsigned char *put(unsigned char *at, const void *from, uint64_t count, uint64_t size)
+static unsigned char *put_array(unsigned char *at, const void *from, uint64_t count, uint64_t size)
 {
     if (count) memcpy(at, from, (size_t)(count * size));
     return at + count * size;
@@ -96,15 +96,15 @@ void sc_recording_write(const sc_model *model, const sc_pose *pose, uint64_t str
     q.simd = options->simd;
     q.budget = options->budget;
     if (options->cancel) q.left_out |= SC_LEFT_OUT_CANCEL;
-    at = put(at, &q, 1, sizeof q);
+    at = put_array(at, &q, 1, sizeof q);
     sc_saved_model_write(model, at);
     at += q.model_bytes;
     if (q.parts & HAS_VERTEX_GROUPS)
-        at = put(at, filter->vertex_groups, q.vertex_count, sizeof(sc_group));
+        at = put_array(at, filter->vertex_groups, q.vertex_count, sizeof(sc_group));
     if (q.parts & HAS_TRIANGLE_GROUPS)
-        at = put(at, filter->triangle_groups, q.triangle_count, sizeof(sc_group));
-    if (filter) at = put(at, filter->ignore, q.ignore_count, sizeof(sc_pair));
-    for (v = 0; v < q.vertex_count; v++, from += stride) at = put(at, from, 1, step);
+        at = put_array(at, filter->triangle_groups, q.triangle_count, sizeof(sc_group));
+    if (filter) at = put_array(at, filter->ignore, q.ignore_count, sizeof(sc_pair));
+    for (v = 0; v < q.vertex_count; v++, from += stride) at = put_array(at, from, 1, step);
     sc_saved_seal(&header, RECORD_MAGIC, RECORD_VERSION, bytes_of(&q), content);
     memcpy(memory, &header, sizeof header);
 }
@@ -129,7 +129,7 @@ static sc_status check_question(const question *q, uint64_t bytes, const unsigne
 }
 
 /* Takes an array and moves behind it. */
-static const void *take(const unsigned char **at, uint64_t count, uint64_t size)
+static const void *take_array(const unsigned char **at, uint64_t count, uint64_t size)
 {
     const void *array = *at;
     *at += count * size;
@@ -141,11 +141,12 @@ static void find_filter(const question *q, const unsigned char **at, sc_filter *
     filter->ignore_rings = q->ignore_rings;
     filter->ignore_count = q->ignore_count;
     if (q->parts & HAS_VERTEX_GROUPS)
-        filter->vertex_groups = (const sc_group *)take(at, q->vertex_count, sizeof(sc_group));
+        filter->vertex_groups = (const sc_group *)take_array(at, q->vertex_count, sizeof(sc_group));
     if (q->parts & HAS_TRIANGLE_GROUPS)
-        filter->triangle_groups = (const sc_group *)take(at, q->triangle_count, sizeof(sc_group));
+        filter->triangle_groups =
+            (const sc_group *)take_array(at, q->triangle_count, sizeof(sc_group));
     if (q->ignore_count)
-        filter->ignore = (const sc_pair *)take(at, q->ignore_count, sizeof(sc_pair));
+        filter->ignore = (const sc_pair *)take_array(at, q->ignore_count, sizeof(sc_pair));
 }
 
 sc_status sc_recording_read(const void *data, uint64_t size, sc_recording *found)
@@ -163,7 +164,7 @@ sc_status sc_recording_read(const void *data, uint64_t size, sc_recording *found
     at += sizeof q;
     memset(found, 0, sizeof *found);
     found->model_size = q.model_bytes;
-    found->model = take(&at, q.model_bytes, 1);
+    found->model = take_array(&at, q.model_bytes, 1);
     if (q.parts & HAS_FILTER) {
         found->options.filter = &found->filter;
         find_filter(&q, &at, &found->filter);
