@@ -332,7 +332,8 @@ static void find_mean(const hull *h, const int edge[2], const double weights[3],
     for (k = 0; k < 3; k++) {
         double p = h->p[edge[0]][k], q = h->p[edge[1]][k];
         double mean = weights[edge[0]] * p + weights[edge[1]] * q;
-        point[k] = fmin(fmax(mean, fmin(p, q)), fmax(p, q));
+        double low = p < q ? p : q, high = p < q ? q : p;
+        point[k] = mean < low ? low : mean > high ? high : mean;
     }
 }
 
