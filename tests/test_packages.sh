@@ -86,7 +86,8 @@ void *malloc(size_t);
 void free(void *);
 EOF
     cat >math.h <<'EOF'
-double fabs(double), sqrt(double), floor(double), ceil(double), frexp(double, int *), ldexp(double, int);
+double fabs(double), fmin(double, double), fmax(double, double), sqrt(double), floor(double);
+double ceil(double), frexp(double, int *), ldexp(double, int);
 float fabsf(float), sqrtf(float), floorf(float), ceilf(float);
 #define INFINITY ((float)(1e300 * 1e300))
 #define NAN (-(float)(INFINITY * 0.0F))
