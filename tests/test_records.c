@@ -408,7 +408,17 @@ static void forged_counts(void)
             memcpy(count, &kept, sizeof(kept));
             CHECK(forge(&s, PARTS, 4, 2 | 4) == SC_ERROR_INCONSISTENT);
             CHECK(forge(&s, MODEL_BYTES, 8, 8) == SC_ERROR_INCONSISTENT);
+            --s.size; /* so that the arrays behind the model are not aligned */
+            CHECK(forge(&s, MODEL_BYTES, 8, model_bytes - 1) == SC_ERROR_INCONSISTENT);
+            ++s.size;
+            CHECK(forge(&s, 128 + offsetof(sc_saved_header, bytes), 8,
+                        sizeof(sc_saved_header) + 8) == SC_ERROR_INCONSISTENT);
         } else {
+            unsigned char *count = s.data + sizeof(sc_saved_header) + IGNORE_COUNT;
+            const uint64_t one = 1, none = 0;
+            memcpy(count, &one, sizeof(one)); /* a pair to ignore, and no filter */
+            CHECK(forge(&s, MODEL_BYTES, 8, model_bytes - 8) == SC_ERROR_INCONSISTENT);
+            memcpy(count, &none, sizeof(none));
             CHECK(forge(&s, PARTS, 4, 1) == SC_OK); /* a filter that leaves out nothing */
         }
         CHECK(forge(&s, PARTS, 4, 8) == SC_ERROR_INCONSISTENT);
