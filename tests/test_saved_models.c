@@ -581,6 +581,28 @@ static void forged_slots(void)
     soup_free(&mesh);
 }
 
+/* One ring takes all of the others but a point each: longer than any that is built. */
+static void forged_rings(void)
+{
+    soup mesh = soup_cloth(12, 12);
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST);
+    save s = save_model(model);
+    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_ring_first]);
+    const uint32_t *was = sc_model_ring_first(model);
+    uint32_t rings = 0, at = 0;
+    for (uint32_t p = 0; p < m->point_count; ++p) rings += was[p + 1] > was[p];
+    for (uint32_t p = 0, n = 0; p < m->point_count; ++p) {
+        first[p] = at;
+        if (was[p + 1] > was[p]) at += n++ == 0 ? m->ring_total - (rings - 1) : 1;
+    }
+    CHECK(at == m->ring_total && at - rings > SC_RING_MAX);
+    try_forged(&s, &mesh);
+    free(s.memory);
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
 /* Nodes whose patches share one point begin their lists with two numbers of another kind. */
 static void forged_touches(void)
 {
@@ -1076,7 +1098,7 @@ static void format(void)
 
 SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(truncated),
              SC_TEST(changed), SC_TEST(foreign), SC_TEST(forged_arrays), SC_TEST(forged_counts),
-             SC_TEST(forged_slots), SC_TEST(forged_touches), SC_TEST(forged_sizes),
-             SC_TEST(forged_chain), SC_TEST(messages), SC_TEST(workspaces_and_forged_hashes),
-             SC_TEST(arguments), SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared),
-             SC_TEST(format))
+             SC_TEST(forged_slots), SC_TEST(forged_rings), SC_TEST(forged_touches),
+             SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
+             SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments),
+             SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))

@@ -7,7 +7,6 @@
 
 #include <math.h>
 
-#include "base/assume.h"
 #include "pose/pose_kernels.h"
 
 /*
@@ -36,7 +35,7 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
     double r[SC_RING_MAX][3], n[SC_RING_MAX][3], size[SC_RING_MAX], d[3] = {0, 0, 0}, d_size, c0,
                                                                     c1, last;
     int k, axis = 0, first_axis, second_axis;
-    if (count < 3 || SC_NEVER(count > SC_RING_MAX)) return 0; /* none is longer */
+    if (count < 3 || count > SC_RING_MAX) return 0; /* longer: of a forged model */
     for (i = 0; i < count; i++) {
         const double *p = w->position + 3 * (uint64_t)ring[i];
         for (k = 0; k < 3; k++) r[i][k] = p[k] - center[k];

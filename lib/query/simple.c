@@ -178,7 +178,7 @@ static int is_pinch_fine(const sc_simple_contour *c, uint32_t point)
             if (count[end] == 2) return 0;
             direction[end][count[end]++] = minus(edge_end(c, i, 1 - end), edge_end(c, i, end));
         }
-    if (SC_NEVER(count[0] != 2 || count[1] != 2)) return 0; /* contours are closed */
+    if (count[0] != 2 || count[1] != 2) return 0; /* of a forged model: contours are closed */
     out = turn(direction[0][0], direction[0][1], c->error);
     if (!out) return 0;
     for (i = 0; i < 2; i++) { /* between, on the side where they make less than a half turn */
@@ -254,7 +254,7 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
     c.edges = &state->workspace->contour;
     c.in_pieces = kind & SC_NODE_PIECES;
     c.pinch_count = 0;
-    if (SC_NEVER(!count)) return 0; /* what has no contour has no projection of positive areas */
+    if (!count) return 0; /* of a forged model: without a contour, areas are not all positive */
     previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
     list_points(&c, model, segments, count);
     choose_axes(&c, state->workspace, projection);
