@@ -812,7 +812,7 @@ static sc_status wrong_bisect(void *user, const sc_dual_graph *graph, uint32_t l
     if (w->how == 3) side[graph->node_count - 1] = 2;
     if (w->how == 4) memset(side, 0, graph->node_count);
     if (w->how == 5) memset(side, 1, graph->node_count);
-    if (w->how == 6) w->positions[1] = NAN;
+    if (w->how == 6) w->positions[1] = (double)NAN;
     if (w->how == 7) w->positions[1] = HUGE_VAL;
     return SC_OK;
 }

@@ -13,6 +13,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "base/assume.h"
 #include "query/query_kernels.h"
@@ -251,9 +252,9 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
         segments += 2;
         count -= 2;
     }
+    memset(&c, 0, sizeof c);
     c.edges = &state->workspace->contour;
     c.in_pieces = kind & SC_NODE_PIECES;
-    c.pinch_count = 0;
     if (!count) return 0; /* of a forged model: without a contour, areas are not all positive */
     previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
     list_points(&c, model, segments, count);
