@@ -581,6 +581,24 @@ static void forged_slots(void)
     soup_free(&mesh);
 }
 
+/* The whole, which is flat and so oriented, has no contour; the next node has that one, too. */
+static void forged_contour(void)
+{
+    soup mesh = soup_cloth(6, 6);
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST);
+    save s = save_model(model);
+    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_node_contour]);
+    CHECK(first[1] > 0);
+    first[1] = 0;
+    while (try_forged(&s, &mesh) && m->contour_max < 1000) /* it has to be what it is now */
+        ++m->contour_max;
+    CHECK(m->contour_max < 1000);
+    free(s.memory);
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
 /* One ring takes all of the others but a point each: longer than any that is built. */
 static void forged_rings(void)
 {
@@ -1098,7 +1116,7 @@ static void format(void)
 
 SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(truncated),
              SC_TEST(changed), SC_TEST(foreign), SC_TEST(forged_arrays), SC_TEST(forged_counts),
-             SC_TEST(forged_slots), SC_TEST(forged_rings), SC_TEST(forged_touches),
-             SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
-             SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments),
+             SC_TEST(forged_slots), SC_TEST(forged_rings), SC_TEST(forged_contour),
+             SC_TEST(forged_touches), SC_TEST(forged_sizes), SC_TEST(forged_chain),
+             SC_TEST(messages), SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments),
              SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))

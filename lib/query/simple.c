@@ -179,7 +179,8 @@ static int is_pinch_fine(const sc_simple_contour *c, uint32_t point)
             if (count[end] == 2) return 0;
             direction[end][count[end]++] = minus(edge_end(c, i, 1 - end), edge_end(c, i, end));
         }
-    if (count[0] != 2 || count[1] != 2) return 0; /* of a forged model: contours are closed */
+    if (SC_NEVER(count[0] != 2)) return 0; /* two that go out made it a pinch */
+    if (count[1] != 2) return 0;           /* of a forged model: contours are closed */
     out = turn(direction[0][0], direction[0][1], c->error);
     if (!out) return 0;
     for (i = 0; i < 2; i++) { /* between, on the side where they make less than a half turn */
