@@ -752,7 +752,7 @@ def update_readme(path, results, folder):
     plot = ""
     if os.path.exists(os.path.join(folder, "frames.png")):
         plot = "![Milliseconds over frames](%s/frames.png)\n\n" % shown
-    text = "%s%s%s\nBy `%s` at commit %s on %s, %s cores; all tables: [report](%s/report.md).\n%s" % (
+    text = "%s%s%s\nBy `%s` at commit %s on %s, %s cores; all tables: `%s/report.md`.\n%s" % (
         begin, plot, overview(results), d["command"], d["commit"], d["cpu"], d["cores"], shown, end)
     with open(path, "w", encoding="utf-8") as file:
         file.write(before + text + after)
