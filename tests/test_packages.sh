@@ -150,7 +150,7 @@ dist_is_reproducible() {
     mkdir "$scratch/unpacked" &&
         tar -xzf "$scratch/dist/$name.tar.gz" -C "$scratch/unpacked" &&
         test "$(ls "$scratch/unpacked")" = "$name" &&
-        (cd "$scratch/unpacked/$name" && unset MAKEFLAGS && "$MAKE" --no-print-directory dist) &&
+        (cd "$scratch/unpacked/$name" && unset MAKEFLAGS && "$MAKE" --no-print-directory BUILD=build dist) &&
         cmp "$scratch/dist/$name.tar.gz" "$scratch/unpacked/$name/build/$name.tar.gz"
 }
 # shellcheck disable=SC2044
