@@ -429,7 +429,7 @@ coverage := $(BUILD)/coverage
 coverage_tests := $(patsubst tests/%.c,$(coverage)/release/tests/%,$(tests))
 
 .PHONY: coverage
-coverage: ## lines and branches of lib/ that the tests run (gcc, AVX2); fails if any is left out
+coverage: ## lines and branches of lib/ that the tests run (gcc, AVX-512); fails if any is left out
 	$(call need,gcov,gcc)
 	+$(Q)$(MAKE) --no-print-directory config=release BUILD='$(coverage)' CC=gcc \
 	    mode='-O0 -g -DSC_COVERAGE --coverage' test_mode='-O2 -g' \

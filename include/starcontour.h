@@ -493,9 +493,10 @@ enum { SC_REST_CACHE_ON = 0, SC_REST_CACHE_OFF = 1 };
 
 /* Which instructions inner loops use. The answer is the same bit for bit. */
 enum {
-    SC_SIMD_BEST = 0, /* the best that the machine has */
-    SC_SIMD_BASE = 1, /* what the library was compiled for: SSE2 on x86-64 */
-    SC_SIMD_AVX2 = 2  /* SC_ERROR_UNSUPPORTED where there is none */
+    SC_SIMD_BEST = 0,  /* the best that the machine has */
+    SC_SIMD_BASE = 1,  /* what the library was compiled for: SSE2 on x86-64 */
+    SC_SIMD_AVX2 = 2,  /* SC_ERROR_UNSUPPORTED where there is none, as for what follows */
+    SC_SIMD_AVX512 = 3 /* with F, BW, DQ and VL */
 };
 
 /* A pair, as sc_query_options.pairs says. */

@@ -360,7 +360,7 @@ static sc_status check_options(sc_query_options *o)
 {
     if (o->output > SC_OUTPUT_ANY || o->pairs > SC_PAIRS_EDGE || o->contact > SC_CONTACT_PROPER ||
         o->method > SC_METHOD_AABB || o->contour > SC_CONTOUR_EXACT ||
-        o->rest_cache > SC_REST_CACHE_OFF || o->simd > SC_SIMD_AVX2)
+        o->rest_cache > SC_REST_CACHE_OFF || o->simd > SC_SIMD_AVX512)
         return SC_ERROR_OPTION;
     if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
     if (SC_HARDLY(o->simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;

@@ -1178,7 +1178,8 @@ static void places_of_contours(void)
                     from[k] = unit[4 * e->point[0] + (uint32_t)k] / 2 +
                               unit[4 * e->point[listed / 2] + (uint32_t)k] / 2;
                 for (uint32_t i = 0; i < listed; ++i) {
-                    if ((e->is_edge[i / 8] >> i % 8 & 1) == 0) continue;
+                    if ((e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1) == 0)
+                        continue;
                     ++edges;
                     for (uint32_t j = 0; j < 4; ++j) { /* x and y of both ends */
                         const double *v = j % 2 ? projection.w : projection.u;

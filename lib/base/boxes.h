@@ -12,8 +12,8 @@
 #include <float.h>
 #include <stdint.h>
 
-/* Boxes that eight-wide reads may start at must be followed by this many readable ones. */
-enum { SC_BOXES_PADDING = 8 };
+/* Boxes that sixteen-wide reads may start at must be followed by this many readable ones. */
+enum { SC_BOXES_PADDING = 16 };
 
 /* Six arrays of equal length: lower bounds x, y, z, upper bounds x, y, z. */
 typedef struct sc_boxes {

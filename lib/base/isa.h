@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Such a loop is written once, in a file named ..._kernel.h, over eight floats at a time (base/lanes.h), and
+ * Such a loop is written once, in a file named ..._kernel.h, over sixteen floats at a time (base/lanes.h), and
  * included by a .c file for each instruction set. All give the same answers.
  */
 #ifndef SC_BASE_ISA_H
@@ -20,13 +20,17 @@
 #endif
 
 /* As SC_SIMD_... in starcontour.h, best last. */
-typedef enum sc_isa { SC_ISA_BASE = 1, SC_ISA_AVX2 = 2 } sc_isa;
+typedef enum sc_isa { SC_ISA_BASE = 1, SC_ISA_AVX2 = 2, SC_ISA_AVX512 = 3 } sc_isa;
 
 /* The best that this machine has. */
 static inline sc_isa sc_isa_best(void)
 {
 #if SC_ISA_X86
-    return SC_HARDLY(!__builtin_cpu_supports("avx2")) ? SC_ISA_BASE : SC_ISA_AVX2;
+    if (SC_HARDLY(!__builtin_cpu_supports("avx2"))) return SC_ISA_BASE;
+    return SC_HARDLY(!__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512bw") ||
+                     !__builtin_cpu_supports("avx512dq") || !__builtin_cpu_supports("avx512vl"))
+               ? SC_ISA_AVX2
+               : SC_ISA_AVX512;
 #else
     return SC_ISA_BASE;
 #endif

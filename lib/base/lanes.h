@@ -1,11 +1,12 @@
 /*
- * Eight floats at a time, for the instruction set that the including file chose: SC_LANES is AVX2, SSE2
- * (what every x86-64 has) or, where neither is, plain C, which compilers turn into what there is.
+ * Sixteen floats at a time, for the instruction set that the including file chose: SC_LANES is AVX-512 (one
+ * register), AVX2 (two), SSE2 (what every x86-64 has: four) or, where none is, plain C, which compilers turn
+ * into what there is.
  *
  * SPDX-License-Identifier: MIT
  *
  * Operations round as those of single floats do, and there is no fused multiplication and addition, so that
- * all three give the same results. A comparison gives a mask, of which lanes_bits makes bit i for lane i; with
+ * all of them give the same results. A comparison gives a mask, of which lanes_bits makes bit i for lane i; with
  * NaN it is false. lanes_next is a moved down by one lane, with the first of b on top; lanes_points reads the
  * first three of four floats at eight places.
  *
@@ -16,6 +17,7 @@
 
 #include "base/bits.h"
 
+#define SC_LANES_AVX512 (SC_LANES == 3)
 #define SC_LANES_AVX2 (SC_LANES == 2)
 #define SC_LANES_SSE2 (SC_LANES == 1)
 
@@ -41,176 +43,280 @@
 #define lanes_points SC_KERNEL(sc_lanes_points)
 
 #ifndef SC_LANES_COUNT
-#  define SC_LANES_COUNT 8
+#  define SC_LANES_COUNT 16
 #endif
 
-#if SC_LANES_AVX2
+#if SC_LANES_AVX512
 
-typedef __m256 lanes;
-typedef __m256 lanes_mask;
+typedef __m512 lanes;
+typedef __mmask16 lanes_mask;
 
 static inline lanes lanes_all(float f)
 {
-    return _mm256_set1_ps(f);
+    return _mm512_set1_ps(f);
 }
 static inline lanes lanes_load(const float *f)
 {
-    return _mm256_loadu_ps(f);
+    return _mm512_loadu_ps(f);
 }
 static inline void lanes_store(float *f, lanes a)
 {
-    _mm256_storeu_ps(f, a);
+    _mm512_storeu_ps(f, a);
 }
 static inline lanes lanes_add(lanes a, lanes b)
 {
-    return _mm256_add_ps(a, b);
+    return _mm512_add_ps(a, b);
 }
 static inline lanes lanes_subtract(lanes a, lanes b)
 {
-    return _mm256_sub_ps(a, b);
+    return _mm512_sub_ps(a, b);
 }
 static inline lanes lanes_multiply(lanes a, lanes b)
 {
-    return _mm256_mul_ps(a, b);
+    return _mm512_mul_ps(a, b);
 }
 static inline lanes lanes_smaller(lanes a, lanes b)
 {
-    return _mm256_min_ps(a, b);
+    return _mm512_min_ps(a, b);
 }
 static inline lanes lanes_larger(lanes a, lanes b)
 {
-    return _mm256_max_ps(a, b);
+    return _mm512_max_ps(a, b);
 }
 static inline lanes lanes_absolute(lanes a)
 {
-    return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a);
+    return _mm512_andnot_ps(_mm512_set1_ps(-0.0f), a);
 }
 static inline lanes_mask lanes_below(lanes a, lanes b)
 {
-    return _mm256_cmp_ps(a, b, _CMP_LT_OQ);
+    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
 }
 static inline lanes_mask lanes_not_above(lanes a, lanes b)
 {
-    return _mm256_cmp_ps(a, b, _CMP_LE_OQ);
+    return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ);
 }
 static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 {
-    return _mm256_and_ps(a, b);
+    return (lanes_mask)(a & b);
 }
 static inline unsigned lanes_bits(lanes_mask a)
 {
-    return (unsigned)_mm256_movemask_ps(a);
+    return a;
 }
 static inline lanes lanes_next(lanes a, lanes b)
+{
+    return _mm512_castsi512_ps(
+        _mm512_alignr_epi32(_mm512_castps_si512(b), _mm512_castps_si512(a), 1));
+}
+/* The points i, i + 4, i + 8 and i + 12. */
+static inline __m512 SC_KERNEL(sc_lanes_four)(const float *const point[SC_LANES_COUNT], int i)
+{
+    __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(point[i]));
+    r = _mm512_insertf32x4(r, _mm_loadu_ps(point[i + 4]), 1);
+    r = _mm512_insertf32x4(r, _mm_loadu_ps(point[i + 8]), 2);
+    return _mm512_insertf32x4(r, _mm_loadu_ps(point[i + 12]), 3);
+}
+static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes *x, lanes *y,
+                                lanes *z)
+{
+    __m512 r0 = SC_KERNEL(sc_lanes_four)(point, 0), r1 = SC_KERNEL(sc_lanes_four)(point, 1);
+    __m512 r2 = SC_KERNEL(sc_lanes_four)(point, 2), r3 = SC_KERNEL(sc_lanes_four)(point, 3);
+    __m512 low = _mm512_unpacklo_ps(r0, r1), low2 = _mm512_unpacklo_ps(r2, r3);
+    *x = _mm512_shuffle_ps(low, low2, 0x44);
+    *y = _mm512_shuffle_ps(low, low2, 0xee);
+    *z = _mm512_shuffle_ps(_mm512_unpackhi_ps(r0, r1), _mm512_unpackhi_ps(r2, r3), 0x44);
+}
+
+#elif SC_LANES_AVX2 || SC_LANES_SSE2
+
+/* In registers of eight or four floats. SC_LANES_MAP applies f to registers of a, of a and b. */
+#  if SC_LANES_AVX2
+#    define SC_LANES_PART __m256
+#    define SC_LANES_PARTS 2
+#    define SC_LANES_OF(name) _mm256_##name
+#    define SC_LANES_BELOW(a, b) _mm256_cmp_ps(a, b, _CMP_LT_OQ)
+#    define SC_LANES_NOT_ABOVE(a, b) _mm256_cmp_ps(a, b, _CMP_LE_OQ)
+#    define SC_LANES_MAP(f)                                                                        \
+      lanes r;                                                                                     \
+      r.v[0] = f(0);                                                                               \
+      r.v[1] = f(1);                                                                               \
+      return r
+#  else
+#    define SC_LANES_PART __m128
+#    define SC_LANES_PARTS 4
+#    define SC_LANES_OF(name) _mm_##name
+#    define SC_LANES_BELOW(a, b) _mm_cmplt_ps(a, b)
+#    define SC_LANES_NOT_ABOVE(a, b) _mm_cmple_ps(a, b)
+#    define SC_LANES_MAP(f)                                                                        \
+      lanes r;                                                                                     \
+      r.v[0] = f(0);                                                                               \
+      r.v[1] = f(1);                                                                               \
+      r.v[2] = f(2);                                                                               \
+      r.v[3] = f(3);                                                                               \
+      return r
+#  endif
+#  define SC_LANES_WIDTH (SC_LANES_COUNT / SC_LANES_PARTS)
+
+typedef struct lanes {
+    SC_LANES_PART v[SC_LANES_PARTS];
+} lanes;
+typedef lanes lanes_mask;
+
+static inline lanes lanes_all(float f)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(set1_ps)(f)
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes lanes_load(const float *f)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(loadu_ps)(f + (i)*SC_LANES_WIDTH)
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline void lanes_store(float *f, lanes a)
+{
+    int i;
+    for (i = 0; i < SC_LANES_PARTS; i++) SC_LANES_OF(storeu_ps)(f + i * SC_LANES_WIDTH, a.v[i]);
+}
+static inline lanes lanes_add(lanes a, lanes b)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(add_ps)(a.v[i], b.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes lanes_subtract(lanes a, lanes b)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(sub_ps)(a.v[i], b.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes lanes_multiply(lanes a, lanes b)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(mul_ps)(a.v[i], b.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes lanes_smaller(lanes a, lanes b)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(min_ps)(a.v[i], b.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes lanes_larger(lanes a, lanes b)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(max_ps)(a.v[i], b.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes lanes_absolute(lanes a)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(andnot_ps)(SC_LANES_OF(set1_ps)(-0.0f), a.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes_mask lanes_below(lanes a, lanes b)
+{
+#  define SC_LANES_F(i) SC_LANES_BELOW(a.v[i], b.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes_mask lanes_not_above(lanes a, lanes b)
+{
+#  define SC_LANES_F(i) SC_LANES_NOT_ABOVE(a.v[i], b.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(and_ps)(a.v[i], b.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+
+#  if SC_LANES_AVX2
+
+static inline unsigned lanes_bits(lanes_mask a)
+{
+    return (unsigned)_mm256_movemask_ps(a.v[0]) | (unsigned)_mm256_movemask_ps(a.v[1]) << 8;
+}
+static inline __m256 SC_KERNEL(sc_lanes_next_part)(__m256 a, __m256 b)
 {
     __m256 middle = _mm256_permute2f128_ps(a, b, 0x21); /* a4 to a7, b0 to b3 */
     return _mm256_castsi256_ps(
         _mm256_alignr_epi8(_mm256_castps_si256(middle), _mm256_castps_si256(a), 4));
 }
-static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes *x, lanes *y,
-                                lanes *z)
+static inline lanes lanes_next(lanes a, lanes b)
 {
-    __m256 r[4], low, high, low2, high2;
+    lanes r;
+    r.v[0] = SC_KERNEL(sc_lanes_next_part)(a.v[0], a.v[1]);
+    r.v[1] = SC_KERNEL(sc_lanes_next_part)(a.v[1], b.v[0]);
+    return r;
+}
+static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, __m256 *x, __m256 *y,
+                                                   __m256 *z)
+{
+    __m256 r[4], low, low2;
     int i;
     for (i = 0; i < 4; i++)
         r[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(point[i])),
                                     _mm_loadu_ps(point[i + 4]), 1);
     low = _mm256_unpacklo_ps(r[0], r[1]);
-    high = _mm256_unpackhi_ps(r[0], r[1]);
     low2 = _mm256_unpacklo_ps(r[2], r[3]);
-    high2 = _mm256_unpackhi_ps(r[2], r[3]);
     *x = _mm256_shuffle_ps(low, low2, 0x44);
     *y = _mm256_shuffle_ps(low, low2, 0xee);
-    *z = _mm256_shuffle_ps(high, high2, 0x44);
+    *z = _mm256_shuffle_ps(_mm256_unpackhi_ps(r[0], r[1]), _mm256_unpackhi_ps(r[2], r[3]), 0x44);
 }
 
-#elif SC_LANES_SSE2
+#  else
 
-typedef struct lanes {
-    __m128 low, high;
-} lanes;
-typedef lanes lanes_mask;
-
-#  undef SC_LANES_PAIR
-#  define SC_LANES_PAIR(a, b)                                                                      \
-    lanes r;                                                                                       \
-    r.low = a;                                                                                     \
-    r.high = b;                                                                                    \
-    return r
-static inline lanes lanes_all(float f)
-{
-    SC_LANES_PAIR(_mm_set1_ps(f), _mm_set1_ps(f));
-}
-static inline lanes lanes_load(const float *f)
-{
-    SC_LANES_PAIR(_mm_loadu_ps(f), _mm_loadu_ps(f + 4));
-}
-static inline void lanes_store(float *f, lanes a)
-{
-    _mm_storeu_ps(f, a.low);
-    _mm_storeu_ps(f + 4, a.high);
-}
-static inline lanes lanes_add(lanes a, lanes b)
-{
-    SC_LANES_PAIR(_mm_add_ps(a.low, b.low), _mm_add_ps(a.high, b.high));
-}
-static inline lanes lanes_subtract(lanes a, lanes b)
-{
-    SC_LANES_PAIR(_mm_sub_ps(a.low, b.low), _mm_sub_ps(a.high, b.high));
-}
-static inline lanes lanes_multiply(lanes a, lanes b)
-{
-    SC_LANES_PAIR(_mm_mul_ps(a.low, b.low), _mm_mul_ps(a.high, b.high));
-}
-static inline lanes lanes_smaller(lanes a, lanes b)
-{
-    SC_LANES_PAIR(_mm_min_ps(a.low, b.low), _mm_min_ps(a.high, b.high));
-}
-static inline lanes lanes_larger(lanes a, lanes b)
-{
-    SC_LANES_PAIR(_mm_max_ps(a.low, b.low), _mm_max_ps(a.high, b.high));
-}
-static inline lanes lanes_absolute(lanes a)
-{
-    __m128 sign = _mm_set1_ps(-0.0f);
-    SC_LANES_PAIR(_mm_andnot_ps(sign, a.low), _mm_andnot_ps(sign, a.high));
-}
-static inline lanes_mask lanes_below(lanes a, lanes b)
-{
-    SC_LANES_PAIR(_mm_cmplt_ps(a.low, b.low), _mm_cmplt_ps(a.high, b.high));
-}
-static inline lanes_mask lanes_not_above(lanes a, lanes b)
-{
-    SC_LANES_PAIR(_mm_cmple_ps(a.low, b.low), _mm_cmple_ps(a.high, b.high));
-}
-static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
-{
-    SC_LANES_PAIR(_mm_and_ps(a.low, b.low), _mm_and_ps(a.high, b.high));
-}
 static inline unsigned lanes_bits(lanes_mask a)
 {
-    return (unsigned)_mm_movemask_ps(a.low) | (unsigned)_mm_movemask_ps(a.high) << 4;
+    return (unsigned)_mm_movemask_ps(a.v[0]) | (unsigned)_mm_movemask_ps(a.v[1]) << 4 |
+           (unsigned)_mm_movemask_ps(a.v[2]) << 8 | (unsigned)_mm_movemask_ps(a.v[3]) << 12;
+}
+static inline __m128 SC_KERNEL(sc_lanes_next_part)(__m128 a, __m128 b)
+{
+    a = _mm_move_ss(a, b);
+    return _mm_shuffle_ps(a, a, 0x39);
 }
 static inline lanes lanes_next(lanes a, lanes b)
 {
-    __m128 low = _mm_move_ss(a.low, a.high), high = _mm_move_ss(a.high, b.low);
-    SC_LANES_PAIR(_mm_shuffle_ps(low, low, 0x39), _mm_shuffle_ps(high, high, 0x39));
+    lanes r;
+    r.v[0] = SC_KERNEL(sc_lanes_next_part)(a.v[0], a.v[1]);
+    r.v[1] = SC_KERNEL(sc_lanes_next_part)(a.v[1], a.v[2]);
+    r.v[2] = SC_KERNEL(sc_lanes_next_part)(a.v[2], a.v[3]);
+    r.v[3] = SC_KERNEL(sc_lanes_next_part)(a.v[3], b.v[0]);
+    return r;
 }
+static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, __m128 *x, __m128 *y,
+                                                   __m128 *z)
+{
+    __m128 r0 = _mm_loadu_ps(point[0]), r1 = _mm_loadu_ps(point[1]);
+    __m128 r2 = _mm_loadu_ps(point[2]), r3 = _mm_loadu_ps(point[3]);
+    _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+    *x = r0;
+    *y = r1;
+    *z = r2;
+}
+
+#  endif
+
 static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes *x, lanes *y,
                                 lanes *z)
 {
-    __m128 r[8];
     int i;
-    for (i = 0; i < 8; i++) r[i] = _mm_loadu_ps(point[i]);
-    _MM_TRANSPOSE4_PS(r[0], r[1], r[2], r[3]);
-    _MM_TRANSPOSE4_PS(r[4], r[5], r[6], r[7]);
-    x->low = r[0];
-    y->low = r[1];
-    z->low = r[2];
-    x->high = r[4];
-    y->high = r[5];
-    z->high = r[6];
+    for (i = 0; i < SC_LANES_PARTS; i++) SC_KERNEL(sc_lanes_points_part)
+    (point + i * SC_LANES_WIDTH, &x->v[i], &y->v[i], &z->v[i]);
 }
+
+#  undef SC_LANES_PART
+#  undef SC_LANES_PARTS
+#  undef SC_LANES_OF
+#  undef SC_LANES_BELOW
+#  undef SC_LANES_NOT_ABOVE
+#  undef SC_LANES_MAP
+#  undef SC_LANES_WIDTH
 
 #else
 
@@ -301,37 +407,42 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
 #endif
 
 /*
- * Reductions: of the upper and lower halves, then of halves of these. The sum, of which the order matters, is
- * ((v0 + v4) + (v2 + v6)) + ((v1 + v5) + (v3 + v7)) for all instruction sets; for the least and the greatest no lane
- * is NaN.
+ * Reductions: of the upper and lower halves, then of halves of these: the order in which a sum is made, the same
+ * for all instruction sets. For the least and the greatest no lane is NaN.
  */
-#if SC_LANES_AVX2 || SC_LANES_SSE2
+#if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_SSE2
 
-#  if SC_LANES_AVX2
-#    define SC_LANES_LOW(a) _mm256_castps256_ps128(a)
-#    define SC_LANES_HIGH(a) _mm256_extractf128_ps(a, 1)
+/* Eight lanes to four: by 256 bits, or by 128. */
+#  if SC_LANES_AVX512
+#    define SC_LANES_HALVE(a, name)                                                                \
+      __m256 h = _mm256_##name##_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));      \
+      __m128 r = _mm_##name##_ps(_mm256_castps256_ps128(h), _mm256_extractf128_ps(h, 1));
+#  elif SC_LANES_AVX2
+#    define SC_LANES_HALVE(a, name)                                                                \
+      __m256 h = _mm256_##name##_ps((a).v[0], (a).v[1]);                                           \
+      __m128 r = _mm_##name##_ps(_mm256_castps256_ps128(h), _mm256_extractf128_ps(h, 1));
 #  else
-#    define SC_LANES_LOW(a) (a).low
-#    define SC_LANES_HIGH(a) (a).high
+#    define SC_LANES_HALVE(a, name)                                                                \
+      __m128 r = _mm_##name##_ps(_mm_##name##_ps((a).v[0], (a).v[2]),                              \
+                                 _mm_##name##_ps((a).v[1], (a).v[3]));
 #  endif
-#  define SC_LANES_REDUCE(a, four, one)                                                            \
-    __m128 r = four(SC_LANES_LOW(a), SC_LANES_HIGH(a));                                            \
-    r = four(r, _mm_movehl_ps(r, r));                                                              \
-    return _mm_cvtss_f32(one(r, _mm_shuffle_ps(r, r, 1)))
+#  define SC_LANES_REDUCE(a, name)                                                                 \
+    SC_LANES_HALVE(a, name)                                                                        \
+    r = _mm_##name##_ps(r, _mm_movehl_ps(r, r));                                                   \
+    return _mm_cvtss_f32(_mm_##name##_ss(r, _mm_shuffle_ps(r, r, 1)))
 static inline float lanes_sum(lanes a)
 {
-    SC_LANES_REDUCE(a, _mm_add_ps, _mm_add_ss);
+    SC_LANES_REDUCE(a, add);
 }
 static inline float lanes_least(lanes a)
 {
-    SC_LANES_REDUCE(a, _mm_min_ps, _mm_min_ss);
+    SC_LANES_REDUCE(a, min);
 }
 static inline float lanes_most(lanes a)
 {
-    SC_LANES_REDUCE(a, _mm_max_ps, _mm_max_ss);
+    SC_LANES_REDUCE(a, max);
 }
-#  undef SC_LANES_LOW
-#  undef SC_LANES_HIGH
+#  undef SC_LANES_HALVE
 #  undef SC_LANES_REDUCE
 
 #else

@@ -5,6 +5,7 @@
  */
 #undef SC_KERNEL
 #undef SC_LANES
+#undef SC_LANES_AVX512
 #undef SC_LANES_AVX2
 #undef SC_LANES_SSE2
 #undef lanes

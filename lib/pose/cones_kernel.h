@@ -1,5 +1,5 @@
 /*
- * Normal cones of leaf clusters, eight triangles at a time. See dnc.h.
+ * Normal cones of leaf clusters, sixteen triangles at a time. See dnc.h.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -19,11 +19,11 @@ static uint32_t SC_KERNEL(mask_of)(const sc_workspace *w, const uint32_t *corner
     const lanes relative = lanes_all(8 * 5.9604644775390625e-8f),
                 absolute = lanes_all(16 * FLT_MIN);
     const lanes moved = lanes_all(4.1f * 3e-8f), least = lanes_all(6 * 3e-8f);
-    const float *point[3][SC_LEAF_MAX];
+    const float *point[3][SC_LANES_COUNT];
     lanes a[3], e[3], f[3], n[3], e_size, f_size, sum, difference, error, minus_error, dot[7];
     uint32_t mask = 0, i;
     int k, d;
-    for (i = 0; i < SC_LEAF_MAX; i++) { /* the last triangle fills the row */
+    for (i = 0; i < SC_LANES_COUNT; i++) { /* the last triangle fills the row */
         const uint32_t *t = corner + 3 * (i < count ? i : count - 1);
         for (k = 0; k < 3; k++) point[k][i] = w->unit + 4 * (uint64_t)t[k];
     }
@@ -53,8 +53,8 @@ static uint32_t SC_KERNEL(mask_of)(const sc_workspace *w, const uint32_t *corner
     dot[5] = lanes_add(difference, n[2]);
     dot[6] = lanes_subtract(difference, n[2]);
     for (d = 0; d < 7; d++) {
-        mask |= (uint32_t)(lanes_bits(lanes_below(error, dot[d])) == 255) << d;
-        mask |= (uint32_t)(lanes_bits(lanes_below(dot[d], minus_error)) == 255) << (d + 7);
+        mask |= (uint32_t)(lanes_bits(lanes_below(error, dot[d])) == 0xffff) << d;
+        mask |= (uint32_t)(lanes_bits(lanes_below(dot[d], minus_error)) == 0xffff) << (d + 7);
     }
     return mask;
 }

@@ -74,7 +74,7 @@ int sc_fan_test_of_pose(const sc_model *model, const sc_workspace *w, uint32_t p
 {
     const uint32_t *ring = sc_model_ring(model) + sc_model_ring_first(model)[point];
     uint32_t count = sc_model_ring_first(model)[point + 1] - sc_model_ring_first(model)[point];
-    if (count >= 3 && count <= 8 && sc_pose_kernels_of(w)->is_plain(w, ring, count, point))
+    if (count >= 3 && count <= 16 && sc_pose_kernels_of(w)->is_plain(w, ring, count, point))
         return 1;
     return sc_fan_test(model, w, point);
 }

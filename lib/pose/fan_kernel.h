@@ -1,5 +1,5 @@
 /*
- * The test of fans in single precision, for rings of up to eight points. See fan.c.
+ * The test of fans in single precision, for rings of up to sixteen points. See fan.c.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -14,12 +14,12 @@ static int SC_KERNEL(is_plain)(const sc_workspace *w, const uint32_t *ring, uint
                                uint32_t point)
 {
     const lanes point_error = lanes_all(3e-8f);
-    const float *at[8], *center = w->unit + 4 * (uint64_t)point;
+    const float *at[SC_LANES_COUNT], *center = w->unit + 4 * (uint64_t)point;
     lanes r[3], next[3], n[3], size, sum, area, bound, d_size_lanes;
     float d[3], d_size, c0, c1;
     unsigned all = (1u << count) - 1u, above, turned, i;
     int k, axis;
-    for (i = 0; i < 8; i++) /* the rest of the row makes empty sectors */
+    for (i = 0; i < SC_LANES_COUNT; i++) /* the rest of the row makes empty sectors */
         at[i] = w->unit + 4 * (uint64_t)ring[i < count ? i : 0];
     lanes_points(at, &r[0], &r[1], &r[2]);
     for (k = 0; k < 3; k++) {

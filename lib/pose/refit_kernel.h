@@ -18,10 +18,10 @@ static void SC_KERNEL(refit_leaf)(const sc_model *model, sc_workspace *w, uint32
     uint32_t count = first[leaf + 1] - first[leaf], i;
     uint32_t patch = sc_model_first_leaf_patch(model) + leaf;
     uint64_t at = (uint64_t)leaf * SC_LEAF_MAX;
-    const float *point[3][SC_LEAF_MAX];
+    const float *point[3][SC_LANES_COUNT];
     lanes a[3], b[3], c[3];
     int k;
-    for (i = 0; i < SC_LEAF_MAX; i++) { /* the last triangle fills the row */
+    for (i = 0; i < SC_LANES_COUNT; i++) { /* the last triangle fills the row */
         const uint32_t *t = corner + 3 * (i < count ? i : count - 1);
         for (k = 0; k < 3; k++) point[k][i] = w->unit + 4 * (uint64_t)t[k];
     }
@@ -37,7 +37,7 @@ static void SC_KERNEL(refit_leaf)(const sc_model *model, sc_workspace *w, uint32
         w->patch_boxes.side[k + 3][patch] = lanes_most(high);
         lanes_store(w->triangle_boxes.side[k] + at, low);
         lanes_store(w->triangle_boxes.side[k + 3] + at, high);
-        for (i = count; i < SC_LEAF_MAX; i++) /* no triangle: overlaps nothing */
+        for (i = count; i < SC_LANES_COUNT; i++) /* no triangle: overlaps nothing */
             w->triangle_boxes.side[k][at + i] = w->triangle_boxes.side[k + 3][at + i] = (float)NAN;
     }
 }

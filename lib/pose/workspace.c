@@ -26,7 +26,7 @@ static void *place(unsigned char *block, uint64_t *at, uint64_t count, size_t si
 static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_workspace *w)
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
-    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
+    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX + SC_BOXES_PADDING;
     uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
     int k;
     w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count, sizeof(double));
@@ -51,7 +51,8 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
         w->contour.block_side[k] =
             (float *)place(block, &at, listed / SC_CONTOUR_BLOCK + SC_CONTOUR_BLOCK, sizeof(float));
     }
-    w->contour.is_edge = (uint8_t *)place(block, &at, listed / SC_CONTOUR_BLOCK + 1, 1);
+    w->contour.is_edge =
+        (uint16_t *)place(block, &at, listed / SC_CONTOUR_BLOCK + 1, sizeof(uint16_t));
     w->contour.piece = (uint32_t *)place(block, &at, listed, sizeof(uint32_t));
     w->candidates = (sc_pair *)place(block, &at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->ball = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));
@@ -69,7 +70,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
 {
     sc_workspace *w = (sc_workspace *)memory;
     uint64_t i, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
-    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
+    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX + SC_BOXES_PADDING;
     int k;
     memset(w, 0, sizeof *w);
     w->bytes = lay_out_arrays(model, (unsigned char *)memory, w);

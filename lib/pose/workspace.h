@@ -40,7 +40,7 @@ typedef struct sc_projection {
 } sc_projection;
 
 /* Edges of a contour, projected, are tested in blocks of this many. */
-enum { SC_CONTOUR_BLOCK = 8 };
+enum { SC_CONTOUR_BLOCK = 16 };
 
 /* Sides of boxes in the plane. */
 enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
@@ -54,7 +54,7 @@ typedef struct sc_contour_edges {
     float *at[2];         /* x and y */
     float *side[4];       /* boxes of edges */
     float *block_side[4]; /* boxes of blocks, and SC_CONTOUR_BLOCK more */
-    uint8_t *is_edge;     /* bit i of block b: 8 b + i is an edge */
+    uint16_t *is_edge;    /* bit i of block b: 16 b + i is an edge */
     uint32_t *piece;      /* trees of edges that hang together: the parent of each */
 } sc_contour_edges;
 

@@ -8,6 +8,9 @@
 
 #include "query/state.h"
 
+/* Bits of all triangles of a leaf cluster. */
+#define SC_LEAF_ALL ((1u << SC_LEAF_MAX) - 1u)
+
 /* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
 typedef struct sc_leaf_pair {
     uint32_t a, b;

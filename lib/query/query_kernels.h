@@ -27,13 +27,14 @@ typedef struct sc_query_kernels {
 
 extern const sc_query_kernels sc_query_kernels_base;
 #if SC_ISA_X86
-extern const sc_query_kernels sc_query_kernels_avx2;
+extern const sc_query_kernels sc_query_kernels_avx2, sc_query_kernels_avx512;
 #endif
 
 /* Those for the query at hand. */
 static inline const sc_query_kernels *sc_query_kernels_of(const sc_workspace *workspace)
 {
 #if SC_ISA_X86
+    if (workspace->isa == SC_ISA_AVX512) return &sc_query_kernels_avx512;
     if (workspace->isa == SC_ISA_AVX2) return &sc_query_kernels_avx2;
 #endif
     (void)workspace;

@@ -47,7 +47,7 @@ static void list_points(sc_simple_contour *c, const sc_model *model, const uint3
         for (j = 0; j < SC_CONTOUR_BLOCK; j++)
             if (SC_CONTOUR_BLOCK * i + j < n)
                 bits |= (unsigned)(e->piece[SC_CONTOUR_BLOCK * i + j] != SC_NONE) << j;
-        e->is_edge[i] = (uint8_t)bits;
+        e->is_edge[i] = (uint16_t)bits;
     }
     e->is_edge[c->blocks] = 0;
 }

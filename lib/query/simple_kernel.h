@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: MIT
  */
 
-/* Bit k: box i overlaps box j + k, for k from 0 to 7. */
+/* Bit k: box i overlaps box j + k, for k from 0 to 15. */
 static inline unsigned SC_KERNEL(overlap_in_plane)(float *const side[4], uint32_t i, uint32_t j)
 {
     lanes_mask x =
@@ -51,7 +51,7 @@ static void SC_KERNEL(enclose)(const sc_simple_contour *c, uint32_t block)
     const sc_contour_edges *e = c->edges;
     const lanes margin = lanes_all(2 * c->error);
     uint32_t i = block * SC_CONTOUR_BLOCK;
-    unsigned none = ~(unsigned)e->is_edge[block] & 255u;
+    unsigned none = ~(unsigned)e->is_edge[block] & 0xffffu;
     int k;
     for (k = 0; k < 2; k++) {
         float *low = e->side[2 * k] + i, *high = e->side[2 * k + 1] + i;
@@ -78,7 +78,7 @@ static unsigned SC_KERNEL(chain)(const sc_simple_contour *c, uint32_t block, int
     const lanes least = lanes_all(4 * c->error), factor = lanes_all(SC_SIMPLE_BOUND * c->error);
     uint32_t i = block * SC_CONTOUR_BLOCK;
     unsigned both = (unsigned)e->is_edge[block] &
-                    ((unsigned)e->is_edge[block] >> 1 | (unsigned)e->is_edge[block + 1] << 7);
+                    ((unsigned)e->is_edge[block] >> 1 | (unsigned)e->is_edge[block + 1] << 15);
     lanes v[2], w[2], size, bound, cross, dot;
     int k;
     both &= 255u;
@@ -110,7 +110,7 @@ static int SC_KERNEL(are_edges_fine)(sc_simple_contour *c)
         int open;
         unsigned chain = SC_KERNEL(chain)(c, a, &open);
         if (!open) return 0;
-        for (b = a; b < c->blocks; b += 8) {
+        for (b = a; b < c->blocks; b += SC_CONTOUR_BLOCK) {
             unsigned blocks = SC_KERNEL(overlap_in_plane)(e->block_side, a, b);
             for (; blocks; blocks &= blocks - 1) {
                 uint32_t other = b + sc_bits_lowest(blocks), rest = e->is_edge[a];
@@ -120,7 +120,8 @@ static int SC_KERNEL(are_edges_fine)(sc_simple_contour *c)
                     near = SC_KERNEL(overlap_in_plane)(e->side, i, other * SC_CONTOUR_BLOCK);
                     if (other == a)
                         near &= ~((2u << bit) - 1u) & ~((chain >> bit & 1u) << (bit + 1));
-                    if (other == a + 1 && bit == 7) near &= ~(chain >> 7);
+                    if (other == a + 1 && bit == SC_CONTOUR_BLOCK - 1)
+                        near &= ~(chain >> (SC_CONTOUR_BLOCK - 1));
                     for (; near; near &= near - 1)
                         if (!sc_simple_are_apart(c, i,
                                                  other * SC_CONTOUR_BLOCK + sc_bits_lowest(near)))

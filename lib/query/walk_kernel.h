@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: MIT
  */
 
-/* Bit k: box i of a overlaps box j + k of b, for k from 0 to 7. */
+/* Bit k: box i of a overlaps box j + k of b, for k from 0 to 15. */
 static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const sc_boxes *b,
                                           uint64_t j)
 {
@@ -26,10 +26,10 @@ static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, un
     uint64_t tests = 0;
     for (; rows && !state->stop; rows &= rows - 1) {
         uint32_t i = sc_bits_lowest(rows);
-        unsigned mask = SC_KERNEL(overlap)(boxes, row_a + i, boxes, row_b), shared;
+        unsigned mask = SC_KERNEL(overlap)(boxes, row_a + i, boxes, row_b) & SC_LEAF_ALL, shared;
         if (p->a == p->b) mask &= ~((2u << i) - 1u);
         tests++;
-        shared = p->shared[i] & (p->plain_a >> i & 1u ? 255u : p->plain_b);
+        shared = p->shared[i] & (p->plain_a >> i & 1u ? SC_LEAF_ALL : p->plain_b);
         if (mask & ~shared) sc_candidates_take(state, p, i, mask & ~shared);
     }
     state->stats.counts[sc_state_box_task(state)] += tests;
@@ -41,8 +41,9 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_
     uint32_t a = leaf_a < leaf_b ? leaf_a : leaf_b, b = leaf_a < leaf_b ? leaf_b : leaf_a;
     uint32_t patch_b = sc_model_first_leaf_patch(state->model) + b;
     sc_leaf_pair p;
-    unsigned rows =
-        SC_KERNEL(overlap)(&w->patch_boxes, patch_b, &w->triangle_boxes, (uint64_t)a * SC_LEAF_MAX);
+    unsigned rows = SC_KERNEL(overlap)(&w->patch_boxes, patch_b, &w->triangle_boxes,
+                                       (uint64_t)a * SC_LEAF_MAX) &
+                    SC_LEAF_ALL;
     state->stats.leaf_pairs++;
     state->stats.counts[sc_state_box_task(state)]++;
     if (!rows) return;

@@ -307,7 +307,7 @@ static void call_query(fuzz_bytes *bytes, const sc_model *model, sc_workspace *c
     o.contour = small_or_wild(bytes, 0);
     if (o.contour == SC_CONTOUR_NONE) o.contour = SC_CONTOUR_STAR; /* may miss the pair */
     o.rest_cache = small_or_wild(bytes, 0);
-    o.simd = fuzz_byte(bytes) == 255 ? 3 : 0;
+    o.simd = fuzz_byte(bytes) == 255 ? 4 : 0;
     options = make_sized(bytes, &o, sizeof(o), 8);
     if (null == 2) memset(&o, 0, sizeof(o));
     memset(&t, NOISE, sizeof(t));
@@ -327,7 +327,7 @@ static void call_query(fuzz_bytes *bytes, const sc_model *model, sc_workspace *c
     if (which) faults |= FUZZ_BIT(SC_ERROR_WORKSPACE);
     if (o.output > SC_OUTPUT_ANY || o.pairs > SC_PAIRS_EDGE || o.contact > SC_CONTACT_PROPER ||
         o.method > SC_METHOD_AABB || o.contour > SC_CONTOUR_EXACT ||
-        o.rest_cache > SC_REST_CACHE_OFF || o.simd > SC_SIMD_AVX2 || p.position_type > SC_DOUBLE)
+        o.rest_cache > SC_REST_CACHE_OFF || o.simd > SC_SIMD_AVX512 || p.position_type > SC_DOUBLE)
         faults |= FUZZ_BIT(SC_ERROR_OPTION);
     if (p.vertex_count != 6) faults |= FUZZ_BIT(SC_ERROR_VERTEX_COUNT);
     if (p.position_stride) faults |= FUZZ_BIT(SC_ERROR_STRIDE);

@@ -40,7 +40,7 @@ static void ask(const sc_model *model, sc_workspace *workspace, const sc_pose *p
     static sc_pair pairs[CAPACITY];
     for (uint32_t kind = 0; kind < 4; ++kind) {
         uint64_t first = 0;
-        for (uint32_t way = 0; way < 8; ++way) {
+        for (uint32_t way = 0; way < 12; ++way) {
             static const uint32_t contours[4] = {0, SC_CONTOUR_EXACT, 0, 0};
             uint32_t method = way % 4 ? way % 4 : SC_METHOD_SCTT;
             sc_query_options o;
@@ -52,7 +52,7 @@ static void ask(const sc_model *model, sc_workspace *workspace, const sc_pose *p
             o.contact = kind % 2;
             o.method = method;
             o.contour = way % 4 ? contours[way % 4] : SC_CONTOUR_STAR;
-            o.simd = way < 4 ? SC_SIMD_BASE : SC_SIMD_AVX2;
+            o.simd = SC_SIMD_BASE + way / 4;
             memset(&r, 0, sizeof(r));
             r.struct_size = sizeof(r);
             r.capacity = CAPACITY;

@@ -1,0 +1,31 @@
+/*
+ * The inner loops over a pose, for machines with AVX-512. See pose_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "pose/pose_kernels.h"
+
+#include <float.h>
+
+#if SC_ISA_X86
+
+#  include "base/avx512_begin.h"
+#  define SC_KERNEL(name) name##_pose_avx512
+#  define SC_LANES 3
+
+#  include "base/lanes.h"
+#  include "pose/cones_kernel.h"
+#  include "pose/fan_kernel.h"
+#  include "pose/refit_kernel.h"
+
+const sc_pose_kernels sc_pose_kernels_avx512 = {SC_KERNEL(mask_of), SC_KERNEL(refit_leaf),
+                                                SC_KERNEL(is_plain)};
+
+#  include "base/lanes_end.h"
+#  include "base/avx512_end.h"
+
+#else
+
+typedef int sc_pose_avx512_is_empty; /* C wants a declaration in every file */
+
+#endif

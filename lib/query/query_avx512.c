@@ -1,0 +1,33 @@
+/*
+ * The inner loops of a query, for machines with AVX-512. See query_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "query/query_kernels.h"
+
+#include <float.h>
+
+#if SC_ISA_X86
+
+#  include "base/avx512_begin.h"
+#  define SC_KERNEL(name) name##_query_avx512
+#  define SC_LANES 3
+
+#  include "base/lanes.h"
+#  include "query/walk_kernel.h"
+#  include "query/planes_kernel.h"
+#  include "query/simple_kernel.h"
+
+const sc_query_kernels sc_query_kernels_avx512 = {SC_KERNEL(patch_pair),    SC_KERNEL(patch_itself),
+                                                  SC_KERNEL(leaf_pair),     SC_KERNEL(leaf_itself),
+                                                  SC_KERNEL(test_planes),   SC_KERNEL(project),
+                                                  SC_KERNEL(are_edges_fine)};
+
+#  include "base/lanes_end.h"
+#  include "base/avx512_end.h"
+
+#else
+
+typedef int sc_query_avx512_is_empty; /* C wants a declaration in every file */
+
+#endif
