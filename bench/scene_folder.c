@@ -8,6 +8,7 @@
 
 #include "scene_folder.h"
 
+#include "frame_paths.h"
 #include "mesh_file.h"
 
 #include <errno.h>
@@ -344,74 +345,16 @@ int scene_folder_open_files(const char *const *paths, uint32_t count, scene_fold
     return result;
 }
 
-/* Cuts a pattern at its %d: the text before, the text after, and the width of the number. The two
-   have room for the pattern. */
-static bool cut_pattern(const char *pattern, char *before, char *after, int *width)
-{
-    char *out = before;
-    bool found = false;
-    *width = 0;
-    for (const char *at = pattern; *at; at++) {
-        if (*at != '%') {
-            *out++ = *at;
-        } else if (at[1] == '%') {
-            *out++ = *at++;
-        } else {
-            if (found) return false;
-            found = true;
-            const char *digits = ++at;
-            while (*at >= '0' && *at <= '9') at++;
-            /* Without the flag 0 the number would be padded by blanks. */
-            if (*at != 'd' || at - digits > 3 || (at > digits && *digits != '0')) return false;
-            if (at > digits) *width = (int)strtol(digits, NULL, 10);
-            *out = '\0';
-            out = after;
-        }
-    }
-    *out = '\0';
-    return found;
-}
-
-static bool file_is_there(const char *path)
-{
-    struct stat info;
-    return stat(path, &info) == 0;
-}
-
 int scene_folder_open_pattern(const char *pattern, scene_folder *scene, char *error,
                               size_t error_size)
 {
+    char message[MESH_FILE_ERROR_SIZE];
+    frame_paths found;
     memset(scene, 0, sizeof *scene);
-    int result = -1, width;
-    const size_t length = strlen(pattern), path_size = 2 * length + 1100;
-    char *before = (char *)malloc(length + 1), *after = (char *)malloc(length + 1);
-    char *path = (char *)malloc(path_size);
-    scene->source = (scene_source *)calloc(1, sizeof *scene->source);
-    if (!before || !after || !path || !scene->source) {
-        fail(error, error_size, "%s: out of memory", pattern);
-    } else if (!cut_pattern(pattern, before, after, &width)) {
-        fail(error, error_size, "%s: not a pattern with one number, such as frame_%%04d.obj",
-             pattern);
-    } else {
-        result = 0;
-        for (uint32_t number = 0; result == 0; number++) {
-            snprintf(path, path_size, "%s%0*lu%s", before, width, (unsigned long)number, after);
-            if (file_is_there(path)) {
-                result = add_path(scene->source, path);
-                if (result != 0) fail(error, error_size, "%s: out of memory", path);
-            } else if (number > 0) {
-                break;
-            }
-        }
-        if (result == 0 && scene->source->paths_length == 0) {
-            result = fail(error, error_size, "%s: there is no file with number 0 or 1", pattern);
-        }
-        if (result == 0) result = open_rest(scene, error, error_size);
-    }
-    free(before);
-    free(after);
-    free(path);
-    if (result != 0) scene_folder_close(scene);
+    if (!frame_paths_find(&found, pattern, message)) return fail(error, error_size, "%s", message);
+    const int result = scene_folder_open_files((const char *const *)found.paths, found.count, scene,
+                                               error, error_size);
+    frame_paths_free(&found);
     return result;
 }
 

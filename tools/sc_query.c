@@ -8,9 +8,8 @@
  * starcontour.h for what a pair is.
  */
 #include "filter_file.h"
-#include "mesh_file.h"
-#include "model_file.h"
 #include "ply_write.h"
+#include "query_subject.h"
 #include "tool.h"
 
 #include <cjson/cJSON.h>
@@ -132,16 +131,6 @@ typedef struct file_answer {
     sc_stats stats;
 } file_answer;
 
-/* A model with its workspace, and the mesh it was built from or for the pose of which it is asked. */
-typedef struct query_subject {
-    mesh_file mesh;
-    model_file file;    /* with --model: owns the model */
-    uint32_t *weld_map; /* with --rest and --model, unless nothing is welded or known */
-    sc_model *model;
-    sc_workspace *workspace;
-    double build_ms;
-} query_subject;
-
 /* Pairs of one query; grows and is kept. */
 typedef struct pair_list {
     sc_pair *pairs;
@@ -158,94 +147,6 @@ static uint32_t chosen_pairs(const settings *set)
 static bool wants_list(const settings *set)
 {
     return set->out_path || set->ply_path || set->contacts;
-}
-
-static void subject_free(query_subject *subject)
-{
-    sc_workspace_free(subject->workspace);
-    if (!subject->file.model) {
-        sc_model_free(subject->model);
-        free(subject->weld_map);
-    }
-    model_file_free(&subject->file);
-    mesh_file_free(&subject->mesh);
-    memset(subject, 0, sizeof *subject);
-}
-
-/* Reads and builds. On failure error says why and *subject is empty. */
-static bool subject_load(query_subject *subject, const char *path, const settings *set,
-                         char error[MESH_FILE_ERROR_SIZE])
-{
-    memset(subject, 0, sizeof *subject);
-    if (!mesh_file_read(&subject->mesh, path, error)) return false;
-    sc_status status =
-        tool_build(&subject->mesh, set->weld, set->partition, &subject->model, &subject->build_ms);
-    if (status == SC_OK) status = sc_workspace_create(subject->model, NULL, &subject->workspace);
-    if (status == SC_OK && set->rest_path && set->weld == SC_WELD_REST) {
-        subject->weld_map = mesh_file_weld_map(&subject->mesh);
-        if (!subject->weld_map) status = SC_ERROR_MEMORY;
-    }
-    if (status == SC_OK) return true;
-    snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
-    subject_free(subject);
-    return false;
-}
-
-/* Takes a model that was saved; the mesh stays empty. */
-static bool subject_open(query_subject *subject, const char *path, char error[MESH_FILE_ERROR_SIZE])
-{
-    memset(subject, 0, sizeof *subject);
-    const double start = tool_clock();
-    if (!model_file_read(&subject->file, path, error)) return false;
-    subject->build_ms = tool_clock() - start;
-    subject->model = subject->file.model;
-    subject->weld_map = subject->file.weld_map;
-    const sc_status status = sc_workspace_create(subject->model, NULL, &subject->workspace);
-    if (status == SC_OK) return true;
-    snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
-    subject_free(subject);
-    return false;
-}
-
-/* Whether a mesh can be a pose of a saved model. */
-static bool check_fit(const query_subject *subject, const char *path, const mesh_file *mesh,
-                      char error[MESH_FILE_ERROR_SIZE])
-{
-    sc_model_info info;
-    memset(&info, 0, sizeof info);
-    info.struct_size = sizeof info;
-    if (sc_model_get_info(subject->model, &info) != SC_OK) return false;
-    if (mesh->vertex_count != info.vertex_count || mesh->triangle_count != info.triangle_count) {
-        snprintf(error, MESH_FILE_ERROR_SIZE,
-                 "%s: has %lu vertices and %lu triangles, the model %lu and %lu", path,
-                 (unsigned long)mesh->vertex_count, (unsigned long)mesh->triangle_count,
-                 (unsigned long)info.vertex_count, (unsigned long)info.triangle_count);
-        return false;
-    }
-    if (subject->file.face_hash && mesh->face_hash != subject->file.face_hash) {
-        snprintf(error, MESH_FILE_ERROR_SIZE,
-                 "%s: faces differ from those of the mesh that the model was built from", path);
-        return false;
-    }
-    return true;
-}
-
-/* Welded vertices that a pose takes apart would be read from one of them only: refuse that. */
-static bool check_welds(const query_subject *subject, const mesh_file *mesh, const char *path,
-                        const float *positions, char error[MESH_FILE_ERROR_SIZE])
-{
-    if (!subject->weld_map) return true;
-    for (size_t c = 0; c < 3 * (size_t)mesh->triangle_count; c++) {
-        const uint32_t vertex = mesh->indices[c], joined = subject->weld_map[vertex];
-        const float *a = positions + 3 * (size_t)vertex, *b = positions + 3 * (size_t)joined;
-        if (vertex == joined || (a[0] == b[0] && a[1] == b[1] && a[2] == b[2])) continue;
-        snprintf(error, MESH_FILE_ERROR_SIZE,
-                 "%s: vertices %lu and %lu are at one place in the rest mesh but not in this pose; "
-                 "is it another mesh? If they are to move apart, use --weld none",
-                 path, (unsigned long)joined, (unsigned long)vertex);
-        return false;
-    }
-    return true;
 }
 
 /* What to ask for one kind of pair. With list the pairs are wanted, else only their number. */
@@ -675,19 +576,21 @@ static int do_file(const char *path, const settings *set, const query_subject *r
     memset(&answer, 0, sizeof answer);
     answer.path = path;
 
+    const query_subject_how how = {set->weld, set->partition, false};
     const query_subject *subject = rest ? rest : &own;
     const mesh_file *mesh = set->rest_path ? &rest->mesh : &own.mesh;
     const float *positions = pose_positions;
     bool done;
     if (set->rest_path) {
         done = mesh_file_read_pose(&rest->mesh, path, pose_positions, error) &&
-               check_welds(rest, mesh, path, pose_positions, error);
+               query_subject_keeps_welds(rest, mesh, path, pose_positions, error);
     } else if (rest) {
-        done = mesh_file_read(&own.mesh, path, error) && check_fit(rest, path, mesh, error) &&
-               check_welds(rest, mesh, path, mesh->positions, error);
+        done = mesh_file_read(&own.mesh, path, error) &&
+               query_subject_fits(rest, path, mesh, error) &&
+               query_subject_keeps_welds(rest, mesh, path, mesh->positions, error);
         positions = mesh->positions;
     } else {
-        done = subject_load(&own, path, set, error);
+        done = query_subject_load(&own, path, &how, error);
         positions = own.mesh.positions;
     }
     const sc_pose pose = tool_pose(positions, mesh->vertex_count);
@@ -696,7 +599,7 @@ static int do_file(const char *path, const settings *set, const query_subject *r
     int status = report(&answer, set, done, error, out, list);
     if (!recorded) status = TOOL_FAILED;
     if (done && set->ply_path && !write_ply(mesh, positions, set, list)) status = TOOL_FAILED;
-    subject_free(&own);
+    query_subject_free(&own);
     return status;
 }
 
@@ -777,7 +680,7 @@ static int do_replay(settings *set, FILE *out, pair_list *list)
     if (done) done = run_pose(&subject, set->replay_path, &pose, set, list, &answer, error);
     const int status = report(&answer, set, done, error, out, list);
     set->given = NULL;
-    subject_free(&subject);
+    query_subject_free(&subject);
     free(bytes);
     return status;
 }
@@ -798,8 +701,9 @@ static int do_files(char **paths, int path_count, settings *set)
     int status = TOOL_CLEAN;
 
     if (set->rest_path) {
+        const query_subject_how how = {set->weld, set->partition, true};
         char error[MESH_FILE_ERROR_SIZE];
-        if (!subject_load(&rest, set->rest_path, set, error)) {
+        if (!query_subject_load(&rest, set->rest_path, &how, error)) {
             tool_error("%s", error);
             return TOOL_FAILED;
         }
@@ -810,7 +714,7 @@ static int do_files(char **paths, int path_count, settings *set)
         }
     } else if (set->model_path) {
         char error[MESH_FILE_ERROR_SIZE];
-        if (!subject_open(&rest, set->model_path, error)) {
+        if (!query_subject_open(&rest, set->model_path, error)) {
             tool_error("%s", error);
             return TOOL_FAILED;
         }
@@ -843,7 +747,7 @@ static int do_files(char **paths, int path_count, settings *set)
     free(pose_positions);
     free(list.pairs);
     free(list.contacts);
-    subject_free(&rest);
+    query_subject_free(&rest);
     return status;
 }
 
