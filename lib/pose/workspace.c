@@ -27,6 +27,7 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX + SC_BOXES_PADDING;
+    uint64_t levels = (uint64_t)model->level_count + 1;
     uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
     int k;
     w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count, sizeof(double));
@@ -54,6 +55,12 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
     w->contour.is_edge =
         (uint16_t *)place(block, &at, listed / SC_CONTOUR_BLOCK + 1, sizeof(uint16_t));
     w->contour.piece = (uint32_t *)place(block, &at, listed, sizeof(uint32_t));
+    w->walk.stack =
+        (uint32_t *)place(block, &at, levels * (SC_WALK_QUEUE + levels * SC_WALK_CHILDREN), 4);
+    w->walk.queue =
+        (uint32_t *)place(block, &at, SC_WALK_QUEUE + SC_WALK_CHILDREN, sizeof(uint32_t));
+    w->walk.self = (uint32_t *)place(block, &at, model->leaf_count, sizeof(uint32_t));
+    w->walk.culled = (uint8_t *)place(block, &at, model->patch_end, 1);
     w->candidates = (sc_pair *)place(block, &at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->ball = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));
     w->ball_queue = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: MIT
  *
  *     | sc_workspace | position | unit | patch boxes | triangle boxes | mask | fan | bounds |
- *       bounds_tick | contour | candidates | ball | ball_queue |
+ *       bounds_tick | contour | walk | candidates | ball | ball_queue |
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -58,6 +58,22 @@ typedef struct sc_contour_edges {
     uint32_t *piece;      /* trees of edges that hang together: the parent of each */
 } sc_contour_edges;
 
+/*
+ * Where a query with the exact contour test is, see query/traversal.c. The stack holds what failed of some full
+ * queues, each from deeper levels than the one before; and for each of these, brothers of what is looked at.
+ */
+enum { SC_WALK_QUEUE = 60, SC_WALK_CHILDREN = 4 };
+
+typedef struct sc_walk {
+    uint32_t
+        *stack; /* n (SC_WALK_QUEUE + n SC_WALK_CHILDREN), n = level_count + 1: nodes that failed */
+    uint32_t *queue; /* SC_WALK_QUEUE + SC_WALK_CHILDREN: nodes to test */
+    uint32_t *self;  /* leaf_count: nodes of one patch to test, if need be, after all others */
+    uint8_t *culled; /* patch_end: 1 if in a node that passed */
+    uint32_t stack_count, queue_count, self_count;
+    uint32_t selfs_wait;
+} sc_walk;
+
 enum { SC_CANDIDATES_MAX = 1024 };
 
 struct sc_workspace {
@@ -90,6 +106,7 @@ struct sc_workspace {
     uint32_t *bounds_tick[2];     /* segment_count: tick at which they were computed */
 
     sc_contour_edges contour;
+    sc_walk walk;
 
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     uint32_t candidate_count;

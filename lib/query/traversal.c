@@ -8,6 +8,8 @@
  */
 #include "query/traversal.h"
 
+#include <string.h>
+
 #include "base/hooks.h"
 #include "pose/dnc.h"
 #include "pose/refit.h"
@@ -94,29 +96,109 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
     query_rest_of_node(state, node);
 }
 
-/* The exact contour test keeps nothing from node to node, so that each node has its own projection. */
-static void query_exact(sc_query_state *state, uint32_t node)
+/*
+ * The walk with the exact contour test. The test keeps nothing from node to node, so that each node has its
+ * own projection, and nodes can be tested in any order: those that pass the orientation test wait in
+ * a short queue, so that the memory for some is fetched while others are tested. Nodes of one patch wait
+ * until all else is done, since a patch that is in a node of two that was culled is culled with it.
+ * A node of two patches with one parent has the contour of that parent, which failed.
+ */
+
+/* A node that failed a test, or has a contour that did. */
+static void put_back(sc_query_state *state, uint32_t node)
 {
-    const sc_model *model = state->model;
-    const uint32_t *child = sc_model_node_child(model);
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
-    uint32_t c;
-    uint32_t mask =
-        (uint32_t)state->workspace->mask[patches->a] & state->workspace->mask[patches->b];
+    sc_walk *walk = &state->workspace->walk;
+    walk->stack[walk->stack_count++] = node;
+}
+
+/* The orientation test. */
+static void orient(sc_query_state *state, uint32_t node)
+{
+    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
+    sc_workspace *w = state->workspace;
+    uint32_t mask = (uint32_t)w->mask[patches->a] & w->mask[patches->b];
     state->stats.counts[SC_TASK_ORIENTATION]++;
     state->stats.nodes_visited++;
-    if (mask) {
+    if (!mask) {
+        put_back(state, node);
+        return;
+    }
+    state->stats.nodes_oriented++;
+    if (patches->a == patches->b && w->walk.selfs_wait)
+        w->walk.self[w->walk.self_count++] = node;
+    else
+        w->walk.queue[w->walk.queue_count++] = node;
+}
+
+/* The contour tests of all nodes in the queue. */
+static void test_queue(sc_query_state *state)
+{
+    sc_workspace *w = state->workspace;
+    sc_walk *walk = &w->walk;
+    uint32_t i;
+    for (i = 0; i < walk->queue_count && !sc_state_stops(state); i++) {
+        uint32_t node = walk->queue[i];
+        const sc_pair *patches = &sc_model_node_patches(state->model)[node];
         sc_projection projection;
-        state->stats.nodes_oriented++;
-        sc_dnc_projection(state->workspace, mask, &projection);
+        sc_dnc_projection(w, (uint32_t)w->mask[patches->a] & w->mask[patches->b], &projection);
         if (sc_simple_test(state, &projection, node)) {
             state->stats.nodes_culled++;
-            return;
+            walk->culled[patches->a] = walk->culled[patches->b] = 1;
+        } else {
+            put_back(state, node);
         }
     }
-    for (c = child[node]; c < child[node + 1] && !state->stop; c++) query_exact(state, c);
-    follow_contour(state, mask != 0);
+    walk->queue_count = 0;
+}
+
+/* The children of a node that failed a test. */
+static void look_below(sc_query_state *state, uint32_t node)
+{
+    const uint32_t *child = sc_model_node_child(state->model);
+    const sc_pair *patches = sc_model_node_patches(state->model);
+    sc_workspace *w = state->workspace;
+    uint32_t c;
+    for (c = child[node]; c < child[node + 1]; c++) {
+        int is_self = patches[c].a == patches[c].b;
+        if (is_self != (patches[node].a == patches[node].b)) {
+            state->stats.nodes_visited++;
+            put_back(state, c);
+        } else if (!is_self || w->walk.selfs_wait || !w->walk.culled[patches[c].a]) {
+            orient(state, c);
+        }
+    }
+    follow_contour(state, (w->mask[patches[node].a] & w->mask[patches[node].b]) != 0);
     query_rest_of_node(state, node);
+}
+
+/* Goes on until neither queue nor stack has anything left. */
+static void walk_on(sc_query_state *state)
+{
+    sc_walk *walk = &state->workspace->walk;
+    while ((walk->queue_count || walk->stack_count) && !state->stop) {
+        test_queue(state);
+        while (walk->stack_count && walk->queue_count < SC_WALK_QUEUE && !state->stop)
+            look_below(state, walk->stack[--walk->stack_count]);
+    }
+}
+
+static void query_exact(sc_query_state *state)
+{
+    const sc_pair *patches = sc_model_node_patches(state->model);
+    sc_walk *walk = &state->workspace->walk;
+    uint32_t i;
+    memset(walk->culled, 0, state->model->patch_end);
+    walk->stack_count = walk->queue_count = walk->self_count = 0;
+    walk->selfs_wait = 1;
+    orient(state, 0);
+    walk_on(state);
+    walk->selfs_wait = 0;
+    for (i = 0; i < walk->self_count && !state->stop; i++) {
+        if (walk->culled[patches[walk->self[i]].a]) continue;
+        walk->queue[walk->queue_count++] = walk->self[i];
+        if (walk->queue_count == SC_WALK_QUEUE) walk_on(state);
+    }
+    walk_on(state);
 }
 
 /* The paper's QueryOrientation. */
@@ -159,7 +241,7 @@ void sc_traversal_run(sc_query_state *state)
         state->stats.counts[SC_TASK_UPDATE_NORMALS] += model->patch_end;
         sc_state_switch(state, SC_TASK_ORIENTATION);
         if (state->options.contour == SC_CONTOUR_EXACT)
-            query_exact(state, 0);
+            query_exact(state);
         else
             query_orientation(state, 0);
     } else if (state->options.method == SC_METHOD_AABB_SCTT) {
