@@ -96,7 +96,8 @@ enum {
     SC_ERROR_VERTEX_COUNT = 9,  /* the pose's number of vertices is not the model's */
     SC_ERROR_MEMORY = 10,       /* an allocation failed */
     SC_ERROR_SHORT_BUFFER = 11, /* the caller's array is too short; the count needed is reported */
-    SC_ERROR_WORKSPACE = 12,    /* the workspace was made for another model or is too small */
+    SC_ERROR_WORKSPACE = 12,    /* the workspace was made for another model or fewer workers, or is
+                                   too small */
     SC_ERROR_WELD_MAP = 13,     /* a weld map entry out of range or not a representative */
     SC_ERROR_TREE = 14,         /* the caller's leaf order or tree is not one, or is too deep */
     SC_ERROR_PARTITION = 15,    /* the caller's bisection function failed or broke its contract */
@@ -426,11 +427,82 @@ SC_API sc_status sc_workspace_init(const sc_model *model, void *memory, uint64_t
 SC_API sc_status sc_workspace_create(const sc_model *model, const sc_allocator *allocator,
                                      sc_workspace **workspace);
 
+/* What a workspace is for besides plain queries; a sum. */
+enum {
+    SC_WORKSPACE_STEP = 1 /* kept for queries about the motion between two poses, which this version
+                             does not have yet; changes nothing */
+};
+
+/* The largest number of workers. */
+#define SC_WORKERS_MAX 256
+
+typedef struct sc_workspace_options {
+    uint32_t struct_size;
+    uint32_t flags;    /* sum of SC_WORKSPACE_... */
+    uint32_t workers;  /* threads that a query may use at once, see sc_tasks; 0 and 1: one, at
+                                      most SC_WORKERS_MAX */
+    uint32_t reserved; /* 0 */
+    const sc_allocator *allocator; /* for sc_workspace_create_for: copied */
+} sc_workspace_options;
+
+/*
+ * The same three for a workspace of any kind; options may be NULL, then they are the same. Such a
+ * workspace also serves plain queries. Each worker but the first takes about 20 bytes a vertex and 10 to
+ * 50 kilobytes more. SC_ERROR_OPTION: unknown flags, too many workers, or reserved is not 0.
+ */
+SC_API sc_status sc_workspace_size_for(const sc_model *model, const sc_workspace_options *options,
+                                       uint64_t *size);
+SC_API sc_status sc_workspace_init_for(const sc_model *model, const sc_workspace_options *options,
+                                       void *memory, uint64_t size, sc_workspace **workspace);
+SC_API sc_status sc_workspace_create_for(const sc_model *model, const sc_workspace_options *options,
+                                         sc_workspace **workspace);
+
 /* Hooks for the queries on a workspace, copied; NULL for none, as at first. */
 SC_API sc_status sc_workspace_set_hooks(sc_workspace *workspace, const sc_hooks *hooks);
 
-/* Frees what sc_workspace_create made; does nothing to what sc_workspace_init made. NULL is allowed. */
+/* Frees what sc_workspace_create(_for) made; does nothing to what sc_workspace_init(_for) made. NULL is
+   allowed. */
 SC_API void sc_workspace_free(sc_workspace *workspace);
+
+/* ------------------------------------------------------------------------------------------------
+ * Tasks
+ */
+
+/*
+ * The host's threads, for one query to use several of: a job system, or a pool of threads. Without, a query
+ * runs in the thread that calls it. A query cuts its work into jobs one after the other, and each job into
+ * parts that may run in any order and at once.
+ *
+ *   workers  how many parts may run at once, at most what the workspace was made for
+ *            (sc_workspace_options.workers), else SC_ERROR_WORKSPACE; 0 and 1: one
+ *   enqueue  runs the count parts of a job, 1 or more: run(context, part, worker) once for each part from
+ *            0 to count - 1, in any threads, worker being a number below workers that no other running
+ *            part of the job has. May return before they are done, or run them all itself. What it returns
+ *            is passed to finish and may be NULL
+ *   finish   returns when all parts of that job are done. What they wrote must be visible to the caller
+ *            then, as what the caller wrote before enqueue must be to the parts: so it is with any
+ *            locks, joins or queues of threads
+ *   user     passed through
+ *
+ * enqueue and finish are called in the thread that called the library, in turn: there is one job of a query
+ * at a time. run takes 32 kilobytes of stack, does not block and calls neither of them. They must not fail:
+ * without a free thread, run the parts in the caller's:
+ *
+ *     void *enqueue(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
+ *                   void *context, uint32_t count)
+ *     {
+ *         for (uint32_t part = 0; part < count; ++part) run(context, part, 0);
+ *         return NULL;
+ *     }
+ */
+typedef struct sc_tasks {
+    uint32_t struct_size;
+    uint32_t workers;
+    void *(*enqueue)(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
+                     void *context, uint32_t count);
+    void (*finish)(void *user, void *task);
+    void *user;
+} sc_tasks;
 
 /* ------------------------------------------------------------------------------------------------
  * Queries
@@ -568,6 +640,8 @@ typedef struct sc_query_options {
     const sc_filter *filter;         /* which pairs are not wanted, or NULL */
     const volatile uint32_t *cancel; /* not 0: stop; or NULL. See "Stopping early" at sc_query */
     uint64_t budget;                 /* units of work after which to stop; 0: no limit */
+    const sc_tasks *tasks;           /* the host's threads, or NULL. Accepted, but this version does
+                                        everything in the calling thread */
 } sc_query_options;
 
 /* The nine tasks of a query (paper, table 1). */
@@ -714,7 +788,7 @@ SC_API sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_
  * One query in one block of bytes: the model, the pose and the options, as a bug report, or to look into
  * later with `sc-query --replay FILE`. The bytes are for machines of one byte order, as saved models.
  * Of a filter everything is recorded but the caller's function; and a flag to cancel is none. What was left
- * out is written down in the record.
+ * out is written down in the record. Tasks, which change no answer, are not recorded.
  */
 
 /* Writes the number of bytes that sc_record_write writes. Errors are as for sc_query. */

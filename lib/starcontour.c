@@ -199,7 +199,7 @@ sc_status sc_model_get_info(const sc_model *model, sc_model_info *info)
     i.segment_count = model->segment_count;
     i.topology_hash = model->topology_hash;
     i.model_bytes = model->bytes + SC_ALIGNMENT; /* with what frees it */
-    i.workspace_bytes = sc_workspace_bytes(model);
+    i.workspace_bytes = sc_workspace_bytes(model, NULL);
     if (owner) {
         i.peak_bytes = owner->peak_bytes;
         i.allocations = owner->allocations;
@@ -303,39 +303,93 @@ sc_status sc_model_load(const void *data, uint64_t size, const sc_load_options *
 
 /* ---- workspaces ---- */
 
+/* The options of a workspace, all of them set. */
+static sc_status read_workspace_options(const sc_workspace_options *options,
+                                        sc_workspace_options *o)
+{
+    sc_status status;
+    memset(o, 0, sizeof *o);
+    if (options) {
+        status = sc_structs_read(o, sizeof *o, options, LEAST_OPTIONS);
+        if (status) return status;
+    }
+    if ((o->flags & ~(uint32_t)SC_WORKSPACE_STEP) || o->workers > SC_WORKERS_MAX || o->reserved)
+        return SC_ERROR_OPTION;
+    if (!o->workers) o->workers = 1;
+    return SC_OK;
+}
+
+sc_status sc_workspace_size_for(const sc_model *model, const sc_workspace_options *options,
+                                uint64_t *size)
+{
+    sc_workspace_options o;
+    sc_status status;
+    if (!model || !size) return SC_ERROR_NULL;
+    status = read_workspace_options(options, &o);
+    if (!status) *size = sc_workspace_bytes(model, &o);
+    return status;
+}
+
+sc_status sc_workspace_init_for(const sc_model *model, const sc_workspace_options *options,
+                                void *memory, uint64_t size, sc_workspace **workspace)
+{
+    sc_workspace_options o;
+    sc_status status;
+    if (!workspace) return SC_ERROR_NULL;
+    *workspace = NULL;
+    if (!model || !memory) return SC_ERROR_NULL;
+    status = read_workspace_options(options, &o);
+    if (status) return status;
+    if ((uintptr_t)memory % SC_ALIGNMENT) return SC_ERROR_ALIGNMENT;
+    if (size < sc_workspace_bytes(model, &o)) return SC_ERROR_WORKSPACE;
+    *workspace = sc_workspace_place(model, &o, memory);
+    return SC_OK;
+}
+
+sc_status sc_workspace_create_for(const sc_model *model, const sc_workspace_options *options,
+                                  sc_workspace **workspace)
+{
+    sc_workspace_options o;
+    sc_allocator a;
+    uint64_t bytes;
+    void *memory;
+    sc_status status;
+    if (!workspace) return SC_ERROR_NULL;
+    *workspace = NULL;
+    if (!model) return SC_ERROR_NULL;
+    status = read_workspace_options(options, &o);
+    if (status) return status;
+    a = sc_memory_allocator(o.allocator);
+    if (!a.allocate || !a.release) return SC_ERROR_NULL;
+    bytes = sc_workspace_bytes(model, &o);
+    if (SC_HARDLY(bytes > SIZE_MAX)) return SC_ERROR_MEMORY; /* where addresses have 32 bits */
+    memory = a.allocate(a.user, bytes, SC_ALIGNMENT);
+    if (!memory) return SC_ERROR_MEMORY;
+    *workspace = sc_workspace_place(model, &o, memory);
+    (*workspace)->allocator = a;
+    (*workspace)->owned = 1;
+    return SC_OK;
+}
+
 sc_status sc_workspace_size(const sc_model *model, uint64_t *size)
 {
-    if (!model || !size) return SC_ERROR_NULL;
-    *size = sc_workspace_bytes(model);
-    return SC_OK;
+    return sc_workspace_size_for(model, NULL, size);
 }
 
 sc_status sc_workspace_init(const sc_model *model, void *memory, uint64_t size,
                             sc_workspace **workspace)
 {
-    if (!workspace) return SC_ERROR_NULL;
-    *workspace = NULL;
-    if (!model || !memory) return SC_ERROR_NULL;
-    if ((uintptr_t)memory % SC_ALIGNMENT) return SC_ERROR_ALIGNMENT;
-    if (size < sc_workspace_bytes(model)) return SC_ERROR_WORKSPACE;
-    *workspace = sc_workspace_place(model, memory);
-    return SC_OK;
+    return sc_workspace_init_for(model, NULL, memory, size, workspace);
 }
 
 sc_status sc_workspace_create(const sc_model *model, const sc_allocator *allocator,
                               sc_workspace **workspace)
 {
-    sc_allocator a = sc_memory_allocator(allocator);
-    void *memory;
-    if (!workspace) return SC_ERROR_NULL;
-    *workspace = NULL;
-    if (!model || !a.allocate || !a.release) return SC_ERROR_NULL;
-    memory = a.allocate(a.user, sc_workspace_bytes(model), SC_ALIGNMENT);
-    if (!memory) return SC_ERROR_MEMORY;
-    *workspace = sc_workspace_place(model, memory);
-    (*workspace)->allocator = a;
-    (*workspace)->owned = 1;
-    return SC_OK;
+    sc_workspace_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.allocator = allocator;
+    return sc_workspace_create_for(model, &options, workspace);
 }
 
 sc_status sc_workspace_set_hooks(sc_workspace *workspace, const sc_hooks *hooks)
@@ -380,11 +434,26 @@ static sc_status check_pose(const sc_model *model, const sc_pose *pose, uint64_t
     return SC_HARDLY(*stride > SIZE_MAX / pose->vertex_count) ? SC_ERROR_COUNT : SC_OK;
 }
 
+/* Copies the caller's tasks, if any, and checks them; *options refers to the copy then. */
+static sc_status read_tasks(const sc_workspace *workspace, sc_query_options *options,
+                            sc_tasks *tasks)
+{
+    sc_status status;
+    if (!options->tasks) return SC_OK;
+    status = sc_structs_read(tasks, sizeof *tasks, options->tasks, UP_TO(sc_tasks, finish));
+    if (status) return status;
+    if (!tasks->enqueue || !tasks->finish) return SC_ERROR_NULL;
+    if (!tasks->workers) tasks->workers = 1;
+    if (tasks->workers > workspace->workers) return SC_ERROR_WORKSPACE;
+    options->tasks = tasks;
+    return SC_OK;
+}
+
 /* Everything about a query that can be wrong; afterwards only the positions can be. */
 static sc_status check_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
                              const sc_query_options *options, const sc_result *result,
                              sc_query_state *state, sc_pose *checked_pose, sc_filter *filter,
-                             uint64_t *stride)
+                             sc_tasks *tasks, uint64_t *stride)
 {
     sc_status status;
     if (!model || !workspace || !pose) return SC_ERROR_NULL;
@@ -394,6 +463,7 @@ static sc_status check_query(const sc_model *model, sc_workspace *workspace, con
         if (status) return status;
     }
     status = check_options(&state->options);
+    if (!status) status = read_tasks(workspace, &state->options, tasks);
     if (status) return status;
     if (state->options.filter) {
         status = sc_filter_begin(state, model, state->options.filter, filter);
@@ -443,6 +513,7 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     sc_result r;
     sc_pose p;
     sc_filter filter;
+    sc_tasks tasks;
     uint64_t stride;
     sc_status status;
     if (!result) return SC_ERROR_NULL;
@@ -456,7 +527,7 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     state.pairs = r.pairs;
     state.capacity = r.capacity;
     state.timed = r.stats != NULL;
-    status = check_query(model, workspace, pose, options, &r, &state, &p, &filter, &stride);
+    status = check_query(model, workspace, pose, options, &r, &state, &p, &filter, &tasks, &stride);
     if (!status) status = run_query(model, workspace, &p, stride, &state);
     if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE) {
         r.count = state.options.output == SC_OUTPUT_ANY ? state.count > 0 : state.count;

@@ -23,12 +23,58 @@ static void *place(unsigned char *block, uint64_t *at, uint64_t count, size_t si
     return array;
 }
 
+/* The arrays that each worker has for itself, see workspace.h. */
+static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *at, sc_workspace *w)
+{
+    uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
+    uint64_t levels = (uint64_t)model->level_count + 1;
+    int k;
+    w->fan = (uint32_t *)place(block, at, model->point_count, sizeof(uint32_t));
+    w->plain_tick = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
+    w->plain = (uint8_t *)place(block, at, model->leaf_count, 1);
+    w->contour.point = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
+    for (k = 0; k < 2; k++) w->contour.at[k] = (float *)place(block, at, listed, sizeof(float));
+    for (k = 0; k < 4; k++) {
+        w->contour.side[k] = (float *)place(block, at, listed, sizeof(float));
+        w->contour.block_side[k] =
+            (float *)place(block, at, listed / SC_CONTOUR_BLOCK + SC_CONTOUR_BLOCK, sizeof(float));
+    }
+    w->contour.is_edge =
+        (uint16_t *)place(block, at, listed / SC_CONTOUR_BLOCK + 1, sizeof(uint16_t));
+    w->contour.piece = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
+    w->walk.stack =
+        (uint32_t *)place(block, at, levels * (SC_WALK_QUEUE + levels * SC_WALK_CHILDREN), 4);
+    w->walk.queue =
+        (uint32_t *)place(block, at, SC_WALK_QUEUE + SC_WALK_CHILDREN, sizeof(uint32_t));
+    w->walk.self = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
+    w->walk.culled = (uint8_t *)place(block, at, model->patch_end, 1);
+    w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
+    w->ball = (uint32_t *)place(block, at, model->point_count, sizeof(uint32_t));
+    w->ball_queue = (uint32_t *)place(block, at, model->point_count, sizeof(uint32_t));
+}
+
+/* Nothing is known yet in the arrays of a worker. */
+static void clear_own(const sc_model *model, sc_workspace *w)
+{
+    memset(w->fan, 0, model->point_count * sizeof *w->fan);
+    memset(w->plain_tick, 0, model->leaf_count * sizeof *w->plain_tick);
+    memset(w->plain, 0, model->leaf_count);
+    memset(w->ball, 0, model->point_count * sizeof *w->ball);
+}
+
+/* How long the view of a further worker is, with its arrays. */
+static uint64_t view_bytes(const sc_model *model)
+{
+    sc_workspace view;
+    uint64_t at = align(sizeof view);
+    lay_out_own(model, NULL, &at, &view);
+    return at;
+}
+
 static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_workspace *w)
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX + SC_BOXES_PADDING;
-    uint64_t levels = (uint64_t)model->level_count + 1;
-    uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
     int k;
     w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count, sizeof(double));
     w->unit = (float *)place(block, &at, 4 * (uint64_t)model->point_count, sizeof(float));
@@ -37,49 +83,34 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
     for (k = 0; k < 6; k++)
         w->triangle_boxes.side[k] = (float *)place(block, &at, triangles, sizeof(float));
     w->mask = (uint16_t *)place(block, &at, model->patch_end, sizeof(uint16_t));
-    w->fan = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));
-    w->plain_tick = (uint32_t *)place(block, &at, model->leaf_count, sizeof(uint32_t));
-    w->plain = (uint8_t *)place(block, &at, model->leaf_count, 1);
     for (k = 0; k < 2; k++) {
         w->bounds[k] =
             (sc_segment_bounds *)place(block, &at, model->segment_count, sizeof(sc_segment_bounds));
         w->bounds_tick[k] = (uint32_t *)place(block, &at, model->segment_count, sizeof(uint32_t));
     }
-    w->contour.point = (uint32_t *)place(block, &at, listed, sizeof(uint32_t));
-    for (k = 0; k < 2; k++) w->contour.at[k] = (float *)place(block, &at, listed, sizeof(float));
-    for (k = 0; k < 4; k++) {
-        w->contour.side[k] = (float *)place(block, &at, listed, sizeof(float));
-        w->contour.block_side[k] =
-            (float *)place(block, &at, listed / SC_CONTOUR_BLOCK + SC_CONTOUR_BLOCK, sizeof(float));
-    }
-    w->contour.is_edge =
-        (uint16_t *)place(block, &at, listed / SC_CONTOUR_BLOCK + 1, sizeof(uint16_t));
-    w->contour.piece = (uint32_t *)place(block, &at, listed, sizeof(uint32_t));
-    w->walk.stack =
-        (uint32_t *)place(block, &at, levels * (SC_WALK_QUEUE + levels * SC_WALK_CHILDREN), 4);
-    w->walk.queue =
-        (uint32_t *)place(block, &at, SC_WALK_QUEUE + SC_WALK_CHILDREN, sizeof(uint32_t));
-    w->walk.self = (uint32_t *)place(block, &at, model->leaf_count, sizeof(uint32_t));
-    w->walk.culled = (uint8_t *)place(block, &at, model->patch_end, 1);
-    w->candidates = (sc_pair *)place(block, &at, SC_CANDIDATES_MAX, sizeof(sc_pair));
-    w->ball = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));
-    w->ball_queue = (uint32_t *)place(block, &at, model->point_count, sizeof(uint32_t));
+    lay_out_own(model, block, &at, w);
+    w->view_bytes = w->workers > 1 ? view_bytes(model) : 0;
+    w->views = (unsigned char *)place(block, &at, w->view_bytes * (w->workers - 1), 1);
     return at;
 }
 
-uint64_t sc_workspace_bytes(const sc_model *model)
+uint64_t sc_workspace_bytes(const sc_model *model, const sc_workspace_options *options)
 {
     sc_workspace sizes;
+    sizes.workers = options ? options->workers : 1;
     return lay_out_arrays(model, NULL, &sizes);
 }
 
-sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
+sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_options *options,
+                                 void *memory)
 {
-    sc_workspace *w = (sc_workspace *)memory;
-    uint64_t i, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
+    sc_workspace *w = (sc_workspace *)memory, view;
+    uint64_t i, at, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX + SC_BOXES_PADDING;
     int k;
     memset(w, 0, sizeof *w);
+    w->flags = options ? options->flags : 0;
+    w->workers = options ? options->workers : 1;
     w->bytes = lay_out_arrays(model, (unsigned char *)memory, w);
     w->topology_hash = model->topology_hash;
     w->isa = (uint32_t)sc_isa_best();
@@ -89,11 +120,13 @@ sc_workspace *sc_workspace_place(const sc_model *model, void *memory)
     }
     memset(w->mask, 0, model->patch_end * sizeof *w->mask);
     memset(w->unit, 0, 4 * (size_t)model->point_count * sizeof *w->unit);
-    memset(w->fan, 0, model->point_count * sizeof *w->fan);
-    memset(w->plain_tick, 0, model->leaf_count * sizeof *w->plain_tick);
-    memset(w->plain, 0, model->leaf_count);
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
-    memset(w->ball, 0, model->point_count * sizeof *w->ball);
+    clear_own(model, w);
+    for (i = 0; i + 1 < w->workers; i++) {
+        at = align(sizeof view);
+        lay_out_own(model, w->views + i * w->view_bytes, &at, &view);
+        clear_own(model, &view);
+    }
     return w;
 }
 

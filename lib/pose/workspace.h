@@ -3,8 +3,11 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | position | unit | patch boxes | triangle boxes | mask | fan | bounds |
- *       bounds_tick | contour | walk | candidates | ball | ball_queue |
+ *     | sc_workspace | position | unit | patch boxes | triangle boxes | mask | bounds |
+ *       bounds_tick | own arrays | view | view | ... |
+ *
+ * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
+ * candidates, ball, ball_queue. For each worker but the first there is a view: an sc_workspace and own arrays.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -80,8 +83,12 @@ struct sc_workspace {
     uint64_t bytes;
     uint64_t topology_hash; /* of the model it is for */
     sc_allocator allocator;
-    uint32_t owned; /* allocated by sc_workspace_create */
-    uint32_t isa;   /* of the query, see base/isa.h */
+    uint32_t owned;       /* allocated by sc_workspace_create or _create_for */
+    uint32_t isa;         /* of the query, see base/isa.h */
+    uint32_t flags;       /* SC_WORKSPACE_..., as it was made for */
+    uint32_t workers;     /* as it was made for, 1 or more */
+    unsigned char *views; /* workers - 1 */
+    uint64_t view_bytes;  /* of one; 0 if there is none */
     sc_hooks hooks;
 
     /* the pose; all but position valid only in a query */
@@ -118,11 +125,13 @@ struct sc_workspace {
     uint32_t ball_center; /* the caller's number of the triangle, or SC_NONE */
 };
 
-/* Bytes for a workspace, which fit size_t. */
-uint64_t sc_workspace_bytes(const sc_model *model);
+/* Bytes for a workspace, which fit size_t if it is for one worker. options are complete and checked;
+   NULL: for plain queries by one worker. */
+uint64_t sc_workspace_bytes(const sc_model *model, const sc_workspace_options *options);
 
 /* Makes a workspace in aligned memory of that many bytes. */
-sc_workspace *sc_workspace_place(const sc_model *model, void *memory);
+sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_options *options,
+                                 void *memory);
 
 /* Whether a workspace is for models of this topology hash, and each of its arrays as long as the model
    needs it: the hash alone does not tell, for it leaves out the rest shape, and may be forged. */

@@ -59,13 +59,13 @@ sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc
     rest_walk walk;
     void *memory;
     sc_status status;
-    memory = sc_scratch_take(scratch, sc_workspace_bytes(model), 1);
+    memory = sc_scratch_take(scratch, sc_workspace_bytes(model, NULL), 1);
     if (!memory) return SC_ERROR_MEMORY;
     memset(&walk, 0, sizeof walk);
     walk.flags = sc_model_flags_of_new(model);
     walk.levels = sc_model_levels_of_new(model);
     walk.state.model = model;
-    walk.state.workspace = sc_workspace_place(model, memory);
+    walk.state.workspace = sc_workspace_place(model, NULL, memory);
     walk.state.workspace->hooks = *hooks;
     sc_workspace_new_pose(model, walk.state.workspace);
     status = sc_positions_read(model, rest, stride, walk.state.workspace);

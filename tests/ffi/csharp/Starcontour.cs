@@ -53,6 +53,7 @@ namespace Starcontour
             public uint struct_size, output, pairs, contact, method, contour, rest_cache, simd;
             public void* filter, cancel;
             public ulong budget;
+            public void* tasks;
         }
 
         [StructLayout(LayoutKind.Sequential)]

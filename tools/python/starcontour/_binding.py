@@ -123,6 +123,7 @@ class sc_query_options(ctypes.Structure):
         ("filter", c_void_p),
         ("cancel", c_void_p),
         ("budget", c_uint64),
+        ("tasks", c_void_p),
     ]
 
 

@@ -156,6 +156,7 @@ impl Workspace<'_> {
             filter: ptr::null(),
             cancel: ptr::null(),
             budget: 0,
+            tasks: ptr::null(),
         };
         loop {
             let mut result = raw::sc_result {

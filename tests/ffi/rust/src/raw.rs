@@ -45,6 +45,7 @@ pub struct sc_query_options {
     pub filter: *const c_void,
     pub cancel: *const u32,
     pub budget: u64,
+    pub tasks: *const c_void,
 }
 
 #[repr(C)]
@@ -119,7 +120,7 @@ pub fn layouts() -> Vec<Layout> {
             index_type index_stride reserved positions indices),
         layout!(sc_pose: struct_size vertex_count position_type position_stride positions),
         layout!(sc_query_options: struct_size output pairs contact method contour rest_cache
-            simd filter cancel budget),
+            simd filter cancel budget tasks),
         layout!(sc_pair: a b),
         layout!(sc_result: struct_size collides count capacity pairs stats verdict reserved),
     ]

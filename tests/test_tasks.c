@@ -1,0 +1,453 @@
+/*
+ * The host's tasks: workspaces for several workers, what is refused, and that answers are those of one
+ * thread, whoever runs the parts of a query and in whatever order.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness.h"
+#include "inputs.h"
+#include "soups.h"
+#include "starcontour.h"
+
+/* ---- hosts ---- */
+
+enum { HOST_AT_ONCE, HOST_BACKWARDS, HOST_THREADS, HOST_COUNT };
+
+enum { THREADS_MAX = 8 };
+
+typedef struct host_worker host_worker;
+
+/* A host that runs parts in one of several ways and looks at how it is called. */
+typedef struct host {
+    sc_tasks tasks;
+    int way;
+    void (*run)(void *context, uint32_t part, uint32_t worker);
+    void *context;
+    uint32_t count, next;
+    uint64_t jobs, parts;
+    int is_busy; /* between enqueue and finish */
+    int mistakes;
+    pthread_mutex_t mutex; /* of next */
+    pthread_t threads[THREADS_MAX];
+    host_worker *workers; /* THREADS_MAX */
+} host;
+
+struct host_worker {
+    host *its;
+    uint32_t worker;
+};
+
+static void *host_work(void *argument)
+{
+    const host_worker *me = (const host_worker *)argument;
+    host *h = me->its;
+    for (;;) {
+        uint32_t part;
+        pthread_mutex_lock(&h->mutex);
+        part = h->next++;
+        pthread_mutex_unlock(&h->mutex);
+        if (part >= h->count) return NULL;
+        h->run(h->context, part, me->worker);
+    }
+}
+
+static void *host_enqueue(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
+                          void *context, uint32_t count)
+{
+    host *h = (host *)user;
+    if (h->is_busy || !count) ++h->mistakes;
+    h->is_busy = 1;
+    ++h->jobs;
+    h->parts += count;
+    h->run = run;
+    h->context = context;
+    h->count = count;
+    h->next = 0;
+    if (h->way == HOST_AT_ONCE)
+        for (uint32_t part = 0; part < count; ++part) run(context, part, 0);
+    if (h->way == HOST_THREADS)
+        for (uint32_t t = 0; t < h->tasks.workers; ++t)
+            if (pthread_create(&h->threads[t], NULL, host_work, &h->workers[t]) != 0) abort();
+    return h->way == HOST_AT_ONCE ? NULL : h;
+}
+
+static void host_finish(void *user, void *task)
+{
+    host *h = (host *)user;
+    if (!h->is_busy || task != (h->way == HOST_AT_ONCE ? NULL : h)) ++h->mistakes;
+    h->is_busy = 0;
+    if (h->way == HOST_BACKWARDS)
+        while (h->count > 0) h->run(h->context, --h->count, test_random_below(h->tasks.workers));
+    if (h->way == HOST_THREADS)
+        for (uint32_t t = 0; t < h->tasks.workers; ++t) pthread_join(h->threads[t], NULL);
+}
+
+static void host_start(host *h, int way, uint32_t workers)
+{
+    memset(h, 0, sizeof(*h));
+    h->way = way;
+    h->tasks.struct_size = sizeof(h->tasks);
+    h->tasks.workers = workers;
+    h->tasks.enqueue = host_enqueue;
+    h->tasks.finish = host_finish;
+    h->tasks.user = h;
+    pthread_mutex_init(&h->mutex, NULL);
+    h->workers = (host_worker *)test_allocate(THREADS_MAX * sizeof(host_worker));
+    for (uint32_t t = 0; t < THREADS_MAX; ++t) {
+        h->workers[t].its = h;
+        h->workers[t].worker = t;
+    }
+}
+
+static void host_stop(host *h)
+{
+    pthread_mutex_destroy(&h->mutex);
+    free(h->workers);
+}
+
+/* ---- what queries are asked ---- */
+
+typedef struct fixture {
+    soup mesh;
+    double *posed;
+    sc_model *model;
+    sc_workspace *workspace; /* for one worker */
+    sc_pose pose;
+} fixture;
+
+static int start(fixture *f, soup mesh, double turns, double noise)
+{
+    sc_mesh input = input_plain_mesh(&mesh);
+    memset(f, 0, sizeof(*f));
+    f->mesh = mesh;
+    f->posed = (double *)test_allocate(3 * (size_t)mesh.vertex_count * sizeof(double));
+    memcpy(f->posed, mesh.positions, 3 * (size_t)mesh.vertex_count * sizeof(double));
+    soup_smooth(f->posed, mesh.vertex_count, 0.1);
+    if (turns > 1) soup_fold(f->posed, mesh.vertex_count);
+    soup_twist(f->posed, mesh.vertex_count, turns);
+    soup_noise(f->posed, mesh.vertex_count, noise);
+    f->pose = input_plain_pose(f->posed, mesh.vertex_count);
+    return CHECK(sc_build(&input, NULL, &f->model) == SC_OK) &&
+           CHECK(sc_workspace_create(f->model, NULL, &f->workspace) == SC_OK);
+}
+
+static void stop(fixture *f)
+{
+    sc_workspace_free(f->workspace);
+    sc_model_free(f->model);
+    soup_free(&f->mesh);
+    free(f->posed);
+}
+
+static sc_workspace_options for_workers(uint32_t workers)
+{
+    sc_workspace_options options;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.workers = workers;
+    return options;
+}
+
+static sc_query_options no_options(void)
+{
+    sc_query_options options;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    return options;
+}
+
+/* What a query says. */
+typedef struct answer {
+    sc_status status;
+    sc_result result;
+    sc_stats stats;
+    sc_pair *pairs;
+} answer;
+
+static answer ask(const fixture *f, sc_workspace *workspace, const sc_query_options *options,
+                  uint64_t capacity)
+{
+    answer a;
+    memset(&a, 0, sizeof(a));
+    a.pairs = (sc_pair *)test_allocate((capacity + 1) * sizeof(sc_pair));
+    memset(a.pairs, 0xab, (capacity + 1) * sizeof(sc_pair));
+    a.stats.struct_size = sizeof(a.stats);
+    a.result.struct_size = sizeof(a.result);
+    a.result.capacity = capacity;
+    a.result.pairs = a.pairs;
+    a.result.stats = &a.stats;
+    a.status = sc_query(f->model, workspace, &f->pose, options, &a.result);
+    CHECK(a.pairs[capacity].a == 0xabababab && a.pairs[capacity].b == 0xabababab);
+    return a;
+}
+
+/* Whether two answers are the same, also in what they counted; frees b. */
+static int is_same(const answer *a, answer b)
+{
+    uint64_t filled = a->result.count < a->result.capacity ? a->result.count : a->result.capacity;
+    int same = a->status == b.status && a->result.count == b.result.count &&
+               a->result.collides == b.result.collides && a->result.verdict == b.result.verdict &&
+               memcmp(a->pairs, b.pairs, (size_t)filled * sizeof(sc_pair)) == 0 &&
+               memcmp(a->stats.counts, b.stats.counts, sizeof(a->stats.counts)) == 0 &&
+               a->stats.nodes_visited == b.stats.nodes_visited &&
+               a->stats.nodes_oriented == b.stats.nodes_oriented &&
+               a->stats.nodes_culled == b.stats.nodes_culled &&
+               a->stats.leaf_pairs == b.stats.leaf_pairs &&
+               a->stats.exact_fallbacks == b.stats.exact_fallbacks;
+    free(b.pairs);
+    return same;
+}
+
+/* ---- tests ---- */
+
+static void workspaces_for_workers(void)
+{
+    fixture f;
+    if (start(&f, soup_cloth(12, 12), 0.5, 0.1)) {
+        sc_query_options options = no_options();
+        answer expected = ask(&f, f.workspace, &options, 5000);
+        uint64_t plain = 0, size = 0, previous = 0;
+        CHECK(sc_workspace_size(f.model, &plain) == SC_OK);
+        CHECK(sc_workspace_size_for(f.model, NULL, &size) == SC_OK && size == plain);
+        for (uint32_t flags = 0; flags <= SC_WORKSPACE_STEP; ++flags)
+            for (uint32_t workers = 0; workers < 5; ++workers) {
+                sc_workspace_options o = for_workers(workers);
+                sc_workspace *workspace = f.workspace;
+                unsigned char *memory, *aligned;
+                o.flags = flags;
+                CHECK(sc_workspace_size_for(f.model, &o, &size) == SC_OK);
+                if (workers < 2 && !flags) CHECK(size == plain);
+                if (workers == 1) CHECK(size == previous);
+                if (workers > 1) CHECK(size > previous && size < previous + plain);
+                previous = size;
+                memory = (unsigned char *)test_allocate(size + 2 * SC_ALIGNMENT);
+                memset(memory, 0x77, size + 2 * SC_ALIGNMENT);
+                aligned = memory + (SC_ALIGNMENT - (uintptr_t)memory % SC_ALIGNMENT);
+                CHECK(sc_workspace_init_for(f.model, &o, aligned, size - 1, &workspace) ==
+                          SC_ERROR_WORKSPACE &&
+                      workspace == NULL);
+                CHECK(sc_workspace_init_for(f.model, &o, aligned + 8, size, &workspace) ==
+                          SC_ERROR_ALIGNMENT &&
+                      workspace == NULL);
+                CHECK(sc_workspace_init_for(f.model, &o, aligned, size, &workspace) == SC_OK);
+                CHECK(aligned[-1] == 0x77 && aligned[size] == 0x77);
+                CHECK(is_same(&expected, ask(&f, workspace, &options, 5000)));
+                CHECK(aligned[-1] == 0x77 && aligned[size] == 0x77);
+                sc_workspace_free(workspace); /* does nothing */
+                free(memory);
+                CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+                CHECK(is_same(&expected, ask(&f, workspace, &options, 5000)));
+                sc_workspace_free(workspace);
+            }
+        free(expected.pairs);
+    }
+    stop(&f);
+}
+
+static void *allocate_nothing(void *user, uint64_t size, uint64_t alignment)
+{
+    (void)alignment;
+    *(uint64_t *)user = size;
+    return NULL;
+}
+
+static void release_nothing(void *user, void *memory, uint64_t size)
+{
+    (void)user;
+    (void)memory;
+    (void)size;
+}
+
+/* options that all three calls refuse */
+static void check_refused(const fixture *f, const sc_workspace_options *options, sc_status expected,
+                          const char *what)
+{
+    static uint64_t block[SC_ALIGNMENT]; /* too small, which is looked at last */
+    unsigned char *memory = (unsigned char *)block;
+    sc_workspace *workspace = f->workspace;
+    uint64_t size = 77;
+    memory += SC_ALIGNMENT - (uintptr_t)memory % SC_ALIGNMENT;
+    CHECK_MSG(sc_workspace_size_for(f->model, options, &size) == expected && size == 77, "%s",
+              what);
+    CHECK_MSG(sc_workspace_init_for(f->model, options, memory, 64, &workspace) == expected &&
+                  workspace == NULL,
+              "%s", what);
+    workspace = f->workspace;
+    CHECK_MSG(sc_workspace_create_for(f->model, options, &workspace) == expected &&
+                  workspace == NULL,
+              "%s", what);
+}
+
+static void workspaces_refused(void)
+{
+    fixture f;
+    if (start(&f, soup_cloth(4, 4), 0, 0)) {
+        sc_workspace_options o = for_workers(2), none = for_workers(0);
+        sc_workspace *workspace = f.workspace;
+        sc_allocator allocator;
+        uint64_t size = 0, asked = 0;
+        CHECK(sc_workspace_size_for(NULL, &o, &size) == SC_ERROR_NULL);
+        CHECK(sc_workspace_size_for(f.model, &o, NULL) == SC_ERROR_NULL);
+        CHECK(sc_workspace_init_for(f.model, &o, &o, 8, NULL) == SC_ERROR_NULL);
+        CHECK(sc_workspace_init_for(NULL, &o, &o, 8, &workspace) == SC_ERROR_NULL && !workspace);
+        workspace = f.workspace;
+        CHECK(sc_workspace_init_for(f.model, &o, NULL, 8, &workspace) == SC_ERROR_NULL &&
+              !workspace);
+        CHECK(sc_workspace_create_for(f.model, &o, NULL) == SC_ERROR_NULL);
+        workspace = f.workspace;
+        CHECK(sc_workspace_create_for(NULL, &o, &workspace) == SC_ERROR_NULL && !workspace);
+        o.workers = SC_WORKERS_MAX;
+        CHECK(sc_workspace_size_for(f.model, &o, &size) == SC_OK);
+        o.workers = SC_WORKERS_MAX + 1;
+        check_refused(&f, &o, SC_ERROR_OPTION, "too many workers");
+        o.workers = 0xffffffffu;
+        check_refused(&f, &o, SC_ERROR_OPTION, "far too many workers");
+        for (uint32_t bit = 1; bit < 32; ++bit) {
+            o = none;
+            o.flags = 1u << bit;
+            check_refused(&f, &o, SC_ERROR_OPTION, "an unknown flag");
+        }
+        o = none;
+        o.reserved = 1;
+        check_refused(&f, &o, SC_ERROR_OPTION, "reserved");
+        for (uint32_t s = 0; s < sizeof(o); ++s) {
+            o = none;
+            o.struct_size = s;
+            if (s < 8 || s % sizeof(void *) != 0)
+                check_refused(&f, &o, SC_ERROR_STRUCT_SIZE, "struct_size");
+            else
+                CHECK(sc_workspace_size_for(f.model, &o, &size) == SC_OK);
+        }
+        memset(&allocator, 0, sizeof(allocator));
+        o = for_workers(3);
+        o.allocator = &allocator;
+        workspace = f.workspace;
+        CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_ERROR_NULL && !workspace);
+        allocator.allocate = allocate_nothing;
+        allocator.release = release_nothing;
+        allocator.user = &asked;
+        workspace = f.workspace;
+        CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_ERROR_MEMORY && !workspace);
+        CHECK(sc_workspace_size_for(f.model, &o, &size) == SC_OK && size == asked);
+    }
+    stop(&f);
+}
+
+static void tasks_refused(void)
+{
+    fixture f;
+    if (start(&f, soup_cloth(8, 8), 1, 0.1)) {
+        sc_workspace_options for_two = for_workers(2);
+        sc_query_options options = no_options();
+        answer expected = ask(&f, f.workspace, &options, 5000);
+        sc_workspace *two = NULL;
+        host h;
+        host_start(&h, HOST_AT_ONCE, 2);
+        options.tasks = &h.tasks;
+        CHECK(sc_workspace_create_for(f.model, &for_two, &two) == SC_OK);
+        for (uint32_t size = 0; size < sizeof(sc_tasks); ++size) {
+            sc_status status =
+                size < sizeof(sc_tasks) - sizeof(void *) || size % sizeof(void *) != 0
+                    ? SC_ERROR_STRUCT_SIZE
+                    : SC_OK;
+            answer a;
+            if (status == SC_OK) continue; /* user is needed here */
+            h.tasks.struct_size = size;
+            a = ask(&f, two, &options, 5000);
+            CHECK_MSG(a.status == status && a.result.count == 0, "size %u", (unsigned)size);
+            free(a.pairs);
+        }
+        h.tasks.struct_size = sizeof(h.tasks);
+        for (int wrong = 0; wrong < 4; ++wrong) {
+            const sc_status statuses[] = {SC_ERROR_NULL, SC_ERROR_NULL, SC_ERROR_WORKSPACE,
+                                          SC_ERROR_WORKSPACE};
+            const sc_tasks right = h.tasks;
+            answer a;
+            if (wrong == 0) h.tasks.enqueue = NULL;
+            if (wrong == 1) h.tasks.finish = NULL;
+            if (wrong == 2) h.tasks.workers = 3;
+            a = ask(&f, wrong == 3 ? f.workspace : two, &options, 5000);
+            CHECK_MSG(a.status == statuses[wrong] && a.result.count == 0 &&
+                          a.result.verdict == SC_VERDICT_NONE && a.pairs[0].a == 0xabababab,
+                      "%d: %s", wrong, sc_status_string(a.status));
+            free(a.pairs);
+            h.tasks = right;
+        }
+        CHECK(h.jobs == 0);
+        for (uint32_t workers = 0; workers < 3; ++workers) {
+            h.tasks.workers = workers;
+            CHECK(is_same(&expected, ask(&f, two, &options, 5000)));
+            if (workers < 2) CHECK(is_same(&expected, ask(&f, f.workspace, &options, 5000)));
+        }
+        CHECK(h.mistakes == 0);
+        free(expected.pairs);
+        host_stop(&h);
+        sc_workspace_free(two);
+    }
+    stop(&f);
+}
+
+/* Each method, kind of pair, output and length of the array, with and without statistics' clocks. */
+static void the_same_answers(void)
+{
+    static const uint32_t methods[][2] = {{SC_METHOD_SCTT, SC_CONTOUR_EXACT},
+                                          {SC_METHOD_SCTT, SC_CONTOUR_STAR},
+                                          {SC_METHOD_SCTT, SC_CONTOUR_NONE},
+                                          {SC_METHOD_AABB_SCTT, 0},
+                                          {SC_METHOD_AABB, 0}};
+    for (int scene = 0; scene < 4; ++scene) {
+        fixture f;
+        soup mesh = scene == 0   ? soup_cloth(40, 40)
+                    : scene == 1 ? soup_sphere(40, 40)
+                    : scene == 2 ? soup_many(60)
+                                 : soup_cloth(2, 1);
+        if (start(&f, mesh, scene == 0 ? 4 : 0.5, scene == 1 ? 0.02 : 0.001)) {
+            sc_workspace_options o = for_workers(THREADS_MAX);
+            sc_workspace *workspace = NULL;
+            CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+            for (uint32_t i = 0; i < 5 * 4 * 2; ++i) {
+                sc_query_options options = no_options();
+                answer all;
+                uint64_t capacities[4];
+                options.method = methods[i % 5][0];
+                options.contour = methods[i % 5][1];
+                options.pairs = i / 5 % 2;
+                options.contact = i / 10 % 2;
+                options.output = i / 20 ? SC_OUTPUT_COUNT : SC_OUTPUT_PAIRS;
+                all = ask(&f, f.workspace, &options, 100000);
+                CHECK(all.status == SC_OK);
+                if (scene < 2 && i < 10 && i % 5 != 2) CHECK(all.result.count > 20);
+                capacities[0] = all.result.count;
+                capacities[1] = all.result.count / 2;
+                capacities[2] = 0;
+                capacities[3] = all.result.count + 1000;
+                for (int way = 0; way < HOST_COUNT; ++way) {
+                    host h;
+                    host_start(&h, way, 1 + test_random_below(THREADS_MAX));
+                    for (int c = 0; c < 4; ++c) {
+                        answer serial;
+                        options.tasks = NULL;
+                        serial = ask(&f, f.workspace, &options, capacities[c]);
+                        options.tasks = &h.tasks;
+                        CHECK_MSG(is_same(&serial, ask(&f, workspace, &options, capacities[c])),
+                                  "scene %d, query %u, host %d, capacity %u", scene, (unsigned)i,
+                                  way, (unsigned)capacities[c]);
+                        free(serial.pairs);
+                    }
+                    CHECK(h.mistakes == 0 && !h.is_busy);
+                    host_stop(&h);
+                }
+                free(all.pairs);
+            }
+            sc_workspace_free(workspace);
+        }
+        stop(&f);
+    }
+}
+
+SC_TEST_MAIN(SC_TEST(workspaces_for_workers), SC_TEST(workspaces_refused), SC_TEST(tasks_refused),
+             SC_TEST(the_same_answers))
