@@ -10,6 +10,7 @@
 #include "filter_file.h"
 #include "ply_write.h"
 #include "query_subject.h"
+#include "query_text.h"
 #include "tool.h"
 
 #include <cjson/cJSON.h>
@@ -90,19 +91,6 @@ static const tool_choice method_choices[] = {{"sctt", SC_METHOD_SCTT},
                                              {"aabb-sctt", SC_METHOD_AABB_SCTT},
                                              {"aabb", SC_METHOD_AABB},
                                              {NULL, 0}};
-static const tool_choice contour_choices[] = {
-    {"exact", SC_CONTOUR_EXACT}, {"star", SC_CONTOUR_STAR}, {"none", SC_CONTOUR_NONE}, {NULL, 0}};
-
-static const char *const task_names[SC_TASK_COUNT] = {"update_boxes",
-                                                      "update_normals",
-                                                      "orientation_tests",
-                                                      "box_tests_after_orientation",
-                                                      "primitive_tests_after_orientation",
-                                                      "update_contours",
-                                                      "contour_tests",
-                                                      "box_tests_after_contour",
-                                                      "primitive_tests_after_contour"};
-
 typedef struct settings {
     uint32_t pairs; /* a value of pair_choices */
     uint32_t method, contour, partition, weld;
@@ -319,21 +307,6 @@ static bool write_ply(const mesh_file *mesh, const float *positions, const setti
     return written;
 }
 
-/* A field of comma-separated values (RFC 4180): quoted where it must be. */
-static void write_field(FILE *out, const char *text)
-{
-    if (!text[strcspn(text, ",\"\r\n")]) {
-        fputs(text, out);
-        return;
-    }
-    fputc('"', out);
-    for (; *text; text++) {
-        if (*text == '"') fputc('"', out);
-        fputc(*text, out);
-    }
-    fputc('"', out);
-}
-
 static void write_pairs_head(FILE *out, const settings *set)
 {
     const bool edges = chosen_pairs(set) == SC_PAIRS_EDGE;
@@ -343,16 +316,10 @@ static void write_pairs_head(FILE *out, const settings *set)
 static void write_pairs(FILE *out, const char *path, const pair_list *list)
 {
     for (uint64_t i = 0; i < list->count; i++) {
-        write_field(out, path);
+        query_text_field(out, path);
         fprintf(out, ",%lu,%lu\n", (unsigned long)list->pairs[i].a,
                 (unsigned long)list->pairs[i].b);
     }
-}
-
-/* To a tenth of a microsecond. */
-static double rounded(double milliseconds)
-{
-    return floor(milliseconds * 1e4 + 0.5) / 1e4;
 }
 
 static void add_count(cJSON *object, const char *name, const file_answer *answer, uint32_t kind,
@@ -369,38 +336,7 @@ static void add_time(cJSON *object, const char *name, const file_answer *answer,
     if (!answer->known[kind])
         cJSON_AddNullToObject(object, name);
     else
-        cJSON_AddNumberToObject(object, name, rounded(answer->query_ms[kind]));
-}
-
-static void add_stats(cJSON *object, const sc_stats *stats)
-{
-    cJSON *tasks = cJSON_AddArrayToObject(object, "tasks");
-    for (int i = 0; i < SC_TASK_COUNT; i++) {
-        cJSON *task = cJSON_CreateObject();
-        cJSON_AddStringToObject(task, "task", task_names[i]);
-        cJSON_AddNumberToObject(task, "ms", rounded(1e-6 * (double)stats->nanoseconds[i]));
-        cJSON_AddNumberToObject(task, "count", (double)stats->counts[i]);
-        cJSON_AddItemToArray(tasks, task);
-    }
-    cJSON_AddNumberToObject(object, "total_ms", rounded(1e-6 * (double)stats->total_nanoseconds));
-    cJSON_AddNumberToObject(object, "nodes_visited", (double)stats->nodes_visited);
-    cJSON_AddNumberToObject(object, "nodes_oriented", (double)stats->nodes_oriented);
-    cJSON_AddNumberToObject(object, "nodes_culled", (double)stats->nodes_culled);
-    cJSON_AddNumberToObject(object, "leaf_pairs", (double)stats->leaf_pairs);
-    cJSON_AddNumberToObject(object, "exact_fallbacks", (double)stats->exact_fallbacks);
-}
-
-/* Prints an object on a line of its own and frees it. */
-static bool print_json(cJSON *object)
-{
-    char *text = cJSON_PrintUnformatted(object);
-    if (text)
-        puts(text);
-    else
-        tool_error("out of memory");
-    cJSON_free(text);
-    cJSON_Delete(object);
-    return text != NULL;
+        cJSON_AddNumberToObject(object, name, query_text_rounded(answer->query_ms[kind]));
 }
 
 static void add_numbers(cJSON *object, const char *name, double numbers[2][3])
@@ -442,7 +378,7 @@ static bool print_json_answer(const file_answer *answer, const settings *set, co
     cJSON_AddNumberToObject(object, "components", answer->info.component_count);
     add_count(object, "triangle_pairs", answer, SC_PAIRS_TRIANGLE, set->any);
     add_count(object, "edge_triangle_pairs", answer, SC_PAIRS_EDGE, set->any);
-    cJSON_AddNumberToObject(object, "build_ms", rounded(answer->build_ms));
+    cJSON_AddNumberToObject(object, "build_ms", query_text_rounded(answer->build_ms));
     add_time(object, "query_ms", answer, chosen_pairs(set));
     add_time(object, "triangle_query_ms", answer, SC_PAIRS_TRIANGLE);
     add_time(object, "edge_query_ms", answer, SC_PAIRS_EDGE);
@@ -459,7 +395,8 @@ static bool print_json_answer(const file_answer *answer, const settings *set, co
     }
     cJSON_AddStringToObject(object, "method", tool_choice_name(method_choices, set->method));
     if (set->method == SC_METHOD_SCTT) {
-        cJSON_AddStringToObject(object, "contour", tool_choice_name(contour_choices, set->contour));
+        cJSON_AddStringToObject(object, "contour",
+                                tool_choice_name(query_text_contours, set->contour));
     } else {
         cJSON_AddNullToObject(object, "contour");
     }
@@ -470,9 +407,9 @@ static bool print_json_answer(const file_answer *answer, const settings *set, co
     if (set->ignore_path) cJSON_AddStringToObject(object, "ignore", set->ignore_path);
     if (set->groups_path) cJSON_AddStringToObject(object, "groups", set->groups_path);
     if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
-    if (set->stats) add_stats(cJSON_AddObjectToObject(object, "stats"), &answer->stats);
+    if (set->stats) query_text_add_stats(object, &answer->stats);
     if (set->contacts) add_contacts(object, list);
-    return print_json(object);
+    return query_text_print(object);
 }
 
 static bool print_json_error(const char *path, const char *error)
@@ -481,7 +418,7 @@ static bool print_json_error(const char *path, const char *error)
     cJSON_AddStringToObject(object, "file", path);
     cJSON_AddStringToObject(object, "status", "error");
     cJSON_AddStringToObject(object, "error", error);
-    return print_json(object);
+    return query_text_print(object);
 }
 
 static void print_table_head(const settings *set)
@@ -526,21 +463,7 @@ static void print_table_row(const file_answer *answer, const settings *set)
     }
     printf(" %9.2f %9.3f  %s\n", answer->build_ms, answer->query_ms[chosen_pairs(set)],
            answer->path);
-    if (!set->stats) return;
-    const sc_stats *stats = &answer->stats;
-    printf("    %-34s %10s %12s\n", "task", "ms", "count");
-    for (int i = 0; i < SC_TASK_COUNT; i++) {
-        char name[64];
-        snprintf(name, sizeof name, "%s", task_names[i]);
-        for (char *c = name; *c; c++) *c = *c == '_' ? ' ' : *c;
-        printf("    %-34s %10.4f %12.0f\n", name, 1e-6 * (double)stats->nanoseconds[i],
-               (double)stats->counts[i]);
-    }
-    printf("    %-34s %10.4f\n", "total", 1e-6 * (double)stats->total_nanoseconds);
-    printf("    test tree: %.0f nodes visited, %.0f oriented, %.0f culled; %.0f leaf pairs; "
-           "%.0f signs decided exactly\n",
-           (double)stats->nodes_visited, (double)stats->nodes_oriented, (double)stats->nodes_culled,
-           (double)stats->leaf_pairs, (double)stats->exact_fallbacks);
+    if (set->stats) query_text_stats(&answer->stats);
 }
 
 /* Prints what came of a query, to be followed by the exit status. */
@@ -685,12 +608,6 @@ static int do_replay(settings *set, FILE *out, pair_list *list)
     return status;
 }
 
-/* Failures first, then what is not known, then collisions. */
-static int severity(int status)
-{
-    return status == TOOL_FAILED ? 4 : status;
-}
-
 static int do_files(char **paths, int path_count, settings *set)
 {
     query_subject rest;
@@ -734,7 +651,7 @@ static int do_files(char **paths, int path_count, settings *set)
         if (set->replay_path) status = do_replay(set, out, &list);
         for (int i = 0; i < path_count; i++) {
             const int done = do_file(paths[i], set, common, pose_positions, out, &list);
-            if (severity(done) > severity(status)) status = done;
+            status = query_text_worse(status, done);
         }
     }
     if (out) {
@@ -889,7 +806,7 @@ int main(int argc, char **argv)
             valid &= tool_choose("--method", optarg, method_choices, &set.method);
             break;
         case OPTION_CONTOUR:
-            valid &= tool_choose("--contour", optarg, contour_choices, &set.contour);
+            valid &= tool_choose("--contour", optarg, query_text_contours, &set.contour);
             break;
         case OPTION_PARTITION:
             valid &= tool_choose("--partition", optarg, tool_partitions, &set.partition);
