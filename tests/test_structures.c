@@ -413,6 +413,18 @@ static int is_contour(const steps *s, const uint32_t *patch, uint32_t a, uint32_
     return same;
 }
 
+/* Whether each segment leads into the one after it, or into none of those that come later. */
+static int is_chained(const sc_csf *csf, const uint32_t *segments, uint32_t count)
+{
+    for (uint32_t i = 0; i + 1 < count; ++i) {
+        uint32_t end = csf->points[csf->point_last[segments[i]]], k;
+        if (end == csf->points[csf->point_first[segments[i + 1]]]) continue;
+        for (k = i + 2; k < count; ++k)
+            if (end == csf->points[csf->point_first[segments[k]]]) return 0;
+    }
+    return 1;
+}
+
 static void check_contours(const steps *s, const patches *p)
 {
     const sc_csf *csf = &s->csf;
@@ -425,11 +437,13 @@ static void check_contours(const steps *s, const patches *p)
             uint32_t a = s->sctt.patches[n].a - s->xbvh.level_first[l];
             uint32_t b = s->sctt.patches[n].b - s->xbvh.level_first[l];
             if (s->sctt.touch[n] == SC_NONE) {
-                wrong += !is_contour(s, patch, a, b, list, count);
+                wrong += !is_contour(s, patch, a, b, list, count) || !is_chained(csf, list, count);
             } else {
                 wrong += list[0] != s->sctt.touch[n];
                 wrong += !is_contour(s, patch, a, a, list + 2, list[1]);
                 wrong += !is_contour(s, patch, b, b, list + 2 + list[1], count - 2 - list[1]);
+                wrong += !is_chained(csf, list + 2, list[1]);
+                wrong += !is_chained(csf, list + 2 + list[1], count - 2 - list[1]);
             }
         }
     }

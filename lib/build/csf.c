@@ -283,6 +283,53 @@ static uint32_t find_piece(uint32_t *parent, uint32_t i)
     return i;
 }
 
+/* Segments one after the other as each leads into the next, so that a query finds few chains; starting_at is
+   SC_NONE for each point, before and after. */
+static void chain_segments(const sc_csf *csf, uint32_t *segments, uint32_t count,
+                           uint32_t *starting_at, uint32_t *next, uint32_t *old)
+{
+    uint32_t i, j, n = 0;
+    memcpy(old, segments, count * sizeof *old);
+    for (i = count; i-- > 0;) {
+        uint32_t *first = &starting_at[csf->points[csf->point_first[old[i]]]];
+        next[i] = *first;
+        *first = i;
+    }
+    for (i = 0; i < count; i++) /* the lists hold what is left */
+        while ((j = starting_at[csf->points[csf->point_first[old[i]]]]) != SC_NONE)
+            while (j != SC_NONE) {
+                starting_at[csf->points[csf->point_first[old[j]]]] = next[j];
+                segments[n++] = old[j];
+                j = starting_at[csf->points[csf->point_last[old[j]]]];
+            }
+}
+
+/* The same for each node; the patches of those that share one point are apart. */
+static sc_status chain_contours(builder *b, sc_csf *csf, uint32_t longest)
+{
+    uint32_t n, *next, *old, *starting_at;
+    next = (uint32_t *)sc_scratch_take(b->scratch, longest, sizeof *next);
+    old = (uint32_t *)sc_scratch_take(b->scratch, longest, sizeof *old);
+    starting_at = (uint32_t *)sc_scratch_take_filled(b->scratch, b->points->point_count,
+                                                     sizeof *starting_at, 0xff);
+    if (!next || !old || !starting_at) return SC_ERROR_MEMORY;
+    for (n = 0; n < b->sctt->node_count; n++) {
+        uint32_t *segments = csf->contours + csf->contour_first[n];
+        uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n], first = 0;
+        if (b->sctt->touch[n] != SC_NONE) {
+            first = segments[1];
+            segments += 2;
+            count -= 2;
+            chain_segments(csf, segments, first, starting_at, next, old);
+        }
+        chain_segments(csf, segments + first, count - first, starting_at, next, old);
+    }
+    sc_scratch_give(b->scratch, next);
+    sc_scratch_give(b->scratch, old);
+    sc_scratch_give(b->scratch, starting_at);
+    return SC_OK;
+}
+
 /* Counts the points round each node, and finds those whose segments hang together. */
 static sc_status measure_contours(builder *b, sc_csf *csf)
 {
@@ -290,6 +337,7 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
     for (n = 0; n < nodes; n++)
         if (csf->contour_first[n + 1] - csf->contour_first[n] > longest)
             longest = csf->contour_first[n + 1] - csf->contour_first[n];
+    if (chain_contours(b, csf, longest)) return SC_ERROR_MEMORY;
     parent = (uint32_t *)sc_scratch_take(b->scratch, longest, sizeof *parent);
     seen_at = (uint32_t *)sc_scratch_take_filled(b->scratch, b->points->point_count,
                                                  sizeof *seen_at, 0xff);

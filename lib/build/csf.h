@@ -37,12 +37,13 @@ typedef struct sc_csf {
     uint32_t *children;    /* child_first[segment_count - leaf_count] */
     /* The segments round the patches of each node of the self-collision test tree: around their
        union, or, for a pair that shares one point (sctt.touch), that point, the number of segments of
-       its first patch, those, and those of its second. */
+       its first patch, those, and those of its second. Each list goes from segment to segment as they
+       lead into each other, while there is a next one. */
     uint32_t *contour_first; /* node_count + 1 */
     uint32_t *contours;      /* contour_first[node_count] */
     uint8_t *in_pieces; /* node_count: 1 if no chain of segments with common ends joins them all */
     uint32_t *level_segments; /* level_count: segments of each level */
-    uint32_t contour_max; /* points of the segments round a node, at most */
+    uint32_t contour_max;     /* points of the segments round a node, at most */
 } sc_csf;
 
 sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
