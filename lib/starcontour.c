@@ -15,6 +15,7 @@
 #include "base/hooks.h"
 #include "base/isa.h"
 #include "base/structs.h"
+#include "build/locality.h"
 #include "build/model.h"
 #include "build/partition.h"
 #include "build/saved_model.h"
@@ -105,6 +106,8 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
     uint64_t stride;
     sc_status status;
     if ((status = sc_mesh_read(mesh, options, scratch, &s.points))) return status;
+    if (options->partition == SC_PARTITION_FAST || options->partition == SC_PARTITION_BISECT)
+        if ((status = sc_locality_sort(&s.points, scratch))) return status;
     if ((status = sc_adjacency_build(&s.points, scratch, &s.adjacency))) return status;
     if ((status = sc_partition_build(&s.points, &s.adjacency, options, scratch, &s.hierarchy)))
         return status;

@@ -7,10 +7,12 @@
  * SPDX-License-Identifier: MIT
  */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "build/locality.h"
 #include "build/model.h"
 #include "build/partition.h"
 #include "build/sharing.h"
@@ -41,6 +43,9 @@ static sc_status make_steps(steps *s, const soup *mesh, const sc_build_options *
     memset(s, 0, sizeof(*s));
     sc_scratch_init(&s->scratch, &allocator);
     status = sc_mesh_read(&m, options, &s->scratch, &s->points);
+    if (!status &&
+        (options->partition == SC_PARTITION_FAST || options->partition == SC_PARTITION_BISECT))
+        status = sc_locality_sort(&s->points, &s->scratch);
     if (!status) status = sc_adjacency_build(&s->points, &s->scratch, &s->adjacency);
     if (!status)
         status = sc_partition_build(&s->points, &s->adjacency, options, &s->scratch, &s->hierarchy);
@@ -105,11 +110,14 @@ static void check_edges(const steps *s)
     }
     qsort(sides, n, sizeof(side), compare_sides);
     for (i = 0; i < n; i = j) {
-        uint32_t forward = 0;
-        for (j = i; j < n && sides[j].low == sides[i].low && sides[j].high == sides[i].high; ++j)
-            forward += s->points.triangles[sides[j].half_edge] == sides[i].low;
+        uint32_t forward = 0, owner = sides[i].half_edge;
+        for (j = i; j < n && sides[j].low == sides[i].low && sides[j].high == sides[i].high; ++j) {
+            uint32_t h = sides[j].half_edge;
+            forward += s->points.triangles[h] == sides[i].low;
+            if (s->points.id[h / 3] < s->points.id[owner / 3]) owner = h; /* in a triangle: first */
+        }
         ++edges;
-        owned[sides[i].half_edge / 3] |= (uint8_t)(1 << sides[i].half_edge % 3);
+        owned[owner / 3] |= (uint8_t)(1 << owner % 3);
         boundary += j - i == 1;
         if (j - i == 2 && forward == 1) {
             opposite[sides[i].half_edge] = sides[i + 1].half_edge;
@@ -137,7 +145,7 @@ static void check_edges(const steps *s)
 /* Components that share points, by spreading the lowest triangle number. */
 static void check_components(const steps *s)
 {
-    uint32_t count = s->points.triangle_count, t, k, changed = 1, components = 0, wrong = 0;
+    uint32_t count = s->points.triangle_count, t, k, changed = 1, components = 0;
     uint32_t *of_point = (uint32_t *)test_allocate(s->points.point_count * sizeof(uint32_t));
     uint32_t *of_triangle = (uint32_t *)test_allocate(count * sizeof(uint32_t));
     for (t = 0; t < s->points.point_count; ++t) of_point[t] = SC_NONE;
@@ -150,12 +158,8 @@ static void check_components(const steps *s)
                 if (*p > of_triangle[t]) *p = of_triangle[t];
                 if (*p < of_triangle[t]) of_triangle[t] = *p;
             }
-    for (t = 0; t < count; ++t) {
-        components += of_triangle[t] == t;
-        wrong += s->adjacency.component[t] != s->adjacency.component[of_triangle[t]];
-        wrong += of_triangle[t] == t && s->adjacency.component[t] != components - 1;
-    }
-    CHECK_MSG(wrong == 0 && components == s->adjacency.component_count, "%s", s->name);
+    for (t = 0; t < count; ++t) components += of_triangle[t] == t;
+    CHECK_MSG(components == s->adjacency.component_count, "%s", s->name);
     free(of_triangle);
     free(of_point);
 }
@@ -569,7 +573,7 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
         level.struct_size = sizeof(level);
         CHECK(sc_model_get_level(model, l, &level) == SC_OK);
         CHECK(sc_model_get_patches(model, l, now, p->triangles) == SC_OK);
-        wrong += memcmp(now, patch, p->triangles * sizeof(uint32_t)) != 0;
+        for (i = 0; i < p->triangles; ++i) wrong += now[s->points.id[i]] != patch[i];
         for (i = 0; l > 0 && i < p->triangles; ++i) /* a patch of this level lies in one above */
             for (k = 0; k < i && k < 50; ++k) wrong += now[i] == now[k] && before[i] != before[k];
         for (n = s->sctt.level_first[l]; n < s->sctt.level_first[l + 1]; ++n) {
@@ -591,9 +595,9 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
     }
     CHECK_MSG(wrong == 0, "%s: patches of the model are wrong", s->name);
     for (wrong = i = 0; i < p->triangles; ++i) { /* triangles in leaf order, points renumbered */
-        uint32_t id = sc_model_triangle_id(model)[i];
-        wrong += id != s->hierarchy.order[i];
-        wrong += sc_model_edge_owned(model)[i] != s->adjacency.owned[id];
+        uint32_t id = sc_model_triangle_id(model)[i], t = s->hierarchy.order[i];
+        wrong += id != s->points.id[t];
+        wrong += sc_model_edge_owned(model)[i] != s->adjacency.owned[t];
         for (k = 0; k < 3; ++k) {
             uint32_t v = mesh->triangles[3 * id + k];
             if (sc_model_slot(model)[v] < SC_SLOT_WELDED)
@@ -792,8 +796,8 @@ static void hubs(void)
             uint8_t *seen = (uint8_t *)zeroed(p.count[p.levels - 1]);
             uint32_t i, n = 0;
             for (i = 0; i < p.triangles; ++i) {
-                const uint32_t *v = made.points.triangles + 3 * i;
-                if (v[0] != 0 && v[1] != 0 && v[2] != 0) continue;
+                const uint32_t *v = made.points.triangles + 3 * i, hub = made.points.slot[0];
+                if (v[0] != hub && v[1] != hub && v[2] != hub) continue;
                 n += !seen[patch[i]];
                 seen[patch[i]] = 1;
             }
@@ -943,5 +947,76 @@ static void validators(void)
     soup_free(&mesh);
 }
 
-SC_TEST_MAIN(SC_TEST(named_meshes), SC_TEST(hubs), SC_TEST(long_rings), SC_TEST(random_meshes),
-             SC_TEST(validators))
+/* How far apart the first corners of consecutive triangles are, on average. */
+static double mean_step(const sc_points *points)
+{
+    double sum = 0;
+    for (uint32_t t = 1; t < points->triangle_count; ++t)
+        for (int k = 0; k < 3; ++k)
+            sum += fabs(points->rest[3 * points->triangles[3 * t] + (uint32_t)k] -
+                        points->rest[3 * points->triangles[3 * t - 3] + (uint32_t)k]);
+    return sum / points->triangle_count;
+}
+
+/* Whether each triangle is still the caller's triangle of its number, in place and in numbers. */
+static int is_renumbered(const sc_points *points, const soup *mesh)
+{
+    uint8_t *seen = (uint8_t *)zeroed(points->triangle_count);
+    uint32_t wrong = 0, t, k, next = 0;
+    for (t = 0; t < points->triangle_count; ++t)
+        for (k = 0; k < 3; ++k) {
+            uint32_t p = points->triangles[3 * t + k], v;
+            if (k == 0 && (points->id[t] >= points->triangle_count || seen[points->id[t]]++)) {
+                ++wrong;
+                break;
+            }
+            v = mesh->triangles[3 * points->id[t] + k];
+            wrong += points->slot[v] != p || p > next;
+            wrong += memcmp(points->rest + 3 * p, mesh->positions + 3 * v, 24) != 0;
+            next += p == next;
+        }
+    free(seen);
+    return wrong == 0 && next == points->point_count;
+}
+
+static void locality(void)
+{
+    static const double sizes[] = {1, 1e300, 5e-324, 0};
+    soup mesh = soup_cloth(60, 60);
+    sc_mesh m = input_plain_mesh(&mesh);
+    sc_build_options options;
+    sc_allocator allocator = sc_memory_allocator(NULL);
+    sc_scratch scratch;
+    sc_points points;
+    uint32_t t, k, size;
+    for (t = mesh.triangle_count; t > 1; --t) { /* in any order */
+        uint32_t u = test_random_below(t), *a = mesh.triangles + 3 * (t - 1);
+        for (k = 0; k < 3; ++k) {
+            uint32_t v = a[k];
+            a[k] = mesh.triangles[3 * u + k];
+            mesh.triangles[3 * u + k] = v;
+        }
+    }
+    memset(&options, 0, sizeof(options));
+    options.weld = SC_WELD_NONE;
+    for (size = 0; size < 4; ++size) {
+        double before;
+        soup scaled = soup_copy(&mesh);
+        soup_scale(scaled.positions, scaled.vertex_count, sizes[size]);
+        m = input_plain_mesh(&scaled);
+        sc_scratch_init(&scratch, &allocator);
+        if (CHECK(sc_mesh_read(&m, &options, &scratch, &points) == SC_OK)) {
+            before = mean_step(&points);
+            CHECK(sc_locality_sort(&points, &scratch) == SC_OK);
+            CHECK_MSG(size > 1 || mean_step(&points) < before / 5, "mean step %g, before %g",
+                      mean_step(&points), before);
+            CHECK(is_renumbered(&points, &scaled));
+        }
+        sc_scratch_clear(&scratch);
+        soup_free(&scaled);
+    }
+    soup_free(&mesh);
+}
+
+SC_TEST_MAIN(SC_TEST(locality), SC_TEST(named_meshes), SC_TEST(hubs), SC_TEST(long_rings),
+             SC_TEST(random_meshes), SC_TEST(validators))

@@ -97,3 +97,23 @@ void sc_sort_pairs(sc_pair *pairs, uint64_t count)
     for (n = count; n > 1; n >>= 1) depth += 2;
     quicksort(pairs, count, depth);
 }
+
+enum { DIGIT_BITS = 10, DIGIT_VALUES = 1 << DIGIT_BITS };
+
+void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits)
+{
+    sc_pair *from = pairs, *to = spare;
+    uint32_t first[DIGIT_VALUES + 1], digit;
+    unsigned shift;
+    uint64_t i;
+    for (shift = 0; shift < bits; shift += DIGIT_BITS) {
+        sc_pair *swapped = from;
+        memset(first, 0, sizeof first);
+        for (i = 0; i < count; i++) first[(from[i].a >> shift & (DIGIT_VALUES - 1)) + 1]++;
+        for (digit = 0; digit < DIGIT_VALUES; digit++) first[digit + 1] += first[digit];
+        for (i = 0; i < count; i++) to[first[from[i].a >> shift & (DIGIT_VALUES - 1)]++] = from[i];
+        from = to;
+        to = swapped;
+    }
+    if (from != pairs) memcpy(pairs, from, (size_t)count * sizeof *pairs);
+}

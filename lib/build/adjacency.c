@@ -7,6 +7,12 @@
 
 #include "base/sort.h"
 
+/* The caller's number of a half-edge. */
+static uint64_t number_of(const sc_points *points, uint32_t h)
+{
+    return 3 * (uint64_t)points->id[h / 3] + h % 3;
+}
+
 /* Half-edges in a bucket by the lower end of their edge, sorted by the upper end, then by number. */
 static sc_status pair_half_edges(const sc_points *points, sc_scratch *scratch,
                                  sc_adjacency *adjacency)
@@ -39,8 +45,10 @@ static sc_status pair_half_edges(const sc_points *points, sc_scratch *scratch,
         sc_sort_pairs(sides + i, end - i);
         for (; i < end; i = j) {
             uint32_t owner = sides[i].b, forward = 0, backward = 0;
-            for (j = i; j < end && sides[j].a == sides[i].a; j++)
+            for (j = i; j < end && sides[j].a == sides[i].a; j++) {
                 (from[sides[j].b] == p) ? forward++ : backward++;
+                if (number_of(points, sides[j].b) < number_of(points, owner)) owner = sides[j].b;
+            }
             adjacency->edge_count++;
             adjacency->owned[owner / 3] |= (uint8_t)(1u << (owner % 3));
             if (forward + backward == 1) {
@@ -79,13 +87,12 @@ static uint32_t find_root(uint32_t *parent, uint32_t p)
     return p;
 }
 
-static sc_status find_components(const sc_points *points, sc_scratch *scratch,
-                                 sc_adjacency *adjacency)
+static sc_status count_components(const sc_points *points, sc_scratch *scratch,
+                                  sc_adjacency *adjacency)
 {
-    uint32_t *parent, *number, p, t;
+    uint32_t *parent, p, t;
     parent = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *parent);
-    number = (uint32_t *)sc_scratch_take_filled(scratch, points->point_count, sizeof *number, 0xff);
-    if (!parent || !number) return SC_ERROR_MEMORY;
+    if (!parent) return SC_ERROR_MEMORY;
     for (p = 0; p < points->point_count; p++) parent[p] = p;
     for (t = 0; t < points->triangle_count; t++) {
         const uint32_t *corner = points->triangles + 3 * (uint64_t)t;
@@ -102,12 +109,7 @@ static sc_status find_components(const sc_points *points, sc_scratch *scratch,
         else
             parent[c] = a;
     }
-    for (t = 0; t < points->triangle_count; t++) {
-        uint32_t root = find_root(parent, points->triangles[3 * (uint64_t)t]);
-        if (number[root] == SC_NONE) number[root] = adjacency->component_count++;
-        adjacency->component[t] = number[root];
-    }
-    sc_scratch_give(scratch, number);
+    for (p = 0; p < points->point_count; p++) adjacency->component_count += parent[p] == p;
     sc_scratch_give(scratch, parent);
     return SC_OK;
 }
@@ -123,15 +125,13 @@ sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_ad
     adjacency->corner_first = (uint32_t *)sc_scratch_take_filled(
         scratch, (uint64_t)points->point_count + 1, sizeof(uint32_t), 0);
     adjacency->corners = (uint32_t *)sc_scratch_take(scratch, corners, sizeof(uint32_t));
-    adjacency->component =
-        (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof(uint32_t));
     if (!adjacency->opposite || !adjacency->owned || !adjacency->corner_first ||
-        !adjacency->corners || !adjacency->component)
+        !adjacency->corners)
         return SC_ERROR_MEMORY;
     status = pair_half_edges(points, scratch, adjacency);
     if (status) return status;
     list_corners(points, adjacency);
-    return find_components(points, scratch, adjacency);
+    return count_components(points, scratch, adjacency);
 }
 
 /* A half-edge that has an opposite is the only one between its points that runs its way. So a walk that

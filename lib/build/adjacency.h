@@ -18,12 +18,13 @@ enum { SC_RING_MAX = 64 };
 
 /* All arrays are scratch memory. */
 typedef struct sc_adjacency {
-    uint32_t edge_count, boundary_edges, irregular_edges, component_count;
-    uint32_t *opposite;     /* 3 * triangle_count half-edges or SC_NONE */
-    uint8_t *owned;         /* triangle_count: bit k if side k names its edge */
+    uint32_t edge_count, boundary_edges, irregular_edges;
+    uint32_t component_count; /* parts that share no point */
+    uint32_t *opposite;       /* 3 * triangle_count half-edges or SC_NONE */
+    uint8_t *owned; /* triangle_count: bit k if side k names its edge: the one of all its sides
+                               whose triangle has the caller's lowest number */
     uint32_t *corner_first; /* point_count + 1: where the corners of each point start in corners */
     uint32_t *corners;      /* 3 * triangle_count half-edges that start at the point */
-    uint32_t *component;    /* triangle_count: parts that share no point, numbered from 0 */
 } sc_adjacency;
 
 static inline uint32_t sc_adjacency_next(uint32_t h)

@@ -120,7 +120,7 @@ sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_
                        sc_points *points)
 {
     uint64_t position_stride, index_bytes, h, corners;
-    uint32_t *representative, v;
+    uint32_t *representative, v, t;
     uint8_t *used;
     sc_status status;
 
@@ -149,10 +149,12 @@ sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_
     points->vertex_count = mesh->vertex_count;
     points->triangle_count = mesh->triangle_count;
     points->triangles = (uint32_t *)sc_scratch_take(scratch, corners, sizeof(uint32_t));
+    points->id = (uint32_t *)sc_scratch_take(scratch, mesh->triangle_count, sizeof(uint32_t));
     points->slot = (uint32_t *)sc_scratch_take(scratch, mesh->vertex_count, sizeof(uint32_t));
     representative = (uint32_t *)sc_scratch_take(scratch, mesh->vertex_count, sizeof(uint32_t));
     used = (uint8_t *)sc_scratch_take_filled(scratch, mesh->vertex_count, 1, 0);
-    if (!points->triangles || !points->slot || !representative || !used) return SC_ERROR_MEMORY;
+    if (!points->triangles || !points->id || !points->slot || !representative || !used)
+        return SC_ERROR_MEMORY;
     status = read_triangles(mesh, options->hooks, points->triangles);
     if (status) return status;
 
@@ -188,6 +190,7 @@ sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_
         if (points->slot[v] < SC_SLOT_WELDED)
             sc_mesh_read_position(mesh->positions, mesh->position_type, position_stride, v,
                                   points->rest + 3 * (uint64_t)points->slot[v]);
+    for (t = 0; t < mesh->triangle_count; t++) points->id[t] = t;
     sc_scratch_give(scratch, representative);
     sc_scratch_give(scratch, used);
     return SC_OK;

@@ -18,7 +18,8 @@
 typedef struct sc_points {
     uint32_t vertex_count, triangle_count, point_count;
     uint32_t *slot;      /* vertex_count */
-    uint32_t *triangles; /* 3 * triangle_count point numbers, in the caller's order */
+    uint32_t *triangles; /* 3 * triangle_count point numbers */
+    uint32_t *id;        /* triangle_count: the caller's number of each triangle */
     double *rest;        /* 3 * point_count */
 } sc_points;
 

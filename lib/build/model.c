@@ -98,8 +98,8 @@ static void write_triangles(const sc_points *points, const sc_adjacency *adjacen
     for (i = 0; i < m->triangle_count; i++) {
         for (k = 0; k < 3; k++)
             *triangle++ = number[points->triangles[3 * (uint64_t)order[i] + (uint64_t)k]];
-        id[i] = order[i];
-        place[order[i]] = i;
+        id[i] = points->id[order[i]];
+        place[id[i]] = i;
         owned[i] = adjacency->owned[order[i]];
     }
     for (i = 0; i < m->vertex_count; i++) {
