@@ -54,7 +54,7 @@ static sc_status ask(const subject *s, const double *positions, uint32_t vertex_
 /* Two cloths in one plane, askew: thousands of pairs. */
 static soup make_layers(void)
 {
-    soup a = soup_cloth(20, 20), b = soup_cloth(20, 20), both;
+    soup a = soup_cloth(30, 30), b = soup_cloth(30, 30), both;
     for (uint32_t v = 0; v < b.vertex_count; ++v) b.positions[3 * (size_t)v] += 0.013;
     both = soup_join(&a, &b);
     soup_free(&a);

@@ -176,6 +176,18 @@ typedef struct patches {
     uint32_t *parent;  /* levels * triangles, by patch */
 } patches;
 
+/* Different points of some triangles. */
+static uint32_t count_points(const sc_hierarchy *h, uint32_t first, uint32_t count)
+{
+    uint32_t points = 0;
+    for (uint32_t i = 0; i < 3 * count; ++i) {
+        uint32_t point = h->corner[3 * h->order[first + i / 3] + i % 3], j = 0;
+        while (h->corner[3 * h->order[first + j / 3] + j % 3] != point) ++j;
+        points += i == j;
+    }
+    return points;
+}
+
 static void visit(const sc_hierarchy *h, uint32_t node, uint32_t level, patches *out)
 {
     const sc_tree_node *n = &h->nodes[node];
@@ -190,6 +202,7 @@ static void visit(const sc_hierarchy *h, uint32_t node, uint32_t level, patches 
     }
     if (leaf) {
         CHECK(n->count >= 1 && n->count <= SC_LEAF_MAX);
+        CHECK(count_points(h, n->first, n->count) <= SC_LEAF_POINTS);
         return;
     }
     visit(h, n->left, level + 1, out);
@@ -648,7 +661,7 @@ static void check_sharing(steps *s)
             wrong +=
                 sharing.leaf[entry] <= (entry > sharing.first[a] ? sharing.leaf[entry - 1] : a);
         for (uint32_t b = a; b < leaves; ++b) {
-            const uint8_t *rows = b == a ? sharing.own_rows + SC_LEAF_MAX * a : NULL;
+            const uint16_t *rows = b == a ? sharing.own_rows + SC_LEAF_MAX * a : NULL;
             if (sharing.crowded[a] && sharing.crowded[b]) continue;
             for (entry = sharing.first[a]; entry < sharing.first[a + 1]; ++entry)
                 if (sharing.leaf[entry] == b) rows = sharing.rows + SC_LEAF_MAX * entry;

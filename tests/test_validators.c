@@ -175,11 +175,12 @@ static void check_long_chain(sc_scratch *scratch)
 {
     enum { NODES = 2 * SC_DEPTH_MAX };
     static sc_tree_node nodes[2 * NODES + 1];
-    static uint32_t order[NODES + 1];
+    static uint32_t order[NODES + 1], corner[3 * (NODES + 1)];
     sc_hierarchy hierarchy;
     for (uint32_t length = SC_DEPTH_MAX - 1; length < NODES; ++length) {
         uint32_t i;
         hierarchy.order = order;
+        hierarchy.corner = corner; /* all triangles at one point */
         hierarchy.nodes = nodes;
         hierarchy.triangle_count = hierarchy.leaf_count = length + 1;
         hierarchy.node_count = 2 * length + 1;

@@ -21,6 +21,9 @@ enum { DEPTH_MEASURED = 32 };
    10, 53 % pass the tests in the rest pose, 49 % with 64; without this limit, leaves are 6 % more. */
 enum { SLACK = 32 };
 
+/* Ten times the number of triangles that leaf clusters are to have on average. */
+enum { LEAF_AIM = 146 };
+
 typedef struct bisection {
     const sc_points *points;
     const sc_adjacency *adjacency;
@@ -286,10 +289,44 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
         b->side[triangles[i]] = (uint8_t)b->queue[b->component[triangles[i]]];
 }
 
-/* Writes side for a patch of more than SC_LEAF_MAX triangles; both sides get some. */
-static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count)
+/*
+ * How many leaves count triangles should get: a small number times a power of two, so that nearly all
+ * patches have two halves of one size. LEAF_AIM triangles a leaf leave what connecting and smoothing patches
+ * lives on.
+ */
+static uint32_t leaves_for(uint32_t count)
 {
-    uint32_t leaves = sc_hierarchy_leaves(count), left_leaves = (leaves + 1) / 2, found, i;
+    uint32_t least, step = 1;
+    if (count <= SC_LEAF_MAX) return 1;
+    least = (uint32_t)(((uint64_t)10 * count + LEAF_AIM - 1) / LEAF_AIM);
+    while ((least + step - 1) / step > 15) step *= 2;
+    return (least + step - 1) / step * step;
+}
+
+/* How many of a patch's leaves its first half gets: half, as multiples of the largest power of two in them. */
+static uint32_t left_part(uint32_t leaves)
+{
+    uint32_t step = leaves & (0u - leaves);
+    return step == leaves ? leaves / 2 : (leaves / step + 1) / 2 * step;
+}
+
+/* How many leaves the two sides of a patch get: as planned, if they fit. */
+static void share_leaves(uint32_t leaves, uint32_t left, uint32_t right, uint32_t *left_leaves,
+                         uint32_t *right_leaves)
+{
+    *left_leaves = left_part(leaves);
+    *right_leaves = leaves - *left_leaves;
+    if (left <= (uint64_t)*left_leaves * SC_LEAF_MAX && left >= *left_leaves &&
+        right <= (uint64_t)*right_leaves * SC_LEAF_MAX && right >= *right_leaves)
+        return;
+    *left_leaves = leaves_for(left);
+    *right_leaves = leaves_for(right);
+}
+
+/* Writes side for a patch that is to become so many leaves, two or more; both sides get some. */
+static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t leaves)
+{
+    uint32_t left_leaves = left_part(leaves), found, i;
     uint32_t left_target = (uint32_t)((uint64_t)count * left_leaves / leaves);
     uint32_t size[2] = {0, 0}, capacity[2];
     sc_status status;
@@ -318,18 +355,19 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count)
     return SC_OK;
 }
 
-static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint32_t depth,
-                              uint32_t *node)
+static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint32_t leaves,
+                              uint32_t depth, uint32_t *node)
 {
     sc_hierarchy *hierarchy = b->hierarchy;
     uint32_t *triangles = hierarchy->order + first, i, left = 0, right = 0, child;
+    uint32_t left_leaves, right_leaves;
     sc_status status;
-    if (count <= SC_LEAF_MAX || SC_HARDLY(depth > DEPTH_MEASURED)) {
+    if (leaves == 1 || SC_HARDLY(depth > DEPTH_MEASURED)) {
         *node = sc_hierarchy_add_balanced(hierarchy, first, count, depth);
         return SC_OK;
     }
     *node = sc_hierarchy_add(hierarchy, first, count, depth);
-    status = divide(b, triangles, count);
+    status = divide(b, triangles, count, leaves);
     if (status) return status;
     for (i = 0; i < count; i++) {
         uint32_t t = triangles[i];
@@ -339,10 +377,11 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
             triangles[left++] = t;
     }
     memcpy(triangles + left, b->queue, right * sizeof *triangles);
-    status = bisect_patch(b, first, left, depth + 1, &child);
+    share_leaves(leaves, left, right, &left_leaves, &right_leaves);
+    status = bisect_patch(b, first, left, left_leaves, depth + 1, &child);
     if (status) return status;
     hierarchy->nodes[*node].left = child;
-    status = bisect_patch(b, first + left, right, depth + 1, &child);
+    status = bisect_patch(b, first + left, right, right_leaves, depth + 1, &child);
     hierarchy->nodes[*node].right = child;
     return status;
 }
@@ -386,7 +425,7 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
 {
     uint32_t count = points->triangle_count, t, root;
     bisection b;
-    sc_status status = sc_hierarchy_init(hierarchy, count, scratch);
+    sc_status status = sc_hierarchy_init(hierarchy, points, scratch);
     if (status) return status;
     memset(&b, 0, sizeof b);
     b.points = points;
@@ -418,7 +457,7 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
         return SC_ERROR_MEMORY;
     measure(&b);
     for (t = 0; t < count; t++) hierarchy->order[t] = t;
-    status = bisect_patch(&b, 0, count, 1, &root);
+    status = bisect_patch(&b, 0, count, leaves_for(count), 1, &root);
     sc_scratch_give(scratch, b.graph);
     sc_scratch_give(scratch, b.refinement.heap);
     sc_scratch_give(scratch, b.refinement.moved);

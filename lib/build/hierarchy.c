@@ -5,14 +5,19 @@
  */
 #include "build/hierarchy.h"
 
-sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, uint32_t triangle_count, sc_scratch *scratch)
+sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, const sc_points *points, sc_scratch *scratch)
 {
+    uint32_t triangle_count = points->triangle_count;
     hierarchy->triangle_count = triangle_count;
     hierarchy->node_count = hierarchy->leaf_count = hierarchy->depth = 0;
     hierarchy->order = (uint32_t *)sc_scratch_take(scratch, triangle_count, sizeof(uint32_t));
     hierarchy->nodes = (sc_tree_node *)sc_scratch_take(scratch, 2 * (uint64_t)triangle_count,
                                                        sizeof(sc_tree_node));
-    return hierarchy->order && hierarchy->nodes ? SC_OK : SC_ERROR_MEMORY;
+    hierarchy->corner = points->triangles;
+    /* five triangles always fit into a leaf */
+    hierarchy->starts =
+        (uint32_t *)sc_scratch_take(scratch, (uint64_t)triangle_count / 5 + 2, sizeof(uint32_t));
+    return hierarchy->order && hierarchy->nodes && hierarchy->starts ? SC_OK : SC_ERROR_MEMORY;
 }
 
 uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t count, uint32_t depth)
@@ -25,21 +30,47 @@ uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t coun
     return hierarchy->node_count++;
 }
 
-uint32_t sc_hierarchy_add_balanced(sc_hierarchy *hierarchy, uint32_t first, uint32_t count,
-                                   uint32_t depth)
+/* The end of the longest run of order[first .. end) that fits into a leaf cluster. */
+static uint32_t leaf_end(const sc_hierarchy *hierarchy, uint32_t first, uint32_t end)
 {
-    uint32_t node = sc_hierarchy_add(hierarchy, first, count, depth);
-    if (count <= SC_LEAF_MAX) {
+    uint32_t point[SC_LEAF_POINTS + 3], points = 0, i, k;
+    if (end - first > SC_LEAF_MAX) end = first + SC_LEAF_MAX;
+    for (; first < end; first++) {
+        const uint32_t *corner = hierarchy->corner + 3 * (uint64_t)hierarchy->order[first];
+        for (k = 0; k < 3; k++) {
+            for (i = 0; i < points && point[i] != corner[k]; i++) continue;
+            if (i == points) point[points++] = corner[k];
+        }
+        if (points > SC_LEAF_POINTS) break;
+    }
+    return first;
+}
+
+/* A balanced subtree over count leaves, which start at start[0] to start[count - 1]; the last ends at
+   start[count]. */
+static uint32_t add_leaves(sc_hierarchy *hierarchy, const uint32_t *start, uint32_t count,
+                           uint32_t depth)
+{
+    uint32_t node = sc_hierarchy_add(hierarchy, start[0], start[count] - start[0], depth);
+    if (count == 1) {
         hierarchy->leaf_count++;
     } else {
-        uint32_t leaves = (count + SC_LEAF_MAX - 1) / SC_LEAF_MAX;
-        uint32_t left = (uint32_t)((uint64_t)count * ((leaves + 1) / 2) / leaves), child;
-        child = sc_hierarchy_add_balanced(hierarchy, first, left, depth + 1);
+        uint32_t left = (count + 1) / 2, child;
+        child = add_leaves(hierarchy, start, left, depth + 1);
         hierarchy->nodes[node].left = child;
-        child = sc_hierarchy_add_balanced(hierarchy, first + left, count - left, depth + 1);
+        child = add_leaves(hierarchy, start + left, count - left, depth + 1);
         hierarchy->nodes[node].right = child;
     }
     return node;
+}
+
+uint32_t sc_hierarchy_add_balanced(sc_hierarchy *hierarchy, uint32_t first, uint32_t count,
+                                   uint32_t depth)
+{
+    uint32_t leaves = 0, at, end = first + count;
+    for (at = first; at < end; at = leaf_end(hierarchy, at, end)) hierarchy->starts[leaves++] = at;
+    hierarchy->starts[leaves] = end;
+    return add_leaves(hierarchy, hierarchy->starts, leaves, depth);
 }
 
 int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch)
@@ -52,7 +83,9 @@ int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch)
         uint32_t n = stack[--top];
         const sc_tree_node *node = &hierarchy->nodes[n];
         if (node->left == SC_NONE) {
-            if (node->first != at || node->count < 1 || node->count > SC_LEAF_MAX) return 0;
+            if (node->first != at || node->count < 1 || node->count > SC_LEAF_MAX ||
+                node->count > hierarchy->triangle_count - at)
+                return 0;
             at += node->count;
             leaves++;
         } else {
@@ -66,6 +99,12 @@ int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch)
     for (i = 0; i < hierarchy->triangle_count; i++) {
         if (hierarchy->order[i] >= hierarchy->triangle_count || seen[hierarchy->order[i]]) return 0;
         seen[hierarchy->order[i]] = 1;
+    }
+    for (i = 0; i < hierarchy->node_count; i++) {
+        const sc_tree_node *node = &hierarchy->nodes[i];
+        if (node->left == SC_NONE && leaf_end(hierarchy, node->first, node->first + node->count) !=
+                                         node->first + node->count)
+            return 0;
     }
     sc_scratch_give(scratch, seen);
     return at == hierarchy->triangle_count && leaves == hierarchy->leaf_count;

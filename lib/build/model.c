@@ -303,9 +303,10 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, share_rows, uint8_t), sharing->rows, SC_LEAF_MAX * (uint64_t)m->share_count);
-    copy(NEW_ARRAY(m, share_own_rows, uint8_t), sharing->own_rows,
-         SC_LEAF_MAX * (uint64_t)m->leaf_count);
+    copy(NEW_ARRAY(m, share_rows, uint16_t), sharing->rows,
+         SC_LEAF_MAX * (uint64_t)m->share_count * sizeof(uint16_t));
+    copy(NEW_ARRAY(m, share_own_rows, uint16_t), sharing->own_rows,
+         SC_LEAF_MAX * (uint64_t)m->leaf_count * sizeof(uint16_t));
     copy(NEW_ARRAY(m, share_crowded, uint8_t), sharing->crowded, m->leaf_count);
     copy(NEW_ARRAY(m, level_first, uint32_t), xbvh->level_first,
          ((uint64_t)m->level_count + 1) * sizeof(uint32_t));

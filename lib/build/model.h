@@ -70,8 +70,8 @@ enum {
   X(leaf_first, uint32_t, (uint64_t)leaf_count + 1)                                                \
   X(share_first, uint32_t, (uint64_t)leaf_count + 1)                                               \
   X(share_leaf, uint32_t, share_count)                                                             \
-  X(share_rows, uint8_t, SC_LEAF_MAX *(uint64_t)share_count)                                       \
-  X(share_own_rows, uint8_t, SC_LEAF_MAX *(uint64_t)leaf_count)                                    \
+  X(share_rows, uint16_t, SC_LEAF_MAX *(uint64_t)share_count)                                      \
+  X(share_own_rows, uint16_t, SC_LEAF_MAX *(uint64_t)leaf_count)                                   \
   X(share_crowded, uint8_t, leaf_count)                                                            \
   X(level_first, uint32_t, (uint64_t)level_count + 1)                                              \
   X(child, uint32_t, patch_end)                                                                    \

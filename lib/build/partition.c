@@ -9,7 +9,7 @@
 
 #include "build/bisection.h"
 
-/* Nodes from the root to a leaf of a caller's tree at most; splitting large leaves adds up to 28. */
+/* Nodes from the root to a leaf of a caller's tree at most; splitting large leaves adds up to 29. */
 enum { CALLER_DEPTH_MAX = 60 };
 
 static sc_status check_order(const uint32_t *order, uint32_t count, sc_scratch *scratch)
@@ -105,7 +105,7 @@ sc_status sc_partition_build(const sc_points *points, const sc_adjacency *adjace
     if (options->partition > SC_PARTITION_BISECT) return SC_ERROR_OPTION;
     status = check_order(options->order, count, scratch);
     if (status) return status;
-    status = sc_hierarchy_init(hierarchy, count, scratch);
+    status = sc_hierarchy_init(hierarchy, points, scratch);
     if (status) return status;
     if (options->partition == SC_PARTITION_TREE) return copy_tree(options, scratch, hierarchy);
     memcpy(hierarchy->order, options->order, count * sizeof *hierarchy->order);

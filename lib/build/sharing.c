@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+/* Words for the masks of all rows. */
+enum { ROW_WORDS = SC_LEAF_MAX / 2 };
+
 /* Where a triangle is: its leaf cluster and its place in that. */
 typedef struct places {
     uint32_t *leaf; /* triangle_count */
@@ -17,20 +20,22 @@ typedef struct places {
 typedef struct found {
     uint32_t *entry; /* leaf_count: 1 + entry of a cluster in the lists, 0 if it did not turn up */
     sc_list leaf;
-    sc_list rows; /* two words an entry: the masks of rows 0 to 3 and 4 to 7 */
+    sc_list rows; /* ROW_WORDS an entry: the masks of two rows each */
 } found;
 
 static int note(sc_scratch *scratch, found *f, uint32_t other, unsigned row, unsigned bit)
 {
+    uint32_t k;
     if (!f->entry[other]) {
-        if (!sc_list_reserve(scratch, &f->leaf, 1) || !sc_list_reserve(scratch, &f->rows, 2))
+        if (!sc_list_reserve(scratch, &f->leaf, 1) ||
+            !sc_list_reserve(scratch, &f->rows, ROW_WORDS))
             return 0;
         sc_list_add(&f->leaf, other);
-        sc_list_add(&f->rows, 0);
-        sc_list_add(&f->rows, 0);
+        for (k = 0; k < ROW_WORDS; k++) sc_list_add(&f->rows, 0);
         f->entry[other] = (uint32_t)f->leaf.count;
     }
-    f->rows.items[2 * (f->entry[other] - 1) + row / 4] |= 1u << (8 * (row % 4) + bit);
+    f->rows.items[ROW_WORDS * (uint64_t)(f->entry[other] - 1) + row / 2] |=
+        1u << (16 * (row % 2) + bit);
     return 1;
 }
 
@@ -50,7 +55,7 @@ static int follow(const sc_points *points, const sc_adjacency *adjacency, const 
         for (i = begin; i < end; i++) {
             uint32_t other = adjacency->corners[i] / 3;
             if (at->leaf[other] == leaf && at->row[other] > row)
-                s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row] |= (uint8_t)(1u << at->row[other]);
+                s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row] |= (uint16_t)(1u << at->row[other]);
             else if (at->leaf[other] > leaf &&
                      !note(scratch, f, at->leaf[other], row, at->row[other]))
                 return 0;
@@ -64,17 +69,15 @@ static void sort_tail(found *f, uint64_t begin)
 {
     uint64_t i, j;
     for (i = begin; i < f->leaf.count; i++) {
-        uint32_t leaf = f->leaf.items[i], low = f->rows.items[2 * i],
-                 high = f->rows.items[2 * i + 1];
+        uint32_t leaf = f->leaf.items[i], rows[ROW_WORDS];
+        memcpy(rows, f->rows.items + ROW_WORDS * i, sizeof rows);
         f->entry[leaf] = 0;
         for (j = i; j > begin && f->leaf.items[j - 1] > leaf; j--) {
             f->leaf.items[j] = f->leaf.items[j - 1];
-            f->rows.items[2 * j] = f->rows.items[2 * j - 2];
-            f->rows.items[2 * j + 1] = f->rows.items[2 * j - 1];
+            memcpy(f->rows.items + ROW_WORDS * j, f->rows.items + ROW_WORDS * (j - 1), sizeof rows);
         }
         f->leaf.items[j] = leaf;
-        f->rows.items[2 * j] = low;
-        f->rows.items[2 * j + 1] = high;
+        memcpy(f->rows.items + ROW_WORDS * j, rows, sizeof rows);
     }
 }
 
@@ -91,7 +94,8 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
     at.row = (uint8_t *)sc_scratch_take(scratch, points->triangle_count, 1);
     f.entry = (uint32_t *)sc_scratch_take_filled(scratch, leaves, sizeof *f.entry, 0);
     s->first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)leaves + 1, sizeof *s->first);
-    s->own_rows = (uint8_t *)sc_scratch_take_filled(scratch, leaves, SC_LEAF_MAX, 0);
+    s->own_rows = (uint16_t *)sc_scratch_take_filled(scratch, (uint64_t)leaves * SC_LEAF_MAX,
+                                                     sizeof *s->own_rows, 0);
     s->crowded = (uint8_t *)sc_scratch_take_filled(scratch, leaves, 1, 0);
     if (!at.leaf || !at.row || !f.entry || !s->first || !s->own_rows || !s->crowded)
         return SC_ERROR_MEMORY;
@@ -109,12 +113,13 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
     }
     s->first[leaves] = (uint32_t)f.leaf.count;
     s->leaf = (uint32_t *)sc_scratch_take(scratch, f.leaf.count, sizeof *s->leaf);
-    s->rows = (uint8_t *)sc_scratch_take(scratch, f.leaf.count, SC_LEAF_MAX);
+    s->rows = (uint16_t *)sc_scratch_take(scratch, f.leaf.count * SC_LEAF_MAX, sizeof *s->rows);
     if (!s->leaf || !s->rows) return SC_ERROR_MEMORY;
     for (n = 0; n < f.leaf.count; n++) {
         s->leaf[n] = f.leaf.items[n];
         for (k = 0; k < SC_LEAF_MAX; k++)
-            s->rows[SC_LEAF_MAX * n + k] = (uint8_t)(f.rows.items[2 * n + k / 4] >> 8 * (k % 4));
+            s->rows[SC_LEAF_MAX * n + k] =
+                (uint16_t)(f.rows.items[ROW_WORDS * n + k / 2] >> 16 * (k % 2));
     }
     sc_scratch_give(scratch, at.leaf);
     sc_scratch_give(scratch, at.row);
@@ -141,7 +146,7 @@ int sc_sharing_validate(const sc_points *points, const uint32_t *order, const sc
     uint32_t a, b, i, j, entry, wrong = 0;
     for (a = 0; a < xbvh->leaf_count; a++)
         for (b = a, entry = s->first[a]; b < xbvh->leaf_count; b++) {
-            const uint8_t *rows = a == b ? s->own_rows + SC_LEAF_MAX * (uint64_t)a : NULL;
+            const uint16_t *rows = a == b ? s->own_rows + SC_LEAF_MAX * (uint64_t)a : NULL;
             if (a != b && entry < s->first[a + 1] && s->leaf[entry] == b)
                 rows = s->rows + SC_LEAF_MAX * (uint64_t)entry++;
             if (s->crowded[a] && s->crowded[b]) continue;

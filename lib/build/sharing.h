@@ -5,7 +5,7 @@
  *
  * Of about six pairs of triangles whose boxes overlap, for each triangle of a smooth mesh at rest, all but a few
  * share a point. They are told apart by a mask of bits for each triangle of a cluster and each
- * neighboring cluster: about 9 bytes a triangle.
+ * neighboring cluster: about 10 bytes a triangle.
  */
 #ifndef SC_BUILD_SHARING_H
 #define SC_BUILD_SHARING_H
@@ -22,9 +22,10 @@ typedef struct sc_sharing {
     uint32_t
         *first;     /* leaf_count + 1: entries of leaf cluster i are first[i] to first[i + 1] - 1 */
     uint32_t *leaf; /* first[leaf_count]: the other cluster, with a higher number, ascending */
-    uint8_t *rows; /* SC_LEAF_MAX an entry: bit j of row i: triangle i shares with j of the other */
-    uint8_t *own_rows; /* SC_LEAF_MAX a cluster: bit j > i of row i: its triangles i and j share */
-    uint8_t *crowded;  /* leaf_count: 1 if its rows do not say all */
+    uint16_t
+        *rows; /* SC_LEAF_MAX an entry: bit j of row i: triangle i shares with j of the other */
+    uint16_t *own_rows; /* SC_LEAF_MAX a cluster: bit j > i of row i: its triangles i and j share */
+    uint8_t *crowded;   /* leaf_count: 1 if its rows do not say all */
 } sc_sharing;
 
 sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacency,

@@ -92,6 +92,6 @@ unsigned sc_fan_plain_of_leaf(const sc_model *model, sc_workspace *w, uint32_t l
                        sc_fan_is_plain(model, w, corner[2]))
             << i;
     w->plain_tick[leaf] = w->pose_tick;
-    w->plain[leaf] = (uint8_t)plain;
+    w->plain[leaf] = (uint16_t)plain;
     return plain;
 }

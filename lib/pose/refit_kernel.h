@@ -37,7 +37,7 @@ static void SC_KERNEL(refit_leaf)(const sc_model *model, sc_workspace *w, uint32
         w->patch_boxes.side[k + 3][patch] = lanes_most(high);
         lanes_store(w->triangle_boxes.side[k] + at, low);
         lanes_store(w->triangle_boxes.side[k + 3] + at, high);
-        for (i = count; i < SC_LANES_COUNT; i++) /* no triangle: overlaps nothing */
+        for (i = count; i < SC_LEAF_MAX; i++) /* no triangle: overlaps nothing */
             w->triangle_boxes.side[k][at + i] = w->triangle_boxes.side[k + 3][at + i] = (float)NAN;
     }
 }

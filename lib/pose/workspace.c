@@ -31,7 +31,7 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     int k;
     w->fan = (uint32_t *)place(block, at, model->point_count, sizeof(uint32_t));
     w->plain_tick = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
-    w->plain = (uint8_t *)place(block, at, model->leaf_count, 1);
+    w->plain = (uint16_t *)place(block, at, model->leaf_count, sizeof(uint16_t));
     w->contour.point = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
     for (k = 0; k < 2; k++) w->contour.at[k] = (float *)place(block, at, listed, sizeof(float));
     for (k = 0; k < 4; k++) {
@@ -58,7 +58,7 @@ static void clear_own(const sc_model *model, sc_workspace *w)
 {
     memset(w->fan, 0, model->point_count * sizeof *w->fan);
     memset(w->plain_tick, 0, model->leaf_count * sizeof *w->plain_tick);
-    memset(w->plain, 0, model->leaf_count);
+    memset(w->plain, 0, model->leaf_count * sizeof *w->plain);
     memset(w->ball, 0, model->point_count * sizeof *w->ball);
 }
 
@@ -74,7 +74,7 @@ static uint64_t view_bytes(const sc_model *model)
 static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_workspace *w)
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
-    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX + SC_BOXES_PADDING;
+    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
     int k;
     w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count, sizeof(double));
     w->unit = (float *)place(block, &at, 4 * (uint64_t)model->point_count, sizeof(float));
@@ -106,7 +106,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
 {
     sc_workspace *w = (sc_workspace *)memory, view;
     uint64_t i, at, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
-    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX + SC_BOXES_PADDING;
+    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
     int k;
     memset(w, 0, sizeof *w);
     w->flags = options ? options->flags : 0;

@@ -105,7 +105,7 @@ struct sc_workspace {
     uint32_t pose_tick;
     uint32_t *fan; /* point_count: 2 * pose_tick + whether the fan projects one to one, if tested */
     uint32_t *plain_tick; /* leaf_count: pose_tick if plain is known */
-    uint8_t *plain;       /* leaf_count: bit i: the fans at all corners of triangle i are such */
+    uint16_t *plain;      /* leaf_count: bit i: the fans at all corners of triangle i are such */
 
     /* contours under the projection at hand */
     uint32_t tick;

@@ -208,17 +208,17 @@ static void find_shared(const sc_model *model, sc_leaf_pair *p)
     const uint32_t *triangle = sc_model_triangle(model), *first = sc_model_leaf_first(model);
     uint32_t i, j;
     for (i = first[p->a]; i < first[p->a + 1]; i++) {
-        uint8_t *row = &p->found[i - first[p->a]];
+        uint16_t *row = &p->found[i - first[p->a]];
         for (j = first[p->b], *row = 0; j < first[p->b + 1]; j++)
-            *row |= (uint8_t)(share_any(triangle + 3 * (uint64_t)i, triangle + 3 * (uint64_t)j)
-                              << (j - first[p->b]));
+            *row |= (uint16_t)(share_any(triangle + 3 * (uint64_t)i, triangle + 3 * (uint64_t)j)
+                               << (j - first[p->b]));
     }
     p->shared = p->found;
 }
 
 void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, sc_leaf_pair *p)
 {
-    static const uint8_t nothing[SC_LEAF_MAX] = {0};
+    static const uint16_t nothing[SC_LEAF_MAX] = {0};
     const sc_model *model = state->model;
     const uint32_t *first = sc_model_share_first(model), *leaf = sc_model_share_leaf(model);
     uint32_t i;

@@ -14,9 +14,9 @@
 /* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
 typedef struct sc_leaf_pair {
     uint32_t a, b;
-    const uint8_t *shared; /* SC_LEAF_MAX rows: triangles of b that share points with one of a */
-    unsigned plain_a, plain_b;  /* triangles whose corners all have plain fans, see pose/fan.h */
-    uint8_t found[SC_LEAF_MAX]; /* room for shared */
+    const uint16_t *shared; /* SC_LEAF_MAX rows: triangles of b that share points with one of a */
+    unsigned plain_a, plain_b;   /* triangles whose corners all have plain fans, see pose/fan.h */
+    uint16_t found[SC_LEAF_MAX]; /* room for shared */
 } sc_leaf_pair;
 
 /* Fills *pair. Of pairs of triangles that share points, those of which one is plain have nothing to report. */

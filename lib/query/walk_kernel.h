@@ -26,7 +26,7 @@ static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, un
     uint64_t tests = 0;
     for (; rows && !state->stop; rows &= rows - 1) {
         uint32_t i = sc_bits_lowest(rows);
-        unsigned mask = SC_KERNEL(overlap)(boxes, row_a + i, boxes, row_b) & SC_LEAF_ALL, shared;
+        unsigned mask = SC_KERNEL(overlap)(boxes, row_a + i, boxes, row_b), shared;
         if (p->a == p->b) mask &= ~((2u << i) - 1u);
         tests++;
         shared = p->shared[i] & (p->plain_a >> i & 1u ? SC_LEAF_ALL : p->plain_b);
