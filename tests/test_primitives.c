@@ -1,6 +1,6 @@
 /*
  * Two triangles on few points of a grid, in every position they can have, against the oracle: edge and
- * triangle pairs, touching and proper, any choice of edges.
+ * triangle pairs, touching and proper, any choice of edges. And eight pairs at once against one by one.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -8,15 +8,17 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "harness.h"
 #include "oracle.h"
 #include "query/primitives.h"
+#include "query/query_kernels.h"
 
 enum { MOST_POINTS = 8 };
 
 typedef struct two {
-    double points[3 * MOST_POINTS];
+    double points[3 * MOST_POINTS + 1]; /* one more is read */
     uint32_t count, corners[6];
 } two;
 
@@ -137,4 +139,133 @@ static void two_triangles(void)
     CHECK(meetings[0] >= meetings[1] && fallbacks > 0);
 }
 
-SC_TEST_MAIN(SC_TEST(two_triangles))
+/* Anywhere: so that nearly all signs are certain. */
+static void points_anywhere(two *t)
+{
+    t->count = 6;
+    for (uint32_t k = 0; k < t->count; ++k) t->corners[k] = k;
+    for (uint32_t i = 0; i < 3 * t->count; ++i) t->points[i] = test_random_unit();
+}
+
+/* Puts two triangles into a lane. Returns 0 if they share more than a batch's pairs may. */
+static int set_lane(sc_pair_lanes *lanes, uint32_t lane, const two *t)
+{
+    uint32_t common = 0, repeats = 0;
+    for (uint32_t i = 0; i < 3; ++i) {
+        const double *at[2] = {t->points + 3 * t->corners[i], t->points + 3 * t->corners[3 + i]};
+        for (int s = 0; s < 2; ++s) {
+            const uint32_t *c = t->corners + 3 * s;
+            lanes->corner[s][i][lane] = at[s];
+            repeats += c[i] == c[(i + 1) % 3];
+        }
+        for (uint32_t k = 0; k < 3; ++k)
+            if (t->corners[i] == t->corners[3 + k]) {
+                ++common;
+                lanes->shared[0][i] |= 1u << lane;
+                lanes->shared[1][k] |= 1u << lane;
+            }
+    }
+    return common == 0 || (common == 1 && repeats == 0);
+}
+
+/* Compares what a verdict says of a lane; returns 1 if it left something open. */
+static int check_lane(const sc_pair_lanes *lanes, const sc_verdict *verdict, uint32_t lane,
+                      const two *t, const char *which, uint64_t state)
+{
+    sc_triangle_pair pair;
+    uint64_t fallbacks = 0;
+    unsigned touch, cross, unsure = 0;
+    for (int k = 0; k < 3; ++k) {
+        pair.va[k] = t->corners[k];
+        pair.vb[k] = t->corners[3 + k];
+        pair.a[k] = lanes->corner[0][k][lane];
+        pair.b[k] = lanes->corner[1][k][lane];
+    }
+    touch = sc_primitives_edge_hits(&pair, 0, SC_PRIMITIVES_ALL_EDGES, &fallbacks);
+    cross = sc_primitives_edge_hits(&pair, 1, SC_PRIMITIVES_ALL_EDGES, &fallbacks);
+    for (int k = 0; k < 6; ++k) {
+        int s = k / 3, from = k % 3, to = (from + 1) % 3;
+        unsigned meets = verdict->meets[k] >> lane & 1u, open = verdict->unsure[k] >> lane & 1u;
+        if ((lanes->shared[s][from] | lanes->shared[s][to]) >> lane & 1u) continue;
+        if (t->corners[3 * s + from] == t->corners[3 * s + to]) continue;
+        unsure |= open;
+        CHECK_MSG(!(meets && open), "%s: edge %d is both; started at %" PRIu64, which, k, state);
+        if (meets)
+            CHECK_MSG(cross >> k & 1u, "%s: edge %d does not cross; started at %" PRIu64, which, k,
+                      state);
+        else if (!open)
+            CHECK_MSG(!(touch >> k & 1u), "%s: edge %d meets; started at %" PRIu64, which, k,
+                      state);
+    }
+    return (int)unsure;
+}
+
+static void eight_pairs_at_once(void)
+{
+    const sc_query_kernels *kernels[SC_ISA_AVX512 + 1] = {NULL, &sc_query_kernels_base};
+    uint32_t rounds = test_iterations(30000), left_open = 0, anywhere = 0;
+#if SC_ISA_X86
+    kernels[SC_ISA_AVX2] = &sc_query_kernels_avx2;
+    kernels[SC_ISA_AVX512] = &sc_query_kernels_avx512;
+#endif
+    for (uint32_t round = 0; round < rounds; ++round) {
+        static const char *const name[] = {"", "base", "AVX2", "AVX-512"};
+        two t[SC_PAIR_LANES];
+        sc_pair_lanes lanes;
+        sc_verdict first, verdict;
+        unsigned fine = 0;
+        uint64_t state = test_random_state();
+        int generic = round % 4 == 0;
+        memset(&lanes, 0, sizeof lanes);
+        for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane) {
+            memset(&t[lane], 0, sizeof t[lane]);
+            if (generic) {
+                points_anywhere(&t[lane]);
+            } else {
+                random_points(&t[lane]);
+                random_corners(&t[lane]);
+            }
+            fine |= (unsigned)set_lane(&lanes, lane, &t[lane]) << lane;
+        }
+        for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
+            kernels[isa]->decide(&lanes, &verdict);
+            if (isa == SC_ISA_BASE) first = verdict;
+            CHECK_MSG(!memcmp(&first, &verdict, sizeof verdict),
+                      "%s differs from base; started at %" PRIu64, name[isa], state);
+            for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane) {
+                int open;
+                if (!(fine >> lane & 1u)) continue;
+                open = check_lane(&lanes, &verdict, lane, &t[lane], name[isa], state);
+                if (!generic) continue;
+                anywhere++;
+                left_open += (uint32_t)open;
+            }
+        }
+    }
+    CHECK_MSG(left_open <= anywhere / 1000, "%u of %u pairs anywhere were left open", left_open,
+              anywhere);
+}
+
+/* Pairs in a plane that are well apart, with boxes that overlap, are told so. */
+static void apart_in_a_plane(void)
+{
+    static const double corner[6][2] = {{0, 0}, {4, 0}, {0, 4}, {4, 4}, {4, 1}, {1, 4}};
+    for (int axis = 0; axis < 3; ++axis)
+        for (int tilt = 0; tilt < 2; ++tilt) {
+            double points[19] = {0};
+            sc_pair_lanes lanes;
+            sc_verdict verdict;
+            memset(&lanes, 0, sizeof lanes);
+            for (int i = 0; i < 6; ++i) {
+                points[3 * i + axis] = tilt ? 0.3 * corner[i][0] - 0.1 * corner[i][1] : 0.7;
+                points[3 * i + (axis + 1) % 3] = corner[i][0];
+                points[3 * i + (axis + 2) % 3] = corner[i][1];
+            }
+            for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane)
+                for (int i = 0; i < 6; ++i) lanes.corner[i / 3][i % 3][lane] = points + 3 * i;
+            sc_query_kernels_base.decide(&lanes, &verdict);
+            for (int k = 0; k < 6; ++k) CHECK(verdict.meets[k] == 0 && verdict.unsure[k] == 0);
+        }
+}
+
+SC_TEST_MAIN(SC_TEST(two_triangles), SC_TEST(eight_pairs_at_once), SC_TEST(apart_in_a_plane))

@@ -49,6 +49,7 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->walk.self = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
     w->walk.culled = (uint8_t *)place(block, at, model->patch_end, 1);
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
+    w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->ball = (uint32_t *)place(block, at, model->point_count, sizeof(uint32_t));
     w->ball_queue = (uint32_t *)place(block, at, model->point_count, sizeof(uint32_t));
 }
@@ -76,7 +77,7 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
     int k;
-    w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count, sizeof(double));
+    w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count + 1, sizeof(double));
     w->unit = (float *)place(block, &at, 4 * (uint64_t)model->point_count, sizeof(float));
     for (k = 0; k < 6; k++)
         w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
@@ -148,7 +149,7 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
     }
     workspace->pose_tick++;
     workspace->boxes_ready = 0;
-    workspace->candidate_count = 0;
+    workspace->candidate_count = workspace->neighbor_count = 0;
     workspace->ball_center = SC_NONE;
 }
 

@@ -7,7 +7,7 @@
  *       bounds_tick | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
- * candidates, ball, ball_queue. For each worker but the first there is a view: an sc_workspace and own arrays.
+ * candidates, neighbors, ball, ball_queue. For each worker but the first there is a view: an sc_workspace and own arrays.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -92,7 +92,7 @@ struct sc_workspace {
     sc_hooks hooks;
 
     /* the pose; all but position valid only in a query */
-    double *position;     /* 3 * point_count */
+    double *position;     /* 3 * point_count, and one that is read */
     double center[3];     /* of the box of all points */
     double radius;        /* largest distance of a coordinate from center */
     double scale;         /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 */
@@ -116,7 +116,8 @@ struct sc_workspace {
     sc_walk walk;
 
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
-    uint32_t candidate_count;
+    sc_pair *neighbors;  /* SC_CANDIDATES_MAX of such that share one point */
+    uint32_t candidate_count, neighbor_count;
 
     /* points near a triangle in number of edges, see query/filter.c */
     uint32_t *ball;       /* point_count: ball_tick if in the ball */

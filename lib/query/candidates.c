@@ -3,14 +3,14 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * What happens to a pair depends on the vertices it shares. None: it is collected; then a test of all
- * vertices against both planes, eight pairs at a time, for flat pairs another along their sides, then the
- * exact primitives. One or more: nothing if the fan round a shared vertex projects one to one, else the
- * exact primitives.
+ * What happens to a pair depends on the vertices it shares. None: it is collected; then many are decided at once,
+ * eight at a time, and those of which that is not certain by the exact primitives. One: nothing if the fan round the
+ * shared vertex projects one to one, else the same. More: nothing if a fan round one of them does, else the exact
+ * primitives.
  */
 #include "query/candidates.h"
 
-#include <math.h>
+#include <string.h>
 
 #include "base/bits.h"
 #include "pose/fan.h"
@@ -19,56 +19,39 @@
 #include "query/primitives.h"
 #include "query/query_kernels.h"
 
-/*
- * Whether a direction in the plane of one of two triangles, across one of its sides, certainly
- * separates them. Any direction m will do, so the rounding of m does not matter; m . (p - a) collects
- * one difference, one product and two additions: 5 * 2^-53 |m|1 |p - a|max is more. This spares flat
- * regions the exact primitives, which are slow there.
- */
-static int side_separates(const sc_pair_lanes *lanes, unsigned lane)
+/* Reports that two triangles meet. */
+static void take_triangles(sc_query_state *state, const sc_pair *places)
 {
-    const double relative = 5 * 1.1102230246251565e-16, absolute = 1e-290;
-    double x[2][3][3];
-    int s, k, i, c;
-    for (s = 0; s < 2; s++)
-        for (k = 0; k < 3; k++)
-            for (c = 0; c < 3; c++) x[s][k][c] = lanes->corner[s][k][c][lane];
-    for (s = 0; s < 2; s++) {
-        double(*t)[3] = x[s], (*o)[3] = x[1 - s];
-        double e[3][3], n[3];
-        for (k = 0; k < 3; k++)
-            for (c = 0; c < 3; c++) e[k][c] = t[(k + 1) % 3][c] - t[k][c];
-        for (c = 0; c < 3; c++)
-            n[c] = e[0][(c + 1) % 3] * e[1][(c + 2) % 3] - e[0][(c + 2) % 3] * e[1][(c + 1) % 3];
-        for (k = 0; k < 3; k++) {
-            double m[3], own = HUGE_VAL, other = -HUGE_VAL, reach = 0, bound;
-            for (c = 0; c < 3; c++)
-                m[c] = n[(c + 1) % 3] * e[k][(c + 2) % 3] - n[(c + 2) % 3] * e[k][(c + 1) % 3];
-            for (i = 0; i < 6; i++) {
-                const double *p = i < 3 ? t[i] : o[i - 3];
-                double d0 = p[0] - t[k][0], d1 = p[1] - t[k][1], d2 = p[2] - t[k][2];
-                double along = m[0] * d0 + m[1] * d1 + m[2] * d2;
-                if (along != along) return 0;
-                if (fabs(d0) > reach) reach = fabs(d0);
-                if (fabs(d1) > reach) reach = fabs(d1);
-                if (fabs(d2) > reach) reach = fabs(d2);
-                if (i < 3)
-                    own = along < own ? along : own;
-                else
-                    other = along > other ? along : other;
-            }
-            bound =
-                relative * (fabs(m[0]) + fabs(m[1]) + fabs(m[2])) * reach + absolute * (1 + reach);
-            if (own - other > 2.0001 * bound) return 1;
-        }
-    }
-    return 0;
+    const uint32_t *id = sc_model_triangle_id(state->model);
+    uint32_t a = id[places->a], b = id[places->b];
+    sc_pairs_take(state, a < b ? a : b, a < b ? b : a);
 }
 
+/* Reports edges that meet the other triangle. */
+static void take_edges(sc_query_state *state, const sc_pair *places, unsigned hits)
+{
+    const uint32_t *id = sc_model_triangle_id(state->model);
+    for (; hits; hits &= hits - 1) {
+        uint32_t bit = sc_bits_lowest(hits);
+        if (bit < 3)
+            sc_pairs_take(state, 3 * id[places->a] + bit, id[places->b]);
+        else
+            sc_pairs_take(state, 3 * id[places->b] + bit - 3, id[places->a]);
+    }
+}
+
+/* The edges that bear the names of the two triangles' edges. */
+static unsigned edges_wanted(const sc_query_state *state, const sc_pair *places)
+{
+    const uint8_t *owned = sc_model_edge_owned(state->model);
+    return (unsigned)owned[places->a] | (unsigned)owned[places->b] << 3;
+}
+
+/* Decides a pair alone, exactly. */
 static void decide_pair(sc_query_state *state, const sc_pair *places)
 {
     const sc_model *model = state->model;
-    const uint32_t *triangle = sc_model_triangle(model), *id = sc_model_triangle_id(model);
+    const uint32_t *triangle = sc_model_triangle(model);
     const double *position = state->workspace->position;
     int proper = state->options.contact == SC_CONTACT_PROPER, k;
     sc_triangle_pair pair;
@@ -79,21 +62,12 @@ static void decide_pair(sc_query_state *state, const sc_pair *places)
         pair.a[k] = position + 3 * (uint64_t)pair.va[k];
         pair.b[k] = position + 3 * (uint64_t)pair.vb[k];
     }
-    if (state->options.pairs == SC_PAIRS_EDGE) {
-        const uint8_t *owned = sc_model_edge_owned(model);
-        unsigned edges = (unsigned)owned[places->a] | (unsigned)owned[places->b] << 3, hits;
-        hits = sc_primitives_edge_hits(&pair, proper, edges, &state->stats.exact_fallbacks);
-        for (; hits; hits &= hits - 1) {
-            uint32_t bit = sc_bits_lowest(hits);
-            if (bit < 3)
-                sc_pairs_take(state, 3 * id[places->a] + bit, id[places->b]);
-            else
-                sc_pairs_take(state, 3 * id[places->b] + bit - 3, id[places->a]);
-        }
-    } else if (sc_primitives_triangles_meet(&pair, proper, &state->stats.exact_fallbacks)) {
-        uint32_t a = id[places->a], b = id[places->b];
-        sc_pairs_take(state, a < b ? a : b, a < b ? b : a);
-    }
+    if (state->options.pairs == SC_PAIRS_EDGE)
+        take_edges(state, places,
+                   sc_primitives_edge_hits(&pair, proper, edges_wanted(state, places),
+                                           &state->stats.exact_fallbacks));
+    else if (sc_primitives_triangles_meet(&pair, proper, &state->stats.exact_fallbacks))
+        take_triangles(state, places);
 }
 
 /* Lists the vertices that two triangles share; returns how many. */
@@ -107,7 +81,8 @@ static int list_shared(const uint32_t *a, const uint32_t *b, uint32_t shared[3])
     return count;
 }
 
-/* Whether two triangles that share vertices can have anything to report. */
+/* Whether two triangles that share vertices can have anything to report: 0 or the number of shared vertices, or 3 if
+   one is shared but the batch's rules do not cover the pair. */
 static int neighbors_matter(sc_query_state *state, const uint32_t *a, const uint32_t *b)
 {
     uint32_t shared[3] = {0, 0, 0};
@@ -118,61 +93,142 @@ static int neighbors_matter(sc_query_state *state, const uint32_t *a, const uint
         return 0;
     for (i = 0; i < count; i++)
         if (sc_fan_is_plain(state->model, state->workspace, shared[i])) return 0;
-    return 1;
+    return count;
 }
 
-/* A triangle and some of a leaf cluster that share vertices with it. */
-static void decide_neighbors(sc_query_state *state, uint32_t a, uint32_t first_b, unsigned mask)
+static int repeats_point(const uint32_t *t)
 {
-    const uint32_t *triangle = sc_model_triangle(state->model);
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/* A triangle and some of a leaf cluster that share vertices with it: those that share one are collected. */
+static void take_neighbors(sc_query_state *state, uint32_t a, uint32_t first_b, unsigned mask)
+{
+    const uint32_t *triangle = sc_model_triangle(state->model), *t = triangle + 3 * (uint64_t)a;
+    sc_workspace *w = state->workspace;
     uint32_t previous = sc_state_switch(state, sc_state_primitive_task(state));
     for (; mask && !state->stop; mask &= mask - 1) {
         sc_pair pair;
-        state->stats.counts[sc_state_primitive_task(state)]++;
+        const uint32_t *u;
+        int shared;
         pair.a = a;
         pair.b = first_b + sc_bits_lowest(mask);
-        if (neighbors_matter(state, triangle + 3 * (uint64_t)pair.a,
-                             triangle + 3 * (uint64_t)pair.b))
-            decide_pair(state, &pair);
+        u = triangle + 3 * (uint64_t)pair.b;
+        shared = neighbors_matter(state, t, u);
+        if (shared == 1 && !repeats_point(t) && !repeats_point(u)) {
+            w->neighbors[w->neighbor_count++] = pair;
+            continue;
+        }
+        state->stats.counts[sc_state_primitive_task(state)]++;
+        if (shared) decide_pair(state, &pair);
     }
     sc_state_switch(state, previous);
 }
 
-void sc_candidates_decide(sc_query_state *state)
+/* Sets the corners of some pairs, up to SC_PAIR_LANES; the last fills the row. */
+static void load_lanes(const sc_query_state *state, const sc_pair *pairs, uint32_t count,
+                       sc_pair_lanes *lanes)
 {
     const uint32_t *triangle = sc_model_triangle(state->model);
-    sc_workspace *w = state->workspace;
-    const double *position = w->position;
-    uint32_t i, j, count, previous;
-    int s, k, c;
-    if (state->sifts) sc_filter_sift(state);
-    count = w->candidate_count;
-    if (!count) return;
-    previous = sc_state_switch(state, sc_state_primitive_task(state));
-    state->stats.counts[sc_state_primitive_task(state)] += count;
-    for (i = 0; i < count && !state->stop; i += SC_PAIR_LANES) {
-        sc_pair_lanes x;
-        sc_plane_test planes;
-        unsigned rest;
-        for (j = 0; j < SC_PAIR_LANES; j++) { /* the last pair fills the row */
-            const sc_pair *pair = &w->candidates[i + j < count ? i + j : count - 1];
-            for (s = 0; s < 2; s++)
-                for (k = 0; k < 3; k++) {
-                    uint64_t corner = 3 * (uint64_t)(s ? pair->b : pair->a) + (uint64_t)k;
-                    const double *p = position + 3 * (uint64_t)triangle[corner];
-                    for (c = 0; c < 3; c++) x.corner[s][k][c][j] = p[c];
-                }
-        }
-        planes = sc_query_kernels_of(w)->test_planes(&x);
-        rest = ~planes.apart & ((1u << SC_PAIR_LANES) - 1u);
-        if (count - i < SC_PAIR_LANES) rest &= (1u << (count - i)) - 1u;
-        for (; rest && !state->stop; rest &= rest - 1) {
-            unsigned lane = sc_bits_lowest(rest);
-            if ((planes.flat >> lane & 1u) && side_separates(&x, lane)) continue;
-            decide_pair(state, &w->candidates[i + lane]);
+    const double *position = state->workspace->position;
+    uint32_t j;
+    int k;
+    for (j = 0; j < SC_PAIR_LANES; j++) {
+        const sc_pair *pair = &pairs[j < count ? j : count - 1];
+        const uint32_t *a = triangle + 3 * (uint64_t)pair->a, *b = triangle + 3 * (uint64_t)pair->b;
+        for (k = 0; k < 3; k++) {
+            lanes->corner[0][k][j] = position + 3 * (uint64_t)a[k];
+            lanes->corner[1][k][j] = position + 3 * (uint64_t)b[k];
         }
     }
-    w->candidate_count = 0;
+}
+
+/* Marks the corners that the triangles share. */
+static void mark_shared(sc_pair_lanes *lanes)
+{
+    uint32_t j;
+    int i, k;
+    for (j = 0; j < SC_PAIR_LANES; j++)
+        for (i = 0; i < 3; i++)
+            for (k = 0; k < 3; k++)
+                if (lanes->corner[0][i][j] == lanes->corner[1][k][j]) {
+                    lanes->shared[0][i] |= 1u << j;
+                    lanes->shared[1][k] |= 1u << j;
+                }
+}
+
+/* Bit k: edge k of the first triangle, k - 3 of the second, of the pair in a lane, that is not to be looked at. */
+static unsigned edges_at_shared(const sc_pair_lanes *lanes, uint32_t j)
+{
+    unsigned edges = 0;
+    int s, k;
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 3; k++)
+            edges |= ((lanes->shared[s][k] | lanes->shared[s][(k + 1) % 3]) >> j & 1u)
+                     << (3 * s + k);
+    return edges;
+}
+
+/* What a verdict says of a lane, as bits for the edges. */
+static unsigned edges_of_lane(const unsigned lanes[6], uint32_t j)
+{
+    unsigned edges = 0;
+    int k;
+    for (k = 0; k < 6; k++) edges |= (lanes[k] >> j & 1u) << k;
+    return edges;
+}
+
+/* Reports what is certain of a pair, or decides it alone. */
+static void conclude(sc_query_state *state, const sc_pair *places, unsigned meets, unsigned unsure)
+{
+    if (state->options.pairs == SC_PAIRS_EDGE) {
+        unsigned wanted = edges_wanted(state, places);
+        if (unsure & wanted)
+            decide_pair(state, places);
+        else
+            take_edges(state, places, meets & wanted);
+    } else if (meets) {
+        take_triangles(state, places);
+    } else if (unsure) {
+        decide_pair(state, places);
+    }
+}
+
+/* Decides pairs that share nothing, or one point each. */
+static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t count, int share)
+{
+    uint32_t i;
+    state->stats.counts[sc_state_primitive_task(state)] += count;
+    for (i = 0; i < count && !sc_state_cancelled(state); i += SC_PAIR_LANES) {
+        sc_pair_lanes lanes;
+        sc_verdict verdict;
+        unsigned open = 0;
+        int k;
+        memset(lanes.shared, 0, sizeof lanes.shared);
+        load_lanes(state, pairs + i, count - i, &lanes);
+        if (share) mark_shared(&lanes);
+        sc_query_kernels_of(state->workspace)->decide(&lanes, &verdict);
+        for (k = 0; k < 6; k++) open |= verdict.meets[k] | verdict.unsure[k];
+        if (count - i < SC_PAIR_LANES) open &= (1u << (count - i)) - 1u;
+        for (; open && !state->stop; open &= open - 1) {
+            uint32_t j = sc_bits_lowest(open);
+            unsigned free = share ? ~edges_at_shared(&lanes, j) : ~0u;
+            conclude(state, &pairs[i + j], edges_of_lane(verdict.meets, j) & free,
+                     edges_of_lane(verdict.unsure, j) & free);
+        }
+    }
+}
+
+void sc_candidates_decide(sc_query_state *state)
+{
+    sc_workspace *w = state->workspace;
+    uint32_t previous;
+    if (state->sifts) sc_filter_sift(state);
+    if (!w->candidate_count && !w->neighbor_count) return;
+    previous = sc_state_switch(state, sc_state_primitive_task(state));
+    decide_all(state, w->candidates, w->candidate_count, 0);
+    decide_all(state, w->neighbors, w->neighbor_count, 1);
+    w->candidate_count = w->neighbor_count = 0;
     sc_state_switch(state, previous);
 }
 
@@ -182,16 +238,14 @@ static uint32_t batch_size(const sc_query_state *state)
     return state->options.output == SC_OUTPUT_ANY ? 64 : SC_CANDIDATES_MAX - SC_LEAF_MAX;
 }
 
-static void collect_row(sc_query_state *state, uint32_t a, uint32_t first_b, unsigned mask)
+static void collect_row(sc_workspace *w, uint32_t a, uint32_t first_b, unsigned mask)
 {
-    sc_workspace *w = state->workspace;
     while (mask) {
         sc_pair *candidate = &w->candidates[w->candidate_count++];
         candidate->a = a;
         candidate->b = first_b + sc_bits_lowest(mask);
         mask &= mask - 1;
     }
-    if (w->candidate_count >= batch_size(state)) sc_candidates_decide(state);
 }
 
 /* Whether two triangles share a vertex, without branches. */
@@ -245,7 +299,10 @@ void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, sc_leaf_
 void sc_candidates_take(sc_query_state *state, const sc_leaf_pair *p, uint32_t i, unsigned mask)
 {
     const uint32_t *first = sc_model_leaf_first(state->model);
+    sc_workspace *w = state->workspace;
     unsigned shared = mask & p->shared[i];
-    if (shared) decide_neighbors(state, first[p->a] + i, first[p->b], shared);
-    if (mask & ~shared) collect_row(state, first[p->a] + i, first[p->b], mask & ~shared);
+    if (shared) take_neighbors(state, first[p->a] + i, first[p->b], shared);
+    if (mask & ~shared) collect_row(w, first[p->a] + i, first[p->b], mask & ~shared);
+    if (w->candidate_count >= batch_size(state) || w->neighbor_count >= batch_size(state))
+        sc_candidates_decide(state);
 }

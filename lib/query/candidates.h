@@ -27,19 +27,21 @@ void sc_candidates_enter(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b
    points and collects the others. */
 void sc_candidates_take(sc_query_state *state, const sc_leaf_pair *pair, uint32_t i, unsigned some);
 
-/* Pairs that share nothing are decided by so many at a time. */
+/* Pairs are decided by so many at a time. */
 enum { SC_PAIR_LANES = 8 };
 
-/* What the planes of the two triangles say of SC_PAIR_LANES pairs, a bit each. */
-typedef struct sc_plane_test {
-    unsigned apart; /* one plane certainly separates them */
-    unsigned flat;  /* one triangle is in the other's plane, as far as can be told */
-} sc_plane_test;
-
-/* The corners of SC_PAIR_LANES pairs of triangles, lane by lane. */
+/* SC_PAIR_LANES pairs of triangles that share one point at most: where their corners are (four readable doubles
+   each). Bit i of shared: in pair i the corner is one of the other triangle's. */
 typedef struct sc_pair_lanes {
-    double corner[2][3][3][SC_PAIR_LANES]; /* triangle, corner, coordinate */
+    const double *corner[2][3][SC_PAIR_LANES];
+    unsigned shared[2][3];
 } sc_pair_lanes;
+
+/* Which edges (k of the first triangle, 3 + k of the second) meet the other triangle, bit i for pair i: certainly, and
+   then properly; or it cannot be told. Means nothing for edges from a shared point. */
+typedef struct sc_verdict {
+    unsigned meets[6], unsure[6];
+} sc_verdict;
 
 /* Decides what has been collected; to be called before the kind of task changes, and at the end. */
 void sc_candidates_decide(sc_query_state *state);

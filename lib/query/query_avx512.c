@@ -6,6 +6,9 @@
 #include "query/query_kernels.h"
 
 #include <float.h>
+#include <string.h>
+
+#include "base/predicates.h"
 
 #if SC_ISA_X86
 
@@ -14,15 +17,17 @@
 #  define SC_LANES 3
 
 #  include "base/lanes.h"
+#  include "base/lanes_double.h"
 #  include "query/walk_kernel.h"
-#  include "query/planes_kernel.h"
+#  include "query/decide_kernel.h"
 #  include "query/simple_kernel.h"
 
 const sc_query_kernels sc_query_kernels_avx512 = {SC_KERNEL(patch_pair),    SC_KERNEL(patch_itself),
                                                   SC_KERNEL(leaf_pair),     SC_KERNEL(leaf_itself),
-                                                  SC_KERNEL(test_planes),   SC_KERNEL(project),
+                                                  SC_KERNEL(decide),        SC_KERNEL(project),
                                                   SC_KERNEL(are_edges_fine)};
 
+#  include "base/lanes_double_end.h"
 #  include "base/lanes_end.h"
 #  include "base/avx512_end.h"
 

@@ -17,8 +17,8 @@ typedef struct sc_query_kernels {
     /* The triangles of two leaf clusters, and of one. */
     void (*leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b);
     void (*leaf_itself)(sc_query_state *state, uint32_t leaf);
-    /* What the planes of two triangles say of whether they can meet; SC_PAIR_LANES pairs. */
-    sc_plane_test (*test_planes)(const sc_pair_lanes *lanes);
+    /* Whether triangles meet, as far as that is certain in doubles; SC_PAIR_LANES pairs. */
+    void (*decide)(const sc_pair_lanes *pairs, sc_verdict *verdict);
     /* Projects the listed points of a contour, given by all points in the unit box; sets its error. */
     void (*project)(sc_simple_contour *contour, const float *unit);
     /* Whether sc_simple_are_apart is true of all pairs of edges whose boxes overlap. */

@@ -1,0 +1,300 @@
+/*
+ * Eight doubles at a time, for the instruction set that the including file chose: base/lanes.h, included before,
+ * says how. One register of AVX-512, two of AVX2, four of SSE2; elsewhere plain C.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Operations round as those of single doubles do. A comparison gives a mask of all lanes, of which doubles_bits makes
+ * bit i for lane i; with NaN it is false. doubles_choose takes from a where the mask is set, else from b;
+ * doubles_points reads three doubles at eight places, of which four must be readable.
+ *
+ * No guard, as in base/lanes.h; base/lanes_double_end.h ends it.
+ */
+#define doubles SC_KERNEL(sc_doubles)
+#define doubles_mask SC_KERNEL(sc_doubles_mask)
+#define doubles_all SC_KERNEL(sc_doubles_all)
+#define doubles_add SC_KERNEL(sc_doubles_add)
+#define doubles_subtract SC_KERNEL(sc_doubles_subtract)
+#define doubles_multiply SC_KERNEL(sc_doubles_multiply)
+#define doubles_smaller SC_KERNEL(sc_doubles_smaller)
+#define doubles_larger SC_KERNEL(sc_doubles_larger)
+#define doubles_absolute SC_KERNEL(sc_doubles_absolute)
+#define doubles_below SC_KERNEL(sc_doubles_below)
+#define doubles_bits SC_KERNEL(sc_doubles_bits)
+#define doubles_choose SC_KERNEL(sc_doubles_choose)
+#define doubles_points SC_KERNEL(sc_doubles_points)
+
+#if SC_LANES_AVX512
+
+typedef __m512d doubles;
+typedef __mmask8 doubles_mask;
+
+static inline doubles doubles_all(double d)
+{
+    return _mm512_set1_pd(d);
+}
+static inline doubles doubles_add(doubles a, doubles b)
+{
+    return _mm512_add_pd(a, b);
+}
+static inline doubles doubles_subtract(doubles a, doubles b)
+{
+    return _mm512_sub_pd(a, b);
+}
+static inline doubles doubles_multiply(doubles a, doubles b)
+{
+    return _mm512_mul_pd(a, b);
+}
+static inline doubles doubles_smaller(doubles a, doubles b)
+{
+    return _mm512_min_pd(a, b);
+}
+static inline doubles doubles_larger(doubles a, doubles b)
+{
+    return _mm512_max_pd(a, b);
+}
+static inline doubles doubles_absolute(doubles a)
+{
+    return _mm512_andnot_pd(_mm512_set1_pd(-0.0), a);
+}
+static inline doubles_mask doubles_below(doubles a, doubles b)
+{
+    return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
+}
+static inline unsigned doubles_bits(doubles_mask a)
+{
+    return a;
+}
+static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
+{
+    return _mm512_mask_blend_pd(m, b, a);
+}
+static inline __m512d SC_KERNEL(sc_doubles_two)(const double *const at[8], int i)
+{
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(at[i])),
+                              _mm256_loadu_pd(at[i + 4]), 1);
+}
+static inline void doubles_points(const double *const at[8], doubles *x, doubles *y, doubles *z)
+{
+    const __m512i first = _mm512_set_epi64(13, 12, 5, 4, 9, 8, 1, 0);
+    const __m512i second = _mm512_set_epi64(15, 14, 7, 6, 11, 10, 3, 2);
+    __m512d r0 = SC_KERNEL(sc_doubles_two)(at, 0), r1 = SC_KERNEL(sc_doubles_two)(at, 1);
+    __m512d r2 = SC_KERNEL(sc_doubles_two)(at, 2), r3 = SC_KERNEL(sc_doubles_two)(at, 3);
+    __m512d low = _mm512_unpacklo_pd(r0, r1), low2 = _mm512_unpacklo_pd(r2, r3);
+    *x = _mm512_permutex2var_pd(low, first, low2);
+    *y = _mm512_permutex2var_pd(_mm512_unpackhi_pd(r0, r1), first, _mm512_unpackhi_pd(r2, r3));
+    *z = _mm512_permutex2var_pd(low, second, low2);
+}
+
+#elif SC_LANES_AVX2 || SC_LANES_SSE2
+
+/* In registers of four or two doubles. SC_DOUBLES_MAP applies f to each of a, and of b. */
+#  undef SC_DOUBLES_OF
+#  undef SC_DOUBLES_MAP
+#  if SC_LANES_AVX2
+#    define SC_DOUBLES_OF(name) _mm256_##name
+#    define SC_DOUBLES_MAP(f)                                                                      \
+      doubles r;                                                                                   \
+      r.p0 = f(p0);                                                                                \
+      r.p1 = f(p1);                                                                                \
+      return r
+typedef struct doubles {
+    __m256d p0, p1;
+} doubles;
+#  else
+#    define SC_DOUBLES_OF(name) _mm_##name
+#    define SC_DOUBLES_MAP(f)                                                                      \
+      doubles r;                                                                                   \
+      r.p0 = f(p0);                                                                                \
+      r.p1 = f(p1);                                                                                \
+      r.p2 = f(p2);                                                                                \
+      r.p3 = f(p3);                                                                                \
+      return r
+typedef struct doubles {
+    __m128d p0, p1, p2, p3;
+} doubles;
+#  endif
+typedef doubles doubles_mask;
+
+static inline doubles doubles_all(double d)
+{
+#  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(set1_pd)(d)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#  undef SC_DOUBLES_ONE
+}
+static inline doubles doubles_add(doubles a, doubles b)
+{
+#  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(add_pd)(a.p, b.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#  undef SC_DOUBLES_ONE
+}
+static inline doubles doubles_subtract(doubles a, doubles b)
+{
+#  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(sub_pd)(a.p, b.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#  undef SC_DOUBLES_ONE
+}
+static inline doubles doubles_multiply(doubles a, doubles b)
+{
+#  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(mul_pd)(a.p, b.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#  undef SC_DOUBLES_ONE
+}
+static inline doubles doubles_smaller(doubles a, doubles b)
+{
+#  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(min_pd)(a.p, b.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#  undef SC_DOUBLES_ONE
+}
+static inline doubles doubles_larger(doubles a, doubles b)
+{
+#  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(max_pd)(a.p, b.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#  undef SC_DOUBLES_ONE
+}
+static inline doubles doubles_absolute(doubles a)
+{
+#  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(andnot_pd)(SC_DOUBLES_OF(set1_pd)(-0.0), a.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#  undef SC_DOUBLES_ONE
+}
+
+#  if SC_LANES_AVX2
+
+static inline doubles_mask doubles_below(doubles a, doubles b)
+{
+#    define SC_DOUBLES_ONE(p) _mm256_cmp_pd(a.p, b.p, _CMP_LT_OQ)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#    undef SC_DOUBLES_ONE
+}
+static inline unsigned doubles_bits(doubles_mask a)
+{
+    return (unsigned)_mm256_movemask_pd(a.p0) | (unsigned)_mm256_movemask_pd(a.p1) << 4;
+}
+static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
+{
+#    define SC_DOUBLES_ONE(p) _mm256_blendv_pd(b.p, a.p, m.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#    undef SC_DOUBLES_ONE
+}
+static inline void SC_KERNEL(sc_doubles_transpose)(const double *const at[4], __m256d *x,
+                                                   __m256d *y, __m256d *z)
+{
+    __m256d a = _mm256_loadu_pd(at[0]), b = _mm256_loadu_pd(at[1]);
+    __m256d c = _mm256_loadu_pd(at[2]), d = _mm256_loadu_pd(at[3]);
+    __m256d low = _mm256_unpacklo_pd(a, b), low2 = _mm256_unpacklo_pd(c, d);
+    *x = _mm256_permute2f128_pd(low, low2, 0x20);
+    *y = _mm256_permute2f128_pd(_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d), 0x20);
+    *z = _mm256_permute2f128_pd(low, low2, 0x31);
+}
+static inline void doubles_points(const double *const at[8], doubles *x, doubles *y, doubles *z)
+{
+    SC_KERNEL(sc_doubles_transpose)(at, &x->p0, &y->p0, &z->p0);
+    SC_KERNEL(sc_doubles_transpose)(at + 4, &x->p1, &y->p1, &z->p1);
+}
+
+#  else
+
+static inline doubles_mask doubles_below(doubles a, doubles b)
+{
+#    define SC_DOUBLES_ONE(p) _mm_cmplt_pd(a.p, b.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#    undef SC_DOUBLES_ONE
+}
+static inline unsigned doubles_bits(doubles_mask a)
+{
+    return (unsigned)_mm_movemask_pd(a.p0) | (unsigned)_mm_movemask_pd(a.p1) << 2 |
+           (unsigned)_mm_movemask_pd(a.p2) << 4 | (unsigned)_mm_movemask_pd(a.p3) << 6;
+}
+static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
+{
+#    define SC_DOUBLES_ONE(p) _mm_or_pd(_mm_and_pd(m.p, a.p), _mm_andnot_pd(m.p, b.p))
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#    undef SC_DOUBLES_ONE
+}
+static inline void SC_KERNEL(sc_doubles_transpose)(const double *const at[2], __m128d *x,
+                                                   __m128d *y, __m128d *z)
+{
+    __m128d a = _mm_loadu_pd(at[0]), b = _mm_loadu_pd(at[1]);
+    *x = _mm_unpacklo_pd(a, b);
+    *y = _mm_unpackhi_pd(a, b);
+    *z = _mm_loadh_pd(_mm_load_sd(at[0] + 2), at[1] + 2);
+}
+static inline void doubles_points(const double *const at[8], doubles *x, doubles *y, doubles *z)
+{
+    SC_KERNEL(sc_doubles_transpose)(at, &x->p0, &y->p0, &z->p0);
+    SC_KERNEL(sc_doubles_transpose)(at + 2, &x->p1, &y->p1, &z->p1);
+    SC_KERNEL(sc_doubles_transpose)(at + 4, &x->p2, &y->p2, &z->p2);
+    SC_KERNEL(sc_doubles_transpose)(at + 6, &x->p3, &y->p3, &z->p3);
+}
+
+#  endif
+
+#else
+
+typedef struct doubles {
+    double v[8];
+} doubles;
+typedef unsigned doubles_mask;
+
+#  undef SC_DOUBLES_EACH
+#  define SC_DOUBLES_EACH(expression)                                                              \
+    doubles r;                                                                                     \
+    int i;                                                                                         \
+    for (i = 0; i < 8; i++) r.v[i] = (expression);                                                 \
+    return r
+
+static inline doubles doubles_all(double d)
+{
+    SC_DOUBLES_EACH(d);
+}
+static inline doubles doubles_add(doubles a, doubles b)
+{
+    SC_DOUBLES_EACH(a.v[i] + b.v[i]);
+}
+static inline doubles doubles_subtract(doubles a, doubles b)
+{
+    SC_DOUBLES_EACH(a.v[i] - b.v[i]);
+}
+static inline doubles doubles_multiply(doubles a, doubles b)
+{
+    SC_DOUBLES_EACH(a.v[i] * b.v[i]);
+}
+/* as x86 has them: the second operand if one is NaN */
+static inline doubles doubles_smaller(doubles a, doubles b)
+{
+    SC_DOUBLES_EACH(a.v[i] < b.v[i] ? a.v[i] : b.v[i]);
+}
+static inline doubles doubles_larger(doubles a, doubles b)
+{
+    SC_DOUBLES_EACH(a.v[i] > b.v[i] ? a.v[i] : b.v[i]);
+}
+static inline doubles doubles_absolute(doubles a)
+{
+    SC_DOUBLES_EACH(fabs(a.v[i]));
+}
+static inline doubles_mask doubles_below(doubles a, doubles b)
+{
+    unsigned mask = 0, i;
+    for (i = 0; i < 8; i++) mask |= (unsigned)(a.v[i] < b.v[i]) << i;
+    return mask;
+}
+static inline unsigned doubles_bits(doubles_mask a)
+{
+    return a;
+}
+static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
+{
+    SC_DOUBLES_EACH(m >> i & 1u ? a.v[i] : b.v[i]);
+}
+static inline void doubles_points(const double *const at[8], doubles *x, doubles *y, doubles *z)
+{
+    int i;
+    for (i = 0; i < 8; i++) {
+        x->v[i] = at[i][0];
+        y->v[i] = at[i][1];
+        z->v[i] = at[i][2];
+    }
+}
+
+#endif

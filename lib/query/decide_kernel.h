@@ -1,0 +1,191 @@
+/*
+ * Pairs of triangles decided by the signs of determinants, eight at a time, as far as that is certain in doubles.
+ * The scalar form, which is exact and decides the rest, is query/primitives.c.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * A pair has six signs of corners against the other's plane and nine of edges against edges: d = (e x f) . p, where e
+ * and f are edges and p runs from a corner of one triangle to one of the other. Each component of e, f and p is a
+ * difference of two coordinates. In exact arithmetic d is a sum of six products of a component of each; one of them
+ * meets the rounding of three differences, two products, a subtraction and two additions, hence is off by
+ * 8.01 * 2^-53 of its absolute value at most. With E the sum of a triangle's extents along the axes, |e|1 <= E of its
+ * triangle, and no component of p is above R, the largest extent of both: the absolute values sum to E E' R at most.
+ * E and R are computed to within 4 * 2^-53 and 2^-53 and their product is rounded thrice more, so that 9 * 2^-53 E E' R
+ * as computed covers it; the absolute term is for products that underflow. If E E' R overflows, the
+ * bound is infinite or not a number, and nothing is certain; if not, no sum of products can, but by rounding, which
+ * leaves the sign as it is.
+ */
+
+/* Corners of eight pairs; and how large the triangles and pairs are. */
+typedef struct SC_KERNEL(corners) {
+    doubles at[2][3][3]; /* triangle, corner, axis */
+    doubles edge[2][3][3];
+    doubles extent[2], reach;
+} SC_KERNEL(corners);
+
+/* In which lanes a determinant is certainly positive or negative. */
+typedef struct SC_KERNEL(sign) {
+    unsigned above, below;
+} SC_KERNEL(sign);
+
+static inline void SC_KERNEL(read_corners)(const sc_pair_lanes *pairs, SC_KERNEL(corners) * x)
+{
+    doubles low[2][3], high[2][3];
+    int s, k, c;
+    for (s = 0; s < 2; s++) {
+        for (k = 0; k < 3; k++)
+            doubles_points(pairs->corner[s][k], &x->at[s][k][0], &x->at[s][k][1], &x->at[s][k][2]);
+        for (c = 0; c < 3; c++) {
+            doubles p = x->at[s][0][c], q = x->at[s][1][c], r = x->at[s][2][c];
+            low[s][c] = doubles_smaller(doubles_smaller(p, q), r);
+            high[s][c] = doubles_larger(doubles_larger(p, q), r);
+            x->edge[s][0][c] = doubles_subtract(q, p);
+            x->edge[s][1][c] = doubles_subtract(r, q);
+            x->edge[s][2][c] = doubles_subtract(p, r);
+        }
+        x->extent[s] = doubles_add(doubles_add(doubles_subtract(high[s][0], low[s][0]),
+                                               doubles_subtract(high[s][1], low[s][1])),
+                                   doubles_subtract(high[s][2], low[s][2]));
+    }
+    for (c = 0; c < 3; c++) {
+        doubles all = doubles_subtract(doubles_larger(high[0][c], high[1][c]),
+                                       doubles_smaller(low[0][c], low[1][c]));
+        x->reach = c ? doubles_larger(x->reach, all) : all;
+    }
+}
+
+static inline doubles SC_KERNEL(bound)(const SC_KERNEL(corners) * x, doubles e, doubles f)
+{
+    doubles product = doubles_multiply(x->reach, doubles_multiply(e, f));
+    return doubles_add(doubles_multiply(doubles_all(SC_PREDICATES_BOUND_3D), product),
+                       doubles_multiply(doubles_all(SC_PREDICATES_BOUND_TINY),
+                                        doubles_add(doubles_all(1), x->reach)));
+}
+
+static inline void SC_KERNEL(cross)(const doubles e[3], const doubles f[3], doubles n[3])
+{
+    int c;
+    for (c = 0; c < 3; c++)
+        n[c] = doubles_subtract(doubles_multiply(e[(c + 1) % 3], f[(c + 2) % 3]),
+                                doubles_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
+}
+
+/* Of n . (q - p). */
+static inline SC_KERNEL(sign)
+    SC_KERNEL(sign_along)(const doubles n[3], const doubles p[3], const doubles q[3], doubles bound)
+{
+    SC_KERNEL(sign) sign;
+    doubles d = doubles_add(doubles_add(doubles_multiply(n[0], doubles_subtract(q[0], p[0])),
+                                        doubles_multiply(n[1], doubles_subtract(q[1], p[1]))),
+                            doubles_multiply(n[2], doubles_subtract(q[2], p[2])));
+    sign.above = doubles_bits(doubles_below(bound, d));
+    sign.below = doubles_bits(doubles_below(d, doubles_subtract(doubles_all(0), bound)));
+    return sign;
+}
+
+/*
+ * The lanes in which the two, projected along the axis nearest to the normal of one, are certainly on different sides
+ * of the line of a projected edge: its own triangle's third corner on one side, all of the other's strictly on the
+ * other. Then they do not meet. Nearly coplanar pairs that are apart are so by one of these six lines. A side
+ * d = e_0 p_1 - e_1 p_0 meets two differences, a product and a subtraction: 4.01 * 2^-53 (|e_0| + |e_1|) |p|max.
+ */
+static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(corners) * x)
+{
+    doubles n[3], size[3], flat[2][3][2], edge[2][3][2], zero = doubles_all(0);
+    doubles_mask first, second;
+    unsigned apart = 0;
+    int s, k, i, c;
+    SC_KERNEL(cross)(x->edge[0][0], x->edge[0][1], n);
+    for (c = 0; c < 3; c++) size[c] = doubles_absolute(n[c]);
+    first = doubles_below(doubles_larger(size[1], size[2]), size[0]);
+    second = doubles_below(size[2], size[1]);
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 3; k++) {
+            const doubles *p = x->at[s][k], *e = x->edge[s][k];
+            flat[s][k][0] = doubles_choose(first, p[1], p[0]);
+            flat[s][k][1] = doubles_choose(first, p[2], doubles_choose(second, p[2], p[1]));
+            edge[s][k][0] = doubles_choose(first, e[1], e[0]);
+            edge[s][k][1] = doubles_choose(first, e[2], doubles_choose(second, e[2], e[1]));
+        }
+    for (s = 0; s < 2; s++) {
+        doubles area = doubles_subtract(doubles_multiply(edge[s][0][0], edge[s][1][1]),
+                                        doubles_multiply(edge[s][0][1], edge[s][1][0]));
+        doubles bound = doubles_add(doubles_multiply(doubles_all(SC_PREDICATES_BOUND_2D),
+                                                     doubles_multiply(x->extent[s], x->reach)),
+                                    doubles_all(SC_PREDICATES_BOUND_TINY));
+        unsigned left = doubles_bits(doubles_below(bound, area));
+        unsigned right = doubles_bits(doubles_below(area, doubles_subtract(zero, bound)));
+        for (k = 0; k < 3; k++) {
+            unsigned all_left = 255, all_right = 255;
+            for (i = 0; i < 3; i++) {
+                doubles p0 = doubles_subtract(flat[1 - s][i][0], flat[s][k][0]);
+                doubles p1 = doubles_subtract(flat[1 - s][i][1], flat[s][k][1]);
+                doubles d = doubles_subtract(doubles_multiply(edge[s][k][0], p1),
+                                             doubles_multiply(edge[s][k][1], p0));
+                all_left &= doubles_bits(doubles_below(bound, d));
+                all_right &= doubles_bits(doubles_below(d, doubles_subtract(zero, bound)));
+            }
+            apart |= (left & all_right) | (right & all_left);
+        }
+    }
+    return apart;
+}
+
+/* An edge, by the signs of its ends against a plane and of its line against three others. */
+static inline void SC_KERNEL(decide_edge)(SC_KERNEL(sign) from, SC_KERNEL(sign) to,
+                                          SC_KERNEL(sign) a, SC_KERNEL(sign) b, SC_KERNEL(sign) c,
+                                          unsigned *meets, unsigned *unsure)
+{
+    unsigned passes = (a.above & b.above & c.above) | (a.below & b.below & c.below);
+    unsigned misses = (a.above | b.above | c.above) & (a.below | b.below | c.below);
+    unsigned crosses = (from.above & to.below) | (from.below & to.above);
+    misses |= (from.above & to.above) | (from.below & to.below);
+    *meets = crosses & passes;
+    *unsure = ~(*meets | misses) & 255u;
+}
+
+static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
+{
+    SC_KERNEL(corners) x;
+    SC_KERNEL(sign) side[2][3], line[3][3];
+    unsigned apart = 0, unsure = 0;
+    int s, k, i;
+    memset(verdict, 0, sizeof *verdict);
+    SC_KERNEL(read_corners)(pairs, &x);
+    for (s = 0; s < 2; s++) { /* corners of s against the plane of the other */
+        doubles n[3], bound = SC_KERNEL(bound)(&x, x.extent[1 - s], x.extent[1 - s]);
+        unsigned above = 255, below = 255;
+        SC_KERNEL(cross)(x.edge[1 - s][0], x.edge[1 - s][1], n);
+        for (k = 0; k < 3; k++) {
+            side[s][k] = SC_KERNEL(sign_along)(n, x.at[1 - s][0], x.at[s][k], bound);
+            above &= side[s][k].above | pairs->shared[s][k];
+            below &= side[s][k].below | pairs->shared[s][k];
+        }
+        apart |= above | below;
+    }
+    if (apart == 255u) return;
+    {
+        doubles bound = SC_KERNEL(bound)(&x, x.extent[0], x.extent[1]);
+        for (k = 0; k < 3; k++)
+            for (i = 0; i < 3; i++) {
+                doubles n[3];
+                SC_KERNEL(cross)(x.edge[0][k], x.edge[1][i], n);
+                line[k][i] = SC_KERNEL(sign_along)(n, x.at[0][k], x.at[1][i], bound);
+            }
+    }
+    for (k = 0; k < 3; k++) {
+        int next = (k + 1) % 3;
+        SC_KERNEL(decide_edge)
+        (side[0][k], side[0][next], line[k][0], line[k][1], line[k][2], &verdict->meets[k],
+         &verdict->unsure[k]);
+        SC_KERNEL(decide_edge)
+        (side[1][k], side[1][next], line[0][k], line[1][k], line[2][k], &verdict->meets[3 + k],
+         &verdict->unsure[3 + k]);
+        unsure |= verdict->unsure[k] | verdict->unsure[3 + k];
+    }
+    if (unsure & ~apart) apart |= SC_KERNEL(are_beside)(&x);
+    for (k = 0; k < 6; k++) {
+        verdict->meets[k] &= ~apart;
+        verdict->unsure[k] &= ~apart;
+    }
+}
