@@ -225,7 +225,8 @@ static bool scene_open(demo_scene *scene, const mesh_file *mesh, const char *nam
         tool_error("spatial hash: %s", reason);
         return false;
     }
-    sc_status status = tool_build(mesh, SC_WELD_REST, TOOL_PARTITION_FAST, &scene->model, build_ms);
+    sc_status status = tool_build(mesh, SC_WELD_REST, TOOL_PARTITION_FAST, SC_REST_MARKED,
+                                  &scene->model, build_ms);
     for (int i = 0; i < HASH && status == SC_OK; i++) {
         status = sc_workspace_create(scene->model, NULL, &scene->workspaces[i]);
     }

@@ -108,6 +108,8 @@ static bool build(measure_state *s, const double *rest)
         options.partition = SC_PARTITION_ORDER;
         options.order = scene->order;
     }
+    for (size_t i = 0; i < s->m->method_count; i++)
+        if (s->m->methods[i]->contour == SC_CONTOUR_STAR) options.rest = SC_REST_MARKED;
     const double start = tool_clock();
     const sc_status status = sc_build(&mesh, &options, &s->model);
     s->m->build_ms = tool_clock() - start;

@@ -273,6 +273,13 @@ typedef struct sc_dual_graph {
 typedef sc_status (*sc_bisect)(void *user, const sc_dual_graph *graph, uint32_t left_target,
                                uint8_t *side);
 
+/*
+ * Whether sc_build tries the orientation and the star-contour test on the rest pose, which takes about
+ * as long as all the rest of it. What fails is marked in the model, for rest-shape caching by queries
+ * with SC_CONTOUR_STAR, and counted for sc_level_info. Other queries have no use for it.
+ */
+enum { SC_REST_UNMARKED = 0, SC_REST_MARKED = 1 };
+
 typedef struct sc_build_options {
     uint32_t struct_size;
     uint32_t weld;       /* SC_WELD_... */
@@ -287,6 +294,8 @@ typedef struct sc_build_options {
     void *bisect_user;        /* passed to bisect */
     const sc_allocator *allocator; /* copied; its functions must outlive the model */
     const sc_hooks *hooks;         /* for this call */
+    uint32_t rest;                 /* SC_REST_... */
+    uint32_t reserved;             /* 0 */
 } sc_build_options;
 
 /* A mesh made ready for queries: one block of flat arrays, immutable. */
@@ -335,9 +344,11 @@ typedef struct sc_level_info {
     uint32_t connected_patches; /* those that are connected through edges */
     uint32_t segment_count;     /* contour segments at this level */
     uint32_t self_nodes;        /* test-tree nodes of one patch against itself */
-    uint32_t self_oriented; /* of these, how many passed the orientation test in the rest pose */
-    uint32_t self_culled;   /* of these, how many passed the star-contour test as well */
-    uint32_t pair_nodes;    /* the same for nodes of two adjacent patches */
+    /* how many of them passed the orientation test in the rest pose, and the star-contour test as well: 0
+       unless the model was built with SC_REST_MARKED */
+    uint32_t self_oriented;
+    uint32_t self_culled;
+    uint32_t pair_nodes; /* the same for nodes of two adjacent patches */
     uint32_t pair_oriented;
     uint32_t pair_culled;
 } sc_level_info;
@@ -560,7 +571,8 @@ enum {
                                 mesh. Keeps nothing from the rest pose */
 };
 
-/* Rest-shape caching (paper, section 8): tests that failed in the rest pose are taken as failed. */
+/* Rest-shape caching (paper, section 8): tests that failed in the rest pose are taken as failed. Only
+   with SC_CONTOUR_STAR and SC_CONTOUR_NONE, on models that were built with SC_REST_MARKED. */
 enum { SC_REST_CACHE_ON = 0, SC_REST_CACHE_OFF = 1 };
 
 /* Which instructions inner loops use. The answer is the same bit for bit. */

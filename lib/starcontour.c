@@ -127,6 +127,7 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
     if ((status = sc_model_assemble(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
                                     &s.sharing, scratch, model)))
         return status;
+    if (options->rest == SC_REST_UNMARKED) return SC_OK;
     sc_scratch_clear(scratch); /* make room for the workspace of the rest pose */
     memset(&rest, 0, sizeof rest);
     rest.vertex_count = mesh->vertex_count;
@@ -160,6 +161,7 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
         status = sc_structs_read(&o, sizeof o, options, LEAST_OPTIONS);
         if (status) return status;
     }
+    if (o.rest > SC_REST_MARKED || o.reserved) return SC_ERROR_OPTION;
     status = sc_hooks_read(o.hooks, &hooks);
     if (status) return status;
     o.hooks = &hooks;

@@ -152,6 +152,7 @@ input_choices input_choose(const soup *s, uint32_t weld, uint32_t partition)
     c.options.struct_size = sizeof(c.options);
     c.options.weld = weld;
     c.options.partition = partition;
+    c.options.rest = (s->triangle_count + partition) % 2 ? SC_REST_MARKED : SC_REST_UNMARKED;
     c.partition_name = names[partition];
     if (weld == SC_WELD_MAP) {
         uint32_t share = 1 + test_random_below(12);

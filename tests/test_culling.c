@@ -174,7 +174,13 @@ static int build(subject *s, const soup *mesh, const sc_build_options *options,
                  const char *partition)
 {
     sc_mesh m = input_plain_mesh(mesh);
-    sc_status status = sc_build(&m, options, &s->model);
+    sc_build_options marked;
+    sc_status status;
+    memset(&marked, 0, sizeof(marked));
+    if (options) marked = *options;
+    marked.struct_size = sizeof(marked);
+    marked.rest = SC_REST_MARKED;
+    status = sc_build(&m, &marked, &s->model);
     s->partition = partition;
     s->workspace = NULL;
     return CHECK_MSG(status == SC_OK, "%s, partition %s: status %d", s->mesh, partition,

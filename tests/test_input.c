@@ -603,6 +603,12 @@ static void enumerators(void)
             build.weld = 0;
             build.partition = value;
             check_build(&f, &f.input, &build, SC_ERROR_OPTION, "partition");
+            build = no_build_options();
+            build.rest = value;
+            check_build(&f, &f.input, &build, SC_ERROR_OPTION, "rest");
+            build = no_build_options();
+            build.reserved = value;
+            check_build(&f, &f.input, &build, SC_ERROR_OPTION, "build reserved");
             pose.position_type = value;
             check_query(&f, f.model, f.workspace, &pose, NULL, SC_ERROR_OPTION,
                         "pose position_type");
@@ -830,6 +836,7 @@ static void bisections(void)
         wrong w;
         w.positions = f.mesh.positions;
         options.partition = SC_PARTITION_BISECT;
+        options.rest = SC_REST_MARKED; /* reads positions again */
         options.bisect = wrong_bisect;
         options.bisect_user = &w;
         for (w.how = 0; w.how < 9; ++w.how)

@@ -569,7 +569,10 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
     uint32_t l, i, k, n, wrong = 0;
     sc_model_info info;
     sc_level_info level;
-    if (!CHECK(sc_build(&m, options, &model) == SC_OK)) goto end;
+    sc_build_options marked = *options;
+    marked.struct_size = sizeof(marked);
+    marked.rest = mesh->vertex_count % 2 ? SC_REST_MARKED : SC_REST_UNMARKED;
+    if (!CHECK(sc_build(&m, &marked, &model) == SC_OK)) goto end;
     memset(&info, 0, sizeof(info));
     info.struct_size = sizeof(info);
     CHECK(sc_model_get_info(model, &info) == SC_OK);
@@ -593,6 +596,10 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
             int self = s->sctt.patches[n].a == s->sctt.patches[n].b;
             uint8_t flags = sc_model_node_flags(model)[n];
             *(self ? &selves : &pairs) += 1;
+            if (marked.rest == SC_REST_UNMARKED) {
+                wrong += flags != 0;
+                continue;
+            }
             (self ? self_marks : pair_marks)[0] += !(flags & SC_NODE_REST_TURNED);
             (self ? self_marks : pair_marks)[1] += flags == 0;
         }

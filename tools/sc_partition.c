@@ -157,12 +157,13 @@ static level_shape measure_level(partition_view *view, uint32_t patch_count)
 
 /* Builds the model; says why if it cannot. */
 static bool view_open(partition_view *view, const mesh_file *mesh, uint32_t partition,
-                      const char *name)
+                      uint32_t rest, const char *name)
 {
     memset(view, 0, sizeof *view);
     view->mesh = mesh;
     view->info.struct_size = sizeof view->info;
-    sc_status status = tool_build(mesh, SC_WELD_REST, partition, &view->model, &view->build_ms);
+    sc_status status =
+        tool_build(mesh, SC_WELD_REST, partition, rest, &view->model, &view->build_ms);
     if (status == SC_OK) status = sc_model_get_info(view->model, &view->info);
     if (status != SC_OK) tool_error("%s: %s", name, sc_status_string(status));
     return status == SC_OK;
@@ -384,7 +385,7 @@ static bool write_model(const partition_view *view, const char *path)
 static bool show_mesh(mesh_file *mesh, const char *name, const partition_settings *set)
 {
     partition_view view;
-    bool done = view_open(&view, mesh, set->partition, name);
+    bool done = view_open(&view, mesh, set->partition, SC_REST_MARKED, name);
     if (done && set->output_path) done = write_model(&view, set->output_path);
     if (done && !mesh_file_join(mesh)) {
         tool_error("%s: out of memory", name);
@@ -425,7 +426,7 @@ static bool show_scaling(const partition_settings *set)
             tool_error("%s: out of memory", name);
             return false;
         }
-        done = view_open(&view, &mesh, set->partition, name);
+        done = view_open(&view, &mesh, set->partition, SC_REST_UNMARKED, name);
         if (done && set->json) {
             done = print_json(json_totals(&view, name, set));
         } else if (done) {

@@ -488,6 +488,14 @@ static int report(const file_answer *answer, const settings *set, bool done, con
     return answer->collides ? TOOL_COLLIDES : TOOL_CLEAN;
 }
 
+/* Only the star test uses marks, and they take as long as all the rest of the build. */
+static uint32_t rest_marks(const settings *set)
+{
+    return set->method == SC_METHOD_SCTT && set->contour == SC_CONTOUR_STAR && !set->no_rest_cache
+               ? SC_REST_MARKED
+               : SC_REST_UNMARKED;
+}
+
 /* Does one file. rest is the common subject of --rest or --model, or NULL. Returns an exit status. */
 static int do_file(const char *path, const settings *set, const query_subject *rest,
                    float *pose_positions, FILE *out, pair_list *list)
@@ -499,7 +507,7 @@ static int do_file(const char *path, const settings *set, const query_subject *r
     memset(&answer, 0, sizeof answer);
     answer.path = path;
 
-    const query_subject_how how = {set->weld, set->partition, false};
+    const query_subject_how how = {set->weld, set->partition, rest_marks(set), false};
     const query_subject *subject = rest ? rest : &own;
     const mesh_file *mesh = set->rest_path ? &rest->mesh : &own.mesh;
     const float *positions = pose_positions;
@@ -618,7 +626,7 @@ static int do_files(char **paths, int path_count, settings *set)
     int status = TOOL_CLEAN;
 
     if (set->rest_path) {
-        const query_subject_how how = {set->weld, set->partition, true};
+        const query_subject_how how = {set->weld, set->partition, rest_marks(set), true};
         char error[MESH_FILE_ERROR_SIZE];
         if (!query_subject_load(&rest, set->rest_path, &how, error)) {
             tool_error("%s", error);

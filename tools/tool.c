@@ -81,8 +81,8 @@ bool tool_parse_number(const char *option, const char *text, uint32_t low, uint3
     return true;
 }
 
-sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, sc_model **model,
-                     double *milliseconds)
+sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, uint32_t rest,
+                     sc_model **model, double *milliseconds)
 {
     sc_mesh input;
     memset(&input, 0, sizeof input);
@@ -98,6 +98,7 @@ sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, s
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
     options.weld = weld;
+    options.rest = rest;
     if (partition == TOOL_PARTITION_METIS) {
         options.partition = SC_PARTITION_BISECT;
         options.bisect = sc_metis_bisect;

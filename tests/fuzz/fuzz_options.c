@@ -159,6 +159,8 @@ static void call_build(fuzz_bytes *bytes)
     o.weld = small_or_wild(bytes, fuzz_byte(bytes) % 3);
     o.partition = small_or_wild(bytes, fuzz_byte(bytes) % 4);
     o.tree_count = small_or_wild(bytes, 1) % 9;
+    o.rest = small_or_wild(bytes, 1);
+    o.reserved = small_or_wild(bytes, 0);
     o.weld_map = null >> 4 == 5 ? NULL : identity;
     o.order = null >> 4 == 6 ? NULL : identity;
     o.tree = null >> 4 == 7 ? NULL : tree;
@@ -172,7 +174,8 @@ static void call_build(fuzz_bytes *bytes)
     if (null >> 4 == 11 || null >> 4 == 12) faults |= FUZZ_BIT(SC_ERROR_NULL);
     if (!faults) {
         faults = fuzz_mesh_faults(&m, NULL);
-        if (o.weld > SC_WELD_NONE || o.partition > SC_PARTITION_BISECT)
+        if (o.weld > SC_WELD_NONE || o.partition > SC_PARTITION_BISECT || o.rest > SC_REST_MARKED ||
+            o.reserved)
             faults |= FUZZ_BIT(SC_ERROR_OPTION);
         if ((o.weld == SC_WELD_MAP && !o.weld_map) ||
             ((o.partition == SC_PARTITION_ORDER || o.partition == SC_PARTITION_TREE) && !o.order) ||

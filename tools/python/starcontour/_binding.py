@@ -75,6 +75,8 @@ class sc_build_options(ctypes.Structure):
         ("bisect_user", c_void_p),
         ("allocator", c_void_p),
         ("hooks", c_void_p),
+        ("rest", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
