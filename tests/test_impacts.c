@@ -1,43 +1,359 @@
 /*
- * Tests of the narrow phase of continuous collision, lib/step/impact.
+ * Tests of the narrow phase of continuous collision, lib/step/impact, against exact arithmetic.
  *
  * SPDX-License-Identifier: MIT
+ *
+ * Nothing that touches is missed; no reported time is after the first contact; and at the reported time the distance
+ * is within the tolerance. Separations other than 0 are compared with exact distances at some times.
  */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "harness.h"
 #include "step/impact.h"
+#include "step_oracle.h"
 
 typedef struct query {
     double start[4][3], end[4][3];
 } query;
 
-static int ask(const query *q, int is_face, double separation, double tolerance, double *time)
+typedef struct tally {
+    uint64_t asked, touching, reported, extra;
+} tally;
+
+static int ask_until(const query *q, step_oracle_kind kind, const sc_impact_limits *limits,
+                     double *time)
+{
+    if (kind == STEP_ORACLE_VERTEX_FACE)
+        return sc_impact_vertex_face(q->start, q->end, limits, time);
+    return sc_impact_edge_edge(q->start, q->end, limits, time);
+}
+
+static int is_within(const query *q, step_oracle_kind kind, double time, double a, double b)
+{
+    return step_oracle_is_within(kind, q->start, q->end, time, a, b);
+}
+
+static int ask(const query *q, step_oracle_kind kind, double separation, double tolerance,
+               double *time)
 {
     sc_impact_limits limits = {separation, tolerance, 1};
-    if (is_face) return sc_impact_vertex_face(q->start, q->end, &limits, time);
-    return sc_impact_edge_edge(q->start, q->end, &limits, time);
+    return ask_until(q, kind, &limits, time);
+}
+
+static int touches(const query *q, step_oracle_kind kind, double *low, double *high)
+{
+    return step_oracle_touches(kind, q->start, q->end, low, high);
+}
+
+static void print_query(const query *q, step_oracle_kind kind)
+{
+    test_note("kind %d", (int)kind);
+    for (int i = 0; i < 4; ++i)
+        test_note("{%a, %a, %a} -> {%a, %a, %a}", q->start[i][0], q->start[i][1], q->start[i][2],
+                  q->end[i][0], q->end[i][1], q->end[i][2]);
+}
+
+/* The largest difference of coordinates between a point of one and a point of the other. */
+static double size_of(const query *q, step_oracle_kind kind)
+{
+    int split = kind == STEP_ORACLE_VERTEX_FACE ? 1 : 2;
+    double size = 0;
+    for (int i = 0; i < split; ++i) {
+        for (int j = split; j < 4; ++j) {
+            for (int k = 0; k < 3; ++k) {
+                double a = q->start[j][k] / 4 - q->start[i][k] / 4;
+                double b = q->end[j][k] / 4 - q->end[i][k] / 4;
+                size = fmax(size, fmax(fabs(a), fabs(b)));
+            }
+        }
+    }
+    return size; /* a quarter of it, which is finite */
+}
+
+/* Asks once and compares with all that is promised. */
+static void check_query(const query *q, step_oracle_kind kind, double separation, double tolerance,
+                        tally *t)
+{
+    double quarter = size_of(q, kind), allowed = fmax(tolerance, 4 * SC_IMPACT_FLOOR * quarter);
+    double time = -1, low = 2, high = 2, until = -1;
+    sc_impact_limits limits = {separation, tolerance, 1};
+    uint64_t failures = test_failures();
+    int answer = ask(q, kind, separation, tolerance, &time), early;
+    int meets = touches(q, kind, &low, &high);
+    allowed *= 1 + 0x1p-50;
+    ++t->asked;
+    t->touching += meets != 0;
+    t->reported += answer != 0;
+    t->extra += answer && !meets;
+    CHECK(answer == 1 || (answer == 0 && time == 1));
+    if (meets) CHECK_MSG(answer && time <= high, "touches at %g, reported at %g", low, time);
+    if (answer) {
+        CHECK_MSG(time >= 0 && time <= 1, "%g", time);
+        CHECK_MSG(is_within(q, kind, time, separation, allowed), "too far apart at %g, %g", time,
+                  allowed);
+    }
+    for (int i = separation > 0 ? 0 : 7; i < 8; ++i) {
+        double s = i < 2 ? i : test_random_unit();
+        if (answer && i > 2) s *= time;
+        if (is_within(q, kind, s, separation, 0))
+            CHECK_MSG(answer && time <= s, "near at %g, answer %d at %g", s, answer, time);
+    }
+    limits.latest =
+        answer && test_random_below(2) ? time * 1.25 * test_random_unit() : test_random_unit();
+    early = ask_until(q, kind, &limits, &until);
+    CHECK_MSG(early == (answer && time <= limits.latest), "until %g: %d", limits.latest, early);
+    CHECK(until == (early ? time : 1));
+    if (test_failures() > failures) {
+        print_query(q, kind);
+        test_note("separation %a, tolerance %a", separation, tolerance);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Steps
+ */
+
+static double grid(int range)
+{
+    return (double)test_random_below((uint32_t)(2 * range + 1)) - range;
+}
+
+static void make_random(query *q)
+{
+    double speed = exp2(-(double)test_random_below(8));
+    for (int i = 0; i < 4; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            q->start[i][k] = test_random_range(-1, 1);
+            q->end[i][k] = q->start[i][k] + speed * test_random_range(-2, 2);
+        }
+    }
+}
+
+static void make_on_grid(query *q)
+{
+    int range = 1 + (int)test_random_below(4);
+    for (int i = 0; i < 4; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            q->start[i][k] = grid(range);
+            q->end[i][k] = grid(range);
+        }
+    }
+}
+
+/* What is added to all points: a place and a motion. */
+static void move_all(query *q, double place, double motion)
+{
+    for (int k = 0; k < 3; ++k) {
+        double a = place * test_random_range(-1, 1), b = a + motion * test_random_range(-1, 1);
+        for (int i = 0; i < 4; ++i) {
+            q->start[i][k] += a;
+            q->end[i][k] += b;
+        }
+    }
+}
+
+/* Points that coincide, stand still, share a trajectory, or lie on a line. */
+static void make_degenerate(query *q)
+{
+    if (test_random_below(2)) {
+        make_random(q);
+    } else {
+        make_on_grid(q);
+    }
+    for (uint32_t changes = 1 + test_random_below(3); changes > 0; --changes) {
+        uint32_t a = test_random_below(4), b = test_random_below(4), c = test_random_below(4);
+        uint32_t shape = test_random_below(6);
+        double s = (double)test_random_below(5) / 4;
+        for (int k = 0; k < 3; ++k) {
+            if (shape == 0 || shape == 1) q->start[a][k] = q->start[b][k];
+            if (shape == 1 || shape == 2) q->end[a][k] = q->end[b][k];
+            if (shape == 3) q->end[a][k] = q->start[a][k];
+            if (shape == 4) q->start[a][k] = q->start[b][k] + s * (q->start[c][k] - q->start[b][k]);
+            if (shape == 5) {
+                q->start[a][k] = q->start[b][k] + s * (q->start[c][k] - q->start[b][k]);
+                q->end[a][k] = q->end[b][k] + s * (q->end[c][k] - q->end[b][k]);
+            }
+        }
+    }
+}
+
+/* A thin gap that stays: layers, of a thickness of any order, that slide along each other and bend. */
+static void make_layers(query *q, step_oracle_kind kind)
+{
+    double gap = exp2(-(double)test_random_below(30)),
+           bend = gap * exp2(4 - (double)test_random_below(8));
+    int split = kind == STEP_ORACLE_VERTEX_FACE ? 1 : 2;
+    for (int i = 0; i < 4; ++i) {
+        for (int k = 0; k < 2; ++k) {
+            q->start[i][k] = test_random_range(-1, 1);
+            q->end[i][k] = q->start[i][k] + test_random_range(-1, 1);
+        }
+        q->start[i][2] = (i < split ? gap : 0) + bend * test_random_range(-0.1, 0.1);
+        q->end[i][2] = (i < split ? gap : 0) + bend * test_random_range(-0.1, 0.1);
+        if (test_random_below(2)) { /* turned, with exact sums */
+            double x = q->start[i][0], y = q->end[i][0];
+            q->start[i][0] = x + q->start[i][2];
+            q->end[i][0] = y + q->end[i][2];
+        }
+    }
+}
+
+static double choose_tolerance(double size)
+{
+    static const double orders[] = {0, 1e-11, 1e-8, 1e-6, 1e-6, 1e-3};
+    return fmin(DBL_MAX / 4, orders[test_random_below(6)] * 4 * size);
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Tests
+ */
+
+typedef void maker(query *q, step_oracle_kind kind);
+
+static void run_queries(maker *make, uint32_t count, tally *sums)
+{
+    memset(sums, 0, sizeof(*sums));
+    for (uint32_t i = 0; i < test_iterations(count); ++i) {
+        step_oracle_kind kind = (step_oracle_kind)test_random_below(2);
+        double separation = 0, size;
+        query q;
+        make(&q, kind);
+        size = size_of(&q, kind);
+        if (test_random_below(4) == 0)
+            separation = fmin(DBL_MAX / 4, size * exp2(2 - (double)test_random_below(20)));
+        check_query(&q, kind, separation, choose_tolerance(size), sums);
+    }
+    test_note("%lu asked, %lu touch, %lu reported, %lu of them for tolerance or separation",
+              (unsigned long)sums->asked, (unsigned long)sums->touching,
+              (unsigned long)sums->reported, (unsigned long)sums->extra);
+}
+
+static void random_or_translated(query *q, step_oracle_kind kind)
+{
+    (void)kind;
+    make_random(q);
+    if (test_random_below(4) == 0) move_all(q, 1000, 100);
+}
+
+static void random_steps(void)
+{
+    tally t;
+    run_queries(random_or_translated, 40000, &t);
+    CHECK(t.touching > t.asked / 100 && t.touching < t.asked / 2);
+}
+
+static void degenerate(query *q, step_oracle_kind kind)
+{
+    (void)kind;
+    make_degenerate(q);
+}
+
+static void degenerate_steps(void)
+{
+    tally t;
+    run_queries(degenerate, 20000, &t);
+    CHECK(t.touching > t.asked / 100 && t.touching < t.asked * 9 / 10);
+}
+
+static void thin_layers(void)
+{
+    tally t;
+    run_queries(make_layers, 20000, &t);
+    CHECK(t.touching > t.asked / 1000 && t.extra > t.asked / 100);
+}
+
+/* Separations that some distance during the step equals or just exceeds. */
+static void separations_just_reached(void)
+{
+    uint64_t reached = 0, found = 0;
+    for (uint32_t i = 0; i < test_iterations(20000); ++i) {
+        step_oracle_kind kind = (step_oracle_kind)test_random_below(2);
+        double s = (double)test_random_below(33) / 32, low = 0, high, time, size, tolerance;
+        query q;
+        int answer;
+        if (test_random_below(2)) {
+            make_on_grid(&q);
+        } else {
+            make_random(&q);
+        }
+        size = 4 * size_of(&q, kind);
+        tolerance = size * exp2(-(double)test_random_below(40));
+        high = 2 * size;
+        /* The least double that the distance at s does not exceed. */
+        if (is_within(&q, kind, s, 0, 0)) continue;
+        while (nextafter(low, high) < high) {
+            double middle = low + 0.5 * (high - low);
+            if (is_within(&q, kind, s, middle, 0)) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        ++reached;
+        answer = ask(&q, kind, high, tolerance, &time);
+        if (!CHECK_MSG(answer && time <= s, "distance %a at %g, answer %d at %g", high, s, answer,
+                       time))
+            print_query(&q, kind);
+        tolerance = fmax(tolerance, SC_IMPACT_FLOOR * size) * (1 + 0x1p-50);
+        CHECK(!answer || is_within(&q, kind, time, high, tolerance));
+        /* Half of that is reached elsewhere or not at all. */
+        found += ask(&q, kind, 0.5 * high, tolerance, &time) != 0;
+    }
+    CHECK(reached > 0 && found > 0 && found < reached);
 }
 
 static void known_times(void)
 {
     query drop = {{{0.25, 0.25, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                   {{0.25, 0.25, -1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
-    query cross = {{{-1, 0, 1}, {1, 0, 1}, {0, -1, 0}, {0, 1, 0}},
-                   {{-1, 0, -3}, {1, 0, -3}, {0, -1, 0}, {0, 1, 0}}};
+    query crossing = {{{-1, 0, 1}, {1, 0, 1}, {0, -1, 0}, {0, 1, 0}},
+                      {{-1, 0, -3}, {1, 0, -3}, {0, -1, 0}, {0, 1, 0}}};
     double time = -1;
-    CHECK(ask(&drop, 1, 0, 1e-6, &time) == 1);
+    CHECK(ask(&drop, STEP_ORACLE_VERTEX_FACE, 0, 1e-6, &time) == 1);
     CHECK_MSG(time <= 0.5 && time >= 0.5 - 1e-6, "%.17g", time);
-    CHECK(ask(&drop, 1, 0.5, 1e-6, &time) == 1);
+    CHECK(ask(&drop, STEP_ORACLE_VERTEX_FACE, 0.5, 1e-6, &time) == 1);
     CHECK_MSG(time <= 0.25 && time >= 0.25 - 1e-6, "%.17g", time);
-    CHECK(ask(&drop, 1, 1, 1e-6, &time) == 1 && time == 0);
-    CHECK(ask(&cross, 0, 0, 1e-6, &time) == 1);
+    CHECK(ask(&drop, STEP_ORACLE_VERTEX_FACE, 1, 1e-6, &time) == 1 && time == 0);
+    CHECK(ask(&crossing, STEP_ORACLE_EDGE_EDGE, 0, 1e-6, &time) == 1);
     CHECK_MSG(time <= 0.25 && time >= 0.25 - 1e-6, "%.17g", time);
-    for (int k = 0; k < 4; ++k) drop.end[k][2] += 5;
-    CHECK(ask(&drop, 1, 0, 1e-6, &time) == 1 && time <= 0.5 && time >= 0.5 - 1e-6);
+    for (int i = 0; i < 4; ++i) drop.end[i][2] += 5;
+    CHECK(ask(&drop, STEP_ORACLE_VERTEX_FACE, 0, 1e-6, &time) == 1);
+    CHECK_MSG(time <= 0.5 && time >= 0.5 - 1e-6, "%.17g", time);
     drop.end[0][2] += 1.001;
-    CHECK(ask(&drop, 1, 0, 1e-6, &time) == 0 && time == 1);
+    CHECK(ask(&drop, STEP_ORACLE_VERTEX_FACE, 0, 1e-6, &time) == 0 && time == 1);
+    CHECK(ask(&drop, STEP_ORACLE_VERTEX_FACE, 0, 0, &time) == 0 && time == 1);
 }
 
-SC_TEST_MAIN(SC_TEST(known_times))
+/* Reported times are not only early enough, but nearly always close to the contact. */
+static void times_close_to_contacts(void)
+{
+    uint32_t touching = 0, far = 0;
+    for (uint32_t i = 0; i < test_iterations(20000); ++i) {
+        step_oracle_kind kind = (step_oracle_kind)test_random_below(2);
+        double low, high, time;
+        query q;
+        make_random(&q);
+        if (!touches(&q, kind, &low, &high)) continue;
+        ++touching;
+        CHECK(ask(&q, kind, 0, 1e-9, &time) && time <= high);
+        far += low - time > 1e-6;
+    }
+    CHECK_MSG(touching > 0 && far <= touching / 100, "%u of %u", far, touching);
+}
+
+static void thickness_of_limits(void)
+{
+    sc_impact_limits limits = {0.5, 0.25, 1};
+    CHECK(sc_impact_thickness(&limits, 1) >= 0.75 && sc_impact_thickness(&limits, 1) <= 0.7500001);
+    limits.tolerance = 0;
+    CHECK(sc_impact_thickness(&limits, 1) >= 0.5 + SC_IMPACT_FLOOR);
+    CHECK(sc_impact_thickness(&limits, 0) >= 0.5);
+    CHECK(sc_impact_thickness(&limits, HUGE_VAL) >= ldexp(SC_IMPACT_FLOOR, 1023));
+    CHECK(sc_impact_thickness(&limits, HUGE_VAL) <= DBL_MAX);
+}
+
+SC_TEST_MAIN(SC_TEST(known_times), SC_TEST(thickness_of_limits), SC_TEST(random_steps),
+             SC_TEST(degenerate_steps), SC_TEST(thin_layers), SC_TEST(separations_just_reached),
+             SC_TEST(times_close_to_contacts))

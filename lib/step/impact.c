@@ -166,9 +166,9 @@ static inline double advance(int count, const motion *m, const instant *a, const
     for (int i = 0; i < count; ++i) {
         double at_start = inner(a->direction, a->corners[i]),
                at_end = inner(a->direction, to->corners[i]);
-        double s = at_end >= m->level     ? 1
-                   : at_start <= m->level ? 0
-                                          : (at_start - m->level) / (at_start - at_end);
+        double s = at_start <= m->level ? 0
+                   : at_end >= m->level ? 1
+                                        : (at_start - m->level) / (at_start - at_end);
         if (s < part) part = s;
     }
     return part == 1 ? to->time : a->time + part * (to->time - a->time);
