@@ -1132,7 +1132,7 @@ static void points_in_the_unit_box(void)
     mpq_clears(exact, place, NULL);
 }
 
-/* The boxes of edges hold the true places of their ends, however the contour is seen: from above, or from
+/* The boxes of runs of edges hold the true places of their ends, however the contour is seen: from above, or from
    one end, so that it is small for the size that it has; and whatever its size. */
 static void places_of_contours(void)
 {
@@ -1171,13 +1171,16 @@ static void places_of_contours(void)
             for (uint32_t node = 0; node < s.model->node_count; ++node) {
                 uint32_t listed = count_listed(s.model, node);
                 float from[3];
+                int passed;
                 if (listed == 0) continue;
                 s.workspace->isa = 1 + node % (uint32_t)sc_isa_best();
-                sc_simple_test(&s.state, &projection, node);
+                passed = sc_simple_test(&s.state, &projection, node);
                 for (int k = 0; k < 3; ++k)
                     from[k] = unit[4 * e->point[0] + (uint32_t)k] / 2 +
                               unit[4 * e->point[listed / 2] + (uint32_t)k] / 2;
+                if (!passed && listed > SC_CONTOUR_BLOCK) listed = SC_CONTOUR_BLOCK; /* at least */
                 for (uint32_t i = 0; i < listed; ++i) {
+                    uint32_t run = i / SC_CONTOUR_RUN;
                     if ((e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1) == 0)
                         continue;
                     ++edges;
@@ -1188,9 +1191,9 @@ static void places_of_contours(void)
                         (void)frexp(fabs(v[0]) + fabs(v[1]) + fabs(v[2]), &exponent);
                         for (int k = 0; k < 3; ++k) axis[k] = (float)ldexp(v[k], -exponent);
                         exact_place(exact, s.workspace, e->point[i + j / 2], axis, from);
-                        mpq_set_d(bound, (double)e->side[2 * (j % 2)][i]);
+                        mpq_set_d(bound, (double)e->run_side[2 * (j % 2)][run]);
                         wrong += mpq_cmp(exact, bound) < 0;
-                        mpq_set_d(bound, (double)e->side[2 * (j % 2) + 1][i]);
+                        mpq_set_d(bound, (double)e->run_side[2 * (j % 2) + 1][run]);
                         wrong += mpq_cmp(exact, bound) > 0;
                     }
                 }

@@ -1,5 +1,5 @@
 /*
- * Bit tricks with a portable form.
+ * What compilers have and C has not, with a portable form.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -18,6 +18,16 @@ static inline unsigned sc_bits_lowest(unsigned mask)
         at++;
     }
     return at;
+#endif
+}
+
+/* Asks for memory that will be read soon; any address will do. */
+static inline void sc_fetch(const void *address)
+{
+#if defined(__GNUC__)
+    __builtin_prefetch(address);
+#else
+    (void)address;
 #endif
 }
 

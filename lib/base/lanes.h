@@ -8,7 +8,8 @@
  * Operations round as those of single floats do, and there is no fused multiplication and addition, so that
  * all of them give the same results. A comparison gives a mask, of which lanes_bits makes bit i for lane i; with
  * NaN it is false. lanes_next is a moved down by one lane, with the first of b on top; lanes_points reads the
- * first three of four floats at eight places.
+ * first three of four floats at sixteen places. Of the functions of fours, lanes_four repeats four floats four times,
+ * lanes_each_four each of four floats, and the others store the least or greatest of each four lanes.
  *
  * Included once for each instruction set, by the .c files that include kernels, which define SC_KERNEL(name) to
  * make names of their own; so this has no guard. base/lanes_end.h ends it.
@@ -41,6 +42,10 @@
 #define lanes_least SC_KERNEL(sc_lanes_least)
 #define lanes_most SC_KERNEL(sc_lanes_most)
 #define lanes_points SC_KERNEL(sc_lanes_points)
+#define lanes_four SC_KERNEL(sc_lanes_four)
+#define lanes_each_four SC_KERNEL(sc_lanes_each_four)
+#define lanes_store_least SC_KERNEL(sc_lanes_store_least)
+#define lanes_store_most SC_KERNEL(sc_lanes_store_most)
 
 #ifndef SC_LANES_COUNT
 #  define SC_LANES_COUNT 16
@@ -109,7 +114,8 @@ static inline lanes lanes_next(lanes a, lanes b)
         _mm512_alignr_epi32(_mm512_castps_si512(b), _mm512_castps_si512(a), 1));
 }
 /* The points i, i + 4, i + 8 and i + 12. */
-static inline __m512 SC_KERNEL(sc_lanes_four)(const float *const point[SC_LANES_COUNT], int i)
+static inline __m512 SC_KERNEL(sc_lanes_four_points)(const float *const point[SC_LANES_COUNT],
+                                                     int i)
 {
     __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(point[i]));
     r = _mm512_insertf32x4(r, _mm_loadu_ps(point[i + 4]), 1);
@@ -119,12 +125,38 @@ static inline __m512 SC_KERNEL(sc_lanes_four)(const float *const point[SC_LANES_
 static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes *x, lanes *y,
                                 lanes *z)
 {
-    __m512 r0 = SC_KERNEL(sc_lanes_four)(point, 0), r1 = SC_KERNEL(sc_lanes_four)(point, 1);
-    __m512 r2 = SC_KERNEL(sc_lanes_four)(point, 2), r3 = SC_KERNEL(sc_lanes_four)(point, 3);
+    __m512 r0 = SC_KERNEL(sc_lanes_four_points)(point, 0),
+           r1 = SC_KERNEL(sc_lanes_four_points)(point, 1);
+    __m512 r2 = SC_KERNEL(sc_lanes_four_points)(point, 2),
+           r3 = SC_KERNEL(sc_lanes_four_points)(point, 3);
     __m512 low = _mm512_unpacklo_ps(r0, r1), low2 = _mm512_unpacklo_ps(r2, r3);
     *x = _mm512_shuffle_ps(low, low2, 0x44);
     *y = _mm512_shuffle_ps(low, low2, 0xee);
     *z = _mm512_shuffle_ps(_mm512_unpackhi_ps(r0, r1), _mm512_unpackhi_ps(r2, r3), 0x44);
+}
+
+static inline lanes lanes_four(const float *f)
+{
+    return _mm512_broadcast_f32x4(_mm_loadu_ps(f));
+}
+static inline lanes lanes_each_four(const float *f)
+{
+    const __m512i place = _mm512_set_epi32(3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0);
+    return _mm512_permutexvar_ps(place, _mm512_castps128_ps512(_mm_loadu_ps(f)));
+}
+static inline void SC_KERNEL(sc_lanes_store_fourth)(float *f, __m512 a)
+{
+    _mm_storeu_ps(f, _mm512_castps512_ps128(_mm512_maskz_compress_ps(0x1111, a)));
+}
+static inline void lanes_store_least(float *f, lanes a)
+{
+    a = _mm512_min_ps(a, _mm512_permute_ps(a, 0xb1));
+    SC_KERNEL(sc_lanes_store_fourth)(f, _mm512_min_ps(a, _mm512_permute_ps(a, 0x4e)));
+}
+static inline void lanes_store_most(float *f, lanes a)
+{
+    a = _mm512_max_ps(a, _mm512_permute_ps(a, 0xb1));
+    SC_KERNEL(sc_lanes_store_fourth)(f, _mm512_max_ps(a, _mm512_permute_ps(a, 0x4e)));
 }
 
 #elif SC_LANES_AVX2 || SC_LANES_SSE2
@@ -267,6 +299,24 @@ static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, __
     *y = _mm256_shuffle_ps(low, low2, 0xee);
     *z = _mm256_shuffle_ps(_mm256_unpackhi_ps(r[0], r[1]), _mm256_unpackhi_ps(r[2], r[3]), 0x44);
 }
+static inline lanes lanes_four(const float *f)
+{
+    lanes r;
+    r.v[0] = r.v[1] = _mm256_set_m128(_mm_loadu_ps(f), _mm_loadu_ps(f));
+    return r;
+}
+static inline lanes lanes_each_four(const float *f)
+{
+    lanes r;
+    r.v[0] = _mm256_set_m128(_mm_set1_ps(f[1]), _mm_set1_ps(f[0]));
+    r.v[1] = _mm256_set_m128(_mm_set1_ps(f[3]), _mm_set1_ps(f[2]));
+    return r;
+}
+/* Fours of a, transposed. */
+#    define SC_LANES_FOURS(a)                                                                      \
+      __m128 r0 = _mm256_castps256_ps128((a).v[0]), r1 = _mm256_extractf128_ps((a).v[0], 1);       \
+      __m128 r2 = _mm256_castps256_ps128((a).v[1]), r3 = _mm256_extractf128_ps((a).v[1], 1);       \
+      _MM_TRANSPOSE4_PS(r0, r1, r2, r3)
 
 #  else
 
@@ -299,8 +349,36 @@ static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, __
     *y = r1;
     *z = r2;
 }
+static inline lanes lanes_four(const float *f)
+{
+    lanes r;
+    r.v[0] = r.v[1] = r.v[2] = r.v[3] = _mm_loadu_ps(f);
+    return r;
+}
+static inline lanes lanes_each_four(const float *f)
+{
+    lanes r;
+    int i;
+    for (i = 0; i < 4; i++) r.v[i] = _mm_set1_ps(f[i]);
+    return r;
+}
+#    define SC_LANES_FOURS(a)                                                                      \
+      __m128 r0 = (a).v[0], r1 = (a).v[1], r2 = (a).v[2], r3 = (a).v[3];                           \
+      _MM_TRANSPOSE4_PS(r0, r1, r2, r3)
 
 #  endif
+
+static inline void lanes_store_least(float *f, lanes a)
+{
+    SC_LANES_FOURS(a);
+    _mm_storeu_ps(f, _mm_min_ps(_mm_min_ps(r0, r1), _mm_min_ps(r2, r3)));
+}
+static inline void lanes_store_most(float *f, lanes a)
+{
+    SC_LANES_FOURS(a);
+    _mm_storeu_ps(f, _mm_max_ps(_mm_max_ps(r0, r1), _mm_max_ps(r2, r3)));
+}
+#  undef SC_LANES_FOURS
 
 static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes *x, lanes *y,
                                 lanes *z)
@@ -402,6 +480,26 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
         y->v[i] = point[i][1];
         z->v[i] = point[i][2];
     }
+}
+static inline lanes lanes_four(const float *f)
+{
+    SC_LANES_EACH(f[i % 4]);
+}
+static inline lanes lanes_each_four(const float *f)
+{
+    SC_LANES_EACH(f[i / 4]);
+}
+static inline void lanes_store_least(float *f, lanes a)
+{
+    int i;
+    for (i = 0; i < SC_LANES_COUNT; i++)
+        if (i % 4 == 0 || a.v[i] < f[i / 4]) f[i / 4] = a.v[i];
+}
+static inline void lanes_store_most(float *f, lanes a)
+{
+    int i;
+    for (i = 0; i < SC_LANES_COUNT; i++)
+        if (i % 4 == 0 || a.v[i] > f[i / 4]) f[i / 4] = a.v[i];
 }
 
 #endif

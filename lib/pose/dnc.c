@@ -11,10 +11,6 @@
 
 enum { HALF = SC_DNC_DIRECTIONS / 2 };
 
-/* The first half of the directions; the second half are their negatives. */
-static const int direction[HALF][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 1},
-                                       {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
-
 void sc_dnc_update(const sc_model *model, sc_workspace *w)
 {
     const uint32_t *level_first = sc_model_level_first(model), *child = sc_model_child(model);
@@ -55,18 +51,21 @@ int sc_dnc_validate(const sc_model *model, const sc_workspace *w)
  * A computed coordinate u . (p - origin) collects one difference, one product, two additions: an error
  * of 4.01 * 2^-53 times the sum of |u_k| |p_k - origin_k|, at most |u|1 radius.
  */
+/* Sums of some of the diagonals (1, 1, 1), (1, 1, -1), (1, -1, 1), (1, -1, -1), which a mask has in bits 3 to 6, after
+   the axes; their negatives come HALF bits later. */
+static const signed char diagonals[16][3] = {
+    {0, 0, 0},   {1, 1, 1}, {1, 1, -1}, {2, 2, 0},  {1, -1, 1}, {2, 0, 2},  {2, 0, 0},   {3, 1, 1},
+    {1, -1, -1}, {2, 0, 0}, {2, 0, -2}, {3, 1, -1}, {2, -2, 0}, {3, -1, 1}, {3, -1, -1}, {4, 0, 0}};
+
 void sc_dnc_projection(const sc_workspace *w, uint32_t mask, sc_projection *projection)
 {
     static const double oblique[2][3] = {{5, 2, 11}, {11, 3, 2}};
     const double *h = oblique[0];
-    double s[3] = {0, 0, 0}, *u = projection->u, *v = projection->w;
-    int d, k;
-    for (d = 0; d < SC_DNC_DIRECTIONS; d++) {
-        const int *one = direction[d % HALF];
-        int weight = (one[0] && one[1]) ? 4 : 7;
-        if (!(mask >> d & 1)) continue;
-        for (k = 0; k < 3; k++) s[k] += (d < HALF ? weight : -weight) * one[k];
-    }
+    double s[3], *u = projection->u, *v = projection->w;
+    int k;
+    for (k = 0; k < 3; k++)
+        s[k] = 7 * ((int)(mask >> k & 1) - (int)(mask >> (HALF + k) & 1)) +
+               4 * (diagonals[mask >> 3 & 15][k] - diagonals[mask >> (HALF + 3) & 15][k]);
     if (s[1] * h[2] == s[2] * h[1] && s[2] * h[0] == s[0] * h[2]) h = oblique[1];
     for (k = 0; k < 3; k++)
         u[k] = s[(k + 1) % 3] * h[(k + 2) % 3] - s[(k + 2) % 3] * h[(k + 1) % 3];

@@ -35,9 +35,10 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->contour.point = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
     for (k = 0; k < 2; k++) w->contour.at[k] = (float *)place(block, at, listed, sizeof(float));
     for (k = 0; k < 4; k++) {
-        w->contour.side[k] = (float *)place(block, at, listed, sizeof(float));
-        w->contour.block_side[k] =
-            (float *)place(block, at, listed / SC_CONTOUR_BLOCK + SC_CONTOUR_BLOCK, sizeof(float));
+        w->contour.run_side[k] =
+            (float *)place(block, at, listed / SC_CONTOUR_RUN + 16, sizeof(float));
+        w->contour.group_side[k] =
+            (float *)place(block, at, listed / SC_CONTOUR_RUN / 16 + 17, sizeof(float));
     }
     w->contour.is_edge =
         (uint16_t *)place(block, at, listed / SC_CONTOUR_BLOCK + 1, sizeof(uint16_t));

@@ -42,8 +42,9 @@ typedef struct sc_projection {
     double x_error, y_error; /* |computed - true| at most */
 } sc_projection;
 
-/* Edges of a contour, projected, are tested in blocks of this many. */
-enum { SC_CONTOUR_BLOCK = 16 };
+/* Edges of a contour, projected, are tested in blocks of SC_CONTOUR_BLOCK, and with the next SC_CONTOUR_NEAR: all of
+   their own run of SC_CONTOUR_RUN and the next. */
+enum { SC_CONTOUR_BLOCK = 16, SC_CONTOUR_RUN = 4, SC_CONTOUR_NEAR = 2 * SC_CONTOUR_RUN - 1 };
 
 /* Sides of boxes in the plane. */
 enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
@@ -55,10 +56,11 @@ enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
 typedef struct sc_contour_edges {
     uint32_t *point;      /* what points they are */
     float *at[2];         /* x and y */
-    float *side[4];       /* boxes of edges */
-    float *block_side[4]; /* boxes of blocks, and SC_CONTOUR_BLOCK more */
-    uint16_t *is_edge;    /* bit i of block b: 16 b + i is an edge */
-    uint32_t *piece;      /* trees of edges that hang together: the parent of each */
+    float *run_side[4];   /* boxes of runs, and 16 more */
+    float *group_side[4]; /* boxes of 16 runs, and 16 more */
+    uint16_t *is_edge;    /* bit i of block b: SC_CONTOUR_BLOCK b + i is an edge */
+    uint32_t
+        *piece; /* if there are pieces, trees of edges that hang together: the parent of each */
 } sc_contour_edges;
 
 /*

@@ -6,8 +6,8 @@
  * All tests are in single precision on projected points, relative to a point of the contour and scaled
  * to a size of about one, and hold for every place that the true points can be at, up to a distance of
  * error in each coordinate: they say something about the contour that is, not about the one computed. Edges that
- * share no point must be apart by their boxes, or one on one side of the other's line. Blocks of
- * edges are compared by their boxes first, so that the cost is about linear.
+ * share no point must be apart by their boxes, or one on one side of the other's line. The inner loops
+ * (query/simple_kernel.h) settle nearly all pairs, sixteen at a time; what they leave comes to sc_simple_are_apart.
  */
 #include "query/simple.h"
 
@@ -16,7 +16,24 @@
 #include <string.h>
 
 #include "base/assume.h"
+#include "base/bits.h"
 #include "query/query_kernels.h"
+
+static int is_edge(const sc_simple_contour *c, uint32_t i)
+{
+    return c->edges->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1;
+}
+
+/* Copies points, eight at a time where all may be read: most segments are short. */
+static void copy_points(uint32_t *to, const uint32_t *from, uint32_t count, uint32_t readable)
+{
+    uint32_t i;
+    if (readable < count + 8) {
+        memcpy(to, from, count * sizeof *to);
+        return;
+    }
+    for (i = 0; i < count; i += 8) memcpy(to + i, from + i, 8 * sizeof *to);
+}
 
 /* Lists the points of segments, one that follows where another ended going on with its chain. */
 static void list_points(sc_simple_contour *c, const sc_model *model, const uint32_t *segments,
@@ -25,31 +42,42 @@ static void list_points(sc_simple_contour *c, const sc_model *model, const uint3
     const sc_contour_edges *e = c->edges;
     const uint32_t *points = sc_model_points(model);
     const uint32_t *first = sc_model_segment_first(model), *last = sc_model_segment_last(model);
-    uint32_t i, j, n = 0, start = 0;
+    uint32_t i, n = 0, blocks = 0;
     for (i = 0; i < segment_count; i++) {
-        uint32_t begin = first[segments[i]], end = last[segments[i]];
+        uint32_t begin = first[segments[i]], count = last[segments[i]] - begin + 1;
         if (n && e->point[n - 1] == points[begin])
-            begin++;
-        else if (n)
-            e->piece[n - 1] = SC_NONE; /* no edge */
-        if (begin == first[segments[i]]) start = n;
-        for (j = begin; j <= end; j++) {
-            e->piece[n] = start;
-            e->point[n++] = points[j];
-        }
+            n--;
+        else if (n) /* no edge */
+            e->is_edge[(n - 1) / SC_CONTOUR_BLOCK] &=
+                (uint16_t) ~(1u << (n - 1) % SC_CONTOUR_BLOCK);
+        copy_points(e->point + n, points + begin, count, model->segment_point_total - begin);
+        for (n += count; blocks * SC_CONTOUR_BLOCK < n; blocks++) e->is_edge[blocks] = 0xffff;
     }
-    e->piece[n - 1] = SC_NONE;
+    e->is_edge[blocks - 1] &= (uint16_t)((1u << (n - 1) % SC_CONTOUR_BLOCK) - 1u);
+    e->is_edge[blocks] = 0;
     c->count = n;
-    c->blocks = (n + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK;
-    for (i = n; i < (c->blocks + 1) * SC_CONTOUR_BLOCK; i++) e->point[i] = e->point[n - 1];
-    for (i = 0; i < c->blocks; i++) {
-        unsigned bits = 0;
-        for (j = 0; j < SC_CONTOUR_BLOCK; j++)
-            if (SC_CONTOUR_BLOCK * i + j < n)
-                bits |= (unsigned)(e->piece[SC_CONTOUR_BLOCK * i + j] != SC_NONE) << j;
-        e->is_edge[i] = (uint16_t)bits;
+    c->blocks = blocks;
+    for (i = n; i < (blocks + 1) * SC_CONTOUR_BLOCK; i++) e->point[i] = e->point[n - 1];
+}
+
+/* Each chain is a tree of its own. */
+static void list_pieces(const sc_simple_contour *c)
+{
+    uint32_t i, start = 0;
+    for (i = 0; i < c->count; i++) {
+        c->edges->piece[i] = start;
+        if (!is_edge(c, i)) start = i + 1;
     }
-    e->is_edge[c->blocks] = 0;
+}
+
+/* The power of two above a float from 1 to 2^127. */
+static double power_above(float f)
+{
+    uint32_t bits;
+    memcpy(&bits, &f, sizeof bits);
+    bits = (bits & 0x7f800000u) + 0x800000u; /* the exponent, and one more */
+    memcpy(&f, &bits, sizeof f);
+    return (double)f;
 }
 
 /*
@@ -64,22 +92,17 @@ static void choose_axes(sc_simple_contour *c, const sc_workspace *w,
     const float *one = w->unit + 4 * (uint64_t)c->edges->point[0];
     const float *other = w->unit + 4 * (uint64_t)c->edges->point[c->count / 2];
     double size[2] = {0, 0};
-    int k, exponent[2];
+    int k;
     for (k = 0; k < 3; k++) {
         size[0] += fabs(projection->u[k]);
         size[1] += fabs(projection->w[k]);
         c->from[k] = one[k] / 2 + other[k] / 2;
     }
-    for (k = 0; k < 2; k++) (void)frexp(size[k], &exponent[k]);
+    for (k = 0; k < 2; k++) size[k] = power_above((float)size[k]);
     for (k = 0; k < 3; k++) {
-        c->axis[0][k] = (float)ldexp(projection->u[k], -exponent[0]);
-        c->axis[1][k] = (float)ldexp(projection->w[k], -exponent[1]);
+        c->axis[0][k] = (float)(projection->u[k] / size[0]);
+        c->axis[1][k] = (float)(projection->w[k] / size[1]);
     }
-}
-
-static int is_edge(const sc_simple_contour *c, uint32_t i)
-{
-    return c->edges->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1;
 }
 
 typedef struct vector2 {
@@ -130,6 +153,19 @@ static int lies_beside(const sc_simple_contour *c, uint32_t i, uint32_t j)
            0;
 }
 
+/* Whether the boxes of two edges certainly are apart: by two errors, and a rounding that is below another. */
+static int boxes_part(const sc_simple_contour *c, uint32_t i, uint32_t j)
+{
+    int k;
+    for (k = 0; k < 2; k++) {
+        const float *at = c->edges->at[k];
+        float low = fminf(at[i], at[i + 1]), high = fmaxf(at[i], at[i + 1]);
+        float other_low = fminf(at[j], at[j + 1]), other_high = fmaxf(at[j], at[j + 1]);
+        if (other_low - high > 4 * c->error || low - other_high > 4 * c->error) return 1;
+    }
+    return 0;
+}
+
 /* Whether two edges that share a point, the given end of each, certainly do not overlap beyond it. */
 static int is_open(const sc_simple_contour *c, uint32_t i, int end_i, uint32_t j, int end_j)
 {
@@ -150,7 +186,7 @@ int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
     uint32_t a = c->edges->point[i], b = c->edges->point[i + 1], k;
     uint32_t p = c->edges->point[j], q = c->edges->point[j + 1];
     int shared = (a == p) + (a == q) + (b == p) + (b == q);
-    if (!shared) return lies_beside(c, i, j) || lies_beside(c, j, i);
+    if (!shared) return boxes_part(c, i, j) || lies_beside(c, i, j) || lies_beside(c, j, i);
     if (shared > 1 || !is_open(c, i, b == p || b == q, j, a == q || b == q)) return 0;
     if (c->in_pieces) c->edges->piece[piece_of(c, i)] = piece_of(c, j);
     if (a == p) { /* the contour leaves the point twice */
@@ -240,6 +276,38 @@ static int are_pieces_fine(const sc_simple_contour *c)
     return 1;
 }
 
+void sc_simple_fetch(const sc_model *model, uint32_t node, int step)
+{
+    const uint32_t *at = sc_model_node_contour(model) + node, *segments, *first, *last;
+    uint32_t i, count;
+    if (step == 0) {
+        sc_fetch(at);
+        sc_fetch(sc_model_node_kind(model) + node);
+        sc_fetch(sc_model_node_patches(model) + node);
+        return;
+    }
+    segments = sc_model_contours(model) + at[0];
+    count = at[1] - at[0] < 64 ? at[1] - at[0] : 64;
+    if (step == 1) {
+        for (i = 0; i < count; i += 16) sc_fetch(segments + i);
+        return;
+    }
+    if (sc_model_node_kind(model)[node] & SC_NODE_TOUCHES) {
+        segments += 2;
+        count = count < 2 ? 0 : count - 2;
+    }
+    first = sc_model_segment_first(model);
+    last = sc_model_segment_last(model);
+    for (i = 0; i < count; i++) {
+        if (step == 2) {
+            sc_fetch(first + segments[i]);
+            sc_fetch(last + segments[i]);
+        } else {
+            sc_fetch(sc_model_points(model) + first[segments[i]]);
+        }
+    }
+}
+
 int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
 {
     const sc_model *model = state->model;
@@ -259,6 +327,7 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
     if (!count) return 0; /* of a forged model: without a contour, areas are not all positive */
     previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
     list_points(&c, model, segments, count);
+    if (c.in_pieces) list_pieces(&c);
     choose_axes(&c, state->workspace, projection);
     kernels->project(&c, state->workspace->unit);
     state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.count;

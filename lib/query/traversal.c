@@ -10,6 +10,7 @@
 
 #include <string.h>
 
+#include "base/bits.h"
 #include "base/hooks.h"
 #include "pose/dnc.h"
 #include "pose/refit.h"
@@ -109,6 +110,8 @@ static void put_back(sc_query_state *state, uint32_t node)
 {
     sc_walk *walk = &state->workspace->walk;
     walk->stack[walk->stack_count++] = node;
+    sc_fetch(sc_model_node_child(state->model) + node);
+    sc_fetch(sc_model_node_boxes(state->model) + node);
 }
 
 /* The orientation test. */
@@ -130,16 +133,27 @@ static void orient(sc_query_state *state, uint32_t node)
         w->walk.queue[w->walk.queue_count++] = node;
 }
 
+/* How many tests pass between two steps of fetching what a test reads. */
+enum { FETCH_DISTANCE = 2 };
+
 /* The contour tests of all nodes in the queue. */
 static void test_queue(sc_query_state *state)
 {
     sc_workspace *w = state->workspace;
     sc_walk *walk = &w->walk;
-    uint32_t i;
-    for (i = 0; i < walk->queue_count && !sc_state_stops(state); i++) {
-        uint32_t node = walk->queue[i];
-        const sc_pair *patches = &sc_model_node_patches(state->model)[node];
+    int i, count = (int)walk->queue_count, step;
+    for (i = -FETCH_DISTANCE * SC_SIMPLE_FETCHES; i < count && !sc_state_stops(state); i++) {
+        const sc_pair *patches;
         sc_projection projection;
+        uint32_t node;
+        for (step = 0; step < SC_SIMPLE_FETCHES; step++) {
+            int ahead = i + FETCH_DISTANCE * (SC_SIMPLE_FETCHES - step);
+            if (ahead >= 0 && ahead < count)
+                sc_simple_fetch(state->model, walk->queue[ahead], step);
+        }
+        if (i < 0) continue;
+        node = walk->queue[i];
+        patches = &sc_model_node_patches(state->model)[node];
         sc_dnc_projection(w, (uint32_t)w->mask[patches->a] & w->mask[patches->b], &projection);
         if (sc_simple_test(state, &projection, node)) {
             state->stats.nodes_culled++;
