@@ -72,13 +72,13 @@ static void validate(const steps *s, const sc_hooks *hooks)
 /* What the caller may want to know of a mesh that was built. */
 static void log_facts(const sc_hooks *hooks, const sc_model *m)
 {
-    const uint32_t *slot = sc_model_slot(m);
+    const uint8_t *use = sc_model_vertex_use(m);
     const sc_level *last = &sc_model_level_info(m)[m->level_count - 1];
     uint32_t v, unused = 0, welded = 0, scattered = last->patch_count - last->connected_patches;
     if (!hooks->log) return;
     for (v = 0; v < m->vertex_count; v++) {
-        unused += slot[v] == SC_SLOT_UNUSED;
-        welded += slot[v] == SC_SLOT_WELDED;
+        unused += use[v] == SC_VERTEX_UNUSED;
+        welded += use[v] == SC_VERTEX_WELDED;
     }
     if (unused) sc_hooks_log(hooks, SC_LOG_NOTE, "%" PRIu32 " vertices are in no triangle", unused);
     if (welded)
@@ -555,12 +555,10 @@ static sc_status read_corners(const sc_model *model, const sc_pose *pose, uint64
 {
     const uint32_t *corner =
         sc_model_triangle(model) + 3 * (uint64_t)sc_model_place(model)[triangle];
-    const uint32_t *vertex = sc_model_vertex(model);
     uint32_t i, k;
     for (i = 0; i < 3; i++) {
         uint32_t point = corner[(first + (i < count ? i : count - 1)) % 3];
-        sc_mesh_read_position(pose->positions, pose->position_type, stride, vertex[point],
-                              positions[i]);
+        sc_mesh_read_position(pose->positions, pose->position_type, stride, point, positions[i]);
         for (k = 0; k < 3; k++)
             if (positions[i][k] - positions[i][k] != 0) return SC_ERROR_NOT_FINITE;
     }

@@ -148,9 +148,15 @@ static void open_random_scene(scene *s, uint32_t maximum)
 
 /* ---- exact arithmetic ---- */
 
+/* Poses here are packed doubles. */
+static const double *place_of(const sc_workspace *w, uint32_t point)
+{
+    return (const double *)(const void *)w->positions + 3 * (size_t)point;
+}
+
 static double part(const sc_workspace *w, uint32_t point, int k)
 {
-    return w->position[3 * (size_t)point + (size_t)k];
+    return place_of(w, point)[k];
 }
 
 /* result = v . (p - q); q NULL: the origin given. */
@@ -174,8 +180,8 @@ static void exact_dot(mpq_t result, const double v[3], const double *p, const do
 static int exact_area_sign(const sc_workspace *w, const uint32_t *corner, const double u[3],
                            const double v[3])
 {
-    const double *a = w->position + 3 * (size_t)corner[0];
-    const double *b = w->position + 3 * (size_t)corner[1], *c = w->position + 3 * (size_t)corner[2];
+    const double *a = place_of(w, corner[0]);
+    const double *b = place_of(w, corner[1]), *c = place_of(w, corner[2]);
     mpq_t ub, vb, uc, vc;
     int sign;
     mpq_inits(ub, vb, uc, vc, NULL);
@@ -301,7 +307,7 @@ static uint32_t check_projections(scene *s)
                                      projection.w) <= 0;
         for (i = from; i < to && i < from + 8; ++i) {
             uint32_t point = sc_model_triangle(m)[3 * (size_t)i];
-            const double *at = w->position + 3 * (size_t)point;
+            const double *at = place_of(w, point);
             double x, y;
             mpq_t exact, computed, error;
             sc_contour_bounds_project(w, &projection, SC_LINE_VERTICAL, point, &x, &y);
@@ -395,7 +401,7 @@ typedef struct bounds_check {
 
 static void exact_point(const bounds_check *c, uint32_t point, mpq_t x, mpq_t y)
 {
-    const double *at = c->s->workspace->position + 3 * (size_t)point;
+    const double *at = place_of(c->s->workspace, point);
     const sc_projection *p = c->projection;
     exact_dot(c->line == SC_LINE_VERTICAL ? x : y, p->u, at, p->origin);
     exact_dot(c->line == SC_LINE_VERTICAL ? y : x, p->w, at, p->origin);
@@ -592,9 +598,9 @@ static void bounds_of_long_segments(void)
             extra[0] = 0;
             extra[1] = edges;
             for (uint32_t k = 0; k <= edges; ++k)
-                extra[2 + k] = test_random_below(model->point_count);
+                extra[2 + k] = test_random_below(model->vertex_count);
             for (uint32_t k = 3; k < edges + 3; ++k) /* no edge from a point to itself */
-                while (extra[k] == extra[k - 1]) extra[k] = test_random_below(model->point_count);
+                while (extra[k] == extra[k - 1]) extra[k] = test_random_below(model->vertex_count);
             memcpy(longer, model, size);
             memcpy((unsigned char *)longer + size, extra, sizeof(extra));
             longer->segment_count = longer->leaf_segment_count = 1;
@@ -649,7 +655,7 @@ static void ticks(void)
         random_pose(s.pose, s.mesh.vertex_count);
         if (i % 2) soup_shuffle(s.pose, s.mesh.vertex_count);
         if (load_pose(&s)) check_bounds(&s, &tally);
-        points = s.model->point_count;
+        points = s.model->vertex_count;
         for (uint32_t p = 0; p < points; ++p)
             found[p] = (uint8_t)sc_fan_is_plain(s.model, s.workspace, p);
         if (!CHECK(sc_workspace_create(s.model, NULL, &s.workspace) == SC_OK)) break;
@@ -697,7 +703,7 @@ static void first_tick_again(void)
         for (uint32_t i = 0; i < s.model->leaf_count; ++i)
             plain += sc_fan_plain_of_leaf(s.model, s.workspace, i) != 0;
         CHECK(round == 0 ? plain > s.model->leaf_count / 2 : plain == 0);
-        for (uint32_t p = plain = 0; p < s.model->point_count; ++p)
+        for (uint32_t p = plain = 0; p < s.model->vertex_count; ++p)
             plain += (uint32_t)sc_fan_is_plain(s.model, s.workspace, p);
         CHECK(round == 0 ? plain == 25 : plain < 10);
     }
@@ -1116,8 +1122,9 @@ static void points_in_the_unit_box(void)
         if (round % 2)
             soup_scale(s.pose, s.mesh.vertex_count, exp2(test_random_range(-1074, 1000)));
         if (load_pose(&s))
-            for (uint32_t i = 0; i < 3 * s.model->point_count; ++i) {
+            for (uint32_t i = 0; i < 3 * s.model->vertex_count; ++i) {
                 double unit = (double)s.workspace->unit[4 * (i / 3) + i % 3], off;
+                if (sc_model_vertex_use(s.model)[i / 3] != SC_VERTEX_POINT) continue;
                 exact_place(exact, s.workspace, i / 3, axis[i % 3], origin);
                 mpq_set_d(place, unit);
                 mpq_sub(place, place, exact);
@@ -1305,7 +1312,7 @@ static void fans_have_no_pairs(void)
         if (!load_pose(&s)) continue;
         answer = solve_in_places(&s);
         list = &answer.lists[SC_PAIRS_TRIANGLE][SC_CONTACT_TOUCHING];
-        for (p = 0; p < s.model->point_count; ++p) {
+        for (p = 0; p < s.model->vertex_count; ++p) {
             int is_plain = sc_fan_is_plain(s.model, s.workspace, p);
             ++points;
             plain += (uint64_t)is_plain;
@@ -1361,7 +1368,7 @@ static void single_fans(void)
             }
         }
         if (open_scene(&s, "fan", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) && load_pose(&s)) {
-            uint32_t center = sc_model_slot(s.model)[n];
+            uint32_t center = n;
             if (sc_fan_is_plain(s.model, s.workspace, center)) {
                 oracle_answer answer = solve_in_places(&s);
                 ++plain;

@@ -429,7 +429,7 @@ static uint32_t list_arrays(const sc_model *m, model_array *arrays)
 {
     uint32_t n = 0;
     uint32_t vertex_count = m->vertex_count, triangle_count = m->triangle_count;
-    uint32_t point_count = m->point_count, leaf_count = m->leaf_count, level_count = m->level_count;
+    uint32_t leaf_count = m->leaf_count, level_count = m->level_count;
     uint32_t patch_end = m->patch_end, ring_total = m->ring_total, node_count = m->node_count;
     uint32_t box_count = m->box_count, contour_total = m->contour_total;
     uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
@@ -558,24 +558,25 @@ static void forged_counts(void)
     }
 }
 
-/* Points that no vertex sets would be where another pose left them, or nowhere. */
-static void forged_slots(void)
+/* What stands for a point is a point. */
+static void forged_uses(void)
 {
     soup mesh;
     sc_model *model = build_small(1, &mesh);
     save s = save_model(model);
-    uint32_t *slot =
-        (uint32_t *)(void *)(s.data + sizeof(sc_saved_header) + model->offset[SC_ARRAY_slot]);
+    uint8_t *use = s.data + sizeof(sc_saved_header) + model->offset[SC_ARRAY_vertex_use];
+    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
     for (uint32_t v = 0; v < model->vertex_count; ++v) {
-        uint32_t old = slot[v];
-        slot[v] = SC_SLOT_UNUSED;
-        CHECK(try_forged(&s, &mesh));
-        slot[v] = SC_SLOT_WELDED;
-        CHECK(try_forged(&s, &mesh));
-        slot[v] = slot[(v + 1) % model->vertex_count];
-        CHECK(try_forged(&s, &mesh));
-        slot[v] = old;
+        for (uint8_t other = SC_VERTEX_WELDED; other <= SC_VERTEX_UNUSED; ++other) {
+            use[v] = other;
+            CHECK(try_forged(&s, &mesh));
+            --m->point_count;
+            CHECK(try_forged(&s, &mesh));
+            ++m->point_count;
+        }
+        use[v] = SC_VERTEX_POINT;
     }
+    CHECK(!try_forged(&s, &mesh));
     free(s.memory);
     sc_model_free(model);
     soup_free(&mesh);
@@ -609,8 +610,8 @@ static void forged_rings(void)
     uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_ring_first]);
     const uint32_t *was = sc_model_ring_first(model);
     uint32_t rings = 0, at = 0;
-    for (uint32_t p = 0; p < m->point_count; ++p) rings += was[p + 1] > was[p];
-    for (uint32_t p = 0, n = 0; p < m->point_count; ++p) {
+    for (uint32_t p = 0; p < m->vertex_count; ++p) rings += was[p + 1] > was[p];
+    for (uint32_t p = 0, n = 0; p < m->vertex_count; ++p) {
         first[p] = at;
         if (was[p + 1] > was[p]) at += n++ == 0 ? m->ring_total - (rings - 1) : 1;
     }
@@ -1106,8 +1107,8 @@ static void format(void)
     uint64_t hash = 0;
     for (size_t i = 0; i + 1 < sizeof(arrays); ++i)
         hash = (hash ^ (unsigned char)arrays[i]) * 0x100000001b3u;
-    CHECK_MSG(hash == UINT64_C(0x54fafd2b410be64c), "0x%" PRIx64, hash);
-    CHECK_MSG(sizeof(sc_model) == 384, "%zu", sizeof(sc_model));
+    CHECK_MSG(hash == UINT64_C(0xf6138c900f4a6dea), "0x%" PRIx64, hash);
+    CHECK_MSG(sizeof(sc_model) == 392, "%zu", sizeof(sc_model));
     CHECK(header->version == 1);
     free(s.memory);
     sc_model_free(model);
@@ -1116,7 +1117,7 @@ static void format(void)
 
 SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(truncated),
              SC_TEST(changed), SC_TEST(foreign), SC_TEST(forged_arrays), SC_TEST(forged_counts),
-             SC_TEST(forged_slots), SC_TEST(forged_rings), SC_TEST(forged_contour),
+             SC_TEST(forged_uses), SC_TEST(forged_rings), SC_TEST(forged_contour),
              SC_TEST(forged_touches), SC_TEST(forged_sizes), SC_TEST(forged_chain),
              SC_TEST(messages), SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments),
              SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))

@@ -545,7 +545,7 @@ static uint32_t find_ring(const sc_model *model, uint32_t point, uint32_t *ring)
 static uint32_t check_rings(const steps *s, const sc_model *model)
 {
     uint32_t ring[SC_RING_MAX], p, i, wrong = 0, rings = 0;
-    for (p = 0; p < model->point_count; ++p) {
+    for (p = 0; p < model->vertex_count; ++p) {
         const uint32_t *first = sc_model_ring_first(model) + p,
                        *now = sc_model_ring(model) + *first;
         uint32_t count = first[1] - first[0], n = find_ring(model, p, ring), shift = 0;
@@ -614,14 +614,14 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
         memcpy(before, now, p->triangles * sizeof(uint32_t));
     }
     CHECK_MSG(wrong == 0, "%s: patches of the model are wrong", s->name);
-    for (wrong = i = 0; i < p->triangles; ++i) { /* triangles in leaf order, points renumbered */
+    for (wrong = i = 0; i < p->triangles; ++i) { /* triangles in leaf order */
         uint32_t id = sc_model_triangle_id(model)[i], t = s->hierarchy.order[i];
         wrong += id != s->points.id[t];
         wrong += sc_model_edge_owned(model)[i] != s->adjacency.owned[t];
         for (k = 0; k < 3; ++k) {
             uint32_t v = mesh->triangles[3 * id + k];
-            if (sc_model_slot(model)[v] < SC_SLOT_WELDED)
-                wrong += sc_model_triangle(model)[3 * i + k] != sc_model_slot(model)[v];
+            if (sc_model_vertex_use(model)[v] == SC_VERTEX_POINT)
+                wrong += sc_model_triangle(model)[3 * i + k] != v;
         }
     }
     CHECK_MSG(wrong == 0, "%s: triangles of the model are wrong", s->name);

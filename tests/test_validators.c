@@ -128,7 +128,7 @@ static void no_bounds(void)
         sc_workspace *w = s.workspace;
         uint32_t mask = w->mask[0], i;
         sc_projection projection;
-        for (i = 0; i < 3 * s.model->point_count; ++i) w->position[i] *= 1e60;
+        for (i = 0; i < 3 * s.model->vertex_count; ++i) s.mesh.positions[i] *= 1e60;
         if (CHECK(mask != 0)) {
             sc_dnc_projection(w, mask, &projection);
             sc_workspace_new_projection(s.model, w);

@@ -10,9 +10,9 @@
 
 #include "base/memory.h"
 
-/* What a query does with a vertex of the caller's: a point number to store it at, or one of these. */
-#define SC_SLOT_UNUSED 0xffffffffu /* no triangle uses it: not even read */
-#define SC_SLOT_WELDED 0xfffffffeu /* another vertex stands for it: only checked to be finite */
+/* What a vertex of the caller's is: the number of its point, or one of these. */
+#define SC_SLOT_UNUSED 0xffffffffu /* no triangle uses it */
+#define SC_SLOT_WELDED 0xfffffffeu /* another vertex stands for it */
 
 /* All arrays are scratch memory. */
 typedef struct sc_points {

@@ -20,7 +20,7 @@ void sc_model_lay_out(sc_model *m)
 {
     uint64_t at = (sizeof *m + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
     uint32_t vertex_count = m->vertex_count, triangle_count = m->triangle_count;
-    uint32_t point_count = m->point_count, leaf_count = m->leaf_count, level_count = m->level_count;
+    uint32_t leaf_count = m->leaf_count, level_count = m->level_count;
     uint32_t patch_end = m->patch_end, ring_total = m->ring_total, node_count = m->node_count;
     uint32_t box_count = m->box_count, contour_total = m->contour_total;
     uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
@@ -61,12 +61,13 @@ static uint64_t mix(uint64_t hash, uint64_t value)
 
 static uint64_t hash_topology(const sc_model *m)
 {
-    const uint32_t *slot = sc_model_slot(m), *triangle = sc_model_triangle(m);
+    const uint32_t *triangle = sc_model_triangle(m);
+    const uint8_t *use = sc_model_vertex_use(m);
     const uint32_t *id = sc_model_triangle_id(m), *leaf = sc_model_leaf_first(m);
     const uint32_t *child = sc_model_child(m);
     uint64_t hash = 0x51ed270b7a1c4e35u, i;
     hash = mix(mix(mix(hash, m->vertex_count), m->triangle_count), m->level_count);
-    for (i = 0; i < m->vertex_count; i++) hash = mix(hash, slot[i]);
+    for (i = 0; i < m->vertex_count; i++) hash = mix(hash, use[i]);
     for (i = 0; i < 3 * (uint64_t)m->triangle_count; i++) hash = mix(hash, triangle[i]);
     for (i = 0; i < m->triangle_count; i++) hash = mix(hash, id[i]);
     for (i = 0; i <= m->leaf_count; i++) hash = mix(hash, leaf[i]);
@@ -74,26 +75,20 @@ static uint64_t hash_topology(const sc_model *m)
     return hash;
 }
 
-/* Points in the order in which the leaves first use them, so that a leaf's lie close together. */
-static void renumber(const sc_points *points, const uint32_t *order, uint32_t *number)
+/* Numbers points as the vertices that stand for them. */
+static void number_points(const sc_points *points, uint32_t *number)
 {
-    uint32_t i, next = 0;
-    int k;
-    memset(number, 0xff, (size_t)points->point_count * sizeof *number);
-    for (i = 0; i < points->triangle_count; i++)
-        for (k = 0; k < 3; k++) {
-            uint32_t p = points->triangles[3 * (uint64_t)order[i] + (uint64_t)k];
-            if (number[p] == SC_NONE) number[p] = next++;
-        }
+    uint32_t v;
+    for (v = 0; v < points->vertex_count; v++)
+        if (points->slot[v] < SC_SLOT_WELDED) number[points->slot[v]] = v;
 }
 
 static void write_triangles(const sc_points *points, const sc_adjacency *adjacency,
                             const uint32_t *order, const uint32_t *number, sc_model *m)
 {
-    uint32_t *triangle = NEW_ARRAY(m, triangle, uint32_t), *slot = NEW_ARRAY(m, slot, uint32_t);
+    uint32_t *triangle = NEW_ARRAY(m, triangle, uint32_t), i;
     uint32_t *id = NEW_ARRAY(m, triangle_id, uint32_t), *place = NEW_ARRAY(m, place, uint32_t);
-    uint32_t *vertex = NEW_ARRAY(m, vertex, uint32_t), i;
-    uint8_t *owned = NEW_ARRAY(m, edge_owned, uint8_t);
+    uint8_t *owned = NEW_ARRAY(m, edge_owned, uint8_t), *use = NEW_ARRAY(m, vertex_use, uint8_t);
     int k;
     for (i = 0; i < m->triangle_count; i++) {
         for (k = 0; k < 3; k++)
@@ -102,9 +97,29 @@ static void write_triangles(const sc_points *points, const sc_adjacency *adjacen
         place[id[i]] = i;
         owned[i] = adjacency->owned[order[i]];
     }
-    for (i = 0; i < m->vertex_count; i++) {
-        slot[i] = points->slot[i] < SC_SLOT_WELDED ? number[points->slot[i]] : points->slot[i];
-        if (slot[i] < SC_SLOT_WELDED) vertex[slot[i]] = i;
+    for (i = 0; i < m->vertex_count; i++)
+        use[i] = points->slot[i] == SC_SLOT_UNUSED   ? SC_VERTEX_UNUSED
+                 : points->slot[i] == SC_SLOT_WELDED ? SC_VERTEX_WELDED
+                                                     : SC_VERTEX_POINT;
+}
+
+/* The points of leaf clusters, in the order in which their triangles use them, and where the corners are. */
+static void write_leaves(sc_model *m)
+{
+    const uint32_t *first = sc_model_leaf_first(m), *corner = sc_model_triangle(m);
+    uint32_t *point = NEW_ARRAY(m, leaf_point, uint32_t), leaf, i, k, at;
+    uint8_t *where = NEW_ARRAY(m, leaf_corner, uint8_t);
+    for (leaf = 0; leaf < m->leaf_count;
+         leaf++, point += SC_LEAF_POINTS, where += 3 * SC_LEAF_MAX) {
+        uint32_t count = first[leaf + 1] - first[leaf], points = 0;
+        for (i = 0; i < SC_LEAF_MAX; i++)
+            for (k = 0; k < 3; k++) {
+                uint32_t p = corner[3 * (uint64_t)(first[leaf] + (i < count ? i : count - 1)) + k];
+                for (at = 0; at < points && point[at] != p; at++) continue;
+                if (at == points) point[points++] = p;
+                where[SC_LEAF_MAX * k + i] = (uint8_t)at;
+            }
+        for (i = points; i < SC_LEAF_POINTS; i++) point[i] = point[points - 1];
     }
 }
 
@@ -127,18 +142,17 @@ static uint32_t list_around(const sc_points *points, const sc_adjacency *adjacen
     return count;
 }
 
-/* old[q] is the old number of the point with the new number q. */
 static void write_open_points(const sc_points *points, const sc_adjacency *adjacency,
-                              const uint32_t *number, const uint32_t *old, sc_model *m)
+                              const uint32_t *number, sc_model *m)
 {
     const uint32_t *ring_first = sc_model_ring_first(m);
     uint32_t *point = NEW_ARRAY(m, open_point, uint32_t);
     uint32_t *first = NEW_ARRAY(m, open_first, uint32_t);
     uint32_t *around = NEW_ARRAY(m, open_around, uint32_t), q, i, at = 0, total = 0;
-    for (q = 0; q < m->point_count; q++) {
+    for (q = 0; q < m->vertex_count; q++) {
         uint32_t count;
-        if (ring_first[q + 1] > ring_first[q]) continue;
-        count = list_around(points, adjacency, old[q], around + total);
+        if (points->slot[q] >= SC_SLOT_WELDED || ring_first[q + 1] > ring_first[q]) continue;
+        count = list_around(points, adjacency, points->slot[q], around + total);
         for (i = 0; i < count; i++) around[total + i] = number[around[total + i]];
         point[at] = q;
         first[at++] = total;
@@ -255,22 +269,20 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
                             sc_model **model)
 {
     sc_model counts, *m;
-    uint32_t *number, *old, *ring_first, *ring, p, i;
+    uint32_t *number, *ring_first, *ring, p, i;
     uint64_t open_total = 0;
     sc_status status;
 
     memset(&counts, 0, sizeof counts);
     count_arrays(points, adjacency, xbvh, sctt, csf, &counts);
     number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
-    old = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *old);
-    ring_first = (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)points->point_count + 1,
+    ring_first = (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)points->vertex_count + 1,
                                                     sizeof *ring_first, 0);
     ring = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)points->triangle_count, sizeof *ring);
-    if (!number || !old || !ring_first || !ring) return SC_ERROR_MEMORY;
-    renumber(points, hierarchy->order, number);
+    if (!number || !ring_first || !ring) return SC_ERROR_MEMORY;
+    number_points(points, number);
     for (p = 0; p < points->point_count; p++) { /* lengths first, by new numbers */
         uint32_t n = sc_adjacency_ring(points, adjacency, p, ring);
-        old[number[p]] = p;
         ring_first[number[p] + 1] = n;
         if (n) continue;
         counts.open_count++;
@@ -278,9 +290,9 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     }
     if (SC_HARDLY(open_total > UINT32_MAX)) return SC_ERROR_COUNT;
     counts.open_total = (uint32_t)open_total;
-    for (p = 0; p < points->point_count; p++) ring_first[p + 1] += ring_first[p];
+    for (p = 0; p < points->vertex_count; p++) ring_first[p + 1] += ring_first[p];
     counts.share_count = sharing->first[xbvh->leaf_count];
-    counts.ring_total = ring_first[points->point_count];
+    counts.ring_total = ring_first[points->vertex_count];
     sc_model_lay_out(&counts);
     if (SC_HARDLY(counts.bytes > SIZE_MAX - SC_ALIGNMENT)) /* where addresses have 32 bits */
         return SC_ERROR_COUNT;
@@ -295,11 +307,12 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
             for (i = 0; i < n; i++) to[i] = number[ring[i]];
         }
     copy(NEW_ARRAY(m, ring_first, uint32_t), ring_first,
-         ((uint64_t)points->point_count + 1) * sizeof(uint32_t));
-    write_open_points(points, adjacency, number, old, m);
+         ((uint64_t)points->vertex_count + 1) * sizeof(uint32_t));
+    write_open_points(points, adjacency, number, m);
     write_triangles(points, adjacency, hierarchy->order, number, m);
     copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
+    write_leaves(m);
     copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));

@@ -25,6 +25,13 @@ typedef struct sc_level {
     uint32_t pair_nodes, pair_oriented, pair_culled;
 } sc_level;
 
+/* What a vertex is. */
+enum {
+    SC_VERTEX_POINT = 0,  /* a point, of a triangle or more */
+    SC_VERTEX_WELDED = 1, /* another vertex stands for it: only checked to be finite */
+    SC_VERTEX_UNUSED = 2  /* in no triangle: not even read */
+};
+
 /* What is known of nodes from the topology. */
 enum {
     SC_NODE_TOUCHES =
@@ -39,15 +46,18 @@ enum {
 };
 
 /*
- * All arrays: name, type, number of elements. "Places" are triangles in leaf order.
+ * All arrays: name, type, number of elements. "Places" are triangles in leaf order. A point has the number of
+ * the caller's vertex that stands for it, where a query finds its position.
  *
- *   slot            what to do with each of the caller's vertices: see build/mesh.h
- *   triangle        three point numbers a place
+ *   vertex_use      what each of the caller's vertices is: SC_VERTEX_...
+ *   triangle        three points a place
  *   triangle_id     the caller's number of the triangle at a place
  *   place           the place of the caller's triangle
- *   vertex          the caller's number of the vertex that represents a point
  *   edge_owned      bit k: side k of the triangle at a place names its edge
  *   leaf_first      first place of each leaf cluster
+ *   leaf_point      SC_LEAF_POINTS a cluster: the points of its triangles, the last one again to fill the row
+ *   leaf_corner     3 SC_LEAF_MAX a cluster: where in leaf_point the first corners of its triangles are, then the
+ *                   second, then the third; the last triangle again to fill the rows
  *   share_...       see build/sharing.h
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
@@ -61,13 +71,14 @@ enum {
  *   level_info      see above
  */
 #define SC_MODEL_ARRAYS(X)                                                                         \
-  X(slot, uint32_t, vertex_count)                                                                  \
+  X(vertex_use, uint8_t, vertex_count)                                                             \
   X(triangle, uint32_t, 3 * (uint64_t)triangle_count)                                              \
   X(triangle_id, uint32_t, triangle_count)                                                         \
   X(place, uint32_t, triangle_count)                                                               \
-  X(vertex, uint32_t, point_count)                                                                 \
   X(edge_owned, uint8_t, triangle_count)                                                           \
   X(leaf_first, uint32_t, (uint64_t)leaf_count + 1)                                                \
+  X(leaf_point, uint32_t, SC_LEAF_POINTS *(uint64_t)leaf_count)                                    \
+  X(leaf_corner, uint8_t, 3 * SC_LEAF_MAX * (uint64_t)leaf_count)                                  \
   X(share_first, uint32_t, (uint64_t)leaf_count + 1)                                               \
   X(share_leaf, uint32_t, share_count)                                                             \
   X(share_rows, uint16_t, SC_LEAF_MAX *(uint64_t)share_count)                                      \
@@ -77,7 +88,7 @@ enum {
   X(child, uint32_t, patch_end)                                                                    \
   X(leaf, uint32_t, patch_end)                                                                     \
   X(hop, uint32_t, patch_end)                                                                      \
-  X(ring_first, uint32_t, (uint64_t)point_count + 1)                                               \
+  X(ring_first, uint32_t, (uint64_t)vertex_count + 1)                                              \
   X(ring, uint32_t, ring_total)                                                                    \
   X(open_point, uint32_t, open_count)                                                              \
   X(open_first, uint32_t, (uint64_t)open_count + 1)                                                \

@@ -56,27 +56,42 @@ static int are_lists(const uint32_t *first, uint64_t count, uint32_t total, uint
     return !bad && first[0] == 0 && first[count] == total;
 }
 
-/* Every point has one vertex to be stored from: no position is left from another pose. */
-static int check_slots(const sc_model *m, uint8_t *seen)
+static int check_use(const sc_model *m)
 {
-    const uint32_t *slot = sc_model_slot(m);
-    uint32_t v, stored = 0;
-    memset(seen, 0, m->point_count);
+    const uint8_t *use = sc_model_vertex_use(m);
+    uint32_t v, points = 0, bad = 0;
     for (v = 0; v < m->vertex_count; v++) {
-        if (slot[v] == SC_SLOT_UNUSED || slot[v] == SC_SLOT_WELDED) continue;
-        if (slot[v] >= m->point_count || seen[slot[v]]) return 0;
-        seen[slot[v]] = 1;
-        stored++;
+        points += use[v] == SC_VERTEX_POINT;
+        bad |= use[v] > SC_VERTEX_UNUSED;
     }
-    return stored == m->point_count;
+    return !bad && points == m->point_count;
 }
 
-/* The vertex of each point is the one that it is stored from. */
-static int check_vertices(const sc_model *m)
+/* Whether all of them are points: what is no point may have a position that is not finite. */
+static int are_points(const sc_model *m, const uint32_t *array, uint64_t count)
 {
-    const uint32_t *slot = sc_model_slot(m), *vertex = sc_model_vertex(m);
-    uint32_t v, bad = 0;
-    for (v = 0; v < m->vertex_count; v++) bad |= slot[v] < m->point_count && vertex[slot[v]] != v;
+    const uint8_t *use = sc_model_vertex_use(m);
+    uint32_t bad = 0;
+    uint64_t i;
+    if (!all_below(array, count, m->vertex_count)) return 0;
+    for (i = 0; i < count; i++) bad |= use[array[i]];
+    return !bad;
+}
+
+/* Whether the corners of each cluster's triangles are where leaf_corner says. */
+static int check_corners(const sc_model *m)
+{
+    const uint32_t *first = sc_model_leaf_first(m), *corner = sc_model_triangle(m);
+    const uint32_t *point = sc_model_leaf_point(m);
+    const uint8_t *where = sc_model_leaf_corner(m);
+    uint32_t leaf, i, k, bad = 0;
+    if (!bytes_below(where, 3 * SC_LEAF_MAX * (uint64_t)m->leaf_count, SC_LEAF_POINTS)) return 0;
+    for (leaf = 0; leaf < m->leaf_count; leaf++, point += SC_LEAF_POINTS, where += 3 * SC_LEAF_MAX)
+        for (i = 0; i < SC_LEAF_MAX; i++) {
+            uint32_t t = first[leaf] + i < first[leaf + 1] ? first[leaf] + i : first[leaf + 1] - 1;
+            for (k = 0; k < 3; k++)
+                bad |= point[where[SC_LEAF_MAX * k + i]] != corner[3 * (uint64_t)t + k];
+        }
     return !bad;
 }
 
@@ -107,8 +122,9 @@ static int check_open_points(const sc_model *m)
 {
     const uint32_t *ring_first = sc_model_ring_first(m), *open = sc_model_open_point(m);
     uint32_t p, count = 0;
-    for (p = 0; p < m->point_count; p++) {
-        if (ring_first[p + 1] > ring_first[p]) continue;
+    for (p = 0; p < m->vertex_count; p++) {
+        if (sc_model_vertex_use(m)[p] != SC_VERTEX_POINT || ring_first[p + 1] > ring_first[p])
+            continue;
         if (count == m->open_count || open[count] != p) return 0;
         count++;
     }
@@ -265,7 +281,7 @@ static int check_contours(const sc_model *m)
         uint64_t edges = 0, listed;
         i = first[n];
         if (kind[n] & SC_NODE_TOUCHES) {
-            if (first[n + 1] - i < 2 || contours[i] >= m->point_count ||
+            if (first[n + 1] - i < 2 || contours[i] >= m->vertex_count ||
                 contours[i + 1] > first[n + 1] - i - 2)
                 return 0;
             i += 2;
@@ -334,25 +350,28 @@ static int check_share_leaf(const sc_model *m)
 static const char *check_arrays(const sc_model *m, uint8_t *bytes)
 {
     const char *wrong;
-    uint32_t points = m->point_count, count = m->triangle_count;
+    uint32_t count = m->triangle_count;
 #define CHECK(name, condition)                                                                     \
   if (!(condition)) return #name
-    CHECK(slot, check_slots(m, bytes));
-    CHECK(triangle, all_below(sc_model_triangle(m), 3 * (uint64_t)count, points));
+    CHECK(vertex_use, check_use(m));
+    CHECK(triangle, are_points(m, sc_model_triangle(m), 3 * (uint64_t)count));
     CHECK(triangle_id, check_ids(m, bytes));
     CHECK(place, check_places(m));
-    CHECK(vertex, check_vertices(m));
     CHECK(edge_owned, bytes_below(sc_model_edge_owned(m), count, 8));
     CHECK(leaf_first, are_lists(sc_model_leaf_first(m), m->leaf_count, count, 1, SC_LEAF_MAX));
+    CHECK(leaf_point,
+          are_points(m, sc_model_leaf_point(m), SC_LEAF_POINTS * (uint64_t)m->leaf_count));
+    CHECK(leaf_corner, check_corners(m));
     CHECK(level_first, check_levels(m));
     CHECK(child, check_child(m));
     CHECK(leaf, check_leaf(m));
     CHECK(hop, check_hop(m));
-    CHECK(ring_first, are_lists(sc_model_ring_first(m), points, m->ring_total, 0, SC_NONE));
-    CHECK(ring, all_below(sc_model_ring(m), m->ring_total, points));
+    CHECK(ring_first,
+          are_lists(sc_model_ring_first(m), m->vertex_count, m->ring_total, 0, SC_NONE));
+    CHECK(ring, are_points(m, sc_model_ring(m), m->ring_total));
     CHECK(open_point, check_open_points(m));
     CHECK(open_first, are_lists(sc_model_open_first(m), m->open_count, m->open_total, 0, SC_NONE));
-    CHECK(open_around, all_below(sc_model_open_around(m), m->open_total, points));
+    CHECK(open_around, are_points(m, sc_model_open_around(m), m->open_total));
     CHECK(share_first, are_lists(sc_model_share_first(m), m->leaf_count, m->share_count, 0,
                                  3 * SC_LEAF_MAX * SC_SHARING_CROWD));
     CHECK(share_leaf, check_share_leaf(m));
@@ -364,7 +383,7 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(node_contour,
           are_lists(sc_model_node_contour(m), m->node_count, m->contour_total, 0, SC_NONE));
     CHECK(segment_first, check_segments(m));
-    CHECK(points, all_below(sc_model_points(m), m->segment_point_total, points));
+    CHECK(points, are_points(m, sc_model_points(m), m->segment_point_total));
     CHECK(segment_children,
           are_lists(sc_model_segment_children(m), m->segment_count - m->leaf_segment_count,
                     m->segment_child_total, 2, SC_NONE));
@@ -378,7 +397,6 @@ sc_status sc_model_check(const sc_model *m, sc_scratch *scratch, const char **wr
 {
     uint32_t most = m->triangle_count;
     uint8_t *bytes;
-    if (m->point_count > most) most = m->point_count;
     if (m->segment_count > most) most = m->segment_count;
     bytes = (uint8_t *)sc_scratch_take(scratch, most, 1);
     if (!bytes) return SC_ERROR_MEMORY;

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "base/assume.h"
+#include "pose/positions.h"
 
 /* Rounding of the few operations in each step below: five or fewer, each 2^-53, of the sum of the
    absolute terms. */
@@ -18,11 +19,13 @@ static const sc_ray_bound NO_LINES = {INFINITY, INFINITY, -INFINITY, INFINITY, I
 void sc_contour_bounds_project(const sc_workspace *w, const sc_projection *projection, int line,
                                uint32_t point, double *x, double *y)
 {
-    const double *p = w->position + 3 * (uint64_t)point;
-    double d0 = p[0] - projection->origin[0], d1 = p[1] - projection->origin[1];
-    double d2 = p[2] - projection->origin[2];
-    double u = projection->u[0] * d0 + projection->u[1] * d1 + projection->u[2] * d2;
-    double v = projection->w[0] * d0 + projection->w[1] * d1 + projection->w[2] * d2;
+    double p[3], d0, d1, d2, u, v;
+    sc_positions_get(w, point, p);
+    d0 = p[0] - projection->origin[0];
+    d1 = p[1] - projection->origin[1];
+    d2 = p[2] - projection->origin[2];
+    u = projection->u[0] * d0 + projection->u[1] * d1 + projection->u[2] * d2;
+    v = projection->w[0] * d0 + projection->w[1] * d1 + projection->w[2] * d2;
     *x = line == SC_LINE_VERTICAL ? u : v;
     *y = line == SC_LINE_VERTICAL ? v : -u;
 }

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #include "pose/pose_kernels.h"
+#include "pose/positions.h"
 
 /*
  * Let r_i be the ring relative to the point, d the sum of the computed normals r_i x r_(i+1), taken as
@@ -31,13 +32,14 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
     const uint32_t *ring = sc_model_ring(model) + sc_model_ring_first(model)[point];
     uint32_t count = sc_model_ring_first(model)[point + 1] - sc_model_ring_first(model)[point], i;
     uint32_t turns = 0;
-    const double *center = w->position + 3 * (uint64_t)point;
-    double r[SC_RING_MAX][3], n[SC_RING_MAX][3], size[SC_RING_MAX], d[3] = {0, 0, 0}, d_size, c0,
-                                                                    c1, last;
+    double center[3], r[SC_RING_MAX][3], n[SC_RING_MAX][3], size[SC_RING_MAX], d[3] = {0, 0, 0},
+                                                                               d_size, c0, c1, last;
     int k, axis = 0, first_axis, second_axis;
     if (count < 3 || count > SC_RING_MAX) return 0; /* longer: of a forged model */
+    sc_positions_get(w, point, center);
     for (i = 0; i < count; i++) {
-        const double *p = w->position + 3 * (uint64_t)ring[i];
+        double p[3];
+        sc_positions_get(w, ring[i], p);
         for (k = 0; k < 3; k++) r[i][k] = p[k] - center[k];
         size[i] = fabs(r[i][0]) + fabs(r[i][1]) + fabs(r[i][2]);
     }

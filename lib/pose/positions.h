@@ -3,17 +3,46 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The positions of all points are copied in the order in which the leaf clusters use them, as doubles,
- * whatever their type and stride: what follows reads them several times, close together.
+ * What is exact reads positions where the caller has them, which stay there until the query ends; all else
+ * is computed from points moved into the unit box and rounded to float.
  */
 #ifndef SC_POSE_POSITIONS_H
 #define SC_POSE_POSITIONS_H
 
+#include <string.h>
+
 #include "pose/workspace.h"
 
-/* Fills position, unit, center, radius and scale. The pose was checked but for what this reports:
+/* Notes where positions are, and fills unit, center, radius and scale. The pose was checked but for what this reports:
    SC_ERROR_NOT_FINITE. About 3 ns a vertex. */
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
                             sc_workspace *workspace);
+
+/* The position of a point. */
+static inline void sc_positions_get(const sc_workspace *workspace, uint32_t point,
+                                    double position[3])
+{
+    const unsigned char *at = workspace->positions + point * workspace->stride;
+    if (workspace->position_type == SC_DOUBLE) {
+        memcpy(position, at, 3 * sizeof *position);
+    } else {
+        float f[3];
+        memcpy(f, at, sizeof f);
+        position[0] = (double)f[0];
+        position[1] = (double)f[1];
+        position[2] = (double)f[2];
+    }
+}
+
+/* The same as four readable doubles, of which the last means nothing: where they are, or in *copy. */
+static inline const double *sc_positions_at(const sc_workspace *workspace, uint32_t point,
+                                            double copy[4])
+{
+    if (point < workspace->in_place)
+        return (const double *)(const void *)(workspace->positions + point * workspace->stride);
+    sc_positions_get(workspace, point, copy);
+    copy[3] = 0;
+    return copy;
+}
 
 #endif

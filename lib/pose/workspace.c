@@ -29,7 +29,7 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
     uint64_t levels = (uint64_t)model->level_count + 1;
     int k;
-    w->fan = (uint32_t *)place(block, at, model->point_count, sizeof(uint32_t));
+    w->fan = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
     w->plain_tick = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
     w->plain = (uint16_t *)place(block, at, model->leaf_count, sizeof(uint16_t));
     w->contour.point = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
@@ -51,17 +51,17 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->walk.culled = (uint8_t *)place(block, at, model->patch_end, 1);
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
-    w->ball = (uint32_t *)place(block, at, model->point_count, sizeof(uint32_t));
-    w->ball_queue = (uint32_t *)place(block, at, model->point_count, sizeof(uint32_t));
+    w->ball = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
+    w->ball_queue = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
 }
 
 /* Nothing is known yet in the arrays of a worker. */
 static void clear_own(const sc_model *model, sc_workspace *w)
 {
-    memset(w->fan, 0, model->point_count * sizeof *w->fan);
+    memset(w->fan, 0, model->vertex_count * sizeof *w->fan);
     memset(w->plain_tick, 0, model->leaf_count * sizeof *w->plain_tick);
     memset(w->plain, 0, model->leaf_count * sizeof *w->plain);
-    memset(w->ball, 0, model->point_count * sizeof *w->ball);
+    memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
 }
 
 /* How long the view of a further worker is, with its arrays. */
@@ -78,8 +78,7 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
     int k;
-    w->position = (double *)place(block, &at, 3 * (uint64_t)model->point_count + 1, sizeof(double));
-    w->unit = (float *)place(block, &at, 4 * (uint64_t)model->point_count, sizeof(float));
+    w->unit = (float *)place(block, &at, 4 * (uint64_t)model->vertex_count, sizeof(float));
     for (k = 0; k < 6; k++)
         w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
     for (k = 0; k < 6; k++)
@@ -121,7 +120,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
         for (i = 0; i < triangles; i++) w->triangle_boxes.side[k][i] = (float)NAN;
     }
     memset(w->mask, 0, model->patch_end * sizeof *w->mask);
-    memset(w->unit, 0, 4 * (size_t)model->point_count * sizeof *w->unit);
+    memset(w->unit, 0, 4 * (size_t)model->vertex_count * sizeof *w->unit);
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
     clear_own(model, w);
     for (i = 0; i + 1 < w->workers; i++) {
@@ -144,7 +143,7 @@ int sc_workspace_fits(sc_workspace *workspace, const sc_model *model)
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
 {
     if (workspace->pose_tick == 0x7fffffff) {
-        memset(workspace->fan, 0, model->point_count * sizeof *workspace->fan);
+        memset(workspace->fan, 0, model->vertex_count * sizeof *workspace->fan);
         memset(workspace->plain_tick, 0, model->leaf_count * sizeof *workspace->plain_tick);
         workspace->pose_tick = 0;
     }

@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | position | unit | patch boxes | triangle boxes | mask | bounds |
+ *     | sc_workspace | unit | patch boxes | triangle boxes | mask | bounds |
  *       bounds_tick | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
@@ -93,19 +93,23 @@ struct sc_workspace {
     uint64_t view_bytes;  /* of one; 0 if there is none */
     sc_hooks hooks;
 
-    /* the pose; all but position valid only in a query */
-    double *position;     /* 3 * point_count, and one that is read */
-    double center[3];     /* of the box of all points */
-    double radius;        /* largest distance of a coordinate from center */
-    double scale;         /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 */
-    float *unit;          /* 4 * point_count: scale * (position - center), at most 1, and padding */
+    /* the pose; valid only in a query */
+    const unsigned char *positions; /* the caller's, see pose/positions.h */
+    uint64_t stride;                /* in bytes */
+    uint32_t position_type;         /* SC_FLOAT or SC_DOUBLE */
+    uint32_t in_place; /* points below this can be read as four doubles where they are */
+    double center[3];  /* of the box of all points */
+    double radius;     /* largest distance of a coordinate from center */
+    double scale;      /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 */
+    float *unit;       /* 4 * vertex_count: scale * (position - center), at most 1, and padding */
     sc_boxes patch_boxes; /* patch_end */
     sc_boxes
         triangle_boxes; /* SC_LEAF_MAX per leaf; what is no triangle is NaN and overlaps nothing */
     uint32_t boxes_ready;
     uint16_t *mask; /* patch_end: discrete normal cones, see pose/dnc.h */
     uint32_t pose_tick;
-    uint32_t *fan; /* point_count: 2 * pose_tick + whether the fan projects one to one, if tested */
+    uint32_t
+        *fan; /* vertex_count: 2 * pose_tick + whether the fan projects one to one, if tested */
     uint32_t *plain_tick; /* leaf_count: pose_tick if plain is known */
     uint16_t *plain;      /* leaf_count: bit i: the fans at all corners of triangle i are such */
 
@@ -122,7 +126,7 @@ struct sc_workspace {
     uint32_t candidate_count, neighbor_count;
 
     /* points near a triangle in number of edges, see query/filter.c */
-    uint32_t *ball;       /* point_count: ball_tick if in the ball */
+    uint32_t *ball;       /* vertex_count: ball_tick if in the ball */
     uint32_t *ball_queue; /* point_count */
     uint32_t ball_tick;
     uint32_t ball_center; /* the caller's number of the triangle, or SC_NONE */

@@ -14,6 +14,7 @@
 
 #include "base/bits.h"
 #include "pose/fan.h"
+#include "pose/positions.h"
 #include "query/filter.h"
 #include "query/pairs.h"
 #include "query/primitives.h"
@@ -52,15 +53,15 @@ static void decide_pair(sc_query_state *state, const sc_pair *places)
 {
     const sc_model *model = state->model;
     const uint32_t *triangle = sc_model_triangle(model);
-    const double *position = state->workspace->position;
+    double copy[2][3][4];
     int proper = state->options.contact == SC_CONTACT_PROPER, k;
     sc_triangle_pair pair;
     if (sc_state_cancelled(state)) return;
     for (k = 0; k < 3; k++) {
         pair.va[k] = triangle[3 * (uint64_t)places->a + (uint64_t)k];
         pair.vb[k] = triangle[3 * (uint64_t)places->b + (uint64_t)k];
-        pair.a[k] = position + 3 * (uint64_t)pair.va[k];
-        pair.b[k] = position + 3 * (uint64_t)pair.vb[k];
+        pair.a[k] = sc_positions_at(state->workspace, pair.va[k], copy[0][k]);
+        pair.b[k] = sc_positions_at(state->workspace, pair.vb[k], copy[1][k]);
     }
     if (state->options.pairs == SC_PAIRS_EDGE)
         take_edges(state, places,
@@ -130,15 +131,16 @@ static void load_lanes(const sc_query_state *state, const sc_pair *pairs, uint32
                        sc_pair_lanes *lanes)
 {
     const uint32_t *triangle = sc_model_triangle(state->model);
-    const double *position = state->workspace->position;
     uint32_t j;
     int k;
     for (j = 0; j < SC_PAIR_LANES; j++) {
         const sc_pair *pair = &pairs[j < count ? j : count - 1];
         const uint32_t *a = triangle + 3 * (uint64_t)pair->a, *b = triangle + 3 * (uint64_t)pair->b;
         for (k = 0; k < 3; k++) {
-            lanes->corner[0][k][j] = position + 3 * (uint64_t)a[k];
-            lanes->corner[1][k][j] = position + 3 * (uint64_t)b[k];
+            lanes->point[0][k][j] = a[k];
+            lanes->point[1][k][j] = b[k];
+            lanes->corner[0][k][j] = sc_positions_at(state->workspace, a[k], lanes->copy[0][k][j]);
+            lanes->corner[1][k][j] = sc_positions_at(state->workspace, b[k], lanes->copy[1][k][j]);
         }
     }
 }
@@ -151,7 +153,7 @@ static void mark_shared(sc_pair_lanes *lanes)
     for (j = 0; j < SC_PAIR_LANES; j++)
         for (i = 0; i < 3; i++)
             for (k = 0; k < 3; k++)
-                if (lanes->corner[0][i][j] == lanes->corner[1][k][j]) {
+                if (lanes->point[0][i][j] == lanes->point[1][k][j]) {
                     lanes->shared[0][i] |= 1u << j;
                     lanes->shared[1][k] |= 1u << j;
                 }

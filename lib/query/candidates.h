@@ -34,6 +34,9 @@ enum { SC_PAIR_LANES = 8 };
    each). Bit i of shared: in pair i the corner is one of the other triangle's. */
 typedef struct sc_pair_lanes {
     const double *corner[2][3][SC_PAIR_LANES];
+    double copy[2][3][SC_PAIR_LANES]
+               [4]; /* of those that cannot be read where the caller has them */
+    uint32_t point[2][3][SC_PAIR_LANES];
     unsigned shared[2][3];
 } sc_pair_lanes;
 

@@ -59,11 +59,10 @@ static int groups_collide(sc_group a, sc_group b)
 /* The group of some points together. */
 static sc_group group_of_points(const sc_query_state *state, const uint32_t *points, uint32_t count)
 {
-    const uint32_t *vertex = sc_model_vertex(state->model);
     sc_group all = {0, 0};
     uint32_t i;
     for (i = 0; i < count; i++) {
-        const sc_group *one = &state->filter->vertex_groups[vertex[points[i]]];
+        const sc_group *one = &state->filter->vertex_groups[points[i]];
         all.category |= one->category;
         all.mask |= one->mask;
     }
@@ -97,7 +96,7 @@ static void mark_ball(const sc_model *model, sc_workspace *w, const uint32_t cen
 {
     uint32_t head = 0, tail = 0, end, i;
     if (w->ball_tick == 0xffffffff) {
-        memset(w->ball, 0, model->point_count * sizeof *w->ball);
+        memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
         w->ball_tick = 0;
     }
     w->ball_tick++;
