@@ -154,6 +154,62 @@ static void move_all(query *q, double place, double motion)
     }
 }
 
+/*
+ * Two that touch at a time in an exactly representable point: inside, on a border, or at corners; then perhaps
+ * moved apart a little.
+ */
+static void make_touching(query *q, step_oracle_kind kind)
+{
+    double t = (double)(1 + test_random_below(15)) / 16, u, v;
+    int corner = test_random_below(3) == 0;
+    make_on_grid(q);
+    u = (double)test_random_below(corner ? 2 : 9) / (corner ? 1 : 8);
+    v = (double)test_random_below(corner ? 2 : 9) / (corner ? 1 : 8);
+    for (int k = 0; k < 3; ++k) {
+        double at[4], target;
+        for (int i = 0; i < 4; ++i) at[i] = q->start[i][k] + t * (q->end[i][k] - q->start[i][k]);
+        if (kind == STEP_ORACLE_VERTEX_FACE) {
+            double w = (1 - u) * v;
+            target = at[1] + u * (at[2] - at[1]) + w * (at[3] - at[1]) - at[0];
+            q->start[0][k] += target;
+            q->end[0][k] += target;
+        } else {
+            target = at[2] + v * (at[3] - at[2]) - at[0] - u * (at[1] - at[0]);
+            q->start[0][k] += target;
+            q->end[0][k] += target;
+            q->start[1][k] += target;
+            q->end[1][k] += target;
+        }
+    }
+    if (test_random_below(2)) {
+        double step = exp2(-(double)(10 + test_random_below(42)));
+        int k = (int)test_random_below(3);
+        q->start[0][k] += grid(1) * step;
+        q->end[0][k] += grid(1) * step;
+    }
+}
+
+/* Everything in a plane or line that does not move, or all moving with one motion. */
+static void make_flat(query *q)
+{
+    int m[3][3], lines = 1 + (int)test_random_below(2);
+    int is_random = test_random_below(2) == 0;
+    for (int i = 0; i < 3; ++i) {
+        for (int k = 0; k < 3; ++k) m[i][k] = (int)grid(2);
+    }
+    for (int i = 0; i < 4; ++i) {
+        double a[2], b[2];
+        for (int k = 0; k < 2; ++k) {
+            a[k] = is_random ? ldexp(grid(1 << 20), -18) : grid(3);
+            b[k] = is_random ? ldexp(grid(1 << 20), -18) : grid(3);
+        }
+        for (int k = 0; k < 3; ++k) {
+            q->start[i][k] = a[0] * m[0][k] + (lines == 2 ? a[1] * m[1][k] : 0);
+            q->end[i][k] = b[0] * m[0][k] + (lines == 2 ? b[1] * m[1][k] : 0);
+        }
+    }
+}
+
 /* Points that coincide, stand still, share a trajectory, or lie on a line. */
 static void make_degenerate(query *q)
 {
@@ -196,6 +252,65 @@ static void make_layers(query *q, step_oracle_kind kind)
             double x = q->start[i][0], y = q->end[i][0];
             q->start[i][0] = x + q->start[i][2];
             q->end[i][0] = y + q->end[i][2];
+        }
+    }
+}
+
+/* Other sizes of everything, of one axis, or of one point; and very small and large doubles. */
+static void make_wide(query *q, step_oracle_kind kind)
+{
+    int far = (int)test_random_below(3);
+    if (test_random_below(2)) {
+        make_touching(q, kind);
+    } else {
+        make_random(q);
+    }
+    for (int k = 0; k < 3; ++k) {
+        int exponent = (int)test_random_below(far == 0 ? 40 : 1000) - (far == 0 ? 20 : 500);
+        for (int i = 0; i < 4; ++i) {
+            int own = test_random_below(4) == 0 ? (int)test_random_below(60) - 30 : 0;
+            q->start[i][k] = ldexp(q->start[i][k], exponent + own);
+            q->end[i][k] = ldexp(q->end[i][k], exponent + own);
+        }
+    }
+    if (far == 2) {
+        int exponent = test_random_below(2) ? -560 : 470;
+        for (int i = 0; i < 4; ++i) {
+            for (int k = 0; k < 3; ++k) {
+                double a = ldexp(q->start[i][k], exponent), b = ldexp(q->end[i][k], exponent);
+                q->start[i][k] = fmax(-DBL_MAX, fmin(DBL_MAX, a));
+                q->end[i][k] = fmax(-DBL_MAX, fmin(DBL_MAX, b));
+            }
+        }
+    }
+}
+
+/*
+ * Two that keep their place to each other while they turn and stretch: in one plane, a little outside or
+ * inside, or at a small distance from it.
+ */
+static void make_rolling(query *q, step_oracle_kind kind)
+{
+    double gap = exp2(-(double)test_random_below(45)) * grid(1), u, v;
+    double lift = test_random_below(2) ? exp2(-(double)test_random_below(45)) : 0;
+    make_random(q);
+    u = test_random_unit();
+    v = test_random_below(2) ? test_random_unit() * (1 - u) : -gap;
+    if (test_random_below(4) == 0) u = -gap;
+    for (int k = 0; k < 3; ++k) {
+        double *points[2][4];
+        for (int i = 0; i < 4; ++i) {
+            points[0][i] = &q->start[i][k];
+            points[1][i] = &q->end[i][k];
+        }
+        for (int end = 0; end < 2; ++end) {
+            double **p = points[end];
+            if (kind == STEP_ORACLE_VERTEX_FACE) {
+                *p[0] = *p[1] + u * (*p[2] - *p[1]) + v * (*p[3] - *p[1]) + lift;
+            } else {
+                double target = *p[2] + u * (*p[3] - *p[2]) + lift;
+                *p[1] = target + v * (target - *p[0]);
+            }
         }
     }
 }
@@ -244,6 +359,39 @@ static void random_steps(void)
     CHECK(t.touching > t.asked / 100 && t.touching < t.asked / 2);
 }
 
+static void on_grid(query *q, step_oracle_kind kind)
+{
+    (void)kind;
+    make_on_grid(q);
+}
+
+static void steps_on_a_grid(void)
+{
+    tally t;
+    run_queries(on_grid, 20000, &t);
+    CHECK(t.touching > t.asked / 20 && t.touching < t.asked * 9 / 10);
+}
+
+static void steps_that_just_touch(void)
+{
+    tally t;
+    run_queries(make_touching, 20000, &t);
+    CHECK(t.touching > t.asked / 2 && t.extra > t.asked / 100);
+}
+
+static void flat(query *q, step_oracle_kind kind)
+{
+    (void)kind;
+    make_flat(q);
+}
+
+static void flat_steps(void)
+{
+    tally t;
+    run_queries(flat, 3000, &t);
+    CHECK(t.touching > t.asked / 20 && t.touching < t.asked * 9 / 10);
+}
+
 static void degenerate(query *q, step_oracle_kind kind)
 {
     (void)kind;
@@ -264,11 +412,25 @@ static void thin_layers(void)
     CHECK(t.touching > t.asked / 1000 && t.extra > t.asked / 100);
 }
 
+static void rolling_steps(void)
+{
+    tally t;
+    run_queries(make_rolling, 10000, &t);
+    CHECK(t.touching > t.asked / 20 && t.extra > t.asked / 20);
+}
+
+static void wide_ranges(void)
+{
+    tally t;
+    run_queries(make_wide, 15000, &t);
+    CHECK(t.touching > t.asked / 100);
+}
+
 /* Separations that some distance during the step equals or just exceeds. */
 static void separations_just_reached(void)
 {
     uint64_t reached = 0, found = 0;
-    for (uint32_t i = 0; i < test_iterations(20000); ++i) {
+    for (uint32_t i = 0; i < test_iterations(12000); ++i) {
         step_oracle_kind kind = (step_oracle_kind)test_random_below(2);
         double s = (double)test_random_below(33) / 32, low = 0, high, time, size, tolerance;
         query q;
@@ -355,5 +517,7 @@ static void thickness_of_limits(void)
 }
 
 SC_TEST_MAIN(SC_TEST(known_times), SC_TEST(thickness_of_limits), SC_TEST(random_steps),
-             SC_TEST(degenerate_steps), SC_TEST(thin_layers), SC_TEST(separations_just_reached),
+             SC_TEST(steps_on_a_grid), SC_TEST(steps_that_just_touch), SC_TEST(flat_steps),
+             SC_TEST(degenerate_steps), SC_TEST(thin_layers), SC_TEST(rolling_steps),
+             SC_TEST(wide_ranges), SC_TEST(separations_just_reached),
              SC_TEST(times_close_to_contacts))

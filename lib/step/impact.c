@@ -20,7 +20,7 @@
  * The search goes from time 0 to 1 and always stands at a time before which all is proved. There it looks for a
  * point of the polygon that is near enough to be reported, which ends the search, so that time is the answer. Else its
  * direction proves the way to a later time (a step like Newton's). Where that converges slowly, it splits what is ahead
- * in halves, and tries to pass each at once by a moving direction. Where nothing gets on, because the points are
+ * in halves, and tries to pass one or two of them at once by a moving direction, a linear or quadratic function of time. Where nothing gets on, because the points are
  * nearer than rounding lets see a direction, a short slab of time is proved by splitting the polygon into small ones.
  *
  * Thresholds. d is the separation, T the tolerance, M the largest coordinate of a corner at time 0 or 1.
@@ -29,12 +29,12 @@
  * u is 2^-53. A computed corner at a time is off by at most 4 u M a coordinate (the differences at both ends 1 each,
  * 1 - t, two products and a sum), 7 u M in all; a scalar product with a direction by at most 6 u M more, the
  * direction's length by 4 u, of d <= 2 M; a convex combination by less than 16 u M. So no comparison is wrong
- * by more than 64 u M = 2^-47 M, and T / 16 is at least 2^-40 M. Hence what is proved is apart by more than d, and what
+ * by more than 64 u M = 2^-47 M, and T / 16 is at least 2^-36 M. Hence what is proved is apart by more than d, and what
  * is reported is within d + T.
  *
  * Progress. A slab is so short that no point moves by more than T / 16 in it. A cell (a part of the polygon) of a
  * diameter below T / 16 is either near enough to be reported, or its own direction proves the slab; so splitting ends
- * after at most 46 levels.
+ * after at most 40 levels.
  */
 #include "step/impact.h"
 
@@ -148,15 +148,81 @@ static inline double find_nearest(int count, double corners[][3], double *direct
     return square;
 }
 
+/* How far away the polygon is at least in a direction of length 1. */
+static inline double least_along(int count, double corners[][3], const double *direction)
+{
+    double least = inner(corners[0], direction);
+    for (int i = 1; i < count; ++i) {
+        double d = inner(corners[i], direction);
+        if (d < least) least = d;
+    }
+    return least;
+}
+
+/* Takes what direction has along a side away from it; direction and side are not 0 in length. */
+static inline void turn_away(double *direction, const double *side)
+{
+    double s = inner(direction, side) / inner(side, side);
+    for (int k = 0; k < 3; ++k) direction[k] -= s * side[k];
+}
+
+/*
+ * Tries directions that are at right angles to a side, or to all of them, more exactly than that from the nearest point
+ * is where that is near the origin: there this is known up to u M / distance only, and moves corners
+ * at M by that much. Such a direction is the best one if the nearest point is inside a side or inside the polygon, and
+ * nearly so if it is a corner and a side there is nearly at right angles.
+ */
+static void improve_direction(int count, instant *at, double *least)
+{
+    double sides[MAXIMUM_CORNERS][3], longest = 0;
+    int is_longest = 0;
+    for (int i = 0; i < count; ++i) {
+        double length;
+        take_off(sides[i], at->corners[i + 1 < count ? i + 1 : 0], at->corners[i]);
+        length = inner(sides[i], sides[i]);
+        if (length > longest) {
+            longest = length;
+            is_longest = i;
+        }
+    }
+    if (longest == 0) return;
+    for (int i = 0; i <= count; ++i) {
+        double d[3], length, found;
+        if (i < count) {
+            if (inner(sides[i], sides[i]) == 0) continue;
+            for (int k = 0; k < 3; ++k) d[k] = at->direction[k];
+            turn_away(d, sides[i]);
+            turn_away(d, sides[i]);
+        } else {
+            outer(d, sides[0], sides[count - 1]);
+            if (inner(d, at->direction) < 0)
+                for (int k = 0; k < 3; ++k) d[k] = -d[k];
+            turn_away(d, sides[is_longest]);
+        }
+        length = sqrt(inner(d, d));
+        if (!(length > 0)) continue;
+        for (int k = 0; k < 3; ++k) d[k] /= length;
+        found = least_along(count, at->corners, d);
+        if (found > *least) {
+            *least = found;
+            for (int k = 0; k < 3; ++k) at->direction[k] = d[k];
+        }
+    }
+}
+
 static inline void look(int count, const motion *m, double time, instant *at)
 {
-    double direction[3], length;
+    double direction[3], length, least;
     at->time = time;
     for (int i = 0; i < count; ++i) between(at->corners[i], m->start[i], m->end[i], time);
     at->distance = sqrt(find_nearest(count, at->corners, direction));
     at->is_apart = at->distance > m->reach;
+    if (!at->is_apart) return;
     length = sqrt(inner(direction, direction));
     for (int k = 0; k < 3; ++k) at->direction[k] = length > 0 ? direction[k] / length : 0;
+    least = least_along(count, at->corners, at->direction);
+    if (least < at->distance - 0.125 * (at->distance - m->separation))
+        improve_direction(count, at, &least);
 }
 
 /* The time until which the direction at a proves what comes; to's time if it proves all until then. */
@@ -185,6 +251,35 @@ static inline int is_passed(int count, const motion *m, const instant *a, const 
         passed &= inner(b->direction, b->corners[i]) >= m->level;
     }
     return passed;
+}
+
+/*
+ * The same with a direction that is a quadratic function of time and is that at a, at middle halfway, and at b. It follows
+ * a turning polygon by one order more. Its Bernstein coefficients are those at the ends and c; its length is bounded by those of
+ * its square, and the products with corners have four.
+ */
+static inline int is_passed_bent(int count, const motion *m, const instant *a,
+                                 const instant *middle, const instant *b)
+{
+    double c[3], lengths[5], longest = 0;
+    for (int k = 0; k < 3; ++k)
+        c[k] = 2 * middle->direction[k] - 0.5 * (a->direction[k] + b->direction[k]);
+    lengths[0] = inner(a->direction, a->direction);
+    lengths[1] = inner(a->direction, c);
+    lengths[2] = (2 * inner(c, c) + inner(a->direction, b->direction)) / 3;
+    lengths[3] = inner(c, b->direction);
+    lengths[4] = inner(b->direction, b->direction);
+    for (int i = 0; i < 5; ++i) longest = lengths[i] > longest ? lengths[i] : longest;
+    longest = m->level * sqrt(longest);
+    for (int i = 0; i < count; ++i) {
+        const double *p = a->corners[i], *q = b->corners[i];
+        if (!(inner(a->direction, p) >= longest) ||
+            !(2 * inner(c, p) + inner(a->direction, q) >= 3 * longest) ||
+            !(2 * inner(c, q) + inner(b->direction, p) >= 3 * longest) ||
+            !(inner(b->direction, q) >= longest))
+            return 0;
+    }
+    return 1;
 }
 
 /* Whether the direction at b proves all from a time on. */
@@ -308,9 +403,10 @@ static inline int search(int count, const motion *m, double latest, double *time
         instant *ahead = &guards[top], next;
         double until = advance(count, m, &here, ahead);
         if (until == 1) return 0;
-        if (until > latest) return 0;
-        if (top == 0 && !is_looked_at) {
-            look(count, m, 1, ahead);
+        if (!is_looked_at) {
+            slab = slab_length(count, m);
+            if (until > latest && until >= here.time + slab) return 0;
+            look(count, m, 1, &guards[0]);
             is_looked_at = 1;
         }
         if (until == ahead->time || (ahead->is_apart && (is_proved_from(count, m, until, ahead) ||
@@ -325,7 +421,6 @@ static inline int search(int count, const motion *m, double latest, double *time
             --top;
             continue;
         }
-        if (slab == 0) slab = slab_length(count, m);
         if (until < here.time + slab) {
             until = here.time + slab < ahead->time ? here.time + slab : ahead->time;
             if (is_near_in_slab(count, m, here.time, until)) {
@@ -333,17 +428,26 @@ static inline int search(int count, const motion *m, double latest, double *time
                 return 1;
             }
             if (until == 1) return 0;
-            if (until > latest) return 0;
         }
+        if (until > latest) return 0;
         look(count, m, until, &next);
         if (!next.is_apart) {
             *time = until;
             return 1;
         }
         if (next.distance - m->level > 0.5 * (here.distance - m->level) &&
-            top + 1 < MAXIMUM_GUARDS && ahead->time - until > 4 * slab)
+            top + 1 < MAXIMUM_GUARDS && ahead->time - until > 4 * slab) {
             look(count, m, 0.5 * (until + ahead->time), &guards[++top]);
+            if (ahead->is_apart && guards[top].is_apart &&
+                is_passed_bent(count, m, &next, &guards[top], ahead)) {
+                if (ahead->time == 1) return 0;
+                next = *ahead;
+                top -= 2;
+                if (next.time > latest) return 0;
+            }
+        }
         here = next;
+        while (top > 0 && guards[top].time <= here.time) --top;
     }
 }
 

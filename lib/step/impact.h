@@ -30,8 +30,8 @@
 #ifndef SC_STEP_IMPACT_H
 #define SC_STEP_IMPACT_H
 
-/* 2^-36: the least tolerance, relative to the size of a pair. See impact.c for what it has to cover. */
-#define SC_IMPACT_FLOOR 0x1p-36
+/* 2^-32: the least tolerance, relative to the size of a pair. See impact.c for what it has to cover. */
+#define SC_IMPACT_FLOOR 0x1p-32
 
 typedef struct sc_impact_limits {
     double separation; /* >= 0, finite, units of the coordinates */
