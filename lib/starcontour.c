@@ -6,6 +6,7 @@
  */
 #include "starcontour.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <stddef.h>
 #include <string.h>
@@ -26,6 +27,9 @@
 #include "query/recording.h"
 #include "query/rest.h"
 #include "query/traversal.h"
+#include "step/step_motion.h"
+#include "step/step_pairs.h"
+#include "step/step_traversal.h"
 
 /* The size up to the end of a member. */
 #define UP_TO(type, member) (uint32_t)(offsetof(type, member) + sizeof(((type *)0)->member))
@@ -439,18 +443,17 @@ static sc_status check_pose(const sc_model *model, const sc_pose *pose, uint64_t
     return SC_HARDLY(*stride > SIZE_MAX / pose->vertex_count) ? SC_ERROR_COUNT : SC_OK;
 }
 
-/* Copies the caller's tasks, if any, and checks them; *options refers to the copy then. */
-static sc_status read_tasks(const sc_workspace *workspace, sc_query_options *options,
-                            sc_tasks *tasks)
+/* Copies the caller's tasks, if any, and checks them; *given refers to the copy then. */
+static sc_status read_tasks(const sc_workspace *workspace, const sc_tasks **given, sc_tasks *tasks)
 {
     sc_status status;
-    if (!options->tasks) return SC_OK;
-    status = sc_structs_read(tasks, sizeof *tasks, options->tasks, UP_TO(sc_tasks, finish));
+    if (!*given) return SC_OK;
+    status = sc_structs_read(tasks, sizeof *tasks, *given, UP_TO(sc_tasks, finish));
     if (status) return status;
     if (!tasks->enqueue || !tasks->finish) return SC_ERROR_NULL;
     if (!tasks->workers) tasks->workers = 1;
     if (tasks->workers > workspace->workers) return SC_ERROR_WORKSPACE;
-    options->tasks = tasks;
+    *given = tasks;
     return SC_OK;
 }
 
@@ -468,7 +471,7 @@ static sc_status check_query(const sc_model *model, sc_workspace *workspace, con
         if (status) return status;
     }
     status = check_options(&state->options);
-    if (!status) status = read_tasks(workspace, &state->options, tasks);
+    if (!status) status = read_tasks(workspace, &state->options.tasks, tasks);
     if (status) return status;
     if (state->options.filter) {
         status = sc_filter_begin(state, model, state->options.filter, filter);
@@ -542,6 +545,158 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
                                                   : SC_VERDICT_CLEAN;
         if (r.stats) sc_structs_write(r.stats, &state.stats, sizeof state.stats);
     }
+    sc_structs_write(result, &r, sizeof r);
+    return status;
+}
+
+/* ---- steps ---- */
+
+static sc_status check_step_options(sc_step_options *o)
+{
+    if (o->output > SC_OUTPUT_ANY || o->pairs > SC_STEP_CANDIDATES ||
+        o->times > SC_STEP_TIMES_EACH || o->method > SC_STEP_METHOD_SWEPT ||
+        o->contour > SC_CONTOUR_EXACT || o->simd > SC_SIMD_AVX512 || o->reserved)
+        return SC_ERROR_OPTION;
+    if (!(o->separation >= 0) || !(o->tolerance >= 0) || o->separation > DBL_MAX ||
+        o->tolerance > DBL_MAX)
+        return SC_ERROR_OPTION;
+    if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
+    if (SC_HARDLY(o->simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;
+    if (o->method == SC_STEP_METHOD_DEFAULT) o->method = SC_STEP_METHOD_SCTT;
+    if (o->contour == SC_CONTOUR_DEFAULT) o->contour = SC_CONTOUR_EXACT;
+    return SC_OK;
+}
+
+/* Everything about a step that can be wrong but the positions. */
+static sc_status check_step(const sc_model *model, sc_workspace *workspace,
+                            const sc_pose *const pose[2], const sc_step_options *options,
+                            const sc_step_result *r, sc_step_options *o, sc_tasks *tasks,
+                            sc_pose checked[2], uint64_t stride[2])
+{
+    sc_status status;
+    int s;
+    if (!model || !workspace || !pose[0] || !pose[1]) return SC_ERROR_NULL;
+    if (!sc_workspace_fits(workspace, model) || !(workspace->flags & SC_WORKSPACE_STEP))
+        return SC_ERROR_WORKSPACE;
+    if (options) {
+        status = sc_structs_read(o, sizeof *o, options, LEAST_OPTIONS);
+        if (status) return status;
+    }
+    status = check_step_options(o);
+    if (!status) status = read_tasks(workspace, &o->tasks, tasks);
+    for (s = 0; s < 2 && !status; s++) {
+        status =
+            sc_structs_read(&checked[s], sizeof checked[s], pose[s], UP_TO(sc_pose, positions));
+        if (!status) status = check_pose(model, &checked[s], &stride[s]);
+    }
+    if (status) return status;
+    if (o->output == SC_OUTPUT_PAIRS && ((r->vertex_face_capacity && !r->vertex_faces) ||
+                                         (r->edge_edge_capacity && !r->edge_edges)))
+        return SC_ERROR_NULL;
+    if (r->stats) return sc_structs_check(r->stats, sizeof(sc_stats), LEAST_OPTIONS);
+    return SC_OK;
+}
+
+static void begin_step(sc_step_state *state, const sc_model *model, sc_workspace *workspace,
+                       const sc_step_result *r)
+{
+    int times = state->options.times == SC_STEP_TIMES_EACH;
+    sc_query_state *query = &state->query;
+    query->model = model;
+    query->workspace = workspace;
+    query->options.output = state->options.output;
+    query->options.simd = state->options.simd;
+    query->options.cancel = state->options.cancel;
+    query->options.budget = state->options.budget;
+    query->task = SC_TASK_UPDATE_BOXES;
+    query->timed = r->stats != NULL;
+    state->list[SC_STEP_VERTEX_FACE].pairs = r->vertex_faces;
+    state->list[SC_STEP_VERTEX_FACE].times = times ? r->vertex_face_times : NULL;
+    state->list[SC_STEP_VERTEX_FACE].capacity = r->vertex_face_capacity;
+    state->list[SC_STEP_EDGE_EDGE].pairs = r->edge_edges;
+    state->list[SC_STEP_EDGE_EDGE].times = times ? r->edge_edge_times : NULL;
+    state->list[SC_STEP_EDGE_EDGE].capacity = r->edge_edge_capacity;
+    state->earliest = 1;
+    workspace->isa = state->options.simd;
+}
+
+static sc_status run_step(sc_step_state *state, const sc_pose pose[2], const uint64_t stride[2])
+{
+    sc_query_state *query = &state->query;
+    uint64_t start = 0;
+    sc_status status;
+    int kind;
+    if (query->timed) start = query->last_time = sc_clock_nanoseconds();
+    if (sc_state_stops(query)) return SC_ERROR_INCOMPLETE;
+    sc_workspace_new_pose(query->model, query->workspace);
+    state->limits.separation = state->options.separation;
+    state->limits.tolerance = state->options.tolerance;
+    state->limits.latest = 1;
+    status = sc_motion_read(query->model, pose, stride, &state->limits, query->workspace);
+    if (status) return status;
+    sc_step_traversal_run(state);
+    sc_step_pairs_finish(state);
+    if (query->timed) {
+        uint64_t now = sc_clock_nanoseconds();
+        query->stats.nanoseconds[query->task] += now - query->last_time;
+        query->stats.total_nanoseconds = now - start;
+    }
+    if (query->incomplete) return SC_ERROR_INCOMPLETE;
+    for (kind = 0; kind < 2; kind++)
+        if (state->options.output == SC_OUTPUT_PAIRS &&
+            state->list[kind].count > state->list[kind].capacity)
+            return SC_ERROR_SHORT_BUFFER;
+    return SC_OK;
+}
+
+/* What is known after a step that did not fail. */
+static void fill_step_result(const sc_step_state *state, sc_status status, sc_step_result *r)
+{
+    uint64_t v = state->list[SC_STEP_VERTEX_FACE].count, e = state->list[SC_STEP_EDGE_EDGE].count;
+    int any = state->options.output == SC_OUTPUT_ANY;
+    r->vertex_face_count = any ? v > 0 : v;
+    r->edge_edge_count = any ? e > 0 && v == 0 : e;
+    r->collides = v + e > 0;
+    r->verdict = status == SC_ERROR_INCOMPLETE ? SC_VERDICT_INCOMPLETE
+                 : r->collides                 ? SC_VERDICT_FOUND
+                                               : SC_VERDICT_CLEAN;
+    r->earliest = state->earliest;
+    if (status == SC_ERROR_INCOMPLETE ||
+        (r->collides && state->options.times == SC_STEP_TIMES_NONE))
+        r->earliest = 0;
+    if (r->stats) sc_structs_write(r->stats, &state->query.stats, sizeof state->query.stats);
+}
+
+sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc_pose *start,
+                        const sc_pose *end, const sc_step_options *options, sc_step_result *result)
+{
+    const sc_pose *pose[2];
+    sc_step_state state;
+    sc_step_result r;
+    sc_tasks tasks;
+    sc_pose checked[2];
+    uint64_t stride[2];
+    sc_status status;
+    if (!result) return SC_ERROR_NULL;
+    status = sc_structs_read(&r, sizeof r, result, UP_TO(sc_step_result, earliest));
+    if (status) return status;
+    r.collides = 0;
+    r.verdict = SC_VERDICT_NONE;
+    r.reserved = 0;
+    r.vertex_face_count = 0;
+    r.edge_edge_count = 0;
+    r.earliest = 0;
+    pose[0] = start;
+    pose[1] = end;
+    memset(&state, 0, sizeof state);
+    status =
+        check_step(model, workspace, pose, options, &r, &state.options, &tasks, checked, stride);
+    if (!status) {
+        begin_step(&state, model, workspace, &r);
+        status = run_step(&state, checked, stride);
+    }
+    if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE)
+        fill_step_result(&state, status, &r);
     sc_structs_write(result, &r, sizeof r);
     return status;
 }

@@ -10,8 +10,8 @@ check "the repository has no offenders" tools/check_layering.sh
 copy=$scratch/copy
 mkdir "$copy"
 cp -R Makefile include lib tools tests bench "$copy"
-mkdir -p "$copy/lib/base" "$copy/lib/build" "$copy/lib/pose" "$copy/lib/query"
-for layer in base build pose query; do
+mkdir -p "$copy/lib/base" "$copy/lib/build" "$copy/lib/pose" "$copy/lib/query" "$copy/lib/step"
+for layer in base build pose query step; do
     echo "/* planted */" >"$copy/lib/$layer/planted_$layer.h"
 done
 echo "/* planted */" >"$copy/tests/planted_tests.h"
@@ -36,6 +36,7 @@ seen() {
 offence "lib/base must not include lib/build" lib/base/planted_base.h '#include "build/planted_build.h"'
 offence "lib/build must not include lib/pose" lib/build/planted_build.h '# include "pose/planted_pose.h"'
 offence "lib/pose must not include lib/query" lib/pose/planted_pose.h '#include "query/planted_query.h"'
+offence "lib/query must not include lib/step" lib/query/planted_query.h '#include "step/planted_step.h"'
 offence "lib/query must not include tests" lib/query/planted_query.h '#include "planted_tests.h"'
 offence "tools must not include lib/base" tools/planted.c '#include "base/planted_base.h"'
 offence "tools must not include lib/base" tools/planted.c '#include <base/planted_base.h>'

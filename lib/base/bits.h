@@ -6,6 +6,8 @@
 #ifndef SC_BASE_BITS_H
 #define SC_BASE_BITS_H
 
+#include <stdint.h>
+
 /* The number of the lowest set bit of a mask that is not 0. */
 static inline unsigned sc_bits_lowest(unsigned mask)
 {
@@ -29,6 +31,13 @@ static inline void sc_fetch(const void *address)
 #else
     (void)address;
 #endif
+}
+
+/* The same of 64 bits. */
+static inline unsigned sc_bits_lowest64(uint64_t mask)
+{
+    unsigned low = (unsigned)(mask & 0xffffffffu);
+    return low ? sc_bits_lowest(low) : 32 + sc_bits_lowest((unsigned)(mask >> 32));
 }
 
 #endif

@@ -53,6 +53,41 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->ball = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
     w->ball_queue = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
+    if (w->flags & SC_WORKSPACE_STEP)
+        w->motion.leaves = (sc_leaf_motion *)place(block, at, (uint64_t)2 * SC_LEAVES_KEPT,
+                                                   sizeof(sc_leaf_motion));
+}
+
+/* What only queries of steps use and all workers share. */
+static void lay_out_motion(const sc_model *model, unsigned char *block, uint64_t *at, sc_motion *m)
+{
+    uint64_t patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
+    int s, k;
+    m->unit = (float *)place(block, at, 8 * (uint64_t)model->vertex_count, sizeof(float));
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 6; k++)
+            m->boxes[s].side[k] = (float *)place(block, at, patches, sizeof(float));
+    m->own_points = (uint64_t *)place(block, at, model->leaf_count, sizeof(uint64_t));
+}
+
+/* A point belongs to the first leaf cluster that has it; seen is 0 for all points, before and after. */
+static void place_motion(const sc_model *model, sc_motion *m, uint32_t *seen)
+{
+    const uint32_t *point = sc_model_leaf_point(model);
+    uint64_t i, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
+    uint32_t leaf;
+    int s, k;
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 6; k++)
+            for (i = 0; i < patches; i++)
+                m->boxes[s].side[k][i] = k < 3 ? HUGE_VALF : -HUGE_VALF; /* near nothing */
+    memset(m->unit, 0, 8 * (size_t)model->vertex_count * sizeof *m->unit);
+    for (leaf = 0; leaf < model->leaf_count; leaf++, point += SC_LEAF_POINTS) {
+        m->own_points[leaf] = 0;
+        for (i = 0; i < SC_LEAF_POINTS; i++)
+            if (!seen[point[i]]++) m->own_points[leaf] |= (uint64_t)1 << i;
+    }
+    memset(seen, 0, model->vertex_count * sizeof *seen);
 }
 
 /* Nothing is known yet in the arrays of a worker. */
@@ -65,10 +100,11 @@ static void clear_own(const sc_model *model, sc_workspace *w)
 }
 
 /* How long the view of a further worker is, with its arrays. */
-static uint64_t view_bytes(const sc_model *model)
+static uint64_t view_bytes(const sc_model *model, uint32_t flags)
 {
     sc_workspace view;
     uint64_t at = align(sizeof view);
+    view.flags = flags;
     lay_out_own(model, NULL, &at, &view);
     return at;
 }
@@ -89,8 +125,9 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
             (sc_segment_bounds *)place(block, &at, model->segment_count, sizeof(sc_segment_bounds));
         w->bounds_tick[k] = (uint32_t *)place(block, &at, model->segment_count, sizeof(uint32_t));
     }
+    if (w->flags & SC_WORKSPACE_STEP) lay_out_motion(model, block, &at, &w->motion);
     lay_out_own(model, block, &at, w);
-    w->view_bytes = w->workers > 1 ? view_bytes(model) : 0;
+    w->view_bytes = w->workers > 1 ? view_bytes(model, w->flags) : 0;
     w->views = (unsigned char *)place(block, &at, w->view_bytes * (w->workers - 1), 1);
     return at;
 }
@@ -99,6 +136,7 @@ uint64_t sc_workspace_bytes(const sc_model *model, const sc_workspace_options *o
 {
     sc_workspace sizes;
     sizes.workers = options ? options->workers : 1;
+    sizes.flags = options ? options->flags : 0;
     return lay_out_arrays(model, NULL, &sizes);
 }
 
@@ -123,8 +161,10 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     memset(w->unit, 0, 4 * (size_t)model->vertex_count * sizeof *w->unit);
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
     clear_own(model, w);
+    if (w->flags & SC_WORKSPACE_STEP) place_motion(model, &w->motion, w->ball);
     for (i = 0; i + 1 < w->workers; i++) {
         at = align(sizeof view);
+        view.flags = w->flags;
         lay_out_own(model, w->views + i * w->view_bytes, &at, &view);
         clear_own(model, &view);
     }

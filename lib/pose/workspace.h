@@ -4,10 +4,11 @@
  * SPDX-License-Identifier: MIT
  *
  *     | sc_workspace | unit | patch boxes | triangle boxes | mask | bounds |
- *       bounds_tick | own arrays | view | view | ... |
+ *       bounds_tick | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
- * candidates, neighbors, ball, ball_queue. For each worker but the first there is a view: an sc_workspace and own arrays.
+ * candidates, neighbors, ball, ball_queue, and motion.leaves. For each worker but the first there is a view: an
+ * sc_workspace and own arrays.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -81,6 +82,44 @@ typedef struct sc_walk {
 
 enum { SC_CANDIDATES_MAX = 1024 };
 
+/* Sides of boxes that move, three each: x, y, z. */
+enum { SC_START_LOW = 0, SC_START_HIGH = 3, SC_END_LOW = 6, SC_END_HIGH = 9, SC_MOTION_SIDES = 12 };
+
+/* Room for the edges of a leaf cluster. */
+enum { SC_LEAF_EDGES = (3 * SC_LEAF_MAX + 15) / 16 * 16 };
+
+/* The vertices, edges and triangles that a leaf cluster contributes to a step, with their boxes, which bound
+   what is in sc_motion.unit. See step/leaf_step.h. */
+typedef struct sc_leaf_motion {
+    uint32_t leaf; /* or SC_NONE */
+    uint32_t first_place, triangles, points, edges;
+    uint32_t point[SC_LEAF_POINTS];
+    uint32_t edge_end[SC_LEAF_EDGES][2], edge_name[SC_LEAF_EDGES]; /* 3 place + k */
+    float triangle_side[SC_MOTION_SIDES][SC_LEAF_MAX];
+    float edge_side[SC_MOTION_SIDES][SC_LEAF_EDGES];
+    float point_side[SC_MOTION_SIDES][SC_LEAF_POINTS];
+} sc_leaf_motion;
+
+/* So many leaf clusters are kept ready, twice. */
+enum { SC_LEAVES_KEPT = 32 };
+
+/* What the query of a step writes to besides, if the workspace is for those. See step/step_motion.h. */
+typedef struct sc_motion {
+    const unsigned char
+        *positions[2]; /* the caller's, at the start and at the end; valid only in a query */
+    uint64_t stride[2];
+    uint32_t type[2];  /* SC_FLOAT or SC_DOUBLE */
+    float *unit;       /* 8 * vertex_count: start, 0, end, 0 in the unit box of both */
+    sc_boxes boxes[2]; /* patch_end: of patches at the start and at the end */
+    uint64_t
+        *own_points; /* leaf_count: bit i: the leaf cluster is the first to have leaf_point i */
+    sc_leaf_motion *leaves; /* 2 * SC_LEAVES_KEPT */
+    float distance;         /* in the unit box: what is farther apart does not collide */
+    float margin;   /* how far apart two sets of sc_motion.unit must be, so that the true ones are
+                               more than that distance apart */
+    uint32_t swept; /* boxes are those of the whole motion */
+} sc_motion;
+
 struct sc_workspace {
     uint64_t bytes;
     uint64_t topology_hash; /* of the model it is for */
@@ -130,6 +169,8 @@ struct sc_workspace {
     uint32_t *ball_queue; /* point_count */
     uint32_t ball_tick;
     uint32_t ball_center; /* the caller's number of the triangle, or SC_NONE */
+
+    sc_motion motion;
 };
 
 /* Bytes for a workspace, which fit size_t if it is for one worker. options are complete and checked;

@@ -1,0 +1,32 @@
+/*
+ * The inner loops of a query of a step, for machines with AVX-512. See step_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "step/step_kernels.h"
+
+#include <float.h>
+
+#include "step/leaf_step.h"
+#include "step/step_candidates.h"
+
+#if SC_ISA_X86
+
+#  include "base/avx512_begin.h"
+#  define SC_KERNEL(name) name##_step_avx512
+#  define SC_LANES 3
+
+#  include "base/lanes.h"
+#  include "step/step_walk_kernel.h"
+
+const sc_step_kernels sc_step_kernels_avx512 = {SC_KERNEL(patch_pair), SC_KERNEL(patch_itself),
+                                                SC_KERNEL(leaf_pair), SC_KERNEL(leaf_itself)};
+
+#  include "base/lanes_end.h"
+#  include "base/avx512_end.h"
+
+#else
+
+typedef int sc_step_avx512_is_empty; /* C wants a declaration in every file */
+
+#endif

@@ -1,0 +1,28 @@
+/*
+ * The inner loops of a query of a step, for every machine: by SSE2 on x86-64, else in plain C. See
+ * step_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "step/step_kernels.h"
+
+#include <float.h>
+
+#include "step/leaf_step.h"
+#include "step/step_candidates.h"
+
+#define SC_KERNEL(name) name##_step_base
+#if SC_ISA_X86
+#  include <emmintrin.h>
+#  define SC_LANES 1
+#else
+#  define SC_LANES 0
+#endif
+
+#include "base/lanes.h"
+#include "step/step_walk_kernel.h"
+
+const sc_step_kernels sc_step_kernels_base = {SC_KERNEL(patch_pair), SC_KERNEL(patch_itself),
+                                              SC_KERNEL(leaf_pair), SC_KERNEL(leaf_itself)};
+
+#include "base/lanes_end.h"

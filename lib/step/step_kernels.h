@@ -1,0 +1,38 @@
+/*
+ * The inner loops of a query of a step that are compiled for several instruction sets.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef SC_STEP_KERNELS_H
+#define SC_STEP_KERNELS_H
+
+#include "base/isa.h"
+#include "step/step_state.h"
+
+typedef struct sc_step_kernels {
+    /* Box recursion on two patches of a level, and on one. */
+    void (*patch_pair)(sc_step_state *state, uint32_t patch_a, uint32_t patch_b);
+    void (*patch_itself)(sc_step_state *state, uint32_t patch);
+    /* The vertices, edges and triangles of two leaf clusters, and of one. */
+    void (*leaf_pair)(sc_step_state *state, uint32_t leaf_a, uint32_t leaf_b);
+    void (*leaf_itself)(sc_step_state *state, uint32_t leaf);
+} sc_step_kernels;
+
+extern const sc_step_kernels sc_step_kernels_base;
+#if SC_ISA_X86
+extern const sc_step_kernels sc_step_kernels_avx2;
+extern const sc_step_kernels sc_step_kernels_avx512;
+#endif
+
+/* Those for the query at hand. */
+static inline const sc_step_kernels *sc_step_kernels_of(const sc_workspace *workspace)
+{
+#if SC_ISA_X86
+    if (workspace->isa == SC_ISA_AVX512) return &sc_step_kernels_avx512;
+    if (workspace->isa == SC_ISA_AVX2) return &sc_step_kernels_avx2;
+#endif
+    (void)workspace;
+    return &sc_step_kernels_base;
+}
+
+#endif

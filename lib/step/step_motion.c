@@ -1,0 +1,155 @@
+/*
+ * Both poses of a step. See step_motion.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "step/step_motion.h"
+
+#include <float.h>
+#include <math.h>
+
+typedef struct bounds {
+    double low[3], high[3];
+    double not_finite; /* stays 0 unless something is NaN or infinite */
+} bounds;
+
+static void bound_pose(const sc_model *model, const sc_motion *m, int end, bounds *b)
+{
+    const uint8_t *use = sc_model_vertex_use(model);
+    uint32_t v;
+    int k;
+    for (v = 0; v < model->vertex_count; v++) {
+        double p[3];
+        if (use[v] == SC_VERTEX_UNUSED) continue;
+        sc_motion_position(m, end, v, p);
+        b->not_finite += (p[0] - p[0]) + (p[1] - p[1]) + (p[2] - p[2]);
+        if (use[v] != SC_VERTEX_POINT) continue;
+        for (k = 0; k < 3; k++) {
+            b->low[k] = p[k] < b->low[k] ? p[k] : b->low[k];
+            b->high[k] = p[k] > b->high[k] ? p[k] : b->high[k];
+        }
+    }
+}
+
+/* Points of both poses in the unit box, as pose/positions.c has them for one. */
+static void scale_step(const sc_model *model, sc_workspace *w)
+{
+    const uint8_t *use = sc_model_vertex_use(model);
+    float *unit = w->motion.unit;
+    uint32_t v;
+    int exponent, k, end;
+    (void)frexp(w->radius, &exponent);
+    w->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
+    for (v = 0; v < model->vertex_count; v++, unit += 8) {
+        if (use[v] != SC_VERTEX_POINT) continue;
+        for (end = 0; end < 2; end++) {
+            double p[3];
+            sc_motion_position(&w->motion, end, v, p);
+            for (k = 0; k < 3; k++) unit[4 * end + k] = (float)((p[k] - w->center[k]) * w->scale);
+        }
+    }
+}
+
+sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
+                         sc_impact_limits *limits, sc_workspace *w)
+{
+    bounds b;
+    double side = 0, distance;
+    int k;
+    for (k = 0; k < 3; k++) {
+        b.low[k] = HUGE_VAL;
+        b.high[k] = -HUGE_VAL;
+    }
+    b.not_finite = 0;
+    for (k = 0; k < 2; k++) {
+        w->motion.positions[k] = (const unsigned char *)pose[k].positions;
+        w->motion.stride[k] = stride[k];
+        w->motion.type[k] = pose[k].position_type;
+        bound_pose(model, &w->motion, k, &b);
+    }
+    if (b.not_finite != 0) return SC_ERROR_NOT_FINITE; /* NaN is not 0 */
+    w->radius = 0;
+    for (k = 0; k < 3; k++) {
+        double half = b.high[k] / 2 - b.low[k] / 2;
+        w->center[k] = b.low[k] / 2 + b.high[k] / 2;
+        if (b.high[k] - w->center[k] > w->radius) w->radius = b.high[k] - w->center[k];
+        if (w->center[k] - b.low[k] > w->radius) w->radius = w->center[k] - b.low[k];
+        if (half > side) side = half;
+    }
+    scale_step(model, w);
+    if (limits->tolerance == 0) limits->tolerance = 2e-6 * side;
+    /* Rounded up: what is lost to rounding in double is less than is added. Infinite if it is beyond float:
+       then nothing is apart. */
+    distance = sc_impact_thickness(limits, 2 * side) * w->scale;
+    w->motion.distance =
+        distance < (double)FLT_MAX / 2 ? (float)distance * 1.000001f + FLT_MIN : HUGE_VALF;
+    /*
+     * Boxes are taken of points that are off by SC_MOTION_POINT_ERROR, and each moved outwards by half the
+     * distance between sets that are to be kept, rounding at most 2^-24 (1 + margin) each time: four times
+     * 3e-8, twice 6e-8 and a little.
+     */
+    w->motion.margin = w->motion.distance * 1.000001f + 3e-7f;
+    return SC_OK;
+}
+
+static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)
+{
+    const uint32_t *first = sc_model_leaf_first(model), *corner = sc_model_triangle(model);
+    uint32_t patch = sc_model_first_leaf_patch(model) + leaf;
+    uint64_t i;
+    float low[2][3], high[2][3], margin = w->motion.margin / 2;
+    int s, k;
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 3; k++) {
+            low[s][k] = HUGE_VALF;
+            high[s][k] = -HUGE_VALF;
+        }
+    for (i = 3 * (uint64_t)first[leaf]; i < 3 * (uint64_t)first[leaf + 1]; i++) {
+        const float *unit = w->motion.unit + 8 * (uint64_t)corner[i];
+        for (s = 0; s < 2; s++)
+            for (k = 0; k < 3; k++) {
+                float x = unit[4 * s + k];
+                low[s][k] = x < low[s][k] ? x : low[s][k];
+                high[s][k] = x > high[s][k] ? x : high[s][k];
+            }
+    }
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 3; k++) {
+            int other = w->motion.swept ? 1 - s : s;
+            float l = low[s][k] < low[other][k] ? low[s][k] : low[other][k];
+            float h = high[s][k] > high[other][k] ? high[s][k] : high[other][k];
+            w->motion.boxes[s].side[k][patch] = l - margin;
+            w->motion.boxes[s].side[k + 3][patch] = h + margin;
+        }
+}
+
+void sc_motion_refit(const sc_model *model, sc_workspace *w)
+{
+    const uint32_t *level_first = sc_model_level_first(model), *child = sc_model_child(model);
+    uint32_t level, p, leaf, k;
+    int s;
+    if (w->boxes_ready) return;
+    for (leaf = 0; leaf < model->leaf_count; leaf++) refit_leaf(model, w, leaf);
+    for (level = model->level_count - 1; level-- > 0;)
+        for (s = 0; s < 2; s++)
+            for (k = 0; k < 3; k++) {
+                float *low = w->motion.boxes[s].side[k], *high = w->motion.boxes[s].side[k + 3];
+                for (p = level_first[level]; p + 1 < level_first[level + 1]; p++) {
+                    uint32_t first = child[p], last = child[p + 1] - 1; /* one child, or two */
+                    low[p] = low[first] < low[last] ? low[first] : low[last];
+                    high[p] = high[first] > high[last] ? high[first] : high[last];
+                }
+            }
+    w->boxes_ready = 1;
+}
+
+int sc_motion_boxes_apart(const sc_motion *m, uint32_t a, uint32_t b)
+{
+    int k;
+    for (k = 0; k < 3; k++) {
+        float *const *s = m->boxes[0].side, *const *e = m->boxes[1].side;
+        if (s[k + 3][a] < s[k][b] && e[k + 3][a] < e[k][b]) return 1;
+        if (s[k + 3][b] < s[k][a] && e[k + 3][b] < e[k][a]) return 1;
+    }
+    return 0;
+}

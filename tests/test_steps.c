@@ -1,0 +1,517 @@
+/*
+ * Queries of steps: all methods against all pairs decided by the narrow phase alone, and the interface.
+ *
+ * That the narrow phase itself is right is the matter of test_impact, and that nothing is lost against exact
+ * arithmetic that of test_step_oracle.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness.h"
+#include "inputs.h"
+#include "oracle.h"
+#include "shapes.h"
+#include "starcontour.h"
+#include "step/impact.h"
+
+static const uint32_t methods[] = {SC_STEP_METHOD_SCTT, SC_STEP_METHOD_TWO_BOXES,
+                                   SC_STEP_METHOD_SWEPT};
+enum { METHODS = 3, KINDS = 2 };
+
+/* A list of pairs with their times. */
+typedef struct timed_list {
+    sc_pair *pairs;
+    double *times;
+    uint64_t count, room;
+} timed_list;
+
+static void add(timed_list *list, uint32_t a, uint32_t b, double time)
+{
+    if (list->count == list->room) {
+        list->room = 2 * list->room + 16;
+        list->pairs = (sc_pair *)realloc(list->pairs, (size_t)list->room * sizeof(sc_pair));
+        list->times = (double *)realloc(list->times, (size_t)list->room * sizeof(double));
+        if (!list->pairs || !list->times) abort();
+    }
+    list->pairs[list->count].a = a;
+    list->pairs[list->count].b = b;
+    list->times[list->count++] = time;
+}
+
+static void free_lists(timed_list lists[KINDS])
+{
+    for (int i = 0; i < KINDS; ++i) {
+        free(lists[i].pairs);
+        free(lists[i].times);
+    }
+}
+
+static void take_point(const double *from, uint32_t v, double to[3])
+{
+    memcpy(to, from + 3 * (size_t)v, 3 * sizeof(double));
+}
+
+typedef struct edge {
+    uint32_t a, b, name;
+} edge;
+
+/* The edges of a welded soup: each by the first triangle and side that has it. */
+static edge *edges_of(const soup *s, const uint32_t *weld, uint32_t *count)
+{
+    edge *edges = (edge *)test_allocate(3 * (size_t)s->triangle_count * sizeof(edge));
+    *count = 0;
+    for (uint32_t i = 0; i < 3 * s->triangle_count; ++i) {
+        uint32_t a = weld[s->triangles[i]], b = weld[s->triangles[i - i % 3 + (i % 3 + 1) % 3]], j;
+        if (a == b) continue;
+        for (j = 0; j < *count; ++j)
+            if ((edges[j].a == a && edges[j].b == b) || (edges[j].a == b && edges[j].b == a)) break;
+        if (j < *count) continue;
+        edges[*count].a = a;
+        edges[*count].b = b;
+        edges[(*count)++].name = i;
+    }
+    return edges;
+}
+
+/* What the narrow phase says of all pairs. */
+static void solve(const soup *s, const double *start, const double *end,
+                  const sc_impact_limits *limits, timed_list lists[KINDS])
+{
+    uint32_t *weld = (uint32_t *)test_allocate(s->vertex_count * sizeof(uint32_t)), count;
+    uint8_t *used = (uint8_t *)calloc(s->vertex_count, 1);
+    double from[4][3], to[4][3], time;
+    const double(*f)[3] = (const double(*)[3])from, (*t)[3] = (const double(*)[3])to;
+    edge *edges;
+    memset(lists, 0, KINDS * sizeof(timed_list));
+    oracle_weld(s->positions, s->vertex_count, s->triangles, s->triangle_count, weld);
+    for (uint32_t i = 0; i < 3 * s->triangle_count; ++i) used[weld[s->triangles[i]]] = 1;
+    edges = edges_of(s, weld, &count);
+    for (uint32_t v = 0; v < s->vertex_count; ++v)
+        for (uint32_t i = 0; used[v] && i < s->triangle_count; ++i) {
+            int corner = 0;
+            take_point(start, v, from[0]);
+            take_point(end, v, to[0]);
+            for (uint32_t k = 0; k < 3; ++k) {
+                uint32_t c = weld[s->triangles[3 * i + k]];
+                corner |= c == v;
+                take_point(start, c, from[k + 1]);
+                take_point(end, c, to[k + 1]);
+            }
+            if (!corner && sc_impact_vertex_face(f, t, limits, &time)) add(&lists[0], v, i, time);
+        }
+    for (uint32_t i = 0; i < count; ++i)
+        for (uint32_t j = i + 1; j < count; ++j) {
+            const edge *x = &edges[i], *y = &edges[j];
+            if (x->a == y->a || x->a == y->b || x->b == y->a || x->b == y->b) continue;
+            take_point(start, x->a, from[0]);
+            take_point(start, x->b, from[1]);
+            take_point(start, y->a, from[2]);
+            take_point(start, y->b, from[3]);
+            take_point(end, x->a, to[0]);
+            take_point(end, x->b, to[1]);
+            take_point(end, y->a, to[2]);
+            take_point(end, y->b, to[3]);
+            if (sc_impact_edge_edge(f, t, limits, &time)) add(&lists[1], x->name, y->name, time);
+        }
+    free(weld);
+    free(used);
+    free(edges);
+}
+
+typedef struct step_subject {
+    sc_model *model;
+    sc_workspace *workspace;
+} step_subject;
+
+static int open_step(step_subject *s, const soup *mesh, const sc_build_options *options)
+{
+    sc_mesh m = input_plain_mesh(mesh);
+    sc_workspace_options w;
+    s->model = NULL;
+    s->workspace = NULL;
+    memset(&w, 0, sizeof(w));
+    w.struct_size = sizeof(w);
+    w.flags = SC_WORKSPACE_STEP;
+    return CHECK(sc_build(&m, options, &s->model) == SC_OK) &&
+           CHECK(sc_workspace_create_for(s->model, &w, &s->workspace) == SC_OK);
+}
+
+static void close_step(step_subject *s)
+{
+    sc_workspace_free(s->workspace);
+    sc_model_free(s->model);
+}
+
+static sc_step_options plain_options(void)
+{
+    sc_step_options o;
+    memset(&o, 0, sizeof(o));
+    o.struct_size = sizeof(o);
+    return o;
+}
+
+/* A result with room for some pairs of each kind. */
+typedef struct answer {
+    sc_step_result result;
+    sc_stats stats;
+} answer;
+
+static answer make_answer(uint64_t capacity)
+{
+    answer a;
+    memset(&a, 0, sizeof(a));
+    a.result.struct_size = sizeof(a.result);
+    a.result.vertex_face_capacity = a.result.edge_edge_capacity = capacity;
+    a.result.vertex_faces = (sc_pair *)test_allocate((size_t)capacity * sizeof(sc_pair));
+    a.result.edge_edges = (sc_pair *)test_allocate((size_t)capacity * sizeof(sc_pair));
+    a.result.vertex_face_times = (double *)test_allocate((size_t)capacity * sizeof(double));
+    a.result.edge_edge_times = (double *)test_allocate((size_t)capacity * sizeof(double));
+    return a;
+}
+
+static void free_answer(answer *a)
+{
+    free(a->result.vertex_faces);
+    free(a->result.edge_edges);
+    free(a->result.vertex_face_times);
+    free(a->result.edge_edge_times);
+}
+
+static int same_list(const timed_list *wanted, uint64_t count, const sc_pair *pairs,
+                     const double *times)
+{
+    if (count != wanted->count) return 0;
+    return count == 0 || (memcmp(pairs, wanted->pairs, (size_t)count * sizeof(sc_pair)) == 0 &&
+                          memcmp(times, wanted->times, (size_t)count * sizeof(double)) == 0);
+}
+
+/* Whether every pair of a sorted list is in another. */
+static int holds_all(const timed_list *wanted, uint64_t count, const sc_pair *pairs)
+{
+    uint64_t j = 0;
+    for (uint64_t i = 0; i < wanted->count; ++i) {
+        while (j < count && (pairs[j].a != wanted->pairs[i].a || pairs[j].b != wanted->pairs[i].b))
+            ++j;
+        if (j == count) return 0;
+    }
+    return 1;
+}
+
+/* All methods on one step against the lists. */
+static int check_methods(const soup *mesh, step_subject *s, const double *start, const double *end,
+                         const sc_impact_limits *limits, const timed_list lists[KINDS],
+                         const char *what)
+{
+    sc_pose from = input_plain_pose(start, mesh->vertex_count),
+            to = input_plain_pose(end, mesh->vertex_count);
+    double earliest = 1;
+    int good = 1;
+    for (int kind = 0; kind < KINDS; ++kind)
+        for (uint64_t i = 0; i < lists[kind].count; ++i)
+            if (lists[kind].times[i] < earliest) earliest = lists[kind].times[i];
+    for (uint32_t i = 0; i < 3 * METHODS && good; ++i) {
+        sc_step_options o = plain_options();
+        answer a = make_answer(40000);
+        sc_status status;
+        o.method = methods[i / 3];
+        o.simd = i % 3 + 1;
+        if (o.method == SC_STEP_METHOD_SCTT && test_random_below(4) == 0)
+            o.contour = SC_CONTOUR_STAR;
+        o.times = SC_STEP_TIMES_EACH;
+        o.separation = limits->separation;
+        o.tolerance = limits->tolerance;
+        status = sc_query_step(s->model, s->workspace, &from, &to, &o, &a.result);
+        if (status != SC_ERROR_UNSUPPORTED) {
+            good =
+                CHECK_MSG(status == SC_OK, "%s: status %d", what, (int)status) &&
+                CHECK_MSG(same_list(&lists[0], a.result.vertex_face_count, a.result.vertex_faces,
+                                    a.result.vertex_face_times),
+                          "%s, method %u, contour %u: %" PRIu64 " vertex-face pairs of %" PRIu64,
+                          what, o.method, o.contour, a.result.vertex_face_count, lists[0].count) &&
+                CHECK_MSG(same_list(&lists[1], a.result.edge_edge_count, a.result.edge_edges,
+                                    a.result.edge_edge_times),
+                          "%s, method %u, contour %u: %" PRIu64 " edge-edge pairs of %" PRIu64,
+                          what, o.method, o.contour, a.result.edge_edge_count, lists[1].count) &&
+                CHECK_MSG(a.result.earliest == earliest, "%s: earliest %.17g, not %.17g", what,
+                          a.result.earliest, earliest);
+            o.pairs = SC_STEP_CANDIDATES;
+            status = sc_query_step(s->model, s->workspace, &from, &to, &o, &a.result);
+            if (status != SC_ERROR_SHORT_BUFFER)
+                good =
+                    good & CHECK(status == SC_OK) &
+                    CHECK_MSG(
+                        holds_all(&lists[0], a.result.vertex_face_count, a.result.vertex_faces) &&
+                            holds_all(&lists[1], a.result.edge_edge_count, a.result.edge_edges),
+                        "%s, method %u: candidates lack a collision", what, o.method);
+        }
+        free_answer(&a);
+    }
+    return good;
+}
+
+/* One random step of a mesh: the poses of soups.h, a small or a large motion. */
+static void try_step(const soup *mesh, const char *name)
+{
+    size_t bytes = 3 * (size_t)mesh->vertex_count * sizeof(double);
+    double *start = (double *)test_allocate(bytes), *end = (double *)test_allocate(bytes);
+    sc_impact_limits limits;
+    timed_list lists[KINDS];
+    input_choices choices = input_choose(mesh, SC_WELD_REST, test_random_below(4));
+    step_subject s;
+    memcpy(start, mesh->positions, bytes);
+    if (test_random_below(2)) soup_any_pose(start, mesh->vertex_count);
+    memcpy(end, start, bytes);
+    switch (test_random_below(4)) {
+    case 0:
+        soup_any_pose(end, mesh->vertex_count);
+        break;
+    case 1: {
+        double far = pow(10, test_random_range(-4, 0));
+        for (uint32_t i = 0; i < 3 * mesh->vertex_count; ++i)
+            end[i] += test_random_range(-far, far);
+        break;
+    }
+    case 2:
+        for (uint32_t i = 0; i < 3 * mesh->vertex_count; ++i) end[i] += i % 3 == 0 ? 5 : 0;
+        if (mesh->vertex_count > 3)
+            end[3 * test_random_below(mesh->vertex_count)] -= 3; /* teleported */
+        break;
+    default:
+        break;
+    }
+    limits.separation = test_random_below(2) ? 0 : pow(10, test_random_range(-5, -1));
+    limits.tolerance = pow(10, test_random_range(-5, -3));
+    limits.latest = 1;
+    solve(mesh, start, end, &limits, lists);
+    if (open_step(&s, mesh, &choices.options))
+        check_methods(mesh, &s, start, end, &limits, lists, name);
+    close_step(&s);
+    free_lists(lists);
+    input_free_choices(&choices);
+    free(start);
+    free(end);
+}
+
+static void soups_that_move(void)
+{
+    for (uint32_t i = 0; i < test_iterations(400) && test_failures() == 0; ++i) {
+        soup s = i % 2 ? soup_on_grid(4) : soup_scattered();
+        try_step(&s, i % 2 ? "grid" : "scattered");
+        soup_free(&s);
+    }
+}
+
+static void meshes_that_move(void)
+{
+    for (uint32_t i = 0; i < test_iterations(12) && test_failures() == 0; ++i) {
+        const char *name;
+        soup s = shape_any(150, &name);
+        try_step(&s, name);
+        soup_free(&s);
+    }
+}
+
+/* A cloth whose right half is folded over the left one, at a slope: 0 brings them together. */
+static double *fold(const soup *mesh, double slope)
+{
+    double *to = (double *)test_allocate(3 * (size_t)mesh->vertex_count * sizeof(double));
+    memcpy(to, mesh->positions, 3 * (size_t)mesh->vertex_count * sizeof(double));
+    for (uint32_t v = 0; v < mesh->vertex_count; ++v) {
+        double *p = to + 3 * (size_t)v, beyond = p[0] - 0.5;
+        if (beyond > 0) {
+            p[0] = 0.5 - 0.97 * beyond;
+            p[2] = slope * beyond;
+        }
+    }
+    return to;
+}
+
+static void arrays_and_counts(void)
+{
+    soup mesh = soup_cloth(12, 12);
+    double *start = fold(&mesh, 0.6), *end = fold(&mesh, -0.4);
+    sc_pose from = input_plain_pose(start, mesh.vertex_count),
+            to = input_plain_pose(end, mesh.vertex_count);
+    step_subject s;
+    if (open_step(&s, &mesh, NULL)) {
+        answer all = make_answer(100000), a = make_answer(100000);
+        sc_step_options o = plain_options();
+        uint64_t v, e;
+        o.times = SC_STEP_TIMES_EACH;
+        CHECK(sc_query_step(s.model, s.workspace, &from, &to, &o, &all.result) == SC_OK);
+        v = all.result.vertex_face_count;
+        e = all.result.edge_edge_count;
+        CHECK_MSG(v > 50 && e > 50, "%" PRIu64 ", %" PRIu64, v, e);
+        CHECK(all.result.collides == 1 && all.result.verdict == SC_VERDICT_FOUND);
+        CHECK(all.result.earliest > 0 && all.result.earliest < 1);
+        for (uint64_t n = 0; n < e; n += e / 7 + 1) { /* short arrays hold the first ones */
+            a.result.vertex_face_capacity = n < v ? n : v;
+            a.result.edge_edge_capacity = n;
+            CHECK(sc_query_step(s.model, s.workspace, &from, &to, &o, &a.result) ==
+                  SC_ERROR_SHORT_BUFFER);
+            CHECK(a.result.vertex_face_count == v && a.result.edge_edge_count == e);
+            CHECK(a.result.earliest == all.result.earliest);
+            CHECK(memcmp(a.result.edge_edges, all.result.edge_edges, (size_t)n * sizeof(sc_pair)) ==
+                  0);
+            CHECK(memcmp(a.result.edge_edge_times, all.result.edge_edge_times,
+                         (size_t)n * sizeof(double)) == 0);
+            CHECK(memcmp(a.result.vertex_faces, all.result.vertex_faces,
+                         (size_t)a.result.vertex_face_capacity * sizeof(sc_pair)) == 0);
+        }
+        o.output = SC_OUTPUT_COUNT;
+        CHECK(sc_query_step(s.model, s.workspace, &from, &to, &o, &a.result) == SC_OK);
+        CHECK(a.result.vertex_face_count == v && a.result.edge_edge_count == e);
+        o.output = SC_OUTPUT_ANY;
+        CHECK(sc_query_step(s.model, s.workspace, &from, &to, &o, &a.result) == SC_OK);
+        CHECK(a.result.vertex_face_count + a.result.edge_edge_count == 1);
+        CHECK(a.result.collides == 1 && a.result.earliest == all.result.earliest);
+        o.times = SC_STEP_TIMES_NONE;
+        CHECK(sc_query_step(s.model, s.workspace, &from, &to, &o, &a.result) == SC_OK);
+        CHECK(a.result.collides == 1 && a.result.earliest == 0);
+        /* a still mesh collides with nothing */
+        o.output = SC_OUTPUT_PAIRS;
+        CHECK(sc_query_step(s.model, s.workspace, &from, &from, &o, &a.result) == SC_OK);
+        CHECK(a.result.collides == 0 && a.result.earliest == 1);
+        CHECK(a.result.verdict == SC_VERDICT_CLEAN);
+        free_answer(&all);
+        free_answer(&a);
+    }
+    close_step(&s);
+    soup_free(&mesh);
+    free(start);
+    free(end);
+}
+
+static void ends_early(void)
+{
+    soup mesh = soup_cloth(16, 16);
+    double *start = fold(&mesh, 0.6), *end = fold(&mesh, -0.4);
+    sc_pose from = input_plain_pose(start, mesh.vertex_count),
+            to = input_plain_pose(end, mesh.vertex_count);
+    step_subject s;
+    if (open_step(&s, &mesh, NULL)) {
+        answer all = make_answer(100000), a = make_answer(100000);
+        sc_step_options o = plain_options();
+        volatile uint32_t flag = 1;
+        uint64_t budget = 1, work = 0;
+        sc_status status = SC_ERROR_INCOMPLETE;
+        all.stats.struct_size = sizeof(all.stats);
+        all.result.stats = &all.stats;
+        CHECK(sc_query_step(s.model, s.workspace, &from, &to, &o, &all.result) == SC_OK);
+        for (int i = SC_TASK_ORIENTATION; i < SC_TASK_COUNT; ++i) work += all.stats.counts[i];
+        o.cancel = &flag;
+        CHECK(sc_query_step(s.model, s.workspace, &from, &to, &o, &a.result) ==
+              SC_ERROR_INCOMPLETE);
+        CHECK(a.result.verdict == SC_VERDICT_INCOMPLETE && a.result.earliest == 0);
+        o.cancel = NULL;
+        for (; status == SC_ERROR_INCOMPLETE; budget *= 3) {
+            o.budget = budget;
+            status = sc_query_step(s.model, s.workspace, &from, &to, &o, &a.result);
+            CHECK(status == SC_OK || budget <= work);
+            CHECK(status == SC_ERROR_INCOMPLETE || status == SC_OK);
+            CHECK(a.result.edge_edge_count <= all.result.edge_edge_count);
+        }
+        CHECK(a.result.edge_edge_count == all.result.edge_edge_count);
+        free_answer(&all);
+        free_answer(&a);
+    }
+    close_step(&s);
+    soup_free(&mesh);
+    free(start);
+    free(end);
+}
+
+static void refuses_what_does_not_fit(void)
+{
+    soup mesh = soup_cloth(3, 3), other = soup_cloth(4, 3);
+    sc_pose pose = input_plain_pose(mesh.positions, mesh.vertex_count), bad = pose;
+    sc_step_options o = plain_options();
+    answer a = make_answer(16);
+    step_subject s, t;
+    sc_workspace *plain = NULL;
+    double nan_at[3 * 16];
+    sc_tasks tasks;
+    if (open_step(&s, &mesh, NULL) && open_step(&t, &other, NULL) &&
+        CHECK(sc_workspace_create(s.model, NULL, &plain) == SC_OK)) {
+#define ASK(start, end) sc_query_step(s.model, s.workspace, start, end, &o, &a.result)
+        CHECK(ASK(&pose, &pose) == SC_OK);
+        CHECK(sc_query_step(s.model, s.workspace, &pose, &pose, NULL, &a.result) == SC_OK);
+        CHECK(sc_query_step(NULL, s.workspace, &pose, &pose, &o, &a.result) == SC_ERROR_NULL);
+        CHECK(sc_query_step(s.model, NULL, &pose, &pose, &o, &a.result) == SC_ERROR_NULL);
+        CHECK(sc_query_step(s.model, s.workspace, &pose, &pose, &o, NULL) == SC_ERROR_NULL);
+        CHECK(ASK(NULL, &pose) == SC_ERROR_NULL);
+        CHECK(ASK(&pose, NULL) == SC_ERROR_NULL);
+        CHECK(sc_query_step(s.model, t.workspace, &pose, &pose, &o, &a.result) ==
+              SC_ERROR_WORKSPACE);
+        CHECK(sc_query_step(s.model, plain, &pose, &pose, &o, &a.result) == SC_ERROR_WORKSPACE);
+        bad.vertex_count++;
+        CHECK(ASK(&pose, &bad) == SC_ERROR_VERTEX_COUNT);
+        CHECK(ASK(&bad, &pose) == SC_ERROR_VERTEX_COUNT);
+        bad = pose;
+        memcpy(nan_at, mesh.positions, sizeof(nan_at));
+        nan_at[7] = NAN;
+        bad.positions = nan_at;
+        CHECK(ASK(&pose, &bad) == SC_ERROR_NOT_FINITE);
+        CHECK(a.result.verdict == SC_VERDICT_NONE && a.result.earliest == 0);
+        CHECK(ASK(&bad, &pose) == SC_ERROR_NOT_FINITE);
+        nan_at[7] = HUGE_VAL;
+        CHECK(ASK(&bad, &pose) == SC_ERROR_NOT_FINITE);
+#define REFUSED(member, value, status)                                                             \
+  do {                                                                                             \
+    o = plain_options();                                                                           \
+    o.member = value;                                                                              \
+    CHECK(ASK(&pose, &pose) == status);                                                            \
+    o = plain_options();                                                                           \
+  } while (0)
+        REFUSED(struct_size, 4, SC_ERROR_STRUCT_SIZE);
+        REFUSED(output, 3, SC_ERROR_OPTION);
+        REFUSED(pairs, 2, SC_ERROR_OPTION);
+        REFUSED(times, 3, SC_ERROR_OPTION);
+        REFUSED(method, 4, SC_ERROR_OPTION);
+        REFUSED(contour, 4, SC_ERROR_OPTION);
+        REFUSED(simd, 9, SC_ERROR_OPTION);
+        REFUSED(reserved, 1, SC_ERROR_OPTION);
+        memset(&tasks, 0, sizeof(tasks));
+        tasks.struct_size = sizeof(tasks);
+        REFUSED(tasks, &tasks, SC_ERROR_NULL);
+        REFUSED(separation, -1e-300, SC_ERROR_OPTION);
+        REFUSED(separation, NAN, SC_ERROR_OPTION);
+        REFUSED(separation, HUGE_VAL, SC_ERROR_OPTION);
+        REFUSED(tolerance, -1, SC_ERROR_OPTION);
+        REFUSED(tolerance, NAN, SC_ERROR_OPTION);
+        REFUSED(tolerance, HUGE_VAL, SC_ERROR_OPTION);
+        REFUSED(separation, 1e308, SC_ERROR_SHORT_BUFFER);
+        a.result.struct_size = 8;
+        CHECK(ASK(&pose, &pose) == SC_ERROR_STRUCT_SIZE);
+        a.result.struct_size = sizeof(a.result);
+        {
+            sc_pair *keep = a.result.edge_edges;
+            a.result.edge_edges = NULL;
+            CHECK(ASK(&pose, &pose) == SC_ERROR_NULL);
+            a.result.edge_edges = keep;
+            keep = a.result.vertex_faces;
+            a.result.vertex_faces = NULL;
+            CHECK(ASK(&pose, &pose) == SC_ERROR_NULL);
+            a.result.vertex_faces = keep;
+        }
+        a.stats.struct_size = 4;
+        a.result.stats = &a.stats;
+        CHECK(ASK(&pose, &pose) == SC_ERROR_STRUCT_SIZE);
+#undef REFUSED
+#undef ASK
+    }
+    sc_workspace_free(plain);
+    close_step(&s);
+    close_step(&t);
+    free_answer(&a);
+    soup_free(&mesh);
+    soup_free(&other);
+}
+
+SC_TEST_MAIN(SC_TEST(soups_that_move), SC_TEST(meshes_that_move), SC_TEST(arrays_and_counts),
+             SC_TEST(ends_early), SC_TEST(refuses_what_does_not_fit))
