@@ -24,6 +24,7 @@
 #include "query/contacts.h"
 #include "query/filter.h"
 #include "query/pairs.h"
+#include "query/parallel.h"
 #include "query/recording.h"
 #include "query/rest.h"
 #include "query/traversal.h"
@@ -501,8 +502,12 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
     sc_workspace_new_pose(model, workspace);
     status = sc_positions_read(model, pose, stride, workspace);
     if (status) return status;
-    sc_traversal_run(state);
-    sc_pairs_finish(state);
+    if (sc_parallel_pays(state)) {
+        sc_parallel_run(state);
+    } else {
+        sc_traversal_run(state);
+        sc_pairs_finish(state);
+    }
     if (state->timed) {
         uint64_t now = sc_clock_nanoseconds();
         state->stats.nanoseconds[state->task] += now - state->last_time;

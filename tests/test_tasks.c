@@ -185,19 +185,24 @@ static answer ask(const fixture *f, sc_workspace *workspace, const sc_query_opti
     return a;
 }
 
-/* Whether two answers are the same, also in what they counted; frees b. */
+/* Whether two queries counted the same. */
+static int is_count_same(const answer *a, const answer *b)
+{
+    return memcmp(a->stats.counts, b->stats.counts, sizeof(a->stats.counts)) == 0 &&
+           a->stats.nodes_visited == b->stats.nodes_visited &&
+           a->stats.nodes_oriented == b->stats.nodes_oriented &&
+           a->stats.nodes_culled == b->stats.nodes_culled &&
+           a->stats.leaf_pairs == b->stats.leaf_pairs &&
+           a->stats.exact_fallbacks == b->stats.exact_fallbacks;
+}
+
+/* Whether two answers are the same; frees b. */
 static int is_same(const answer *a, answer b)
 {
     uint64_t filled = a->result.count < a->result.capacity ? a->result.count : a->result.capacity;
     int same = a->status == b.status && a->result.count == b.result.count &&
                a->result.collides == b.result.collides && a->result.verdict == b.result.verdict &&
-               memcmp(a->pairs, b.pairs, (size_t)filled * sizeof(sc_pair)) == 0 &&
-               memcmp(a->stats.counts, b.stats.counts, sizeof(a->stats.counts)) == 0 &&
-               a->stats.nodes_visited == b.stats.nodes_visited &&
-               a->stats.nodes_oriented == b.stats.nodes_oriented &&
-               a->stats.nodes_culled == b.stats.nodes_culled &&
-               a->stats.leaf_pairs == b.stats.leaf_pairs &&
-               a->stats.exact_fallbacks == b.stats.exact_fallbacks;
+               memcmp(a->pairs, b.pairs, (size_t)filled * sizeof(sc_pair)) == 0;
     free(b.pairs);
     return same;
 }
@@ -222,7 +227,8 @@ static void workspaces_for_workers(void)
                 CHECK(sc_workspace_size_for(f.model, &o, &size) == SC_OK);
                 if (workers < 2 && !flags) CHECK(size == plain);
                 if (workers == 1) CHECK(size == previous);
-                if (workers > 1) CHECK(size > previous && size < previous + plain + 400000 * flags);
+                if (workers > 1)
+                    CHECK(size > previous && size < previous + plain + 200000 + 400000 * flags);
                 previous = size;
                 memory = (unsigned char *)test_allocate(size + 2 * SC_ALIGNMENT);
                 memset(memory, 0x77, size + 2 * SC_ALIGNMENT);
@@ -391,57 +397,112 @@ static void tasks_refused(void)
     stop(&f);
 }
 
-/* Each method, kind of pair, output and length of the array, with and without statistics' clocks. */
+/* Scenes large enough to be shared out, but for the last one; most in heavy contact. */
+enum { SCENES = 4 };
+
+static int start_scene(fixture *f, int scene)
+{
+    soup mesh = scene == 0   ? soup_cloth(40, 40)
+                : scene == 1 ? soup_sphere(40, 40)
+                : scene == 2 ? soup_many(100)
+                             : soup_cloth(2, 1);
+    return start(f, mesh, scene == 0 ? 4 : 0.5, scene == 1 ? 0.06 : 0.001);
+}
+
+enum { METHODS = 5, KINDS = METHODS * 2 * 2 };
+
+/* One of the kinds of questions. */
+static sc_query_options question(uint32_t kind)
+{
+    static const uint32_t methods[METHODS][2] = {{SC_METHOD_SCTT, SC_CONTOUR_EXACT},
+                                                 {SC_METHOD_SCTT, SC_CONTOUR_STAR},
+                                                 {SC_METHOD_SCTT, SC_CONTOUR_NONE},
+                                                 {SC_METHOD_AABB_SCTT, 0},
+                                                 {SC_METHOD_AABB, 0}};
+    sc_query_options options = no_options();
+    options.method = methods[kind % METHODS][0];
+    options.contour = methods[kind % METHODS][1];
+    options.pairs = kind / METHODS % 2;
+    options.contact = kind / METHODS / 2;
+    return options;
+}
+
+/* Each method, kind of pair, output and length of the array, by each host. */
 static void the_same_answers(void)
 {
-    static const uint32_t methods[][2] = {{SC_METHOD_SCTT, SC_CONTOUR_EXACT},
-                                          {SC_METHOD_SCTT, SC_CONTOUR_STAR},
-                                          {SC_METHOD_SCTT, SC_CONTOUR_NONE},
-                                          {SC_METHOD_AABB_SCTT, 0},
-                                          {SC_METHOD_AABB, 0}};
-    for (int scene = 0; scene < 4; ++scene) {
+    uint64_t jobs = 0;
+    for (int scene = 0; scene < SCENES; ++scene) {
         fixture f;
-        soup mesh = scene == 0   ? soup_cloth(40, 40)
-                    : scene == 1 ? soup_sphere(40, 40)
-                    : scene == 2 ? soup_many(60)
-                                 : soup_cloth(2, 1);
-        if (start(&f, mesh, scene == 0 ? 4 : 0.5, scene == 1 ? 0.02 : 0.001)) {
+        if (start_scene(&f, scene)) {
             sc_workspace_options o = for_workers(THREADS_MAX);
             sc_workspace *workspace = NULL;
             CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
-            for (uint32_t i = 0; i < 5 * 4 * 2; ++i) {
-                sc_query_options options = no_options();
-                answer all;
-                uint64_t capacities[4];
-                options.method = methods[i % 5][0];
-                options.contour = methods[i % 5][1];
-                options.pairs = i / 5 % 2;
-                options.contact = i / 10 % 2;
-                options.output = i / 20 ? SC_OUTPUT_COUNT : SC_OUTPUT_PAIRS;
-                all = ask(&f, f.workspace, &options, 100000);
+            for (uint32_t kind = 0; kind < KINDS; ++kind) {
+                sc_query_options options = question(kind);
+                answer all = ask(&f, f.workspace, &options, 100000), shared;
+                uint64_t count = all.result.count, counts[] = {count, count + 1000, count / 2, 0};
+                host h;
                 CHECK(all.status == SC_OK);
-                if (scene < 2 && i < 10 && i % 5 != 2) CHECK(all.result.count > 20);
-                capacities[0] = all.result.count;
-                capacities[1] = all.result.count / 2;
-                capacities[2] = 0;
-                capacities[3] = all.result.count + 1000;
+                if (scene < 2 && options.contour != SC_CONTOUR_NONE && kind < 2 * METHODS)
+                    CHECK_MSG(count > (scene == 0 ? 20 : 4000), "only %u", (unsigned)count);
+                host_start(&h, HOST_AT_ONCE, 2);
+                options.tasks = &h.tasks;
+                shared = ask(&f, workspace, &options, count);
+                host_stop(&h);
                 for (int way = 0; way < HOST_COUNT; ++way) {
-                    host h;
                     host_start(&h, way, 1 + test_random_below(THREADS_MAX));
-                    for (int c = 0; c < 4; ++c) {
-                        answer serial;
+                    for (int c = 0; c < (way == HOST_THREADS && kind % 3 ? 1 : 4); ++c) {
+                        answer serial, other;
+                        options.output = c == 1 ? SC_OUTPUT_COUNT : SC_OUTPUT_PAIRS;
                         options.tasks = NULL;
-                        serial = ask(&f, f.workspace, &options, capacities[c]);
+                        serial = ask(&f, f.workspace, &options, counts[c]);
                         options.tasks = &h.tasks;
-                        CHECK_MSG(is_same(&serial, ask(&f, workspace, &options, capacities[c])),
-                                  "scene %d, query %u, host %d, capacity %u", scene, (unsigned)i,
-                                  way, (unsigned)capacities[c]);
+                        other = ask(&f, workspace, &options, counts[c]);
+                        if (c < 2 && h.tasks.workers > 1)
+                            CHECK_MSG(is_count_same(&shared, &other), "scene %d, kind %u, host %d",
+                                      scene, (unsigned)kind, way);
+                        CHECK_MSG(is_same(&serial, other),
+                                  "scene %d, kind %u, host %d, capacity %u", scene, (unsigned)kind,
+                                  way, (unsigned)counts[c]);
                         free(serial.pairs);
                     }
                     CHECK(h.mistakes == 0 && !h.is_busy);
+                    jobs += h.jobs;
                     host_stop(&h);
                 }
+                free(shared.pairs);
                 free(all.pairs);
+            }
+            sc_workspace_free(workspace);
+        }
+        stop(&f);
+    }
+    CHECK(jobs > 200);
+}
+
+/* Whether there is a pair: the answer is known, the pair is not. */
+static void any_pair(void)
+{
+    for (int scene = 0; scene < SCENES; ++scene) {
+        fixture f;
+        if (start_scene(&f, scene)) {
+            sc_workspace_options o = for_workers(THREADS_MAX);
+            sc_workspace *workspace = NULL;
+            CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+            for (uint32_t i = 0; i < 2 * KINDS; ++i) {
+                sc_query_options options = question(i % KINDS);
+                answer serial;
+                host h;
+                if (i >= KINDS)
+                    f.pose.positions = f.mesh.positions; /* without pairs, but in soups */
+                options.output = SC_OUTPUT_ANY;
+                serial = ask(&f, f.workspace, &options, 0);
+                host_start(&h, (int)i % HOST_COUNT, 1 + test_random_below(THREADS_MAX));
+                options.tasks = &h.tasks;
+                CHECK(is_same(&serial, ask(&f, workspace, &options, 0)));
+                CHECK(serial.result.count == serial.result.collides && h.mistakes == 0);
+                host_stop(&h);
+                free(serial.pairs);
             }
             sc_workspace_free(workspace);
         }
@@ -449,5 +510,194 @@ static void the_same_answers(void)
     }
 }
 
+/* A function that refuses some pairs, counts calls, and notes calls from other threads. */
+typedef struct judge {
+    pthread_t thread;
+    uint64_t calls;
+    int mistakes;
+} judge;
+
+static int32_t judge_pair(void *user, uint32_t a, uint32_t b)
+{
+    judge *j = (judge *)user;
+    j->calls++;
+    if (!pthread_equal(j->thread, pthread_self())) j->mistakes++;
+    return (a + b) % 3 != 0;
+}
+
+static void filters(void)
+{
+    for (int scene = 0; scene < 3; ++scene) {
+        fixture f;
+        if (start_scene(&f, scene)) {
+            sc_workspace_options o = for_workers(THREADS_MAX);
+            sc_workspace *workspace = NULL;
+            sc_group *groups = (sc_group *)test_allocate(f.mesh.triangle_count * sizeof(sc_group));
+            for (uint32_t t = 0; t < f.mesh.triangle_count; ++t) {
+                groups[t].category = 1u << t % 3;
+                groups[t].mask = t % 5 == 0 ? 1 : 7;
+            }
+            CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+            for (uint32_t kind = (uint32_t)scene; kind < KINDS; kind += 3)
+                for (int part = 0; part < 8; ++part) {
+                    sc_query_options options = question(kind);
+                    answer serial;
+                    uint64_t capacity;
+                    sc_filter filter;
+                    judge j;
+                    host h;
+                    memset(&filter, 0, sizeof(filter));
+                    memset(&j, 0, sizeof(j));
+                    j.thread = pthread_self();
+                    filter.struct_size = sizeof(filter);
+                    filter.accept_user = &j;
+                    if (part % 2 == 1) filter.ignore_rings = 2 + test_random_below(4);
+                    if (part / 2 % 2 == 1) filter.triangle_groups = groups;
+                    if (part / 4 == 1) filter.accept = judge_pair;
+                    options.filter = &filter;
+                    serial = ask(&f, f.workspace, &options, 100000);
+                    capacity = (uint64_t)test_random_below(2) * serial.result.count +
+                               test_random_below(2000);
+                    free(serial.pairs);
+                    options.output = kind % 4 == 3 ? SC_OUTPUT_COUNT : SC_OUTPUT_PAIRS;
+                    j.calls = 0;
+                    serial = ask(&f, f.workspace, &options, capacity);
+                    host_start(&h, part % HOST_COUNT, 2 + test_random_below(THREADS_MAX - 1));
+                    options.tasks = &h.tasks;
+                    CHECK_MSG(is_same(&serial, ask(&f, workspace, &options, capacity)),
+                              "scene %d, kind %u, filter %d", scene, (unsigned)kind, part);
+                    if (filter.accept) CHECK(j.calls % 2 == 0 && j.mistakes == 0);
+                    CHECK(h.mistakes == 0);
+                    host_stop(&h);
+                    free(serial.pairs);
+                }
+            sc_workspace_free(workspace);
+            free(groups);
+        }
+        stop(&f);
+    }
+}
+
+/* A budget ends a query at the same place, and a flag that is set before ends it at once. */
+static void stopped_early(void)
+{
+    static const uint32_t flag = 1;
+    for (int scene = 0; scene < 2; ++scene) {
+        fixture f;
+        if (start_scene(&f, scene)) {
+            sc_workspace_options o = for_workers(THREADS_MAX);
+            sc_workspace *workspace = NULL;
+            CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+            for (uint32_t kind = 0; kind < KINDS; ++kind) {
+                sc_query_options options = question(kind);
+                answer serial;
+                host h;
+                host_start(&h, (int)kind % HOST_COUNT, 2 + test_random_below(THREADS_MAX - 1));
+                options.budget = 1 + test_random_below(30000);
+                serial = ask(&f, f.workspace, &options, 10000);
+                options.tasks = &h.tasks;
+                CHECK(is_same(&serial, ask(&f, workspace, &options, 10000)));
+                free(serial.pairs);
+                options.budget = 0;
+                options.cancel = &flag;
+                serial = ask(&f, workspace, &options, 10000);
+                CHECK(serial.status == SC_ERROR_INCOMPLETE && serial.result.count == 0 &&
+                      serial.result.verdict == SC_VERDICT_INCOMPLETE);
+                free(serial.pairs);
+                host_stop(&h);
+            }
+            sc_workspace_free(workspace);
+        }
+        stop(&f);
+    }
+}
+
+/* A host that sets the flag after some parts. */
+typedef struct breaker {
+    sc_tasks tasks;
+    volatile uint32_t flag;
+    uint32_t left; /* parts */
+} breaker;
+
+static void *breaker_enqueue(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
+                             void *context, uint32_t count)
+{
+    breaker *b = (breaker *)user;
+    for (uint32_t part = 0; part < count; ++part) {
+        if (b->left > 0 && --b->left == 0) b->flag = 1;
+        run(context, part, part % b->tasks.workers);
+    }
+    return NULL;
+}
+
+static void breaker_finish(void *user, void *task)
+{
+    (void)user;
+    (void)task;
+}
+
+/* Whether a pair is in a sorted list. */
+static int is_among(sc_pair pair, const sc_pair *pairs, uint64_t count)
+{
+    uint64_t low = 0, high = count;
+    while (low < high) {
+        uint64_t middle = low + (high - low) / 2;
+        if (pairs[middle].a < pair.a || (pairs[middle].a == pair.a && pairs[middle].b < pair.b))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < count && pairs[low].a == pair.a && pairs[low].b == pair.b;
+}
+
+/* What was found when the flag was set is delivered, sorted, and is right. */
+static void stopped_on_the_way(void)
+{
+    fixture f;
+    if (start_scene(&f, 1)) {
+        sc_workspace_options o = for_workers(3);
+        sc_workspace *workspace = NULL;
+        uint32_t incomplete = 0, some = 0;
+        CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+        for (uint32_t i = 0; i < 60; ++i) {
+            sc_query_options options = question(i % 3 * 2);
+            answer all, part;
+            breaker b;
+            memset(&b, 0, sizeof(b));
+            b.tasks.struct_size = sizeof(b.tasks);
+            b.tasks.workers = 3;
+            b.tasks.enqueue = breaker_enqueue;
+            b.tasks.finish = breaker_finish;
+            b.tasks.user = &b;
+            b.left = 1 + test_random_below(100);
+            all = ask(&f, f.workspace, &options, 100000);
+            options.tasks = &b.tasks;
+            options.cancel = &b.flag;
+            part = ask(&f, workspace, &options, 100000);
+            if (b.flag && part.status == SC_ERROR_INCOMPLETE) {
+                ++incomplete;
+                some += part.result.count > 0;
+                CHECK(part.result.verdict == SC_VERDICT_INCOMPLETE &&
+                      part.result.count <= all.result.count);
+                for (uint64_t k = 0; k < part.result.count; ++k)
+                    CHECK(is_among(part.pairs[k], all.pairs, all.result.count) &&
+                          (!k || part.pairs[k - 1].a < part.pairs[k].a ||
+                           (part.pairs[k - 1].a == part.pairs[k].a &&
+                            part.pairs[k - 1].b < part.pairs[k].b)));
+                free(part.pairs);
+            } else {
+                CHECK(is_same(&all, part));
+            }
+            options.cancel = NULL;
+            CHECK(is_same(&all, ask(&f, workspace, &options, 100000)));
+            free(all.pairs);
+        }
+        CHECK(incomplete > 10 && some > 5);
+        sc_workspace_free(workspace);
+    }
+    stop(&f);
+}
+
 SC_TEST_MAIN(SC_TEST(workspaces_for_workers), SC_TEST(workspaces_refused), SC_TEST(tasks_refused),
-             SC_TEST(the_same_answers))
+             SC_TEST(the_same_answers), SC_TEST(any_pair), SC_TEST(filters), SC_TEST(stopped_early),
+             SC_TEST(stopped_on_the_way))

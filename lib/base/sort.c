@@ -59,25 +59,42 @@ static sc_pair median(sc_pair x, sc_pair y, sc_pair z)
     return sc_sort_less(z, y) ? z : y;
 }
 
+/* Moves pairs so that [0, i) <= pivot <= [i, count), and returns i. The pivot is one of the pairs. */
+static uint64_t split_at(sc_pair *pairs, uint64_t count, sc_pair pivot)
+{
+    uint64_t i = 0, j = count - 1;
+    for (;;) { /* both ends stop at the pivot, so neither runs out of the array */
+        sc_pair t;
+        while (sc_sort_less(pairs[i], pivot)) i++;
+        while (sc_sort_less(pivot, pairs[j])) j--;
+        if (i >= j) return i;
+        t = pairs[i];
+        pairs[i++] = pairs[j];
+        pairs[j--] = t;
+    }
+}
+
+uint64_t sc_sort_split(sc_pair *pairs, uint64_t count)
+{
+    sc_pair some[9];
+    uint64_t i;
+    if (count < 9) return 0;
+    for (i = 0; i < 9; i++) some[i] = pairs[i * (count / 9)];
+    insertion_sort(some, 9);
+    return split_at(pairs, count, some[4]);
+}
+
 static void quicksort(sc_pair *pairs, uint64_t count, int depth)
 {
     while (count > INSERTION_MAX) {
         sc_pair pivot = median(pairs[0], pairs[count / 2], pairs[count - 1]);
-        uint64_t i = 0, j = count - 1;
+        uint64_t i;
         if (depth-- == 0) {
             heapsort_pairs(pairs, count);
             return;
         }
-        for (;;) { /* both ends stop at the pivot, so neither runs out of the array */
-            sc_pair t;
-            while (sc_sort_less(pairs[i], pivot)) i++;
-            while (sc_sort_less(pivot, pairs[j])) j--;
-            if (i >= j) break;
-            t = pairs[i];
-            pairs[i++] = pairs[j];
-            pairs[j--] = t;
-        }
-        /* [0, i) <= pivot <= [i, count): go on with the longer part, recurse into the shorter */
+        i = split_at(pairs, count, pivot);
+        /* go on with the longer part, recurse into the shorter */
         if (i < count - i) {
             quicksort(pairs, i, depth);
             pairs += i;

@@ -27,6 +27,10 @@ static inline uint32_t sc_sort_key(float f)
 
 void sc_sort_pairs(sc_pair *pairs, uint64_t count);
 
+/* Moves pairs so that none of the first i is greater than one of the rest, and returns i, about half their
+   count if there are 9 or more. */
+uint64_t sc_sort_split(sc_pair *pairs, uint64_t count);
+
 /* The same by the lowest `bits` bits of a, all others of which must be 0; pairs with equal a stay in
    order. Linear: a pass for every ten bits. spare has room for as many. */
 void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits);

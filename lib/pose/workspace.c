@@ -48,11 +48,13 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->walk.queue =
         (uint32_t *)place(block, at, SC_WALK_QUEUE + SC_WALK_CHILDREN, sizeof(uint32_t));
     w->walk.self = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
-    w->walk.culled = (uint8_t *)place(block, at, model->patch_end, 1);
+    w->walk.culled = w->walk.marks = (uint8_t *)place(block, at, model->patch_end, 1);
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->ball = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
     w->ball_queue = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
+    w->found = (sc_pair *)place(block, at, SC_FOUND_MAX, sizeof(sc_pair));
+    w->state = (unsigned char *)place(block, at, SC_STATE_ROOM, 1);
     if (w->flags & SC_WORKSPACE_STEP)
         w->motion.leaves = (sc_leaf_motion *)place(block, at, (uint64_t)2 * SC_LEAVES_KEPT,
                                                    sizeof(sc_leaf_motion));
@@ -127,8 +129,14 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
     }
     if (w->flags & SC_WORKSPACE_STEP) lay_out_motion(model, block, &at, &w->motion);
     lay_out_own(model, block, &at, w);
-    w->view_bytes = w->workers > 1 ? view_bytes(model, w->flags) : 0;
+    if (w->workers == 1) return at;
+    w->view_bytes = view_bytes(model, w->flags);
     w->views = (unsigned char *)place(block, &at, w->view_bytes * (w->workers - 1), 1);
+    w->parts = (sc_part *)place(block, &at, SC_PARTS_MAX, sizeof(sc_part));
+    w->tests = (uint32_t *)place(block, &at, SC_PARTS_MAX, sizeof(uint32_t));
+    w->open = (uint32_t *)place(block, &at, SC_PARTS_MAX, sizeof(uint32_t));
+    w->passed = (uint8_t *)place(block, &at, SC_PARTS_MAX, 1);
+    w->culled = (uint8_t *)place(block, &at, model->patch_end, 1);
     return at;
 }
 
@@ -140,12 +148,38 @@ uint64_t sc_workspace_bytes(const sc_model *model, const sc_workspace_options *o
     return lay_out_arrays(model, NULL, &sizes);
 }
 
+sc_workspace *sc_workspace_of_worker(sc_workspace *w, uint32_t worker)
+{
+    if (!worker) return w;
+    return (sc_workspace *)(void *)(w->views + (worker - 1) * w->view_bytes);
+}
+
+/* All that is in the workspace, with the arrays of its own that stand behind the view. */
+static void make_view(const sc_model *model, const sc_workspace *w, sc_workspace *view)
+{
+    uint64_t at = align(sizeof *view);
+    *view = *w;
+    lay_out_own(model, (unsigned char *)view, &at, view);
+}
+
+void sc_workspace_share(const sc_model *model, sc_workspace *w, uint32_t workers)
+{
+    uint32_t worker;
+    for (worker = 1; worker < workers; worker++) {
+        sc_workspace *view = sc_workspace_of_worker(w, worker);
+        uint32_t ball_tick = view->ball_tick;
+        make_view(model, w, view);
+        view->ball_tick = ball_tick;
+    }
+}
+
 sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_options *options,
                                  void *memory)
 {
-    sc_workspace *w = (sc_workspace *)memory, view;
-    uint64_t i, at, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
+    sc_workspace *w = (sc_workspace *)memory;
+    uint64_t i, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
+    uint32_t worker;
     int k;
     memset(w, 0, sizeof *w);
     w->flags = options ? options->flags : 0;
@@ -162,11 +196,10 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
     clear_own(model, w);
     if (w->flags & SC_WORKSPACE_STEP) place_motion(model, &w->motion, w->ball);
-    for (i = 0; i + 1 < w->workers; i++) {
-        at = align(sizeof view);
-        view.flags = w->flags;
-        lay_out_own(model, w->views + i * w->view_bytes, &at, &view);
-        clear_own(model, &view);
+    for (worker = 1; worker < w->workers; worker++) {
+        sc_workspace *view = sc_workspace_of_worker(w, worker);
+        make_view(model, w, view);
+        clear_own(model, view);
     }
     return w;
 }
@@ -183,13 +216,17 @@ int sc_workspace_fits(sc_workspace *workspace, const sc_model *model)
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
 {
     if (workspace->pose_tick == 0x7fffffff) {
-        memset(workspace->fan, 0, model->vertex_count * sizeof *workspace->fan);
-        memset(workspace->plain_tick, 0, model->leaf_count * sizeof *workspace->plain_tick);
+        uint32_t worker;
+        for (worker = 0; worker < workspace->workers; worker++) {
+            sc_workspace *own = sc_workspace_of_worker(workspace, worker);
+            memset(own->fan, 0, model->vertex_count * sizeof *own->fan);
+            memset(own->plain_tick, 0, model->leaf_count * sizeof *own->plain_tick);
+        }
         workspace->pose_tick = 0;
     }
     workspace->pose_tick++;
     workspace->boxes_ready = 0;
-    workspace->candidate_count = workspace->neighbor_count = 0;
+    workspace->candidate_count = workspace->neighbor_count = workspace->found_count = 0;
     workspace->ball_center = SC_NONE;
 }
 

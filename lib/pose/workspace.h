@@ -7,8 +7,8 @@
  *       bounds_tick | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
- * candidates, neighbors, ball, ball_queue, and motion.leaves. For each worker but the first there is a view: an
- * sc_workspace and own arrays.
+ * candidates, neighbors, ball, ball_queue, found, state, motion.leaves. For each worker but the first there is a
+ * view: an sc_workspace with the pose of the first, and own arrays.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -75,7 +75,8 @@ typedef struct sc_walk {
         *stack; /* n (SC_WALK_QUEUE + n SC_WALK_CHILDREN), n = level_count + 1: nodes that failed */
     uint32_t *queue; /* SC_WALK_QUEUE + SC_WALK_CHILDREN: nodes to test */
     uint32_t *self;  /* leaf_count: nodes of one patch to test, if need be, after all others */
-    uint8_t *culled; /* patch_end: 1 if in a node that passed */
+    uint8_t *culled; /* patch_end: 1 if in a node that passed, as far as may be looked at */
+    uint8_t *marks;  /* patch_end: where that is written down; the same, if one worker does all */
     uint32_t stack_count, queue_count, self_count;
     uint32_t selfs_wait;
 } sc_walk;
@@ -119,6 +120,14 @@ typedef struct sc_motion {
                                more than that distance apart */
     uint32_t swept; /* boxes are those of the whole motion */
 } sc_motion;
+
+/* A part of a query for a worker to do by itself, see query/parallel.c. */
+typedef struct sc_part {
+    uint32_t kind, a, b;
+} sc_part;
+
+/* How many parts are listed at once; pairs that a worker collects; bytes for its sc_query_state. */
+enum { SC_PARTS_MAX = 4096, SC_FOUND_MAX = 256, SC_STATE_ROOM = 1024 };
 
 struct sc_workspace {
     uint64_t bytes;
@@ -171,6 +180,17 @@ struct sc_workspace {
     uint32_t ball_center; /* the caller's number of the triangle, or SC_NONE */
 
     sc_motion motion;
+
+    sc_pair *found; /* SC_FOUND_MAX pairs that are not yet in the caller's array */
+    uint32_t found_count;
+    unsigned char *state; /* SC_STATE_ROOM: this worker's sc_query_state */
+
+    /* for several workers */
+    sc_part *parts;  /* SC_PARTS_MAX */
+    uint32_t *tests; /* SC_PARTS_MAX: nodes to test */
+    uint32_t *open;  /* SC_PARTS_MAX: nodes that failed */
+    uint8_t *passed; /* SC_PARTS_MAX: whether they passed */
+    uint8_t *culled; /* patch_end: what the workers' walk.marks say together */
 };
 
 /* Bytes for a workspace, which fit size_t if it is for one worker. options are complete and checked;
@@ -184,6 +204,12 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
 /* Whether a workspace is for models of this topology hash, and each of its arrays as long as the model
    needs it: the hash alone does not tell, for it leaves out the rest shape, and may be forged. */
 int sc_workspace_fits(sc_workspace *workspace, const sc_model *model);
+
+/* That of a worker: the workspace itself, or a view. */
+sc_workspace *sc_workspace_of_worker(sc_workspace *workspace, uint32_t worker);
+
+/* Gives the views of so many workers the pose that is in the workspace. */
+void sc_workspace_share(const sc_model *model, sc_workspace *workspace, uint32_t workers);
 
 /* Starts a pose and a projection, whose ticks make everything older stale. */
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace);

@@ -5,8 +5,26 @@
  */
 #include "query/pairs.h"
 
+#include <string.h>
+
+#include "base/atomic.h"
 #include "base/sort.h"
 #include "query/filter.h"
+
+/* Entries of the caller's array are claimed for many pairs at once, so that no two workers write to one. */
+static void take_shared(sc_query_state *state, sc_pair pair)
+{
+    sc_workspace *w = state->workspace;
+    uint64_t at;
+    w->found[w->found_count++] = pair;
+    if (w->found_count < SC_FOUND_MAX) return;
+    w->found_count = 0;
+    at = sc_atomic_add(&state->share->claimed, SC_FOUND_MAX);
+    if (at + SC_FOUND_MAX <= state->capacity)
+        memcpy(state->pairs + at, w->found, sizeof(sc_pair) * SC_FOUND_MAX);
+    else
+        sc_atomic_write(&state->share->halt, 1); /* too short for certain */
+}
 
 void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b)
 {
@@ -15,8 +33,15 @@ void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b)
     pair.a = a;
     pair.b = b;
     state->count++;
-    if (state->options.output == SC_OUTPUT_ANY) state->stop = 1;
+    if (state->options.output == SC_OUTPUT_ANY) {
+        state->stop = 1;
+        if (state->share) sc_atomic_write(&state->share->halt, 1);
+    }
     if (state->options.output != SC_OUTPUT_PAIRS || state->capacity == 0) return;
+    if (state->share) {
+        take_shared(state, pair);
+        return;
+    }
     if (state->count <= state->capacity) {
         state->pairs[state->count - 1] = pair;
         return;

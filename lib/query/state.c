@@ -5,15 +5,7 @@
  */
 #include "query/state.h"
 
-/* Any thread may write the flag meanwhile; nothing else is to be ordered by it. */
-static uint32_t read_flag(const volatile uint32_t *flag)
-{
-#if defined(__GNUC__)
-    return __atomic_load_n(flag, __ATOMIC_RELAXED);
-#else
-    return *flag;
-#endif
-}
+#include "base/atomic.h"
 
 /* What the caller's budget is compared with: all counts but those of the passes over the mesh. */
 static uint64_t work(const sc_query_state *state)
@@ -32,7 +24,9 @@ static int end_if(sc_query_state *state, int early)
 
 int sc_state_ask_flag(sc_query_state *state)
 {
-    return end_if(state, read_flag(state->options.cancel) != 0);
+    if (state->share && sc_atomic_read(&state->share->halt)) state->stop = 1;
+    if (state->options.cancel) end_if(state, sc_atomic_read(state->options.cancel) != 0);
+    return state->stop;
 }
 
 int sc_state_ask_budget(sc_query_state *state)

@@ -6,8 +6,16 @@
 #ifndef SC_QUERY_STATE_H
 #define SC_QUERY_STATE_H
 
+#include <stddef.h>
+
 #include "base/clock.h"
 #include "pose/workspace.h"
+
+/* What the workers of a query have in common and write to, see query/parallel.c. */
+typedef struct sc_share {
+    size_t claimed; /* entries of the caller's array that were given out, perhaps beyond its end */
+    uint32_t halt;  /* enough is known */
+} sc_share;
 
 typedef struct sc_query_state {
     const sc_model *model;
@@ -19,6 +27,7 @@ typedef struct sc_query_state {
     sc_pair *pairs;      /* the caller's array */
     uint64_t capacity;
     uint64_t count;    /* pairs found */
+    sc_share *share;   /* NULL, if one thread does all */
     int stop;          /* enough is known, or the query is to end early */
     int incomplete;    /* it is to end early */
     int after_contour; /* box and primitive tests count as following a failed contour test */
@@ -28,14 +37,15 @@ typedef struct sc_query_state {
     sc_stats stats;
 } sc_query_state;
 
-/* Asks the caller's flag; and the budget. Sets stop and incomplete, and returns stop. */
+/* Asks the caller's flag and that of other workers; and the budget. Sets stop and incomplete, and
+   returns stop. */
 int sc_state_ask_flag(sc_query_state *state);
 int sc_state_ask_budget(sc_query_state *state);
 
 /* Whether to stop. To be asked at least every 100 us or so. */
 static inline int sc_state_cancelled(sc_query_state *state)
 {
-    return state->stop || (state->options.cancel && sc_state_ask_flag(state));
+    return state->stop || ((state->options.cancel || state->share) && sc_state_ask_flag(state));
 }
 
 /* The same, and whether the budget is used up: only where it does not depend on the flag or on statistics

@@ -24,6 +24,26 @@ static uint32_t leaf_of(const sc_model *model, uint32_t patch)
     return sc_model_leaf(model)[patch];
 }
 
+void sc_traversal_update_boxes(sc_query_state *state)
+{
+    const sc_model *model = state->model;
+    uint32_t previous;
+    if (state->workspace->boxes_ready) return;
+    previous = sc_state_switch(state, SC_TASK_UPDATE_BOXES);
+    sc_refit_boxes(model, state->workspace);
+    state->stats.counts[SC_TASK_UPDATE_BOXES] += model->triangle_count + (uint64_t)model->patch_end;
+    sc_state_switch(state, previous);
+}
+
+void sc_traversal_update_normals(sc_query_state *state)
+{
+    sc_state_switch(state, SC_TASK_UPDATE_NORMALS);
+    sc_dnc_update(state->model, state->workspace);
+    SC_HOOKS_ASSERT(&state->workspace->hooks, sc_dnc_validate(state->model, state->workspace));
+    state->stats.counts[SC_TASK_UPDATE_NORMALS] += state->model->patch_end;
+    sc_state_switch(state, SC_TASK_ORIENTATION);
+}
+
 /* What a node that is not culled leaves to boxes and primitives: its BVTT children, and the triangles
    of leaf clusters. */
 static void query_rest_of_node(sc_query_state *state, uint32_t node)
@@ -34,13 +54,7 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
     const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
     uint32_t i, end = sc_model_node_boxes(model)[node + 1], previous;
     if (sc_state_stops(state)) return;
-    if (!state->workspace->boxes_ready) {
-        previous = sc_state_switch(state, SC_TASK_UPDATE_BOXES);
-        sc_refit_boxes(model, state->workspace);
-        state->stats.counts[SC_TASK_UPDATE_BOXES] +=
-            model->triangle_count + (uint64_t)model->patch_end;
-        sc_state_switch(state, previous);
-    }
+    sc_traversal_update_boxes(state);
     previous = sc_state_switch(state, sc_state_box_task(state));
     for (i = sc_model_node_boxes(model)[node]; i < end && !state->stop; i++) {
         const sc_pair *pair = &sc_model_boxes(model)[i];
@@ -59,19 +73,17 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
 }
 
 /* The paper's optimised tree of boxes: all nodes are taken as colliding. */
-static void query_all_nodes(sc_query_state *state)
+void sc_traversal_take_nodes(sc_query_state *state, uint32_t node, uint32_t end)
 {
-    uint32_t node;
-    for (node = 0; node < state->model->node_count && !state->stop; node++) {
+    for (; node < end && !state->stop; node++) {
         state->stats.nodes_visited++;
         query_rest_of_node(state, node);
     }
 }
 
-/* Whether the box and primitive tests to come follow a failed contour test. What was collected before
-   is decided first, if somebody reads the statistics; and with a budget, which is to end a query at the
-   same place whether they are read or not. */
-static void follow_contour(sc_query_state *state, int after_contour)
+/* What was collected before is decided first, if somebody reads the statistics; and with a budget, which is to
+   end a query at the same place whether they are read or not. */
+void sc_traversal_follow_contour(sc_query_state *state, int after_contour)
 {
     if (state->after_contour == after_contour) return;
     if (state->timed || state->options.budget) sc_candidates_decide(state);
@@ -93,7 +105,7 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
     }
     for (c = child[node]; c < child[node + 1] && !state->stop; c++)
         query_contour(state, c, projection);
-    follow_contour(state, 1);
+    sc_traversal_follow_contour(state, 1);
     query_rest_of_node(state, node);
 }
 
@@ -114,8 +126,7 @@ static void put_back(sc_query_state *state, uint32_t node)
     sc_fetch(sc_model_node_boxes(state->model) + node);
 }
 
-/* The orientation test. */
-static void orient(sc_query_state *state, uint32_t node)
+void sc_traversal_orient(sc_query_state *state, uint32_t node)
 {
     const sc_pair *patches = &sc_model_node_patches(state->model)[node];
     sc_workspace *w = state->workspace;
@@ -133,18 +144,27 @@ static void orient(sc_query_state *state, uint32_t node)
         w->walk.queue[w->walk.queue_count++] = node;
 }
 
+int sc_traversal_test(sc_query_state *state, uint32_t node)
+{
+    sc_workspace *w = state->workspace;
+    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
+    sc_projection projection;
+    sc_dnc_projection(w, (uint32_t)w->mask[patches->a] & w->mask[patches->b], &projection);
+    if (!sc_simple_test(state, &projection, node)) return 0;
+    state->stats.nodes_culled++;
+    return 1;
+}
+
 /* How many tests pass between two steps of fetching what a test reads. */
 enum { FETCH_DISTANCE = 2 };
 
 /* The contour tests of all nodes in the queue. */
 static void test_queue(sc_query_state *state)
 {
-    sc_workspace *w = state->workspace;
-    sc_walk *walk = &w->walk;
+    sc_walk *walk = &state->workspace->walk;
     int i, count = (int)walk->queue_count, step;
     for (i = -FETCH_DISTANCE * SC_SIMPLE_FETCHES; i < count && !sc_state_stops(state); i++) {
         const sc_pair *patches;
-        sc_projection projection;
         uint32_t node;
         for (step = 0; step < SC_SIMPLE_FETCHES; step++) {
             int ahead = i + FETCH_DISTANCE * (SC_SIMPLE_FETCHES - step);
@@ -154,19 +174,15 @@ static void test_queue(sc_query_state *state)
         if (i < 0) continue;
         node = walk->queue[i];
         patches = &sc_model_node_patches(state->model)[node];
-        sc_dnc_projection(w, (uint32_t)w->mask[patches->a] & w->mask[patches->b], &projection);
-        if (sc_simple_test(state, &projection, node)) {
-            state->stats.nodes_culled++;
-            walk->culled[patches->a] = walk->culled[patches->b] = 1;
-        } else {
+        if (sc_traversal_test(state, node))
+            walk->marks[patches->a] = walk->marks[patches->b] = 1;
+        else
             put_back(state, node);
-        }
     }
     walk->queue_count = 0;
 }
 
-/* The children of a node that failed a test. */
-static void look_below(sc_query_state *state, uint32_t node)
+void sc_traversal_open(sc_query_state *state, uint32_t node)
 {
     const uint32_t *child = sc_model_node_child(state->model);
     const sc_pair *patches = sc_model_node_patches(state->model);
@@ -178,15 +194,20 @@ static void look_below(sc_query_state *state, uint32_t node)
             state->stats.nodes_visited++;
             put_back(state, c);
         } else if (!is_self || w->walk.selfs_wait || !w->walk.culled[patches[c].a]) {
-            orient(state, c);
+            sc_traversal_orient(state, c);
         }
     }
-    follow_contour(state, (w->mask[patches[node].a] & w->mask[patches[node].b]) != 0);
+    sc_traversal_follow_contour(state, (w->mask[patches[node].a] & w->mask[patches[node].b]) != 0);
+}
+
+/* Goes on below a node that failed a test. */
+static void look_below(sc_query_state *state, uint32_t node)
+{
+    sc_traversal_open(state, node);
     query_rest_of_node(state, node);
 }
 
-/* Goes on until neither queue nor stack has anything left. */
-static void walk_on(sc_query_state *state)
+void sc_traversal_walk(sc_query_state *state)
 {
     sc_walk *walk = &state->workspace->walk;
     while ((walk->queue_count || walk->stack_count) && !state->stop) {
@@ -204,15 +225,15 @@ static void query_exact(sc_query_state *state)
     memset(walk->culled, 0, state->model->patch_end);
     walk->stack_count = walk->queue_count = walk->self_count = 0;
     walk->selfs_wait = 1;
-    orient(state, 0);
-    walk_on(state);
+    sc_traversal_orient(state, 0);
+    sc_traversal_walk(state);
     walk->selfs_wait = 0;
     for (i = 0; i < walk->self_count && !state->stop; i++) {
         if (walk->culled[patches[walk->self[i]].a]) continue;
         walk->queue[walk->queue_count++] = walk->self[i];
-        if (walk->queue_count == SC_WALK_QUEUE) walk_on(state);
+        if (walk->queue_count == SC_WALK_QUEUE) sc_traversal_walk(state);
     }
-    walk_on(state);
+    sc_traversal_walk(state);
 }
 
 /* The paper's QueryOrientation. */
@@ -241,30 +262,23 @@ static void query_orientation(sc_query_state *state, uint32_t node)
     }
     state->stats.nodes_visited++;
     for (c = child[node]; c < child[node + 1] && !state->stop; c++) query_orientation(state, c);
-    follow_contour(state, 0);
+    sc_traversal_follow_contour(state, 0);
     query_rest_of_node(state, node);
 }
 
 void sc_traversal_run(sc_query_state *state)
 {
-    const sc_model *model = state->model;
     if (state->options.method == SC_METHOD_SCTT) {
-        sc_state_switch(state, SC_TASK_UPDATE_NORMALS);
-        sc_dnc_update(model, state->workspace);
-        SC_HOOKS_ASSERT(&state->workspace->hooks, sc_dnc_validate(model, state->workspace));
-        state->stats.counts[SC_TASK_UPDATE_NORMALS] += model->patch_end;
-        sc_state_switch(state, SC_TASK_ORIENTATION);
+        sc_traversal_update_normals(state);
         if (state->options.contour == SC_CONTOUR_EXACT)
             query_exact(state);
         else
             query_orientation(state, 0);
     } else if (state->options.method == SC_METHOD_AABB_SCTT) {
         sc_state_switch(state, SC_TASK_BOXES_ORIENTATION);
-        query_all_nodes(state);
+        sc_traversal_take_nodes(state, 0, state->model->node_count);
     } else {
-        sc_refit_boxes(model, state->workspace);
-        state->stats.counts[SC_TASK_UPDATE_BOXES] +=
-            model->triangle_count + (uint64_t)model->patch_end;
+        sc_traversal_update_boxes(state);
         sc_state_switch(state, SC_TASK_BOXES_ORIENTATION);
         sc_query_kernels_of(state->workspace)->patch_itself(state, 0);
     }

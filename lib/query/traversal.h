@@ -11,4 +11,31 @@
 /* Runs the method of state->options on the pose in the workspace. */
 void sc_traversal_run(sc_query_state *state);
 
+/*
+ * The steps that this is made of, for several workers to share (query/parallel.c). Each worker walks by
+ * itself, on the sc_walk of its workspace.
+ */
+
+/* Normal cones; and boxes, unless they are ready. */
+void sc_traversal_update_normals(sc_query_state *state);
+void sc_traversal_update_boxes(sc_query_state *state);
+
+/* Box and primitive tests to come follow a failed contour test, or do not. */
+void sc_traversal_follow_contour(sc_query_state *state, int after_contour);
+
+/* Boxes and triangles of nodes first to end - 1, all of which are taken as colliding. */
+void sc_traversal_take_nodes(sc_query_state *state, uint32_t first, uint32_t end);
+
+/* The orientation test: the node is put on the stack or waits in one of the walk's queues. */
+void sc_traversal_orient(sc_query_state *state, uint32_t node);
+
+/* The contour test of a node that passed it. */
+int sc_traversal_test(sc_query_state *state, uint32_t node);
+
+/* Orientation tests of the children of a node that failed a test; its boxes are left. */
+void sc_traversal_open(sc_query_state *state, uint32_t node);
+
+/* Goes on until neither queue nor stack has anything left. */
+void sc_traversal_walk(sc_query_state *state);
+
 #endif

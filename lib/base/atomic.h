@@ -1,0 +1,53 @@
+/*
+ * The few things that several threads do to one variable.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * C99 has no atomic operations, but gcc and clang have, for every machine and without a library for
+ * what is no longer than a pointer. SC_ATOMIC is 0 with other compilers: a flag can be read there, as aligned words
+ * are read and written as a whole on all machines there are, and nothing that takes more is done by
+ * several threads. Nothing else is to be ordered by these operations.
+ */
+#ifndef SC_BASE_ATOMIC_H
+#define SC_BASE_ATOMIC_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__) || defined(__clang__)
+#  define SC_ATOMIC 1
+#else
+#  define SC_ATOMIC 0
+#endif
+
+static inline uint32_t sc_atomic_read(const volatile uint32_t *flag)
+{
+#if SC_ATOMIC
+    return __atomic_load_n(flag, __ATOMIC_RELAXED);
+#else
+    return *flag;
+#endif
+}
+
+static inline void sc_atomic_write(volatile uint32_t *flag, uint32_t value)
+{
+#if SC_ATOMIC
+    __atomic_store_n(flag, value, __ATOMIC_RELAXED);
+#else
+    *flag = value;
+#endif
+}
+
+/* Adds to a number and returns what it was before. */
+static inline size_t sc_atomic_add(size_t *number, size_t more)
+{
+#if SC_ATOMIC
+    return __atomic_fetch_add(number, more, __ATOMIC_RELAXED);
+#else
+    size_t before = *number;
+    *number += more;
+    return before;
+#endif
+}
+
+#endif

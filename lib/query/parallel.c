@@ -1,0 +1,559 @@
+/*
+ * One query by several of the host's threads. See parallel.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * The large nodes at the top of the test tree are opened one after the other by the calling thread; their
+ * contour tests are a job, again and again, since what fails leads to further large nodes. What hangs below is
+ * a list of parts, each of which a worker walks through by itself, with a state, a stack and scratch of its own. The
+ * list depends on the model and the pose only. As with one thread, nodes of one patch wait until
+ * all others are done: which patches were culled by then is the union of what workers wrote down.
+ *
+ * No locks: a worker writes to what is its own, and to parts of the caller's array that it claims by an atomic
+ * addition, for many pairs at a time. What is left in the end goes behind them.
+ */
+#include "query/parallel.h"
+
+#include <string.h>
+
+#include "base/atomic.h"
+#include "base/sort.h"
+#include "query/filter.h"
+#include "query/pairs.h"
+#include "query/query_kernels.h"
+#include "query/traversal.h"
+
+typedef char state_fits[sizeof(sc_query_state) <= SC_STATE_ROOM ? 1 : -1];
+
+/* Models with fewer leaf clusters are not worth a job. */
+enum { LEAVES_MIN = 128 };
+
+/* Patches with more than one of so many leaf clusters are large. */
+enum { LARGE_PART = 64 };
+
+/* Fewer contour tests are not worth a job. */
+enum { TESTS_MIN = 8 };
+
+/* How many parts of the list, and how many waiting nodes, a worker takes at once. */
+enum { PARTS_AT_ONCE = 4, NODES_AT_ONCE = 16 };
+
+/* A list of pairs is sorted in so many runs, unless they would be shorter than that. */
+enum { RUNS_MAX = 32, RUN_MIN = 2000 };
+
+enum {
+    PART_BELOW, /* a: a node that failed a test */
+    PART_TEST,  /* a: a node that passed the orientation test */
+    PART_PAIR,  /* a, b: patches of a level whose boxes overlap */
+    PART_PAIR_AFTER_CONTOUR,
+    PART_PATCH, /* a: a patch against itself, by boxes */
+    PART_NODES  /* a to b - 1: nodes, all of which are taken as colliding */
+};
+
+/* A query that is shared out. */
+typedef struct plan {
+    sc_query_state *state; /* of the calling thread, and the sums in the end */
+    sc_workspace *w;
+    const sc_tasks *tasks;
+    sc_share share;
+    sc_filter filter;                            /* the caller's without its function */
+    uint32_t part_count, test_count, open_count; /* of those in w->parts, tests and open */
+} plan;
+
+int sc_parallel_pays(const sc_query_state *state)
+{
+    const sc_query_options *o = &state->options;
+    if (!SC_ATOMIC || !o->tasks || o->tasks->workers < 2 || o->budget) return 0;
+    if (state->model->leaf_count < LEAVES_MIN) return 0;
+    if (o->method == SC_METHOD_SCTT && o->contour != SC_CONTOUR_EXACT) return 0;
+    /* the caller's function is asked of all pairs afterwards */
+    return !(state->filter && state->filter->accept) ||
+           (o->output == SC_OUTPUT_PAIRS && state->capacity);
+}
+
+static sc_query_state *state_of(const plan *p, uint32_t worker)
+{
+    return (sc_query_state *)(void *)sc_workspace_of_worker(p->w, worker)->state;
+}
+
+/* ---- jobs ---- */
+
+static void start_workers(plan *p)
+{
+    const sc_model *model = p->state->model;
+    uint32_t worker;
+    sc_workspace_share(model, p->w, p->tasks->workers);
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        sc_query_state *s = state_of(p, worker);
+        sc_walk *walk;
+        *s = *p->state;
+        s->workspace = sc_workspace_of_worker(p->w, worker);
+        if (s->filter) s->filter = &p->filter;
+        memset(&s->stats, 0, sizeof s->stats);
+        walk = &s->workspace->walk;
+        walk->culled = p->w->culled;
+        memset(walk->marks, 0, model->patch_end);
+        walk->stack_count = walk->queue_count = walk->self_count = 0;
+        walk->selfs_wait = 1;
+    }
+    memset(p->w->culled, 0, model->patch_end);
+}
+
+/* A worker begins and ends a part; its clock stands still between parts. */
+static sc_query_state *begin_part(const plan *p, uint32_t worker)
+{
+    sc_query_state *s = state_of(p, worker);
+    s->task = p->state->task;
+    if (s->timed) s->last_time = sc_clock_nanoseconds();
+    return s;
+}
+
+static void end_part(sc_query_state *s)
+{
+    sc_candidates_decide(s);
+    if (s->timed) s->stats.nanoseconds[s->task] += sc_clock_nanoseconds() - s->last_time;
+}
+
+/* Runs a job. The calling thread's clock stands still: what workers do is in their own statistics. */
+static void run_job(plan *p, void (*run)(void *context, uint32_t part, uint32_t worker),
+                    uint32_t count)
+{
+    sc_query_state *state = p->state;
+    if (!count) return;
+    if (state->timed)
+        state->stats.nanoseconds[state->task] += sc_clock_nanoseconds() - state->last_time;
+    if (count == 1)
+        run(p, 0, 0);
+    else
+        p->tasks->finish(p->tasks->user, p->tasks->enqueue(p->tasks->user, run, p, count));
+    if (state->timed) state->last_time = sc_clock_nanoseconds();
+}
+
+static uint32_t divide_up(uint32_t count, uint32_t by)
+{
+    return count / by + (count % by != 0);
+}
+
+/* Does a part; nodes wait in the worker's walk. */
+static void run_part(sc_query_state *s, const sc_part *part)
+{
+    sc_walk *walk = &s->workspace->walk;
+    switch (part->kind) {
+    case PART_BELOW:
+        walk->stack[walk->stack_count++] = part->a;
+        break;
+    case PART_TEST:
+        walk->queue[walk->queue_count++] = part->a;
+        break;
+    case PART_NODES:
+        sc_traversal_take_nodes(s, part->a, part->b);
+        break;
+    case PART_PATCH:
+        sc_query_kernels_of(s->workspace)->patch_itself(s, part->a);
+        break;
+    default:
+        sc_traversal_follow_contour(s, part->kind == PART_PAIR_AFTER_CONTOUR);
+        sc_query_kernels_of(s->workspace)->patch_pair(s, part->a, part->b);
+    }
+}
+
+static void run_parts(void *context, uint32_t part, uint32_t worker)
+{
+    const plan *p = (const plan *)context;
+    sc_query_state *s = begin_part(p, worker);
+    uint32_t i = part * PARTS_AT_ONCE, end = i + PARTS_AT_ONCE;
+    for (; i < end && i < p->part_count && !sc_state_stops(s); i++) run_part(s, &p->w->parts[i]);
+    sc_traversal_walk(s);
+    end_part(s);
+}
+
+/* Empties the list of parts. */
+static void do_parts(plan *p)
+{
+    run_job(p, run_parts, divide_up(p->part_count, PARTS_AT_ONCE));
+    p->part_count = 0;
+}
+
+static void add_part(plan *p, uint32_t kind, uint32_t a, uint32_t b)
+{
+    sc_part *part;
+    if (p->part_count == SC_PARTS_MAX) do_parts(p);
+    part = &p->w->parts[p->part_count++];
+    part->kind = kind;
+    part->a = a;
+    part->b = b;
+}
+
+/* ---- boxes ---- */
+
+/* Boxes must be there before workers need them. */
+static void update_boxes(plan *p)
+{
+    uint32_t worker;
+    sc_traversal_update_boxes(p->state);
+    for (worker = 1; worker < p->tasks->workers; worker++)
+        sc_workspace_of_worker(p->w, worker)->boxes_ready = 1;
+}
+
+static int is_large(const sc_model *model, uint32_t patch)
+{
+    const uint32_t *leaf = sc_model_leaf(model);
+    return leaf[patch + 1] - leaf[patch] > model->leaf_count / LARGE_PART;
+}
+
+/* Two patches of a level whose boxes overlap: those of them that are large as by sc_query_kernels.patch_pair. */
+static void add_patches(plan *p, uint32_t a, uint32_t b)
+{
+    sc_query_state *state = p->state;
+    const sc_model *model = state->model;
+    const sc_boxes *boxes = &p->w->patch_boxes;
+    const uint32_t *hop = sc_model_hop(model);
+    uint32_t c, d, task = sc_state_box_task(state);
+    if (!is_large(model, a) && !is_large(model, b)) {
+        add_part(p, state->after_contour ? PART_PAIR_AFTER_CONTOUR : PART_PAIR, a, b);
+        return;
+    }
+    state->stats.counts[task]++;
+    for (c = hop[a]; c < hop[a + 1]; c++) {
+        if (!sc_boxes_overlap(boxes, b, boxes, c)) continue;
+        state->stats.counts[task]++;
+        for (d = hop[b]; d < hop[b + 1]; d++)
+            if (sc_boxes_overlap(boxes, c, boxes, d)) add_patches(p, c, d);
+    }
+}
+
+/* The same for sc_query_kernels.patch_itself. */
+static void add_patch(plan *p, uint32_t a)
+{
+    sc_query_state *state = p->state;
+    const sc_boxes *boxes = &p->w->patch_boxes;
+    const uint32_t *hop = sc_model_hop(state->model);
+    uint32_t c, d;
+    if (!is_large(state->model, a)) {
+        add_part(p, PART_PATCH, a, 0);
+        return;
+    }
+    for (c = hop[a]; c < hop[a + 1]; c++) {
+        state->stats.counts[SC_TASK_BOXES_ORIENTATION]++;
+        add_patch(p, c);
+        for (d = c + 1; d < hop[a + 1]; d++)
+            if (sc_boxes_overlap(boxes, c, boxes, d)) add_patches(p, c, d);
+    }
+}
+
+static int is_large_node(const sc_model *model, uint32_t node)
+{
+    const sc_pair *patches = &sc_model_node_patches(model)[node];
+    return is_large(model, patches->a) || is_large(model, patches->b);
+}
+
+/* The BVTT children of a large node, which has no leaf clusters of its own. */
+static void add_boxes_of_node(plan *p, uint32_t node)
+{
+    sc_query_state *state = p->state;
+    const sc_boxes *boxes = &p->w->patch_boxes;
+    uint32_t i, end = sc_model_node_boxes(state->model)[node + 1], previous;
+    previous = sc_state_switch(state, sc_state_box_task(state));
+    for (i = sc_model_node_boxes(state->model)[node]; i < end; i++) {
+        const sc_pair *pair = &sc_model_boxes(state->model)[i];
+        state->stats.counts[sc_state_box_task(state)]++;
+        if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b)) add_patches(p, pair->a, pair->b);
+    }
+    sc_state_switch(state, previous);
+}
+
+/* ---- the walk with the exact contour test ---- */
+
+/* What waits in the walk of the calling thread: what is large is opened or tested next, the rest are parts. There is
+   room for the parts, as a job of parts would go on with that walk. */
+static void sort_out(plan *p)
+{
+    const sc_model *model = p->state->model;
+    sc_walk *walk = &p->w->walk;
+    uint32_t i;
+    for (i = 0; i < walk->stack_count; i++) {
+        if (is_large_node(model, walk->stack[i]) && p->open_count < SC_PARTS_MAX)
+            p->w->open[p->open_count++] = walk->stack[i];
+        else
+            add_part(p, PART_BELOW, walk->stack[i], 0);
+    }
+    for (i = 0; i < walk->queue_count; i++) {
+        if (is_large_node(model, walk->queue[i]) && p->test_count < SC_PARTS_MAX)
+            p->w->tests[p->test_count++] = walk->queue[i];
+        else
+            add_part(p, PART_TEST, walk->queue[i], 0);
+    }
+    walk->stack_count = walk->queue_count = 0;
+}
+
+/* Opens large nodes that failed, and those that fail below them. */
+static void open_nodes(plan *p)
+{
+    while (p->open_count && !sc_state_stops(p->state)) {
+        uint32_t node = p->w->open[--p->open_count];
+        update_boxes(p);
+        if (p->part_count > SC_PARTS_MAX - 2 * SC_WALK_CHILDREN) do_parts(p);
+        sc_traversal_open(p->state, node);
+        sort_out(p);
+        add_boxes_of_node(p, node);
+    }
+}
+
+/* Lists the large nodes of one patch that wait, and drops all that are culled by now. */
+static void list_selfs(plan *p)
+{
+    const sc_pair *patches = sc_model_node_patches(p->state->model);
+    sc_walk *walk = &p->w->walk;
+    uint32_t i, kept = 0;
+    for (i = 0; i < walk->self_count; i++) {
+        uint32_t node = walk->self[i];
+        if (p->w->culled[patches[node].a]) continue;
+        if (is_large_node(p->state->model, node) && p->test_count < SC_PARTS_MAX)
+            p->w->tests[p->test_count++] = node;
+        else
+            walk->self[kept++] = node;
+    }
+    walk->self_count = kept;
+}
+
+static int passes(sc_query_state *s, uint32_t node)
+{
+    return !sc_state_stops(s) && sc_traversal_test(s, node);
+}
+
+static void run_tests(void *context, uint32_t part, uint32_t worker)
+{
+    const plan *p = (const plan *)context;
+    sc_query_state *s = begin_part(p, worker);
+    p->w->passed[part] = (uint8_t)passes(s, p->w->tests[part]);
+    end_part(s);
+}
+
+/* The contour tests of all listed nodes. */
+static void do_tests(plan *p)
+{
+    const sc_pair *patches = sc_model_node_patches(p->state->model);
+    uint32_t i;
+    if (p->test_count < TESTS_MIN)
+        for (i = 0; i < p->test_count; i++)
+            p->w->passed[i] = (uint8_t)passes(p->state, p->w->tests[i]);
+    else
+        run_job(p, run_tests, p->test_count);
+    for (i = 0; i < p->test_count; i++) {
+        uint32_t node = p->w->tests[i];
+        if (p->w->passed[i])
+            p->w->culled[patches[node].a] = p->w->culled[patches[node].b] = 1;
+        else if (p->open_count < SC_PARTS_MAX)
+            p->w->open[p->open_count++] = node;
+    }
+    p->test_count = 0;
+}
+
+/* Brings together what the workers wrote down of patches that are culled. */
+static void join_marks(plan *p)
+{
+    uint32_t worker, i, end = p->state->model->patch_end;
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        const uint8_t *marks = sc_workspace_of_worker(p->w, worker)->walk.marks;
+        for (i = 0; i < end; i++) p->w->culled[i] |= marks[i];
+    }
+}
+
+/* Nodes of one patch that wait: a part is some of those that wait with one worker. */
+static void run_selfs(void *context, uint32_t part, uint32_t worker)
+{
+    const plan *p = (const plan *)context;
+    const sc_pair *patches = sc_model_node_patches(p->state->model);
+    sc_query_state *s = begin_part(p, worker);
+    sc_walk *walk = &s->workspace->walk;
+    const sc_walk *from = &p->w->walk;
+    uint32_t i, end, k = 0;
+    while (part >= divide_up(from->self_count, NODES_AT_ONCE)) {
+        part -= divide_up(from->self_count, NODES_AT_ONCE);
+        from = &sc_workspace_of_worker(p->w, ++k)->walk;
+    }
+    i = part * NODES_AT_ONCE;
+    end = from->self_count - i < NODES_AT_ONCE ? from->self_count : i + NODES_AT_ONCE;
+    walk->selfs_wait = 0;
+    for (; i < end; i++)
+        if (!walk->culled[patches[from->self[i]].a])
+            walk->queue[walk->queue_count++] = from->self[i];
+    sc_traversal_walk(s);
+    end_part(s);
+}
+
+static void walk_exact(plan *p)
+{
+    uint32_t worker, count = 0;
+    sc_traversal_orient(p->state, 0);
+    sort_out(p);
+    for (;;) {
+        open_nodes(p);
+        if (!p->test_count) list_selfs(p);
+        if (!p->test_count || sc_state_stops(p->state)) break;
+        do_tests(p);
+    }
+    do_parts(p);
+    join_marks(p);
+    for (worker = 0; worker < p->tasks->workers; worker++)
+        count += divide_up(sc_workspace_of_worker(p->w, worker)->walk.self_count, NODES_AT_ONCE);
+    if (!sc_state_stops(p->state)) run_job(p, run_selfs, count);
+}
+
+/* ---- the other methods ---- */
+
+static void walk_nodes(plan *p)
+{
+    const sc_model *model = p->state->model;
+    uint32_t node = 0, step;
+    sc_state_switch(p->state, SC_TASK_BOXES_ORIENTATION);
+    update_boxes(p);
+    for (; node < model->node_count && is_large_node(model, node); node++) {
+        p->state->stats.nodes_visited++;
+        add_boxes_of_node(p, node);
+    }
+    step = divide_up(model->node_count - node, SC_PARTS_MAX / 4);
+    for (; node < model->node_count; node += step)
+        add_part(p, PART_NODES, node,
+                 model->node_count - node < step ? model->node_count : node + step);
+    do_parts(p);
+}
+
+static void walk_boxes(plan *p)
+{
+    update_boxes(p);
+    sc_state_switch(p->state, SC_TASK_BOXES_ORIENTATION);
+    add_patch(p, 0);
+    do_parts(p);
+}
+
+/* ---- pairs ---- */
+
+/* Runs of a list of pairs, each of which is sorted by itself: all of one are before all of the next. */
+typedef struct runs {
+    sc_pair *pairs;
+    uint64_t first[RUNS_MAX + 1]; /* of each run, and the end */
+    uint64_t middle[RUNS_MAX];    /* where it is split */
+} runs;
+
+static void run_split(void *context, uint32_t part, uint32_t worker)
+{
+    runs *r = (runs *)context;
+    uint64_t first = r->first[part];
+    (void)worker;
+    r->middle[part] = first + sc_sort_split(r->pairs + first, r->first[part + 1] - first);
+}
+
+static void run_sort(void *context, uint32_t part, uint32_t worker)
+{
+    runs *r = (runs *)context;
+    (void)worker;
+    sc_sort_pairs(r->pairs + r->first[part], r->first[part + 1] - r->first[part]);
+}
+
+/* Sorts the caller's array: by halves of halves, so that only the first split is done by one worker. */
+static void sort_pairs(const plan *p)
+{
+    const sc_tasks *t = p->tasks;
+    sc_query_state *state = p->state;
+    runs r;
+    uint32_t count, i;
+    if (state->options.output != SC_OUTPUT_PAIRS || !state->capacity) return;
+    r.pairs = state->pairs;
+    r.first[0] = 0;
+    r.first[1] = state->count;
+    for (count = 1; count < RUNS_MAX && state->count / count >= RUN_MIN; count *= 2) {
+        if (count == 1)
+            run_split(&r, 0, 0);
+        else
+            t->finish(t->user, t->enqueue(t->user, run_split, &r, count));
+        for (i = count; i > 0; i--) {
+            r.first[2 * i] = r.first[i];
+            r.first[2 * i - 1] = r.middle[i - 1];
+        }
+    }
+    if (count == 1)
+        run_sort(&r, 0, 0);
+    else
+        t->finish(t->user, t->enqueue(t->user, run_sort, &r, count));
+}
+
+/* ---- all together ---- */
+
+/* Adds up what the workers counted, and puts the last of their pairs into the caller's array. Returns 0 if that
+   is too short. */
+static int gather(plan *p)
+{
+    sc_query_state *state = p->state;
+    uint64_t at = p->share.claimed;
+    uint32_t worker, i;
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        const sc_query_state *s = state_of(p, worker);
+        sc_workspace *w = s->workspace;
+        for (i = 0; i < SC_TASK_COUNT; i++) {
+            state->stats.counts[i] += s->stats.counts[i];
+            state->stats.nanoseconds[i] += s->stats.nanoseconds[i];
+        }
+        state->stats.nodes_visited += s->stats.nodes_visited;
+        state->stats.nodes_oriented += s->stats.nodes_oriented;
+        state->stats.nodes_culled += s->stats.nodes_culled;
+        state->stats.leaf_pairs += s->stats.leaf_pairs;
+        state->stats.exact_fallbacks += s->stats.exact_fallbacks;
+        state->incomplete |= s->incomplete;
+        state->count += s->count;
+        if (w->found_count && at <= state->capacity && w->found_count <= state->capacity - at)
+            memcpy(state->pairs + at, w->found, sizeof(sc_pair) * w->found_count);
+        at += w->found_count;
+        w->found_count = 0;
+    }
+    return at <= state->capacity;
+}
+
+/* Pairs of the sorted list that the caller's function wants. */
+static void ask_function(sc_query_state *state)
+{
+    const sc_filter *f = state->filter;
+    uint64_t i, kept = 0;
+    for (i = 0; i < state->count; i++)
+        if (f->accept(f->accept_user, state->pairs[i].a, state->pairs[i].b))
+            state->pairs[kept++] = state->pairs[i];
+    state->count = kept;
+}
+
+void sc_parallel_run(sc_query_state *state)
+{
+    sc_query_state before = *state;
+    sc_walk walk = state->workspace->walk;
+    plan p;
+    int fits;
+    memset(&p, 0, sizeof p);
+    p.state = state;
+    p.w = state->workspace;
+    p.tasks = state->options.tasks;
+    state->share = &p.share;
+    if (state->filter) {
+        p.filter = *state->filter;
+        p.filter.accept = NULL;
+    }
+    start_workers(&p);
+    if (state->options.method == SC_METHOD_SCTT) {
+        sc_traversal_update_normals(state);
+        walk_exact(&p);
+    } else if (state->options.method == SC_METHOD_AABB_SCTT) {
+        walk_nodes(&p);
+    } else {
+        walk_boxes(&p);
+    }
+    fits = gather(&p);
+    state->share = NULL;
+    state->workspace->walk = walk;
+    if (!fits) {
+        *state = before;
+        state->workspace->boxes_ready = 0;
+        if (state->timed) state->last_time = sc_clock_nanoseconds();
+        sc_traversal_run(state);
+        sc_pairs_finish(state);
+        return;
+    }
+    sort_pairs(&p);
+    if (state->filter && state->filter->accept) ask_function(state);
+}

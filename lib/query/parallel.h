@@ -1,0 +1,27 @@
+/*
+ * One query by several of the host's threads.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * The answer is that of one thread, bit for bit. What was counted does not depend on the number of workers or
+ * on who did what.
+ */
+#ifndef SC_QUERY_PARALLEL_H
+#define SC_QUERY_PARALLEL_H
+
+#include "query/state.h"
+
+/*
+ * Whether a query is to be shared out: there are tasks for two workers or more, and it is not one of those that one
+ * thread does: on small models, with the star test or no contour test, with a budget, or without a list of
+ * pairs of which the caller's function can be asked.
+ */
+int sc_parallel_pays(const sc_query_state *state);
+
+/*
+ * Does what sc_traversal_run and sc_pairs_finish do, for a query that pays. Where the caller's array turns out to
+ * be too short, one thread asks again.
+ */
+void sc_parallel_run(sc_query_state *state);
+
+#endif
