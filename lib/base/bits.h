@@ -40,4 +40,16 @@ static inline unsigned sc_bits_lowest64(uint64_t mask)
     return low ? sc_bits_lowest(low) : 32 + sc_bits_lowest((unsigned)(mask >> 32));
 }
 
+/* How many bits of a mask are set. */
+static inline unsigned sc_bits_count(unsigned mask)
+{
+#if defined(__GNUC__)
+    return (unsigned)__builtin_popcount(mask);
+#else
+    unsigned count = 0;
+    for (; mask; mask &= mask - 1) count++;
+    return count;
+#endif
+}
+
 #endif

@@ -19,6 +19,15 @@
 #  define SC_ISA_X86 0
 #endif
 
+/* Before a loop of a few rounds, over axes or corners, of which the compiler is to make straight code. */
+#if defined(__clang__)
+#  define SC_UNROLL _Pragma("unroll")
+#elif defined(__GNUC__)
+#  define SC_UNROLL _Pragma("GCC unroll 8")
+#else
+#  define SC_UNROLL
+#endif
+
 /* As SC_SIMD_... in starcontour.h, best last. */
 typedef enum sc_isa { SC_ISA_BASE = 1, SC_ISA_AVX2 = 2, SC_ISA_AVX512 = 3 } sc_isa;
 

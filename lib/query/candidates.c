@@ -102,10 +102,13 @@ static int repeats_point(const uint32_t *t)
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/* A triangle and some of a leaf cluster that share vertices with it: those that share one are collected. */
-static void take_neighbors(sc_query_state *state, uint32_t a, uint32_t first_b, unsigned mask)
+void sc_candidates_take_neighbors(sc_query_state *state, const sc_leaf_pair *p, uint32_t i,
+                                  unsigned mask)
 {
-    const uint32_t *triangle = sc_model_triangle(state->model), *t = triangle + 3 * (uint64_t)a;
+    const uint32_t *triangle = sc_model_triangle(state->model);
+    const uint32_t *first = sc_model_leaf_first(state->model);
+    uint32_t a = first[p->a] + i;
+    const uint32_t *t = triangle + 3 * (uint64_t)a;
     sc_workspace *w = state->workspace;
     uint32_t previous = sc_state_switch(state, sc_state_primitive_task(state));
     for (; mask && !state->stop; mask &= mask - 1) {
@@ -113,7 +116,7 @@ static void take_neighbors(sc_query_state *state, uint32_t a, uint32_t first_b, 
         const uint32_t *u;
         int shared;
         pair.a = a;
-        pair.b = first_b + sc_bits_lowest(mask);
+        pair.b = first[p->b] + sc_bits_lowest(mask);
         u = triangle + 3 * (uint64_t)pair.b;
         shared = neighbors_matter(state, t, u);
         if (shared == 1 && !repeats_point(t) && !repeats_point(u)) {
@@ -234,20 +237,13 @@ void sc_candidates_decide(sc_query_state *state)
     sc_state_switch(state, previous);
 }
 
-/* Collected pairs are decided when there are this many: fewer if the first hit ends the query. */
-static uint32_t batch_size(const sc_query_state *state)
+void sc_candidates_make_room(sc_query_state *state)
 {
-    return state->options.output == SC_OUTPUT_ANY ? 64 : SC_CANDIDATES_MAX - SC_LEAF_MAX;
-}
-
-static void collect_row(sc_workspace *w, uint32_t a, uint32_t first_b, unsigned mask)
-{
-    while (mask) {
-        sc_pair *candidate = &w->candidates[w->candidate_count++];
-        candidate->a = a;
-        candidate->b = first_b + sc_bits_lowest(mask);
-        mask &= mask - 1;
-    }
+    /* fewer if the first hit ends the query */
+    uint32_t most =
+        state->options.output == SC_OUTPUT_ANY ? 64 : SC_CANDIDATES_MAX - SC_LEAF_MAX * SC_LEAF_MAX;
+    if (state->workspace->candidate_count >= most || state->workspace->neighbor_count >= most)
+        sc_candidates_decide(state);
 }
 
 /* Whether two triangles share a vertex, without branches. */
@@ -289,22 +285,12 @@ void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, sc_leaf_
     else
         for (i = first[a]; i < first[a + 1] && leaf[i] <= b; i++)
             if (leaf[i] == b) p->shared = sc_model_share_rows(model) + SC_LEAF_MAX * (uint64_t)i;
-    if (p->shared == nothing) return;
+    p->shares = p->shared != nothing;
+    if (!p->shares) return;
     if (state->drops_neighbors) {
         p->plain_a = (1u << SC_LEAF_MAX) - 1u; /* as good as plain */
         return;
     }
     p->plain_a = sc_fan_plain_of_leaf(model, state->workspace, a);
     p->plain_b = sc_fan_plain_of_leaf(model, state->workspace, b);
-}
-
-void sc_candidates_take(sc_query_state *state, const sc_leaf_pair *p, uint32_t i, unsigned mask)
-{
-    const uint32_t *first = sc_model_leaf_first(state->model);
-    sc_workspace *w = state->workspace;
-    unsigned shared = mask & p->shared[i];
-    if (shared) take_neighbors(state, first[p->a] + i, first[p->b], shared);
-    if (mask & ~shared) collect_row(w, first[p->a] + i, first[p->b], mask & ~shared);
-    if (w->candidate_count >= batch_size(state) || w->neighbor_count >= batch_size(state))
-        sc_candidates_decide(state);
 }

@@ -14,6 +14,7 @@
 /* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
 typedef struct sc_leaf_pair {
     uint32_t a, b;
+    int shares; /* any do */
     const uint16_t *shared; /* SC_LEAF_MAX rows: triangles of b that share points with one of a */
     unsigned plain_a, plain_b;   /* triangles whose corners all have plain fans, see pose/fan.h */
     uint16_t found[SC_LEAF_MAX]; /* room for shared */
@@ -23,9 +24,18 @@ typedef struct sc_leaf_pair {
 void sc_candidates_enter(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b,
                          sc_leaf_pair *pair);
 
-/* Takes pairs of triangle i of cluster a and some of cluster b whose boxes overlap: decides those that share
-   points and collects the others. */
-void sc_candidates_take(sc_query_state *state, const sc_leaf_pair *pair, uint32_t i, unsigned some);
+/* Takes pairs of triangle i of cluster a and some of cluster b that share points and whose boxes overlap: decides or
+   collects them. */
+void sc_candidates_take_neighbors(sc_query_state *state, const sc_leaf_pair *pair, uint32_t i,
+                                  unsigned some);
+
+/* Collects a pair that shares nothing, by the places of its triangles. */
+static inline void sc_candidates_add(sc_query_state *state, uint32_t a, uint32_t b)
+{
+    sc_pair *pair = &state->workspace->candidates[state->workspace->candidate_count++];
+    pair->a = a;
+    pair->b = b;
+}
 
 /* Pairs are decided by so many at a time. */
 enum { SC_PAIR_LANES = 8 };
@@ -45,6 +55,9 @@ typedef struct sc_pair_lanes {
 typedef struct sc_verdict {
     unsigned meets[6], unsure[6];
 } sc_verdict;
+
+/* To be called after each pair of leaf clusters: decides what has been collected if there is no room for another. */
+void sc_candidates_make_room(sc_query_state *state);
 
 /* Decides what has been collected; to be called before the kind of task changes, and at the end. */
 void sc_candidates_decide(sc_query_state *state);

@@ -32,9 +32,12 @@ static inline void SC_KERNEL(read_corners)(const sc_pair_lanes *pairs, SC_KERNEL
 {
     doubles low[2][3], high[2][3];
     int s, k, c;
+    SC_UNROLL
     for (s = 0; s < 2; s++) {
+        SC_UNROLL
         for (k = 0; k < 3; k++)
             doubles_points(pairs->corner[s][k], &x->at[s][k][0], &x->at[s][k][1], &x->at[s][k][2]);
+        SC_UNROLL
         for (c = 0; c < 3; c++) {
             doubles p = x->at[s][0][c], q = x->at[s][1][c], r = x->at[s][2][c];
             low[s][c] = doubles_smaller(doubles_smaller(p, q), r);
@@ -47,6 +50,7 @@ static inline void SC_KERNEL(read_corners)(const sc_pair_lanes *pairs, SC_KERNEL
                                                doubles_subtract(high[s][1], low[s][1])),
                                    doubles_subtract(high[s][2], low[s][2]));
     }
+    SC_UNROLL
     for (c = 0; c < 3; c++) {
         doubles all = doubles_subtract(doubles_larger(high[0][c], high[1][c]),
                                        doubles_smaller(low[0][c], low[1][c]));
@@ -65,6 +69,7 @@ static inline doubles SC_KERNEL(bound)(const SC_KERNEL(corners) * x, doubles e, 
 static inline void SC_KERNEL(cross)(const doubles e[3], const doubles f[3], doubles n[3])
 {
     int c;
+    SC_UNROLL
     for (c = 0; c < 3; c++)
         n[c] = doubles_subtract(doubles_multiply(e[(c + 1) % 3], f[(c + 2) % 3]),
                                 doubles_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
@@ -96,10 +101,13 @@ static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(corners) * x)
     unsigned apart = 0;
     int s, k, i, c;
     SC_KERNEL(cross)(x->edge[0][0], x->edge[0][1], n);
+    SC_UNROLL
     for (c = 0; c < 3; c++) size[c] = doubles_absolute(n[c]);
     first = doubles_below(doubles_larger(size[1], size[2]), size[0]);
     second = doubles_below(size[2], size[1]);
-    for (s = 0; s < 2; s++)
+    SC_UNROLL
+    for (s = 0; s < 2; s++) {
+        SC_UNROLL
         for (k = 0; k < 3; k++) {
             const doubles *p = x->at[s][k], *e = x->edge[s][k];
             flat[s][k][0] = doubles_choose(first, p[1], p[0]);
@@ -107,6 +115,8 @@ static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(corners) * x)
             edge[s][k][0] = doubles_choose(first, e[1], e[0]);
             edge[s][k][1] = doubles_choose(first, e[2], doubles_choose(second, e[2], e[1]));
         }
+    }
+    SC_UNROLL
     for (s = 0; s < 2; s++) {
         doubles area = doubles_subtract(doubles_multiply(edge[s][0][0], edge[s][1][1]),
                                         doubles_multiply(edge[s][0][1], edge[s][1][0]));
@@ -115,8 +125,10 @@ static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(corners) * x)
                                     doubles_all(SC_PREDICATES_BOUND_TINY));
         unsigned left = doubles_bits(doubles_below(bound, area));
         unsigned right = doubles_bits(doubles_below(area, doubles_subtract(zero, bound)));
+        SC_UNROLL
         for (k = 0; k < 3; k++) {
             unsigned all_left = 255, all_right = 255;
+            SC_UNROLL
             for (i = 0; i < 3; i++) {
                 doubles p0 = doubles_subtract(flat[1 - s][i][0], flat[s][k][0]);
                 doubles p1 = doubles_subtract(flat[1 - s][i][1], flat[s][k][1]);
@@ -152,10 +164,12 @@ static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
     int s, k, i;
     memset(verdict, 0, sizeof *verdict);
     SC_KERNEL(read_corners)(pairs, &x);
+    SC_UNROLL
     for (s = 0; s < 2; s++) { /* corners of s against the plane of the other */
         doubles n[3], bound = SC_KERNEL(bound)(&x, x.extent[1 - s], x.extent[1 - s]);
         unsigned above = 255, below = 255;
         SC_KERNEL(cross)(x.edge[1 - s][0], x.edge[1 - s][1], n);
+        SC_UNROLL
         for (k = 0; k < 3; k++) {
             side[s][k] = SC_KERNEL(sign_along)(n, x.at[1 - s][0], x.at[s][k], bound);
             above &= side[s][k].above | pairs->shared[s][k];
@@ -166,13 +180,17 @@ static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
     if (apart == 255u) return;
     {
         doubles bound = SC_KERNEL(bound)(&x, x.extent[0], x.extent[1]);
-        for (k = 0; k < 3; k++)
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            SC_UNROLL
             for (i = 0; i < 3; i++) {
                 doubles n[3];
                 SC_KERNEL(cross)(x.edge[0][k], x.edge[1][i], n);
                 line[k][i] = SC_KERNEL(sign_along)(n, x.at[0][k], x.at[1][i], bound);
             }
+        }
     }
+    SC_UNROLL
     for (k = 0; k < 3; k++) {
         int next = (k + 1) % 3;
         SC_KERNEL(decide_edge)
@@ -184,6 +202,7 @@ static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
         unsure |= verdict->unsure[k] | verdict->unsure[3 + k];
     }
     if (unsure & ~apart) apart |= SC_KERNEL(are_beside)(&x);
+    SC_UNROLL
     for (k = 0; k < 6; k++) {
         verdict->meets[k] &= ~apart;
         verdict->unsure[k] &= ~apart;

@@ -18,6 +18,8 @@
 
 #  include "base/lanes.h"
 #  include "base/lanes_double.h"
+#  include "base/lanes_pick.h"
+#  include "query/leaf_kernel.h"
 #  include "query/walk_kernel.h"
 #  include "query/decide_kernel.h"
 #  include "query/simple_kernel.h"
@@ -27,6 +29,7 @@ const sc_query_kernels sc_query_kernels_avx2 = {SC_KERNEL(patch_pair),    SC_KER
                                                 SC_KERNEL(decide),        SC_KERNEL(project),
                                                 SC_KERNEL(are_edges_fine)};
 
+#  include "base/lanes_pick_end.h"
 #  include "base/lanes_double_end.h"
 #  include "base/lanes_end.h"
 #  include "base/avx2_end.h"

@@ -1,0 +1,126 @@
+/*
+ * Numbers of lanes: rows of sixteen floats in any order. For the instruction set that base/lanes.h, included before,
+ * is for.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
+ * to. lanes_index reads sixteen numbers below sixteen; lanes_pick takes the floats of these numbers of a row.
+ * lanes_choose takes from a where the mask is set, else from b.
+ *
+ * No guard, as in base/lanes.h; base/lanes_pick_end.h ends it.
+ */
+#define lanes_index SC_KERNEL(sc_lanes_index)
+#define lanes_index_load SC_KERNEL(sc_lanes_index_load)
+#define lanes_pick SC_KERNEL(sc_lanes_pick)
+#define lanes_choose SC_KERNEL(sc_lanes_choose)
+#define lanes_list SC_KERNEL(sc_lanes_list)
+
+#if SC_LANES_AVX512
+
+typedef __m512i lanes_index;
+
+static inline lanes_index lanes_index_load(const uint8_t *numbers)
+{
+    return _mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)(const void *)numbers));
+}
+static inline lanes lanes_pick(const float *row, lanes_index i)
+{
+    return _mm512_permutexvar_ps(i, _mm512_loadu_ps(row));
+}
+static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
+{
+    return _mm512_mask_blend_ps(m, b, a);
+}
+static inline unsigned lanes_list(unsigned mask, uint8_t *to)
+{
+    const __m512i all = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+    __m512i set = _mm512_maskz_compress_epi32((__mmask16)mask, all);
+    _mm_storeu_si128((__m128i *)(void *)to, _mm512_cvtepi32_epi8(set));
+    return (unsigned)__builtin_popcount(mask);
+}
+
+#else
+
+static inline unsigned lanes_list(unsigned mask, uint8_t *to)
+{
+    unsigned count = 0;
+    for (; mask; mask &= mask - 1) to[count++] = (uint8_t)sc_bits_lowest(mask);
+    return count;
+}
+
+#  if SC_LANES_AVX2
+
+typedef struct lanes_index {
+    __m256i v[2];
+} lanes_index;
+
+static inline lanes_index lanes_index_load(const uint8_t *numbers)
+{
+    lanes_index r;
+    r.v[0] = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)numbers));
+    r.v[1] = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(numbers + 8)));
+    return r;
+}
+/* The sign bit of the number shifted, which a blend looks at, tells whether it is above seven. */
+static inline __m256 SC_KERNEL(sc_lanes_pick_part)(__m256 low, __m256 high, __m256i i)
+{
+    return _mm256_blendv_ps(_mm256_permutevar8x32_ps(low, i), _mm256_permutevar8x32_ps(high, i),
+                            _mm256_castsi256_ps(_mm256_slli_epi32(i, 28)));
+}
+static inline lanes lanes_pick(const float *row, lanes_index i)
+{
+    __m256 low = _mm256_loadu_ps(row), high = _mm256_loadu_ps(row + 8);
+    lanes r;
+    r.v[0] = SC_KERNEL(sc_lanes_pick_part)(low, high, i.v[0]);
+    r.v[1] = SC_KERNEL(sc_lanes_pick_part)(low, high, i.v[1]);
+    return r;
+}
+static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
+{
+    lanes r;
+    r.v[0] = _mm256_blendv_ps(b.v[0], a.v[0], m.v[0]);
+    r.v[1] = _mm256_blendv_ps(b.v[1], a.v[1], m.v[1]);
+    return r;
+}
+
+#  else
+
+typedef const uint8_t *lanes_index;
+
+static inline lanes_index lanes_index_load(const uint8_t *numbers)
+{
+    return numbers;
+}
+static inline lanes lanes_pick(const float *row, lanes_index i)
+{
+    float r[SC_LANES_COUNT];
+    int k;
+    for (k = 0; k < SC_LANES_COUNT; k++) r[k] = row[i[k]];
+    return lanes_load(r);
+}
+
+#    if SC_LANES_SSE2
+
+static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
+{
+    lanes r;
+    int k;
+    for (k = 0; k < 4; k++)
+        r.v[k] = _mm_or_ps(_mm_and_ps(m.v[k], a.v[k]), _mm_andnot_ps(m.v[k], b.v[k]));
+    return r;
+}
+
+#    else
+
+static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
+{
+    int k;
+    for (k = 0; k < SC_LANES_COUNT; k++)
+        if (m >> k & 1u) b.v[k] = a.v[k];
+    return b;
+}
+
+#    endif
+#  endif
+#endif

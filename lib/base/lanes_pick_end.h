@@ -1,0 +1,10 @@
+/*
+ * Ends what base/lanes_pick.h began.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#undef lanes_index
+#undef lanes_index_load
+#undef lanes_pick
+#undef lanes_choose
+#undef lanes_list

@@ -1,0 +1,298 @@
+/*
+ * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then what is left, sixteen pairs at a
+ * time, by planes and by sides in a projection. See query_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * All of it is in single precision on the points in the unit box. Each coordinate is off by POINT = 3e-8 at most, so
+ * that the difference of two is by EDGE = 6e-8. Let D be the largest extent of the two clusters' boxes together, which
+ * bounds all differences, and v = 2^-24.
+ *
+ * A distance from a plane, up to a factor, is d = (e x f) . w, a sum of six products; e and f are two edges, w runs from
+ * their corner to another triangle's. With S = |e|1 + |f|1 <= 6 D: moving the components of one of them by EDGE changes
+ * d by 2 EDGE |f|1 D, 2 EDGE |e|1 D and EDGE |e|1 |f|1 <= 1.5 EDGE D S at most; of two, by 2 EDGE^2 S + 6 EDGE^2 D; of all
+ * three, by 6 EDGE^3; and rounding (eight times a product) by 8.01 v |e|1 |f|1 D <= 12.1 v D^2 S. All of it is below
+ * S (4 EDGE (D + EDGE) + 13 v D^2) + 7 EDGE^2 (D + EDGE), however that is rounded.
+ *
+ * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4 EDGE D, 2 EDGE^2, and by
+ * rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
+ *
+ * Both bounds are above 1e-21: what underflows does not matter.
+ */
+enum { SC_LEAF_PAIRS = SC_LEAF_MAX * SC_LEAF_MAX };
+
+/* Fewer pairs than this are decided without the tests here; and it takes so many that no plane separates, of sixteen,
+   for the test by sides. Tuned on the bunny and on cloth. */
+enum { SC_LEAF_FEW = 6, SC_SIDES_WORTH = 3 };
+
+/* Bit k: box i of a overlaps box j + k of b, for k from 0 to 15. */
+static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const sc_boxes *b,
+                                          uint64_t j)
+{
+    lanes_mask m[3];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++)
+        m[k] =
+            lanes_both(lanes_not_above(lanes_all(a->side[k][i]), lanes_load(b->side[k + 3] + j)),
+                       lanes_not_above(lanes_load(b->side[k] + j), lanes_all(a->side[k + 3][i])));
+    return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
+}
+
+/* The corners of the triangles of a leaf cluster: corner, axis, triangle. */
+typedef struct SC_KERNEL(leaf_corners) {
+    float at[3][3][SC_LANES_COUNT];
+} SC_KERNEL(leaf_corners);
+
+static void SC_KERNEL(load_leaf)(const sc_query_state *state, uint32_t leaf,
+                                 SC_KERNEL(leaf_corners) * corners)
+{
+    const uint32_t *first = sc_model_leaf_first(state->model) + leaf;
+    const uint32_t *t = sc_model_triangle(state->model) + 3 * (uint64_t)first[0];
+    const float *unit = state->workspace->unit, *point[3][SC_LANES_COUNT];
+    uint32_t i, count = first[1] - first[0];
+    int k, c;
+    for (i = 0; i < SC_LANES_COUNT; i++) { /* the last triangle fills the row */
+        const uint32_t *corner = t + 3 * (i < count ? i : count - 1);
+        SC_UNROLL
+        for (k = 0; k < 3; k++) point[k][i] = unit + 4 * (uint64_t)corner[k];
+    }
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        lanes x[3];
+        lanes_points(point[k], &x[0], &x[1], &x[2]);
+        SC_UNROLL
+        for (c = 0; c < 3; c++) lanes_store(corners->at[k][c], x[c]);
+    }
+}
+
+/* Largest extent of the boxes of two leaf clusters together. */
+static float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t b)
+{
+    const sc_boxes *boxes = &state->workspace->patch_boxes;
+    uint32_t leaves = sc_model_first_leaf_patch(state->model);
+    float extent = 0;
+    int c;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        const float *low = boxes->side[c] + leaves, *high = boxes->side[c + 3] + leaves;
+        float length =
+            (high[a] > high[b] ? high[a] : high[b]) - (low[a] < low[b] ? low[a] : low[b]);
+        if (length > extent) extent = length;
+    }
+    return extent;
+}
+
+/* The lanes in which the plane of t certainly has all corners of o on one side; sets the normals. */
+static unsigned SC_KERNEL(plane_separates)(lanes t[3][3], lanes o[3][3], float extent, lanes n[3])
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    lanes e[3], f[3], size, bound, least, most;
+    int k, c;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        e[c] = lanes_subtract(t[1][c], t[0][c]);
+        f[c] = lanes_subtract(t[2][c], t[0][c]);
+    }
+    SC_UNROLL
+    for (c = 0; c < 3; c++)
+        n[c] = lanes_subtract(lanes_multiply(e[(c + 1) % 3], f[(c + 2) % 3]),
+                              lanes_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
+    size = lanes_add(lanes_absolute(e[0]), lanes_absolute(f[0]));
+    SC_UNROLL
+    for (c = 1; c < 3; c++)
+        size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
+    bound = lanes_add(
+        lanes_multiply(size, lanes_all(4 * edge * (extent + edge) + 13 * v * extent * extent)),
+        lanes_all(7 * edge * edge * (extent + edge)));
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        lanes d = lanes_multiply(n[0], lanes_subtract(o[k][0], t[0][0]));
+        SC_UNROLL
+        for (c = 1; c < 3; c++)
+            d = lanes_add(d, lanes_multiply(n[c], lanes_subtract(o[k][c], t[0][c])));
+        least = k ? lanes_smaller(least, d) : d;
+        most = k ? lanes_larger(most, d) : d;
+    }
+    return lanes_bits(lanes_below(bound, least)) |
+           lanes_bits(lanes_below(most, lanes_subtract(lanes_all(0), bound)));
+}
+
+/* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge certainly has the third
+   corner of its triangle on one side and all of the other triangle on the other. */
+static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], float extent)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const lanes bound = lanes_all(5 * edge * (extent + edge) + 9 * v * extent * extent);
+    const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
+    lanes size[3], flat[2][3][2];
+    lanes_mask first, second;
+    unsigned apart = 0;
+    int s, k, i, c;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) size[c] = lanes_absolute(n[c]);
+    first = lanes_below(lanes_larger(size[1], size[2]), size[0]);
+    second = lanes_below(size[2], size[1]);
+    SC_UNROLL
+    for (s = 0; s < 2; s++) {
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            lanes last = lanes_choose(second, x[s][k][2], x[s][k][1]);
+            flat[s][k][0] = lanes_choose(first, x[s][k][1], x[s][k][0]);
+            flat[s][k][1] = lanes_choose(first, x[s][k][2], last);
+        }
+    }
+    SC_UNROLL
+    for (s = 0; s < 2; s++) {
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            lanes(*t)[2] = flat[s], (*o)[2] = flat[1 - s];
+            int next = (k + 1) % 3, third = (k + 2) % 3;
+            lanes e0 = lanes_subtract(t[next][0], t[k][0]);
+            lanes e1 = lanes_subtract(t[next][1], t[k][1]);
+            lanes own = lanes_subtract(lanes_multiply(e0, lanes_subtract(t[third][1], t[k][1])),
+                                       lanes_multiply(e1, lanes_subtract(t[third][0], t[k][0])));
+            lanes least, most;
+            SC_UNROLL
+            for (i = 0; i < 3; i++) {
+                lanes d = lanes_subtract(lanes_multiply(e0, lanes_subtract(o[i][1], t[k][1])),
+                                         lanes_multiply(e1, lanes_subtract(o[i][0], t[k][0])));
+                least = i ? lanes_smaller(least, d) : d;
+                most = i ? lanes_larger(most, d) : d;
+            }
+            apart |=
+                lanes_bits(lanes_both(lanes_below(bound, own), lanes_below(most, minus_bound)));
+            apart |=
+                lanes_bits(lanes_both(lanes_below(own, minus_bound), lanes_below(bound, least)));
+        }
+    }
+    return apart;
+}
+
+/* The lanes in which the triangles of two clusters with these numbers are not certainly apart. */
+static unsigned SC_KERNEL(test_pairs)(const SC_KERNEL(leaf_corners) * a,
+                                      const SC_KERNEL(leaf_corners) * b, const uint8_t *of_a,
+                                      const uint8_t *of_b, unsigned mask, float extent)
+{
+    lanes_index i = lanes_index_load(of_a), j = lanes_index_load(of_b);
+    lanes x[2][3][3], n[3];
+    int k, c;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        SC_UNROLL
+        for (c = 0; c < 3; c++) {
+            x[0][k][c] = lanes_pick(a->at[k][c], i);
+            x[1][k][c] = lanes_pick(b->at[k][c], j);
+        }
+    }
+    mask &= ~SC_KERNEL(plane_separates)(x[1], x[0], extent, n);
+    if (mask) mask &= ~SC_KERNEL(plane_separates)(x[0], x[1], extent, n);
+    if (sc_bits_count(mask) >= SC_SIDES_WORTH) mask &= ~SC_KERNEL(side_separates)(x, n, extent);
+    return mask;
+}
+
+/* Collects those of the pairs listed that are not certainly apart. */
+static void SC_KERNEL(collect)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b,
+                               uint8_t *of_a, uint8_t *of_b, unsigned count)
+{
+    const uint32_t *first = sc_model_leaf_first(state->model);
+    SC_KERNEL(leaf_corners) a, b;
+    float extent = 0;
+    unsigned at;
+    if (count >= SC_LEAF_FEW) {
+        SC_KERNEL(load_leaf)(state, leaf_a, &a);
+        SC_KERNEL(load_leaf)(state, leaf_b, &b);
+        extent = SC_KERNEL(extent)(state, leaf_a, leaf_b);
+        memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
+        memset(of_b + count, 0, SC_LANES_COUNT);
+    }
+    for (at = 0; at < count; at += SC_LANES_COUNT) {
+        unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
+        if (count >= SC_LEAF_FEW)
+            mask = SC_KERNEL(test_pairs)(&a, &b, of_a + at, of_b + at, mask, extent);
+        for (; mask; mask &= mask - 1) {
+            uint32_t lane = at + sc_bits_lowest(mask);
+            sc_candidates_add(state, first[leaf_a] + of_a[lane], first[leaf_b] + of_b[lane]);
+        }
+    }
+}
+
+/* Rows of triangles of cluster p->a against all of cluster p->b, of which only some may overlap one of a. Most pairs
+   share points round which nothing can happen, and are dropped here. */
+static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, unsigned rows,
+                                      unsigned some)
+{
+    const sc_boxes *boxes = &state->workspace->triangle_boxes;
+    uint64_t row_a = (uint64_t)p->a * SC_LEAF_MAX, row_b = (uint64_t)p->b * SC_LEAF_MAX;
+    uint8_t of_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], of_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
+    uint64_t tests = 0;
+    unsigned count = 0;
+    lanes low[3], high[3];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        low[k] = lanes_load(boxes->side[k] + row_b);
+        high[k] = lanes_load(boxes->side[k + 3] + row_b);
+    }
+    for (; rows; rows &= rows - 1, tests++) {
+        uint32_t i = sc_bits_lowest(rows);
+        lanes_mask m[3];
+        unsigned mask, shared = p->shared[i];
+        SC_UNROLL
+        for (k = 0; k < 3; k++)
+            m[k] = lanes_both(lanes_not_above(lanes_all(boxes->side[k][row_a + i]), high[k]),
+                              lanes_not_above(low[k], lanes_all(boxes->side[k + 3][row_a + i])));
+        mask = lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2]))) & some;
+        if (p->a == p->b) mask &= ~((2u << i) - 1u);
+        mask &= ~(shared & (p->plain_a >> i & 1u ? SC_LEAF_ALL : p->plain_b));
+        if (!mask) continue;
+        if (mask & shared) sc_candidates_take_neighbors(state, p, i, mask & shared);
+        mask &= ~shared;
+        memset(of_a + count, (int)i, SC_LANES_COUNT);
+        count += lanes_list(mask, of_b + count);
+    }
+    state->stats.counts[sc_state_box_task(state)] += tests;
+    if (count) SC_KERNEL(collect)(state, p->a, p->b, of_a, of_b, count);
+    sc_candidates_make_room(state);
+}
+
+/* The triangles of leaf a whose boxes overlap that of leaf b. */
+static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, uint32_t a, uint32_t b)
+{
+    const sc_workspace *w = state->workspace;
+    return SC_KERNEL(overlap)(&w->patch_boxes, sc_model_first_leaf_patch(state->model) + b,
+                              &w->triangle_boxes, (uint64_t)a * SC_LEAF_MAX) &
+           SC_LEAF_ALL;
+}
+
+static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b)
+{
+    uint32_t a = leaf_a < leaf_b ? leaf_a : leaf_b, b = leaf_a < leaf_b ? leaf_b : leaf_a;
+    sc_leaf_pair p;
+    unsigned rows = SC_KERNEL(rows_at)(state, a, b), some;
+    state->stats.leaf_pairs++;
+    state->stats.counts[sc_state_box_task(state)]++;
+    if (!rows) return;
+    some = SC_KERNEL(rows_at)(state, b, a);
+    state->stats.counts[sc_state_box_task(state)]++;
+    if (!some) return;
+    sc_candidates_enter(state, a, b, &p);
+    if (!p.shares && sc_bits_count(some) < sc_bits_count(rows)) { /* either may be the rows */
+        unsigned swap = some;
+        p.a = b;
+        p.b = a;
+        some = rows;
+        rows = swap;
+    }
+    SC_KERNEL(compare_leaves)(state, &p, rows, some);
+}
+
+static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)
+{
+    const uint32_t *first = sc_model_leaf_first(state->model);
+    unsigned rows = (1u << (first[leaf + 1] - first[leaf] - 1)) - 1u;
+    sc_leaf_pair p;
+    state->stats.leaf_pairs++;
+    sc_candidates_enter(state, leaf, leaf, &p);
+    SC_KERNEL(compare_leaves)(state, &p, rows, SC_LEAF_ALL);
+}
