@@ -30,6 +30,8 @@ enum { MEASURE_FAST = 0, MEASURE_METIS = 1, MEASURE_STRUCTURE = 2 };
 typedef struct measure_options {
     method_question question;
     uint32_t mode, repeats, partition, threads;
+    uint32_t
+        workers; /* threads of each query, which are those of query_threads.h; 1 with several threads */
 } measure_options;
 
 /* One method in one frame. */

@@ -5,6 +5,7 @@
  */
 #include "methods.h"
 
+#include "query_threads.h"
 #include "tool.h"
 
 #include <stdlib.h>
@@ -46,7 +47,7 @@ bool method_open(method_runner *runner, const method_kind *kind, const method_me
         runner->hash = spatial_hash_create(rest, mesh->vertex_count, mesh->triangles,
                                            mesh->triangle_count, reason);
     } else {
-        const sc_status status = sc_workspace_create(mesh->model, NULL, &runner->workspace);
+        const sc_status status = query_threads_workspace(mesh->model, 0, &runner->workspace);
         if (status != SC_OK) *reason = sc_status_string(status);
     }
     return *reason == NULL;
@@ -108,6 +109,7 @@ static sc_status query_library(method_runner *runner, const void *positions,
     options.contact = question->contact;
     options.method = runner->kind->method;
     options.contour = runner->kind->contour;
+    options.tasks = query_threads_tasks();
     sc_result result;
     memset(&result, 0, sizeof result);
     result.struct_size = sizeof result;

@@ -104,6 +104,7 @@ static void describe(report_fields *fields, const measurement *m, const report_c
     add_text(fields, "mode", context->mode);
     add_number(fields, "repeats", context->options->repeats);
     add_number(fields, "threads", context->options->threads);
+    add_number(fields, "workers", context->options->workers);
     add_number(fields, "build_ms", m->build_ms);
     add_number(fields, "model_bytes", (double)m->info.model_bytes);
     add_number(fields, "workspace_bytes", (double)m->info.workspace_bytes);

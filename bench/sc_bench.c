@@ -12,6 +12,7 @@
 #include "report.h"
 #include "scenes/scene.h"
 #include "scene_folder.h"
+#include "query_threads.h"
 #include "tool.h"
 
 #include <getopt.h>
@@ -48,6 +49,7 @@ static const char usage[] =
     "  --threads K        K frames at once, on K threads with a workspace each; times are then "
     "wall\n"
     "                     time divided by K, that is, throughput: a query runs on one thread (1)\n"
+    "  --workers K        each query on K threads; not with --threads (1)\n"
     "\n"
     "Output:\n"
     "  --json             JSON Lines: a description of the run, then an object a frame and method\n"
@@ -321,6 +323,7 @@ int main(int argc, char **argv)
         OPTION_ONCE,
         OPTION_REPEATS,
         OPTION_THREADS,
+        OPTION_WORKERS,
         OPTION_JSON,
         OPTION_CSV,
         OPTION_LIST,
@@ -342,6 +345,7 @@ int main(int argc, char **argv)
         {"once", no_argument, NULL, OPTION_ONCE},
         {"repeats", required_argument, NULL, OPTION_REPEATS},
         {"threads", required_argument, NULL, OPTION_THREADS},
+        {"workers", required_argument, NULL, OPTION_WORKERS},
         {"json", no_argument, NULL, OPTION_JSON},
         {"csv", no_argument, NULL, OPTION_CSV},
         {"list", no_argument, NULL, OPTION_LIST},
@@ -357,7 +361,7 @@ int main(int argc, char **argv)
     memset(&set, 0, sizeof set);
     set.cache = "build/scenes";
     set.measure.mode = MEASURE_WARM;
-    set.measure.threads = 1;
+    set.measure.threads = set.measure.workers = 1;
     bool valid = true;
     int option;
     while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
@@ -395,6 +399,10 @@ int main(int argc, char **argv)
         case OPTION_THREADS:
             valid &= tool_parse_number("--threads", optarg, 1, 1024, &set.measure.threads);
             break;
+        case OPTION_WORKERS:
+            valid &=
+                tool_parse_number("--workers", optarg, 1, SC_WORKERS_MAX, &set.measure.workers);
+            break;
         case OPTION_JSON:
             set.format = REPORT_JSON;
             break;
@@ -425,5 +433,15 @@ int main(int argc, char **argv)
         }
     }
     if (set.measure.repeats == 0) set.measure.repeats = set.measure.mode == MEASURE_ONCE ? 1 : 5;
-    return tool_finish(valid ? run(&set, argv + optind, argc - optind) : TOOL_FAILED);
+    if (set.measure.threads > 1 && set.measure.workers > 1) {
+        tool_error("--threads and --workers: one of them at a time");
+        valid = false;
+    }
+    if (valid && !query_threads_start(set.measure.workers)) {
+        tool_error("--workers: they cannot be started");
+        valid = false;
+    }
+    const int status = valid ? run(&set, argv + optind, argc - optind) : TOOL_FAILED;
+    query_threads_stop();
+    return tool_finish(status);
 }

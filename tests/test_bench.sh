@@ -136,6 +136,9 @@ done
 check "the order of the scene" small --partition structure
 [ -z "${SC_METIS:-}" ] || check "METIS" small --partition metis
 check "two threads" small --threads 2 --once
+check "two workers" small --workers 2 --once
+check "not both" refuses "one of them" meshes/sphere.obj --workers 2 --threads 2
+check "no workers" refuses "whole number" meshes/sphere.obj --workers 0
 check "passes over the animation" small --once --repeats 2
 
 pairs_of() {

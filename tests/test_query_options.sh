@@ -113,4 +113,28 @@ check "a failure counts for more" status 2 "$query" --budget 10 "$cloths" meshes
 check "and what is not known more than a collision" status 3 \
     "$query" --budget 10 "$cloths" meshes/corner_on_face.obj
 
+# ---- threads ----
+
+fold() {
+    awk 'BEGIN { n = 60; for (y = 0; y <= n; y++) for (x = 0; x <= n; x++) {
+            u = x / n; if (u > 0.5) print "v", 1 - u, y / n, (y / n - 0.4) / 10; else print "v", u, y / n, 0 }
+        for (y = 0; y < n; y++) for (x = 1; x <= n; x++) {
+            a = y * (n + 1) + x; print "f", a, a + 1, a + n + 1; print "f", a + 1, a + n + 2, a + n + 1 } }'
+}
+fold >"$scratch/fold.obj"
+by_threads() {
+    "$query" --pairs "$2" --weld none --out "$scratch/pairs.$1" --threads "$1" "$scratch/fold.obj"
+    test $? -eq 1
+}
+for kind in triangle edge; do
+    check "$kind pairs by one thread" by_threads 1 $kind
+    for threads in 2 3 8; do
+        check "$kind pairs by $threads threads" by_threads $threads $kind
+        check "are the same" cmp "$scratch/pairs.1" "$scratch/pairs.$threads"
+    done
+done
+check "of which there are many" test "$(wc -l <"$scratch/pairs.1")" -gt 50
+check "no threads" says 2 "threads" "$query" --threads 0 "$cloths"
+check "too many threads" says 2 "threads" "$query" --threads 257 "$cloths"
+
 finish

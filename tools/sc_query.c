@@ -11,6 +11,7 @@
 #include "ply_write.h"
 #include "query_subject.h"
 #include "query_text.h"
+#include "query_threads.h"
 #include "tool.h"
 
 #include <cjson/cJSON.h>
@@ -78,6 +79,7 @@ static const char usage[] =
     "  --no-rest-cache             test again what failed in the rest pose\n"
     "  --budget N                  stop each query after N tests; what was found so far is "
     "shown\n"
+    "  --threads K                 threads that a query uses (1)\n"
     "\n"
     "  --version, --help\n"
     "\n"
@@ -151,6 +153,7 @@ static sc_query_options make_options(const settings *set, uint32_t kind, bool li
     options.rest_cache = set->no_rest_cache ? SC_REST_CACHE_OFF : SC_REST_CACHE_ON;
     options.simd = set->simd;
     options.budget = set->budget;
+    options.tasks = query_threads_tasks();
     return options;
 }
 
@@ -600,7 +603,7 @@ static int do_replay(settings *set, FILE *out, pair_list *list)
         if (status == SC_OK)
             status = model_file_load(record.model, record.model_size, &subject.model, reason);
         subject.build_ms = tool_clock() - start;
-        if (status == SC_OK) status = sc_workspace_create(subject.model, NULL, &subject.workspace);
+        if (status == SC_OK) status = query_threads_workspace(subject.model, 0, &subject.workspace);
         done = status == SC_OK;
         if (!done) {
             snprintf(error, sizeof error, "%s: %s%s%s", set->replay_path, sc_status_string(status),
@@ -728,6 +731,7 @@ int main(int argc, char **argv)
         OPTION_GROUPS,
         OPTION_CONTACTS,
         OPTION_BUDGET,
+        OPTION_THREADS,
         OPTION_VERSION,
         OPTION_HELP
     };
@@ -753,6 +757,7 @@ int main(int argc, char **argv)
         {"groups", required_argument, NULL, OPTION_GROUPS},
         {"contacts", no_argument, NULL, OPTION_CONTACTS},
         {"budget", required_argument, NULL, OPTION_BUDGET},
+        {"threads", required_argument, NULL, OPTION_THREADS},
         {"version", no_argument, NULL, OPTION_VERSION},
         {"help", no_argument, NULL, OPTION_HELP},
         {NULL, 0, NULL, 0}};
@@ -763,7 +768,7 @@ int main(int argc, char **argv)
     set.method = SC_METHOD_SCTT;
     set.contour = SC_CONTOUR_EXACT;
     bool valid = true;
-    uint32_t budget = 0;
+    uint32_t budget = 0, threads = 1;
     int option;
     while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
         set.is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
@@ -839,6 +844,9 @@ int main(int argc, char **argv)
             valid &= tool_parse_number("--budget", optarg, 1, UINT32_MAX, &budget);
             set.budget = budget;
             break;
+        case OPTION_THREADS:
+            valid &= tool_parse_number("--threads", optarg, 1, SC_WORKERS_MAX, &threads);
+            break;
         case OPTION_VERSION:
             printf("sc-query (starcontour) %s\n", sc_version_string());
             return tool_finish(TOOL_CLEAN);
@@ -854,6 +862,10 @@ int main(int argc, char **argv)
     if (set.method == SC_METHOD_SCTT && set.contour == SC_CONTOUR_NONE) {
         tool_error("note: --contour none can miss pairs");
     }
+    if (!query_threads_start(threads)) {
+        tool_error("--threads: they cannot be started");
+        return tool_finish(TOOL_FAILED);
+    }
     filter_file filters;
     char error[MESH_FILE_ERROR_SIZE];
     int status = TOOL_FAILED;
@@ -863,5 +875,6 @@ int main(int argc, char **argv)
     else
         tool_error("%s", error);
     filter_file_free(&filters);
+    query_threads_stop();
     return tool_finish(status);
 }
