@@ -461,6 +461,8 @@ static void the_same_answers(void)
                         if (c < 2 && h.tasks.workers > 1)
                             CHECK_MSG(is_count_same(&shared, &other), "scene %d, kind %u, host %d",
                                       scene, (unsigned)kind, way);
+                        if (c < 2 && options.method != SC_METHOD_SCTT)
+                            CHECK(is_count_same(&serial, &other));
                         CHECK_MSG(is_same(&serial, other),
                                   "scene %d, kind %u, host %d, capacity %u", scene, (unsigned)kind,
                                   way, (unsigned)counts[c]);

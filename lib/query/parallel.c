@@ -328,7 +328,7 @@ static void run_tests(void *context, uint32_t part, uint32_t worker)
     end_part(s);
 }
 
-/* The contour tests of all listed nodes. */
+/* The contour tests of all listed nodes, while none is open. */
 static void do_tests(plan *p)
 {
     const sc_pair *patches = sc_model_node_patches(p->state->model);
@@ -342,7 +342,7 @@ static void do_tests(plan *p)
         uint32_t node = p->w->tests[i];
         if (p->w->passed[i])
             p->w->culled[patches[node].a] = p->w->culled[patches[node].b] = 1;
-        else if (p->open_count < SC_PARTS_MAX)
+        else
             p->w->open[p->open_count++] = node;
     }
     p->test_count = 0;
@@ -374,7 +374,7 @@ static void run_selfs(void *context, uint32_t part, uint32_t worker)
     i = part * NODES_AT_ONCE;
     end = from->self_count - i < NODES_AT_ONCE ? from->self_count : i + NODES_AT_ONCE;
     walk->selfs_wait = 0;
-    for (; i < end; i++)
+    for (; i < end && !sc_state_stops(s); i++)
         if (!walk->culled[patches[from->self[i]].a])
             walk->queue[walk->queue_count++] = from->self[i];
     sc_traversal_walk(s);
