@@ -32,13 +32,13 @@ enum { LEAVES_MIN = 128 };
 enum { LARGE_PART = 64 };
 
 /* Fewer contour tests are not worth a job. */
-enum { TESTS_MIN = 8 };
+enum { TESTS_MIN = 16 };
 
 /* How many parts of the list, and how many waiting nodes, a worker takes at once. */
 enum { PARTS_AT_ONCE = 4, NODES_AT_ONCE = 16 };
 
 /* A list of pairs is sorted in so many runs, unless they would be shorter than that. */
-enum { RUNS_MAX = 32, RUN_MIN = 2000 };
+enum { RUNS_MAX = 32, RUN_MIN = 500 };
 
 enum {
     PART_BELOW, /* a: a node that failed a test */
