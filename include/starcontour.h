@@ -901,7 +901,7 @@ typedef struct sc_step_result {
  * A pair collides if at some time in [0, 1] the distance of its two closed sets is separation or less.
  * Every pair that does so is reported. What is reported beyond these came within separation + tolerance
  * at some time; a smaller tolerance costs time where much is that near. Rounding sets a limit to it: the
- * tolerance of a pair is at least 2^-36 times the largest difference of a coordinate in it. The list depends
+ * tolerance of a pair is at least 2^-32 times the largest difference of a coordinate in it. The list depends
  * on mesh, welding, poses, separation and tolerance and on nothing else: not on method, partition, number of
  * threads, compiler or machine, for what is near the limit is decided pair by pair and culling keeps
  * clear of it.
