@@ -86,23 +86,27 @@ static double power_above(float f)
  * by 3e-8 for the place of p, and by the rounding of one difference, one product and two additions: at most
  * 4.01 * 2^-24 |p - q|max, and what underflows.
  */
-static void choose_axes(sc_simple_contour *c, const sc_workspace *w,
-                        const sc_projection *projection)
+void sc_simple_axes(sc_simple_contour *c, const sc_projection *projection)
 {
-    const float *one = w->unit + 4 * (uint64_t)c->edges->point[0];
-    const float *other = w->unit + 4 * (uint64_t)c->edges->point[c->count / 2];
     double size[2] = {0, 0};
     int k;
     for (k = 0; k < 3; k++) {
         size[0] += fabs(projection->u[k]);
         size[1] += fabs(projection->w[k]);
-        c->from[k] = one[k] / 2 + other[k] / 2;
     }
     for (k = 0; k < 2; k++) size[k] = power_above((float)size[k]);
     for (k = 0; k < 3; k++) {
         c->axis[0][k] = (float)(projection->u[k] / size[0]);
         c->axis[1][k] = (float)(projection->w[k] / size[1]);
     }
+}
+
+void sc_simple_middle(const sc_simple_contour *c, const float *unit, uint32_t stride, float from[3])
+{
+    const float *one = unit + stride * (uint64_t)c->edges->point[0];
+    const float *other = unit + stride * (uint64_t)c->edges->point[c->count / 2];
+    int k;
+    for (k = 0; k < 3; k++) from[k] = one[k] / 2 + other[k] / 2;
 }
 
 typedef struct vector2 {
@@ -183,13 +187,19 @@ static uint32_t piece_of(const sc_simple_contour *c, uint32_t i)
 
 int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
-    uint32_t a = c->edges->point[i], b = c->edges->point[i + 1], k;
+    uint32_t a = c->edges->point[i], b = c->edges->point[i + 1];
     uint32_t p = c->edges->point[j], q = c->edges->point[j + 1];
     int shared = (a == p) + (a == q) + (b == p) + (b == q);
     if (!shared) return boxes_part(c, i, j) || lies_beside(c, i, j) || lies_beside(c, j, i);
     if (shared > 1 || !is_open(c, i, b == p || b == q, j, a == q || b == q)) return 0;
+    return sc_simple_note_shared(c, i, j);
+}
+
+int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
+{
+    uint32_t a = c->edges->point[i], k;
     if (c->in_pieces) c->edges->piece[piece_of(c, i)] = piece_of(c, j);
-    if (a == p) { /* the contour leaves the point twice */
+    if (a == c->edges->point[j]) { /* the contour leaves the point twice */
         for (k = 0; k < c->pinch_count && c->pinch[k] != a; k++) {
         }
         if (k == SC_PINCHES_MAX) return 0;
@@ -276,6 +286,33 @@ static int are_pieces_fine(const sc_simple_contour *c)
     return 1;
 }
 
+int sc_simple_is_wound_well(const sc_simple_contour *c)
+{
+    uint32_t i;
+    for (i = 0; i < c->pinch_count; i++)
+        if (!is_pinch_fine(c, c->pinch[i])) return 0;
+    return !c->in_pieces || are_pieces_fine(c);
+}
+
+int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *workspace,
+                   uint32_t node)
+{
+    const uint32_t *segments = sc_model_contours(model) + sc_model_node_contour(model)[node];
+    uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
+    int kind = sc_model_node_kind(model)[node];
+    if (kind & SC_NODE_TOUCHES) {
+        segments += 2;
+        count -= 2;
+    }
+    memset(c, 0, sizeof *c);
+    c->edges = &workspace->contour;
+    c->in_pieces = kind & SC_NODE_PIECES;
+    if (!count) return 0;
+    list_points(c, model, segments, count);
+    if (c->in_pieces) list_pieces(c);
+    return 1;
+}
+
 void sc_simple_fetch(const sc_model *model, uint32_t node, int step)
 {
     const uint32_t *at = sc_model_node_contour(model) + node, *segments, *first, *last;
@@ -310,32 +347,20 @@ void sc_simple_fetch(const sc_model *model, uint32_t node, int step)
 
 int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
 {
-    const sc_model *model = state->model;
     const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
-    const uint32_t *segments = sc_model_contours(model) + sc_model_node_contour(model)[node];
-    uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
-    uint32_t previous, i;
-    int kind = sc_model_node_kind(model)[node], passed;
+    uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
+    int passed;
     sc_simple_contour c;
-    if (kind & SC_NODE_TOUCHES) {
-        segments += 2;
-        count -= 2;
+    passed = sc_simple_list(&c, state->model, state->workspace, node);
+    if (passed) {
+        sc_simple_axes(&c, projection);
+        sc_simple_middle(&c, state->workspace->unit, 4, c.from);
+        kernels->project(&c, state->workspace->unit);
+        state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.count;
+        sc_state_switch(state, SC_TASK_CONTOUR);
+        state->stats.counts[SC_TASK_CONTOUR]++;
+        passed = kernels->are_edges_fine(&c) && sc_simple_is_wound_well(&c);
     }
-    memset(&c, 0, sizeof c);
-    c.edges = &state->workspace->contour;
-    c.in_pieces = kind & SC_NODE_PIECES;
-    if (!count) return 0; /* of a forged model: without a contour, areas are not all positive */
-    previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
-    list_points(&c, model, segments, count);
-    if (c.in_pieces) list_pieces(&c);
-    choose_axes(&c, state->workspace, projection);
-    kernels->project(&c, state->workspace->unit);
-    state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.count;
-    sc_state_switch(state, SC_TASK_CONTOUR);
-    state->stats.counts[SC_TASK_CONTOUR]++;
-    passed = kernels->are_edges_fine(&c);
-    for (i = 0; passed && i < c.pinch_count; i++) passed = is_pinch_fine(&c, c.pinch[i]);
-    passed = passed && (!c.in_pieces || are_pieces_fine(&c));
     sc_state_switch(state, previous);
     return passed;
 }

@@ -30,4 +30,25 @@ typedef struct sc_simple_contour {
    Notes pinches, and pieces that hang together. */
 int sc_simple_are_apart(sc_simple_contour *contour, uint32_t i, uint32_t j);
 
+/* The parts of which the test is made, for others like it (step/moving_contour.c). */
+
+/* Starts a contour: lists its points, and its pieces if there are any. 0: there is none (of a forged model: without
+   a contour, areas are not all positive). */
+int sc_simple_list(sc_simple_contour *contour, const sc_model *model, sc_workspace *workspace,
+                   uint32_t node);
+
+/* Sets axis: the vectors of a projection over powers of two, exactly, so that their absolute values sum to at most 1;
+   and more than 1/2. */
+void sc_simple_axes(sc_simple_contour *contour, const sc_projection *projection);
+
+/* About the middle of a contour, of points in the unit box with so many floats each. */
+void sc_simple_middle(const sc_simple_contour *contour, const float *unit, uint32_t stride,
+                      float from[3]);
+
+/* Notes that edges i < j share one point: pinches, and pieces that hang together. 0: too many pinches. */
+int sc_simple_note_shared(sc_simple_contour *contour, uint32_t i, uint32_t j);
+
+/* Whether pinches and pieces are as those of a simple contour, after all edges were found to be so. */
+int sc_simple_is_wound_well(const sc_simple_contour *contour);
+
 #endif
