@@ -55,9 +55,17 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->ball_queue = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
     w->found = (sc_pair *)place(block, at, SC_FOUND_MAX, sizeof(sc_pair));
     w->state = (unsigned char *)place(block, at, SC_STATE_ROOM, 1);
-    if (w->flags & SC_WORKSPACE_STEP)
-        w->motion.leaves = (sc_leaf_motion *)place(block, at, (uint64_t)2 * SC_LEAVES_KEPT,
-                                                   sizeof(sc_leaf_motion));
+    if (!(w->flags & SC_WORKSPACE_STEP)) return;
+    w->motion.leaves =
+        (sc_leaf_motion *)place(block, at, (uint64_t)2 * SC_LEAVES_KEPT, sizeof(sc_leaf_motion));
+    for (k = 0; k < 2; k++)
+        w->motion.contour.at[k] = (float *)place(block, at, listed, sizeof(float));
+    for (k = 0; k < 4; k++) {
+        w->motion.contour.run_side[k] =
+            (float *)place(block, at, listed / SC_CONTOUR_RUN + 16, sizeof(float));
+        w->motion.contour.group_side[k] =
+            (float *)place(block, at, listed / SC_CONTOUR_RUN / 16 + 17, sizeof(float));
+    }
 }
 
 /* What only queries of steps use and all workers share. */

@@ -104,6 +104,11 @@ typedef struct sc_leaf_motion {
 /* So many leaf clusters are kept ready, twice. */
 enum { SC_LEAVES_KEPT = 32 };
 
+/* What an sc_contour_edges lacks for the end of a step. */
+typedef struct sc_moving_edges {
+    float *at[2], *run_side[4], *group_side[4];
+} sc_moving_edges;
+
 /* What the query of a step writes to besides, if the workspace is for those. See step/step_motion.h. */
 typedef struct sc_motion {
     const unsigned char
@@ -115,7 +120,8 @@ typedef struct sc_motion {
     uint64_t
         *own_points; /* leaf_count: bit i: the leaf cluster is the first to have leaf_point i */
     sc_leaf_motion *leaves; /* 2 * SC_LEAVES_KEPT */
-    float distance;         /* in the unit box: what is farther apart does not collide */
+    sc_moving_edges contour;
+    float distance; /* in the unit box: what is farther apart does not collide */
     float margin;   /* how far apart two sets of sc_motion.unit must be, so that the true ones are
                                more than that distance apart */
     uint32_t swept; /* boxes are those of the whole motion */

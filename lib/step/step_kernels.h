@@ -7,7 +7,7 @@
 #define SC_STEP_KERNELS_H
 
 #include "base/isa.h"
-#include "step/step_state.h"
+#include "step/moving_contour.h"
 
 typedef struct sc_step_kernels {
     /* Box recursion on two patches of a level, and on one. */
@@ -16,6 +16,12 @@ typedef struct sc_step_kernels {
     /* The vertices, edges and triangles of two leaf clusters, and of one. */
     void (*leaf_pair)(sc_step_state *state, uint32_t leaf_a, uint32_t leaf_b);
     void (*leaf_itself)(sc_step_state *state, uint32_t leaf);
+    /* The normal cone of 1 to SC_LEAF_MAX triangles given by their corners that holds throughout the step. */
+    uint32_t (*cone)(const sc_motion *motion, const uint32_t *corner, uint32_t count);
+    /* Projects the listed points of a contour, given by all points in the unit box; sets its error. */
+    void (*project)(sc_moving_contour *contour, const float *unit);
+    /* Whether sc_moving_contour_are_clear is true of all pairs of edges. */
+    int (*are_edges_clear)(sc_moving_contour *contour);
 } sc_step_kernels;
 
 extern const sc_step_kernels sc_step_kernels_base;

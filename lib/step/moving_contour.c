@@ -1,0 +1,230 @@
+/*
+ * The exact contour test over a step. See moving_contour.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Two moving edges are clear of each other if along some fixed direction m, at both ends of the step, all of one
+ * is farther than the clearance from all of the other: both ends of each edge move on straight lines, so the
+ * same holds in between, and for all points of the edges. Two edges that share a point, seen from there as a and b, are
+ * clear if that is so of -a and b, for then neither end comes near the line on which the other edge is going on; or if
+ * a x b, a polynomial of degree 2 in time, stays of one sign and large enough, as the three coefficients of its Bernstein
+ * form say. Which direction is tried does not matter for what is proved. Where none is found, the step is halved.
+ *
+ * Rounding and clearance. A computed coordinate is off by error (sc_simple_contour.error, as query/simple.c has it, for
+ * the start and the end). Along m a point is off by |m|1 error, two of them by 2 |m|1 error; where sums are computed in
+ * single precision (the inner loops), m . p rounds by 2.1 * 2^-24 |m|1 |p|max, which is below 0.6 |m|1 error,
+ * and the difference of two by another 0.6: 3.8 |m|1 error in all. Clearance is a distance d in space, and so
+ * at least d between projections along unit vectors at right angles. The axes here are such vectors times their lengths, so
+ * that x and y that are d apart along m in that plane are |(m.x length.x, m.y length.y)| d apart here. Hence
+ * |m.x| clear.x + |m.y| clear.y, with clear = 5 error + length d, a little more for its own rounding.
+ */
+#include "step/moving_contour.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "step/moving_star.h"
+#include "step/step_kernels.h"
+
+/* How often a step is halved for a pair of edges. */
+enum { HALVINGS = 2 };
+
+typedef struct moving_vector {
+    double x[2], y[2]; /* at the start and at the end */
+} moving_vector;
+
+/* What pairs of edges are tested with: for vectors between points, in double precision. */
+typedef struct clearance {
+    double x, y; /* of a direction: |m.x| x + |m.y| y */
+} clearance;
+
+static clearance clearance_of(const sc_moving_contour *c)
+{
+    clearance k; /* clear has 5 errors; 2 are enough here, and nothing else rounds to speak of */
+    k.x = (double)c->clear[0];
+    k.y = (double)c->clear[1];
+    return k;
+}
+
+static moving_vector contour_point(const sc_moving_contour *c, uint32_t i)
+{
+    moving_vector v;
+    v.x[0] = (double)c->start.edges->at[0][i];
+    v.y[0] = (double)c->start.edges->at[1][i];
+    v.x[1] = (double)c->end->at[0][i];
+    v.y[1] = (double)c->end->at[1][i];
+    return v;
+}
+
+static moving_vector moving_difference(moving_vector a, const moving_vector *b)
+{
+    int s;
+    for (s = 0; s < 2; s++) {
+        a.x[s] -= b->x[s];
+        a.y[s] -= b->y[s];
+    }
+    return a;
+}
+
+/* The same motion over the first or second half of the time. */
+static moving_vector half_motion(moving_vector v, int second)
+{
+    v.x[1 - second] = (v.x[0] + v.x[1]) / 2;
+    v.y[1 - second] = (v.y[0] + v.y[1]) / 2;
+    return v;
+}
+
+/* Whether all vectors are clear along a direction. */
+static int are_clear_along(const moving_vector *v, int count, double x, double y, clearance k)
+{
+    double least = fabs(x) * k.x + fabs(y) * k.y + DBL_MIN;
+    int i, s;
+    for (i = 0; i < count; i++)
+        for (s = 0; s < 2; s++)
+            if (!(v[i].x[s] * x + v[i].y[s] * y > least)) return 0;
+    return 1;
+}
+
+/* Whether some direction is found along which all vectors are clear: their sum, or the middle of those that the
+   two outermost allow. */
+static int are_on_one_side(const moving_vector *v, int count, clearance k)
+{
+    double x = 0, y = 0, rx = v[0].x[0], ry = v[0].y[0], lx = rx, ly = ry, r, l;
+    int i, s;
+    for (i = 0; i < count; i++) {
+        x += v[i].x[0] + v[i].x[1];
+        y += v[i].y[0] + v[i].y[1];
+    }
+    if (are_clear_along(v, count, x, y, k)) return 1;
+    for (i = 0; i < count; i++)
+        for (s = 0; s < 2; s++) {
+            double px = v[i].x[s], py = v[i].y[s];
+            if (rx * py - ry * px < 0) {
+                rx = px;
+                ry = py;
+            }
+            if (lx * py - ly * px > 0) {
+                lx = px;
+                ly = py;
+            }
+        }
+    r = sqrt(rx * rx + ry * ry);
+    l = sqrt(lx * lx + ly * ly);
+    if (!(r > 0) || !(l > 0)) return 0;
+    return are_clear_along(v, count, ly / l - ry / r, rx / r - lx / l, k);
+}
+
+/* The four vectors from an edge to another. */
+static int are_edges_clear(const moving_vector v[4], clearance k, int halvings)
+{
+    moving_vector half[4];
+    int i, second;
+    if (are_on_one_side(v, 4, k)) return 1;
+    if (!halvings) return 0;
+    for (second = 0; second < 2; second++) {
+        for (i = 0; i < 4; i++) half[i] = half_motion(v[i], second);
+        if (!are_edges_clear(half, k, halvings - 1)) return 0;
+    }
+    return 1;
+}
+
+/*
+ * Two edges from a shared point: v[0] is the opposite of one, v[1] the other. Their cross product is off by
+ * 2 error (|a|1 + |b|1) + 8 error^2, and to be larger than d times the longer edge, in the plane of unit vectors; lengths
+ * of edges there are at most |x| / length.x + |y| / length.y, and areas smaller by length.x length.y.
+ */
+static int are_open(const sc_moving_contour *c, const moving_vector v[2], clearance k, int halvings)
+{
+    double error = (double)c->start.error;
+    double dx = k.x - 5 * error, dy = k.y - 5 * error; /* length d */
+    double cross[3], size = 0, longest = 0, least;
+    moving_vector half[2];
+    int i, s, second;
+    if (are_on_one_side(v, 2, k)) return 1;
+    for (i = 0; i < 2; i++) {
+        double one = 0;
+        for (s = 0; s < 2; s++) {
+            double x = fabs(v[i].x[s]), y = fabs(v[i].y[s]);
+            one = one > x + y ? one : x + y;
+            /* d u w (x / u + y / w), and the errors of x and y */
+            longest = fmax(longest, (x + 2 * error) * dy + (y + 2 * error) * dx);
+        }
+        size += one;
+    }
+    least = 1.00001 * longest + 2 * error * size + 8 * error * error + DBL_MIN;
+    cross[0] = v[0].x[0] * v[1].y[0] - v[0].y[0] * v[1].x[0];
+    cross[1] = (v[0].x[0] * v[1].y[1] - v[0].y[0] * v[1].x[1] + v[0].x[1] * v[1].y[0] -
+                v[0].y[1] * v[1].x[0]) /
+               2;
+    cross[2] = v[0].x[1] * v[1].y[1] - v[0].y[1] * v[1].x[1];
+    if (cross[0] > least && cross[1] > least && cross[2] > least) return 1;
+    if (cross[0] < -least && cross[1] < -least && cross[2] < -least) return 1;
+    if (!halvings) return 0;
+    for (second = 0; second < 2; second++) {
+        for (i = 0; i < 2; i++) half[i] = half_motion(v[i], second);
+        if (!are_open(c, half, k, halvings - 1)) return 0;
+    }
+    return 1;
+}
+
+int sc_moving_contour_are_clear(sc_moving_contour *c, uint32_t i, uint32_t j)
+{
+    const uint32_t *point = c->start.edges->point;
+    uint32_t a = point[i], b = point[i + 1], p = point[j], q = point[j + 1];
+    int shared = (a == p) + (a == q) + (b == p) + (b == q);
+    clearance k = clearance_of(c);
+    moving_vector own[2], other[2], v[4];
+    int s;
+    if (shared > 1) return 0;
+    for (s = 0; s < 2; s++) {
+        own[s] = contour_point(c, i + (uint32_t)s);
+        other[s] = contour_point(c, j + (uint32_t)s);
+    }
+    if (!shared) {
+        for (s = 0; s < 4; s++) v[s] = moving_difference(other[s / 2], &own[s % 2]);
+        return are_edges_clear(v, k, HALVINGS);
+    }
+    s = b == p || b == q;
+    v[0] = moving_difference(own[s], &own[1 - s]);
+    s = a == q || b == q;
+    v[1] = moving_difference(other[1 - s], &other[s]);
+    return are_open(c, v, k, HALVINGS) && sc_simple_note_shared(&c->start, i, j);
+}
+
+/* Sets what the axes and the error leave to be known. The square root of a sum of squares in double precision, rounded
+   to float, is off by less than the factor; so is the sum. */
+static void set_clearance(sc_moving_contour *c, float distance)
+{
+    int k;
+    for (k = 0; k < 2; k++) {
+        double x = (double)c->start.axis[k][0], y = (double)c->start.axis[k][1],
+               z = (double)c->start.axis[k][2];
+        c->length[k] = (float)sqrt(x * x + y * y + z * z) * 1.000001f;
+        c->clear[k] = (5 * c->start.error + c->length[k] * distance) * 1.000001f;
+    }
+}
+
+int sc_moving_contour_test(sc_step_state *state, const sc_projection *projection, uint32_t node)
+{
+    int star = state->options.contour == SC_CONTOUR_STAR;
+    const sc_step_kernels *kernels = sc_step_kernels_of(state->query.workspace);
+    sc_workspace *w = state->query.workspace;
+    uint32_t previous = sc_state_switch(&state->query, SC_TASK_UPDATE_CONTOURS);
+    sc_moving_contour c;
+    int passed = sc_simple_list(&c.start, state->query.model, w, node);
+    if (passed) {
+        c.end = &w->motion.contour;
+        sc_simple_axes(&c.start, projection);
+        sc_simple_middle(&c.start, w->motion.unit, 8, c.start.from);
+        sc_simple_middle(&c.start, w->motion.unit + 4, 8, c.from);
+        kernels->project(&c, w->motion.unit);
+        set_clearance(&c, w->motion.distance);
+        state->query.stats.counts[SC_TASK_UPDATE_CONTOURS] += c.start.count;
+        sc_state_switch(&state->query, SC_TASK_CONTOUR);
+        state->query.stats.counts[SC_TASK_CONTOUR]++;
+        passed = star ? sc_moving_star_passes(&c)
+                      : kernels->are_edges_clear(&c) && sc_simple_is_wound_well(&c.start);
+    }
+    sc_state_switch(&state->query, previous);
+    return passed;
+}

@@ -1,0 +1,285 @@
+/*
+ * The inner loops of the exact contour test over a step. See moving_contour.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Pairs of edges are gone through as query/simple_kernel.h does: sixteen edges with those that follow at a distance of up
+ * to SC_CONTOUR_NEAR, then runs by their boxes at both ends of the step.
+ */
+
+/* Places of the listed points at both ends, and the error of their coordinates, see choose_axes in query/simple.c. */
+static void SC_KERNEL(project_motion)(sc_moving_contour *c, const float *unit)
+{
+    const sc_contour_edges *e = c->start.edges;
+    lanes size = lanes_all(0), d[3];
+    uint32_t i, j;
+    int k, end;
+    for (i = 0; i < (c->start.blocks + 1) * SC_CONTOUR_BLOCK; i += SC_CONTOUR_BLOCK)
+        for (end = 0; end < 2; end++) {
+            float *const *to = end ? c->end->at : e->at;
+            const float *from = end ? c->from : c->start.from, *point[SC_CONTOUR_BLOCK];
+            for (j = 0; j < SC_CONTOUR_BLOCK; j++)
+                point[j] = unit + 8 * (uint64_t)e->point[i + j] + 4 * end;
+            lanes_points(point, &d[0], &d[1], &d[2]);
+            for (k = 0; k < 3; k++) {
+                d[k] = lanes_subtract(d[k], lanes_all(from[k]));
+                size = lanes_larger(size, lanes_absolute(d[k]));
+            }
+            for (k = 0; k < 2; k++) {
+                const float *axis = c->start.axis[k];
+                lanes at = lanes_add(lanes_add(lanes_multiply(lanes_all(axis[0]), d[0]),
+                                               lanes_multiply(lanes_all(axis[1]), d[1])),
+                                     lanes_multiply(lanes_all(axis[2]), d[2]));
+                lanes_store(to[k] + i, at);
+            }
+        }
+    c->start.error = 3.01e-8f + 4.1f * 5.9604644775390625e-8f * lanes_most(size);
+}
+
+/* Sixteen moving edges, from p to q, at the start and at the end. */
+typedef struct SC_KERNEL(moving_lanes) {
+    lanes p[2][2], q[2][2];
+} SC_KERNEL(moving_lanes);
+
+/* m . p for both points of an edge at one end of the step: the least and the greatest. */
+static inline void SC_KERNEL(extent_along)(const lanes m[2], const SC_KERNEL(moving_lanes) * e,
+                                           int end, lanes *least, lanes *most)
+{
+    lanes p = lanes_add(lanes_multiply(m[0], e->p[end][0]), lanes_multiply(m[1], e->p[end][1]));
+    lanes q = lanes_add(lanes_multiply(m[0], e->q[end][0]), lanes_multiply(m[1], e->q[end][1]));
+    *least = lanes_smaller(p, q);
+    *most = lanes_larger(p, q);
+}
+
+/* How far apart two points along m must be, see moving_contour.c. */
+static inline lanes SC_KERNEL(clear_along)(const sc_moving_contour *c, const lanes m[2])
+{
+    return lanes_add(lanes_add(lanes_multiply(lanes_absolute(m[0]), lanes_all(c->clear[0])),
+                               lanes_multiply(lanes_absolute(m[1]), lanes_all(c->clear[1]))),
+                     lanes_all(16 * FLT_MIN));
+}
+
+/* Bits of the edges e that are clear of f along m: beyond it, or on this side if that counts. */
+static inline unsigned SC_KERNEL(are_apart_along)(const sc_moving_contour *c, const lanes m[2],
+                                                  const SC_KERNEL(moving_lanes) * e,
+                                                  const SC_KERNEL(moving_lanes) * f)
+{
+    lanes clear = SC_KERNEL(clear_along)(c, m), e_least[2], e_most[2], f_least[2], f_most[2];
+    int end;
+    for (end = 0; end < 2; end++) {
+        SC_KERNEL(extent_along)(m, e, end, &e_least[end], &e_most[end]);
+        SC_KERNEL(extent_along)(m, f, end, &f_least[end], &f_most[end]);
+    }
+    return lanes_bits(lanes_below(clear, lanes_smaller(lanes_subtract(f_least[0], e_most[0]),
+                                                       lanes_subtract(f_least[1], e_most[1])))) |
+           lanes_bits(lanes_below(clear, lanes_smaller(lanes_subtract(e_least[0], f_most[0]),
+                                                       lanes_subtract(e_least[1], f_most[1]))));
+}
+
+/* Bits of the edges e that are clear of f for certain, along the way from middle to middle or across one of the
+   two. */
+static inline unsigned SC_KERNEL(are_apart)(const sc_moving_contour *c,
+                                            const SC_KERNEL(moving_lanes) * e,
+                                            const SC_KERNEL(moving_lanes) * f, unsigned asked)
+{
+    lanes m[2];
+    unsigned left;
+    int k;
+    for (k = 0; k < 2; k++)
+        m[k] = lanes_subtract(
+            lanes_add(lanes_add(f->p[0][k], f->q[0][k]), lanes_add(f->p[1][k], f->q[1][k])),
+            lanes_add(lanes_add(e->p[0][k], e->q[0][k]), lanes_add(e->p[1][k], e->q[1][k])));
+    left = asked & ~SC_KERNEL(are_apart_along)(c, m, e, f);
+    if (!left) return asked;
+    m[0] = lanes_subtract(lanes_add(e->q[0][1], e->q[1][1]), lanes_add(e->p[0][1], e->p[1][1]));
+    m[1] = lanes_subtract(lanes_add(e->p[0][0], e->p[1][0]), lanes_add(e->q[0][0], e->q[1][0]));
+    left &= ~SC_KERNEL(are_apart_along)(c, m, e, f);
+    if (!left) return asked;
+    m[0] = lanes_subtract(lanes_add(f->q[0][1], f->q[1][1]), lanes_add(f->p[0][1], f->p[1][1]));
+    m[1] = lanes_subtract(lanes_add(f->p[0][0], f->p[1][0]), lanes_add(f->q[0][0], f->q[1][0]));
+    return asked & ~(left & ~SC_KERNEL(are_apart_along)(c, m, e, f));
+}
+
+/* Bits of edges e that are open to the next, f, which starts where they end: both run on along the sum of the
+   two. */
+static inline unsigned SC_KERNEL(run_on)(const sc_moving_contour *c,
+                                         const SC_KERNEL(moving_lanes) * e, const lanes next[2][2])
+{
+    lanes v[2][2], w[2][2], m[2], least, dot;
+    int k, end;
+    for (end = 0; end < 2; end++)
+        for (k = 0; k < 2; k++) {
+            v[end][k] = lanes_subtract(e->q[end][k], e->p[end][k]);
+            w[end][k] = lanes_subtract(next[end][k], e->q[end][k]);
+        }
+    for (k = 0; k < 2; k++)
+        m[k] = lanes_add(lanes_add(v[0][k], v[1][k]), lanes_add(w[0][k], w[1][k]));
+    least = lanes_add(lanes_multiply(m[0], v[0][0]), lanes_multiply(m[1], v[0][1]));
+    dot = lanes_add(lanes_multiply(m[0], v[1][0]), lanes_multiply(m[1], v[1][1]));
+    least = lanes_smaller(least, dot);
+    for (end = 0; end < 2; end++) {
+        dot = lanes_add(lanes_multiply(m[0], w[end][0]), lanes_multiply(m[1], w[end][1]));
+        least = lanes_smaller(least, dot);
+    }
+    return lanes_bits(lanes_below(SC_KERNEL(clear_along)(c, m), least));
+}
+
+/* Boxes of the runs of sixteen edges at one end of the step, each larger by half the clearance. What is no edge is in
+   them, which does no harm. */
+static inline void SC_KERNEL(enclose_runs)(const sc_moving_contour *c, uint32_t i, int end,
+                                           const SC_KERNEL(moving_lanes) * e)
+{
+    float *const *side = end ? c->end->run_side : c->start.edges->run_side;
+    int k;
+    for (k = 0; k < 2; k++) {
+        lanes margin = lanes_all(0.5f * c->clear[k]);
+        lanes_store_least(side[2 * k] + i / SC_CONTOUR_RUN,
+                          lanes_subtract(lanes_smaller(e->p[end][k], e->q[end][k]), margin));
+        lanes_store_most(side[2 * k + 1] + i / SC_CONTOUR_RUN,
+                         lanes_add(lanes_larger(e->p[end][k], e->q[end][k]), margin));
+    }
+}
+
+static int SC_KERNEL(are_near_clear)(sc_moving_contour *c, uint32_t block)
+{
+    const sc_contour_edges *e = c->start.edges;
+    uint32_t i = block * SC_CONTOUR_BLOCK, s;
+    unsigned edges = e->is_edge[block], following = edges | (unsigned)e->is_edge[block + 1] << 16;
+    SC_KERNEL(moving_lanes) own, other;
+    unsigned left;
+    int k, end;
+    for (end = 0; end < 2; end++)
+        for (k = 0; k < 2; k++) {
+            const float *at = (end ? c->end->at[k] : e->at[k]) + i;
+            own.p[end][k] = lanes_load(at);
+            own.q[end][k] = lanes_load(at + 1);
+            other.q[end][k] = lanes_load(at + 2);
+        }
+    for (end = 0; end < 2; end++) SC_KERNEL(enclose_runs)(c, i, end, &own);
+    left = edges & following >> 1;
+    for (left &= ~SC_KERNEL(run_on)(c, &own, (const lanes(*)[2])other.q); left; left &= left - 1) {
+        uint32_t edge = i + sc_bits_lowest(left);
+        if (!sc_moving_contour_are_clear(c, edge, edge + 1)) return 0;
+    }
+    for (s = 2; s <= SC_CONTOUR_NEAR; s++) {
+        for (end = 0; end < 2; end++)
+            for (k = 0; k < 2; k++) {
+                other.p[end][k] = other.q[end][k];
+                other.q[end][k] = lanes_load((end ? c->end->at[k] : e->at[k]) + i + s + 1);
+            }
+        left = edges & following >> s;
+        if (!left) continue;
+        for (left &= ~SC_KERNEL(are_apart)(c, &own, &other, left); left; left &= left - 1) {
+            uint32_t edge = i + sc_bits_lowest(left);
+            if (!sc_moving_contour_are_clear(c, edge, edge + s)) return 0;
+        }
+    }
+    return 1;
+}
+
+/* The edges of two runs. */
+static int SC_KERNEL(are_runs_clear)(sc_moving_contour *c, uint32_t run, uint32_t other_run)
+{
+    static const uint16_t four_times[16] = {0x0000, 0x000f, 0x00f0, 0x00ff, 0x0f00, 0x0f0f,
+                                            0x0ff0, 0x0fff, 0xf000, 0xf00f, 0xf0f0, 0xf0ff,
+                                            0xff00, 0xff0f, 0xfff0, 0xffff};
+    const sc_contour_edges *e = c->start.edges;
+    uint32_t i = run * SC_CONTOUR_RUN, j = other_run * SC_CONTOUR_RUN;
+    unsigned own_edges = (unsigned)e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 15u;
+    unsigned other_edges = (unsigned)e->is_edge[j / SC_CONTOUR_BLOCK] >> j % SC_CONTOUR_BLOCK & 15u;
+    unsigned left = four_times[own_edges] & other_edges * 0x1111u;
+    SC_KERNEL(moving_lanes) own, other;
+    int k, end;
+    if (!left) return 1;
+    for (end = 0; end < 2; end++)
+        for (k = 0; k < 2; k++) {
+            const float *at = end ? c->end->at[k] : e->at[k];
+            own.p[end][k] = lanes_each_four(at + i);
+            own.q[end][k] = lanes_each_four(at + i + 1);
+            other.p[end][k] = lanes_four(at + j);
+            other.q[end][k] = lanes_four(at + j + 1);
+        }
+    for (left &= ~SC_KERNEL(are_apart)(c, &own, &other, left); left; left &= left - 1) {
+        unsigned pair = sc_bits_lowest(left);
+        if (!sc_moving_contour_are_clear(c, i + pair / 4, j + pair % 4)) return 0;
+    }
+    return 1;
+}
+
+/* Bit k: box i of a is not apart on one side from box j + k of b at both ends, for k from 0 to 15. */
+static inline unsigned SC_KERNEL(near_in_plane)(float *a[2][4], uint32_t i, float *b[2][4],
+                                                uint32_t j)
+{
+    lanes least = lanes_all(0);
+    int k;
+    for (k = 0; k < 4; k += 2) {
+        lanes below =
+            lanes_larger(lanes_subtract(lanes_all(a[0][k + 1][i]), lanes_load(b[0][k] + j)),
+                         lanes_subtract(lanes_all(a[1][k + 1][i]), lanes_load(b[1][k] + j)));
+        lanes above =
+            lanes_larger(lanes_subtract(lanes_load(b[0][k + 1] + j), lanes_all(a[0][k][i])),
+                         lanes_subtract(lanes_load(b[1][k + 1] + j), lanes_all(a[1][k][i])));
+        least = lanes_smaller(least, lanes_smaller(below, above));
+    }
+    return ~lanes_bits(lanes_below(least, lanes_all(0))) & 0xffffu;
+}
+
+/* A run and some of sixteen runs from another on. */
+static int SC_KERNEL(are_far_clear)(sc_moving_contour *c, float *side[2][4], uint32_t run,
+                                    uint32_t first, unsigned some)
+{
+    for (some &= SC_KERNEL(near_in_plane)(side, run, side, first); some; some &= some - 1)
+        if (!SC_KERNEL(are_runs_clear)(c, run, first + sc_bits_lowest(some))) return 0;
+    return 1;
+}
+
+/* Runs that do not follow each other, in groups of sixteen, first by the boxes of groups. */
+static int SC_KERNEL(are_groups_clear)(sc_moving_contour *c)
+{
+    const sc_contour_edges *e = c->start.edges;
+    uint32_t runs = (c->start.count + SC_CONTOUR_RUN - 1) / SC_CONTOUR_RUN;
+    uint32_t groups = (runs + 15) / 16, a, b, r;
+    float *side[2][4], *group_side[2][4];
+    int k, end;
+    for (end = 0; end < 2; end++)
+        for (k = 0; k < 4; k++) {
+            /* the last group is full, of boxes that are near nothing; and so is one of groups */
+            const lanes nothing = lanes_all(k % 2 ? -FLT_MAX : FLT_MAX);
+            side[end][k] = end ? c->end->run_side[k] : e->run_side[k];
+            group_side[end][k] = end ? c->end->group_side[k] : e->group_side[k];
+            lanes_store(side[end][k] + runs, nothing);
+            for (a = 0; a < groups && groups > 1; a++) {
+                lanes sides = lanes_load(side[end][k] + 16 * a);
+                group_side[end][k][a] = k % 2 ? lanes_most(sides) : lanes_least(sides);
+            }
+            lanes_store(group_side[end][k] + groups, nothing);
+        }
+    for (a = 0; a < groups; a++) {
+        uint32_t end_of = runs - 16 * a < 16 ? runs - 16 * a : 16;
+        for (r = 0; r + 2 < end_of; r++)
+            if (!SC_KERNEL(are_far_clear)(c, side, 16 * a + r, 16 * a, 0xfffcu << r & 0xffffu))
+                return 0;
+        for (b = a + 1; b < groups; b += 16) {
+            unsigned others = SC_KERNEL(near_in_plane)(group_side, a, group_side, b);
+            for (; others; others &= others - 1) {
+                uint32_t other = b + sc_bits_lowest(others);
+                unsigned rows = SC_KERNEL(near_in_plane)(group_side, other, side, 16 * a);
+                for (; rows; rows &= rows - 1) {
+                    r = sc_bits_lowest(rows);
+                    if (!SC_KERNEL(are_far_clear)(c, side, 16 * a + r, 16 * other,
+                                                  r == 15 && other == a + 1 ? 0xfffeu : 0xffffu))
+                        return 0;
+                }
+            }
+        }
+    }
+    return 1;
+}
+
+static int SC_KERNEL(are_edges_clear)(sc_moving_contour *c)
+{
+    uint32_t a;
+    for (a = 0; a < c->start.blocks; a++)
+        if (!SC_KERNEL(are_near_clear)(c, a)) return 0;
+    return SC_KERNEL(are_groups_clear)(c);
+}
