@@ -189,38 +189,68 @@ static void write_segments(const sc_csf *csf, const uint32_t *number, const sc_s
     }
 }
 
-/* Patches that are connected through edges: a search from the first triangle of each. */
+/* Of pieces that hang together: the first of the piece that i is in. */
+static uint32_t find_first(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+/*
+ * Patches that are connected through edges. From the last level up, the edges between triangles of one patch
+ * join pieces; those that are left, fewer at each level, wait for a larger patch.
+ */
 static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarchy *hierarchy,
                                  const sc_xbvh *xbvh, sc_scratch *scratch, sc_level *levels)
 {
-    uint32_t count = hierarchy->triangle_count, level, p, i, k, *place, *seen, *queue;
+    uint32_t count = hierarchy->triangle_count, level, p, i, k, leaf, *place, *parent, *leaf_of;
+    uint32_t *patch_at, *pieces;
+    uint64_t n, edges = 0, kept;
+    sc_pair *joint;
     place = (uint32_t *)sc_scratch_take(scratch, count, sizeof *place);
-    queue = (uint32_t *)sc_scratch_take(scratch, count, sizeof *queue);
-    seen = (uint32_t *)sc_scratch_take_filled(scratch, count, sizeof *seen, 0xff);
-    if (!place || !queue || !seen) return SC_ERROR_MEMORY;
-    for (i = 0; i < count; i++) place[hierarchy->order[i]] = i;
-    for (level = 0; level < xbvh->level_count; level++)
-        for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++) {
-            uint32_t begin = xbvh->leaf_first[xbvh->leaf[p]],
-                     end = xbvh->leaf_first[xbvh->leaf[p + 1]];
-            uint32_t head = 0, tail = 0;
-            queue[tail++] = begin;
-            seen[begin] = p;
-            while (head < tail) {
-                uint32_t t = hierarchy->order[queue[head++]];
-                for (k = 0; k < 3; k++) {
-                    uint32_t h = adjacency->opposite[3 * (uint64_t)t + k];
-                    if (h == SC_NONE) continue;
-                    h = place[h / 3];
-                    if (h < begin || h >= end || seen[h] == p) continue;
-                    seen[h] = p;
-                    queue[tail++] = h;
-                }
-            }
-            levels[level].connected_patches += tail == end - begin;
+    parent = (uint32_t *)sc_scratch_take(scratch, count, sizeof *parent);
+    leaf_of = (uint32_t *)sc_scratch_take(scratch, count, sizeof *leaf_of);
+    patch_at = (uint32_t *)sc_scratch_take(scratch, xbvh->leaf_count, sizeof *patch_at);
+    pieces = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *pieces, 0);
+    joint = (sc_pair *)sc_scratch_take(scratch, 3 * (uint64_t)count / 2 + 1, sizeof *joint);
+    if (!place || !parent || !leaf_of || !patch_at || !pieces || !joint) return SC_ERROR_MEMORY;
+    for (i = 0; i < count; i++) place[hierarchy->order[i]] = parent[i] = i;
+    for (leaf = 0; leaf < xbvh->leaf_count; leaf++)
+        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++) leaf_of[i] = leaf;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) {
+            uint32_t h = adjacency->opposite[3 * (uint64_t)hierarchy->order[i] + k];
+            if (h == SC_NONE || place[h / 3] <= i) continue;
+            joint[edges].a = i;
+            joint[edges++].b = place[h / 3];
         }
-    sc_scratch_give(scratch, seen);
-    sc_scratch_give(scratch, queue);
+    for (level = xbvh->level_count; level-- > 0; edges = kept) {
+        uint32_t begin = xbvh->level_first[level], end = xbvh->level_first[level + 1] - 1;
+        for (p = begin; p < end; p++) {
+            uint32_t first = xbvh->leaf[p], last = xbvh->leaf[p + 1];
+            for (leaf = first; leaf < last; leaf++) patch_at[leaf] = p;
+            if (level + 1 == xbvh->level_count)
+                pieces[p] = xbvh->leaf_first[last] - xbvh->leaf_first[first];
+            else
+                for (i = xbvh->child[p]; i < xbvh->child[p + 1]; i++) pieces[p] += pieces[i];
+        }
+        for (n = kept = 0; n < edges; n++) {
+            p = patch_at[leaf_of[joint[n].a]];
+            if (p == patch_at[leaf_of[joint[n].b]]) {
+                uint32_t a = find_first(parent, joint[n].a), b = find_first(parent, joint[n].b);
+                pieces[p] -= a != b;
+                parent[a < b ? b : a] = a < b ? a : b;
+            } else {
+                joint[kept++] = joint[n];
+            }
+        }
+        for (p = begin; p < end; p++) levels[level].connected_patches += pieces[p] == 1;
+    }
+    sc_scratch_give(scratch, joint);
+    sc_scratch_give(scratch, pieces);
+    sc_scratch_give(scratch, patch_at);
+    sc_scratch_give(scratch, leaf_of);
+    sc_scratch_give(scratch, parent);
     sc_scratch_give(scratch, place);
     return SC_OK;
 }
@@ -269,7 +299,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
                             sc_model **model)
 {
     sc_model counts, *m;
-    uint32_t *number, *ring_first, *ring, p, i;
+    uint32_t *number, *ring_first, *ring, v, i;
     uint64_t open_total = 0;
     sc_status status;
 
@@ -281,16 +311,19 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     ring = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)points->triangle_count, sizeof *ring);
     if (!number || !ring_first || !ring) return SC_ERROR_MEMORY;
     number_points(points, number);
-    for (p = 0; p < points->point_count; p++) { /* lengths first, by new numbers */
-        uint32_t n = sc_adjacency_ring(points, adjacency, p, ring);
-        ring_first[number[p] + 1] = n;
+    for (v = 0; v < points->vertex_count; v++) {
+        uint32_t at = ring_first[v], n, p = points->slot[v];
+        ring_first[v + 1] = at;
+        if (p >= SC_SLOT_WELDED) continue;
+        n = sc_adjacency_ring(points, adjacency, p, ring + at);
+        ring_first[v + 1] += n;
+        for (i = at; i < at + n; i++) ring[i] = number[ring[i]];
         if (n) continue;
         counts.open_count++;
         open_total += list_around(points, adjacency, p, NULL);
     }
     if (SC_HARDLY(open_total > UINT32_MAX)) return SC_ERROR_COUNT;
     counts.open_total = (uint32_t)open_total;
-    for (p = 0; p < points->vertex_count; p++) ring_first[p + 1] += ring_first[p];
     counts.share_count = sharing->first[xbvh->leaf_count];
     counts.ring_total = ring_first[points->vertex_count];
     sc_model_lay_out(&counts);
@@ -300,12 +333,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     if (!m) return SC_ERROR_MEMORY;
     memset(m, 0, (size_t)counts.bytes);
     *m = counts;
-    for (p = 0; p < points->point_count; p++)
-        if (ring_first[number[p] + 1] > ring_first[number[p]]) {
-            uint32_t *to = NEW_ARRAY(m, ring, uint32_t) + ring_first[number[p]];
-            uint32_t n = sc_adjacency_ring(points, adjacency, p, ring);
-            for (i = 0; i < n; i++) to[i] = number[ring[i]];
-        }
+    copy(NEW_ARRAY(m, ring, uint32_t), ring, m->ring_total * sizeof(uint32_t));
     copy(NEW_ARRAY(m, ring_first, uint32_t), ring_first,
          ((uint64_t)points->vertex_count + 1) * sizeof(uint32_t));
     write_open_points(points, adjacency, number, m);
