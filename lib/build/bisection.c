@@ -11,6 +11,7 @@
 #include "base/assume.h"
 #include "base/sort.h"
 #include "build/refinement.h"
+#include "build/straight_cut.h"
 
 /* Deeper than this, patches are halved as they stand, which ends within SC_DEPTH_MAX. A cut leaves at
    most 17 / 32 on a side, and components are dealt out between two cuts: some 100,000 triangles would
@@ -30,10 +31,10 @@ typedef struct bisection {
     sc_bisect cut;
     void *user;
     sc_hierarchy *hierarchy;
-    float *centers;      /* 3 * triangle_count */
+    float *centers;      /* 3 * triangle_count: sums of corners */
     float *lengths;      /* 3 * triangle_count: rest length of each side over the mean */
-    uint32_t *patch;     /* triangle_count: the number of the patch at hand it belongs to */
-    uint8_t *side;       /* triangle_count */
+    uint32_t *neighbor;  /* 3 * triangle_count: across each side, triangle_count if there is none */
+    uint32_t *label;     /* triangle_count + 1: 2 * number of the patch at hand, + 1 on side 1 */
     uint32_t *component; /* triangle_count */
     uint32_t *queue;     /* triangle_count */
     sc_pair *keys;       /* triangle_count */
@@ -43,12 +44,10 @@ typedef struct bisection {
     sc_refinement refinement;
 } bisection;
 
-/* The triangle across side k of t if it is in the same patch, else SC_NONE. */
-static uint32_t neighbor(const bisection *b, uint32_t t, uint32_t k)
+/* Whether u is in the patch of t, and if asked on its side. */
+static int is_with(const bisection *b, uint32_t t, uint32_t u, int by_side)
 {
-    uint32_t h = b->adjacency->opposite[3 * (uint64_t)t + k];
-    if (h == SC_NONE || b->patch[h / 3] != b->patch[t]) return SC_NONE;
-    return h / 3;
+    return (b->label[u] ^ b->label[t]) <= !by_side;
 }
 
 /* Numbers the components of a patch, where crossing from side 0 to side 1 does or does not count as
@@ -66,9 +65,8 @@ static uint32_t number_components(bisection *b, const uint32_t *triangles, uint3
         while (head < tail) {
             uint32_t t = b->queue[head++];
             for (k = 0; k < 3; k++) {
-                uint32_t u = neighbor(b, t, k);
-                if (u == SC_NONE || b->component[u] != SC_NONE) continue;
-                if (by_side && b->side[u] != b->side[t]) continue;
+                uint32_t u = b->neighbor[3 * (uint64_t)t + k];
+                if (!is_with(b, t, u, by_side) || b->component[u] != SC_NONE) continue;
                 b->component[u] = found;
                 b->queue[tail++] = u;
             }
@@ -78,86 +76,39 @@ static uint32_t number_components(bisection *b, const uint32_t *triangles, uint3
     return found;
 }
 
-/* The direction in which the centers of some triangles spread most, by power iteration on their
-   covariance from the longest axis of their box. */
-static void longest_direction(const bisection *b, const uint32_t *triangles, uint32_t count,
-                              double direction[3])
+/* The next half-edge of the border between the two sides of a patch, seen from the side of h, which is one:
+   forward round its end, or backward round its start; SC_NONE where the border ends. */
+static uint32_t follow_border(const bisection *b, uint32_t h, int forward)
 {
-    double mean[3] = {0, 0, 0}, low[3], high[3], m[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    uint32_t i;
-    int j, k, round, axis = 0;
-    for (k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
-    for (i = 0; i < count; i++) {
-        const float *c = b->centers + 3 * (uint64_t)triangles[i];
-        for (k = 0; k < 3; k++) {
-            double x = (double)c[k];
-            mean[k] += x / count;
-            if (x < low[k]) low[k] = x;
-            if (x > high[k]) high[k] = x;
-        }
-    }
-    for (i = 0; i < count; i++) {
-        const float *c = b->centers + 3 * (uint64_t)triangles[i];
-        for (j = 0; j < 3; j++)
-            for (k = j; k < 3; k++) m[j][k] += ((double)c[j] - mean[j]) * ((double)c[k] - mean[k]);
-    }
-    m[1][0] = m[0][1];
-    m[2][0] = m[0][2];
-    m[2][1] = m[1][2];
-    for (k = 1; k < 3; k++)
-        if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
-    for (k = 0; k < 3; k++) direction[k] = k == axis;
-    for (round = 0; round < 6; round++) {
-        double next[3], size;
-        for (k = 0; k < 3; k++)
-            next[k] = m[k][0] * direction[0] + m[k][1] * direction[1] + m[k][2] * direction[2];
-        size = fabs(next[0]) + fabs(next[1]) + fabs(next[2]);
-        if (!(size > 0)) break;
-        for (k = 0; k < 3; k++) direction[k] = next[k] / size;
+    uint32_t label = b->label[h / 3];
+    for (;;) {
+        uint32_t other;
+        h = forward ? sc_adjacency_next(h) : sc_adjacency_previous(h);
+        other = b->neighbor[h];
+        if (b->label[other] == (label ^ 1)) return h;
+        if (b->label[other] != label) return SC_NONE;
+        h = b->adjacency->opposite[h];
     }
 }
 
-/* Moves the lowest `left` of count keys to the front. */
-static void select_lowest(sc_pair *keys, uint32_t count, uint32_t left)
+/* Whether one walk along the border meets all of it: then the triangles beside it hang together on that side,
+   and with them all of a side of a connected patch. */
+static int is_one_walk(const bisection *b, uint32_t side)
 {
-    int64_t low = 0, high = (int64_t)count - 1;
-    while (low < high) {
-        sc_pair pivot = keys[low + (high - low) / 2];
-        int64_t i = low, j = high;
-        while (i <= j) {
-            while (sc_sort_less(keys[i], pivot)) i++;
-            while (sc_sort_less(pivot, keys[j])) j--;
-            if (i <= j) {
-                sc_pair swapped = keys[i];
-                keys[i++] = keys[j];
-                keys[j--] = swapped;
-            }
+    const sc_refinement *r = &b->refinement;
+    uint32_t length = 0, start = SC_NONE, met = 1, i, k, h;
+    for (i = 0; i < r->border_count; i++)
+        for (k = 0; (b->label[r->border[i]] & 1) == side && k < 3; k++) {
+            h = 3 * r->border[i] + k;
+            if (b->label[b->neighbor[h]] != (b->label[r->border[i]] ^ 1)) continue;
+            start = h;
+            length++;
         }
-        if ((int64_t)left <= j)
-            high = j;
-        else if ((int64_t)left >= i)
-            low = i;
-        else
-            return;
-    }
-}
-
-/* The built-in cut: the left_target triangles lowest along the longest direction get side 0. */
-static void cut_across(bisection *b, const uint32_t *triangles, uint32_t count,
-                       uint32_t left_target)
-{
-    double direction[3];
-    uint32_t i;
-    longest_direction(b, triangles, count, direction);
-    for (i = 0; i < count; i++) {
-        const float *c = b->centers + 3 * (uint64_t)triangles[i];
-        double along =
-            (double)c[0] * direction[0] + (double)c[1] * direction[1] + (double)c[2] * direction[2];
-        b->keys[i].a = sc_sort_key((float)along);
-        b->keys[i].b = triangles[i];
-    }
-    select_lowest(b->keys, count, left_target);
-    for (i = 0; i < count; i++) b->side[b->keys[i].b] = i >= left_target;
+    for (h = follow_border(b, start, 1); h != start && h != SC_NONE; h = follow_border(b, h, 1))
+        met++;
+    if (h == start) return met == length;
+    for (h = follow_border(b, start, 0); h != SC_NONE; h = follow_border(b, h, 0)) met++;
+    return met == length;
 }
 
 /* The caller's cut. */
@@ -168,18 +119,16 @@ static sc_status cut_by_caller(bisection *b, const uint32_t *triangles, uint32_t
     uint8_t *side = (uint8_t *)b->keys; /* not in use meanwhile */
     int32_t *offsets = b->graph, *neighbors = offsets + count + 1;
     int32_t *weights = neighbors + 3 * (uint64_t)count;
-    uint32_t i, k, zeros = 0;
+    uint32_t i, k, zeros = 0, low = b->label[triangles[0]];
     int32_t arcs = 0;
     sc_status status;
     for (i = 0; i < count; i++) b->queue[triangles[i]] = i; /* local numbers */
     for (i = 0; i < count; i++) {
         offsets[i] = arcs;
         for (k = 0; k < 3; k++) {
-            uint32_t t = triangles[i], u = neighbor(b, t, k);
+            uint32_t t = triangles[i], u = b->neighbor[3 * (uint64_t)t + k];
             float weight = 100 * b->lengths[3 * (uint64_t)t + k];
-            if (u == SC_NONE) continue;
-            if (SC_NEVER(u == t))
-                continue; /* two corners at one point: then t has no other neighbor */
+            if (!is_with(b, t, u, 0)) continue;
             neighbors[arcs] = (int32_t)b->queue[u];
             weights[arcs++] = weight > 999 ? 1000 : weight >= 1 ? (int32_t)weight : 1;
         }
@@ -196,7 +145,7 @@ static sc_status cut_by_caller(bisection *b, const uint32_t *triangles, uint32_t
     for (i = 0; i < count; i++) {
         if (side[i] > 1) return SC_ERROR_PARTITION;
         zeros += side[i] == 0;
-        b->side[triangles[i]] = side[i];
+        b->label[triangles[i]] = low + side[i];
     }
     return zeros == 0 || zeros == count ? SC_ERROR_PARTITION : SC_OK;
 }
@@ -206,50 +155,53 @@ static sc_status cut_by_caller(bisection *b, const uint32_t *triangles, uint32_t
 static void even_out(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
                      const uint32_t capacity[2])
 {
-    uint8_t heavy = size[0] > capacity[0] ? 0 : 1;
-    uint32_t excess, head = 0, tail = 0, i, k;
+    uint32_t heavy = size[0] > capacity[0] ? 0 : 1, excess, head = 0, tail = 0, i, k;
     if (size[heavy] <= capacity[heavy]) return;
     excess = size[heavy] - capacity[heavy];
     size[heavy] -= excess;
     size[!heavy] += excess;
     for (i = 0; i < count; i++)
-        if (b->side[triangles[i]] != heavy) b->queue[tail++] = triangles[i];
+        if ((b->label[triangles[i]] & 1) != heavy) b->queue[tail++] = triangles[i];
     while (excess && SC_ALWAYS(head < tail)) { /* the patch is connected, and has both sides */
         uint32_t t = b->queue[head++];
         for (k = 0; k < 3 && excess; k++) {
-            uint32_t u = neighbor(b, t, k);
-            if (u == SC_NONE || b->side[u] != heavy) continue;
-            b->side[u] = !heavy;
+            uint32_t u = b->neighbor[3 * (uint64_t)t + k];
+            if ((b->label[u] ^ b->label[t]) != 1) continue;
+            b->label[u] ^= 1;
             b->queue[tail++] = u;
             excess--;
         }
     }
 }
 
-/* Gives the smaller components of each side to the other side. */
-static void connect(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
-                    const uint32_t capacity[2])
+/* Gives the smaller components of each side to the other side. Returns whether both sides are known to
+   be connected. */
+static int connect(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
+                   const uint32_t capacity[2])
 {
-    uint32_t found = number_components(b, triangles, count, 1), largest[2] = {SC_NONE, SC_NONE}, i;
-    if (found == 2) return;
+    uint32_t found, largest[2] = {SC_NONE, SC_NONE}, i;
+    if (is_one_walk(b, 0) && is_one_walk(b, 1)) return 1;
+    found = number_components(b, triangles, count, 1);
+    if (found == 2) return 1;
     for (i = 0; i < count; i++) {
-        uint32_t c = b->component[triangles[i]], s = b->side[triangles[i]];
+        uint32_t c = b->component[triangles[i]], s = b->label[triangles[i]] & 1;
         if (largest[s] == SC_NONE || b->sizes[c] > b->sizes[largest[s]]) largest[s] = c;
     }
     for (i = 0; i < count; i++) {
-        uint32_t t = triangles[i], c = b->component[t], s = b->side[t];
+        uint32_t t = triangles[i], c = b->component[t], s = b->label[t] & 1;
         if (c == largest[s]) continue;
         if (b->sizes[c] & 0x80000000u) { /* decided at its first triangle */
-            b->side[t] = (uint8_t)(b->sizes[c] & 1u);
+            b->label[t] = (b->label[t] & ~1u) | (b->sizes[c] & 1u);
         } else if (size[!s] + b->sizes[c] <= capacity[!s]) {
             size[s] -= b->sizes[c];
             size[!s] += b->sizes[c];
             b->sizes[c] = 0x80000000u | !s;
-            b->side[t] = !s;
+            b->label[t] ^= 1;
         } else {
             b->sizes[c] = 0x80000000u | s;
         }
     }
+    return 0;
 }
 
 /* Deals the components of a patch out to two sides, none cut: the largest against the rest if it is
@@ -257,23 +209,21 @@ static void connect(bisection *b, const uint32_t *triangles, uint32_t count, uin
 static void deal_components(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t found)
 {
     uint32_t largest = 0, i, taken = 0, n = 0;
-    double direction[3];
+    float direction[3];
     for (i = 1; i < found; i++)
         if (b->sizes[i] > b->sizes[largest]) largest = i;
     if (2 * (uint64_t)b->sizes[largest] >= count) {
-        for (i = 0; i < count; i++) b->side[triangles[i]] = b->component[triangles[i]] != largest;
+        for (i = 0; i < count; i++) b->label[triangles[i]] |= b->component[triangles[i]] != largest;
         return;
     }
     for (i = 0; i < found; i++) b->queue[i] = SC_NONE;
     for (i = 0; i < count; i++)
         if (b->queue[b->component[triangles[i]]] == SC_NONE)
             b->queue[b->component[triangles[i]]] = triangles[i];
-    longest_direction(b, b->queue, found, direction);
+    sc_straight_cut_direction(b->centers, b->queue, found, direction);
     for (i = 0; i < found; i++) {
-        const float *c = b->centers + 3 * (uint64_t)b->queue[i];
-        b->keys[i].a =
-            sc_sort_key((float)((double)c[0] * direction[0] + (double)c[1] * direction[1] +
-                                (double)c[2] * direction[2]));
+        const float *center = b->centers + 3 * (uint64_t)b->queue[i];
+        b->keys[i].a = sc_sort_key(sc_straight_cut_along(center, direction));
         b->keys[i].b = i;
     }
     sc_sort_pairs(b->keys, found);
@@ -285,8 +235,7 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
         n++;
     }
     for (i = 0; i < found; i++) b->queue[b->keys[i].b] = i >= n;
-    for (i = 0; i < count; i++)
-        b->side[triangles[i]] = (uint8_t)b->queue[b->component[triangles[i]]];
+    for (i = 0; i < count; i++) b->label[triangles[i]] |= b->queue[b->component[triangles[i]]];
 }
 
 /*
@@ -323,10 +272,12 @@ static void share_leaves(uint32_t leaves, uint32_t left, uint32_t right, uint32_
     *right_leaves = leaves_for(right);
 }
 
-/* Writes side for a patch that is to become so many leaves, two or more; both sides get some. */
-static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t leaves)
+/* Labels the sides of a patch that is to become so many leaves, two or more; both sides get some.
+   *connected: whether the patch is known to be, then whether both sides are. */
+static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t leaves,
+                        int *connected)
 {
-    uint32_t left_leaves = left_part(leaves), found, i;
+    uint32_t left_leaves = left_part(leaves), found, i, low;
     uint32_t left_target = (uint32_t)((uint64_t)count * left_leaves / leaves);
     uint32_t size[2] = {0, 0}, capacity[2];
     sc_status status;
@@ -335,28 +286,35 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count,
         capacity[i] = (i ? count - left_target : left_target) + 1 + count / SLACK;
         if (capacity[i] > full) capacity[i] = full;
     }
-    b->patches++;
-    for (i = 0; i < count; i++) b->patch[triangles[i]] = b->patches;
-    found = number_components(b, triangles, count, 0);
-    if (found > 1) {
-        deal_components(b, triangles, count, found);
-        return SC_OK;
+    low = 2 * ++b->patches;
+    if (!*connected || b->cut)
+        for (i = 0; i < count; i++) b->label[triangles[i]] = low;
+    if (!*connected) {
+        found = number_components(b, triangles, count, 0);
+        if (found > 1) {
+            deal_components(b, triangles, count, found);
+            return SC_OK;
+        }
     }
     if (b->cut) {
         status = cut_by_caller(b, triangles, count, left_target);
         if (status) return status;
+        for (i = 0; i < count; i++) size[b->label[triangles[i]] & 1]++;
+        even_out(b, triangles, count, size, capacity);
     } else {
-        cut_across(b, triangles, count, left_target);
+        sc_straight_cut_run(b->centers, triangles, count, left_target, b->refinement.gain, b->keys,
+                            b->label, low);
+        size[0] = left_target;
+        size[1] = count - left_target;
     }
-    for (i = 0; i < count; i++) size[b->side[triangles[i]]]++;
-    even_out(b, triangles, count, size, capacity);
     sc_refinement_run(&b->refinement, triangles, count, size, capacity);
-    connect(b, triangles, count, size, capacity);
+    *connected = connect(b, triangles, count, size, capacity);
     return SC_OK;
 }
 
+/* connected: whether the patch is known to be. */
 static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint32_t leaves,
-                              uint32_t depth, uint32_t *node)
+                              uint32_t depth, int connected, uint32_t *node)
 {
     sc_hierarchy *hierarchy = b->hierarchy;
     uint32_t *triangles = hierarchy->order + first, i, left = 0, right = 0, child;
@@ -367,21 +325,21 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
         return SC_OK;
     }
     *node = sc_hierarchy_add(hierarchy, first, count, depth);
-    status = divide(b, triangles, count, leaves);
+    status = divide(b, triangles, count, leaves, &connected);
     if (status) return status;
     for (i = 0; i < count; i++) {
         uint32_t t = triangles[i];
-        if (b->side[t])
+        if (b->label[t] & 1)
             b->queue[right++] = t;
         else
             triangles[left++] = t;
     }
     memcpy(triangles + left, b->queue, right * sizeof *triangles);
     share_leaves(leaves, left, right, &left_leaves, &right_leaves);
-    status = bisect_patch(b, first, left, left_leaves, depth + 1, &child);
+    status = bisect_patch(b, first, left, left_leaves, depth + 1, connected, &child);
     if (status) return status;
     hierarchy->nodes[*node].left = child;
-    status = bisect_patch(b, first + left, right, right_leaves, depth + 1, &child);
+    status = bisect_patch(b, first + left, right, right_leaves, depth + 1, connected, &child);
     hierarchy->nodes[*node].right = child;
     return status;
 }
@@ -389,34 +347,39 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
 static void measure(bisection *b)
 {
     const sc_points *points = b->points;
-    double scale = 0, mean = 0;
+    const uint32_t *corner = points->triangles;
+    double size = 0, scale, sum = 0;
+    float inverse;
     uint64_t i, corners = 3 * (uint64_t)points->triangle_count;
-    int k;
+    int k, exponent;
     /* everything relative to the largest coordinate, so that nothing overflows */
     for (i = 0; i < 3 * (uint64_t)points->point_count; i++)
-        if (fabs(points->rest[i]) > scale) scale = fabs(points->rest[i]);
-    if (!(scale > 0)) scale = 1;
+        if (fabs(points->rest[i]) > size) size = fabs(points->rest[i]);
+    frexp(size, &exponent);
+    scale = ldexp(1, exponent < -1000 ? 1000 : -exponent);
     for (i = 0; i < corners; i++) {
-        const double *p = points->rest + 3 * (uint64_t)points->triangles[i];
-        const double *q =
-            points->rest + 3 * (uint64_t)points->triangles[sc_adjacency_next((uint32_t)i)];
+        const double *p = points->rest + 3 * (uint64_t)corner[i];
+        const double *q = points->rest + 3 * (uint64_t)corner[sc_adjacency_next((uint32_t)i)];
+        uint32_t h = b->adjacency->opposite[i];
         double square = 0;
         for (k = 0; k < 3; k++) {
-            double d = q[k] / scale - p[k] / scale;
+            double d = q[k] * scale - p[k] * scale;
             square += d * d;
         }
-        b->lengths[i] = (float)sqrt(square);
-        mean += sqrt(square) / (double)corners;
+        square = sqrt(square);
+        b->lengths[i] = (float)square;
+        sum += square;
+        /* with two corners at one point a triangle may be beside itself: then it has no other neighbor */
+        b->neighbor[i] = h == SC_NONE || h / 3 == i / 3 ? points->triangle_count : h / 3;
     }
-    for (i = 0; i < corners; i++) b->lengths[i] = mean > 0 ? b->lengths[i] / (float)mean : 1;
-    for (i = 0; i < points->triangle_count; i++) {
-        const uint32_t *corner = points->triangles + 3 * i;
+    inverse = sum > 0 ? (float)((double)corners / sum) : 0;
+    for (i = 0; i < corners; i++) b->lengths[i] = inverse > 0 ? b->lengths[i] * inverse : 1;
+    for (i = 0; i < points->triangle_count; i++, corner += 3)
         for (k = 0; k < 3; k++)
             b->centers[3 * i + (uint64_t)k] =
-                (float)((points->rest[3 * (uint64_t)corner[0] + (uint64_t)k] / scale +
-                         points->rest[3 * (uint64_t)corner[1] + (uint64_t)k] / scale +
-                         points->rest[3 * (uint64_t)corner[2] + (uint64_t)k] / scale));
-    }
+                (float)(points->rest[3 * (uint64_t)corner[0] + (uint64_t)k] * scale +
+                        points->rest[3 * (uint64_t)corner[1] + (uint64_t)k] * scale +
+                        points->rest[3 * (uint64_t)corner[2] + (uint64_t)k] * scale);
 }
 
 sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjacency,
@@ -435,39 +398,40 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.hierarchy = hierarchy;
     b.centers = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(float));
     b.lengths = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(float));
-    b.patch = (uint32_t *)sc_scratch_take_filled(scratch, count, sizeof(uint32_t), 0);
-    b.side = (uint8_t *)sc_scratch_take(scratch, count, 1);
+    b.neighbor = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(uint32_t));
+    b.label =
+        (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)count + 1, sizeof(uint32_t), 0xff);
     b.component = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
     b.queue = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
     b.keys = (sc_pair *)sc_scratch_take(scratch, count, sizeof(sc_pair));
     b.sizes = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
-    b.refinement.opposite = adjacency->opposite;
+    b.refinement.neighbor = b.neighbor;
     b.refinement.lengths = b.lengths;
-    b.refinement.patch = b.patch;
-    b.refinement.side = b.side;
+    b.refinement.label = b.label;
     b.refinement.gain = (float *)sc_scratch_take(scratch, count, sizeof(float));
-    b.refinement.moved = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
-    b.refinement.moves = b.queue; /* not in use meanwhile */
+    b.refinement.state = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
+    b.refinement.moves = b.queue; /* these two are not in use meanwhile */
+    b.refinement.border = b.sizes;
     b.refinement.heap = (sc_pair *)sc_scratch_take(scratch, 4 * (uint64_t)count, sizeof(sc_pair));
     if (bisect)
         b.graph = (int32_t *)sc_scratch_take(scratch, 7 * (uint64_t)count + 1, sizeof(int32_t));
-    if (!b.centers || !b.lengths || !b.patch || !b.side || !b.component || !b.queue || !b.keys ||
-        !b.sizes || !b.refinement.gain || !b.refinement.moved || !b.refinement.heap ||
+    if (!b.centers || !b.lengths || !b.neighbor || !b.label || !b.component || !b.queue ||
+        !b.keys || !b.sizes || !b.refinement.gain || !b.refinement.state || !b.refinement.heap ||
         (bisect && !b.graph))
         return SC_ERROR_MEMORY;
     measure(&b);
     for (t = 0; t < count; t++) hierarchy->order[t] = t;
-    status = bisect_patch(&b, 0, count, leaves_for(count), 1, &root);
+    status = bisect_patch(&b, 0, count, leaves_for(count), 1, 0, &root);
     sc_scratch_give(scratch, b.graph);
     sc_scratch_give(scratch, b.refinement.heap);
-    sc_scratch_give(scratch, b.refinement.moved);
+    sc_scratch_give(scratch, b.refinement.state);
     sc_scratch_give(scratch, b.refinement.gain);
     sc_scratch_give(scratch, b.sizes);
     sc_scratch_give(scratch, b.keys);
     sc_scratch_give(scratch, b.queue);
     sc_scratch_give(scratch, b.component);
-    sc_scratch_give(scratch, b.side);
-    sc_scratch_give(scratch, b.patch);
+    sc_scratch_give(scratch, b.label);
+    sc_scratch_give(scratch, b.neighbor);
     sc_scratch_give(scratch, b.lengths);
     sc_scratch_give(scratch, b.centers);
     return status;
