@@ -130,6 +130,7 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
     for (k = 0; k < 6; k++)
         w->triangle_boxes.side[k] = (float *)place(block, &at, triangles, sizeof(float));
     w->mask = (uint16_t *)place(block, &at, model->patch_end, sizeof(uint16_t));
+    w->prospect = (uint32_t *)place(block, &at, model->patch_end, sizeof(uint32_t));
     for (k = 0; k < 2; k++) {
         w->bounds[k] =
             (sc_segment_bounds *)place(block, &at, model->segment_count, sizeof(sc_segment_bounds));

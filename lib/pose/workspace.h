@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | unit | patch boxes | triangle boxes | mask | bounds |
+ *     | sc_workspace | unit | patch boxes | triangle boxes | mask | prospect | bounds |
  *       bounds_tick | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
@@ -160,7 +160,8 @@ struct sc_workspace {
     sc_boxes
         triangle_boxes; /* SC_LEAF_MAX per leaf; what is no triangle is NaN and overlaps nothing */
     uint32_t boxes_ready;
-    uint16_t *mask; /* patch_end: discrete normal cones, see pose/dnc.h */
+    uint16_t *mask;     /* patch_end: discrete normal cones, see pose/dnc.h */
+    uint32_t *prospect; /* patch_end: where culling has prospects, see query/traversal.c */
     uint32_t pose_tick;
     uint32_t
         *fan; /* vertex_count: 2 * pose_tick + whether the fan projects one to one, if tested */

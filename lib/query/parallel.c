@@ -240,6 +240,19 @@ static void add_patch(plan *p, uint32_t a)
     }
 }
 
+/* The patches of a node that is left to boxes. */
+static void leave_to_boxes_in_parts(plan *p, const sc_pair *patches)
+{
+    uint32_t previous;
+    sc_traversal_follow_contour(p->state, 0);
+    previous = sc_state_switch(p->state, sc_state_box_task(p->state));
+    if (patches->a == patches->b)
+        add_patch(p, patches->a);
+    else
+        add_patches(p, patches->a, patches->b);
+    sc_state_switch(p->state, previous);
+}
+
 static int is_large_node(const sc_model *model, uint32_t node)
 {
     const sc_pair *patches = &sc_model_node_patches(model)[node];
@@ -292,6 +305,10 @@ static void open_nodes(plan *p)
         uint32_t node = p->w->open[--p->open_count];
         update_boxes(p);
         if (p->part_count > SC_PARTS_MAX - 2 * SC_WALK_CHILDREN) do_parts(p);
+        if (sc_traversal_is_left(p->state, node)) {
+            leave_to_boxes_in_parts(p, &sc_model_node_patches(p->state->model)[node]);
+            continue;
+        }
         sc_traversal_open(p->state, node);
         sort_out(p);
         add_boxes_of_node(p, node);
@@ -384,6 +401,7 @@ static void run_selfs(void *context, uint32_t part, uint32_t worker)
 static void walk_exact(plan *p)
 {
     uint32_t worker, count = 0;
+    sc_traversal_find_prospects(p->state);
     sc_traversal_orient(p->state, 0);
     sort_out(p);
     for (;;) {

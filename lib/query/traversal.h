@@ -32,6 +32,10 @@ void sc_traversal_orient(sc_query_state *state, uint32_t node);
 /* The contour test of a node that passed it. */
 int sc_traversal_test(sc_query_state *state, uint32_t node);
 
+/* Finds out where culling has prospects; and whether a node that failed a test is left to boxes, all of it, as it has none. */
+void sc_traversal_find_prospects(const sc_query_state *state);
+int sc_traversal_is_left(const sc_query_state *state, uint32_t node);
+
 /* Orientation tests of the children of a node that failed a test; its boxes are left. */
 void sc_traversal_open(sc_query_state *state, uint32_t node);
 
