@@ -31,7 +31,8 @@ bool query_subject_load(query_subject *subject, const char *path, const query_su
     if (!mesh_file_read(&subject->mesh, path, error)) return false;
     sc_status status = tool_build(&subject->mesh, how->weld, how->partition, how->rest,
                                   &subject->model, &subject->build_ms);
-    if (status == SC_OK) status = query_threads_workspace(subject->model, 0, &subject->workspace);
+    if (status == SC_OK)
+        status = query_threads_workspace(subject->model, how->flags, &subject->workspace);
     if (status == SC_OK && how->poses_follow && how->weld == SC_WELD_REST) {
         subject->weld_map = mesh_file_weld_map(&subject->mesh);
         if (!subject->weld_map) status = SC_ERROR_MEMORY;
@@ -42,7 +43,8 @@ bool query_subject_load(query_subject *subject, const char *path, const query_su
     return false;
 }
 
-bool query_subject_open(query_subject *subject, const char *path, char error[MESH_FILE_ERROR_SIZE])
+bool query_subject_open(query_subject *subject, const char *path, uint32_t flags,
+                        char error[MESH_FILE_ERROR_SIZE])
 {
     memset(subject, 0, sizeof *subject);
     const double start = tool_clock();
@@ -50,7 +52,7 @@ bool query_subject_open(query_subject *subject, const char *path, char error[MES
     subject->build_ms = tool_clock() - start;
     subject->model = subject->file.model;
     subject->weld_map = subject->file.weld_map;
-    const sc_status status = query_threads_workspace(subject->model, 0, &subject->workspace);
+    const sc_status status = query_threads_workspace(subject->model, flags, &subject->workspace);
     if (status == SC_OK) return true;
     snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
     query_subject_free(subject);

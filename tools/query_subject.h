@@ -26,6 +26,7 @@ typedef struct query_subject {
 /* How to build: weld and partition as in tool.h, rest as in sc_build_options. */
 typedef struct query_subject_how {
     uint32_t weld, partition, rest;
+    uint32_t flags;    /* of the workspace: SC_WORKSPACE_... */
     bool poses_follow; /* other poses of the mesh will be asked about */
 } query_subject_how;
 
@@ -33,8 +34,9 @@ typedef struct query_subject_how {
 bool query_subject_load(query_subject *subject, const char *path, const query_subject_how *how,
                         char error[MESH_FILE_ERROR_SIZE]);
 
-/* Takes a model that was saved; the mesh stays empty. */
-bool query_subject_open(query_subject *subject, const char *path, char error[MESH_FILE_ERROR_SIZE]);
+/* Takes a model that was saved; the mesh stays empty. flags: of the workspace. */
+bool query_subject_open(query_subject *subject, const char *path, uint32_t flags,
+                        char error[MESH_FILE_ERROR_SIZE]);
 
 /* Whether a mesh can be a pose of a saved model. */
 bool query_subject_fits(const query_subject *subject, const char *path, const mesh_file *mesh,

@@ -12,6 +12,7 @@
 #include "query_subject.h"
 #include "query_text.h"
 #include "query_threads.h"
+#include "step_query.h"
 #include "tool.h"
 
 #include <cjson/cJSON.h>
@@ -23,6 +24,7 @@
 
 static const char usage[] =
     "Usage: sc-query [options] MESH...\n"
+    "       sc-query --step [options] MESH MESH... | PATTERN\n"
     "Finds every self-collision of triangle meshes, exactly.\n"
     "\n"
     "Reads OBJ, OFF and all other formats that assimp reads. Vertices at equal positions are "
@@ -50,6 +52,24 @@ static const char usage[] =
     "  --model FILE                the same, with the model that sc-partition -o wrote\n"
     "  --replay FILE               in place of meshes: the query that --record wrote, with its "
     "options\n"
+    "What collides on the way from each MESH to the next\n"
+    "  --step                      the files are frames, two or more, in which every vertex moves "
+    "on "
+    "a\n"
+    "                              straight line: vertex-face and edge-edge pairs that meet, when "
+    "the\n"
+    "                              first does, and how many candidates there were. One pattern "
+    "such "
+    "as\n"
+    "                              f%04d.obj is all files with numbers from 0 or 1\n"
+    "  --separation D              that come as near as D, in units of the coordinates (0)\n"
+    "  --tolerance T               of distances (a millionth of the size); pairs up to D + T apart "
+    "may\n"
+    "                              be among those reported, and none up to D is missing\n"
+    "  --times                     each pair with its time, from 0 to 1\n";
+
+/* In two: C99 has strings of up to 4095 characters. */
+static const char usage_continued[] =
     "Which pairs are left out\n"
     "  --ignore-rings N            those less than N edges of the mesh apart; 1: that share a "
     "vertex\n"
@@ -72,6 +92,9 @@ static const char usage[] =
     "  --method sctt|aabb-sctt|aabb  self-collision test tree (default), boxes from that tree on, "
     "or\n"
     "                              the plain tree of boxes\n"
+    "                              With --step: sctt (default), two-boxes or swept, plain trees "
+    "of\n"
+    "                              boxes at both ends, or round the motion\n"
     "  --contour exact|star|none   contour test of method sctt: is the contour simple (default), "
     "the\n"
     "                              star test, or none, which MISSES PAIRS and is for measuring\n"
@@ -94,7 +117,11 @@ static const tool_choice method_choices[] = {{"sctt", SC_METHOD_SCTT},
                                              {"aabb", SC_METHOD_AABB},
                                              {NULL, 0}};
 typedef struct settings {
-    uint32_t pairs; /* a value of pair_choices */
+    step_settings step;          /* what --step alone asks */
+    bool is_step, is_step_asked; /* --step; an option that only it takes */
+    const char *method_name;     /* as given, or NULL */
+    const char *not_of_steps;    /* an option that --step does not take, if one was given */
+    uint32_t pairs;              /* a value of pair_choices */
     uint32_t method, contour, partition, weld;
     bool proper, any, json, stats, no_rest_cache;
     bool is_asked, is_built; /* some option said what to ask or how, or how to build */
@@ -510,7 +537,7 @@ static int do_file(const char *path, const settings *set, const query_subject *r
     memset(&answer, 0, sizeof answer);
     answer.path = path;
 
-    const query_subject_how how = {set->weld, set->partition, rest_marks(set), false};
+    const query_subject_how how = {set->weld, set->partition, rest_marks(set), 0, false};
     const query_subject *subject = rest ? rest : &own;
     const mesh_file *mesh = set->rest_path ? &rest->mesh : &own.mesh;
     const float *positions = pose_positions;
@@ -629,7 +656,7 @@ static int do_files(char **paths, int path_count, settings *set)
     int status = TOOL_CLEAN;
 
     if (set->rest_path) {
-        const query_subject_how how = {set->weld, set->partition, rest_marks(set), true};
+        const query_subject_how how = {set->weld, set->partition, rest_marks(set), 0, true};
         char error[MESH_FILE_ERROR_SIZE];
         if (!query_subject_load(&rest, set->rest_path, &how, error)) {
             tool_error("%s", error);
@@ -642,7 +669,7 @@ static int do_files(char **paths, int path_count, settings *set)
         }
     } else if (set->model_path) {
         char error[MESH_FILE_ERROR_SIZE];
-        if (!query_subject_open(&rest, set->model_path, error)) {
+        if (!query_subject_open(&rest, set->model_path, 0, error)) {
             tool_error("%s", error);
             return TOOL_FAILED;
         }
@@ -679,10 +706,31 @@ static int do_files(char **paths, int path_count, settings *set)
     return status;
 }
 
+/* Between frames, in place of do_files. */
+static int do_steps(char **paths, int path_count, settings *set)
+{
+    step_settings *step = &set->step;
+    step->weld = set->weld;
+    step->partition = set->partition;
+    step->contour = set->contour;
+    step->rest_path = set->rest_path;
+    step->model_path = set->model_path;
+    step->out_path = set->out_path;
+    step->budget = set->budget;
+    step->any = set->any;
+    step->json = set->json;
+    step->stats = set->stats;
+    return step_query_frames(paths, path_count, step);
+}
+
 /* What cannot be asked for together. */
 static bool check_settings(const settings *set, int path_count)
 {
     const char *reason = NULL;
+    if (set->is_step && set->not_of_steps) {
+        tool_error("--step does not go with --%s; see sc-query --help", set->not_of_steps);
+        return false;
+    }
     if (set->replay_path &&
         (path_count > 0 || set->rest_path || set->model_path || set->record_path))
         reason = "--replay takes no mesh, rest mesh or model, and makes no record";
@@ -690,6 +738,10 @@ static bool check_settings(const settings *set, int path_count)
         reason = "--replay asks what the record asks, and as it does";
     else if (set->replay_path && set->ply_path)
         reason = "--replay has no faces for --ply";
+    else if (set->is_step_asked && !set->is_step)
+        reason = "--separation, --tolerance and --times are of --step";
+    else if (set->step.times && set->any)
+        reason = "--any finds no times";
     else if (path_count == 0 && !set->replay_path)
         reason = "no mesh given";
     else if (set->model_path && (set->rest_path || set->is_built))
@@ -712,6 +764,10 @@ int main(int argc, char **argv)
     enum {
         OPTION_PAIRS = 256,
         OPTION_PROPER,
+        OPTION_STEP,
+        OPTION_SEPARATION,
+        OPTION_TOLERANCE,
+        OPTION_TIMES,
         OPTION_ANY,
         OPTION_WELD,
         OPTION_REST,
@@ -739,6 +795,10 @@ int main(int argc, char **argv)
         {"pairs", required_argument, NULL, OPTION_PAIRS},
         {"proper", no_argument, NULL, OPTION_PROPER},
         {"any", no_argument, NULL, OPTION_ANY},
+        {"step", no_argument, NULL, OPTION_STEP},
+        {"separation", required_argument, NULL, OPTION_SEPARATION},
+        {"tolerance", required_argument, NULL, OPTION_TOLERANCE},
+        {"times", no_argument, NULL, OPTION_TIMES},
         {"weld", required_argument, NULL, OPTION_WELD},
         {"rest", required_argument, NULL, OPTION_REST},
         {"json", no_argument, NULL, OPTION_JSON},
@@ -767,10 +827,16 @@ int main(int argc, char **argv)
     memset(&set, 0, sizeof set);
     set.method = SC_METHOD_SCTT;
     set.contour = SC_CONTOUR_EXACT;
+    set.step.method = SC_STEP_METHOD_SCTT;
     bool valid = true;
     uint32_t budget = 0, threads = 1;
-    int option;
-    while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
+    int option, which = 0;
+    while ((option = getopt_long(argc, argv, "", options, &which)) != -1) {
+        if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_PLY ||
+            option == OPTION_RECORD || option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
+            option == OPTION_IGNORE_RINGS || option == OPTION_IGNORE || option == OPTION_GROUPS ||
+            option == OPTION_CONTACTS)
+            set.not_of_steps = options[which].name;
         set.is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
         set.is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_ANY ||
                         option == OPTION_WELD || option == OPTION_METHOD ||
@@ -784,6 +850,24 @@ int main(int argc, char **argv)
             break;
         case OPTION_PROPER:
             set.proper = true;
+            break;
+        case OPTION_STEP:
+            set.is_step = true;
+            break;
+        case OPTION_SEPARATION:
+            valid &= tool_parse_real("--separation", optarg, &set.step.separation);
+            set.is_step_asked = true;
+            break;
+        case OPTION_TOLERANCE:
+            valid &= tool_parse_real("--tolerance", optarg, &set.step.tolerance);
+            if (set.step.tolerance == 0) {
+                tool_error("--tolerance: '%s' is not more than 0", optarg);
+                valid = false;
+            }
+            set.is_step_asked = true;
+            break;
+        case OPTION_TIMES:
+            set.step.times = set.is_step_asked = true;
             break;
         case OPTION_ANY:
             set.any = true;
@@ -816,7 +900,7 @@ int main(int argc, char **argv)
             set.stats = true;
             break;
         case OPTION_METHOD:
-            valid &= tool_choose("--method", optarg, method_choices, &set.method);
+            set.method_name = optarg;
             break;
         case OPTION_CONTOUR:
             valid &= tool_choose("--contour", optarg, query_text_contours, &set.contour);
@@ -852,14 +936,20 @@ int main(int argc, char **argv)
             return tool_finish(TOOL_CLEAN);
         case OPTION_HELP:
             fputs(usage, stdout);
+            fputs(usage_continued, stdout);
             return tool_finish(TOOL_CLEAN);
         default:
             valid = false;
             break;
         }
     }
+    if (set.method_name)
+        valid &=
+            tool_choose("--method", set.method_name, set.is_step ? step_methods : method_choices,
+                        set.is_step ? &set.step.method : &set.method);
     if (!valid || !check_settings(&set, argc - optind)) return tool_finish(TOOL_FAILED);
-    if (set.method == SC_METHOD_SCTT && set.contour == SC_CONTOUR_NONE) {
+    if (set.contour == SC_CONTOUR_NONE &&
+        (set.is_step ? set.step.method == SC_STEP_METHOD_SCTT : set.method == SC_METHOD_SCTT)) {
         tool_error("note: --contour none can miss pairs");
     }
     if (!query_threads_start(threads)) {
@@ -869,8 +959,12 @@ int main(int argc, char **argv)
     filter_file filters;
     char error[MESH_FILE_ERROR_SIZE];
     int status = TOOL_FAILED;
+    memset(&filters, 0, sizeof filters);
     set.filters = &filters;
-    if (filter_file_read(&filters, set.ignore_path, set.groups_path, chosen_pairs(&set), error))
+    if (set.is_step)
+        status = do_steps(argv + optind, argc - optind, &set);
+    else if (filter_file_read(&filters, set.ignore_path, set.groups_path, chosen_pairs(&set),
+                              error))
         status = do_files(argv + optind, argc - optind, &set);
     else
         tool_error("%s", error);

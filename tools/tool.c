@@ -10,6 +10,7 @@
 #include "starcontour_metis.h"
 
 #include <errno.h>
+#include <float.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,6 +79,19 @@ bool tool_parse_number(const char *option, const char *text, uint32_t low, uint3
         return false;
     }
     *value = (uint32_t)number;
+    return true;
+}
+
+bool tool_parse_real(const char *option, const char *text, double *value)
+{
+    char *end;
+    const double number = strtod(text, &end);
+    if (((text[0] < '0' || text[0] > '9') && text[0] != '.') || *end || !(number >= 0) ||
+        number > DBL_MAX) {
+        tool_error("%s: '%s' is not a number from 0 on", option, text);
+        return false;
+    }
+    *value = number;
     return true;
 }
 

@@ -47,6 +47,9 @@ const char *tool_choice_name(const tool_choice *choices, uint32_t value);
 bool tool_parse_number(const char *option, const char *text, uint32_t low, uint32_t high,
                        uint32_t *value);
 
+/* Reads a finite number that is not negative; otherwise says what is wrong. */
+bool tool_parse_real(const char *option, const char *text, double *value);
+
 /* Values of --partition. */
 enum { TOOL_PARTITION_FAST = 0, TOOL_PARTITION_METIS = 1 };
 extern const tool_choice tool_partitions[];

@@ -1,0 +1,123 @@
+#!/bin/sh
+# sc-query --step: what it finds between frames, what it prints, the exit status, and frames that cannot
+# be read.
+#
+# SPDX-License-Identifier: MIT
+. tests/script.sh
+
+query=$SC_BIN/sc-query
+if [ ! -x "$query" ]; then
+    skip "sc-query was not built"
+    check "there is something to skip" test ! -x "$query"
+    finish
+fi
+
+# status N COMMAND...: ends with status N.
+status() {
+    wanted=$1
+    shift
+    "$@" >"$scratch/out" 2>"$scratch/err"
+    got=$?
+    [ $got -eq "$wanted" ] || { echo "status $got"; cat "$scratch/out" "$scratch/err"; return 1; }
+}
+# says N TEXT COMMAND...: the same, and prints the text somewhere.
+says() {
+    wanted=$1
+    text=$2
+    shift 2
+    status "$wanted" "$@" || return 1
+    grep -q -e "$text" "$scratch/out" "$scratch/err" ||
+        { cat "$scratch/out" "$scratch/err"; return 1; }
+}
+
+# Two triangles; a corner of the second is at height z over or under the first.
+frame() {
+    printf 'v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 %s\nv 2 1 2\nv 1 2 2\nf 1 2 3\nf 4 5 6\n' "$2" >"$1"
+}
+a=$scratch/f0.obj
+b=$scratch/f1.obj
+c=$scratch/f2.obj
+frame "$a" 1
+frame "$b" -1
+frame "$c" 0.5
+
+# ---- what it finds ----
+
+check "a corner passes a face" says 1 " 1 .* 0 .* 0\.\(4999\|5000\)" "$query" --step "$a" "$b"
+check "nothing between one frame and itself" status 0 "$query" --step "$a" "$a"
+check "nothing that stays on its side" status 0 "$query" --step "$a" "$c"
+check "two steps" says 1 "f1.obj to .*f2.obj" "$query" --step "$a" "$b" "$c"
+check "a line for each" test "$(grep -c " to " "$scratch/out")" -eq 2
+check "of three frames" status 1 "$query" --step "$a" "$c" "$b"
+check "a pattern" says 1 "f1.obj to .*f2.obj" "$query" --step "$scratch/f%d.obj"
+check "nearer than half" status 1 "$query" --step --separation 0.5 "$a" "$c"
+check "not nearer than a third" status 0 "$query" --step --separation 0.33 "$a" "$c"
+check "any" says 1 "yes" "$query" --step --any "$a" "$b"
+check "none of any" says 0 "no" "$query" --step --any "$a" "$c"
+for method in sctt two-boxes swept; do
+    check "method $method" says 1 " 1 .* 0 " "$query" --step --method $method "$a" "$b"
+done
+check "star contours" status 1 "$query" --step --contour star "$a" "$b"
+check "no contour test: a note" says 1 "can miss" "$query" --step --contour none "$a" "$b"
+check "the rest pose of another file" status 1 "$query" --step --rest "$c" "$a" "$b"
+check "statistics" says 1 "orientation tests" "$query" --step --stats "$a" "$b"
+if [ -x "$SC_BIN/sc-partition" ]; then
+    "$SC_BIN/sc-partition" "$a" -o "$scratch/model" >/dev/null 2>&1
+    check "a saved model" status 1 "$query" --step --model "$scratch/model" "$a" "$b"
+    check "of another mesh" says 2 "vertices" "$query" --step --model "$scratch/model" \
+        meshes/sphere.obj meshes/sphere.obj
+fi
+
+# ---- what it prints ----
+
+check "times" says 1 "vertex-face 3 0 0\.\(4999\|5\)" "$query" --step --times "$a" "$b"
+check "JSON" says 1 '"vertex_face_pairs":1,"edge_edge_pairs":0,"collisions":1' \
+    "$query" --step --json --times "$a" "$b"
+cp "$scratch/out" "$scratch/json"
+for key in candidates earliest separation tolerance query_ms candidates_ms method contour start end \
+    '"status":"collides"' '"kind":"vertex-face","a":3,"b":0,"time":0.'; do
+    check "JSON has $key" grep -q "$key" "$scratch/json"
+done
+check "JSON without collision" says 0 '"status":"clean".*"earliest":1,' "$query" --step --json "$a" "$c"
+check "JSON of any" says 1 '"earliest":null' "$query" --step --json --any "$a" "$b"
+check "pairs to a file" status 1 "$query" --step --out "$scratch/pairs.csv" "$a" "$b"
+check "its heading" grep -qx "start,end,kind,a,b,time" "$scratch/pairs.csv"
+check "its pair" grep -q ",vertex-face,3,0,0\." "$scratch/pairs.csv"
+check "a budget" says 3 "+" "$query" --step --budget 1 meshes/folded_sheet.obj meshes/folded_sheet.obj
+
+# ---- what is wrong ----
+
+check "one frame" says 2 "two frames" "$query" --step "$a"
+check "no frame" says 2 "no mesh" "$query" --step
+check "a pattern of nothing" says 2 "number 0 or 1" "$query" --step "$scratch/g%d.obj"
+check "no pattern" says 2 "not a pattern" "$query" --step "$scratch/g%s.obj"
+check "an absent frame" says 2 absent "$query" --step "$a" "$scratch/absent.obj"
+check "an absent first frame" says 2 absent "$query" --step "$scratch/absent.obj" "$a"
+check "another mesh" says 2 "not a pose" "$query" --step "$a" meshes/sphere.obj
+check "the other steps are done" says 2 "f0.obj to .*f1.obj" \
+    "$query" --step "$c" "$scratch/absent.obj" "$a" "$b"
+check "each step that it spoils fails" test "$(grep -c absent "$scratch/err")" -eq 2
+printf 'v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 nan\nv 2 1 2\nv 1 2 2\nf 1 2 3\nf 4 5 6\n' >"$scratch/nan.obj"
+check "not a number" says 2 "nan.obj" "$query" --step --json "$a" "$scratch/nan.obj"
+check "as JSON too" grep -q '"status":"error"' "$scratch/out"
+printf 'v 0 0' >"$scratch/cut.obj"
+check "a truncated frame" status 2 "$query" --step "$a" "$scratch/cut.obj"
+head -c 300 /dev/urandom >"$scratch/noise.obj"
+check "noise" status 2 "$query" --step "$a" "$scratch/noise.obj"
+for value in -1 nan inf 1e999 x ''; do
+    check "separation '$value'" says 2 "separation" "$query" --step --separation "$value" "$a" "$b"
+    check "tolerance '$value'" says 2 "tolerance" "$query" --step --tolerance "$value" "$a" "$b"
+done
+check "no tolerance" says 2 "tolerance" "$query" --step --tolerance 0 "$a" "$b"
+check "a method of queries" says 2 "two-boxes" "$query" --step --method aabb "$a" "$b"
+check "a method of steps" says 2 "aabb-sctt" "$query" --method swept "$a"
+check "without --step" says 2 "of --step" "$query" --separation 1 "$a"
+check "any has no times" says 2 "no times" "$query" --step --any --times "$a" "$b"
+for option in --proper "--pairs edge" "--ply $scratch/x.ply" "--record $scratch/x" "--ignore-rings 1" \
+    --contacts --no-rest-cache "--groups x" "--ignore x"; do
+    # shellcheck disable=SC2086
+    check "not with $option" says 2 "does not go with" "$query" --step $option "$a" "$b"
+done
+check "no folder to write to" says 2 "cannot be written" "$query" --step --out "$scratch/no/x" "$a" "$b"
+
+finish

@@ -1,0 +1,440 @@
+/*
+ * sc-query --step; see step_query.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "step_query.h"
+
+#include "frame_paths.h"
+#include "query_subject.h"
+#include "query_text.h"
+#include "query_threads.h"
+
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const tool_choice step_methods[] = {{"sctt", SC_STEP_METHOD_SCTT},
+                                    {"two-boxes", SC_STEP_METHOD_TWO_BOXES},
+                                    {"swept", SC_STEP_METHOD_SWEPT},
+                                    {NULL, 0}};
+
+enum { VERTEX_FACE = 0, EDGE_EDGE = 1, KINDS = 2 };
+
+static const char *const kind_names[KINDS] = {"vertex-face", "edge-edge"};
+
+/* A frame's positions. */
+typedef struct frame {
+    float *positions;
+    char error[MESH_FILE_ERROR_SIZE]; /* why it could not be read, or empty */
+} frame;
+
+/* Pairs of one kind; grows and is kept. */
+typedef struct step_list {
+    sc_pair *pairs;
+    double *times;
+    uint64_t capacity;
+} step_list;
+
+/* What there is to know about a step. */
+typedef struct step_answer {
+    const char *start, *end;
+    sc_model_info info;
+    double build_ms, query_ms, candidates_ms;
+    uint64_t counts[KINDS], candidates[KINDS];
+    bool candidates_known, collides, incomplete;
+    double earliest;
+    sc_stats stats;
+} step_answer;
+
+typedef struct step_run {
+    const step_settings *set;
+    query_subject subject;
+    const mesh_file *mesh; /* the subject's, or of the first frame with a saved model */
+    mesh_file first;
+    frame frames[2];
+    step_list lists[KINDS];
+    FILE *out;
+} step_run;
+
+static bool wants_list(const step_settings *set)
+{
+    return set->out_path || set->times;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Asking
+ */
+
+static bool grow(step_list *list, uint64_t count)
+{
+    if (count <= list->capacity) return true;
+    if (count > SIZE_MAX / sizeof(sc_pair)) return false;
+    free(list->pairs);
+    free(list->times);
+    list->pairs = (sc_pair *)malloc((size_t)count * sizeof(sc_pair));
+    list->times = (double *)malloc((size_t)count * sizeof(double));
+    list->capacity = list->pairs && list->times ? count : 0;
+    return list->capacity == count;
+}
+
+static sc_step_options make_options(const step_settings *set)
+{
+    sc_step_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.output = set->any ? SC_OUTPUT_ANY : wants_list(set) ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT;
+    options.times = set->any ? SC_STEP_TIMES_NONE : SC_STEP_TIMES_EARLIEST;
+    if (options.output == SC_OUTPUT_PAIRS) options.times = SC_STEP_TIMES_EACH;
+    options.method = set->method;
+    options.contour = set->method == SC_STEP_METHOD_SCTT ? set->contour : SC_CONTOUR_DEFAULT;
+    options.separation = set->separation;
+    options.tolerance = set->tolerance;
+    options.tasks = query_threads_tasks();
+    options.budget = set->budget;
+    return options;
+}
+
+static sc_status find_collisions(step_run *run, const sc_pose poses[2], step_answer *answer)
+{
+    const sc_step_options options = make_options(run->set);
+    sc_step_result result;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    if (run->set->stats) {
+        answer->stats.struct_size = sizeof answer->stats;
+        result.stats = &answer->stats;
+    }
+    sc_status status;
+    do {
+        if (options.output == SC_OUTPUT_PAIRS) {
+            if (!grow(&run->lists[VERTEX_FACE], result.vertex_face_count) ||
+                !grow(&run->lists[EDGE_EDGE], result.edge_edge_count))
+                return SC_ERROR_MEMORY;
+            result.vertex_faces = run->lists[VERTEX_FACE].pairs;
+            result.vertex_face_times = run->lists[VERTEX_FACE].times;
+            result.vertex_face_capacity = run->lists[VERTEX_FACE].capacity;
+            result.edge_edges = run->lists[EDGE_EDGE].pairs;
+            result.edge_edge_times = run->lists[EDGE_EDGE].times;
+            result.edge_edge_capacity = run->lists[EDGE_EDGE].capacity;
+        }
+        const double start = tool_clock();
+        status = sc_query_step(run->subject.model, run->subject.workspace, &poses[0], &poses[1],
+                               &options, &result);
+        answer->query_ms = tool_clock() - start;
+    } while (options.output == SC_OUTPUT_PAIRS && status != SC_OK &&
+             (result.vertex_face_count > result.vertex_face_capacity ||
+              result.edge_edge_count > result.edge_edge_capacity));
+    answer->counts[VERTEX_FACE] = result.vertex_face_count;
+    answer->counts[EDGE_EDGE] = result.edge_edge_count;
+    answer->collides = result.collides != 0;
+    answer->earliest = result.earliest;
+    answer->incomplete = status == SC_ERROR_INCOMPLETE;
+    return answer->incomplete ? SC_OK : status;
+}
+
+/* How many pairs boxes and culling leave; not with a budget, which is the collisions'. */
+static sc_status count_candidates(step_run *run, const sc_pose poses[2], step_answer *answer)
+{
+    sc_step_options options = make_options(run->set);
+    options.output = SC_OUTPUT_COUNT;
+    options.pairs = SC_STEP_CANDIDATES;
+    options.times = SC_STEP_TIMES_NONE;
+    sc_step_result result;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    const double start = tool_clock();
+    const sc_status status = sc_query_step(run->subject.model, run->subject.workspace, &poses[0],
+                                           &poses[1], &options, &result);
+    answer->candidates_ms = tool_clock() - start;
+    answer->candidates[VERTEX_FACE] = result.vertex_face_count;
+    answer->candidates[EDGE_EDGE] = result.edge_edge_count;
+    answer->candidates_known = status == SC_OK;
+    return status;
+}
+
+static bool ask(step_run *run, const frame *from, const frame *to, step_answer *answer,
+                char error[MESH_FILE_ERROR_SIZE])
+{
+    const uint32_t count = run->mesh->vertex_count;
+    const sc_pose poses[2] = {tool_pose(from->positions, count), tool_pose(to->positions, count)};
+    answer->build_ms = run->subject.build_ms;
+    answer->info.struct_size = sizeof answer->info;
+    sc_status status = sc_model_get_info(run->subject.model, &answer->info);
+    if (status == SC_OK) status = find_collisions(run, poses, answer);
+    if (status == SC_OK && !run->set->any && !run->set->budget)
+        status = count_candidates(run, poses, answer);
+    if (status != SC_OK)
+        snprintf(error, MESH_FILE_ERROR_SIZE, "%s to %s: %s", answer->start, answer->end,
+                 sc_status_string(status));
+    return status == SC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Telling
+ */
+
+static void print_table_head(const step_settings *set)
+{
+    printf("%10s %10s %14s %14s %12s %10s %9s %9s  %s\n", "vertices", "triangles",
+           set->any ? "collides" : "vertex-face", set->any ? "" : "edge-edge", "candidates",
+           "earliest", "build ms", "query ms", "step");
+}
+
+static void print_table_row(const step_answer *answer, const step_run *run)
+{
+    const char *const more = answer->incomplete ? "+" : " ";
+    printf("%10lu %10lu ", (unsigned long)answer->info.point_count,
+           (unsigned long)answer->info.triangle_count);
+    if (run->set->any) {
+        printf("%14s %14s ", answer->collides ? "yes" : answer->incomplete ? "unknown" : "no", "");
+    } else {
+        printf("%13.0f%s %13.0f%s ", (double)answer->counts[VERTEX_FACE], more,
+               (double)answer->counts[EDGE_EDGE], more);
+    }
+    if (answer->candidates_known)
+        printf("%12.0f ", (double)answer->candidates[0] + (double)answer->candidates[1]);
+    else
+        printf("%12s ", "-");
+    if (run->set->any || answer->incomplete)
+        printf("%10s ", "-");
+    else
+        printf("%10.7f ", answer->earliest);
+    printf("%9.2f %9.3f  %s to %s\n", answer->build_ms, answer->query_ms, answer->start,
+           answer->end);
+    if (run->set->stats) query_text_stats(&answer->stats);
+    for (int kind = 0; run->set->times && kind < KINDS; kind++) {
+        const step_list *list = &run->lists[kind];
+        for (uint64_t i = 0; i < answer->counts[kind]; i++) {
+            printf("    %s %lu %lu %.17g\n", kind_names[kind], (unsigned long)list->pairs[i].a,
+                   (unsigned long)list->pairs[i].b, list->times[i]);
+        }
+    }
+}
+
+static void add_pairs(cJSON *object, const step_answer *answer, const step_run *run)
+{
+    cJSON *pairs = cJSON_AddArrayToObject(object, "pairs");
+    for (int kind = 0; kind < KINDS; kind++) {
+        const step_list *list = &run->lists[kind];
+        for (uint64_t i = 0; i < answer->counts[kind]; i++) {
+            cJSON *pair = cJSON_CreateObject();
+            cJSON_AddStringToObject(pair, "kind", kind_names[kind]);
+            cJSON_AddNumberToObject(pair, "a", list->pairs[i].a);
+            cJSON_AddNumberToObject(pair, "b", list->pairs[i].b);
+            cJSON_AddNumberToObject(pair, "time", list->times[i]);
+            cJSON_AddItemToArray(pairs, pair);
+        }
+    }
+}
+
+static void add_count(cJSON *object, const char *name, uint64_t count, bool known)
+{
+    if (known)
+        cJSON_AddNumberToObject(object, name, (double)count);
+    else
+        cJSON_AddNullToObject(object, name);
+}
+
+static bool print_json_answer(const step_answer *answer, const step_run *run)
+{
+    const step_settings *set = run->set;
+    const bool known = answer->candidates_known;
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddStringToObject(object, "start", answer->start);
+    cJSON_AddStringToObject(object, "end", answer->end);
+    cJSON_AddStringToObject(object, "status",
+                            answer->incomplete ? "incomplete"
+                            : answer->collides ? "collides"
+                                               : "clean");
+    cJSON_AddBoolToObject(object, "collides", answer->collides);
+    cJSON_AddNumberToObject(object, "vertices", answer->info.point_count);
+    cJSON_AddNumberToObject(object, "triangles", answer->info.triangle_count);
+    add_count(object, "vertex_face_pairs", answer->counts[VERTEX_FACE], !set->any);
+    add_count(object, "edge_edge_pairs", answer->counts[EDGE_EDGE], !set->any);
+    add_count(object, "collisions", answer->counts[0] + answer->counts[1], !set->any);
+    add_count(object, "candidates", answer->candidates[0] + answer->candidates[1], known);
+    add_count(object, "vertex_face_candidates", answer->candidates[VERTEX_FACE], known);
+    add_count(object, "edge_edge_candidates", answer->candidates[EDGE_EDGE], known);
+    if (set->any || answer->incomplete)
+        cJSON_AddNullToObject(object, "earliest");
+    else
+        cJSON_AddNumberToObject(object, "earliest", answer->earliest);
+    cJSON_AddNumberToObject(object, "separation", set->separation);
+    if (set->tolerance > 0)
+        cJSON_AddNumberToObject(object, "tolerance", set->tolerance);
+    else
+        cJSON_AddNullToObject(object, "tolerance");
+    cJSON_AddNumberToObject(object, "build_ms", query_text_rounded(answer->build_ms));
+    cJSON_AddNumberToObject(object, "query_ms", query_text_rounded(answer->query_ms));
+    if (known)
+        cJSON_AddNumberToObject(object, "candidates_ms", query_text_rounded(answer->candidates_ms));
+    else
+        cJSON_AddNullToObject(object, "candidates_ms");
+    cJSON_AddStringToObject(object, "method", tool_choice_name(step_methods, set->method));
+    if (set->method == SC_STEP_METHOD_SCTT)
+        cJSON_AddStringToObject(object, "contour",
+                                tool_choice_name(query_text_contours, set->contour));
+    else
+        cJSON_AddNullToObject(object, "contour");
+    if (set->rest_path) cJSON_AddStringToObject(object, "rest", set->rest_path);
+    if (set->model_path) cJSON_AddStringToObject(object, "model", set->model_path);
+    if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
+    if (set->stats) query_text_add_stats(object, &answer->stats);
+    if (set->times) add_pairs(object, answer, run);
+    return query_text_print(object);
+}
+
+static void write_pairs(const step_answer *answer, const step_run *run)
+{
+    for (int kind = 0; kind < KINDS; kind++) {
+        const step_list *list = &run->lists[kind];
+        for (uint64_t i = 0; i < answer->counts[kind]; i++) {
+            query_text_field(run->out, answer->start);
+            fputc(',', run->out);
+            query_text_field(run->out, answer->end);
+            fprintf(run->out, ",%s,%lu,%lu,%.17g\n", kind_names[kind],
+                    (unsigned long)list->pairs[i].a, (unsigned long)list->pairs[i].b,
+                    list->times[i]);
+        }
+    }
+}
+
+static int report_failure(const step_answer *answer, const step_run *run, const char *error)
+{
+    tool_error("%s", error);
+    if (run->set->json) {
+        cJSON *object = cJSON_CreateObject();
+        cJSON_AddStringToObject(object, "start", answer->start);
+        cJSON_AddStringToObject(object, "end", answer->end);
+        cJSON_AddStringToObject(object, "status", "error");
+        cJSON_AddStringToObject(object, "error", error);
+        query_text_print(object);
+    }
+    fflush(stdout);
+    return TOOL_FAILED;
+}
+
+static int report(const step_answer *answer, const step_run *run)
+{
+    bool written = true;
+    if (run->set->json)
+        written = print_json_answer(answer, run);
+    else
+        print_table_row(answer, run);
+    if (run->out) write_pairs(answer, run);
+    fflush(stdout);
+    if (!written) return TOOL_FAILED;
+    if (answer->incomplete) return TOOL_INCOMPLETE;
+    return answer->collides ? TOOL_COLLIDES : TOOL_CLEAN;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Frames
+ */
+
+/* Makes what all steps share. first: the path of the first frame. */
+static bool open_run(step_run *run, const char *first, char error[MESH_FILE_ERROR_SIZE])
+{
+    const step_settings *set = run->set;
+    const query_subject_how how = {set->weld, set->partition, 0, SC_WORKSPACE_STEP, true};
+    if (set->model_path) {
+        if (!query_subject_open(&run->subject, set->model_path, SC_WORKSPACE_STEP, error) ||
+            !mesh_file_read(&run->first, first, error) ||
+            !query_subject_fits(&run->subject, first, &run->first, error))
+            return false;
+        run->mesh = &run->first;
+    } else {
+        if (!query_subject_load(&run->subject, set->rest_path ? set->rest_path : first, &how,
+                                error))
+            return false;
+        run->mesh = &run->subject.mesh;
+    }
+    for (int i = 0; i < 2; i++) {
+        run->frames[i].positions =
+            (float *)malloc(3 * (size_t)run->mesh->vertex_count * sizeof(float));
+        if (run->frames[i].positions) continue;
+        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: out of memory", first);
+        return false;
+    }
+    return true;
+}
+
+static void read_frame(const step_run *run, const char *path, frame *to)
+{
+    if (mesh_file_read_pose(run->mesh, path, to->positions, to->error) &&
+        query_subject_keeps_welds(&run->subject, run->mesh, path, to->positions, to->error))
+        to->error[0] = '\0';
+}
+
+static int do_steps(step_run *run, char **paths, uint32_t count)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    int status = TOOL_CLEAN;
+    if (!open_run(run, paths[0], error)) {
+        tool_error("%s", error);
+        return TOOL_FAILED;
+    }
+    if (!run->set->json) print_table_head(run->set);
+    if (run->out) fputs("start,end,kind,a,b,time\n", run->out);
+    frame *from = &run->frames[0], *to = &run->frames[1];
+    read_frame(run, paths[0], from);
+    for (uint32_t i = 1; i < count; i++) {
+        step_answer answer;
+        memset(&answer, 0, sizeof answer);
+        answer.start = paths[i - 1];
+        answer.end = paths[i];
+        read_frame(run, paths[i], to);
+        const char *reason = from->error[0] ? from->error : to->error[0] ? to->error : NULL;
+        if (!reason && !ask(run, from, to, &answer, error)) reason = error;
+        const int done = reason ? report_failure(&answer, run, reason) : report(&answer, run);
+        status = query_text_worse(status, done);
+        frame *const last = from;
+        from = to;
+        to = last;
+    }
+    return status;
+}
+
+int step_query_frames(char **paths, int count, const step_settings *set)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    frame_paths found = {NULL, 0};
+    int status = TOOL_FAILED;
+    if (count == 1 && strchr(paths[0], '%')) {
+        if (!frame_paths_find(&found, paths[0], error)) {
+            tool_error("%s", error);
+            return TOOL_FAILED;
+        }
+        paths = found.paths;
+        count = (int)found.count;
+    }
+    step_run run;
+    memset(&run, 0, sizeof run);
+    run.set = set;
+    if (count < 2) {
+        tool_error("--step takes two frames or more");
+    } else if (set->out_path && !(run.out = fopen(set->out_path, "w"))) {
+        tool_error("%s: cannot be written: %s", set->out_path, strerror(errno));
+    } else {
+        status = do_steps(&run, paths, (uint32_t)count);
+    }
+    if (run.out) {
+        const bool written = !ferror(run.out);
+        if (fclose(run.out) != 0 || !written) {
+            tool_error("%s: could not be written to the end", set->out_path);
+            status = TOOL_FAILED;
+        }
+    }
+    for (int i = 0; i < KINDS; i++) {
+        free(run.lists[i].pairs);
+        free(run.lists[i].times);
+        free(run.frames[i].positions);
+    }
+    mesh_file_free(&run.first);
+    query_subject_free(&run.subject);
+    frame_paths_free(&found);
+    return status;
+}
