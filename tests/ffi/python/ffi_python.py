@@ -172,6 +172,34 @@ flag[0] = 0
 check("not cancelled", same(model.query(moved, cancel=flag), "moved"))
 check("budget", incomplete(lambda: model.count(np.zeros_like(rest), budget=1)) is not None)
 
+# Steps: the second half of the vertices, high above at first, falls through the others.
+above, below = rest.astype(np.float64), rest.astype(np.float64)
+above[later:, 2] += 9
+below[later:, 2] -= 9
+step = model.step(above, below)
+check("a step collides", len(step.vertex_faces) > 0 and len(step.edge_edges) > 0)
+check("its lists are sorted", all(sorted(map(tuple, pairs)) == list(map(tuple, pairs))
+                                  for pairs in (step.vertex_faces, step.edge_edges)))
+times = np.concatenate([step.vertex_face_times, step.edge_edge_times])
+check("each pair has a time", len(times) == len(step.vertex_faces) + len(step.edge_edges))
+check("from the earliest on", step.earliest == times.min() and times.max() <= 1 and step.earliest > 0)
+held = triangles[step.vertex_faces[:, 1]]
+check("no vertex with a face of its own", not (held == step.vertex_faces[:, :1]).any())
+for method in ("sctt", "two_boxes", "swept"):
+    other = model.step(above, below, method=method)
+    check(f"a step by {method}", all(np.array_equal(x, y) for x, y in zip(step, other)))
+check("nothing until then", model.step(above, above + (step.earliest * 0.99) * (below - above)).earliest == 1)
+check("a step that is free", model.step(above, above + 1).earliest == 1 and not model.step_collides(above, above + 1))
+check("a step that is not", model.step_collides(above.astype(np.float32), below))
+check("as near as that", model.step(above, above, separation=20.0).earliest == 0)
+check("candidates", len(model.step(above, below, candidates=True).vertex_faces) >= len(step.vertex_faces))
+check("a workspace for steps", model.workspace().step(above, below).earliest == step.earliest)
+check("a budget of a step", incomplete(lambda: model.step(above, below, budget=1)) is not None)
+spoilt = below.copy()
+spoilt[3, 0] = np.inf
+check("infinity at the end", raised(_binding.SC_ERROR_NOT_FINITE, lambda: model.step(above, spoilt)))
+check("negative separation", raised(_binding.SC_ERROR_OPTION, lambda: model.step(above, below, separation=-1.0)))
+
 # Where pairs meet: points by weights of a and of b are the points themselves.
 contacts = model.contacts(moved, golden["moved"])
 corners = moved[triangles]

@@ -2,6 +2,7 @@
 
     model = starcontour.Model(rest, triangles)      once per topology
     pairs = model.query(pose)                       once per pose: array of shape (n, 2)
+    step = model.step(start, end)                   what collides on the way from one pose to another
 
 starcontour.h is the manual of the library that does the work: it says what a pair is, what is
 guaranteed, and what the options mean. Here they are keywords with the names of its enumerators:
@@ -18,6 +19,13 @@ guaranteed, and what the options mean. Here they are keywords with the names of 
     triangle_groups   the same for each triangle
     cancel            a uint32 array of one element: another thread ends the query by setting it
     budget            end the query after so many units of work; 0 (default): no limit
+
+Steps take cancel and budget, too, and
+
+    separation  how near is a collision: 0 (default), or a distance in units of the coordinates
+    tolerance   how exactly distances are told, the same units; 0 (default): a millionth of the size
+    method      "default", "sctt", "two_boxes" or "swept": the answer is the same
+    candidates  True: what boxes and culling leave, in place of collisions; without times
 
 A query that cancel or budget ended raises Incomplete, which has what was found so far.
 
@@ -42,7 +50,7 @@ import numpy as np
 from . import _binding
 from ._binding import lib
 
-__all__ = ["Error", "Incomplete", "Model", "ModelInfo", "Workspace", "version"]
+__all__ = ["Error", "Incomplete", "Model", "ModelInfo", "Step", "Workspace", "version"]
 
 version = lib.sc_version_string().decode()
 
@@ -55,11 +63,28 @@ _METHOD = {
     "aabb_sctt": _binding.SC_METHOD_AABB_SCTT,
     "aabb": _binding.SC_METHOD_AABB,
 }
+_STEP_METHOD = {
+    "default": _binding.SC_STEP_METHOD_DEFAULT,
+    "sctt": _binding.SC_STEP_METHOD_SCTT,
+    "two_boxes": _binding.SC_STEP_METHOD_TWO_BOXES,
+    "swept": _binding.SC_STEP_METHOD_SWEPT,
+}
 _IN_USE = "the workspace is in use by another call"
 
 ModelInfo = namedtuple(
     "ModelInfo", [name for name, _ in _binding.sc_model_info._fields_ if name != "struct_size"]
 )
+
+
+class Step(namedtuple("Step", "vertex_faces edge_edges vertex_face_times edge_edge_times earliest")):
+    """What collides in a step.
+
+    vertex_faces, edge_edges            uint32 arrays of shape (n, 2), sorted; edges as in pairs "edge"
+    vertex_face_times, edge_edge_times  when: a lower bound from 0 to 1 for each; None of candidates
+    earliest                            nothing collides before this time; 1 if nothing does at all
+    """
+
+    __slots__ = ()
 
 
 class Error(Exception):
@@ -177,14 +202,22 @@ def _pose(pose):
     return structure, positions
 
 
-class _Scratch:
-    """A workspace of the library, an array for its pairs, and who may use them now."""
+def _step_list(count):
+    """Arrays for pairs of a step and their times."""
+    return np.empty((count, 2), np.uint32), np.empty(count, np.float64)
 
-    def __init__(self, model):
+
+class _Scratch:
+    """A workspace of the library, arrays for its pairs and times, and who may use them now."""
+
+    def __init__(self, model, flags=0):
         handle = ctypes.c_void_p()
-        _check(lib.sc_workspace_create(model, None, ctypes.byref(handle)))
+        options = _binding.sc_workspace_options(
+            struct_size=ctypes.sizeof(_binding.sc_workspace_options), flags=flags)
+        _check(lib.sc_workspace_create_for(model, ctypes.byref(options), ctypes.byref(handle)))
         self.handle = handle
         self.pairs = np.empty((64, 2), np.uint32)
+        self.lists = [_step_list(64), _step_list(64)] if flags & _binding.SC_WORKSPACE_STEP else []
         self.lock = threading.Lock()
         weakref.finalize(self, lib.sc_workspace_free, handle)
 
@@ -194,7 +227,7 @@ class Workspace:
 
     def __init__(self, model):
         self.model = model
-        self._scratch = _Scratch(model._handle)
+        self._scratch = _Scratch(model._handle, _binding.SC_WORKSPACE_STEP)
 
     def query(self, pose, **options):
         """Like Model.query."""
@@ -207,6 +240,14 @@ class Workspace:
     def collides(self, pose, **options):
         """Like Model.collides."""
         return self.model._collides(self._scratch, pose, **options)
+
+    def step(self, start, end, **options):
+        """Like Model.step."""
+        return self.model._step(self._scratch, start, end, **options)
+
+    def step_collides(self, start, end, **options):
+        """Like Model.step_collides."""
+        return self.model._step_collides(self._scratch, start, end, **options)
 
 
 class Model:
@@ -337,6 +378,24 @@ class Model:
         """Whether there is any pair in a pose. Stops at the first."""
         return self._collides(self._own(), pose, **options)
 
+    def step(self, start, end, **options):
+        """What collides while each vertex moves on a straight line from one pose to another: a Step.
+
+        Options: see the module. vertex_faces: a vertex and a triangle that it is no corner of;
+        edge_edges: two edges without a common vertex.
+        """
+        return self._step(self._own_for_steps(), start, end, **options)
+
+    def step_collides(self, start, end, **options):
+        """Whether anything collides in a step. Stops at the first pair."""
+        return self._step_collides(self._own_for_steps(), start, end, **options)
+
+    def _own_for_steps(self):
+        """This thread's workspace for steps, which is larger."""
+        if not hasattr(self._local, "step_scratch"):
+            self._local.step_scratch = _Scratch(self._handle, _binding.SC_WORKSPACE_STEP)
+        return self._local.step_scratch
+
     def _own(self):
         """This thread's workspace."""
         if not hasattr(self._local, "scratch"):
@@ -405,6 +464,62 @@ class Model:
                 if status != _binding.SC_ERROR_SHORT_BUFFER:
                     break
                 scratch.pairs = np.empty((result.count + result.count // 4, 2), np.uint32)
+            _check(status)
+            return answer(result)
+        finally:
+            scratch.lock.release()
+
+    def _step(self, scratch, start, end, *, candidates=False, **options):
+        def found(result):
+            counts = result.vertex_face_count, result.edge_edge_count
+            pairs = [array[:count].copy() for (array, _), count in zip(scratch.lists, counts)]
+            times = [None if candidates else array[:count].copy()
+                     for (_, array), count in zip(scratch.lists, counts)]
+            return Step(*pairs, *times, result.earliest)
+
+        return self._ask_step(scratch, start, end, _binding.SC_OUTPUT_PAIRS, found, candidates, **options)
+
+    def _step_collides(self, scratch, start, end, *, candidates=False, **options):
+        return self._ask_step(scratch, start, end, _binding.SC_OUTPUT_ANY,
+                              lambda result: bool(result.collides), candidates, **options)
+
+    def _ask_step(self, scratch, start, end, output, answer, candidates, *, separation=0.0,
+                  tolerance=0.0, method="default", cancel=None, budget=0):
+        (given, positions), (goal, positions_then) = _pose(start), _pose(end)
+        if cancel is not None and (cancel.dtype != np.uint32 or cancel.shape != (1,)):
+            raise ValueError("cancel must be a uint32 array of shape (1,)")
+        timed = output == _binding.SC_OUTPUT_PAIRS and not candidates
+        options = _binding.sc_step_options(
+            struct_size=ctypes.sizeof(_binding.sc_step_options),
+            output=output,
+            pairs=_binding.SC_STEP_CANDIDATES if candidates else _binding.SC_STEP_COLLISIONS,
+            times=_binding.SC_STEP_TIMES_EACH if timed else _binding.SC_STEP_TIMES_NONE,
+            method=_choice("method", method, _STEP_METHOD),
+            separation=separation,
+            tolerance=tolerance,
+            cancel=None if cancel is None else cancel.ctypes.data,
+            budget=budget,
+        )
+        result = _binding.sc_step_result(struct_size=ctypes.sizeof(_binding.sc_step_result))
+        if not scratch.lock.acquire(blocking=False):
+            raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
+        try:
+            while True:
+                (faces, face_times), (edges, edge_times) = scratch.lists
+                result.vertex_face_capacity, result.vertex_faces = len(faces), faces.ctypes.data
+                result.edge_edge_capacity, result.edge_edges = len(edges), edges.ctypes.data
+                if timed:
+                    result.vertex_face_times = face_times.ctypes.data
+                    result.edge_edge_times = edge_times.ctypes.data
+                status = lib.sc_query_step(self._handle, scratch.handle, ctypes.byref(given),
+                                           ctypes.byref(goal), ctypes.byref(options),
+                                           ctypes.byref(result))
+                if status == _binding.SC_ERROR_INCOMPLETE:
+                    raise Incomplete(answer(result))
+                if status != _binding.SC_ERROR_SHORT_BUFFER:
+                    break
+                scratch.lists = [_step_list(count + count // 4) for count in
+                                 (result.vertex_face_count, result.edge_edge_count)]
             _check(status)
             return answer(result)
         finally:

@@ -9,9 +9,10 @@ SPDX-License-Identifier: MIT
 import ctypes
 import os
 import sys
-from ctypes import POINTER, c_char_p, c_int32, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_int32, c_uint32, c_uint64, c_void_p
 
 # The enumerators that the package and its tests use.
+SC_ERROR_OPTION = 3
 SC_ERROR_EMPTY = 4
 SC_ERROR_INDEX = 7
 SC_ERROR_NOT_FINITE = 8
@@ -35,6 +36,10 @@ SC_PAIRS_TRIANGLE, SC_PAIRS_EDGE = 0, 1
 SC_CONTACT_TOUCHING, SC_CONTACT_PROPER = 0, 1
 SC_METHOD_DEFAULT, SC_METHOD_SCTT, SC_METHOD_AABB_SCTT, SC_METHOD_AABB = 0, 1, 2, 3
 SC_REST_CACHE_ON, SC_REST_CACHE_OFF = 0, 1
+SC_WORKSPACE_STEP = 1
+SC_STEP_METHOD_DEFAULT, SC_STEP_METHOD_SCTT, SC_STEP_METHOD_TWO_BOXES, SC_STEP_METHOD_SWEPT = 0, 1, 2, 3
+SC_STEP_COLLISIONS, SC_STEP_CANDIDATES = 0, 1
+SC_STEP_TIMES_NONE, SC_STEP_TIMES_EARLIEST, SC_STEP_TIMES_EACH = 0, 1, 2
 
 
 class sc_mesh(ctypes.Structure):
@@ -155,6 +160,53 @@ class sc_result(ctypes.Structure):
     ]
 
 
+class sc_workspace_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("flags", c_uint32),
+        ("workers", c_uint32),
+        ("reserved", c_uint32),
+        ("allocator", c_void_p),
+    ]
+
+
+class sc_step_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("output", c_uint32),
+        ("pairs", c_uint32),
+        ("times", c_uint32),
+        ("method", c_uint32),
+        ("contour", c_uint32),
+        ("simd", c_uint32),
+        ("reserved", c_uint32),
+        ("separation", c_double),
+        ("tolerance", c_double),
+        ("tasks", c_void_p),
+        ("cancel", c_void_p),
+        ("budget", c_uint64),
+    ]
+
+
+class sc_step_result(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("collides", c_uint32),
+        ("verdict", c_uint32),
+        ("reserved", c_uint32),
+        ("vertex_face_count", c_uint64),
+        ("vertex_face_capacity", c_uint64),
+        ("vertex_faces", c_void_p),
+        ("vertex_face_times", c_void_p),
+        ("edge_edge_count", c_uint64),
+        ("edge_edge_capacity", c_uint64),
+        ("edge_edges", c_void_p),
+        ("edge_edge_times", c_void_p),
+        ("earliest", c_double),
+        ("stats", c_void_p),
+    ]
+
+
 # An entry of a numpy array of contacts.
 sc_contact = [
     ("kind", "u4"),
@@ -165,7 +217,7 @@ sc_contact = [
 ]
 
 structures = (sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info, sc_query_options,
-              sc_filter, sc_result)
+              sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result)
 
 _suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarcontour" + _suffix)
@@ -188,8 +240,10 @@ _declare("sc_model_get_patches", _status, c_void_p, c_uint32, c_void_p, c_uint64
 _declare("sc_model_save_size", _status, c_void_p, POINTER(c_uint64))
 _declare("sc_model_save", _status, c_void_p, c_void_p, c_uint64, POINTER(c_uint64))
 _declare("sc_model_load", _status, c_void_p, c_uint64, POINTER(sc_load_options), POINTER(c_void_p))
-_declare("sc_workspace_create", _status, c_void_p, c_void_p, POINTER(c_void_p))
+_declare("sc_workspace_create_for", _status, c_void_p, POINTER(sc_workspace_options), POINTER(c_void_p))
 _declare("sc_workspace_free", None, c_void_p)
 _declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_query_options),
          POINTER(sc_result))
 _declare("sc_contacts", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
+_declare("sc_query_step", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_pose),
+         POINTER(sc_step_options), POINTER(sc_step_result))
