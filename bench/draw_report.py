@@ -25,6 +25,8 @@ PEERS = ["cgal", "embree", "fcl", "ipctk", "libigl", "meshlib", "trueform"]
 
 METHODS = ["exact", "star", "none", "aabb-sctt", "aabb", "hash"]
 
+STEP_METHODS = ["step", "step-star", "step-none", "step-two-boxes", "step-swept"]
+
 TASKS = ["update_boxes", "update_normals", "orientation", "boxes_orientation",
          "primitives_orientation", "update_contours", "contour", "boxes_contour",
          "primitives_contour"]
@@ -49,6 +51,10 @@ SUMMARY = (["scene", "triangles", "vertices", "partition", "pairs_kind", "contac
             "extra"] + [task + "_ms" for task in TASKS] +
            ["nodes", "boxes", "primitives", "build_ms", "model_bytes", "workspace_bytes",
             "hash_bytes", "cpu_share"])
+
+# Of steps: means over the animation, a line a scene and method.
+STEPS = ["scene", "triangles", "partition", "steps", "method", "collisions", "missed", "candidates",
+         "candidates_ms", "mean_ms", "worst_ms", "cpu_share"]
 
 # A line a frame: milliseconds of each method.
 FRAMES = ["scene", "triangles", "partition", "frame", "pairs", "missed_by_none"] + METHODS
@@ -119,6 +125,24 @@ def summarize(description, records):
     return rows
 
 
+def summarize_steps(description, records):
+    """A row for each method of a run on steps."""
+    rows = []
+    for method in STEP_METHODS:
+        own = [r for r in records if r["method"] == method]
+        if own:
+            rows.append({
+                "scene": description["scene"], "triangles": description["triangles"],
+                "partition": description["partition"], "steps": len(own), "method": method,
+                "collisions": mean(r["pairs"] for r in own),
+                "missed": sum(r["missed"] for r in own),
+                "candidates": mean(r["candidates"] for r in own),
+                "candidates_ms": mean(r["candidates_ms"] for r in own),
+                "mean_ms": mean(r["ms"] for r in own), "worst_ms": max(r["ms"] for r in own),
+                "cpu_share": description["cpu_share"]})
+    return rows
+
+
 def write_csv(path, columns, rows, description):
     with open(path, "w", encoding="utf-8", newline="") as file:
         for key in ("command", "seconds", "skipped", "commit", "compiler", "flags", "cpu", "cores"):
@@ -172,7 +196,10 @@ def collect(raw, results, command, seconds):
         sys.exit("draw_report.py: nothing was measured: no results in " + raw)
     if len({d["commit"] for d, _ in runs}) > 1:
         sys.exit("draw_report.py: results of different commits in " + raw)
-    summary = [row for d, records in runs for row in summarize(d, records)]
+    steps = [row for d, records in runs if d["pairs_kind"] == "step"
+             for row in summarize_steps(d, records)]
+    summary = [row for d, records in runs if d["pairs_kind"] != "step"
+               for row in summarize(d, records)]
     frames = []
     for d, records in runs:
         by_frame = collections.OrderedDict()
@@ -196,6 +223,8 @@ def collect(raw, results, command, seconds):
                        skipped="; ".join(skipped) or "nothing")
     write_csv(os.path.join(results, "summary.csv"), SUMMARY, summary, description)
     write_csv(os.path.join(results, "frames.csv"), FRAMES, frames, description)
+    if steps:
+        write_csv(os.path.join(results, "steps.csv"), STEPS, steps, description)
 
 
 # ---------------------------------------------------------------------------------------------------
@@ -207,8 +236,12 @@ class Results:
     def __init__(self, folder):
         self.rows, self.description = read_csv(os.path.join(folder, "summary.csv"))
         self.frames, _ = read_csv(os.path.join(folder, "frames.csv"))
+        steps = os.path.join(folder, "steps.csv")
+        self.steps = read_csv(steps)[0] if os.path.exists(steps) else []
         peers = os.path.join(folder, "peers.csv")
-        self.peers, self.peers_skipped, self.peers_commit = read_peers(peers)
+        rows, self.peers_skipped, self.peers_commit = read_peers(peers)
+        self.peers = [row for row in rows if not row["what"].startswith("step: ")]
+        self.peer_steps = [row for row in rows if row["what"].startswith("step: ")]
         self.runs = collections.OrderedDict()
         for row in self.rows:
             key = (row["scene"], row["triangles"], row["partition"], row["pairs_kind"],
@@ -415,6 +448,52 @@ def other_pairs(results):
                     ["%s (%s)" % (figure(run[m]["rest_ms"]), figure(run[m]["mean_ms"]))
                      for m in METHODS])
     return table(["scene", "triangles"] + METHODS, rows)
+
+
+def steps(results):
+    """For each scene, what each method leaves to the narrow phase, in what time, and the whole step."""
+    scenes = collections.OrderedDict()
+    for row in results.steps:
+        scenes.setdefault((row["scene"], row["triangles"]), {})[row["method"]] = row
+    rows = [[], []]
+    for (scene, triangles), run in scenes.items():
+        if len(run) < len(STEP_METHODS):
+            continue
+        ours, boxes = run["step"], run["step-two-boxes"]
+        begin = [scene, whole(triangles)]
+        rows[0].append(begin + [whole(ours["collisions"])] +
+                       [whole(run[m]["candidates"]) for m in STEP_METHODS] +
+                       [whole(run["step-none"]["missed"])])
+        rows[1].append(begin + ["%s (%s)" % (figure(run[m]["candidates_ms"]), figure(run[m]["mean_ms"]))
+                                for m in STEP_METHODS] +
+                       ["%s (%s)" % (times(boxes["candidates_ms"] / ours["candidates_ms"]),
+                                     times(boxes["mean_ms"] / ours["mean_ms"]))])
+    if not rows[0]:
+        return ""
+    return table(["scene", "triangles", "collisions"] + STEP_METHODS + ["missed by none, all steps"],
+                 rows[0]) + "\n" + table(["scene", "triangles"] + STEP_METHODS + ["× two boxes"], rows[1])
+
+
+def peer_steps(results):
+    """Candidates of peers beside those of ours, of the same steps in the same process."""
+    groups = collections.OrderedDict()
+    for row in results.peer_steps:
+        process = (row["beside"], row["scene"], row["triangles"], row["processors"])
+        groups.setdefault(process, {}).setdefault(row["peer"] == "starcontour", []).append(row)
+    rows = []
+    for (peer, scene, triangles, processors), both in groups.items():
+        if len(both) < 2:
+            continue
+        theirs, ours = both[False], both[True]
+        count, ms = ([mean(r[key] for r in side) for side in (theirs, ours)] for key in ("pairs", "ms"))
+        wrong = sum(r["matches"] != "yes" for r in theirs)
+        rows.append(["%s %s" % (theirs[0]["peer"], theirs[0]["version"]), scene, whole(triangles),
+                     whole(len(theirs)), whole(processors), whole(count[0]), whole(count[1]),
+                     "%.2f" % (100.0 * count[1] / count[0]) if count[0] else "–",
+                     figure(ms[0]), figure(ms[1]), times(ms[0] / ms[1]),
+                     "%d steps lack collisions" % wrong if wrong else "hold all collisions"])
+    return table(["peer", "scene", "triangles", "steps", "threads", "candidates", "ours", "%", "ms",
+                  "ours, ms", "× ours", "candidates of the peer"], rows, left=2) if rows else ""
 
 
 def modes(results):
@@ -699,6 +778,22 @@ def report(results, drawn, slope_table, reading):
     out.append("## Pairs of triangles\n")
     out.append("What the library reports unless told otherwise. Rest, in brackets the mean.\n")
     out.append(other_pairs(results))
+    step_tables, peer_table = steps(results), peer_steps(results)
+    if step_tables:
+        out.append("## Steps\n")
+        out.append("From each frame to the next, over the whole animation: means over the steps. Pairs of a vertex\n"
+                   "and a face, and of two edges: collisions, and the candidates that each method leaves to the\n"
+                   "narrow phase. `step-none` has no contour test and misses collisions.\n")
+        parts = step_tables.split("\n\n")
+        out.append(parts[0] + "\n")
+        out.append("Milliseconds: candidates alone, in brackets the whole step; then how many times as fast\n"
+                   "`step` is as two boxes.\n")
+        out.append(parts[1])
+    if peer_table:
+        out.append("Candidates of other libraries on steps, in one process with ours, taking turns; made by\n"
+                   "`make peers` at commit %s. *%%*: ours as a part of theirs. Ours runs on one thread.\n" %
+                   results.peers_commit)
+        out.append(peer_table)
     out.append("## One query a frame, and repeated queries\n")
     out.append("The same frame asked for again and again, which favours what fits the cache.\n")
     out.append(modes(results))

@@ -22,6 +22,8 @@
    measured on as many of these lanes at once as there are threads. */
 typedef struct measure_lane {
     double *frame;   /* as the scene has it */
+    double *next;    /* of steps: the frame after it, */
+    void *end;       /* and what the library reads of that */
     double *doubles; /* what the hash reads */
     void *positions; /* what the library reads, of the mesh's type */
     method_runner *runners;
@@ -41,6 +43,7 @@ typedef struct measure_state {
     floor_pass *floor;
     measure_lane *lanes; /* options->threads */
     double *times;       /* records * repeats */
+    double *broad_times; /* the same, of steps: candidates alone */
     double *floor_times; /* frame_count * (passes or 1) */
     size_t floor_count;
     lane_pool *pool; /* NULL with one thread */
@@ -61,6 +64,11 @@ static bool fail(measure_state *s, const char *what, const char *reason)
 {
     snprintf(s->error, s->error_size, "%s: %s", what, reason);
     return false;
+}
+
+static bool asks_steps(const measure_state *s)
+{
+    return s->options->question.pairs == METHOD_STEPS;
 }
 
 static int compare_times(const void *left, const void *right)
@@ -132,7 +140,10 @@ static bool open_lane(measure_state *s, measure_lane *lane, const double *rest)
     lane->doubles = (double *)malloc(count * sizeof(double));
     lane->positions = malloc(count * sizeof(double));
     lane->runners = (method_runner *)calloc(s->m->method_count, sizeof *lane->runners);
-    if (!lane->frame || !lane->doubles || !lane->positions || !lane->runners)
+    lane->next = (double *)malloc(count * sizeof(double));
+    lane->end = malloc(count * sizeof(double));
+    if (!lane->frame || !lane->doubles || !lane->positions || !lane->runners || !lane->next ||
+        !lane->end)
         return fail(s, "poses", "out of memory");
     for (size_t i = 0; i < s->m->method_count; i++) {
         const method_kind *kind = s->m->methods[i];
@@ -151,11 +162,12 @@ static bool prepare(measure_state *s)
     const size_t passes = options->mode == MEASURE_ONCE ? options->repeats : 1;
     m->records = (measure_record *)calloc(records, sizeof *m->records);
     s->times = (double *)malloc(records * options->repeats * sizeof *s->times);
+    s->broad_times = (double *)malloc(records * options->repeats * sizeof *s->times);
     s->floor_times = (double *)malloc(m->frame_count * passes * sizeof *s->floor_times);
     s->lanes = (measure_lane *)calloc(options->threads, sizeof *s->lanes);
     double *rest = (double *)malloc(3 * (size_t)s->scene->vertex_count * sizeof *rest);
     s->all = records * (1 + passes);
-    bool done = m->records && s->times && s->floor_times && s->lanes && rest;
+    bool done = m->records && s->times && s->broad_times && s->floor_times && s->lanes && rest;
     if (!done) fail(s, "measuring", "out of memory");
     done = done && scene_folder_frame(s->scene, 0, rest, s->error, s->error_size) == 0 &&
            build(s, rest);
@@ -175,8 +187,9 @@ static bool prepare(measure_state *s)
         s->reference_index++;
     if (done && s->reference_index == m->method_count) {
         const char *reason;
-        done = method_open(&s->reference, method_find("aabb"), &s->mesh, rest, &reason);
-        if (!done) fail(s, "aabb", reason);
+        const char *name = asks_steps(s) ? "step-two-boxes" : "aabb";
+        done = method_open(&s->reference, method_find(name), &s->mesh, rest, &reason);
+        if (!done) fail(s, name, reason);
     }
     free(rest);
     return done;
@@ -191,6 +204,8 @@ static void close_all(measure_state *s)
             method_close(&lane->runners[k]);
         }
         free(lane->frame);
+        free(lane->next);
+        free(lane->end);
         free(lane->doubles);
         free(lane->positions);
         free(lane->runners);
@@ -200,6 +215,7 @@ static void close_all(measure_state *s)
     sc_model_free(s->model);
     free(s->lanes);
     free(s->times);
+    free(s->broad_times);
     free(s->floor_times);
 }
 
@@ -209,7 +225,20 @@ static void close_all(measure_state *s)
 
 static bool load_frame(measure_state *s, measure_lane *lane, uint32_t frame)
 {
-    return scene_folder_frame(s->scene, frame, lane->frame, s->error, s->error_size) == 0;
+    return scene_folder_frame(s->scene, frame, lane->frame, s->error, s->error_size) == 0 &&
+           (!asks_steps(s) ||
+            scene_folder_frame(s->scene, frame + 1, lane->next, s->error, s->error_size) == 0);
+}
+
+static void write_positions(const measure_state *s, const double *frame, void *to)
+{
+    const size_t count = 3 * (size_t)s->scene->vertex_count;
+    if (s->scene->single) {
+        float *positions = (float *)to;
+        for (size_t i = 0; i < count; i++) positions[i] = (float)frame[i];
+    } else {
+        memcpy(to, frame, count * sizeof(double));
+    }
 }
 
 /* Writes the pose to where a method reads it, as a simulation would just have done. */
@@ -218,20 +247,18 @@ static void write_pose(const measure_state *s, measure_lane *lane, const method_
     const size_t count = 3 * (size_t)s->scene->vertex_count;
     if (kind && kind->is_hash) {
         memcpy(lane->doubles, lane->frame, count * sizeof(double));
-    } else if (s->scene->single) {
-        float *positions = (float *)lane->positions;
-        for (size_t i = 0; i < count; i++) positions[i] = (float)lane->frame[i];
     } else {
-        memcpy(lane->positions, lane->frame, count * sizeof(double));
+        write_positions(s, lane->frame, lane->positions);
+        if (asks_steps(s)) write_positions(s, lane->next, lane->end);
     }
 }
 
-static bool run_query(measure_state *s, measure_lane *lane, method_runner *runner, sc_stats *stats,
-                      double *milliseconds)
+static bool run_query(measure_state *s, measure_lane *lane, method_runner *runner, bool compared,
+                      sc_stats *stats, double *milliseconds)
 {
     const char *reason;
-    if (method_query(runner, lane->positions, lane->doubles, &s->options->question, stats,
-                     milliseconds, &reason))
+    const method_pose pose = {lane->positions, lane->end, lane->doubles};
+    if (method_query(runner, &pose, &s->options->question, compared, stats, milliseconds, &reason))
         return true;
     lane->reason = reason;
     return false;
@@ -262,14 +289,15 @@ static bool check_frames(measure_state *s)
         double unused;
         if (!load_frame(s, lane, frame)) return false;
         write_pose(s, lane, NULL);
-        if (complete == &s->reference && !run_query(s, lane, &s->reference, NULL, &unused))
-            return fail(s, "aabb", lane->reason);
+        if (complete == &s->reference && !run_query(s, lane, &s->reference, true, NULL, &unused))
+            return fail(s, s->reference.kind->name, lane->reason);
         measure_record *records = &m->records[frame * m->method_count];
         for (size_t i = 0; i < m->method_count; i++) {
             write_pose(s, lane, m->methods[i]);
-            if (!run_query(s, lane, &lane->runners[i], &records[i].stats, &unused))
+            if (!run_query(s, lane, &lane->runners[i], true, &records[i].stats, &unused))
                 return fail(s, m->methods[i]->name, lane->reason);
             records[i].pairs = lane->runners[i].count;
+            records[i].candidates = lane->runners[i].step.candidates;
             if (s->progress) s->progress(m->methods[i]->name, ++s->done, s->all);
         }
         for (size_t i = 0; i < m->method_count; i++) {
@@ -300,7 +328,7 @@ static void run_lane(void *user, uint32_t number)
     const lane_task *task = (const lane_task *)user;
     measure_lane *lane = &task->s->lanes[number];
     lane->failed =
-        !run_query(task->s, lane, &lane->runners[task->method], NULL, &lane->milliseconds);
+        !run_query(task->s, lane, &lane->runners[task->method], false, NULL, &lane->milliseconds);
 }
 
 /* Milliseconds of processor time that this program has taken. */
@@ -347,6 +375,8 @@ static bool run_frames(measure_state *s, uint32_t pass, uint32_t first, uint32_t
             for (uint32_t i = 0; i < count; i++) {
                 const size_t record = (size_t)(first + i) * m->method_count + method;
                 s->times[record * repeats + pass + q] = milliseconds;
+                s->broad_times[record * repeats + pass + q] =
+                    s->lanes[i].runners[method].step.candidates_ms;
             }
         }
         s->done += count;
@@ -370,7 +400,7 @@ static bool start_pass(measure_state *s)
             double unused;
             if (!load_frame(s, &s->lanes[i], 0)) return false;
             write_pose(s, &s->lanes[i], s->m->methods[method]);
-            if (!run_query(s, &s->lanes[i], &s->lanes[i].runners[method], NULL, &unused))
+            if (!run_query(s, &s->lanes[i], &s->lanes[i].runners[method], false, NULL, &unused))
                 return fail(s, s->m->methods[method]->name, s->lanes[i].reason);
         }
     }
@@ -400,6 +430,7 @@ static void summarize(measure_state *s)
     for (size_t i = 0; i < (size_t)m->frame_count * m->method_count; i++) {
         m->records[i].ms = median(&s->times[i * repeats], repeats);
         m->records[i].ms_min = s->times[i * repeats];
+        m->records[i].candidates_ms = median(&s->broad_times[i * repeats], repeats);
     }
     m->floor_ms = median(s->floor_times, s->floor_count);
     for (size_t i = 0; i < m->method_count; i++) {
@@ -420,9 +451,11 @@ bool measure_run(measurement *m, scene_folder *scene, const measure_options *opt
     s.progress = progress;
     s.error = error;
     s.error_size = error_size;
-    m->frame_count = scene->frame_count;
+    m->frame_count = scene->frame_count - (asks_steps(&s) && scene->frame_count > 0);
     bool done;
-    if (options->partition == MEASURE_STRUCTURE && !scene->order)
+    if (m->frame_count == 0)
+        done = fail(&s, "--pairs step", "a step takes two frames");
+    else if (options->partition == MEASURE_STRUCTURE && !scene->order)
         done = fail(&s, "--partition structure", "this scene comes without an order of its own");
     else
         done = prepare(&s) && check_frames(&s) && reserve_pairs(&s) && time_frames(&s);

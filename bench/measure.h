@@ -12,6 +12,8 @@
  *   MEASURE_WARM  as many queries of the same pose as repeats are asked for, one after the other.
  * Before each turn the pose is written anew to where queries read it, as a simulation would.
  *
+ * Where steps are asked about (METHOD_STEPS), a frame is the step from it to the next.
+ *
  * With several threads, each has a workspace of its own for the same model, and they work on as many
  * frames at once. A frame's time is then that of all of them, divided by their number: a measure of
  * throughput. A single query always runs on one thread.
@@ -38,13 +40,15 @@ typedef struct measure_options {
 typedef struct measure_record {
     double ms, ms_min; /* median and minimum of the repeats */
     uint64_t pairs, missed, extra;
-    sc_stats stats; /* of the pass that is not timed */
+    double candidates_ms; /* of steps: median, candidates alone */
+    uint64_t candidates;  /* of steps */
+    sc_stats stats;       /* of the pass that is not timed */
 } measure_record;
 
 typedef struct measurement {
     const method_kind **methods; /* method_count; the caller's */
     size_t method_count;
-    uint32_t frame_count;
+    uint32_t frame_count;    /* of steps: the last frame is no start of one, and not counted */
     measure_record *records; /* frame_count * method_count, frame by frame */
     double build_ms;
     sc_model_info info;

@@ -13,17 +13,28 @@
 
 const method_kind method_kinds[] = {
     {"exact", "test tree with orientation and exact contour tests", NULL, false, false,
-     SC_METHOD_SCTT, SC_CONTOUR_EXACT},
+     SC_METHOD_SCTT, SC_CONTOUR_EXACT, false},
     {"star", "test tree with orientation and star-contour tests, as in the paper", NULL, false,
-     false, SC_METHOD_SCTT, SC_CONTOUR_STAR},
+     false, SC_METHOD_SCTT, SC_CONTOUR_STAR, false},
     {"none", "test tree without a contour test: MISSES PAIRS, which are counted", NULL, true, false,
-     SC_METHOD_SCTT, SC_CONTOUR_NONE},
+     SC_METHOD_SCTT, SC_CONTOUR_NONE, false},
     {"aabb-sctt",
      "tree of boxes, started at the test tree's non-adjacent children, as in the paper", NULL,
-     false, false, SC_METHOD_AABB_SCTT, SC_CONTOUR_DEFAULT},
-    {"aabb", "a plain tree of boxes", NULL, false, false, SC_METHOD_AABB, SC_CONTOUR_DEFAULT},
+     false, false, SC_METHOD_AABB_SCTT, SC_CONTOUR_DEFAULT, false},
+    {"aabb", "a plain tree of boxes", NULL, false, false, SC_METHOD_AABB, SC_CONTOUR_DEFAULT,
+     false},
     {"hash", "optimised spatial hashing, cells as long as the average edge", NULL, false, true, 0,
-     0},
+     0, false},
+    {"step", "of steps: test tree with cones and contours that move", NULL, false, false,
+     SC_STEP_METHOD_SCTT, SC_CONTOUR_EXACT, true},
+    {"step-star", "of steps: test tree with moving star contours", NULL, false, false,
+     SC_STEP_METHOD_SCTT, SC_CONTOUR_STAR, true},
+    {"step-none", "of steps: test tree without a contour test: MISSES PAIRS, which are counted",
+     NULL, true, false, SC_STEP_METHOD_SCTT, SC_CONTOUR_NONE, true},
+    {"step-two-boxes", "of steps: a plain tree, with boxes at the start and at the end", NULL,
+     false, false, SC_STEP_METHOD_TWO_BOXES, SC_CONTOUR_DEFAULT, true},
+    {"step-swept", "of steps: a plain tree, with boxes round the motion", NULL, false, false,
+     SC_STEP_METHOD_SWEPT, SC_CONTOUR_DEFAULT, true},
 };
 
 const size_t method_count = sizeof method_kinds / sizeof *method_kinds;
@@ -47,7 +58,8 @@ bool method_open(method_runner *runner, const method_kind *kind, const method_me
         runner->hash = spatial_hash_create(rest, mesh->vertex_count, mesh->triangles,
                                            mesh->triangle_count, reason);
     } else {
-        const sc_status status = query_threads_workspace(mesh->model, 0, &runner->workspace);
+        const uint32_t flags = kind->is_step ? SC_WORKSPACE_STEP : 0;
+        const sc_status status = query_threads_workspace(mesh->model, flags, &runner->workspace);
         if (status != SC_OK) *reason = sc_status_string(status);
     }
     return *reason == NULL;
@@ -57,6 +69,7 @@ void method_close(method_runner *runner)
 {
     sc_workspace_free(runner->workspace);
     spatial_hash_free(runner->hash);
+    step_method_free(&runner->step);
     free(runner->pairs);
     memset(runner, 0, sizeof *runner);
 }
@@ -92,16 +105,22 @@ static bool query_hash(method_runner *runner, const double *positions,
     return true;
 }
 
-static sc_status query_library(method_runner *runner, const void *positions,
-                               const method_question *question, sc_stats *stats,
-                               double *milliseconds)
+static sc_pose make_pose(const method_mesh *mesh, const void *positions)
 {
     sc_pose pose;
     memset(&pose, 0, sizeof pose);
     pose.struct_size = sizeof pose;
-    pose.vertex_count = runner->mesh->vertex_count;
-    pose.position_type = runner->mesh->position_type;
+    pose.vertex_count = mesh->vertex_count;
+    pose.position_type = mesh->position_type;
     pose.positions = positions;
+    return pose;
+}
+
+static sc_status query_library(method_runner *runner, const void *positions,
+                               const method_question *question, sc_stats *stats,
+                               double *milliseconds)
+{
+    const sc_pose pose = make_pose(runner->mesh, positions);
     sc_query_options options;
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
@@ -124,9 +143,30 @@ static sc_status query_library(method_runner *runner, const void *positions,
     return status;
 }
 
-bool method_query(method_runner *runner, const void *positions, const double *doubles,
-                  const method_question *question, sc_stats *stats, double *milliseconds,
-                  const char **reason)
+static sc_status query_step(method_runner *runner, const method_pose *pose, bool pairs_wanted,
+                            sc_stats *stats, double *milliseconds)
+{
+    step_method *const step = &runner->step;
+    const sc_pose start = make_pose(runner->mesh, pose->positions);
+    const sc_pose end = make_pose(runner->mesh, pose->end);
+    const sc_status status =
+        step_method_query(step, runner->mesh->model, runner->workspace, &start, &end,
+                          runner->kind->method, runner->kind->contour, stats);
+    *milliseconds = step->ms;
+    runner->count = step->count[0] + step->count[1];
+    if (status != SC_OK || !pairs_wanted) return status;
+    if (!method_reserve(runner, runner->count)) return SC_ERROR_MEMORY;
+    for (uint64_t i = 0; i < step->count[0]; i++) runner->pairs[i] = step->lists[0][i];
+    for (uint64_t i = 0; i < step->count[1]; i++) {
+        sc_pair *const to = &runner->pairs[step->count[0] + i];
+        to->a = step->lists[1][i].a + 0x80000000u;
+        to->b = step->lists[1][i].b + 0x80000000u;
+    }
+    return status;
+}
+
+bool method_query(method_runner *runner, const method_pose *pose, const method_question *question,
+                  bool pairs_wanted, sc_stats *stats, double *milliseconds, const char **reason)
 {
     sc_status status = SC_OK;
     if (stats) {
@@ -135,12 +175,15 @@ bool method_query(method_runner *runner, const void *positions, const double *do
     }
     if (runner->kind->is_hash) {
         *reason = "out of memory, or an edge meets too many cells";
-        return query_hash(runner, doubles, question, stats, milliseconds);
+        return query_hash(runner, pose->doubles, question, stats, milliseconds);
     }
-    status = query_library(runner, positions, question, stats, milliseconds);
+    if (runner->kind->is_step)
+        status = query_step(runner, pose, pairs_wanted, stats, milliseconds);
+    else
+        status = query_library(runner, pose->positions, question, stats, milliseconds);
     if (status == SC_ERROR_SHORT_BUFFER) {
         status = method_reserve(runner, runner->count + runner->count / 4)
-                     ? query_library(runner, positions, question, stats, milliseconds)
+                     ? query_library(runner, pose->positions, question, stats, milliseconds)
                      : SC_ERROR_MEMORY;
     }
     *reason = sc_status_string(status);

@@ -11,6 +11,7 @@
 #define BENCH_METHODS_H
 
 #include "spatial_hash.h"
+#include "step_method.h"
 
 #include "starcontour.h"
 
@@ -23,6 +24,7 @@ typedef struct method_kind {
     bool unsound;        /* misses pairs, and is measured for that */
     bool is_hash;        /* else a query of the library with the next two */
     uint32_t method, contour;
+    bool is_step; /* of a step from one pose to another, see step_method.h */
 } method_kind;
 
 /* All methods, in the order in which they are listed. */
@@ -46,14 +48,25 @@ typedef struct method_runner {
     const method_mesh *mesh;
     sc_workspace *workspace;
     spatial_hash *hash;
+    step_method step;
     sc_pair *pairs; /* of the last query, sorted */
     uint64_t count, room;
 } method_runner;
 
-/* What is asked: SC_PAIRS_..., SC_CONTACT_... */
+/* In place of a kind of pairs: the collisions of steps. */
+enum { METHOD_STEPS = 2 };
+
+/* What is asked: SC_PAIRS_... or METHOD_STEPS, SC_CONTACT_... */
 typedef struct method_question {
     uint32_t pairs, contact;
 } method_question;
+
+/* What a query is about: a pose in the mesh's type, and as doubles for the hash. Of a step, end is where it
+   leads. */
+typedef struct method_pose {
+    const void *positions, *end;
+    const double *doubles;
+} method_pose;
 
 /* rest: the first frame as doubles. On failure false, a message in *reason and nothing to close. */
 bool method_open(method_runner *runner, const method_kind *kind, const method_mesh *mesh,
@@ -65,13 +78,14 @@ void method_close(method_runner *runner);
 bool method_reserve(method_runner *runner, uint64_t count);
 
 /*
- * One query; its pairs are in the runner afterwards, its duration in *milliseconds. A pose is given
- * twice: in the mesh's type, and as doubles for the hash. stats may be NULL; asking for it costs time.
- * Where the room for pairs is too small it is enlarged and the query repeated: only the last counts.
- * On failure false, and a message in *reason.
+ * One query; its pairs are in the runner afterwards, its duration in *milliseconds. stats may be NULL;
+ * asking for it costs time. Where the room for pairs is too small it is enlarged and the query repeated:
+ * only the last counts. On failure false, and a message in *reason.
+ *
+ * Steps: pairs of both kinds are found, and with pairs_wanted also listed: those of edges last, with
+ * 2^31 added to their numbers. Another query counts the candidates; runner->step has what it found.
  */
-bool method_query(method_runner *runner, const void *positions, const double *doubles,
-                  const method_question *question, sc_stats *stats, double *milliseconds,
-                  const char **reason);
+bool method_query(method_runner *runner, const method_pose *pose, const method_question *question,
+                  bool pairs_wanted, sc_stats *stats, double *milliseconds, const char **reason);
 
 #endif /* BENCH_METHODS_H */

@@ -134,6 +134,8 @@ static void list_record(report_fields *fields, const measurement *m, const repor
     add_number(fields, "pairs", (double)record->pairs);
     add_number(fields, "missed", (double)record->missed);
     add_number(fields, "extra", (double)record->extra);
+    add_some(fields, "candidates", m->methods[method]->is_step, (double)record->candidates);
+    add_some(fields, "candidates_ms", m->methods[method]->is_step, record->candidates_ms);
     add_number(fields, "times_floor", record->ms / m->floor_ms);
     for (size_t task = 0; task < SC_TASK_COUNT; task++) {
         add_some(fields, task_names[task], library, 1e-6 * (double)stats->nanoseconds[task]);
@@ -218,6 +220,22 @@ static void print_csv_opening(const report_fields *description, const report_fie
     putchar('\n');
 }
 
+/* What is left after culling, and how long that takes alone: means over the steps. */
+static void print_candidates(const measurement *m)
+{
+    printf("\n%-14s %14s %14s\n", "method", "candidates", "ms of these");
+    for (size_t i = 0; i < m->method_count; i++) {
+        double candidates = 0.0, milliseconds = 0.0;
+        for (uint32_t frame = 0; frame < m->frame_count; frame++) {
+            const measure_record *record = &m->records[frame * m->method_count + i];
+            candidates += (double)record->candidates;
+            milliseconds += record->candidates_ms;
+        }
+        printf("%-14s %14.0f %14.3f\n", m->methods[i]->name, candidates / m->frame_count,
+               milliseconds / m->frame_count);
+    }
+}
+
 static void print_table(const measurement *m, const report_context *context)
 {
     printf("%s: %lu triangles, %lu frames; %s pairs, %s; %s partition, %s, %lu thread%s\n",
@@ -231,17 +249,18 @@ static void print_table(const measurement *m, const report_context *context)
     }
     printf("model built in %.1f ms; physical floor %.2f ns a triangle, %.3f ms a frame\n\n",
            m->build_ms, floor_ns(m, context), m->floor_ms);
-    printf("milliseconds\n%5s %9s", "frame", "pairs");
-    for (size_t i = 0; i < m->method_count; i++) printf(" %10s", m->methods[i]->name);
+    printf("milliseconds\n%5s %9s", m->methods[0]->is_step ? "step" : "frame", "pairs");
+    for (size_t i = 0; i < m->method_count; i++) printf(" %14s", m->methods[i]->name);
     printf("\n");
     for (uint32_t frame = 0; frame < m->frame_count; frame++) {
         const measure_record *records = &m->records[frame * m->method_count];
         printf("%5lu %9.0f", (unsigned long)frame,
                (double)(records[0].pairs + records[0].missed - records[0].extra));
-        for (size_t i = 0; i < m->method_count; i++) printf(" %10.3f", records[i].ms);
+        for (size_t i = 0; i < m->method_count; i++) printf(" %14.3f", records[i].ms);
         printf("\n");
     }
-    printf("\n%-10s %10s %10s %10s %12s %10s %9s %7s\n", "method", "at rest", "mean", "worst",
+    if (m->methods[0]->is_step) print_candidates(m);
+    printf("\n%-14s %10s %10s %10s %12s %10s %9s %7s\n", "method", "at rest", "mean", "worst",
            "ns/triangle", "x floor", "missed", "extra");
     for (size_t i = 0; i < m->method_count; i++) {
         double sum = 0.0, worst = 0.0, missed = 0.0, extra = 0.0;
@@ -253,7 +272,7 @@ static void print_table(const measurement *m, const report_context *context)
             extra += (double)record->extra;
         }
         const double mean = sum / m->frame_count;
-        printf("%-10s %10.3f %10.3f %10.3f %12.1f %10.1f %9.0f %7.0f\n", m->methods[i]->name,
+        printf("%-14s %10.3f %10.3f %10.3f %12.1f %10.1f %9.0f %7.0f\n", m->methods[i]->name,
                m->records[i].ms, mean, worst, 1e6 * mean / context->triangle_count,
                mean / m->floor_ms, missed, extra);
     }

@@ -60,7 +60,18 @@ wrinkled-cloth 100352 20 2 structure triangle -
 twisted-cloth 65536 20 3 structure edge exact,star,aabb --threads $cores
 bunny 54500 20 3 metis edge exact,star,aabb --threads $cores
 twisted-cloth 65536 20 5 structure edge exact,star,aabb-sctt,aabb,hash --warm
-bunny 54500 20 5 metis edge exact,star,aabb-sctt,aabb,hash --warm"
+bunny 54500 20 5 metis edge exact,star,aabb-sctt,aabb,hash --warm
+twisted-cloth 65536 20 1 structure step -
+cloth-sphere 80000 20 1 structure step -
+cat 41000 20 1 metis step -
+bunny 54500 20 1 metis step -
+bunny-bumpy 54500 20 1 metis step -
+bunny-spiky 54500 20 1 metis step -
+horse 25000 20 1 metis step -
+wrinkled-cloth 100352 20 1 structure step -
+crushed-cloth 92416 20 1 structure step -
+tight-rods 98304 20 1 metis step -
+sphere 81920 20 1 metis step -"
 
 quick="\
 twisted-cloth 4096 8 3 structure edge -
@@ -78,7 +89,9 @@ sphere 81920 4 1 metis edge -
 twisted-cloth 16384 8 3 metis edge exact,star,aabb-sctt,aabb
 twisted-cloth 16384 8 3 structure triangle -
 twisted-cloth 16384 8 3 structure edge exact,star,aabb --threads $cores
-bunny 13600 8 3 metis edge exact,star,aabb-sctt,aabb,hash --warm"
+bunny 13600 8 3 metis edge exact,star,aabb-sctt,aabb,hash --warm
+twisted-cloth 16384 8 1 structure step -
+bunny 13600 8 1 metis step -"
 
 case $kind in
 full | report)
@@ -132,7 +145,10 @@ status=0
 begin=$(date +%s)
 while read -r scene triangles frames passes partition pairs methods options; do
     number=$((number + 1))
-    [ "$methods" = - ] && methods=exact,star,none,aabb-sctt,aabb,hash
+    if [ "$methods" = - ]; then
+        methods=exact,star,none,aabb-sctt,aabb,hash
+        [ "$pairs" = step ] && methods=step,step-star,step-none,step-two-boxes,step-swept
+    fi
     mode=--once
     [ "$options" = --warm ] && mode= && options=
     echo "bench: $number of $count, $(($(date +%s) - begin)) s: $scene $triangles $partition $pairs${options:+ $options} ${mode:---warm}" >&2

@@ -37,8 +37,10 @@ static const char usage[] =
     "The model is built from the first frame.\n"
     "\n"
     "How:\n"
-    "  --methods A,B,...  exact, star, none, aabb-sctt, aabb, hash (all; --list explains)\n"
-    "  --pairs KIND       triangle or edge: pairs of triangles, or of an edge and a triangle\n"
+    "  --methods A,B,...  exact, star, none, aabb-sctt, aabb, hash (all; --list explains);\n"
+    "                     of steps: step, step-star, step-none, step-two-boxes, step-swept (all)\n"
+    "  --pairs KIND       triangle or edge: pairs of triangles, or of an edge and a triangle;\n"
+    "                     step: vertex-face and edge-edge pairs between each frame and the next\n"
     "                     (triangle)\n"
     "  --proper           only proper crossings, not every common point\n"
     "  --partition HOW    fast, metis, or structure: the scene's own order (fast)\n"
@@ -66,7 +68,7 @@ static const char usage[] =
     "not be done.\n";
 
 static const tool_choice pairs_choices[] = {
-    {"triangle", SC_PAIRS_TRIANGLE}, {"edge", SC_PAIRS_EDGE}, {NULL, 0}};
+    {"triangle", SC_PAIRS_TRIANGLE}, {"edge", SC_PAIRS_EDGE}, {"step", METHOD_STEPS}, {NULL, 0}};
 
 static const tool_choice partition_choices[] = {
     {"fast", MEASURE_FAST}, {"metis", MEASURE_METIS}, {"structure", MEASURE_STRUCTURE}, {NULL, 0}};
@@ -157,12 +159,13 @@ static void name_of_path(const char *path, char *name, size_t size)
  */
 
 /* Fills kinds, which has room for all methods, with those that are asked for. */
-static bool choose_methods(const char *text, const method_kind **kinds, size_t *count)
+static bool choose_methods(const char *text, bool steps, const method_kind **kinds, size_t *count)
 {
     *count = 0;
     if (!text) {
         for (size_t i = 0; i < method_count; i++) {
-            if (!method_kinds[i].missing) kinds[(*count)++] = &method_kinds[i];
+            if (!method_kinds[i].missing && method_kinds[i].is_step == steps)
+                kinds[(*count)++] = &method_kinds[i];
         }
         return true;
     }
@@ -179,6 +182,11 @@ static bool choose_methods(const char *text, const method_kind **kinds, size_t *
         }
         if (kind->missing) {
             tool_error("--methods: %s: %s", name, kind->missing);
+            return false;
+        }
+        if (kind->is_step != steps) {
+            tool_error("--methods: %s %s", name,
+                       steps ? "knows no steps (--pairs step)" : "is of steps: --pairs step");
             return false;
         }
         for (size_t i = 0; i < *count; i++) {
@@ -215,7 +223,9 @@ static int measure_scene(const bench_settings *set, scene_folder *scene, const c
     measurement m;
     memset(&m, 0, sizeof m);
     m.methods = kinds;
-    if (!choose_methods(set->methods, kinds, &m.method_count)) return TOOL_FAILED;
+    if (!choose_methods(set->methods, set->measure.question.pairs == METHOD_STEPS, kinds,
+                        &m.method_count))
+        return TOOL_FAILED;
     const bool done = measure_run(&m, scene, &set->measure, progress_show, error, sizeof error);
     progress_end();
     if (!done) {
@@ -285,6 +295,11 @@ static int export_scene(const bench_settings *set, scene_folder *scene)
 
 static int run(const bench_settings *set, char **paths, int path_count)
 {
+    if (set->measure.question.pairs == METHOD_STEPS &&
+        set->measure.question.contact == SC_CONTACT_PROPER) {
+        tool_error("--proper: a step has no proper crossings");
+        return TOOL_FAILED;
+    }
     const int sources = (set->scene != NULL) + (set->scene_dir != NULL) + (path_count > 0);
     if (set->list) {
         list_all();
