@@ -205,7 +205,7 @@ static void check_fans(const scene *s, const sc_pair *pairs, uint64_t count, tal
     uint32_t wrong = 0;
     for (uint32_t p = 0; p < m->vertex_count; ++p) {
         if (sc_model_ring_first(m)[p] == sc_model_ring_first(m)[p + 1]) continue;
-        if (!sc_fan_test_of_pose(m, s->workspace, p)) {
+        if (!sc_fan_is_plain(m, s->workspace, p)) {
             ++t->not_plain;
             continue;
         }

@@ -15,18 +15,15 @@
 /* The test itself: 1 if the fan round a point certainly projects one to one in this pose. */
 int sc_fan_test(const sc_model *model, const sc_workspace *workspace, uint32_t point);
 
-/* The same, in single precision where that is enough. */
-int sc_fan_test_of_pose(const sc_model *model, const sc_workspace *workspace, uint32_t point);
+/* The same, in single precision where that is enough; notes the answer in workspace->fan. */
+void sc_fan_test_of_pose(const sc_model *model, sc_workspace *workspace, uint32_t point);
 
 /* The same, computed once a pose. */
 static inline int sc_fan_is_plain(const sc_model *model, sc_workspace *workspace, uint32_t point)
 {
-    uint32_t known = workspace->fan[point];
-    if (known >> 1 != workspace->pose_tick) {
-        known = 2 * workspace->pose_tick + (uint32_t)sc_fan_test_of_pose(model, workspace, point);
-        workspace->fan[point] = known;
-    }
-    return (int)(known & 1);
+    if (workspace->fan[point] >> 1 != workspace->pose_tick)
+        sc_fan_test_of_pose(model, workspace, point);
+    return (int)(workspace->fan[point] & 1);
 }
 
 /* Bit i: the fans at all three corners of triangle i of a leaf cluster project one to one. Computed once a

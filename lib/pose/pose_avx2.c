@@ -14,13 +14,15 @@
 #  define SC_LANES 2
 
 #  include "base/lanes.h"
+#  include "base/lanes_pick.h"
 #  include "pose/cones_kernel.h"
 #  include "pose/fan_kernel.h"
 #  include "pose/refit_kernel.h"
 
 const sc_pose_kernels sc_pose_kernels_avx2 = {SC_KERNEL(mask_of), SC_KERNEL(refit_leaf),
-                                              SC_KERNEL(is_plain)};
+                                              SC_KERNEL(are_plain)};
 
+#  include "base/lanes_pick_end.h"
 #  include "base/lanes_end.h"
 #  include "base/avx2_end.h"
 

@@ -9,14 +9,22 @@
 #include "base/isa.h"
 #include "pose/workspace.h"
 
+/* So many fans are tested at once, and by the same kernel if no ring is longer than SC_FAN_MOST. */
+enum { SC_FANS = 16, SC_FAN_MOST = 16 };
+
+/* Fans: points and the rings of count points round them, from 3 to SC_FAN_MOST. */
+typedef struct sc_fans {
+    uint32_t point[SC_FANS], count[SC_FANS];
+    const uint32_t *ring[SC_FANS];
+} sc_fans;
+
 typedef struct sc_pose_kernels {
     /* The normal cone of 1 to SC_LEAF_MAX triangles given by their corners, see pose/dnc.h. */
     uint32_t (*cone)(const sc_workspace *workspace, const uint32_t *corner, uint32_t count);
     /* Boxes of the triangles of a leaf cluster and its own, see pose/refit.h. */
     void (*refit_leaf)(const sc_model *model, sc_workspace *workspace, uint32_t leaf);
-    /* 1 if the fan of a ring of 3 to 16 points certainly projects one to one, see pose/fan.h. */
-    int (*is_plain)(const sc_workspace *workspace, const uint32_t *ring, uint32_t count,
-                    uint32_t point);
+    /* Bit i: the fan certainly projects one to one, see pose/fan.h. */
+    unsigned (*are_plain)(const sc_workspace *workspace, const sc_fans *fans);
 } sc_pose_kernels;
 
 extern const sc_pose_kernels sc_pose_kernels_base;

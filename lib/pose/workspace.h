@@ -7,7 +7,7 @@
  *       bounds_tick | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
- * candidates, neighbors, ball, ball_queue, found, state, motion.leaves. For each worker but the first there is a
+ * ready, candidates, neighbors, ball, ball_queue, found, state, motion.leaves. For each worker but the first there is a
  * view: an sc_workspace with the pose of the first, and own arrays.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
@@ -82,6 +82,21 @@ typedef struct sc_walk {
 } sc_walk;
 
 enum { SC_CANDIDATES_MAX = 1024 };
+
+/* A leaf cluster made ready for tests of its triangles, in the unit box; see query/leaf_kernel.h. Rows of points and of
+   triangles are filled with the last. */
+typedef struct sc_leaf_ready {
+    uint32_t leaf, tick; /* of the pose; 0: nothing yet */
+    float point[3][SC_LEAF_POINTS];
+    float corner[3][3][SC_LEAF_MAX]; /* corner, axis, triangle */
+    float normal[3][SC_LEAF_MAX];
+    float size[SC_LEAF_MAX]; /* |e|1 + |f|1, e and f the edges from the first corner */
+    float direction[3];      /* about the mean normal */
+    float direction_ends[2]; /* where the points are along it, at least and at most */
+} sc_leaf_ready;
+
+/* So many leaf clusters are kept ready, of each side of pairs. */
+enum { SC_READY_KEPT = 32 };
 
 /* Sides of boxes that move, three each: x, y, z. */
 enum { SC_START_LOW = 0, SC_START_HIGH = 3, SC_END_LOW = 6, SC_END_HIGH = 9, SC_MOTION_SIDES = 12 };
@@ -176,8 +191,9 @@ struct sc_workspace {
     sc_contour_edges contour;
     sc_walk walk;
 
-    sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
-    sc_pair *neighbors;  /* SC_CANDIDATES_MAX of such that share one point */
+    sc_leaf_ready *ready; /* 2 * SC_READY_KEPT */
+    sc_pair *candidates;  /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
+    sc_pair *neighbors;   /* SC_CANDIDATES_MAX of such that share one point */
     uint32_t candidate_count, neighbor_count;
 
     /* points near a triangle in number of edges, see query/filter.c */

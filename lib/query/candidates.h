@@ -14,7 +14,7 @@
 /* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
 typedef struct sc_leaf_pair {
     uint32_t a, b;
-    int shares; /* any do */
+    int shares;             /* any do */
     const uint16_t *shared; /* SC_LEAF_MAX rows: triangles of b that share points with one of a */
     unsigned plain_a, plain_b;   /* triangles whose corners all have plain fans, see pose/fan.h */
     uint16_t found[SC_LEAF_MAX]; /* room for shared */

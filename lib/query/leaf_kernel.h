@@ -17,13 +17,17 @@
  * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4 EDGE D, 2 EDGE^2, and by
  * rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
  *
- * Both bounds are above 1e-21: what underflows does not matter.
+ * A place along a direction n of the points of a cluster, x in the unit box: off by POINT |n|1, and by rounding 3.01 v |n|1,
+ * 2.1e-7 |n|1 in all, and a few FLT_MIN for products that underflow. Two of them and the sum of one with the bound are
+ * below 5e-7 |n|1 + 16 FLT_MIN.
+ *
+ * The other bounds are above 1e-21: what underflows does not matter.
  */
 enum { SC_LEAF_PAIRS = SC_LEAF_MAX * SC_LEAF_MAX };
 
 /* Fewer pairs than this are decided without the tests here; and it takes so many that no plane separates, of sixteen,
    for the test by sides. Tuned on the bunny and on cloth. */
-enum { SC_LEAF_FEW = 6, SC_SIDES_WORTH = 3 };
+enum { SC_LEAF_FEW = 3, SC_SIDES_WORTH = 3 };
 
 /* Bit k: box i of a overlaps box j + k of b, for k from 0 to 15. */
 static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const sc_boxes *b,
@@ -39,31 +43,80 @@ static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const s
     return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
 }
 
-/* The corners of the triangles of a leaf cluster: corner, axis, triangle. */
-typedef struct SC_KERNEL(leaf_corners) {
-    float at[3][3][SC_LANES_COUNT];
-} SC_KERNEL(leaf_corners);
-
-static void SC_KERNEL(load_leaf)(const sc_query_state *state, uint32_t leaf,
-                                 SC_KERNEL(leaf_corners) * corners)
+/* Where the points of a leaf cluster are along a direction. */
+static inline lanes SC_KERNEL(along)(const float direction[3], const sc_leaf_ready *leaf)
 {
-    const uint32_t *first = sc_model_leaf_first(state->model) + leaf;
-    const uint32_t *t = sc_model_triangle(state->model) + 3 * (uint64_t)first[0];
-    const float *unit = state->workspace->unit, *point[3][SC_LANES_COUNT];
-    uint32_t i, count = first[1] - first[0];
-    int k, c;
-    for (i = 0; i < SC_LANES_COUNT; i++) { /* the last triangle fills the row */
-        const uint32_t *corner = t + 3 * (i < count ? i : count - 1);
-        SC_UNROLL
-        for (k = 0; k < 3; k++) point[k][i] = unit + 4 * (uint64_t)corner[k];
-    }
+    return lanes_add(lanes_add(lanes_multiply(lanes_all(direction[0]), lanes_load(leaf->point[0])),
+                               lanes_multiply(lanes_all(direction[1]), lanes_load(leaf->point[1]))),
+                     lanes_multiply(lanes_all(direction[2]), lanes_load(leaf->point[2])));
+}
+
+/* Computes what sc_leaf_ready is made of. */
+static void SC_KERNEL(make_ready)(const sc_query_state *state, uint32_t leaf, sc_leaf_ready *ready)
+{
+    const sc_model *model = state->model;
+    const uint32_t *number = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf;
+    const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
+    const float *unit = state->workspace->unit, *at[SC_LANES_COUNT];
+    lanes point[3], x[3][3], e[3], f[3], n[3], size, along;
+    float reach;
+    int i, k, c;
+    for (i = 0; i < SC_LANES_COUNT; i++) at[i] = unit + 4 * (uint64_t)number[i];
+    lanes_points(at, &point[0], &point[1], &point[2]);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) lanes_store(ready->point[c], point[c]);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        lanes x[3];
-        lanes_points(point[k], &x[0], &x[1], &x[2]);
+        lanes_index corner = lanes_index_load(where + SC_LEAF_MAX * k);
         SC_UNROLL
-        for (c = 0; c < 3; c++) lanes_store(corners->at[k][c], x[c]);
+        for (c = 0; c < 3; c++) {
+            x[k][c] = lanes_pick(ready->point[c], corner);
+            lanes_store(ready->corner[k][c], x[k][c]);
+        }
     }
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        e[c] = lanes_subtract(x[1][c], x[0][c]);
+        f[c] = lanes_subtract(x[2][c], x[0][c]);
+    }
+    size = lanes_add(lanes_absolute(e[0]), lanes_absolute(f[0]));
+    SC_UNROLL
+    for (c = 1; c < 3; c++)
+        size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
+    lanes_store(ready->size, size);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        n[c] = lanes_subtract(lanes_multiply(e[(c + 1) % 3], f[(c + 2) % 3]),
+                              lanes_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
+        lanes_store(ready->normal[c], n[c]);
+        ready->direction[c] = lanes_sum(n[c]);
+    }
+    along = SC_KERNEL(along)(ready->direction, ready);
+    reach = 5e-7f * (fabsf(ready->direction[0]) + fabsf(ready->direction[1]) +
+                     fabsf(ready->direction[2])) +
+            16 * FLT_MIN;
+    ready->direction_ends[0] = lanes_least(along) - reach;
+    ready->direction_ends[1] = lanes_most(along) + reach;
+    ready->leaf = leaf;
+    ready->tick = state->workspace->pose_tick;
+}
+
+/* A leaf cluster made ready; side is 0 for the lower of two, 1 for the other. */
+static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state, uint32_t leaf,
+                                                    uint32_t side)
+{
+    sc_leaf_ready *ready = state->workspace->ready + SC_READY_KEPT * side + leaf % SC_READY_KEPT;
+    if (ready->leaf != leaf || ready->tick != state->workspace->pose_tick)
+        SC_KERNEL(make_ready)(state, leaf, ready);
+    return ready;
+}
+
+/* Whether all points of b are certainly before those of a along a's direction, or behind. */
+static inline int SC_KERNEL(slab_separates)(const sc_leaf_ready *a, const sc_leaf_ready *b)
+{
+    lanes along = SC_KERNEL(along)(a->direction, b);
+    return lanes_bits(lanes_below(along, lanes_all(a->direction_ends[0]))) == 0xffffu ||
+           lanes_bits(lanes_below(lanes_all(a->direction_ends[1]), along)) == 0xffffu;
 }
 
 /* Largest extent of the boxes of two leaf clusters together. */
@@ -83,34 +136,22 @@ static float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t
     return extent;
 }
 
-/* The lanes in which the plane of t certainly has all corners of o on one side; sets the normals. */
-static unsigned SC_KERNEL(plane_separates)(lanes t[3][3], lanes o[3][3], float extent, lanes n[3])
+/* The lanes in which a plane, given by a normal, its size and a point, certainly has all corners of o on one side. */
+static inline unsigned SC_KERNEL(plane_separates)(const lanes n[3], lanes size, const lanes p[3],
+                                                  lanes o[3][3], float extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    lanes e[3], f[3], size, bound, least, most;
+    lanes bound, least, most;
     int k, c;
-    SC_UNROLL
-    for (c = 0; c < 3; c++) {
-        e[c] = lanes_subtract(t[1][c], t[0][c]);
-        f[c] = lanes_subtract(t[2][c], t[0][c]);
-    }
-    SC_UNROLL
-    for (c = 0; c < 3; c++)
-        n[c] = lanes_subtract(lanes_multiply(e[(c + 1) % 3], f[(c + 2) % 3]),
-                              lanes_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
-    size = lanes_add(lanes_absolute(e[0]), lanes_absolute(f[0]));
-    SC_UNROLL
-    for (c = 1; c < 3; c++)
-        size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
     bound = lanes_add(
         lanes_multiply(size, lanes_all(4 * edge * (extent + edge) + 13 * v * extent * extent)),
         lanes_all(7 * edge * edge * (extent + edge)));
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        lanes d = lanes_multiply(n[0], lanes_subtract(o[k][0], t[0][0]));
+        lanes d = lanes_multiply(n[0], lanes_subtract(o[k][0], p[0]));
         SC_UNROLL
         for (c = 1; c < 3; c++)
-            d = lanes_add(d, lanes_multiply(n[c], lanes_subtract(o[k][c], t[0][c])));
+            d = lanes_add(d, lanes_multiply(n[c], lanes_subtract(o[k][c], p[c])));
         least = k ? lanes_smaller(least, d) : d;
         most = k ? lanes_larger(most, d) : d;
     }
@@ -170,9 +211,9 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], fl
 }
 
 /* The lanes in which the triangles of two clusters with these numbers are not certainly apart. */
-static unsigned SC_KERNEL(test_pairs)(const SC_KERNEL(leaf_corners) * a,
-                                      const SC_KERNEL(leaf_corners) * b, const uint8_t *of_a,
-                                      const uint8_t *of_b, unsigned mask, float extent)
+static unsigned SC_KERNEL(test_pairs)(const sc_leaf_ready *a, const sc_leaf_ready *b,
+                                      const uint8_t *of_a, const uint8_t *of_b, unsigned mask,
+                                      float extent)
 {
     lanes_index i = lanes_index_load(of_a), j = lanes_index_load(of_b);
     lanes x[2][3][3], n[3];
@@ -181,12 +222,16 @@ static unsigned SC_KERNEL(test_pairs)(const SC_KERNEL(leaf_corners) * a,
     for (k = 0; k < 3; k++) {
         SC_UNROLL
         for (c = 0; c < 3; c++) {
-            x[0][k][c] = lanes_pick(a->at[k][c], i);
-            x[1][k][c] = lanes_pick(b->at[k][c], j);
+            x[0][k][c] = lanes_pick(a->corner[k][c], i);
+            x[1][k][c] = lanes_pick(b->corner[k][c], j);
         }
     }
-    mask &= ~SC_KERNEL(plane_separates)(x[1], x[0], extent, n);
-    if (mask) mask &= ~SC_KERNEL(plane_separates)(x[0], x[1], extent, n);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) n[c] = lanes_pick(b->normal[c], j);
+    mask &= ~SC_KERNEL(plane_separates)(n, lanes_pick(b->size, j), x[1][0], x[0], extent);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) n[c] = lanes_pick(a->normal[c], i);
+    mask &= ~SC_KERNEL(plane_separates)(n, lanes_pick(a->size, i), x[0][0], x[1], extent);
     if (sc_bits_count(mask) >= SC_SIDES_WORTH) mask &= ~SC_KERNEL(side_separates)(x, n, extent);
     return mask;
 }
@@ -196,12 +241,12 @@ static void SC_KERNEL(collect)(sc_query_state *state, uint32_t leaf_a, uint32_t 
                                uint8_t *of_a, uint8_t *of_b, unsigned count)
 {
     const uint32_t *first = sc_model_leaf_first(state->model);
-    SC_KERNEL(leaf_corners) a, b;
+    const sc_leaf_ready *a = NULL, *b = NULL;
     float extent = 0;
     unsigned at;
     if (count >= SC_LEAF_FEW) {
-        SC_KERNEL(load_leaf)(state, leaf_a, &a);
-        SC_KERNEL(load_leaf)(state, leaf_b, &b);
+        a = SC_KERNEL(ready)(state, leaf_a, leaf_a > leaf_b);
+        b = SC_KERNEL(ready)(state, leaf_b, leaf_a < leaf_b);
         extent = SC_KERNEL(extent)(state, leaf_a, leaf_b);
         memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
         memset(of_b + count, 0, SC_LANES_COUNT);
@@ -209,7 +254,7 @@ static void SC_KERNEL(collect)(sc_query_state *state, uint32_t leaf_a, uint32_t 
     for (at = 0; at < count; at += SC_LANES_COUNT) {
         unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
         if (count >= SC_LEAF_FEW)
-            mask = SC_KERNEL(test_pairs)(&a, &b, of_a + at, of_b + at, mask, extent);
+            mask = SC_KERNEL(test_pairs)(a, b, of_a + at, of_b + at, mask, extent);
         for (; mask; mask &= mask - 1) {
             uint32_t lane = at + sc_bits_lowest(mask);
             sc_candidates_add(state, first[leaf_a] + of_a[lane], first[leaf_b] + of_b[lane]);
@@ -277,6 +322,13 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_
     state->stats.counts[sc_state_box_task(state)]++;
     if (!some) return;
     sc_candidates_enter(state, a, b, &p);
+    if (!p.shares) {
+        const sc_leaf_ready *ready_a = SC_KERNEL(ready)(state, a, 0);
+        const sc_leaf_ready *ready_b = SC_KERNEL(ready)(state, b, 1);
+        if (SC_KERNEL(slab_separates)(ready_a, ready_b) ||
+            SC_KERNEL(slab_separates)(ready_b, ready_a))
+            return;
+    }
     if (!p.shares && sc_bits_count(some) < sc_bits_count(rows)) { /* either may be the rows */
         unsigned swap = some;
         p.a = b;
