@@ -148,6 +148,7 @@ static void run_part(sc_query_state *s, const sc_part *part)
         sc_traversal_take_nodes(s, part->a, part->b);
         break;
     case PART_PATCH:
+        sc_traversal_follow_contour(s, 0);
         sc_query_kernels_of(s->workspace)->patch_itself(s, part->a);
         break;
     default:
