@@ -1113,6 +1113,7 @@ static void points_in_the_unit_box(void)
 {
     static const float axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, origin[3] = {0, 0, 0};
     double worst = 0, largest = 0;
+    uint32_t differ = 0;
     mpq_t exact, place;
     mpq_inits(exact, place, NULL);
     for (uint32_t round = 0; round < test_iterations(200); ++round) {
@@ -1123,10 +1124,15 @@ static void points_in_the_unit_box(void)
         if (round % 2)
             soup_scale(s.pose, s.mesh.vertex_count, exp2(test_random_range(-1074, 1000)));
         if (load_pose(&s))
-            for (uint32_t i = 0; i < 3 * s.model->vertex_count; ++i) {
-                double unit = (double)s.workspace->unit[4 * (i / 3) + i % 3], off;
-                if (sc_model_vertex_use(s.model)[i / 3] != SC_VERTEX_POINT) continue;
-                exact_place(exact, s.workspace, i / 3, axis[i % 3], origin);
+            for (uint32_t i = 0; i < 3 * SC_LEAF_POINTS * s.model->leaf_count; ++i) {
+                uint32_t leaf = i / 3 / SC_LEAF_POINTS, k = i % 3, at = i / 3 % SC_LEAF_POINTS;
+                uint32_t point = sc_model_leaf_point(s.model)[SC_LEAF_POINTS * leaf + at];
+                double off,
+                    unit = (double)s.workspace->leaf_at[SC_LEAF_POINTS * (3 * leaf + k) + at];
+                float one[3];
+                sc_positions_unit(s.workspace, point, one);
+                differ += one[k] != (float)unit;
+                exact_place(exact, s.workspace, point, axis[k], origin);
                 mpq_set_d(place, unit);
                 mpq_sub(place, place, exact);
                 off = fabs(mpq_get_d(place));
@@ -1136,8 +1142,70 @@ static void points_in_the_unit_box(void)
         close_scene(&s);
     }
     CHECK_MSG(worst <= 3e-8 && largest <= 1, "off by %g, up to %g", worst, largest);
+    CHECK(differ == 0); /* from what one point alone gives */
     CHECK(!is_full() || (worst > 0x1.8p-26 && largest > 0.9));
     mpq_clears(exact, place, NULL);
+}
+
+/* Positions of any type, stride and alignment, with vertices that are used, welded or not used at all, are read as each
+   alone is, by all instructions alike, and nothing behind the last one. */
+static void poses_of_any_layout(void)
+{
+    static const struct layout {
+        uint32_t type, gap, shift; /* bytes after each vertex, and before the first */
+    } layouts[] = {{SC_DOUBLE, 0, 0}, {SC_DOUBLE, 8, 0}, {SC_DOUBLE, 0, 1}, {SC_DOUBLE, 13, 3},
+                   {SC_FLOAT, 0, 0},  {SC_FLOAT, 4, 0},  {SC_FLOAT, 0, 2},  {SC_FLOAT, 9, 5}};
+    uint32_t wrong = 0;
+    for (uint32_t round = 0; round < test_iterations(60); ++round) {
+        scene s;
+        open_random_scene(&s, 60);
+        random_pose(s.pose, s.mesh.vertex_count);
+        for (size_t l = 0; l < sizeof(layouts) / sizeof(layouts[0]); ++l) {
+            const struct layout *layout = &layouts[l];
+            const size_t size = layout->type == SC_DOUBLE ? sizeof(double) : sizeof(float);
+            const size_t stride = 3 * size + layout->gap;
+            const size_t bytes = layout->shift + s.mesh.vertex_count * stride - layout->gap;
+            unsigned char *memory = (unsigned char *)test_allocate(bytes);
+            double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+            double high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+            sc_pose pose = input_plain_pose(s.pose, s.mesh.vertex_count);
+            for (uint32_t i = 0; i < 3 * s.mesh.vertex_count; ++i) {
+                unsigned char *at = memory + layout->shift + i / 3 * stride + i % 3 * size;
+                float f = (float)s.pose[i];
+                double d = layout->type == SC_DOUBLE ? s.pose[i] : (double)f;
+                memcpy(at, layout->type == SC_DOUBLE ? (void *)&s.pose[i] : (void *)&f, size);
+                if (sc_model_vertex_use(s.model)[i / 3] == SC_VERTEX_UNUSED) continue;
+                low[i % 3] = fmin(low[i % 3], d);
+                high[i % 3] = fmax(high[i % 3], d);
+            }
+            pose.positions = memory + layout->shift;
+            pose.position_type = layout->type;
+            for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
+                sc_workspace *w = s.workspace;
+                w->isa = isa;
+                sc_workspace_new_pose(s.model, w);
+                if (!CHECK(sc_positions_read(s.model, &pose, stride, w) == SC_OK)) break;
+                sc_dnc_update(s.model, w);
+                for (uint32_t k = 0; k < 3; ++k) wrong += w->center[k] != low[k] / 2 + high[k] / 2;
+                for (uint32_t i = 0; i < SC_LEAF_POINTS * s.model->leaf_count; ++i) {
+                    uint32_t leaf = i / SC_LEAF_POINTS, point = sc_model_leaf_point(s.model)[i];
+                    const float *at = w->leaf_at + 3 * SC_LEAF_POINTS * leaf + i % SC_LEAF_POINTS;
+                    double p[3];
+                    float one[3];
+                    sc_positions_get(w, point, p);
+                    sc_positions_unit(w, point, one);
+                    for (uint32_t k = 0; k < 3; ++k) {
+                        double d = s.pose[3 * point + k];
+                        wrong += p[k] != (layout->type == SC_DOUBLE ? d : (double)(float)d);
+                        wrong += at[SC_LEAF_POINTS * k] != one[k];
+                    }
+                }
+            }
+            free(memory);
+        }
+        close_scene(&s);
+    }
+    CHECK_MSG(wrong == 0, "%" PRIu32 " coordinates", wrong);
 }
 
 /* The boxes of runs of edges hold the true places of their ends, however the contour is seen: from above, or from
@@ -1174,18 +1242,17 @@ static void places_of_contours(void)
                                                  : test_random_range(-1060, 1012)));
         if (load_pose(&s)) {
             const sc_contour_edges *e = &s.workspace->contour;
-            const float *unit = s.workspace->unit;
             uint32_t wrong = 0, edges = 0;
             for (uint32_t node = 0; node < s.model->node_count; ++node) {
                 uint32_t listed = count_listed(s.model, node);
-                float from[3];
+                float from[3], one[3], other[3];
                 int passed;
                 if (listed == 0) continue;
                 s.workspace->isa = 1 + node % (uint32_t)sc_isa_best();
                 passed = sc_simple_test(&s.state, &projection, node);
-                for (int k = 0; k < 3; ++k)
-                    from[k] = unit[4 * e->point[0] + (uint32_t)k] / 2 +
-                              unit[4 * e->point[listed / 2] + (uint32_t)k] / 2;
+                sc_positions_unit(s.workspace, e->point[0], one);
+                sc_positions_unit(s.workspace, e->point[listed / 2], other);
+                for (int k = 0; k < 3; ++k) from[k] = one[k] / 2 + other[k] / 2;
                 if (!passed && listed > SC_CONTOUR_BLOCK) listed = SC_CONTOUR_BLOCK; /* at least */
                 for (uint32_t i = 0; i < listed; ++i) {
                     uint32_t run = i / SC_CONTOUR_RUN;
@@ -1394,5 +1461,5 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
              SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),
              SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
              SC_TEST(contours_in_pieces), SC_TEST(points_in_the_unit_box),
-             SC_TEST(places_of_contours), SC_TEST(patches_that_share_hubs),
-             SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
+             SC_TEST(poses_of_any_layout), SC_TEST(places_of_contours),
+             SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))

@@ -37,7 +37,10 @@
 #define lanes_not_above SC_KERNEL(sc_lanes_not_above)
 #define lanes_both SC_KERNEL(sc_lanes_both)
 #define lanes_bits SC_KERNEL(sc_lanes_bits)
+#define lanes_every SC_KERNEL(sc_lanes_every)
 #define lanes_next SC_KERNEL(sc_lanes_next)
+#define lanes_evens SC_KERNEL(sc_lanes_evens)
+#define lanes_odds SC_KERNEL(sc_lanes_odds)
 #define lanes_sum SC_KERNEL(sc_lanes_sum)
 #define lanes_least SC_KERNEL(sc_lanes_least)
 #define lanes_most SC_KERNEL(sc_lanes_most)
@@ -107,6 +110,22 @@ static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 static inline unsigned lanes_bits(lanes_mask a)
 {
     return a;
+}
+static inline int lanes_every(lanes_mask a)
+{
+    return a == 0xffff;
+}
+static inline lanes lanes_evens(lanes a, lanes b)
+{
+    const __m512i evens =
+        _mm512_set_epi32(30, 28, 26, 24, 22, 20, 18, 16, 14, 12, 10, 8, 6, 4, 2, 0);
+    return _mm512_permutex2var_ps(a, evens, b);
+}
+static inline lanes lanes_odds(lanes a, lanes b)
+{
+    const __m512i odds =
+        _mm512_set_epi32(31, 29, 27, 25, 23, 21, 19, 17, 15, 13, 11, 9, 7, 5, 3, 1);
+    return _mm512_permutex2var_ps(a, odds, b);
 }
 static inline lanes lanes_next(lanes a, lanes b)
 {
@@ -272,6 +291,28 @@ static inline unsigned lanes_bits(lanes_mask a)
 {
     return (unsigned)_mm256_movemask_ps(a.v[0]) | (unsigned)_mm256_movemask_ps(a.v[1]) << 8;
 }
+static inline int lanes_every(lanes_mask a)
+{
+    return _mm256_movemask_ps(_mm256_and_ps(a.v[0], a.v[1])) == 255;
+}
+static inline __m256 SC_KERNEL(sc_lanes_half)(__m256 a)
+{
+    return _mm256_castpd_ps(_mm256_permute4x64_pd(_mm256_castps_pd(a), 0xd8));
+}
+static inline lanes lanes_evens(lanes a, lanes b)
+{
+    lanes r;
+    r.v[0] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(a.v[0], a.v[1], 0x88));
+    r.v[1] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(b.v[0], b.v[1], 0x88));
+    return r;
+}
+static inline lanes lanes_odds(lanes a, lanes b)
+{
+    lanes r;
+    r.v[0] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(a.v[0], a.v[1], 0xdd));
+    r.v[1] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(b.v[0], b.v[1], 0xdd));
+    return r;
+}
 static inline __m256 SC_KERNEL(sc_lanes_next_part)(__m256 a, __m256 b)
 {
     __m256 middle = _mm256_permute2f128_ps(a, b, 0x21); /* a4 to a7, b0 to b3 */
@@ -324,6 +365,29 @@ static inline unsigned lanes_bits(lanes_mask a)
 {
     return (unsigned)_mm_movemask_ps(a.v[0]) | (unsigned)_mm_movemask_ps(a.v[1]) << 4 |
            (unsigned)_mm_movemask_ps(a.v[2]) << 8 | (unsigned)_mm_movemask_ps(a.v[3]) << 12;
+}
+static inline int lanes_every(lanes_mask a)
+{
+    return _mm_movemask_ps(_mm_and_ps(_mm_and_ps(a.v[0], a.v[1]), _mm_and_ps(a.v[2], a.v[3]))) ==
+           15;
+}
+static inline lanes lanes_evens(lanes a, lanes b)
+{
+    lanes r;
+    r.v[0] = _mm_shuffle_ps(a.v[0], a.v[1], 0x88);
+    r.v[1] = _mm_shuffle_ps(a.v[2], a.v[3], 0x88);
+    r.v[2] = _mm_shuffle_ps(b.v[0], b.v[1], 0x88);
+    r.v[3] = _mm_shuffle_ps(b.v[2], b.v[3], 0x88);
+    return r;
+}
+static inline lanes lanes_odds(lanes a, lanes b)
+{
+    lanes r;
+    r.v[0] = _mm_shuffle_ps(a.v[0], a.v[1], 0xdd);
+    r.v[1] = _mm_shuffle_ps(a.v[2], a.v[3], 0xdd);
+    r.v[2] = _mm_shuffle_ps(b.v[0], b.v[1], 0xdd);
+    r.v[3] = _mm_shuffle_ps(b.v[2], b.v[3], 0xdd);
+    return r;
 }
 static inline __m128 SC_KERNEL(sc_lanes_next_part)(__m128 a, __m128 b)
 {
@@ -466,6 +530,18 @@ static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 static inline unsigned lanes_bits(lanes_mask a)
 {
     return a;
+}
+static inline int lanes_every(lanes_mask a)
+{
+    return a == 0xffff;
+}
+static inline lanes lanes_evens(lanes a, lanes b)
+{
+    SC_LANES_EACH(i < SC_LANES_COUNT / 2 ? a.v[2 * i] : b.v[2 * i - SC_LANES_COUNT]);
+}
+static inline lanes lanes_odds(lanes a, lanes b)
+{
+    SC_LANES_EACH(i < SC_LANES_COUNT / 2 ? a.v[2 * i + 1] : b.v[2 * i + 1 - SC_LANES_COUNT]);
 }
 static inline lanes lanes_next(lanes a, lanes b)
 {

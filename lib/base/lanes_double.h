@@ -13,6 +13,8 @@
 #define doubles SC_KERNEL(sc_doubles)
 #define doubles_mask SC_KERNEL(sc_doubles_mask)
 #define doubles_all SC_KERNEL(sc_doubles_all)
+#define doubles_load SC_KERNEL(sc_doubles_load)
+#define doubles_store SC_KERNEL(sc_doubles_store)
 #define doubles_add SC_KERNEL(sc_doubles_add)
 #define doubles_subtract SC_KERNEL(sc_doubles_subtract)
 #define doubles_multiply SC_KERNEL(sc_doubles_multiply)
@@ -32,6 +34,14 @@ typedef __mmask8 doubles_mask;
 static inline doubles doubles_all(double d)
 {
     return _mm512_set1_pd(d);
+}
+static inline doubles doubles_load(const double *d)
+{
+    return _mm512_loadu_pd(d);
+}
+static inline void doubles_store(double *d, doubles a)
+{
+    _mm512_storeu_pd(d, a);
 }
 static inline doubles doubles_add(doubles a, doubles b)
 {
@@ -122,6 +132,37 @@ static inline doubles doubles_all(double d)
     SC_DOUBLES_MAP(SC_DOUBLES_ONE);
 #  undef SC_DOUBLES_ONE
 }
+#  if SC_LANES_AVX2
+static inline doubles doubles_load(const double *d)
+{
+    doubles r;
+    r.p0 = _mm256_loadu_pd(d);
+    r.p1 = _mm256_loadu_pd(d + 4);
+    return r;
+}
+static inline void doubles_store(double *d, doubles a)
+{
+    _mm256_storeu_pd(d, a.p0);
+    _mm256_storeu_pd(d + 4, a.p1);
+}
+#  else
+static inline doubles doubles_load(const double *d)
+{
+    doubles r;
+    r.p0 = _mm_loadu_pd(d);
+    r.p1 = _mm_loadu_pd(d + 2);
+    r.p2 = _mm_loadu_pd(d + 4);
+    r.p3 = _mm_loadu_pd(d + 6);
+    return r;
+}
+static inline void doubles_store(double *d, doubles a)
+{
+    _mm_storeu_pd(d, a.p0);
+    _mm_storeu_pd(d + 2, a.p1);
+    _mm_storeu_pd(d + 4, a.p2);
+    _mm_storeu_pd(d + 6, a.p3);
+}
+#  endif
 static inline doubles doubles_add(doubles a, doubles b)
 {
 #  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(add_pd)(a.p, b.p)
@@ -247,6 +288,15 @@ typedef unsigned doubles_mask;
 static inline doubles doubles_all(double d)
 {
     SC_DOUBLES_EACH(d);
+}
+static inline doubles doubles_load(const double *d)
+{
+    SC_DOUBLES_EACH(d[i]);
+}
+static inline void doubles_store(double *d, doubles a)
+{
+    int i;
+    for (i = 0; i < 8; i++) d[i] = a.v[i];
 }
 static inline doubles doubles_add(doubles a, doubles b)
 {

@@ -6,6 +6,8 @@
 #undef doubles
 #undef doubles_mask
 #undef doubles_all
+#undef doubles_load
+#undef doubles_store
 #undef doubles_add
 #undef doubles_subtract
 #undef doubles_multiply

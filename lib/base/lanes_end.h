@@ -23,7 +23,10 @@
 #undef lanes_not_above
 #undef lanes_both
 #undef lanes_bits
+#undef lanes_every
 #undef lanes_next
+#undef lanes_evens
+#undef lanes_odds
 #undef lanes_sum
 #undef lanes_least
 #undef lanes_most

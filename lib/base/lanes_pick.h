@@ -6,7 +6,8 @@
  *
  * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
  * to. lanes_index reads sixteen numbers below sixteen; lanes_pick takes the floats of these numbers of a row.
- * lanes_choose takes from a where the mask is set, else from b.
+ * lanes_choose takes from a where the mask is set, else from b. lanes_corners picks corners 0 to 2 of triangles, their
+ * coordinates 0 to 2, from three rows of coordinates by three of numbers.
  *
  * No guard, as in base/lanes.h; base/lanes_pick_end.h ends it.
  */
@@ -14,6 +15,7 @@
 #define lanes_index_load SC_KERNEL(sc_lanes_index_load)
 #define lanes_pick SC_KERNEL(sc_lanes_pick)
 #define lanes_choose SC_KERNEL(sc_lanes_choose)
+#define lanes_corners SC_KERNEL(sc_lanes_corners)
 #define lanes_list SC_KERNEL(sc_lanes_list)
 
 #if SC_LANES_AVX512
@@ -123,4 +125,46 @@ static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 
 #    endif
 #  endif
+#endif
+
+#if SC_LANES_SSE2
+
+/* There is no permutation by numbers: the points one after another, then read again as the corners. */
+static inline void lanes_corners(const float *at, const uint8_t *where, lanes corner[3][3])
+{
+    float points[16][4];
+    int c, i;
+    for (i = 0; i < 4; i++) {
+        __m128 x = _mm_loadu_ps(at + 4 * i), y = _mm_loadu_ps(at + 16 + 4 * i);
+        __m128 z = _mm_loadu_ps(at + 32 + 4 * i), w = z;
+        _MM_TRANSPOSE4_PS(x, y, z, w);
+        _mm_storeu_ps(points[4 * i], x);
+        _mm_storeu_ps(points[4 * i + 1], y);
+        _mm_storeu_ps(points[4 * i + 2], z);
+        _mm_storeu_ps(points[4 * i + 3], w);
+    }
+    for (c = 0; c < 3; c++)
+        for (i = 0; i < 4; i++, where += 4) {
+            __m128 r0 = _mm_loadu_ps(points[where[0]]), r1 = _mm_loadu_ps(points[where[1]]);
+            __m128 r2 = _mm_loadu_ps(points[where[2]]), r3 = _mm_loadu_ps(points[where[3]]);
+            _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
+            corner[c][0].v[i] = r0;
+            corner[c][1].v[i] = r1;
+            corner[c][2].v[i] = r2;
+        }
+}
+
+#else
+
+static inline void lanes_corners(const float *at, const uint8_t *where, lanes corner[3][3])
+{
+    int c, k;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        lanes_index from = lanes_index_load(where + SC_LANES_COUNT * c);
+        SC_UNROLL
+        for (k = 0; k < 3; k++) corner[c][k] = lanes_pick(at + SC_LANES_COUNT * k, from);
+    }
+}
+
 #endif

@@ -7,4 +7,5 @@
 #undef lanes_index_load
 #undef lanes_pick
 #undef lanes_choose
+#undef lanes_corners
 #undef lanes_list

@@ -1,5 +1,5 @@
 /*
- * Normal cones of leaf clusters, sixteen triangles at a time. See dnc.h.
+ * The pass over leaf clusters: their points, and their normal cones, sixteen triangles at a time. See dnc.h.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -14,26 +14,22 @@
  * sum of the absolute values is at most |e|1 |f|1, computed to within 8 u. Hence 8 u |e|1 |f|1 +
  * 4.1 POINT (|e|1 + |f|1 + 6 POINT); the last term is for products that underflow.
  */
-static uint32_t SC_KERNEL(mask_of)(const sc_workspace *w, const uint32_t *corner, uint32_t count)
+static inline uint32_t SC_KERNEL(mask_of)(const float *at, const uint8_t *where)
 {
     const lanes relative = lanes_all(8 * 5.9604644775390625e-8f),
                 absolute = lanes_all(16 * FLT_MIN);
     const lanes moved = lanes_all(4.1f * 3e-8f), least = lanes_all(6 * 3e-8f);
-    const float *point[3][SC_LANES_COUNT];
-    lanes a[3], e[3], f[3], n[3], e_size, f_size, sum, difference, error, minus_error, dot[7];
-    uint32_t mask = 0, i;
+    lanes corner[3][3], e[3], f[3], n[3], e_size, f_size, sum, difference, error, minus_error,
+        dot[7];
+    uint32_t mask = 0;
     int k, d;
-    for (i = 0; i < SC_LANES_COUNT; i++) { /* the last triangle fills the row */
-        const uint32_t *t = corner + 3 * (i < count ? i : count - 1);
-        for (k = 0; k < 3; k++) point[k][i] = w->unit + 4 * (uint64_t)t[k];
-    }
-    lanes_points(point[0], &a[0], &a[1], &a[2]);
-    lanes_points(point[1], &e[0], &e[1], &e[2]);
-    lanes_points(point[2], &f[0], &f[1], &f[2]);
+    lanes_corners(at, where, corner);
+    SC_UNROLL
     for (k = 0; k < 3; k++) {
-        e[k] = lanes_subtract(e[k], a[k]);
-        f[k] = lanes_subtract(f[k], a[k]);
+        e[k] = lanes_subtract(corner[1][k], corner[0][k]);
+        f[k] = lanes_subtract(corner[2][k], corner[0][k]);
     }
+    SC_UNROLL
     for (k = 0; k < 3; k++)
         n[k] = lanes_subtract(lanes_multiply(e[(k + 1) % 3], f[(k + 2) % 3]),
                               lanes_multiply(e[(k + 2) % 3], f[(k + 1) % 3]));
@@ -52,9 +48,30 @@ static uint32_t SC_KERNEL(mask_of)(const sc_workspace *w, const uint32_t *corner
     dot[4] = lanes_subtract(sum, n[2]);
     dot[5] = lanes_add(difference, n[2]);
     dot[6] = lanes_subtract(difference, n[2]);
+    SC_UNROLL
     for (d = 0; d < 7; d++) {
-        mask |= (uint32_t)(lanes_bits(lanes_below(error, dot[d])) == 0xffff) << d;
-        mask |= (uint32_t)(lanes_bits(lanes_below(dot[d], minus_error)) == 0xffff) << (d + 7);
+        mask |= (uint32_t)lanes_every(lanes_below(error, dot[d])) << d;
+        mask |= (uint32_t)lanes_every(lanes_below(dot[d], minus_error)) << (d + 7);
     }
     return mask;
+}
+
+static uint32_t SC_KERNEL(cone)(const float *at, const uint8_t *where)
+{
+    return SC_KERNEL(mask_of)(at, where);
+}
+
+static void SC_KERNEL(load_leaves)(const sc_model *model, sc_workspace *w, uint32_t first,
+                                   uint32_t end, int cones)
+{
+    const uint32_t *point = sc_model_leaf_point(model);
+    const uint8_t *where = sc_model_leaf_corner(model);
+    uint16_t *mask = w->mask + sc_model_first_leaf_patch(model);
+    uint32_t leaf;
+    for (leaf = first; leaf < end; leaf++) {
+        float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
+        SC_KERNEL(load_points)(w, point + SC_LEAF_POINTS * (uint64_t)leaf, at);
+        if (cones)
+            mask[leaf] = (uint16_t)SC_KERNEL(mask_of)(at, where + 3 * SC_LEAF_MAX * (uint64_t)leaf);
+    }
 }

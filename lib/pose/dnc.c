@@ -6,6 +6,7 @@
 #include "pose/dnc.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "pose/pose_kernels.h"
 
@@ -14,28 +15,37 @@ enum { HALF = SC_DNC_DIRECTIONS / 2 };
 void sc_dnc_update(const sc_model *model, sc_workspace *w)
 {
     const uint32_t *level_first = sc_model_level_first(model), *child = sc_model_child(model);
-    const uint32_t *leaf_first = sc_model_leaf_first(model), *corner = sc_model_triangle(model);
-    const sc_pose_kernels *kernels = sc_pose_kernels_of(w);
-    uint32_t level, p, leaf, last = sc_model_first_leaf_patch(model);
-    for (leaf = 0; leaf < model->leaf_count; leaf++)
-        w->mask[last + leaf] = (uint16_t)kernels->cone(w, corner + 3 * (uint64_t)leaf_first[leaf],
-                                                       leaf_first[leaf + 1] - leaf_first[leaf]);
+    uint32_t level, p;
+    sc_pose_kernels_of(w)->load_leaves(model, w, 0, model->leaf_count, 1);
+    w->leaves_ready = 1;
     for (level = model->level_count - 1; level-- > 0;)
         for (p = level_first[level]; p + 1 < level_first[level + 1]; p++)
             w->mask[p] = w->mask[child[p]] & w->mask[child[p + 1] - 1];
 }
 
+/* The cone of one triangle of a leaf cluster: as of a cluster of nothing else. */
+static uint32_t cone_of_triangle(const sc_model *model, const sc_workspace *w, uint32_t leaf,
+                                 uint32_t i)
+{
+    const uint8_t *corner = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
+    uint8_t where[3 * SC_LEAF_MAX];
+    uint32_t k;
+    for (k = 0; k < 3; k++)
+        memset(where + SC_LEAF_MAX * k, corner[SC_LEAF_MAX * k + i], SC_LEAF_MAX);
+    return sc_pose_kernels_of(w)->cone(w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf, where);
+}
+
 int sc_dnc_validate(const sc_model *model, const sc_workspace *w)
 {
     const uint32_t *level_first = sc_model_level_first(model), *leaf = sc_model_leaf(model);
-    const sc_pose_kernels *kernels = sc_pose_kernels_of(w);
-    uint32_t level, p, i;
+    const uint32_t *first = sc_model_leaf_first(model);
+    uint32_t level, p, l, i;
     for (level = 0; level < model->level_count; level++)
         for (p = level_first[level]; p + 1 < level_first[level + 1]; p++) {
             uint32_t mask = (1u << SC_DNC_DIRECTIONS) - 1u;
-            for (i = sc_model_leaf_first(model)[leaf[p]];
-                 i < sc_model_leaf_first(model)[leaf[p + 1]]; i++)
-                mask &= kernels->cone(w, sc_model_triangle(model) + 3 * (uint64_t)i, 1);
+            for (l = leaf[p]; l < leaf[p + 1]; l++)
+                for (i = first[l]; i < first[l + 1]; i++)
+                    mask &= cone_of_triangle(model, w, l, i - first[l]);
             if (mask != w->mask[p]) return 0;
         }
     return 1;

@@ -25,23 +25,24 @@ static inline lanes SC_KERNEL(sum_of_sizes)(const lanes r[3])
 static unsigned SC_KERNEL(are_plain)(const sc_workspace *w, const sc_fans *fans)
 {
     const lanes zero = lanes_all(0), point_error = lanes_all(3e-8f);
-    const float *at[SC_LANES_COUNT];
+    uint32_t row[SC_LANES_COUNT];
+    float at[3 * SC_LANES_COUNT];
     lanes r[SC_FAN_MOST + 1][3], center[3], d[3], c[3], size[3], d_size, last_size;
     lanes_mask first, second;
     unsigned most = 0, fails = 0, once = 0, twice = 0, above, last, i, j;
     int k;
-    for (j = 0; j < SC_LANES_COUNT; j++) {
-        at[j] = w->unit + 4 * (uint64_t)fans->point[j];
+    for (j = 0; j < SC_LANES_COUNT; j++)
         if (fans->count[j] > most) most = fans->count[j];
-    }
-    lanes_points(at, &center[0], &center[1], &center[2]);
+    SC_KERNEL(load_points)(w, fans->point, at);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) center[k] = lanes_load(at + SC_LANES_COUNT * k);
     for (i = 0; i <= most;
          i++) { /* at the end of a ring its first point, again and again: empty sectors */
-        for (j = 0; j < SC_LANES_COUNT; j++)
-            at[j] = w->unit + 4 * (uint64_t)fans->ring[j][i < fans->count[j] ? i : 0];
-        lanes_points(at, &r[i][0], &r[i][1], &r[i][2]);
+        for (j = 0; j < SC_LANES_COUNT; j++) row[j] = fans->ring[j][i < fans->count[j] ? i : 0];
+        SC_KERNEL(load_points)(w, row, at);
         SC_UNROLL
-        for (k = 0; k < 3; k++) r[i][k] = lanes_subtract(r[i][k], center[k]);
+        for (k = 0; k < 3; k++)
+            r[i][k] = lanes_subtract(lanes_load(at + SC_LANES_COUNT * k), center[k]);
     }
     SC_UNROLL
     for (k = 0; k < 3; k++) d[k] = zero;

@@ -7,6 +7,8 @@
 
 #include <float.h>
 
+#include "pose/positions.h"
+
 #if SC_ISA_X86
 
 #  include "base/avx2_begin.h"
@@ -14,15 +16,22 @@
 #  define SC_LANES 2
 
 #  include "base/lanes.h"
+#  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
+#  include "pose/extent_kernel.h"
+#  include "pose/points_kernel.h"
 #  include "pose/cones_kernel.h"
 #  include "pose/fan_kernel.h"
 #  include "pose/refit_kernel.h"
 
-const sc_pose_kernels sc_pose_kernels_avx2 = {SC_KERNEL(mask_of), SC_KERNEL(refit_leaf),
-                                              SC_KERNEL(are_plain)};
+const sc_pose_kernels sc_pose_kernels_avx2 = {
+    SC_KERNEL(extent_of_doubles), SC_KERNEL(extent_of_floats),
+    SC_KERNEL(load_leaves),       SC_KERNEL(cone),
+    SC_KERNEL(refit_leaves),      SC_KERNEL(refit_patches),
+    SC_KERNEL(are_plain)};
 
 #  include "base/lanes_pick_end.h"
+#  include "base/lanes_double_end.h"
 #  include "base/lanes_end.h"
 #  include "base/avx2_end.h"
 

@@ -19,10 +19,20 @@ typedef struct sc_fans {
 } sc_fans;
 
 typedef struct sc_pose_kernels {
-    /* The normal cone of 1 to SC_LEAF_MAX triangles given by their corners, see pose/dnc.h. */
-    uint32_t (*cone)(const sc_workspace *workspace, const uint32_t *corner, uint32_t count);
-    /* Boxes of the triangles of a leaf cluster and its own, see pose/refit.h. */
-    void (*refit_leaf)(const sc_model *model, sc_workspace *workspace, uint32_t leaf);
+    /* The box of a packed array of positions, see pose/positions.h. */
+    int (*extent_of_doubles)(const double *positions, uint64_t count, double low[3],
+                             double high[3]);
+    int (*extent_of_floats)(const float *positions, uint64_t count, double low[3], double high[3]);
+    /* Fills leaf_at of leaf clusters first to end - 1, and their masks if cones; see pose/dnc.h. */
+    void (*load_leaves)(const sc_model *model, sc_workspace *workspace, uint32_t first,
+                        uint32_t end, int cones);
+    /* The normal cone of one cluster's points, and SC_LEAF_MAX triangles given as in leaf_corner. */
+    uint32_t (*cone)(const float *at, const uint8_t *where);
+    /* Boxes of leaf clusters, then of patches of one level by those of their children; see pose/refit.h. */
+    void (*refit_leaves)(const sc_model *model, sc_workspace *workspace, uint32_t first,
+                         uint32_t end);
+    void (*refit_patches)(const sc_model *model, sc_workspace *workspace, uint32_t first,
+                          uint32_t end);
     /* Bit i: the fan certainly projects one to one, see pose/fan.h. */
     unsigned (*are_plain)(const sc_workspace *workspace, const sc_fans *fans);
 } sc_pose_kernels;

@@ -13,7 +13,7 @@
 
 #include "pose/workspace.h"
 
-/* Notes where positions are, and fills unit, center, radius and scale. The pose was checked but for what this reports:
+/* Notes where positions are, and sets center, radius and scale. The pose was checked but for what this reports:
    SC_ERROR_NOT_FINITE. About 3 ns a vertex. */
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
                             sc_workspace *workspace);
@@ -34,7 +34,7 @@ static inline void sc_positions_get(const sc_workspace *workspace, uint32_t poin
     }
 }
 
-/* The same as four readable doubles, of which the last means nothing: where they are, or in *copy. */
+/* The position as four readable doubles, of which the last means nothing: where they are, or in *copy. */
 static inline const double *sc_positions_at(const sc_workspace *workspace, uint32_t point,
                                             double copy[4])
 {
@@ -43,6 +43,15 @@ static inline const double *sc_positions_at(const sc_workspace *workspace, uint3
     sc_positions_get(workspace, point, copy);
     copy[3] = 0;
     return copy;
+}
+
+/* A point in the unit box: moved by the center, scaled, and then rounded to float. */
+static inline void sc_positions_unit(const sc_workspace *workspace, uint32_t point, float unit[3])
+{
+    double p[3];
+    int k;
+    sc_positions_get(workspace, point, p);
+    for (k = 0; k < 3; k++) unit[k] = (float)((p[k] - workspace->center[k]) * workspace->scale);
 }
 
 #endif

@@ -1,43 +1,65 @@
 /*
- * Boxes of the triangles of a leaf cluster and of the cluster. See refit.h.
+ * Boxes of leaf clusters, and of patches by those of their children. See refit.h.
  *
  * SPDX-License-Identifier: MIT
  */
 
-/* Moves bounds outwards by one step of rounding, see base/boxes.h. */
-static inline lanes SC_KERNEL(step)(lanes bound)
+/* How far a bound has to be moved outwards: one step of rounding, see base/boxes.h. */
+static inline float SC_KERNEL(step)(float bound)
 {
-    return lanes_add(lanes_multiply(lanes_absolute(bound), lanes_all(1.1920929e-7f)),
-                     lanes_all(FLT_MIN));
+    return fabsf(bound) * 1.1920929e-7f + FLT_MIN;
 }
 
-static void SC_KERNEL(refit_leaf)(const sc_model *model, sc_workspace *w, uint32_t leaf)
+static void SC_KERNEL(refit_leaves)(const sc_model *model, sc_workspace *w, uint32_t first,
+                                    uint32_t end)
 {
-    const uint32_t *first = sc_model_leaf_first(model);
-    const uint32_t *corner = sc_model_triangle(model) + 3 * (uint64_t)first[leaf];
-    uint32_t count = first[leaf + 1] - first[leaf], i;
-    uint32_t patch = sc_model_first_leaf_patch(model) + leaf;
-    uint64_t at = (uint64_t)leaf * SC_LEAF_MAX;
-    const float *point[3][SC_LANES_COUNT];
-    lanes a[3], b[3], c[3];
+    uint32_t leaf, patch = sc_model_first_leaf_patch(model);
     int k;
-    for (i = 0; i < SC_LANES_COUNT; i++) { /* the last triangle fills the row */
-        const uint32_t *t = corner + 3 * (i < count ? i : count - 1);
-        for (k = 0; k < 3; k++) point[k][i] = w->unit + 4 * (uint64_t)t[k];
+    for (leaf = first; leaf < end; leaf++) {
+        const float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            lanes p = lanes_load(at + SC_LEAF_POINTS * k);
+            float low = lanes_least(p), high = lanes_most(p);
+            w->patch_boxes.side[k][patch + leaf] = low - SC_KERNEL(step)(low);
+            w->patch_boxes.side[k + 3][patch + leaf] = high + SC_KERNEL(step)(high);
+        }
     }
-    lanes_points(point[0], &a[0], &a[1], &a[2]);
-    lanes_points(point[1], &b[0], &b[1], &b[2]);
-    lanes_points(point[2], &c[0], &c[1], &c[2]);
-    for (k = 0; k < 3; k++) {
-        lanes low = lanes_smaller(a[k], lanes_smaller(b[k], c[k]));
-        lanes high = lanes_larger(a[k], lanes_larger(b[k], c[k]));
-        low = lanes_subtract(low, SC_KERNEL(step)(low));
-        high = lanes_add(high, SC_KERNEL(step)(high));
-        w->patch_boxes.side[k][patch] = lanes_least(low);
-        w->patch_boxes.side[k + 3][patch] = lanes_most(high);
-        lanes_store(w->triangle_boxes.side[k] + at, low);
-        lanes_store(w->triangle_boxes.side[k + 3] + at, high);
-        for (i = count; i < SC_LEAF_MAX; i++) /* no triangle: overlaps nothing */
-            w->triangle_boxes.side[k][at + i] = w->triangle_boxes.side[k + 3][at + i] = (float)NAN;
+}
+
+/*
+ * Patches first to end - 1 of a level, of which each has one child or two. Mostly sixteen that follow each other have
+ * two each, or one each, and then so do their children.
+ */
+static void SC_KERNEL(refit_patches)(const sc_model *model, sc_workspace *w, uint32_t first,
+                                     uint32_t end)
+{
+    const uint32_t *child = sc_model_child(model);
+    uint32_t p, q;
+    int k;
+    for (p = first; p < end; p = q) {
+        uint32_t from = child[p], children;
+        q = p + SC_LANES_COUNT < end ? p + SC_LANES_COUNT : end;
+        children = child[q] - from;
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            float *low = w->patch_boxes.side[k], *high = w->patch_boxes.side[k + 3];
+            if (children == 2 * SC_LANES_COUNT) {
+                lanes a = lanes_load(low + from), b = lanes_load(low + from + SC_LANES_COUNT);
+                lanes_store(low + p, lanes_smaller(lanes_evens(a, b), lanes_odds(a, b)));
+                a = lanes_load(high + from), b = lanes_load(high + from + SC_LANES_COUNT);
+                lanes_store(high + p, lanes_larger(lanes_evens(a, b), lanes_odds(a, b)));
+            } else if (children == SC_LANES_COUNT && q - p == SC_LANES_COUNT) {
+                lanes_store(low + p, lanes_load(low + from));
+                lanes_store(high + p, lanes_load(high + from));
+            } else {
+                uint32_t i;
+                for (i = p; i < q; i++) {
+                    uint32_t one = child[i], other = child[i + 1] - 1;
+                    low[i] = low[one] < low[other] ? low[one] : low[other];
+                    high[i] = high[one] > high[other] ? high[one] : high[other];
+                }
+            }
+        }
     }
 }

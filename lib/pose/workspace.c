@@ -125,13 +125,11 @@ static uint64_t view_bytes(const sc_model *model, uint32_t flags)
 static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_workspace *w)
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
-    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
     int k;
-    w->unit = (float *)place(block, &at, 4 * (uint64_t)model->vertex_count, sizeof(float));
+    w->leaf_at =
+        (float *)place(block, &at, 3 * SC_LEAF_POINTS * (uint64_t)model->leaf_count, sizeof(float));
     for (k = 0; k < 6; k++)
         w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
-    for (k = 0; k < 6; k++)
-        w->triangle_boxes.side[k] = (float *)place(block, &at, triangles, sizeof(float));
     w->mask = (uint16_t *)place(block, &at, model->patch_end, sizeof(uint16_t));
     w->prospect = (uint32_t *)place(block, &at, model->patch_end, sizeof(uint32_t));
     for (k = 0; k < 2; k++) {
@@ -190,7 +188,6 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
 {
     sc_workspace *w = (sc_workspace *)memory;
     uint64_t i, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
-    uint64_t triangles = (uint64_t)model->leaf_count * SC_LEAF_MAX;
     uint32_t worker;
     int k;
     memset(w, 0, sizeof *w);
@@ -199,12 +196,9 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     w->bytes = lay_out_arrays(model, (unsigned char *)memory, w);
     w->topology_hash = model->topology_hash;
     w->isa = (uint32_t)sc_isa_best();
-    for (k = 0; k < 6; k++) {
+    for (k = 0; k < 6; k++)
         for (i = 0; i < patches; i++) w->patch_boxes.side[k][i] = (float)NAN;
-        for (i = 0; i < triangles; i++) w->triangle_boxes.side[k][i] = (float)NAN;
-    }
     memset(w->mask, 0, model->patch_end * sizeof *w->mask);
-    memset(w->unit, 0, 4 * (size_t)model->vertex_count * sizeof *w->unit);
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
     clear_own(model, w);
     if (w->flags & SC_WORKSPACE_STEP) place_motion(model, &w->motion, w->ball);
@@ -238,7 +232,7 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
         workspace->pose_tick = 0;
     }
     workspace->pose_tick++;
-    workspace->boxes_ready = 0;
+    workspace->leaves_ready = workspace->boxes_ready = 0;
     workspace->candidate_count = workspace->neighbor_count = workspace->found_count = 0;
     workspace->ball_center = SC_NONE;
 }

@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | unit | patch boxes | triangle boxes | mask | prospect | bounds |
+ *     | sc_workspace | leaf_at | patch boxes | mask | prospect | bounds |
  *       bounds_tick | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
@@ -86,9 +86,13 @@ enum { SC_CANDIDATES_MAX = 1024 };
 /* A leaf cluster made ready for tests of its triangles, in the unit box; see query/leaf_kernel.h. Rows of points and of
    triangles are filled with the last. */
 typedef struct sc_leaf_ready {
-    uint32_t leaf, tick; /* of the pose; 0: nothing yet */
-    float point[3][SC_LEAF_POINTS];
+    uint32_t leaf, tick;  /* of the pose; 0: nothing yet */
+    uint32_t has_normals; /* what follows corner is made only when needed */
+    float
+        side[6]
+            [SC_LEAF_MAX]; /* boxes of triangles; what is no triangle is NaN and overlaps nothing */
     float corner[3][3][SC_LEAF_MAX]; /* corner, axis, triangle */
+    float point[3][SC_LEAF_POINTS];
     float normal[3][SC_LEAF_MAX];
     float size[SC_LEAF_MAX]; /* |e|1 + |f|1, e and f the edges from the first corner */
     float direction[3];      /* about the mean normal */
@@ -170,10 +174,11 @@ struct sc_workspace {
     double center[3];  /* of the box of all points */
     double radius;     /* largest distance of a coordinate from center */
     double scale;      /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 */
-    float *unit;       /* 4 * vertex_count: scale * (position - center), at most 1, and padding */
+    float *
+        leaf_at; /* 3 SC_LEAF_POINTS per leaf: x, then y, then z of its points in the unit box, that is
+                          scale * (position - center), at most 1 */
+    uint32_t leaves_ready;
     sc_boxes patch_boxes; /* patch_end */
-    sc_boxes
-        triangle_boxes; /* SC_LEAF_MAX per leaf; what is no triangle is NaN and overlaps nothing */
     uint32_t boxes_ready;
     uint16_t *mask;     /* patch_end: discrete normal cones, see pose/dnc.h */
     uint32_t *prospect; /* patch_end: where culling has prospects, see query/traversal.c */

@@ -51,28 +51,47 @@ static inline lanes SC_KERNEL(along)(const float direction[3], const sc_leaf_rea
                      lanes_multiply(lanes_all(direction[2]), lanes_load(leaf->point[2])));
 }
 
-/* Computes what sc_leaf_ready is made of. */
-static void SC_KERNEL(make_ready)(const sc_query_state *state, uint32_t leaf, sc_leaf_ready *ready)
+/* Corners and boxes of the triangles of a leaf cluster. */
+static void SC_KERNEL(make_boxes)(const sc_query_state *state, uint32_t leaf, sc_leaf_ready *ready)
 {
     const sc_model *model = state->model;
-    const uint32_t *number = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf;
-    const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
-    const float *unit = state->workspace->unit, *at[SC_LANES_COUNT];
-    lanes point[3], x[3][3], e[3], f[3], n[3], size, along;
-    float reach;
-    int i, k, c;
-    for (i = 0; i < SC_LANES_COUNT; i++) at[i] = unit + 4 * (uint64_t)number[i];
-    lanes_points(at, &point[0], &point[1], &point[2]);
+    const uint32_t *first = sc_model_leaf_first(model) + leaf;
+    const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(FLT_MIN); /* see base/boxes.h */
+    lanes x[3][3];
+    uint32_t i;
+    int k, c;
+    lanes_corners(state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf,
+                  sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
     SC_UNROLL
-    for (c = 0; c < 3; c++) lanes_store(ready->point[c], point[c]);
+    for (c = 0; c < 3; c++) {
+        lanes low = lanes_smaller(x[0][c], lanes_smaller(x[1][c], x[2][c]));
+        lanes high = lanes_larger(x[0][c], lanes_larger(x[1][c], x[2][c]));
+        low = lanes_subtract(low, lanes_add(lanes_multiply(lanes_absolute(low), ulp), least));
+        high = lanes_add(high, lanes_add(lanes_multiply(lanes_absolute(high), ulp), least));
+        lanes_store(ready->side[c], low);
+        lanes_store(ready->side[c + 3], high);
+        for (i = first[1] - first[0]; i < SC_LEAF_MAX; i++) /* no triangle: overlaps nothing */
+            ready->side[c][i] = ready->side[c + 3][i] = (float)NAN;
+        SC_UNROLL
+        for (k = 0; k < 3; k++) lanes_store(ready->corner[k][c], x[k][c]);
+    }
+    ready->leaf = leaf;
+    ready->tick = state->workspace->pose_tick;
+    ready->has_normals = 0;
+}
+
+/* What is made of these. */
+static void SC_KERNEL(make_normals)(const sc_query_state *state, sc_leaf_ready *ready)
+{
+    lanes x[3][3], e[3], f[3], n[3], size, along;
+    float reach;
+    int k, c;
+    memcpy(ready->point, state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)ready->leaf,
+           sizeof ready->point);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        lanes_index corner = lanes_index_load(where + SC_LEAF_MAX * k);
         SC_UNROLL
-        for (c = 0; c < 3; c++) {
-            x[k][c] = lanes_pick(ready->point[c], corner);
-            lanes_store(ready->corner[k][c], x[k][c]);
-        }
+        for (c = 0; c < 3; c++) x[k][c] = lanes_load(ready->corner[k][c]);
     }
     SC_UNROLL
     for (c = 0; c < 3; c++) {
@@ -97,17 +116,25 @@ static void SC_KERNEL(make_ready)(const sc_query_state *state, uint32_t leaf, sc
             16 * FLT_MIN;
     ready->direction_ends[0] = lanes_least(along) - reach;
     ready->direction_ends[1] = lanes_most(along) + reach;
-    ready->leaf = leaf;
-    ready->tick = state->workspace->pose_tick;
+    ready->has_normals = 1;
 }
 
-/* A leaf cluster made ready; side is 0 for the lower of two, 1 for the other. */
-static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state, uint32_t leaf,
-                                                    uint32_t side)
+/* A leaf cluster with its boxes; side is 0 for the lower of two, 1 for the other. */
+static inline sc_leaf_ready *SC_KERNEL(boxes)(const sc_query_state *state, uint32_t leaf,
+                                              uint32_t side)
 {
     sc_leaf_ready *ready = state->workspace->ready + SC_READY_KEPT * side + leaf % SC_READY_KEPT;
     if (ready->leaf != leaf || ready->tick != state->workspace->pose_tick)
-        SC_KERNEL(make_ready)(state, leaf, ready);
+        SC_KERNEL(make_boxes)(state, leaf, ready);
+    return ready;
+}
+
+/* The same with all that there is. */
+static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state, uint32_t leaf,
+                                                    uint32_t side)
+{
+    sc_leaf_ready *ready = SC_KERNEL(boxes)(state, leaf, side);
+    if (!ready->has_normals) SC_KERNEL(make_normals)(state, ready);
     return ready;
 }
 
@@ -267,8 +294,8 @@ static void SC_KERNEL(collect)(sc_query_state *state, uint32_t leaf_a, uint32_t 
 static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, unsigned rows,
                                       unsigned some)
 {
-    const sc_boxes *boxes = &state->workspace->triangle_boxes;
-    uint64_t row_a = (uint64_t)p->a * SC_LEAF_MAX, row_b = (uint64_t)p->b * SC_LEAF_MAX;
+    const sc_leaf_ready *a = SC_KERNEL(boxes)(state, p->a, p->a > p->b);
+    const sc_leaf_ready *b = SC_KERNEL(boxes)(state, p->b, p->b > p->a);
     uint8_t of_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], of_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
     uint64_t tests = 0;
     unsigned count = 0;
@@ -276,8 +303,8 @@ static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, un
     int k;
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        low[k] = lanes_load(boxes->side[k] + row_b);
-        high[k] = lanes_load(boxes->side[k + 3] + row_b);
+        low[k] = lanes_load(b->side[k]);
+        high[k] = lanes_load(b->side[k + 3]);
     }
     for (; rows; rows &= rows - 1, tests++) {
         uint32_t i = sc_bits_lowest(rows);
@@ -285,8 +312,8 @@ static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, un
         unsigned mask, shared = p->shared[i];
         SC_UNROLL
         for (k = 0; k < 3; k++)
-            m[k] = lanes_both(lanes_not_above(lanes_all(boxes->side[k][row_a + i]), high[k]),
-                              lanes_not_above(low[k], lanes_all(boxes->side[k + 3][row_a + i])));
+            m[k] = lanes_both(lanes_not_above(lanes_all(a->side[k][i]), high[k]),
+                              lanes_not_above(low[k], lanes_all(a->side[k + 3][i])));
         mask = lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2]))) & some;
         if (p->a == p->b) mask &= ~((2u << i) - 1u);
         mask &= ~(shared & (p->plain_a >> i & 1u ? SC_LEAF_ALL : p->plain_b));
@@ -304,10 +331,13 @@ static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, un
 /* The triangles of leaf a whose boxes overlap that of leaf b. */
 static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
-    const sc_workspace *w = state->workspace;
-    return SC_KERNEL(overlap)(&w->patch_boxes, sc_model_first_leaf_patch(state->model) + b,
-                              &w->triangle_boxes, (uint64_t)a * SC_LEAF_MAX) &
-           SC_LEAF_ALL;
+    sc_leaf_ready *ready = SC_KERNEL(boxes)(state, a, a > b);
+    sc_boxes row;
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 6; k++) row.side[k] = ready->side[k];
+    return SC_KERNEL(overlap)(&state->workspace->patch_boxes,
+                              sc_model_first_leaf_patch(state->model) + b, &row, 0);
 }
 
 static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b)

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/predicates.h"
+#include "pose/positions.h"
 
 #if SC_ISA_X86
 
@@ -19,6 +20,7 @@
 #  include "base/lanes.h"
 #  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
+#  include "pose/points_kernel.h"
 #  include "query/leaf_kernel.h"
 #  include "query/walk_kernel.h"
 #  include "query/decide_kernel.h"

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/predicates.h"
+#include "pose/positions.h"
 
 #define SC_KERNEL(name) name##_query_base
 #if SC_ISA_X86
@@ -21,6 +22,7 @@
 #include "base/lanes.h"
 #include "base/lanes_double.h"
 #include "base/lanes_pick.h"
+#include "pose/points_kernel.h"
 #include "query/leaf_kernel.h"
 #include "query/walk_kernel.h"
 #include "query/decide_kernel.h"

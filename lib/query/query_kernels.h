@@ -19,8 +19,8 @@ typedef struct sc_query_kernels {
     void (*leaf_itself)(sc_query_state *state, uint32_t leaf);
     /* Whether triangles meet, as far as that is certain in doubles; SC_PAIR_LANES pairs. */
     void (*decide)(const sc_pair_lanes *pairs, sc_verdict *verdict);
-    /* Projects the listed points of a contour, given by all points in the unit box; sets its error. */
-    void (*project)(sc_simple_contour *contour, const float *unit);
+    /* Projects the listed points of a contour, and sets its error. */
+    void (*project)(sc_simple_contour *contour, const sc_workspace *workspace);
     /* Whether sc_simple_are_apart is true of all pairs of edges whose boxes overlap. */
     int (*are_edges_fine)(sc_simple_contour *contour);
 } sc_query_kernels;

@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "base/assume.h"
+#include "pose/positions.h"
 #include "base/bits.h"
 #include "query/query_kernels.h"
 
@@ -345,6 +346,16 @@ void sc_simple_fetch(const sc_model *model, uint32_t node, int step)
     }
 }
 
+/* Sets from, to about the middle of the contour. */
+static void find_middle(sc_simple_contour *c, const sc_workspace *w)
+{
+    float one[3], other[3];
+    int k;
+    sc_positions_unit(w, c->edges->point[0], one);
+    sc_positions_unit(w, c->edges->point[c->count / 2], other);
+    for (k = 0; k < 3; k++) c->from[k] = one[k] / 2 + other[k] / 2;
+}
+
 int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
 {
     const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
@@ -354,8 +365,8 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
     passed = sc_simple_list(&c, state->model, state->workspace, node);
     if (passed) {
         sc_simple_axes(&c, projection);
-        sc_simple_middle(&c, state->workspace->unit, 4, c.from);
-        kernels->project(&c, state->workspace->unit);
+        find_middle(&c, state->workspace);
+        kernels->project(&c, state->workspace);
         state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.count;
         sc_state_switch(state, SC_TASK_CONTOUR);
         state->stats.counts[SC_TASK_CONTOUR]++;

@@ -9,19 +9,18 @@
  */
 
 /* Places of the listed points, and the error of their coordinates, see choose_axes in simple.c. */
-static void SC_KERNEL(project)(sc_simple_contour *c, const float *unit)
+static void SC_KERNEL(project)(sc_simple_contour *c, const sc_workspace *w)
 {
     const sc_contour_edges *e = c->edges;
     lanes size = lanes_all(0), d[3], at;
-    uint32_t i, j;
+    uint32_t i;
     int k;
     /* one block more, for the ends of the last edges */
     for (i = 0; i < (c->blocks + 1) * SC_CONTOUR_BLOCK; i += SC_CONTOUR_BLOCK) {
-        const float *point[SC_CONTOUR_BLOCK];
-        for (j = 0; j < SC_CONTOUR_BLOCK; j++) point[j] = unit + 4 * (uint64_t)e->point[i + j];
-        lanes_points(point, &d[0], &d[1], &d[2]);
+        float unit[3 * SC_CONTOUR_BLOCK];
+        SC_KERNEL(load_points)(w, e->point + i, unit);
         for (k = 0; k < 3; k++) {
-            d[k] = lanes_subtract(d[k], lanes_all(c->from[k]));
+            d[k] = lanes_subtract(lanes_load(unit + SC_CONTOUR_BLOCK * k), lanes_all(c->from[k]));
             size = lanes_larger(size, lanes_absolute(d[k]));
         }
         for (k = 0; k < 2; k++) {
