@@ -4,6 +4,7 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -411,7 +412,7 @@ static int start_scene(fixture *f, int scene)
     soup mesh = scene == 0   ? soup_cloth(40, 40)
                 : scene == 1 ? soup_sphere(40, 40)
                 : scene == 2 ? soup_many(100)
-                : scene == 3 ? soup_spiral(400, 4, 2.5) /* contours cross, all else is fine */
+                : scene == 3 ? soup_branched(80, 20) /* contours cross, all else is fine */
                              : soup_cloth(2, 1);
     if (scene == 3) return start_as_it_is(f, mesh);
     return start(f, mesh, scene == 0 ? 4 : 0.5, scene == 1 ? 0.06 : 0.001);
@@ -488,6 +489,49 @@ static void the_same_answers(void)
         stop(&f);
     }
     CHECK(jobs > 200);
+}
+
+/* Poses of any type and stride; one that is not finite is refused, wherever that is. */
+static void any_array_of_positions(void)
+{
+    fixture f;
+    if (start(&f, soup_cloth(80, 80), 4, 0.003)) {
+        sc_workspace_options o = for_workers(THREADS_MAX);
+        sc_workspace *workspace = NULL;
+        sc_query_options options = no_options(), shared = no_options();
+        CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+        for (uint32_t i = 0; i < 24; ++i) {
+            input_array array =
+                input_positions(f.posed, f.mesh.vertex_count, i % 2 ? SC_FLOAT : SC_DOUBLE,
+                                i % 4 < 2 ? 0 : 1 + test_random_below(20));
+            sc_pose plain = f.pose;
+            answer serial, refused;
+            host h;
+            host_start(&h, (int)i % HOST_COUNT, 2 + test_random_below(THREADS_MAX - 1));
+            shared.tasks = &h.tasks;
+            options.method = shared.method = i / 4 % 4;
+            f.pose = input_pose(f.mesh.vertex_count, &array);
+            serial = ask(&f, f.workspace, &options, 10000);
+            CHECK(serial.status == SC_OK && serial.result.count > 10);
+            CHECK(is_same(&serial, ask(&f, workspace, &shared, 10000)));
+            free(serial.pairs);
+            if (i % 2 == 0) { /* the last coordinate, or any */
+                uint32_t v =
+                    i % 4 ? f.mesh.vertex_count - 1 : test_random_below(f.mesh.vertex_count);
+                const double nan = NAN;
+                memcpy(array.data + (size_t)v * (array.stride ? array.stride : 24) + 16, &nan,
+                       sizeof(nan));
+                refused = ask(&f, workspace, &shared, 10000);
+                CHECK(refused.status == SC_ERROR_NOT_FINITE && refused.result.count == 0);
+                free(refused.pairs);
+            }
+            input_free(&array);
+            f.pose = plain;
+            host_stop(&h);
+        }
+        sc_workspace_free(workspace);
+    }
+    stop(&f);
 }
 
 /* Whether there is a pair: the answer is known, the pair is not. */
@@ -709,5 +753,5 @@ static void stopped_on_the_way(void)
 }
 
 SC_TEST_MAIN(SC_TEST(workspaces_for_workers), SC_TEST(workspaces_refused), SC_TEST(tasks_refused),
-             SC_TEST(the_same_answers), SC_TEST(any_pair), SC_TEST(filters), SC_TEST(stopped_early),
-             SC_TEST(stopped_on_the_way))
+             SC_TEST(the_same_answers), SC_TEST(any_array_of_positions), SC_TEST(any_pair),
+             SC_TEST(filters), SC_TEST(stopped_early), SC_TEST(stopped_on_the_way))
