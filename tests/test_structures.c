@@ -506,7 +506,7 @@ static void check_hops(const steps *s, const sc_model *model)
     uint32_t l, p, wrong = 0;
     for (l = 0; l + 1 < model->level_count; ++l)
         for (p = sc_model_level_first(model)[l]; p + 1 < sc_model_level_first(model)[l + 1]; ++p) {
-            wrong += hop[p] <= p || hop[p + 1] <= hop[p] || hop[p + 1] - hop[p] > 8;
+            wrong += hop[p] <= p || hop[p + 1] <= hop[p] || hop[p + 1] - hop[p] > 16;
             wrong += leaf[hop[p]] != leaf[p] || leaf[hop[p + 1]] != leaf[p + 1];
         }
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " hops wrong", s->name, wrong);

@@ -61,7 +61,7 @@ enum {
  *   share_...       see build/sharing.h
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
- *                   visits: every third, ending with the last
+ *                   visits: every fourth, ending with the last
  *   ring_first, ring  the points round each closed fan, in order; empty where there is none
  *   open_point      the points without a ring, ascending; open_first, open_around: the points that edges
  *                   join each of them with, some perhaps twice
@@ -162,11 +162,11 @@ static inline uint32_t sc_model_first_leaf_patch(const sc_model *model)
     return sc_model_level_first(model)[model->level_count - 1];
 }
 
-/* How many levels below a patch's own its hop leads: to the last level or one of every third above. */
+/* How many levels below a patch's own its hop leads: to the last level or one of every fourth above. */
 static inline uint32_t sc_model_hop_steps(uint32_t level_count, uint32_t level)
 {
-    uint32_t steps = (level_count - 1 - level) % 3;
-    return steps ? steps : 3;
+    uint32_t steps = (level_count - 1 - level) % 4;
+    return steps ? steps : 4;
 }
 
 static inline int sc_model_is_leaf(const sc_model *model, uint32_t patch)

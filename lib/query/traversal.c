@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Recursion is as deep as the hierarchy, SC_DEPTH_MAX at most, but for box recursion, which is a third
+ * Recursion is as deep as the hierarchy, SC_DEPTH_MAX at most, but for box recursion, which is a quarter
  * as deep.
  */
 #include "query/traversal.h"

@@ -6,7 +6,7 @@
 
 /*
  * Two patches of a level whose boxes overlap: the descendants of each at the next level that is visited,
- * eight at most, against the other's box, then row by row.
+ * sixteen at most, against the other's box, then row by row.
  */
 static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b)
 {
