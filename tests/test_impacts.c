@@ -466,6 +466,50 @@ static void separations_just_reached(void)
     CHECK(reached > 0 && found > 0 && found < reached);
 }
 
+/* A distance of 2^-538 or so, in all of which squares vanish, is less than separation. */
+static void distances_whose_squares_vanish(void)
+{
+    for (int exponent = -560; exponent < -500; ++exponent) {
+        double x = ldexp(1, exponent), time;
+        query face = {{{0, 0, 0}, {x, -1, -1}, {x, -1, 1}, {x, 2, 0}},
+                      {{0, 0, 0}, {x, -1, -1}, {x, -1, 1}, {x, 2, 0}}};
+        query edges = {{{0, -1, 0}, {0, 1, 0}, {x, 0, -1}, {x, 0, 1}},
+                       {{0, -1, 0}, {0, 1, 0}, {x, 0, -1}, {x, 0, 1}}};
+        for (int small = 1; small < 30; ++small) {
+            double separation = ldexp(1, -small);
+            CHECK(ask(&face, STEP_ORACLE_VERTEX_FACE, separation, 0, &time) && time == 0);
+            CHECK(ask(&edges, STEP_ORACLE_EDGE_EDGE, separation, 0, &time) && time == 0);
+        }
+    }
+}
+
+/*
+ * Answers and times as they were when this was written: they are the same on all machines. Whoever changes the search
+ * changes the number.
+ */
+static void same_bits_everywhere(void)
+{
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    for (uint32_t i = 0; i < 4000; ++i) {
+        step_oracle_kind kind = (step_oracle_kind)(i & 1);
+        double separation = i % 3 == 0 ? ldexp(1, -(int)(i % 7)) : 0, time;
+        uint64_t bits;
+        query q;
+        test_random_reset(i);
+        for (int j = 0; j < 4; ++j) {
+            for (int k = 0; k < 3; ++k) {
+                q.start[j][k] = test_random_unit();
+                q.end[j][k] = q.start[j][k] + test_random_unit() - 0.5;
+            }
+        }
+        hash =
+            (hash ^ (uint64_t)ask(&q, kind, separation, 0x1p-20, &time)) * UINT64_C(0x100000001b3);
+        memcpy(&bits, &time, sizeof(bits));
+        hash = (hash ^ bits) * UINT64_C(0x100000001b3);
+    }
+    CHECK_MSG(hash == UINT64_C(0xf6c939267644d02), "0x%llx", (unsigned long long)hash);
+}
+
 static void known_times(void)
 {
     query drop = {{{0.25, 0.25, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
@@ -516,8 +560,9 @@ static void thickness_of_limits(void)
     CHECK(sc_impact_thickness(&limits, HUGE_VAL) <= DBL_MAX);
 }
 
-SC_TEST_MAIN(SC_TEST(known_times), SC_TEST(thickness_of_limits), SC_TEST(random_steps),
-             SC_TEST(steps_on_a_grid), SC_TEST(steps_that_just_touch), SC_TEST(flat_steps),
-             SC_TEST(degenerate_steps), SC_TEST(thin_layers), SC_TEST(rolling_steps),
-             SC_TEST(wide_ranges), SC_TEST(separations_just_reached),
+SC_TEST_MAIN(SC_TEST(known_times), SC_TEST(same_bits_everywhere),
+             SC_TEST(distances_whose_squares_vanish), SC_TEST(thickness_of_limits),
+             SC_TEST(random_steps), SC_TEST(steps_on_a_grid), SC_TEST(steps_that_just_touch),
+             SC_TEST(flat_steps), SC_TEST(degenerate_steps), SC_TEST(thin_layers),
+             SC_TEST(rolling_steps), SC_TEST(wide_ranges), SC_TEST(separations_just_reached),
              SC_TEST(times_close_to_contacts))
