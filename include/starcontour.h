@@ -736,14 +736,16 @@ typedef struct sc_result {
  * SC_ERROR_NULL (ignore), or SC_ERROR_PAIRS where ignore is not sorted, names a triangle or edge that
  * does not exist, or has a >= b for triangles.
  *
- * Several threads. With options->tasks the walk through the tree, the tests of triangles and the sorting
- * are done by all workers; the passes over the whole mesh by the calling thread. It pays from about 20,000
- * triangles. The answer is the same. In one thread are done queries on models of fewer than
- * 128 leaf clusters, with a budget, with SC_CONTOUR_STAR or _NONE, with a filter's accept unless there is an
- * array for the pairs, and all where the library was compiled by other compilers than gcc or clang. Where the
- * array is too short, one thread asks again. Statistics do not depend on the number of
- * workers if that is 2 or more, but for the times, which are added up, and for SC_OUTPUT_ANY. What a flag leaves
- * out depends on the threads.
+ * Several threads. With options->tasks the passes over the pose, the walk through the tree, the tests of
+ * triangles and the sorting are done by all workers. The answer is the same. It pays from about 20,000
+ * triangles. By the calling thread alone are done:
+ *   - queries on models of fewer than 128 leaf clusters;
+ *   - all but the passes with a budget, SC_CONTOUR_STAR or _NONE, and a filter's accept unless there is an array for
+ *     the pairs, and where the library was compiled by other compilers than gcc or clang;
+ *   - all but the passes once more, where the array turns out to be too short.
+ * Counts in statistics do not depend on the number of workers if that is 2 or more, but for SC_OUTPUT_ANY.
+ * Times of walk and tests are added up over the workers. Which pairs a query has found when a flag ends it depends on
+ * the threads.
  *
  * Pairs and their order depend on the mesh, the welding, the pose, the kind of pair asked for and the
  * filter, and on nothing else: not on partition, method, threads, compiler or machine.

@@ -541,7 +541,12 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     state.capacity = r.capacity;
     state.timed = r.stats != NULL;
     status = check_query(model, workspace, pose, options, &r, &state, &p, &filter, &tasks, &stride);
-    if (!status) status = run_query(model, workspace, &p, stride, &state);
+    if (!status) {
+        state.model = model;
+        workspace->tasks = sc_parallel_tasks(&state);
+        status = run_query(model, workspace, &p, stride, &state);
+        workspace->tasks = NULL;
+    }
     if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE) {
         r.count = state.options.output == SC_OUTPUT_ANY ? state.count > 0 : state.count;
         r.collides = state.count > 0;

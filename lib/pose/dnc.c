@@ -8,19 +8,50 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/jobs.h"
 #include "pose/pose_kernels.h"
 
 enum { HALF = SC_DNC_DIRECTIONS / 2 };
 
+/* A pass over the patches of a level, which are counted from its first. */
+typedef struct cones_pass {
+    const sc_model *model;
+    sc_workspace *w;
+    uint32_t first;
+} cones_pass;
+
+static void load_cones(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const cones_pass *pass = (const cones_pass *)context;
+    (void)part;
+    sc_pose_kernels_of(pass->w)->load_leaves(pass->model, pass->w, first, end, 1);
+}
+
+static void join_cones(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const cones_pass *pass = (const cones_pass *)context;
+    const uint32_t *child = sc_model_child(pass->model);
+    uint16_t *mask = pass->w->mask;
+    uint32_t p;
+    (void)part;
+    for (p = pass->first + first; p < pass->first + end; p++)
+        mask[p] = mask[child[p]] & mask[child[p + 1] - 1];
+}
+
 void sc_dnc_update(const sc_model *model, sc_workspace *w)
 {
-    const uint32_t *level_first = sc_model_level_first(model), *child = sc_model_child(model);
-    uint32_t level, p;
-    sc_pose_kernels_of(w)->load_leaves(model, w, 0, model->leaf_count, 1);
+    const uint32_t *first = sc_model_level_first(model);
+    cones_pass pass;
+    uint32_t level;
+    pass.model = model;
+    pass.w = w;
+    (void)sc_jobs_loop(w->tasks, model->leaf_count, SC_POSE_LEAVES_MIN, load_cones, &pass);
     w->leaves_ready = 1;
-    for (level = model->level_count - 1; level-- > 0;)
-        for (p = level_first[level]; p + 1 < level_first[level + 1]; p++)
-            w->mask[p] = w->mask[child[p]] & w->mask[child[p + 1] - 1];
+    for (level = model->level_count - 1; level-- > 0;) {
+        pass.first = first[level];
+        (void)sc_jobs_loop(w->tasks, sc_model_patches(model, level), SC_POSE_PATCHES_MIN,
+                           join_cones, &pass);
+    }
 }
 
 /* The cone of one triangle of a leaf cluster: as of a cluster of nothing else. */

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/jobs.h"
 #include "pose/pose_kernels.h"
 
 /* Widens the box of all points. */
@@ -20,13 +21,14 @@ static inline void widen(const double p[3], double low[3], double high[3])
     }
 }
 
-/* The box of all vertices that are used; 0 if one is not finite. */
-static int find_extent(const sc_model *model, const sc_workspace *w, double low[3], double high[3])
+/* The box of those of vertices first to end - 1 that are used; 0 if one is not finite. */
+static int find_extent(const sc_model *model, const sc_workspace *w, uint32_t first, uint32_t end,
+                       double low[3], double high[3])
 {
     const uint8_t *use = sc_model_vertex_use(model);
     double p[3], not_finite = 0; /* stays 0 unless something is NaN or infinite */
     uint32_t v;
-    for (v = 0; v < model->vertex_count; v++) {
+    for (v = first; v < end; v++) {
         if (use[v] == SC_VERTEX_UNUSED) continue;
         sc_positions_get(w, v, p);
         not_finite += (p[0] - p[0]) + (p[1] - p[1]) + (p[2] - p[2]);
@@ -36,16 +38,14 @@ static int find_extent(const sc_model *model, const sc_workspace *w, double low[
 }
 
 /* The same of a packed array that is used as a whole, which most are. */
-static int find_extent_of_all(const sc_model *model, const sc_workspace *w, double low[3],
+static int find_extent_of_all(const sc_workspace *w, uint32_t first, uint32_t end, double low[3],
                               double high[3])
 {
     const sc_pose_kernels *kernels = sc_pose_kernels_of(w);
-    const void *positions = w->positions;
+    const void *positions = w->positions + first * w->stride;
     return w->position_type == SC_DOUBLE
-               ? kernels->extent_of_doubles((const double *)positions, model->vertex_count, low,
-                                            high)
-               : kernels->extent_of_floats((const float *)positions, model->vertex_count, low,
-                                           high);
+               ? kernels->extent_of_doubles((const double *)positions, end - first, low, high)
+               : kernels->extent_of_floats((const float *)positions, end - first, low, high);
 }
 
 static int is_packed(const sc_workspace *w)
@@ -54,11 +54,38 @@ static int is_packed(const sc_workspace *w)
     return w->stride == 3 * size && (uintptr_t)w->positions % size == 0;
 }
 
+/* What is found in parts of the vertices. */
+typedef struct extents {
+    const sc_model *model;
+    const sc_workspace *w;
+    int of_all;
+    int finite[SC_JOBS_PARTS];
+    double low[SC_JOBS_PARTS][3], high[SC_JOBS_PARTS][3];
+} extents;
+
+static void find_extents(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    extents *e = (extents *)context;
+    double *low = e->low[part], *high = e->high[part];
+    int k;
+    for (k = 0; k < 3; k++) {
+        low[k] = HUGE_VAL;
+        high[k] = -HUGE_VAL;
+    }
+    e->finite[part] = e->of_all ? find_extent_of_all(e->w, first, end, low, high)
+                                : find_extent(e->model, e->w, first, end, low, high);
+}
+
+/* Fewer vertices are not worth a part of their own. */
+enum { VERTICES_MIN = 2048 };
+
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
                             sc_workspace *w)
 {
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    int k, finite, exponent;
+    uint32_t part, parts;
+    int k, exponent;
+    extents e;
     w->positions = (const unsigned char *)pose->positions;
     w->stride = stride;
     w->position_type = pose->position_type;
@@ -67,11 +94,16 @@ sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t
     if (pose->position_type == SC_DOUBLE && stride % sizeof(double) == 0 &&
         (uintptr_t)pose->positions % sizeof(double) == 0) /* the last one has no fourth */
         w->in_place = model->vertex_count - 1;
-    if (is_packed(w) && !memchr(sc_model_vertex_use(model), SC_VERTEX_UNUSED, model->vertex_count))
-        finite = find_extent_of_all(model, w, low, high);
-    else
-        finite = find_extent(model, w, low, high);
-    if (!finite) return SC_ERROR_NOT_FINITE;
+    e.model = model;
+    e.w = w;
+    e.of_all =
+        is_packed(w) && !memchr(sc_model_vertex_use(model), SC_VERTEX_UNUSED, model->vertex_count);
+    parts = sc_jobs_loop(w->tasks, model->vertex_count, VERTICES_MIN, find_extents, &e);
+    for (part = 0; part < parts; part++) {
+        if (!e.finite[part]) return SC_ERROR_NOT_FINITE;
+        widen(e.low[part], low, high);
+        widen(e.high[part], low, high);
+    }
     w->radius = 0;
     for (k = 0; k < 3; k++) {
         w->center[k] = low[k] / 2 + high[k] / 2;

@@ -180,6 +180,7 @@ void sc_workspace_share(const sc_model *model, sc_workspace *w, uint32_t workers
         uint32_t ball_tick = view->ball_tick;
         make_view(model, w, view);
         view->ball_tick = ball_tick;
+        view->tasks = NULL;
     }
 }
 

@@ -166,6 +166,9 @@ struct sc_workspace {
     uint64_t view_bytes;  /* of one; 0 if there is none */
     sc_hooks hooks;
 
+    const sc_tasks
+        *tasks; /* who shares in passes over the pose; NULL but in a query, and in views */
+
     /* the pose; valid only in a query */
     const unsigned char *positions; /* the caller's, see pose/positions.h */
     uint64_t stride;                /* in bytes */

@@ -59,11 +59,17 @@ typedef struct plan {
     uint32_t part_count, test_count, open_count; /* of those in w->parts, tests and open */
 } plan;
 
+const sc_tasks *sc_parallel_tasks(const sc_query_state *state)
+{
+    const sc_tasks *tasks = state->options.tasks;
+    if (!tasks || tasks->workers < 2 || state->model->leaf_count < LEAVES_MIN) return NULL;
+    return tasks;
+}
+
 int sc_parallel_pays(const sc_query_state *state)
 {
     const sc_query_options *o = &state->options;
-    if (!SC_ATOMIC || !o->tasks || o->tasks->workers < 2 || o->budget) return 0;
-    if (state->model->leaf_count < LEAVES_MIN) return 0;
+    if (!SC_ATOMIC || !sc_parallel_tasks(state) || o->budget) return 0;
     if (o->method == SC_METHOD_SCTT && o->contour != SC_CONTOUR_EXACT) return 0;
     /* the caller's function is asked of all pairs afterwards */
     return !(state->filter && state->filter->accept) ||
@@ -192,7 +198,8 @@ static void update_boxes(plan *p)
     uint32_t worker;
     sc_traversal_update_boxes(p->state);
     for (worker = 1; worker < p->tasks->workers; worker++)
-        sc_workspace_of_worker(p->w, worker)->boxes_ready = 1;
+        sc_workspace_of_worker(p->w, worker)->leaves_ready =
+            sc_workspace_of_worker(p->w, worker)->boxes_ready = 1;
 }
 
 static int is_large(const sc_model *model, uint32_t patch)

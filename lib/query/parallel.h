@@ -11,9 +11,13 @@
 
 #include "query/state.h"
 
+/* The tasks that share in a query, or at least in the passes over the pose: those of the caller if there are two
+   workers or more and the model is not small, else NULL. */
+const sc_tasks *sc_parallel_tasks(const sc_query_state *state);
+
 /*
- * Whether a query is to be shared out: there are tasks for two workers or more, and it is not one of those that one
- * thread does: on small models, with the star test or no contour test, with a budget, or without a list of
+ * Whether the rest of a query is to be shared out: there are such tasks, and it is not one of those that one
+ * thread does: with the star test or no contour test, with a budget, or without a list of
  * pairs of which the caller's function can be asked.
  */
 int sc_parallel_pays(const sc_query_state *state);

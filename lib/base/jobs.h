@@ -1,0 +1,24 @@
+/*
+ * Loops that are shared out among the host's tasks.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef SC_BASE_JOBS_H
+#define SC_BASE_JOBS_H
+
+#include "starcontour.h"
+
+/* A loop is cut into so many parts at most. */
+enum { SC_JOBS_PARTS = 32 };
+
+/* Does first to end - 1, which is the part of that number. */
+typedef void (*sc_jobs_body)(void *context, uint32_t part, uint32_t first, uint32_t end);
+
+/*
+ * Does 0 to count - 1 in parts of about equal length, none shorter than least but the last. How they are cut
+ * depends on these two numbers only, unless tasks is NULL: then all is one part. Returns how many there are.
+ */
+uint32_t sc_jobs_loop(const sc_tasks *tasks, uint32_t count, uint32_t least, sc_jobs_body body,
+                      void *context);
+
+#endif
