@@ -30,7 +30,8 @@ typedef struct builder {
     const sc_sctt *sctt;
     sc_scratch *scratch;
     uint32_t *leaf_of;  /* triangle_count: leaf cluster */
-    uint32_t *patch_at; /* leaf_count: patch of the level at hand */
+    uint32_t *across;   /* 3 * triangle_count: leaf cluster across, leaf_count for the outside */
+    uint32_t *patch_at; /* leaf_count + 1: patch of the level at hand, SC_NONE for the outside */
     uint32_t *place;    /* 3 * triangle_count: place in the half_edges of the level at hand */
     uint8_t *cut;       /* 3 * triangle_count: first level at which a run starts here regardless */
     contour_level *levels;  /* level_count */
@@ -59,8 +60,7 @@ static uint32_t patch_of(const builder *b, uint32_t h)
 /* The patch across a half-edge, SC_NONE for the outside. */
 static uint32_t patch_across(const builder *b, uint32_t h)
 {
-    uint32_t opposite = b->adjacency->opposite[h];
-    return opposite == SC_NONE ? SC_NONE : patch_of(b, opposite);
+    return b->patch_at[b->across[h]];
 }
 
 /* Half-edge i of all, in the order of the leaves: so that segments that are near have near numbers. */
@@ -127,8 +127,8 @@ static double dot(const double a[3], const double b[3])
 static void walk_run(builder *b, contour_level *level, uint32_t number, uint32_t e, int cut_turns,
                      uint8_t *seen)
 {
-    double first[3], now[3];
-    direction_of(b, level->half_edges[e], first);
+    double first[3] = {0, 0, 0}, now[3];
+    if (cut_turns) direction_of(b, level->half_edges[e], first);
     seen[e] = 1;
     for (e = level->next[e]; !level->start[e]; e = level->next[e]) {
         seen[e] = 1;
@@ -436,11 +436,13 @@ static sc_status lay_out_points(builder *b, sc_csf *csf)
 
 static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
 {
-    uint64_t corners = 3 * (uint64_t)b->points->triangle_count;
+    uint64_t corners = 3 * (uint64_t)b->points->triangle_count, h;
     uint32_t leaf, i, level_count = b->xbvh->level_count, contour;
     b->leaf_of =
         (uint32_t *)sc_scratch_take(b->scratch, b->points->triangle_count, sizeof(uint32_t));
-    b->patch_at = (uint32_t *)sc_scratch_take(b->scratch, b->xbvh->leaf_count, sizeof(uint32_t));
+    b->across = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
+    b->patch_at = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->xbvh->leaf_count + 1,
+                                              sizeof(uint32_t));
     b->place = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
     b->segment_from = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
     b->cut = (uint8_t *)sc_scratch_take_filled(b->scratch, corners, 1, NOT_CUT);
@@ -449,12 +451,17 @@ static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
     b->node_first = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
     b->node_count = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
     csf->level_segments = (uint32_t *)sc_scratch_take(b->scratch, level_count, sizeof(uint32_t));
-    if (!b->leaf_of || !b->patch_at || !b->place || !b->segment_from || !b->cut || !b->levels ||
-        !b->node_first || !b->node_count || !csf->level_segments)
+    if (!b->leaf_of || !b->across || !b->patch_at || !b->place || !b->segment_from || !b->cut ||
+        !b->levels || !b->node_first || !b->node_count || !csf->level_segments)
         return SC_ERROR_MEMORY;
     for (leaf = 0; leaf < b->xbvh->leaf_count; leaf++)
         for (i = b->xbvh->leaf_first[leaf]; i < b->xbvh->leaf_first[leaf + 1]; i++)
             b->leaf_of[order[i]] = leaf;
+    b->patch_at[b->xbvh->leaf_count] = SC_NONE;
+    for (h = 0; h < corners; h++) {
+        uint32_t opposite = b->adjacency->opposite[h];
+        b->across[h] = opposite == SC_NONE ? b->xbvh->leaf_count : b->leaf_of[opposite / 3];
+    }
     for (i = level_count; i-- > 0;) {
         const contour_level *below = i + 1 < level_count ? &b->levels[i + 1] : NULL;
         sc_status status;
@@ -483,6 +490,7 @@ static void give_back(builder *b)
         sc_scratch_give(b->scratch, b->levels[i].start);
     }
     sc_scratch_give(b->scratch, b->leaf_of);
+    sc_scratch_give(b->scratch, b->across);
     sc_scratch_give(b->scratch, b->patch_at);
     sc_scratch_give(b->scratch, b->place);
     sc_scratch_give(b->scratch, b->segment_from);

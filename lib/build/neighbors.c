@@ -19,10 +19,23 @@ typedef struct meetings {
     uint64_t count;
 } meetings;
 
-/* Sorts a short list and drops repeats; returns what is left. */
+/* Lists of up to this many numbers are sorted in place. */
+enum { SHORT_LIST = 24 };
+
+/* Sorts a list and drops repeats; returns what is left. keys: room for as many, if it is not short. */
 static uint32_t sort_unique(uint32_t *list, uint32_t count, sc_pair *keys)
 {
-    uint32_t i, n = 0;
+    uint32_t i, j, n = 0;
+    if (count <= SHORT_LIST) {
+        for (i = 0; i < count; i++) {
+            uint32_t item = list[i];
+            for (j = n; j > 0 && list[j - 1] > item; j--) continue;
+            if (j > 0 && list[j - 1] == item) continue;
+            memmove(list + j + 1, list + j, (n++ - j) * sizeof *list);
+            list[j] = item;
+        }
+        return n;
+    }
     for (i = 0; i < count; i++) {
         keys[i].a = list[i];
         keys[i].b = 0;
@@ -96,9 +109,10 @@ static sc_status reserve_entries(sc_neighbors *neighbors, sc_scratch *scratch, u
     return SC_OK;
 }
 
-/* Lists the neighbors of all patches of a level. */
-static sc_status list_level(const meetings *met, uint32_t begin, uint32_t end, sc_scratch *scratch,
-                            sc_neighbors *neighbors)
+/* Lists the neighbors of all patches of a level. place: a number for each patch, which may be any: the place
+   of a neighbor among those of the patch at hand, if that neighbor is there. */
+static sc_status list_level(const meetings *met, uint32_t begin, uint32_t end, uint32_t *place,
+                            sc_scratch *scratch, sc_neighbors *neighbors)
 {
     uint32_t *count = neighbors->count, *first = neighbors->first, p;
     uint64_t at, total = 0, i, j;
@@ -134,15 +148,17 @@ static sc_status list_level(const meetings *met, uint32_t begin, uint32_t end, s
     total = neighbors->entry_count;
     for (p = begin; p < end; p++) { /* one entry for equal neighbors */
         uint32_t n = 0, k;
-        sc_pair *list = entries + first[p];
-        sc_sort_pairs(list, count[p]);
+        sc_pair *list = entries + first[p], *kept = entries + total;
         for (k = 0; k < count[p]; k++) {
-            sc_pair entry = list[k];
-            if (n > 0 && entries[total + n - 1].a == entry.a)
-                entries[total + n - 1].b = SC_NONE;
-            else
-                entries[total + n++] = entry;
+            uint32_t known = place[list[k].a];
+            if (known < n && kept[known].a == list[k].a) {
+                kept[known].b = SC_NONE;
+            } else {
+                place[list[k].a] = n;
+                kept[n++] = list[k];
+            }
         }
+        sc_sort_pairs(kept, n);
         first[p] = (uint32_t)total;
         count[p] = n;
         total += n;
@@ -172,7 +188,7 @@ sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjace
                              const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
                              sc_neighbors *neighbors)
 {
-    uint32_t level, p, longest = 0, *parent, *hub_of;
+    uint32_t level, p, longest = 0, *parent, *hub_of, *place;
     meetings met;
     sc_pair *keys;
     sc_status status;
@@ -186,13 +202,14 @@ sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjace
     neighbors->count =
         (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof(uint32_t), 0);
     hub_of = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *hub_of, 0xff);
-    if (!keys || !parent || !hub_of || !neighbors->first || !neighbors->count)
+    place = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *place, 0xff);
+    if (!keys || !parent || !hub_of || !place || !neighbors->first || !neighbors->count)
         return SC_ERROR_MEMORY;
     status = meet_at_leaves(points, adjacency, order, xbvh, keys, scratch, &met);
     if (status) return status;
     for (level = xbvh->level_count - 1;; level--) {
         uint32_t begin = xbvh->level_first[level], end = xbvh->level_first[level + 1] - 1;
-        status = list_level(&met, begin, end, scratch, neighbors);
+        status = list_level(&met, begin, end, place, scratch, neighbors);
         if (status) return status;
         unmark_at_hubs(&met, hub_of, neighbors);
         if (level == 0) break;
@@ -203,6 +220,7 @@ sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjace
         ascend(&met, parent, begin, keys);
     }
     sc_scratch_give(scratch, met.words);
+    sc_scratch_give(scratch, place);
     sc_scratch_give(scratch, hub_of);
     sc_scratch_give(scratch, parent);
     sc_scratch_give(scratch, keys);

@@ -23,43 +23,46 @@ typedef struct found {
     sc_list rows; /* ROW_WORDS an entry: the masks of two rows each */
 } found;
 
-static int note(sc_scratch *scratch, found *f, uint32_t other, unsigned row, unsigned bit)
+/* The masks of another cluster, NULL if memory ran out. */
+static uint32_t *rows_of(sc_scratch *scratch, found *f, uint32_t other)
 {
     uint32_t k;
     if (!f->entry[other]) {
         if (!sc_list_reserve(scratch, &f->leaf, 1) ||
             !sc_list_reserve(scratch, &f->rows, ROW_WORDS))
-            return 0;
+            return NULL;
         sc_list_add(&f->leaf, other);
         for (k = 0; k < ROW_WORDS; k++) sc_list_add(&f->rows, 0);
         f->entry[other] = (uint32_t)f->leaf.count;
     }
-    f->rows.items[ROW_WORDS * (uint64_t)(f->entry[other] - 1) + row / 2] |=
-        1u << (16 * (row % 2) + bit);
-    return 1;
+    return f->rows.items + ROW_WORDS * (uint64_t)(f->entry[other] - 1);
 }
 
-/* Follows the corners at the corners of a cluster's triangles. */
-static int follow(const sc_points *points, const sc_adjacency *adjacency, const places *at,
-                  uint32_t leaf, uint32_t t, sc_scratch *scratch, sc_sharing *s, found *f)
+/* Looks at the triangles round a point of a cluster. */
+static int look_round(const sc_adjacency *adjacency, const places *at, uint32_t leaf, uint32_t p,
+                      sc_scratch *scratch, sc_sharing *s, found *f)
 {
-    unsigned row = at->row[t];
-    uint32_t k, i;
-    for (k = 0; k < 3; k++) {
-        uint32_t p = points->triangles[3 * (uint64_t)t + k];
-        uint32_t begin = adjacency->corner_first[p], end = adjacency->corner_first[p + 1];
-        if (end - begin > SC_SHARING_CROWD) {
-            s->crowded[leaf] = 1;
-            continue;
-        }
-        for (i = begin; i < end; i++) {
-            uint32_t other = adjacency->corners[i] / 3;
-            if (at->leaf[other] == leaf && at->row[other] > row)
-                s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row] |= (uint16_t)(1u << at->row[other]);
-            else if (at->leaf[other] > leaf &&
-                     !note(scratch, f, at->leaf[other], row, at->row[other]))
-                return 0;
-        }
+    uint32_t begin = adjacency->corner_first[p], end = adjacency->corner_first[p + 1], i, k;
+    uint32_t mask = 0, own = 0, others = 0, other[SC_SHARING_CROWD];
+    uint8_t row[SC_SHARING_CROWD];
+    if (end - begin > SC_SHARING_CROWD) {
+        s->crowded[leaf] = 1;
+        return 1;
+    }
+    for (i = begin; i < end; i++) {
+        uint32_t t = adjacency->corners[i] / 3;
+        other[others] = t;
+        others += at->leaf[t] > leaf;
+        row[own] = at->row[t];
+        own += at->leaf[t] == leaf;
+    }
+    for (k = 0; k < own; k++) mask |= 1u << row[k];
+    for (k = 0; k < own; k++) /* those in higher rows */
+        s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row[k]] |= (uint16_t)(mask & (~1u << row[k]));
+    for (i = 0; i < others; i++) {
+        uint32_t *rows = rows_of(scratch, f, at->leaf[other[i]]), bit = 1u << at->row[other[i]];
+        if (!rows) return 0;
+        for (k = 0; k < own; k++) rows[row[k] / 2] |= bit << (16 * (row[k] % 2));
     }
     return 1;
 }
@@ -85,7 +88,7 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
                            const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
                            sc_sharing *s)
 {
-    uint32_t leaf, i, k, leaves = xbvh->leaf_count;
+    uint32_t leaf, i, k, leaves = xbvh->leaf_count, *looked; /* looked: a point's last cluster */
     uint64_t n;
     places at;
     found f;
@@ -93,11 +96,12 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
     at.leaf = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof *at.leaf);
     at.row = (uint8_t *)sc_scratch_take(scratch, points->triangle_count, 1);
     f.entry = (uint32_t *)sc_scratch_take_filled(scratch, leaves, sizeof *f.entry, 0);
+    looked = (uint32_t *)sc_scratch_take_filled(scratch, points->point_count, sizeof *looked, 0xff);
     s->first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)leaves + 1, sizeof *s->first);
     s->own_rows = (uint16_t *)sc_scratch_take_filled(scratch, (uint64_t)leaves * SC_LEAF_MAX,
                                                      sizeof *s->own_rows, 0);
     s->crowded = (uint8_t *)sc_scratch_take_filled(scratch, leaves, 1, 0);
-    if (!at.leaf || !at.row || !f.entry || !s->first || !s->own_rows || !s->crowded)
+    if (!at.leaf || !at.row || !f.entry || !looked || !s->first || !s->own_rows || !s->crowded)
         return SC_ERROR_MEMORY;
     for (leaf = 0; leaf < leaves; leaf++)
         for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++) {
@@ -106,9 +110,12 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
         }
     for (leaf = 0; leaf < leaves; leaf++) {
         s->first[leaf] = (uint32_t)f.leaf.count;
-        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++)
-            if (!follow(points, adjacency, &at, leaf, order[i], scratch, s, &f))
-                return SC_ERROR_MEMORY;
+        for (i = 3 * xbvh->leaf_first[leaf]; i < 3 * xbvh->leaf_first[leaf + 1]; i++) {
+            uint32_t p = points->triangles[3 * (uint64_t)order[i / 3] + i % 3];
+            if (looked[p] == leaf) continue;
+            looked[p] = leaf;
+            if (!look_round(adjacency, &at, leaf, p, scratch, s, &f)) return SC_ERROR_MEMORY;
+        }
         sort_tail(&f, s->first[leaf]);
     }
     s->first[leaves] = (uint32_t)f.leaf.count;
@@ -124,6 +131,7 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
     sc_scratch_give(scratch, at.leaf);
     sc_scratch_give(scratch, at.row);
     sc_scratch_give(scratch, f.entry);
+    sc_scratch_give(scratch, looked);
     sc_scratch_give(scratch, f.leaf.items);
     sc_scratch_give(scratch, f.rows.items);
     return SC_OK;
