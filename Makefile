@@ -330,6 +330,17 @@ $(work)/tests/cgal/compare: tests/cgal/compare.cpp include/starcontour.h tools/m
 	    -Itools -Itests $(CPPFLAGS) $(CXXFLAGS) $(LDFLAGS) -o $@ $< $(cgal_objects) $(static) \
 	    -lassimp -lmpfr -lgmp $(LDLIBS) -lm
 
+# Comparison of steps with ipc-toolkit, from PyPI; by hand, too.
+.PHONY: test-ipctk
+ifneq ($(strip $(missing_for_programs)),)
+test-ipctk: ## compare steps with ipc-toolkit's (PyPI) on all scenes
+	@echo "make test-ipctk needs $(strip $(missing_for_programs)): run 'make deps' first" >&2; exit 1
+else
+test-ipctk: $(lib)/$(shared_link) $(programs)
+	@meshes/fetch.sh build/meshes $(bin)/subdivide >/dev/null 2>&1 || echo "not all real meshes could be fetched: scenes made of them are skipped"
+	@tests/ipctk/ipctk.sh '$(bin)/sc-bench' '$(lib)/$(shared_link)' '$(BUILD)'
+endif
+
 # ------------------------------------------------------------------------------------------------
 # Other languages, and one engine, on the shared library.
 

@@ -191,7 +191,8 @@ sys.path.insert(0, "bench/peers")
 import peers
 header = open("include/starcontour.h").read()
 header = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
-for name in ("sc_mesh", "sc_pose", "sc_build_options", "sc_query_options", "sc_result"):
+for name in ("sc_mesh", "sc_pose", "sc_build_options", "sc_query_options", "sc_result",
+             "sc_workspace_options", "sc_step_options", "sc_step_result"):
     body = re.search(r"typedef struct %s {(.*?)} %s;" % (name, name), header, re.S).group(1)
     wanted = [re.search(r"(\w+)\s*$", member).group(1)
               for line in body.split(";") for member in line.split(",") if member.strip()]
@@ -199,7 +200,7 @@ for name in ("sc_mesh", "sc_pose", "sc_build_options", "sc_query_options", "sc_r
     assert members == wanted[:len(members)], (name, wanted)  # new ones come last and may lack
 for name, value in vars(peers).items():
     if name.startswith("SC_"):
-        assert re.search(r"\b%s = %d\b" % (name, value), header), name
+        assert re.search(r"\b%s =\s+%d\b" % (name, value), header), name
 END
     check "its structures and values are the header's" python3 -B -S "$scratch/members.py"
     library=$(ls "$SC_LIB/libstarcontour.so" "$SC_LIB/libstarcontour.dylib" 2>/dev/null | head -n 1)

@@ -40,6 +40,7 @@ APART = "apart"  # pairs of triangles that share no vertex
 ANY_APART = "any apart"  # whether there is one of those
 ANY_EDGE = "any edge"  # whether there is a pair of an edge and a triangle that share no vertex
 EDGES = "edges"  # at least all pairs of an edge and a triangle that share no vertex
+STEPS = "steps"  # at least all that collide in the step to the next frame; candidates are counted
 
 
 class Skipped(Exception):
@@ -91,6 +92,11 @@ class Scene:
         size = 3 * self.vertices
         return array.array(scalar, self.positions[size * number : size * (number + 1)])
 
+    def edge(self, corner):
+        """The vertices of an edge that a corner of a triangle names, in ascending order."""
+        triangle, k = divmod(corner, 3)
+        return tuple(sorted((self.corners[corner], self.corners[3 * triangle + (k + 1) % 3])))
+
     def adjacent(self, a, b):
         """Whether two triangles have a vertex in common."""
         v = self.corners
@@ -127,9 +133,28 @@ sc_query_options = structure(
 sc_result = structure(
     "sc_result", ("struct_size", U32), ("collides", U32), ("count", U64), ("capacity", U64),
     ("pairs", POINTER), ("stats", POINTER))
+sc_workspace_options = structure(
+    "sc_workspace_options",
+    *[(name, U32) for name in ("struct_size", "flags", "workers", "reserved")],
+    ("allocator", POINTER))
+sc_step_options = structure(
+    "sc_step_options",
+    *[(name, U32) for name in ("struct_size", "output", "pairs", "times", "method", "contour", "simd",
+                               "reserved")],
+    ("separation", ctypes.c_double), ("tolerance", ctypes.c_double), ("tasks", POINTER),
+    ("cancel", POINTER), ("budget", U64))
+sc_step_result = structure(
+    "sc_step_result",
+    *[(name, U32) for name in ("struct_size", "collides", "verdict", "reserved")],
+    ("vertex_face_count", U64), ("vertex_face_capacity", U64), ("vertex_faces", POINTER),
+    ("vertex_face_times", POINTER), ("edge_edge_count", U64), ("edge_edge_capacity", U64),
+    ("edge_edges", POINTER), ("edge_edge_times", POINTER), ("earliest", ctypes.c_double),
+    ("stats", POINTER))
+SC_WORKSPACE_STEP = 1
+SC_STEP_COLLISIONS, SC_STEP_CANDIDATES, SC_STEP_TIMES_NONE, SC_STEP_TIMES_EACH = 0, 1, 0, 2
 SC_ERROR_SHORT_BUFFER, SC_WELD_NONE, SC_PAIRS_TRIANGLE, SC_PAIRS_EDGE = 11, 2, 0, 1
 SC_METHOD_SCTT, SC_METHOD_AABB = 1, 3
-SC_CONTOUR_DEFAULT, SC_CONTOUR_STAR, SC_CONTOUR_EXACT = 0, 1, 3
+SC_CONTOUR_DEFAULT, SC_CONTOUR_STAR, SC_CONTOUR_NONE, SC_CONTOUR_EXACT = 0, 1, 2, 3
 
 # Method and contour test of our ways, asked for by name so that they stay what they are called.
 OWN_WAYS = {"exact": (SC_METHOD_SCTT, SC_CONTOUR_EXACT),  # the default
@@ -150,6 +175,8 @@ class Starcontour:
         self.library.sc_workspace_free.argtypes = self.library.sc_model_free.argtypes = [POINTER]
         self.library.sc_workspace_create.argtypes = [POINTER, POINTER, POINTER]
         self.library.sc_query.argtypes = [POINTER] * 5
+        self.library.sc_workspace_create_for.argtypes = [POINTER] * 3
+        self.library.sc_query_step.argtypes = [POINTER] * 6
         self.version = self.library.sc_version_string().decode()
         self.scene, self.type = scene, {"f": 0, "d": 1}[scalar]
         rest = scene.frame(0, scalar)
@@ -161,6 +188,7 @@ class Starcontour:
         self.must(self.library.sc_build(ctypes.byref(mesh), ctypes.byref(options),
                                         ctypes.byref(self.model)))
         self.pairs = array.array("I", bytes(8 * 1024))
+        self.lists = [array.array("I", bytes(8 * 1024)) for _ in range(2)]
         self.count = 0
 
     def __del__(self):
@@ -194,6 +222,47 @@ class Starcontour:
                 return self.must(status)
             self.pairs = array.array("I", bytes(8 * self.count))
 
+    def pose(self, positions):
+        return sc_pose(struct_size=ctypes.sizeof(sc_pose), vertex_count=self.scene.vertices,
+                       position_type=self.type, positions=positions.buffer_info()[0])
+
+    def step(self, start, end, pairs=SC_STEP_CANDIDATES, **options):
+        """Asks about a step between two poses: how many candidates there are, or, for collisions, these:
+        vertex-face and edge-edge pairs, a list each of (a, b, time), and the earliest time."""
+        if "step" not in self.workspaces:
+            workspace = POINTER()
+            how = sc_workspace_options(struct_size=ctypes.sizeof(sc_workspace_options),
+                                       flags=SC_WORKSPACE_STEP)
+            self.must(self.library.sc_workspace_create_for(self.model, ctypes.byref(how),
+                                                           ctypes.byref(workspace)))
+            self.workspaces["step"] = workspace
+        poses = [self.pose(start), self.pose(end)]
+        timed = pairs == SC_STEP_COLLISIONS
+        how = sc_step_options(struct_size=ctypes.sizeof(sc_step_options), pairs=pairs,
+                              times=SC_STEP_TIMES_EACH if timed else SC_STEP_TIMES_NONE, **options)
+        while True:
+            room = [len(numbers) // 2 for numbers in self.lists]
+            times = [(ctypes.c_double * (count if timed else 1))() for count in room]
+            result = sc_step_result(
+                struct_size=ctypes.sizeof(sc_step_result),
+                vertex_face_capacity=room[0], vertex_faces=self.lists[0].buffer_info()[0],
+                vertex_face_times=ctypes.addressof(times[0]) if timed else None,
+                edge_edge_capacity=room[1], edge_edges=self.lists[1].buffer_info()[0],
+                edge_edge_times=ctypes.addressof(times[1]) if timed else None)
+            status = self.library.sc_query_step(self.model, self.workspaces["step"],
+                                                ctypes.byref(poses[0]), ctypes.byref(poses[1]),
+                                                ctypes.byref(how), ctypes.byref(result))
+            found = [result.vertex_face_count, result.edge_edge_count]
+            if status != SC_ERROR_SHORT_BUFFER:
+                break
+            self.lists = [array.array("I", bytes(8 * max(pair))) for pair in zip(room, found)]
+        self.must(status)
+        if not timed:
+            return sum(found)
+        faces, edges = (list(zip(numbers[0 : 2 * count : 2], numbers[1 : 2 * count : 2], when))
+                        for numbers, count, when in zip(self.lists, found, times))
+        return faces, edges, result.earliest
+
     def list(self):
         """The latest pairs."""
         return list(zip(self.pairs[0 : 2 * self.count : 2], self.pairs[1 : 2 * self.count : 2]))
@@ -202,8 +271,8 @@ class Starcontour:
 class Expected:
     """What starcontour says of a pose, in each of the forms that answers are compared with."""
 
-    def __init__(self, ours, positions):
-        self.ours, self.positions, self.scene = ours, positions, ours.scene
+    def __init__(self, ours, positions, end):
+        self.ours, self.positions, self.end, self.scene = ours, positions, end, ours.scene
         ours.query("exact", positions)
         self.all = ours.list()
 
@@ -213,19 +282,21 @@ class Expected:
     def edges(self):
         """Pairs of an edge, by its two vertices in ascending order, and a triangle."""
         self.ours.query("exact", self.positions, SC_PAIRS_EDGE)
-        corners = self.scene.corners
+        return {(self.scene.edge(a), b) for a, b in self.ours.list()}
 
-        def ends(corner):
-            triangle, k = divmod(corner, 3)
-            return tuple(sorted((corners[corner], corners[3 * triangle + (k + 1) % 3])))
-
-        return {(ends(a), b) for a, b in self.ours.list()}
+    def steps(self):
+        """Collisions on the way to the next frame: of a vertex and a triangle, and of two edges."""
+        faces, edges, _ = self.ours.step(self.positions, self.end, SC_STEP_COLLISIONS)
+        return ([pair[:2] for pair in faces] +
+                [tuple(sorted((self.scene.edge(a), self.scene.edge(b)))) for a, b, _ in edges])
 
     def judge(self, kind, answer):
         """How many pairs are missing in an answer, in the form that Way says, and how many extra."""
         if kind in (ANY_APART, ANY_EDGE):
             there = bool(self.apart() if kind == ANY_APART else self.edges())
             return int(there > answer), int(there < answer)
+        if kind == STEPS:  # the answer tells which of ours it has
+            return sum(not there for there in answer(self.steps())), 0
         wanted = {ALL: lambda: self.all, APART: self.apart, EDGES: self.edges}[kind]()
         missing = len(set(wanted) - set(answer))
         return missing, 0 if kind == EDGES else len(answer) - len(wanted) + missing
@@ -241,8 +312,9 @@ class Way:
     what     says what a query does, without commas
     kind     what its answer is compared with
     query    everything there is to do for a new pose, timed: takes what prepare made, and returns
-             anything that answer understands
-    answer   not timed: a list of pairs, or whether there is one, as kind says
+             anything that answer understands. Of STEPS: for two poses
+    answer   not timed: a list of pairs, or whether there is one, as kind says. Of STEPS: how many
+             candidates there are, and a function that says of each pair of a list whether it is one
     prepare  not timed: brings an array of positions, vertices x 3, into the peer's form
     exact    whether it claims exactness, so that a wrong answer is an error and not only reported
     """
@@ -275,6 +347,25 @@ def ipctk(scene, np):
         tree.build(vertices, edges, faces)
         return tree.detect_edge_face_candidates()
 
+    def step_candidates(start, end):
+        found = ipc.Candidates()
+        found.build(mesh, start, end, 0, ipc.LBVH())
+        return found
+
+    def holds(found):
+        """Whether candidates hold each pair of a list."""
+        faces, pairs = found.fv_candidates, found.ee_candidates
+
+        def check(wanted):
+            wanted = set(wanted)
+            there = {(c.vertex_id, c.face_id) for c in faces} & wanted if wanted else set()
+            if wanted:
+                there |= {pair for pair in (tuple(sorted((ends[c.edge0_id], ends[c.edge1_id])))
+                                            for c in pairs) if pair in wanted}
+            return [pair in there for pair in wanted]
+
+        return len(faces) + len(pairs), check
+
     return [
         Way("has_intersections: trees rebuilt; robust edge-triangle test; yes or no",
             ANY_EDGE, lambda vertices: ipc.has_intersections(mesh, vertices, ipc.LBVH()),
@@ -282,6 +373,8 @@ def ipctk(scene, np):
         Way("LBVH: trees rebuilt; edge-triangle candidates only; as a Python list",
             EDGES, candidates, lambda found: [(ends[c.edge_id], c.face_id) for c in found],
             np.asfortranarray),
+        Way("step: LBVH round the motion: trees rebuilt; vertex-face and edge-edge candidates",
+            STEPS, step_candidates, holds, np.asfortranarray),
     ]
 
 
@@ -382,21 +475,32 @@ def find_ways(peer, scene):
 def walk(scene, scalar, ours, ways, frames, first):
     """Walks the animation once; compares answers if first, else records times."""
     for f in range(frames):
-        positions = scene.frame(f, scalar)
-        expected = Expected(ours, positions) if first else None
+        poses = [scene.frame(f, scalar), scene.frame(f + 1, scalar) if f + 1 < scene.frames else None]
+        expected = Expected(ours, *poses) if first else None
         for way in ways:
-            pose = positions
+            if way.kind != STEPS:
+                given = poses[:1]
+            elif poses[1] is not None:
+                given = poses
+            else:
+                continue
             if not way.own:
                 import numpy as np
 
-                pose = way.prepare(np.frombuffer(positions, dtype=scalar).reshape(-1, 3))
+                given = [way.prepare(np.frombuffer(pose, dtype=scalar).reshape(-1, 3))
+                         for pose in given]
             start = time.perf_counter()
-            found = way.query(pose)
+            found = way.query(*given)
             elapsed = time.perf_counter() - start
             if not first:
                 way.times[f].append(1000 * elapsed)
+                continue
+            answer = way.answer(found)
+            if way.kind == STEPS:
+                count, check = answer
+                way.counts.append(count)
+                way.errors.append(expected.judge(STEPS, check))
             else:
-                answer = way.answer(found)
                 way.counts.append(int(answer) if isinstance(answer, bool) else len(answer))
                 way.errors.append(expected.judge(way.kind, answer))
 
@@ -419,6 +523,10 @@ def measure(peer, scene, arguments, out):
         ways.append(Way(what, ALL, lambda positions, w=what: ours.query(w, positions),
                         lambda found: ours.list()))
         ways[-1].own = True
+    if any(way.kind == STEPS for way in ways):
+        ways.append(Way("step: candidates", STEPS, ours.step,
+                        lambda count: (count, lambda wanted: [True for _ in wanted])))
+        ways[-1].own = True
     frames = min(scene.frames, arguments.frames or scene.frames)
     for way in ways:
         way.times = [[] for _ in range(frames)]
@@ -429,16 +537,16 @@ def measure(peer, scene, arguments, out):
     for way in ways:
         name, number = (NOTHING_ELSE, ours.version) if way.own else (peer, version)
         threads = 1 if way.own else arguments.threads
-        medians = [statistics.median(times) for times in way.times]
-        for f in range(frames):
+        medians = [statistics.median(times) for times in way.times if times]
+        for f in range(len(medians)):
             print(scene.name, scene.triangles, f, name, number, way.what, threads,
                   f"{medians[f]:.4f}", way.counts[f],
                   "no" if any(way.errors[f]) else "yes", f"{min(way.times[f]):.4f}",
                   *way.errors[f], peer, arguments.threads, sep=",", file=out)
         if arguments.csv:
             print(f"{scene.name:<14} {name:<12} {threads} thread{' ' if threads == 1 else 's'}"
-                  f"{statistics.fmean(medians):10.3f} ms a frame  {way.what}")
-        different = frames - way.errors.count((0, 0))
+                  f"{statistics.fmean(medians):10.3f} ms a frame  {way.what}" if medians else "no steps")
+        different = len(way.errors) - way.errors.count((0, 0))
         if different:
             same &= not way.exact
             print(f"different pairs in {different} of {frames} frames: {name} on {scene.name}")

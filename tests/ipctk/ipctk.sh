@@ -1,0 +1,66 @@
+#!/bin/sh
+# `make test-ipctk`: compares steps with those of ipc-toolkit, by compare.py, on all scenes of sc-bench.
+#
+#     tests/ipctk/ipctk.sh SC-BENCH LIBRARY BUILD     from the top of the repository
+#
+# ipc-toolkit comes from PyPI, into a virtual environment below BUILD; if it cannot be had, the comparison
+# is skipped with a message. Scenes are small: ipc-toolkit's candidates, hundreds of thousands, are gone
+# through in Python; of 60 frames every tenth step is taken. Scenes whose meshes were not fetched are
+# skipped, too. A minute or two.
+#
+# SPDX-License-Identifier: MIT
+set -u
+
+bench=$1
+library=$2
+build=$3
+
+mkdir -p "$build/ipctk" || exit 2
+bench/peers/venv.sh "$build/peers/venv" ipctk "$build/ipctk/skipped" || { test $? -eq 3 && exit 0; exit 1; }
+
+# Name, triangles, frames.
+scenes=
+while read -r name triangles frames; do
+    scene=$build/ipctk/$triangles-$frames/$name
+    if [ ! -d "$scene" ]; then
+        rm -rf "$scene.new"
+        mkdir -p "${scene%/*}"
+        if ! "$bench" --scene "$name" --triangles "$triangles" --frames "$frames" \
+            --cache "$build/scenes" --export "$scene.new" </dev/null || ! mv "$scene.new" "$scene"; then
+            echo "skipped: $name: sc-bench could not write it"
+            continue
+        fi
+    fi
+    scenes="$scenes $scene"
+done <<END
+twisted-cloth 4096 60
+cloth-sphere 5000 60
+wrinkled-cloth 6272 60
+crushed-cloth 5776 60
+cat 5200 60
+bunny 3400 60
+bunny-bumpy 3400 60
+bunny-spiky 3400 60
+horse 1600 60
+sphere 5120 60
+tight-rods 6144 60
+END
+if [ -z "$scenes" ]; then
+    echo "skipped: no scene to compare on"
+    exit 0
+fi
+compare() {
+    "$build/peers/venv/bin/python" tests/ipctk/compare.py --lib "$library" --every 10 "$@"
+}
+# The comparison notices what is missing: without the contour test, a collision of the horse's is.
+horse=$build/ipctk/1600-60/horse
+if [ -d "$horse" ]; then
+    compare --contour-none "$horse" >"$build/ipctk/none.log"
+    if [ $? -ne 1 ]; then
+        cat "$build/ipctk/none.log"
+        echo "failed: missing collisions are not noticed"
+        exit 1
+    fi
+fi
+# shellcheck disable=SC2086
+compare $scenes
