@@ -856,6 +856,24 @@ static void spirals_overlap(void)
     CHECK(!is_full() || (tally.colliding > 500 && tally.passed > 1000));
 }
 
+/* A long ribbon that nearly closes to a ring, or goes on over its own start: only edges that are far from each other
+   in the contour meet. */
+static void long_contours(void)
+{
+    for (uint32_t i = 0; i < 8; ++i) {
+        scene s;
+        soup mesh = shape_spiral(1400 + 37 * i, 1, i % 2 ? 1.001 : 0.999, 0);
+        sc_projection projection;
+        if (open_scene(&s, "ribbon", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) && load_pose(&s) &&
+            CHECK(s.workspace->mask[0] != 0)) {
+            s.workspace->isa = 1 + i / 2 % (uint32_t)sc_isa_best();
+            sc_dnc_projection(s.workspace, s.workspace->mask[0], &projection);
+            CHECK_MSG(sc_simple_test(&s.state, &projection, 0) == (i % 2 == 0), "ribbon %u", i);
+        }
+        close_scene(&s);
+    }
+}
+
 /* A disc that goes twice round its center, and so lies over itself, in a ring of which one patch borders
    on most of it: one segment that is crossed twice, and from the center everything looks like a star. */
 static void branched_discs(void)
@@ -1459,7 +1477,7 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
              SC_TEST(cones_at_zero), SC_TEST(bounds_of_segments), SC_TEST(bounds_of_long_segments),
              SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks), SC_TEST(first_tick_again),
              SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),
-             SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
+             SC_TEST(long_contours), SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
              SC_TEST(contours_in_pieces), SC_TEST(points_in_the_unit_box),
              SC_TEST(poses_of_any_layout), SC_TEST(places_of_contours),
              SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))

@@ -114,43 +114,75 @@ static inline unsigned SC_KERNEL(folds)(const sc_simple_contour *c,
                  : 0;
 }
 
-/* Sixteen edges and those that follow, at a distance of up to SC_CONTOUR_NEAR; and the boxes of their runs,
-   two errors larger than computed: one for the places of points, and one, 2^-24 of a coordinate or more, for
-   the rounding here. What is no edge is in the boxes, which does no harm. */
+static inline void SC_KERNEL(load_edges)(const sc_simple_contour *c, uint32_t i,
+                                         SC_KERNEL(sc_edge_lanes) * e)
+{
+    int k;
+    for (k = 0; k < 2; k++) {
+        e->p[k] = lanes_load(c->edges->at[k] + i);
+        e->q[k] = lanes_load(c->edges->at[k] + i + 1);
+    }
+}
+
+/*
+ * Bits of those of sixteen edges whose boxes overlap that of the edge s places on, in near[s]. Writes the boxes of their
+ * runs, two errors larger than computed: one for the places of points, and one, 2^-24 of a coordinate or
+ * more, for the rounding here. What is no edge is in the boxes, which does no harm.
+ */
+static inline void SC_KERNEL(find_near)(const sc_simple_contour *c, uint32_t i,
+                                        unsigned near[SC_CONTOUR_NEAR + 1])
+{
+    const sc_contour_edges *e = c->edges;
+    const float *at_x = e->at[0] + i, *at_y = e->at[1] + i;
+    const lanes margin = lanes_all(2 * c->error);
+    lanes x = lanes_load(at_x), x2 = lanes_load(at_x + 1);
+    lanes y = lanes_load(at_y), y2 = lanes_load(at_y + 1);
+    lanes low_x = lanes_subtract(lanes_smaller(x, x2), margin);
+    lanes low_y = lanes_subtract(lanes_smaller(y, y2), margin);
+    lanes high_x = lanes_add(lanes_larger(x, x2), margin);
+    lanes high_y = lanes_add(lanes_larger(y, y2), margin);
+    uint32_t s;
+    lanes_store_least(e->run_side[SC_LOW_X] + i / SC_CONTOUR_RUN, low_x);
+    lanes_store_least(e->run_side[SC_LOW_Y] + i / SC_CONTOUR_RUN, low_y);
+    lanes_store_most(e->run_side[SC_HIGH_X] + i / SC_CONTOUR_RUN, high_x);
+    lanes_store_most(e->run_side[SC_HIGH_Y] + i / SC_CONTOUR_RUN, high_y);
+    low_x = lanes_subtract(low_x, margin); /* for the other edge's errors */
+    low_y = lanes_subtract(low_y, margin);
+    high_x = lanes_add(high_x, margin);
+    high_y = lanes_add(high_y, margin);
+    x2 = lanes_load(at_x + 2);
+    y2 = lanes_load(at_y + 2);
+    for (s = 2; s <= SC_CONTOUR_NEAR; s++) {
+        x = x2;
+        y = y2;
+        x2 = lanes_load(at_x + s + 1);
+        y2 = lanes_load(at_y + s + 1);
+        near[s] = lanes_bits(lanes_both(lanes_both(lanes_not_above(lanes_smaller(x, x2), high_x),
+                                                   lanes_not_above(low_x, lanes_larger(x, x2))),
+                                        lanes_both(lanes_not_above(lanes_smaller(y, y2), high_y),
+                                                   lanes_not_above(low_y, lanes_larger(y, y2)))));
+    }
+}
+
+/* Sixteen edges and those that follow, at a distance of up to SC_CONTOUR_NEAR. */
 static int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t block)
 {
     const sc_contour_edges *e = c->edges;
-    const lanes margin = lanes_all(2 * c->error);
     uint32_t i = block * SC_CONTOUR_BLOCK, s;
     unsigned edges = e->is_edge[block], following = edges | (unsigned)e->is_edge[block + 1] << 16;
+    unsigned near[SC_CONTOUR_NEAR + 1];
     SC_KERNEL(sc_edge_lanes) own, other;
-    lanes low[2], high[2];
-    int k;
-    for (k = 0; k < 2; k++) {
-        own.p[k] = lanes_load(e->at[k] + i);
-        own.q[k] = lanes_load(e->at[k] + i + 1);
-        other.q[k] = lanes_load(e->at[k] + i + 2);
-        low[k] = lanes_subtract(lanes_smaller(own.p[k], own.q[k]), margin);
-        high[k] = lanes_add(lanes_larger(own.p[k], own.q[k]), margin);
-        lanes_store_least(e->run_side[2 * k] + i / SC_CONTOUR_RUN, low[k]);
-        lanes_store_most(e->run_side[2 * k + 1] + i / SC_CONTOUR_RUN, high[k]);
-        low[k] = lanes_subtract(low[k], margin); /* for the other edge's errors */
-        high[k] = lanes_add(high[k], margin);
-    }
+    SC_KERNEL(find_near)(c, i, near);
+    SC_KERNEL(load_edges)(c, i, &own);
+    SC_KERNEL(load_edges)(c, i + 1, &other);
     if (SC_KERNEL(folds)(c, &own, other.q, edges & following >> 1)) return 0;
     for (s = 2; s <= SC_CONTOUR_NEAR; s++) {
-        lanes_mask overlap[2];
-        unsigned near;
-        for (k = 0; k < 2; k++) {
-            other.p[k] = other.q[k];
-            other.q[k] = lanes_load(e->at[k] + i + s + 1);
-            overlap[k] = lanes_both(lanes_not_above(lanes_smaller(other.p[k], other.q[k]), high[k]),
-                                    lanes_not_above(low[k], lanes_larger(other.p[k], other.q[k])));
-        }
-        near = lanes_bits(lanes_both(overlap[0], overlap[1])) & edges & following >> s;
-        if (!near) continue;
-        for (near &= ~SC_KERNEL(lie_apart)(c, &own, &other); near; near &= near - 1) {
-            uint32_t edge = i + sc_bits_lowest(near);
+        near[s] &= edges & following >> s;
+        if (!near[s]) continue;
+        SC_KERNEL(load_edges)(c, i + s, &other);
+        near[s] &= ~SC_KERNEL(lie_apart)(c, &own, &other);
+        for (; near[s]; near[s] &= near[s] - 1) {
+            uint32_t edge = i + sc_bits_lowest(near[s]);
             if (!sc_simple_are_apart(c, edge, edge + s)) return 0;
         }
     }
@@ -196,14 +228,35 @@ static int SC_KERNEL(are_runs_fine)(sc_simple_contour *c, uint32_t run, uint32_t
     return 1;
 }
 
-/* A run and some of sixteen runs from another on. */
-static int SC_KERNEL(are_far_fine)(sc_simple_contour *c, uint32_t run, uint32_t first,
+/* Some of the sixteen runs of a group and all of another, or of the same: but for those that follow each other, which
+   are near, and each pair once. */
+static int SC_KERNEL(are_far_fine)(sc_simple_contour *c, uint32_t group, uint32_t other,
                                    unsigned some)
 {
-    float *const *run_side = c->edges->run_side;
-    for (some &= SC_KERNEL(overlap_in_plane)(run_side, run, run_side, first); some;
-         some &= some - 1)
-        if (!SC_KERNEL(are_runs_fine)(c, run, first + sc_bits_lowest(some))) return 0;
+    float *const *side = c->edges->run_side;
+    const lanes low_x = lanes_load(side[SC_LOW_X] + 16 * other);
+    const lanes low_y = lanes_load(side[SC_LOW_Y] + 16 * other);
+    const lanes high_x = lanes_load(side[SC_HIGH_X] + 16 * other);
+    const lanes high_y = lanes_load(side[SC_HIGH_Y] + 16 * other);
+    unsigned far[16], rest, r;
+    for (rest = some; rest; rest &= rest - 1) {
+        uint32_t run = 16 * group + (r = sc_bits_lowest(rest));
+        far[r] = lanes_bits(
+            lanes_both(lanes_both(lanes_not_above(lanes_all(side[SC_LOW_X][run]), high_x),
+                                  lanes_not_above(low_x, lanes_all(side[SC_HIGH_X][run]))),
+                       lanes_both(lanes_not_above(lanes_all(side[SC_LOW_Y][run]), high_y),
+                                  lanes_not_above(low_y, lanes_all(side[SC_HIGH_Y][run])))));
+    }
+    for (rest = some; rest; rest &= rest - 1) {
+        r = sc_bits_lowest(rest);
+        if (group == other)
+            far[r] &= 0xfffcu << r;
+        else if (other == group + 1 && r == 15)
+            far[r] &= 0xfffeu;
+        for (; far[r]; far[r] &= far[r] - 1)
+            if (!SC_KERNEL(are_runs_fine)(c, 16 * group + r, 16 * other + sc_bits_lowest(far[r])))
+                return 0;
+    }
     return 1;
 }
 
@@ -212,7 +265,7 @@ static int SC_KERNEL(are_groups_fine)(sc_simple_contour *c)
 {
     const sc_contour_edges *e = c->edges;
     uint32_t runs = (c->count + SC_CONTOUR_RUN - 1) / SC_CONTOUR_RUN, groups = (runs + 15) / 16;
-    uint32_t a, b, k, r;
+    uint32_t a, b, k;
     for (k = 0; k < 4; k++) {
         /* the last group is full, of boxes that overlap nothing; and so is one of groups */
         const lanes nothing = lanes_all(k % 2 ? -HUGE_VALF : HUGE_VALF);
@@ -225,20 +278,15 @@ static int SC_KERNEL(are_groups_fine)(sc_simple_contour *c)
     }
     for (a = 0; a < groups; a++) {
         uint32_t end = runs - 16 * a < 16 ? runs - 16 * a : 16;
-        for (r = 0; r + 2 < end; r++)
-            if (!SC_KERNEL(are_far_fine)(c, 16 * a + r, 16 * a, 0xfffcu << r & 0xffffu)) return 0;
+        if (end > 2 && !SC_KERNEL(are_far_fine)(c, a, a, (1u << (end - 2)) - 1u)) return 0;
         for (b = a + 1; b < groups; b += 16) {
             unsigned others = SC_KERNEL(overlap_in_plane)(e->group_side, a, e->group_side, b);
             for (; others; others &= others - 1) {
                 uint32_t other = b + sc_bits_lowest(others);
-                unsigned rows =
-                    SC_KERNEL(overlap_in_plane)(e->group_side, other, e->run_side, 16 * a);
-                for (; rows; rows &= rows - 1) {
-                    r = sc_bits_lowest(rows);
-                    if (!SC_KERNEL(are_far_fine)(c, 16 * a + r, 16 * other,
-                                                 r == 15 && other == a + 1 ? 0xfffeu : 0xffffu))
-                        return 0;
-                }
+                if (!SC_KERNEL(are_far_fine)(
+                        c, a, other,
+                        SC_KERNEL(overlap_in_plane)(e->group_side, other, e->run_side, 16 * a)))
+                    return 0;
             }
         }
     }
