@@ -729,7 +729,7 @@ typedef struct sc_result {
  * or five thousand units at most.
  *   The flag is looked at before each exact test and every few dozen boxes, most often within 20
  * microseconds, but not during the passes over the whole mesh with which a query begins (reading
- * positions, normals, boxes; about 6, 9 and 5 ns a triangle) and the sorting of pairs found, with which
+ * positions, normals, boxes; about 1, 2 and 2 ns a triangle with AVX-512) and the sorting of pairs found, with which
  * it ends.
  *
  * A filter that cannot be read ends the query: SC_ERROR_STRUCT_SIZE, SC_ERROR_OPTION (ignore_rings),

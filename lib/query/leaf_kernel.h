@@ -23,12 +23,6 @@
  *
  * The other bounds are above 1e-21: what underflows does not matter.
  */
-enum { SC_LEAF_PAIRS = SC_LEAF_MAX * SC_LEAF_MAX };
-
-/* Fewer pairs than this are decided without the tests here; and it takes so many that no plane separates, of sixteen,
-   for the test by sides. Tuned on the bunny and on cloth. */
-enum { SC_LEAF_FEW = 3, SC_SIDES_WORTH = 3 };
-
 /* Bit k: box i of a overlaps box j + k of b, for k from 0 to 15. */
 static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const sc_boxes *b,
                                           uint64_t j)
