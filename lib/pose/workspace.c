@@ -51,6 +51,7 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->walk.culled = w->walk.marks = (uint8_t *)place(block, at, model->patch_end, 1);
     w->ready =
         (sc_leaf_ready *)place(block, at, (uint64_t)2 * SC_READY_KEPT, sizeof(sc_leaf_ready));
+    w->slab = (sc_leaf_slab *)place(block, at, model->leaf_count, sizeof(sc_leaf_slab));
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->ball = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
@@ -109,6 +110,7 @@ static void clear_own(const sc_model *model, sc_workspace *w)
     memset(w->plain_tick, 0, model->leaf_count * sizeof *w->plain_tick);
     memset(w->plain, 0, model->leaf_count * sizeof *w->plain);
     memset(w->ready, 0, 2 * SC_READY_KEPT * sizeof *w->ready);
+    memset(w->slab, 0, model->leaf_count * sizeof *w->slab);
     memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
 }
 
@@ -229,6 +231,7 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
             memset(own->fan, 0, model->vertex_count * sizeof *own->fan);
             memset(own->plain_tick, 0, model->leaf_count * sizeof *own->plain_tick);
             memset(own->ready, 0, 2 * SC_READY_KEPT * sizeof *own->ready);
+            memset(own->slab, 0, model->leaf_count * sizeof *own->slab);
         }
         workspace->pose_tick = 0;
     }

@@ -7,7 +7,7 @@
  *       bounds_tick | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
- * ready, candidates, neighbors, ball, ball_queue, found, state, motion.leaves. For each worker but the first there is a
+ * ready, slab, candidates, neighbors, ball, ball_queue, found, state, motion.leaves. For each worker but the first there is a
  * view: an sc_workspace with the pose of the first, and own arrays.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
@@ -83,21 +83,22 @@ typedef struct sc_walk {
 
 enum { SC_CANDIDATES_MAX = 1024 };
 
-/* A leaf cluster made ready for tests of its triangles, in the unit box; see query/leaf_kernel.h. Rows of points and of
-   triangles are filled with the last. */
+/* A leaf cluster made ready for tests of its triangles, in the unit box; see query/leaf_kernel.h. Rows are filled with
+   the last triangle. */
 typedef struct sc_leaf_ready {
-    uint32_t leaf, tick;  /* of the pose; 0: nothing yet */
-    uint32_t has_normals; /* what follows corner is made only when needed */
-    float
-        side[6]
-            [SC_LEAF_MAX]; /* boxes of triangles; what is no triangle is NaN and overlaps nothing */
+    uint32_t leaf, tick;             /* of the pose; 0: nothing yet */
+    uint32_t has_normals;            /* what follows corner is made only when needed */
+    float side[6][SC_LEAF_MAX];      /* boxes; what is no triangle is NaN and overlaps nothing */
     float corner[3][3][SC_LEAF_MAX]; /* corner, axis, triangle */
-    float point[3][SC_LEAF_POINTS];
     float normal[3][SC_LEAF_MAX];
     float size[SC_LEAF_MAX]; /* |e|1 + |f|1, e and f the edges from the first corner */
-    float direction[3];      /* about the mean normal */
-    float direction_ends[2]; /* where the points are along it, at least and at most */
 } sc_leaf_ready;
+
+/* Where the points of a leaf cluster are along its mean normal, about, at least and at most. */
+typedef struct sc_leaf_slab {
+    float direction[3], ends[2];
+    uint32_t tick; /* of the pose; 0: nothing yet */
+} sc_leaf_slab;
 
 /* So many leaf clusters are kept ready, of each side of pairs. */
 enum { SC_READY_KEPT = 32 };
@@ -200,6 +201,7 @@ struct sc_workspace {
     sc_walk walk;
 
     sc_leaf_ready *ready; /* 2 * SC_READY_KEPT */
+    sc_leaf_slab *slab;   /* leaf_count */
     sc_pair *candidates;  /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     sc_pair *neighbors;   /* SC_CANDIDATES_MAX of such that share one point */
     uint32_t candidate_count, neighbor_count;

@@ -38,11 +38,14 @@ static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const s
 }
 
 /* Where the points of a leaf cluster are along a direction. */
-static inline lanes SC_KERNEL(along)(const float direction[3], const sc_leaf_ready *leaf)
+static inline lanes SC_KERNEL(along)(const sc_query_state *state, uint32_t leaf,
+                                     const float direction[3])
 {
-    return lanes_add(lanes_add(lanes_multiply(lanes_all(direction[0]), lanes_load(leaf->point[0])),
-                               lanes_multiply(lanes_all(direction[1]), lanes_load(leaf->point[1]))),
-                     lanes_multiply(lanes_all(direction[2]), lanes_load(leaf->point[2])));
+    const float *at = state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
+    lanes x = lanes_multiply(lanes_all(direction[0]), lanes_load(at));
+    lanes y = lanes_multiply(lanes_all(direction[1]), lanes_load(at + SC_LEAF_POINTS));
+    lanes z = lanes_multiply(lanes_all(direction[2]), lanes_load(at + 2 * SC_LEAF_POINTS));
+    return lanes_add(lanes_add(x, y), z);
 }
 
 /* Corners and boxes of the triangles of a leaf cluster. */
@@ -75,13 +78,10 @@ static void SC_KERNEL(make_boxes)(const sc_query_state *state, uint32_t leaf, sc
 }
 
 /* What is made of these. */
-static void SC_KERNEL(make_normals)(const sc_query_state *state, sc_leaf_ready *ready)
+static void SC_KERNEL(make_normals)(sc_leaf_ready *ready)
 {
-    lanes x[3][3], e[3], f[3], n[3], size, along;
-    float reach;
+    lanes x[3][3], e[3], f[3], n[3], size;
     int k, c;
-    memcpy(ready->point, state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)ready->leaf,
-           sizeof ready->point);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         SC_UNROLL
@@ -102,14 +102,7 @@ static void SC_KERNEL(make_normals)(const sc_query_state *state, sc_leaf_ready *
         n[c] = lanes_subtract(lanes_multiply(e[(c + 1) % 3], f[(c + 2) % 3]),
                               lanes_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
         lanes_store(ready->normal[c], n[c]);
-        ready->direction[c] = lanes_sum(n[c]);
     }
-    along = SC_KERNEL(along)(ready->direction, ready);
-    reach = 5e-7f * (fabsf(ready->direction[0]) + fabsf(ready->direction[1]) +
-                     fabsf(ready->direction[2])) +
-            16 * FLT_MIN;
-    ready->direction_ends[0] = lanes_least(along) - reach;
-    ready->direction_ends[1] = lanes_most(along) + reach;
     ready->has_normals = 1;
 }
 
@@ -128,16 +121,39 @@ static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state,
                                                     uint32_t side)
 {
     sc_leaf_ready *ready = SC_KERNEL(boxes)(state, leaf, side);
-    if (!ready->has_normals) SC_KERNEL(make_normals)(state, ready);
+    if (!ready->has_normals) SC_KERNEL(make_normals)(ready);
     return ready;
 }
 
-/* Whether all points of b are certainly before those of a along a's direction, or behind. */
-static inline int SC_KERNEL(slab_separates)(const sc_leaf_ready *a, const sc_leaf_ready *b)
+/* The slab of a leaf cluster; side as above. */
+static const sc_leaf_slab *SC_KERNEL(slab)(const sc_query_state *state, uint32_t leaf,
+                                           uint32_t side)
 {
-    lanes along = SC_KERNEL(along)(a->direction, b);
-    return lanes_bits(lanes_below(along, lanes_all(a->direction_ends[0]))) == 0xffffu ||
-           lanes_bits(lanes_below(lanes_all(a->direction_ends[1]), along)) == 0xffffu;
+    sc_leaf_slab *slab = state->workspace->slab + leaf;
+    if (slab->tick != state->workspace->pose_tick) {
+        const sc_leaf_ready *ready = SC_KERNEL(ready)(state, leaf, side);
+        float reach = 16 * FLT_MIN;
+        lanes along;
+        int c;
+        for (c = 0; c < 3; c++) {
+            slab->direction[c] = lanes_sum(lanes_load(ready->normal[c]));
+            reach += 5e-7f * fabsf(slab->direction[c]);
+        }
+        along = SC_KERNEL(along)(state, leaf, slab->direction);
+        slab->ends[0] = lanes_least(along) - reach;
+        slab->ends[1] = lanes_most(along) + reach;
+        slab->tick = state->workspace->pose_tick;
+    }
+    return slab;
+}
+
+/* Whether all points of a leaf cluster are certainly before a slab, or behind. */
+static inline int SC_KERNEL(is_beside)(const sc_query_state *state, uint32_t leaf,
+                                       const sc_leaf_slab *slab)
+{
+    lanes along = SC_KERNEL(along)(state, leaf, slab->direction);
+    return lanes_bits(lanes_below(along, lanes_all(slab->ends[0]))) == 0xffffu ||
+           lanes_bits(lanes_below(lanes_all(slab->ends[1]), along)) == 0xffffu;
 }
 
 /* Largest extent of the boxes of two leaf clusters together. */
@@ -342,17 +358,13 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_
     state->stats.leaf_pairs++;
     state->stats.counts[sc_state_box_task(state)]++;
     if (!rows) return;
+    sc_candidates_enter(state, a, b, &p);
+    if (!p.shares && (SC_KERNEL(is_beside)(state, b, SC_KERNEL(slab)(state, a, 0)) ||
+                      SC_KERNEL(is_beside)(state, a, SC_KERNEL(slab)(state, b, 1))))
+        return;
     some = SC_KERNEL(rows_at)(state, b, a);
     state->stats.counts[sc_state_box_task(state)]++;
     if (!some) return;
-    sc_candidates_enter(state, a, b, &p);
-    if (!p.shares) {
-        const sc_leaf_ready *ready_a = SC_KERNEL(ready)(state, a, 0);
-        const sc_leaf_ready *ready_b = SC_KERNEL(ready)(state, b, 1);
-        if (SC_KERNEL(slab_separates)(ready_a, ready_b) ||
-            SC_KERNEL(slab_separates)(ready_b, ready_a))
-            return;
-    }
     if (!p.shares && sc_bits_count(some) < sc_bits_count(rows)) { /* either may be the rows */
         unsigned swap = some;
         p.a = b;
