@@ -10,17 +10,20 @@
 
 #include "base/assume.h"
 
-enum { NOT_CUT = 255 };
-
 /* The cosine up to which a run may turn from its first half-edge. */
 static const double TURN_COSINE = 0.25;
 
-/* The contour half-edges of one level, where each leads, and which start a run. */
+/* The contour half-edges of one level; a place is a number below count. What leads from level to level are
+   places, so that work at a level touches only what belongs to it. */
 typedef struct contour_level {
     uint32_t count;
     uint32_t *half_edges; /* count */
-    uint32_t *next;       /* count: places in half_edges */
-    uint8_t *start;       /* count */
+    uint32_t *below,
+        *above; /* count: places one level down and up, SC_NONE where it is none there */
+    uint32_t *opposite, *next;  /* count: places; opposite: SC_NONE at the outside */
+    uint32_t *inside, *outside; /* count: patches on its side and across, SC_NONE for the outside */
+    uint32_t *segment, *end; /* count: of the run that starts here: its segment, its last place */
+    uint8_t *cut, *start;    /* count: whether a run starts here, regardless or at all */
 } contour_level;
 
 typedef struct builder {
@@ -29,14 +32,8 @@ typedef struct builder {
     const sc_xbvh *xbvh;
     const sc_sctt *sctt;
     sc_scratch *scratch;
-    uint32_t *leaf_of;  /* triangle_count: leaf cluster */
-    uint32_t *across;   /* 3 * triangle_count: leaf cluster across, leaf_count for the outside */
-    uint32_t *patch_at; /* leaf_count + 1: patch of the level at hand, SC_NONE for the outside */
-    uint32_t *place;    /* 3 * triangle_count: place in the half_edges of the level at hand */
-    uint8_t *cut;       /* 3 * triangle_count: first level at which a run starts here regardless */
-    contour_level *levels;  /* level_count */
-    uint32_t *segment_from; /* 3 * triangle_count: segment of the level at hand that starts here */
-    sc_list last;           /* last half-edge of each segment */
+    contour_level *levels; /* level_count */
+    uint32_t segments;
     sc_list points_first, points_list, child_first, children;
     sc_list contours;                            /* node lists, deepest level first */
     uint32_t *node_first, *node_count;           /* node_count: a node's part of contours */
@@ -44,70 +41,111 @@ typedef struct builder {
     uint32_t *patch_first, *patch_runs;          /* the same sorted by patch */
 } builder;
 
-static void enter_level(builder *b, uint32_t level)
+/* Memory for the half-edges of a level. */
+static int take_level(sc_scratch *scratch, contour_level *level, uint32_t count)
 {
-    const sc_xbvh *xbvh = b->xbvh;
-    uint32_t p, leaf;
-    for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++)
-        for (leaf = xbvh->leaf[p]; leaf < xbvh->leaf[p + 1]; leaf++) b->patch_at[leaf] = p;
-}
-
-static uint32_t patch_of(const builder *b, uint32_t h)
-{
-    return b->patch_at[b->leaf_of[h / 3]];
-}
-
-/* The patch across a half-edge, SC_NONE for the outside. */
-static uint32_t patch_across(const builder *b, uint32_t h)
-{
-    return b->patch_at[b->across[h]];
-}
-
-/* Half-edge i of all, in the order of the leaves: so that segments that are near have near numbers. */
-static uint32_t half_edge_of(const uint32_t *order, uint32_t i)
-{
-    return 3 * order[i / 3] + i % 3;
-}
-
-/* Keeps, of the candidates or of all, the half-edges between different patches of the level that was
-   entered. */
-static sc_status collect_level(builder *b, const uint32_t *order, const contour_level *below,
-                               contour_level *level)
-{
-    uint32_t i, h, count = below ? below->count : 3 * b->points->triangle_count;
-    level->count = 0;
-    for (i = 0; i < count; i++) {
-        h = below ? below->half_edges[i] : half_edge_of(order, i);
-        level->count += patch_across(b, h) != patch_of(b, h);
+    uint32_t **const arrays[] = {&level->half_edges, &level->below, &level->above,
+                                 &level->opposite,   &level->next,  &level->inside,
+                                 &level->outside};
+    unsigned i;
+    level->count = count;
+    level->cut = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
+    level->start = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
+    if (!level->cut || !level->start) return 0;
+    for (i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        *arrays[i] = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
+        if (!*arrays[i]) return 0;
     }
-    level->half_edges = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
-    level->next = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
-    level->start = (uint8_t *)sc_scratch_take_filled(b->scratch, level->count, 1, 0);
-    if (!level->half_edges || !level->next || !level->start) return SC_ERROR_MEMORY;
-    level->count = 0;
-    for (i = 0; i < count; i++) {
-        h = below ? below->half_edges[i] : half_edge_of(order, i);
-        if (patch_across(b, h) != patch_of(b, h)) level->half_edges[level->count++] = h;
+    return 1;
+}
+
+static void give_level(sc_scratch *scratch, const contour_level *level)
+{
+    sc_scratch_give(scratch, level->half_edges);
+    sc_scratch_give(scratch, level->below);
+    sc_scratch_give(scratch, level->above);
+    sc_scratch_give(scratch, level->opposite);
+    sc_scratch_give(scratch, level->next);
+    sc_scratch_give(scratch, level->inside);
+    sc_scratch_give(scratch, level->outside);
+    sc_scratch_give(scratch, level->segment);
+    sc_scratch_give(scratch, level->end);
+    sc_scratch_give(scratch, level->cut);
+    sc_scratch_give(scratch, level->start);
+}
+
+/* The last level: the half-edges between leaf clusters, in the order of the leaves, so that segments that are
+   near have near numbers. */
+static sc_status collect_leaves(builder *b, const uint32_t *order, contour_level *level)
+{
+    const uint32_t *opposite = b->adjacency->opposite, *leaf_first = b->xbvh->leaf_first;
+    uint64_t corners = 3 * (uint64_t)b->points->triangle_count;
+    uint32_t leaf, i, k, e, base = b->xbvh->level_first[b->xbvh->level_count - 1], count = 0;
+    uint32_t *patch, *place;
+    patch = (uint32_t *)sc_scratch_take(b->scratch, b->points->triangle_count, sizeof *patch);
+    place = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof *place);
+    if (!patch || !place) return SC_ERROR_MEMORY;
+    for (leaf = 0; leaf < b->xbvh->leaf_count; leaf++)
+        for (i = leaf_first[leaf]; i < leaf_first[leaf + 1]; i++) patch[order[i]] = base + leaf;
+    for (i = 0; i < b->points->triangle_count; i++)
+        for (k = 0; k < 3; k++) {
+            uint32_t h = 3 * order[i] + k;
+            int between = opposite[h] == SC_NONE || patch[opposite[h] / 3] != patch[order[i]];
+            place[h] = between ? count++ : SC_NONE;
+        }
+    if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
+    for (i = 0; i < b->points->triangle_count; i++)
+        for (k = 0; k < 3; k++) {
+            uint32_t h = 3 * order[i] + k;
+            if (place[h] != SC_NONE) level->half_edges[place[h]] = h;
+        }
+    for (e = 0; e < count; e++) {
+        uint32_t h = level->half_edges[e], other = opposite[h];
+        level->inside[e] = patch[h / 3];
+        level->outside[e] = other == SC_NONE ? SC_NONE : patch[other / 3];
+        level->opposite[e] = other == SC_NONE ? SC_NONE : place[other];
+        /* the one that follows: turns round the end point through triangles of the patch */
+        h = sc_adjacency_next(h);
+        while (place[h] == SC_NONE) h = sc_adjacency_next(opposite[h]);
+        level->next[e] = place[h];
     }
+    sc_scratch_give(b->scratch, patch);
+    sc_scratch_give(b->scratch, place);
     return SC_OK;
 }
 
-static void find_places(builder *b, const contour_level *level)
+/* Any other level: what is left of those of the level below. */
+static sc_status collect_level(builder *b, uint32_t number, uint32_t *parent)
 {
-    uint32_t e;
-    for (e = 0; e < level->count; e++) b->place[level->half_edges[e]] = e;
-}
-
-/* The contour half-edge that follows: turns round the end point through triangles of the patch. */
-static void find_next(builder *b, const contour_level *level)
-{
-    uint32_t e;
-    for (e = 0; e < level->count; e++) {
-        uint32_t h = level->half_edges[e], patch = patch_of(b, h);
-        h = sc_adjacency_next(h);
-        while (patch_across(b, h) == patch) h = sc_adjacency_next(b->adjacency->opposite[h]);
-        level->next[e] = b->place[h];
+    contour_level *level = &b->levels[number], *below = &b->levels[number + 1];
+    const sc_xbvh *xbvh = b->xbvh;
+    uint32_t begin = xbvh->level_first[number + 1], count = 0, p, c, e, from;
+    for (p = xbvh->level_first[number]; p + 1 < begin; p++)
+        for (c = xbvh->child[p]; c < xbvh->child[p + 1]; c++) parent[c - begin] = p;
+    for (e = 0; e < below->count; e++) {
+        uint32_t out = below->outside[e];
+        int between = out == SC_NONE || parent[out - begin] != parent[below->inside[e] - begin];
+        below->above[e] = between ? count++ : SC_NONE;
     }
+    if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
+    for (from = 0; from < below->count; from++) {
+        uint32_t out = below->outside[from], other = below->opposite[from], following;
+        e = below->above[from];
+        if (e == SC_NONE) continue;
+        level->below[e] = from;
+        level->half_edges[e] = below->half_edges[from];
+        level->inside[e] = parent[below->inside[from] - begin];
+        level->outside[e] = out == SC_NONE ? SC_NONE : parent[out - begin];
+        level->opposite[e] = other == SC_NONE ? SC_NONE : below->above[other];
+        /* the one that follows: turns round the end point through patches below */
+        following = below->next[from];
+        while (below->above[following] == SC_NONE)
+            following = below->next[below->opposite[following]];
+        level->next[e] = below->above[following];
+    }
+    sc_scratch_give(b->scratch, below->opposite);
+    below->opposite = NULL;
+    return SC_OK;
 }
 
 static void direction_of(const builder *b, uint32_t h, double direction[3])
@@ -124,8 +162,7 @@ static double dot(const double a[3], const double b[3])
 }
 
 /* Walks the run that starts at place e, marks it seen and, if asked, cuts it where it turns. */
-static void walk_run(builder *b, contour_level *level, uint32_t number, uint32_t e, int cut_turns,
-                     uint8_t *seen)
+static void walk_run(builder *b, contour_level *level, uint32_t e, int cut_turns, uint8_t *seen)
 {
     double first[3] = {0, 0, 0}, now[3];
     if (cut_turns) direction_of(b, level->half_edges[e], first);
@@ -135,77 +172,74 @@ static void walk_run(builder *b, contour_level *level, uint32_t number, uint32_t
         if (!cut_turns) continue;
         direction_of(b, level->half_edges[e], now);
         if (dot(first, now) < TURN_COSINE * sqrt(dot(first, first)) * sqrt(dot(now, now))) {
-            b->cut[level->half_edges[e]] = (uint8_t)number;
-            level->start[e] = 1;
+            level->cut[e] = level->start[e] = 1;
             memcpy(first, now, sizeof first);
         }
     }
 }
 
 /* Decides where runs start, from the cuts of the levels above and its own. */
-static sc_status find_starts(builder *b, contour_level *level, uint32_t number)
+static sc_status find_starts(builder *b, contour_level *level, const contour_level *above)
 {
     uint32_t e, f, lowest;
     uint8_t *seen = (uint8_t *)sc_scratch_take_filled(b->scratch, level->count, 1, 0);
     if (!seen) return SC_ERROR_MEMORY;
     for (e = 0; e < level->count; e++) {
-        uint32_t h = level->half_edges[e], following = level->half_edges[level->next[e]];
-        if (b->cut[h] <= number) level->start[e] = 1;
-        if (patch_across(b, h) != patch_across(b, following)) level->start[level->next[e]] = 1;
+        if (above && level->above[e] != SC_NONE) level->cut[e] = above->cut[level->above[e]];
+        if (level->cut[e]) level->start[e] = 1;
+        f = level->next[e];
+        if (level->outside[e] != level->outside[f]) level->start[f] = 1;
     }
     for (e = 0; e < level->count; e++)
-        if (level->start[e] && !seen[e])
-            walk_run(b, level, number, e, b->adjacency->opposite[level->half_edges[e]] == SC_NONE,
-                     seen);
+        if (level->start[e] && !seen[e]) walk_run(b, level, e, level->outside[e] == SC_NONE, seen);
     for (e = 0; e < level->count; e++) { /* what is left are closed loops */
         if (seen[e]) continue;
         for (lowest = e, f = level->next[e]; f != e; f = level->next[f])
             if (level->half_edges[f] < level->half_edges[lowest]) lowest = f;
-        b->cut[level->half_edges[lowest]] = (uint8_t)number;
-        level->start[lowest] = 1;
-        walk_run(b, level, number, lowest, 1, seen);
+        level->cut[lowest] = level->start[lowest] = 1;
+        walk_run(b, level, lowest, 1, seen);
     }
     sc_scratch_give(b->scratch, seen);
     return SC_OK;
 }
 
-static int add_leaf_segment(builder *b, const contour_level *level, uint32_t e)
+static int add_leaf_segment(builder *b, contour_level *level, uint32_t start)
 {
-    uint32_t h = level->half_edges[e];
-    if (!sc_list_reserve(b->scratch, &b->last, 1) ||
-        !sc_list_reserve(b->scratch, &b->points_first, 2)) /* one for the end of all */
-        return 0;
-    b->segment_from[h] = (uint32_t)b->last.count;
+    uint32_t e = start, h;
+    if (!sc_list_reserve(b->scratch, &b->points_first, 2)) return 0; /* one for the end of all */
+    level->segment[start] = b->segments++;
     sc_list_add(&b->points_first, (uint32_t)b->points_list.count);
     do {
         h = level->half_edges[e];
         if (!sc_list_reserve(b->scratch, &b->points_list, 2)) return 0;
         sc_list_add(&b->points_list, b->points->triangles[h]);
+        level->end[start] = e;
         e = level->next[e];
     } while (!level->start[e]);
     sc_list_add(&b->points_list, b->points->triangles[sc_adjacency_next(h)]);
-    sc_list_add(&b->last, h);
     return 1;
 }
 
-static int add_parent_segment(builder *b, const contour_level *level, uint32_t e)
+static int add_parent_segment(builder *b, contour_level *level, const contour_level *below,
+                              uint32_t start)
 {
-    uint32_t h = level->half_edges[e], child = b->segment_from[h];
-    uint32_t following = level->next[b->place[b->last.items[child]]];
-    if (level->start[following]) return 1; /* one child: the segment stays */
-    if (!sc_list_reserve(b->scratch, &b->last, 1) ||
-        !sc_list_reserve(b->scratch, &b->child_first, 2)) /* one for the end of all */
-        return 0;
+    uint32_t from = level->below[start], end = below->above[below->end[from]];
+    if (level->start[level->next[end]]) { /* one child: the segment stays */
+        level->segment[start] = below->segment[from];
+        level->end[start] = end;
+        return 1;
+    }
+    if (!sc_list_reserve(b->scratch, &b->child_first, 2)) return 0; /* one for the end of all */
     sc_list_add(&b->child_first, (uint32_t)b->children.count);
     for (;;) {
         if (!sc_list_reserve(b->scratch, &b->children, 1)) return 0;
-        sc_list_add(&b->children, child);
-        following = level->next[b->place[b->last.items[child]]];
-        if (level->start[following]) break;
-        child = b->segment_from[level->half_edges[following]];
+        sc_list_add(&b->children, below->segment[from]);
+        end = below->above[below->end[from]];
+        if (level->start[level->next[end]]) break;
+        from = level->below[level->next[end]];
     }
-    b->segment_from[h] = (uint32_t)b->last.count;
-    sc_list_add(&b->last, b->last.items[child]);
+    level->segment[start] = b->segments++;
+    level->end[start] = end;
     return 1;
 }
 
@@ -258,19 +292,21 @@ static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
 {
     contour_level *level = &b->levels[number];
     uint32_t e, n, runs = 0, last = b->xbvh->level_count - 1;
-    enter_level(b, number);
-    find_places(b, level);
+    level->segment = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
+    level->end = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
+    if (!level->segment || !level->end) return SC_ERROR_MEMORY;
     for (e = 0; e < level->count; e++) {
-        uint32_t h = level->half_edges[e];
         if (!level->start[e]) continue;
-        if (!(number == last ? add_leaf_segment(b, level, e) : add_parent_segment(b, level, e)))
+        if (!(number == last ? add_leaf_segment(b, level, e)
+                             : add_parent_segment(b, level, level + 1, e)))
             return SC_ERROR_MEMORY;
-        b->run_patch[runs] = patch_of(b, h);
-        b->run_out[runs] = patch_across(b, h);
-        b->run_segment[runs++] = b->segment_from[h];
+        b->run_patch[runs] = level->inside[e];
+        b->run_out[runs] = level->outside[e];
+        b->run_segment[runs++] = level->segment[e];
     }
     csf->level_segments[number] = runs;
-    if (number == last) csf->leaf_count = (uint32_t)b->last.count;
+    if (number == last) csf->leaf_count = b->segments;
+    if (number < last) give_level(b->scratch, level + 1);
     sort_runs(b, number, runs);
     for (n = b->sctt->level_first[number]; n < b->sctt->level_first[number + 1]; n++)
         if (!list_node(b, b->xbvh->level_first[number], n)) return SC_ERROR_MEMORY;
@@ -436,39 +472,20 @@ static sc_status lay_out_points(builder *b, sc_csf *csf)
 
 static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
 {
-    uint64_t corners = 3 * (uint64_t)b->points->triangle_count, h;
-    uint32_t leaf, i, level_count = b->xbvh->level_count, contour;
-    b->leaf_of =
-        (uint32_t *)sc_scratch_take(b->scratch, b->points->triangle_count, sizeof(uint32_t));
-    b->across = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
-    b->patch_at = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->xbvh->leaf_count + 1,
-                                              sizeof(uint32_t));
-    b->place = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
-    b->segment_from = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof(uint32_t));
-    b->cut = (uint8_t *)sc_scratch_take_filled(b->scratch, corners, 1, NOT_CUT);
+    uint32_t i, level_count = b->xbvh->level_count, contour, *parent;
+    sc_status status;
+    parent = (uint32_t *)sc_scratch_take(b->scratch, b->xbvh->leaf_count, sizeof *parent);
     b->levels =
         (contour_level *)sc_scratch_take_filled(b->scratch, level_count, sizeof *b->levels, 0);
     b->node_first = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
     b->node_count = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
     csf->level_segments = (uint32_t *)sc_scratch_take(b->scratch, level_count, sizeof(uint32_t));
-    if (!b->leaf_of || !b->across || !b->patch_at || !b->place || !b->segment_from || !b->cut ||
-        !b->levels || !b->node_first || !b->node_count || !csf->level_segments)
+    if (!parent || !b->levels || !b->node_first || !b->node_count || !csf->level_segments)
         return SC_ERROR_MEMORY;
-    for (leaf = 0; leaf < b->xbvh->leaf_count; leaf++)
-        for (i = b->xbvh->leaf_first[leaf]; i < b->xbvh->leaf_first[leaf + 1]; i++)
-            b->leaf_of[order[i]] = leaf;
-    b->patch_at[b->xbvh->leaf_count] = SC_NONE;
-    for (h = 0; h < corners; h++) {
-        uint32_t opposite = b->adjacency->opposite[h];
-        b->across[h] = opposite == SC_NONE ? b->xbvh->leaf_count : b->leaf_of[opposite / 3];
-    }
-    for (i = level_count; i-- > 0;) {
-        const contour_level *below = i + 1 < level_count ? &b->levels[i + 1] : NULL;
-        sc_status status;
-        enter_level(b, i);
-        status = collect_level(b, order, below, &b->levels[i]);
-        if (status) return status;
-    }
+    status = collect_leaves(b, order, &b->levels[level_count - 1]);
+    for (i = level_count - 1; !status && i-- > 0;) status = collect_level(b, i, parent);
+    if (status) return status;
+    sc_scratch_give(b->scratch, parent);
     contour = b->levels[level_count - 1].count;
     b->run_patch = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
     b->run_out = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
@@ -483,18 +500,7 @@ static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
 
 static void give_back(builder *b)
 {
-    uint32_t i;
-    for (i = 0; i < b->xbvh->level_count; i++) {
-        sc_scratch_give(b->scratch, b->levels[i].half_edges);
-        sc_scratch_give(b->scratch, b->levels[i].next);
-        sc_scratch_give(b->scratch, b->levels[i].start);
-    }
-    sc_scratch_give(b->scratch, b->leaf_of);
-    sc_scratch_give(b->scratch, b->across);
-    sc_scratch_give(b->scratch, b->patch_at);
-    sc_scratch_give(b->scratch, b->place);
-    sc_scratch_give(b->scratch, b->segment_from);
-    sc_scratch_give(b->scratch, b->cut);
+    give_level(b->scratch, &b->levels[0]);
     sc_scratch_give(b->scratch, b->levels);
     sc_scratch_give(b->scratch, b->node_first);
     sc_scratch_give(b->scratch, b->node_count);
@@ -503,7 +509,6 @@ static void give_back(builder *b)
     sc_scratch_give(b->scratch, b->run_segment);
     sc_scratch_give(b->scratch, b->patch_first);
     sc_scratch_give(b->scratch, b->patch_runs);
-    sc_scratch_give(b->scratch, b->last.items);
     sc_scratch_give(b->scratch, b->points_first.items);
     sc_scratch_give(b->scratch, b->points_list.items);
     sc_scratch_give(b->scratch, b->contours.items);
@@ -525,17 +530,14 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
     status = prepare(&b, order, csf);
     if (status) return status;
     for (level = 0; level < xbvh->level_count; level++) { /* cuts go down */
-        enter_level(&b, level);
-        find_places(&b, &b.levels[level]);
-        find_next(&b, &b.levels[level]);
-        status = find_starts(&b, &b.levels[level], level);
+        status = find_starts(&b, &b.levels[level], level ? &b.levels[level - 1] : NULL);
         if (status) return status;
     }
     for (level = xbvh->level_count; level-- > 0;) { /* segments grow up */
         status = build_level(&b, level, csf);
         if (status) return status;
     }
-    csf->segment_count = (uint32_t)b.last.count;
+    csf->segment_count = b.segments;
     if (!sc_list_reserve(scratch, &b.points_first, 1) ||
         !sc_list_reserve(scratch, &b.child_first, 1) ||
         !sc_list_reserve(scratch, &b.points_list, 1) || !sc_list_reserve(scratch, &b.children, 1))
