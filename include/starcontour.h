@@ -274,8 +274,8 @@ typedef sc_status (*sc_bisect)(void *user, const sc_dual_graph *graph, uint32_t 
                                uint8_t *side);
 
 /*
- * Whether sc_build tries the orientation and the star-contour test on the rest pose, which takes about
- * as long as all the rest of it. What fails is marked in the model, for rest-shape caching by queries
+ * Whether sc_build tries the orientation and the star-contour test on the rest pose, which takes 0.2 to
+ * 0.5 microseconds a triangle more. What fails is marked in the model, for rest-shape caching by queries
  * with SC_CONTOUR_STAR, and counted for sc_level_info. Other queries have no use for it.
  */
 enum { SC_REST_UNMARKED = 0, SC_REST_MARKED = 1 };
@@ -303,8 +303,9 @@ typedef struct sc_model sc_model;
 
 /*
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
- * with sc_model_free; otherwise *model is NULL. With the built-in partition, 2 to 5 microseconds a
- * triangle and, while it runs, about 500 bytes a triangle.
+ * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.6 to 1.6 microseconds a
+ * triangle (regular grids least, irregular meshes of a million triangles most) and, while it runs, about
+ * 320 bytes a triangle; with METIS some 10 microseconds a triangle.
  */
 SC_API sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model);
 

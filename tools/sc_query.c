@@ -518,7 +518,7 @@ static int report(const file_answer *answer, const settings *set, bool done, con
     return answer->collides ? TOOL_COLLIDES : TOOL_CLEAN;
 }
 
-/* Only the star test uses marks, and they take as long as all the rest of the build. */
+/* Only the star test uses marks. */
 static uint32_t rest_marks(const settings *set)
 {
     return set->method == SC_METHOD_SCTT && set->contour == SC_CONTOUR_STAR && !set->no_rest_cache
