@@ -21,13 +21,14 @@
 #endif
 
 #include "base/lanes.h"
+#include "step/apart_kernel.h"
 #include "step/moving_cones_kernel.h"
 #include "step/moving_contour_kernel.h"
 #include "step/step_walk_kernel.h"
 
-const sc_step_kernels sc_step_kernels_base = {SC_KERNEL(patch_pair),     SC_KERNEL(patch_itself),
-                                              SC_KERNEL(leaf_pair),      SC_KERNEL(leaf_itself),
-                                              SC_KERNEL(moving_mask_of), SC_KERNEL(project_motion),
-                                              SC_KERNEL(are_edges_clear)};
+const sc_step_kernels sc_step_kernels_base = {
+    SC_KERNEL(patch_pair),     SC_KERNEL(patch_itself),   SC_KERNEL(leaf_pair),
+    SC_KERNEL(leaf_itself),    SC_KERNEL(stay_apart),     SC_KERNEL(moving_mask_of),
+    SC_KERNEL(project_motion), SC_KERNEL(are_edges_clear)};
 
 #include "base/lanes_end.h"

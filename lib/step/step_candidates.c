@@ -5,6 +5,8 @@
  */
 #include "step/step_candidates.h"
 
+#include "base/bits.h"
+#include "step/step_kernels.h"
 #include "step/step_motion.h"
 #include "step/step_pairs.h"
 
@@ -41,45 +43,76 @@ static sc_pair name_candidate(const sc_model *model, int kind, const sc_pair *pa
 }
 
 /* The answer must not depend on which of two edges was found first: the one with the lower name is put first. */
-static void decide_candidate(sc_step_state *state, int kind, sc_pair pair)
+static sc_pair put_in_order(const sc_model *model, int kind, sc_pair pair, sc_pair *name)
 {
-    const sc_model *model = state->query.model;
-    const sc_motion *motion = &state->query.workspace->motion;
-    sc_pair name = name_candidate(model, kind, &pair);
-    double start[4][3], end[4][3], time = 0;
-    const double(*from)[3] = (const double(*)[3])start, (*to)[3] = (const double(*)[3])end;
-    uint32_t point[4], k;
-    if (kind == SC_STEP_EDGE_EDGE && name.a > name.b) {
-        uint32_t t = name.a;
-        name.a = name.b;
-        name.b = t;
+    *name = name_candidate(model, kind, &pair);
+    if (kind == SC_STEP_EDGE_EDGE && name->a > name->b) {
+        uint32_t t = name->a;
+        name->a = name->b;
+        name->b = t;
         t = pair.a;
         pair.a = pair.b;
         pair.b = t;
     }
-    if (state->options.pairs == SC_STEP_COLLISIONS) {
-        if (sc_state_cancelled(&state->query)) return;
-        points_of_candidate(model, kind, &pair, point);
-        for (k = 0; k < 4; k++) {
-            sc_motion_position(motion, 0, point[k], start[k]);
-            sc_motion_position(motion, 1, point[k], end[k]);
-        }
-        if (!(kind == SC_STEP_VERTEX_FACE ? sc_impact_vertex_face(from, to, &state->limits, &time)
-                                          : sc_impact_edge_edge(from, to, &state->limits, &time)))
-            return;
+    return pair;
+}
+
+/* The narrow phase. */
+static void decide_candidate(sc_step_state *state, int kind, sc_pair pair)
+{
+    const sc_motion *motion = &state->query.workspace->motion;
+    double start[4][3], end[4][3], time = 0;
+    const double(*from)[3] = (const double(*)[3])start, (*to)[3] = (const double(*)[3])end;
+    uint32_t point[4], k;
+    sc_pair name;
+    if (sc_state_cancelled(&state->query)) return;
+    pair = put_in_order(state->query.model, kind, pair, &name);
+    points_of_candidate(state->query.model, kind, &pair, point);
+    for (k = 0; k < 4; k++) {
+        sc_motion_position(motion, 0, point[k], start[k]);
+        sc_motion_position(motion, 1, point[k], end[k]);
     }
-    sc_step_pairs_take(state, kind, name.a, name.b, time);
+    if (kind == SC_STEP_VERTEX_FACE ? sc_impact_vertex_face(from, to, &state->limits, &time)
+                                    : sc_impact_edge_edge(from, to, &state->limits, &time))
+        sc_step_pairs_take(state, kind, name.a, name.b, time);
+}
+
+/* Up to sixteen candidates: most are seen to stay apart all at once. */
+static void decide_some(sc_step_state *state, int kind, const sc_pair *pairs, uint32_t count)
+{
+    const sc_step_kernels *kernels = sc_step_kernels_of(state->query.workspace);
+    sc_candidate_points points;
+    unsigned left;
+    uint32_t i, k, point[4];
+    for (i = 0; i < 16; i++) { /* the last one fills the row */
+        points_of_candidate(state->query.model, kind, &pairs[i < count ? i : count - 1], point);
+        for (k = 0; k < 4; k++) points.point[k][i] = point[k];
+    }
+    left = ~kernels->stay_apart(&state->query.workspace->motion, &points,
+                                kind == SC_STEP_VERTEX_FACE ? 1 : 2) &
+           ((1u << count) - 1u);
+    for (; left && !state->query.stop; left &= left - 1)
+        decide_candidate(state, kind, pairs[sc_bits_lowest(left)]);
 }
 
 void sc_step_candidates_decide(sc_step_state *state)
 {
-    int kind;
     uint32_t i, previous = sc_state_switch(&state->query, sc_state_primitive_task(&state->query));
+    int kind;
     for (kind = 0; kind < 2; kind++) {
-        state->query.stats.counts[sc_state_primitive_task(&state->query)] +=
-            state->candidate_count[kind];
-        for (i = 0; i < state->candidate_count[kind] && !state->query.stop; i++)
-            decide_candidate(state, kind, state->candidates[kind][i]);
+        uint32_t count = state->candidate_count[kind];
+        const sc_pair *pairs = state->candidates[kind];
+        state->query.stats.counts[sc_state_primitive_task(&state->query)] += count;
+        if (state->options.pairs == SC_STEP_COLLISIONS) {
+            for (i = 0; i < count && !state->query.stop; i += 16)
+                decide_some(state, kind, pairs + i, count - i < 16 ? count - i : 16);
+        } else {
+            for (i = 0; i < count && !state->query.stop; i++) {
+                sc_pair name;
+                put_in_order(state->query.model, kind, pairs[i], &name);
+                sc_step_pairs_take(state, kind, name.a, name.b, 0);
+            }
+        }
         state->candidate_count[kind] = 0;
     }
     sc_state_switch(&state->query, previous);

@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * They are collected and handed to the narrow phase in batches.
+ * They are collected; those that are not seen to stay apart, sixteen at a time, go to the narrow phase.
  */
 #ifndef SC_STEP_CANDIDATES_H
 #define SC_STEP_CANDIDATES_H
