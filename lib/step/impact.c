@@ -35,8 +35,8 @@
  * is reported is within d + T.
  *
  * Progress. A slab is so short that no point moves by more than T / 16 in it. A cell (a part of the polygon) of a
- * diameter below T / 16 is either near enough to be reported, or its own direction proves the slab; so splitting ends
- * after at most 40 levels.
+ * diameter below T / 16 is either near enough to be reported, or the direction of its nearest point proves the slab, as
+ * nothing in it is farther from that point; so splitting ends after at most 40 levels.
  */
 #include "step/impact.h"
 
@@ -51,8 +51,8 @@ enum {
 };
 
 /* Sizes beyond which products of four coordinates are not relied upon. */
-#define LARGE 0x1p200
-#define SMALL 0x1p-200
+#define LARGE 0x1p100
+#define SMALL 0x1p-100
 
 /* The least square of a vector's length that is relied upon. */
 #define LEAST_SQUARE 0x1p-500
@@ -98,12 +98,13 @@ static inline void between(double *p, const double *a, const double *b, double s
 }
 
 /*
- * A point of the polygon, next to the origin but for rounding, and a direction in which the polygon is as far
+ * The point of the polygon next to the origin, but for rounding, and a direction in which the polygon is as far
  * away, of any length. Returns the square of the point's distance. The point is a convex combination of the corners.
  */
-static inline double find_nearest(int count, double corners[][3], double *direction)
+static inline double find_nearest(int count, double corners[][3], double *nearest,
+                                  double *direction)
 {
-    double nearest[3] = {0, 0, 0}, square = HUGE_VAL, n[3], u[3], v[3], areas[MAXIMUM_CORNERS];
+    double square = HUGE_VAL, n[3], u[3], v[3], areas[MAXIMUM_CORNERS];
     int is_inside = 1;
     for (int i = 0; i < count; ++i) {
         const double *a = corners[i], *b = corners[i + 1 < count ? i + 1 : 0];
@@ -147,7 +148,10 @@ static inline double find_nearest(int count, double corners[][3], double *direct
         if (p_square < square) {
             double sign = inner(n, corners[0]) < 0 ? -1 : 1;
             square = p_square;
-            for (int k = 0; k < 3; ++k) direction[k] = sign * n[k];
+            for (int k = 0; k < 3; ++k) {
+                nearest[k] = p[k];
+                direction[k] = sign * n[k];
+            }
         }
     }
     return square;
@@ -218,10 +222,10 @@ static void improve_direction(int count, instant *at, double *least)
 
 static inline void look(int count, const motion *m, double time, instant *at)
 {
-    double direction[3], length, least;
+    double nearest[3] = {0, 0, 0}, direction[3], length, least;
     at->time = time;
     for (int i = 0; i < count; ++i) between(at->corners[i], m->start[i], m->end[i], time);
-    at->distance = sqrt(find_nearest(count, at->corners, direction));
+    at->distance = sqrt(find_nearest(count, at->corners, nearest, direction));
     at->is_apart = at->distance > m->reach;
     if (!at->is_apart) return;
     length = sqrt(inner(direction, direction));
@@ -344,17 +348,16 @@ static int is_near_in_slab(int count, const motion *m, double from, double to)
     if (count == 4) cells[left++] = (cell){{1, 1, 0}, {1, 0, 1}};
     while (left > 0) {
         cell c = cells[--left], mid;
-        double p[3][3], direction[3], length, distance;
+        double p[3][3], nearest[3] = {0, 0, 0}, direction[3], distance;
         int is_apart = 1;
         for (int i = 0; i < 3; ++i) place_in_polygon(p[i], c.x[i], c.y[i], count, before);
-        distance = sqrt(find_nearest(3, p, direction));
+        distance = sqrt(find_nearest(3, p, nearest, direction));
         if (distance <= reach) return 1;
-        length = sqrt(inner(direction, direction));
         for (int i = 0; i < 3; ++i) {
             double q[3];
             place_in_polygon(q, c.x[i], c.y[i], count, after);
-            is_apart &=
-                inner(direction, p[i]) >= level * length && inner(direction, q) >= level * length;
+            is_apart &= inner(nearest, p[i]) >= level * distance;
+            is_apart &= inner(nearest, q) >= level * distance;
         }
         if (is_apart) continue;
         if (left + 4 > MAXIMUM_CELLS) return 1; /* not reached: see "Progress" */
