@@ -563,6 +563,7 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
 
 static sc_status check_step_options(sc_step_options *o)
 {
+    uint32_t best = (uint32_t)sc_isa_best();
     if (o->output > SC_OUTPUT_ANY || o->pairs > SC_STEP_CANDIDATES ||
         o->times > SC_STEP_TIMES_EACH || o->method > SC_STEP_METHOD_SWEPT ||
         o->contour > SC_CONTOUR_EXACT || o->simd > SC_SIMD_AVX512 || o->reserved)
@@ -570,10 +571,10 @@ static sc_status check_step_options(sc_step_options *o)
     if (!(o->separation >= 0) || !(o->tolerance >= 0) || o->separation > DBL_MAX ||
         o->tolerance > DBL_MAX)
         return SC_ERROR_OPTION;
-    if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
-    if (SC_HARDLY(o->simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;
+    if (o->simd == SC_SIMD_BEST) o->simd = best;
+    if (SC_HARDLY(o->simd > best)) return SC_ERROR_UNSUPPORTED;
     if (o->method == SC_STEP_METHOD_DEFAULT) o->method = SC_STEP_METHOD_SCTT;
-    if (o->contour == SC_CONTOUR_DEFAULT) o->contour = SC_CONTOUR_EXACT;
+    if (!o->contour) o->contour = SC_CONTOUR_EXACT;
     return SC_OK;
 }
 
