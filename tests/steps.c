@@ -363,6 +363,44 @@ step step_flip(void)
     return s;
 }
 
+step step_whirl(void)
+{
+    uint32_t around = between(7, 10), rings = between(4, 6), t = 0;
+    soup m = soup_make(1 + around * rings, around * (2 * rings - 1));
+    int hops = chance(2);
+    double along = test_random_range(0.5, 2), across = test_random_range(0.5, 2), angle = 0;
+    step s;
+    for (uint32_t i = 0; i < around; ++i) {
+        uint32_t next = (i + 1) % around, fan[3] = {0, 1 + i, 1 + next};
+        memcpy(m.triangles + 3 * (size_t)t++, fan, sizeof(fan));
+        for (uint32_t j = 0; j + 1 < rings; ++j) {
+            uint32_t v = 1 + j * around + i, w = 1 + j * around + next;
+            uint32_t cell[6] = {v, v + around, w + around, v, w + around, w};
+            memcpy(m.triangles + 3 * (size_t)t, cell, sizeof(cell));
+            t += 2;
+        }
+    }
+    memset(m.positions, 0, 3 * (size_t)m.vertex_count * sizeof(double));
+    for (uint32_t v = 1; v < m.vertex_count; ++v) {
+        double turned = 2 * pi * ((v - 1) % around) / around;
+        m.positions[3 * (size_t)v] = (1 + (v - 1) / around) * cos(turned);
+        m.positions[3 * (size_t)v + 1] = (1 + (v - 1) / around) * sin(turned);
+    }
+    s = begin("whirl", m);
+    if (hops) {
+        double far_out = test_random_range(1.02, 1.6);
+        angle = test_random_range(0, 2 * pi);
+        move(s.end, 0, 1, far_out * cos(angle), far_out * sin(angle), 0);
+    } else {
+        scale(s.end, 1, 1 + around, along, across, 1);
+        for (uint32_t j = 0; j + 1 < rings; ++j)
+            turn(s.end, 1 + j * around, 1 + (j + 1) * around, 0, 0,
+                 pi * (rings - 1 - j) / (rings - 1));
+    }
+    if (chance(3)) ruffle(&s);
+    return s;
+}
+
 step step_invert(void)
 {
     step s = begin("invert", chance(2) ? soup_sphere(between(4, 8), between(4, 7))
@@ -376,6 +414,33 @@ step step_invert(void)
         *b = middle + factor * (*b - middle);
     }
     soup_noise(s.end, all, chance(2) ? 0.01 : 0);
+    return s;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Separation
+ */
+
+step step_thick(void)
+{
+    double thin = pow(10, test_random_range(-3, -0.5)), gap = thin * test_random_range(0.2, 3);
+    step s;
+    if (chance(2)) { /* one sheet of thin triangles */
+        s = begin("thick", soup_cloth(between(3, 6), between(3, 6)));
+        scale(s.start, 0, s.mesh.vertex_count, thin, 1, 1);
+        scale(s.end, 0, s.mesh.vertex_count, thin * test_random_range(0.8, 1.2), 1, 1);
+    } else { /* two in a plane, side by side, or sliding along each other */
+        soup a = soup_cloth(between(2, 4), between(2, 4)), b = soup_cloth(2, between(2, 5));
+        s = begin("thick", soup_join(&a, &b));
+        move(s.start, a.vertex_count, s.mesh.vertex_count, 1 + thin, 0, 0);
+        move(s.end, a.vertex_count, s.mesh.vertex_count, 1 + thin * (chance(2) ? 1 : 1.1),
+             chance(2) ? 0 : test_random_range(-0.5, 0.5), 0);
+        soup_free(&a);
+        soup_free(&b);
+    }
+    s.separation = gap;
+    rest_at_start(&s);
+    if (chance(2)) ruffle(&s);
     return s;
 }
 

@@ -56,8 +56,17 @@ step step_sweep(void);
    at both ends and opposite between them. */
 step step_flip(void);
 
+/* A disc whose outline stays, while its middle turns by half with different scales along and across, or
+   its central vertex moves over the first ring. */
+step step_whirl(void);
+
 /* A closed body that is turned inside out, or pressed flat and beyond. */
 step step_invert(void);
+
+/* ---- separation ---- */
+
+/* Smooth sheets, thin triangles, and outlines side by side, about as narrow as the separation. */
+step step_thick(void);
 
 /* ---- vertices and motions ---- */
 

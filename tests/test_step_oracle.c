@@ -779,9 +779,19 @@ static void steps_flip(void)
     check_maker(step_flip, 0);
 }
 
+static void steps_whirl(void)
+{
+    check_maker(step_whirl, 0);
+}
+
 static void steps_invert(void)
 {
     check_maker(step_invert, 0);
+}
+
+static void steps_thick(void)
+{
+    check_maker(step_thick, 0);
 }
 
 static void steps_teleport(void)
@@ -1053,8 +1063,8 @@ static void methods_agree_on_larger_meshes(void)
 
 SC_TEST_MAIN(SC_TEST(steps_nested), SC_TEST(steps_pinch), SC_TEST(steps_lips), SC_TEST(steps_fold),
              SC_TEST(steps_hole), SC_TEST(steps_pass), SC_TEST(steps_sweep), SC_TEST(steps_flip),
-             SC_TEST(steps_invert), SC_TEST(steps_teleport), SC_TEST(steps_rotate),
-             SC_TEST(steps_shrink), SC_TEST(steps_still), SC_TEST(steps_shift),
-             SC_TEST(steps_sheets), SC_TEST(steps_graze), SC_TEST(steps_needle),
-             SC_TEST(steps_book), SC_TEST(steps_any), SC_TEST(agrees_with_queries_at_the_ends),
-             SC_TEST(methods_agree_on_larger_meshes))
+             SC_TEST(steps_whirl), SC_TEST(steps_invert), SC_TEST(steps_thick),
+             SC_TEST(steps_teleport), SC_TEST(steps_rotate), SC_TEST(steps_shrink),
+             SC_TEST(steps_still), SC_TEST(steps_shift), SC_TEST(steps_sheets),
+             SC_TEST(steps_graze), SC_TEST(steps_needle), SC_TEST(steps_book), SC_TEST(steps_any),
+             SC_TEST(agrees_with_queries_at_the_ends), SC_TEST(methods_agree_on_larger_meshes))
