@@ -18,7 +18,8 @@ extern "C" {
 #endif
 
 /*
- * An sc_bisect: METIS recursive bisection with a fixed seed. user is ignored.
+ * An sc_bisect: METIS recursive bisection with a fixed seed; graphs of up to 32 nodes, which are not worth METIS's
+ * time, are cut by the distance from one of their ends. user is ignored.
  *
  * METIS installs handlers for SIGABRT and SIGTERM while it runs and draws from the C library's rand.
  * The dispositions of both signals are put back as they were, and so is the state of rand where the C

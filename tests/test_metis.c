@@ -180,6 +180,29 @@ static void both_sides_get_some(void)
     }
 }
 
+/* Small graphs are cut by distance: a row in the middle, the target kept, connected or not. */
+static void small_graphs_are_cut_by_distance(void)
+{
+    for (uint32_t count = 2; count <= 32; ++count) {
+        row r = make_row(count);
+        for (uint32_t left = 1; left < count; ++left) {
+            uint32_t changes = 0;
+            CHECK(sc_metis_bisect(NULL, &r.graph, left, r.side) == SC_OK);
+            for (uint32_t i = 1; i < count; ++i) changes += r.side[i] != r.side[i - 1];
+            CHECK_MSG(changes == 1, "%u of %u", (unsigned)left, (unsigned)count);
+        }
+        memset(r.offsets, 0, (count + 1) * sizeof(int32_t)); /* no arcs */
+        for (uint32_t left = 1; left < count; ++left) {
+            uint32_t zeros = 0;
+            memset(r.side, 7, count);
+            CHECK(sc_metis_bisect(NULL, &r.graph, left, r.side) == SC_OK);
+            for (uint32_t i = 0; i < count; ++i) zeros += r.side[i] == 0;
+            CHECK_MSG(zeros == left, "%u of %u", (unsigned)zeros, (unsigned)left);
+        }
+        free_row(&r);
+    }
+}
+
 static void refuses_what_makes_no_sense(void)
 {
     row r = make_row(9);
@@ -231,7 +254,8 @@ static void too_little_memory(void)
 
 SC_TEST_MAIN(SC_TEST(process_is_left_as_found), SC_TEST(same_every_time),
              SC_TEST(patches_are_connected), SC_TEST(both_sides_get_some),
-             SC_TEST(refuses_what_makes_no_sense), SC_TEST(too_little_memory))
+             SC_TEST(small_graphs_are_cut_by_distance), SC_TEST(refuses_what_makes_no_sense),
+             SC_TEST(too_little_memory))
 
 #else
 
