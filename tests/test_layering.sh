@@ -54,7 +54,7 @@ offence "no file lib/base/planted.c" lib/sources.list 'lib/base/planted.c'
 offence "number_components is also a name of" lib/query/star.c 'static int number_components(int i)'
 offence "FAN_ERROR_RELATIVE is also a name of" lib/query/star.c 'static const double FAN_ERROR_RELATIVE = 1;'
 offence "wide_difference is also a name of" lib/query/star.c '} wide_difference;'
-offence "PATIENCE is also a name of" lib/query/star.c 'enum { STAR = 1, PATIENCE = 2 };'
+offence "PATIENCE_LEAST is also a name of" lib/query/star.c 'enum { STAR = 1, PATIENCE_LEAST = 2 };'
 offence "DIGITS is also a name of" lib/query/star.c '#define DIGITS 10'
 
 echo '#include "planted_base.h"' >"$copy/lib/base/planted_other.h"

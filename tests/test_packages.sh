@@ -78,6 +78,7 @@ void *memcpy(void *, const void *, size_t);
 void *memmove(void *, const void *, size_t);
 void *memset(void *, int, size_t);
 int memcmp(const void *, const void *, size_t);
+void *memchr(const void *, int, size_t);
 size_t strlen(const char *);
 EOF
     cat >stdlib.h <<'EOF'
@@ -88,7 +89,7 @@ EOF
     cat >math.h <<'EOF'
 double fabs(double), fmin(double, double), fmax(double, double), sqrt(double), floor(double);
 double ceil(double), frexp(double, int *), ldexp(double, int);
-float fabsf(float), sqrtf(float), floorf(float), ceilf(float);
+float fabsf(float), fminf(float, float), fmaxf(float, float), sqrtf(float), floorf(float), ceilf(float);
 #define INFINITY ((float)(1e300 * 1e300))
 #define NAN (-(float)(INFINITY * 0.0F))
 #define HUGE_VAL ((double)INFINITY)
