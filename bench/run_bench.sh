@@ -61,17 +61,19 @@ twisted-cloth 65536 20 3 structure edge exact,star,aabb --threads $cores
 bunny 54500 20 3 metis edge exact,star,aabb --threads $cores
 twisted-cloth 65536 20 5 structure edge exact,star,aabb-sctt,aabb,hash --warm
 bunny 54500 20 5 metis edge exact,star,aabb-sctt,aabb,hash --warm
-twisted-cloth 65536 20 1 structure step -
-cloth-sphere 80000 20 1 structure step -
-cat 41000 20 1 metis step -
-bunny 54500 20 1 metis step -
-bunny-bumpy 54500 20 1 metis step -
-bunny-spiky 54500 20 1 metis step -
-horse 25000 20 1 metis step -
-wrinkled-cloth 100352 20 1 structure step -
-crushed-cloth 92416 20 1 structure step -
-tight-rods 98304 20 1 metis step -
-sphere 81920 20 1 metis step -"
+twisted-cloth 16384 60 1 structure step -
+twisted-cloth 65536 60 1 structure step step,step-none,step-two-boxes
+cloth-sphere 80000 60 1 structure step step,step-none,step-two-boxes
+cat 41000 60 1 metis step step,step-none,step-two-boxes
+bunny 13600 60 1 metis step -
+bunny 54500 60 1 metis step step,step-none,step-two-boxes
+bunny-bumpy 54500 60 1 metis step step,step-none,step-two-boxes
+bunny-spiky 54500 60 1 metis step step,step-none,step-two-boxes
+horse 25000 60 1 metis step step,step-none,step-two-boxes
+wrinkled-cloth 6272 60 1 structure step -
+crushed-cloth 5776 60 1 structure step -
+tight-rods 6144 60 1 metis step -
+sphere 81920 60 1 metis step step,step-none,step-two-boxes"
 
 quick="\
 twisted-cloth 4096 8 3 structure edge -
