@@ -859,8 +859,8 @@ typedef struct sc_step_options {
     double
         tolerance; /* how exactly distances are told, the same units: positive, or 0 for a millionth of
                           the longest side of the box that holds the mesh in both poses */
-    const sc_tasks *tasks;           /* the host's threads, or NULL. Accepted, but this version does
-                                        everything in the calling thread */
+    const sc_tasks *tasks;           /* the host's threads, or NULL. See "Several threads" at
+                                        sc_query_step */
     const volatile uint32_t *cancel; /* as in sc_query_options */
     uint64_t budget;                 /* as in sc_query_options */
 } sc_step_options;
@@ -921,6 +921,14 @@ typedef struct sc_step_result {
  * was cancelled or ran out of budget, see sc_query: earliest is 0 then. On any other error counts, collides
  * and verdict are 0, and the arrays as they were: those of sc_query, SC_ERROR_OPTION also for a separation
  * or tolerance that is negative or not finite, and SC_ERROR_NULL for a capacity without its array.
+ *
+ * Several threads. With options->tasks the passes over both poses, the walk through the tree, boxes, the narrow phase
+ * and the sorting are done by all workers. Answer and counts in statistics are the same as of one thread, but for
+ * SC_OUTPUT_ANY: which pair is found first, and so which of the two counts is 1, depends on the threads, as does what a
+ * step has found when a flag ends it. By the calling thread alone are done:
+ *   - steps of models of fewer than 128 leaf clusters;
+ *   - all but the passes with a budget, and where the library was compiled by other compilers than gcc or clang;
+ *   - all but the passes once more, where one of the arrays turns out to be too short.
  *
  * No memory is allocated. Cost, on one thread: reading the poses, 10 ns a triangle for normal cones, then
  * what they do not clear.

@@ -30,6 +30,7 @@
 #include "query/traversal.h"
 #include "step/step_motion.h"
 #include "step/step_pairs.h"
+#include "step/step_parallel.h"
 #include "step/step_traversal.h"
 
 /* The size up to the end of a member. */
@@ -645,8 +646,12 @@ static sc_status run_step(sc_step_state *state, const sc_pose pose[2], const uin
     state->limits.latest = 1;
     status = sc_motion_read(query->model, pose, stride, &state->limits, query->workspace);
     if (status) return status;
-    sc_step_traversal_run(state);
-    sc_step_pairs_finish(state);
+    if (sc_step_parallel_pays(state)) {
+        sc_step_parallel_run(state);
+    } else {
+        sc_step_traversal_run(state);
+        sc_step_pairs_finish(state, NULL);
+    }
     if (query->timed) {
         uint64_t now = sc_clock_nanoseconds();
         query->stats.nanoseconds[query->task] += now - query->last_time;
@@ -704,7 +709,9 @@ sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc
         check_step(model, workspace, pose, options, &r, &state.options, &tasks, checked, stride);
     if (!status) {
         begin_step(&state, model, workspace, &r);
+        workspace->tasks = sc_step_parallel_tasks(&state);
         status = run_step(&state, checked, stride);
+        workspace->tasks = NULL;
     }
     if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE)
         fill_step_result(&state, status, &r);

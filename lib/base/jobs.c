@@ -1,5 +1,5 @@
 /*
- * Loops that are shared out among the host's tasks. See jobs.h.
+ * Loops and sorting that are shared out among the host's tasks. See jobs.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -36,4 +36,57 @@ uint32_t sc_jobs_loop(const sc_tasks *tasks, uint32_t count, uint32_t least, sc_
     }
     tasks->finish(tasks->user, tasks->enqueue(tasks->user, run_range, &l, parts));
     return parts;
+}
+
+/* Runs of a list, each of which is sorted by itself: all of one are before all of the next. */
+typedef struct runs {
+    sc_jobs_split split;
+    sc_jobs_order order;
+    void *context;
+    uint64_t first[SC_JOBS_RUNS + 1]; /* of each run, and the end */
+    uint64_t middle[SC_JOBS_RUNS];    /* where it is split */
+} runs;
+
+static void run_split(void *context, uint32_t part, uint32_t worker)
+{
+    runs *r = (runs *)context;
+    uint64_t first = r->first[part];
+    (void)worker;
+    r->middle[part] = first + r->split(r->context, first, r->first[part + 1] - first);
+}
+
+static void run_order(void *context, uint32_t part, uint32_t worker)
+{
+    runs *r = (runs *)context;
+    (void)worker;
+    r->order(r->context, r->first[part], r->first[part + 1] - r->first[part]);
+}
+
+static void run_all(const sc_tasks *tasks, runs *r, uint32_t count,
+                    void (*run)(void *context, uint32_t part, uint32_t worker))
+{
+    if (count == 1)
+        run(r, 0, 0);
+    else
+        tasks->finish(tasks->user, tasks->enqueue(tasks->user, run, r, count));
+}
+
+void sc_jobs_sort(const sc_tasks *tasks, uint64_t count, sc_jobs_split split, sc_jobs_order order,
+                  void *context)
+{
+    runs r;
+    uint32_t n, i;
+    r.split = split;
+    r.order = order;
+    r.context = context;
+    r.first[0] = 0;
+    r.first[1] = count;
+    for (n = 1; n < SC_JOBS_RUNS && count / n >= SC_JOBS_RUN_MIN; n *= 2) {
+        run_all(tasks, &r, n, run_split);
+        for (i = n; i > 0; i--) {
+            r.first[2 * i] = r.first[i];
+            r.first[2 * i - 1] = r.middle[i - 1];
+        }
+    }
+    run_all(tasks, &r, n, run_order);
 }

@@ -1,5 +1,5 @@
 /*
- * Loops that are shared out among the host's tasks.
+ * Loops and sorting that are shared out among the host's tasks.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -20,5 +20,17 @@ typedef void (*sc_jobs_body)(void *context, uint32_t part, uint32_t first, uint3
  */
 uint32_t sc_jobs_loop(const sc_tasks *tasks, uint32_t count, uint32_t least, sc_jobs_body body,
                       void *context);
+
+/* A list is sorted in so many runs, unless they would be shorter than that. */
+enum { SC_JOBS_RUNS = 32, SC_JOBS_RUN_MIN = 500 };
+
+/* How entries first to first + count - 1 of a list are moved so that none of the first n is greater than one of the rest,
+   which returns n; and how they are sorted. */
+typedef uint64_t (*sc_jobs_split)(void *context, uint64_t first, uint64_t count);
+typedef void (*sc_jobs_order)(void *context, uint64_t first, uint64_t count);
+
+/* Sorts a list of so many entries by halves of halves: only the first split is done by one worker. */
+void sc_jobs_sort(const sc_tasks *tasks, uint64_t count, sc_jobs_split split, sc_jobs_order order,
+                  void *context);
 
 #endif

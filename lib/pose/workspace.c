@@ -61,6 +61,11 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     if (!(w->flags & SC_WORKSPACE_STEP)) return;
     w->motion.leaves =
         (sc_leaf_motion *)place(block, at, (uint64_t)2 * SC_LEAVES_KEPT, sizeof(sc_leaf_motion));
+    for (k = 0; k < 2; k++) {
+        w->motion.found[k] = (sc_pair *)place(block, at, SC_FOUND_MAX, sizeof(sc_pair));
+        w->motion.found_time[k] = (double *)place(block, at, SC_FOUND_MAX, sizeof(double));
+    }
+    w->motion.state = (unsigned char *)place(block, at, SC_STEP_STATE_ROOM, 1);
     for (k = 0; k < 2; k++)
         w->motion.contour.at[k] = (float *)place(block, at, listed, sizeof(float));
     for (k = 0; k < 4; k++) {
@@ -149,6 +154,8 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
     w->open = (uint32_t *)place(block, &at, SC_PARTS_MAX, sizeof(uint32_t));
     w->passed = (uint8_t *)place(block, &at, SC_PARTS_MAX, 1);
     w->culled = (uint8_t *)place(block, &at, model->patch_end, 1);
+    if (w->flags & SC_WORKSPACE_STEP)
+        w->motion.reached = (uint8_t *)place(block, &at, model->node_count, 1);
     return at;
 }
 

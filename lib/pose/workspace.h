@@ -7,7 +7,7 @@
  *       bounds_tick | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
- * ready, slab, candidates, neighbors, ball, ball_queue, found, state, motion.leaves. For each worker but the first there is a
+ * ready, slab, candidates, neighbors, ball, ball_queue, found, state, motion's from leaves to state. For each worker but the first there is a
  * view: an sc_workspace with the pose of the first, and own arrays.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
@@ -138,10 +138,15 @@ typedef struct sc_motion {
     float *unit;       /* 8 * vertex_count: start, 0, end, 0 in the unit box of both */
     sc_boxes boxes[2]; /* patch_end: of patches at the start and at the end */
     uint64_t
-        *own_points; /* leaf_count: bit i: the leaf cluster is the first to have leaf_point i */
+        *own_points;  /* leaf_count: bit i: the leaf cluster is the first to have leaf_point i */
+    uint8_t *reached; /* node_count, for several workers: see step/step_parallel.c */
     sc_leaf_motion *leaves; /* 2 * SC_LEAVES_KEPT */
     sc_moving_edges contour;
-    float distance; /* in the unit box: what is farther apart does not collide */
+    sc_pair *found[2];     /* SC_FOUND_MAX each: pairs that are not yet in the caller's lists */
+    double *found_time[2]; /* theirs */
+    uint32_t found_count[2];
+    unsigned char *state; /* SC_STEP_STATE_ROOM: this worker's sc_step_state */
+    float distance;       /* in the unit box: what is farther apart does not collide */
     float margin;   /* how far apart two sets of sc_motion.unit must be, so that the true ones are
                                more than that distance apart */
     uint32_t swept; /* boxes are those of the whole motion */
@@ -154,6 +159,9 @@ typedef struct sc_part {
 
 /* How many parts are listed at once; pairs that a worker collects; bytes for its sc_query_state. */
 enum { SC_PARTS_MAX = 4096, SC_FOUND_MAX = 256, SC_STATE_ROOM = 1024 };
+
+/* Bytes for a worker's sc_step_state. */
+enum { SC_STEP_STATE_ROOM = 4096 };
 
 struct sc_workspace {
     uint64_t bytes;

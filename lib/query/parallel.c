@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "base/atomic.h"
+#include "base/jobs.h"
 #include "base/sort.h"
 #include "query/filter.h"
 #include "query/pairs.h"
@@ -36,9 +37,6 @@ enum { TESTS_MIN = 16 };
 
 /* How many parts of the list, and how many waiting nodes, a worker takes at once. */
 enum { PARTS_AT_ONCE = 4, NODES_AT_ONCE = 16 };
-
-/* A list of pairs is sorted in so many runs, unless they would be shorter than that. */
-enum { RUNS_MAX = 32, RUN_MIN = 500 };
 
 enum {
     PART_BELOW, /* a: a node that failed a test */
@@ -454,53 +452,22 @@ static void walk_boxes(plan *p)
 
 /* ---- pairs ---- */
 
-/* Runs of a list of pairs, each of which is sorted by itself: all of one are before all of the next. */
-typedef struct runs {
-    sc_pair *pairs;
-    uint64_t first[RUNS_MAX + 1]; /* of each run, and the end */
-    uint64_t middle[RUNS_MAX];    /* where it is split */
-} runs;
-
-static void run_split(void *context, uint32_t part, uint32_t worker)
+static uint64_t split_pairs(void *context, uint64_t first, uint64_t count)
 {
-    runs *r = (runs *)context;
-    uint64_t first = r->first[part];
-    (void)worker;
-    r->middle[part] = first + sc_sort_split(r->pairs + first, r->first[part + 1] - first);
+    return sc_sort_split((sc_pair *)context + first, count);
 }
 
-static void run_sort(void *context, uint32_t part, uint32_t worker)
+static void order_pairs(void *context, uint64_t first, uint64_t count)
 {
-    runs *r = (runs *)context;
-    (void)worker;
-    sc_sort_pairs(r->pairs + r->first[part], r->first[part + 1] - r->first[part]);
+    sc_sort_pairs((sc_pair *)context + first, count);
 }
 
-/* Sorts the caller's array: by halves of halves, so that only the first split is done by one worker. */
+/* Sorts the caller's array. */
 static void sort_pairs(const plan *p)
 {
-    const sc_tasks *t = p->tasks;
-    sc_query_state *state = p->state;
-    runs r;
-    uint32_t count, i;
+    const sc_query_state *state = p->state;
     if (state->options.output != SC_OUTPUT_PAIRS || !state->capacity) return;
-    r.pairs = state->pairs;
-    r.first[0] = 0;
-    r.first[1] = state->count;
-    for (count = 1; count < RUNS_MAX && state->count / count >= RUN_MIN; count *= 2) {
-        if (count == 1)
-            run_split(&r, 0, 0);
-        else
-            t->finish(t->user, t->enqueue(t->user, run_split, &r, count));
-        for (i = count; i > 0; i--) {
-            r.first[2 * i] = r.first[i];
-            r.first[2 * i - 1] = r.middle[i - 1];
-        }
-    }
-    if (count == 1)
-        run_sort(&r, 0, 0);
-    else
-        t->finish(t->user, t->enqueue(t->user, run_sort, &r, count));
+    sc_jobs_sort(p->tasks, state->count, split_pairs, order_pairs, state->pairs);
 }
 
 /* ---- all together ---- */

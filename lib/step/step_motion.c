@@ -8,17 +8,32 @@
 #include <float.h>
 #include <math.h>
 
+#include "base/jobs.h"
+#include "step/step_kernels.h"
+
+/* Fewer vertices, leaf clusters or patches of a level are not worth a part of their own. */
+enum { STEP_VERTICES_MIN = 1024, STEP_LEAVES_MIN = 32, STEP_PATCHES_MIN = 8192 };
+
 typedef struct bounds {
     double low[3], high[3];
     double not_finite; /* stays 0 unless something is NaN or infinite */
 } bounds;
 
-static void bound_pose(const sc_model *model, const sc_motion *m, int end, bounds *b)
+/* A pass over vertices, leaf clusters, or the patches of a level, counted from its first. */
+typedef struct motion_pass {
+    const sc_model *model;
+    sc_workspace *w;
+    uint32_t first;
+    bounds found[SC_JOBS_PARTS];
+} motion_pass;
+
+static void bound_pose(const sc_model *model, const sc_motion *m, int end, uint32_t first,
+                       uint32_t last, bounds *b)
 {
     const uint8_t *use = sc_model_vertex_use(model);
     uint32_t v;
     int k;
-    for (v = 0; v < model->vertex_count; v++) {
+    for (v = first; v < last; v++) {
         double p[3];
         if (use[v] == SC_VERTEX_UNUSED) continue;
         sc_motion_position(m, end, v, p);
@@ -31,16 +46,30 @@ static void bound_pose(const sc_model *model, const sc_motion *m, int end, bound
     }
 }
 
-/* Points of both poses in the unit box, as pose/positions.c has them for one. */
-static void scale_step(const sc_model *model, sc_workspace *w)
+static void bound_poses(void *context, uint32_t part, uint32_t first, uint32_t last)
 {
-    const uint8_t *use = sc_model_vertex_use(model);
-    float *unit = w->motion.unit;
+    motion_pass *pass = (motion_pass *)context;
+    bounds *b = &pass->found[part];
+    int k;
+    for (k = 0; k < 3; k++) {
+        b->low[k] = HUGE_VAL;
+        b->high[k] = -HUGE_VAL;
+    }
+    b->not_finite = 0;
+    for (k = 0; k < 2; k++) bound_pose(pass->model, &pass->w->motion, k, first, last, b);
+}
+
+/* Points of both poses in the unit box, as pose/positions.c has them for one. */
+static void scale_step(void *context, uint32_t part, uint32_t first, uint32_t last)
+{
+    const motion_pass *pass = (const motion_pass *)context;
+    const sc_workspace *w = pass->w;
+    const uint8_t *use = sc_model_vertex_use(pass->model);
+    float *unit = w->motion.unit + 8 * (uint64_t)first;
     uint32_t v;
-    int exponent, k, end;
-    (void)frexp(w->radius, &exponent);
-    w->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
-    for (v = 0; v < model->vertex_count; v++, unit += 8) {
+    int k, end;
+    (void)part;
+    for (v = first; v < last; v++, unit += 8) {
         if (use[v] != SC_VERTEX_POINT) continue;
         for (end = 0; end < 2; end++) {
             double p[3];
@@ -53,21 +82,28 @@ static void scale_step(const sc_model *model, sc_workspace *w)
 sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
                          sc_impact_limits *limits, sc_workspace *w)
 {
+    motion_pass pass;
     bounds b;
     double side = 0, distance;
-    int k;
-    for (k = 0; k < 3; k++) {
-        b.low[k] = HUGE_VAL;
-        b.high[k] = -HUGE_VAL;
-    }
-    b.not_finite = 0;
+    uint32_t part, parts;
+    int k, exponent;
     for (k = 0; k < 2; k++) {
         w->motion.positions[k] = (const unsigned char *)pose[k].positions;
         w->motion.stride[k] = stride[k];
         w->motion.type[k] = pose[k].position_type;
-        bound_pose(model, &w->motion, k, &b);
     }
-    if (b.not_finite != 0) return SC_ERROR_NOT_FINITE; /* NaN is not 0 */
+    pass.model = model;
+    pass.w = w;
+    parts = sc_jobs_loop(w->tasks, model->vertex_count, STEP_VERTICES_MIN, bound_poses, &pass);
+    b = pass.found[0];
+    for (part = 0; part < parts; part++) {
+        const bounds *found = &pass.found[part];
+        if (found->not_finite != 0) return SC_ERROR_NOT_FINITE; /* NaN is not 0 */
+        for (k = 0; k < 3; k++) {
+            b.low[k] = found->low[k] < b.low[k] ? found->low[k] : b.low[k];
+            b.high[k] = found->high[k] > b.high[k] ? found->high[k] : b.high[k];
+        }
+    }
     w->radius = 0;
     for (k = 0; k < 3; k++) {
         double half = b.high[k] / 2 - b.low[k] / 2;
@@ -76,7 +112,9 @@ sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uin
         if (w->center[k] - b.low[k] > w->radius) w->radius = w->center[k] - b.low[k];
         if (half > side) side = half;
     }
-    scale_step(model, w);
+    (void)frexp(w->radius, &exponent);
+    w->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
+    (void)sc_jobs_loop(w->tasks, model->vertex_count, STEP_VERTICES_MIN, scale_step, &pass);
     if (limits->tolerance == 0) limits->tolerance = 2e-6 * side;
     /* Rounded up: what is lost to rounding in double is less than is added. Infinite if it is beyond float:
        then nothing is apart. */
@@ -123,24 +161,88 @@ static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)
         }
 }
 
+static void refit_leaves_of_step(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const motion_pass *pass = (const motion_pass *)context;
+    uint32_t leaf;
+    (void)part;
+    for (leaf = first; leaf < end; leaf++) refit_leaf(pass->model, pass->w, leaf);
+}
+
+static void refit_patches_of_step(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const motion_pass *pass = (const motion_pass *)context;
+    const uint32_t *child = sc_model_child(pass->model);
+    uint32_t p, k;
+    int s;
+    (void)part;
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 3; k++) {
+            float *low = pass->w->motion.boxes[s].side[k];
+            float *high = pass->w->motion.boxes[s].side[k + 3];
+            for (p = pass->first + first; p < pass->first + end; p++) {
+                uint32_t one = child[p], other = child[p + 1] - 1; /* one child, or two */
+                low[p] = low[one] < low[other] ? low[one] : low[other];
+                high[p] = high[one] > high[other] ? high[one] : high[other];
+            }
+        }
+}
+
 void sc_motion_refit(const sc_model *model, sc_workspace *w)
 {
-    const uint32_t *level_first = sc_model_level_first(model), *child = sc_model_child(model);
-    uint32_t level, p, leaf, k;
-    int s;
+    const uint32_t *level_first = sc_model_level_first(model);
+    motion_pass pass;
+    uint32_t level;
     if (w->boxes_ready) return;
-    for (leaf = 0; leaf < model->leaf_count; leaf++) refit_leaf(model, w, leaf);
-    for (level = model->level_count - 1; level-- > 0;)
-        for (s = 0; s < 2; s++)
-            for (k = 0; k < 3; k++) {
-                float *low = w->motion.boxes[s].side[k], *high = w->motion.boxes[s].side[k + 3];
-                for (p = level_first[level]; p + 1 < level_first[level + 1]; p++) {
-                    uint32_t first = child[p], last = child[p + 1] - 1; /* one child, or two */
-                    low[p] = low[first] < low[last] ? low[first] : low[last];
-                    high[p] = high[first] > high[last] ? high[first] : high[last];
-                }
-            }
+    pass.model = model;
+    pass.w = w;
+    (void)sc_jobs_loop(w->tasks, model->leaf_count, STEP_LEAVES_MIN, refit_leaves_of_step, &pass);
+    for (level = model->level_count - 1; level-- > 0;) {
+        pass.first = level_first[level];
+        (void)sc_jobs_loop(w->tasks, sc_model_patches(model, level), STEP_PATCHES_MIN,
+                           refit_patches_of_step, &pass);
+    }
     w->boxes_ready = 1;
+}
+
+static void find_cones(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const motion_pass *pass = (const motion_pass *)context;
+    const uint32_t *leaf_first = sc_model_leaf_first(pass->model);
+    const uint32_t *corner = sc_model_triangle(pass->model);
+    uint16_t *mask = pass->w->mask + sc_model_first_leaf_patch(pass->model);
+    uint32_t leaf;
+    (void)part;
+    for (leaf = first; leaf < end; leaf++)
+        mask[leaf] = (uint16_t)sc_step_kernels_of(pass->w)->cone(
+            &pass->w->motion, corner + 3 * (uint64_t)leaf_first[leaf],
+            leaf_first[leaf + 1] - leaf_first[leaf]);
+}
+
+static void join_cones_of_step(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const motion_pass *pass = (const motion_pass *)context;
+    const uint32_t *child = sc_model_child(pass->model);
+    uint16_t *mask = pass->w->mask;
+    uint32_t p;
+    (void)part;
+    for (p = pass->first + first; p < pass->first + end; p++)
+        mask[p] = mask[child[p]] & mask[child[p + 1] - 1];
+}
+
+void sc_motion_update_cones(const sc_model *model, sc_workspace *w)
+{
+    const uint32_t *level_first = sc_model_level_first(model);
+    motion_pass pass;
+    uint32_t level;
+    pass.model = model;
+    pass.w = w;
+    (void)sc_jobs_loop(w->tasks, model->leaf_count, STEP_LEAVES_MIN, find_cones, &pass);
+    for (level = model->level_count - 1; level-- > 0;) {
+        pass.first = level_first[level];
+        (void)sc_jobs_loop(w->tasks, sc_model_patches(model, level), STEP_PATCHES_MIN,
+                           join_cones_of_step, &pass);
+    }
 }
 
 int sc_motion_boxes_apart(const sc_motion *m, uint32_t a, uint32_t b)

@@ -5,6 +5,10 @@
  */
 #include "step/step_pairs.h"
 
+#include <string.h>
+
+#include "base/atomic.h"
+#include "base/jobs.h"
 #include "base/sort.h"
 
 /* Restores the heap, greatest pair first, where entry at alone may be too small. */
@@ -43,6 +47,25 @@ static void swap(const sc_step_list *list, uint64_t i, uint64_t j)
     }
 }
 
+/* Entries of a list are claimed for many pairs at once, as in query/pairs.c. */
+static void take_shared_of_step(sc_step_state *state, int kind, sc_pair pair, double time)
+{
+    const sc_step_list *list = &state->list[kind];
+    sc_motion *m = &state->query.workspace->motion;
+    uint64_t at;
+    m->found[kind][m->found_count[kind]] = pair;
+    m->found_time[kind][m->found_count[kind]++] = time;
+    if (m->found_count[kind] < SC_FOUND_MAX) return;
+    m->found_count[kind] = 0;
+    at = sc_atomic_add(&state->share->claimed[kind], SC_FOUND_MAX);
+    if (at + SC_FOUND_MAX > list->capacity) {
+        sc_atomic_write(&state->share->query.halt, 1); /* too short for certain */
+        return;
+    }
+    memcpy(list->pairs + at, m->found[kind], sizeof(sc_pair) * SC_FOUND_MAX);
+    if (list->times) memcpy(list->times + at, m->found_time[kind], sizeof(double) * SC_FOUND_MAX);
+}
+
 void sc_step_pairs_take(sc_step_state *state, int kind, uint32_t a, uint32_t b, double time)
 {
     sc_step_list *list = &state->list[kind];
@@ -51,9 +74,15 @@ void sc_step_pairs_take(sc_step_state *state, int kind, uint32_t a, uint32_t b, 
     pair.b = b;
     list->count++;
     if (time < state->earliest) state->earliest = time;
-    if (state->options.output == SC_OUTPUT_ANY && state->options.times == SC_STEP_TIMES_NONE)
+    if (state->options.output == SC_OUTPUT_ANY && state->options.times == SC_STEP_TIMES_NONE) {
         state->query.stop = 1;
+        if (state->share) sc_atomic_write(&state->share->query.halt, 1);
+    }
     if (state->options.output != SC_OUTPUT_PAIRS || list->capacity == 0) return;
+    if (state->share) {
+        take_shared_of_step(state, kind, pair, time);
+        return;
+    }
     if (list->count <= list->capacity) {
         list->pairs[list->count - 1] = pair;
         if (list->times) list->times[list->count - 1] = time;
@@ -67,21 +96,83 @@ void sc_step_pairs_take(sc_step_state *state, int kind, uint32_t a, uint32_t b, 
     }
 }
 
-void sc_step_pairs_finish(sc_step_state *state)
+/* Entries of a list by themselves. */
+static sc_step_list slice(const sc_step_list *list, uint64_t first, uint64_t count)
+{
+    sc_step_list part = *list;
+    part.pairs += first;
+    if (part.times) part.times += first;
+    part.count = part.capacity = count;
+    return part;
+}
+
+/* Moves entries so that none of the first is greater than one of the rest, and returns how many these are; as
+   sc_sort_split, which does it where there are no times. */
+static uint64_t split_list(void *context, uint64_t first, uint64_t count)
+{
+    sc_step_list list = slice((const sc_step_list *)context, first, count);
+    uint64_t i, j, k;
+    sc_pair some[9];
+    if (!list.times) return sc_sort_split(list.pairs, count);
+    if (count < 9) return 0;
+    for (k = 0; k < 9; k++) some[k] = list.pairs[k * (count / 9)];
+    sc_sort_pairs(some, 9);
+    for (i = 0, j = count - 1;; i++, j--) { /* both ends stop at the pivot */
+        while (sc_sort_less(list.pairs[i], some[4])) i++;
+        while (sc_sort_less(some[4], list.pairs[j])) j--;
+        if (i >= j) return i;
+        swap(&list, i, j);
+    }
+}
+
+/* Fewer entries are sorted by a heap, which needs no luck. */
+enum { HEAP_MAX = 32 };
+
+/* Sorts entries that have times; splits at most so many times after each other. */
+static void order_timed(sc_step_list *list, uint64_t first, uint64_t count, int splits)
+{
+    sc_step_list rest;
+    while (count > HEAP_MAX && splits-- > 0) { /* the shorter part first, then the longer */
+        uint64_t n = split_list(list, first, count);
+        if (n < count - n) {
+            order_timed(list, first, n, splits);
+            first += n;
+            count -= n;
+        } else {
+            order_timed(list, first + n, count - n, splits);
+            count = n;
+        }
+    }
+    rest = slice(list, first, count);
+    heapify(&rest, count);
+    while (count > 1) {
+        swap(&rest, 0, --count);
+        sift(&rest, count, 0);
+    }
+}
+
+static void order_list(void *context, uint64_t first, uint64_t count)
+{
+    sc_step_list *list = (sc_step_list *)context;
+    int splits = 2;
+    uint64_t n;
+    for (n = count; n > 1; n >>= 1) splits += 2;
+    if (list->times)
+        order_timed(list, first, count, splits);
+    else
+        sc_sort_pairs(list->pairs + first, count);
+}
+
+void sc_step_pairs_finish(sc_step_state *state, const sc_tasks *tasks)
 {
     int kind;
     if (state->options.output != SC_OUTPUT_PAIRS) return;
     for (kind = 0; kind < 2; kind++) {
-        const sc_step_list *list = &state->list[kind];
+        sc_step_list *list = &state->list[kind];
         uint64_t count = list->count < list->capacity ? list->count : list->capacity;
-        if (!list->times) {
-            sc_sort_pairs(list->pairs, count);
-            continue;
-        }
-        heapify(list, count);
-        while (count > 1) {
-            swap(list, 0, --count);
-            sift(list, count, 0);
-        }
+        if (tasks)
+            sc_jobs_sort(tasks, count, split_list, order_list, list);
+        else
+            order_list(list, 0, count);
     }
 }

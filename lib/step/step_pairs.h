@@ -13,6 +13,7 @@
 /* Takes a pair that was not taken before, in the caller's numbers. */
 void sc_step_pairs_take(sc_step_state *state, int kind, uint32_t a, uint32_t b, double time);
 
-void sc_step_pairs_finish(sc_step_state *state);
+/* Sorts the lists; tasks share in it, unless NULL. */
+void sc_step_pairs_finish(sc_step_state *state, const sc_tasks *tasks);
 
 #endif

@@ -23,12 +23,20 @@ typedef struct sc_step_list {
     uint64_t count; /* pairs found */
 } sc_step_list;
 
+/* What the workers of a step have in common and write to, see step/step_parallel.c. */
+typedef struct sc_step_share {
+    sc_share query;    /* of which claimed is not used */
+    size_t claimed[2]; /* entries of the lists that were given out, perhaps beyond their ends */
+} sc_step_share;
+
 typedef struct sc_step_state {
     sc_query_state query; /* what all queries have: output, cancel, budget, statistics */
     sc_step_options options;
     sc_impact_limits limits; /* of the narrow phase */
     sc_step_list list[2];
-    double earliest; /* least time of a pair found, else 1 */
+    double earliest;      /* least time of a pair found, else 1 */
+    sc_step_share *share; /* NULL, if one thread does all */
+    uint32_t reached[2];  /* nodes of one patch, and of two, whose parents this worker opened */
     uint32_t candidate_count[2];
     sc_pair candidates[2][SC_STEP_BATCH]; /* see step_candidates.h */
 } sc_step_state;

@@ -13,8 +13,7 @@
 #include "step/step_candidates.h"
 #include "step/step_kernels.h"
 
-/* Makes boxes unless they are there. */
-static void refit_step(sc_step_state *state)
+void sc_step_traversal_refit(sc_step_state *state)
 {
     const sc_model *model = state->query.model;
     uint32_t previous;
@@ -25,8 +24,52 @@ static void refit_step(sc_step_state *state)
     sc_state_switch(&state->query, previous);
 }
 
-/* What a node that is not culled leaves to boxes. */
-static void query_rest_of_step_node(sc_step_state *state, uint32_t node)
+void sc_step_traversal_update_cones(sc_step_state *state)
+{
+    sc_state_switch(&state->query, SC_TASK_UPDATE_NORMALS);
+    sc_motion_update_cones(state->query.model, state->query.workspace);
+    state->query.stats.counts[SC_TASK_UPDATE_NORMALS] += state->query.model->patch_end;
+    sc_state_switch(&state->query, SC_TASK_ORIENTATION);
+}
+
+/* What is collected is decided before it would count as following another kind of test, as in query/traversal.c. */
+void sc_step_traversal_follow_contour(sc_step_state *state, int after_contour)
+{
+    if (state->query.after_contour == after_contour) return;
+    if (state->query.timed || state->query.options.budget) sc_step_candidates_decide(state);
+    state->query.after_contour = after_contour;
+}
+
+/* Whether the contour test says that nothing in a node collides. */
+static int is_clear(sc_step_state *state, uint32_t node, uint32_t mask)
+{
+    sc_projection projection;
+    if (state->options.contour == SC_CONTOUR_NONE) return 1;
+    sc_dnc_projection(state->query.workspace, mask, &projection);
+    return sc_moving_contour_test(state, &projection, node);
+}
+
+uint32_t sc_step_traversal_mask(const sc_step_state *state, uint32_t node)
+{
+    const sc_pair *patches = &sc_model_node_patches(state->query.model)[node];
+    const uint16_t *mask = state->query.workspace->mask;
+    return (uint32_t)mask[patches->a] & mask[patches->b];
+}
+
+int sc_step_traversal_culls(sc_step_state *state, uint32_t node, int failed)
+{
+    uint32_t mask = sc_step_traversal_mask(state, node);
+    state->query.stats.nodes_visited++;
+    if (failed) return 0;
+    state->query.stats.counts[SC_TASK_ORIENTATION]++;
+    if (!mask) return 0;
+    state->query.stats.nodes_oriented++;
+    if (!is_clear(state, node, mask)) return 0;
+    state->query.stats.nodes_culled++;
+    return 1;
+}
+
+void sc_step_traversal_query_rest(sc_step_state *state, uint32_t node)
 {
     const sc_model *model = state->query.model;
     const sc_motion *motion = &state->query.workspace->motion;
@@ -35,7 +78,8 @@ static void query_rest_of_step_node(sc_step_state *state, uint32_t node)
     const uint32_t *leaf = sc_model_leaf(model);
     uint32_t i, end = sc_model_node_boxes(model)[node + 1], previous;
     if (sc_state_stops(&state->query)) return;
-    refit_step(state);
+    sc_step_traversal_follow_contour(state, sc_step_traversal_mask(state, node) != 0);
+    sc_step_traversal_refit(state);
     previous = sc_state_switch(&state->query, sc_state_box_task(&state->query));
     for (i = sc_model_node_boxes(model)[node]; i < end && !state->query.stop; i++) {
         const sc_pair *pair = &sc_model_boxes(model)[i];
@@ -53,43 +97,6 @@ static void query_rest_of_step_node(sc_step_state *state, uint32_t node)
     sc_state_switch(&state->query, previous);
 }
 
-/* Normal cones that hold throughout the step. */
-static void update_cones(sc_step_state *state)
-{
-    const sc_model *model = state->query.model;
-    const uint32_t *level_first = sc_model_level_first(model), *child = sc_model_child(model);
-    const uint32_t *leaf_first = sc_model_leaf_first(model), *corner = sc_model_triangle(model);
-    const sc_step_kernels *kernels = sc_step_kernels_of(state->query.workspace);
-    uint16_t *mask = state->query.workspace->mask;
-    uint32_t level, p, leaf, last = sc_model_first_leaf_patch(model);
-    sc_state_switch(&state->query, SC_TASK_UPDATE_NORMALS);
-    for (leaf = 0; leaf < model->leaf_count; leaf++)
-        mask[last + leaf] = (uint16_t)kernels->cone(&state->query.workspace->motion,
-                                                    corner + 3 * (uint64_t)leaf_first[leaf],
-                                                    leaf_first[leaf + 1] - leaf_first[leaf]);
-    for (level = model->level_count - 1; level-- > 0;)
-        for (p = level_first[level]; p + 1 < level_first[level + 1]; p++)
-            mask[p] = mask[child[p]] & mask[child[p + 1] - 1];
-    state->query.stats.counts[SC_TASK_UPDATE_NORMALS] += model->patch_end;
-}
-
-/* What is collected is decided before it would count as following another kind of test, as in query/traversal.c. */
-static void follow_moving_contour(sc_step_state *state, int after_contour)
-{
-    if (state->query.after_contour == after_contour) return;
-    if (state->query.timed || state->query.options.budget) sc_step_candidates_decide(state);
-    state->query.after_contour = after_contour;
-}
-
-/* Whether the contour test says that nothing in a node collides. */
-static int is_clear(sc_step_state *state, uint32_t node, uint32_t mask)
-{
-    sc_projection projection;
-    if (state->options.contour == SC_CONTOUR_NONE) return 1;
-    sc_dnc_projection(state->query.workspace, mask, &projection);
-    return sc_moving_contour_test(state, &projection, node);
-}
-
 /*
  * A node, and what is below it if it is not culled. Nodes of two patches come first, since a patch that is in one that is
  * culled is culled with it. failed: the node has a contour that failed.
@@ -101,27 +108,18 @@ static void query_step_node(sc_step_state *state, uint32_t node, int failed)
     const sc_pair *patches = sc_model_node_patches(model);
     uint32_t a = patches[node].a, b = patches[node].b, c;
     uint8_t *culled = state->query.workspace->walk.culled;
-    uint32_t mask = (uint32_t)state->query.workspace->mask[a] & state->query.workspace->mask[b];
     int is_self = a == b, selfs;
     if (is_self && culled[a]) return;
-    state->query.stats.nodes_visited++;
-    if (!failed) {
-        state->query.stats.counts[SC_TASK_ORIENTATION]++;
-        if (mask) {
-            state->query.stats.nodes_oriented++;
-            if (is_clear(state, node, mask)) {
-                state->query.stats.nodes_culled++;
-                culled[a] = culled[b] = 1;
-                return;
-            }
-        }
+    if (sc_step_traversal_culls(state, node, failed)) {
+        culled[a] = culled[b] = 1;
+        return;
     }
+    failed = is_self && sc_step_traversal_mask(state, node);
     for (selfs = 0; selfs < 2; selfs++)
         for (c = child[node]; c < child[node + 1] && !state->query.stop; c++)
             if ((patches[c].a == patches[c].b) == selfs)
-                query_step_node(state, c, mask && is_self && !selfs);
-    follow_moving_contour(state, mask != 0);
-    query_rest_of_step_node(state, node);
+                query_step_node(state, c, failed && !selfs);
+    sc_step_traversal_query_rest(state, node);
 }
 
 void sc_step_traversal_run(sc_step_state *state)
@@ -130,13 +128,12 @@ void sc_step_traversal_run(sc_step_state *state)
     sc_leaf_step_reset(&w->motion);
     w->motion.swept = state->options.method == SC_STEP_METHOD_SWEPT;
     if (state->options.method == SC_STEP_METHOD_SCTT) {
-        update_cones(state);
+        sc_step_traversal_update_cones(state);
         memset(w->walk.culled, 0, state->query.model->patch_end);
-        sc_state_switch(&state->query, SC_TASK_ORIENTATION);
         query_step_node(state, 0, 0);
     } else {
         sc_state_switch(&state->query, SC_TASK_BOXES_ORIENTATION);
-        refit_step(state);
+        sc_step_traversal_refit(state);
         sc_step_kernels_of(w)->patch_itself(state, 0);
     }
     sc_step_candidates_decide(state);

@@ -1,0 +1,412 @@
+/*
+ * The query of one step by several of the host's threads. See step_parallel.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * The test tree is taken level by level: first nodes of two patches, then those of one, which are left out if one of two
+ * that has their patch was culled. One thread, which goes deep first, comes to a node of one patch after all nodes of two
+ * that have it, and these are all of its level: so it is the same nodes that are left out. The nodes of a level are one job,
+ * or two; the worker that opens a node also does what is left to boxes, with the narrow phase. But the pairs of large
+ * patches are split up by the calling thread, to a list of parts which is done when all levels are, or when it is full.
+ * The plain tree is nothing but such a list.
+ *
+ * No locks: see query/parallel.c.
+ */
+#include "step/step_parallel.h"
+
+#include <string.h>
+
+#include "base/atomic.h"
+#include "step/leaf_step.h"
+#include "step/step_candidates.h"
+#include "step/step_kernels.h"
+#include "step/step_motion.h"
+#include "step/step_pairs.h"
+#include "step/step_traversal.h"
+
+typedef char step_state_fits[sizeof(sc_step_state) <= SC_STEP_STATE_ROOM ? 1 : -1];
+
+/* Models with fewer leaf clusters are not worth a job. */
+enum { STEP_MODEL_MIN = 128 };
+
+/* Patches with more than one of so many leaf clusters are large. */
+enum { STEP_LARGE_PART = 64 };
+
+/* Fewer nodes to look at are not worth a job. */
+enum { STEP_NODES_MIN = 16 };
+
+/* The nodes of a level are cut into so many parts at most, none shorter than that; parts of the list are
+   taken a few at once. */
+enum { STEP_NODE_PARTS = 256, STEP_NODES_AT_ONCE = 16, STEP_PARTS_AT_ONCE = 2 };
+
+/* What sc_motion.reached says of a node; 0: its parent was not opened. */
+enum {
+    REACHED_TEST = 1,   /* it is to be tested */
+    REACHED_FAILED = 2, /* it has the contour of its parent, which failed */
+    REACHED_OPEN = 3    /* it is large and was opened; its boxes are left */
+};
+
+enum { STEP_PART_PAIR, STEP_PART_PAIR_AFTER_CONTOUR, STEP_PART_PATCH };
+
+/* A step that is shared out. */
+typedef struct step_plan {
+    sc_step_state *state; /* of the calling thread, and the sums in the end */
+    sc_workspace *w;
+    const sc_tasks *tasks;
+    sc_step_share share;
+    uint32_t part_count;         /* of those in w->parts */
+    uint32_t first, end, length; /* nodes of a level, and of a part */
+    int selfs;                   /* of these, those of one patch; else those of two */
+} step_plan;
+
+const sc_tasks *sc_step_parallel_tasks(const sc_step_state *state)
+{
+    const sc_tasks *tasks = state->options.tasks;
+    if (!tasks || tasks->workers < 2 || state->query.model->leaf_count < STEP_MODEL_MIN)
+        return NULL;
+    return tasks;
+}
+
+int sc_step_parallel_pays(const sc_step_state *state)
+{
+    return SC_ATOMIC && sc_step_parallel_tasks(state) && !state->options.budget;
+}
+
+static sc_step_state *step_state_of(const step_plan *p, uint32_t worker)
+{
+    return (sc_step_state *)(void *)sc_workspace_of_worker(p->w, worker)->motion.state;
+}
+
+/* ---- jobs ---- */
+
+static void start_step_workers(step_plan *p)
+{
+    const sc_model *model = p->state->query.model;
+    uint32_t worker;
+    sc_workspace_share(model, p->w, p->tasks->workers);
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        sc_step_state *s = step_state_of(p, worker);
+        *s = *p->state;
+        s->query.workspace = sc_workspace_of_worker(p->w, worker);
+        memset(&s->query.stats, 0, sizeof s->query.stats);
+        memset(s->query.workspace->walk.marks, 0, model->patch_end);
+        s->query.workspace->motion.found_count[0] = s->query.workspace->motion.found_count[1] = 0;
+        sc_leaf_step_reset(&s->query.workspace->motion);
+    }
+    memset(p->w->culled, 0, model->patch_end);
+    memset(p->w->motion.reached, 0, model->node_count);
+}
+
+/* A worker begins and ends a part; its clock stands still between parts. */
+static sc_step_state *begin_step_part(const step_plan *p, uint32_t worker)
+{
+    sc_step_state *s = step_state_of(p, worker);
+    s->query.task = p->state->query.task;
+    if (s->query.timed) s->query.last_time = sc_clock_nanoseconds();
+    return s;
+}
+
+static void end_step_part(sc_step_state *s)
+{
+    sc_step_candidates_decide(s);
+    if (s->query.timed)
+        s->query.stats.nanoseconds[s->query.task] += sc_clock_nanoseconds() - s->query.last_time;
+}
+
+/* Runs a job. The calling thread's clock stands still: what workers do is in their own statistics. */
+static void run_step_job(step_plan *p, void (*run)(void *context, uint32_t part, uint32_t worker),
+                         uint32_t count)
+{
+    sc_query_state *query = &p->state->query;
+    if (!count) return;
+    if (query->timed)
+        query->stats.nanoseconds[query->task] += sc_clock_nanoseconds() - query->last_time;
+    if (count == 1)
+        run(p, 0, 0);
+    else
+        p->tasks->finish(p->tasks->user, p->tasks->enqueue(p->tasks->user, run, p, count));
+    if (query->timed) query->last_time = sc_clock_nanoseconds();
+}
+
+static void run_step_parts(void *context, uint32_t part, uint32_t worker)
+{
+    const step_plan *p = (const step_plan *)context;
+    sc_step_state *s = begin_step_part(p, worker);
+    const sc_step_kernels *kernels = sc_step_kernels_of(s->query.workspace);
+    uint32_t i = part * STEP_PARTS_AT_ONCE, end = i + STEP_PARTS_AT_ONCE;
+    for (; i < end && i < p->part_count && !sc_state_stops(&s->query); i++) {
+        const sc_part *to_do = &p->w->parts[i];
+        sc_step_traversal_follow_contour(s, to_do->kind == STEP_PART_PAIR_AFTER_CONTOUR);
+        sc_state_switch(&s->query, sc_state_box_task(&s->query));
+        if (to_do->kind == STEP_PART_PATCH)
+            kernels->patch_itself(s, to_do->a);
+        else
+            kernels->patch_pair(s, to_do->a, to_do->b);
+    }
+    end_step_part(s);
+}
+
+/* Empties the list of parts. */
+static void do_step_parts(step_plan *p)
+{
+    run_step_job(p, run_step_parts, (p->part_count + STEP_PARTS_AT_ONCE - 1) / STEP_PARTS_AT_ONCE);
+    p->part_count = 0;
+}
+
+static void add_step_part(step_plan *p, uint32_t kind, uint32_t a, uint32_t b)
+{
+    sc_part *part;
+    if (p->part_count == SC_PARTS_MAX) do_step_parts(p);
+    part = &p->w->parts[p->part_count++];
+    part->kind = kind;
+    part->a = a;
+    part->b = b;
+}
+
+/* ---- boxes ---- */
+
+/* Boxes must be there before workers need them. */
+static void refit_for_all(step_plan *p)
+{
+    uint32_t worker;
+    sc_step_traversal_refit(p->state);
+    for (worker = 1; worker < p->tasks->workers; worker++)
+        sc_workspace_of_worker(p->w, worker)->boxes_ready = 1;
+}
+
+static int is_large_in_step(const sc_model *model, uint32_t patch)
+{
+    const uint32_t *leaf = sc_model_leaf(model);
+    return leaf[patch + 1] - leaf[patch] > model->leaf_count / STEP_LARGE_PART;
+}
+
+/* Two patches of a level that are near each other: those of them that are large as by sc_step_kernels.patch_pair. */
+static void add_step_patches(step_plan *p, uint32_t a, uint32_t b)
+{
+    sc_query_state *query = &p->state->query;
+    const sc_motion *motion = &p->w->motion;
+    const uint32_t *hop = sc_model_hop(query->model);
+    uint32_t c, d, task = sc_state_box_task(query);
+    if (!is_large_in_step(query->model, a) && !is_large_in_step(query->model, b)) {
+        add_step_part(p, query->after_contour ? STEP_PART_PAIR_AFTER_CONTOUR : STEP_PART_PAIR, a,
+                      b);
+        return;
+    }
+    query->stats.counts[task]++;
+    for (c = hop[a]; c < hop[a + 1] && !sc_state_stops(query); c++) {
+        if (sc_motion_boxes_apart(motion, b, c)) continue;
+        query->stats.counts[task]++;
+        for (d = hop[b]; d < hop[b + 1]; d++)
+            if (!sc_motion_boxes_apart(motion, c, d)) add_step_patches(p, c, d);
+    }
+}
+
+/* The same for sc_step_kernels.patch_itself. */
+static void add_step_patch(step_plan *p, uint32_t a)
+{
+    sc_query_state *query = &p->state->query;
+    const sc_motion *motion = &p->w->motion;
+    const uint32_t *hop = sc_model_hop(query->model);
+    uint32_t c, d;
+    if (!is_large_in_step(query->model, a)) {
+        add_step_part(p, STEP_PART_PATCH, a, 0);
+        return;
+    }
+    for (c = hop[a]; c < hop[a + 1] && !sc_state_stops(query); c++) {
+        query->stats.counts[SC_TASK_BOXES_ORIENTATION]++;
+        add_step_patch(p, c);
+        for (d = c + 1; d < hop[a + 1]; d++)
+            if (!sc_motion_boxes_apart(motion, c, d)) add_step_patches(p, c, d);
+    }
+}
+
+/* What large nodes of a level leave to boxes; such nodes have no leaf clusters of their own. */
+static void add_boxes_of_level(step_plan *p)
+{
+    sc_step_state *state = p->state;
+    const sc_model *model = state->query.model;
+    uint32_t node, i, previous;
+    for (node = p->first; node < p->end && !sc_state_stops(&state->query); node++) {
+        if (p->w->motion.reached[node] != REACHED_OPEN) continue;
+        sc_step_traversal_follow_contour(state, sc_step_traversal_mask(state, node) != 0);
+        previous = sc_state_switch(&state->query, sc_state_box_task(&state->query));
+        for (i = sc_model_node_boxes(model)[node]; i < sc_model_node_boxes(model)[node + 1]; i++) {
+            const sc_pair *pair = &sc_model_boxes(model)[i];
+            state->query.stats.counts[sc_state_box_task(&state->query)]++;
+            if (!sc_motion_boxes_apart(&p->w->motion, pair->a, pair->b))
+                add_step_patches(p, pair->a, pair->b);
+        }
+        sc_state_switch(&state->query, previous);
+    }
+}
+
+/* ---- the test tree ---- */
+
+/* A node that failed: its children are reached; boxes are done at once, unless there are too many. */
+static void open_step_node(const step_plan *p, sc_step_state *s, uint32_t node)
+{
+    const sc_model *model = s->query.model;
+    const uint32_t *child = sc_model_node_child(model);
+    const sc_pair *patches = sc_model_node_patches(model);
+    int failed = p->selfs && sc_step_traversal_mask(s, node);
+    uint32_t c;
+    for (c = child[node]; c < child[node + 1]; c++) {
+        int is_pair = patches[c].a != patches[c].b;
+        p->w->motion.reached[c] = failed && is_pair ? REACHED_FAILED : REACHED_TEST;
+        s->reached[is_pair]++;
+    }
+    if (is_large_in_step(model, patches[node].a) || is_large_in_step(model, patches[node].b))
+        p->w->motion.reached[node] = REACHED_OPEN;
+    else
+        sc_step_traversal_query_rest(s, node);
+}
+
+static void run_step_nodes(void *context, uint32_t part, uint32_t worker)
+{
+    const step_plan *p = (const step_plan *)context;
+    sc_step_state *s = begin_step_part(p, worker);
+    const sc_pair *patches = sc_model_node_patches(s->query.model);
+    uint8_t *reached = p->w->motion.reached, *marks = s->query.workspace->walk.marks;
+    uint32_t first = p->first + part * p->length, node;
+    uint32_t end = p->end - first < p->length ? p->end : first + p->length;
+    for (node = first; node < end && !sc_state_stops(&s->query); node++) {
+        uint32_t a = patches[node].a, b = patches[node].b;
+        if (!reached[node] || (a == b) != p->selfs || (p->selfs && p->w->culled[a])) continue;
+        if (sc_step_traversal_culls(s, node, reached[node] == REACHED_FAILED))
+            marks[a] = marks[b] = 1;
+        else
+            open_step_node(p, s, node);
+    }
+    end_step_part(s);
+}
+
+/* Takes the nodes of the level that are of one patch, or of two: so many were reached. */
+static void do_nodes(step_plan *p, int selfs, uint32_t reached)
+{
+    uint32_t count = p->end - p->first;
+    if (!reached || sc_state_stops(&p->state->query)) return;
+    p->selfs = selfs;
+    p->length = (count - 1) / STEP_NODE_PARTS + 1;
+    if (p->length < STEP_NODES_AT_ONCE) p->length = STEP_NODES_AT_ONCE;
+    if (reached < STEP_NODES_MIN) p->length = count;
+    run_step_job(p, run_step_nodes, (count - 1) / p->length + 1);
+}
+
+/* Brings together which patches of the level, all of which are in nodes of two, the workers culled. */
+static void join_marks_of_level(step_plan *p, uint32_t level)
+{
+    const uint32_t *level_first = sc_model_level_first(p->state->query.model);
+    uint32_t worker, i;
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        const uint8_t *marks = sc_workspace_of_worker(p->w, worker)->walk.marks;
+        for (i = level_first[level]; i < level_first[level + 1]; i++) p->w->culled[i] |= marks[i];
+    }
+}
+
+/* How many nodes of one patch, or of two, the workers have reached; they begin to count again. */
+static uint32_t take_reached(const step_plan *p, int is_pair)
+{
+    uint32_t worker, sum = 0;
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        sum += step_state_of(p, worker)->reached[is_pair];
+        step_state_of(p, worker)->reached[is_pair] = 0;
+    }
+    return sum;
+}
+
+static void walk_levels(step_plan *p)
+{
+    const sc_model *model = p->state->query.model;
+    const uint32_t *child = sc_model_node_child(model);
+    uint32_t level, reached[2] = {1, 0};
+    p->w->motion.reached[0] = REACHED_TEST;
+    p->end = 1;
+    for (level = 0; reached[0] + reached[1] && !sc_state_stops(&p->state->query); level++) {
+        do_nodes(p, 0, reached[1]);
+        if (reached[1]) join_marks_of_level(p, level);
+        do_nodes(p, 1, reached[0]);
+        reached[0] = take_reached(p, 0);
+        reached[1] = take_reached(p, 1);
+        if (!level && reached[0]) refit_for_all(p); /* the root is large */
+        add_boxes_of_level(p);
+        p->first = p->end;
+        p->end = child[p->end];
+    }
+    if (!sc_state_stops(&p->state->query)) do_step_parts(p);
+}
+
+/* ---- all together ---- */
+
+/* Adds up what the workers counted, and puts the last of their pairs into the caller's lists. Returns 0 if one of these
+   is too short. */
+static int gather_step(step_plan *p)
+{
+    sc_step_state *state = p->state;
+    uint32_t worker, i;
+    int fits = 1, kind;
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        const sc_step_state *s = step_state_of(p, worker);
+        const sc_stats *stats = &s->query.stats;
+        for (i = 0; i < SC_TASK_COUNT; i++) {
+            state->query.stats.counts[i] += stats->counts[i];
+            state->query.stats.nanoseconds[i] += stats->nanoseconds[i];
+        }
+        state->query.stats.nodes_visited += stats->nodes_visited;
+        state->query.stats.nodes_oriented += stats->nodes_oriented;
+        state->query.stats.nodes_culled += stats->nodes_culled;
+        state->query.stats.leaf_pairs += stats->leaf_pairs;
+        state->query.incomplete |= s->query.incomplete;
+        if (s->earliest < state->earliest) state->earliest = s->earliest;
+        for (kind = 0; kind < 2; kind++) state->list[kind].count += s->list[kind].count;
+    }
+    for (kind = 0; kind < 2; kind++) {
+        const sc_step_list *list = &state->list[kind];
+        uint64_t at = p->share.claimed[kind];
+        for (worker = 0; worker < p->tasks->workers; worker++) {
+            const sc_motion *m = &sc_workspace_of_worker(p->w, worker)->motion;
+            uint32_t count = m->found_count[kind];
+            if (at <= list->capacity && count && count <= list->capacity - at) {
+                memcpy(list->pairs + at, m->found[kind], sizeof(sc_pair) * count);
+                if (list->times)
+                    memcpy(list->times + at, m->found_time[kind], sizeof(double) * count);
+            }
+            at += count;
+        }
+        if (at > list->capacity) fits = 0;
+    }
+    return fits;
+}
+
+void sc_step_parallel_run(sc_step_state *state)
+{
+    sc_step_state before = *state;
+    step_plan p;
+    memset(&p, 0, sizeof p);
+    p.state = state;
+    p.w = state->query.workspace;
+    p.tasks = state->options.tasks;
+    p.w->motion.swept = state->options.method == SC_STEP_METHOD_SWEPT;
+    state->share = &p.share;
+    state->query.share = &p.share.query;
+    start_step_workers(&p);
+    if (state->options.method == SC_STEP_METHOD_SCTT) {
+        sc_step_traversal_update_cones(state);
+        walk_levels(&p);
+    } else {
+        sc_state_switch(&state->query, SC_TASK_BOXES_ORIENTATION);
+        refit_for_all(&p);
+        add_step_patch(&p, 0);
+        do_step_parts(&p);
+    }
+    if (gather_step(&p)) {
+        state->share = NULL;
+        state->query.share = NULL;
+        sc_step_pairs_finish(state, p.tasks);
+        return;
+    }
+    *state = before;
+    p.w->boxes_ready = 0;
+    if (state->query.timed) state->query.last_time = sc_clock_nanoseconds();
+    sc_step_traversal_run(state);
+    sc_step_pairs_finish(state, NULL);
+}
