@@ -179,7 +179,8 @@ static inline void turn_away(double *direction, const double *side)
  * Tries directions that are at right angles to a side, or to all of them, more exactly than that from the nearest point
  * is where that is near the origin: there this is known up to u M / distance only, and moves corners
  * at M by that much. Such a direction is the best one if the nearest point is inside a side or inside the polygon, and
- * nearly so if it is a corner and a side there is nearly at right angles.
+ * nearly so if it is a corner and a side there is nearly at right angles. Which side of the plane the origin is on is
+ * told by a corner: the nearest point in a polygon almost without width may be wrong by that width.
  */
 static void improve_direction(int count, instant *at, double *least)
 {
@@ -204,9 +205,9 @@ static void improve_direction(int count, instant *at, double *least)
             turn_away(d, sides[i]);
         } else {
             outer(d, sides[0], sides[count - 1]);
-            if (inner(d, at->direction) < 0)
-                for (int k = 0; k < 3; ++k) d[k] = -d[k];
             turn_away(d, sides[is_longest]);
+            if (inner(d, at->corners[0]) < 0)
+                for (int k = 0; k < 3; ++k) d[k] = -d[k];
         }
         length = inner(d, d);
         if (!(length >= LEAST_SQUARE)) continue;

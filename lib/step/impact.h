@@ -27,7 +27,7 @@
  *
  * Cost: nothing is allocated; less than 16 KB of stack; no recursion. A pair that stays apart takes 10 to 200 ns, one
  * that collides 0.5 to 3 us (Zen 4). Pairs that turn while they stay just outside the tolerance take most: 30 us
- * at worst where that is 2^-20 of their size, 1 ms at the floor.
+ * at worst where that is 2^-20 of their size, 1 to 8 ms at the floor.
  */
 #ifndef SC_STEP_IMPACT_H
 #define SC_STEP_IMPACT_H
