@@ -334,7 +334,7 @@ static void make_sliver(query *q, step_oracle_kind kind)
     }
     gap[0] = (shape == 0 ? 0 : test_random_range(-2, 2)) * size * SC_IMPACT_FLOOR;
     gap[1] = shape == 1 ? gap[0] : test_random_range(-2, 2) * size * SC_IMPACT_FLOOR;
-    if (shape == 2) gap[1] *= exp2((double)test_random_below(24));
+    if (shape % 2 == 0) gap[1] *= exp2((double)test_random_below(24));
     for (int end = 0; end < 2; ++end) {
         double(*p)[3] = end ? q->end : q->start;
         const double *u = side[end], *v = across[end];
@@ -530,6 +530,82 @@ static void separations_just_reached(void)
     CHECK(reached > 0 && found > 0 && found < reached);
 }
 
+/* How far apart the two are at a time, but for rounding. */
+static double distance_at(const query *q, step_oracle_kind kind, double time)
+{
+    int face = kind == STEP_ORACLE_VERTEX_FACE, count = face ? 3 : 4, is_inside = 1;
+    double c[4][3], n[3], u[3], v[3], least = HUGE_VAL, height = 0, square = 0;
+    for (int i = 0; i < count; ++i) {
+        int a = face ? 0 : i == 1 || i == 2, b = face ? i + 1 : i < 2 ? 2 : 3;
+        for (int k = 0; k < 3; ++k)
+            c[i][k] = (1 - time) * (q->start[b][k] - q->start[a][k]) +
+                      time * (q->end[b][k] - q->end[a][k]);
+    }
+    for (int k = 0; k < 3; ++k) {
+        u[k] = c[1][k] - c[0][k];
+        v[k] = c[count - 1][k] - c[0][k];
+    }
+    for (int k = 0; k < 3; ++k)
+        n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+    for (int i = 0; i < count; ++i) {
+        const double *a = c[i], *b = c[(i + 1) % count];
+        double along = 0, length = 0, area = 0, d = 0;
+        for (int k = 0; k < 3; ++k) {
+            along -= a[k] * (b[k] - a[k]);
+            length += (b[k] - a[k]) * (b[k] - a[k]);
+            area += n[k] * (a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+        }
+        along = length > 0 ? fmax(0, fmin(1, along / length)) : 0;
+        for (int k = 0; k < 3; ++k) {
+            double x = a[k] + along * (b[k] - a[k]);
+            d += x * x;
+        }
+        least = fmin(least, sqrt(d));
+        is_inside &= area > 0;
+    }
+    for (int k = 0; k < 3; ++k) {
+        height += n[k] * c[0][k];
+        square += n[k] * n[k];
+    }
+    return is_inside ? fabs(height) / sqrt(square) : least;
+}
+
+/* Separations that are a little more than the distance where the two pass by each other. */
+static void separations_in_passing(void)
+{
+    uint64_t passed = 0;
+    for (uint32_t i = 0; i < test_iterations(60000); ++i) {
+        step_oracle_kind kind = (step_oracle_kind)test_random_below(2);
+        double nearest = 0, least = HUGE_VAL, separation, time = -1;
+        query q;
+        int answer;
+        make_random(&q);
+        for (int j = 0; j <= 32; ++j) {
+            double d = distance_at(&q, kind, j / 32.0);
+            if (d < least) {
+                least = d;
+                nearest = j / 32.0;
+            }
+        }
+        if (nearest == 0 || nearest == 1) continue;
+        for (double step = 1.0 / 64; step > 1e-8; step *= 0.5) {
+            double before = distance_at(&q, kind, nearest - step);
+            double after = distance_at(&q, kind, nearest + step);
+            least = fmin(least, fmin(before, after));
+            if (before == least) nearest -= step;
+            if (before > least && after == least) nearest += step;
+        }
+        separation = least * (1 + exp2(-(double)(20 + test_random_below(12))));
+        if (!is_within(&q, kind, nearest, separation, 0)) continue;
+        ++passed;
+        answer = ask(&q, kind, separation, 0, &time);
+        if (!CHECK_MSG(answer && time <= nearest, "%a at %g, answer %d at %g", separation, nearest,
+                       answer, time))
+            print_query(&q, kind);
+    }
+    CHECK(passed > test_iterations(60000) / 100);
+}
+
 /* A distance of 2^-538 or so, in all of which squares vanish, is less than separation. */
 static void distances_whose_squares_vanish(void)
 {
@@ -629,4 +705,5 @@ SC_TEST_MAIN(SC_TEST(known_times), SC_TEST(same_bits_everywhere),
              SC_TEST(random_steps), SC_TEST(steps_on_a_grid), SC_TEST(steps_that_just_touch),
              SC_TEST(flat_steps), SC_TEST(degenerate_steps), SC_TEST(thin_layers),
              SC_TEST(rolling_steps), SC_TEST(slivers), SC_TEST(wide_ranges),
-             SC_TEST(separations_just_reached), SC_TEST(times_close_to_contacts))
+             SC_TEST(separations_just_reached), SC_TEST(separations_in_passing),
+             SC_TEST(times_close_to_contacts))
