@@ -178,7 +178,7 @@ static inline unsigned SC_KERNEL(plane_separates)(const lanes n[3], lanes size, 
                                                   lanes o[3][3], float extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    lanes bound, least, most;
+    lanes bound, least = lanes_all(0), most = least;
     int k, c;
     bound = lanes_add(
         lanes_multiply(size, lanes_all(4 * edge * (extent + edge) + 13 * v * extent * extent)),
@@ -230,7 +230,7 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], fl
             lanes e1 = lanes_subtract(t[next][1], t[k][1]);
             lanes own = lanes_subtract(lanes_multiply(e0, lanes_subtract(t[third][1], t[k][1])),
                                        lanes_multiply(e1, lanes_subtract(t[third][0], t[k][0])));
-            lanes least, most;
+            lanes least = lanes_all(0), most = least;
             SC_UNROLL
             for (i = 0; i < 3; i++) {
                 lanes d = lanes_subtract(lanes_multiply(e0, lanes_subtract(o[i][1], t[k][1])),
