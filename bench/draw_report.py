@@ -457,15 +457,15 @@ def steps(results):
         scenes.setdefault((row["scene"], row["triangles"]), {})[row["method"]] = row
     rows = [[], []]
     for (scene, triangles), run in scenes.items():
-        if len(run) < len(STEP_METHODS):
+        if "step" not in run or "step-two-boxes" not in run:
             continue
         ours, boxes = run["step"], run["step-two-boxes"]
         begin = [scene, whole(triangles)]
         rows[0].append(begin + [whole(ours["collisions"])] +
-                       [whole(run[m]["candidates"]) for m in STEP_METHODS] +
-                       [whole(run["step-none"]["missed"])])
+                       [whole(run[m]["candidates"]) if m in run else "–" for m in STEP_METHODS] +
+                       [whole(run["step-none"]["missed"]) if "step-none" in run else "–"])
         rows[1].append(begin + ["%s (%s)" % (figure(run[m]["candidates_ms"]), figure(run[m]["mean_ms"]))
-                                for m in STEP_METHODS] +
+                                if m in run else "–" for m in STEP_METHODS] +
                        ["%s (%s)" % (times(boxes["candidates_ms"] / ours["candidates_ms"]),
                                      times(boxes["mean_ms"] / ours["mean_ms"]))])
     if not rows[0]:
@@ -799,7 +799,7 @@ def report(results, drawn, slope_table, reading):
     out.append(modes(results))
     out.append("## Several threads\n")
     out.append("Throughput: as many frames at once as there are threads, wall time divided by them.\n"
-               "A single query runs on one thread.\n")
+               "Each query runs on one thread.\n")
     out.append(threads(results))
     out.append("## Peers\n")
     if results.peers:
