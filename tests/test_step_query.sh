@@ -68,6 +68,29 @@ if [ -x "$SC_BIN/sc-partition" ]; then
         meshes/sphere.obj meshes/sphere.obj
 fi
 
+# ---- threads ----
+
+# A cloth whose right half is folded over the left one, at a slope.
+fold() {
+    awk -v slope="$2" 'BEGIN { n = 60; for (y = 0; y <= n; y++) for (x = 0; x <= n; x++) {
+            u = x / n; b = u - 0.5; if (b < 0) b = 0
+            print "v", u - 1.97 * b, y / n, slope * b + (y / n - 0.4) * b / 5 }
+        for (y = 0; y < n; y++) for (x = 1; x <= n; x++) {
+            a = y * (n + 1) + x; print "f", a, a + 1, a + n + 1; print "f", a + 1, a + n + 2, a + n + 1 } }' >"$1"
+}
+fold "$scratch/fold0.obj" 0.3
+fold "$scratch/fold1.obj" -0.02
+by_threads() {
+    status 1 "$query" --step --times --out "$scratch/steps.$1" --threads "$1" "$scratch/fold0.obj" \
+        "$scratch/fold1.obj"
+}
+check "pairs by one thread" by_threads 1
+check "of which there are many" test "$(wc -l <"$scratch/steps.1")" -gt 500
+for threads in 2 3 8; do
+    check "pairs by $threads threads" by_threads $threads
+    check "are the same, at the same times" cmp "$scratch/steps.1" "$scratch/steps.$threads"
+done
+
 # ---- what it prints ----
 
 check "times" says 1 "vertex-face 3 0 0\.\(4999\|5\)" "$query" --step --times "$a" "$b"
