@@ -35,9 +35,9 @@ enum { STEP_LARGE_PART = 64 };
 /* Fewer nodes to look at are not worth a job. */
 enum { STEP_NODES_MIN = 16 };
 
-/* The nodes of a level are cut into so many parts at most, none shorter than that; parts of the list are
-   taken a few at once. */
-enum { STEP_NODE_PARTS = 256, STEP_NODES_AT_ONCE = 16, STEP_PARTS_AT_ONCE = 2 };
+/* The nodes of a level are cut into so many parts at most, with so many to look at in each, more or less; parts of the
+   list are taken a few at once. */
+enum { STEP_NODE_PARTS = 256, STEP_NODES_AT_ONCE = 8, STEP_PARTS_AT_ONCE = 2 };
 
 /* What sc_motion.reached says of a node; 0: its parent was not opened. */
 enum {
@@ -283,12 +283,11 @@ static void run_step_nodes(void *context, uint32_t part, uint32_t worker)
 /* Takes the nodes of the level that are of one patch, or of two: so many were reached. */
 static void do_nodes(step_plan *p, int selfs, uint32_t reached)
 {
-    uint32_t count = p->end - p->first;
+    uint32_t count = p->end - p->first, parts;
     if (!reached || sc_state_stops(&p->state->query)) return;
     p->selfs = selfs;
-    p->length = (count - 1) / STEP_NODE_PARTS + 1;
-    if (p->length < STEP_NODES_AT_ONCE) p->length = STEP_NODES_AT_ONCE;
-    if (reached < STEP_NODES_MIN) p->length = count;
+    parts = reached < STEP_NODES_MIN ? 1 : reached / STEP_NODES_AT_ONCE;
+    p->length = (count - 1) / (parts < STEP_NODE_PARTS ? parts : STEP_NODE_PARTS) + 1;
     run_step_job(p, run_step_nodes, (count - 1) / p->length + 1);
 }
 
