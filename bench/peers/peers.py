@@ -42,6 +42,9 @@ ANY_EDGE = "any edge"  # whether there is a pair of an edge and a triangle that 
 EDGES = "edges"  # at least all pairs of an edge and a triangle that share no vertex
 STEPS = "steps"  # at least all that collide in the step to the next frame; candidates are counted
 
+# Lists of candidates of a step are compared as Python objects, of which larger meshes have too many for memory.
+STEP_TRIANGLES = 20000
+
 
 class Skipped(Exception):
     """A peer or a scene cannot be measured, for the reason given."""
@@ -366,16 +369,19 @@ def ipctk(scene, np):
 
         return len(faces) + len(pairs), check
 
-    return [
+    ways = [
         Way("has_intersections: trees rebuilt; robust edge-triangle test; yes or no",
             ANY_EDGE, lambda vertices: ipc.has_intersections(mesh, vertices, ipc.LBVH()),
             prepare=np.asfortranarray),
         Way("LBVH: trees rebuilt; edge-triangle candidates only; as a Python list",
             EDGES, candidates, lambda found: [(ends[c.edge_id], c.face_id) for c in found],
             np.asfortranarray),
-        Way("step: LBVH round the motion: trees rebuilt; vertex-face and edge-edge candidates",
-            STEPS, step_candidates, holds, np.asfortranarray),
     ]
+    if scene.triangles <= STEP_TRIANGLES:
+        ways.append(
+            Way("step: LBVH round the motion: trees rebuilt; vertex-face and edge-edge candidates",
+                STEPS, step_candidates, holds, np.asfortranarray))
+    return ways
 
 
 def meshlib(scene, np):

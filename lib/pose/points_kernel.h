@@ -72,10 +72,12 @@ static inline __m128 SC_KERNEL(sc_points_one)(const sc_workspace *w, const unsig
     __m128d xy, z;
     if (is_double) {
         xy = _mm_loadu_pd((const double *)(const void *)p);
-        z = _mm_load_sd((const double *)(const void *)(p + 16));
+        z = _mm_castsi128_pd(_mm_loadl_epi64((const __m128i *)(const void *)(p + 16)));
     } else {
-        xy = _mm_cvtps_pd(_mm_castpd_ps(_mm_load_sd((const double *)(const void *)p)));
-        z = _mm_cvtps_pd(_mm_load_ss((const float *)(const void *)(p + 8)));
+        float last; /* at any address */
+        memcpy(&last, p + 8, sizeof last);
+        xy = _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p)));
+        z = _mm_cvtps_pd(_mm_set_ss(last));
     }
     xy = _mm_mul_pd(_mm_sub_pd(xy, _mm_set_pd(w->center[1], w->center[0])), scale);
     z = _mm_mul_pd(_mm_sub_pd(z, _mm_set_pd(0, w->center[2])), scale);

@@ -6,6 +6,7 @@
 #include "pose/pose_kernels.h"
 
 #include <float.h>
+#include <string.h>
 
 #include "pose/positions.h"
 
