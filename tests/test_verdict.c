@@ -237,8 +237,9 @@ static uint64_t check_budget(const subject *s, sc_query_options o, uint64_t budg
 
 static void budgets(void)
 {
+    const uint32_t rounds = test_iterations(30);
     uint64_t partial = 0;
-    for (uint32_t round = 0; round < test_iterations(30); ++round) {
+    for (uint32_t round = 0; round < rounds; ++round) {
         subject s;
         uint64_t state = test_random_state();
         soup mesh = shape_any(round % 4 == 0 ? 500 : 120, &s.name);
@@ -279,7 +280,7 @@ static void budgets(void)
         }
         close_subject(&s);
     }
-    CHECK_MSG(partial > 20, "%" PRIu64 " partial answers", partial);
+    CHECK_MSG(3 * partial > 2 * rounds, "%" PRIu64 " partial answers", partial);
 }
 
 /* What accept does in the tests below: sets the flag after some calls, or lets another thread do it. */
