@@ -20,7 +20,7 @@ void sc_straight_cut_direction(const float *centers, const uint32_t *triangles, 
 {
     const float *origin = centers + 3 * (uint64_t)triangles[0];
     uint32_t i;
-    double sum[3] = {0, 0, 0}, m[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, at[3];
+    double sum[3] = {0, 0, 0}, m[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, at[3] = {0, 0, 0};
     int j, k, round, axis = 0;
     for (i = 0; i < count; i++) {
         const float *c = centers + 3 * (uint64_t)triangles[i];
@@ -42,7 +42,7 @@ void sc_straight_cut_direction(const float *centers, const uint32_t *triangles, 
         if (m[k][k] > m[axis][axis]) axis = k;
     for (k = 0; k < 3; k++) at[k] = k == axis;
     for (round = 0; round < 6; round++) {
-        double next[3], size;
+        double next[3] = {0, 0, 0}, size;
         for (k = 0; k < 3; k++) next[k] = m[k][0] * at[0] + m[k][1] * at[1] + m[k][2] * at[2];
         size = fabs(next[0]) + fabs(next[1]) + fabs(next[2]);
         if (!(size > 0)) break;
