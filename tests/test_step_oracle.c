@@ -343,7 +343,7 @@ static void append(truth *found, sc_pair pair, double when)
 static int is_flat(const motion *m)
 {
     for (int k = 0; k < 3; ++k) {
-        double first = NAN;
+        double first = (double)NAN;
         int flat = 1;
         for (int e = 0; e < 2; ++e)
             for (uint32_t v = 0; v < m->vertex_count; ++v) {
@@ -885,13 +885,43 @@ static oracle_list query_edges(const question *q, const sc_pose *pose, uint32_t 
     return list;
 }
 
+static int motion_is_corner(const motion *m, uint32_t triangle, uint32_t vertex)
+{
+    const uint32_t *c = m->corner + 3 * (size_t)triangle;
+    return c[0] == vertex || c[1] == vertex || c[2] == vertex;
+}
+
+/* collides_somehow of a triangle that is one vertex, which has no edges: a collision of that vertex with a triangle at the
+   edge. 1 as well if it is a corner of all of these. */
+static int vertex_collides(const motion *m, const answer *a, sc_pair pair, double *least)
+{
+    uint32_t v = m->corner[3 * (size_t)pair.b], others = 0;
+    int found = 0;
+    for (uint32_t t = 0; t < m->triangle_count; ++t) {
+        sc_pair wanted = {v, t};
+        uint64_t at;
+        if (!motion_is_corner(m, t, edge_start(m, pair.a)) ||
+            !motion_is_corner(m, t, edge_end(m, pair.a)) || motion_is_corner(m, t, v))
+            continue;
+        ++others;
+        at = find(a->pairs[VERTEX_FACE], a->count[VERTEX_FACE], wanted);
+        if (at == a->count[VERTEX_FACE]) continue;
+        found = 1;
+        *least = fmin(*least, a->times[VERTEX_FACE][at]);
+    }
+    if (others == 0) *least = 0;
+    return found || others == 0;
+}
+
 /* Whether a collision is reported of an edge's end with a triangle, or of the edge with one of its edges;
    *least is the earliest time of these. */
 static int collides_somehow(const motion *m, const answer *a, sc_pair pair, double *least)
 {
     uint32_t ends[2] = {edge_start(m, pair.a), edge_end(m, pair.a)};
+    const uint32_t *corner = m->corner + 3 * (size_t)pair.b;
     int found = 0;
     *least = 1;
+    if (corner[0] == corner[1] && corner[1] == corner[2]) return vertex_collides(m, a, pair, least);
     for (int kind = 0; kind < KINDS; ++kind)
         for (uint32_t k = 0; k < (kind == VERTEX_FACE ? 2u : 3u); ++k) {
             const uint32_t *v = m->corner + 3 * (size_t)pair.b;
@@ -947,9 +977,7 @@ static void check_ends(const step *s, uint64_t *changes, uint64_t *touches)
             int stays = find(met[1 - e].pairs, met[1 - e].count, pair) < met[1 - e].count;
             int touching = e == 0 && find(proper.pairs, proper.count, pair) == proper.count;
             double least = 1;
-            const uint32_t *t = s->mesh.triangles + 3 * (uint64_t)pair.b;
             if (stays && !touching) continue;
-            if (t[0] == t[1] && t[1] == t[2]) continue; /* no edge; it is the vertex that says so */
             *changes += !stays;
             *touches += (uint64_t)touching;
             CHECK_MSG(collides_somehow(&m, &all, pair, &least) && (!touching || least == 0),
