@@ -638,7 +638,7 @@ static void refuses_what_does_not_fit(void)
         CHECK(ASK(&bad, &pose) == SC_ERROR_VERTEX_COUNT);
         bad = pose;
         memcpy(nan_at, mesh.positions, sizeof(nan_at));
-        nan_at[7] = NAN;
+        nan_at[7] = (double)NAN;
         bad.positions = nan_at;
         CHECK(ASK(&pose, &bad) == SC_ERROR_NOT_FINITE);
         CHECK(a.result.verdict == SC_VERDICT_NONE && a.result.earliest == 0);
@@ -664,10 +664,10 @@ static void refuses_what_does_not_fit(void)
         tasks.struct_size = sizeof(tasks);
         REFUSED(tasks, &tasks, SC_ERROR_NULL);
         REFUSED(separation, -1e-300, SC_ERROR_OPTION);
-        REFUSED(separation, NAN, SC_ERROR_OPTION);
+        REFUSED(separation, (double)NAN, SC_ERROR_OPTION);
         REFUSED(separation, HUGE_VAL, SC_ERROR_OPTION);
         REFUSED(tolerance, -1, SC_ERROR_OPTION);
-        REFUSED(tolerance, NAN, SC_ERROR_OPTION);
+        REFUSED(tolerance, (double)NAN, SC_ERROR_OPTION);
         REFUSED(tolerance, HUGE_VAL, SC_ERROR_OPTION);
         REFUSED(separation, 1e308, SC_ERROR_SHORT_BUFFER);
         a.result.struct_size = 8;

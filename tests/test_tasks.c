@@ -518,7 +518,7 @@ static void any_array_of_positions(void)
             if (i % 2 == 0) { /* the last coordinate, or any */
                 uint32_t v =
                     i % 4 ? f.mesh.vertex_count - 1 : test_random_below(f.mesh.vertex_count);
-                const double nan = NAN;
+                const double nan = (double)NAN;
                 memcpy(array.data + (size_t)v * (array.stride ? array.stride : 24) + 16, &nan,
                        sizeof(nan));
                 refused = ask(&f, workspace, &shared, 10000);
@@ -1036,7 +1036,7 @@ static void any_positions_of_a_step(void)
             for (uint32_t k = 0; k < 2; ++k)
                 if (!(i >> k & 1)) { /* the last coordinate, or any */
                     uint32_t v = i % 3 ? count - 1 : test_random_below(count);
-                    const double nan = i % 5 ? NAN : INFINITY;
+                    const double nan = i % 5 ? (double)NAN : (double)INFINITY;
                     memcpy(array[k].data + (size_t)v * (array[k].stride ? array[k].stride : 24) +
                                16,
                            &nan, sizeof(nan));
