@@ -7,11 +7,11 @@
 
 #include "measure.h"
 
+#include "bench_model.h"
 #include "floor.h"
 #include "lane_pool.h"
+#include "near_pairs.h"
 #include "tool.h"
-
-#include "starcontour_metis.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,38 +90,12 @@ static double median(double *times, size_t count)
 static bool build(measure_state *s, const double *rest)
 {
     const scene_folder *scene = s->scene;
-    float *floats = NULL;
-    sc_mesh mesh;
-    memset(&mesh, 0, sizeof mesh);
-    mesh.struct_size = sizeof mesh;
-    mesh.vertex_count = scene->vertex_count;
-    mesh.triangle_count = scene->triangle_count;
-    mesh.position_type = scene->single ? SC_FLOAT : SC_DOUBLE;
-    mesh.positions = rest;
-    mesh.indices = scene->triangles;
-    if (scene->single) {
-        const size_t count = 3 * (size_t)scene->vertex_count;
-        floats = (float *)malloc(count * sizeof *floats);
-        if (!floats) return fail(s, "model", "out of memory");
-        for (size_t i = 0; i < count; i++) floats[i] = (float)rest[i];
-        mesh.positions = floats;
-    }
     sc_build_options options;
     memset(&options, 0, sizeof options);
-    options.struct_size = sizeof options;
-    if (s->options->partition == MEASURE_METIS) {
-        options.partition = SC_PARTITION_BISECT;
-        options.bisect = sc_metis_bisect;
-    } else if (s->options->partition == MEASURE_STRUCTURE) {
-        options.partition = SC_PARTITION_ORDER;
-        options.order = scene->order;
-    }
     for (size_t i = 0; i < s->m->method_count; i++)
         if (s->m->methods[i]->contour == SC_CONTOUR_STAR) options.rest = SC_REST_MARKED;
-    const double start = tool_clock();
-    const sc_status status = sc_build(&mesh, &options, &s->model);
-    s->m->build_ms = tool_clock() - start;
-    free(floats);
+    const sc_status status =
+        bench_model_build(scene, rest, s->options->partition, &options, &s->model, &s->m->build_ms);
     if (status != SC_OK) return fail(s, "the model cannot be built", sc_status_string(status));
     s->m->info.struct_size = sizeof s->m->info;
     sc_model_get_info(s->model, &s->m->info);
@@ -129,7 +103,7 @@ static bool build(measure_state *s, const double *rest)
     s->mesh.triangles = scene->triangles;
     s->mesh.triangle_count = scene->triangle_count;
     s->mesh.vertex_count = scene->vertex_count;
-    s->mesh.position_type = mesh.position_type;
+    s->mesh.position_type = scene->single ? SC_FLOAT : SC_DOUBLE;
     return true;
 }
 
@@ -154,6 +128,14 @@ static bool open_lane(measure_state *s, measure_lane *lane, const double *rest)
     return true;
 }
 
+/* How often a method is timed in a frame: the hash, which takes as long as all others, once only where
+   others have a pass each. */
+static uint32_t times_timed(const measure_state *s, size_t method)
+{
+    const bool once = s->options->mode == MEASURE_ONCE && s->m->methods[method]->is_hash;
+    return once ? 1 : s->options->repeats;
+}
+
 static bool prepare(measure_state *s)
 {
     measurement *m = s->m;
@@ -166,7 +148,9 @@ static bool prepare(measure_state *s)
     s->floor_times = (double *)malloc(m->frame_count * passes * sizeof *s->floor_times);
     s->lanes = (measure_lane *)calloc(options->threads, sizeof *s->lanes);
     double *rest = (double *)malloc(3 * (size_t)s->scene->vertex_count * sizeof *rest);
-    s->all = records * (1 + passes);
+    for (size_t i = 0; i < m->method_count; i++) {
+        s->all += m->frame_count * (1 + (passes > 1 ? times_timed(s, i) : passes));
+    }
     bool done = m->records && s->times && s->broad_times && s->floor_times && s->lanes && rest;
     if (!done) fail(s, "measuring", "out of memory");
     done = done && scene_folder_frame(s->scene, 0, rest, s->error, s->error_size) == 0 &&
@@ -292,7 +276,12 @@ static bool check_frames(measure_state *s)
         if (complete == &s->reference && !run_query(s, lane, &s->reference, true, NULL, &unused))
             return fail(s, s->reference.kind->name, lane->reason);
         measure_record *records = &m->records[frame * m->method_count];
+        uint64_t near = 0;
+        if (s->options->count_near &&
+            !near_pairs_count(s->mesh.triangles, s->mesh.triangle_count, lane->frame, &near))
+            return fail(s, "near pairs", "out of memory");
         for (size_t i = 0; i < m->method_count; i++) {
+            records[i].near = near;
             write_pose(s, lane, m->methods[i]);
             if (!run_query(s, lane, &lane->runners[i], true, &records[i].stats, &unused))
                 return fail(s, m->methods[i]->name, lane->reason);
@@ -368,6 +357,7 @@ static bool run_frames(measure_state *s, uint32_t pass, uint32_t first, uint32_t
         if (!load_frame(s, &s->lanes[i], first + i)) return false;
     }
     for (size_t method = 0; method < m->method_count; method++) {
+        if (pass >= times_timed(s, method)) continue;
         for (uint32_t i = 0; i < count; i++) write_pose(s, &s->lanes[i], m->methods[method]);
         for (uint32_t q = 0; q < queries; q++) {
             double milliseconds;
@@ -428,9 +418,10 @@ static void summarize(measure_state *s)
     measurement *m = s->m;
     const size_t repeats = s->options->repeats;
     for (size_t i = 0; i < (size_t)m->frame_count * m->method_count; i++) {
-        m->records[i].ms = median(&s->times[i * repeats], repeats);
+        const size_t timed = times_timed(s, i % m->method_count);
+        m->records[i].ms = median(&s->times[i * repeats], timed);
         m->records[i].ms_min = s->times[i * repeats];
-        m->records[i].candidates_ms = median(&s->broad_times[i * repeats], repeats);
+        m->records[i].candidates_ms = median(&s->broad_times[i * repeats], timed);
     }
     m->floor_ms = median(s->floor_times, s->floor_count);
     for (size_t i = 0; i < m->method_count; i++) {
@@ -455,7 +446,7 @@ bool measure_run(measurement *m, scene_folder *scene, const measure_options *opt
     bool done;
     if (m->frame_count == 0)
         done = fail(&s, "--pairs step", "a step takes two frames");
-    else if (options->partition == MEASURE_STRUCTURE && !scene->order)
+    else if (options->partition == BENCH_STRUCTURE && !scene->order)
         done = fail(&s, "--partition structure", "this scene comes without an order of its own");
     else
         done = prepare(&s) && check_frames(&s) && reserve_pairs(&s) && time_frames(&s);

@@ -8,7 +8,8 @@
  * timed passes; in each frame every method has its turn before the next frame comes. A turn is
  *   MEASURE_ONCE  one query, as in a simulation: the other methods' work lies between it and the
  *                 method's last one. There are as many passes over the animation as repeats are asked
- *                 for, each beginning with a query of the first frame that does not count.
+ *                 for, each beginning with a query of the first frame that does not count. The hash,
+ *                 the slowest by far, has its turns in the first of them only.
  *   MEASURE_WARM  as many queries of the same pose as repeats are asked for, one after the other.
  * Before each turn the pose is written anew to where queries read it, as a simulation would.
  *
@@ -26,14 +27,12 @@
 
 enum { MEASURE_ONCE = 0, MEASURE_WARM = 1 };
 
-/* Partitions: SC_PARTITION_FAST, METIS, or the scene's own order. */
-enum { MEASURE_FAST = 0, MEASURE_METIS = 1, MEASURE_STRUCTURE = 2 };
-
 typedef struct measure_options {
     method_question question;
-    uint32_t mode, repeats, partition, threads;
+    uint32_t mode, repeats, partition, threads; /* partition: BENCH_... of bench_model.h */
     uint32_t
         workers; /* threads of each query, which are those of query_threads.h; 1 with several threads */
+    bool count_near; /* whether records are to have near */
 } measure_options;
 
 /* One method in one frame. */
@@ -42,6 +41,7 @@ typedef struct measure_record {
     uint64_t pairs, missed, extra;
     double candidates_ms; /* of steps: median, candidates alone */
     uint64_t candidates;  /* of steps */
+    uint64_t near;        /* of the pose: see near_pairs.h */
     sc_stats stats;       /* of the pass that is not timed */
 } measure_record;
 

@@ -8,33 +8,34 @@
 #include "query_threads.h"
 #include "tool.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 const method_kind method_kinds[] = {
     {"exact", "test tree with orientation and exact contour tests", NULL, false, false,
-     SC_METHOD_SCTT, SC_CONTOUR_EXACT, false},
+     SC_METHOD_SCTT, SC_CONTOUR_EXACT, false, 0, false},
     {"star", "test tree with orientation and star-contour tests, as in the paper", NULL, false,
-     false, SC_METHOD_SCTT, SC_CONTOUR_STAR, false},
+     false, SC_METHOD_SCTT, SC_CONTOUR_STAR, false, 0, false},
     {"none", "test tree without a contour test: MISSES PAIRS, which are counted", NULL, true, false,
-     SC_METHOD_SCTT, SC_CONTOUR_NONE, false},
+     SC_METHOD_SCTT, SC_CONTOUR_NONE, false, 0, false},
     {"aabb-sctt",
      "tree of boxes, started at the test tree's non-adjacent children, as in the paper", NULL,
-     false, false, SC_METHOD_AABB_SCTT, SC_CONTOUR_DEFAULT, false},
-    {"aabb", "a plain tree of boxes", NULL, false, false, SC_METHOD_AABB, SC_CONTOUR_DEFAULT,
-     false},
-    {"hash", "optimised spatial hashing, cells as long as the average edge", NULL, false, true, 0,
+     false, false, SC_METHOD_AABB_SCTT, SC_CONTOUR_DEFAULT, false, 0, false},
+    {"aabb", "a plain tree of boxes", NULL, false, false, SC_METHOD_AABB, SC_CONTOUR_DEFAULT, false,
      0, false},
+    {"hash", "optimised spatial hashing, cells as long as the average edge", NULL, false, true, 0,
+     0, false, 0, false},
     {"step", "of steps: test tree with cones and contours that move", NULL, false, false,
-     SC_STEP_METHOD_SCTT, SC_CONTOUR_EXACT, true},
+     SC_STEP_METHOD_SCTT, SC_CONTOUR_EXACT, true, 0, false},
     {"step-star", "of steps: test tree with moving star contours", NULL, false, false,
-     SC_STEP_METHOD_SCTT, SC_CONTOUR_STAR, true},
+     SC_STEP_METHOD_SCTT, SC_CONTOUR_STAR, true, 0, false},
     {"step-none", "of steps: test tree without a contour test: MISSES PAIRS, which are counted",
-     NULL, true, false, SC_STEP_METHOD_SCTT, SC_CONTOUR_NONE, true},
+     NULL, true, false, SC_STEP_METHOD_SCTT, SC_CONTOUR_NONE, true, 0, false},
     {"step-two-boxes", "of steps: a plain tree, with boxes at the start and at the end", NULL,
-     false, false, SC_STEP_METHOD_TWO_BOXES, SC_CONTOUR_DEFAULT, true},
+     false, false, SC_STEP_METHOD_TWO_BOXES, SC_CONTOUR_DEFAULT, true, 0, false},
     {"step-swept", "of steps: a plain tree, with boxes round the motion", NULL, false, false,
-     SC_STEP_METHOD_SWEPT, SC_CONTOUR_DEFAULT, true},
+     SC_STEP_METHOD_SWEPT, SC_CONTOUR_DEFAULT, true, 0, false},
 };
 
 const size_t method_count = sizeof method_kinds / sizeof *method_kinds;
@@ -45,6 +46,45 @@ const method_kind *method_find(const char *name)
         if (strcmp(method_kinds[i].name, name) == 0) return &method_kinds[i];
     }
     return NULL;
+}
+
+bool method_read(const char *text, method_variant *variant, const char **reason)
+{
+    static const struct {
+        const char *name;
+        uint32_t simd;
+        bool serial;
+    } ways[] = {{"base", SC_SIMD_BASE, false},
+                {"avx2", SC_SIMD_AVX2, false},
+                {"avx512", SC_SIMD_AVX512, false},
+                {"serial", SC_SIMD_BEST, true}};
+    snprintf(variant->name, sizeof variant->name, "%s", text);
+    char *const at = strchr(variant->name, '@');
+    if (at) *at = '\0';
+    const method_kind *kind = method_find(variant->name);
+    *reason = !kind ? "there is no such method" : kind->missing;
+    if (*reason) return false;
+    variant->kind = *kind;
+    variant->kind.name = variant->name;
+    if (!at) return true;
+    *at = '@';
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        if (strcmp(at + 1, ways[i].name) != 0) continue;
+        variant->kind.simd = ways[i].simd;
+        variant->kind.serial = ways[i].serial;
+        *reason = kind->is_hash || kind->is_step ? "only queries of the library have @" : NULL;
+        return !*reason;
+    }
+    *reason = "behind @ is none of base, avx2, avx512, serial";
+    return false;
+}
+
+/* For as many workers as its queries have. */
+static sc_status make_workspace(const method_kind *kind, const sc_model *model,
+                                sc_workspace **workspace)
+{
+    if (kind->serial) return sc_workspace_create(model, NULL, workspace);
+    return query_threads_workspace(model, kind->is_step ? SC_WORKSPACE_STEP : 0, workspace);
 }
 
 bool method_open(method_runner *runner, const method_kind *kind, const method_mesh *mesh,
@@ -58,8 +98,7 @@ bool method_open(method_runner *runner, const method_kind *kind, const method_me
         runner->hash = spatial_hash_create(rest, mesh->vertex_count, mesh->triangles,
                                            mesh->triangle_count, reason);
     } else {
-        const uint32_t flags = kind->is_step ? SC_WORKSPACE_STEP : 0;
-        const sc_status status = query_threads_workspace(mesh->model, flags, &runner->workspace);
+        const sc_status status = make_workspace(kind, mesh->model, &runner->workspace);
         if (status != SC_OK) *reason = sc_status_string(status);
     }
     return *reason == NULL;
@@ -128,7 +167,8 @@ static sc_status query_library(method_runner *runner, const void *positions,
     options.contact = question->contact;
     options.method = runner->kind->method;
     options.contour = runner->kind->contour;
-    options.tasks = query_threads_tasks();
+    options.simd = runner->kind->simd;
+    options.tasks = runner->kind->serial ? NULL : query_threads_tasks();
     sc_result result;
     memset(&result, 0, sizeof result);
     result.struct_size = sizeof result;

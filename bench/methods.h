@@ -24,7 +24,9 @@ typedef struct method_kind {
     bool unsound;        /* misses pairs, and is measured for that */
     bool is_hash;        /* else a query of the library with the next two */
     uint32_t method, contour;
-    bool is_step; /* of a step from one pose to another, see step_method.h */
+    bool is_step;  /* of a step from one pose to another, see step_method.h */
+    uint32_t simd; /* SC_SIMD_... */
+    bool serial;   /* one thread, however many the others have */
 } method_kind;
 
 /* All methods, in the order in which they are listed. */
@@ -33,6 +35,16 @@ extern const size_t method_count;
 
 /* The method of a name, or NULL. */
 const method_kind *method_find(const char *name);
+
+/* A method by name, or a query of the library with something changed: NAME@HOW. */
+typedef struct method_variant {
+    method_kind kind; /* its name is the next: do not copy */
+    char name[32];
+} method_variant;
+
+/* Reads NAME or NAME@HOW; HOW is base, avx2 or avx512 (the instructions that queries use) or serial. False, with
+   a message in *reason, if there is no such method. */
+bool method_read(const char *text, method_variant *variant, const char **reason);
 
 /* A mesh with its model. Poses are floats where the mesh has floats, else doubles. */
 typedef struct method_mesh {

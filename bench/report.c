@@ -147,6 +147,8 @@ static void list_record(report_fields *fields, const measurement *m, const repor
     add_number(fields, "primitives", primitives);
     add_some(fields, "leaf_pairs", library, (double)stats->leaf_pairs);
     add_number(fields, "exact_fallbacks", (double)stats->exact_fallbacks);
+    add_some(fields, "contour_edges", library, (double)stats->counts[SC_TASK_UPDATE_CONTOURS]);
+    add_some(fields, "near_pairs", context->options->count_near, (double)record->near);
 }
 
 static bool print_json(const report_fields *fields)

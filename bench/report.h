@@ -14,6 +14,8 @@
  *     update_boxes_ms ... primitives_contour_ms    the nine tasks, from a query that is not in ms
  *     cpu_share (first line)           processor time by wall time of timed queries, see measure.h
  *     nodes, nodes_oriented, nodes_culled, boxes, primitives, leaf_pairs, exact_fallbacks    counts
+ *     contour_edges                    that contour tests looked at; of star contours, segments
+ *     near_pairs                       with --near: of the pose, see near_pairs.h
  * What a method does not have is null, or empty in CSV.
  */
 #ifndef BENCH_REPORT_H

@@ -7,7 +7,9 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
+#include "bench_model.h"
 #include "measure.h"
+#include "one_shot.h"
 #include "progress.h"
 #include "report.h"
 #include "scenes/scene.h"
@@ -38,7 +40,9 @@ static const char usage[] =
     "\n"
     "How:\n"
     "  --methods A,B,...  exact, star, none, aabb-sctt, aabb, hash (all; --list explains);\n"
-    "                     of steps: step, step-star, step-none, step-two-boxes, step-swept (all)\n"
+    "                     of steps: step, step-star, step-none, step-two-boxes, step-swept (all).\n"
+    "                     exact@avx2: with these instructions; likewise @base and @avx512.\n"
+    "                     exact@serial: on one thread, whatever --workers says\n"
     "  --pairs KIND       triangle or edge: pairs of triangles, or of an edge and a triangle;\n"
     "                     step: vertex-face and edge-edge pairs between each frame and the next\n"
     "                     (triangle)\n"
@@ -52,6 +56,9 @@ static const char usage[] =
     "wall\n"
     "                     time divided by K, that is, throughput: a query runs on one thread (1)\n"
     "  --workers K        each query on K threads; not with --threads (1)\n"
+    "  --near             count the pairs of triangles whose boxes overlap, in each frame\n"
+    "  --one-shot         one query of the first frame from nothing: build, workspace, query and\n"
+    "                     freeing them, by methods of the library (exact, aabb)\n"
     "\n"
     "Output:\n"
     "  --json             JSON Lines: a description of the run, then an object a frame and method\n"
@@ -71,13 +78,13 @@ static const tool_choice pairs_choices[] = {
     {"triangle", SC_PAIRS_TRIANGLE}, {"edge", SC_PAIRS_EDGE}, {"step", METHOD_STEPS}, {NULL, 0}};
 
 static const tool_choice partition_choices[] = {
-    {"fast", MEASURE_FAST}, {"metis", MEASURE_METIS}, {"structure", MEASURE_STRUCTURE}, {NULL, 0}};
+    {"fast", BENCH_FAST}, {"metis", BENCH_METIS}, {"structure", BENCH_STRUCTURE}, {NULL, 0}};
 
 typedef struct bench_settings {
     const char *scene, *scene_dir, *methods, *export_dir, *export_obj, *cache;
     uint32_t triangles, frames; /* 0: as the scene has it */
     uint32_t format;
-    bool list;
+    bool list, one_shot;
     measure_options measure;
 } bench_settings;
 
@@ -158,46 +165,57 @@ static void name_of_path(const char *path, char *name, size_t size)
  * Measuring
  */
 
-/* Fills kinds, which has room for all methods, with those that are asked for. */
-static bool choose_methods(const char *text, bool steps, const method_kind **kinds, size_t *count)
+/* The methods of a run. */
+typedef struct method_choice {
+    method_variant variants[16];
+    const method_kind *kinds[16];
+    size_t count;
+} method_choice;
+
+static bool add_method(method_choice *choice, const char *name, bool steps)
 {
-    *count = 0;
-    if (!text) {
-        for (size_t i = 0; i < method_count; i++) {
-            if (!method_kinds[i].missing && method_kinds[i].is_step == steps)
-                kinds[(*count)++] = &method_kinds[i];
-        }
-        return true;
+    method_variant *variant = &choice->variants[choice->count];
+    const char *reason;
+    if (choice->count == sizeof choice->kinds / sizeof *choice->kinds) {
+        tool_error("--methods: too many");
+        return false;
     }
-    while (*text) {
+    if (!method_read(name, variant, &reason)) {
+        tool_error("--methods: %s: %s; see --list", name, reason);
+        return false;
+    }
+    if (variant->kind.is_step != steps) {
+        tool_error("--methods: %s %s", name,
+                   steps ? "knows no steps (--pairs step)" : "is of steps: --pairs step");
+        return false;
+    }
+    for (size_t i = 0; i < choice->count; i++) {
+        if (strcmp(choice->kinds[i]->name, name) != 0) continue;
+        tool_error("--methods: %s is there twice", name);
+        return false;
+    }
+    choice->kinds[choice->count++] = &variant->kind;
+    return true;
+}
+
+/* Those that text names, or all. */
+static bool choose_methods(const char *text, bool steps, method_choice *choice)
+{
+    choice->count = 0;
+    for (size_t i = 0; !text && i < method_count; i++) {
+        if (!method_kinds[i].missing && method_kinds[i].is_step == steps)
+            add_method(choice, method_kinds[i].name, steps);
+    }
+    while (text && *text) {
         char name[32];
         const size_t length = strcspn(text, ",");
         snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), text);
         text += length;
         if (*text == ',') text++;
-        const method_kind *kind = method_find(name);
-        if (!kind) {
-            tool_error("--methods: there is no method '%s'; see --list", name);
-            return false;
-        }
-        if (kind->missing) {
-            tool_error("--methods: %s: %s", name, kind->missing);
-            return false;
-        }
-        if (kind->is_step != steps) {
-            tool_error("--methods: %s %s", name,
-                       steps ? "knows no steps (--pairs step)" : "is of steps: --pairs step");
-            return false;
-        }
-        for (size_t i = 0; i < *count; i++) {
-            if (kinds[i] != kind) continue;
-            tool_error("--methods: %s is there twice", name);
-            return false;
-        }
-        kinds[(*count)++] = kind;
+        if (!add_method(choice, name, steps)) return false;
     }
-    if (*count == 0) tool_error("--methods: names no method; see --list");
-    return *count > 0;
+    if (choice->count == 0) tool_error("--methods: names no method; see --list");
+    return choice->count > 0;
 }
 
 /* Says which methods disagree, where and by how much. */
@@ -218,14 +236,14 @@ static void show_disagreement(const measurement *m)
 
 static int measure_scene(const bench_settings *set, scene_folder *scene, const char *name)
 {
-    const method_kind *kinds[16];
+    method_choice choice;
     char error[MESH_FILE_ERROR_SIZE];
     measurement m;
-    memset(&m, 0, sizeof m);
-    m.methods = kinds;
-    if (!choose_methods(set->methods, set->measure.question.pairs == METHOD_STEPS, kinds,
-                        &m.method_count))
+    if (!choose_methods(set->methods, set->measure.question.pairs == METHOD_STEPS, &choice))
         return TOOL_FAILED;
+    memset(&m, 0, sizeof m);
+    m.methods = choice.kinds;
+    m.method_count = choice.count;
     const bool done = measure_run(&m, scene, &set->measure, progress_show, error, sizeof error);
     progress_end();
     if (!done) {
@@ -253,6 +271,26 @@ static int measure_scene(const bench_settings *set, scene_folder *scene, const c
     }
     measure_free(&m);
     return status;
+}
+
+static int measure_one_shot(const bench_settings *set, scene_folder *scene, const char *name)
+{
+    method_choice choice;
+    char error[MESH_FILE_ERROR_SIZE];
+    if (!choose_methods(set->methods ? set->methods : "exact,aabb", false, &choice))
+        return TOOL_FAILED;
+    for (size_t i = 0; i < choice.count; i++) {
+        if (!choice.kinds[i]->is_hash) continue;
+        tool_error("--one-shot: by methods of the library only");
+        return TOOL_FAILED;
+    }
+    const one_shot_options options = {set->measure.question, set->measure.partition,
+                                      set->measure.repeats};
+    if (one_shot_run(scene, name, choice.kinds, choice.count, &options, set->format == REPORT_JSON,
+                     error, sizeof error))
+        return TOOL_CLEAN;
+    tool_error("%s", error);
+    return TOOL_FAILED;
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -300,6 +338,10 @@ static int run(const bench_settings *set, char **paths, int path_count)
         tool_error("--proper: a step has no proper crossings");
         return TOOL_FAILED;
     }
+    if (set->one_shot && set->measure.question.pairs == METHOD_STEPS) {
+        tool_error("--one-shot: a step is none");
+        return TOOL_FAILED;
+    }
     const int sources = (set->scene != NULL) + (set->scene_dir != NULL) + (path_count > 0);
     if (set->list) {
         list_all();
@@ -319,6 +361,7 @@ static int run(const bench_settings *set, char **paths, int path_count)
     if (!(set->scene ? open_generated(set, &scene) : open_given(set, paths, path_count, &scene)))
         return TOOL_FAILED;
     const int status = set->export_dir || set->export_obj ? export_scene(set, &scene)
+                       : set->one_shot                    ? measure_one_shot(set, &scene, name)
                                                           : measure_scene(set, &scene, name);
     scene_folder_close(&scene);
     return status;
@@ -339,6 +382,8 @@ int main(int argc, char **argv)
         OPTION_REPEATS,
         OPTION_THREADS,
         OPTION_WORKERS,
+        OPTION_NEAR,
+        OPTION_ONE_SHOT,
         OPTION_JSON,
         OPTION_CSV,
         OPTION_LIST,
@@ -361,6 +406,8 @@ int main(int argc, char **argv)
         {"repeats", required_argument, NULL, OPTION_REPEATS},
         {"threads", required_argument, NULL, OPTION_THREADS},
         {"workers", required_argument, NULL, OPTION_WORKERS},
+        {"near", no_argument, NULL, OPTION_NEAR},
+        {"one-shot", no_argument, NULL, OPTION_ONE_SHOT},
         {"json", no_argument, NULL, OPTION_JSON},
         {"csv", no_argument, NULL, OPTION_CSV},
         {"list", no_argument, NULL, OPTION_LIST},
@@ -417,6 +464,12 @@ int main(int argc, char **argv)
         case OPTION_WORKERS:
             valid &=
                 tool_parse_number("--workers", optarg, 1, SC_WORKERS_MAX, &set.measure.workers);
+            break;
+        case OPTION_NEAR:
+            set.measure.count_near = true;
+            break;
+        case OPTION_ONE_SHOT:
+            set.one_shot = true;
             break;
         case OPTION_JSON:
             set.format = REPORT_JSON;

@@ -35,10 +35,10 @@ refuses() {
 
 "$bench" --list >"$scratch/list"
 for name in twisted-cloth cloth-sphere cat bunny bunny-bumpy bunny-spiky horse wrinkled-cloth sphere \
-    exact star none aabb-sctt aabb hash; do
+    squeezed-rods exact star none aabb-sctt aabb hash; do
     check "--list names $name" grep -q "^  $name " "$scratch/list"
 done
-for option in scene triangles frames methods pairs proper partition threads repeats once json csv list \
+for option in scene triangles frames methods pairs proper partition threads repeats once near one-shot json csv list \
     export export-obj scene-dir; do
     "$bench" --help >"$scratch/help"
     check "--help explains --$option" grep -q -e "--$option" "$scratch/help"
@@ -48,7 +48,7 @@ check "--version" "$bench" --version
 check "no scene" refuses "no scene given"
 check "two scenes" refuses "at a time" --scene sphere meshes/sphere.obj
 check "an unknown scene" refuses "no scene 'cube'" --scene cube
-check "an unknown method" refuses "no method 'fast'" meshes/sphere.obj --methods star,fast
+check "an unknown method" refuses "fast: there is no such method" meshes/sphere.obj --methods star,fast
 check "a method twice" refuses "twice" meshes/sphere.obj --methods star,star
 check "no method" refuses "no method" meshes/sphere.obj --methods ''
 check "an unknown kind of pairs" refuses "is not one of" meshes/sphere.obj --pairs vertex
@@ -140,6 +140,35 @@ check "two workers" small --workers 2 --once
 check "not both" refuses "one of them" meshes/sphere.obj --workers 2 --threads 2
 check "no workers" refuses "whole number" meshes/sphere.obj --workers 0
 check "passes over the animation" small --once --repeats 2
+sets=base
+for set in avx2 avx512f; do
+    ! grep -qw "$set" /proc/cpuinfo 2>/dev/null || sets="$sets ${set%f}"
+done
+for set in $sets; do
+    check "@$set finds the same" small --once --methods "exact,exact@$set,aabb@$set"
+done
+check "@serial beside two workers" small --once --workers 2 --methods exact,exact@serial
+check "an unknown @" refuses "none of base" meshes/sphere.obj --methods exact@fast
+check "a method twice, with @" refuses "twice" meshes/sphere.obj --methods exact@base,exact@base
+check "@ on what is not the library's" refuses "only queries of the library" meshes/sphere.obj \
+    --methods hash@base
+near_pairs() {
+    small --near --json --methods exact >"$scratch/near" &&
+        ! sed 1d "$scratch/near" | grep -qv '"near_pairs":[0-9]' && grep -q '"near_pairs":[1-9]' "$scratch/near"
+}
+check "--near counts" near_pairs
+check "and only --near" grep -q '"near_pairs":null' "$scratch/json"
+one_shot() {
+    small --one-shot --repeats 2 --methods exact,aabb,exact@base --json >"$scratch/shots" &&
+        test "$(grep -c '"build_ms":[0-9.]*,"workspace_ms":[0-9.]*,"query_ms":[0-9.]*,"total_ms":[0-9]' \
+            "$scratch/shots")" -eq 3
+}
+check "--one-shot" one_shot
+check "--one-shot as a table" small --one-shot
+check "--one-shot with pairs" run meshes/crossing_cloths.obj --one-shot --repeats 1
+check "--one-shot needs an order, too" refuses "without an order" meshes/sphere.obj --one-shot --partition structure
+check "no --one-shot of steps" refuses "a step is none" meshes/sphere.obj --one-shot --pairs step
+check "no --one-shot of the hash" refuses "methods of the library" meshes/sphere.obj --one-shot --methods hash
 
 pairs_of() {
     "$@" --json --methods star --repeats 1 | sed -n 's/.*"pairs":\([0-9]*\).*/\1/p'

@@ -1,5 +1,5 @@
 /*
- * Scenes that are formulas of time: a sphere at rest, cloth crushed into tight layers, tight rods.
+ * Scenes that are formulas of time: a sphere at rest, cloth crushed into tight layers, tight and squeezed rods.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -172,7 +172,8 @@ int scene_start_crushed_cloth(scene_motion *motion, uint32_t triangles, char *er
 
 /* ------------------------------------------------------------------------------------------------
  * Tight rods: a square bundle of open tubes with little space between them, wrung about its axis, and
- * pinched in the middle, where their neighbours get into them.
+ * pinched in the middle, where their neighbours get into them. Squeezed rods: the same bundle pressed
+ * together along its whole length, so that walls of many tubes lie side by side everywhere.
  */
 
 enum { ROD_SIDE = 8, RODS = ROD_SIDE * ROD_SIDE, ROD_AROUND = 8 };
@@ -181,6 +182,9 @@ static const double rod_radius = 0.48; /* the distance of rods is 1 */
 
 typedef struct rods_scene {
     uint32_t rings;
+    double turns; /* half the angle between the two ends, in the end */
+    double pinch; /* by what part rods come closer */
+    double waist; /* how fast that fades away from the middle; 0: not at all */
 } rods_scene;
 
 /* A bundle's rods are numbered along a Z-shaped curve, so that consecutive ones are close. */
@@ -199,15 +203,15 @@ static void pose_rods(void *state, double time, double *positions)
 {
     const rods_scene *scene = (const rods_scene *)state;
     const double length = (double)(scene->rings - 1) * 2.0 * pi * rod_radius / ROD_AROUND;
-    const double wring = 2.0 * scene_ease(0.0, 1.0, time);
-    const double pinch = 0.25 * scene_ease(0.3, 1.0, time);
+    const double wring = scene->turns * scene_ease(0.0, 1.0, time);
+    const double pinch = scene->pinch * scene_ease(0.3, 1.0, time);
     double *out = positions;
     for (uint32_t rod = 0; rod < RODS; rod++) {
         double x, y;
         rod_center(rod, &x, &y);
         for (uint32_t ring = 0; ring < scene->rings; ring++) {
             const double along = 2.0 * ring / (double)(scene->rings - 1) - 1.0;
-            const double narrow = 1.0 - pinch * exp(-16.0 * along * along);
+            const double narrow = 1.0 - pinch * exp(-scene->waist * along * along);
             const double c = cos(wring * along), s = sin(wring * along);
             for (uint32_t k = 0; k < ROD_AROUND; k++, out += 3) {
                 const double angle = 2.0 * pi * (k + 0.5 * (ring % 2)) / ROD_AROUND;
@@ -221,7 +225,8 @@ static void pose_rods(void *state, double time, double *positions)
     }
 }
 
-int scene_start_tight_rods(scene_motion *motion, uint32_t triangles, char *error, size_t error_size)
+static int start_rods(scene_motion *motion, uint32_t triangles, double turns, double pinch,
+                      double waist, char *error, size_t error_size)
 {
     rods_scene *scene = (rods_scene *)calloc(1, sizeof *scene);
     motion->state = scene;
@@ -236,6 +241,9 @@ int scene_start_tight_rods(scene_motion *motion, uint32_t triangles, char *error
         return scene_fail(error, error_size, "rods: out of memory");
     }
     scene->rings = bands + 1;
+    scene->turns = turns;
+    scene->pinch = pinch;
+    scene->waist = waist;
     uint32_t *out = motion->triangles;
     for (uint32_t rod = 0; rod < RODS; rod++) {
         for (uint32_t band = 0; band < bands; band++) {
@@ -252,4 +260,15 @@ int scene_start_tight_rods(scene_motion *motion, uint32_t triangles, char *error
     }
     for (uint32_t t = 0; t < motion->triangle_count; t++) motion->order[t] = t;
     return 0;
+}
+
+int scene_start_tight_rods(scene_motion *motion, uint32_t triangles, char *error, size_t error_size)
+{
+    return start_rods(motion, triangles, 2.0, 0.25, 16.0, error, error_size);
+}
+
+int scene_start_squeezed_rods(scene_motion *motion, uint32_t triangles, char *error,
+                              size_t error_size)
+{
+    return start_rods(motion, triangles, 0.5, 0.38, 0.0, error, error_size);
 }

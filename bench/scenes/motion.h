@@ -35,6 +35,7 @@ int scene_start_horse(scene_motion *, uint32_t, char *, size_t);
 int scene_start_sphere(scene_motion *, uint32_t, char *, size_t);
 int scene_start_crushed_cloth(scene_motion *, uint32_t, char *, size_t);
 int scene_start_tight_rods(scene_motion *, uint32_t, char *, size_t);
+int scene_start_squeezed_rods(scene_motion *, uint32_t, char *, size_t);
 
 /* Writes a printf-like message and returns -1. */
 #if defined(__GNUC__)

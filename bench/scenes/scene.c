@@ -22,7 +22,7 @@
 /* Raised whenever a scene changes, so that what is cached is made anew. */
 enum { SCENE_VERSION = 1 };
 
-enum { FRAMES = 60, KINDS = 11 };
+enum { FRAMES = 60, KINDS = 12 };
 
 static const uint32_t sizes_twisted[] = {4096, 16384, 65536, 262144, 1048576, 0};
 static const uint32_t sizes_draped[] = {20000, 80000, 320000, 0};
@@ -47,6 +47,8 @@ static const scene_kind kinds[KINDS] = {
     {"sphere", "closed sphere that wobbles, never touching itself", sizes_sphere, FRAMES},
     {"crushed-cloth", "cloth rolled up and dented: tight layers", sizes_crushed, FRAMES},
     {"tight-rods", "bundle of rods close to each other, wrung and pinched", sizes_rods, FRAMES},
+    {"squeezed-rods", "the same bundle, pressed together along its whole length", sizes_rods,
+     FRAMES},
 };
 
 /* In the same order. */
@@ -54,7 +56,7 @@ static const scene_start starts[KINDS] = {
     scene_start_twisted_cloth, scene_start_cloth_sphere,   scene_start_cat,
     scene_start_bunny,         scene_start_bunny_bumpy,    scene_start_bunny_spiky,
     scene_start_horse,         scene_start_wrinkled_cloth, scene_start_sphere,
-    scene_start_crushed_cloth, scene_start_tight_rods,
+    scene_start_crushed_cloth, scene_start_tight_rods,     scene_start_squeezed_rods,
 };
 
 const scene_kind *scene_kinds(size_t *count)
