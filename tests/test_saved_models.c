@@ -436,6 +436,7 @@ static uint32_t list_arrays(const sc_model *m, model_array *arrays)
     uint32_t segment_point_total = m->segment_point_total;
     uint32_t segment_child_total = m->segment_child_total, share_count = m->share_count;
     uint32_t open_count = m->open_count, open_total = m->open_total;
+    uint32_t loop_total = m->loop_total;
 #define LIST(array, type, length)                                                                  \
   arrays[n].name = #array;                                                                         \
   arrays[n].offset = m->offset[n];                                                                 \
@@ -465,6 +466,12 @@ static int is_mask(const model_array *array)
     return strcmp(array->name, "share_rows") == 0 || strcmp(array->name, "share_own_rows") == 0;
 }
 
+static unsigned is_little_endian(void)
+{
+    const uint16_t one = 1;
+    return *(const unsigned char *)&one;
+}
+
 /* Each number of each array replaced by others. What no array may hold is always refused. */
 static void forged_arrays(void)
 {
@@ -479,6 +486,8 @@ static void forged_arrays(void)
             unsigned char *base = s.data + sizeof(sc_saved_header) + arrays[a].offset;
             for (uint64_t i = 0; arrays[a].words == 0 && i < arrays[a].count; ++i) {
                 unsigned char old = base[i];
+                if (strcmp(arrays[a].name, "loop") == 0 && (i ^ is_little_endian()) % 2 == 0)
+                    continue; /* the places of points, of which any may be meant */
                 base[i] = 0xff;
                 CHECK_MSG(try_forged(&s, &mesh) || is_mask(&arrays[a]), "%s[%" PRIu64 "] = 255",
                           arrays[a].name, i);
@@ -1107,8 +1116,8 @@ static void format(void)
     uint64_t hash = 0;
     for (size_t i = 0; i + 1 < sizeof(arrays); ++i)
         hash = (hash ^ (unsigned char)arrays[i]) * 0x100000001b3u;
-    CHECK_MSG(hash == UINT64_C(0xf6138c900f4a6dea), "0x%" PRIx64, hash);
-    CHECK_MSG(sizeof(sc_model) == 392, "%zu", sizeof(sc_model));
+    CHECK_MSG(hash == UINT64_C(0x4f9060e4c4e57018), "0x%" PRIx64, hash);
+    CHECK_MSG(sizeof(sc_model) == 416, "%zu", sizeof(sc_model));
     CHECK(header->version == 1);
     free(s.memory);
     sc_model_free(model);

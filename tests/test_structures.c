@@ -559,6 +559,57 @@ static uint32_t check_rings(const steps *s, const sc_model *model)
     return rings;
 }
 
+/* The edges of a node's loop, from point to point; writes as many as there are. */
+static void list_loop(const steps *s, const sc_model *m, uint32_t n, sc_pair *edges)
+{
+    sc_pair pair = sc_model_node_patches(m)[n];
+    const uint32_t *first = sc_model_node_loop(m) + n, *leaf = sc_model_leaf(m);
+    uint32_t split = leaf[pair.a + 1] - leaf[pair.a], count = first[1] - first[0];
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t number = sc_model_loop(m)[first[0] + i], at = number / SC_LEAF_POINTS;
+        at = at < split ? leaf[pair.a] + at : leaf[pair.b] + at - split;
+        CHECK(at < leaf[(at < leaf[pair.a + 1] ? pair.a : pair.b) + 1]);
+        number = sc_model_leaf_point(m)[SC_LEAF_POINTS * at + number % SC_LEAF_POINTS];
+        edges[i].a = edges[(i + count - 1) % count].b = s->points.slot[number];
+    }
+}
+
+/* The loop of each node has the edges of its segments, one leading to the next; there is one unless they are in
+   pieces. */
+static void check_loops(const steps *s, const sc_model *m)
+{
+    const sc_csf *csf = &s->csf;
+    uint32_t most = 0, wrong = 0;
+    sc_pair *loop, *edges;
+    for (uint32_t n = 0; n < m->node_count; ++n)
+        if (most < sc_model_node_loop(m)[n + 1] - sc_model_node_loop(m)[n])
+            most = sc_model_node_loop(m)[n + 1] - sc_model_node_loop(m)[n];
+    loop = (sc_pair *)test_allocate((most + 1) * sizeof(sc_pair));
+    edges = (sc_pair *)test_allocate((most + 1) * sizeof(sc_pair));
+    for (uint32_t n = 0; n < m->node_count; ++n) {
+        uint32_t looped = sc_model_node_loop(m)[n + 1] - sc_model_node_loop(m)[n], count = 0;
+        uint32_t i = csf->contour_first[n] + (s->sctt.touch[n] == SC_NONE ? 0 : 2);
+        sc_pair *end = edges;
+        if (looped == 0) {
+            wrong += !csf->in_pieces[n] && csf->contour_first[n + 1] > i;
+            continue;
+        }
+        wrong += csf->in_pieces[n];
+        for (uint32_t k = i; k < csf->contour_first[n + 1]; ++k)
+            count += count_edges(csf, csf->contours[k]);
+        wrong += count != looped;
+        if (count != looped) continue;
+        for (; i < csf->contour_first[n + 1]; ++i) end = flatten(csf, csf->contours[i], end);
+        list_loop(s, m, n, loop);
+        qsort(loop, looped, sizeof(sc_pair), compare_pairs);
+        qsort(edges, looped, sizeof(sc_pair), compare_pairs);
+        wrong += memcmp(loop, edges, looped * sizeof(sc_pair)) != 0;
+    }
+    CHECK_MSG(wrong == 0, "%s: loops of %" PRIu32 " nodes wrong", s->name, wrong);
+    free(loop);
+    free(edges);
+}
+
 static void check_model(const steps *s, const patches *p, const soup *mesh,
                         const sc_build_options *options)
 {
@@ -626,6 +677,7 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
     }
     CHECK_MSG(wrong == 0, "%s: triangles of the model are wrong", s->name);
     check_hops(s, model);
+    check_loops(s, model);
     if (model->triangle_count < 400) check_rings(s, model);
 end:
     sc_model_free(model);

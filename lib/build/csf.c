@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/assume.h"
+#include "build/chains.h"
 
 /* The cosine up to which a run may turn from its first half-edge. */
 static const double TURN_COSINE = 0.25;
@@ -34,7 +35,7 @@ typedef struct builder {
     sc_scratch *scratch;
     contour_level *levels; /* level_count */
     uint32_t segments;
-    sc_list points_first, points_list, child_first, children;
+    sc_list points_first, half_edges, child_first, children;
     sc_list contours;                            /* node lists, deepest level first */
     uint32_t *node_first, *node_count;           /* node_count: a node's part of contours */
     uint32_t *run_patch, *run_out, *run_segment; /* the runs of the level at hand */
@@ -208,15 +209,15 @@ static int add_leaf_segment(builder *b, contour_level *level, uint32_t start)
     uint32_t e = start, h;
     if (!sc_list_reserve(b->scratch, &b->points_first, 2)) return 0; /* one for the end of all */
     level->segment[start] = b->segments++;
-    sc_list_add(&b->points_first, (uint32_t)b->points_list.count);
+    sc_list_add(&b->points_first, (uint32_t)b->half_edges.count);
     do {
         h = level->half_edges[e];
-        if (!sc_list_reserve(b->scratch, &b->points_list, 2)) return 0;
-        sc_list_add(&b->points_list, b->points->triangles[h]);
+        if (!sc_list_reserve(b->scratch, &b->half_edges, 2)) return 0;
+        sc_list_add(&b->half_edges, h);
         level->end[start] = e;
         e = level->next[e];
     } while (!level->start[e]);
-    sc_list_add(&b->points_list, b->points->triangles[sc_adjacency_next(h)]);
+    sc_list_add(&b->half_edges, sc_adjacency_next(h)); /* starts at the last point */
     return 1;
 }
 
@@ -313,103 +314,69 @@ static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
     return SC_OK;
 }
 
-static uint32_t find_piece(uint32_t *parent, uint32_t i)
+/* How many points the lists of a node's segments have, and edges. */
+static void count_points(const sc_csf *csf, const uint32_t *segments, uint32_t count,
+                         uint64_t *points, uint64_t *edges)
 {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
+    uint32_t i;
+    for (*edges = 0, i = 0; i < count; i++)
+        *edges += csf->point_last[segments[i]] - csf->point_first[segments[i]];
+    *points = *edges + count;
 }
 
-/* Segments one after the other as each leads into the next, so that a query finds few chains; starting_at is
-   SC_NONE for each point, before and after. */
-static void chain_segments(const sc_csf *csf, uint32_t *segments, uint32_t count,
-                           uint32_t *starting_at, uint32_t *next, uint32_t *old)
+/* Whether a node gets a loop of so many edges, see csf.h. */
+static int has_loop(const sc_xbvh *xbvh, sc_pair patches, uint64_t edges)
 {
-    uint32_t i, j, n = 0;
-    memcpy(old, segments, count * sizeof *old);
-    for (i = count; i-- > 0;) {
-        uint32_t *first = &starting_at[csf->points[csf->point_first[old[i]]]];
-        next[i] = *first;
-        *first = i;
-    }
-    for (i = 0; i < count; i++) /* the lists hold what is left */
-        while ((j = starting_at[csf->points[csf->point_first[old[i]]]]) != SC_NONE)
-            while (j != SC_NONE) {
-                starting_at[csf->points[csf->point_first[old[j]]]] = next[j];
-                segments[n++] = old[j];
-                j = starting_at[csf->points[csf->point_last[old[j]]]];
-            }
+    uint32_t leaves = xbvh->leaf[patches.a + 1] - xbvh->leaf[patches.a];
+    if (patches.b != patches.a) leaves += xbvh->leaf[patches.b + 1] - xbvh->leaf[patches.b];
+    return leaves <= SC_LOOP_LEAVES && edges < 0xfffff000u;
 }
 
-/* The same for each node; the patches of those that share one point are apart. */
-static sc_status chain_contours(builder *b, sc_csf *csf, uint32_t longest)
-{
-    uint32_t n, *next, *old, *starting_at;
-    next = (uint32_t *)sc_scratch_take(b->scratch, longest, sizeof *next);
-    old = (uint32_t *)sc_scratch_take(b->scratch, longest, sizeof *old);
-    starting_at = (uint32_t *)sc_scratch_take_filled(b->scratch, b->points->point_count,
-                                                     sizeof *starting_at, 0xff);
-    if (!next || !old || !starting_at) return SC_ERROR_MEMORY;
-    for (n = 0; n < b->sctt->node_count; n++) {
-        uint32_t *segments = csf->contours + csf->contour_first[n];
-        uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n], first = 0;
-        if (b->sctt->touch[n] != SC_NONE) {
-            first = segments[1];
-            segments += 2;
-            count -= 2;
-            chain_segments(csf, segments, first, starting_at, next, old);
-        }
-        chain_segments(csf, segments + first, count - first, starting_at, next, old);
-    }
-    sc_scratch_give(b->scratch, next);
-    sc_scratch_give(b->scratch, old);
-    sc_scratch_give(b->scratch, starting_at);
-    return SC_OK;
-}
-
-/* Counts the points round each node, and finds those whose segments hang together. */
+/* Chains the segments of each node, and measures them. The patches of those that share one point are apart: their
+   chains, made one in all, are not stored. */
 static sc_status measure_contours(builder *b, sc_csf *csf)
 {
-    uint32_t nodes = b->sctt->node_count, n, i, k, longest = 0, *parent, *seen_at, *seen_by;
+    const sc_sctt *sctt = b->sctt;
+    uint32_t nodes = sctt->node_count, n, longest = 0, *both;
+    uint64_t loops = 0, points, edges;
+    sc_chains chains;
     for (n = 0; n < nodes; n++)
         if (csf->contour_first[n + 1] - csf->contour_first[n] > longest)
             longest = csf->contour_first[n + 1] - csf->contour_first[n];
-    if (chain_contours(b, csf, longest)) return SC_ERROR_MEMORY;
-    parent = (uint32_t *)sc_scratch_take(b->scratch, longest, sizeof *parent);
-    seen_at = (uint32_t *)sc_scratch_take_filled(b->scratch, b->points->point_count,
-                                                 sizeof *seen_at, 0xff);
-    seen_by = (uint32_t *)sc_scratch_take(b->scratch, b->points->point_count, sizeof *seen_by);
+    chains.points = csf->points;
+    chains.first = csf->point_first;
+    chains.last = csf->point_last;
+    both = (uint32_t *)sc_scratch_take(b->scratch, longest, sizeof *both);
     csf->in_pieces = (uint8_t *)sc_scratch_take(b->scratch, nodes, 1);
-    if (!parent || !seen_at || !seen_by || !csf->in_pieces) return SC_ERROR_MEMORY;
+    csf->loop_first =
+        (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)nodes + 1, sizeof(uint32_t));
+    if (!both || !csf->in_pieces || !csf->loop_first ||
+        sc_chains_take(b->scratch, b->points->point_count, longest, &chains))
+        return SC_ERROR_MEMORY;
     csf->contour_max = 0;
     for (n = 0; n < nodes; n++) {
-        uint32_t begin = csf->contour_first[n] + (b->sctt->touch[n] == SC_NONE ? 0 : 2);
-        uint32_t count = csf->contour_first[n + 1] - begin, listed = 0, pieces = count;
-        const uint32_t *segments = csf->contours + begin;
-        for (i = 0; i < count; i++) parent[i] = i;
-        for (i = 0; i < count; i++) {
-            uint32_t end[2];
-            end[0] = csf->points[csf->point_first[segments[i]]];
-            end[1] = csf->points[csf->point_last[segments[i]]];
-            listed += csf->point_last[segments[i]] - csf->point_first[segments[i]] + 1;
-            for (k = 0; k < 2; k++) {
-                uint32_t p, q;
-                if (seen_at[end[k]] != n) {
-                    seen_at[end[k]] = n;
-                    seen_by[end[k]] = i;
-                    continue;
-                }
-                p = find_piece(parent, i);
-                q = find_piece(parent, seen_by[end[k]]);
-                parent[p] = q;
-                pieces -= p != q;
-            }
+        uint32_t *segments = csf->contours + csf->contour_first[n], first, pieces;
+        uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n];
+        if (sctt->touch[n] == SC_NONE) {
+            pieces = sc_chains_order(&chains, segments, count);
+        } else {
+            first = segments[1];
+            segments += 2;
+            count -= 2;
+            memcpy(both, segments, count * sizeof *both);
+            pieces = sc_chains_order(&chains, both, count);
+            (void)sc_chains_order(&chains, segments, first);
+            (void)sc_chains_order(&chains, segments + first, count - first);
         }
         csf->in_pieces[n] = pieces > 1;
-        if (listed > csf->contour_max) csf->contour_max = listed;
+        count_points(csf, segments, count, &points, &edges);
+        if (points > csf->contour_max) csf->contour_max = (uint32_t)points;
+        csf->loop_first[n] = (uint32_t)loops;
+        if (pieces == 1 && has_loop(b->xbvh, sctt->patches[n], loops + edges)) loops += edges;
     }
-    sc_scratch_give(b->scratch, parent);
-    sc_scratch_give(b->scratch, seen_at);
-    sc_scratch_give(b->scratch, seen_by);
+    csf->loop_first[nodes] = (uint32_t)loops;
+    sc_chains_give(b->scratch, &chains);
+    sc_scratch_give(b->scratch, both);
     return SC_OK;
 }
 
@@ -460,10 +427,15 @@ static sc_status lay_out_points(builder *b, sc_csf *csf)
         last[s] += first[s];
     }
     csf->points = (uint32_t *)sc_scratch_take(b->scratch, end, sizeof *csf->points);
-    if (!csf->points) return SC_ERROR_MEMORY;
+    csf->half_edges = (uint32_t *)sc_scratch_take(b->scratch, end, sizeof *csf->half_edges);
+    if (!csf->points || !csf->half_edges) return SC_ERROR_MEMORY;
+    for (s = 0; s < csf->leaf_count;
+         s++) /* last points; then the others, where one of them is first */
+        csf->half_edges[last[s]] = b->half_edges.items[from[s + 1] - 1];
     for (s = 0; s < csf->leaf_count; s++)
-        memcpy(csf->points + first[s], b->points_list.items + from[s],
-               (size_t)(from[s + 1] - from[s]) * sizeof *csf->points);
+        memcpy(csf->half_edges + first[s], b->half_edges.items + from[s],
+               (size_t)(last[s] - first[s]) * sizeof *csf->half_edges);
+    for (i = 0; i < end; i++) csf->points[i] = b->points->triangles[csf->half_edges[i]];
     csf->point_first = first;
     csf->point_last = last;
     csf->point_count = (uint32_t)end;
@@ -510,7 +482,7 @@ static void give_back(builder *b)
     sc_scratch_give(b->scratch, b->patch_first);
     sc_scratch_give(b->scratch, b->patch_runs);
     sc_scratch_give(b->scratch, b->points_first.items);
-    sc_scratch_give(b->scratch, b->points_list.items);
+    sc_scratch_give(b->scratch, b->half_edges.items);
     sc_scratch_give(b->scratch, b->contours.items);
 }
 
@@ -540,9 +512,9 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
     csf->segment_count = b.segments;
     if (!sc_list_reserve(scratch, &b.points_first, 1) ||
         !sc_list_reserve(scratch, &b.child_first, 1) ||
-        !sc_list_reserve(scratch, &b.points_list, 1) || !sc_list_reserve(scratch, &b.children, 1))
+        !sc_list_reserve(scratch, &b.half_edges, 1) || !sc_list_reserve(scratch, &b.children, 1))
         return SC_ERROR_MEMORY;
-    sc_list_add(&b.points_first, (uint32_t)b.points_list.count);
+    sc_list_add(&b.points_first, (uint32_t)b.half_edges.count);
     sc_list_add(&b.child_first, (uint32_t)b.children.count);
     csf->child_first = b.child_first.items;
     csf->children = b.children.items;

@@ -26,22 +26,28 @@
 
 #include "build/sctt.h"
 
+/* So many leaf clusters have numbers for their points in 16 bits. */
+enum { SC_LOOP_LEAVES = 65536 / SC_LEAF_POINTS };
+
 /* Scratch memory. */
 typedef struct sc_csf {
     uint32_t segment_count, leaf_count;
     uint32_t *point_first; /* segment_count: place of the segment's first point in points */
     uint32_t *point_last;  /* segment_count: place of its last */
     uint32_t *points;      /* point_count */
+    uint32_t *half_edges; /* point_count: one that starts there; the segment's own, if it goes on */
     uint32_t point_count;
     uint32_t *child_first; /* segment_count - leaf_count + 1: children of segment leaf_count + i */
     uint32_t *children;    /* child_first[segment_count - leaf_count] */
     /* The segments round the patches of each node of the self-collision test tree: around their
        union, or, for a pair that shares one point (sctt.touch), that point, the number of segments of
-       its first patch, those, and those of its second. Each list goes from segment to segment as they
-       lead into each other, while there is a next one. */
+       its first patch, those, and those of its second. Each list is of closed chains, see build/chains.h. */
     uint32_t *contour_first; /* node_count + 1 */
     uint32_t *contours;      /* contour_first[node_count] */
-    uint8_t *in_pieces; /* node_count: 1 if no chain of segments with common ends joins them all */
+    uint8_t *in_pieces;      /* node_count: 1 if there is more than one chain */
+    /* Loops: for each node whose segments are one closed chain, the number of its half-edges; 0 for those in pieces and
+       those of more than SC_LOOP_LEAVES leaf clusters. See build/loops.h. */
+    uint32_t *loop_first;     /* node_count + 1 */
     uint32_t *level_segments; /* level_count: segments of each level */
     uint32_t contour_max;     /* points of the segments round a node, at most */
 } sc_csf;

@@ -23,6 +23,7 @@ void sc_model_lay_out(sc_model *m)
     uint32_t leaf_count = m->leaf_count, level_count = m->level_count;
     uint32_t patch_end = m->patch_end, ring_total = m->ring_total, node_count = m->node_count;
     uint32_t box_count = m->box_count, contour_total = m->contour_total;
+    uint32_t loop_total = m->loop_total;
     uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
     uint32_t segment_point_total = m->segment_point_total, share_count = m->share_count;
     uint32_t segment_child_total = m->segment_child_total;
@@ -286,6 +287,7 @@ static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
     m->node_count = sctt->node_count;
     m->box_count = sctt->box_count;
     m->contour_total = csf->contour_first[sctt->node_count];
+    m->loop_total = csf->loop_first[sctt->node_count];
     m->segment_count = csf->segment_count;
     m->leaf_segment_count = csf->leaf_count;
     m->segment_point_total = csf->point_count;
@@ -362,6 +364,8 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, boxes, sc_pair), sctt->boxes, m->box_count * sizeof(sc_pair));
     copy(NEW_ARRAY(m, node_contour, uint32_t), csf->contour_first,
          ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, node_loop, uint32_t), csf->loop_first,
+         ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, segment_first, uint32_t), csf->point_first,
          m->segment_count * sizeof(uint32_t));
     copy(NEW_ARRAY(m, segment_last, uint32_t), csf->point_last,
@@ -372,6 +376,12 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
          m->segment_child_total * sizeof(uint32_t));
     write_segments(csf, number, sctt, m);
     write_levels(xbvh, sctt, csf, NEW_ARRAY(m, level_info, sc_level));
+    status = sc_loops_write(csf, sctt, xbvh, hierarchy->order, sc_model_leaf_corner(m),
+                            points->point_count, scratch, NEW_ARRAY(m, loop, uint16_t));
+    if (status) {
+        sc_model_release(m);
+        return status;
+    }
     status =
         count_connected(adjacency, hierarchy, xbvh, scratch, NEW_ARRAY(m, level_info, sc_level));
     if (status) {

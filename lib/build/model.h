@@ -15,7 +15,7 @@
 #ifndef SC_BUILD_MODEL_H
 #define SC_BUILD_MODEL_H
 
-#include "build/csf.h"
+#include "build/loops.h"
 #include "build/sharing.h"
 
 /* One level of patches, and how its nodes fared in the rest pose. */
@@ -67,6 +67,7 @@ enum {
  *                   join each of them with, some perhaps twice
  *   node_...        see build/sctt.h (patches, child, boxes) and build/csf.h (contour)
  *   boxes           BVTT children
+ *   node_loop, loop   see build/loops.h
  *   segment_...     see build/csf.h
  *   level_info      see above
  */
@@ -99,6 +100,8 @@ enum {
   X(boxes, sc_pair, box_count)                                                                     \
   X(node_contour, uint32_t, (uint64_t)node_count + 1)                                              \
   X(contours, uint32_t, contour_total)                                                             \
+  X(node_loop, uint32_t, (uint64_t)node_count + 1)                                                 \
+  X(loop, uint16_t, loop_total)                                                                    \
   X(node_flags, uint8_t, node_count)                                                               \
   X(node_kind, uint8_t, node_count)                                                                \
   X(segment_first, uint32_t, segment_count)                                                        \
@@ -123,10 +126,11 @@ struct sc_model {
     uint32_t vertex_count, point_count, triangle_count, edge_count;
     uint32_t component_count, boundary_edges, irregular_edges;
     uint32_t leaf_count, level_count, patch_end;
-    uint32_t node_count, box_count, contour_total;
+    uint32_t node_count, box_count, contour_total, loop_total;
     uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
     uint32_t contour_max; /* points of the segments round a node, at most */
     uint32_t ring_total, open_count, open_total, share_count;
+    uint32_t unused; /* 0, for an even number of these */
 };
 
 /* Stands before the model and fills one alignment unit. */

@@ -19,7 +19,8 @@ int sc_model_check_counts(const sc_model *m, uint64_t bytes)
     if (!m->point_count || m->point_count > m->vertex_count) return 0;
     if (!m->leaf_count || m->leaf_count > m->triangle_count) return 0;
     if (!m->level_count || m->level_count > SC_DEPTH_MAX) return 0;
-    if (!m->patch_end || !m->node_count || m->segment_count < m->leaf_segment_count) return 0;
+    if (m->unused || !m->patch_end || !m->node_count || m->segment_count < m->leaf_segment_count)
+        return 0;
     if (m->patch_end > limit || m->node_count > limit || m->box_count > limit) return 0;
     sc_model_lay_out(&expected);
     if (m->bytes != bytes || expected.bytes != bytes) return 0;
@@ -298,6 +299,27 @@ static int check_contours(const sc_model *m)
     return most == m->contour_max;
 }
 
+/* The points of each loop are of the node's leaf clusters, and no more than its triangles have sides. */
+static int check_loops(const sc_model *m)
+{
+    const uint32_t *first = sc_model_node_loop(m), *leaf = sc_model_leaf(m);
+    const uint16_t *loop = sc_model_loop(m);
+    const sc_pair *patches = sc_model_node_patches(m);
+    uint32_t n, i;
+    for (n = 0; n < m->node_count; n++) {
+        uint32_t a = patches[n].a, b = patches[n].b, bad = 0;
+        uint64_t leaves = leaf[a + 1] - leaf[a], triangles = patch_size(m, a);
+        if (a != b) {
+            leaves += leaf[b + 1] - leaf[b];
+            triangles += patch_size(m, b);
+        }
+        if (first[n + 1] - first[n] > 3 * triangles) return 0;
+        for (i = first[n]; i < first[n + 1]; i++) bad |= loop[i] >= SC_LEAF_POINTS * leaves;
+        if (bad) return 0;
+    }
+    return 1;
+}
+
 /* The points of each segment. */
 static int check_segments(const sc_model *m)
 {
@@ -382,6 +404,9 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(node_kind, bytes_below(sc_model_node_kind(m), m->node_count, 4));
     CHECK(node_contour,
           are_lists(sc_model_node_contour(m), m->node_count, m->contour_total, 0, SC_NONE));
+    CHECK(node_loop,
+          are_lists(sc_model_node_loop(m), m->node_count, m->loop_total, 0, m->contour_max));
+    CHECK(loop, check_loops(m));
     CHECK(segment_first, check_segments(m));
     CHECK(points, are_points(m, sc_model_points(m), m->segment_point_total));
     CHECK(segment_children,

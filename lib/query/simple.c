@@ -61,6 +61,25 @@ static void list_points(sc_simple_contour *c, const sc_model *model, const uint3
     for (i = n; i < (blocks + 1) * SC_CONTOUR_BLOCK; i++) e->point[i] = e->point[n - 1];
 }
 
+/* Lists the points of a loop, and the first again. */
+static void list_loop(sc_simple_contour *c, const sc_model *model, uint32_t node, uint32_t count)
+{
+    const sc_contour_edges *e = c->edges;
+    const uint16_t *loop = sc_model_loop(model) + sc_model_node_loop(model)[node];
+    const sc_pair *patches = &sc_model_node_patches(model)[node];
+    const uint32_t *leaf = sc_model_leaf(model), *points = sc_model_leaf_point(model);
+    uint32_t split = SC_LEAF_POINTS * (leaf[patches->a + 1] - leaf[patches->a]);
+    uint32_t first = SC_LEAF_POINTS * leaf[patches->a];
+    uint32_t second = SC_LEAF_POINTS * leaf[patches->b] - split, i;
+    for (i = 0; i < count; i++) e->point[i] = points[loop[i] + (loop[i] < split ? first : second)];
+    c->count = count + 1;
+    c->blocks = count / SC_CONTOUR_BLOCK + 1;
+    for (i = count; i < (c->blocks + 1) * SC_CONTOUR_BLOCK; i++) e->point[i] = e->point[0];
+    memset(e->is_edge, 0xff, c->blocks * sizeof *e->is_edge);
+    e->is_edge[c->blocks - 1] = (uint16_t)((1u << count % SC_CONTOUR_BLOCK) - 1u);
+    e->is_edge[c->blocks] = 0;
+}
+
 /* Each chain is a tree of its own. */
 static void list_pieces(const sc_simple_contour *c)
 {
@@ -300,7 +319,14 @@ int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *wo
 {
     const uint32_t *segments = sc_model_contours(model) + sc_model_node_contour(model)[node];
     uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
+    uint32_t looped = sc_model_node_loop(model)[node + 1] - sc_model_node_loop(model)[node];
     int kind = sc_model_node_kind(model)[node];
+    if (looped) {
+        memset(c, 0, sizeof *c);
+        c->edges = &workspace->contour;
+        list_loop(c, model, node, looped);
+        return 1;
+    }
     if (kind & SC_NODE_TOUCHES) {
         segments += 2;
         count -= 2;
@@ -317,11 +343,20 @@ int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *wo
 void sc_simple_fetch(const sc_model *model, uint32_t node, int step)
 {
     const uint32_t *at = sc_model_node_contour(model) + node, *segments, *first, *last;
+    const uint32_t *looped = sc_model_node_loop(model) + node;
     uint32_t i, count;
     if (step == 0) {
         sc_fetch(at);
+        sc_fetch(looped);
         sc_fetch(sc_model_node_kind(model) + node);
         sc_fetch(sc_model_node_patches(model) + node);
+        return;
+    }
+    if (looped[1] > looped[0]) {
+        const uint16_t *loop = sc_model_loop(model) + looped[0];
+        count = looped[1] - looped[0] < 256 ? looped[1] - looped[0] : 256;
+        if (step == 1)
+            for (i = 0; i < count; i += 32) sc_fetch(loop + i);
         return;
     }
     segments = sc_model_contours(model) + at[0];

@@ -1,0 +1,77 @@
+/*
+ * Loops. See loops.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/loops.h"
+
+#include <string.h>
+
+#include "build/chains.h"
+
+/* Of each point of a segment: 16 times the leaf cluster of its half-edge, plus its place there. */
+static uint32_t *find_places(const sc_csf *csf, const sc_xbvh *xbvh, const uint32_t *order,
+                             const uint8_t *leaf_corner, sc_scratch *scratch)
+{
+    const uint32_t *first = xbvh->leaf_first;
+    uint32_t *place = (uint32_t *)sc_scratch_take(scratch, csf->point_count, sizeof *place);
+    uint32_t *row = (uint32_t *)sc_scratch_take(scratch, first[xbvh->leaf_count], sizeof *row);
+    uint32_t leaf, i;
+    if (!place || !row) return NULL;
+    for (leaf = 0; leaf < xbvh->leaf_count; leaf++)
+        for (i = first[leaf]; i < first[leaf + 1]; i++)
+            row[order[i]] = SC_LEAF_MAX * leaf + (i - first[leaf]);
+    for (i = 0; i < csf->point_count; i++) {
+        uint32_t h = csf->half_edges[i], at = row[h / 3];
+        leaf = at / SC_LEAF_MAX;
+        place[i] = SC_LEAF_POINTS * leaf +
+                   leaf_corner[SC_LEAF_MAX * (3 * (uint64_t)leaf + h % 3) + at % SC_LEAF_MAX];
+    }
+    sc_scratch_give(scratch, row);
+    return place;
+}
+
+/* One node's; segments are those of its one chain. */
+static void write_loop(const sc_csf *csf, const sc_xbvh *xbvh, sc_pair patches,
+                       const uint32_t *segments, const uint32_t *place, uint16_t *loop,
+                       const uint16_t *end)
+{
+    uint32_t first = SC_LEAF_POINTS * xbvh->leaf[patches.a];
+    uint32_t count = SC_LEAF_POINTS * xbvh->leaf[patches.a + 1] - first;
+    uint32_t second = SC_LEAF_POINTS * xbvh->leaf[patches.b] - count;
+    while (loop < end) {
+        uint32_t i = csf->point_first[*segments], last = csf->point_last[*segments];
+        uint32_t base = place[i] - first < count ? first : second;
+        for (segments++; i < last; i++) *loop++ = (uint16_t)(place[i] - base);
+    }
+}
+
+sc_status sc_loops_write(const sc_csf *csf, const sc_sctt *sctt, const sc_xbvh *xbvh,
+                         const uint32_t *order, const uint8_t *leaf_corner, uint64_t point_count,
+                         sc_scratch *scratch, uint16_t *loop)
+{
+    uint32_t n, *place = find_places(csf, xbvh, order, leaf_corner, scratch), *both;
+    sc_chains chains;
+    both = (uint32_t *)sc_scratch_take(scratch, csf->contour_max, sizeof *both);
+    chains.points = csf->points;
+    chains.first = csf->point_first;
+    chains.last = csf->point_last;
+    if (!place || !both || sc_chains_take(scratch, point_count, csf->contour_max, &chains))
+        return SC_ERROR_MEMORY;
+    for (n = 0; n < sctt->node_count; n++) {
+        const uint32_t *segments = csf->contours + csf->contour_first[n];
+        if (csf->loop_first[n] == csf->loop_first[n + 1]) continue;
+        if (sctt->touch[n] != SC_NONE) { /* the patches are apart, but their chains meet */
+            uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n] - 2;
+            memcpy(both, segments + 2, count * sizeof *both);
+            (void)sc_chains_order(&chains, both, count);
+            segments = both;
+        }
+        write_loop(csf, xbvh, sctt->patches[n], segments, place, loop + csf->loop_first[n],
+                   loop + csf->loop_first[n + 1]);
+    }
+    sc_chains_give(scratch, &chains);
+    sc_scratch_give(scratch, both);
+    sc_scratch_give(scratch, place);
+    return SC_OK;
+}

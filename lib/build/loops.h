@@ -1,0 +1,26 @@
+/*
+ * Loops: the contour of each node as one closed list of points, ready to be fetched.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * A query tests the contours of nodes as a whole (query/simple.h), and following segments from place to place would cost
+ * it more than the test itself. So each contour that is one closed chain is stored point by point, in 16 bits: 16 times the
+ * number of a leaf cluster that has the point, plus its place in leaf_point. Leaf clusters are numbered within the node,
+ * those of its first patch before those of its second. About 18 points a triangle in all.
+ *
+ * Contours in pieces, and of more than SC_LOOP_LEAVES leaf clusters, which are few, have an empty loop.
+ */
+#ifndef SC_BUILD_LOOPS_H
+#define SC_BUILD_LOOPS_H
+
+#include "build/csf.h"
+
+/*
+ * Writes the loops, csf->loop_first[node_count] numbers. leaf_corner is as in the model (build/model.h), order the
+ * hierarchy's.
+ */
+sc_status sc_loops_write(const sc_csf *csf, const sc_sctt *sctt, const sc_xbvh *xbvh,
+                         const uint32_t *order, const uint8_t *leaf_corner, uint64_t point_count,
+                         sc_scratch *scratch, uint16_t *loop);
+
+#endif
