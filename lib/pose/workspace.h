@@ -68,7 +68,7 @@ typedef struct sc_contour_edges {
  * Where a query with the exact contour test is, see query/traversal.c. The stack holds what failed of some full
  * queues, each from deeper levels than the one before; and for each of these, brothers of what is looked at.
  */
-enum { SC_WALK_QUEUE = 60, SC_WALK_CHILDREN = 4 };
+enum { SC_WALK_QUEUE = 60, SC_WALK_CHILDREN = 4, SC_WALK_PAIRS = 64 };
 
 typedef struct sc_walk {
     uint32_t
@@ -79,6 +79,9 @@ typedef struct sc_walk {
     uint8_t *marks;  /* patch_end: where that is written down; the same, if one worker does all */
     uint32_t stack_count, queue_count, self_count;
     uint32_t selfs_wait;
+    sc_pair pairs[2]
+                 [SC_WALK_PAIRS]; /* of patches that are left to boxes; [1] after a contour test */
+    uint32_t pair_count[2];
 } sc_walk;
 
 enum { SC_CANDIDATES_MAX = 1024 };

@@ -97,6 +97,7 @@ static void start_workers(plan *p)
         walk->culled = p->w->culled;
         memset(walk->marks, 0, model->patch_end);
         walk->stack_count = walk->queue_count = walk->self_count = 0;
+        walk->pair_count[0] = walk->pair_count[1] = 0;
         walk->selfs_wait = 1;
     }
     memset(p->w->culled, 0, model->patch_end);
@@ -246,19 +247,6 @@ static void add_patch(plan *p, uint32_t a)
     }
 }
 
-/* The patches of a node that is left to boxes. */
-static void leave_to_boxes_in_parts(plan *p, const sc_pair *patches)
-{
-    uint32_t previous;
-    sc_traversal_follow_contour(p->state, 0);
-    previous = sc_state_switch(p->state, sc_state_box_task(p->state));
-    if (patches->a == patches->b)
-        add_patch(p, patches->a);
-    else
-        add_patches(p, patches->a, patches->b);
-    sc_state_switch(p->state, previous);
-}
-
 static int is_large_node(const sc_model *model, uint32_t node)
 {
     const sc_pair *patches = &sc_model_node_patches(model)[node];
@@ -282,8 +270,35 @@ static void add_boxes_of_node(plan *p, uint32_t node)
 
 /* ---- the walk with the exact contour test ---- */
 
+/* The pairs of patches that wait in the walk of the calling thread, and nothing else does. */
+static void sort_out_pairs(plan *p)
+{
+    const sc_boxes *boxes = &p->w->patch_boxes;
+    sc_walk *walk = &p->w->walk;
+    sc_pair pairs[SC_WALK_PAIRS];
+    int after_contour;
+    for (after_contour = 0; after_contour < 2; after_contour++) {
+        uint32_t i, count = walk->pair_count[after_contour], previous;
+        if (!count) continue;
+        memcpy(pairs, walk->pairs[after_contour], count * sizeof *pairs);
+        walk->pair_count[after_contour] = 0;
+        update_boxes(p);
+        sc_traversal_follow_contour(p->state, after_contour);
+        previous = sc_state_switch(p->state, sc_state_box_task(p->state));
+        p->state->stats.counts[sc_state_box_task(p->state)] += count;
+        for (i = 0; i < count; i++) {
+            if (!sc_boxes_overlap(boxes, pairs[i].a, boxes, pairs[i].b)) continue;
+            if (pairs[i].a == pairs[i].b)
+                add_patch(p, pairs[i].a);
+            else
+                add_patches(p, pairs[i].a, pairs[i].b);
+        }
+        sc_state_switch(p->state, previous);
+    }
+}
+
 /* What waits in the walk of the calling thread: what is large is opened or tested next, the rest are parts. There is
-   room for the parts, as a job of parts would go on with that walk. */
+   room for those of nodes, as a job of parts would go on with that walk. */
 static void sort_out(plan *p)
 {
     const sc_model *model = p->state->model;
@@ -302,22 +317,17 @@ static void sort_out(plan *p)
             add_part(p, PART_TEST, walk->queue[i], 0);
     }
     walk->stack_count = walk->queue_count = 0;
+    sort_out_pairs(p);
 }
 
 /* Opens large nodes that failed, and those that fail below them. */
 static void open_nodes(plan *p)
 {
     while (p->open_count && !sc_state_stops(p->state)) {
-        uint32_t node = p->w->open[--p->open_count];
         update_boxes(p);
         if (p->part_count > SC_PARTS_MAX - 2 * SC_WALK_CHILDREN) do_parts(p);
-        if (sc_traversal_is_left(p->state, node)) {
-            leave_to_boxes_in_parts(p, &sc_model_node_patches(p->state->model)[node]);
-            continue;
-        }
-        sc_traversal_open(p->state, node);
+        sc_traversal_open(p->state, p->w->open[--p->open_count]);
         sort_out(p);
-        add_boxes_of_node(p, node);
     }
 }
 

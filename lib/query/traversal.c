@@ -114,16 +114,108 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
  * own projection, and nodes can be tested in any order: those that pass the orientation test wait in
  * a short queue, so that the memory for some is fetched while others are tested. Nodes of one patch wait
  * until all else is done, since a patch that is in a node of two that was culled is culled with it.
- * A node of two patches with one parent has the contour of that parent, which failed.
+ * A node of two patches with one parent has the contour of that parent, which failed. Pairs of patches that are left to
+ * boxes wait as well: tests of boxes that do not depend on each other wait for memory at the same time.
  */
 
-/* A node that failed a test, or has a contour that did. */
-static void put_back(sc_query_state *state, uint32_t node)
+/*
+ * Where little can be culled, the test tree is a waste: its nodes are many, and boxes are faster by themselves. The
+ * prospect of a patch is the number of seams between its leaf clusters that may be culled: m - 1 for m that are a patch
+ * which passes the orientation test. A node that fails it is left to boxes if one of its patches has less than
+ * one for PROSPECT_LEAVES leaf clusters. (Tuned on scenes in which nearly nothing can be culled, rods, spikes,
+ * wrinkles and a crumpled horse, so that those where much can lose nothing: 2 gains there and costs a smooth cat 5 %.)
+ */
+enum { PROSPECT_LEAVES = 3 };
+
+static uint32_t leaves_of(const sc_model *model, uint32_t patch)
+{
+    return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch];
+}
+
+/* The prospect of a patch. Written down for patches without a cone only: above those with one there are no others. */
+static uint32_t find_prospect(const sc_query_state *state, uint32_t patch)
+{
+    const uint32_t *child = sc_model_child(state->model) + patch;
+    uint32_t leaves = leaves_of(state->model, patch), sum, c;
+    if (state->workspace->mask[patch] || leaves == 1) return leaves - 1;
+    for (sum = 0, c = child[0]; c < child[1]; c++) sum += find_prospect(state, c);
+    return state->workspace->prospect[patch] = sum;
+}
+
+void sc_traversal_find_prospects(const sc_query_state *state)
+{
+    find_prospect(state, 0);
+}
+
+static int has_prospect(const sc_query_state *state, uint32_t patch)
+{
+    uint32_t leaves = leaves_of(state->model, patch);
+    if (leaves == 1) return 0;
+    return state->workspace->mask[patch] ||
+           PROSPECT_LEAVES * state->workspace->prospect[patch] >= leaves;
+}
+
+int sc_traversal_is_left(const sc_query_state *state, uint32_t node)
+{
+    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
+    const sc_workspace *w = state->workspace;
+    if (w->mask[patches->a] & w->mask[patches->b]) return 0;
+    return !has_prospect(state, patches->a) || !has_prospect(state, patches->b);
+}
+
+/* Two patches, or one twice, are left to boxes, after a contour test or not. */
+static void leave_to_boxes(sc_query_state *state, uint32_t a, uint32_t b, int after_contour)
 {
     sc_walk *walk = &state->workspace->walk;
+    sc_pair *pair;
+    if (walk->pair_count[after_contour] == SC_WALK_PAIRS) sc_traversal_take_boxes(state);
+    pair = &walk->pairs[after_contour][walk->pair_count[after_contour]++];
+    pair->a = a;
+    pair->b = b;
+}
+
+void sc_traversal_take_boxes(sc_query_state *state)
+{
+    sc_walk *walk = &state->workspace->walk;
+    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    const sc_boxes *boxes = &state->workspace->patch_boxes;
+    int after_contour;
+    for (after_contour = 0; after_contour < 2; after_contour++) {
+        sc_pair *pairs = walk->pairs[after_contour];
+        uint32_t i, count = 0, end = walk->pair_count[after_contour], previous;
+        walk->pair_count[after_contour] = 0;
+        if (!end || sc_state_stops(state)) continue;
+        sc_traversal_follow_contour(state, after_contour);
+        sc_traversal_update_boxes(state);
+        previous = sc_state_switch(state, sc_state_box_task(state));
+        state->stats.counts[sc_state_box_task(state)] += end;
+        for (i = 0; i < end; i++) {
+            pairs[count] = pairs[i];
+            count += (uint32_t)sc_boxes_overlap(boxes, pairs[i].a, boxes, pairs[i].b);
+        }
+        for (i = 0; i < count && !state->stop; i++) {
+            if (pairs[i].a == pairs[i].b)
+                kernels->patch_itself(state, pairs[i].a);
+            else
+                kernels->patch_pair(state, pairs[i].a, pairs[i].b);
+        }
+        sc_state_switch(state, previous);
+    }
+}
+
+/* A node that failed a test, or has a contour that did, mask being what its patches' cones have in common. */
+static void put_back(sc_query_state *state, uint32_t node, uint32_t mask)
+{
+    const sc_model *model = state->model;
+    sc_walk *walk = &state->workspace->walk;
+    if (!mask && sc_traversal_is_left(state, node)) {
+        const sc_pair *patches = &sc_model_node_patches(model)[node];
+        leave_to_boxes(state, patches->a, patches->b, 0);
+        return;
+    }
     walk->stack[walk->stack_count++] = node;
-    sc_fetch(sc_model_node_child(state->model) + node);
-    sc_fetch(sc_model_node_boxes(state->model) + node);
+    sc_fetch(sc_model_node_child(model) + node);
+    sc_fetch(sc_model_node_boxes(model) + node);
 }
 
 void sc_traversal_orient(sc_query_state *state, uint32_t node)
@@ -134,7 +226,7 @@ void sc_traversal_orient(sc_query_state *state, uint32_t node)
     state->stats.counts[SC_TASK_ORIENTATION]++;
     state->stats.nodes_visited++;
     if (!mask) {
-        put_back(state, node);
+        put_back(state, node, mask);
         return;
     }
     state->stats.nodes_oriented++;
@@ -177,9 +269,30 @@ static void test_queue(sc_query_state *state)
         if (sc_traversal_test(state, node))
             walk->marks[patches->a] = walk->marks[patches->b] = 1;
         else
-            put_back(state, node);
+            put_back(state, node, 1);
     }
     walk->queue_count = 0;
+}
+
+/* What a node that is not culled leaves to boxes: its BVTT children, and leaf clusters. */
+static void leave_rest_of_node(sc_query_state *state, uint32_t node)
+{
+    const sc_model *model = state->model;
+    const uint32_t *child = sc_model_node_child(model) + node;
+    const uint32_t *box = sc_model_node_boxes(model) + node;
+    const sc_pair *patches = &sc_model_node_patches(model)[node];
+    int after_contour =
+        (state->workspace->mask[patches->a] & state->workspace->mask[patches->b]) != 0;
+    uint32_t i;
+    for (i = box[0]; i < box[1]; i++)
+        leave_to_boxes(state, sc_model_boxes(model)[i].a, sc_model_boxes(model)[i].b,
+                       after_contour);
+    if (child[0] == child[1] && sc_model_is_leaf(model, patches->a) &&
+        sc_model_is_leaf(model, patches->b)) {
+        uint32_t first = sc_model_first_leaf_patch(model);
+        leave_to_boxes(state, first + leaf_of(model, patches->a),
+                       first + leaf_of(model, patches->b), after_contour);
+    }
 }
 
 void sc_traversal_open(sc_query_state *state, uint32_t node)
@@ -192,78 +305,12 @@ void sc_traversal_open(sc_query_state *state, uint32_t node)
         int is_self = patches[c].a == patches[c].b;
         if (is_self != (patches[node].a == patches[node].b)) {
             state->stats.nodes_visited++;
-            put_back(state, c);
+            put_back(state, c, (uint32_t)w->mask[patches[c].a] & w->mask[patches[c].b]);
         } else if (!is_self || w->walk.selfs_wait || !w->walk.culled[patches[c].a]) {
             sc_traversal_orient(state, c);
         }
     }
-    sc_traversal_follow_contour(state, (w->mask[patches[node].a] & w->mask[patches[node].b]) != 0);
-}
-
-/*
- * Where little can be culled, the test tree is a waste: its nodes are many, and boxes are faster by themselves. The
- * prospect of a patch is the number of seams between its leaf clusters that may be culled: m - 1 for m that are a patch
- * which passes the orientation test. A node that fails it is left to boxes if one of its patches has less than
- * one for PROSPECT_LEAVES leaf clusters. (Tuned on scenes in which nearly nothing can be culled, rods, spikes,
- * wrinkles and a crumpled horse, so that those where much can lose nothing: 2 gains there and costs a smooth cat 5 %.)
- */
-enum { PROSPECT_LEAVES = 3 };
-
-static uint32_t leaves_of(const sc_model *model, uint32_t patch)
-{
-    return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch];
-}
-
-void sc_traversal_find_prospects(const sc_query_state *state)
-{
-    const sc_model *model = state->model;
-    const uint32_t *level_first = sc_model_level_first(model), *child = sc_model_child(model);
-    uint32_t *prospect = state->workspace->prospect, level = model->level_count - 1, p;
-    memset(prospect + level_first[level], 0, model->leaf_count * sizeof *prospect);
-    while (level-- > 0)
-        for (p = level_first[level]; p + 1 < level_first[level + 1]; p++) {
-            uint32_t first = child[p], last = child[p + 1] - 1;
-            if (state->workspace->mask[p])
-                prospect[p] = leaves_of(model, p) - 1;
-            else
-                prospect[p] = prospect[first] + (first == last ? 0 : prospect[last]);
-        }
-}
-
-int sc_traversal_is_left(const sc_query_state *state, uint32_t node)
-{
-    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
-    const sc_workspace *w = state->workspace;
-    if (w->mask[patches->a] & w->mask[patches->b]) return 0;
-    return PROSPECT_LEAVES * w->prospect[patches->a] < leaves_of(state->model, patches->a) ||
-           PROSPECT_LEAVES * w->prospect[patches->b] < leaves_of(state->model, patches->b);
-}
-
-/* Boxes find the pairs of the patches of a node, which overlap as they share a point or are the same. */
-static void leave_to_boxes(sc_query_state *state, const sc_pair *patches)
-{
-    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
-    uint32_t previous;
-    if (sc_state_stops(state)) return;
-    sc_traversal_update_boxes(state);
-    previous = sc_state_switch(state, sc_state_box_task(state));
-    if (patches->a == patches->b)
-        kernels->patch_itself(state, patches->a);
-    else
-        kernels->patch_pair(state, patches->a, patches->b);
-    sc_state_switch(state, previous);
-}
-
-/* Goes on below a node that failed a test. */
-static void look_below(sc_query_state *state, uint32_t node)
-{
-    if (sc_traversal_is_left(state, node)) {
-        sc_traversal_follow_contour(state, 0);
-        leave_to_boxes(state, &sc_model_node_patches(state->model)[node]);
-        return;
-    }
-    sc_traversal_open(state, node);
-    query_rest_of_node(state, node);
+    leave_rest_of_node(state, node);
 }
 
 void sc_traversal_walk(sc_query_state *state)
@@ -272,8 +319,9 @@ void sc_traversal_walk(sc_query_state *state)
     while ((walk->queue_count || walk->stack_count) && !state->stop) {
         test_queue(state);
         while (walk->stack_count && walk->queue_count < SC_WALK_QUEUE && !state->stop)
-            look_below(state, walk->stack[--walk->stack_count]);
+            sc_traversal_open(state, walk->stack[--walk->stack_count]);
     }
+    sc_traversal_take_boxes(state);
 }
 
 static void query_exact(sc_query_state *state)
@@ -283,6 +331,7 @@ static void query_exact(sc_query_state *state)
     uint32_t i;
     memset(walk->culled, 0, state->model->patch_end);
     walk->stack_count = walk->queue_count = walk->self_count = 0;
+    walk->pair_count[0] = walk->pair_count[1] = 0;
     walk->selfs_wait = 1;
     sc_traversal_find_prospects(state);
     sc_traversal_orient(state, 0);

@@ -36,7 +36,10 @@ int sc_traversal_test(sc_query_state *state, uint32_t node);
 void sc_traversal_find_prospects(const sc_query_state *state);
 int sc_traversal_is_left(const sc_query_state *state, uint32_t node);
 
-/* Orientation tests of the children of a node that failed a test; its boxes are left. */
+/* Box and primitive tests of all pairs of patches that wait for them in the walk. */
+void sc_traversal_take_boxes(sc_query_state *state);
+
+/* Orientation tests of the children of a node that failed a test; its pairs of patches wait. */
 void sc_traversal_open(sc_query_state *state, uint32_t node);
 
 /* Goes on until neither queue nor stack has anything left. */
