@@ -76,13 +76,13 @@ offenders=$(
                 print FILENAME ": " name " is also a name of " first[name]
             first[name] = FILENAME
         }
-        # static functions and constants, the end of a structure that is a type, macros (but for SC_KERNEL,
+        # static functions and constants, the end of a structure that is a type, macros (but for SC_KERNEL and SC_LANES,
         # which base/lanes_end.h ends), enumerators
         /^static / { if (match($0, /[A-Za-z_0-9]+(\(|\[| = )/)) { name = substr($0, RSTART, RLENGTH)
                      sub(/[^A-Za-z_0-9]+$/, "", name); found(name) } }
         /^} [A-Za-z_0-9]+;/ { name = $2; sub(/;.*/, "", name); found(name) }
         /^#define / { name = $2; sub(/\(.*/, "", name); found(name) }
-        /^#include "base\/lanes_end.h"/ { delete first["SC_KERNEL"] }
+        /^#include "base\/lanes_end.h"/ { delete first["SC_KERNEL"]; delete first["SC_LANES"] }
         /^enum \{/, /\}/ { line = $0; sub(/^enum \{/, "", line)
                      while (match(line, /[A-Z][A-Z_0-9]* =/)) {
                          found(substr(line, RSTART, RLENGTH - 2)); line = substr(line, RSTART + RLENGTH) } }

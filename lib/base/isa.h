@@ -19,6 +19,14 @@
 #  define SC_ISA_X86 0
 #endif
 
+/* gcc's and clang's vector types, of which they make what the machine has; on 32-bit x86 only with SSE2. SC_NO_VECTORS
+   leaves them alone, too. */
+#if !defined(SC_NO_VECTORS) && defined(__GNUC__) && (!defined(__i386__) || defined(__SSE2__))
+#  define SC_ISA_VECTORS 1
+#else
+#  define SC_ISA_VECTORS 0
+#endif
+
 /* Before a loop of a few rounds, over axes or corners, of which the compiler is to make straight code. */
 #if defined(__clang__)
 #  define SC_UNROLL _Pragma("unroll")

@@ -1,15 +1,15 @@
 /*
  * Sixteen floats at a time, for the instruction set that the including file chose: SC_LANES is AVX-512 (one
- * register), AVX2 (two), SSE2 (what every x86-64 has: four) or, where none is, plain C, which compilers turn
- * into what there is.
+ * register), AVX2 (two), registers of four floats (four; see base/quads.h: SSE2, which every x86-64 has, or what the
+ * compiler makes of its vector types) or, with other compilers, plain C.
  *
  * SPDX-License-Identifier: MIT
  *
  * Operations round as those of single floats do, and there is no fused multiplication and addition, so that
  * all of them give the same results. A comparison gives a mask, of which lanes_bits makes bit i for lane i; with
- * NaN it is false. lanes_next is a moved down by one lane, with the first of b on top; lanes_points reads the
- * first three of four floats at sixteen places. Of the functions of fours, lanes_four repeats four floats four times,
- * lanes_each_four each of four floats, and the others store the least or greatest of each four lanes.
+ * NaN it is false. lanes_points reads the first three of four floats at sixteen places. Of the functions of fours,
+ * lanes_four repeats four floats four times, lanes_each_four each of four floats, and the others store the least or
+ * greatest of each four lanes.
  *
  * Included once for each instruction set, by the .c files that include kernels, which define SC_KERNEL(name) to
  * make names of their own; so this has no guard. base/lanes_end.h ends it.
@@ -17,10 +17,12 @@
 #include <math.h>
 
 #include "base/bits.h"
+#include "base/quads.h"
 
 #define SC_LANES_AVX512 (SC_LANES == 3)
 #define SC_LANES_AVX2 (SC_LANES == 2)
-#define SC_LANES_SSE2 (SC_LANES == 1)
+#define SC_LANES_QUADS (SC_LANES == 1)
+#define SC_LANES_SSE2 (SC_LANES_QUADS && SC_ISA_X86)
 
 #define lanes SC_KERNEL(sc_lanes)
 #define lanes_all SC_KERNEL(sc_lanes_all)
@@ -38,7 +40,6 @@
 #define lanes_both SC_KERNEL(sc_lanes_both)
 #define lanes_bits SC_KERNEL(sc_lanes_bits)
 #define lanes_every SC_KERNEL(sc_lanes_every)
-#define lanes_next SC_KERNEL(sc_lanes_next)
 #define lanes_evens SC_KERNEL(sc_lanes_evens)
 #define lanes_odds SC_KERNEL(sc_lanes_odds)
 #define lanes_sum SC_KERNEL(sc_lanes_sum)
@@ -127,11 +128,6 @@ static inline lanes lanes_odds(lanes a, lanes b)
         _mm512_set_epi32(31, 29, 27, 25, 23, 21, 19, 17, 15, 13, 11, 9, 7, 5, 3, 1);
     return _mm512_permutex2var_ps(a, odds, b);
 }
-static inline lanes lanes_next(lanes a, lanes b)
-{
-    return _mm512_castsi512_ps(
-        _mm512_alignr_epi32(_mm512_castps_si512(b), _mm512_castps_si512(a), 1));
-}
 /* The points i, i + 4, i + 8 and i + 12. */
 static inline __m512 SC_KERNEL(sc_lanes_four_points)(const float *const point[SC_LANES_COUNT],
                                                      int i)
@@ -178,7 +174,7 @@ static inline void lanes_store_most(float *f, lanes a)
     SC_KERNEL(sc_lanes_store_fourth)(f, _mm512_max_ps(a, _mm512_permute_ps(a, 0x4e)));
 }
 
-#elif SC_LANES_AVX2 || SC_LANES_SSE2
+#elif SC_LANES_AVX2 || SC_LANES_QUADS
 
 /* In registers of eight or four floats. SC_LANES_MAP applies f to registers of a, of a and b. */
 #  if SC_LANES_AVX2
@@ -193,11 +189,11 @@ static inline void lanes_store_most(float *f, lanes a)
       r.v[1] = f(1);                                                                               \
       return r
 #  else
-#    define SC_LANES_PART __m128
+#    define SC_LANES_PART sc_floats4
 #    define SC_LANES_PARTS 4
-#    define SC_LANES_OF(name) _mm_##name
-#    define SC_LANES_BELOW(a, b) _mm_cmplt_ps(a, b)
-#    define SC_LANES_NOT_ABOVE(a, b) _mm_cmple_ps(a, b)
+#    define SC_LANES_OF(name) SC_QUAD(name)
+#    define SC_LANES_BELOW(a, b) SC_QUAD(cmplt_ps)(a, b)
+#    define SC_LANES_NOT_ABOVE(a, b) SC_QUAD(cmple_ps)(a, b)
 #    define SC_LANES_MAP(f)                                                                        \
       lanes r;                                                                                     \
       r.v[0] = f(0);                                                                               \
@@ -313,19 +309,6 @@ static inline lanes lanes_odds(lanes a, lanes b)
     r.v[1] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(b.v[0], b.v[1], 0xdd));
     return r;
 }
-static inline __m256 SC_KERNEL(sc_lanes_next_part)(__m256 a, __m256 b)
-{
-    __m256 middle = _mm256_permute2f128_ps(a, b, 0x21); /* a4 to a7, b0 to b3 */
-    return _mm256_castsi256_ps(
-        _mm256_alignr_epi8(_mm256_castps_si256(middle), _mm256_castps_si256(a), 4));
-}
-static inline lanes lanes_next(lanes a, lanes b)
-{
-    lanes r;
-    r.v[0] = SC_KERNEL(sc_lanes_next_part)(a.v[0], a.v[1]);
-    r.v[1] = SC_KERNEL(sc_lanes_next_part)(a.v[1], b.v[0]);
-    return r;
-}
 static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, __m256 *x, __m256 *y,
                                                    __m256 *z)
 {
@@ -353,94 +336,88 @@ static inline lanes lanes_each_four(const float *f)
     r.v[1] = _mm256_set_m128(_mm_set1_ps(f[3]), _mm_set1_ps(f[2]));
     return r;
 }
-/* Fours of a, transposed. */
-#    define SC_LANES_FOURS(a)                                                                      \
-      __m128 r0 = _mm256_castps256_ps128((a).v[0]), r1 = _mm256_extractf128_ps((a).v[0], 1);       \
-      __m128 r2 = _mm256_castps256_ps128((a).v[1]), r3 = _mm256_extractf128_ps((a).v[1], 1);       \
-      _MM_TRANSPOSE4_PS(r0, r1, r2, r3)
 
 #  else
 
 static inline unsigned lanes_bits(lanes_mask a)
 {
-    return (unsigned)_mm_movemask_ps(a.v[0]) | (unsigned)_mm_movemask_ps(a.v[1]) << 4 |
-           (unsigned)_mm_movemask_ps(a.v[2]) << 8 | (unsigned)_mm_movemask_ps(a.v[3]) << 12;
+    return sc_quad_bits(a.v[0], a.v[1], a.v[2], a.v[3]);
 }
 static inline int lanes_every(lanes_mask a)
 {
-    return _mm_movemask_ps(_mm_and_ps(_mm_and_ps(a.v[0], a.v[1]), _mm_and_ps(a.v[2], a.v[3]))) ==
-           15;
+    return sc_quad_every(
+        SC_QUAD(and_ps)(SC_QUAD(and_ps)(a.v[0], a.v[1]), SC_QUAD(and_ps)(a.v[2], a.v[3])));
 }
 static inline lanes lanes_evens(lanes a, lanes b)
 {
     lanes r;
-    r.v[0] = _mm_shuffle_ps(a.v[0], a.v[1], 0x88);
-    r.v[1] = _mm_shuffle_ps(a.v[2], a.v[3], 0x88);
-    r.v[2] = _mm_shuffle_ps(b.v[0], b.v[1], 0x88);
-    r.v[3] = _mm_shuffle_ps(b.v[2], b.v[3], 0x88);
+    r.v[0] = SC_QUAD_SHUFFLE(a.v[0], a.v[1], 0, 2, 0, 2);
+    r.v[1] = SC_QUAD_SHUFFLE(a.v[2], a.v[3], 0, 2, 0, 2);
+    r.v[2] = SC_QUAD_SHUFFLE(b.v[0], b.v[1], 0, 2, 0, 2);
+    r.v[3] = SC_QUAD_SHUFFLE(b.v[2], b.v[3], 0, 2, 0, 2);
     return r;
 }
 static inline lanes lanes_odds(lanes a, lanes b)
 {
     lanes r;
-    r.v[0] = _mm_shuffle_ps(a.v[0], a.v[1], 0xdd);
-    r.v[1] = _mm_shuffle_ps(a.v[2], a.v[3], 0xdd);
-    r.v[2] = _mm_shuffle_ps(b.v[0], b.v[1], 0xdd);
-    r.v[3] = _mm_shuffle_ps(b.v[2], b.v[3], 0xdd);
+    r.v[0] = SC_QUAD_SHUFFLE(a.v[0], a.v[1], 1, 3, 1, 3);
+    r.v[1] = SC_QUAD_SHUFFLE(a.v[2], a.v[3], 1, 3, 1, 3);
+    r.v[2] = SC_QUAD_SHUFFLE(b.v[0], b.v[1], 1, 3, 1, 3);
+    r.v[3] = SC_QUAD_SHUFFLE(b.v[2], b.v[3], 1, 3, 1, 3);
     return r;
 }
-static inline __m128 SC_KERNEL(sc_lanes_next_part)(__m128 a, __m128 b)
+static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, sc_floats4 *x,
+                                                   sc_floats4 *y, sc_floats4 *z)
 {
-    a = _mm_move_ss(a, b);
-    return _mm_shuffle_ps(a, a, 0x39);
-}
-static inline lanes lanes_next(lanes a, lanes b)
-{
-    lanes r;
-    r.v[0] = SC_KERNEL(sc_lanes_next_part)(a.v[0], a.v[1]);
-    r.v[1] = SC_KERNEL(sc_lanes_next_part)(a.v[1], a.v[2]);
-    r.v[2] = SC_KERNEL(sc_lanes_next_part)(a.v[2], a.v[3]);
-    r.v[3] = SC_KERNEL(sc_lanes_next_part)(a.v[3], b.v[0]);
-    return r;
-}
-static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, __m128 *x, __m128 *y,
-                                                   __m128 *z)
-{
-    __m128 r0 = _mm_loadu_ps(point[0]), r1 = _mm_loadu_ps(point[1]);
-    __m128 r2 = _mm_loadu_ps(point[2]), r3 = _mm_loadu_ps(point[3]);
-    _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
-    *x = r0;
-    *y = r1;
-    *z = r2;
+    sc_floats4 r[4];
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 4; i++) r[i] = SC_QUAD(loadu_ps)(point[i]);
+    sc_quad_transpose(r);
+    *x = r[0];
+    *y = r[1];
+    *z = r[2];
 }
 static inline lanes lanes_four(const float *f)
 {
     lanes r;
-    r.v[0] = r.v[1] = r.v[2] = r.v[3] = _mm_loadu_ps(f);
+    r.v[0] = r.v[1] = r.v[2] = r.v[3] = SC_QUAD(loadu_ps)(f);
     return r;
 }
 static inline lanes lanes_each_four(const float *f)
 {
     lanes r;
     int i;
-    for (i = 0; i < 4; i++) r.v[i] = _mm_set1_ps(f[i]);
+    SC_UNROLL
+    for (i = 0; i < 4; i++) r.v[i] = SC_QUAD(set1_ps)(f[i]);
     return r;
 }
-#    define SC_LANES_FOURS(a)                                                                      \
-      __m128 r0 = (a).v[0], r1 = (a).v[1], r2 = (a).v[2], r3 = (a).v[3];                           \
-      _MM_TRANSPOSE4_PS(r0, r1, r2, r3)
 
 #  endif
 
+/* Fours of a, transposed. */
+#  if SC_LANES_AVX2
+#    define SC_LANES_FOURS(a)                                                                      \
+      __m128 r[4];                                                                                 \
+      r[0] = _mm256_castps256_ps128((a).v[0]), r[1] = _mm256_extractf128_ps((a).v[0], 1);          \
+      r[2] = _mm256_castps256_ps128((a).v[1]), r[3] = _mm256_extractf128_ps((a).v[1], 1);          \
+      sc_quad_transpose(r)
+#  else
+#    define SC_LANES_FOURS(a)                                                                      \
+      sc_floats4 *r = (a).v;                                                                       \
+      sc_quad_transpose(r)
+#  endif
 static inline void lanes_store_least(float *f, lanes a)
 {
     SC_LANES_FOURS(a);
-    _mm_storeu_ps(f, _mm_min_ps(_mm_min_ps(r0, r1), _mm_min_ps(r2, r3)));
+    SC_QUAD(storeu_ps)
+    (f, SC_QUAD(min_ps)(SC_QUAD(min_ps)(r[0], r[1]), SC_QUAD(min_ps)(r[2], r[3])));
 }
 static inline void lanes_store_most(float *f, lanes a)
 {
     SC_LANES_FOURS(a);
-    _mm_storeu_ps(f, _mm_max_ps(_mm_max_ps(r0, r1), _mm_max_ps(r2, r3)));
+    SC_QUAD(storeu_ps)
+    (f, SC_QUAD(max_ps)(SC_QUAD(max_ps)(r[0], r[1]), SC_QUAD(max_ps)(r[2], r[3])));
 }
 #  undef SC_LANES_FOURS
 
@@ -543,10 +520,6 @@ static inline lanes lanes_odds(lanes a, lanes b)
 {
     SC_LANES_EACH(i < SC_LANES_COUNT / 2 ? a.v[2 * i + 1] : b.v[2 * i + 1 - SC_LANES_COUNT]);
 }
-static inline lanes lanes_next(lanes a, lanes b)
-{
-    SC_LANES_EACH(i + 1 < SC_LANES_COUNT ? a.v[i + 1] : b.v[0]);
-}
 static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes *x, lanes *y,
                                 lanes *z)
 {
@@ -584,37 +557,37 @@ static inline void lanes_store_most(float *f, lanes a)
  * Reductions: of the upper and lower halves, then of halves of these: the order in which a sum is made, the same
  * for all instruction sets. For the least and the greatest no lane is NaN.
  */
-#if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_SSE2
+#if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_QUADS
 
-/* Eight lanes to four: by 256 bits, or by 128. */
+/* To four lanes: by 256 bits, or by 128. */
 #  if SC_LANES_AVX512
 #    define SC_LANES_HALVE(a, name)                                                                \
-      __m256 h = _mm256_##name##_ps(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));      \
-      __m128 r = _mm_##name##_ps(_mm256_castps256_ps128(h), _mm256_extractf128_ps(h, 1));
+      __m256 h = _mm256_##name(_mm512_castps512_ps256(a), _mm512_extractf32x8_ps(a, 1));           \
+      __m128 r = _mm_##name(_mm256_castps256_ps128(h), _mm256_extractf128_ps(h, 1));
 #  elif SC_LANES_AVX2
 #    define SC_LANES_HALVE(a, name)                                                                \
-      __m256 h = _mm256_##name##_ps((a).v[0], (a).v[1]);                                           \
-      __m128 r = _mm_##name##_ps(_mm256_castps256_ps128(h), _mm256_extractf128_ps(h, 1));
+      __m256 h = _mm256_##name((a).v[0], (a).v[1]);                                                \
+      __m128 r = _mm_##name(_mm256_castps256_ps128(h), _mm256_extractf128_ps(h, 1));
 #  else
 #    define SC_LANES_HALVE(a, name)                                                                \
-      __m128 r = _mm_##name##_ps(_mm_##name##_ps((a).v[0], (a).v[2]),                              \
-                                 _mm_##name##_ps((a).v[1], (a).v[3]));
+      sc_floats4 r =                                                                               \
+          SC_QUAD(name)(SC_QUAD(name)((a).v[0], (a).v[2]), SC_QUAD(name)((a).v[1], (a).v[3]));
 #  endif
 #  define SC_LANES_REDUCE(a, name)                                                                 \
     SC_LANES_HALVE(a, name)                                                                        \
-    r = _mm_##name##_ps(r, _mm_movehl_ps(r, r));                                                   \
-    return _mm_cvtss_f32(_mm_##name##_ss(r, _mm_shuffle_ps(r, r, 1)))
+    r = SC_QUAD(name)(r, SC_QUAD_SHUFFLE(r, r, 2, 3, 2, 3));                                       \
+    return SC_QUAD(cvtss_f32)(SC_QUAD(name)(r, SC_QUAD_SHUFFLE(r, r, 1, 0, 3, 2)))
 static inline float lanes_sum(lanes a)
 {
-    SC_LANES_REDUCE(a, add);
+    SC_LANES_REDUCE(a, add_ps);
 }
 static inline float lanes_least(lanes a)
 {
-    SC_LANES_REDUCE(a, min);
+    SC_LANES_REDUCE(a, min_ps);
 }
 static inline float lanes_most(lanes a)
 {
-    SC_LANES_REDUCE(a, max);
+    SC_LANES_REDUCE(a, max_ps);
 }
 #  undef SC_LANES_HALVE
 #  undef SC_LANES_REDUCE

@@ -1,6 +1,6 @@
 /*
  * Eight doubles at a time, for the instruction set that the including file chose: base/lanes.h, included before,
- * says how. One register of AVX-512, two of AVX2, four of SSE2; elsewhere plain C.
+ * says how. One register of AVX-512, two of AVX2, four of two doubles (base/quads.h); elsewhere plain C.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -96,7 +96,7 @@ static inline void doubles_points(const double *const at[8], doubles *x, doubles
     *z = _mm512_permutex2var_pd(low, second, low2);
 }
 
-#elif SC_LANES_AVX2 || SC_LANES_SSE2
+#elif SC_LANES_AVX2 || SC_LANES_QUADS
 
 /* In registers of four or two doubles. SC_DOUBLES_MAP applies f to each of a, and of b. */
 #  undef SC_DOUBLES_OF
@@ -112,7 +112,7 @@ typedef struct doubles {
     __m256d p0, p1;
 } doubles;
 #  else
-#    define SC_DOUBLES_OF(name) _mm_##name
+#    define SC_DOUBLES_OF(name) SC_QUAD(name)
 #    define SC_DOUBLES_MAP(f)                                                                      \
       doubles r;                                                                                   \
       r.p0 = f(p0);                                                                                \
@@ -121,7 +121,7 @@ typedef struct doubles {
       r.p3 = f(p3);                                                                                \
       return r
 typedef struct doubles {
-    __m128d p0, p1, p2, p3;
+    sc_doubles2 p0, p1, p2, p3;
 } doubles;
 #  endif
 typedef doubles doubles_mask;
@@ -149,18 +149,18 @@ static inline void doubles_store(double *d, doubles a)
 static inline doubles doubles_load(const double *d)
 {
     doubles r;
-    r.p0 = _mm_loadu_pd(d);
-    r.p1 = _mm_loadu_pd(d + 2);
-    r.p2 = _mm_loadu_pd(d + 4);
-    r.p3 = _mm_loadu_pd(d + 6);
+    r.p0 = SC_QUAD(loadu_pd)(d);
+    r.p1 = SC_QUAD(loadu_pd)(d + 2);
+    r.p2 = SC_QUAD(loadu_pd)(d + 4);
+    r.p3 = SC_QUAD(loadu_pd)(d + 6);
     return r;
 }
 static inline void doubles_store(double *d, doubles a)
 {
-    _mm_storeu_pd(d, a.p0);
-    _mm_storeu_pd(d + 2, a.p1);
-    _mm_storeu_pd(d + 4, a.p2);
-    _mm_storeu_pd(d + 6, a.p3);
+    SC_QUAD(storeu_pd)(d, a.p0);
+    SC_QUAD(storeu_pd)(d + 2, a.p1);
+    SC_QUAD(storeu_pd)(d + 4, a.p2);
+    SC_QUAD(storeu_pd)(d + 6, a.p3);
 }
 #  endif
 static inline doubles doubles_add(doubles a, doubles b)
@@ -238,28 +238,27 @@ static inline void doubles_points(const double *const at[8], doubles *x, doubles
 
 static inline doubles_mask doubles_below(doubles a, doubles b)
 {
-#    define SC_DOUBLES_ONE(p) _mm_cmplt_pd(a.p, b.p)
+#    define SC_DOUBLES_ONE(p) SC_QUAD(cmplt_pd)(a.p, b.p)
     SC_DOUBLES_MAP(SC_DOUBLES_ONE);
 #    undef SC_DOUBLES_ONE
 }
 static inline unsigned doubles_bits(doubles_mask a)
 {
-    return (unsigned)_mm_movemask_pd(a.p0) | (unsigned)_mm_movemask_pd(a.p1) << 2 |
-           (unsigned)_mm_movemask_pd(a.p2) << 4 | (unsigned)_mm_movemask_pd(a.p3) << 6;
+    return sc_quad_bits_doubles(a.p0, a.p1, a.p2, a.p3);
 }
 static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
 {
-#    define SC_DOUBLES_ONE(p) _mm_or_pd(_mm_and_pd(m.p, a.p), _mm_andnot_pd(m.p, b.p))
+#    define SC_DOUBLES_ONE(p)                                                                      \
+      SC_QUAD(or_pd)(SC_QUAD(and_pd)(m.p, a.p), SC_QUAD(andnot_pd)(m.p, b.p))
     SC_DOUBLES_MAP(SC_DOUBLES_ONE);
 #    undef SC_DOUBLES_ONE
 }
-static inline void SC_KERNEL(sc_doubles_transpose)(const double *const at[2], __m128d *x,
-                                                   __m128d *y, __m128d *z)
+static inline void SC_KERNEL(sc_doubles_transpose)(const double *const at[2], sc_doubles2 *x,
+                                                   sc_doubles2 *y, sc_doubles2 *z)
 {
-    __m128d a = _mm_loadu_pd(at[0]), b = _mm_loadu_pd(at[1]);
-    *x = _mm_unpacklo_pd(a, b);
-    *y = _mm_unpackhi_pd(a, b);
-    *z = _mm_loadh_pd(_mm_load_sd(at[0] + 2), at[1] + 2);
+    *x = SC_QUAD(setr_pd)(at[0][0], at[1][0]);
+    *y = SC_QUAD(setr_pd)(at[0][1], at[1][1]);
+    *z = SC_QUAD(setr_pd)(at[0][2], at[1][2]);
 }
 static inline void doubles_points(const double *const at[8], doubles *x, doubles *y, doubles *z)
 {

@@ -7,6 +7,7 @@
 #undef SC_LANES
 #undef SC_LANES_AVX512
 #undef SC_LANES_AVX2
+#undef SC_LANES_QUADS
 #undef SC_LANES_SSE2
 #undef lanes
 #undef lanes_all
@@ -24,7 +25,6 @@
 #undef lanes_both
 #undef lanes_bits
 #undef lanes_every
-#undef lanes_next
 #undef lanes_evens
 #undef lanes_odds
 #undef lanes_sum

@@ -102,14 +102,15 @@ static inline lanes lanes_pick(const float *row, lanes_index i)
     return lanes_load(r);
 }
 
-#    if SC_LANES_SSE2
+#    if SC_LANES_QUADS
 
 static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 {
     lanes r;
     int k;
     for (k = 0; k < 4; k++)
-        r.v[k] = _mm_or_ps(_mm_and_ps(m.v[k], a.v[k]), _mm_andnot_ps(m.v[k], b.v[k]));
+        r.v[k] =
+            SC_QUAD(or_ps)(SC_QUAD(and_ps)(m.v[k], a.v[k]), SC_QUAD(andnot_ps)(m.v[k], b.v[k]));
     return r;
 }
 
@@ -127,30 +128,29 @@ static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 #  endif
 #endif
 
-#if SC_LANES_SSE2
+#if SC_LANES_QUADS
 
 /* There is no permutation by numbers: the points one after another, then read again as the corners. */
 static inline void lanes_corners(const float *at, const uint8_t *where, lanes corner[3][3])
 {
     float points[16][4];
-    int c, i;
-    for (i = 0; i < 4; i++) {
-        __m128 x = _mm_loadu_ps(at + 4 * i), y = _mm_loadu_ps(at + 16 + 4 * i);
-        __m128 z = _mm_loadu_ps(at + 32 + 4 * i), w = z;
-        _MM_TRANSPOSE4_PS(x, y, z, w);
-        _mm_storeu_ps(points[4 * i], x);
-        _mm_storeu_ps(points[4 * i + 1], y);
-        _mm_storeu_ps(points[4 * i + 2], z);
-        _mm_storeu_ps(points[4 * i + 3], w);
+    sc_floats4 x[4];
+    int c, i, k;
+    for (i = 0; i < 16; i += 4) {
+        SC_UNROLL
+        for (k = 0; k < 3; k++) x[k] = SC_QUAD(loadu_ps)(at + 16 * k + i);
+        x[3] = x[2];
+        sc_quad_transpose(x);
+        SC_UNROLL
+        for (k = 0; k < 4; k++) SC_QUAD(storeu_ps)(points[i + k], x[k]);
     }
     for (c = 0; c < 3; c++)
         for (i = 0; i < 4; i++, where += 4) {
-            __m128 r0 = _mm_loadu_ps(points[where[0]]), r1 = _mm_loadu_ps(points[where[1]]);
-            __m128 r2 = _mm_loadu_ps(points[where[2]]), r3 = _mm_loadu_ps(points[where[3]]);
-            _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
-            corner[c][0].v[i] = r0;
-            corner[c][1].v[i] = r1;
-            corner[c][2].v[i] = r2;
+            SC_UNROLL
+            for (k = 0; k < 4; k++) x[k] = SC_QUAD(loadu_ps)(points[where[k]]);
+            sc_quad_transpose(x);
+            SC_UNROLL
+            for (k = 0; k < 3; k++) corner[c][k].v[i] = x[k];
         }
 }
 

@@ -1,5 +1,5 @@
 /*
- * The inner loops over a pose, for every machine: by SSE2 on x86-64, else in plain C. See pose_kernels.h.
+ * The inner loops over a pose, for every machine: by SSE2 on x86-64, else as the compiler can. See pose_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -11,12 +11,7 @@
 #include "pose/positions.h"
 
 #define SC_KERNEL(name) name##_pose_base
-#if SC_ISA_X86
-#  include <emmintrin.h>
-#  define SC_LANES 1
-#else
-#  define SC_LANES 0
-#endif
+#define SC_LANES SC_QUADS
 
 #include "base/lanes.h"
 #include "base/lanes_double.h"

@@ -1,5 +1,5 @@
 /*
- * The inner loops of a query, for every machine: by SSE2 on x86-64, else in plain C. See query_kernels.h.
+ * The inner loops of a query, for every machine: by SSE2 on x86-64, else as the compiler can. See query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -12,12 +12,7 @@
 #include "pose/positions.h"
 
 #define SC_KERNEL(name) name##_query_base
-#if SC_ISA_X86
-#  include <emmintrin.h>
-#  define SC_LANES 1
-#else
-#  define SC_LANES 0
-#endif
+#define SC_LANES SC_QUADS
 
 #include "base/lanes.h"
 #include "base/lanes_double.h"

@@ -1,5 +1,5 @@
 /*
- * The inner loops of a query of a step, for every machine: by SSE2 on x86-64, else in plain C. See
+ * The inner loops of a query of a step, for every machine: by SSE2 on x86-64, else as the compiler can. See
  * step_kernels.h.
  *
  * SPDX-License-Identifier: MIT
@@ -13,12 +13,7 @@
 #include "step/step_motion.h"
 
 #define SC_KERNEL(name) name##_step_base
-#if SC_ISA_X86
-#  include <emmintrin.h>
-#  define SC_LANES 1
-#else
-#  define SC_LANES 0
-#endif
+#define SC_LANES SC_QUADS
 
 #include "base/lanes.h"
 #include "step/apart_kernel.h"
