@@ -103,7 +103,7 @@ csv=$scratch/brute.csv
 check "the driver builds" "$MAKE" --no-print-directory config="$SC_CONFIG" "$brute"
 check "it measures" "$brute" --repeats 3 --csv "$csv" "$scene/"
 check "its lines have their columns" rows "$csv"
-check "a line for each frame and method" test "$(wc -l <"$csv")" -eq 9
+check "a line for each frame and method" test "$(wc -l <"$csv")" -eq 10
 for frame in 0 1; do
     eval "pairs=\$pairs_$frame"
     check "starcontour finds $pairs pairs in frame $frame" \
@@ -115,7 +115,7 @@ for frame in 0 1; do
         test "$(found "$csv" brute "all pairs" $frame)" = "$pairs yes"
 done
 check "it adds to a file" "$brute" --frames 1 --repeats 1 --csv "$csv" "$scene"
-check "with one heading" test "$(grep -c '^scene,' "$csv")/$(wc -l <"$csv")" = 1/13
+check "with one heading" test "$(grep -c '^scene,' "$csv")/$(wc -l <"$csv")" = 1/15
 echo "# commit: unknown" >"$scratch/begun.csv"
 check "and to one that has none but remarks" \
     "$brute" --frames 1 --repeats 1 --csv "$scratch/begun.csv" "$scene"
@@ -241,7 +241,22 @@ no_python() {
 }
 check "no python3 is said" says "skipped: peer-ipctk: there is no python3" no_python
 check "and has a status of its own" status 3 no_python
-check "no scene is said" says "SCENES names folders" bench/peers/measure_peer.sh "$scratch/x.csv" "" absent true
-check "and is an error" status 2 bench/peers/measure_peer.sh "$scratch/x.csv" "" absent true
+check "no scene is said" says "SCENES names folders" bench/peers/measure_peer.sh some "$scratch/x.csv" "" absent true
+check "and is an error" status 2 bench/peers/measure_peer.sh some "$scratch/x.csv" "" absent true
+measured() {
+    bench/peers/measure_peer.sh brute "$scratch/driven.csv" "$scene" absent "$brute" --repeats 1 &&
+        test "$(grep -c '^scene,' "$scratch/driven.csv")" -eq 1 &&
+        test "$(grep -c '^touching,' "$scratch/driven.csv")" -eq 9
+}
+check "measure_peer.sh runs a peer on a scene" measured
+if command -v timeout >/dev/null 2>&1; then
+    ended() {
+        LIMIT=0.1 bench/peers/measure_peer.sh slow "$scratch/slow.csv" "$scene" absent sh -c 'sleep 5' &&
+            grep -q '^# skipped: slow on touching: took more than 0.1 s' "$scratch/slow.csv"
+    }
+    check "and ends one that takes too long" ended
+else
+    skip "ending a peer that takes too long: there is no timeout"
+fi
 
 finish
