@@ -19,6 +19,11 @@ import math
 import os
 import sys
 
+sys.dont_write_bytecode = True  # nothing is to appear beside this file
+
+import report_targets as targets
+from report_text import figure, mean, table, times, whole
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 PEERS = ["cgal", "embree", "fcl", "ipctk", "libigl", "meshlib", "trueform"]
@@ -50,23 +55,19 @@ SUMMARY = (["scene", "triangles", "vertices", "partition", "pairs_kind", "contac
             "rest_pairs", "mean_pairs", "most_pairs", "missed", "most_missed", "missed_percent",
             "extra"] + [task + "_ms" for task in TASKS] +
            ["nodes", "boxes", "primitives", "build_ms", "model_bytes", "workspace_bytes",
-            "hash_bytes", "cpu_share"])
+            "hash_bytes", "cpu_share", "rest_contour_ms", "rest_contour_edges"])
 
 # Of steps: means over the animation, a line a scene and method.
 STEPS = ["scene", "triangles", "partition", "steps", "method", "collisions", "missed", "candidates",
          "candidates_ms", "mean_ms", "worst_ms", "cpu_share"]
 
-# A line a frame: milliseconds of each method.
-FRAMES = ["scene", "triangles", "partition", "frame", "pairs", "missed_by_none"] + METHODS
+# A line a frame: milliseconds of each method, and the least of two of them.
+FRAMES = (["scene", "triangles", "partition", "frame", "pairs", "missed_by_none"] + METHODS +
+          ["exact_min", "aabb_min"])
 
 
 # ---------------------------------------------------------------------------------------------------
 # Reading and condensing
-
-def mean(values):
-    values = list(values)
-    return sum(values) / len(values) if values else 0.0
-
 
 def short(number):
     """Six digits at most, as text; whole numbers whole."""
@@ -77,15 +78,16 @@ def short(number):
     return "%.6g" % number
 
 
-def read_runs(folder):
-    """Each run: its description and its records."""
-    runs = []
-    for path in sorted(glob.glob(os.path.join(folder, "*.jsonl"))):
+def read_lines(folder, ending):
+    """Names of files without ending, and their JSON Lines."""
+    for path in sorted(glob.glob(os.path.join(folder, "*" + ending))):
         with open(path, encoding="utf-8") as file:
-            lines = [json.loads(line) for line in file if line.strip()]
-        if len(lines) > 1:
-            runs.append((lines[0], lines[1:]))
-    return runs
+            yield os.path.basename(path), [json.loads(line) for line in file if line.strip()]
+
+
+def read_runs(folder, ending=".jsonl"):
+    """Each run: its description and its records."""
+    return [(lines[0], lines[1:]) for _, lines in read_lines(folder, ending) if len(lines) > 1]
 
 
 def summarize(description, records):
@@ -118,6 +120,9 @@ def summarize(description, records):
             "missed_percent": 100.0 * missed / complete if complete else 0.0,
             "extra": sum(r["extra"] for r in own),
         })
+        if own[0]["nodes"] is not None:
+            row["rest_contour_ms"] = own[0]["update_contours_ms"] + own[0]["contour_ms"]
+            row["rest_contour_edges"] = own[0]["contour_edges"]
         for key in [task + "_ms" for task in TASKS] + ["nodes", "boxes", "primitives"]:
             values = [r[key] for r in own if r[key] is not None]
             row[key] = mean(values) if values else None
@@ -150,8 +155,8 @@ def write_csv(path, columns, rows, description):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
         for row in rows:
-            writer.writerow([row[c] if isinstance(row[c], str) else short(row[c])
-                             for c in columns])
+            values = [row.get(c) for c in columns]
+            writer.writerow([v if isinstance(v, str) else short(v) for v in values])
 
 
 def number(text):
@@ -198,8 +203,14 @@ def collect(raw, results, command, seconds):
         sys.exit("draw_report.py: results of different commits in " + raw)
     steps = [row for d, records in runs if d["pairs_kind"] == "step"
              for row in summarize_steps(d, records)]
-    summary = [row for d, records in runs if d["pairs_kind"] != "step"
-               for row in summarize(d, records)]
+    runs = [(d, records) for d, records in runs if d["pairs_kind"] != "step"]
+    turns = [row for d, records in runs if targets.kind_of_turns(d, records)
+             for row in targets.collect_turns(d, records)]
+    runs = [(d, records) for d, records in runs if not targets.kind_of_turns(d, records)]
+    shots = [row for _, rows in read_lines(raw, ".shots") for row in rows]
+    built = targets.collect_built([(name.split(".")[0], lines[0], lines[1:])
+                                   for name, lines in read_lines(raw, ".built") if len(lines) > 1])
+    summary = [row for d, records in runs for row in summarize(d, records)]
     frames = []
     for d, records in runs:
         by_frame = collections.OrderedDict()
@@ -213,6 +224,7 @@ def collect(raw, results, command, seconds):
                    "frame": frame, "pairs": methods["exact"]["pairs"],
                    "missed_by_none": methods["none"]["missed"]}
             row.update({m: float("%.4g" % methods[m]["ms"]) for m in METHODS})
+            row.update({m + "_min": float("%.4g" % methods[m]["ms_min"]) for m in ("exact", "aabb")})
             frames.append(row)
     skipped = []
     log = os.path.join(raw, "skipped.log")
@@ -223,8 +235,11 @@ def collect(raw, results, command, seconds):
                        skipped="; ".join(skipped) or "nothing")
     write_csv(os.path.join(results, "summary.csv"), SUMMARY, summary, description)
     write_csv(os.path.join(results, "frames.csv"), FRAMES, frames, description)
-    if steps:
-        write_csv(os.path.join(results, "steps.csv"), STEPS, steps, description)
+    for name, columns, rows in (("steps.csv", STEPS, steps), ("turns.csv", targets.TURNS, turns),
+                                ("shots.csv", targets.SHOTS, shots),
+                                ("built.csv", targets.BUILT, built)):
+        if rows:
+            write_csv(os.path.join(results, name), columns, rows, description)
 
 
 # ---------------------------------------------------------------------------------------------------
@@ -236,8 +251,10 @@ class Results:
     def __init__(self, folder):
         self.rows, self.description = read_csv(os.path.join(folder, "summary.csv"))
         self.frames, _ = read_csv(os.path.join(folder, "frames.csv"))
-        steps = os.path.join(folder, "steps.csv")
-        self.steps = read_csv(steps)[0] if os.path.exists(steps) else []
+        self.steps, self.turns, self.shots, self.built = (
+            read_csv(path)[0] if os.path.exists(path) else []
+            for path in (os.path.join(folder, name + ".csv")
+                         for name in ("steps", "turns", "shots", "built")))
         peers = os.path.join(folder, "peers.csv")
         rows, self.peers_skipped, self.peers_commit = read_peers(peers)
         self.peers = [row for row in rows if not row["what"].startswith("step: ")]
@@ -256,31 +273,11 @@ class Results:
                 found.setdefault(key[:2], run)
         return found
 
-
-def figure(value, digits=3):
-    """A number with so many significant digits, never in exponential form."""
-    if value is None:
-        return "–"
-    if value == 0:
-        return "0"
-    places = max(0, digits - 1 - int(math.floor(math.log10(abs(value)))))
-    return "{:,.{}f}".format(value, places)
-
-
-def times(value):
-    return "–" if value is None else "%.2f" % value if value < 9.995 else "%.1f" % value
-
-
-def whole(value):
-    return "{:,d}".format(int(value))
-
-
-def table(header, rows, left=1):
-    """A table in Markdown; the first columns are aligned left, numbers right."""
-    lines = ["| " + " | ".join(header) + " |",
-             "|" + "|".join("---" if i < left else "--:" for i in range(len(header))) + "|"]
-    lines += ["| " + " | ".join(row) + " |" for row in rows]
-    return "\n".join(lines) + "\n"
+    def worst_frame(self, scene, triangles):
+        """The least of all frames: how many times as fast exact is as aabb there, by the least times of both."""
+        found = [row["aabb_min"] / row["exact_min"] for row in self.frames
+                 if (row["scene"], row["triangles"]) == (scene, triangles) and row.get("exact_min")]
+        return min(found) if found else None
 
 
 def overview(results):
@@ -297,9 +294,10 @@ def overview(results):
         rows.append([scene, whole(triangles)] +
                     [figure(run[m]["mean_ms"]) for m in METHODS if m != "none"] +
                     [times(run["aabb"]["rest_ms"] / rest), times(run["aabb"]["mean_ms"] / average),
+                     times(results.worst_frame(scene, triangles)),
                      times(run["hash"]["mean_ms"] / average)])
     return table(["scene", "triangles"] + [m for m in METHODS if m != "none"] +
-                 ["rest: × aabb", "mean: × aabb", "mean: × hash"], rows)
+                 ["rest: × aabb", "mean: × aabb", "worst frame: × aabb", "mean: × hash"], rows)
 
 
 def matches_of_paper(results):
@@ -724,6 +722,52 @@ def draw_all(results, found, sizes, folder):
 # ---------------------------------------------------------------------------------------------------
 # The report
 
+def add_targets(out, results):
+    """The sections that compare the library with itself, but for heavy contact and one shot, which have peers."""
+    out.append("## Contour test\n")
+    out.append("`exact` beside `none`, which has no contour test; then at rest: the edges of contours that it looked\n"
+               "at, and its time by clocks that take time themselves (update contours and contour).\n")
+    out.append(targets.contour_test(results.main_runs()))
+    sections = (
+        ("Threads of one query", "One thread and all, in turn in each frame; *least* and *most*: of single frames.\n",
+         targets.threads_of_query(results.turns)),
+        ("Instructions", "*Speed*: as a part of that with the best instructions, in turn in each frame. *Base* is SSE2 on\n"
+         "x86-64.\n", targets.instructions(results.turns)),
+        ("Compilers", "*Ours* is the library as everything else here; *plain* is plain C99 without any instruction set's\n"
+         "own functions. Processes of each in turn; the least times of each frame.\n",
+         targets.built_by(results.built)),
+    )
+    for title, text, rows in sections:
+        if rows:
+            out.extend(["## %s\n" % title, text, rows])
+    ours, theirs = targets.heavy_contact(results.turns, results.peers)
+    if ours:
+        out.append("## Heavy contact\n")
+        out.append("Frames with %s near pairs and more: pairs of triangles that share no vertex and whose boxes\n"
+                   "overlap.\n" % whole(targets.HEAVY))
+        out.append(ours)
+    if theirs:
+        out.append("Other libraries on the same frames, pairs of triangles, one thread:\n")
+        out.append(theirs)
+    rows = targets.builds(results.shots)
+    if rows:
+        out.append("## Builds and single queries from nothing\n")
+        out.append("Memory is that with the built-in partition. *One shot*: build, workspace, one query of the first\n"
+                   "frame, and freeing them.\n")
+        out.append(rows)
+    rows = targets.one_shot_of_peers(results.peers)
+    if rows:
+        out.append("Beside libraries that make everything anew for each pose, on the same mesh in one process: their\n"
+                   "first frame, without what they make of its topology.\n")
+        out.append(rows)
+    rows = targets.peers_compact(results.peers)
+    if rows:
+        out.append("## Other libraries, in short\n")
+        out.append("How many times as fast `exact` is, one thread, pairs of triangles, built-in partition; the section\n"
+                   "on peers below has more.\n")
+        out.append(rows)
+
+
 def report(results, drawn, slope_table, reading):
     d = results.description
     missing_plot = "(not drawn: matplotlib was not there)\n"
@@ -747,8 +791,9 @@ def report(results, drawn, slope_table, reading):
         out.append("**Not measured**, see what `%s` said: %s.\n" % (d["command"], d["skipped"]))
     out.append("## Overview\n")
     out.append("Milliseconds a frame, mean over the animation; then how many times as fast `exact` is as\n"
-               "the other.\n")
+               "the other. *Worst frame*: the least of all frames, by the least times of both.\n")
     out.append(overview(results))
+    add_targets(out, results)
     out.append("## The paper's Table 1\n")
     out.append("Upper part: milliseconds. AABB is the paper's optimised form (`aabb-sctt`). The paper's\n"
                "processor is an Intel Core 2 Quad at 2.4 GHz.\n")

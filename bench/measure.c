@@ -13,6 +13,7 @@
 #include "near_pairs.h"
 #include "tool.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -262,6 +263,26 @@ static uint64_t count_missing(const method_runner *from, const method_runner *in
     return missing;
 }
 
+/* A query for pairs and statistics. At rest, where reports take tasks apart, these are of the fastest of several: the
+   first touches new memory. */
+static bool take_statistics(measure_state *s, measure_lane *lane, uint32_t frame, size_t method)
+{
+    method_runner *const runner = &lane->runners[method];
+    measure_record *const record = &s->m->records[frame * s->m->method_count + method];
+    const int queries = frame == 0 && !runner->kind->is_hash && !runner->kind->is_step ? 5 : 1;
+    double least = INFINITY;
+    for (int q = 0; q < queries; q++) {
+        sc_stats stats;
+        double milliseconds;
+        if (!run_query(s, lane, runner, true, &stats, &milliseconds)) return false;
+        if (milliseconds < least) record->stats = stats;
+        least = fmin(least, milliseconds);
+    }
+    record->pairs = runner->count;
+    record->candidates = runner->step.candidates;
+    return true;
+}
+
 /* The pass that is not timed. */
 static bool check_frames(measure_state *s)
 {
@@ -283,10 +304,8 @@ static bool check_frames(measure_state *s)
         for (size_t i = 0; i < m->method_count; i++) {
             records[i].near = near;
             write_pose(s, lane, m->methods[i]);
-            if (!run_query(s, lane, &lane->runners[i], true, &records[i].stats, &unused))
+            if (!take_statistics(s, lane, frame, i))
                 return fail(s, m->methods[i]->name, lane->reason);
-            records[i].pairs = lane->runners[i].count;
-            records[i].candidates = lane->runners[i].step.candidates;
             if (s->progress) s->progress(m->methods[i]->name, ++s->done, s->all);
         }
         for (size_t i = 0; i < m->method_count; i++) {

@@ -18,10 +18,17 @@ SC_BIN=${SC_BIN:-build/bin}
 kind=${1:-full}
 cores=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 
+# With each set of instructions that this machine has; on other systems than Linux only the compiler's own.
+sets=exact@base,aabb@base
+if grep -qw avx2 /proc/cpuinfo 2>/dev/null; then sets=exact@avx2,aabb@avx2,$sets; fi
+if grep -qw avx512vl /proc/cpuinfo 2>/dev/null; then sets=exact@avx512,aabb@avx512,$sets; fi
+turns=exact,exact@serial,aabb,aabb@serial
+
 # A line a run: scene, triangles, frames, passes, partition, pairs, methods or -, other options.
 # As in the paper, cloth is partitioned by structure, all else automatically; pairs of an edge and a
 # triangle. The other runs compare partitions, resolutions, kinds of pairs, threads, and repeated queries
-# with single ones.
+# with single ones; instructions and threads of one query; heavy contact, on the frames that peers get; and
+# single queries from nothing.
 full="\
 twisted-cloth 4096 60 3 structure edge -
 twisted-cloth 16384 60 3 structure edge -
@@ -33,6 +40,7 @@ cloth-sphere 80000 60 3 structure edge -
 cloth-sphere 320000 20 1 structure edge -
 cat 41000 60 3 metis edge -
 cat 165000 60 2 metis edge -
+cat 656000 4 1 metis edge -
 bunny 3400 60 3 metis edge -
 bunny 13600 60 3 metis edge -
 bunny 54500 60 3 metis edge -
@@ -44,8 +52,11 @@ horse 25000 60 3 metis edge -
 wrinkled-cloth 100352 60 2 structure edge -
 crushed-cloth 92416 60 2 structure edge -
 tight-rods 98304 60 2 metis edge -
+squeezed-rods 98304 20 2 metis edge -
+sphere 20480 20 3 metis edge -
 sphere 81920 60 2 metis edge -
 sphere 327680 20 1 metis edge -
+sphere 1310720 4 1 metis edge -
 twisted-cloth 65536 20 3 metis edge exact,star,aabb-sctt,aabb
 twisted-cloth 65536 20 3 fast edge exact,star,aabb-sctt,aabb
 cloth-sphere 80000 20 3 metis edge exact,star,aabb-sctt,aabb
@@ -59,8 +70,38 @@ cat 41000 20 3 metis triangle -
 wrinkled-cloth 100352 20 2 structure triangle -
 twisted-cloth 65536 20 3 structure edge exact,star,aabb --threads $cores
 bunny 54500 20 3 metis edge exact,star,aabb --threads $cores
-twisted-cloth 65536 20 5 structure edge exact,star,aabb-sctt,aabb,hash --warm
-bunny 54500 20 5 metis edge exact,star,aabb-sctt,aabb,hash --warm
+twisted-cloth 65536 20 5 structure edge exact,star,aabb-sctt,aabb --warm
+bunny 54500 20 5 metis edge exact,star,aabb-sctt,aabb --warm
+twisted-cloth 65536 20 3 structure edge $turns --workers $cores
+cloth-sphere 80000 20 3 structure edge $turns --workers $cores
+bunny 54500 20 3 metis edge $turns --workers $cores
+cat 165000 60 1 metis edge $turns --workers $cores
+wrinkled-cloth 100352 20 3 structure edge $turns --workers $cores
+crushed-cloth 92416 6 5 structure edge $turns --workers $cores
+tight-rods 98304 6 5 metis edge $turns --workers $cores
+squeezed-rods 98304 6 5 metis edge $turns --workers $cores
+twisted-cloth 65536 20 3 structure edge $sets
+bunny 54500 20 3 metis edge $sets
+crushed-cloth 92416 6 5 structure edge $sets
+crushed-cloth 92416 6 5 structure edge exact,aabb --near
+squeezed-rods 98304 6 5 metis edge exact,aabb --near
+horse 25000 60 5 fast edge exact,aabb --one-shot
+bunny 54500 20 5 fast edge exact,aabb --one-shot
+bunny 54500 20 1 metis edge exact --one-shot
+bunny 70000 2 7 fast edge exact,aabb --one-shot
+bunny 70000 2 1 metis edge exact --one-shot
+twisted-cloth 65536 20 5 fast edge exact,aabb --one-shot
+twisted-cloth 65536 20 1 metis edge exact --one-shot
+tight-rods 98304 6 3 fast edge exact,aabb --one-shot
+sphere 81920 60 3 fast edge exact,aabb --one-shot
+cat 165000 60 3 fast edge exact,aabb --one-shot
+cat 165000 60 1 metis edge exact --one-shot
+cat 656000 4 1 fast edge exact,aabb --one-shot
+cat 656000 4 1 metis edge exact --one-shot
+twisted-cloth 1048576 8 1 fast edge exact,aabb --one-shot
+twisted-cloth 1048576 8 1 metis edge exact --one-shot
+sphere 1310720 4 1 fast edge exact,aabb --one-shot
+sphere 1310720 4 1 metis edge exact --one-shot
 twisted-cloth 16384 60 1 structure step -
 twisted-cloth 65536 60 1 structure step step,step-none,step-two-boxes
 cloth-sphere 80000 60 1 structure step step,step-none,step-two-boxes
@@ -91,9 +132,25 @@ sphere 81920 4 1 metis edge -
 twisted-cloth 16384 8 3 metis edge exact,star,aabb-sctt,aabb
 twisted-cloth 16384 8 3 structure triangle -
 twisted-cloth 16384 8 3 structure edge exact,star,aabb --threads $cores
-bunny 13600 8 3 metis edge exact,star,aabb-sctt,aabb,hash --warm
+bunny 13600 8 3 metis edge exact,star,aabb-sctt,aabb --warm
+twisted-cloth 65536 8 1 structure edge $turns --workers $cores
+twisted-cloth 16384 8 1 structure edge $sets
+crushed-cloth 5776 6 1 structure edge exact,aabb --near
+bunny 13600 8 3 fast edge exact,aabb --one-shot
+bunny 13600 8 1 metis edge exact --one-shot
 twisted-cloth 16384 8 1 structure step -
 bunny 13600 8 1 metis step -"
+
+# Runs that are repeated by the library as other compilers make it, or for other processors: a name and what make is
+# told. Each takes its turn, rounds times, in a process of its own.
+builds="\
+clang CC=clang
+plain CPPFLAGS=-DSC_NO_SIMD"
+rounds=3
+built="\
+twisted-cloth 65536 20 1 structure
+bunny 54500 20 1 metis
+crushed-cloth 92416 6 2 structure"
 
 case $kind in
 full | report)
@@ -104,6 +161,7 @@ full | report)
     ;;
 quick)
     runs=$quick
+    builds=
     readme=
     results=${2:-build/bench-quick}
     ;;
@@ -139,7 +197,24 @@ fi
 
 raw=build/bench/$kind
 mkdir -p "$raw" || exit 2
-rm -f "$raw"/*.jsonl "$raw"/*.log
+rm -f "$raw"/*.jsonl "$raw"/*.shots "$raw"/*.built "$raw"/*.log
+
+# Makes sc-bench as the others of $builds have it, before anything is timed; $others are those that can be run.
+others=
+while read -r name settings; do
+    [ -n "$name" ] || continue
+    echo "bench: compiling: $name" >&2
+    # shellcheck disable=SC2086
+    if MAKEFLAGS='' make -j "$cores" BUILD="build/bench-$name" $settings "build/bench-$name/bin/sc-bench" \
+        >"$raw/$name.make" 2>&1 </dev/null; then
+        others="$others $name"
+    else
+        echo "bench: skipped: built by $name: make failed, see $raw/$name.make" >&2
+        echo "built by $name" >>"$raw/skipped.log"
+    fi
+done <<END
+$builds
+END
 
 count=$(echo "$runs" | wc -l)
 number=0
@@ -152,9 +227,14 @@ while read -r scene triangles frames passes partition pairs methods options; do
         [ "$pairs" = step ] && methods=step,step-star,step-none,step-two-boxes,step-swept
     fi
     mode=--once
-    [ "$options" = --warm ] && mode= && options=
-    echo "bench: $number of $count, $(($(date +%s) - begin)) s: $scene $triangles $partition $pairs${options:+ $options} ${mode:---warm}" >&2
-    out=$raw/$(printf '%02d' "$number").jsonl
+    end=jsonl
+    given=$options
+    case $options in
+    --warm) mode='' options='' ;;
+    --one-shot) mode='' end=shots ;;
+    esac
+    echo "bench: $number of $count, $(($(date +%s) - begin)) s: $scene $triangles $partition $pairs $given" >&2
+    out=$raw/$(printf '%02d' "$number").$end
     # shellcheck disable=SC2086
     "$SC_BIN/sc-bench" --json --scene "$scene" --triangles "$triangles" --frames "$frames" $mode \
         --repeats "$passes" --partition "$partition" --pairs "$pairs" --methods "$methods" $options \
@@ -174,6 +254,24 @@ while read -r scene triangles frames passes partition pairs methods options; do
 done <<END
 $runs
 END
+
+if [ -n "$others" ]; then
+    round=0
+    while [ $((round += 1)) -le "$rounds" ]; do
+        while read -r scene triangles frames passes partition; do
+            for name in this $others; do
+                echo "bench: round $round, $(($(date +%s) - begin)) s: $scene $triangles by $name" >&2
+                program=$SC_BIN
+                [ "$name" = this ] || program=build/bench-$name/bin
+                "$program/sc-bench" --json --once --scene "$scene" --triangles "$triangles" --frames "$frames" \
+                    --repeats "$passes" --partition "$partition" --pairs edge --methods exact,aabb \
+                    >"$raw/$name.$scene.$round.built" </dev/null || status=1
+            done
+        done <<END
+$built
+END
+    done
+fi
 
 command="make bench"
 [ "$kind" = quick ] && command="make bench-quick"

@@ -225,8 +225,17 @@ if command -v python3 >/dev/null 2>&1; then
     run --scene twisted-cloth --triangles 512 --frames 3 --repeats 1 --once --json --pairs edge \
         >"$scratch/raw/2.jsonl"
     small --once --json --threads 2 --methods star --pairs edge >"$scratch/raw/3.jsonl"
+    small --once --json --workers 2 --methods exact,exact@serial --pairs edge >"$scratch/raw/4.jsonl"
+    small --once --json --near --methods exact,aabb --pairs edge >"$scratch/raw/5.jsonl"
+    small --one-shot --json >"$scratch/raw/6.shots"
+    for name in this other; do
+        small --once --json --methods exact --pairs edge >"$scratch/raw/$name.twisted-cloth.1.built"
+    done
     check "a report" python3 bench/draw_report.py "$scratch/results" "$scratch/raw"
-    for part in summary.csv frames.csv report.md; do
+    for section in "Contour test" "Threads of one query" Compilers "Builds and single queries"; do
+        check "it has $section" grep -q "^## $section" "$scratch/results/report.md"
+    done
+    for part in summary.csv frames.csv turns.csv shots.csv built.csv report.md; do
         check "with $part" test -s "$scratch/results/$part"
     done
     cp "$scratch/results/report.md" "$scratch/first.md"
@@ -246,11 +255,49 @@ rod,500,0,cgal,5.5.1,swept,1,30,4,yes,30,0,0,cgal,1
 rod,500,0,starcontour,0.1.0,exact,1,3,4,yes,3,0,0,cgal,1
 rod,500,0,cgal,5.5.1,swept,2,20,4,yes,20,0,0,cgal,2
 rod,500,0,starcontour,0.1.0,exact,1,5,4,yes,1,0,0,cgal,2
+rod,500,0,trueform,1.0,tree rebuilt,1,20,4,yes,20,0,0,trueform,1
+rod,500,0,starcontour,0.1.0,exact,1,3,4,yes,2,0,0,trueform,1
+rod,500,0,starcontour,0.1.0,one shot,1,15,4,yes,15,0,0,trueform,1
+END
+    cat >"$scratch/results/turns.csv" <<'END'
+what,scene,triangles,partition,workers,frame,method,ms,ms_min,pairs,near_pairs
+threads,rod,500,fast,2,0,exact,2,2,4,
+threads,rod,500,fast,2,0,exact@serial,4,4,4,
+threads,rod,500,fast,2,1,exact,0.4,0.4,6,
+threads,rod,500,fast,2,1,exact@serial,0.5,0.5,6,
+instructions,rod,500,fast,1,0,exact@avx512,1,1,4,
+instructions,rod,500,fast,1,0,exact@avx2,1.25,1.25,4,
+instructions,rod,500,fast,1,0,exact@base,2,2,4,
+contact,rod,500,fast,1,0,exact,1,1,4,9
+contact,rod,500,fast,1,0,aabb,1,1,4,9
+contact,rod,500,fast,1,1,exact,6,6,6,600000
+contact,rod,500,fast,1,1,aabb,12,12,6,600000
+END
+    cat >"$scratch/results/shots.csv" <<'END'
+scene,triangles,partition,method,repeats,build_ms,workspace_ms,query_ms,total_ms,pairs,model_bytes,workspace_bytes,peak_bytes
+rod,500,fast,exact,1,0.5,0,1,1.5,4,50000,45000,150000
+rod,500,fast,aabb,1,0.25,0,2,2.25,4,50000,45000,150000
+rod,500,metis,exact,1,4,0,1,5,4,50000,45000,150000
+END
+    cat >"$scratch/results/built.csv" <<'END'
+by,compiler,scene,triangles,partition,frame,method,ms_min
+this,cc,rod,500,fast,0,exact,2
+this,cc,rod,500,fast,1,exact,4
+clang,clang,rod,500,fast,0,exact,4
+clang,clang,rod,500,fast,1,exact,2
 END
     check "a report with peers" python3 bench/draw_report.py "$scratch/results"
     for line in "| rod | 500 | 2 | 5 | 8.00 | 2.00 | 4.00 | – | – | – | 3 missing in 1 of 2 frames |" \
         "| rod | 500 | 1 | 4 | 30.0 | 3.00 | 10.0 | 20.0 | 5.00 | 4.00 | match |" \
         "| cgal 5.5.1 | swept | 1 | 10.0 | 4.00 | match |" \
+        "| rod | 500 | 10.0 | 10.0 | – | – | – | – | 3.00 | 4.00 | – | – | – | – |" \
+        "| rod | 500 | trueform 1.0 | 20.0 | 15.0 | 0.75 |" \
+        "| rod | 500 | exact | 2 | 1 of 2 | 4.00 | 2.00 | 2.00 | 2.00 | 2.00 |" \
+        "| rod | 500 | exact | 1.00 | 1.25 | 2.00 | 0.80 | 0.50 | 1.00 | 1.25 | 2.00 | 0.80 | 0.50 |" \
+        "| rod | 500 | 1 | 600,000 | 6 | 6.00 | 12.0 | 10.0 | 20.0 | 2.00 |" \
+        "| rod | 1 | fcl 0.7.0 | refitted | 6 | 10.0 | 2.00 | 5.00 |" \
+        "| rod | 500 | 1.00 | 8.00 | 100 | 90 | 190 | 300 | 2.25 | 1.50 |" \
+        "| rod | 500 | exact | clang | 2.00 | 4.00 | 0.50 | 3.00 | 3.00 | 1.00 |" \
         "the medians of \`exact\` are 1.5 times its minima" "- libigl: no wheel" "- cgal on horse: not a manifold" "- embree: no results"; do
         check "it says: $line" grep -qF -e "$line" "$scratch/results/report.md"
     done
