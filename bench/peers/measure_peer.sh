@@ -18,8 +18,8 @@ shift 4
 limit=${LIMIT:-30}
 here=${0%/*}
 
-# Name, triangles, frames, and whether they are run with all threads as well: whole animations in long steps, so that
-# a peer is through in a minute or two. Frames are those that make bench shows, or every so-manieth of them.
+# Name, triangles, frames, and whether they are run with all threads as well: whole animations in long steps and three
+# timed walks, so that a peer is through in a minute or two. Two of them are also the frames of heavy contact in reports.
 usual="\
 twisted-cloth 65536 6 all
 cloth-sphere 80000 6
@@ -97,11 +97,11 @@ if [ -n "$scenes" ]; then
     done
     exit $status
 fi
-while read -r name triangles frames threads; do
+while read -r name triangles frames also; do
     if scene=$(write_scene "$name" "$triangles" "$frames"); then
         measured=1
-        measure 1 "$scene" "$@" || status=$?
-        [ -z "$threads" ] || [ -z "$again" ] || measure all "$scene" "$@" || status=$?
+        measure 1 "$scene" "$@" --repeats 3 || status=$?
+        [ -z "$also" ] || [ -z "$again" ] || measure all "$scene" "$@" --repeats 3 || status=$?
     else
         echo "skipped: $name, $triangles triangles: sc-bench could not write it" >&2
     fi
