@@ -51,6 +51,7 @@ typedef struct steps {
     sc_sctt sctt;
     sc_csf csf;
     sc_sharing sharing;
+    int has_tests; /* neighbors, sctt and csf were built */
 } steps;
 
 /* In builds with SC_VALIDATE (make config=debug or sanitize): everything is as its header says. Uses
@@ -63,8 +64,8 @@ static void validate(const steps *s, const sc_hooks *hooks)
     sc_scratch_init(&scratch, &standard);
     SC_HOOKS_ASSERT(hooks, sc_hierarchy_validate(&s->hierarchy, &scratch));
     SC_HOOKS_ASSERT(hooks, sc_xbvh_validate(&s->xbvh));
-    SC_HOOKS_ASSERT(hooks, sc_sctt_validate(&s->xbvh, &s->neighbors, &s->sctt));
-    SC_HOOKS_ASSERT(hooks, sc_csf_validate(&s->csf, &s->sctt, &scratch));
+    SC_HOOKS_ASSERT(hooks, !s->has_tests || sc_sctt_validate(&s->xbvh, &s->neighbors, &s->sctt));
+    SC_HOOKS_ASSERT(hooks, !s->has_tests || sc_csf_validate(&s->csf, &s->sctt, &scratch));
     SC_HOOKS_ASSERT(hooks,
                     s->points.triangle_count > 2000 || /* quadratic */
                         sc_sharing_validate(&s->points, s->hierarchy.order, &s->xbvh, &s->sharing));
@@ -81,6 +82,7 @@ static void log_facts(const sc_hooks *hooks, const sc_model *m)
     const uint8_t *use = sc_model_vertex_use(m);
     const sc_level *last = &sc_model_level_info(m)[m->level_count - 1];
     uint32_t v, unused = 0, welded = 0, scattered = last->patch_count - last->connected_patches;
+    const char *less = sc_model_is_for_boxes(m) ? "" : ": what is round them is culled less";
     if (!hooks->log) return;
     for (v = 0; v < m->vertex_count; v++) {
         unused += use[v] == SC_VERTEX_UNUSED;
@@ -94,14 +96,38 @@ static void log_facts(const sc_hooks *hooks, const sc_model *m)
     if (m->irregular_edges)
         sc_hooks_log(hooks, SC_LOG_WARNING,
                      "%" PRIu32 " of %" PRIu32
-                     " edges have three or more triangles, or two that run the same way: what is "
-                     "round them is culled less",
-                     m->irregular_edges, m->edge_count);
-    if (scattered)
+                     " edges have three or more triangles, or two that run the same way%s",
+                     m->irregular_edges, m->edge_count, less);
+    if (scattered && !sc_model_is_for_boxes(m))
         sc_hooks_log(hooks, SC_LOG_NOTE,
                      "%" PRIu32 " of %" PRIu32
                      " leaf clusters are not connected through edges and culled less",
                      scattered, last->patch_count);
+}
+
+/* What culling needs: the self-collision test tree and its contours. */
+static sc_status build_tests(steps *s, sc_scratch *scratch)
+{
+    const uint32_t *order = s->hierarchy.order;
+    sc_status status =
+        sc_neighbors_build(&s->points, &s->adjacency, order, &s->xbvh, scratch, &s->neighbors);
+    if (!status) status = sc_sctt_build(&s->xbvh, &s->neighbors, scratch, &s->sctt);
+    if (!status)
+        status =
+            sc_csf_build(&s->points, &s->adjacency, order, &s->xbvh, &s->sctt, scratch, &s->csf);
+    s->has_tests = !status;
+    return status;
+}
+
+/* The same for SC_MODEL_BOXES: a test tree without nodes. */
+static sc_status leave_out_tests(steps *s, sc_scratch *scratch)
+{
+    uint32_t *none = (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)s->xbvh.level_count + 1,
+                                                        sizeof *none, 0);
+    if (!none) return SC_ERROR_MEMORY;
+    s->sctt.child = s->sctt.boxes_first = s->sctt.level_first = none;
+    s->csf.child_first = s->csf.contour_first = s->csf.loop_first = s->csf.level_segments = none;
+    return SC_OK;
 }
 
 static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *options,
@@ -111,20 +137,18 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
     sc_pose rest;
     uint64_t stride;
     sc_status status;
+    int curve = options->content == SC_MODEL_FULL ? SC_LOCALITY_Z : SC_LOCALITY_HILBERT;
+    memset(&s, 0, sizeof s);
     if ((status = sc_mesh_read(mesh, options, scratch, &s.points))) return status;
     if (options->partition == SC_PARTITION_FAST || options->partition == SC_PARTITION_BISECT)
-        if ((status = sc_locality_sort(&s.points, scratch))) return status;
+        if ((status = sc_locality_sort(&s.points, curve, scratch))) return status;
     if ((status = sc_adjacency_build(&s.points, scratch, &s.adjacency))) return status;
     if ((status = sc_partition_build(&s.points, &s.adjacency, options, scratch, &s.hierarchy)))
         return status;
     if ((status = sc_xbvh_build(&s.hierarchy, scratch, &s.xbvh))) return status;
-    if ((status = sc_neighbors_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, scratch,
-                                     &s.neighbors)))
-        return status;
-    if ((status = sc_sctt_build(&s.xbvh, &s.neighbors, scratch, &s.sctt))) return status;
-    if ((status = sc_csf_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, &s.sctt,
-                               scratch, &s.csf)))
-        return status;
+    status =
+        options->content == SC_MODEL_FULL ? build_tests(&s, scratch) : leave_out_tests(&s, scratch);
+    if (status) return status;
     if ((status = sc_sharing_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, scratch,
                                    &s.sharing)))
         return status;
@@ -167,7 +191,8 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
         status = sc_structs_read(&o, sizeof o, options, LEAST_OPTIONS);
         if (status) return status;
     }
-    if (o.rest > SC_REST_MARKED || o.reserved) return SC_ERROR_OPTION;
+    if (o.rest > SC_REST_MARKED || o.content > SC_MODEL_BOXES) return SC_ERROR_OPTION;
+    if (o.content == SC_MODEL_BOXES && o.rest == SC_REST_MARKED) return SC_ERROR_BOXES_ONLY;
     status = sc_hooks_read(o.hooks, &hooks);
     if (status) return status;
     o.hooks = &hooks;
@@ -421,12 +446,31 @@ void sc_workspace_free(sc_workspace *workspace)
 
 /* ---- queries ---- */
 
-static sc_status check_options(sc_query_options *o)
+/* On a model for boxes, what asks for no method and no contour test gets boxes. */
+static sc_status check_method(const sc_model *model, uint32_t contour, uint32_t *method)
 {
+    if (!sc_model_is_for_boxes(model)) return SC_OK;
+    if (*method == SC_METHOD_DEFAULT && contour == SC_CONTOUR_DEFAULT) *method = SC_METHOD_AABB;
+    return *method == SC_METHOD_AABB ? SC_OK : SC_ERROR_BOXES_ONLY;
+}
+
+static sc_status check_step_method(const sc_model *model, uint32_t contour, uint32_t *method)
+{
+    if (!sc_model_is_for_boxes(model)) return SC_OK;
+    if (*method == SC_STEP_METHOD_DEFAULT && contour == SC_CONTOUR_DEFAULT)
+        *method = SC_STEP_METHOD_TWO_BOXES;
+    return *method > SC_STEP_METHOD_SCTT ? SC_OK : SC_ERROR_BOXES_ONLY;
+}
+
+static sc_status check_options(const sc_model *model, sc_query_options *o)
+{
+    sc_status status;
     if (o->output > SC_OUTPUT_ANY || o->pairs > SC_PAIRS_EDGE || o->contact > SC_CONTACT_PROPER ||
         o->method > SC_METHOD_AABB || o->contour > SC_CONTOUR_EXACT ||
         o->rest_cache > SC_REST_CACHE_OFF || o->simd > SC_SIMD_AVX512)
         return SC_ERROR_OPTION;
+    status = check_method(model, o->contour, &o->method);
+    if (status) return status;
     if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
     if (SC_HARDLY(o->simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;
     if (o->method == SC_METHOD_DEFAULT) o->method = SC_METHOD_SCTT;
@@ -472,7 +516,7 @@ static sc_status check_query(const sc_model *model, sc_workspace *workspace, con
         status = sc_structs_read(&state->options, sizeof state->options, options, LEAST_OPTIONS);
         if (status) return status;
     }
-    status = check_options(&state->options);
+    status = check_options(model, &state->options);
     if (!status) status = read_tasks(workspace, &state->options.tasks, tasks);
     if (status) return status;
     if (state->options.filter) {
@@ -562,9 +606,10 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
 
 /* ---- steps ---- */
 
-static sc_status check_step_options(sc_step_options *o)
+static sc_status check_step_options(const sc_model *model, sc_step_options *o)
 {
     uint32_t best = (uint32_t)sc_isa_best();
+    sc_status status;
     if (o->output > SC_OUTPUT_ANY || o->pairs > SC_STEP_CANDIDATES ||
         o->times > SC_STEP_TIMES_EACH || o->method > SC_STEP_METHOD_SWEPT ||
         o->contour > SC_CONTOUR_EXACT || o->simd > SC_SIMD_AVX512 || o->reserved)
@@ -572,6 +617,8 @@ static sc_status check_step_options(sc_step_options *o)
     if (!(o->separation >= 0) || !(o->tolerance >= 0) || o->separation > DBL_MAX ||
         o->tolerance > DBL_MAX)
         return SC_ERROR_OPTION;
+    status = check_step_method(model, o->contour, &o->method);
+    if (status) return status;
     if (o->simd == SC_SIMD_BEST) o->simd = best;
     if (SC_HARDLY(o->simd > best)) return SC_ERROR_UNSUPPORTED;
     if (o->method == SC_STEP_METHOD_DEFAULT) o->method = SC_STEP_METHOD_SCTT;
@@ -594,7 +641,7 @@ static sc_status check_step(const sc_model *model, sc_workspace *workspace,
         status = sc_structs_read(o, sizeof *o, options, LEAST_OPTIONS);
         if (status) return status;
     }
-    status = check_step_options(o);
+    status = check_step_options(model, o);
     if (!status) status = read_tasks(workspace, &o->tasks, tasks);
     for (s = 0; s < 2 && !status; s++) {
         status =
@@ -783,7 +830,7 @@ static sc_status check_record(const sc_model *model, const sc_pose *pose,
         if (status) return status;
     }
     checked = *o; /* defaults stay defaults */
-    status = check_options(&checked);
+    status = check_options(model, &checked);
     if (status) return status;
     if (o->filter) {
         status = sc_filter_read(model, o->pairs, o->filter, filter);

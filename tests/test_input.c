@@ -607,8 +607,8 @@ static void enumerators(void)
             build.rest = value;
             check_build(&f, &f.input, &build, SC_ERROR_OPTION, "rest");
             build = no_build_options();
-            build.reserved = value;
-            check_build(&f, &f.input, &build, SC_ERROR_OPTION, "build reserved");
+            build.content = value;
+            check_build(&f, &f.input, &build, SC_ERROR_OPTION, "build content");
             pose.position_type = value;
             check_query(&f, f.model, f.workspace, &pose, NULL, SC_ERROR_OPTION,
                         "pose position_type");
@@ -989,14 +989,14 @@ static void information(void)
 static void statuses_and_version(void)
 {
     char version[32];
-    for (sc_status status = 0; status <= SC_ERROR_INCOMPLETE; ++status) {
+    for (sc_status status = 0; status <= SC_ERROR_BOXES_ONLY; ++status) {
         const char *text = sc_status_string(status);
         if (!CHECK(text != NULL && text[0] != '\0')) continue;
         for (sc_status other = 0; other < status; ++other)
             CHECK_MSG(strcmp(text, sc_status_string(other)) != 0, "%d and %d", (int)status,
                       (int)other);
     }
-    CHECK(sc_status_string(-1) != NULL && sc_status_string(SC_ERROR_INCOMPLETE + 1) != NULL);
+    CHECK(sc_status_string(-1) != NULL && sc_status_string(SC_ERROR_BOXES_ONLY + 1) != NULL);
     CHECK(sc_status_string(INT32_MIN) != NULL && sc_status_string(INT32_MAX) != NULL);
     CHECK(sc_version() == SC_VERSION_NUMBER);
     snprintf(version, sizeof(version), "%d.%d.%d", SC_VERSION_MAJOR, SC_VERSION_MINOR,

@@ -60,11 +60,13 @@ static save save_model(const sc_model *model)
     return s;
 }
 
-static sc_model *build(const soup *mesh, uint32_t weld, uint32_t partition)
+static sc_model *build(const soup *mesh, uint32_t weld, uint32_t partition, uint32_t content)
 {
     sc_mesh m = input_plain_mesh(mesh);
     input_choices choices = input_choose(mesh, weld, partition);
     sc_model *model = NULL;
+    choices.options.content = content;
+    if (content == SC_MODEL_BOXES) choices.options.rest = SC_REST_UNMARKED;
     CHECK(sc_build(&m, &choices.options, &model) == SC_OK);
     input_free_choices(&choices);
     return model;
@@ -95,7 +97,7 @@ static pair_list ask(const sc_model *model, sc_workspace *workspace, const soup 
     pair_list list = {NULL, 0};
     memset(&options, 0, sizeof(options));
     options.struct_size = sizeof(options);
-    options.method = method;
+    options.method = model->node_count ? method : SC_METHOD_DEFAULT; /* for boxes: one method */
     options.pairs = kind / 2;
     options.contact = kind % 2;
     memset(&result, 0, sizeof(result));
@@ -200,7 +202,7 @@ static void round_trips(void)
     for (uint32_t i = 0; i < test_iterations(24); ++i) {
         const char *name;
         soup mesh = shape_any(200, &name);
-        sc_model *model = build(&mesh, i % 3, i % 4);
+        sc_model *model = build(&mesh, i % 3, i % 4, i % 5 == 0 ? SC_MODEL_BOXES : SC_MODEL_FULL);
         if (model) found += check_round_trip(&mesh, model);
         sc_model_free(model);
         soup_free(&mesh);
@@ -232,7 +234,7 @@ static void round_trips_of_mesh_files(void)
         sc_model *model;
         snprintf(path, sizeof(path), "meshes/%s.obj", names[i]);
         if (!CHECK_MSG(input_read_obj(path, &mesh), "%s", path)) continue;
-        model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST);
+        model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
         if (model) check_round_trip(&mesh, model);
         sc_model_free(model);
         soup_free(&mesh);
@@ -241,7 +243,7 @@ static void round_trips_of_mesh_files(void)
 
 /* ---- what is refused ---- */
 
-/* The smallest model there is, and one that has every array. */
+/* The smallest model there is, two that have every array, and one for boxes. */
 static sc_model *build_small(int which, soup *mesh)
 {
     if (which == 0) {
@@ -249,12 +251,13 @@ static sc_model *build_small(int which, soup *mesh)
         for (uint32_t i = 0; i < 9; ++i) mesh->positions[i] = i % 4 == 0;
         for (uint32_t i = 0; i < 3; ++i) mesh->triangles[i] = i;
     } else {
-        *mesh = which == 1 ? soup_cloth(8, 7) : soup_pinched(3);
+        *mesh = which == 2 ? soup_pinched(3) : soup_cloth(8, 7);
     }
-    return build(mesh, SC_WELD_REST, SC_PARTITION_FAST);
+    return build(mesh, SC_WELD_REST, SC_PARTITION_FAST,
+                 which == 3 ? SC_MODEL_BOXES : SC_MODEL_FULL);
 }
 
-enum { SMALL = 3 };
+enum { SMALL = 4 };
 
 static void refuse(const save *s, sc_status expected, const char *what, uint64_t at)
 {
@@ -595,7 +598,7 @@ static void forged_uses(void)
 static void forged_contour(void)
 {
     soup mesh = soup_cloth(6, 6);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST);
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
     save s = save_model(model);
     sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
     uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_node_contour]);
@@ -613,7 +616,7 @@ static void forged_contour(void)
 static void forged_rings(void)
 {
     soup mesh = soup_cloth(12, 12);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST);
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
     save s = save_model(model);
     sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
     uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_ring_first]);
@@ -705,7 +708,7 @@ static void *array_of(sc_model *model, uint32_t array)
 static void forged_chain(void)
 {
     soup mesh = soup_cloth(12, 12);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST), *loaded;
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL), *loaded;
     save s = save_model(model);
     sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
     uint32_t parents = m->segment_count - m->leaf_segment_count, leaf, i, at = 0;
@@ -824,7 +827,7 @@ static void workspaces_and_forged_hashes(void)
     save s;
     of_b = build_leaves(&b, 1);
     large = soup_cloth(6, 6);
-    of_large = build(&large, SC_WELD_REST, SC_PARTITION_FAST);
+    of_large = build(&large, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
     memset(&result, 0, sizeof(result));
     result.struct_size = sizeof(result);
     CHECK(sc_workspace_create(of_a, NULL, &workspace) == SC_OK);
@@ -1056,7 +1059,7 @@ static void read_only_and_shared(void)
     size_t page = (size_t)sysconf(_SC_PAGESIZE), pages;
     void *mapped;
     soup_fold(cloth.positions, cloth.vertex_count);
-    model = build(&cloth, SC_WELD_NONE, SC_PARTITION_FAST);
+    model = build(&cloth, SC_WELD_NONE, SC_PARTITION_FAST, SC_MODEL_FULL);
     s = save_model(model);
     pages = ((size_t)s.size + page - 1) / page * page;
     if (CHECK(posix_memalign(&mapped, page, pages) == 0)) {

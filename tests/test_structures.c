@@ -45,7 +45,7 @@ static sc_status make_steps(steps *s, const soup *mesh, const sc_build_options *
     status = sc_mesh_read(&m, options, &s->scratch, &s->points);
     if (!status &&
         (options->partition == SC_PARTITION_FAST || options->partition == SC_PARTITION_BISECT))
-        status = sc_locality_sort(&s->points, &s->scratch);
+        status = sc_locality_sort(&s->points, SC_LOCALITY_Z, &s->scratch);
     if (!status) status = sc_adjacency_build(&s->points, &s->scratch, &s->adjacency);
     if (!status)
         status = sc_partition_build(&s->points, &s->adjacency, options, &s->scratch, &s->hierarchy);
@@ -1054,6 +1054,7 @@ static int is_renumbered(const sc_points *points, const soup *mesh)
 static void locality(void)
 {
     static const double sizes[] = {1, 1e300, 5e-324, 0};
+    static const int curves[] = {SC_LOCALITY_Z, SC_LOCALITY_HILBERT};
     soup mesh = soup_cloth(60, 60);
     sc_mesh m = input_plain_mesh(&mesh);
     sc_build_options options;
@@ -1079,7 +1080,7 @@ static void locality(void)
         sc_scratch_init(&scratch, &allocator);
         if (CHECK(sc_mesh_read(&m, &options, &scratch, &points) == SC_OK)) {
             before = mean_step(&points);
-            CHECK(sc_locality_sort(&points, &scratch) == SC_OK);
+            CHECK(sc_locality_sort(&points, curves[size % 2], &scratch) == SC_OK);
             CHECK_MSG(size > 1 || mean_step(&points) < before / 5, "mean step %g, before %g",
                       mean_step(&points), before);
             CHECK(is_renumbered(&points, &scaled));
@@ -1090,5 +1091,43 @@ static void locality(void)
     soup_free(&mesh);
 }
 
-SC_TEST_MAIN(SC_TEST(locality), SC_TEST(named_meshes), SC_TEST(hubs), SC_TEST(long_rings),
-             SC_TEST(random_meshes), SC_TEST(validators))
+/* Triangles in the cells of a lattice, in any order: the curve goes from each cell to one beside it. */
+static void curve(void)
+{
+    enum { SIDE = 16, CELLS = SIDE * SIDE * SIDE };
+    soup mesh = soup_make(3 * CELLS, CELLS);
+    sc_mesh m;
+    sc_build_options options;
+    sc_allocator allocator = sc_memory_allocator(NULL);
+    sc_scratch scratch;
+    sc_points points;
+    uint32_t t, k, far = 0;
+    for (t = 0; t < CELLS; ++t) {
+        uint32_t cell = t * 1597 % CELLS;
+        for (k = 0; k < 9; ++k) {
+            uint32_t axis = k % 3, at = axis == 0 ? cell % SIDE : cell / SIDE;
+            at = axis == 2 ? at / SIDE : at % SIDE;
+            mesh.positions[9 * t + k] = at + (k / 3 == axis ? 0.1 : 0.0);
+        }
+        for (k = 0; k < 3; ++k) mesh.triangles[3 * t + k] = 3 * t + k;
+    }
+    m = input_plain_mesh(&mesh);
+    memset(&options, 0, sizeof(options));
+    options.weld = SC_WELD_NONE;
+    sc_scratch_init(&scratch, &allocator);
+    if (CHECK(sc_mesh_read(&m, &options, &scratch, &points) == SC_OK) &&
+        CHECK(sc_locality_sort(&points, SC_LOCALITY_HILBERT, &scratch) == SC_OK))
+        for (t = 1; t < CELLS; ++t) {
+            double step = 0;
+            for (k = 0; k < 3; ++k)
+                step += fabs(points.rest[3 * points.triangles[3 * t] + k] -
+                             points.rest[3 * points.triangles[3 * (t - 1)] + k]);
+            far += step > 1.5;
+        }
+    CHECK_MSG(far == 0, "%" PRIu32 " leaps", far);
+    sc_scratch_clear(&scratch);
+    soup_free(&mesh);
+}
+
+SC_TEST_MAIN(SC_TEST(locality), SC_TEST(curve), SC_TEST(named_meshes), SC_TEST(hubs),
+             SC_TEST(long_rings), SC_TEST(random_meshes), SC_TEST(validators))

@@ -23,9 +23,9 @@ typedef struct query_subject {
     double build_ms;
 } query_subject;
 
-/* How to build: weld and partition as in tool.h, rest as in sc_build_options. */
+/* How to build: weld and partition as in tool.h, rest and content as in sc_build_options. */
 typedef struct query_subject_how {
-    uint32_t weld, partition, rest;
+    uint32_t weld, partition, rest, content;
     uint32_t flags;    /* of the workspace: SC_WORKSPACE_... */
     bool poses_follow; /* other poses of the mesh will be asked about */
 } query_subject_how;

@@ -89,9 +89,13 @@ static const char usage_continued[] =
     "report\n"
     "                              a bug; one MESH only\n"
     "How it is sought (the answer is the same, but for --contour none)\n"
-    "  --method sctt|aabb-sctt|aabb  self-collision test tree (default), boxes from that tree on, "
-    "or\n"
-    "                              the plain tree of boxes\n"
+    "  --method auto|sctt|aabb-sctt|aabb  self-collision test tree, boxes from that tree on, or "
+    "the\n"
+    "                              plain tree of boxes. auto (default): for a mesh asked about "
+    "once\n"
+    "                              the plain tree alone, which is built fastest; sctt with "
+    "--rest,\n"
+    "                              --model, --record, --stats, --budget or what follows\n"
     "                              With --step: sctt (default), two-boxes or swept, plain trees "
     "of\n"
     "                              boxes at both ends, or round the motion\n"
@@ -112,7 +116,8 @@ static const char usage_continued[] =
 
 static const tool_choice pair_choices[] = {
     {"triangle", SC_PAIRS_TRIANGLE}, {"edge", SC_PAIRS_EDGE}, {"none", 2}, {NULL, 0}};
-static const tool_choice method_choices[] = {{"sctt", SC_METHOD_SCTT},
+static const tool_choice method_choices[] = {{"auto", SC_METHOD_DEFAULT},
+                                             {"sctt", SC_METHOD_SCTT},
                                              {"aabb-sctt", SC_METHOD_AABB_SCTT},
                                              {"aabb", SC_METHOD_AABB},
                                              {NULL, 0}};
@@ -123,6 +128,7 @@ typedef struct settings {
     const char *not_of_steps;    /* an option that --step does not take, if one was given */
     uint32_t pairs;              /* a value of pair_choices */
     uint32_t method, contour, partition, weld;
+    uint32_t content; /* of the models that are built: SC_MODEL_... */
     bool proper, any, json, stats, no_rest_cache;
     bool is_asked, is_built; /* some option said what to ask or how, or how to build */
     const char *rest_path, *out_path, *ply_path, *model_path, *record_path, *replay_path;
@@ -526,6 +532,16 @@ static uint32_t rest_marks(const settings *set)
                : SC_REST_UNMARKED;
 }
 
+/* What --method auto is on a model that was saved, or in a record that names none. */
+static void follow_model(settings *set, const sc_model *model)
+{
+    sc_model_info info;
+    memset(&info, 0, sizeof info);
+    info.struct_size = sizeof info;
+    if (set->method != SC_METHOD_DEFAULT || sc_model_get_info(model, &info) != SC_OK) return;
+    set->method = info.node_count ? SC_METHOD_SCTT : SC_METHOD_AABB;
+}
+
 /* Does one file. rest is the common subject of --rest or --model, or NULL. Returns an exit status. */
 static int do_file(const char *path, const settings *set, const query_subject *rest,
                    float *pose_positions, FILE *out, pair_list *list)
@@ -537,7 +553,8 @@ static int do_file(const char *path, const settings *set, const query_subject *r
     memset(&answer, 0, sizeof answer);
     answer.path = path;
 
-    const query_subject_how how = {set->weld, set->partition, rest_marks(set), 0, false};
+    const query_subject_how how = {set->weld, set->partition, rest_marks(set), set->content,
+                                   0,         false};
     const query_subject *subject = rest ? rest : &own;
     const mesh_file *mesh = set->rest_path ? &rest->mesh : &own.mesh;
     const float *positions = pose_positions;
@@ -637,6 +654,7 @@ static int do_replay(settings *set, FILE *out, pair_list *list)
                      reason[0] ? ": " : "", reason);
         }
     }
+    if (done) follow_model(set, subject.model);
     if (done && out) write_pairs_head(out, set);
     if (done) done = run_pose(&subject, set->replay_path, &pose, set, list, &answer, error);
     const int status = report(&answer, set, done, error, out, list);
@@ -656,7 +674,8 @@ static int do_files(char **paths, int path_count, settings *set)
     int status = TOOL_CLEAN;
 
     if (set->rest_path) {
-        const query_subject_how how = {set->weld, set->partition, rest_marks(set), 0, true};
+        const query_subject_how how = {set->weld, set->partition, rest_marks(set), set->content, 0,
+                                       true};
         char error[MESH_FILE_ERROR_SIZE];
         if (!query_subject_load(&rest, set->rest_path, &how, error)) {
             tool_error("%s", error);
@@ -673,6 +692,7 @@ static int do_files(char **paths, int path_count, settings *set)
             tool_error("%s", error);
             return TOOL_FAILED;
         }
+        follow_model(set, rest.model);
     }
     if (status == TOOL_CLEAN && set->out_path) {
         out = fopen(set->out_path, "w");
@@ -721,6 +741,24 @@ static int do_steps(char **paths, int path_count, settings *set)
     step->json = set->json;
     step->stats = set->stats;
     return step_query_frames(paths, path_count, step);
+}
+
+/* What --method auto is, where models are built: boxes alone pay for one query. */
+static void choose_method(settings *set)
+{
+    const bool is_once = !set->rest_path && !set->model_path && !set->replay_path;
+    const bool is_plain = set->contour == SC_CONTOUR_DEFAULT && !set->no_rest_cache &&
+                          set->partition == TOOL_PARTITION_FAST && !set->record_path &&
+                          !set->stats && !set->budget;
+    if (set->method == SC_METHOD_DEFAULT && is_once && is_plain) {
+        set->content = SC_MODEL_BOXES;
+        set->method = SC_METHOD_AABB;
+    } else if (set->method == SC_METHOD_DEFAULT && (is_once || set->rest_path)) {
+        set->method = SC_METHOD_SCTT;
+    }
+    if (set->contour != SC_CONTOUR_DEFAULT && set->method == SC_METHOD_DEFAULT)
+        set->method = SC_METHOD_SCTT;
+    if (set->contour == SC_CONTOUR_DEFAULT) set->contour = SC_CONTOUR_EXACT;
 }
 
 /* What cannot be asked for together. */
@@ -825,8 +863,6 @@ int main(int argc, char **argv)
     tool_set_name("sc-query");
     settings set;
     memset(&set, 0, sizeof set);
-    set.method = SC_METHOD_SCTT;
-    set.contour = SC_CONTOUR_EXACT;
     set.step.method = SC_STEP_METHOD_SCTT;
     bool valid = true;
     uint32_t budget = 0, threads = 1;
@@ -948,6 +984,7 @@ int main(int argc, char **argv)
             tool_choose("--method", set.method_name, set.is_step ? step_methods : method_choices,
                         set.is_step ? &set.step.method : &set.method);
     if (!valid || !check_settings(&set, argc - optind)) return tool_finish(TOOL_FAILED);
+    choose_method(&set);
     if (set.contour == SC_CONTOUR_NONE &&
         (set.is_step ? set.step.method == SC_STEP_METHOD_SCTT : set.method == SC_METHOD_SCTT)) {
         tool_error("note: --contour none can miss pairs");

@@ -339,7 +339,8 @@ static int report(const step_answer *answer, const step_run *run)
 static bool open_run(step_run *run, const char *first, char error[MESH_FILE_ERROR_SIZE])
 {
     const step_settings *set = run->set;
-    const query_subject_how how = {set->weld, set->partition, 0, SC_WORKSPACE_STEP, true};
+    const query_subject_how how = {set->weld,     set->partition,    0,
+                                   SC_MODEL_FULL, SC_WORKSPACE_STEP, true};
     if (set->model_path) {
         if (!query_subject_open(&run->subject, set->model_path, SC_WORKSPACE_STEP, error) ||
             !mesh_file_read(&run->first, first, error) ||

@@ -96,7 +96,7 @@ bool tool_parse_real(const char *option, const char *text, double *value)
 }
 
 sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, uint32_t rest,
-                     sc_model **model, double *milliseconds)
+                     uint32_t content, sc_model **model, double *milliseconds)
 {
     sc_mesh input;
     memset(&input, 0, sizeof input);
@@ -113,6 +113,7 @@ sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, u
     options.struct_size = sizeof options;
     options.weld = weld;
     options.rest = rest;
+    options.content = content;
     if (partition == TOOL_PARTITION_METIS) {
         options.partition = SC_PARTITION_BISECT;
         options.bisect = sc_metis_bisect;

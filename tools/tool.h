@@ -57,10 +57,10 @@ extern const tool_choice tool_partitions[];
 /* Values of --weld. */
 extern const tool_choice tool_welds[];
 
-/* Builds a model with a partition of the list above; rest: SC_REST_...; *milliseconds is how long it
-   took. */
+/* Builds a model with a partition of the list above; rest: SC_REST_..., content: SC_MODEL_...;
+   *milliseconds is how long it took. */
 sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, uint32_t rest,
-                     sc_model **model, double *milliseconds);
+                     uint32_t content, sc_model **model, double *milliseconds);
 
 /* A pose of floats, packed. */
 sc_pose tool_pose(const float *positions, uint32_t vertex_count);

@@ -69,6 +69,8 @@ const char *sc_status_string(sc_status status)
         return "a list of pairs is not sorted or names what does not exist";
     case SC_ERROR_INCOMPLETE:
         return "the query was stopped before its end";
+    case SC_ERROR_BOXES_ONLY:
+        return "the model is for boxes only, and this needs culling";
     default:
         return "unknown status";
     }

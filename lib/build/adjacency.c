@@ -87,30 +87,38 @@ static uint32_t find_root(uint32_t *parent, uint32_t p)
     return p;
 }
 
+void sc_adjacency_find_components(const sc_points *points, uint32_t *lowest)
+{
+    uint32_t p, t;
+    for (p = 0; p < points->point_count; p++) lowest[p] = p;
+    for (t = 0; t < points->triangle_count; t++) {
+        const uint32_t *corner = points->triangles + 3 * (uint64_t)t;
+        uint32_t a = find_root(lowest, corner[0]), b = find_root(lowest, corner[1]), c;
+        if (b < a) {
+            lowest[a] = b;
+            a = b;
+        } else {
+            lowest[b] = a;
+        }
+        c = find_root(lowest, corner[2]);
+        if (c < a)
+            lowest[a] = c;
+        else
+            lowest[c] = a;
+    }
+    for (p = 0; p < points->point_count; p++)
+        lowest[p] = lowest[lowest[p]]; /* lower numbers first */
+}
+
 static sc_status count_components(const sc_points *points, sc_scratch *scratch,
                                   sc_adjacency *adjacency)
 {
-    uint32_t *parent, p, t;
-    parent = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *parent);
-    if (!parent) return SC_ERROR_MEMORY;
-    for (p = 0; p < points->point_count; p++) parent[p] = p;
-    for (t = 0; t < points->triangle_count; t++) {
-        const uint32_t *corner = points->triangles + 3 * (uint64_t)t;
-        uint32_t a = find_root(parent, corner[0]), b = find_root(parent, corner[1]), c;
-        if (b < a) {
-            parent[a] = b;
-            a = b;
-        } else {
-            parent[b] = a;
-        }
-        c = find_root(parent, corner[2]);
-        if (c < a)
-            parent[a] = c;
-        else
-            parent[c] = a;
-    }
-    for (p = 0; p < points->point_count; p++) adjacency->component_count += parent[p] == p;
-    sc_scratch_give(scratch, parent);
+    uint32_t *lowest, p;
+    lowest = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *lowest);
+    if (!lowest) return SC_ERROR_MEMORY;
+    sc_adjacency_find_components(points, lowest);
+    for (p = 0; p < points->point_count; p++) adjacency->component_count += lowest[p] == p;
+    sc_scratch_give(scratch, lowest);
     return SC_OK;
 }
 

@@ -40,6 +40,9 @@ static inline uint32_t sc_adjacency_previous(uint32_t h)
 /* O(n log n) at worst in the number of edges at a point, linear otherwise. */
 sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_adjacency *adjacency);
 
+/* lowest: point_count; becomes the lowest number of a point in the same component, for each point. */
+void sc_adjacency_find_components(const sc_points *points, uint32_t *lowest);
+
 /*
  * The ring of a point p: if its triangles form one closed fan (p, r0, r1), (p, r1, r2), ... (p, rn, r0)
  * with different r, and are SC_RING_MAX at most, writes r0 ... rn and returns their number; otherwise

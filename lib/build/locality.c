@@ -21,6 +21,35 @@ static uint32_t spread(uint32_t cell)
     return (cell | cell << 2) & 0x09249249u;
 }
 
+/*
+ * Turns a cell into the one in whose place along the Z-shaped curve it comes along Hilbert's. J. Skilling,
+ * "Programming the Hilbert curve", 2004: from the halves of the box down, what lies in the upper half of an
+ * axis is mirrored along the first axis, and what lies in the lower half has that axis exchanged with the
+ * first; then the bits of each level, as a Gray code, are its place among eight. Without branches, which no
+ * processor could foresee.
+ */
+static void turn_to_hilbert(uint32_t cell[3])
+{
+    uint32_t half, k, x = cell[0], flip;
+    for (half = 1u << (CELL_BITS - 1); half > 1; half >>= 1) {
+        uint32_t below = half - 1;
+        x ^= below & (0u - ((x & half) != 0));
+        for (k = 1; k < 3; k++) {
+            uint32_t upper = 0u - ((cell[k] & half) != 0); /* all ones in the upper half */
+            flip = (x ^ cell[k]) & below & ~upper;
+            x ^= flip | (below & upper);
+            cell[k] ^= flip;
+        }
+    }
+    cell[1] ^= x;
+    cell[2] ^= cell[1];
+    for (flip = 0, half = 1u << (CELL_BITS - 1); half > 1; half >>= 1)
+        flip ^= (half - 1) & (0u - ((cell[2] & half) != 0));
+    cell[0] = cell[2] ^ flip; /* the first axis weighs most */
+    cell[2] = x ^ flip;
+    cell[1] ^= flip;
+}
+
 /* low and factor of each axis: a center c is in cell (c - low) * factor. Eighths of coordinates, so
    that nothing overflows. */
 static void measure_box(const sc_points *points, double low[3], double *factor)
@@ -42,7 +71,7 @@ static void measure_box(const sc_points *points, double low[3], double *factor)
     *factor = (1 << CELL_BITS) / (3 * size);
 }
 
-static void list_keys(const sc_points *points, sc_pair *keys)
+static void list_keys(const sc_points *points, int curve, sc_pair *keys)
 {
     double low[3], factor;
     uint32_t t, k;
@@ -52,14 +81,15 @@ static void list_keys(const sc_points *points, sc_pair *keys)
         const double *p = points->rest + 3 * (uint64_t)corner[0];
         const double *q = points->rest + 3 * (uint64_t)corner[1];
         const double *r = points->rest + 3 * (uint64_t)corner[2];
-        keys[t].a = 0;
-        keys[t].b = t;
+        uint32_t cell[3];
         for (k = 0; k < 3; k++) {
             double at = (p[k] / 8 + q[k] / 8 + r[k] / 8 - low[k]) * factor;
-            uint32_t cell = 0; /* as well if at is NaN: a mesh as small as rounding */
-            if (at > 0) cell = at < (1 << CELL_BITS) - 1 ? (uint32_t)at : (1 << CELL_BITS) - 1;
-            keys[t].a |= spread(cell) << k;
+            cell[k] = 0; /* as well if at is NaN: a mesh as small as rounding */
+            if (at > 0) cell[k] = at < (1 << CELL_BITS) - 1 ? (uint32_t)at : (1 << CELL_BITS) - 1;
         }
+        if (curve == SC_LOCALITY_HILBERT) turn_to_hilbert(cell);
+        keys[t].a = spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2;
+        keys[t].b = t;
     }
 }
 
@@ -86,7 +116,7 @@ static void renumber_along(sc_points *points, const sc_pair *keys, uint32_t *tri
         if (points->slot[v] < SC_SLOT_WELDED) points->slot[v] = number[points->slot[v]];
 }
 
-sc_status sc_locality_sort(sc_points *points, sc_scratch *scratch)
+sc_status sc_locality_sort(sc_points *points, int curve, sc_scratch *scratch)
 {
     uint32_t count = points->triangle_count, *triangles, *number;
     sc_pair *keys, *spare;
@@ -94,7 +124,7 @@ sc_status sc_locality_sort(sc_points *points, sc_scratch *scratch)
     keys = (sc_pair *)sc_scratch_take(scratch, count, sizeof *keys);
     spare = (sc_pair *)sc_scratch_take(scratch, count, sizeof *spare);
     if (!keys || !spare) return SC_ERROR_MEMORY;
-    list_keys(points, keys);
+    list_keys(points, curve, keys);
     sc_sort_by_digits(keys, spare, count, 3 * CELL_BITS);
     sc_scratch_give(scratch, spare);
     triangles = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof *triangles);

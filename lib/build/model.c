@@ -73,7 +73,7 @@ static uint64_t hash_topology(const sc_model *m)
     for (i = 0; i < m->triangle_count; i++) hash = mix(hash, id[i]);
     for (i = 0; i <= m->leaf_count; i++) hash = mix(hash, leaf[i]);
     for (i = 0; i < m->patch_end; i++) hash = mix(hash, child[i]);
-    return hash;
+    return sc_model_is_for_boxes(m) ? mix(hash, SC_MODEL_BOXES) : hash;
 }
 
 /* Numbers points as the vertices that stand for them. */
@@ -376,14 +376,14 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
          m->segment_child_total * sizeof(uint32_t));
     write_segments(csf, number, sctt, m);
     write_levels(xbvh, sctt, csf, NEW_ARRAY(m, level_info, sc_level));
-    status = sc_loops_write(csf, sctt, xbvh, hierarchy->order, sc_model_leaf_corner(m),
-                            points->point_count, scratch, NEW_ARRAY(m, loop, uint16_t));
-    if (status) {
-        sc_model_release(m);
-        return status;
+    status = SC_OK;
+    if (!sc_model_is_for_boxes(m)) {
+        status = sc_loops_write(csf, sctt, xbvh, hierarchy->order, sc_model_leaf_corner(m),
+                                points->point_count, scratch, NEW_ARRAY(m, loop, uint16_t));
+        if (!status)
+            status = count_connected(adjacency, hierarchy, xbvh, scratch,
+                                     NEW_ARRAY(m, level_info, sc_level));
     }
-    status =
-        count_connected(adjacency, hierarchy, xbvh, scratch, NEW_ARRAY(m, level_info, sc_level));
     if (status) {
         sc_model_release(m);
         return status;

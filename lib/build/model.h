@@ -9,6 +9,8 @@
  * sc_model.bytes bytes. What frees it stands before it; before a model that is used in place where it
  * was saved stands the header of the save (build/saved_model.h), and the caller frees it.
  *
+ * A model with SC_MODEL_BOXES has an empty test tree: no nodes, boxes, segments or contours.
+ *
  * The block is the format of saved models: whoever changes what is in it raises the version in
  * build/saved_model.c, and makes build/model_check.c check it.
  */
@@ -178,8 +180,14 @@ static inline int sc_model_is_leaf(const sc_model *model, uint32_t patch)
     return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch] == 1;
 }
 
-/* Computes offsets and bytes from the counts. Counts must be at least 1, as many segments as leaf
-   segments there at least. */
+/* Whether it is a model with SC_MODEL_BOXES. */
+static inline int sc_model_is_for_boxes(const sc_model *model)
+{
+    return model->node_count == 0;
+}
+
+/* Computes offsets and bytes from the counts. Counts must be at least 1, but for those that are 0 in models
+   for boxes; as many segments as leaf segments there at least. */
 void sc_model_lay_out(sc_model *counts);
 
 /* Memory for a model of so many bytes, behind its owner; the model's own is left unset. NULL if there

@@ -19,8 +19,8 @@ int sc_model_check_counts(const sc_model *m, uint64_t bytes)
     if (!m->point_count || m->point_count > m->vertex_count) return 0;
     if (!m->leaf_count || m->leaf_count > m->triangle_count) return 0;
     if (!m->level_count || m->level_count > SC_DEPTH_MAX) return 0;
-    if (m->unused || !m->patch_end || !m->node_count || m->segment_count < m->leaf_segment_count)
-        return 0;
+    if (m->unused || !m->patch_end || m->segment_count < m->leaf_segment_count) return 0;
+    if (sc_model_is_for_boxes(m) && (m->box_count || m->segment_count || m->contour_max)) return 0;
     if (m->patch_end > limit || m->node_count > limit || m->box_count > limit) return 0;
     sc_model_lay_out(&expected);
     if (m->bytes != bytes || expected.bytes != bytes) return 0;
@@ -225,6 +225,20 @@ static int take_children(const sc_model *m, node_walk *walk, uint32_t a, uint32_
     return 1;
 }
 
+/* An empty test tree. */
+static const char *check_no_nodes(const sc_model *m)
+{
+    uint32_t level;
+    for (level = 0; level < m->level_count; level++) {
+        sc_level expected;
+        memset(&expected, 0, sizeof expected);
+        expected.patch_count = sc_model_patches(m, level);
+        if (memcmp(&expected, &sc_model_level_info(m)[level], sizeof expected)) return "level_info";
+    }
+    if (*sc_model_node_child(m)) return "node_child";
+    return *sc_model_node_boxes(m) ? "node_boxes" : NULL;
+}
+
 /*
  * The self-collision test tree (build/sctt.h). Node 0 is the mesh against itself, and the children of
  * each node are all pairs of children of its patches, each once, be it as a node or for boxes. So nodes
@@ -243,6 +257,7 @@ static const char *check_nodes(const sc_model *m)
     walk.node_count = m->node_count;
     walk.box_count = m->box_count;
     walk.node = 1;
+    if (sc_model_is_for_boxes(m)) return check_no_nodes(m);
     if (patches[0].a != 0 || patches[0].b != 0) return "node_patches";
     for (n = 0, level = 0; level < m->level_count; level++) {
         uint32_t begin = n;

@@ -89,13 +89,34 @@ static sc_status copy_tree(const sc_build_options *options, sc_scratch *scratch,
     return status;
 }
 
+/* As build/locality.h left the triangles, but one component after the other: where several lie close together,
+   the curve goes from each to the others all the time. */
+static sc_status follow_curve(const sc_points *points, const sc_adjacency *adjacency,
+                              sc_scratch *scratch, uint32_t *order)
+{
+    uint32_t count = points->triangle_count, *lowest, *first, t, p;
+    for (t = 0; t < count; t++) order[t] = t;
+    if (adjacency->component_count == 1) return SC_OK;
+    lowest = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *lowest);
+    first = (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)points->point_count + 1,
+                                               sizeof *first, 0);
+    if (!lowest || !first) return SC_ERROR_MEMORY;
+    sc_adjacency_find_components(points, lowest);
+    for (t = 0; t < count; t++) first[lowest[points->triangles[3 * (uint64_t)t]] + 1]++;
+    for (p = 0; p < points->point_count; p++) first[p + 1] += first[p];
+    for (t = 0; t < count; t++) order[first[lowest[points->triangles[3 * (uint64_t)t]]]++] = t;
+    sc_scratch_give(scratch, first);
+    sc_scratch_give(scratch, lowest);
+    return SC_OK;
+}
+
 sc_status sc_partition_build(const sc_points *points, const sc_adjacency *adjacency,
                              const sc_build_options *options, sc_scratch *scratch,
                              sc_hierarchy *hierarchy)
 {
     uint32_t count = points->triangle_count;
     sc_status status;
-    if (options->partition == SC_PARTITION_FAST)
+    if (options->partition == SC_PARTITION_FAST && options->content == SC_MODEL_FULL)
         return sc_bisection_build(points, adjacency, NULL, NULL, scratch, hierarchy);
     if (options->partition == SC_PARTITION_BISECT) {
         if (!options->bisect) return SC_ERROR_NULL;
@@ -103,10 +124,18 @@ sc_status sc_partition_build(const sc_points *points, const sc_adjacency *adjace
                                   hierarchy);
     }
     if (options->partition > SC_PARTITION_BISECT) return SC_ERROR_OPTION;
-    status = check_order(options->order, count, scratch);
-    if (status) return status;
+    if (options->partition != SC_PARTITION_FAST) {
+        status = check_order(options->order, count, scratch);
+        if (status) return status;
+    }
     status = sc_hierarchy_init(hierarchy, points, scratch);
     if (status) return status;
+    if (options->partition == SC_PARTITION_FAST) {
+        status = follow_curve(points, adjacency, scratch, hierarchy->order);
+        if (status) return status;
+        sc_hierarchy_add_balanced(hierarchy, 0, count, 1);
+        return SC_OK;
+    }
     if (options->partition == SC_PARTITION_TREE) return copy_tree(options, scratch, hierarchy);
     memcpy(hierarchy->order, options->order, count * sizeof *hierarchy->order);
     sc_hierarchy_add_balanced(hierarchy, 0, count, 1);

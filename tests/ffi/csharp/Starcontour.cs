@@ -14,7 +14,7 @@ namespace Starcontour
         NotFinite = 8, VertexCount = 9, Memory = 10, ShortBuffer = 11, Workspace = 12, WeldMap = 13,
         Tree = 14, Partition = 15, Unsupported = 16, Alignment = 17, Level = 18, NotSaved = 19,
         Truncated = 20, ByteOrder = 21, TooNew = 22, TooOld = 23, Checksum = 24, Inconsistent = 25,
-        Topology = 26, Pairs = 27, Incomplete = 28
+        Topology = 26, Pairs = 27, Incomplete = 28, BoxesOnly = 29
     }
 
     public enum PairKind : uint { Triangle = 0, Edge = 1 }

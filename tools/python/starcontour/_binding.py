@@ -26,10 +26,12 @@ SC_ERROR_CHECKSUM = 24
 SC_ERROR_TOPOLOGY = 26
 SC_ERROR_PAIRS = 27
 SC_ERROR_INCOMPLETE = 28
+SC_ERROR_BOXES_ONLY = 29
 SC_FLOAT, SC_DOUBLE = 0, 1
 SC_UINT32, SC_UINT16 = 0, 1
 SC_WELD_REST, SC_WELD_MAP, SC_WELD_NONE = 0, 1, 2
 SC_PARTITION_FAST, SC_PARTITION_ORDER = 0, 1
+SC_MODEL_FULL, SC_MODEL_BOXES = 0, 1
 SC_LOAD_COPY, SC_LOAD_IN_PLACE = 0, 1
 SC_OUTPUT_PAIRS, SC_OUTPUT_COUNT, SC_OUTPUT_ANY = 0, 1, 2
 SC_PAIRS_TRIANGLE, SC_PAIRS_EDGE = 0, 1
@@ -81,7 +83,7 @@ class sc_build_options(ctypes.Structure):
         ("allocator", c_void_p),
         ("hooks", c_void_p),
         ("rest", c_uint32),
-        ("reserved", c_uint32),
+        ("content", c_uint32),
     ]
 
 
