@@ -533,6 +533,11 @@ static sc_status check_query(const sc_model *model, sc_workspace *workspace, con
     return SC_OK;
 }
 
+static int uses_star(const sc_query_options *o)
+{
+    return o->method == SC_METHOD_SCTT && o->contour == SC_CONTOUR_STAR;
+}
+
 static sc_status run_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
                            uint64_t stride, sc_query_state *state)
 {
@@ -545,6 +550,7 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
     if (state->timed) start = state->last_time = sc_clock_nanoseconds();
     if (sc_state_stops(state)) return SC_ERROR_INCOMPLETE;
     sc_workspace_new_pose(model, workspace);
+    if (!uses_star(&state->options)) sc_workspace_keep_all(workspace);
     status = sc_positions_read(model, pose, stride, workspace);
     if (status) return status;
     if (sc_parallel_pays(state)) {

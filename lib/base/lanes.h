@@ -106,7 +106,7 @@ static inline lanes_mask lanes_not_above(lanes a, lanes b)
 }
 static inline lanes_mask lanes_both(lanes_mask a, lanes_mask b)
 {
-    return (lanes_mask)(a & b);
+    return _kand_mask16(a, b); /* so that compilers do not make a chain of comparisons of it */
 }
 static inline unsigned lanes_bits(lanes_mask a)
 {

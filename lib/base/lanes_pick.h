@@ -5,7 +5,8 @@
  * SPDX-License-Identifier: MIT
  *
  * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
- * to. lanes_index reads sixteen numbers below sixteen; lanes_pick takes the floats of these numbers of a row.
+ * to. lanes_index reads sixteen numbers below sixteen, lanes_index_through those of these numbers of a row of sixteen
+ * bytes; lanes_pick and lanes_pick_of take the floats of these numbers of a row, in memory or not.
  * lanes_choose takes from a where the mask is set, else from b. lanes_corners picks corners 0 to 2 of triangles, their
  * coordinates 0 to 2, from three rows of coordinates by three of numbers.
  *
@@ -13,7 +14,9 @@
  */
 #define lanes_index SC_KERNEL(sc_lanes_index)
 #define lanes_index_load SC_KERNEL(sc_lanes_index_load)
+#define lanes_index_through SC_KERNEL(sc_lanes_index_through)
 #define lanes_pick SC_KERNEL(sc_lanes_pick)
+#define lanes_pick_of SC_KERNEL(sc_lanes_pick_of)
 #define lanes_choose SC_KERNEL(sc_lanes_choose)
 #define lanes_corners SC_KERNEL(sc_lanes_corners)
 #define lanes_list SC_KERNEL(sc_lanes_list)
@@ -26,9 +29,19 @@ static inline lanes_index lanes_index_load(const uint8_t *numbers)
 {
     return _mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)(const void *)numbers));
 }
+static inline lanes_index lanes_index_through(const uint8_t *row, const uint8_t *numbers)
+{
+    return _mm512_cvtepu8_epi32(
+        _mm_shuffle_epi8(_mm_loadu_si128((const __m128i *)(const void *)row),
+                         _mm_loadu_si128((const __m128i *)(const void *)numbers)));
+}
 static inline lanes lanes_pick(const float *row, lanes_index i)
 {
     return _mm512_permutexvar_ps(i, _mm512_loadu_ps(row));
+}
+static inline lanes lanes_pick_of(lanes row, lanes_index i)
+{
+    return _mm512_permutexvar_ps(i, row);
 }
 static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 {
@@ -64,19 +77,31 @@ static inline lanes_index lanes_index_load(const uint8_t *numbers)
     r.v[1] = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)(numbers + 8)));
     return r;
 }
+static inline lanes_index lanes_index_through(const uint8_t *row, const uint8_t *numbers)
+{
+    __m128i all = _mm_shuffle_epi8(_mm_loadu_si128((const __m128i *)(const void *)row),
+                                   _mm_loadu_si128((const __m128i *)(const void *)numbers));
+    lanes_index r;
+    r.v[0] = _mm256_cvtepu8_epi32(all);
+    r.v[1] = _mm256_cvtepu8_epi32(_mm_srli_si128(all, 8));
+    return r;
+}
 /* The sign bit of the number shifted, which a blend looks at, tells whether it is above seven. */
 static inline __m256 SC_KERNEL(sc_lanes_pick_part)(__m256 low, __m256 high, __m256i i)
 {
     return _mm256_blendv_ps(_mm256_permutevar8x32_ps(low, i), _mm256_permutevar8x32_ps(high, i),
                             _mm256_castsi256_ps(_mm256_slli_epi32(i, 28)));
 }
+static inline lanes lanes_pick_of(lanes row, lanes_index i)
+{
+    lanes r;
+    r.v[0] = SC_KERNEL(sc_lanes_pick_part)(row.v[0], row.v[1], i.v[0]);
+    r.v[1] = SC_KERNEL(sc_lanes_pick_part)(row.v[0], row.v[1], i.v[1]);
+    return r;
+}
 static inline lanes lanes_pick(const float *row, lanes_index i)
 {
-    __m256 low = _mm256_loadu_ps(row), high = _mm256_loadu_ps(row + 8);
-    lanes r;
-    r.v[0] = SC_KERNEL(sc_lanes_pick_part)(low, high, i.v[0]);
-    r.v[1] = SC_KERNEL(sc_lanes_pick_part)(low, high, i.v[1]);
-    return r;
+    return lanes_pick_of(lanes_load(row), i);
 }
 static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 {
@@ -88,18 +113,35 @@ static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 
 #  else
 
-typedef const uint8_t *lanes_index;
+typedef struct lanes_index {
+    uint8_t at[SC_LANES_COUNT];
+} lanes_index;
 
 static inline lanes_index lanes_index_load(const uint8_t *numbers)
 {
-    return numbers;
+    lanes_index r;
+    memcpy(r.at, numbers, sizeof r.at);
+    return r;
+}
+static inline lanes_index lanes_index_through(const uint8_t *row, const uint8_t *numbers)
+{
+    lanes_index r;
+    int k;
+    for (k = 0; k < SC_LANES_COUNT; k++) r.at[k] = row[numbers[k]];
+    return r;
 }
 static inline lanes lanes_pick(const float *row, lanes_index i)
 {
     float r[SC_LANES_COUNT];
     int k;
-    for (k = 0; k < SC_LANES_COUNT; k++) r[k] = row[i[k]];
+    for (k = 0; k < SC_LANES_COUNT; k++) r[k] = row[i.at[k]];
     return lanes_load(r);
+}
+static inline lanes lanes_pick_of(lanes row, lanes_index i)
+{
+    float r[SC_LANES_COUNT];
+    lanes_store(r, row);
+    return lanes_pick(r, i);
 }
 
 #    if SC_LANES_QUADS

@@ -5,7 +5,9 @@
  */
 #undef lanes_index
 #undef lanes_index_load
+#undef lanes_index_through
 #undef lanes_pick
+#undef lanes_pick_of
 #undef lanes_choose
 #undef lanes_corners
 #undef lanes_list

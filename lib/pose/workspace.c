@@ -49,9 +49,12 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
         (uint32_t *)place(block, at, SC_WALK_QUEUE + SC_WALK_CHILDREN, sizeof(uint32_t));
     w->walk.self = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
     w->walk.culled = w->walk.marks = (uint8_t *)place(block, at, model->patch_end, 1);
-    w->ready =
+    w->some_ready =
         (sc_leaf_ready *)place(block, at, (uint64_t)2 * SC_READY_KEPT, sizeof(sc_leaf_ready));
+    w->some_known =
+        (sc_leaf_known *)place(block, at, (uint64_t)2 * SC_READY_KEPT, sizeof(sc_leaf_known));
     w->slab = (sc_leaf_slab *)place(block, at, model->leaf_count, sizeof(sc_leaf_slab));
+    w->leaf_pairs = (sc_pair *)place(block, at, SC_LEAF_QUEUE, sizeof(sc_pair));
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->ball = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
@@ -114,7 +117,7 @@ static void clear_own(const sc_model *model, sc_workspace *w)
     memset(w->fan, 0, model->vertex_count * sizeof *w->fan);
     memset(w->plain_tick, 0, model->leaf_count * sizeof *w->plain_tick);
     memset(w->plain, 0, model->leaf_count * sizeof *w->plain);
-    memset(w->ready, 0, 2 * SC_READY_KEPT * sizeof *w->ready);
+    memset(w->some_known, 0, 2 * SC_READY_KEPT * sizeof *w->some_known);
     memset(w->slab, 0, model->leaf_count * sizeof *w->slab);
     memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
 }
@@ -129,6 +132,24 @@ static uint64_t view_bytes(const sc_model *model, uint32_t flags)
     return at;
 }
 
+/* Bounds of segments, and leaf clusters made ready in the same place. */
+static void lay_out_bounds(const sc_model *model, unsigned char *block, uint64_t *at,
+                           sc_workspace *w)
+{
+    uint64_t start = *at, end;
+    int k;
+    w->all_ready = (sc_leaf_ready *)place(block, at, model->leaf_count, sizeof(sc_leaf_ready));
+    end = *at;
+    *at = start;
+    for (k = 0; k < 2; k++)
+        w->bounds[k] =
+            (sc_segment_bounds *)place(block, at, model->segment_count, sizeof(sc_segment_bounds));
+    if (*at < end) *at = end;
+    for (k = 0; k < 2; k++)
+        w->bounds_tick[k] = (uint32_t *)place(block, at, model->segment_count, sizeof(uint32_t));
+    w->all_known = (sc_leaf_known *)place(block, at, model->leaf_count, sizeof(sc_leaf_known));
+}
+
 static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_workspace *w)
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
@@ -139,11 +160,7 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
         w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
     w->mask = (uint16_t *)place(block, &at, model->patch_end, sizeof(uint16_t));
     w->prospect = (uint32_t *)place(block, &at, model->patch_end, sizeof(uint32_t));
-    for (k = 0; k < 2; k++) {
-        w->bounds[k] =
-            (sc_segment_bounds *)place(block, &at, model->segment_count, sizeof(sc_segment_bounds));
-        w->bounds_tick[k] = (uint32_t *)place(block, &at, model->segment_count, sizeof(uint32_t));
-    }
+    lay_out_bounds(model, block, &at, w);
     if (w->flags & SC_WORKSPACE_STEP) lay_out_motion(model, block, &at, &w->motion);
     lay_out_own(model, block, &at, w);
     if (w->workers == 1) return at;
@@ -173,12 +190,30 @@ sc_workspace *sc_workspace_of_worker(sc_workspace *w, uint32_t worker)
     return (sc_workspace *)(void *)(w->views + (worker - 1) * w->view_bytes);
 }
 
+/* Has some leaf clusters kept ready, in arrays of the worker's own. */
+static void keep_some(sc_workspace *w)
+{
+    w->ready = w->some_ready;
+    w->known = w->some_known;
+    w->ready_mask = SC_READY_KEPT - 1;
+    w->ready_upper = SC_READY_KEPT;
+}
+
+void sc_workspace_keep_all(sc_workspace *w)
+{
+    w->ready = w->all_ready;
+    w->known = w->all_known;
+    w->ready_mask = 0xffffffffu;
+    w->ready_upper = 0;
+}
+
 /* All that is in the workspace, with the arrays of its own that stand behind the view. */
 static void make_view(const sc_model *model, const sc_workspace *w, sc_workspace *view)
 {
     uint64_t at = align(sizeof *view);
     *view = *w;
     lay_out_own(model, (unsigned char *)view, &at, view);
+    keep_some(view);
 }
 
 void sc_workspace_share(const sc_model *model, sc_workspace *w, uint32_t workers)
@@ -210,7 +245,9 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
         for (i = 0; i < patches; i++) w->patch_boxes.side[k][i] = (float)NAN;
     memset(w->mask, 0, model->patch_end * sizeof *w->mask);
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
+    memset(w->all_known, 0, model->leaf_count * sizeof *w->all_known);
     clear_own(model, w);
+    keep_some(w);
     if (w->flags & SC_WORKSPACE_STEP) place_motion(model, &w->motion, w->ball);
     for (worker = 1; worker < w->workers; worker++) {
         sc_workspace *view = sc_workspace_of_worker(w, worker);
@@ -237,13 +274,16 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
             sc_workspace *own = sc_workspace_of_worker(workspace, worker);
             memset(own->fan, 0, model->vertex_count * sizeof *own->fan);
             memset(own->plain_tick, 0, model->leaf_count * sizeof *own->plain_tick);
-            memset(own->ready, 0, 2 * SC_READY_KEPT * sizeof *own->ready);
+            memset(own->some_known, 0, 2 * SC_READY_KEPT * sizeof *own->some_known);
             memset(own->slab, 0, model->leaf_count * sizeof *own->slab);
         }
+        memset(workspace->all_known, 0, model->leaf_count * sizeof *workspace->all_known);
         workspace->pose_tick = 0;
     }
     workspace->pose_tick++;
+    keep_some(workspace);
     workspace->leaves_ready = workspace->boxes_ready = 0;
+    workspace->leaf_pair_count = 0;
     workspace->candidate_count = workspace->neighbor_count = workspace->found_count = 0;
     workspace->ball_center = SC_NONE;
 }

@@ -3,12 +3,17 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | leaf_at | patch boxes | mask | prospect | bounds |
- *       bounds_tick | motion | own arrays | view | view | ... |
+ *     | sc_workspace | leaf_at | patch boxes | mask | prospect | bounds or all_ready |
+ *       bounds_tick | all_known | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
- * ready, slab, candidates, neighbors, ball, ball_queue, found, state, motion's from leaves to state. For each worker but the first there is a
- * view: an sc_workspace with the pose of the first, and own arrays.
+ * some_ready, some_known, slab, leaf_pairs, candidates, neighbors, ball, ball_queue, found, state, motion's from
+ * leaves to state. For each worker but the first there is a view: an sc_workspace with the pose of the first, and
+ * own arrays.
+ *
+ * The star test's bounds and leaf clusters made ready are never needed by one query, so they share their memory; what
+ * tells whether they are of this query stands elsewhere. Only the first worker has room for all leaf clusters, and
+ * not in a query with the star test.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -89,13 +94,18 @@ enum { SC_CANDIDATES_MAX = 1024 };
 /* A leaf cluster made ready for tests of its triangles, in the unit box; see query/leaf_kernel.h. Rows are filled with
    the last triangle. */
 typedef struct sc_leaf_ready {
-    uint32_t leaf, tick;             /* of the pose; 0: nothing yet */
-    uint32_t has_normals;            /* what follows corner is made only when needed */
-    float side[6][SC_LEAF_MAX];      /* boxes; what is no triangle is NaN and overlaps nothing */
-    float corner[3][3][SC_LEAF_MAX]; /* corner, axis, triangle */
-    float normal[3][SC_LEAF_MAX];
-    float size[SC_LEAF_MAX]; /* |e|1 + |f|1, e and f the edges from the first corner */
+    float side[6][SC_LEAF_MAX];   /* boxes; what is no triangle is NaN and overlaps nothing */
+    float normal[3][SC_LEAF_MAX]; /* this and what follows is made only when needed */
+    float offset[SC_LEAF_MAX];    /* where the first corner is along the normal */
+    float size[SC_LEAF_MAX];      /* |e|1 + |f|1, e and f the edges from the first corner */
 } sc_leaf_ready;
+
+enum { SC_READY_ROWS = sizeof(sc_leaf_ready) / (SC_LEAF_MAX * sizeof(float)) };
+
+/* What is known of a leaf cluster: in which pose its boxes were made, and the rest; 0: never. */
+typedef struct sc_leaf_known {
+    uint32_t leaf, boxes, normals;
+} sc_leaf_known;
 
 /* Where the points of a leaf cluster are along its mean normal, about, at least and at most. */
 typedef struct sc_leaf_slab {
@@ -103,8 +113,11 @@ typedef struct sc_leaf_slab {
     uint32_t tick; /* of the pose; 0: nothing yet */
 } sc_leaf_slab;
 
-/* So many leaf clusters are kept ready, of each side of pairs. */
+/* Where not all leaf clusters are kept ready, so many are, of each side of pairs: a power of two. */
 enum { SC_READY_KEPT = 32 };
+
+/* Pairs of leaf clusters that wait to be looked at, at most. */
+enum { SC_LEAF_QUEUE = 1024 };
 
 /* Sides of boxes that move, three each: x, y, z. */
 enum { SC_START_LOW = 0, SC_START_HIGH = 3, SC_END_LOW = 6, SC_END_HIGH = 9, SC_MOTION_SIDES = 12 };
@@ -211,10 +224,19 @@ struct sc_workspace {
     sc_contour_edges contour;
     sc_walk walk;
 
-    sc_leaf_ready *ready; /* 2 * SC_READY_KEPT */
-    sc_leaf_slab *slab;   /* leaf_count */
-    sc_pair *candidates;  /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
-    sc_pair *neighbors;   /* SC_CANDIDATES_MAX of such that share one point */
+    /* leaf cluster i is at i & ready_mask, as the upper one of two ready_upper behind */
+    sc_leaf_ready *ready; /* all_ready or some_ready */
+    sc_leaf_known *known; /* all_known or some_known */
+    uint32_t ready_mask, ready_upper;
+    sc_leaf_ready *all_ready;  /* leaf_count */
+    sc_leaf_known *all_known;  /* leaf_count */
+    sc_leaf_ready *some_ready; /* 2 * SC_READY_KEPT */
+    sc_leaf_known *some_known; /* 2 * SC_READY_KEPT */
+    sc_leaf_slab *slab;        /* leaf_count */
+    sc_pair *leaf_pairs;       /* SC_LEAF_QUEUE that wait, a < b */
+    uint32_t leaf_pair_count;
+    sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
+    sc_pair *neighbors;  /* SC_CANDIDATES_MAX of such that share one point */
     uint32_t candidate_count, neighbor_count;
 
     /* points near a triangle in number of edges, see query/filter.c */
@@ -258,5 +280,8 @@ void sc_workspace_share(const sc_model *model, sc_workspace *workspace, uint32_t
 /* Starts a pose and a projection, whose ticks make everything older stale. */
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace);
 void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace);
+
+/* Has all leaf clusters kept ready in this pose, for which no star test is made. */
+void sc_workspace_keep_all(sc_workspace *workspace);
 
 #endif

@@ -224,7 +224,8 @@ static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
     }
 }
 
-void sc_candidates_decide(sc_query_state *state)
+/* Decides what has been collected of triangles. */
+static void decide_collected(sc_query_state *state)
 {
     sc_workspace *w = state->workspace;
     uint32_t previous;
@@ -237,13 +238,21 @@ void sc_candidates_decide(sc_query_state *state)
     sc_state_switch(state, previous);
 }
 
+void sc_candidates_decide(sc_query_state *state)
+{
+    uint32_t previous = sc_state_switch(state, sc_state_box_task(state));
+    if (state->workspace->leaf_pair_count) sc_query_kernels_of(state->workspace)->leaf_pairs(state);
+    sc_state_switch(state, previous);
+    decide_collected(state);
+}
+
 void sc_candidates_make_room(sc_query_state *state)
 {
     /* fewer if the first hit ends the query */
     uint32_t most =
         state->options.output == SC_OUTPUT_ANY ? 64 : SC_CANDIDATES_MAX - SC_LEAF_MAX * SC_LEAF_MAX;
     if (state->workspace->candidate_count >= most || state->workspace->neighbor_count >= most)
-        sc_candidates_decide(state);
+        decide_collected(state);
 }
 
 /* Whether two triangles share a vertex, without branches. */

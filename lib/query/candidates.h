@@ -14,7 +14,16 @@
 /* Pairs of triangles of two leaf clusters, at most. Fewer than SC_LEAF_FEW are decided without the tests of
    query/leaf_kernel.h; and it takes SC_SIDES_WORTH that no plane separates, of sixteen, for the test by sides. Tuned on
    the bunny and on cloth. */
-enum { SC_LEAF_PAIRS = SC_LEAF_MAX * SC_LEAF_MAX, SC_LEAF_FEW = 3, SC_SIDES_WORTH = 3 };
+enum { SC_LEAF_PAIRS = SC_LEAF_MAX * SC_LEAF_MAX, SC_LEAF_FEW = 2, SC_SIDES_WORTH = 3 };
+
+/* Of pairs of leaf clusters that wait: so many or more are tested by slabs first; memory is asked for some places ahead;
+   so many are looked at before the query asks whether to stop. The first ones tuned on crushed cloth and the bunny. */
+enum {
+    SC_LEAF_SLABS_FIRST = 64,
+    SC_FETCH_POINTS = 6,
+    SC_FETCH_READY = 3,
+    SC_LEAF_PAIRS_UNASKED = 64
+};
 
 /* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
 typedef struct sc_leaf_pair {

@@ -9,10 +9,13 @@
  * bounds all differences, and v = 2^-24.
  *
  * A distance from a plane, up to a factor, is d = (e x f) . w, a sum of six products; e and f are two edges, w runs from
- * their corner to another triangle's. With S = |e|1 + |f|1 <= 6 D: moving the components of one of them by EDGE changes
- * d by 2 EDGE |f|1 D, 2 EDGE |e|1 D and EDGE |e|1 |f|1 <= 1.5 EDGE D S at most; of two, by 2 EDGE^2 S + 6 EDGE^2 D; of all
- * three, by 6 EDGE^3; and rounding (eight times a product) by 8.01 v |e|1 |f|1 D <= 12.1 v D^2 S. All of it is below
- * S (4 EDGE (D + EDGE) + 13 v D^2) + 7 EDGE^2 (D + EDGE), however that is rounded.
+ * their corner p to a corner x of another triangle. With S = |e|1 + |f|1 <= 6 D: moving the components of one of them by
+ * EDGE changes d by 2 EDGE |f|1 D, 2 EDGE |e|1 D and EDGE |e|1 |f|1 <= 1.5 EDGE D S at most; of two, by
+ * 2 EDGE^2 S + 6 EDGE^2 D; of all three, by 6 EDGE^3: below S 4 EDGE (D + EDGE) + 7 EDGE^2 (D + EDGE) in all. The normal
+ * n = e x f is rounded, by 4.01 v |e|1 |f|1 in all, which changes d by 6.02 v D^2 S at most. It is computed as n . x - n . p,
+ * and compared rather than subtracted: both products are off by 3.01 v |n|1, as no coordinate is above 1, and the sum of
+ * one with the bound by 1.01 v |n|1 and a part of the bound. |n|1 <= 1.01 |e|1 |f|1 <= S^2 / 3.96: together
+ * 1.8 v S^2. All of it is below S (2.1 v S + 4 EDGE (D + EDGE) + 7 v D^2) + 8 EDGE^2 (D + EDGE), however that is rounded.
  *
  * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4 EDGE D, 2 EDGE^2, and by
  * rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
@@ -48,17 +51,23 @@ static inline lanes SC_KERNEL(along)(const sc_query_state *state, uint32_t leaf,
     return lanes_add(lanes_add(x, y), z);
 }
 
-/* Corners and boxes of the triangles of a leaf cluster. */
+/* The corners of a leaf cluster's triangles. */
+static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t leaf,
+                                           lanes x[3][3])
+{
+    lanes_corners(state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf,
+                  sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
+}
+
+/* Boxes of the triangles of a leaf cluster. */
 static void SC_KERNEL(make_boxes)(const sc_query_state *state, uint32_t leaf, sc_leaf_ready *ready)
 {
-    const sc_model *model = state->model;
-    const uint32_t *first = sc_model_leaf_first(model) + leaf;
+    const uint32_t *first = sc_model_leaf_first(state->model) + leaf;
     const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(FLT_MIN); /* see base/boxes.h */
     lanes x[3][3];
     uint32_t i;
-    int k, c;
-    lanes_corners(state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf,
-                  sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
+    int c;
+    SC_KERNEL(leaf_corners)(state, leaf, x);
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         lanes low = lanes_smaller(x[0][c], lanes_smaller(x[1][c], x[2][c]));
@@ -69,24 +78,16 @@ static void SC_KERNEL(make_boxes)(const sc_query_state *state, uint32_t leaf, sc
         lanes_store(ready->side[c + 3], high);
         for (i = first[1] - first[0]; i < SC_LEAF_MAX; i++) /* no triangle: overlaps nothing */
             ready->side[c][i] = ready->side[c + 3][i] = (float)NAN;
-        SC_UNROLL
-        for (k = 0; k < 3; k++) lanes_store(ready->corner[k][c], x[k][c]);
     }
-    ready->leaf = leaf;
-    ready->tick = state->workspace->pose_tick;
-    ready->has_normals = 0;
 }
 
-/* What is made of these. */
-static void SC_KERNEL(make_normals)(sc_leaf_ready *ready)
+/* Their planes. */
+static void SC_KERNEL(make_normals)(const sc_query_state *state, uint32_t leaf,
+                                    sc_leaf_ready *ready)
 {
-    lanes x[3][3], e[3], f[3], n[3], size;
-    int k, c;
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        SC_UNROLL
-        for (c = 0; c < 3; c++) x[k][c] = lanes_load(ready->corner[k][c]);
-    }
+    lanes x[3][3], e[3], f[3], n[3], size, offset;
+    int c;
+    SC_KERNEL(leaf_corners)(state, leaf, x);
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         e[c] = lanes_subtract(x[1][c], x[0][c]);
@@ -103,35 +104,55 @@ static void SC_KERNEL(make_normals)(sc_leaf_ready *ready)
                               lanes_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
         lanes_store(ready->normal[c], n[c]);
     }
-    ready->has_normals = 1;
+    offset = lanes_multiply(n[0], x[0][0]);
+    SC_UNROLL
+    for (c = 1; c < 3; c++) offset = lanes_add(offset, lanes_multiply(n[c], x[0][c]));
+    lanes_store(ready->offset, offset);
 }
 
-/* A leaf cluster with its boxes; side is 0 for the lower of two, 1 for the other. */
-static inline sc_leaf_ready *SC_KERNEL(boxes)(const sc_query_state *state, uint32_t leaf,
-                                              uint32_t side)
+/* Where a leaf cluster is kept; is_upper: it is the upper of the two of a pair. */
+static inline uint32_t SC_KERNEL(place)(const sc_query_state *state, uint32_t leaf, int is_upper)
 {
-    sc_leaf_ready *ready = state->workspace->ready + SC_READY_KEPT * side + leaf % SC_READY_KEPT;
-    if (ready->leaf != leaf || ready->tick != state->workspace->pose_tick)
-        SC_KERNEL(make_boxes)(state, leaf, ready);
-    return ready;
+    const sc_workspace *w = state->workspace;
+    return (leaf & w->ready_mask) + (is_upper ? w->ready_upper : 0);
+}
+
+/* A leaf cluster with its boxes. */
+static inline const sc_leaf_ready *SC_KERNEL(boxes)(const sc_query_state *state, uint32_t leaf,
+                                                    int is_upper)
+{
+    sc_workspace *w = state->workspace;
+    uint32_t at = SC_KERNEL(place)(state, leaf, is_upper);
+    sc_leaf_known *known = w->known + at;
+    if (known->leaf != leaf || known->boxes != w->pose_tick) {
+        SC_KERNEL(make_boxes)(state, leaf, w->ready + at);
+        known->leaf = leaf;
+        known->boxes = w->pose_tick;
+        known->normals = 0;
+    }
+    return w->ready + at;
 }
 
 /* The same with all that there is. */
 static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state, uint32_t leaf,
-                                                    uint32_t side)
+                                                    int is_upper)
 {
-    sc_leaf_ready *ready = SC_KERNEL(boxes)(state, leaf, side);
-    if (!ready->has_normals) SC_KERNEL(make_normals)(ready);
-    return ready;
+    sc_workspace *w = state->workspace;
+    uint32_t at = SC_KERNEL(place)(state, leaf, is_upper);
+    SC_KERNEL(boxes)(state, leaf, is_upper);
+    if (w->known[at].normals != w->pose_tick) {
+        SC_KERNEL(make_normals)(state, leaf, w->ready + at);
+        w->known[at].normals = w->pose_tick;
+    }
+    return w->ready + at;
 }
 
-/* The slab of a leaf cluster; side as above. */
-static const sc_leaf_slab *SC_KERNEL(slab)(const sc_query_state *state, uint32_t leaf,
-                                           uint32_t side)
+/* The slab of a leaf cluster; is_upper as above. */
+static const sc_leaf_slab *SC_KERNEL(slab)(const sc_query_state *state, uint32_t leaf, int is_upper)
 {
     sc_leaf_slab *slab = state->workspace->slab + leaf;
     if (slab->tick != state->workspace->pose_tick) {
-        const sc_leaf_ready *ready = SC_KERNEL(ready)(state, leaf, side);
+        const sc_leaf_ready *ready = SC_KERNEL(ready)(state, leaf, is_upper);
         float reach = 16 * FLT_MIN;
         lanes along;
         int c;
@@ -156,6 +177,14 @@ static inline int SC_KERNEL(is_beside)(const sc_query_state *state, uint32_t lea
            lanes_bits(lanes_below(lanes_all(slab->ends[1]), along)) == 0xffffu;
 }
 
+/* Whether the slab of one of two leaf clusters, a < b, certainly has the other on one side. If they share a point, it
+   is in both, to the last bit. */
+static inline int SC_KERNEL(slabs_part)(const sc_query_state *state, uint32_t a, uint32_t b)
+{
+    return SC_KERNEL(is_beside)(state, b, SC_KERNEL(slab)(state, a, 0)) ||
+           SC_KERNEL(is_beside)(state, a, SC_KERNEL(slab)(state, b, 1));
+}
+
 /* Largest extent of the boxes of two leaf clusters together. */
 static float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
@@ -173,27 +202,56 @@ static float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t
     return extent;
 }
 
-/* The lanes in which a plane, given by a normal, its size and a point, certainly has all corners of o on one side. */
-static inline unsigned SC_KERNEL(plane_separates)(const lanes n[3], lanes size, const lanes p[3],
-                                                  lanes o[3][3], float extent)
+/* Triangles of a leaf cluster as they are picked: sixteen by number. */
+typedef struct SC_KERNEL(picked) {
+    const sc_leaf_ready *ready;
+    const float *at;        /* its points */
+    const uint8_t *corner;  /* see sc_model.leaf_corner */
+    const uint8_t *numbers; /* of the triangles */
+} SC_KERNEL(picked);
+
+/* The corners of these. */
+static inline void SC_KERNEL(pick_corners)(const SC_KERNEL(picked) * t, lanes x[3][3])
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    lanes bound, least = lanes_all(0), most = least;
     int k, c;
-    bound = lanes_add(
-        lanes_multiply(size, lanes_all(4 * edge * (extent + edge) + 13 * v * extent * extent)),
-        lanes_all(7 * edge * edge * (extent + edge)));
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        lanes d = lanes_multiply(n[0], lanes_subtract(o[k][0], p[0]));
+        lanes_index i = lanes_index_through(t->corner + SC_LEAF_MAX * k, t->numbers);
         SC_UNROLL
-        for (c = 1; c < 3; c++)
-            d = lanes_add(d, lanes_multiply(n[c], lanes_subtract(o[k][c], p[c])));
+        for (c = 0; c < 3; c++) x[k][c] = lanes_pick(t->at + SC_LEAF_POINTS * c, i);
+    }
+}
+
+/* What a distance from a plane, up to a factor, may be off by. */
+static inline lanes SC_KERNEL(plane_bound)(lanes size, float extent)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    lanes bound = lanes_add(lanes_multiply(size, lanes_all(2.1f * v)),
+                            lanes_all(4 * edge * (extent + edge) + 7 * v * extent * extent));
+    return lanes_add(lanes_multiply(size, bound), lanes_all(8 * edge * edge * (extent + edge)));
+}
+
+/* The lanes in which the plane of a triangle certainly has all corners o of another on one side. */
+static inline unsigned SC_KERNEL(plane_separates)(const SC_KERNEL(picked) * t, lanes o[3][3],
+                                                  float extent)
+{
+    lanes_index i = lanes_index_load(t->numbers);
+    lanes offset = lanes_pick(t->ready->offset, i);
+    lanes bound = SC_KERNEL(plane_bound)(lanes_pick(t->ready->size, i), extent);
+    lanes n[3], least = offset, most = offset;
+    int k, c;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) n[c] = lanes_pick(t->ready->normal[c], i);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        lanes d = lanes_multiply(n[0], o[k][0]);
+        SC_UNROLL
+        for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(n[c], o[k][c]));
         least = k ? lanes_smaller(least, d) : d;
         most = k ? lanes_larger(most, d) : d;
     }
-    return lanes_bits(lanes_below(bound, least)) |
-           lanes_bits(lanes_below(most, lanes_subtract(lanes_all(0), bound)));
+    return lanes_bits(lanes_below(lanes_add(offset, bound), least)) |
+           lanes_bits(lanes_below(most, lanes_subtract(offset, bound)));
 }
 
 /* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge certainly has the third
@@ -247,124 +305,188 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], fl
     return apart;
 }
 
-/* The lanes in which the triangles of two clusters with these numbers are not certainly apart. */
-static unsigned SC_KERNEL(test_pairs)(const sc_leaf_ready *a, const sc_leaf_ready *b,
-                                      const uint8_t *of_a, const uint8_t *of_b, unsigned mask,
-                                      float extent)
+/* The lanes in which the triangles of two clusters with these numbers are not certainly apart, as far as planes of b
+   and sides tell. */
+static unsigned SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
+                                      unsigned mask, float extent)
 {
-    lanes_index i = lanes_index_load(of_a), j = lanes_index_load(of_b);
     lanes x[2][3][3], n[3];
-    int k, c;
+    int c;
+    SC_KERNEL(pick_corners)(a, x[0]);
+    mask &= ~SC_KERNEL(plane_separates)(b, x[0], extent);
+    if (sc_bits_count(mask) < SC_SIDES_WORTH) return mask;
+    SC_KERNEL(pick_corners)(b, x[1]);
     SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        SC_UNROLL
-        for (c = 0; c < 3; c++) {
-            x[0][k][c] = lanes_pick(a->corner[k][c], i);
-            x[1][k][c] = lanes_pick(b->corner[k][c], j);
-        }
-    }
-    SC_UNROLL
-    for (c = 0; c < 3; c++) n[c] = lanes_pick(b->normal[c], j);
-    mask &= ~SC_KERNEL(plane_separates)(n, lanes_pick(b->size, j), x[1][0], x[0], extent);
-    SC_UNROLL
-    for (c = 0; c < 3; c++) n[c] = lanes_pick(a->normal[c], i);
-    mask &= ~SC_KERNEL(plane_separates)(n, lanes_pick(a->size, i), x[0][0], x[1], extent);
-    if (sc_bits_count(mask) >= SC_SIDES_WORTH) mask &= ~SC_KERNEL(side_separates)(x, n, extent);
-    return mask;
+    for (c = 0; c < 3; c++) n[c] = lanes_pick(a->ready->normal[c], lanes_index_load(a->numbers));
+    return mask & ~SC_KERNEL(side_separates)(x, n, extent);
+}
+
+/* Sets all of a picked but the numbers. */
+static inline void SC_KERNEL(begin_picking)(const sc_query_state *state, uint32_t leaf,
+                                            int is_upper, SC_KERNEL(picked) * t)
+{
+    t->ready = SC_KERNEL(ready)(state, leaf, is_upper);
+    t->at = state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
+    t->corner = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
+    t->numbers = NULL;
 }
 
 /* Collects those of the pairs listed that are not certainly apart. */
-static void SC_KERNEL(collect)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b,
-                               uint8_t *of_a, uint8_t *of_b, unsigned count)
+static void SC_KERNEL(collect)(sc_query_state *state, const sc_leaf_pair *p, SC_KERNEL(picked) * a,
+                               SC_KERNEL(picked) * b, uint8_t *of_a, uint8_t *of_b, unsigned count,
+                               float extent)
 {
-    const uint32_t *first = sc_model_leaf_first(state->model);
-    const sc_leaf_ready *a = NULL, *b = NULL;
-    float extent = 0;
+    uint32_t first_a = sc_model_leaf_first(state->model)[p->a];
+    uint32_t first_b = sc_model_leaf_first(state->model)[p->b];
     unsigned at;
-    if (count >= SC_LEAF_FEW) {
-        a = SC_KERNEL(ready)(state, leaf_a, leaf_a > leaf_b);
-        b = SC_KERNEL(ready)(state, leaf_b, leaf_a < leaf_b);
-        extent = SC_KERNEL(extent)(state, leaf_a, leaf_b);
-        memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
-        memset(of_b + count, 0, SC_LANES_COUNT);
-    }
+    memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
+    memset(of_b + count, 0, SC_LANES_COUNT);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
         unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
-        if (count >= SC_LEAF_FEW)
-            mask = SC_KERNEL(test_pairs)(a, b, of_a + at, of_b + at, mask, extent);
+        if (count >= SC_LEAF_FEW) {
+            a->numbers = of_a + at;
+            b->numbers = of_b + at;
+            mask = SC_KERNEL(test_pairs)(a, b, mask, extent);
+        }
         for (; mask; mask &= mask - 1) {
             uint32_t lane = at + sc_bits_lowest(mask);
-            sc_candidates_add(state, first[leaf_a] + of_a[lane], first[leaf_b] + of_b[lane]);
+            sc_candidates_add(state, first_a + of_a[lane], first_b + of_b[lane]);
         }
     }
 }
 
-/* Rows of triangles of cluster p->a against all of cluster p->b, of which only some may overlap one of a. Most pairs
-   share points round which nothing can happen, and are dropped here. */
-static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, unsigned rows,
-                                      unsigned some)
+/* Lists the rows of a, triangles whose boxes overlap some of b's, and which. Returns how many. */
+static unsigned SC_KERNEL(list_rows)(const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned rows,
+                                     unsigned some, uint8_t of_a[], uint16_t of_b[])
 {
-    const sc_leaf_ready *a = SC_KERNEL(boxes)(state, p->a, p->a > p->b);
-    const sc_leaf_ready *b = SC_KERNEL(boxes)(state, p->b, p->b > p->a);
-    uint8_t of_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], of_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
-    uint64_t tests = 0;
-    unsigned count = 0;
     lanes low[3], high[3];
+    unsigned count = 0;
     int k;
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         low[k] = lanes_load(b->side[k]);
         high[k] = lanes_load(b->side[k + 3]);
     }
-    for (; rows; rows &= rows - 1, tests++) {
+    for (; rows; rows &= rows - 1) {
         uint32_t i = sc_bits_lowest(rows);
         lanes_mask m[3];
-        unsigned mask, shared = p->shared[i];
         SC_UNROLL
         for (k = 0; k < 3; k++)
             m[k] = lanes_both(lanes_not_above(lanes_all(a->side[k][i]), high[k]),
                               lanes_not_above(low[k], lanes_all(a->side[k + 3][i])));
-        mask = lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2]))) & some;
+        of_a[count] = (uint8_t)i;
+        of_b[count] = (uint16_t)(lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2]))) & some);
+        count += of_b[count] != 0;
+    }
+    return count;
+}
+
+/* Drops what is not to be looked at in the rows of clusters that share points; and hands on pairs that do. Most of
+   these share points round which nothing can happen. Returns how many rows are left. */
+static unsigned SC_KERNEL(drop_shared)(sc_query_state *state, const sc_leaf_pair *p, unsigned rows,
+                                       uint8_t of_a[], uint16_t of_b[])
+{
+    unsigned count = 0, r;
+    for (r = 0; r < rows; r++) {
+        uint32_t i = of_a[r];
+        unsigned mask = of_b[r], shared = p->shared[i];
         if (p->a == p->b) mask &= ~((2u << i) - 1u);
         mask &= ~(shared & (p->plain_a >> i & 1u ? SC_LEAF_ALL : p->plain_b));
-        if (!mask) continue;
         if (mask & shared) sc_candidates_take_neighbors(state, p, i, mask & shared);
         mask &= ~shared;
-        memset(of_a + count, (int)i, SC_LANES_COUNT);
-        count += lanes_list(mask, of_b + count);
+        of_a[count] = (uint8_t)i;
+        of_b[count] = (uint16_t)mask;
+        count += mask != 0;
     }
-    state->stats.counts[sc_state_box_task(state)] += tests;
-    if (count) SC_KERNEL(collect)(state, p->a, p->b, of_a, of_b, count);
+    return count;
+}
+
+/* Lists the pairs of these rows, but those of which the plane of the row's triangle has the other on one side. Returns
+   how many. */
+static unsigned SC_KERNEL(list_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
+                                      float extent, unsigned rows, const uint8_t row_a[],
+                                      const uint16_t row_b[], uint8_t of_a[], uint8_t of_b[])
+{
+    float above[SC_LEAF_MAX], below[SC_LEAF_MAX];
+    lanes at[3], bound = SC_KERNEL(plane_bound)(lanes_load(a->ready->size), extent);
+    lanes_index corner[3];
+    unsigned count = 0, r;
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        at[k] = lanes_load(b->at + SC_LEAF_POINTS * k);
+        corner[k] = lanes_index_load(b->corner + SC_LEAF_MAX * k);
+    }
+    lanes_store(above, lanes_add(lanes_load(a->ready->offset), bound));
+    lanes_store(below, lanes_subtract(lanes_load(a->ready->offset), bound));
+    for (r = 0; r < rows; r++) {
+        uint32_t i = row_a[r];
+        lanes d[3], along = lanes_multiply(lanes_all(a->ready->normal[0][i]), at[0]);
+        lanes_mask meets;
+        SC_UNROLL
+        for (k = 1; k < 3; k++)
+            along = lanes_add(along, lanes_multiply(lanes_all(a->ready->normal[k][i]), at[k]));
+        SC_UNROLL
+        for (k = 0; k < 3; k++) d[k] = lanes_pick_of(along, corner[k]);
+        meets = lanes_both(
+            lanes_not_above(lanes_smaller(d[0], lanes_smaller(d[1], d[2])), lanes_all(above[i])),
+            lanes_not_above(lanes_all(below[i]), lanes_larger(d[0], lanes_larger(d[1], d[2]))));
+        memset(of_a + count, (int)i, SC_LANES_COUNT);
+        count += lanes_list(lanes_bits(meets) & row_b[r], of_b + count);
+    }
+    return count;
+}
+
+/* Rows of triangles of cluster p->a against all of cluster p->b, of which only some may overlap one of a. */
+static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, unsigned rows,
+                                      unsigned some)
+{
+    uint8_t row_a[SC_LEAF_MAX + 1];
+    uint16_t row_b[SC_LEAF_MAX + 1];
+    unsigned count;
+    state->stats.counts[sc_state_box_task(state)] += sc_bits_count(rows);
+    count =
+        SC_KERNEL(list_rows)(SC_KERNEL(boxes)(state, p->a, p->a > p->b),
+                             SC_KERNEL(boxes)(state, p->b, p->b > p->a), rows, some, row_a, row_b);
+    if (p->shares) count = SC_KERNEL(drop_shared)(state, p, count, row_a, row_b);
+    if (count) {
+        uint8_t of_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], of_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
+        float extent = SC_KERNEL(extent)(state, p->a, p->b);
+        SC_KERNEL(picked) a, b;
+        SC_KERNEL(begin_picking)(state, p->a, p->a > p->b, &a);
+        SC_KERNEL(begin_picking)(state, p->b, p->b > p->a, &b);
+        count = SC_KERNEL(list_pairs)(&a, &b, extent, count, row_a, row_b, of_a, of_b);
+        if (count) SC_KERNEL(collect)(state, p, &a, &b, of_a, of_b, count, extent);
+    }
     sc_candidates_make_room(state);
 }
 
 /* The triangles of leaf a whose boxes overlap that of leaf b. */
 static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
-    sc_leaf_ready *ready = SC_KERNEL(boxes)(state, a, a > b);
-    sc_boxes row;
+    const sc_leaf_ready *ready = SC_KERNEL(boxes)(state, a, a > b);
+    const sc_boxes *boxes = &state->workspace->patch_boxes;
+    uint64_t i = (uint64_t)sc_model_first_leaf_patch(state->model) + b;
+    lanes_mask m[3];
     int k;
     SC_UNROLL
-    for (k = 0; k < 6; k++) row.side[k] = ready->side[k];
-    return SC_KERNEL(overlap)(&state->workspace->patch_boxes,
-                              sc_model_first_leaf_patch(state->model) + b, &row, 0);
+    for (k = 0; k < 3; k++)
+        m[k] = lanes_both(
+            lanes_not_above(lanes_all(boxes->side[k][i]), lanes_load(ready->side[k + 3])),
+            lanes_not_above(lanes_load(ready->side[k]), lanes_all(boxes->side[k + 3][i])));
+    return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
 }
 
-static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b)
+/* Two leaf clusters, a < b; by_slabs: slabs may tell them apart, and were not looked at. */
+static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs)
 {
-    uint32_t a = leaf_a < leaf_b ? leaf_a : leaf_b, b = leaf_a < leaf_b ? leaf_b : leaf_a;
     sc_leaf_pair p;
     unsigned rows = SC_KERNEL(rows_at)(state, a, b), some;
-    state->stats.leaf_pairs++;
-    state->stats.counts[sc_state_box_task(state)]++;
     if (!rows) return;
-    sc_candidates_enter(state, a, b, &p);
-    if (!p.shares && (SC_KERNEL(is_beside)(state, b, SC_KERNEL(slab)(state, a, 0)) ||
-                      SC_KERNEL(is_beside)(state, a, SC_KERNEL(slab)(state, b, 1))))
-        return;
     some = SC_KERNEL(rows_at)(state, b, a);
-    state->stats.counts[sc_state_box_task(state)]++;
     if (!some) return;
+    if (by_slabs && SC_KERNEL(slabs_part)(state, a, b)) return;
+    sc_candidates_enter(state, a, b, &p);
     if (!p.shares && sc_bits_count(some) < sc_bits_count(rows)) { /* either may be the rows */
         unsigned swap = some;
         p.a = b;
@@ -373,6 +495,74 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_
         rows = swap;
     }
     SC_KERNEL(compare_leaves)(state, &p, rows, some);
+}
+
+/* Asks for the memory of the slab and points of a leaf cluster; and of what is made ready. */
+static inline void SC_KERNEL(fetch_points)(const sc_workspace *w, uint32_t leaf)
+{
+    const float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
+    sc_fetch(w->slab + leaf);
+    sc_fetch(at);
+    sc_fetch(at + SC_LEAF_POINTS);
+    sc_fetch(at + 2 * SC_LEAF_POINTS);
+}
+
+static inline void SC_KERNEL(fetch_ready)(const sc_workspace *w, uint32_t leaf)
+{
+    const float *at = w->ready[leaf & w->ready_mask].side[0];
+    int k;
+    for (k = 0; k < SC_READY_ROWS; k++) sc_fetch(at + SC_LEAF_MAX * k);
+}
+
+/* The pairs of leaf clusters that wait. If they are many, slabs drop most of those that hold no pair of triangles; some
+   pairs ahead, memory is asked for. If they are few, it does not pay to make slabs before boxes meet. */
+static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
+{
+    sc_workspace *w = state->workspace;
+    sc_pair *pairs = w->leaf_pairs;
+    uint32_t count = w->leaf_pair_count, kept = 0, i;
+    int slabs_first = count >= SC_LEAF_SLABS_FIRST;
+    w->leaf_pair_count = 0;
+    if (slabs_first) {
+        for (i = 0; i < count; i++) {
+            sc_pair pair = pairs[i];
+            if (i + SC_FETCH_POINTS < count)
+                SC_KERNEL(fetch_points)(w, pairs[i + SC_FETCH_POINTS].b);
+            pairs[kept] = pair;
+            kept += !SC_KERNEL(slabs_part)(state, pair.a, pair.b);
+        }
+        count = kept;
+    }
+    for (i = 0; i < count && !state->stop; i++) {
+        if (i + SC_FETCH_READY < count) SC_KERNEL(fetch_ready)(w, pairs[i + SC_FETCH_READY].b);
+        SC_KERNEL(leaf_pair)(state, pairs[i].a, pairs[i].b, !slabs_first);
+        if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);
+    }
+}
+
+/* Has a pair of leaf clusters wait. */
+static inline void SC_KERNEL(add_leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b)
+{
+    sc_workspace *w = state->workspace;
+    sc_pair *pair = &w->leaf_pairs[w->leaf_pair_count++];
+    pair->a = a < b ? a : b;
+    pair->b = a < b ? b : a;
+}
+
+/* To be called after SC_LEAF_MAX such or fewer: sees that so many more have room. */
+static inline void SC_KERNEL(make_leaf_room)(sc_query_state *state)
+{
+    /* fewer if the first hit ends the query */
+    uint32_t most = state->options.output == SC_OUTPUT_ANY ? 16 : SC_LEAF_QUEUE - SC_LEAF_MAX;
+    if (state->workspace->leaf_pair_count > most) SC_KERNEL(leaf_pairs)(state);
+}
+
+static void SC_KERNEL(leaf_pair_waits)(sc_query_state *state, uint32_t a, uint32_t b)
+{
+    state->stats.leaf_pairs++;
+    state->stats.counts[sc_state_box_task(state)]++;
+    SC_KERNEL(add_leaf_pair)(state, a, b);
+    SC_KERNEL(make_leaf_room)(state);
 }
 
 static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)

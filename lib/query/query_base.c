@@ -23,10 +23,10 @@
 #include "query/decide_kernel.h"
 #include "query/simple_kernel.h"
 
-const sc_query_kernels sc_query_kernels_base = {SC_KERNEL(patch_pair),    SC_KERNEL(patch_itself),
-                                                SC_KERNEL(leaf_pair),     SC_KERNEL(leaf_itself),
-                                                SC_KERNEL(decide),        SC_KERNEL(project),
-                                                SC_KERNEL(are_edges_fine)};
+const sc_query_kernels sc_query_kernels_base = {
+    SC_KERNEL(patch_pair),  SC_KERNEL(patch_itself),  SC_KERNEL(leaf_pair_waits),
+    SC_KERNEL(leaf_itself), SC_KERNEL(leaf_pairs),    SC_KERNEL(decide),
+    SC_KERNEL(project),     SC_KERNEL(are_edges_fine)};
 
 #include "base/lanes_pick_end.h"
 #include "base/lanes_double_end.h"

@@ -14,9 +14,11 @@ typedef struct sc_query_kernels {
     /* Box recursion (the paper's QueryBVs) on two patches of a level whose boxes overlap, and on one. */
     void (*patch_pair)(sc_query_state *state, uint32_t patch_a, uint32_t patch_b);
     void (*patch_itself)(sc_query_state *state, uint32_t patch);
-    /* The triangles of two leaf clusters, and of one. */
+    /* The triangles of two leaf clusters, which wait, and of one. */
     void (*leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b);
     void (*leaf_itself)(sc_query_state *state, uint32_t leaf);
+    /* Those that wait. */
+    void (*leaf_pairs)(sc_query_state *state);
     /* Whether triangles meet, as far as that is certain in doubles; SC_PAIR_LANES pairs. */
     void (*decide)(const sc_pair_lanes *pairs, sc_verdict *verdict);
     /* Projects the listed points of a contour, and sets its error. */

@@ -13,10 +13,11 @@ static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b)
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     const uint32_t *hop = sc_model_hop(model);
-    uint32_t a_count, b_count;
+    uint32_t a_count, b_count, leaves = sc_model_first_leaf_patch(model);
     unsigned rows;
-    if (a >= sc_model_first_leaf_patch(model)) {
-        SC_KERNEL(leaf_pair)(state, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
+    if (a >= leaves) {
+        SC_KERNEL(leaf_pair_waits)
+        (state, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
         return;
     }
     if (sc_state_stops(state)) return;
@@ -28,8 +29,16 @@ static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b)
         uint32_t c = hop[a] + sc_bits_lowest(rows);
         unsigned mask = SC_KERNEL(overlap)(boxes, c, boxes, hop[b]) & ((1u << b_count) - 1u);
         state->stats.counts[sc_state_box_task(state)]++;
-        for (; mask && !state->stop; mask &= mask - 1)
-            SC_KERNEL(patch_pair)(state, c, hop[b] + sc_bits_lowest(mask));
+        if (c < leaves) {
+            for (; mask && !state->stop; mask &= mask - 1)
+                SC_KERNEL(patch_pair)(state, c, hop[b] + sc_bits_lowest(mask));
+            continue;
+        }
+        state->stats.leaf_pairs += sc_bits_count(mask);
+        state->stats.counts[sc_state_box_task(state)] += sc_bits_count(mask);
+        for (; mask; mask &= mask - 1)
+            SC_KERNEL(add_leaf_pair)(state, c - leaves, hop[b] - leaves + sc_bits_lowest(mask));
+        SC_KERNEL(make_leaf_room)(state);
     }
 }
 
