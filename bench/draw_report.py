@@ -752,8 +752,8 @@ def add_targets(out, results):
     rows = targets.builds(results.shots)
     if rows:
         out.append("## Builds and single queries from nothing\n")
-        out.append("Memory is that with the built-in partition. *One shot*: build, workspace, one query of the first\n"
-                   "frame, and freeing them.\n")
+        out.append("Memory is that with the built-in partition; then that of a model for boxes alone (`SC_MODEL_BOXES`).\n"
+                   "*One shot*: build, workspace, one query of the first frame, and freeing them, by boxes alone.\n")
         out.append(rows)
     rows = targets.one_shot_of_peers(results.peers)
     if rows:

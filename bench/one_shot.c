@@ -70,6 +70,7 @@ static sc_status take_turn(one_shot_state *s, const method_kind *kind, uint32_t 
     sc_workspace *workspace = NULL;
     double build_ms;
     memset(&options, 0, sizeof options);
+    if (kind->method == SC_METHOD_AABB) options.content = SC_MODEL_BOXES;
     sc_status status =
         bench_model_build(s->scene, s->rest, s->options->partition, &options, &model, &build_ms);
     const double built = tool_clock();

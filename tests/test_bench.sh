@@ -296,7 +296,7 @@ END
         "| rod | 500 | exact | 1.00 | 1.25 | 2.00 | 0.80 | 0.50 | 1.00 | 1.25 | 2.00 | 0.80 | 0.50 |" \
         "| rod | 500 | 1 | 600,000 | 6 | 6.00 | 12.0 | 10.0 | 20.0 | 2.00 |" \
         "| rod | 1 | fcl 0.7.0 | refitted | 6 | 10.0 | 2.00 | 5.00 |" \
-        "| rod | 500 | 1.00 | 8.00 | 100 | 90 | 190 | 300 | 2.25 | 1.50 |" \
+        "| rod | 500 | 1.00 | 8.00 | 100 | 90 | 190 | 300 | 0.500 | 190 | 2.25 | 1.50 |" \
         "| rod | 500 | exact | clang | 2.00 | 4.00 | 0.50 | 3.00 | 3.00 | 1.00 |" \
         "the medians of \`exact\` are 1.5 times its minima" "- libigl: no wheel" "- cgal on horse: not a manifold" "- embree: no results"; do
         check "it says: $line" grep -qF -e "$line" "$scratch/results/report.md"

@@ -11,7 +11,7 @@
  * sequence is walked once untimed, in which pairs are compared, and then N times. Everything that a new
  * pose costs is in the time: reading positions, refitting or rebuilding, finding and storing pairs.
  * Building on the first frame is not, but for the way "one shot" of starcontour, which has a turn in the
- * first frame only: model, workspace, one query and freeing it all.
+ * first frame only: a model for boxes alone, workspace, one query and freeing it all.
  *
  * starcontour gets the same doubles, runs in one thread, and takes vertices as they are numbered
  * (SC_WELD_NONE), as peers do.
@@ -64,11 +64,11 @@ struct settings {
 const struct {
     const char *name;
     uint32_t method, contour;
-    bool one_shot; /* from nothing, in the first frame only */
+    bool one_shot; /* from nothing, in the first frame only, by a model for boxes alone */
 } own_ways[] = {{"exact", SC_METHOD_SCTT, SC_CONTOUR_EXACT, false},
                 {"star", SC_METHOD_SCTT, SC_CONTOUR_STAR, false},
                 {"aabb", SC_METHOD_AABB, SC_CONTOUR_DEFAULT, false},
-                {"one shot", SC_METHOD_SCTT, SC_CONTOUR_EXACT, true}};
+                {"one shot", SC_METHOD_AABB, SC_CONTOUR_DEFAULT, true}};
 const size_t own_way_count = sizeof(own_ways) / sizeof(*own_ways);
 
 /* A way to find pairs that takes turns with others. */
@@ -160,13 +160,14 @@ class starcontour
     std::vector<sc_pair> pairs; /* of the latest query, count of them */
     uint64_t count = 0;
 
-    explicit starcontour(const scene &animation) : mesh(animation), pairs(1024)
+    /* content: SC_MODEL_... */
+    starcontour(const scene &animation, uint32_t content) : mesh(animation), pairs(1024)
     {
-        model = build();
+        model = build(content);
     }
 
   private:
-    sc_model *build() const
+    sc_model *build(uint32_t content) const
     {
         sc_model *built = nullptr;
         sc_mesh input = sc_mesh();
@@ -179,6 +180,7 @@ class starcontour
         sc_build_options options = sc_build_options();
         options.struct_size = sizeof(options);
         options.weld = SC_WELD_NONE;
+        options.content = content;
         must(sc_build(&input, &options, &built));
         return built;
     }
@@ -195,7 +197,7 @@ class starcontour
     void query(size_t way, const double *positions)
     {
         if (own_ways[way].one_shot) {
-            starcontour other(mesh);
+            starcontour other(mesh, SC_MODEL_BOXES);
             other.pairs.swap(pairs);
             other.ask(way, positions);
             other.pairs.swap(pairs);
@@ -342,7 +344,7 @@ std::vector<contender> line_up(const std::vector<std::unique_ptr<peer>> &list, c
 bool run(const scene &mesh, const std::vector<std::unique_ptr<peer>> &list, const settings &s,
          std::FILE *out)
 {
-    starcontour ours(mesh);
+    starcontour ours(mesh, SC_MODEL_FULL);
     const size_t frames = std::min(s.frames, mesh.frames);
     std::vector<contender> contenders = line_up(list, mesh, s, frames, out);
     if (contenders.empty()) return true;
