@@ -119,25 +119,28 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
  */
 
 /*
- * Where little can be culled, the test tree is a waste: its nodes are many, and boxes are faster by themselves. The
- * prospect of a patch is the number of seams between its leaf clusters that may be culled: m - 1 for m that are a patch
- * which passes the orientation test. A node that fails it is left to boxes if one of its patches has less than
- * one for PROSPECT_LEAVES leaf clusters. (Tuned on scenes in which nearly nothing can be culled, rods, spikes,
- * wrinkles and a crumpled horse, so that those where much can lose nothing: 2 gains there and costs a smooth cat 5 %.)
+ * Where little can be culled, the test tree is a waste: its nodes are many, and boxes are faster by themselves. A patch of
+ * more than PROSPECT_MIN leaf clusters that passes the orientation test has a prospect; for fewer, a contour test and
+ * the nodes on the way to it cost as much as the pairs of leaf clusters that are saved. The prospect of another patch is
+ * the number of seams between leaf clusters in such patches below it, m - 1 for one of m, which must be one for
+ * PROSPECT_PART leaf clusters. A node that fails the orientation test is left to boxes unless both its patches have
+ * a prospect. (Tuned on single frames of scenes from smooth to crumpled.)
  */
-enum { PROSPECT_LEAVES = 3 };
+enum { PROSPECT_MIN = 2, PROSPECT_PART = 4 };
 
 static uint32_t leaves_of(const sc_model *model, uint32_t patch)
 {
     return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch];
 }
 
-/* The prospect of a patch. Written down for patches without a cone only: above those with one there are no others. */
+/* The prospect of a patch. It is written down for those of more than PROSPECT_MIN leaf clusters without a cone, above
+   which all are such. */
 static uint32_t find_prospect(const sc_query_state *state, uint32_t patch)
 {
     const uint32_t *child = sc_model_child(state->model) + patch;
     uint32_t leaves = leaves_of(state->model, patch), sum, c;
-    if (state->workspace->mask[patch] || leaves == 1) return leaves - 1;
+    if (leaves <= PROSPECT_MIN) return 0;
+    if (state->workspace->mask[patch]) return leaves - 1;
     for (sum = 0, c = child[0]; c < child[1]; c++) sum += find_prospect(state, c);
     return state->workspace->prospect[patch] = sum;
 }
@@ -150,9 +153,9 @@ void sc_traversal_find_prospects(const sc_query_state *state)
 static int has_prospect(const sc_query_state *state, uint32_t patch)
 {
     uint32_t leaves = leaves_of(state->model, patch);
-    if (leaves == 1) return 0;
+    if (leaves <= PROSPECT_MIN) return 0;
     return state->workspace->mask[patch] ||
-           PROSPECT_LEAVES * state->workspace->prospect[patch] >= leaves;
+           PROSPECT_PART * (uint64_t)state->workspace->prospect[patch] >= leaves;
 }
 
 int sc_traversal_is_left(const sc_query_state *state, uint32_t node)
