@@ -1119,8 +1119,8 @@ static void margins_are_as_documented(void)
     const double u = 0x1p-53;
     for (int step = 0; step < 2; ++step) {
         soup mesh = soup_cloth(1, 1);
-        /* 8 u |e|1 |f|1 + 4.1 POINT (|e|1 + |f|1), u of float */
-        double tilt = (8 * 0x1p-24 + 4.1 * 3e-8 * 2) * (step ? 1.2 : 0.8);
+        /* 37 u E F + 12.1 POINT (E + F), u of float */
+        double tilt = (37 * 0x1p-24 + 12.1 * 3e-8 * 2) * (step ? 1.2 : 0.8);
         double thin = 32 * 4 * u * (step ? 1.2 : 0.8);
         double corners[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
         sc_mesh input;

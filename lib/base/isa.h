@@ -36,6 +36,13 @@
 #  define SC_UNROLL
 #endif
 
+/* Of functions that are to be compiled anew for each constant they are called with. */
+#if defined(__GNUC__)
+#  define SC_INLINE inline __attribute__((always_inline))
+#else
+#  define SC_INLINE inline
+#endif
+
 /* As SC_SIMD_... in starcontour.h, best last. */
 typedef enum sc_isa { SC_ISA_BASE = 1, SC_ISA_AVX2 = 2, SC_ISA_AVX512 = 3 } sc_isa;
 

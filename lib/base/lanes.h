@@ -6,10 +6,10 @@
  * SPDX-License-Identifier: MIT
  *
  * Operations round as those of single floats do, and there is no fused multiplication and addition, so that
- * all of them give the same results. A comparison gives a mask, of which lanes_bits makes bit i for lane i; with
- * NaN it is false. lanes_points reads the first three of four floats at sixteen places. Of the functions of fours,
- * lanes_four repeats four floats four times, lanes_each_four each of four floats, and the others store the least or
- * greatest of each four lanes.
+ * all of them give the same results. lanes_larger_size takes the larger absolute value. A comparison gives a mask, of
+ * which lanes_bits makes bit i for lane i; with NaN it is false. lanes_points reads the first three of four floats at
+ * sixteen places. Of the functions of fours, lanes_four repeats four floats four times, lanes_each_four each of four
+ * floats, and the others store the least or greatest of each four lanes.
  *
  * Included once for each instruction set, by the .c files that include kernels, which define SC_KERNEL(name) to
  * make names of their own; so this has no guard. base/lanes_end.h ends it.
@@ -34,6 +34,7 @@
 #define lanes_smaller SC_KERNEL(sc_lanes_smaller)
 #define lanes_larger SC_KERNEL(sc_lanes_larger)
 #define lanes_absolute SC_KERNEL(sc_lanes_absolute)
+#define lanes_larger_size SC_KERNEL(sc_lanes_larger_size)
 #define lanes_mask SC_KERNEL(sc_lanes_mask)
 #define lanes_below SC_KERNEL(sc_lanes_below)
 #define lanes_not_above SC_KERNEL(sc_lanes_not_above)
@@ -95,6 +96,10 @@ static inline lanes lanes_larger(lanes a, lanes b)
 static inline lanes lanes_absolute(lanes a)
 {
     return _mm512_andnot_ps(_mm512_set1_ps(-0.0f), a);
+}
+static inline lanes lanes_larger_size(lanes a, lanes b)
+{
+    return _mm512_range_ps(a, b, 11); /* the larger absolute value, without sign */
 }
 static inline lanes_mask lanes_below(lanes a, lanes b)
 {
@@ -551,6 +556,13 @@ static inline void lanes_store_most(float *f, lanes a)
         if (i % 4 == 0 || a.v[i] > f[i / 4]) f[i / 4] = a.v[i];
 }
 
+#endif
+
+#if !SC_LANES_AVX512
+static inline lanes lanes_larger_size(lanes a, lanes b)
+{
+    return lanes_larger(lanes_absolute(a), lanes_absolute(b));
+}
 #endif
 
 /*

@@ -6,9 +6,9 @@
  *
  * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
  * to. lanes_index reads sixteen numbers below sixteen, lanes_index_through those of these numbers of a row of sixteen
- * bytes; lanes_pick and lanes_pick_of take the floats of these numbers of a row, in memory or not.
- * lanes_choose takes from a where the mask is set, else from b. lanes_corners picks corners 0 to 2 of triangles, their
- * coordinates 0 to 2, from three rows of coordinates by three of numbers.
+ * bytes; lanes_pick and lanes_pick_of take the floats of these numbers of a row, in memory or not. lanes_choose takes from a
+ * where the mask is set, else from b. lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from
+ * three rows of coordinates by three of numbers; lanes_corners_at finds the former in memory.
  *
  * No guard, as in base/lanes.h; base/lanes_pick_end.h ends it.
  */
@@ -19,6 +19,7 @@
 #define lanes_pick_of SC_KERNEL(sc_lanes_pick_of)
 #define lanes_choose SC_KERNEL(sc_lanes_choose)
 #define lanes_corners SC_KERNEL(sc_lanes_corners)
+#define lanes_corners_at SC_KERNEL(sc_lanes_corners_at)
 #define lanes_list SC_KERNEL(sc_lanes_list)
 
 #if SC_LANES_AVX512
@@ -173,18 +174,18 @@ static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 #if SC_LANES_QUADS
 
 /* There is no permutation by numbers: the points one after another, then read again as the corners. */
-static inline void lanes_corners(const float *at, const uint8_t *where, lanes corner[3][3])
+static inline void lanes_corners(const lanes at[3], const uint8_t *where, lanes corner[3][3])
 {
     float points[16][4];
     sc_floats4 x[4];
     int c, i, k;
-    for (i = 0; i < 16; i += 4) {
+    for (i = 0; i < 4; i++) {
         SC_UNROLL
-        for (k = 0; k < 3; k++) x[k] = SC_QUAD(loadu_ps)(at + 16 * k + i);
+        for (k = 0; k < 3; k++) x[k] = at[k].v[i];
         x[3] = x[2];
         sc_quad_transpose(x);
         SC_UNROLL
-        for (k = 0; k < 4; k++) SC_QUAD(storeu_ps)(points[i + k], x[k]);
+        for (k = 0; k < 4; k++) SC_QUAD(storeu_ps)(points[4 * i + k], x[k]);
     }
     for (c = 0; c < 3; c++)
         for (i = 0; i < 4; i++, where += 4) {
@@ -198,15 +199,24 @@ static inline void lanes_corners(const float *at, const uint8_t *where, lanes co
 
 #else
 
-static inline void lanes_corners(const float *at, const uint8_t *where, lanes corner[3][3])
+static inline void lanes_corners(const lanes at[3], const uint8_t *where, lanes corner[3][3])
 {
     int c, k;
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         lanes_index from = lanes_index_load(where + SC_LANES_COUNT * c);
         SC_UNROLL
-        for (k = 0; k < 3; k++) corner[c][k] = lanes_pick(at + SC_LANES_COUNT * k, from);
+        for (k = 0; k < 3; k++) corner[c][k] = lanes_pick_of(at[k], from);
     }
 }
 
 #endif
+
+static inline void lanes_corners_at(const float *at, const uint8_t *where, lanes corner[3][3])
+{
+    lanes row[3];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) row[k] = lanes_load(at + SC_LANES_COUNT * k);
+    lanes_corners(row, where, corner);
+}

@@ -10,4 +10,5 @@
 #undef lanes_pick_of
 #undef lanes_choose
 #undef lanes_corners
+#undef lanes_corners_at
 #undef lanes_list

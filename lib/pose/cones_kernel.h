@@ -8,70 +8,132 @@
  *
  * The error of a dot product of a computed normal e x f with a direction, whose components are 0 or
  * +-1. Written out, it is a sum of at most six products of a component of e and one of f, each component
- * at most twice. A component of e or f is off by 2 POINT and the rounding of a difference, so that the products are
- * off by 2 (2 POINT) (|e|1 + |f|1) + 6 (2 POINT)^2 in all, and by rounding: two differences, one multiplication, one
- * subtraction and two additions each, ((1 + u)^6 - 1) < 6.01 u times its absolute value, u = 2^-24; the
- * sum of the absolute values is at most |e|1 |f|1, computed to within 8 u. Hence 8 u |e|1 |f|1 +
- * 4.1 POINT (|e|1 + |f|1 + 6 POINT); the last term is for products that underflow.
+ * at most twice; let E and F be the largest components. A component of e or f is off by 2 POINT and the rounding of a
+ * difference, so that the products are off by 6 (2 POINT) (E + F) + 6 (2 POINT)^2 in all, and by rounding: two
+ * differences, one multiplication, one subtraction and two additions each, ((1 + u)^6 - 1) < 6.01 u times its absolute
+ * value, u = 2^-24; the sum of the absolute values is at most 6 E F. Hence 37 u E F + 12.1 POINT (E + F + 2.1 POINT);
+ * the last term is for products that underflow, too.
+ *
+ * A dot product is compared with this error, to within 8 u computed, by the sign of their difference. Where the product
+ * has three terms, two of them are added, and the difference of the error and the third is taken from the sum or added to
+ * it: no more roundings than above.
  */
-static inline uint32_t SC_KERNEL(mask_of)(const float *at, const uint8_t *where)
+
+/* So many leaf clusters are taken at once, for the processor to do something else while one of them waits. */
+#if SC_LANES_AVX512
+#  define CONES 2
+#else
+#  define CONES 1
+#endif
+#define EACH(i, count)                                                                             \
+  SC_UNROLL                                                                                        \
+  for (i = 0; i < (count); i++)
+
+/* The masks of clusters that follow each other, by their points and corners. */
+static SC_INLINE void SC_KERNEL(masks_of)(lanes at[][3], const uint8_t *where, uint16_t *mask,
+                                          int count)
 {
-    const lanes relative = lanes_all(8 * 5.9604644775390625e-8f),
-                absolute = lanes_all(16 * FLT_MIN);
-    const lanes moved = lanes_all(4.1f * 3e-8f), least = lanes_all(6 * 3e-8f);
-    lanes corner[3][3], e[3], f[3], n[3], e_size, f_size, sum, difference, error, minus_error,
-        dot[7];
-    uint32_t mask = 0;
-    int k, d;
-    lanes_corners(at, where, corner);
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        e[k] = lanes_subtract(corner[1][k], corner[0][k]);
-        f[k] = lanes_subtract(corner[2][k], corner[0][k]);
+    const lanes relative = lanes_all(37 * 5.9604644775390625e-8f);
+    const lanes moved = lanes_all(12.1f * 3e-8f), least = lanes_all(2.1f * 3e-8f);
+    lanes e[CONES][3], f[CONES][3], n[CONES][3], error[CONES], up[CONES][3], down[CONES][3];
+    lanes_signs row[CONES][16];
+    int i, k;
+    EACH(i, count)
+    {
+        lanes corner[3][3];
+        lanes_corners(at[i], where + 3 * SC_LEAF_MAX * i, corner);
+        EACH(k, 3)
+        {
+            e[i][k] = lanes_subtract(corner[1][k], corner[0][k]);
+            f[i][k] = lanes_subtract(corner[2][k], corner[0][k]);
+        }
     }
-    SC_UNROLL
-    for (k = 0; k < 3; k++)
-        n[k] = lanes_subtract(lanes_multiply(e[(k + 1) % 3], f[(k + 2) % 3]),
-                              lanes_multiply(e[(k + 2) % 3], f[(k + 1) % 3]));
-    e_size = lanes_add(lanes_add(lanes_absolute(e[0]), lanes_absolute(e[1])), lanes_absolute(e[2]));
-    f_size = lanes_add(lanes_add(lanes_absolute(f[0]), lanes_absolute(f[1])), lanes_absolute(f[2]));
-    error = lanes_add(lanes_add(lanes_multiply(relative, lanes_multiply(e_size, f_size)),
-                                lanes_multiply(moved, lanes_add(lanes_add(e_size, f_size), least))),
-                      absolute);
-    minus_error = lanes_subtract(lanes_all(0), error);
-    sum = lanes_add(n[0], n[1]);
-    difference = lanes_subtract(n[0], n[1]);
-    dot[0] = n[0];
-    dot[1] = n[1];
-    dot[2] = n[2];
-    dot[3] = lanes_add(sum, n[2]);
-    dot[4] = lanes_subtract(sum, n[2]);
-    dot[5] = lanes_add(difference, n[2]);
-    dot[6] = lanes_subtract(difference, n[2]);
-    SC_UNROLL
-    for (d = 0; d < 7; d++) {
-        mask |= (uint32_t)lanes_every(lanes_below(error, dot[d])) << d;
-        mask |= (uint32_t)lanes_every(lanes_below(dot[d], minus_error)) << (d + 7);
+    EACH(k, 3)
+    EACH(i, count)
+    n[i][k] = lanes_subtract(lanes_multiply(e[i][(k + 1) % 3], f[i][(k + 2) % 3]),
+                             lanes_multiply(e[i][(k + 2) % 3], f[i][(k + 1) % 3]));
+    EACH(i, count)
+    {
+        lanes e_size = lanes_larger_size(lanes_larger_size(e[i][0], e[i][1]), e[i][2]);
+        lanes f_size = lanes_larger_size(lanes_larger_size(f[i][0], f[i][1]), f[i][2]);
+        error[i] = lanes_add(lanes_multiply(relative, lanes_multiply(e_size, f_size)),
+                             lanes_multiply(moved, lanes_add(lanes_add(e_size, f_size), least)));
     }
-    return mask;
+    EACH(i, count)
+    EACH(k, 3)
+    {
+        up[i][k] = lanes_subtract(error[i], n[i][k]);
+        down[i][k] = lanes_add(error[i], n[i][k]);
+        row[i][k] = lanes_signs_of(up[i][k]);
+        row[i][k + 7] = lanes_signs_of(down[i][k]);
+    }
+    EACH(i, count)
+    {
+        lanes sum = lanes_add(n[i][0], n[i][1]), difference = lanes_subtract(n[i][0], n[i][1]);
+        row[i][3] = lanes_signs_of(lanes_subtract(up[i][2], sum));
+        row[i][4] = lanes_signs_of(lanes_subtract(down[i][2], sum));
+        row[i][5] = lanes_signs_of(lanes_subtract(up[i][2], difference));
+        row[i][6] = lanes_signs_of(lanes_subtract(down[i][2], difference));
+        row[i][10] = lanes_signs_of(lanes_add(down[i][2], sum));
+        row[i][11] = lanes_signs_of(lanes_add(up[i][2], sum));
+        row[i][12] = lanes_signs_of(lanes_add(down[i][2], difference));
+        row[i][13] = lanes_signs_of(lanes_add(up[i][2], difference));
+        row[i][14] = row[i][15] = row[i][13];
+    }
+    EACH(i, count) mask[i] = (uint16_t)(lanes_all_negative(row[i]) & 0x3fffu);
 }
 
 static uint32_t SC_KERNEL(cone)(const float *at, const uint8_t *where)
 {
-    return SC_KERNEL(mask_of)(at, where);
+    lanes row[1][3];
+    uint16_t mask;
+    int k;
+    EACH(k, 3) row[0][k] = lanes_load(at + SC_LEAF_POINTS * k);
+    SC_KERNEL(masks_of)(row, where, &mask, 1);
+    return mask;
+}
+
+/* Clusters that follow each other, each time count, as far as there are so many; returns where it ended. */
+static SC_INLINE uint32_t SC_KERNEL(load_some)(const sc_model *model, const sc_workspace *w,
+                                               uint32_t first, uint32_t end, int cones,
+                                               int is_double, uint64_t stride, int count)
+{
+    const SC_KERNEL(points_frame) frame = SC_KERNEL(points_frame_of)(w);
+    const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)first;
+    const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)first;
+    uint16_t *mask = w->mask + sc_model_first_leaf_patch(model) + first;
+    float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)first;
+    for (; end - first >= (uint32_t)count; first += (uint32_t)count) {
+        lanes row[CONES][3];
+        int i, k;
+        EACH(i, count)
+        SC_KERNEL(points_of)(&frame, point + SC_LEAF_POINTS * i, is_double, stride, row[i]);
+        if (cones) SC_KERNEL(masks_of)(row, where, mask, count);
+        EACH(i, count)
+        EACH(k, 3) lanes_store(at + SC_LEAF_POINTS * (3 * i + k), row[i][k]);
+        point += SC_LEAF_POINTS * count;
+        where += 3 * SC_LEAF_MAX * count;
+        at += 3 * SC_LEAF_POINTS * count;
+        mask += count;
+    }
+    return first;
 }
 
 static void SC_KERNEL(load_leaves)(const sc_model *model, sc_workspace *w, uint32_t first,
                                    uint32_t end, int cones)
 {
-    const uint32_t *point = sc_model_leaf_point(model);
-    const uint8_t *where = sc_model_leaf_corner(model);
-    uint16_t *mask = w->mask + sc_model_first_leaf_patch(model);
-    uint32_t leaf;
-    for (leaf = first; leaf < end; leaf++) {
-        float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
-        SC_KERNEL(load_points)(w, point + SC_LEAF_POINTS * (uint64_t)leaf, at);
-        if (cones)
-            mask[leaf] = (uint16_t)SC_KERNEL(mask_of)(at, where + 3 * SC_LEAF_MAX * (uint64_t)leaf);
-    }
+    const int is_double = w->position_type == SC_DOUBLE;
+    if (cones && is_double && w->stride == 3 * sizeof(double))
+        first = SC_KERNEL(load_some)(model, w, first, end, 1, 1, 3 * sizeof(double), CONES);
+    else if (cones && is_double)
+        first = SC_KERNEL(load_some)(model, w, first, end, 1, 1, w->stride, CONES);
+    else if (cones && w->stride == 3 * sizeof(float))
+        first = SC_KERNEL(load_some)(model, w, first, end, 1, 0, 3 * sizeof(float), CONES);
+    else if (cones)
+        first = SC_KERNEL(load_some)(model, w, first, end, 1, 0, w->stride, CONES);
+    /* what is left, or all of it without cones */
+    if (first < end) SC_KERNEL(load_some)(model, w, first, end, cones, is_double, w->stride, 1);
 }
+
+#undef CONES
+#undef EACH

@@ -10,9 +10,25 @@
 
 #if SC_LANES_AVX512
 
+/* What points_of has in registers throughout a loop: where positions are, and how they get into the unit box. */
+typedef struct SC_KERNEL(points_frame) {
+    const unsigned char *from;
+    __m512d center, scale;
+} SC_KERNEL(points_frame);
+
+static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
+{
+    SC_KERNEL(points_frame) f;
+    f.from = w->positions;
+    f.center = _mm512_broadcast_f64x4(_mm256_set_pd(0, w->center[2], w->center[1], w->center[0]));
+    f.scale = _mm512_set1_pd(w->scale);
+    return f;
+}
+
 /* Two vertices, at p and q, of doubles or floats. */
-static inline __m256 SC_KERNEL(sc_points_two)(const unsigned char *p, const unsigned char *q,
-                                              int is_double, __m512d center, __m512d scale)
+static SC_INLINE __m256 SC_KERNEL(sc_points_two)(const SC_KERNEL(points_frame) * f,
+                                                 const unsigned char *p, const unsigned char *q,
+                                                 int is_double)
 {
     __m512d d;
     if (is_double)
@@ -21,54 +37,80 @@ static inline __m256 SC_KERNEL(sc_points_two)(const unsigned char *p, const unsi
     else
         d = _mm512_cvtps_pd(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_maskz_loadu_ps(7, p)),
                                                  _mm_maskz_loadu_ps(7, q), 1));
-    return _mm512_cvtpd_ps(_mm512_mul_pd(_mm512_sub_pd(d, center), scale));
+    return _mm512_cvtpd_ps(_mm512_mul_pd(_mm512_sub_pd(d, f->center), f->scale));
 }
 
-static inline void SC_KERNEL(sc_points_load)(const sc_workspace *w, const uint32_t *point,
-                                             float *at, int is_double, uint64_t stride)
+static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
+                                           int is_double, uint64_t stride, lanes at[3])
 {
-    const unsigned char *from = w->positions;
-    const __m512d scale = _mm512_set1_pd(w->scale);
-    const __m512d center =
-        _mm512_broadcast_f64x4(_mm256_set_pd(0, w->center[2], w->center[1], w->center[0]));
+    const unsigned char *from = f->from;
     __m512 r[4], low, low2;
     int i;
     SC_UNROLL
     for (i = 0; i < 4; i++)
         r[i] = _mm512_insertf32x8(
             _mm512_castps256_ps512(SC_KERNEL(sc_points_two)(
-                from + point[i] * stride, from + point[i + 4] * stride, is_double, center, scale)),
-            SC_KERNEL(sc_points_two)(from + point[i + 8] * stride, from + point[i + 12] * stride,
-                                     is_double, center, scale),
+                f, from + point[i] * stride, from + point[i + 4] * stride, is_double)),
+            SC_KERNEL(sc_points_two)(f, from + point[i + 8] * stride, from + point[i + 12] * stride,
+                                     is_double),
             1);
     low = _mm512_unpacklo_ps(r[0], r[1]);
     low2 = _mm512_unpacklo_ps(r[2], r[3]);
-    _mm512_storeu_ps(at, _mm512_shuffle_ps(low, low2, 0x44));
-    _mm512_storeu_ps(at + 16, _mm512_shuffle_ps(low, low2, 0xee));
-    _mm512_storeu_ps(at + 32, _mm512_shuffle_ps(_mm512_unpackhi_ps(r[0], r[1]),
-                                                _mm512_unpackhi_ps(r[2], r[3]), 0x44));
+    at[0] = _mm512_shuffle_ps(low, low2, 0x44);
+    at[1] = _mm512_shuffle_ps(low, low2, 0xee);
+    at[2] = _mm512_shuffle_ps(_mm512_unpackhi_ps(r[0], r[1]), _mm512_unpackhi_ps(r[2], r[3]), 0x44);
 }
 
 #elif SC_LANES_AVX2 || SC_LANES_SSE2
 
 #  if SC_LANES_AVX2
-static inline __m128 SC_KERNEL(sc_points_one)(const sc_workspace *w, const unsigned char *p,
-                                              int is_double)
+
+typedef struct SC_KERNEL(points_frame) {
+    const unsigned char *from;
+    __m256d center, scale;
+} SC_KERNEL(points_frame);
+
+static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
 {
-    const __m256d center = _mm256_set_pd(0, w->center[2], w->center[1], w->center[0]);
+    SC_KERNEL(points_frame) f;
+    f.from = w->positions;
+    f.center = _mm256_set_pd(0, w->center[2], w->center[1], w->center[0]);
+    f.scale = _mm256_set1_pd(w->scale);
+    return f;
+}
+
+static SC_INLINE __m128 SC_KERNEL(sc_points_one)(const SC_KERNEL(points_frame) * f,
+                                                 const unsigned char *p, int is_double)
+{
     __m256d d;
     if (is_double)
         d = _mm256_maskload_pd((const double *)(const void *)p, _mm256_set_epi64x(0, -1, -1, -1));
     else
         d = _mm256_cvtps_pd(
             _mm_maskload_ps((const float *)(const void *)p, _mm_set_epi32(0, -1, -1, -1)));
-    return _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(d, center), _mm256_set1_pd(w->scale)));
+    return _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(d, f->center), f->scale));
 }
+
 #  else
-static inline __m128 SC_KERNEL(sc_points_one)(const sc_workspace *w, const unsigned char *p,
-                                              int is_double)
+
+typedef struct SC_KERNEL(points_frame) {
+    const unsigned char *from;
+    __m128d xy, z, scale;
+} SC_KERNEL(points_frame);
+
+static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
 {
-    const __m128d scale = _mm_set1_pd(w->scale);
+    SC_KERNEL(points_frame) f;
+    f.from = w->positions;
+    f.xy = _mm_set_pd(w->center[1], w->center[0]);
+    f.z = _mm_set_pd(0, w->center[2]);
+    f.scale = _mm_set1_pd(w->scale);
+    return f;
+}
+
+static SC_INLINE __m128 SC_KERNEL(sc_points_one)(const SC_KERNEL(points_frame) * f,
+                                                 const unsigned char *p, int is_double)
+{
     __m128d xy, z;
     if (is_double) {
         xy = _mm_loadu_pd((const double *)(const void *)p);
@@ -79,42 +121,61 @@ static inline __m128 SC_KERNEL(sc_points_one)(const sc_workspace *w, const unsig
         xy = _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p)));
         z = _mm_cvtps_pd(_mm_set_ss(last));
     }
-    xy = _mm_mul_pd(_mm_sub_pd(xy, _mm_set_pd(w->center[1], w->center[0])), scale);
-    z = _mm_mul_pd(_mm_sub_pd(z, _mm_set_pd(0, w->center[2])), scale);
+    xy = _mm_mul_pd(_mm_sub_pd(xy, f->xy), f->scale);
+    z = _mm_mul_pd(_mm_sub_pd(z, f->z), f->scale);
     return _mm_movelh_ps(_mm_cvtpd_ps(xy), _mm_cvtpd_ps(z));
 }
+
 #  endif
 
-static inline void SC_KERNEL(sc_points_load)(const sc_workspace *w, const uint32_t *point,
-                                             float *at, int is_double, uint64_t stride)
+static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
+                                           int is_double, uint64_t stride, lanes at[3])
 {
+    __m128 r[3][4];
     int i;
     SC_UNROLL
-    for (i = 0; i < 16; i += 4) {
-        __m128 x = SC_KERNEL(sc_points_one)(w, w->positions + point[i] * stride, is_double);
-        __m128 y = SC_KERNEL(sc_points_one)(w, w->positions + point[i + 1] * stride, is_double);
-        __m128 z = SC_KERNEL(sc_points_one)(w, w->positions + point[i + 2] * stride, is_double);
-        __m128 rest = SC_KERNEL(sc_points_one)(w, w->positions + point[i + 3] * stride, is_double);
+    for (i = 0; i < 4; i++, point += 4) {
+        __m128 x = SC_KERNEL(sc_points_one)(f, f->from + point[0] * stride, is_double);
+        __m128 y = SC_KERNEL(sc_points_one)(f, f->from + point[1] * stride, is_double);
+        __m128 z = SC_KERNEL(sc_points_one)(f, f->from + point[2] * stride, is_double);
+        __m128 rest = SC_KERNEL(sc_points_one)(f, f->from + point[3] * stride, is_double);
         _MM_TRANSPOSE4_PS(x, y, z, rest);
-        _mm_storeu_ps(at + i, x);
-        _mm_storeu_ps(at + 16 + i, y);
-        _mm_storeu_ps(at + 32 + i, z);
+        r[0][i] = x;
+        r[1][i] = y;
+        r[2][i] = z;
+    }
+    SC_UNROLL
+    for (i = 0; i < 3; i++) {
+#  if SC_LANES_AVX2
+        at[i].v[0] = _mm256_set_m128(r[i][1], r[i][0]);
+        at[i].v[1] = _mm256_set_m128(r[i][3], r[i][2]);
+#  else
+        memcpy(at[i].v, r[i], sizeof r[i]);
+#  endif
     }
 }
 
 #else
 
-static inline void SC_KERNEL(sc_points_load)(const sc_workspace *w, const uint32_t *point,
-                                             float *at, int is_double, uint64_t stride)
+typedef const sc_workspace *SC_KERNEL(points_frame);
+
+static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
 {
+    return w;
+}
+
+static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
+                                           int is_double, uint64_t stride, lanes at[3])
+{
+    float row[3][SC_LANES_COUNT], unit[3];
     int i, k;
     (void)is_double;
     (void)stride;
-    for (i = 0; i < 16; i++) {
-        float unit[3];
-        sc_positions_unit(w, point[i], unit);
-        for (k = 0; k < 3; k++) at[16 * k + i] = unit[k];
+    for (i = 0; i < SC_LANES_COUNT; i++) {
+        sc_positions_unit(*f, point[i], unit);
+        for (k = 0; k < 3; k++) row[k][i] = unit[k];
     }
+    for (k = 0; k < 3; k++) at[k] = lanes_load(row[k]);
 }
 
 #endif
@@ -122,13 +183,13 @@ static inline void SC_KERNEL(sc_points_load)(const sc_workspace *w, const uint32
 /* Sixteen points: at gets their x, then y, then z. */
 static void SC_KERNEL(load_points)(const sc_workspace *w, const uint32_t *point, float *at)
 {
+    const SC_KERNEL(points_frame) f = SC_KERNEL(points_frame_of)(w);
+    lanes row[3];
+    int k;
     if (w->position_type == SC_DOUBLE)
-        if (w->stride == 3 * sizeof(double))
-            SC_KERNEL(sc_points_load)(w, point, at, 1, 3 * sizeof(double));
-        else
-            SC_KERNEL(sc_points_load)(w, point, at, 1, w->stride);
-    else if (w->stride == 3 * sizeof(float))
-        SC_KERNEL(sc_points_load)(w, point, at, 0, 3 * sizeof(float));
+        SC_KERNEL(points_of)(&f, point, 1, w->stride, row);
     else
-        SC_KERNEL(sc_points_load)(w, point, at, 0, w->stride);
+        SC_KERNEL(points_of)(&f, point, 0, w->stride, row);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) lanes_store(at + SC_LANES_COUNT * k, row[k]);
 }

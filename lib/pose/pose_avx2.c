@@ -18,6 +18,7 @@
 #  include "base/lanes.h"
 #  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
+#  include "base/lanes_rows.h"
 #  include "pose/extent_kernel.h"
 #  include "pose/points_kernel.h"
 #  include "pose/cones_kernel.h"
@@ -30,6 +31,7 @@ const sc_pose_kernels sc_pose_kernels_avx2 = {
     SC_KERNEL(refit_leaves),      SC_KERNEL(refit_patches),
     SC_KERNEL(are_plain)};
 
+#  include "base/lanes_rows_end.h"
 #  include "base/lanes_pick_end.h"
 #  include "base/lanes_double_end.h"
 #  include "base/lanes_end.h"

@@ -55,8 +55,8 @@ static inline lanes SC_KERNEL(along)(const sc_query_state *state, uint32_t leaf,
 static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t leaf,
                                            lanes x[3][3])
 {
-    lanes_corners(state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf,
-                  sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
+    lanes_corners_at(state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf,
+                     sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
 }
 
 /* Boxes of the triangles of a leaf cluster. */

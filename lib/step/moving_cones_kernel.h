@@ -10,7 +10,8 @@
  * n . s > |s| d L, where L is as long as any side at any time: and that is longest at the start or at the end. If this holds
  * for some directions it does for their sums, of which |s| is at most the sum of the lengths.
  *
- * Rounding is that of pose/cones_kernel.h: with |e|1 and |f|1 the larger of both ends, a dot product of the first or last
+ * Rounding is as in pose/cones_kernel.h: a dot product is a sum of six products of components, each component being off
+ * by 2 POINT and in two of them, and rounds six times. With |e|1 and |f|1 the larger of both ends, that of the first or last
  * coefficient is off by 8 u |e|1 |f|1 + 4.1 POINT (|e|1 + |f|1 + 6 POINT), that of the middle one, an average of two,
  * by as much and another rounding: 10 u covers all. L is off by 2 sqrt(3) POINT on each side; with 1616 POINT^2,
  * (L + 4 POINT)^2 <= 1.01 L^2 + 1616 POINT^2. Squares are compared, which takes no root: those round by a few u.

@@ -1,0 +1,8 @@
+/*
+ * Ends what base/lanes_rows.h began.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#undef lanes_signs
+#undef lanes_signs_of
+#undef lanes_all_negative
