@@ -12,6 +12,8 @@
  *
  * No guard, as in base/lanes.h; base/lanes_pick_end.h ends it.
  */
+#include <string.h>
+
 #define lanes_index SC_KERNEL(sc_lanes_index)
 #define lanes_index_load SC_KERNEL(sc_lanes_index_load)
 #define lanes_index_through SC_KERNEL(sc_lanes_index_through)
@@ -60,8 +62,21 @@ static inline unsigned lanes_list(unsigned mask, uint8_t *to)
 
 static inline unsigned lanes_list(unsigned mask, uint8_t *to)
 {
-    unsigned count = 0;
-    for (; mask; mask &= mask - 1) to[count++] = (uint8_t)sc_bits_lowest(mask);
+    /* of four bits the numbers of those that are set, lowest first; and how many */
+    static const uint8_t number[16][4] = {
+        {0}, {0},    {1},    {0, 1},    {2},    {0, 2},    {1, 2},    {0, 1, 2},
+        {3}, {0, 3}, {1, 3}, {0, 1, 3}, {2, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 2, 3}};
+    static const uint8_t some[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+    unsigned count = 0, first;
+    SC_UNROLL
+    for (first = 0; first < SC_LANES_COUNT; first += 4) {
+        unsigned bits = mask >> first & 15u;
+        uint32_t four;
+        memcpy(&four, number[bits], sizeof four);
+        four += first * 0x01010101u;
+        memcpy(to + count, &four, sizeof four);
+        count += some[bits];
+    }
     return count;
 }
 
