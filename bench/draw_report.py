@@ -381,7 +381,8 @@ def floors(results):
 
 
 def slopes(results):
-    """For each scene with three sizes or more, the exponent of each method's time: mean, and at rest."""
+    """For each scene with three sizes or more, the exponent of each method's time: mean, and at rest. Sizes below
+    10,000 triangles, which fit the innermost caches, count only where there are too few others."""
     sizes = collections.OrderedDict()
     for (scene, triangles), run in results.main_runs().items():
         sizes.setdefault(scene, []).append((triangles, run))
@@ -390,6 +391,8 @@ def slopes(results):
         if len(runs) < 3:
             continue
         runs.sort(key=lambda pair: pair[0])
+        large = [pair for pair in runs if pair[0] >= 10000]
+        runs = large if len(large) >= 3 else runs
         row = [scene, "%s – %s" % (whole(runs[0][0]), whole(runs[-1][0]))]
         for method in METHODS:
             exponents = []
@@ -807,7 +810,7 @@ def report(results, drawn, slope_table, reading):
     out.append("![Milliseconds over frames](frames.svg)\n" if "frames" in drawn else missing_plot)
     out.append("## Resolution\n")
     out.append("Slope of mean time over triangles, both logarithmic, by least squares: 1 is linear. In brackets\n"
-               "the same at rest.\n")
+               "the same at rest. From 10,000 triangles on where there are three sizes of that.\n")
     out.append(slope_table)
     if "scaling" in drawn:
         out.append("![Time over resolution](scaling.svg)\n")

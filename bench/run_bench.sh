@@ -52,7 +52,7 @@ horse 25000 60 3 metis edge -
 wrinkled-cloth 100352 60 2 structure edge -
 crushed-cloth 92416 60 2 structure edge -
 tight-rods 98304 60 2 metis edge -
-squeezed-rods 98304 20 2 metis edge -
+squeezed-rods 98304 6 3 metis edge -
 sphere 20480 20 3 metis edge -
 sphere 81920 60 2 metis edge -
 sphere 327680 20 1 metis edge -
