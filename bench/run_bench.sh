@@ -40,7 +40,7 @@ cloth-sphere 80000 60 3 structure edge -
 cloth-sphere 320000 20 1 structure edge -
 cat 41000 60 3 metis edge -
 cat 165000 60 2 metis edge -
-cat 656000 4 1 metis edge -
+cat 656000 2 3 metis edge -
 bunny 3400 60 3 metis edge -
 bunny 13600 60 3 metis edge -
 bunny 54500 60 3 metis edge -
@@ -56,7 +56,7 @@ squeezed-rods 98304 6 3 metis edge -
 sphere 20480 20 3 metis edge -
 sphere 81920 60 2 metis edge -
 sphere 327680 20 1 metis edge -
-sphere 1310720 4 1 metis edge -
+sphere 1310720 2 3 metis edge -
 twisted-cloth 65536 20 3 metis edge exact,star,aabb-sctt,aabb
 twisted-cloth 65536 20 3 fast edge exact,star,aabb-sctt,aabb
 cloth-sphere 80000 20 3 metis edge exact,star,aabb-sctt,aabb
@@ -96,12 +96,10 @@ tight-rods 98304 6 3 fast edge exact,aabb --one-shot
 sphere 81920 60 3 fast edge exact,aabb --one-shot
 cat 165000 60 3 fast edge exact,aabb --one-shot
 cat 165000 60 1 metis edge exact --one-shot
-cat 656000 4 1 fast edge exact,aabb --one-shot
-cat 656000 4 1 metis edge exact --one-shot
+cat 656000 2 1 fast edge exact,aabb --one-shot
 twisted-cloth 1048576 8 1 fast edge exact,aabb --one-shot
 twisted-cloth 1048576 8 1 metis edge exact --one-shot
-sphere 1310720 4 1 fast edge exact,aabb --one-shot
-sphere 1310720 4 1 metis edge exact --one-shot
+sphere 1310720 2 1 fast edge exact,aabb --one-shot
 twisted-cloth 16384 60 1 structure step -
 twisted-cloth 65536 60 1 structure step step,step-none,step-two-boxes
 cloth-sphere 80000 60 1 structure step step,step-none,step-two-boxes
