@@ -7,8 +7,9 @@
  * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
  * to. lanes_index reads sixteen numbers below sixteen, lanes_index_through those of these numbers of a row of sixteen
  * bytes; lanes_pick and lanes_pick_of take the floats of these numbers of a row, in memory or not. lanes_choose takes from a
- * where the mask is set, else from b. lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from
- * three rows of coordinates by three of numbers; lanes_corners_at finds the former in memory.
+ * where the mask is set, else from b. lanes_same compares bits, whatever they mean; lanes_either joins two masks.
+ * lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from three rows of coordinates by three of
+ * numbers; lanes_corners_at finds the former in memory.
  *
  * No guard, as in base/lanes.h; base/lanes_pick_end.h ends it.
  */
@@ -20,6 +21,8 @@
 #define lanes_pick SC_KERNEL(sc_lanes_pick)
 #define lanes_pick_of SC_KERNEL(sc_lanes_pick_of)
 #define lanes_choose SC_KERNEL(sc_lanes_choose)
+#define lanes_same SC_KERNEL(sc_lanes_same)
+#define lanes_either SC_KERNEL(sc_lanes_either)
 #define lanes_corners SC_KERNEL(sc_lanes_corners)
 #define lanes_corners_at SC_KERNEL(sc_lanes_corners_at)
 #define lanes_list SC_KERNEL(sc_lanes_list)
@@ -49,6 +52,14 @@ static inline lanes lanes_pick_of(lanes row, lanes_index i)
 static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 {
     return _mm512_mask_blend_ps(m, b, a);
+}
+static inline lanes_mask lanes_same(lanes a, lanes b)
+{
+    return _mm512_cmpeq_epi32_mask(_mm512_castps_si512(a), _mm512_castps_si512(b));
+}
+static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
+{
+    return (lanes_mask)(a | b);
 }
 static inline unsigned lanes_list(unsigned mask, uint8_t *to)
 {
@@ -126,6 +137,22 @@ static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
     r.v[1] = _mm256_blendv_ps(b.v[1], a.v[1], m.v[1]);
     return r;
 }
+static inline lanes_mask lanes_same(lanes a, lanes b)
+{
+    lanes r;
+    int k;
+    for (k = 0; k < 2; k++)
+        r.v[k] = _mm256_castsi256_ps(
+            _mm256_cmpeq_epi32(_mm256_castps_si256(a.v[k]), _mm256_castps_si256(b.v[k])));
+    return r;
+}
+static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
+{
+    lanes r;
+    r.v[0] = _mm256_or_ps(a.v[0], b.v[0]);
+    r.v[1] = _mm256_or_ps(a.v[1], b.v[1]);
+    return r;
+}
 
 #  else
 
@@ -171,6 +198,20 @@ static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
             SC_QUAD(or_ps)(SC_QUAD(and_ps)(m.v[k], a.v[k]), SC_QUAD(andnot_ps)(m.v[k], b.v[k]));
     return r;
 }
+static inline lanes_mask lanes_same(lanes a, lanes b)
+{
+    lanes r;
+    int k;
+    for (k = 0; k < 4; k++) r.v[k] = sc_quad_same(a.v[k], b.v[k]);
+    return r;
+}
+static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
+{
+    lanes r;
+    int k;
+    for (k = 0; k < 4; k++) r.v[k] = SC_QUAD(or_ps)(a.v[k], b.v[k]);
+    return r;
+}
 
 #    else
 
@@ -180,6 +221,18 @@ static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
     for (k = 0; k < SC_LANES_COUNT; k++)
         if (m >> k & 1u) b.v[k] = a.v[k];
     return b;
+}
+static inline lanes_mask lanes_same(lanes a, lanes b)
+{
+    lanes_mask mask = 0;
+    unsigned k;
+    for (k = 0; k < SC_LANES_COUNT; k++)
+        mask |= (unsigned)(memcmp(&a.v[k], &b.v[k], sizeof a.v[k]) == 0) << k;
+    return mask;
+}
+static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
+{
+    return a | b;
 }
 
 #    endif

@@ -9,6 +9,8 @@
 #undef lanes_pick
 #undef lanes_pick_of
 #undef lanes_choose
+#undef lanes_same
+#undef lanes_either
 #undef lanes_corners
 #undef lanes_corners_at
 #undef lanes_list

@@ -37,6 +37,11 @@ static inline unsigned sc_quad_bits_doubles(sc_doubles2 a, sc_doubles2 b, sc_dou
     return (unsigned)_mm_movemask_pd(a) | (unsigned)_mm_movemask_pd(b) << 2 |
            (unsigned)_mm_movemask_pd(c) << 4 | (unsigned)_mm_movemask_pd(d) << 6;
 }
+/* A mask of the lanes that have the same bits. */
+static inline sc_floats4 sc_quad_same(sc_floats4 a, sc_floats4 b)
+{
+    return _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_castps_si128(a), _mm_castps_si128(b)));
+}
 /* Whether all are set. */
 static inline int sc_quad_every(sc_floats4 a)
 {
@@ -139,6 +144,10 @@ static inline unsigned sc_quad_bits_doubles(sc_doubles2 a, sc_doubles2 b, sc_dou
     sc_numbers2 r = (((sc_numbers2)a & bit) | ((sc_numbers2)b & bit << 2)) |
                     (((sc_numbers2)c & bit << 4) | ((sc_numbers2)d & bit << 6));
     return (unsigned)(r[0] | r[1]);
+}
+static inline sc_floats4 sc_quad_same(sc_floats4 a, sc_floats4 b)
+{
+    return (sc_floats4)((sc_numbers4)a == (sc_numbers4)b);
 }
 static inline int sc_quad_every(sc_floats4 a)
 {

@@ -7,7 +7,6 @@
 
 #include <math.h>
 
-#include "pose/pose_kernels.h"
 #include "pose/positions.h"
 
 /*
@@ -70,87 +69,4 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
         last = y;
     }
     return turns == 1;
-}
-
-/* The points of which nothing is known yet, to be tested together. */
-typedef struct waiting_fans {
-    sc_fans fans;
-    uint32_t count;
-} waiting_fans;
-
-static void note_fan(sc_workspace *w, uint32_t point, int plain)
-{
-    w->fan[point] = 2 * w->pose_tick + (uint32_t)plain;
-}
-
-/* Adds a point, or notes that its fan is not plain. */
-static void await_fan(const sc_model *model, sc_workspace *w, uint32_t point, waiting_fans *waiting)
-{
-    const uint32_t *first = sc_model_ring_first(model) + point;
-    uint32_t count = first[1] - first[0];
-    note_fan(w, point, 0); /* so that it is not added again */
-    if (count >= 3 && count <= SC_FAN_MOST) {
-        waiting->fans.point[waiting->count] = point;
-        waiting->fans.count[waiting->count] = count;
-        waiting->fans.ring[waiting->count++] = sc_model_ring(model) + first[0];
-    } else if (count > SC_FAN_MOST) {
-        note_fan(w, point, sc_fan_test(model, w, point));
-    }
-}
-
-/* Tests them in single precision, and in double what that leaves open. */
-static void test_waiting(const sc_model *model, sc_workspace *w, waiting_fans *waiting)
-{
-    sc_fans *fans = &waiting->fans;
-    uint32_t i;
-    unsigned plain;
-    if (!waiting->count) return;
-    for (i = waiting->count; i < SC_FANS; i++) { /* the first fills the row */
-        fans->point[i] = fans->point[0];
-        fans->count[i] = fans->count[0];
-        fans->ring[i] = fans->ring[0];
-    }
-    plain = sc_pose_kernels_of(w)->are_plain(w, fans);
-    for (i = 0; i < waiting->count; i++)
-        note_fan(w, fans->point[i], (plain >> i & 1u) || sc_fan_test(model, w, fans->point[i]));
-}
-
-void sc_fan_test_of_pose(const sc_model *model, sc_workspace *w, uint32_t point)
-{
-    waiting_fans waiting;
-    waiting.count = 0;
-    await_fan(model, w, point, &waiting);
-    test_waiting(model, w, &waiting);
-}
-
-/* Tests what is not known of a leaf cluster's points, and as much of those of the next clusters as there is room for. */
-static void test_points(const sc_model *model, sc_workspace *w, uint32_t leaf)
-{
-    const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf;
-    uint32_t leaves = model->leaf_count - leaf < 4 ? model->leaf_count - leaf : 4, i;
-    waiting_fans waiting;
-    waiting.count = 0;
-    for (i = 0; i < leaves * SC_LEAF_POINTS && waiting.count < SC_FANS; i++)
-        if (w->fan[point[i]] >> 1 != w->pose_tick) await_fan(model, w, point[i], &waiting);
-    test_waiting(model, w, &waiting);
-}
-
-unsigned sc_fan_plain_of_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)
-{
-    const uint32_t *first = sc_model_leaf_first(model);
-    const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf;
-    const uint8_t *corner = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
-    uint32_t i, count = first[leaf + 1] - first[leaf];
-    unsigned points = 0, plain = 0, unknown = 0;
-    if (w->plain_tick[leaf] == w->pose_tick) return w->plain[leaf];
-    for (i = 0; i < SC_LEAF_POINTS; i++) unknown |= w->fan[point[i]] >> 1 ^ w->pose_tick;
-    if (unknown) test_points(model, w, leaf);
-    for (i = 0; i < SC_LEAF_POINTS; i++) points |= (w->fan[point[i]] & 1u) << i;
-    for (i = 0; i < count; i++)
-        plain |= (points >> corner[i] & points >> corner[SC_LEAF_MAX + i] &
-                  points >> corner[2 * SC_LEAF_MAX + i] & 1u)
-                 << i;
-    w->plain_tick[leaf] = w->pose_tick;
-    w->plain[leaf] = (uint16_t)plain;
-    return plain;
 }

@@ -181,7 +181,7 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
 #endif
 
 /* Sixteen points: at gets their x, then y, then z. */
-static void SC_KERNEL(load_points)(const sc_workspace *w, const uint32_t *point, float *at)
+static inline void SC_KERNEL(load_points)(const sc_workspace *w, const uint32_t *point, float *at)
 {
     const SC_KERNEL(points_frame) f = SC_KERNEL(points_frame_of)(w);
     lanes row[3];

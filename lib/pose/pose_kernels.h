@@ -9,15 +9,6 @@
 #include "base/isa.h"
 #include "pose/workspace.h"
 
-/* So many fans are tested at once, and by the same kernel if no ring is longer than SC_FAN_MOST. */
-enum { SC_FANS = 16, SC_FAN_MOST = 16 };
-
-/* Fans: points and the rings of count points round them, from 3 to SC_FAN_MOST. */
-typedef struct sc_fans {
-    uint32_t point[SC_FANS], count[SC_FANS];
-    const uint32_t *ring[SC_FANS];
-} sc_fans;
-
 /* Fewer leaf clusters, or patches of other levels, are not worth a part of a job. */
 enum { SC_POSE_LEAVES_MIN = 64, SC_POSE_PATCHES_MIN = 16384 };
 
@@ -36,8 +27,6 @@ typedef struct sc_pose_kernels {
                          uint32_t end);
     void (*refit_patches)(const sc_model *model, sc_workspace *workspace, uint32_t first,
                           uint32_t end);
-    /* Bit i: the fan certainly projects one to one, see pose/fan.h. */
-    unsigned (*are_plain)(const sc_workspace *workspace, const sc_fans *fans);
 } sc_pose_kernels;
 
 extern const sc_pose_kernels sc_pose_kernels_base;

@@ -29,9 +29,6 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
     uint64_t levels = (uint64_t)model->level_count + 1;
     int k;
-    w->fan = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
-    w->plain_tick = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
-    w->plain = (uint16_t *)place(block, at, model->leaf_count, sizeof(uint16_t));
     w->contour.point = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
     for (k = 0; k < 2; k++) w->contour.at[k] = (float *)place(block, at, listed, sizeof(float));
     for (k = 0; k < 4; k++) {
@@ -114,9 +111,6 @@ static void place_motion(const sc_model *model, sc_motion *m, uint32_t *seen)
 /* Nothing is known yet in the arrays of a worker. */
 static void clear_own(const sc_model *model, sc_workspace *w)
 {
-    memset(w->fan, 0, model->vertex_count * sizeof *w->fan);
-    memset(w->plain_tick, 0, model->leaf_count * sizeof *w->plain_tick);
-    memset(w->plain, 0, model->leaf_count * sizeof *w->plain);
     memset(w->some_known, 0, 2 * SC_READY_KEPT * sizeof *w->some_known);
     memset(w->slab, 0, model->leaf_count * sizeof *w->slab);
     memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
@@ -272,8 +266,6 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
         uint32_t worker;
         for (worker = 0; worker < workspace->workers; worker++) {
             sc_workspace *own = sc_workspace_of_worker(workspace, worker);
-            memset(own->fan, 0, model->vertex_count * sizeof *own->fan);
-            memset(own->plain_tick, 0, model->leaf_count * sizeof *own->plain_tick);
             memset(own->some_known, 0, 2 * SC_READY_KEPT * sizeof *own->some_known);
             memset(own->slab, 0, model->leaf_count * sizeof *own->slab);
         }

@@ -6,7 +6,7 @@
  *     | sc_workspace | leaf_at | patch boxes | mask | prospect | bounds or all_ready |
  *       bounds_tick | all_known | motion | own arrays | view | view | ... |
  *
- * Own arrays are those that only one thread may write to: fan, plain_tick, plain, contour, walk,
+ * Own arrays are those that only one thread may write to: contour, walk,
  * some_ready, some_known, slab, leaf_pairs, candidates, neighbors, ball, ball_queue, found, state, motion's from
  * leaves to state. For each worker but the first there is a view: an sc_workspace with the pose of the first, and
  * own arrays.
@@ -211,10 +211,6 @@ struct sc_workspace {
     uint16_t *mask;     /* patch_end: discrete normal cones, see pose/dnc.h */
     uint32_t *prospect; /* patch_end: where culling has prospects, see query/traversal.c */
     uint32_t pose_tick;
-    uint32_t
-        *fan; /* vertex_count: 2 * pose_tick + whether the fan projects one to one, if tested */
-    uint32_t *plain_tick; /* leaf_count: pose_tick if plain is known */
-    uint16_t *plain;      /* leaf_count: bit i: the fans at all corners of triangle i are such */
 
     /* contours under the projection at hand */
     uint32_t tick;

@@ -82,50 +82,45 @@ static int list_shared(const uint32_t *a, const uint32_t *b, uint32_t shared[3])
     return count;
 }
 
-/* Whether two triangles that share vertices can have anything to report: 0 or the number of shared vertices, or 3 if
-   one is shared but the batch's rules do not cover the pair. */
-static int neighbors_matter(sc_query_state *state, const uint32_t *a, const uint32_t *b)
-{
-    uint32_t shared[3] = {0, 0, 0};
-    int i, count = list_shared(a, b, shared);
-    /* with two different vertices shared, so does every edge share one */
-    if (count >= 2 && shared[0] != shared[1] &&
-        (state->options.pairs == SC_PAIRS_EDGE || state->options.contact == SC_CONTACT_PROPER))
-        return 0;
-    for (i = 0; i < count; i++)
-        if (sc_fan_is_plain(state->model, state->workspace, shared[i])) return 0;
-    return count;
-}
-
 static int repeats_point(const uint32_t *t)
 {
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-void sc_candidates_take_neighbors(sc_query_state *state, const sc_leaf_pair *p, uint32_t i,
-                                  unsigned mask)
+/* Whether the fan round a vertex that two triangles share projects one to one: then they share all that they have in
+   common. */
+static int have_plain_fan(const sc_query_state *state, const sc_pair *places)
 {
     const uint32_t *triangle = sc_model_triangle(state->model);
-    const uint32_t *first = sc_model_leaf_first(state->model);
-    uint32_t a = first[p->a] + i;
-    const uint32_t *t = triangle + 3 * (uint64_t)a;
+    uint32_t shared[3];
+    int i, count = list_shared(triangle + 3 * (uint64_t)places->a,
+                               triangle + 3 * (uint64_t)places->b, shared);
+    for (i = 0; i < count; i++)
+        if (sc_fan_test(state->model, state->workspace, shared[i])) return 1;
+    return 0;
+}
+
+void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b)
+{
+    const uint32_t *triangle = sc_model_triangle(state->model);
+    const uint32_t *t = triangle + 3 * (uint64_t)a, *u = triangle + 3 * (uint64_t)b;
     sc_workspace *w = state->workspace;
-    uint32_t previous = sc_state_switch(state, sc_state_primitive_task(state));
-    for (; mask && !state->stop; mask &= mask - 1) {
-        sc_pair pair;
-        const uint32_t *u;
-        int shared;
-        pair.a = a;
-        pair.b = first[p->b] + sc_bits_lowest(mask);
-        u = triangle + 3 * (uint64_t)pair.b;
-        shared = neighbors_matter(state, t, u);
-        if (shared == 1 && !repeats_point(t) && !repeats_point(u)) {
-            w->neighbors[w->neighbor_count++] = pair;
-            continue;
-        }
-        state->stats.counts[sc_state_primitive_task(state)]++;
-        if (shared) decide_pair(state, &pair);
+    uint32_t shared[3] = {0, 0, 0}, previous;
+    int count = list_shared(t, u, shared);
+    sc_pair pair;
+    pair.a = a;
+    pair.b = b;
+    if (count == 1 && !repeats_point(t) && !repeats_point(u)) {
+        w->neighbors[w->neighbor_count++] = pair;
+        return;
     }
+    /* with two different vertices shared, so does every edge share one */
+    if (count >= 2 && shared[0] != shared[1] &&
+        (state->options.pairs == SC_PAIRS_EDGE || state->options.contact == SC_CONTACT_PROPER))
+        return;
+    previous = sc_state_switch(state, sc_state_primitive_task(state));
+    state->stats.counts[sc_state_primitive_task(state)]++;
+    if (!state->stop && !have_plain_fan(state, &pair)) decide_pair(state, &pair);
     sc_state_switch(state, previous);
 }
 
@@ -162,18 +157,6 @@ static void mark_shared(sc_pair_lanes *lanes)
                 }
 }
 
-/* Bit k: edge k of the first triangle, k - 3 of the second, of the pair in a lane, that is not to be looked at. */
-static unsigned edges_at_shared(const sc_pair_lanes *lanes, uint32_t j)
-{
-    unsigned edges = 0;
-    int s, k;
-    for (s = 0; s < 2; s++)
-        for (k = 0; k < 3; k++)
-            edges |= ((lanes->shared[s][k] | lanes->shared[s][(k + 1) % 3]) >> j & 1u)
-                     << (3 * s + k);
-    return edges;
-}
-
 /* What a verdict says of a lane, as bits for the edges. */
 static unsigned edges_of_lane(const unsigned lanes[6], uint32_t j)
 {
@@ -183,19 +166,26 @@ static unsigned edges_of_lane(const unsigned lanes[6], uint32_t j)
     return edges;
 }
 
+/* Decides a pair alone, unless the fan round what it shares does. */
+static void decide_rest(sc_query_state *state, const sc_pair *places, int share)
+{
+    if (!share || !have_plain_fan(state, places)) decide_pair(state, places);
+}
+
 /* Reports what is certain of a pair, or decides it alone. */
-static void conclude(sc_query_state *state, const sc_pair *places, unsigned meets, unsigned unsure)
+static void conclude(sc_query_state *state, const sc_pair *places, unsigned meets, unsigned unsure,
+                     int share)
 {
     if (state->options.pairs == SC_PAIRS_EDGE) {
         unsigned wanted = edges_wanted(state, places);
         if (unsure & wanted)
-            decide_pair(state, places);
+            decide_rest(state, places, share);
         else
             take_edges(state, places, meets & wanted);
     } else if (meets) {
         take_triangles(state, places);
     } else if (unsure) {
-        decide_pair(state, places);
+        decide_rest(state, places, share);
     }
 }
 
@@ -217,9 +207,8 @@ static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
         if (count - i < SC_PAIR_LANES) open &= (1u << (count - i)) - 1u;
         for (; open && !state->stop; open &= open - 1) {
             uint32_t j = sc_bits_lowest(open);
-            unsigned free = share ? ~edges_at_shared(&lanes, j) : ~0u;
-            conclude(state, &pairs[i + j], edges_of_lane(verdict.meets, j) & free,
-                     edges_of_lane(verdict.unsure, j) & free);
+            conclude(state, &pairs[i + j], edges_of_lane(verdict.meets, j),
+                     edges_of_lane(verdict.unsure, j), share);
         }
     }
 }
@@ -286,7 +275,7 @@ void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, sc_leaf_
     p->a = a;
     p->b = b;
     p->shared = nothing;
-    p->plain_a = p->plain_b = 0;
+    p->wanted = !state->drops_neighbors;
     if (sc_model_share_crowded(model)[a] & sc_model_share_crowded(model)[b])
         find_shared(model, p);
     else if (a == b)
@@ -295,11 +284,4 @@ void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, sc_leaf_
         for (i = first[a]; i < first[a + 1] && leaf[i] <= b; i++)
             if (leaf[i] == b) p->shared = sc_model_share_rows(model) + SC_LEAF_MAX * (uint64_t)i;
     p->shares = p->shared != nothing;
-    if (!p->shares) return;
-    if (state->drops_neighbors) {
-        p->plain_a = (1u << SC_LEAF_MAX) - 1u; /* as good as plain */
-        return;
-    }
-    p->plain_a = sc_fan_plain_of_leaf(model, state->workspace, a);
-    p->plain_b = sc_fan_plain_of_leaf(model, state->workspace, b);
 }

@@ -30,18 +30,16 @@ typedef struct sc_leaf_pair {
     uint32_t a, b;
     int shares;             /* any do */
     const uint16_t *shared; /* SC_LEAF_MAX rows: triangles of b that share points with one of a */
-    unsigned plain_a, plain_b;   /* triangles whose corners all have plain fans, see pose/fan.h */
+    int wanted;             /* so are pairs that do */
     uint16_t found[SC_LEAF_MAX]; /* room for shared */
 } sc_leaf_pair;
 
-/* Fills *pair. Of pairs of triangles that share points, those of which one is plain have nothing to report. */
+/* Fills *pair. */
 void sc_candidates_enter(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b,
                          sc_leaf_pair *pair);
 
-/* Takes pairs of triangle i of cluster a and some of cluster b that share points and whose boxes overlap: decides or
-   collects them. */
-void sc_candidates_take_neighbors(sc_query_state *state, const sc_leaf_pair *pair, uint32_t i,
-                                  unsigned some);
+/* Takes a pair that shares points, by the places of its triangles: decides or collects it. */
+void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b);
 
 /* Collects a pair that shares nothing, by the places of its triangles. */
 static inline void sc_candidates_add(sc_query_state *state, uint32_t a, uint32_t b)
@@ -65,7 +63,7 @@ typedef struct sc_pair_lanes {
 } sc_pair_lanes;
 
 /* Which edges (k of the first triangle, 3 + k of the second) meet the other triangle, bit i for pair i: certainly, and
-   then properly; or it cannot be told. Means nothing for edges from a shared point. */
+   then properly; or it cannot be told. None from a shared point. */
 typedef struct sc_verdict {
     unsigned meets[6], unsure[6];
 } sc_verdict;

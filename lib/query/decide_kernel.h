@@ -91,10 +91,10 @@ static inline SC_KERNEL(sign)
 /*
  * The lanes in which the two, projected along the axis nearest to the normal of one, are certainly on different sides
  * of the line of a projected edge: its own triangle's third corner on one side, all of the other's strictly on the
- * other. Then they do not meet. Nearly coplanar pairs that are apart are so by one of these six lines. A side
+ * other, but for one that they share if it is on the line. Then they do not meet elsewhere. Nearly coplanar pairs that are apart are so by one of these six lines. A side
  * d = e_0 p_1 - e_1 p_0 meets two differences, a product and a subtraction: 4.01 * 2^-53 (|e_0| + |e_1|) |p|max.
  */
-static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(corners) * x)
+static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(corners) * x, const unsigned shared[2][3])
 {
     doubles n[3], size[3], flat[2][3][2], edge[2][3][2], zero = doubles_all(0);
     doubles_mask first, second;
@@ -134,10 +134,11 @@ static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(corners) * x)
                 doubles p1 = doubles_subtract(flat[1 - s][i][1], flat[s][k][1]);
                 doubles d = doubles_subtract(doubles_multiply(edge[s][k][0], p1),
                                              doubles_multiply(edge[s][k][1], p0));
-                all_left &= doubles_bits(doubles_below(bound, d));
-                all_right &= doubles_bits(doubles_below(d, doubles_subtract(zero, bound)));
+                all_left &= doubles_bits(doubles_below(bound, d)) | shared[1 - s][i];
+                all_right &= doubles_bits(doubles_below(d, doubles_subtract(zero, bound))) |
+                             shared[1 - s][i];
             }
-            apart |= (left & all_right) | (right & all_left);
+            apart |= ((left & all_right) | (right & all_left)) & ~shared[s][(k + 2) % 3];
         }
     }
     return apart;
@@ -199,9 +200,13 @@ static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
         SC_KERNEL(decide_edge)
         (side[1][k], side[1][next], line[0][k], line[1][k], line[2][k], &verdict->meets[3 + k],
          &verdict->unsure[3 + k]);
-        unsure |= verdict->unsure[k] | verdict->unsure[3 + k];
+        for (s = 0; s < 2; s++) {
+            verdict->meets[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
+            verdict->unsure[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
+            unsure |= verdict->unsure[3 * s + k];
+        }
     }
-    if (unsure & ~apart) apart |= SC_KERNEL(are_beside)(&x);
+    if (unsure & ~apart) apart |= SC_KERNEL(are_beside)(&x, pairs->shared);
     SC_UNROLL
     for (k = 0; k < 6; k++) {
         verdict->meets[k] &= ~apart;

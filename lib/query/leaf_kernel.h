@@ -381,23 +381,27 @@ static unsigned SC_KERNEL(list_rows)(const sc_leaf_ready *a, const sc_leaf_ready
     return count;
 }
 
-/* Drops what is not to be looked at in the rows of clusters that share points; and hands on pairs that do. Most of
-   these share points round which nothing can happen. Returns how many rows are left. */
-static unsigned SC_KERNEL(drop_shared)(sc_query_state *state, const sc_leaf_pair *p, unsigned rows,
+/* Takes the pairs that share points out of the rows of clusters of which some do. Returns how many rows are left. */
+static unsigned SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p, unsigned rows,
                                        uint8_t of_a[], uint16_t of_b[])
 {
-    unsigned count = 0, r;
+    uint8_t near_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], near_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
+    unsigned count = 0, near_count = 0, r;
     for (r = 0; r < rows; r++) {
         uint32_t i = of_a[r];
         unsigned mask = of_b[r], shared = p->shared[i];
         if (p->a == p->b) mask &= ~((2u << i) - 1u);
-        mask &= ~(shared & (p->plain_a >> i & 1u ? SC_LEAF_ALL : p->plain_b));
-        if (mask & shared) sc_candidates_take_neighbors(state, p, i, mask & shared);
+        if (mask & shared) {
+            memset(near_a + near_count, (int)i, SC_LANES_COUNT);
+            near_count += lanes_list(mask & shared, near_b + near_count);
+        }
         mask &= ~shared;
         of_a[count] = (uint8_t)i;
         of_b[count] = (uint16_t)mask;
         count += mask != 0;
     }
+    if (near_count && p->wanted) SC_KERNEL(take_neighbors)
+    (state, p, SC_KERNEL(extent)(state, p->a, p->b), near_a, near_b, near_count);
     return count;
 }
 
@@ -448,7 +452,7 @@ static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, un
     count =
         SC_KERNEL(list_rows)(SC_KERNEL(boxes)(state, p->a, p->a > p->b),
                              SC_KERNEL(boxes)(state, p->b, p->b > p->a), rows, some, row_a, row_b);
-    if (p->shares) count = SC_KERNEL(drop_shared)(state, p, count, row_a, row_b);
+    if (p->shares) count = SC_KERNEL(take_shared)(state, p, count, row_a, row_b);
     if (count) {
         uint8_t of_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], of_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
         float extent = SC_KERNEL(extent)(state, p->a, p->b);

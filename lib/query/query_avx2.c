@@ -21,6 +21,7 @@
 #  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
 #  include "pose/points_kernel.h"
+#  include "query/neighbor_kernel.h"
 #  include "query/leaf_kernel.h"
 #  include "query/walk_kernel.h"
 #  include "query/decide_kernel.h"
