@@ -217,8 +217,8 @@ static void put_back(sc_query_state *state, uint32_t node, uint32_t mask)
         return;
     }
     walk->stack[walk->stack_count++] = node;
-    sc_fetch(sc_model_node_child(model) + node);
-    sc_fetch(sc_model_node_boxes(model) + node);
+    sc_fetch(sc_model_node_patches(model) + sc_model_node_child(model)[node]);
+    sc_fetch(sc_model_boxes(model) + sc_model_node_boxes(model)[node]);
 }
 
 void sc_traversal_orient(sc_query_state *state, uint32_t node)
