@@ -5,9 +5,10 @@
  * SPDX-License-Identifier: MIT
  *
  * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
- * to. lanes_index reads sixteen numbers below sixteen, lanes_index_through those of these numbers of a row of sixteen
- * bytes; lanes_pick and lanes_pick_of take the floats of these numbers of a row, in memory or not. lanes_choose takes from a
- * where the mask is set, else from b. lanes_same compares bits, whatever they mean; lanes_either joins two masks.
+ * to; lanes_list_from adds a first number to them, and writes sixteen words. lanes_index reads sixteen numbers below
+ * sixteen, lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the
+ * floats of these numbers of a row, in memory or not. lanes_choose takes from a where the mask is set, else from b.
+ * lanes_same compares bits, whatever they mean; lanes_either joins two masks.
  * lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from three rows of coordinates by three of
  * numbers; lanes_corners_at finds the former in memory.
  *
@@ -26,6 +27,7 @@
 #define lanes_corners SC_KERNEL(sc_lanes_corners)
 #define lanes_corners_at SC_KERNEL(sc_lanes_corners_at)
 #define lanes_list SC_KERNEL(sc_lanes_list)
+#define lanes_list_from SC_KERNEL(sc_lanes_list_from)
 
 #if SC_LANES_AVX512
 
@@ -69,6 +71,14 @@ static inline unsigned lanes_list(unsigned mask, uint8_t *to)
     return (unsigned)__builtin_popcount(mask);
 }
 
+static inline unsigned lanes_list_from(unsigned mask, uint32_t first, uint32_t *to)
+{
+    const __m512i all = _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0);
+    __m512i numbers = _mm512_add_epi32(_mm512_set1_epi32((int)first), all);
+    _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)mask, numbers));
+    return (unsigned)__builtin_popcount(mask);
+}
+
 #else
 
 static inline unsigned lanes_list(unsigned mask, uint8_t *to)
@@ -88,6 +98,13 @@ static inline unsigned lanes_list(unsigned mask, uint8_t *to)
         memcpy(to + count, &four, sizeof four);
         count += some[bits];
     }
+    return count;
+}
+static inline unsigned lanes_list_from(unsigned mask, uint32_t first, uint32_t *to)
+{
+    uint8_t number[SC_LANES_COUNT] = {0};
+    unsigned count = lanes_list(mask, number), i;
+    for (i = 0; i < SC_LANES_COUNT; i++) to[i] = first + number[i];
     return count;
 }
 

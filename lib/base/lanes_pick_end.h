@@ -14,3 +14,4 @@
 #undef lanes_corners
 #undef lanes_corners_at
 #undef lanes_list
+#undef lanes_list_from

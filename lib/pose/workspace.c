@@ -51,7 +51,8 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->some_known =
         (sc_leaf_known *)place(block, at, (uint64_t)2 * SC_READY_KEPT, sizeof(sc_leaf_known));
     w->slab = (sc_leaf_slab *)place(block, at, model->leaf_count, sizeof(sc_leaf_slab));
-    w->leaf_pairs = (sc_pair *)place(block, at, SC_LEAF_QUEUE, sizeof(sc_pair));
+    for (k = 0; k < 2; k++)
+        w->leaf_pairs[k] = (uint32_t *)place(block, at, SC_LEAF_QUEUE, sizeof(uint32_t));
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->ball = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));

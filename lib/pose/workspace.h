@@ -102,9 +102,9 @@ typedef struct sc_leaf_ready {
 
 enum { SC_READY_ROWS = sizeof(sc_leaf_ready) / (SC_LEAF_MAX * sizeof(float)) };
 
-/* What is known of a leaf cluster: in which pose its boxes were made, and the rest; 0: never. */
+/* What is known of a leaf cluster: in which pose its boxes were made, 0 for never, and whether normals were. */
 typedef struct sc_leaf_known {
-    uint32_t leaf, boxes, normals;
+    uint32_t leaf, boxes, has_normals;
 } sc_leaf_known;
 
 /* Where the points of a leaf cluster are along its mean normal, about, at least and at most. */
@@ -229,7 +229,7 @@ struct sc_workspace {
     sc_leaf_ready *some_ready; /* 2 * SC_READY_KEPT */
     sc_leaf_known *some_known; /* 2 * SC_READY_KEPT */
     sc_leaf_slab *slab;        /* leaf_count */
-    sc_pair *leaf_pairs;       /* SC_LEAF_QUEUE that wait, a < b */
+    uint32_t *leaf_pairs[2];   /* SC_LEAF_QUEUE that wait: the lower of two, and the other */
     uint32_t leaf_pair_count;
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     sc_pair *neighbors;  /* SC_CANDIDATES_MAX of such that share one point */

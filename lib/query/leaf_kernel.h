@@ -128,7 +128,7 @@ static inline const sc_leaf_ready *SC_KERNEL(boxes)(const sc_query_state *state,
         SC_KERNEL(make_boxes)(state, leaf, w->ready + at);
         known->leaf = leaf;
         known->boxes = w->pose_tick;
-        known->normals = 0;
+        known->has_normals = 0;
     }
     return w->ready + at;
 }
@@ -140,49 +140,55 @@ static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state,
     sc_workspace *w = state->workspace;
     uint32_t at = SC_KERNEL(place)(state, leaf, is_upper);
     SC_KERNEL(boxes)(state, leaf, is_upper);
-    if (w->known[at].normals != w->pose_tick) {
+    if (!w->known[at].has_normals) {
         SC_KERNEL(make_normals)(state, leaf, w->ready + at);
-        w->known[at].normals = w->pose_tick;
+        w->known[at].has_normals = 1;
     }
     return w->ready + at;
 }
 
-/* The slab of a leaf cluster; is_upper as above. */
-static const sc_leaf_slab *SC_KERNEL(slab)(const sc_query_state *state, uint32_t leaf, int is_upper)
+/* Makes the slab of a leaf cluster; is_upper as above. */
+static void SC_KERNEL(make_slab)(const sc_query_state *state, uint32_t leaf, int is_upper)
 {
     sc_leaf_slab *slab = state->workspace->slab + leaf;
-    if (slab->tick != state->workspace->pose_tick) {
-        const sc_leaf_ready *ready = SC_KERNEL(ready)(state, leaf, is_upper);
-        float reach = 16 * FLT_MIN;
-        lanes along;
-        int c;
-        for (c = 0; c < 3; c++) {
-            slab->direction[c] = lanes_sum(lanes_load(ready->normal[c]));
-            reach += 5e-7f * fabsf(slab->direction[c]);
-        }
-        along = SC_KERNEL(along)(state, leaf, slab->direction);
-        slab->ends[0] = lanes_least(along) - reach;
-        slab->ends[1] = lanes_most(along) + reach;
-        slab->tick = state->workspace->pose_tick;
+    const sc_leaf_ready *ready = SC_KERNEL(ready)(state, leaf, is_upper);
+    float reach = 16 * FLT_MIN;
+    lanes along;
+    int c;
+    for (c = 0; c < 3; c++) {
+        slab->direction[c] = lanes_sum(lanes_load(ready->normal[c]));
+        reach += 5e-7f * fabsf(slab->direction[c]);
     }
+    along = SC_KERNEL(along)(state, leaf, slab->direction);
+    slab->ends[0] = lanes_least(along) - reach;
+    slab->ends[1] = lanes_most(along) + reach;
+    slab->tick = state->workspace->pose_tick;
+}
+
+/* That slab. */
+static inline const sc_leaf_slab *SC_KERNEL(slab)(const sc_query_state *state, uint32_t leaf,
+                                                  int is_upper)
+{
+    const sc_leaf_slab *slab = state->workspace->slab + leaf;
+    if (slab->tick != state->workspace->pose_tick) SC_KERNEL(make_slab)(state, leaf, is_upper);
     return slab;
 }
 
-/* Whether all points of a leaf cluster are certainly before a slab, or behind. */
-static inline int SC_KERNEL(is_beside)(const sc_query_state *state, uint32_t leaf,
-                                       const sc_leaf_slab *slab)
+/* Not 0 if all points of a leaf cluster are certainly before a slab, or behind. Without branches, as either may be. */
+static inline unsigned SC_KERNEL(is_beside)(const sc_query_state *state, uint32_t leaf,
+                                            const sc_leaf_slab *slab)
 {
     lanes along = SC_KERNEL(along)(state, leaf, slab->direction);
-    return lanes_bits(lanes_below(along, lanes_all(slab->ends[0]))) == 0xffffu ||
-           lanes_bits(lanes_below(lanes_all(slab->ends[1]), along)) == 0xffffu;
+    return (unsigned)(lanes_every(lanes_below(along, lanes_all(slab->ends[0])))) |
+           (unsigned)(lanes_every(lanes_below(lanes_all(slab->ends[1]), along)));
 }
 
 /* Whether the slab of one of two leaf clusters, a < b, certainly has the other on one side. If they share a point, it
    is in both, to the last bit. */
-static inline int SC_KERNEL(slabs_part)(const sc_query_state *state, uint32_t a, uint32_t b)
+static inline unsigned SC_KERNEL(slabs_part)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
-    return SC_KERNEL(is_beside)(state, b, SC_KERNEL(slab)(state, a, 0)) ||
-           SC_KERNEL(is_beside)(state, a, SC_KERNEL(slab)(state, b, 1));
+    const sc_leaf_slab *of_a = SC_KERNEL(slab)(state, a, 0), *of_b = SC_KERNEL(slab)(state, b, 1);
+    return SC_KERNEL(is_beside)(state, b, of_a) | SC_KERNEL(is_beside)(state, a, of_b);
 }
 
 /* Largest extent of the boxes of two leaf clusters together. */
@@ -331,14 +337,19 @@ static inline void SC_KERNEL(begin_picking)(const sc_query_state *state, uint32_
     t->numbers = NULL;
 }
 
-/* Collects those of the pairs listed that are not certainly apart. */
+/* Collects those of the pairs in these rows that are not certainly apart. */
 static void SC_KERNEL(collect)(sc_query_state *state, const sc_leaf_pair *p, SC_KERNEL(picked) * a,
-                               SC_KERNEL(picked) * b, uint8_t *of_a, uint8_t *of_b, unsigned count,
-                               float extent)
+                               SC_KERNEL(picked) * b, unsigned rows, const uint8_t row_a[],
+                               const uint16_t row_b[], float extent)
 {
     uint32_t first_a = sc_model_leaf_first(state->model)[p->a];
     uint32_t first_b = sc_model_leaf_first(state->model)[p->b];
-    unsigned at;
+    uint8_t of_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], of_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
+    unsigned count = 0, at, r;
+    for (r = 0; r < rows; r++) {
+        memset(of_a + count, row_a[r], SC_LANES_COUNT);
+        count += lanes_list(row_b[r], of_b + count);
+    }
     memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
     memset(of_b + count, 0, SC_LANES_COUNT);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
@@ -405,11 +416,11 @@ static unsigned SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair
     return count;
 }
 
-/* Lists the pairs of these rows, but those of which the plane of the row's triangle has the other on one side. Returns
-   how many. */
-static unsigned SC_KERNEL(list_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
-                                      float extent, unsigned rows, const uint8_t row_a[],
-                                      const uint16_t row_b[], uint8_t of_a[], uint8_t of_b[])
+/* Drops pairs of these rows of which the plane of the row's triangle has the other on one side. Returns how many rows are
+   left. */
+static unsigned SC_KERNEL(drop_by_planes)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
+                                          float extent, unsigned rows, uint8_t of_a[],
+                                          uint16_t of_b[])
 {
     float above[SC_LEAF_MAX], below[SC_LEAF_MAX];
     lanes at[3], bound = SC_KERNEL(plane_bound)(lanes_load(a->ready->size), extent);
@@ -424,7 +435,7 @@ static unsigned SC_KERNEL(list_pairs)(const SC_KERNEL(picked) * a, const SC_KERN
     lanes_store(above, lanes_add(lanes_load(a->ready->offset), bound));
     lanes_store(below, lanes_subtract(lanes_load(a->ready->offset), bound));
     for (r = 0; r < rows; r++) {
-        uint32_t i = row_a[r];
+        uint32_t i = of_a[r];
         lanes d[3], along = lanes_multiply(lanes_all(a->ready->normal[0][i]), at[0]);
         lanes_mask meets;
         SC_UNROLL
@@ -435,8 +446,9 @@ static unsigned SC_KERNEL(list_pairs)(const SC_KERNEL(picked) * a, const SC_KERN
         meets = lanes_both(
             lanes_not_above(lanes_smaller(d[0], lanes_smaller(d[1], d[2])), lanes_all(above[i])),
             lanes_not_above(lanes_all(below[i]), lanes_larger(d[0], lanes_larger(d[1], d[2]))));
-        memset(of_a + count, (int)i, SC_LANES_COUNT);
-        count += lanes_list(lanes_bits(meets) & row_b[r], of_b + count);
+        of_a[count] = (uint8_t)i;
+        of_b[count] = (uint16_t)(lanes_bits(meets) & of_b[r]);
+        count += of_b[count] != 0;
     }
     return count;
 }
@@ -454,13 +466,12 @@ static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, un
                              SC_KERNEL(boxes)(state, p->b, p->b > p->a), rows, some, row_a, row_b);
     if (p->shares) count = SC_KERNEL(take_shared)(state, p, count, row_a, row_b);
     if (count) {
-        uint8_t of_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], of_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
         float extent = SC_KERNEL(extent)(state, p->a, p->b);
         SC_KERNEL(picked) a, b;
         SC_KERNEL(begin_picking)(state, p->a, p->a > p->b, &a);
         SC_KERNEL(begin_picking)(state, p->b, p->b > p->a, &b);
-        count = SC_KERNEL(list_pairs)(&a, &b, extent, count, row_a, row_b, of_a, of_b);
-        if (count) SC_KERNEL(collect)(state, p, &a, &b, of_a, of_b, count, extent);
+        count = SC_KERNEL(drop_by_planes)(&a, &b, extent, count, row_a, row_b);
+        if (count) SC_KERNEL(collect)(state, p, &a, &b, count, row_a, row_b, extent);
     }
     sc_candidates_make_room(state);
 }
@@ -523,34 +534,41 @@ static inline void SC_KERNEL(fetch_ready)(const sc_workspace *w, uint32_t leaf)
 static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
 {
     sc_workspace *w = state->workspace;
-    sc_pair *pairs = w->leaf_pairs;
+    uint32_t *lower = w->leaf_pairs[0], *upper = w->leaf_pairs[1];
     uint32_t count = w->leaf_pair_count, kept = 0, i;
     int slabs_first = count >= SC_LEAF_SLABS_FIRST;
     w->leaf_pair_count = 0;
     if (slabs_first) {
         for (i = 0; i < count; i++) {
-            sc_pair pair = pairs[i];
-            if (i + SC_FETCH_POINTS < count)
-                SC_KERNEL(fetch_points)(w, pairs[i + SC_FETCH_POINTS].b);
-            pairs[kept] = pair;
-            kept += !SC_KERNEL(slabs_part)(state, pair.a, pair.b);
+            uint32_t a = lower[i], b = upper[i];
+            if (i + SC_FETCH_POINTS < count) SC_KERNEL(fetch_points)(w, upper[i + SC_FETCH_POINTS]);
+            lower[kept] = a;
+            upper[kept] = b;
+            kept += !SC_KERNEL(slabs_part)(state, a, b);
         }
         count = kept;
     }
     for (i = 0; i < count && !state->stop; i++) {
-        if (i + SC_FETCH_READY < count) SC_KERNEL(fetch_ready)(w, pairs[i + SC_FETCH_READY].b);
-        SC_KERNEL(leaf_pair)(state, pairs[i].a, pairs[i].b, !slabs_first);
+        if (i + SC_FETCH_READY < count) SC_KERNEL(fetch_ready)(w, upper[i + SC_FETCH_READY]);
+        SC_KERNEL(leaf_pair)(state, lower[i], upper[i], !slabs_first);
         if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);
     }
 }
 
-/* Has a pair of leaf clusters wait. */
-static inline void SC_KERNEL(add_leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b)
+/* Has pairs of a leaf cluster wait: with those numbered from first on, all below it or all above, of which bits of a
+   mask are set. */
+static inline void SC_KERNEL(add_leaf_pairs)(sc_query_state *state, uint32_t leaf, uint32_t first,
+                                             unsigned mask)
 {
     sc_workspace *w = state->workspace;
-    sc_pair *pair = &w->leaf_pairs[w->leaf_pair_count++];
-    pair->a = a < b ? a : b;
-    pair->b = a < b ? b : a;
+    int is_upper = leaf > first;
+    unsigned count = lanes_list_from(mask, first, w->leaf_pairs[!is_upper] + w->leaf_pair_count);
+    uint32_t *same = w->leaf_pairs[is_upper] + w->leaf_pair_count;
+    int i;
+    for (i = 0; i < SC_LANES_COUNT; i++) same[i] = leaf;
+    w->leaf_pair_count += count;
+    state->stats.leaf_pairs += count;
+    state->stats.counts[sc_state_box_task(state)] += count;
 }
 
 /* To be called after SC_LEAF_MAX such or fewer: sees that so many more have room. */
@@ -563,9 +581,7 @@ static inline void SC_KERNEL(make_leaf_room)(sc_query_state *state)
 
 static void SC_KERNEL(leaf_pair_waits)(sc_query_state *state, uint32_t a, uint32_t b)
 {
-    state->stats.leaf_pairs++;
-    state->stats.counts[sc_state_box_task(state)]++;
-    SC_KERNEL(add_leaf_pair)(state, a, b);
+    SC_KERNEL(add_leaf_pairs)(state, a, b, 1);
     SC_KERNEL(make_leaf_room)(state);
 }
 

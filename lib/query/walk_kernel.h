@@ -34,10 +34,7 @@ static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b)
                 SC_KERNEL(patch_pair)(state, c, hop[b] + sc_bits_lowest(mask));
             continue;
         }
-        state->stats.leaf_pairs += sc_bits_count(mask);
-        state->stats.counts[sc_state_box_task(state)] += sc_bits_count(mask);
-        for (; mask; mask &= mask - 1)
-            SC_KERNEL(add_leaf_pair)(state, c - leaves, hop[b] - leaves + sc_bits_lowest(mask));
+        SC_KERNEL(add_leaf_pairs)(state, c - leaves, hop[b] - leaves, mask);
         SC_KERNEL(make_leaf_room)(state);
     }
 }
