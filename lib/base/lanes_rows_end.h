@@ -6,3 +6,4 @@
 #undef lanes_signs
 #undef lanes_signs_of
 #undef lanes_all_negative
+#undef lanes_rows_ends

@@ -5,24 +5,45 @@
  */
 
 /* How far a bound has to be moved outwards: one step of rounding, see base/boxes.h. */
-static inline float SC_KERNEL(step)(float bound)
+static inline lanes SC_KERNEL(step)(lanes bound)
 {
-    return fabsf(bound) * 1.1920929e-7f + FLT_MIN;
+    return lanes_add(lanes_multiply(lanes_absolute(bound), lanes_all(1.1920929e-7f)),
+                     lanes_all(FLT_MIN));
+}
+
+/* Boxes of sixteen leaf clusters, whose points are `stride` floats apart. */
+static SC_INLINE void SC_KERNEL(boxes_of)(const float *at, uint64_t stride, lanes side[6])
+{
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        lanes low, high;
+        lanes_rows_ends(at + SC_LEAF_POINTS * k, stride, &low, &high);
+        side[k] = lanes_subtract(low, SC_KERNEL(step)(low));
+        side[k + 3] = lanes_add(high, SC_KERNEL(step)(high));
+    }
 }
 
 static void SC_KERNEL(refit_leaves)(const sc_model *model, sc_workspace *w, uint32_t first,
                                     uint32_t end)
 {
-    uint32_t leaf, patch = sc_model_first_leaf_patch(model);
+    const uint32_t patch = sc_model_first_leaf_patch(model), length = 3 * SC_LEAF_POINTS;
+    uint32_t leaf = first;
+    lanes side[6];
+    float one[SC_LANES_COUNT];
     int k;
-    for (leaf = first; leaf < end; leaf++) {
-        const float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
+    while (leaf < end && end - first >= SC_LANES_COUNT) {
+        if (end - leaf < SC_LANES_COUNT) leaf = end - SC_LANES_COUNT; /* some once more */
+        SC_KERNEL(boxes_of)(w->leaf_at + length * (uint64_t)leaf, length, side);
         SC_UNROLL
-        for (k = 0; k < 3; k++) {
-            lanes p = lanes_load(at + SC_LEAF_POINTS * k);
-            float low = lanes_least(p), high = lanes_most(p);
-            w->patch_boxes.side[k][patch + leaf] = low - SC_KERNEL(step)(low);
-            w->patch_boxes.side[k + 3][patch + leaf] = high + SC_KERNEL(step)(high);
+        for (k = 0; k < 6; k++) lanes_store(w->patch_boxes.side[k] + patch + leaf, side[k]);
+        leaf += SC_LANES_COUNT;
+    }
+    for (; leaf < end; leaf++) { /* fewer than sixteen: each sixteen times */
+        SC_KERNEL(boxes_of)(w->leaf_at + length * (uint64_t)leaf, 0, side);
+        for (k = 0; k < 6; k++) {
+            lanes_store(one, side[k]);
+            w->patch_boxes.side[k][patch + leaf] = one[0];
         }
     }
 }
