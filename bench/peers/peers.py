@@ -495,6 +495,7 @@ def walk(scene, scalar, ours, ways, frames, first):
 
                 given = [way.prepare(np.frombuffer(pose, dtype=scalar).reshape(-1, 3))
                          for pose in given]
+            found = None  # long lists take their time to free, which is not the next one's
             start = time.perf_counter()
             found = way.query(*given)
             elapsed = time.perf_counter() - start
