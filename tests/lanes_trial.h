@@ -1,0 +1,95 @@
+/*
+ * Does all that base/lanes.h and its companions can do, once, and writes down what comes out. Included for each
+ * instruction set between these headers and their ends; see test_lanes.c.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
+{
+    lanes a = lanes_load(in->a), b = lanes_load(in->b), evens = lanes_load(in->plain);
+    lanes odds = lanes_load(in->plain + 1);
+    lanes_mask below = lanes_below(a, b), most = lanes_not_above(a, b);
+    lanes_mask once = lanes_below(lanes_all(in->a[0]), lanes_all(in->b[0]));
+    const float *point[SC_LANES_COUNT];
+    lanes x[3];
+    int i;
+    lanes_store(out->row[0], lanes_add(evens, odds));
+    lanes_store(out->row[1], lanes_subtract(evens, odds));
+    lanes_store(out->row[2], lanes_multiply(evens, odds));
+    lanes_store(out->row[3], lanes_smaller(a, b));
+    lanes_store(out->row[4], lanes_larger(a, b));
+    lanes_store(out->row[5], lanes_absolute(a));
+    lanes_store(out->row[6], lanes_larger_size(evens, odds));
+    lanes_store(out->row[7], lanes_evens(a, b));
+    lanes_store(out->row[8], lanes_odds(a, b));
+    lanes_store(out->row[9], lanes_all(in->a[3]));
+    lanes_store(out->row[10], lanes_four(in->a));
+    lanes_store(out->row[11], lanes_each_four(in->a));
+    lanes_store_least(out->row[12], evens);
+    lanes_store_most(out->row[13], evens);
+    for (i = 0; i < SC_LANES_COUNT; i++) point[i] = in->plain + in->number[i];
+    lanes_points(point, &x[0], &x[1], &x[2]);
+    for (i = 0; i < 3; i++) lanes_store(out->row[14 + i], x[i]);
+    out->one[0] = lanes_sum(evens);
+    out->one[1] = lanes_least(evens);
+    out->one[2] = lanes_most(evens);
+    out->bits[0] = lanes_bits(below);
+    out->bits[1] = lanes_bits(most);
+    out->bits[2] = lanes_bits(lanes_both(below, most));
+    out->bits[3] = (unsigned)lanes_every(most);
+    out->bits[4] = (unsigned)lanes_every(once);
+}
+
+static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
+{
+    lanes a = lanes_load(in->a), b = lanes_load(in->b), corner[3][3];
+    uint8_t list[SC_LANES_COUNT];
+    int i, k;
+    lanes_store(out->row[17], lanes_pick(in->a, lanes_index_load(in->number)));
+    lanes_store(out->row[18], lanes_pick_of(b, lanes_index_load(in->number + SC_LANES_COUNT)));
+    lanes_store(out->row[19],
+                lanes_pick_of(a, lanes_index_through(in->number, in->number + SC_LANES_COUNT)));
+    lanes_store(out->row[20], lanes_choose(lanes_below(a, b), a, b));
+    lanes_corners_at(in->plain, in->number, corner);
+    for (k = 0; k < 3; k++)
+        for (i = 0; i < 3; i++) lanes_store(out->row[21 + 3 * k + i], corner[k][i]);
+    out->bits[5] = lanes_list(in->mask, list);
+    memcpy(out->list, list, out->bits[5]);
+}
+
+static void SC_KERNEL(try_rows)(const lanes_input *in, lanes_outcome *out)
+{
+    lanes_signs row[16];
+    int i;
+    for (i = 0; i < 16; i++) row[i] = lanes_signs_of(lanes_load(in->row[i]));
+    out->bits[6] = lanes_all_negative(row);
+}
+
+static void SC_KERNEL(try_doubles)(const lanes_input *in, lanes_outcome *out)
+{
+    doubles a = doubles_load(in->c), b = doubles_load(in->d), p = doubles_load(in->exact);
+    doubles q = doubles_load(in->exact + 1), x[3];
+    doubles_mask below = doubles_below(a, b);
+    const double *at[8];
+    int i;
+    doubles_store(out->eight[0], doubles_add(p, q));
+    doubles_store(out->eight[1], doubles_subtract(p, q));
+    doubles_store(out->eight[2], doubles_multiply(p, q));
+    doubles_store(out->eight[3], doubles_smaller(a, b));
+    doubles_store(out->eight[4], doubles_larger(a, b));
+    doubles_store(out->eight[5], doubles_absolute(a));
+    doubles_store(out->eight[6], doubles_choose(below, a, b));
+    doubles_store(out->eight[7], doubles_all(in->c[2]));
+    for (i = 0; i < 8; i++) at[i] = in->exact + in->number[i];
+    doubles_points(at, &x[0], &x[1], &x[2]);
+    for (i = 0; i < 3; i++) doubles_store(out->eight[8 + i], x[i]);
+    out->bits[7] = doubles_bits(below);
+}
+
+static void SC_KERNEL(try_all)(const lanes_input *in, lanes_outcome *out)
+{
+    SC_KERNEL(try_floats)(in, out);
+    SC_KERNEL(try_picks)(in, out);
+    SC_KERNEL(try_rows)(in, out);
+    SC_KERNEL(try_doubles)(in, out);
+}

@@ -1,0 +1,33 @@
+/*
+ * What test_lanes.c tries sixteen lanes on, and what comes out; and the forms of them that the library has on other
+ * machines.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef SC_TESTS_LANES_TRIAL_TYPES_H
+#define SC_TESTS_LANES_TRIAL_TYPES_H
+
+#include <stdint.h>
+
+typedef struct lanes_input {
+    float a[16], b[16]; /* anything */
+    float plain[48];    /* finite numbers, whose sums are */
+    float row[16][16];  /* such, mostly negative */
+    double c[8], d[8];  /* anything */
+    double exact[20];   /* as plain */
+    uint8_t number[48]; /* below 16 */
+    unsigned mask;      /* of 16 bits */
+} lanes_input;
+
+typedef struct lanes_outcome {
+    float row[30][16], one[3];
+    double eight[11][8];
+    unsigned bits[8];
+    uint8_t list[16];
+} lanes_outcome;
+
+/* By the compiler's vector types, where it has them, and one by one. */
+void lanes_try_vectors(const lanes_input *in, lanes_outcome *out);
+void lanes_try_plain(const lanes_input *in, lanes_outcome *out);
+
+#endif

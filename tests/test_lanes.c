@@ -1,0 +1,158 @@
+/*
+ * Sixteen floats and eight doubles at a time: all forms give the bits of the plain one, on random numbers, zeros of
+ * both signs, infinities and NaN (not a number).
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/isa.h"
+#include "harness.h"
+#include "lanes_trial_types.h"
+
+#define SC_KERNEL(name) name##_test_base
+#define SC_LANES SC_QUADS
+#include "base/lanes.h"
+#include "base/lanes_double.h"
+#include "base/lanes_pick.h"
+#include "base/lanes_rows.h"
+#include "lanes_trial.h"
+#include "base/lanes_rows_end.h"
+#include "base/lanes_pick_end.h"
+#include "base/lanes_double_end.h"
+#include "base/lanes_end.h"
+
+#if SC_ISA_X86
+
+#  include "base/avx2_begin.h"
+#  define SC_KERNEL(name) name##_test_avx2
+#  define SC_LANES 2
+#  include "base/lanes.h"
+#  include "base/lanes_double.h"
+#  include "base/lanes_pick.h"
+#  include "base/lanes_rows.h"
+#  include "lanes_trial.h"
+#  include "base/lanes_rows_end.h"
+#  include "base/lanes_pick_end.h"
+#  include "base/lanes_double_end.h"
+#  include "base/lanes_end.h"
+#  include "base/avx2_end.h"
+
+#  include "base/avx512_begin.h"
+#  define SC_KERNEL(name) name##_test_avx512
+#  define SC_LANES 3
+#  include "base/lanes.h"
+#  include "base/lanes_double.h"
+#  include "base/lanes_pick.h"
+#  include "base/lanes_rows.h"
+#  include "lanes_trial.h"
+#  include "base/lanes_rows_end.h"
+#  include "base/lanes_pick_end.h"
+#  include "base/lanes_double_end.h"
+#  include "base/lanes_end.h"
+#  include "base/avx512_end.h"
+
+#endif
+
+/* Of any kind: small numbers, so that some are the same; or large and small ones. */
+static double number(int plain)
+{
+    static const double special[8] = {0.0,     -0.0,     HUGE_VAL, -HUGE_VAL,
+                                      FLT_MIN, -FLT_MIN, FLT_MAX,  -FLT_MAX};
+    uint32_t kind = test_random_below(8);
+    if (!plain && kind == 0) return special[test_random_below(8)];
+    if (!plain && kind == 1) return (double)NAN;
+    if (kind < 4) return (double)test_random_below(7) - 3;
+    return test_random_range(-1, 1) * (kind == 7 ? 1e-30 : 1);
+}
+
+static void draw(lanes_input *in)
+{
+    uint32_t i, k, positive = test_random_below(40);
+    for (i = 0; i < 16; i++) {
+        in->a[i] = (float)number(0);
+        in->b[i] = test_random_below(4) ? (float)number(0) : in->a[i];
+        for (k = 0; k < 16; k++) in->row[k][i] = (float)-test_random_range(1e-30, 1);
+    }
+    for (i = 0; i < positive; i++)
+        in->row[test_random_below(16)][test_random_below(16)] = (float)test_random_below(2);
+    for (i = 0; i < 8; i++) {
+        in->c[i] = number(0);
+        in->d[i] = test_random_below(4) ? number(0) : in->c[i];
+    }
+    for (i = 0; i < 48; i++) {
+        in->plain[i] = (float)number(1);
+        in->number[i] = (uint8_t)test_random_below(16);
+    }
+    for (i = 0; i < 20; i++) in->exact[i] = number(1);
+    in->mask = test_random_below(0x10000);
+    if (test_random_below(4) == 0) /* all below, or none: as in most boxes */
+        for (i = 0; i < 16; i++) in->a[i] = in->b[i] = 1;
+}
+
+static void all_forms_agree(void)
+{
+    enum { TRIALS = 20000 };
+    lanes_input in;
+    uint32_t trial;
+    memset(&in, 0, sizeof in);
+    for (trial = 0; trial < TRIALS && !test_failures(); trial++) {
+        lanes_outcome plain, other;
+        draw(&in);
+        memset(&plain, 0, sizeof plain);
+        memset(&other, 0, sizeof other);
+        lanes_try_plain(&in, &plain);
+        lanes_try_vectors(&in, &other);
+        CHECK_MSG(!memcmp(&plain, &other, sizeof plain), "vector types, trial %u", trial);
+        memset(&other, 0, sizeof other);
+        try_all_test_base(&in, &other);
+        CHECK_MSG(!memcmp(&plain, &other, sizeof plain), "base, trial %u", trial);
+#if SC_ISA_X86
+        if (sc_isa_best() >= SC_ISA_AVX2) {
+            memset(&other, 0, sizeof other);
+            try_all_test_avx2(&in, &other);
+            CHECK_MSG(!memcmp(&plain, &other, sizeof plain), "AVX2, trial %u", trial);
+        }
+        if (sc_isa_best() >= SC_ISA_AVX512) {
+            memset(&other, 0, sizeof other);
+            try_all_test_avx512(&in, &other);
+            CHECK_MSG(!memcmp(&plain, &other, sizeof plain), "AVX-512, trial %u", trial);
+        }
+#endif
+    }
+    if (sc_isa_best() < SC_ISA_AVX512) test_note("skipped: what this machine does not have");
+}
+
+/* The plain form against what is said of it. */
+static void lists_and_signs(void)
+{
+    lanes_input in;
+    lanes_outcome out;
+    uint32_t trial, i;
+    memset(&in, 0, sizeof in);
+    for (trial = 0; trial < 2000; trial++) {
+        unsigned count = 0, negative = 0;
+        draw(&in);
+        lanes_try_plain(&in, &out);
+        for (i = 0; i < 16; i++) {
+            uint32_t k;
+            for (k = 0; k < 16 && in.row[i][k] < 0; k++) continue;
+            negative |= (unsigned)(k == 16) << i;
+            if (!(in.mask >> i & 1u)) continue;
+            CHECK(out.list[count] == i);
+            count++;
+        }
+        CHECK(out.bits[5] == count && out.bits[6] == negative);
+        for (i = 0; i < 16; i++) {
+            CHECK((out.bits[0] >> i & 1u) == (unsigned)(in.a[i] < in.b[i]));
+            CHECK((out.bits[1] >> i & 1u) == (unsigned)(in.a[i] <= in.b[i]));
+            CHECK(!memcmp(&out.row[17][i], &in.a[in.number[i]], sizeof(float)));
+            CHECK(!memcmp(&out.row[21][i], &in.plain[in.number[i]], sizeof(float)));
+            CHECK(!memcmp(&out.row[29][i], &in.plain[32 + in.number[32 + i]], sizeof(float)));
+        }
+    }
+}
+
+SC_TEST_MAIN(SC_TEST(all_forms_agree), SC_TEST(lists_and_signs))
