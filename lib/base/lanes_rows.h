@@ -78,12 +78,6 @@ typedef sc_floats4 lanes_signs;
 
 static inline lanes_signs lanes_signs_of(lanes a)
 {
-#  if !SC_LANES_SSE2
-    const sc_floats4 zero = SC_QUAD(set1_ps)(0);
-    int i;
-    SC_UNROLL
-    for (i = 0; i < 4; i++) a.v[i] = SC_QUAD(cmplt_ps)(a.v[i], zero);
-#  endif
     return SC_QUAD(and_ps)(SC_QUAD(and_ps)(a.v[0], a.v[1]), SC_QUAD(and_ps)(a.v[2], a.v[3]));
 }
 #  if SC_LANES_SSE2
@@ -117,6 +111,7 @@ static inline unsigned lanes_all_negative(const lanes_signs row[16])
         for (k = 0; k < 4; k++) x[k] = row[4 * i + k];
         sc_quad_transpose(x);
         all[i] = SC_QUAD(and_ps)(SC_QUAD(and_ps)(x[0], x[1]), SC_QUAD(and_ps)(x[2], x[3]));
+        all[i] = (sc_floats4)((sc_numbers4)all[i] < 0);
     }
     return sc_quad_bits(all[0], all[1], all[2], all[3]);
 }

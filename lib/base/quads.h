@@ -47,6 +47,11 @@ static inline int sc_quad_every(sc_floats4 a)
 {
     return _mm_movemask_ps(a) == 15;
 }
+/* Two of a, then two of b, rounded. */
+static inline sc_floats4 sc_quad_rounded(sc_doubles2 a, sc_doubles2 b)
+{
+    return _mm_movelh_ps(_mm_cvtpd_ps(a), _mm_cvtpd_ps(b));
+}
 /* x[i][k] becomes x[k][i]. */
 static inline void sc_quad_transpose(sc_floats4 x[4])
 {
@@ -153,6 +158,10 @@ static inline int sc_quad_every(sc_floats4 a)
 {
     sc_numbers2 two = (sc_numbers2)a;
     return (two[0] & two[1]) == -1;
+}
+static inline sc_floats4 sc_quad_rounded(sc_doubles2 a, sc_doubles2 b)
+{
+    return (sc_floats4){(float)a[0], (float)a[1], (float)b[0], (float)b[1]};
 }
 static inline void sc_quad_transpose(sc_floats4 x[4])
 {

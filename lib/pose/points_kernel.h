@@ -61,9 +61,7 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
     at[2] = _mm512_shuffle_ps(_mm512_unpackhi_ps(r[0], r[1]), _mm512_unpackhi_ps(r[2], r[3]), 0x44);
 }
 
-#elif SC_LANES_AVX2 || SC_LANES_SSE2
-
-#  if SC_LANES_AVX2
+#elif SC_LANES_AVX2
 
 typedef struct SC_KERNEL(points_frame) {
     const unsigned char *from;
@@ -91,43 +89,6 @@ static SC_INLINE __m128 SC_KERNEL(sc_points_one)(const SC_KERNEL(points_frame) *
     return _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(d, f->center), f->scale));
 }
 
-#  else
-
-typedef struct SC_KERNEL(points_frame) {
-    const unsigned char *from;
-    __m128d xy, z, scale;
-} SC_KERNEL(points_frame);
-
-static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
-{
-    SC_KERNEL(points_frame) f;
-    f.from = w->positions;
-    f.xy = _mm_set_pd(w->center[1], w->center[0]);
-    f.z = _mm_set_pd(0, w->center[2]);
-    f.scale = _mm_set1_pd(w->scale);
-    return f;
-}
-
-static SC_INLINE __m128 SC_KERNEL(sc_points_one)(const SC_KERNEL(points_frame) * f,
-                                                 const unsigned char *p, int is_double)
-{
-    __m128d xy, z;
-    if (is_double) {
-        xy = _mm_loadu_pd((const double *)(const void *)p);
-        z = _mm_castsi128_pd(_mm_loadl_epi64((const __m128i *)(const void *)(p + 16)));
-    } else {
-        float last; /* at any address */
-        memcpy(&last, p + 8, sizeof last);
-        xy = _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p)));
-        z = _mm_cvtps_pd(_mm_set_ss(last));
-    }
-    xy = _mm_mul_pd(_mm_sub_pd(xy, f->xy), f->scale);
-    z = _mm_mul_pd(_mm_sub_pd(z, f->z), f->scale);
-    return _mm_movelh_ps(_mm_cvtpd_ps(xy), _mm_cvtpd_ps(z));
-}
-
-#  endif
-
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
                                            int is_double, uint64_t stride, lanes at[3])
 {
@@ -146,12 +107,59 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
     }
     SC_UNROLL
     for (i = 0; i < 3; i++) {
-#  if SC_LANES_AVX2
         at[i].v[0] = _mm256_set_m128(r[i][1], r[i][0]);
         at[i].v[1] = _mm256_set_m128(r[i][3], r[i][2]);
-#  else
-        memcpy(at[i].v, r[i], sizeof r[i]);
-#  endif
+    }
+}
+
+#elif SC_LANES_QUADS
+
+typedef struct SC_KERNEL(points_frame) {
+    const unsigned char *from;
+    sc_doubles2 center[3], scale;
+} SC_KERNEL(points_frame);
+
+static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
+{
+    SC_KERNEL(points_frame) f;
+    int k;
+    f.from = w->positions;
+    f.scale = SC_QUAD(set1_pd)(w->scale);
+    for (k = 0; k < 3; k++) f.center[k] = SC_QUAD(set1_pd)(w->center[k]);
+    return f;
+}
+
+static SC_INLINE double SC_KERNEL(sc_points_one)(const unsigned char *p, int is_double)
+{
+    double d;
+    float f; /* at any address */
+    if (is_double) {
+        memcpy(&d, p, sizeof d);
+        return d;
+    }
+    memcpy(&f, p, sizeof f);
+    return (double)f;
+}
+
+static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
+                                           int is_double, uint64_t stride, lanes at[3])
+{
+    int i, j, k;
+    SC_UNROLL
+    for (i = 0; i < 4; i++) {
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            sc_doubles2 d[2];
+            SC_UNROLL
+            for (j = 0; j < 2; j++) {
+                uint64_t p = point[4 * i + 2 * j] * stride, q = point[4 * i + 2 * j + 1] * stride;
+                const unsigned char *from = f->from + (is_double ? 8 : 4) * k;
+                d[j] = SC_QUAD(setr_pd)(SC_KERNEL(sc_points_one)(from + p, is_double),
+                                        SC_KERNEL(sc_points_one)(from + q, is_double));
+                d[j] = SC_QUAD(mul_pd)(SC_QUAD(sub_pd)(d[j], f->center[k]), f->scale);
+            }
+            at[k].v[i] = sc_quad_rounded(d[0], d[1]);
+        }
     }
 }
 
