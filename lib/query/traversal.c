@@ -126,7 +126,7 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
  * PROSPECT_PART leaf clusters. A node that fails the orientation test is left to boxes unless both its patches have
  * a prospect. (Tuned on single frames of scenes from smooth to crumpled.)
  */
-enum { PROSPECT_MIN = 2, PROSPECT_PART = 4 };
+enum { PROSPECT_MIN = 2, PROSPECT_PART = 8 };
 
 static uint32_t leaves_of(const sc_model *model, uint32_t patch)
 {
