@@ -200,6 +200,7 @@ static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
         unsigned open = 0;
         int k;
         memset(lanes.shared, 0, sizeof lanes.shared);
+        lanes.proper = state->options.contact == SC_CONTACT_PROPER;
         load_lanes(state, pairs + i, count - i, &lanes);
         if (share) mark_shared(&lanes);
         sc_query_kernels_of(state->workspace)->decide(&lanes, &verdict);

@@ -60,10 +60,11 @@ typedef struct sc_pair_lanes {
                [4]; /* of those that cannot be read where the caller has them */
     uint32_t point[2][3][SC_PAIR_LANES];
     unsigned shared[2][3];
+    int proper; /* contacts are proper ones only */
 } sc_pair_lanes;
 
-/* Which edges (k of the first triangle, 3 + k of the second) meet the other triangle, bit i for pair i: certainly, and
-   then properly; or it cannot be told. None from a shared point. */
+/* Which edges (k of the first triangle, 3 + k of the second) meet the other triangle, bit i for pair i: certainly; or
+   it cannot be told. None from a shared point. */
 typedef struct sc_verdict {
     unsigned meets[6], unsure[6];
 } sc_verdict;

@@ -13,7 +13,8 @@
  * E and R are computed to within 4 * 2^-53 and 2^-53 and their product is rounded thrice more, so that 9 * 2^-53 E E' R
  * as computed covers it; the absolute term is for products that underflow. If E E' R overflows, the
  * bound is infinite or not a number, and nothing is certain; if not, no sum of products can, but by rounding, which
- * leaves the sign as it is.
+ * leaves the sign as it is. A sign is certainly zero if its four points have a coordinate in common, which is asked only
+ * where it matters; what is coplanar otherwise is left to the scalar form.
  */
 
 /* Corners of eight pairs; and how large the triangles and pairs are. */
@@ -23,9 +24,9 @@ typedef struct SC_KERNEL(corners) {
     doubles extent[2], reach;
 } SC_KERNEL(corners);
 
-/* In which lanes a determinant is certainly positive or negative. */
+/* In which lanes a determinant is certainly positive, negative or zero. */
 typedef struct SC_KERNEL(sign) {
-    unsigned above, below;
+    unsigned above, below, zero;
 } SC_KERNEL(sign);
 
 static inline void SC_KERNEL(read_corners)(const sc_pair_lanes *pairs, SC_KERNEL(corners) * x)
@@ -85,6 +86,7 @@ static inline SC_KERNEL(sign)
                             doubles_multiply(n[2], doubles_subtract(q[2], p[2])));
     sign.above = doubles_bits(doubles_below(bound, d));
     sign.below = doubles_bits(doubles_below(d, doubles_subtract(doubles_all(0), bound)));
+    sign.zero = 0;
     return sign;
 }
 
@@ -144,24 +146,99 @@ static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(corners) * x, const unsign
     return apart;
 }
 
-/* An edge, by the signs of its ends against a plane and of its line against three others. */
+/* The lanes in which four points have a coordinate in common: in a plane across an axis, where most signs are that are
+   zero. The points are compared, not subtracted, in case small differences are flushed to zero. */
+static unsigned SC_KERNEL(are_level)(const doubles p[3], const doubles q[3], const doubles r[3],
+                                     const doubles s[3])
+{
+    unsigned level = 0;
+    int c;
+    for (c = 0; c < 3; c++)
+        level |=
+            ~(doubles_bits(doubles_below(p[c], q[c])) | doubles_bits(doubles_below(q[c], p[c])) |
+              doubles_bits(doubles_below(q[c], r[c])) | doubles_bits(doubles_below(r[c], q[c])) |
+              doubles_bits(doubles_below(r[c], s[c])) | doubles_bits(doubles_below(s[c], r[c])));
+    return level;
+}
+
+/* An edge, by the signs of its ends against a plane and of its line against three others, where zero counts as on
+   either side if touching is asked for (all bits set), as on none if not (0). An edge in the plane stays open. */
 static inline void SC_KERNEL(decide_edge)(SC_KERNEL(sign) from, SC_KERNEL(sign) to,
                                           SC_KERNEL(sign) a, SC_KERNEL(sign) b, SC_KERNEL(sign) c,
-                                          unsigned *meets, unsigned *unsure)
+                                          unsigned touching, unsigned *meets, unsigned *unsure)
 {
-    unsigned passes = (a.above & b.above & c.above) | (a.below & b.below & c.below);
+    unsigned zero = from.zero | to.zero | a.zero | b.zero | c.zero;
+    unsigned passes = ((a.above | a.zero) & (b.above | b.zero) & (c.above | c.zero)) |
+                      ((a.below | a.zero) & (b.below | b.zero) & (c.below | c.zero));
     unsigned misses = (a.above | b.above | c.above) & (a.below | b.below | c.below);
-    unsigned crosses = (from.above & to.below) | (from.below & to.above);
-    misses |= (from.above & to.above) | (from.below & to.below);
-    *meets = crosses & passes;
+    unsigned crosses = ((from.above | from.zero) & (to.below | to.zero)) |
+                       ((from.below | from.zero) & (to.above | to.zero));
+    misses |= (from.above & to.above) | (from.below & to.below) | (zero & ~touching);
+    *meets = crosses & passes & ~(from.zero & to.zero) & (touching | ~zero) & 255u;
     *unsure = ~(*meets | misses) & 255u;
+}
+
+/* All signs of eight pairs: of corners against the other's plane, and of the first's edges against the second's. */
+typedef struct SC_KERNEL(signs) {
+    SC_KERNEL(sign) side[2][3], line[3][3];
+} SC_KERNEL(signs);
+
+/* Fills the verdict; returns the lanes in which an edge is left open. */
+static inline unsigned SC_KERNEL(decide_edges)(const sc_pair_lanes *pairs,
+                                               const SC_KERNEL(signs) * signs, sc_verdict *verdict)
+{
+    unsigned touching = pairs->proper ? 0 : ~0u, unsure = 0;
+    int k, s;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        const SC_KERNEL(sign)(*side)[3] = signs->side, (*line)[3] = signs->line;
+        int next = (k + 1) % 3;
+        SC_KERNEL(decide_edge)
+        (side[0][k], side[0][next], line[k][0], line[k][1], line[k][2], touching,
+         &verdict->meets[k], &verdict->unsure[k]);
+        SC_KERNEL(decide_edge)
+        (side[1][k], side[1][next], line[0][k], line[1][k], line[2][k], touching,
+         &verdict->meets[3 + k], &verdict->unsure[3 + k]);
+        for (s = 0; s < 2; s++) {
+            verdict->meets[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
+            verdict->unsure[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
+            unsure |= verdict->unsure[3 * s + k];
+        }
+    }
+    return unsure;
+}
+
+/* Finds which of the signs that are not certain in some lanes are certainly zero. Returns the lanes in which a corner
+   may be in the other's plane. */
+static unsigned SC_KERNEL(find_zeros)(const SC_KERNEL(corners) * x, unsigned some,
+                                      SC_KERNEL(signs) * signs)
+{
+    unsigned level = 0;
+    int s, k, i;
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 3; k++) {
+            const doubles(*t)[3] = x->at[1 - s];
+            unsigned open = some & ~(signs->side[s][k].above | signs->side[s][k].below);
+            level |= open;
+            if (open)
+                signs->side[s][k].zero = open & SC_KERNEL(are_level)(t[0], t[1], t[2], x->at[s][k]);
+        }
+    for (k = 0; k < 3; k++)
+        for (i = 0; i < 3; i++) {
+            const doubles(*a)[3] = x->at[0], (*b)[3] = x->at[1];
+            unsigned open = some & ~(signs->line[k][i].above | signs->line[k][i].below);
+            if (open)
+                signs->line[k][i].zero =
+                    open & SC_KERNEL(are_level)(a[k], a[(k + 1) % 3], b[i], b[(i + 1) % 3]);
+        }
+    return level;
 }
 
 static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
 {
     SC_KERNEL(corners) x;
-    SC_KERNEL(sign) side[2][3], line[3][3];
-    unsigned apart = 0, unsure = 0;
+    SC_KERNEL(signs) signs;
+    unsigned apart = 0, unsure;
     int s, k, i;
     memset(verdict, 0, sizeof *verdict);
     SC_KERNEL(read_corners)(pairs, &x);
@@ -172,9 +249,10 @@ static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
         SC_KERNEL(cross)(x.edge[1 - s][0], x.edge[1 - s][1], n);
         SC_UNROLL
         for (k = 0; k < 3; k++) {
-            side[s][k] = SC_KERNEL(sign_along)(n, x.at[1 - s][0], x.at[s][k], bound);
-            above &= side[s][k].above | pairs->shared[s][k];
-            below &= side[s][k].below | pairs->shared[s][k];
+            SC_KERNEL(sign) sign = SC_KERNEL(sign_along)(n, x.at[1 - s][0], x.at[s][k], bound);
+            above &= sign.above | pairs->shared[s][k];
+            below &= sign.below | pairs->shared[s][k];
+            signs.side[s][k] = sign;
         }
         apart |= above | below;
     }
@@ -187,26 +265,16 @@ static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
             for (i = 0; i < 3; i++) {
                 doubles n[3];
                 SC_KERNEL(cross)(x.edge[0][k], x.edge[1][i], n);
-                line[k][i] = SC_KERNEL(sign_along)(n, x.at[0][k], x.at[1][i], bound);
+                signs.line[k][i] = SC_KERNEL(sign_along)(n, x.at[0][k], x.at[1][i], bound);
             }
         }
     }
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        int next = (k + 1) % 3;
-        SC_KERNEL(decide_edge)
-        (side[0][k], side[0][next], line[k][0], line[k][1], line[k][2], &verdict->meets[k],
-         &verdict->unsure[k]);
-        SC_KERNEL(decide_edge)
-        (side[1][k], side[1][next], line[0][k], line[1][k], line[2][k], &verdict->meets[3 + k],
-         &verdict->unsure[3 + k]);
-        for (s = 0; s < 2; s++) {
-            verdict->meets[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
-            verdict->unsure[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
-            unsure |= verdict->unsure[3 * s + k];
-        }
+    unsure = SC_KERNEL(decide_edges)(pairs, &signs, verdict) & ~apart;
+    if (unsure) {
+        unsigned level = SC_KERNEL(find_zeros)(&x, unsure, &signs);
+        unsure = SC_KERNEL(decide_edges)(pairs, &signs, verdict) & ~apart;
+        if (unsure & level) apart |= SC_KERNEL(are_beside)(&x, pairs->shared);
     }
-    if (unsure & ~apart) apart |= SC_KERNEL(are_beside)(&x, pairs->shared);
     SC_UNROLL
     for (k = 0; k < 6; k++) {
         verdict->meets[k] &= ~apart;
