@@ -20,8 +20,8 @@ enum { SC_LEAF_PAIRS = SC_LEAF_MAX * SC_LEAF_MAX, SC_LEAF_FEW = 2, SC_SIDES_WORT
    so many are looked at before the query asks whether to stop. The first ones tuned on crushed cloth and the bunny. */
 enum {
     SC_LEAF_SLABS_FIRST = 64,
-    SC_FETCH_POINTS = 6,
-    SC_FETCH_READY = 3,
+    SC_FETCH_POINTS = 8,
+    SC_FETCH_READY = 5,
     SC_LEAF_PAIRS_UNASKED = 64
 };
 

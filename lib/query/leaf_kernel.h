@@ -512,21 +512,22 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, 
     SC_KERNEL(compare_leaves)(state, &p, rows, some);
 }
 
-/* Asks for the memory of the slab and points of a leaf cluster; and of what is made ready. */
-static inline void SC_KERNEL(fetch_points)(const sc_workspace *w, uint32_t leaf)
-{
-    const float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
-    sc_fetch(w->slab + leaf);
-    sc_fetch(at);
-    sc_fetch(at + SC_LEAF_POINTS);
-    sc_fetch(at + 2 * SC_LEAF_POINTS);
-}
-
+/* Asks for the memory of a leaf cluster that is made ready; or of its slab and points, and the former if there is no
+   slab yet. */
 static inline void SC_KERNEL(fetch_ready)(const sc_workspace *w, uint32_t leaf)
 {
     const float *at = w->ready[leaf & w->ready_mask].side[0];
     int k;
     for (k = 0; k < SC_READY_ROWS; k++) sc_fetch(at + SC_LEAF_MAX * k);
+}
+
+static inline void SC_KERNEL(fetch_points)(const sc_workspace *w, uint32_t leaf)
+{
+    const float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
+    sc_fetch(at);
+    sc_fetch(at + SC_LEAF_POINTS);
+    sc_fetch(at + 2 * SC_LEAF_POINTS);
+    if (w->slab[leaf].tick != w->pose_tick) SC_KERNEL(fetch_ready)(w, leaf);
 }
 
 /* The pairs of leaf clusters that wait. If they are many, slabs drop most of those that hold no pair of triangles; some

@@ -11,31 +11,32 @@
 static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b)
 {
     const sc_model *model = state->model;
-    const sc_boxes *boxes = &state->workspace->patch_boxes;
+    const sc_boxes boxes = state->workspace->patch_boxes;
     const uint32_t *hop = sc_model_hop(model);
-    uint32_t a_count, b_count, leaves = sc_model_first_leaf_patch(model);
-    unsigned rows;
+    const uint32_t leaves = sc_model_first_leaf_patch(model);
+    uint32_t first_a, first_b;
+    unsigned rows, all_b;
     if (a >= leaves) {
         SC_KERNEL(leaf_pair_waits)
         (state, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
         return;
     }
     if (sc_state_stops(state)) return;
-    a_count = hop[a + 1] - hop[a];
-    b_count = hop[b + 1] - hop[b];
-    rows = SC_KERNEL(overlap)(boxes, b, boxes, hop[a]) & ((1u << a_count) - 1u);
-    state->stats.counts[sc_state_box_task(state)]++;
+    first_a = hop[a];
+    first_b = hop[b];
+    all_b = (1u << (hop[b + 1] - first_b)) - 1u;
+    rows = SC_KERNEL(overlap)(&boxes, b, &boxes, first_a) & ((1u << (hop[a + 1] - first_a)) - 1u);
+    state->stats.counts[sc_state_box_task(state)] += 1 + sc_bits_count(rows);
     for (; rows && !state->stop; rows &= rows - 1) {
-        uint32_t c = hop[a] + sc_bits_lowest(rows);
-        unsigned mask = SC_KERNEL(overlap)(boxes, c, boxes, hop[b]) & ((1u << b_count) - 1u);
-        state->stats.counts[sc_state_box_task(state)]++;
+        uint32_t c = first_a + sc_bits_lowest(rows);
+        unsigned mask = SC_KERNEL(overlap)(&boxes, c, &boxes, first_b) & all_b;
         if (c < leaves) {
             for (; mask && !state->stop; mask &= mask - 1)
-                SC_KERNEL(patch_pair)(state, c, hop[b] + sc_bits_lowest(mask));
-            continue;
+                SC_KERNEL(patch_pair)(state, c, first_b + sc_bits_lowest(mask));
+        } else {
+            SC_KERNEL(add_leaf_pairs)(state, c - leaves, first_b - leaves, mask);
+            SC_KERNEL(make_leaf_room)(state);
         }
-        SC_KERNEL(add_leaf_pairs)(state, c - leaves, hop[b] - leaves, mask);
-        SC_KERNEL(make_leaf_room)(state);
     }
 }
 
