@@ -1190,6 +1190,7 @@ static void poses_of_any_layout(void)
                 for (uint32_t i = 0; i < SC_LEAF_POINTS * s.model->leaf_count; ++i) {
                     uint32_t leaf = i / SC_LEAF_POINTS, point = sc_model_leaf_point(s.model)[i];
                     const float *at = w->leaf_at + 3 * SC_LEAF_POINTS * leaf + i % SC_LEAF_POINTS;
+                    const float *again = w->point_at + 4 * sc_loops_turn(i);
                     double p[3];
                     float one[3];
                     sc_positions_get(w, point, p);
@@ -1197,7 +1198,7 @@ static void poses_of_any_layout(void)
                     for (uint32_t k = 0; k < 3; ++k) {
                         double d = s.pose[3 * point + k];
                         wrong += p[k] != (layout->type == SC_DOUBLE ? d : (double)(float)d);
-                        wrong += at[SC_LEAF_POINTS * k] != one[k];
+                        wrong += at[SC_LEAF_POINTS * k] != one[k] || again[k] != one[k];
                     }
                 }
             }
@@ -1208,7 +1209,22 @@ static void poses_of_any_layout(void)
     CHECK_MSG(wrong == 0, "%" PRIu32 " coordinates", wrong);
 }
 
-/* The boxes of runs of edges hold the true places of their ends, however the contour is seen: from above, or from
+/* Point i of the contour of a node that was tested. */
+static uint32_t tested_point(const scene *s, uint32_t node, uint32_t i)
+{
+    const sc_model *m = s->model;
+    const uint32_t *first = sc_model_node_loop(m) + node, *leaf = sc_model_leaf(m);
+    const sc_pair *patches = &sc_model_node_patches(m)[node];
+    uint32_t split = leaf[patches->a + 1] - leaf[patches->a], number, cluster;
+    if (first[0] == first[1]) return s->workspace->contour.point[i];
+    number = sc_model_loop(m)[first[0] + i % (first[1] - first[0])];
+    cluster = number / SC_LEAF_POINTS;
+    cluster = cluster < split ? leaf[patches->a] + cluster : leaf[patches->b] + cluster - split;
+    return sc_model_leaf_point(
+        m)[SC_LEAF_POINTS * cluster + sc_loops_turn(number % SC_LEAF_POINTS)];
+}
+
+/* The boxes of spans of two edges hold the true places of their ends, however the contour is seen: from above, or from
    one end, so that it is small for the size that it has; and whatever its size. */
 static void places_of_contours(void)
 {
@@ -1244,19 +1260,21 @@ static void places_of_contours(void)
             const sc_contour_edges *e = &s.workspace->contour;
             uint32_t wrong = 0, edges = 0;
             for (uint32_t node = 0; node < s.model->node_count; ++node) {
-                uint32_t listed = count_listed(s.model, node);
+                const uint32_t *loop = sc_model_node_loop(s.model) + node;
+                int has_gaps = loop[0] == loop[1];
+                uint32_t listed = has_gaps ? count_listed(s.model, node) : loop[1] - loop[0];
                 float from[3], one[3], other[3];
                 int passed;
                 if (listed == 0) continue;
                 s.workspace->isa = 1 + node % (uint32_t)sc_isa_best();
                 passed = sc_simple_test(&s.state, &projection, node);
-                sc_positions_unit(s.workspace, e->point[0], one);
-                sc_positions_unit(s.workspace, e->point[listed / 2], other);
+                sc_positions_unit(s.workspace, tested_point(&s, node, 0), one);
+                sc_positions_unit(s.workspace, tested_point(&s, node, listed / 2), other);
                 for (int k = 0; k < 3; ++k) from[k] = one[k] / 2 + other[k] / 2;
                 if (!passed && listed > SC_CONTOUR_BLOCK) listed = SC_CONTOUR_BLOCK; /* at least */
                 for (uint32_t i = 0; i < listed; ++i) {
-                    uint32_t run = i / SC_CONTOUR_RUN;
-                    if ((e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1) == 0)
+                    if (has_gaps &&
+                        (e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1) == 0)
                         continue;
                     ++edges;
                     for (uint32_t j = 0; j < 4; ++j) { /* x and y of both ends */
@@ -1265,10 +1283,11 @@ static void places_of_contours(void)
                         int exponent;
                         (void)frexp(fabs(v[0]) + fabs(v[1]) + fabs(v[2]), &exponent);
                         for (int k = 0; k < 3; ++k) axis[k] = (float)ldexp(v[k], -exponent);
-                        exact_place(exact, s.workspace, e->point[i + j / 2], axis, from);
-                        mpq_set_d(bound, (double)e->run_side[2 * (j % 2)][run]);
+                        exact_place(exact, s.workspace, tested_point(&s, node, i + j / 2), axis,
+                                    from);
+                        mpq_set_d(bound, (double)e->span_side[2 * (j % 2)][i / 2]);
                         wrong += mpq_cmp(exact, bound) < 0;
-                        mpq_set_d(bound, (double)e->run_side[2 * (j % 2) + 1][run]);
+                        mpq_set_d(bound, (double)e->span_side[2 * (j % 2) + 1][i / 2]);
                         wrong += mpq_cmp(exact, bound) > 0;
                     }
                 }

@@ -569,7 +569,8 @@ static void list_loop(const steps *s, const sc_model *m, uint32_t n, sc_pair *ed
         uint32_t number = sc_model_loop(m)[first[0] + i], at = number / SC_LEAF_POINTS;
         at = at < split ? leaf[pair.a] + at : leaf[pair.b] + at - split;
         CHECK(at < leaf[(at < leaf[pair.a + 1] ? pair.a : pair.b) + 1]);
-        number = sc_model_leaf_point(m)[SC_LEAF_POINTS * at + number % SC_LEAF_POINTS];
+        number =
+            sc_model_leaf_point(m)[SC_LEAF_POINTS * at + sc_loops_turn(number % SC_LEAF_POINTS)];
         edges[i].a = edges[(i + count - 1) % count].b = s->points.slot[number];
     }
 }

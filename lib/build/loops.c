@@ -9,7 +9,7 @@
 
 #include "build/chains.h"
 
-/* Of each point of a segment: 16 times the leaf cluster of its half-edge, plus its place there. */
+/* Of each point of a segment: 16 times the leaf cluster of its half-edge, plus its place there, turned. */
 static uint32_t *find_places(const sc_csf *csf, const sc_xbvh *xbvh, const uint32_t *order,
                              const uint8_t *leaf_corner, sc_scratch *scratch)
 {
@@ -24,8 +24,9 @@ static uint32_t *find_places(const sc_csf *csf, const sc_xbvh *xbvh, const uint3
     for (i = 0; i < csf->point_count; i++) {
         uint32_t h = csf->half_edges[i], at = row[h / 3];
         leaf = at / SC_LEAF_MAX;
-        place[i] = SC_LEAF_POINTS * leaf +
-                   leaf_corner[SC_LEAF_MAX * (3 * (uint64_t)leaf + h % 3) + at % SC_LEAF_MAX];
+        place[i] = sc_loops_turn(
+            SC_LEAF_POINTS * leaf +
+            leaf_corner[SC_LEAF_MAX * (3 * (uint64_t)leaf + h % 3) + at % SC_LEAF_MAX]);
     }
     sc_scratch_give(scratch, row);
     return place;

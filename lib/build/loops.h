@@ -5,8 +5,12 @@
  *
  * A query tests the contours of nodes as a whole (query/simple.h), and following segments from place to place would cost
  * it more than the test itself. So each contour that is one closed chain is stored point by point, in 16 bits: 16 times the
- * number of a leaf cluster that has the point, plus its place in leaf_point. Leaf clusters are numbered within the node,
- * those of its first patch before those of its second. About 18 points a triangle in all.
+ * number of a leaf cluster that has the point, plus its place there. Leaf clusters are numbered within the node, those of
+ * its first patch before those of its second. About 18 points a triangle in all.
+ *
+ * Places in leaf clusters are not as in leaf_point but turned: its sixteen are taken as a table of four by four, of which
+ * rows and columns are exchanged. So are the points of a pose kept (sc_workspace.point_at), for that is how vector units have
+ * them at hand.
  *
  * Contours in pieces, and of more than SC_LOOP_LEAVES leaf clusters, which are few, have an empty loop.
  */
@@ -14,6 +18,12 @@
 #define SC_BUILD_LOOPS_H
 
 #include "build/csf.h"
+
+/* From a place in leaf_point to a turned one, and back. */
+static inline uint32_t sc_loops_turn(uint32_t place)
+{
+    return (place & ~15u) | (place & 3u) << 2 | (place >> 2 & 3u);
+}
 
 /*
  * Writes the loops, csf->loop_first[node_count] numbers. leaf_corner is as in the model (build/model.h), order the

@@ -6,6 +6,9 @@
  *
  * A coordinate is moved by the center and scaled in double precision, then rounded to float. Nothing is read beyond
  * the three coordinates of a vertex, which may be the last thing in the caller's memory.
+ *
+ * points_of gives sixteen points as x, y and z; and, unless each is NULL, point by point as four floats, the last of which
+ * means nothing: points 0, 4, 8, 12, 1, 5 and so on (see build/loops.h).
  */
 
 #if SC_LANES_AVX512
@@ -41,7 +44,7 @@ static SC_INLINE __m256 SC_KERNEL(sc_points_two)(const SC_KERNEL(points_frame) *
 }
 
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, lanes at[3])
+                                           int is_double, uint64_t stride, lanes at[3], float *each)
 {
     const unsigned char *from = f->from;
     __m512 r[4], low, low2;
@@ -54,6 +57,10 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
             SC_KERNEL(sc_points_two)(f, from + point[i + 8] * stride, from + point[i + 12] * stride,
                                      is_double),
             1);
+    if (each) {
+        SC_UNROLL
+        for (i = 0; i < 4; i++) _mm512_storeu_ps(each + 16 * i, r[i]);
+    }
     low = _mm512_unpacklo_ps(r[0], r[1]);
     low2 = _mm512_unpacklo_ps(r[2], r[3]);
     at[0] = _mm512_shuffle_ps(low, low2, 0x44);
@@ -90,7 +97,7 @@ static SC_INLINE __m128 SC_KERNEL(sc_points_one)(const SC_KERNEL(points_frame) *
 }
 
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, lanes at[3])
+                                           int is_double, uint64_t stride, lanes at[3], float *each)
 {
     __m128 r[3][4];
     int i;
@@ -100,6 +107,12 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
         __m128 y = SC_KERNEL(sc_points_one)(f, f->from + point[1] * stride, is_double);
         __m128 z = SC_KERNEL(sc_points_one)(f, f->from + point[2] * stride, is_double);
         __m128 rest = SC_KERNEL(sc_points_one)(f, f->from + point[3] * stride, is_double);
+        if (each) {
+            _mm_storeu_ps(each + 4 * i, x);
+            _mm_storeu_ps(each + 16 + 4 * i, y);
+            _mm_storeu_ps(each + 32 + 4 * i, z);
+            _mm_storeu_ps(each + 48 + 4 * i, rest);
+        }
         _MM_TRANSPOSE4_PS(x, y, z, rest);
         r[0][i] = x;
         r[1][i] = y;
@@ -142,7 +155,7 @@ static SC_INLINE double SC_KERNEL(sc_points_one)(const unsigned char *p, int is_
 }
 
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, lanes at[3])
+                                           int is_double, uint64_t stride, lanes at[3], float *each)
 {
     int i, j, k;
     SC_UNROLL
@@ -159,6 +172,11 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
                 d[j] = SC_QUAD(mul_pd)(SC_QUAD(sub_pd)(d[j], f->center[k]), f->scale);
             }
             at[k].v[i] = sc_quad_rounded(d[0], d[1]);
+            if (each) {
+                float one[4];
+                memcpy(one, &at[k].v[i], sizeof one);
+                for (j = 0; j < 4; j++) each[16 * j + 4 * i + k] = one[j];
+            }
         }
     }
 }
@@ -173,7 +191,7 @@ static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_wor
 }
 
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, lanes at[3])
+                                           int is_double, uint64_t stride, lanes at[3], float *each)
 {
     float row[3][SC_LANES_COUNT], unit[3];
     int i, k;
@@ -182,6 +200,7 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
     for (i = 0; i < SC_LANES_COUNT; i++) {
         sc_positions_unit(*f, point[i], unit);
         for (k = 0; k < 3; k++) row[k][i] = unit[k];
+        if (each) memcpy(each + 16 * (i % 4) + i / 4 * 4, unit, sizeof unit);
     }
     for (k = 0; k < 3; k++) at[k] = lanes_load(row[k]);
 }
@@ -195,9 +214,9 @@ static inline void SC_KERNEL(load_points)(const sc_workspace *w, const uint32_t 
     lanes row[3];
     int k;
     if (w->position_type == SC_DOUBLE)
-        SC_KERNEL(points_of)(&f, point, 1, w->stride, row);
+        SC_KERNEL(points_of)(&f, point, 1, w->stride, row, NULL);
     else
-        SC_KERNEL(points_of)(&f, point, 0, w->stride, row);
+        SC_KERNEL(points_of)(&f, point, 0, w->stride, row, NULL);
     SC_UNROLL
     for (k = 0; k < 3; k++) lanes_store(at + SC_LANES_COUNT * k, row[k]);
 }

@@ -27,16 +27,14 @@ static void *place(unsigned char *block, uint64_t *at, uint64_t count, size_t si
 static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *at, sc_workspace *w)
 {
     uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
-    uint64_t levels = (uint64_t)model->level_count + 1;
+    uint64_t levels = (uint64_t)model->level_count + 1, spans, n;
     int k;
     w->contour.point = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
     for (k = 0; k < 2; k++) w->contour.at[k] = (float *)place(block, at, listed, sizeof(float));
-    for (k = 0; k < 4; k++) {
-        w->contour.run_side[k] =
-            (float *)place(block, at, listed / SC_CONTOUR_RUN + 16, sizeof(float));
-        w->contour.group_side[k] =
-            (float *)place(block, at, listed / SC_CONTOUR_RUN / 16 + 17, sizeof(float));
-    }
+    for (spans = 0, n = listed / 2; n; n = n > SC_CONTOUR_BLOCK ? (n + 1) / 2 : 0)
+        spans += SC_CONTOUR_SPANS(n);
+    for (k = 0; k < 4; k++)
+        w->contour.span_side[k] = (float *)place(block, at, spans, sizeof(float));
     w->contour.is_edge =
         (uint16_t *)place(block, at, listed / SC_CONTOUR_BLOCK + 1, sizeof(uint16_t));
     w->contour.piece = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
@@ -70,6 +68,10 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     for (k = 0; k < 2; k++)
         w->motion.contour.at[k] = (float *)place(block, at, listed, sizeof(float));
     for (k = 0; k < 4; k++) {
+        w->contour.run_side[k] =
+            (float *)place(block, at, listed / SC_CONTOUR_RUN + 16, sizeof(float));
+        w->contour.group_side[k] =
+            (float *)place(block, at, listed / SC_CONTOUR_RUN / 16 + 17, sizeof(float));
         w->motion.contour.run_side[k] =
             (float *)place(block, at, listed / SC_CONTOUR_RUN + 16, sizeof(float));
         w->motion.contour.group_side[k] =
@@ -151,6 +153,8 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
     int k;
     w->leaf_at =
         (float *)place(block, &at, 3 * SC_LEAF_POINTS * (uint64_t)model->leaf_count, sizeof(float));
+    w->point_at =
+        (float *)place(block, &at, 4 * SC_LEAF_POINTS * (uint64_t)model->leaf_count, sizeof(float));
     for (k = 0; k < 6; k++)
         w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
     w->mask = (uint16_t *)place(block, &at, model->patch_end, sizeof(uint16_t));

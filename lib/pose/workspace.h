@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | leaf_at | patch boxes | mask | prospect | bounds or all_ready |
+ *     | sc_workspace | leaf_at | point_at | patch boxes | mask | prospect | bounds or all_ready |
  *       bounds_tick | all_known | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: contour, walk,
@@ -48,9 +48,13 @@ typedef struct sc_projection {
     double x_error, y_error; /* |computed - true| at most */
 } sc_projection;
 
-/* Edges of a contour, projected, are tested in blocks of SC_CONTOUR_BLOCK, and with the next SC_CONTOUR_NEAR: all of
-   their own run of SC_CONTOUR_RUN and the next. */
+/* Points of a contour are projected in blocks of SC_CONTOUR_BLOCK. A step tests edges with the next SC_CONTOUR_NEAR: all
+   of their own run of SC_CONTOUR_RUN and the next. */
 enum { SC_CONTOUR_BLOCK = 16, SC_CONTOUR_RUN = 4, SC_CONTOUR_NEAR = 2 * SC_CONTOUR_RUN - 1 };
+
+/* Room for the boxes of so many spans, with those that are read beyond: full blocks, and two more. */
+#define SC_CONTOUR_SPANS(count)                                                                    \
+  (((count) + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK * SC_CONTOUR_BLOCK + 2 * SC_CONTOUR_BLOCK)
 
 /* Sides of boxes in the plane. */
 enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
@@ -62,8 +66,9 @@ enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
 typedef struct sc_contour_edges {
     uint32_t *point;      /* what points they are */
     float *at[2];         /* x and y */
-    float *run_side[4];   /* boxes of runs, and 16 more */
-    float *group_side[4]; /* boxes of 16 runs, and 16 more */
+    float *span_side[4];  /* boxes of spans of 2, 4, 8... edges, see query/simple_kernel.h */
+    float *run_side[4];   /* of steps: boxes of runs, and 16 more */
+    float *group_side[4]; /* of steps: boxes of 16 runs, and 16 more */
     uint16_t *is_edge;    /* bit i of block b: SC_CONTOUR_BLOCK b + i is an edge */
     uint32_t
         *piece; /* if there are pieces, trees of edges that hang together: the parent of each */
@@ -205,6 +210,9 @@ struct sc_workspace {
     float *
         leaf_at; /* 3 SC_LEAF_POINTS per leaf: x, then y, then z of its points in the unit box, that is
                           scale * (position - center), at most 1 */
+    float *
+        point_at; /* 4 SC_LEAF_POINTS per leaf: x, y, z of the same points and what means nothing; in turned
+                        places, see build/loops.h */
     uint32_t leaves_ready;
     sc_boxes patch_boxes; /* patch_end */
     uint32_t boxes_ready;

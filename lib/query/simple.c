@@ -22,7 +22,14 @@
 
 static int is_edge(const sc_simple_contour *c, uint32_t i)
 {
-    return c->edges->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1;
+    return !c->has_gaps || (c->edges->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1);
+}
+
+/* The point where edge i starts, or the one before it ends. */
+static uint32_t point_of(const sc_simple_contour *c, uint32_t i)
+{
+    if (!c->loop) return c->edges->point[i];
+    return sc_simple_point(c, c->loop[i < c->count ? i : 0]);
 }
 
 /* Copies points, eight at a time where all may be read: most segments are short. */
@@ -61,18 +68,25 @@ static void list_points(sc_simple_contour *c, const sc_model *model, const uint3
     for (i = n; i < (blocks + 1) * SC_CONTOUR_BLOCK; i++) e->point[i] = e->point[n - 1];
 }
 
+/* Sets how the points of a node's loop are read. */
+static void find_loop(sc_simple_contour *c, const sc_model *model, uint32_t node)
+{
+    const uint32_t *first = sc_model_node_loop(model) + node, *leaf = sc_model_leaf(model);
+    const sc_pair *patches = &sc_model_node_patches(model)[node];
+    c->count = first[1] - first[0];
+    c->loop = sc_model_loop(model) + first[0];
+    c->leaf_point = sc_model_leaf_point(model);
+    c->first = SC_LEAF_POINTS * leaf[patches->a];
+    c->split = SC_LEAF_POINTS * leaf[patches->a + 1] - c->first;
+    c->second = SC_LEAF_POINTS * leaf[patches->b] - c->split;
+}
+
 /* Lists the points of a loop, and the first again. */
-static void list_loop(sc_simple_contour *c, const sc_model *model, uint32_t node, uint32_t count)
+static void list_loop(sc_simple_contour *c)
 {
     const sc_contour_edges *e = c->edges;
-    const uint16_t *loop = sc_model_loop(model) + sc_model_node_loop(model)[node];
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
-    const uint32_t *leaf = sc_model_leaf(model), *points = sc_model_leaf_point(model);
-    uint32_t split = SC_LEAF_POINTS * (leaf[patches->a + 1] - leaf[patches->a]);
-    uint32_t first = SC_LEAF_POINTS * leaf[patches->a];
-    uint32_t second = SC_LEAF_POINTS * leaf[patches->b] - split, i;
-    for (i = 0; i < count; i++) e->point[i] = points[loop[i] + (loop[i] < split ? first : second)];
-    c->count = count + 1;
+    uint32_t i, count = c->count++;
+    for (i = 0; i < count; i++) e->point[i] = sc_simple_point(c, c->loop[i]);
     c->blocks = count / SC_CONTOUR_BLOCK + 1;
     for (i = count; i < (c->blocks + 1) * SC_CONTOUR_BLOCK; i++) e->point[i] = e->point[0];
     memset(e->is_edge, 0xff, c->blocks * sizeof *e->is_edge);
@@ -207,8 +221,7 @@ static uint32_t piece_of(const sc_simple_contour *c, uint32_t i)
 
 int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
-    uint32_t a = c->edges->point[i], b = c->edges->point[i + 1];
-    uint32_t p = c->edges->point[j], q = c->edges->point[j + 1];
+    uint32_t a = point_of(c, i), b = point_of(c, i + 1), p = point_of(c, j), q = point_of(c, j + 1);
     int shared = (a == p) + (a == q) + (b == p) + (b == q);
     if (!shared) return boxes_part(c, i, j) || lies_beside(c, i, j) || lies_beside(c, j, i);
     if (shared > 1 || !is_open(c, i, b == p || b == q, j, a == q || b == q)) return 0;
@@ -217,9 +230,9 @@ int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 
 int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
-    uint32_t a = c->edges->point[i], k;
+    uint32_t a = point_of(c, i), k;
     if (c->in_pieces) c->edges->piece[piece_of(c, i)] = piece_of(c, j);
-    if (a == c->edges->point[j]) { /* the contour leaves the point twice */
+    if (a == point_of(c, j)) { /* the contour leaves the point twice */
         for (k = 0; k < c->pinch_count && c->pinch[k] != a; k++) {
         }
         if (k == SC_PINCHES_MAX) return 0;
@@ -241,7 +254,7 @@ static int is_pinch_fine(const sc_simple_contour *c, uint32_t point)
     int end, out, one, other;
     for (i = 0; i < c->count; i++)
         for (end = 0; end < 2; end++) {
-            if (c->edges->point[i + (uint32_t)end] != point || !is_edge(c, i)) continue;
+            if (point_of(c, i + (uint32_t)end) != point || !is_edge(c, i)) continue;
             if (count[end] == 2) return 0;
             direction[end][count[end]++] = minus(edge_end(c, i, 1 - end), edge_end(c, i, end));
         }
@@ -314,29 +327,55 @@ int sc_simple_is_wound_well(const sc_simple_contour *c)
     return !c->in_pieces || are_pieces_fine(c);
 }
 
+static int is_looped(const sc_model *model, uint32_t node)
+{
+    return sc_model_node_loop(model)[node + 1] > sc_model_node_loop(model)[node];
+}
+
 int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *workspace,
                    uint32_t node)
 {
     const uint32_t *segments = sc_model_contours(model) + sc_model_node_contour(model)[node];
     uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
-    uint32_t looped = sc_model_node_loop(model)[node + 1] - sc_model_node_loop(model)[node];
     int kind = sc_model_node_kind(model)[node];
-    if (looped) {
-        memset(c, 0, sizeof *c);
-        c->edges = &workspace->contour;
-        list_loop(c, model, node, looped);
+    memset(c, 0, sizeof *c);
+    c->edges = &workspace->contour;
+    c->has_gaps = 1;
+    if (is_looped(model, node)) {
+        find_loop(c, model, node);
+        list_loop(c);
+        c->loop = NULL;
         return 1;
     }
     if (kind & SC_NODE_TOUCHES) {
         segments += 2;
         count -= 2;
     }
-    memset(c, 0, sizeof *c);
-    c->edges = &workspace->contour;
     c->in_pieces = kind & SC_NODE_PIECES;
     if (!count) return 0;
     list_points(c, model, segments, count);
     if (c->in_pieces) list_pieces(c);
+    return 1;
+}
+
+/* The points of a loop, which are listed as they are projected; or all, listed as a cycle: the last is followed by the
+   first again, which lets the inner loop look beyond the end. */
+static int start(sc_simple_contour *c, const sc_model *model, sc_workspace *workspace,
+                 uint32_t node)
+{
+    uint32_t i;
+    if (is_looped(model, node)) {
+        c->edges = &workspace->contour;
+        c->has_gaps = c->in_pieces = 0;
+        c->pinch_count = 0;
+        find_loop(c, model, node);
+        return 1;
+    }
+    if (!sc_simple_list(c, model, workspace, node)) return 0;
+    c->edges->is_edge[c->blocks + 1] = c->edges->is_edge[c->blocks + 2] = 0;
+    for (i = c->count; i < c->count + 2 * SC_CONTOUR_BLOCK; i++)
+        c->edges->is_edge[i / SC_CONTOUR_BLOCK] |=
+            (uint16_t)(is_edge(c, i - c->count) << i % SC_CONTOUR_BLOCK);
     return 1;
 }
 
@@ -386,6 +425,12 @@ static void find_middle(sc_simple_contour *c, const sc_workspace *w)
 {
     float one[3], other[3];
     int k;
+    if (c->loop) {
+        const float *p = w->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[0]);
+        const float *q = w->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[c->count / 2]);
+        for (k = 0; k < 3; k++) c->from[k] = p[k] / 2 + q[k] / 2;
+        return;
+    }
     sc_positions_unit(w, c->edges->point[0], one);
     sc_positions_unit(w, c->edges->point[c->count / 2], other);
     for (k = 0; k < 3; k++) c->from[k] = one[k] / 2 + other[k] / 2;
@@ -397,7 +442,7 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
     uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
     int passed;
     sc_simple_contour c;
-    passed = sc_simple_list(&c, state->model, state->workspace, node);
+    passed = start(&c, state->model, state->workspace, node);
     if (passed) {
         sc_simple_axes(&c, projection);
         find_middle(&c, state->workspace);

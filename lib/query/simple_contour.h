@@ -14,11 +14,16 @@ enum { SC_PINCHES_MAX = 24 };
 
 typedef struct sc_simple_contour {
     const sc_contour_edges *edges;
-    uint32_t count;            /* points */
-    uint32_t blocks;           /* of SC_CONTOUR_BLOCK edges */
-    float axis[2][3], from[3]; /* the projection: x = axis[0] . (unit - from), likewise y */
-    float error;               /* |computed - true| of each coordinate, at most */
-    int in_pieces;             /* pieces have to be told apart */
+    uint32_t count;       /* points, of which each is where an edge starts but for gaps */
+    uint32_t blocks;      /* of SC_CONTOUR_BLOCK points; not of loops */
+    int has_gaps;         /* edges.is_edge tells; 0: all are edges */
+    const uint16_t *loop; /* count: the points as the model has them, or NULL: they are listed */
+    const uint32_t *leaf_point;
+    uint32_t split, first, second; /* what to add to a loop's number below split, and to others */
+    uint32_t span_first[33];       /* where boxes of spans of 2^level edges start, by level */
+    float axis[2][3], from[3];     /* the projection: x = axis[0] . (unit - from), likewise y */
+    float error;                   /* |computed - true| of each coordinate, at most */
+    int in_pieces;                 /* pieces have to be told apart */
     uint32_t pinch_count;
     uint32_t pinch[SC_PINCHES_MAX]; /* points */
 } sc_simple_contour;
@@ -30,10 +35,22 @@ typedef struct sc_simple_contour {
    Notes pinches, and pieces that hang together. */
 int sc_simple_are_apart(sc_simple_contour *contour, uint32_t i, uint32_t j);
 
+/* The turned place of a number in a loop among those of all leaf clusters. */
+static inline uint32_t sc_simple_place(const sc_simple_contour *c, uint32_t number)
+{
+    return number + (number < c->split ? c->first : c->second);
+}
+
+/* The point of that number. */
+static inline uint32_t sc_simple_point(const sc_simple_contour *c, uint32_t number)
+{
+    return c->leaf_point[sc_loops_turn(sc_simple_place(c, number))];
+}
+
 /* The parts of which the test is made, for others like it (step/moving_contour.c). */
 
-/* Starts a contour: lists its points, and its pieces if there are any. 0: there is none (of a forged model: without
-   a contour, areas are not all positive). */
+/* Starts a contour: lists its points, with a gap after each chain, and its pieces if there are any. 0: there is none (of
+   a forged model: without a contour, areas are not all positive). */
 int sc_simple_list(sc_simple_contour *contour, const sc_model *model, sc_workspace *workspace,
                    uint32_t node);
 

@@ -3,33 +3,78 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Edges are compared sixteen at a time with those that follow them at a distance of up to seven in the list. That
- * covers all pairs within a run of four edges and with the next run; further runs are compared by their boxes, and
- * where these overlap, edge by edge. Pairs that cannot be told apart here are few and go to sc_simple_are_apart.
+ * The edges of a contour, as they are listed, are taken as a cycle. They are compared sixteen at a time with those two and
+ * three further on; then boxes of spans of two edges with those of the spans two and three further on; boxes of spans of
+ * four, and so on, until there are at most sixteen spans, of which all are compared. Where the boxes of two spans
+ * overlap, the spans within are compared, down to edges. All pairs of edges are covered but those that follow each
+ * other: take the longest spans that do not follow each other and have one edge each; those of twice the length
+ * do, or are the same, and so hold the spans taken, no more than three apart. A last span may be shorter, and brings its ends nearer.
+ *
+ * Pairs that cannot be told apart here are few and go to sc_simple_are_apart.
  */
 
-/* Places of the listed points, and the error of their coordinates, see choose_axes in simple.c. */
+/* The bits of the first lanes. */
+static inline unsigned SC_KERNEL(first_lanes)(uint32_t count)
+{
+    return count < SC_LANES_COUNT ? (1u << count) - 1u : 0xffffu;
+}
+
+/* Which of sixteen edges are edges, from any one on; those that follow the last are the first again. */
+static inline unsigned SC_KERNEL(edges_from)(const sc_simple_contour *c, uint32_t i)
+{
+    const uint16_t *is_edge = c->edges->is_edge + i / SC_CONTOUR_BLOCK;
+    if (!c->has_gaps) return 0xffffu;
+    return (is_edge[0] | (unsigned)is_edge[1] << 16) >> i % SC_CONTOUR_BLOCK & 0xffffu;
+}
+
+/* Sixteen points of a loop in the unit box; those beyond its end are some of its node's. */
+static inline void SC_KERNEL(load_loop)(const sc_simple_contour *c, const sc_workspace *w,
+                                        uint32_t i, lanes unit[3])
+{
+    uint16_t rest[SC_CONTOUR_BLOCK] = {0};
+    const uint16_t *loop = c->loop + i;
+    uint32_t place[SC_CONTOUR_BLOCK], j;
+    const float *at[SC_CONTOUR_BLOCK];
+    if (c->count - i < SC_CONTOUR_BLOCK) {
+        memcpy(rest, loop, (c->count - i) * sizeof *loop);
+        loop = rest;
+    }
+    for (j = 0; j < SC_CONTOUR_BLOCK; j++) place[j] = sc_simple_place(c, loop[j]);
+    for (j = 0; j < SC_CONTOUR_BLOCK; j++) at[j] = w->point_at + 4 * (uint64_t)place[j];
+    lanes_points(at, &unit[0], &unit[1], &unit[2]);
+}
+
+/* Places of the points, and the error of their coordinates, see sc_simple_axes. The last is followed by the first. */
 static void SC_KERNEL(project)(sc_simple_contour *c, const sc_workspace *w)
 {
     const sc_contour_edges *e = c->edges;
-    lanes size = lanes_all(0), d[3], at;
+    lanes size = lanes_all(0), d[3], at, from[3], axis[2][3];
     uint32_t i;
-    int k;
-    /* one block more, for the ends of the last edges */
-    for (i = 0; i < (c->blocks + 1) * SC_CONTOUR_BLOCK; i += SC_CONTOUR_BLOCK) {
-        float unit[3 * SC_CONTOUR_BLOCK];
-        SC_KERNEL(load_points)(w, e->point + i, unit);
+    int k, m;
+    for (k = 0; k < 3; k++) {
+        from[k] = lanes_all(c->from[k]);
+        for (m = 0; m < 2; m++) axis[m][k] = lanes_all(c->axis[m][k]);
+    }
+    for (i = 0; i < c->count; i += SC_CONTOUR_BLOCK) {
+        if (c->loop) {
+            SC_KERNEL(load_loop)(c, w, i, d);
+        } else {
+            float unit[3 * SC_CONTOUR_BLOCK];
+            SC_KERNEL(load_points)(w, e->point + i, unit);
+            for (k = 0; k < 3; k++) d[k] = lanes_load(unit + SC_CONTOUR_BLOCK * k);
+        }
         for (k = 0; k < 3; k++) {
-            d[k] = lanes_subtract(lanes_load(unit + SC_CONTOUR_BLOCK * k), lanes_all(c->from[k]));
+            d[k] = lanes_subtract(d[k], from[k]);
             size = lanes_larger(size, lanes_absolute(d[k]));
         }
         for (k = 0; k < 2; k++) {
-            at = lanes_add(lanes_add(lanes_multiply(lanes_all(c->axis[k][0]), d[0]),
-                                     lanes_multiply(lanes_all(c->axis[k][1]), d[1])),
-                           lanes_multiply(lanes_all(c->axis[k][2]), d[2]));
+            at = lanes_add(
+                lanes_add(lanes_multiply(axis[k][0], d[0]), lanes_multiply(axis[k][1], d[1])),
+                lanes_multiply(axis[k][2], d[2]));
             lanes_store(e->at[k] + i, at);
         }
     }
+    for (k = 0; k < 2; k++) lanes_store(e->at[k] + c->count, lanes_load(e->at[k]));
     c->error = 3.01e-8f + 4.1f * 5.9604644775390625e-8f * lanes_most(size);
 }
 
@@ -108,10 +153,9 @@ static inline unsigned SC_KERNEL(folds)(const sc_simple_contour *c,
     bound = SC_KERNEL(bound_in_plane)(
         c, lanes_add(SC_KERNEL(size_in_plane)(v), SC_KERNEL(size_in_plane)(w)));
     dot = lanes_add(lanes_multiply(v[0], w[0]), lanes_multiply(v[1], w[1]));
-    asked &= ~lanes_bits(lanes_below(bound, dot));
-    return asked ? asked & ~lanes_bits(
-                               lanes_below(bound, lanes_absolute(SC_KERNEL(cross_in_plane)(v, w))))
-                 : 0;
+    return asked &
+           ~(lanes_bits(lanes_below(bound, dot)) |
+             lanes_bits(lanes_below(bound, lanes_absolute(SC_KERNEL(cross_in_plane)(v, w)))));
 }
 
 static inline void SC_KERNEL(load_edges)(const sc_simple_contour *c, uint32_t i,
@@ -124,97 +168,89 @@ static inline void SC_KERNEL(load_edges)(const sc_simple_contour *c, uint32_t i,
     }
 }
 
-/*
- * Bits of those of sixteen edges whose boxes overlap that of the edge s places on, in near[s]. Writes the boxes of their
- * runs, two errors larger than computed: one for the places of points, and one, 2^-24 of a coordinate or
- * more, for the rounding here. What is no edge is in the boxes, which does no harm.
- */
-static inline void SC_KERNEL(find_near)(const sc_simple_contour *c, uint32_t i,
-                                        unsigned near[SC_CONTOUR_NEAR + 1])
+/* Bits of lanes in which boxes overlap: low x, high x, low y, high y of each. */
+static inline unsigned SC_KERNEL(overlap_in_plane)(const lanes a[4], const lanes b[4])
 {
-    const sc_contour_edges *e = c->edges;
-    const float *at_x = e->at[0] + i, *at_y = e->at[1] + i;
-    const lanes margin = lanes_all(2 * c->error);
-    lanes x = lanes_load(at_x), x2 = lanes_load(at_x + 1);
-    lanes y = lanes_load(at_y), y2 = lanes_load(at_y + 1);
-    lanes low_x = lanes_subtract(lanes_smaller(x, x2), margin);
-    lanes low_y = lanes_subtract(lanes_smaller(y, y2), margin);
-    lanes high_x = lanes_add(lanes_larger(x, x2), margin);
-    lanes high_y = lanes_add(lanes_larger(y, y2), margin);
-    uint32_t s;
-    lanes_store_least(e->run_side[SC_LOW_X] + i / SC_CONTOUR_RUN, low_x);
-    lanes_store_least(e->run_side[SC_LOW_Y] + i / SC_CONTOUR_RUN, low_y);
-    lanes_store_most(e->run_side[SC_HIGH_X] + i / SC_CONTOUR_RUN, high_x);
-    lanes_store_most(e->run_side[SC_HIGH_Y] + i / SC_CONTOUR_RUN, high_y);
-    low_x = lanes_subtract(low_x, margin); /* for the other edge's errors */
-    low_y = lanes_subtract(low_y, margin);
-    high_x = lanes_add(high_x, margin);
-    high_y = lanes_add(high_y, margin);
-    x2 = lanes_load(at_x + 2);
-    y2 = lanes_load(at_y + 2);
-    for (s = 2; s <= SC_CONTOUR_NEAR; s++) {
-        x = x2;
-        y = y2;
-        x2 = lanes_load(at_x + s + 1);
-        y2 = lanes_load(at_y + s + 1);
-        near[s] = lanes_bits(lanes_both(lanes_both(lanes_not_above(lanes_smaller(x, x2), high_x),
-                                                   lanes_not_above(low_x, lanes_larger(x, x2))),
-                                        lanes_both(lanes_not_above(lanes_smaller(y, y2), high_y),
-                                                   lanes_not_above(low_y, lanes_larger(y, y2)))));
-    }
+    return lanes_bits(lanes_both(lanes_both(lanes_not_above(a[SC_LOW_X], b[SC_HIGH_X]),
+                                            lanes_not_above(b[SC_LOW_X], a[SC_HIGH_X])),
+                                 lanes_both(lanes_not_above(a[SC_LOW_Y], b[SC_HIGH_Y]),
+                                            lanes_not_above(b[SC_LOW_Y], a[SC_HIGH_Y]))));
 }
 
-/* Sixteen edges and those that follow, at a distance of up to SC_CONTOUR_NEAR. */
-static int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t block)
+/* Some of sixteen edges and those `on` places further on. */
+static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t on, unsigned some)
 {
-    const sc_contour_edges *e = c->edges;
-    uint32_t i = block * SC_CONTOUR_BLOCK, s;
-    unsigned edges = e->is_edge[block], following = edges | (unsigned)e->is_edge[block + 1] << 16;
-    unsigned near[SC_CONTOUR_NEAR + 1];
     SC_KERNEL(sc_edge_lanes) own, other;
-    SC_KERNEL(find_near)(c, i, near);
+    some &= SC_KERNEL(edges_from)(c, i + on);
+    if (!some) return 1;
     SC_KERNEL(load_edges)(c, i, &own);
-    SC_KERNEL(load_edges)(c, i + 1, &other);
-    if (SC_KERNEL(folds)(c, &own, other.q, edges & following >> 1)) return 0;
-    for (s = 2; s <= SC_CONTOUR_NEAR; s++) {
-        near[s] &= edges & following >> s;
-        if (!near[s]) continue;
-        SC_KERNEL(load_edges)(c, i + s, &other);
-        near[s] &= ~SC_KERNEL(lie_apart)(c, &own, &other);
-        for (; near[s]; near[s] &= near[s] - 1) {
-            uint32_t edge = i + sc_bits_lowest(near[s]);
-            if (!sc_simple_are_apart(c, edge, edge + s)) return 0;
-        }
+    SC_KERNEL(load_edges)(c, i + on, &other);
+    for (some &= ~SC_KERNEL(lie_apart)(c, &own, &other); some; some &= some - 1) {
+        uint32_t edge = i + sc_bits_lowest(some);
+        if (!sc_simple_are_apart(c, edge, (edge + on) % c->count)) return 0;
     }
     return 1;
 }
 
-/* Bit k: box i of a overlaps box j + k of b, for k from 0 to 15. */
-static inline unsigned SC_KERNEL(overlap_in_plane)(float *const a[4], uint32_t i, float *const b[4],
-                                                   uint32_t j)
+/*
+ * Sixteen edges and those that follow: the next one, and the two after that by their boxes. Two boxes are to be four errors
+ * apart: two for the places of points, and two, 2^-23 of a coordinate or more, for the rounding here. So are
+ * those of spans, which are two errors larger each; this writes the boxes of spans of two edges. What is no edge is in
+ * boxes, which does no harm.
+ */
+static int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i)
 {
-    lanes_mask x =
-        lanes_both(lanes_not_above(lanes_all(a[SC_LOW_X][i]), lanes_load(b[SC_HIGH_X] + j)),
-                   lanes_not_above(lanes_load(b[SC_LOW_X] + j), lanes_all(a[SC_HIGH_X][i])));
-    lanes_mask y =
-        lanes_both(lanes_not_above(lanes_all(a[SC_LOW_Y][i]), lanes_load(b[SC_HIGH_Y] + j)),
-                   lanes_not_above(lanes_load(b[SC_LOW_Y] + j), lanes_all(a[SC_HIGH_Y][i])));
-    return lanes_bits(lanes_both(x, y));
+    const sc_contour_edges *e = c->edges;
+    const lanes margin = lanes_all(4 * c->error), half = lanes_all(2 * c->error);
+    const unsigned edges = SC_KERNEL(first_lanes)(c->count - i) & SC_KERNEL(edges_from)(c, i);
+    SC_KERNEL(sc_edge_lanes) own, other;
+    lanes box[4], next[4], last[2], low, high;
+    unsigned near[2], s;
+    int k;
+    SC_KERNEL(load_edges)(c, i, &own);
+    SC_KERNEL(load_edges)(c, i + 1, &other);
+    for (k = 0; k < 2; k++) {
+        low = lanes_smaller(own.p[k], own.q[k]);
+        high = lanes_larger(own.p[k], own.q[k]);
+        box[2 * k] = lanes_subtract(low, margin);
+        box[2 * k + 1] = lanes_add(high, margin);
+        low = lanes_subtract(lanes_smaller(low, other.q[k]), half);
+        high = lanes_add(lanes_larger(high, other.q[k]), half);
+        lanes_store(e->span_side[2 * k] + i / 2, lanes_evens(low, low));
+        lanes_store(e->span_side[2 * k + 1] + i / 2, lanes_evens(high, high));
+    }
+    if (SC_KERNEL(folds)(c, &own, other.q, edges & SC_KERNEL(edges_from)(c, i + 1))) return 0;
+    SC_UNROLL
+    for (s = 0; s < 2; s++) {
+        SC_UNROLL
+        for (k = 0; k < 2; k++) {
+            lanes p = s ? last[k] : other.q[k], q = lanes_load(e->at[k] + i + s + 3);
+            next[2 * k] = lanes_smaller(p, q);
+            next[2 * k + 1] = lanes_larger(p, q);
+            last[k] = q;
+        }
+        near[s] = SC_KERNEL(overlap_in_plane)(box, next);
+    }
+    near[0] &= c->count > 3 ? edges : 0;
+    near[1] &= c->count > 4 ? edges : 0;
+    return !(near[0] | near[1]) || (SC_KERNEL(are_pairs_fine)(c, i, 2, near[0]) &&
+                                    SC_KERNEL(are_pairs_fine)(c, i, 3, near[1]));
 }
 
-/* The edges of two runs. */
-static int SC_KERNEL(are_runs_fine)(sc_simple_contour *c, uint32_t run, uint32_t other_run)
+/* The edges of two spans, four each or less, that do not follow each other. */
+static int SC_KERNEL(are_few_fine)(sc_simple_contour *c, uint32_t i, uint32_t j, uint32_t most)
 {
     static const uint16_t four_times[16] = {0x0000, 0x000f, 0x00f0, 0x00ff, 0x0f00, 0x0f0f,
                                             0x0ff0, 0x0fff, 0xf000, 0xf00f, 0xf0f0, 0xf0ff,
                                             0xff00, 0xff0f, 0xfff0, 0xffff};
     const sc_contour_edges *e = c->edges;
-    uint32_t i = run * SC_CONTOUR_RUN, j = other_run * SC_CONTOUR_RUN;
-    unsigned own_edges = (unsigned)e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 15u;
-    unsigned other_edges = (unsigned)e->is_edge[j / SC_CONTOUR_BLOCK] >> j % SC_CONTOUR_BLOCK & 15u;
-    unsigned near = four_times[own_edges] & other_edges * 0x1111u;
+    unsigned own_edges = SC_KERNEL(first_lanes)(c->count - i < most ? c->count - i : most);
+    unsigned other_edges = SC_KERNEL(first_lanes)(c->count - j < most ? c->count - j : most), near;
     SC_KERNEL(sc_edge_lanes) own, other;
     int k;
+    own_edges &= SC_KERNEL(edges_from)(c, i);
+    other_edges &= SC_KERNEL(edges_from)(c, j);
+    near = four_times[own_edges] & other_edges * 0x1111u;
     for (k = 0; k < 2; k++) {
         own.p[k] = lanes_each_four(e->at[k] + i);
         own.q[k] = lanes_each_four(e->at[k] + i + 1);
@@ -228,75 +264,119 @@ static int SC_KERNEL(are_runs_fine)(sc_simple_contour *c, uint32_t run, uint32_t
     return 1;
 }
 
-/* Some of the sixteen runs of a group and all of another, or of the same: but for those that follow each other, which
-   are near, and each pair once. */
-static int SC_KERNEL(are_far_fine)(sc_simple_contour *c, uint32_t group, uint32_t other,
-                                   unsigned some)
+/* Two spans of 2^level edges that overlap and do not follow each other. */
+static int SC_KERNEL(are_spans_fine)(sc_simple_contour *c, uint32_t level, uint32_t a, uint32_t b)
 {
-    float *const *side = c->edges->run_side;
-    const lanes low_x = lanes_load(side[SC_LOW_X] + 16 * other);
-    const lanes low_y = lanes_load(side[SC_LOW_Y] + 16 * other);
-    const lanes high_x = lanes_load(side[SC_HIGH_X] + 16 * other);
-    const lanes high_y = lanes_load(side[SC_HIGH_Y] + 16 * other);
-    unsigned far[16], rest, r;
-    for (rest = some; rest; rest &= rest - 1) {
-        uint32_t run = 16 * group + (r = sc_bits_lowest(rest));
-        far[r] = lanes_bits(
-            lanes_both(lanes_both(lanes_not_above(lanes_all(side[SC_LOW_X][run]), high_x),
-                                  lanes_not_above(low_x, lanes_all(side[SC_HIGH_X][run]))),
-                       lanes_both(lanes_not_above(lanes_all(side[SC_LOW_Y][run]), high_y),
-                                  lanes_not_above(low_y, lanes_all(side[SC_HIGH_Y][run])))));
-    }
-    for (rest = some; rest; rest &= rest - 1) {
-        r = sc_bits_lowest(rest);
-        if (group == other)
-            far[r] &= 0xfffcu << r;
-        else if (other == group + 1 && r == 15)
-            far[r] &= 0xfffeu;
-        for (; far[r]; far[r] &= far[r] - 1)
-            if (!SC_KERNEL(are_runs_fine)(c, 16 * group + r, 16 * other + sc_bits_lowest(far[r])))
+    float *const *side = c->edges->span_side;
+    uint32_t first, count, i, j;
+    if (level <= 2) return SC_KERNEL(are_few_fine)(c, a << level, b << level, 1u << level);
+    level--;
+    first = c->span_first[level];
+    count = ((c->count - 1) >> level) + 1;
+    for (i = 2 * a; i < 2 * a + 2 && i < count; i++)
+        for (j = 2 * b; j < 2 * b + 2 && j < count; j++) {
+            uint32_t p = first + i, q = first + j;
+            if (side[SC_LOW_X][p] <= side[SC_HIGH_X][q] &&
+                side[SC_LOW_X][q] <= side[SC_HIGH_X][p] &&
+                side[SC_LOW_Y][p] <= side[SC_HIGH_Y][q] &&
+                side[SC_LOW_Y][q] <= side[SC_HIGH_Y][p] &&
+                !SC_KERNEL(are_spans_fine)(c, level, i, j))
                 return 0;
+        }
+    return 1;
+}
+
+/* Some of sixteen spans of 2^level edges, of so many, and those `on` places further on. */
+static int SC_KERNEL(are_some_fine)(sc_simple_contour *c, uint32_t level, uint32_t count,
+                                    uint32_t i, uint32_t on, unsigned some)
+{
+    for (; some; some &= some - 1) {
+        uint32_t a = i + sc_bits_lowest(some);
+        if (!SC_KERNEL(are_spans_fine)(c, level, a, (a + on) % count)) return 0;
     }
     return 1;
 }
 
-/* Runs that do not follow each other, in groups of sixteen, first by the boxes of groups. */
-static int SC_KERNEL(are_groups_fine)(sc_simple_contour *c)
+/* Bits of sixteen spans that overlap those `on` places further on. */
+static inline unsigned SC_KERNEL(overlap_on)(float *const *side, const lanes own[4], uint32_t at)
 {
-    const sc_contour_edges *e = c->edges;
-    uint32_t runs = (c->count + SC_CONTOUR_RUN - 1) / SC_CONTOUR_RUN, groups = (runs + 15) / 16;
-    uint32_t a, b, k;
-    for (k = 0; k < 4; k++) {
-        /* the last group is full, of boxes that overlap nothing; and so is one of groups */
-        const lanes nothing = lanes_all(k % 2 ? -HUGE_VALF : HUGE_VALF);
-        lanes_store(e->run_side[k] + runs, nothing);
-        for (a = 0; a < groups && groups > 1; a++) {
-            lanes sides = lanes_load(e->run_side[k] + 16 * a);
-            e->group_side[k][a] = k % 2 ? lanes_most(sides) : lanes_least(sides);
-        }
-        lanes_store(e->group_side[k] + groups, nothing);
-    }
-    for (a = 0; a < groups; a++) {
-        uint32_t end = runs - 16 * a < 16 ? runs - 16 * a : 16;
-        if (end > 2 && !SC_KERNEL(are_far_fine)(c, a, a, (1u << (end - 2)) - 1u)) return 0;
-        for (b = a + 1; b < groups; b += 16) {
-            unsigned others = SC_KERNEL(overlap_in_plane)(e->group_side, a, e->group_side, b);
-            for (; others; others &= others - 1) {
-                uint32_t other = b + sc_bits_lowest(others);
-                if (!SC_KERNEL(are_far_fine)(
-                        c, a, other,
-                        SC_KERNEL(overlap_in_plane)(e->group_side, other, e->run_side, 16 * a)))
-                    return 0;
-            }
-        }
+    lanes other[4];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 4; k++) other[k] = lanes_load(side[k] + at);
+    return SC_KERNEL(overlap_in_plane)(own, other);
+}
+
+/* All spans of 2^level edges, more than SC_LANES_COUNT, with those two and three places on. */
+static int SC_KERNEL(is_level_fine)(sc_simple_contour *c, uint32_t level, uint32_t count)
+{
+    float *const *side = c->edges->span_side;
+    uint32_t first = c->span_first[level], i, k;
+    for (i = 0; i < count; i += SC_LANES_COUNT) {
+        const unsigned spans = SC_KERNEL(first_lanes)(count - i);
+        lanes own[4];
+        unsigned near[2];
+        SC_UNROLL
+        for (k = 0; k < 4; k++) own[k] = lanes_load(side[k] + first + i);
+        near[0] = spans & SC_KERNEL(overlap_on)(side, own, first + i + 2);
+        near[1] = spans & SC_KERNEL(overlap_on)(side, own, first + i + 3);
+        if ((near[0] | near[1]) && !(SC_KERNEL(are_some_fine)(c, level, count, i, 2, near[0]) &&
+                                     SC_KERNEL(are_some_fine)(c, level, count, i, 3, near[1])))
+            return 0;
     }
     return 1;
+}
+
+/* The spans of the last level, all pairs. */
+static int SC_KERNEL(is_last_level_fine)(sc_simple_contour *c, uint32_t level, uint32_t count)
+{
+    float *const *side = c->edges->span_side;
+    const uint32_t first = c->span_first[level];
+    const unsigned spans = SC_KERNEL(first_lanes)(count);
+    unsigned near[SC_LANES_COUNT / 2 + 1], any = 0;
+    lanes own[4];
+    uint32_t s, k;
+    SC_UNROLL
+    for (k = 0; k < 4; k++) own[k] = lanes_load(side[k] + first);
+    SC_UNROLL
+    for (s = 2; s <= SC_LANES_COUNT / 2; s++) {
+        near[s] = 2 * s <= count ? spans & SC_KERNEL(overlap_on)(side, own, first + s) : 0;
+        any |= near[s];
+    }
+    for (s = 2; any && s <= SC_LANES_COUNT / 2; s++)
+        if (!SC_KERNEL(are_some_fine)(c, level, count, 0, s, near[s])) return 0;
+    return 1;
+}
+
+/* Puts the boxes of spans together, two and two. One that is left over is joined with the first, which does no harm. */
+static void SC_KERNEL(join_spans)(const sc_simple_contour *c, uint32_t level, uint32_t count)
+{
+    float *const *side = c->edges->span_side;
+    const uint32_t from = c->span_first[level], to = c->span_first[level + 1];
+    uint32_t i, k;
+    for (i = 0; 2 * i < count; i += SC_LANES_COUNT)
+        for (k = 0; k < 4; k++) {
+            const float *at = side[k] + from + 2 * i;
+            lanes a = lanes_load(at), b = lanes_load(at + SC_LANES_COUNT);
+            lanes even = lanes_evens(a, b), odd = lanes_odds(a, b);
+            lanes_store(side[k] + to + i,
+                        k % 2 ? lanes_larger(even, odd) : lanes_smaller(even, odd));
+        }
 }
 
 static int SC_KERNEL(are_edges_fine)(sc_simple_contour *c)
 {
-    uint32_t a;
-    for (a = 0; a < c->blocks; a++)
-        if (!SC_KERNEL(are_near_fine)(c, a)) return 0;
-    return SC_KERNEL(are_groups_fine)(c);
+    float *const *side = c->edges->span_side;
+    uint32_t i, level = 1, count = (c->count + 1) / 2, k;
+    for (i = 0; i < c->count; i += SC_CONTOUR_BLOCK)
+        if (!SC_KERNEL(are_near_fine)(c, i)) return 0;
+    for (c->span_first[1] = 0;; level++, count = (count + 1) / 2) {
+        const uint32_t first = c->span_first[level];
+        /* the last is followed by the first */
+        for (k = 0; k < 4; k++) lanes_store(side[k] + first + count, lanes_load(side[k] + first));
+        if (count <= SC_LANES_COUNT) return SC_KERNEL(is_last_level_fine)(c, level, count);
+        if (!SC_KERNEL(is_level_fine)(c, level, count)) return 0;
+        c->span_first[level + 1] = first + SC_CONTOUR_SPANS(count);
+        SC_KERNEL(join_spans)(c, level, count);
+    }
 }
