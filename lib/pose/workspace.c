@@ -53,7 +53,7 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
         w->leaf_pairs[k] = (uint32_t *)place(block, at, SC_LEAF_QUEUE, sizeof(uint32_t));
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
-    w->ball = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
+    w->ball = (uint16_t *)place(block, at, model->vertex_count, sizeof(uint16_t));
     w->ball_queue = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
     w->found = (sc_pair *)place(block, at, SC_FOUND_MAX, sizeof(sc_pair));
     w->state = (unsigned char *)place(block, at, SC_STATE_ROOM, 1);
@@ -92,7 +92,7 @@ static void lay_out_motion(const sc_model *model, unsigned char *block, uint64_t
 }
 
 /* A point belongs to the first leaf cluster that has it; seen is 0 for all points, before and after. */
-static void place_motion(const sc_model *model, sc_motion *m, uint32_t *seen)
+static void place_motion(const sc_model *model, sc_motion *m, uint16_t *seen)
 {
     const uint32_t *point = sc_model_leaf_point(model);
     uint64_t i, patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
@@ -105,8 +105,10 @@ static void place_motion(const sc_model *model, sc_motion *m, uint32_t *seen)
     memset(m->unit, 0, 8 * (size_t)model->vertex_count * sizeof *m->unit);
     for (leaf = 0; leaf < model->leaf_count; leaf++, point += SC_LEAF_POINTS) {
         m->own_points[leaf] = 0;
-        for (i = 0; i < SC_LEAF_POINTS; i++)
-            if (!seen[point[i]]++) m->own_points[leaf] |= (uint64_t)1 << i;
+        for (i = 0; i < SC_LEAF_POINTS; i++) {
+            if (!seen[point[i]]) m->own_points[leaf] |= (uint64_t)1 << i;
+            seen[point[i]] = 1;
+        }
     }
     memset(seen, 0, model->vertex_count * sizeof *seen);
 }
@@ -143,7 +145,7 @@ static void lay_out_bounds(const sc_model *model, unsigned char *block, uint64_t
             (sc_segment_bounds *)place(block, at, model->segment_count, sizeof(sc_segment_bounds));
     if (*at < end) *at = end;
     for (k = 0; k < 2; k++)
-        w->bounds_tick[k] = (uint32_t *)place(block, at, model->segment_count, sizeof(uint32_t));
+        w->bounds_tick[k] = (uint16_t *)place(block, at, model->segment_count, sizeof(uint16_t));
     w->all_known = (sc_leaf_known *)place(block, at, model->leaf_count, sizeof(sc_leaf_known));
 }
 
@@ -220,7 +222,7 @@ void sc_workspace_share(const sc_model *model, sc_workspace *w, uint32_t workers
     uint32_t worker;
     for (worker = 1; worker < workers; worker++) {
         sc_workspace *view = sc_workspace_of_worker(w, worker);
-        uint32_t ball_tick = view->ball_tick;
+        uint16_t ball_tick = view->ball_tick;
         make_view(model, w, view);
         view->ball_tick = ball_tick;
         view->tasks = NULL;
@@ -243,7 +245,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     for (k = 0; k < 6; k++)
         for (i = 0; i < patches; i++) w->patch_boxes.side[k][i] = (float)NAN;
     memset(w->mask, 0, model->patch_end * sizeof *w->mask);
-    for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
+    for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint16_t));
     memset(w->all_known, 0, model->leaf_count * sizeof *w->all_known);
     clear_own(model, w);
     keep_some(w);
@@ -288,9 +290,9 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
 void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace)
 {
     int k;
-    if (workspace->tick == 0xffffffff) {
+    if (workspace->tick == 0xffff) {
         for (k = 0; k < 2; k++)
-            memset(workspace->bounds_tick[k], 0, model->segment_count * sizeof(uint32_t));
+            memset(workspace->bounds_tick[k], 0, model->segment_count * sizeof(uint16_t));
         workspace->tick = 0;
     }
     workspace->tick++;

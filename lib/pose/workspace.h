@@ -221,9 +221,9 @@ struct sc_workspace {
     uint32_t pose_tick;
 
     /* contours under the projection at hand */
-    uint32_t tick;
+    uint16_t tick;
     sc_segment_bounds *bounds[2]; /* segment_count, for the vertical and the horizontal line */
-    uint32_t *bounds_tick[2];     /* segment_count: tick at which they were computed */
+    uint16_t *bounds_tick[2];     /* segment_count: tick at which they were computed */
 
     sc_contour_edges contour;
     sc_walk walk;
@@ -244,10 +244,10 @@ struct sc_workspace {
     uint32_t candidate_count, neighbor_count;
 
     /* points near a triangle in number of edges, see query/filter.c */
-    uint32_t *ball;       /* vertex_count: ball_tick if in the ball */
+    uint16_t *ball;       /* vertex_count: ball_tick if in the ball */
     uint32_t *ball_queue; /* point_count */
-    uint32_t ball_tick;
     uint32_t ball_center; /* the caller's number of the triangle, or SC_NONE */
+    uint16_t ball_tick;
 
     sc_motion motion;
 

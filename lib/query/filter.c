@@ -95,7 +95,7 @@ static void mark_ball(const sc_model *model, sc_workspace *w, const uint32_t cen
                       uint32_t steps)
 {
     uint32_t head = 0, tail = 0, end, i;
-    if (w->ball_tick == 0xffffffff) {
+    if (w->ball_tick == 0xffff) {
         memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
         w->ball_tick = 0;
     }
