@@ -16,7 +16,7 @@
 
 /*
  * 1 if no two triangles of the node meet elsewhere than in what they share. Every triangle must have a
- * positive area under the projection. Cost: about 5 ns a contour edge; counts edges and tests.
+ * positive area under the projection. Cost: about 2.5 ns a contour edge with AVX-512; counts edges and tests.
  */
 int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node);
 
