@@ -964,6 +964,48 @@ static void count_release(void *user, void *memory, uint64_t size)
     free(memory);
 }
 
+static int dirt;
+
+static void *dirty_allocate(void *user, uint64_t size, uint64_t alignment)
+{
+    void *memory = count_allocate(user, size, alignment);
+    if (memory) memset(memory, dirt, (size_t)size);
+    return memory;
+}
+
+/* Whatever stood in the memory that a build gets, no byte of the model comes of it. */
+static void equal_bytes(void)
+{
+    for (int which = 0; which < 2 * SMALL; ++which) {
+        static const int dirts[] = {0x5a, 0xff};
+        save saves[2];
+        const char *name;
+        soup mesh = shape_any(300, &name);
+        sc_mesh m = input_plain_mesh(&mesh);
+        for (int k = 0; k < 2; ++k) {
+            counter c;
+            sc_allocator allocator = {dirty_allocate, count_release, NULL};
+            sc_build_options options;
+            sc_model *model = NULL;
+            memset(&c, 0, sizeof(c));
+            allocator.user = &c;
+            dirt = dirts[k];
+            memset(&options, 0, sizeof(options));
+            options.struct_size = sizeof(options);
+            options.allocator = &allocator;
+            options.content = which % 2 ? SC_MODEL_BOXES : SC_MODEL_FULL;
+            CHECK(sc_build(&m, &options, &model) == SC_OK);
+            saves[k] = save_model(model);
+            sc_model_free(model);
+        }
+        CHECK_MSG(saves[0].size == saves[1].size &&
+                      memcmp(saves[0].data, saves[1].data, saves[0].size) == 0,
+                  "%s", name);
+        for (int k = 0; k < 2; ++k) free(saves[k].memory);
+        soup_free(&mesh);
+    }
+}
+
 static void every_allocation_fails(void)
 {
     soup mesh;
@@ -1132,4 +1174,5 @@ SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(t
              SC_TEST(forged_uses), SC_TEST(forged_rings), SC_TEST(forged_contour),
              SC_TEST(forged_touches), SC_TEST(forged_sizes), SC_TEST(forged_chain),
              SC_TEST(messages), SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments),
-             SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))
+             SC_TEST(equal_bytes), SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared),
+             SC_TEST(format))

@@ -182,6 +182,7 @@ static void check_long_chain(sc_scratch *scratch)
         hierarchy.order = order;
         hierarchy.corner = corner; /* all triangles at one point */
         hierarchy.nodes = nodes;
+        hierarchy.point_count = 1;
         hierarchy.triangle_count = hierarchy.leaf_count = length + 1;
         hierarchy.node_count = 2 * length + 1;
         hierarchy.depth = length + 1;

@@ -50,28 +50,36 @@ static int is_with(const bisection *b, uint32_t t, uint32_t u, int by_side)
     return (b->label[u] ^ b->label[t]) <= !by_side;
 }
 
-/* Numbers the components of a patch, where crossing from side 0 to side 1 does or does not count as
-   connected, and writes their sizes. */
+/* Numbers the components of a patch in the order of their first triangles, where crossing from side 0 to side 1
+   does or does not count as connected, and writes their sizes. Triangles of a patch are ascending: so a
+   pass from first to last joins each with those before it, and needs no search through memory. */
 static uint32_t number_components(bisection *b, const uint32_t *triangles, uint32_t count,
                                   int by_side)
 {
-    uint32_t found = 0, i;
-    for (i = 0; i < count; i++) b->component[triangles[i]] = SC_NONE;
+    uint32_t *parent = b->queue, found = 0, i, k; /* of each triangle: a lower one, or itself */
     for (i = 0; i < count; i++) {
-        uint32_t head = 0, tail = 0, k;
-        if (b->component[triangles[i]] != SC_NONE) continue;
-        b->component[triangles[i]] = found;
-        b->queue[tail++] = triangles[i];
-        while (head < tail) {
-            uint32_t t = b->queue[head++];
-            for (k = 0; k < 3; k++) {
-                uint32_t u = b->neighbor[3 * (uint64_t)t + k];
-                if (!is_with(b, t, u, by_side) || b->component[u] != SC_NONE) continue;
-                b->component[u] = found;
-                b->queue[tail++] = u;
-            }
+        uint32_t t = triangles[i], root = t;
+        parent[t] = t;
+        for (k = 0; k < 3; k++) {
+            uint32_t u = b->neighbor[3 * (uint64_t)t + k];
+            if (u >= t || !is_with(b, t, u, by_side)) continue;
+            while (parent[u] != u) u = parent[u] = parent[parent[u]];
+            if (u == root) continue;
+            if (u < root)
+                root = parent[root] = u;
+            else
+                parent[u] = root;
         }
-        b->sizes[found++] = tail;
+    }
+    for (i = 0; i < count; i++) {
+        uint32_t t = triangles[i];
+        if (parent[t] == t) {
+            b->sizes[found] = 0;
+            b->component[t] = found++;
+        } else {
+            b->component[t] = b->component[parent[t]];
+        }
+        b->sizes[b->component[t]]++;
     }
     return found;
 }

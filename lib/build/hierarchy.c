@@ -5,6 +5,16 @@
  */
 #include "build/hierarchy.h"
 
+/* So that leaf_end can be asked. */
+static sc_status prepare_runs(sc_hierarchy *hierarchy, sc_scratch *scratch)
+{
+    hierarchy->met = (uint32_t *)sc_scratch_take_filled(
+        scratch, (uint64_t)hierarchy->point_count + 1, sizeof(uint32_t), 0);
+    if (!hierarchy->met) return SC_ERROR_MEMORY;
+    hierarchy->runs = hierarchy->met + hierarchy->point_count;
+    return SC_OK;
+}
+
 sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, const sc_points *points, sc_scratch *scratch)
 {
     uint32_t triangle_count = points->triangle_count;
@@ -17,7 +27,16 @@ sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, const sc_points *points, sc
     /* five triangles always fit into a leaf */
     hierarchy->starts =
         (uint32_t *)sc_scratch_take(scratch, (uint64_t)triangle_count / 5 + 2, sizeof(uint32_t));
-    return hierarchy->order && hierarchy->nodes && hierarchy->starts ? SC_OK : SC_ERROR_MEMORY;
+    hierarchy->point_count = points->point_count;
+    if (!hierarchy->order || !hierarchy->nodes || !hierarchy->starts) return SC_ERROR_MEMORY;
+    return prepare_runs(hierarchy, scratch);
+}
+
+void sc_hierarchy_finish(sc_hierarchy *hierarchy, sc_scratch *scratch)
+{
+    sc_scratch_give(scratch, hierarchy->starts);
+    sc_scratch_give(scratch, hierarchy->met);
+    hierarchy->starts = hierarchy->met = hierarchy->runs = NULL;
 }
 
 uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t count, uint32_t depth)
@@ -33,13 +52,13 @@ uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t coun
 /* The end of the longest run of order[first .. end) that fits into a leaf cluster. */
 static uint32_t leaf_end(const sc_hierarchy *hierarchy, uint32_t first, uint32_t end)
 {
-    uint32_t point[SC_LEAF_POINTS + 3], points = 0, i, k;
+    uint32_t *met = hierarchy->met, run = ++*hierarchy->runs, points = 0, k;
     if (end - first > SC_LEAF_MAX) end = first + SC_LEAF_MAX;
     for (; first < end; first++) {
         const uint32_t *corner = hierarchy->corner + 3 * (uint64_t)hierarchy->order[first];
         for (k = 0; k < 3; k++) {
-            for (i = 0; i < points && point[i] != corner[k]; i++) continue;
-            if (i == points) point[points++] = corner[k];
+            points += met[corner[k]] != run;
+            met[corner[k]] = run;
         }
         if (points > SC_LEAF_POINTS) break;
     }
@@ -77,7 +96,8 @@ int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch)
 {
     uint32_t at = 0, leaves = 0, i, top = 0, stack[SC_DEPTH_MAX + 1];
     uint8_t *seen = (uint8_t *)sc_scratch_take_filled(scratch, hierarchy->triangle_count, 1, 0);
-    if (!seen) return 0;
+    sc_hierarchy again = *hierarchy;
+    if (!seen || prepare_runs(&again, scratch)) return 0;
     stack[top++] = 0;
     while (top) {
         uint32_t n = stack[--top];
@@ -102,10 +122,11 @@ int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch)
     }
     for (i = 0; i < hierarchy->node_count; i++) {
         const sc_tree_node *node = &hierarchy->nodes[i];
-        if (node->left == SC_NONE && leaf_end(hierarchy, node->first, node->first + node->count) !=
-                                         node->first + node->count)
+        if (node->left == SC_NONE &&
+            leaf_end(&again, node->first, node->first + node->count) != node->first + node->count)
             return 0;
     }
+    sc_scratch_give(scratch, again.met);
     sc_scratch_give(scratch, seen);
     return at == hierarchy->triangle_count && leaves == hierarchy->leaf_count;
 }

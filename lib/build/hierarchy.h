@@ -24,11 +24,19 @@ typedef struct sc_hierarchy {
     sc_tree_node *nodes; /* node_count, room for 2 * triangle_count */
     uint32_t triangle_count, node_count, leaf_count, depth;
     const uint32_t *corner; /* 3 * triangle_count: point numbers, see build/mesh.h */
-    uint32_t *starts;       /* room for where the leaves of a range start */
+    uint32_t point_count;
+    /* while it is made: */
+    uint32_t *starts; /* room for where the leaves of a range start */
+    uint32_t
+        *met; /* point_count: the number of the run of triangles in which a point was last met */
+    uint32_t *runs; /* how many runs were looked at */
 } sc_hierarchy;
 
 /* Takes the memory; order is left unset. */
 sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, const sc_points *points, sc_scratch *scratch);
+
+/* Gives back what only making it took. */
+void sc_hierarchy_finish(sc_hierarchy *hierarchy, sc_scratch *scratch);
 
 /* Appends a node without children for order[first .. first + count). depth counts from 1. */
 uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t count, uint32_t depth);

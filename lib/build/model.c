@@ -16,9 +16,9 @@ typedef char owner_fits_one_unit[sizeof(sc_model_owner) <= SC_ALIGNMENT ? 1 : -1
 #define NEW_ARRAY(model, name, type)                                                               \
   ((type *)(void *)((unsigned char *)(model) + (model)->offset[SC_ARRAY_##name]))
 
-void sc_model_lay_out(sc_model *m)
+/* How many bytes each array has. */
+static void measure_arrays(const sc_model *m, uint64_t bytes[SC_ARRAY_COUNT])
 {
-    uint64_t at = (sizeof *m + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
     uint32_t vertex_count = m->vertex_count, triangle_count = m->triangle_count;
     uint32_t leaf_count = m->leaf_count, level_count = m->level_count;
     uint32_t patch_end = m->patch_end, ring_total = m->ring_total, node_count = m->node_count;
@@ -28,12 +28,41 @@ void sc_model_lay_out(sc_model *m)
     uint32_t segment_point_total = m->segment_point_total, share_count = m->share_count;
     uint32_t segment_child_total = m->segment_child_total;
     uint32_t open_count = m->open_count, open_total = m->open_total;
-#define LAY_OUT(name, type, count)                                                                 \
-  m->offset[SC_ARRAY_##name] = at;                                                                 \
-  at += ((uint64_t)(count) * sizeof(type) + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
-    SC_MODEL_ARRAYS(LAY_OUT)
-#undef LAY_OUT
-    m->bytes = at;
+#define MEASURE(name, type, count) bytes[SC_ARRAY_##name] = (uint64_t)(count) * sizeof(type);
+    SC_MODEL_ARRAYS(MEASURE)
+#undef MEASURE
+}
+
+static uint64_t padded(uint64_t bytes)
+{
+    return (bytes + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
+}
+
+void sc_model_lay_out(sc_model *m)
+{
+    uint64_t bytes[SC_ARRAY_COUNT];
+    int array;
+    measure_arrays(m, bytes);
+    m->bytes = padded(sizeof *m);
+    for (array = 0; array < SC_ARRAY_COUNT; array++) {
+        m->offset[array] = m->bytes;
+        m->bytes += padded(bytes[array]);
+    }
+}
+
+/* Zeroes what is behind each array, so that equal models are equal bytes, and the arrays that are only added to. All
+   else is written to later. */
+static void clear_gaps(sc_model *m)
+{
+    uint64_t bytes[SC_ARRAY_COUNT], begin = sizeof *m;
+    int array;
+    measure_arrays(m, bytes);
+    bytes[SC_ARRAY_node_flags] = bytes[SC_ARRAY_level_info] = 0;
+    for (array = 0; array <= SC_ARRAY_COUNT; array++) {
+        uint64_t end = array < SC_ARRAY_COUNT ? m->offset[array] : m->bytes;
+        memset((unsigned char *)m + begin, 0, (size_t)(end - begin));
+        if (array < SC_ARRAY_COUNT) begin = end + bytes[array];
+    }
 }
 
 sc_model *sc_model_allocate(uint64_t bytes, sc_scratch *scratch)
@@ -112,15 +141,23 @@ static void write_leaves(sc_model *m)
     uint8_t *where = NEW_ARRAY(m, leaf_corner, uint8_t);
     for (leaf = 0; leaf < m->leaf_count;
          leaf++, point += SC_LEAF_POINTS, where += 3 * SC_LEAF_MAX) {
-        uint32_t count = first[leaf + 1] - first[leaf], points = 0;
-        for (i = 0; i < SC_LEAF_MAX; i++)
+        uint32_t count = first[leaf + 1] - first[leaf], points = 0, newest = 0;
+        uint32_t known[SC_LEAF_POINTS];
+        for (i = 0; i < SC_LEAF_POINTS; i++) known[i] = SC_NONE;
+        for (i = 0; i < count; i++, corner += 3)
             for (k = 0; k < 3; k++) {
-                uint32_t p = corner[3 * (uint64_t)(first[leaf] + (i < count ? i : count - 1)) + k];
-                for (at = 0; at < points && point[at] != p; at++) continue;
-                if (at == points) point[points++] = p;
-                where[SC_LEAF_MAX * k + i] = (uint8_t)at;
+                uint32_t p = corner[k], place = 0; /* one more than where p is; all at once */
+                for (at = 0; at < SC_LEAF_POINTS; at++) place |= known[at] == p ? at + 1 : 0;
+                if (!place) {
+                    newest = known[points] = p;
+                    place = ++points;
+                }
+                where[SC_LEAF_MAX * k + i] = (uint8_t)(place - 1);
             }
-        for (i = points; i < SC_LEAF_POINTS; i++) point[i] = point[points - 1];
+        for (k = 0; k < 3; k++)
+            for (i = count; i < SC_LEAF_MAX; i++)
+                where[SC_LEAF_MAX * k + i] = where[SC_LEAF_MAX * k + count - 1];
+        for (i = 0; i < SC_LEAF_POINTS; i++) point[i] = i < points ? known[i] : newest;
     }
 }
 
@@ -141,6 +178,46 @@ static uint32_t list_around(const sc_points *points, const sc_adjacency *adjacen
         count++;
     }
     return count;
+}
+
+/* The rings of all points, by old numbers, which are those of the order in which they are in memory. */
+typedef struct rings {
+    uint32_t *first;  /* point_count + 1 */
+    uint32_t *points; /* by new numbers */
+    uint32_t open_count;
+    uint64_t open_total;
+} rings;
+
+static void list_rings(const sc_points *points, const sc_adjacency *adjacency,
+                       const uint32_t *number, rings *r)
+{
+    uint32_t p, i, at = 0;
+    r->open_count = 0;
+    r->open_total = 0;
+    for (p = 0; p < points->point_count; p++) {
+        uint32_t n = sc_adjacency_ring(points, adjacency, p, r->points + at);
+        r->first[p] = at;
+        for (i = at; i < at + n; i++) r->points[i] = number[r->points[i]];
+        at += n;
+        if (n) continue;
+        r->open_count++;
+        r->open_total += list_around(points, adjacency, p, NULL);
+    }
+    r->first[p] = at;
+}
+
+static void write_rings(const sc_points *points, const rings *r, sc_model *m)
+{
+    uint32_t *first = NEW_ARRAY(m, ring_first, uint32_t), *ring = NEW_ARRAY(m, ring, uint32_t), v,
+             i;
+    uint32_t at = 0;
+    for (v = 0; v < m->vertex_count; v++) {
+        uint32_t p = points->slot[v];
+        first[v] = at;
+        if (p >= SC_SLOT_WELDED) continue;
+        for (i = r->first[p]; i < r->first[p + 1]; i++) ring[at++] = r->points[i];
+    }
+    first[v] = at;
 }
 
 static void write_open_points(const sc_points *points, const sc_adjacency *adjacency,
@@ -301,43 +378,33 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
                             sc_model **model)
 {
     sc_model counts, *m;
-    uint32_t *number, *ring_first, *ring, v, i;
-    uint64_t open_total = 0;
+    uint32_t *number;
+    rings r;
     sc_status status;
 
     memset(&counts, 0, sizeof counts);
     count_arrays(points, adjacency, xbvh, sctt, csf, &counts);
     number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
-    ring_first = (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)points->vertex_count + 1,
-                                                    sizeof *ring_first, 0);
-    ring = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)points->triangle_count, sizeof *ring);
-    if (!number || !ring_first || !ring) return SC_ERROR_MEMORY;
+    r.first =
+        (uint32_t *)sc_scratch_take(scratch, (uint64_t)points->point_count + 1, sizeof *r.first);
+    r.points = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)points->triangle_count,
+                                           sizeof *r.points);
+    if (!number || !r.first || !r.points) return SC_ERROR_MEMORY;
     number_points(points, number);
-    for (v = 0; v < points->vertex_count; v++) {
-        uint32_t at = ring_first[v], n, p = points->slot[v];
-        ring_first[v + 1] = at;
-        if (p >= SC_SLOT_WELDED) continue;
-        n = sc_adjacency_ring(points, adjacency, p, ring + at);
-        ring_first[v + 1] += n;
-        for (i = at; i < at + n; i++) ring[i] = number[ring[i]];
-        if (n) continue;
-        counts.open_count++;
-        open_total += list_around(points, adjacency, p, NULL);
-    }
-    if (SC_HARDLY(open_total > UINT32_MAX)) return SC_ERROR_COUNT;
-    counts.open_total = (uint32_t)open_total;
+    list_rings(points, adjacency, number, &r);
+    if (SC_HARDLY(r.open_total > UINT32_MAX)) return SC_ERROR_COUNT;
+    counts.open_count = r.open_count;
+    counts.open_total = (uint32_t)r.open_total;
     counts.share_count = sharing->first[xbvh->leaf_count];
-    counts.ring_total = ring_first[points->vertex_count];
+    counts.ring_total = r.first[points->point_count];
     sc_model_lay_out(&counts);
     if (SC_HARDLY(counts.bytes > SIZE_MAX - SC_ALIGNMENT)) /* where addresses have 32 bits */
         return SC_ERROR_COUNT;
     m = sc_model_allocate(counts.bytes, scratch);
     if (!m) return SC_ERROR_MEMORY;
-    memset(m, 0, (size_t)counts.bytes);
     *m = counts;
-    copy(NEW_ARRAY(m, ring, uint32_t), ring, m->ring_total * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, ring_first, uint32_t), ring_first,
-         ((uint64_t)points->vertex_count + 1) * sizeof(uint32_t));
+    clear_gaps(m);
+    write_rings(points, &r, m);
     write_open_points(points, adjacency, number, m);
     write_triangles(points, adjacency, hierarchy->order, number, m);
     copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,

@@ -110,9 +110,9 @@ static sc_status follow_curve(const sc_points *points, const sc_adjacency *adjac
     return SC_OK;
 }
 
-sc_status sc_partition_build(const sc_points *points, const sc_adjacency *adjacency,
-                             const sc_build_options *options, sc_scratch *scratch,
-                             sc_hierarchy *hierarchy)
+static sc_status make_hierarchy(const sc_points *points, const sc_adjacency *adjacency,
+                                const sc_build_options *options, sc_scratch *scratch,
+                                sc_hierarchy *hierarchy)
 {
     uint32_t count = points->triangle_count;
     sc_status status;
@@ -140,4 +140,13 @@ sc_status sc_partition_build(const sc_points *points, const sc_adjacency *adjace
     memcpy(hierarchy->order, options->order, count * sizeof *hierarchy->order);
     sc_hierarchy_add_balanced(hierarchy, 0, count, 1);
     return SC_OK;
+}
+
+sc_status sc_partition_build(const sc_points *points, const sc_adjacency *adjacency,
+                             const sc_build_options *options, sc_scratch *scratch,
+                             sc_hierarchy *hierarchy)
+{
+    sc_status status = make_hierarchy(points, adjacency, options, scratch, hierarchy);
+    if (!status) sc_hierarchy_finish(hierarchy, scratch);
+    return status;
 }
