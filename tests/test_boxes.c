@@ -258,9 +258,8 @@ static void they_are_small(void)
     CHECK(b.triangle_count == f.triangle_count && b.point_count == f.point_count);
     CHECK(b.edge_count == f.edge_count && b.boundary_edges == f.boundary_edges);
     CHECK(b.component_count == 1 && b.irregular_edges == 0);
-    CHECK_MSG(b.model_bytes + b.workspace_bytes < (f.model_bytes + f.workspace_bytes) / 2 + 100000,
-              "%" PRIu64 " and %" PRIu64 " bytes", b.model_bytes + b.workspace_bytes,
-              f.model_bytes + f.workspace_bytes);
+    CHECK_MSG(3 * b.model_bytes < 2 * f.model_bytes && b.workspace_bytes < f.workspace_bytes,
+              "models of %" PRIu64 " and %" PRIu64 " bytes", b.model_bytes, f.model_bytes);
     CHECK(b.peak_bytes < f.peak_bytes);
     CHECK_MSG(5 * b.leaf_count < 6 * f.leaf_count, "%" PRIu32 " leaf clusters", b.leaf_count);
     for (uint32_t level = 0; level < b.level_count; ++level) {
