@@ -160,7 +160,7 @@ static void call_build(fuzz_bytes *bytes)
     o.partition = small_or_wild(bytes, fuzz_byte(bytes) % 4);
     o.tree_count = small_or_wild(bytes, 1) % 9;
     o.rest = small_or_wild(bytes, 1);
-    o.reserved = small_or_wild(bytes, 0);
+    o.content = small_or_wild(bytes, 0);
     o.weld_map = null >> 4 == 5 ? NULL : identity;
     o.order = null >> 4 == 6 ? NULL : identity;
     o.tree = null >> 4 == 7 ? NULL : tree;
@@ -175,8 +175,10 @@ static void call_build(fuzz_bytes *bytes)
     if (!faults) {
         faults = fuzz_mesh_faults(&m, NULL);
         if (o.weld > SC_WELD_NONE || o.partition > SC_PARTITION_BISECT || o.rest > SC_REST_MARKED ||
-            o.reserved)
+            o.content > SC_MODEL_BOXES)
             faults |= FUZZ_BIT(SC_ERROR_OPTION);
+        if (o.content == SC_MODEL_BOXES && o.rest == SC_REST_MARKED)
+            faults |= FUZZ_BIT(SC_ERROR_BOXES_ONLY);
         if ((o.weld == SC_WELD_MAP && !o.weld_map) ||
             ((o.partition == SC_PARTITION_ORDER || o.partition == SC_PARTITION_TREE) && !o.order) ||
             (o.partition == SC_PARTITION_TREE && !o.tree) ||
