@@ -550,7 +550,7 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
     if (state->timed) start = state->last_time = sc_clock_nanoseconds();
     if (sc_state_stops(state)) return SC_ERROR_INCOMPLETE;
     sc_workspace_new_pose(model, workspace);
-    if (!uses_star(&state->options)) sc_workspace_keep_all(workspace);
+    if (!uses_star(&state->options)) sc_workspace_keep_all(model, workspace);
     status = sc_positions_read(model, pose, stride, workspace);
     if (status) return status;
     if (sc_parallel_pays(state)) {

@@ -131,13 +131,20 @@ static uint64_t view_bytes(const sc_model *model, uint32_t flags)
     return at;
 }
 
+/* How many leaf clusters can be kept ready at once by the first worker: all, where bounds of segments have room for
+   about as many. Models for boxes have none, so that they stay small. */
+static uint32_t all_ready_count(const sc_model *model)
+{
+    return model->segment_count ? model->leaf_count : 0;
+}
+
 /* Bounds of segments, and leaf clusters made ready in the same place. */
 static void lay_out_bounds(const sc_model *model, unsigned char *block, uint64_t *at,
                            sc_workspace *w)
 {
     uint64_t start = *at, end;
     int k;
-    w->all_ready = (sc_leaf_ready *)place(block, at, model->leaf_count, sizeof(sc_leaf_ready));
+    w->all_ready = (sc_leaf_ready *)place(block, at, all_ready_count(model), sizeof(sc_leaf_ready));
     end = *at;
     *at = start;
     for (k = 0; k < 2; k++)
@@ -146,7 +153,7 @@ static void lay_out_bounds(const sc_model *model, unsigned char *block, uint64_t
     if (*at < end) *at = end;
     for (k = 0; k < 2; k++)
         w->bounds_tick[k] = (uint16_t *)place(block, at, model->segment_count, sizeof(uint16_t));
-    w->all_known = (sc_leaf_known *)place(block, at, model->leaf_count, sizeof(sc_leaf_known));
+    w->all_known = (sc_leaf_known *)place(block, at, all_ready_count(model), sizeof(sc_leaf_known));
 }
 
 static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_workspace *w)
@@ -200,8 +207,9 @@ static void keep_some(sc_workspace *w)
     w->ready_upper = SC_READY_KEPT;
 }
 
-void sc_workspace_keep_all(sc_workspace *w)
+void sc_workspace_keep_all(const sc_model *model, sc_workspace *w)
 {
+    if (!all_ready_count(model)) return;
     w->ready = w->all_ready;
     w->known = w->all_known;
     w->ready_mask = 0xffffffffu;
@@ -246,7 +254,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
         for (i = 0; i < patches; i++) w->patch_boxes.side[k][i] = (float)NAN;
     memset(w->mask, 0, model->patch_end * sizeof *w->mask);
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint16_t));
-    memset(w->all_known, 0, model->leaf_count * sizeof *w->all_known);
+    memset(w->all_known, 0, all_ready_count(model) * sizeof *w->all_known);
     clear_own(model, w);
     keep_some(w);
     if (w->flags & SC_WORKSPACE_STEP) place_motion(model, &w->motion, w->ball);
@@ -276,7 +284,7 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
             memset(own->some_known, 0, 2 * SC_READY_KEPT * sizeof *own->some_known);
             memset(own->slab, 0, model->leaf_count * sizeof *own->slab);
         }
-        memset(workspace->all_known, 0, model->leaf_count * sizeof *workspace->all_known);
+        memset(workspace->all_known, 0, all_ready_count(model) * sizeof *workspace->all_known);
         workspace->pose_tick = 0;
     }
     workspace->pose_tick++;

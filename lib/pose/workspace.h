@@ -232,8 +232,8 @@ struct sc_workspace {
     sc_leaf_ready *ready; /* all_ready or some_ready */
     sc_leaf_known *known; /* all_known or some_known */
     uint32_t ready_mask, ready_upper;
-    sc_leaf_ready *all_ready;  /* leaf_count */
-    sc_leaf_known *all_known;  /* leaf_count */
+    sc_leaf_ready *all_ready;  /* leaf_count; 0 if there are no segments */
+    sc_leaf_known *all_known;  /* the same */
     sc_leaf_ready *some_ready; /* 2 * SC_READY_KEPT */
     sc_leaf_known *some_known; /* 2 * SC_READY_KEPT */
     sc_leaf_slab *slab;        /* leaf_count */
@@ -285,7 +285,7 @@ void sc_workspace_share(const sc_model *model, sc_workspace *workspace, uint32_t
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace);
 void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace);
 
-/* Has all leaf clusters kept ready in this pose, for which no star test is made. */
-void sc_workspace_keep_all(sc_workspace *workspace);
+/* Has all leaf clusters kept ready in this pose, for which no star test is made, if there is room. */
+void sc_workspace_keep_all(const sc_model *model, sc_workspace *workspace);
 
 #endif
