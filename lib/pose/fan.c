@@ -70,3 +70,13 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
     }
     return turns == 1;
 }
+
+int sc_fan_is_plain(const sc_model *model, sc_workspace *w, uint32_t point)
+{
+    uint32_t at = point % SC_FANS_KEPT;
+    if (w->fan_point[at] != point) {
+        w->fan_plain[at] = (uint8_t)sc_fan_test(model, w, point);
+        w->fan_point[at] = point;
+    }
+    return w->fan_plain[at];
+}

@@ -12,7 +12,9 @@
 
 #include "pose/workspace.h"
 
-/* 1 if the fan round a point certainly projects one to one in this pose. About 150 ns. */
+/* 1 if the fan round a point certainly projects one to one in this pose. About 150 ns; sc_fan_is_plain
+   remembers some points. */
 int sc_fan_test(const sc_model *model, const sc_workspace *workspace, uint32_t point);
+int sc_fan_is_plain(const sc_model *model, sc_workspace *workspace, uint32_t point);
 
 #endif

@@ -89,18 +89,18 @@ static int repeats_point(const uint32_t *t)
 
 /* Whether the fan round a vertex that two triangles share projects one to one: then they share all that they have in
    common. */
-static int have_plain_fan(const sc_query_state *state, const sc_pair *places)
+static int have_plain_fan(sc_query_state *state, const sc_pair *places)
 {
     const uint32_t *triangle = sc_model_triangle(state->model);
     uint32_t shared[3];
     int i, count = list_shared(triangle + 3 * (uint64_t)places->a,
                                triangle + 3 * (uint64_t)places->b, shared);
     for (i = 0; i < count; i++)
-        if (sc_fan_test(state->model, state->workspace, shared[i])) return 1;
+        if (sc_fan_is_plain(state->model, state->workspace, shared[i])) return 1;
     return 0;
 }
 
-void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b)
+void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b, unsigned flat)
 {
     const uint32_t *triangle = sc_model_triangle(state->model);
     const uint32_t *t = triangle + 3 * (uint64_t)a, *u = triangle + 3 * (uint64_t)b;
@@ -111,6 +111,7 @@ void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b)
     pair.a = a;
     pair.b = b;
     if (count == 1 && !repeats_point(t) && !repeats_point(u)) {
+        if (flat && sc_fan_is_plain(state->model, w, shared[0])) return;
         w->neighbors[w->neighbor_count++] = pair;
         return;
     }

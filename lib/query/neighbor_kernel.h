@@ -82,14 +82,14 @@ static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighbor_corners) *
 }
 
 /* The lanes in which the plane of triangle s certainly has all corners of the other that are not shared on one side;
-   n gets its normal. */
+   n gets its normal, flat those lanes in which all these corners may be in the plane. */
 static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, int s, float extent,
-                                              lanes n[3])
+                                              lanes n[3], unsigned *flat)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     const lanes far = lanes_all(FLT_MAX), minus_far = lanes_all(-FLT_MAX);
     const lanes(*t)[3] = x->at[s], (*o)[3] = x->at[1 - s];
-    lanes e[3], f[3], size = lanes_all(0), bound, least = far, most = minus_far;
+    lanes e[3], f[3], size = lanes_all(0), bound, minus_bound, least = far, most = minus_far;
     int k, c;
     SC_UNROLL
     for (c = 0; c < 3; c++) {
@@ -113,8 +113,10 @@ static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, in
         least = lanes_smaller(least, lanes_choose(x->shared[1 - s][k], far, d));
         most = lanes_larger(most, lanes_choose(x->shared[1 - s][k], minus_far, d));
     }
-    return lanes_bits(lanes_below(bound, least)) |
-           lanes_bits(lanes_below(most, lanes_subtract(lanes_all(0), bound)));
+    minus_bound = lanes_subtract(lanes_all(0), bound);
+    *flat =
+        lanes_bits(lanes_both(lanes_not_above(most, bound), lanes_not_above(minus_bound, least)));
+    return lanes_bits(lanes_below(bound, least)) | lanes_bits(lanes_below(most, minus_bound));
 }
 
 /* The lanes in which the line of an edge does, seen along the axis nearest to the normal n of one. */
@@ -187,15 +189,16 @@ static void SC_KERNEL(take_neighbors)(sc_query_state *state, const sc_leaf_pair 
     memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
     memset(of_b + count, 0, SC_LANES_COUNT);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
-        unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
+        unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu, flat[2];
         SC_KERNEL(load_neighbors)(&a, b, of_a + at, of_b + at, &x);
-        mask &= ~SC_KERNEL(plane_parts)(&x, 1, extent, n) | x.same;
-        mask &= ~SC_KERNEL(plane_parts)(&x, 0, extent, n) | x.same;
+        mask &= ~SC_KERNEL(plane_parts)(&x, 1, extent, n, &flat[1]) | x.same;
+        mask &= ~SC_KERNEL(plane_parts)(&x, 0, extent, n, &flat[0]) | x.same;
         if (sc_bits_count(mask) >= SC_SIDES_WORTH)
             mask &= ~SC_KERNEL(side_parts)(&x, n, extent) | x.same;
         for (; mask; mask &= mask - 1) {
             uint32_t lane = at + sc_bits_lowest(mask);
-            sc_candidates_add_neighbors(state, first[p->a] + of_a[lane], first[p->b] + of_b[lane]);
+            sc_candidates_add_neighbors(state, first[p->a] + of_a[lane], first[p->b] + of_b[lane],
+                                        (flat[0] & flat[1]) >> (lane - at) & 1);
         }
     }
 }
