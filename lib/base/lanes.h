@@ -99,7 +99,10 @@ static inline lanes lanes_absolute(lanes a)
 }
 static inline lanes lanes_larger_size(lanes a, lanes b)
 {
-    return _mm512_range_ps(a, b, 11); /* the larger absolute value, without sign */
+#  pragma GCC diagnostic push
+#  pragma GCC diagnostic ignored "-Wsign-conversion" /* a macro where nothing is optimised */
+    return _mm512_range_ps(a, b, 11);                /* the larger absolute value, without sign */
+#  pragma GCC diagnostic pop
 }
 static inline lanes_mask lanes_below(lanes a, lanes b)
 {
