@@ -30,6 +30,8 @@ static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
     for (i = 0; i < SC_LANES_COUNT; i++) point[i] = in->plain + in->number[i];
     lanes_points(point, &x[0], &x[1], &x[2]);
     for (i = 0; i < 3; i++) lanes_store(out->row[14 + i], x[i]);
+    lanes_turned(in->plain, x);
+    for (i = 0; i < 3; i++) lanes_store(out->row[30 + i], x[i]);
     out->one[0] = lanes_sum(evens);
     out->one[1] = lanes_least(evens);
     out->one[2] = lanes_most(evens);
@@ -53,6 +55,9 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
     lanes_corners_at(in->plain, in->number, corner);
     for (k = 0; k < 3; k++)
         for (i = 0; i < 3; i++) lanes_store(out->row[21 + 3 * k + i], corner[k][i]);
+    lanes_corners_through(in->plain, in->number, in->through, corner);
+    for (k = 0; k < 3; k++)
+        for (i = 0; i < 3; i++) lanes_store(out->row[39 + 3 * k + i], corner[k][i]);
     out->bits[5] = lanes_list(in->mask, list);
     memcpy(out->list, list, out->bits[5]);
 }
@@ -60,9 +65,12 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
 static void SC_KERNEL(try_rows)(const lanes_input *in, lanes_outcome *out)
 {
     lanes_signs row[16];
+    lanes ends[6];
     int i;
     for (i = 0; i < 16; i++) row[i] = lanes_signs_of(lanes_load(in->row[i]));
     out->bits[6] = lanes_all_negative(row);
+    lanes_rows_ends(in->row[0], LANES_STRIDE, ends, ends + 3); /* rows that share floats */
+    for (i = 0; i < 6; i++) lanes_store(out->row[33 + i], ends[i]);
 }
 
 static void SC_KERNEL(try_doubles)(const lanes_input *in, lanes_outcome *out)

@@ -9,18 +9,22 @@
 
 #include <stdint.h>
 
+/* Floats from one row of points to the next: the last ends within lanes_input.row. */
+enum { LANES_STRIDE = 12 };
+
 typedef struct lanes_input {
-    float a[16], b[16]; /* anything */
-    float plain[48];    /* finite numbers, whose sums are */
-    float row[16][16];  /* such, mostly negative */
-    double c[8], d[8];  /* anything */
-    double exact[20];   /* as plain */
-    uint8_t number[48]; /* below 16 */
-    unsigned mask;      /* of 16 bits */
+    float a[16], b[16];  /* anything */
+    float plain[64];     /* finite numbers, whose sums are */
+    float row[16][16];   /* such, mostly negative */
+    double c[8], d[8];   /* anything */
+    double exact[20];    /* as plain */
+    uint8_t number[48];  /* below 16 */
+    uint8_t through[16]; /* the same */
+    unsigned mask;       /* of 16 bits */
 } lanes_input;
 
 typedef struct lanes_outcome {
-    float row[30][16], one[3];
+    float row[48][16], one[3];
     double eight[11][8];
     unsigned bits[8];
     uint8_t list[16];

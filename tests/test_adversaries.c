@@ -293,8 +293,8 @@ static void check_instructions(const scene *s)
 {
     const sc_model *m = s->model;
     sc_workspace *w = s->workspace;
-    size_t points = (size_t)3 * SC_LEAF_POINTS * m->leaf_count, wrong = 0;
-    float *leaf_at = (float *)test_allocate(points * sizeof(float));
+    size_t points = (size_t)4 * SC_LEAF_POINTS * m->leaf_count, wrong = 0;
+    float *point_at = (float *)test_allocate(points * sizeof(float));
     uint16_t *mask = (uint16_t *)test_allocate(m->patch_end * sizeof(uint16_t));
     float *box[6];
     for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
@@ -304,8 +304,8 @@ static void check_instructions(const scene *s)
         sc_refit_boxes(m, w);
         if (isa == SC_ISA_BASE) memcpy(mask, w->mask, m->patch_end * sizeof(uint16_t));
         wrong += memcmp(mask, w->mask, m->patch_end * sizeof(uint16_t)) != 0;
-        if (isa == SC_ISA_BASE) memcpy(leaf_at, w->leaf_at, points * sizeof(float));
-        wrong += memcmp(leaf_at, w->leaf_at, points * sizeof(float)) != 0;
+        if (isa == SC_ISA_BASE) memcpy(point_at, w->point_at, points * sizeof(float));
+        wrong += memcmp(point_at, w->point_at, points * sizeof(float)) != 0;
         for (int k = 0; k < 6; ++k) {
             if (isa == SC_ISA_BASE) {
                 box[k] = (float *)test_allocate(m->patch_end * sizeof(float));
@@ -318,7 +318,7 @@ static void check_instructions(const scene *s)
                    s->name, wrong, s->state))
         print_mesh(s);
     for (int k = 0; k < 6; ++k) free(box[k]);
-    free(leaf_at);
+    free(point_at);
     free(mask);
 }
 

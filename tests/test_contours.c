@@ -1127,8 +1127,8 @@ static void points_in_the_unit_box(void)
             for (uint32_t i = 0; i < 3 * SC_LEAF_POINTS * s.model->leaf_count; ++i) {
                 uint32_t leaf = i / 3 / SC_LEAF_POINTS, k = i % 3, at = i / 3 % SC_LEAF_POINTS;
                 uint32_t point = sc_model_leaf_point(s.model)[SC_LEAF_POINTS * leaf + at];
-                double off,
-                    unit = (double)s.workspace->leaf_at[SC_LEAF_POINTS * (3 * leaf + k) + at];
+                uint32_t turned = SC_LEAF_POINTS * leaf + sc_loops_turn(at);
+                double off, unit = (double)s.workspace->point_at[4 * turned + k];
                 float one[3];
                 sc_positions_unit(s.workspace, point, one);
                 differ += one[k] != (float)unit;
@@ -1188,9 +1188,8 @@ static void poses_of_any_layout(void)
                 sc_dnc_update(s.model, w);
                 for (uint32_t k = 0; k < 3; ++k) wrong += w->center[k] != low[k] / 2 + high[k] / 2;
                 for (uint32_t i = 0; i < SC_LEAF_POINTS * s.model->leaf_count; ++i) {
-                    uint32_t leaf = i / SC_LEAF_POINTS, point = sc_model_leaf_point(s.model)[i];
-                    const float *at = w->leaf_at + 3 * SC_LEAF_POINTS * leaf + i % SC_LEAF_POINTS;
-                    const float *again = w->point_at + 4 * sc_loops_turn(i);
+                    uint32_t point = sc_model_leaf_point(s.model)[i];
+                    const float *at = w->point_at + 4 * sc_loops_turn(i);
                     double p[3];
                     float one[3];
                     sc_positions_get(w, point, p);
@@ -1198,8 +1197,9 @@ static void poses_of_any_layout(void)
                     for (uint32_t k = 0; k < 3; ++k) {
                         double d = s.pose[3 * point + k];
                         wrong += p[k] != (layout->type == SC_DOUBLE ? d : (double)(float)d);
-                        wrong += at[SC_LEAF_POINTS * k] != one[k] || again[k] != one[k];
+                        wrong += at[k] != one[k];
                     }
+                    wrong += at[3] != 0;
                 }
             }
             free(memory);

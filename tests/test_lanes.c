@@ -82,10 +82,9 @@ static void draw(lanes_input *in)
         in->c[i] = number(0);
         in->d[i] = test_random_below(4) ? number(0) : in->c[i];
     }
-    for (i = 0; i < 48; i++) {
-        in->plain[i] = (float)number(1);
-        in->number[i] = (uint8_t)test_random_below(16);
-    }
+    for (i = 0; i < 64; i++) in->plain[i] = (float)number(1);
+    for (i = 0; i < 48; i++) in->number[i] = (uint8_t)test_random_below(16);
+    for (i = 0; i < 16; i++) in->through[i] = (uint8_t)test_random_below(16);
     for (i = 0; i < 20; i++) in->exact[i] = number(1);
     in->mask = test_random_below(0x10000);
     if (test_random_below(4) == 0) /* all below, or none: as in most boxes */
@@ -125,19 +124,40 @@ static void all_forms_agree(void)
     if (sc_isa_best() < SC_ISA_AVX512) test_note("skipped: what this machine does not have");
 }
 
+/* Point i of plain, of four floats in turned places. */
+static const float *turned_point(const lanes_input *in, uint32_t i)
+{
+    static const uint8_t place[16] = {0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15};
+    return in->plain + 4 * place[i];
+}
+
+/* The least and the most of three coordinates of sixteen points. */
+static void ends_of_row(const lanes_input *in, uint32_t i, float ends[6])
+{
+    const float *at = in->row[0] + LANES_STRIDE * i;
+    uint32_t k, j;
+    for (k = 0; k < 3; k++) {
+        ends[k] = ends[k + 3] = at[k];
+        for (j = 1; j < 16; j++) {
+            ends[k] = fminf(ends[k], at[4 * j + k]);
+            ends[k + 3] = fmaxf(ends[k + 3], at[4 * j + k]);
+        }
+    }
+}
+
 /* The plain form against what is said of it. */
 static void lists_and_signs(void)
 {
     lanes_input in;
     lanes_outcome out;
-    uint32_t trial, i;
+    uint32_t trial, i, k;
     memset(&in, 0, sizeof in);
     for (trial = 0; trial < 2000; trial++) {
         unsigned count = 0, negative = 0;
+        float ends[6];
         draw(&in);
         lanes_try_plain(&in, &out);
         for (i = 0; i < 16; i++) {
-            uint32_t k;
             for (k = 0; k < 16 && in.row[i][k] < 0; k++) continue;
             negative |= (unsigned)(k == 16) << i;
             if (!(in.mask >> i & 1u)) continue;
@@ -149,8 +169,17 @@ static void lists_and_signs(void)
             CHECK((out.bits[0] >> i & 1u) == (unsigned)(in.a[i] < in.b[i]));
             CHECK((out.bits[1] >> i & 1u) == (unsigned)(in.a[i] <= in.b[i]));
             CHECK(!memcmp(&out.row[17][i], &in.a[in.number[i]], sizeof(float)));
-            CHECK(!memcmp(&out.row[21][i], &in.plain[in.number[i]], sizeof(float)));
-            CHECK(!memcmp(&out.row[29][i], &in.plain[32 + in.number[32 + i]], sizeof(float)));
+            CHECK(!memcmp(&out.row[21][i], turned_point(&in, in.number[i]), sizeof(float)));
+            CHECK(
+                !memcmp(&out.row[29][i], turned_point(&in, in.number[32 + i]) + 2, sizeof(float)));
+            for (k = 0; k < 9; k++)
+                CHECK(!memcmp(&out.row[39 + k][i],
+                              turned_point(&in, in.number[k / 3 * 16 + in.through[i]]) + k % 3,
+                              sizeof(float)));
+            for (k = 0; k < 3; k++)
+                CHECK(!memcmp(&out.row[30 + k][i], turned_point(&in, i) + k, sizeof(float)));
+            ends_of_row(&in, i, ends);
+            for (k = 0; k < 6; k++) CHECK(!memcmp(&out.row[33 + k][i], &ends[k], sizeof(float)));
         }
     }
 }

@@ -8,7 +8,8 @@
  * Operations round as those of single floats do, and there is no fused multiplication and addition, so that
  * all of them give the same results. lanes_larger_size takes the larger absolute value. A comparison gives a mask, of
  * which lanes_bits makes bit i for lane i; with NaN it is false. lanes_points reads the first three of four floats at
- * sixteen places. Of the functions of fours, lanes_four repeats four floats four times, lanes_each_four each of four
+ * sixteen places, lanes_turned those of sixteen fours that follow each other in turned places (see build/loops.h): block
+ * i of sixteen floats holds points i, i + 4, i + 8 and i + 12. Of the functions of fours, lanes_four repeats four floats four times, lanes_each_four each of four
  * floats, and the others store the least or greatest of each four lanes.
  *
  * Included once for each instruction set, by the .c files that include kernels, which define SC_KERNEL(name) to
@@ -47,6 +48,7 @@
 #define lanes_least SC_KERNEL(sc_lanes_least)
 #define lanes_most SC_KERNEL(sc_lanes_most)
 #define lanes_points SC_KERNEL(sc_lanes_points)
+#define lanes_turned SC_KERNEL(sc_lanes_turned)
 #define lanes_four SC_KERNEL(sc_lanes_four)
 #define lanes_each_four SC_KERNEL(sc_lanes_each_four)
 #define lanes_store_least SC_KERNEL(sc_lanes_store_least)
@@ -145,19 +147,31 @@ static inline __m512 SC_KERNEL(sc_lanes_four_points)(const float *const point[SC
     r = _mm512_insertf32x4(r, _mm_loadu_ps(point[i + 8]), 2);
     return _mm512_insertf32x4(r, _mm_loadu_ps(point[i + 12]), 3);
 }
+static inline void SC_KERNEL(sc_lanes_transposed)(const __m512 r[4], __m512 *x, __m512 *y,
+                                                  __m512 *z)
+{
+    __m512 low = _mm512_unpacklo_ps(r[0], r[1]), low2 = _mm512_unpacklo_ps(r[2], r[3]);
+    *x = _mm512_shuffle_ps(low, low2, 0x44);
+    *y = _mm512_shuffle_ps(low, low2, 0xee);
+    *z = _mm512_shuffle_ps(_mm512_unpackhi_ps(r[0], r[1]), _mm512_unpackhi_ps(r[2], r[3]), 0x44);
+}
 static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes *x, lanes *y,
                                 lanes *z)
 {
-    __m512 r0 = SC_KERNEL(sc_lanes_four_points)(point, 0),
-           r1 = SC_KERNEL(sc_lanes_four_points)(point, 1);
-    __m512 r2 = SC_KERNEL(sc_lanes_four_points)(point, 2),
-           r3 = SC_KERNEL(sc_lanes_four_points)(point, 3);
-    __m512 low = _mm512_unpacklo_ps(r0, r1), low2 = _mm512_unpacklo_ps(r2, r3);
-    *x = _mm512_shuffle_ps(low, low2, 0x44);
-    *y = _mm512_shuffle_ps(low, low2, 0xee);
-    *z = _mm512_shuffle_ps(_mm512_unpackhi_ps(r0, r1), _mm512_unpackhi_ps(r2, r3), 0x44);
+    __m512 r[4];
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 4; i++) r[i] = SC_KERNEL(sc_lanes_four_points)(point, i);
+    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
 }
-
+static inline void lanes_turned(const float *at, lanes row[3])
+{
+    __m512 r[4];
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 4; i++) r[i] = _mm512_loadu_ps(at + 16 * i);
+    SC_KERNEL(sc_lanes_transposed)(r, &row[0], &row[1], &row[2]);
+}
 static inline lanes lanes_four(const float *f)
 {
     return _mm512_broadcast_f32x4(_mm_loadu_ps(f));
@@ -317,19 +331,23 @@ static inline lanes lanes_odds(lanes a, lanes b)
     r.v[1] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(b.v[0], b.v[1], 0xdd));
     return r;
 }
+static inline void SC_KERNEL(sc_lanes_transposed)(const __m256 r[4], __m256 *x, __m256 *y,
+                                                  __m256 *z)
+{
+    __m256 low = _mm256_unpacklo_ps(r[0], r[1]), low2 = _mm256_unpacklo_ps(r[2], r[3]);
+    *x = _mm256_shuffle_ps(low, low2, 0x44);
+    *y = _mm256_shuffle_ps(low, low2, 0xee);
+    *z = _mm256_shuffle_ps(_mm256_unpackhi_ps(r[0], r[1]), _mm256_unpackhi_ps(r[2], r[3]), 0x44);
+}
 static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, __m256 *x, __m256 *y,
                                                    __m256 *z)
 {
-    __m256 r[4], low, low2;
+    __m256 r[4];
     int i;
     for (i = 0; i < 4; i++)
         r[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(point[i])),
                                     _mm_loadu_ps(point[i + 4]), 1);
-    low = _mm256_unpacklo_ps(r[0], r[1]);
-    low2 = _mm256_unpacklo_ps(r[2], r[3]);
-    *x = _mm256_shuffle_ps(low, low2, 0x44);
-    *y = _mm256_shuffle_ps(low, low2, 0xee);
-    *z = _mm256_shuffle_ps(_mm256_unpackhi_ps(r[0], r[1]), _mm256_unpackhi_ps(r[2], r[3]), 0x44);
+    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
 }
 static inline lanes lanes_four(const float *f)
 {
@@ -374,6 +392,14 @@ static inline lanes lanes_odds(lanes a, lanes b)
     r.v[3] = SC_QUAD_SHUFFLE(b.v[2], b.v[3], 1, 3, 1, 3);
     return r;
 }
+static inline void SC_KERNEL(sc_lanes_transposed)(sc_floats4 r[4], sc_floats4 *x, sc_floats4 *y,
+                                                  sc_floats4 *z)
+{
+    sc_quad_transpose(r);
+    *x = r[0];
+    *y = r[1];
+    *z = r[2];
+}
 static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, sc_floats4 *x,
                                                    sc_floats4 *y, sc_floats4 *z)
 {
@@ -381,10 +407,7 @@ static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, sc
     int i;
     SC_UNROLL
     for (i = 0; i < 4; i++) r[i] = SC_QUAD(loadu_ps)(point[i]);
-    sc_quad_transpose(r);
-    *x = r[0];
-    *y = r[1];
-    *z = r[2];
+    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
 }
 static inline lanes lanes_four(const float *f)
 {
@@ -435,6 +458,17 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
     int i;
     for (i = 0; i < SC_LANES_PARTS; i++) SC_KERNEL(sc_lanes_points_part)
     (point + i * SC_LANES_WIDTH, &x->v[i], &y->v[i], &z->v[i]);
+}
+static inline void lanes_turned(const float *at, lanes row[3])
+{
+    int i, k;
+    SC_UNROLL
+    for (i = 0; i < SC_LANES_PARTS; i++) {
+        SC_LANES_PART r[4];
+        SC_UNROLL
+        for (k = 0; k < 4; k++) r[k] = SC_LANES_OF(loadu_ps)(at + 16 * k + i * SC_LANES_WIDTH);
+        SC_KERNEL(sc_lanes_transposed)(r, &row[0].v[i], &row[1].v[i], &row[2].v[i]);
+    }
 }
 
 #  undef SC_LANES_PART
@@ -537,6 +571,12 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
         y->v[i] = point[i][1];
         z->v[i] = point[i][2];
     }
+}
+static inline void lanes_turned(const float *at, lanes row[3])
+{
+    int i, k;
+    for (i = 0; i < SC_LANES_COUNT; i++)
+        for (k = 0; k < 3; k++) row[k].v[i] = at[16 * (i % 4) + i / 4 * 4 + k];
 }
 static inline lanes lanes_four(const float *f)
 {

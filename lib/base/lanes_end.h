@@ -32,6 +32,7 @@
 #undef lanes_least
 #undef lanes_most
 #undef lanes_points
+#undef lanes_turned
 #undef lanes_four
 #undef lanes_each_four
 #undef lanes_store_least

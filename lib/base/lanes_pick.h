@@ -10,7 +10,8 @@
  * floats of these numbers of a row, in memory or not. lanes_choose takes from a where the mask is set, else from b.
  * lanes_same compares bits, whatever they mean; lanes_either joins two masks.
  * lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from three rows of coordinates by three of
- * numbers; lanes_corners_at finds the former in memory.
+ * numbers; lanes_corners_at finds the former in memory, in turned places (see base/lanes.h); lanes_corners_through takes
+ * the triangles of sixteen numbers below sixteen instead of all in order.
  *
  * No guard, as in base/lanes.h; base/lanes_pick_end.h ends it.
  */
@@ -26,6 +27,7 @@
 #define lanes_either SC_KERNEL(sc_lanes_either)
 #define lanes_corners SC_KERNEL(sc_lanes_corners)
 #define lanes_corners_at SC_KERNEL(sc_lanes_corners_at)
+#define lanes_corners_through SC_KERNEL(sc_lanes_corners_through)
 #define lanes_list SC_KERNEL(sc_lanes_list)
 #define lanes_list_from SC_KERNEL(sc_lanes_list_from)
 
@@ -281,6 +283,30 @@ static inline void lanes_corners(const lanes at[3], const uint8_t *where, lanes 
             for (k = 0; k < 3; k++) corner[c][k].v[i] = x[k];
         }
 }
+static inline void lanes_corners_at(const float *at, const uint8_t *where, lanes corner[3][3])
+{
+    sc_floats4 x[4];
+    int c, i, k;
+    for (c = 0; c < 3; c++)
+        for (i = 0; i < 4; i++, where += 4) {
+            SC_UNROLL
+            for (k = 0; k < 4; k++)
+                x[k] = SC_QUAD(loadu_ps)(at + 16 * (where[k] & 3) + where[k] / 4 * 4);
+            sc_quad_transpose(x);
+            SC_UNROLL
+            for (k = 0; k < 3; k++) corner[c][k].v[i] = x[k];
+        }
+}
+static inline void lanes_corners_through(const float *at, const uint8_t *where,
+                                         const uint8_t *numbers, lanes corner[3][3])
+{
+    uint8_t through[3 * SC_LANES_COUNT];
+    int c, i;
+    for (c = 0; c < 3; c++)
+        for (i = 0; i < SC_LANES_COUNT; i++)
+            through[SC_LANES_COUNT * c + i] = where[SC_LANES_COUNT * c + numbers[i]];
+    lanes_corners_at(at, through, corner);
+}
 
 #else
 
@@ -294,14 +320,24 @@ static inline void lanes_corners(const lanes at[3], const uint8_t *where, lanes 
         for (k = 0; k < 3; k++) corner[c][k] = lanes_pick_of(at[k], from);
     }
 }
-
-#endif
-
 static inline void lanes_corners_at(const float *at, const uint8_t *where, lanes corner[3][3])
 {
     lanes row[3];
-    int k;
-    SC_UNROLL
-    for (k = 0; k < 3; k++) row[k] = lanes_load(at + SC_LANES_COUNT * k);
+    lanes_turned(at, row);
     lanes_corners(row, where, corner);
 }
+static inline void lanes_corners_through(const float *at, const uint8_t *where,
+                                         const uint8_t *numbers, lanes corner[3][3])
+{
+    lanes row[3];
+    int c, k;
+    lanes_turned(at, row);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        lanes_index from = lanes_index_through(where + SC_LANES_COUNT * c, numbers);
+        SC_UNROLL
+        for (k = 0; k < 3; k++) corner[c][k] = lanes_pick_of(row[k], from);
+    }
+}
+
+#endif

@@ -13,5 +13,6 @@
 #undef lanes_either
 #undef lanes_corners
 #undef lanes_corners_at
+#undef lanes_corners_through
 #undef lanes_list
 #undef lanes_list_from

@@ -1,12 +1,12 @@
 /*
- * Sixteen rows of sixteen floats each, of which one thing is found at once. For the instruction set that base/lanes.h,
- * included before, is for.
+ * Sixteen rows of sixteen floats or points each, of which one thing is found at once. For the instruction set that
+ * base/lanes.h, included before, is for.
  *
  * SPDX-License-Identifier: MIT
  *
  * lanes_signs_of takes the signs of a row, and lanes_all_negative makes bit i if all of row i are set, as they are of
- * what is below 0. lanes_rows_ends makes lane i the least and the most of row i of memory, rows being `stride` floats
- * apart; none is NaN.
+ * what is below 0. lanes_rows_ends makes lane i the least and the most x, y and z of row i of memory, sixteen points of
+ * four floats in any order, rows being `stride` floats apart; none is NaN.
  *
  * No guard, as in base/lanes.h; base/lanes_rows_end.h ends it.
  */
@@ -136,97 +136,115 @@ static inline unsigned lanes_all_negative(const lanes_signs row[16])
 #endif
 
 /*
- * Rows are halved, two becoming one register, until each 128 bits are of one row, four rows apart; four such registers, of
- * rows that follow each other, are transposed.
+ * Of sixteen points in a register each 128 bits are joined, two registers becoming one, until each is of one row, four
+ * rows apart; four such registers, of rows that follow each other, are transposed.
  */
-#define SC_LANES_TRANSPOSED(prefix, name, r, result)                                               \
-  r[0] = prefix##_##name##_ps(prefix##_unpacklo_ps(r[0], r[1]), prefix##_unpackhi_ps(r[0], r[1])); \
-  r[2] = prefix##_##name##_ps(prefix##_unpacklo_ps(r[2], r[3]), prefix##_unpackhi_ps(r[2], r[3])); \
-  result = prefix##_##name##_ps(prefix##_shuffle_ps(r[0], r[2], 0x44),                             \
-                                prefix##_shuffle_ps(r[0], r[2], 0xee))
 #if SC_LANES_AVX512
 
-static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes *least, lanes *most)
+#  define SC_LANES_JOINED(name, a, b)                                                              \
+    _mm512_##name##_ps(_mm512_shuffle_f32x4(a, b, 0x44), _mm512_shuffle_f32x4(a, b, 0xee))
+#  define SC_LANES_JOINED_AGAIN(name, a, b)                                                        \
+    _mm512_##name##_ps(_mm512_shuffle_f32x4(a, b, 0x88), _mm512_shuffle_f32x4(a, b, 0xdd))
+static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes least[3], lanes most[3])
 {
     __m512 low[4], high[4];
-    int i;
+    int i, j, k;
     SC_UNROLL
     for (i = 0; i < 4; i++) {
-        const float *p = row + stride * (uint64_t)i;
-        __m512 r0 = _mm512_loadu_ps(p), r1 = _mm512_loadu_ps(p + 4 * stride);
-        __m512 r2 = _mm512_loadu_ps(p + 8 * stride), r3 = _mm512_loadu_ps(p + 12 * stride);
-        __m512 a = _mm512_shuffle_f32x4(r0, r1, 0x44), b = _mm512_shuffle_f32x4(r0, r1, 0xee);
-        __m512 c = _mm512_shuffle_f32x4(r2, r3, 0x44), d = _mm512_shuffle_f32x4(r2, r3, 0xee);
-        __m512 ab = _mm512_min_ps(a, b), cd = _mm512_min_ps(c, d);
-        low[i] =
-            _mm512_min_ps(_mm512_shuffle_f32x4(ab, cd, 0x88), _mm512_shuffle_f32x4(ab, cd, 0xdd));
-        ab = _mm512_max_ps(a, b), cd = _mm512_max_ps(c, d);
-        high[i] =
-            _mm512_max_ps(_mm512_shuffle_f32x4(ab, cd, 0x88), _mm512_shuffle_f32x4(ab, cd, 0xdd));
+        __m512 a[4], b[4];
+        SC_UNROLL
+        for (j = 0; j < 4; j++) {
+            const float *p = row + stride * (uint64_t)(i + 4 * j);
+            a[j] = b[j] = _mm512_loadu_ps(p);
+            SC_UNROLL
+            for (k = 1; k < 4; k++) {
+                __m512 next = _mm512_loadu_ps(p + 16 * k);
+                a[j] = _mm512_min_ps(a[j], next);
+                b[j] = _mm512_max_ps(b[j], next);
+            }
+        }
+        a[0] = SC_LANES_JOINED(min, a[0], a[1]), a[2] = SC_LANES_JOINED(min, a[2], a[3]);
+        b[0] = SC_LANES_JOINED(max, b[0], b[1]), b[2] = SC_LANES_JOINED(max, b[2], b[3]);
+        low[i] = SC_LANES_JOINED_AGAIN(min, a[0], a[2]);
+        high[i] = SC_LANES_JOINED_AGAIN(max, b[0], b[2]);
     }
-    SC_LANES_TRANSPOSED(_mm512, min, low, *least);
-    SC_LANES_TRANSPOSED(_mm512, max, high, *most);
+    SC_KERNEL(sc_lanes_transposed)(low, &least[0], &least[1], &least[2]);
+    SC_KERNEL(sc_lanes_transposed)(high, &most[0], &most[1], &most[2]);
 }
+#  undef SC_LANES_JOINED
+#  undef SC_LANES_JOINED_AGAIN
 
 #elif SC_LANES_AVX2
 
-static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes *least, lanes *most)
+#  define SC_LANES_JOINED(name, a, b)                                                              \
+    _mm256_##name##_ps(_mm256_permute2f128_ps(a, b, 0x20), _mm256_permute2f128_ps(a, b, 0x31))
+static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes least[3], lanes most[3])
 {
     __m256 low[4], high[4];
-    int i, half;
+    int i, j, k, half;
     SC_UNROLL
     for (half = 0; half < 2; half++) {
         SC_UNROLL
         for (i = 0; i < 4; i++) {
-            const float *p = row + stride * (uint64_t)(8 * half + i), *q = p + 4 * stride;
-            __m256 p0 = _mm256_loadu_ps(p), p1 = _mm256_loadu_ps(p + 8);
-            __m256 q0 = _mm256_loadu_ps(q), q1 = _mm256_loadu_ps(q + 8);
-            __m256 a = _mm256_min_ps(p0, p1), b = _mm256_min_ps(q0, q1);
-            low[i] = _mm256_min_ps(_mm256_permute2f128_ps(a, b, 0x20),
-                                   _mm256_permute2f128_ps(a, b, 0x31));
-            a = _mm256_max_ps(p0, p1), b = _mm256_max_ps(q0, q1);
-            high[i] = _mm256_max_ps(_mm256_permute2f128_ps(a, b, 0x20),
-                                    _mm256_permute2f128_ps(a, b, 0x31));
+            __m256 a[2], b[2];
+            SC_UNROLL
+            for (j = 0; j < 2; j++) {
+                const float *p = row + stride * (uint64_t)(8 * half + i + 4 * j);
+                a[j] = b[j] = _mm256_loadu_ps(p);
+                SC_UNROLL
+                for (k = 1; k < 8; k++) {
+                    __m256 next = _mm256_loadu_ps(p + 8 * k);
+                    a[j] = _mm256_min_ps(a[j], next);
+                    b[j] = _mm256_max_ps(b[j], next);
+                }
+            }
+            low[i] = SC_LANES_JOINED(min, a[0], a[1]);
+            high[i] = SC_LANES_JOINED(max, b[0], b[1]);
         }
-        SC_LANES_TRANSPOSED(_mm256, min, low, least->v[half]);
-        SC_LANES_TRANSPOSED(_mm256, max, high, most->v[half]);
+        SC_KERNEL(sc_lanes_transposed)
+        (low, &least[0].v[half], &least[1].v[half], &least[2].v[half]);
+        SC_KERNEL(sc_lanes_transposed)
+        (high, &most[0].v[half], &most[1].v[half], &most[2].v[half]);
     }
 }
+#  undef SC_LANES_JOINED
 
 #elif SC_LANES_QUADS
 
-static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes *least, lanes *most)
+static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes least[3], lanes most[3])
 {
     sc_floats4 low[4], high[4];
-    int i, k;
+    int i, j, k;
     for (i = 0; i < 4; i++) {
         SC_UNROLL
-        for (k = 0; k < 4; k++) {
-            const float *p = row + stride * (uint64_t)(4 * i + k);
-            sc_floats4 r0 = SC_QUAD(loadu_ps)(p), r1 = SC_QUAD(loadu_ps)(p + 4);
-            sc_floats4 r2 = SC_QUAD(loadu_ps)(p + 8), r3 = SC_QUAD(loadu_ps)(p + 12);
-            low[k] = SC_QUAD(min_ps)(SC_QUAD(min_ps)(r0, r1), SC_QUAD(min_ps)(r2, r3));
-            high[k] = SC_QUAD(max_ps)(SC_QUAD(max_ps)(r0, r1), SC_QUAD(max_ps)(r2, r3));
+        for (j = 0; j < 4; j++) {
+            const float *p = row + stride * (uint64_t)(4 * i + j);
+            low[j] = high[j] = SC_QUAD(loadu_ps)(p);
+            SC_UNROLL
+            for (k = 1; k < 16; k++) {
+                sc_floats4 next = SC_QUAD(loadu_ps)(p + 4 * k);
+                low[j] = SC_QUAD(min_ps)(low[j], next);
+                high[j] = SC_QUAD(max_ps)(high[j], next);
+            }
         }
-        sc_quad_transpose(low);
-        sc_quad_transpose(high);
-        least->v[i] =
-            SC_QUAD(min_ps)(SC_QUAD(min_ps)(low[0], low[1]), SC_QUAD(min_ps)(low[2], low[3]));
-        most->v[i] =
-            SC_QUAD(max_ps)(SC_QUAD(max_ps)(high[0], high[1]), SC_QUAD(max_ps)(high[2], high[3]));
+        SC_KERNEL(sc_lanes_transposed)(low, &least[0].v[i], &least[1].v[i], &least[2].v[i]);
+        SC_KERNEL(sc_lanes_transposed)(high, &most[0].v[i], &most[1].v[i], &most[2].v[i]);
     }
 }
 
 #else
 
-static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes *least, lanes *most)
+static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes least[3], lanes most[3])
 {
-    int i;
+    int i, k;
     for (i = 0; i < SC_LANES_COUNT; i++, row += stride) {
-        least->v[i] = lanes_least(lanes_load(row));
-        most->v[i] = lanes_most(lanes_load(row));
+        lanes at[3];
+        lanes_turned(row, at);
+        for (k = 0; k < 3; k++) {
+            least[k].v[i] = lanes_least(at[k]);
+            most[k].v[i] = lanes_most(at[k]);
+        }
     }
 }
 
 #endif
-#undef SC_LANES_TRANSPOSED

@@ -87,8 +87,7 @@ static uint32_t SC_KERNEL(cone)(const float *at, const uint8_t *where)
 {
     lanes row[1][3];
     uint16_t mask;
-    int k;
-    EACH(k, 3) row[0][k] = lanes_load(at + SC_LEAF_POINTS * k);
+    lanes_turned(at, row[0]);
     SC_KERNEL(masks_of)(row, where, &mask, 1);
     return mask;
 }
@@ -102,21 +101,17 @@ static SC_INLINE uint32_t SC_KERNEL(load_some)(const sc_model *model, const sc_w
     const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)first;
     const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)first;
     uint16_t *mask = w->mask + sc_model_first_leaf_patch(model) + first;
-    float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)first;
     float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)first;
     for (; end - first >= (uint32_t)count; first += (uint32_t)count) {
         lanes row[CONES][3];
-        int i, k;
+        int i;
         EACH(i, count)
         SC_KERNEL(points_of)
         (&frame, point + SC_LEAF_POINTS * i, is_double, stride, row[i],
          each + 4 * SC_LEAF_POINTS * i);
         if (cones) SC_KERNEL(masks_of)(row, where, mask, count);
-        EACH(i, count)
-        EACH(k, 3) lanes_store(at + SC_LEAF_POINTS * (3 * i + k), row[i][k]);
         point += SC_LEAF_POINTS * count;
         where += 3 * SC_LEAF_MAX * count;
-        at += 3 * SC_LEAF_POINTS * count;
         each += 4 * SC_LEAF_POINTS * count;
         mask += count;
     }

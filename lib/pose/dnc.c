@@ -79,7 +79,7 @@ static uint32_t cone_of_triangle(const sc_model *model, const sc_workspace *w, u
     uint32_t k;
     for (k = 0; k < 3; k++)
         memset(where + SC_LEAF_MAX * k, corner[SC_LEAF_MAX * k + i], SC_LEAF_MAX);
-    return sc_pose_kernels_of(w)->cone(w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf, where);
+    return sc_pose_kernels_of(w)->cone(w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, where);
 }
 
 int sc_dnc_validate(const sc_model *model, const sc_workspace *w)

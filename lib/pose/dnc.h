@@ -15,7 +15,7 @@
 
 enum { SC_DNC_DIRECTIONS = 14 };
 
-/* Fills mask, and leaf_at. */
+/* Fills mask, and point_at. */
 void sc_dnc_update(const sc_model *model, sc_workspace *workspace);
 
 /* For debug builds and tests: 1 if every patch's mask is the AND of those of its triangles, each

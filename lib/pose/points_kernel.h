@@ -8,7 +8,7 @@
  * the three coordinates of a vertex, which may be the last thing in the caller's memory.
  *
  * points_of gives sixteen points as x, y and z; and, unless each is NULL, point by point as four floats, the last of which
- * means nothing: points 0, 4, 8, 12, 1, 5 and so on (see build/loops.h).
+ * is 0: points 0, 4, 8, 12, 1, 5 and so on (see build/loops.h).
  */
 
 #if SC_LANES_AVX512
@@ -160,6 +160,7 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
     int i, j, k;
     SC_UNROLL
     for (i = 0; i < 4; i++) {
+        sc_floats4 one[4];
         SC_UNROLL
         for (k = 0; k < 3; k++) {
             sc_doubles2 d[2];
@@ -171,12 +172,13 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
                                         SC_KERNEL(sc_points_one)(from + q, is_double));
                 d[j] = SC_QUAD(mul_pd)(SC_QUAD(sub_pd)(d[j], f->center[k]), f->scale);
             }
-            at[k].v[i] = sc_quad_rounded(d[0], d[1]);
-            if (each) {
-                float one[4];
-                memcpy(one, &at[k].v[i], sizeof one);
-                for (j = 0; j < 4; j++) each[16 * j + 4 * i + k] = one[j];
-            }
+            at[k].v[i] = one[k] = sc_quad_rounded(d[0], d[1]);
+        }
+        if (each) {
+            one[3] = SC_QUAD(set1_ps)(0);
+            sc_quad_transpose(one);
+            SC_UNROLL
+            for (j = 0; j < 4; j++) SC_QUAD(storeu_ps)(each + 16 * j + 4 * i, one[j]);
         }
     }
 }
@@ -193,12 +195,13 @@ static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_wor
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
                                            int is_double, uint64_t stride, lanes at[3], float *each)
 {
-    float row[3][SC_LANES_COUNT], unit[3];
+    float row[3][SC_LANES_COUNT], unit[4];
     int i, k;
     (void)is_double;
     (void)stride;
     for (i = 0; i < SC_LANES_COUNT; i++) {
         sc_positions_unit(*f, point[i], unit);
+        unit[3] = 0;
         for (k = 0; k < 3; k++) row[k][i] = unit[k];
         if (each) memcpy(each + 16 * (i % 4) + i / 4 * 4, unit, sizeof unit);
     }

@@ -17,10 +17,10 @@ typedef struct sc_pose_kernels {
     int (*extent_of_doubles)(const double *positions, uint64_t count, double low[3],
                              double high[3]);
     int (*extent_of_floats)(const float *positions, uint64_t count, double low[3], double high[3]);
-    /* Fills leaf_at and point_at of leaf clusters first to end - 1, and their masks if cones; see pose/dnc.h. */
+    /* Fills point_at of leaf clusters first to end - 1, and their masks if cones; see pose/dnc.h. */
     void (*load_leaves)(const sc_model *model, sc_workspace *workspace, uint32_t first,
                         uint32_t end, int cones);
-    /* The normal cone of one cluster's points, and SC_LEAF_MAX triangles given as in leaf_corner. */
+    /* The normal cone of one cluster's points, as in point_at, and SC_LEAF_MAX triangles given as in leaf_corner. */
     uint32_t (*cone)(const float *at, const uint8_t *where);
     /* Boxes of leaf clusters, then of patches of one level by those of their children; see pose/refit.h. */
     void (*refit_leaves)(const sc_model *model, sc_workspace *workspace, uint32_t first,

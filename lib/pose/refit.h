@@ -11,7 +11,7 @@
 
 #include "pose/workspace.h"
 
-/* Fills patch_boxes, and leaf_at, unless they are ready. */
+/* Fills patch_boxes, and point_at, unless they are ready. */
 void sc_refit_boxes(const sc_model *model, sc_workspace *workspace);
 
 #endif

@@ -15,32 +15,31 @@ static inline lanes SC_KERNEL(step)(lanes bound)
 static SC_INLINE void SC_KERNEL(boxes_of)(const float *at, uint64_t stride, lanes side[6])
 {
     int k;
+    lanes_rows_ends(at, stride, side, side + 3);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        lanes low, high;
-        lanes_rows_ends(at + SC_LEAF_POINTS * k, stride, &low, &high);
-        side[k] = lanes_subtract(low, SC_KERNEL(step)(low));
-        side[k + 3] = lanes_add(high, SC_KERNEL(step)(high));
+        side[k] = lanes_subtract(side[k], SC_KERNEL(step)(side[k]));
+        side[k + 3] = lanes_add(side[k + 3], SC_KERNEL(step)(side[k + 3]));
     }
 }
 
 static void SC_KERNEL(refit_leaves)(const sc_model *model, sc_workspace *w, uint32_t first,
                                     uint32_t end)
 {
-    const uint32_t patch = sc_model_first_leaf_patch(model), length = 3 * SC_LEAF_POINTS;
+    const uint32_t patch = sc_model_first_leaf_patch(model), length = 4 * SC_LEAF_POINTS;
     uint32_t leaf = first;
     lanes side[6];
     float one[SC_LANES_COUNT];
     int k;
     while (leaf < end && end - first >= SC_LANES_COUNT) {
         if (end - leaf < SC_LANES_COUNT) leaf = end - SC_LANES_COUNT; /* some once more */
-        SC_KERNEL(boxes_of)(w->leaf_at + length * (uint64_t)leaf, length, side);
+        SC_KERNEL(boxes_of)(w->point_at + length * (uint64_t)leaf, length, side);
         SC_UNROLL
         for (k = 0; k < 6; k++) lanes_store(w->patch_boxes.side[k] + patch + leaf, side[k]);
         leaf += SC_LANES_COUNT;
     }
     for (; leaf < end; leaf++) { /* fewer than sixteen: each sixteen times */
-        SC_KERNEL(boxes_of)(w->leaf_at + length * (uint64_t)leaf, 0, side);
+        SC_KERNEL(boxes_of)(w->point_at + length * (uint64_t)leaf, 0, side);
         for (k = 0; k < 6; k++) {
             lanes_store(one, side[k]);
             w->patch_boxes.side[k][patch + leaf] = one[0];

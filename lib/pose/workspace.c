@@ -160,8 +160,6 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     int k;
-    w->leaf_at =
-        (float *)place(block, &at, 3 * SC_LEAF_POINTS * (uint64_t)model->leaf_count, sizeof(float));
     w->point_at =
         (float *)place(block, &at, 4 * SC_LEAF_POINTS * (uint64_t)model->leaf_count, sizeof(float));
     for (k = 0; k < 6; k++)

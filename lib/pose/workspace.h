@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | leaf_at | point_at | patch boxes | mask | prospect | bounds or all_ready |
+ *     | sc_workspace | point_at | patch boxes | mask | prospect | bounds or all_ready |
  *       bounds_tick | all_known | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: contour, walk,
@@ -210,12 +210,9 @@ struct sc_workspace {
     double center[3];  /* of the box of all points */
     double radius;     /* largest distance of a coordinate from center */
     double scale;      /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 */
-    float *
-        leaf_at; /* 3 SC_LEAF_POINTS per leaf: x, then y, then z of its points in the unit box, that is
-                          scale * (position - center), at most 1 */
-    float *
-        point_at; /* 4 SC_LEAF_POINTS per leaf: x, y, z of the same points and what means nothing; in turned
-                        places, see build/loops.h */
+    float *point_at;   /* 4 SC_LEAF_POINTS per leaf: x, y, z of its points in the unit box, that is
+                          scale * (position - center), at most 1, and 0; in turned places, see
+                          build/loops.h */
     uint32_t leaves_ready;
     sc_boxes patch_boxes; /* patch_end */
     uint32_t boxes_ready;

@@ -44,18 +44,19 @@ static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const s
 static inline lanes SC_KERNEL(along)(const sc_query_state *state, uint32_t leaf,
                                      const float direction[3])
 {
-    const float *at = state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
-    lanes x = lanes_multiply(lanes_all(direction[0]), lanes_load(at));
-    lanes y = lanes_multiply(lanes_all(direction[1]), lanes_load(at + SC_LEAF_POINTS));
-    lanes z = lanes_multiply(lanes_all(direction[2]), lanes_load(at + 2 * SC_LEAF_POINTS));
-    return lanes_add(lanes_add(x, y), z);
+    lanes at[3];
+    int k;
+    lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) at[k] = lanes_multiply(lanes_all(direction[k]), at[k]);
+    return lanes_add(lanes_add(at[0], at[1]), at[2]);
 }
 
 /* The corners of a leaf cluster's triangles. */
 static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t leaf,
                                            lanes x[3][3])
 {
-    lanes_corners_at(state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf,
+    lanes_corners_at(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf,
                      sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
 }
 
@@ -211,7 +212,7 @@ static float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t
 /* Triangles of a leaf cluster as they are picked: sixteen by number. */
 typedef struct SC_KERNEL(picked) {
     const sc_leaf_ready *ready;
-    const float *at;        /* its points */
+    const float *points;    /* see sc_workspace.point_at */
     const uint8_t *corner;  /* see sc_model.leaf_corner */
     const uint8_t *numbers; /* of the triangles */
 } SC_KERNEL(picked);
@@ -219,13 +220,7 @@ typedef struct SC_KERNEL(picked) {
 /* The corners of these. */
 static inline void SC_KERNEL(pick_corners)(const SC_KERNEL(picked) * t, lanes x[3][3])
 {
-    int k, c;
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        lanes_index i = lanes_index_through(t->corner + SC_LEAF_MAX * k, t->numbers);
-        SC_UNROLL
-        for (c = 0; c < 3; c++) x[k][c] = lanes_pick(t->at + SC_LEAF_POINTS * c, i);
-    }
+    lanes_corners_through(t->points, t->corner, t->numbers, x);
 }
 
 /* What a distance from a plane, up to a factor, may be off by. */
@@ -331,8 +326,8 @@ static unsigned SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERN
 static inline void SC_KERNEL(begin_picking)(const sc_query_state *state, uint32_t leaf,
                                             int is_upper, SC_KERNEL(picked) * t)
 {
+    t->points = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
     t->ready = SC_KERNEL(ready)(state, leaf, is_upper);
-    t->at = state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
     t->corner = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
     t->numbers = NULL;
 }
@@ -427,11 +422,9 @@ static unsigned SC_KERNEL(drop_by_planes)(const SC_KERNEL(picked) * a, const SC_
     lanes_index corner[3];
     unsigned count = 0, r;
     int k;
+    lanes_turned(b->points, at);
     SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        at[k] = lanes_load(b->at + SC_LEAF_POINTS * k);
-        corner[k] = lanes_index_load(b->corner + SC_LEAF_MAX * k);
-    }
+    for (k = 0; k < 3; k++) corner[k] = lanes_index_load(b->corner + SC_LEAF_MAX * k);
     lanes_store(above, lanes_add(lanes_load(a->ready->offset), bound));
     lanes_store(below, lanes_subtract(lanes_load(a->ready->offset), bound));
     for (r = 0; r < rows; r++) {
@@ -523,10 +516,9 @@ static inline void SC_KERNEL(fetch_ready)(const sc_workspace *w, uint32_t leaf)
 
 static inline void SC_KERNEL(fetch_points)(const sc_workspace *w, uint32_t leaf)
 {
-    const float *at = w->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf;
-    sc_fetch(at);
-    sc_fetch(at + SC_LEAF_POINTS);
-    sc_fetch(at + 2 * SC_LEAF_POINTS);
+    const float *at = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
+    int k;
+    for (k = 0; k < 4; k++) sc_fetch(at + SC_LEAF_POINTS * k);
     if (w->slab[leaf].tick != w->pose_tick) SC_KERNEL(fetch_ready)(w, leaf);
 }
 

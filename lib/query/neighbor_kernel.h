@@ -37,7 +37,7 @@ static void SC_KERNEL(find_corners)(const sc_query_state *state, uint32_t leaf,
     int k, c;
     memcpy(point, sc_model_leaf_point(state->model) + SC_LEAF_POINTS * (uint64_t)leaf,
            sizeof point);
-    lanes_corners_at(state->workspace->leaf_at + 3 * SC_LEAF_POINTS * (uint64_t)leaf, where, x);
+    lanes_corners_at(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, where, x);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         lanes_store(corners->point[k],
