@@ -270,7 +270,7 @@ static bool take_statistics(measure_state *s, measure_lane *lane, uint32_t frame
     method_runner *const runner = &lane->runners[method];
     measure_record *const record = &s->m->records[frame * s->m->method_count + method];
     const int queries = frame == 0 && !runner->kind->is_hash && !runner->kind->is_step ? 5 : 1;
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (int q = 0; q < queries; q++) {
         sc_stats stats;
         double milliseconds;

@@ -26,7 +26,7 @@ static size_t longest_axis(const uint32_t *triangles, size_t corner_count, const
     size_t axis = 0;
     double longest = -1.0;
     for (size_t k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY;
+        double low = HUGE_VAL, high = -HUGE_VAL;
         for (size_t i = 0; i < corner_count; i++) {
             low = fmin(low, positions[3 * (size_t)triangles[i] + k]);
             high = fmax(high, positions[3 * (size_t)triangles[i] + k]);

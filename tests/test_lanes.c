@@ -59,8 +59,14 @@
 /* Of any kind: small numbers, so that some are the same; or large and small ones. */
 static double number(int plain)
 {
-    static const double special[8] = {0.0,     -0.0,     HUGE_VAL, -HUGE_VAL,
-                                      FLT_MIN, -FLT_MIN, FLT_MAX,  -FLT_MAX};
+    static const double special[8] = {0.0,
+                                      -0.0,
+                                      HUGE_VAL,
+                                      -HUGE_VAL,
+                                      (double)FLT_MIN,
+                                      -(double)FLT_MIN,
+                                      (double)FLT_MAX,
+                                      -(double)FLT_MAX};
     uint32_t kind = test_random_below(8);
     if (!plain && kind == 0) return special[test_random_below(8)];
     if (!plain && kind == 1) return (double)NAN;

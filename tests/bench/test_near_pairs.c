@@ -23,7 +23,7 @@ static bool are_near(const uint32_t *a, const uint32_t *b)
         }
     }
     for (size_t k = 0; k < 3; k++) {
-        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
         for (int i = 0; i < 3; i++) {
             low[0] = fmin(low[0], positions[3 * a[i] + k]);
             high[0] = fmax(high[0], positions[3 * a[i] + k]);
