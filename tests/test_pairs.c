@@ -602,6 +602,37 @@ static void one_workspace_many_poses(void)
     soup_free(&s);
 }
 
+/* A fan that lies flat, and the same folded over itself in its plane, in turn in one workspace. */
+static void fans_that_fold_flat(void)
+{
+    soup s = soup_cloth(2, 2);
+    sc_mesh mesh = input_plain_mesh(&s);
+    sc_model *model = NULL;
+    sc_workspace *workspace = NULL;
+    if (!CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) return;
+    if (CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK)) {
+        double *pose = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
+        sc_pose input = input_plain_pose(pose, s.vertex_count);
+        for (uint32_t frame = 0; frame < 2 * s.vertex_count; ++frame) {
+            oracle_answer answer;
+            trial t = {"fan", &s, pose, 0, model, workspace, &input, "fast", 0, NULL};
+            memcpy(pose, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
+            for (uint32_t k = 0; frame % 2 && k < 3;
+                 ++k) /* one goes to the other side of the middle */
+                pose[3 * (size_t)(frame / 2) + k] =
+                    1.75 * pose[3 * 4 + k] - 0.75 * pose[3 * (size_t)(frame / 2) + k];
+            oracle_solve(pose, s.vertex_count, s.triangles, s.triangle_count, NULL, &answer);
+            t.answer = &answer;
+            check_pose(&t);
+            oracle_free(&answer);
+        }
+        free(pose);
+    }
+    sc_workspace_free(workspace);
+    sc_model_free(model);
+    soup_free(&s);
+}
+
 /* Every capacity from none to one more than needed. */
 static void short_buffers(void)
 {
@@ -725,4 +756,5 @@ static void meshes_of_the_folder(void)
 SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
              SC_TEST(nearly_coplanar), SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell),
              SC_TEST(branched_discs), SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
-             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))
+             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
+             SC_TEST(meshes_of_the_folder))
