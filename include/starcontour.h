@@ -318,9 +318,9 @@ typedef struct sc_model sc_model;
 
 /*
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
- * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.6 to 1.6 microseconds a
- * triangle (regular grids least, irregular meshes of a million triangles most) and, while it runs, about
- * 320 bytes a triangle; with METIS 5 to 7 microseconds a triangle; with SC_MODEL_BOXES 0.2 to 0.4 microseconds and 190
+ * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.8 to 2 microseconds a
+ * triangle (regular grids least, irregular meshes of a million triangles most) and, while it runs, up to
+ * 370 bytes a triangle; with METIS 6 to 8 microseconds a triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 190
  * bytes a triangle.
  */
 SC_API sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model);
@@ -429,7 +429,7 @@ typedef struct sc_load_options {
  * query will rely on is checked first: a model that was made up by someone who knows the format may
  * give wrong answers, but no query on it reads or writes where it must not, or fails to end.
  *
- * About 0.03 microseconds a triangle in place, twice that with the copy. Either mode takes some 1.1
+ * About 0.04 microseconds a triangle in place, 0.1 with the copy. Either mode takes some 1.1
  * bytes a triangle from the allocator while it checks, and SC_LOAD_IN_PLACE nothing that stays.
  */
 SC_API sc_status sc_model_load(const void *data, uint64_t size, const sc_load_options *options,
