@@ -172,7 +172,8 @@ def heavy_contact(turns, peers):
         for (process,), rows_of in grouped(same, "beside").items():
             ours = next((r for r in rows_of if r["what"] == "exact"), None)
             for r in rows_of:
-                if r["peer"] == "starcontour" or not ours:
+                # who only says yes or no stops at the first pair
+                if r["peer"] == "starcontour" or not ours or "yes or no" in r["what"]:
                     continue
                 beside.append([scene, whole(frame), "%s %s" % (r["peer"], r["version"]),
                                r["what"].split(":")[0] + ": " + r["what"].split(":")[1].split(";")[0].strip()
@@ -243,7 +244,8 @@ def peers_compact(peers):
             row += [times(rest[0]) if rest else "–",
                     ratio(sum(r["ms"] for r in same), sum(ours[r["frame"]] for r in same))
                     if same else "–"]
-        rows.append(row)
+        if any(cell != "–" for cell in row[2:]):
+            rows.append(row)
     return table(["scene", "triangles"] + [title for _, _, name in columns
                                            for title in (name + ": rest", "mean")],
                  rows) if rows else ""
