@@ -97,10 +97,10 @@ static void list_loop(sc_simple_contour *c)
 /* Each chain is a tree of its own. */
 static void list_pieces(const sc_simple_contour *c)
 {
-    uint32_t i, start = 0;
+    uint32_t i, begin = 0;
     for (i = 0; i < c->count; i++) {
-        c->edges->piece[i] = start;
-        if (!is_edge(c, i)) start = i + 1;
+        c->edges->piece[i] = begin;
+        if (!is_edge(c, i)) begin = i + 1;
     }
 }
 
