@@ -573,63 +573,59 @@ static void every_partition(void)
     }
 }
 
-/* One model and one workspace through a whole motion. */
+/* One model and one workspace through a whole motion: move gets the rest pose and makes a frame's of it. */
+static void check_motion(const char *name, soup *s, uint32_t frames,
+                         void (*move)(const soup *s, double *pose, uint32_t frame, uint32_t frames))
+{
+    sc_mesh mesh = input_plain_mesh(s);
+    sc_model *model = NULL;
+    sc_workspace *workspace = NULL;
+    if (!CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) return;
+    if (CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK)) {
+        double *pose = (double *)test_allocate(3 * (size_t)s->vertex_count * sizeof(double));
+        sc_pose input = input_plain_pose(pose, s->vertex_count);
+        for (uint32_t frame = 0; frame < frames; ++frame) {
+            oracle_answer answer;
+            trial t = {name, s, pose, 0, model, workspace, &input, "fast", 0, NULL};
+            memcpy(pose, s->positions, 3 * (size_t)s->vertex_count * sizeof(double));
+            move(s, pose, frame, frames);
+            oracle_solve(pose, s->vertex_count, s->triangles, s->triangle_count, NULL, &answer);
+            t.answer = &answer;
+            check_pose(&t);
+            oracle_free(&answer);
+        }
+        free(pose);
+    }
+    sc_workspace_free(workspace);
+    sc_model_free(model);
+}
+
+static void twist_back(const soup *s, double *pose, uint32_t frame, uint32_t frames)
+{
+    soup_twist(pose, s->vertex_count, 3.0 * (frames - frame) / frames);
+}
+
 static void one_workspace_many_poses(void)
 {
     soup s = soup_cloth(8, 24);
-    uint32_t frames = test_iterations(24);
-    sc_mesh mesh = input_plain_mesh(&s);
-    sc_model *model = NULL;
-    sc_workspace *workspace = NULL;
-    if (!CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) return;
-    if (CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK)) {
-        double *pose = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
-        sc_pose input = input_plain_pose(pose, s.vertex_count);
-        for (uint32_t frame = 0; frame < frames; ++frame) {
-            oracle_answer answer;
-            trial t = {"motion", &s, pose, 0, model, workspace, &input, "fast", 0, NULL};
-            memcpy(pose, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
-            soup_twist(pose, s.vertex_count, 3.0 * (frames - frame) / frames);
-            oracle_solve(pose, s.vertex_count, s.triangles, s.triangle_count, NULL, &answer);
-            t.answer = &answer;
-            check_pose(&t);
-            oracle_free(&answer);
-        }
-        free(pose);
-    }
-    sc_workspace_free(workspace);
-    sc_model_free(model);
+    check_motion("motion", &s, test_iterations(24), twist_back);
     soup_free(&s);
 }
 
-/* A fan that lies flat, and the same folded over itself in its plane, in turn in one workspace. */
+/* In every other frame one vertex goes to the other side of the middle, vertex 4. */
+static void fold_flat(const soup *s, double *pose, uint32_t frame, uint32_t frames)
+{
+    double *p = pose + 3 * (size_t)(frame / 2);
+    (void)s;
+    (void)frames;
+    for (int k = 0; k < 3 && frame % 2; ++k) p[k] = 1.75 * pose[3 * 4 + k] - 0.75 * p[k];
+}
+
+/* A fan that lies flat, and the same folded over itself in its plane. */
 static void fans_that_fold_flat(void)
 {
     soup s = soup_cloth(2, 2);
-    sc_mesh mesh = input_plain_mesh(&s);
-    sc_model *model = NULL;
-    sc_workspace *workspace = NULL;
-    if (!CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) return;
-    if (CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK)) {
-        double *pose = (double *)test_allocate(3 * (size_t)s.vertex_count * sizeof(double));
-        sc_pose input = input_plain_pose(pose, s.vertex_count);
-        for (uint32_t frame = 0; frame < 2 * s.vertex_count; ++frame) {
-            oracle_answer answer;
-            trial t = {"fan", &s, pose, 0, model, workspace, &input, "fast", 0, NULL};
-            memcpy(pose, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
-            for (uint32_t k = 0; frame % 2 && k < 3;
-                 ++k) /* one goes to the other side of the middle */
-                pose[3 * (size_t)(frame / 2) + k] =
-                    1.75 * pose[3 * 4 + k] - 0.75 * pose[3 * (size_t)(frame / 2) + k];
-            oracle_solve(pose, s.vertex_count, s.triangles, s.triangle_count, NULL, &answer);
-            t.answer = &answer;
-            check_pose(&t);
-            oracle_free(&answer);
-        }
-        free(pose);
-    }
-    sc_workspace_free(workspace);
-    sc_model_free(model);
+    check_motion("fan", &s, 2 * s.vertex_count, fold_flat);
     soup_free(&s);
 }
 

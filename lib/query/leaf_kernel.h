@@ -262,23 +262,11 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], fl
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     const lanes bound = lanes_all(5 * edge * (extent + edge) + 9 * v * extent * extent);
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
-    lanes size[3], flat[2][3][2];
-    lanes_mask first, second;
+    lanes flat[2][3][2];
     unsigned apart = 0;
-    int s, k, i, c;
+    int s, k, i;
     SC_UNROLL
-    for (c = 0; c < 3; c++) size[c] = lanes_absolute(n[c]);
-    first = lanes_below(lanes_larger(size[1], size[2]), size[0]);
-    second = lanes_below(size[2], size[1]);
-    SC_UNROLL
-    for (s = 0; s < 2; s++) {
-        SC_UNROLL
-        for (k = 0; k < 3; k++) {
-            lanes last = lanes_choose(second, x[s][k][2], x[s][k][1]);
-            flat[s][k][0] = lanes_choose(first, x[s][k][1], x[s][k][0]);
-            flat[s][k][1] = lanes_choose(first, x[s][k][2], last);
-        }
-    }
+    for (s = 0; s < 2; s++) SC_KERNEL(see_along)(n, (const lanes(*)[3])x[s], flat[s]);
     SC_UNROLL
     for (s = 0; s < 2; s++) {
         SC_UNROLL

@@ -119,6 +119,25 @@ static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, in
     return lanes_bits(lanes_below(bound, least)) | lanes_bits(lanes_below(most, minus_bound));
 }
 
+/* Corners as they are seen along the axis nearest to n. */
+static inline void SC_KERNEL(see_along)(const lanes n[3], const lanes corner[3][3],
+                                        lanes flat[3][2])
+{
+    lanes size[3];
+    lanes_mask first, second;
+    int k, c;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) size[c] = lanes_absolute(n[c]);
+    first = lanes_below(lanes_larger(size[1], size[2]), size[0]);
+    second = lanes_below(size[2], size[1]);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        const lanes *p = corner[k];
+        flat[k][0] = lanes_choose(first, p[1], p[0]);
+        flat[k][1] = lanes_choose(first, p[2], lanes_choose(second, p[2], p[1]));
+    }
+}
+
 /* The lanes in which the line of an edge does, seen along the axis nearest to the normal n of one. */
 static unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, const lanes n[3],
                                       float extent)
@@ -127,23 +146,11 @@ static unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, const lane
     const lanes far = lanes_all(FLT_MAX), minus_far = lanes_all(-FLT_MAX);
     const lanes bound = lanes_all(5 * edge * (extent + edge) + 9 * v * extent * extent);
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
-    lanes size[3], flat[2][3][2];
-    lanes_mask first, second;
+    lanes flat[2][3][2];
     unsigned apart = 0;
-    int s, k, i, c;
+    int s, k, i;
     SC_UNROLL
-    for (c = 0; c < 3; c++) size[c] = lanes_absolute(n[c]);
-    first = lanes_below(lanes_larger(size[1], size[2]), size[0]);
-    second = lanes_below(size[2], size[1]);
-    SC_UNROLL
-    for (s = 0; s < 2; s++) {
-        SC_UNROLL
-        for (k = 0; k < 3; k++) {
-            const lanes *p = x->at[s][k];
-            flat[s][k][0] = lanes_choose(first, p[1], p[0]);
-            flat[s][k][1] = lanes_choose(first, p[2], lanes_choose(second, p[2], p[1]));
-        }
-    }
+    for (s = 0; s < 2; s++) SC_KERNEL(see_along)(n, x->at[s], flat[s]);
     SC_UNROLL
     for (s = 0; s < 2; s++) {
         SC_UNROLL
