@@ -204,7 +204,7 @@ static int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i)
     const lanes margin = lanes_all(4 * c->error), half = lanes_all(2 * c->error);
     const unsigned edges = SC_KERNEL(first_lanes)(c->count - i) & SC_KERNEL(edges_from)(c, i);
     SC_KERNEL(sc_edge_lanes) own, other;
-    lanes box[4], next[4], last[2], low, high;
+    lanes box[4], next[4], low, high;
     unsigned near[2], s;
     int k;
     SC_KERNEL(load_edges)(c, i, &own);
@@ -224,10 +224,10 @@ static int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i)
     for (s = 0; s < 2; s++) {
         SC_UNROLL
         for (k = 0; k < 2; k++) {
-            lanes p = s ? last[k] : other.q[k], q = lanes_load(e->at[k] + i + s + 3);
-            next[2 * k] = lanes_smaller(p, q);
-            next[2 * k + 1] = lanes_larger(p, q);
-            last[k] = q;
+            lanes q = lanes_load(e->at[k] + i + s + 3);
+            next[2 * k] = lanes_smaller(other.q[k], q);
+            next[2 * k + 1] = lanes_larger(other.q[k], q);
+            other.q[k] = q;
         }
         near[s] = SC_KERNEL(overlap_in_plane)(box, next);
     }
