@@ -273,12 +273,6 @@ class Results:
                 found.setdefault(key[:2], run)
         return found
 
-    def worst_frame(self, scene, triangles):
-        """The least of all frames: how many times as fast exact is as aabb there, by the least times of both."""
-        found = [row["aabb_min"] / row["exact_min"] for row in self.frames
-                 if (row["scene"], row["triangles"]) == (scene, triangles) and row.get("exact_min")]
-        return min(found) if found else None
-
 
 def overview(results):
     """The table that README.md shows: the largest size of each scene with all methods and 60 frames,
@@ -294,7 +288,7 @@ def overview(results):
         rows.append([scene, whole(triangles)] +
                     [figure(run[m]["mean_ms"]) for m in METHODS if m != "none"] +
                     [times(run["aabb"]["rest_ms"] / rest), times(run["aabb"]["mean_ms"] / average),
-                     times(results.worst_frame(scene, triangles)),
+                     times(targets.worst_frame(results.turns, scene, triangles)),
                      times(run["hash"]["mean_ms"] / average)])
     return table(["scene", "triangles"] + [m for m in METHODS if m != "none"] +
                  ["rest: × aabb", "mean: × aabb", "worst frame: × aabb", "mean: × hash"], rows)
@@ -730,7 +724,7 @@ def add_targets(out, results):
     out.append("## Contour test\n")
     out.append("`exact` beside `none`, which has no contour test; then at rest: the edges of contours that it looked\n"
                "at, and its time by clocks that take time themselves (update contours and contour).\n")
-    out.append(targets.contour_test(results.main_runs()))
+    out.append(targets.contour_test(results.main_runs(), results.turns))
     sections = (
         ("Threads of one query", "One thread and all, in turn in each frame; *least* and *most*: of single frames.\n",
          targets.threads_of_query(results.turns)),

@@ -46,11 +46,14 @@ def by_method(rows, key):
 
 def kind_of_turns(description, records):
     """What a run compares that is no main run, or None."""
+    methods = {r["method"] for r in records}
     if description["workers"] > 1:
         return "threads"
     if records[0]["near_pairs"] is not None:
         return "contact"
-    return "instructions" if any("@" in r["method"] for r in records) else None
+    if description["mode"] == "once" and methods in ({"exact", "none"}, {"exact", "aabb"}):
+        return "boxes" if "aabb" in methods else "contour"
+    return "instructions" if any("@" in method for method in methods) else None
 
 
 def collect_turns(description, records):
@@ -76,21 +79,44 @@ def collect_built(runs):
 # ---------------------------------------------------------------------------------------------------
 # Tables
 
-def contour_test(runs):
+def alone_by_two(turns, what):
+    """Milliseconds of both methods of runs that have two, frame by frame, by (scene, triangles)."""
+    return {key: (by_method(run, "ms"), by_method(run, "ms_min"))
+            for key, run in grouped((r for r in turns if r["what"] == what), "scene",
+                                    "triangles").items()}
+
+
+def contour_test(runs, turns):
     """runs: rows of summary.csv by method, by (scene, triangles)."""
-    rows = []
+    rows, two = [], alone_by_two(turns, "contour")
     for (scene, triangles), run in runs.items():
-        exact, none = run["exact"], run["none"]
+        exact = run["exact"]
         edges, clocked = exact.get("rest_contour_edges"), exact.get("rest_contour_ms")
-        rows.append([scene, whole(triangles), ratio(exact["rest_ms"], none["rest_ms"]),
-                     ratio(exact["mean_ms"], none["mean_ms"]),
-                     figure(edges / triangles if edges is not None else None),
-                     figure(1e6 * clocked / edges if edges else None),
-                     figure(1e6 * clocked / triangles if clocked is not None else None),
-                     "%.2f" % (1e6 * (exact["rest_ms"] - none["rest_ms"]) / triangles)])
+        row = [scene, whole(triangles)]
+        by_two = two.get((scene, triangles))
+        if by_two:
+            of_exact, of_none = by_two[0]["exact"], by_two[0]["none"]
+            row += [ratio(of_exact[0], of_none[0]),
+                    ratio(mean(of_exact.values()), mean(of_none.values()))]
+        else:
+            row += ["–", "–"]
+        row += [figure(edges / triangles if edges is not None else None),
+                figure(1e6 * clocked / edges if edges else None),
+                figure(1e6 * clocked / triangles if clocked is not None else None),
+                "%.2f" % (1e6 * (of_exact[0] - of_none[0]) / triangles) if by_two else "–"]
+        rows.append(row)
     return table(["scene", "triangles", "rest: exact ÷ none", "mean: exact ÷ none",
                   "edges a triangle", "ns an edge", "ns a triangle", "exact − none, ns a triangle"],
                  rows)
+
+
+def worst_frame(turns, scene, triangles):
+    """The least of all frames: how many times as fast exact is as aabb there, by the least times of both."""
+    by_two = alone_by_two(turns, "boxes").get((scene, triangles))
+    if not by_two:
+        return None
+    exact, aabb = by_two[1]["exact"], by_two[1]["aabb"]
+    return min(aabb[frame] / exact[frame] for frame in exact)
 
 
 def threads_of_query(turns):
