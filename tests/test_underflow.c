@@ -1,7 +1,7 @@
 /*
  * Where products underflow. Small integers times a power of two are exact, and so is what their products
  * ought to be; but rounded to multiples of the smallest number, sums of such products get the wrong sign.
- * The bounds of errors have a term for that.
+ * The bounds of errors have a term for that. And where products overflow: what is infinite has no sign.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -163,4 +163,52 @@ static void fans(void)
     CHECK_MSG(plain > 1000 && upright >= plain, "%" PRIu32 " of %" PRIu32, plain, upright);
 }
 
-SC_TEST_MAIN(SC_TEST(flat_pairs), SC_TEST(fans))
+/* Whether a fan round vertex 0 is plain in this pose. */
+static int is_plain_at(scene *s, double *p, uint32_t vertex_count)
+{
+    sc_pose pose = input_plain_pose(p, vertex_count);
+    sc_workspace_new_pose(s->model, s->workspace);
+    CHECK(sc_positions_read(s->model, &pose, 24, s->workspace) == SC_OK);
+    return sc_fan_test(s->model, s->workspace, sc_model_triangle(s->model)[0]);
+}
+
+/* Fans of so large a size that areas along the sum of their normals, products of four coordinates, overflow in part.
+   None is plain that is not where it is small. */
+static void fans_that_overflow(void)
+{
+    static const double axes[3][3] = {{1, -1, 0}, {0.5, 0.5, -1}, {1, 1, 1}};
+    uint32_t corners[18], large = 0, small = 0, count = 5;
+    double p[24];
+    soup mesh = {count + 1, count, p, corners};
+    scene s;
+    for (uint32_t i = 0; i < count; ++i) {
+        corners[3 * i] = 0;
+        corners[3 * i + 1] = 1 + i;
+        corners[3 * i + 2] = 1 + (i + 1) % count;
+    }
+    memset(p, 0, sizeof(p));
+    if (!open_scene(&s, &mesh)) return;
+    for (uint32_t round = 0; round < test_iterations(300000); ++round) {
+        uint64_t state = test_random_state();
+        int exponent = 253 + (int)test_random_below(4), is_large, is_small;
+        for (uint32_t i = 0; i < count; ++i) {
+            double angle = 6.283185307179586 * (i + test_random_unit()) / count;
+            double at[3] = {cos(angle) * test_random_range(0.2, 1.2),
+                            sin(angle) * test_random_range(0.2, 1.2), test_random_range(-1, 1)};
+            double *corner = p + 3 * ((size_t)i + 1);
+            for (int k = 0; k < 3; ++k)
+                corner[k] = at[0] * axes[0][k] + at[1] * axes[1][k] + at[2] * axes[2][k];
+            corner[test_random_below(3)] *= test_random_range(1, 3);
+        }
+        is_small = is_plain_at(&s, p, count + 1);
+        for (uint32_t i = 3; i < 3 * (count + 1); ++i) p[i] = ldexp(p[i], exponent);
+        is_large = is_plain_at(&s, p, count + 1);
+        large += (uint32_t)is_large;
+        small += (uint32_t)is_small;
+        CHECK_MSG(!is_large || is_small, "at 2^%d; started at %" PRIu64, exponent, state);
+    }
+    CHECK_MSG(large > small / 10 && small > large, "%" PRIu32 " of %" PRIu32, large, small);
+    close_scene(&s);
+}
+
+SC_TEST_MAIN(SC_TEST(flat_pairs), SC_TEST(fans), SC_TEST(fans_that_overflow))

@@ -21,7 +21,8 @@
  * of an area, and hence not k, if the areas are larger than the change: with w = d x c, (c . a)(w . b) -
  * (w . a)(c . b) = |c|^2 d . (a x b), so the change is at most |d| / |c| <= 1.23 times the sum of the
  * errors times (|r_i| + |r_(i+1)|). That and the rounding of the area itself, 8 * 2^-53 |d|1 |r_i|1
- * |r_(i+1)|1, are below 32 * 2^-53 |d|1 (|r_i|1 + |r_(i+1)|1)^2.
+ * |r_(i+1)|1, are below 32 * 2^-53 |d|1 (|r_i|1 + |r_(i+1)|1)^2. No product or sum of an area is larger than
+ * |d|1 (|r_i|1 + |r_(i+1)|1)^2 / 2, so none overflows to infinity, where sums have a wrong sign, unless that does.
  */
 static const double FAN_ERROR_RELATIVE = 32 * 1.1102230246251565e-16;
 static const double FAN_ERROR_ABSOLUTE = 1e-290;
@@ -53,8 +54,8 @@ int sc_fan_test(const sc_model *model, const sc_workspace *w, uint32_t point)
     for (i = 0; i < count; i++) {
         double sum = size[i] + size[i + 1 < count ? i + 1 : 0];
         double area = d[0] * n[i][0] + d[1] * n[i][1] + d[2] * n[i][2];
-        if (!(area > FAN_ERROR_RELATIVE * d_size * (sum * sum) + FAN_ERROR_ABSOLUTE * (1 + d_size)))
-            return 0;
+        double bound = FAN_ERROR_RELATIVE * (d_size * (sum * sum));
+        if (!(area > bound + FAN_ERROR_ABSOLUTE * (1 + d_size))) return 0;
     }
     for (k = 1; k < 3; k++)
         if (fabs(d[k]) < fabs(d[axis])) axis = k;
