@@ -1,7 +1,7 @@
 /*
  * Fuzz target: sc_query. A small mesh, built in some way, and a series of poses and questions on one
  * workspace: vertices at any places (huge, denormal, infinite or no numbers), all types and strides,
- * options right and wrong, arrays too short. Every answer is compared with the oracle's.
+ * options right and wrong, all instruction sets, arrays too short. Every answer is compared with the oracle's.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/isa.h"
 #include "harness.h"
 
 enum { MAXIMUM_POSES = 4, MAXIMUM_QUERIES = 5 };
@@ -45,6 +46,14 @@ static void change_pose(fuzz_bytes *bytes, subject *s)
             if (kind >> (5 + k) & 1)
                 s->positions[3 * at + k] = fuzz_coordinate(bytes, kind % 32 % FUZZ_KINDS);
     }
+}
+
+static int is_for_boxes(const sc_model *model)
+{
+    sc_model_info info;
+    memset(&info, 0, sizeof(info));
+    info.struct_size = sizeof(info);
+    return sc_model_get_info(model, &info) == SC_OK && info.node_count == 0;
 }
 
 static int is_finite_where_used(const subject *s)
@@ -89,6 +98,12 @@ static void ask(fuzz_bytes *bytes, const subject *s, const sc_pose *pose,
                 : how / 4 % 2     ? SC_CONTOUR_STAR
                                   : SC_CONTOUR_EXACT;
     o.rest_cache = how / 64 % 2;
+    o.simd = kind / 32 % 4;
+    if (o.simd > (uint32_t)sc_isa_best()) o.simd = SC_SIMD_BASE;
+    if (is_for_boxes(s->model)) {
+        o.method = o.method == SC_METHOD_AABB ? SC_METHOD_AABB : SC_METHOD_DEFAULT;
+        o.contour = SC_CONTOUR_DEFAULT;
+    }
     if (wrong) {
         uint32_t *member[6] = {&o.output, &o.pairs,   &o.contact,
                                &o.method, &o.contour, &o.rest_cache};
@@ -105,6 +120,17 @@ static void ask(fuzz_bytes *bytes, const subject *s, const sc_pose *pose,
     fuzz_check_query(s->model, s->workspace, pose, &o, capacity, expected);
 }
 
+/* Positions as most callers have them: aligned, packed, with nothing behind the last. To be freed. */
+static void *packed_positions(const subject *s, uint32_t type)
+{
+    uint32_t count = 3 * s->mesh.vertex_count;
+    float *narrow;
+    if (type == SC_DOUBLE) return fuzz_copy(s->positions, count * sizeof(double));
+    narrow = (float *)test_allocate(count * sizeof(float));
+    for (uint32_t i = 0; i < count; ++i) narrow[i] = (float)s->positions[i];
+    return narrow;
+}
+
 static void ask_all(fuzz_bytes *bytes, subject *s)
 {
     for (uint32_t poses = 0; poses < MAXIMUM_POSES && (poses == 0 || bytes->left > 0); ++poses) {
@@ -112,6 +138,7 @@ static void ask_all(fuzz_bytes *bytes, subject *s)
         int is_known;
         oracle_answer expected;
         input_array positions;
+        void *packed;
         sc_pose pose;
         if (poses > 0) change_pose(bytes, s);
         form = fuzz_byte(bytes);
@@ -119,6 +146,11 @@ static void ask_all(fuzz_bytes *bytes, subject *s)
         positions =
             input_positions(s->positions, count, form & 1 ? SC_FLOAT : SC_DOUBLE, form / 2 % 8);
         pose = input_pose(count, &positions);
+        packed = packed_positions(s, pose.position_type);
+        if (!(form & 128)) {
+            pose.position_stride = 0;
+            pose.positions = packed;
+        }
         is_known = is_finite_where_used(s);
         if (is_known)
             expected = fuzz_expect(&s->mesh, s->positions, s->weld, s->model, s->workspace);
@@ -126,6 +158,7 @@ static void ask_all(fuzz_bytes *bytes, subject *s)
             ask(bytes, s, &pose, is_known ? &expected : NULL);
         if (is_known) oracle_free(&expected);
         input_free(&positions);
+        free(packed);
     }
 }
 
@@ -148,6 +181,10 @@ int fuzz_query(const uint8_t *data, size_t size)
     s.weld = input_weld_of(&choices, &s.mesh);
     for (uint32_t i = 0; i < 3 * s.mesh.triangle_count; ++i)
         s.used[s.mesh.triangles[i]] = s.used[s.weld[s.mesh.triangles[i]]] = 1;
+    if (how & 32) {
+        choices.options.content = SC_MODEL_BOXES;
+        choices.options.rest = SC_REST_UNMARKED;
+    }
     FUZZ_CHECK(sc_build(&mesh, &choices.options, &s.model) == SC_OK, "a good mesh");
     input_free_choices(&choices);
     FUZZ_CHECK(sc_workspace_size(s.model, &workspace_size) == SC_OK, "a good model");
