@@ -3,9 +3,11 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * A job is published by raising `round`; parts are taken by counting `next` up. Both are atomic (of gcc and clang,
- * as C99 has nothing of the kind), so that neither a new job nor a part takes a lock while threads are awake. A
- * thread has looked at every round before the next one begins: so none ever sees half a job.
+ * `ticket` says how many parts of the job at hand nobody has taken; a part is taken by counting it down by one, which
+ * fails if it is no longer what it was. It holds the number of the job as well: so a thread that is late neither takes what
+ * is not there nor holds up anybody, as the calling thread takes parts until none is left, and then waits only for those
+ * that others are at. What the job is, is read once a part is taken: until that is done, it does not change. All this is
+ * atomic (of gcc and clang, as C99 has nothing of the kind), so that there are locks only for threads that sleep.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -15,8 +17,9 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* How often a thread looks for a job before it sleeps: about 20 microseconds. */
-enum { LOOKS = 2000 };
+/* How often a thread looks for a job, or for the end of one, before it sleeps: about 100 microseconds, in which a query goes
+   from one job to the next. To wake a thread costs the calling one 11 to 16, and takes 30. */
+enum { LOOKS = 10000 };
 
 typedef struct pool_member {
     thread_pool *pool;
@@ -28,10 +31,11 @@ struct thread_pool {
     sc_tasks tasks;
     void (*run)(void *context, uint32_t part, uint32_t worker);
     void *context;
-    uint32_t count; /* parts */
-    uint32_t next;  /* the part to be taken next */
-    uint32_t round; /* number of the job */
-    uint32_t busy;  /* threads that are not done with it */
+    uint32_t count;    /* parts */
+    uint64_t ticket;   /* number of the job << 32 | parts that are not taken */
+    uint32_t done;     /* parts that are */
+    uint32_t sleeping; /* threads that wait for a job in their sleep */
+    uint32_t waiting;  /* 1 if the calling thread waits for the end of one in its */
     bool quit;
     pthread_mutex_t mutex; /* of those that sleep */
     pthread_cond_t begin, end;
@@ -46,65 +50,76 @@ static void pause_briefly(void)
 #endif
 }
 
+static uint32_t parts_left(const thread_pool *pool)
+{
+    return (uint32_t)__atomic_load_n(&pool->ticket, __ATOMIC_SEQ_CST);
+}
+
+static bool is_done(const thread_pool *pool)
+{
+    return __atomic_load_n(&pool->done, __ATOMIC_SEQ_CST) == pool->count;
+}
+
+/* Does parts until none is left. */
 static void take_parts(thread_pool *pool, uint32_t worker)
 {
-    for (;;) {
-        const uint32_t part = __atomic_fetch_add(&pool->next, 1, __ATOMIC_RELAXED);
-        if (part >= pool->count) return;
-        pool->run(pool->context, part, worker);
+    uint64_t ticket = __atomic_load_n(&pool->ticket, __ATOMIC_ACQUIRE);
+    uint32_t taken = 0;
+    while ((uint32_t)ticket != 0) {
+        if (!__atomic_compare_exchange_n(&pool->ticket, &ticket, ticket - 1, false,
+                                         __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE))
+            continue;
+        pool->run(pool->context, pool->count - (uint32_t)ticket, worker);
+        taken++;
+        ticket--;
+    }
+    if (taken == 0) return;
+    __atomic_add_fetch(&pool->done, taken, __ATOMIC_SEQ_CST);
+    if (worker != 0 && __atomic_load_n(&pool->waiting, __ATOMIC_SEQ_CST) != 0) {
+        pthread_mutex_lock(&pool->mutex);
+        pthread_cond_signal(&pool->end);
+        pthread_mutex_unlock(&pool->mutex);
     }
 }
 
-/* Waits for a round that was not seen. */
-static uint32_t wait_for_round(thread_pool *pool, uint32_t seen)
+/* Waits for a job, or less: if it was done while the thread woke up, the next one follows soon. False: the pool ends. */
+static bool wait_for_job(thread_pool *pool)
 {
     for (int i = 0; i < LOOKS; i++) {
-        const uint32_t round = __atomic_load_n(&pool->round, __ATOMIC_ACQUIRE);
-        if (round != seen) return round;
+        if (parts_left(pool) != 0) return true;
         pause_briefly();
     }
     pthread_mutex_lock(&pool->mutex);
-    while (__atomic_load_n(&pool->round, __ATOMIC_ACQUIRE) == seen)
-        pthread_cond_wait(&pool->begin, &pool->mutex);
+    __atomic_add_fetch(&pool->sleeping, 1, __ATOMIC_SEQ_CST);
+    if (parts_left(pool) == 0 && !pool->quit) pthread_cond_wait(&pool->begin, &pool->mutex);
+    __atomic_sub_fetch(&pool->sleeping, 1, __ATOMIC_SEQ_CST);
+    const bool goes_on = !pool->quit;
     pthread_mutex_unlock(&pool->mutex);
-    return seen + 1;
+    return goes_on;
 }
 
 static void *member_main(void *argument)
 {
     const pool_member *self = (const pool_member *)argument;
-    thread_pool *pool = self->pool;
-    uint32_t seen = 0;
-    for (;;) {
-        seen = wait_for_round(pool, seen);
-        if (pool->quit) return NULL;
-        take_parts(pool, self->worker);
-        if (__atomic_sub_fetch(&pool->busy, 1, __ATOMIC_ACQ_REL) == 0) {
-            pthread_mutex_lock(&pool->mutex);
-            pthread_cond_signal(&pool->end);
-            pthread_mutex_unlock(&pool->mutex);
-        }
-    }
-}
-
-static void begin_round(thread_pool *pool)
-{
-    __atomic_store_n(&pool->busy, pool->member_count, __ATOMIC_RELAXED);
-    pthread_mutex_lock(&pool->mutex);
-    __atomic_store_n(&pool->round, pool->round + 1, __ATOMIC_RELEASE);
-    pthread_cond_broadcast(&pool->begin);
-    pthread_mutex_unlock(&pool->mutex);
+    while (wait_for_job(self->pool)) take_parts(self->pool, self->worker);
+    return NULL;
 }
 
 static void *enqueue(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
                      void *context, uint32_t count)
 {
     thread_pool *pool = (thread_pool *)user;
+    const uint64_t job = (pool->ticket >> 32) + 1;
     pool->run = run;
     pool->context = context;
     pool->count = count;
-    __atomic_store_n(&pool->next, 0, __ATOMIC_RELAXED);
-    begin_round(pool);
+    __atomic_store_n(&pool->done, 0, __ATOMIC_RELAXED);
+    __atomic_store_n(&pool->ticket, job << 32 | count, __ATOMIC_SEQ_CST);
+    if (__atomic_load_n(&pool->sleeping, __ATOMIC_SEQ_CST) != 0) {
+        pthread_mutex_lock(&pool->mutex);
+        pthread_cond_broadcast(&pool->begin);
+        pthread_mutex_unlock(&pool->mutex);
+    }
     return NULL;
 }
 
@@ -114,12 +129,13 @@ static void finish(void *user, void *task)
     (void)task;
     take_parts(pool, 0);
     for (int i = 0; i < LOOKS; i++) {
-        if (__atomic_load_n(&pool->busy, __ATOMIC_ACQUIRE) == 0) return;
+        if (is_done(pool)) return;
         pause_briefly();
     }
     pthread_mutex_lock(&pool->mutex);
-    while (__atomic_load_n(&pool->busy, __ATOMIC_ACQUIRE) != 0)
-        pthread_cond_wait(&pool->end, &pool->mutex);
+    __atomic_store_n(&pool->waiting, 1, __ATOMIC_SEQ_CST);
+    while (!is_done(pool)) pthread_cond_wait(&pool->end, &pool->mutex);
+    __atomic_store_n(&pool->waiting, 0, __ATOMIC_SEQ_CST);
     pthread_mutex_unlock(&pool->mutex);
 }
 
@@ -151,8 +167,10 @@ thread_pool *thread_pool_create(uint32_t workers)
 void thread_pool_free(thread_pool *pool)
 {
     if (!pool) return;
+    pthread_mutex_lock(&pool->mutex);
     pool->quit = true;
-    begin_round(pool);
+    pthread_cond_broadcast(&pool->begin);
+    pthread_mutex_unlock(&pool->mutex);
     for (uint32_t i = 0; i < pool->member_count; i++) pthread_join(pool->members[i].thread, NULL);
     pthread_cond_destroy(&pool->begin);
     pthread_cond_destroy(&pool->end);
