@@ -5,6 +5,8 @@
  */
 #include "build/hierarchy.h"
 
+#include <string.h>
+
 /* So that leaf_end can be asked. */
 static sc_status prepare_runs(sc_hierarchy *hierarchy, sc_scratch *scratch)
 {
@@ -32,11 +34,18 @@ sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, const sc_points *points, sc
     return prepare_runs(hierarchy, scratch);
 }
 
-void sc_hierarchy_finish(sc_hierarchy *hierarchy, sc_scratch *scratch)
+sc_status sc_hierarchy_finish(sc_hierarchy *hierarchy, sc_scratch *scratch)
 {
+    sc_tree_node *nodes;
     sc_scratch_give(scratch, hierarchy->starts);
     sc_scratch_give(scratch, hierarchy->met);
     hierarchy->starts = hierarchy->met = hierarchy->runs = NULL;
+    nodes = (sc_tree_node *)sc_scratch_take(scratch, hierarchy->node_count, sizeof *nodes);
+    if (!nodes) return SC_ERROR_MEMORY;
+    memcpy(nodes, hierarchy->nodes, hierarchy->node_count * sizeof *nodes);
+    sc_scratch_give(scratch, hierarchy->nodes);
+    hierarchy->nodes = nodes;
+    return SC_OK;
 }
 
 uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t count, uint32_t depth)

@@ -21,7 +21,7 @@ enum { SC_DEPTH_MAX = 96 };
 /* All arrays are scratch memory. */
 typedef struct sc_hierarchy {
     uint32_t *order;     /* triangle_count triangles, in leaf order */
-    sc_tree_node *nodes; /* node_count, room for 2 * triangle_count */
+    sc_tree_node *nodes; /* node_count; while it is made, room for 2 * triangle_count */
     uint32_t triangle_count, node_count, leaf_count, depth;
     const uint32_t *corner; /* 3 * triangle_count: point numbers, see build/mesh.h */
     uint32_t point_count;
@@ -35,8 +35,8 @@ typedef struct sc_hierarchy {
 /* Takes the memory; order is left unset. */
 sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, const sc_points *points, sc_scratch *scratch);
 
-/* Gives back what only making it took. */
-void sc_hierarchy_finish(sc_hierarchy *hierarchy, sc_scratch *scratch);
+/* Gives back what only making it took, and room for nodes that there are not. */
+sc_status sc_hierarchy_finish(sc_hierarchy *hierarchy, sc_scratch *scratch);
 
 /* Appends a node without children for order[first .. first + count). depth counts from 1. */
 uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t count, uint32_t depth);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "build/bisection.h"
+#include "build/flattening.h"
 
 /* Nodes from the root to a leaf of a caller's tree at most; splitting large leaves adds up to 29. */
 enum { CALLER_DEPTH_MAX = 60 };
@@ -147,6 +148,8 @@ sc_status sc_partition_build(const sc_points *points, const sc_adjacency *adjace
                              sc_hierarchy *hierarchy)
 {
     sc_status status = make_hierarchy(points, adjacency, options, scratch, hierarchy);
-    if (!status) sc_hierarchy_finish(hierarchy, scratch);
+    if (!status) status = sc_hierarchy_finish(hierarchy, scratch);
+    if (!status && options->partition != SC_PARTITION_TREE)
+        status = sc_flattening_run(scratch, hierarchy);
     return status;
 }
