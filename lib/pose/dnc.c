@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/jobs.h"
+#include "pose/levels.h"
 #include "pose/pose_kernels.h"
 
 enum { HALF = SC_DNC_DIRECTIONS / 2 };
@@ -33,41 +33,29 @@ static void join(uint16_t *mask, const uint32_t *child, uint32_t first, uint32_t
     for (; p < end; p++) mask[p] = mask[child[p]] & mask[child[p + 1] - 1];
 }
 
-/* A pass over the patches of a level, which are counted from its first. */
 typedef struct cones_pass {
     const sc_model *model;
     sc_workspace *w;
-    uint32_t first;
 } cones_pass;
 
-static void load_cones(void *context, uint32_t part, uint32_t first, uint32_t end)
+static void update_cones(void *context, uint32_t level, uint32_t first, uint32_t end)
 {
     const cones_pass *pass = (const cones_pass *)context;
-    (void)part;
-    sc_pose_kernels_of(pass->w)->load_leaves(pass->model, pass->w, first, end, 1);
-}
-
-static void join_cones(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const cones_pass *pass = (const cones_pass *)context;
-    (void)part;
-    join(pass->w->mask, sc_model_child(pass->model), pass->first + first, pass->first + end);
+    const uint32_t leaves = sc_model_first_leaf_patch(pass->model);
+    if (level + 1 < pass->model->level_count)
+        join(pass->w->mask, sc_model_child(pass->model), first, end);
+    else
+        sc_pose_kernels_of(pass->w)->load_leaves(pass->model, pass->w, first - leaves, end - leaves,
+                                                 1);
 }
 
 void sc_dnc_update(const sc_model *model, sc_workspace *w)
 {
-    const uint32_t *first = sc_model_level_first(model);
     cones_pass pass;
-    uint32_t level;
     pass.model = model;
     pass.w = w;
-    (void)sc_jobs_loop(w->tasks, model->leaf_count, SC_POSE_LEAVES_MIN, load_cones, &pass);
+    sc_levels_up(model, w->tasks, update_cones, &pass);
     w->leaves_ready = 1;
-    for (level = model->level_count - 1; level-- > 0;) {
-        pass.first = first[level];
-        (void)sc_jobs_loop(w->tasks, sc_model_patches(model, level), SC_POSE_PATCHES_MIN,
-                           join_cones, &pass);
-    }
 }
 
 /* The cone of one triangle of a leaf cluster: as of a cluster of nothing else. */

@@ -9,9 +9,6 @@
 #include "base/isa.h"
 #include "pose/workspace.h"
 
-/* Fewer leaf clusters, or patches of other levels, are not worth a part of a job. */
-enum { SC_POSE_LEAVES_MIN = 64, SC_POSE_PATCHES_MIN = 16384 };
-
 typedef struct sc_pose_kernels {
     /* The box of a packed array of positions, see pose/positions.h. */
     int (*extent_of_doubles)(const double *positions, uint64_t count, double low[3],
