@@ -24,6 +24,9 @@
 #define lanes_pick_of SC_KERNEL(sc_lanes_pick_of)
 #define lanes_choose SC_KERNEL(sc_lanes_choose)
 #define lanes_same SC_KERNEL(sc_lanes_same)
+#define lanes_index_choose SC_KERNEL(sc_lanes_index_choose)
+#define lanes_but SC_KERNEL(sc_lanes_but)
+#define lanes_corners_of SC_KERNEL(sc_lanes_corners_of)
 #define lanes_either SC_KERNEL(sc_lanes_either)
 #define lanes_corners SC_KERNEL(sc_lanes_corners)
 #define lanes_corners_at SC_KERNEL(sc_lanes_corners_at)
@@ -64,6 +67,14 @@ static inline lanes_mask lanes_same(lanes a, lanes b)
 static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
 {
     return (lanes_mask)(a | b);
+}
+static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
+{
+    return (lanes_mask)(a & ~b);
+}
+static inline lanes_index lanes_index_choose(lanes_mask m, lanes_index a, lanes_index b)
+{
+    return _mm512_mask_blend_epi32(m, b, a);
 }
 static inline unsigned lanes_list(unsigned mask, uint8_t *to)
 {
@@ -172,6 +183,21 @@ static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
     r.v[1] = _mm256_or_ps(a.v[1], b.v[1]);
     return r;
 }
+static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
+{
+    lanes r;
+    r.v[0] = _mm256_andnot_ps(b.v[0], a.v[0]);
+    r.v[1] = _mm256_andnot_ps(b.v[1], a.v[1]);
+    return r;
+}
+static inline lanes_index lanes_index_choose(lanes_mask m, lanes_index a, lanes_index b)
+{
+    lanes_index r;
+    int k;
+    for (k = 0; k < 2; k++)
+        r.v[k] = _mm256_blendv_epi8(b.v[k], a.v[k], _mm256_castps_si256(m.v[k]));
+    return r;
+}
 
 #  else
 
@@ -231,6 +257,13 @@ static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
     for (k = 0; k < 4; k++) r.v[k] = SC_QUAD(or_ps)(a.v[k], b.v[k]);
     return r;
 }
+static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
+{
+    lanes r;
+    int k;
+    for (k = 0; k < 4; k++) r.v[k] = SC_QUAD(andnot_ps)(b.v[k], a.v[k]);
+    return r;
+}
 
 #    else
 
@@ -253,8 +286,21 @@ static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
 {
     return a | b;
 }
+static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
+{
+    return a & ~b;
+}
 
 #    endif
+
+static inline lanes_index lanes_index_choose(lanes_mask m, lanes_index a, lanes_index b)
+{
+    unsigned bits = lanes_bits(m);
+    int k;
+    for (k = 0; k < SC_LANES_COUNT; k++)
+        if (bits >> k & 1u) b.at[k] = a.at[k];
+    return b;
+}
 #  endif
 #endif
 
@@ -307,6 +353,22 @@ static inline void lanes_corners_through(const float *at, const uint8_t *where,
             through[SC_LANES_COUNT * c + i] = where[SC_LANES_COUNT * c + numbers[i]];
     lanes_corners_at(at, through, corner);
 }
+static inline void lanes_corners_of(const float *at, const lanes_index where[], int count,
+                                    lanes corner[][3])
+{
+    sc_floats4 x[4];
+    int c, i, k;
+    for (c = 0; c < count; c++)
+        for (i = 0; i < 4; i++) {
+            const uint8_t *four = where[c].at + 4 * i;
+            SC_UNROLL
+            for (k = 0; k < 4; k++)
+                x[k] = SC_QUAD(loadu_ps)(at + 16 * (four[k] & 3) + four[k] / 4 * 4);
+            sc_quad_transpose(x);
+            SC_UNROLL
+            for (k = 0; k < 3; k++) corner[c][k].v[i] = x[k];
+        }
+}
 
 #else
 
@@ -337,6 +399,19 @@ static inline void lanes_corners_through(const float *at, const uint8_t *where,
         lanes_index from = lanes_index_through(where + SC_LANES_COUNT * c, numbers);
         SC_UNROLL
         for (k = 0; k < 3; k++) corner[c][k] = lanes_pick_of(row[k], from);
+    }
+}
+
+static inline void lanes_corners_of(const float *at, const lanes_index where[], int count,
+                                    lanes corner[][3])
+{
+    lanes row[3];
+    int c, k;
+    lanes_turned(at, row);
+    SC_UNROLL
+    for (c = 0; c < count; c++) {
+        SC_UNROLL
+        for (k = 0; k < 3; k++) corner[c][k] = lanes_pick_of(row[k], where[c]);
     }
 }
 

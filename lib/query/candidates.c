@@ -4,9 +4,9 @@
  * SPDX-License-Identifier: MIT
  *
  * What happens to a pair depends on the vertices it shares. None: it is collected; then many are decided at once,
- * eight at a time, and those of which that is not certain by the exact primitives. One: nothing if the fan round the
- * shared vertex projects one to one, else the same. More: nothing if a fan round one of them does, else the exact
- * primitives.
+ * eight at a time, and those of which that is not certain by the exact primitives. One: the same, but
+ * nothing if that is not certain and the fan round the shared vertex projects one to one. More: nothing if a fan round
+ * one of them does, else the exact primitives.
  */
 #include "query/candidates.h"
 
@@ -100,7 +100,7 @@ static int have_plain_fan(sc_query_state *state, const sc_pair *places)
     return 0;
 }
 
-void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b, unsigned flat)
+void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b)
 {
     const uint32_t *triangle = sc_model_triangle(state->model);
     const uint32_t *t = triangle + 3 * (uint64_t)a, *u = triangle + 3 * (uint64_t)b;
@@ -111,7 +111,6 @@ void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b, 
     pair.a = a;
     pair.b = b;
     if (count == 1 && !repeats_point(t) && !repeats_point(u)) {
-        if (flat && sc_fan_is_plain(state->model, w, shared[0])) return;
         w->neighbors[w->neighbor_count++] = pair;
         return;
     }

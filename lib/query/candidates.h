@@ -38,9 +38,8 @@ typedef struct sc_leaf_pair {
 void sc_candidates_enter(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b,
                          sc_leaf_pair *pair);
 
-/* Takes a pair that shares points, by the places of its triangles: decides or collects it. If it is flat, a fan may
-   settle it sooner. */
-void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b, unsigned flat);
+/* Takes a pair that shares points, by the places of its triangles: decides or collects it. */
+void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b);
 
 /* Collects a pair that shares nothing, by the places of its triangles. */
 static inline void sc_candidates_add(sc_query_state *state, uint32_t a, uint32_t b)

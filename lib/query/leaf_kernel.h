@@ -266,7 +266,7 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], fl
     unsigned apart = 0;
     int s, k, i;
     SC_UNROLL
-    for (s = 0; s < 2; s++) SC_KERNEL(see_along)(n, (const lanes(*)[3])x[s], flat[s]);
+    for (s = 0; s < 2; s++) SC_KERNEL(see_along)(n, (const lanes(*)[3])x[s], 3, flat[s]);
     SC_UNROLL
     for (s = 0; s < 2; s++) {
         SC_UNROLL

@@ -4,67 +4,85 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * If all corners of u that are not t's are strictly on one side of the plane of t, which then has an area, u meets the
- * plane in what they share only. The same is true in a projection of the line of an edge of t, if the corners that they
- * share are on it: its third corner strictly on one side, and those of u that are not shared strictly on the other. Either
- * way no edge that starts and ends elsewhere meets the other triangle, for what is shared, a point or an edge, has no
- * point on the edge of t or u opposite to it. This tells nothing of two triangles that share all.
+ * Two triangles t and u that share one point p are looked at from there: a_0 and a_1 lead from p to the other corners of t,
+ * b_0 and b_1 to those of u. They have p alone in common if
  *
- * In single precision. What moving the points changes, and the bound of a side, are derived in leaf_kernel.h, in the
- * terms of which d = (e x f) . w, w from the plane's first corner, meets eight roundings here: 8.01 v |e|1 |f|1 D
- * <= 12.1 v D^2 S. All of it is below S (4 EDGE (D + EDGE) + 13 v D^2) + 7 EDGE^2 (D + EDGE), however that is rounded.
+ * - along some direction m, both a are strictly ahead of p and both b behind;
+ * - both b are strictly on one side of the plane of t, or both a on one of that of u;
+ * - in a projection, the line of one of the four has the other of its triangle strictly on one side, and both of the other
+ *   triangle strictly on the other.
+ *
+ * Of two that share an edge, p is one end of it, a_0 the other, and a_1 leads to the third corner of t; b_0 and b_1 are
+ * both set to what leads to that of u. They have nothing else in common if both b are strictly on one side of the plane
+ * of t, or in a projection the line of a_0 has a_1 strictly on one side and both b on the other. All other tests fail of
+ * themselves, b_0 and b_1 being the same, but the first and that by the line of a_1, which do not count. (If both have p
+ * twice, a_0 is zero, and all fail; each edge of either has a point of the other, as if they shared an edge.)
+ *
+ * In single precision. A component of a_k or b_k is off by EDGE and its own rounding; the bounds of planes and sides are
+ * derived in leaf_kernel.h, in the terms of which the product of three meets eight roundings here: 8.01 v |e|1 |f|1 D
+ * <= 12.1 v D^2 S; that of a plane is below S (4 EDGE (D + EDGE) + 13 v D^2) + 7 EDGE^2 (D + EDGE), however it is rounded.
+ * The direction m is any, hence has no error: m . a is off by |m|1 (EDGE + 4.1 v D) and a few FLT_MIN if products underflow.
  */
 
-/* Sixteen pairs: corners, and which of them are the other's too. */
+/* Sixteen pairs, as above; and which are of such that share just a point, or an edge. */
 typedef struct SC_KERNEL(neighbors) {
-    lanes at[2][3][3]; /* triangle, corner, axis */
-    lanes_mask shared[2][3];
-    unsigned same; /* all corners are */
+    lanes at[2][2][3]; /* a and b, first and second, axis */
+    unsigned point, edge;
 } SC_KERNEL(neighbors);
 
-/* Corners of the triangles of a leaf cluster, and what points they are. */
-typedef struct SC_KERNEL(neighbor_corners) {
-    float at[3][3][SC_LEAF_MAX];
-    float point[3][SC_LEAF_MAX]; /* the bits of these numbers */
-} SC_KERNEL(neighbor_corners);
+/* A leaf cluster: where its points are, what points they are, which are its triangles' corners. */
+typedef struct SC_KERNEL(neighborhood) {
+    const float *at;
+    const uint8_t *corner;
+    float point[SC_LEAF_POINTS]; /* the bits of these numbers */
+} SC_KERNEL(neighborhood);
 
-static void SC_KERNEL(find_corners)(const sc_query_state *state, uint32_t leaf,
-                                    SC_KERNEL(neighbor_corners) * corners)
+static inline void SC_KERNEL(find_points)(const sc_query_state *state, uint32_t leaf,
+                                          SC_KERNEL(neighborhood) * n)
 {
-    const uint8_t *where = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
-    float point[SC_LEAF_POINTS];
-    lanes x[3][3];
-    int k, c;
-    memcpy(point, sc_model_leaf_point(state->model) + SC_LEAF_POINTS * (uint64_t)leaf,
-           sizeof point);
-    lanes_corners_at(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, where, x);
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        lanes_store(corners->point[k],
-                    lanes_pick(point, lanes_index_load(where + SC_LEAF_MAX * k)));
-        SC_UNROLL
-        for (c = 0; c < 3; c++) lanes_store(corners->at[k][c], x[k][c]);
-    }
+    n->at = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
+    n->corner = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
+    memcpy(n->point, sc_model_leaf_point(state->model) + SC_LEAF_POINTS * (uint64_t)leaf,
+           sizeof n->point);
 }
 
-static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighbor_corners) * a,
-                                             const SC_KERNEL(neighbor_corners) * b,
-                                             const uint8_t *of_a, const uint8_t *of_b,
-                                             SC_KERNEL(neighbors) * x)
+/* The lanes in which just one of three is set, and just two. */
+static inline unsigned SC_KERNEL(just_one)(const unsigned x[3])
 {
-    lanes_index i = lanes_index_load(of_a), j = lanes_index_load(of_b);
-    lanes p[3], q[3];
-    lanes_mask same[3][3];
-    int k, c;
+    return (x[0] ^ x[1] ^ x[2]) & ~(x[0] & x[1]);
+}
+static inline unsigned SC_KERNEL(just_two)(const unsigned x[3])
+{
+    return (x[0] | x[1] | x[2]) & ~(x[0] ^ x[1] ^ x[2]);
+}
+
+/* Turns corners so that the first is shared and not the last, if two are, or the others, if one is. */
+static inline void SC_KERNEL(turn)(const lanes_mask shared[3], const lanes_index corner[3],
+                                   lanes_index turned[3])
+{
+    lanes_mask first = lanes_but(shared[0], shared[2]), second = lanes_but(shared[1], shared[0]);
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++)
+        turned[k] = lanes_index_choose(
+            first, corner[k], lanes_index_choose(second, corner[(k + 1) % 3], corner[(k + 2) % 3]));
+}
+
+static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
+                                             const SC_KERNEL(neighborhood) * b, const uint8_t *of_a,
+                                             const uint8_t *of_b, SC_KERNEL(neighbors) * x)
+{
+    lanes_index i[3], j[3], turned[2][3];
+    lanes p[3], q[3], at[2][3][3];
+    lanes_mask same[3][3], shared[2][3];
+    unsigned bits[2][3];
+    int s, k, c;
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        p[k] = lanes_pick(a->point[k], i);
-        q[k] = lanes_pick(b->point[k], j);
-        SC_UNROLL
-        for (c = 0; c < 3; c++) {
-            x->at[0][k][c] = lanes_pick(a->at[k][c], i);
-            x->at[1][k][c] = lanes_pick(b->at[k][c], j);
-        }
+        i[k] = lanes_index_through(a->corner + SC_LEAF_MAX * k, of_a);
+        j[k] = lanes_index_through(b->corner + SC_LEAF_MAX * k, of_b);
+        p[k] = lanes_pick(a->point, i[k]);
+        q[k] = lanes_pick(b->point, j[k]);
     }
     SC_UNROLL
     for (k = 0; k < 3; k++) {
@@ -73,55 +91,92 @@ static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighbor_corners) *
     }
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        x->shared[0][k] = lanes_either(lanes_either(same[k][0], same[k][1]), same[k][2]);
-        x->shared[1][k] = lanes_either(lanes_either(same[0][k], same[1][k]), same[2][k]);
+        shared[0][k] = lanes_either(lanes_either(same[k][0], same[k][1]), same[k][2]);
+        shared[1][k] = lanes_either(lanes_either(same[0][k], same[1][k]), same[2][k]);
+        bits[0][k] = lanes_bits(shared[0][k]);
+        bits[1][k] = lanes_bits(shared[1][k]);
     }
-    x->same = lanes_bits(lanes_both(x->shared[0][0], lanes_both(x->shared[0][1], x->shared[0][2])));
-    x->same |=
-        lanes_bits(lanes_both(x->shared[1][0], lanes_both(x->shared[1][1], x->shared[1][2])));
+    x->point = SC_KERNEL(just_one)(bits[0]) & SC_KERNEL(just_one)(bits[1]);
+    x->edge = SC_KERNEL(just_two)(bits[0]) & SC_KERNEL(just_two)(bits[1]);
+    SC_KERNEL(turn)(shared[0], i, turned[0]);
+    SC_KERNEL(turn)(shared[1], j, turned[1]);
+    /* the last of u twice if they share an edge: then the middle one is shared */
+    turned[1][1] =
+        lanes_index_choose(lanes_either(lanes_both(shared[1][0], shared[1][1]),
+                                        lanes_either(lanes_both(shared[1][1], shared[1][2]),
+                                                     lanes_both(shared[1][2], shared[1][0]))),
+                           turned[1][2], turned[1][1]);
+    lanes_corners_of(a->at, turned[0], 3, at[0]);
+    lanes_corners_of(b->at, turned[1] + 1, 2, at[1] + 1);
+    SC_UNROLL
+    for (s = 0; s < 2; s++) {
+        SC_UNROLL
+        for (k = 0; k < 2; k++) {
+            SC_UNROLL
+            for (c = 0; c < 3; c++) x->at[s][k][c] = lanes_subtract(at[s][k + 1][c], at[0][0][c]);
+        }
+    }
 }
 
-/* The lanes in which the plane of triangle s certainly has all corners of the other that are not shared on one side;
-   n gets its normal, flat those lanes in which all these corners may be in the plane. */
-static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, int s, float extent,
-                                              lanes n[3], unsigned *flat)
+static inline lanes SC_KERNEL(dot)(const lanes x[3], const lanes y[3])
+{
+    return lanes_add(lanes_add(lanes_multiply(x[0], y[0]), lanes_multiply(x[1], y[1])),
+                     lanes_multiply(x[2], y[2]));
+}
+
+/* The lanes in which t is certainly ahead of p and u behind, along the direction from the middle of u to that of t. */
+static inline unsigned SC_KERNEL(direction_parts)(const SC_KERNEL(neighbors) * x, float extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    const lanes far = lanes_all(FLT_MAX), minus_far = lanes_all(-FLT_MAX);
-    const lanes(*t)[3] = x->at[s], (*o)[3] = x->at[1 - s];
-    lanes e[3], f[3], size = lanes_all(0), bound, minus_bound, least = far, most = minus_far;
-    int k, c;
+    lanes m[3], size, bound, ahead, behind;
+    int c;
     SC_UNROLL
-    for (c = 0; c < 3; c++) {
-        e[c] = lanes_subtract(t[1][c], t[0][c]);
-        f[c] = lanes_subtract(t[2][c], t[0][c]);
-        size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
-    }
+    for (c = 0; c < 3; c++)
+        m[c] = lanes_subtract(lanes_add(x->at[0][0][c], x->at[0][1][c]),
+                              lanes_add(x->at[1][0][c], x->at[1][1][c]));
+    size = lanes_add(lanes_add(lanes_absolute(m[0]), lanes_absolute(m[1])), lanes_absolute(m[2]));
+    bound = lanes_add(lanes_multiply(size, lanes_all(1.1f * edge + 5 * v * extent)),
+                      lanes_all(16 * FLT_MIN));
+    ahead = lanes_smaller(SC_KERNEL(dot)(m, x->at[0][0]), SC_KERNEL(dot)(m, x->at[0][1]));
+    behind = lanes_larger(SC_KERNEL(dot)(m, x->at[1][0]), SC_KERNEL(dot)(m, x->at[1][1]));
+    return lanes_bits(lanes_both(lanes_below(bound, ahead),
+                                 lanes_below(behind, lanes_subtract(lanes_all(0), bound))));
+}
+
+/* Of the plane of triangle s. */
+static inline void SC_KERNEL(find_normal)(const SC_KERNEL(neighbors) * x, int s, lanes n[3])
+{
+    const lanes *e = x->at[s][0], *f = x->at[s][1];
+    int c;
     SC_UNROLL
     for (c = 0; c < 3; c++)
         n[c] = lanes_subtract(lanes_multiply(e[(c + 1) % 3], f[(c + 2) % 3]),
                               lanes_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
+}
+
+/* The lanes in which the plane of triangle s certainly has both of the other on one side. */
+static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, int s, float extent)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const lanes *e = x->at[s][0], *f = x->at[s][1];
+    lanes n[3], size = lanes_all(0), bound, d[2];
+    int c;
+    SC_KERNEL(find_normal)(x, s, n);
+    SC_UNROLL
+    for (c = 0; c < 3; c++)
+        size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
     bound = lanes_add(
         lanes_multiply(size, lanes_all(4 * edge * (extent + edge) + 13 * v * extent * extent)),
         lanes_all(7 * edge * edge * (extent + edge)));
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        lanes d = lanes_multiply(n[0], lanes_subtract(o[k][0], t[0][0]));
-        SC_UNROLL
-        for (c = 1; c < 3; c++)
-            d = lanes_add(d, lanes_multiply(n[c], lanes_subtract(o[k][c], t[0][c])));
-        least = lanes_smaller(least, lanes_choose(x->shared[1 - s][k], far, d));
-        most = lanes_larger(most, lanes_choose(x->shared[1 - s][k], minus_far, d));
-    }
-    minus_bound = lanes_subtract(lanes_all(0), bound);
-    *flat =
-        lanes_bits(lanes_both(lanes_not_above(most, bound), lanes_not_above(minus_bound, least)));
-    return lanes_bits(lanes_below(bound, least)) | lanes_bits(lanes_below(most, minus_bound));
+    d[0] = SC_KERNEL(dot)(n, x->at[1 - s][0]);
+    d[1] = SC_KERNEL(dot)(n, x->at[1 - s][1]);
+    return lanes_bits(lanes_below(bound, lanes_smaller(d[0], d[1]))) |
+           lanes_bits(lanes_below(lanes_larger(d[0], d[1]), lanes_subtract(lanes_all(0), bound)));
 }
 
 /* Corners as they are seen along the axis nearest to n. */
-static inline void SC_KERNEL(see_along)(const lanes n[3], const lanes corner[3][3],
-                                        lanes flat[3][2])
+static inline void SC_KERNEL(see_along)(const lanes n[3], const lanes corner[][3], int count,
+                                        lanes flat[][2])
 {
     lanes size[3];
     lanes_mask first, second;
@@ -131,51 +186,61 @@ static inline void SC_KERNEL(see_along)(const lanes n[3], const lanes corner[3][
     first = lanes_below(lanes_larger(size[1], size[2]), size[0]);
     second = lanes_below(size[2], size[1]);
     SC_UNROLL
-    for (k = 0; k < 3; k++) {
+    for (k = 0; k < count; k++) {
         const lanes *p = corner[k];
         flat[k][0] = lanes_choose(first, p[1], p[0]);
         flat[k][1] = lanes_choose(first, p[2], lanes_choose(second, p[2], p[1]));
     }
 }
 
-/* The lanes in which the line of an edge does, seen along the axis nearest to the normal n of one. */
-static unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, const lanes n[3],
-                                      float extent)
+/* On which side of e f is, certainly. */
+typedef struct SC_KERNEL(side) {
+    unsigned left, right;
+} SC_KERNEL(side);
+
+static inline SC_KERNEL(side)
+    SC_KERNEL(side_of)(const lanes e[2], const lanes f[2], lanes bound, lanes minus_bound)
+{
+    lanes d = lanes_subtract(lanes_multiply(e[0], f[1]), lanes_multiply(e[1], f[0]));
+    SC_KERNEL(side) r;
+    r.left = lanes_bits(lanes_below(bound, d));
+    r.right = lanes_bits(lanes_below(d, minus_bound));
+    return r;
+}
+
+/* The lanes in which a line parts them, seen along the axis nearest to the normal of t. */
+static inline unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, float extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    const lanes far = lanes_all(FLT_MAX), minus_far = lanes_all(-FLT_MAX);
     const lanes bound = lanes_all(5 * edge * (extent + edge) + 9 * v * extent * extent);
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
-    lanes flat[2][3][2];
+    lanes n[3], flat[2][2][2];
+    SC_KERNEL(side) own[2], of[2][2]; /* a_0, a_1; b_0, b_1; a_i, b_k */
     unsigned apart = 0;
-    int s, k, i;
-    SC_UNROLL
-    for (s = 0; s < 2; s++) SC_KERNEL(see_along)(n, x->at[s], flat[s]);
+    int s, i, k;
+    SC_KERNEL(find_normal)(x, 0, n);
     SC_UNROLL
     for (s = 0; s < 2; s++) {
-        SC_UNROLL
-        for (k = 0; k < 3; k++) {
-            lanes(*t)[2] = flat[s], (*o)[2] = flat[1 - s];
-            int next = (k + 1) % 3, third = (k + 2) % 3;
-            lanes e0 = lanes_subtract(t[next][0], t[k][0]);
-            lanes e1 = lanes_subtract(t[next][1], t[k][1]);
-            lanes own = lanes_subtract(lanes_multiply(e0, lanes_subtract(t[third][1], t[k][1])),
-                                       lanes_multiply(e1, lanes_subtract(t[third][0], t[k][0])));
-            lanes least = far, most = minus_far;
-            unsigned parts;
-            SC_UNROLL
-            for (i = 0; i < 3; i++) {
-                lanes d = lanes_subtract(lanes_multiply(e0, lanes_subtract(o[i][1], t[k][1])),
-                                         lanes_multiply(e1, lanes_subtract(o[i][0], t[k][0])));
-                least = lanes_smaller(least, lanes_choose(x->shared[1 - s][i], far, d));
-                most = lanes_larger(most, lanes_choose(x->shared[1 - s][i], minus_far, d));
-            }
-            parts = lanes_bits(lanes_both(lanes_below(bound, own), lanes_below(most, minus_bound)));
-            parts |=
-                lanes_bits(lanes_both(lanes_below(own, minus_bound), lanes_below(bound, least)));
-            apart |= parts & ~lanes_bits(x->shared[s][third]);
-        }
+        SC_KERNEL(see_along)(n, (const lanes(*)[3])x->at[s], 2, flat[s]);
+        own[s] = SC_KERNEL(side_of)(flat[s][0], flat[s][1], bound, minus_bound);
     }
+    SC_UNROLL
+    for (i = 0; i < 2; i++) {
+        SC_UNROLL
+        for (k = 0; k < 2; k++)
+            of[i][k] = SC_KERNEL(side_of)(flat[0][i], flat[1][k], bound, minus_bound);
+    }
+    /* a_0 has b_k on side of[0][k] and a_1 on its own; a_1 has a_0 on the other */
+    apart |= (own[0].left & of[0][0].right & of[0][1].right) |
+             (own[0].right & of[0][0].left & of[0][1].left);
+    apart |= ((own[0].right & of[1][0].right & of[1][1].right) |
+              (own[0].left & of[1][0].left & of[1][1].left)) &
+             x->point;
+    /* b_k has a_i on the side opposite to of[i][k] */
+    apart |= (own[1].left & of[0][0].left & of[1][0].left) |
+             (own[1].right & of[0][0].right & of[1][0].right);
+    apart |= (own[1].right & of[0][1].left & of[1][1].left) |
+             (own[1].left & of[0][1].right & of[1][1].right);
     return apart;
 }
 
@@ -184,28 +249,30 @@ static void SC_KERNEL(take_neighbors)(sc_query_state *state, const sc_leaf_pair 
                                       uint8_t *of_a, uint8_t *of_b, unsigned count)
 {
     const uint32_t *first = sc_model_leaf_first(state->model);
-    SC_KERNEL(neighbor_corners) a, other, *b = &a;
+    const int take_edges =
+        state->options.pairs != SC_PAIRS_EDGE && state->options.contact != SC_CONTACT_PROPER;
+    SC_KERNEL(neighborhood) a, b;
     SC_KERNEL(neighbors) x;
-    lanes n[3];
     unsigned at;
-    SC_KERNEL(find_corners)(state, p->a, &a);
-    if (p->a != p->b) {
-        SC_KERNEL(find_corners)(state, p->b, &other);
-        b = &other;
-    }
+    SC_KERNEL(find_points)(state, p->a, &a);
+    SC_KERNEL(find_points)(state, p->b, &b);
     memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
     memset(of_b + count, 0, SC_LANES_COUNT);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
-        unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu, flat[2];
-        SC_KERNEL(load_neighbors)(&a, b, of_a + at, of_b + at, &x);
-        mask &= ~SC_KERNEL(plane_parts)(&x, 1, extent, n, &flat[1]) | x.same;
-        mask &= ~SC_KERNEL(plane_parts)(&x, 0, extent, n, &flat[0]) | x.same;
-        if (sc_bits_count(mask) >= SC_SIDES_WORTH)
-            mask &= ~SC_KERNEL(side_parts)(&x, n, extent) | x.same;
-        for (; mask; mask &= mask - 1) {
+        unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
+        unsigned odd;
+        SC_KERNEL(load_neighbors)(&a, &b, of_a + at, of_b + at, &x);
+        odd = mask & ~(x.point | x.edge);
+        mask &= take_edges ? x.point | x.edge : x.point;
+        mask &= ~(SC_KERNEL(direction_parts)(&x, extent) & x.point);
+        if (mask) mask &= ~SC_KERNEL(side_parts)(&x, extent);
+        if (mask) {
+            mask &= ~SC_KERNEL(plane_parts)(&x, 1, extent);
+            mask &= ~SC_KERNEL(plane_parts)(&x, 0, extent);
+        }
+        for (mask |= odd; mask; mask &= mask - 1) {
             uint32_t lane = at + sc_bits_lowest(mask);
-            sc_candidates_add_neighbors(state, first[p->a] + of_a[lane], first[p->b] + of_b[lane],
-                                        (flat[0] & flat[1]) >> (lane - at) & 1);
+            sc_candidates_add_neighbors(state, first[p->a] + of_a[lane], first[p->b] + of_b[lane]);
         }
     }
 }
