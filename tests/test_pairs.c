@@ -413,6 +413,33 @@ static void nearly_coplanar(void)
     }
 }
 
+/* Pairs of triangles that cross each other's planes, of which an edge of one passes one of the other ever more closely. */
+static void edges_that_nearly_meet(void)
+{
+    uint32_t rounds = test_iterations(150);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t pairs = 1 + test_random_below(16);
+        soup s = soup_make(6 * pairs, 2 * pairs);
+        for (uint32_t k = 0; k < 3 * s.vertex_count; ++k) s.positions[k] = test_random_unit();
+        for (uint32_t k = 0; k < 3 * s.triangle_count; ++k) s.triangles[k] = k;
+        for (uint32_t k = 0; k < pairs; ++k) {
+            double *a = s.positions + 18 * k, *b = a + 9;
+            double along = test_random_range(0.1, 0.9), there = test_random_range(0.1, 0.9);
+            double off = exp2(-(double)test_random_below(60));
+            uint32_t first = test_random_below(3), turn = test_random_below(3);
+            for (uint32_t c = 0; c < 3; ++c) { /* moves an end of the edge of b */
+                double p = a[3 * first + c], q = a[3 * ((first + 1) % 3) + c];
+                double x = p + along * (q - p) + off * test_random_range(-1, 1);
+                double *from = b + 3 * turn + c, *to = b + 3 * ((turn + 1) % 3) + c;
+                *to = *from + (x - *from) / there;
+            }
+        }
+        check_random_build("edges that nearly meet", state, &s, s.positions);
+        soup_free(&s);
+    }
+}
+
 static void deformed_meshes(void)
 {
     uint32_t rounds = test_iterations(140);
@@ -750,7 +777,7 @@ static void meshes_of_the_folder(void)
 }
 
 SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
-             SC_TEST(nearly_coplanar), SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell),
-             SC_TEST(branched_discs), SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
-             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
-             SC_TEST(meshes_of_the_folder))
+             SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet), SC_TEST(deformed_meshes),
+             SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
+             SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
+             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))

@@ -71,6 +71,23 @@ static void decide_pair(sc_query_state *state, const sc_pair *places)
         take_triangles(state, places);
 }
 
+void sc_candidates_take(sc_query_state *state, uint32_t a, uint32_t b, unsigned edges)
+{
+    sc_pair places;
+    if (state->sifts) {
+        sc_candidates_add(state, a, b);
+        return;
+    }
+    if (state->stop) return;
+    places.a = a;
+    places.b = b;
+    state->stats.counts[sc_state_primitive_task(state)]++;
+    if (state->options.pairs == SC_PAIRS_EDGE)
+        take_edges(state, &places, edges & edges_wanted(state, &places));
+    else
+        take_triangles(state, &places);
+}
+
 /* Lists the vertices that two triangles share; returns how many. */
 static int list_shared(const uint32_t *a, const uint32_t *b, uint32_t shared[3])
 {

@@ -49,6 +49,9 @@ static inline void sc_candidates_add(sc_query_state *state, uint32_t a, uint32_t
     pair->b = b;
 }
 
+/* Takes one that is certain to meet, as these edges do: bit k, edge k of a, 3 + k, of b. */
+void sc_candidates_take(sc_query_state *state, uint32_t a, uint32_t b, unsigned edges);
+
 /* Pairs are decided by so many at a time. */
 enum { SC_PAIR_LANES = 8 };
 

@@ -1,6 +1,7 @@
 /*
  * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then what is left, sixteen pairs at a
- * time, by planes and by sides in a projection. See query_kernels.h.
+ * time, by planes, by the order along the line in which two planes meet, and by sides in a projection. Pairs that are
+ * certain to meet are taken, pairs of which nothing is certain are collected. See query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -16,6 +17,17 @@
  * and compared rather than subtracted: both products are off by 3.01 v |n|1, as no coordinate is above 1, and the sum of
  * one with the bound by 1.01 v |n|1 and a part of the bound. |n|1 <= 1.01 |e|1 |f|1 <= S^2 / 3.96: together
  * 1.8 v S^2. All of it is below S (2.1 v S + 4 EDGE (D + EDGE) + 7 v D^2) + 8 EDGE^2 (D + EDGE), however that is rounded.
+ *
+ * If the plane of each of two triangles has a corner of the other, its tip, on one side and two on the other, the planes meet
+ * in a line, which crosses the edges from the tips inside them; of a triangle, what is between its two crossings is on that
+ * line. Let e and f be such edges of either, w run from tip to tip, and x and y be where the line crosses e and f. Then
+ * d = (e x f) . w = (e x f) . (y - x), and as n x n' is along the line and (e x f) . (n x n') = -(e . n') (f . n), of
+ * which the sign is the same for all four of such edges, the signs of the four d tell in which order x and y are. If they
+ * are the same the triangles are apart, if not they meet; and so does an edge whose two signs differ, no matter
+ * how contacts are defined, as nothing is zero. Each of six products meets three differences, two products and three sums:
+ * d is off by 8.01 v |e|1 |f|1 D. Let S be the sum of that of both triangles, >= |e|1 + |f|1. As |e|1 |f|1 is below S^2 / 4
+ * and 1.5 D S, and D <= 2, this is below 2.01 v S^2 + 6.01 v D^2 S; and what moving the points changes is as above: the bound
+ * above holds.
  *
  * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4 EDGE D, 2 EDGE^2, and by
  * rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
@@ -232,14 +244,18 @@ static inline lanes SC_KERNEL(plane_bound)(lanes size, float extent)
     return lanes_add(lanes_multiply(size, bound), lanes_all(8 * edge * edge * (extent + edge)));
 }
 
-/* The lanes in which the plane of a triangle certainly has all corners o of another on one side. */
-static inline unsigned SC_KERNEL(plane_separates)(const SC_KERNEL(picked) * t, lanes o[3][3],
-                                                  float extent)
+/* On which sides of the planes of triangles the corners of others certainly are. */
+typedef struct SC_KERNEL(splits) {
+    lanes_mask above[3], below[3];
+} SC_KERNEL(splits);
+
+static inline void SC_KERNEL(find_splits)(const SC_KERNEL(picked) * t, lanes o[3][3], float extent,
+                                          SC_KERNEL(splits) * s)
 {
     lanes_index i = lanes_index_load(t->numbers);
     lanes offset = lanes_pick(t->ready->offset, i);
     lanes bound = SC_KERNEL(plane_bound)(lanes_pick(t->ready->size, i), extent);
-    lanes n[3], least = offset, most = offset;
+    lanes n[3], high = lanes_add(offset, bound), low = lanes_subtract(offset, bound);
     int k, c;
     SC_UNROLL
     for (c = 0; c < 3; c++) n[c] = lanes_pick(t->ready->normal[c], i);
@@ -248,11 +264,104 @@ static inline unsigned SC_KERNEL(plane_separates)(const SC_KERNEL(picked) * t, l
         lanes d = lanes_multiply(n[0], o[k][0]);
         SC_UNROLL
         for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(n[c], o[k][c]));
-        least = k ? lanes_smaller(least, d) : d;
-        most = k ? lanes_larger(most, d) : d;
+        s->above[k] = lanes_below(high, d);
+        s->below[k] = lanes_below(d, low);
     }
-    return lanes_bits(lanes_below(lanes_add(offset, bound), least)) |
-           lanes_bits(lanes_below(most, lanes_subtract(offset, bound)));
+}
+
+/* The lanes in which all corners are on one side. */
+static inline unsigned SC_KERNEL(are_beside_plane)(const SC_KERNEL(splits) * s)
+{
+    return lanes_bits(lanes_either(lanes_both(s->above[0], lanes_both(s->above[1], s->above[2])),
+                                   lanes_both(s->below[0], lanes_both(s->below[1], s->below[2]))));
+}
+
+/* Of triangles of which a plane certainly splits the corners: the one alone on its side, and the edges from there to the
+   next corner and to the one after. */
+typedef struct SC_KERNEL(tips) {
+    lanes at[3], edge[2][3];
+    unsigned is[2]; /* the lanes in which the corner is the first, and the second */
+    unsigned certain;
+} SC_KERNEL(tips);
+
+static inline void SC_KERNEL(find_tips)(const SC_KERNEL(splits) * s, lanes x[3][3],
+                                        SC_KERNEL(tips) * tips)
+{
+    lanes_mask is[2], sure = lanes_either(s->above[0], s->below[0]);
+    int k, c;
+    SC_UNROLL
+    for (k = 0; k < 2; k++)
+        is[k] = lanes_either(lanes_both(s->above[1 - k], s->above[2]),
+                             lanes_both(s->below[1 - k], s->below[2]));
+    SC_UNROLL
+    for (k = 1; k < 3; k++) sure = lanes_both(sure, lanes_either(s->above[k], s->below[k]));
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        lanes p = lanes_choose(is[0], x[0][c], lanes_choose(is[1], x[1][c], x[2][c]));
+        lanes q = lanes_choose(is[0], x[1][c], lanes_choose(is[1], x[2][c], x[0][c]));
+        lanes r = lanes_choose(is[0], x[2][c], lanes_choose(is[1], x[0][c], x[1][c]));
+        tips->at[c] = p;
+        tips->edge[0][c] = lanes_subtract(q, p);
+        tips->edge[1][c] = lanes_subtract(r, p);
+    }
+    tips->is[0] = lanes_bits(is[0]);
+    tips->is[1] = lanes_bits(is[1]);
+    tips->certain = lanes_bits(sure);
+}
+
+/* What is certain of pairs: the lanes in which they are apart, or meet; then also, in which ones edge k of the first, or k - 3
+   of the second, meets the other. */
+typedef struct SC_KERNEL(verdict) {
+    unsigned apart, meets, edge[6];
+} SC_KERNEL(verdict);
+
+/* Edges that meet, in these lanes the one from the tip to the next corner and to the one after. */
+static inline void SC_KERNEL(name_edges)(const SC_KERNEL(tips) * t, unsigned next, unsigned after,
+                                         unsigned edge[3])
+{
+    unsigned third = ~(t->is[0] | t->is[1]);
+    edge[0] = (next & t->is[0]) | (after & t->is[1]);
+    edge[1] = (next & t->is[1]) | (after & third);
+    edge[2] = (next & third) | (after & t->is[0]);
+}
+
+/* Those of pairs in a mask of which each plane splits the other. */
+static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes bound, unsigned mask,
+                                          SC_KERNEL(verdict) * verdict)
+{
+    lanes w[3], m[3], minus_bound = lanes_subtract(lanes_all(0), bound);
+    unsigned above[2][2], below[2][2], met;
+    int i, j, c;
+    mask &= tips[0].certain & tips[1].certain;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) w[c] = lanes_subtract(tips[1].at[c], tips[0].at[c]);
+    SC_UNROLL
+    for (j = 0; j < 2; j++) {
+        const lanes *f = tips[1].edge[j];
+        SC_UNROLL
+        for (c = 0; c < 3; c++)
+            m[c] = lanes_subtract(lanes_multiply(f[(c + 1) % 3], w[(c + 2) % 3]),
+                                  lanes_multiply(f[(c + 2) % 3], w[(c + 1) % 3]));
+        SC_UNROLL
+        for (i = 0; i < 2; i++) {
+            const lanes *e = tips[0].edge[i];
+            lanes d = lanes_multiply(e[0], m[0]);
+            SC_UNROLL
+            for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(e[c], m[c]));
+            above[i][j] = lanes_bits(lanes_below(bound, d));
+            below[i][j] = lanes_bits(lanes_below(d, minus_bound));
+        }
+    }
+    verdict->apart = mask & ((above[0][0] & above[0][1] & above[1][0] & above[1][1]) |
+                             (below[0][0] & below[0][1] & below[1][0] & below[1][1]));
+    met = mask & ~verdict->apart & (above[0][0] | below[0][0]) & (above[0][1] | below[0][1]) &
+          (above[1][0] | below[1][0]) & (above[1][1] | below[1][1]);
+    verdict->meets = met;
+    SC_KERNEL(name_edges)
+    (&tips[0], met & (above[0][0] ^ above[0][1]), met & (above[1][0] ^ above[1][1]), verdict->edge);
+    SC_KERNEL(name_edges)
+    (&tips[1], met & (above[0][0] ^ above[1][0]), met & (above[0][1] ^ above[1][1]),
+     verdict->edge + 3);
 }
 
 /* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge certainly has the third
@@ -294,20 +403,36 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], fl
     return apart;
 }
 
-/* The lanes in which the triangles of two clusters with these numbers are not certainly apart, as far as planes of b
-   and sides tell. */
-static unsigned SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
-                                      unsigned mask, float extent)
+/* Pairs in a mask, of triangles of two clusters with these numbers. */
+static void SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
+                                  unsigned mask, float extent, SC_KERNEL(verdict) * verdict)
 {
-    lanes x[2][3][3], n[3];
+    lanes x[2][3][3], n[3], size;
+    lanes_index i = lanes_index_load(a->numbers);
+    SC_KERNEL(splits) splits[2];
+    SC_KERNEL(tips) tips[2];
+    unsigned open;
     int c;
     SC_KERNEL(pick_corners)(a, x[0]);
-    mask &= ~SC_KERNEL(plane_separates)(b, x[0], extent);
-    if (sc_bits_count(mask) < SC_SIDES_WORTH) return mask;
+    SC_KERNEL(find_splits)(b, x[0], extent, &splits[0]);
+    verdict->meets = 0;
+    verdict->apart = SC_KERNEL(are_beside_plane)(&splits[0]);
+    if (!(mask & ~verdict->apart)) return;
     SC_KERNEL(pick_corners)(b, x[1]);
-    SC_UNROLL
-    for (c = 0; c < 3; c++) n[c] = lanes_pick(a->ready->normal[c], lanes_index_load(a->numbers));
-    return mask & ~SC_KERNEL(side_separates)(x, n, extent);
+    SC_KERNEL(find_splits)(a, x[1], extent, &splits[1]);
+    open = mask & ~verdict->apart & ~SC_KERNEL(are_beside_plane)(&splits[1]);
+    SC_KERNEL(find_tips)(&splits[0], x[0], &tips[0]);
+    SC_KERNEL(find_tips)(&splits[1], x[1], &tips[1]);
+    size = lanes_add(lanes_pick(a->ready->size, i),
+                     lanes_pick(b->ready->size, lanes_index_load(b->numbers)));
+    SC_KERNEL(cross_edges)(tips, SC_KERNEL(plane_bound)(size, extent), open, verdict);
+    open &= ~(verdict->apart | verdict->meets);
+    if (sc_bits_count(open & ~(tips[0].certain & tips[1].certain)) >= SC_SIDES_WORTH) {
+        SC_UNROLL
+        for (c = 0; c < 3; c++) n[c] = lanes_pick(a->ready->normal[c], i);
+        open &= ~SC_KERNEL(side_separates)(x, n, extent);
+    }
+    verdict->apart = ~(open | verdict->meets);
 }
 
 /* Sets all of a picked but the numbers. */
@@ -320,7 +445,7 @@ static inline void SC_KERNEL(begin_picking)(const sc_query_state *state, uint32_
     t->numbers = NULL;
 }
 
-/* Collects those of the pairs in these rows that are not certainly apart. */
+/* Takes those of the pairs in these rows that certainly meet, and collects those that are not certainly apart. */
 static void SC_KERNEL(collect)(sc_query_state *state, const sc_leaf_pair *p, SC_KERNEL(picked) * a,
                                SC_KERNEL(picked) * b, unsigned rows, const uint8_t row_a[],
                                const uint16_t row_b[], float extent)
@@ -328,7 +453,8 @@ static void SC_KERNEL(collect)(sc_query_state *state, const sc_leaf_pair *p, SC_
     uint32_t first_a = sc_model_leaf_first(state->model)[p->a];
     uint32_t first_b = sc_model_leaf_first(state->model)[p->b];
     uint8_t of_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], of_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
-    unsigned count = 0, at, r;
+    SC_KERNEL(verdict) verdict;
+    unsigned count = 0, at, r, met;
     for (r = 0; r < rows; r++) {
         memset(of_a + count, row_a[r], SC_LANES_COUNT);
         count += lanes_list(row_b[r], of_b + count);
@@ -340,7 +466,17 @@ static void SC_KERNEL(collect)(sc_query_state *state, const sc_leaf_pair *p, SC_
         if (count >= SC_LEAF_FEW) {
             a->numbers = of_a + at;
             b->numbers = of_b + at;
-            mask = SC_KERNEL(test_pairs)(a, b, mask, extent);
+            SC_KERNEL(test_pairs)(a, b, mask, extent, &verdict);
+            for (met = mask & verdict.meets; met; met &= met - 1) {
+                uint32_t lane = sc_bits_lowest(met);
+                unsigned edges = 0;
+                int k;
+                SC_UNROLL
+                for (k = 0; k < 6; k++) edges |= (verdict.edge[k] >> lane & 1u) << k;
+                sc_candidates_take(state, first_a + of_a[at + lane], first_b + of_b[at + lane],
+                                   edges);
+            }
+            mask &= ~(verdict.apart | verdict.meets);
         }
         for (; mask; mask &= mask - 1) {
             uint32_t lane = at + sc_bits_lowest(mask);
