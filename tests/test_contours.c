@@ -1300,6 +1300,36 @@ static void places_of_contours(void)
     mpq_clears(exact, bound, NULL);
 }
 
+/* A flat square grid, in any direction: no contour crosses itself, and where two patches share one point the lines of the
+   grid go straight on from one to the other. */
+static void flat_cloths_pass(void)
+{
+    uint32_t touching = 0;
+    for (uint32_t i = 0; i < test_iterations(12); ++i) {
+        scene s;
+        soup mesh = soup_cloth(20 + i, 30);
+        if (!open_scene(&s, "flat cloth", &mesh, SC_WELD_NONE, SC_PARTITION_FAST)) continue;
+        if (i % 3) rotate(s.pose, s.mesh.vertex_count);
+        if (load_pose(&s)) {
+            uint32_t failed = 0, node;
+            s.workspace->isa = 1 + i % (uint32_t)sc_isa_best();
+            for (node = 0; node < s.model->node_count; ++node) {
+                const sc_pair *patches = &sc_model_node_patches(s.model)[node];
+                uint32_t mask =
+                    (uint32_t)s.workspace->mask[patches->a] & s.workspace->mask[patches->b];
+                sc_projection projection;
+                sc_dnc_projection(s.workspace, mask, &projection);
+                failed += !CHECK(mask != 0) || !sc_simple_test(&s.state, &projection, node);
+                touching += (sc_model_node_kind(s.model)[node] & SC_NODE_TOUCHES) != 0;
+            }
+            CHECK_MSG(!failed, "%" PRIu32 " of %" PRIu32 " nodes failed", failed,
+                      s.model->node_count);
+        }
+        close_scene(&s);
+    }
+    CHECK(!is_full() || touching > 100);
+}
+
 /* Two patches that share one point p and, round a loop, points h at which so many patches meet that
    these make nobody adjacent. The second patch folds over the first. */
 static void patches_that_share_hubs(void)
@@ -1479,5 +1509,5 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
              SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),
              SC_TEST(long_contours), SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
              SC_TEST(contours_in_pieces), SC_TEST(points_in_the_unit_box),
-             SC_TEST(poses_of_any_layout), SC_TEST(places_of_contours),
+             SC_TEST(poses_of_any_layout), SC_TEST(places_of_contours), SC_TEST(flat_cloths_pass),
              SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))

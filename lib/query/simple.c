@@ -244,14 +244,18 @@ int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
 
 /*
  * Where the contour passes a point twice, its four edges must alternate round the point, one in, one
- * out: else it crosses itself there. That is so if just one of those that come in is between the two
- * that go out. More than four are not looked at.
+ * out: else it crosses itself there. That is so if just one of those that come in is in the sector that begins with the
+ * first that goes out, lies to its left, and ends with the second. What is left of the first and right of the second is
+ * in it, and what is right of the first and left of the second is not, whatever the sector's angle: edges of flat grids
+ * go straight on through the point, and nobody knows whether that is less than half a turn. If it is less for certain, what
+ * is right of the first or left of the second is outside; if more, what is left of the first or right of the second is inside.
+ * More than four are not looked at.
  */
 static int is_pinch_fine(const sc_simple_contour *c, uint32_t point)
 {
     vector2 direction[2][2]; /* out, in */
-    uint32_t i, count[2] = {0, 0}, between = 0;
-    int end, out, one, other;
+    uint32_t i, count[2] = {0, 0};
+    int end, out, side[2];
     for (i = 0; i < c->count; i++)
         for (end = 0; end < 2; end++) {
             if (point_of(c, i + (uint32_t)end) != point || !is_edge(c, i)) continue;
@@ -261,15 +265,17 @@ static int is_pinch_fine(const sc_simple_contour *c, uint32_t point)
     if (SC_NEVER(count[0] != 2)) return 0; /* two that go out made it a pinch */
     if (count[1] != 2) return 0;           /* of a forged model: contours are closed */
     out = turn(direction[0][0], direction[0][1], c->error);
-    if (!out) return 0;
-    for (i = 0; i < 2; i++) { /* between, on the side where they make less than a half turn */
-        one = turn(direction[0][0], direction[1][i], c->error);
-        other = turn(direction[1][i], direction[0][1], c->error);
-        /* is_open leaves no room for that, but by rounding */
-        if (SC_HARDLY(one * other == 0 && one != -out && other != -out)) return 0;
-        between += one == out && other == out;
+    for (i = 0; i < 2; i++) { /* 1: in that sector, -1: outside */
+        int one = turn(direction[0][0], direction[1][i], c->error);
+        int other = turn(direction[1][i], direction[0][1], c->error);
+        if (one && one == other)
+            side[i] = one;
+        else if (out && (one == -out || other == -out))
+            side[i] = -out;
+        else
+            return 0;
     }
-    return between == 1;
+    return side[0] != side[1];
 }
 
 /* How often the edges of other pieces go round a point of one; a number that cannot be if that is not
