@@ -1147,8 +1147,8 @@ static void points_in_the_unit_box(void)
     mpq_clears(exact, place, NULL);
 }
 
-/* Positions of any type, stride and alignment, with vertices that are used, welded or not used at all, are read as each
-   alone is, by all instructions alike, and nothing behind the last one. */
+/* Positions of any type, stride, alignment and size, with vertices that are used, welded or not used at all, are read as
+   each alone is, by all instructions alike, and nothing behind the last one; points in the unit box are where they should. */
 static void poses_of_any_layout(void)
 {
     static const struct layout {
@@ -1158,8 +1158,10 @@ static void poses_of_any_layout(void)
     uint32_t wrong = 0;
     for (uint32_t round = 0; round < test_iterations(60); ++round) {
         scene s;
-        open_random_scene(&s, 60);
+        open_random_scene(&s, round % 3 ? 60 : 300);
         random_pose(s.pose, s.mesh.vertex_count);
+        if (round % 4 == 1) /* where floats are hardly large or small enough, or not at all */
+            soup_scale(s.pose, s.mesh.vertex_count, exp2(test_random_range(-150, 120)));
         for (size_t l = 0; l < sizeof(layouts) / sizeof(layouts[0]); ++l) {
             const struct layout *layout = &layouts[l];
             const size_t size = layout->type == SC_DOUBLE ? sizeof(double) : sizeof(float);
@@ -1186,7 +1188,11 @@ static void poses_of_any_layout(void)
                 sc_workspace_new_pose(s.model, w);
                 if (!CHECK(sc_positions_read(s.model, &pose, stride, w) == SC_OK)) break;
                 sc_dnc_update(s.model, w);
-                for (uint32_t k = 0; k < 3; ++k) wrong += w->center[k] != low[k] / 2 + high[k] / 2;
+                for (uint32_t k = 0; k < 3; ++k) {
+                    double middle = low[k] / 2 + high[k] / 2;
+                    if (layout->type == SC_FLOAT) middle = (double)(float)middle;
+                    wrong += w->center[k] != middle;
+                }
                 for (uint32_t i = 0; i < SC_LEAF_POINTS * s.model->leaf_count; ++i) {
                     uint32_t point = sc_model_leaf_point(s.model)[i];
                     const float *at = w->point_at + 4 * sc_loops_turn(i);
@@ -1198,6 +1204,8 @@ static void poses_of_any_layout(void)
                         double d = s.pose[3 * point + k];
                         wrong += p[k] != (layout->type == SC_DOUBLE ? d : (double)(float)d);
                         wrong += at[k] != one[k];
+                        d = (p[k] - w->center[k]) * w->scale;
+                        wrong += fabs((double)one[k] - d) > 3e-8;
                     }
                     wrong += at[3] != 0;
                 }

@@ -21,6 +21,8 @@
 
 /* So many leaf clusters are taken at once, for the processor to do something else while one of them waits. */
 #if SC_LANES_AVX512
+#  define CONES 4
+#elif SC_LANES_AVX2
 #  define CONES 2
 #else
 #  define CONES 1
@@ -29,8 +31,8 @@
   SC_UNROLL                                                                                        \
   for (i = 0; i < (count); i++)
 
-/* The masks of clusters that follow each other, by their points and corners. */
-static SC_INLINE void SC_KERNEL(masks_of)(lanes at[][3], const uint8_t *where, uint16_t *mask,
+/* The masks of clusters that follow each other, by their points, as points_of writes them, and corners. */
+static SC_INLINE void SC_KERNEL(masks_of)(const float *each, const uint8_t *where, uint16_t *mask,
                                           int count)
 {
     const lanes relative = lanes_all(37 * 5.9604644775390625e-8f);
@@ -41,7 +43,7 @@ static SC_INLINE void SC_KERNEL(masks_of)(lanes at[][3], const uint8_t *where, u
     EACH(i, count)
     {
         lanes corner[3][3];
-        lanes_corners(at[i], where + 3 * SC_LEAF_MAX * i, corner);
+        lanes_corners_at(each + 4 * SC_LEAF_POINTS * i, where + 3 * SC_LEAF_MAX * i, corner);
         EACH(k, 3)
         {
             e[i][k] = lanes_subtract(corner[1][k], corner[0][k]);
@@ -85,53 +87,73 @@ static SC_INLINE void SC_KERNEL(masks_of)(lanes at[][3], const uint8_t *where, u
 
 static uint32_t SC_KERNEL(cone)(const float *at, const uint8_t *where)
 {
-    lanes row[1][3];
     uint16_t mask;
-    lanes_turned(at, row[0]);
-    SC_KERNEL(masks_of)(row, where, &mask, 1);
+    SC_KERNEL(masks_of)(at, where, &mask, 1);
     return mask;
 }
 
-/* Clusters that follow each other, each time count, as far as there are so many; returns where it ended. */
-static SC_INLINE uint32_t SC_KERNEL(load_some)(const sc_model *model, const sc_workspace *w,
-                                               uint32_t first, uint32_t end, int cones,
-                                               int is_double, uint64_t stride, int count)
+/* Clusters first to end - 1 with what points_of cannot do. */
+static void SC_KERNEL(load_one_by_one)(const sc_model *model, sc_workspace *w, uint32_t first,
+                                       uint32_t end, int cones)
+{
+    const uint32_t patch = sc_model_first_leaf_patch(model);
+    for (; first < end; first++) {
+        float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)first;
+        const uint64_t leaf = first;
+        SC_KERNEL(points_one_by_one)(w, sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf, each);
+        if (cones)
+            w->mask[patch + first] = (uint16_t)SC_KERNEL(cone)(each, sc_model_leaf_corner(model) +
+                                                                         3 * SC_LEAF_MAX * leaf);
+    }
+}
+
+/* Clusters that follow each other, CONES at a time, and what is left one by one. */
+static SC_INLINE void SC_KERNEL(load_some)(const sc_model *model, sc_workspace *w, uint32_t first,
+                                           uint32_t end, int cones, int is_double, uint64_t stride)
 {
     const SC_KERNEL(points_frame) frame = SC_KERNEL(points_frame_of)(w);
+    const lanes last = SC_KERNEL(points_last)(w);
     const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)first;
     const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)first;
     uint16_t *mask = w->mask + sc_model_first_leaf_patch(model) + first;
     float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)first;
-    for (; end - first >= (uint32_t)count; first += (uint32_t)count) {
-        lanes row[CONES][3];
-        int i;
-        EACH(i, count)
-        SC_KERNEL(points_of)
-        (&frame, point + SC_LEAF_POINTS * i, is_double, stride, row[i],
-         each + 4 * SC_LEAF_POINTS * i);
-        if (cones) SC_KERNEL(masks_of)(row, where, mask, count);
-        point += SC_LEAF_POINTS * count;
-        where += 3 * SC_LEAF_MAX * count;
-        each += 4 * SC_LEAF_POINTS * count;
-        mask += count;
+    for (; end - first >= CONES; first += CONES) {
+        int i, odd = 0;
+        EACH(i, CONES) odd |= SC_KERNEL(points_have)(point + SC_LEAF_POINTS * i, last, is_double);
+        if (odd) {
+            SC_KERNEL(load_one_by_one)(model, w, first, first + CONES, cones);
+        } else {
+            EACH(i, CONES)
+            SC_KERNEL(points_of)
+            (&frame, point + SC_LEAF_POINTS * i, is_double, stride, each + 4 * SC_LEAF_POINTS * i);
+            if (cones) SC_KERNEL(masks_of)(each, where, mask, CONES);
+        }
+        point += SC_LEAF_POINTS * CONES;
+        where += 3 * SC_LEAF_MAX * CONES;
+        each += 4 * SC_LEAF_POINTS * CONES;
+        mask += CONES;
     }
-    return first;
+    SC_KERNEL(load_one_by_one)(model, w, first, end, cones);
 }
 
 static void SC_KERNEL(load_leaves)(const sc_model *model, sc_workspace *w, uint32_t first,
                                    uint32_t end, int cones)
 {
-    const int is_double = w->position_type == SC_DOUBLE;
-    if (cones && is_double && w->stride == 3 * sizeof(double))
-        first = SC_KERNEL(load_some)(model, w, first, end, 1, 1, 3 * sizeof(double), CONES);
-    else if (cones && is_double)
-        first = SC_KERNEL(load_some)(model, w, first, end, 1, 1, w->stride, CONES);
-    else if (cones && w->stride == 3 * sizeof(float))
-        first = SC_KERNEL(load_some)(model, w, first, end, 1, 0, 3 * sizeof(float), CONES);
-    else if (cones)
-        first = SC_KERNEL(load_some)(model, w, first, end, 1, 0, w->stride, CONES);
-    /* what is left, or all of it without cones */
-    if (first < end) SC_KERNEL(load_some)(model, w, first, end, cones, is_double, w->stride, 1);
+    const uint64_t stride = w->stride;
+    if (!w->fits_float)
+        SC_KERNEL(load_one_by_one)(model, w, first, end, cones);
+    else if (w->position_type == SC_DOUBLE && !cones)
+        SC_KERNEL(load_some)(model, w, first, end, 0, 1, stride);
+    else if (w->position_type == SC_DOUBLE && stride == 3 * sizeof(double))
+        SC_KERNEL(load_some)(model, w, first, end, 1, 1, 3 * sizeof(double));
+    else if (w->position_type == SC_DOUBLE)
+        SC_KERNEL(load_some)(model, w, first, end, 1, 1, stride);
+    else if (!cones)
+        SC_KERNEL(load_some)(model, w, first, end, 0, 0, stride);
+    else if (stride == 3 * sizeof(float))
+        SC_KERNEL(load_some)(model, w, first, end, 1, 0, 3 * sizeof(float));
+    else
+        SC_KERNEL(load_some)(model, w, first, end, 1, 0, stride);
 }
 
 #undef CONES

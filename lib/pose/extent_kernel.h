@@ -1,12 +1,13 @@
 /*
- * The box of a packed array of positions. See positions.h.
+ * The box of an array of positions. See positions.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * Three registers hold the coordinates of whole vertices: lane i of the three together is coordinate i % 3.
+ * Widens low and high by `some` vertices, one or more; 0 if a coordinate is NaN or infinite.
+ *
+ * Packed: three registers hold the coordinates of whole vertices: lane i of the three together is coordinate i % 3.
  */
 
-/* Widens low and high by `some` vertices; 0 if a coordinate is NaN or infinite. */
 static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double low[3],
                                         double high[3])
 {
@@ -80,6 +81,99 @@ static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low
         low[i % 3] = d < low[i % 3] ? d : low[i % 3];
         high[i % 3] = d > high[i % 3] ? d : high[i % 3];
         not_finite += p[i] - p[i];
+    }
+    return not_finite == 0;
+}
+
+/* Vertices that are stride bytes apart, of which four coordinates are read, but for the last. */
+static int SC_KERNEL(extent_of_apart_doubles)(const double *p, uint64_t stride, uint64_t some,
+                                              double low[3], double high[3])
+{
+    enum { WIDTH = 8 };
+    const unsigned char *from = (const unsigned char *)p;
+    double least[WIDTH], most[WIDTH], bad[WIDTH], at[3], not_finite = 0;
+    uint64_t i = 0;
+    int j, k;
+    if (some > WIDTH) {
+        doubles lows[3], highs[3], x[3], zero = doubles_all(0);
+        SC_UNROLL
+        for (k = 0; k < 3; k++) lows[k] = highs[k] = doubles_all(p[k]);
+        for (; i + WIDTH < some; i += WIDTH) {
+            const double *place[WIDTH];
+            SC_UNROLL
+            for (j = 0; j < WIDTH; j++)
+                place[j] = (const double *)(const void *)(from + (i + (uint64_t)j) * stride);
+            doubles_points(place, &x[0], &x[1], &x[2]);
+            SC_UNROLL
+            for (k = 0; k < 3; k++) {
+                lows[k] = doubles_smaller(x[k], lows[k]);
+                highs[k] = doubles_larger(x[k], highs[k]);
+                zero = doubles_add(zero, doubles_subtract(x[k], x[k]));
+            }
+        }
+        for (k = 0; k < 3; k++) {
+            doubles_store(least, lows[k]);
+            doubles_store(most, highs[k]);
+            for (j = 0; j < WIDTH; j++) {
+                low[k] = least[j] < low[k] ? least[j] : low[k];
+                high[k] = most[j] > high[k] ? most[j] : high[k];
+            }
+        }
+        doubles_store(bad, zero);
+        for (j = 0; j < WIDTH; j++) not_finite += bad[j];
+    }
+    for (; i < some; i++) {
+        memcpy(at, from + i * stride, sizeof at);
+        for (k = 0; k < 3; k++) {
+            low[k] = at[k] < low[k] ? at[k] : low[k];
+            high[k] = at[k] > high[k] ? at[k] : high[k];
+            not_finite += at[k] - at[k];
+        }
+    }
+    return not_finite == 0;
+}
+
+static int SC_KERNEL(extent_of_apart_floats)(const float *p, uint64_t stride, uint64_t some,
+                                             double low[3], double high[3])
+{
+    enum { WIDTH = SC_LANES_COUNT };
+    const unsigned char *from = (const unsigned char *)p;
+    float bad[WIDTH], at[3], not_finite = 0;
+    uint64_t i = 0;
+    int j, k;
+    if (some > WIDTH) {
+        lanes lows[3], highs[3], x[3], zero = lanes_all(0);
+        SC_UNROLL
+        for (k = 0; k < 3; k++) lows[k] = highs[k] = lanes_all(p[k]);
+        for (; i + WIDTH < some; i += WIDTH) {
+            const float *place[WIDTH];
+            SC_UNROLL
+            for (j = 0; j < WIDTH; j++)
+                place[j] = (const float *)(const void *)(from + (i + (uint64_t)j) * stride);
+            lanes_points(place, &x[0], &x[1], &x[2]);
+            SC_UNROLL
+            for (k = 0; k < 3; k++) {
+                lows[k] = lanes_smaller(x[k], lows[k]);
+                highs[k] = lanes_larger(x[k], highs[k]);
+                zero = lanes_add(zero, lanes_subtract(x[k], x[k]));
+            }
+        }
+        for (k = 0; k < 3; k++) {
+            double least = (double)lanes_least(lows[k]), most = (double)lanes_most(highs[k]);
+            low[k] = least < low[k] ? least : low[k];
+            high[k] = most > high[k] ? most : high[k];
+        }
+        lanes_store(bad, zero);
+        for (j = 0; j < WIDTH; j++) not_finite += bad[j];
+    }
+    for (; i < some; i++) {
+        memcpy(at, from + i * stride, sizeof at);
+        for (k = 0; k < 3; k++) {
+            double d = (double)at[k];
+            low[k] = d < low[k] ? d : low[k];
+            high[k] = d > high[k] ? d : high[k];
+            not_finite += at[k] - at[k];
+        }
     }
     return not_finite == 0;
 }

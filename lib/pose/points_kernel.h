@@ -1,22 +1,31 @@
 /*
- * Points of the pose in the unit box, sixteen at a time, straight from the caller's array; and the box of that
- * array. See positions.h.
+ * Points of the pose in the unit box, sixteen at a time, straight from the caller's array. See positions.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * A coordinate is moved by the center and scaled in double precision, then rounded to float. Nothing is read beyond
- * the three coordinates of a vertex, which may be the last thing in the caller's memory.
+ * points_of writes sixteen points, each as four floats of which the last is 0, in turned places (see build/loops.h), as
+ * lanes_turned reads them. The bits are those of sc_positions_unit: a double has more than twice the digits of a float,
+ * so that floats may be subtracted without becoming doubles.
  *
- * points_of gives sixteen points as x, y and z; and, unless each is NULL, point by point as four floats, the last of which
- * is 0: points 0, 4, 8, 12, 1, 5 and so on (see build/loops.h).
+ * Four coordinates of a vertex may be read, the fourth only to be dropped. The last vertex may be the last thing in the
+ * caller's memory: it is left to points_one_by_one, and so are poses that are too small or too large for floats.
  */
+
+static void SC_KERNEL(points_one_by_one)(const sc_workspace *w, const uint32_t *point, float *each)
+{
+    int i;
+    memset(each, 0, 4 * SC_LANES_COUNT * sizeof *each);
+    for (i = 0; i < SC_LANES_COUNT; i++)
+        sc_positions_unit(w, point[i], each + 16 * (i % 4) + i / 4 * 4);
+}
 
 #if SC_LANES_AVX512
 
 /* What points_of has in registers throughout a loop: where positions are, and how they get into the unit box. */
 typedef struct SC_KERNEL(points_frame) {
     const unsigned char *from;
-    __m512d center, scale;
+    __m512d center;
+    __m512 float_center, scale;
 } SC_KERNEL(points_frame);
 
 static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
@@ -24,55 +33,56 @@ static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_wor
     SC_KERNEL(points_frame) f;
     f.from = w->positions;
     f.center = _mm512_broadcast_f64x4(_mm256_set_pd(0, w->center[2], w->center[1], w->center[0]));
-    f.scale = _mm512_set1_pd(w->scale);
+    f.float_center = _mm512_broadcast_f32x4(_mm256_cvtpd_ps(_mm512_castpd512_pd256(f.center)));
+    f.scale = _mm512_set1_ps((float)w->scale);
     return f;
 }
 
-/* Two vertices, at p and q, of doubles or floats. */
-static SC_INLINE __m256 SC_KERNEL(sc_points_two)(const SC_KERNEL(points_frame) * f,
-                                                 const unsigned char *p, const unsigned char *q,
-                                                 int is_double)
+static SC_INLINE __m128 SC_KERNEL(sc_points_float)(const unsigned char *p)
 {
-    __m512d d;
-    if (is_double)
-        d = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_maskz_loadu_pd(7, p)),
-                               _mm256_maskz_loadu_pd(7, q), 1);
-    else
-        d = _mm512_cvtps_pd(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_maskz_loadu_ps(7, p)),
-                                                 _mm_maskz_loadu_ps(7, q), 1));
-    return _mm512_cvtpd_ps(_mm512_mul_pd(_mm512_sub_pd(d, f->center), f->scale));
+    return _mm_loadu_ps((const float *)(const void *)p);
+}
+
+/* Two vertices of doubles, moved and rounded. */
+static SC_INLINE __m256 SC_KERNEL(sc_points_two)(const SC_KERNEL(points_frame) * f,
+                                                 const unsigned char *p, const unsigned char *q)
+{
+    __m512d d =
+        _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd((const double *)(const void *)p)),
+                           _mm256_loadu_pd((const double *)(const void *)q), 1);
+    return _mm512_cvtpd_ps(_mm512_maskz_sub_pd(0x77, d, f->center));
 }
 
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, lanes at[3], float *each)
+                                           int is_double, uint64_t stride, float *each)
 {
-    const unsigned char *from = f->from;
-    __m512 r[4], low, low2;
     int i;
     SC_UNROLL
-    for (i = 0; i < 4; i++)
-        r[i] = _mm512_insertf32x8(
-            _mm512_castps256_ps512(SC_KERNEL(sc_points_two)(
-                f, from + point[i] * stride, from + point[i + 4] * stride, is_double)),
-            SC_KERNEL(sc_points_two)(f, from + point[i + 8] * stride, from + point[i + 12] * stride,
-                                     is_double),
-            1);
-    if (each) {
-        SC_UNROLL
-        for (i = 0; i < 4; i++) _mm512_storeu_ps(each + 16 * i, r[i]);
+    for (i = 0; i < 4; i++) {
+        const unsigned char *a = f->from + point[i] * stride, *b = f->from + point[i + 4] * stride;
+        const unsigned char *c = f->from + point[i + 8] * stride;
+        const unsigned char *d = f->from + point[i + 12] * stride;
+        __m512 r;
+        if (is_double) {
+            r = _mm512_insertf32x8(_mm512_castps256_ps512(SC_KERNEL(sc_points_two)(f, a, b)),
+                                   SC_KERNEL(sc_points_two)(f, c, d), 1);
+        } else {
+            r = _mm512_castps128_ps512(SC_KERNEL(sc_points_float)(a));
+            r = _mm512_insertf32x4(r, SC_KERNEL(sc_points_float)(b), 1);
+            r = _mm512_insertf32x4(r, SC_KERNEL(sc_points_float)(c), 2);
+            r = _mm512_insertf32x4(r, SC_KERNEL(sc_points_float)(d), 3);
+            r = _mm512_maskz_sub_ps(0x7777, r, f->float_center);
+        }
+        _mm512_storeu_ps(each + 16 * i, _mm512_mul_ps(r, f->scale));
     }
-    low = _mm512_unpacklo_ps(r[0], r[1]);
-    low2 = _mm512_unpacklo_ps(r[2], r[3]);
-    at[0] = _mm512_shuffle_ps(low, low2, 0x44);
-    at[1] = _mm512_shuffle_ps(low, low2, 0xee);
-    at[2] = _mm512_shuffle_ps(_mm512_unpackhi_ps(r[0], r[1]), _mm512_unpackhi_ps(r[2], r[3]), 0x44);
 }
 
 #elif SC_LANES_AVX2
 
 typedef struct SC_KERNEL(points_frame) {
     const unsigned char *from;
-    __m256d center, scale;
+    __m256d center;
+    __m256 float_center, scale;
 } SC_KERNEL(points_frame);
 
 static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
@@ -80,48 +90,34 @@ static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_wor
     SC_KERNEL(points_frame) f;
     f.from = w->positions;
     f.center = _mm256_set_pd(0, w->center[2], w->center[1], w->center[0]);
-    f.scale = _mm256_set1_pd(w->scale);
+    f.float_center = _mm256_set_m128(_mm256_cvtpd_ps(f.center), _mm256_cvtpd_ps(f.center));
+    f.scale = _mm256_set1_ps((float)w->scale);
     return f;
 }
 
+/* A vertex, of doubles moved and rounded. */
 static SC_INLINE __m128 SC_KERNEL(sc_points_one)(const SC_KERNEL(points_frame) * f,
                                                  const unsigned char *p, int is_double)
 {
-    __m256d d;
-    if (is_double)
-        d = _mm256_maskload_pd((const double *)(const void *)p, _mm256_set_epi64x(0, -1, -1, -1));
-    else
-        d = _mm256_cvtps_pd(
-            _mm_maskload_ps((const float *)(const void *)p, _mm_set_epi32(0, -1, -1, -1)));
-    return _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(d, f->center), f->scale));
+    if (!is_double) return _mm_loadu_ps((const float *)(const void *)p);
+    return _mm256_cvtpd_ps(_mm256_sub_pd(
+        _mm256_maskload_pd((const double *)(const void *)p, _mm256_set_epi64x(0, -1, -1, -1)),
+        f->center));
 }
 
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, lanes at[3], float *each)
+                                           int is_double, uint64_t stride, float *each)
 {
-    __m128 r[3][4];
+    const __m256 three = _mm256_castsi256_ps(_mm256_set_epi32(0, -1, -1, -1, 0, -1, -1, -1));
     int i;
     SC_UNROLL
-    for (i = 0; i < 4; i++, point += 4) {
-        __m128 x = SC_KERNEL(sc_points_one)(f, f->from + point[0] * stride, is_double);
-        __m128 y = SC_KERNEL(sc_points_one)(f, f->from + point[1] * stride, is_double);
-        __m128 z = SC_KERNEL(sc_points_one)(f, f->from + point[2] * stride, is_double);
-        __m128 rest = SC_KERNEL(sc_points_one)(f, f->from + point[3] * stride, is_double);
-        if (each) {
-            _mm_storeu_ps(each + 4 * i, x);
-            _mm_storeu_ps(each + 16 + 4 * i, y);
-            _mm_storeu_ps(each + 32 + 4 * i, z);
-            _mm_storeu_ps(each + 48 + 4 * i, rest);
-        }
-        _MM_TRANSPOSE4_PS(x, y, z, rest);
-        r[0][i] = x;
-        r[1][i] = y;
-        r[2][i] = z;
-    }
-    SC_UNROLL
-    for (i = 0; i < 3; i++) {
-        at[i].v[0] = _mm256_set_m128(r[i][1], r[i][0]);
-        at[i].v[1] = _mm256_set_m128(r[i][3], r[i][2]);
+    for (i = 0; i < 8; i++) {
+        const uint32_t *at = point + i % 4 + i / 4 * 8;
+        __m128 a = SC_KERNEL(sc_points_one)(f, f->from + at[0] * stride, is_double);
+        __m128 b = SC_KERNEL(sc_points_one)(f, f->from + at[4] * stride, is_double);
+        __m256 r = _mm256_set_m128(b, a);
+        if (!is_double) r = _mm256_sub_ps(_mm256_and_ps(r, three), f->float_center);
+        _mm256_storeu_ps(each + 16 * (i % 4) + 8 * (i / 4), _mm256_mul_ps(r, f->scale));
     }
 }
 
@@ -129,58 +125,80 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
 
 typedef struct SC_KERNEL(points_frame) {
     const unsigned char *from;
-    sc_doubles2 center[3], scale;
+    sc_doubles2 center[2];
+    sc_floats4 float_center, scale, three;
 } SC_KERNEL(points_frame);
 
 static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
 {
+    const uint32_t bits[4] = {~(uint32_t)0, ~(uint32_t)0, ~(uint32_t)0, 0};
     SC_KERNEL(points_frame) f;
-    int k;
     f.from = w->positions;
-    f.scale = SC_QUAD(set1_pd)(w->scale);
-    for (k = 0; k < 3; k++) f.center[k] = SC_QUAD(set1_pd)(w->center[k]);
+    f.center[0] = SC_QUAD(setr_pd)(w->center[0], w->center[1]);
+    f.center[1] = SC_QUAD(set1_pd)(w->center[2]);
+    f.float_center = sc_quad_rounded(f.center[0], SC_QUAD(setr_pd)(w->center[2], 0));
+    f.scale = SC_QUAD(set1_ps)((float)w->scale);
+    memcpy(&f.three, bits, sizeof f.three);
     return f;
 }
 
-static SC_INLINE double SC_KERNEL(sc_points_one)(const unsigned char *p, int is_double)
+static SC_INLINE double SC_KERNEL(sc_points_one)(const unsigned char *p)
 {
-    double d;
-    float f; /* at any address */
-    if (is_double) {
-        memcpy(&d, p, sizeof d);
-        return d;
-    }
-    memcpy(&f, p, sizeof f);
-    return (double)f;
+    double d; /* at any address */
+    memcpy(&d, p, sizeof d);
+    return d;
 }
 
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, lanes at[3], float *each)
+                                           int is_double, uint64_t stride, float *each)
 {
-    int i, j, k;
+    int i;
     SC_UNROLL
-    for (i = 0; i < 4; i++) {
-        sc_floats4 one[4];
-        SC_UNROLL
-        for (k = 0; k < 3; k++) {
-            sc_doubles2 d[2];
-            SC_UNROLL
-            for (j = 0; j < 2; j++) {
-                uint64_t p = point[4 * i + 2 * j] * stride, q = point[4 * i + 2 * j + 1] * stride;
-                const unsigned char *from = f->from + (is_double ? 8 : 4) * k;
-                d[j] = SC_QUAD(setr_pd)(SC_KERNEL(sc_points_one)(from + p, is_double),
-                                        SC_KERNEL(sc_points_one)(from + q, is_double));
-                d[j] = SC_QUAD(mul_pd)(SC_QUAD(sub_pd)(d[j], f->center[k]), f->scale);
-            }
-            at[k].v[i] = one[k] = sc_quad_rounded(d[0], d[1]);
+    for (i = 0; i < 8; i++) { /* two points */
+        const unsigned char *p = f->from + point[2 * i] * stride;
+        const unsigned char *q = f->from + point[2 * i + 1] * stride;
+        float *to = each + 32 * (i % 2) + 4 * (i / 2);
+        sc_floats4 a, b;
+        if (is_double) {
+            const sc_floats4 none = SC_QUAD(set1_ps)(0);
+            sc_doubles2 x =
+                SC_QUAD(sub_pd)(SC_QUAD(loadu_pd)((const double *)(const void *)p), f->center[0]);
+            sc_doubles2 y =
+                SC_QUAD(sub_pd)(SC_QUAD(loadu_pd)((const double *)(const void *)q), f->center[0]);
+            sc_doubles2 z = SC_QUAD(sub_pd)(SC_QUAD(setr_pd)(SC_KERNEL(sc_points_one)(p + 16),
+                                                             SC_KERNEL(sc_points_one)(q + 16)),
+                                            f->center[1]);
+            sc_floats4 xy = sc_quad_rounded(x, y), zz = sc_quad_rounded(z, z);
+            a = SC_QUAD_SHUFFLE(xy, SC_QUAD_SHUFFLE(zz, none, 0, 0, 0, 0), 0, 1, 0, 2);
+            b = SC_QUAD_SHUFFLE(xy, SC_QUAD_SHUFFLE(zz, none, 1, 1, 0, 0), 2, 3, 0, 2);
+        } else {
+            a = SC_QUAD(loadu_ps)((const float *)(const void *)p);
+            b = SC_QUAD(loadu_ps)((const float *)(const void *)q);
+            a = SC_QUAD(sub_ps)(SC_QUAD(and_ps)(a, f->three), f->float_center);
+            b = SC_QUAD(sub_ps)(SC_QUAD(and_ps)(b, f->three), f->float_center);
         }
-        if (each) {
-            one[3] = SC_QUAD(set1_ps)(0);
-            sc_quad_transpose(one);
-            SC_UNROLL
-            for (j = 0; j < 4; j++) SC_QUAD(storeu_ps)(each + 16 * j + 4 * i, one[j]);
-        }
+        SC_QUAD(storeu_ps)(to, SC_QUAD(mul_ps)(a, f->scale));
+        SC_QUAD(storeu_ps)(to + 16, SC_QUAD(mul_ps)(b, f->scale));
     }
+}
+
+#endif
+
+#if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_QUADS
+
+/* Whether the last vertex is among sixteen points, and four coordinates of each are read. */
+static SC_INLINE int SC_KERNEL(points_have)(const uint32_t *point, lanes last, int is_double)
+{
+    if (is_double && !SC_LANES_AVX512) return 0;
+    return lanes_bits(lanes_same(lanes_load((const float *)(const void *)point), last)) != 0;
+}
+
+/* The number of the last vertex in each lane, bit by bit. */
+static SC_INLINE lanes SC_KERNEL(points_last)(const sc_workspace *w)
+{
+    float last;
+    memcpy(&last, &w->last_vertex, sizeof last);
+    return lanes_all(last);
 }
 
 #else
@@ -193,19 +211,25 @@ static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_wor
 }
 
 static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, lanes at[3], float *each)
+                                           int is_double, uint64_t stride, float *each)
 {
-    float row[3][SC_LANES_COUNT], unit[4];
-    int i, k;
     (void)is_double;
     (void)stride;
-    for (i = 0; i < SC_LANES_COUNT; i++) {
-        sc_positions_unit(*f, point[i], unit);
-        unit[3] = 0;
-        for (k = 0; k < 3; k++) row[k][i] = unit[k];
-        if (each) memcpy(each + 16 * (i % 4) + i / 4 * 4, unit, sizeof unit);
-    }
-    for (k = 0; k < 3; k++) at[k] = lanes_load(row[k]);
+    SC_KERNEL(points_one_by_one)(*f, point, each);
+}
+
+static SC_INLINE int SC_KERNEL(points_have)(const uint32_t *point, lanes last, int is_double)
+{
+    (void)point;
+    (void)last;
+    (void)is_double;
+    return 0;
+}
+
+static SC_INLINE lanes SC_KERNEL(points_last)(const sc_workspace *w)
+{
+    (void)w;
+    return lanes_all(0);
 }
 
 #endif
@@ -214,12 +238,17 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
 static inline void SC_KERNEL(load_points)(const sc_workspace *w, const uint32_t *point, float *at)
 {
     const SC_KERNEL(points_frame) f = SC_KERNEL(points_frame_of)(w);
+    const int is_double = w->position_type == SC_DOUBLE;
+    float each[4 * SC_LANES_COUNT];
     lanes row[3];
     int k;
-    if (w->position_type == SC_DOUBLE)
-        SC_KERNEL(points_of)(&f, point, 1, w->stride, row, NULL);
+    if (!w->fits_float || SC_KERNEL(points_have)(point, SC_KERNEL(points_last)(w), is_double))
+        SC_KERNEL(points_one_by_one)(w, point, each);
+    else if (is_double)
+        SC_KERNEL(points_of)(&f, point, 1, w->stride, each);
     else
-        SC_KERNEL(points_of)(&f, point, 0, w->stride, row, NULL);
+        SC_KERNEL(points_of)(&f, point, 0, w->stride, each);
+    lanes_turned(each, row);
     SC_UNROLL
     for (k = 0; k < 3; k++) lanes_store(at + SC_LANES_COUNT * k, row[k]);
 }

@@ -24,10 +24,14 @@
 #  include "pose/cones_kernel.h"
 #  include "pose/refit_kernel.h"
 
-const sc_pose_kernels sc_pose_kernels_avx2 = {
-    SC_KERNEL(extent_of_doubles), SC_KERNEL(extent_of_floats),
-    SC_KERNEL(load_leaves),       SC_KERNEL(cone),
-    SC_KERNEL(refit_leaves),      SC_KERNEL(refit_patches)};
+const sc_pose_kernels sc_pose_kernels_avx2 = {SC_KERNEL(extent_of_doubles),
+                                              SC_KERNEL(extent_of_floats),
+                                              SC_KERNEL(extent_of_apart_doubles),
+                                              SC_KERNEL(extent_of_apart_floats),
+                                              SC_KERNEL(load_leaves),
+                                              SC_KERNEL(cone),
+                                              SC_KERNEL(refit_leaves),
+                                              SC_KERNEL(refit_patches)};
 
 #  include "base/lanes_rows_end.h"
 #  include "base/lanes_pick_end.h"

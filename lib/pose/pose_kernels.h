@@ -10,10 +10,14 @@
 #include "pose/workspace.h"
 
 typedef struct sc_pose_kernels {
-    /* The box of a packed array of positions, see pose/positions.h. */
+    /* The box of positions, packed or stride bytes apart, see pose/positions.h. */
     int (*extent_of_doubles)(const double *positions, uint64_t count, double low[3],
                              double high[3]);
     int (*extent_of_floats)(const float *positions, uint64_t count, double low[3], double high[3]);
+    int (*extent_of_apart_doubles)(const double *positions, uint64_t stride, uint64_t count,
+                                   double low[3], double high[3]);
+    int (*extent_of_apart_floats)(const float *positions, uint64_t stride, uint64_t count,
+                                  double low[3], double high[3]);
     /* Fills point_at of leaf clusters first to end - 1, and their masks if cones; see pose/dnc.h. */
     void (*load_leaves)(const sc_model *model, sc_workspace *workspace, uint32_t first,
                         uint32_t end, int cones);

@@ -14,7 +14,8 @@
 #include "pose/workspace.h"
 
 /* Notes where positions are, and sets center, radius and scale. The pose was checked but for what this reports:
-   SC_ERROR_NOT_FINITE. About 3 ns a vertex, or 0.3 of a packed array that is used as a whole, with AVX-512. */
+   SC_ERROR_NOT_FINITE. With AVX-512 about 0.3 ns a vertex if positions are packed, 0.5 if not, 3 if not aligned. The center
+   of floats is of floats, too. */
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
                             sc_workspace *workspace);
 
@@ -45,13 +46,17 @@ static inline const double *sc_positions_at(const sc_workspace *workspace, uint3
     return copy;
 }
 
-/* A point in the unit box: moved by the center, scaled, and then rounded to float. */
+/* A point in the unit box: moved by the center, rounded to float and scaled, or scaled first where that is beyond floats. */
 static inline void sc_positions_unit(const sc_workspace *workspace, uint32_t point, float unit[3])
 {
+    const double scale = workspace->scale;
     double p[3];
     int k;
     sc_positions_get(workspace, point, p);
-    for (k = 0; k < 3; k++) unit[k] = (float)((p[k] - workspace->center[k]) * workspace->scale);
+    for (k = 0; k < 3; k++) {
+        double moved = p[k] - workspace->center[k];
+        unit[k] = workspace->fits_float ? (float)moved * (float)scale : (float)(moved * scale);
+    }
 }
 
 #endif

@@ -206,11 +206,13 @@ struct sc_workspace {
     const unsigned char *positions; /* the caller's, see pose/positions.h */
     uint64_t stride;                /* in bytes */
     uint32_t position_type;         /* SC_FLOAT or SC_DOUBLE */
-    uint32_t in_place; /* points below this can be read as four doubles where they are */
-    double center[3];  /* of the box of all points */
-    double radius;     /* largest distance of a coordinate from center */
-    double scale;      /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 */
-    float *point_at;   /* 4 SC_LEAF_POINTS per leaf: x, y, z of its points in the unit box, that is
+    uint32_t in_place;    /* points below this can be read as four doubles where they are */
+    double center[3];     /* of the box of all points */
+    double radius;        /* largest distance of a coordinate from center */
+    double scale;         /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 */
+    int fits_float;       /* that and what it scales are well within the range of floats */
+    uint32_t last_vertex; /* of the mesh, which may be the last thing in the caller's memory */
+    float *point_at; /* 4 SC_LEAF_POINTS per leaf: x, y, z of its points in the unit box, that is
                           scale * (position - center), at most 1, and 0; in turned places, see
                           build/loops.h */
     uint32_t leaves_ready;
