@@ -36,8 +36,12 @@ static inline void sc_fetch(const void *address)
 /* The same of 64 bits. */
 static inline unsigned sc_bits_lowest64(uint64_t mask)
 {
+#if defined(__GNUC__)
+    return (unsigned)__builtin_ctzll(mask);
+#else
     unsigned low = (unsigned)(mask & 0xffffffffu);
     return low ? sc_bits_lowest(low) : 32 + sc_bits_lowest((unsigned)(mask >> 32));
+#endif
 }
 
 /* How many bits of a mask are set. */

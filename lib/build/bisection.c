@@ -10,7 +10,7 @@
 
 #include "base/assume.h"
 #include "base/sort.h"
-#include "build/refinement.h"
+#include "build/small_refinement.h"
 #include "build/straight_cut.h"
 
 /* Deeper than this, patches are halved as they stand, which ends within SC_DEPTH_MAX. A cut leaves at
@@ -315,7 +315,10 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count,
         size[0] = left_target;
         size[1] = count - left_target;
     }
-    sc_refinement_run(&b->refinement, triangles, count, size, capacity);
+    if (count <= SC_SMALL_REFINEMENT_MAX)
+        sc_small_refinement_run(&b->refinement, triangles, count, size, capacity);
+    else
+        sc_refinement_run(&b->refinement, triangles, count, size, capacity);
     *connected = connect(b, triangles, count, size, capacity);
     return SC_OK;
 }
@@ -417,7 +420,7 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.refinement.lengths = b.lengths;
     b.refinement.label = b.label;
     b.refinement.gain = (float *)sc_scratch_take(scratch, count, sizeof(float));
-    b.refinement.state = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
+    b.refinement.state = (uint8_t *)sc_scratch_take_filled(scratch, (uint64_t)count + 1, 1, 0);
     b.refinement.moves = b.queue; /* these two are not in use meanwhile */
     b.refinement.border = b.sizes;
     b.refinement.heap = (sc_pair *)sc_scratch_take(scratch, 4 * (uint64_t)count, sizeof(sc_pair));

@@ -9,12 +9,17 @@
 
 #include "build/chains.h"
 
-/* Of each point of a segment: 16 times the leaf cluster of its half-edge, plus its place there, turned. */
+/* Points that are written at once. */
+enum { AT_ONCE = 8 };
+
+/* Of each point of a segment: 16 times the leaf cluster of its half-edge, plus its place there, turned; and room for
+   reading as many as are written at once. */
 static uint32_t *find_places(const sc_csf *csf, const sc_xbvh *xbvh, const uint32_t *order,
                              const uint8_t *leaf_corner, sc_scratch *scratch)
 {
     const uint32_t *first = xbvh->leaf_first;
-    uint32_t *place = (uint32_t *)sc_scratch_take(scratch, csf->point_count, sizeof *place);
+    uint32_t *place = (uint32_t *)sc_scratch_take_filled(
+        scratch, (uint64_t)csf->point_count + AT_ONCE, sizeof *place, 0);
     uint32_t *row = (uint32_t *)sc_scratch_take(scratch, first[xbvh->leaf_count], sizeof *row);
     uint32_t leaf, i;
     if (!place || !row) return NULL;
@@ -32,18 +37,24 @@ static uint32_t *find_places(const sc_csf *csf, const sc_xbvh *xbvh, const uint3
     return place;
 }
 
-/* One node's; segments are those of its one chain. */
+/* One node's; segments are those of its one chain. Points are written eight at a time, for segments are short: what is
+   written behind the last is written again by the next segment or node. Only where the array ends one by one. */
 static void write_loop(const sc_csf *csf, const sc_xbvh *xbvh, sc_pair patches,
                        const uint32_t *segments, const uint32_t *place, uint16_t *loop,
-                       const uint16_t *end)
+                       const uint16_t *end, const uint16_t *array_end)
 {
     uint32_t first = SC_LEAF_POINTS * xbvh->leaf[patches.a];
     uint32_t count = SC_LEAF_POINTS * xbvh->leaf[patches.a + 1] - first;
     uint32_t second = SC_LEAF_POINTS * xbvh->leaf[patches.b] - count;
     while (loop < end) {
-        uint32_t i = csf->point_first[*segments], last = csf->point_last[*segments];
+        uint32_t i = csf->point_first[*segments], last = csf->point_last[*segments], k;
         uint32_t base = place[i] - first < count ? first : second;
-        for (segments++; i < last; i++) *loop++ = (uint16_t)(place[i] - base);
+        segments++;
+        for (; array_end - loop >= AT_ONCE && i < last; i += AT_ONCE) {
+            for (k = 0; k < AT_ONCE; k++) loop[k] = (uint16_t)(place[i + k] - base);
+            loop += last - i < AT_ONCE ? last - i : AT_ONCE;
+        }
+        for (; i < last; i++) *loop++ = (uint16_t)(place[i] - base);
     }
 }
 
@@ -69,7 +80,7 @@ sc_status sc_loops_write(const sc_csf *csf, const sc_sctt *sctt, const sc_xbvh *
             segments = both;
         }
         write_loop(csf, xbvh, sctt->patches[n], segments, place, loop + csf->loop_first[n],
-                   loop + csf->loop_first[n + 1]);
+                   loop + csf->loop_first[n + 1], loop + csf->loop_first[sctt->node_count]);
     }
     sc_chains_give(scratch, &chains);
     sc_scratch_give(scratch, both);

@@ -274,15 +274,33 @@ static uint32_t find_first(uint32_t *parent, uint32_t i)
     return i;
 }
 
+/* Joins the pieces of a and b; returns whether they were two. */
+static uint32_t join_pieces(uint32_t *parent, uint32_t a, uint32_t b)
+{
+    a = find_first(parent, a);
+    b = find_first(parent, b);
+    parent[a < b ? b : a] = a < b ? a : b;
+    return a != b;
+}
+
+/* How many of the patches of a level are in one piece. */
+static uint32_t count_whole(const sc_xbvh *xbvh, uint32_t level, const uint32_t *pieces)
+{
+    uint32_t p, count = 0;
+    for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++)
+        count += pieces[p] == 1;
+    return count;
+}
+
 /*
- * Patches that are connected through edges. From the last level up, the edges between triangles of one patch
- * join pieces; those that are left, fewer at each level, wait for a larger patch.
+ * How many patches of each level are connected through edges. Edges within leaf clusters join pieces at once; the
+ * others, fewer at each level up, wait for a patch that has both of their triangles.
  */
 static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarchy *hierarchy,
-                                 const sc_xbvh *xbvh, sc_scratch *scratch, sc_level *levels)
+                                 const sc_xbvh *xbvh, sc_scratch *scratch, uint32_t *connected)
 {
-    uint32_t count = hierarchy->triangle_count, level, p, i, k, leaf, *place, *parent, *leaf_of;
-    uint32_t *patch_at, *pieces;
+    uint32_t count = hierarchy->triangle_count, level = xbvh->level_count - 1, p, i, k, leaf;
+    uint32_t *place, *parent, *leaf_of, *patch_at, *pieces, *own;
     uint64_t n, edges = 0, kept;
     sc_pair *joint;
     place = (uint32_t *)sc_scratch_take(scratch, count, sizeof *place);
@@ -292,37 +310,39 @@ static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarc
     pieces = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *pieces, 0);
     joint = (sc_pair *)sc_scratch_take(scratch, 3 * (uint64_t)count / 2 + 1, sizeof *joint);
     if (!place || !parent || !leaf_of || !patch_at || !pieces || !joint) return SC_ERROR_MEMORY;
-    for (i = 0; i < count; i++) place[hierarchy->order[i]] = parent[i] = i;
-    for (leaf = 0; leaf < xbvh->leaf_count; leaf++)
-        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++) leaf_of[i] = leaf;
+    own = pieces + xbvh->level_first[level]; /* of leaf clusters */
+    for (leaf = 0; leaf < xbvh->leaf_count; leaf++) {
+        own[leaf] = xbvh->leaf_first[leaf + 1] - xbvh->leaf_first[leaf];
+        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++) {
+            leaf_of[i] = leaf;
+            place[hierarchy->order[i]] = parent[i] = i;
+        }
+    }
     for (i = 0; i < count; i++)
         for (k = 0; k < 3; k++) {
             uint32_t h = adjacency->opposite[3 * (uint64_t)hierarchy->order[i] + k];
             if (h == SC_NONE || place[h / 3] <= i) continue;
-            joint[edges].a = i;
-            joint[edges++].b = place[h / 3];
+            if (leaf_of[place[h / 3]] == leaf_of[i]) {
+                own[leaf_of[i]] -= join_pieces(parent, i, place[h / 3]);
+            } else {
+                joint[edges].a = i;
+                joint[edges++].b = place[h / 3];
+            }
         }
-    for (level = xbvh->level_count; level-- > 0; edges = kept) {
-        uint32_t begin = xbvh->level_first[level], end = xbvh->level_first[level + 1] - 1;
-        for (p = begin; p < end; p++) {
-            uint32_t first = xbvh->leaf[p], last = xbvh->leaf[p + 1];
-            for (leaf = first; leaf < last; leaf++) patch_at[leaf] = p;
-            if (level + 1 == xbvh->level_count)
-                pieces[p] = xbvh->leaf_first[last] - xbvh->leaf_first[first];
-            else
-                for (i = xbvh->child[p]; i < xbvh->child[p + 1]; i++) pieces[p] += pieces[i];
+    connected[level] = count_whole(xbvh, level, pieces);
+    for (; level-- > 0; edges = kept) {
+        for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++) {
+            for (leaf = xbvh->leaf[p]; leaf < xbvh->leaf[p + 1]; leaf++) patch_at[leaf] = p;
+            for (i = xbvh->child[p]; i < xbvh->child[p + 1]; i++) pieces[p] += pieces[i];
         }
         for (n = kept = 0; n < edges; n++) {
             p = patch_at[leaf_of[joint[n].a]];
-            if (p == patch_at[leaf_of[joint[n].b]]) {
-                uint32_t a = find_first(parent, joint[n].a), b = find_first(parent, joint[n].b);
-                pieces[p] -= a != b;
-                parent[a < b ? b : a] = a < b ? a : b;
-            } else {
+            if (p == patch_at[leaf_of[joint[n].b]])
+                pieces[p] -= join_pieces(parent, joint[n].a, joint[n].b);
+            else
                 joint[kept++] = joint[n];
-            }
         }
-        for (p = begin; p < end; p++) levels[level].connected_patches += pieces[p] == 1;
+        connected[level] = count_whole(xbvh, level, pieces);
     }
     sc_scratch_give(scratch, joint);
     sc_scratch_give(scratch, pieces);
@@ -334,11 +354,12 @@ static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarc
 }
 
 static void write_levels(const sc_xbvh *xbvh, const sc_sctt *sctt, const sc_csf *csf,
-                         sc_level *levels)
+                         const uint32_t *connected, sc_level *levels)
 {
     uint32_t level, n;
     for (level = 0; level < xbvh->level_count; level++) {
         levels[level].patch_count = sc_xbvh_patches(xbvh, level);
+        levels[level].connected_patches = connected[level];
         levels[level].segment_count = csf->level_segments[level];
         for (n = sctt->level_first[level]; n < sctt->level_first[level + 1]; n++)
             if (sctt->patches[n].a == sctt->patches[n].b)
@@ -378,12 +399,15 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
                             sc_model **model)
 {
     sc_model counts, *m;
-    uint32_t *number;
+    uint32_t *number, connected[SC_DEPTH_MAX] = {0};
     rings r;
-    sc_status status;
+    sc_status status = SC_OK;
 
     memset(&counts, 0, sizeof counts);
     count_arrays(points, adjacency, xbvh, sctt, csf, &counts);
+    if (!sc_model_is_for_boxes(&counts))
+        status = count_connected(adjacency, hierarchy, xbvh, scratch, connected);
+    if (status) return status;
     number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
     r.first =
         (uint32_t *)sc_scratch_take(scratch, (uint64_t)points->point_count + 1, sizeof *r.first);
@@ -442,15 +466,10 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, children, uint32_t), csf->children,
          m->segment_child_total * sizeof(uint32_t));
     write_segments(csf, number, sctt, m);
-    write_levels(xbvh, sctt, csf, NEW_ARRAY(m, level_info, sc_level));
-    status = SC_OK;
-    if (!sc_model_is_for_boxes(m)) {
+    write_levels(xbvh, sctt, csf, connected, NEW_ARRAY(m, level_info, sc_level));
+    if (!sc_model_is_for_boxes(m))
         status = sc_loops_write(csf, sctt, xbvh, hierarchy->order, sc_model_leaf_corner(m),
                                 points->point_count, scratch, NEW_ARRAY(m, loop, uint16_t));
-        if (!status)
-            status = count_connected(adjacency, hierarchy, xbvh, scratch,
-                                     NEW_ARRAY(m, level_info, sc_level));
-    }
     if (status) {
         sc_model_release(m);
         return status;

@@ -21,7 +21,7 @@ typedef struct sc_refinement {
     uint32_t
         *label;  /* per triangle: 2 * patch + side, 0 or 1; at triangle_count what no patch has */
     float *gain; /* per triangle, scratch */
-    uint8_t *state;        /* per triangle, scratch; 0 before and after */
+    uint8_t *state;        /* per triangle and one more, scratch; 0 before and after */
     uint32_t *moves;       /* as many as triangles, scratch */
     sc_pair *heap;         /* four times as many, scratch */
     uint32_t *border;      /* as many as triangles: those with a neighbor on the other side, */
