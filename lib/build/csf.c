@@ -14,6 +14,9 @@
 /* The cosine up to which a run may turn from its first half-edge. */
 static const double TURN_COSINE = 0.25;
 
+/* Room in the lists of nodes, so that they seldom have to grow. */
+enum { SEGMENTS_A_NODE = 10 };
+
 /* The contour half-edges of one level; a place is a number below count. What leads from level to level are
    places, so that work at a level touches only what belongs to it. */
 typedef struct contour_level {
@@ -501,6 +504,8 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
     b.scratch = scratch;
     status = prepare(&b, order, csf);
     if (status) return status;
+    if (!sc_list_reserve(scratch, &b.contours, SEGMENTS_A_NODE * (uint64_t)sctt->node_count))
+        return SC_ERROR_MEMORY;
     for (level = 0; level < xbvh->level_count; level++) { /* cuts go down */
         status = find_starts(&b, &b.levels[level], level ? &b.levels[level - 1] : NULL);
         if (status) return status;

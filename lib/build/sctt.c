@@ -9,6 +9,8 @@
 
 #include "base/assume.h"
 
+enum { NODES_A_LEAF = 9 };
+
 /* The tree while it grows: pairs as two items each. */
 typedef struct growth {
     const sc_xbvh *xbvh;
@@ -57,13 +59,14 @@ static int expand(growth *g, uint32_t a, uint32_t b)
     return 1;
 }
 
-/* Moves a list to an array of its own length. */
-static void *shrink(sc_scratch *scratch, sc_list *list, uint64_t count, size_t size)
+/* Room for what meshes in which about six triangles meet at a point need, so that lists seldom have to grow. */
+static int reserve(growth *g, uint64_t nodes)
 {
-    void *array = sc_scratch_take(scratch, count, size);
-    if (array && count) memcpy(array, list->items, (size_t)count * size);
-    sc_scratch_give(scratch, list->items);
-    return array;
+    return sc_list_reserve(g->scratch, &g->patches, 2 * nodes) &&
+           sc_list_reserve(g->scratch, &g->touch, nodes) &&
+           sc_list_reserve(g->scratch, &g->child, nodes) &&
+           sc_list_reserve(g->scratch, &g->boxes_first, nodes) &&
+           sc_list_reserve(g->scratch, &g->boxes, 2 * nodes);
 }
 
 sc_status sc_sctt_build(const sc_xbvh *xbvh, const sc_neighbors *neighbors, sc_scratch *scratch,
@@ -71,14 +74,16 @@ sc_status sc_sctt_build(const sc_xbvh *xbvh, const sc_neighbors *neighbors, sc_s
 {
     growth g;
     uint32_t level;
-    uint64_t n, end, count;
+    uint64_t n, end;
     memset(&g, 0, sizeof g);
     g.xbvh = xbvh;
     g.neighbors = neighbors;
     g.scratch = scratch;
     sctt->level_first =
         (uint32_t *)sc_scratch_take(scratch, (uint64_t)xbvh->level_count + 1, sizeof(uint32_t));
-    if (!sctt->level_first || !add_node(&g, 0, 0, SC_NONE)) return SC_ERROR_MEMORY;
+    if (!sctt->level_first || !reserve(&g, NODES_A_LEAF * (uint64_t)xbvh->leaf_count) ||
+        !add_node(&g, 0, 0, SC_NONE))
+        return SC_ERROR_MEMORY;
     for (n = 0, level = 0; level < xbvh->level_count; level++) {
         sctt->level_first[level] = (uint32_t)n;
         for (end = g.touch.count; n < end; n++) {
@@ -96,17 +101,14 @@ sc_status sc_sctt_build(const sc_xbvh *xbvh, const sc_neighbors *neighbors, sc_s
     sctt->level_first[xbvh->level_count] = (uint32_t)n;
     sc_list_add(&g.child, (uint32_t)n);
     sc_list_add(&g.boxes_first, (uint32_t)(g.boxes.count / 2));
-    count = n;
-    sctt->node_count = (uint32_t)count;
+    sctt->node_count = (uint32_t)n;
     sctt->box_count = (uint32_t)(g.boxes.count / 2);
-    sctt->patches = (sc_pair *)shrink(scratch, &g.patches, count, sizeof(sc_pair));
-    sctt->touch = (uint32_t *)shrink(scratch, &g.touch, count, sizeof(uint32_t));
-    sctt->child = (uint32_t *)shrink(scratch, &g.child, count + 1, sizeof(uint32_t));
-    sctt->boxes_first = (uint32_t *)shrink(scratch, &g.boxes_first, count + 1, sizeof(uint32_t));
-    sctt->boxes = (sc_pair *)shrink(scratch, &g.boxes, sctt->box_count, sizeof(sc_pair));
-    return sctt->patches && sctt->touch && sctt->child && sctt->boxes_first && sctt->boxes
-               ? SC_OK
-               : SC_ERROR_MEMORY;
+    sctt->patches = (sc_pair *)(void *)g.patches.items;
+    sctt->touch = g.touch.items;
+    sctt->child = g.child.items;
+    sctt->boxes_first = g.boxes_first.items;
+    sctt->boxes = (sc_pair *)(void *)g.boxes.items;
+    return SC_OK;
 }
 
 int sc_sctt_validate(const sc_xbvh *xbvh, const sc_neighbors *neighbors, const sc_sctt *sctt)

@@ -10,6 +10,9 @@
 /* Words for the masks of all rows. */
 enum { ROW_WORDS = SC_LEAF_MAX / 2 };
 
+/* Room for so many neighbors a cluster with higher numbers, so that lists seldom have to grow. */
+enum { NEIGHBORS = 4 };
+
 /* Where a triangle is: its leaf cluster and its place in that. */
 typedef struct places {
     uint32_t *leaf; /* triangle_count */
@@ -102,6 +105,9 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
                                                      sizeof *s->own_rows, 0);
     s->crowded = (uint8_t *)sc_scratch_take_filled(scratch, leaves, 1, 0);
     if (!at.leaf || !at.row || !f.entry || !looked || !s->first || !s->own_rows || !s->crowded)
+        return SC_ERROR_MEMORY;
+    if (!sc_list_reserve(scratch, &f.leaf, NEIGHBORS * (uint64_t)leaves) ||
+        !sc_list_reserve(scratch, &f.rows, ROW_WORDS * NEIGHBORS * (uint64_t)leaves))
         return SC_ERROR_MEMORY;
     for (leaf = 0; leaf < leaves; leaf++)
         for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++) {
