@@ -11,6 +11,8 @@ static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
     lanes_mask below = lanes_below(a, b), most = lanes_not_above(a, b);
     lanes_mask once = lanes_below(lanes_all(in->a[0]), lanes_all(in->b[0]));
     const float *point[SC_LANES_COUNT];
+    uint32_t rows[SC_LANES_COUNT];
+    uint16_t wide[SC_LANES_COUNT];
     lanes x[3];
     int i;
     lanes_store(out->row[0], lanes_add(evens, odds));
@@ -30,6 +32,11 @@ static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
     for (i = 0; i < SC_LANES_COUNT; i++) point[i] = in->plain + in->number[i];
     lanes_points(point, &x[0], &x[1], &x[2]);
     for (i = 0; i < 3; i++) lanes_store(out->row[14 + i], x[i]);
+    for (i = 0; i < SC_LANES_COUNT; i++) wide[i] = (uint16_t)(in->number[i] << in->number[i] % 13);
+    lanes_numbers(out->numbers, wide, 1u << in->number[0], in->mask, (uint32_t)in->number[1] << 16);
+    for (i = 0; i < SC_LANES_COUNT; i++) rows[i] = in->number[i] % 15u;
+    lanes_rows(in->plain + 1, rows, &x[0], &x[1], &x[2]);
+    for (i = 0; i < 3; i++) lanes_store(out->row[48 + i], x[i]);
     lanes_turned(in->plain, x);
     for (i = 0; i < 3; i++) lanes_store(out->row[30 + i], x[i]);
     out->one[0] = lanes_sum(evens);

@@ -24,9 +24,10 @@ typedef struct lanes_input {
 } lanes_input;
 
 typedef struct lanes_outcome {
-    float row[48][16], one[3];
+    float row[51][16], one[3];
     double eight[11][8];
     unsigned bits[8];
+    uint32_t numbers[16];
     uint8_t list[16];
 } lanes_outcome;
 

@@ -156,7 +156,7 @@ static void lists_and_signs(void)
 {
     lanes_input in;
     lanes_outcome out;
-    uint32_t trial, i, k;
+    uint32_t trial, i, k, wide;
     memset(&in, 0, sizeof in);
     for (trial = 0; trial < 2000; trial++) {
         unsigned count = 0, negative = 0;
@@ -184,6 +184,12 @@ static void lists_and_signs(void)
                               sizeof(float)));
             for (k = 0; k < 3; k++)
                 CHECK(!memcmp(&out.row[30 + k][i], turned_point(&in, i) + k, sizeof(float)));
+            for (k = 0; k < 3; k++)
+                CHECK(!memcmp(&out.row[48 + k][i], in.plain + 1 + 4 * (in.number[i] % 15u) + k,
+                              sizeof(float)));
+            wide = (uint32_t)in.number[i] << in.number[i] % 13;
+            CHECK(out.numbers[i] ==
+                  wide + (wide < 1u << in.number[0] ? in.mask : (uint32_t)in.number[1] << 16));
             ends_of_row(&in, i, ends);
             for (k = 0; k < 6; k++) CHECK(!memcmp(&out.row[33 + k][i], &ends[k], sizeof(float)));
         }

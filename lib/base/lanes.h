@@ -8,8 +8,10 @@
  * Operations round as those of single floats do, and there is no fused multiplication and addition, so that
  * all of them give the same results. lanes_larger_size takes the larger absolute value. A comparison gives a mask, of
  * which lanes_bits makes bit i for lane i; with NaN it is false. lanes_points reads the first three of four floats at
- * sixteen places, lanes_turned those of sixteen fours that follow each other in turned places (see build/loops.h): block
- * i of sixteen floats holds points i, i + 4, i + 8 and i + 12. Of the functions of fours, lanes_four repeats four floats four times, lanes_each_four each of four
+ * sixteen places, lanes_rows those of sixteen fours of an array by their numbers. lanes_numbers writes down sixteen numbers,
+ * to which one of two is added: the first if they are below a split. lanes_turned reads the first three of sixteen fours
+ * that follow each other in turned places (see build/loops.h): block i of sixteen floats holds points i, i + 4, i + 8 and
+ * i + 12. Of the functions of fours, lanes_four repeats four floats four times, lanes_each_four each of four
  * floats, and the others store the least or greatest of each four lanes.
  *
  * Included once for each instruction set, by the .c files that include kernels, which define SC_KERNEL(name) to
@@ -48,6 +50,8 @@
 #define lanes_least SC_KERNEL(sc_lanes_least)
 #define lanes_most SC_KERNEL(sc_lanes_most)
 #define lanes_points SC_KERNEL(sc_lanes_points)
+#define lanes_numbers SC_KERNEL(sc_lanes_numbers)
+#define lanes_rows SC_KERNEL(sc_lanes_rows)
 #define lanes_turned SC_KERNEL(sc_lanes_turned)
 #define lanes_four SC_KERNEL(sc_lanes_four)
 #define lanes_each_four SC_KERNEL(sc_lanes_each_four)
@@ -138,14 +142,23 @@ static inline lanes lanes_odds(lanes a, lanes b)
         _mm512_set_epi32(31, 29, 27, 25, 23, 21, 19, 17, 15, 13, 11, 9, 7, 5, 3, 1);
     return _mm512_permutex2var_ps(a, odds, b);
 }
-/* The points i, i + 4, i + 8 and i + 12. */
-static inline __m512 SC_KERNEL(sc_lanes_four_points)(const float *const point[SC_LANES_COUNT],
-                                                     int i)
+static inline void lanes_numbers(uint32_t *to, const uint16_t *number, uint32_t split,
+                                 uint32_t below, uint32_t others)
 {
-    __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(point[i]));
-    r = _mm512_insertf32x4(r, _mm_loadu_ps(point[i + 4]), 1);
-    r = _mm512_insertf32x4(r, _mm_loadu_ps(point[i + 8]), 2);
-    return _mm512_insertf32x4(r, _mm_loadu_ps(point[i + 12]), 3);
+    __m512i i = _mm512_cvtepu16_epi32(_mm256_loadu_si256((const __m256i *)(const void *)number));
+    __m512i add =
+        _mm512_mask_blend_epi32(_mm512_cmplt_epu32_mask(i, _mm512_set1_epi32((int)split)),
+                                _mm512_set1_epi32((int)others), _mm512_set1_epi32((int)below));
+    _mm512_storeu_si512(to, _mm512_add_epi32(i, add));
+}
+/* The points i, i + 4, i + 8 and i + 12 of sixteen. */
+static inline __m512 SC_KERNEL(sc_lanes_four_points)(const float *a, const float *b, const float *c,
+                                                     const float *d)
+{
+    __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(a));
+    r = _mm512_insertf32x4(r, _mm_loadu_ps(b), 1);
+    r = _mm512_insertf32x4(r, _mm_loadu_ps(c), 2);
+    return _mm512_insertf32x4(r, _mm_loadu_ps(d), 3);
 }
 static inline void SC_KERNEL(sc_lanes_transposed)(const __m512 r[4], __m512 *x, __m512 *y,
                                                   __m512 *z)
@@ -161,7 +174,20 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
     __m512 r[4];
     int i;
     SC_UNROLL
-    for (i = 0; i < 4; i++) r[i] = SC_KERNEL(sc_lanes_four_points)(point, i);
+    for (i = 0; i < 4; i++)
+        r[i] = SC_KERNEL(sc_lanes_four_points)(point[i], point[i + 4], point[i + 8], point[i + 12]);
+    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
+}
+static inline void lanes_rows(const float *at, const uint32_t row[SC_LANES_COUNT], lanes *x,
+                              lanes *y, lanes *z)
+{
+    __m512 r[4];
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 4; i++)
+        r[i] = SC_KERNEL(sc_lanes_four_points)(
+            at + 4 * (uint64_t)row[i], at + 4 * (uint64_t)row[i + 4], at + 4 * (uint64_t)row[i + 8],
+            at + 4 * (uint64_t)row[i + 12]);
     SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
 }
 static inline void lanes_turned(const float *at, lanes row[3])
@@ -349,6 +375,31 @@ static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, __
                                     _mm_loadu_ps(point[i + 4]), 1);
     SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
 }
+static inline void lanes_numbers(uint32_t *to, const uint16_t *number, uint32_t split,
+                                 uint32_t below, uint32_t others)
+{
+    const __m256i end = _mm256_set1_epi32(split < 0x10000u ? (int)split : 0x10000);
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 16; k += 8) {
+        __m256i i =
+            _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(const void *)(number + k)));
+        __m256i add = _mm256_blendv_epi8(_mm256_set1_epi32((int)others),
+                                         _mm256_set1_epi32((int)below), _mm256_cmpgt_epi32(end, i));
+        _mm256_storeu_si256((__m256i *)(void *)(to + k), _mm256_add_epi32(i, add));
+    }
+}
+static inline void SC_KERNEL(sc_lanes_rows_part)(const float *at, const uint32_t *row, __m256 *x,
+                                                 __m256 *y, __m256 *z)
+{
+    __m256 r[4];
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 4; i++)
+        r[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at + 4 * (uint64_t)row[i])),
+                                    _mm_loadu_ps(at + 4 * (uint64_t)row[i + 4]), 1);
+    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
+}
 static inline lanes lanes_four(const float *f)
 {
     lanes r;
@@ -409,6 +460,21 @@ static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, sc
     for (i = 0; i < 4; i++) r[i] = SC_QUAD(loadu_ps)(point[i]);
     SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
 }
+static inline void lanes_numbers(uint32_t *to, const uint16_t *number, uint32_t split,
+                                 uint32_t below, uint32_t others)
+{
+    int i;
+    for (i = 0; i < SC_LANES_COUNT; i++) to[i] = number[i] + (number[i] < split ? below : others);
+}
+static inline void SC_KERNEL(sc_lanes_rows_part)(const float *at, const uint32_t *row,
+                                                 sc_floats4 *x, sc_floats4 *y, sc_floats4 *z)
+{
+    sc_floats4 r[4];
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 4; i++) r[i] = SC_QUAD(loadu_ps)(at + 4 * (uint64_t)row[i]);
+    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
+}
 static inline lanes lanes_four(const float *f)
 {
     lanes r;
@@ -458,6 +524,14 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
     int i;
     for (i = 0; i < SC_LANES_PARTS; i++) SC_KERNEL(sc_lanes_points_part)
     (point + i * SC_LANES_WIDTH, &x->v[i], &y->v[i], &z->v[i]);
+}
+static inline void lanes_rows(const float *at, const uint32_t row[SC_LANES_COUNT], lanes *x,
+                              lanes *y, lanes *z)
+{
+    int i;
+    SC_UNROLL
+    for (i = 0; i < SC_LANES_PARTS; i++) SC_KERNEL(sc_lanes_rows_part)
+    (at, row + i * SC_LANES_WIDTH, &x->v[i], &y->v[i], &z->v[i]);
 }
 static inline void lanes_turned(const float *at, lanes row[3])
 {
@@ -570,6 +644,22 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
         x->v[i] = point[i][0];
         y->v[i] = point[i][1];
         z->v[i] = point[i][2];
+    }
+}
+static inline void lanes_numbers(uint32_t *to, const uint16_t *number, uint32_t split,
+                                 uint32_t below, uint32_t others)
+{
+    int i;
+    for (i = 0; i < SC_LANES_COUNT; i++) to[i] = number[i] + (number[i] < split ? below : others);
+}
+static inline void lanes_rows(const float *at, const uint32_t row[SC_LANES_COUNT], lanes *x,
+                              lanes *y, lanes *z)
+{
+    int i;
+    for (i = 0; i < SC_LANES_COUNT; i++) {
+        x->v[i] = at[4 * (uint64_t)row[i]];
+        y->v[i] = at[4 * (uint64_t)row[i] + 1];
+        z->v[i] = at[4 * (uint64_t)row[i] + 2];
     }
 }
 static inline void lanes_turned(const float *at, lanes row[3])

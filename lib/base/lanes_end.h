@@ -32,6 +32,8 @@
 #undef lanes_least
 #undef lanes_most
 #undef lanes_points
+#undef lanes_numbers
+#undef lanes_rows
 #undef lanes_turned
 #undef lanes_four
 #undef lanes_each_four

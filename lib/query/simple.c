@@ -233,11 +233,16 @@ int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
     uint32_t a = point_of(c, i), k;
     if (c->in_pieces) c->edges->piece[piece_of(c, i)] = piece_of(c, j);
     if (a == point_of(c, j)) { /* the contour leaves the point twice */
-        for (k = 0; k < c->pinch_count && c->pinch[k] != a; k++) {
+        for (k = 0; k < c->pinch_count && c->pinch[k].point != a; k++) {
         }
         if (k == SC_PINCHES_MAX) return 0;
-        c->pinch[k] = a;
-        if (k == c->pinch_count) c->pinch_count++;
+        if (k < c->pinch_count) /* the same pair of edges again, or more than two */
+            return c->pinch[k].edge[0] + c->pinch[k].edge[1] == i + j &&
+                   (c->pinch[k].edge[0] == i || c->pinch[k].edge[1] == i);
+        c->pinch[k].point = a;
+        c->pinch[k].edge[0] = i;
+        c->pinch[k].edge[1] = j;
+        c->pinch_count++;
     }
     return 1;
 }
@@ -251,19 +256,25 @@ int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
  * is right of the first or left of the second is outside; if more, what is left of the first or right of the second is inside.
  * More than four are not looked at.
  */
-static int is_pinch_fine(const sc_simple_contour *c, uint32_t point)
+static int is_pinch_fine(const sc_simple_contour *c, const sc_pinch *pinch)
 {
     vector2 direction[2][2]; /* out, in */
-    uint32_t i, count[2] = {0, 0};
-    int end, out, side[2];
-    for (i = 0; i < c->count; i++)
-        for (end = 0; end < 2; end++) {
-            if (point_of(c, i + (uint32_t)end) != point || !is_edge(c, i)) continue;
-            if (count[end] == 2) return 0;
-            direction[end][count[end]++] = minus(edge_end(c, i, 1 - end), edge_end(c, i, end));
+    uint32_t in[2] = {0, 0}, i, count = 0;
+    int out, side[2];
+    if (c->has_gaps) {
+        for (i = 0; i < c->count; i++) {
+            if (!is_edge(c, i) || point_of(c, i + 1) != pinch->point) continue;
+            if (count == 2) return 0;
+            in[count++] = i;
         }
-    if (SC_NEVER(count[0] != 2)) return 0; /* two that go out made it a pinch */
-    if (count[1] != 2) return 0;           /* of a forged model: contours are closed */
+        if (count != 2) return 0; /* of a forged model: contours are closed */
+    } else {
+        for (i = 0; i < 2; i++) in[i] = (pinch->edge[i] ? pinch->edge[i] : c->count) - 1;
+    }
+    for (i = 0; i < 2; i++) {
+        direction[0][i] = minus(edge_end(c, pinch->edge[i], 1), edge_end(c, pinch->edge[i], 0));
+        direction[1][i] = minus(edge_end(c, in[i], 0), edge_end(c, in[i], 1));
+    }
     out = turn(direction[0][0], direction[0][1], c->error);
     for (i = 0; i < 2; i++) { /* 1: in that sector, -1: outside */
         int one = turn(direction[0][0], direction[1][i], c->error);
@@ -329,7 +340,7 @@ int sc_simple_is_wound_well(const sc_simple_contour *c)
 {
     uint32_t i;
     for (i = 0; i < c->pinch_count; i++)
-        if (!is_pinch_fine(c, c->pinch[i])) return 0;
+        if (!is_pinch_fine(c, &c->pinch[i])) return 0;
     return !c->in_pieces || are_pieces_fine(c);
 }
 

@@ -12,6 +12,11 @@
 /* Points that a contour passes more than once, at most; more are not looked at. */
 enum { SC_PINCHES_MAX = 24 };
 
+/* Such a point, and the two edges that start there. */
+typedef struct sc_pinch {
+    uint32_t point, edge[2];
+} sc_pinch;
+
 typedef struct sc_simple_contour {
     const sc_contour_edges *edges;
     uint32_t count;       /* points, of which each is where an edge starts but for gaps */
@@ -25,7 +30,7 @@ typedef struct sc_simple_contour {
     float error;                   /* |computed - true| of each coordinate, at most */
     int in_pieces;                 /* pieces have to be told apart */
     uint32_t pinch_count;
-    uint32_t pinch[SC_PINCHES_MAX]; /* points */
+    sc_pinch pinch[SC_PINCHES_MAX];
 } sc_simple_contour;
 
 /* The error of a cross or dot product of vectors with these sums of absolute components, see simple.c. */
@@ -62,7 +67,8 @@ void sc_simple_axes(sc_simple_contour *contour, const sc_projection *projection)
 void sc_simple_middle(const sc_simple_contour *contour, const float *unit, uint32_t stride,
                       float from[3]);
 
-/* Notes that edges i < j share one point: pinches, and pieces that hang together. 0: too many pinches. */
+/* Notes that edges i < j share one point: pinches, and pieces that hang together. 0: too many pinches, or more
+   than two edges that start at one. */
 int sc_simple_note_shared(sc_simple_contour *contour, uint32_t i, uint32_t j);
 
 /* Whether pinches and pieces are as those of a simple contour, after all edges were found to be so. */

@@ -27,21 +27,35 @@ static inline unsigned SC_KERNEL(edges_from)(const sc_simple_contour *c, uint32_
     return (is_edge[0] | (unsigned)is_edge[1] << 16) >> i % SC_CONTOUR_BLOCK & 0xffffu;
 }
 
-/* Sixteen points of a loop in the unit box; those beyond its end are some of its node's. */
-static inline void SC_KERNEL(load_loop)(const sc_simple_contour *c, const sc_workspace *w,
-                                        uint32_t i, lanes unit[3])
+/* The turned places of a loop's points, and beyond its end the first again. */
+static void SC_KERNEL(place_loop)(const sc_simple_contour *c)
 {
-    uint16_t rest[SC_CONTOUR_BLOCK] = {0};
-    const uint16_t *loop = c->loop + i;
-    uint32_t place[SC_CONTOUR_BLOCK], j;
-    const float *at[SC_CONTOUR_BLOCK];
-    if (c->count - i < SC_CONTOUR_BLOCK) {
-        memcpy(rest, loop, (c->count - i) * sizeof *loop);
-        loop = rest;
+    uint32_t *place = c->edges->point, i;
+    const uint32_t count = c->count;
+    for (i = 0; i + SC_CONTOUR_BLOCK <= count; i += SC_CONTOUR_BLOCK)
+        lanes_numbers(place + i, c->loop + i, c->split, c->first, c->second);
+    if (count > SC_CONTOUR_BLOCK) {
+        i = count - SC_CONTOUR_BLOCK;
+        lanes_numbers(place + i, c->loop + i, c->split, c->first, c->second);
+    } else {
+        for (; i < count; i++) place[i] = sc_simple_place(c, c->loop[i]);
     }
-    for (j = 0; j < SC_CONTOUR_BLOCK; j++) place[j] = sc_simple_place(c, loop[j]);
-    for (j = 0; j < SC_CONTOUR_BLOCK; j++) at[j] = w->point_at + 4 * (uint64_t)place[j];
-    lanes_points(at, &unit[0], &unit[1], &unit[2]);
+    for (i = 0; i < SC_CONTOUR_BLOCK; i++) place[count + i] = place[0];
+}
+
+/* Sixteen points in the unit box. */
+static inline void SC_KERNEL(load_contour)(const sc_simple_contour *c, const sc_workspace *w,
+                                           uint32_t i, lanes unit[3])
+{
+    float row[3 * SC_CONTOUR_BLOCK];
+    int k;
+    if (c->loop) {
+        lanes_rows(w->point_at, c->edges->point + i, &unit[0], &unit[1], &unit[2]);
+        return;
+    }
+    SC_KERNEL(load_points)(w, c->edges->point + i, row);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) unit[k] = lanes_load(row + SC_CONTOUR_BLOCK * k);
 }
 
 /* Places of the points, and the error of their coordinates, see sc_simple_axes. The last is followed by the first. */
@@ -51,22 +65,21 @@ static void SC_KERNEL(project)(sc_simple_contour *c, const sc_workspace *w)
     lanes size = lanes_all(0), d[3], at, from[3], axis[2][3];
     uint32_t i;
     int k, m;
+    SC_UNROLL
     for (k = 0; k < 3; k++) {
         from[k] = lanes_all(c->from[k]);
+        SC_UNROLL
         for (m = 0; m < 2; m++) axis[m][k] = lanes_all(c->axis[m][k]);
     }
+    if (c->loop) SC_KERNEL(place_loop)(c);
     for (i = 0; i < c->count; i += SC_CONTOUR_BLOCK) {
-        if (c->loop) {
-            SC_KERNEL(load_loop)(c, w, i, d);
-        } else {
-            float unit[3 * SC_CONTOUR_BLOCK];
-            SC_KERNEL(load_points)(w, e->point + i, unit);
-            for (k = 0; k < 3; k++) d[k] = lanes_load(unit + SC_CONTOUR_BLOCK * k);
-        }
+        SC_KERNEL(load_contour)(c, w, i, d);
+        SC_UNROLL
         for (k = 0; k < 3; k++) {
             d[k] = lanes_subtract(d[k], from[k]);
             size = lanes_larger(size, lanes_absolute(d[k]));
         }
+        SC_UNROLL
         for (k = 0; k < 2; k++) {
             at = lanes_add(
                 lanes_add(lanes_multiply(axis[k][0], d[0]), lanes_multiply(axis[k][1], d[1])),
