@@ -485,46 +485,63 @@ static void SC_KERNEL(collect)(sc_query_state *state, const sc_leaf_pair *p, SC_
     }
 }
 
+/* The boxes of the triangles of a leaf cluster that overlap that of triangle i of another. */
+static inline unsigned SC_KERNEL(overlap_row)(const sc_leaf_ready *a, uint32_t i,
+                                              const lanes low[3], const lanes high[3])
+{
+    lanes_mask m[3];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++)
+        m[k] = lanes_both(lanes_not_above(lanes_all(a->side[k][i]), high[k]),
+                          lanes_not_above(low[k], lanes_all(a->side[k + 3][i])));
+    return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
+}
+
+static inline void SC_KERNEL(load_boxes)(const sc_leaf_ready *ready, lanes low[3], lanes high[3])
+{
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        low[k] = lanes_load(ready->side[k]);
+        high[k] = lanes_load(ready->side[k + 3]);
+    }
+}
+
 /* Lists the rows of a, triangles whose boxes overlap some of b's, and which. Returns how many. */
 static unsigned SC_KERNEL(list_rows)(const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned rows,
                                      unsigned some, uint8_t of_a[], uint16_t of_b[])
 {
     lanes low[3], high[3];
     unsigned count = 0;
-    int k;
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        low[k] = lanes_load(b->side[k]);
-        high[k] = lanes_load(b->side[k + 3]);
-    }
+    SC_KERNEL(load_boxes)(b, low, high);
     for (; rows; rows &= rows - 1) {
         uint32_t i = sc_bits_lowest(rows);
-        lanes_mask m[3];
-        SC_UNROLL
-        for (k = 0; k < 3; k++)
-            m[k] = lanes_both(lanes_not_above(lanes_all(a->side[k][i]), high[k]),
-                              lanes_not_above(low[k], lanes_all(a->side[k + 3][i])));
         of_a[count] = (uint8_t)i;
-        of_b[count] = (uint16_t)(lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2]))) & some);
+        of_b[count] = (uint16_t)(SC_KERNEL(overlap_row)(a, i, low, high) & some);
         count += of_b[count] != 0;
     }
     return count;
 }
 
-/* Takes the pairs that share points out of the rows of clusters of which some do. Returns how many rows are left. */
-static unsigned SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p, unsigned rows,
-                                       uint8_t of_a[], uint16_t of_b[])
+/* The same of clusters of which some triangles share points: pairs that do are taken, and not in the rows. Without
+   branches, as any row may have some. */
+static unsigned SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p,
+                                       const sc_leaf_ready *a, const sc_leaf_ready *b,
+                                       unsigned rows, unsigned some, uint8_t of_a[],
+                                       uint16_t of_b[])
 {
     uint8_t near_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], near_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
-    unsigned count = 0, near_count = 0, r;
-    for (r = 0; r < rows; r++) {
-        uint32_t i = of_a[r];
-        unsigned mask = of_b[r], shared = p->shared[i];
-        if (p->a == p->b) mask &= ~((2u << i) - 1u);
-        if (mask & shared) {
-            memset(near_a + near_count, (int)i, SC_LANES_COUNT);
-            near_count += lanes_list(mask & shared, near_b + near_count);
-        }
+    const unsigned lower = p->a == p->b ? 0 : SC_LEAF_ALL; /* of b, those below i, too */
+    unsigned count = 0, near_count = 0;
+    lanes low[3], high[3];
+    SC_KERNEL(load_boxes)(b, low, high);
+    for (; rows; rows &= rows - 1) {
+        uint32_t i = sc_bits_lowest(rows);
+        unsigned mask = SC_KERNEL(overlap_row)(a, i, low, high) & some, shared = p->shared[i];
+        mask &= ~((2u << i) - 1u) | lower;
+        memset(near_a + near_count, (int)i, SC_LANES_COUNT);
+        near_count += lanes_list(mask & shared, near_b + near_count);
         mask &= ~shared;
         of_a[count] = (uint8_t)i;
         of_b[count] = (uint16_t)mask;
@@ -574,14 +591,16 @@ static unsigned SC_KERNEL(drop_by_planes)(const SC_KERNEL(picked) * a, const SC_
 static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, unsigned rows,
                                       unsigned some)
 {
+    const sc_leaf_ready *of_a = SC_KERNEL(boxes)(state, p->a, p->a > p->b);
+    const sc_leaf_ready *of_b = SC_KERNEL(boxes)(state, p->b, p->b > p->a);
     uint8_t row_a[SC_LEAF_MAX + 1];
     uint16_t row_b[SC_LEAF_MAX + 1];
     unsigned count;
     state->stats.counts[sc_state_box_task(state)] += sc_bits_count(rows);
-    count =
-        SC_KERNEL(list_rows)(SC_KERNEL(boxes)(state, p->a, p->a > p->b),
-                             SC_KERNEL(boxes)(state, p->b, p->b > p->a), rows, some, row_a, row_b);
-    if (p->shares) count = SC_KERNEL(take_shared)(state, p, count, row_a, row_b);
+    if (p->shares)
+        count = SC_KERNEL(take_shared)(state, p, of_a, of_b, rows, some, row_a, row_b);
+    else
+        count = SC_KERNEL(list_rows)(of_a, of_b, rows, some, row_a, row_b);
     if (count) {
         float extent = SC_KERNEL(extent)(state, p->a, p->b);
         SC_KERNEL(picked) a, b;
