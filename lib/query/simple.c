@@ -128,10 +128,10 @@ void sc_simple_axes(sc_simple_contour *c, const sc_projection *projection)
         size[0] += fabs(projection->u[k]);
         size[1] += fabs(projection->w[k]);
     }
-    for (k = 0; k < 2; k++) size[k] = power_above((float)size[k]);
+    for (k = 0; k < 2; k++) size[k] = 1 / power_above((float)size[k]); /* exactly */
     for (k = 0; k < 3; k++) {
-        c->axis[0][k] = (float)(projection->u[k] / size[0]);
-        c->axis[1][k] = (float)(projection->w[k] / size[1]);
+        c->axis[0][k] = (float)(projection->u[k] * size[0]);
+        c->axis[1][k] = (float)(projection->w[k] * size[1]);
     }
 }
 

@@ -87,6 +87,7 @@ static void SC_KERNEL(project)(sc_simple_contour *c, const sc_workspace *w)
             lanes_store(e->at[k] + i, at);
         }
     }
+    SC_UNROLL
     for (k = 0; k < 2; k++) lanes_store(e->at[k] + c->count, lanes_load(e->at[k]));
     c->error = 3.01e-8f + 4.1f * 5.9604644775390625e-8f * lanes_most(size);
 }
@@ -222,6 +223,7 @@ static int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i)
     int k;
     SC_KERNEL(load_edges)(c, i, &own);
     SC_KERNEL(load_edges)(c, i + 1, &other);
+    SC_UNROLL
     for (k = 0; k < 2; k++) {
         low = lanes_smaller(own.p[k], own.q[k]);
         high = lanes_larger(own.p[k], own.q[k]);
@@ -367,7 +369,8 @@ static void SC_KERNEL(join_spans)(const sc_simple_contour *c, uint32_t level, ui
     float *const *side = c->edges->span_side;
     const uint32_t from = c->span_first[level], to = c->span_first[level + 1];
     uint32_t i, k;
-    for (i = 0; 2 * i < count; i += SC_LANES_COUNT)
+    for (i = 0; 2 * i < count; i += SC_LANES_COUNT) {
+        SC_UNROLL
         for (k = 0; k < 4; k++) {
             const float *at = side[k] + from + 2 * i;
             lanes a = lanes_load(at), b = lanes_load(at + SC_LANES_COUNT);
@@ -375,6 +378,7 @@ static void SC_KERNEL(join_spans)(const sc_simple_contour *c, uint32_t level, ui
             lanes_store(side[k] + to + i,
                         k % 2 ? lanes_larger(even, odd) : lanes_smaller(even, odd));
         }
+    }
 }
 
 static int SC_KERNEL(are_edges_fine)(sc_simple_contour *c)
@@ -386,6 +390,7 @@ static int SC_KERNEL(are_edges_fine)(sc_simple_contour *c)
     for (c->span_first[1] = 0;; level++, count = (count + 1) / 2) {
         const uint32_t first = c->span_first[level];
         /* the last is followed by the first */
+        SC_UNROLL
         for (k = 0; k < 4; k++) lanes_store(side[k] + first + count, lanes_load(side[k] + first));
         if (count <= SC_LANES_COUNT) return SC_KERNEL(is_last_level_fine)(c, level, count);
         if (!SC_KERNEL(is_level_fine)(c, level, count)) return 0;
