@@ -31,59 +31,133 @@
   SC_UNROLL                                                                                        \
   for (i = 0; i < (count); i++)
 
+/* Triangles that are seen to at once: all of a cluster, or where registers are short and few, one register of them. */
+#if SC_LANES_QUADS
+#  define part sc_floats4
+#  define part_all SC_QUAD(set1_ps)
+#  define part_add SC_QUAD(add_ps)
+#  define part_subtract SC_QUAD(sub_ps)
+#  define part_multiply SC_QUAD(mul_ps)
+static SC_INLINE part SC_KERNEL(part_larger_size)(part a, part b)
+{
+    const part sign = SC_QUAD(set1_ps)(-0.0f);
+    return SC_QUAD(max_ps)(SC_QUAD(andnot_ps)(sign, a), SC_QUAD(andnot_ps)(sign, b));
+}
+#  define part_larger_size SC_KERNEL(part_larger_size)
+#  define part_signs(a) (a)
+#else
+#  define part lanes
+#  define part_all lanes_all
+#  define part_add lanes_add
+#  define part_subtract lanes_subtract
+#  define part_multiply lanes_multiply
+#  define part_larger_size lanes_larger_size
+#  define part_signs lanes_signs_of
+#endif
+
+/* The edges from corner 0. */
+static SC_INLINE void SC_KERNEL(edges_of)(part corner[3][3], part e[3], part f[3])
+{
+    int k;
+    EACH(k, 3)
+    {
+        e[k] = part_subtract(corner[1][k], corner[0][k]);
+        f[k] = part_subtract(corner[2][k], corner[0][k]);
+    }
+}
+
+/* By edges of triangles of so many clusters, the signs of what is negative where a direction is within 90 degrees of a
+   normal, whatever it is off by. */
+static SC_INLINE void SC_KERNEL(directions_of)(part e[][3], part f[][3], lanes_signs row[][16],
+                                               int count)
+{
+    const part relative = part_all(37 * 5.9604644775390625e-8f);
+    const part moved = part_all(12.1f * 3e-8f), least = part_all(2.1f * 3e-8f);
+    part n[CONES][3], error[CONES], up[CONES][3], down[CONES][3];
+    int i, k;
+    EACH(k, 3)
+    EACH(i, count)
+    n[i][k] = part_subtract(part_multiply(e[i][(k + 1) % 3], f[i][(k + 2) % 3]),
+                            part_multiply(e[i][(k + 2) % 3], f[i][(k + 1) % 3]));
+    EACH(i, count)
+    {
+        part e_size = part_larger_size(part_larger_size(e[i][0], e[i][1]), e[i][2]);
+        part f_size = part_larger_size(part_larger_size(f[i][0], f[i][1]), f[i][2]);
+        error[i] = part_add(part_multiply(relative, part_multiply(e_size, f_size)),
+                            part_multiply(moved, part_add(part_add(e_size, f_size), least)));
+    }
+    EACH(i, count)
+    EACH(k, 3)
+    {
+        up[i][k] = part_subtract(error[i], n[i][k]);
+        down[i][k] = part_add(error[i], n[i][k]);
+        row[i][k] = part_signs(up[i][k]);
+        row[i][k + 7] = part_signs(down[i][k]);
+    }
+    EACH(i, count)
+    {
+        part sum = part_add(n[i][0], n[i][1]), difference = part_subtract(n[i][0], n[i][1]);
+        row[i][3] = part_signs(part_subtract(up[i][2], sum));
+        row[i][4] = part_signs(part_subtract(down[i][2], sum));
+        row[i][5] = part_signs(part_subtract(up[i][2], difference));
+        row[i][6] = part_signs(part_subtract(down[i][2], difference));
+        row[i][10] = part_signs(part_add(down[i][2], sum));
+        row[i][11] = part_signs(part_add(up[i][2], sum));
+        row[i][12] = part_signs(part_add(down[i][2], difference));
+        row[i][13] = part_signs(part_add(up[i][2], difference));
+        row[i][14] = row[i][15] = row[i][13];
+    }
+}
+
 /* The masks of clusters that follow each other, by their points, as points_of writes them, and corners. */
+#if SC_LANES_QUADS
+
 static SC_INLINE void SC_KERNEL(masks_of)(const float *each, const uint8_t *where, uint16_t *mask,
                                           int count)
 {
-    const lanes relative = lanes_all(37 * 5.9604644775390625e-8f);
-    const lanes moved = lanes_all(12.1f * 3e-8f), least = lanes_all(2.1f * 3e-8f);
-    lanes e[CONES][3], f[CONES][3], n[CONES][3], error[CONES], up[CONES][3], down[CONES][3];
+    lanes_signs all[16];
+    int c, k, first;
+    (void)count; /* one */
+    for (first = 0; first < SC_LEAF_MAX; first += 4) {
+        part corner[3][3], e[1][3], f[1][3], x[4];
+        lanes_signs row[1][16];
+        EACH(c, 3)
+        {
+            EACH(k, 4)
+            {
+                unsigned at = where[SC_LEAF_MAX * c + first + k];
+                x[k] = SC_QUAD(loadu_ps)(each + ((at & 3) << 4 | (at & 12)));
+            }
+            sc_quad_transpose(x);
+            EACH(k, 3) corner[c][k] = x[k];
+        }
+        SC_KERNEL(edges_of)(corner, e[0], f[0]);
+        SC_KERNEL(directions_of)(e, f, row, 1);
+        for (k = 0; k < 16; k++)
+            all[k] = first == 0 ? row[0][k] : SC_QUAD(and_ps)(all[k], row[0][k]);
+    }
+    *mask = (uint16_t)(lanes_all_negative(all) & 0x3fffu);
+}
+
+#else
+
+static SC_INLINE void SC_KERNEL(masks_of)(const float *each, const uint8_t *where, uint16_t *mask,
+                                          int count)
+{
+    lanes e[CONES][3], f[CONES][3];
     lanes_signs row[CONES][16];
-    int i, k;
+    int i;
     EACH(i, count)
     {
         lanes corner[3][3];
         lanes_corners_at(each + 4 * SC_LEAF_POINTS * i, where + 3 * SC_LEAF_MAX * i, corner);
-        EACH(k, 3)
-        {
-            e[i][k] = lanes_subtract(corner[1][k], corner[0][k]);
-            f[i][k] = lanes_subtract(corner[2][k], corner[0][k]);
-        }
+        SC_KERNEL(edges_of)(corner, e[i], f[i]);
     }
-    EACH(k, 3)
-    EACH(i, count)
-    n[i][k] = lanes_subtract(lanes_multiply(e[i][(k + 1) % 3], f[i][(k + 2) % 3]),
-                             lanes_multiply(e[i][(k + 2) % 3], f[i][(k + 1) % 3]));
-    EACH(i, count)
-    {
-        lanes e_size = lanes_larger_size(lanes_larger_size(e[i][0], e[i][1]), e[i][2]);
-        lanes f_size = lanes_larger_size(lanes_larger_size(f[i][0], f[i][1]), f[i][2]);
-        error[i] = lanes_add(lanes_multiply(relative, lanes_multiply(e_size, f_size)),
-                             lanes_multiply(moved, lanes_add(lanes_add(e_size, f_size), least)));
-    }
-    EACH(i, count)
-    EACH(k, 3)
-    {
-        up[i][k] = lanes_subtract(error[i], n[i][k]);
-        down[i][k] = lanes_add(error[i], n[i][k]);
-        row[i][k] = lanes_signs_of(up[i][k]);
-        row[i][k + 7] = lanes_signs_of(down[i][k]);
-    }
-    EACH(i, count)
-    {
-        lanes sum = lanes_add(n[i][0], n[i][1]), difference = lanes_subtract(n[i][0], n[i][1]);
-        row[i][3] = lanes_signs_of(lanes_subtract(up[i][2], sum));
-        row[i][4] = lanes_signs_of(lanes_subtract(down[i][2], sum));
-        row[i][5] = lanes_signs_of(lanes_subtract(up[i][2], difference));
-        row[i][6] = lanes_signs_of(lanes_subtract(down[i][2], difference));
-        row[i][10] = lanes_signs_of(lanes_add(down[i][2], sum));
-        row[i][11] = lanes_signs_of(lanes_add(up[i][2], sum));
-        row[i][12] = lanes_signs_of(lanes_add(down[i][2], difference));
-        row[i][13] = lanes_signs_of(lanes_add(up[i][2], difference));
-        row[i][14] = row[i][15] = row[i][13];
-    }
+    SC_KERNEL(directions_of)(e, f, row, count);
     EACH(i, count) mask[i] = (uint16_t)(lanes_all_negative(row[i]) & 0x3fffu);
 }
+
+#endif
 
 static uint32_t SC_KERNEL(cone)(const float *at, const uint8_t *where)
 {
@@ -157,4 +231,11 @@ static void SC_KERNEL(load_leaves)(const sc_model *model, sc_workspace *w, uint3
 }
 
 #undef CONES
+#undef part
+#undef part_all
+#undef part_add
+#undef part_subtract
+#undef part_multiply
+#undef part_larger_size
+#undef part_signs
 #undef EACH
