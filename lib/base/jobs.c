@@ -5,17 +5,40 @@
  */
 #include "base/jobs.h"
 
+#include "base/atomic.h"
+
+void sc_jobs_divide(const sc_tasks *tasks, uint32_t count, sc_jobs_ranges *ranges)
+{
+    uint32_t i;
+    ranges->count = count;
+    ranges->workers = tasks->workers;
+    for (i = 0; i < tasks->workers; i++) ranges->taken[i] = 0;
+}
+
+uint32_t sc_jobs_take(sc_jobs_ranges *ranges, uint32_t part, uint32_t worker)
+{
+    const uint64_t count = ranges->count, workers = ranges->workers;
+    uint64_t i, owner = worker;
+    for (i = 0; SC_ATOMIC && i < workers; i++, owner = owner + 1 < workers ? owner + 1 : 0) {
+        uint64_t at = count * owner / workers + sc_atomic_add(&ranges->taken[owner], 1);
+        if (at < count * (owner + 1) / workers) return (uint32_t)at;
+    }
+    return part;
+}
+
 typedef struct loop {
     sc_jobs_body body;
     void *context;
     uint32_t count, length;
+    sc_jobs_ranges ranges;
 } loop;
 
 static void run_range(void *context, uint32_t part, uint32_t worker)
 {
-    const loop *l = (const loop *)context;
-    uint32_t first = part * l->length;
-    (void)worker;
+    loop *l = (loop *)context;
+    uint32_t first;
+    part = sc_jobs_take(&l->ranges, part, worker);
+    first = part * l->length;
     l->body(l->context, part, first, l->count - first < l->length ? l->count : first + l->length);
 }
 
@@ -34,6 +57,7 @@ uint32_t sc_jobs_loop(const sc_tasks *tasks, uint32_t count, uint32_t least, sc_
         body(context, 0, 0, count);
         return 1;
     }
+    sc_jobs_divide(tasks, parts, &l.ranges);
     tasks->finish(tasks->user, tasks->enqueue(tasks->user, run_range, &l, parts));
     return parts;
 }

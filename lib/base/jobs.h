@@ -6,7 +6,24 @@
 #ifndef SC_BASE_JOBS_H
 #define SC_BASE_JOBS_H
 
+#include <stddef.h>
+
 #include "starcontour.h"
+
+/*
+ * Which parts of a job which worker does. Each has a range of its own, first to last as workers are numbered, and begins with
+ * that; then it takes what is left of others'. So what one pass has brought into a core's cache, the next finds there, if
+ * what is near in the list of parts is near in memory.
+ */
+typedef struct sc_jobs_ranges {
+    uint32_t count, workers;
+    size_t taken[SC_WORKERS_MAX]; /* parts of each range, and more once it is used up */
+} sc_jobs_ranges;
+
+void sc_jobs_divide(const sc_tasks *tasks, uint32_t count, sc_jobs_ranges *ranges);
+
+/* The part to do for a worker that the host has given that part: each of count once, if so often asked. */
+uint32_t sc_jobs_take(sc_jobs_ranges *ranges, uint32_t part, uint32_t worker);
 
 /* A loop is cut into so many parts at most. */
 enum { SC_JOBS_PARTS = 32 };

@@ -262,7 +262,6 @@ struct sc_workspace {
     unsigned char *state; /* SC_STATE_ROOM: this worker's sc_query_state */
 
     /* for several workers */
-    size_t taken;    /* places of this worker's range that are, by whomever */
     sc_part *parts;  /* SC_PARTS_MAX */
     uint32_t *tests; /* SC_PARTS_MAX: nodes to test */
     uint32_t *open;  /* SC_PARTS_MAX: nodes that failed */

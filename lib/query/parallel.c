@@ -36,8 +36,11 @@ enum { LARGE_PART = 32 };
 /* Fewer contour tests are not worth a job. */
 enum { TESTS_MIN = 16 };
 
-/* How many parts of the list, and how many waiting nodes, a worker takes at once. */
-enum { PARTS_AT_ONCE = 4, NODES_AT_ONCE = 16 };
+/* How many waiting nodes a worker takes at once. */
+enum { NODES_AT_ONCE = 16 };
+
+/* More pairs of leaf clusters or of triangles are not kept waiting from one part to the next. */
+enum { WAITING_MAX = 64 };
 
 enum {
     PART_BELOW, /* a: a node that failed a test */
@@ -56,7 +59,7 @@ typedef struct plan {
     sc_share share;
     sc_filter filter;                            /* the caller's without its function */
     uint32_t part_count, test_count, open_count; /* of those in w->parts, tests and open */
-    uint32_t places;                             /* of the job at hand, see take_place */
+    sc_jobs_ranges ranges;                       /* of the job at hand */
 } plan;
 
 const sc_tasks *sc_parallel_tasks(const sc_query_state *state)
@@ -114,9 +117,14 @@ static sc_query_state *begin_part(const plan *p, uint32_t worker)
     return s;
 }
 
+/* What waits to be compared or decided goes on waiting if it is little, unless the first hit ends the query: many at once
+   take less time. */
 static void end_part(sc_query_state *s)
 {
-    sc_candidates_decide(s);
+    const sc_workspace *w = s->workspace;
+    const uint32_t most = s->options.output == SC_OUTPUT_ANY ? 0 : WAITING_MAX;
+    if (w->leaf_pair_count > most || w->candidate_count > most || w->neighbor_count > most)
+        sc_candidates_decide(s);
     if (s->timed) s->stats.nanoseconds[s->task] += sc_clock_nanoseconds() - s->last_time;
 }
 
@@ -125,11 +133,8 @@ static void run_job(plan *p, void (*run)(void *context, uint32_t part, uint32_t 
                     uint32_t count)
 {
     sc_query_state *state = p->state;
-    uint32_t worker;
     if (!count) return;
-    p->places = count;
-    for (worker = 0; worker < p->tasks->workers; worker++)
-        sc_workspace_of_worker(p->w, worker)->taken = 0;
+    sc_jobs_divide(p->tasks, count, &p->ranges);
     if (state->timed)
         state->stats.nanoseconds[state->task] += sc_clock_nanoseconds() - state->last_time;
     if (count == 1)
@@ -137,24 +142,6 @@ static void run_job(plan *p, void (*run)(void *context, uint32_t part, uint32_t 
     else
         p->tasks->finish(p->tasks->user, p->tasks->enqueue(p->tasks->user, run, p, count));
     if (state->timed) state->last_time = sc_clock_nanoseconds();
-}
-
-/*
- * Which of the places of a job a worker takes next: those of its own range one by one, then what is left of others'. What is
- * near in the list is near in the mesh, too: so few leaf clusters are made ready by two. No place is left only if it was
- * taken: as often as this is called, so many are.
- */
-static uint32_t take_place(const plan *p, uint32_t worker)
-{
-    const uint32_t workers = p->tasks->workers;
-    uint32_t i, owner;
-    for (i = 0, owner = worker; i < workers; i++, owner = owner + 1 < workers ? owner + 1 : 0) {
-        uint64_t first = (uint64_t)p->places * owner / workers;
-        uint64_t end = (uint64_t)p->places * (owner + 1) / workers;
-        uint64_t at = first + sc_atomic_add(&sc_workspace_of_worker(p->w, owner)->taken, 1);
-        if (at < end) return (uint32_t)at;
-    }
-    return p->places;
 }
 
 static uint32_t divide_up(uint32_t count, uint32_t by)
@@ -188,11 +175,10 @@ static void run_part(sc_query_state *s, const sc_part *part)
 
 static void run_parts(void *context, uint32_t part, uint32_t worker)
 {
-    const plan *p = (const plan *)context;
+    plan *p = (plan *)context;
     sc_query_state *s = begin_part(p, worker);
-    uint32_t i = take_place(p, worker) * PARTS_AT_ONCE, end = i + PARTS_AT_ONCE;
-    (void)part;
-    for (; i < end && i < p->part_count && !sc_state_stops(s); i++) run_part(s, &p->w->parts[i]);
+    part = sc_jobs_take(&p->ranges, part, worker);
+    if (!sc_state_stops(s)) run_part(s, &p->w->parts[part]);
     sc_traversal_walk(s);
     end_part(s);
 }
@@ -200,7 +186,7 @@ static void run_parts(void *context, uint32_t part, uint32_t worker)
 /* Empties the list of parts. */
 static void do_parts(plan *p)
 {
-    run_job(p, run_parts, divide_up(p->part_count, PARTS_AT_ONCE));
+    run_job(p, run_parts, p->part_count);
     p->part_count = 0;
 }
 
@@ -212,6 +198,22 @@ static void add_part(plan *p, uint32_t kind, uint32_t a, uint32_t b)
     part->kind = kind;
     part->a = a;
     part->b = b;
+}
+
+/* A part is what waits with one worker, whoever does it. */
+static void run_waiting(void *context, uint32_t part, uint32_t worker)
+{
+    const plan *p = (const plan *)context;
+    sc_query_state *s = begin_part(p, part);
+    (void)worker;
+    sc_candidates_decide(s);
+    end_part(s);
+}
+
+/* Decides all that waits, or drops it if the query is to end: the next one begins with nothing. */
+static void do_waiting(plan *p)
+{
+    run_job(p, run_waiting, p->tasks->workers);
 }
 
 /* ---- boxes ---- */
@@ -323,13 +325,15 @@ static void sort_out_pairs(plan *p)
 }
 
 /* What waits in the walk of the calling thread: what is large is opened or tested next, the rest are parts. There is
-   room for those of nodes, as a job of parts would go on with that walk. */
+   room for those of nodes, as a job of parts would go on with that walk. Last things first: so the first child is opened
+   first, and parts come about as leaf clusters are numbered. Then each worker finds in its part of the list what it did
+   of the pose. */
 static void sort_out(plan *p)
 {
     const sc_model *model = p->state->model;
     sc_walk *walk = &p->w->walk;
     uint32_t i;
-    for (i = 0; i < walk->stack_count; i++) {
+    for (i = walk->stack_count; i-- > 0;) {
         if (is_large_node(model, walk->stack[i]) && p->open_count < SC_PARTS_MAX)
             p->w->open[p->open_count++] = walk->stack[i];
         else
@@ -396,7 +400,7 @@ static void do_tests(plan *p)
             p->w->passed[i] = (uint8_t)passes(p->state, p->w->tests[i]);
     else
         run_job(p, run_tests, p->test_count);
-    for (i = 0; i < p->test_count; i++) {
+    for (i = p->test_count; i-- > 0;) {
         uint32_t node = p->w->tests[i];
         if (p->w->passed[i])
             p->w->culled[patches[node].a] = p->w->culled[patches[node].b] = 1;
@@ -572,6 +576,7 @@ void sc_parallel_run(sc_query_state *state)
     } else {
         walk_boxes(&p);
     }
+    do_waiting(&p);
     fits = gather(&p);
     state->share = NULL;
     state->workspace->walk = walk;
