@@ -85,7 +85,7 @@ static void SC_KERNEL(try_doubles)(const lanes_input *in, lanes_outcome *out)
     doubles a = doubles_load(in->c), b = doubles_load(in->d), p = doubles_load(in->exact);
     doubles q = doubles_load(in->exact + 1), x[3];
     doubles_mask below = doubles_below(a, b);
-    const double *at[8];
+    const unsigned char *at[8];
     int i;
     doubles_store(out->eight[0], doubles_add(p, q));
     doubles_store(out->eight[1], doubles_subtract(p, q));
@@ -95,10 +95,21 @@ static void SC_KERNEL(try_doubles)(const lanes_input *in, lanes_outcome *out)
     doubles_store(out->eight[5], doubles_absolute(a));
     doubles_store(out->eight[6], doubles_choose(below, a, b));
     doubles_store(out->eight[7], doubles_all(in->c[2]));
-    for (i = 0; i < 8; i++) at[i] = in->exact + in->number[i];
-    doubles_points(at, &x[0], &x[1], &x[2]);
+    for (i = 0; i < 8; i++) at[i] = (const unsigned char *)(in->exact + in->number[i]);
+    doubles_points(at, 0, x);
     for (i = 0; i < 3; i++) doubles_store(out->eight[8 + i], x[i]);
+    for (i = 0; i < 8; i++) at[i] = (const unsigned char *)(in->plain + in->number[i]);
+    doubles_points(at, 1, x);
+    for (i = 0; i < 3; i++) doubles_store(out->eight[11 + i], x[i]);
+    doubles_store(out->eight[14], doubles_larger_size(p, q));
+    doubles_store(out->eight[15], doubles_smaller_size(p, q));
     out->bits[7] = doubles_bits(below);
+    out->bits[8] = doubles_bits(doubles_equal(a, b));
+    out->bits[9] = doubles_bits(doubles_both(below, doubles_below(p, q)));
+    out->bits[10] = doubles_bits(doubles_either(below, doubles_below(p, q)));
+    out->bits[11] = doubles_differ(p, q);
+    out->bits[12] = doubles_differ3(p, q, doubles_load(in->exact + 2));
+    out->bits[13] = doubles_signs(a);
 }
 
 static void SC_KERNEL(try_all)(const lanes_input *in, lanes_outcome *out)

@@ -25,8 +25,8 @@ typedef struct lanes_input {
 
 typedef struct lanes_outcome {
     float row[51][16], one[3];
-    double eight[11][8];
-    unsigned bits[8];
+    double eight[16][8];
+    unsigned bits[14];
     uint32_t numbers[16];
     uint8_t list[16];
 } lanes_outcome;

@@ -18,7 +18,7 @@
 enum { MOST_POINTS = 8 };
 
 typedef struct two {
-    double points[3 * MOST_POINTS + 1]; /* one more is read */
+    double points[3 * MOST_POINTS];
     uint32_t count, corners[6];
 } two;
 
@@ -147,30 +147,51 @@ static void points_anywhere(two *t)
     for (uint32_t i = 0; i < 3 * t->count; ++i) t->points[i] = test_random_unit();
 }
 
+/* Eight pairs, as the library has them: each has points and two triangles of its own. */
+typedef struct batch {
+    sc_pair_lanes lanes;
+    sc_pair pairs[SC_PAIR_LANES];
+    uint32_t triangle[6 * SC_PAIR_LANES];
+    double points[3 * MOST_POINTS * SC_PAIR_LANES];
+    unsigned char
+        bytes[MOST_POINTS * SC_PAIR_LANES * 27]; /* the same with odd strides, or floats */
+} batch;
+
+static void clear_batch(batch *b)
+{
+    memset(b, 0, sizeof *b);
+    b->lanes.pairs = b->pairs;
+    b->lanes.triangle = b->triangle;
+    b->lanes.positions = (const unsigned char *)b->points;
+    b->lanes.stride = 3 * sizeof(double);
+}
+
 /* Puts two triangles into a lane. Returns 0 if they share more than a batch's pairs may. */
-static int set_lane(sc_pair_lanes *lanes, uint32_t lane, const two *t)
+static int set_lane(batch *b, uint32_t lane, const two *t)
 {
     uint32_t common = 0, repeats = 0;
-    for (uint32_t i = 0; i < 3; ++i) {
-        const double *at[2] = {t->points + 3 * t->corners[i], t->points + 3 * t->corners[3 + i]};
-        for (int s = 0; s < 2; ++s) {
-            const uint32_t *c = t->corners + 3 * s;
-            lanes->corner[s][i][lane] = at[s];
-            repeats += c[i] == c[(i + 1) % 3];
-        }
+    b->pairs[lane].a = 2 * lane;
+    b->pairs[lane].b = 2 * lane + 1;
+    for (uint32_t i = 0; i < 6; ++i) {
+        uint32_t point = MOST_POINTS * lane + t->corners[i];
+        b->triangle[6 * lane + i] = point;
+        memcpy(b->points + 3 * point, t->points + 3 * t->corners[i], 3 * sizeof(double));
+        repeats += t->corners[i] == t->corners[i / 3 * 3 + (i + 1) % 3];
+    }
+    for (uint32_t i = 0; i < 3; ++i)
         for (uint32_t k = 0; k < 3; ++k)
             if (t->corners[i] == t->corners[3 + k]) {
                 ++common;
-                lanes->shared[0][i] |= 1u << lane;
-                lanes->shared[1][k] |= 1u << lane;
+                b->lanes.shares = 1;
+                b->lanes.shared[0][i] |= 1u << lane;
+                b->lanes.shared[1][k] |= 1u << lane;
             }
-    }
     return common == 0 || (common == 1 && repeats == 0);
 }
 
 /* Compares what a verdict says of a lane; returns 1 if it left something open. */
-static int check_lane(const sc_pair_lanes *lanes, const sc_verdict *verdict, uint32_t lane,
-                      const two *t, const char *which, uint64_t state)
+static int check_lane(const batch *b, const sc_verdict *verdict, uint32_t lane, const two *t,
+                      const char *which, uint64_t state)
 {
     sc_triangle_pair pair;
     uint64_t fallbacks = 0;
@@ -178,46 +199,53 @@ static int check_lane(const sc_pair_lanes *lanes, const sc_verdict *verdict, uin
     for (int k = 0; k < 3; ++k) {
         pair.va[k] = t->corners[k];
         pair.vb[k] = t->corners[3 + k];
-        pair.a[k] = lanes->corner[0][k][lane];
-        pair.b[k] = lanes->corner[1][k][lane];
+        pair.a[k] = t->points + 3 * pair.va[k];
+        pair.b[k] = t->points + 3 * pair.vb[k];
     }
     touch = sc_primitives_edge_hits(&pair, 0, SC_PRIMITIVES_ALL_EDGES, &fallbacks);
     cross = sc_primitives_edge_hits(&pair, 1, SC_PRIMITIVES_ALL_EDGES, &fallbacks);
-    for (int k = 0; k < 6; ++k) {
-        int s = k / 3, from = k % 3, to = (from + 1) % 3;
-        unsigned hits = lanes->proper ? cross : touch;
-        unsigned meets = verdict->meets[k] >> lane & 1u, open = verdict->unsure[k] >> lane & 1u;
-        if ((lanes->shared[s][from] | lanes->shared[s][to]) >> lane & 1u) continue;
+    for (uint32_t k = 0; k < 6; ++k) {
+        uint32_t s = k / 3, from = k % 3, to = (from + 1) % 3, bit = SC_PAIR_LANES * k + lane;
+        unsigned hits = b->lanes.proper ? cross : touch;
+        unsigned meets = verdict->meets >> bit & 1u, open = verdict->unsure >> bit & 1u;
+        if ((b->lanes.shared[s][from] | b->lanes.shared[s][to]) >> lane & 1u) continue;
         if (t->corners[3 * s + from] == t->corners[3 * s + to]) continue;
         unsure |= open;
-        CHECK_MSG(!(meets && open), "%s: edge %d is both; started at %" PRIu64, which, k, state);
+        CHECK_MSG(!(meets && open), "%s: edge %u is both; started at %" PRIu64, which, k, state);
         if (meets)
-            CHECK_MSG(hits >> k & 1u, "%s: edge %d does not meet; started at %" PRIu64, which, k,
+            CHECK_MSG(hits >> k & 1u, "%s: edge %u does not meet; started at %" PRIu64, which, k,
                       state);
         else if (!open)
-            CHECK_MSG(!(hits >> k & 1u), "%s: edge %d meets; started at %" PRIu64, which, k, state);
+            CHECK_MSG(!(hits >> k & 1u), "%s: edge %u meets; started at %" PRIu64, which, k, state);
     }
     return (int)unsure;
 }
 
-static void eight_pairs_at_once(void)
+static void list_kernels(const sc_query_kernels *kernels[SC_ISA_AVX512 + 1])
 {
-    const sc_query_kernels *kernels[SC_ISA_AVX512 + 1] = {NULL, &sc_query_kernels_base};
-    uint32_t rounds = test_iterations(30000), left_open = 0, anywhere = 0;
+    kernels[SC_ISA_BASE] = &sc_query_kernels_base;
 #if SC_ISA_X86
     kernels[SC_ISA_AVX2] = &sc_query_kernels_avx2;
     kernels[SC_ISA_AVX512] = &sc_query_kernels_avx512;
 #endif
+}
+
+static const char *const isa_name[] = {"", "base", "AVX2", "AVX-512"};
+
+static void eight_pairs_at_once(void)
+{
+    const sc_query_kernels *kernels[SC_ISA_AVX512 + 1];
+    uint32_t rounds = test_iterations(30000), left_open = 0, anywhere = 0;
+    list_kernels(kernels);
     for (uint32_t round = 0; round < rounds; ++round) {
-        static const char *const name[] = {"", "base", "AVX2", "AVX-512"};
         two t[SC_PAIR_LANES];
-        sc_pair_lanes lanes;
+        batch b;
         sc_verdict first, verdict;
         unsigned fine = 0;
         uint64_t state = test_random_state();
-        int generic = round % 4 == 0;
-        memset(&lanes, 0, sizeof lanes);
-        lanes.proper = round % 8 > 3;
+        int generic = round % 4 == 0, apart = round % 4 == 1; /* nothing shared */
+        clear_batch(&b);
+        b.lanes.proper = round % 8 > 3;
         for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane) {
             memset(&t[lane], 0, sizeof t[lane]);
             if (generic) {
@@ -226,17 +254,21 @@ static void eight_pairs_at_once(void)
                 random_points(&t[lane]);
                 random_corners(&t[lane]);
             }
-            fine |= (unsigned)set_lane(&lanes, lane, &t[lane]) << lane;
+            if (apart) {
+                t[lane].count = 6;
+                for (uint32_t k = 0; k < 6; ++k) t[lane].corners[k] = k;
+            }
+            fine |= (unsigned)set_lane(&b, lane, &t[lane]) << lane;
         }
         for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
-            kernels[isa]->decide(&lanes, &verdict);
+            kernels[isa]->decide(&b.lanes, &verdict);
             if (isa == SC_ISA_BASE) first = verdict;
             CHECK_MSG(!memcmp(&first, &verdict, sizeof verdict),
-                      "%s differs from base; started at %" PRIu64, name[isa], state);
+                      "%s differs from base; started at %" PRIu64, isa_name[isa], state);
             for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane) {
                 int open;
                 if (!(fine >> lane & 1u)) continue;
-                open = check_lane(&lanes, &verdict, lane, &t[lane], name[isa], state);
+                open = check_lane(&b, &verdict, lane, &t[lane], isa_name[isa], state);
                 if (!generic) continue;
                 anywhere++;
                 left_open += (uint32_t)open;
@@ -247,26 +279,65 @@ static void eight_pairs_at_once(void)
               anywhere);
 }
 
+/* Positions are read wherever they are, as floats, too. */
+static void any_stride_and_type(void)
+{
+    const sc_query_kernels *kernels[SC_ISA_AVX512 + 1];
+    list_kernels(kernels);
+    for (uint32_t round = 0; round < test_iterations(2000); ++round) {
+        batch b;
+        sc_verdict first, verdict;
+        clear_batch(&b);
+        for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane) {
+            two t;
+            memset(&t, 0, sizeof t);
+            points_anywhere(&t);
+            for (int i = 0; i < 18; ++i) t.points[i] = (float)t.points[i];
+            set_lane(&b, lane, &t);
+        }
+        sc_query_kernels_base.decide(&b.lanes, &first);
+        b.lanes.positions = b.bytes;
+        for (int floats = 0; floats < 2; ++floats) {
+            b.lanes.floats = floats;
+            b.lanes.stride = floats ? 13 : 27;
+            for (uint32_t i = 0; i < 3 * MOST_POINTS * SC_PAIR_LANES; ++i) {
+                unsigned char *at = b.bytes + b.lanes.stride * (i / 3);
+                float f = (float)b.points[i];
+                if (floats)
+                    memcpy(at + i % 3 * sizeof f, &f, sizeof f);
+                else
+                    memcpy(at + i % 3 * sizeof(double), b.points + i, sizeof(double));
+            }
+            for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
+                kernels[isa]->decide(&b.lanes, &verdict);
+                CHECK_MSG(!memcmp(&first, &verdict, sizeof verdict), "%s differs", isa_name[isa]);
+            }
+        }
+    }
+}
+
 /* Pairs in a plane that are well apart, with boxes that overlap, are told so. */
 static void apart_in_a_plane(void)
 {
     static const double corner[6][2] = {{0, 0}, {4, 0}, {0, 4}, {4, 4}, {4, 1}, {1, 4}};
     for (int axis = 0; axis < 3; ++axis)
         for (int tilt = 0; tilt < 2; ++tilt) {
-            double points[19] = {0};
-            sc_pair_lanes lanes;
+            two t;
+            batch b;
             sc_verdict verdict;
-            memset(&lanes, 0, sizeof lanes);
+            memset(&t, 0, sizeof t);
+            clear_batch(&b);
             for (int i = 0; i < 6; ++i) {
-                points[3 * i + axis] = tilt ? 0.3 * corner[i][0] - 0.1 * corner[i][1] : 0.7;
-                points[3 * i + (axis + 1) % 3] = corner[i][0];
-                points[3 * i + (axis + 2) % 3] = corner[i][1];
+                t.corners[i] = (uint32_t)i;
+                t.points[3 * i + axis] = tilt ? 0.3 * corner[i][0] - 0.1 * corner[i][1] : 0.7;
+                t.points[3 * i + (axis + 1) % 3] = corner[i][0];
+                t.points[3 * i + (axis + 2) % 3] = corner[i][1];
             }
-            for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane)
-                for (int i = 0; i < 6; ++i) lanes.corner[i / 3][i % 3][lane] = points + 3 * i;
-            sc_query_kernels_base.decide(&lanes, &verdict);
-            for (int k = 0; k < 6; ++k) CHECK(verdict.meets[k] == 0 && verdict.unsure[k] == 0);
+            for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane) set_lane(&b, lane, &t);
+            sc_query_kernels_base.decide(&b.lanes, &verdict);
+            CHECK(verdict.meets == 0 && verdict.unsure == 0);
         }
 }
 
-SC_TEST_MAIN(SC_TEST(two_triangles), SC_TEST(eight_pairs_at_once), SC_TEST(apart_in_a_plane))
+SC_TEST_MAIN(SC_TEST(two_triangles), SC_TEST(eight_pairs_at_once), SC_TEST(any_stride_and_type),
+             SC_TEST(apart_in_a_plane))

@@ -9,6 +9,8 @@
 #ifndef SC_BASE_ISA_H
 #define SC_BASE_ISA_H
 
+#include <stddef.h>
+
 #include "base/assume.h"
 
 /* SC_NO_SIMD leaves the plain form alone, for other machines and to compare. SIMD: single instruction,
@@ -42,6 +44,23 @@
 #else
 #  define SC_INLINE inline
 #endif
+
+/* Of functions that are rarely called, to leave the registers of their callers alone. */
+#if defined(__GNUC__)
+#  define SC_NOINLINE __attribute__((noinline))
+#else
+#  define SC_NOINLINE
+#endif
+
+/* The number itself, to be computed alone: compilers like to compute several addresses in one vector register, from
+   which it takes longer to get them. */
+static inline size_t sc_alone(size_t number)
+{
+#if defined(__GNUC__)
+    __asm__("" : "+r"(number));
+#endif
+    return number;
+}
 
 /* As SC_SIMD_... in starcontour.h, best last. */
 typedef enum sc_isa { SC_ISA_BASE = 1, SC_ISA_AVX2 = 2, SC_ISA_AVX512 = 3 } sc_isa;

@@ -4,9 +4,11 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Operations round as those of single doubles do. A comparison gives a mask of all lanes, of which doubles_bits makes
- * bit i for lane i; with NaN it is false. doubles_choose takes from a where the mask is set, else from b;
- * doubles_points reads three doubles at eight places, of which four must be readable.
+ * Operations round as those of single doubles do. doubles_larger_size and doubles_smaller_size take the larger or
+ * smaller absolute value. A comparison gives a mask of all lanes, of which doubles_bits makes bit i for lane i; with
+ * NaN it is false. doubles_signs makes such bits of signs, doubles_differ of whether the signs of two or three differ.
+ * doubles_choose takes from a where the mask is set, else from b; doubles_points reads three doubles, or floats, at eight
+ * places, aligned or not.
  *
  * No guard, as in base/lanes.h; base/lanes_double_end.h ends it.
  */
@@ -21,10 +23,32 @@
 #define doubles_smaller SC_KERNEL(sc_doubles_smaller)
 #define doubles_larger SC_KERNEL(sc_doubles_larger)
 #define doubles_absolute SC_KERNEL(sc_doubles_absolute)
+#define doubles_larger_size SC_KERNEL(sc_doubles_larger_size)
+#define doubles_smaller_size SC_KERNEL(sc_doubles_smaller_size)
+#define doubles_signs SC_KERNEL(sc_doubles_signs)
+#define doubles_differ SC_KERNEL(sc_doubles_differ)
+#define doubles_differ3 SC_KERNEL(sc_doubles_differ3)
 #define doubles_below SC_KERNEL(sc_doubles_below)
+#define doubles_equal SC_KERNEL(sc_doubles_equal)
+#define doubles_both SC_KERNEL(sc_doubles_both)
+#define doubles_either SC_KERNEL(sc_doubles_either)
 #define doubles_bits SC_KERNEL(sc_doubles_bits)
 #define doubles_choose SC_KERNEL(sc_doubles_choose)
 #define doubles_points SC_KERNEL(sc_doubles_points)
+
+#if !SC_LANES_AVX512 && !SC_LANES_AVX2
+static SC_INLINE void SC_KERNEL(sc_doubles_point)(const unsigned char *at, int floats, double p[3])
+{
+    float f[3];
+    int c;
+    if (!floats) {
+        memcpy(p, at, 3 * sizeof *p);
+        return;
+    }
+    memcpy(f, at, sizeof f);
+    for (c = 0; c < 3; c++) p[c] = (double)f[c];
+}
+#endif
 
 #if SC_LANES_AVX512
 
@@ -67,9 +91,45 @@ static inline doubles doubles_absolute(doubles a)
 {
     return _mm512_andnot_pd(_mm512_set1_pd(-0.0), a);
 }
+#  pragma GCC diagnostic push
+#  pragma GCC diagnostic ignored "-Wsign-conversion" /* macros where nothing is optimised */
+static inline doubles doubles_larger_size(doubles a, doubles b)
+{
+    return _mm512_range_pd(a, b, 11); /* the larger absolute value, without sign */
+}
+static inline doubles doubles_smaller_size(doubles a, doubles b)
+{
+    return _mm512_range_pd(a, b, 10);
+}
+#  pragma GCC diagnostic pop
+static inline unsigned doubles_signs(doubles a)
+{
+    return _mm512_movepi64_mask(_mm512_castpd_si512(a));
+}
+static inline unsigned doubles_differ(doubles a, doubles b)
+{
+    return _mm512_movepi64_mask(_mm512_castpd_si512(_mm512_xor_pd(a, b)));
+}
+static inline unsigned doubles_differ3(doubles a, doubles b, doubles c)
+{
+    return _mm512_movepi64_mask(_mm512_ternarylogic_epi64(
+        _mm512_castpd_si512(a), _mm512_castpd_si512(b), _mm512_castpd_si512(c), 0x7e));
+}
 static inline doubles_mask doubles_below(doubles a, doubles b)
 {
     return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
+}
+static inline doubles_mask doubles_equal(doubles a, doubles b)
+{
+    return _mm512_cmp_pd_mask(a, b, _CMP_EQ_OQ);
+}
+static inline doubles_mask doubles_both(doubles_mask a, doubles_mask b)
+{
+    return (doubles_mask)(a & b);
+}
+static inline doubles_mask doubles_either(doubles_mask a, doubles_mask b)
+{
+    return (doubles_mask)(a | b);
 }
 static inline unsigned doubles_bits(doubles_mask a)
 {
@@ -79,21 +139,27 @@ static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
 {
     return _mm512_mask_blend_pd(m, b, a);
 }
-static inline __m512d SC_KERNEL(sc_doubles_two)(const double *const at[8], int i)
+static SC_INLINE __m512d SC_KERNEL(sc_doubles_two)(const unsigned char *const at[8], int floats,
+                                                   int i)
 {
-    return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(at[i])),
-                              _mm256_loadu_pd(at[i + 4]), 1);
+    const void *p = at[i], *q = at[i + 4];
+    __m256d a = floats ? _mm256_cvtps_pd(_mm_maskz_loadu_ps(7, p)) : _mm256_maskz_loadu_pd(7, p);
+    __m256d b = floats ? _mm256_cvtps_pd(_mm_maskz_loadu_ps(7, q)) : _mm256_maskz_loadu_pd(7, q);
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(a), b, 1);
 }
-static inline void doubles_points(const double *const at[8], doubles *x, doubles *y, doubles *z)
+static SC_INLINE void doubles_points(const unsigned char *const at[8], int floats, doubles point[3])
 {
     const __m512i first = _mm512_set_epi64(13, 12, 5, 4, 9, 8, 1, 0);
     const __m512i second = _mm512_set_epi64(15, 14, 7, 6, 11, 10, 3, 2);
-    __m512d r0 = SC_KERNEL(sc_doubles_two)(at, 0), r1 = SC_KERNEL(sc_doubles_two)(at, 1);
-    __m512d r2 = SC_KERNEL(sc_doubles_two)(at, 2), r3 = SC_KERNEL(sc_doubles_two)(at, 3);
+    __m512d r0 = SC_KERNEL(sc_doubles_two)(at, floats, 0);
+    __m512d r1 = SC_KERNEL(sc_doubles_two)(at, floats, 1);
+    __m512d r2 = SC_KERNEL(sc_doubles_two)(at, floats, 2);
+    __m512d r3 = SC_KERNEL(sc_doubles_two)(at, floats, 3);
     __m512d low = _mm512_unpacklo_pd(r0, r1), low2 = _mm512_unpacklo_pd(r2, r3);
-    *x = _mm512_permutex2var_pd(low, first, low2);
-    *y = _mm512_permutex2var_pd(_mm512_unpackhi_pd(r0, r1), first, _mm512_unpackhi_pd(r2, r3));
-    *z = _mm512_permutex2var_pd(low, second, low2);
+    point[0] = _mm512_permutex2var_pd(low, first, low2);
+    point[1] =
+        _mm512_permutex2var_pd(_mm512_unpackhi_pd(r0, r1), first, _mm512_unpackhi_pd(r2, r3));
+    point[2] = _mm512_permutex2var_pd(low, second, low2);
 }
 
 #elif SC_LANES_AVX2 || SC_LANES_QUADS
@@ -200,6 +266,19 @@ static inline doubles doubles_absolute(doubles a)
 #  undef SC_DOUBLES_ONE
 }
 
+static inline doubles_mask doubles_both(doubles_mask a, doubles_mask b)
+{
+#  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(and_pd)(a.p, b.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#  undef SC_DOUBLES_ONE
+}
+static inline doubles_mask doubles_either(doubles_mask a, doubles_mask b)
+{
+#  define SC_DOUBLES_ONE(p) SC_DOUBLES_OF(or_pd)(a.p, b.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#  undef SC_DOUBLES_ONE
+}
+
 #  if SC_LANES_AVX2
 
 static inline doubles_mask doubles_below(doubles a, doubles b)
@@ -208,9 +287,19 @@ static inline doubles_mask doubles_below(doubles a, doubles b)
     SC_DOUBLES_MAP(SC_DOUBLES_ONE);
 #    undef SC_DOUBLES_ONE
 }
+static inline doubles_mask doubles_equal(doubles a, doubles b)
+{
+#    define SC_DOUBLES_ONE(p) _mm256_cmp_pd(a.p, b.p, _CMP_EQ_OQ)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#    undef SC_DOUBLES_ONE
+}
 static inline unsigned doubles_bits(doubles_mask a)
 {
     return (unsigned)_mm256_movemask_pd(a.p0) | (unsigned)_mm256_movemask_pd(a.p1) << 4;
+}
+static inline unsigned doubles_signs(doubles a)
+{
+    return doubles_bits(a);
 }
 static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
 {
@@ -218,20 +307,28 @@ static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
     SC_DOUBLES_MAP(SC_DOUBLES_ONE);
 #    undef SC_DOUBLES_ONE
 }
-static inline void SC_KERNEL(sc_doubles_transpose)(const double *const at[4], __m256d *x,
-                                                   __m256d *y, __m256d *z)
+static SC_INLINE __m256d SC_KERNEL(sc_doubles_point)(const void *at, int floats)
 {
-    __m256d a = _mm256_loadu_pd(at[0]), b = _mm256_loadu_pd(at[1]);
-    __m256d c = _mm256_loadu_pd(at[2]), d = _mm256_loadu_pd(at[3]);
+    return floats
+               ? _mm256_cvtps_pd(_mm_maskload_ps((const float *)at, _mm_setr_epi32(-1, -1, -1, 0)))
+               : _mm256_maskload_pd((const double *)at, _mm256_setr_epi64x(-1, -1, -1, 0));
+}
+static SC_INLINE void SC_KERNEL(sc_doubles_transpose)(const unsigned char *const at[4], int floats,
+                                                      __m256d *x, __m256d *y, __m256d *z)
+{
+    __m256d a = SC_KERNEL(sc_doubles_point)(at[0], floats);
+    __m256d b = SC_KERNEL(sc_doubles_point)(at[1], floats);
+    __m256d c = SC_KERNEL(sc_doubles_point)(at[2], floats);
+    __m256d d = SC_KERNEL(sc_doubles_point)(at[3], floats);
     __m256d low = _mm256_unpacklo_pd(a, b), low2 = _mm256_unpacklo_pd(c, d);
     *x = _mm256_permute2f128_pd(low, low2, 0x20);
     *y = _mm256_permute2f128_pd(_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d), 0x20);
     *z = _mm256_permute2f128_pd(low, low2, 0x31);
 }
-static inline void doubles_points(const double *const at[8], doubles *x, doubles *y, doubles *z)
+static SC_INLINE void doubles_points(const unsigned char *const at[8], int floats, doubles point[3])
 {
-    SC_KERNEL(sc_doubles_transpose)(at, &x->p0, &y->p0, &z->p0);
-    SC_KERNEL(sc_doubles_transpose)(at + 4, &x->p1, &y->p1, &z->p1);
+    SC_KERNEL(sc_doubles_transpose)(at, floats, &point[0].p0, &point[1].p0, &point[2].p0);
+    SC_KERNEL(sc_doubles_transpose)(at + 4, floats, &point[0].p1, &point[1].p1, &point[2].p1);
 }
 
 #  else
@@ -242,9 +339,19 @@ static inline doubles_mask doubles_below(doubles a, doubles b)
     SC_DOUBLES_MAP(SC_DOUBLES_ONE);
 #    undef SC_DOUBLES_ONE
 }
+static inline doubles_mask doubles_equal(doubles a, doubles b)
+{
+#    define SC_DOUBLES_ONE(p) SC_QUAD(cmpeq_pd)(a.p, b.p)
+    SC_DOUBLES_MAP(SC_DOUBLES_ONE);
+#    undef SC_DOUBLES_ONE
+}
 static inline unsigned doubles_bits(doubles_mask a)
 {
     return sc_quad_bits_doubles(a.p0, a.p1, a.p2, a.p3);
+}
+static inline unsigned doubles_signs(doubles a)
+{
+    return sc_quad_signs_doubles(a.p0, a.p1, a.p2, a.p3);
 }
 static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
 {
@@ -253,19 +360,23 @@ static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
     SC_DOUBLES_MAP(SC_DOUBLES_ONE);
 #    undef SC_DOUBLES_ONE
 }
-static inline void SC_KERNEL(sc_doubles_transpose)(const double *const at[2], sc_doubles2 *x,
-                                                   sc_doubles2 *y, sc_doubles2 *z)
+static SC_INLINE void SC_KERNEL(sc_doubles_transpose)(const unsigned char *const at[2], int floats,
+                                                      sc_doubles2 *x, sc_doubles2 *y,
+                                                      sc_doubles2 *z)
 {
-    *x = SC_QUAD(setr_pd)(at[0][0], at[1][0]);
-    *y = SC_QUAD(setr_pd)(at[0][1], at[1][1]);
-    *z = SC_QUAD(setr_pd)(at[0][2], at[1][2]);
+    double p[3], q[3];
+    SC_KERNEL(sc_doubles_point)(at[0], floats, p);
+    SC_KERNEL(sc_doubles_point)(at[1], floats, q);
+    *x = SC_QUAD(setr_pd)(p[0], q[0]);
+    *y = SC_QUAD(setr_pd)(p[1], q[1]);
+    *z = SC_QUAD(setr_pd)(p[2], q[2]);
 }
-static inline void doubles_points(const double *const at[8], doubles *x, doubles *y, doubles *z)
+static SC_INLINE void doubles_points(const unsigned char *const at[8], int floats, doubles point[3])
 {
-    SC_KERNEL(sc_doubles_transpose)(at, &x->p0, &y->p0, &z->p0);
-    SC_KERNEL(sc_doubles_transpose)(at + 2, &x->p1, &y->p1, &z->p1);
-    SC_KERNEL(sc_doubles_transpose)(at + 4, &x->p2, &y->p2, &z->p2);
-    SC_KERNEL(sc_doubles_transpose)(at + 6, &x->p3, &y->p3, &z->p3);
+    SC_KERNEL(sc_doubles_transpose)(at, floats, &point[0].p0, &point[1].p0, &point[2].p0);
+    SC_KERNEL(sc_doubles_transpose)(at + 2, floats, &point[0].p1, &point[1].p1, &point[2].p1);
+    SC_KERNEL(sc_doubles_transpose)(at + 4, floats, &point[0].p2, &point[1].p2, &point[2].p2);
+    SC_KERNEL(sc_doubles_transpose)(at + 6, floats, &point[0].p3, &point[1].p3, &point[2].p3);
 }
 
 #  endif
@@ -328,22 +439,61 @@ static inline doubles_mask doubles_below(doubles a, doubles b)
     for (i = 0; i < 8; i++) mask |= (unsigned)(a.v[i] < b.v[i]) << i;
     return mask;
 }
+static inline doubles_mask doubles_equal(doubles a, doubles b)
+{
+    unsigned mask = 0, i;
+    for (i = 0; i < 8; i++) mask |= (unsigned)(a.v[i] == b.v[i]) << i;
+    return mask;
+}
+static inline doubles_mask doubles_both(doubles_mask a, doubles_mask b)
+{
+    return a & b;
+}
+static inline doubles_mask doubles_either(doubles_mask a, doubles_mask b)
+{
+    return a | b;
+}
 static inline unsigned doubles_bits(doubles_mask a)
 {
     return a;
+}
+static inline unsigned doubles_signs(doubles a)
+{
+    unsigned mask = 0, i;
+    for (i = 0; i < 8; i++) mask |= (unsigned)(signbit(a.v[i]) != 0) << i;
+    return mask;
 }
 static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
 {
     SC_DOUBLES_EACH(m >> i & 1u ? a.v[i] : b.v[i]);
 }
-static inline void doubles_points(const double *const at[8], doubles *x, doubles *y, doubles *z)
+static SC_INLINE void doubles_points(const unsigned char *const at[8], int floats, doubles point[3])
 {
-    int i;
+    int i, c;
     for (i = 0; i < 8; i++) {
-        x->v[i] = at[i][0];
-        y->v[i] = at[i][1];
-        z->v[i] = at[i][2];
+        double p[3];
+        SC_KERNEL(sc_doubles_point)(at[i], floats, p);
+        for (c = 0; c < 3; c++) point[c].v[i] = p[c];
     }
 }
 
+#endif
+
+#if !SC_LANES_AVX512
+static inline doubles doubles_larger_size(doubles a, doubles b)
+{
+    return doubles_larger(doubles_absolute(a), doubles_absolute(b));
+}
+static inline doubles doubles_smaller_size(doubles a, doubles b)
+{
+    return doubles_smaller(doubles_absolute(a), doubles_absolute(b));
+}
+static inline unsigned doubles_differ(doubles a, doubles b)
+{
+    return doubles_signs(a) ^ doubles_signs(b);
+}
+static inline unsigned doubles_differ3(doubles a, doubles b, doubles c)
+{
+    return doubles_differ(a, b) | doubles_differ(a, c);
+}
 #endif

@@ -18,3 +18,11 @@
 #undef doubles_bits
 #undef doubles_choose
 #undef doubles_points
+#undef doubles_larger_size
+#undef doubles_smaller_size
+#undef doubles_signs
+#undef doubles_differ
+#undef doubles_differ3
+#undef doubles_equal
+#undef doubles_both
+#undef doubles_either

@@ -37,6 +37,12 @@ static inline unsigned sc_quad_bits_doubles(sc_doubles2 a, sc_doubles2 b, sc_dou
     return (unsigned)_mm_movemask_pd(a) | (unsigned)_mm_movemask_pd(b) << 2 |
            (unsigned)_mm_movemask_pd(c) << 4 | (unsigned)_mm_movemask_pd(d) << 6;
 }
+/* The same of four registers of any doubles, by their signs. */
+static inline unsigned sc_quad_signs_doubles(sc_doubles2 a, sc_doubles2 b, sc_doubles2 c,
+                                             sc_doubles2 d)
+{
+    return sc_quad_bits_doubles(a, b, c, d);
+}
 /* A mask of the lanes that have the same bits. */
 static inline sc_floats4 sc_quad_same(sc_floats4 a, sc_floats4 b)
 {
@@ -128,6 +134,7 @@ static inline float sc_quad_cvtss_f32(sc_floats4 a)
     SC_QUAD_ONE(type, or_##end, (mask)a | (mask)b)                                                 \
     SC_QUAD_ONE(type, cmplt_##end, a < b)                                                          \
     SC_QUAD_ONE(type, cmple_##end, a <= b)                                                         \
+    SC_QUAD_ONE(type, cmpeq_##end, a == b)                                                         \
     SC_QUAD_ONE(type, min_##end, SC_QUAD_CHOOSE(mask, a < b))                                      \
     SC_QUAD_ONE(type, max_##end, SC_QUAD_CHOOSE(mask, a > b))
 SC_QUAD_ALL(sc_floats4, sc_numbers4, ps)
@@ -149,6 +156,13 @@ static inline unsigned sc_quad_bits_doubles(sc_doubles2 a, sc_doubles2 b, sc_dou
     sc_numbers2 r = (((sc_numbers2)a & bit) | ((sc_numbers2)b & bit << 2)) |
                     (((sc_numbers2)c & bit << 4) | ((sc_numbers2)d & bit << 6));
     return (unsigned)(r[0] | r[1]);
+}
+static inline unsigned sc_quad_signs_doubles(sc_doubles2 a, sc_doubles2 b, sc_doubles2 c,
+                                             sc_doubles2 d)
+{
+    return sc_quad_bits_doubles(
+        (sc_doubles2)((sc_numbers2)a >> 63), (sc_doubles2)((sc_numbers2)b >> 63),
+        (sc_doubles2)((sc_numbers2)c >> 63), (sc_doubles2)((sc_numbers2)d >> 63));
 }
 static inline sc_floats4 sc_quad_same(sc_floats4 a, sc_floats4 b)
 {

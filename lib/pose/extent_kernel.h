@@ -85,7 +85,7 @@ static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low
     return not_finite == 0;
 }
 
-/* Vertices that are stride bytes apart, of which four coordinates are read, but for the last. */
+/* Vertices that are stride bytes apart. */
 static int SC_KERNEL(extent_of_apart_doubles)(const double *p, uint64_t stride, uint64_t some,
                                               double low[3], double high[3])
 {
@@ -99,11 +99,10 @@ static int SC_KERNEL(extent_of_apart_doubles)(const double *p, uint64_t stride, 
         SC_UNROLL
         for (k = 0; k < 3; k++) lows[k] = highs[k] = doubles_all(p[k]);
         for (; i + WIDTH < some; i += WIDTH) {
-            const double *place[WIDTH];
+            const unsigned char *place[WIDTH];
             SC_UNROLL
-            for (j = 0; j < WIDTH; j++)
-                place[j] = (const double *)(const void *)(from + (i + (uint64_t)j) * stride);
-            doubles_points(place, &x[0], &x[1], &x[2]);
+            for (j = 0; j < WIDTH; j++) place[j] = from + (i + (uint64_t)j) * stride;
+            doubles_points(place, 0, x);
             SC_UNROLL
             for (k = 0; k < 3; k++) {
                 lows[k] = doubles_smaller(x[k], lows[k]);

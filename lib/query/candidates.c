@@ -141,46 +141,45 @@ void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b)
     sc_state_switch(state, previous);
 }
 
-/* Sets the corners of some pairs, up to SC_PAIR_LANES; the last fills the row. */
-static void load_lanes(const sc_query_state *state, const sc_pair *pairs, uint32_t count,
-                       sc_pair_lanes *lanes)
-{
-    const uint32_t *triangle = sc_model_triangle(state->model);
-    uint32_t j;
-    int k;
-    for (j = 0; j < SC_PAIR_LANES; j++) {
-        const sc_pair *pair = &pairs[j < count ? j : count - 1];
-        const uint32_t *a = triangle + 3 * (uint64_t)pair->a, *b = triangle + 3 * (uint64_t)pair->b;
-        for (k = 0; k < 3; k++) {
-            lanes->point[0][k][j] = a[k];
-            lanes->point[1][k][j] = b[k];
-            lanes->corner[0][k][j] = sc_positions_at(state->workspace, a[k], lanes->copy[0][k][j]);
-            lanes->corner[1][k][j] = sc_positions_at(state->workspace, b[k], lanes->copy[1][k][j]);
-        }
-    }
-}
-
 /* Marks the corners that the triangles share. */
 static void mark_shared(sc_pair_lanes *lanes)
 {
     uint32_t j;
     int i, k;
-    for (j = 0; j < SC_PAIR_LANES; j++)
+    memset(lanes->shared, 0, sizeof lanes->shared);
+    for (j = 0; j < SC_PAIR_LANES; j++) {
+        const uint32_t *a = lanes->triangle + 3 * (uint64_t)lanes->pairs[j].a;
+        const uint32_t *b = lanes->triangle + 3 * (uint64_t)lanes->pairs[j].b;
         for (i = 0; i < 3; i++)
             for (k = 0; k < 3; k++)
-                if (lanes->point[0][i][j] == lanes->point[1][k][j]) {
+                if (a[i] == b[k]) {
                     lanes->shared[0][i] |= 1u << j;
                     lanes->shared[1][k] |= 1u << j;
                 }
+    }
 }
 
 /* What a verdict says of a lane, as bits for the edges. */
-static unsigned edges_of_lane(const unsigned lanes[6], uint32_t j)
+static unsigned edges_of_lane(uint64_t lanes, uint32_t j)
 {
     unsigned edges = 0;
     int k;
-    for (k = 0; k < 6; k++) edges |= (lanes[k] >> j & 1u) << k;
+    for (k = 0; k < 6; k++) edges |= (unsigned)(lanes >> (8 * k + (int)j) & 1u) << k;
     return edges;
+}
+
+/* The lanes that it says anything of. */
+static unsigned lanes_of(uint64_t lanes)
+{
+    lanes |= lanes >> 32;
+    lanes |= lanes >> 16;
+    return (unsigned)(lanes | lanes >> 8) & ((1u << SC_PAIR_LANES) - 1u);
+}
+
+/* All edges of some lanes. */
+static uint64_t edges_of(unsigned lanes)
+{
+    return lanes * (uint64_t)0x010101010101;
 }
 
 /* Decides a pair alone, unless the fan round what it shares does. */
@@ -189,7 +188,7 @@ static void decide_rest(sc_query_state *state, const sc_pair *places, int share)
     if (!share || !have_plain_fan(state, places)) decide_pair(state, places);
 }
 
-/* Reports what is certain of a pair, or decides it alone. */
+/* Decides a pair alone, of which not all is certain. */
 static void conclude(sc_query_state *state, const sc_pair *places, unsigned meets, unsigned unsure,
                      int share)
 {
@@ -201,31 +200,71 @@ static void conclude(sc_query_state *state, const sc_pair *places, unsigned meet
             take_edges(state, places, meets & wanted);
     } else if (meets) {
         take_triangles(state, places);
-    } else if (unsure) {
+    } else {
         decide_rest(state, places, share);
     }
+}
+
+/* Reports what meets in some lanes. */
+static void take_lanes(sc_query_state *state, const sc_pair *pairs, uint64_t meets)
+{
+    const uint32_t *id = sc_model_triangle_id(state->model);
+    const uint8_t *owned = sc_model_edge_owned(state->model);
+    sc_pair found[6 * SC_PAIR_LANES];
+    uint32_t count = 0;
+    if (state->options.pairs == SC_PAIRS_EDGE) {
+        for (; meets; meets &= meets - 1) {
+            uint32_t bit = sc_bits_lowest64(meets), k = bit / SC_PAIR_LANES;
+            sc_pair pair = pairs[bit % SC_PAIR_LANES];
+            uint32_t mine = k < 3 ? pair.a : pair.b, other = k < 3 ? pair.b : pair.a;
+            k -= k < 3 ? 0 : 3;
+            found[count].a = 3 * id[mine] + k;
+            found[count].b = id[other];
+            count += owned[mine] >> k & 1u;
+        }
+    } else {
+        unsigned lanes = lanes_of(meets);
+        for (; lanes; lanes &= lanes - 1) {
+            sc_pair pair = pairs[sc_bits_lowest(lanes)];
+            uint32_t a = id[pair.a], b = id[pair.b];
+            found[count].a = a < b ? a : b;
+            found[count++].b = a < b ? b : a;
+        }
+    }
+    sc_pairs_take_all(state, found, count);
 }
 
 /* Decides pairs that share nothing, or one point each. */
 static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t count, int share)
 {
-    uint32_t i;
+    const sc_workspace *w = state->workspace;
+    sc_pair last[SC_PAIR_LANES];
+    sc_pair_lanes lanes;
+    uint32_t i, j;
+    lanes.triangle = sc_model_triangle(state->model);
+    lanes.positions = w->positions;
+    lanes.stride = w->stride;
+    lanes.floats = w->position_type == SC_FLOAT;
+    lanes.proper = state->options.contact == SC_CONTACT_PROPER;
+    lanes.shares = share;
+    memset(lanes.shared, 0, sizeof lanes.shared);
     state->stats.counts[sc_state_primitive_task(state)] += count;
     for (i = 0; i < count && !sc_state_cancelled(state); i += SC_PAIR_LANES) {
-        sc_pair_lanes lanes;
         sc_verdict verdict;
-        unsigned open = 0;
-        int k;
-        memset(lanes.shared, 0, sizeof lanes.shared);
-        lanes.proper = state->options.contact == SC_CONTACT_PROPER;
-        load_lanes(state, pairs + i, count - i, &lanes);
+        unsigned some = (1u << SC_PAIR_LANES) - 1u, open;
+        lanes.pairs = pairs + i;
+        if (count - i < SC_PAIR_LANES) {
+            for (j = 0; j < SC_PAIR_LANES; j++) last[j] = pairs[i + j < count ? i + j : count - 1];
+            lanes.pairs = last;
+            some = (1u << (count - i)) - 1u;
+        }
         if (share) mark_shared(&lanes);
-        sc_query_kernels_of(state->workspace)->decide(&lanes, &verdict);
-        for (k = 0; k < 6; k++) open |= verdict.meets[k] | verdict.unsure[k];
-        if (count - i < SC_PAIR_LANES) open &= (1u << (count - i)) - 1u;
+        sc_query_kernels_of(w)->decide(&lanes, &verdict);
+        open = lanes_of(verdict.unsure) & some;
+        if (verdict.meets) take_lanes(state, lanes.pairs, verdict.meets & edges_of(some & ~open));
         for (; open && !state->stop; open &= open - 1) {
-            uint32_t j = sc_bits_lowest(open);
-            conclude(state, &pairs[i + j], edges_of_lane(verdict.meets, j),
+            j = sc_bits_lowest(open);
+            conclude(state, &lanes.pairs[j], edges_of_lane(verdict.meets, j),
                      edges_of_lane(verdict.unsure, j), share);
         }
     }

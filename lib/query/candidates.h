@@ -55,21 +55,23 @@ void sc_candidates_take(sc_query_state *state, uint32_t a, uint32_t b, unsigned 
 /* Pairs are decided by so many at a time. */
 enum { SC_PAIR_LANES = 8 };
 
-/* SC_PAIR_LANES pairs of triangles that share one point at most: where their corners are (four readable doubles
-   each). Bit i of shared: in pair i the corner is one of the other triangle's. */
+/* SC_PAIR_LANES pairs of triangles that share one point at most. Bit i of shared: in pair i the corner is one of the
+   other triangle's. */
 typedef struct sc_pair_lanes {
-    const double *corner[2][3][SC_PAIR_LANES];
-    double copy[2][3][SC_PAIR_LANES]
-               [4]; /* of those that cannot be read where the caller has them */
-    uint32_t point[2][3][SC_PAIR_LANES];
-    unsigned shared[2][3];
+    const sc_pair *pairs;           /* places of triangles */
+    const uint32_t *triangle;       /* three points at each place */
+    const unsigned char *positions; /* as in sc_workspace */
+    uint64_t stride;
+    int floats; /* positions are floats */
     int proper; /* contacts are proper ones only */
+    int shares; /* some points are shared */
+    unsigned shared[2][3];
 } sc_pair_lanes;
 
-/* Which edges (k of the first triangle, 3 + k of the second) meet the other triangle, bit i for pair i: certainly; or
-   it cannot be told. None from a shared point. */
+/* Which edges (k of the first triangle, 3 + k of the second) meet the other triangle, bit 8 k + i for pair i:
+   certainly; or it cannot be told. None from a shared point. */
 typedef struct sc_verdict {
-    unsigned meets[6], unsure[6];
+    uint64_t meets, unsure;
 } sc_verdict;
 
 /* To be called after each pair of leaf clusters: decides what has been collected if there is no room for another. */

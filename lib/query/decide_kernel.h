@@ -4,70 +4,59 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * A pair has six signs of corners against the other's plane and nine of edges against edges: d = (e x f) . p, where e
- * and f are edges and p runs from a corner of one triangle to one of the other. Each component of e, f and p is a
- * difference of two coordinates. In exact arithmetic d is a sum of six products of a component of each; one of them
- * meets the rounding of three differences, two products, a subtraction and two additions, hence is off by
- * 8.01 * 2^-53 of its absolute value at most. With E the sum of a triangle's extents along the axes, |e|1 <= E of its
- * triangle, and no component of p is above R, the largest extent of both: the absolute values sum to E E' R at most.
- * E and R are computed to within 4 * 2^-53 and 2^-53 and their product is rounded thrice more, so that 9 * 2^-53 E E' R
- * as computed covers it; the absolute term is for products that underflow. If E E' R overflows, the
- * bound is infinite or not a number, and nothing is certain; if not, no sum of products can, but by rounding, which
- * leaves the sign as it is. A sign is certainly zero if its four points have a coordinate in common, which is asked only
- * where it matters; what is coplanar otherwise is left to the scalar form.
+ * A pair has six signs of corners against the other's plane and nine of edges against edges. Seen from the first
+ * corner of the first triangle, its others are a_1 and a_2, those of the second b_0, b_1 and b_2. With
+ * n_i = b_i x b_i+1, whose sum is the second's normal, fourteen determinants make up all signs:
+ *   S_i = (a_1 x a_2) . b_i, T_0 = n_0 . b_2, T_k = T_0 - (n_0 + n_1 + n_2) . a_k       corners b_i, and minus a_k
+ *   L_0i = n_i . a_1, L_2i = -n_i . a_2, L_1i = S_i+1 - S_i - L_0i - L_2i               edges k and i, from below
+ *
+ * Each component of a and b is a difference of two coordinates; let r be the largest of them all. In exact arithmetic
+ * a determinant is a sum of at most four times six products of three of them. One of these meets the rounding of three
+ * differences, two products, a subtraction and two additions, and in T_k of three more, hence is off by
+ * 11.01 * 2^-53 r^3 at most, and the sum by 264.3 * 2^-53 r^3. The bound is 272 * 2^-53 r^3 with at least 2^-300 for r,
+ * which covers its own three roundings and products that underflow: these change a sum by less than
+ * 2^-1060 (1 + r), or 2^-1000 (1 + r) and 2^-1010 r^2 where subnormal numbers are flushed to zero. Computed as 4.25 * 2^-53 (4 r)^3
+ * it is infinite, and nothing certain, before any sum can overflow.
+ *
+ * A sign is certainly zero if its four points have a coordinate in common, which is asked only where it matters; what
+ * is coplanar otherwise is left to the scalar form.
  */
 
-/* Corners of eight pairs; and how large the triangles and pairs are. */
-typedef struct SC_KERNEL(corners) {
+/* Eight pairs of triangles. */
+typedef struct SC_KERNEL(eight) {
     doubles at[2][3][3]; /* triangle, corner, axis */
-    doubles edge[2][3][3];
-    doubles extent[2], reach;
-} SC_KERNEL(corners);
+    doubles side[2][3];  /* of corners against the other's plane: T and S */
+    doubles line[3][3];  /* of edges against edges: L */
+    doubles reach;       /* four times r */
+    doubles bound;       /* what is larger than this has a certain sign */
+} SC_KERNEL(eight);
 
-/* In which lanes a determinant is certainly positive, negative or zero. */
-typedef struct SC_KERNEL(sign) {
-    unsigned above, below, zero;
-} SC_KERNEL(sign);
-
-static inline void SC_KERNEL(read_corners)(const sc_pair_lanes *pairs, SC_KERNEL(corners) * x)
+static SC_INLINE void SC_KERNEL(read_points)(const sc_pair_lanes *pairs, int floats,
+                                             doubles at[2][3][3])
 {
-    doubles low[2][3], high[2][3];
-    int s, k, c;
+    const uint32_t *triangle[2][SC_PAIR_LANES];
+    int s, k, i;
     SC_UNROLL
-    for (s = 0; s < 2; s++) {
-        SC_UNROLL
-        for (k = 0; k < 3; k++)
-            doubles_points(pairs->corner[s][k], &x->at[s][k][0], &x->at[s][k][1], &x->at[s][k][2]);
-        SC_UNROLL
-        for (c = 0; c < 3; c++) {
-            doubles p = x->at[s][0][c], q = x->at[s][1][c], r = x->at[s][2][c];
-            low[s][c] = doubles_smaller(doubles_smaller(p, q), r);
-            high[s][c] = doubles_larger(doubles_larger(p, q), r);
-            x->edge[s][0][c] = doubles_subtract(q, p);
-            x->edge[s][1][c] = doubles_subtract(r, q);
-            x->edge[s][2][c] = doubles_subtract(p, r);
+    for (i = 0; i < SC_PAIR_LANES; i++) {
+        triangle[0][i] = pairs->triangle + 3 * (uint64_t)pairs->pairs[i].a;
+        triangle[1][i] = pairs->triangle + 3 * (uint64_t)pairs->pairs[i].b;
+    }
+    for (s = 0; s < 2; s++)
+        for (k = 0; k < 3; k++) {
+            const unsigned char *point[SC_PAIR_LANES];
+            SC_UNROLL
+            for (i = 0; i < SC_PAIR_LANES; i++)
+                point[i] = pairs->positions + sc_alone((size_t)(pairs->stride * triangle[s][i][k]));
+            doubles_points(point, floats, at[s][k]);
         }
-        x->extent[s] = doubles_add(doubles_add(doubles_subtract(high[s][0], low[s][0]),
-                                               doubles_subtract(high[s][1], low[s][1])),
-                                   doubles_subtract(high[s][2], low[s][2]));
-    }
-    SC_UNROLL
-    for (c = 0; c < 3; c++) {
-        doubles all = doubles_subtract(doubles_larger(high[0][c], high[1][c]),
-                                       doubles_smaller(low[0][c], low[1][c]));
-        x->reach = c ? doubles_larger(x->reach, all) : all;
-    }
 }
 
-static inline doubles SC_KERNEL(bound)(const SC_KERNEL(corners) * x, doubles e, doubles f)
+static SC_NOINLINE void SC_KERNEL(read_floats)(const sc_pair_lanes *pairs, doubles at[2][3][3])
 {
-    doubles product = doubles_multiply(x->reach, doubles_multiply(e, f));
-    return doubles_add(doubles_multiply(doubles_all(SC_PREDICATES_BOUND_3D), product),
-                       doubles_multiply(doubles_all(SC_PREDICATES_BOUND_TINY),
-                                        doubles_add(doubles_all(1), x->reach)));
+    SC_KERNEL(read_points)(pairs, 1, at);
 }
 
-static inline void SC_KERNEL(cross)(const doubles e[3], const doubles f[3], doubles n[3])
+static inline void SC_KERNEL(cross_eight)(const doubles e[3], const doubles f[3], doubles n[3])
 {
     int c;
     SC_UNROLL
@@ -76,14 +65,202 @@ static inline void SC_KERNEL(cross)(const doubles e[3], const doubles f[3], doub
                                 doubles_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
 }
 
-/* Of n . (q - p). */
-static inline SC_KERNEL(sign)
-    SC_KERNEL(sign_along)(const doubles n[3], const doubles p[3], const doubles q[3], doubles bound)
+static inline doubles SC_KERNEL(dot_eight)(const doubles n[3], const doubles p[3])
+{
+    return doubles_add(doubles_add(doubles_multiply(n[0], p[0]), doubles_multiply(n[1], p[1])),
+                       doubles_multiply(n[2], p[2]));
+}
+
+/* Reads the corners and computes all else. */
+static SC_INLINE void SC_KERNEL(read_eight)(const sc_pair_lanes *pairs, SC_KERNEL(eight) * x)
+{
+    doubles a[2][3], b[3][3], n[3], along[2][3], reach = doubles_all(0x1p-300);
+    doubles *side = x->side[1], (*line)[3] = x->line;
+    int k, i, c;
+    if (pairs->floats)
+        SC_KERNEL(read_floats)(pairs, x->at);
+    else
+        SC_KERNEL(read_points)(pairs, 0, x->at);
+    SC_UNROLL
+    for (k = 0; k < 5; k++) {
+        const doubles *from = x->at[0][0], *to = k < 2 ? x->at[0][k + 1] : x->at[1][k - 2];
+        doubles *p = k < 2 ? a[k] : b[k - 2];
+        SC_UNROLL
+        for (c = 0; c < 3; c++) {
+            p[c] = doubles_subtract(to[c], from[c]);
+            reach = doubles_larger_size(reach, p[c]);
+        }
+    }
+    SC_KERNEL(cross_eight)(a[0], a[1], n);
+    SC_UNROLL
+    for (i = 0; i < 3; i++) side[i] = SC_KERNEL(dot_eight)(n, b[i]);
+    SC_UNROLL
+    for (i = 0; i < 3; i++) {
+        SC_KERNEL(cross_eight)(b[i], b[(i + 1) % 3], n);
+        along[0][i] = SC_KERNEL(dot_eight)(n, a[0]);
+        along[1][i] = SC_KERNEL(dot_eight)(n, a[1]);
+        if (i == 0) x->side[0][0] = SC_KERNEL(dot_eight)(n, b[2]);
+    }
+    SC_UNROLL
+    for (k = 0; k < 2; k++)
+        x->side[0][k + 1] = doubles_subtract(
+            x->side[0][0], doubles_add(doubles_add(along[k][0], along[k][1]), along[k][2]));
+    SC_UNROLL
+    for (i = 0; i < 3; i++) {
+        line[0][i] = along[0][i];
+        line[1][i] = doubles_subtract(doubles_add(along[1][i], side[(i + 1) % 3]),
+                                      doubles_add(along[0][i], side[i]));
+        line[2][i] = doubles_subtract(doubles_all(0), along[1][i]);
+    }
+    x->reach = reach = doubles_multiply(doubles_all(4), reach);
+    x->bound = doubles_multiply(doubles_all(4.25 * 0x1p-53),
+                                doubles_multiply(doubles_multiply(reach, reach), reach));
+}
+
+/* ---- what is certain of nearly all ---- */
+
+/* Which edges of the two, the first's k and the second's i, are in one plane across an axis. Returns the lanes in which
+   any are. */
+static inline unsigned SC_KERNEL(find_level_edges)(doubles at[2][3][3], doubles_mask level[3][3])
+{
+    unsigned found = 0;
+    const doubles_mask none = doubles_below(doubles_all(0), doubles_all(0));
+    int c, s, k, i;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        SC_UNROLL
+        for (i = 0; i < 3; i++) level[k][i] = none;
+    }
+    for (c = 0; c < 3; c++) {
+        doubles_mask even[2][3], any[2], same;
+        doubles where[2];
+        unsigned some;
+        SC_UNROLL
+        for (s = 0; s < 2; s++) {
+            doubles p = at[s][0][c], q = at[s][1][c], r = at[s][2][c];
+            even[s][0] = doubles_equal(p, q);
+            even[s][1] = doubles_equal(q, r);
+            even[s][2] = doubles_equal(r, p);
+            any[s] = doubles_either(doubles_either(even[s][0], even[s][1]), even[s][2]);
+            where[s] = doubles_choose(even[s][1], q, p); /* which is that of all its even edges */
+        }
+        same = doubles_equal(where[0], where[1]);
+        some = doubles_bits(doubles_both(doubles_both(any[0], any[1]), same));
+        if (!some) continue;
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            doubles_mask one = doubles_both(even[0][k], same);
+            SC_UNROLL
+            for (i = 0; i < 3; i++) {
+                doubles_mask both = doubles_both(one, even[1][i]);
+                level[k][i] = doubles_either(level[k][i], both);
+            }
+        }
+        found |= some;
+    }
+    return found;
+}
+
+/* Of the six edges by their bits: whose ends are on different sides, of these whose lines have signs that are not
+   certain, and which meet the other triangle if all that is. */
+typedef struct SC_KERNEL(edges) {
+    unsigned sides[6], open[6], meets[6];
+} SC_KERNEL(edges);
+
+static inline void SC_KERNEL(look_along)(SC_KERNEL(edges) * e, int edge, const doubles line[3],
+                                         doubles bound)
+{
+    doubles least = doubles_smaller_size(doubles_smaller_size(line[0], line[1]), line[2]);
+    e->open[edge] = e->sides[edge] & ~doubles_bits(doubles_below(bound, least));
+    e->meets[edge] = e->sides[edge] & ~doubles_differ3(line[0], line[1], line[2]);
+}
+
+/* The signs of lines that are certainly zero count as those next to them, or if touching is not asked for, their edges
+   do not meet. Only if there is another, which is not certain then, if it is zero, too. */
+static inline void SC_KERNEL(look_along_level)(SC_KERNEL(edges) * e, int edge,
+                                               const doubles line[3], const doubles_mask level[3],
+                                               doubles bound, int proper)
+{
+    doubles next[3];
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 3; i++) next[i] = doubles_choose(level[i], line[(i + 1) % 3], line[i]);
+    SC_KERNEL(look_along)(e, edge, next, bound);
+    if (proper) {
+        unsigned none = ~doubles_bits(doubles_either(doubles_either(level[0], level[1]), level[2]));
+        e->open[edge] &= none;
+        e->meets[edge] &= none;
+    }
+}
+
+/* Decides eight pairs that share nothing, if no corner may be in the other's plane; else returns 0. */
+static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, sc_verdict *verdict)
+{
+    SC_KERNEL(eight) x;
+    SC_KERNEL(edges) e;
+    unsigned certain[2], apart = 0, open = 0;
+    uint64_t meets = 0;
+    int s, k;
+    SC_KERNEL(read_eight)(pairs, &x);
+    SC_UNROLL
+    for (s = 0; s < 2; s++) {
+        const doubles *side = x.side[s];
+        doubles least = doubles_smaller_size(doubles_smaller_size(side[0], side[1]), side[2]);
+        certain[s] = doubles_bits(doubles_below(x.bound, least));
+        SC_UNROLL
+        for (k = 0; k < 3; k++) e.sides[3 * s + k] = doubles_differ(side[k], side[(k + 1) % 3]);
+        apart |= certain[s] & ~(e.sides[3 * s] | e.sides[3 * s + 1] | e.sides[3 * s + 2]);
+    }
+    if (SC_HARDLY(~apart & ~(certain[0] & certain[1]) & 255u)) return 0;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        doubles across[3];
+        across[0] = x.line[0][k];
+        across[1] = x.line[1][k];
+        across[2] = x.line[2][k];
+        SC_KERNEL(look_along)(&e, k, x.line[k], x.bound);
+        SC_KERNEL(look_along)(&e, 3 + k, across, x.bound);
+        open |= e.open[k] | e.open[3 + k];
+    }
+    open &= ~apart;
+    if (open) {
+        doubles_mask level[3][3];
+        unsigned found = SC_KERNEL(find_level_edges)(x.at, level);
+        if (open & ~found) return 0;
+        open = 0;
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            doubles across[3];
+            doubles_mask level_across[3];
+            SC_UNROLL
+            for (s = 0; s < 3; s++) {
+                across[s] = x.line[s][k];
+                level_across[s] = level[s][k];
+            }
+            SC_KERNEL(look_along_level)(&e, k, x.line[k], level[k], x.bound, pairs->proper);
+            SC_KERNEL(look_along_level)
+            (&e, 3 + k, across, level_across, x.bound, pairs->proper);
+            open |= e.open[k] | e.open[3 + k];
+        }
+        if (open & ~apart) return 0;
+    }
+    SC_UNROLL
+    for (k = 0; k < 6; k++) meets |= (uint64_t)(e.meets[k] & ~apart) << 8 * k;
+    verdict->meets = meets;
+    verdict->unsure = 0;
+    return 1;
+}
+
+/* ---- what is certain of the rest ---- */
+
+/* In which lanes a determinant is certainly positive, negative or zero. */
+typedef struct SC_KERNEL(sign) {
+    unsigned above, below, zero;
+} SC_KERNEL(sign);
+
+static inline SC_KERNEL(sign) SC_KERNEL(sign_of)(doubles d, doubles bound)
 {
     SC_KERNEL(sign) sign;
-    doubles d = doubles_add(doubles_add(doubles_multiply(n[0], doubles_subtract(q[0], p[0])),
-                                        doubles_multiply(n[1], doubles_subtract(q[1], p[1]))),
-                            doubles_multiply(n[2], doubles_subtract(q[2], p[2])));
     sign.above = doubles_bits(doubles_below(bound, d));
     sign.below = doubles_bits(doubles_below(d, doubles_subtract(doubles_all(0), bound)));
     sign.zero = 0;
@@ -94,55 +271,48 @@ static inline SC_KERNEL(sign)
  * The lanes in which the two, projected along the axis nearest to the normal of one, are certainly on different sides
  * of the line of a projected edge: its own triangle's third corner on one side, all of the other's strictly on the
  * other, but for one that they share if it is on the line. Then they do not meet elsewhere. Nearly coplanar pairs that are apart are so by one of these six lines. A side
- * d = e_0 p_1 - e_1 p_0 meets two differences, a product and a subtraction: 4.01 * 2^-53 (|e_0| + |e_1|) |p|max.
+ * d = e_0 p_1 - e_1 p_0 meets two differences, a product and a subtraction: 4.01 * 2^-53 of two products of numbers of
+ * up to 2 r, 8 r^2 together.
  */
-static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(corners) * x, const unsigned shared[2][3])
+static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(eight) * x, const unsigned shared[2][3])
 {
-    doubles n[3], size[3], flat[2][3][2], edge[2][3][2], zero = doubles_all(0);
+    doubles e[2][3], n[3], size[3], flat[2][3][2], zero = doubles_all(0);
+    doubles bound = doubles_multiply(doubles_all(SC_PREDICATES_BOUND_2D / 2),
+                                     doubles_multiply(x->reach, x->reach));
     doubles_mask first, second;
     unsigned apart = 0;
     int s, k, i, c;
-    SC_KERNEL(cross)(x->edge[0][0], x->edge[0][1], n);
-    SC_UNROLL
+    for (k = 0; k < 2; k++)
+        for (c = 0; c < 3; c++) e[k][c] = doubles_subtract(x->at[0][k + 1][c], x->at[0][0][c]);
+    SC_KERNEL(cross_eight)(e[0], e[1], n);
     for (c = 0; c < 3; c++) size[c] = doubles_absolute(n[c]);
     first = doubles_below(doubles_larger(size[1], size[2]), size[0]);
     second = doubles_below(size[2], size[1]);
-    SC_UNROLL
-    for (s = 0; s < 2; s++) {
-        SC_UNROLL
+    for (s = 0; s < 2; s++)
         for (k = 0; k < 3; k++) {
-            const doubles *p = x->at[s][k], *e = x->edge[s][k];
+            const doubles *p = x->at[s][k];
             flat[s][k][0] = doubles_choose(first, p[1], p[0]);
             flat[s][k][1] = doubles_choose(first, p[2], doubles_choose(second, p[2], p[1]));
-            edge[s][k][0] = doubles_choose(first, e[1], e[0]);
-            edge[s][k][1] = doubles_choose(first, e[2], doubles_choose(second, e[2], e[1]));
         }
-    }
-    SC_UNROLL
-    for (s = 0; s < 2; s++) {
-        doubles area = doubles_subtract(doubles_multiply(edge[s][0][0], edge[s][1][1]),
-                                        doubles_multiply(edge[s][0][1], edge[s][1][0]));
-        doubles bound = doubles_add(doubles_multiply(doubles_all(SC_PREDICATES_BOUND_2D),
-                                                     doubles_multiply(x->extent[s], x->reach)),
-                                    doubles_all(SC_PREDICATES_BOUND_TINY));
-        unsigned left = doubles_bits(doubles_below(bound, area));
-        unsigned right = doubles_bits(doubles_below(area, doubles_subtract(zero, bound)));
-        SC_UNROLL
+    for (s = 0; s < 2; s++)
         for (k = 0; k < 3; k++) {
-            unsigned all_left = 255, all_right = 255;
-            SC_UNROLL
-            for (i = 0; i < 3; i++) {
-                doubles p0 = doubles_subtract(flat[1 - s][i][0], flat[s][k][0]);
-                doubles p1 = doubles_subtract(flat[1 - s][i][1], flat[s][k][1]);
-                doubles d = doubles_subtract(doubles_multiply(edge[s][k][0], p1),
-                                             doubles_multiply(edge[s][k][1], p0));
-                all_left &= doubles_bits(doubles_below(bound, d)) | shared[1 - s][i];
-                all_right &= doubles_bits(doubles_below(d, doubles_subtract(zero, bound))) |
-                             shared[1 - s][i];
+            const doubles *from = flat[s][k], *to = flat[s][(k + 1) % 3];
+            doubles edge[2];
+            unsigned left[4], right[4];
+            for (c = 0; c < 2; c++) edge[c] = doubles_subtract(to[c], from[c]);
+            for (i = 0; i < 4; i++) { /* the other's corners, and its own third */
+                const doubles *at = i < 3 ? flat[1 - s][i] : flat[s][(k + 2) % 3];
+                doubles d =
+                    doubles_subtract(doubles_multiply(edge[0], doubles_subtract(at[1], from[1])),
+                                     doubles_multiply(edge[1], doubles_subtract(at[0], from[0])));
+                unsigned counts = i < 3 ? shared[1 - s][i] : 0;
+                left[i] = doubles_bits(doubles_below(bound, d)) | counts;
+                right[i] = doubles_bits(doubles_below(d, doubles_subtract(zero, bound))) | counts;
             }
-            apart |= ((left & all_right) | (right & all_left)) & ~shared[s][(k + 2) % 3];
+            apart |= ((left[3] & right[0] & right[1] & right[2]) |
+                      (right[3] & left[0] & left[1] & left[2])) &
+                     ~shared[s][(k + 2) % 3];
         }
-    }
     return apart;
 }
 
@@ -154,10 +324,9 @@ static unsigned SC_KERNEL(are_level)(const doubles p[3], const doubles q[3], con
     unsigned level = 0;
     int c;
     for (c = 0; c < 3; c++)
-        level |=
-            ~(doubles_bits(doubles_below(p[c], q[c])) | doubles_bits(doubles_below(q[c], p[c])) |
-              doubles_bits(doubles_below(q[c], r[c])) | doubles_bits(doubles_below(r[c], q[c])) |
-              doubles_bits(doubles_below(r[c], s[c])) | doubles_bits(doubles_below(s[c], r[c])));
+        level |= doubles_bits(
+            doubles_both(doubles_both(doubles_equal(p[c], q[c]), doubles_equal(q[c], r[c])),
+                         doubles_equal(r[c], s[c])));
     return level;
 }
 
@@ -183,9 +352,10 @@ typedef struct SC_KERNEL(signs) {
     SC_KERNEL(sign) side[2][3], line[3][3];
 } SC_KERNEL(signs);
 
-/* Fills the verdict; returns the lanes in which an edge is left open. */
+/* Sets the lanes in which edges meet, and in which that is open; returns the lanes in which an edge is left open. */
 static inline unsigned SC_KERNEL(decide_edges)(const sc_pair_lanes *pairs,
-                                               const SC_KERNEL(signs) * signs, sc_verdict *verdict)
+                                               const SC_KERNEL(signs) * signs, unsigned meets[6],
+                                               unsigned open[6])
 {
     unsigned touching = pairs->proper ? 0 : ~0u, unsure = 0;
     int k, s;
@@ -194,15 +364,15 @@ static inline unsigned SC_KERNEL(decide_edges)(const sc_pair_lanes *pairs,
         const SC_KERNEL(sign)(*side)[3] = signs->side, (*line)[3] = signs->line;
         int next = (k + 1) % 3;
         SC_KERNEL(decide_edge)
-        (side[0][k], side[0][next], line[k][0], line[k][1], line[k][2], touching,
-         &verdict->meets[k], &verdict->unsure[k]);
+        (side[0][k], side[0][next], line[k][0], line[k][1], line[k][2], touching, &meets[k],
+         &open[k]);
         SC_KERNEL(decide_edge)
-        (side[1][k], side[1][next], line[0][k], line[1][k], line[2][k], touching,
-         &verdict->meets[3 + k], &verdict->unsure[3 + k]);
+        (side[1][k], side[1][next], line[0][k], line[1][k], line[2][k], touching, &meets[3 + k],
+         &open[3 + k]);
         for (s = 0; s < 2; s++) {
-            verdict->meets[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
-            verdict->unsure[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
-            unsure |= verdict->unsure[3 * s + k];
+            meets[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
+            open[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
+            unsure |= open[3 * s + k];
         }
     }
     return unsure;
@@ -210,7 +380,7 @@ static inline unsigned SC_KERNEL(decide_edges)(const sc_pair_lanes *pairs,
 
 /* Finds which of the signs that are not certain in some lanes are certainly zero. Returns the lanes in which a corner
    may be in the other's plane. */
-static unsigned SC_KERNEL(find_zeros)(const SC_KERNEL(corners) * x, unsigned some,
+static unsigned SC_KERNEL(find_zeros)(const SC_KERNEL(eight) * x, unsigned some,
                                       SC_KERNEL(signs) * signs)
 {
     unsigned level = 0;
@@ -234,50 +404,40 @@ static unsigned SC_KERNEL(find_zeros)(const SC_KERNEL(corners) * x, unsigned som
     return level;
 }
 
-static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
+/* Decides eight pairs, edge by edge, as far as that is certain. */
+static SC_NOINLINE void SC_KERNEL(decide_rest)(const sc_pair_lanes *pairs, sc_verdict *verdict)
 {
-    SC_KERNEL(corners) x;
+    SC_KERNEL(eight) x;
     SC_KERNEL(signs) signs;
-    unsigned apart = 0, unsure;
+    unsigned apart = 0, unsure, meets[6], open[6];
     int s, k, i;
-    memset(verdict, 0, sizeof *verdict);
-    SC_KERNEL(read_corners)(pairs, &x);
-    SC_UNROLL
-    for (s = 0; s < 2; s++) { /* corners of s against the plane of the other */
-        doubles n[3], bound = SC_KERNEL(bound)(&x, x.extent[1 - s], x.extent[1 - s]);
+    SC_KERNEL(read_eight)(pairs, &x);
+    for (s = 0; s < 2; s++) {
         unsigned above = 255, below = 255;
-        SC_KERNEL(cross)(x.edge[1 - s][0], x.edge[1 - s][1], n);
-        SC_UNROLL
         for (k = 0; k < 3; k++) {
-            SC_KERNEL(sign) sign = SC_KERNEL(sign_along)(n, x.at[1 - s][0], x.at[s][k], bound);
-            above &= sign.above | pairs->shared[s][k];
-            below &= sign.below | pairs->shared[s][k];
-            signs.side[s][k] = sign;
+            signs.side[s][k] = SC_KERNEL(sign_of)(x.side[s][k], x.bound);
+            above &= signs.side[s][k].above | pairs->shared[s][k];
+            below &= signs.side[s][k].below | pairs->shared[s][k];
         }
         apart |= above | below;
     }
-    if (apart == 255u) return;
-    {
-        doubles bound = SC_KERNEL(bound)(&x, x.extent[0], x.extent[1]);
-        SC_UNROLL
-        for (k = 0; k < 3; k++) {
-            SC_UNROLL
-            for (i = 0; i < 3; i++) {
-                doubles n[3];
-                SC_KERNEL(cross)(x.edge[0][k], x.edge[1][i], n);
-                signs.line[k][i] = SC_KERNEL(sign_along)(n, x.at[0][k], x.at[1][i], bound);
-            }
-        }
-    }
-    unsure = SC_KERNEL(decide_edges)(pairs, &signs, verdict) & ~apart;
+    for (k = 0; k < 3; k++)
+        for (i = 0; i < 3; i++) signs.line[k][i] = SC_KERNEL(sign_of)(x.line[k][i], x.bound);
+    unsure = SC_KERNEL(decide_edges)(pairs, &signs, meets, open) & ~apart;
     if (unsure) {
         unsigned level = SC_KERNEL(find_zeros)(&x, unsure, &signs);
-        unsure = SC_KERNEL(decide_edges)(pairs, &signs, verdict) & ~apart;
+        unsure = SC_KERNEL(decide_edges)(pairs, &signs, meets, open) & ~apart;
         if (unsure & level) apart |= SC_KERNEL(are_beside)(&x, pairs->shared);
     }
-    SC_UNROLL
+    verdict->meets = verdict->unsure = 0;
     for (k = 0; k < 6; k++) {
-        verdict->meets[k] &= ~apart;
-        verdict->unsure[k] &= ~apart;
+        verdict->meets |= (uint64_t)(meets[k] & ~apart) << 8 * k;
+        verdict->unsure |= (uint64_t)(open[k] & ~apart) << 8 * k;
     }
+}
+
+static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
+{
+    if (pairs->shares || !SC_KERNEL(decide_most)(pairs, verdict))
+        SC_KERNEL(decide_rest)(pairs, verdict);
 }

@@ -53,6 +53,23 @@ void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b)
     }
 }
 
+void sc_pairs_take_all(sc_query_state *state, const sc_pair *pairs, uint32_t count)
+{
+    uint32_t i;
+    if (!state->filter && !state->share && state->options.output != SC_OUTPUT_ANY) {
+        if (state->options.output == SC_OUTPUT_COUNT || state->capacity == 0) {
+            state->count += count;
+            return;
+        }
+        if (state->capacity >= count && state->count <= state->capacity - count) {
+            memcpy(state->pairs + state->count, pairs, count * sizeof *pairs);
+            state->count += count;
+            return;
+        }
+    }
+    for (i = 0; i < count; i++) sc_pairs_take(state, pairs[i].a, pairs[i].b);
+}
+
 void sc_pairs_finish(sc_query_state *state)
 {
     if (state->options.output == SC_OUTPUT_PAIRS)

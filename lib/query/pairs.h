@@ -14,6 +14,9 @@
 /* Takes a pair that was not taken before, unless the caller's filter has it left out. */
 void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b);
 
+/* Takes several such. */
+void sc_pairs_take_all(sc_query_state *state, const sc_pair *pairs, uint32_t count);
+
 void sc_pairs_finish(sc_query_state *state);
 
 #endif
