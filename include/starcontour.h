@@ -318,9 +318,9 @@ typedef struct sc_model sc_model;
 
 /*
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
- * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.8 to 2 microseconds a
+ * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.8 to 1.4 microseconds a
  * triangle (regular grids least, irregular meshes of a million triangles most) and, while it runs, up to
- * 370 bytes a triangle; with METIS 6 to 8 microseconds a triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 190
+ * 320 bytes a triangle; with METIS 6 to 8 microseconds a triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 190
  * bytes a triangle.
  */
 SC_API sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model);

@@ -25,6 +25,10 @@ enum { SLACK = 32 };
 /* Ten times the number of triangles that leaf clusters are to have on average. */
 enum { LEAF_AIM = 146 };
 
+/* Of a small component, in place of its size: it has a side, bit 0; it is beside the largest there. */
+enum { HELD = 2 };
+static const uint32_t DECIDED = 0x80000000u;
+
 typedef struct bisection {
     const sc_points *points;
     const sc_adjacency *adjacency;
@@ -182,12 +186,21 @@ static void even_out(bisection *b, const uint32_t *triangles, uint32_t count, ui
     }
 }
 
+/* Whether a triangle of a component is beside another component. */
+static int touches_component(const bisection *b, uint32_t t, uint32_t component)
+{
+    const uint32_t *u = b->neighbor + 3 * (uint64_t)t;
+    uint32_t k, found = 0;
+    for (k = 0; k < 3; k++) found |= is_with(b, t, u[k], 0) && b->component[u[k]] == component;
+    return (int)found;
+}
+
 /* Gives the smaller components of each side to the other side. Returns whether both sides are known to
-   be connected. */
+   be connected: so they are if each that changes over is beside the largest there. */
 static int connect(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
                    const uint32_t capacity[2])
 {
-    uint32_t found, largest[2] = {SC_NONE, SC_NONE}, i;
+    uint32_t found, largest[2] = {SC_NONE, SC_NONE}, i, loose;
     if (is_one_walk(b, 0) && is_one_walk(b, 1)) return 1;
     found = number_components(b, triangles, count, 1);
     if (found == 2) return 1;
@@ -195,21 +208,25 @@ static int connect(bisection *b, const uint32_t *triangles, uint32_t count, uint
         uint32_t c = b->component[triangles[i]], s = b->label[triangles[i]] & 1;
         if (largest[s] == SC_NONE || b->sizes[c] > b->sizes[largest[s]]) largest[s] = c;
     }
+    loose = found - 2;
     for (i = 0; i < count; i++) {
-        uint32_t t = triangles[i], c = b->component[t], s = b->label[t] & 1;
+        uint32_t t = triangles[i], c = b->component[t], s = b->label[t] & 1, *state = &b->sizes[c];
         if (c == largest[s]) continue;
-        if (b->sizes[c] & 0x80000000u) { /* decided at its first triangle */
-            b->label[t] = (b->label[t] & ~1u) | (b->sizes[c] & 1u);
-        } else if (size[!s] + b->sizes[c] <= capacity[!s]) {
-            size[s] -= b->sizes[c];
-            size[!s] += b->sizes[c];
-            b->sizes[c] = 0x80000000u | !s;
-            b->label[t] ^= 1;
-        } else {
-            b->sizes[c] = 0x80000000u | s;
+        if (!(*state & DECIDED)) { /* at its first triangle */
+            int fits = size[!s] + *state <= capacity[!s];
+            if (fits) {
+                size[s] -= *state;
+                size[!s] += *state;
+            }
+            *state = DECIDED | (fits ? !s : s);
         }
+        if ((*state & 1) != s && !(*state & HELD) && touches_component(b, t, largest[!s])) {
+            *state |= HELD;
+            loose--;
+        }
+        b->label[t] = (b->label[t] & ~1u) | (*state & 1);
     }
-    return 0;
+    return loose == 0;
 }
 
 /* Deals the components of a patch out to two sides, none cut: the largest against the rest if it is
@@ -310,8 +327,8 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count,
         for (i = 0; i < count; i++) size[b->label[triangles[i]] & 1]++;
         even_out(b, triangles, count, size, capacity);
     } else {
-        sc_straight_cut_run(b->centers, triangles, count, left_target, b->refinement.gain, b->keys,
-                            b->label, low);
+        sc_straight_cut_run(b->centers, triangles, count, left_target, b->refinement.gain,
+                            (uint64_t *)(void *)b->keys, b->label, low);
         size[0] = left_target;
         size[1] = count - left_target;
     }

@@ -12,21 +12,19 @@ sc_status sc_chains_take(sc_scratch *scratch, uint64_t point_count, uint64_t mos
 {
     chains->next = (uint32_t *)sc_scratch_take(scratch, most, sizeof *chains->next);
     chains->old = (uint32_t *)sc_scratch_take(scratch, most, sizeof *chains->old);
+    chains->start = (uint32_t *)sc_scratch_take(scratch, most, sizeof *chains->start);
     chains->starting_at =
         (uint32_t *)sc_scratch_take_filled(scratch, point_count, sizeof *chains->starting_at, 0xff);
-    return chains->next && chains->old && chains->starting_at ? SC_OK : SC_ERROR_MEMORY;
+    return chains->next && chains->old && chains->start && chains->starting_at ? SC_OK
+                                                                               : SC_ERROR_MEMORY;
 }
 
 void sc_chains_give(sc_scratch *scratch, sc_chains *chains)
 {
     sc_scratch_give(scratch, chains->next);
     sc_scratch_give(scratch, chains->old);
+    sc_scratch_give(scratch, chains->start);
     sc_scratch_give(scratch, chains->starting_at);
-}
-
-static uint32_t start_of(const sc_chains *c, uint32_t i)
-{
-    return c->points[c->first[c->old[i]]];
 }
 
 /* Links what follows segment i, which is in no list any more; returns the last that does. */
@@ -54,19 +52,19 @@ uint32_t sc_chains_order(const sc_chains *c, uint32_t *segments, uint32_t count)
     uint32_t i, at, before, last, inserted, n = 0, chains = 0;
     memcpy(c->old, segments, count * sizeof *segments);
     for (i = count; i-- > 0;) {
-        uint32_t *list = &c->starting_at[start_of(c, i)];
+        uint32_t *list = &c->starting_at[c->start[i] = c->points[c->first[segments[i]]]];
         c->next[i] = *list;
         *list = i;
     }
     for (i = 0; i < count; i++) { /* the lists hold what is left */
-        uint32_t point = start_of(c, i);
+        uint32_t point = c->start[i];
         if (c->starting_at[point] == SC_NONE) continue;
         chains++;
         last = take_chain(c, point, &at);
         c->next[last] = SC_NONE;
         segments[n] = c->old[at];
         for (before = at, at = c->next[at]; at != SC_NONE; before = at, at = c->next[at]) {
-            point = start_of(c, at);
+            point = c->start[at];
             if (c->starting_at[point] != SC_NONE) {
                 last = take_chain(c, point, &inserted);
                 c->next[last] = at;

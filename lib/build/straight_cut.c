@@ -51,18 +51,24 @@ void sc_straight_cut_direction(const float *centers, const uint32_t *triangles, 
     for (k = 0; k < 3; k++) direction[k] = (float)at[k];
 }
 
+/* A triangle and where it is, to be compared as one number. */
+static uint64_t key_of(float along, uint32_t t)
+{
+    return (uint64_t)sc_sort_key(along) << 32 | t;
+}
+
 /* Moves the lowest `left` of count keys to the front. */
-static void select_lowest(sc_pair *keys, uint32_t count, uint32_t left)
+static void select_lowest(uint64_t *keys, uint32_t count, uint32_t left)
 {
     int64_t low = 0, high = (int64_t)count - 1;
     while (low < high) {
-        sc_pair pivot = keys[low + (high - low) / 2];
+        uint64_t pivot = keys[low + (high - low) / 2];
         int64_t i = low, j = high;
         while (i <= j) {
-            while (sc_sort_less(keys[i], pivot)) i++;
-            while (sc_sort_less(pivot, keys[j])) j--;
+            while (keys[i] < pivot) i++;
+            while (pivot < keys[j]) j--;
             if (i <= j) {
-                sc_pair swapped = keys[i];
+                uint64_t swapped = keys[i];
                 keys[i++] = keys[j];
                 keys[j--] = swapped;
             }
@@ -77,7 +83,7 @@ static void select_lowest(sc_pair *keys, uint32_t count, uint32_t left)
 }
 
 void sc_straight_cut_run(const float *centers, const uint32_t *triangles, uint32_t count,
-                         uint32_t left_target, float *along, sc_pair *keys, uint32_t *label,
+                         uint32_t left_target, float *along, uint64_t *keys, uint32_t *label,
                          uint32_t low)
 {
     float direction[3], least = HUGE_VALF, most = -HUGE_VALF, scale;
@@ -100,9 +106,8 @@ void sc_straight_cut_run(const float *centers, const uint32_t *triangles, uint32
         uint32_t bucket = (uint32_t)((along[i] - least) * scale);
         label[triangles[i]] = low + (bucket > middle);
         if (bucket != middle) continue;
-        keys[candidates].a = sc_sort_key(along[i]);
-        keys[candidates++].b = triangles[i];
+        keys[candidates++] = key_of(along[i], triangles[i]);
     }
     select_lowest(keys, candidates, left_target - before);
-    for (i = left_target - before; i < candidates; i++) label[keys[i].b] = low + 1;
+    for (i = left_target - before; i < candidates; i++) label[(uint32_t)keys[i]] = low + 1;
 }

@@ -23,7 +23,7 @@ static inline float sc_straight_cut_along(const float *center, const float direc
 /* label[t] becomes low for the left_target triangles that are lowest in that direction, low + 1 for
    the others. along and keys: room for count each. */
 void sc_straight_cut_run(const float *centers, const uint32_t *triangles, uint32_t count,
-                         uint32_t left_target, float *along, sc_pair *keys, uint32_t *label,
+                         uint32_t left_target, float *along, uint64_t *keys, uint32_t *label,
                          uint32_t low);
 
 #endif

@@ -23,6 +23,14 @@ static void *place(unsigned char *block, uint64_t *at, uint64_t count, size_t si
     return array;
 }
 
+/* How many leaf clusters are kept ready of each side of pairs: as many as there are, if they are few. */
+static uint32_t ready_kept(const sc_model *model)
+{
+    uint32_t kept = 1;
+    while (kept < SC_READY_KEPT && kept < model->leaf_count) kept *= 2;
+    return kept;
+}
+
 /* The arrays that each worker has for itself, see workspace.h. */
 static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *at, sc_workspace *w)
 {
@@ -44,10 +52,8 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
         (uint32_t *)place(block, at, SC_WALK_QUEUE + SC_WALK_CHILDREN, sizeof(uint32_t));
     w->walk.self = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
     w->walk.culled = w->walk.marks = (uint8_t *)place(block, at, model->patch_end, 1);
-    w->some_ready =
-        (sc_leaf_ready *)place(block, at, (uint64_t)2 * SC_READY_KEPT, sizeof(sc_leaf_ready));
-    w->some_known =
-        (sc_leaf_known *)place(block, at, (uint64_t)2 * SC_READY_KEPT, sizeof(sc_leaf_known));
+    w->some_ready = (sc_leaf_ready *)place(block, at, 2 * ready_kept(model), sizeof(sc_leaf_ready));
+    w->some_known = (sc_leaf_known *)place(block, at, 2 * ready_kept(model), sizeof(sc_leaf_known));
     w->slab = (sc_leaf_slab *)place(block, at, model->leaf_count, sizeof(sc_leaf_slab));
     for (k = 0; k < 2; k++)
         w->leaf_pairs[k] = (uint32_t *)place(block, at, SC_LEAF_QUEUE, sizeof(uint32_t));
@@ -116,7 +122,7 @@ static void place_motion(const sc_model *model, sc_motion *m, uint16_t *seen)
 /* Nothing is known yet in the arrays of a worker. */
 static void clear_own(const sc_model *model, sc_workspace *w)
 {
-    memset(w->some_known, 0, 2 * SC_READY_KEPT * sizeof *w->some_known);
+    memset(w->some_known, 0, 2 * ready_kept(model) * sizeof *w->some_known);
     memset(w->slab, 0, model->leaf_count * sizeof *w->slab);
     memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
 }
@@ -197,12 +203,12 @@ sc_workspace *sc_workspace_of_worker(sc_workspace *w, uint32_t worker)
 }
 
 /* Has some leaf clusters kept ready, in arrays of the worker's own. */
-static void keep_some(sc_workspace *w)
+static void keep_some(const sc_model *model, sc_workspace *w)
 {
     w->ready = w->some_ready;
     w->known = w->some_known;
-    w->ready_mask = SC_READY_KEPT - 1;
-    w->ready_upper = SC_READY_KEPT;
+    w->ready_mask = ready_kept(model) - 1;
+    w->ready_upper = ready_kept(model);
 }
 
 void sc_workspace_keep_all(const sc_model *model, sc_workspace *w)
@@ -220,7 +226,7 @@ static void make_view(const sc_model *model, const sc_workspace *w, sc_workspace
     uint64_t at = align(sizeof *view);
     *view = *w;
     lay_out_own(model, (unsigned char *)view, &at, view);
-    keep_some(view);
+    keep_some(model, view);
 }
 
 void sc_workspace_share(const sc_model *model, sc_workspace *w, uint32_t workers)
@@ -254,7 +260,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint16_t));
     memset(w->all_known, 0, all_ready_count(model) * sizeof *w->all_known);
     clear_own(model, w);
-    keep_some(w);
+    keep_some(model, w);
     if (w->flags & SC_WORKSPACE_STEP) place_motion(model, &w->motion, w->ball);
     for (worker = 1; worker < w->workers; worker++) {
         sc_workspace *view = sc_workspace_of_worker(w, worker);
@@ -279,14 +285,14 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
         uint32_t worker;
         for (worker = 0; worker < workspace->workers; worker++) {
             sc_workspace *own = sc_workspace_of_worker(workspace, worker);
-            memset(own->some_known, 0, 2 * SC_READY_KEPT * sizeof *own->some_known);
+            memset(own->some_known, 0, 2 * ready_kept(model) * sizeof *own->some_known);
             memset(own->slab, 0, model->leaf_count * sizeof *own->slab);
         }
         memset(workspace->all_known, 0, all_ready_count(model) * sizeof *workspace->all_known);
         workspace->pose_tick = 0;
     }
     workspace->pose_tick++;
-    keep_some(workspace);
+    keep_some(model, workspace);
     workspace->leaves_ready = workspace->boxes_ready = 0;
     workspace->leaf_pair_count = 0;
     workspace->candidate_count = workspace->neighbor_count = workspace->found_count = 0;

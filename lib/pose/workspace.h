@@ -118,7 +118,7 @@ typedef struct sc_leaf_slab {
     uint32_t tick; /* of the pose; 0: nothing yet */
 } sc_leaf_slab;
 
-/* Where not all leaf clusters are kept ready, so many are, of each side of pairs: a power of two. */
+/* Where not all leaf clusters are kept ready, so many are at most, of each side of pairs: a power of two. */
 enum { SC_READY_KEPT = 32 };
 
 /* Fans that are remembered. */
@@ -236,8 +236,8 @@ struct sc_workspace {
     uint32_t ready_mask, ready_upper;
     sc_leaf_ready *all_ready;  /* leaf_count; 0 if there are no segments */
     sc_leaf_known *all_known;  /* the same */
-    sc_leaf_ready *some_ready; /* 2 * SC_READY_KEPT */
-    sc_leaf_known *some_known; /* 2 * SC_READY_KEPT */
+    sc_leaf_ready *some_ready; /* 2 * SC_READY_KEPT, fewer in small models */
+    sc_leaf_known *some_known; /* as many */
     sc_leaf_slab *slab;        /* leaf_count */
     uint32_t *leaf_pairs[2];   /* SC_LEAF_QUEUE that wait: the lower of two, and the other */
     uint32_t leaf_pair_count;
