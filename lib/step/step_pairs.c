@@ -170,6 +170,7 @@ void sc_step_pairs_finish(sc_step_state *state, const sc_tasks *tasks)
     for (kind = 0; kind < 2; kind++) {
         sc_step_list *list = &state->list[kind];
         uint64_t count = list->count < list->capacity ? list->count : list->capacity;
+        if (!count) continue; /* there may be no array */
         if (tasks)
             sc_jobs_sort(tasks, count, split_list, order_list, list);
         else
