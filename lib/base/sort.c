@@ -5,7 +5,12 @@
  */
 #include "base/sort.h"
 
-enum { INSERTION_MAX = 24 };
+enum {
+    INSERTION_MAX = 24,
+    BYTE_VALUES = 256,
+    BYTE_MIN = 512, /* pairs, for which counting them pays */
+    BYTES_MOST = 3  /* one in another; 4 KB of stack each */
+};
 
 void sc_sort_sift(sc_pair *heap, uint64_t count, uint64_t at)
 {
@@ -107,12 +112,54 @@ static void quicksort(sc_pair *pairs, uint64_t count, int depth)
     insertion_sort(pairs, count);
 }
 
-void sc_sort_pairs(sc_pair *pairs, uint64_t count)
+static void sort_by_comparing(sc_pair *pairs, uint64_t count)
 {
     int depth = 2;
     uint64_t n;
     for (n = count; n > 1; n >>= 1) depth += 2;
     quicksort(pairs, count, depth);
+}
+
+/* By the highest eight bits in which pairs differ: counts them, then takes each out of a wrong place to its own, and
+   what was there on to where that belongs. Then what has these bits in common. */
+static void sort_by_bytes(sc_pair *pairs, uint64_t count, int most)
+{
+    uint64_t next[BYTE_VALUES] = {0}, end[BYTE_VALUES], differ = 0, sum = 0, i;
+    unsigned shift = 0, value;
+    if (count < BYTE_MIN || most == 0) {
+        sort_by_comparing(pairs, count);
+        return;
+    }
+    for (i = 1; i < count; i++) differ |= sc_sort_number(pairs[i]) ^ sc_sort_number(pairs[0]);
+    while (differ >> shift >= BYTE_VALUES) shift++;
+    for (i = 0; i < count; i++) next[sc_sort_number(pairs[i]) >> shift & (BYTE_VALUES - 1)]++;
+    for (value = 0; value < BYTE_VALUES; value++) {
+        uint64_t some = next[value];
+        next[value] = sum;
+        end[value] = sum += some;
+    }
+    for (value = 0; value < BYTE_VALUES; value++)
+        while (next[value] < end[value]) {
+            sc_pair moved = pairs[next[value]];
+            unsigned to = sc_sort_number(moved) >> shift & (BYTE_VALUES - 1);
+            while (to != value) {
+                sc_pair there = pairs[next[to]];
+                pairs[next[to]++] = moved;
+                moved = there;
+                to = sc_sort_number(moved) >> shift & (BYTE_VALUES - 1);
+            }
+            pairs[next[value]++] = moved;
+        }
+    for (value = 0; value < BYTE_VALUES; value++) {
+        uint64_t begin = value ? end[value - 1] : 0;
+        if (shift > 0 && end[value] - begin > 1)
+            sort_by_bytes(pairs + begin, end[value] - begin, most - 1);
+    }
+}
+
+void sc_sort_pairs(sc_pair *pairs, uint64_t count)
+{
+    sort_by_bytes(pairs, count, BYTES_MOST);
 }
 
 enum { DIGIT_BITS = 10, DIGIT_VALUES = 1 << DIGIT_BITS };

@@ -1,5 +1,6 @@
 /*
- * Sorting in place without allocation: quicksort with a heapsort behind it, O(n log n) always.
+ * Sorting in place without allocation: by digits while there are many, then quicksort with a heapsort behind it,
+ * O(n log n) always.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -12,9 +13,14 @@
 
 #include "starcontour.h"
 
+static inline uint64_t sc_sort_number(sc_pair x)
+{
+    return (uint64_t)x.a << 32 | x.b;
+}
+
 static inline int sc_sort_less(sc_pair x, sc_pair y)
 {
-    return x.a != y.a ? x.a < y.a : x.b < y.b;
+    return sc_sort_number(x) < sc_sort_number(y);
 }
 
 /* Unsigned integers in the order of floats, NaN aside. */
