@@ -8,7 +8,8 @@
  * to; lanes_list_from adds a first number to them, and writes sixteen words. lanes_index reads sixteen numbers below
  * sixteen, lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the
  * floats of these numbers of a row, in memory or not. lanes_choose takes from a where the mask is set, else from b.
- * lanes_same compares bits, whatever they mean; lanes_either joins two masks.
+ * lanes_same compares bits, whatever they mean; lanes_either joins two masks, and
+ * lanes_differ has what is in one of them only.
  * lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from three rows of coordinates by three of
  * numbers; lanes_corners_at finds the former in memory, in turned places (see base/lanes.h); lanes_corners_through takes
  * the triangles of sixteen numbers below sixteen instead of all in order.
@@ -28,6 +29,7 @@
 #define lanes_but SC_KERNEL(sc_lanes_but)
 #define lanes_corners_of SC_KERNEL(sc_lanes_corners_of)
 #define lanes_either SC_KERNEL(sc_lanes_either)
+#define lanes_differ SC_KERNEL(sc_lanes_differ)
 #define lanes_corners SC_KERNEL(sc_lanes_corners)
 #define lanes_corners_at SC_KERNEL(sc_lanes_corners_at)
 #define lanes_corners_through SC_KERNEL(sc_lanes_corners_through)
@@ -67,6 +69,10 @@ static inline lanes_mask lanes_same(lanes a, lanes b)
 static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
 {
     return (lanes_mask)(a | b);
+}
+static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
+{
+    return (lanes_mask)(a ^ b);
 }
 static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
 {
@@ -183,6 +189,13 @@ static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
     r.v[1] = _mm256_or_ps(a.v[1], b.v[1]);
     return r;
 }
+static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
+{
+    lanes r;
+    r.v[0] = _mm256_xor_ps(a.v[0], b.v[0]);
+    r.v[1] = _mm256_xor_ps(a.v[1], b.v[1]);
+    return r;
+}
 static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
 {
     lanes r;
@@ -257,6 +270,15 @@ static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
     for (k = 0; k < 4; k++) r.v[k] = SC_QUAD(or_ps)(a.v[k], b.v[k]);
     return r;
 }
+static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
+{
+    lanes r;
+    int k;
+    for (k = 0; k < 4; k++)
+        r.v[k] =
+            SC_QUAD(or_ps)(SC_QUAD(andnot_ps)(a.v[k], b.v[k]), SC_QUAD(andnot_ps)(b.v[k], a.v[k]));
+    return r;
+}
 static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
 {
     lanes r;
@@ -285,6 +307,10 @@ static inline lanes_mask lanes_same(lanes a, lanes b)
 static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
 {
     return a | b;
+}
+static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
+{
+    return a ^ b;
 }
 static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
 {

@@ -14,6 +14,7 @@
 #undef lanes_but
 #undef lanes_corners_of
 #undef lanes_either
+#undef lanes_differ
 #undef lanes_corners
 #undef lanes_corners_at
 #undef lanes_corners_through

@@ -14,9 +14,9 @@
  * EDGE changes d by 2 EDGE |f|1 D, 2 EDGE |e|1 D and EDGE |e|1 |f|1 <= 1.5 EDGE D S at most; of two, by
  * 2 EDGE^2 S + 6 EDGE^2 D; of all three, by 6 EDGE^3: below S 4 EDGE (D + EDGE) + 7 EDGE^2 (D + EDGE) in all. The normal
  * n = e x f is rounded, by 4.01 v |e|1 |f|1 in all, which changes d by 6.02 v D^2 S at most. It is computed as n . x - n . p,
- * and compared rather than subtracted: both products are off by 3.01 v |n|1, as no coordinate is above 1, and the sum of
- * one with the bound by 1.01 v |n|1 and a part of the bound. |n|1 <= 1.01 |e|1 |f|1 <= S^2 / 3.96: together
- * 1.8 v S^2. All of it is below S (2.1 v S + 4 EDGE (D + EDGE) + 7 v D^2) + 8 EDGE^2 (D + EDGE), however that is rounded.
+ * where one product is compared with the other and the bound, or their difference with the bound: both products are off by
+ * 3.01 v |n|1, as no coordinate is above 1, the sum of one with the bound by 1.01 v |n|1 and a part of the bound, and the
+ * difference by a part of itself. |n|1 <= 1.01 |e|1 |f|1 <= S^2 / 3.96: together 1.8 v S^2. All of it is below S (2.1 v S + 4 EDGE (D + EDGE) + 7 v D^2) + 8 EDGE^2 (D + EDGE), however that is rounded.
  *
  * If the plane of each of two triangles has a corner of the other, its tip, on one side and two on the other, the planes meet
  * in a line, which crosses the edges from the tips inside them; of a triangle, what is between its two crossings is on that
@@ -244,69 +244,53 @@ static inline lanes SC_KERNEL(plane_bound)(lanes size, float extent)
     return lanes_add(lanes_multiply(size, bound), lanes_all(8 * edge * edge * (extent + edge)));
 }
 
-/* On which sides of the planes of triangles the corners of others certainly are. */
-typedef struct SC_KERNEL(splits) {
-    lanes_mask above[3], below[3];
-} SC_KERNEL(splits);
-
-static inline void SC_KERNEL(find_splits)(const SC_KERNEL(picked) * t, lanes o[3][3], float extent,
-                                          SC_KERNEL(splits) * s)
-{
-    lanes_index i = lanes_index_load(t->numbers);
-    lanes offset = lanes_pick(t->ready->offset, i);
-    lanes bound = SC_KERNEL(plane_bound)(lanes_pick(t->ready->size, i), extent);
-    lanes n[3], high = lanes_add(offset, bound), low = lanes_subtract(offset, bound);
-    int k, c;
-    SC_UNROLL
-    for (c = 0; c < 3; c++) n[c] = lanes_pick(t->ready->normal[c], i);
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        lanes d = lanes_multiply(n[0], o[k][0]);
-        SC_UNROLL
-        for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(n[c], o[k][c]));
-        s->above[k] = lanes_below(high, d);
-        s->below[k] = lanes_below(d, low);
-    }
-}
-
-/* The lanes in which all corners are on one side. */
-static inline unsigned SC_KERNEL(are_beside_plane)(const SC_KERNEL(splits) * s)
-{
-    return lanes_bits(lanes_either(lanes_both(s->above[0], lanes_both(s->above[1], s->above[2])),
-                                   lanes_both(s->below[0], lanes_both(s->below[1], s->below[2]))));
-}
-
-/* Of triangles of which a plane certainly splits the corners: the one alone on its side, and the edges from there to the
+/* Of triangles of which the plane of another splits the corners: the one alone on its side, and the edges from there to the
    next corner and to the one after. */
 typedef struct SC_KERNEL(tips) {
     lanes at[3], edge[2][3];
-    unsigned is[2]; /* the lanes in which the corner is the first, and the second */
-    unsigned certain;
+    unsigned is[2];         /* the lanes in which the corner is the first, and the second */
+    unsigned beside, split; /* where all corners are certainly on one side, or certainly not */
 } SC_KERNEL(tips);
 
-static inline void SC_KERNEL(find_tips)(const SC_KERNEL(splits) * s, lanes x[3][3],
+static inline void SC_KERNEL(find_tips)(const SC_KERNEL(picked) * t,
+                                        const SC_KERNEL(picked) * plane, float extent,
                                         SC_KERNEL(tips) * tips)
 {
-    lanes_mask is[2], sure = lanes_either(s->above[0], s->below[0]);
+    lanes_index i = lanes_index_load(plane->numbers);
+    lanes offset = lanes_pick(plane->ready->offset, i), x[3][3], n[3], least;
+    lanes bound = SC_KERNEL(plane_bound)(lanes_pick(plane->ready->size, i), extent);
+    lanes_mask below[3], is_not[2];
+    unsigned sure;
     int k, c;
+    SC_KERNEL(pick_corners)(t, x);
     SC_UNROLL
-    for (k = 0; k < 2; k++)
-        is[k] = lanes_either(lanes_both(s->above[1 - k], s->above[2]),
-                             lanes_both(s->below[1 - k], s->below[2]));
+    for (c = 0; c < 3; c++) n[c] = lanes_pick(plane->ready->normal[c], i);
     SC_UNROLL
-    for (k = 1; k < 3; k++) sure = lanes_both(sure, lanes_either(s->above[k], s->below[k]));
+    for (k = 0; k < 3; k++) {
+        lanes d = lanes_multiply(n[0], x[k][0]);
+        SC_UNROLL
+        for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(n[c], x[k][c]));
+        below[k] = lanes_below(d, offset);
+        d = lanes_absolute(lanes_subtract(d, offset));
+        least = k ? lanes_smaller(least, d) : d;
+    }
+    SC_UNROLL
+    for (k = 0; k < 2; k++) {
+        is_not[k] = lanes_differ(below[1 - k], below[2]);
+        tips->is[k] = ~lanes_bits(is_not[k]);
+    }
     SC_UNROLL
     for (c = 0; c < 3; c++) {
-        lanes p = lanes_choose(is[0], x[0][c], lanes_choose(is[1], x[1][c], x[2][c]));
-        lanes q = lanes_choose(is[0], x[1][c], lanes_choose(is[1], x[2][c], x[0][c]));
-        lanes r = lanes_choose(is[0], x[2][c], lanes_choose(is[1], x[0][c], x[1][c]));
+        lanes p = lanes_choose(is_not[0], lanes_choose(is_not[1], x[2][c], x[1][c]), x[0][c]);
+        lanes q = lanes_choose(is_not[0], lanes_choose(is_not[1], x[0][c], x[2][c]), x[1][c]);
+        lanes r = lanes_choose(is_not[0], lanes_choose(is_not[1], x[1][c], x[0][c]), x[2][c]);
         tips->at[c] = p;
         tips->edge[0][c] = lanes_subtract(q, p);
         tips->edge[1][c] = lanes_subtract(r, p);
     }
-    tips->is[0] = lanes_bits(is[0]);
-    tips->is[1] = lanes_bits(is[1]);
-    tips->certain = lanes_bits(sure);
+    sure = lanes_bits(lanes_below(bound, least));
+    tips->beside = sure & tips->is[0] & tips->is[1];
+    tips->split = sure & ~tips->beside;
 }
 
 /* What is certain of pairs: the lanes in which they are apart, or meet; then also, in which ones edge k of the first, or k - 3
@@ -329,10 +313,9 @@ static inline void SC_KERNEL(name_edges)(const SC_KERNEL(tips) * t, unsigned nex
 static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes bound, unsigned mask,
                                           SC_KERNEL(verdict) * verdict)
 {
-    lanes w[3], m[3], minus_bound = lanes_subtract(lanes_all(0), bound);
-    unsigned above[2][2], below[2][2], met;
+    lanes w[3], m[3], least = lanes_all(0);
+    unsigned below[2][2], any, all;
     int i, j, c;
-    mask &= tips[0].certain & tips[1].certain;
     SC_UNROLL
     for (c = 0; c < 3; c++) w[c] = lanes_subtract(tips[1].at[c], tips[0].at[c]);
     SC_UNROLL
@@ -348,19 +331,21 @@ static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes b
             lanes d = lanes_multiply(e[0], m[0]);
             SC_UNROLL
             for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(e[c], m[c]));
-            above[i][j] = lanes_bits(lanes_below(bound, d));
-            below[i][j] = lanes_bits(lanes_below(d, minus_bound));
+            below[i][j] = lanes_bits(lanes_below(d, lanes_all(0)));
+            d = lanes_absolute(d);
+            least = i | j ? lanes_smaller(least, d) : d;
         }
     }
-    verdict->apart = mask & ((above[0][0] & above[0][1] & above[1][0] & above[1][1]) |
-                             (below[0][0] & below[0][1] & below[1][0] & below[1][1]));
-    met = mask & ~verdict->apart & (above[0][0] | below[0][0]) & (above[0][1] | below[0][1]) &
-          (above[1][0] | below[1][0]) & (above[1][1] | below[1][1]);
-    verdict->meets = met;
+    mask &= tips[0].split & tips[1].split & lanes_bits(lanes_below(bound, least));
+    any = below[0][0] | below[0][1] | below[1][0] | below[1][1];
+    all = below[0][0] & below[0][1] & below[1][0] & below[1][1];
+    verdict->apart = mask & (all | ~any);
+    verdict->meets = mask &= any & ~all;
     SC_KERNEL(name_edges)
-    (&tips[0], met & (above[0][0] ^ above[0][1]), met & (above[1][0] ^ above[1][1]), verdict->edge);
+    (&tips[0], mask & (below[0][0] ^ below[0][1]), mask & (below[1][0] ^ below[1][1]),
+     verdict->edge);
     SC_KERNEL(name_edges)
-    (&tips[1], met & (above[0][0] ^ above[1][0]), met & (above[0][1] ^ above[1][1]),
+    (&tips[1], mask & (below[0][0] ^ below[1][0]), mask & (below[0][1] ^ below[1][1]),
      verdict->edge + 3);
 }
 
@@ -407,27 +392,26 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], fl
 static void SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
                                   unsigned mask, float extent, SC_KERNEL(verdict) * verdict)
 {
-    lanes x[2][3][3], n[3], size;
     lanes_index i = lanes_index_load(a->numbers);
-    SC_KERNEL(splits) splits[2];
     SC_KERNEL(tips) tips[2];
     unsigned open;
-    int c;
-    SC_KERNEL(pick_corners)(a, x[0]);
-    SC_KERNEL(find_splits)(b, x[0], extent, &splits[0]);
+    lanes size;
+    SC_KERNEL(find_tips)(a, b, extent, &tips[0]);
+    open = mask & ~tips[0].beside;
     verdict->meets = 0;
-    verdict->apart = SC_KERNEL(are_beside_plane)(&splits[0]);
-    if (!(mask & ~verdict->apart)) return;
-    SC_KERNEL(pick_corners)(b, x[1]);
-    SC_KERNEL(find_splits)(a, x[1], extent, &splits[1]);
-    open = mask & ~verdict->apart & ~SC_KERNEL(are_beside_plane)(&splits[1]);
-    SC_KERNEL(find_tips)(&splits[0], x[0], &tips[0]);
-    SC_KERNEL(find_tips)(&splits[1], x[1], &tips[1]);
+    verdict->apart = ~0u;
+    if (!open) return;
+    SC_KERNEL(find_tips)(b, a, extent, &tips[1]);
+    open &= ~tips[1].beside;
     size = lanes_add(lanes_pick(a->ready->size, i),
                      lanes_pick(b->ready->size, lanes_index_load(b->numbers)));
     SC_KERNEL(cross_edges)(tips, SC_KERNEL(plane_bound)(size, extent), open, verdict);
     open &= ~(verdict->apart | verdict->meets);
-    if (sc_bits_count(open & ~(tips[0].certain & tips[1].certain)) >= SC_SIDES_WORTH) {
+    if (sc_bits_count(open & ~(tips[0].split & tips[1].split)) >= SC_SIDES_WORTH) {
+        lanes x[2][3][3], n[3];
+        int c;
+        SC_KERNEL(pick_corners)(a, x[0]);
+        SC_KERNEL(pick_corners)(b, x[1]);
         SC_UNROLL
         for (c = 0; c < 3; c++) n[c] = lanes_pick(a->ready->normal[c], i);
         open &= ~SC_KERNEL(side_separates)(x, n, extent);
