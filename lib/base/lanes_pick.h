@@ -286,6 +286,17 @@ static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
     for (k = 0; k < 4; k++) r.v[k] = SC_QUAD(andnot_ps)(b.v[k], a.v[k]);
     return r;
 }
+static inline lanes_index lanes_index_choose(lanes_mask m, lanes_index a, lanes_index b)
+{
+    uint32_t set[SC_LANES_COUNT];
+    int k;
+    memcpy(set, &m, sizeof set);
+    for (k = 0; k < SC_LANES_COUNT; k++) {
+        uint8_t bits = (uint8_t)set[k];
+        b.at[k] = (uint8_t)((a.at[k] & bits) | (b.at[k] & ~bits));
+    }
+    return b;
+}
 
 #    else
 
@@ -316,17 +327,15 @@ static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
 {
     return a & ~b;
 }
-
-#    endif
-
 static inline lanes_index lanes_index_choose(lanes_mask m, lanes_index a, lanes_index b)
 {
-    unsigned bits = lanes_bits(m);
     int k;
     for (k = 0; k < SC_LANES_COUNT; k++)
-        if (bits >> k & 1u) b.at[k] = a.at[k];
+        if (m >> k & 1u) b.at[k] = a.at[k];
     return b;
 }
+
+#    endif
 #  endif
 #endif
 
