@@ -62,7 +62,7 @@ static sc_pair element(uint32_t shape, uint32_t i, uint32_t count)
 
 static void sorting(void)
 {
-    for (uint32_t count = 0; count < 3000; count = count < 70 ? count + 1 : count * 3 / 2) {
+    for (uint32_t count = 0; count < 100000; count = count < 70 ? count + 1 : count * 3 / 2) {
         sc_pair *pairs = (sc_pair *)test_allocate(count * sizeof(sc_pair));
         sc_pair *right = (sc_pair *)test_allocate(count * sizeof(sc_pair));
         for (uint32_t shape = 0; shape < SHAPES; ++shape) {

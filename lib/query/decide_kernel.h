@@ -270,9 +270,9 @@ static inline SC_KERNEL(sign) SC_KERNEL(sign_of)(doubles d, doubles bound)
 /*
  * The lanes in which the two, projected along the axis nearest to the normal of one, are certainly on different sides
  * of the line of a projected edge: its own triangle's third corner on one side, all of the other's strictly on the
- * other, but for one that they share if it is on the line. Then they do not meet elsewhere. Nearly coplanar pairs that are apart are so by one of these six lines. A side
- * d = e_0 p_1 - e_1 p_0 meets two differences, a product and a subtraction: 4.01 * 2^-53 of two products of numbers of
- * up to 2 r, 8 r^2 together.
+ * other, but for one that they share if it is on the line. Then they do not meet elsewhere. Nearly coplanar pairs that
+ * are apart are so by one of these six lines. A side d = e_0 p_1 - e_1 p_0 meets two differences, a product and a
+ * subtraction: 4.01 * 2^-53 of two products of numbers of up to 2 r, 8 r^2 together.
  */
 static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(eight) * x, const unsigned shared[2][3])
 {

@@ -16,7 +16,8 @@
  * n = e x f is rounded, by 4.01 v |e|1 |f|1 in all, which changes d by 6.02 v D^2 S at most. It is computed as n . x - n . p,
  * where one product is compared with the other and the bound, or their difference with the bound: both products are off by
  * 3.01 v |n|1, as no coordinate is above 1, the sum of one with the bound by 1.01 v |n|1 and a part of the bound, and the
- * difference by a part of itself. |n|1 <= 1.01 |e|1 |f|1 <= S^2 / 3.96: together 1.8 v S^2. All of it is below S (2.1 v S + 4 EDGE (D + EDGE) + 7 v D^2) + 8 EDGE^2 (D + EDGE), however that is rounded.
+ * difference by a part of itself. |n|1 <= 1.01 |e|1 |f|1 <= S^2 / 3.96: together 1.8 v S^2. All of it is below
+ * S (2.1 v S + 4 EDGE (D + EDGE) + 7 v D^2) + 8 EDGE^2 (D + EDGE), however that is rounded.
  *
  * If the plane of each of two triangles has a corner of the other, its tip, on one side and two on the other, the planes meet
  * in a line, which crosses the edges from the tips inside them; of a triangle, what is between its two crossings is on that
