@@ -388,8 +388,8 @@ static inline void lanes_corners_through(const float *at, const uint8_t *where,
             through[SC_LANES_COUNT * c + i] = where[SC_LANES_COUNT * c + numbers[i]];
     lanes_corners_at(at, through, corner);
 }
-static inline void lanes_corners_of(const float *at, const lanes_index where[], int count,
-                                    lanes corner[][3])
+static SC_INLINE void lanes_corners_of(const float *at, const lanes_index where[], int count,
+                                       lanes corner[][3])
 {
     sc_floats4 x[4];
     int c, i, k;
@@ -437,8 +437,8 @@ static inline void lanes_corners_through(const float *at, const uint8_t *where,
     }
 }
 
-static inline void lanes_corners_of(const float *at, const lanes_index where[], int count,
-                                    lanes corner[][3])
+static SC_INLINE void lanes_corners_of(const float *at, const lanes_index where[], int count,
+                                       lanes corner[][3])
 {
     lanes row[3];
     int c, k;

@@ -175,8 +175,8 @@ static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, in
 }
 
 /* Corners as they are seen along the axis nearest to n. */
-static inline void SC_KERNEL(see_along)(const lanes n[3], const lanes corner[][3], int count,
-                                        lanes flat[][2])
+static SC_INLINE void SC_KERNEL(see_along)(const lanes n[3], const lanes corner[][3], int count,
+                                           lanes flat[][2])
 {
     lanes size[3];
     lanes_mask first, second;
