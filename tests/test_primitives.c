@@ -292,7 +292,7 @@ static void any_stride_and_type(void)
             two t;
             memset(&t, 0, sizeof t);
             points_anywhere(&t);
-            for (int i = 0; i < 18; ++i) t.points[i] = (float)t.points[i];
+            for (int i = 0; i < 18; ++i) t.points[i] = (double)(float)t.points[i];
             set_lane(&b, lane, &t);
         }
         sc_query_kernels_base.decide(&b.lanes, &first);

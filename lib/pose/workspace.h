@@ -96,7 +96,7 @@ typedef struct sc_walk {
 
 enum { SC_CANDIDATES_MAX = 1024 };
 
-/* A leaf cluster made ready for tests of its triangles, in the unit box; see query/leaf_kernel.h. Rows are filled with
+/* A leaf cluster made ready for tests of its triangles, in the unit box; see query/ready_kernel.h. Rows are filled with
    the last triangle. */
 typedef struct sc_leaf_ready {
     float side[6][SC_LEAF_MAX];   /* boxes; what is no triangle is NaN and overlaps nothing */

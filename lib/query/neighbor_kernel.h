@@ -19,7 +19,7 @@
  * twice, a_0 is zero, and all fail; each edge of either has a point of the other, as if they shared an edge.)
  *
  * In single precision. A component of a_k or b_k is off by EDGE and its own rounding; the bounds of planes and sides are
- * derived in leaf_kernel.h, in the terms of which the product of three meets eight roundings here: 8.01 v |e|1 |f|1 D
+ * derived in sixteen_kernel.h, in the terms of which the product of three meets eight roundings here: 8.01 v |e|1 |f|1 D
  * <= 12.1 v D^2 S; that of a plane is below S (4 EDGE (D + EDGE) + 13 v D^2) + 7 EDGE^2 (D + EDGE), however it is rounded.
  * The direction m is any, hence has no error: m . a is off by |m|1 (EDGE + 4.1 v D) and a few FLT_MIN if products underflow.
  */

@@ -1,0 +1,195 @@
+/*
+ * What is kept of a leaf cluster for tests of its triangles: their boxes, their planes, and a slab that it is in.
+ * See query_kernels.h and pose/workspace.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Slabs are found in single precision on the points in the unit box. Each coordinate is off by POINT = 3e-8 at most;
+ * v = 2^-24.
+ *
+ * A place along a direction n of the points of a cluster, x in the unit box: off by POINT |n|1, and by rounding 3.01 v |n|1,
+ * 2.1e-7 |n|1 in all, and a few FLT_MIN for products that underflow. Two of them and the sum of one with the bound are
+ * below 5e-7 |n|1 + 16 FLT_MIN.
+ */
+/* Bit k: box i of a overlaps box j + k of b, for k from 0 to 15. */
+static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const sc_boxes *b,
+                                          uint64_t j)
+{
+    lanes_mask m[3];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++)
+        m[k] =
+            lanes_both(lanes_not_above(lanes_all(a->side[k][i]), lanes_load(b->side[k + 3] + j)),
+                       lanes_not_above(lanes_load(b->side[k] + j), lanes_all(a->side[k + 3][i])));
+    return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
+}
+
+/* Where the points of a leaf cluster are along a direction. */
+static inline lanes SC_KERNEL(along)(const sc_query_state *state, uint32_t leaf,
+                                     const float direction[3])
+{
+    lanes at[3];
+    int k;
+    lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) at[k] = lanes_multiply(lanes_all(direction[k]), at[k]);
+    return lanes_add(lanes_add(at[0], at[1]), at[2]);
+}
+
+/* The corners of a leaf cluster's triangles. */
+static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t leaf,
+                                           lanes x[3][3])
+{
+    lanes_corners_at(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf,
+                     sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
+}
+
+/* Boxes of the triangles of a leaf cluster. */
+static void SC_KERNEL(make_boxes)(const sc_query_state *state, uint32_t leaf, sc_leaf_ready *ready)
+{
+    const uint32_t *first = sc_model_leaf_first(state->model) + leaf;
+    const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(FLT_MIN); /* see base/boxes.h */
+    lanes x[3][3];
+    uint32_t i;
+    int c;
+    SC_KERNEL(leaf_corners)(state, leaf, x);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        lanes low = lanes_smaller(x[0][c], lanes_smaller(x[1][c], x[2][c]));
+        lanes high = lanes_larger(x[0][c], lanes_larger(x[1][c], x[2][c]));
+        low = lanes_subtract(low, lanes_add(lanes_multiply(lanes_absolute(low), ulp), least));
+        high = lanes_add(high, lanes_add(lanes_multiply(lanes_absolute(high), ulp), least));
+        lanes_store(ready->side[c], low);
+        lanes_store(ready->side[c + 3], high);
+        for (i = first[1] - first[0]; i < SC_LEAF_MAX; i++) /* no triangle: overlaps nothing */
+            ready->side[c][i] = ready->side[c + 3][i] = (float)NAN;
+    }
+}
+
+/* Their planes. */
+static void SC_KERNEL(make_normals)(const sc_query_state *state, uint32_t leaf,
+                                    sc_leaf_ready *ready)
+{
+    lanes x[3][3], e[3], f[3], n[3], size, offset;
+    int c;
+    SC_KERNEL(leaf_corners)(state, leaf, x);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        e[c] = lanes_subtract(x[1][c], x[0][c]);
+        f[c] = lanes_subtract(x[2][c], x[0][c]);
+    }
+    size = lanes_add(lanes_absolute(e[0]), lanes_absolute(f[0]));
+    SC_UNROLL
+    for (c = 1; c < 3; c++)
+        size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
+    lanes_store(ready->size, size);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        n[c] = lanes_subtract(lanes_multiply(e[(c + 1) % 3], f[(c + 2) % 3]),
+                              lanes_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
+        lanes_store(ready->normal[c], n[c]);
+    }
+    offset = lanes_multiply(n[0], x[0][0]);
+    SC_UNROLL
+    for (c = 1; c < 3; c++) offset = lanes_add(offset, lanes_multiply(n[c], x[0][c]));
+    lanes_store(ready->offset, offset);
+}
+
+/* Where a leaf cluster is kept; is_upper: it is the upper of the two of a pair. */
+static inline uint32_t SC_KERNEL(place)(const sc_query_state *state, uint32_t leaf, int is_upper)
+{
+    const sc_workspace *w = state->workspace;
+    return (leaf & w->ready_mask) + (is_upper ? w->ready_upper : 0);
+}
+
+/* A leaf cluster with its boxes. */
+static inline const sc_leaf_ready *SC_KERNEL(boxes)(const sc_query_state *state, uint32_t leaf,
+                                                    int is_upper)
+{
+    sc_workspace *w = state->workspace;
+    uint32_t at = SC_KERNEL(place)(state, leaf, is_upper);
+    sc_leaf_known *known = w->known + at;
+    if (known->leaf != leaf || known->boxes != w->pose_tick) {
+        SC_KERNEL(make_boxes)(state, leaf, w->ready + at);
+        known->leaf = leaf;
+        known->boxes = w->pose_tick;
+        known->has_normals = 0;
+    }
+    return w->ready + at;
+}
+
+/* The same with all that there is. */
+static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state, uint32_t leaf,
+                                                    int is_upper)
+{
+    sc_workspace *w = state->workspace;
+    uint32_t at = SC_KERNEL(place)(state, leaf, is_upper);
+    SC_KERNEL(boxes)(state, leaf, is_upper);
+    if (!w->known[at].has_normals) {
+        SC_KERNEL(make_normals)(state, leaf, w->ready + at);
+        w->known[at].has_normals = 1;
+    }
+    return w->ready + at;
+}
+
+/* Makes the slab of a leaf cluster; is_upper as above. */
+static void SC_KERNEL(make_slab)(const sc_query_state *state, uint32_t leaf, int is_upper)
+{
+    sc_leaf_slab *slab = state->workspace->slab + leaf;
+    const sc_leaf_ready *ready = SC_KERNEL(ready)(state, leaf, is_upper);
+    float reach = 16 * FLT_MIN;
+    lanes along;
+    int c;
+    for (c = 0; c < 3; c++) {
+        slab->direction[c] = lanes_sum(lanes_load(ready->normal[c]));
+        reach += 5e-7f * fabsf(slab->direction[c]);
+    }
+    along = SC_KERNEL(along)(state, leaf, slab->direction);
+    slab->ends[0] = lanes_least(along) - reach;
+    slab->ends[1] = lanes_most(along) + reach;
+    slab->tick = state->workspace->pose_tick;
+}
+
+/* That slab. */
+static inline const sc_leaf_slab *SC_KERNEL(slab)(const sc_query_state *state, uint32_t leaf,
+                                                  int is_upper)
+{
+    const sc_leaf_slab *slab = state->workspace->slab + leaf;
+    if (slab->tick != state->workspace->pose_tick) SC_KERNEL(make_slab)(state, leaf, is_upper);
+    return slab;
+}
+
+/* Not 0 if all points of a leaf cluster are certainly before a slab, or behind. Without branches, as either may be. */
+static inline unsigned SC_KERNEL(is_beside)(const sc_query_state *state, uint32_t leaf,
+                                            const sc_leaf_slab *slab)
+{
+    lanes along = SC_KERNEL(along)(state, leaf, slab->direction);
+    return (unsigned)(lanes_every(lanes_below(along, lanes_all(slab->ends[0])))) |
+           (unsigned)(lanes_every(lanes_below(lanes_all(slab->ends[1]), along)));
+}
+
+/* Whether the slab of one of two leaf clusters, a < b, certainly has the other on one side. If they share a point, it
+   is in both, to the last bit. */
+static inline unsigned SC_KERNEL(slabs_part)(const sc_query_state *state, uint32_t a, uint32_t b)
+{
+    const sc_leaf_slab *of_a = SC_KERNEL(slab)(state, a, 0), *of_b = SC_KERNEL(slab)(state, b, 1);
+    return SC_KERNEL(is_beside)(state, b, of_a) | SC_KERNEL(is_beside)(state, a, of_b);
+}
+
+/* Largest extent of the boxes of two leaf clusters together. */
+static float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t b)
+{
+    const sc_boxes *boxes = &state->workspace->patch_boxes;
+    uint32_t leaves = sc_model_first_leaf_patch(state->model);
+    float extent = 0;
+    int c;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        const float *low = boxes->side[c] + leaves, *high = boxes->side[c + 3] + leaves;
+        float length =
+            (high[a] > high[b] ? high[a] : high[b]) - (low[a] < low[b] ? low[a] : low[b]);
+        if (length > extent) extent = length;
+    }
+    return extent;
+}

@@ -1,0 +1,233 @@
+/*
+ * Sixteen pairs of triangles that share nothing: by planes, by the order along the line in which two planes meet, and by
+ * sides in a projection. What is certain of them is said; see leaf_kernel.h, which puts them together.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * All of it is in single precision on the points in the unit box. Each coordinate is off by POINT = 3e-8 at most, so
+ * that the difference of two is by EDGE = 6e-8. Let D be the largest extent of the two clusters' boxes together, which
+ * bounds all differences, and v = 2^-24.
+ *
+ * A distance from a plane, up to a factor, is d = (e x f) . w, a sum of six products; e and f are two edges, w runs from
+ * their corner p to a corner x of another triangle. With S = |e|1 + |f|1 <= 6 D: moving the components of one of them by
+ * EDGE changes d by 2 EDGE |f|1 D, 2 EDGE |e|1 D and EDGE |e|1 |f|1 <= 1.5 EDGE D S at most; of two, by
+ * 2 EDGE^2 S + 6 EDGE^2 D; of all three, by 6 EDGE^3: below S 4 EDGE (D + EDGE) + 7 EDGE^2 (D + EDGE) in all. The normal
+ * n = e x f is rounded, by 4.01 v |e|1 |f|1 in all, which changes d by 6.02 v D^2 S at most. It is computed as n . x - n . p,
+ * where one product is compared with the other and the bound, or their difference with the bound: both products are off by
+ * 3.01 v |n|1, as no coordinate is above 1, the sum of one with the bound by 1.01 v |n|1 and a part of the bound, and the
+ * difference by a part of itself. |n|1 <= 1.01 |e|1 |f|1 <= S^2 / 3.96: together 1.8 v S^2. All of it is below
+ * S (2.1 v S + 4 EDGE (D + EDGE) + 7 v D^2) + 8 EDGE^2 (D + EDGE), however that is rounded.
+ *
+ * If the plane of each of two triangles has a corner of the other, its tip, on one side and two on the other, the planes meet
+ * in a line, which crosses the edges from the tips inside them; of a triangle, what is between its two crossings is on that
+ * line. Let e and f be such edges of either, w run from tip to tip, and x and y be where the line crosses e and f. Then
+ * d = (e x f) . w = (e x f) . (y - x), and as n x n' is along the line and (e x f) . (n x n') = -(e . n') (f . n), of
+ * which the sign is the same for all four of such edges, the signs of the four d tell in which order x and y are. If they
+ * are the same the triangles are apart, if not they meet; and so does an edge whose two signs differ, no matter
+ * how contacts are defined, as nothing is zero. Each of six products meets three differences, two products and three sums:
+ * d is off by 8.01 v |e|1 |f|1 D. Let S be the sum of that of both triangles, >= |e|1 + |f|1. As |e|1 |f|1 is below S^2 / 4
+ * and 1.5 D S, and D <= 2, this is below 2.01 v S^2 + 6.01 v D^2 S; and what moving the points changes is as above: the bound
+ * above holds.
+ *
+ * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4 EDGE D, 2 EDGE^2, and by
+ * rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
+ *
+ * The other bounds are above 1e-21: what underflows does not matter.
+ */
+/* Triangles of a leaf cluster as they are picked: sixteen by number. */
+typedef struct SC_KERNEL(picked) {
+    const sc_leaf_ready *ready;
+    const float *points;    /* see sc_workspace.point_at */
+    const uint8_t *corner;  /* see sc_model.leaf_corner */
+    const uint8_t *numbers; /* of the triangles */
+} SC_KERNEL(picked);
+
+/* The corners of these. */
+static inline void SC_KERNEL(pick_corners)(const SC_KERNEL(picked) * t, lanes x[3][3])
+{
+    lanes_corners_through(t->points, t->corner, t->numbers, x);
+}
+
+/* What a distance from a plane, up to a factor, may be off by. */
+static inline lanes SC_KERNEL(plane_bound)(lanes size, float extent)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    lanes bound = lanes_add(lanes_multiply(size, lanes_all(2.1f * v)),
+                            lanes_all(4 * edge * (extent + edge) + 7 * v * extent * extent));
+    return lanes_add(lanes_multiply(size, bound), lanes_all(8 * edge * edge * (extent + edge)));
+}
+
+/* Of triangles of which the plane of another splits the corners: the one alone on its side, and the edges from there to the
+   next corner and to the one after. */
+typedef struct SC_KERNEL(tips) {
+    lanes at[3], edge[2][3];
+    unsigned is[2];         /* the lanes in which the corner is the first, and the second */
+    unsigned beside, split; /* where all corners are certainly on one side, or certainly not */
+} SC_KERNEL(tips);
+
+static inline void SC_KERNEL(find_tips)(const SC_KERNEL(picked) * t,
+                                        const SC_KERNEL(picked) * plane, float extent,
+                                        SC_KERNEL(tips) * tips)
+{
+    lanes_index i = lanes_index_load(plane->numbers);
+    lanes offset = lanes_pick(plane->ready->offset, i), x[3][3], n[3], least = offset;
+    lanes bound = SC_KERNEL(plane_bound)(lanes_pick(plane->ready->size, i), extent);
+    lanes_mask below[3], is_not[2];
+    unsigned sure;
+    int k, c;
+    SC_KERNEL(pick_corners)(t, x);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) n[c] = lanes_pick(plane->ready->normal[c], i);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        lanes d = lanes_multiply(n[0], x[k][0]);
+        SC_UNROLL
+        for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(n[c], x[k][c]));
+        below[k] = lanes_below(d, offset);
+        d = lanes_absolute(lanes_subtract(d, offset));
+        least = k ? lanes_smaller(least, d) : d;
+    }
+    SC_UNROLL
+    for (k = 0; k < 2; k++) {
+        is_not[k] = lanes_differ(below[1 - k], below[2]);
+        tips->is[k] = ~lanes_bits(is_not[k]);
+    }
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        lanes p = lanes_choose(is_not[0], lanes_choose(is_not[1], x[2][c], x[1][c]), x[0][c]);
+        lanes q = lanes_choose(is_not[0], lanes_choose(is_not[1], x[0][c], x[2][c]), x[1][c]);
+        lanes r = lanes_choose(is_not[0], lanes_choose(is_not[1], x[1][c], x[0][c]), x[2][c]);
+        tips->at[c] = p;
+        tips->edge[0][c] = lanes_subtract(q, p);
+        tips->edge[1][c] = lanes_subtract(r, p);
+    }
+    sure = lanes_bits(lanes_below(bound, least));
+    tips->beside = sure & tips->is[0] & tips->is[1];
+    tips->split = sure & ~tips->beside;
+}
+
+/* What is certain of pairs: the lanes in which they are apart, or meet; then also, in which ones edge k of the first, or k - 3
+   of the second, meets the other. */
+typedef struct SC_KERNEL(verdict) {
+    unsigned apart, meets, edge[6];
+} SC_KERNEL(verdict);
+
+/* Edges that meet, in these lanes the one from the tip to the next corner and to the one after. */
+static inline void SC_KERNEL(name_edges)(const SC_KERNEL(tips) * t, unsigned next, unsigned after,
+                                         unsigned edge[3])
+{
+    unsigned third = ~(t->is[0] | t->is[1]);
+    edge[0] = (next & t->is[0]) | (after & t->is[1]);
+    edge[1] = (next & t->is[1]) | (after & third);
+    edge[2] = (next & third) | (after & t->is[0]);
+}
+
+/* Those of pairs in a mask of which each plane splits the other. */
+static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes bound, unsigned mask,
+                                          SC_KERNEL(verdict) * verdict)
+{
+    lanes w[3], m[3], least = lanes_all(0);
+    unsigned below[2][2], any, all;
+    int i, j, c;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) w[c] = lanes_subtract(tips[1].at[c], tips[0].at[c]);
+    SC_UNROLL
+    for (j = 0; j < 2; j++) {
+        const lanes *f = tips[1].edge[j];
+        SC_UNROLL
+        for (c = 0; c < 3; c++)
+            m[c] = lanes_subtract(lanes_multiply(f[(c + 1) % 3], w[(c + 2) % 3]),
+                                  lanes_multiply(f[(c + 2) % 3], w[(c + 1) % 3]));
+        SC_UNROLL
+        for (i = 0; i < 2; i++) {
+            const lanes *e = tips[0].edge[i];
+            lanes d = lanes_multiply(e[0], m[0]);
+            SC_UNROLL
+            for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(e[c], m[c]));
+            below[i][j] = lanes_bits(lanes_below(d, lanes_all(0)));
+            d = lanes_absolute(d);
+            least = i | j ? lanes_smaller(least, d) : d;
+        }
+    }
+    mask &= tips[0].split & tips[1].split & lanes_bits(lanes_below(bound, least));
+    any = below[0][0] | below[0][1] | below[1][0] | below[1][1];
+    all = below[0][0] & below[0][1] & below[1][0] & below[1][1];
+    verdict->apart = mask & (all | ~any);
+    verdict->meets = mask &= any & ~all;
+    SC_KERNEL(name_edges)
+    (&tips[0], mask & (below[0][0] ^ below[0][1]), mask & (below[1][0] ^ below[1][1]),
+     verdict->edge);
+    SC_KERNEL(name_edges)
+    (&tips[1], mask & (below[0][0] ^ below[1][0]), mask & (below[0][1] ^ below[1][1]),
+     verdict->edge + 3);
+}
+
+/* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge certainly has the third
+   corner of its triangle on one side and all of the other triangle on the other. */
+static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], float extent)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const lanes bound = lanes_all(5 * edge * (extent + edge) + 9 * v * extent * extent);
+    const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
+    lanes flat[2][3][2];
+    unsigned apart = 0;
+    int s, k, i;
+    SC_UNROLL
+    for (s = 0; s < 2; s++) SC_KERNEL(see_along)(n, (const lanes(*)[3])x[s], 3, flat[s]);
+    SC_UNROLL
+    for (s = 0; s < 2; s++) {
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            lanes(*t)[2] = flat[s], (*o)[2] = flat[1 - s];
+            int next = (k + 1) % 3, third = (k + 2) % 3;
+            lanes e0 = lanes_subtract(t[next][0], t[k][0]);
+            lanes e1 = lanes_subtract(t[next][1], t[k][1]);
+            lanes own = lanes_subtract(lanes_multiply(e0, lanes_subtract(t[third][1], t[k][1])),
+                                       lanes_multiply(e1, lanes_subtract(t[third][0], t[k][0])));
+            lanes least = lanes_all(0), most = least;
+            SC_UNROLL
+            for (i = 0; i < 3; i++) {
+                lanes d = lanes_subtract(lanes_multiply(e0, lanes_subtract(o[i][1], t[k][1])),
+                                         lanes_multiply(e1, lanes_subtract(o[i][0], t[k][0])));
+                least = i ? lanes_smaller(least, d) : d;
+                most = i ? lanes_larger(most, d) : d;
+            }
+            apart |=
+                lanes_bits(lanes_both(lanes_below(bound, own), lanes_below(most, minus_bound)));
+            apart |=
+                lanes_bits(lanes_both(lanes_below(own, minus_bound), lanes_below(bound, least)));
+        }
+    }
+    return apart;
+}
+
+/* Pairs in a mask, of triangles of two clusters with these numbers. */
+static void SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
+                                  unsigned mask, float extent, SC_KERNEL(verdict) * verdict)
+{
+    lanes_index i = lanes_index_load(a->numbers);
+    SC_KERNEL(tips) tips[2];
+    unsigned open;
+    lanes size;
+    SC_KERNEL(find_tips)(a, b, extent, &tips[0]);
+    open = mask & ~tips[0].beside;
+    verdict->meets = 0;
+    verdict->apart = ~0u;
+    if (!open) return;
+    SC_KERNEL(find_tips)(b, a, extent, &tips[1]);
+    open &= ~tips[1].beside;
+    size = lanes_add(lanes_pick(a->ready->size, i),
+                     lanes_pick(b->ready->size, lanes_index_load(b->numbers)));
+    SC_KERNEL(cross_edges)(tips, SC_KERNEL(plane_bound)(size, extent), open, verdict);
+    open &= ~(verdict->apart | verdict->meets);
+    if (sc_bits_count(open & ~(tips[0].split & tips[1].split)) >= SC_SIDES_WORTH) {
+        lanes x[2][3][3], n[3];
+        int c;
+        SC_KERNEL(pick_corners)(a, x[0]);
+        SC_KERNEL(pick_corners)(b, x[1]);
+        SC_UNROLL
+        for (c = 0; c < 3; c++) n[c] = lanes_pick(a->ready->normal[c], i);
+        open &= ~SC_KERNEL(side_separates)(x, n, extent);
+    }
+    verdict->apart = ~(open | verdict->meets);
+}
