@@ -460,7 +460,9 @@ static inline unsigned doubles_bits(doubles_mask a)
 static inline unsigned doubles_signs(doubles a)
 {
     unsigned mask = 0, i;
-    for (i = 0; i < 8; i++) mask |= (unsigned)(signbit(a.v[i]) != 0) << i;
+    uint64_t bits[8];
+    memcpy(bits, a.v, sizeof bits);
+    for (i = 0; i < 8; i++) mask |= (unsigned)(bits[i] >> 63) << i;
     return mask;
 }
 static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
