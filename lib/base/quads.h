@@ -160,9 +160,10 @@ static inline unsigned sc_quad_bits_doubles(sc_doubles2 a, sc_doubles2 b, sc_dou
 static inline unsigned sc_quad_signs_doubles(sc_doubles2 a, sc_doubles2 b, sc_doubles2 c,
                                              sc_doubles2 d)
 {
+    const sc_numbers2 zero = {0, 0};
     return sc_quad_bits_doubles(
-        (sc_doubles2)((sc_numbers2)a >> 63), (sc_doubles2)((sc_numbers2)b >> 63),
-        (sc_doubles2)((sc_numbers2)c >> 63), (sc_doubles2)((sc_numbers2)d >> 63));
+        (sc_doubles2)((sc_numbers2)a < zero), (sc_doubles2)((sc_numbers2)b < zero),
+        (sc_doubles2)((sc_numbers2)c < zero), (sc_doubles2)((sc_numbers2)d < zero));
 }
 static inline sc_floats4 sc_quad_same(sc_floats4 a, sc_floats4 b)
 {

@@ -90,7 +90,7 @@ static int SC_KERNEL(extent_of_apart_doubles)(const double *p, uint64_t stride, 
                                               double low[3], double high[3])
 {
     enum { WIDTH = 8 };
-    const unsigned char *from = (const unsigned char *)p;
+    const unsigned char *from = (const unsigned char *)(const void *)p;
     double least[WIDTH], most[WIDTH], bad[WIDTH], at[3], not_finite = 0;
     uint64_t i = 0;
     int j, k;
@@ -136,7 +136,7 @@ static int SC_KERNEL(extent_of_apart_floats)(const float *p, uint64_t stride, ui
                                              double low[3], double high[3])
 {
     enum { WIDTH = SC_LANES_COUNT };
-    const unsigned char *from = (const unsigned char *)p;
+    const unsigned char *from = (const unsigned char *)(const void *)p;
     float bad[WIDTH], at[3], not_finite = 0;
     uint64_t i = 0;
     int j, k;

@@ -146,7 +146,7 @@ static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes b
             for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(e[c], m[c]));
             below[i][j] = lanes_bits(lanes_below(d, lanes_all(0)));
             d = lanes_absolute(d);
-            least = i | j ? lanes_smaller(least, d) : d;
+            least = i + j > 0 ? lanes_smaller(least, d) : d;
         }
     }
     mask &= tips[0].split & tips[1].split & lanes_bits(lanes_below(bound, least));
