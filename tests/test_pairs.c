@@ -440,6 +440,41 @@ static void edges_that_nearly_meet(void)
     }
 }
 
+/* Pairs of triangles that share a point, and from there lie on one ray: the shorter edge ends on the longer one. What leads
+   from the middle of one to that of the other is across the ray, but for rounding, and tells the rest of them apart. */
+static void neighbors_on_a_ray(void)
+{
+    uint32_t rounds = test_iterations(60);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t pairs = 1 + test_random_below(12);
+        soup s = soup_make(5 * pairs, 2 * pairs);
+        for (uint32_t k = 0; k < pairs; ++k) {
+            double *p = s.positions + 15 * k, ray[3], other[3], across[3], more[3];
+            uint32_t *t = s.triangles + 6 * k;
+            for (uint32_t c = 0; c < 3; ++c) { /* whole numbers: the middle of the ray is exact */
+                p[c] = floor(test_random_range(-1e9, 1e9));
+                ray[c] = 2 * floor(test_random_range(-1e6, 1e6));
+                other[c] = test_random_unit();
+                more[c] = test_random_range(-3e5, 3e5);
+            }
+            for (uint32_t c = 0; c < 3; ++c)
+                across[c] =
+                    ray[(c + 1) % 3] * other[(c + 2) % 3] - ray[(c + 2) % 3] * other[(c + 1) % 3];
+            for (uint32_t c = 0; c < 3; ++c) {
+                p[3 + c] = p[c] + ray[c];
+                p[6 + c] = p[c] + ray[c] / 2;
+                p[9 + c] = p[c] + floor(across[c] / 2 + more[c]);
+                p[12 + c] = p[9 + c] + ray[c] / 2 - floor(across[c]);
+            }
+            for (uint32_t c = 0; c < 6; ++c)
+                t[c] = 5 * k + (c == 0 || c == 3 ? 0 : c == 1 ? 1 : c == 2 ? 3 : c == 4 ? 2 : 4);
+        }
+        check_random_build("neighbors on a ray", state, &s, s.positions);
+        soup_free(&s);
+    }
+}
+
 static void deformed_meshes(void)
 {
     uint32_t rounds = test_iterations(140);
@@ -777,7 +812,8 @@ static void meshes_of_the_folder(void)
 }
 
 SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
-             SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet), SC_TEST(deformed_meshes),
-             SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
-             SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
-             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))
+             SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet), SC_TEST(neighbors_on_a_ray),
+             SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell), SC_TEST(branched_discs),
+             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
+             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
+             SC_TEST(meshes_of_the_folder))

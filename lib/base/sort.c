@@ -120,16 +120,23 @@ static void sort_by_comparing(sc_pair *pairs, uint64_t count)
     quicksort(pairs, count, depth);
 }
 
+static void sort_by_bytes(sc_pair *pairs, uint64_t count, int most);
+
+/* most: how often by bytes yet. */
+static void sort_some(sc_pair *pairs, uint64_t count, int most)
+{
+    if (count < BYTE_MIN || most == 0)
+        sort_by_comparing(pairs, count);
+    else
+        sort_by_bytes(pairs, count, most - 1);
+}
+
 /* By the highest eight bits in which pairs differ: counts them, then takes each out of a wrong place to its own, and
    what was there on to where that belongs. Then what has these bits in common. */
 static void sort_by_bytes(sc_pair *pairs, uint64_t count, int most)
 {
     uint64_t next[BYTE_VALUES] = {0}, end[BYTE_VALUES], differ = 0, sum = 0, i;
     unsigned shift = 0, value;
-    if (count < BYTE_MIN || most == 0) {
-        sort_by_comparing(pairs, count);
-        return;
-    }
     for (i = 1; i < count; i++) differ |= sc_sort_number(pairs[i]) ^ sc_sort_number(pairs[0]);
     while (differ >> shift >= BYTE_VALUES) shift++;
     for (i = 0; i < count; i++) next[sc_sort_number(pairs[i]) >> shift & (BYTE_VALUES - 1)]++;
@@ -152,14 +159,13 @@ static void sort_by_bytes(sc_pair *pairs, uint64_t count, int most)
         }
     for (value = 0; value < BYTE_VALUES; value++) {
         uint64_t begin = value ? end[value - 1] : 0;
-        if (shift > 0 && end[value] - begin > 1)
-            sort_by_bytes(pairs + begin, end[value] - begin, most - 1);
+        if (shift > 0 && end[value] - begin > 1) sort_some(pairs + begin, end[value] - begin, most);
     }
 }
 
 void sc_sort_pairs(sc_pair *pairs, uint64_t count)
 {
-    sort_by_bytes(pairs, count, BYTES_MOST);
+    sort_some(pairs, count, BYTES_MOST);
 }
 
 enum { DIGIT_BITS = 10, DIGIT_VALUES = 1 << DIGIT_BITS };
