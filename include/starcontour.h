@@ -263,7 +263,8 @@ typedef struct sc_dual_graph {
         *offsets; /* node_count + 1: node i has the arcs offsets[i] to offsets[i + 1] - 1 */
     const int32_t *neighbors; /* offsets[node_count] node numbers */
     const int32_t
-        *weights; /* offsets[node_count] weights from 1 to 1000: rest length of the edge */
+        *weights; /* offsets[node_count] weights from 1 to 1000: rest length of the edge, less where
+                     the mesh bends there: a half at right angles, a third where it folds back */
 } sc_dual_graph;
 
 /*

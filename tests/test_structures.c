@@ -885,6 +885,71 @@ static void hubs(void)
     soup_free(&s);
 }
 
+/* What cuts cost along the edges of a mesh, as the caller's function is told first. */
+typedef struct costs {
+    uint32_t arcs, lowest; /* how many, and of how many the cost is least */
+    int32_t least, most;
+} costs;
+
+static sc_status note_costs(void *user, const sc_dual_graph *graph, uint32_t left_target,
+                            uint8_t *sides)
+{
+    costs *c = (costs *)user;
+    if (c->arcs == 0) {
+        c->arcs = (uint32_t)graph->offsets[graph->node_count];
+        c->least = c->most = graph->weights[0];
+        for (uint32_t i = 0; i < c->arcs; ++i) {
+            if (graph->weights[i] < c->least) c->lowest = 0;
+            if (graph->weights[i] < c->least) c->least = graph->weights[i];
+            if (graph->weights[i] > c->most) c->most = graph->weights[i];
+            c->lowest += graph->weights[i] == c->least;
+        }
+    }
+    return input_bisect(NULL, graph, left_target, sides);
+}
+
+/* A cloth folded by no, a right, and two right angles, at any scale: at the crease a cut costs half, and a third. */
+static void creases(void)
+{
+    enum { SIDE = 8 };
+    static const double sizes[] = {1, 0x1p+1000, 0x1p-1000};
+    for (int size = 0; size < 3; ++size) {
+        costs found[3];
+        for (int fold = 0; fold < 3; ++fold) {
+            soup mesh = soup_cloth(SIDE, SIDE);
+            sc_build_options options;
+            sc_model *model = NULL;
+            for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
+                double *p = mesh.positions + 3 * v, over = p[0] - 0.5;
+                if (fold == 0 || over < 0) continue;
+                p[0] = fold == 1 ? 0.5 : 0.5 - over;
+                if (fold == 1) p[2] = over;
+            }
+            soup_scale(mesh.positions, mesh.vertex_count, sizes[size]);
+            memset(&options, 0, sizeof(options));
+            memset(&found[fold], 0, sizeof(found[fold]));
+            options.struct_size = sizeof(options);
+            options.partition = SC_PARTITION_BISECT;
+            options.weld = SC_WELD_NONE;
+            options.bisect = note_costs;
+            options.bisect_user = &found[fold];
+            sc_mesh m = input_plain_mesh(&mesh);
+            CHECK(sc_build(&m, &options, &model) == SC_OK);
+            sc_model_free(model);
+            soup_free(&mesh);
+        }
+        CHECK(found[0].arcs == 2 * (3 * SIDE * SIDE - 2 * SIDE));
+        CHECK(found[0].lowest == 4 * SIDE * (SIDE - 1)); /* all but diagonals */
+        CHECK(found[0].least > 70 && found[0].least < 100 && found[0].most > 100);
+        for (int fold = 1; fold < 3; ++fold) {
+            CHECK(found[fold].arcs == found[0].arcs && found[fold].lowest == 2 * SIDE);
+            CHECK(found[fold].most == found[0].most);
+            CHECK_MSG(found[fold].least == found[0].least / (fold + 1), "%d of %d",
+                      (int)found[fold].least, (int)found[0].least);
+        }
+    }
+}
+
 /* The point in the middle of a disc has the longest ring that there can be, and one that is too long. */
 static void long_rings(void)
 {
@@ -1131,4 +1196,4 @@ static void curve(void)
 }
 
 SC_TEST_MAIN(SC_TEST(locality), SC_TEST(curve), SC_TEST(named_meshes), SC_TEST(hubs),
-             SC_TEST(long_rings), SC_TEST(random_meshes), SC_TEST(validators))
+             SC_TEST(creases), SC_TEST(long_rings), SC_TEST(random_meshes), SC_TEST(validators))

@@ -5,6 +5,7 @@
  */
 #include "build/bisection.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -36,7 +37,7 @@ typedef struct bisection {
     void *user;
     sc_hierarchy *hierarchy;
     float *centers;      /* 3 * triangle_count: sums of corners */
-    float *lengths;      /* 3 * triangle_count: rest length of each side over the mean */
+    float *costs;        /* 3 * triangle_count: of a cut along each side, see bisection.h */
     uint32_t *neighbor;  /* 3 * triangle_count: across each side, triangle_count if there is none */
     uint32_t *label;     /* triangle_count + 1: 2 * number of the patch at hand, + 1 on side 1 */
     uint32_t *component; /* triangle_count */
@@ -139,7 +140,7 @@ static sc_status cut_by_caller(bisection *b, const uint32_t *triangles, uint32_t
         offsets[i] = arcs;
         for (k = 0; k < 3; k++) {
             uint32_t t = triangles[i], u = b->neighbor[3 * (uint64_t)t + k];
-            float weight = 100 * b->lengths[3 * (uint64_t)t + k];
+            float weight = 100 * b->costs[3 * (uint64_t)t + k];
             if (!is_with(b, t, u, 0)) continue;
             neighbors[arcs] = (int32_t)b->queue[u];
             weights[arcs++] = weight > 999 ? 1000 : weight >= 1 ? (int32_t)weight : 1;
@@ -372,42 +373,73 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
     return status;
 }
 
+/* The unit normal of a triangle, by its sides; 0 if it has none, or is 1e-77 of the mesh in size. */
+static void find_normal(double sides[3][3], float normal[3])
+{
+    double n[3], square = 0, inverse;
+    int k;
+    for (k = 0; k < 3; k++) {
+        int next = k < 2 ? k + 1 : 0, last = k ? k - 1 : 2;
+        n[k] = sides[0][next] * sides[1][last] - sides[0][last] * sides[1][next];
+        square += n[k] * n[k];
+    }
+    inverse = square > DBL_MIN ? 1 / sqrt(square) : 0;
+    for (k = 0; k < 3; k++) normal[k] = (float)(n[k] * inverse);
+}
+
+/* By what the length of a side between triangles of unit normals a and b is divided: from 1 if they lie flat, or nearly
+   so by rounding, to 3 if they are folded onto each other. */
+static float divisor_at(const float a[3], const float b[3])
+{
+    float turn = 1 - (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    return turn > 1e-6f ? 1 + turn : 1;
+}
+
+/* Neighbors, centers and costs. */
 static void measure(bisection *b)
 {
     const sc_points *points = b->points;
-    const uint32_t *corner = points->triangles;
+    const uint32_t *corner = points->triangles, count = points->triangle_count;
+    float *normals = (float *)(void *)b->refinement.heap; /* 3 * triangle_count; not in use yet */
     double size = 0, scale, sum = 0;
     float inverse;
-    uint64_t i, corners = 3 * (uint64_t)points->triangle_count;
-    int k, exponent;
+    uint64_t i, corners = 3 * (uint64_t)count;
+    uint32_t j, k;
+    int exponent;
     /* everything relative to the largest coordinate, so that nothing overflows */
     for (i = 0; i < 3 * (uint64_t)points->point_count; i++)
         if (fabs(points->rest[i]) > size) size = fabs(points->rest[i]);
     frexp(size, &exponent);
     scale = ldexp(1, exponent < -1000 ? 1000 : -exponent);
-    for (i = 0; i < corners; i++) {
-        const double *p = points->rest + 3 * (uint64_t)corner[i];
-        const double *q = points->rest + 3 * (uint64_t)corner[sc_adjacency_next((uint32_t)i)];
-        uint32_t h = b->adjacency->opposite[i];
-        double square = 0;
-        for (k = 0; k < 3; k++) {
-            double d = q[k] * scale - p[k] * scale;
-            square += d * d;
+    for (i = 0; i < corners; i += 3) {
+        double at[3][3], sides[3][3];
+        for (j = 0; j < 3; j++)
+            for (k = 0; k < 3; k++)
+                at[j][k] = points->rest[3 * (uint64_t)corner[i + j] + k] * scale;
+        for (j = 0; j < 3; j++) {
+            uint32_t h = b->adjacency->opposite[i + j];
+            double square = 0;
+            for (k = 0; k < 3; k++) {
+                sides[j][k] = at[j < 2 ? j + 1 : 0][k] - at[j][k];
+                square += sides[j][k] * sides[j][k];
+            }
+            square = sqrt(square);
+            b->costs[i + j] = (float)square; /* for now */
+            sum += square;
+            /* with two corners at one point a triangle may be beside itself: then it has no other neighbor */
+            b->neighbor[i + j] = h == SC_NONE || h / 3 == i / 3 ? count : h / 3;
         }
-        square = sqrt(square);
-        b->lengths[i] = (float)square;
-        sum += square;
-        /* with two corners at one point a triangle may be beside itself: then it has no other neighbor */
-        b->neighbor[i] = h == SC_NONE || h / 3 == i / 3 ? points->triangle_count : h / 3;
+        for (k = 0; k < 3; k++) b->centers[i + k] = (float)(at[0][k] + at[1][k] + at[2][k]);
+        find_normal(sides, normals + i);
     }
     inverse = sum > 0 ? (float)((double)corners / sum) : 0;
-    for (i = 0; i < corners; i++) b->lengths[i] = inverse > 0 ? b->lengths[i] * inverse : 1;
-    for (i = 0; i < points->triangle_count; i++, corner += 3)
-        for (k = 0; k < 3; k++)
-            b->centers[3 * i + (uint64_t)k] =
-                (float)(points->rest[3 * (uint64_t)corner[0] + (uint64_t)k] * scale +
-                        points->rest[3 * (uint64_t)corner[1] + (uint64_t)k] * scale +
-                        points->rest[3 * (uint64_t)corner[2] + (uint64_t)k] * scale);
+    for (i = 0; i < corners; i += 3)
+        for (j = 0; j < 3; j++) {
+            uint32_t t = b->neighbor[i + j];
+            float cost = inverse > 0 ? b->costs[i + j] * inverse : 1;
+            if (t < count) cost /= divisor_at(normals + i, normals + 3 * (uint64_t)t);
+            b->costs[i + j] = cost;
+        }
 }
 
 sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjacency,
@@ -425,7 +457,7 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.user = user;
     b.hierarchy = hierarchy;
     b.centers = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(float));
-    b.lengths = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(float));
+    b.costs = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(float));
     b.neighbor = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(uint32_t));
     b.label =
         (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)count + 1, sizeof(uint32_t), 0xff);
@@ -434,7 +466,7 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.keys = (sc_pair *)sc_scratch_take(scratch, count, sizeof(sc_pair));
     b.sizes = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
     b.refinement.neighbor = b.neighbor;
-    b.refinement.lengths = b.lengths;
+    b.refinement.lengths = b.costs;
     b.refinement.label = b.label;
     b.refinement.gain = (float *)sc_scratch_take(scratch, count, sizeof(float));
     b.refinement.state = (uint8_t *)sc_scratch_take_filled(scratch, (uint64_t)count + 1, 1, 0);
@@ -443,8 +475,8 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.refinement.heap = (sc_pair *)sc_scratch_take(scratch, 4 * (uint64_t)count, sizeof(sc_pair));
     if (bisect)
         b.graph = (int32_t *)sc_scratch_take(scratch, 7 * (uint64_t)count + 1, sizeof(int32_t));
-    if (!b.centers || !b.lengths || !b.neighbor || !b.label || !b.component || !b.queue ||
-        !b.keys || !b.sizes || !b.refinement.gain || !b.refinement.state || !b.refinement.heap ||
+    if (!b.centers || !b.costs || !b.neighbor || !b.label || !b.component || !b.queue || !b.keys ||
+        !b.sizes || !b.refinement.gain || !b.refinement.state || !b.refinement.heap ||
         (bisect && !b.graph))
         return SC_ERROR_MEMORY;
     measure(&b);
@@ -460,7 +492,7 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     sc_scratch_give(scratch, b.component);
     sc_scratch_give(scratch, b.label);
     sc_scratch_give(scratch, b.neighbor);
-    sc_scratch_give(scratch, b.lengths);
+    sc_scratch_give(scratch, b.costs);
     sc_scratch_give(scratch, b.centers);
     return status;
 }

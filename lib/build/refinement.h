@@ -17,7 +17,7 @@
 
 typedef struct sc_refinement {
     const uint32_t *neighbor; /* 3 per triangle: across its sides; without one, triangle_count */
-    const float *lengths;     /* 3 per triangle: of its sides */
+    const float *lengths;     /* 3 per triangle: of its sides, as build/bisection.h counts them */
     uint32_t
         *label;  /* per triangle: 2 * patch + side, 0 or 1; at triangle_count what no patch has */
     float *gain; /* per triangle, scratch */
