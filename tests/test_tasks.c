@@ -203,6 +203,15 @@ static int is_count_same(const answer *a, const answer *b)
            a->stats.exact_fallbacks == b->stats.exact_fallbacks;
 }
 
+/* The same of all but box tests: how large patches are divided is another matter with several threads. */
+static int is_other_count_same(const answer *a, const answer *b)
+{
+    answer c = *b;
+    c.stats.counts[SC_TASK_BOXES_ORIENTATION] = a->stats.counts[SC_TASK_BOXES_ORIENTATION];
+    c.stats.counts[SC_TASK_BOXES_CONTOUR] = a->stats.counts[SC_TASK_BOXES_CONTOUR];
+    return is_count_same(a, &c);
+}
+
 /* Whether two answers are the same; frees b. */
 static int is_same(const answer *a, answer b)
 {
@@ -471,7 +480,7 @@ static void the_same_answers(void)
                             CHECK_MSG(is_count_same(&shared, &other), "scene %d, kind %u, host %d",
                                       scene, (unsigned)kind, way);
                         if (c < 2 && options.method != SC_METHOD_SCTT)
-                            CHECK(is_count_same(&serial, &other));
+                            CHECK(is_other_count_same(&serial, &other));
                         CHECK_MSG(is_same(&serial, other),
                                   "scene %d, kind %u, host %d, capacity %u", scene, (unsigned)kind,
                                   way, (unsigned)counts[c]);

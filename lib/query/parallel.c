@@ -29,9 +29,10 @@ typedef char state_fits[sizeof(sc_query_state) <= SC_STATE_ROOM ? 1 : -1];
 /* Models with fewer leaf clusters are not worth a job. */
 enum { LEAVES_MIN = 128 };
 
-/* Patches with more than one of so many leaf clusters are large. With 64, tight layers come as 20,000 parts of a few pairs of
-   leaf clusters each, which take 1.4 times as long as all at once. */
-enum { LARGE_PART = 32 };
+/* A patch with more than one of so many leaf clusters is large: in a node of the test tree; in a pair of patches, most of which
+   turn out to have little in common, so that listing smaller ones takes longer than it saves; and against itself, which is as much
+   work as there are leaf clusters, so that no part that is left for the end takes long. */
+enum { LARGE_IN_NODE = 32, LARGE_IN_PAIR = 16, LARGE_BY_ITSELF = 128 };
 
 /* Fewer contour tests are not worth a job. */
 enum { TESTS_MIN = 16 };
@@ -228,48 +229,49 @@ static void update_boxes(plan *p)
             sc_workspace_of_worker(p->w, worker)->boxes_ready = 1;
 }
 
-static int is_large(const sc_model *model, uint32_t patch)
+static int is_large(const sc_model *model, uint32_t patch, uint32_t parts)
 {
     const uint32_t *leaf = sc_model_leaf(model);
-    return leaf[patch + 1] - leaf[patch] > model->leaf_count / LARGE_PART;
+    return leaf[patch + 1] - leaf[patch] > model->leaf_count / parts;
 }
 
-/* Two patches of a level whose boxes overlap: those of them that are large as by sc_query_kernels.patch_pair. */
+/* Two patches of a level whose boxes overlap. If one is large, their children: level by level, where one thread goes to the fourth
+   level below at once, from which as many as 256 pairs come. */
 static void add_patches(plan *p, uint32_t a, uint32_t b)
 {
     sc_query_state *state = p->state;
     const sc_model *model = state->model;
     const sc_boxes *boxes = &p->w->patch_boxes;
-    const uint32_t *hop = sc_model_hop(model);
+    const uint32_t *child = sc_model_child(model);
     uint32_t c, d, task = sc_state_box_task(state);
-    if (!is_large(model, a) && !is_large(model, b)) {
+    if (!is_large(model, a, LARGE_IN_PAIR) && !is_large(model, b, LARGE_IN_PAIR)) {
         add_part(p, state->after_contour ? PART_PAIR_AFTER_CONTOUR : PART_PAIR, a, b);
         return;
     }
     state->stats.counts[task]++;
-    for (c = hop[a]; c < hop[a + 1]; c++) {
+    for (c = child[a]; c < child[a + 1]; c++) {
         if (!sc_boxes_overlap(boxes, b, boxes, c)) continue;
         state->stats.counts[task]++;
-        for (d = hop[b]; d < hop[b + 1]; d++)
+        for (d = child[b]; d < child[b + 1]; d++)
             if (sc_boxes_overlap(boxes, c, boxes, d)) add_patches(p, c, d);
     }
 }
 
-/* The same for sc_query_kernels.patch_itself. */
+/* A patch against itself. */
 static void add_patch(plan *p, uint32_t a)
 {
     sc_query_state *state = p->state;
     const sc_boxes *boxes = &p->w->patch_boxes;
-    const uint32_t *hop = sc_model_hop(state->model);
+    const uint32_t *child = sc_model_child(state->model);
     uint32_t c, d;
-    if (!is_large(state->model, a)) {
+    if (!is_large(state->model, a, LARGE_BY_ITSELF)) {
         add_part(p, PART_PATCH, a, 0);
         return;
     }
-    for (c = hop[a]; c < hop[a + 1]; c++) {
+    for (c = child[a]; c < child[a + 1]; c++) {
         state->stats.counts[SC_TASK_BOXES_ORIENTATION]++;
         add_patch(p, c);
-        for (d = c + 1; d < hop[a + 1]; d++)
+        for (d = c + 1; d < child[a + 1]; d++)
             if (sc_boxes_overlap(boxes, c, boxes, d)) add_patches(p, c, d);
     }
 }
@@ -277,7 +279,7 @@ static void add_patch(plan *p, uint32_t a)
 static int is_large_node(const sc_model *model, uint32_t node)
 {
     const sc_pair *patches = &sc_model_node_patches(model)[node];
-    return is_large(model, patches->a) || is_large(model, patches->b);
+    return is_large(model, patches->a, LARGE_IN_NODE) || is_large(model, patches->b, LARGE_IN_NODE);
 }
 
 /* The BVTT children of a large node, which has no leaf clusters of its own. */
