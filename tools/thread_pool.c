@@ -116,9 +116,9 @@ static void *enqueue(void *user, void (*run)(void *context, uint32_t part, uint3
     __atomic_store_n(&pool->done, 0, __ATOMIC_RELAXED);
     __atomic_store_n(&pool->ticket, job << 32 | count, __ATOMIC_SEQ_CST);
     if (__atomic_load_n(&pool->sleeping, __ATOMIC_SEQ_CST) != 0) {
-        pthread_mutex_lock(&pool->mutex);
-        pthread_cond_broadcast(&pool->begin);
+        pthread_mutex_lock(&pool->mutex); /* who counts as sleeping does, or will see the job */
         pthread_mutex_unlock(&pool->mutex);
+        pthread_cond_broadcast(&pool->begin);
     }
     return NULL;
 }
