@@ -726,7 +726,8 @@ def add_targets(out, results):
                "at, and its time by clocks that take time themselves (update contours and contour).\n")
     out.append(targets.contour_test(results.main_runs(), results.turns))
     sections = (
-        ("Threads of one query", "One thread and all, in turn in each frame; *least* and *most*: of single frames.\n",
+        ("Threads of one query", "One thread and all, in turn in each frame, in every other pass the other way round, as the second finds\n"
+         "what it reads of the model in the caches; *least* and *most*: of single frames.\n",
          targets.threads_of_query(results.turns)),
         ("Instructions", "*Speed*: as a part of that with the best instructions, in turn in each frame. *Base* is SSE2 on\n"
          "x86-64.\n", targets.instructions(results.turns)),

@@ -366,7 +366,8 @@ static bool run_turn(measure_state *s, size_t method, uint32_t count, double *mi
     return true;
 }
 
-/* Frames first to first + count - 1: every method's turn, and the floor's. */
+/* Frames first to first + count - 1: every method's turn, and the floor's. Every other pass goes through the methods backwards, as
+   one finds in the caches what of the model the one before it has read. */
 static bool run_frames(measure_state *s, uint32_t pass, uint32_t first, uint32_t count)
 {
     const measurement *m = s->m;
@@ -375,7 +376,8 @@ static bool run_frames(measure_state *s, uint32_t pass, uint32_t first, uint32_t
     for (uint32_t i = 0; i < count; i++) {
         if (!load_frame(s, &s->lanes[i], first + i)) return false;
     }
-    for (size_t method = 0; method < m->method_count; method++) {
+    for (size_t turn = 0; turn < m->method_count; turn++) {
+        const size_t method = pass % 2 == 0 ? turn : m->method_count - 1 - turn;
         if (pass >= times_timed(s, method)) continue;
         for (uint32_t i = 0; i < count; i++) write_pose(s, &s->lanes[i], m->methods[method]);
         for (uint32_t q = 0; q < queries; q++) {

@@ -72,14 +72,17 @@ twisted-cloth 65536 20 3 structure edge exact,star,aabb --threads $cores
 bunny 54500 20 3 metis edge exact,star,aabb --threads $cores
 twisted-cloth 65536 20 5 structure edge exact,star,aabb-sctt,aabb --warm
 bunny 54500 20 5 metis edge exact,star,aabb-sctt,aabb --warm
-twisted-cloth 65536 20 3 structure edge $turns --workers $cores
-cloth-sphere 80000 20 3 structure edge $turns --workers $cores
-bunny 54500 20 3 metis edge $turns --workers $cores
-cat 165000 60 1 metis edge $turns --workers $cores
-wrinkled-cloth 100352 20 3 structure edge $turns --workers $cores
-crushed-cloth 92416 6 5 structure edge $turns --workers $cores
-tight-rods 98304 6 5 metis edge $turns --workers $cores
-squeezed-rods 98304 6 5 metis edge $turns --workers $cores
+twisted-cloth 65536 20 4 structure edge $turns --workers $cores
+cloth-sphere 80000 20 4 structure edge $turns --workers $cores
+bunny 54500 20 4 metis edge $turns --workers $cores
+cat 165000 20 4 metis edge $turns --workers $cores
+cat 656000 2 4 metis edge $turns --workers $cores
+bunny-spiky 54500 20 4 metis edge $turns --workers $cores
+sphere 1310720 2 4 metis edge $turns --workers $cores
+wrinkled-cloth 100352 20 4 structure edge $turns --workers $cores
+crushed-cloth 92416 6 6 structure edge $turns --workers $cores
+tight-rods 98304 6 6 metis edge $turns --workers $cores
+squeezed-rods 98304 6 6 metis edge $turns --workers $cores
 twisted-cloth 65536 20 3 structure edge $sets
 bunny 54500 20 3 metis edge $sets
 crushed-cloth 92416 6 5 structure edge $sets
