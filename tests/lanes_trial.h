@@ -69,6 +69,33 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
     memcpy(out->list, list, out->bits[5]);
 }
 
+static void SC_KERNEL(try_bytes)(const lanes_input *in, lanes_outcome *out)
+{
+    lanes_bytes a = lanes_bytes_load(in->number), b = lanes_bytes_load(in->through), row[3];
+    lanes_bytes same = lanes_bytes_same(a, b), other;
+    lanes_triples triples;
+    lanes edge[2][2][3];
+    int i, k;
+    for (k = 0; k < 3; k++) row[k] = lanes_bytes_load(in->number + SC_LANES_COUNT * k);
+    other = lanes_bytes_same(row[1], row[2]);
+    lanes_bytes_store(out->bytes[0], same);
+    lanes_bytes_store(out->bytes[1], lanes_bytes_both(a, b));
+    lanes_bytes_store(out->bytes[2], lanes_bytes_either(same, other));
+    lanes_bytes_store(out->bytes[3], lanes_bytes_but(a, b));
+    lanes_bytes_store(out->bytes[4], lanes_bytes_choose(other, a, b));
+    lanes_bytes_store(out->bytes[5], lanes_bytes_through(a, b));
+    lanes_bytes_store(out->bytes[6], lanes_names(in->names, in->names + SC_LANES_COUNT));
+    out->bits[14] = lanes_bytes_bits(same);
+    out->bits[15] =
+        lanes_bits(lanes_same(lanes_load((const float *)(const void *)in->names),
+                              lanes_load((const float *)(const void *)(in->names + 16))));
+    lanes_edges_of(in->plain, in->row[0], row, row + 1, edge);
+    for (i = 0; i < 12; i++) lanes_store(out->row[51 + i], edge[i / 6][i / 3 % 2][i % 3]);
+    triples = lanes_triples_of(row);
+    lanes_triples_through(&triples, in->through, row);
+    for (k = 0; k < 3; k++) lanes_bytes_store(out->bytes[7 + k], row[k]);
+}
+
 static void SC_KERNEL(try_rows)(const lanes_input *in, lanes_outcome *out)
 {
     lanes_signs row[16];
@@ -116,6 +143,7 @@ static void SC_KERNEL(try_all)(const lanes_input *in, lanes_outcome *out)
 {
     SC_KERNEL(try_floats)(in, out);
     SC_KERNEL(try_picks)(in, out);
+    SC_KERNEL(try_bytes)(in, out);
     SC_KERNEL(try_rows)(in, out);
     SC_KERNEL(try_doubles)(in, out);
 }

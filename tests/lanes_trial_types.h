@@ -20,15 +20,16 @@ typedef struct lanes_input {
     double exact[20];    /* as plain */
     uint8_t number[48];  /* below 16 */
     uint8_t through[16]; /* the same */
+    uint32_t names[32];  /* of which some are the same */
     unsigned mask;       /* of 16 bits */
 } lanes_input;
 
 typedef struct lanes_outcome {
-    float row[51][16], one[3];
+    float row[63][16], one[3];
     double eight[16][8];
-    unsigned bits[14];
+    unsigned bits[16];
     uint32_t numbers[16];
-    uint8_t list[16];
+    uint8_t list[16], bytes[10][16];
 } lanes_outcome;
 
 /* By the compiler's vector types, where it has them, and one by one. */

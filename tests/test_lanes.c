@@ -17,9 +17,11 @@
 #include "base/lanes.h"
 #include "base/lanes_double.h"
 #include "base/lanes_pick.h"
+#include "base/lanes_bytes.h"
 #include "base/lanes_rows.h"
 #include "lanes_trial.h"
 #include "base/lanes_rows_end.h"
+#include "base/lanes_bytes_end.h"
 #include "base/lanes_pick_end.h"
 #include "base/lanes_double_end.h"
 #include "base/lanes_end.h"
@@ -32,9 +34,11 @@
 #  include "base/lanes.h"
 #  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
+#  include "base/lanes_bytes.h"
 #  include "base/lanes_rows.h"
 #  include "lanes_trial.h"
 #  include "base/lanes_rows_end.h"
+#  include "base/lanes_bytes_end.h"
 #  include "base/lanes_pick_end.h"
 #  include "base/lanes_double_end.h"
 #  include "base/lanes_end.h"
@@ -46,9 +50,11 @@
 #  include "base/lanes.h"
 #  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
+#  include "base/lanes_bytes.h"
 #  include "base/lanes_rows.h"
 #  include "lanes_trial.h"
 #  include "base/lanes_rows_end.h"
+#  include "base/lanes_bytes_end.h"
 #  include "base/lanes_pick_end.h"
 #  include "base/lanes_double_end.h"
 #  include "base/lanes_end.h"
@@ -92,6 +98,7 @@ static void draw(lanes_input *in)
     for (i = 0; i < 48; i++) in->number[i] = (uint8_t)test_random_below(16);
     for (i = 0; i < 16; i++) in->through[i] = (uint8_t)test_random_below(16);
     for (i = 0; i < 20; i++) in->exact[i] = number(1);
+    for (i = 0; i < 32; i++) in->names[i] = test_random_below(24) * 0x01010000u + 7;
     in->mask = test_random_below(0x10000);
     if (test_random_below(4) == 0) /* all below, or none: as in most boxes */
         for (i = 0; i < 16; i++) in->a[i] = in->b[i] = 1;
@@ -152,6 +159,38 @@ static void ends_of_row(const lanes_input *in, uint32_t i, float ends[6])
 }
 
 /* The plain form against what is said of it. */
+static void bytes_and_names(void)
+{
+    lanes_input in;
+    lanes_outcome out;
+    uint32_t trial, i, k, c;
+    memset(&in, 0, sizeof in);
+    for (trial = 0; trial < 2000; trial++) {
+        draw(&in);
+        lanes_try_plain(&in, &out);
+        for (i = 0; i < 16; i++) {
+            const uint8_t a = in.number[i], b = in.through[i];
+            unsigned name = 0;
+            while (name < 16 && in.names[name] != in.names[16 + i]) name++;
+            CHECK(out.bytes[0][i] == (a == b ? 255 : 0));
+            CHECK((out.bits[14] >> i & 1u) == (unsigned)(a == b));
+            CHECK((out.bits[15] >> i & 1u) == (unsigned)(in.names[i] == in.names[16 + i]));
+            CHECK(out.bytes[4][i] == (in.number[16 + i] == in.number[32 + i] ? a : b));
+            CHECK(out.bytes[5][i] == in.number[b]);
+            CHECK(out.bytes[6][i] == (name < 16 ? name : 255));
+            for (k = 0; k < 3; k++) CHECK(out.bytes[7 + k][i] == in.number[16 * k + b]);
+            for (k = 0; k < 4; k++)
+                for (c = 0; c < 3; c++) {
+                    const float *table = k < 2 ? in.plain : in.row[0];
+                    uint32_t at = in.number[16 * (k < 2 ? k + 1 : k - 1) + i];
+                    float edge = table[16 * (at & 3) + at / 4 * 4 + c] - turned_point(&in, a)[c];
+                    CHECK(!memcmp(&out.row[51 + 3 * k + c][i], &edge, sizeof edge));
+                }
+        }
+    }
+}
+
+/* The same of lists and signs. */
 static void lists_and_signs(void)
 {
     lanes_input in;
@@ -196,4 +235,4 @@ static void lists_and_signs(void)
     }
 }
 
-SC_TEST_MAIN(SC_TEST(all_forms_agree), SC_TEST(lists_and_signs))
+SC_TEST_MAIN(SC_TEST(all_forms_agree), SC_TEST(bytes_and_names), SC_TEST(lists_and_signs))

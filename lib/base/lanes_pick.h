@@ -8,8 +8,7 @@
  * to; lanes_list_from adds a first number to them, and writes sixteen words. lanes_index reads sixteen numbers below
  * sixteen, lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the
  * floats of these numbers of a row, in memory or not. lanes_choose takes from a where the mask is set, else from b.
- * lanes_same compares bits, whatever they mean; lanes_either joins two masks, and
- * lanes_differ has what is in one of them only.
+ * lanes_same compares bits, whatever they mean; lanes_differ has what is in one of two masks only.
  * lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from three rows of coordinates by three of
  * numbers; lanes_corners_at finds the former in memory, in turned places (see base/lanes.h); lanes_corners_through takes
  * the triangles of sixteen numbers below sixteen instead of all in order.
@@ -25,10 +24,6 @@
 #define lanes_pick_of SC_KERNEL(sc_lanes_pick_of)
 #define lanes_choose SC_KERNEL(sc_lanes_choose)
 #define lanes_same SC_KERNEL(sc_lanes_same)
-#define lanes_index_choose SC_KERNEL(sc_lanes_index_choose)
-#define lanes_but SC_KERNEL(sc_lanes_but)
-#define lanes_corners_of SC_KERNEL(sc_lanes_corners_of)
-#define lanes_either SC_KERNEL(sc_lanes_either)
 #define lanes_differ SC_KERNEL(sc_lanes_differ)
 #define lanes_corners SC_KERNEL(sc_lanes_corners)
 #define lanes_corners_at SC_KERNEL(sc_lanes_corners_at)
@@ -66,21 +61,9 @@ static inline lanes_mask lanes_same(lanes a, lanes b)
 {
     return _mm512_cmpeq_epi32_mask(_mm512_castps_si512(a), _mm512_castps_si512(b));
 }
-static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
-{
-    return (lanes_mask)(a | b);
-}
 static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
 {
     return (lanes_mask)(a ^ b);
-}
-static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
-{
-    return (lanes_mask)(a & ~b);
-}
-static inline lanes_index lanes_index_choose(lanes_mask m, lanes_index a, lanes_index b)
-{
-    return _mm512_mask_blend_epi32(m, b, a);
 }
 static inline unsigned lanes_list(unsigned mask, uint8_t *to)
 {
@@ -182,33 +165,11 @@ static inline lanes_mask lanes_same(lanes a, lanes b)
             _mm256_cmpeq_epi32(_mm256_castps_si256(a.v[k]), _mm256_castps_si256(b.v[k])));
     return r;
 }
-static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
-{
-    lanes r;
-    r.v[0] = _mm256_or_ps(a.v[0], b.v[0]);
-    r.v[1] = _mm256_or_ps(a.v[1], b.v[1]);
-    return r;
-}
 static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
 {
     lanes r;
     r.v[0] = _mm256_xor_ps(a.v[0], b.v[0]);
     r.v[1] = _mm256_xor_ps(a.v[1], b.v[1]);
-    return r;
-}
-static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
-{
-    lanes r;
-    r.v[0] = _mm256_andnot_ps(b.v[0], a.v[0]);
-    r.v[1] = _mm256_andnot_ps(b.v[1], a.v[1]);
-    return r;
-}
-static inline lanes_index lanes_index_choose(lanes_mask m, lanes_index a, lanes_index b)
-{
-    lanes_index r;
-    int k;
-    for (k = 0; k < 2; k++)
-        r.v[k] = _mm256_blendv_epi8(b.v[k], a.v[k], _mm256_castps_si256(m.v[k]));
     return r;
 }
 
@@ -263,13 +224,6 @@ static inline lanes_mask lanes_same(lanes a, lanes b)
     for (k = 0; k < 4; k++) r.v[k] = sc_quad_same(a.v[k], b.v[k]);
     return r;
 }
-static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
-{
-    lanes r;
-    int k;
-    for (k = 0; k < 4; k++) r.v[k] = SC_QUAD(or_ps)(a.v[k], b.v[k]);
-    return r;
-}
 static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
 {
     lanes r;
@@ -278,24 +232,6 @@ static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
         r.v[k] =
             SC_QUAD(or_ps)(SC_QUAD(andnot_ps)(a.v[k], b.v[k]), SC_QUAD(andnot_ps)(b.v[k], a.v[k]));
     return r;
-}
-static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
-{
-    lanes r;
-    int k;
-    for (k = 0; k < 4; k++) r.v[k] = SC_QUAD(andnot_ps)(b.v[k], a.v[k]);
-    return r;
-}
-static inline lanes_index lanes_index_choose(lanes_mask m, lanes_index a, lanes_index b)
-{
-    uint32_t set[SC_LANES_COUNT];
-    int k;
-    memcpy(set, &m, sizeof set);
-    for (k = 0; k < SC_LANES_COUNT; k++) {
-        uint8_t bits = (uint8_t)set[k];
-        b.at[k] = (uint8_t)((a.at[k] & bits) | (b.at[k] & ~bits));
-    }
-    return b;
 }
 
 #    else
@@ -315,24 +251,9 @@ static inline lanes_mask lanes_same(lanes a, lanes b)
         mask |= (unsigned)(memcmp(&a.v[k], &b.v[k], sizeof a.v[k]) == 0) << k;
     return mask;
 }
-static inline lanes_mask lanes_either(lanes_mask a, lanes_mask b)
-{
-    return a | b;
-}
 static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
 {
     return a ^ b;
-}
-static inline lanes_mask lanes_but(lanes_mask a, lanes_mask b)
-{
-    return a & ~b;
-}
-static inline lanes_index lanes_index_choose(lanes_mask m, lanes_index a, lanes_index b)
-{
-    int k;
-    for (k = 0; k < SC_LANES_COUNT; k++)
-        if (m >> k & 1u) b.at[k] = a.at[k];
-    return b;
 }
 
 #    endif
@@ -388,22 +309,6 @@ static inline void lanes_corners_through(const float *at, const uint8_t *where,
             through[SC_LANES_COUNT * c + i] = where[SC_LANES_COUNT * c + numbers[i]];
     lanes_corners_at(at, through, corner);
 }
-static SC_INLINE void lanes_corners_of(const float *at, const lanes_index where[], int count,
-                                       lanes corner[][3])
-{
-    sc_floats4 x[4];
-    int c, i, k;
-    for (c = 0; c < count; c++)
-        for (i = 0; i < 4; i++) {
-            const uint8_t *four = where[c].at + 4 * i;
-            SC_UNROLL
-            for (k = 0; k < 4; k++)
-                x[k] = SC_QUAD(loadu_ps)(at + 16 * (four[k] & 3) + four[k] / 4 * 4);
-            sc_quad_transpose(x);
-            SC_UNROLL
-            for (k = 0; k < 3; k++) corner[c][k].v[i] = x[k];
-        }
-}
 
 #else
 
@@ -434,19 +339,6 @@ static inline void lanes_corners_through(const float *at, const uint8_t *where,
         lanes_index from = lanes_index_through(where + SC_LANES_COUNT * c, numbers);
         SC_UNROLL
         for (k = 0; k < 3; k++) corner[c][k] = lanes_pick_of(row[k], from);
-    }
-}
-
-static SC_INLINE void lanes_corners_of(const float *at, const lanes_index where[], int count,
-                                       lanes corner[][3])
-{
-    lanes row[3];
-    int c, k;
-    lanes_turned(at, row);
-    SC_UNROLL
-    for (c = 0; c < count; c++) {
-        SC_UNROLL
-        for (k = 0; k < 3; k++) corner[c][k] = lanes_pick_of(row[k], where[c]);
     }
 }
 

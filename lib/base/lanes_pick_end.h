@@ -10,10 +10,6 @@
 #undef lanes_pick_of
 #undef lanes_choose
 #undef lanes_same
-#undef lanes_index_choose
-#undef lanes_but
-#undef lanes_corners_of
-#undef lanes_either
 #undef lanes_differ
 #undef lanes_corners
 #undef lanes_corners_at

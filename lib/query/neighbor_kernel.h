@@ -30,20 +30,30 @@ typedef struct SC_KERNEL(neighbors) {
     unsigned point, edge;
 } SC_KERNEL(neighbors);
 
-/* A leaf cluster: where its points are, what points they are, which are its triangles' corners. */
+/* A leaf cluster: where its points are, which are the corners of its triangles, and what these are called: points of two
+   clusters, or of one, are the same if they have the same name. */
 typedef struct SC_KERNEL(neighborhood) {
     const float *at;
-    const uint8_t *corner;
-    float point[SC_LEAF_POINTS]; /* the bits of these numbers */
+    lanes_triples corner, name;
 } SC_KERNEL(neighborhood);
 
-static inline void SC_KERNEL(find_points)(const sc_query_state *state, uint32_t leaf,
+/* Of clusters a and b. Points are called as they are numbered in a. */
+static inline void SC_KERNEL(find_points)(const sc_query_state *state, uint32_t a, uint32_t b,
                                           SC_KERNEL(neighborhood) * n)
 {
-    n->at = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
-    n->corner = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
-    memcpy(n->point, sc_model_leaf_point(state->model) + SC_LEAF_POINTS * (uint64_t)leaf,
-           sizeof n->point);
+    const uint32_t *point = sc_model_leaf_point(state->model);
+    const uint8_t *corner = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)b;
+    lanes_bytes row[3], name;
+    int k;
+    n->at = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)b;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) row[k] = lanes_bytes_load(corner + SC_LEAF_MAX * k);
+    n->name = n->corner = lanes_triples_of(row);
+    if (a == b) return;
+    name = lanes_names(point + SC_LEAF_POINTS * (uint64_t)a, point + SC_LEAF_POINTS * (uint64_t)b);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) row[k] = lanes_bytes_through(name, row[k]);
+    n->name = lanes_triples_of(row);
 }
 
 /* The lanes in which just one of three is set, and just two. */
@@ -57,65 +67,51 @@ static inline unsigned SC_KERNEL(just_two)(const unsigned x[3])
 }
 
 /* Turns corners so that the first is shared and not the last, if two are, or the others, if one is. */
-static inline void SC_KERNEL(turn)(const lanes_mask shared[3], const lanes_index corner[3],
-                                   lanes_index turned[3])
+static inline void SC_KERNEL(turn)(const lanes_bytes shared[3], const lanes_bytes corner[3],
+                                   lanes_bytes turned[3])
 {
-    lanes_mask first = lanes_but(shared[0], shared[2]), second = lanes_but(shared[1], shared[0]);
+    lanes_bytes first = lanes_bytes_but(shared[0], shared[2]);
+    lanes_bytes second = lanes_bytes_but(shared[1], shared[0]);
     int k;
     SC_UNROLL
     for (k = 0; k < 3; k++)
-        turned[k] = lanes_index_choose(
-            first, corner[k], lanes_index_choose(second, corner[(k + 1) % 3], corner[(k + 2) % 3]));
+        turned[k] = lanes_bytes_choose(
+            first, corner[k], lanes_bytes_choose(second, corner[(k + 1) % 3], corner[(k + 2) % 3]));
 }
 
 static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
                                              const SC_KERNEL(neighborhood) * b, const uint8_t *of_a,
                                              const uint8_t *of_b, SC_KERNEL(neighbors) * x)
 {
-    lanes_index i[3], j[3], turned[2][3];
-    lanes p[3], q[3], at[2][3][3];
-    lanes_mask same[3][3], shared[2][3];
+    lanes_bytes p[3], q[3], name[3], same[3][3], shared[2][3], turned[2][3];
     unsigned bits[2][3];
-    int s, k, c;
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        i[k] = lanes_index_through(a->corner + SC_LEAF_MAX * k, of_a);
-        j[k] = lanes_index_through(b->corner + SC_LEAF_MAX * k, of_b);
-        p[k] = lanes_pick(a->point, i[k]);
-        q[k] = lanes_pick(b->point, j[k]);
-    }
+    int k, c;
+    lanes_triples_through(&a->corner, of_a, p);
+    lanes_triples_through(&b->corner, of_b, q);
+    lanes_triples_through(&b->name, of_b, name);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         SC_UNROLL
-        for (c = 0; c < 3; c++) same[k][c] = lanes_same(p[k], q[c]);
+        for (c = 0; c < 3; c++) same[k][c] = lanes_bytes_same(p[k], name[c]);
     }
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        shared[0][k] = lanes_either(lanes_either(same[k][0], same[k][1]), same[k][2]);
-        shared[1][k] = lanes_either(lanes_either(same[0][k], same[1][k]), same[2][k]);
-        bits[0][k] = lanes_bits(shared[0][k]);
-        bits[1][k] = lanes_bits(shared[1][k]);
+        shared[0][k] = lanes_bytes_either(lanes_bytes_either(same[k][0], same[k][1]), same[k][2]);
+        shared[1][k] = lanes_bytes_either(lanes_bytes_either(same[0][k], same[1][k]), same[2][k]);
+        bits[0][k] = lanes_bytes_bits(shared[0][k]);
+        bits[1][k] = lanes_bytes_bits(shared[1][k]);
     }
     x->point = SC_KERNEL(just_one)(bits[0]) & SC_KERNEL(just_one)(bits[1]);
     x->edge = SC_KERNEL(just_two)(bits[0]) & SC_KERNEL(just_two)(bits[1]);
-    SC_KERNEL(turn)(shared[0], i, turned[0]);
-    SC_KERNEL(turn)(shared[1], j, turned[1]);
+    SC_KERNEL(turn)(shared[0], p, turned[0]);
+    SC_KERNEL(turn)(shared[1], q, turned[1]);
     /* the last of u twice if they share an edge: then the middle one is shared */
-    turned[1][1] =
-        lanes_index_choose(lanes_either(lanes_both(shared[1][0], shared[1][1]),
-                                        lanes_either(lanes_both(shared[1][1], shared[1][2]),
-                                                     lanes_both(shared[1][2], shared[1][0]))),
-                           turned[1][2], turned[1][1]);
-    lanes_corners_of(a->at, turned[0], 3, at[0]);
-    lanes_corners_of(b->at, turned[1] + 1, 2, at[1] + 1);
-    SC_UNROLL
-    for (s = 0; s < 2; s++) {
-        SC_UNROLL
-        for (k = 0; k < 2; k++) {
-            SC_UNROLL
-            for (c = 0; c < 3; c++) x->at[s][k][c] = lanes_subtract(at[s][k + 1][c], at[0][0][c]);
-        }
-    }
+    turned[1][1] = lanes_bytes_choose(
+        lanes_bytes_either(
+            lanes_bytes_both(shared[1][0], shared[1][1]),
+            lanes_bytes_both(shared[1][2], lanes_bytes_either(shared[1][0], shared[1][1]))),
+        turned[1][2], turned[1][1]);
+    lanes_edges_of(a->at, b->at, turned[0], turned[1] + 1, x->at);
 }
 
 static inline lanes SC_KERNEL(dot)(const lanes x[3], const lanes y[3])
@@ -254,8 +250,8 @@ static void SC_KERNEL(take_neighbors)(sc_query_state *state, const sc_leaf_pair 
     SC_KERNEL(neighborhood) a, b;
     SC_KERNEL(neighbors) x;
     unsigned at;
-    SC_KERNEL(find_points)(state, p->a, &a);
-    SC_KERNEL(find_points)(state, p->b, &b);
+    SC_KERNEL(find_points)(state, p->a, p->a, &a);
+    SC_KERNEL(find_points)(state, p->a, p->b, &b);
     memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
     memset(of_b + count, 0, SC_LANES_COUNT);
     for (at = 0; at < count; at += SC_LANES_COUNT) {

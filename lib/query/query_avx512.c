@@ -20,6 +20,7 @@
 #  include "base/lanes.h"
 #  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
+#  include "base/lanes_bytes.h"
 #  include "pose/points_kernel.h"
 #  include "query/ready_kernel.h"
 #  include "query/neighbor_kernel.h"
@@ -34,6 +35,7 @@ const sc_query_kernels sc_query_kernels_avx512 = {
     SC_KERNEL(leaf_itself), SC_KERNEL(leaf_pairs),    SC_KERNEL(decide),
     SC_KERNEL(project),     SC_KERNEL(are_edges_fine)};
 
+#  include "base/lanes_bytes_end.h"
 #  include "base/lanes_pick_end.h"
 #  include "base/lanes_double_end.h"
 #  include "base/lanes_end.h"
