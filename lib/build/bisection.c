@@ -36,7 +36,9 @@ typedef struct bisection {
     sc_bisect cut;
     void *user;
     sc_hierarchy *hierarchy;
-    float *centers;      /* 3 * triangle_count: sums of corners */
+    float *centers; /* 3 * triangle_count + 1: sums of corners */
+    float *normals; /* 3 * triangle_count + 1: unit normals */
+    sc_facets facets;
     float *costs;        /* 3 * triangle_count: of a cut along each side, see bisection.h */
     uint32_t *neighbor;  /* 3 * triangle_count: across each side, triangle_count if there is none */
     uint32_t *label;     /* triangle_count + 1: 2 * number of the patch at hand, + 1 on side 1 */
@@ -246,10 +248,10 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
     for (i = 0; i < count; i++)
         if (b->queue[b->component[triangles[i]]] == SC_NONE)
             b->queue[b->component[triangles[i]]] = triangles[i];
-    sc_straight_cut_direction(b->centers, b->queue, found, direction);
+    sc_direction_find(&b->facets, b->queue, found, direction);
     for (i = 0; i < found; i++) {
         const float *center = b->centers + 3 * (uint64_t)b->queue[i];
-        b->keys[i].a = sc_sort_key(sc_straight_cut_along(center, direction));
+        b->keys[i].a = sc_sort_key(sc_direction_along(center, direction));
         b->keys[i].b = i;
     }
     sc_sort_pairs(b->keys, found);
@@ -328,7 +330,7 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count,
         for (i = 0; i < count; i++) size[b->label[triangles[i]] & 1]++;
         even_out(b, triangles, count, size, capacity);
     } else {
-        sc_straight_cut_run(b->centers, triangles, count, left_target, b->refinement.gain,
+        sc_straight_cut_run(&b->facets, triangles, count, left_target, b->refinement.gain,
                             (uint64_t *)(void *)b->keys, b->label, low);
         size[0] = left_target;
         size[1] = count - left_target;
@@ -400,7 +402,7 @@ static void measure(bisection *b)
 {
     const sc_points *points = b->points;
     const uint32_t *corner = points->triangles, count = points->triangle_count;
-    float *normals = (float *)(void *)b->refinement.heap; /* 3 * triangle_count; not in use yet */
+    float *normals = b->normals;
     double size = 0, scale, sum = 0;
     float inverse;
     uint64_t i, corners = 3 * (uint64_t)count;
@@ -456,7 +458,8 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.cut = bisect;
     b.user = user;
     b.hierarchy = hierarchy;
-    b.centers = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(float));
+    b.centers = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count + 1, sizeof(float));
+    b.normals = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count + 1, sizeof(float));
     b.costs = (float *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(float));
     b.neighbor = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(uint32_t));
     b.label =
@@ -475,10 +478,13 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.refinement.heap = (sc_pair *)sc_scratch_take(scratch, 4 * (uint64_t)count, sizeof(sc_pair));
     if (bisect)
         b.graph = (int32_t *)sc_scratch_take(scratch, 7 * (uint64_t)count + 1, sizeof(int32_t));
-    if (!b.centers || !b.costs || !b.neighbor || !b.label || !b.component || !b.queue || !b.keys ||
-        !b.sizes || !b.refinement.gain || !b.refinement.state || !b.refinement.heap ||
-        (bisect && !b.graph))
+    if (!b.centers || !b.normals || !b.costs || !b.neighbor || !b.label || !b.component ||
+        !b.queue || !b.keys || !b.sizes || !b.refinement.gain || !b.refinement.state ||
+        !b.refinement.heap || (bisect && !b.graph))
         return SC_ERROR_MEMORY;
+    b.centers[3 * (uint64_t)count] = b.normals[3 * (uint64_t)count] = 0;
+    b.facets.centers = b.centers;
+    b.facets.normals = b.normals;
     measure(&b);
     for (t = 0; t < count; t++) hierarchy->order[t] = t;
     status = bisect_patch(&b, 0, count, leaves_for(count), 1, 0, &root);
@@ -493,6 +499,7 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     sc_scratch_give(scratch, b.label);
     sc_scratch_give(scratch, b.neighbor);
     sc_scratch_give(scratch, b.costs);
+    sc_scratch_give(scratch, b.normals);
     sc_scratch_give(scratch, b.centers);
     return status;
 }

@@ -1,6 +1,5 @@
 /*
- * Partition by recursive bisection: the built-in cut across the longest direction of a patch, or the
- * caller's (METIS).
+ * Partition by recursive bisection: the built-in cut (build/straight_cut.h), or the caller's (METIS).
  *
  * SPDX-License-Identifier: MIT
  *

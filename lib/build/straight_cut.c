@@ -14,43 +14,6 @@
 /* Patches of fewer triangles than this are not worth buckets. */
 enum { BUCKETS = 256 };
 
-/* Power iteration on the covariance of the centers, from the axis of greatest variance. */
-void sc_straight_cut_direction(const float *centers, const uint32_t *triangles, uint32_t count,
-                               float direction[3])
-{
-    const float *origin = centers + 3 * (uint64_t)triangles[0];
-    uint32_t i;
-    double sum[3] = {0, 0, 0}, m[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, at[3] = {0, 0, 0};
-    int j, k, round, axis = 0;
-    for (i = 0; i < count; i++) {
-        const float *c = centers + 3 * (uint64_t)triangles[i];
-        double x = (double)(c[0] - origin[0]), y = (double)(c[1] - origin[1]);
-        double z = (double)(c[2] - origin[2]);
-        sum[0] += x;
-        sum[1] += y;
-        sum[2] += z;
-        m[0][0] += x * x;
-        m[0][1] += x * y;
-        m[0][2] += x * z;
-        m[1][1] += y * y;
-        m[1][2] += y * z;
-        m[2][2] += z * z;
-    }
-    for (j = 0; j < 3; j++)
-        for (k = j; k < 3; k++) m[k][j] = m[j][k] -= sum[j] * sum[k] / count;
-    for (k = 1; k < 3; k++)
-        if (m[k][k] > m[axis][axis]) axis = k;
-    for (k = 0; k < 3; k++) at[k] = k == axis;
-    for (round = 0; round < 6; round++) {
-        double next[3] = {0, 0, 0}, size;
-        for (k = 0; k < 3; k++) next[k] = m[k][0] * at[0] + m[k][1] * at[1] + m[k][2] * at[2];
-        size = fabs(next[0]) + fabs(next[1]) + fabs(next[2]);
-        if (!(size > 0)) break;
-        for (k = 0; k < 3; k++) at[k] = next[k] / size;
-    }
-    for (k = 0; k < 3; k++) direction[k] = (float)at[k];
-}
-
 /* A triangle and where it is, to be compared as one number. */
 static uint64_t key_of(float along, uint32_t t)
 {
@@ -82,15 +45,15 @@ static void select_lowest(uint64_t *keys, uint32_t count, uint32_t left)
     }
 }
 
-void sc_straight_cut_run(const float *centers, const uint32_t *triangles, uint32_t count,
+void sc_straight_cut_run(const sc_facets *facets, const uint32_t *triangles, uint32_t count,
                          uint32_t left_target, float *along, uint64_t *keys, uint32_t *label,
                          uint32_t low)
 {
     float direction[3], least = HUGE_VALF, most = -HUGE_VALF, scale;
     uint32_t size[BUCKETS + 1], i, middle = 0, before = 0, candidates = 0;
-    sc_straight_cut_direction(centers, triangles, count, direction);
+    sc_direction_find(facets, triangles, count, direction);
     for (i = 0; i < count; i++) {
-        float at = sc_straight_cut_along(centers + 3 * (uint64_t)triangles[i], direction);
+        float at = sc_direction_along(facets->centers + 3 * (uint64_t)triangles[i], direction);
         along[i] = at;
         if (at < least) least = at;
         if (at > most) most = at;
