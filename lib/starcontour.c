@@ -557,7 +557,7 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
         sc_parallel_run(state);
     } else {
         sc_traversal_run(state);
-        sc_pairs_finish(state);
+        sc_pairs_finish(state, NULL);
     }
     if (state->timed) {
         uint64_t now = sc_clock_nanoseconds();

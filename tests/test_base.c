@@ -66,15 +66,23 @@ static void sorting(void)
     for (uint32_t count = 0; count < 100000; count = count < 70 ? count + 1 : count * 3 / 2) {
         sc_pair *pairs = (sc_pair *)test_allocate(count * sizeof(sc_pair));
         sc_pair *right = (sc_pair *)test_allocate(count * sizeof(sc_pair));
+        sc_pair *other = (sc_pair *)test_allocate(count * sizeof(sc_pair));
+        sc_pair *spare = (sc_pair *)test_allocate(count * sizeof(sc_pair));
         for (uint32_t shape = 0; shape < SHAPES; ++shape) {
-            for (uint32_t i = 0; i < count; ++i) right[i] = pairs[i] = element(shape, i, count);
+            for (uint32_t i = 0; i < count; ++i)
+                right[i] = pairs[i] = other[i] = element(shape, i, count);
             qsort(right, count, sizeof(sc_pair), compare);
             sc_sort_pairs(pairs, count);
+            sc_sort_with_room(other, spare, count);
             CHECK_MSG(count == 0 || memcmp(pairs, right, count * sizeof(sc_pair)) == 0,
                       "%" PRIu32 " pairs in order %" PRIu32, count, shape);
+            CHECK_MSG(count == 0 || memcmp(other, right, count * sizeof(sc_pair)) == 0,
+                      "%" PRIu32 " pairs in order %" PRIu32 ", with room", count, shape);
         }
         free(pairs);
         free(right);
+        free(other);
+        free(spare);
     }
 }
 

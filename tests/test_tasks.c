@@ -500,6 +500,38 @@ static void the_same_answers(void)
     CHECK(jobs > 200);
 }
 
+/* More pairs than the workspace has room for, when they are sorted. */
+static void very_many_pairs(void)
+{
+    fixture f;
+    if (start(&f, soup_cloth(32, 32), 0.5, 3)) {
+        sc_workspace_options o = for_workers(2);
+        sc_workspace *workspace = NULL;
+        CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+        for (uint32_t kind = 0; kind < 2 * METHODS; kind += METHODS) {
+            sc_query_options options = question(kind);
+            answer serial = ask(&f, f.workspace, &options, 1000000), shared;
+            uint64_t i, wrong = 0;
+            host h;
+            CHECK(serial.status == SC_OK);
+            CHECK_MSG(serial.result.count > 100000, "%u", (unsigned)serial.result.count);
+            for (i = 1; i < serial.result.count; ++i)
+                wrong += serial.pairs[i - 1].a > serial.pairs[i].a ||
+                         (serial.pairs[i - 1].a == serial.pairs[i].a &&
+                          serial.pairs[i - 1].b >= serial.pairs[i].b);
+            CHECK_MSG(wrong == 0, "kind %u: %u not in order", (unsigned)kind, (unsigned)wrong);
+            host_start(&h, HOST_THREADS, 2);
+            options.tasks = &h.tasks;
+            shared = ask(&f, workspace, &options, 1000000);
+            host_stop(&h);
+            CHECK(is_same(&serial, shared));
+            free(serial.pairs);
+        }
+        sc_workspace_free(workspace);
+    }
+    stop(&f);
+}
+
 /* Poses of any type and stride; one that is not finite is refused, wherever that is. */
 static void any_array_of_positions(void)
 {
@@ -1161,8 +1193,8 @@ static void steps_stopped_on_the_way(void)
 }
 
 SC_TEST_MAIN(SC_TEST(workspaces_for_workers), SC_TEST(workspaces_refused), SC_TEST(tasks_refused),
-             SC_TEST(the_same_answers), SC_TEST(any_array_of_positions), SC_TEST(any_pair),
-             SC_TEST(filters), SC_TEST(stopped_early), SC_TEST(stopped_on_the_way),
-             SC_TEST(steps_the_same), SC_TEST(steps_in_short_lists), SC_TEST(any_pair_of_a_step),
-             SC_TEST(any_positions_of_a_step), SC_TEST(steps_stopped_early),
-             SC_TEST(steps_stopped_on_the_way))
+             SC_TEST(the_same_answers), SC_TEST(very_many_pairs), SC_TEST(any_array_of_positions),
+             SC_TEST(any_pair), SC_TEST(filters), SC_TEST(stopped_early),
+             SC_TEST(stopped_on_the_way), SC_TEST(steps_the_same), SC_TEST(steps_in_short_lists),
+             SC_TEST(any_pair_of_a_step), SC_TEST(any_positions_of_a_step),
+             SC_TEST(steps_stopped_early), SC_TEST(steps_stopped_on_the_way))

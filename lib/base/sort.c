@@ -1,5 +1,5 @@
 /*
- * Sorting in place. See sort.h.
+ * Sorting. See sort.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -186,4 +186,22 @@ void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned 
         to = swapped;
     }
     if (from != pairs) memcpy(pairs, from, (size_t)count * sizeof *pairs);
+}
+
+void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count)
+{
+    uint64_t i, end;
+    uint32_t all = 0;
+    unsigned bits = 0;
+    if (count < BYTE_MIN) {
+        sc_sort_pairs(pairs, count);
+        return;
+    }
+    for (i = 0; i < count; i++) all |= pairs[i].a;
+    while (bits < 32 && all >> bits) bits++;
+    sc_sort_by_digits(pairs, spare, count, bits);
+    for (i = 0; i < count; i = end) {
+        for (end = i + 1; end < count && pairs[end].a == pairs[i].a;) end++;
+        if (end - i > 1) sc_sort_pairs(pairs + i, end - i);
+    }
 }

@@ -1,5 +1,5 @@
 /*
- * Sorting in place without allocation: by digits while there are many, then quicksort with a heapsort behind it,
+ * Sorting without allocation. In place: by digits while there are many, then quicksort with a heapsort behind it,
  * O(n log n) always.
  *
  * SPDX-License-Identifier: MIT
@@ -40,6 +40,10 @@ uint64_t sc_sort_split(sc_pair *pairs, uint64_t count);
 /* The same by the lowest `bits` bits of a, all others of which must be 0; pairs with equal a stay in
    order. Linear: a pass for every ten bits. spare has room for as many. */
 void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits);
+
+/* As sc_sort_pairs, in a third to a sixth of the time where there are thousands, unless many have the same a. spare has room
+   for as many. */
+void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count);
 
 /* Restores the heap (greatest pair first) below position at, where alone it may be broken. */
 void sc_sort_sift(sc_pair *heap, uint64_t count, uint64_t at);

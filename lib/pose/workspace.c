@@ -279,6 +279,14 @@ int sc_workspace_fits(sc_workspace *workspace, const sc_model *model)
     return memcmp(&wanted, workspace, sizeof wanted) == 0;
 }
 
+sc_pair *sc_workspace_spare(const sc_model *model, const sc_workspace *workspace, uint64_t *count)
+{
+    const uint64_t ready = all_ready_count(model) * (uint64_t)sizeof(sc_leaf_ready);
+    const uint64_t points = 4 * SC_LEAF_POINTS * sizeof(float) * (uint64_t)model->leaf_count;
+    *count = (ready ? ready : points) / sizeof(sc_pair);
+    return ready ? (sc_pair *)(void *)workspace->all_ready : (sc_pair *)(void *)workspace->point_at;
+}
+
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
 {
     if (workspace->pose_tick == 0x7fffffff) {

@@ -287,6 +287,9 @@ sc_workspace *sc_workspace_of_worker(sc_workspace *workspace, uint32_t worker);
 /* Gives the views of so many workers the pose that is in the workspace. */
 void sc_workspace_share(const sc_model *model, sc_workspace *workspace, uint32_t workers);
 
+/* Memory for so many pairs, at a time when no more of the pose is needed in this query: all that collide are found. */
+sc_pair *sc_workspace_spare(const sc_model *model, const sc_workspace *workspace, uint64_t *count);
+
 /* Starts a pose and a projection, whose ticks make everything older stale. */
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace);
 void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace);

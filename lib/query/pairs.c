@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/atomic.h"
+#include "base/jobs.h"
 #include "base/sort.h"
 #include "query/filter.h"
 
@@ -70,9 +71,27 @@ void sc_pairs_take_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
     for (i = 0; i < count; i++) sc_pairs_take(state, pairs[i].a, pairs[i].b);
 }
 
-void sc_pairs_finish(sc_query_state *state)
+static uint64_t split_pairs(void *context, uint64_t first, uint64_t count)
 {
-    if (state->options.output == SC_OUTPUT_PAIRS)
-        sc_sort_pairs(state->pairs,
-                      state->count < state->capacity ? state->count : state->capacity);
+    return sc_sort_split((sc_pair *)context + first, count);
+}
+
+static void order_pairs(void *context, uint64_t first, uint64_t count)
+{
+    sc_sort_pairs((sc_pair *)context + first, count);
+}
+
+/* With room besides, one thread takes no longer than two, each of which needs what the other has in its cache. */
+void sc_pairs_finish(sc_query_state *state, const sc_tasks *tasks)
+{
+    const uint64_t count = state->count < state->capacity ? state->count : state->capacity;
+    uint64_t room;
+    sc_pair *spare = sc_workspace_spare(state->model, state->workspace, &room);
+    if (state->options.output != SC_OUTPUT_PAIRS || count < 2) return;
+    if (count <= room)
+        sc_sort_with_room(state->pairs, spare, count);
+    else if (tasks)
+        sc_jobs_sort(tasks, count, split_pairs, order_pairs, state->pairs);
+    else
+        sc_sort_pairs(state->pairs, count);
 }

@@ -17,6 +17,7 @@ void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b);
 /* Takes several such. */
 void sc_pairs_take_all(sc_query_state *state, const sc_pair *pairs, uint32_t count);
 
-void sc_pairs_finish(sc_query_state *state);
+/* Sorts the array, at the end of a query: what is known of the pose is lost. Tasks, or NULL, share in that if there are very many. */
+void sc_pairs_finish(sc_query_state *state, const sc_tasks *tasks);
 
 #endif

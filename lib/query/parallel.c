@@ -18,7 +18,6 @@
 
 #include "base/atomic.h"
 #include "base/jobs.h"
-#include "base/sort.h"
 #include "query/filter.h"
 #include "query/pairs.h"
 #include "query/query_kernels.h"
@@ -492,26 +491,6 @@ static void walk_boxes(plan *p)
     do_parts(p);
 }
 
-/* ---- pairs ---- */
-
-static uint64_t split_pairs(void *context, uint64_t first, uint64_t count)
-{
-    return sc_sort_split((sc_pair *)context + first, count);
-}
-
-static void order_pairs(void *context, uint64_t first, uint64_t count)
-{
-    sc_sort_pairs((sc_pair *)context + first, count);
-}
-
-/* Sorts the caller's array. */
-static void sort_pairs(const plan *p)
-{
-    const sc_query_state *state = p->state;
-    if (state->options.output != SC_OUTPUT_PAIRS || !state->capacity) return;
-    sc_jobs_sort(p->tasks, state->count, split_pairs, order_pairs, state->pairs);
-}
-
 /* ---- all together ---- */
 
 /* Adds up what the workers counted, and puts the last of their pairs into the caller's array. Returns 0 if that
@@ -587,9 +566,9 @@ void sc_parallel_run(sc_query_state *state)
         state->workspace->boxes_ready = 0;
         if (state->timed) state->last_time = sc_clock_nanoseconds();
         sc_traversal_run(state);
-        sc_pairs_finish(state);
+        sc_pairs_finish(state, NULL);
         return;
     }
-    sort_pairs(&p);
+    sc_pairs_finish(state, p.tasks);
     if (state->filter && state->filter->accept) ask_function(state);
 }
