@@ -302,6 +302,53 @@ static void second_stage_extremes(void)
     }
 }
 
+/* Three vectors of integers below 2^bits whose determinant is 1, -1 or, if flat, 0. */
+static void make_lattice(double row[3][3], int bits, int flat)
+{
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) row[i][j] = i == j && !(flat && i == 2) ? any_sign(1.0) : 0.0;
+    }
+    for (int tries = 0; tries < 8 * bits; ++tries) {
+        uint32_t i = test_random_below(3), k = (i + 1 + test_random_below(2)) % 3;
+        int of_rows = (int)test_random_below(2), fits = 1;
+        double factor = any_sign(1.0 + test_random_below(4)), sum[3];
+        for (int j = 0; j < 3; ++j) {
+            sum[j] = of_rows ? row[i][j] + factor * row[k][j] : row[j][i] + factor * row[j][k];
+            fits = fits && fabs(sum[j]) < ldexp(1.0, bits);
+        }
+        for (int j = 0; fits && j < 3; ++j) *(of_rows ? &row[i][j] : &row[j][i]) = sum[j];
+    }
+}
+
+/* Determinants that are smaller than sums of two doubles can tell, and such as take few bits: from integers of up to
+   51 bits. Seen from a point that is not one, differences are rounded. */
+static void second_stage_lattices(void)
+{
+    tally t = {0, 0, 0, 0};
+    uint64_t hard;
+    for (uint32_t i = 0, n = test_iterations(8000); i < n; ++i) {
+        double points[4][3], row[3][3], from[3] = {0, 0, 0};
+        int bits = 3 + (int)test_random_below(49), moved = (int)test_random_below(2);
+        make_lattice(row, bits, test_random_below(3) == 0);
+        for (int j = 0; j < 3; ++j) {
+            if (moved) from[j] = (double)test_random_below(1u << (bits < 30 ? bits : 30));
+            points[0][j] = from[j];
+            for (int k = 0; k < 3; ++k) points[k + 1][j] = from[j] + row[k][j];
+        }
+        compare(points, 3, &t);
+    }
+    CHECK(t.hard > t.trials / 10 && t.zeros > t.trials / 10);
+    hard = t.hard;
+    for (uint32_t i = 0, n = test_iterations(8000); i < n; ++i) {
+        double points[4][3];
+        make_lattice(points + 1, 30 + (int)test_random_below(22), 1);
+        for (int j = 0; j < 3; ++j)
+            points[0][j] = ldexp(uniform(), -20 - (int)test_random_below(20));
+        compare(points, 3, &t);
+    }
+    CHECK(t.hard > hard + t.trials / 10);
+}
+
 static void third_stage(void)
 {
     static const struct {
@@ -346,4 +393,5 @@ static void permutations(void)
 }
 
 SC_TEST_MAIN(SC_TEST(conventions), SC_TEST(first_stage), SC_TEST(second_stage),
-             SC_TEST(second_stage_extremes), SC_TEST(third_stage), SC_TEST(permutations))
+             SC_TEST(second_stage_extremes), SC_TEST(second_stage_lattices), SC_TEST(third_stage),
+             SC_TEST(permutations))

@@ -10,7 +10,9 @@
  * is_moderate ensures beforehand.
  *
  * Cost: the longest expansion has 192 terms, in theory; in practice it has a handful. It is on the
- * stack.
+ * stack. Before, determinants of three dimensions are tried in plain arithmetic, where differences have
+ * so few bits that it is exact, and in sums of two doubles, which say the sign of nearly all that is not
+ * zero: 10 and 50 ns instead of 250.
  */
 #include "base/predicates.h"
 #include "base/wide.h"
@@ -104,6 +106,142 @@ static int add_product(double *terms, int count, double scale, const double *lef
     return count;
 }
 
+/* ------------------------------------------------------------------------------------------------
+ * Signs of determinants of three differences each without expansions, as far as that is certain.
+ */
+
+enum { UNCERTAIN = 2 };
+
+/* Differences of b, c and d from a: their values, and what rounding lost. */
+typedef struct differences {
+    double value[3][3], tail[3][3];
+    int have_tails;
+} differences;
+
+static void find_differences(differences *x, const double a[3], const double b[3],
+                             const double c[3], const double d[3])
+{
+    const double *const to[3] = {b, c, d};
+    x->have_tails = 0;
+    for (int k = 0; k < 3; ++k) {
+        for (int i = 0; i < 3; ++i) {
+            x->value[k][i] = add_exactly(to[k][i], -a[i], &x->tail[k][i]);
+            x->have_tails |= x->tail[k][i] != 0.0;
+        }
+    }
+}
+
+/*
+ * Whether all are multiples of one power of two and below 2^16 times that. Then minors are below 2^33 times its square
+ * and the determinant below 2^51 times its cube, and all of them are exact in plain arithmetic. What is added here, and
+ * taken away again, leaves of a number the multiple next to it.
+ */
+static int have_few_bits(double value[3][3])
+{
+    double largest = 0.0, power;
+    uint64_t bits;
+    int few = 1;
+    for (int i = 0; i < 3; ++i) {
+        double u = fabs(value[0][i]), v = fabs(value[1][i]), w = fabs(value[2][i]);
+        double larger = u > v ? u : v;
+        larger = larger > w ? larger : w;
+        largest = largest > larger ? largest : larger;
+    }
+    memcpy(&bits, &largest, sizeof bits);
+    bits &= UINT64_C(0x7ff) << 52;
+    memcpy(&power, &bits, sizeof power);
+    power *= 0x1.8p+37;
+    for (int k = 0; k < 3; ++k) {
+        for (int i = 0; i < 3; ++i) few &= (value[k][i] + power) - power == value[k][i];
+    }
+    return few;
+}
+
+static int plain_sign(double value[3][3])
+{
+    double *u = value[0], *v = value[1], *w = value[2];
+    double determinant = (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
+                         (u[0] * v[1] - u[1] * v[0]) * w[2];
+    return (determinant > 0.0) - (determinant < 0.0);
+}
+
+/* A factor of several products: a double and its halves. */
+typedef struct factor {
+    double value, high, low;
+} factor;
+
+static factor make_factor(double value)
+{
+    factor f;
+    f.value = value;
+    f.high = split(value, &f.low);
+    return f;
+}
+
+static double multiply_factors(const factor *a, const factor *b, double *error)
+{
+    double product = a->value * b->value;
+    double rest = a->high * b->high - product;
+    rest += a->high * b->low;
+    rest += a->low * b->high;
+    *error = rest + a->low * b->low;
+    return product;
+}
+
+/*
+ * The determinant as a sum of two doubles.
+ *
+ * Let u = 2^-53, P = |u_j v_k| + |u_k v_j| of a minor, M the sum of the three P |w_i|, and all to first order. A minor is
+ * h + l, the difference of two products and what their roundings and that of it lost, but for the roundings of the latter
+ * two sums: 3 u^2 P. With w_i it is a sum of h w_i, of which the three together are made the first double, and of what the
+ * three products and the two sums lost, u M and 2 u M, and the three l w_i, of which the |l| are 2 u P at most, each
+ * rounded: 2 u^2 M. What the nine differences lost adds terms of 3 u M together, rounded six times at most, and leaves out
+ * 3 u^2 M. The second double is the sum of nine terms, of at most 8 u M together, rounded eight times each: 64 u^2 M. All
+ * that is below 100 u^2 M; the bound is 256 u^2 M, room for what is not of first order and for the rounding of M included.
+ */
+static int sign_of_two(const differences *x)
+{
+    factor u[3], v[3], w[3];
+    double first = 0.0, second = 0.0, magnitude = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        u[i] = make_factor(x->value[0][i]);
+        v[i] = make_factor(x->value[1][i]);
+        w[i] = make_factor(x->value[2][i]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        double left_error, right_error, minor_error, product_error, sum_error;
+        double left = multiply_factors(&u[j], &v[k], &left_error);
+        double right = multiply_factors(&u[k], &v[j], &right_error);
+        double high = add_exactly(left, -right, &minor_error);
+        double low = minor_error + (left_error - right_error);
+        factor minor = make_factor(high);
+        double product = multiply_factors(&minor, &w[i], &product_error);
+        first = add_exactly(first, product, &sum_error);
+        second += sum_error + (product_error + low * w[i].value);
+        magnitude += (fabs(left) + fabs(right)) * fabs(w[i].value);
+        if (x->have_tails) {
+            const double *ut = x->tail[0], *vt = x->tail[1], *wt = x->tail[2];
+            second += high * wt[i] + ((ut[j] * v[k].value + u[j].value * vt[k]) -
+                                      (ut[k] * v[j].value + u[k].value * vt[j])) *
+                                         w[i].value;
+        }
+    }
+    if (first + second > 0x1p-98 * magnitude) return 1;
+    if (first + second < -0x1p-98 * magnitude) return -1;
+    return UNCERTAIN;
+}
+
+static int find_sign_3d(const double a[3], const double b[3], const double c[3], const double d[3])
+{
+    differences x;
+    find_differences(&x, a, b, c, d);
+    if (!x.have_tails && have_few_bits(x.value)) return plain_sign(x.value);
+    return sign_of_two(&x);
+}
+
+/* ------------------------------------------------------------------------------------------------ */
+
 static difference subtract(double a, double b)
 {
     difference result;
@@ -138,13 +276,14 @@ static int is_moderate(const double *coordinates, int count)
 {
     const uint64_t low = (uint64_t)(1023 - 250) << 52;
     const uint64_t high = (uint64_t)(1023 + 251) << 52;
+    int moderate = 1;
     for (int i = 0; i < count; ++i) {
         uint64_t bits;
         memcpy(&bits, &coordinates[i], sizeof bits);
         bits &= UINT64_MAX >> 1;
-        if (bits != 0 && (bits < low || bits >= high)) return 0;
+        moderate &= (bits == 0) | ((bits >= low) & (bits < high));
     }
-    return 1;
+    return moderate;
 }
 
 /* The sum, to within 2^-51 of it: the terms before the last two add up to less than the lowest bit of
@@ -213,7 +352,10 @@ int sc_predicates_orient3d_exact(const double a[3], const double b[3], const dou
                                  const double d[3])
 {
     double terms[DETERMINANT_TERMS];
+    int sign;
     if (!all_moderate_3d(a, b, c, d)) return sc_wide_orient3d(a, b, c, d);
+    sign = find_sign_3d(a, b, c, d);
+    if (sign != UNCERTAIN) return sign;
     return sign_of_last(terms, expand_3d(terms, a, b, c, d));
 }
 

@@ -194,19 +194,18 @@ static inline void SC_KERNEL(look_along_level)(SC_KERNEL(edges) * e, int edge,
 }
 
 /* Decides eight pairs that share nothing, if no corner may be in the other's plane; else returns 0. */
-static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, sc_verdict *verdict)
+static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, SC_KERNEL(eight) * x,
+                                            sc_verdict *verdict)
 {
-    SC_KERNEL(eight) x;
     SC_KERNEL(edges) e;
     unsigned certain[2], apart = 0, open = 0;
     uint64_t meets = 0;
     int s, k;
-    SC_KERNEL(read_eight)(pairs, &x);
     SC_UNROLL
     for (s = 0; s < 2; s++) {
-        const doubles *side = x.side[s];
+        const doubles *side = x->side[s];
         doubles least = doubles_smaller_size(doubles_smaller_size(side[0], side[1]), side[2]);
-        certain[s] = doubles_bits(doubles_below(x.bound, least));
+        certain[s] = doubles_bits(doubles_below(x->bound, least));
         SC_UNROLL
         for (k = 0; k < 3; k++) e.sides[3 * s + k] = doubles_differ(side[k], side[(k + 1) % 3]);
         apart |= certain[s] & ~(e.sides[3 * s] | e.sides[3 * s + 1] | e.sides[3 * s + 2]);
@@ -215,17 +214,17 @@ static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, sc_verdi
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         doubles across[3];
-        across[0] = x.line[0][k];
-        across[1] = x.line[1][k];
-        across[2] = x.line[2][k];
-        SC_KERNEL(look_along)(&e, k, x.line[k], x.bound);
-        SC_KERNEL(look_along)(&e, 3 + k, across, x.bound);
+        across[0] = x->line[0][k];
+        across[1] = x->line[1][k];
+        across[2] = x->line[2][k];
+        SC_KERNEL(look_along)(&e, k, x->line[k], x->bound);
+        SC_KERNEL(look_along)(&e, 3 + k, across, x->bound);
         open |= e.open[k] | e.open[3 + k];
     }
     open &= ~apart;
     if (open) {
         doubles_mask level[3][3];
-        unsigned found = SC_KERNEL(find_level_edges)(x.at, level);
+        unsigned found = SC_KERNEL(find_level_edges)(x->at, level);
         if (open & ~found) return 0;
         open = 0;
         SC_UNROLL
@@ -234,12 +233,12 @@ static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, sc_verdi
             doubles_mask level_across[3];
             SC_UNROLL
             for (s = 0; s < 3; s++) {
-                across[s] = x.line[s][k];
+                across[s] = x->line[s][k];
                 level_across[s] = level[s][k];
             }
-            SC_KERNEL(look_along_level)(&e, k, x.line[k], level[k], x.bound, pairs->proper);
+            SC_KERNEL(look_along_level)(&e, k, x->line[k], level[k], x->bound, pairs->proper);
             SC_KERNEL(look_along_level)
-            (&e, 3 + k, across, level_across, x.bound, pairs->proper);
+            (&e, 3 + k, across, level_across, x->bound, pairs->proper);
             open |= e.open[k] | e.open[3 + k];
         }
         if (open & ~apart) return 0;
@@ -405,29 +404,28 @@ static unsigned SC_KERNEL(find_zeros)(const SC_KERNEL(eight) * x, unsigned some,
 }
 
 /* Decides eight pairs, edge by edge, as far as that is certain. */
-static SC_NOINLINE void SC_KERNEL(decide_rest)(const sc_pair_lanes *pairs, sc_verdict *verdict)
+static SC_NOINLINE void SC_KERNEL(decide_rest)(const sc_pair_lanes *pairs,
+                                               const SC_KERNEL(eight) * x, sc_verdict *verdict)
 {
-    SC_KERNEL(eight) x;
     SC_KERNEL(signs) signs;
     unsigned apart = 0, unsure, meets[6], open[6];
     int s, k, i;
-    SC_KERNEL(read_eight)(pairs, &x);
     for (s = 0; s < 2; s++) {
         unsigned above = 255, below = 255;
         for (k = 0; k < 3; k++) {
-            signs.side[s][k] = SC_KERNEL(sign_of)(x.side[s][k], x.bound);
+            signs.side[s][k] = SC_KERNEL(sign_of)(x->side[s][k], x->bound);
             above &= signs.side[s][k].above | pairs->shared[s][k];
             below &= signs.side[s][k].below | pairs->shared[s][k];
         }
         apart |= above | below;
     }
     for (k = 0; k < 3; k++)
-        for (i = 0; i < 3; i++) signs.line[k][i] = SC_KERNEL(sign_of)(x.line[k][i], x.bound);
+        for (i = 0; i < 3; i++) signs.line[k][i] = SC_KERNEL(sign_of)(x->line[k][i], x->bound);
     unsure = SC_KERNEL(decide_edges)(pairs, &signs, meets, open) & ~apart;
     if (unsure) {
-        unsigned level = SC_KERNEL(find_zeros)(&x, unsure, &signs);
+        unsigned level = SC_KERNEL(find_zeros)(x, unsure, &signs);
         unsure = SC_KERNEL(decide_edges)(pairs, &signs, meets, open) & ~apart;
-        if (unsure & level) apart |= SC_KERNEL(are_beside)(&x, pairs->shared);
+        if (unsure & level) apart |= SC_KERNEL(are_beside)(x, pairs->shared);
     }
     verdict->meets = verdict->unsure = 0;
     for (k = 0; k < 6; k++) {
@@ -438,6 +436,8 @@ static SC_NOINLINE void SC_KERNEL(decide_rest)(const sc_pair_lanes *pairs, sc_ve
 
 static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
 {
-    if (pairs->shares || !SC_KERNEL(decide_most)(pairs, verdict))
-        SC_KERNEL(decide_rest)(pairs, verdict);
+    SC_KERNEL(eight) x;
+    SC_KERNEL(read_eight)(pairs, &x);
+    if (pairs->shares || !SC_KERNEL(decide_most)(pairs, &x, verdict))
+        SC_KERNEL(decide_rest)(pairs, &x, verdict);
 }

@@ -164,15 +164,19 @@ int sc_primitives_segment_meets(const double p[3], const double q[3],
  * Pairs of triangles that share at most one vertex and repeat none
  */
 
-enum { UNKNOWN = 2 };
+enum { UNKNOWN = 2, UNKNOWN_AXIS = 3 };
 
-/* The signs of a pair. */
+/* The signs of a pair. Those in a projection are found only if the triangles are in one plane. */
 typedef struct pair_signs {
     const sc_triangle_pair *pair;
     uint64_t *fallbacks;
-    int a_side[3];   /* of the vertices of a against the plane of b, seen from its normal */
-    int b_side[3];   /* of the vertices of b against the plane of a */
-    int cross[3][3]; /* orient3d of edge i of a and edge j of b, or UNKNOWN */
+    int a_side[3];     /* of the vertices of a against the plane of b, seen from its normal */
+    int b_side[3];     /* of the vertices of b against the plane of a */
+    int cross[3][3];   /* orient3d of edge i of a and edge j of b, or UNKNOWN */
+    int axis[2];       /* as find_axis has it for a and b, or UNKNOWN_AXIS */
+    int inside[2];     /* along that axis, the sign of their own corners */
+    int flat_axis;     /* along which the following are, or UNKNOWN_AXIS */
+    int flat[2][3][3]; /* edge i of a against vertex j of b, then the other way round; or UNKNOWN */
 } pair_signs;
 
 static int find_cross(pair_signs *signs, int i, int j)
@@ -185,13 +189,23 @@ static int find_cross(pair_signs *signs, int i, int j)
     return signs->cross[i][j];
 }
 
-static void find_sides(int side[3], const double *const points[3], const double *const plane_of[3],
+static void find_sides(int side[3], const double *const points[3], const sc_predicates_plane *plane,
                        int shared, uint64_t *fallbacks)
 {
-    sc_predicates_plane plane = sc_predicates_make_plane(plane_of[0], plane_of[1], plane_of[2]);
     for (int k = 0; k < 3; ++k) {
-        side[k] = k == shared ? 0 : sc_predicates_side_of_plane(&plane, points[k], fallbacks);
+        side[k] = k == shared ? 0 : sc_predicates_side_of_plane(plane, points[k], fallbacks);
     }
+}
+
+/* Whether the points of a plane are certainly not on one line: a component of the normal is not zero. */
+static int has_area(const sc_predicates_plane *plane)
+{
+    int certain = 0;
+    for (int i = 0; i < 3; ++i) {
+        double bound = SC_PREDICATES_BOUND_2D * plane->magnitude[i] + SC_PREDICATES_BOUND_TINY;
+        certain |= fabs(plane->normal[i]) > bound;
+    }
+    return certain;
 }
 
 /*
@@ -215,16 +229,24 @@ static int is_on_one_side(const int side[3], int shared)
 static int start_signs(pair_signs *signs, const sc_triangle_pair *pair, int m, int n,
                        uint64_t *fallbacks)
 {
+    sc_predicates_plane plane = sc_predicates_make_plane(pair->b[0], pair->b[1], pair->b[2]);
+    const int *side = signs->a_side;
     signs->pair = pair;
     signs->fallbacks = fallbacks;
-    find_sides(signs->a_side, pair->a, pair->b, m, fallbacks);
-    if (is_on_one_side(signs->a_side, m)) return 0;
-    find_sides(signs->b_side, pair->b, pair->a, n, fallbacks);
-    if (is_on_one_side(signs->b_side, n)) return 0;
+    find_sides(signs->a_side, pair->a, &plane, m, fallbacks);
+    if (is_on_one_side(side, m)) return 0;
+    if (side[0] == 0 && side[1] == 0 && side[2] == 0 && has_area(&plane)) {
+        for (int k = 0; k < 3; ++k) signs->b_side[k] = 0; /* all six are in its plane */
+    } else {
+        plane = sc_predicates_make_plane(pair->a[0], pair->a[1], pair->a[2]);
+        find_sides(signs->b_side, pair->b, &plane, n, fallbacks);
+        if (is_on_one_side(signs->b_side, n)) return 0;
+    }
 
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) signs->cross[i][j] = UNKNOWN;
     }
+    signs->axis[0] = signs->axis[1] = signs->flat_axis = UNKNOWN_AXIS;
     if (m >= 0) {
         /* An edge through the shared vertex and the opposite edge of the other triangle make up that
          * triangle and a point: the same four points as those of a side, differently ordered. */
@@ -237,6 +259,46 @@ static int start_signs(pair_signs *signs, const sc_triangle_pair *pair, int m, i
     return 1;
 }
 
+/* The sign of edge i of a triangle (0: a, 1: b) against vertex j of the other, along an axis. */
+static int find_flat(pair_signs *signs, int of, int i, int j, int axis)
+{
+    if (signs->flat_axis != axis) {
+        for (int k = 0; k < 18; ++k) signs->flat[k / 9][k / 3 % 3][k % 3] = UNKNOWN;
+        signs->flat_axis = axis;
+    }
+    int *sign = &signs->flat[of][i][j];
+    if (*sign == UNKNOWN) {
+        const double *const *mine = of ? signs->pair->b : signs->pair->a;
+        const double *const *other = of ? signs->pair->a : signs->pair->b;
+        *sign = projected_sign(mine[i], mine[next(i)], other[j], axis, signs->fallbacks);
+    }
+    return *sign;
+}
+
+/* As flat_segment_meets, of edge k of a triangle, with signs that are found once. */
+static int flat_edge_meets(pair_signs *signs, int of, int k)
+{
+    const double *const *mine = of ? signs->pair->b : signs->pair->a;
+    const double *const *t = of ? signs->pair->a : signs->pair->b;
+    int *axis = &signs->axis[1 - of], inside;
+    if (*axis == UNKNOWN_AXIS) {
+        *axis = find_axis(t[0], t[1], t[2], signs->fallbacks);
+        if (*axis >= 0)
+            signs->inside[1 - of] = projected_sign(t[0], t[1], t[2], *axis, signs->fallbacks);
+    }
+    if (*axis < 0) return flat_segment_meets(mine[k], mine[next(k)], t, signs->fallbacks);
+    inside = signs->inside[1 - of];
+    for (int i = 0; i < 3; ++i) {
+        if (find_flat(signs, 1 - of, i, k, *axis) == -inside &&
+            find_flat(signs, 1 - of, i, next(k), *axis) == -inside) {
+            return 0;
+        }
+    }
+    int side = find_flat(signs, of, k, 0, *axis);
+    return side == 0 || find_flat(signs, of, k, 1, *axis) != side ||
+           find_flat(signs, of, k, 2, *axis) != side;
+}
+
 /* Whether an edge (bit number 0 to 5) meets the other triangle. */
 static int edge_meets(pair_signs *signs, int edge, int proper)
 {
@@ -245,12 +307,7 @@ static int edge_meets(pair_signs *signs, int edge, int proper)
     int from = side[k], to = side[next(k)];
     if (from * to > 0) return 0;
     if (proper && from * to == 0) return 0;
-    if (from == 0 && to == 0) {
-        const sc_triangle_pair *pair = signs->pair;
-        const double *const *mine = of_a ? pair->a : pair->b;
-        return flat_segment_meets(mine[k], mine[next(k)], of_a ? pair->b : pair->a,
-                                  signs->fallbacks);
-    }
+    if (from == 0 && to == 0) return flat_edge_meets(signs, !of_a, k);
     int crosses[3];
     for (int l = 0; l < 3; ++l) {
         crosses[l] = of_a ? find_cross(signs, k, l) : find_cross(signs, l, k);
