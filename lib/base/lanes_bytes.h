@@ -294,41 +294,25 @@ static inline void lanes_triples_through(const lanes_triples *t, const uint8_t *
 
 #  if SC_LANES_QUADS
 
-/* Where points of these numbers are in a table, in bytes: block i % 4, place i / 4. */
-static inline void SC_KERNEL(sc_lanes_places)(lanes_bytes numbers, uint8_t place[SC_LANES_COUNT])
-{
-#    if SC_LANES_SSE2
-    const __m128i block = _mm_set1_epi8((char)0xc0), rest = _mm_set1_epi8(0x30);
-    numbers = _mm_or_si128(_mm_and_si128(_mm_slli_epi16(numbers, 6), block),
-                           _mm_and_si128(_mm_slli_epi16(numbers, 2), rest));
-#    else
-    numbers = numbers << 6 | (numbers << 2 & 0x30);
-#    endif
-    lanes_bytes_store(place, numbers);
-}
-static SC_INLINE sc_floats4 SC_KERNEL(sc_lanes_at)(const float *table, uint8_t place)
-{
-    return SC_QUAD(loadu_ps)(table + place / sizeof *table);
-}
 static SC_INLINE void lanes_edges_of(const float *a, const float *b, const lanes_bytes of_a[3],
                                      const lanes_bytes of_b[2], lanes edge[2][2][3])
 {
     uint8_t place[5][SC_LANES_COUNT];
     int i, j, k, c;
     SC_UNROLL
-    for (k = 0; k < 3; k++) SC_KERNEL(sc_lanes_places)(of_a[k], place[k]);
-    SC_UNROLL
-    for (k = 0; k < 2; k++) SC_KERNEL(sc_lanes_places)(of_b[k], place[3 + k]);
+    for (k = 0; k < 5; k++) {
+        lanes_bytes_store(place[k], k < 3 ? of_a[k] : of_b[k - 3]);
+        sc_quad_places(place[k], place[k]);
+    }
     for (i = 0; i < 4; i++) {
         sc_floats4 from[4], x[4];
         SC_UNROLL
-        for (j = 0; j < 4; j++) from[j] = SC_KERNEL(sc_lanes_at)(a, place[0][4 * i + j]);
+        for (j = 0; j < 4; j++) from[j] = sc_quad_at(a, place[0][4 * i + j]);
         SC_UNROLL
         for (k = 0; k < 4; k++) {
             SC_UNROLL
             for (j = 0; j < 4; j++)
-                x[j] = SC_QUAD(sub_ps)(
-                    SC_KERNEL(sc_lanes_at)(k < 2 ? a : b, place[1 + k][4 * i + j]), from[j]);
+                x[j] = SC_QUAD(sub_ps)(sc_quad_at(k < 2 ? a : b, place[1 + k][4 * i + j]), from[j]);
             sc_quad_transpose(x);
             SC_UNROLL
             for (c = 0; c < 3; c++) edge[k / 2][k % 2][c].v[i] = x[c];

@@ -288,26 +288,35 @@ static inline void lanes_corners(const lanes at[3], const uint8_t *where, lanes 
 static inline void lanes_corners_at(const float *at, const uint8_t *where, lanes corner[3][3])
 {
     sc_floats4 x[4];
+    uint8_t place[SC_LANES_COUNT];
     int c, i, k;
-    for (c = 0; c < 3; c++)
-        for (i = 0; i < 4; i++, where += 4) {
+    for (c = 0; c < 3; c++, where += SC_LANES_COUNT) {
+        sc_quad_places(where, place);
+        for (i = 0; i < 4; i++) {
             SC_UNROLL
-            for (k = 0; k < 4; k++)
-                x[k] = SC_QUAD(loadu_ps)(at + 16 * (where[k] & 3) + where[k] / 4 * 4);
+            for (k = 0; k < 4; k++) x[k] = sc_quad_at(at, place[4 * i + k]);
             sc_quad_transpose(x);
             SC_UNROLL
             for (k = 0; k < 3; k++) corner[c][k].v[i] = x[k];
         }
+    }
 }
 static inline void lanes_corners_through(const float *at, const uint8_t *where,
                                          const uint8_t *numbers, lanes corner[3][3])
 {
-    uint8_t through[3 * SC_LANES_COUNT];
-    int c, i;
-    for (c = 0; c < 3; c++)
-        for (i = 0; i < SC_LANES_COUNT; i++)
-            through[SC_LANES_COUNT * c + i] = where[SC_LANES_COUNT * c + numbers[i]];
-    lanes_corners_at(at, through, corner);
+    sc_floats4 x[4];
+    uint8_t place[SC_LANES_COUNT];
+    int c, i, k;
+    for (c = 0; c < 3; c++, where += SC_LANES_COUNT) {
+        sc_quad_places(where, place);
+        for (i = 0; i < 4; i++) {
+            SC_UNROLL
+            for (k = 0; k < 4; k++) x[k] = sc_quad_at(at, place[numbers[4 * i + k]]);
+            sc_quad_transpose(x);
+            SC_UNROLL
+            for (k = 0; k < 3; k++) corner[c][k].v[i] = x[k];
+        }
+    }
 }
 
 #else

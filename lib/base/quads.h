@@ -53,10 +53,23 @@ static inline int sc_quad_every(sc_floats4 a)
 {
     return _mm_movemask_ps(a) == 15;
 }
-/* Two of a, then two of b, rounded. */
+/* Two of a, then two of b, or 0, rounded. */
 static inline sc_floats4 sc_quad_rounded(sc_doubles2 a, sc_doubles2 b)
 {
     return _mm_movelh_ps(_mm_cvtpd_ps(a), _mm_cvtpd_ps(b));
+}
+static inline sc_floats4 sc_quad_rounded_two(sc_doubles2 a)
+{
+    return _mm_cvtpd_ps(a);
+}
+/* Where points of sixteen numbers below sixteen are in a table of turned places (see base/lanes.h), in bytes: block
+   i % 4, place i / 4. */
+static inline void sc_quad_places(const uint8_t *numbers, uint8_t *place)
+{
+    __m128i n = _mm_loadu_si128((const __m128i *)(const void *)numbers);
+    __m128i block = _mm_and_si128(_mm_slli_epi16(n, 6), _mm_set1_epi8((char)0xc0));
+    n = _mm_or_si128(block, _mm_and_si128(_mm_slli_epi16(n, 2), _mm_set1_epi8(0x30)));
+    _mm_storeu_si128((__m128i *)(void *)place, n);
 }
 /* x[i][k] becomes x[k][i]. */
 static inline void sc_quad_transpose(sc_floats4 x[4])
@@ -179,6 +192,17 @@ static inline sc_floats4 sc_quad_rounded(sc_doubles2 a, sc_doubles2 b)
 {
     return (sc_floats4){(float)a[0], (float)a[1], (float)b[0], (float)b[1]};
 }
+static inline sc_floats4 sc_quad_rounded_two(sc_doubles2 a)
+{
+    return (sc_floats4){(float)a[0], (float)a[1], 0, 0};
+}
+static inline void sc_quad_places(const uint8_t *numbers, uint8_t *place)
+{
+    sc_bytes16 n;
+    memcpy(&n, numbers, sizeof n);
+    n = n << 6 | (n << 2 & 0x30);
+    memcpy(place, &n, sizeof n);
+}
 static inline void sc_quad_transpose(sc_floats4 x[4])
 {
     sc_floats4 low = SC_QUAD_OF(x[0], x[1], 0, 4, 1, 5), high = SC_QUAD_OF(x[0], x[1], 2, 6, 3, 7);
@@ -193,6 +217,16 @@ static inline void sc_quad_transpose(sc_floats4 x[4])
 #else
 
 #  define SC_QUADS 0
+
+#endif
+
+#if SC_QUADS
+
+/* The point that sc_quad_places says. */
+static SC_INLINE sc_floats4 sc_quad_at(const float *table, uint8_t place)
+{
+    return SC_QUAD(loadu_ps)(table + place / sizeof *table);
+}
 
 #endif
 

@@ -160,7 +160,6 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
         float *to = each + 32 * (i % 2) + 4 * (i / 2);
         sc_floats4 a, b;
         if (is_double) {
-            const sc_floats4 none = SC_QUAD(set1_ps)(0);
             sc_doubles2 x =
                 SC_QUAD(sub_pd)(SC_QUAD(loadu_pd)((const double *)(const void *)p), f->center[0]);
             sc_doubles2 y =
@@ -168,9 +167,9 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
             sc_doubles2 z = SC_QUAD(sub_pd)(SC_QUAD(setr_pd)(SC_KERNEL(sc_points_one)(p + 16),
                                                              SC_KERNEL(sc_points_one)(q + 16)),
                                             f->center[1]);
-            sc_floats4 xy = sc_quad_rounded(x, y), zz = sc_quad_rounded(z, z);
-            a = SC_QUAD_SHUFFLE(xy, SC_QUAD_SHUFFLE(zz, none, 0, 0, 0, 0), 0, 1, 0, 2);
-            b = SC_QUAD_SHUFFLE(xy, SC_QUAD_SHUFFLE(zz, none, 1, 1, 0, 0), 2, 3, 0, 2);
+            sc_floats4 xy = sc_quad_rounded(x, y), zz = sc_quad_rounded_two(z);
+            a = SC_QUAD_SHUFFLE(xy, zz, 0, 1, 0, 2);
+            b = SC_QUAD_SHUFFLE(xy, zz, 2, 3, 1, 2);
         } else {
             a = SC_QUAD(loadu_ps)((const float *)(const void *)p);
             b = SC_QUAD(loadu_ps)((const float *)(const void *)q);
