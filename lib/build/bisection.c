@@ -58,12 +58,13 @@ static int is_with(const bisection *b, uint32_t t, uint32_t u, int by_side)
 }
 
 /* Numbers the components of a patch in the order of their first triangles, where crossing from side 0 to side 1
-   does or does not count as connected, and writes their sizes. Triangles of a patch are ascending: so a
-   pass from first to last joins each with those before it, and needs no search through memory. */
+   does or does not count as connected, and writes their sizes; returns how many. If they are no more than least,
+   there are no numbers. Triangles of a patch are ascending: so a pass from first to last joins each with those before
+   it, and needs no search through memory. */
 static uint32_t number_components(bisection *b, const uint32_t *triangles, uint32_t count,
-                                  int by_side)
+                                  int by_side, uint32_t least)
 {
-    uint32_t *parent = b->queue, found = 0, i, k; /* of each triangle: a lower one, or itself */
+    uint32_t *parent = b->queue, found = count, i, k; /* of each triangle: a lower one, or itself */
     for (i = 0; i < count; i++) {
         uint32_t t = triangles[i], root = t;
         parent[t] = t;
@@ -72,12 +73,15 @@ static uint32_t number_components(bisection *b, const uint32_t *triangles, uint3
             if (u >= t || !is_with(b, t, u, by_side)) continue;
             while (parent[u] != u) u = parent[u] = parent[parent[u]];
             if (u == root) continue;
+            found--;
             if (u < root)
                 root = parent[root] = u;
             else
                 parent[u] = root;
         }
     }
+    if (found <= least) return found;
+    found = 0;
     for (i = 0; i < count; i++) {
         uint32_t t = triangles[i];
         if (parent[t] == t) {
@@ -198,20 +202,19 @@ static int touches_component(const bisection *b, uint32_t t, uint32_t component)
     return (int)found;
 }
 
-/* Gives the smaller components of each side to the other side. Returns whether both sides are known to
-   be connected: so they are if each that changes over is beside the largest there. */
-static int connect(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
-                   const uint32_t capacity[2])
+/* Gives the smaller components of each side to the other side. connected: whether each side is known to be: so it
+   is if nothing of its own stays apart, and each that changes over to it is beside the largest there. */
+static void connect(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
+                    const uint32_t capacity[2], int connected[2])
 {
-    uint32_t found, largest[2] = {SC_NONE, SC_NONE}, i, loose;
-    if (is_one_walk(b, 0) && is_one_walk(b, 1)) return 1;
-    found = number_components(b, triangles, count, 1);
-    if (found == 2) return 1;
+    uint32_t largest[2] = {SC_NONE, SC_NONE}, loose[2] = {0, 0}, i;
+    connected[0] = connected[1] = 1;
+    if (is_one_walk(b, 0) && is_one_walk(b, 1)) return;
+    if (number_components(b, triangles, count, 1, 2) == 2) return;
     for (i = 0; i < count; i++) {
         uint32_t c = b->component[triangles[i]], s = b->label[triangles[i]] & 1;
         if (largest[s] == SC_NONE || b->sizes[c] > b->sizes[largest[s]]) largest[s] = c;
     }
-    loose = found - 2;
     for (i = 0; i < count; i++) {
         uint32_t t = triangles[i], c = b->component[t], s = b->label[t] & 1, *state = &b->sizes[c];
         if (c == largest[s]) continue;
@@ -222,19 +225,23 @@ static int connect(bisection *b, const uint32_t *triangles, uint32_t count, uint
                 size[!s] += *state;
             }
             *state = DECIDED | (fits ? !s : s);
+            loose[*state & 1]++;
         }
         if ((*state & 1) != s && !(*state & HELD) && touches_component(b, t, largest[!s])) {
             *state |= HELD;
-            loose--;
+            loose[!s]--;
         }
         b->label[t] = (b->label[t] & ~1u) | (*state & 1);
     }
-    return loose == 0;
+    connected[0] = loose[0] == 0;
+    connected[1] = loose[1] == 0;
 }
 
 /* Deals the components of a patch out to two sides, none cut: the largest against the rest if it is
-   half of all, else by their order along the longest direction of one triangle of each. */
-static void deal_components(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t found)
+   half of all, else by their order along a direction of one triangle of each. connected: whether a side
+   has one. */
+static void deal_components(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t found,
+                            int connected[2])
 {
     uint32_t largest = 0, i, taken = 0, n = 0;
     float direction[3];
@@ -242,6 +249,8 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
         if (b->sizes[i] > b->sizes[largest]) largest = i;
     if (2 * (uint64_t)b->sizes[largest] >= count) {
         for (i = 0; i < count; i++) b->label[triangles[i]] |= b->component[triangles[i]] != largest;
+        connected[0] = 1;
+        connected[1] = found == 2;
         return;
     }
     for (i = 0; i < found; i++) b->queue[i] = SC_NONE;
@@ -262,6 +271,8 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
         taken += more;
         n++;
     }
+    connected[0] = n == 1;
+    connected[1] = found - n == 1;
     for (i = 0; i < found; i++) b->queue[b->keys[i].b] = i >= n;
     for (i = 0; i < count; i++) b->label[triangles[i]] |= b->queue[b->component[triangles[i]]];
 }
@@ -301,9 +312,9 @@ static void share_leaves(uint32_t leaves, uint32_t left, uint32_t right, uint32_
 }
 
 /* Labels the sides of a patch that is to become so many leaves, two or more; both sides get some.
-   *connected: whether the patch is known to be, then whether both sides are. */
+   whole: whether the patch is known to be connected; connected: then whether each side is. */
 static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t leaves,
-                        int *connected)
+                        int whole, int connected[2])
 {
     uint32_t left_leaves = left_part(leaves), found, i, low;
     uint32_t left_target = (uint32_t)((uint64_t)count * left_leaves / leaves);
@@ -315,12 +326,12 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count,
         if (capacity[i] > full) capacity[i] = full;
     }
     low = 2 * ++b->patches;
-    if (!*connected || b->cut)
+    if (!whole || b->cut)
         for (i = 0; i < count; i++) b->label[triangles[i]] = low;
-    if (!*connected) {
-        found = number_components(b, triangles, count, 0);
+    if (!whole) {
+        found = number_components(b, triangles, count, 0, 1);
         if (found > 1) {
-            deal_components(b, triangles, count, found);
+            deal_components(b, triangles, count, found, connected);
             return SC_OK;
         }
     }
@@ -339,24 +350,25 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count,
         sc_small_refinement_run(&b->refinement, triangles, count, size, capacity);
     else
         sc_refinement_run(&b->refinement, triangles, count, size, capacity);
-    *connected = connect(b, triangles, count, size, capacity);
+    connect(b, triangles, count, size, capacity, connected);
     return SC_OK;
 }
 
-/* connected: whether the patch is known to be. */
+/* whole: whether the patch is known to be connected. */
 static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint32_t leaves,
-                              uint32_t depth, int connected, uint32_t *node)
+                              uint32_t depth, int whole, uint32_t *node)
 {
     sc_hierarchy *hierarchy = b->hierarchy;
     uint32_t *triangles = hierarchy->order + first, i, left = 0, right = 0, child;
     uint32_t left_leaves, right_leaves;
+    int connected[2];
     sc_status status;
     if (leaves == 1 || SC_HARDLY(depth > DEPTH_MEASURED)) {
         *node = sc_hierarchy_add_balanced(hierarchy, first, count, depth);
         return SC_OK;
     }
     *node = sc_hierarchy_add(hierarchy, first, count, depth);
-    status = divide(b, triangles, count, leaves, &connected);
+    status = divide(b, triangles, count, leaves, whole, connected);
     if (status) return status;
     for (i = 0; i < count; i++) {
         uint32_t t = triangles[i];
@@ -367,10 +379,10 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
     }
     memcpy(triangles + left, b->queue, right * sizeof *triangles);
     share_leaves(leaves, left, right, &left_leaves, &right_leaves);
-    status = bisect_patch(b, first, left, left_leaves, depth + 1, connected, &child);
+    status = bisect_patch(b, first, left, left_leaves, depth + 1, connected[0], &child);
     if (status) return status;
     hierarchy->nodes[*node].left = child;
-    status = bisect_patch(b, first + left, right, right_leaves, depth + 1, connected, &child);
+    status = bisect_patch(b, first + left, right, right_leaves, depth + 1, connected[1], &child);
     hierarchy->nodes[*node].right = child;
     return status;
 }

@@ -14,7 +14,7 @@
 /* The cosine up to which a run may turn from its first half-edge. */
 static const double TURN_COSINE = 0.25;
 
-/* Room in the lists of nodes, so that they seldom have to grow. */
+/* Room for the lists of nodes, so that it seldom has to grow. */
 enum { SEGMENTS_A_NODE = 10 };
 
 /* The contour half-edges of one level; a place is a number below count. What leads from level to level are
@@ -39,10 +39,12 @@ typedef struct builder {
     contour_level *levels; /* level_count */
     uint32_t segments;
     sc_list points_first, half_edges, child_first, children;
-    sc_list contours;                            /* node lists, deepest level first */
-    uint32_t *node_first, *node_count;           /* node_count: a node's part of contours */
-    uint32_t *run_patch, *run_out, *run_segment; /* the runs of the level at hand */
-    uint32_t *patch_first, *patch_runs;          /* the same sorted by patch */
+    /* Node lists, written from the end of their room, the last node's first; how much of it is in use; and of each
+       node, how much was then. */
+    uint32_t *lists, *node_place; /* room; node_count + 1 */
+    uint64_t room, listed;
+    /* The runs of the level at hand, which are in the order of their patches, and where those of each begin. */
+    uint32_t *run_out, *run_segment, *patch_first;
 } builder;
 
 /* Memory for the half-edges of a level. */
@@ -247,55 +249,62 @@ static int add_parent_segment(builder *b, contour_level *level, const contour_le
     return 1;
 }
 
-/* Sorts the runs of the level by patch. */
-static void sort_runs(builder *b, uint32_t level, uint32_t runs)
+/* Room for more items before those that are in the node lists; 0 if memory ran out, or for more than fit numbers. */
+static int reserve_lists(builder *b, uint64_t more)
 {
-    uint32_t begin = b->xbvh->level_first[level], count = sc_xbvh_patches(b->xbvh, level), i;
-    uint32_t *first = b->patch_first;
-    memset(first, 0, ((size_t)count + 2) * sizeof *first);
-    for (i = 0; i < runs; i++) first[b->run_patch[i] - begin + 2]++;
-    for (i = 0; i < count; i++) first[i + 2] += first[i + 1];
-    for (i = 0; i < runs; i++) b->patch_runs[first[b->run_patch[i] - begin + 1]++] = i;
+    uint64_t room = b->room + b->room / 4 + more;
+    uint32_t *lists;
+    if (b->listed + more > 0xfffffff0u) return 0;
+    if (b->lists && b->listed + more <= b->room) return 1;
+    lists = (uint32_t *)sc_scratch_take(b->scratch, room, sizeof *lists);
+    if (!lists) return 0;
+    if (b->listed)
+        memcpy(lists + room - b->listed, b->lists + b->room - b->listed,
+               (size_t)b->listed * sizeof *lists);
+    sc_scratch_give(b->scratch, b->lists);
+    b->lists = lists;
+    b->room = room;
+    return 1;
 }
 
-/* Lists the segments of a patch, but for those towards another; returns their number or SC_NONE. */
+static void list_before(builder *b, uint32_t item)
+{
+    b->lists[b->room - ++b->listed] = item;
+}
+
+/* Lists the segments of a patch, but for those towards another; returns their number. */
 static uint32_t list_patch(builder *b, uint32_t begin, uint32_t patch, uint32_t other)
 {
-    uint32_t i, from = b->patch_first[patch - begin], to = b->patch_first[patch - begin + 1],
-                count = 0;
-    if (!sc_list_reserve(b->scratch, &b->contours, to - from)) return SC_NONE;
-    for (i = from; i < to; i++) {
-        uint32_t run = b->patch_runs[i];
-        if (b->run_out[run] == other) continue;
-        sc_list_add(&b->contours, b->run_segment[run]);
-        count++;
-    }
-    return count;
+    uint32_t first = b->patch_first[patch - begin], i = b->patch_first[patch - begin + 1];
+    uint64_t listed = b->listed;
+    while (i-- > first)
+        if (b->run_out[i] != other) list_before(b, b->run_segment[i]);
+    return (uint32_t)(b->listed - listed);
 }
 
 static int list_node(builder *b, uint32_t begin, uint32_t n)
 {
     uint32_t p = b->sctt->patches[n].a, q = b->sctt->patches[n].b, count;
-    uint64_t at = b->contours.count;
-    b->node_first[n] = (uint32_t)at;
-    if (b->sctt->touch[n] != SC_NONE) {
-        if (!sc_list_reserve(b->scratch, &b->contours, 2)) return 0;
-        sc_list_add(&b->contours, b->sctt->touch[n]);
-        sc_list_add(&b->contours, 0);
-    }
+    const uint32_t *first = b->patch_first;
+    if (!reserve_lists(b, 2 + (uint64_t)first[p - begin + 1] - first[p - begin] +
+                              first[q - begin + 1] - first[q - begin]))
+        return 0;
+    if (p != q) (void)list_patch(b, begin, q, p);
     /* no patch has the number patch_end, so that self nodes leave nothing out */
     count = list_patch(b, begin, p, p == q ? b->xbvh->patch_end : q);
-    if (count == SC_NONE) return 0;
-    if (b->sctt->touch[n] != SC_NONE) b->contours.items[at + 1] = count;
-    if (p != q && list_patch(b, begin, q, p) == SC_NONE) return 0;
-    b->node_count[n] = (uint32_t)(b->contours.count - at);
-    return b->contours.count <= 0xfffffff0u;
+    if (b->sctt->touch[n] != SC_NONE) {
+        list_before(b, count);
+        list_before(b, b->sctt->touch[n]);
+    }
+    b->node_place[n] = (uint32_t)b->listed;
+    return 1;
 }
 
 static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
 {
     contour_level *level = &b->levels[number];
-    uint32_t e, n, runs = 0, last = b->xbvh->level_count - 1;
+    uint32_t e, n, runs = 0, last = b->xbvh->level_count - 1, begin = b->xbvh->level_first[number];
+    uint32_t patch = begin, *first = b->patch_first;
     level->segment = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
     level->end = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
     if (!level->segment || !level->end) return SC_ERROR_MEMORY;
@@ -304,16 +313,16 @@ static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
         if (!(number == last ? add_leaf_segment(b, level, e)
                              : add_parent_segment(b, level, level + 1, e)))
             return SC_ERROR_MEMORY;
-        b->run_patch[runs] = level->inside[e];
+        while (patch <= level->inside[e]) first[patch++ - begin] = runs;
         b->run_out[runs] = level->outside[e];
         b->run_segment[runs++] = level->segment[e];
     }
     csf->level_segments[number] = runs;
     if (number == last) csf->leaf_count = b->segments;
     if (number < last) give_level(b->scratch, level + 1);
-    sort_runs(b, number, runs);
-    for (n = b->sctt->level_first[number]; n < b->sctt->level_first[number + 1]; n++)
-        if (!list_node(b, b->xbvh->level_first[number], n)) return SC_ERROR_MEMORY;
+    while (patch < b->xbvh->level_first[number + 1]) first[patch++ - begin] = runs;
+    for (n = b->sctt->level_first[number + 1]; n-- > b->sctt->level_first[number];)
+        if (!list_node(b, begin, n)) return SC_ERROR_MEMORY;
     return SC_OK;
 }
 
@@ -383,22 +392,14 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
     return SC_OK;
 }
 
-/* The node lists in the order of the nodes. */
-static sc_status order_contours(builder *b, sc_csf *csf)
+/* The node lists are there; where they begin. */
+static sc_status place_contours(builder *b, sc_csf *csf)
 {
-    uint32_t n, nodes = b->sctt->node_count, at = 0;
-    csf->contour_first =
-        (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)nodes + 1, sizeof(uint32_t));
-    csf->contours = (uint32_t *)sc_scratch_take(b->scratch, b->contours.count, sizeof(uint32_t));
-    if (!csf->contour_first || !csf->contours) return SC_ERROR_MEMORY;
-    for (n = 0; n < nodes; n++) {
-        csf->contour_first[n] = at;
-        if (b->node_count[n])
-            memcpy(csf->contours + at, b->contours.items + b->node_first[n],
-                   b->node_count[n] * sizeof *csf->contours);
-        at += b->node_count[n];
-    }
-    csf->contour_first[nodes] = at;
+    uint32_t n, nodes = b->sctt->node_count;
+    csf->contours = b->lists + (b->room - b->listed);
+    csf->contour_first = b->node_place;
+    b->node_place[nodes] = 0;
+    for (n = 0; n <= nodes; n++) b->node_place[n] = (uint32_t)b->listed - b->node_place[n];
     return measure_contours(b, csf);
 }
 
@@ -452,41 +453,31 @@ static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
     parent = (uint32_t *)sc_scratch_take(b->scratch, b->xbvh->leaf_count, sizeof *parent);
     b->levels =
         (contour_level *)sc_scratch_take_filled(b->scratch, level_count, sizeof *b->levels, 0);
-    b->node_first = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
-    b->node_count = (uint32_t *)sc_scratch_take(b->scratch, b->sctt->node_count, sizeof(uint32_t));
+    b->node_place = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->sctt->node_count + 1,
+                                                sizeof(uint32_t));
     csf->level_segments = (uint32_t *)sc_scratch_take(b->scratch, level_count, sizeof(uint32_t));
-    if (!parent || !b->levels || !b->node_first || !b->node_count || !csf->level_segments)
-        return SC_ERROR_MEMORY;
+    if (!parent || !b->levels || !b->node_place || !csf->level_segments) return SC_ERROR_MEMORY;
     status = collect_leaves(b, order, &b->levels[level_count - 1]);
     for (i = level_count - 1; !status && i-- > 0;) status = collect_level(b, i, parent);
     if (status) return status;
     sc_scratch_give(b->scratch, parent);
     contour = b->levels[level_count - 1].count;
-    b->run_patch = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
     b->run_out = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
     b->run_segment = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
-    b->patch_runs = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
-    b->patch_first = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->xbvh->leaf_count + 2,
+    b->patch_first = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->xbvh->leaf_count + 1,
                                                  sizeof(uint32_t));
-    return b->run_patch && b->run_out && b->run_segment && b->patch_runs && b->patch_first
-               ? SC_OK
-               : SC_ERROR_MEMORY;
+    return b->run_out && b->run_segment && b->patch_first ? SC_OK : SC_ERROR_MEMORY;
 }
 
 static void give_back(builder *b)
 {
     give_level(b->scratch, &b->levels[0]);
     sc_scratch_give(b->scratch, b->levels);
-    sc_scratch_give(b->scratch, b->node_first);
-    sc_scratch_give(b->scratch, b->node_count);
-    sc_scratch_give(b->scratch, b->run_patch);
     sc_scratch_give(b->scratch, b->run_out);
     sc_scratch_give(b->scratch, b->run_segment);
     sc_scratch_give(b->scratch, b->patch_first);
-    sc_scratch_give(b->scratch, b->patch_runs);
     sc_scratch_give(b->scratch, b->points_first.items);
     sc_scratch_give(b->scratch, b->half_edges.items);
-    sc_scratch_give(b->scratch, b->contours.items);
 }
 
 sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
@@ -504,8 +495,7 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
     b.scratch = scratch;
     status = prepare(&b, order, csf);
     if (status) return status;
-    if (!sc_list_reserve(scratch, &b.contours, SEGMENTS_A_NODE * (uint64_t)sctt->node_count))
-        return SC_ERROR_MEMORY;
+    if (!reserve_lists(&b, SEGMENTS_A_NODE * (uint64_t)sctt->node_count)) return SC_ERROR_MEMORY;
     for (level = 0; level < xbvh->level_count; level++) { /* cuts go down */
         status = find_starts(&b, &b.levels[level], level ? &b.levels[level - 1] : NULL);
         if (status) return status;
@@ -525,7 +515,7 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
     csf->children = b.children.items;
     status = lay_out_points(&b, csf);
     if (status) return status;
-    status = order_contours(&b, csf);
+    status = place_contours(&b, csf);
     give_back(&b);
     return status;
 }

@@ -429,6 +429,8 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     *m = counts;
     clear_gaps(m);
     write_rings(points, &r, m);
+    sc_scratch_give(scratch, r.points); /* before the loops need memory */
+    sc_scratch_give(scratch, r.first);
     write_open_points(points, adjacency, number, m);
     write_triangles(points, adjacency, hierarchy->order, number, m);
     copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,

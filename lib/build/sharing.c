@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* Words for the masks of all rows. */
-enum { ROW_WORDS = SC_LEAF_MAX / 2 };
+/* Items of a list for the masks of all rows, which have 16 bits each. */
+enum { ROW_ITEMS = SC_LEAF_MAX / 2 };
 
 /* Room for so many neighbors a cluster with higher numbers, so that lists seldom have to grow. */
 enum { NEIGHBORS = 4 };
@@ -23,22 +23,27 @@ typedef struct places {
 typedef struct found {
     uint32_t *entry; /* leaf_count: 1 + entry of a cluster in the lists, 0 if it did not turn up */
     sc_list leaf;
-    sc_list rows; /* ROW_WORDS an entry: the masks of two rows each */
+    sc_list rows; /* ROW_ITEMS an entry */
 } found;
 
-/* The masks of another cluster, NULL if memory ran out. */
-static uint32_t *rows_of(sc_scratch *scratch, found *f, uint32_t other)
+static uint16_t *rows_at(const found *f, uint64_t entry)
 {
-    uint32_t k;
+    return (uint16_t *)(void *)(f->rows.items + ROW_ITEMS * entry);
+}
+
+/* The masks of another cluster, NULL if memory ran out. */
+static uint16_t *rows_of(sc_scratch *scratch, found *f, uint32_t other)
+{
     if (!f->entry[other]) {
         if (!sc_list_reserve(scratch, &f->leaf, 1) ||
-            !sc_list_reserve(scratch, &f->rows, ROW_WORDS))
+            !sc_list_reserve(scratch, &f->rows, ROW_ITEMS))
             return NULL;
+        memset(rows_at(f, f->leaf.count), 0, SC_LEAF_MAX * sizeof(uint16_t));
+        f->rows.count += ROW_ITEMS;
         sc_list_add(&f->leaf, other);
-        for (k = 0; k < ROW_WORDS; k++) sc_list_add(&f->rows, 0);
         f->entry[other] = (uint32_t)f->leaf.count;
     }
-    return f->rows.items + ROW_WORDS * (uint64_t)(f->entry[other] - 1);
+    return rows_at(f, f->entry[other] - 1);
 }
 
 /* Looks at the triangles round a point of a cluster. */
@@ -63,9 +68,10 @@ static int look_round(const sc_adjacency *adjacency, const places *at, uint32_t 
     for (k = 0; k < own; k++) /* those in higher rows */
         s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row[k]] |= (uint16_t)(mask & (~1u << row[k]));
     for (i = 0; i < others; i++) {
-        uint32_t *rows = rows_of(scratch, f, at->leaf[other[i]]), bit = 1u << at->row[other[i]];
+        uint16_t *rows = rows_of(scratch, f, at->leaf[other[i]]);
+        uint16_t bit = (uint16_t)(1u << at->row[other[i]]);
         if (!rows) return 0;
-        for (k = 0; k < own; k++) rows[row[k] / 2] |= bit << (16 * (row[k] % 2));
+        for (k = 0; k < own; k++) rows[row[k]] |= bit;
     }
     return 1;
 }
@@ -75,15 +81,16 @@ static void sort_tail(found *f, uint64_t begin)
 {
     uint64_t i, j;
     for (i = begin; i < f->leaf.count; i++) {
-        uint32_t leaf = f->leaf.items[i], rows[ROW_WORDS];
-        memcpy(rows, f->rows.items + ROW_WORDS * i, sizeof rows);
+        uint32_t leaf = f->leaf.items[i];
+        uint16_t rows[SC_LEAF_MAX];
+        memcpy(rows, rows_at(f, i), sizeof rows);
         f->entry[leaf] = 0;
         for (j = i; j > begin && f->leaf.items[j - 1] > leaf; j--) {
             f->leaf.items[j] = f->leaf.items[j - 1];
-            memcpy(f->rows.items + ROW_WORDS * j, f->rows.items + ROW_WORDS * (j - 1), sizeof rows);
+            memcpy(rows_at(f, j), rows_at(f, j - 1), sizeof rows);
         }
         f->leaf.items[j] = leaf;
-        memcpy(f->rows.items + ROW_WORDS * j, rows, sizeof rows);
+        memcpy(rows_at(f, j), rows, sizeof rows);
     }
 }
 
@@ -91,8 +98,7 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
                            const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
                            sc_sharing *s)
 {
-    uint32_t leaf, i, k, leaves = xbvh->leaf_count, *looked; /* looked: a point's last cluster */
-    uint64_t n;
+    uint32_t leaf, i, leaves = xbvh->leaf_count, *looked; /* looked: a point's last cluster */
     places at;
     found f;
     memset(&f, 0, sizeof f);
@@ -107,7 +113,7 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
     if (!at.leaf || !at.row || !f.entry || !looked || !s->first || !s->own_rows || !s->crowded)
         return SC_ERROR_MEMORY;
     if (!sc_list_reserve(scratch, &f.leaf, NEIGHBORS * (uint64_t)leaves) ||
-        !sc_list_reserve(scratch, &f.rows, ROW_WORDS * NEIGHBORS * (uint64_t)leaves))
+        !sc_list_reserve(scratch, &f.rows, ROW_ITEMS * NEIGHBORS * (uint64_t)leaves))
         return SC_ERROR_MEMORY;
     for (leaf = 0; leaf < leaves; leaf++)
         for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++) {
@@ -125,21 +131,12 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
         sort_tail(&f, s->first[leaf]);
     }
     s->first[leaves] = (uint32_t)f.leaf.count;
-    s->leaf = (uint32_t *)sc_scratch_take(scratch, f.leaf.count, sizeof *s->leaf);
-    s->rows = (uint16_t *)sc_scratch_take(scratch, f.leaf.count * SC_LEAF_MAX, sizeof *s->rows);
-    if (!s->leaf || !s->rows) return SC_ERROR_MEMORY;
-    for (n = 0; n < f.leaf.count; n++) {
-        s->leaf[n] = f.leaf.items[n];
-        for (k = 0; k < SC_LEAF_MAX; k++)
-            s->rows[SC_LEAF_MAX * n + k] =
-                (uint16_t)(f.rows.items[ROW_WORDS * n + k / 2] >> 16 * (k % 2));
-    }
+    s->leaf = f.leaf.items;
+    s->rows = rows_at(&f, 0);
     sc_scratch_give(scratch, at.leaf);
     sc_scratch_give(scratch, at.row);
     sc_scratch_give(scratch, f.entry);
     sc_scratch_give(scratch, looked);
-    sc_scratch_give(scratch, f.leaf.items);
-    sc_scratch_give(scratch, f.rows.items);
     return SC_OK;
 }
 

@@ -8,7 +8,7 @@
 #include "base/bits.h"
 
 /* A pass ends after so many moves without a shorter border; and so many passes at most. */
-enum { SMALL_PATIENCE = 8, SMALL_PASSES = 4 };
+enum { SMALL_PATIENCE = 8, SMALL_PASSES = 2 };
 
 /* Lengths are counted in fractions of the mean, so many and no more than so much: then three of them, times 64, fit
    32 bits. */
