@@ -14,6 +14,10 @@
 #define lanes_signs_of SC_KERNEL(sc_lanes_signs_of)
 #define lanes_all_negative SC_KERNEL(sc_lanes_all_negative)
 #define lanes_rows_ends SC_KERNEL(sc_lanes_rows_ends)
+#define lanes_signs_kept SC_KERNEL(sc_lanes_signs_kept)
+#define lanes_keep_all SC_KERNEL(sc_lanes_keep_all)
+#define lanes_keep SC_KERNEL(sc_lanes_keep)
+#define lanes_kept_negative SC_KERNEL(sc_lanes_kept_negative)
 
 /*
  * On x86-64 words, then bytes, are made of four rows, which keeps signs since it saturates: four bytes each, in each 128
@@ -80,35 +84,74 @@ static inline lanes_signs lanes_signs_of(lanes a)
 {
     return SC_QUAD(and_ps)(SC_QUAD(and_ps)(a.v[0], a.v[1]), SC_QUAD(and_ps)(a.v[2], a.v[3]));
 }
+
+/* Rows in pieces of four lanes, one after another: only those that are negative in all of them are kept. */
 #  if SC_LANES_SSE2
 
-static inline unsigned lanes_all_negative(const lanes_signs row[16])
+typedef struct lanes_signs_kept {
+    __m128i four[4];
+} lanes_signs_kept;
+
+static inline lanes_signs_kept lanes_keep_all(void)
+{
+    lanes_signs_kept kept;
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 4; i++) kept.four[i] = _mm_set1_epi8(-1);
+    return kept;
+}
+static inline void lanes_keep(lanes_signs_kept *kept, const lanes_signs row[16])
+{
+    int i, k;
+    SC_UNROLL
+    for (i = 0; i < 4; i++) {
+        __m128i four[4];
+        SC_UNROLL
+        for (k = 0; k < 4; k++) four[k] = _mm_castps_si128(row[4 * i + k]);
+        kept->four[i] =
+            _mm_and_si128(kept->four[i], _mm_packs_epi16(_mm_packs_epi32(four[0], four[1]),
+                                                         _mm_packs_epi32(four[2], four[3])));
+    }
+}
+static inline unsigned lanes_kept_negative(const lanes_signs_kept *kept)
 {
     const __m128i signs = _mm_set1_epi8(-128);
     unsigned mask = 0;
-    int i, k;
+    int i;
     SC_UNROLL
-    for (i = 0; i < 16; i += 4) {
-        __m128i four[4], a;
-        SC_UNROLL
-        for (k = 0; k < 4; k++) four[k] = _mm_castps_si128(row[i + k]);
-        a = _mm_packs_epi16(_mm_packs_epi32(four[0], four[1]), _mm_packs_epi32(four[2], four[3]));
-        a = _mm_cmpeq_epi32(_mm_and_si128(a, signs), signs);
-        mask |= (unsigned)_mm_movemask_ps(_mm_castsi128_ps(a)) << i;
+    for (i = 0; i < 4; i++) {
+        __m128i all = _mm_cmpeq_epi32(_mm_and_si128(kept->four[i], signs), signs);
+        mask |= (unsigned)_mm_movemask_ps(_mm_castsi128_ps(all)) << 4 * i;
     }
     return mask;
 }
 
 #  else
 
-static inline unsigned lanes_all_negative(const lanes_signs row[16])
+typedef struct lanes_signs_kept {
+    sc_floats4 row[16];
+} lanes_signs_kept;
+
+static inline lanes_signs_kept lanes_keep_all(void)
+{
+    lanes_signs_kept kept;
+    int i;
+    for (i = 0; i < 16; i++) kept.row[i] = SC_QUAD(set1_ps)(-1);
+    return kept;
+}
+static inline void lanes_keep(lanes_signs_kept *kept, const lanes_signs row[16])
+{
+    int i;
+    for (i = 0; i < 16; i++) kept->row[i] = SC_QUAD(and_ps)(kept->row[i], row[i]);
+}
+static inline unsigned lanes_kept_negative(const lanes_signs_kept *kept)
 {
     sc_floats4 all[4], x[4];
     int i, k;
     SC_UNROLL
     for (i = 0; i < 4; i++) {
         SC_UNROLL
-        for (k = 0; k < 4; k++) x[k] = row[4 * i + k];
+        for (k = 0; k < 4; k++) x[k] = kept->row[4 * i + k];
         sc_quad_transpose(x);
         all[i] = SC_QUAD(and_ps)(SC_QUAD(and_ps)(x[0], x[1]), SC_QUAD(and_ps)(x[2], x[3]));
         all[i] = (sc_floats4)((sc_numbers4)all[i] < 0);
@@ -117,6 +160,13 @@ static inline unsigned lanes_all_negative(const lanes_signs row[16])
 }
 
 #  endif
+
+static inline unsigned lanes_all_negative(const lanes_signs row[16])
+{
+    lanes_signs_kept kept = lanes_keep_all();
+    lanes_keep(&kept, row);
+    return lanes_kept_negative(&kept);
+}
 
 #else
 

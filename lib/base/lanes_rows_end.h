@@ -7,3 +7,7 @@
 #undef lanes_signs_of
 #undef lanes_all_negative
 #undef lanes_rows_ends
+#undef lanes_signs_kept
+#undef lanes_keep_all
+#undef lanes_keep
+#undef lanes_kept_negative

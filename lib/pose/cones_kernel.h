@@ -115,7 +115,7 @@ static SC_INLINE void SC_KERNEL(directions_of)(part e[][3], part f[][3], lanes_s
 static SC_INLINE void SC_KERNEL(masks_of)(const float *each, const uint8_t *where, uint16_t *mask,
                                           int count)
 {
-    lanes_signs all[16];
+    lanes_signs_kept kept = lanes_keep_all();
     int c, k, first;
     (void)count; /* one */
     for (first = 0; first < SC_LEAF_MAX; first += 4) {
@@ -133,10 +133,9 @@ static SC_INLINE void SC_KERNEL(masks_of)(const float *each, const uint8_t *wher
         }
         SC_KERNEL(edges_of)(corner, e[0], f[0]);
         SC_KERNEL(directions_of)(e, f, row, 1);
-        for (k = 0; k < 16; k++)
-            all[k] = first == 0 ? row[0][k] : SC_QUAD(and_ps)(all[k], row[0][k]);
+        lanes_keep(&kept, row[0]);
     }
-    *mask = (uint16_t)(lanes_all_negative(all) & 0x3fffu);
+    *mask = (uint16_t)(lanes_kept_negative(&kept) & 0x3fffu);
 }
 
 #else
