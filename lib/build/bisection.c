@@ -26,6 +26,11 @@ enum { SLACK = 32 };
 /* Ten times the number of triangles that leaf clusters are to have on average. */
 enum { LEAF_AIM = 146 };
 
+/* What numbers of leaves are a power of two times, at most: by the built-in cut, and by the caller's. Larger ones make
+   fewer leaf clusters. With METIS, 63 instead of 15: 4 % fewer, 2 % less memory, queries 1 to 4 % faster (rods 5 to 9);
+   with the built-in cut 1.4 % fewer, and the bunny at rest 10 % slower. */
+enum { ODD_LEAVES = 15, ODD_LEAVES_OF_CALLER = 63 };
+
 /* Of a small component, in place of its size: it has a side, bit 0; it is beside the largest there. */
 enum { HELD = 2 };
 static const uint32_t DECIDED = 0x80000000u;
@@ -280,14 +285,14 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
 /*
  * How many leaves count triangles should get: a small number times a power of two, so that nearly all
  * patches have two halves of one size. LEAF_AIM triangles a leaf leave what connecting and smoothing patches
- * lives on.
+ * lives on; of the built-in cut that needs more, which is what rounding up to fewer numbers leaves it.
  */
-static uint32_t leaves_for(uint32_t count)
+static uint32_t leaves_for(const bisection *b, uint32_t count)
 {
-    uint32_t least, step = 1;
+    uint32_t least, step = 1, most = b->cut ? ODD_LEAVES_OF_CALLER : ODD_LEAVES;
     if (count <= SC_LEAF_MAX) return 1;
     least = (uint32_t)(((uint64_t)10 * count + LEAF_AIM - 1) / LEAF_AIM);
-    while ((least + step - 1) / step > 15) step *= 2;
+    while ((least + step - 1) / step > most) step *= 2;
     return (least + step - 1) / step * step;
 }
 
@@ -298,17 +303,27 @@ static uint32_t left_part(uint32_t leaves)
     return step == leaves ? leaves / 2 : (leaves / step + 1) / 2 * step;
 }
 
-/* How many leaves the two sides of a patch get: as planned, if they fit. */
-static void share_leaves(uint32_t leaves, uint32_t left, uint32_t right, uint32_t *left_leaves,
-                         uint32_t *right_leaves)
+/* How many triangles a cut may be off its target by. */
+static uint32_t slack_of(uint32_t count)
 {
+    return 1 + count / SLACK;
+}
+
+/* How many leaves the two sides of a patch get: as planned, if they fit and are about as large as planned, which
+   components are not that were dealt out. */
+static void share_leaves(const bisection *b, uint32_t leaves, uint32_t left, uint32_t right,
+                         uint32_t *left_leaves, uint32_t *right_leaves)
+{
+    uint32_t count = left + right, target, slack = slack_of(count);
     *left_leaves = left_part(leaves);
     *right_leaves = leaves - *left_leaves;
-    if (left <= (uint64_t)*left_leaves * SC_LEAF_MAX && left >= *left_leaves &&
+    target = (uint32_t)((uint64_t)count * *left_leaves / leaves);
+    if (left <= target + slack && target <= left + slack &&
+        left <= (uint64_t)*left_leaves * SC_LEAF_MAX && left >= *left_leaves &&
         right <= (uint64_t)*right_leaves * SC_LEAF_MAX && right >= *right_leaves)
         return;
-    *left_leaves = leaves_for(left);
-    *right_leaves = leaves_for(right);
+    *left_leaves = leaves_for(b, left);
+    *right_leaves = leaves_for(b, right);
 }
 
 /* Labels the sides of a patch that is to become so many leaves, two or more; both sides get some.
@@ -322,7 +337,7 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count,
     sc_status status;
     for (i = 0; i < 2; i++) { /* slack that is used here is missing further down */
         uint32_t full = (i ? leaves - left_leaves : left_leaves) * SC_LEAF_MAX;
-        capacity[i] = (i ? count - left_target : left_target) + 1 + count / SLACK;
+        capacity[i] = (i ? count - left_target : left_target) + slack_of(count);
         if (capacity[i] > full) capacity[i] = full;
     }
     low = 2 * ++b->patches;
@@ -378,7 +393,7 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
             triangles[left++] = t;
     }
     memcpy(triangles + left, b->queue, right * sizeof *triangles);
-    share_leaves(leaves, left, right, &left_leaves, &right_leaves);
+    share_leaves(b, leaves, left, right, &left_leaves, &right_leaves);
     status = bisect_patch(b, first, left, left_leaves, depth + 1, connected[0], &child);
     if (status) return status;
     hierarchy->nodes[*node].left = child;
@@ -499,7 +514,7 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.facets.normals = b.normals;
     measure(&b);
     for (t = 0; t < count; t++) hierarchy->order[t] = t;
-    status = bisect_patch(&b, 0, count, leaves_for(count), 1, 0, &root);
+    status = bisect_patch(&b, 0, count, leaves_for(&b, count), 1, 0, &root);
     sc_scratch_give(scratch, b.graph);
     sc_scratch_give(scratch, b.refinement.heap);
     sc_scratch_give(scratch, b.refinement.state);
