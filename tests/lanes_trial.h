@@ -53,6 +53,7 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
 {
     lanes a = lanes_load(in->a), b = lanes_load(in->b), corner[3][3];
     uint8_t list[SC_LANES_COUNT];
+    uint32_t pairs[2 * SC_LANES_COUNT];
     int i, k;
     lanes_store(out->row[17], lanes_pick(in->a, lanes_index_load(in->number)));
     lanes_store(out->row[18], lanes_pick_of(b, lanes_index_load(in->number + SC_LANES_COUNT)));
@@ -67,6 +68,8 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
         for (i = 0; i < 3; i++) lanes_store(out->row[39 + 3 * k + i], corner[k][i]);
     out->bits[5] = lanes_list(in->mask, list);
     memcpy(out->list, list, out->bits[5]);
+    i = (int)lanes_list_pairs(in->mask, in->number, in->mask, in->through, 7, pairs);
+    memcpy(out->pairs, pairs, 2 * (unsigned)i * sizeof *pairs);
 }
 
 static void SC_KERNEL(try_bytes)(const lanes_input *in, lanes_outcome *out)

@@ -207,6 +207,8 @@ static void lists_and_signs(void)
             negative |= (unsigned)(k == 16) << i;
             if (!(in.mask >> i & 1u)) continue;
             CHECK(out.list[count] == i);
+            CHECK(out.pairs[2 * count] == in.mask + in.number[i]);
+            CHECK(out.pairs[2 * count + 1] == 7u + in.through[i]);
             count++;
         }
         CHECK(out.bits[5] == count && out.bits[6] == negative);

@@ -5,7 +5,8 @@
  * SPDX-License-Identifier: MIT
  *
  * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
- * to; lanes_list_from adds a first number to them, and writes sixteen words. lanes_index reads sixteen numbers below
+ * to; lanes_list_from adds a first number to them, and writes sixteen words; lanes_list_pairs takes the numbers of these
+ * lanes from two rows of sixteen bytes, adds first numbers, and writes pairs of words, room for sixteen. lanes_index reads sixteen numbers below
  * sixteen, lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the
  * floats of these numbers of a row, in memory or not. lanes_choose takes from a where the mask is set, else from b.
  * lanes_same compares bits, whatever they mean; lanes_differ has what is in one of two masks only.
@@ -30,6 +31,7 @@
 #define lanes_corners_through SC_KERNEL(sc_lanes_corners_through)
 #define lanes_list SC_KERNEL(sc_lanes_list)
 #define lanes_list_from SC_KERNEL(sc_lanes_list_from)
+#define lanes_list_pairs SC_KERNEL(sc_lanes_list_pairs)
 
 #if SC_LANES_AVX512
 
@@ -80,6 +82,19 @@ static inline unsigned lanes_list_from(unsigned mask, uint32_t first, uint32_t *
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)mask, numbers));
     return (unsigned)__builtin_popcount(mask);
 }
+static inline unsigned lanes_list_pairs(unsigned mask, const uint8_t *a, uint32_t first_a,
+                                        const uint8_t *b, uint32_t first_b, uint32_t *to)
+{
+    const __m512i low = _mm512_set_epi32(23, 7, 22, 6, 21, 5, 20, 4, 19, 3, 18, 2, 17, 1, 16, 0);
+    const __m512i high = _mm512_add_epi32(low, _mm512_set1_epi32(8));
+    __m512i i = _mm512_add_epi32(lanes_index_load(a), _mm512_set1_epi32((int)first_a));
+    __m512i j = _mm512_add_epi32(lanes_index_load(b), _mm512_set1_epi32((int)first_b));
+    i = _mm512_maskz_compress_epi32((__mmask16)mask, i);
+    j = _mm512_maskz_compress_epi32((__mmask16)mask, j);
+    _mm512_storeu_si512(to, _mm512_permutex2var_epi32(i, low, j));
+    _mm512_storeu_si512(to + 16, _mm512_permutex2var_epi32(i, high, j));
+    return (unsigned)__builtin_popcount(mask);
+}
 
 #else
 
@@ -107,6 +122,17 @@ static inline unsigned lanes_list_from(unsigned mask, uint32_t first, uint32_t *
     uint8_t number[SC_LANES_COUNT] = {0};
     unsigned count = lanes_list(mask, number), i;
     for (i = 0; i < SC_LANES_COUNT; i++) to[i] = first + number[i];
+    return count;
+}
+static inline unsigned lanes_list_pairs(unsigned mask, const uint8_t *a, uint32_t first_a,
+                                        const uint8_t *b, uint32_t first_b, uint32_t *to)
+{
+    unsigned count = 0;
+    for (; mask; mask &= mask - 1) {
+        uint32_t lane = sc_bits_lowest(mask);
+        to[2 * count] = first_a + a[lane];
+        to[2 * count++ + 1] = first_b + b[lane];
+    }
     return count;
 }
 

@@ -16,3 +16,4 @@
 #undef lanes_corners_through
 #undef lanes_list
 #undef lanes_list_from
+#undef lanes_list_pairs

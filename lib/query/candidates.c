@@ -294,9 +294,10 @@ void sc_candidates_decide(sc_query_state *state)
 
 void sc_candidates_make_room(sc_query_state *state)
 {
-    /* fewer if the first hit ends the query */
-    uint32_t most =
-        state->options.output == SC_OUTPUT_ANY ? 64 : SC_CANDIDATES_MAX - SC_LEAF_MAX * SC_LEAF_MAX;
+    /* fewer if the first hit ends the query; up to SC_LEAF_MAX places are written to behind the last pair */
+    uint32_t most = state->options.output == SC_OUTPUT_ANY
+                        ? 64
+                        : SC_CANDIDATES_MAX - SC_LEAF_MAX * (SC_LEAF_MAX + 1);
     if (state->workspace->candidate_count >= most || state->workspace->neighbor_count >= most)
         decide_collected(state);
 }

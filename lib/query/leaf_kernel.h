@@ -1,7 +1,8 @@
 /*
- * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then what is left, sixteen pairs at a
- * time (query/sixteen_kernel.h). Pairs that are certain to meet are taken, pairs of which nothing is certain are collected.
- * See query_kernels.h.
+ * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then rows against planes; then what is
+ * left, sixteen pairs at a time (query/sixteen_kernel.h). Pairs that are certain to meet are taken, pairs of which nothing
+ * is certain are collected. Each of these goes through some pairs of leaf clusters before the next begins, so that few
+ * branches depend on how many rows or triangles one of them has. See query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -15,28 +16,54 @@ static inline void SC_KERNEL(begin_picking)(const sc_query_state *state, uint32_
     t->numbers = NULL;
 }
 
-/* Takes those of the pairs in these rows that certainly meet, and collects those that are not certainly apart. */
-static void SC_KERNEL(collect)(sc_query_state *state, const sc_leaf_pair *p, SC_KERNEL(picked) * a,
-                               SC_KERNEL(picked) * b, unsigned rows, const uint8_t row_a[],
-                               const uint16_t row_b[], float extent)
+/* Pairs of leaf clusters that are looked at together; and of triangles in them, so many or the next pair of clusters
+   more. */
+enum {
+    SC_ROWS_PAIRS = 32,
+    SC_ROWS = SC_ROWS_PAIRS * SC_LEAF_MAX + SC_LANES_COUNT,
+    SC_ROWS_LISTED = 512,
+    SC_ROWS_LIST = SC_ROWS_LISTED + SC_LEAF_PAIRS + 2 * SC_LANES_COUNT
+};
+
+/* What is left of pairs of leaf clusters: rows, that is triangles of one of them and a mask of the other's. Those of one pair
+   are together. */
+typedef struct SC_KERNEL(rows) {
+    uint32_t leaf[2][SC_ROWS_PAIRS];
+    const sc_leaf_ready *ready[2][SC_ROWS_PAIRS];
+    float extent[SC_ROWS_PAIRS]; /* of both; made when needed */
+    unsigned pairs, wait, count; /* how many there are */
+    uint8_t wait_pair
+        [SC_ROWS]; /* rows without a mask, whose boxes are to be compared: of which pair, */
+    uint8_t wait_row[SC_ROWS]; /* and the triangle */
+    uint8_t pair[SC_ROWS];     /* the others */
+    uint8_t row[SC_ROWS];
+    uint16_t mask[SC_ROWS];
+} SC_KERNEL(rows);
+
+static inline void SC_KERNEL(no_rows)(SC_KERNEL(rows) * rows)
 {
-    uint32_t first_a = sc_model_leaf_first(state->model)[p->a];
-    uint32_t first_b = sc_model_leaf_first(state->model)[p->b];
-    uint8_t of_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], of_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
+    rows->pairs = rows->wait = rows->count = 0;
+}
+
+/* Takes those of pairs of triangles of two leaf clusters that certainly meet, and collects those that are not certainly
+   apart. */
+static void SC_KERNEL(collect)(sc_query_state *state, const uint32_t leaf[2], unsigned count,
+                               const uint8_t of_a[], const uint8_t of_b[], float extent)
+{
+    uint32_t first_a = sc_model_leaf_first(state->model)[leaf[0]];
+    uint32_t first_b = sc_model_leaf_first(state->model)[leaf[1]];
+    sc_workspace *w = state->workspace;
     SC_KERNEL(verdict) verdict;
-    unsigned count = 0, at, r, met;
-    for (r = 0; r < rows; r++) {
-        memset(of_a + count, row_a[r], SC_LANES_COUNT);
-        count += lanes_list(row_b[r], of_b + count);
-    }
-    memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
-    memset(of_b + count, 0, SC_LANES_COUNT);
+    SC_KERNEL(picked) a, b;
+    unsigned at, met;
+    SC_KERNEL(begin_picking)(state, leaf[0], leaf[0] > leaf[1], &a);
+    SC_KERNEL(begin_picking)(state, leaf[1], leaf[1] > leaf[0], &b);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
         unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
         if (count >= SC_LEAF_FEW) {
-            a->numbers = of_a + at;
-            b->numbers = of_b + at;
-            SC_KERNEL(test_pairs)(a, b, mask, extent, &verdict);
+            a.numbers = of_a + at;
+            b.numbers = of_b + at;
+            SC_KERNEL(test_pairs)(&a, &b, mask, extent, &verdict);
             for (met = mask & verdict.meets; met; met &= met - 1) {
                 uint32_t lane = sc_bits_lowest(met);
                 unsigned edges = 0;
@@ -48,10 +75,9 @@ static void SC_KERNEL(collect)(sc_query_state *state, const sc_leaf_pair *p, SC_
             }
             mask &= ~(verdict.apart | verdict.meets);
         }
-        for (; mask; mask &= mask - 1) {
-            uint32_t lane = at + sc_bits_lowest(mask);
-            sc_candidates_add(state, first_a + of_a[lane], first_b + of_b[lane]);
-        }
+        w->candidate_count +=
+            lanes_list_pairs(mask, of_a + at, first_a, of_b + at, first_b,
+                             (uint32_t *)(void *)(w->candidates + w->candidate_count));
     }
 }
 
@@ -78,108 +104,147 @@ static inline void SC_KERNEL(load_boxes)(const sc_leaf_ready *ready, lanes low[3
     }
 }
 
-/* Lists the rows of a, triangles whose boxes overlap some of b's, and which. Returns how many. */
-static unsigned SC_KERNEL(list_rows)(const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned rows,
-                                     unsigned some, uint8_t of_a[], uint16_t of_b[])
+/* Finds which boxes overlap in rows that wait. Without branches, as any row may have some. */
+static void SC_KERNEL(compare_boxes)(SC_KERNEL(rows) * rows)
 {
-    lanes low[3], high[3];
-    unsigned count = 0;
-    SC_KERNEL(load_boxes)(b, low, high);
-    for (; rows; rows &= rows - 1) {
-        uint32_t i = sc_bits_lowest(rows);
-        of_a[count] = (uint8_t)i;
-        of_b[count] = (uint16_t)(SC_KERNEL(overlap_row)(a, i, low, high) & some);
-        count += of_b[count] != 0;
+    unsigned count = rows->count, t;
+    for (t = 0; t < rows->wait; t++) {
+        unsigned pair = rows->wait_pair[t], row = rows->wait_row[t];
+        lanes low[3], high[3];
+        SC_KERNEL(load_boxes)(rows->ready[1][pair], low, high);
+        rows->pair[count] = (uint8_t)pair;
+        rows->row[count] = (uint8_t)row;
+        rows->mask[count] = (uint16_t)SC_KERNEL(overlap_row)(rows->ready[0][pair], row, low, high);
+        count += rows->mask[count] != 0;
     }
-    return count;
+    rows->count = count;
+    rows->wait = 0;
 }
 
-/* The same of clusters of which some triangles share points: pairs that do are taken, and not in the rows. Without
-   branches, as any row may have some. */
-static unsigned SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p,
-                                       const sc_leaf_ready *a, const sc_leaf_ready *b,
-                                       unsigned rows, unsigned some, uint8_t of_a[],
-                                       uint16_t of_b[])
+/* The same of the pair of clusters to come, some triangles of which share points: pairs that do are taken, and not in the
+   rows. */
+static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p, unsigned some_a,
+                                   unsigned some_b, SC_KERNEL(rows) * rows)
 {
+    const sc_leaf_ready *a = SC_KERNEL(boxes)(state, p->a, 0);
     uint8_t near_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], near_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
     const unsigned lower = p->a == p->b ? 0 : SC_LEAF_ALL; /* of b, those below i, too */
-    unsigned count = 0, near_count = 0;
+    unsigned count = rows->count, near_count = 0;
     lanes low[3], high[3];
-    SC_KERNEL(load_boxes)(b, low, high);
-    for (; rows; rows &= rows - 1) {
-        uint32_t i = sc_bits_lowest(rows);
-        unsigned mask = SC_KERNEL(overlap_row)(a, i, low, high) & some, shared = p->shared[i];
+    SC_KERNEL(load_boxes)(SC_KERNEL(boxes)(state, p->b, p->b > p->a), low, high);
+    for (; some_a; some_a &= some_a - 1) {
+        uint32_t i = sc_bits_lowest(some_a);
+        unsigned mask = SC_KERNEL(overlap_row)(a, i, low, high) & some_b, shared = p->shared[i];
         mask &= ~((2u << i) - 1u) | lower;
         memset(near_a + near_count, (int)i, SC_LANES_COUNT);
         near_count += lanes_list(mask & shared, near_b + near_count);
         mask &= ~shared;
-        of_a[count] = (uint8_t)i;
-        of_b[count] = (uint16_t)mask;
+        rows->pair[count] = (uint8_t)rows->pairs;
+        rows->row[count] = (uint8_t)i;
+        rows->mask[count] = (uint16_t)mask;
         count += mask != 0;
     }
-    if (near_count && p->wanted) SC_KERNEL(take_neighbors)
-    (state, p, SC_KERNEL(extent)(state, p->a, p->b), near_a, near_b, near_count);
-    return count;
+    rows->count = count;
+    if (near_count && p->wanted) {
+        SC_KERNEL(take_neighbors)
+        (state, p, SC_KERNEL(extent)(state, p->a, p->b), near_a, near_b, near_count);
+        sc_candidates_make_room(state);
+    }
 }
 
-/* Drops pairs of these rows of which the plane of the row's triangle has the other on one side. Returns how many rows are
-   left. */
-static unsigned SC_KERNEL(drop_by_planes)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
-                                          float extent, unsigned rows, uint8_t of_a[],
-                                          uint16_t of_b[])
+/* Drops pairs of which the plane of the row's triangle has the other on one side. */
+static void SC_KERNEL(compare_planes)(const sc_query_state *state, SC_KERNEL(rows) * rows)
 {
-    float above[SC_LEAF_MAX], below[SC_LEAF_MAX];
-    lanes at[3], bound = SC_KERNEL(plane_bound)(lanes_load(a->ready->size), extent);
-    lanes_index corner[3];
-    unsigned count = 0, r;
+    unsigned count = 0, r = 0;
     int k;
-    lanes_turned(b->points, at);
-    SC_UNROLL
-    for (k = 0; k < 3; k++) corner[k] = lanes_index_load(b->corner + SC_LEAF_MAX * k);
-    lanes_store(above, lanes_add(lanes_load(a->ready->offset), bound));
-    lanes_store(below, lanes_subtract(lanes_load(a->ready->offset), bound));
-    for (r = 0; r < rows; r++) {
-        uint32_t i = of_a[r];
-        lanes d[3], along = lanes_multiply(lanes_all(a->ready->normal[0][i]), at[0]);
-        lanes_mask meets;
+    while (r < rows->count) {
+        const unsigned pair = rows->pair[r];
+        const uint32_t leaf_a = rows->leaf[0][pair], leaf_b = rows->leaf[1][pair];
+        const sc_leaf_ready *a = SC_KERNEL(ready)(state, leaf_a, leaf_a > leaf_b);
+        const uint8_t *where =
+            sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf_b;
+        const float extent = SC_KERNEL(extent)(state, leaf_a, leaf_b);
+        lanes_index corner[3];
+        lanes at[3];
+        rows->extent[pair] = extent;
+        lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf_b, at);
         SC_UNROLL
-        for (k = 1; k < 3; k++)
-            along = lanes_add(along, lanes_multiply(lanes_all(a->ready->normal[k][i]), at[k]));
-        SC_UNROLL
-        for (k = 0; k < 3; k++) d[k] = lanes_pick_of(along, corner[k]);
-        meets = lanes_both(
-            lanes_not_above(lanes_smaller(d[0], lanes_smaller(d[1], d[2])), lanes_all(above[i])),
-            lanes_not_above(lanes_all(below[i]), lanes_larger(d[0], lanes_larger(d[1], d[2]))));
-        of_a[count] = (uint8_t)i;
-        of_b[count] = (uint16_t)(lanes_bits(meets) & of_b[r]);
-        count += of_b[count] != 0;
+        for (k = 0; k < 3; k++) corner[k] = lanes_index_load(where + SC_LEAF_MAX * k);
+        do {
+            unsigned i = rows->row[r];
+            float bound = SC_KERNEL(one_plane_bound)(a->size[i], extent);
+            lanes d[3], along = lanes_multiply(lanes_all(a->normal[0][i]), at[0]);
+            lanes_mask meets;
+            SC_UNROLL
+            for (k = 1; k < 3; k++)
+                along = lanes_add(along, lanes_multiply(lanes_all(a->normal[k][i]), at[k]));
+            SC_UNROLL
+            for (k = 0; k < 3; k++) d[k] = lanes_pick_of(along, corner[k]);
+            meets = lanes_both(lanes_not_above(lanes_smaller(d[0], lanes_smaller(d[1], d[2])),
+                                               lanes_all(a->offset[i] + bound)),
+                               lanes_not_above(lanes_all(a->offset[i] - bound),
+                                               lanes_larger(d[0], lanes_larger(d[1], d[2]))));
+            rows->pair[count] = (uint8_t)pair;
+            rows->row[count] = (uint8_t)i;
+            rows->mask[count] = (uint16_t)(rows->mask[r] & lanes_bits(meets));
+            count += rows->mask[count] != 0;
+        } while (++r < rows->count && rows->pair[r] == pair);
     }
-    return count;
+    rows->count = count;
 }
 
-/* Rows of triangles of cluster p->a against all of cluster p->b, of which only some may overlap one of a. */
-static void SC_KERNEL(compare_leaves)(sc_query_state *state, sc_leaf_pair *p, unsigned rows,
-                                      unsigned some)
+/* Tests what is left of all pairs of leaf clusters, and forgets them. */
+static void SC_KERNEL(test_rows)(sc_query_state *state, SC_KERNEL(rows) * rows)
 {
-    const sc_leaf_ready *of_a = SC_KERNEL(boxes)(state, p->a, p->a > p->b);
-    const sc_leaf_ready *of_b = SC_KERNEL(boxes)(state, p->b, p->b > p->a);
-    uint8_t row_a[SC_LEAF_MAX + 1];
-    uint16_t row_b[SC_LEAF_MAX + 1];
-    unsigned count;
-    state->stats.counts[sc_state_box_task(state)] += sc_bits_count(rows);
-    if (p->shares)
-        count = SC_KERNEL(take_shared)(state, p, of_a, of_b, rows, some, row_a, row_b);
-    else
-        count = SC_KERNEL(list_rows)(of_a, of_b, rows, some, row_a, row_b);
-    if (count) {
-        float extent = SC_KERNEL(extent)(state, p->a, p->b);
-        SC_KERNEL(picked) a, b;
-        SC_KERNEL(begin_picking)(state, p->a, p->a > p->b, &a);
-        SC_KERNEL(begin_picking)(state, p->b, p->b > p->a, &b);
-        count = SC_KERNEL(drop_by_planes)(&a, &b, extent, count, row_a, row_b);
-        if (count) SC_KERNEL(collect)(state, p, &a, &b, count, row_a, row_b, extent);
+    uint8_t of_a[SC_ROWS_LIST], of_b[SC_ROWS_LIST], pair[SC_ROWS_PAIRS + 1];
+    uint16_t end[SC_ROWS_PAIRS + 1];
+    unsigned r = 0, k;
+    if (rows->wait) SC_KERNEL(compare_boxes)(rows);
+    if (rows->count) SC_KERNEL(compare_planes)(state, rows);
+    while (r < rows->count && !state->stop) {
+        unsigned count = 0, pairs = 0, first = 0;
+        do {
+            memset(of_a + count, rows->row[r], SC_LANES_COUNT);
+            count += lanes_list(rows->mask[r], of_b + count);
+            pair[pairs] = rows->pair[r];
+            end[pairs] = (uint16_t)count;
+            r++;
+            pairs += r == rows->count || rows->pair[r] != rows->pair[r - 1];
+        } while (r < rows->count && (count < SC_ROWS_LISTED || rows->pair[r] == rows->pair[r - 1]));
+        memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last sixteen */
+        memset(of_b + count, 0, SC_LANES_COUNT);
+        for (k = 0; k < pairs && !state->stop; first = end[k++]) {
+            uint32_t leaf[2];
+            leaf[0] = rows->leaf[0][pair[k]];
+            leaf[1] = rows->leaf[1][pair[k]];
+            SC_KERNEL(collect)
+            (state, leaf, end[k] - first, of_a + first, of_b + first, rows->extent[pair[k]]);
+            sc_candidates_make_room(state);
+        }
     }
-    sc_candidates_make_room(state);
+    SC_KERNEL(no_rows)(rows);
+}
+
+/* Adds two leaf clusters, or one, of which only some triangles may overlap the other. */
+static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p, unsigned some_a,
+                                unsigned some_b, SC_KERNEL(rows) * rows)
+{
+    /* either may be the rows */
+    unsigned swap = !p->shares && sc_bits_count(some_b) < sc_bits_count(some_a);
+    unsigned k = rows->pairs;
+    rows->leaf[swap][k] = p->a;
+    rows->leaf[!swap][k] = p->b;
+    rows->ready[swap][k] = SC_KERNEL(boxes)(state, p->a, 0);
+    rows->ready[!swap][k] = SC_KERNEL(boxes)(state, p->b, p->b > p->a);
+    if (p->shares) {
+        SC_KERNEL(take_shared)(state, p, some_a, some_b, rows);
+    } else {
+        some_a = swap ? some_b : some_a;
+        memset(rows->wait_pair + rows->wait, (int)k, SC_LANES_COUNT);
+        rows->wait += lanes_list(some_a, rows->wait_row + rows->wait);
+    }
+    state->stats.counts[sc_state_box_task(state)] += sc_bits_count(some_a);
+    rows->pairs++;
 }
 
 /* The triangles of leaf a whose boxes overlap that of leaf b. */
@@ -198,24 +263,32 @@ static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, uint32_t a, uint
     return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
 }
 
-/* Two leaf clusters, a < b; by_slabs: slabs may tell them apart, and were not looked at. */
-static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs)
+/* Whether a leaf cluster's boxes are made. */
+static inline unsigned SC_KERNEL(has_boxes)(const sc_query_state *state, uint32_t leaf,
+                                            int is_upper)
+{
+    const sc_workspace *w = state->workspace;
+    const sc_leaf_known *known = w->known + SC_KERNEL(place)(state, leaf, is_upper);
+    return (unsigned)(known->leaf == leaf) & (unsigned)(known->boxes == w->pose_tick);
+}
+
+/* Two leaf clusters, a < b; by_slabs: slabs may tell them apart, and were not looked at. What is made ready may take the
+   place of a leaf cluster that the rows are of, so these are tested before. */
+static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs,
+                                 SC_KERNEL(rows) * rows)
 {
     sc_leaf_pair p;
-    unsigned rows = SC_KERNEL(rows_at)(state, a, b), some;
-    if (!rows) return;
-    some = SC_KERNEL(rows_at)(state, b, a);
-    if (!some) return;
+    unsigned some_a, some_b;
+    if (rows->pairs == SC_ROWS_PAIRS ||
+        !(SC_KERNEL(has_boxes)(state, a, 0) & SC_KERNEL(has_boxes)(state, b, 1)))
+        SC_KERNEL(test_rows)(state, rows);
+    some_a = SC_KERNEL(rows_at)(state, a, b);
+    if (!some_a) return;
+    some_b = SC_KERNEL(rows_at)(state, b, a);
+    if (!some_b) return;
     if (by_slabs && SC_KERNEL(slabs_part)(state, a, b)) return;
     sc_candidates_enter(state, a, b, &p);
-    if (!p.shares && sc_bits_count(some) < sc_bits_count(rows)) { /* either may be the rows */
-        unsigned swap = some;
-        p.a = b;
-        p.b = a;
-        some = rows;
-        rows = swap;
-    }
-    SC_KERNEL(compare_leaves)(state, &p, rows, some);
+    SC_KERNEL(add_rows)(state, &p, some_a, some_b, rows);
 }
 
 /* Asks for the memory of a leaf cluster that is made ready; or of its slab and points, and the former if there is no
@@ -243,6 +316,8 @@ static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
     uint32_t *lower = w->leaf_pairs[0], *upper = w->leaf_pairs[1];
     uint32_t count = w->leaf_pair_count, kept = 0, i;
     int slabs_first = count >= SC_LEAF_SLABS_FIRST;
+    SC_KERNEL(rows) rows;
+    SC_KERNEL(no_rows)(&rows);
     w->leaf_pair_count = 0;
     if (slabs_first) {
         for (i = 0; i < count; i++) {
@@ -256,9 +331,10 @@ static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
     }
     for (i = 0; i < count && !state->stop; i++) {
         if (i + SC_FETCH_READY < count) SC_KERNEL(fetch_ready)(w, upper[i + SC_FETCH_READY]);
-        SC_KERNEL(leaf_pair)(state, lower[i], upper[i], !slabs_first);
+        SC_KERNEL(leaf_pair)(state, lower[i], upper[i], !slabs_first, &rows);
         if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);
     }
+    SC_KERNEL(test_rows)(state, &rows);
 }
 
 /* Has pairs of a leaf cluster wait: with those numbered from first on, all below it or all above, of which bits of a
@@ -295,8 +371,11 @@ static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)
 {
     const uint32_t *first = sc_model_leaf_first(state->model);
     unsigned rows = (1u << (first[leaf + 1] - first[leaf] - 1)) - 1u;
+    SC_KERNEL(rows) own;
     sc_leaf_pair p;
     state->stats.leaf_pairs++;
     sc_candidates_enter(state, leaf, leaf, &p);
-    SC_KERNEL(compare_leaves)(state, &p, rows, SC_LEAF_ALL);
+    SC_KERNEL(no_rows)(&own);
+    SC_KERNEL(add_rows)(state, &p, rows, SC_LEAF_ALL, &own);
+    SC_KERNEL(test_rows)(state, &own);
 }

@@ -48,13 +48,19 @@ static inline void SC_KERNEL(pick_corners)(const SC_KERNEL(picked) * t, lanes x[
     lanes_corners_through(t->points, t->corner, t->numbers, x);
 }
 
-/* What a distance from a plane, up to a factor, may be off by. */
+/* What a distance from a plane, up to a factor, may be off by: of sixteen, and of one. */
 static inline lanes SC_KERNEL(plane_bound)(lanes size, float extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     lanes bound = lanes_add(lanes_multiply(size, lanes_all(2.1f * v)),
                             lanes_all(4 * edge * (extent + edge) + 7 * v * extent * extent));
     return lanes_add(lanes_multiply(size, bound), lanes_all(8 * edge * edge * (extent + edge)));
+}
+static inline float SC_KERNEL(one_plane_bound)(float size, float extent)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    float bound = size * (2.1f * v) + (4 * edge * (extent + edge) + 7 * v * extent * extent);
+    return size * bound + 8 * edge * edge * (extent + edge);
 }
 
 /* Of triangles of which the plane of another splits the corners: the one alone on its side, and the edges from there to the
