@@ -52,6 +52,8 @@ static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
 static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
 {
     lanes a = lanes_load(in->a), b = lanes_load(in->b), corner[3][3];
+    lanes_index number[3];
+    lanes_mask mask[3];
     uint8_t list[SC_LANES_COUNT];
     uint32_t pairs[2 * SC_LANES_COUNT];
     int i, k;
@@ -70,6 +72,12 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
     memcpy(out->list, list, out->bits[5]);
     i = (int)lanes_list_pairs(in->mask, in->number, in->mask, in->through, 7, pairs);
     memcpy(out->pairs, pairs, 2 * (unsigned)i * sizeof *pairs);
+    for (i = 0; i < 3; i++) number[i] = lanes_index_load(in->number + SC_LANES_COUNT * i);
+    mask[0] = lanes_below(a, b);
+    mask[1] = lanes_below(b, a);
+    mask[2] = lanes_below(lanes_load(in->plain), lanes_load(in->plain + 16));
+    out->bits[16] = lanes_marked(number, mask);
+    out->bits[17] = lanes_among(number[0], in->mask);
 }
 
 static void SC_KERNEL(try_bytes)(const lanes_input *in, lanes_outcome *out)

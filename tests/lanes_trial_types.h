@@ -27,7 +27,7 @@ typedef struct lanes_input {
 typedef struct lanes_outcome {
     float row[63][16], one[3];
     double eight[16][8];
-    unsigned bits[16];
+    unsigned bits[18];
     uint32_t numbers[16], pairs[32];
     uint8_t list[16], bytes[10][16];
 } lanes_outcome;

@@ -198,13 +198,17 @@ static void lists_and_signs(void)
     uint32_t trial, i, k, wide;
     memset(&in, 0, sizeof in);
     for (trial = 0; trial < 2000; trial++) {
-        unsigned count = 0, negative = 0;
+        unsigned count = 0, negative = 0, marked = 0, among = 0;
         float ends[6];
         draw(&in);
         lanes_try_plain(&in, &out);
         for (i = 0; i < 16; i++) {
             for (k = 0; k < 16 && in.row[i][k] < 0; k++) continue;
             negative |= (unsigned)(k == 16) << i;
+            marked |= (unsigned)(in.a[i] < in.b[i]) << in.number[i];
+            marked |= (unsigned)(in.b[i] < in.a[i]) << in.number[16 + i];
+            marked |= (unsigned)(in.plain[i] < in.plain[16 + i]) << in.number[32 + i];
+            among |= (in.mask >> in.number[i] & 1u) << i;
             if (!(in.mask >> i & 1u)) continue;
             CHECK(out.list[count] == i);
             CHECK(out.pairs[2 * count] == in.mask + in.number[i]);
@@ -212,6 +216,7 @@ static void lists_and_signs(void)
             count++;
         }
         CHECK(out.bits[5] == count && out.bits[6] == negative);
+        CHECK(out.bits[16] == marked && out.bits[17] == among);
         for (i = 0; i < 16; i++) {
             CHECK((out.bits[0] >> i & 1u) == (unsigned)(in.a[i] < in.b[i]));
             CHECK((out.bits[1] >> i & 1u) == (unsigned)(in.a[i] <= in.b[i]));

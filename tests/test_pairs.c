@@ -475,6 +475,49 @@ static void neighbors_on_a_ray(void)
     }
 }
 
+/* A fan of triangles round a point, flat across an axis, in a mesh so much larger that single precision tells little of it.
+   It turns nearly once, or twice, from near a line of which a leaf cluster that is seen along the axis looks at the
+   sides, is closed or ends anywhere, and turns back a little here and there. */
+static void fans_in_a_plane(void)
+{
+    uint32_t rounds = test_iterations(400);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        static const double lines[4][2] = {{1, 0.5}, {-0.5, 1}, {-1, -0.5}, {0.5, -1}};
+        uint64_t state = test_random_state();
+        uint32_t count = 4 + test_random_below(10), axis = test_random_below(3);
+        uint32_t closed = test_random_below(4) == 0, line = test_random_below(4);
+        double turns = count > 5 && test_random_below(4) == 0 ? 2 : 1;
+        double size = exp2(-(double)test_random_below(24)), angle, sum = 0, place[2], step[16];
+        soup s = soup_make(count + 5, count + 1);
+        for (uint32_t c = 0; c < 2; ++c) place[c] = test_random_range(-1, 1);
+        angle = atan2(lines[line][1], lines[line][0]);
+        if (test_random_below(8) == 0) angle = test_random_range(-3, 3);
+        for (uint32_t k = 0; k < count; ++k) {
+            step[k] = test_random_range(0.3, 1);
+            if (i % 4 == 3 && test_random_below(6) == 0)
+                step[k] = -exp2(-(double)test_random_below(40));
+            sum += step[k];
+        }
+        for (uint32_t k = 0; k < count + 5; ++k) {
+            double far_away = k == count + 2 || k == count + 3 ? -1 : 1, *p = s.positions + 3 * k;
+            double reach = k == 0 ? 0 : size * test_random_range(0.5, 1);
+            double off = exp2(-4 - (double)test_random_below(40)) * test_random_range(-1, 1);
+            p[axis] = 0.25;
+            p[(axis + 1) % 3] = k > count + 1 ? far_away : place[0] + reach * cos(angle + off);
+            p[(axis + 2) % 3] = k > count + 1 ? 1 - 1e-3 * k : place[1] + reach * sin(angle + off);
+            if (k > 0 && k <= count) angle += turns * 6.283185307179586 * step[k - 1] / sum;
+        }
+        for (uint32_t k = 0; k <= count; ++k) {
+            uint32_t *t = s.triangles + 3 * k;
+            t[0] = k < count ? 0 : count + 2;
+            t[1] = k < count ? k + 1 : count + 3;
+            t[2] = k < count ? (closed && k + 1 == count ? 1 : k + 2) : count + 4;
+        }
+        check_random_build("fan in a plane", state, &s, s.positions);
+        soup_free(&s);
+    }
+}
+
 static void deformed_meshes(void)
 {
     uint32_t rounds = test_iterations(140);
@@ -813,7 +856,7 @@ static void meshes_of_the_folder(void)
 
 SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
              SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet), SC_TEST(neighbors_on_a_ray),
-             SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell), SC_TEST(branched_discs),
-             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
+             SC_TEST(fans_in_a_plane), SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell),
+             SC_TEST(branched_discs), SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
              SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
              SC_TEST(meshes_of_the_folder))

@@ -559,6 +559,49 @@ static uint32_t check_rings(const steps *s, const sc_model *model)
     return rings;
 }
 
+/* Triangles of a leaf cluster round a point of it in any order, each given as where it begins and where it ends: whether they
+   can be put in a row or, all, in a circle, so that each begins where the one before ends, and none anywhere twice. */
+static int is_fan(const uint32_t (*turn)[2], uint32_t count, int circle)
+{
+    uint32_t first, i, k, row;
+    for (i = 0; i < count; ++i)
+        for (k = 0; k < i; ++k)
+            if (turn[i][0] == turn[k][0] || turn[i][1] == turn[k][1]) return 0;
+    for (first = 0; first < count; ++first) {
+        uint32_t now = first;
+        for (row = 1; row < count; ++row) {
+            for (i = 0; i < count && turn[i][0] != turn[now][1]; ++i) continue;
+            if (i == count || i == first) break;
+            now = i;
+        }
+        if (row == count && (turn[now][1] == turn[first][0]) == circle) return 1;
+    }
+    return 0;
+}
+
+static void check_fans(const steps *s, const sc_model *model)
+{
+    const uint32_t *first = sc_model_leaf_first(model), *triangle = sc_model_triangle(model);
+    uint32_t leaf, p, i, k, wrong = 0;
+    for (leaf = 0; leaf < model->leaf_count; ++leaf) {
+        const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf;
+        const uint16_t *fan = sc_model_leaf_fan(model) + 2 * leaf;
+        for (p = 0; p < SC_LEAF_POINTS; ++p) {
+            uint32_t turn[3 * SC_LEAF_MAX][2], count = 0;
+            int again = p > 0 && point[p] == point[p - 1]; /* fills the row */
+            for (i = first[leaf]; i < first[leaf + 1] && !again; ++i)
+                for (k = 0; k < 3; ++k) {
+                    if (triangle[3 * i + k] != point[p]) continue;
+                    turn[count][0] = triangle[3 * i + (k + 1) % 3];
+                    turn[count++][1] = triangle[3 * i + (k + 2) % 3];
+                }
+            wrong += (fan[0] >> p & 1) != (count && is_fan((const uint32_t(*)[2])turn, count, 1));
+            wrong += (fan[1] >> p & 1) != (count && is_fan((const uint32_t(*)[2])turn, count, 0));
+        }
+    }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " fans of leaf clusters wrong", s->name, wrong);
+}
+
 /* The edges of a node's loop, from point to point; writes as many as there are. */
 static void list_loop(const steps *s, const sc_model *m, uint32_t n, sc_pair *edges)
 {
@@ -680,6 +723,7 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
     check_hops(s, model);
     check_loops(s, model);
     if (model->triangle_count < 400) check_rings(s, model);
+    check_fans(s, model);
 end:
     sc_model_free(model);
     free(before);

@@ -14,6 +14,9 @@
  * numbers; lanes_corners_at finds the former in memory, in turned places (see base/lanes.h); lanes_corners_through takes
  * the triangles of sixteen numbers below sixteen instead of all in order.
  *
+ * lanes_marked is the set of the numbers in three rows, in lanes of three masks; lanes_among has the lanes of which the number
+ * is in a set.
+ *
  * No guard, as in base/lanes.h; base/lanes_pick_end.h ends it.
  */
 #include <string.h>
@@ -32,6 +35,8 @@
 #define lanes_list SC_KERNEL(sc_lanes_list)
 #define lanes_list_from SC_KERNEL(sc_lanes_list_from)
 #define lanes_list_pairs SC_KERNEL(sc_lanes_list_pairs)
+#define lanes_marked SC_KERNEL(sc_lanes_marked)
+#define lanes_among SC_KERNEL(sc_lanes_among)
 
 #if SC_LANES_AVX512
 
@@ -66,6 +71,19 @@ static inline lanes_mask lanes_same(lanes a, lanes b)
 static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
 {
     return (lanes_mask)(a ^ b);
+}
+static inline unsigned lanes_marked(const lanes_index number[3], const lanes_mask mask[3])
+{
+    const __m512i one = _mm512_set1_epi32(1);
+    __m512i all = _mm512_maskz_sllv_epi32(mask[0], one, number[0]);
+    all = _mm512_or_si512(all, _mm512_maskz_sllv_epi32(mask[1], one, number[1]));
+    all = _mm512_or_si512(all, _mm512_maskz_sllv_epi32(mask[2], one, number[2]));
+    return (unsigned)_mm512_reduce_or_epi32(all);
+}
+static inline unsigned lanes_among(lanes_index number, unsigned set)
+{
+    __m512i bit = _mm512_sllv_epi32(_mm512_set1_epi32(1), number);
+    return _mm512_test_epi32_mask(bit, _mm512_set1_epi32((int)set));
 }
 static inline unsigned lanes_list(unsigned mask, uint8_t *to)
 {
@@ -198,12 +216,57 @@ static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
     r.v[1] = _mm256_xor_ps(a.v[1], b.v[1]);
     return r;
 }
+static inline unsigned lanes_marked(const lanes_index number[3], const lanes_mask mask[3])
+{
+    const __m256i one = _mm256_set1_epi32(1);
+    __m256i all = _mm256_setzero_si256();
+    __m128i half;
+    int i, k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        SC_UNROLL
+        for (i = 0; i < 2; i++)
+            all = _mm256_or_si256(all, _mm256_and_si256(_mm256_castps_si256(mask[k].v[i]),
+                                                        _mm256_sllv_epi32(one, number[k].v[i])));
+    }
+    half = _mm_or_si128(_mm256_castsi256_si128(all), _mm256_extracti128_si256(all, 1));
+    half = _mm_or_si128(half, _mm_shuffle_epi32(half, 0x4e));
+    return (unsigned)_mm_cvtsi128_si32(_mm_or_si128(half, _mm_shuffle_epi32(half, 0xb1)));
+}
+static inline unsigned lanes_among(lanes_index number, unsigned set)
+{
+    const __m256i one = _mm256_set1_epi32(1), all = _mm256_set1_epi32((int)set);
+    lanes_mask r;
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 2; i++) {
+        __m256i bit = _mm256_sllv_epi32(one, number.v[i]);
+        r.v[i] = _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(bit, all), bit));
+    }
+    return lanes_bits(r);
+}
 
 #  else
 
 typedef struct lanes_index {
     uint8_t at[SC_LANES_COUNT];
 } lanes_index;
+
+static inline unsigned lanes_marked(const lanes_index number[3], const lanes_mask mask[3])
+{
+    unsigned set = 0, bits;
+    int k;
+    for (k = 0; k < 3; k++)
+        for (bits = lanes_bits(mask[k]); bits; bits &= bits - 1)
+            set |= 1u << number[k].at[sc_bits_lowest(bits)];
+    return set;
+}
+static inline unsigned lanes_among(lanes_index number, unsigned set)
+{
+    unsigned bits = 0, i;
+    for (i = 0; i < SC_LANES_COUNT; i++) bits |= (set >> number.at[i] & 1u) << i;
+    return bits;
+}
 
 static inline lanes_index lanes_index_load(const uint8_t *numbers)
 {

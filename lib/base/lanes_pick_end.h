@@ -17,3 +17,5 @@
 #undef lanes_list
 #undef lanes_list_from
 #undef lanes_list_pairs
+#undef lanes_marked
+#undef lanes_among

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/assume.h"
+#include "base/bits.h"
 
 /* A compiler stops here if the owner does not fit before the model. */
 typedef char owner_fits_one_unit[sizeof(sc_model_owner) <= SC_ALIGNMENT ? 1 : -1];
@@ -158,6 +159,57 @@ static void write_leaves(sc_model *m)
             for (i = count; i < SC_LEAF_MAX; i++)
                 where[SC_LEAF_MAX * k + i] = where[SC_LEAF_MAX * k + count - 1];
         for (i = 0; i < SC_LEAF_POINTS; i++) point[i] = i < points ? known[i] : newest;
+    }
+}
+
+/* How the triangles of a cluster lie round one of its points: as places in leaf_point, where each begins and ends, counter-
+   clockwise. */
+typedef struct turns {
+    uint32_t begins, ends; /* sets */
+    uint32_t count, twice; /* twice: some begin or end at the same place */
+    uint8_t end_of[SC_LEAF_POINTS];
+} turns;
+
+/* Whether they follow each other, all of them; and whether they close a fan. */
+static int are_one_fan(const turns *t, int *closed)
+{
+    uint32_t heads = t->begins & ~t->ends, start, at, steps = 0;
+    *closed = !heads;
+    if (!t->count || t->twice || (heads & (heads - 1))) return 0;
+    start = at = sc_bits_lowest(heads ? heads : t->begins);
+    do {
+        at = t->end_of[at];
+        steps++;
+    } while (at != start && (t->begins >> at & 1u));
+    return steps == t->count;
+}
+
+/* Which points of leaf clusters have such fans. */
+static void write_fans(sc_model *m)
+{
+    const uint32_t *first = sc_model_leaf_first(m);
+    const uint8_t *where = sc_model_leaf_corner(m);
+    uint16_t *fan = NEW_ARRAY(m, leaf_fan, uint16_t);
+    uint32_t leaf, i, k;
+    for (leaf = 0; leaf < m->leaf_count; leaf++, where += 3 * SC_LEAF_MAX, fan += 2) {
+        turns at[SC_LEAF_POINTS];
+        memset(at, 0, sizeof at);
+        for (i = 0; i < first[leaf + 1] - first[leaf]; i++)
+            for (k = 0; k < 3; k++) {
+                uint8_t begin = where[SC_LEAF_MAX * ((k + 1) % 3) + i];
+                uint8_t end = where[SC_LEAF_MAX * ((k + 2) % 3) + i];
+                turns *t = &at[where[SC_LEAF_MAX * k + i]];
+                t->twice |= (t->begins >> begin | t->ends >> end) & 1u;
+                t->begins |= 1u << begin;
+                t->ends |= 1u << end;
+                t->end_of[begin] = end;
+                t->count++;
+            }
+        fan[0] = fan[1] = 0;
+        for (i = 0; i < SC_LEAF_POINTS; i++) {
+            int closed;
+            if (are_one_fan(&at[i], &closed)) fan[!closed] |= (uint16_t)(1u << i);
+        }
     }
 }
 
@@ -436,6 +488,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     write_leaves(m);
+    write_fans(m);
     copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));

@@ -60,6 +60,8 @@ enum {
  *   leaf_point      SC_LEAF_POINTS a cluster: the points of its triangles, the last one again to fill the row
  *   leaf_corner     3 SC_LEAF_MAX a cluster: where in leaf_point the first corners of its triangles are, then the
  *                   second, then the third; the last triangle again to fill the rows
+ *   leaf_fan        two sets of places in leaf_point a cluster: points round which its triangles follow each other, one
+ *                   beginning where the one before ends; first those where all of them are a closed fan, then the others
  *   share_...       see build/sharing.h
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
@@ -82,6 +84,7 @@ enum {
   X(leaf_first, uint32_t, (uint64_t)leaf_count + 1)                                                \
   X(leaf_point, uint32_t, SC_LEAF_POINTS *(uint64_t)leaf_count)                                    \
   X(leaf_corner, uint8_t, 3 * SC_LEAF_MAX * (uint64_t)leaf_count)                                  \
+  X(leaf_fan, uint16_t, 2 * (uint64_t)leaf_count)                                                  \
   X(share_first, uint32_t, (uint64_t)leaf_count + 1)                                               \
   X(share_leaf, uint32_t, share_count)                                                             \
   X(share_rows, uint16_t, SC_LEAF_MAX *(uint64_t)share_count)                                      \

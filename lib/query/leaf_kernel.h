@@ -128,16 +128,17 @@ static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p,
 {
     const sc_leaf_ready *a = SC_KERNEL(boxes)(state, p->a, 0);
     uint8_t near_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], near_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
-    const unsigned lower = p->a == p->b ? 0 : SC_LEAF_ALL; /* of b, those below i, too */
-    unsigned count = rows->count, near_count = 0;
+    const unsigned lower = p->a == p->b ? 0 : SC_LEAF_ALL;  /* of b, those below i, too */
+    unsigned count = rows->count, near_count = 0, near = 0; /* triangles that are looked at */
     lanes low[3], high[3];
+    if (p->wanted) near = p->a == p->b ? SC_KERNEL(doubtful)(state, p->a) : SC_LEAF_ALL;
     SC_KERNEL(load_boxes)(SC_KERNEL(boxes)(state, p->b, p->b > p->a), low, high);
     for (; some_a; some_a &= some_a - 1) {
         uint32_t i = sc_bits_lowest(some_a);
         unsigned mask = SC_KERNEL(overlap_row)(a, i, low, high) & some_b, shared = p->shared[i];
         mask &= ~((2u << i) - 1u) | lower;
         memset(near_a + near_count, (int)i, SC_LANES_COUNT);
-        near_count += lanes_list(mask & shared, near_b + near_count);
+        near_count += lanes_list(mask & shared & (near >> i & 1u ? near : 0u), near_b + near_count);
         mask &= ~shared;
         rows->pair[count] = (uint8_t)rows->pairs;
         rows->row[count] = (uint8_t)i;
@@ -145,7 +146,7 @@ static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p,
         count += mask != 0;
     }
     rows->count = count;
-    if (near_count && p->wanted) {
+    if (near_count) {
         SC_KERNEL(take_neighbors)
         (state, p, SC_KERNEL(extent)(state, p->a, p->b), near_a, near_b, near_count);
         sc_candidates_make_room(state);
