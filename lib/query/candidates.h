@@ -25,6 +25,15 @@ enum {
     SC_LEAF_PAIRS_UNASKED = 64
 };
 
+/* Pairs of leaf clusters that are looked at together; and of triangles in them, so many or the next pair of clusters
+   more. Lists of both are written sixteen at a time. */
+enum {
+    SC_ROWS_PAIRS = 32,
+    SC_ROWS = SC_ROWS_PAIRS * SC_LEAF_MAX + 16,
+    SC_ROWS_LISTED = 512,
+    SC_ROWS_LIST = SC_ROWS_LISTED + SC_LEAF_PAIRS + 2 * 16
+};
+
 /* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
 typedef struct sc_leaf_pair {
     uint32_t a, b;

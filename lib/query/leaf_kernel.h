@@ -16,15 +16,6 @@ static inline void SC_KERNEL(begin_picking)(const sc_query_state *state, uint32_
     t->numbers = NULL;
 }
 
-/* Pairs of leaf clusters that are looked at together; and of triangles in them, so many or the next pair of clusters
-   more. */
-enum {
-    SC_ROWS_PAIRS = 32,
-    SC_ROWS = SC_ROWS_PAIRS * SC_LEAF_MAX + SC_LANES_COUNT,
-    SC_ROWS_LISTED = 512,
-    SC_ROWS_LIST = SC_ROWS_LISTED + SC_LEAF_PAIRS + 2 * SC_LANES_COUNT
-};
-
 /* What is left of pairs of leaf clusters: rows, that is triangles of one of them and a mask of the other's. Those of one pair
    are together. */
 typedef struct SC_KERNEL(rows) {
