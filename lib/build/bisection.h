@@ -10,8 +10,8 @@
  *
  * A cut costs, along each edge, its rest length over the mean, divided by 2 - cos of the angle between the normals of
  * the two triangles: so that cuts follow creases, and normal cones of patches stay narrow. On the scenes of sc-bench,
- * against lengths alone, queries at rest take 10 to 15 % less on the horse with METIS, 8 % on the cat,
- * 3 to 7 % on bunnies; 5 to 7 % less on horse and cat by the built-in cut; on animations 0 to 3 % less. Up to 1 + 4 (1 -
+ * against lengths alone, queries at rest take 10 to 15 % less on the horse with METIS, 8 % on the cat, 3 to 7 % on bunnies;
+ * with the built-in cut 1 % less on the horse, 3 to 9 % on cat and bunnies; on animations 0 to 3 % less. Up to 1 + 4 (1 -
  * cos) as divisor gives the same within the noise, and rods then get 2 to 7 % more memory.
  */
 #ifndef SC_BUILD_BISECTION_H
