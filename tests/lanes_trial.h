@@ -24,6 +24,8 @@ static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
     lanes_store(out->row[6], lanes_larger_size(evens, odds));
     lanes_store(out->row[7], lanes_evens(a, b));
     lanes_store(out->row[8], lanes_odds(a, b));
+    lanes_store(out->row[63], b);
+    lanes_store_half(out->row[63], a);
     lanes_store(out->row[9], lanes_all(in->a[3]));
     lanes_store(out->row[10], lanes_four(in->a));
     lanes_store(out->row[11], lanes_each_four(in->a));

@@ -25,7 +25,7 @@ typedef struct lanes_input {
 } lanes_input;
 
 typedef struct lanes_outcome {
-    float row[63][16], one[3];
+    float row[64][16], one[3];
     double eight[16][8];
     unsigned bits[18];
     uint32_t numbers[16], pairs[32];

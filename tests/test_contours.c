@@ -1315,6 +1315,46 @@ static void places_of_contours(void)
     mpq_clears(exact, bound, NULL);
 }
 
+/* Contours that are looked at in turn pass or fail as each does by itself. */
+static void contours_in_turn(void)
+{
+    enum { MOST = 60 };
+    uint32_t wrong = 0, count[2] = {0, 0};
+    for (uint32_t round = 0; round < test_iterations(30); ++round) {
+        scene s;
+        soup mesh = round % 3 == 0   ? soup_cloth(30 + round, 20)
+                    : round % 3 == 1 ? soup_sphere(20 + round, 16)
+                                     : soup_branched(8 + round, 10);
+        uint32_t nodes[MOST], most = 1 + test_random_below(MOST), n = 0;
+        uint8_t passed[MOST];
+        if (!open_scene(&s, "in turn", &mesh, SC_WELD_NONE, SC_PARTITION_FAST)) continue;
+        if (round % 3 < 2) soup_smooth(s.pose, s.mesh.vertex_count, 0.02 * round);
+        if (!load_pose(&s)) continue;
+        s.workspace->isa = 1 + round % (uint32_t)sc_isa_best();
+        for (uint32_t node = 0; node < s.model->node_count; ++node) {
+            const sc_pair *patches = &sc_model_node_patches(s.model)[node];
+            if (s.workspace->mask[patches->a] & s.workspace->mask[patches->b]) nodes[n++] = node;
+            if (n < most && node + 1 < s.model->node_count) continue;
+            sc_simple_tests(&s.state, nodes, n, passed);
+            for (uint32_t i = 0; i < n; ++i) {
+                sc_projection projection;
+                patches = &sc_model_node_patches(s.model)[nodes[i]];
+                sc_dnc_projection(s.workspace,
+                                  (uint32_t)s.workspace->mask[patches->a] &
+                                      s.workspace->mask[patches->b],
+                                  &projection);
+                wrong += sc_simple_test(&s.state, &projection, nodes[i]) != passed[i];
+                ++count[passed[i] != 0];
+            }
+            n = 0;
+        }
+        close_scene(&s);
+    }
+    CHECK_MSG(!wrong, "%" PRIu32 " of %" PRIu32 " differ", wrong, count[0] + count[1]);
+    CHECK(!is_full() || (count[0] > 50 && count[1] > 1000));
+    printf("    contours_in_turn: %" PRIu32 " pass, %" PRIu32 " do not\n", count[1], count[0]);
+}
+
 /* A flat square grid, in any direction: no contour crosses itself, and where two patches share one point the lines of the
    grid go straight on from one to the other. */
 static void flat_cloths_pass(void)
@@ -1524,5 +1564,6 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
              SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),
              SC_TEST(long_contours), SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
              SC_TEST(contours_in_pieces), SC_TEST(points_in_the_unit_box),
-             SC_TEST(poses_of_any_layout), SC_TEST(places_of_contours), SC_TEST(flat_cloths_pass),
-             SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
+             SC_TEST(poses_of_any_layout), SC_TEST(places_of_contours), SC_TEST(contours_in_turn),
+             SC_TEST(flat_cloths_pass), SC_TEST(patches_that_share_hubs),
+             SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))

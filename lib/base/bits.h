@@ -33,6 +33,14 @@ static inline void sc_fetch(const void *address)
 #endif
 }
 
+/* For functions that do nothing else: gcc takes them for such that have no effect, and drops calls of them. */
+static inline void sc_fetch_matters(void)
+{
+#if defined(__GNUC__)
+    __asm__ volatile("");
+#endif
+}
+
 /* The same of 64 bits. */
 static inline unsigned sc_bits_lowest64(uint64_t mask)
 {

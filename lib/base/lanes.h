@@ -31,6 +31,7 @@
 #define lanes_all SC_KERNEL(sc_lanes_all)
 #define lanes_load SC_KERNEL(sc_lanes_load)
 #define lanes_store SC_KERNEL(sc_lanes_store)
+#define lanes_store_half SC_KERNEL(sc_lanes_store_half)
 #define lanes_add SC_KERNEL(sc_lanes_add)
 #define lanes_subtract SC_KERNEL(sc_lanes_subtract)
 #define lanes_multiply SC_KERNEL(sc_lanes_multiply)
@@ -78,6 +79,10 @@ static inline lanes lanes_load(const float *f)
 static inline void lanes_store(float *f, lanes a)
 {
     _mm512_storeu_ps(f, a);
+}
+static inline void lanes_store_half(float *f, lanes a)
+{
+    _mm256_storeu_ps(f, _mm512_castps512_ps256(a));
 }
 static inline lanes lanes_add(lanes a, lanes b)
 {
@@ -273,6 +278,11 @@ static inline void lanes_store(float *f, lanes a)
 {
     int i;
     for (i = 0; i < SC_LANES_PARTS; i++) SC_LANES_OF(storeu_ps)(f + i * SC_LANES_WIDTH, a.v[i]);
+}
+static inline void lanes_store_half(float *f, lanes a)
+{
+    int i;
+    for (i = 0; i < SC_LANES_PARTS / 2; i++) SC_LANES_OF(storeu_ps)(f + i * SC_LANES_WIDTH, a.v[i]);
 }
 static inline lanes lanes_add(lanes a, lanes b)
 {
@@ -578,6 +588,11 @@ static inline void lanes_store(float *f, lanes a)
 {
     int i;
     for (i = 0; i < SC_LANES_COUNT; i++) f[i] = a.v[i];
+}
+static inline void lanes_store_half(float *f, lanes a)
+{
+    int i;
+    for (i = 0; i < SC_LANES_COUNT / 2; i++) f[i] = a.v[i];
 }
 static inline lanes lanes_add(lanes a, lanes b)
 {

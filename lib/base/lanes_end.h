@@ -13,6 +13,7 @@
 #undef lanes_all
 #undef lanes_load
 #undef lanes_store
+#undef lanes_store_half
 #undef lanes_add
 #undef lanes_subtract
 #undef lanes_multiply

@@ -102,21 +102,35 @@ static const signed char diagonals[16][3] = {
     {0, 0, 0},   {1, 1, 1}, {1, 1, -1}, {2, 2, 0},  {1, -1, 1}, {2, 0, 2},  {2, 0, 0},   {3, 1, 1},
     {1, -1, -1}, {2, 0, 0}, {2, 0, -2}, {3, 1, -1}, {2, -2, 0}, {3, -1, 1}, {3, -1, -1}, {4, 0, 0}};
 
-void sc_dnc_projection(const sc_workspace *w, uint32_t mask, sc_projection *projection)
+void sc_dnc_vectors(uint32_t mask, float u[3], float w[3])
 {
-    static const double oblique[2][3] = {{5, 2, 11}, {11, 3, 2}};
-    const double *h = oblique[0];
-    double s[3], *u = projection->u, *v = projection->w;
+    static const float oblique[2][3] = {{5, 2, 11}, {11, 3, 2}};
+    const float *h = oblique[0];
+    float s[3];
     int k;
     for (k = 0; k < 3; k++)
-        s[k] = 7 * ((int)(mask >> k & 1) - (int)(mask >> (HALF + k) & 1)) +
-               4 * (diagonals[mask >> 3 & 15][k] - diagonals[mask >> (HALF + 3) & 15][k]);
+        s[k] = (float)(7 * ((int)(mask >> k & 1) - (int)(mask >> (HALF + k) & 1)) +
+                       4 * (diagonals[mask >> 3 & 15][k] - diagonals[mask >> (HALF + 3) & 15][k]));
     if (s[1] * h[2] == s[2] * h[1] && s[2] * h[0] == s[0] * h[2]) h = oblique[1];
-    for (k = 0; k < 3; k++)
-        u[k] = s[(k + 1) % 3] * h[(k + 2) % 3] - s[(k + 2) % 3] * h[(k + 1) % 3];
-    for (k = 0; k < 3; k++)
-        v[k] = s[(k + 1) % 3] * u[(k + 2) % 3] - s[(k + 2) % 3] * u[(k + 1) % 3];
-    for (k = 0; k < 3; k++) projection->origin[k] = w->center[k];
+    u[0] = s[1] * h[2] - s[2] * h[1];
+    u[1] = s[2] * h[0] - s[0] * h[2];
+    u[2] = s[0] * h[1] - s[1] * h[0];
+    w[0] = s[1] * u[2] - s[2] * u[1];
+    w[1] = s[2] * u[0] - s[0] * u[2];
+    w[2] = s[0] * u[1] - s[1] * u[0];
+}
+
+void sc_dnc_projection(const sc_workspace *w, uint32_t mask, sc_projection *projection)
+{
+    float vector[2][3];
+    double *u = projection->u, *v = projection->w;
+    int k;
+    sc_dnc_vectors(mask, vector[0], vector[1]);
+    for (k = 0; k < 3; k++) {
+        u[k] = (double)vector[0][k];
+        v[k] = (double)vector[1][k];
+        projection->origin[k] = w->center[k];
+    }
     projection->x_error =
         5 * 1.1102230246251565e-16 * (fabs(u[0]) + fabs(u[1]) + fabs(u[2])) * w->radius;
     projection->y_error =

@@ -28,4 +28,7 @@ int sc_dnc_validate(const sc_model *model, const sc_workspace *workspace);
  */
 void sc_dnc_projection(const sc_workspace *workspace, uint32_t mask, sc_projection *projection);
 
+/* Its vectors alone, integers that floats hold exactly. */
+void sc_dnc_vectors(uint32_t mask, float u[3], float w[3]);
+
 #endif

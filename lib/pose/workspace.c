@@ -36,11 +36,14 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
 {
     uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
     uint64_t levels = (uint64_t)model->level_count + 1, spans, n;
+    const uint64_t turns = model->contour_max ? SC_CONTOUR_TURNS : 0;
     int k;
+    if (listed < turns * SC_CONTOUR_ROOM) listed = turns * SC_CONTOUR_ROOM;
     w->contour.point = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
     for (k = 0; k < 2; k++) w->contour.at[k] = (float *)place(block, at, listed, sizeof(float));
     for (spans = 0, n = listed / 2; n; n = n > SC_CONTOUR_BLOCK ? (n + 1) / 2 : 0)
         spans += SC_CONTOUR_SPANS(n);
+    if (spans < turns * SC_CONTOUR_SPAN_ROOM) spans = turns * SC_CONTOUR_SPAN_ROOM;
     for (k = 0; k < 4; k++)
         w->contour.span_side[k] = (float *)place(block, at, spans, sizeof(float));
     w->contour.is_edge =

@@ -56,12 +56,22 @@ enum { SC_CONTOUR_BLOCK = 16, SC_CONTOUR_RUN = 4, SC_CONTOUR_NEAR = 2 * SC_CONTO
 #define SC_CONTOUR_SPANS(count)                                                                    \
   (((count) + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK * SC_CONTOUR_BLOCK + 2 * SC_CONTOUR_BLOCK)
 
+/* Contours of a query that are looked at in turn: how many, the points of one at most, and the room for it: points with
+   those that are read beyond, and boxes of spans. */
+enum {
+    SC_CONTOUR_TURNS = 4,
+    SC_CONTOUR_SHORT = 112,
+    SC_CONTOUR_ROOM = SC_CONTOUR_SHORT + SC_CONTOUR_BLOCK,
+    SC_CONTOUR_SPAN_ROOM = 208
+};
+
 /* Sides of boxes in the plane. */
 enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
 
 /*
  * The projected contour of a node, see query/simple.c: a list of points, of which point i and the next are
- * edge i, but where a chain ends. Room for model.contour_max points, and two blocks more.
+ * edge i, but where a chain ends. Room for model.contour_max points, and two blocks more; or for those that are looked at
+ * in turn, one after the other.
  */
 typedef struct sc_contour_edges {
     uint32_t *point;      /* what points they are */

@@ -378,16 +378,11 @@ static void list_selfs(plan *p)
     walk->self_count = kept;
 }
 
-static int passes(sc_query_state *s, uint32_t node)
-{
-    return !sc_state_stops(s) && sc_traversal_test(s, node);
-}
-
 static void run_tests(void *context, uint32_t part, uint32_t worker)
 {
     const plan *p = (const plan *)context;
     sc_query_state *s = begin_part(p, worker);
-    p->w->passed[part] = (uint8_t)passes(s, p->w->tests[part]);
+    sc_traversal_test(s, &p->w->tests[part], 1, &p->w->passed[part]);
     end_part(s);
 }
 
@@ -397,8 +392,7 @@ static void do_tests(plan *p)
     const sc_pair *patches = sc_model_node_patches(p->state->model);
     uint32_t i;
     if (p->test_count < TESTS_MIN)
-        for (i = 0; i < p->test_count; i++)
-            p->w->passed[i] = (uint8_t)passes(p->state, p->w->tests[i]);
+        sc_traversal_test(p->state, p->w->tests, p->test_count, p->w->passed);
     else
         run_job(p, run_tests, p->test_count);
     for (i = p->test_count; i-- > 0;) {

@@ -32,9 +32,9 @@
 #  include "query/simple_kernel.h"
 
 const sc_query_kernels sc_query_kernels_avx512 = {
-    SC_KERNEL(patch_pair),  SC_KERNEL(patch_itself),  SC_KERNEL(leaf_pair_waits),
-    SC_KERNEL(leaf_itself), SC_KERNEL(leaf_pairs),    SC_KERNEL(decide),
-    SC_KERNEL(project),     SC_KERNEL(are_edges_fine)};
+    SC_KERNEL(patch_pair),  SC_KERNEL(patch_itself), SC_KERNEL(leaf_pair_waits),
+    SC_KERNEL(leaf_itself), SC_KERNEL(leaf_pairs),   SC_KERNEL(decide),
+    SC_KERNEL(project),     SC_KERNEL(look_at_edges)};
 
 #  include "base/lanes_bytes_end.h"
 #  include "base/lanes_pick_end.h"

@@ -23,8 +23,10 @@ typedef struct sc_query_kernels {
     void (*decide)(const sc_pair_lanes *pairs, sc_verdict *verdict);
     /* Projects the listed points of a contour, and sets its error. */
     void (*project)(sc_simple_contour *contour, const sc_workspace *workspace);
-    /* Whether sc_simple_are_apart is true of all pairs of edges whose boxes overlap. */
-    int (*are_edges_fine)(sc_simple_contour *contour);
+    /* Whether sc_simple_are_apart is true of all pairs of edges whose boxes overlap, in three steps: the first of one
+       contour, the second of another, all that is left of a third; each may be NULL. */
+    void (*look_at_edges)(sc_simple_contour *first, sc_simple_contour *second,
+                          sc_simple_contour *last);
 } sc_query_kernels;
 
 extern const sc_query_kernels sc_query_kernels_base;

@@ -16,8 +16,9 @@
 #include <string.h>
 
 #include "base/assume.h"
-#include "pose/positions.h"
 #include "base/bits.h"
+#include "pose/dnc.h"
+#include "pose/positions.h"
 #include "query/query_kernels.h"
 
 static int is_edge(const sc_simple_contour *c, uint32_t i)
@@ -104,14 +105,14 @@ static void list_pieces(const sc_simple_contour *c)
     }
 }
 
-/* The power of two above a float from 1 to 2^127. */
-static double power_above(float f)
+/* One over the power of two above a float from 1 to 2^125, exactly. */
+static float below_one(float f)
 {
     uint32_t bits;
     memcpy(&bits, &f, sizeof bits);
-    bits = (bits & 0x7f800000u) + 0x800000u; /* the exponent, and one more */
+    bits = (253u << 23) - (bits & 0x7f800000u); /* exponents have a bias of 127 */
     memcpy(&f, &bits, sizeof f);
-    return (double)f;
+    return f;
 }
 
 /*
@@ -120,19 +121,26 @@ static double power_above(float f)
  * by 3e-8 for the place of p, and by the rounding of one difference, one product and two additions: at most
  * 4.01 * 2^-24 |p - q|max, and what underflows.
  */
-void sc_simple_axes(sc_simple_contour *c, const sc_projection *projection)
+static void set_axes(sc_simple_contour *c, const float u[3], const float w[3])
 {
-    double size[2] = {0, 0};
+    const float size[2] = {below_one(fabsf(u[0]) + fabsf(u[1]) + fabsf(u[2])),
+                           below_one(fabsf(w[0]) + fabsf(w[1]) + fabsf(w[2]))};
     int k;
     for (k = 0; k < 3; k++) {
-        size[0] += fabs(projection->u[k]);
-        size[1] += fabs(projection->w[k]);
+        c->axis[0][k] = u[k] * size[0];
+        c->axis[1][k] = w[k] * size[1];
     }
-    for (k = 0; k < 2; k++) size[k] = 1 / power_above((float)size[k]); /* exactly */
+}
+
+void sc_simple_axes(sc_simple_contour *c, const sc_projection *projection)
+{
+    float u[3], w[3];
+    int k;
     for (k = 0; k < 3; k++) {
-        c->axis[0][k] = (float)(projection->u[k] * size[0]);
-        c->axis[1][k] = (float)(projection->w[k] * size[1]);
+        u[k] = (float)projection->u[k];
+        w[k] = (float)projection->w[k];
     }
+    set_axes(c, u, w);
 }
 
 void sc_simple_middle(const sc_simple_contour *c, const float *unit, uint32_t stride, float from[3])
@@ -221,9 +229,15 @@ static uint32_t piece_of(const sc_simple_contour *c, uint32_t i)
 
 int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
-    uint32_t a = point_of(c, i), b = point_of(c, i + 1), p = point_of(c, j), q = point_of(c, j + 1);
-    int shared = (a == p) + (a == q) + (b == p) + (b == q);
-    if (!shared) return boxes_part(c, i, j) || lies_beside(c, i, j) || lies_beside(c, j, i);
+    uint32_t a, b, p, q;
+    int shared;
+    if (boxes_part(c, i, j) || lies_beside(c, i, j) || lies_beside(c, j, i)) return 1;
+    a = point_of(c, i);
+    b = point_of(c, i + 1);
+    p = point_of(c, j);
+    q = point_of(c, j + 1);
+    shared = (a == p) + (a == q) + (b == p) + (b == q);
+    if (!shared) return 0;
     if (shared > 1 || !is_open(c, i, b == p || b == q, j, a == q || b == q)) return 0;
     return sc_simple_note_shared(c, i, j);
 }
@@ -375,6 +389,13 @@ int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *wo
     return 1;
 }
 
+static void start_loop(sc_simple_contour *c, const sc_model *model, uint32_t node)
+{
+    c->has_gaps = c->in_pieces = 0;
+    c->pinch_count = 0;
+    find_loop(c, model, node);
+}
+
 /* The points of a loop, which are listed as they are projected; or all, listed as a cycle: the last is followed by the
    first again, which lets the inner loop look beyond the end. */
 static int start(sc_simple_contour *c, const sc_model *model, sc_workspace *workspace,
@@ -383,9 +404,7 @@ static int start(sc_simple_contour *c, const sc_model *model, sc_workspace *work
     uint32_t i;
     if (is_looped(model, node)) {
         c->edges = &workspace->contour;
-        c->has_gaps = c->in_pieces = 0;
-        c->pinch_count = 0;
-        find_loop(c, model, node);
+        start_loop(c, model, node);
         return 1;
     }
     if (!sc_simple_list(c, model, workspace, node)) return 0;
@@ -396,11 +415,15 @@ static int start(sc_simple_contour *c, const sc_model *model, sc_workspace *work
     return 1;
 }
 
-void sc_simple_fetch(const sc_model *model, uint32_t node, int step)
+/* Asks for memory that the test of a node will read, in steps 0 to FETCHES - 1, of which each reads what the one before
+   asked for. */
+enum { FETCHES = 4 };
+static void fetch(const sc_model *model, uint32_t node, int step)
 {
     const uint32_t *at = sc_model_node_contour(model) + node, *segments, *first, *last;
     const uint32_t *looped = sc_model_node_loop(model) + node;
     uint32_t i, count;
+    sc_fetch_matters();
     if (step == 0) {
         sc_fetch(at);
         sc_fetch(looped);
@@ -453,22 +476,128 @@ static void find_middle(sc_simple_contour *c, const sc_workspace *w)
     for (k = 0; k < 3; k++) c->from[k] = one[k] / 2 + other[k] / 2;
 }
 
+/* Projects a contour that was started. */
+static void place_contour(sc_query_state *state, sc_simple_contour *c)
+{
+    find_middle(c, state->workspace);
+    sc_query_kernels_of(state->workspace)->project(c, state->workspace);
+    state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c->count;
+}
+
+/* After all edges were looked at. */
+static int is_fine(const sc_simple_contour *c)
+{
+    return c->passed && ((!c->pinch_count && !c->in_pieces) || sc_simple_is_wound_well(c));
+}
+
 int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
 {
     const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
     uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
-    int passed;
     sc_simple_contour c;
-    passed = start(&c, state->model, state->workspace, node);
+    int passed = start(&c, state->model, state->workspace, node);
     if (passed) {
         sc_simple_axes(&c, projection);
-        find_middle(&c, state->workspace);
-        kernels->project(&c, state->workspace);
-        state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.count;
+        place_contour(state, &c);
         sc_state_switch(state, SC_TASK_CONTOUR);
         state->stats.counts[SC_TASK_CONTOUR]++;
-        passed = kernels->are_edges_fine(&c) && sc_simple_is_wound_well(&c);
+        kernels->look_at_edges(&c, NULL, NULL);
+        kernels->look_at_edges(NULL, NULL, &c);
+        passed = is_fine(&c);
     }
     sc_state_switch(state, previous);
     return passed;
+}
+
+/*
+ * Contours of loops that are not long are looked at in turn: while one is projected, the first step is made for the one
+ * before, the second for the one before that, and what is left for a third. So no step waits for what another one has just
+ * written, which processors do not hand on if it is read in other pieces, and memory has time to arrive.
+ */
+typedef struct contour_turns {
+    sc_simple_contour contour[SC_CONTOUR_TURNS];
+    sc_contour_edges edges[SC_CONTOUR_TURNS];
+    uint32_t node[SC_CONTOUR_TURNS]; /* number in the list, or SC_NONE */
+} contour_turns;
+
+static int is_short(const sc_model *model, uint32_t node)
+{
+    const uint32_t *loop = sc_model_node_loop(model) + node;
+    return loop[1] > loop[0] && loop[1] - loop[0] <= SC_CONTOUR_SHORT;
+}
+
+/* Starts turn t with a node's loop, and projects it. */
+static void begin_turn(sc_query_state *state, contour_turns *all, uint32_t t, uint32_t node)
+{
+    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
+    const uint16_t *mask = state->workspace->mask;
+    float u[3], w[3];
+    start_loop(&all->contour[t], state->model, node);
+    sc_dnc_vectors((uint32_t)mask[patches->a] & mask[patches->b], u, w);
+    set_axes(&all->contour[t], u, w);
+    place_contour(state, &all->contour[t]);
+}
+
+/* Each turn has a part of the room for a contour. */
+static void start_turns(contour_turns *all, const sc_contour_edges *room)
+{
+    uint32_t t;
+    int k;
+    for (t = 0; t < SC_CONTOUR_TURNS; t++) {
+        sc_contour_edges *edges = &all->edges[t];
+        *edges = *room;
+        edges->point = room->point + SC_CONTOUR_ROOM * t;
+        for (k = 0; k < 2; k++) edges->at[k] = room->at[k] + SC_CONTOUR_ROOM * t;
+        for (k = 0; k < 4; k++) edges->span_side[k] = room->span_side[k] + SC_CONTOUR_SPAN_ROOM * t;
+        all->contour[t].edges = edges;
+        all->node[t] = SC_NONE;
+    }
+}
+
+/* How many tests pass between two steps of fetching what a test reads. */
+enum { FETCH_DISTANCE = 2 };
+
+void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed)
+{
+    const sc_model *model = state->model;
+    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
+    contour_turns all;
+    int i, step, k;
+    memset(passed, 0, count);
+    start_turns(&all, &state->workspace->contour);
+    for (i = -FETCH_DISTANCE * FETCHES; i < (int)count + 3 && !sc_state_stops(state); i++) {
+        sc_simple_contour *c[SC_CONTOUR_TURNS];
+        for (step = 0; step < FETCHES; step++) {
+            int ahead = i + FETCH_DISTANCE * (FETCHES - step);
+            if (ahead >= 0 && ahead < (int)count) fetch(model, nodes[ahead], step);
+        }
+        if (i < 0) continue;
+        sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
+        all.node[i % SC_CONTOUR_TURNS] = SC_NONE;
+        if (i < (int)count && is_short(model, nodes[i])) {
+            all.node[i % SC_CONTOUR_TURNS] = (uint32_t)i;
+            begin_turn(state, &all, (uint32_t)i % SC_CONTOUR_TURNS, nodes[i]);
+        }
+        for (k = 1; k < SC_CONTOUR_TURNS; k++) {
+            uint32_t t = (uint32_t)(i + SC_CONTOUR_TURNS - k) % SC_CONTOUR_TURNS;
+            c[k] = all.node[t] == SC_NONE ? NULL : &all.contour[t];
+        }
+        sc_state_switch(state, SC_TASK_CONTOUR);
+        kernels->look_at_edges(c[1], c[2], c[3]);
+        if (c[3]) {
+            state->stats.counts[SC_TASK_CONTOUR]++;
+            passed[i - 3] = (uint8_t)is_fine(c[3]);
+        }
+    }
+    for (i = 0; i < (int)count && !sc_state_stops(state); i++) {
+        const sc_pair *patches = &sc_model_node_patches(model)[nodes[i]];
+        const uint16_t *mask = state->workspace->mask;
+        sc_projection projection;
+        if (is_short(model, nodes[i])) continue;
+        sc_dnc_projection(state->workspace, (uint32_t)mask[patches->a] & mask[patches->b],
+                          &projection);
+        passed[i] = (uint8_t)sc_simple_test(state, &projection, nodes[i]);
+    }
+    sc_state_switch(state, previous);
 }

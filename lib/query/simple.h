@@ -20,9 +20,9 @@
  */
 int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node);
 
-/* Asks for memory that the test of a node will read, in steps 0 to SC_SIMPLE_FETCHES - 1, of which each reads what the one
-   before asked for. */
-enum { SC_SIMPLE_FETCHES = 4 };
-void sc_simple_fetch(const sc_model *model, uint32_t node, int step);
+/* Tests nodes whose patches have normal cones with a direction in common, along the average of those: passed[i] says
+   what of nodes[i]. The contours of some are looked at together, so that what one wrote down need not be read at
+   once. Where the query is to end, the rest does not pass. */
+void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed);
 
 #endif

@@ -29,6 +29,8 @@ typedef struct sc_simple_contour {
     float axis[2][3], from[3];     /* the projection: x = axis[0] . (unit - from), likewise y */
     float error;                   /* |computed - true| of each coordinate, at most */
     int in_pieces;                 /* pieces have to be told apart */
+    int passed;                    /* as far as is known */
+    uint32_t level, spans;         /* what is looked at next: so many spans; 0: nothing */
     uint32_t pinch_count;
     sc_pinch pinch[SC_PINCHES_MAX];
 } sc_simple_contour;

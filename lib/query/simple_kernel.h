@@ -212,7 +212,8 @@ static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t 
  * those of spans, which are two errors larger each; this writes the boxes of spans of two edges. What is no edge is in
  * boxes, which does no harm.
  */
-static int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i)
+static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
+                                           float first[4][SC_LANES_COUNT])
 {
     const sc_contour_edges *e = c->edges;
     const lanes margin = lanes_all(4 * c->error), half = lanes_all(2 * c->error);
@@ -231,8 +232,14 @@ static int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i)
         box[2 * k + 1] = lanes_add(high, margin);
         low = lanes_subtract(lanes_smaller(low, other.q[k]), half);
         high = lanes_add(lanes_larger(high, other.q[k]), half);
-        lanes_store(e->span_side[2 * k] + i / 2, lanes_evens(low, low));
-        lanes_store(e->span_side[2 * k + 1] + i / 2, lanes_evens(high, high));
+        low = lanes_evens(low, low);
+        high = lanes_evens(high, high);
+        lanes_store_half(e->span_side[2 * k] + i / 2, low);
+        lanes_store_half(e->span_side[2 * k + 1] + i / 2, high);
+        if (!i) {
+            lanes_store_half(first[2 * k], low);
+            lanes_store_half(first[2 * k + 1], high);
+        }
     }
     if (SC_KERNEL(folds)(c, &own, other.q, edges & SC_KERNEL(edges_from)(c, i + 1))) return 0;
     SC_UNROLL
@@ -250,6 +257,42 @@ static int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i)
     near[1] &= c->count > 4 ? edges : 0;
     return !(near[0] | near[1]) || (SC_KERNEL(are_pairs_fine)(c, i, 2, near[0]) &&
                                     SC_KERNEL(are_pairs_fine)(c, i, 3, near[1]));
+}
+
+/* All edges with those next to them; and the spans of two edges, of which the first follow the last again, as many as are
+   read beyond it. */
+static int SC_KERNEL(are_all_near_fine)(sc_simple_contour *c)
+{
+    float first[4][SC_LANES_COUNT];
+    uint32_t i;
+    int k;
+    c->spans = 0;
+    for (i = 0; i < c->count; i += SC_CONTOUR_BLOCK)
+        if (!SC_KERNEL(are_near_fine)(c, i, first)) return 0;
+    c->spans = (c->count + 1) / 2;
+    c->level = 1;
+    c->span_first[1] = 0;
+    for (k = 0; k < 4; k++)
+        memcpy(c->edges->span_side[k] + c->spans, first[k], SC_LANES_COUNT / 2 * sizeof(float));
+    return 1;
+}
+
+/* Bits of lanes in which the boxes of edges are not certainly apart. */
+static inline unsigned SC_KERNEL(boxes_meet)(const sc_simple_contour *c,
+                                             const SC_KERNEL(sc_edge_lanes) * e,
+                                             const SC_KERNEL(sc_edge_lanes) * f)
+{
+    const lanes margin = lanes_all(4 * c->error);
+    lanes a[4], b[4];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 2; k++) {
+        a[2 * k] = lanes_subtract(lanes_smaller(e->p[k], e->q[k]), margin);
+        a[2 * k + 1] = lanes_add(lanes_larger(e->p[k], e->q[k]), margin);
+        b[2 * k] = lanes_smaller(f->p[k], f->q[k]);
+        b[2 * k + 1] = lanes_larger(f->p[k], f->q[k]);
+    }
+    return SC_KERNEL(overlap_in_plane)(a, b);
 }
 
 /* The edges of two spans, four each or less, that do not follow each other. */
@@ -272,6 +315,8 @@ static int SC_KERNEL(are_few_fine)(sc_simple_contour *c, uint32_t i, uint32_t j,
         other.p[k] = lanes_four(e->at[k] + j);
         other.q[k] = lanes_four(e->at[k] + j + 1);
     }
+    near &= SC_KERNEL(boxes_meet)(c, &own, &other);
+    if (!near) return 1;
     for (near &= ~SC_KERNEL(lie_apart)(c, &own, &other); near; near &= near - 1) {
         unsigned pair = sc_bits_lowest(near);
         if (!sc_simple_are_apart(c, i + pair / 4, j + pair % 4)) return 0;
@@ -322,23 +367,40 @@ static inline unsigned SC_KERNEL(overlap_on)(float *const *side, const lanes own
     return SC_KERNEL(overlap_in_plane)(own, other);
 }
 
-/* All spans of 2^level edges, more than SC_LANES_COUNT, with those two and three places on. */
-static int SC_KERNEL(is_level_fine)(sc_simple_contour *c, uint32_t level, uint32_t count)
+/* All spans of 2^level edges, more than SC_LANES_COUNT, with those two and three places on; and the spans of the next
+   level, of two each, followed by the first again. One that is left over is joined with the first, which does no harm. */
+static int SC_KERNEL(is_level_fine)(sc_simple_contour *c)
 {
+    const uint32_t level = c->level++;
     float *const *side = c->edges->span_side;
-    uint32_t first = c->span_first[level], i, k;
+    float start[4][SC_LANES_COUNT];
+    const uint32_t first = c->span_first[level], count = c->spans;
+    const uint32_t next = first + SC_CONTOUR_SPANS(count);
+    uint32_t i, k;
     for (i = 0; i < count; i += SC_LANES_COUNT) {
         const unsigned spans = SC_KERNEL(first_lanes)(count - i);
         lanes own[4];
         unsigned near[2];
         SC_UNROLL
-        for (k = 0; k < 4; k++) own[k] = lanes_load(side[k] + first + i);
+        for (k = 0; k < 4; k++) {
+            lanes even, odd;
+            own[k] = lanes_load(side[k] + first + i);
+            even = lanes_evens(own[k], own[k]);
+            odd = lanes_odds(own[k], own[k]);
+            even = k % 2 ? lanes_larger(even, odd) : lanes_smaller(even, odd);
+            lanes_store_half(side[k] + next + i / 2, even);
+            if (!i) lanes_store_half(start[k], even);
+        }
         near[0] = spans & SC_KERNEL(overlap_on)(side, own, first + i + 2);
         near[1] = spans & SC_KERNEL(overlap_on)(side, own, first + i + 3);
         if ((near[0] | near[1]) && !(SC_KERNEL(are_some_fine)(c, level, count, i, 2, near[0]) &&
                                      SC_KERNEL(are_some_fine)(c, level, count, i, 3, near[1])))
             return 0;
     }
+    c->span_first[level + 1] = next;
+    c->spans = (count + 1) / 2;
+    for (k = 0; k < 4; k++)
+        memcpy(side[k] + next + c->spans, start[k], SC_LANES_COUNT / 2 * sizeof(float));
     return 1;
 }
 
@@ -355,7 +417,8 @@ static int SC_KERNEL(is_last_level_fine)(sc_simple_contour *c, uint32_t level, u
     for (k = 0; k < 4; k++) own[k] = lanes_load(side[k] + first);
     SC_UNROLL
     for (s = 2; s <= SC_LANES_COUNT / 2; s++) {
-        near[s] = 2 * s <= count ? spans & SC_KERNEL(overlap_on)(side, own, first + s) : 0;
+        unsigned some = 2 * s <= count ? spans : 0;
+        near[s] = some & SC_KERNEL(overlap_on)(side, own, first + s);
         any |= near[s];
     }
     for (s = 2; any && s <= SC_LANES_COUNT / 2; s++)
@@ -363,38 +426,24 @@ static int SC_KERNEL(is_last_level_fine)(sc_simple_contour *c, uint32_t level, u
     return 1;
 }
 
-/* Puts the boxes of spans together, two and two. One that is left over is joined with the first, which does no harm. */
-static void SC_KERNEL(join_spans)(const sc_simple_contour *c, uint32_t level, uint32_t count)
+/* The spans of the next level. */
+static void SC_KERNEL(look_at_spans)(sc_simple_contour *c)
 {
-    float *const *side = c->edges->span_side;
-    const uint32_t from = c->span_first[level], to = c->span_first[level + 1];
-    uint32_t i, k;
-    for (i = 0; 2 * i < count; i += SC_LANES_COUNT) {
-        SC_UNROLL
-        for (k = 0; k < 4; k++) {
-            const float *at = side[k] + from + 2 * i;
-            lanes a = lanes_load(at), b = lanes_load(at + SC_LANES_COUNT);
-            lanes even = lanes_evens(a, b), odd = lanes_odds(a, b);
-            lanes_store(side[k] + to + i,
-                        k % 2 ? lanes_larger(even, odd) : lanes_smaller(even, odd));
-        }
+    if (c->spans > SC_LANES_COUNT) {
+        c->passed = SC_KERNEL(is_level_fine)(c);
+    } else {
+        if (c->spans) c->passed = SC_KERNEL(is_last_level_fine)(c, c->level, c->spans);
+        c->spans = 0;
     }
+    if (!c->passed) c->spans = 0;
 }
 
-static int SC_KERNEL(are_edges_fine)(sc_simple_contour *c)
+/* Sets passed, as far as is known after the step that is next for each of three contours; NULL: there is none. What was
+   written in one step is read in the next, when it has arrived in the cache. */
+static void SC_KERNEL(look_at_edges)(sc_simple_contour *first, sc_simple_contour *second,
+                                     sc_simple_contour *last)
 {
-    float *const *side = c->edges->span_side;
-    uint32_t i, level = 1, count = (c->count + 1) / 2, k;
-    for (i = 0; i < c->count; i += SC_CONTOUR_BLOCK)
-        if (!SC_KERNEL(are_near_fine)(c, i)) return 0;
-    for (c->span_first[1] = 0;; level++, count = (count + 1) / 2) {
-        const uint32_t first = c->span_first[level];
-        /* the last is followed by the first */
-        SC_UNROLL
-        for (k = 0; k < 4; k++) lanes_store(side[k] + first + count, lanes_load(side[k] + first));
-        if (count <= SC_LANES_COUNT) return SC_KERNEL(is_last_level_fine)(c, level, count);
-        if (!SC_KERNEL(is_level_fine)(c, level, count)) return 0;
-        c->span_first[level + 1] = first + SC_CONTOUR_SPANS(count);
-        SC_KERNEL(join_spans)(c, level, count);
-    }
+    if (first) first->passed = SC_KERNEL(are_all_near_fine)(first);
+    if (second) SC_KERNEL(look_at_spans)(second);
+    while (last && last->spans) SC_KERNEL(look_at_spans)(last);
 }

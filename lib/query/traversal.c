@@ -239,40 +239,27 @@ void sc_traversal_orient(sc_query_state *state, uint32_t node)
         w->walk.queue[w->walk.queue_count++] = node;
 }
 
-int sc_traversal_test(sc_query_state *state, uint32_t node)
+void sc_traversal_test(sc_query_state *state, const uint32_t *nodes, uint32_t count,
+                       uint8_t *passed)
 {
-    sc_workspace *w = state->workspace;
-    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
-    sc_projection projection;
-    sc_dnc_projection(w, (uint32_t)w->mask[patches->a] & w->mask[patches->b], &projection);
-    if (!sc_simple_test(state, &projection, node)) return 0;
-    state->stats.nodes_culled++;
-    return 1;
+    uint32_t i;
+    sc_simple_tests(state, nodes, count, passed);
+    for (i = 0; i < count; i++) state->stats.nodes_culled += passed[i];
 }
-
-/* How many tests pass between two steps of fetching what a test reads. */
-enum { FETCH_DISTANCE = 2 };
 
 /* The contour tests of all nodes in the queue. */
 static void test_queue(sc_query_state *state)
 {
     sc_walk *walk = &state->workspace->walk;
-    int i, count = (int)walk->queue_count, step;
-    for (i = -FETCH_DISTANCE * SC_SIMPLE_FETCHES; i < count && !sc_state_stops(state); i++) {
-        const sc_pair *patches;
-        uint32_t node;
-        for (step = 0; step < SC_SIMPLE_FETCHES; step++) {
-            int ahead = i + FETCH_DISTANCE * (SC_SIMPLE_FETCHES - step);
-            if (ahead >= 0 && ahead < count)
-                sc_simple_fetch(state->model, walk->queue[ahead], step);
-        }
-        if (i < 0) continue;
-        node = walk->queue[i];
-        patches = &sc_model_node_patches(state->model)[node];
-        if (sc_traversal_test(state, node))
+    uint8_t passed[SC_WALK_QUEUE + SC_WALK_CHILDREN];
+    uint32_t i;
+    sc_traversal_test(state, walk->queue, walk->queue_count, passed);
+    for (i = 0; i < walk->queue_count; i++) {
+        const sc_pair *patches = &sc_model_node_patches(state->model)[walk->queue[i]];
+        if (passed[i])
             walk->marks[patches->a] = walk->marks[patches->b] = 1;
         else
-            put_back(state, node, 1);
+            put_back(state, walk->queue[i], 1);
     }
     walk->queue_count = 0;
 }

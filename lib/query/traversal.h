@@ -29,8 +29,9 @@ void sc_traversal_take_nodes(sc_query_state *state, uint32_t first, uint32_t end
 /* The orientation test: the node is put on the stack or waits in one of the walk's queues. */
 void sc_traversal_orient(sc_query_state *state, uint32_t node);
 
-/* The contour test of a node that passed it. */
-int sc_traversal_test(sc_query_state *state, uint32_t node);
+/* The contour tests of nodes that passed it: whether they pass, too. */
+void sc_traversal_test(sc_query_state *state, const uint32_t *nodes, uint32_t count,
+                       uint8_t *passed);
 
 /* Finds out where culling has prospects; and whether a node that failed a test is left to boxes, all of it, as it has none. */
 void sc_traversal_find_prospects(const sc_query_state *state);
