@@ -210,7 +210,7 @@ static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, SC_KERNE
         for (k = 0; k < 3; k++) e.sides[3 * s + k] = doubles_differ(side[k], side[(k + 1) % 3]);
         apart |= certain[s] & ~(e.sides[3 * s] | e.sides[3 * s + 1] | e.sides[3 * s + 2]);
     }
-    if (SC_HARDLY(~apart & ~(certain[0] & certain[1]) & 255u)) return 0;
+    if (~apart & ~(certain[0] & certain[1]) & 255u) return 0;
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         doubles across[3];
