@@ -21,7 +21,7 @@ static const double CLEARLY = 1.001;
 
 /* That normals turn by a radian counts as much as this part, squared, of the patch's mean square size; and what is added
    to variances of places, as a part of that, for patches that are flat. Tuned together on horse, cats and bunnies:
-   weights of 1 to 2.5 squared with 0.003 to 0.2 are all within 3 %, with larger weights and smaller softness at
+   weights of 1 to 2.5 squared with 0.003 to 0.2 are all within 5 %, with larger weights and smaller softness at
    up to 2 % more memory. */
 static const double NORMALS_WEIGHT = 2.25, SOFTNESS = 0.03;
 

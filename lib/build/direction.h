@@ -10,8 +10,8 @@
  * curved patch, as on a tube, that is across the tube rather than between its ends; on a flat one the longest direction.
  *
  * Against the longest direction alone (c = 0), on the scenes of sc-bench: CPU time of queries at rest 0.62 on the horse,
- * 0.77 to 0.86 on cats and bunny, 0.92 with spikes; on animations 0.84 to 0.94; leaf clusters 0.98 to 1.00; time to build the
- * same. A plane, for whatever sorts by normals themselves, without least squares, has ragged borders: up to 5 % more
+ * 0.77 to 0.86 on cats and bunny, 0.92 with spikes; on animations 0.84 to 0.94; leaf clusters 0.98 to 1.00; time to build
+ * 0.94 to 1.00. A plane, for whatever sorts by normals themselves, without least squares, has ragged borders: up to 5 % more
  * memory, and builds that take 15 to 30 % longer.
  *
  * One pass, in single precision over RUN triangles at a time, four numbers at once; sums of runs in double. Normals weigh

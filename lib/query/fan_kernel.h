@@ -19,7 +19,8 @@
  * With c at right angles to n, y = c . (x - p) is above 0 on one side of a line through p that the rays r and -r make. A
  * sector that holds r runs from y <= 0 to y >= 0, and one that holds -r from y >= 0 to y <= 0. Two such c give four rays; a
  * sector may hold a ray if these differences may have these signs. So no ray that is held goes unnoticed, and if there are
- * as many sectors that may hold a ray as points where one does, no closed fan turns twice.
+ * as many sectors that may hold a ray as points where one does, no closed fan turns twice. Lanes behind the last triangle
+ * have its corners, and so mark no other points.
  *
  * Each coordinate is off by POINT = 3e-8 at most, v = 2^-24. The difference of two c . x is off by 2 POINT |c|1; by rounding
  * 6.02 v |c|1 and 2.02 v |c|1; and by 2.01 v |c|1, as a component of c is the sum of two: below 6.6e-7 |c|1 in all, and a few
