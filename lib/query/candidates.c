@@ -324,12 +324,11 @@ static void find_shared(const sc_model *model, sc_leaf_pair *p)
     p->shared = p->found;
 }
 
-void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, sc_leaf_pair *p)
+void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, uint32_t shared,
+                         sc_leaf_pair *p)
 {
     static const uint16_t nothing[SC_LEAF_MAX] = {0};
     const sc_model *model = state->model;
-    const uint32_t *first = sc_model_share_first(model), *leaf = sc_model_share_leaf(model);
-    uint32_t i;
     p->a = a;
     p->b = b;
     p->shared = nothing;
@@ -338,8 +337,7 @@ void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, sc_leaf_
         find_shared(model, p);
     else if (a == b)
         p->shared = sc_model_share_own_rows(model) + SC_LEAF_MAX * (uint64_t)a;
-    else
-        for (i = first[a]; i < first[a + 1] && leaf[i] <= b; i++)
-            if (leaf[i] == b) p->shared = sc_model_share_rows(model) + SC_LEAF_MAX * (uint64_t)i;
+    else if (shared != SC_NONE)
+        p->shared = sc_model_share_rows(model) + SC_LEAF_MAX * (uint64_t)shared;
     p->shares = p->shared != nothing;
 }

@@ -267,7 +267,7 @@ static inline unsigned SC_KERNEL(has_boxes)(const sc_query_state *state, uint32_
 /* Two leaf clusters, a < b; by_slabs: slabs may tell them apart, and were not looked at. What is made ready may take the
    place of a leaf cluster that the rows are of, so these are tested before. */
 static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs,
-                                 SC_KERNEL(rows) * rows)
+                                 uint32_t shared, SC_KERNEL(rows) * rows)
 {
     sc_leaf_pair p;
     unsigned some_a, some_b;
@@ -279,7 +279,7 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, 
     some_b = SC_KERNEL(rows_at)(state, b, a);
     if (!some_b) return;
     if (by_slabs && SC_KERNEL(slabs_part)(state, a, b)) return;
-    sc_candidates_enter(state, a, b, &p);
+    sc_candidates_enter(state, a, b, shared, &p);
     SC_KERNEL(add_rows)(state, &p, some_a, some_b, rows);
 }
 
@@ -290,6 +290,17 @@ static inline void SC_KERNEL(fetch_ready)(const sc_workspace *w, uint32_t leaf)
     const float *at = w->ready[leaf & w->ready_mask].side[0];
     int k;
     for (k = 0; k < SC_READY_ROWS; k++) sc_fetch(at + SC_LEAF_MAX * k);
+}
+
+/* Asks for what the tests of two leaf clusters will read; as sc_candidates_find. */
+static inline uint32_t SC_KERNEL(fetch_pair)(const sc_query_state *state, uint32_t a, uint32_t b)
+{
+    uint32_t shared = sc_candidates_find(state->model, a, b);
+    SC_KERNEL(fetch_ready)(state->workspace, a);
+    SC_KERNEL(fetch_ready)(state->workspace, b);
+    sc_fetch(sc_model_share_rows(state->model) +
+             SC_LEAF_MAX * (uint64_t)(shared != SC_NONE ? shared : 0));
+    return shared;
 }
 
 static inline void SC_KERNEL(fetch_points)(const sc_workspace *w, uint32_t leaf)
@@ -306,7 +317,7 @@ static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
 {
     sc_workspace *w = state->workspace;
     uint32_t *lower = w->leaf_pairs[0], *upper = w->leaf_pairs[1];
-    uint32_t count = w->leaf_pair_count, kept = 0, i;
+    uint32_t count = w->leaf_pair_count, kept = 0, i, shared[SC_FETCH_READY];
     int slabs_first = count >= SC_LEAF_SLABS_FIRST;
     SC_KERNEL(rows) rows;
     SC_KERNEL(no_rows)(&rows);
@@ -321,9 +332,13 @@ static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
         }
         count = kept;
     }
+    for (i = 0; i < count && i < SC_FETCH_READY; i++)
+        shared[i] = SC_KERNEL(fetch_pair)(state, lower[i], upper[i]);
     for (i = 0; i < count && !state->stop; i++) {
-        if (i + SC_FETCH_READY < count) SC_KERNEL(fetch_ready)(w, upper[i + SC_FETCH_READY]);
-        SC_KERNEL(leaf_pair)(state, lower[i], upper[i], !slabs_first, &rows);
+        uint32_t ahead = i + SC_FETCH_READY, of = shared[i % SC_FETCH_READY];
+        if (ahead < count)
+            shared[i % SC_FETCH_READY] = SC_KERNEL(fetch_pair)(state, lower[ahead], upper[ahead]);
+        SC_KERNEL(leaf_pair)(state, lower[i], upper[i], !slabs_first, of, &rows);
         if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);
     }
     SC_KERNEL(test_rows)(state, &rows);
@@ -366,7 +381,7 @@ static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)
     SC_KERNEL(rows) own;
     sc_leaf_pair p;
     state->stats.leaf_pairs++;
-    sc_candidates_enter(state, leaf, leaf, &p);
+    sc_candidates_enter(state, leaf, leaf, SC_NONE, &p);
     SC_KERNEL(no_rows)(&own);
     SC_KERNEL(add_rows)(state, &p, rows, SC_LEAF_ALL, &own);
     SC_KERNEL(test_rows)(state, &own);
