@@ -39,16 +39,34 @@ enum {
 /* One call, on a stack of its own. */
 typedef struct call {
     const sc_mesh *mesh;
-    const sc_pose *pose;
+    const sc_pose *pose, *start;
+    const sc_tasks *tasks;
+    double separation;
     uint32_t pairs;
     sc_model *model;
     sc_workspace *workspace;
     sc_result result;
+    sc_step_result stepped;
     sc_contact *contacts;
     void *saved;
     uint64_t saved_size;
     sc_status status;
 } call;
+
+/* Tasks that run all parts at once in the thread that asks, so that theirs counts as well. */
+static void *run_here(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
+                      void *context, uint32_t count)
+{
+    (void)user;
+    for (uint32_t part = 0; part < count; ++part) run(context, part, part % 2);
+    return NULL;
+}
+
+static void finish(void *user, void *task)
+{
+    (void)user;
+    (void)task;
+}
 
 static void *nothing(void *argument)
 {
@@ -65,7 +83,8 @@ static void *build(void *argument)
 static void *query(void *argument)
 {
     call *c = (call *)argument;
-    const sc_query_options options = {.struct_size = sizeof(options), .pairs = c->pairs};
+    const sc_query_options options = {
+        .struct_size = sizeof(options), .pairs = c->pairs, .tasks = c->tasks};
     c->status = sc_query(c->model, c->workspace, c->pose, &options, &c->result);
     return NULL;
 }
@@ -74,6 +93,17 @@ static void *meet(void *argument)
 {
     call *c = (call *)argument;
     c->status = sc_contacts(c->model, c->pose, c->pairs, c->result.pairs, PAIRS, c->contacts);
+    return NULL;
+}
+
+static void *step(void *argument)
+{
+    call *c = (call *)argument;
+    const sc_step_options options = {.struct_size = sizeof(options),
+                                     .times = SC_STEP_TIMES_EACH,
+                                     .separation = c->separation,
+                                     .tasks = c->tasks};
+    c->status = sc_query_step(c->model, c->workspace, c->start, c->pose, &options, &c->stepped);
     return NULL;
 }
 
@@ -124,7 +154,7 @@ static void folded(double *positions, double unit)
 static void calls_take_little_stack(void)
 {
     static uint32_t triangles[3 * TRIANGLES];
-    static double rest[3 * VERTICES], moved[3 * VERTICES];
+    static double rest[3 * VERTICES], first[3 * VERTICES], moved[3 * VERTICES];
     const double units[] = {1, 1e-107, 1e150};
     uint32_t *next = triangles;
     if (SANITIZED) {
@@ -151,14 +181,22 @@ static void calls_take_little_stack(void)
                           .vertex_count = VERTICES,
                           .position_type = SC_DOUBLE,
                           .positions = moved};
+    const sc_pose start = {.struct_size = sizeof(start),
+                           .vertex_count = VERTICES,
+                           .position_type = SC_DOUBLE,
+                           .positions = first};
+    const sc_tasks tasks = {
+        .struct_size = sizeof(tasks), .workers = 2, .enqueue = run_here, .finish = finish};
     sc_stats stats = {.struct_size = sizeof(stats)};
-    call c = {.mesh = &mesh, .pose = &pose};
+    call c = {.mesh = &mesh, .pose = &pose, .start = &start};
     const size_t empty = stack_of(nothing, &c);
     const size_t building = stack_of(build, &c);
     if (!CHECK(empty > 0 && building > empty) || !CHECK(c.status == SC_OK)) return;
     CHECK_MSG(building - empty <= PROMISED, "%zu bytes", building - empty);
     test_note("sc_build: %zu bytes", building - empty);
-    if (!CHECK(sc_workspace_create(c.model, NULL, &c.workspace) == SC_OK)) return;
+    const sc_workspace_options how = {
+        .struct_size = sizeof(how), .flags = SC_WORKSPACE_STEP, .workers = 2};
+    if (!CHECK(sc_workspace_create_for(c.model, &how, &c.workspace) == SC_OK)) return;
 
     if (!CHECK(sc_model_save_size(c.model, &c.saved_size) == SC_OK)) return;
     c.saved = malloc(c.saved_size);
@@ -171,11 +209,15 @@ static void calls_take_little_stack(void)
 
     static sc_pair pairs[PAIRS];
     static sc_contact contacts[PAIRS];
-    size_t most = 0, most_meeting = 0;
+    static sc_pair edges[PAIRS];
+    size_t most = 0, most_meeting = 0, most_stepping = 0;
     uint64_t fallbacks = 0;
     for (size_t u = 0; u < sizeof(units) / sizeof(units[0]); ++u) {
         folded(moved, units[u]);
-        for (c.pairs = SC_PAIRS_TRIANGLE; c.pairs <= SC_PAIRS_EDGE; ++c.pairs) {
+        for (int i = 0; i < 3 * VERTICES; ++i) first[i] = units[u] * rest[i];
+        for (int k = 0; k < 4; ++k) { /* kind of pair, and with or without tasks */
+            c.pairs = k % 2 ? SC_PAIRS_EDGE : SC_PAIRS_TRIANGLE;
+            c.tasks = k < 2 ? NULL : &tasks;
             c.result = (sc_result){.struct_size = sizeof(c.result),
                                    .capacity = PAIRS,
                                    .pairs = pairs,
@@ -189,6 +231,16 @@ static void calls_take_little_stack(void)
             const size_t meeting = stack_of(meet, &c);
             CHECK_MSG(meeting > empty && c.status == SC_OK, "status %d", (int)c.status);
             if (meeting - empty > most_meeting) most_meeting = meeting - empty;
+            c.separation = k % 2 ? 0.01 * units[u] : 0;
+            c.stepped = (sc_step_result){.struct_size = sizeof(c.stepped),
+                                         .vertex_face_capacity = PAIRS,
+                                         .vertex_faces = pairs,
+                                         .edge_edge_capacity = PAIRS,
+                                         .edge_edges = edges};
+            const size_t stepping = stack_of(step, &c);
+            CHECK_MSG(stepping > empty && c.status == SC_ERROR_SHORT_BUFFER, "status %d",
+                      (int)c.status);
+            if (stepping - empty > most_stepping) most_stepping = stepping - empty;
         }
     }
     CHECK_MSG(most <= PROMISED, "%zu bytes", most);
@@ -196,6 +248,8 @@ static void calls_take_little_stack(void)
     test_note("sc_query: %zu bytes", most);
     CHECK_MSG(most_meeting <= PROMISED, "%zu bytes", most_meeting);
     test_note("sc_contacts: %zu bytes", most_meeting);
+    CHECK_MSG(most_stepping <= PROMISED, "%zu bytes", most_stepping);
+    test_note("sc_query_step: %zu bytes", most_stepping);
     sc_workspace_free(c.workspace);
     sc_model_free(c.model);
 }
