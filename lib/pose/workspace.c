@@ -59,7 +59,8 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->some_known = (sc_leaf_known *)place(block, at, 2 * ready_kept(model), sizeof(sc_leaf_known));
     w->slab = (sc_leaf_slab *)place(block, at, model->leaf_count, sizeof(sc_leaf_slab));
     for (k = 0; k < 2; k++)
-        w->leaf_pairs[k] = (uint32_t *)place(block, at, SC_LEAF_QUEUE, sizeof(uint32_t));
+        w->far_pairs[k] = (uint32_t *)place(block, at, SC_LEAF_QUEUE, sizeof(uint32_t));
+    w->near_pairs = (sc_near_pair *)place(block, at, SC_LEAF_QUEUE, sizeof(sc_near_pair));
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->ball = (uint16_t *)place(block, at, model->vertex_count, sizeof(uint16_t));
@@ -305,7 +306,7 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
     workspace->pose_tick++;
     keep_some(model, workspace);
     workspace->leaves_ready = workspace->boxes_ready = 0;
-    workspace->leaf_pair_count = 0;
+    workspace->near_count = workspace->far_count = 0;
     workspace->candidate_count = workspace->neighbor_count = workspace->found_count = 0;
     workspace->ball_center = SC_NONE;
     memset(workspace->fan_point, 0xff, sizeof workspace->fan_point);

@@ -7,7 +7,7 @@
  *       bounds_tick | all_known | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: contour, walk,
- * some_ready, some_known, slab, leaf_pairs, candidates, neighbors, ball, ball_queue, found, state, motion's from
+ * some_ready, some_known, slab, far_pairs, near_pairs, candidates, neighbors, ball, ball_queue, found, state, motion's from
  * leaves to state. For each worker but the first there is a view: an sc_workspace with the pose of the first, and
  * own arrays.
  *
@@ -134,8 +134,13 @@ enum { SC_READY_KEPT = 32 };
 /* Fans that are remembered. */
 enum { SC_FANS_KEPT = 256 };
 
-/* Pairs of leaf clusters that wait to be looked at, at most. */
+/* Pairs of leaf clusters that wait to be looked at, at most, of each kind. */
 enum { SC_LEAF_QUEUE = 1024 };
+
+/* Two leaf clusters, a <= b, and where sc_model_share_rows has them, or SC_NONE if they are one. */
+typedef struct sc_near_pair {
+    uint32_t a, b, shared;
+} sc_near_pair;
 
 /* Sides of boxes that move, three each: x, y, z. */
 enum { SC_START_LOW = 0, SC_START_HIGH = 3, SC_END_LOW = 6, SC_END_HIGH = 9, SC_MOTION_SIDES = 12 };
@@ -249,8 +254,11 @@ struct sc_workspace {
     sc_leaf_ready *some_ready; /* 2 * SC_READY_KEPT, fewer in small models */
     sc_leaf_known *some_known; /* as many */
     sc_leaf_slab *slab;        /* leaf_count */
-    uint32_t *leaf_pairs[2];   /* SC_LEAF_QUEUE that wait: the lower of two, and the other */
-    uint32_t leaf_pair_count;
+    uint32_t *far_pairs
+        [2]; /* SC_LEAF_QUEUE that share no points and wait: the lower of two, and the other */
+    sc_near_pair *
+        near_pairs; /* SC_LEAF_QUEUE that share points and wait, or leaf clusters against themselves */
+    uint32_t far_count, near_count;
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     sc_pair *neighbors;  /* SC_CANDIDATES_MAX of such that share one point */
     uint32_t candidate_count, neighbor_count;

@@ -287,7 +287,8 @@ static void decide_collected(sc_query_state *state)
 void sc_candidates_decide(sc_query_state *state)
 {
     uint32_t previous = sc_state_switch(state, sc_state_box_task(state));
-    if (state->workspace->leaf_pair_count) sc_query_kernels_of(state->workspace)->leaf_pairs(state);
+    if (state->workspace->near_count || state->workspace->far_count)
+        sc_query_kernels_of(state->workspace)->leaf_pairs(state);
     sc_state_switch(state, previous);
     decide_collected(state);
 }

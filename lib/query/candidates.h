@@ -43,16 +43,7 @@ typedef struct sc_leaf_pair {
     uint16_t found[SC_LEAF_MAX]; /* room for shared */
 } sc_leaf_pair;
 
-/* Where sc_model_share_rows has two leaf clusters, a <= b, or SC_NONE: they share no point, or are one, or crowded. */
-static inline uint32_t sc_candidates_find(const sc_model *model, uint32_t a, uint32_t b)
-{
-    const uint32_t *first = sc_model_share_first(model), *leaf = sc_model_share_leaf(model);
-    uint32_t i = first[a], end = first[a + 1];
-    while (i < end && leaf[i] < b) i++;
-    return i < end && leaf[i] == b ? i : SC_NONE;
-}
-
-/* Fills *pair; shared is what sc_candidates_find says. */
+/* Fills *pair; shared is where sc_model_share_rows has the two, or SC_NONE: they share no point, or are one, or crowded. */
 void sc_candidates_enter(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b, uint32_t shared,
                          sc_leaf_pair *pair);
 

@@ -264,21 +264,27 @@ static inline unsigned SC_KERNEL(has_boxes)(const sc_query_state *state, uint32_
     return (unsigned)(known->leaf == leaf) & (unsigned)(known->boxes == w->pose_tick);
 }
 
-/* Two leaf clusters, a < b; by_slabs: slabs may tell them apart, and were not looked at. What is made ready may take the
-   place of a leaf cluster that the rows are of, so these are tested before. */
+/* Two leaf clusters, a <= b; by_slabs: slabs may tell them apart, and were not looked at; shared as sc_candidates_enter has
+   it. What is made ready may take the place of a leaf cluster that the rows are of, so these are tested before. */
 static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs,
                                  uint32_t shared, SC_KERNEL(rows) * rows)
 {
     sc_leaf_pair p;
-    unsigned some_a, some_b;
+    unsigned some_a, some_b = SC_LEAF_ALL;
     if (rows->pairs == SC_ROWS_PAIRS ||
-        !(SC_KERNEL(has_boxes)(state, a, 0) & SC_KERNEL(has_boxes)(state, b, 1)))
+        (state->workspace->ready_upper &&
+         !(SC_KERNEL(has_boxes)(state, a, 0) & SC_KERNEL(has_boxes)(state, b, b > a))))
         SC_KERNEL(test_rows)(state, rows);
-    some_a = SC_KERNEL(rows_at)(state, a, b);
-    if (!some_a) return;
-    some_b = SC_KERNEL(rows_at)(state, b, a);
-    if (!some_b) return;
-    if (by_slabs && SC_KERNEL(slabs_part)(state, a, b)) return;
+    if (a == b) {
+        const uint32_t *first = sc_model_leaf_first(state->model) + a;
+        some_a = (1u << (first[1] - first[0] - 1)) - 1u;
+    } else {
+        some_a = SC_KERNEL(rows_at)(state, a, b);
+        if (!some_a) return;
+        some_b = SC_KERNEL(rows_at)(state, b, a);
+        if (!some_b) return;
+        if (by_slabs && SC_KERNEL(slabs_part)(state, a, b)) return;
+    }
     sc_candidates_enter(state, a, b, shared, &p);
     SC_KERNEL(add_rows)(state, &p, some_a, some_b, rows);
 }
@@ -292,17 +298,6 @@ static inline void SC_KERNEL(fetch_ready)(const sc_workspace *w, uint32_t leaf)
     for (k = 0; k < SC_READY_ROWS; k++) sc_fetch(at + SC_LEAF_MAX * k);
 }
 
-/* Asks for what the tests of two leaf clusters will read; as sc_candidates_find. */
-static inline uint32_t SC_KERNEL(fetch_pair)(const sc_query_state *state, uint32_t a, uint32_t b)
-{
-    uint32_t shared = sc_candidates_find(state->model, a, b);
-    SC_KERNEL(fetch_ready)(state->workspace, a);
-    SC_KERNEL(fetch_ready)(state->workspace, b);
-    sc_fetch(sc_model_share_rows(state->model) +
-             SC_LEAF_MAX * (uint64_t)(shared != SC_NONE ? shared : 0));
-    return shared;
-}
-
 static inline void SC_KERNEL(fetch_points)(const sc_workspace *w, uint32_t leaf)
 {
     const float *at = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
@@ -311,17 +306,16 @@ static inline void SC_KERNEL(fetch_points)(const sc_workspace *w, uint32_t leaf)
     if (w->slab[leaf].tick != w->pose_tick) SC_KERNEL(fetch_ready)(w, leaf);
 }
 
-/* The pairs of leaf clusters that wait. If they are many, slabs drop most of those that hold no pair of triangles; some
-   pairs ahead, memory is asked for. If they are few, it does not pay to make slabs before boxes meet. */
-static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
+/* The pairs of leaf clusters that wait and share no points, or are crowded. If they are many, slabs drop most of those that
+   hold no pair of triangles; some pairs ahead, memory is asked for. If they are few, it does not pay to make slabs before
+   boxes meet. */
+static void SC_KERNEL(far_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
 {
     sc_workspace *w = state->workspace;
-    uint32_t *lower = w->leaf_pairs[0], *upper = w->leaf_pairs[1];
-    uint32_t count = w->leaf_pair_count, kept = 0, i, shared[SC_FETCH_READY];
+    uint32_t *lower = w->far_pairs[0], *upper = w->far_pairs[1];
+    uint32_t count = w->far_count, kept = 0, i;
     int slabs_first = count >= SC_LEAF_SLABS_FIRST;
-    SC_KERNEL(rows) rows;
-    SC_KERNEL(no_rows)(&rows);
-    w->leaf_pair_count = 0;
+    w->far_count = 0;
     if (slabs_first) {
         for (i = 0; i < count; i++) {
             uint32_t a = lower[i], b = upper[i];
@@ -332,40 +326,98 @@ static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
         }
         count = kept;
     }
-    for (i = 0; i < count && i < SC_FETCH_READY; i++)
-        shared[i] = SC_KERNEL(fetch_pair)(state, lower[i], upper[i]);
     for (i = 0; i < count && !state->stop; i++) {
-        uint32_t ahead = i + SC_FETCH_READY, of = shared[i % SC_FETCH_READY];
-        if (ahead < count)
-            shared[i % SC_FETCH_READY] = SC_KERNEL(fetch_pair)(state, lower[ahead], upper[ahead]);
-        SC_KERNEL(leaf_pair)(state, lower[i], upper[i], !slabs_first, of, &rows);
+        if (i + SC_FETCH_READY < count) {
+            SC_KERNEL(fetch_ready)(w, lower[i + SC_FETCH_READY]);
+            SC_KERNEL(fetch_ready)(w, upper[i + SC_FETCH_READY]);
+        }
+        SC_KERNEL(leaf_pair)(state, lower[i], upper[i], !slabs_first, SC_NONE, rows);
         if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);
     }
+}
+
+/* Those that share points, and leaf clusters against themselves. */
+static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
+{
+    sc_workspace *w = state->workspace;
+    const sc_near_pair *pairs = w->near_pairs;
+    uint32_t count = w->near_count, i;
+    w->near_count = 0;
+    for (i = 0; i < count && !state->stop; i++) {
+        if (i + SC_FETCH_READY < count) {
+            const sc_near_pair *next = pairs + i + SC_FETCH_READY;
+            SC_KERNEL(fetch_ready)(w, next->a);
+            SC_KERNEL(fetch_ready)(w, next->b);
+            sc_fetch(next->shared != SC_NONE
+                         ? sc_model_share_rows(state->model) + SC_LEAF_MAX * (uint64_t)next->shared
+                         : sc_model_share_own_rows(state->model) + SC_LEAF_MAX * (uint64_t)next->a);
+        }
+        SC_KERNEL(leaf_pair)(state, pairs[i].a, pairs[i].b, 0, pairs[i].shared, rows);
+        if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);
+    }
+}
+
+/* All pairs of leaf clusters that wait. */
+static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
+{
+    SC_KERNEL(rows) rows;
+    SC_KERNEL(no_rows)(&rows);
+    SC_KERNEL(near_pairs)(state, &rows);
+    SC_KERNEL(far_pairs)(state, &rows);
     SC_KERNEL(test_rows)(state, &rows);
 }
 
-/* Has pairs of a leaf cluster wait: with those numbered from first on, all below it or all above, of which bits of a
-   mask are set. */
+/* Has a pair of leaf clusters that share points wait if that is so, 1 or 0, or one by itself. */
+static inline void SC_KERNEL(add_near_pair)(sc_workspace *w, uint32_t a, uint32_t b,
+                                            uint32_t shared, unsigned is_so)
+{
+    sc_near_pair *pair = w->near_pairs + w->near_count;
+    pair->a = a;
+    pair->b = b;
+    pair->shared = shared;
+    w->near_count += is_so;
+}
+
+/* Has those pairs wait that share points: of leaf cluster a with those numbered from first on, all above it, of which bits of
+   a mask are set. Returns the rest of the mask. */
+static inline unsigned SC_KERNEL(add_near_pairs)(sc_query_state *state, uint32_t a, uint32_t first,
+                                                 unsigned mask)
+{
+    const uint32_t *share = sc_model_share_first(state->model) + a;
+    const uint32_t *leaf = sc_model_share_leaf(state->model);
+    uint32_t i;
+    for (i = share[0]; i < share[1]; i++) {
+        uint32_t at = leaf[i] - first;
+        unsigned bit = at < SC_LEAF_MAX ? mask & 1u << (at % SC_LEAF_MAX) : 0u;
+        SC_KERNEL(add_near_pair)(state->workspace, a, leaf[i], i, bit != 0);
+        mask &= ~bit;
+    }
+    return mask;
+}
+
+/* Has pairs of a leaf cluster wait: with those numbered from first on, of which bits of a mask are set. They are all above
+   it; or all below it, and then they share no points with it. */
 static inline void SC_KERNEL(add_leaf_pairs)(sc_query_state *state, uint32_t leaf, uint32_t first,
                                              unsigned mask)
 {
     sc_workspace *w = state->workspace;
-    int is_upper = leaf > first;
-    unsigned count = lanes_list_from(mask, first, w->leaf_pairs[!is_upper] + w->leaf_pair_count);
-    uint32_t *same = w->leaf_pairs[is_upper] + w->leaf_pair_count;
-    int i;
-    for (i = 0; i < SC_LANES_COUNT; i++) same[i] = leaf;
-    w->leaf_pair_count += count;
+    int is_upper = leaf > first, i;
+    uint32_t *same = w->far_pairs[is_upper] + w->far_count;
+    unsigned count = sc_bits_count(mask);
     state->stats.leaf_pairs += count;
     state->stats.counts[sc_state_box_task(state)] += count;
+    if (!is_upper) mask = SC_KERNEL(add_near_pairs)(state, leaf, first, mask);
+    for (i = 0; i < SC_LANES_COUNT; i++) same[i] = leaf;
+    w->far_count += lanes_list_from(mask, first, w->far_pairs[!is_upper] + w->far_count);
 }
 
 /* To be called after SC_LEAF_MAX such or fewer: sees that so many more have room. */
 static inline void SC_KERNEL(make_leaf_room)(sc_query_state *state)
 {
     /* fewer if the first hit ends the query */
-    uint32_t most = state->options.output == SC_OUTPUT_ANY ? 16 : SC_LEAF_QUEUE - SC_LEAF_MAX;
-    if (state->workspace->leaf_pair_count > most) SC_KERNEL(leaf_pairs)(state);
+    uint32_t most = state->options.output == SC_OUTPUT_ANY ? 16 : SC_LEAF_QUEUE - SC_LEAF_MAX - 1;
+    if (state->workspace->far_count > most || state->workspace->near_count > most)
+        SC_KERNEL(leaf_pairs)(state);
 }
 
 static void SC_KERNEL(leaf_pair_waits)(sc_query_state *state, uint32_t a, uint32_t b)
@@ -376,13 +428,7 @@ static void SC_KERNEL(leaf_pair_waits)(sc_query_state *state, uint32_t a, uint32
 
 static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)
 {
-    const uint32_t *first = sc_model_leaf_first(state->model);
-    unsigned rows = (1u << (first[leaf + 1] - first[leaf] - 1)) - 1u;
-    SC_KERNEL(rows) own;
-    sc_leaf_pair p;
     state->stats.leaf_pairs++;
-    sc_candidates_enter(state, leaf, leaf, SC_NONE, &p);
-    SC_KERNEL(no_rows)(&own);
-    SC_KERNEL(add_rows)(state, &p, rows, SC_LEAF_ALL, &own);
-    SC_KERNEL(test_rows)(state, &own);
+    SC_KERNEL(add_near_pair)(state->workspace, leaf, leaf, SC_NONE, 1);
+    SC_KERNEL(make_leaf_room)(state);
 }

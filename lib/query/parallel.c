@@ -123,7 +123,8 @@ static void end_part(sc_query_state *s)
 {
     const sc_workspace *w = s->workspace;
     const uint32_t most = s->options.output == SC_OUTPUT_ANY ? 0 : WAITING_MAX;
-    if (w->leaf_pair_count > most || w->candidate_count > most || w->neighbor_count > most)
+    if (w->near_count + w->far_count > most || w->candidate_count > most ||
+        w->neighbor_count > most)
         sc_candidates_decide(s);
     if (s->timed) s->stats.nanoseconds[s->task] += sc_clock_nanoseconds() - s->last_time;
 }
@@ -234,7 +235,7 @@ static int is_large(const sc_model *model, uint32_t patch, uint32_t parts)
     return leaf[patch + 1] - leaf[patch] > model->leaf_count / parts;
 }
 
-/* Two patches of a level whose boxes overlap. If one is large, their children: level by level, where one thread goes to the fourth
+/* Two patches of a level whose boxes overlap, as sc_query_kernels.patch_pair has them. If one is large, their children: level by level, where one thread goes to the fourth
    level below at once, from which as many as 256 pairs come. */
 static void add_patches(plan *p, uint32_t a, uint32_t b)
 {
@@ -291,7 +292,7 @@ static void add_boxes_of_node(plan *p, uint32_t node)
     for (i = sc_model_node_boxes(state->model)[node]; i < end; i++) {
         const sc_pair *pair = &sc_model_boxes(state->model)[i];
         state->stats.counts[sc_state_box_task(state)]++;
-        if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b)) add_patches(p, pair->a, pair->b);
+        if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b)) add_patches(p, pair->b, pair->a);
     }
     sc_state_switch(state, previous);
 }

@@ -11,7 +11,8 @@
 #include "query/simple_contour.h"
 
 typedef struct sc_query_kernels {
-    /* Box recursion (the paper's QueryBVs) on two patches of a level whose boxes overlap, and on one. */
+    /* Box recursion (the paper's QueryBVs) on two patches of a level whose boxes overlap, and on one. The upper one comes
+       first only if they share no points. */
     void (*patch_pair)(sc_query_state *state, uint32_t patch_a, uint32_t patch_b);
     void (*patch_itself)(sc_query_state *state, uint32_t patch);
     /* The triangles of two leaf clusters, which wait, and of one. */

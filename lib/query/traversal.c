@@ -60,7 +60,7 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
         const sc_pair *pair = &sc_model_boxes(model)[i];
         state->stats.counts[sc_state_box_task(state)]++;
         if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b))
-            kernels->patch_pair(state, pair->a, pair->b);
+            kernels->patch_pair(state, pair->b, pair->a);
     }
     if (sc_model_node_child(model)[node] == sc_model_node_child(model)[node + 1] &&
         sc_model_is_leaf(model, patches->a) && sc_model_is_leaf(model, patches->b)) {
@@ -166,7 +166,7 @@ int sc_traversal_is_left(const sc_query_state *state, uint32_t node)
     return !has_prospect(state, patches->a) || !has_prospect(state, patches->b);
 }
 
-/* Two patches, or one twice, are left to boxes, after a contour test or not. */
+/* Two patches, as sc_query_kernels.patch_pair has them, or one twice, are left to boxes, after a contour test or not. */
 static void leave_to_boxes(sc_query_state *state, uint32_t a, uint32_t b, int after_contour)
 {
     sc_walk *walk = &state->workspace->walk;
@@ -275,7 +275,7 @@ static void leave_rest_of_node(sc_query_state *state, uint32_t node)
         (state->workspace->mask[patches->a] & state->workspace->mask[patches->b]) != 0;
     uint32_t i;
     for (i = box[0]; i < box[1]; i++)
-        leave_to_boxes(state, sc_model_boxes(model)[i].a, sc_model_boxes(model)[i].b,
+        leave_to_boxes(state, sc_model_boxes(model)[i].b, sc_model_boxes(model)[i].a,
                        after_contour);
     if (child[0] == child[1] && sc_model_is_leaf(model, patches->a) &&
         sc_model_is_leaf(model, patches->b)) {
