@@ -21,7 +21,7 @@ typedef struct flattening {
 /* Leaves that a tree of so many levels can have. */
 static uint32_t room_of(uint32_t levels)
 {
-    return levels > 32 ? UINT32_MAX : 1u << (levels - 1);
+    return levels > 32 ? UINT32_MAX : (uint32_t)(UINT64_C(1) << levels >> 1);
 }
 
 /* Leaves of each node, and how many levels to keep. */

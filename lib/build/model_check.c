@@ -233,7 +233,8 @@ static const char *check_no_nodes(const sc_model *m)
         sc_level expected;
         memset(&expected, 0, sizeof expected);
         expected.patch_count = sc_model_patches(m, level);
-        if (memcmp(&expected, &sc_model_level_info(m)[level], sizeof expected)) return "level_info";
+        if (memcmp(&expected, &sc_model_level_info(m)[level], sizeof expected) != 0)
+            return "level_info";
     }
     if (*sc_model_node_child(m)) return "node_child";
     return *sc_model_node_boxes(m) ? "node_boxes" : NULL;

@@ -51,8 +51,8 @@ static int look_round(const sc_adjacency *adjacency, const places *at, uint32_t 
                       sc_scratch *scratch, sc_sharing *s, found *f)
 {
     uint32_t begin = adjacency->corner_first[p], end = adjacency->corner_first[p + 1], i, k;
-    uint32_t mask = 0, own = 0, others = 0, other[SC_SHARING_CROWD];
-    uint8_t row[SC_SHARING_CROWD];
+    uint32_t mask = 0, own = 0, others = 0, other[SC_SHARING_CROWD] = {0};
+    uint8_t row[SC_SHARING_CROWD] = {0};
     if (end - begin > SC_SHARING_CROWD) {
         s->crowded[leaf] = 1;
         return 1;

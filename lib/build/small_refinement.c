@@ -99,7 +99,8 @@ static int run_small_pass(small_patch *p, uint32_t size[2], const uint32_t capac
 
 static int32_t count_length(float length)
 {
-    return length < LENGTH_MOST / LENGTH_UNIT ? (int32_t)(LENGTH_UNIT * length) : LENGTH_MOST;
+    float units = LENGTH_UNIT * length;
+    return units < LENGTH_MOST ? (int32_t)units : LENGTH_MOST;
 }
 
 /* r->state is one more than the place, and 0 outside the patch. */

@@ -184,7 +184,7 @@ static inline void turn_away(double *direction, const double *side)
  */
 static void improve_direction(int count, instant *at, double *least)
 {
-    double sides[MAXIMUM_CORNERS][3], longest = 0;
+    double sides[MAXIMUM_CORNERS][3] = {{0}}, longest = 0;
     int is_longest = 0;
     for (int i = 0; i < count; ++i) {
         double length;
@@ -338,7 +338,7 @@ static void place_in_polygon(double *p, double x, double y, int count, double co
 static int is_near_in_slab(int count, const motion *m, double from, double to)
 {
     double level = m->separation + m->tolerance / 8, reach = m->separation + m->tolerance * 3 / 4;
-    double before[MAXIMUM_CORNERS][3], after[MAXIMUM_CORNERS][3];
+    double before[MAXIMUM_CORNERS][3] = {{0}}, after[MAXIMUM_CORNERS][3] = {{0}};
     cell cells[MAXIMUM_CELLS];
     int left = 0;
     for (int i = 0; i < count; ++i) {
