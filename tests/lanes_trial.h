@@ -35,7 +35,7 @@ static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
     lanes_points(point, &x[0], &x[1], &x[2]);
     for (i = 0; i < 3; i++) lanes_store(out->row[14 + i], x[i]);
     for (i = 0; i < SC_LANES_COUNT; i++) wide[i] = (uint16_t)(in->number[i] << in->number[i] % 13);
-    lanes_numbers(out->numbers, wide, 1u << in->number[0], in->mask, (uint32_t)in->number[1] << 16);
+    lanes_numbers(out->numbers, wide, 3u << in->number[0], in->mask, (uint32_t)in->number[1] << 16);
     for (i = 0; i < SC_LANES_COUNT; i++) rows[i] = in->number[i] % 15u;
     lanes_rows(in->plain + 1, rows, &x[0], &x[1], &x[2]);
     for (i = 0; i < 3; i++) lanes_store(out->row[48 + i], x[i]);

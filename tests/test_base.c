@@ -28,7 +28,7 @@ static int compare(const void *x, const void *y)
     return p->b < q->b ? -1 : p->b > q->b;
 }
 
-enum { SHAPES = 8 };
+enum { SHAPES = 9 };
 
 /* Number i of count in one of SHAPES orders. */
 static sc_pair element(uint32_t shape, uint32_t i, uint32_t count)
@@ -50,6 +50,10 @@ static sc_pair element(uint32_t shape, uint32_t i, uint32_t count)
     case 4: /* the ends and the middle are among the least: bad pivots each time */
         pair.a = i % 2 == 0 ? i / 2 : i < count / 2 ? count - i : i;
         break;
+    case 8: /* most differ in b alone, and three in a byte of their own */
+        if (i > 0 && i < 4) pair.a = 0xffu << 8 * i;
+        pair.b = test_random_below(0xffffffff);
+        return pair;
     case 5: /* few values */
         pair.a = test_random_below(3);
         break;
@@ -84,6 +88,23 @@ static void sorting(void)
         free(other);
         free(spare);
     }
+}
+
+/* What is said of sc_sort_split. */
+static void splitting(void)
+{
+    for (uint32_t count = 0; count < 400; ++count)
+        for (uint32_t shape = 0; shape < SHAPES; ++shape) {
+            sc_pair pairs[400], right[400];
+            uint64_t at;
+            for (uint32_t i = 0; i < count; ++i) right[i] = pairs[i] = element(shape, i, count);
+            at = sc_sort_split(pairs, count);
+            CHECK(count < 9 ? at == 0 : at < count);
+            qsort(right, count, sizeof(sc_pair), compare);
+            qsort(pairs, at, sizeof(sc_pair), compare);
+            qsort(pairs + at, count - at, sizeof(sc_pair), compare);
+            CHECK(count == 0 || memcmp(pairs, right, count * sizeof(sc_pair)) == 0);
+        }
 }
 
 /* The greatest first, again and again. */
@@ -165,5 +186,5 @@ static void scratch_memory(void)
     CHECK(scratch.blocks == NULL);
 }
 
-SC_TEST_MAIN(SC_TEST(sorting), SC_TEST(heaps), SC_TEST(keys_of_floats), SC_TEST(alignment),
-             SC_TEST(more_than_there_is), SC_TEST(scratch_memory))
+SC_TEST_MAIN(SC_TEST(sorting), SC_TEST(splitting), SC_TEST(heaps), SC_TEST(keys_of_floats),
+             SC_TEST(alignment), SC_TEST(more_than_there_is), SC_TEST(scratch_memory))

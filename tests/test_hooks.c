@@ -51,7 +51,7 @@ static sc_hooks make_hooks(journal *j)
     return hooks;
 }
 
-static sc_status build(const soup *s, uint32_t weld, journal *j)
+static sc_status build(const soup *s, uint32_t weld, uint32_t content, journal *j)
 {
     sc_mesh m = input_plain_mesh(s);
     sc_hooks hooks = make_hooks(j);
@@ -61,6 +61,7 @@ static sc_status build(const soup *s, uint32_t weld, journal *j)
     memset(&options, 0, sizeof(options));
     options.struct_size = sizeof(options);
     options.weld = weld;
+    options.content = content;
     options.hooks = &hooks;
     status = sc_build(&m, &options, &model);
     CHECK(j->failures == 0);
@@ -72,33 +73,40 @@ static void messages_of_builds(void)
 {
     journal j;
     soup s = soup_cloth(2, 2);
-    CHECK(build(&s, SC_WELD_REST, &j) == SC_OK);
+    CHECK(build(&s, SC_WELD_REST, SC_MODEL_FULL, &j) == SC_OK);
     CHECK_MSG(j.text[0] == '\0', "%s", j.text); /* nothing to say */
     s.triangles[4] = 99;
-    CHECK(build(&s, SC_WELD_REST, &j) == SC_ERROR_INDEX && j.levels == 1u << SC_LOG_ERROR);
+    CHECK(build(&s, SC_WELD_REST, SC_MODEL_FULL, &j) == SC_ERROR_INDEX &&
+          j.levels == 1u << SC_LOG_ERROR);
     CHECK_MSG(strcmp(j.text, "triangle 1 names vertex 99 of 9\n") == 0, "%s", j.text);
     s.triangles[4] = 0;
     s.positions[3 * 8 + 1] = HUGE_VAL;
-    CHECK(build(&s, SC_WELD_REST, &j) == SC_ERROR_NOT_FINITE && j.levels == 1u << SC_LOG_ERROR);
+    CHECK(build(&s, SC_WELD_REST, SC_MODEL_FULL, &j) == SC_ERROR_NOT_FINITE &&
+          j.levels == 1u << SC_LOG_ERROR);
     CHECK_MSG(strcmp(j.text, "vertex 8 is NaN or infinite\n") == 0, "%s", j.text);
     soup_free(&s);
 
     s = soup_seams(3);
-    CHECK(build(&s, SC_WELD_REST, &j) == SC_OK && j.levels == 1u << SC_LOG_NOTE);
+    CHECK(build(&s, SC_WELD_REST, SC_MODEL_FULL, &j) == SC_OK && j.levels == 1u << SC_LOG_NOTE);
     CHECK_MSG(strcmp(j.text, "38 vertices are welded to others\n") == 0, "%s", j.text);
-    CHECK(build(&s, SC_WELD_NONE, &j) == SC_OK && strstr(j.text, "18 components\n") != NULL);
+    CHECK(build(&s, SC_WELD_NONE, SC_MODEL_FULL, &j) == SC_OK &&
+          strstr(j.text, "18 components\n") != NULL);
     CHECK_MSG(strstr(j.text, "leaf clusters are not connected") != NULL, "%s", j.text);
+    CHECK(build(&s, SC_WELD_NONE, SC_MODEL_BOXES, &j) == SC_OK &&
+          strstr(j.text, "18 components\n") != NULL);
+    CHECK_MSG(strstr(j.text, "leaf clusters") == NULL, "%s", j.text); /* nothing is culled anyway */
     soup_free(&s);
 
     s = soup_fins(3);
-    CHECK(build(&s, SC_WELD_REST, &j) == SC_OK && (j.levels & 1u << SC_LOG_WARNING) != 0);
+    CHECK(build(&s, SC_WELD_REST, SC_MODEL_FULL, &j) == SC_OK &&
+          (j.levels & 1u << SC_LOG_WARNING) != 0);
     CHECK_MSG(strstr(j.text, "edges have three or more triangles") != NULL, "%s", j.text);
     soup_free(&s);
 
     s = soup_make(5, 1);
     for (uint32_t i = 0; i < 15; ++i) s.positions[i] = i % 4 == 0;
     for (uint32_t i = 0; i < 3; ++i) s.triangles[i] = i + 1;
-    CHECK(build(&s, SC_WELD_NONE, &j) == SC_OK);
+    CHECK(build(&s, SC_WELD_NONE, SC_MODEL_FULL, &j) == SC_OK);
     CHECK_MSG(strcmp(j.text, "2 vertices are in no triangle\n") == 0, "%s", j.text);
     soup_free(&s);
 }

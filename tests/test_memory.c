@@ -127,13 +127,15 @@ static void check_answer(const soup *s, const double *posed, const uint32_t *map
     oracle_free(&answer);
 }
 
-/* Fails call after call of one kind of build until none is left, in two ways. */
+/* Fails call after call of one kind of build until none is left, in two ways. posed may be NULL: answers are not looked at. */
 static void check_failing_build(const char *name, const soup *s, const double *posed, uint32_t weld,
-                                uint32_t partition)
+                                uint32_t partition, uint32_t content)
 {
     sc_mesh mesh = input_plain_mesh(s);
     input_choices choices = input_choose(s, weld, partition);
     uint32_t *map = input_weld_of(&choices, s);
+    choices.options.content = content;
+    if (content == SC_MODEL_BOXES) choices.options.rest = SC_REST_UNMARKED;
     for (int fails_after = 0; fails_after < 2; ++fails_after) {
         sc_status status = SC_ERROR_MEMORY;
         uint64_t n = 0;
@@ -167,7 +169,7 @@ static void check_failing_build(const char *name, const soup *s, const double *p
                           "%s: %u bytes in %u calls", name, (unsigned)build_counter.peak_bytes,
                           (unsigned)build_counter.calls);
                 CHECK(sc_workspace_create(model, &other, &workspace) == SC_OK);
-                if (fails_after == 0) check_answer(s, posed, map, model, workspace);
+                if (fails_after == 0 && posed) check_answer(s, posed, map, model, workspace);
                 sc_workspace_free(workspace);
                 sc_model_free(model);
                 CHECK(build_counter.live == 0 && workspace_counter.live == 0);
@@ -200,9 +202,20 @@ static void build_fails_at_every_allocation(void)
         memcpy(posed, s.positions, 3 * (size_t)s.vertex_count * sizeof(double));
         soup_fold(posed, s.vertex_count);
         for (uint32_t partition = 0; partition < 4; ++partition)
-            check_failing_build(names[i], &s, posed, i % 2 == 0 ? SC_WELD_REST : SC_WELD_MAP,
-                                partition);
+            for (uint32_t content = SC_MODEL_FULL; content <= SC_MODEL_BOXES; ++content)
+                check_failing_build(names[i], &s, content == SC_MODEL_FULL ? posed : NULL,
+                                    i % 2 == 0 ? SC_WELD_REST : SC_WELD_MAP, partition, content);
         free(posed);
+        soup_free(&s);
+    }
+}
+
+/* Meshes large enough for levels to be taken away, and for lists to grow. */
+static void large_builds_fail_as_well(void)
+{
+    for (uint32_t i = 0; i < 3; ++i) {
+        soup s = i == 0 ? soup_cloth(30, 40) : i == 1 ? soup_sphere(40, 30) : soup_many(60);
+        check_failing_build("large", &s, NULL, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
         soup_free(&s);
     }
 }
@@ -213,7 +226,7 @@ static void small_builds_fail_as_well(void)
     uint32_t rounds = test_iterations(60);
     for (uint32_t i = 0; i < rounds; ++i) {
         soup s = soup_on_grid(3);
-        check_failing_build("soup", &s, s.positions, i % 3, test_random_below(4));
+        check_failing_build("soup", &s, s.positions, i % 3, test_random_below(4), SC_MODEL_FULL);
         soup_free(&s);
     }
 }
@@ -321,6 +334,6 @@ static void workspaces_in_own_memory(void)
     soup_free(&s);
 }
 
-SC_TEST_MAIN(SC_TEST(build_fails_at_every_allocation), SC_TEST(small_builds_fail_as_well),
-             SC_TEST(bad_input_leaks_nothing), SC_TEST(workspace_fails_at_every_allocation),
-             SC_TEST(workspaces_in_own_memory))
+SC_TEST_MAIN(SC_TEST(build_fails_at_every_allocation), SC_TEST(large_builds_fail_as_well),
+             SC_TEST(small_builds_fail_as_well), SC_TEST(bad_input_leaks_nothing),
+             SC_TEST(workspace_fails_at_every_allocation), SC_TEST(workspaces_in_own_memory))

@@ -670,6 +670,12 @@ static void refuses_what_does_not_fit(void)
         REFUSED(tolerance, (double)NAN, SC_ERROR_OPTION);
         REFUSED(tolerance, HUGE_VAL, SC_ERROR_OPTION);
         REFUSED(separation, 1e308, SC_ERROR_SHORT_BUFFER);
+        {
+            sc_pose wrong = pose;
+            wrong.struct_size = 4;
+            CHECK(ASK(&wrong, &pose) == SC_ERROR_STRUCT_SIZE);
+            CHECK(ASK(&pose, &wrong) == SC_ERROR_STRUCT_SIZE);
+        }
         a.result.struct_size = 8;
         CHECK(ASK(&pose, &pose) == SC_ERROR_STRUCT_SIZE);
         a.result.struct_size = sizeof(a.result);

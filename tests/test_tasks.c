@@ -175,8 +175,8 @@ typedef struct answer {
     sc_pair *pairs;
 } answer;
 
-static answer ask(const fixture *f, sc_workspace *workspace, const sc_query_options *options,
-                  uint64_t capacity)
+static answer ask_with(const fixture *f, sc_workspace *workspace, const sc_query_options *options,
+                       uint64_t capacity, int has_stats)
 {
     answer a;
     memset(&a, 0, sizeof(a));
@@ -186,10 +186,16 @@ static answer ask(const fixture *f, sc_workspace *workspace, const sc_query_opti
     a.result.struct_size = sizeof(a.result);
     a.result.capacity = capacity;
     a.result.pairs = a.pairs;
-    a.result.stats = &a.stats;
+    if (has_stats) a.result.stats = &a.stats;
     a.status = sc_query(f->model, workspace, &f->pose, options, &a.result);
     CHECK(a.pairs[capacity].a == 0xabababab && a.pairs[capacity].b == 0xabababab);
     return a;
+}
+
+static answer ask(const fixture *f, sc_workspace *workspace, const sc_query_options *options,
+                  uint64_t capacity)
+{
+    return ask_with(f, workspace, options, capacity, 1);
 }
 
 /* Whether two queries counted the same. */
@@ -516,6 +522,41 @@ static void the_same_answers(void)
     CHECK(jobs > 200);
 }
 
+/* Queries that read no clocks, with room and without. */
+static void without_statistics(void)
+{
+    for (int scene = 0; scene < SCENES; ++scene) {
+        fixture f;
+        if (start_scene(&f, scene)) {
+            sc_workspace_options o = for_workers(THREADS_MAX);
+            sc_workspace *workspace = NULL;
+            CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+            for (uint32_t kind = 0; kind < METHODS; ++kind) {
+                sc_query_options options = question(kind);
+                uint64_t room = 100000;
+                for (int c = 0; c < 3; ++c) {
+                    answer serial;
+                    host h;
+                    options.tasks = NULL;
+                    serial = ask(&f, f.workspace, &options, room);
+                    CHECK(is_same(&serial, ask_with(&f, f.workspace, &options, room, 0)));
+                    host_start(&h, c, 2 + test_random_below(THREADS_MAX - 1));
+                    options.tasks = &h.tasks;
+                    CHECK_MSG(is_same(&serial, ask_with(&f, workspace, &options, room, 0)),
+                              "scene %d, kind %u, room for %u", scene, (unsigned)kind,
+                              (unsigned)room);
+                    CHECK(h.mistakes == 0);
+                    host_stop(&h);
+                    room = c ? 0 : serial.result.count / 2;
+                    free(serial.pairs);
+                }
+            }
+            sc_workspace_free(workspace);
+        }
+        stop(&f);
+    }
+}
+
 /* More pairs than the workspace has room for, when they are sorted. */
 static void very_many_pairs(void)
 {
@@ -669,6 +710,7 @@ static void filters(void)
                     serial = ask(&f, f.workspace, &options, 100000);
                     capacity = (uint64_t)test_random_below(2) * serial.result.count +
                                test_random_below(2000);
+                    if (part == 5) capacity = 0;
                     free(serial.pairs);
                     options.output = kind % 4 == 3 ? SC_OUTPUT_COUNT : SC_OUTPUT_PAIRS;
                     j.calls = 0;
@@ -957,8 +999,6 @@ static int is_step_count_same(const step_answer *a, const step_answer *b)
            a->stats.leaf_pairs == b->stats.leaf_pairs;
 }
 
-/* Each method, kind of pair, output, kind of time and length of the lists, by each host: the same list, times and
-   counts as by one thread. */
 /* A scene drawn anew until it has pairs to compare; the two triangles have none. */
 static int start_colliding_step(step_fixture *s, int scene)
 {
@@ -978,6 +1018,8 @@ static int start_colliding_step(step_fixture *s, int scene)
     return 0;
 }
 
+/* Each method, kind of pair, output, kind of time and length of the lists, by each host: the same list, times and
+   counts as by one thread. */
 static void steps_the_same(void)
 {
     uint64_t jobs = 0, culled = 0;
@@ -1025,6 +1067,47 @@ static void steps_the_same(void)
     }
     CHECK_MSG(jobs > 500 && culled > 200, "%u jobs, %u nodes culled", (unsigned)jobs,
               (unsigned)culled);
+}
+
+/* Steps that read no clocks and have no arrays for times, by one thread and by several: the same lists. */
+static void steps_without_statistics(void)
+{
+    for (int scene = 0; scene < STEP_SCENES; ++scene) {
+        step_fixture s;
+        if (start_step(&s, scene))
+            for (uint32_t kind = (uint32_t)scene; kind < 4 * STEP_METHODS; kind += 3) {
+                sc_step_options options = step_question(kind);
+                uint64_t room = kind % 3 ? 40000 : 10;
+                step_answer all = ask_step(&s, s.serial, &options, room, room);
+                for (int way = -1; way < 1; ++way) {
+                    step_answer plain = all;
+                    host h;
+                    host_start(&h, (int)kind % HOST_COUNT, 2 + test_random_below(THREADS_MAX - 1));
+                    options.tasks = way < 0 ? NULL : &h.tasks;
+                    plain.result.stats = NULL;
+                    plain.result.vertex_face_times = plain.result.edge_edge_times = NULL;
+                    for (int k = 0; k < 2; ++k)
+                        plain.pairs[k] = (sc_pair *)test_allocate(room * sizeof(sc_pair));
+                    plain.result.vertex_faces = plain.pairs[0];
+                    plain.result.edge_edges = plain.pairs[1];
+                    CHECK(sc_query_step(s.f.model, way < 0 ? s.serial : s.shared, &s.f.pose, &s.end,
+                                        &options, &plain.result) == all.status);
+                    CHECK(plain.result.earliest == all.result.earliest &&
+                          plain.result.vertex_face_count == all.count[0] &&
+                          plain.result.edge_edge_count == all.count[1]);
+                    for (int k = 0; k < 2; ++k) {
+                        uint64_t filled = all.count[k] < room ? all.count[k] : room;
+                        CHECK_MSG(memcmp(plain.pairs[k], all.pairs[k], filled * sizeof(sc_pair)) ==
+                                      0,
+                                  "scene %d, kind %u, host %d", scene, (unsigned)kind, way);
+                        free(plain.pairs[k]);
+                    }
+                    host_stop(&h);
+                }
+                free_step_answer(&all);
+            }
+        stop_step(&s);
+    }
 }
 
 /* One list, or both, too short or left out. */
@@ -1209,8 +1292,9 @@ static void steps_stopped_on_the_way(void)
 }
 
 SC_TEST_MAIN(SC_TEST(workspaces_for_workers), SC_TEST(workspaces_refused), SC_TEST(tasks_refused),
-             SC_TEST(the_same_answers), SC_TEST(very_many_pairs), SC_TEST(any_array_of_positions),
-             SC_TEST(any_pair), SC_TEST(filters), SC_TEST(stopped_early),
-             SC_TEST(stopped_on_the_way), SC_TEST(steps_the_same), SC_TEST(steps_in_short_lists),
+             SC_TEST(the_same_answers), SC_TEST(without_statistics), SC_TEST(very_many_pairs),
+             SC_TEST(any_array_of_positions), SC_TEST(any_pair), SC_TEST(filters),
+             SC_TEST(stopped_early), SC_TEST(stopped_on_the_way), SC_TEST(steps_the_same),
+             SC_TEST(steps_without_statistics), SC_TEST(steps_in_short_lists),
              SC_TEST(any_pair_of_a_step), SC_TEST(any_positions_of_a_step),
              SC_TEST(steps_stopped_early), SC_TEST(steps_stopped_on_the_way))

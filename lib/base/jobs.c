@@ -5,6 +5,7 @@
  */
 #include "base/jobs.h"
 
+#include "base/assume.h"
 #include "base/atomic.h"
 
 void sc_jobs_divide(const sc_tasks *tasks, uint32_t count, sc_jobs_ranges *ranges)
@@ -19,7 +20,9 @@ uint32_t sc_jobs_take(sc_jobs_ranges *ranges, uint32_t part, uint32_t worker)
 {
     const uint64_t count = ranges->count, workers = ranges->workers;
     uint64_t i, owner = worker;
-    for (i = 0; SC_ATOMIC && i < workers; i++, owner = owner + 1 < workers ? owner + 1 : 0) {
+    /* there are as many parts as calls, so one is left */
+    for (i = 0; SC_ATOMIC && SC_ALWAYS(i < workers);
+         i++, owner = owner + 1 < workers ? owner + 1 : 0) {
         uint64_t at = count * owner / workers + sc_atomic_add(&ranges->taken[owner], 1);
         if (at < count * (owner + 1) / workers) return (uint32_t)at;
     }
@@ -53,7 +56,7 @@ uint32_t sc_jobs_loop(const sc_tasks *tasks, uint32_t count, uint32_t least, sc_
     l.length = tasks ? (count - 1) / SC_JOBS_PARTS + 1 : count;
     if (l.length < least) l.length = least;
     parts = (count - 1) / l.length + 1;
-    if (parts == 1 || !tasks) {
+    if (parts == 1 || SC_NEVER(!tasks)) { /* without tasks there is one part */
         body(context, 0, 0, count);
         return 1;
     }

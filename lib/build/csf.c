@@ -254,7 +254,7 @@ static int reserve_lists(builder *b, uint64_t more)
 {
     uint64_t room = b->room + b->room / 4 + more;
     uint32_t *lists;
-    if (b->listed + more > 0xfffffff0u) return 0;
+    if (SC_HARDLY(b->listed + more > 0xfffffff0u)) return 0;
     if (b->lists && b->listed + more <= b->room) return 1;
     lists = (uint32_t *)sc_scratch_take(b->scratch, room, sizeof *lists);
     if (!lists) return 0;
@@ -341,7 +341,7 @@ static int has_loop(const sc_xbvh *xbvh, sc_pair patches, uint64_t edges)
 {
     uint32_t leaves = xbvh->leaf[patches.a + 1] - xbvh->leaf[patches.a];
     if (patches.b != patches.a) leaves += xbvh->leaf[patches.b + 1] - xbvh->leaf[patches.b];
-    return leaves <= SC_LOOP_LEAVES && edges < 0xfffff000u;
+    return leaves <= SC_LOOP_LEAVES && !SC_HARDLY(edges >= 0xfffff000u);
 }
 
 /* Chains the segments of each node, and measures them. The patches of those that share one point are apart: their

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/assume.h"
 #include "base/atomic.h"
 #include "base/jobs.h"
 #include "base/sort.h"
@@ -35,16 +36,15 @@ static void heapify(const sc_step_list *list, uint64_t count)
     while (at > 0) sift(list, count, --at);
 }
 
+/* In lists with times. */
 static void swap(const sc_step_list *list, uint64_t i, uint64_t j)
 {
     sc_pair pair = list->pairs[i];
+    double time = list->times[i];
     list->pairs[i] = list->pairs[j];
     list->pairs[j] = pair;
-    if (list->times) {
-        double time = list->times[i];
-        list->times[i] = list->times[j];
-        list->times[j] = time;
-    }
+    list->times[i] = list->times[j];
+    list->times[j] = time;
 }
 
 /* Entries of a list are claimed for many pairs at once, as in query/pairs.c. */
@@ -114,7 +114,7 @@ static uint64_t split_list(void *context, uint64_t first, uint64_t count)
     uint64_t i, j, k;
     sc_pair some[9];
     if (!list.times) return sc_sort_split(list.pairs, count);
-    if (count < 9) return 0;
+    if (SC_HARDLY(count < 9)) return 0; /* left over by unlucky splits */
     for (k = 0; k < 9; k++) some[k] = list.pairs[k * (count / 9)];
     sc_sort_pairs(some, 9);
     for (i = 0, j = count - 1;; i++, j--) { /* both ends stop at the pivot */
@@ -132,8 +132,10 @@ enum { HEAP_MAX = 32 };
 static void order_timed(sc_step_list *list, uint64_t first, uint64_t count, int splits)
 {
     sc_step_list rest;
-    while (count > HEAP_MAX && splits-- > 0) { /* the shorter part first, then the longer */
+    while (count > HEAP_MAX &&
+           !SC_HARDLY(splits <= 0)) { /* the shorter part first, then the longer */
         uint64_t n = split_list(list, first, count);
+        splits--;
         if (n < count - n) {
             order_timed(list, first, n, splits);
             first += n;
