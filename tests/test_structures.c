@@ -882,6 +882,7 @@ static void named_meshes(void)
     ON("long cloth", soup_cloth(1, 60));
     ON("annulus", soup_annulus(20, 4));
     ON("tube", soup_tube(12, 9));
+    ON("thin tube", soup_tube(8, 30));
     ON("sphere", soup_sphere(12, 10));
     ON("moebius", soup_moebius(30, 3));
     ON("pinched", soup_pinched(6));
@@ -992,6 +993,87 @@ static void creases(void)
                       (int)found[fold].least, (int)found[0].least);
         }
     }
+}
+
+/* How many leaf clusters a mesh gets. Of every so many triangles of it in turn: how many such parts are divided between
+   clusters, and how many clusters have triangles of several. */
+static uint32_t count_clusters(const soup *mesh, uint32_t partition, uint32_t together,
+                               uint32_t *divided, uint32_t *mixed)
+{
+    input_choices c = input_choose(mesh, SC_WELD_NONE, partition);
+    steps made;
+    uint32_t i, leaves = 0;
+    *divided = *mixed = 0;
+    if (CHECK(make_steps(&made, mesh, &c.options) == SC_OK)) {
+        patches p = find_patches(&made);
+        const uint32_t *patch = p.patch + (p.levels - 1) * p.triangles;
+        uint32_t *cluster_of = (uint32_t *)test_allocate(p.triangles * sizeof(uint32_t));
+        uint8_t *is_divided = (uint8_t *)zeroed(p.triangles), *is_mixed;
+        uint32_t *part_of = (uint32_t *)test_allocate(p.triangles * sizeof(uint32_t));
+        is_mixed = (uint8_t *)zeroed(p.triangles);
+        memset(cluster_of, 0xff, p.triangles * sizeof(uint32_t));
+        memset(part_of, 0xff, p.triangles * sizeof(uint32_t));
+        leaves = p.count[p.levels - 1];
+        for (i = 0; i < p.triangles; ++i) {
+            uint32_t part = made.points.id[i] / together, cluster = patch[i];
+            if (cluster_of[part] == SC_NONE) cluster_of[part] = cluster;
+            if (part_of[cluster] == SC_NONE) part_of[cluster] = part;
+            is_divided[part] |= cluster_of[part] != cluster;
+            is_mixed[cluster] |= part_of[cluster] != part;
+        }
+        for (i = 0; i < p.triangles; ++i) {
+            *divided += is_divided[i];
+            *mixed += is_mixed[i];
+        }
+        free(part_of);
+        free(cluster_of);
+        free(is_mixed);
+        free(is_divided);
+        free_patches(&p);
+    }
+    free_steps(&made);
+    input_free_choices(&c);
+    return leaves;
+}
+
+/* Thin tubes become whole rings, as many as fit into a leaf cluster, at any scale and by any cut. Of five sides, one and a
+   half do. */
+static void slices(void)
+{
+    enum { ALONG = 60 };
+    static const double sizes[] = {1, 0x1p+1000, 0x1p-1000};
+    uint32_t sides, partition, divided, mixed, leaves, size;
+    for (sides = 3; sides <= 8; ++sides) {
+        uint32_t most = 1 + (sides < 5 ? ALONG / 2 : sides == 5 ? 2 * ALONG / 3 : ALONG);
+        for (partition = SC_PARTITION_FAST; partition <= SC_PARTITION_BISECT;
+             partition += SC_PARTITION_BISECT) {
+            for (size = 0; size < 3; ++size) {
+                soup tube = soup_tube(sides, ALONG);
+                soup_scale(tube.positions, tube.vertex_count, sizes[size]);
+                leaves = count_clusters(&tube, partition, 2 * sides, &divided, &mixed);
+                CHECK_MSG((divided == 0 || sides == 5) && leaves <= most,
+                          "%" PRIu32 " sides: %" PRIu32 " rings divided, %" PRIu32 " clusters",
+                          sides, divided, leaves);
+                soup_free(&tube);
+            }
+        }
+    }
+}
+
+/* A strand like a U: a plane across it meets both legs, in triangles that would fit into one leaf cluster. */
+static void two_legs(void)
+{
+    enum { ALONG = 128 };
+    soup strand = soup_tube(3, ALONG);
+    uint32_t v, divided, mixed;
+    for (v = 0; v < strand.vertex_count; ++v) {
+        double *p = strand.positions + 3 * (size_t)v;
+        if (p[0] > 0.5) p[1] = 1 - p[1];
+        p[0] = 8 * fabs(p[0] - 0.5);
+    }
+    (void)count_clusters(&strand, SC_PARTITION_FAST, 6 * ALONG / 2, &divided, &mixed);
+    CHECK_MSG(mixed <= 1, "%" PRIu32 " clusters on both legs", mixed);
+    soup_free(&strand);
 }
 
 /* The point in the middle of a disc has the longest ring that there can be, and one that is too long. */
@@ -1240,4 +1322,5 @@ static void curve(void)
 }
 
 SC_TEST_MAIN(SC_TEST(locality), SC_TEST(curve), SC_TEST(named_meshes), SC_TEST(hubs),
-             SC_TEST(creases), SC_TEST(long_rings), SC_TEST(random_meshes), SC_TEST(validators))
+             SC_TEST(creases), SC_TEST(slices), SC_TEST(two_legs), SC_TEST(long_rings),
+             SC_TEST(random_meshes), SC_TEST(validators))

@@ -11,6 +11,7 @@
 
 #include "base/assume.h"
 #include "base/sort.h"
+#include "build/slices.h"
 #include "build/small_refinement.h"
 #include "build/straight_cut.h"
 
@@ -47,13 +48,14 @@ typedef struct bisection {
     float *costs;        /* 3 * triangle_count: of a cut along each side, see bisection.h */
     uint32_t *neighbor;  /* 3 * triangle_count: across each side, triangle_count if there is none */
     uint32_t *label;     /* triangle_count + 1: 2 * number of the patch at hand, + 1 on side 1 */
-    uint32_t *component; /* triangle_count */
+    uint32_t *component; /* triangle_count + 1 */
     uint32_t *queue;     /* triangle_count */
     sc_pair *keys;       /* triangle_count */
     uint32_t *sizes;     /* triangle_count: of components */
     int32_t *graph; /* 7 * triangle_count + 1, for the caller's cut: offsets, neighbors, weights */
     uint32_t patches; /* numbers given out */
     sc_refinement refinement;
+    sc_slices slices;
 } bisection;
 
 /* Whether u is in the patch of t, and if asked on its side. */
@@ -262,7 +264,7 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
     for (i = 0; i < count; i++)
         if (b->queue[b->component[triangles[i]]] == SC_NONE)
             b->queue[b->component[triangles[i]]] = triangles[i];
-    sc_direction_find(&b->facets, b->queue, found, direction);
+    sc_direction_find(&b->facets, b->queue, found, 1, direction);
     for (i = 0; i < found; i++) {
         const float *center = b->centers + 3 * (uint64_t)b->queue[i];
         b->keys[i].a = sc_sort_key(sc_direction_along(center, direction));
@@ -382,6 +384,8 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
         *node = sc_hierarchy_add_balanced(hierarchy, first, count, depth);
         return SC_OK;
     }
+    if ((whole || depth == 1) && sc_slices_add(&b->slices, hierarchy, first, count, depth, node))
+        return SC_OK;
     *node = sc_hierarchy_add(hierarchy, first, count, depth);
     status = divide(b, triangles, count, leaves, whole, connected);
     if (status) return status;
@@ -491,7 +495,8 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.neighbor = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(uint32_t));
     b.label =
         (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)count + 1, sizeof(uint32_t), 0xff);
-    b.component = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
+    b.component =
+        (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)count + 1, sizeof(uint32_t), 0xff);
     b.queue = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
     b.keys = (sc_pair *)sc_scratch_take(scratch, count, sizeof(sc_pair));
     b.sizes = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
@@ -512,6 +517,11 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.centers[3 * (uint64_t)count] = b.normals[3 * (uint64_t)count] = 0;
     b.facets.centers = b.centers;
     b.facets.normals = b.normals;
+    b.slices.facets = b.facets;
+    b.slices.neighbor = b.neighbor;
+    b.slices.keys = b.keys; /* these three are not in use meanwhile */
+    b.slices.before = b.queue;
+    b.slices.place = b.component;
     measure(&b);
     for (t = 0; t < count; t++) hierarchy->order[t] = t;
     status = bisect_patch(&b, 0, count, leaves_for(&b, count), 1, 0, &root);

@@ -4,9 +4,9 @@
  * SPDX-License-Identifier: MIT
  *
  * Every patch is first taken apart where it is not connected through edges, so that components, and
- * what a cut tore off, become patches of their own. A connected patch is cut in two; then triangles
- * move across the cut where that makes it cheaper, and islands go to the side that surrounds them, as far
- * as the sides' capacities allow. O(n log n).
+ * what a cut tore off, become patches of their own. A thin tube is cut into rings at once (build/slices.h). Any other
+ * connected patch is cut in two; then triangles move across the cut where that makes it cheaper, and islands go to the
+ * side that surrounds them, as far as the sides' capacities allow. O(n log n).
  *
  * A cut costs, along each edge, its rest length over the mean, divided by 2 - cos of the angle between the normals of
  * the two triangles: so that cuts follow creases, and normal cones of patches stay narrow. On the scenes of sc-bench,

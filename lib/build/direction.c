@@ -142,13 +142,13 @@ static void multiply_matrices(double a[3][3], double b[3][3], double product[3][
 }
 
 void sc_direction_find(const sc_facets *facets, const uint32_t *triangles, uint32_t count,
-                       float direction[3])
+                       int turning, float direction[3])
 {
     double m[3][3], turn[3][3], turned[3][3], square[3][3], inverse[3][3], at[3], size, weight;
     int j, k, round, axis = 0;
     find_covariances(facets, triangles, count, m, turn);
     size = m[0][0] + m[1][1] + m[2][2];
-    weight = NORMALS_WEIGHT * size / count;
+    weight = turning ? NORMALS_WEIGHT * size / count : 0;
     for (j = 0; j < 3; j++)
         for (k = 0; k < 3; k++) turned[j][k] = turn[k][j];
     multiply_matrices(turn, turned, square);

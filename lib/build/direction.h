@@ -28,9 +28,9 @@ typedef struct sc_facets {
     const float *normals; /* 3 a triangle, and one more: unit, or 0 */
 } sc_facets;
 
-/* Of some triangles, one or more. */
+/* Of some triangles, one or more. turning: whether normals count; else it is the longest direction. */
 void sc_direction_find(const sc_facets *facets, const uint32_t *triangles, uint32_t count,
-                       float direction[3]);
+                       int turning, float direction[3]);
 
 static inline float sc_direction_along(const float *center, const float direction[3])
 {

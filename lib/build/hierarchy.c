@@ -58,8 +58,7 @@ uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t coun
     return hierarchy->node_count++;
 }
 
-/* The end of the longest run of order[first .. end) that fits into a leaf cluster. */
-static uint32_t leaf_end(const sc_hierarchy *hierarchy, uint32_t first, uint32_t end)
+uint32_t sc_hierarchy_leaf_end(const sc_hierarchy *hierarchy, uint32_t first, uint32_t end)
 {
     uint32_t *met = hierarchy->met, run = ++*hierarchy->runs, points = 0, k;
     if (end - first > SC_LEAF_MAX) end = first + SC_LEAF_MAX;
@@ -92,13 +91,19 @@ static uint32_t add_leaves(sc_hierarchy *hierarchy, const uint32_t *start, uint3
     return node;
 }
 
+uint32_t sc_hierarchy_add_leaves(sc_hierarchy *hierarchy, uint32_t count, uint32_t depth)
+{
+    return add_leaves(hierarchy, hierarchy->starts, count, depth);
+}
+
 uint32_t sc_hierarchy_add_balanced(sc_hierarchy *hierarchy, uint32_t first, uint32_t count,
                                    uint32_t depth)
 {
     uint32_t leaves = 0, at, end = first + count;
-    for (at = first; at < end; at = leaf_end(hierarchy, at, end)) hierarchy->starts[leaves++] = at;
+    for (at = first; at < end; at = sc_hierarchy_leaf_end(hierarchy, at, end))
+        hierarchy->starts[leaves++] = at;
     hierarchy->starts[leaves] = end;
-    return add_leaves(hierarchy, hierarchy->starts, leaves, depth);
+    return sc_hierarchy_add_leaves(hierarchy, leaves, depth);
 }
 
 int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch)
@@ -132,7 +137,8 @@ int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch)
     for (i = 0; i < hierarchy->node_count; i++) {
         const sc_tree_node *node = &hierarchy->nodes[i];
         if (node->left == SC_NONE &&
-            leaf_end(&again, node->first, node->first + node->count) != node->first + node->count)
+            sc_hierarchy_leaf_end(&again, node->first, node->first + node->count) !=
+                node->first + node->count)
             return 0;
     }
     sc_scratch_give(scratch, again.met);

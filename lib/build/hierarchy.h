@@ -45,6 +45,13 @@ uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t coun
 uint32_t sc_hierarchy_add_balanced(sc_hierarchy *hierarchy, uint32_t first, uint32_t count,
                                    uint32_t depth);
 
+/* The end of the longest run of order[first .. end) that fits into a leaf cluster. */
+uint32_t sc_hierarchy_leaf_end(const sc_hierarchy *hierarchy, uint32_t first, uint32_t end);
+
+/* Appends a balanced subtree over count leaves, which start at starts[0] to starts[count - 1]; the last ends at
+   starts[count]. */
+uint32_t sc_hierarchy_add_leaves(sc_hierarchy *hierarchy, uint32_t count, uint32_t depth);
+
 /* For debug builds and tests: 1 if the invariants hold. */
 int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch);
 

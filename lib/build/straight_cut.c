@@ -51,7 +51,7 @@ void sc_straight_cut_run(const sc_facets *facets, const uint32_t *triangles, uin
 {
     float direction[3], least = HUGE_VALF, most = -HUGE_VALF, scale;
     uint32_t size[BUCKETS + 1], i, middle = 0, before = 0, candidates = 0;
-    sc_direction_find(facets, triangles, count, direction);
+    sc_direction_find(facets, triangles, count, 1, direction);
     for (i = 0; i < count; i++) {
         float at = sc_direction_along(facets->centers + 3 * (uint64_t)triangles[i], direction);
         along[i] = at;
