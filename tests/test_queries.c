@@ -444,7 +444,43 @@ static void leaves_that_overlap(void)
     soup_free(&mesh);
 }
 
+/* More leaf clusters than the loop of a contour has places for (build/loops.h): the mesh is culled at once where it is
+   flat, and has the same pairs by all methods where it is twisted, and folded. */
+static void contours_longer_than_loops(void)
+{
+    soup mesh = soup_cloth(190, 190);
+    subject s;
+    if (open_subject(&s, &mesh, NULL)) {
+        sc_model_info info;
+        sc_stats stats;
+        sc_result result[METHODS];
+        memset(&info, 0, sizeof(info));
+        memset(&stats, 0, sizeof(stats));
+        memset(result, 0, sizeof(result));
+        info.struct_size = sizeof(info);
+        stats.struct_size = sizeof(stats);
+        CHECK(sc_model_get_info(s.model, &info) == SC_OK && info.leaf_count > 4096);
+        result[0].stats = &stats;
+        CHECK(ask(&s, mesh.positions, mesh.vertex_count, SC_METHOD_SCTT, SC_OUTPUT_COUNT,
+                  &result[0]) == SC_OK);
+        CHECK(result[0].count == 0 && stats.nodes_visited == 1 && stats.nodes_culled == 1);
+        for (int pose = 0; pose < 2; ++pose) {
+            if (pose == 1) soup_fold(mesh.positions, mesh.vertex_count);
+            soup_twist(mesh.positions, mesh.vertex_count, 0.1);
+            for (int m = 0; m < METHODS; ++m) {
+                memset(&result[m], 0, sizeof(result[m]));
+                CHECK(ask(&s, mesh.positions, mesh.vertex_count, methods[m], SC_OUTPUT_COUNT,
+                          &result[m]) == SC_OK);
+                CHECK(result[m].count == result[0].count && (result[m].count > 0) == (pose == 1));
+            }
+        }
+    }
+    close_subject(&s);
+    soup_free(&mesh);
+}
+
 SC_TEST_MAIN(SC_TEST(any_stops_early), SC_TEST(arrays_are_left_alone), SC_TEST(largest_coordinates),
              SC_TEST(tiny_coordinates), SC_TEST(other_rest_shapes),
              SC_TEST(rest_shapes_unlike_poses), SC_TEST(hashes_of_partitions),
-             SC_TEST(missing_arguments), SC_TEST(leaves_that_overlap))
+             SC_TEST(missing_arguments), SC_TEST(leaves_that_overlap),
+             SC_TEST(contours_longer_than_loops))

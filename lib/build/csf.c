@@ -336,12 +336,12 @@ static void count_points(const sc_csf *csf, const uint32_t *segments, uint32_t c
     *points = *edges + count;
 }
 
-/* Whether a node gets a loop of so many edges, see csf.h. */
-static int has_loop(const sc_xbvh *xbvh, sc_pair patches, uint64_t edges)
+/* Whether a node in one piece gets a loop, see csf.h. */
+static int has_loop(const sc_xbvh *xbvh, sc_pair patches)
 {
     uint32_t leaves = xbvh->leaf[patches.a + 1] - xbvh->leaf[patches.a];
     if (patches.b != patches.a) leaves += xbvh->leaf[patches.b + 1] - xbvh->leaf[patches.b];
-    return leaves <= SC_LOOP_LEAVES && !SC_HARDLY(edges >= 0xfffff000u);
+    return leaves <= SC_LOOP_LEAVES;
 }
 
 /* Chains the segments of each node, and measures them. The patches of those that share one point are apart: their
@@ -384,7 +384,9 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
         count_points(csf, segments, count, &points, &edges);
         if (points > csf->contour_max) csf->contour_max = (uint32_t)points;
         csf->loop_first[n] = (uint32_t)loops;
-        if (pieces == 1 && has_loop(b->xbvh, sctt->patches[n], loops + edges)) loops += edges;
+        if (pieces == 1 && has_loop(b->xbvh, sctt->patches[n]) &&
+            !SC_HARDLY(loops + edges >= 0xfffff000u))
+            loops += edges;
     }
     csf->loop_first[nodes] = (uint32_t)loops;
     sc_chains_give(b->scratch, &chains);
