@@ -420,7 +420,9 @@ int main(int argc, char **argv)
         {"help", no_argument, NULL, OPTION_HELP},
         {NULL, 0, NULL, 0}};
 
-    tool_set_name("sc-bench");
+    static char name[] = "sc-bench";
+    argv[0] = name; /* in messages of getopt_long, too */
+    tool_set_name(name);
     bench_settings set;
     memset(&set, 0, sizeof set);
     set.cache = "build/scenes";
@@ -498,6 +500,7 @@ int main(int argc, char **argv)
             fputs(usage, stdout);
             return tool_finish(TOOL_CLEAN);
         default:
+            tool_error("see sc-bench --help");
             valid = false;
             break;
         }

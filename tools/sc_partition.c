@@ -506,7 +506,9 @@ int main(int argc, char **argv)
         {"help", no_argument, NULL, OPTION_HELP},
         {NULL, 0, NULL, 0}};
 
-    tool_set_name("sc-partition");
+    static char name[] = "sc-partition";
+    argv[0] = name; /* in messages of getopt_long, too */
+    tool_set_name(name);
     partition_settings set;
     memset(&set, 0, sizeof set);
     bool valid = true;
@@ -542,6 +544,7 @@ int main(int argc, char **argv)
             fputs(usage, stdout);
             return tool_finish(TOOL_CLEAN);
         default:
+            tool_error("see sc-partition --help");
             valid = false;
             break;
         }

@@ -860,7 +860,9 @@ int main(int argc, char **argv)
         {"help", no_argument, NULL, OPTION_HELP},
         {NULL, 0, NULL, 0}};
 
-    tool_set_name("sc-query");
+    static char name[] = "sc-query";
+    argv[0] = name; /* in messages of getopt_long, too */
+    tool_set_name(name);
     settings set;
     memset(&set, 0, sizeof set);
     set.step.method = SC_STEP_METHOD_SCTT;
@@ -975,6 +977,7 @@ int main(int argc, char **argv)
             fputs(usage_continued, stdout);
             return tool_finish(TOOL_CLEAN);
         default:
+            tool_error("see sc-query --help");
             valid = false;
             break;
         }

@@ -95,6 +95,13 @@ bool tool_parse_real(const char *option, const char *text, double *value)
     return true;
 }
 
+/* What is wrong with a mesh, in more detail than a status. */
+static void tell_errors(void *user, uint32_t level, const char *message)
+{
+    (void)user;
+    if (level == SC_LOG_ERROR) tool_error("%s", message);
+}
+
 sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, uint32_t rest,
                      uint32_t content, sc_model **model, double *milliseconds)
 {
@@ -108,9 +115,15 @@ sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, u
     input.positions = mesh->positions;
     input.indices = mesh->indices;
 
+    sc_hooks hooks;
+    memset(&hooks, 0, sizeof hooks);
+    hooks.struct_size = sizeof hooks;
+    hooks.log = tell_errors;
+
     sc_build_options options;
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
+    options.hooks = &hooks;
     options.weld = weld;
     options.rest = rest;
     options.content = content;
