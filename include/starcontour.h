@@ -110,11 +110,10 @@ enum {
     SC_ERROR_TOO_NEW = 22,      /* saved data in a later format than this library reads */
     SC_ERROR_TOO_OLD = 23,      /* saved data in an earlier format than this library reads */
     SC_ERROR_CHECKSUM = 24,     /* saved data that were changed since */
-    SC_ERROR_INCONSISTENT =
-        25,                 /* saved data that nobody saved: whole, but contradicting themselves */
-    SC_ERROR_TOPOLOGY = 26, /* the saved model is not the one that was asked for */
-    SC_ERROR_PAIRS = 27,    /* a list of pairs is not sorted or names what does not exist */
-    SC_ERROR_INCOMPLETE = 28, /* a query was cancelled or ran out of budget: SC_VERDICT_... */
+    SC_ERROR_INCONSISTENT = 25, /* saved data that nobody saved: whole, but contradictory */
+    SC_ERROR_TOPOLOGY = 26,     /* the saved model is not the one that was asked for */
+    SC_ERROR_PAIRS = 27,        /* a list of pairs is not sorted or names what does not exist */
+    SC_ERROR_INCOMPLETE = 28,   /* a query was cancelled or ran out of budget: SC_VERDICT_... */
     SC_ERROR_BOXES_ONLY = 29 /* asks for culling on a model without what it needs: SC_MODEL_BOXES */
 };
 
@@ -194,17 +193,15 @@ enum { SC_UINT32 = 0, SC_UINT16 = 1 };
  */
 typedef struct sc_mesh {
     uint32_t struct_size;
-    uint32_t vertex_count;   /* 1 or more */
-    uint32_t triangle_count; /* 1 to 0x55555554, so that a corner number 3 t + k fits 32 bits */
-    uint32_t position_type;  /* SC_FLOAT or SC_DOUBLE */
-    uint32_t
-        position_stride; /* bytes from a vertex to the next, 0: packed, else at least 3 scalars */
-    uint32_t index_type; /* SC_UINT32 or SC_UINT16 */
-    uint32_t
-        index_stride;  /* bytes from a triangle to the next, 0: packed, else at least 3 indices */
-    uint32_t reserved; /* 0 */
-    const void *positions; /* vertex_count times x, y, z */
-    const void *indices;   /* triangle_count times three vertex numbers below vertex_count */
+    uint32_t vertex_count;    /* 1 or more */
+    uint32_t triangle_count;  /* 1 to 0x55555554, so that a corner number 3 t + k fits 32 bits */
+    uint32_t position_type;   /* SC_FLOAT or SC_DOUBLE */
+    uint32_t position_stride; /* bytes to the next vertex, 0: packed, else at least 3 scalars */
+    uint32_t index_type;      /* SC_UINT32 or SC_UINT16 */
+    uint32_t index_stride;    /* bytes to the next triangle, 0: packed, else at least 3 indices */
+    uint32_t reserved;        /* 0 */
+    const void *positions;    /* vertex_count times x, y, z */
+    const void *indices;      /* triangle_count times three vertex numbers below vertex_count */
 } sc_mesh;
 
 /*
@@ -213,11 +210,10 @@ typedef struct sc_mesh {
  */
 typedef struct sc_pose {
     uint32_t struct_size;
-    uint32_t vertex_count;  /* as in the mesh */
-    uint32_t position_type; /* SC_FLOAT or SC_DOUBLE */
-    uint32_t
-        position_stride;   /* bytes from a vertex to the next, 0: packed, else at least 3 scalars */
-    const void *positions; /* vertex_count times x, y, z */
+    uint32_t vertex_count;    /* as in the mesh */
+    uint32_t position_type;   /* SC_FLOAT or SC_DOUBLE */
+    uint32_t position_stride; /* bytes to the next vertex, 0: packed, else at least 3 scalars */
+    const void *positions;    /* vertex_count times x, y, z */
 } sc_pose;
 
 /* ------------------------------------------------------------------------------------------------
@@ -226,11 +222,10 @@ typedef struct sc_pose {
 
 /* Which vertices are one. Welded vertices have the position of their representative in every pose. */
 enum {
-    SC_WELD_REST =
-        0, /* those with equal rest positions (-0 equals 0); the lowest number that a triangle
-                         uses represents them */
-    SC_WELD_MAP = 1, /* those with the same weld_map entry */
-    SC_WELD_NONE = 2 /* none */
+    SC_WELD_REST = 0, /* those with equal rest positions (-0 equals 0); the lowest number that a
+                         triangle uses represents them */
+    SC_WELD_MAP = 1,  /* those with the same weld_map entry */
+    SC_WELD_NONE = 2  /* none */
 };
 
 /* Where the hierarchy of patches comes from. */
@@ -239,7 +234,7 @@ enum {
     SC_PARTITION_ORDER = 1, /* the caller's order: consecutive triangles form patches */
     SC_PARTITION_TREE = 2,  /* the caller's binary tree, balanced or not */
     SC_PARTITION_BISECT = 3 /* recursive bisection by the caller's function, such as sc_metis_bisect
-                                of starcontour_metis.h */
+                               of starcontour_metis.h */
 };
 
 /*
@@ -258,13 +253,12 @@ typedef struct sc_tree_node {
  */
 typedef struct sc_dual_graph {
     uint32_t struct_size;
-    uint32_t node_count; /* 2 or more */
-    const int32_t
-        *offsets; /* node_count + 1: node i has the arcs offsets[i] to offsets[i + 1] - 1 */
+    uint32_t node_count;      /* 2 or more */
+    const int32_t *offsets;   /* node_count + 1: node i has arcs offsets[i] to offsets[i + 1] - 1 */
     const int32_t *neighbors; /* offsets[node_count] node numbers */
-    const int32_t
-        *weights; /* offsets[node_count] weights from 1 to 1000: rest length of the edge, less where
-                     the mesh bends there: a half at right angles, a third where it folds back */
+    const int32_t *weights;   /* offsets[node_count] weights from 1 to 1000: rest length of the
+                                 edge, less where the mesh bends there: a half at right angles, a
+                                 third where it folds back */
 } sc_dual_graph;
 
 /*
@@ -299,14 +293,13 @@ enum { SC_MODEL_FULL = 0, SC_MODEL_BOXES = 1 };
 
 typedef struct sc_build_options {
     uint32_t struct_size;
-    uint32_t weld;       /* SC_WELD_... */
-    uint32_t partition;  /* SC_PARTITION_... */
-    uint32_t tree_count; /* nodes of tree */
-    const uint32_t
-        *weld_map;         /* SC_WELD_MAP: vertex_count representatives r with weld_map[r] == r */
-    const uint32_t *order; /* SC_PARTITION_ORDER, _TREE: triangle_count, a permutation */
+    uint32_t weld;            /* SC_WELD_... */
+    uint32_t partition;       /* SC_PARTITION_... */
+    uint32_t tree_count;      /* nodes of tree */
+    const uint32_t *weld_map; /* SC_WELD_MAP: vertex_count entries r with weld_map[r] == r */
+    const uint32_t *order;    /* SC_PARTITION_ORDER, _TREE: triangle_count, a permutation */
     const sc_tree_node *tree; /* SC_PARTITION_TREE: tree_count nodes, node 0 the root, at most 60
-                                    nodes from the root to a leaf */
+                                 nodes from the root to a leaf */
     sc_bisect bisect;         /* SC_PARTITION_BISECT */
     void *bisect_user;        /* passed to bisect */
     const sc_allocator *allocator; /* copied; its functions must outlive the model */
@@ -339,18 +332,16 @@ typedef struct sc_model_info {
     uint32_t edge_count;      /* distinct edges, after welding */
     uint32_t component_count; /* parts that share no vertex, after welding */
     uint32_t boundary_edges;  /* edges of one triangle */
-    uint32_t
-        irregular_edges;    /* edges of three or more triangles, or of two that run the same way */
-    uint32_t leaf_count;    /* leaf clusters */
-    uint32_t level_count;   /* levels of the patch hierarchy; level 0 is the whole mesh */
+    uint32_t irregular_edges; /* edges of three or more triangles, or of two running the same way */
+    uint32_t leaf_count;      /* leaf clusters */
+    uint32_t level_count;     /* levels of the patch hierarchy; level 0 is the whole mesh */
     uint32_t node_count;    /* nodes of the self-collision test tree; 0 with SC_MODEL_BOXES only */
     uint32_t segment_count; /* nodes of the contour segment forest */
     uint64_t topology_hash; /* equal for equal triangles, welding, partition and SC_MODEL_... */
     uint64_t model_bytes;   /* size of the model */
     uint64_t workspace_bytes; /* size of a workspace for it */
-    uint64_t
-        peak_bytes; /* most that sc_build or sc_model_load had allocated at once, model included */
-    uint64_t allocations; /* how often they allocated; both 0 for a model loaded in place */
+    uint64_t peak_bytes;      /* most that sc_build or sc_model_load held at once, model included */
+    uint64_t allocations;     /* how often they allocated; both 0 for a model loaded in place */
 } sc_model_info;
 
 /* Fills *info, as far as info->struct_size reaches. */
@@ -406,11 +397,11 @@ SC_API sc_status sc_model_save(const sc_model *model, void *memory, uint64_t siz
 
 /* Where a loaded model is. */
 enum {
-    SC_LOAD_COPY = 0, /* in memory of its own, as one that was built */
-    SC_LOAD_IN_PLACE =
-        1 /* in the data: nothing is copied, and sc_model_free does nothing. The data are
-                            aligned to SC_ALIGNMENT, are never written to, and stay as they are as
-                            long as the model is used: so they may be a file mapped read-only */
+    SC_LOAD_COPY = 0,    /* in memory of its own, as one that was built */
+    SC_LOAD_IN_PLACE = 1 /* in the data: nothing is copied, and sc_model_free does nothing. The
+                            data are aligned to SC_ALIGNMENT, are never written to, and stay as
+                            they are as long as the model is used: so they may be a file mapped
+                            read-only */
 };
 
 typedef struct sc_load_options {
@@ -460,8 +451,8 @@ SC_API sc_status sc_workspace_create(const sc_model *model, const sc_allocator *
 
 /* What a workspace is for besides plain queries; a sum. */
 enum {
-    SC_WORKSPACE_STEP =
-        1 /* sc_query_step: about 60 bytes a triangle more, and 300 kilobytes a worker */
+    SC_WORKSPACE_STEP = 1 /* sc_query_step: about 60 bytes a triangle more, and 300 kilobytes a
+                             worker */
 };
 
 /* The largest number of workers. */
@@ -471,7 +462,7 @@ typedef struct sc_workspace_options {
     uint32_t struct_size;
     uint32_t flags;    /* sum of SC_WORKSPACE_... */
     uint32_t workers;  /* threads that a query may use at once, see sc_tasks; 0 and 1: one, at
-                                      most SC_WORKERS_MAX */
+                          most SC_WORKERS_MAX */
     uint32_t reserved; /* 0 */
     const sc_allocator *allocator; /* for sc_workspace_create_for: copied */
 } sc_workspace_options;
@@ -568,19 +559,19 @@ enum { SC_PAIRS_TRIANGLE = 0, SC_PAIRS_EDGE = 1 };
 enum {
     SC_CONTACT_TOUCHING = 0, /* any common point */
     SC_CONTACT_PROPER = 1 /* a proper crossing: the interior of an edge passes through the interior
-                                of a triangle from one side to the other, none of its vertices shared.
-                                Triangle pairs: an edge of one does so with the other */
+                             of a triangle from one side to the other, none of its vertices shared.
+                             Triangle pairs: an edge of one does so with the other */
 };
 
 /* How pairs are sought. The answer is the same for all, but for contour SC_CONTOUR_NONE. The default is
    SC_METHOD_SCTT, on a model with SC_MODEL_BOXES SC_METHOD_AABB. */
 enum {
     SC_METHOD_DEFAULT = 0,
-    SC_METHOD_SCTT = 1, /* self-collision test tree with orientation and contour tests */
-    SC_METHOD_AABB_SCTT =
-        2,             /* box recursion from the non-adjacent children of the test tree's nodes:
-                                the paper's optimised tree of axis-aligned bounding boxes (AABB) */
-    SC_METHOD_AABB = 3 /* the plain tree of boxes, for comparison */
+    SC_METHOD_SCTT = 1,      /* self-collision test tree with orientation and contour tests */
+    SC_METHOD_AABB_SCTT = 2, /* box recursion from the non-adjacent children of the test tree's
+                                nodes: the paper's optimised tree of axis-aligned bounding boxes
+                                (AABB) */
+    SC_METHOD_AABB = 3       /* the plain tree of boxes, for comparison */
 };
 
 /* The contour test of SC_METHOD_SCTT. */
@@ -589,7 +580,7 @@ enum {
     SC_CONTOUR_STAR = 1, /* the paper's star-contour test */
     SC_CONTOUR_NONE = 2, /* no contour test: MISSES PAIRS; a floor to measure against */
     SC_CONTOUR_EXACT = 3 /* the default: is the contour simple? Passes nearly everywhere on a smooth
-                                mesh. Keeps nothing from the rest pose */
+                            mesh. Keeps nothing from the rest pose */
 };
 
 /* Rest-shape caching (paper, section 8): tests that failed in the rest pose are taken as failed. Only
@@ -706,11 +697,11 @@ typedef struct sc_stats {
 
 /* How much is known after a query. */
 enum {
-    SC_VERDICT_NONE = 0,  /* nothing: the query ended with an error */
-    SC_VERDICT_CLEAN = 1, /* there is no pair; with SC_CONTOUR_NONE: none was found */
-    SC_VERDICT_FOUND = 2, /* there is a pair, and all that was asked for is known */
-    SC_VERDICT_INCOMPLETE =
-        3 /* stopped early: pairs that were found are pairs, others may be missing */
+    SC_VERDICT_NONE = 0,      /* nothing: the query ended with an error */
+    SC_VERDICT_CLEAN = 1,     /* there is no pair; with SC_CONTOUR_NONE: none was found */
+    SC_VERDICT_FOUND = 2,     /* there is a pair, and all that was asked for is known */
+    SC_VERDICT_INCOMPLETE = 3 /* stopped early: pairs that were found are pairs, others may be
+                                 missing */
 };
 
 /*
@@ -724,7 +715,7 @@ typedef struct sc_result {
     uint64_t capacity; /* in: entries of pairs */
     sc_pair *pairs;    /* in: the caller's array. Each pair is written once, sorted by a, then b */
     sc_stats *stats;  /* in: where to put statistics (its struct_size set), or NULL. Clocks are read
-                           only if it is not NULL */
+                         only if it is not NULL */
     uint32_t verdict; /* out: SC_VERDICT_... */
     uint32_t reserved; /* out: 0 */
 } sc_result;
@@ -841,21 +832,21 @@ SC_API sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_
    SC_STEP_METHOD_SCTT, on a model with SC_MODEL_BOXES SC_STEP_METHOD_TWO_BOXES. */
 enum {
     SC_STEP_METHOD_DEFAULT = 0,
-    SC_STEP_METHOD_SCTT =
-        1, /* self-collision test tree, with normal cones and contours that move */
-    SC_STEP_METHOD_TWO_BOXES =
-        2, /* the plain tree, with a box at the start and one at the end: a pair whose boxes are apart
-              on the same side at both times is so at all times */
-    SC_STEP_METHOD_SWEPT =
-        3 /* the plain tree, with one box round the whole motion; for comparison */
+    SC_STEP_METHOD_SCTT = 1,      /* self-collision test tree, with normal cones and contours that
+                                     move */
+    SC_STEP_METHOD_TWO_BOXES = 2, /* the plain tree, with a box at the start and one at the end:
+                                     a pair whose boxes are apart on the same side at both times
+                                     is so at all times */
+    SC_STEP_METHOD_SWEPT = 3      /* the plain tree, with one box round the whole motion; for
+                                     comparison */
 };
 
 /* What is reported. */
 enum {
     SC_STEP_COLLISIONS = 0, /* the pairs that collide */
-    SC_STEP_CANDIDATES =
-        1 /* the pairs that boxes and culling leave, for a narrow phase of the caller's:
-                               every collision and others. They depend on the method, not on the machine */
+    SC_STEP_CANDIDATES = 1  /* the pairs that boxes and culling leave, for a narrow phase of the
+                               caller's: every collision and others. They depend on the method,
+                               not on the machine */
 };
 
 /* Which times of impact are wanted. */
@@ -867,20 +858,20 @@ enum {
 
 typedef struct sc_step_options {
     uint32_t struct_size;
-    uint32_t output; /* SC_OUTPUT_PAIRS, _COUNT or _ANY; see there */
-    uint32_t pairs;  /* SC_STEP_COLLISIONS or _CANDIDATES */
-    uint32_t times;  /* SC_STEP_TIMES_... */
-    uint32_t method; /* SC_STEP_METHOD_... */
-    uint32_t
-        contour; /* SC_CONTOUR_DEFAULT, _EXACT: is the moving contour simple throughout? _STAR: does
-                          a point see it throughout (the paper's test, extended to motion)? _NONE: MISSES
-                          PAIRS, to measure against. For SC_STEP_METHOD_SCTT */
+    uint32_t output;   /* SC_OUTPUT_PAIRS, _COUNT or _ANY; see there */
+    uint32_t pairs;    /* SC_STEP_COLLISIONS or _CANDIDATES */
+    uint32_t times;    /* SC_STEP_TIMES_... */
+    uint32_t method;   /* SC_STEP_METHOD_... */
+    uint32_t contour;  /* SC_CONTOUR_DEFAULT, _EXACT: is the moving contour simple throughout?
+                          _STAR: does a point see it throughout (the paper's test, extended to
+                          motion)? _NONE: MISSES PAIRS, to measure against. For
+                          SC_STEP_METHOD_SCTT */
     uint32_t simd;     /* SC_SIMD_... */
     uint32_t reserved; /* 0 */
     double separation; /* distance at which pairs collide, in units of the coordinates: 0 or more */
-    double
-        tolerance; /* how exactly distances are told, the same units: positive, or 0 for a millionth of
-                          the longest side of the box that holds the mesh in both poses */
+    double tolerance;  /* how exactly distances are told, the same units: positive, or 0 for a
+                          millionth of the longest side of the box that holds the mesh in both
+                          poses */
     const sc_tasks *tasks;           /* the host's threads, or NULL. See "Several threads" at
                                         sc_query_step */
     const volatile uint32_t *cancel; /* as in sc_query_options */
@@ -904,7 +895,7 @@ typedef struct sc_step_result {
     uint32_t verdict;  /* out: SC_VERDICT_... */
     uint32_t reserved; /* out: 0 */
     uint64_t vertex_face_count; /* out: the number of such pairs; of both kinds together 0 or 1 for
-                                      SC_OUTPUT_ANY */
+                                   SC_OUTPUT_ANY */
     uint64_t vertex_face_capacity; /* in: entries of vertex_faces */
     sc_pair *vertex_faces;         /* in: the caller's array */
     double *vertex_face_times;     /* in: NULL, or for SC_STEP_TIMES_EACH as many entries */
@@ -912,10 +903,9 @@ typedef struct sc_step_result {
     uint64_t edge_edge_capacity;
     sc_pair *edge_edges;
     double *edge_edge_times;
-    double
-        earliest; /* out, with SC_STEP_TIMES_...: nothing collides before this time; from 0 to 1, and 1 as
-                        well if nothing collides at all. So (1 - t) start + t end with this t is the
-                        largest step that is known to be free */
+    double earliest; /* out, with SC_STEP_TIMES_...: nothing collides before this time; from 0
+                        to 1, and 1 as well if nothing collides at all. So (1 - t) start + t end
+                        with this t is the largest step that is known to be free */
     sc_stats *stats; /* in: where to put statistics, or NULL; see sc_stats */
 } sc_step_result;
 
