@@ -274,7 +274,7 @@ static void check_rows(const scene *s, tally *t)
     for (uint32_t kept = 0; kept < (w->ready_upper ? 2 * SC_READY_KEPT : m->leaf_count); ++kept) {
         const sc_leaf_ready *ready = &w->ready[kept];
         const uint32_t *first = sc_model_leaf_first(m) + w->known[kept].leaf;
-        if (w->known[kept].boxes != w->pose_tick) continue;
+        if (w->known[kept].tick != w->pose_tick) continue;
         for (uint32_t c = 0; c < 9 * (first[1] - first[0]); ++c, ++t->rows) {
             uint32_t i = c / 9, k = c % 3, p = sc_model_triangle(m)[3 * first[0] + c / 3];
             wrong += !is_between(w, p, k, ready->side[k][i], ready->side[k + 3][i]);

@@ -682,12 +682,12 @@ static void first_tick_again(void)
         s.workspace->pose_tick = round == 0 ? 0 : 0x7fffffff;
         for (uint32_t i = 0; i < 3 * s.mesh.vertex_count && round == 1; ++i)
             s.pose[i] = test_random_unit();
-        s.workspace->some_known[0].boxes = s.workspace->all_known[0].boxes = 1;
+        s.workspace->some_known[0].tick = s.workspace->all_known[0].tick = 1;
         s.workspace->slab[0].tick = 1;
         if (!load_pose(&s)) break;
         CHECK(s.workspace->pose_tick == 1);
-        CHECK(s.workspace->some_known[0].boxes == (uint32_t)(round == 0));
-        CHECK(s.workspace->all_known[0].boxes == (uint32_t)(round == 0));
+        CHECK(s.workspace->some_known[0].tick == (uint32_t)(round == 0));
+        CHECK(s.workspace->all_known[0].tick == (uint32_t)(round == 0));
         CHECK(s.workspace->slab[0].tick == (uint32_t)(round == 0));
     }
     close_scene(&s);

@@ -109,17 +109,17 @@ enum { SC_CANDIDATES_MAX = 1024 };
 /* A leaf cluster made ready for tests of its triangles, in the unit box; see query/ready_kernel.h. Rows are filled with
    the last triangle. */
 typedef struct sc_leaf_ready {
-    float side[6][SC_LEAF_MAX];   /* boxes; what is no triangle is NaN and overlaps nothing */
-    float normal[3][SC_LEAF_MAX]; /* this and what follows is made only when needed */
-    float offset[SC_LEAF_MAX];    /* where the first corner is along the normal */
-    float size[SC_LEAF_MAX];      /* |e|1 + |f|1, e and f the edges from the first corner */
+    float side[6][SC_LEAF_MAX]; /* boxes; what is no triangle is NaN and overlaps nothing */
+    float normal[3][SC_LEAF_MAX];
+    float offset[SC_LEAF_MAX]; /* where the first corner is along the normal */
+    float size[SC_LEAF_MAX];   /* |e|1 + |f|1, e and f the edges from the first corner */
 } sc_leaf_ready;
 
 enum { SC_READY_ROWS = sizeof(sc_leaf_ready) / (SC_LEAF_MAX * sizeof(float)) };
 
-/* What is known of a leaf cluster: in which pose its boxes were made, 0 for never, and whether normals were. */
+/* Which leaf cluster is kept ready, and in which pose it was made so, 0 for never. */
 typedef struct sc_leaf_known {
-    uint32_t leaf, boxes, has_normals;
+    uint32_t leaf, tick;
 } sc_leaf_known;
 
 /* Where the points of a leaf cluster are along its mean normal, about, at least and at most. */

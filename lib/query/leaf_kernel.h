@@ -117,13 +117,13 @@ static void SC_KERNEL(compare_boxes)(SC_KERNEL(rows) * rows)
 static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p, unsigned some_a,
                                    unsigned some_b, SC_KERNEL(rows) * rows)
 {
-    const sc_leaf_ready *a = SC_KERNEL(boxes)(state, p->a, 0);
+    const sc_leaf_ready *a = SC_KERNEL(ready)(state, p->a, 0);
     uint8_t near_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], near_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
     const unsigned lower = p->a == p->b ? 0 : SC_LEAF_ALL;  /* of b, those below i, too */
     unsigned count = rows->count, near_count = 0, near = 0; /* triangles that are looked at */
     lanes low[3], high[3];
     if (p->wanted) near = p->a == p->b ? SC_KERNEL(doubtful)(state, p->a) : SC_LEAF_ALL;
-    SC_KERNEL(load_boxes)(SC_KERNEL(boxes)(state, p->b, p->b > p->a), low, high);
+    SC_KERNEL(load_boxes)(SC_KERNEL(ready)(state, p->b, p->b > p->a), low, high);
     for (; some_a; some_a &= some_a - 1) {
         uint32_t i = sc_bits_lowest(some_a);
         unsigned mask = SC_KERNEL(overlap_row)(a, i, low, high) & some_b, shared = p->shared[i];
@@ -226,8 +226,8 @@ static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p, un
     unsigned k = rows->pairs;
     rows->leaf[swap][k] = p->a;
     rows->leaf[!swap][k] = p->b;
-    rows->ready[swap][k] = SC_KERNEL(boxes)(state, p->a, 0);
-    rows->ready[!swap][k] = SC_KERNEL(boxes)(state, p->b, p->b > p->a);
+    rows->ready[swap][k] = SC_KERNEL(ready)(state, p->a, 0);
+    rows->ready[!swap][k] = SC_KERNEL(ready)(state, p->b, p->b > p->a);
     if (p->shares) {
         SC_KERNEL(take_shared)(state, p, some_a, some_b, rows);
     } else {
@@ -242,7 +242,7 @@ static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p, un
 /* The triangles of leaf a whose boxes overlap that of leaf b. */
 static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
-    const sc_leaf_ready *ready = SC_KERNEL(boxes)(state, a, a > b);
+    const sc_leaf_ready *ready = SC_KERNEL(ready)(state, a, a > b);
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     uint64_t i = (uint64_t)sc_model_first_leaf_patch(state->model) + b;
     lanes_mask m[3];
@@ -255,15 +255,6 @@ static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, uint32_t a, uint
     return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
 }
 
-/* Whether a leaf cluster's boxes are made. */
-static inline unsigned SC_KERNEL(has_boxes)(const sc_query_state *state, uint32_t leaf,
-                                            int is_upper)
-{
-    const sc_workspace *w = state->workspace;
-    const sc_leaf_known *known = w->known + SC_KERNEL(place)(state, leaf, is_upper);
-    return (unsigned)(known->leaf == leaf) & (unsigned)(known->boxes == w->pose_tick);
-}
-
 /* Two leaf clusters, a <= b; by_slabs: slabs may tell them apart, and were not looked at; shared as sc_candidates_enter has
    it. What is made ready may take the place of a leaf cluster that the rows are of, so these are tested before. */
 static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs,
@@ -273,7 +264,7 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, 
     unsigned some_a, some_b = SC_LEAF_ALL;
     if (rows->pairs == SC_ROWS_PAIRS ||
         (state->workspace->ready_upper &&
-         !(SC_KERNEL(has_boxes)(state, a, 0) & SC_KERNEL(has_boxes)(state, b, b > a))))
+         !(SC_KERNEL(is_ready)(state, a, 0) & SC_KERNEL(is_ready)(state, b, b > a))))
         SC_KERNEL(test_rows)(state, rows);
     if (a == b) {
         const uint32_t *first = sc_model_leaf_first(state->model) + a;

@@ -45,35 +45,31 @@ static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t
                      sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
 }
 
-/* Boxes of the triangles of a leaf cluster. */
-static void SC_KERNEL(make_boxes)(const sc_query_state *state, uint32_t leaf, sc_leaf_ready *ready)
+/* Boxes of the triangles of a leaf cluster, by their corners; what is no triangle is NaN and overlaps nothing. */
+static inline void SC_KERNEL(make_boxes)(lanes x[3][3], uint32_t triangles, sc_leaf_ready *ready)
 {
-    const uint32_t *first = sc_model_leaf_first(state->model) + leaf;
+    static const float number[SC_LANES_COUNT] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                 8, 9, 10, 11, 12, 13, 14, 15};
     const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(FLT_MIN); /* see base/boxes.h */
-    lanes x[3][3];
-    uint32_t i;
+    const lanes nothing = lanes_all((float)NAN);
+    const lanes_mask is_triangle = lanes_below(lanes_load(number), lanes_all((float)triangles));
     int c;
-    SC_KERNEL(leaf_corners)(state, leaf, x);
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         lanes low = lanes_smaller(x[0][c], lanes_smaller(x[1][c], x[2][c]));
         lanes high = lanes_larger(x[0][c], lanes_larger(x[1][c], x[2][c]));
         low = lanes_subtract(low, lanes_add(lanes_multiply(lanes_absolute(low), ulp), least));
         high = lanes_add(high, lanes_add(lanes_multiply(lanes_absolute(high), ulp), least));
-        lanes_store(ready->side[c], low);
-        lanes_store(ready->side[c + 3], high);
-        for (i = first[1] - first[0]; i < SC_LEAF_MAX; i++) /* no triangle: overlaps nothing */
-            ready->side[c][i] = ready->side[c + 3][i] = (float)NAN;
+        lanes_store(ready->side[c], lanes_choose(is_triangle, low, nothing));
+        lanes_store(ready->side[c + 3], lanes_choose(is_triangle, high, nothing));
     }
 }
 
 /* Their planes. */
-static void SC_KERNEL(make_normals)(const sc_query_state *state, uint32_t leaf,
-                                    sc_leaf_ready *ready)
+static inline void SC_KERNEL(make_normals)(lanes x[3][3], sc_leaf_ready *ready)
 {
-    lanes x[3][3], e[3], f[3], n[3], size, offset;
+    lanes e[3], f[3], n[3], size, offset;
     int c;
-    SC_KERNEL(leaf_corners)(state, leaf, x);
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         e[c] = lanes_subtract(x[1][c], x[0][c]);
@@ -96,6 +92,19 @@ static void SC_KERNEL(make_normals)(const sc_query_state *state, uint32_t leaf,
     lanes_store(ready->offset, offset);
 }
 
+/* Makes a leaf cluster ready, at some place. */
+static void SC_KERNEL(make_ready)(const sc_query_state *state, uint32_t leaf, uint32_t at)
+{
+    const uint32_t *first = sc_model_leaf_first(state->model) + leaf;
+    sc_workspace *w = state->workspace;
+    lanes x[3][3];
+    SC_KERNEL(leaf_corners)(state, leaf, x);
+    SC_KERNEL(make_boxes)(x, first[1] - first[0], w->ready + at);
+    SC_KERNEL(make_normals)(x, w->ready + at);
+    w->known[at].leaf = leaf;
+    w->known[at].tick = w->pose_tick;
+}
+
 /* Where a leaf cluster is kept; is_upper: it is the upper of the two of a pair. */
 static inline uint32_t SC_KERNEL(place)(const sc_query_state *state, uint32_t leaf, int is_upper)
 {
@@ -103,34 +112,20 @@ static inline uint32_t SC_KERNEL(place)(const sc_query_state *state, uint32_t le
     return (leaf & w->ready_mask) + (is_upper ? w->ready_upper : 0);
 }
 
-/* A leaf cluster with its boxes. */
-static inline const sc_leaf_ready *SC_KERNEL(boxes)(const sc_query_state *state, uint32_t leaf,
-                                                    int is_upper)
+/* Whether a leaf cluster is ready; and a leaf cluster that is. */
+static inline unsigned SC_KERNEL(is_ready)(const sc_query_state *state, uint32_t leaf, int is_upper)
 {
-    sc_workspace *w = state->workspace;
-    uint32_t at = SC_KERNEL(place)(state, leaf, is_upper);
-    sc_leaf_known *known = w->known + at;
-    if (known->leaf != leaf || known->boxes != w->pose_tick) {
-        SC_KERNEL(make_boxes)(state, leaf, w->ready + at);
-        known->leaf = leaf;
-        known->boxes = w->pose_tick;
-        known->has_normals = 0;
-    }
-    return w->ready + at;
+    const sc_workspace *w = state->workspace;
+    const sc_leaf_known *known = w->known + SC_KERNEL(place)(state, leaf, is_upper);
+    return (unsigned)(known->leaf == leaf) & (unsigned)(known->tick == w->pose_tick);
 }
 
-/* The same with all that there is. */
 static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state, uint32_t leaf,
                                                     int is_upper)
 {
-    sc_workspace *w = state->workspace;
     uint32_t at = SC_KERNEL(place)(state, leaf, is_upper);
-    SC_KERNEL(boxes)(state, leaf, is_upper);
-    if (!w->known[at].has_normals) {
-        SC_KERNEL(make_normals)(state, leaf, w->ready + at);
-        w->known[at].has_normals = 1;
-    }
-    return w->ready + at;
+    if (!SC_KERNEL(is_ready)(state, leaf, is_upper)) SC_KERNEL(make_ready)(state, leaf, at);
+    return state->workspace->ready + at;
 }
 
 /* Makes the slab of a leaf cluster; is_upper as above. */
