@@ -1,5 +1,5 @@
 /*
- * Sorting and memory: on orders that are hard on a quicksort, and on requests that no memory can meet.
+ * Sorting and memory: on orders that are hard on a quicksort, and on requests that no memory can meet; and bits of masks.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/bits.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "harness.h"
@@ -186,5 +187,23 @@ static void scratch_memory(void)
     CHECK(scratch.blocks == NULL);
 }
 
+/* Against a look at bit after bit, of all masks of sixteen lanes and of some longer ones. */
+static void bits_of_masks(void)
+{
+    for (uint32_t i = 0; i < 0x20000; ++i) {
+        uint32_t low = i < 0x10000 ? i : test_random_below(0xffffffff), set = 0, lowest = 0;
+        uint64_t high = (uint64_t)test_random_below(0xffffffff) << 32;
+        for (uint32_t bit = 32; bit-- > 0;) {
+            set += low >> bit & 1u;
+            if (low >> bit & 1u) lowest = bit;
+        }
+        CHECK(sc_bits_count(low) == set);
+        if (!low) continue;
+        CHECK(sc_bits_lowest(low) == lowest && sc_bits_lowest64(high | low) == lowest &&
+              sc_bits_lowest64((uint64_t)low << 32) == lowest + 32);
+    }
+}
+
 SC_TEST_MAIN(SC_TEST(sorting), SC_TEST(splitting), SC_TEST(heaps), SC_TEST(keys_of_floats),
-             SC_TEST(alignment), SC_TEST(more_than_there_is), SC_TEST(scratch_memory))
+             SC_TEST(alignment), SC_TEST(more_than_there_is), SC_TEST(scratch_memory),
+             SC_TEST(bits_of_masks))

@@ -52,15 +52,17 @@ static inline unsigned sc_bits_lowest64(uint64_t mask)
 #endif
 }
 
-/* How many bits of a mask are set. */
+/* How many bits of a mask are set. Without an instruction for it the compiler's own form is a call into its library, which
+   a DLL would then need. */
 static inline unsigned sc_bits_count(unsigned mask)
 {
-#if defined(__GNUC__)
+#if defined(__POPCNT__) || defined(__aarch64__) || defined(__wasm__)
     return (unsigned)__builtin_popcount(mask);
 #else
-    unsigned count = 0;
-    for (; mask; mask &= mask - 1) count++;
-    return count;
+    mask -= mask >> 1 & 0x55555555u;
+    mask = (mask & 0x33333333u) + (mask >> 2 & 0x33333333u);
+    mask = (mask + (mask >> 4)) & 0x0f0f0f0fu;
+    return mask * 0x01010101u >> 24;
 #endif
 }
 

@@ -94,6 +94,11 @@ imports() {
     "$prefix-objdump" -p "$at/old_caller.exe" | grep 'DLL Name: starcontour.dll'
 }
 check "imports it" imports
+alone() {
+    ! "$prefix-objdump" -p "$at/starcontour.dll" | sed -n 's/.*DLL Name: //p' |
+        grep -vi '^kernel32\.dll$\|^msvcrt\.dll$\|^ucrtbase\.dll$\|^api-ms-win-crt-'
+}
+check "the DLL needs none but those of Windows" alone
 
 amalgamated() {
     "$MAKE" --no-print-directory amalgamation BUILD="$at" &&
