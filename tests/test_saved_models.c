@@ -251,13 +251,15 @@ static sc_model *build_small(int which, soup *mesh)
         for (uint32_t i = 0; i < 9; ++i) mesh->positions[i] = i % 4 == 0;
         for (uint32_t i = 0; i < 3; ++i) mesh->triangles[i] = i;
     } else {
-        *mesh = which == 2 ? soup_pinched(3) : soup_cloth(8, 7);
+        *mesh = which == 2   ? soup_pinched(3)
+                : which == 4 ? soup_annulus(4, 1) /* contours in pieces */
+                             : soup_cloth(8, 7);
     }
     return build(mesh, SC_WELD_REST, SC_PARTITION_FAST,
                  which == 3 ? SC_MODEL_BOXES : SC_MODEL_FULL);
 }
 
-enum { SMALL = 4 };
+enum { SMALL = 5 };
 
 static void refuse(const save *s, sc_status expected, const char *what, uint64_t at)
 {

@@ -602,14 +602,15 @@ static void check_fans(const steps *s, const sc_model *model)
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " fans of leaf clusters wrong", s->name, wrong);
 }
 
-/* The edges of a node's loop, from point to point; writes as many as there are. */
-static void list_loop(const steps *s, const sc_model *m, uint32_t n, sc_pair *edges)
+/* The edges of a piece of a node's loop, from point to point; writes as many as there are. */
+static void list_loop(const steps *s, const sc_model *m, uint32_t n, const uint16_t *loop,
+                      uint32_t count, sc_pair *edges)
 {
     sc_pair pair = sc_model_node_patches(m)[n];
-    const uint32_t *first = sc_model_node_loop(m) + n, *leaf = sc_model_leaf(m);
-    uint32_t split = leaf[pair.a + 1] - leaf[pair.a], count = first[1] - first[0];
+    const uint32_t *leaf = sc_model_leaf(m);
+    uint32_t split = leaf[pair.a + 1] - leaf[pair.a];
     for (uint32_t i = 0; i < count; ++i) {
-        uint32_t number = sc_model_loop(m)[first[0] + i], at = number / SC_LEAF_POINTS;
+        uint32_t number = loop[i], at = number / SC_LEAF_POINTS;
         at = at < split ? leaf[pair.a] + at : leaf[pair.b] + at - split;
         CHECK(at < leaf[(at < leaf[pair.a + 1] ? pair.a : pair.b) + 1]);
         number =
@@ -618,8 +619,30 @@ static void list_loop(const steps *s, const sc_model *m, uint32_t n, sc_pair *ed
     }
 }
 
-/* The loop of each node has the edges of its segments, one leading to the next; there is one unless they are in
-   pieces. */
+/* Lists the edges of all pieces of a node's loop, and counts what is wrong with them. Returns how many edges there are. */
+static uint32_t list_loops(const steps *s, const sc_model *m, uint32_t n, sc_pair *edges,
+                           uint32_t *wrong)
+{
+    const uint32_t *first = sc_model_node_loop(m) + n;
+    const uint16_t *loop = sc_model_loop(m) + first[0];
+    uint32_t count = first[1] - first[0], pieces = loop[0], total = 0;
+    if (!s->csf.in_pieces[n]) {
+        list_loop(s, m, n, loop, count, edges);
+        return count;
+    }
+    *wrong += pieces < 2;
+    for (uint32_t p = 0; p < pieces; ++p) {
+        uint32_t length = loop[1 + p];
+        *wrong += length == 0;
+        list_loop(s, m, n, loop + 1 + pieces + total, length, edges + total);
+        total += length;
+    }
+    *wrong += 1 + pieces + total != count;
+    return total;
+}
+
+/* The loop of each node has the edges of its segments, one leading to the next, piece by piece; there is one unless they
+   are in many pieces, or long ones. */
 static void check_loops(const steps *s, const sc_model *m)
 {
     const sc_csf *csf = &s->csf;
@@ -638,13 +661,12 @@ static void check_loops(const steps *s, const sc_model *m)
             wrong += !csf->in_pieces[n] && csf->contour_first[n + 1] > i;
             continue;
         }
-        wrong += csf->in_pieces[n];
+        looped = list_loops(s, m, n, loop, &wrong);
         for (uint32_t k = i; k < csf->contour_first[n + 1]; ++k)
             count += count_edges(csf, csf->contours[k]);
         wrong += count != looped;
         if (count != looped) continue;
         for (; i < csf->contour_first[n + 1]; ++i) end = flatten(csf, csf->contours[i], end);
-        list_loop(s, m, n, loop);
         qsort(loop, looped, sizeof(sc_pair), compare_pairs);
         qsort(edges, looped, sizeof(sc_pair), compare_pairs);
         wrong += memcmp(loop, edges, looped * sizeof(sc_pair)) != 0;

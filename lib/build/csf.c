@@ -336,12 +336,15 @@ static void count_points(const sc_csf *csf, const uint32_t *segments, uint32_t c
     *points = *edges + count;
 }
 
-/* Whether a node in one piece gets a loop, see csf.h. */
-static int has_loop(const sc_xbvh *xbvh, sc_pair patches)
+/* How long a node's loop is, of so many pieces and edges, where so much is taken by others; 0: it gets none, see csf.h. */
+static uint64_t measure_loop(const sc_xbvh *xbvh, sc_pair patches, uint32_t pieces, uint64_t edges,
+                             uint64_t taken)
 {
     uint32_t leaves = xbvh->leaf[patches.a + 1] - xbvh->leaf[patches.a];
     if (patches.b != patches.a) leaves += xbvh->leaf[patches.b + 1] - xbvh->leaf[patches.b];
-    return leaves <= SC_LOOP_LEAVES;
+    if (leaves > SC_LOOP_LEAVES || SC_HARDLY(taken + edges >= 0xfffff000u)) return 0;
+    if (pieces < 2) return edges;
+    return pieces <= SC_LOOP_PIECES && edges <= SC_LOOP_PIECES_EDGES ? 1 + pieces + edges : 0;
 }
 
 /* Chains the segments of each node, and measures them. The patches of those that share one point are apart: their
@@ -384,9 +387,7 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
         count_points(csf, segments, count, &points, &edges);
         if (points > csf->contour_max) csf->contour_max = (uint32_t)points;
         csf->loop_first[n] = (uint32_t)loops;
-        if (pieces == 1 && has_loop(b->xbvh, sctt->patches[n]) &&
-            !SC_HARDLY(loops + edges >= 0xfffff000u))
-            loops += edges;
+        loops += measure_loop(b->xbvh, sctt->patches[n], pieces, edges, loops);
     }
     csf->loop_first[nodes] = (uint32_t)loops;
     sc_chains_give(b->scratch, &chains);

@@ -37,7 +37,26 @@ static uint32_t *find_places(const sc_csf *csf, const sc_xbvh *xbvh, const uint3
     return place;
 }
 
-/* One node's; segments are those of its one chain. Points are written eight at a time, for segments are short: what is
+/* The number of pieces and how many edges each has, of closed chains of so many segments; returns what follows. A chain
+   goes on where its last segment ended, and ends where no other starts (build/chains.h). */
+static uint16_t *write_pieces(const sc_csf *csf, const uint32_t *segments, uint32_t count,
+                              uint16_t *loop)
+{
+    uint16_t *edges = loop;
+    uint32_t i, end = SC_NONE;
+    for (*loop = 0, i = 0; i < count; i++) {
+        uint32_t first = csf->point_first[segments[i]], last = csf->point_last[segments[i]];
+        if (csf->points[first] != end) {
+            ++*loop;
+            *++edges = 0;
+        }
+        *edges = (uint16_t)(*edges + last - first);
+        end = csf->points[last];
+    }
+    return edges + 1;
+}
+
+/* One node's; segments are those of its chains. Points are written eight at a time, for segments are short: what is
    written behind the last is written again by the next segment or node. Only where the array ends one by one. */
 static void write_loop(const sc_csf *csf, const sc_xbvh *xbvh, sc_pair patches,
                        const uint32_t *segments, const uint32_t *place, uint16_t *loop,
@@ -72,14 +91,17 @@ sc_status sc_loops_write(const sc_csf *csf, const sc_sctt *sctt, const sc_xbvh *
         return SC_ERROR_MEMORY;
     for (n = 0; n < sctt->node_count; n++) {
         const uint32_t *segments = csf->contours + csf->contour_first[n];
+        uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n];
+        uint16_t *points = loop + csf->loop_first[n];
         if (csf->loop_first[n] == csf->loop_first[n + 1]) continue;
         if (sctt->touch[n] != SC_NONE) { /* the patches are apart, but their chains meet */
-            uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n] - 2;
+            count -= 2;
             memcpy(both, segments + 2, count * sizeof *both);
             (void)sc_chains_order(&chains, both, count);
             segments = both;
         }
-        write_loop(csf, xbvh, sctt->patches[n], segments, place, loop + csf->loop_first[n],
+        if (csf->in_pieces[n]) points = write_pieces(csf, segments, count, points);
+        write_loop(csf, xbvh, sctt->patches[n], segments, place, points,
                    loop + csf->loop_first[n + 1], loop + csf->loop_first[sctt->node_count]);
     }
     sc_chains_give(scratch, &chains);

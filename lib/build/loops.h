@@ -4,15 +4,17 @@
  * SPDX-License-Identifier: MIT
  *
  * A query tests the contours of nodes as a whole (query/simple.h), and following segments from place to place would cost
- * it more than the test itself. So each contour that is one closed chain is stored point by point, in 16 bits: 16 times the
+ * it more than the test itself. So each contour is stored point by point, in 16 bits: 16 times the
  * number of a leaf cluster that has the point, plus its place there. Leaf clusters are numbered within the node, those of
- * its first patch before those of its second. About 18 points a triangle in all.
+ * its first patch before those of its second. About 18 points a triangle in all. Before the points of a contour in
+ * pieces (SC_NODE_PIECES), closed chains, stand their number and the number of edges of each.
  *
  * Places in leaf clusters are not as in leaf_point but turned: its sixteen are taken as a table of four by four, of which
  * rows and columns are exchanged. So are the points of a pose kept (sc_workspace.point_at), for that is how vector units have
  * them at hand.
  *
- * Contours in pieces, and of more than SC_LOOP_LEAVES leaf clusters, which are few, have an empty loop.
+ * Contours in more than SC_LOOP_PIECES pieces or of more than SC_LOOP_PIECES_EDGES edges in pieces, and of more than
+ * SC_LOOP_LEAVES leaf clusters, which are few, have an empty loop.
  */
 #ifndef SC_BUILD_LOOPS_H
 #define SC_BUILD_LOOPS_H

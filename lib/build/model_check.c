@@ -315,6 +315,18 @@ static int check_contours(const sc_model *m)
     return most == m->contour_max;
 }
 
+/* How many numbers of a loop in pieces come before its points, all of which are in a piece; 0: that is wrong. */
+static uint32_t check_pieces(const uint16_t *loop, uint32_t count)
+{
+    uint32_t pieces = loop[0], sum = 0, i;
+    if (pieces < 2 || pieces > SC_LOOP_PIECES || 1 + pieces > count) return 0;
+    for (i = 1; i <= pieces; i++) {
+        if (!loop[i]) return 0;
+        sum += loop[i];
+    }
+    return sum == count - 1 - pieces ? 1 + pieces : 0;
+}
+
 /* The points of each loop are of the node's leaf clusters, and no more than its triangles have sides. */
 static int check_loops(const sc_model *m)
 {
@@ -329,8 +341,13 @@ static int check_loops(const sc_model *m)
             leaves += leaf[b + 1] - leaf[b];
             triangles += patch_size(m, b);
         }
-        if (first[n + 1] - first[n] > 3 * triangles) return 0;
-        for (i = first[n]; i < first[n + 1]; i++) bad |= loop[i] >= SC_LEAF_POINTS * leaves;
+        i = first[n];
+        if (i < first[n + 1] && sc_model_node_kind(m)[n] & SC_NODE_PIECES) {
+            i += check_pieces(loop + i, first[n + 1] - i);
+            if (i == first[n]) return 0;
+        }
+        if (first[n + 1] - i > 3 * triangles) return 0;
+        for (; i < first[n + 1]; i++) bad |= loop[i] >= SC_LEAF_POINTS * leaves;
         if (bad) return 0;
     }
     return 1;
@@ -421,7 +438,7 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(node_contour,
           are_lists(sc_model_node_contour(m), m->node_count, m->contour_total, 0, SC_NONE));
     CHECK(node_loop,
-          are_lists(sc_model_node_loop(m), m->node_count, m->loop_total, 0, m->contour_max));
+          are_lists(sc_model_node_loop(m), m->node_count, m->loop_total, 0, m->contour_max + 1));
     CHECK(loop, check_loops(m));
     CHECK(segment_first, check_segments(m));
     CHECK(points, are_points(m, sc_model_points(m), m->segment_point_total));

@@ -34,7 +34,8 @@ static uint32_t ready_kept(const sc_model *model)
 /* The arrays that each worker has for itself, see workspace.h. */
 static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *at, sc_workspace *w)
 {
-    uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK;
+    uint64_t listed = ((uint64_t)model->contour_max / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK +
+                      (uint64_t)SC_LOOP_PIECES * SC_CONTOUR_GAP;
     uint64_t levels = (uint64_t)model->level_count + 1, spans, n;
     const uint64_t turns = model->contour_max ? SC_CONTOUR_TURNS : 0;
     int k;
@@ -46,9 +47,9 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     if (spans < turns * SC_CONTOUR_SPAN_ROOM) spans = turns * SC_CONTOUR_SPAN_ROOM;
     for (k = 0; k < 4; k++)
         w->contour.span_side[k] = (float *)place(block, at, spans, sizeof(float));
-    w->contour.is_edge =
-        (uint16_t *)place(block, at, listed / SC_CONTOUR_BLOCK + 1, sizeof(uint16_t));
-    w->contour.piece = (uint32_t *)place(block, at, listed, sizeof(uint32_t));
+    w->contour.is_edge = (uint16_t *)place(
+        block, at, listed / SC_CONTOUR_BLOCK + 3 * SC_CONTOUR_TURNS, sizeof(uint16_t));
+    w->contour.wall = (float *)place(block, at, listed, sizeof(float));
     w->walk.stack =
         (uint32_t *)place(block, at, levels * (SC_WALK_QUEUE + levels * SC_WALK_CHILDREN), 4);
     w->walk.queue =

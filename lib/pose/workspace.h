@@ -62,16 +62,21 @@ enum {
     SC_CONTOUR_TURNS = 4,
     SC_CONTOUR_SHORT = 112,
     SC_CONTOUR_ROOM = SC_CONTOUR_SHORT + SC_CONTOUR_BLOCK,
-    SC_CONTOUR_SPAN_ROOM = 208
+    SC_CONTOUR_SPAN_ROOM = 208,
+    SC_CONTOUR_BITS_ROOM = SC_CONTOUR_ROOM / SC_CONTOUR_BLOCK + 3
 };
+
+/* Pieces of a contour that is stored as a loop are listed in so many places each, or a multiple of that: then spans of
+   as many edges are of one piece. */
+enum { SC_CONTOUR_GAP = 4 };
 
 /* Sides of boxes in the plane. */
 enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
 
 /*
  * The projected contour of a node, see query/simple.c: a list of points, of which point i and the next are
- * edge i, but where a chain ends. Room for model.contour_max points, and two blocks more; or for those that are looked at
- * in turn, one after the other.
+ * edge i, but where a chain ends. Room for model.contour_max points, what gaps between pieces of loops add, and two blocks
+ * more; or for those that are looked at in turn, one after the other.
  */
 typedef struct sc_contour_edges {
     uint32_t *point;      /* what points they are */
@@ -80,8 +85,7 @@ typedef struct sc_contour_edges {
     float *run_side[4];   /* of steps: boxes of runs, and 16 more */
     float *group_side[4]; /* of steps: boxes of 16 runs, and 16 more */
     uint16_t *is_edge;    /* bit i of block b: SC_CONTOUR_BLOCK b + i is an edge */
-    uint32_t
-        *piece; /* if there are pieces, trees of edges that hang together: the parent of each */
+    float *wall;          /* if there are gaps: infinity for what is no edge, -infinity for edges */
 } sc_contour_edges;
 
 /*

@@ -29,8 +29,7 @@ static int is_edge(const sc_simple_contour *c, uint32_t i)
 /* The point where edge i starts, or the one before it ends. */
 static uint32_t point_of(const sc_simple_contour *c, uint32_t i)
 {
-    if (!c->loop) return c->edges->point[i];
-    return sc_simple_point(c, c->loop[i < c->count ? i : 0]);
+    return c->loop ? c->leaf_point[sc_loops_turn(c->edges->point[i])] : c->edges->point[i];
 }
 
 /* Copies points, eight at a time where all may be read: most segments are short. */
@@ -76,33 +75,74 @@ static void find_loop(sc_simple_contour *c, const sc_model *model, uint32_t node
     const sc_pair *patches = &sc_model_node_patches(model)[node];
     c->count = first[1] - first[0];
     c->loop = sc_model_loop(model) + first[0];
+    c->pinch_count = 0;
+    c->has_gaps = c->in_pieces = (sc_model_node_kind(model)[node] & SC_NODE_PIECES) != 0;
+    if (c->in_pieces) {
+        c->pieces = c->loop[0];
+        c->piece_edges = c->loop + 1;
+        c->loop += 1 + c->pieces;
+        c->count -= 1 + c->pieces;
+    }
+    c->looped = c->count;
     c->leaf_point = sc_model_leaf_point(model);
     c->first = SC_LEAF_POINTS * leaf[patches->a];
     c->split = SC_LEAF_POINTS * leaf[patches->a + 1] - c->first;
     c->second = SC_LEAF_POINTS * leaf[patches->b] - c->split;
 }
 
-/* Lists the points of a loop, and the first again. */
+/* How many places a piece of so many edges takes: its points, the first again, and what fills it up. */
+static uint32_t places_of(uint32_t edges)
+{
+    return edges / SC_CONTOUR_GAP * SC_CONTOUR_GAP + SC_CONTOUR_GAP;
+}
+
+void sc_simple_close_bits(const sc_simple_contour *c)
+{
+    uint16_t *after = c->edges->is_edge + c->count / SC_CONTOUR_BLOCK;
+    uint32_t bit = c->count % SC_CONTOUR_BLOCK, first = c->edges->is_edge[0];
+    if (c->count < SC_CONTOUR_BLOCK) first &= (1u << c->count) - 1;
+    after[0] = (uint16_t)((after[0] & ((1u << bit) - 1)) | first << bit);
+    after[1] = (uint16_t)(first << bit >> SC_CONTOUR_BLOCK);
+}
+
+void sc_simple_spread(sc_simple_contour *c)
+{
+    const sc_contour_edges *e = c->edges;
+    uint32_t p, i, from = c->looped, to = 0;
+    for (p = 0; p < c->pieces; p++) to += places_of(c->piece_edges[p]);
+    c->count = to;
+    memset(e->is_edge, 0xff, (to / SC_CONTOUR_BLOCK + 1) * sizeof *e->is_edge);
+    for (i = 0; i < to + SC_CONTOUR_BLOCK; i++) e->wall[i] = -INFINITY;
+    for (p = c->pieces; p-- > 0;) {
+        uint32_t edges = c->piece_edges[p], places = places_of(edges);
+        from -= edges;
+        to -= places;
+        memmove(e->point + to, e->point + from, edges * sizeof *e->point);
+        for (i = to + edges; i < to + places; i++) {
+            e->point[i] = e->point[to];
+            e->wall[i] = INFINITY;
+            e->is_edge[i / SC_CONTOUR_BLOCK] &= (uint16_t) ~(1u << i % SC_CONTOUR_BLOCK);
+        }
+    }
+}
+
+/* Lists the points of a loop, and the first of each piece again. The last listed is no edge. */
 static void list_loop(sc_simple_contour *c)
 {
     const sc_contour_edges *e = c->edges;
-    uint32_t i, count = c->count++;
-    for (i = 0; i < count; i++) e->point[i] = sc_simple_point(c, c->loop[i]);
-    c->blocks = count / SC_CONTOUR_BLOCK + 1;
-    for (i = count; i < (c->blocks + 1) * SC_CONTOUR_BLOCK; i++) e->point[i] = e->point[0];
-    memset(e->is_edge, 0xff, c->blocks * sizeof *e->is_edge);
-    e->is_edge[c->blocks - 1] = (uint16_t)((1u << count % SC_CONTOUR_BLOCK) - 1u);
-    e->is_edge[c->blocks] = 0;
-}
-
-/* Each chain is a tree of its own. */
-static void list_pieces(const sc_simple_contour *c)
-{
-    uint32_t i, begin = 0;
-    for (i = 0; i < c->count; i++) {
-        c->edges->piece[i] = begin;
-        if (!is_edge(c, i)) begin = i + 1;
+    uint32_t i;
+    for (i = 0; i < c->looped; i++) e->point[i] = sc_simple_point(c, c->loop[i]);
+    if (c->in_pieces) {
+        sc_simple_spread(c);
+    } else {
+        memset(e->is_edge, 0xff, (c->count / SC_CONTOUR_BLOCK + 1) * sizeof *e->is_edge);
+        e->point[c->count++] = e->point[0];
     }
+    i = c->count - 1;
+    c->blocks = i / SC_CONTOUR_BLOCK + 1;
+    e->is_edge[c->blocks - 1] &= (uint16_t)((1u << i % SC_CONTOUR_BLOCK) - 1u);
+    e->is_edge[c->blocks] = 0;
+    for (i = c->count; i < (c->blocks + 1) * SC_CONTOUR_BLOCK; i++) e->point[i] = e->point[0];
 }
 
 /* One over the power of two above a float from 1 to 2^125, exactly. */
@@ -220,13 +260,6 @@ static int is_open(const sc_simple_contour *c, uint32_t i, int end_i, uint32_t j
     return turn(a, b, c->error) != 0 || a.x * b.x + a.y * b.y < -bound_of(a, b, c->error);
 }
 
-static uint32_t piece_of(const sc_simple_contour *c, uint32_t i)
-{
-    uint32_t *piece = c->edges->piece;
-    while (piece[i] != i) i = piece[i] = piece[piece[i]];
-    return i;
-}
-
 int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
     uint32_t a, b, p, q;
@@ -245,7 +278,6 @@ int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
     uint32_t a = point_of(c, i), k;
-    if (c->in_pieces) c->edges->piece[piece_of(c, i)] = piece_of(c, j);
     if (a == point_of(c, j)) { /* the contour leaves the point twice */
         for (k = 0; k < c->pinch_count && c->pinch[k].point != a; k++) {
         }
@@ -261,6 +293,15 @@ int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
     return 1;
 }
 
+/* The edge that leads to where edge i starts. Chains are closed: before the first of one comes the last. */
+static uint32_t edge_before(const sc_simple_contour *c, uint32_t i)
+{
+    if (!c->has_gaps) return (i ? i : c->count) - 1;
+    if (i && is_edge(c, i - 1)) return i - 1;
+    while (is_edge(c, i)) i++;
+    return i - 1;
+}
+
 /*
  * Where the contour passes a point twice, its four edges must alternate round the point, one in, one
  * out: else it crosses itself there. That is so if just one of those that come in is in the sector that begins with the
@@ -273,21 +314,12 @@ int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
 static int is_pinch_fine(const sc_simple_contour *c, const sc_pinch *pinch)
 {
     vector2 direction[2][2]; /* out, in */
-    uint32_t in[2] = {0, 0}, i, count = 0;
+    uint32_t i;
     int out, side[2];
-    if (c->has_gaps) {
-        for (i = 0; i < c->count; i++) {
-            if (!is_edge(c, i) || point_of(c, i + 1) != pinch->point) continue;
-            if (count == 2) return 0;
-            in[count++] = i;
-        }
-        if (count != 2) return 0; /* of a forged model: contours are closed */
-    } else {
-        for (i = 0; i < 2; i++) in[i] = (pinch->edge[i] ? pinch->edge[i] : c->count) - 1;
-    }
     for (i = 0; i < 2; i++) {
+        uint32_t in = edge_before(c, pinch->edge[i]);
         direction[0][i] = minus(edge_end(c, pinch->edge[i], 1), edge_end(c, pinch->edge[i], 0));
-        direction[1][i] = minus(edge_end(c, in[i], 0), edge_end(c, in[i], 1));
+        direction[1][i] = minus(edge_end(c, in, 0), edge_end(c, in, 1));
     }
     out = turn(direction[0][0], direction[0][1], c->error);
     for (i = 0; i < 2; i++) { /* 1: in that sector, -1: outside */
@@ -303,16 +335,62 @@ static int is_pinch_fine(const sc_simple_contour *c, const sc_pinch *pinch)
     return side[0] != side[1];
 }
 
+/* A piece of a contour: edges begin to end - 1. */
+typedef struct piece {
+    uint32_t begin, end;
+} piece;
+
+/* Sixteen bits: which of edges i to i + 15 are edges. */
+static uint32_t edges_at(const sc_simple_contour *c, uint32_t i)
+{
+    const uint16_t *is_edge = c->edges->is_edge + i / SC_CONTOUR_BLOCK;
+    return (is_edge[0] | (uint32_t)is_edge[1] << 16) >> i % SC_CONTOUR_BLOCK & 0xffff;
+}
+
+/* The piece that begins at i or later; 0: there is none. */
+static int find_piece(const sc_simple_contour *c, uint32_t i, piece *p)
+{
+    uint32_t edges;
+    while (i < c->count && !(edges = edges_at(c, i))) i += SC_CONTOUR_BLOCK;
+    if (i >= c->count) return 0;
+    p->begin = i += sc_bits_lowest(edges);
+    if (i >= c->count) return 0;
+    while ((edges = edges_at(c, i)) == 0xffff) i += SC_CONTOUR_BLOCK;
+    p->end = i + sc_bits_lowest(~edges);
+    return 1;
+}
+
+/* 1 if a piece certainly runs counter-clockwise, -1 if clockwise, by twice its signed area; 0: neither is certain. Sums
+   are of doubles, so that only errors of vectors count. */
+static int turn_of_piece(const sc_simple_contour *c, piece p)
+{
+    const vector2 at = edge_end(c, p.begin, 0);
+    vector2 a = {0, 0}, b;
+    double area = 0, sizes = 0, bound;
+    uint32_t i;
+    for (i = p.begin; i < p.end; i++, a = b) {
+        b = minus(edge_end(c, i, 1), at);
+        area += (double)a.x * (double)b.y - (double)a.y * (double)b.x;
+        sizes += (double)(fabsf(b.x) + fabsf(b.y));
+    }
+    /* the sum of bound_of each two vectors, in which each is twice */
+    bound = SC_SIMPLE_BOUND * (double)c->error *
+                (2 * sizes + 4 * (double)c->error * (double)(p.end - p.begin)) +
+            (double)FLT_MIN * (double)(p.end - p.begin);
+    return (area > 1.001 * bound) - (area < -1.001 * bound);
+}
+
 /* How often the edges of other pieces go round a point of one; a number that cannot be if that is not
    certain. They pass it at a distance. */
-static int winding(const sc_simple_contour *c, uint32_t piece, vector2 at)
+static int winding(const sc_simple_contour *c, piece p)
 {
+    const vector2 at = edge_end(c, p.begin, 0);
     uint32_t i;
     int sum = 0;
     for (i = 0; i < c->count; i++) {
         vector2 from = edge_end(c, i, 0), to = edge_end(c, i, 1);
         int side;
-        if (!is_edge(c, i) || (from.y <= at.y) == (to.y <= at.y) || piece_of(c, i) == piece)
+        if (!is_edge(c, i) || (from.y <= at.y) == (to.y <= at.y) || (i >= p.begin && i < p.end))
             continue;
         side = turn(minus(to, from), minus(at, from), c->error);
         if (!side) return 1 << 20;
@@ -325,27 +403,27 @@ static int winding(const sc_simple_contour *c, uint32_t piece, vector2 at)
 }
 
 /*
- * The contour winds round the points beside a piece once more on its left than on its right; as the
+ * Each piece by itself is a closed polygon that crosses itself nowhere, so that it winds round no point but once
+ * counter-clockwise, or round no point but once clockwise. The contour, the sum of all, winds round no point less than 0
+ * times. So if all pieces but one run clockwise, it winds round no point more than once, wherever they lie, and all is well:
+ * the longest is not even looked at.
+ *
+ * Else: the contour winds round the points beside a piece once more on its left than on its right; as the
  * other pieces wind round it n times, those are n + 1 and n if it runs counter-clockwise, else n and n - 1. That
  * must be 1 and 0.
  */
 static int are_pieces_fine(const sc_simple_contour *c)
 {
-    uint32_t piece, i;
-    for (piece = 0; piece < c->count; piece++) {
-        double area = 0, bound = 0;
-        vector2 at = edge_end(c, piece, 0);
-        if (!is_edge(c, piece) || piece_of(c, piece) != piece) continue;
-        for (i = 0; i < c->count; i++) {
-            vector2 a, b;
-            if (!is_edge(c, i) || piece_of(c, i) != piece) continue;
-            a = minus(edge_end(c, i, 0), at);
-            b = minus(edge_end(c, i, 1), at);
-            area += (double)a.x * (double)b.y - (double)a.y * (double)b.x;
-            bound += (double)bound_of(a, b, c->error);
-        }
-        if (!(fabs(area) > 1.001 * bound)) return 0;
-        if (winding(c, piece, at) != (area < 0)) return 0;
+    piece p = {0, 0}, longest = {0, 0};
+    int others = 1;
+    while (find_piece(c, p.end, &p))
+        if (p.end - p.begin > longest.end - longest.begin) longest = p;
+    for (p.end = 0; others && find_piece(c, p.end, &p);)
+        others = p.begin == longest.begin || turn_of_piece(c, p) < 0;
+    if (others) return 1;
+    for (p.end = 0; find_piece(c, p.end, &p);) {
+        int side = turn_of_piece(c, p);
+        if (!side || winding(c, p) != (side < 0)) return 0;
     }
     return 1;
 }
@@ -376,6 +454,7 @@ int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *wo
         find_loop(c, model, node);
         list_loop(c);
         c->loop = NULL;
+        c->has_gaps = 1;
         return 1;
     }
     if (kind & SC_NODE_TOUCHES) {
@@ -385,15 +464,7 @@ int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *wo
     c->in_pieces = kind & SC_NODE_PIECES;
     if (!count) return 0;
     list_points(c, model, segments, count);
-    if (c->in_pieces) list_pieces(c);
     return 1;
-}
-
-static void start_loop(sc_simple_contour *c, const sc_model *model, uint32_t node)
-{
-    c->has_gaps = c->in_pieces = 0;
-    c->pinch_count = 0;
-    find_loop(c, model, node);
 }
 
 /* The points of a loop, which are listed as they are projected; or all, listed as a cycle: the last is followed by the
@@ -404,14 +475,13 @@ static int start(sc_simple_contour *c, const sc_model *model, sc_workspace *work
     uint32_t i;
     if (is_looped(model, node)) {
         c->edges = &workspace->contour;
-        start_loop(c, model, node);
+        find_loop(c, model, node);
         return 1;
     }
     if (!sc_simple_list(c, model, workspace, node)) return 0;
-    c->edges->is_edge[c->blocks + 1] = c->edges->is_edge[c->blocks + 2] = 0;
-    for (i = c->count; i < c->count + 2 * SC_CONTOUR_BLOCK; i++)
-        c->edges->is_edge[i / SC_CONTOUR_BLOCK] |=
-            (uint16_t)(is_edge(c, i - c->count) << i % SC_CONTOUR_BLOCK);
+    for (i = 0; i < c->count; i++) c->edges->wall[i] = is_edge(c, i) ? -INFINITY : INFINITY;
+    for (; i < c->count + SC_CONTOUR_BLOCK; i++) c->edges->wall[i] = -INFINITY;
+    sc_simple_close_bits(c);
     return 1;
 }
 
@@ -467,7 +537,7 @@ static void find_middle(sc_simple_contour *c, const sc_workspace *w)
     int k;
     if (c->loop) {
         const float *p = w->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[0]);
-        const float *q = w->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[c->count / 2]);
+        const float *q = w->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[c->looped / 2]);
         for (k = 0; k < 3; k++) c->from[k] = p[k] / 2 + q[k] / 2;
         return;
     }
@@ -523,7 +593,11 @@ typedef struct contour_turns {
 static int is_short(const sc_model *model, uint32_t node)
 {
     const uint32_t *loop = sc_model_node_loop(model) + node;
-    return loop[1] > loop[0] && loop[1] - loop[0] <= SC_CONTOUR_SHORT;
+    uint32_t places = loop[1] - loop[0];
+    if (!places || places > SC_CONTOUR_SHORT) return 0;
+    if (sc_model_node_kind(model)[node] & SC_NODE_PIECES)
+        places += SC_CONTOUR_GAP * sc_model_loop(model)[loop[0]];
+    return places <= SC_CONTOUR_SHORT;
 }
 
 /* Starts turn t with a node's loop, and projects it. */
@@ -532,7 +606,7 @@ static void begin_turn(sc_query_state *state, contour_turns *all, uint32_t t, ui
     const sc_pair *patches = &sc_model_node_patches(state->model)[node];
     const uint16_t *mask = state->workspace->mask;
     float u[3], w[3];
-    start_loop(&all->contour[t], state->model, node);
+    find_loop(&all->contour[t], state->model, node);
     sc_dnc_vectors((uint32_t)mask[patches->a] & mask[patches->b], u, w);
     set_axes(&all->contour[t], u, w);
     place_contour(state, &all->contour[t]);
@@ -549,6 +623,8 @@ static void start_turns(contour_turns *all, const sc_contour_edges *room)
         edges->point = room->point + SC_CONTOUR_ROOM * t;
         for (k = 0; k < 2; k++) edges->at[k] = room->at[k] + SC_CONTOUR_ROOM * t;
         for (k = 0; k < 4; k++) edges->span_side[k] = room->span_side[k] + SC_CONTOUR_SPAN_ROOM * t;
+        edges->is_edge = room->is_edge + SC_CONTOUR_BITS_ROOM * t;
+        edges->wall = room->wall + SC_CONTOUR_ROOM * t;
         all->contour[t].edges = edges;
         all->node[t] = SC_NONE;
     }

@@ -19,16 +19,19 @@ typedef struct sc_pinch {
 
 typedef struct sc_simple_contour {
     const sc_contour_edges *edges;
-    uint32_t count;       /* points, of which each is where an edge starts but for gaps */
-    uint32_t blocks;      /* of SC_CONTOUR_BLOCK points; not of loops */
-    int has_gaps;         /* edges.is_edge tells; 0: all are edges */
-    const uint16_t *loop; /* count: the points as the model has them, or NULL: they are listed */
+    uint32_t count;              /* points, of which each is where an edge starts but for gaps */
+    uint32_t blocks;             /* of SC_CONTOUR_BLOCK points; not of loops */
+    int has_gaps;                /* edges.is_edge tells; 0: all are edges */
+    const uint16_t *loop;        /* the points as the model has them, or NULL: they are listed */
+    uint32_t looped;             /* how many of them: count, without what stands in gaps */
+    const uint16_t *piece_edges; /* of a loop in pieces: how many edges each has */
+    uint32_t pieces;             /* how many */
     const uint32_t *leaf_point;
     uint32_t split, first, second; /* what to add to a loop's number below split, and to others */
     uint32_t span_first[33];       /* where boxes of spans of 2^level edges start, by level */
     float axis[2][3], from[3];     /* the projection: x = axis[0] . (unit - from), likewise y */
     float error;                   /* |computed - true| of each coordinate, at most */
-    int in_pieces;                 /* pieces have to be told apart */
+    int in_pieces;                 /* there may be several */
     int passed;                    /* as far as is known */
     uint32_t level, spans;         /* what is looked at next: so many spans; 0: nothing */
     uint32_t pinch_count;
@@ -39,7 +42,7 @@ typedef struct sc_simple_contour {
 #define SC_SIMPLE_BOUND 12
 
 /* 1 if two edges are certainly as edges of a simple contour are: apart, or sharing one point and nothing else.
-   Notes pinches, and pieces that hang together. */
+   Notes pinches. */
 int sc_simple_are_apart(sc_simple_contour *contour, uint32_t i, uint32_t j);
 
 /* The turned place of a number in a loop among those of all leaf clusters. */
@@ -56,7 +59,14 @@ static inline uint32_t sc_simple_point(const sc_simple_contour *c, uint32_t numb
 
 /* The parts of which the test is made, for others like it (step/moving_contour.c). */
 
-/* Starts a contour: lists its points, with a gap after each chain, and its pieces if there are any. 0: there is none (of
+/* Lets bits of is_edge for the first edges follow those of the last. */
+void sc_simple_close_bits(const sc_simple_contour *contour);
+
+/* Makes room for gaps between the pieces of a loop, whose points or places are listed one after the other: each is
+   followed by its first point, up to a multiple of SC_CONTOUR_GAP. */
+void sc_simple_spread(sc_simple_contour *contour);
+
+/* Starts a contour: lists its points, with a gap after each chain. 0: there is none (of
    a forged model: without a contour, areas are not all positive). */
 int sc_simple_list(sc_simple_contour *contour, const sc_model *model, sc_workspace *workspace,
                    uint32_t node);
@@ -69,8 +79,8 @@ void sc_simple_axes(sc_simple_contour *contour, const sc_projection *projection)
 void sc_simple_middle(const sc_simple_contour *contour, const float *unit, uint32_t stride,
                       float from[3]);
 
-/* Notes that edges i < j share one point: pinches, and pieces that hang together. 0: too many pinches, or more
-   than two edges that start at one. */
+/* Notes that edges i < j share one point, if it is a pinch. 0: too many pinches, or more than two edges that start at
+   one. */
 int sc_simple_note_shared(sc_simple_contour *contour, uint32_t i, uint32_t j);
 
 /* Whether pinches and pieces are as those of a simple contour, after all edges were found to be so. */

@@ -28,10 +28,10 @@ static inline unsigned SC_KERNEL(edges_from)(const sc_simple_contour *c, uint32_
 }
 
 /* The turned places of a loop's points, and beyond its end the first again. */
-static void SC_KERNEL(place_loop)(const sc_simple_contour *c)
+static void SC_KERNEL(place_loop)(sc_simple_contour *c)
 {
     uint32_t *place = c->edges->point, i;
-    const uint32_t count = c->count;
+    const uint32_t count = c->looped;
     for (i = 0; i + SC_CONTOUR_BLOCK <= count; i += SC_CONTOUR_BLOCK)
         lanes_numbers(place + i, c->loop + i, c->split, c->first, c->second);
     if (count > SC_CONTOUR_BLOCK) {
@@ -40,7 +40,11 @@ static void SC_KERNEL(place_loop)(const sc_simple_contour *c)
     } else {
         for (; i < count; i++) place[i] = sc_simple_place(c, c->loop[i]);
     }
-    for (i = 0; i < SC_CONTOUR_BLOCK; i++) place[count + i] = place[0];
+    if (c->in_pieces) {
+        sc_simple_spread(c);
+        sc_simple_close_bits(c);
+    }
+    for (i = 0; i < SC_CONTOUR_BLOCK; i++) place[c->count + i] = place[0];
 }
 
 /* Sixteen points in the unit box. */
@@ -195,7 +199,6 @@ static inline unsigned SC_KERNEL(overlap_in_plane)(const lanes a[4], const lanes
 static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t on, unsigned some)
 {
     SC_KERNEL(sc_edge_lanes) own, other;
-    some &= SC_KERNEL(edges_from)(c, i + on);
     if (!some) return 1;
     SC_KERNEL(load_edges)(c, i, &own);
     SC_KERNEL(load_edges)(c, i + on, &other);
@@ -209,14 +212,15 @@ static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t 
 /*
  * Sixteen edges and those that follow: the next one, and the two after that by their boxes. Two boxes are to be four errors
  * apart: two for the places of points, and two, 2^-23 of a coordinate or more, for the rounding here. So are
- * those of spans, which are two errors larger each; this writes the boxes of spans of two edges. What is no edge is in
- * boxes, which does no harm.
+ * those of spans, which are two errors larger each; this writes the boxes of spans of two edges, without the end of a second
+ * that is none. What else is no edge is in boxes, which does no harm.
  */
 static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
                                            float first[4][SC_LANES_COUNT])
 {
     const sc_contour_edges *e = c->edges;
     const lanes margin = lanes_all(4 * c->error), half = lanes_all(2 * c->error);
+    const lanes none = lanes_all(0);
     const unsigned edges = SC_KERNEL(first_lanes)(c->count - i) & SC_KERNEL(edges_from)(c, i);
     SC_KERNEL(sc_edge_lanes) own, other;
     lanes box[4], next[4], low, high;
@@ -230,8 +234,16 @@ static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
         high = lanes_larger(own.p[k], own.q[k]);
         box[2 * k] = lanes_subtract(low, margin);
         box[2 * k + 1] = lanes_add(high, margin);
-        low = lanes_subtract(lanes_smaller(low, other.q[k]), half);
-        high = lanes_add(lanes_larger(high, other.q[k]), half);
+        if (c->has_gaps) {
+            lanes wall = lanes_load(e->wall + i + 1);
+            low = lanes_smaller(low, lanes_larger(other.q[k], wall));
+            high = lanes_larger(high, lanes_smaller(other.q[k], lanes_subtract(none, wall)));
+        } else {
+            low = lanes_smaller(low, other.q[k]);
+            high = lanes_larger(high, other.q[k]);
+        }
+        low = lanes_subtract(low, half);
+        high = lanes_add(high, half);
         low = lanes_evens(low, low);
         high = lanes_evens(high, high);
         lanes_store_half(e->span_side[2 * k] + i / 2, low);
@@ -253,8 +265,8 @@ static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
         }
         near[s] = SC_KERNEL(overlap_in_plane)(box, next);
     }
-    near[0] &= c->count > 3 ? edges : 0;
-    near[1] &= c->count > 4 ? edges : 0;
+    near[0] &= c->count > 3 ? edges & SC_KERNEL(edges_from)(c, i + 2) : 0;
+    near[1] &= c->count > 4 ? edges & SC_KERNEL(edges_from)(c, i + 3) : 0;
     return !(near[0] | near[1]) || (SC_KERNEL(are_pairs_fine)(c, i, 2, near[0]) &&
                                     SC_KERNEL(are_pairs_fine)(c, i, 3, near[1]));
 }
