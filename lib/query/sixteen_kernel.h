@@ -24,10 +24,11 @@
  * d = (e x f) . w = (e x f) . (y - x), and as n x n' is along the line and (e x f) . (n x n') = -(e . n') (f . n), of
  * which the sign is the same for all four of such edges, the signs of the four d tell in which order x and y are. If they
  * are the same the triangles are apart, if not they meet; and so does an edge whose two signs differ, no matter
- * how contacts are defined, as nothing is zero. Each of six products meets three differences, two products and three sums:
- * d is off by 8.01 v |e|1 |f|1 D. Let S be the sum of that of both triangles, >= |e|1 + |f|1. As |e|1 |f|1 is below S^2 / 4
- * and 1.5 D S, and D <= 2, this is below 2.01 v S^2 + 6.01 v D^2 S; and what moving the points changes is as above: the bound
- * above holds.
+ * how contacts are defined, as nothing is zero. With W = |w|1, moving one of the three by EDGE changes d by EDGE |e|1 |f|1,
+ * EDGE |e|1 W and EDGE |f|1 W at most; two, by 2 EDGE^2 (|e|1 + |f|1 + W), all three, by 6 EDGE^3. Each of six products meets
+ * three differences, two products and three sums: 8.01 v |e|1 |f|1 W. Let S be the sum of that of both triangles, >= |e|1 + |f|1,
+ * so that |e|1 |f|1 <= S^2 / 4. With T = S + 2 EDGE and U = W + 4 EDGE all that is below T (1.01 EDGE U + 0.26 EDGE T + 2.03 v T U),
+ * rounding of S and W included. Here W is that of two triangles that nearly meet, D that of whole clusters.
  *
  * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4 EDGE D, 2 EDGE^2, and by
  * rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
@@ -61,6 +62,19 @@ static inline float SC_KERNEL(one_plane_bound)(float size, float extent)
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     float bound = size * (2.1f * v) + (4 * edge * (extent + edge) + 7 * v * extent * extent);
     return size * bound + 8 * edge * edge * (extent + edge);
+}
+
+/* What a determinant of edges of two triangles may be off by; size is that of both, w runs from tip to tip. */
+static inline lanes SC_KERNEL(edges_bound)(lanes size, const lanes w[3])
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    lanes t = lanes_add(size, lanes_all(2 * edge)), u = lanes_all(4 * edge), bound;
+    int c;
+    SC_UNROLL
+    for (c = 0; c < 3; c++) u = lanes_add(u, lanes_absolute(w[c]));
+    bound = lanes_add(lanes_all(1.02f * edge), lanes_multiply(t, lanes_all(2.1f * v)));
+    bound = lanes_add(lanes_multiply(u, bound), lanes_multiply(t, lanes_all(0.27f * edge)));
+    return lanes_multiply(t, bound);
 }
 
 /* Of triangles of which the plane of another splits the corners: the one alone on its side, and the edges from there to the
@@ -128,15 +142,16 @@ static inline void SC_KERNEL(name_edges)(const SC_KERNEL(tips) * t, unsigned nex
     edge[2] = (next & third) | (after & t->is[0]);
 }
 
-/* Those of pairs in a mask of which each plane splits the other. */
-static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes bound, unsigned mask,
+/* Those of pairs in a mask of which each plane splits the other; size is that of both triangles. */
+static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes size, unsigned mask,
                                           SC_KERNEL(verdict) * verdict)
 {
-    lanes w[3], m[3], least = lanes_all(0);
+    lanes w[3], m[3], bound, least = lanes_all(0);
     unsigned below[2][2], any, all;
     int i, j, c;
     SC_UNROLL
     for (c = 0; c < 3; c++) w[c] = lanes_subtract(tips[1].at[c], tips[0].at[c]);
+    bound = SC_KERNEL(edges_bound)(size, w);
     SC_UNROLL
     for (j = 0; j < 2; j++) {
         const lanes *f = tips[1].edge[j];
@@ -224,7 +239,7 @@ static void SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(p
     open &= ~tips[1].beside;
     size = lanes_add(lanes_pick(a->ready->size, i),
                      lanes_pick(b->ready->size, lanes_index_load(b->numbers)));
-    SC_KERNEL(cross_edges)(tips, SC_KERNEL(plane_bound)(size, extent), open, verdict);
+    SC_KERNEL(cross_edges)(tips, size, open, verdict);
     open &= ~(verdict->apart | verdict->meets);
     if (sc_bits_count(open & ~(tips[0].split & tips[1].split)) >= SC_SIDES_WORTH) {
         lanes x[2][3][3], n[3];
