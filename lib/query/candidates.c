@@ -71,21 +71,45 @@ static void decide_pair(sc_query_state *state, const sc_pair *places)
         take_triangles(state, places);
 }
 
-void sc_candidates_take(sc_query_state *state, uint32_t a, uint32_t b, unsigned edges)
+void sc_candidates_take(sc_query_state *state, const uint32_t first[2], const uint8_t *const of[2],
+                        unsigned lanes, const unsigned edge[6])
 {
-    sc_pair places;
+    const uint32_t *id = sc_model_triangle_id(state->model);
+    const uint8_t *owned = sc_model_edge_owned(state->model);
+    sc_pair found[6 * SC_LEAF_MAX];
+    uint32_t count = 0, s;
+    unsigned some = lanes;
     if (state->sifts) {
-        sc_candidates_add(state, a, b);
+        for (; some; some &= some - 1) {
+            uint32_t lane = sc_bits_lowest(some);
+            sc_candidates_add(state, first[0] + of[0][lane], first[1] + of[1][lane]);
+        }
         return;
     }
     if (state->stop) return;
-    places.a = a;
-    places.b = b;
-    state->stats.counts[sc_state_primitive_task(state)]++;
-    if (state->options.pairs == SC_PAIRS_EDGE)
-        take_edges(state, &places, edges & edges_wanted(state, &places));
-    else
-        take_triangles(state, &places);
+    if (state->options.pairs == SC_PAIRS_EDGE) {
+        for (s = 0; s < 2; s++) {
+            const unsigned *e = edge + 3 * s;
+            uint64_t hits = (uint64_t)(e[0] & lanes) | (uint64_t)(e[1] & lanes) << 16 |
+                            (uint64_t)(e[2] & lanes) << 32;
+            for (; hits; hits &= hits - 1) {
+                uint32_t bit = sc_bits_lowest64(hits), lane = bit % 16, k = bit / 16;
+                uint32_t mine = first[s] + of[s][lane], other = first[1 - s] + of[1 - s][lane];
+                found[count].a = 3 * id[mine] + k;
+                found[count].b = id[other];
+                count += owned[mine] >> k & 1u;
+            }
+        }
+    } else {
+        for (; some; some &= some - 1) {
+            uint32_t lane = sc_bits_lowest(some);
+            uint32_t a = id[first[0] + of[0][lane]], b = id[first[1] + of[1][lane]];
+            found[count].a = a < b ? a : b;
+            found[count++].b = a < b ? b : a;
+        }
+    }
+    state->stats.counts[sc_state_primitive_task(state)] += sc_bits_count(lanes);
+    sc_pairs_take_all(state, found, count);
 }
 
 /* Lists the vertices that two triangles share; returns how many. */

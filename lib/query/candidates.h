@@ -58,8 +58,10 @@ static inline void sc_candidates_add(sc_query_state *state, uint32_t a, uint32_t
     pair->b = b;
 }
 
-/* Takes one that is certain to meet, as these edges do: bit k, edge k of a, 3 + k, of b. */
-void sc_candidates_take(sc_query_state *state, uint32_t a, uint32_t b, unsigned edges);
+/* Takes pairs of triangles of two leaf clusters, each by its first place and sixteen numbers, of which in some lanes it is
+   certain which edges meet the other triangle: edge[k], the lanes in which edge k of the first does, or k - 3 of the second. */
+void sc_candidates_take(sc_query_state *state, const uint32_t first[2], const uint8_t *const of[2],
+                        unsigned lanes, const unsigned edge[6]);
 
 /* Pairs are decided by so many at a time. */
 enum { SC_PAIR_LANES = 8 };

@@ -41,33 +41,29 @@ static inline void SC_KERNEL(no_rows)(SC_KERNEL(rows) * rows)
 static void SC_KERNEL(collect)(sc_query_state *state, const uint32_t leaf[2], unsigned count,
                                const uint8_t of_a[], const uint8_t of_b[], float extent)
 {
-    uint32_t first_a = sc_model_leaf_first(state->model)[leaf[0]];
-    uint32_t first_b = sc_model_leaf_first(state->model)[leaf[1]];
+    uint32_t first[2];
     sc_workspace *w = state->workspace;
     SC_KERNEL(verdict) verdict;
     SC_KERNEL(picked) a, b;
-    unsigned at, met;
+    unsigned at;
+    first[0] = sc_model_leaf_first(state->model)[leaf[0]];
+    first[1] = sc_model_leaf_first(state->model)[leaf[1]];
     SC_KERNEL(begin_picking)(state, leaf[0], leaf[0] > leaf[1], &a);
     SC_KERNEL(begin_picking)(state, leaf[1], leaf[1] > leaf[0], &b);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
         unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
         if (count >= SC_LEAF_FEW) {
-            a.numbers = of_a + at;
-            b.numbers = of_b + at;
+            const uint8_t *of[2];
+            unsigned met;
+            of[0] = a.numbers = of_a + at;
+            of[1] = b.numbers = of_b + at;
             SC_KERNEL(test_pairs)(&a, &b, mask, extent, &verdict);
-            for (met = mask & verdict.meets; met; met &= met - 1) {
-                uint32_t lane = sc_bits_lowest(met);
-                unsigned edges = 0;
-                int k;
-                SC_UNROLL
-                for (k = 0; k < 6; k++) edges |= (verdict.edge[k] >> lane & 1u) << k;
-                sc_candidates_take(state, first_a + of_a[at + lane], first_b + of_b[at + lane],
-                                   edges);
-            }
-            mask &= ~(verdict.apart | verdict.meets);
+            met = mask & verdict.meets;
+            if (met) sc_candidates_take(state, first, of, met, verdict.edge);
+            mask &= ~(verdict.apart | met);
         }
         w->candidate_count +=
-            lanes_list_pairs(mask, of_a + at, first_a, of_b + at, first_b,
+            lanes_list_pairs(mask, of_a + at, first[0], of_b + at, first[1],
                              (uint32_t *)(void *)(w->candidates + w->candidate_count));
     }
 }
