@@ -518,6 +518,76 @@ static void fans_in_a_plane(void)
     }
 }
 
+/* A leaf cluster that lies flat, or nearly, across an axis: a fan, the rim of which goes in and out, and more triangles
+   at the rim, some of which reach for points far along it or just touch there. The fan turns nearly once, or twice, and
+   back a little here and there. A strip behind it makes the mesh large, so that single precision tells little of it. */
+static void outlines_in_a_plane(void)
+{
+    enum { STRIP = 16 };
+    uint32_t rounds = test_iterations(600);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t count = 4 + test_random_below(8), ears = test_random_below(4);
+        uint32_t closed = test_random_below(3) != 0, axis = test_random_below(3), k;
+        uint32_t rim = count + !closed, tip = rim + 1, strip = tip + ears;
+        double turns = count > 5 && test_random_below(5) == 0 ? 2 : 1;
+        double size = 0.3 * exp2(-(double)test_random_below(i % 2 ? 3 : 22)), sum = 0, step[16];
+        double angle = test_random_range(-3, 3), place[2], (*at)[3];
+        soup s = soup_make(strip + STRIP + 2, count + ears + STRIP);
+        at = (double(*)[3])s.positions;
+        for (k = 0; k < 2; ++k) place[k] = test_random_range(-0.5, 0.5);
+        for (k = 0; k < count; ++k) {
+            step[k] = test_random_range(0.3, 1);
+            if (i % 4 == 3 && test_random_below(8) == 0)
+                step[k] = -exp2(-(double)test_random_below(40));
+            sum += step[k];
+        }
+        for (k = 0; k <= rim; ++k) {
+            double reach = k == 0 ? 0 : size * test_random_range(k % 2 ? 0.9 : 0.3, 1);
+            double off = exp2(-4 - (double)test_random_below(40)) * test_random_range(-1, 1);
+            at[k][(axis + 1) % 3] = place[0] + reach * cos(angle + off);
+            at[k][(axis + 2) % 3] = place[1] + reach * sin(angle + off);
+            if (k > 0 && k <= count) angle += turns * 6.283185307179586 * step[k - 1] / sum;
+        }
+        for (k = 0; k < ears; ++k) {
+            uint32_t near = test_random_below(rim + 1), edge = 1 + test_random_below(count);
+            double off = size * exp2(-(double)test_random_below(40)) * test_random_range(-1, 1);
+            uint32_t *t = s.triangles + 3 * (count + k);
+            t[0] = edge < rim ? edge + 1 : 1;
+            t[1] = edge;
+            t[2] = tip + k;
+            for (uint32_t c = 1; c < 3; ++c) {
+                double far = at[t[0]][(axis + c) % 3] + at[t[1]][(axis + c) % 3];
+                double out = far - place[c - 1] + test_random_range(-0.2, 0.2) * size;
+                if (test_random_below(2)) out = at[near][(axis + c) % 3] + off;
+                at[tip + k][(axis + c) % 3] = out;
+            }
+        }
+        for (k = 0; k < STRIP + 2; ++k) {
+            at[strip + k][(axis + 1) % 3] = 2.0 * k / (STRIP + 1) - 1;
+            at[strip + k][(axis + 2) % 3] = k % 2 ? 1 : 0.97;
+        }
+        for (k = 0; k < s.vertex_count; ++k) {
+            double off = size * exp2(-(double)test_random_below(30)) * test_random_range(-1, 1);
+            at[k][axis] = 0.25 + (i % 3 == 0 && k < strip ? off : 0);
+        }
+        for (k = 0; k < count; ++k) {
+            uint32_t *t = s.triangles + 3 * k;
+            t[0] = 0;
+            t[1] = k + 1;
+            t[2] = k + 1 < rim ? k + 2 : 1;
+        }
+        for (k = 0; k < STRIP; ++k) {
+            uint32_t *t = s.triangles + 3 * (count + ears + k);
+            t[0] = strip + k;
+            t[1] = strip + k + 1 + k % 2;
+            t[2] = strip + k + 2 - k % 2;
+        }
+        check_random_build("outline in a plane", state, &s, s.positions);
+        soup_free(&s);
+    }
+}
+
 static void deformed_meshes(void)
 {
     uint32_t rounds = test_iterations(140);
@@ -856,7 +926,7 @@ static void meshes_of_the_folder(void)
 
 SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
              SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet), SC_TEST(neighbors_on_a_ray),
-             SC_TEST(fans_in_a_plane), SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell),
-             SC_TEST(branched_discs), SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
-             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
-             SC_TEST(meshes_of_the_folder))
+             SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane), SC_TEST(deformed_meshes),
+             SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
+             SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
+             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))

@@ -602,6 +602,48 @@ static void check_fans(const steps *s, const sc_model *model)
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " fans of leaf clusters wrong", s->name, wrong);
 }
 
+/* Outlines of leaf clusters: each edge that no opposite one makes up for once, in a circle, if there is one that comes to
+   no point twice. */
+static void check_outlines(const steps *s, const sc_model *model)
+{
+    const uint32_t *first = sc_model_leaf_first(model), *triangle = sc_model_triangle(model);
+    uint32_t leaf, h, g, i, wrong = 0;
+    for (leaf = 0; leaf < model->leaf_count; ++leaf) {
+        const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf;
+        const uint8_t *outline = sc_model_leaf_outline(model) + SC_LEAF_POINTS * leaf;
+        uint32_t last = outline[SC_LEAF_POINTS - 1], edges = 0, found = 0, is_chain = 1;
+        uint32_t edge[3 * SC_LEAF_MAX][2], at;
+        uint32_t count = last < SC_LEAF_POINTS ? SC_LEAF_POINTS : last - SC_LEAF_POINTS;
+        for (h = 3 * first[leaf]; h < 3 * first[leaf + 1]; ++h) {
+            uint32_t from = triangle[h], to = triangle[h / 3 * 3 + (h + 1) % 3], opposite = 0;
+            for (g = 3 * first[leaf]; g < 3 * first[leaf + 1]; ++g) {
+                uint32_t begin = triangle[g], end = triangle[g / 3 * 3 + (g + 1) % 3];
+                opposite |= begin == to && end == from;
+                is_chain &= g == h || begin != from || end != to;
+            }
+            if (opposite) continue;
+            edge[edges][0] = from;
+            edge[edges++][1] = to;
+        }
+        for (h = 0; h < edges; ++h)
+            for (g = 0; g < h; ++g) is_chain &= edge[h][0] != edge[g][0];
+        for (i = 0; i < count; ++i) {
+            uint32_t from = point[outline[i]], to = point[outline[i + 1 < count ? i + 1 : 0]];
+            for (h = 0; h < edges; ++h) found += edge[h][0] == from && edge[h][1] == to;
+        }
+        if (is_chain && edges) { /* as long as all edges? */
+            for (i = 0, at = edge[0][0]; i < edges; ++i) {
+                for (h = 0; h < edges && edge[h][0] != at; ++h) continue;
+                at = h < edges ? edge[h][1] : at;
+                if (at == edge[0][0]) break;
+            }
+            is_chain = i + 1 == edges;
+        }
+        wrong += is_chain && edges ? found != edges || count != edges : count != 0;
+    }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " outlines of leaf clusters wrong", s->name, wrong);
+}
+
 /* The edges of a piece of a node's loop, from point to point; writes as many as there are. */
 static void list_loop(const steps *s, const sc_model *m, uint32_t n, const uint16_t *loop,
                       uint32_t count, sc_pair *edges)
@@ -746,6 +788,7 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
     check_loops(s, model);
     if (model->triangle_count < 400) check_rings(s, model);
     check_fans(s, model);
+    check_outlines(s, model);
 end:
     sc_model_free(model);
     free(before);

@@ -7,7 +7,7 @@
  * Masks are bytes of all bits or none; lanes_bytes_choose takes from a where one is set, else from b, and lanes_bytes_bits
  * makes bit i for byte i. lanes_bytes_through reads a row by numbers below sixteen. lanes_triples are three rows, which
  * lanes_triples_through reads by the same numbers. lanes_names tells for each of sixteen numbers b where among sixteen
- * others it first is, or 255 if nowhere.
+ * others it first is, or 255 if nowhere. lanes_index_of makes numbers of lanes (base/lanes_pick.h) of them.
  * lanes_edges_of reads points of two tables, in turned places (see base/lanes.h), by numbers: the first of three of one
  * is subtracted from the other two, then from two of the other.
  *
@@ -27,6 +27,7 @@
 #define lanes_triples_of SC_KERNEL(sc_lanes_triples_of)
 #define lanes_triples_through SC_KERNEL(sc_lanes_triples_through)
 #define lanes_names SC_KERNEL(sc_lanes_names)
+#define lanes_index_of SC_KERNEL(sc_lanes_index_of)
 #define lanes_edges_of SC_KERNEL(sc_lanes_edges_of)
 
 #if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_SSE2
@@ -178,7 +179,7 @@ static inline void lanes_triples_through(const lanes_triples *t, const uint8_t *
     SC_UNROLL
     for (k = 0; k < 3; k++) to[k] = _mm_shuffle_epi8(t->row[k], from);
 }
-static inline lanes_index SC_KERNEL(sc_lanes_index_of)(lanes_bytes numbers)
+static inline lanes_index lanes_index_of(lanes_bytes numbers)
 {
 #  if SC_LANES_AVX512
     return _mm512_cvtepu8_epi32(numbers);
@@ -198,9 +199,9 @@ static SC_INLINE void lanes_edges_of(const float *a, const float *b, const lanes
     lanes_turned(a, row[0]);
     lanes_turned(b, row[1]);
     SC_UNROLL
-    for (k = 0; k < 3; k++) at[k] = SC_KERNEL(sc_lanes_index_of)(of_a[k]);
+    for (k = 0; k < 3; k++) at[k] = lanes_index_of(of_a[k]);
     SC_UNROLL
-    for (k = 0; k < 2; k++) at[3 + k] = SC_KERNEL(sc_lanes_index_of)(of_b[k]);
+    for (k = 0; k < 2; k++) at[3 + k] = lanes_index_of(of_b[k]);
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         lanes from = lanes_pick_of(row[0][c], at[0]);
@@ -227,6 +228,13 @@ static inline lanes_bytes lanes_bytes_through(lanes_bytes row, lanes_bytes numbe
     lanes_bytes_store(number, numbers);
     for (i = 0; i < SC_LANES_COUNT; i++) to[i] = from[number[i]];
     return lanes_bytes_load(to);
+}
+
+static inline lanes_index lanes_index_of(lanes_bytes numbers)
+{
+    lanes_index r;
+    lanes_bytes_store(r.at, numbers);
+    return r;
 }
 
 /* The three of each lane together, to be read at once. */

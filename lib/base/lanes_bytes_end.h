@@ -17,4 +17,5 @@
 #undef lanes_triples_of
 #undef lanes_triples_through
 #undef lanes_names
+#undef lanes_index_of
 #undef lanes_edges_of

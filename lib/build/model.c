@@ -213,6 +213,49 @@ static void write_fans(sc_model *m)
     }
 }
 
+/* The outlines of leaf clusters. */
+static void write_outlines(sc_model *m)
+{
+    const uint32_t *first = sc_model_leaf_first(m);
+    const uint8_t *where = sc_model_leaf_corner(m);
+    uint8_t *outline = NEW_ARRAY(m, leaf_outline, uint8_t);
+    uint32_t leaf, i, k;
+    for (leaf = 0; leaf < m->leaf_count;
+         leaf++, where += 3 * SC_LEAF_MAX, outline += SC_LEAF_POINTS) {
+        uint32_t to[SC_LEAF_POINTS] = {0}, edges = 0, start = 0, at, count = 0;
+        int is_chain = 1;
+        for (i = 0; i < first[leaf + 1] - first[leaf]; i++)
+            for (k = 0; k < 3; k++) {
+                uint32_t end = where[SC_LEAF_MAX * ((k + 1) % 3) + i];
+                uint32_t *from = &to[where[SC_LEAF_MAX * k + i]];
+                is_chain &= !(*from >> end & 1u);
+                *from |= 1u << end;
+            }
+        for (i = 0; i < SC_LEAF_POINTS; i++) /* an edge and its opposite are none */
+            for (k = 0; k <= i; k++) {
+                uint32_t both = (to[i] >> k & 1u) & (to[k] >> i & 1u);
+                to[i] &= ~(both << k);
+                to[k] &= ~(both << i);
+            }
+        for (i = 0; i < SC_LEAF_POINTS; i++) {
+            is_chain &= !(to[i] & (to[i] - 1));
+            edges += to[i] != 0;
+            start = to[i] ? i : start;
+        }
+        memset(outline, 0, SC_LEAF_POINTS);
+        at = start;
+        if (is_chain && edges) do {
+                outline[count++] = (uint8_t)at;
+                at = sc_bits_lowest(to[at]);
+            } while (at != start);
+        if (count != edges) {
+            memset(outline, 0, SC_LEAF_POINTS);
+            count = 0;
+        }
+        if (count < SC_LEAF_POINTS) outline[SC_LEAF_POINTS - 1] = (uint8_t)(SC_LEAF_POINTS + count);
+    }
+}
+
 /*
  * The points that edges join a point with, by old numbers; returns how many. For each corner there the
  * next one; the previous one as well if no half-edge runs back to it. around NULL: only counts.
@@ -489,6 +532,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     write_leaves(m);
     write_fans(m);
+    write_outlines(m);
     copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));

@@ -62,6 +62,9 @@ enum {
  *                   second, then the third; the last triangle again to fill the rows
  *   leaf_fan        two sets of places in leaf_point a cluster: points round which its triangles follow each other, one
  *                   beginning where the one before ends; first those where all of them are a closed fan, then the others
+ *   leaf_outline    SC_LEAF_POINTS a cluster: places in leaf_point of the points round its outline, counter-clockwise, if
+ *                   that is one closed chain that comes to no point twice, else of none; if there are n < SC_LEAF_POINTS,
+ *                   zeros follow, and SC_LEAF_POINTS + n is the last number
  *   share_...       see build/sharing.h
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
@@ -85,6 +88,7 @@ enum {
   X(leaf_point, uint32_t, SC_LEAF_POINTS *(uint64_t)leaf_count)                                    \
   X(leaf_corner, uint8_t, 3 * SC_LEAF_MAX * (uint64_t)leaf_count)                                  \
   X(leaf_fan, uint16_t, 2 * (uint64_t)leaf_count)                                                  \
+  X(leaf_outline, uint8_t, SC_LEAF_POINTS *(uint64_t)leaf_count)                                   \
   X(share_first, uint32_t, (uint64_t)leaf_count + 1)                                               \
   X(share_leaf, uint32_t, share_count)                                                             \
   X(share_rows, uint16_t, SC_LEAF_MAX *(uint64_t)share_count)                                      \

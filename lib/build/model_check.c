@@ -96,6 +96,18 @@ static int check_corners(const sc_model *m)
     return !bad;
 }
 
+/* Whether outlines are of places. */
+static int check_outlines(const sc_model *m)
+{
+    const uint8_t *outline = sc_model_leaf_outline(m);
+    uint32_t bad = 0;
+    uint64_t i;
+    for (i = 0; i < SC_LEAF_POINTS * (uint64_t)m->leaf_count; i++)
+        bad |= outline[i] >=
+               (i % SC_LEAF_POINTS == SC_LEAF_POINTS - 1 ? 2 * SC_LEAF_POINTS : SC_LEAF_POINTS);
+    return !bad;
+}
+
 /* Every triangle of the caller's once. */
 static int check_ids(const sc_model *m, uint8_t *seen)
 {
@@ -417,6 +429,7 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(leaf_point,
           are_points(m, sc_model_leaf_point(m), SC_LEAF_POINTS * (uint64_t)m->leaf_count));
     CHECK(leaf_corner, check_corners(m));
+    CHECK(leaf_outline, check_outlines(m));
     CHECK(level_first, check_levels(m));
     CHECK(child, check_child(m));
     CHECK(leaf, check_leaf(m));

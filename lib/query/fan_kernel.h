@@ -59,19 +59,21 @@ static SC_INLINE void SC_KERNEL(find_rays)(const float direction[3], const lanes
     }
 }
 
-/* Two directions at right angles to n, and not to be taken for one another. */
+/* Two directions at right angles to n, the second counter-clockwise of the first where n points to the viewer. */
 static inline void SC_KERNEL(find_across)(const float n[3], float across[2][3])
 {
     int a = fabsf(n[1]) > fabsf(n[0]) ? 1 : 0, i, j;
+    float side;
     a = fabsf(n[2]) > fabsf(n[a]) ? 2 : a;
     i = a == 2 ? 0 : a + 1;
     j = 3 - a - i;
+    side = n[a] < 0 ? -1.0f : 1.0f;
     across[0][i] = 0.5f * n[a];
     across[0][j] = -n[a];
     across[0][a] = n[j] - 0.5f * n[i];
-    across[1][i] = n[a];
-    across[1][j] = 0.5f * n[a];
-    across[1][a] = -n[i] - 0.5f * n[j];
+    across[1][i] = side * n[a];
+    across[1][j] = side * (0.5f * n[a]);
+    across[1][a] = side * (-n[i] - 0.5f * n[j]);
 }
 
 /* The triangles of a cluster that may not face the viewer. */

@@ -416,6 +416,7 @@ static void SC_KERNEL(leaf_pair_waits)(sc_query_state *state, uint32_t a, uint32
 static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)
 {
     state->stats.leaf_pairs++;
+    if (SC_KERNEL(is_plain)(state, leaf)) return;
     SC_KERNEL(add_near_pair)(state->workspace, leaf, leaf, SC_NONE, 1);
     SC_KERNEL(make_leaf_room)(state);
 }

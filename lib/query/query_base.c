@@ -22,6 +22,7 @@
 #include "query/ready_kernel.h"
 #include "query/neighbor_kernel.h"
 #include "query/fan_kernel.h"
+#include "query/outline_kernel.h"
 #include "query/sixteen_kernel.h"
 #include "query/leaf_kernel.h"
 #include "query/walk_kernel.h"
