@@ -245,6 +245,22 @@ static void structures(void)
     --hierarchy.nodes[i - 1].count;
     CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
     ++hierarchy.nodes[i - 1].count;
+    /* a triangle that does not exist; leaves with more points than they have room for */
+    if (CHECK(hierarchy.nodes[i - 1].count < SC_LEAF_MAX)) {
+        ++hierarchy.nodes[i - 1].count;
+        CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
+        --hierarchy.nodes[i - 1].count;
+    }
+    {
+        sc_hierarchy apart = hierarchy;
+        uint32_t corner[3 * 2 * 9 * 9];
+        CHECK(hierarchy.triangle_count == 2 * 9 * 9);
+        for (k = 0; k < 3 * 2 * 9 * 9; ++k) corner[k] = k;
+        apart.corner = corner;
+        apart.point_count = 3 * 2 * 9 * 9;
+        CHECK(!sc_hierarchy_validate(&apart, &scratch));
+    }
+    CHECK(sc_hierarchy_validate(&hierarchy, &scratch));
     ++hierarchy.leaf_count;
     CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
     --hierarchy.leaf_count;

@@ -43,6 +43,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "base/assume.h"
+
 enum {
     MAXIMUM_CORNERS = 4,
     MAXIMUM_GUARDS = 32,
@@ -361,7 +363,7 @@ static int is_near_in_slab(int count, const motion *m, double from, double to)
             is_apart &= inner(nearest, q) >= level * distance;
         }
         if (is_apart) continue;
-        if (left + 4 > MAXIMUM_CELLS) return 1; /* not reached: see "Progress" */
+        if (SC_NEVER(left + 4 > MAXIMUM_CELLS)) return 1; /* see "Progress" */
         for (int i = 0; i < 3; ++i) {
             mid.x[i] = 0.5 * (c.x[(i + 1) % 3] + c.x[(i + 2) % 3]);
             mid.y[i] = 0.5 * (c.y[(i + 1) % 3] + c.y[(i + 2) % 3]);
