@@ -440,6 +440,40 @@ static void edges_that_nearly_meet(void)
     }
 }
 
+/* Pairs of triangles of which an edge of one and an edge of the other cross in a plane across an axis; or, of one pair in
+   three, nearly so, by less than single precision tells. */
+static void edges_that_meet_across_an_axis(void)
+{
+    uint32_t rounds = test_iterations(150);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t pairs = 4 + test_random_below(13);
+        soup s = soup_make(6 * pairs, 2 * pairs);
+        for (uint32_t k = 0; k < 3 * s.vertex_count; ++k) s.positions[k] = test_random_unit();
+        for (uint32_t k = 0; k < 3 * s.triangle_count; ++k) s.triangles[k] = k;
+        for (uint32_t k = 0; k < pairs; ++k) {
+            double *a = s.positions + 18 * k, *b = a + 9;
+            double along = test_random_range(0.1, 0.9), there = test_random_range(0.1, 0.9);
+            uint32_t first = test_random_below(3), turn = test_random_below(3);
+            double *end[4];
+            uint32_t axis = test_random_below(3);
+            end[0] = a + 3 * first;
+            end[1] = a + 3 * ((first + 1) % 3);
+            end[2] = b + 3 * turn;
+            end[3] = b + 3 * ((turn + 1) % 3);
+            for (uint32_t c = 0; c < 3; ++c) {
+                double x = end[0][c] + along * (end[1][c] - end[0][c]);
+                end[3][c] = end[2][c] + (x - end[2][c]) / there;
+            }
+            for (uint32_t e = 1; e < 4; ++e) end[e][axis] = end[0][axis];
+            if (test_random_below(3) == 0)
+                end[test_random_below(4)][axis] *= 1 + exp2(-30.0 - test_random_below(22));
+        }
+        check_random_build("edges that meet across an axis", state, &s, s.positions);
+        soup_free(&s);
+    }
+}
+
 /* Pairs of triangles that share a point, and from there lie on one ray: the shorter edge ends on the longer one. What leads
    from the middle of one to that of the other is across the ray, but for rounding, and tells the rest of them apart. */
 static void neighbors_on_a_ray(void)
@@ -925,7 +959,8 @@ static void meshes_of_the_folder(void)
 }
 
 SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
-             SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet), SC_TEST(neighbors_on_a_ray),
+             SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet),
+             SC_TEST(edges_that_meet_across_an_axis), SC_TEST(neighbors_on_a_ray),
              SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane), SC_TEST(deformed_meshes),
              SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
              SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),

@@ -66,4 +66,13 @@ static inline unsigned sc_bits_count(unsigned mask)
 #endif
 }
 
+/* The same of 64 bits. */
+static inline unsigned sc_bits_count64(uint64_t mask)
+{
+    mask -= mask >> 1 & 0x5555555555555555u;
+    mask = (mask & 0x3333333333333333u) + (mask >> 2 & 0x3333333333333333u);
+    mask = (mask + (mask >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+    return (unsigned)(mask * 0x0101010101010101u >> 56);
+}
+
 #endif

@@ -6,8 +6,9 @@
  *
  * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
  * to; lanes_list_from adds a first number to them, and writes sixteen words; lanes_list_pairs takes the numbers of these
- * lanes from two rows of sixteen bytes, adds first numbers, and writes pairs of words, room for sixteen. lanes_index reads sixteen numbers below
- * sixteen, lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the
+ * lanes from two rows of sixteen bytes, adds first numbers, and writes pairs of words, room for sixteen. lanes_list_bits writes
+ * a number for each, bit k of which is its lane's in the k-th of twelve masks, room for sixteen. lanes_index reads sixteen
+ * numbers below sixteen, lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the
  * floats of these numbers of a row, in memory or not. lanes_choose takes from a where the mask is set, else from b.
  * lanes_same compares bits, whatever they mean; lanes_differ has what is in one of two masks only.
  * lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from three rows of coordinates by three of
@@ -35,6 +36,7 @@
 #define lanes_list SC_KERNEL(sc_lanes_list)
 #define lanes_list_from SC_KERNEL(sc_lanes_list_from)
 #define lanes_list_pairs SC_KERNEL(sc_lanes_list_pairs)
+#define lanes_list_bits SC_KERNEL(sc_lanes_list_bits)
 #define lanes_marked SC_KERNEL(sc_lanes_marked)
 #define lanes_among SC_KERNEL(sc_lanes_among)
 
@@ -113,9 +115,43 @@ static inline unsigned lanes_list_pairs(unsigned mask, const uint8_t *a, uint32_
     _mm512_storeu_si512(to + 16, _mm512_permutex2var_epi32(i, high, j));
     return (unsigned)__builtin_popcount(mask);
 }
+static inline void lanes_list_bits(unsigned mask, const unsigned bits[12], uint16_t *to)
+{
+    __m512i numbers = _mm512_setzero_si512();
+    int k, j;
+    SC_UNROLL
+    for (k = 0; k < 12; k += 6) {
+        SC_UNROLL
+        for (j = k; j < k + 6; j++)
+            numbers = _mm512_mask_or_epi32(numbers, (__mmask16)bits[j], numbers,
+                                           _mm512_set1_epi32(1 << j));
+    }
+    numbers = _mm512_maskz_compress_epi32((__mmask16)mask, numbers);
+    _mm256_storeu_si256((__m256i *)(void *)to, _mm512_cvtepi32_epi16(numbers));
+}
 
 #else
 
+static inline void lanes_list_bits(unsigned mask, const unsigned bits[12], uint16_t *to)
+{
+    uint64_t four[3]; /* masks side by side */
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++)
+        four[k] = (bits[4 * k] & 0xffffu) | (uint64_t)(bits[4 * k + 1] & 0xffffu) << 16 |
+                  (uint64_t)(bits[4 * k + 2] & 0xffffu) << 32 |
+                  (uint64_t)(bits[4 * k + 3] & 0xffffu) << 48;
+    for (; mask; mask &= mask - 1) {
+        uint32_t lane = sc_bits_lowest(mask);
+        unsigned number = 0;
+        SC_UNROLL
+        for (k = 0; k < 3; k++) { /* a product brings the four bits of the lane together */
+            uint64_t apart = four[k] >> lane & 0x0001000100010001u;
+            number |= ((unsigned)(apart * 0x0001000200040008u >> 48) & 15u) << 4 * k;
+        }
+        *to++ = (uint16_t)number;
+    }
+}
 static inline unsigned lanes_list(unsigned mask, uint8_t *to)
 {
     /* of four bits the numbers of those that are set, lowest first; and how many */

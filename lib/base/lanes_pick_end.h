@@ -17,5 +17,6 @@
 #undef lanes_list
 #undef lanes_list_from
 #undef lanes_list_pairs
+#undef lanes_list_bits
 #undef lanes_marked
 #undef lanes_among

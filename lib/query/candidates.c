@@ -4,7 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * What happens to a pair depends on the vertices it shares. None: it is collected; then many are decided at once,
- * eight at a time, and those of which that is not certain by the exact primitives. One: the same, but
+ * eight at a time, and those of which that is not certain by the exact primitives. Of settled ones there is nothing left to
+ * do but to see that two edges are in one plane, if it depends on that. One: the same, but
  * nothing if that is not certain and the fan round the shared vertex projects one to one. More: nothing if a fan round
  * one of them does, else the exact primitives.
  */
@@ -69,47 +70,6 @@ static void decide_pair(sc_query_state *state, const sc_pair *places)
                                            &state->stats.exact_fallbacks));
     else if (sc_primitives_triangles_meet(&pair, proper, &state->stats.exact_fallbacks))
         take_triangles(state, places);
-}
-
-void sc_candidates_take(sc_query_state *state, const uint32_t first[2], const uint8_t *const of[2],
-                        unsigned lanes, const unsigned edge[6])
-{
-    const uint32_t *id = sc_model_triangle_id(state->model);
-    const uint8_t *owned = sc_model_edge_owned(state->model);
-    sc_pair found[6 * SC_LEAF_MAX];
-    uint32_t count = 0, s;
-    unsigned some = lanes;
-    if (state->sifts) {
-        for (; some; some &= some - 1) {
-            uint32_t lane = sc_bits_lowest(some);
-            sc_candidates_add(state, first[0] + of[0][lane], first[1] + of[1][lane]);
-        }
-        return;
-    }
-    if (state->stop) return;
-    if (state->options.pairs == SC_PAIRS_EDGE) {
-        for (s = 0; s < 2; s++) {
-            const unsigned *e = edge + 3 * s;
-            uint64_t hits = (uint64_t)(e[0] & lanes) | (uint64_t)(e[1] & lanes) << 16 |
-                            (uint64_t)(e[2] & lanes) << 32;
-            for (; hits; hits &= hits - 1) {
-                uint32_t bit = sc_bits_lowest64(hits), lane = bit % 16, k = bit / 16;
-                uint32_t mine = first[s] + of[s][lane], other = first[1 - s] + of[1 - s][lane];
-                found[count].a = 3 * id[mine] + k;
-                found[count].b = id[other];
-                count += owned[mine] >> k & 1u;
-            }
-        }
-    } else {
-        for (; some; some &= some - 1) {
-            uint32_t lane = sc_bits_lowest(some);
-            uint32_t a = id[first[0] + of[0][lane]], b = id[first[1] + of[1][lane]];
-            found[count].a = a < b ? a : b;
-            found[count++].b = a < b ? b : a;
-        }
-    }
-    state->stats.counts[sc_state_primitive_task(state)] += sc_bits_count(lanes);
-    sc_pairs_take_all(state, found, count);
 }
 
 /* Lists the vertices that two triangles share; returns how many. */
@@ -229,22 +189,46 @@ static void conclude(sc_query_state *state, const sc_pair *places, unsigned meet
     }
 }
 
+/* Bit 8 k + i from bit 8 i + k. */
+static uint64_t turn_bits(uint64_t x)
+{
+    uint64_t t = (x ^ x >> 7) & 0x00aa00aa00aa00aau;
+    x ^= t ^ t << 7;
+    t = (x ^ x >> 14) & 0x0000cccc0000ccccu;
+    x ^= t ^ t << 14;
+    t = (x ^ x >> 28) & 0x00000000f0f0f0f0u;
+    return x ^ t ^ t << 28;
+}
+
+/* Of some lanes the edges that bear their names, bit 8 i + k for pair i. */
+static uint64_t wanted_of_lanes(const sc_query_state *state, const sc_pair *pairs)
+{
+    uint64_t wanted = 0;
+    int i;
+    for (i = 0; i < SC_PAIR_LANES; i++)
+        wanted |= (uint64_t)edges_wanted(state, &pairs[i]) << SC_PAIR_LANES * i;
+    return wanted;
+}
+
 /* Reports what meets in some lanes. */
 static void take_lanes(sc_query_state *state, const sc_pair *pairs, uint64_t meets)
 {
     const uint32_t *id = sc_model_triangle_id(state->model);
-    const uint8_t *owned = sc_model_edge_owned(state->model);
     sc_pair found[6 * SC_PAIR_LANES];
     uint32_t count = 0;
     if (state->options.pairs == SC_PAIRS_EDGE) {
+        meets &= turn_bits(wanted_of_lanes(state, pairs));
+        if (sc_pairs_are_counted(state)) {
+            state->count += sc_bits_count64(meets);
+            return;
+        }
         for (; meets; meets &= meets - 1) {
             uint32_t bit = sc_bits_lowest64(meets), k = bit / SC_PAIR_LANES;
             sc_pair pair = pairs[bit % SC_PAIR_LANES];
             uint32_t mine = k < 3 ? pair.a : pair.b, other = k < 3 ? pair.b : pair.a;
             k -= k < 3 ? 0 : 3;
             found[count].a = 3 * id[mine] + k;
-            found[count].b = id[other];
-            count += owned[mine] >> k & 1u;
+            found[count++].b = id[other];
         }
     } else {
         unsigned lanes = lanes_of(meets);
@@ -294,17 +278,127 @@ static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
     }
 }
 
+/* Whether the two edges of a settled pair that are not certain, if any, are in a plane across the axis that its code
+   names. */
+static inline unsigned is_level(const sc_workspace *w, const uint32_t *t, const uint32_t *u,
+                                unsigned code)
+{
+    /* corners from which and to which an edge runs, by its tip and whether it goes to the next: four bits each */
+    const uint32_t ends = 0x49428186u;
+    const unsigned axis = code >> SC_SETTLED_AXIS;
+    const unsigned a = (code & 3u) | (code >> (SC_SETTLED_ROW - 2) & 4u);
+    const unsigned b = (code >> 2 & 3u) | (code >> (SC_SETTLED_COLUMN - 2) & 4u);
+    const unsigned k = (unsigned)(ends >> 4 * a), i = (unsigned)(ends >> 4 * b);
+    const uint64_t stride = w->stride;
+    if (axis == 3) return 1;
+    if (w->position_type == SC_DOUBLE) {
+        const unsigned char *from = w->positions + sizeof(double) * axis;
+        uint64_t p, q, r, s;
+        memcpy(&p, from + stride * t[k & 3u], sizeof p);
+        memcpy(&q, from + stride * t[k >> 2 & 3u], sizeof q);
+        memcpy(&r, from + stride * u[i & 3u], sizeof r);
+        memcpy(&s, from + stride * u[i >> 2 & 3u], sizeof s);
+        return ((p ^ q) | (p ^ r) | (p ^ s)) == 0;
+    } else {
+        const unsigned char *from = w->positions + sizeof(float) * axis;
+        uint32_t p, q, r, s;
+        memcpy(&p, from + stride * t[k & 3u], sizeof p);
+        memcpy(&q, from + stride * t[k >> 2 & 3u], sizeof q);
+        memcpy(&r, from + stride * u[i & 3u], sizeof r);
+        memcpy(&s, from + stride * u[i >> 2 & 3u], sizeof s);
+        return ((p ^ q) | (p ^ r) | (p ^ s)) == 0;
+    }
+}
+
+/* The lanes in which edges meet the other triangle, if those from its tip to the next corner and to the one after do in
+   these. */
+static uint64_t name_edges(unsigned is_first, unsigned is_second, unsigned next, unsigned after)
+{
+    unsigned is_third = ~(is_first | is_second);
+    return (uint64_t)((next & is_first) | (after & is_second)) |
+           (uint64_t)((next & is_second) | (after & is_third)) << SC_PAIR_LANES |
+           (uint64_t)((next & is_third) | (after & is_first)) << 2 * SC_PAIR_LANES;
+}
+
+/* Which edges of settled pairs meet: those that pass two of the other triangle on different sides. If two edges are in one
+   plane, both meet, but not properly. */
+static uint64_t edges_of_settled(uint64_t low, uint64_t high, unsigned touching)
+{
+    unsigned bit[SC_SETTLED_BITS], next[2], after[2], level, row, column, k;
+    low = turn_bits(low);
+    high = turn_bits(high);
+    SC_UNROLL
+    for (k = 0; k < 8; k++) bit[k] = (unsigned)(low >> SC_PAIR_LANES * k) & 255u;
+    SC_UNROLL
+    for (k = 8; k < SC_SETTLED_BITS; k++)
+        bit[k] = (unsigned)(high >> SC_PAIR_LANES * (k - 8)) & 255u;
+    level = ~(bit[SC_SETTLED_AXIS] & bit[SC_SETTLED_AXIS + 1]) & 255u;
+    row = bit[SC_SETTLED_ROW];
+    column = bit[SC_SETTLED_COLUMN];
+    next[0] = bit[SC_SETTLED_BELOW] ^ bit[SC_SETTLED_BELOW + 1];
+    after[0] = bit[SC_SETTLED_BELOW + 2] ^ bit[SC_SETTLED_BELOW + 3];
+    next[1] = bit[SC_SETTLED_BELOW] ^ bit[SC_SETTLED_BELOW + 2];
+    after[1] = bit[SC_SETTLED_BELOW + 1] ^ bit[SC_SETTLED_BELOW + 3];
+    next[0] = (next[0] & ~(level & row)) | (touching & level & row);
+    after[0] = (after[0] & ~(level & ~row)) | (touching & level & ~row);
+    next[1] = (next[1] & ~(level & column)) | (touching & level & column);
+    after[1] = (after[1] & ~(level & ~column)) | (touching & level & ~column);
+    return name_edges(bit[SC_SETTLED_TIP], bit[SC_SETTLED_TIP + 1], next[0], after[0]) |
+           name_edges(bit[SC_SETTLED_TIP + 2], bit[SC_SETTLED_TIP + 3], next[1], after[1])
+               << 3 * SC_PAIR_LANES;
+}
+
+/* Reports settled pairs; collects as candidates those that are not, as their edges are not in one plane. */
+static void take_settled(sc_query_state *state)
+{
+    const unsigned touching = state->options.contact == SC_CONTACT_PROPER ? 0 : ~0u;
+    const uint32_t *triangle = sc_model_triangle(state->model);
+    uint64_t *counted = &state->stats.counts[sc_state_primitive_task(state)];
+    sc_workspace *w = state->workspace;
+    const uint32_t count = w->settled_count;
+    uint32_t i, j;
+    *counted += count;
+    for (j = count; j % SC_PAIR_LANES; j++) { /* fills the last eight */
+        w->settled[j] = w->settled[count - 1];
+        w->settled_code[j] = SC_SETTLED_NOTHING;
+    }
+    for (i = 0; i < count && !sc_state_cancelled(state); i += SC_PAIR_LANES) {
+        const sc_pair *pairs = w->settled + i;
+        unsigned level = 0, other;
+        uint64_t low = 0, high = 0;
+        SC_UNROLL
+        for (j = 0; j < SC_PAIR_LANES; j++) {
+            const uint64_t code = w->settled_code[i + j];
+            level |= is_level(w, triangle + 3 * (uint64_t)pairs[j].a,
+                              triangle + 3 * (uint64_t)pairs[j].b, (unsigned)code)
+                     << j;
+            low |= (code & 255u) << SC_PAIR_LANES * j;
+            high |= (code >> 8) << SC_PAIR_LANES * j;
+        }
+        take_lanes(state, pairs, edges_of_settled(low, high, touching) & edges_of(level));
+        for (other = ~level & 255u; other; other &= other - 1) {
+            const sc_pair *pair = &pairs[sc_bits_lowest(other)];
+            sc_candidates_add(state, pair->a, pair->b);
+            --*counted;
+        }
+    }
+    w->settled_count = 0;
+}
+
 /* Decides what has been collected of triangles. */
 static void decide_collected(sc_query_state *state)
 {
     sc_workspace *w = state->workspace;
     uint32_t previous;
     if (state->sifts) sc_filter_sift(state);
-    if (!w->candidate_count && !w->neighbor_count) return;
+    if (!w->candidate_count && !w->neighbor_count && !w->settled_count) return;
     previous = sc_state_switch(state, sc_state_primitive_task(state));
     decide_all(state, w->candidates, w->candidate_count, 0);
     decide_all(state, w->neighbors, w->neighbor_count, 1);
     w->candidate_count = w->neighbor_count = 0;
+    take_settled(state);
+    decide_all(state, w->candidates, w->candidate_count, 0);
+    w->candidate_count = 0;
     sc_state_switch(state, previous);
 }
 
@@ -320,10 +414,12 @@ void sc_candidates_decide(sc_query_state *state)
 void sc_candidates_make_room(sc_query_state *state)
 {
     /* fewer if the first hit ends the query; up to SC_LEAF_MAX places are written to behind the last pair */
-    uint32_t most = state->options.output == SC_OUTPUT_ANY
-                        ? 64
-                        : SC_CANDIDATES_MAX - SC_LEAF_MAX * (SC_LEAF_MAX + 1);
-    if (state->workspace->candidate_count >= most || state->workspace->neighbor_count >= most)
+    const int first = state->options.output == SC_OUTPUT_ANY;
+    const uint32_t room = SC_LEAF_MAX * (SC_LEAF_MAX + 1);
+    const uint32_t most = first ? 64 : SC_CANDIDATES_MAX - room;
+    const uint32_t most_settled = first ? 1 : SC_SETTLED_MAX - room;
+    const sc_workspace *w = state->workspace;
+    if (w->candidate_count >= most || w->neighbor_count >= most || w->settled_count >= most_settled)
         decide_collected(state);
 }
 

@@ -1,7 +1,7 @@
 /*
  * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then rows against planes; then what is
- * left, sixteen pairs at a time (query/sixteen_kernel.h). Pairs that are certain to meet are taken, pairs of which nothing
- * is certain are collected. Each of these goes through some pairs of leaf clusters before the next begins, so that few
+ * left, sixteen pairs at a time (query/sixteen_kernel.h). Pairs of which it is settled how they meet are collected, and those
+ * of which nothing is certain. Each of these goes through some pairs of leaf clusters before the next begins, so that few
  * branches depend on how many rows or triangles one of them has. See query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
@@ -36,34 +36,53 @@ static inline void SC_KERNEL(no_rows)(SC_KERNEL(rows) * rows)
     rows->pairs = rows->wait = rows->count = 0;
 }
 
-/* Takes those of pairs of triangles of two leaf clusters that certainly meet, and collects those that are not certainly
-   apart. */
+/* Lists settled pairs. */
+static inline void SC_KERNEL(list_settled)(sc_workspace *w, const SC_KERNEL(verdict) * verdict,
+                                           unsigned mask, const uint8_t *of_a, uint32_t first_a,
+                                           const uint8_t *of_b, uint32_t first_b)
+{
+    lanes_list_bits(mask, verdict->bits, w->settled_code + w->settled_count);
+    w->settled_count += lanes_list_pairs(mask, of_a, first_a, of_b, first_b,
+                                         (uint32_t *)(void *)(w->settled + w->settled_count));
+}
+
+/* Asks for the memory of a leaf cluster's triangles. */
+static inline void SC_KERNEL(fetch_corners)(const sc_model *model, uint32_t first)
+{
+    const uint32_t *at = sc_model_triangle(model) + 3 * (uint64_t)first;
+    int k;
+    for (k = 0; k < 3; k++) sc_fetch(at + 16 * k);
+}
+
+/* Collects those of pairs of triangles of two leaf clusters that are not certainly apart, settled or not. */
 static void SC_KERNEL(collect)(sc_query_state *state, const uint32_t leaf[2], unsigned count,
                                const uint8_t of_a[], const uint8_t of_b[], float extent)
 {
-    uint32_t first[2];
+    uint32_t first_a = sc_model_leaf_first(state->model)[leaf[0]];
+    uint32_t first_b = sc_model_leaf_first(state->model)[leaf[1]];
     sc_workspace *w = state->workspace;
     SC_KERNEL(verdict) verdict;
     SC_KERNEL(picked) a, b;
     unsigned at;
-    first[0] = sc_model_leaf_first(state->model)[leaf[0]];
-    first[1] = sc_model_leaf_first(state->model)[leaf[1]];
     SC_KERNEL(begin_picking)(state, leaf[0], leaf[0] > leaf[1], &a);
     SC_KERNEL(begin_picking)(state, leaf[1], leaf[1] > leaf[0], &b);
+    SC_KERNEL(fetch_corners)(state->model, first_a);
+    SC_KERNEL(fetch_corners)(state->model, first_b);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
         unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
         if (count >= SC_LEAF_FEW) {
-            const uint8_t *of[2];
-            unsigned met;
-            of[0] = a.numbers = of_a + at;
-            of[1] = b.numbers = of_b + at;
+            a.numbers = of_a + at;
+            b.numbers = of_b + at;
             SC_KERNEL(test_pairs)(&a, &b, mask, extent, &verdict);
-            met = mask & verdict.meets;
-            if (met) sc_candidates_take(state, first, of, met, verdict.edge);
-            mask &= ~(verdict.apart | met);
+            mask &= ~verdict.apart;
+            if (!state->sifts) { /* which may want it left out */
+                SC_KERNEL(list_settled)
+                (w, &verdict, mask & verdict.settled, of_a + at, first_a, of_b + at, first_b);
+                mask &= ~verdict.settled;
+            }
         }
         w->candidate_count +=
-            lanes_list_pairs(mask, of_a + at, first[0], of_b + at, first[1],
+            lanes_list_pairs(mask, of_a + at, first_a, of_b + at, first_b,
                              (uint32_t *)(void *)(w->candidates + w->candidate_count));
     }
 }

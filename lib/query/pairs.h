@@ -14,6 +14,13 @@
 /* Takes a pair that was not taken before, unless the caller's filter has it left out. */
 void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b);
 
+/* Whether pairs are only counted, all of them. */
+static inline int sc_pairs_are_counted(const sc_query_state *state)
+{
+    return !state->filter && (state->options.output == SC_OUTPUT_COUNT ||
+                              (state->options.output == SC_OUTPUT_PAIRS && !state->capacity));
+}
+
 /* Takes several such. */
 void sc_pairs_take_all(sc_query_state *state, const sc_pair *pairs, uint32_t count);
 

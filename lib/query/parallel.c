@@ -124,7 +124,7 @@ static void end_part(sc_query_state *s)
     const sc_workspace *w = s->workspace;
     const uint32_t most = s->options.output == SC_OUTPUT_ANY ? 0 : WAITING_MAX;
     if (w->near_count + w->far_count > most || w->candidate_count > most ||
-        w->neighbor_count > most)
+        w->neighbor_count > most || w->settled_count > most)
         sc_candidates_decide(s);
     if (s->timed) s->stats.nanoseconds[s->task] += sc_clock_nanoseconds() - s->last_time;
 }

@@ -30,6 +30,10 @@
  * so that |e|1 |f|1 <= S^2 / 4. With T = S + 2 EDGE and U = W + 4 EDGE all that is below T (1.01 EDGE U + 0.26 EDGE T + 2.03 v T U),
  * rounding of S and W included. Here W is that of two triangles that nearly meet, D that of whole clusters.
  *
+ * If one of the four signs just is not certain, it says no more than on which side of each other two edges pass. If these are in
+ * one plane their crossings are one point, where either meets the other's triangle and the contact is not proper; all else is
+ * known. Such edges are mostly in a plane across an axis, then their points have a coordinate in common, here too.
+ *
  * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4 EDGE D, 2 EDGE^2, and by
  * rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
  *
@@ -126,28 +130,54 @@ static inline void SC_KERNEL(find_tips)(const SC_KERNEL(picked) * t,
     tips->split = sure & ~tips->beside;
 }
 
-/* What is certain of pairs: the lanes in which they are apart, or meet; then also, in which ones edge k of the first, or k - 3
-   of the second, meets the other. */
+/* What is certain of pairs: the lanes in which they are apart, and in which they are settled, that is, all is certain of them
+   that sc_settled_bits name. */
 typedef struct SC_KERNEL(verdict) {
-    unsigned apart, meets, edge[6];
+    unsigned apart, settled;
+    unsigned bits[SC_SETTLED_BITS];
 } SC_KERNEL(verdict);
 
-/* Edges that meet, in these lanes the one from the tip to the next corner and to the one after. */
-static inline void SC_KERNEL(name_edges)(const SC_KERNEL(tips) * t, unsigned next, unsigned after,
-                                         unsigned edge[3])
+/* Of pairs in a mask finds those of which just one sign is not certain, and the two edges that it is of seem to be in a
+   plane across an axis; w runs from tip to tip. */
+static inline void SC_KERNEL(find_level)(const SC_KERNEL(tips) tips[2], const lanes w[3],
+                                         lanes far[2][2], lanes bound, unsigned mask,
+                                         SC_KERNEL(verdict) * verdict)
 {
-    unsigned third = ~(t->is[0] | t->is[1]);
-    edge[0] = (next & t->is[0]) | (after & t->is[1]);
-    edge[1] = (next & t->is[1]) | (after & third);
-    edge[2] = (next & third) | (after & t->is[0]);
+    lanes_mask open[2][2], row, column;
+    unsigned is[2][2], level[3];
+    int i, j, c;
+    SC_UNROLL
+    for (i = 0; i < 2; i++) {
+        SC_UNROLL
+        for (j = 0; j < 2; j++) {
+            open[i][j] = lanes_not_above(far[i][j], bound);
+            is[i][j] = lanes_bits(open[i][j]);
+        }
+    }
+    row = lanes_differ(open[0][0], open[0][1]); /* if it is just one */
+    column = lanes_differ(open[0][0], open[1][0]);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        lanes e = lanes_choose(row, tips[0].edge[0][c], tips[0].edge[1][c]);
+        lanes f = lanes_choose(column, tips[1].edge[0][c], tips[1].edge[1][c]);
+        level[c] = lanes_bits(
+            lanes_not_above(lanes_larger_size(lanes_larger_size(e, f), w[c]), lanes_all(0)));
+    }
+    mask &= ~((is[0][0] & (is[0][1] | is[1][0] | is[1][1])) | (is[0][1] & (is[1][0] | is[1][1])) |
+              (is[1][0] & is[1][1]));
+    verdict->settled |= mask &= level[0] | level[1] | level[2];
+    verdict->bits[SC_SETTLED_ROW] = lanes_bits(row);
+    verdict->bits[SC_SETTLED_COLUMN] = lanes_bits(column);
+    verdict->bits[SC_SETTLED_AXIS] = ~mask | (~level[0] & level[1]);
+    verdict->bits[SC_SETTLED_AXIS + 1] = ~mask | ~(level[0] | level[1]);
 }
 
-/* Those of pairs in a mask of which each plane splits the other; size is that of both triangles. */
+/* Settles those of pairs in a mask of which each plane splits the other; size is that of both triangles. */
 static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes size, unsigned mask,
                                           SC_KERNEL(verdict) * verdict)
 {
-    lanes w[3], m[3], bound, least = lanes_all(0);
-    unsigned below[2][2], any, all;
+    lanes w[3], m[3], far[2][2], bound, least = lanes_all(0);
+    unsigned below[2][2], any, all, certain, *bits = verdict->bits;
     int i, j, c;
     SC_UNROLL
     for (c = 0; c < 3; c++) w[c] = lanes_subtract(tips[1].at[c], tips[0].at[c]);
@@ -165,22 +195,29 @@ static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes s
             lanes d = lanes_multiply(e[0], m[0]);
             SC_UNROLL
             for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(e[c], m[c]));
-            below[i][j] = lanes_bits(lanes_below(d, lanes_all(0)));
-            d = lanes_absolute(d);
-            least = i + j > 0 ? lanes_smaller(least, d) : d;
+            bits[SC_SETTLED_BELOW + 2 * i + j] = below[i][j] =
+                lanes_bits(lanes_below(d, lanes_all(0)));
+            far[i][j] = lanes_absolute(d);
+            least = i + j > 0 ? lanes_smaller(least, far[i][j]) : far[i][j];
         }
     }
-    mask &= tips[0].split & tips[1].split & lanes_bits(lanes_below(bound, least));
+    SC_UNROLL
+    for (i = 0; i < 2; i++) {
+        SC_UNROLL
+        for (j = 0; j < 2; j++) bits[SC_SETTLED_TIP + 2 * i + j] = tips[i].is[j];
+    }
+    mask &= tips[0].split & tips[1].split;
+    certain = mask & lanes_bits(lanes_below(bound, least));
     any = below[0][0] | below[0][1] | below[1][0] | below[1][1];
     all = below[0][0] & below[0][1] & below[1][0] & below[1][1];
-    verdict->apart = mask & (all | ~any);
-    verdict->meets = mask &= any & ~all;
-    SC_KERNEL(name_edges)
-    (&tips[0], mask & (below[0][0] ^ below[0][1]), mask & (below[1][0] ^ below[1][1]),
-     verdict->edge);
-    SC_KERNEL(name_edges)
-    (&tips[1], mask & (below[0][0] ^ below[1][0]), mask & (below[0][1] ^ below[1][1]),
-     verdict->edge + 3);
+    verdict->settled = certain & any & ~all;
+    if (mask & ~certain) {
+        SC_KERNEL(find_level)(tips, w, far, bound, mask & ~certain, verdict);
+    } else {
+        bits[SC_SETTLED_ROW] = bits[SC_SETTLED_COLUMN] = 0;
+        bits[SC_SETTLED_AXIS] = bits[SC_SETTLED_AXIS + 1] = ~0u;
+    }
+    verdict->apart = certain & (all | ~any);
 }
 
 /* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge certainly has the third
@@ -232,15 +269,17 @@ static void SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(p
     lanes size;
     SC_KERNEL(find_tips)(a, b, extent, &tips[0]);
     open = mask & ~tips[0].beside;
-    verdict->meets = 0;
-    verdict->apart = ~0u;
-    if (!open) return;
+    if (!open) {
+        memset(verdict, 0, sizeof *verdict);
+        verdict->apart = ~0u;
+        return;
+    }
     SC_KERNEL(find_tips)(b, a, extent, &tips[1]);
     open &= ~tips[1].beside;
     size = lanes_add(lanes_pick(a->ready->size, i),
                      lanes_pick(b->ready->size, lanes_index_load(b->numbers)));
     SC_KERNEL(cross_edges)(tips, size, open, verdict);
-    open &= ~(verdict->apart | verdict->meets);
+    open &= ~(verdict->apart | verdict->settled);
     if (sc_bits_count(open & ~(tips[0].split & tips[1].split)) >= SC_SIDES_WORTH) {
         lanes x[2][3][3], n[3];
         int c;
@@ -250,5 +289,5 @@ static void SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(p
         for (c = 0; c < 3; c++) n[c] = lanes_pick(a->ready->normal[c], i);
         open &= ~SC_KERNEL(side_separates)(x, n, extent);
     }
-    verdict->apart = ~(open | verdict->meets);
+    verdict->apart = ~(open | verdict->settled);
 }
