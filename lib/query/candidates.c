@@ -413,11 +413,11 @@ void sc_candidates_decide(sc_query_state *state)
 
 void sc_candidates_make_room(sc_query_state *state)
 {
-    /* fewer if the first hit ends the query; up to SC_LEAF_MAX places are written to behind the last pair */
-    const int first = state->options.output == SC_OUTPUT_ANY;
+    /* up to SC_LEAF_MAX places are written to behind the last pair */
+    const int soon = sc_state_may_end_early(state);
     const uint32_t room = SC_LEAF_MAX * (SC_LEAF_MAX + 1);
-    const uint32_t most = first ? 64 : SC_CANDIDATES_MAX - room;
-    const uint32_t most_settled = first ? 1 : SC_SETTLED_MAX - room;
+    const uint32_t most = soon ? 64 : SC_CANDIDATES_MAX - room;
+    const uint32_t most_settled = soon ? 1 : SC_SETTLED_MAX - room;
     const sc_workspace *w = state->workspace;
     if (w->candidate_count >= most || w->neighbor_count >= most || w->settled_count >= most_settled)
         decide_collected(state);

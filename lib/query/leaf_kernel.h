@@ -420,8 +420,7 @@ static inline void SC_KERNEL(add_leaf_pairs)(sc_query_state *state, uint32_t lea
 /* To be called after SC_LEAF_MAX such or fewer: sees that so many more have room. */
 static inline void SC_KERNEL(make_leaf_room)(sc_query_state *state)
 {
-    /* fewer if the first hit ends the query */
-    uint32_t most = state->options.output == SC_OUTPUT_ANY ? 16 : SC_LEAF_QUEUE - SC_LEAF_MAX - 1;
+    const uint32_t most = sc_state_may_end_early(state) ? 16 : SC_LEAF_QUEUE - SC_LEAF_MAX - 1;
     if (state->workspace->far_count > most || state->workspace->near_count > most)
         SC_KERNEL(leaf_pairs)(state);
 }

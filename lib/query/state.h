@@ -55,6 +55,13 @@ static inline int sc_state_stops(sc_query_state *state)
     return sc_state_cancelled(state) || (state->options.budget && sc_state_ask_budget(state));
 }
 
+/* Whether pairs should not wait for long to be decided: the first hit ends the query, or a budget does, and what
+   has been found by then counts. */
+static inline int sc_state_may_end_early(const sc_query_state *state)
+{
+    return state->options.output == SC_OUTPUT_ANY || state->options.budget;
+}
+
 /* Lets the clock run for another task; returns the one it ran for. */
 static inline uint32_t sc_state_switch(sc_query_state *state, uint32_t task)
 {
