@@ -467,20 +467,32 @@ int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *wo
     return 1;
 }
 
+/* Sets where boxes of spans are not to reach, from what is an edge; most are. */
+static void raise_walls(const sc_simple_contour *c)
+{
+    const sc_contour_edges *e = c->edges;
+    uint32_t i;
+    for (i = 0; i < c->count + SC_CONTOUR_BLOCK; i++) e->wall[i] = -INFINITY;
+    for (i = 0; i < c->count; i += SC_CONTOUR_BLOCK) {
+        const uint32_t left = c->count - i,
+                       here = left < SC_CONTOUR_BLOCK ? left : SC_CONTOUR_BLOCK;
+        uint32_t gaps = ~(uint32_t)e->is_edge[i / SC_CONTOUR_BLOCK] & ((1u << here) - 1u);
+        for (; gaps; gaps &= gaps - 1) e->wall[i + sc_bits_lowest(gaps)] = INFINITY;
+    }
+}
+
 /* The points of a loop, which are listed as they are projected; or all, listed as a cycle: the last is followed by the
    first again, which lets the inner loop look beyond the end. */
 static int start(sc_simple_contour *c, const sc_model *model, sc_workspace *workspace,
                  uint32_t node)
 {
-    uint32_t i;
     if (is_looped(model, node)) {
         c->edges = &workspace->contour;
         find_loop(c, model, node);
         return 1;
     }
     if (!sc_simple_list(c, model, workspace, node)) return 0;
-    for (i = 0; i < c->count; i++) c->edges->wall[i] = is_edge(c, i) ? -INFINITY : INFINITY;
-    for (; i < c->count + SC_CONTOUR_BLOCK; i++) c->edges->wall[i] = -INFINITY;
+    raise_walls(c);
     sc_simple_close_bits(c);
     return 1;
 }
