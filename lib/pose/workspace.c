@@ -130,9 +130,8 @@ static void place_motion(const sc_model *model, sc_motion *m, uint16_t *seen)
 static void clear_own(const sc_model *model, sc_workspace *w)
 {
     /* whole lanes of spans are read, with some behind the last that was written */
-    const unsigned char *spans_end = (const unsigned char *)w->contour.is_edge;
-    memset(w->contour.span_side[0], 0,
-           (size_t)(spans_end - (const unsigned char *)w->contour.span_side[0]));
+    unsigned char *spans = (unsigned char *)(void *)w->contour.span_side[0];
+    memset(spans, 0, (size_t)((unsigned char *)(void *)w->contour.is_edge - spans));
     memset(w->some_known, 0, 2 * ready_kept(model) * sizeof *w->some_known);
     memset(w->slab, 0, model->leaf_count * sizeof *w->slab);
     memset(w->ball, 0, model->vertex_count * sizeof *w->ball);

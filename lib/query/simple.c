@@ -343,14 +343,14 @@ typedef struct piece {
 /* Sixteen bits: which of edges i to i + 15 are edges. */
 static uint32_t edges_at(const sc_simple_contour *c, uint32_t i)
 {
-    const uint16_t *is_edge = c->edges->is_edge + i / SC_CONTOUR_BLOCK;
-    return (is_edge[0] | (uint32_t)is_edge[1] << 16) >> i % SC_CONTOUR_BLOCK & 0xffff;
+    const uint16_t *bits = c->edges->is_edge + i / SC_CONTOUR_BLOCK;
+    return (bits[0] | (uint32_t)bits[1] << 16) >> i % SC_CONTOUR_BLOCK & 0xffff;
 }
 
 /* The piece that begins at i or later; 0: there is none. */
 static int find_piece(const sc_simple_contour *c, uint32_t i, piece *p)
 {
-    uint32_t edges;
+    uint32_t edges = 0;
     while (i < c->count && !(edges = edges_at(c, i))) i += SC_CONTOUR_BLOCK;
     if (i >= c->count) return 0;
     p->begin = i += sc_bits_lowest(edges);
