@@ -406,7 +406,7 @@ soak: $(work)/runs/soak ## SOAK queries on changing poses of one model, in bound
 test-thread: ## many threads on one model, and in one query, under ThreadSanitizer
 	$(call variant,thread,CFLAGS='-O1 -fsanitize=thread',runs/thread tests/test_tasks)
 	'$(BUILD)/thread/debug/runs/thread'
-	SC_TEST_SCALE=20 '$(BUILD)/thread/debug/tests/test_tasks'
+	SC_TEST_SCALE=10 '$(BUILD)/thread/debug/tests/test_tasks'
 
 # Files that take results from libraries without MemorySanitizer are left out, see
 # tests/runs/memory_ignore.txt, and so is test_ccd, which is about such a library.
