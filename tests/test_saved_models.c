@@ -488,7 +488,8 @@ static void forged_arrays(void)
         model_array arrays[SC_ARRAY_COUNT];
         uint32_t count = list_arrays(model, arrays);
         for (uint32_t a = 0; a < count; ++a) {
-            int is_info = strcmp(arrays[a].name, "level_info") == 0;
+            /* what is told of levels; of those without nodes it is known */
+            int is_info = which != 3 && strcmp(arrays[a].name, "level_info") == 0;
             unsigned char *base = s.data + sizeof(sc_saved_header) + arrays[a].offset;
             for (uint64_t i = 0; arrays[a].words == 0 && i < arrays[a].count; ++i) {
                 unsigned char old = base[i];
