@@ -290,7 +290,7 @@ test: all $(test_programs)
 	@$(if $(strip $(missing_for_programs)),echo "skipped: $(notdir $(bench_tests)): needs $(strip $(missing_for_programs)) ('make deps')")
 	@CC='$(CC)' SC_CONFIG='$(config)' SC_BIN='$(bin)' SC_LIB='$(lib)' \
 	    SC_METIS='$(metis)' SC_FLAGS='$(link_mode) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' \
-	    tests/run.sh $(test_programs) $(test_scripts)
+	    tests/run.sh $(test_scripts) $(test_programs)
 endif
 
 $(patsubst tests/%.c,$(work)/tests/%,$(tests)): $(work)/tests/%: $(obj)/tests/%.o \

@@ -1,25 +1,50 @@
 #!/bin/sh
-# Runs test programs one after the other and sums up.
+# Runs test programs, as many at a time as there are processors (or TEST_JOBS), and sums up.
 #
 #     tests/run.sh PROGRAM...
 #
-# Of a program that succeeds the last line is printed and what it skipped, of one that fails all it said. A program whose
-# last line is not "...: N passed, N failed", or whose exit status does not fit that line, counts as
-# one more failure: it crashed or gave up. The last line is the sum, alone: "N passed, N failed".
+# Of a program that succeeds the last line is printed and what it skipped, of one that fails all it said; in the order
+# of the arguments. A program whose last line is not "...: N passed, N failed", or whose exit status does not fit that
+# line, counts as one more failure: it crashed or gave up. The last line is the sum, alone: "N passed, N failed".
 # Exit status 1 if anything failed or nothing ran.
 #
 # SPDX-License-Identifier: MIT
 set -u
 
-log=$(mktemp) || exit 1
-trap 'rm -f "$log"' EXIT
-trap 'exit 1' HUP INT TERM
+jobs=${TEST_JOBS:-$(getconf _NPROCESSORS_ONLN 2>/dev/null)}
+logs=$(mktemp -d) || exit 1
+trap 'rm -rf "$logs"' EXIT
+trap 'kill $! $(cat "$logs"/*.pid) 2>/dev/null; exit 1' HUP INT TERM
+
+# Writes what a program says to N.log; N.status is there when it has ended.
+run_one='
+    n=$1
+    shift
+    "$1" >"$0/$n.log" 2>&1 &
+    echo $! >"$0/$n.pid"
+    exec 2>/dev/null # nothing of the shell itself about signals
+    wait $!
+    echo $? >"$0/$n.ends"
+    rm "$0/$n.pid"
+    mv "$0/$n.ends" "$0/$n.status"'
+n=0
+for program in "$@"; do
+    n=$((n + 1))
+    printf '%s\0%s\0' "$n" "$program"
+done | xargs -0 -n 2 -P "${jobs:-1}" sh -c "$run_one" "$logs" &
 
 passed=0
 failed=0
+n=0
 for program in "$@"; do
-    "$program" >"$log" 2>&1
-    status=$?
+    n=$((n + 1))
+    log=$logs/$n.log
+    until [ -e "$logs/$n.status" ]; do
+        # without xargs nothing will come any more
+        kill -0 $! 2>/dev/null || [ -e "$logs/$n.status" ] || echo 127 >"$logs/$n.status"
+        sleep 0.1
+    done
+    status=$(cat "$logs/$n.status")
     last=$(tail -n 1 "$log")
     sums=$(printf '%s\n' "$last" | sed -n 's/^.*: \([0-9][0-9]*\) passed, \([0-9][0-9]*\) failed$/\1 \2/p')
     p=0
