@@ -282,7 +282,7 @@ enum { SC_REST_UNMARKED = 0, SC_REST_MARKED = 1 };
  *   SC_MODEL_FULL   many poses, by any method
  *   SC_MODEL_BOXES  few poses, by boxes alone: SC_METHOD_AABB, or SC_STEP_METHOD_TWO_BOXES and _SWEPT. All that
  *                   only culling needs is left out, and with SC_PARTITION_FAST patches are cut from a
- *                   space-filling curve. Building takes 0.25 to 0.4 of the time, model and workspace half of the
+ *                   space-filling curve. Building takes 0.25 to 0.4 of the time (of thin tubes 0.8), model and workspace half of the
  *                   memory, and a query 1.1 to 1.3 times as long as by SC_METHOD_AABB on a full model (where
  *                   many thin tubes lie close together up to 2.6 times): the faster way for a mesh that is
  *                   asked about once, or up to some ten times. Pairs are the same. The default methods are
@@ -313,8 +313,8 @@ typedef struct sc_model sc_model;
 
 /*
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
- * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.6 to 1.1 microseconds a
- * triangle (regular grids least, irregular meshes of a million triangles most) and, while it runs, up to
+ * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.4 to 1.1 microseconds a
+ * triangle (regular grids and thin tubes least, irregular meshes of a million triangles most) and, while it runs, up to
  * 320 bytes a triangle; with METIS 5 to 6 microseconds a triangle; with SC_MODEL_BOXES 0.2 to 0.3 microseconds and 190
  * bytes a triangle.
  */

@@ -58,6 +58,7 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
     lanes_mask mask[3];
     uint8_t list[SC_LANES_COUNT];
     uint32_t pairs[2 * SC_LANES_COUNT];
+    uint16_t wide[SC_LANES_COUNT];
     int i, k;
     lanes_store(out->row[17], lanes_pick(in->a, lanes_index_load(in->number)));
     lanes_store(out->row[18], lanes_pick_of(b, lanes_index_load(in->number + SC_LANES_COUNT)));
@@ -72,6 +73,10 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
         for (i = 0; i < 3; i++) lanes_store(out->row[39 + 3 * k + i], corner[k][i]);
     out->bits[5] = lanes_list(in->mask, list);
     memcpy(out->list, list, out->bits[5]);
+    out->bits[18] = lanes_list_from(in->mask, in->names[0], pairs);
+    memcpy(out->from, pairs, out->bits[18] * sizeof *pairs);
+    lanes_list_bits(in->mask, in->bits, wide);
+    memcpy(out->wide, wide, out->bits[5] * sizeof *wide);
     i = (int)lanes_list_pairs(in->mask, in->number, in->mask, in->through, 7, pairs);
     memcpy(out->pairs, pairs, 2 * (unsigned)i * sizeof *pairs);
     for (i = 0; i < 3; i++) number[i] = lanes_index_load(in->number + SC_LANES_COUNT * i);
@@ -97,6 +102,7 @@ static void SC_KERNEL(try_bytes)(const lanes_input *in, lanes_outcome *out)
     lanes_bytes_store(out->bytes[3], lanes_bytes_but(a, b));
     lanes_bytes_store(out->bytes[4], lanes_bytes_choose(other, a, b));
     lanes_bytes_store(out->bytes[5], lanes_bytes_through(a, b));
+    lanes_store(out->row[64], lanes_pick(in->a, lanes_index_of(b)));
     lanes_bytes_store(out->bytes[6], lanes_names(in->names, in->names + SC_LANES_COUNT));
     out->bits[14] = lanes_bytes_bits(same);
     out->bits[15] =

@@ -22,13 +22,15 @@ typedef struct lanes_input {
     uint8_t through[16]; /* the same */
     uint32_t names[32];  /* of which some are the same */
     unsigned mask;       /* of 16 bits */
+    unsigned bits[12];   /* any */
 } lanes_input;
 
 typedef struct lanes_outcome {
-    float row[64][16], one[3];
+    float row[65][16], one[3];
     double eight[16][8];
-    unsigned bits[18];
-    uint32_t numbers[16], pairs[32];
+    unsigned bits[19];
+    uint32_t numbers[16], pairs[32], from[16];
+    uint16_t wide[16];
     uint8_t list[16], bytes[10][16];
 } lanes_outcome;
 

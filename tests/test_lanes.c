@@ -100,6 +100,7 @@ static void draw(lanes_input *in)
     for (i = 0; i < 20; i++) in->exact[i] = number(1);
     for (i = 0; i < 32; i++) in->names[i] = test_random_below(24) * 0x01010000u + 7;
     in->mask = test_random_below(0x10000);
+    for (i = 0; i < 12; i++) in->bits[i] = (unsigned)test_random();
     if (test_random_below(4) == 0) /* all below, or none: as in most boxes */
         for (i = 0; i < 16; i++) in->a[i] = in->b[i] = 1;
 }
@@ -175,6 +176,7 @@ static void bytes_and_names(void)
             CHECK(out.bytes[0][i] == (a == b ? 255 : 0));
             CHECK((out.bits[14] >> i & 1u) == (unsigned)(a == b));
             CHECK((out.bits[15] >> i & 1u) == (unsigned)(in.names[i] == in.names[16 + i]));
+            CHECK(!memcmp(&out.row[64][i], &in.a[b], sizeof(float)));
             CHECK(out.bytes[4][i] == (in.number[16 + i] == in.number[32 + i] ? a : b));
             CHECK(out.bytes[5][i] == in.number[b]);
             CHECK(out.bytes[6][i] == (name < 16 ? name : 255));
@@ -210,12 +212,14 @@ static void lists_and_signs(void)
             marked |= (unsigned)(in.plain[i] < in.plain[16 + i]) << in.number[32 + i];
             among |= (in.mask >> in.number[i] & 1u) << i;
             if (!(in.mask >> i & 1u)) continue;
-            CHECK(out.list[count] == i);
+            CHECK(out.list[count] == i && out.from[count] == in.names[0] + i);
+            for (k = 0, wide = 0; k < 12; k++) wide |= (in.bits[k] >> i & 1u) << k;
+            CHECK(out.wide[count] == wide);
             CHECK(out.pairs[2 * count] == in.mask + in.number[i]);
             CHECK(out.pairs[2 * count + 1] == 7u + in.through[i]);
             count++;
         }
-        CHECK(out.bits[5] == count && out.bits[6] == negative);
+        CHECK(out.bits[5] == count && out.bits[18] == count && out.bits[6] == negative);
         CHECK(out.bits[16] == marked && out.bits[17] == among);
         for (i = 0; i < 16; i++) {
             CHECK((out.bits[0] >> i & 1u) == (unsigned)(in.a[i] < in.b[i]));

@@ -413,6 +413,31 @@ static void nearly_coplanar(void)
     }
 }
 
+/* Pairs of triangles, each with points of its own; those of pair k begin at coordinate 18 k. */
+static soup soup_of_pairs(uint32_t pairs)
+{
+    soup s = soup_make(6 * pairs, 2 * pairs);
+    for (uint32_t k = 0; k < 3 * s.vertex_count; ++k) s.positions[k] = test_random_unit();
+    for (uint32_t k = 0; k < 3 * s.triangle_count; ++k) s.triangles[k] = k;
+    return s;
+}
+
+/* Moves the second end of an edge of the second triangle of a pair so that this edge comes as close as `off` to an edge of
+   the first. Tells the ends of both. */
+static void cross_edges(double *pair, double off, double *end[4])
+{
+    double along = test_random_range(0.1, 0.9), there = test_random_range(0.1, 0.9);
+    uint32_t first = test_random_below(3), turn = test_random_below(3);
+    end[0] = pair + 3 * first;
+    end[1] = pair + 3 * ((first + 1) % 3);
+    end[2] = pair + 9 + 3 * turn;
+    end[3] = pair + 9 + 3 * ((turn + 1) % 3);
+    for (uint32_t c = 0; c < 3; ++c) {
+        double x = end[0][c] + along * (end[1][c] - end[0][c]) + off * test_random_range(-1, 1);
+        end[3][c] = end[2][c] + (x - end[2][c]) / there;
+    }
+}
+
 /* Pairs of triangles that cross each other's planes, of which an edge of one passes one of the other ever more closely. */
 static void edges_that_nearly_meet(void)
 {
@@ -420,20 +445,10 @@ static void edges_that_nearly_meet(void)
     for (uint32_t i = 0; i < rounds; ++i) {
         uint64_t state = test_random_state();
         uint32_t pairs = 1 + test_random_below(16);
-        soup s = soup_make(6 * pairs, 2 * pairs);
-        for (uint32_t k = 0; k < 3 * s.vertex_count; ++k) s.positions[k] = test_random_unit();
-        for (uint32_t k = 0; k < 3 * s.triangle_count; ++k) s.triangles[k] = k;
+        soup s = soup_of_pairs(pairs);
         for (uint32_t k = 0; k < pairs; ++k) {
-            double *a = s.positions + 18 * k, *b = a + 9;
-            double along = test_random_range(0.1, 0.9), there = test_random_range(0.1, 0.9);
-            double off = exp2(-(double)test_random_below(60));
-            uint32_t first = test_random_below(3), turn = test_random_below(3);
-            for (uint32_t c = 0; c < 3; ++c) { /* moves an end of the edge of b */
-                double p = a[3 * first + c], q = a[3 * ((first + 1) % 3) + c];
-                double x = p + along * (q - p) + off * test_random_range(-1, 1);
-                double *from = b + 3 * turn + c, *to = b + 3 * ((turn + 1) % 3) + c;
-                *to = *from + (x - *from) / there;
-            }
+            double *end[4];
+            cross_edges(s.positions + 18 * k, exp2(-(double)test_random_below(60)), end);
         }
         check_random_build("edges that nearly meet", state, &s, s.positions);
         soup_free(&s);
@@ -448,23 +463,11 @@ static void edges_that_meet_across_an_axis(void)
     for (uint32_t i = 0; i < rounds; ++i) {
         uint64_t state = test_random_state();
         uint32_t pairs = 4 + test_random_below(13);
-        soup s = soup_make(6 * pairs, 2 * pairs);
-        for (uint32_t k = 0; k < 3 * s.vertex_count; ++k) s.positions[k] = test_random_unit();
-        for (uint32_t k = 0; k < 3 * s.triangle_count; ++k) s.triangles[k] = k;
+        soup s = soup_of_pairs(pairs);
         for (uint32_t k = 0; k < pairs; ++k) {
-            double *a = s.positions + 18 * k, *b = a + 9;
-            double along = test_random_range(0.1, 0.9), there = test_random_range(0.1, 0.9);
-            uint32_t first = test_random_below(3), turn = test_random_below(3);
             double *end[4];
             uint32_t axis = test_random_below(3);
-            end[0] = a + 3 * first;
-            end[1] = a + 3 * ((first + 1) % 3);
-            end[2] = b + 3 * turn;
-            end[3] = b + 3 * ((turn + 1) % 3);
-            for (uint32_t c = 0; c < 3; ++c) {
-                double x = end[0][c] + along * (end[1][c] - end[0][c]);
-                end[3][c] = end[2][c] + (x - end[2][c]) / there;
-            }
+            cross_edges(s.positions + 18 * k, 0, end);
             for (uint32_t e = 1; e < 4; ++e) end[e][axis] = end[0][axis];
             if (test_random_below(3) == 0)
                 end[test_random_below(4)][axis] *= 1 + exp2(-30.0 - test_random_below(22));

@@ -278,6 +278,19 @@ static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
     }
 }
 
+/* The bits of a coordinate. */
+static inline uint64_t bits_of(const unsigned char *from, int is_double)
+{
+    uint64_t whole;
+    uint32_t half;
+    if (is_double) {
+        memcpy(&whole, from, sizeof whole);
+        return whole;
+    }
+    memcpy(&half, from, sizeof half);
+    return half;
+}
+
 /* Whether the two edges of a settled pair that are not certain, if any, are in a plane across the axis that its code
    names. */
 static inline unsigned is_level(const sc_workspace *w, const uint32_t *t, const uint32_t *u,
@@ -289,25 +302,14 @@ static inline unsigned is_level(const sc_workspace *w, const uint32_t *t, const 
     const unsigned a = (code & 3u) | (code >> (SC_SETTLED_ROW - 2) & 4u);
     const unsigned b = (code >> 2 & 3u) | (code >> (SC_SETTLED_COLUMN - 2) & 4u);
     const unsigned k = (unsigned)(ends >> 4 * a), i = (unsigned)(ends >> 4 * b);
-    const uint64_t stride = w->stride;
+    const int is_double = w->position_type == SC_DOUBLE;
+    const unsigned char *from = w->positions + (is_double ? sizeof(double) : sizeof(float)) * axis;
+    uint64_t level;
     if (axis == 3) return 1;
-    if (w->position_type == SC_DOUBLE) {
-        const unsigned char *from = w->positions + sizeof(double) * axis;
-        uint64_t p, q, r, s;
-        memcpy(&p, from + stride * t[k & 3u], sizeof p);
-        memcpy(&q, from + stride * t[k >> 2 & 3u], sizeof q);
-        memcpy(&r, from + stride * u[i & 3u], sizeof r);
-        memcpy(&s, from + stride * u[i >> 2 & 3u], sizeof s);
-        return ((p ^ q) | (p ^ r) | (p ^ s)) == 0;
-    } else {
-        const unsigned char *from = w->positions + sizeof(float) * axis;
-        uint32_t p, q, r, s;
-        memcpy(&p, from + stride * t[k & 3u], sizeof p);
-        memcpy(&q, from + stride * t[k >> 2 & 3u], sizeof q);
-        memcpy(&r, from + stride * u[i & 3u], sizeof r);
-        memcpy(&s, from + stride * u[i >> 2 & 3u], sizeof s);
-        return ((p ^ q) | (p ^ r) | (p ^ s)) == 0;
-    }
+    level = bits_of(from + w->stride * t[k & 3u], is_double);
+    return level == bits_of(from + w->stride * t[k >> 2 & 3u], is_double) &&
+           level == bits_of(from + w->stride * u[i & 3u], is_double) &&
+           level == bits_of(from + w->stride * u[i >> 2 & 3u], is_double);
 }
 
 /* The lanes in which edges meet the other triangle, if those from its tip to the next corner and to the one after do in
