@@ -116,6 +116,17 @@ sc_pose input_plain_pose(const double *positions, uint32_t vertex_count)
     return pose;
 }
 
+sc_query_options input_query(uint32_t kind, uint32_t contact, uint32_t method)
+{
+    sc_query_options o;
+    memset(&o, 0, sizeof(o));
+    o.struct_size = sizeof(o);
+    o.pairs = kind;
+    o.contact = contact;
+    o.method = method;
+    return o;
+}
+
 typedef struct tree_maker {
     sc_tree_node *nodes;
     uint32_t count;

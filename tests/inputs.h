@@ -35,6 +35,9 @@ sc_pose input_pose(uint32_t vertex_count, const input_array *positions);
 sc_mesh input_plain_mesh(const soup *s);
 sc_pose input_plain_pose(const double *positions, uint32_t vertex_count);
 
+/* Kind SC_PAIRS_..., contact SC_CONTACT_... and method SC_METHOD_...; all else by default. */
+sc_query_options input_query(uint32_t kind, uint32_t contact, uint32_t method);
+
 /* Choices of a build and the arrays that they point to. */
 typedef struct input_choices {
     sc_build_options options;

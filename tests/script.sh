@@ -2,6 +2,8 @@
 #
 #     check "what should be true" command [argument...]
 #     skip "what was not checked, and why"
+#     status N command [argument...]     whether the command ends with status N
+#     says N "words" command...          whether it does, and prints the words
 #     finish                             last: prints "<script>: N passed, N failed" and exits
 #
 # A command's output is shown only if it fails. $scratch is a directory that is removed at the end.
@@ -41,6 +43,23 @@ check() {
 
 skip() {
     echo "skipped: $1"
+}
+
+status() {
+    wanted=$1
+    shift
+    "$@" >"$scratch/out" 2>"$scratch/err"
+    got=$?
+    [ $got -eq "$wanted" ] || { echo "status $got"; cat "$scratch/out" "$scratch/err"; return 1; }
+}
+
+says() {
+    wanted=$1
+    text=$2
+    shift 2
+    status "$wanted" "$@" || return 1
+    grep -q -e "$text" "$scratch/out" "$scratch/err" ||
+        { cat "$scratch/out" "$scratch/err"; return 1; }
 }
 
 finish() {

@@ -104,17 +104,6 @@ static void close_subject(subject *s)
     soup_free(&s->mesh);
 }
 
-static sc_query_options make_options(uint32_t kind, uint32_t contact, uint32_t method)
-{
-    sc_query_options o;
-    memset(&o, 0, sizeof(o));
-    o.struct_size = sizeof(o);
-    o.pairs = kind;
-    o.contact = contact;
-    o.method = method;
-    return o;
-}
-
 static sc_status ask(const subject *s, const sc_query_options *options, sc_pair *pairs,
                      uint64_t capacity, sc_result *result)
 {
@@ -129,7 +118,7 @@ static sc_status ask(const subject *s, const sc_query_options *options, sc_pair 
 /* All pairs, by plain boxes and without a filter. */
 static pair_list find_all(const subject *s, uint32_t kind, uint32_t contact)
 {
-    sc_query_options options = make_options(kind, contact, SC_METHOD_AABB);
+    sc_query_options options = input_query(kind, contact, SC_METHOD_AABB);
     pair_list list = {NULL, 0};
     sc_result result;
     ask(s, &options, NULL, 0, &result);
@@ -311,7 +300,7 @@ static void check_filter(const subject *s, const sc_filter *filter, uint32_t kin
     }
     f.accept_user = &log;
     for (uint32_t method = SC_METHOD_SCTT; method <= SC_METHOD_AABB; ++method) {
-        sc_query_options options = make_options(kind, contact, method);
+        sc_query_options options = input_query(kind, contact, method);
         options.filter = &f;
         options.rest_cache = test_random_below(2);
         check_method(s, options, &expected, &asked, &log);
@@ -404,7 +393,7 @@ static void rest_contacts(void)
         if (open_subject(&s, 200))
             for (uint32_t kind = 0; kind < 2; ++kind) {
                 sc_pose rest = input_plain_pose(s.mesh.positions, s.mesh.vertex_count);
-                sc_query_options options = make_options(kind, 0, SC_METHOD_DEFAULT);
+                sc_query_options options = input_query(kind, 0, SC_METHOD_DEFAULT);
                 pair_list now = find_all(&s, kind, 0);
                 sc_filter f = no_filter();
                 sc_result result;
@@ -439,7 +428,7 @@ static void first_ring_is_cheap(void)
         soup mesh = soup_cloth(20, 20);
         sc_mesh input = input_plain_mesh(&mesh);
         sc_filter f = no_filter();
-        sc_query_options options = make_options(SC_PAIRS_TRIANGLE, 0, SC_METHOD_AABB);
+        sc_query_options options = input_query(SC_PAIRS_TRIANGLE, 0, SC_METHOD_AABB);
         sc_stats stats[2];
         sc_result result;
         sc_pose pose = input_plain_pose(mesh.positions, mesh.vertex_count);
@@ -471,7 +460,7 @@ static void check_refused(const subject *s, const sc_filter *filter, uint32_t ki
                           sc_status expected, const char *what)
 {
     sc_pair pair = {77, 78};
-    sc_query_options options = make_options(kind, 0, 0);
+    sc_query_options options = input_query(kind, 0, 0);
     sc_result result;
     sc_status status;
     options.filter = filter;
@@ -486,7 +475,7 @@ static void wrong_filters(void)
     if (open_subject(&s, 100)) {
         const uint32_t n = s.mesh.triangle_count;
         sc_pair list[3] = {{0, 1}, {0, 2}, {1, 2}};
-        sc_query_options options = make_options(0, 0, 0);
+        sc_query_options options = input_query(0, 0, 0);
         sc_result result;
         sc_filter f = no_filter();
         struct {
@@ -538,7 +527,7 @@ static void wrong_filters(void)
                 f.ignore = changed;
                 f.ignore_count = 3;
                 if (kind == SC_PAIRS_EDGE && (wrong == 1 || wrong == 3)) {
-                    options = make_options(kind, 0, 0);
+                    options = input_query(kind, 0, 0);
                     options.output = SC_OUTPUT_COUNT;
                     options.filter = &f;
                     CHECK(ask(&s, &options, NULL, 0, &result) == SC_OK);
@@ -550,7 +539,7 @@ static void wrong_filters(void)
         f.ignore = list;
         f.ignore_count = 3;
         f.ignore_rings = SC_RINGS_MAX;
-        options = make_options(0, 0, 0);
+        options = input_query(0, 0, 0);
         options.output = SC_OUTPUT_COUNT;
         options.filter = &f;
         CHECK(ask(&s, &options, NULL, 0, &result) == SC_OK);

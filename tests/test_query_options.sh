@@ -14,23 +14,6 @@ fi
 cloths=meshes/crossing_cloths.obj
 sheet=meshes/folded_sheet.obj
 
-# status N COMMAND...: ends with status N.
-status() {
-    wanted=$1
-    shift
-    "$@" >"$scratch/out" 2>"$scratch/err"
-    got=$?
-    [ $got -eq "$wanted" ] || { echo "status $got"; cat "$scratch/out" "$scratch/err"; return 1; }
-}
-# says N TEXT COMMAND...: the same, and prints the text somewhere.
-says() {
-    wanted=$1
-    text=$2
-    shift 2
-    status "$wanted" "$@" || return 1
-    grep -q -e "$text" "$scratch/out" "$scratch/err" ||
-        { cat "$scratch/out" "$scratch/err"; return 1; }
-}
 # pairs FILE OPTION...: the triangle pairs that are left.
 pairs() {
     to=$1

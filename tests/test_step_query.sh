@@ -12,24 +12,6 @@ if [ ! -x "$query" ]; then
     finish
 fi
 
-# status N COMMAND...: ends with status N.
-status() {
-    wanted=$1
-    shift
-    "$@" >"$scratch/out" 2>"$scratch/err"
-    got=$?
-    [ $got -eq "$wanted" ] || { echo "status $got"; cat "$scratch/out" "$scratch/err"; return 1; }
-}
-# says N TEXT COMMAND...: the same, and prints the text somewhere.
-says() {
-    wanted=$1
-    text=$2
-    shift 2
-    status "$wanted" "$@" || return 1
-    grep -q -e "$text" "$scratch/out" "$scratch/err" ||
-        { cat "$scratch/out" "$scratch/err"; return 1; }
-}
-
 # Two triangles; a corner of the second is at height z over or under the first.
 frame() {
     printf 'v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 %s\nv 2 1 2\nv 1 2 2\nf 1 2 3\nf 4 5 6\n' "$2" >"$1"

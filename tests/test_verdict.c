@@ -53,17 +53,6 @@ static void fold_in_half(double *positions, uint32_t count)
         if (positions[3 * (size_t)v] > 0.5) positions[3 * (size_t)v] = 1 - positions[3 * (size_t)v];
 }
 
-static sc_query_options make_options(uint32_t kind, uint32_t contact, uint32_t method)
-{
-    sc_query_options o;
-    memset(&o, 0, sizeof(o));
-    o.struct_size = sizeof(o);
-    o.pairs = kind;
-    o.contact = contact;
-    o.method = method;
-    return o;
-}
-
 /* stats may be NULL. */
 static sc_status ask(const subject *s, const sc_query_options *options, sc_pair *pairs,
                      uint64_t capacity, sc_stats *stats, sc_result *result)
@@ -114,7 +103,7 @@ static void complete_queries(void)
         if (open_subject(&s, mesh, 1))
             for (uint32_t method = 0; method <= SC_METHOD_AABB; ++method)
                 for (uint32_t output = 0; output <= SC_OUTPUT_ANY; ++output) {
-                    sc_query_options o = make_options(round % 2, round / 2 % 2, method);
+                    sc_query_options o = input_query(round % 2, round / 2 % 2, method);
                     sc_result r;
                     sc_status status;
                     static const uint32_t never = 0;
@@ -139,12 +128,12 @@ static void errors_and_older_callers(void)
 {
     subject s;
     if (open_subject(&s, soup_cloth(4, 4), 0)) {
-        sc_query_options o = make_options(0, 0, SC_METHOD_AABB + 1);
+        sc_query_options o = input_query(0, 0, SC_METHOD_AABB + 1);
         sc_pose pose = input_plain_pose(s.posed, s.mesh.vertex_count);
         sc_result r;
         const uint32_t stop = 1;
         CHECK(ask(&s, &o, NULL, 0, NULL, &r) == SC_ERROR_OPTION && r.verdict == SC_VERDICT_NONE);
-        o = make_options(0, 0, 0);
+        o = input_query(0, 0, 0);
         CHECK(ask(&s, &o, NULL, 1, NULL, &r) == SC_ERROR_NULL && r.verdict == SC_VERDICT_NONE);
         s.posed[0] = 1e300 * 1e300;
         CHECK(ask(&s, &o, NULL, 0, NULL, &r) == SC_ERROR_NOT_FINITE &&
@@ -175,7 +164,7 @@ static void cancelled_before(void)
         fold_in_half(s.posed, s.mesh.vertex_count);
         for (uint32_t method = 0; method <= SC_METHOD_AABB; ++method)
             for (uint32_t output = 0; output <= SC_OUTPUT_ANY; ++output) {
-                sc_query_options o = make_options(0, 0, method);
+                sc_query_options o = input_query(0, 0, method);
                 sc_pair pair = {7, 8};
                 sc_result r;
                 o.output = output;
@@ -246,7 +235,7 @@ static void budgets(void)
         s.state = state;
         if (open_subject(&s, mesh, 1)) {
             sc_query_options o =
-                make_options(round % 2, round / 2 % 2, 1 + test_random_below(SC_METHOD_AABB));
+                input_query(round % 2, round / 2 % 2, 1 + test_random_below(SC_METHOD_AABB));
             uint64_t total, last = 0;
             sc_stats stats;
             sc_result r;
@@ -306,7 +295,7 @@ static void cancelled_on_the_way(void)
         soup mesh = soup_cloth(14, 14);
         s.name = "cloth";
         if (open_subject(&s, mesh, 0)) {
-            sc_query_options o = make_options(round % 2, 0, 1 + round % 3);
+            sc_query_options o = input_query(round % 2, 0, 1 + round % 3);
             sc_pair *all, *found;
             uint64_t count;
             sc_filter f;
@@ -366,7 +355,7 @@ static void cancelled_by_a_thread(void)
     if (open_subject(&s, soup_cloth(14, 14), 0)) {
         fold_in_half(s.posed, s.mesh.vertex_count);
         for (uint32_t method = 0; method <= SC_METHOD_AABB; ++method) {
-            sc_query_options o = make_options(0, 0, method);
+            sc_query_options o = input_query(0, 0, method);
             sc_filter f;
             sc_result r;
             stopper stop;

@@ -50,18 +50,6 @@ void query_text_field(FILE *out, const char *text)
     fputc('"', out);
 }
 
-bool query_text_print(cJSON *object)
-{
-    char *text = cJSON_PrintUnformatted(object);
-    if (text)
-        puts(text);
-    else
-        tool_error("out of memory");
-    cJSON_free(text);
-    cJSON_Delete(object);
-    return text != NULL;
-}
-
 void query_text_stats(const sc_stats *stats)
 {
     printf("    %-34s %10s %12s\n", "task", "ms", "count");

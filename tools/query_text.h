@@ -1,5 +1,5 @@
 /*
- * What sc-query prints of any question: statistics, fields of tables, JSON; and how statuses add up.
+ * What sc-query prints of any question: statistics and fields of tables; and how statuses add up.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -21,9 +21,6 @@ double query_text_rounded(double milliseconds);
 
 /* Writes a field of comma-separated values (RFC 4180): quoted where it must be. */
 void query_text_field(FILE *out, const char *text);
-
-/* Prints an object on a line of its own and frees it; false, with a message, if there is no memory. */
-bool query_text_print(cJSON *object);
 
 /* The tasks of a query and what became of the test tree, as lines of text, or as "stats" of an object. */
 void query_text_stats(const sc_stats *stats);

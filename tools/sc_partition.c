@@ -12,6 +12,7 @@
 #include "ply_write.h"
 #include "shape.h"
 #include "tool.h"
+#include "tool_json.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -245,18 +246,6 @@ static void json_level(cJSON *array, uint32_t level, const sc_level_info *info,
     cJSON_AddItemToArray(array, object);
 }
 
-static bool print_json(cJSON *object)
-{
-    char *text = cJSON_PrintUnformatted(object);
-    if (text)
-        puts(text);
-    else
-        tool_error("out of memory");
-    cJSON_free(text);
-    cJSON_Delete(object);
-    return text != NULL;
-}
-
 /* A share in percent, or a dash where there is nothing to share. */
 static void print_share(uint32_t part, uint32_t whole)
 {
@@ -396,7 +385,7 @@ static bool show_mesh(mesh_file *mesh, const char *name, const partition_setting
         cJSON *object = json_totals(&view, name, set);
         done = show_levels(&view, cJSON_AddArrayToObject(object, "hierarchy"));
         if (done)
-            done = print_json(object);
+            done = tool_json_print(object);
         else
             cJSON_Delete(object);
     } else if (done) {
@@ -428,7 +417,7 @@ static bool show_scaling(const partition_settings *set)
         }
         done = view_open(&view, &mesh, set->partition, SC_REST_UNMARKED, name);
         if (done && set->json) {
-            done = print_json(json_totals(&view, name, set));
+            done = tool_json_print(json_totals(&view, name, set));
         } else if (done) {
             const sc_model_info *info = &view.info;
             const double triangles = info->triangle_count;

@@ -14,6 +14,7 @@
 #include "query_threads.h"
 #include "step_query.h"
 #include "tool.h"
+#include "tool_json.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -445,7 +446,7 @@ static bool print_json_answer(const file_answer *answer, const settings *set, co
     if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
     if (set->stats) query_text_add_stats(object, &answer->stats);
     if (set->contacts) add_contacts(object, list);
-    return query_text_print(object);
+    return tool_json_print(object);
 }
 
 static bool print_json_error(const char *path, const char *error)
@@ -454,7 +455,7 @@ static bool print_json_error(const char *path, const char *error)
     cJSON_AddStringToObject(object, "file", path);
     cJSON_AddStringToObject(object, "status", "error");
     cJSON_AddStringToObject(object, "error", error);
-    return query_text_print(object);
+    return tool_json_print(object);
 }
 
 static void print_table_head(const settings *set)

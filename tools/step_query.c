@@ -9,6 +9,7 @@
 #include "query_subject.h"
 #include "query_text.h"
 #include "query_threads.h"
+#include "tool_json.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -284,7 +285,7 @@ static bool print_json_answer(const step_answer *answer, const step_run *run)
     if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
     if (set->stats) query_text_add_stats(object, &answer->stats);
     if (set->times) add_pairs(object, answer, run);
-    return query_text_print(object);
+    return tool_json_print(object);
 }
 
 static void write_pairs(const step_answer *answer, const step_run *run)
@@ -311,7 +312,7 @@ static int report_failure(const step_answer *answer, const step_run *run, const 
         cJSON_AddStringToObject(object, "end", answer->end);
         cJSON_AddStringToObject(object, "status", "error");
         cJSON_AddStringToObject(object, "error", error);
-        query_text_print(object);
+        tool_json_print(object);
     }
     fflush(stdout);
     return TOOL_FAILED;
