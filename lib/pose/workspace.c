@@ -212,8 +212,7 @@ sc_workspace *sc_workspace_of_worker(sc_workspace *w, uint32_t worker)
     return (sc_workspace *)(void *)(w->views + (worker - 1) * w->view_bytes);
 }
 
-/* Has some leaf clusters kept ready, in arrays of the worker's own. */
-static void keep_some(const sc_model *model, sc_workspace *w)
+void sc_workspace_keep_some(const sc_model *model, sc_workspace *w)
 {
     w->ready = w->some_ready;
     w->known = w->some_known;
@@ -226,8 +225,24 @@ void sc_workspace_keep_all(const sc_model *model, sc_workspace *w)
     if (!all_ready_count(model)) return;
     w->ready = w->all_ready;
     w->known = w->all_known;
-    w->ready_mask = 0xffffffffu;
+    w->ready_mask = SC_KEEPS_ALL;
     w->ready_upper = 0;
+}
+
+/* Gives each of so many workers a part of the room for all leaf clusters, if that is more than it has by itself. */
+static void keep_parts(const sc_model *model, sc_workspace *w, uint32_t workers)
+{
+    const uint32_t room = all_ready_count(model) / workers;
+    uint32_t kept = 1, worker;
+    while (kept <= room / 2) kept *= 2;
+    if (w->ready != w->all_ready || kept <= ready_kept(model)) return;
+    for (worker = 0; worker < workers; worker++) {
+        sc_workspace *own = sc_workspace_of_worker(w, worker);
+        own->ready = w->all_ready + (uint64_t)worker * room;
+        own->known = w->all_known + (uint64_t)worker * room;
+        own->ready_mask = kept - 1;
+        own->ready_upper = 0;
+    }
 }
 
 /* All that is in the workspace, with the arrays of its own that stand behind the view. */
@@ -236,7 +251,7 @@ static void make_view(const sc_model *model, const sc_workspace *w, sc_workspace
     uint64_t at = align(sizeof *view);
     *view = *w;
     lay_out_own(model, (unsigned char *)view, &at, view);
-    keep_some(model, view);
+    sc_workspace_keep_some(model, view);
 }
 
 void sc_workspace_share(const sc_model *model, sc_workspace *w, uint32_t workers)
@@ -249,6 +264,7 @@ void sc_workspace_share(const sc_model *model, sc_workspace *w, uint32_t workers
         view->ball_tick = ball_tick;
         view->tasks = NULL;
     }
+    keep_parts(model, w, workers);
 }
 
 sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_options *options,
@@ -270,7 +286,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     for (k = 0; k < 2; k++) memset(w->bounds_tick[k], 0, model->segment_count * sizeof(uint16_t));
     memset(w->all_known, 0, all_ready_count(model) * sizeof *w->all_known);
     clear_own(model, w);
-    keep_some(model, w);
+    sc_workspace_keep_some(model, w);
     if (w->flags & SC_WORKSPACE_STEP) place_motion(model, &w->motion, w->ball);
     for (worker = 1; worker < w->workers; worker++) {
         sc_workspace *view = sc_workspace_of_worker(w, worker);
@@ -310,7 +326,7 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
         workspace->pose_tick = 0;
     }
     workspace->pose_tick++;
-    keep_some(model, workspace);
+    sc_workspace_keep_some(model, workspace);
     workspace->leaves_ready = workspace->boxes_ready = 0;
     workspace->near_count = workspace->far_count = workspace->settled_count = 0;
     workspace->candidate_count = workspace->neighbor_count = workspace->found_count = 0;

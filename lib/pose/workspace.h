@@ -135,6 +135,9 @@ typedef struct sc_leaf_slab {
 /* Where not all leaf clusters are kept ready, so many are at most, of each side of pairs: a power of two. */
 enum { SC_READY_KEPT = 32 };
 
+/* As ready_mask: every leaf cluster has a place. */
+#define SC_KEEPS_ALL 0xffffffffu
+
 /* Fans that are remembered. */
 enum { SC_FANS_KEPT = 256 };
 
@@ -249,15 +252,16 @@ struct sc_workspace {
     sc_contour_edges contour;
     sc_walk walk;
 
-    /* leaf cluster i is at i & ready_mask, as the upper one of two ready_upper behind */
-    sc_leaf_ready *ready; /* all_ready or some_ready */
-    sc_leaf_known *known; /* all_known or some_known */
-    uint32_t ready_mask, ready_upper;
-    sc_leaf_ready *all_ready;  /* leaf_count; 0 if there are no segments */
-    sc_leaf_known *all_known;  /* the same */
-    sc_leaf_ready *some_ready; /* 2 * SC_READY_KEPT, fewer in small models */
-    sc_leaf_known *some_known; /* as many */
-    sc_leaf_slab *slab;        /* leaf_count */
+    /* leaf cluster i is at i & ready_mask, as the upper one of two ready_upper behind. Where that is 0 and not all are kept,
+       two may have one place */
+    sc_leaf_ready *ready;             /* all_ready or some_ready */
+    sc_leaf_known *known;             /* all_known or some_known */
+    uint32_t ready_mask, ready_upper; /* the former SC_KEEPS_ALL if all are */
+    sc_leaf_ready *all_ready;         /* leaf_count; 0 if there are no segments */
+    sc_leaf_known *all_known;         /* the same */
+    sc_leaf_ready *some_ready;        /* 2 * SC_READY_KEPT, fewer in small models */
+    sc_leaf_known *some_known;        /* as many */
+    sc_leaf_slab *slab;               /* leaf_count */
     uint32_t *far_pairs
         [2]; /* SC_LEAF_QUEUE that share no points and wait: the lower of two, and the other */
     sc_near_pair *
@@ -318,6 +322,10 @@ sc_pair *sc_workspace_spare(const sc_model *model, const sc_workspace *workspace
 /* Starts a pose and a projection, whose ticks make everything older stale. */
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace);
 void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace);
+
+/* Has some leaf clusters kept ready, in arrays of the worker's own: of each pair the lower and the upper one at
+   different places. */
+void sc_workspace_keep_some(const sc_model *model, sc_workspace *workspace);
 
 /* Has all leaf clusters kept ready in this pose, for which no star test is made, if there is room. */
 void sc_workspace_keep_all(const sc_model *model, sc_workspace *workspace);

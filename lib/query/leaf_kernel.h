@@ -270,6 +270,41 @@ static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, uint32_t a, uint
     return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
 }
 
+/* Whether the place of a leaf cluster is that of another one that the rows are of. */
+static inline unsigned SC_KERNEL(is_taken)(const sc_query_state *state, uint32_t leaf, int is_upper,
+                                           const SC_KERNEL(rows) * rows)
+{
+    const sc_workspace *w = state->workspace;
+    const sc_leaf_known *known = w->known + SC_KERNEL(place)(state, leaf, is_upper);
+    unsigned taken = 0, k;
+    if (known->leaf == leaf || known->tick != w->pose_tick) return 0;
+    for (k = 0; k < rows->pairs; k++)
+        taken |= (unsigned)(rows->leaf[0][k] == known->leaf) |
+                 (unsigned)(rows->leaf[1][k] == known->leaf);
+    return taken;
+}
+
+static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs,
+                                 uint32_t shared, SC_KERNEL(rows) * rows);
+
+/* Two leaf clusters that have one place: they are made ready elsewhere. */
+static void SC_KERNEL(leaf_pair_elsewhere)(sc_query_state *state, uint32_t a, uint32_t b,
+                                           int by_slabs, uint32_t shared, SC_KERNEL(rows) * rows)
+{
+    sc_workspace *w = state->workspace;
+    sc_leaf_ready *ready = w->ready;
+    sc_leaf_known *known = w->known;
+    const uint32_t mask = w->ready_mask;
+    SC_KERNEL(test_rows)(state, rows);
+    sc_workspace_keep_some(state->model, w);
+    SC_KERNEL(leaf_pair)(state, a, b, by_slabs, shared, rows);
+    SC_KERNEL(test_rows)(state, rows);
+    w->ready = ready;
+    w->known = known;
+    w->ready_mask = mask;
+    w->ready_upper = 0;
+}
+
 /* Two leaf clusters, a <= b; by_slabs: slabs may tell them apart, and were not looked at; shared as sc_candidates_enter has
    it. What is made ready may take the place of a leaf cluster that the rows are of, so these are tested before. */
 static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs,
@@ -277,10 +312,15 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, 
 {
     sc_leaf_pair p;
     unsigned some_a, some_b = SC_LEAF_ALL;
-    if (rows->pairs == SC_ROWS_PAIRS ||
-        (state->workspace->ready_upper &&
-         !(SC_KERNEL(is_ready)(state, a, 0) & SC_KERNEL(is_ready)(state, b, b > a))))
-        SC_KERNEL(test_rows)(state, rows);
+    if (rows->pairs == SC_ROWS_PAIRS) SC_KERNEL(test_rows)(state, rows);
+    if (state->workspace->ready_mask != SC_KEEPS_ALL) {
+        if (a != b && SC_KERNEL(place)(state, a, 0) == SC_KERNEL(place)(state, b, 1)) {
+            SC_KERNEL(leaf_pair_elsewhere)(state, a, b, by_slabs, shared, rows);
+            return;
+        }
+        if (SC_KERNEL(is_taken)(state, a, 0, rows) | SC_KERNEL(is_taken)(state, b, b > a, rows))
+            SC_KERNEL(test_rows)(state, rows);
+    }
     if (a == b) {
         const uint32_t *first = sc_model_leaf_first(state->model) + a;
         some_a = (1u << (first[1] - first[0] - 1)) - 1u;

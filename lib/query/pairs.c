@@ -13,18 +13,27 @@
 #include "query/filter.h"
 
 /* Entries of the caller's array are claimed for many pairs at once, so that no two workers write to one. */
-static void take_shared(sc_query_state *state, sc_pair pair)
+static void deliver(sc_query_state *state)
 {
     sc_workspace *w = state->workspace;
-    uint64_t at;
-    w->found[w->found_count++] = pair;
-    if (w->found_count < SC_FOUND_MAX) return;
+    uint64_t at = sc_atomic_add(&state->share->claimed, SC_FOUND_MAX);
     w->found_count = 0;
-    at = sc_atomic_add(&state->share->claimed, SC_FOUND_MAX);
     if (at + SC_FOUND_MAX <= state->capacity)
         memcpy(state->pairs + at, w->found, sizeof(sc_pair) * SC_FOUND_MAX);
     else
         sc_atomic_write(&state->share->halt, 1); /* too short for certain */
+}
+
+static void take_shared(sc_query_state *state, const sc_pair *pairs, uint32_t count)
+{
+    sc_workspace *w = state->workspace;
+    uint32_t some;
+    for (; count; pairs += some, count -= some) {
+        some = SC_FOUND_MAX - w->found_count < count ? SC_FOUND_MAX - w->found_count : count;
+        memcpy(w->found + w->found_count, pairs, some * sizeof *pairs);
+        w->found_count += some;
+        if (w->found_count == SC_FOUND_MAX) deliver(state);
+    }
 }
 
 void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b)
@@ -40,7 +49,7 @@ void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b)
     }
     if (state->options.output != SC_OUTPUT_PAIRS || state->capacity == 0) return;
     if (state->share) {
-        take_shared(state, pair);
+        take_shared(state, &pair, 1);
         return;
     }
     if (state->count <= state->capacity) {
@@ -57,9 +66,14 @@ void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b)
 void sc_pairs_take_all(sc_query_state *state, const sc_pair *pairs, uint32_t count)
 {
     uint32_t i;
-    if (!state->filter && !state->share && state->options.output != SC_OUTPUT_ANY) {
+    if (!state->filter && state->options.output != SC_OUTPUT_ANY) {
         if (state->options.output == SC_OUTPUT_COUNT || state->capacity == 0) {
             state->count += count;
+            return;
+        }
+        if (state->share) {
+            state->count += count;
+            take_shared(state, pairs, count);
             return;
         }
         if (state->capacity >= count && state->count <= state->capacity - count) {

@@ -253,6 +253,7 @@ static void test_queue(sc_query_state *state)
     sc_walk *walk = &state->workspace->walk;
     uint8_t passed[SC_WALK_QUEUE + SC_WALK_CHILDREN];
     uint32_t i;
+    if (!walk->queue_count) return;
     sc_traversal_test(state, walk->queue, walk->queue_count, passed);
     for (i = 0; i < walk->queue_count; i++) {
         const sc_pair *patches = &sc_model_node_patches(state->model)[walk->queue[i]];
