@@ -101,6 +101,12 @@ uint32_t test_iterations(uint32_t count)
     return scaled == 0 ? 1 : (uint32_t)scaled;
 }
 
+uint32_t test_iterations_at_least(uint32_t count, uint32_t least)
+{
+    uint32_t scaled = test_iterations(count);
+    return scaled < least ? least : scaled;
+}
+
 void *test_allocate(size_t size)
 {
     void *memory = malloc(size == 0 ? 1 : size);

@@ -83,6 +83,10 @@ void test_random_reset(uint64_t state);
 /* count scaled by --scale, at least 1. */
 uint32_t test_iterations(uint32_t count);
 
+/* The same, but at least `least`: for tests that ask at the end whether they saw enough of what they are
+   about, which a few trials may not have. */
+uint32_t test_iterations_at_least(uint32_t count, uint32_t least);
+
 /* malloc that ends the program when there is no memory; free as usual. size 0 is allowed. */
 void *test_allocate(size_t size);
 

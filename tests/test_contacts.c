@@ -505,7 +505,7 @@ static void pairs_of_meshes(void)
     uint64_t seen[4] = {0, 0, 0, 0};
     oracle o;
     oracle_start(&o);
-    for (uint32_t round = 0; round < test_iterations(40); ++round) {
+    for (uint32_t round = 0; round < test_iterations_at_least(40, 20); ++round) {
         const char *name;
         soup mesh = shape_any(80, &name), posed = soup_copy(&mesh);
         input_choices choices = input_choose(&mesh, test_random_below(3), test_random_below(4));

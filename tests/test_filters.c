@@ -324,7 +324,7 @@ static sc_filter no_filter(void)
 static void every_filter(void)
 {
     uint64_t kept = 0, dropped = 0;
-    for (uint32_t round = 0; round < test_iterations(12); ++round) {
+    for (uint32_t round = 0; round < test_iterations_at_least(12, 8); ++round) {
         subject s;
         if (open_subject(&s, 140))
             for (uint32_t kind = 0; kind < 2; ++kind)
@@ -362,7 +362,7 @@ static void every_filter(void)
 static void every_ring(void)
 {
     uint64_t kept = 0, dropped = 0;
-    for (uint32_t round = 0; round < test_iterations(24); ++round) {
+    for (uint32_t round = 0; round < test_iterations_at_least(24, 8); ++round) {
         subject s;
         if (open_subject(&s, 160)) {
             soup_crush(s.posed, s.mesh.vertex_count);

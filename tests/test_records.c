@@ -140,7 +140,7 @@ static uint64_t check_round_trip(const sc_model *model, const sc_pose *pose,
 static void round_trips(void)
 {
     uint64_t found = 0;
-    for (uint32_t i = 0; i < test_iterations(40); ++i) {
+    for (uint32_t i = 0; i < test_iterations_at_least(40, 8); ++i) {
         const char *name;
         soup mesh = shape_any(150, &name);
         sc_mesh m = input_plain_mesh(&mesh);
@@ -184,7 +184,7 @@ static void fill_groups(sc_group *groups, uint32_t count)
 static void filters(void)
 {
     uint64_t found = 0, without = 0;
-    for (uint32_t i = 0; i < test_iterations(64); ++i) {
+    for (uint32_t i = 0; i < test_iterations_at_least(64, 24); ++i) {
         const char *name;
         soup mesh = shape_any(120, &name);
         sc_mesh m = input_plain_mesh(&mesh);

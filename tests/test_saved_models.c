@@ -199,7 +199,7 @@ static uint64_t check_round_trip(const soup *mesh, sc_model *model)
 static void round_trips(void)
 {
     uint64_t found = 0;
-    for (uint32_t i = 0; i < test_iterations(24); ++i) {
+    for (uint32_t i = 0; i < test_iterations_at_least(24, 6); ++i) {
         const char *name;
         soup mesh = shape_any(200, &name);
         sc_model *model = build(&mesh, i % 3, i % 4, i % 5 == 0 ? SC_MODEL_BOXES : SC_MODEL_FULL);

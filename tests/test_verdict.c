@@ -97,7 +97,7 @@ static int is_part(const sc_pair *part, uint64_t count, const sc_pair *all, uint
 static void complete_queries(void)
 {
     uint64_t seen[2] = {0, 0};
-    for (uint32_t round = 0; round < test_iterations(100); ++round) {
+    for (uint32_t round = 0; round < test_iterations_at_least(100, 20); ++round) {
         subject s;
         soup mesh = shape_any(100, &s.name);
         if (open_subject(&s, mesh, 1))
