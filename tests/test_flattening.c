@@ -116,35 +116,106 @@ static void trees(void)
               went[ANYWHERE]);
 }
 
-/* 200 leaves in halves, and islands beside the first: three levels more, of which the one goes that changes few patches. */
-static void islands(void)
+/* Some leaves one by one, then 200 in halves, and islands beside the first of these: three levels more, of which the
+   one goes that changes few patches. */
+static void add_islands(sc_hierarchy *h, uint32_t singles)
 {
-    sc_allocator allocator = sc_memory_allocator(NULL);
-    sc_scratch scratch;
-    sc_hierarchy h;
-    uint32_t node = 0;
-    sc_scratch_init(&scratch, &allocator);
-    h = start(&scratch, 203);
-    add_tree(&h, 3, 200, 1, HALVES);
-    for (; h.nodes[node].left != SC_NONE; node = h.nodes[node].left) {
-        h.nodes[node].first = 0;
-        h.nodes[node].count += 3;
+    uint32_t node = 0, single, below, depth = singles;
+    for (uint32_t i = 0; i <= singles; ++i) {
+        below = sc_hierarchy_add(h, i, 203 + singles - i, i + 1);
+        if (i > 0) h->nodes[node].right = below;
+        node = below;
+        if (i == singles) break;
+        single = sc_hierarchy_add(h, i, 1, i + 2);
+        h->nodes[node].left = single;
+    }
+    h->node_count--; /* which add_tree adds itself */
+    add_tree(h, singles + 3, 200, singles + 1, HALVES);
+    for (; h->nodes[node].left != SC_NONE; node = h->nodes[node].left) {
+        h->nodes[node].first = singles;
+        h->nodes[node].count += 3;
+        ++depth;
     }
     for (uint32_t i = 3; i > 0; --i) { /* the leaf's place is taken by an island and what is left */
         uint32_t island, rest;
-        h.nodes[node].first = 3 - i;
-        h.nodes[node].count = i + 1;
-        island = sc_hierarchy_add(&h, 3 - i, 1, 12 - i);
-        rest = sc_hierarchy_add(&h, 4 - i, i, 12 - i);
-        h.nodes[node].left = island;
-        h.nodes[node].right = rest;
+        h->nodes[node].first = singles + 3 - i;
+        h->nodes[node].count = i + 1;
+        island = sc_hierarchy_add(h, singles + 3 - i, 1, depth + 5 - i);
+        rest = sc_hierarchy_add(h, singles + 4 - i, i, depth + 5 - i);
+        h->nodes[node].left = island;
+        h->nodes[node].right = rest;
         node = rest;
     }
-    CHECK(h.depth == 11 && sc_hierarchy_validate(&h, &scratch) == 1);
-    CHECK(sc_hierarchy_finish(&h, &scratch) == SC_OK);
-    CHECK(sc_flattening_run(&scratch, &h) == SC_OK && h.depth == 10);
-    CHECK(sc_hierarchy_validate(&h, &scratch) == 1);
-    sc_scratch_clear(&scratch);
 }
 
-SC_TEST_MAIN(SC_TEST(trees), SC_TEST(islands))
+static void islands(void)
+{
+    static const uint32_t singles[] = {0, 1, 22, 23, 24, 30};
+    for (size_t i = 0; i < sizeof(singles) / sizeof(singles[0]); ++i) {
+        sc_allocator allocator = sc_memory_allocator(NULL);
+        sc_scratch scratch;
+        sc_hierarchy h;
+        uint32_t depth = 11 + singles[i];
+        sc_scratch_init(&scratch, &allocator);
+        h = start(&scratch, 203 + singles[i]);
+        add_islands(&h, singles[i]);
+        CHECK(h.depth == depth && sc_hierarchy_validate(&h, &scratch) == 1);
+        CHECK(sc_hierarchy_finish(&h, &scratch) == SC_OK);
+        CHECK(sc_flattening_run(&scratch, &h) == SC_OK);
+        CHECK_MSG(h.depth == depth - 1 && h.depth == depth_below(h.nodes, 0), "%" PRIu32, h.depth);
+        CHECK(sc_hierarchy_validate(&h, &scratch) == 1);
+        sc_scratch_clear(&scratch);
+    }
+}
+
+/* An allocator that fails from some call on, and counts what it gave. */
+typedef struct limited {
+    uint32_t left, given;
+} limited;
+
+static void *allocate_limited(void *user, uint64_t size, uint64_t alignment)
+{
+    limited *l = (limited *)user;
+    (void)alignment;
+    if (l->left == 0) return NULL;
+    --l->left;
+    ++l->given;
+    return malloc((size_t)size);
+}
+
+static void release_limited(void *user, void *memory, uint64_t size)
+{
+    (void)size;
+    --((limited *)user)->given;
+    free(memory);
+}
+
+static void every_allocation_fails(void)
+{
+    uint32_t failed = 0, enough = 0;
+    for (uint32_t left = 0; left < 40 && !enough; ++left) {
+        limited l = {UINT32_MAX, 0};
+        sc_allocator allocator = {allocate_limited, release_limited, NULL};
+        sc_scratch scratch;
+        sc_hierarchy h;
+        allocator.user = &l;
+        sc_scratch_init(&scratch, &allocator);
+        h = start(&scratch, 203);
+        add_islands(&h, 0);
+        CHECK(sc_hierarchy_finish(&h, &scratch) == SC_OK);
+        l.left = left;
+        if (sc_hierarchy_validate(&h, &scratch) == 1) {
+            sc_status status;
+            l.left = left;
+            status = sc_flattening_run(&scratch, &h);
+            enough = status == SC_OK;
+            CHECK(enough || status == SC_ERROR_MEMORY);
+            failed += !enough;
+        }
+        sc_scratch_clear(&scratch);
+        CHECK(l.given == 0);
+    }
+    CHECK(enough && failed > 1);
+}
+
+SC_TEST_MAIN(SC_TEST(trees), SC_TEST(islands), SC_TEST(every_allocation_fails))

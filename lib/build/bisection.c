@@ -321,8 +321,10 @@ static void share_leaves(const bisection *b, uint32_t leaves, uint32_t left, uin
     *right_leaves = leaves - *left_leaves;
     target = (uint32_t)((uint64_t)count * *left_leaves / leaves);
     if (left <= target + slack && target <= left + slack &&
-        left <= (uint64_t)*left_leaves * SC_LEAF_MAX && left >= *left_leaves &&
-        right <= (uint64_t)*right_leaves * SC_LEAF_MAX && right >= *right_leaves)
+        left <= (uint64_t)*left_leaves * SC_LEAF_MAX &&
+        right <= (uint64_t)*right_leaves * SC_LEAF_MAX &&
+        /* nine triangles a leaf to begin with: only many cuts in a row that use all slack leave so few */
+        !SC_HARDLY(left < *left_leaves || right < *right_leaves))
         return;
     *left_leaves = leaves_for(b, left);
     *right_leaves = leaves_for(b, right);

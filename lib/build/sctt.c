@@ -81,9 +81,9 @@ sc_status sc_sctt_build(const sc_xbvh *xbvh, const sc_neighbors *neighbors, sc_s
     g.scratch = scratch;
     sctt->level_first =
         (uint32_t *)sc_scratch_take(scratch, (uint64_t)xbvh->level_count + 1, sizeof(uint32_t));
-    if (!sctt->level_first || !reserve(&g, NODES_A_LEAF * (uint64_t)xbvh->leaf_count) ||
-        !add_node(&g, 0, 0, SC_NONE))
+    if (!sctt->level_first || !reserve(&g, NODES_A_LEAF * (uint64_t)xbvh->leaf_count))
         return SC_ERROR_MEMORY;
+    (void)add_node(&g, 0, 0, SC_NONE); /* there is room */
     for (n = 0, level = 0; level < xbvh->level_count; level++) {
         sctt->level_first[level] = (uint32_t)n;
         for (end = g.touch.count; n < end; n++) {

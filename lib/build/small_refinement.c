@@ -5,6 +5,7 @@
  */
 #include "build/small_refinement.h"
 
+#include "base/assume.h"
 #include "base/bits.h"
 
 /* A pass ends after so many moves without a shorter border; and so many passes at most. */
@@ -68,8 +69,9 @@ static int run_small_pass(small_patch *p, uint32_t size[2], const uint32_t capac
     for (some = p->listed; some; some &= some - 1) weigh(p, sc_bits_lowest64(some));
     while (since < SMALL_PATIENCE) {
         some = 0;
-        if (size[1] < capacity[1] && size[0] > 1) some = ~p->upper;
-        if (size[0] < capacity[0] && size[1] > 1) some |= p->upper;
+        /* no side may take all but one, see refinement.h */
+        if (size[1] < capacity[1] && SC_ALWAYS(size[0] > 1)) some = ~p->upper;
+        if (size[0] < capacity[0] && SC_ALWAYS(size[1] > 1)) some |= p->upper;
         some &= p->border & still;
         if (!some) break;
         i = choose(p, some);

@@ -335,7 +335,8 @@ static void place_in_polygon(double *p, double x, double y, int count, double co
 
 /*
  * Whether the polygon comes near enough to be reported at the start of a slab of time, by splitting it into cells.
- * If not, nothing is within the separation from the start to the end of the slab.
+ * If not, nothing is within the separation from the start to the end of the slab. But it does: were it farther away than
+ * that, its direction would have proved the slab, unless all that improve_direction tries were bad.
  */
 static int is_near_in_slab(int count, const motion *m, double from, double to)
 {
@@ -349,7 +350,7 @@ static int is_near_in_slab(int count, const motion *m, double from, double to)
     }
     cells[left++] = (cell){{0, 1, 0}, {0, 0, 1}};
     if (count == 4) cells[left++] = (cell){{1, 1, 0}, {1, 0, 1}};
-    while (left > 0) {
+    while (!SC_HARDLY(left == 0)) {
         cell c = cells[--left], mid;
         double p[3][3], nearest[3] = {0, 0, 0}, direction[3], distance;
         int is_apart = 1;
@@ -417,7 +418,7 @@ static inline int search(int count, const motion *m, double latest, double *time
 {
     instant here, guards[MAXIMUM_GUARDS];
     double slab = 0;
-    int top = 0, is_looked_at = 0;
+    int top = 0, is_looked_at = 0, is_near;
     look(count, m, 0, &here);
     if (!here.is_apart) {
         *time = 0;
@@ -451,7 +452,8 @@ static inline int search(int count, const motion *m, double latest, double *time
         }
         if (until < here.time + slab) {
             until = here.time + slab < ahead->time ? here.time + slab : ahead->time;
-            if (is_near_in_slab(count, m, here.time, until)) {
+            is_near = is_near_in_slab(count, m, here.time, until);
+            if (!SC_HARDLY(!is_near)) {
                 *time = here.time;
                 return 1;
             }
