@@ -53,6 +53,8 @@ static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
 
 static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
 {
+    const float *const row[2] = {in->a, in->b}, *const points[2] = {in->plain, in->row[0]};
+    const uint8_t *const corners[2] = {in->number, in->other};
     lanes a = lanes_load(in->a), b = lanes_load(in->b), corner[3][3];
     lanes_index number[3];
     lanes_mask mask[3];
@@ -71,13 +73,19 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
     lanes_corners_through(in->plain, in->number, in->through, corner);
     for (k = 0; k < 3; k++)
         for (i = 0; i < 3; i++) lanes_store(out->row[39 + 3 * k + i], corner[k][i]);
+    lanes_store(out->row[65], lanes_pick_two(row, lanes_index_load(in->number), in->split));
+    lanes_corners_two(points, corners, in->through, in->split, corner);
+    for (k = 0; k < 3; k++)
+        for (i = 0; i < 3; i++) lanes_store(out->row[66 + 3 * k + i], corner[k][i]);
+    out->bits[19] = lanes_bits(lanes_from(in->split));
     out->bits[5] = lanes_list(in->mask, list);
     memcpy(out->list, list, out->bits[5]);
     out->bits[18] = lanes_list_from(in->mask, in->names[0], pairs);
     memcpy(out->from, pairs, out->bits[18] * sizeof *pairs);
     lanes_list_bits(in->mask, in->bits, wide);
     memcpy(out->wide, wide, out->bits[5] * sizeof *wide);
-    i = (int)lanes_list_pairs(in->mask, in->number, in->mask, in->through, 7, pairs);
+    i = (int)lanes_list_pairs(in->mask, in->bits[0], in->number, in->first, in->through,
+                              in->first + 2, pairs);
     memcpy(out->pairs, pairs, 2 * (unsigned)i * sizeof *pairs);
     for (i = 0; i < 3; i++) number[i] = lanes_index_load(in->number + SC_LANES_COUNT * i);
     mask[0] = lanes_below(a, b);

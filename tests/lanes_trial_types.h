@@ -20,15 +20,18 @@ typedef struct lanes_input {
     double exact[20];    /* as plain */
     uint8_t number[48];  /* below 16 */
     uint8_t through[16]; /* the same */
+    uint8_t other[48];   /* the same */
     uint32_t names[32];  /* of which some are the same */
     unsigned mask;       /* of 16 bits */
+    unsigned split;      /* up to 16 */
+    uint32_t first[4];   /* any */
     unsigned bits[12];   /* any */
 } lanes_input;
 
 typedef struct lanes_outcome {
-    float row[65][16], one[3];
+    float row[75][16], one[3];
     double eight[16][8];
-    unsigned bits[19];
+    unsigned bits[20];
     uint32_t numbers[16], pairs[32], from[16];
     uint16_t wide[16];
     uint8_t list[16], bytes[10][16];

@@ -97,6 +97,9 @@ static void draw(lanes_input *in)
     for (i = 0; i < 64; i++) in->plain[i] = (float)number(1);
     for (i = 0; i < 48; i++) in->number[i] = (uint8_t)test_random_below(16);
     for (i = 0; i < 16; i++) in->through[i] = (uint8_t)test_random_below(16);
+    for (i = 0; i < 48; i++) in->other[i] = (uint8_t)test_random_below(16);
+    in->split = test_random_below(17);
+    for (i = 0; i < 4; i++) in->first[i] = test_random_below(1000000);
     for (i = 0; i < 20; i++) in->exact[i] = number(1);
     for (i = 0; i < 32; i++) in->names[i] = test_random_below(24) * 0x01010000u + 7;
     in->mask = test_random_below(0x10000);
@@ -215,8 +218,9 @@ static void lists_and_signs(void)
             CHECK(out.list[count] == i && out.from[count] == in.names[0] + i);
             for (k = 0, wide = 0; k < 12; k++) wide |= (in.bits[k] >> i & 1u) << k;
             CHECK(out.wide[count] == wide);
-            CHECK(out.pairs[2 * count] == in.mask + in.number[i]);
-            CHECK(out.pairs[2 * count + 1] == 7u + in.through[i]);
+            wide = in.bits[0] >> i & 1u;
+            CHECK(out.pairs[2 * count] == in.first[wide] + in.number[i]);
+            CHECK(out.pairs[2 * count + 1] == in.first[2 + wide] + in.through[i]);
             count++;
         }
         CHECK(out.bits[5] == count && out.bits[18] == count && out.bits[6] == negative);
@@ -232,6 +236,16 @@ static void lists_and_signs(void)
                 CHECK(!memcmp(&out.row[39 + k][i],
                               turned_point(&in, in.number[k / 3 * 16 + in.through[i]]) + k % 3,
                               sizeof(float)));
+            CHECK((out.bits[19] >> i & 1u) == (unsigned)(i >= in.split));
+            CHECK(!memcmp(&out.row[65][i], (i < in.split ? in.a : in.b) + in.number[i],
+                          sizeof(float)));
+            for (k = 0; k < 9; k++) {
+                uint32_t at = k / 3 * 16 + in.through[i];
+                const float *point = turned_point(&in, in.number[at]);
+                if (i >= in.split)
+                    point = in.row[0] + 16 * (in.other[at] & 3) + in.other[at] / 4 * 4;
+                CHECK(!memcmp(&out.row[66 + k][i], point + k % 3, sizeof(float)));
+            }
             for (k = 0; k < 3; k++)
                 CHECK(!memcmp(&out.row[30 + k][i], turned_point(&in, i) + k, sizeof(float)));
             for (k = 0; k < 3; k++)

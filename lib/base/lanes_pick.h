@@ -6,14 +6,15 @@
  *
  * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
  * to; lanes_list_from adds a first number to them, and writes sixteen words; lanes_list_pairs takes the numbers of these
- * lanes from two rows of sixteen bytes, adds first numbers, and writes pairs of words, room for sixteen. lanes_list_bits writes
+ * lanes from two rows of sixteen bytes, adds the first of two first numbers, or the second in lanes of a second mask, and writes pairs of words, room for sixteen. lanes_list_bits writes
  * a number for each, bit k of which is its lane's in the k-th of twelve masks, room for sixteen. lanes_index reads sixteen
  * numbers below sixteen, lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the
  * floats of these numbers of a row, in memory or not. lanes_choose takes from a where the mask is set, else from b.
  * lanes_same compares bits, whatever they mean; lanes_differ has what is in one of two masks only.
  * lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from three rows of coordinates by three of
  * numbers; lanes_corners_at finds the former in memory, in turned places (see base/lanes.h); lanes_corners_through takes
- * the triangles of sixteen numbers below sixteen instead of all in order.
+ * the triangles of sixteen numbers below sixteen instead of all in order. lanes_pick_two and lanes_corners_two do as lanes_pick
+ * and lanes_corners_through, but from a second place in the lanes that follow so many; lanes_from has these.
  *
  * lanes_marked is the set of the numbers in three rows, in lanes of three masks; lanes_among has the lanes of which the number
  * is in a set.
@@ -23,6 +24,9 @@
 #include <string.h>
 
 #define lanes_index SC_KERNEL(sc_lanes_index)
+#define lanes_from SC_KERNEL(sc_lanes_from)
+#define lanes_pick_two SC_KERNEL(sc_lanes_pick_two)
+#define lanes_corners_two SC_KERNEL(sc_lanes_corners_two)
 #define lanes_index_load SC_KERNEL(sc_lanes_index_load)
 #define lanes_index_through SC_KERNEL(sc_lanes_index_through)
 #define lanes_pick SC_KERNEL(sc_lanes_pick)
@@ -41,6 +45,11 @@
 #define lanes_among SC_KERNEL(sc_lanes_among)
 
 #if SC_LANES_AVX512
+
+static inline lanes_mask lanes_from(unsigned count)
+{
+    return (lanes_mask)(0xffffu << count);
+}
 
 typedef __m512i lanes_index;
 
@@ -102,13 +111,18 @@ static inline unsigned lanes_list_from(unsigned mask, uint32_t first, uint32_t *
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)mask, numbers));
     return (unsigned)__builtin_popcount(mask);
 }
-static inline unsigned lanes_list_pairs(unsigned mask, const uint8_t *a, uint32_t first_a,
-                                        const uint8_t *b, uint32_t first_b, uint32_t *to)
+static inline unsigned lanes_list_pairs(unsigned mask, unsigned second, const uint8_t *a,
+                                        const uint32_t first_a[2], const uint8_t *b,
+                                        const uint32_t first_b[2], uint32_t *to)
 {
     const __m512i low = _mm512_set_epi32(23, 7, 22, 6, 21, 5, 20, 4, 19, 3, 18, 2, 17, 1, 16, 0);
     const __m512i high = _mm512_add_epi32(low, _mm512_set1_epi32(8));
-    __m512i i = _mm512_add_epi32(lanes_index_load(a), _mm512_set1_epi32((int)first_a));
-    __m512i j = _mm512_add_epi32(lanes_index_load(b), _mm512_set1_epi32((int)first_b));
+    __m512i i = _mm512_mask_set1_epi32(_mm512_set1_epi32((int)first_a[0]), (__mmask16)second,
+                                       (int)first_a[1]);
+    __m512i j = _mm512_mask_set1_epi32(_mm512_set1_epi32((int)first_b[0]), (__mmask16)second,
+                                       (int)first_b[1]);
+    i = _mm512_add_epi32(lanes_index_load(a), i);
+    j = _mm512_add_epi32(lanes_index_load(b), j);
     i = _mm512_maskz_compress_epi32((__mmask16)mask, i);
     j = _mm512_maskz_compress_epi32((__mmask16)mask, j);
     _mm512_storeu_si512(to, _mm512_permutex2var_epi32(i, low, j));
@@ -131,6 +145,13 @@ static inline void lanes_list_bits(unsigned mask, const unsigned bits[12], uint1
 }
 
 #else
+
+static inline lanes_mask lanes_from(unsigned count)
+{
+    static const float number[SC_LANES_COUNT] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                 8, 9, 10, 11, 12, 13, 14, 15};
+    return lanes_not_above(lanes_all((float)count), lanes_load(number));
+}
 
 static inline void lanes_list_bits(unsigned mask, const unsigned bits[12], uint16_t *to)
 {
@@ -178,14 +199,15 @@ static inline unsigned lanes_list_from(unsigned mask, uint32_t first, uint32_t *
     for (i = 0; i < SC_LANES_COUNT; i++) to[i] = first + number[i];
     return count;
 }
-static inline unsigned lanes_list_pairs(unsigned mask, const uint8_t *a, uint32_t first_a,
-                                        const uint8_t *b, uint32_t first_b, uint32_t *to)
+static inline unsigned lanes_list_pairs(unsigned mask, unsigned second, const uint8_t *a,
+                                        const uint32_t first_a[2], const uint8_t *b,
+                                        const uint32_t first_b[2], uint32_t *to)
 {
     unsigned count = 0;
     for (; mask; mask &= mask - 1) {
-        uint32_t lane = sc_bits_lowest(mask);
-        to[2 * count] = first_a + a[lane];
-        to[2 * count++ + 1] = first_b + b[lane];
+        uint32_t lane = sc_bits_lowest(mask), k = second >> lane & 1u;
+        to[2 * count] = first_a[k] + a[lane];
+        to[2 * count++ + 1] = first_b[k] + b[lane];
     }
     return count;
 }
@@ -385,6 +407,11 @@ static inline lanes_mask lanes_differ(lanes_mask a, lanes_mask b)
 #  endif
 #endif
 
+static inline lanes lanes_pick_two(const float *const row[2], lanes_index i, unsigned split)
+{
+    return lanes_choose(lanes_from(split), lanes_pick(row[1], i), lanes_pick(row[0], i));
+}
+
 #if SC_LANES_QUADS
 
 /* There is no permutation by numbers: the points one after another, then read again as the corners. */
@@ -477,3 +504,18 @@ static inline void lanes_corners_through(const float *at, const uint8_t *where,
 }
 
 #endif
+
+static inline void lanes_corners_two(const float *const at[2], const uint8_t *const where[2],
+                                     const uint8_t *numbers, unsigned split, lanes corner[3][3])
+{
+    const lanes_mask second = lanes_from(split);
+    lanes other[3][3];
+    int c, k;
+    lanes_corners_through(at[0], where[0], numbers, corner);
+    lanes_corners_through(at[1], where[1], numbers, other);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        SC_UNROLL
+        for (k = 0; k < 3; k++) corner[c][k] = lanes_choose(second, other[c][k], corner[c][k]);
+    }
+}

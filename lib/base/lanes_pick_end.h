@@ -4,6 +4,9 @@
  * SPDX-License-Identifier: MIT
  */
 #undef lanes_index
+#undef lanes_from
+#undef lanes_pick_two
+#undef lanes_corners_two
 #undef lanes_index_load
 #undef lanes_index_through
 #undef lanes_pick

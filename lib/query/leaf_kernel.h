@@ -1,21 +1,11 @@
 /*
  * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then rows against planes; then what is
- * left, sixteen pairs at a time (query/sixteen_kernel.h). Pairs of which it is settled how they meet are collected, and those
+ * left, sixteen pairs at a time, of one pair of clusters or of two (query/sixteen_kernel.h). Pairs of which it is settled how they meet are collected, and those
  * of which nothing is certain. Each of these goes through some pairs of leaf clusters before the next begins, so that few
  * branches depend on how many rows or triangles one of them has. See query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */
-/* Sets all of a picked but the numbers. */
-static inline void SC_KERNEL(begin_picking)(const sc_query_state *state, uint32_t leaf,
-                                            int is_upper, SC_KERNEL(picked) * t)
-{
-    t->points = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
-    t->ready = SC_KERNEL(ready)(state, leaf, is_upper);
-    t->corner = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
-    t->numbers = NULL;
-}
-
 /* What is left of pairs of leaf clusters: rows, that is triangles of one of them and a mask of the other's. Those of one pair
    are together. */
 typedef struct SC_KERNEL(rows) {
@@ -36,55 +26,64 @@ static inline void SC_KERNEL(no_rows)(SC_KERNEL(rows) * rows)
     rows->pairs = rows->wait = rows->count = 0;
 }
 
-/* Lists settled pairs. */
-static inline void SC_KERNEL(list_settled)(sc_workspace *w, const SC_KERNEL(verdict) * verdict,
-                                           unsigned mask, const uint8_t *of_a, uint32_t first_a,
-                                           const uint8_t *of_b, uint32_t first_b)
-{
-    lanes_list_bits(mask, verdict->bits, w->settled_code + w->settled_count);
-    w->settled_count += lanes_list_pairs(mask, of_a, first_a, of_b, first_b,
-                                         (uint32_t *)(void *)(w->settled + w->settled_count));
-}
+/* Pairs of triangles of two leaf clusters, or of two such pairs of clusters, lanes from split on being of the second. */
+typedef struct SC_KERNEL(window) {
+    const uint8_t *numbers[2]; /* of triangles in their clusters, sixteen may be read */
+    unsigned pair[2];          /* of clusters */
+    unsigned split, count;
+} SC_KERNEL(window);
 
-/* Asks for the memory of a leaf cluster's triangles. */
-static inline void SC_KERNEL(fetch_corners)(const sc_model *model, uint32_t first)
+/* Fills a sixteen with these; and the places of the clusters' first triangles. */
+static inline void SC_KERNEL(fill_sixteen)(const sc_query_state *state,
+                                           const SC_KERNEL(rows) * rows,
+                                           const SC_KERNEL(window) * window, SC_KERNEL(sixteen) * x,
+                                           uint32_t first[2][2])
 {
-    const uint32_t *at = sc_model_triangle(model) + 3 * (uint64_t)first;
-    int k;
-    for (k = 0; k < 3; k++) sc_fetch(at + 16 * k);
-}
-
-/* Collects those of pairs of triangles of two leaf clusters that are not certainly apart, settled or not. */
-static void SC_KERNEL(collect)(sc_query_state *state, const uint32_t leaf[2], unsigned count,
-                               const uint8_t of_a[], const uint8_t of_b[], float extent)
-{
-    uint32_t first_a = sc_model_leaf_first(state->model)[leaf[0]];
-    uint32_t first_b = sc_model_leaf_first(state->model)[leaf[1]];
-    sc_workspace *w = state->workspace;
-    SC_KERNEL(verdict) verdict;
-    SC_KERNEL(picked) a, b;
-    unsigned at;
-    SC_KERNEL(begin_picking)(state, leaf[0], leaf[0] > leaf[1], &a);
-    SC_KERNEL(begin_picking)(state, leaf[1], leaf[1] > leaf[0], &b);
-    SC_KERNEL(fetch_corners)(state->model, first_a);
-    SC_KERNEL(fetch_corners)(state->model, first_b);
-    for (at = 0; at < count; at += SC_LANES_COUNT) {
-        unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
-        if (count >= SC_LEAF_FEW) {
-            a.numbers = of_a + at;
-            b.numbers = of_b + at;
-            SC_KERNEL(test_pairs)(&a, &b, mask, extent, &verdict);
-            mask &= ~verdict.apart;
-            if (!state->sifts) { /* which may want it left out */
-                SC_KERNEL(list_settled)
-                (w, &verdict, mask & verdict.settled, of_a + at, first_a, of_b + at, first_b);
-                mask &= ~verdict.settled;
-            }
+    int s, k;
+    SC_UNROLL
+    for (s = 0; s < 2; s++) {
+        SC_KERNEL(picked) *t = &x->of[s];
+        t->numbers = window->numbers[s];
+        SC_UNROLL
+        for (k = 0; k < 2; k++) {
+            const unsigned pair = window->pair[k];
+            const uint64_t leaf = rows->leaf[s][pair];
+            t->ready[k] = rows->ready[s][pair];
+            t->points[k] = state->workspace->point_at + 4 * SC_LEAF_POINTS * leaf;
+            t->corner[k] = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * leaf;
+            first[s][k] = sc_model_leaf_first(state->model)[leaf];
         }
-        w->candidate_count +=
-            lanes_list_pairs(mask, of_a + at, first_a, of_b + at, first_b,
-                             (uint32_t *)(void *)(w->candidates + w->candidate_count));
     }
+    x->split = window->split < window->count ? window->split : SC_LANES_COUNT;
+    x->extent = lanes_choose(lanes_from(window->split), lanes_all(rows->extent[window->pair[1]]),
+                             lanes_all(rows->extent[window->pair[0]]));
+}
+
+/* Collects those of pairs of triangles that are not certainly apart, settled or not. */
+static void SC_KERNEL(collect)(sc_query_state *state, const SC_KERNEL(rows) * rows,
+                               const SC_KERNEL(window) * window)
+{
+    sc_workspace *w = state->workspace;
+    unsigned mask = (1u << window->count) - 1u, second = ~0u << window->split;
+    SC_KERNEL(verdict) verdict;
+    SC_KERNEL(sixteen) x;
+    uint32_t first[2][2];
+    SC_KERNEL(fill_sixteen)(state, rows, window, &x, first);
+    if (window->count >= SC_LEAF_FEW) {
+        SC_KERNEL(test_pairs)(&x, mask, &verdict);
+        mask &= ~verdict.apart;
+        if (!state->sifts) { /* which may want it left out */
+            const unsigned settled = mask & verdict.settled;
+            lanes_list_bits(settled, verdict.bits, w->settled_code + w->settled_count);
+            w->settled_count +=
+                lanes_list_pairs(settled, second, window->numbers[0], first[0], window->numbers[1],
+                                 first[1], (uint32_t *)(void *)(w->settled + w->settled_count));
+            mask &= ~settled;
+        }
+    }
+    w->candidate_count +=
+        lanes_list_pairs(mask, second, window->numbers[0], first[0], window->numbers[1], first[1],
+                         (uint32_t *)(void *)(w->candidates + w->candidate_count));
 }
 
 /* The boxes of the triangles of a leaf cluster that overlap that of triangle i of another. */
@@ -209,7 +208,8 @@ static void SC_KERNEL(test_rows)(sc_query_state *state, SC_KERNEL(rows) * rows)
     if (rows->wait) SC_KERNEL(compare_boxes)(rows);
     if (rows->count) SC_KERNEL(compare_planes)(state, rows);
     while (r < rows->count && !state->stop) {
-        unsigned count = 0, pairs = 0, first = 0;
+        unsigned count = 0, pairs = 0, at = 0;
+        SC_KERNEL(window) window;
         do {
             memset(of_a + count, rows->row[r], SC_LANES_COUNT);
             count += lanes_list(rows->mask[r], of_b + count);
@@ -220,13 +220,19 @@ static void SC_KERNEL(test_rows)(sc_query_state *state, SC_KERNEL(rows) * rows)
         } while (r < rows->count && (count < SC_ROWS_LISTED || rows->pair[r] == rows->pair[r - 1]));
         memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last sixteen */
         memset(of_b + count, 0, SC_LANES_COUNT);
-        for (k = 0; k < pairs && !state->stop; first = end[k++]) {
-            uint32_t leaf[2];
-            leaf[0] = rows->leaf[0][pair[k]];
-            leaf[1] = rows->leaf[1][pair[k]];
-            SC_KERNEL(collect)
-            (state, leaf, end[k] - first, of_a + first, of_b + first, rows->extent[pair[k]]);
+        for (k = 0; at < count && !state->stop; at += window.count) {
+            const unsigned next = k + (k + 1 < pairs && end[k] < at + SC_LANES_COUNT);
+            window.numbers[0] = of_a + at;
+            window.numbers[1] = of_b + at;
+            window.pair[0] = pair[k];
+            window.pair[1] = pair[next];
+            window.split = end[k] - at;
+            window.count = end[next] - at;
+            if (window.split > SC_LANES_COUNT) window.split = SC_LANES_COUNT;
+            if (window.count > SC_LANES_COUNT) window.count = SC_LANES_COUNT;
+            SC_KERNEL(collect)(state, rows, &window);
             sc_candidates_make_room(state);
+            while (k < pairs && end[k] <= at + window.count) k++;
         }
     }
     SC_KERNEL(no_rows)(rows);

@@ -48,11 +48,9 @@ static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t
 /* Boxes of the triangles of a leaf cluster, by their corners; what is no triangle is NaN and overlaps nothing. */
 static inline void SC_KERNEL(make_boxes)(lanes x[3][3], uint32_t triangles, sc_leaf_ready *ready)
 {
-    static const float number[SC_LANES_COUNT] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                                 8, 9, 10, 11, 12, 13, 14, 15};
     const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(FLT_MIN); /* see base/boxes.h */
     const lanes nothing = lanes_all((float)NAN);
-    const lanes_mask is_triangle = lanes_below(lanes_load(number), lanes_all((float)triangles));
+    const lanes_mask is_none = lanes_from(triangles);
     int c;
     SC_UNROLL
     for (c = 0; c < 3; c++) {
@@ -60,8 +58,8 @@ static inline void SC_KERNEL(make_boxes)(lanes x[3][3], uint32_t triangles, sc_l
         lanes high = lanes_larger(x[0][c], lanes_larger(x[1][c], x[2][c]));
         low = lanes_subtract(low, lanes_add(lanes_multiply(lanes_absolute(low), ulp), least));
         high = lanes_add(high, lanes_add(lanes_multiply(lanes_absolute(high), ulp), least));
-        lanes_store(ready->side[c], lanes_choose(is_triangle, low, nothing));
-        lanes_store(ready->side[c + 3], lanes_choose(is_triangle, high, nothing));
+        lanes_store(ready->side[c], lanes_choose(is_none, nothing, low));
+        lanes_store(ready->side[c + 3], lanes_choose(is_none, nothing, high));
     }
 }
 

@@ -39,27 +39,52 @@
  *
  * The other bounds are above 1e-21: what underflows does not matter.
  */
-/* Triangles of a leaf cluster as they are picked: sixteen by number. */
+/* Triangles as they are picked: sixteen by number, of a leaf cluster, or of two. */
 typedef struct SC_KERNEL(picked) {
-    const sc_leaf_ready *ready;
-    const float *points;    /* see sc_workspace.point_at */
-    const uint8_t *corner;  /* see sc_model.leaf_corner */
-    const uint8_t *numbers; /* of the triangles */
+    const sc_leaf_ready *ready[2];
+    const float *points[2];   /* see sc_workspace.point_at */
+    const uint8_t *corner[2]; /* see sc_model.leaf_corner */
+    const uint8_t *numbers;   /* of the triangles */
 } SC_KERNEL(picked);
 
-/* The corners of these. */
-static inline void SC_KERNEL(pick_corners)(const SC_KERNEL(picked) * t, lanes x[3][3])
+/* Sixteen pairs of triangles of two leaf clusters; or of two such pairs of clusters. */
+typedef struct SC_KERNEL(sixteen) {
+    SC_KERNEL(picked) of[2]; /* first and second triangles of pairs */
+    unsigned split;          /* lanes from here on are of the second pair of clusters */
+    lanes extent;            /* of both clusters of a pair */
+} SC_KERNEL(sixteen);
+
+/* A row of what is kept of these, at the same place in both clusters. */
+static SC_INLINE lanes SC_KERNEL(pick_kept)(const SC_KERNEL(sixteen) * x, int two, const float *row,
+                                            const float *other, lanes_index i)
 {
-    lanes_corners_through(t->points, t->corner, t->numbers, x);
+    const float *rows[2];
+    rows[0] = row;
+    rows[1] = other;
+    return two ? lanes_pick_two(rows, i, x->split) : lanes_pick(row, i);
+}
+
+/* The corners of these. */
+static SC_INLINE void SC_KERNEL(pick_corners)(const SC_KERNEL(sixteen) * x, int s, int two,
+                                              lanes at[3][3])
+{
+    const SC_KERNEL(picked) *t = &x->of[s];
+    if (two)
+        lanes_corners_two(t->points, t->corner, t->numbers, x->split, at);
+    else
+        lanes_corners_through(t->points[0], t->corner[0], t->numbers, at);
 }
 
 /* What a distance from a plane, up to a factor, may be off by: of sixteen, and of one. */
-static inline lanes SC_KERNEL(plane_bound)(lanes size, float extent)
+static inline lanes SC_KERNEL(plane_bound)(lanes size, lanes extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    lanes bound = lanes_add(lanes_multiply(size, lanes_all(2.1f * v)),
-                            lanes_all(4 * edge * (extent + edge) + 7 * v * extent * extent));
-    return lanes_add(lanes_multiply(size, bound), lanes_all(8 * edge * edge * (extent + edge)));
+    lanes wide = lanes_add(extent, lanes_all(edge));
+    lanes bound =
+        lanes_add(lanes_multiply(size, lanes_all(2.1f * v)),
+                  lanes_add(lanes_multiply(lanes_all(4 * edge), wide),
+                            lanes_multiply(lanes_multiply(lanes_all(7 * v), extent), extent)));
+    return lanes_add(lanes_multiply(size, bound), lanes_multiply(lanes_all(8 * edge * edge), wide));
 }
 static inline float SC_KERNEL(one_plane_bound)(float size, float extent)
 {
@@ -89,19 +114,24 @@ typedef struct SC_KERNEL(tips) {
     unsigned beside, split; /* where all corners are certainly on one side, or certainly not */
 } SC_KERNEL(tips);
 
-static inline void SC_KERNEL(find_tips)(const SC_KERNEL(picked) * t,
-                                        const SC_KERNEL(picked) * plane, float extent,
-                                        SC_KERNEL(tips) * tips)
+/* Of first triangles with the second's planes, s = 0, or the other way round. Sets size to that of the latter. */
+static SC_INLINE void SC_KERNEL(find_tips)(const SC_KERNEL(sixteen) * sixteen, int s, int two,
+                                           SC_KERNEL(tips) * tips, lanes *size)
 {
+    const SC_KERNEL(picked) *plane = &sixteen->of[1 - s];
+    const sc_leaf_ready *ready = plane->ready[0], *other = plane->ready[1];
     lanes_index i = lanes_index_load(plane->numbers);
-    lanes offset = lanes_pick(plane->ready->offset, i), x[3][3], n[3], least = offset;
-    lanes bound = SC_KERNEL(plane_bound)(lanes_pick(plane->ready->size, i), extent);
+    lanes offset = SC_KERNEL(pick_kept)(sixteen, two, ready->offset, other->offset, i);
+    lanes bound, x[3][3], n[3], least = offset;
     lanes_mask below[3], is_not[2];
     unsigned sure;
     int k, c;
-    SC_KERNEL(pick_corners)(t, x);
+    *size = SC_KERNEL(pick_kept)(sixteen, two, ready->size, other->size, i);
+    bound = SC_KERNEL(plane_bound)(*size, sixteen->extent);
+    SC_KERNEL(pick_corners)(sixteen, s, two, x);
     SC_UNROLL
-    for (c = 0; c < 3; c++) n[c] = lanes_pick(plane->ready->normal[c], i);
+    for (c = 0; c < 3; c++)
+        n[c] = SC_KERNEL(pick_kept)(sixteen, two, ready->normal[c], other->normal[c], i);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         lanes d = lanes_multiply(n[0], x[k][0]);
@@ -173,8 +203,8 @@ static inline void SC_KERNEL(find_level)(const SC_KERNEL(tips) tips[2], const la
 }
 
 /* Settles those of pairs in a mask of which each plane splits the other; size is that of both triangles. */
-static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes size, unsigned mask,
-                                          SC_KERNEL(verdict) * verdict)
+static SC_INLINE void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes size,
+                                             unsigned mask, SC_KERNEL(verdict) * verdict)
 {
     lanes w[3], m[3], far[2][2], bound, least = lanes_all(0);
     unsigned below[2][2], any, all, certain, *bits = verdict->bits;
@@ -222,10 +252,12 @@ static inline void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes s
 
 /* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge certainly has the third
    corner of its triangle on one side and all of the other triangle on the other. */
-static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], float extent)
+static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], lanes extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    const lanes bound = lanes_all(5 * edge * (extent + edge) + 9 * v * extent * extent);
+    const lanes bound =
+        lanes_add(lanes_multiply(lanes_all(5 * edge), lanes_add(extent, lanes_all(edge))),
+                  lanes_multiply(lanes_multiply(lanes_all(9 * v), extent), extent));
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
     lanes flat[2][3][2];
     unsigned apart = 0;
@@ -259,35 +291,77 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], fl
     return apart;
 }
 
-/* Pairs in a mask, of triangles of two clusters with these numbers. */
-static void SC_KERNEL(test_pairs)(const SC_KERNEL(picked) * a, const SC_KERNEL(picked) * b,
-                                  unsigned mask, float extent, SC_KERNEL(verdict) * verdict)
+/* With few registers for sixteen floats, code for one pair of clusters and for two is kept apart where it is shorter. */
+static void SC_KERNEL(find_tips_one)(const SC_KERNEL(sixteen) * x, int s, SC_KERNEL(tips) * tips,
+                                     lanes *size)
 {
-    lanes_index i = lanes_index_load(a->numbers);
+    SC_KERNEL(find_tips)(x, s, 0, tips, size);
+}
+static void SC_KERNEL(find_tips_two)(const SC_KERNEL(sixteen) * x, int s, SC_KERNEL(tips) * tips,
+                                     lanes *size)
+{
+    SC_KERNEL(find_tips)(x, s, 1, tips, size);
+}
+static SC_INLINE void SC_KERNEL(find_tips_some)(const SC_KERNEL(sixteen) * x, int s, int two,
+                                                SC_KERNEL(tips) * tips, lanes *size)
+{
+    if (SC_LANES_AVX512)
+        SC_KERNEL(find_tips)(x, s, two, tips, size);
+    else if (two)
+        SC_KERNEL(find_tips_two)(x, s, tips, size);
+    else
+        SC_KERNEL(find_tips_one)(x, s, tips, size);
+}
+
+/* Pairs in a mask, of triangles of two clusters, or of two such pairs of clusters. */
+static SC_INLINE void SC_KERNEL(test_some)(const SC_KERNEL(sixteen) * x, int two, unsigned mask,
+                                           SC_KERNEL(verdict) * verdict)
+{
     SC_KERNEL(tips) tips[2];
+    lanes size[2];
     unsigned open;
-    lanes size;
-    SC_KERNEL(find_tips)(a, b, extent, &tips[0]);
+    SC_KERNEL(find_tips_some)(x, 0, two, &tips[0], &size[1]);
     open = mask & ~tips[0].beside;
     if (!open) {
         memset(verdict, 0, sizeof *verdict);
         verdict->apart = ~0u;
         return;
     }
-    SC_KERNEL(find_tips)(b, a, extent, &tips[1]);
+    SC_KERNEL(find_tips_some)(x, 1, two, &tips[1], &size[0]);
     open &= ~tips[1].beside;
-    size = lanes_add(lanes_pick(a->ready->size, i),
-                     lanes_pick(b->ready->size, lanes_index_load(b->numbers)));
-    SC_KERNEL(cross_edges)(tips, size, open, verdict);
+    SC_KERNEL(cross_edges)(tips, lanes_add(size[0], size[1]), open, verdict);
     open &= ~(verdict->apart | verdict->settled);
     if (sc_bits_count(open & ~(tips[0].split & tips[1].split)) >= SC_SIDES_WORTH) {
-        lanes x[2][3][3], n[3];
+        const sc_leaf_ready *const *ready = x->of[0].ready;
+        lanes_index i = lanes_index_load(x->of[0].numbers);
+        lanes at[2][3][3], n[3];
         int c;
-        SC_KERNEL(pick_corners)(a, x[0]);
-        SC_KERNEL(pick_corners)(b, x[1]);
         SC_UNROLL
-        for (c = 0; c < 3; c++) n[c] = lanes_pick(a->ready->normal[c], i);
-        open &= ~SC_KERNEL(side_separates)(x, n, extent);
+        for (c = 0; c < 2; c++) SC_KERNEL(pick_corners)(x, c, two, at[c]);
+        SC_UNROLL
+        for (c = 0; c < 3; c++)
+            n[c] = SC_KERNEL(pick_kept)(x, two, ready[0]->normal[c], ready[1]->normal[c], i);
+        open &= ~SC_KERNEL(side_separates)(at, n, x->extent);
     }
     verdict->apart = ~(open | verdict->settled);
+}
+
+/* The same, split or not. With many registers for sixteen floats each is code of its own. */
+static SC_NOINLINE void SC_KERNEL(test_one)(const SC_KERNEL(sixteen) * x, unsigned mask,
+                                            SC_KERNEL(verdict) * verdict)
+{
+    SC_KERNEL(test_some)(x, SC_LANES_AVX512 ? 0 : x->split < SC_LANES_COUNT, mask, verdict);
+}
+static SC_NOINLINE void SC_KERNEL(test_two)(const SC_KERNEL(sixteen) * x, unsigned mask,
+                                            SC_KERNEL(verdict) * verdict)
+{
+    SC_KERNEL(test_some)(x, 1, mask, verdict);
+}
+static inline void SC_KERNEL(test_pairs)(const SC_KERNEL(sixteen) * x, unsigned mask,
+                                         SC_KERNEL(verdict) * verdict)
+{
+    if (SC_LANES_AVX512 && x->split < SC_LANES_COUNT)
+        SC_KERNEL(test_two)(x, mask, verdict);
+    else
+        SC_KERNEL(test_one)(x, mask, verdict);
 }
