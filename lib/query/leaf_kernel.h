@@ -10,9 +10,9 @@
    are together. */
 typedef struct SC_KERNEL(rows) {
     uint32_t leaf[2][SC_ROWS_PAIRS];
-    const sc_leaf_ready *ready[2][SC_ROWS_PAIRS];
-    float extent[SC_ROWS_PAIRS]; /* of both; made when needed */
-    unsigned pairs, wait, count; /* how many there are */
+    const sc_leaf_ready *ready[2][SC_ROWS_PAIRS]; /* all of them are, as long as there are rows */
+    float extent[SC_ROWS_PAIRS];                  /* of both; made when needed */
+    unsigned pairs, wait, count;                  /* how many there are */
     uint8_t wait_pair
         [SC_ROWS]; /* rows without a mask, whose boxes are to be compared: of which pair, */
     uint8_t wait_row[SC_ROWS]; /* and the triangle */
@@ -166,7 +166,7 @@ static void SC_KERNEL(compare_planes)(const sc_query_state *state, SC_KERNEL(row
     while (r < rows->count) {
         const unsigned pair = rows->pair[r];
         const uint32_t leaf_a = rows->leaf[0][pair], leaf_b = rows->leaf[1][pair];
-        const sc_leaf_ready *a = SC_KERNEL(ready)(state, leaf_a, leaf_a > leaf_b);
+        const sc_leaf_ready *a = rows->ready[0][pair];
         const uint8_t *where =
             sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf_b;
         const float extent = SC_KERNEL(extent)(state, leaf_a, leaf_b);
@@ -369,6 +369,7 @@ static void SC_KERNEL(far_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     int slabs_first = count >= SC_LEAF_SLABS_FIRST;
     w->far_count = 0;
     if (slabs_first) {
+        if (w->ready_upper) SC_KERNEL(test_rows)(state, rows); /* as in leaf_pair */
         for (i = 0; i < count; i++) {
             uint32_t a = lower[i], b = upper[i];
             if (i + SC_FETCH_POINTS < count) SC_KERNEL(fetch_points)(w, upper[i + SC_FETCH_POINTS]);
