@@ -483,6 +483,72 @@ static void slivers(void)
     CHECK(t.touching > t.asked / 20 && t.extra > t.asked / 20 && t.reported < t.asked * 9 / 10);
 }
 
+/* The same, nearly at rest: they come near enough at the end of the step only, which may be nearer than a slab is long. */
+static void slivers_nearly_at_rest(void)
+{
+    tally t = {0, 0, 0, 0};
+    for (uint32_t i = 0; i < test_iterations(3000); ++i) {
+        step_oracle_kind kind = (step_oracle_kind)test_random_below(2);
+        double width = exp2(-(double)(20 + test_random_below(13))), s = test_random_unit();
+        double u[3], v[3], normal[3], gap[2], length = 0, size = 0, part = test_random_unit();
+        query q;
+        for (int k = 0; k < 3; ++k) {
+            u[k] = test_random_range(-1, 1);
+            v[k] = test_random_range(-1, 1);
+            size = fmax(size, fabs(u[k]));
+        }
+        for (int k = 0; k < 3; ++k) {
+            normal[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+            length += normal[k] * normal[k];
+        }
+        gap[0] = test_random_range(0.3, 0.8) * size * SC_IMPACT_FLOOR / sqrt(length);
+        gap[1] = test_random_range(0.2, 0.35) * size * SC_IMPACT_FLOOR / sqrt(length);
+        for (int k = 0; k < 12; ++k) {
+            double(*p)[3] = k < 6 ? q.start : q.end;
+            double away = gap[k / 6] * normal[k % 3];
+            int c = k % 3;
+            if (k % 6 > 2) continue;
+            if (kind == STEP_ORACLE_VERTEX_FACE) {
+                double half = 0.5 * u[c] + width * v[c];
+                p[0][c] = 0;
+                p[1][c] = away - s * (1 - part) * u[c] - part * half;
+                p[2][c] = p[1][c] + u[c];
+                p[3][c] = p[1][c] + half;
+            } else {
+                double other = u[c] + width * v[c];
+                p[0][c] = -s * u[c];
+                p[1][c] = (1 - s) * u[c];
+                p[2][c] = away - part * other;
+                p[3][c] = away + (1 - part) * other;
+            }
+        }
+        check_query(&q, kind, 0, 0, &t);
+    }
+    print_tally(&t);
+    CHECK(t.extra > t.asked / 20 && t.reported < t.asked);
+}
+
+/* Coordinates that are a few times the smallest double there is. */
+static void denormal_steps(void)
+{
+    tally t = {0, 0, 0, 0};
+    for (uint32_t i = 0; i < test_iterations(4000); ++i) {
+        step_oracle_kind kind = (step_oracle_kind)test_random_below(2);
+        int exponent =
+            -1036 + (int)test_random_below(36); /* so that the least tolerance is a number */
+        double separation = ldexp((double)test_random_below(4), exponent);
+        query q;
+        make_on_grid(&q);
+        for (int k = 0; k < 12; ++k) {
+            q.start[k / 3][k % 3] = ldexp(q.start[k / 3][k % 3], exponent);
+            q.end[k / 3][k % 3] = ldexp(q.end[k / 3][k % 3], exponent);
+        }
+        check_query(&q, kind, separation, 0, &t);
+    }
+    print_tally(&t);
+    CHECK(t.touching > t.asked / 20 && t.reported < t.asked * 9 / 10);
+}
+
 static void wide_ranges(void)
 {
     tally t;
@@ -704,6 +770,6 @@ SC_TEST_MAIN(SC_TEST(known_times), SC_TEST(same_bits_everywhere),
              SC_TEST(distances_whose_squares_vanish), SC_TEST(thickness_of_limits),
              SC_TEST(random_steps), SC_TEST(steps_on_a_grid), SC_TEST(steps_that_just_touch),
              SC_TEST(flat_steps), SC_TEST(degenerate_steps), SC_TEST(thin_layers),
-             SC_TEST(rolling_steps), SC_TEST(slivers), SC_TEST(wide_ranges),
-             SC_TEST(separations_just_reached), SC_TEST(separations_in_passing),
-             SC_TEST(times_close_to_contacts))
+             SC_TEST(rolling_steps), SC_TEST(slivers), SC_TEST(slivers_nearly_at_rest),
+             SC_TEST(denormal_steps), SC_TEST(wide_ranges), SC_TEST(separations_just_reached),
+             SC_TEST(separations_in_passing), SC_TEST(times_close_to_contacts))

@@ -378,6 +378,31 @@ static void seal(save *s)
     sc_saved_seal(header, magic, header->version, s->size, s->data + sizeof(*header));
 }
 
+/* A step by either contour test, on a workspace of its own. */
+static void use_for_step(const sc_model *model, const sc_pose *pose)
+{
+    sc_workspace_options own;
+    sc_workspace *workspace = NULL;
+    memset(&own, 0, sizeof(own));
+    own.struct_size = sizeof(own);
+    own.flags = SC_WORKSPACE_STEP;
+    if (!CHECK(sc_workspace_create_for(model, &own, &workspace) == SC_OK)) return;
+    for (uint32_t contour = SC_CONTOUR_STAR; contour <= SC_CONTOUR_EXACT; ++contour) {
+        sc_step_options options;
+        sc_step_result result;
+        sc_status status;
+        memset(&options, 0, sizeof(options));
+        options.struct_size = sizeof(options);
+        options.output = SC_OUTPUT_COUNT;
+        options.contour = contour;
+        memset(&result, 0, sizeof(result));
+        result.struct_size = sizeof(result);
+        status = sc_query_step(model, workspace, pose, pose, &options, &result);
+        CHECK(status == SC_OK || status == SC_ERROR_BOXES_ONLY);
+    }
+    sc_workspace_free(workspace);
+}
+
 /* All queries on a forged model: whatever they say, they end, and sanitizers see nothing. */
 static void use(sc_model *model, const soup *mesh)
 {
@@ -415,6 +440,7 @@ static void use(sc_model *model, const soup *mesh)
         result.struct_size = sizeof(result);
         CHECK(sc_query(model, workspace, &pose, &options, &result) == SC_OK);
         free(groups);
+        use_for_step(model, &pose);
         for (uint32_t t = 1; t < mesh->triangle_count; ++t) {
             sc_pair pair = {t - 1, t};
             sc_contact contact;
@@ -598,7 +624,12 @@ static void forged_uses(void)
     soup_free(&mesh);
 }
 
-/* The whole, which is flat and so oriented, has no contour; the next node has that one, too. */
+static void *array_of(sc_model *model, uint32_t array)
+{
+    return (unsigned char *)model + model->offset[array];
+}
+
+/* The whole, which is flat and so oriented, has no contour, be it as a loop or in segments; the next node has that one, too. */
 static void forged_contour(void)
 {
     soup mesh = soup_cloth(6, 6);
@@ -606,8 +637,12 @@ static void forged_contour(void)
     save s = save_model(model);
     sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
     uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_node_contour]);
-    CHECK(first[1] > 0);
+    uint32_t *loop_first = (uint32_t *)array_of(m, SC_ARRAY_node_loop);
+    uint16_t *loop = (uint16_t *)array_of(m, SC_ARRAY_loop);
+    CHECK(first[1] > 0 && loop_first[1] > 0);
     first[1] = 0;
+    memset(loop, 0, loop_first[1] * sizeof(*loop)); /* points that the next node has */
+    loop_first[1] = 0;
     while (try_forged(&s, &mesh) && m->contour_max < 1000) /* it has to be what it is now */
         ++m->contour_max;
     CHECK(m->contour_max < 1000);
@@ -633,6 +668,11 @@ static void forged_rings(void)
     }
     CHECK(at == m->ring_total && at - rings > SC_RING_MAX);
     try_forged(&s, &mesh);
+    for (uint32_t round = 0; round < 20; ++round) { /* so that nothing else is certain than fans */
+        for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i)
+            mesh.positions[i] = test_random_below(2 + round % 3);
+        CHECK(!try_forged(&s, &mesh));
+    }
     free(s.memory);
     sc_model_free(model);
     soup_free(&mesh);
@@ -659,6 +699,72 @@ static void forged_touches(void)
         ++touching;
     }
     CHECK(touching > 2);
+    free(s.memory);
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
+/* Loops in pieces of which one has no edges, and the next has those too. */
+static void forged_pieces(void)
+{
+    soup mesh = soup_annulus(16, 3);
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
+    save s = save_model(model);
+    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    const uint32_t *first = sc_model_node_loop(model);
+    const uint8_t *kind = sc_model_node_kind(model);
+    uint16_t *loop = (uint16_t *)array_of(m, SC_ARRAY_loop);
+    uint32_t tried = 0;
+    for (uint32_t n = 0; n < model->node_count; ++n) {
+        uint16_t *edges = loop + first[n] + 1;
+        if (!(kind[n] & SC_NODE_PIECES) || first[n + 1] == first[n]) continue;
+        for (uint32_t i = 0; i < edges[-1]; ++i) {
+            uint16_t *other = &edges[(i + 1) % edges[-1]], was = edges[i];
+            edges[i] = 0;
+            *other = (uint16_t)(*other + was);
+            CHECK(try_forged(&s, &mesh));
+            edges[i] = was;
+            *other = (uint16_t)(*other - was);
+            ++tried;
+        }
+    }
+    CHECK(tried > 3 && !try_forged(&s, &mesh));
+    free(s.memory);
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
+/* A node has the loops of those that follow as well: refused from where that is more than the sides of its triangles. */
+static void forged_loops(void)
+{
+    soup mesh = soup_cloth(24, 24);
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
+    save s = save_model(model);
+    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    uint32_t *first = (uint32_t *)array_of(m, SC_ARRAY_node_loop);
+    const uint32_t *was = sc_model_node_loop(model), *leaf = sc_model_leaf(model);
+    uint32_t tried = 0, node = model->node_count / 2;
+    for (; node < model->node_count && tried < 6; ++node) {
+        sc_pair patches = sc_model_node_patches(model)[node];
+        uint32_t triangles = sc_model_leaf_first(model)[leaf[patches.a] + 1] -
+                             sc_model_leaf_first(model)[leaf[patches.a]];
+        uint32_t end = node + 1, total, refused;
+        if (patches.a != patches.b || !sc_model_is_leaf(model, patches.a) ||
+            was[node] == was[node + 1] || sc_model_node_kind(model)[node])
+            continue;
+        while (end < model->node_count && was[end] - was[node] <= 3 * triangles) ++end;
+        total = was[end] - was[node];
+        if (total <= 3 * triangles || total > model->contour_max) continue;
+        memset((uint16_t *)array_of(m, SC_ARRAY_loop) + was[node], 0, total * sizeof(uint16_t));
+        for (uint32_t last = end; last + 1 >= end; --last) { /* so many, and one node fewer */
+            for (uint32_t n = node + 1; n < last; ++n) first[n] = was[last];
+            refused = (uint32_t)try_forged(&s, &mesh);
+            CHECK(refused == (was[last] - was[node] > 3 * triangles));
+            for (uint32_t n = node + 1; n < last; ++n) first[n] = was[n];
+        }
+        ++tried;
+    }
+    CHECK(tried == 6);
     free(s.memory);
     sc_model_free(model);
     soup_free(&mesh);
@@ -698,11 +804,6 @@ static sc_hooks message_hooks(char *text)
     hooks.log = take_message;
     hooks.user = text;
     return hooks;
-}
-
-static void *array_of(sc_model *model, uint32_t array)
-{
-    return (unsigned char *)model + model->offset[array];
 }
 
 /*
@@ -1176,7 +1277,7 @@ static void format(void)
 SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(truncated),
              SC_TEST(changed), SC_TEST(foreign), SC_TEST(forged_arrays), SC_TEST(forged_counts),
              SC_TEST(forged_uses), SC_TEST(forged_rings), SC_TEST(forged_contour),
-             SC_TEST(forged_touches), SC_TEST(forged_sizes), SC_TEST(forged_chain),
-             SC_TEST(messages), SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments),
-             SC_TEST(equal_bytes), SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared),
-             SC_TEST(format))
+             SC_TEST(forged_touches), SC_TEST(forged_pieces), SC_TEST(forged_loops),
+             SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
+             SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments), SC_TEST(equal_bytes),
+             SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))

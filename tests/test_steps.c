@@ -315,6 +315,38 @@ static void check_step(const soup *mesh, const double *start, const double *end,
     input_free_choices(&choices);
 }
 
+/* The same with a tolerance of that size; few candidates are left. Returns how many vertex-face pairs collide. */
+static uint64_t check_tiny_step(const soup *mesh, const double *start, const double *end,
+                                double tolerance)
+{
+    uint64_t count;
+    sc_impact_limits limits = {0, tolerance, 1};
+    timed_list lists[KINDS];
+    input_choices choices = input_choose(mesh, SC_WELD_NONE, SC_PARTITION_FAST);
+    step_subject s;
+    solve(mesh, start, end, &limits, lists);
+    if (open_step(&s, mesh, &choices.options)) {
+        sc_pose from = input_plain_pose(start, mesh->vertex_count);
+        sc_pose to = input_plain_pose(end, mesh->vertex_count);
+        sc_step_options o = plain_options();
+        answer a = make_answer(0);
+        check_methods(mesh, &s, start, end, &limits, lists, "tiny");
+        o.output = SC_OUTPUT_COUNT;
+        o.pairs = SC_STEP_CANDIDATES;
+        o.tolerance = tolerance;
+        CHECK(sc_query_step(s.model, s.workspace, &from, &to, &o, &a.result) == SC_OK);
+        CHECK_MSG(a.result.vertex_face_count >= lists[0].count &&
+                      5 * a.result.vertex_face_count < mesh->vertex_count * mesh->triangle_count,
+                  "%" PRIu64 " candidates", a.result.vertex_face_count);
+        free_answer(&a);
+    }
+    count = lists[0].count;
+    close_step(&s);
+    free_lists(lists);
+    input_free_choices(&choices);
+    return count;
+}
+
 static void soups_that_move(void)
 {
     for (uint32_t i = 0; i < test_iterations(400) && test_failures() == 0; ++i) {
@@ -458,6 +490,52 @@ static void ends_that_nearly_meet(void)
         free(to[1]);
         soup_free(&mesh);
     }
+}
+
+/* Long strips bent in their plane, of which any two parts may come near each other or cross: contours of three and more
+   times sixty-four edges, in any direction. */
+static void long_strips(void)
+{
+    for (uint32_t i = 0; i < test_iterations(16) && test_failures() == 0; ++i) {
+        soup mesh = soup_cloth(2, 80 + i);
+        double turn = test_random_range(0, 6.3), bend = test_random_range(2, 12);
+        double slower = test_random_range(0.2, 1), *to[2];
+        for (int k = 0; k < 2; ++k) {
+            to[k] = (double *)test_allocate(3 * (size_t)mesh.vertex_count * sizeof(double));
+            for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
+                const double *p = mesh.positions + 3 * (size_t)v;
+                double *q = to[k] + 3 * (size_t)v, along = i % 4 == 0 ? p[0] : 0;
+                double angle = turn + (i % 4 == 0 ? 0 : bend * p[0]);
+                double far =
+                    (i % 4 == 0 ? 0 : exp(-slower * p[0])) + 0.02 * p[1] - 0.01 * k * (i % 2);
+                q[0] = far * cos(angle) - along * sin(angle);
+                q[1] = far * sin(angle) + along * cos(angle);
+                q[2] = 0;
+            }
+        }
+        check_step(&mesh, to[0], to[1], i % 3 == 0 ? 0.001 : 0, "a long strip");
+        free(to[0]);
+        free(to[1]);
+        soup_free(&mesh);
+    }
+}
+
+/* A cloth and its folding, in doubles so small that to bring them to size takes more than a factor that is a double. */
+static void denormal_meshes(void)
+{
+    uint64_t count = 0;
+    for (uint32_t i = 0; i < test_iterations_at_least(12, 4) && test_failures() == 0; ++i) {
+        soup mesh = soup_cloth(5, 5);
+        double *end = fold(&mesh, i % 3 * 0.1), least = ldexp(1, -1044 + (int)i);
+        for (uint32_t k = 0; k < 3 * mesh.vertex_count; ++k) {
+            mesh.positions[k] = round(1000 * mesh.positions[k]) * least;
+            end[k] = round(1000 * end[k]) * least;
+        }
+        count += check_tiny_step(&mesh, mesh.positions, end, 10 * least);
+        free(end);
+        soup_free(&mesh);
+    }
+    CHECK(count > 10);
 }
 
 /* A disc but for a narrow sector, whose sides a point of the disc sees, but that is narrower than the separation. */
@@ -705,5 +783,6 @@ static void refuses_what_does_not_fit(void)
 
 SC_TEST_MAIN(SC_TEST(soups_that_move), SC_TEST(meshes_that_move), SC_TEST(flat_meshes_that_move),
              SC_TEST(rearranged_insides), SC_TEST(pieces_inside_one_another),
-             SC_TEST(ends_that_nearly_meet), SC_TEST(narrow_notches), SC_TEST(arrays_and_counts),
-             SC_TEST(ends_early), SC_TEST(refuses_what_does_not_fit))
+             SC_TEST(ends_that_nearly_meet), SC_TEST(narrow_notches), SC_TEST(long_strips),
+             SC_TEST(denormal_meshes), SC_TEST(arrays_and_counts), SC_TEST(ends_early),
+             SC_TEST(refuses_what_does_not_fit))

@@ -129,12 +129,14 @@ static void place_motion(const sc_model *model, sc_motion *m, uint16_t *seen)
 /* Nothing is known yet in the arrays of a worker. */
 static void clear_own(const sc_model *model, sc_workspace *w)
 {
-    /* whole lanes of spans are read, with some behind the last that was written */
-    unsigned char *spans = (unsigned char *)(void *)w->contour.span_side[0];
-    memset(spans, 0, (size_t)((unsigned char *)(void *)w->contour.is_edge - spans));
+    /* whole lanes of places and spans are read, with some behind the last that was written */
+    unsigned char *places = (unsigned char *)(void *)w->contour.at[0];
+    memset(places, 0, (size_t)((unsigned char *)(void *)w->contour.is_edge - places));
     memset(w->some_known, 0, 2 * ready_kept(model) * sizeof *w->some_known);
     memset(w->slab, 0, model->leaf_count * sizeof *w->slab);
     memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
+    if (w->flags & SC_WORKSPACE_STEP) /* likewise */
+        memset(w->motion.leaves, 0, (size_t)2 * SC_LEAVES_KEPT * sizeof *w->motion.leaves);
 }
 
 /* How long the view of a further worker is, with its arrays. */

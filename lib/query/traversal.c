@@ -158,11 +158,10 @@ static int has_prospect(const sc_query_state *state, uint32_t patch)
            PROSPECT_PART * (uint64_t)state->workspace->prospect[patch] >= leaves;
 }
 
-int sc_traversal_is_left(const sc_query_state *state, uint32_t node)
+/* Whether a node that failed the orientation test is left to boxes, all of it. */
+static int is_left(const sc_query_state *state, uint32_t node)
 {
     const sc_pair *patches = &sc_model_node_patches(state->model)[node];
-    const sc_workspace *w = state->workspace;
-    if (w->mask[patches->a] & w->mask[patches->b]) return 0;
     return !has_prospect(state, patches->a) || !has_prospect(state, patches->b);
 }
 
@@ -211,7 +210,7 @@ static void put_back(sc_query_state *state, uint32_t node, uint32_t mask)
 {
     const sc_model *model = state->model;
     sc_walk *walk = &state->workspace->walk;
-    if (!mask && sc_traversal_is_left(state, node)) {
+    if (!mask && is_left(state, node)) {
         const sc_pair *patches = &sc_model_node_patches(model)[node];
         leave_to_boxes(state, patches->a, patches->b, 0);
         return;

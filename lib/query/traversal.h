@@ -33,9 +33,8 @@ void sc_traversal_orient(sc_query_state *state, uint32_t node);
 void sc_traversal_test(sc_query_state *state, const uint32_t *nodes, uint32_t count,
                        uint8_t *passed);
 
-/* Finds out where culling has prospects; and whether a node that failed a test is left to boxes, all of it, as it has none. */
+/* Finds out where culling has prospects. */
 void sc_traversal_find_prospects(const sc_query_state *state);
-int sc_traversal_is_left(const sc_query_state *state, uint32_t node);
 
 /* Box and primitive tests of all pairs of patches that wait for them in the walk. */
 void sc_traversal_take_boxes(sc_query_state *state);

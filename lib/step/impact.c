@@ -197,7 +197,7 @@ static void improve_direction(int count, instant *at, double *least)
             is_longest = i;
         }
     }
-    if (longest == 0) return;
+    if (SC_NEVER(longest == 0)) return; /* to a point its direction is as good as any */
     for (int i = 0; i <= count; ++i) {
         double d[3], length, found;
         if (i < count) {
@@ -440,7 +440,7 @@ static inline int search(int count, const motion *m, double latest, double *time
         }
         if (until == ahead->time || (ahead->is_apart && (is_proved_from(count, m, until, ahead) ||
                                                          is_passed(count, m, &here, ahead)))) {
-            if (ahead->time == 1 && ahead->is_apart) return 0;
+            if (ahead->time == 1) return 0; /* where it is apart */
             here = *ahead;
             if (here.time > latest) return 0;
             if (!here.is_apart) {
@@ -476,8 +476,8 @@ static inline int search(int count, const motion *m, double latest, double *time
                 if (next.time > latest) return 0;
             }
         }
-        here = next;
-        while (top > 0 && guards[top].time <= here.time) --top;
+        here = next; /* before all guards, but if is_near_in_slab let it pass */
+        while (top > 0 && SC_HARDLY(guards[top].time <= here.time)) --top;
     }
 }
 

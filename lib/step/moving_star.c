@@ -22,6 +22,8 @@
 #include <float.h>
 #include <math.h>
 
+#include "base/assume.h"
+
 typedef struct star_edge {
     double v[2][2], e[2][2]; /* at the start and at the end */
 } star_edge;
@@ -83,7 +85,8 @@ static int find_star_point(const sc_moving_contour *c, int line, double q[2])
         }
     }
     q[1 - line] = below / 2 + above / 2;
-    return below < above && above - below < HUGE_VAL;
+    /* a closed contour around triangles that face one way has edges on all sides */
+    return below < above && !SC_HARDLY(above - below == HUGE_VAL);
 }
 
 /*

@@ -193,7 +193,6 @@ void sc_motion_refit(const sc_model *model, sc_workspace *w)
     const uint32_t *level_first = sc_model_level_first(model);
     motion_pass pass;
     uint32_t level;
-    if (w->boxes_ready) return;
     pass.model = model;
     pass.w = w;
     (void)sc_jobs_loop(w->tasks, model->leaf_count, STEP_LEAVES_MIN, refit_leaves_of_step, &pass);
