@@ -99,8 +99,10 @@ static void SC_KERNEL(try_bytes)(const lanes_input *in, lanes_outcome *out)
 {
     lanes_bytes a = lanes_bytes_load(in->number), b = lanes_bytes_load(in->through), row[3];
     lanes_bytes same = lanes_bytes_same(a, b), other;
+    lanes_bytes quarter[4];
     lanes_triples triples;
     lanes edge[2][2][3];
+    uint32_t kept[3][24];
     int i, k;
     for (k = 0; k < 3; k++) row[k] = lanes_bytes_load(in->number + SC_LANES_COUNT * k);
     other = lanes_bytes_same(row[1], row[2]);
@@ -121,6 +123,11 @@ static void SC_KERNEL(try_bytes)(const lanes_input *in, lanes_outcome *out)
     triples = lanes_triples_of(row);
     lanes_triples_through(&triples, in->through, row);
     for (k = 0; k < 3; k++) lanes_bytes_store(out->bytes[7 + k], row[k]);
+    lanes_bytes_quarters(in->words, quarter);
+    for (k = 0; k < 4; k++) lanes_bytes_store(out->bytes[10 + k], quarter[k]);
+    lanes_bytes_store(out->bytes[14], lanes_bytes_all(in->number[0]));
+    lanes_list_rows(in->mask, quarter, in->names, 3, kept[0], 24);
+    for (k = 0; k < 3; k++) memcpy(out->kept[k], kept[k], sc_bits_count(in->mask) * sizeof **kept);
 }
 
 static void SC_KERNEL(try_rows)(const lanes_input *in, lanes_outcome *out)

@@ -22,6 +22,7 @@ typedef struct lanes_input {
     uint8_t through[16]; /* the same */
     uint8_t other[48];   /* the same */
     uint32_t names[32];  /* of which some are the same */
+    uint16_t words[16];  /* any */
     unsigned mask;       /* of 16 bits */
     unsigned split;      /* up to 16 */
     uint32_t first[4];   /* any */
@@ -34,7 +35,8 @@ typedef struct lanes_outcome {
     unsigned bits[20];
     uint32_t numbers[16], pairs[32], from[16];
     uint16_t wide[16];
-    uint8_t list[16], bytes[10][16];
+    uint8_t list[16], bytes[15][16];
+    uint32_t kept[3][16];
 } lanes_outcome;
 
 /* By the compiler's vector types, where it has them, and one by one. */

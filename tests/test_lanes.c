@@ -102,6 +102,7 @@ static void draw(lanes_input *in)
     for (i = 0; i < 4; i++) in->first[i] = test_random_below(1000000);
     for (i = 0; i < 20; i++) in->exact[i] = number(1);
     for (i = 0; i < 32; i++) in->names[i] = test_random_below(24) * 0x01010000u + 7;
+    for (i = 0; i < 16; i++) in->words[i] = (uint16_t)test_random();
     in->mask = test_random_below(0x10000);
     for (i = 0; i < 12; i++) in->bits[i] = (unsigned)test_random();
     if (test_random_below(4) == 0) /* all below, or none: as in most boxes */
@@ -184,6 +185,8 @@ static void bytes_and_names(void)
             CHECK(out.bytes[5][i] == in.number[b]);
             CHECK(out.bytes[6][i] == (name < 16 ? name : 255));
             for (k = 0; k < 3; k++) CHECK(out.bytes[7 + k][i] == in.number[16 * k + b]);
+            for (k = 0; k < 4; k++) CHECK(out.bytes[10 + k][i] == (in.words[i] >> 4 * k & 15));
+            CHECK(out.bytes[14][i] == in.number[0]);
             for (k = 0; k < 4; k++)
                 for (c = 0; c < 3; c++) {
                     const float *table = k < 2 ? in.plain : in.row[0];
@@ -191,6 +194,12 @@ static void bytes_and_names(void)
                     float edge = table[16 * (at & 3) + at / 4 * 4 + c] - turned_point(&in, a)[c];
                     CHECK(!memcmp(&out.row[51 + 3 * k + c][i], &edge, sizeof edge));
                 }
+        }
+        for (i = c = 0; i < 16; i++) {
+            if (!(in.mask >> i & 1u)) continue;
+            for (k = 0; k < 3; k++)
+                CHECK(out.kept[k][c] == in.names[k] + (in.words[i] >> 4 * k & 15u));
+            c++;
         }
     }
 }

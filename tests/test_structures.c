@@ -15,7 +15,7 @@
 #include "build/locality.h"
 #include "build/model.h"
 #include "build/partition.h"
-#include "build/sharing.h"
+#include "build/sharing_lists.h"
 #include "harness.h"
 #include "inputs.h"
 #include "shapes.h"
@@ -815,6 +815,67 @@ static int share_point(const steps *s, uint32_t t, uint32_t u)
     return found;
 }
 
+/* The corner of triangle t that is shared and the one before not, of one or two; how many are in *count. */
+static uint32_t first_shared(const steps *s, uint32_t t, uint32_t u, uint32_t *count)
+{
+    const uint32_t *a = s->points.triangles + 3 * t, *b = s->points.triangles + 3 * u;
+    int shared[3];
+    uint32_t first = 0;
+    *count = 0;
+    for (int k = 0; k < 3; ++k) {
+        shared[k] = a[k] == b[0] || a[k] == b[1] || a[k] == b[2];
+        *count += (uint32_t)shared[k];
+    }
+    for (uint32_t k = 0; k < 3; ++k)
+        if (shared[k] && !shared[(k + 2) % 3]) first = k;
+    return first;
+}
+
+/* The lists that are made of the masks. */
+static void check_sharing_lists(steps *s, const sc_sharing *sharing)
+{
+    const uint32_t *first = s->xbvh.leaf_first, *order = s->hierarchy.order;
+    uint32_t leaves = s->xbvh.leaf_count, entries = sharing->first[leaves], wrong = 0;
+    uint32_t triangles = first[leaves];
+    uint64_t words = sc_sharing_lists_count(sharing, &s->xbvh), at = 0;
+    uint32_t *begin = (uint32_t *)test_allocate((entries + 1) * sizeof(uint32_t));
+    uint32_t *corners = (uint32_t *)test_allocate(3 * (size_t)triangles * sizeof(uint32_t));
+    uint16_t *list = (uint16_t *)test_allocate((size_t)words * sizeof(uint16_t));
+    for (uint32_t i = 0; i < 3 * triangles; ++i)
+        corners[i] = s->points.triangles[3 * order[i / 3] + i % 3];
+    sc_sharing_lists_write(sharing, &s->xbvh, corners, begin, list);
+    for (uint32_t a = 0; a < leaves; ++a)
+        for (uint32_t i = sharing->first[a]; i < sharing->first[a + 1]; ++i) {
+            const uint32_t b = sharing->leaf[i];
+            const uint16_t *rows = sharing->rows + SC_LEAF_MAX * i, *run = list + begin[i];
+            const uint16_t *pair = run + SC_SHARE_ROWS, *end = list + begin[i + 1];
+            uint16_t seen[SC_LEAF_MAX] = {0};
+            uint32_t number = 0;
+            wrong += begin[i] != at;
+            at = begin[i + 1];
+            for (uint32_t t = 0; t < SC_LEAF_MAX; ++t) {
+                wrong += (run[SC_SHARE_TRIANGLES] >> t & 1) != (rows[t] != 0);
+                if (rows[t]) wrong += *pair++ != rows[t];
+            }
+            for (; pair < end; ++pair, ++number) {
+                uint32_t t = *pair & 15, u = *pair >> 4 & 15, of_t, of_u, kind;
+                uint32_t from_t = first_shared(s, order[first[a] + t], order[first[b] + u], &of_t);
+                uint32_t from_u = first_shared(s, order[first[b] + u], order[first[a] + t], &of_u);
+                kind = number >= run[SC_SHARE_EDGES] ? 3 : number >= run[SC_SHARE_POINTS] ? 2 : 1;
+                wrong += kind == 3 ? of_t == of_u && of_t < 3 : of_t != kind || of_u != kind;
+                wrong += kind < 3 && ((*pair >> 8 & 15) != from_t || *pair >> 12 != from_u);
+                wrong += seen[t] >> u & 1;
+                seen[t] |= (uint16_t)(1u << u);
+            }
+            wrong += memcmp(seen, rows, sizeof(seen)) != 0;
+        }
+    wrong += at + SC_SHARE_BEHIND != words;
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " lists of pairs that share points wrong", s->name, wrong);
+    free(begin);
+    free(corners);
+    free(list);
+}
+
 /* The masks of all pairs of leaf clusters that are not both crowded, and the validator on them. */
 static void check_sharing(steps *s)
 {
@@ -842,6 +903,7 @@ static void check_sharing(steps *s)
     }
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " masks of shared points wrong", s->name, wrong);
     CHECK(sc_sharing_validate(&s->points, order, &s->xbvh, &sharing));
+    check_sharing_lists(s, &sharing);
     if (sharing.first[leaves] > 0 && !sharing.crowded[0]) {
         sharing.rows[0] ^= 1;
         CHECK(!sc_sharing_validate(&s->points, order, &s->xbvh, &sharing));

@@ -5,9 +5,11 @@
  * SPDX-License-Identifier: MIT
  *
  * Masks are bytes of all bits or none; lanes_bytes_choose takes from a where one is set, else from b, and lanes_bytes_bits
- * makes bit i for byte i. lanes_bytes_through reads a row by numbers below sixteen. lanes_triples are three rows, which
+ * makes bit i for byte i. lanes_bytes_quarters has the four lowest bits of each of sixteen words, the four above, and so on. lanes_bytes_through reads a row by numbers below sixteen. lanes_triples are three rows, which
  * lanes_triples_through reads by the same numbers. lanes_names tells for each of sixteen numbers b where among sixteen
  * others it first is, or 255 if nowhere. lanes_index_of makes numbers of lanes (base/lanes_pick.h) of them.
+ * lanes_list_rows takes from rows of numbers those of these lanes, adds to those of each row a number of its own, and writes them
+ * as rows of so many words, room for sixteen in each.
  * lanes_edges_of reads points of two tables, in turned places (see base/lanes.h), by numbers: the first of three of one
  * is subtracted from the other two, then from two of the other.
  *
@@ -15,6 +17,8 @@
  */
 #define lanes_bytes SC_KERNEL(sc_lanes_bytes)
 #define lanes_bytes_load SC_KERNEL(sc_lanes_bytes_load)
+#define lanes_bytes_all SC_KERNEL(sc_lanes_bytes_all)
+#define lanes_bytes_quarters SC_KERNEL(sc_lanes_bytes_quarters)
 #define lanes_bytes_store SC_KERNEL(sc_lanes_bytes_store)
 #define lanes_bytes_same SC_KERNEL(sc_lanes_bytes_same)
 #define lanes_bytes_both SC_KERNEL(sc_lanes_bytes_both)
@@ -26,6 +30,7 @@
 #define lanes_triples SC_KERNEL(sc_lanes_triples)
 #define lanes_triples_of SC_KERNEL(sc_lanes_triples_of)
 #define lanes_triples_through SC_KERNEL(sc_lanes_triples_through)
+#define lanes_list_rows SC_KERNEL(sc_lanes_list_rows)
 #define lanes_names SC_KERNEL(sc_lanes_names)
 #define lanes_index_of SC_KERNEL(sc_lanes_index_of)
 #define lanes_edges_of SC_KERNEL(sc_lanes_edges_of)
@@ -147,6 +152,42 @@ static inline unsigned lanes_bytes_bits(lanes_bytes a)
 #  undef SC_BYTES_EACH
 
 #endif
+
+static inline lanes_bytes lanes_bytes_all(uint8_t number)
+{
+#if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_SSE2
+    return _mm_set1_epi8((char)number);
+#else
+    uint8_t bytes[SC_LANES_COUNT];
+    memset(bytes, number, sizeof bytes);
+    return lanes_bytes_load(bytes);
+#endif
+}
+
+static inline void lanes_bytes_quarters(const uint16_t *words, lanes_bytes quarter[4])
+{
+#if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_SSE2
+    const __m128i byte = _mm_set1_epi16(255), lowest = _mm_set1_epi8(15);
+    const __m128i *from = (const __m128i *)(const void *)words;
+    __m128i a = _mm_loadu_si128(from), b = _mm_loadu_si128(from + 1), half[2];
+    int k;
+    half[0] = _mm_packus_epi16(_mm_and_si128(a, byte), _mm_and_si128(b, byte));
+    half[1] = _mm_packus_epi16(_mm_srli_epi16(a, 8), _mm_srli_epi16(b, 8));
+    SC_UNROLL
+    for (k = 0; k < 2; k++) {
+        quarter[2 * k] = _mm_and_si128(half[k], lowest);
+        quarter[2 * k + 1] = _mm_and_si128(_mm_srli_epi16(half[k], 4), lowest);
+    }
+#else
+    uint8_t byte[4][SC_LANES_COUNT];
+    int i, k;
+    SC_UNROLL
+    for (k = 0; k < 4; k++) {
+        for (i = 0; i < SC_LANES_COUNT; i++) byte[k][i] = (uint8_t)(words[i] >> 4 * k & 15u);
+        quarter[k] = lanes_bytes_load(byte[k]);
+    }
+#endif
+}
 
 #if SC_LANES_AVX512 || SC_LANES_AVX2
 
@@ -346,6 +387,34 @@ static inline void lanes_edges_of(const float *a, const float *b, const lanes_by
 }
 
 #  endif
+#endif
+
+#if SC_LANES_AVX512
+
+static SC_INLINE void lanes_list_rows(unsigned mask, const lanes_bytes row[], const uint32_t add[],
+                                      int rows, uint32_t *to, int length)
+{
+    int k;
+    SC_UNROLL
+    for (k = 0; k < rows; k++) {
+        __m512i all = _mm512_add_epi32(lanes_index_of(row[k]), _mm512_set1_epi32((int)add[k]));
+        _mm512_storeu_si512(to + k * length, _mm512_maskz_compress_epi32((__mmask16)mask, all));
+    }
+}
+
+#else
+
+static SC_INLINE void lanes_list_rows(unsigned mask, const lanes_bytes row[], const uint32_t add[],
+                                      int rows, uint32_t *to, int length)
+{
+    for (; mask; mask &= mask - 1, to++) {
+        uint32_t lane = sc_bits_lowest(mask);
+        int k;
+        for (k = 0; k < rows; k++)
+            to[k * length] = add[k] + ((const uint8_t *)(const void *)&row[k])[lane];
+    }
+}
+
 #endif
 
 /* The last of sixteen is compared first, so that the first that is the same is what stays. */

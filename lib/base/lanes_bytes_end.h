@@ -5,6 +5,8 @@
  */
 #undef lanes_bytes
 #undef lanes_bytes_load
+#undef lanes_bytes_all
+#undef lanes_bytes_quarters
 #undef lanes_bytes_store
 #undef lanes_bytes_same
 #undef lanes_bytes_both
@@ -16,6 +18,7 @@
 #undef lanes_triples
 #undef lanes_triples_of
 #undef lanes_triples_through
+#undef lanes_list_rows
 #undef lanes_names
 #undef lanes_index_of
 #undef lanes_edges_of

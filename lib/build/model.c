@@ -27,6 +27,7 @@ static void measure_arrays(const sc_model *m, uint64_t bytes[SC_ARRAY_COUNT])
     uint32_t loop_total = m->loop_total;
     uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
     uint32_t segment_point_total = m->segment_point_total, share_count = m->share_count;
+    uint32_t share_total = m->share_total;
     uint32_t segment_child_total = m->segment_child_total;
     uint32_t open_count = m->open_count, open_total = m->open_total;
 #define MEASURE(name, type, count) bytes[SC_ARRAY_##name] = (uint64_t)(count) * sizeof(type);
@@ -495,6 +496,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
 {
     sc_model counts, *m;
     uint32_t *number, connected[SC_DEPTH_MAX] = {0};
+    uint64_t share_total = sc_sharing_lists_count(sharing, xbvh);
     rings r;
     sc_status status = SC_OK;
 
@@ -511,10 +513,11 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     if (!number || !r.first || !r.points) return SC_ERROR_MEMORY;
     number_points(points, number);
     list_rings(points, adjacency, number, &r);
-    if (SC_HARDLY(r.open_total > UINT32_MAX)) return SC_ERROR_COUNT;
+    if (SC_HARDLY(r.open_total > UINT32_MAX || share_total > UINT32_MAX)) return SC_ERROR_COUNT;
     counts.open_count = r.open_count;
     counts.open_total = (uint32_t)r.open_total;
     counts.share_count = sharing->first[xbvh->leaf_count];
+    counts.share_total = (uint32_t)share_total;
     counts.ring_total = r.first[points->point_count];
     sc_model_lay_out(&counts);
     if (SC_HARDLY(counts.bytes > SIZE_MAX - SC_ALIGNMENT)) /* where addresses have 32 bits */
@@ -536,8 +539,8 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, share_rows, uint16_t), sharing->rows,
-         SC_LEAF_MAX * (uint64_t)m->share_count * sizeof(uint16_t));
+    sc_sharing_lists_write(sharing, xbvh, sc_model_triangle(m), NEW_ARRAY(m, share_begin, uint32_t),
+                           NEW_ARRAY(m, share_list, uint16_t));
     copy(NEW_ARRAY(m, share_own_rows, uint16_t), sharing->own_rows,
          SC_LEAF_MAX * (uint64_t)m->leaf_count * sizeof(uint16_t));
     copy(NEW_ARRAY(m, share_crowded, uint8_t), sharing->crowded, m->leaf_count);

@@ -18,7 +18,7 @@
 #define SC_BUILD_MODEL_H
 
 #include "build/loops.h"
-#include "build/sharing.h"
+#include "build/sharing_lists.h"
 
 /* One level of patches, and how its nodes fared in the rest pose. */
 typedef struct sc_level {
@@ -65,7 +65,7 @@ enum {
  *   leaf_outline    SC_LEAF_POINTS a cluster: places in leaf_point of the points round its outline, counter-clockwise, if
  *                   that is one closed chain that comes to no point twice, else of none; if there are n < SC_LEAF_POINTS,
  *                   zeros follow, and SC_LEAF_POINTS + n is the last number
- *   share_...       see build/sharing.h
+ *   share_...       see build/sharing.h; share_begin, share_list: build/sharing_lists.h
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
  *                   visits: every fourth, ending with the last
@@ -91,7 +91,8 @@ enum {
   X(leaf_outline, uint8_t, SC_LEAF_POINTS *(uint64_t)leaf_count)                                   \
   X(share_first, uint32_t, (uint64_t)leaf_count + 1)                                               \
   X(share_leaf, uint32_t, share_count)                                                             \
-  X(share_rows, uint16_t, SC_LEAF_MAX *(uint64_t)share_count)                                      \
+  X(share_begin, uint32_t, (uint64_t)share_count + 1)                                              \
+  X(share_list, uint16_t, share_total)                                                             \
   X(share_own_rows, uint16_t, SC_LEAF_MAX *(uint64_t)leaf_count)                                   \
   X(share_crowded, uint8_t, leaf_count)                                                            \
   X(level_first, uint32_t, (uint64_t)level_count + 1)                                              \
@@ -138,8 +139,8 @@ struct sc_model {
     uint32_t node_count, box_count, contour_total, loop_total;
     uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
     uint32_t contour_max; /* points of the segments round a node, at most */
-    uint32_t ring_total, open_count, open_total, share_count;
-    uint32_t unused; /* 0, for an even number of these */
+    uint32_t ring_total, open_count, open_total, share_count,
+        share_total; /* an even number of these */
 };
 
 /* Stands before the model and fills one alignment unit. */

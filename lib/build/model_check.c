@@ -10,6 +10,8 @@
 
 #include <string.h>
 
+#include "base/bits.h"
+
 int sc_model_check_counts(const sc_model *m, uint64_t bytes)
 {
     sc_model expected = *m;
@@ -19,7 +21,7 @@ int sc_model_check_counts(const sc_model *m, uint64_t bytes)
     if (!m->point_count || m->point_count > m->vertex_count) return 0;
     if (!m->leaf_count || m->leaf_count > m->triangle_count) return 0;
     if (!m->level_count || m->level_count > SC_DEPTH_MAX) return 0;
-    if (m->unused || !m->patch_end || m->segment_count < m->leaf_segment_count) return 0;
+    if (!m->patch_end || m->segment_count < m->leaf_segment_count) return 0;
     if (sc_model_is_for_boxes(m) && (m->box_count || m->segment_count || m->contour_max)) return 0;
     if (m->patch_end > limit || m->node_count > limit || m->box_count > limit) return 0;
     sc_model_lay_out(&expected);
@@ -414,6 +416,43 @@ static int check_share_leaf(const sc_model *m)
     return !bad;
 }
 
+/* A list of pairs that share points (build/sharing_lists.h), in so many words, of clusters of so many triangles: pairs are
+   of these, each once, and rows tell the same. */
+static int is_share_list(const uint16_t *list, uint32_t words, uint32_t of_a, uint32_t of_b)
+{
+    const uint32_t some = list[SC_SHARE_TRIANGLES], rows = sc_bits_count(some);
+    const uint16_t *row = list + SC_SHARE_ROWS, *pair = row + rows;
+    uint32_t seen[SC_LEAF_MAX] = {0}, bad, i;
+    if (words < SC_SHARE_ROWS + rows) return 0;
+    words -= SC_SHARE_ROWS + rows;
+    bad = (list[SC_SHARE_POINTS] > list[SC_SHARE_EDGES]) | (list[SC_SHARE_EDGES] > words);
+    for (i = 0; i < words; i++) {
+        uint32_t t = pair[i] & 15u, u = pair[i] >> 4 & 15u;
+        bad |= (t >= of_a) | (u >= of_b) | (seen[t] >> u & 1u);
+        bad |= ((pair[i] >> 8 & 15u) > 2) | (pair[i] >> 12 > 2);
+        seen[t] |= 1u << u;
+    }
+    for (i = 0; i < SC_LEAF_MAX; i++) bad |= seen[i] != (some >> i & 1u ? *row++ : 0u);
+    return !bad;
+}
+
+/* Those of all clusters, and nothing behind them. */
+static int check_share_list(const sc_model *m)
+{
+    const uint32_t *share = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const uint32_t *first = sc_model_leaf_first(m), *begin = sc_model_share_begin(m);
+    const uint16_t *list = sc_model_share_list(m);
+    uint32_t leaf, i, bad = 0;
+    for (leaf = 0; leaf < m->leaf_count; leaf++)
+        for (i = share[leaf]; i < share[leaf + 1]; i++)
+            if (!is_share_list(list + begin[i], begin[i + 1] - begin[i],
+                               first[leaf + 1] - first[leaf],
+                               first[other[i] + 1] - first[other[i]]))
+                return 0;
+    for (i = begin[m->share_count]; i < m->share_total; i++) bad |= list[i];
+    return !bad;
+}
+
 static const char *check_arrays(const sc_model *m, uint8_t *bytes)
 {
     const char *wrong;
@@ -443,6 +482,11 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(share_first, are_lists(sc_model_share_first(m), m->leaf_count, m->share_count, 0,
                                  3 * SC_LEAF_MAX * SC_SHARING_CROWD));
     CHECK(share_leaf, check_share_leaf(m));
+    CHECK(share_begin,
+          m->share_total >= SC_SHARE_BEHIND &&
+              are_lists(sc_model_share_begin(m), m->share_count, m->share_total - SC_SHARE_BEHIND,
+                        SC_SHARE_ROWS, SC_SHARE_ROWS + SC_LEAF_MAX * (SC_LEAF_MAX + 1)));
+    CHECK(share_list, check_share_list(m));
     CHECK(share_crowded, bytes_below(sc_model_share_crowded(m), m->leaf_count, 2));
     wrong = check_nodes(m);
     if (wrong) return wrong;

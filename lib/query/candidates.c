@@ -456,11 +456,14 @@ void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, uint32_t
     p->b = b;
     p->shared = nothing;
     p->wanted = !state->drops_neighbors;
-    if (sc_model_share_crowded(model)[a] & sc_model_share_crowded(model)[b])
+    p->list = NULL;
+    if (sc_model_share_crowded(model)[a] & sc_model_share_crowded(model)[b]) {
         find_shared(model, p);
-    else if (a == b)
+    } else if (a == b) {
         p->shared = sc_model_share_own_rows(model) + SC_LEAF_MAX * (uint64_t)a;
-    else if (shared != SC_NONE)
-        p->shared = sc_model_share_rows(model) + SC_LEAF_MAX * (uint64_t)shared;
-    p->shares = p->shared != nothing;
+    } else if (shared != SC_NONE) {
+        p->list = sc_model_share_list(model) + sc_model_share_begin(model)[shared];
+        p->list_end = sc_model_share_list(model) + sc_model_share_begin(model)[shared + 1];
+    }
+    p->shares = p->list || p->shared != nothing;
 }

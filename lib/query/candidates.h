@@ -37,13 +37,16 @@ enum {
 /* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
 typedef struct sc_leaf_pair {
     uint32_t a, b;
-    int shares;             /* any do */
+    int shares; /* any do */
+    const uint16_t
+        *list; /* of pairs that share points, see build/sharing_lists.h; if it is NULL: */
+    const uint16_t *list_end;
     const uint16_t *shared; /* SC_LEAF_MAX rows: triangles of b that share points with one of a */
     int wanted;             /* so are pairs that do */
     uint16_t found[SC_LEAF_MAX]; /* room for shared */
 } sc_leaf_pair;
 
-/* Fills *pair; shared is where sc_model_share_rows has the two, or SC_NONE: they share no point, or are one, or crowded. */
+/* Fills *pair; shared is where sc_model_share_begin has the two, or SC_NONE: they share no point, or are one, or crowded. */
 void sc_candidates_enter(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b, uint32_t shared,
                          sc_leaf_pair *pair);
 

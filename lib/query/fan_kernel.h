@@ -95,7 +95,7 @@ static inline lanes_mask SC_KERNEL(find_turned)(const sc_leaf_ready *ready, cons
 }
 
 /* The triangles of a cluster that may have more in common with others of it than what they share: two that share a point
-   have not, if one of them is no such triangle. */
+   have not, if one of them is no such triangle. If half of them do not face the viewer, as of a tube, it is all at once. */
 static unsigned SC_KERNEL(doubtful)(const sc_query_state *state, uint32_t leaf)
 {
     const sc_model *model = state->model;
@@ -114,6 +114,8 @@ static unsigned SC_KERNEL(doubtful)(const sc_query_state *state, uint32_t leaf)
     lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
     SC_UNROLL
     for (k = 0; k < 3; k++) corner[k] = lanes_index_load(where + SC_LEAF_MAX * k);
+    turned[0] = turned[1] = turned[2] = SC_KERNEL(find_turned)(ready, n);
+    if (sc_bits_count(lanes_bits(turned[0])) >= SC_LEAF_MAX / 2) return triangles;
     SC_KERNEL(find_across)(n, across);
     SC_UNROLL
     for (k = 0; k < 2; k++) SC_KERNEL(find_rays)(across[k], at, corner, ray[k]);
@@ -127,7 +129,6 @@ static unsigned SC_KERNEL(doubtful)(const sc_query_state *state, uint32_t leaf)
         turns_once |= sectors == sc_bits_count(held);
     }
     settled = (fan[1] & ~held_all) | (turns_once ? fan[0] : 0u);
-    turned[0] = turned[1] = turned[2] = SC_KERNEL(find_turned)(ready, n);
     if (lanes_bits(turned[0])) settled &= ~lanes_marked(corner, turned);
     open = ~settled;
     return (lanes_among(corner[0], open) | lanes_among(corner[1], open) |

@@ -11,7 +11,9 @@
 typedef struct SC_KERNEL(rows) {
     uint32_t leaf[2][SC_ROWS_PAIRS];
     const sc_leaf_ready *ready[2][SC_ROWS_PAIRS]; /* all of them are, as long as there are rows */
+    const uint16_t *list[SC_ROWS_PAIRS];          /* as in sc_leaf_pair */
     float extent[SC_ROWS_PAIRS];                  /* of both; made when needed */
+    int near;                                     /* those that wait have such a list */
     unsigned pairs, wait, count;                  /* how many there are */
     uint8_t wait_pair
         [SC_ROWS]; /* rows without a mask, whose boxes are to be compared: of which pair, */
@@ -19,6 +21,8 @@ typedef struct SC_KERNEL(rows) {
     uint8_t pair[SC_ROWS];     /* the others */
     uint8_t row[SC_ROWS];
     uint16_t mask[SC_ROWS];
+    SC_KERNEL(open_neighbors)
+    open; /* pairs of triangles that share points, of these clusters or others */
 } SC_KERNEL(rows);
 
 static inline void SC_KERNEL(no_rows)(SC_KERNEL(rows) * rows)
@@ -126,8 +130,29 @@ static void SC_KERNEL(compare_boxes)(SC_KERNEL(rows) * rows)
     rows->wait = 0;
 }
 
-/* The same of the pair of clusters to come, some triangles of which share points: pairs that do are taken, and not in the
-   rows. */
+/* The same where these are rows of clusters that share points: without the pairs that do. */
+static void SC_KERNEL(compare_near_boxes)(SC_KERNEL(rows) * rows)
+{
+    unsigned count = rows->count, t;
+    for (t = 0; t < rows->wait; t++) {
+        unsigned pair = rows->wait_pair[t], row = rows->wait_row[t], mask, shared;
+        const uint16_t *list = rows->list[pair];
+        lanes low[3], high[3];
+        SC_KERNEL(load_boxes)(rows->ready[1][pair], low, high);
+        mask = SC_KERNEL(overlap_row)(rows->ready[0][pair], row, low, high);
+        shared = list[SC_SHARE_ROWS + sc_bits_count(list[SC_SHARE_TRIANGLES] & ((1u << row) - 1u))];
+        mask &= ~(shared & (0u - ((unsigned)list[SC_SHARE_TRIANGLES] >> row & 1u)));
+        rows->pair[count] = (uint8_t)pair;
+        rows->row[count] = (uint8_t)row;
+        rows->mask[count] = (uint16_t)mask;
+        count += mask != 0;
+    }
+    rows->count = count;
+    rows->wait = 0;
+}
+
+/* The same of a cluster against itself, or of two that are crowded, to come: pairs that share points are taken, and not in
+   the rows. */
 static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p, unsigned some_a,
                                    unsigned some_b, SC_KERNEL(rows) * rows)
 {
@@ -153,7 +178,7 @@ static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p,
     rows->count = count;
     if (near_count) {
         SC_KERNEL(take_neighbors)
-        (state, p, SC_KERNEL(extent)(state, p->a, p->b), near_a, near_b, near_count);
+        (state, p, near_a, near_b, near_count, &rows->open);
         sc_candidates_make_room(state);
     }
 }
@@ -205,7 +230,10 @@ static void SC_KERNEL(test_rows)(sc_query_state *state, SC_KERNEL(rows) * rows)
     uint8_t of_a[SC_ROWS_LIST], of_b[SC_ROWS_LIST], pair[SC_ROWS_PAIRS + 1];
     uint16_t end[SC_ROWS_PAIRS + 1];
     unsigned r = 0, k;
-    if (rows->wait) SC_KERNEL(compare_boxes)(rows);
+    if (rows->near)
+        SC_KERNEL(compare_near_boxes)(rows);
+    else if (rows->wait)
+        SC_KERNEL(compare_boxes)(rows);
     if (rows->count) SC_KERNEL(compare_planes)(state, rows);
     while (r < rows->count && !state->stop) {
         unsigned count = 0, pairs = 0, at = 0;
@@ -249,12 +277,17 @@ static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p, un
     rows->leaf[!swap][k] = p->b;
     rows->ready[swap][k] = SC_KERNEL(ready)(state, p->a, 0);
     rows->ready[!swap][k] = SC_KERNEL(ready)(state, p->b, p->b > p->a);
-    if (p->shares) {
+    rows->list[k] = p->list;
+    if (p->shares && !p->list) {
         SC_KERNEL(take_shared)(state, p, some_a, some_b, rows);
     } else {
         some_a = swap ? some_b : some_a;
         memset(rows->wait_pair + rows->wait, (int)k, SC_LANES_COUNT);
         rows->wait += lanes_list(some_a, rows->wait_row + rows->wait);
+        if (p->list && p->wanted) {
+            SC_KERNEL(take_listed)(state, p, &rows->open);
+            sc_candidates_make_room(state);
+        }
     }
     state->stats.counts[sc_state_box_task(state)] += sc_bits_count(some_a);
     rows->pairs++;
@@ -369,7 +402,8 @@ static void SC_KERNEL(far_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     int slabs_first = count >= SC_LEAF_SLABS_FIRST;
     w->far_count = 0;
     if (slabs_first) {
-        if (w->ready_upper) SC_KERNEL(test_rows)(state, rows); /* as in leaf_pair */
+        if (w->ready_mask != SC_KEEPS_ALL) /* as in leaf_pair */
+            SC_KERNEL(test_rows)(state, rows);
         for (i = 0; i < count; i++) {
             uint32_t a = lower[i], b = upper[i];
             if (i + SC_FETCH_POINTS < count) SC_KERNEL(fetch_points)(w, upper[i + SC_FETCH_POINTS]);
@@ -396,18 +430,22 @@ static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     const sc_near_pair *pairs = w->near_pairs;
     uint32_t count = w->near_count, i;
     w->near_count = 0;
+    rows->near = 1;
     for (i = 0; i < count && !state->stop; i++) {
         if (i + SC_FETCH_READY < count) {
             const sc_near_pair *next = pairs + i + SC_FETCH_READY;
             SC_KERNEL(fetch_ready)(w, next->a);
             SC_KERNEL(fetch_ready)(w, next->b);
             sc_fetch(next->shared != SC_NONE
-                         ? sc_model_share_rows(state->model) + SC_LEAF_MAX * (uint64_t)next->shared
+                         ? sc_model_share_list(state->model) +
+                               sc_model_share_begin(state->model)[next->shared]
                          : sc_model_share_own_rows(state->model) + SC_LEAF_MAX * (uint64_t)next->a);
         }
         SC_KERNEL(leaf_pair)(state, pairs[i].a, pairs[i].b, 0, pairs[i].shared, rows);
         if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);
     }
+    SC_KERNEL(compare_near_boxes)(rows);
+    rows->near = 0;
 }
 
 /* All pairs of leaf clusters that wait. */
@@ -415,9 +453,11 @@ static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
 {
     SC_KERNEL(rows) rows;
     SC_KERNEL(no_rows)(&rows);
+    memset(&rows.open, 0, sizeof rows.open);
     SC_KERNEL(near_pairs)(state, &rows);
     SC_KERNEL(far_pairs)(state, &rows);
     SC_KERNEL(test_rows)(state, &rows);
+    if (rows.open.count && !state->stop) SC_KERNEL(settle_neighbors)(state, &rows.open);
 }
 
 /* Has a pair of leaf clusters that share points wait if that is so, 1 or 0, or one by itself. */

@@ -22,6 +22,8 @@
  * derived in sixteen_kernel.h, in the terms of which the product of three meets eight roundings here: 8.01 v |e|1 |f|1 D
  * <= 12.1 v D^2 S; that of a plane is below S (4 EDGE (D + EDGE) + 13 v D^2) + 7 EDGE^2 (D + EDGE), however it is rounded.
  * The direction m is any, hence has no error: m . a is off by |m|1 (EDGE + 4.1 v D) and a few FLT_MIN if products underflow.
+ *
+ * A direction tells most of them apart. The others, of whatever leaf clusters, wait until there are sixteen.
  */
 
 /* Sixteen pairs, as above; and which are of such that share just a point, or an edge. */
@@ -29,6 +31,21 @@ typedef struct SC_KERNEL(neighbors) {
     lanes at[2][2][3]; /* a and b, first and second, axis */
     unsigned point, edge;
 } SC_KERNEL(neighbors);
+
+/* Numbers of these: of p, of both ends of a and of b among the points of their leaf cluster, and of t and u among its
+   triangles. */
+enum { SC_NEIGHBORS_ROWS = 7 };
+typedef struct SC_KERNEL(neighbor_rows) {
+    lanes_bytes row[SC_NEIGHBORS_ROWS];
+} SC_KERNEL(neighbor_rows);
+
+/* Pairs that no direction tells apart, of any leaf clusters. Behind the last are such as were here before. */
+typedef struct SC_KERNEL(open_neighbors) {
+    uint32_t number[SC_NEIGHBORS_ROWS]
+                   [2 * SC_LANES_COUNT]; /* as above, of all points and triangles */
+    float extent[2 * SC_LANES_COUNT];    /* of both clusters */
+    unsigned count;
+} SC_KERNEL(open_neighbors);
 
 /* A leaf cluster: where its points are, which are the corners of its triangles, and what these are called: points of two
    clusters, or of one, are the same if they have the same name. */
@@ -81,7 +98,8 @@ static inline void SC_KERNEL(turn)(const lanes_bytes shared[3], const lanes_byte
 
 static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
                                              const SC_KERNEL(neighborhood) * b, const uint8_t *of_a,
-                                             const uint8_t *of_b, SC_KERNEL(neighbors) * x)
+                                             const uint8_t *of_b, SC_KERNEL(neighbors) * x,
+                                             SC_KERNEL(neighbor_rows) * numbers)
 {
     lanes_bytes p[3], q[3], name[3], same[3][3], shared[2][3], turned[2][3];
     unsigned bits[2][3];
@@ -112,6 +130,50 @@ static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
             lanes_bytes_both(shared[1][2], lanes_bytes_either(shared[1][0], shared[1][1]))),
         turned[1][2], turned[1][1]);
     lanes_edges_of(a->at, b->at, turned[0], turned[1] + 1, x->at);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) numbers->row[k] = turned[0][k];
+    SC_UNROLL
+    for (k = 0; k < 2; k++) numbers->row[3 + k] = turned[1][1 + k];
+    numbers->row[5] = lanes_bytes_load(of_a);
+    numbers->row[6] = lanes_bytes_load(of_b);
+}
+
+/* Turns corners so that the one of this number, 0, 1 or 2, is the first. */
+static inline void SC_KERNEL(turn_by)(lanes_bytes number, const lanes_bytes corner[3],
+                                      lanes_bytes turned[3])
+{
+    lanes_bytes first = lanes_bytes_same(number, lanes_bytes_all(0));
+    lanes_bytes second = lanes_bytes_same(number, lanes_bytes_all(1));
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++)
+        turned[k] = lanes_bytes_choose(
+            first, corner[k], lanes_bytes_choose(second, corner[(k + 1) % 3], corner[(k + 2) % 3]));
+}
+
+/* Sixteen pairs of a list (see build/sharing_lists.h), as if they shared just a point. */
+static inline void SC_KERNEL(load_listed)(const SC_KERNEL(neighborhood) * a,
+                                          const SC_KERNEL(neighborhood) * b, const uint16_t *list,
+                                          SC_KERNEL(neighbors) * x,
+                                          SC_KERNEL(neighbor_rows) * numbers)
+{
+    lanes_bytes quarter[4], corner[2][3], turned[2][3];
+    uint8_t of[2][SC_LANES_COUNT];
+    int k;
+    lanes_bytes_quarters(list, quarter);
+    SC_UNROLL
+    for (k = 0; k < 2; k++) lanes_bytes_store(of[k], quarter[k]);
+    lanes_triples_through(&a->corner, of[0], corner[0]);
+    lanes_triples_through(&b->corner, of[1], corner[1]);
+    SC_UNROLL
+    for (k = 0; k < 2; k++) SC_KERNEL(turn_by)(quarter[2 + k], corner[k], turned[k]);
+    lanes_edges_of(a->at, b->at, turned[0], turned[1] + 1, x->at);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) numbers->row[k] = turned[0][k];
+    SC_UNROLL
+    for (k = 0; k < 2; k++) numbers->row[3 + k] = turned[1][1 + k];
+    numbers->row[5] = quarter[0];
+    numbers->row[6] = quarter[1];
 }
 
 static inline lanes SC_KERNEL(dot)(const lanes x[3], const lanes y[3])
@@ -151,19 +213,21 @@ static inline void SC_KERNEL(find_normal)(const SC_KERNEL(neighbors) * x, int s,
 }
 
 /* The lanes in which the plane of triangle s certainly has both of the other on one side. */
-static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, int s, float extent)
+static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, int s, lanes extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     const lanes *e = x->at[s][0], *f = x->at[s][1];
+    const lanes more = lanes_add(extent, lanes_all(edge));
     lanes n[3], size = lanes_all(0), bound, d[2];
     int c;
     SC_KERNEL(find_normal)(x, s, n);
     SC_UNROLL
     for (c = 0; c < 3; c++)
         size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
-    bound = lanes_add(
-        lanes_multiply(size, lanes_all(4 * edge * (extent + edge) + 13 * v * extent * extent)),
-        lanes_all(7 * edge * edge * (extent + edge)));
+    bound = lanes_add(lanes_multiply(lanes_all(4 * edge), more),
+                      lanes_multiply(lanes_all(13 * v), lanes_multiply(extent, extent)));
+    bound =
+        lanes_add(lanes_multiply(size, bound), lanes_multiply(lanes_all(7 * edge * edge), more));
     d[0] = SC_KERNEL(dot)(n, x->at[1 - s][0]);
     d[1] = SC_KERNEL(dot)(n, x->at[1 - s][1]);
     return lanes_bits(lanes_below(bound, lanes_smaller(d[0], d[1]))) |
@@ -205,10 +269,12 @@ static inline SC_KERNEL(side)
 }
 
 /* The lanes in which a line parts them, seen along the axis nearest to the normal of t. */
-static inline unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, float extent)
+static inline unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, lanes extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    const lanes bound = lanes_all(5 * edge * (extent + edge) + 9 * v * extent * extent);
+    const lanes bound =
+        lanes_add(lanes_multiply(lanes_all(5 * edge), lanes_add(extent, lanes_all(edge))),
+                  lanes_multiply(lanes_all(9 * v), lanes_multiply(extent, extent)));
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
     lanes n[3], flat[2][2][2];
     SC_KERNEL(side) own[2], of[2][2]; /* a_0, a_1; b_0, b_1; a_i, b_k */
@@ -240,36 +306,144 @@ static inline unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, flo
     return apart;
 }
 
-/* Takes those of the pairs listed that may meet outside of what they share; extent is that of both clusters. */
-static void SC_KERNEL(take_neighbors)(sc_query_state *state, const sc_leaf_pair *p, float extent,
-                                      uint8_t *of_a, uint8_t *of_b, unsigned count)
+/* Takes those of the last pairs that are open, sixteen or all, that may meet outside of what they share. */
+static void SC_KERNEL(settle_neighbors)(sc_query_state *state, SC_KERNEL(open_neighbors) * open)
+{
+    const unsigned some = open->count < SC_LANES_COUNT ? open->count : SC_LANES_COUNT;
+    const unsigned at = open->count - some;
+    const lanes extent = lanes_load(open->extent + at);
+    unsigned mask = (1u << some) - 1u;
+    SC_KERNEL(neighbors) x;
+    lanes_mask same[3];
+    lanes from[3], to[3];
+    int i, k, c;
+    open->count = at;
+    SC_UNROLL
+    for (k = 0; k < 5; k++) {
+        uint32_t row[SC_LANES_COUNT];
+        for (i = 0; i < SC_LANES_COUNT; i++) { /* in turned places */
+            uint32_t number = open->number[k][at + (unsigned)i];
+            row[i] = (number & ~15u) | (number << 2 & 12u) | (number >> 2 & 3u);
+        }
+        lanes_rows(state->workspace->point_at, row, &to[0], &to[1], &to[2]);
+        SC_UNROLL
+        for (c = 0; c < 3; c++) {
+            if (k == 0)
+                from[c] = to[c];
+            else
+                x.at[(k - 1) / 2][(k - 1) % 2][c] = lanes_subtract(to[c], from[c]);
+        }
+    }
+    SC_UNROLL
+    for (c = 0; c < 3; c++) same[c] = lanes_same(x.at[1][0][c], x.at[1][1][c]);
+    x.edge = lanes_bits(lanes_both(same[0], lanes_both(same[1], same[2])));
+    x.point = ~x.edge;
+    mask &= ~SC_KERNEL(side_parts)(&x, extent);
+    if (mask) {
+        mask &= ~SC_KERNEL(plane_parts)(&x, 1, extent);
+        mask &= ~SC_KERNEL(plane_parts)(&x, 0, extent);
+    }
+    for (; mask; mask &= mask - 1) {
+        unsigned lane = at + sc_bits_lowest(mask);
+        sc_candidates_add_neighbors(state, open->number[5][lane], open->number[6][lane]);
+    }
+}
+
+/* Two leaf clusters, or one twice, of which pairs are taken. */
+typedef struct SC_KERNEL(neighborhoods) {
+    SC_KERNEL(neighborhood) a, b;
+    uint32_t first[SC_NEIGHBORS_ROWS]; /* what is added to numbers to list pairs as open */
+    float extent;                      /* of both */
+    int take_edges;                    /* pairs that share an edge are wanted */
+} SC_KERNEL(neighborhoods);
+
+/* Sets all but what the triangles' corners are. */
+static inline void SC_KERNEL(begin_neighbors)(const sc_query_state *state, const sc_leaf_pair *p,
+                                              SC_KERNEL(neighborhoods) * n)
 {
     const uint32_t *first = sc_model_leaf_first(state->model);
-    const int take_edges =
+    n->first[0] = n->first[1] = n->first[2] = SC_LEAF_POINTS * p->a;
+    n->first[3] = n->first[4] = SC_LEAF_POINTS * p->b;
+    n->first[5] = first[p->a];
+    n->first[6] = first[p->b];
+    n->extent = SC_KERNEL(extent)(state, p->a, p->b);
+    n->take_edges =
         state->options.pairs != SC_PAIRS_EDGE && state->options.contact != SC_CONTACT_PROPER;
-    SC_KERNEL(neighborhood) a, b;
+}
+
+/* Lists pairs as open. */
+static inline void SC_KERNEL(add_open)(sc_query_state *state, unsigned mask,
+                                       const SC_KERNEL(neighborhoods) * n,
+                                       const SC_KERNEL(neighbor_rows) * numbers,
+                                       SC_KERNEL(open_neighbors) * open)
+{
+    lanes_store(open->extent + open->count, lanes_all(n->extent));
+    lanes_list_rows(mask, numbers->row, n->first, SC_NEIGHBORS_ROWS, &open->number[0][open->count],
+                    2 * SC_LANES_COUNT);
+    open->count += sc_bits_count(mask);
+    if (open->count >= SC_LANES_COUNT) SC_KERNEL(settle_neighbors)(state, open);
+}
+
+/* The lanes of those of sixteen from a number on that are below an end. */
+static inline unsigned SC_KERNEL(lanes_before)(unsigned at, unsigned end)
+{
+    return end - at < SC_LANES_COUNT ? (1u << (end - at)) - 1u : 0xffffu;
+}
+
+/* Takes those of pairs of triangles with these numbers, of two leaf clusters or one, that may meet outside of what they
+   share. */
+static void SC_KERNEL(take_neighbors)(sc_query_state *state, const sc_leaf_pair *p, uint8_t *of_a,
+                                      uint8_t *of_b, unsigned count,
+                                      SC_KERNEL(open_neighbors) * open)
+{
+    SC_KERNEL(neighborhoods) n;
     SC_KERNEL(neighbors) x;
+    SC_KERNEL(neighbor_rows) numbers;
     unsigned at;
-    SC_KERNEL(find_points)(state, p->a, p->a, &a);
-    SC_KERNEL(find_points)(state, p->a, p->b, &b);
+    SC_KERNEL(begin_neighbors)(state, p, &n);
+    SC_KERNEL(find_points)(state, p->a, p->a, &n.a);
+    SC_KERNEL(find_points)(state, p->a, p->b, &n.b);
     memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
     memset(of_b + count, 0, SC_LANES_COUNT);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
-        unsigned mask = count - at < SC_LANES_COUNT ? (1u << (count - at)) - 1u : 0xffffu;
-        unsigned odd;
-        SC_KERNEL(load_neighbors)(&a, &b, of_a + at, of_b + at, &x);
+        unsigned mask = SC_KERNEL(lanes_before)(at, count), odd;
+        SC_KERNEL(load_neighbors)(&n.a, &n.b, of_a + at, of_b + at, &x, &numbers);
         odd = mask & ~(x.point | x.edge);
-        mask &= take_edges ? x.point | x.edge : x.point;
-        mask &= ~(SC_KERNEL(direction_parts)(&x, extent) & x.point);
-        /* with few registers for sixteen floats, a branch that is foreseen half of the time costs more than it saves */
-        if (SC_LANES_AVX512 || mask) mask &= ~SC_KERNEL(side_parts)(&x, extent);
-        if (mask) {
-            mask &= ~SC_KERNEL(plane_parts)(&x, 1, extent);
-            mask &= ~SC_KERNEL(plane_parts)(&x, 0, extent);
-        }
-        for (mask |= odd; mask; mask &= mask - 1) {
-            uint32_t lane = at + sc_bits_lowest(mask);
-            sc_candidates_add_neighbors(state, first[p->a] + of_a[lane], first[p->b] + of_b[lane]);
+        mask &= n.take_edges ? x.point | x.edge : x.point;
+        mask &= ~(SC_KERNEL(direction_parts)(&x, n.extent) & x.point);
+        if (mask) SC_KERNEL(add_open)(state, mask, &n, &numbers, open);
+        for (; odd; odd &= odd - 1) {
+            uint32_t lane = at + sc_bits_lowest(odd);
+            sc_candidates_add_neighbors(state, n.first[5] + of_a[lane], n.first[6] + of_b[lane]);
         }
     }
+}
+
+/* The same of pairs that the model lists. */
+static void SC_KERNEL(take_listed)(sc_query_state *state, const sc_leaf_pair *p,
+                                   SC_KERNEL(open_neighbors) * open)
+{
+    const uint16_t *list = p->list + SC_SHARE_ROWS + sc_bits_count(p->list[SC_SHARE_TRIANGLES]);
+    const unsigned points = p->list[SC_SHARE_POINTS], edges = p->list[SC_SHARE_EDGES];
+    const unsigned count = (unsigned)(p->list_end - list);
+    SC_KERNEL(neighborhoods) n;
+    SC_KERNEL(neighbors) x;
+    SC_KERNEL(neighbor_rows) numbers;
+    unsigned at, mask;
+    SC_KERNEL(begin_neighbors)(state, p, &n);
+    SC_KERNEL(find_points)(state, p->a, p->a, &n.a);
+    SC_KERNEL(find_points)(state, p->b, p->b, &n.b);
+    for (at = 0; at < points; at += SC_LANES_COUNT) {
+        SC_KERNEL(load_listed)(&n.a, &n.b, list + at, &x, &numbers);
+        mask = SC_KERNEL(lanes_before)(at, points) & ~SC_KERNEL(direction_parts)(&x, n.extent);
+        if (mask) SC_KERNEL(add_open)(state, mask, &n, &numbers, open);
+    }
+    for (at = points; n.take_edges && at < edges; at += SC_LANES_COUNT) {
+        SC_KERNEL(load_listed)(&n.a, &n.b, list + at, &x, &numbers);
+        numbers.row[3] = numbers.row[4];
+        SC_KERNEL(add_open)(state, SC_KERNEL(lanes_before)(at, edges), &n, &numbers, open);
+    }
+    for (at = edges; at < count; at++)
+        sc_candidates_add_neighbors(state, n.first[5] + (list[at] & 15u),
+                                    n.first[6] + (list[at] >> 4 & 15u));
 }
