@@ -11,10 +11,8 @@
 /* Bits of all triangles of a leaf cluster. */
 #define SC_LEAF_ALL ((1u << SC_LEAF_MAX) - 1u)
 
-/* Pairs of triangles of two leaf clusters, at most. Fewer than SC_LEAF_FEW are decided without the tests of
-   query/leaf_kernel.h; and it takes SC_SIDES_WORTH that no plane separates, of sixteen, for the test by sides. Tuned on
-   the bunny and on cloth. */
-enum { SC_LEAF_PAIRS = SC_LEAF_MAX * SC_LEAF_MAX, SC_LEAF_FEW = 2, SC_SIDES_WORTH = 3 };
+/* Pairs of triangles of two leaf clusters, at most. */
+enum { SC_LEAF_PAIRS = SC_LEAF_MAX * SC_LEAF_MAX };
 
 /* Of pairs of leaf clusters that wait: so many or more are tested by slabs first; memory is asked for some places ahead;
    so many are looked at before the query asks whether to stop. The first ones tuned on crushed cloth and the bunny. */

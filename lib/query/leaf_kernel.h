@@ -63,7 +63,8 @@ static inline void SC_KERNEL(fill_sixteen)(const sc_query_state *state,
                              lanes_all(rows->extent[window->pair[0]]));
 }
 
-/* Collects those of pairs of triangles that are not certainly apart, settled or not. */
+/* Collects those of pairs of triangles that are not certainly apart, settled or not. What becomes of a pair does not depend on
+   which others are in its sixteen: these are not the same with several workers. */
 static void SC_KERNEL(collect)(sc_query_state *state, const SC_KERNEL(rows) * rows,
                                const SC_KERNEL(window) * window)
 {
@@ -73,17 +74,15 @@ static void SC_KERNEL(collect)(sc_query_state *state, const SC_KERNEL(rows) * ro
     SC_KERNEL(sixteen) x;
     uint32_t first[2][2];
     SC_KERNEL(fill_sixteen)(state, rows, window, &x, first);
-    if (window->count >= SC_LEAF_FEW) {
-        SC_KERNEL(test_pairs)(&x, mask, &verdict);
-        mask &= ~verdict.apart;
-        if (!state->sifts) { /* which may want it left out */
-            const unsigned settled = mask & verdict.settled;
-            lanes_list_bits(settled, verdict.bits, w->settled_code + w->settled_count);
-            w->settled_count +=
-                lanes_list_pairs(settled, second, window->numbers[0], first[0], window->numbers[1],
-                                 first[1], (uint32_t *)(void *)(w->settled + w->settled_count));
-            mask &= ~settled;
-        }
+    SC_KERNEL(test_pairs)(&x, mask, &verdict);
+    mask &= ~verdict.apart;
+    if (!state->sifts) { /* which may want it left out */
+        const unsigned settled = mask & verdict.settled;
+        lanes_list_bits(settled, verdict.bits, w->settled_code + w->settled_count);
+        w->settled_count +=
+            lanes_list_pairs(settled, second, window->numbers[0], first[0], window->numbers[1],
+                             first[1], (uint32_t *)(void *)(w->settled + w->settled_count));
+        mask &= ~settled;
     }
     w->candidate_count +=
         lanes_list_pairs(mask, second, window->numbers[0], first[0], window->numbers[1], first[1],

@@ -331,7 +331,7 @@ static SC_INLINE void SC_KERNEL(test_some)(const SC_KERNEL(sixteen) * x, int two
     open &= ~tips[1].beside;
     SC_KERNEL(cross_edges)(tips, lanes_add(size[0], size[1]), open, verdict);
     open &= ~(verdict->apart | verdict->settled);
-    if (sc_bits_count(open & ~(tips[0].split & tips[1].split)) >= SC_SIDES_WORTH) {
+    if (open & ~(tips[0].split & tips[1].split)) {
         const sc_leaf_ready *const *ready = x->of[0].ready;
         lanes_index i = lanes_index_load(x->of[0].numbers);
         lanes at[2][3][3], n[3];
