@@ -9,21 +9,21 @@
 #include <math.h>
 
 #include "base/jobs.h"
+#include "pose/levels.h"
 #include "step/step_kernels.h"
 
-/* Fewer vertices, leaf clusters or patches of a level are not worth a part of their own. */
-enum { STEP_VERTICES_MIN = 1024, STEP_LEAVES_MIN = 32, STEP_PATCHES_MIN = 8192 };
+/* Fewer vertices are not worth a part of their own. */
+enum { STEP_VERTICES_MIN = 1024 };
 
 typedef struct bounds {
     double low[3], high[3];
     double not_finite; /* stays 0 unless something is NaN or infinite */
 } bounds;
 
-/* A pass over vertices, leaf clusters, or the patches of a level, counted from its first. */
+/* A pass over vertices or patches. */
 typedef struct motion_pass {
     const sc_model *model;
     sc_workspace *w;
-    uint32_t first;
     bounds found[SC_JOBS_PARTS];
 } motion_pass;
 
@@ -161,26 +161,16 @@ static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)
         }
 }
 
-static void refit_leaves_of_step(void *context, uint32_t part, uint32_t first, uint32_t end)
+/* The boxes of patches first to end - 1 of a level, which is not the last, by those of their children. */
+static void join_boxes(const sc_model *model, sc_motion *m, uint32_t first, uint32_t end)
 {
-    const motion_pass *pass = (const motion_pass *)context;
-    uint32_t leaf;
-    (void)part;
-    for (leaf = first; leaf < end; leaf++) refit_leaf(pass->model, pass->w, leaf);
-}
-
-static void refit_patches_of_step(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const motion_pass *pass = (const motion_pass *)context;
-    const uint32_t *child = sc_model_child(pass->model);
+    const uint32_t *child = sc_model_child(model);
     uint32_t p, k;
     int s;
-    (void)part;
     for (s = 0; s < 2; s++)
         for (k = 0; k < 3; k++) {
-            float *low = pass->w->motion.boxes[s].side[k];
-            float *high = pass->w->motion.boxes[s].side[k + 3];
-            for (p = pass->first + first; p < pass->first + end; p++) {
+            float *low = m->boxes[s].side[k], *high = m->boxes[s].side[k + 3];
+            for (p = first; p < end; p++) {
                 uint32_t one = child[p], other = child[p + 1] - 1; /* one child, or two */
                 low[p] = low[one] < low[other] ? low[one] : low[other];
                 high[p] = high[one] > high[other] ? high[one] : high[other];
@@ -188,60 +178,51 @@ static void refit_patches_of_step(void *context, uint32_t part, uint32_t first, 
         }
 }
 
+static void refit_step(void *context, uint32_t level, uint32_t first, uint32_t end)
+{
+    const motion_pass *pass = (const motion_pass *)context;
+    const uint32_t leaves = sc_model_first_leaf_patch(pass->model);
+    uint32_t p;
+    if (level + 1 < pass->model->level_count) {
+        join_boxes(pass->model, &pass->w->motion, first, end);
+        return;
+    }
+    for (p = first; p < end; p++) refit_leaf(pass->model, pass->w, p - leaves);
+}
+
 void sc_motion_refit(const sc_model *model, sc_workspace *w)
 {
-    const uint32_t *level_first = sc_model_level_first(model);
     motion_pass pass;
-    uint32_t level;
     pass.model = model;
     pass.w = w;
-    (void)sc_jobs_loop(w->tasks, model->leaf_count, STEP_LEAVES_MIN, refit_leaves_of_step, &pass);
-    for (level = model->level_count - 1; level-- > 0;) {
-        pass.first = level_first[level];
-        (void)sc_jobs_loop(w->tasks, sc_model_patches(model, level), STEP_PATCHES_MIN,
-                           refit_patches_of_step, &pass);
-    }
+    sc_levels_up(model, w->tasks, refit_step, &pass);
     w->boxes_ready = 1;
 }
 
-static void find_cones(void *context, uint32_t part, uint32_t first, uint32_t end)
+static void find_cones(void *context, uint32_t level, uint32_t first, uint32_t end)
 {
     const motion_pass *pass = (const motion_pass *)context;
-    const uint32_t *leaf_first = sc_model_leaf_first(pass->model);
-    const uint32_t *corner = sc_model_triangle(pass->model);
-    uint16_t *mask = pass->w->mask + sc_model_first_leaf_patch(pass->model);
-    uint32_t leaf;
-    (void)part;
-    for (leaf = first; leaf < end; leaf++)
-        mask[leaf] = (uint16_t)sc_step_kernels_of(pass->w)->cone(
-            &pass->w->motion, corner + 3 * (uint64_t)leaf_first[leaf],
-            leaf_first[leaf + 1] - leaf_first[leaf]);
-}
-
-static void join_cones_of_step(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const motion_pass *pass = (const motion_pass *)context;
-    const uint32_t *child = sc_model_child(pass->model);
+    const sc_model *model = pass->model;
+    const uint32_t *child = sc_model_child(model);
+    const uint32_t *triangle = sc_model_triangle(model), *leaf = sc_model_leaf_first(model);
     uint16_t *mask = pass->w->mask;
     uint32_t p;
-    (void)part;
-    for (p = pass->first + first; p < pass->first + end; p++)
-        mask[p] = mask[child[p]] & mask[child[p + 1] - 1];
+    if (level + 1 < model->level_count) {
+        for (p = first; p < end; p++) mask[p] = mask[child[p]] & mask[child[p + 1] - 1];
+        return;
+    }
+    leaf += first - sc_model_first_leaf_patch(model);
+    for (p = first; p < end; p++, leaf++)
+        mask[p] = (uint16_t)sc_step_kernels_of(pass->w)->cone(
+            &pass->w->motion, triangle + 3 * (uint64_t)leaf[0], leaf[1] - leaf[0]);
 }
 
 void sc_motion_update_cones(const sc_model *model, sc_workspace *w)
 {
-    const uint32_t *level_first = sc_model_level_first(model);
     motion_pass pass;
-    uint32_t level;
     pass.model = model;
     pass.w = w;
-    (void)sc_jobs_loop(w->tasks, model->leaf_count, STEP_LEAVES_MIN, find_cones, &pass);
-    for (level = model->level_count - 1; level-- > 0;) {
-        pass.first = level_first[level];
-        (void)sc_jobs_loop(w->tasks, sc_model_patches(model, level), STEP_PATCHES_MIN,
-                           join_cones_of_step, &pass);
-    }
+    sc_levels_up(model, w->tasks, find_cones, &pass);
 }
 
 int sc_motion_boxes_apart(const sc_motion *m, uint32_t a, uint32_t b)

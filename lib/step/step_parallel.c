@@ -6,8 +6,8 @@
  * The test tree is taken level by level: first nodes of two patches, then those of one, which are left out if one of two
  * that has their patch was culled. One thread, which goes deep first, comes to a node of one patch after all nodes of two
  * that have it, and these are all of its level: so it is the same nodes that are left out. The nodes of a level are one job,
- * or two; the worker that opens a node also does what is left to boxes, with the narrow phase. But the pairs of large
- * patches are split up by the calling thread, to a list of parts which is done when all levels are, or when it is full.
+ * or two; what they leave to boxes, with the narrow phase, is one more when all levels are done. The pairs of large patches
+ * are split up by the calling thread, to a list of parts which is done in that job, too, or when it is full.
  * The plain tree is nothing but such a list.
  *
  * No locks: see query/parallel.c.
@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "base/atomic.h"
+#include "base/jobs.h"
 #include "step/leaf_step.h"
 #include "step/step_candidates.h"
 #include "step/step_kernels.h"
@@ -39,11 +40,16 @@ enum { STEP_NODES_MIN = 16 };
    list are taken a few at once. */
 enum { STEP_NODE_PARTS = 256, STEP_NODES_AT_ONCE = 8, STEP_PARTS_AT_ONCE = 2 };
 
+/* For what nodes leave to boxes, the nodes of the first level with so many patches, each with all that is below, and those
+   above it are cut into so many parts at most. */
+enum { STEP_SUBTREES_MIN = 512, STEP_REST_PARTS = 1024 };
+
 /* What sc_motion.reached says of a node; 0: its parent was not opened. */
 enum {
     REACHED_TEST = 1,   /* it is to be tested */
     REACHED_FAILED = 2, /* it has the contour of its parent, which failed */
-    REACHED_OPEN = 3    /* it is large and was opened; its boxes are left */
+    REACHED_OPEN = 3,   /* it is large and was opened; its boxes are left */
+    REACHED_REST = 4    /* it was opened; its boxes and leaf clusters are left */
 };
 
 enum { STEP_PART_PAIR, STEP_PART_PAIR_AFTER_CONTOUR, STEP_PART_PATCH };
@@ -56,7 +62,9 @@ typedef struct step_plan {
     sc_step_share share;
     uint32_t part_count;         /* of those in w->parts */
     uint32_t first, end, length; /* nodes of a level, and of a part */
-    int selfs;                   /* of these, those of one patch; else those of two */
+    uint32_t roots; /* the first node that is done with all below it, see STEP_SUBTREES_MIN */
+    sc_jobs_ranges ranges; /* of the job at hand */
+    int selfs;             /* of these, those of one patch; else those of two */
 } step_plan;
 
 const sc_tasks *sc_step_parallel_tasks(const sc_step_state *state)
@@ -119,6 +127,7 @@ static void run_step_job(step_plan *p, void (*run)(void *context, uint32_t part,
 {
     sc_query_state *query = &p->state->query;
     if (!count) return;
+    sc_jobs_divide(p->tasks, count, &p->ranges);
     if (query->timed)
         query->stats.nanoseconds[query->task] += sc_clock_nanoseconds() - query->last_time;
     if (count == 1)
@@ -128,20 +137,47 @@ static void run_step_job(step_plan *p, void (*run)(void *context, uint32_t part,
     if (query->timed) query->last_time = sc_clock_nanoseconds();
 }
 
+static void do_step_part(sc_step_state *s, const sc_part *part)
+{
+    const sc_step_kernels *kernels = sc_step_kernels_of(s->query.workspace);
+    sc_step_traversal_follow_contour(s, part->kind == STEP_PART_PAIR_AFTER_CONTOUR);
+    sc_state_switch(&s->query, sc_state_box_task(&s->query));
+    if (part->kind == STEP_PART_PATCH)
+        kernels->patch_itself(s, part->a);
+    else
+        kernels->patch_pair(s, part->a, part->b);
+}
+
+/* So many parts the list is. */
+static uint32_t listed_parts(const step_plan *p)
+{
+    return (p->part_count + STEP_PARTS_AT_ONCE - 1) / STEP_PARTS_AT_ONCE;
+}
+
+/* What a node leaves, and if it is a root or below one, what all below it leave, which one thread does in this order, too. */
+static void take_rests(const step_plan *p, sc_step_state *s, uint32_t node)
+{
+    const uint32_t *child = sc_model_node_child(s->query.model) + node;
+    uint32_t c;
+    if (p->w->motion.reached[node] != REACHED_REST) return;
+    for (c = node < p->roots ? child[1] : child[0]; c < child[1]; c++) take_rests(p, s, c);
+    sc_step_traversal_query_rest(s, node);
+}
+
+/* Some of the list, or behind that what some nodes leave. */
 static void run_step_parts(void *context, uint32_t part, uint32_t worker)
 {
-    const step_plan *p = (const step_plan *)context;
+    step_plan *p = (step_plan *)context;
     sc_step_state *s = begin_step_part(p, worker);
-    const sc_step_kernels *kernels = sc_step_kernels_of(s->query.workspace);
-    uint32_t i = part * STEP_PARTS_AT_ONCE, end = i + STEP_PARTS_AT_ONCE;
-    for (; i < end && i < p->part_count && !sc_state_stops(&s->query); i++) {
-        const sc_part *to_do = &p->w->parts[i];
-        sc_step_traversal_follow_contour(s, to_do->kind == STEP_PART_PAIR_AFTER_CONTOUR);
-        sc_state_switch(&s->query, sc_state_box_task(&s->query));
-        if (to_do->kind == STEP_PART_PATCH)
-            kernels->patch_itself(s, to_do->a);
-        else
-            kernels->patch_pair(s, to_do->a, to_do->b);
+    const uint32_t listed = listed_parts(p);
+    uint32_t i, node;
+    part = sc_jobs_take(&p->ranges, part, worker);
+    if (part < listed) {
+        for (i = part * STEP_PARTS_AT_ONCE; i < (part + 1) * STEP_PARTS_AT_ONCE; i++)
+            if (i < p->part_count && !sc_state_stops(&s->query)) do_step_part(s, &p->w->parts[i]);
+    } else {
+        node = (part - listed) * p->length;
+        for (i = node; i < p->end && i < node + p->length; i++) take_rests(p, s, i);
     }
     end_step_part(s);
 }
@@ -149,7 +185,7 @@ static void run_step_parts(void *context, uint32_t part, uint32_t worker)
 /* Empties the list of parts. */
 static void do_step_parts(step_plan *p)
 {
-    run_step_job(p, run_step_parts, (p->part_count + STEP_PARTS_AT_ONCE - 1) / STEP_PARTS_AT_ONCE);
+    run_step_job(p, run_step_parts, listed_parts(p));
     p->part_count = 0;
 }
 
@@ -242,7 +278,9 @@ static void add_boxes_of_level(step_plan *p)
 
 /* ---- the test tree ---- */
 
-/* A node that failed: its children are reached; boxes are done at once, unless there are too many. */
+/* A node that failed: its children are reached. Boxes are left for later, when all levels are done: some nodes leave much more
+   than others, and then no level has to wait for these. But where the first pair ends the step, they are done at once,
+   unless there are too many. */
 static void open_step_node(const step_plan *p, sc_step_state *s, uint32_t node)
 {
     const sc_model *model = s->query.model;
@@ -255,23 +293,43 @@ static void open_step_node(const step_plan *p, sc_step_state *s, uint32_t node)
         p->w->motion.reached[c] = failed && is_pair ? REACHED_FAILED : REACHED_TEST;
         s->reached[is_pair]++;
     }
-    if (is_large_in_step(model, patches[node].a) || is_large_in_step(model, patches[node].b))
+    if (is_large_in_step(model, patches[node].a) || is_large_in_step(model, patches[node].b)) {
         p->w->motion.reached[node] = REACHED_OPEN;
-    else
+        s->large++;
+    } else if (s->options.output != SC_OUTPUT_ANY) {
+        p->w->motion.reached[node] = REACHED_REST;
+    } else {
         sc_step_traversal_query_rest(s, node);
+    }
+}
+
+/* The first node from one on that was reached, or the end: mostly few are, so eight are looked at together. */
+static uint32_t next_reached(const uint8_t *reached, uint32_t node, uint32_t end)
+{
+    uint64_t eight;
+    for (; end - node >= sizeof eight; node += (uint32_t)sizeof eight) {
+        memcpy(&eight, reached + node, sizeof eight);
+        if (eight) break;
+    }
+    while (node < end && !reached[node]) node++;
+    return node;
 }
 
 static void run_step_nodes(void *context, uint32_t part, uint32_t worker)
 {
-    const step_plan *p = (const step_plan *)context;
+    step_plan *p = (step_plan *)context;
     sc_step_state *s = begin_step_part(p, worker);
     const sc_pair *patches = sc_model_node_patches(s->query.model);
     uint8_t *reached = p->w->motion.reached, *marks = s->query.workspace->walk.marks;
-    uint32_t first = p->first + part * p->length, node;
+    uint32_t first = p->first + sc_jobs_take(&p->ranges, part, worker) * p->length, node;
     uint32_t end = p->end - first < p->length ? p->end : first + p->length;
     for (node = first; node < end && !sc_state_stops(&s->query); node++) {
-        uint32_t a = patches[node].a, b = patches[node].b;
-        if (!reached[node] || (a == b) != p->selfs || (p->selfs && p->w->culled[a])) continue;
+        uint32_t a, b;
+        node = next_reached(reached, node, end);
+        if (node == end) break;
+        a = patches[node].a;
+        b = patches[node].b;
+        if ((a == b) != p->selfs || (p->selfs && p->w->culled[a])) continue;
         if (sc_step_traversal_culls(s, node, reached[node] == REACHED_FAILED))
             marks[a] = marks[b] = 1;
         else
@@ -302,7 +360,8 @@ static void join_marks_of_level(step_plan *p, uint32_t level)
     }
 }
 
-/* How many nodes of one patch, or of two, the workers have reached; they begin to count again. */
+/* How many nodes of one patch, or of two, the workers have reached, and how many large ones they opened; they begin to count
+   again. */
 static uint32_t take_reached(const step_plan *p, int is_pair)
 {
     uint32_t worker, sum = 0;
@@ -313,11 +372,21 @@ static uint32_t take_reached(const step_plan *p, int is_pair)
     return sum;
 }
 
+static uint32_t take_large(const step_plan *p)
+{
+    uint32_t worker, sum = 0;
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        sum += step_state_of(p, worker)->large;
+        step_state_of(p, worker)->large = 0;
+    }
+    return sum;
+}
+
 static void walk_levels(step_plan *p)
 {
     const sc_model *model = p->state->query.model;
     const uint32_t *child = sc_model_node_child(model);
-    uint32_t level, reached[2] = {1, 0};
+    uint32_t level, end = 1, reached[2] = {1, 0}, few = 1; /* levels so far have few patches */
     p->w->motion.reached[0] = REACHED_TEST;
     p->end = 1;
     for (level = 0; reached[0] + reached[1] && !sc_state_stops(&p->state->query); level++) {
@@ -327,11 +396,20 @@ static void walk_levels(step_plan *p)
         reached[0] = take_reached(p, 0);
         reached[1] = take_reached(p, 1);
         if (!level && reached[0]) refit_for_all(p); /* the root is large */
-        add_boxes_of_level(p);
+        if (take_large(p)) add_boxes_of_level(p);
+        if (few) {
+            p->roots = p->first;
+            end = p->end;
+        }
+        few &= sc_model_patches(model, level) < STEP_SUBTREES_MIN;
         p->first = p->end;
         p->end = child[p->end];
     }
-    if (!sc_state_stops(&p->state->query)) do_step_parts(p);
+    if (sc_state_stops(&p->state->query)) return;
+    p->end = end;
+    p->length = (end - 1) / STEP_REST_PARTS + 1;
+    run_step_job(p, run_step_parts, listed_parts(p) + (end - 1) / p->length + 1);
+    p->part_count = 0;
 }
 
 /* ---- all together ---- */

@@ -37,6 +37,7 @@ typedef struct sc_step_state {
     double earliest;      /* least time of a pair found, else 1 */
     sc_step_share *share; /* NULL, if one thread does all */
     uint32_t reached[2];  /* nodes of one patch, and of two, whose parents this worker opened */
+    uint32_t large;       /* large nodes of a level that it opened */
     uint32_t candidate_count[2];
     sc_pair candidates[2][SC_STEP_BATCH]; /* see step_candidates.h */
 } sc_step_state;
