@@ -704,6 +704,28 @@ static void forged_touches(void)
     soup_free(&mesh);
 }
 
+/* Leaf clusters that share points and are left to boxes; that is, others are said to share points. */
+static void forged_sharing(void)
+{
+    soup mesh = soup_cloth(12, 12);
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
+    save s = save_model(model);
+    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    const uint32_t *first = sc_model_share_first(model);
+    uint32_t *other = (uint32_t *)array_of(m, SC_ARRAY_share_leaf), tried = 0;
+    for (uint32_t leaf = 0; leaf < m->leaf_count; ++leaf)
+        for (uint32_t i = first[leaf]; i < first[leaf + 1]; ++i) {
+            uint32_t was = other[i], end = i + 1 < first[leaf + 1] ? other[i + 1] : m->leaf_count;
+            for (other[i] = was + 1; other[i] < end; ++other[i], ++tried)
+                CHECK(try_forged(&s, &mesh));
+            other[i] = was;
+        }
+    CHECK(tried > 10 && !try_forged(&s, &mesh));
+    free(s.memory);
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
 /* Loops in pieces of which one has no edges, and the next has those too. */
 static void forged_pieces(void)
 {
@@ -1277,7 +1299,7 @@ static void format(void)
 SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(truncated),
              SC_TEST(changed), SC_TEST(foreign), SC_TEST(forged_arrays), SC_TEST(forged_counts),
              SC_TEST(forged_uses), SC_TEST(forged_rings), SC_TEST(forged_contour),
-             SC_TEST(forged_touches), SC_TEST(forged_pieces), SC_TEST(forged_loops),
-             SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
+             SC_TEST(forged_touches), SC_TEST(forged_sharing), SC_TEST(forged_pieces),
+             SC_TEST(forged_loops), SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
              SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments), SC_TEST(equal_bytes),
              SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))

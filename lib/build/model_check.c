@@ -291,6 +291,24 @@ static const char *check_nodes(const sc_model *m)
     return walk.box != m->box_count || boxes[n] != walk.box ? "node_boxes" : NULL;
 }
 
+/*
+ * Leaf clusters that share points are tested as nodes: a query does not ask which triangles of pairs that are left to boxes
+ * share points. Each pair of leaf clusters is one node at most, as the tree has it once.
+ */
+static int check_shared_are_nodes(const sc_model *m)
+{
+    const sc_pair *patches = sc_model_node_patches(m);
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const uint32_t *leaf = sc_model_leaf(m);
+    uint32_t n, i, found = 0;
+    for (n = 0; n < m->node_count; n++) {
+        uint32_t a = patches[n].a, b = patches[n].b;
+        if (a == b || !sc_model_is_leaf(m, a) || !sc_model_is_leaf(m, b)) continue;
+        for (i = first[leaf[a]]; i < first[leaf[a] + 1]; i++) found += other[i] == leaf[b];
+    }
+    return sc_model_is_for_boxes(m) || found == m->share_count;
+}
+
 /* The triangles of a patch. */
 static uint32_t patch_size(const sc_model *m, uint32_t patch)
 {
@@ -490,6 +508,7 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(share_crowded, bytes_below(sc_model_share_crowded(m), m->leaf_count, 2));
     wrong = check_nodes(m);
     if (wrong) return wrong;
+    CHECK(share_leaf, check_shared_are_nodes(m));
     CHECK(node_flags, bytes_below(sc_model_node_flags(m), m->node_count, 4));
     CHECK(node_kind, bytes_below(sc_model_node_kind(m), m->node_count, 4));
     CHECK(node_contour,
