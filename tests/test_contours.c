@@ -21,6 +21,7 @@
 #include "pose/fan.h"
 #include "pose/positions.h"
 #include "query/simple.h"
+#include "query/simple_contour.h"
 #include "query/star.h"
 #include "shapes.h"
 #include "starcontour.h"
@@ -1336,6 +1337,70 @@ static void places_of_contours(void)
     mpq_clears(exact, bound, NULL);
 }
 
+static double cross(const double a[2], const double b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+/* Whether v is in the sector that begins with a, lies to its left, and ends with b. */
+static int is_in_sector(const double a[2], const double b[2], const double v[2])
+{
+    if (cross(a, b) > 0) return cross(a, v) > 0 && cross(v, b) > 0;
+    return cross(a, v) > 0 || cross(v, b) > 0;
+}
+
+/*
+ * A point that a contour passes twice, its four edges in any directions, some nearly the same or opposite: it is fine only if
+ * they alternate, and then always if no two of them are nearly on one line.
+ */
+static void pinches_alone(void)
+{
+    uint32_t wrong = 0, missed = 0, fine = 0, doubtful = 0;
+    for (uint32_t i = 0; i < test_iterations_at_least(40000, 4000); ++i) {
+        enum { POINTS = 6, ROOM = 32 };
+        /* the point, out, in, the point, out, in: where the second in precedes the first out */
+        float at[2][ROOM] = {{0}};
+        double v[4][2], angle = test_random_range(0, 2 * pi), least = HUGE_VAL, sizes = 0;
+        int inside, result;
+        sc_contour_edges edges;
+        sc_simple_contour c;
+        memset(&edges, 0, sizeof(edges));
+        memset(&c, 0, sizeof(c));
+        c.edges = &edges;
+        c.count = POINTS;
+        c.error = 1e-6f;
+        c.pinch_count = 1;
+        c.pinch[0].edge[1] = 3;
+        for (int k = 0; k < 2; ++k) edges.at[k] = at[k];
+        for (int n = 0; n < 4; ++n) { /* out, out, in, in */
+            static const int place[4] = {1, 4, 2, 5};
+            double turn = angle + (test_random_below(2) ? pi : 0), length = test_random_unit();
+            turn +=
+                test_random_below(4) ? test_random_range(-1e-4, 1e-4) : test_random_range(-2, 2);
+            if (test_random_below(4) == 0) length *= 0.01;
+            at[0][place[n]] = (float)(length * cos(turn));
+            at[1][place[n]] = (float)(length * sin(turn));
+            for (int k = 0; k < 2; ++k) {
+                v[n][k] = (double)at[k][place[n]];
+                sizes += fabs(v[n][k]);
+            }
+        }
+        for (int k = 0; k < 2; ++k) at[k][POINTS] = at[k][0];
+        for (int n = 0; n < 4; ++n)
+            for (int m = 0; m < n; ++m) least = fmin(least, fabs(cross(v[n], v[m])));
+        if (least == 0) continue;
+        inside = is_in_sector(v[0], v[1], v[2]) + is_in_sector(v[0], v[1], v[3]);
+        result = sc_simple_is_wound_well(&c);
+        wrong += result && inside != 1;
+        missed += !result && inside == 1 && least > 100e-6 * sizes;
+        fine += result != 0;
+        doubtful += !result && inside == 1;
+    }
+    CHECK_MSG(!wrong && !missed, "%" PRIu32 " wrong, %" PRIu32 " missed", wrong, missed);
+    CHECK_MSG(fine > 500 && doubtful > 100, "%" PRIu32 " fine, %" PRIu32 " doubtful", fine,
+              doubtful);
+}
+
 /* Contours that are looked at in turn pass or fail as each does by itself. */
 static void contours_in_turn(void)
 {
@@ -1588,5 +1653,5 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
              SC_TEST(long_contours), SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
              SC_TEST(contours_in_pieces), SC_TEST(points_in_the_unit_box),
              SC_TEST(poses_of_any_layout), SC_TEST(places_of_contours), SC_TEST(contours_in_turn),
-             SC_TEST(flat_cloths_pass), SC_TEST(patches_that_share_hubs),
+             SC_TEST(pinches_alone), SC_TEST(flat_cloths_pass), SC_TEST(patches_that_share_hubs),
              SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
