@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "build/hierarchy.h"
 #include "harness.h"
 #include "inputs.h"
 #include "shapes.h"
@@ -444,43 +445,88 @@ static void leaves_that_overlap(void)
     soup_free(&mesh);
 }
 
-/* More leaf clusters than the loop of a contour has places for (build/loops.h): the mesh is culled at once where it is
-   flat, and has the same pairs by all methods where it is twisted, and folded. */
+/* A flat mesh of so many leaf clusters is culled at once, and has the same pairs by all methods where it is twisted, and
+   folded. */
+static void check_flat_mesh(const subject *s, soup *mesh, uint32_t least_leaves,
+                            uint32_t most_leaves)
+{
+    sc_model_info info;
+    sc_stats stats;
+    sc_result result[METHODS];
+    memset(&info, 0, sizeof(info));
+    memset(&stats, 0, sizeof(stats));
+    memset(result, 0, sizeof(result));
+    info.struct_size = sizeof(info);
+    stats.struct_size = sizeof(stats);
+    CHECK(sc_model_get_info(s->model, &info) == SC_OK);
+    CHECK(info.leaf_count >= least_leaves && info.leaf_count <= most_leaves);
+    result[0].stats = &stats;
+    CHECK(ask(s, mesh->positions, mesh->vertex_count, SC_METHOD_SCTT, SC_OUTPUT_COUNT,
+              &result[0]) == SC_OK);
+    CHECK(result[0].count == 0 && stats.nodes_visited == 1 && stats.nodes_culled == 1);
+    for (int pose = 0; pose < 2; ++pose) {
+        if (pose == 1) soup_fold(mesh->positions, mesh->vertex_count);
+        soup_twist(mesh->positions, mesh->vertex_count, 0.1);
+        for (int m = 0; m < METHODS; ++m) {
+            memset(&result[m], 0, sizeof(result[m]));
+            CHECK(ask(s, mesh->positions, mesh->vertex_count, methods[m], SC_OUTPUT_COUNT,
+                      &result[m]) == SC_OK);
+            CHECK(result[m].count == result[0].count && (result[m].count > 0) == (pose == 1));
+        }
+    }
+}
+
+/* More leaf clusters than the loop of a contour has places for (build/loops.h). */
 static void contours_longer_than_loops(void)
 {
     soup mesh = soup_cloth(190, 190);
     subject s;
-    if (open_subject(&s, &mesh, NULL)) {
-        sc_model_info info;
-        sc_stats stats;
-        sc_result result[METHODS];
-        memset(&info, 0, sizeof(info));
-        memset(&stats, 0, sizeof(stats));
-        memset(result, 0, sizeof(result));
-        info.struct_size = sizeof(info);
-        stats.struct_size = sizeof(stats);
-        CHECK(sc_model_get_info(s.model, &info) == SC_OK && info.leaf_count > 4096);
-        result[0].stats = &stats;
-        CHECK(ask(&s, mesh.positions, mesh.vertex_count, SC_METHOD_SCTT, SC_OUTPUT_COUNT,
-                  &result[0]) == SC_OK);
-        CHECK(result[0].count == 0 && stats.nodes_visited == 1 && stats.nodes_culled == 1);
-        for (int pose = 0; pose < 2; ++pose) {
-            if (pose == 1) soup_fold(mesh.positions, mesh.vertex_count);
-            soup_twist(mesh.positions, mesh.vertex_count, 0.1);
-            for (int m = 0; m < METHODS; ++m) {
-                memset(&result[m], 0, sizeof(result[m]));
-                CHECK(ask(&s, mesh.positions, mesh.vertex_count, methods[m], SC_OUTPUT_COUNT,
-                          &result[m]) == SC_OK);
-                CHECK(result[m].count == result[0].count && (result[m].count > 0) == (pose == 1));
-            }
-        }
-    }
+    if (open_subject(&s, &mesh, NULL)) check_flat_mesh(&s, &mesh, 4097, 10000);
     close_subject(&s);
     soup_free(&mesh);
+}
+
+/* Halves a row of leaves of one triangle each; returns how many nodes there are. */
+static uint32_t add_halves(sc_tree_node *tree, uint32_t nodes, uint32_t first, uint32_t count)
+{
+    uint32_t node = nodes++, half = count / 2;
+    tree[node].left = tree[node].right = SC_NONE;
+    tree[node].first = first;
+    tree[node].count = count;
+    if (count == 1) return nodes;
+    tree[node].left = nodes;
+    nodes = add_halves(tree, nodes, first, half);
+    tree[node].right = nodes;
+    return add_halves(tree, nodes, first + half, count - half);
+}
+
+/* As many as it has places for, and one fewer and more: in leaf clusters of one triangle. */
+static void contours_as_long_as_loops(void)
+{
+    for (uint32_t less = 0; less < 3; ++less) {
+        enum { LEAVES = 65536 / SC_LEAF_POINTS };
+        static sc_tree_node tree[2 * LEAVES + 2];
+        static uint32_t order[LEAVES + 1];
+        soup mesh = soup_cloth(65, 32);
+        sc_build_options options;
+        subject s;
+        mesh.triangle_count = LEAVES + 1 - less;
+        for (uint32_t t = 0; t < mesh.triangle_count; ++t) order[t] = t;
+        memset(&options, 0, sizeof(options));
+        options.struct_size = sizeof(options);
+        options.partition = SC_PARTITION_TREE;
+        options.order = order;
+        options.tree = tree;
+        options.tree_count = add_halves(tree, 0, 0, mesh.triangle_count);
+        if (open_subject(&s, &mesh, &options))
+            check_flat_mesh(&s, &mesh, mesh.triangle_count, mesh.triangle_count);
+        close_subject(&s);
+        soup_free(&mesh);
+    }
 }
 
 SC_TEST_MAIN(SC_TEST(any_stops_early), SC_TEST(arrays_are_left_alone), SC_TEST(largest_coordinates),
              SC_TEST(tiny_coordinates), SC_TEST(other_rest_shapes),
              SC_TEST(rest_shapes_unlike_poses), SC_TEST(hashes_of_partitions),
              SC_TEST(missing_arguments), SC_TEST(leaves_that_overlap),
-             SC_TEST(contours_longer_than_loops))
+             SC_TEST(contours_longer_than_loops), SC_TEST(contours_as_long_as_loops))
