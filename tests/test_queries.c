@@ -460,10 +460,20 @@ static void check_flat_mesh(const subject *s, soup *mesh, uint32_t least_leaves,
     stats.struct_size = sizeof(stats);
     CHECK(sc_model_get_info(s->model, &info) == SC_OK);
     CHECK(info.leaf_count >= least_leaves && info.leaf_count <= most_leaves);
-    result[0].stats = &stats;
-    CHECK(ask(s, mesh->positions, mesh->vertex_count, SC_METHOD_SCTT, SC_OUTPUT_COUNT,
-              &result[0]) == SC_OK);
-    CHECK(result[0].count == 0 && stats.nodes_visited == 1 && stats.nodes_culled == 1);
+    for (uint32_t simd = SC_SIMD_BEST; simd <= SC_SIMD_AVX512; ++simd) {
+        sc_pose pose = input_plain_pose(mesh->positions, mesh->vertex_count);
+        sc_query_options options;
+        memset(&options, 0, sizeof(options));
+        options.struct_size = sizeof(options);
+        options.simd = simd;
+        result[0].struct_size = sizeof(result[0]);
+        result[0].stats = &stats;
+        if (sc_query(s->model, s->workspace, &pose, &options, &result[0]) != SC_OK) {
+            CHECK(simd > SC_SIMD_BASE); /* the machine has none */
+            continue;
+        }
+        CHECK(result[0].count == 0 && stats.nodes_visited == 1 && stats.nodes_culled == 1);
+    }
     for (int pose = 0; pose < 2; ++pose) {
         if (pose == 1) soup_fold(mesh->positions, mesh->vertex_count);
         soup_twist(mesh->positions, mesh->vertex_count, 0.1);
