@@ -12,8 +12,8 @@
  * first, and own arrays.
  *
  * The star test's bounds and leaf clusters made ready are never needed by one query, so they share their memory; what
- * tells whether they are of this query stands elsewhere. Only the first worker has room for all leaf clusters, and
- * not in a query with the star test.
+ * tells whether they are of this query stands elsewhere. There is no room for all leaf clusters in a query with the star
+ * test; several workers divide that room, where it is more than they have by themselves.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
