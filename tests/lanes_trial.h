@@ -55,7 +55,7 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
 {
     const float *const row[2] = {in->a, in->b}, *const points[2] = {in->plain, in->row[0]};
     const uint8_t *const corners[2] = {in->number, in->other};
-    lanes a = lanes_load(in->a), b = lanes_load(in->b), corner[3][3];
+    lanes a = lanes_load(in->a), b = lanes_load(in->b), corner[3][3], both[2];
     lanes_index number[3];
     lanes_mask mask[3];
     uint8_t list[SC_LANES_COUNT];
@@ -67,6 +67,11 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
     lanes_store(out->row[19],
                 lanes_pick_of(a, lanes_index_through(in->number, in->number + SC_LANES_COUNT)));
     lanes_store(out->row[20], lanes_choose(lanes_below(a, b), a, b));
+    both[0] = a;
+    both[1] = b;
+    for (i = 0; i < SC_LANES_COUNT; i++)
+        list[i] = (uint8_t)(in->number[i] + 16 * (in->mask >> i & 1u));
+    lanes_store(out->row[75], lanes_pick_both(both, list));
     lanes_corners_at(in->plain, in->number, corner);
     for (k = 0; k < 3; k++)
         for (i = 0; i < 3; i++) lanes_store(out->row[21 + 3 * k + i], corner[k][i]);

@@ -30,7 +30,7 @@ typedef struct lanes_input {
 } lanes_input;
 
 typedef struct lanes_outcome {
-    float row[75][16], one[3];
+    float row[76][16], one[3];
     double eight[16][8];
     unsigned bits[20];
     uint32_t numbers[16], pairs[32], from[16];

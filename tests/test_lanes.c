@@ -181,6 +181,7 @@ static void bytes_and_names(void)
             CHECK((out.bits[14] >> i & 1u) == (unsigned)(a == b));
             CHECK((out.bits[15] >> i & 1u) == (unsigned)(in.names[i] == in.names[16 + i]));
             CHECK(!memcmp(&out.row[64][i], &in.a[b], sizeof(float)));
+            CHECK(!memcmp(&out.row[75][i], &(in.mask >> i & 1u ? in.b : in.a)[a], sizeof(float)));
             CHECK(out.bytes[4][i] == (in.number[16 + i] == in.number[32 + i] ? a : b));
             CHECK(out.bytes[5][i] == in.number[b]);
             CHECK(out.bytes[6][i] == (name < 16 ? name : 255));

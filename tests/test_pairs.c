@@ -625,6 +625,56 @@ static void outlines_in_a_plane(void)
     }
 }
 
+/* A band of triangles that lies flat, or nearly, across an axis, as two leaf clusters or three: it goes round, rather narrow or
+   wide, until its end comes near its beginning, reaches over it, or just touches a point there. Its edges go in and out. A
+   strip behind it makes the mesh large, so that single precision tells little of it. */
+static void bands_in_a_plane(void)
+{
+    enum { STRIP = 16 };
+    uint32_t rounds = test_iterations(800);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t steps = 8 + test_random_below(6), axis = test_random_below(3), k;
+        uint32_t strip = 2 * steps + 2;
+        double size = 0.3 * exp2(-(double)test_random_below(i % 2 ? 3 : 22)), (*at)[3];
+        double width = test_random_range(0.1, 0.45), turns = test_random_range(0.4, 1.3);
+        double angle = test_random_range(-3, 3), place[2], inward = test_random_range(-0.1, 0.3);
+        soup s = soup_make(strip + STRIP + 2, 2 * steps + STRIP);
+        at = (double(*)[3])s.positions;
+        for (k = 0; k < 2; ++k) place[k] = test_random_range(-0.5, 0.5);
+        for (k = 0; k < strip; ++k) {
+            double along = (double)(k / 2) / steps, reach = k % 2 ? 1 : 1 - 2 * width;
+            double off = exp2(-3 - (double)test_random_below(i % 4 ? 6 : 40));
+            reach = size * (reach * (1 - inward * along) + off * test_random_range(-1, 1));
+            at[k][(axis + 1) % 3] = place[0] + reach * cos(angle + along * turns * 6.283185307);
+            at[k][(axis + 2) % 3] = place[1] + reach * sin(angle + along * turns * 6.283185307);
+        }
+        if (test_random_below(3) != 0) { /* one of the last points to one of the first, or near */
+            uint32_t last = strip - 1 - test_random_below(2), near = test_random_below(6);
+            for (uint32_t c = 1; c < 3; ++c)
+                at[last][(axis + c) % 3] =
+                    at[near][(axis + c) % 3] +
+                    size * exp2(-(double)test_random_below(40)) * test_random_range(-1, 1);
+        }
+        for (k = 0; k < STRIP + 2; ++k) {
+            at[strip + k][(axis + 1) % 3] = 2.0 * k / (STRIP + 1) - 1;
+            at[strip + k][(axis + 2) % 3] = k % 2 ? 1 : 0.97;
+        }
+        for (k = 0; k < s.vertex_count; ++k) {
+            double off = size * exp2(-(double)test_random_below(30)) * test_random_range(-1, 1);
+            at[k][axis] = 0.25 + (i % 3 == 0 && k < strip ? off / 8 : 0);
+        }
+        for (k = 0; k < 2 * steps + STRIP; ++k) {
+            uint32_t *t = s.triangles + 3 * k, p = k < 2 * steps ? k : strip + k - 2 * steps;
+            t[0] = p;
+            t[1] = p + 1 + (p - (k < 2 * steps ? 0 : strip)) % 2;
+            t[2] = p + 2 - (p - (k < 2 * steps ? 0 : strip)) % 2;
+        }
+        check_random_build("band in a plane", state, &s, s.positions);
+        soup_free(&s);
+    }
+}
+
 static void deformed_meshes(void)
 {
     uint32_t rounds = test_iterations(140);
@@ -964,7 +1014,8 @@ static void meshes_of_the_folder(void)
 SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
              SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet),
              SC_TEST(edges_that_meet_across_an_axis), SC_TEST(neighbors_on_a_ray),
-             SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane), SC_TEST(deformed_meshes),
-             SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
-             SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
-             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))
+             SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane), SC_TEST(bands_in_a_plane),
+             SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell), SC_TEST(branched_discs),
+             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
+             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
+             SC_TEST(meshes_of_the_folder))

@@ -644,6 +644,27 @@ static void check_outlines(const steps *s, const sc_model *model)
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " outlines of leaf clusters wrong", s->name, wrong);
 }
 
+/* The nodes of two leaf clusters that share points. */
+static void check_share_nodes(const steps *s, const sc_model *model)
+{
+    const uint32_t *first = sc_model_share_first(model), *leaf = sc_model_leaf(model);
+    uint32_t wrong = 0, known = 0, found = 0;
+    for (uint32_t i = 0; i < model->share_count; ++i)
+        known += sc_model_share_node(model)[i] != SC_NONE;
+    for (uint32_t n = 0; n < model->node_count; ++n) {
+        sc_pair pair = sc_model_node_patches(model)[n];
+        uint32_t a = leaf[pair.a], b = leaf[pair.b];
+        if (pair.a == pair.b || leaf[pair.a + 1] > a + 1 || leaf[pair.b + 1] > b + 1) continue;
+        for (uint32_t i = first[a]; i < first[a + 1]; ++i) {
+            if (sc_model_share_leaf(model)[i] != b) continue;
+            wrong += sc_model_share_node(model)[i] != n;
+            found++;
+        }
+    }
+    CHECK_MSG(wrong == 0 && known == found, "%s: %" PRIu32 " nodes of leaf clusters wrong", s->name,
+              wrong);
+}
+
 /* The edges of a piece of a node's loop, from point to point; writes as many as there are. */
 static void list_loop(const steps *s, const sc_model *m, uint32_t n, const uint16_t *loop,
                       uint32_t count, sc_pair *edges)
@@ -789,6 +810,7 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
     if (model->triangle_count < 400) check_rings(s, model);
     check_fans(s, model);
     check_outlines(s, model);
+    check_share_nodes(s, model);
 end:
     sc_model_free(model);
     free(before);

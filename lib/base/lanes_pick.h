@@ -9,7 +9,7 @@
  * lanes from two rows of sixteen bytes, adds the first of two first numbers, or the second in lanes of a second mask, and writes pairs of words, room for sixteen. lanes_list_bits writes
  * a number for each, bit k of which is its lane's in the k-th of twelve masks, room for sixteen. lanes_index reads sixteen
  * numbers below sixteen, lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the
- * floats of these numbers of a row, in memory or not. lanes_choose takes from a where the mask is set, else from b.
+ * floats of these numbers of a row, in memory or not, lanes_pick_both those of numbers below 32 of two rows. lanes_choose takes from a where the mask is set, else from b.
  * lanes_same compares bits, whatever they mean; lanes_differ has what is in one of two masks only.
  * lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from three rows of coordinates by three of
  * numbers; lanes_corners_at finds the former in memory, in turned places (see base/lanes.h); lanes_corners_through takes
@@ -25,12 +25,13 @@
 
 #define lanes_index SC_KERNEL(sc_lanes_index)
 #define lanes_from SC_KERNEL(sc_lanes_from)
-#define lanes_pick_two SC_KERNEL(sc_lanes_pick_two)
 #define lanes_corners_two SC_KERNEL(sc_lanes_corners_two)
 #define lanes_index_load SC_KERNEL(sc_lanes_index_load)
 #define lanes_index_through SC_KERNEL(sc_lanes_index_through)
 #define lanes_pick SC_KERNEL(sc_lanes_pick)
 #define lanes_pick_of SC_KERNEL(sc_lanes_pick_of)
+#define lanes_pick_both SC_KERNEL(sc_lanes_pick_both)
+#define lanes_pick_two SC_KERNEL(sc_lanes_pick_two)
 #define lanes_choose SC_KERNEL(sc_lanes_choose)
 #define lanes_same SC_KERNEL(sc_lanes_same)
 #define lanes_differ SC_KERNEL(sc_lanes_differ)
@@ -70,6 +71,10 @@ static inline lanes lanes_pick(const float *row, lanes_index i)
 static inline lanes lanes_pick_of(lanes row, lanes_index i)
 {
     return _mm512_permutexvar_ps(i, row);
+}
+static inline lanes lanes_pick_both(const lanes row[2], const uint8_t *numbers)
+{
+    return _mm512_permutex2var_ps(row[0], lanes_index_load(numbers), row[1]);
 }
 static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 {
@@ -251,6 +256,18 @@ static inline lanes lanes_pick(const float *row, lanes_index i)
 {
     return lanes_pick_of(lanes_load(row), i);
 }
+static inline lanes lanes_pick_both(const lanes row[2], const uint8_t *numbers)
+{
+    const lanes_index i = lanes_index_load(numbers);
+    const lanes low = lanes_pick_of(row[0], i), high = lanes_pick_of(row[1], i);
+    lanes r;
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 2; k++)
+        r.v[k] = _mm256_blendv_ps(low.v[k], high.v[k],
+                                  _mm256_castsi256_ps(_mm256_slli_epi32(i.v[k], 27)));
+    return r;
+}
 static inline lanes lanes_choose(lanes_mask m, lanes a, lanes b)
 {
     lanes r;
@@ -351,6 +368,13 @@ static inline lanes lanes_pick_of(lanes row, lanes_index i)
     float r[SC_LANES_COUNT];
     lanes_store(r, row);
     return lanes_pick(r, i);
+}
+static inline lanes lanes_pick_both(const lanes row[2], const uint8_t *numbers)
+{
+    float r[2 * SC_LANES_COUNT];
+    lanes_store(r, row[0]);
+    lanes_store(r + SC_LANES_COUNT, row[1]);
+    return lanes_pick(r, lanes_index_load(numbers));
 }
 
 #    if SC_LANES_QUADS

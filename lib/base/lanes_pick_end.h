@@ -5,12 +5,13 @@
  */
 #undef lanes_index
 #undef lanes_from
-#undef lanes_pick_two
+#undef lanes_pick_both
 #undef lanes_corners_two
 #undef lanes_index_load
 #undef lanes_index_through
 #undef lanes_pick
 #undef lanes_pick_of
+#undef lanes_pick_two
 #undef lanes_choose
 #undef lanes_same
 #undef lanes_differ

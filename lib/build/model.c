@@ -489,6 +489,36 @@ static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
     m->segment_child_total = csf->child_first[csf->segment_count - csf->leaf_count];
 }
 
+/* Where two leaf clusters, a < b, are in the lists of those that share points; SC_NONE: nowhere. */
+static uint32_t find_share(const sc_model *m, uint32_t a, uint32_t b)
+{
+    const uint32_t *first = sc_model_share_first(m) + a, *other = sc_model_share_leaf(m);
+    uint32_t i;
+    for (i = first[0]; i < first[1]; i++)
+        if (other[i] == b) return i;
+    return SC_NONE;
+}
+
+uint32_t sc_model_share_of_node(const sc_model *m, uint32_t node)
+{
+    const sc_pair *patches = sc_model_node_patches(m) + node;
+    const uint32_t *leaf = sc_model_leaf(m);
+    if (patches->a == patches->b || !sc_model_is_leaf(m, patches->a) ||
+        !sc_model_is_leaf(m, patches->b))
+        return SC_NONE;
+    return find_share(m, leaf[patches->a], leaf[patches->b]);
+}
+
+static void write_share_nodes(sc_model *m)
+{
+    uint32_t *share_node = NEW_ARRAY(m, share_node, uint32_t), n;
+    memset(share_node, 0xff, m->share_count * sizeof *share_node);
+    for (n = 0; n < m->node_count; n++) {
+        uint32_t i = sc_model_share_of_node(m, n);
+        if (i != SC_NONE) share_node[i] = n;
+    }
+}
+
 sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacency,
                             const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
                             const sc_csf *csf, const sc_sharing *sharing, sc_scratch *scratch,
@@ -550,6 +580,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, leaf, uint32_t), xbvh->leaf, m->patch_end * sizeof(uint32_t));
     write_hops(xbvh, m);
     copy(NEW_ARRAY(m, node_patches, sc_pair), sctt->patches, m->node_count * sizeof(sc_pair));
+    write_share_nodes(m);
     copy(NEW_ARRAY(m, node_child, uint32_t), sctt->child,
          ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, node_boxes, uint32_t), sctt->boxes_first,

@@ -66,6 +66,7 @@ enum {
  *                   that is one closed chain that comes to no point twice, else of none; if there are n < SC_LEAF_POINTS,
  *                   zeros follow, and SC_LEAF_POINTS + n is the last number
  *   share_...       see build/sharing.h; share_begin, share_list: build/sharing_lists.h
+ *   share_node      the node of the test tree that is of the two leaf clusters, or SC_NONE
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
  *                   visits: every fourth, ending with the last
@@ -91,6 +92,7 @@ enum {
   X(leaf_outline, uint8_t, SC_LEAF_POINTS *(uint64_t)leaf_count)                                   \
   X(share_first, uint32_t, (uint64_t)leaf_count + 1)                                               \
   X(share_leaf, uint32_t, share_count)                                                             \
+  X(share_node, uint32_t, share_count)                                                             \
   X(share_begin, uint32_t, (uint64_t)share_count + 1)                                              \
   X(share_list, uint16_t, share_total)                                                             \
   X(share_own_rows, uint16_t, SC_LEAF_MAX *(uint64_t)leaf_count)                                   \
@@ -193,6 +195,9 @@ static inline int sc_model_is_for_boxes(const sc_model *model)
 {
     return model->node_count == 0;
 }
+
+/* Where the leaf clusters of a node are in share_leaf; SC_NONE if it is not of two, or they share no points there. */
+uint32_t sc_model_share_of_node(const sc_model *model, uint32_t node);
 
 /* Computes offsets and bytes from the counts. Counts must be at least 1, but for those that are 0 in models
    for boxes; as many segments as leaf segments there at least. */

@@ -471,6 +471,21 @@ static int check_share_list(const sc_model *m)
     return !bad;
 }
 
+/* Of each two of them the node: there is no other, and none in models for boxes. */
+static int check_share_node(const sc_model *m)
+{
+    const uint32_t *share_node = sc_model_share_node(m);
+    uint32_t n, i, found = 0, bad = 0;
+    for (i = 0; i < m->share_count; i++) found += share_node[i] != SC_NONE;
+    for (n = 0; n < m->node_count; n++) {
+        i = sc_model_share_of_node(m, n);
+        if (i == SC_NONE) continue;
+        bad |= share_node[i] != n;
+        found--;
+    }
+    return !bad && !found;
+}
+
 static const char *check_arrays(const sc_model *m, uint8_t *bytes)
 {
     const char *wrong;
@@ -509,6 +524,7 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     wrong = check_nodes(m);
     if (wrong) return wrong;
     CHECK(share_leaf, check_shared_are_nodes(m));
+    CHECK(share_node, check_share_node(m));
     CHECK(node_flags, bytes_below(sc_model_node_flags(m), m->node_count, 4));
     CHECK(node_kind, bytes_below(sc_model_node_kind(m), m->node_count, 4));
     CHECK(node_contour,

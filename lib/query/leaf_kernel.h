@@ -422,12 +422,20 @@ static void SC_KERNEL(far_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     }
 }
 
+/* Whether normal cones and marks of patches that were culled are of this query. */
+static inline int SC_KERNEL(has_cones)(const sc_query_state *state)
+{
+    return state->options.method == SC_METHOD_SCTT && state->options.contour == SC_CONTOUR_EXACT;
+}
+
 /* Those that share points, and leaf clusters against themselves. */
 static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
 {
     sc_workspace *w = state->workspace;
     const sc_near_pair *pairs = w->near_pairs;
-    uint32_t count = w->near_count, i;
+    uint32_t count, i;
+    if (SC_KERNEL(has_cones)(state)) SC_KERNEL(drop_plain)(state);
+    count = w->near_count;
     w->near_count = 0;
     rows->near = 1;
     for (i = 0; i < count && !state->stop; i++) {
@@ -447,16 +455,21 @@ static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     rows->near = 0;
 }
 
-/* All pairs of leaf clusters that wait. */
-static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
+/* Those pairs of leaf clusters that wait; the others, too, if that is asked for. */
+static void SC_KERNEL(take_leaf_pairs)(sc_query_state *state, int far)
 {
     SC_KERNEL(rows) rows;
     SC_KERNEL(no_rows)(&rows);
     memset(&rows.open, 0, sizeof rows.open);
     SC_KERNEL(near_pairs)(state, &rows);
-    SC_KERNEL(far_pairs)(state, &rows);
+    if (far) SC_KERNEL(far_pairs)(state, &rows);
     SC_KERNEL(test_rows)(state, &rows);
     if (rows.open.count && !state->stop) SC_KERNEL(settle_neighbors)(state, &rows.open);
+}
+
+static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
+{
+    SC_KERNEL(take_leaf_pairs)(state, 1);
 }
 
 /* Has a pair of leaf clusters that share points wait if that is so, 1 or 0, or one by itself. */
@@ -508,7 +521,7 @@ static inline void SC_KERNEL(make_leaf_room)(sc_query_state *state)
 {
     const uint32_t most = sc_state_may_end_early(state) ? 16 : SC_LEAF_QUEUE - SC_LEAF_MAX - 1;
     if (state->workspace->far_count > most || state->workspace->near_count > most)
-        SC_KERNEL(leaf_pairs)(state);
+        SC_KERNEL(take_leaf_pairs)(state, state->workspace->far_count > most);
 }
 
 static void SC_KERNEL(leaf_pair_waits)(sc_query_state *state, uint32_t a, uint32_t b)
@@ -520,7 +533,7 @@ static void SC_KERNEL(leaf_pair_waits)(sc_query_state *state, uint32_t a, uint32
 static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)
 {
     state->stats.leaf_pairs++;
-    if (SC_KERNEL(is_plain)(state, leaf)) return;
+    if (!SC_KERNEL(has_cones)(state) && SC_KERNEL(is_plain)(state, leaf)) return;
     SC_KERNEL(add_near_pair)(state->workspace, leaf, leaf, SC_NONE, 1);
     SC_KERNEL(make_leaf_room)(state);
 }

@@ -10,6 +10,7 @@
 
 #include "base/predicates.h"
 #include "pose/positions.h"
+#include "query/simple.h"
 
 #if SC_ISA_X86
 
@@ -26,6 +27,7 @@
 #  include "query/neighbor_kernel.h"
 #  include "query/fan_kernel.h"
 #  include "query/outline_kernel.h"
+#  include "query/short_kernel.h"
 #  include "query/sixteen_kernel.h"
 #  include "query/leaf_kernel.h"
 #  include "query/walk_kernel.h"

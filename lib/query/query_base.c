@@ -10,6 +10,7 @@
 
 #include "base/predicates.h"
 #include "pose/positions.h"
+#include "query/simple.h"
 
 #define SC_KERNEL(name) name##_query_base
 #define SC_LANES SC_QUADS
@@ -23,6 +24,7 @@
 #include "query/neighbor_kernel.h"
 #include "query/fan_kernel.h"
 #include "query/outline_kernel.h"
+#include "query/short_kernel.h"
 #include "query/sixteen_kernel.h"
 #include "query/leaf_kernel.h"
 #include "query/walk_kernel.h"

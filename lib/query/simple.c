@@ -161,15 +161,22 @@ static float below_one(float f)
  * by 3e-8 for the place of p, and by the rounding of one difference, one product and two additions: at most
  * 4.01 * 2^-24 |p - q|max, and what underflows.
  */
-static void set_axes(sc_simple_contour *c, const float u[3], const float w[3])
+static void set_axes(float axis[2][3], const float u[3], const float w[3])
 {
     const float size[2] = {below_one(fabsf(u[0]) + fabsf(u[1]) + fabsf(u[2])),
                            below_one(fabsf(w[0]) + fabsf(w[1]) + fabsf(w[2]))};
     int k;
     for (k = 0; k < 3; k++) {
-        c->axis[0][k] = u[k] * size[0];
-        c->axis[1][k] = w[k] * size[1];
+        axis[0][k] = u[k] * size[0];
+        axis[1][k] = w[k] * size[1];
     }
+}
+
+void sc_simple_axes_of(uint32_t mask, float axis[2][3])
+{
+    float u[3], w[3];
+    sc_dnc_vectors(mask, u, w);
+    set_axes(axis, u, w);
 }
 
 void sc_simple_axes(sc_simple_contour *c, const sc_projection *projection)
@@ -180,7 +187,7 @@ void sc_simple_axes(sc_simple_contour *c, const sc_projection *projection)
         u[k] = (float)projection->u[k];
         w[k] = (float)projection->w[k];
     }
-    set_axes(c, u, w);
+    set_axes(c->axis, u, w);
 }
 
 void sc_simple_middle(const sc_simple_contour *c, const float *unit, uint32_t stride, float from[3])
@@ -617,10 +624,8 @@ static void begin_turn(sc_query_state *state, contour_turns *all, uint32_t t, ui
 {
     const sc_pair *patches = &sc_model_node_patches(state->model)[node];
     const uint16_t *mask = state->workspace->mask;
-    float u[3], w[3];
     find_loop(&all->contour[t], state->model, node);
-    sc_dnc_vectors((uint32_t)mask[patches->a] & mask[patches->b], u, w);
-    set_axes(&all->contour[t], u, w);
+    sc_simple_axes_of((uint32_t)mask[patches->a] & mask[patches->b], all->contour[t].axis);
     place_contour(state, &all->contour[t]);
 }
 

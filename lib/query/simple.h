@@ -25,4 +25,8 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
    once. Where the query is to end, the rest does not pass. */
 void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed);
 
+/* The vectors of the projection along the average of the directions in a mask that is not 0, over powers of two, exactly, so that
+   their absolute values sum to at most 1. */
+void sc_simple_axes_of(uint32_t mask, float axis[2][3]);
+
 #endif

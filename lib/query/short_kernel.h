@@ -1,0 +1,341 @@
+/*
+ * Whether two leaf clusters that share points have nothing in common but what they share, by the contour of both: whether
+ * that is simple, all of its edges against all, sixteen at a time. See query_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * If all triangles of both face a direction, as their normal cones tell, so many are over a place as the contour winds round
+ * it; and if that is one loop that is simple, they meet in no more than points and edges that they share: see query/simple.h.
+ * This is so of any triangles, hence some may be added that are not there: where the contour turns in at a point, the triangle
+ * of that and of those before and behind it. Without the point, the contour is that of all. So such points are dropped, of
+ * those that follow each other the first; most contours of two leaf clusters have sixteen points or fewer then.
+ *
+ * A loop is simple if edges that follow each other turn at the point between or go straight on, and of each two others
+ * one is on one side of the line of the other.
+ *
+ * The projection is as in query/simple.c: a coordinate is at most 1.01 D, where D is the largest component of any point of the
+ * clusters relative to the middle, and off by d = error >= 4.1 v D, v = 2^-24. Let e lead from point p to the next. On which
+ * side of its line a point q is tells e x q, compared with e x p. Moving points changes e x (q - p) by
+ * 2 d (|e|1 + |q - p|1) + 8 d^2; by rounding, e is off by v |e|1 times what it is multiplied with, and either product by
+ * 3.01 v |e|1 1.01 D; to add a bound to one takes v (1.02 |e|1 D + bound). As |q - p|1 <= 4.04 D, all is below
+ * d (4 |e|1 + 8.1 D + 8.1 d), and so is what a product e . f of two edges is off by; what underflows is within a few FLT_MIN.
+ */
+
+/* Points of a contour that is looked at, at most; edges of one of which all are compared; pairs of clusters at a time. */
+enum {
+    SC_KERNEL(SHORT_POINTS) = 2 * SC_LANES_COUNT - 3,
+    SC_KERNEL(SHORT_EDGES) = SC_LANES_COUNT,
+    SC_KERNEL(SHORT_PAIRS) = 8
+};
+
+/* A contour in the plane: its points, of which the first follow the last again. */
+typedef struct SC_KERNEL(short_points) {
+    float x[3 * SC_LANES_COUNT], y[3 * SC_LANES_COUNT];
+    float error, reach; /* of a coordinate; D */
+    unsigned count;
+} SC_KERNEL(short_points);
+
+/* Where its edges lead, and for which e x q a point may be on their line, between which numbers. */
+typedef struct SC_KERNEL(short_edges) {
+    float x[2 * SC_LANES_COUNT], y[2 * SC_LANES_COUNT];
+    float from[2 * SC_LANES_COUNT], to[2 * SC_LANES_COUNT];
+} SC_KERNEL(short_edges);
+
+/* Sixteen of those. */
+typedef struct SC_KERNEL(edges_at) {
+    lanes x, y, from, to;
+} SC_KERNEL(edges_at);
+
+static SC_INLINE SC_KERNEL(edges_at)
+    SC_KERNEL(find_edges)(const SC_KERNEL(short_points) * c, unsigned first)
+{
+    const lanes x = lanes_load(c->x + first), y = lanes_load(c->y + first);
+    const lanes least = lanes_all(c->error * (8.2f * c->reach + 8.2f * c->error) + 16 * FLT_MIN);
+    SC_KERNEL(edges_at) e;
+    lanes at, bound;
+    e.x = lanes_subtract(lanes_load(c->x + first + 1), x);
+    e.y = lanes_subtract(lanes_load(c->y + first + 1), y);
+    at = lanes_subtract(lanes_multiply(e.x, y), lanes_multiply(e.y, x));
+    bound = lanes_multiply(lanes_add(lanes_absolute(e.x), lanes_absolute(e.y)),
+                           lanes_all(4.1f * c->error));
+    bound = lanes_add(bound, least);
+    e.from = lanes_subtract(at, bound);
+    e.to = lanes_add(at, bound);
+    return e;
+}
+
+/* Where points are: e x q. */
+static inline lanes SC_KERNEL(place_of)(lanes e_x, lanes e_y, lanes q_x, lanes q_y)
+{
+    return lanes_subtract(lanes_multiply(e_x, q_y), lanes_multiply(e_y, q_x));
+}
+
+/* Lets the first sixteen of a row follow so many. */
+static inline void SC_KERNEL(repeat)(float *row, unsigned count)
+{
+    lanes_store(row + count, lanes_load(row));
+}
+
+/* Sixteen points along a vector. */
+static inline lanes SC_KERNEL(measure)(const float a[3], const lanes d[3])
+{
+    lanes sum = lanes_multiply(lanes_all(a[0]), d[0]);
+    sum = lanes_add(sum, lanes_multiply(lanes_all(a[1]), d[1]));
+    return lanes_add(sum, lanes_multiply(lanes_all(a[2]), d[2]));
+}
+
+/* Sees a loop of c->count points of two leaf clusters, a < b. What is read beyond its end stands in the model, too. */
+static inline void SC_KERNEL(see_loop)(const sc_query_state *state, const sc_near_pair *p,
+                                       uint32_t mask, const uint16_t *loop,
+                                       SC_KERNEL(short_points) * c)
+{
+    const float *of_a = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->a;
+    const float *of_b = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->b;
+    lanes at[2][3], size = lanes_all(0), x[2], y[2];
+    uint8_t number[2 * SC_LANES_COUNT];
+    float axis[2][3];
+    int i, k;
+    sc_simple_axes_of(mask, axis);
+    for (i = 0; i < 2 * SC_LANES_COUNT; i++)
+        number[i] = (uint8_t)((loop[i] & 16) | (loop[i] & 3) << 2 | (loop[i] >> 2 & 3));
+    lanes_turned(of_a, at[0]);
+    lanes_turned(of_b, at[1]);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        const lanes middle = lanes_all(of_a[k] / 2 + of_b[k] / 2); /* of one point of each */
+        SC_UNROLL
+        for (i = 0; i < 2; i++) {
+            at[i][k] = lanes_subtract(at[i][k], middle);
+            size = lanes_larger(size, lanes_absolute(at[i][k]));
+        }
+    }
+    SC_UNROLL
+    for (i = 0; i < 2; i++) {
+        x[i] = SC_KERNEL(measure)(axis[0], at[i]);
+        y[i] = SC_KERNEL(measure)(axis[1], at[i]);
+    }
+    SC_UNROLL
+    for (i = 0; i < 2; i++) {
+        lanes_store(c->x + SC_LANES_COUNT * i, lanes_pick_both(x, number + SC_LANES_COUNT * i));
+        lanes_store(c->y + SC_LANES_COUNT * i, lanes_pick_both(y, number + SC_LANES_COUNT * i));
+    }
+    lanes_store(c->x + 2 * SC_LANES_COUNT, lanes_all(0));
+    lanes_store(c->y + 2 * SC_LANES_COUNT, lanes_all(0));
+    c->reach = lanes_most(size);
+    c->error = 3.01e-8f + 4.1f * 5.9604644775390625e-8f * c->reach;
+}
+
+/* The points at which a contour certainly turns in, without those that follow another one. */
+static inline unsigned SC_KERNEL(find_turns)(const SC_KERNEL(short_points) * c)
+{
+    const unsigned all = (1u << c->count) - 1u, last = c->count - 1;
+    unsigned in = 0, first;
+    SC_UNROLL
+    for (first = 0; first < 2 * SC_LANES_COUNT; first += SC_LANES_COUNT) {
+        const SC_KERNEL(edges_at) e = SC_KERNEL(find_edges)(c, first);
+        const lanes x = lanes_load(c->x + first + 2), y = lanes_load(c->y + first + 2);
+        in |= lanes_bits(lanes_below(SC_KERNEL(place_of)(e.x, e.y, x, y), e.from)) << first;
+    }
+    in &= all; /* edges; now the points they lead to */
+    in = (in << 1 | in >> last) & all;
+    return in & ~(in << 1 | in >> last);
+}
+
+static inline void SC_KERNEL(drop_turns)(const SC_KERNEL(short_points) * c,
+                                         SC_KERNEL(short_points) * kept)
+{
+    const unsigned left = ((1u << c->count) - 1u) & ~SC_KERNEL(find_turns)(c);
+    uint8_t number[2][SC_LANES_COUNT + 4] = {{0}, {0}};
+    unsigned first = lanes_list(left & 0xffffu, number[0]), i;
+    kept->count = first + lanes_list(left >> SC_LANES_COUNT, number[1]);
+    SC_UNROLL
+    for (i = 0; i < 2; i++) {
+        const lanes_index some = lanes_index_load(number[i]);
+        lanes_store(kept->x + first * i, lanes_pick(c->x + SC_LANES_COUNT * i, some));
+        lanes_store(kept->y + first * i, lanes_pick(c->y + SC_LANES_COUNT * i, some));
+    }
+    kept->error = c->error;
+    kept->reach = c->reach;
+}
+
+static inline void SC_KERNEL(write_edges)(const SC_KERNEL(short_points) * c,
+                                          SC_KERNEL(short_edges) * edges)
+{
+    const SC_KERNEL(edges_at) e = SC_KERNEL(find_edges)(c, 0);
+    int i;
+    SC_UNROLL
+    for (i = 0; i < 2; i++) {
+        const unsigned at = i ? c->count : 0;
+        lanes_store(edges->x + at, e.x);
+        lanes_store(edges->y + at, e.y);
+        lanes_store(edges->from + at, e.from);
+        lanes_store(edges->to + at, e.to);
+    }
+}
+
+/* Above 0 where each of sixteen edges certainly is on one side of the line of that so many further on, or that of its own;
+   at is where the other begins, and then where it ends. */
+static SC_INLINE lanes SC_KERNEL(room_between)(const SC_KERNEL(short_points) * c,
+                                               const SC_KERNEL(short_edges) * e, unsigned on,
+                                               lanes *at)
+{
+    const lanes end = SC_KERNEL(place_of)(lanes_load(e->x), lanes_load(e->y),
+                                          lanes_load(c->x + on + 1), lanes_load(c->y + on + 1));
+    const lanes x = lanes_load(e->x + on), y = lanes_load(e->y + on);
+    const lanes p = SC_KERNEL(place_of)(x, y, lanes_load(c->x), lanes_load(c->y));
+    const lanes q = SC_KERNEL(place_of)(x, y, lanes_load(c->x + 1), lanes_load(c->y + 1));
+    lanes room = lanes_subtract(lanes_smaller(*at, end), lanes_load(e->to));
+    room = lanes_larger(room, lanes_subtract(lanes_load(e->from), lanes_larger(*at, end)));
+    room = lanes_larger(room, lanes_subtract(lanes_smaller(p, q), lanes_load(e->to + on)));
+    room = lanes_larger(room, lanes_subtract(lanes_load(e->from + on), lanes_larger(p, q)));
+    *at = end;
+    return room;
+}
+
+/* Whether a contour of SHORT_EDGES edges or fewer is certainly simple. */
+static inline int SC_KERNEL(is_simple)(const SC_KERNEL(short_points) * c,
+                                       const SC_KERNEL(short_edges) * e)
+{
+    const lanes x = lanes_load(e->x), y = lanes_load(e->y);
+    const lanes from = lanes_load(e->from), to = lanes_load(e->to);
+    lanes at = SC_KERNEL(place_of)(x, y, lanes_load(c->x + 2), lanes_load(c->y + 2));
+    lanes ahead =
+        lanes_add(lanes_multiply(x, lanes_load(e->x + 1)), lanes_multiply(y, lanes_load(e->y + 1)));
+    lanes least = lanes_larger(lanes_subtract(at, to), lanes_subtract(from, at));
+    unsigned on;
+    least = lanes_larger(least, lanes_subtract(ahead, lanes_subtract(to, from)));
+    if (c->count >
+        SC_LANES_COUNT / 2 + 1) { /* all at most; some pairs twice, but none that follow */
+        SC_UNROLL
+        for (on = 2; on <= SC_LANES_COUNT / 2; on++)
+            least = lanes_smaller(least, SC_KERNEL(room_between)(c, e, on, &at));
+    } else {
+        for (on = 2; 2 * on <= c->count; on++)
+            least = lanes_smaller(least, SC_KERNEL(room_between)(c, e, on, &at));
+    }
+    return !(~lanes_bits(lanes_below(lanes_all(0), least)) & ((1u << c->count) - 1u));
+}
+
+/* The contour of two leaf clusters that share points: a loop, and how many points it has, 0 if it will not do. */
+static inline unsigned SC_KERNEL(find_loop)(const sc_model *model, const sc_near_pair *p,
+                                            const uint16_t **loop)
+{
+    uint32_t node = sc_model_share_node(model)[p->shared], count;
+    if (node == SC_NONE || sc_model_node_kind(model)[node]) return 0;
+    *loop = sc_model_loop(model) + sc_model_node_loop(model)[node];
+    count = sc_model_node_loop(model)[node + 1] - sc_model_node_loop(model)[node];
+    return count > 2 && count <= SC_KERNEL(SHORT_POINTS) ? count : 0;
+}
+
+/* Of some pairs, of which all triangles face a direction, those that have certainly nothing in common but what they share.
+   Each step is made for all of them before the next: what was just written is read slowly in other pieces. */
+static unsigned SC_KERNEL(find_plain)(const sc_query_state *state, sc_near_pair *const pair[],
+                                      unsigned count)
+{
+    const uint16_t *mask = state->workspace->mask + sc_model_first_leaf_patch(state->model);
+    SC_KERNEL(short_points) all[SC_KERNEL(SHORT_PAIRS)], kept[SC_KERNEL(SHORT_PAIRS)];
+    SC_KERNEL(short_edges) edges[SC_KERNEL(SHORT_PAIRS)];
+    unsigned number[SC_KERNEL(SHORT_PAIRS)], seen = 0, fit = 0, i, plain = 0;
+    for (i = 0; i < count; i++) {
+        const sc_near_pair *p = pair[i];
+        const uint16_t *loop;
+        number[seen] = i;
+        all[seen].count = SC_KERNEL(find_loop)(state->model, p, &loop);
+        if (!all[seen].count) continue;
+        SC_KERNEL(see_loop)
+        (state, p, (uint32_t)mask[p->a] & mask[p->b], loop, &all[seen++]);
+    }
+    for (i = 0; i < seen; i++) {
+        SC_KERNEL(repeat)(all[i].x, all[i].count);
+        SC_KERNEL(repeat)(all[i].y, all[i].count);
+    }
+    for (i = 0; i < seen; i++) {
+        number[fit] = number[i];
+        SC_KERNEL(drop_turns)(&all[i], &kept[fit]);
+        fit += kept[fit].count <= SC_KERNEL(SHORT_EDGES);
+    }
+    for (i = 0; i < fit; i++) {
+        SC_KERNEL(repeat)(kept[i].x, kept[i].count);
+        SC_KERNEL(repeat)(kept[i].y, kept[i].count);
+    }
+    for (i = 0; i < fit; i++) SC_KERNEL(write_edges)(&kept[i], &edges[i]);
+    for (i = 0; i < fit; i++)
+        plain |= (unsigned)SC_KERNEL(is_simple)(&kept[i], &edges[i]) << number[i];
+    return plain;
+}
+
+/* Asks for memory that two leaf clusters need here, in steps, of which each reads what the one before asked for. */
+enum { SC_KERNEL(SHORT_FETCHES) = 3 };
+static inline void SC_KERNEL(fetch_loop)(const sc_query_state *state, const sc_near_pair *p,
+                                         int step)
+{
+    const sc_model *model = state->model;
+    const uint32_t *node = sc_model_share_node(model) + p->shared;
+    const float *at = state->workspace->point_at;
+    int k;
+    if (step == 0) {
+        sc_fetch(node);
+        return;
+    }
+    if (step == 2) {
+        SC_UNROLL
+        for (k = 0; k < 4; k++) {
+            sc_fetch(at + SC_LEAF_POINTS * (4 * (uint64_t)p->a + (unsigned)k));
+            sc_fetch(at + SC_LEAF_POINTS * (4 * (uint64_t)p->b + (unsigned)k));
+        }
+    }
+    if (*node == SC_NONE) return;
+    if (step == 1) {
+        sc_fetch(sc_model_node_loop(model) + *node);
+        sc_fetch(sc_model_node_kind(model) + *node);
+    } else {
+        const uint16_t *loop = sc_model_loop(model) + sc_model_node_loop(model)[*node];
+        sc_fetch(loop);
+        sc_fetch(loop + SC_LANES_COUNT);
+    }
+}
+
+/* Of the pairs of leaf clusters that wait, of which some are of one with itself, drops those that have certainly nothing in
+   common but what they share; and, if one worker does all, so that statistics do not depend on who does what, those with
+   themselves of which one of these was. */
+static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state)
+{
+    enum { DISTANCE = 8 }; /* pairs between two steps of fetching */
+    sc_workspace *w = state->workspace;
+    sc_near_pair *pairs = w->near_pairs, *some[SC_KERNEL(SHORT_PAIRS)];
+    const uint32_t first = sc_model_first_leaf_patch(state->model);
+    const uint16_t *mask = w->mask + first;
+    uint8_t *marks = w->walk.marks + first;
+    uint16_t oriented[SC_LEAF_QUEUE + 1];
+    uint32_t count = 0, kept = 0, i;
+    unsigned bits, taken = 0;
+    int step;
+    for (i = 0; i < w->near_count; i++) {
+        const sc_near_pair *p = pairs + i;
+        oriented[count] = (uint16_t)i;
+        count += (p->a != p->b) & ((mask[p->a] & mask[p->b]) != 0);
+    }
+    for (i = 0; i < count; i++) {
+        for (step = 0; step < SC_KERNEL(SHORT_FETCHES); step++) {
+            uint32_t ahead = i + DISTANCE * (uint32_t)(SC_KERNEL(SHORT_FETCHES) + 1 - step);
+            if (ahead < count) SC_KERNEL(fetch_loop)(state, pairs + oriented[ahead], step);
+        }
+        some[taken++] = pairs + oriented[i];
+        if (taken < SC_KERNEL(SHORT_PAIRS) && i + 1 < count) continue;
+        for (bits = SC_KERNEL(find_plain)(state, some, taken); bits; bits &= bits - 1) {
+            sc_near_pair *p = some[sc_bits_lowest(bits)];
+            if (!state->share) marks[p->a] = marks[p->b] = 1;
+            p->shared = SC_NONE;
+        }
+        taken = 0;
+    }
+    for (i = 0; i < w->near_count; i++) {
+        const sc_near_pair p = pairs[i];
+        pairs[kept] = p;
+        if (p.a != p.b)
+            kept += p.shared != SC_NONE;
+        else
+            kept += (state->share || !marks[p.a]) && !SC_KERNEL(is_plain)(state, p.a);
+    }
+    w->near_count = kept;
+}
