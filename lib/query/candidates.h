@@ -32,6 +32,9 @@ enum {
     SC_ROWS_LIST = SC_ROWS_LISTED + SC_LEAF_PAIRS + 2 * 16
 };
 
+/* Numbers that tell of two triangles that share a point how they are looked at, see query/neighbor_kernel.h. */
+enum { SC_NEIGHBORS_ROWS = 7 };
+
 /* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
 typedef struct sc_leaf_pair {
     uint32_t a, b;

@@ -34,7 +34,6 @@ typedef struct SC_KERNEL(neighbors) {
 
 /* Numbers of these: of p, of both ends of a and of b among the points of their leaf cluster, and of t and u among its
    triangles. */
-enum { SC_NEIGHBORS_ROWS = 7 };
 typedef struct SC_KERNEL(neighbor_rows) {
     lanes_bytes row[SC_NEIGHBORS_ROWS];
 } SC_KERNEL(neighbor_rows);
