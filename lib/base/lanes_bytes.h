@@ -4,14 +4,15 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Masks are bytes of all bits or none; lanes_bytes_choose takes from a where one is set, else from b, and lanes_bytes_bits
- * makes bit i for byte i. lanes_bytes_quarters has the four lowest bits of each of sixteen words, the four above, and so on. lanes_bytes_through reads a row by numbers below sixteen. lanes_triples are three rows, which
- * lanes_triples_through reads by the same numbers. lanes_names tells for each of sixteen numbers b where among sixteen
- * others it first is, or 255 if nowhere. lanes_index_of makes numbers of lanes (base/lanes_pick.h) of them.
- * lanes_list_rows takes from rows of numbers those of these lanes, adds to those of each row a number of its own, and writes them
- * as rows of so many words, room for sixteen in each.
- * lanes_edges_of reads points of two tables, in turned places (see base/lanes.h), by numbers: the first of three of one
- * is subtracted from the other two, then from two of the other.
+ * Masks are bytes of all bits or none; lanes_bytes_choose takes from a where one is set, else from b, and
+ * lanes_bytes_bits makes bit i for byte i. lanes_bytes_quarters has the four lowest bits of each of sixteen words,
+ * the four above, and so on. lanes_bytes_through reads a row by numbers below sixteen. lanes_triples are three rows,
+ * which lanes_triples_through reads by the same numbers. lanes_names tells for each of sixteen numbers b where among
+ * sixteen others it first is, or 255 if nowhere. lanes_index_of makes numbers of lanes (base/lanes_pick.h) of them.
+ * lanes_list_rows takes from rows of numbers those of these lanes, adds to those of each row a number of its own, and
+ * writes them as rows of so many words, room for sixteen in each. lanes_edges_of reads points of two tables, in
+ * turned places (see base/lanes.h), by numbers: the first of three of one is subtracted from the other two, then from
+ * two of the other.
  *
  * No guard, as in base/lanes.h; base/lanes_bytes_end.h ends it.
  */

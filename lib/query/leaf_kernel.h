@@ -1,8 +1,9 @@
 /*
- * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then rows against planes; then what is
- * left, sixteen pairs at a time, of one pair of clusters or of two (query/sixteen_kernel.h). Pairs of which it is settled how they meet are collected, and those
- * of which nothing is certain. Each of these goes through some pairs of leaf clusters before the next begins, so that few
- * branches depend on how many rows or triangles one of them has. See query_kernels.h.
+ * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then rows against planes; then what
+ * is left, sixteen pairs at a time, of one pair of clusters or of two (query/sixteen_kernel.h). Pairs of which it is
+ * settled how they meet are collected, and those of which nothing is certain. Each of these goes through some pairs
+ * of leaf clusters before the next begins, so that few branches depend on how many rows or triangles one of them has.
+ * See query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */

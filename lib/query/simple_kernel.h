@@ -3,12 +3,13 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The edges of a contour, as they are listed, are taken as a cycle. They are compared sixteen at a time with those two and
- * three further on; then boxes of spans of two edges with those of the spans two and three further on; boxes of spans of
- * four, and so on, until there are at most sixteen spans, of which all are compared. Where the boxes of two spans
- * overlap, the spans within are compared, down to edges. All pairs of edges are covered but those that follow each
- * other: take the longest spans that do not follow each other and have one edge each; those of twice the length
- * do, or are the same, and so hold the spans taken, no more than three apart. A last span may be shorter, and brings its ends nearer.
+ * The edges of a contour, as they are listed, are taken as a cycle. They are compared sixteen at a time with those
+ * two and three further on; then boxes of spans of two edges with those of the spans two and three further on; boxes
+ * of spans of four, and so on, until there are at most sixteen spans, of which all are compared. Where the boxes of
+ * two spans overlap, the spans within are compared, down to edges. All pairs of edges are covered but those that
+ * follow each other: take the longest spans that do not follow each other and have one edge each; those of twice the
+ * length do, or are the same, and so hold the spans taken, no more than three apart. A last span may be shorter, and
+ * brings its ends nearer.
  *
  * Pairs that cannot be told apart here are few and go to sc_simple_are_apart.
  */
@@ -127,10 +128,10 @@ static inline unsigned SC_KERNEL(one_side)(lanes a, lanes b, lanes bound)
 }
 
 /*
- * Bits of the edges e that are certainly apart from f, as one is on one side of the other's line. The sizes of an edge and
- * of a vector from its line to an end of the other edge, of which bound_of wants the sum, are at most
- * those of both edges and of the vector from p to p, but for a rounding that is in the bound's slack. Edges that
- * share a point are not apart: then one of each two products is 0.
+ * Bits of the edges e that are certainly apart from f, as one is on one side of the other's line. The sizes of an
+ * edge and of a vector from its line to an end of the other edge, of which bound_of wants the sum, are at most those
+ * of both edges and of the vector from p to p, but for a rounding that is in the bound's slack. Edges that share a
+ * point are not apart: then one of each two products is 0.
  */
 static inline unsigned SC_KERNEL(lie_apart)(const sc_simple_contour *c,
                                             const SC_KERNEL(sc_edge_lanes) * e,
@@ -210,10 +211,10 @@ static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t 
 }
 
 /*
- * Sixteen edges and those that follow: the next one, and the two after that by their boxes. Two boxes are to be four errors
- * apart: two for the places of points, and two, 2^-23 of a coordinate or more, for the rounding here. So are
- * those of spans, which are two errors larger each; this writes the boxes of spans of two edges, without the end of a second
- * that is none. What else is no edge is in boxes, which does no harm.
+ * Sixteen edges and those that follow: the next one, and the two after that by their boxes. Two boxes are to be four
+ * errors apart: two for the places of points, and two, 2^-23 of a coordinate or more, for the rounding here. So are
+ * those of spans, which are two errors larger each; this writes the boxes of spans of two edges, without the end of a
+ * second that is none. What else is no edge is in boxes, which does no harm.
  */
 static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
                                            float first[4][SC_LANES_COUNT])
