@@ -489,33 +489,19 @@ static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
     m->segment_child_total = csf->child_first[csf->segment_count - csf->leaf_count];
 }
 
-/* Where two leaf clusters, a < b, are in the lists of those that share points; SC_NONE: nowhere. */
-static uint32_t find_share(const sc_model *m, uint32_t a, uint32_t b)
-{
-    const uint32_t *first = sc_model_share_first(m) + a, *other = sc_model_share_leaf(m);
-    uint32_t i;
-    for (i = first[0]; i < first[1]; i++)
-        if (other[i] == b) return i;
-    return SC_NONE;
-}
-
-uint32_t sc_model_share_of_node(const sc_model *m, uint32_t node)
-{
-    const sc_pair *patches = sc_model_node_patches(m) + node;
-    const uint32_t *leaf = sc_model_leaf(m);
-    if (patches->a == patches->b || !sc_model_is_leaf(m, patches->a) ||
-        !sc_model_is_leaf(m, patches->b))
-        return SC_NONE;
-    return find_share(m, leaf[patches->a], leaf[patches->b]);
-}
-
+/* The node of each two leaf clusters that share points. */
 static void write_share_nodes(sc_model *m)
 {
-    uint32_t *share_node = NEW_ARRAY(m, share_node, uint32_t), n;
+    uint32_t *share_node = NEW_ARRAY(m, share_node, uint32_t), n, i;
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const uint32_t *leaf = sc_model_leaf(m);
+    const sc_pair *patches = sc_model_node_patches(m);
     memset(share_node, 0xff, m->share_count * sizeof *share_node);
     for (n = 0; n < m->node_count; n++) {
-        uint32_t i = sc_model_share_of_node(m, n);
-        if (i != SC_NONE) share_node[i] = n;
+        const uint32_t a = patches[n].a, b = patches[n].b;
+        if (a == b || !sc_model_is_leaf(m, a) || !sc_model_is_leaf(m, b)) continue;
+        for (i = first[leaf[a]]; i < first[leaf[a] + 1]; i++)
+            if (other[i] == leaf[b]) share_node[i] = n;
     }
 }
 

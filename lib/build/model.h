@@ -196,9 +196,6 @@ static inline int sc_model_is_for_boxes(const sc_model *model)
     return model->node_count == 0;
 }
 
-/* Where the leaf clusters of a node are in share_leaf; SC_NONE if it is not of two, or they share no points there. */
-uint32_t sc_model_share_of_node(const sc_model *model, uint32_t node);
-
 /* Computes offsets and bytes from the counts. Counts must be at least 1, but for those that are 0 in models
    for boxes; as many segments as leaf segments there at least. */
 void sc_model_lay_out(sc_model *counts);

@@ -291,24 +291,6 @@ static const char *check_nodes(const sc_model *m)
     return walk.box != m->box_count || boxes[n] != walk.box ? "node_boxes" : NULL;
 }
 
-/*
- * Leaf clusters that share points are tested as nodes: a query does not ask which triangles of pairs that are left to boxes
- * share points. Each pair of leaf clusters is one node at most, as the tree has it once.
- */
-static int check_shared_are_nodes(const sc_model *m)
-{
-    const sc_pair *patches = sc_model_node_patches(m);
-    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
-    const uint32_t *leaf = sc_model_leaf(m);
-    uint32_t n, i, found = 0;
-    for (n = 0; n < m->node_count; n++) {
-        uint32_t a = patches[n].a, b = patches[n].b;
-        if (a == b || !sc_model_is_leaf(m, a) || !sc_model_is_leaf(m, b)) continue;
-        for (i = first[leaf[a]]; i < first[leaf[a] + 1]; i++) found += other[i] == leaf[b];
-    }
-    return sc_model_is_for_boxes(m) || found == m->share_count;
-}
-
 /* The triangles of a patch. */
 static uint32_t patch_size(const sc_model *m, uint32_t patch)
 {
@@ -471,19 +453,26 @@ static int check_share_list(const sc_model *m)
     return !bad;
 }
 
-/* Of each two of them the node: there is no other, and none in models for boxes. */
+/* Of each two of them the node; none in models for boxes. That there is one matters: a query does not ask which triangles
+   share points of pairs that nodes leave to boxes. */
 static int check_share_node(const sc_model *m)
 {
-    const uint32_t *share_node = sc_model_share_node(m);
-    uint32_t n, i, found = 0, bad = 0;
-    for (i = 0; i < m->share_count; i++) found += share_node[i] != SC_NONE;
-    for (n = 0; n < m->node_count; n++) {
-        i = sc_model_share_of_node(m, n);
-        if (i == SC_NONE) continue;
-        bad |= share_node[i] != n;
-        found--;
-    }
-    return !bad && !found;
+    const uint32_t *share_node = sc_model_share_node(m), *leaf = sc_model_leaf(m);
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const sc_pair *patches = sc_model_node_patches(m);
+    uint32_t a, i, n, bad = 0;
+    for (a = 0; a < m->leaf_count; a++)
+        for (i = first[a]; i < first[a + 1]; i++) {
+            n = share_node[i];
+            if (sc_model_is_for_boxes(m)) {
+                bad |= n != SC_NONE;
+            } else {
+                if (n >= m->node_count) return 0;
+                bad |= !sc_model_is_leaf(m, patches[n].a) | !sc_model_is_leaf(m, patches[n].b);
+                bad |= (leaf[patches[n].a] != a) | (leaf[patches[n].b] != other[i]);
+            }
+        }
+    return !bad;
 }
 
 static const char *check_arrays(const sc_model *m, uint8_t *bytes)
@@ -523,7 +512,6 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(share_crowded, bytes_below(sc_model_share_crowded(m), m->leaf_count, 2));
     wrong = check_nodes(m);
     if (wrong) return wrong;
-    CHECK(share_leaf, check_shared_are_nodes(m));
     CHECK(share_node, check_share_node(m));
     CHECK(node_flags, bytes_below(sc_model_node_flags(m), m->node_count, 4));
     CHECK(node_kind, bytes_below(sc_model_node_kind(m), m->node_count, 4));

@@ -235,7 +235,7 @@ static unsigned SC_KERNEL(find_plain)(const sc_query_state *state, sc_near_pair 
     const uint16_t *mask = state->workspace->mask + sc_model_first_leaf_patch(state->model);
     SC_KERNEL(short_points) all[SC_KERNEL(SHORT_PAIRS)], kept[SC_KERNEL(SHORT_PAIRS)];
     SC_KERNEL(short_edges) edges[SC_KERNEL(SHORT_PAIRS)];
-    unsigned number[SC_KERNEL(SHORT_PAIRS)], seen = 0, fit = 0, i, plain = 0;
+    unsigned number[SC_KERNEL(SHORT_PAIRS)] = {0}, seen = 0, fit = 0, i, plain = 0;
     for (i = 0; i < count; i++) {
         const sc_near_pair *p = pair[i];
         const uint16_t *loop;
