@@ -199,7 +199,7 @@ static void bytes_and_names(void)
         for (i = c = 0; i < 16; i++) {
             if (!(in.mask >> i & 1u)) continue;
             for (k = 0; k < 3; k++)
-                CHECK(out.kept[k][c] == in.names[k] + (in.words[i] >> 4 * k & 15u));
+                CHECK(out.kept[k][c] == in.names[k] + ((unsigned)in.words[i] >> 4 * k & 15u));
             c++;
         }
     }
