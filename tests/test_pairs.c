@@ -675,6 +675,185 @@ static void bands_in_a_plane(void)
     }
 }
 
+/* Points and triangles in a plane. Triangles are counterclockwise where they are not meant to be folded. */
+typedef struct flat_mesh {
+    double at[96][2];
+    uint32_t corner[64][3], points, triangles;
+} flat_mesh;
+
+static void flat_add(flat_mesh *m, uint32_t a, uint32_t b, uint32_t c)
+{
+    uint32_t *t = m->corner[m->triangles++];
+    t[0] = a;
+    t[1] = b;
+    t[2] = c;
+}
+
+/* Puts a point at a share of the way from a to b, and off that line to the right by a part of its length. */
+static void flat_put_beside(flat_mesh *m, uint32_t a, uint32_t b, double share, double off,
+                            uint32_t point)
+{
+    double x = m->at[b][0] - m->at[a][0], y = m->at[b][1] - m->at[a][1];
+    double along = m->at[a][0] + share * x + off * y;
+    m->at[point][1] = m->at[a][1] + share * y - off * x;
+    m->at[point][0] = along;
+}
+
+/* A band of triangles that goes round, by so many turns; its edges go in and out. */
+static void flat_make_band(flat_mesh *m, uint32_t triangles, double turns)
+{
+    double width = test_random_range(0.1, 0.4), rough = test_random_range(0, 0.1);
+    double start = test_random_range(-3, 3), inward = test_random_range(-0.1, 0.2);
+    m->points = triangles + 2;
+    for (uint32_t k = 0; k < m->points; ++k) {
+        double along = (double)k / (triangles + 1), angle = start + along * turns * 6.283185307;
+        double reach = (k % 2 ? 1 : 1 - 2 * width) * (1 - inward * along);
+        reach += rough * test_random_range(-1, 1);
+        m->at[k][0] = reach * cos(angle);
+        m->at[k][1] = reach * sin(angle);
+        if (k >= 2) flat_add(m, k - 2, k - 1 + k % 2, k - k % 2);
+    }
+}
+
+/* A fan that goes round twice, first near its middle, with so many points there, then farther out: its rim crosses itself
+   once. */
+static void flat_make_fan(flat_mesh *m, uint32_t rim, uint32_t inner)
+{
+    double weight[32], sum[2] = {0, 0}, angle = test_random_range(-3, 3);
+    double over = test_random_range(0.1, 0.8), near = test_random_range(0.3, 0.7);
+    double rough = test_random_range(0, 0.05);
+    for (uint32_t k = 0; k < rim; ++k) sum[k > inner] += weight[k] = test_random_range(0.7, 1);
+    m->at[0][0] = m->at[0][1] = 0;
+    m->points = rim + 1;
+    for (uint32_t k = 0; k < rim; ++k) { /* the edge to point k + 1, and then that */
+        double reach = (k < inner ? near : 1) * (1 + rough * test_random_range(-1, 1));
+        angle += weight[k] * (6.283185307 + (k > inner ? -over : over)) / sum[k > inner];
+        m->at[k + 1][0] = reach * cos(angle);
+        m->at[k + 1][1] = reach * sin(angle);
+        flat_add(m, 0, k + 1, (k + 1) % rim + 1);
+    }
+}
+
+/* Cuts a triangle in three, which changes no contour. */
+static void flat_cut(flat_mesh *m, uint32_t triangle)
+{
+    uint32_t *t = m->corner[triangle], a = t[0], b = t[1], c = t[2], p = m->points++;
+    double u = test_random_range(0.2, 0.4), v = test_random_range(0.2, 0.4);
+    for (uint32_t k = 0; k < 2; ++k)
+        m->at[p][k] =
+            m->at[a][k] + u * (m->at[b][k] - m->at[a][k]) + v * (m->at[c][k] - m->at[a][k]);
+    t[2] = p;
+    flat_add(m, b, c, p);
+    flat_add(m, c, a, p);
+}
+
+/* A triangle that pokes into another one from outside, or just touches it, across the side from point a to b. */
+static void flat_poke(flat_mesh *m, uint32_t a, uint32_t b)
+{
+    uint32_t p = m->points, turn = test_random_below(3);
+    double depth = exp2(-2 - (double)test_random_below(40));
+    m->points += 3;
+    flat_put_beside(m, a, b, test_random_range(0.3, 0.7), -depth, p);
+    flat_put_beside(m, a, b, test_random_range(0.3, 0.7), 0.4, p + 1);
+    flat_put_beside(m, p, p + 1, 1, -0.3, p + 2);
+    flat_add(m, p + turn, p + (turn + 1) % 3, p + (turn + 2) % 3);
+}
+
+/* Checks such a mesh as two leaf clusters, across an axis, or nearly; a triangle far away makes the whole large, so that single
+   precision tells little of it. */
+static void check_flat(uint64_t state, const flat_mesh *m, int is_level)
+{
+    soup s = soup_make(m->points + 3, m->triangles + 1);
+    double(*at)[3] = (double(*)[3])s.positions, place[2];
+    double size = 0.3 * exp2(-(double)test_random_below(test_random_below(2) ? 3 : 20));
+    uint32_t axis = test_random_below(3), least = m->triangles > 16 ? m->triangles - 16 : 1;
+    uint32_t most = m->triangles > 16 ? 16 : m->triangles - 1;
+    uint32_t first, order[64], name[96], k;
+    sc_tree_node tree[5] = {{1, 2, 0, 0},
+                            {3, 4, 0, 0},
+                            {SC_NONE, SC_NONE, 0, 1},
+                            {SC_NONE, SC_NONE, 0, 0},
+                            {SC_NONE, SC_NONE, 0, 0}};
+    input_choices own;
+    /* the second often has few */
+    if (test_random_below(2) && most - least > 2) least = most - 2;
+    first = least + test_random_below(most - least + 1);
+    for (k = 0; k < 2; ++k) place[k] = test_random_range(-0.5, 0.5);
+    for (k = 0; k < m->points; ++k) { /* contours begin anywhere */
+        uint32_t other = test_random_below(k + 1);
+        name[k] = name[other];
+        name[other] = k;
+    }
+    for (k = 0; k < m->points + 3; ++k) {
+        static const double far[3][2] = {{-1, 0.97}, {1, 0.97}, {0.3, 1}};
+        double *x = at[k < m->points ? name[k] : k];
+        for (uint32_t c = 0; c < 2; ++c)
+            x[(axis + 1 + c) % 3] =
+                k < m->points ? place[c] + size * m->at[k][c] : far[k - m->points][c];
+        x[axis] = 0.25;
+        if (!is_level && k < m->points)
+            x[axis] += size / 8 * exp2(-(double)test_random_below(30)) * test_random_range(-1, 1);
+    }
+    for (k = 0; k < 3 * m->triangles; ++k) s.triangles[k] = name[m->corner[k / 3][k % 3]];
+    for (k = 0; k < 3; ++k) s.triangles[3 * m->triangles + k] = m->points + k;
+    tree[3].count = tree[4].first = first;
+    tree[4].count = m->triangles - first;
+    tree[2].first = m->triangles;
+    own = input_choose(&s, SC_WELD_NONE, SC_PARTITION_FAST);
+    for (k = 0; k <= m->triangles; ++k) order[k] = k;
+    own.options.partition = SC_PARTITION_TREE;
+    own.options.order = order;
+    own.options.tree = tree;
+    own.options.tree_count = 5;
+    own.partition_name = "two clusters";
+    check_chosen("two clusters in a plane", state, &s, s.positions, SC_WELD_NONE, SC_PARTITION_TREE,
+                 &own);
+    soup_free(&s);
+}
+
+/* Two leaf clusters in a plane whose contour tells, or all but tells, that they have nothing in common but what they share:
+   bands of which the last point is near one of the first edges; fans that go round twice, mostly so that the edges of the
+   rim that cross are few apart or as far apart as can be; contours that are simple though there is a fold inside; and
+   contours in two pieces. Contours of sixteen or seventeen points are those at the end of which sixteen at a time are most
+   easily mistaken. */
+static void two_clusters_in_a_plane(void)
+{
+    uint32_t rounds = test_iterations(4000);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t kind = i % 8 < 4 ? 0 : i % 4, cuts = test_random_below(9);
+        flat_mesh m;
+        m.points = m.triangles = 0;
+        if (kind == 0) {
+            uint32_t count = i % 4 ? 14 + i / 8 % 2 : 8 + test_random_below(12),
+                     near = test_random_below(3);
+            double off = exp2(-(double)test_random_below(45)) * test_random_range(-1, 1);
+            if (i % 4) cuts = 0;
+            flat_make_band(&m, count, test_random_range(0.7, 1));
+            flat_put_beside(&m, near, near + (near == 0 ? 1 : 2), test_random_range(0, 1),
+                            test_random_below(8) ? off : 0, count + 1);
+        } else if (kind == 1) {
+            uint32_t rim = test_random_below(2) ? 16 : 10 + test_random_below(8);
+            uint32_t inner = i % 16 < 8 ? 2 : rim / 2;
+            flat_make_fan(&m, rim, test_random_below(4) ? inner : 2 + test_random_below(rim - 5));
+        } else {
+            flat_make_band(&m, 2 + test_random_below(kind == 3 ? 6 : 12), 0.4);
+        }
+        if (kind == 3) { /* across an edge of the contour */
+            uint32_t k = test_random_below(m.triangles), odd = k % 2;
+            flat_poke(&m, odd ? k : k + 2, odd ? k + 2 : k);
+        }
+        while (cuts-- > 0 && m.triangles <= 30) flat_cut(&m, test_random_below(m.triangles));
+        if (kind == 2) { /* the point of the last cut, out of its triangle */
+            const uint32_t *t;
+            flat_cut(&m, test_random_below(m.triangles));
+            t = m.corner[m.triangles - 1];
+            flat_put_beside(&m, t[0], t[1], 0.5, test_random_range(0.05, 0.3), t[2]);
+        }
+        check_flat(state, &m, i / 8 % 3 != 0);
+    }
+}
+
 static void deformed_meshes(void)
 {
     uint32_t rounds = test_iterations(140);
@@ -1015,7 +1194,7 @@ SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(e
              SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet),
              SC_TEST(edges_that_meet_across_an_axis), SC_TEST(neighbors_on_a_ray),
              SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane), SC_TEST(bands_in_a_plane),
-             SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell), SC_TEST(branched_discs),
-             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
-             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
-             SC_TEST(meshes_of_the_folder))
+             SC_TEST(two_clusters_in_a_plane), SC_TEST(deformed_meshes),
+             SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
+             SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
+             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))
