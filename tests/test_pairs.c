@@ -821,7 +821,7 @@ static void two_clusters_in_a_plane(void)
     uint32_t rounds = test_iterations(4000);
     for (uint32_t i = 0; i < rounds; ++i) {
         uint64_t state = test_random_state();
-        uint32_t kind = i % 8 < 4 ? 0 : i % 4, cuts = test_random_below(9);
+        uint32_t kind = i % 8 < 3 ? 0 : i % 8 < 5 ? 3 : i % 4, cuts = test_random_below(9);
         flat_mesh m;
         m.points = m.triangles = 0;
         if (kind == 0) {

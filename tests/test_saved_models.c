@@ -732,6 +732,49 @@ static void forged_sharing(void)
     soup_free(&mesh);
 }
 
+/* Lists of neighboring triangles with one that is none of its leaf cluster, rows and pairs alike. */
+static void forged_lists(void)
+{
+    soup mesh = soup_cloth(12, 12);
+    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
+    save s = save_model(model);
+    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    const uint32_t *share = sc_model_share_first(model), *other = sc_model_share_leaf(model);
+    const uint32_t *first = sc_model_leaf_first(model), *begin = sc_model_share_begin(model);
+    uint16_t *lists = (uint16_t *)array_of(m, SC_ARRAY_share_list), kept[512];
+    uint32_t tried[2] = {0, 0};
+    for (uint32_t leaf = 0; leaf < m->leaf_count; ++leaf)
+        for (uint32_t i = share[leaf]; i < share[leaf + 1]; ++i) {
+            uint16_t *list = lists + begin[i], *pair = list + SC_SHARE_ROWS;
+            uint32_t words = begin[i + 1] - begin[i], last = 15, u;
+            while (!(list[SC_SHARE_TRIANGLES] >> last & 1)) --last;
+            for (uint32_t t = 0; t <= last; ++t) pair += list[SC_SHARE_TRIANGLES] >> t & 1;
+            if (words > 512) continue;
+            memcpy(kept, list, words * sizeof(*list));
+            if (first[leaf + 1] - first[leaf] < 16) { /* the last of the lower cluster's */
+                list[SC_SHARE_TRIANGLES] ^= (uint16_t)(1u << last | 1u << 15);
+                for (uint16_t *p = pair; p < list + words; ++p)
+                    if ((*p & 15u) == last) *p = (uint16_t)(*p | 15u);
+                CHECK(try_forged(&s, &mesh));
+                memcpy(list, kept, words * sizeof(*list));
+                ++tried[0];
+            }
+            if (first[other[i] + 1] - first[other[i]] < 16) { /* the upper one of the last row's */
+                for (u = 0; !(pair[-1] >> u & 1); ++u) continue;
+                pair[-1] = (uint16_t)(pair[-1] ^ (1u << u | 1u << 15));
+                for (uint16_t *p = pair; p < list + words; ++p)
+                    if ((*p & 255u) == (last | u << 4)) *p = (uint16_t)(*p | 15u << 4);
+                CHECK(try_forged(&s, &mesh));
+                memcpy(list, kept, words * sizeof(*list));
+                ++tried[1];
+            }
+        }
+    CHECK(tried[0] > 3 && tried[1] > 3 && !try_forged(&s, &mesh));
+    free(s.memory);
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
 /* Loops in pieces of which one has no edges, and the next has those too. */
 static void forged_pieces(void)
 {
@@ -1305,7 +1348,8 @@ static void format(void)
 SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(truncated),
              SC_TEST(changed), SC_TEST(foreign), SC_TEST(forged_arrays), SC_TEST(forged_counts),
              SC_TEST(forged_uses), SC_TEST(forged_rings), SC_TEST(forged_contour),
-             SC_TEST(forged_touches), SC_TEST(forged_sharing), SC_TEST(forged_pieces),
-             SC_TEST(forged_loops), SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
-             SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments), SC_TEST(equal_bytes),
-             SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))
+             SC_TEST(forged_touches), SC_TEST(forged_sharing), SC_TEST(forged_lists),
+             SC_TEST(forged_pieces), SC_TEST(forged_loops), SC_TEST(forged_sizes),
+             SC_TEST(forged_chain), SC_TEST(messages), SC_TEST(workspaces_and_forged_hashes),
+             SC_TEST(arguments), SC_TEST(equal_bytes), SC_TEST(every_allocation_fails),
+             SC_TEST(read_only_and_shared), SC_TEST(format))
