@@ -468,7 +468,8 @@ static int check_share_node(const sc_model *m)
                 bad |= n != SC_NONE;
             } else {
                 if (n >= m->node_count) return 0;
-                bad |= !sc_model_is_leaf(m, patches[n].a) | !sc_model_is_leaf(m, patches[n].b);
+                if (!sc_model_is_leaf(m, patches[n].a) || !sc_model_is_leaf(m, patches[n].b))
+                    return 0;
                 bad |= (leaf[patches[n].a] != a) | (leaf[patches[n].b] != other[i]);
             }
         }
