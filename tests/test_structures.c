@@ -898,6 +898,21 @@ static void check_sharing_lists(steps *s, const sc_sharing *sharing)
     free(list);
 }
 
+/* Masks of triangles within a leaf cluster, as the model has them and unfolded: each with itself and lower ones is 0. */
+static void check_own_rows(const steps *s, const sc_sharing *sharing)
+{
+    uint32_t wrong = 0;
+    for (uint32_t leaf = 0; leaf < s->xbvh.leaf_count; ++leaf) {
+        const uint16_t *rows = sharing->own_rows + SC_LEAF_MAX * leaf;
+        uint16_t words[SC_OWN_WORDS], unfolded[SC_LEAF_MAX];
+        sc_sharing_fold(rows, words);
+        sc_sharing_unfold(words, unfolded);
+        for (uint32_t i = 0; i < SC_LEAF_MAX; ++i)
+            wrong += unfolded[i] != rows[i] || (rows[i] & ((2u << i) - 1)) != 0;
+    }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " masks within leaf clusters are lost", s->name, wrong);
+}
+
 /* The masks of all pairs of leaf clusters that are not both crowded, and the validator on them. */
 static void check_sharing(steps *s)
 {
@@ -924,6 +939,7 @@ static void check_sharing(steps *s)
         }
     }
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " masks of shared points wrong", s->name, wrong);
+    check_own_rows(s, &sharing);
     CHECK(sc_sharing_validate(&s->points, order, &s->xbvh, &sharing));
     check_sharing_lists(s, &sharing);
     if (sharing.first[leaves] > 0 && !sharing.crowded[0]) {

@@ -512,7 +512,8 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
 {
     sc_model counts, *m;
     uint32_t *number, connected[SC_DEPTH_MAX] = {0};
-    uint64_t share_total = sc_sharing_lists_count(sharing, xbvh);
+    uint64_t share_total = sc_sharing_lists_count(sharing, xbvh), i;
+    uint16_t *own_rows;
     rings r;
     sc_status status = SC_OK;
 
@@ -557,8 +558,9 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
     sc_sharing_lists_write(sharing, xbvh, sc_model_triangle(m), NEW_ARRAY(m, share_begin, uint32_t),
                            NEW_ARRAY(m, share_list, uint16_t));
-    copy(NEW_ARRAY(m, share_own_rows, uint16_t), sharing->own_rows,
-         SC_LEAF_MAX * (uint64_t)m->leaf_count * sizeof(uint16_t));
+    own_rows = NEW_ARRAY(m, share_own_rows, uint16_t);
+    for (i = 0; i < m->leaf_count; i++)
+        sc_sharing_fold(sharing->own_rows + SC_LEAF_MAX * i, own_rows + SC_OWN_WORDS * i);
     copy(NEW_ARRAY(m, share_crowded, uint8_t), sharing->crowded, m->leaf_count);
     copy(NEW_ARRAY(m, level_first, uint32_t), xbvh->level_first,
          ((uint64_t)m->level_count + 1) * sizeof(uint32_t));

@@ -65,7 +65,7 @@ enum {
  *   leaf_outline    SC_LEAF_POINTS a cluster: places in leaf_point of the points round its outline, counter-clockwise, if
  *                   that is one closed chain that comes to no point twice, else of none; if there are n < SC_LEAF_POINTS,
  *                   zeros follow, and SC_LEAF_POINTS + n is the last number
- *   share_...       see build/sharing.h; share_begin, share_list: build/sharing_lists.h
+ *   share_...       see build/sharing.h, share_own_rows are folded; share_begin, share_list: build/sharing_lists.h
  *   share_node      the node of the test tree that is of the two leaf clusters, or SC_NONE
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
@@ -95,7 +95,7 @@ enum {
   X(share_node, uint32_t, share_count)                                                             \
   X(share_begin, uint32_t, (uint64_t)share_count + 1)                                              \
   X(share_list, uint16_t, share_total)                                                             \
-  X(share_own_rows, uint16_t, SC_LEAF_MAX *(uint64_t)leaf_count)                                   \
+  X(share_own_rows, uint16_t, SC_OWN_WORDS *(uint64_t)leaf_count)                                  \
   X(share_crowded, uint8_t, leaf_count)                                                            \
   X(level_first, uint32_t, (uint64_t)level_count + 1)                                              \
   X(child, uint32_t, patch_end)                                                                    \

@@ -28,6 +28,26 @@ typedef struct sc_sharing {
     uint8_t *crowded;   /* leaf_count: 1 if its rows do not say all */
 } sc_sharing;
 
+/* The own rows of a cluster as the model keeps them, in half as many words: of row k the SC_LEAF_MAX - 1 - k highest bits are
+   used, hence word k has room for row SC_LEAF_MAX - 1 - k below them, whose k bits are moved there. */
+enum { SC_OWN_WORDS = SC_LEAF_MAX / 2 };
+
+static inline void sc_sharing_fold(const uint16_t rows[SC_LEAF_MAX], uint16_t words[SC_OWN_WORDS])
+{
+    unsigned k;
+    for (k = 0; k < SC_OWN_WORDS; k++)
+        words[k] = (uint16_t)(rows[k] | (unsigned)rows[SC_LEAF_MAX - 1 - k] >> (SC_LEAF_MAX - k));
+}
+
+static inline void sc_sharing_unfold(const uint16_t words[SC_OWN_WORDS], uint16_t rows[SC_LEAF_MAX])
+{
+    unsigned k;
+    for (k = 0; k < SC_OWN_WORDS; k++) {
+        rows[k] = (uint16_t)(words[k] & (~1u << k));
+        rows[SC_LEAF_MAX - 1 - k] = (uint16_t)((unsigned)words[k] << (SC_LEAF_MAX - k));
+    }
+}
+
 sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacency,
                            const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
                            sc_sharing *sharing);

@@ -460,7 +460,8 @@ void sc_candidates_enter(sc_query_state *state, uint32_t a, uint32_t b, uint32_t
     if (sc_model_share_crowded(model)[a] & sc_model_share_crowded(model)[b]) {
         find_shared(model, p);
     } else if (a == b) {
-        p->shared = sc_model_share_own_rows(model) + SC_LEAF_MAX * (uint64_t)a;
+        sc_sharing_unfold(sc_model_share_own_rows(model) + SC_OWN_WORDS * (uint64_t)a, p->found);
+        p->shared = p->found;
     } else if (shared != SC_NONE) {
         p->list = sc_model_share_list(model) + sc_model_share_begin(model)[shared];
         p->list_end = sc_model_share_list(model) + sc_model_share_begin(model)[shared + 1];

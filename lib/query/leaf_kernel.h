@@ -444,10 +444,10 @@ static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
             const sc_near_pair *next = pairs + i + SC_FETCH_READY;
             SC_KERNEL(fetch_ready)(w, next->a);
             SC_KERNEL(fetch_ready)(w, next->b);
-            sc_fetch(next->shared != SC_NONE
-                         ? sc_model_share_list(state->model) +
-                               sc_model_share_begin(state->model)[next->shared]
-                         : sc_model_share_own_rows(state->model) + SC_LEAF_MAX * (uint64_t)next->a);
+            sc_fetch(next->shared != SC_NONE ? sc_model_share_list(state->model) +
+                                                   sc_model_share_begin(state->model)[next->shared]
+                                             : sc_model_share_own_rows(state->model) +
+                                                   SC_OWN_WORDS * (uint64_t)next->a);
         }
         SC_KERNEL(leaf_pair)(state, pairs[i].a, pairs[i].b, 0, pairs[i].shared, rows);
         if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);
