@@ -47,6 +47,16 @@ soup shape_hub(uint32_t valence)
     return s;
 }
 
+soup shape_copies(uint32_t shared)
+{
+    static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 1, 2, 0, 1};
+    soup s = soup_make(6 - shared, 32);
+    memcpy(s.positions, positions, 3 * s.vertex_count * sizeof(double));
+    for (uint32_t i = 0; i < 96; ++i)
+        s.triangles[i] = i < 48 ? i % 3 : i % 3 < shared ? (i % 3 + 1) % 3 : i % 3 + 3 - shared;
+    return s;
+}
+
 soup shape_fan_of_sheets(uint32_t along)
 {
     soup fins = soup_fins(along);

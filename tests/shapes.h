@@ -25,6 +25,9 @@ soup shape_body(uint32_t around, uint32_t rings);
 /* A cloth some of whose triangles are replaced: repeated corners, copies of others, turned over. */
 soup shape_broken_cloth(uint32_t side);
 
+/* Two triangles that share one or two points, each sixteen times. */
+soup shape_copies(uint32_t shared);
+
 /* One of the meshes of soups.h and of those above, of about maximum triangles; *name says which. */
 soup shape_any(uint32_t maximum, const char **name);
 

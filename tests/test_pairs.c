@@ -14,6 +14,7 @@
 #include "harness.h"
 #include "inputs.h"
 #include "oracle.h"
+#include "shapes.h"
 #include "soups.h"
 #include "starcontour.h"
 
@@ -315,6 +316,20 @@ static void small_soups_on_a_grid(void)
         soup s = soup_on_grid(range);
         double *pose = other_positions(&s, range);
         check_random_build("grid soup", state, &s, pose);
+        free(pose);
+        soup_free(&s);
+    }
+}
+
+/* Two leaf clusters in which all triangles are the same, which share one point or two. */
+static void copies_of_two_triangles(void)
+{
+    for (uint32_t shared = 1; shared <= 2; ++shared) {
+        soup s = shape_copies(shared);
+        double *pose = other_positions(&s, 3);
+        check_mesh("copies", 0, &s, pose, SC_WELD_REST, SC_PARTITION_FAST);
+        for (uint32_t i = 0; i < 3 * s.vertex_count; ++i) pose[i] = i % 3 == 2 ? 0 : pose[i];
+        check_mesh("flat copies", 0, &s, pose, SC_WELD_REST, SC_PARTITION_FAST);
         free(pose);
         soup_free(&s);
     }
@@ -1190,11 +1205,11 @@ static void meshes_of_the_folder(void)
     CHECK_MSG(found >= 1, "no mesh in %s", folder);
 }
 
-SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(scattered_soups), SC_TEST(extreme_coordinates),
-             SC_TEST(nearly_coplanar), SC_TEST(edges_that_nearly_meet),
-             SC_TEST(edges_that_meet_across_an_axis), SC_TEST(neighbors_on_a_ray),
-             SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane), SC_TEST(bands_in_a_plane),
-             SC_TEST(two_clusters_in_a_plane), SC_TEST(deformed_meshes),
+SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(copies_of_two_triangles),
+             SC_TEST(scattered_soups), SC_TEST(extreme_coordinates), SC_TEST(nearly_coplanar),
+             SC_TEST(edges_that_nearly_meet), SC_TEST(edges_that_meet_across_an_axis),
+             SC_TEST(neighbors_on_a_ray), SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane),
+             SC_TEST(bands_in_a_plane), SC_TEST(two_clusters_in_a_plane), SC_TEST(deformed_meshes),
              SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
              SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
              SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))

@@ -425,7 +425,7 @@ static int is_share_list(const uint16_t *list, uint32_t words, uint32_t of_a, ui
     uint32_t seen[SC_LEAF_MAX] = {0}, bad, i;
     if (words < SC_SHARE_ROWS + rows) return 0;
     words -= SC_SHARE_ROWS + rows;
-    bad = (list[SC_SHARE_POINTS] > list[SC_SHARE_EDGES]) | (list[SC_SHARE_EDGES] > words);
+    bad = sc_share_points(list) + sc_share_edges(list) > words;
     for (i = 0; i < words; i++) {
         uint32_t t = pair[i] & 15u, u = pair[i] >> 4 & 15u;
         bad |= (t >= of_a) | (u >= of_b) | (seen[t] >> u & 1u);

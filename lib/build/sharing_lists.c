@@ -67,12 +67,12 @@ static uint32_t write_run(const uint16_t rows[SC_LEAF_MAX], const uint32_t *t, c
             uint32_t j = sc_bits_lowest(row);
             shared_corners s = find_shared_corners(t + 3 * (uint64_t)i, u + 3 * (uint64_t)j);
             k = kind_of(&s);
+            if (k < 2 && count[k] == SC_SHARE_EDGE - 1) k = 2;
             kept[k][count[k]++] =
                 (uint16_t)(i | j << 4 | first_corner(s.of[0]) << 8 | first_corner(s.of[1]) << 12);
         }
     }
-    list[SC_SHARE_POINTS] = (uint16_t)count[0];
-    list[SC_SHARE_EDGES] = (uint16_t)(count[0] + count[1]);
+    list[SC_SHARE_KINDS] = (uint16_t)(count[0] + SC_SHARE_EDGE * count[1]);
     for (k = 0; k < 3; k++) {
         memcpy(list + at, kept[k], count[k] * sizeof *list);
         at += count[k];

@@ -16,10 +16,22 @@
 
 enum sc_share_word {
     SC_SHARE_TRIANGLES, /* mask of those of the lower cluster that have a row */
-    SC_SHARE_POINTS,    /* pairs that share a point */
-    SC_SHARE_EDGES,     /* these and those that share an edge */
+    SC_SHARE_KINDS,     /* pairs that share a point; SC_SHARE_EDGE times those that share an edge */
     SC_SHARE_ROWS /* the first row; the first pair is behind the last, the last ends the run */
 };
+
+/* More pairs of one kind, as there may be of triangles that are the same, are among those that are neither. */
+enum { SC_SHARE_EDGE = 256 };
+
+static inline unsigned sc_share_points(const uint16_t *run)
+{
+    return run[SC_SHARE_KINDS] % SC_SHARE_EDGE;
+}
+
+static inline unsigned sc_share_edges(const uint16_t *run)
+{
+    return run[SC_SHARE_KINDS] / SC_SHARE_EDGE;
+}
 
 /* So many words behind the last run may be read. */
 enum { SC_SHARE_BEHIND = 16 };

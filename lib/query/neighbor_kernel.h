@@ -423,7 +423,7 @@ static void SC_KERNEL(take_listed)(sc_query_state *state, const sc_leaf_pair *p,
                                    SC_KERNEL(open_neighbors) * open)
 {
     const uint16_t *list = p->list + SC_SHARE_ROWS + sc_bits_count(p->list[SC_SHARE_TRIANGLES]);
-    const unsigned points = p->list[SC_SHARE_POINTS], edges = p->list[SC_SHARE_EDGES];
+    const unsigned points = sc_share_points(p->list), edges = points + sc_share_edges(p->list);
     const unsigned count = (unsigned)(p->list_end - list);
     SC_KERNEL(neighborhoods) n;
     SC_KERNEL(neighbors) x;
