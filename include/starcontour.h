@@ -280,14 +280,15 @@ enum { SC_REST_UNMARKED = 0, SC_REST_MARKED = 1 };
 /*
  * What a model is for.
  *   SC_MODEL_FULL   many poses, by any method
- *   SC_MODEL_BOXES  few poses, by boxes alone: SC_METHOD_AABB, or SC_STEP_METHOD_TWO_BOXES and _SWEPT. All that
- *                   only culling needs is left out, and with SC_PARTITION_FAST patches are cut from a
- *                   space-filling curve. Building takes 0.25 to 0.4 of the time (of thin tubes 0.8), model and workspace half of the
- *                   memory, and a query 1.1 to 1.3 times as long as by SC_METHOD_AABB on a full model (where
- *                   many thin tubes lie close together up to 2.6 times): the faster way for a mesh that is
- *                   asked about once, or up to some ten times. Pairs are the same. The default methods are
- *                   those by boxes on such a model; what asks for another one, for a contour test, or for
- *                   SC_REST_MARKED, ends with SC_ERROR_BOXES_ONLY
+ *   SC_MODEL_BOXES  few poses, by boxes alone: SC_METHOD_AABB, or SC_STEP_METHOD_TWO_BOXES and
+ *                   _SWEPT. All that only culling needs is left out, and with SC_PARTITION_FAST
+ *                   patches are cut from a space-filling curve. Building takes 0.25 to 0.4 of the
+ *                   time (of thin tubes 0.8), model and workspace less than half of the memory, and
+ *                   a query 1.1 to 1.3 times as long as by SC_METHOD_AABB on a full model (where many
+ *                   thin tubes lie close together up to 2.6 times): the faster way for a mesh that is
+ *                   asked about once, or up to some ten times. Pairs are the same. The default
+ *                   methods are those by boxes on such a model; what asks for another one, for a
+ *                   contour test, or for SC_REST_MARKED, ends with SC_ERROR_BOXES_ONLY
  */
 enum { SC_MODEL_FULL = 0, SC_MODEL_BOXES = 1 };
 
@@ -633,9 +634,9 @@ typedef struct sc_group {
  *                   pose here, only new contacts are reported:
  *                       sc_query(model, workspace, &rest_pose, &options, &result);
  *                       filter.ignore = result.pairs, filter.ignore_count = result.count;
- *   accept          called for each pair that nothing else leaves out, once, in any order, from within
- *                   sc_query, in the thread that called it; 0 leaves it out. It must not use the workspace of the query. After
- *                   SC_OUTPUT_ANY found a pair it is called no more
+ *   accept          called for each pair that nothing else leaves out, once, in any order, from
+ *                   within sc_query, in the thread that called it; 0 leaves it out. It must not use the
+ *                   workspace of the query. After SC_OUTPUT_ANY found a pair it is called no more
  *
  * Cost: groups and the first ring are asked before triangles are tested. Each query reads
  * ignore once to see that it is sorted (about 1 ns a pair), and looks it up for each pair found. More
