@@ -690,6 +690,111 @@ static void bands_in_a_plane(void)
     }
 }
 
+/* A tube of three leaf clusters that go round it, straight or bent, at any angle to the axes, with loops that go up and down. In
+   places it is turned back, so that one band lies over the one before, or the loops are wound twice; it is pressed flat; a point
+   is drawn near one of any other loop, or across an edge there, or of its own triangle, or just touches; or a triangle is turned. A
+   strip behind it makes the mesh large, so that single precision tells little of it. */
+static void tubes(void)
+{
+    enum { BANDS = 3, LOOPS = BANDS + 1 };
+    uint32_t rounds = test_iterations(1500);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t sides = 3 + test_random_below(6), strip = LOOPS * sides, k, c;
+        uint32_t per_band = 2 * sides, count = (BANDS + 1) * per_band,
+                 trouble = test_random_below(12);
+        double size = 0.2 * exp2(-(double)test_random_below(i % 2 ? 3 : 22)), (*at)[3];
+        double turns = trouble == 1 && sides > 5 ? 2 : 1, bend = test_random_range(0, 0.4);
+        double rough = exp2(-1 - (double)test_random_below(8)), flat = 1, height = 0;
+        double middle[3], turn[3][3], length = 0, tall = test_random_range(0.3, 2);
+        soup s = soup_make(strip + per_band + 2, count);
+        input_choices own;
+        uint32_t *order = (uint32_t *)test_allocate(count * sizeof(uint32_t));
+        at = (double(*)[3])s.positions;
+        if (trouble == 2) flat = exp2(-(double)test_random_below(30));
+        for (c = 0; c < 3; ++c) {
+            middle[c] = test_random_range(-0.5, 0.5);
+            turn[0][c] = test_random_range(-1, 1);
+            turn[1][c] = test_random_range(-1, 1);
+        }
+        for (c = 0; c < 3; ++c) length += turn[0][c] * turn[0][c];
+        for (c = 0; c < 3; ++c) /* at right angles to the first, if not as long */
+            turn[2][c] = turn[0][(c + 1) % 3] * turn[1][(c + 2) % 3] -
+                         turn[0][(c + 2) % 3] * turn[1][(c + 1) % 3];
+        for (c = 0; c < 3; ++c)
+            turn[1][c] = (turn[2][(c + 1) % 3] * turn[0][(c + 2) % 3] -
+                          turn[2][(c + 2) % 3] * turn[0][(c + 1) % 3]) /
+                         length;
+        for (uint32_t loop = 0; loop < LOOPS; ++loop) {
+            double wide = trouble == 3 ? test_random_range(0.6, 1) : 1;
+            double start = test_random_range(-0.3, 0.3);
+            for (k = 0; k < sides; ++k) {
+                double angle =
+                    (k + start + rough * test_random_range(-1, 1)) * turns * 6.283185307 / sides;
+                double reach = wide * (1 + rough * test_random_range(-1, 1));
+                double up = height + tall * rough * test_random_range(-1, 1);
+                double p[3] = {reach * cos(angle) + bend * height * height,
+                               flat * reach * sin(angle), up};
+                for (c = 0; c < 3; ++c)
+                    at[loop * sides + k][c] =
+                        middle[c] +
+                        size * (turn[0][c] * p[0] + turn[1][c] * p[1] + turn[2][c] * p[2]);
+            }
+            height += trouble == 3 && test_random_below(2) ? -0.7 * tall : tall;
+        }
+        for (k = trouble < 4 || trouble > 7 ? 0 : 1 + test_random_below(2); k > 0; --k) {
+            uint32_t p = test_random_below(strip), q = test_random_below(strip);
+            uint32_t r = q / sides * sides + (q + 1) % sides;
+            double share = trouble < 6 ? 0 : test_random_below(3) / 2.0;
+            double off = size * exp2(-(double)test_random_below(50)) * test_random_range(-1, 1);
+            for (c = 0; c < 3; ++c)
+                at[p][c] = at[q][c] + share * (at[r][c] - at[q][c]) + (trouble == 7 ? 0 : off);
+        }
+        for (k = 0; k < per_band + 2; ++k)
+            for (c = 0; c < 3; ++c)
+                at[strip + k][c] = c == 0   ? 2.0 * k / (per_band + 1) - 1
+                                   : c == 1 ? (k % 2 ? 1 : 0.97)
+                                            : 0.9;
+        for (k = 0; k < count; ++k) {
+            uint32_t *t = s.triangles + 3 * k, band = k / per_band, side = k % per_band / 2;
+            uint32_t p = band * sides + side, q = band * sides + (side + 1) % sides;
+            uint32_t is_second = k % 2, swap = trouble == 0 && test_random_below(20) == 0;
+            if (band == BANDS) {
+                p = strip + k % per_band;
+                t[0] = p, t[1] = p + 1 + is_second, t[2] = p + 2 - is_second;
+            } else {
+                t[0] = is_second ? q : p;
+                t[1] = is_second ? q + sides : q;
+                t[2] = p + sides;
+            }
+            if (swap) {
+                c = t[1];
+                t[1] = t[2];
+                t[2] = c;
+            }
+            order[k] = k;
+        }
+        for (k = trouble < 8 ? 0 : 1 + test_random_below(2); k > 0; --k) {
+            uint32_t *t = s.triangles + 3 * test_random_below(count - per_band);
+            uint32_t corner = test_random_below(3);
+            double share = test_random_range(0.1, 0.9);
+            double *p = at[t[corner]], *q = at[t[(corner + 1) % 3]], *o = at[t[(corner + 2) % 3]];
+            double off = exp2(-(double)test_random_below(50)) * test_random_range(-1, 1);
+            for (c = 0; c < 3; ++c) {
+                double to = q[c] + share * (o[c] - q[c]);
+                p[c] = to + off * (to - p[c]);
+            }
+        }
+        own = input_choose(&s, SC_WELD_NONE, SC_PARTITION_FAST);
+        own.options.partition = SC_PARTITION_ORDER;
+        own.options.order = order;
+        check_chosen("tube", state, &s, s.positions, SC_WELD_NONE, SC_PARTITION_ORDER, &own);
+        input_free_choices(&own);
+        free(order);
+        soup_free(&s);
+    }
+}
+
 /* Points and triangles in a plane. Triangles are counterclockwise where they are not meant to be folded. */
 typedef struct flat_mesh {
     double at[96][2];
@@ -1209,7 +1314,8 @@ SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(copies_of_two_triangles),
              SC_TEST(scattered_soups), SC_TEST(extreme_coordinates), SC_TEST(nearly_coplanar),
              SC_TEST(edges_that_nearly_meet), SC_TEST(edges_that_meet_across_an_axis),
              SC_TEST(neighbors_on_a_ray), SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane),
-             SC_TEST(bands_in_a_plane), SC_TEST(two_clusters_in_a_plane), SC_TEST(deformed_meshes),
-             SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
-             SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
-             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))
+             SC_TEST(bands_in_a_plane), SC_TEST(tubes), SC_TEST(two_clusters_in_a_plane),
+             SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell), SC_TEST(branched_discs),
+             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
+             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
+             SC_TEST(meshes_of_the_folder))

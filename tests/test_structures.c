@@ -602,46 +602,123 @@ static void check_fans(const steps *s, const sc_model *model)
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " fans of leaf clusters wrong", s->name, wrong);
 }
 
-/* Outlines of leaf clusters: each edge that no opposite one makes up for once, in a circle, if there is one that comes to
-   no point twice. */
-static void check_outlines(const steps *s, const sc_model *model)
+/* The edges of a leaf cluster that no opposite one makes up for, by their points: how many; or 0 if two begin at one point, or
+   one is there twice. */
+static uint32_t list_outline(const sc_model *model, uint32_t leaf, uint32_t edge[][2])
 {
     const uint32_t *first = sc_model_leaf_first(model), *triangle = sc_model_triangle(model);
-    uint32_t leaf, h, g, i, wrong = 0;
+    uint32_t edges = 0, is_chain = 1, h, g;
+    for (h = 3 * first[leaf]; h < 3 * first[leaf + 1]; ++h) {
+        uint32_t from = triangle[h], to = triangle[h / 3 * 3 + (h + 1) % 3], opposite = 0;
+        for (g = 3 * first[leaf]; g < 3 * first[leaf + 1]; ++g) {
+            uint32_t begin = triangle[g], end = triangle[g / 3 * 3 + (g + 1) % 3];
+            opposite |= begin == to && end == from;
+            is_chain &= g == h || begin != from || end != to;
+        }
+        if (opposite) continue;
+        edge[edges][0] = from;
+        edge[edges++][1] = to;
+    }
+    for (h = 0; h < edges; ++h)
+        for (g = 0; g < h; ++g) is_chain &= edge[h][0] != edge[g][0];
+    return is_chain ? edges : 0;
+}
+
+/* Moves the edges of a chain, that of one of them, before the others; returns how many. */
+static uint32_t sort_chain(uint32_t edge[][2], uint32_t edges)
+{
+    uint32_t count = 1, h;
+    while (count < edges && edge[count - 1][1] != edge[0][0]) {
+        for (h = count; edge[h][0] != edge[count - 1][1]; ++h) continue;
+        for (uint32_t k = 0; k < 2; ++k) {
+            uint32_t point = edge[h][k];
+            edge[h][k] = edge[count][k];
+            edge[count][k] = point;
+        }
+        ++count;
+    }
+    return count;
+}
+
+/* Outlines of leaf clusters: each edge that no opposite one makes up for once, in a circle, if there is one that comes to
+   no point twice; or in two. */
+static void check_outlines(const steps *s, const sc_model *model)
+{
+    uint32_t leaf, h, i, wrong = 0;
     for (leaf = 0; leaf < model->leaf_count; ++leaf) {
         const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf;
         const uint8_t *outline = sc_model_leaf_outline(model) + SC_LEAF_POINTS * leaf;
-        uint32_t last = outline[SC_LEAF_POINTS - 1], edges = 0, found = 0, is_chain = 1;
-        uint32_t edge[3 * SC_LEAF_MAX][2], at;
+        uint32_t last = outline[SC_LEAF_POINTS - 1], edge[3 * SC_LEAF_MAX][2], found = 0;
+        uint32_t edges = list_outline(model, leaf, edge),
+                 chain = edges ? sort_chain(edge, edges) : 0;
+        uint32_t second = chain < edges ? sort_chain(edge + chain, edges - chain) : 0;
         uint32_t count = last < SC_LEAF_POINTS ? SC_LEAF_POINTS : last - SC_LEAF_POINTS;
-        for (h = 3 * first[leaf]; h < 3 * first[leaf + 1]; ++h) {
-            uint32_t from = triangle[h], to = triangle[h / 3 * 3 + (h + 1) % 3], opposite = 0;
-            for (g = 3 * first[leaf]; g < 3 * first[leaf + 1]; ++g) {
-                uint32_t begin = triangle[g], end = triangle[g / 3 * 3 + (g + 1) % 3];
-                opposite |= begin == to && end == from;
-                is_chain &= g == h || begin != from || end != to;
+        if (last & SC_OUTLINE_TWO) {
+            uint32_t of_first = ~0u;
+            for (i = 0; i < SC_LEAF_POINTS; ++i) {
+                uint32_t is_second = (outline[i] & SC_OUTLINE_SECOND) != 0;
+                if (outline[i] & SC_OUTLINE_NOWHERE) continue;
+                for (h = 0; h < edges; ++h)
+                    if (edge[h][0] == point[i] && edge[h][1] == point[outline[i] & 15]) {
+                        if (of_first == ~0u) of_first = (h < chain) ^ is_second;
+                        wrong += ((h < chain) ^ is_second) != of_first;
+                        ++found;
+                    }
             }
-            if (opposite) continue;
-            edge[edges][0] = from;
-            edge[edges++][1] = to;
+            wrong += !second || chain + second != edges || found != edges;
+            continue;
         }
-        for (h = 0; h < edges; ++h)
-            for (g = 0; g < h; ++g) is_chain &= edge[h][0] != edge[g][0];
         for (i = 0; i < count; ++i) {
             uint32_t from = point[outline[i]], to = point[outline[i + 1 < count ? i + 1 : 0]];
             for (h = 0; h < edges; ++h) found += edge[h][0] == from && edge[h][1] == to;
         }
-        if (is_chain && edges) { /* as long as all edges? */
-            for (i = 0, at = edge[0][0]; i < edges; ++i) {
-                for (h = 0; h < edges && edge[h][0] != at; ++h) continue;
-                at = h < edges ? edge[h][1] : at;
-                if (at == edge[0][0]) break;
-            }
-            is_chain = i + 1 == edges;
-        }
-        wrong += is_chain && edges ? found != edges || count != edges : count != 0;
+        wrong += edges && chain == edges ? found != edges || count != edges : count != 0;
+        wrong += second && chain + second == edges;
     }
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " outlines of leaf clusters wrong", s->name, wrong);
+}
+
+/* Leaf clusters that share a whole chain of an outline of two. */
+static void check_shared_chains(const steps *s, const sc_model *model)
+{
+    const uint32_t *first = sc_model_share_first(model), *other = sc_model_share_leaf(model);
+    uint32_t wrong = 0;
+    for (uint32_t leaf = 0; leaf < model->leaf_count; ++leaf)
+        for (uint32_t i = first[leaf]; i < first[leaf + 1]; ++i) {
+            const uint16_t *list = sc_model_share_list(model) + sc_model_share_begin(model)[i];
+            const uint32_t *p = sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf;
+            const uint32_t *q = sc_model_leaf_point(model) + SC_LEAF_POINTS * other[i];
+            uint32_t edge[2][3 * SC_LEAF_MAX][2], edges[2], chain[2], shared = 0, expected = 0;
+            for (uint32_t k = 0; k < 2; ++k) {
+                edges[k] = list_outline(model, k ? other[i] : leaf, edge[k]);
+                chain[k] = edges[k] ? sort_chain(edge[k], edges[k]) : 0;
+                if (chain[k] < edges[k])
+                    expected +=
+                        chain[k] + sort_chain(edge[k] + chain[k], edges[k] - chain[k]) == edges[k];
+            }
+            for (uint32_t k = 0; k < SC_LEAF_POINTS; ++k) {
+                uint32_t same = 0;
+                for (uint32_t h = 0; h < SC_LEAF_POINTS; ++h) same |= p[k] == q[h];
+                shared += same && (k == 0 || p[k] != p[k - 1]);
+            }
+            expected = expected == 2;
+            if (expected) { /* opposite edges of some chain of either: all of both, and no other shared point */
+                uint32_t most = 0;
+                for (uint32_t k = 0; k < 4; ++k) {
+                    uint32_t from[2] = {k & 1 ? chain[0] : 0, k & 2 ? chain[1] : 0}, same = 0;
+                    uint32_t to[2] = {k & 1 ? edges[0] : chain[0], k & 2 ? edges[1] : chain[1]};
+                    for (uint32_t h = from[0]; h < to[0]; ++h)
+                        for (uint32_t g = from[1]; g < to[1]; ++g)
+                            same +=
+                                edge[0][h][0] == edge[1][g][1] && edge[0][h][1] == edge[1][g][0];
+                    most |= same == shared && to[0] - from[0] == same && to[1] - from[1] == same;
+                }
+                expected = most;
+            }
+            wrong += expected != ((list[SC_SHARE_KINDS] & SC_SHARE_CHAIN) != 0);
+        }
+    CHECK_MSG(wrong == 0, "%s: %" PRIu32 " pairs of leaf clusters share a chain or not", s->name,
+              wrong);
 }
 
 /* The nodes of two leaf clusters that share points. */
@@ -810,6 +887,7 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
     if (model->triangle_count < 400) check_rings(s, model);
     check_fans(s, model);
     check_outlines(s, model);
+    check_shared_chains(s, model);
     check_share_nodes(s, model);
 end:
     sc_model_free(model);
@@ -884,9 +962,9 @@ static void check_sharing_lists(steps *s, const sc_sharing *sharing)
                 uint32_t from_t = first_shared(s, order[first[a] + t], order[first[b] + u], &of_t);
                 uint32_t from_u = first_shared(s, order[first[b] + u], order[first[a] + t], &of_u);
                 kind = number >= points + edges ? 3 : number >= points ? 2 : 1;
-                full = of_t == 1 ? points : edges; /* so that this is among the last */
-                wrong += kind == 3 ? of_t == of_u && of_t < 3 && full < SC_SHARE_EDGE - 1
-                                   : of_t != kind || of_u != kind;
+                full = of_t == 1 ? points == SC_SHARE_POINTS_MOST : edges == SC_SHARE_EDGES_MOST;
+                wrong +=
+                    kind == 3 ? of_t == of_u && of_t < 3 && !full : of_t != kind || of_u != kind;
                 wrong += kind < 3 && ((*pair >> 8 & 15) != from_t || *pair >> 12 != from_u);
                 wrong += seen[t] >> u & 1;
                 seen[t] |= (uint16_t)(1u << u);
@@ -1097,7 +1175,7 @@ static void hubs(void)
     soup_free(&s);
 }
 
-/* More pairs of leaf clusters' triangles that share one point, or two, than a number of eight bits tells. */
+/* More pairs of leaf clusters' triangles that share one point, or two, than a list tells. */
 static void copies(void)
 {
     for (uint32_t shared = 1; shared <= 2; ++shared) {
@@ -1109,7 +1187,7 @@ static void copies(void)
         if (CHECK(sc_build(&m, NULL, &model) == SC_OK && model->share_count == 1)) {
             run = sc_model_share_list(model);
             CHECK(sc_share_points(run) == (shared == 1 ? 255 : 0));
-            CHECK(sc_share_edges(run) == (shared == 2 ? 255 : 0));
+            CHECK(sc_share_edges(run) == (shared == 2 ? 127 : 0));
             CHECK(sc_model_share_begin(model)[1] ==
                   SC_SHARE_ROWS + SC_LEAF_MAX * (SC_LEAF_MAX + 1));
         }

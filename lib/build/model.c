@@ -214,6 +214,38 @@ static void write_fans(sc_model *m)
     }
 }
 
+/* Follows a chain of edges until it begins again; returns how many points it has. */
+static uint32_t follow_chain(const uint32_t to[SC_LEAF_POINTS], uint32_t start,
+                             uint8_t outline[SC_LEAF_POINTS])
+{
+    uint32_t at = start, count = 0;
+    do {
+        outline[count++] = (uint8_t)at;
+        at = sc_bits_lowest(to[at]);
+    } while (at != start);
+    return count;
+}
+
+/* Writes an outline of two chains, if it is such; the first has so many points. */
+static void write_two_chains(const uint32_t to[SC_LEAF_POINTS], uint32_t edges, uint32_t first,
+                             uint8_t outline[SC_LEAF_POINTS])
+{
+    uint8_t second[SC_LEAF_POINTS];
+    uint32_t in_first = 0, count, start = 0, i;
+    for (i = 0; i < first; i++) in_first |= 1u << outline[i];
+    for (i = 0; i < SC_LEAF_POINTS; i++)
+        if (to[i] && !(in_first >> i & 1u)) start = i;
+    count = follow_chain(to, start, second);
+    memset(outline, 0, SC_LEAF_POINTS);
+    outline[SC_LEAF_POINTS - 1] = SC_LEAF_POINTS;
+    if (first + count != edges) return;
+    for (i = 0; i < SC_LEAF_POINTS; i++) outline[i] = (uint8_t)(i | SC_OUTLINE_NOWHERE);
+    for (i = 0; i < SC_LEAF_POINTS; i++)
+        if (to[i]) outline[i] = (uint8_t)sc_bits_lowest(to[i]);
+    for (i = 0; i < count; i++) outline[second[i]] |= SC_OUTLINE_SECOND;
+    outline[SC_LEAF_POINTS - 1] |= SC_OUTLINE_TWO;
+}
+
 /* The outlines of leaf clusters. */
 static void write_outlines(sc_model *m)
 {
@@ -223,7 +255,7 @@ static void write_outlines(sc_model *m)
     uint32_t leaf, i, k;
     for (leaf = 0; leaf < m->leaf_count;
          leaf++, where += 3 * SC_LEAF_MAX, outline += SC_LEAF_POINTS) {
-        uint32_t to[SC_LEAF_POINTS] = {0}, edges = 0, start = 0, at, count = 0;
+        uint32_t to[SC_LEAF_POINTS] = {0}, edges = 0, start = 0, count = 0;
         int is_chain = 1;
         for (i = 0; i < first[leaf + 1] - first[leaf]; i++)
             for (k = 0; k < 3; k++) {
@@ -244,17 +276,62 @@ static void write_outlines(sc_model *m)
             start = to[i] ? i : start;
         }
         memset(outline, 0, SC_LEAF_POINTS);
-        at = start;
-        if (is_chain && edges) do {
-                outline[count++] = (uint8_t)at;
-                at = sc_bits_lowest(to[at]);
-            } while (at != start);
-        if (count != edges) {
-            memset(outline, 0, SC_LEAF_POINTS);
-            count = 0;
-        }
-        if (count < SC_LEAF_POINTS) outline[SC_LEAF_POINTS - 1] = (uint8_t)(SC_LEAF_POINTS + count);
+        if (is_chain && edges) count = follow_chain(to, start, outline);
+        if (is_chain && count != edges)
+            write_two_chains(to, edges, count, outline);
+        else if (count < SC_LEAF_POINTS)
+            outline[SC_LEAF_POINTS - 1] = (uint8_t)(SC_LEAF_POINTS + count);
     }
+}
+
+/* Whether two leaf clusters whose outlines are two chains each share the points of just one of either, which runs in the other
+   direction in the other cluster. */
+static int share_chain(const sc_model *m, uint32_t a, uint32_t b)
+{
+    const uint8_t *row[2];
+    const uint32_t *point[2];
+    uint32_t shared[2] = {0, 0}, i, k;
+    uint8_t other[SC_LEAF_POINTS] = {0};
+    int s;
+    for (s = 0; s < 2; s++) {
+        const uint64_t leaf = s ? b : a;
+        row[s] = sc_model_leaf_outline(m) + SC_LEAF_POINTS * leaf;
+        point[s] = sc_model_leaf_point(m) + SC_LEAF_POINTS * leaf;
+        if (!(row[s][SC_LEAF_POINTS - 1] & SC_OUTLINE_TWO)) return 0;
+    }
+    for (i = SC_LEAF_POINTS; i-- > 0;)
+        for (k = SC_LEAF_POINTS; k-- > 0;)
+            if (point[0][i] == point[1][k] && (!i || point[0][i] != point[0][i - 1]) &&
+                (!k || point[1][k] != point[1][k - 1])) { /* not what fills a row */
+                shared[0] |= 1u << i;
+                shared[1] |= 1u << k;
+                other[i] = (uint8_t)k;
+            }
+    for (s = 0; s < 2; s++) {
+        uint32_t chain[2] = {0, 0};
+        for (i = 0; i < SC_LEAF_POINTS; i++)
+            if (!(row[s][i] & SC_OUTLINE_NOWHERE))
+                chain[(row[s][i] & SC_OUTLINE_SECOND) != 0] |= 1u << i;
+        if (shared[s] != chain[0] && shared[s] != chain[1]) return 0;
+    }
+    for (i = 0; i < SC_LEAF_POINTS; i++) {
+        const uint32_t next = row[0][i] & (SC_LEAF_POINTS - 1u);
+        if ((shared[0] >> i & 1u) && (row[1][other[next]] & (SC_LEAF_POINTS - 1u)) != other[i])
+            return 0;
+    }
+    return 1;
+}
+
+/* Marks lists of pairs of leaf clusters that share such a chain. */
+static void mark_shared_chains(sc_model *m)
+{
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const uint32_t *begin = sc_model_share_begin(m);
+    uint16_t *list = NEW_ARRAY(m, share_list, uint16_t);
+    uint32_t leaf, i;
+    for (leaf = 0; leaf < m->leaf_count; leaf++)
+        for (i = first[leaf]; i < first[leaf + 1]; i++)
+            if (share_chain(m, leaf, other[i])) list[begin[i] + SC_SHARE_KINDS] |= SC_SHARE_CHAIN;
 }
 
 /*
@@ -558,6 +635,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
     sc_sharing_lists_write(sharing, xbvh, sc_model_triangle(m), NEW_ARRAY(m, share_begin, uint32_t),
                            NEW_ARRAY(m, share_list, uint16_t));
+    mark_shared_chains(m);
     own_rows = NEW_ARRAY(m, share_own_rows, uint16_t);
     for (i = 0; i < m->leaf_count; i++)
         sc_sharing_fold(sharing->own_rows + SC_LEAF_MAX * i, own_rows + SC_OWN_WORDS * i);

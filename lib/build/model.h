@@ -41,6 +41,10 @@ enum {
     SC_NODE_PIECES = 2 /* the contour may be in pieces that share no point */
 };
 
+/* Of the outline of a leaf cluster that is two chains: the point of a place is in the second; in none; and in the last place
+   all the time that it is so. */
+enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NOWHERE = 64 };
+
 /* What the rest pose says of nodes. */
 enum {
     SC_NODE_REST_TURNED = 1, /* failed the orientation test in the rest pose */
@@ -64,7 +68,8 @@ enum {
  *                   beginning where the one before ends; first those where all of them are a closed fan, then the others
  *   leaf_outline    SC_LEAF_POINTS a cluster: places in leaf_point of the points round its outline, counter-clockwise, if
  *                   that is one closed chain that comes to no point twice, else of none; if there are n < SC_LEAF_POINTS,
- *                   zeros follow, and SC_LEAF_POINTS + n is the last number
+ *                   zeros follow, and SC_LEAF_POINTS + n is the last number. If it is two such chains, as of a tube, for each
+ *                   place the one that follows it there, and what sc_outline_bit names
  *   share_...       see build/sharing.h, share_own_rows are folded; share_begin, share_list: build/sharing_lists.h
  *   share_node      the node of the test tree that is of the two leaf clusters, or SC_NONE
  *   level_first, child, leaf   see build/xbvh.h

@@ -104,9 +104,13 @@ static int check_outlines(const sc_model *m)
     const uint8_t *outline = sc_model_leaf_outline(m);
     uint32_t bad = 0;
     uint64_t i;
-    for (i = 0; i < SC_LEAF_POINTS * (uint64_t)m->leaf_count; i++)
-        bad |= outline[i] >=
-               (i % SC_LEAF_POINTS == SC_LEAF_POINTS - 1 ? 2 * SC_LEAF_POINTS : SC_LEAF_POINTS);
+    for (i = 0; i < SC_LEAF_POINTS * (uint64_t)m->leaf_count; i++) {
+        const uint64_t last = i | (SC_LEAF_POINTS - 1);
+        const uint32_t end = outline[last] & SC_OUTLINE_TWO ? 2 * SC_OUTLINE_NOWHERE
+                             : i == last                    ? 2 * SC_LEAF_POINTS
+                                                            : SC_LEAF_POINTS;
+        bad |= outline[i] >= end;
+    }
     return !bad;
 }
 

@@ -150,7 +150,9 @@ static int SC_KERNEL(is_plain)(const sc_query_state *state, uint32_t leaf)
     const sc_model *model = state->model;
     const uint8_t *outline = sc_model_leaf_outline(model) + SC_LEAF_POINTS * (uint64_t)leaf;
     const unsigned last = outline[SC_LEAF_POINTS - 1];
-    const unsigned count = last < SC_LEAF_POINTS ? SC_LEAF_POINTS : last - SC_LEAF_POINTS;
+    const unsigned count = last < SC_LEAF_POINTS   ? SC_LEAF_POINTS
+                           : last & SC_OUTLINE_TWO ? 0
+                                                   : last - SC_LEAF_POINTS;
     SC_KERNEL(plane_points) p;
     if (!count) return 0;
     SC_KERNEL(see_points)(state, leaf, SC_KERNEL(slab)(state, leaf, 0)->direction, &p);

@@ -28,6 +28,7 @@
 #  include "query/fan_kernel.h"
 #  include "query/outline_kernel.h"
 #  include "query/short_kernel.h"
+#  include "query/tube_kernel.h"
 #  include "query/sixteen_kernel.h"
 #  include "query/leaf_kernel.h"
 #  include "query/walk_kernel.h"
