@@ -267,19 +267,20 @@ static int is_open(const sc_simple_contour *c, uint32_t i, int end_i, uint32_t j
     return turn(a, b, c->error) != 0 || a.x * b.x + a.y * b.y < -bound_of(a, b, c->error);
 }
 
+/*
+ * Edges that share one point: the contour passes it twice, or one of them ends a chain and the other begins it, beyond a gap;
+ * these must not fold back. Where it passes it twice, how its edges lie round the point is asked once, of the two that start
+ * there, when all were looked at: if they alternate (is_pinch_fine), no two of them have one direction.
+ */
 int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
-    uint32_t a, b, p, q;
-    int shared;
-    if (boxes_part(c, i, j) || lies_beside(c, i, j) || lies_beside(c, j, i)) return 1;
-    a = point_of(c, i);
-    b = point_of(c, i + 1);
-    p = point_of(c, j);
-    q = point_of(c, j + 1);
-    shared = (a == p) + (a == q) + (b == p) + (b == q);
-    if (!shared) return 0;
-    if (shared > 1 || !is_open(c, i, b == p || b == q, j, a == q || b == q)) return 0;
-    return sc_simple_note_shared(c, i, j);
+    const uint32_t a = point_of(c, i), b = point_of(c, i + 1);
+    const uint32_t p = point_of(c, j), q = point_of(c, j + 1);
+    const int shared = (a == p) + (a == q) + (b == p) + (b == q);
+    if (!shared) return boxes_part(c, i, j) || lies_beside(c, i, j) || lies_beside(c, j, i);
+    if (shared > 1) return 0;
+    if (c->has_gaps && !is_open(c, i, b == p || b == q, j, a == q || b == q)) return 0;
+    return a != p || sc_simple_note_shared(c, i, j);
 }
 
 int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
@@ -312,8 +313,8 @@ static uint32_t edge_before(const sc_simple_contour *c, uint32_t i)
 /*
  * Where the contour passes a point twice, its four edges must alternate round the point, one in, one
  * out: else it crosses itself there. That is so if just one of those that come in is in the sector that begins with the
- * first that goes out, lies to its left, and ends with the second. What is left of the first and right of the second is
- * in it, and what is right of the first and left of the second is not, whatever the sector's angle: edges of flat grids
+ * first that goes out, lies to its left, and ends with the second; and then no two of the four have one direction. What is left
+ * of the first and right of the second is in it, and what is right of the first and left of the second is not, whatever the sector's angle: edges of flat grids
  * go straight on through the point, and nobody knows whether that is less than half a turn. If it is less for certain, what
  * is right of the first or left of the second is outside; if more, what is left of the first or right of the second is inside.
  * More than four are not looked at.
