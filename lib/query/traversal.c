@@ -116,6 +116,8 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
  * until all else is done, since a patch that is in a node of two that was culled is culled with it.
  * A node of two patches with one parent has the contour of that parent, which failed. Pairs of patches that are left to
  * boxes wait as well: tests of boxes that do not depend on each other wait for memory at the same time.
+ * Two patches that share one point, as diagonally in a grid, are left to boxes, too: few overlap there, and a contour costs
+ * most that passes a point twice.
  */
 
 /*
@@ -225,8 +227,12 @@ void sc_traversal_orient(sc_query_state *state, uint32_t node)
     const sc_pair *patches = &sc_model_node_patches(state->model)[node];
     sc_workspace *w = state->workspace;
     uint32_t mask = (uint32_t)w->mask[patches->a] & w->mask[patches->b];
-    state->stats.counts[SC_TASK_ORIENTATION]++;
     state->stats.nodes_visited++;
+    if (sc_model_node_kind(state->model)[node] & SC_NODE_TOUCHES) {
+        leave_to_boxes(state, patches->a, patches->b, 0);
+        return;
+    }
+    state->stats.counts[SC_TASK_ORIENTATION]++;
     if (!mask) {
         put_back(state, node, mask);
         return;
