@@ -121,9 +121,10 @@ typedef struct sc_leaf_ready {
 
 enum { SC_READY_ROWS = sizeof(sc_leaf_ready) / (SC_LEAF_MAX * sizeof(float)) };
 
-/* Which leaf cluster is kept ready, and in which pose it was made so, 0 for never. */
+/* Which leaf cluster is kept ready, and in which pose it was made so, 0 for never; and the largest extent of its box. */
 typedef struct sc_leaf_known {
     uint32_t leaf, tick;
+    float extent;
 } sc_leaf_known;
 
 /* Where the points of a leaf cluster are along its mean normal, about, at least and at most. */

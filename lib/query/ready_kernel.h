@@ -95,10 +95,20 @@ static void SC_KERNEL(make_ready)(const sc_query_state *state, uint32_t leaf, ui
 {
     const uint32_t *first = sc_model_leaf_first(state->model) + leaf;
     sc_workspace *w = state->workspace;
+    const sc_boxes *boxes = &w->patch_boxes;
+    const uint64_t box = (uint64_t)sc_model_first_leaf_patch(state->model) + leaf;
+    float extent = 0;
     lanes x[3][3];
+    int c;
     SC_KERNEL(leaf_corners)(state, leaf, x);
     SC_KERNEL(make_boxes)(x, first[1] - first[0], w->ready + at);
     SC_KERNEL(make_normals)(x, w->ready + at);
+    SC_UNROLL
+    for (c = 0; c < 3; c++) {
+        const float length = boxes->side[c + 3][box] - boxes->side[c][box];
+        extent = length > extent ? length : extent;
+    }
+    w->known[at].extent = extent;
     w->known[at].leaf = leaf;
     w->known[at].tick = w->pose_tick;
 }
@@ -170,19 +180,10 @@ static inline unsigned SC_KERNEL(slabs_part)(const sc_query_state *state, uint32
     return SC_KERNEL(is_beside)(state, b, of_a) | SC_KERNEL(is_beside)(state, a, of_b);
 }
 
-/* Largest extent of the boxes of two leaf clusters together. */
-static float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t b)
+/* Bounds the largest extent of two leaf clusters together, or of one, that are ready and whose boxes overlap. */
+static inline float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
-    const sc_boxes *boxes = &state->workspace->patch_boxes;
-    uint32_t leaves = sc_model_first_leaf_patch(state->model);
-    float extent = 0;
-    int c;
-    SC_UNROLL
-    for (c = 0; c < 3; c++) {
-        const float *low = boxes->side[c] + leaves, *high = boxes->side[c + 3] + leaves;
-        float length =
-            (high[a] > high[b] ? high[a] : high[b]) - (low[a] < low[b] ? low[a] : low[b]);
-        if (length > extent) extent = length;
-    }
-    return extent;
+    const sc_leaf_known *known = state->workspace->known;
+    const float extent = known[SC_KERNEL(place)(state, a, a > b)].extent;
+    return a == b ? extent : extent + known[SC_KERNEL(place)(state, b, b > a)].extent;
 }
