@@ -242,6 +242,9 @@ static int SC_KERNEL(is_of_bands)(const sc_query_state *state, const sc_near_pai
    SC_KERNEL(drop_plain) does if marks are of this query. */
 static void SC_KERNEL(drop_bands)(sc_query_state *state, int has_marks)
 {
+    enum { DISTANCE = 8 }; /* pairs between asking for memory and reading it */
+    const uint32_t *begin = sc_model_share_begin(state->model);
+    const uint16_t *list = sc_model_share_list(state->model);
     sc_workspace *w = state->workspace;
     sc_near_pair *pairs = w->near_pairs;
     uint8_t *marks = w->walk.marks + sc_model_first_leaf_patch(state->model);
@@ -253,6 +256,8 @@ static void SC_KERNEL(drop_bands)(sc_query_state *state, int has_marks)
         for (i = kept = 0; i < w->near_count; i++) {
             const sc_near_pair p = pairs[i];
             const int is_one = p.a == p.b;
+            if (!pass && i + DISTANCE < w->near_count && pairs[i + DISTANCE].shared != SC_NONE)
+                sc_fetch(list + begin[pairs[i + DISTANCE].shared]);
             pairs[kept++] = p;
             if (is_one != pass) continue;
             if ((is_one && has_marks && marks[p.a]) || SC_KERNEL(is_of_bands)(state, &p)) {
