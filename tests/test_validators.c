@@ -15,6 +15,7 @@
 #include "inputs.h"
 #include "pose/contour_bounds.h"
 #include "pose/dnc.h"
+#include "pose/pose_kernels.h"
 #include "pose/positions.h"
 #include "pose/refit.h"
 
@@ -68,6 +69,63 @@ static void cones(void)
         CHECK(sc_dnc_validate(s.model, s.workspace));
     }
     close_scene(&s);
+}
+
+/* Waves that are broken in some places: leaf clusters without cones, alone and in groups. Each part of them, whatever it
+   begins and ends with, has the cones that all have. */
+static void cones_of_groups(void)
+{
+    soup mesh = soup_cloth(70, 70);
+    sc_mesh m = input_plain_mesh(&mesh);
+    sc_model *model = NULL;
+    sc_workspace *w = NULL;
+    if (CHECK(sc_build(&m, NULL, &model) == SC_OK) &&
+        CHECK(sc_workspace_create(model, NULL, &w) == SC_OK)) {
+        const uint32_t leaves = sc_model_first_leaf_patch(model);
+        uint16_t *all = (uint16_t *)test_allocate(model->leaf_count * sizeof *all);
+        uint32_t skipped = 0, kept = 0;
+        for (uint32_t trial = 0; all && trial < 20; ++trial) {
+            double *at = (double *)test_allocate(3 * mesh.vertex_count * sizeof *at);
+            double along = 5 + 20 * test_random_unit();
+            sc_pose pose;
+            if (!CHECK(at != NULL)) break;
+            memcpy(at, mesh.positions, 3 * mesh.vertex_count * sizeof *at);
+            for (uint32_t i = 0; i < mesh.vertex_count; ++i)
+                if (sin(along * at[3 * i]) + sin(along * at[3 * i + 1]) > 0)
+                    at[3 * i] += 0.1 * test_random_unit();
+            pose = input_plain_pose(at, mesh.vertex_count);
+            for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
+                const uint32_t count = model->leaf_count;
+                w->isa = isa;
+                sc_workspace_new_pose(model, w);
+                if (!CHECK(sc_positions_read(model, &pose, 24, w) == SC_OK)) break;
+                sc_dnc_update(model, w);
+                CHECK(sc_dnc_validate(model, w));
+                memcpy(all, w->mask + leaves, count * sizeof *all);
+                memset(w->mask + leaves, 0xff, count * sizeof *all);
+                for (uint32_t first = 0, end; first < count; first = end) {
+                    end = first + 1 + test_random_below(40);
+                    if (end > count) end = count;
+                    sc_pose_kernels_of(w)->load_leaves(model, w, first, end, 1);
+                }
+                CHECK(!memcmp(all, w->mask + leaves, count * sizeof *all));
+            }
+            for (uint32_t i = 0; i + SC_CONES_GROUP <= model->leaf_count; i += SC_CONES_GROUP) {
+                uint32_t sample = 0, others = 0;
+                for (uint32_t k = 0; k < SC_CONES_GROUP; ++k)
+                    *(k < SC_CONES_SAMPLE ? &sample : &others) |= all[i + k];
+                skipped += !sample;
+                kept += sample && others;
+                CHECK(sample || !others);
+            }
+            free(at);
+        }
+        CHECK_MSG(skipped > 20 && kept > 20, "%" PRIu32 " and %" PRIu32, skipped, kept);
+        free(all);
+    }
+    sc_workspace_free(w);
+    sc_model_free(model);
+    soup_free(&mesh);
 }
 
 /* Ends raised, slopes and extents narrowed: each alone is noticed. */
@@ -333,5 +391,5 @@ static void structures(void)
     soup_free(&mesh);
 }
 
-SC_TEST_MAIN(SC_TEST(cones), SC_TEST(bounds), SC_TEST(no_bounds), SC_TEST(boxes),
-             SC_TEST(structures))
+SC_TEST_MAIN(SC_TEST(cones), SC_TEST(cones_of_groups), SC_TEST(bounds), SC_TEST(no_bounds),
+             SC_TEST(boxes), SC_TEST(structures))

@@ -109,11 +109,12 @@ static SC_INLINE void SC_KERNEL(directions_of)(part e[][3], part f[][3], lanes_s
     }
 }
 
-/* The masks of clusters that follow each other, by their points, as points_of writes them, and corners. */
+/* The masks of clusters that follow each other, by their points, as points_of writes them, and corners. Returns the bits
+   that any has. */
 #if SC_LANES_QUADS
 
-static SC_INLINE void SC_KERNEL(masks_of)(const float *each, const uint8_t *where, uint16_t *mask,
-                                          int count)
+static SC_INLINE unsigned SC_KERNEL(masks_of)(const float *each, const uint8_t *where,
+                                              uint16_t *mask, int count)
 {
     lanes_signs_kept kept = lanes_keep_all();
     int c, k, first;
@@ -136,13 +137,15 @@ static SC_INLINE void SC_KERNEL(masks_of)(const float *each, const uint8_t *wher
         lanes_keep(&kept, row[0]);
     }
     *mask = (uint16_t)(lanes_kept_negative(&kept) & 0x3fffu);
+    return *mask;
 }
 
 #else
 
-static SC_INLINE void SC_KERNEL(masks_of)(const float *each, const uint8_t *where, uint16_t *mask,
-                                          int count)
+static SC_INLINE unsigned SC_KERNEL(masks_of)(const float *each, const uint8_t *where,
+                                              uint16_t *mask, int count)
 {
+    unsigned any = 0;
     lanes e[CONES][3], f[CONES][3];
     lanes_signs row[CONES][16];
     int i;
@@ -153,7 +156,13 @@ static SC_INLINE void SC_KERNEL(masks_of)(const float *each, const uint8_t *wher
         SC_KERNEL(edges_of)(corner, e[i], f[i]);
     }
     SC_KERNEL(directions_of)(e, f, row, count);
-    EACH(i, count) mask[i] = (uint16_t)(lanes_all_negative(row[i]) & 0x3fffu);
+    EACH(i, count)
+    {
+        unsigned bits = lanes_all_negative(row[i]) & 0x3fffu;
+        mask[i] = (uint16_t)bits;
+        any |= bits;
+    }
+    return any;
 }
 
 #endif
@@ -165,18 +174,39 @@ static uint32_t SC_KERNEL(cone)(const float *at, const uint8_t *where)
     return mask;
 }
 
-/* Clusters first to end - 1 with what points_of cannot do. */
-static void SC_KERNEL(load_one_by_one)(const sc_model *model, sc_workspace *w, uint32_t first,
-                                       uint32_t end, int cones)
+/* What cones there are among the first clusters of a group, before one at which a part of the pass begins. */
+static unsigned SC_KERNEL(sample_before)(const sc_model *model, const sc_workspace *w,
+                                         uint32_t first)
 {
-    const uint32_t patch = sc_model_first_leaf_patch(model);
+    const uint32_t in = first % SC_CONES_GROUP;
+    uint32_t leaf = first - in, end = in < SC_CONES_SAMPLE ? first : leaf + SC_CONES_SAMPLE;
+    unsigned any = 0;
+    for (; leaf < end; leaf++) {
+        float each[4 * SC_LEAF_POINTS];
+        SC_KERNEL(points_one_by_one)
+        (w, sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf, each);
+        any |=
+            SC_KERNEL(cone)(each, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf);
+    }
+    return any;
+}
+
+/* Clusters first to end - 1 with what points_of cannot do; any: what cones the group of the first has so far. */
+static void SC_KERNEL(load_one_by_one)(const sc_model *model, sc_workspace *w, uint32_t first,
+                                       uint32_t end, int cones, unsigned *any)
+{
+    uint16_t *mask = w->mask + sc_model_first_leaf_patch(model);
     for (; first < end; first++) {
+        const uint32_t in = first % SC_CONES_GROUP;
         float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)first;
         const uint64_t leaf = first;
         SC_KERNEL(points_one_by_one)(w, sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf, each);
-        if (cones)
-            w->mask[patch + first] = (uint16_t)SC_KERNEL(cone)(each, sc_model_leaf_corner(model) +
-                                                                         3 * SC_LEAF_MAX * leaf);
+        if (!cones) continue;
+        if (!in) *any = 0;
+        mask[first] = 0;
+        if (*any || in < SC_CONES_SAMPLE)
+            *any |= SC_KERNEL(masks_of)(each, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * leaf,
+                                        mask + first, 1);
     }
 }
 
@@ -186,35 +216,51 @@ static SC_INLINE void SC_KERNEL(load_some)(const sc_model *model, sc_workspace *
 {
     const SC_KERNEL(points_frame) frame = SC_KERNEL(points_frame_of)(w);
     const lanes last = SC_KERNEL(points_last)(w);
-    const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)first;
-    const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)first;
-    uint16_t *mask = w->mask + sc_model_first_leaf_patch(model) + first;
-    float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)first;
-    for (; end - first >= CONES; first += CONES) {
-        int i, odd = 0;
-        EACH(i, CONES) odd |= SC_KERNEL(points_have)(point + SC_LEAF_POINTS * i, last, is_double);
-        if (odd) {
-            SC_KERNEL(load_one_by_one)(model, w, first, first + CONES, cones);
-        } else {
+    const uint32_t aligned = (first + CONES - 1) / CONES * CONES;
+    unsigned any = cones ? SC_KERNEL(sample_before)(model, w, first) : 0;
+    if (aligned < end) {
+        const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)aligned;
+        const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)aligned;
+        uint16_t *mask = w->mask + sc_model_first_leaf_patch(model) + aligned;
+        float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)aligned;
+        SC_KERNEL(load_one_by_one)(model, w, first, aligned, cones, &any);
+        for (first = aligned; end - first >= CONES; first += CONES) {
+            int i, odd = 0;
             EACH(i, CONES)
-            SC_KERNEL(points_of)
-            (&frame, point + SC_LEAF_POINTS * i, is_double, stride, each + 4 * SC_LEAF_POINTS * i);
-            if (cones) SC_KERNEL(masks_of)(each, where, mask, CONES);
+            odd |= SC_KERNEL(points_have)(point + SC_LEAF_POINTS * i, last, is_double);
+            if (odd) {
+                SC_KERNEL(load_one_by_one)(model, w, first, first + CONES, cones, &any);
+            } else {
+                EACH(i, CONES)
+                SC_KERNEL(points_of)
+                (&frame, point + SC_LEAF_POINTS * i, is_double, stride,
+                 each + 4 * SC_LEAF_POINTS * i);
+                if (cones) {
+                    const uint32_t in = first % SC_CONES_GROUP;
+                    if (!in) any = 0;
+                    if (any || in < SC_CONES_SAMPLE)
+                        any |= SC_KERNEL(masks_of)(each, where, mask, CONES);
+                    else
+                        memset(mask, 0, CONES * sizeof *mask);
+                }
+            }
+            point += SC_LEAF_POINTS * CONES;
+            where += 3 * SC_LEAF_MAX * CONES;
+            each += 4 * SC_LEAF_POINTS * CONES;
+            mask += CONES;
         }
-        point += SC_LEAF_POINTS * CONES;
-        where += 3 * SC_LEAF_MAX * CONES;
-        each += 4 * SC_LEAF_POINTS * CONES;
-        mask += CONES;
     }
-    SC_KERNEL(load_one_by_one)(model, w, first, end, cones);
+    SC_KERNEL(load_one_by_one)(model, w, first, end, cones, &any);
 }
 
 static void SC_KERNEL(load_leaves)(const sc_model *model, sc_workspace *w, uint32_t first,
                                    uint32_t end, int cones)
 {
     const uint64_t stride = w->stride;
+    unsigned any = 0;
+    if (!w->fits_float && cones) any = SC_KERNEL(sample_before)(model, w, first);
     if (!w->fits_float)
-        SC_KERNEL(load_one_by_one)(model, w, first, end, cones);
+        SC_KERNEL(load_one_by_one)(model, w, first, end, cones, &any);
     else if (w->position_type == SC_DOUBLE && !cones)
         SC_KERNEL(load_some)(model, w, first, end, 0, 1, stride);
     else if (w->position_type == SC_DOUBLE && stride == 3 * sizeof(double))

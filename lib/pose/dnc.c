@@ -70,17 +70,30 @@ static uint32_t cone_of_triangle(const sc_model *model, const sc_workspace *w, u
     return sc_pose_kernels_of(w)->cone(w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, where);
 }
 
+/* The cone of a leaf cluster by those of its triangles. */
+static uint32_t cone_of_leaf(const sc_model *model, const sc_workspace *w, uint32_t leaf)
+{
+    const uint32_t *first = sc_model_leaf_first(model) + leaf;
+    uint32_t mask = (1u << SC_DNC_DIRECTIONS) - 1u, i;
+    for (i = 0; i < first[1] - first[0]; i++) mask &= cone_of_triangle(model, w, leaf, i);
+    return mask;
+}
+
 int sc_dnc_validate(const sc_model *model, const sc_workspace *w)
 {
     const uint32_t *level_first = sc_model_level_first(model), *leaf = sc_model_leaf(model);
-    const uint32_t *first = sc_model_leaf_first(model);
-    uint32_t level, p, l, i;
+    const uint16_t *of_leaf = w->mask + sc_model_first_leaf_patch(model);
+    uint32_t level, p, l, any = 0;
+    for (l = 0; l < model->leaf_count; l++) {
+        const uint32_t mask = cone_of_leaf(model, w, l), in = l % SC_CONES_GROUP;
+        if (!in) any = 0;
+        if (of_leaf[l] != (any || in < SC_CONES_SAMPLE ? mask : 0)) return 0;
+        if (in < SC_CONES_SAMPLE) any |= mask;
+    }
     for (level = 0; level < model->level_count; level++)
         for (p = level_first[level]; p + 1 < level_first[level + 1]; p++) {
             uint32_t mask = (1u << SC_DNC_DIRECTIONS) - 1u;
-            for (l = leaf[p]; l < leaf[p + 1]; l++)
-                for (i = first[l]; i < first[l + 1]; i++)
-                    mask &= cone_of_triangle(model, w, l, i - first[l]);
+            for (l = leaf[p]; l < leaf[p + 1]; l++) mask &= of_leaf[l];
             if (mask != w->mask[p]) return 0;
         }
     return 1;
