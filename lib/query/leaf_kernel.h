@@ -423,7 +423,7 @@ static void SC_KERNEL(far_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     }
 }
 
-/* Whether normal cones and marks of patches that were culled are of this query. */
+/* Whether normal cones are of this query. */
 static inline int SC_KERNEL(has_cones)(const sc_query_state *state)
 {
     return state->options.method == SC_METHOD_SCTT && state->options.contour == SC_CONTOUR_EXACT;
@@ -435,7 +435,7 @@ static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     sc_workspace *w = state->workspace;
     const sc_near_pair *pairs = w->near_pairs;
     uint32_t count, i;
-    SC_KERNEL(drop_bands)(state, SC_KERNEL(has_cones)(state) && !state->share);
+    SC_KERNEL(drop_bands)(state);
     if (SC_KERNEL(has_cones)(state)) SC_KERNEL(drop_plain)(state);
     count = w->near_count;
     w->near_count = 0;

@@ -325,7 +325,6 @@ static void query_exact(sc_query_state *state)
     const sc_pair *patches = sc_model_node_patches(state->model);
     sc_walk *walk = &state->workspace->walk;
     uint32_t i;
-    memset(walk->culled, 0, state->model->patch_end);
     walk->stack_count = walk->queue_count = walk->self_count = 0;
     walk->pair_count[0] = walk->pair_count[1] = 0;
     walk->selfs_wait = 1;
@@ -373,6 +372,7 @@ static void query_orientation(sc_query_state *state, uint32_t node)
 
 void sc_traversal_run(sc_query_state *state)
 {
+    memset(state->workspace->walk.marks, 0, state->model->patch_end);
     if (state->options.method == SC_METHOD_SCTT) {
         sc_traversal_update_normals(state);
         if (state->options.contour == SC_CONTOUR_EXACT)

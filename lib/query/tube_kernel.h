@@ -239,8 +239,8 @@ static int SC_KERNEL(is_of_bands)(const sc_query_state *state, const sc_near_pai
 }
 
 /* Of the pairs of leaf clusters that wait drops those; before those of one with itself, the others, which are marked as
-   SC_KERNEL(drop_plain) does if marks are of this query. */
-static void SC_KERNEL(drop_bands)(sc_query_state *state, int has_marks)
+   SC_KERNEL(drop_plain) does. */
+static void SC_KERNEL(drop_bands)(sc_query_state *state)
 {
     enum { DISTANCE = 8 }; /* pairs between asking for memory and reading it */
     const uint32_t *begin = sc_model_share_begin(state->model);
@@ -249,6 +249,7 @@ static void SC_KERNEL(drop_bands)(sc_query_state *state, int has_marks)
     sc_near_pair *pairs = w->near_pairs;
     uint8_t *marks = w->walk.marks + sc_model_first_leaf_patch(state->model);
     uint32_t i, kept;
+    const int has_marks = !state->share;
     int found = 0, pass;
     for (i = 0; i < w->near_count; i++)
         found |= SC_KERNEL(has_two_chains)(state->model, pairs[i].a);
