@@ -39,11 +39,11 @@ enum { SC_NEIGHBORS_ROWS = 7 };
 typedef struct sc_leaf_pair {
     uint32_t a, b;
     int shares; /* any do */
-    const uint16_t
-        *list; /* of pairs that share points, see build/sharing_lists.h; if it is NULL: */
-    const uint16_t *list_end;
-    const uint16_t *shared; /* SC_LEAF_MAX rows: triangles of b that share points with one of a */
-    int wanted;             /* so are pairs that do */
+    /* pairs that share points, see build/sharing_lists.h, or NULL */
+    const uint16_t *list, *list_end;
+    /* if that is NULL, SC_LEAF_MAX rows: triangles of b that share points with one of a */
+    const uint16_t *shared;
+    int wanted;                  /* so are pairs that do */
     uint16_t found[SC_LEAF_MAX]; /* room for shared */
 } sc_leaf_pair;
 
