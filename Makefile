@@ -404,9 +404,10 @@ soak: $(work)/runs/soak ## SOAK queries on changing poses of one model, in bound
 
 .PHONY: test-thread
 test-thread: ## many threads on one model, and in one query, under ThreadSanitizer
-	$(call variant,thread,CFLAGS='-O1 -fsanitize=thread',runs/thread tests/test_tasks)
-	'$(BUILD)/thread/debug/runs/thread'
-	SC_TEST_SCALE=10 '$(BUILD)/thread/debug/tests/test_tasks'
+	+$(Q)$(MAKE) --no-print-directory config=release BUILD='$(BUILD)/thread' CFLAGS='-O1 -fsanitize=thread' \
+	    '$(BUILD)/thread/release/runs/thread' '$(BUILD)/thread/release/tests/test_tasks'
+	'$(BUILD)/thread/release/runs/thread'
+	SC_TEST_SCALE=10 '$(BUILD)/thread/release/tests/test_tasks'
 
 # Files that take results from libraries without MemorySanitizer are left out, see
 # tests/runs/memory_ignore.txt, and so is test_ccd, which is about such a library.
@@ -655,7 +656,7 @@ help: ## this list
 	@sed -n 's/^\([a-z][a-z-]*\):.*## \(.*\)$$/\1#\2/p' Makefile | sort -u | \
 	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
 	@echo; echo "Variables:"
-	@sed -n 's/^#: \([A-Za-z]*\) *\(.*\)$$/\1#\2/p' Makefile | \
+	@sed -n 's/^#: \([A-Za-z_]*\) *\(.*\)$$/\1#\2/p' Makefile | \
 	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
 
 #: config      release (the default), debug, or sanitize (address and undefined behaviour)
@@ -673,6 +674,8 @@ help: ## this list
 #: SECONDS     how long fuzz runs each target [60]
 #: SOAK        how many queries soak asks [100000]
 #: WERROR      1: warnings are errors
+#: TEST_JOBS   how many tests run at a time; an environment variable too [the processors]
+#: SC_TEST_SCALE random trials in tests, in percent; the same [100]
 #: SCENES      folders of scenes that peer-... and peers measure [build/peers/scenes/*]
 #: CSV         where they add lines [build/peers/peers.csv]
 #: LIMIT       seconds after which they give up on a scene [30]
