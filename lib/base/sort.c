@@ -43,14 +43,18 @@ static void heapsort_pairs(sc_pair *pairs, uint64_t count)
     }
 }
 
-static void insertion_sort(sc_pair *pairs, uint64_t count)
+/* Gives up, and returns 0, once pairs have been moved by so many places in all. */
+static int insertion_sort(sc_pair *pairs, uint64_t count, uint64_t most)
 {
     uint64_t i, j;
     for (i = 1; i < count; i++) {
         sc_pair moved = pairs[i];
         for (j = i; j > 0 && sc_sort_less(moved, pairs[j - 1]); j--) pairs[j] = pairs[j - 1];
         pairs[j] = moved;
+        if (most < i - j) return 0;
+        most -= i - j;
     }
+    return 1;
 }
 
 static sc_pair median(sc_pair x, sc_pair y, sc_pair z)
@@ -85,7 +89,7 @@ uint64_t sc_sort_split(sc_pair *pairs, uint64_t count)
     uint64_t i;
     if (count < 9) return 0;
     for (i = 0; i < 9; i++) some[i] = pairs[i * (count / 9)];
-    insertion_sort(some, 9);
+    (void)insertion_sort(some, 9, UINT64_MAX);
     return split_at(pairs, count, some[4]);
 }
 
@@ -109,7 +113,7 @@ static void quicksort(sc_pair *pairs, uint64_t count, int depth)
             count = i;
         }
     }
-    insertion_sort(pairs, count);
+    (void)insertion_sort(pairs, count, UINT64_MAX);
 }
 
 static void sort_by_comparing(sc_pair *pairs, uint64_t count)
@@ -190,7 +194,7 @@ void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned 
 
 void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count)
 {
-    uint64_t i, end;
+    uint64_t i;
     uint32_t all = 0;
     unsigned bits = 0;
     if (count < BYTE_MIN) {
@@ -200,8 +204,6 @@ void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count)
     for (i = 0; i < count; i++) all |= pairs[i].a;
     while (bits < 32 && all >> bits) bits++;
     sc_sort_by_digits(pairs, spare, count, bits);
-    for (i = 0; i < count; i = end) {
-        for (end = i + 1; end < count && pairs[end].a == pairs[i].a;) end++;
-        if (end - i > 1) sc_sort_pairs(pairs + i, end - i);
-    }
+    /* few have the same a */
+    if (!insertion_sort(pairs, count, 4 * count)) sc_sort_pairs(pairs, count);
 }
