@@ -50,4 +50,30 @@ static inline size_t sc_atomic_add(size_t *number, size_t more)
 #endif
 }
 
+/* Reads a number. */
+static inline size_t sc_atomic_get(const size_t *number)
+{
+#if SC_ATOMIC
+    return __atomic_load_n(number, __ATOMIC_RELAXED);
+#else
+    return *number;
+#endif
+}
+
+/* Sets a number that is *before, and returns 1; else sets that to what it is. */
+static inline int sc_atomic_claim(size_t *number, size_t *before, size_t after)
+{
+#if SC_ATOMIC
+    return __atomic_compare_exchange_n(number, before, after, 0, __ATOMIC_RELAXED,
+                                       __ATOMIC_RELAXED);
+#else
+    if (*number != *before) {
+        *before = *number;
+        return 0;
+    }
+    *number = after;
+    return 1;
+#endif
+}
+
 #endif

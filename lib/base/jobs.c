@@ -29,6 +29,57 @@ uint32_t sc_jobs_take(sc_jobs_ranges *ranges, uint32_t part, uint32_t worker)
     return part;
 }
 
+/* One of so many parts of a range that are left is taken at once, and so many at most. */
+enum { SOME_PART = 16, SOME_MAX = 8 };
+
+static uint32_t some_of(uint32_t left)
+{
+    uint32_t some = (left - 1) / SOME_PART + 1;
+    return some < SOME_MAX ? some : SOME_MAX;
+}
+
+static uint32_t range_begin(const sc_jobs_ranges *ranges, uint32_t owner)
+{
+    return (uint32_t)((uint64_t)ranges->count * owner / ranges->workers);
+}
+
+uint32_t sc_jobs_takes(const sc_jobs_ranges *ranges)
+{
+    uint32_t owner, left, takes = 0;
+    for (owner = 0; owner < ranges->workers; owner++) {
+        left = range_begin(ranges, owner + 1) - range_begin(ranges, owner);
+        for (; left; left -= some_of(left)) takes++;
+    }
+    return takes;
+}
+
+uint32_t sc_jobs_take_some(sc_jobs_ranges *ranges, uint32_t worker, uint32_t *some)
+{
+    uint32_t i, owner = worker;
+    for (i = 0; i < ranges->workers; i++, owner = owner + 1 < ranges->workers ? owner + 1 : 0) {
+        uint32_t begin = range_begin(ranges, owner),
+                 length = range_begin(ranges, owner + 1) - begin;
+        size_t taken = sc_atomic_get(&ranges->taken[owner]);
+        while (taken < length) {
+            *some = some_of(length - (uint32_t)taken);
+            if (sc_atomic_claim(&ranges->taken[owner], &taken, taken + *some))
+                return begin + (uint32_t)taken;
+        }
+    }
+    *some = 0;
+    return 0;
+}
+
+int sc_jobs_are_taken(const sc_jobs_ranges *ranges)
+{
+    uint32_t owner;
+    for (owner = 0; owner < ranges->workers; owner++)
+        if (sc_atomic_get(&ranges->taken[owner]) <
+            range_begin(ranges, owner + 1) - range_begin(ranges, owner))
+            return 0;
+    return 1;
+}
+
 typedef struct loop {
     sc_jobs_body body;
     void *context;

@@ -25,6 +25,14 @@ void sc_jobs_divide(const sc_tasks *tasks, uint32_t count, sc_jobs_ranges *range
 /* The part to do for a worker that the host has given that part: each of count once, if so often asked. */
 uint32_t sc_jobs_take(sc_jobs_ranges *ranges, uint32_t part, uint32_t worker);
 
+/* The same of parts that are taken some at once, fewer when few are left, so that the last do not take long. How often they
+   are to be asked for; and the first of those to do, of which there are *some. */
+uint32_t sc_jobs_takes(const sc_jobs_ranges *ranges);
+uint32_t sc_jobs_take_some(sc_jobs_ranges *ranges, uint32_t worker, uint32_t *some);
+
+/* Whether each part is taken: then a worker may see what is left to do besides. */
+int sc_jobs_are_taken(const sc_jobs_ranges *ranges);
+
 /* A loop is cut into so many parts at most. */
 enum { SC_JOBS_PARTS = 32 };
 

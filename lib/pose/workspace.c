@@ -55,6 +55,7 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->walk.queue =
         (uint32_t *)place(block, at, SC_WALK_QUEUE + SC_WALK_CHILDREN, sizeof(uint32_t));
     w->walk.self = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
+    w->walk.alone = (uint32_t *)place(block, at, model->leaf_count, sizeof(uint32_t));
     w->walk.culled = w->walk.marks = (uint8_t *)place(block, at, model->patch_end, 1);
     w->some_ready = (sc_leaf_ready *)place(block, at, 2 * ready_kept(model), sizeof(sc_leaf_ready));
     w->some_known = (sc_leaf_known *)place(block, at, 2 * ready_kept(model), sizeof(sc_leaf_known));

@@ -153,16 +153,16 @@ static void SC_KERNEL(compare_near_boxes)(SC_KERNEL(rows) * rows)
 
 /* The same of a cluster against itself, or of two that are crowded, to come: pairs that share points are taken, and not in
    the rows. */
-static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p, unsigned some_a,
+static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p,
+                                   const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned some_a,
                                    unsigned some_b, SC_KERNEL(rows) * rows)
 {
-    const sc_leaf_ready *a = SC_KERNEL(ready)(state, p->a, 0);
     uint8_t near_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], near_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
     const unsigned lower = p->a == p->b ? 0 : SC_LEAF_ALL;  /* of b, those below i, too */
     unsigned count = rows->count, near_count = 0, near = 0; /* triangles that are looked at */
     lanes low[3], high[3];
     if (p->wanted) near = p->a == p->b ? SC_KERNEL(doubtful)(state, p->a) : SC_LEAF_ALL;
-    SC_KERNEL(load_boxes)(SC_KERNEL(ready)(state, p->b, p->b > p->a), low, high);
+    SC_KERNEL(load_boxes)(b, low, high);
     for (; some_a; some_a &= some_a - 1) {
         uint32_t i = sc_bits_lowest(some_a);
         unsigned mask = SC_KERNEL(overlap_row)(a, i, low, high) & some_b, shared = p->shared[i];
@@ -266,8 +266,9 @@ static void SC_KERNEL(test_rows)(sc_query_state *state, SC_KERNEL(rows) * rows)
     SC_KERNEL(no_rows)(rows);
 }
 
-/* Adds two leaf clusters, or one, of which only some triangles may overlap the other. */
-static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p, unsigned some_a,
+/* Adds two leaf clusters, a and b when they are ready, or one, of which only some triangles may overlap the other. */
+static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p,
+                                const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned some_a,
                                 unsigned some_b, SC_KERNEL(rows) * rows)
 {
     /* either may be the rows */
@@ -275,11 +276,11 @@ static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p, un
     unsigned k = rows->pairs;
     rows->leaf[swap][k] = p->a;
     rows->leaf[!swap][k] = p->b;
-    rows->ready[swap][k] = SC_KERNEL(ready)(state, p->a, 0);
-    rows->ready[!swap][k] = SC_KERNEL(ready)(state, p->b, p->b > p->a);
+    rows->ready[swap][k] = a;
+    rows->ready[!swap][k] = b;
     rows->list[k] = p->list;
     if (p->shares && !p->list) {
-        SC_KERNEL(take_shared)(state, p, some_a, some_b, rows);
+        SC_KERNEL(take_shared)(state, p, a, b, some_a, some_b, rows);
     } else {
         some_a = swap ? some_b : some_a;
         memset(rows->wait_pair + rows->wait, (int)k, SC_LANES_COUNT);
@@ -293,10 +294,10 @@ static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p, un
     rows->pairs++;
 }
 
-/* The triangles of leaf a whose boxes overlap that of leaf b. */
-static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, uint32_t a, uint32_t b)
+/* The triangles of a leaf cluster that is ready whose boxes overlap that of leaf b. */
+static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, const sc_leaf_ready *ready,
+                                   uint32_t b)
 {
-    const sc_leaf_ready *ready = SC_KERNEL(ready)(state, a, a > b);
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     uint64_t i = (uint64_t)sc_model_first_leaf_patch(state->model) + b;
     lanes_mask m[3];
@@ -349,10 +350,12 @@ static void SC_KERNEL(leaf_pair_elsewhere)(sc_query_state *state, uint32_t a, ui
 static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs,
                                  uint32_t shared, SC_KERNEL(rows) * rows)
 {
+    const sc_leaf_ready *ready_a, *ready_b;
     sc_leaf_pair p;
     unsigned some_a, some_b = SC_LEAF_ALL;
     if (rows->pairs == SC_ROWS_PAIRS) SC_KERNEL(test_rows)(state, rows);
-    if (state->workspace->ready_mask != SC_KEEPS_ALL) {
+    if (state->workspace->ready_mask != SC_KEEPS_ALL &&
+        !(SC_KERNEL(is_ready)(state, a, 0) & SC_KERNEL(is_ready)(state, b, b > a))) {
         if (a != b && SC_KERNEL(place)(state, a, 0) == SC_KERNEL(place)(state, b, 1)) {
             SC_KERNEL(leaf_pair_elsewhere)(state, a, b, by_slabs, shared, rows);
             return;
@@ -360,18 +363,20 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, 
         if (SC_KERNEL(is_taken)(state, a, 0, rows) | SC_KERNEL(is_taken)(state, b, b > a, rows))
             SC_KERNEL(test_rows)(state, rows);
     }
+    ready_a = ready_b = SC_KERNEL(ready)(state, a, 0);
     if (a == b) {
         const uint32_t *first = sc_model_leaf_first(state->model) + a;
         some_a = (1u << (first[1] - first[0] - 1)) - 1u;
     } else {
-        some_a = SC_KERNEL(rows_at)(state, a, b);
+        some_a = SC_KERNEL(rows_at)(state, ready_a, b);
         if (!some_a) return;
-        some_b = SC_KERNEL(rows_at)(state, b, a);
+        ready_b = SC_KERNEL(ready)(state, b, 1);
+        some_b = SC_KERNEL(rows_at)(state, ready_b, a);
         if (!some_b) return;
         if (by_slabs && SC_KERNEL(slabs_part)(state, a, b)) return;
     }
     sc_candidates_enter(state, a, b, shared, &p);
-    SC_KERNEL(add_rows)(state, &p, some_a, some_b, rows);
+    SC_KERNEL(add_rows)(state, &p, ready_a, ready_b, some_a, some_b, rows);
 }
 
 /* Asks for the memory of a leaf cluster that is made ready; or of its slab and points, and the former if there is no
@@ -534,8 +539,13 @@ static void SC_KERNEL(leaf_pair_waits)(sc_query_state *state, uint32_t a, uint32
 
 static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)
 {
+    sc_walk *walk = &state->workspace->walk;
     state->stats.leaf_pairs++;
-    if (!SC_KERNEL(has_cones)(state) && SC_KERNEL(is_plain)(state, leaf)) return;
+    if (SC_KERNEL(has_cones)(state)) {
+        walk->alone[walk->alone_count++] = 2 * leaf + (uint32_t)state->after_contour;
+        return;
+    }
+    if (SC_KERNEL(is_plain)(state, leaf)) return;
     SC_KERNEL(add_near_pair)(state->workspace, leaf, leaf, SC_NONE, 1);
     SC_KERNEL(make_leaf_room)(state);
 }

@@ -6,7 +6,7 @@
  * The large nodes at the top of the test tree are opened one after the other by the calling thread; their
  * contour tests are a job, again and again, since what fails leads to further large nodes. What hangs below is
  * a list of parts, each of which a worker walks through by itself, with a state, a stack and scratch of its own. The
- * list depends on the model and the pose only. As with one thread, nodes of one patch wait until
+ * list depends on the model and the pose only. As with one thread, nodes of one patch, and leaf clusters by themselves, wait until
  * all others are done: which patches were culled by then is the union of what workers wrote down.
  *
  * No locks: a worker writes to what is its own, and to parts of the caller's array that it claims by an atomic
@@ -36,8 +36,8 @@ enum { LARGE_IN_NODE = 32, LARGE_IN_PAIR = 16, LARGE_BY_ITSELF = 128 };
 /* Fewer contour tests are not worth a job. */
 enum { TESTS_MIN = 16 };
 
-/* How many waiting nodes a worker takes at once. */
-enum { NODES_AT_ONCE = 16 };
+/* How many waiting nodes, and leaf clusters by themselves, a worker takes at once. */
+enum { NODES_AT_ONCE = 16, ALONE_AT_ONCE = 64 };
 
 /* More pairs of leaf clusters or of triangles are not kept waiting from one part to the next. */
 enum { WAITING_MAX = 64 };
@@ -59,7 +59,10 @@ typedef struct plan {
     sc_share share;
     sc_filter filter;                            /* the caller's without its function */
     uint32_t part_count, test_count, open_count; /* of those in w->parts, tests and open */
-    sc_jobs_ranges ranges;                       /* of the job at hand */
+    uint32_t last_end[SC_WORKERS_MAX]; /* parts that were left for the end by workers up to each */
+    uint32_t alone_count
+        [SC_WORKERS_MAX]; /* leaf clusters to be looked at by themselves that each has listed by then */
+    sc_jobs_ranges ranges; /* of the job at hand */
 } plan;
 
 const sc_tasks *sc_parallel_tasks(const sc_query_state *state)
@@ -102,7 +105,7 @@ static void start_workers(plan *p)
         walk->culled = p->w->culled;
         memset(walk->marks, 0, model->patch_end);
         walk->stack_count = walk->queue_count = walk->self_count = 0;
-        walk->pair_count[0] = walk->pair_count[1] = 0;
+        walk->pair_count[0] = walk->pair_count[1] = walk->alone_count = 0;
         walk->selfs_wait = 1;
     }
     memset(p->w->culled, 0, model->patch_end);
@@ -129,13 +132,15 @@ static void end_part(sc_query_state *s)
     if (s->timed) s->stats.nanoseconds[s->task] += sc_clock_nanoseconds() - s->last_time;
 }
 
-/* Runs a job. The calling thread's clock stands still: what workers do is in their own statistics. */
+/* Runs a job; some: of parts that are taken some at once. The calling thread's clock stands still: what workers do is in their own
+   statistics. */
 static void run_job(plan *p, void (*run)(void *context, uint32_t part, uint32_t worker),
-                    uint32_t count)
+                    uint32_t count, int some)
 {
     sc_query_state *state = p->state;
     if (!count) return;
     sc_jobs_divide(p->tasks, count, &p->ranges);
+    if (some) count = sc_jobs_takes(&p->ranges);
     if (state->timed)
         state->stats.nanoseconds[state->task] += sc_clock_nanoseconds() - state->last_time;
     if (count == 1)
@@ -174,20 +179,23 @@ static void run_part(sc_query_state *s, const sc_part *part)
     }
 }
 
+/* Some parts, whose nodes wait in the walk together: contour tests take less time when there are many. */
 static void run_parts(void *context, uint32_t part, uint32_t worker)
 {
     plan *p = (plan *)context;
     sc_query_state *s = begin_part(p, worker);
-    part = sc_jobs_take(&p->ranges, part, worker);
-    if (!sc_state_stops(s)) run_part(s, &p->w->parts[part]);
+    uint32_t some;
+    part = sc_jobs_take_some(&p->ranges, worker, &some);
+    while (some-- && !sc_state_stops(s)) run_part(s, &p->w->parts[part + some]);
     sc_traversal_walk(s);
+    if (sc_jobs_are_taken(&p->ranges)) sc_candidates_decide(s);
     end_part(s);
 }
 
 /* Empties the list of parts. */
 static void do_parts(plan *p)
 {
-    run_job(p, run_parts, p->part_count);
+    run_job(p, run_parts, p->part_count, 1);
     p->part_count = 0;
 }
 
@@ -211,10 +219,17 @@ static void run_waiting(void *context, uint32_t part, uint32_t worker)
     end_part(s);
 }
 
-/* Decides all that waits, or drops it if the query is to end: the next one begins with nothing. */
+/* Decides all that waits, or drops it if the query is to end: the next one begins with nothing. Mostly workers have done so when they
+   saw that no part was left. */
 static void do_waiting(plan *p)
 {
-    run_job(p, run_waiting, p->tasks->workers);
+    uint32_t worker, waits = 0;
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        const sc_workspace *w = sc_workspace_of_worker(p->w, worker);
+        waits |= w->near_count | w->far_count | w->candidate_count | w->neighbor_count |
+                 w->settled_count;
+    }
+    if (waits) run_job(p, run_waiting, p->tasks->workers, 0);
 }
 
 /* ---- boxes ---- */
@@ -395,7 +410,7 @@ static void do_tests(plan *p)
     if (p->test_count < TESTS_MIN)
         sc_traversal_test(p->state, p->w->tests, p->test_count, p->w->passed);
     else
-        run_job(p, run_tests, p->test_count);
+        run_job(p, run_tests, p->test_count, 0);
     for (i = p->test_count; i-- > 0;) {
         uint32_t node = p->w->tests[i];
         if (p->w->passed[i])
@@ -417,32 +432,56 @@ static void join_marks(plan *p)
     }
 }
 
-/* Nodes of one patch that wait: a part is some of those that wait with one worker. */
-static void run_selfs(void *context, uint32_t part, uint32_t worker)
+/* What waited with a worker until all else was done: a part is some nodes of one patch, of which those are tested that are not
+   culled by now; or some leaf clusters to be looked at by themselves. */
+static void run_last(void *context, uint32_t part, uint32_t worker)
 {
-    const plan *p = (const plan *)context;
+    plan *p = (plan *)context;
     const sc_pair *patches = sc_model_node_patches(p->state->model);
     sc_query_state *s = begin_part(p, worker);
     sc_walk *walk = &s->workspace->walk;
-    const sc_walk *from = &p->w->walk;
-    uint32_t i, end, k = 0;
-    while (part >= divide_up(from->self_count, NODES_AT_ONCE)) {
-        part -= divide_up(from->self_count, NODES_AT_ONCE);
-        from = &sc_workspace_of_worker(p->w, ++k)->walk;
-    }
-    i = part * NODES_AT_ONCE;
-    end = from->self_count - i < NODES_AT_ONCE ? from->self_count : i + NODES_AT_ONCE;
+    const sc_walk *from;
+    uint32_t i, end, k = 0, listed;
+    part = sc_jobs_take(&p->ranges, part, worker);
+    while (part >= p->last_end[k]) k++;
+    part -= k ? p->last_end[k - 1] : 0;
+    from = &sc_workspace_of_worker(p->w, k)->walk;
+    listed = divide_up(from->self_count, NODES_AT_ONCE);
     walk->selfs_wait = 0;
-    for (; i < end && !sc_state_stops(s); i++)
-        if (!walk->culled[patches[from->self[i]].a])
-            walk->queue[walk->queue_count++] = from->self[i];
-    sc_traversal_walk(s);
+    if (part < listed) {
+        const uint32_t before = walk->alone_count;
+        i = part * NODES_AT_ONCE;
+        end = from->self_count - i < NODES_AT_ONCE ? from->self_count : i + NODES_AT_ONCE;
+        for (; i < end && !sc_state_stops(s); i++)
+            if (!walk->culled[patches[from->self[i]].a])
+                walk->queue[walk->queue_count++] = from->self[i];
+        sc_traversal_walk(s);
+        sc_traversal_take_alone(s, walk->alone + before, walk->alone_count - before);
+    } else {
+        i = (part - listed) * ALONE_AT_ONCE;
+        end = p->alone_count[k] - i < ALONE_AT_ONCE ? p->alone_count[k] : i + ALONE_AT_ONCE;
+        sc_traversal_take_alone(s, from->alone + i, end - i);
+    }
+    if (sc_jobs_are_taken(&p->ranges)) sc_candidates_decide(s);
     end_part(s);
+}
+
+/* Those of one worker are behind each other, so that mostly it does them. */
+static void do_last(plan *p)
+{
+    uint32_t worker, count = 0;
+    for (worker = 0; worker < p->tasks->workers; worker++) {
+        const sc_walk *walk = &sc_workspace_of_worker(p->w, worker)->walk;
+        p->alone_count[worker] = walk->alone_count;
+        count += divide_up(walk->self_count, NODES_AT_ONCE);
+        count += divide_up(walk->alone_count, ALONE_AT_ONCE);
+        p->last_end[worker] = count;
+    }
+    run_job(p, run_last, count, 0);
 }
 
 static void walk_exact(plan *p)
 {
-    uint32_t worker, count = 0;
     sc_traversal_find_prospects(p->state);
     sc_traversal_orient(p->state, 0);
     sort_out(p);
@@ -453,10 +492,9 @@ static void walk_exact(plan *p)
         do_tests(p);
     }
     do_parts(p);
+    do_waiting(p); /* which marks more that are culled */
     join_marks(p);
-    for (worker = 0; worker < p->tasks->workers; worker++)
-        count += divide_up(sc_workspace_of_worker(p->w, worker)->walk.self_count, NODES_AT_ONCE);
-    if (!sc_state_stops(p->state)) run_job(p, run_selfs, count);
+    if (!sc_state_stops(p->state)) do_last(p);
 }
 
 /* ---- the other methods ---- */

@@ -296,8 +296,7 @@ static inline void SC_KERNEL(fetch_loop)(const sc_query_state *state, const sc_n
 }
 
 /* Of the pairs of leaf clusters that wait, of which some are of one with itself, drops those that have certainly nothing in
-   common but what they share; and, if one worker does all, so that statistics do not depend on who does what, those with
-   themselves of which one of these was. */
+   common but what they share. Marks two of which that is so: then neither is to be looked at by itself. */
 static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state)
 {
     enum { DISTANCE = 8 }; /* pairs between two steps of fetching */
@@ -324,7 +323,7 @@ static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state)
         if (taken < SC_KERNEL(SHORT_PAIRS) && i + 1 < count) continue;
         for (bits = SC_KERNEL(find_plain)(state, some, taken); bits; bits &= bits - 1) {
             sc_near_pair *p = some[sc_bits_lowest(bits)];
-            if (!state->share) marks[p->a] = marks[p->b] = 1;
+            marks[p->a] = marks[p->b] = 1;
             p->shared = SC_NONE;
         }
         taken = 0;
@@ -332,10 +331,7 @@ static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state)
     for (i = 0; i < w->near_count; i++) {
         const sc_near_pair p = pairs[i];
         pairs[kept] = p;
-        if (p.a != p.b)
-            kept += p.shared != SC_NONE;
-        else
-            kept += (state->share || !marks[p.a]) && !SC_KERNEL(is_plain)(state, p.a);
+        kept += p.a != p.b ? p.shared != SC_NONE : !SC_KERNEL(is_plain)(state, p.a);
     }
     w->near_count = kept;
 }

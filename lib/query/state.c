@@ -24,9 +24,7 @@ static int end_if(sc_query_state *state, int early)
 
 int sc_state_ask_flag(sc_query_state *state)
 {
-    if (state->share && sc_atomic_read(&state->share->halt)) state->stop = 1;
-    if (state->options.cancel) end_if(state, sc_atomic_read(state->options.cancel) != 0);
-    return state->stop;
+    return end_if(state, sc_atomic_read(state->options.cancel) != 0);
 }
 
 int sc_state_ask_budget(sc_query_state *state)

@@ -8,6 +8,7 @@
 
 #include <stddef.h>
 
+#include "base/atomic.h"
 #include "base/clock.h"
 #include "pose/workspace.h"
 
@@ -37,15 +38,15 @@ typedef struct sc_query_state {
     sc_stats stats;
 } sc_query_state;
 
-/* Asks the caller's flag and that of other workers; and the budget. Sets stop and incomplete, and
-   returns stop. */
+/* Asks the caller's flag, and the budget. Sets stop and incomplete, and returns stop. */
 int sc_state_ask_flag(sc_query_state *state);
 int sc_state_ask_budget(sc_query_state *state);
 
 /* Whether to stop. To be asked at least every 100 us or so. */
 static inline int sc_state_cancelled(sc_query_state *state)
 {
-    return state->stop || ((state->options.cancel || state->share) && sc_state_ask_flag(state));
+    if (state->share && sc_atomic_read(&state->share->halt)) state->stop = 1;
+    return state->stop || (state->options.cancel && sc_state_ask_flag(state));
 }
 
 /* The same, and whether the budget is used up: only where it does not depend on the flag or on statistics

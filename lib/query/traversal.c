@@ -113,7 +113,8 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
  * The walk with the exact contour test. The test keeps nothing from node to node, so that each node has its
  * own projection, and nodes can be tested in any order: those that pass the orientation test wait in
  * a short queue, so that the memory for some is fetched while others are tested. Nodes of one patch wait
- * until all else is done, since a patch that is in a node of two that was culled is culled with it.
+ * until all else is done, since a patch that is in a node of two that was culled is culled with it; and so do leaf clusters
+ * that are to be looked at by themselves, for which the same is true of two that share points and are dropped.
  * A node of two patches with one parent has the contour of that parent, which failed. Pairs of patches that are left to
  * boxes wait as well: tests of boxes that do not depend on each other wait for memory at the same time.
  * Two patches that share one point, as diagonally in a grid, are left to boxes, too: few overlap there, and a contour costs
@@ -320,12 +321,33 @@ void sc_traversal_walk(sc_query_state *state)
     sc_traversal_take_boxes(state);
 }
 
+void sc_traversal_take_alone(sc_query_state *state, const uint32_t *alone, uint32_t count)
+{
+    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    const uint32_t most = sc_state_may_end_early(state) ? 16 : SC_LEAF_QUEUE - SC_LEAF_MAX - 1;
+    sc_workspace *w = state->workspace;
+    const uint8_t *culled = w->walk.culled + sc_model_first_leaf_patch(state->model);
+    uint32_t after_contour, previous, i;
+    for (after_contour = 0; after_contour < 2; after_contour++) {
+        sc_traversal_follow_contour(state, (int)after_contour);
+        previous = sc_state_switch(state, sc_state_box_task(state));
+        for (i = 0; i < count && !sc_state_stops(state); i++) {
+            sc_near_pair *pair = w->near_pairs + w->near_count;
+            if ((alone[i] & 1) != after_contour || culled[alone[i] / 2]) continue;
+            pair->a = pair->b = alone[i] / 2;
+            pair->shared = SC_NONE;
+            if (++w->near_count > most) kernels->leaf_pairs(state);
+        }
+        sc_state_switch(state, previous);
+    }
+}
+
 static void query_exact(sc_query_state *state)
 {
     const sc_pair *patches = sc_model_node_patches(state->model);
     sc_walk *walk = &state->workspace->walk;
     uint32_t i;
-    walk->stack_count = walk->queue_count = walk->self_count = 0;
+    walk->stack_count = walk->queue_count = walk->self_count = walk->alone_count = 0;
     walk->pair_count[0] = walk->pair_count[1] = 0;
     walk->selfs_wait = 1;
     sc_traversal_find_prospects(state);
@@ -338,6 +360,8 @@ static void query_exact(sc_query_state *state)
         if (walk->queue_count == SC_WALK_QUEUE) sc_traversal_walk(state);
     }
     sc_traversal_walk(state);
+    sc_candidates_decide(state); /* marks more that are culled */
+    sc_traversal_take_alone(state, walk->alone, walk->alone_count);
 }
 
 /* The paper's QueryOrientation. */

@@ -249,7 +249,8 @@ static void SC_KERNEL(drop_bands)(sc_query_state *state)
     sc_near_pair *pairs = w->near_pairs;
     uint8_t *marks = w->walk.marks + sc_model_first_leaf_patch(state->model);
     uint32_t i, kept;
-    const int has_marks = !state->share;
+    const int may_look =
+        !state->share; /* else it depends on who does what which are marked by now */
     int found = 0, pass;
     for (i = 0; i < w->near_count; i++)
         found |= SC_KERNEL(has_two_chains)(state->model, pairs[i].a);
@@ -261,8 +262,8 @@ static void SC_KERNEL(drop_bands)(sc_query_state *state)
                 sc_fetch(list + begin[pairs[i + DISTANCE].shared]);
             pairs[kept++] = p;
             if (is_one != pass) continue;
-            if ((is_one && has_marks && marks[p.a]) || SC_KERNEL(is_of_bands)(state, &p)) {
-                if (has_marks) marks[p.a] = marks[p.b] = 1;
+            if ((is_one && may_look && marks[p.a]) || SC_KERNEL(is_of_bands)(state, &p)) {
+                marks[p.a] = marks[p.b] = 1;
                 kept--;
             }
         }
