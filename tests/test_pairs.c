@@ -879,9 +879,46 @@ static void flat_poke(flat_mesh *m, uint32_t a, uint32_t b)
     flat_add(m, p + turn, p + (turn + 1) % 3, p + (turn + 2) % 3);
 }
 
-/* Checks such a mesh as two leaf clusters, across an axis, or nearly; a triangle far away makes the whole large, so that single
-   precision tells little of it. */
-static void check_flat(uint64_t state, const flat_mesh *m, int is_level)
+/* Two fans that touch in point 0, from hubs on either side of a line through it: the first has the given number of triangles.
+   A rim point of each is on that line or all but on it, to the same side of point 0, and the line is across the way from the
+   middle of one's points to that of the other's, sixteen times with the last one filling up. */
+static void flat_make_touching(flat_mesh *m, uint32_t first, uint32_t second)
+{
+    double tilt = test_random_below(2) ? test_random_range(-3, 3) : 0, sum[2] = {0, 0};
+    m->at[0][0] = m->at[0][1] = 0;
+    m->points = 1;
+    for (uint32_t s = 0; s < 2; ++s) {
+        uint32_t rim = (s ? second : first) + 1, own = test_random_below(rim), hub = m->points++;
+        uint32_t on = own + 1 < rim ? own + 1 : own - 1, newest = 0, last = hub;
+        double across = s ? -1 : 1, reach = test_random_range(0.5, 0.7);
+        m->at[hub][0] = across * reach;
+        m->at[hub][1] = 0;
+        for (uint32_t k = 0; k < rim; ++k, last = newest) {
+            double angle = 6.283185307 * ((double)k - own) / (rim + 1);
+            newest = k == own ? 0 : m->points++;
+            if (k == on) {
+                double off = exp2(-(double)test_random_below(45)) * test_random_range(-0.2, 1);
+                m->at[newest][0] = test_random_below(4) ? across * off : 0;
+                m->at[newest][1] = (on > own ? -1 : 1) * test_random_range(0.3, 0.8);
+            } else if (k != own) {
+                m->at[newest][0] = across * reach * (1 - cos(angle));
+                m->at[newest][1] = -reach * sin(angle);
+            }
+            sum[s] += (k + 1 == rim ? 16 - rim : 1) * m->at[newest][1];
+            if (k) flat_add(m, hub, s ? newest : last, s ? last : newest);
+        }
+    }
+    if (test_random_below(4)) m->at[1][1] = sum[1] - sum[0];
+    for (uint32_t k = 0; k < m->points; ++k) {
+        double x = m->at[k][0], y = m->at[k][1];
+        m->at[k][0] = (x * cos(tilt) - y * sin(tilt)) / 4;
+        m->at[k][1] = (x * sin(tilt) + y * cos(tilt)) / 4;
+    }
+}
+
+/* Checks such a mesh as two leaf clusters, the first of so many triangles or, if that is 0, any number, across an axis, or
+   nearly; a triangle far away makes the whole large, so that single precision tells little of it. */
+static void check_flat(uint64_t state, const flat_mesh *m, uint32_t count, int is_level)
 {
     soup s = soup_make(m->points + 3, m->triangles + 1);
     double(*at)[3] = (double(*)[3])s.positions, place[2];
@@ -897,7 +934,7 @@ static void check_flat(uint64_t state, const flat_mesh *m, int is_level)
     input_choices own;
     /* the second often has few */
     if (test_random_below(2) && most - least > 2) least = most - 2;
-    first = least + test_random_below(most - least + 1);
+    first = count ? count : least + test_random_below(most - least + 1);
     for (k = 0; k < 2; ++k) place[k] = test_random_range(-0.5, 0.5);
     for (k = 0; k < m->points; ++k) { /* contours begin anywhere */
         uint32_t other = test_random_below(k + 1);
@@ -970,7 +1007,21 @@ static void two_clusters_in_a_plane(void)
             t = m.corner[m.triangles - 1];
             flat_put_beside(&m, t[0], t[1], 0.5, test_random_range(0.05, 0.3), t[2]);
         }
-        check_flat(state, &m, i / 8 % 3 != 0);
+        check_flat(state, &m, 0, i / 8 % 3 != 0);
+    }
+}
+
+/* Two leaf clusters in a plane that touch in a point, and all but touch or meet beside it. */
+static void two_clusters_at_a_point(void)
+{
+    uint32_t rounds = test_iterations(3000);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t first = 1 + test_random_below(13);
+        flat_mesh m;
+        m.triangles = 0;
+        flat_make_touching(&m, first, 1 + test_random_below(13));
+        check_flat(state, &m, first, i % 3 != 0);
     }
 }
 
@@ -1315,7 +1366,7 @@ SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(copies_of_two_triangles),
              SC_TEST(edges_that_nearly_meet), SC_TEST(edges_that_meet_across_an_axis),
              SC_TEST(neighbors_on_a_ray), SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane),
              SC_TEST(bands_in_a_plane), SC_TEST(tubes), SC_TEST(two_clusters_in_a_plane),
-             SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell), SC_TEST(branched_discs),
-             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
-             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
-             SC_TEST(meshes_of_the_folder))
+             SC_TEST(two_clusters_at_a_point), SC_TEST(deformed_meshes),
+             SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
+             SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
+             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))

@@ -566,6 +566,35 @@ static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
     m->segment_child_total = csf->child_first[csf->segment_count - csf->leaf_count];
 }
 
+/* Where two leaf clusters have the one point that they share; 0 if they share more. */
+static uint16_t find_touch(const uint32_t *points, const uint32_t *other)
+{
+    uint32_t shared = 0, at = 0, i, k;
+    for (i = 0; i < SC_LEAF_POINTS; i++) {
+        if (i && points[i] == points[i - 1]) break; /* what fills the row */
+        for (k = 0; k < SC_LEAF_POINTS; k++) {
+            if (points[i] != other[k]) continue;
+            if (++shared > 1) return 0;
+            at = i | k << 4 | (uint32_t)(points[i] == points[SC_LEAF_POINTS - 1]) << SC_TOUCH_LAST |
+                 (uint32_t)(other[k] == other[SC_LEAF_POINTS - 1]) << SC_TOUCH_LAST_OF_OTHER;
+            break;
+        }
+    }
+    return (uint16_t)(shared ? SC_TOUCHES | at : 0);
+}
+
+static void write_touches(sc_model *m)
+{
+    uint16_t *touch = NEW_ARRAY(m, share_touch, uint16_t);
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const uint32_t *points = sc_model_leaf_point(m);
+    uint32_t leaf, i;
+    for (leaf = 0; leaf < m->leaf_count; leaf++)
+        for (i = first[leaf]; i < first[leaf + 1]; i++)
+            touch[i] = find_touch(points + SC_LEAF_POINTS * (uint64_t)leaf,
+                                  points + SC_LEAF_POINTS * (uint64_t)other[i]);
+}
+
 /* The node of each two leaf clusters that share points. */
 static void write_share_nodes(sc_model *m)
 {
@@ -633,6 +662,7 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
+    write_touches(m);
     sc_sharing_lists_write(sharing, xbvh, sc_model_triangle(m), NEW_ARRAY(m, share_begin, uint32_t),
                            NEW_ARRAY(m, share_list, uint16_t));
     mark_shared_chains(m);

@@ -440,6 +440,7 @@ static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     sc_workspace *w = state->workspace;
     const sc_near_pair *pairs = w->near_pairs;
     uint32_t count, i;
+    SC_KERNEL(drop_touching)(state);
     SC_KERNEL(drop_bands)(state);
     if (SC_KERNEL(has_cones)(state)) SC_KERNEL(drop_plain)(state);
     count = w->near_count;

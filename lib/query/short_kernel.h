@@ -312,7 +312,8 @@ static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state)
     for (i = 0; i < w->near_count; i++) {
         const sc_near_pair *p = pairs + i;
         oriented[count] = (uint16_t)i;
-        count += (p->a != p->b) & ((mask[p->a] & mask[p->b]) != 0);
+        count +=
+            (p->a != p->b) & ((mask[p->a] & mask[p->b]) != 0) & !SC_KERNEL(touch)(state->model, p);
     }
     for (i = 0; i < count; i++) {
         for (step = 0; step < SC_KERNEL(SHORT_FETCHES); step++) {

@@ -1,0 +1,112 @@
+/*
+ * Whether two leaf clusters that touch in a point have only that in common: whether a plane through it has all other points
+ * of one on one side and of the other on the other. See query_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Let p be the point and m a direction. If all points of one cluster but p are strictly ahead of p along m, and of the other
+ * strictly behind, so is all of their triangles but p. Of three or so clusters round a point two face each other there.
+ *
+ * The direction is any, hence has no error: with d = x - p, m . d is off by |m|1 EDGE and 4.1 v (|m_0 d_0| + |m_1 d_1| +
+ * |m_2 d_2|), as in neighbor_kernel.h; to subtract a bound takes another v of that. The way from the middle of one's points to
+ * that of the other's tells two of three pairs apart (horse,
+ * spiky bunny and wrinkled cloth); sums of vectors from p over their squares would tell four of five, and take twice as long.
+ */
+
+/* From about the middle of the points of one cluster to that of another's, sixteen times. */
+static inline void SC_KERNEL(find_way)(const float *from, const float *to, float way[3])
+{
+    lanes sum[2];
+    float row[SC_LANES_COUNT];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 2; k++) {
+        const float *at = k ? to : from;
+        sum[k] = lanes_add(
+            lanes_add(lanes_load(at), lanes_load(at + SC_LANES_COUNT)),
+            lanes_add(lanes_load(at + 2 * SC_LANES_COUNT), lanes_load(at + 3 * SC_LANES_COUNT)));
+    }
+    lanes_store(row, lanes_subtract(sum[1], sum[0]));
+    SC_UNROLL
+    for (k = 0; k < 3; k++) way[k] = (row[k] + row[4 + k]) + (row[8 + k] + row[12 + k]);
+}
+
+/* The points of a cluster that are certainly ahead of p along a direction. */
+static inline unsigned SC_KERNEL(find_ahead)(const float *at, const float m[3], const float p[3])
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const float reach = (fabsf(m[0]) + fabsf(m[1]) + fabsf(m[2])) * (1.1f * edge) + 16 * FLT_MIN;
+    lanes x[3], along, size;
+    int k;
+    lanes_turned(at, x);
+    SC_UNROLL
+    for (k = 0; k < 3; k++)
+        x[k] = lanes_multiply(lanes_all(m[k]), lanes_subtract(x[k], lanes_all(p[k])));
+    along = lanes_add(lanes_add(x[0], x[1]), x[2]);
+    size = lanes_add(lanes_add(lanes_absolute(x[0]), lanes_absolute(x[1])), lanes_absolute(x[2]));
+    return lanes_bits(lanes_below(lanes_all(reach),
+                                  lanes_subtract(along, lanes_multiply(size, lanes_all(6 * v)))));
+}
+
+/* The lanes that a point at a place is in: if it is the last one, it fills the row. */
+static inline unsigned SC_KERNEL(lanes_of)(unsigned place, unsigned is_last)
+{
+    return ((0u - is_last) | 1u) << place;
+}
+
+/* As sc_model.share_touch has them; 0 of a leaf cluster by itself. */
+static inline unsigned SC_KERNEL(touch)(const sc_model *model, const sc_near_pair *pair)
+{
+    const unsigned is_pair = pair->shared != SC_NONE;
+    return sc_model_share_touch(model)[is_pair ? pair->shared : 0] & (0u - is_pair);
+}
+
+/* Whether two leaf clusters certainly have only the point in common that they touch in. */
+static inline unsigned SC_KERNEL(touch_only)(const sc_query_state *state, const sc_near_pair *pair)
+{
+    const unsigned touch = SC_KERNEL(touch)(state->model, pair);
+    const unsigned at_a = touch & 15u, at_b = touch >> 4 & 15u;
+    const float *of_a = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->a;
+    const float *of_b = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->b;
+    const float *p = of_a + 4 * sc_loops_turn(at_a);
+    unsigned ahead = SC_KERNEL(lanes_of)(at_a, touch >> SC_TOUCH_LAST & 1u);
+    unsigned behind = SC_KERNEL(lanes_of)(at_b, touch >> SC_TOUCH_LAST_OF_OTHER & 1u);
+    float m[3], back[3];
+    int k;
+    SC_KERNEL(find_way)(of_b, of_a, m);
+    SC_UNROLL
+    for (k = 0; k < 3; k++) back[k] = -m[k];
+    ahead |= SC_KERNEL(find_ahead)(of_a, m, p);
+    behind |= SC_KERNEL(find_ahead)(of_b, back, p);
+    return (ahead & behind & 0xffffu) == 0xffffu;
+}
+
+/* Drops such pairs of those that wait. In steps without branches, as any pair may be one. */
+static SC_NOINLINE void SC_KERNEL(drop_touching)(sc_query_state *state)
+{
+    sc_workspace *w = state->workspace;
+    sc_near_pair *pairs = w->near_pairs;
+    uint16_t touching[SC_LEAF_QUEUE + 1];
+    uint32_t count = 0, kept = 0, i;
+    for (i = 0; i < w->near_count; i++) {
+        touching[count] = (uint16_t)i;
+        count += SC_KERNEL(touch)(state->model, pairs + i) != 0;
+    }
+    if (!count) return;
+    for (i = 0; i < count; i++) {
+        sc_near_pair *p = pairs + touching[i];
+        if (i + SC_FETCH_POINTS < count) {
+            const uint64_t next = pairs[touching[i + SC_FETCH_POINTS]].b;
+            int k;
+            for (k = 0; k < 4; k++)
+                sc_fetch(w->point_at + SC_LEAF_POINTS * (4 * next + (unsigned)k));
+        }
+        p->shared |= SC_KERNEL(touch_only)(state, p) ? SC_NONE : 0;
+    }
+    for (i = 0; i < w->near_count; i++) {
+        const sc_near_pair p = pairs[i];
+        pairs[kept] = p;
+        kept += (unsigned)(p.shared != SC_NONE) | (unsigned)(p.a == p.b);
+    }
+    w->near_count = kept;
+}
