@@ -798,9 +798,11 @@ static void check_loops(const steps *s, const sc_model *m)
         uint32_t i = csf->contour_first[n] + (s->sctt.touch[n] == SC_NONE ? 0 : 2);
         sc_pair *end = edges;
         if (looped == 0) {
-            wrong += !csf->in_pieces[n] && csf->contour_first[n + 1] > i;
+            wrong +=
+                !csf->in_pieces[n] && csf->contour_first[n + 1] > i && s->sctt.touch[n] == SC_NONE;
             continue;
         }
+        wrong += s->sctt.touch[n] != SC_NONE;
         looped = list_loops(s, m, n, loop, &wrong);
         for (uint32_t k = i; k < csf->contour_first[n + 1]; ++k)
             count += count_edges(csf, csf->contours[k]);

@@ -388,7 +388,8 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
         count_points(csf, segments, count, &points, &edges);
         if (points > csf->contour_max) csf->contour_max = (uint32_t)points;
         csf->loop_first[n] = (uint32_t)loops;
-        loops += measure_loop(b->xbvh, sctt->patches[n], pieces, edges, loops);
+        if (sctt->touch[n] == SC_NONE)
+            loops += measure_loop(b->xbvh, sctt->patches[n], pieces, edges, loops);
     }
     csf->loop_first[nodes] = (uint32_t)loops;
     sc_chains_give(b->scratch, &chains);

@@ -5,10 +5,6 @@
  */
 #include "build/loops.h"
 
-#include <string.h>
-
-#include "build/chains.h"
-
 /* Points that are written at once. */
 enum { AT_ONCE = 8 };
 
@@ -78,34 +74,20 @@ static void write_loop(const sc_csf *csf, const sc_xbvh *xbvh, sc_pair patches,
 }
 
 sc_status sc_loops_write(const sc_csf *csf, const sc_sctt *sctt, const sc_xbvh *xbvh,
-                         const uint32_t *order, const uint8_t *leaf_corner, uint64_t point_count,
-                         sc_scratch *scratch, uint16_t *loop)
+                         const uint32_t *order, const uint8_t *leaf_corner, sc_scratch *scratch,
+                         uint16_t *loop)
 {
-    uint32_t n, *place = find_places(csf, xbvh, order, leaf_corner, scratch), *both;
-    sc_chains chains;
-    both = (uint32_t *)sc_scratch_take(scratch, csf->contour_max, sizeof *both);
-    chains.points = csf->points;
-    chains.first = csf->point_first;
-    chains.last = csf->point_last;
-    if (!place || !both || sc_chains_take(scratch, point_count, csf->contour_max, &chains))
-        return SC_ERROR_MEMORY;
+    uint32_t n, *place = find_places(csf, xbvh, order, leaf_corner, scratch);
+    if (!place) return SC_ERROR_MEMORY;
     for (n = 0; n < sctt->node_count; n++) {
         const uint32_t *segments = csf->contours + csf->contour_first[n];
         uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n];
         uint16_t *points = loop + csf->loop_first[n];
         if (csf->loop_first[n] == csf->loop_first[n + 1]) continue;
-        if (sctt->touch[n] != SC_NONE) { /* the patches are apart, but their chains meet */
-            count -= 2;
-            memcpy(both, segments + 2, count * sizeof *both);
-            (void)sc_chains_order(&chains, both, count);
-            segments = both;
-        }
         if (csf->in_pieces[n]) points = write_pieces(csf, segments, count, points);
         write_loop(csf, xbvh, sctt->patches[n], segments, place, points,
                    loop + csf->loop_first[n + 1], loop + csf->loop_first[sctt->node_count]);
     }
-    sc_chains_give(scratch, &chains);
-    sc_scratch_give(scratch, both);
     sc_scratch_give(scratch, place);
     return SC_OK;
 }

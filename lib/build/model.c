@@ -697,8 +697,8 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     write_segments(csf, number, sctt, m);
     write_levels(xbvh, sctt, csf, connected, NEW_ARRAY(m, level_info, sc_level));
     if (!sc_model_is_for_boxes(m))
-        status = sc_loops_write(csf, sctt, xbvh, hierarchy->order, sc_model_leaf_corner(m),
-                                points->point_count, scratch, NEW_ARRAY(m, loop, uint16_t));
+        status = sc_loops_write(csf, sctt, xbvh, hierarchy->order, sc_model_leaf_corner(m), scratch,
+                                NEW_ARRAY(m, loop, uint16_t));
     if (status) {
         sc_model_release(m);
         return status;

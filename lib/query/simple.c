@@ -534,10 +534,6 @@ static void fetch(const sc_model *model, uint32_t node, int step)
         for (i = 0; i < count; i += 16) sc_fetch(segments + i);
         return;
     }
-    if (sc_model_node_kind(model)[node] & SC_NODE_TOUCHES) {
-        segments += 2;
-        count = count < 2 ? 0 : count - 2;
-    }
     first = sc_model_segment_first(model);
     last = sc_model_segment_last(model);
     for (i = 0; i < count; i++) {
