@@ -1361,7 +1361,7 @@ static int is_in_sector(const double a[2], const double b[2], const double v[2])
 static void pinches_alone(void)
 {
     uint32_t wrong = 0, missed = 0, fine = 0, doubtful = 0;
-    for (uint32_t i = 0; i < test_iterations_at_least(40000, 4000); ++i) {
+    for (uint32_t i = 0; i < test_iterations_at_least(40000, 8000); ++i) {
         enum { POINTS = 6, ROOM = 32 };
         /* the point, out, in, the point, out, in: where the second in precedes the first out */
         float at[2][ROOM] = {{0}};
