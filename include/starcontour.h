@@ -314,10 +314,10 @@ typedef struct sc_model sc_model;
 
 /*
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
- * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.4 to 1.2 microseconds a
+ * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.4 to 1.4 microseconds a
  * triangle (regular grids and thin tubes least, irregular meshes of a million triangles most) and,
- * while it runs, up to 320 bytes a triangle; with METIS 5 to 6 microseconds a triangle; with
- * SC_MODEL_BOXES 0.2 to 0.4 microseconds and 170 bytes a triangle.
+ * while it runs, up to 320 bytes a triangle; with METIS 5 to 7 microseconds a triangle; with
+ * SC_MODEL_BOXES 0.2 to 0.5 microseconds and 170 bytes a triangle.
  */
 SC_API sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model);
 
