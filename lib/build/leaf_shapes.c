@@ -1,0 +1,204 @@
+/*
+ * Shapes of leaf clusters. See leaf_shapes.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/leaf_shapes.h"
+
+#include <string.h>
+
+#include "base/bits.h"
+#include "build/sharing_lists.h"
+
+/* How the triangles of a cluster lie round one of its points: as places in leaf_point, where each begins and ends, counter-
+   clockwise. */
+typedef struct turns {
+    uint32_t begins, ends; /* sets */
+    uint32_t count, twice; /* twice: some begin or end at the same place */
+    uint8_t end_of[SC_LEAF_POINTS];
+} turns;
+
+/* Whether they follow each other, all of them; and whether they close a fan. */
+static int are_one_fan(const turns *t, int *closed)
+{
+    uint32_t heads = t->begins & ~t->ends, start, at, steps = 0;
+    *closed = !heads;
+    if (!t->count || t->twice || (heads & (heads - 1))) return 0;
+    start = at = sc_bits_lowest(heads ? heads : t->begins);
+    do {
+        at = t->end_of[at];
+        steps++;
+    } while (at != start && (t->begins >> at & 1u));
+    return steps == t->count;
+}
+
+void sc_leaf_shapes_fans(const sc_model *m, uint16_t *fan)
+{
+    const uint32_t *first = sc_model_leaf_first(m);
+    const uint8_t *where = sc_model_leaf_corner(m);
+    uint32_t leaf, i, k;
+    for (leaf = 0; leaf < m->leaf_count; leaf++, where += 3 * SC_LEAF_MAX, fan += 2) {
+        turns at[SC_LEAF_POINTS];
+        memset(at, 0, sizeof at);
+        for (i = 0; i < first[leaf + 1] - first[leaf]; i++)
+            for (k = 0; k < 3; k++) {
+                uint8_t begin = where[SC_LEAF_MAX * ((k + 1) % 3) + i];
+                uint8_t end = where[SC_LEAF_MAX * ((k + 2) % 3) + i];
+                turns *t = &at[where[SC_LEAF_MAX * k + i]];
+                t->twice |= (t->begins >> begin | t->ends >> end) & 1u;
+                t->begins |= 1u << begin;
+                t->ends |= 1u << end;
+                t->end_of[begin] = end;
+                t->count++;
+            }
+        fan[0] = fan[1] = 0;
+        for (i = 0; i < SC_LEAF_POINTS; i++) {
+            int closed;
+            if (are_one_fan(&at[i], &closed)) fan[!closed] |= (uint16_t)(1u << i);
+        }
+    }
+}
+
+/* Follows a chain of edges until it begins again; returns how many points it has. */
+static uint32_t follow_chain(const uint32_t to[SC_LEAF_POINTS], uint32_t start,
+                             uint8_t outline[SC_LEAF_POINTS])
+{
+    uint32_t at = start, count = 0;
+    do {
+        outline[count++] = (uint8_t)at;
+        at = sc_bits_lowest(to[at]);
+    } while (at != start);
+    return count;
+}
+
+/* Writes an outline of two chains, if it is such; the first has so many points. */
+static void write_two_chains(const uint32_t to[SC_LEAF_POINTS], uint32_t edges, uint32_t first,
+                             uint8_t outline[SC_LEAF_POINTS])
+{
+    uint8_t second[SC_LEAF_POINTS];
+    uint32_t in_first = 0, count, start = 0, i;
+    for (i = 0; i < first; i++) in_first |= 1u << outline[i];
+    for (i = 0; i < SC_LEAF_POINTS; i++)
+        if (to[i] && !(in_first >> i & 1u)) start = i;
+    count = follow_chain(to, start, second);
+    memset(outline, 0, SC_LEAF_POINTS);
+    outline[SC_LEAF_POINTS - 1] = SC_LEAF_POINTS;
+    if (first + count != edges) return;
+    for (i = 0; i < SC_LEAF_POINTS; i++) outline[i] = (uint8_t)(i | SC_OUTLINE_NOWHERE);
+    for (i = 0; i < SC_LEAF_POINTS; i++)
+        if (to[i]) outline[i] = (uint8_t)sc_bits_lowest(to[i]);
+    for (i = 0; i < count; i++) outline[second[i]] |= SC_OUTLINE_SECOND;
+    outline[SC_LEAF_POINTS - 1] |= SC_OUTLINE_TWO;
+}
+
+void sc_leaf_shapes_outlines(const sc_model *m, uint8_t *outline)
+{
+    const uint32_t *first = sc_model_leaf_first(m);
+    const uint8_t *where = sc_model_leaf_corner(m);
+    uint32_t leaf, i, k;
+    for (leaf = 0; leaf < m->leaf_count;
+         leaf++, where += 3 * SC_LEAF_MAX, outline += SC_LEAF_POINTS) {
+        uint32_t to[SC_LEAF_POINTS] = {0}, edges = 0, start = 0, count = 0;
+        int is_chain = 1;
+        for (i = 0; i < first[leaf + 1] - first[leaf]; i++)
+            for (k = 0; k < 3; k++) {
+                uint32_t end = where[SC_LEAF_MAX * ((k + 1) % 3) + i];
+                uint32_t *from = &to[where[SC_LEAF_MAX * k + i]];
+                is_chain &= !(*from >> end & 1u);
+                *from |= 1u << end;
+            }
+        for (i = 0; i < SC_LEAF_POINTS; i++) /* an edge and its opposite are none */
+            for (k = 0; k <= i; k++) {
+                uint32_t both = (to[i] >> k & 1u) & (to[k] >> i & 1u);
+                to[i] &= ~(both << k);
+                to[k] &= ~(both << i);
+            }
+        for (i = 0; i < SC_LEAF_POINTS; i++) {
+            is_chain &= !(to[i] & (to[i] - 1));
+            edges += to[i] != 0;
+            start = to[i] ? i : start;
+        }
+        memset(outline, 0, SC_LEAF_POINTS);
+        if (is_chain && edges) count = follow_chain(to, start, outline);
+        if (is_chain && count != edges)
+            write_two_chains(to, edges, count, outline);
+        else if (count < SC_LEAF_POINTS)
+            outline[SC_LEAF_POINTS - 1] = (uint8_t)(SC_LEAF_POINTS + count);
+    }
+}
+
+/* Whether two leaf clusters whose outlines are two chains each share the points of just one of either, which runs in the other
+   direction in the other cluster. */
+static int share_chain(const sc_model *m, uint32_t a, uint32_t b)
+{
+    const uint8_t *row[2];
+    const uint32_t *point[2];
+    uint32_t shared[2] = {0, 0}, i, k;
+    uint8_t other[SC_LEAF_POINTS] = {0};
+    int s;
+    for (s = 0; s < 2; s++) {
+        const uint64_t leaf = s ? b : a;
+        row[s] = sc_model_leaf_outline(m) + SC_LEAF_POINTS * leaf;
+        point[s] = sc_model_leaf_point(m) + SC_LEAF_POINTS * leaf;
+        if (!(row[s][SC_LEAF_POINTS - 1] & SC_OUTLINE_TWO)) return 0;
+    }
+    for (i = SC_LEAF_POINTS; i-- > 0;)
+        for (k = SC_LEAF_POINTS; k-- > 0;)
+            if (point[0][i] == point[1][k] && (!i || point[0][i] != point[0][i - 1]) &&
+                (!k || point[1][k] != point[1][k - 1])) { /* not what fills a row */
+                shared[0] |= 1u << i;
+                shared[1] |= 1u << k;
+                other[i] = (uint8_t)k;
+            }
+    for (s = 0; s < 2; s++) {
+        uint32_t chain[2] = {0, 0};
+        for (i = 0; i < SC_LEAF_POINTS; i++)
+            if (!(row[s][i] & SC_OUTLINE_NOWHERE))
+                chain[(row[s][i] & SC_OUTLINE_SECOND) != 0] |= 1u << i;
+        if (shared[s] != chain[0] && shared[s] != chain[1]) return 0;
+    }
+    for (i = 0; i < SC_LEAF_POINTS; i++) {
+        const uint32_t next = row[0][i] & (SC_LEAF_POINTS - 1u);
+        if ((shared[0] >> i & 1u) && (row[1][other[next]] & (SC_LEAF_POINTS - 1u)) != other[i])
+            return 0;
+    }
+    return 1;
+}
+
+void sc_leaf_shapes_mark_chains(const sc_model *m, uint16_t *list)
+{
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const uint32_t *begin = sc_model_share_begin(m);
+    uint32_t leaf, i;
+    for (leaf = 0; leaf < m->leaf_count; leaf++)
+        for (i = first[leaf]; i < first[leaf + 1]; i++)
+            if (share_chain(m, leaf, other[i])) list[begin[i] + SC_SHARE_KINDS] |= SC_SHARE_CHAIN;
+}
+
+/* Where two leaf clusters have the one point that they share; 0 if they share more. */
+static uint16_t find_touch(const uint32_t *points, const uint32_t *other)
+{
+    uint32_t shared = 0, at = 0, i, k;
+    for (i = 0; i < SC_LEAF_POINTS; i++) {
+        if (i && points[i] == points[i - 1]) break; /* what fills the row */
+        for (k = 0; k < SC_LEAF_POINTS; k++) {
+            if (points[i] != other[k]) continue;
+            if (++shared > 1) return 0;
+            at = i | k << 4 | (uint32_t)(points[i] == points[SC_LEAF_POINTS - 1]) << SC_TOUCH_LAST |
+                 (uint32_t)(other[k] == other[SC_LEAF_POINTS - 1]) << SC_TOUCH_LAST_OF_OTHER;
+            break;
+        }
+    }
+    return (uint16_t)(shared ? SC_TOUCHES | at : 0);
+}
+
+void sc_leaf_shapes_touches(const sc_model *m, uint16_t *touch)
+{
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const uint32_t *points = sc_model_leaf_point(m);
+    uint32_t leaf, i;
+    for (leaf = 0; leaf < m->leaf_count; leaf++)
+        for (i = first[leaf]; i < first[leaf + 1]; i++)
+            touch[i] = find_touch(points + SC_LEAF_POINTS * (uint64_t)leaf,
+                                  points + SC_LEAF_POINTS * (uint64_t)other[i]);
+}

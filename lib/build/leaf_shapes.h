@@ -1,0 +1,28 @@
+/*
+ * Shapes of leaf clusters: what the topology alone tells of them, so that a query can see at once whether their triangles have
+ * only in common what they share.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Each function fills an array of a model, as build/model.h describes it, from those that are there already: leaf_first,
+ * leaf_point and leaf_corner; of two leaf clusters that share points also share_first and share_leaf. Cost: linear.
+ */
+#ifndef SC_BUILD_LEAF_SHAPES_H
+#define SC_BUILD_LEAF_SHAPES_H
+
+#include "build/model.h"
+
+/* Which points have all their triangles of the cluster in one fan: leaf_fan. */
+void sc_leaf_shapes_fans(const sc_model *model, uint16_t *fan);
+
+/* The chains of edges round each cluster: leaf_outline. */
+void sc_leaf_shapes_outlines(const sc_model *model, uint8_t *outline);
+
+/* Where two clusters have the one point that they share: share_touch. */
+void sc_leaf_shapes_touches(const sc_model *model, uint16_t *touch);
+
+/* Marks those lists of share_list that are of two clusters round a tube which share a chain of either (SC_SHARE_CHAIN);
+   reads leaf_outline and share_begin as well. */
+void sc_leaf_shapes_mark_chains(const sc_model *model, uint16_t *list);
+
+#endif
