@@ -101,9 +101,8 @@ typedef struct sc_walk {
     uint32_t *self;  /* leaf_count: nodes of one patch to test, if need be, after all others */
     uint8_t *culled; /* patch_end: 1 if in a node that passed, as far as may be looked at */
     uint8_t *marks;  /* patch_end: where that is written down; the same, if one worker does all */
-    uint32_t *
-        alone; /* leaf_count: leaf clusters to look at by themselves, if need be, after all others: 2 * number, and 1 after
-                        a contour test */
+    uint32_t *alone; /* leaf_count: twice the leaf clusters to look at by themselves, if need be,
+                        after all others; and 1 after a contour test */
     uint32_t stack_count, queue_count, self_count, alone_count;
     uint32_t selfs_wait;
     sc_pair pairs[2]

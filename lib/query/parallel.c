@@ -60,9 +60,8 @@ typedef struct plan {
     sc_filter filter;                            /* the caller's without its function */
     uint32_t part_count, test_count, open_count; /* of those in w->parts, tests and open */
     uint32_t last_end[SC_WORKERS_MAX]; /* parts that were left for the end by workers up to each */
-    uint32_t alone_count
-        [SC_WORKERS_MAX]; /* leaf clusters to be looked at by themselves that each has listed by then */
-    sc_jobs_ranges ranges; /* of the job at hand */
+    uint32_t alone_count[SC_WORKERS_MAX]; /* leaf clusters that each has listed by then */
+    sc_jobs_ranges ranges;                /* of the job at hand */
 } plan;
 
 const sc_tasks *sc_parallel_tasks(const sc_query_state *state)
