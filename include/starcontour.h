@@ -156,13 +156,14 @@ enum {
 };
 
 /*
- * Functions that the library calls, each of which may be NULL, in the thread that called the library.
- * They must not call it back with what that call was given, nor leave by longjmp or an exception.
+ * Functions that the library calls, each of which may be NULL, in the thread that called the
+ * library. They must not call it back with what that call was given, nor leave by longjmp or an
+ * exception.
  *   log     gets messages in English, without a line end, that last as long as the call
- *   failed  gets each internal invariant that does not hold: a bug in the library, please report it.
- *           Invariants are looked at only if the library was compiled with SC_VALIDATE (make
- *           config=debug or sanitize); such a library goes on when failed returns, and ends the program
- *           by assert if it is NULL
+ *   failed  gets each internal invariant that does not hold: a bug in the library, please report
+ *           it. Invariants are looked at only if the library was compiled with SC_VALIDATE (make
+ *           config=debug or sanitize); such a library goes on when failed returns, and ends the
+ *           program by assert if it is NULL
  *   user    passed through
  */
 typedef struct sc_hooks {
@@ -220,7 +221,8 @@ typedef struct sc_pose {
  * Building
  */
 
-/* Which vertices are one. Welded vertices have the position of their representative in every pose. */
+/* Which vertices are one. Welded vertices have the position of their representative in every
+   pose. */
 enum {
     SC_WELD_REST = 0, /* those with equal rest positions (-0 equals 0); the lowest number that a
                          triangle uses represents them */
@@ -248,8 +250,8 @@ typedef struct sc_tree_node {
 } sc_tree_node;
 
 /*
- * The dual graph of a patch that is to be cut in two: one node per triangle, an arc each way between
- * triangles that share an edge.
+ * The dual graph of a patch that is to be cut in two: one node per triangle, an arc each way
+ * between triangles that share an edge.
  */
 typedef struct sc_dual_graph {
     uint32_t struct_size;
@@ -264,16 +266,17 @@ typedef struct sc_dual_graph {
 /*
  * Cuts a patch in two: writes 0 or 1 to side[0 .. node_count - 1] so that about left_target nodes
  * get 0. Returns SC_OK, or any other status to give up, which ends sc_build with that status. The
- * library evens out sizes and mends what is not connected afterwards. It is not asked about tubes and strands
- * so thin that a leaf cluster goes round them: these are cut into rings.
+ * library evens out sizes and mends what is not connected afterwards. It is not asked about tubes
+ * and strands so thin that a leaf cluster goes round them: these are cut into rings.
  */
 typedef sc_status (*sc_bisect)(void *user, const sc_dual_graph *graph, uint32_t left_target,
                                uint8_t *side);
 
 /*
- * Whether sc_build tries the orientation and the star-contour test on the rest pose, which takes 0.2 to
- * 0.5 microseconds a triangle more. What fails is marked in the model, for rest-shape caching by queries
- * with SC_CONTOUR_STAR, and counted for sc_level_info. Other queries have no use for it.
+ * Whether sc_build tries the orientation and the star-contour test on the rest pose, which takes
+ * 0.2 to 0.5 microseconds a triangle more. What fails is marked in the model, for rest-shape
+ * caching by queries with SC_CONTOUR_STAR, and counted for sc_level_info. Other queries have no use
+ * for it.
  */
 enum { SC_REST_UNMARKED = 0, SC_REST_MARKED = 1 };
 
@@ -284,11 +287,11 @@ enum { SC_REST_UNMARKED = 0, SC_REST_MARKED = 1 };
  *                   _SWEPT. All that only culling needs is left out, and with SC_PARTITION_FAST
  *                   patches are cut from a space-filling curve. Building takes 0.25 to 0.4 of the
  *                   time (of thin tubes 0.8), model and workspace less than half of the memory, and
- *                   a query 1.1 to 1.3 times as long as by SC_METHOD_AABB on a full model (where many
- *                   thin tubes lie close together up to 2.6 times): the faster way for a mesh that is
- *                   asked about once, or up to some ten times. Pairs are the same. The default
- *                   methods are those by boxes on such a model; what asks for another one, for a
- *                   contour test, or for SC_REST_MARKED, ends with SC_ERROR_BOXES_ONLY
+ *                   a query 1.1 to 1.3 times as long as by SC_METHOD_AABB on a full model (where
+ *                   many thin tubes lie close together up to 2.6 times): the faster way for a mesh
+ *                   that is asked about once, or up to some ten times. Pairs are the same. The
+ *                   default methods are those by boxes on such a model; what asks for another one,
+ *                   for a contour test, or for SC_REST_MARKED, ends with SC_ERROR_BOXES_ONLY
  */
 enum { SC_MODEL_FULL = 0, SC_MODEL_BOXES = 1 };
 
@@ -314,10 +317,10 @@ typedef struct sc_model sc_model;
 
 /*
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
- * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.4 to 1.4 microseconds a
- * triangle (regular grids and thin tubes least, irregular meshes of a million triangles most) and,
- * while it runs, up to 320 bytes a triangle; with METIS 5 to 7 microseconds a triangle; with
- * SC_MODEL_BOXES 0.2 to 0.5 microseconds and 170 bytes a triangle.
+ * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.4 to 1.4
+ * microseconds a triangle (regular grids and thin tubes least, irregular meshes of a million
+ * triangles most) and, while it runs, up to 320 bytes a triangle; with METIS 5 to 7 microseconds a
+ * triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 170 bytes a triangle.
  */
 SC_API sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model);
 
@@ -356,8 +359,8 @@ typedef struct sc_level_info {
                                    with SC_MODEL_BOXES */
     uint32_t segment_count;     /* contour segments at this level */
     uint32_t self_nodes;        /* test-tree nodes of one patch against itself */
-    /* how many of them passed the orientation test in the rest pose, and the star-contour test as well: 0
-       unless the model was built with SC_REST_MARKED */
+    /* how many of them passed the orientation test in the rest pose, and the star-contour test as
+       well: 0 unless the model was built with SC_REST_MARKED */
     uint32_t self_oriented;
     uint32_t self_culled;
     uint32_t pair_nodes; /* the same for nodes of two adjacent patches */
@@ -379,10 +382,10 @@ SC_API sc_status sc_model_get_patches(const sc_model *model, uint32_t level,
 /* ------------------------------------------------------------------------------------------------
  * Saved models
  *
- * Build once, with the slowest partition there is time for, and ship the result: loading needs neither
- * the mesh nor METIS. The bytes are those of the model in memory behind a header with a format version,
- * the byte order and a checksum. They serve all machines of that byte order, 32 or 64 bits. The format
- * may change with each minor version before 1.0: keep the mesh.
+ * Build once, with the slowest partition there is time for, and ship the result: loading needs
+ * neither the mesh nor METIS. The bytes are those of the model in memory behind a header with a
+ * format version, the byte order and a checksum. They serve all machines of that byte order, 32 or
+ * 64 bits. The format may change with each minor version before 1.0: keep the mesh.
  */
 
 /* Writes the number of bytes that sc_model_save writes: model_bytes of sc_model_info. */
@@ -390,8 +393,8 @@ SC_API sc_status sc_model_save_size(const sc_model *model, uint64_t *size);
 
 /*
  * Saves a model: writes *written bytes to memory, of which there are size, at any alignment. Equal
- * models give equal bytes. SC_ERROR_SHORT_BUFFER if they do not fit: nothing is written, and *written
- * is what is needed. written may be NULL.
+ * models give equal bytes. SC_ERROR_SHORT_BUFFER if they do not fit: nothing is written, and
+ * *written is what is needed. written may be NULL.
  */
 SC_API sc_status sc_model_save(const sc_model *model, void *memory, uint64_t size,
                                uint64_t *written);
@@ -419,9 +422,9 @@ typedef struct sc_load_options {
  * sc_model_free; otherwise it is NULL.
  *
  * Any bytes may be given. Data that are cut off, changed, foreign, of another version or forged are
- * refused, each with a status of its own (SC_ERROR_NOT_SAVED to SC_ERROR_TOPOLOGY). Everything that a
- * query will rely on is checked first: a model that was made up by someone who knows the format may
- * give wrong answers, but no query on it reads or writes where it must not, or fails to end.
+ * refused, each with a status of its own (SC_ERROR_NOT_SAVED to SC_ERROR_TOPOLOGY). Everything that
+ * a query will rely on is checked first: a model that was made up by someone who knows the format
+ * may give wrong answers, but no query on it reads or writes where it must not, or fails to end.
  *
  * About 0.1 microseconds a triangle in place, 0.16 with the copy. Either mode takes some 1.1
  * bytes a triangle from the allocator while it checks, and SC_LOAD_IN_PLACE nothing that stays.
@@ -433,7 +436,8 @@ SC_API sc_status sc_model_load(const void *data, uint64_t size, const sc_load_op
  * Workspaces
  */
 
-/* All that a query writes to. It fits the model it was made for and belongs to one call at a time. */
+/* All that a query writes to. It fits the model it was made for and belongs to one call at a
+   time. */
 typedef struct sc_workspace sc_workspace;
 
 /* Writes the number of bytes that a workspace for this model takes. */
@@ -470,8 +474,8 @@ typedef struct sc_workspace_options {
 
 /*
  * The same three for a workspace of any kind; options may be NULL, then they are the same. Such a
- * workspace also serves plain queries. Each worker but the first takes about 20 bytes a vertex and 10 to
- * 50 kilobytes more. SC_ERROR_OPTION: unknown flags, too many workers, or reserved is not 0.
+ * workspace also serves plain queries. Each worker but the first takes about 20 bytes a vertex and
+ * 10 to 50 kilobytes more. SC_ERROR_OPTION: unknown flags, too many workers, or reserved is not 0.
  */
 SC_API sc_status sc_workspace_size_for(const sc_model *model, const sc_workspace_options *options,
                                        uint64_t *size);
@@ -483,8 +487,8 @@ SC_API sc_status sc_workspace_create_for(const sc_model *model, const sc_workspa
 /* Hooks for the queries on a workspace, copied; NULL for none, as at first. */
 SC_API sc_status sc_workspace_set_hooks(sc_workspace *workspace, const sc_hooks *hooks);
 
-/* Frees what sc_workspace_create(_for) made; does nothing to what sc_workspace_init(_for) made. NULL is
-   allowed. */
+/* Frees what sc_workspace_create(_for) made; does nothing to what sc_workspace_init(_for) made.
+   NULL is allowed. */
 SC_API void sc_workspace_free(sc_workspace *workspace);
 
 /* ------------------------------------------------------------------------------------------------
@@ -492,24 +496,24 @@ SC_API void sc_workspace_free(sc_workspace *workspace);
  */
 
 /*
- * The host's threads, for one query to use several of: a job system, or a pool of threads. Without, a query
- * runs in the thread that calls it. A query cuts its work into jobs one after the other, and each job into
- * parts that may run in any order and at once.
+ * The host's threads, for one query to use several of: a job system, or a pool of threads. Without,
+ * a query runs in the thread that calls it. A query cuts its work into jobs one after the other,
+ * and each job into parts that may run in any order and at once.
  *
  *   workers  how many parts may run at once, at most what the workspace was made for
  *            (sc_workspace_options.workers), else SC_ERROR_WORKSPACE; 0 and 1: one
- *   enqueue  runs the count parts of a job, 1 or more: run(context, part, worker) once for each part from
- *            0 to count - 1, in any threads, worker being a number below workers that no other running
- *            part of the job has. May return before they are done, or run them all itself. What it returns
- *            is passed to finish and may be NULL
- *   finish   returns when all parts of that job are done. What they wrote must be visible to the caller
- *            then, as what the caller wrote before enqueue must be to the parts: so it is with any
- *            locks, joins or queues of threads
+ *   enqueue  runs the count parts of a job, 1 or more: run(context, part, worker) once for each
+ *            part from 0 to count - 1, in any threads, worker being a number below workers that no
+ *            other running part of the job has. May return before they are done, or run them all
+ *            itself. What it returns is passed to finish and may be NULL
+ *   finish   returns when all parts of that job are done. What they wrote must be visible to the
+ *            caller then, as what the caller wrote before enqueue must be to the parts: so it is
+ *            with any locks, joins or queues of threads
  *   user     passed through
  *
- * enqueue and finish are called in the thread that called the library, in turn: there is one job of a query
- * at a time. run takes 32 kilobytes of stack, does not block and calls neither of them. They must not fail:
- * without a free thread, run the parts in the caller's:
+ * enqueue and finish are called in the thread that called the library, in turn: there is one job of
+ * a query at a time. run takes 32 kilobytes of stack, does not block and calls neither of them.
+ * They must not fail: without a free thread, run the parts in the caller's:
  *
  *     void *enqueue(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
  *                   void *context, uint32_t count)
@@ -548,9 +552,9 @@ enum {
  *     flat onto each other;
  *   - sharing three vertices: always.
  * SC_PAIRS_EDGE: an edge a and a triangle b that have a common point and share no vertex. The edge
- * is given by a corner of a triangle: a = 3 t + k is the edge from vertex k to vertex (k + 1) % 3 of
- * triangle t. An edge of several triangles is named by the one with the lowest number and then the
- * lowest k. A side from a vertex to itself is no edge.
+ * is given by a corner of a triangle: a = 3 t + k is the edge from vertex k to vertex (k + 1) % 3
+ * of triangle t. An edge of several triangles is named by the one with the lowest number and then
+ * the lowest k. A side from a vertex to itself is no edge.
  *
  * "Share" is said of vertex numbers after welding.
  */
@@ -564,8 +568,8 @@ enum {
                              Triangle pairs: an edge of one does so with the other */
 };
 
-/* How pairs are sought. The answer is the same for all, but for contour SC_CONTOUR_NONE. The default is
-   SC_METHOD_SCTT, on a model with SC_MODEL_BOXES SC_METHOD_AABB. */
+/* How pairs are sought. The answer is the same for all, but for contour SC_CONTOUR_NONE. The
+   default is SC_METHOD_SCTT, on a model with SC_MODEL_BOXES SC_METHOD_AABB. */
 enum {
     SC_METHOD_DEFAULT = 0,
     SC_METHOD_SCTT = 1,      /* self-collision test tree with orientation and contour tests */
@@ -584,8 +588,8 @@ enum {
                             mesh. Keeps nothing from the rest pose */
 };
 
-/* Rest-shape caching (paper, section 8): tests that failed in the rest pose are taken as failed. Only
-   with SC_CONTOUR_STAR and SC_CONTOUR_NONE, on models that were built with SC_REST_MARKED. */
+/* Rest-shape caching (paper, section 8): tests that failed in the rest pose are taken as failed.
+   Only with SC_CONTOUR_STAR and SC_CONTOUR_NONE, on models that were built with SC_REST_MARKED. */
 enum { SC_REST_CACHE_ON = 0, SC_REST_CACHE_OFF = 1 };
 
 /* Which instructions inner loops use. The answer is the same bit for bit. */
@@ -615,32 +619,34 @@ typedef struct sc_group {
 #define SC_RINGS_MAX 32
 
 /*
- * Which pairs are not wanted. A pair is reported, counted, or ends a query for SC_OUTPUT_ANY only if
- * nothing here says no; culling is as without a filter, and so no wanted pair is missed. Arrays are the
- * caller's and are only read, during the call; they need the alignment of uint32_t. All members but
- * struct_size may be zero: nothing is left out.
+ * Which pairs are not wanted. A pair is reported, counted, or ends a query for SC_OUTPUT_ANY only
+ * if nothing here says no; culling is as without a filter, and so no wanted pair is missed. Arrays
+ * are the caller's and are only read, during the call; they need the alignment of uint32_t. All
+ * members but struct_size may be zero: nothing is left out.
  *
  *   ignore_rings    1: leaves out pairs that share a vertex. n: pairs less than n edges of the mesh
- *                   apart, counted from the vertices of one to those of the other, after welding; so for
- *                   triangles, those within n rings of each other. At most SC_RINGS_MAX. An edge and a
- *                   triangle never share a vertex, and 1 is without effect on them
- *   vertex_groups   vertex_count groups. A triangle or edge is in all categories of its vertices, and its
- *                   mask is the union of theirs: at a border between groups it belongs to both. For
- *                   vertices welded together, the group of the one that represents them is read
+ *                   apart, counted from the vertices of one to those of the other, after welding;
+ *                   so for triangles, those within n rings of each other. At most SC_RINGS_MAX. An
+ *                   edge and a triangle never share a vertex, and 1 is without effect on them
+ *   vertex_groups   vertex_count groups. A triangle or edge is in all categories of its vertices,
+ *                   and its mask is the union of theirs: at a border between groups it belongs to
+ *                   both. For vertices welded together, the group of the one that represents them
+ *                   is read
  *   triangle_groups triangle_count groups. An edge has the group of the triangle that names it,
  *                   a / 3. Where there are vertex groups as well, both must collide
- *   ignore          ignore_count pairs that are left out, in the numbers of this kind of pair, sorted by
- *                   a, then b, as a query reports them; repeats are allowed. With the pairs of the rest
- *                   pose here, only new contacts are reported:
+ *   ignore          ignore_count pairs that are left out, in the numbers of this kind of pair,
+ *                   sorted by a, then b, as a query reports them; repeats are allowed. With the
+ *                   pairs of the rest pose here, only new contacts are reported:
  *                       sc_query(model, workspace, &rest_pose, &options, &result);
  *                       filter.ignore = result.pairs, filter.ignore_count = result.count;
  *   accept          called for each pair that nothing else leaves out, once, in any order, from
- *                   within sc_query, in the thread that called it; 0 leaves it out. It must not use the
- *                   workspace of the query. After SC_OUTPUT_ANY found a pair it is called no more
+ *                   within sc_query, in the thread that called it; 0 leaves it out. It must not use
+ *                   the workspace of the query. After SC_OUTPUT_ANY found a pair it is called no
+ *                   more
  *
  * Cost: groups and the first ring are asked before triangles are tested. Each query reads
- * ignore once to see that it is sorted (about 1 ns a pair), and looks it up for each pair found. More
- * rings walk the mesh round pairs found: about 3 ignore_rings^2 vertices each.
+ * ignore once to see that it is sorted (about 1 ns a pair), and looks it up for each pair found.
+ * More rings walk the mesh round pairs found: about 3 ignore_rings^2 vertices each.
  */
 typedef struct sc_filter {
     uint32_t struct_size;
@@ -727,42 +733,43 @@ typedef struct sc_result {
  *
  * Returns SC_OK, or SC_ERROR_SHORT_BUFFER when there are more pairs than fit: result->count is then
  * the number needed, and the array holds the first capacity pairs of the sorted list; or
- * SC_ERROR_INCOMPLETE, see below. On any other error count, collides and verdict are 0 and the array is
- * as it was.
+ * SC_ERROR_INCOMPLETE, see below. On any other error count, collides and verdict are 0 and the
+ * array is as it was.
  *
- * Stopping early. With options->cancel, any thread may end the query by storing a number other than 0
- * there: an aligned store of 32 bits, in C11 and C++11 an atomic one, relaxed. With options->budget it
- * ends after so many units of work: the sum of sc_stats.counts but for SC_TASK_UPDATE_BOXES and
- * SC_TASK_UPDATE_NORMALS. Then it returns SC_ERROR_INCOMPLETE, the verdict is SC_VERDICT_INCOMPLETE,
- * and what was found so far is delivered as usual: count is the number of pairs found so far, collides
- * says whether there is one, and the array holds those, or the first capacity of them, sorted. A query
- * that a first pair ends, by SC_OUTPUT_ANY, is complete.
- *   A budget ends a query of the same model, pose and options after the same pairs each time, on every
- * machine; another version of the library may work in another order. It is overrun by one contour test
- * or five thousand units at most.
+ * Stopping early. With options->cancel, any thread may end the query by storing a number other than
+ * 0 there: an aligned store of 32 bits, in C11 and C++11 an atomic one, relaxed. With
+ * options->budget it ends after so many units of work: the sum of sc_stats.counts but for
+ * SC_TASK_UPDATE_BOXES and SC_TASK_UPDATE_NORMALS. Then it returns SC_ERROR_INCOMPLETE, the verdict
+ * is SC_VERDICT_INCOMPLETE, and what was found so far is delivered as usual: count is the number of
+ * pairs found so far, collides says whether there is one, and the array holds those, or the first
+ * capacity of them, sorted. A query that a first pair ends, by SC_OUTPUT_ANY, is complete.
+ *   A budget ends a query of the same model, pose and options after the same pairs each time, on
+ * every machine; another version of the library may work in another order. It is overrun by one
+ * contour test or five thousand units at most.
  *   The flag is looked at before each exact test and every few dozen boxes, most often within 20
  * microseconds, but not during the passes over the whole mesh with which a query begins (reading
- * positions, normals, boxes; about 1, 2 and 2 ns a triangle with AVX-512) and the sorting of pairs found, with which
- * it ends.
+ * positions, normals, boxes; about 1, 2 and 2 ns a triangle with AVX-512) and the sorting of pairs
+ * found, with which it ends.
  *
- * A filter that cannot be read ends the query: SC_ERROR_STRUCT_SIZE, SC_ERROR_OPTION (ignore_rings),
- * SC_ERROR_NULL (ignore), or SC_ERROR_PAIRS where ignore is not sorted, names a triangle or edge that
- * does not exist, or has a >= b for triangles.
+ * A filter that cannot be read ends the query: SC_ERROR_STRUCT_SIZE, SC_ERROR_OPTION
+ * (ignore_rings), SC_ERROR_NULL (ignore), or SC_ERROR_PAIRS where ignore is not sorted, names a
+ * triangle or edge that does not exist, or has a >= b for triangles.
  *
- * Several threads. With options->tasks the passes over the pose, the walk through the tree and the tests of
- * triangles are done by all workers. The answer is the same. It pays from about 20,000
+ * Several threads. With options->tasks the passes over the pose, the walk through the tree and the
+ * tests of triangles are done by all workers. The answer is the same. It pays from about 20,000
  * triangles. By the calling thread alone are done:
  *   - the sorting, about 4 ns a pair, unless there are more than about six pairs a triangle;
  *   - queries on models of fewer than 128 leaf clusters;
- *   - all but the passes with a budget, SC_CONTOUR_STAR or _NONE, and a filter's accept unless there is an array for
- *     the pairs, and where the library was compiled by other compilers than gcc or clang;
+ *   - all but the passes with a budget, SC_CONTOUR_STAR or _NONE, and a filter's accept unless
+ *     there is an array for the pairs, and where the library was compiled by other compilers than
+ *     gcc or clang;
  *   - all but the passes once more, where the array turns out to be too short.
- * Counts in statistics do not depend on the number of workers if that is 2 or more, but for SC_OUTPUT_ANY.
- * Times of walk and tests are added up over the workers. Which pairs a query has found when a flag ends it depends on
- * the threads.
+ * Counts in statistics do not depend on the number of workers if that is 2 or more, but for
+ * SC_OUTPUT_ANY. Times of walk and tests are added up over the workers. Which pairs a query has
+ * found when a flag ends it depends on the threads.
  *
- * Pairs and their order depend on the mesh, the welding, the pose, the kind of pair asked for and the
- * filter, and on nothing else: not on partition, method, threads, compiler or machine.
+ * Pairs and their order depend on the mesh, the welding, the pose, the kind of pair asked for and
+ * the filter, and on nothing else: not on partition, method, threads, compiler or machine.
  */
 SC_API sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
                           const sc_query_options *options, sc_result *result);
@@ -780,11 +787,11 @@ enum {
 };
 
 /*
- * Where the two of a pair meet: all that they have in common as closed sets, so with the vertex or edge
- * that two triangles share. points are the two ends of a segment; twice the same point; or of an area
- * two of its corners that are far apart. Each is given three times: by its coordinates, and by weights
- * of the vertices of a and of b (barycentric coordinates) in the order of the mesh's triangle. For an
- * edge the first two weights are those of its two ends, the third is 0.
+ * Where the two of a pair meet: all that they have in common as closed sets, so with the vertex or
+ * edge that two triangles share. points are the two ends of a segment; twice the same point; or of
+ * an area two of its corners that are far apart. Each is given three times: by its coordinates, and
+ * by weights of the vertices of a and of b (barycentric coordinates) in the order of the mesh's
+ * triangle. For an edge the first two weights are those of its two ends, the third is 0.
  *
  * kind is exact. A weight is from 0 to 1 and off by at most 2^-49 times its value, however thin the
  * triangles and however small the angle; weights 0 are exactly so unless they are below 2^-1000. A
@@ -800,20 +807,20 @@ typedef struct sc_contact {
 } sc_contact;
 
 /*
- * Finds where pairs meet: contacts[i] is that of pairs[i]. kind is SC_PAIRS_..., pairs and contacts have
- * count entries. The pairs may be any of the model's triangles or edges, in any order, such as those
- * that sc_query found, in the numbers it reports:
+ * Finds where pairs meet: contacts[i] is that of pairs[i]. kind is SC_PAIRS_..., pairs and contacts
+ * have count entries. The pairs may be any of the model's triangles or edges, in any order, such as
+ * those that sc_query found, in the numbers it reports:
  *
  *     sc_query(model, workspace, &pose, &options, &result);
  *     sc_contacts(model, &pose, options.pairs, result.pairs, result.count, contacts);
  *
  * What has nothing in common in this pose is SC_MEET_NONE, with zeros. No memory is taken and no
- * workspace, so threads may share a list of pairs. 1 to 3 us a pair; 100 us and more where exponents
- * differ widely.
+ * workspace, so threads may share a list of pairs. 1 to 3 us a pair; 100 us and more where
+ * exponents differ widely.
  *
  * SC_ERROR_PAIRS: a pair names a triangle or edge that does not exist, or a triangle twice.
- * SC_ERROR_NOT_FINITE: a vertex of a pair is NaN or infinite. On these and other errors contacts may
- * have been written to in part.
+ * SC_ERROR_NOT_FINITE: a vertex of a pair is NaN or infinite. On these and other errors contacts
+ * may have been written to in part.
  */
 SC_API sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_t kind,
                              const sc_pair *pairs, uint64_t count, sc_contact *contacts);
@@ -821,16 +828,16 @@ SC_API sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_
 /* ------------------------------------------------------------------------------------------------
  * Steps
  *
- * Continuous collision: what happens while the mesh moves from one pose to another, as solvers for cloth
- * and soft bodies need it. Each vertex moves on a straight line at constant speed: at time t, from 0 to
- * 1, its coordinates are the real numbers (1 - t) start + t end.
+ * Continuous collision: what happens while the mesh moves from one pose to another, as solvers for
+ * cloth and soft bodies need it. Each vertex moves on a straight line at constant speed: at time t,
+ * from 0 to 1, its coordinates are the real numbers (1 - t) start + t end.
  *
  *     a step workspace: sc_workspace_create_for with SC_WORKSPACE_STEP
  *     sc_query_step(model, workspace, &start, &end, &options, &result)
  */
 
-/* Which way the pairs of a step are sought. The collisions are the same for all, bit for bit. The default is
-   SC_STEP_METHOD_SCTT, on a model with SC_MODEL_BOXES SC_STEP_METHOD_TWO_BOXES. */
+/* Which way the pairs of a step are sought. The collisions are the same for all, bit for bit. The
+   default is SC_STEP_METHOD_SCTT, on a model with SC_MODEL_BOXES SC_STEP_METHOD_TWO_BOXES. */
 enum {
     SC_STEP_METHOD_DEFAULT = 0,
     SC_STEP_METHOD_SCTT = 1,      /* self-collision test tree, with normal cones and contours that
@@ -880,15 +887,16 @@ typedef struct sc_step_options {
 } sc_step_options;
 
 /*
- * The answer of a step. The caller sets struct_size and, for SC_OUTPUT_PAIRS, the arrays and capacities,
- * and may set stats; the library sets the rest. An array may be NULL when its capacity is 0, an array of
- * times always.
+ * The answer of a step. The caller sets struct_size and, for SC_OUTPUT_PAIRS, the arrays and
+ * capacities, and may set stats; the library sets the rest. An array may be NULL when its capacity
+ * is 0, an array of times always.
  *
- *   vertex_faces   a vertex a and a triangle b of which it is no corner. Of welded vertices, a is the one that
- *                  represents the others; a vertex of no triangle takes no part
+ *   vertex_faces   a vertex a and a triangle b of which it is no corner. Of welded vertices, a is
+ *                  the one that represents the others; a vertex of no triangle takes no part
  *   edge_edges     two edges without a common vertex, a < b, named as SC_PAIRS_EDGE names them
  *
- * "Corner" and "common" are said of vertices after welding. Each pair comes once, sorted by a, then b.
+ * "Corner" and "common" are said of vertices after welding. Each pair comes once, sorted by a, then
+ * b.
  */
 typedef struct sc_step_result {
     uint32_t struct_size;
@@ -911,40 +919,44 @@ typedef struct sc_step_result {
 } sc_step_result;
 
 /*
- * Finds what collides while a model moves from one pose to another. options may be NULL. The workspace was
- * made with SC_WORKSPACE_STEP; SC_ERROR_WORKSPACE if not. The poses may differ in type and stride.
+ * Finds what collides while a model moves from one pose to another. options may be NULL. The
+ * workspace was made with SC_WORKSPACE_STEP; SC_ERROR_WORKSPACE if not. The poses may differ in
+ * type and stride.
  *
- * A pair collides if at some time in [0, 1] the distance of its two closed sets is separation or less.
- * Every pair that does so is reported. What is reported beyond these came within separation + tolerance
- * at some time; a smaller tolerance costs time where much is that near. Rounding sets a limit to it: the
- * tolerance of a pair is at least 2^-32 times the largest difference of a coordinate in it. The list depends
- * on mesh, welding, poses, separation and tolerance and on nothing else: not on method, partition, number of
- * threads, compiler or machine, for what is near the limit is decided pair by pair and culling keeps
- * clear of it.
+ * A pair collides if at some time in [0, 1] the distance of its two closed sets is separation or
+ * less. Every pair that does so is reported. What is reported beyond these came within separation +
+ * tolerance at some time; a smaller tolerance costs time where much is that near. Rounding sets a
+ * limit to it: the tolerance of a pair is at least 2^-32 times the largest difference of a
+ * coordinate in it. The list depends on mesh, welding, poses, separation and tolerance and on
+ * nothing else: not on method, partition, number of threads, compiler or machine, for what is near
+ * the limit is decided pair by pair and culling keeps clear of it.
  *
- * A pair's time is not after the first time at which it comes within separation, and at the time itself it
- * is within separation + tolerance. earliest is the least of all times. Candidates have no times: earliest
- * is 0 if there is one, and times of pairs are 0.
+ * A pair's time is not after the first time at which it comes within separation, and at the time
+ * itself it is within separation + tolerance. earliest is the least of all times. Candidates have
+ * no times: earliest is 0 if there is one, and times of pairs are 0.
  *
- * With SC_OUTPUT_ANY the query ends at the first pair found, whose time says nothing of others: earliest
- * is then 0, and with SC_STEP_TIMES_EARLIEST the query goes on until it is known.
+ * With SC_OUTPUT_ANY the query ends at the first pair found, whose time says nothing of others:
+ * earliest is then 0, and with SC_STEP_TIMES_EARLIEST the query goes on until it is known.
  *
- * Returns SC_OK; SC_ERROR_SHORT_BUFFER if one of the arrays is too short: both counts are then what is
- * needed, and each array holds the first capacity pairs of its sorted list; or SC_ERROR_INCOMPLETE, if it
- * was cancelled or ran out of budget, see sc_query: earliest is 0 then. On any other error counts, collides
- * and verdict are 0, and the arrays as they were: those of sc_query, SC_ERROR_OPTION also for a separation
- * or tolerance that is negative or not finite, and SC_ERROR_NULL for a capacity without its array.
+ * Returns SC_OK; SC_ERROR_SHORT_BUFFER if one of the arrays is too short: both counts are then what
+ * is needed, and each array holds the first capacity pairs of its sorted list; or
+ * SC_ERROR_INCOMPLETE, if it was cancelled or ran out of budget, see sc_query: earliest is 0 then.
+ * On any other error counts, collides and verdict are 0, and the arrays as they were: those of
+ * sc_query, SC_ERROR_OPTION also for a separation or tolerance that is negative or not finite, and
+ * SC_ERROR_NULL for a capacity without its array.
  *
- * Several threads. With options->tasks the passes over both poses, the walk through the tree, boxes, the narrow phase
- * and the sorting are done by all workers. Answer and counts in statistics are the same as of one thread, but for
- * SC_OUTPUT_ANY: which pair is found first, and so which of the two counts is 1, depends on the threads, as does what a
- * step has found when a flag ends it. By the calling thread alone are done:
+ * Several threads. With options->tasks the passes over both poses, the walk through the tree,
+ * boxes, the narrow phase and the sorting are done by all workers. Answer and counts in statistics
+ * are the same as of one thread, but for SC_OUTPUT_ANY: which pair is found first, and so which of
+ * the two counts is 1, depends on the threads, as does what a step has found when a flag ends it.
+ * By the calling thread alone are done:
  *   - steps of models of fewer than 128 leaf clusters;
- *   - all but the passes with a budget, and where the library was compiled by other compilers than gcc or clang;
+ *   - all but the passes with a budget, and where the library was compiled by other compilers than
+ *     gcc or clang;
  *   - all but the passes once more, where one of the arrays turns out to be too short.
  *
- * No memory is allocated. Cost, on one thread: reading the poses, 10 ns a triangle for normal cones, then
- * what they do not clear.
+ * No memory is allocated. Cost, on one thread: reading the poses, 10 ns a triangle for normal
+ * cones, then what they do not clear.
  */
 SC_API sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc_pose *start,
                                const sc_pose *end, const sc_step_options *options,
@@ -953,10 +965,11 @@ SC_API sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, c
 /* ------------------------------------------------------------------------------------------------
  * Records
  *
- * One query in one block of bytes: the model, the pose and the options, as a bug report, or to look into
- * later with `sc-query --replay FILE`. The bytes are for machines of one byte order, as saved models.
- * Of a filter everything is recorded but the caller's function; and a flag to cancel is none. What was left
- * out is written down in the record. Tasks, which change no answer, are not recorded.
+ * One query in one block of bytes: the model, the pose and the options, as a bug report, or to look
+ * into later with `sc-query --replay FILE`. The bytes are for machines of one byte order, as saved
+ * models. Of a filter everything is recorded but the caller's function; and a flag to cancel is
+ * none. What was left out is written down in the record. Tasks, which change no answer, are not
+ * recorded.
  */
 
 /* Writes the number of bytes that sc_record_write writes. Errors are as for sc_query. */
@@ -964,12 +977,12 @@ SC_API sc_status sc_record_size(const sc_model *model, const sc_pose *pose,
                                 const sc_query_options *options, uint64_t *size);
 
 /*
- * Records the query that sc_query would run: writes *written bytes to memory, of which there are size, at
- * any alignment. Coordinates may be anything, also NaN. Where options->filter->accept or options->cancel
- * is not NULL, the record says so (SC_LEFT_OUT_...) and asks without: it finds what accept refuses, too.
- * Errors are as for sc_query, and SC_ERROR_SHORT_BUFFER if the bytes do not fit: nothing is written, and
- * *written is what is needed. written may be NULL. Cost: a copy of the model, the pose and the filter's
- * arrays, and a checksum.
+ * Records the query that sc_query would run: writes *written bytes to memory, of which there are
+ * size, at any alignment. Coordinates may be anything, also NaN. Where options->filter->accept or
+ * options->cancel is not NULL, the record says so (SC_LEFT_OUT_...) and asks without: it finds what
+ * accept refuses, too. Errors are as for sc_query, and SC_ERROR_SHORT_BUFFER if the bytes do not
+ * fit: nothing is written, and *written is what is needed. written may be NULL. Cost: a copy of the
+ * model, the pose and the filter's arrays, and a checksum.
  */
 SC_API sc_status sc_record_write(const sc_model *model, const sc_pose *pose,
                                  const sc_query_options *options, void *memory, uint64_t size,
@@ -993,12 +1006,14 @@ typedef struct sc_record {
 } sc_record;
 
 /*
- * Finds the parts of a record: data, of which there are size bytes; those behind it are ignored. Data
- * that are no record are refused as by sc_model_load. On an error nothing is filled. The model is checked
- * by sc_model_load, and the rest by sc_query; a filter is good for queries on that model only.
+ * Finds the parts of a record: data, of which there are size bytes; those behind it are ignored.
+ * Data that are no record are refused as by sc_model_load. On an error nothing is filled. The model
+ * is checked by sc_model_load, and the rest by sc_query; a filter is good for queries on that model
+ * only.
  *
- * Of records with a filter: SC_ERROR_NULL, if record->filter is NULL; SC_ERROR_ALIGNMENT, if data are not
- * aligned as uint32_t. SC_ERROR_STRUCT_SIZE: the record has what a structure of the caller's is too small for.
+ * Of records with a filter: SC_ERROR_NULL, if record->filter is NULL; SC_ERROR_ALIGNMENT, if data
+ * are not aligned as uint32_t. SC_ERROR_STRUCT_SIZE: the record has what a structure of the
+ * caller's is too small for.
  */
 SC_API sc_status sc_record_read(const void *data, uint64_t size, sc_record *record);
 
