@@ -605,43 +605,62 @@ static void forged_counts(void)
     }
 }
 
-/* What stands for a point is a point. */
-static void forged_uses(void)
-{
-    soup mesh;
-    sc_model *model = build_small(1, &mesh);
-    save s = save_model(model);
-    uint8_t *use = s.data + sizeof(sc_saved_header) + model->offset[SC_ARRAY_vertex_use];
-    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
-    for (uint32_t v = 0; v < model->vertex_count; ++v) {
-        for (uint8_t other = SC_VERTEX_WELDED; other <= SC_VERTEX_UNUSED; ++other) {
-            use[v] = other;
-            CHECK(try_forged(&s, &mesh));
-            --m->point_count;
-            CHECK(try_forged(&s, &mesh));
-            ++m->point_count;
-        }
-        use[v] = SC_VERTEX_POINT;
-    }
-    CHECK(!try_forged(&s, &mesh));
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
-}
-
 static void *array_of(sc_model *model, uint32_t array)
 {
     return (unsigned char *)model + model->offset[array];
 }
 
+/* A mesh, its model as saved, and what is made up: the model in there. */
+typedef struct forgery {
+    soup mesh;
+    sc_model *model;
+    save saved;
+    sc_model *made_up;
+} forgery;
+
+static forgery forge(soup mesh)
+{
+    forgery f;
+    f.mesh = mesh;
+    f.model = build(&f.mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
+    f.saved = save_model(f.model);
+    f.made_up = (sc_model *)(void *)(f.saved.data + sizeof(sc_saved_header));
+    return f;
+}
+
+static void end_forgery(forgery *f)
+{
+    free(f->saved.memory);
+    sc_model_free(f->model);
+    soup_free(&f->mesh);
+}
+
+/* What stands for a point is a point. */
+static void forged_uses(void)
+{
+    forgery f = forge(soup_cloth(8, 7));
+    sc_model *m = f.made_up;
+    uint8_t *use = (uint8_t *)array_of(m, SC_ARRAY_vertex_use);
+    for (uint32_t v = 0; v < f.model->vertex_count; ++v) {
+        for (uint8_t other = SC_VERTEX_WELDED; other <= SC_VERTEX_UNUSED; ++other) {
+            use[v] = other;
+            CHECK(try_forged(&f.saved, &f.mesh));
+            --m->point_count;
+            CHECK(try_forged(&f.saved, &f.mesh));
+            ++m->point_count;
+        }
+        use[v] = SC_VERTEX_POINT;
+    }
+    CHECK(!try_forged(&f.saved, &f.mesh));
+    end_forgery(&f);
+}
+
 /* The whole, which is flat and so oriented, has no contour, be it as a loop or in segments; the next node has that one, too. */
 static void forged_contour(void)
 {
-    soup mesh = soup_cloth(6, 6);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
-    save s = save_model(model);
-    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
-    uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_node_contour]);
+    forgery f = forge(soup_cloth(6, 6));
+    sc_model *m = f.made_up;
+    uint32_t *first = (uint32_t *)array_of(m, SC_ARRAY_node_contour);
     uint32_t *loop_first = (uint32_t *)array_of(m, SC_ARRAY_node_loop);
     uint16_t *loop = (uint16_t *)array_of(m, SC_ARRAY_loop);
     CHECK(first[1] > 0 && loop_first[1] > 0);
@@ -649,24 +668,20 @@ static void forged_contour(void)
     memset(loop, 0, loop_first[1] * sizeof(*loop)); /* points that the next node has */
     loop_first[1] = 0;
     always_steps = 1;
-    while (try_forged(&s, &mesh) && m->contour_max < 1000) /* it has to be what it is now */
+    while (try_forged(&f.saved, &f.mesh) && m->contour_max < 1000) /* it has to be what it is now */
         ++m->contour_max;
     always_steps = 0;
     CHECK(m->contour_max < 1000);
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
+    end_forgery(&f);
 }
 
 /* One ring takes all of the others but a point each: longer than any that is built. */
 static void forged_rings(void)
 {
-    soup mesh = soup_cloth(12, 12);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
-    save s = save_model(model);
-    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
-    uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_ring_first]);
-    const uint32_t *was = sc_model_ring_first(model);
+    forgery f = forge(soup_cloth(12, 12));
+    sc_model *m = f.made_up;
+    uint32_t *first = (uint32_t *)array_of(m, SC_ARRAY_ring_first);
+    const uint32_t *was = sc_model_ring_first(f.model);
     uint32_t rings = 0, at = 0;
     for (uint32_t p = 0; p < m->vertex_count; ++p) rings += was[p + 1] > was[p];
     for (uint32_t p = 0, n = 0; p < m->vertex_count; ++p) {
@@ -674,74 +689,62 @@ static void forged_rings(void)
         if (was[p + 1] > was[p]) at += n++ == 0 ? m->ring_total - (rings - 1) : 1;
     }
     CHECK(at == m->ring_total && at - rings > SC_RING_MAX);
-    try_forged(&s, &mesh);
+    try_forged(&f.saved, &f.mesh);
     for (uint32_t round = 0; round < 20; ++round) { /* so that nothing else is certain than fans */
-        for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i)
-            mesh.positions[i] = test_random_below(2 + round % 3);
-        CHECK(!try_forged(&s, &mesh));
+        for (uint32_t i = 0; i < 3 * f.mesh.vertex_count; ++i)
+            f.mesh.positions[i] = test_random_below(2 + round % 3);
+        CHECK(!try_forged(&f.saved, &f.mesh));
     }
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
+    end_forgery(&f);
 }
 
 /* Nodes whose patches share one point begin their lists with two numbers of another kind. */
 static void forged_touches(void)
 {
-    soup mesh;
-    sc_model *model = build_small(1, &mesh);
-    save s = save_model(model);
-    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
-    uint32_t *first = (uint32_t *)(void *)((unsigned char *)m + m->offset[SC_ARRAY_node_contour]);
-    const uint8_t *kind = sc_model_node_kind(model);
+    forgery f = forge(soup_cloth(8, 7));
+    sc_model *m = f.made_up;
+    uint32_t *first = (uint32_t *)array_of(m, SC_ARRAY_node_contour);
+    const uint8_t *kind = sc_model_node_kind(f.model);
     uint32_t touching = 0;
-    for (uint32_t n = 0; n < model->node_count; ++n) {
+    for (uint32_t n = 0; n < f.model->node_count; ++n) {
         uint32_t old = first[n + 1];
         if (!(kind[n] & SC_NODE_TOUCHES)) continue;
-        for (uint32_t left = 0; left < 2 && n + 1 < model->node_count; ++left) {
+        for (uint32_t left = 0; left < 2 && n + 1 < f.model->node_count; ++left) {
             first[n + 1] = first[n] + left; /* the rest becomes the next node's */
-            CHECK(try_forged(&s, &mesh));
+            CHECK(try_forged(&f.saved, &f.mesh));
         }
         first[n + 1] = old;
         ++touching;
     }
     CHECK(touching > 2);
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
+    end_forgery(&f);
 }
 
 /* Leaf clusters that share points and are left to boxes; that is, others are said to share points. */
 static void forged_sharing(void)
 {
-    soup mesh = soup_cloth(12, 12);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
-    save s = save_model(model);
-    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
-    const uint32_t *first = sc_model_share_first(model);
+    forgery f = forge(soup_cloth(12, 12));
+    sc_model *m = f.made_up;
+    const uint32_t *first = sc_model_share_first(f.model);
     uint32_t *other = (uint32_t *)array_of(m, SC_ARRAY_share_leaf), tried = 0;
     for (uint32_t leaf = 0; leaf < m->leaf_count; ++leaf)
         for (uint32_t i = first[leaf]; i < first[leaf + 1]; ++i) {
             uint32_t was = other[i], end = i + 1 < first[leaf + 1] ? other[i + 1] : m->leaf_count;
             for (other[i] = was + 1; other[i] < end; ++other[i], ++tried)
-                CHECK(try_forged(&s, &mesh));
+                CHECK(try_forged(&f.saved, &f.mesh));
             other[i] = was;
         }
-    CHECK(tried > 10 && !try_forged(&s, &mesh));
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
+    CHECK(tried > 10 && !try_forged(&f.saved, &f.mesh));
+    end_forgery(&f);
 }
 
 /* Lists of neighboring triangles with one that is none of its leaf cluster, rows and pairs alike. */
 static void forged_lists(void)
 {
-    soup mesh = soup_cloth(12, 12);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
-    save s = save_model(model);
-    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
-    const uint32_t *share = sc_model_share_first(model), *other = sc_model_share_leaf(model);
-    const uint32_t *first = sc_model_leaf_first(model), *begin = sc_model_share_begin(model);
+    forgery f = forge(soup_cloth(12, 12));
+    sc_model *m = f.made_up;
+    const uint32_t *share = sc_model_share_first(f.model), *other = sc_model_share_leaf(f.model);
+    const uint32_t *first = sc_model_leaf_first(f.model), *begin = sc_model_share_begin(f.model);
     uint16_t *lists = (uint16_t *)array_of(m, SC_ARRAY_share_list), kept[512];
     uint32_t tried[2] = {0, 0};
     for (uint32_t leaf = 0; leaf < m->leaf_count; ++leaf)
@@ -756,7 +759,7 @@ static void forged_lists(void)
                 list[SC_SHARE_TRIANGLES] ^= (uint16_t)(1u << last | 1u << 15);
                 for (uint16_t *p = pair; p < list + words; ++p)
                     if ((*p & 15u) == last) *p = (uint16_t)(*p | 15u);
-                CHECK(try_forged(&s, &mesh));
+                CHECK(try_forged(&f.saved, &f.mesh));
                 memcpy(list, kept, words * sizeof(*list));
                 ++tried[0];
             }
@@ -765,81 +768,71 @@ static void forged_lists(void)
                 pair[-1] = (uint16_t)(pair[-1] ^ (1u << u | 1u << 15));
                 for (uint16_t *p = pair; p < list + words; ++p)
                     if ((*p & 255u) == (last | u << 4)) *p = (uint16_t)(*p | 15u << 4);
-                CHECK(try_forged(&s, &mesh));
+                CHECK(try_forged(&f.saved, &f.mesh));
                 memcpy(list, kept, words * sizeof(*list));
                 ++tried[1];
             }
         }
-    CHECK(tried[0] > 3 && tried[1] > 3 && !try_forged(&s, &mesh));
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
+    CHECK(tried[0] > 3 && tried[1] > 3 && !try_forged(&f.saved, &f.mesh));
+    end_forgery(&f);
 }
 
 /* Loops in pieces of which one has no edges, and the next has those too. */
 static void forged_pieces(void)
 {
-    soup mesh = soup_annulus(16, 3);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
-    save s = save_model(model);
-    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
-    const uint32_t *first = sc_model_node_loop(model);
-    const uint8_t *kind = sc_model_node_kind(model);
+    forgery f = forge(soup_annulus(16, 3));
+    sc_model *m = f.made_up;
+    const uint32_t *first = sc_model_node_loop(f.model);
+    const uint8_t *kind = sc_model_node_kind(f.model);
     uint16_t *loop = (uint16_t *)array_of(m, SC_ARRAY_loop);
     uint32_t tried = 0;
-    for (uint32_t n = 0; n < model->node_count; ++n) {
+    for (uint32_t n = 0; n < f.model->node_count; ++n) {
         uint16_t *edges = loop + first[n] + 1;
         if (!(kind[n] & SC_NODE_PIECES) || first[n + 1] == first[n]) continue;
         for (uint32_t i = 0; i < edges[-1]; ++i) {
             uint16_t *other = &edges[(i + 1) % edges[-1]], was = edges[i];
             edges[i] = 0;
             *other = (uint16_t)(*other + was);
-            CHECK(try_forged(&s, &mesh));
+            CHECK(try_forged(&f.saved, &f.mesh));
             edges[i] = was;
             *other = (uint16_t)(*other - was);
             ++tried;
         }
     }
-    CHECK(tried > 3 && !try_forged(&s, &mesh));
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
+    CHECK(tried > 3 && !try_forged(&f.saved, &f.mesh));
+    end_forgery(&f);
 }
 
 /* A node has the loops of those that follow as well: refused from where that is more than the sides of its triangles. */
 static void forged_loops(void)
 {
-    soup mesh = soup_cloth(24, 24);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
-    save s = save_model(model);
-    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    forgery f = forge(soup_cloth(24, 24));
+    sc_model *m = f.made_up;
     uint32_t *first = (uint32_t *)array_of(m, SC_ARRAY_node_loop);
-    const uint32_t *was = sc_model_node_loop(model), *leaf = sc_model_leaf(model);
-    uint32_t tried = 0, node = model->node_count / 2;
-    for (; node < model->node_count && tried < 6; ++node) {
-        sc_pair patches = sc_model_node_patches(model)[node];
-        uint32_t triangles = sc_model_leaf_first(model)[leaf[patches.a] + 1] -
-                             sc_model_leaf_first(model)[leaf[patches.a]];
+    const uint32_t *was = sc_model_node_loop(f.model), *leaf = sc_model_leaf(f.model);
+    uint32_t tried = 0, node = f.model->node_count / 2;
+    for (; node < f.model->node_count && tried < 6; ++node) {
+        sc_pair patches = sc_model_node_patches(f.model)[node];
+        uint32_t triangles = sc_model_leaf_first(f.model)[leaf[patches.a] + 1] -
+                             sc_model_leaf_first(f.model)[leaf[patches.a]];
         uint32_t end = node + 1, total, refused;
-        if (patches.a != patches.b || !sc_model_is_leaf(model, patches.a) ||
-            was[node] == was[node + 1] || sc_model_node_kind(model)[node])
+        if (patches.a != patches.b || !sc_model_is_leaf(f.model, patches.a) ||
+            was[node] == was[node + 1] || sc_model_node_kind(f.model)[node])
             continue;
-        while (end < model->node_count && was[end] - was[node] <= 3 * triangles) ++end;
+        while (end < f.model->node_count && was[end] - was[node] <= 3 * triangles) ++end;
         total = was[end] - was[node];
-        if (total <= 3 * triangles || total > model->contour_max) continue;
+        if (total <= 3 * triangles || total > f.model->contour_max) continue;
         memset((uint16_t *)array_of(m, SC_ARRAY_loop) + was[node], 0, total * sizeof(uint16_t));
         for (uint32_t last = end; last + 1 >= end; --last) { /* so many, and one node fewer */
             for (uint32_t n = node + 1; n < last; ++n) first[n] = was[last];
-            refused = (uint32_t)try_forged(&s, &mesh);
+            refused = (uint32_t)try_forged(&f.saved, &f.mesh);
             CHECK(refused == (was[last] - was[node] > 3 * triangles));
             for (uint32_t n = node + 1; n < last; ++n) first[n] = was[n];
         }
         ++tried;
     }
     CHECK(tried == 6);
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
+    end_forgery(&f);
 }
 
 /* A header for less than any model, with the right checksum. */
@@ -884,10 +877,9 @@ static sc_hooks message_hooks(char *text)
  */
 static void forged_chain(void)
 {
-    soup mesh = soup_cloth(12, 12);
-    sc_model *model = build(&mesh, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL), *loaded;
-    save s = save_model(model);
-    sc_model *m = (sc_model *)(void *)(s.data + sizeof(sc_saved_header));
+    forgery f = forge(soup_cloth(12, 12));
+    sc_model *loaded;
+    sc_model *m = f.made_up;
     uint32_t parents = m->segment_count - m->leaf_segment_count, leaf, i, at = 0;
     uint32_t extra = m->segment_child_total - 2 * parents;
     uint32_t *first = (uint32_t *)array_of(m, SC_ARRAY_segment_children);
@@ -913,16 +905,14 @@ static void forged_chain(void)
     CHECK(at == m->segment_child_total && leaf <= m->leaf_segment_count &&
           leaf < m->segment_point_total);
     first[parents] = at;
-    seal(&s);
+    seal(&f.saved);
     memset(&o, 0, sizeof(o));
     o.struct_size = sizeof(o);
     o.hooks = &hooks;
-    CHECK(sc_model_load(s.data, s.size, &o, &loaded) == SC_ERROR_INCONSISTENT);
+    CHECK(sc_model_load(f.saved.data, f.saved.size, &o, &loaded) == SC_ERROR_INCONSISTENT);
     CHECK_MSG(strcmp(text, "saved model: array children is wrong") == 0, "%s", text);
     sc_model_free(loaded);
-    free(s.memory);
-    sc_model_free(model);
-    soup_free(&mesh);
+    end_forgery(&f);
 }
 
 /* The log says what is wrong. */
