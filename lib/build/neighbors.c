@@ -28,10 +28,10 @@ static uint32_t sort_unique(uint32_t *list, uint32_t count, sc_pair *keys)
     uint32_t i, j, n = 0;
     if (count <= SHORT_LIST) {
         for (i = 0; i < count; i++) {
-            uint32_t item = list[i];
+            uint32_t item = list[i], k;
             for (j = n; j > 0 && list[j - 1] > item; j--) continue;
             if (j > 0 && list[j - 1] == item) continue;
-            memmove(list + j + 1, list + j, (n++ - j) * sizeof *list);
+            for (k = n++; k > j; k--) list[k] = list[k - 1];
             list[j] = item;
         }
         return n;
@@ -74,20 +74,22 @@ static sc_status meet_at_leaves(const sc_points *points, const sc_adjacency *adj
     return SC_OK;
 }
 
-/* Replaces patches by their parents. */
-static void ascend(meetings *met, const uint32_t *parent, uint32_t level_first, sc_pair *keys)
+/* Replaces patches by their parents, which are in ascending order as well. */
+static void ascend(meetings *met, const uint32_t *parent, uint32_t level_first)
 {
     uint64_t from = 0, to = 0;
     while (from < met->count) {
-        uint32_t p = met->words[from], count = met->words[from + 1], i, n;
+        uint32_t p = met->words[from], count = met->words[from + 1], i, n = 0, last = SC_NONE;
         uint32_t *record = met->words + to; /* never ahead of what is read */
-        for (i = 0; i < count; i++) record[2 + i] = parent[met->words[from + 2 + i] - level_first];
+        for (i = 0; i < count; i++) {
+            uint32_t patch = parent[met->words[from + 2 + i] - level_first];
+            n += patch != last;
+            record[1 + n] = last = patch;
+        }
         from += 2 + count;
-        n = sort_unique(record + 2, count, keys);
-        if (n < 2) continue;
         record[0] = p;
         record[1] = n;
-        to += 2 + n;
+        to += n < 2 ? 0 : 2 + n;
     }
     met->count = to;
 }
@@ -217,7 +219,7 @@ sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjace
             uint32_t c;
             for (c = xbvh->child[p]; c < xbvh->child[p + 1]; c++) parent[c - begin] = p;
         }
-        ascend(&met, parent, begin, keys);
+        ascend(&met, parent, begin);
     }
     sc_scratch_give(scratch, met.words);
     sc_scratch_give(scratch, place);
