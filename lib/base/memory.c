@@ -107,12 +107,10 @@ void sc_scratch_clear(sc_scratch *scratch)
         sc_scratch_give(scratch, (unsigned char *)scratch->blocks + SC_ALIGNMENT);
 }
 
-int sc_list_reserve(sc_scratch *scratch, sc_list *list, uint64_t more)
+int sc_list_grow(sc_scratch *scratch, sc_list *list, uint64_t more)
 {
-    uint64_t capacity;
+    uint64_t capacity = 2 * list->capacity;
     uint32_t *items;
-    if (list->count + more <= list->capacity) return 1;
-    capacity = 2 * list->capacity;
     if (capacity < list->count + more) capacity = list->count + more;
     if (capacity < 256) capacity = 256;
     items = (uint32_t *)sc_scratch_take(scratch, capacity, sizeof *items);

@@ -51,8 +51,14 @@ typedef struct sc_list {
     uint64_t count, capacity;
 } sc_list;
 
-/* Makes room for more further items; 0 if memory ran out. */
-int sc_list_reserve(sc_scratch *scratch, sc_list *list, uint64_t more);
+/* Makes the array larger, for more further items; 0 if memory ran out. */
+int sc_list_grow(sc_scratch *scratch, sc_list *list, uint64_t more);
+
+/* Makes room for more further items, where there is none; 0 if memory ran out. */
+static inline int sc_list_reserve(sc_scratch *scratch, sc_list *list, uint64_t more)
+{
+    return list->count + more <= list->capacity || sc_list_grow(scratch, list, more);
+}
 
 /* Appends one item for which there is room. */
 static inline void sc_list_add(sc_list *list, uint32_t item)

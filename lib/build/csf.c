@@ -45,6 +45,7 @@ typedef struct builder {
     uint64_t room, listed;
     /* The runs of the level at hand, which are in the order of their patches, and where those of each begin. */
     uint32_t *run_out, *run_segment, *patch_first;
+    uint32_t *kept; /* places that a level keeps of the one below; the same memory as run_out */
 } builder;
 
 /* Memory for the half-edges of a level. */
@@ -56,7 +57,7 @@ static int take_level(sc_scratch *scratch, contour_level *level, uint32_t count)
     unsigned i;
     level->count = count;
     level->cut = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
-    level->start = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
+    level->start = (uint8_t *)sc_scratch_take(scratch, count, 1);
     if (!level->cut || !level->start) return 0;
     for (i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         *arrays[i] = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
@@ -87,24 +88,24 @@ static sc_status collect_leaves(builder *b, const uint32_t *order, contour_level
     const uint32_t *opposite = b->adjacency->opposite, *leaf_first = b->xbvh->leaf_first;
     uint64_t corners = 3 * (uint64_t)b->points->triangle_count;
     uint32_t leaf, i, k, e, base = b->xbvh->level_first[b->xbvh->level_count - 1], count = 0;
-    uint32_t *patch, *place;
+    uint32_t *patch, *place, *all;
     patch = (uint32_t *)sc_scratch_take(b->scratch, b->points->triangle_count, sizeof *patch);
     place = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof *place);
-    if (!patch || !place) return SC_ERROR_MEMORY;
+    all = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof *all);
+    if (!patch || !place || !all) return SC_ERROR_MEMORY;
     for (leaf = 0; leaf < b->xbvh->leaf_count; leaf++)
         for (i = leaf_first[leaf]; i < leaf_first[leaf + 1]; i++) patch[order[i]] = base + leaf;
     for (i = 0; i < b->points->triangle_count; i++)
-        for (k = 0; k < 3; k++) {
-            uint32_t h = 3 * order[i] + k;
-            int between = opposite[h] == SC_NONE || patch[opposite[h] / 3] != patch[order[i]];
-            place[h] = between ? count++ : SC_NONE;
+        for (k = 0; k < 3; k++) { /* without branches, which no processor could foresee */
+            uint32_t h = 3 * order[i] + k, other = opposite[h];
+            uint32_t between = other == SC_NONE || patch[other / 3] != patch[order[i]];
+            place[h] = count | (between - 1);
+            all[count] = h;
+            count += between;
         }
     if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
-    for (i = 0; i < b->points->triangle_count; i++)
-        for (k = 0; k < 3; k++) {
-            uint32_t h = 3 * order[i] + k;
-            if (place[h] != SC_NONE) level->half_edges[place[h]] = h;
-        }
+    memcpy(level->half_edges, all, count * sizeof *all);
+    sc_scratch_give(b->scratch, all);
     for (e = 0; e < count; e++) {
         uint32_t h = level->half_edges[e], other = opposite[h];
         level->inside[e] = patch[h / 3];
@@ -125,20 +126,22 @@ static sc_status collect_level(builder *b, uint32_t number, uint32_t *parent)
 {
     contour_level *level = &b->levels[number], *below = &b->levels[number + 1];
     const sc_xbvh *xbvh = b->xbvh;
-    uint32_t begin = xbvh->level_first[number + 1], count = 0, p, c, e, from;
+    uint32_t begin = xbvh->level_first[number + 1], count = 0, p, c, e;
     for (p = xbvh->level_first[number]; p + 1 < begin; p++)
         for (c = xbvh->child[p]; c < xbvh->child[p + 1]; c++) parent[c - begin] = p;
-    for (e = 0; e < below->count; e++) {
+    for (e = 0; e < below->count; e++) { /* without branches, again */
         uint32_t out = below->outside[e];
-        int between = out == SC_NONE || parent[out - begin] != parent[below->inside[e] - begin];
-        below->above[e] = between ? count++ : SC_NONE;
+        uint32_t between =
+            out == SC_NONE || parent[out - begin] != parent[below->inside[e] - begin];
+        below->above[e] = count | (between - 1);
+        b->kept[count] = e;
+        count += between;
     }
     if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
-    for (from = 0; from < below->count; from++) {
-        uint32_t out = below->outside[from], other = below->opposite[from], following;
-        e = below->above[from];
-        if (e == SC_NONE) continue;
-        level->below[e] = from;
+    memcpy(level->below, b->kept, count * sizeof *b->kept);
+    for (e = 0; e < count; e++) {
+        uint32_t from = level->below[e], following;
+        uint32_t out = below->outside[from], other = below->opposite[from];
         level->half_edges[e] = below->half_edges[from];
         level->inside[e] = parent[below->inside[from] - begin];
         level->outside[e] = out == SC_NONE ? SC_NONE : parent[out - begin];
@@ -167,15 +170,12 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Walks the run that starts at place e, marks it seen and, if asked, cuts it where it turns. */
-static void walk_run(builder *b, contour_level *level, uint32_t e, int cut_turns, uint8_t *seen)
+/* Walks the run that starts at place e and cuts it where it turns. */
+static void cut_run(const builder *b, contour_level *level, uint32_t e)
 {
-    double first[3] = {0, 0, 0}, now[3];
-    if (cut_turns) direction_of(b, level->half_edges[e], first);
-    seen[e] = 1;
+    double first[3], now[3];
+    direction_of(b, level->half_edges[e], first);
     for (e = level->next[e]; !level->start[e]; e = level->next[e]) {
-        seen[e] = 1;
-        if (!cut_turns) continue;
         direction_of(b, level->half_edges[e], now);
         if (dot(first, now) < TURN_COSINE * sqrt(dot(first, first)) * sqrt(dot(now, now))) {
             level->cut[e] = level->start[e] = 1;
@@ -184,46 +184,60 @@ static void walk_run(builder *b, contour_level *level, uint32_t e, int cut_turns
     }
 }
 
+/* Walks the loop that place e is in, marks it seen, and cuts it where that is needed: runs at the outside where they turn,
+   and a loop in which no run starts first at its lowest half-edge. */
+static void cut_loop(const builder *b, contour_level *level, uint32_t e, uint8_t *seen)
+{
+    uint32_t f = e, lowest = e, starts = 0, outside = 0;
+    do {
+        seen[f] = 1;
+        starts |= level->start[f];
+        outside |= level->outside[f] == SC_NONE;
+        f = level->next[f];
+    } while (f != e);
+    if (!starts) {
+        for (f = level->next[e]; f != e; f = level->next[f])
+            if (level->half_edges[f] < level->half_edges[lowest]) lowest = f;
+        level->cut[lowest] = level->start[lowest] = 1;
+        cut_run(b, level, lowest);
+    } else if (outside) {
+        do {
+            if (level->start[f] && level->outside[f] == SC_NONE) cut_run(b, level, f);
+            f = level->next[f];
+        } while (f != e);
+    }
+}
+
 /* Decides where runs start, from the cuts of the levels above and its own. */
 static sc_status find_starts(builder *b, contour_level *level, const contour_level *above)
 {
-    uint32_t e, f, lowest;
+    uint32_t e, f;
     uint8_t *seen = (uint8_t *)sc_scratch_take_filled(b->scratch, level->count, 1, 0);
     if (!seen) return SC_ERROR_MEMORY;
-    for (e = 0; e < level->count; e++) {
-        if (above && level->above[e] != SC_NONE) level->cut[e] = above->cut[level->above[e]];
-        if (level->cut[e]) level->start[e] = 1;
+    for (e = 0; above && e < above->count; e++) level->cut[above->below[e]] = above->cut[e];
+    for (e = 0; e < level->count; e++) { /* each follows one */
         f = level->next[e];
-        if (level->outside[e] != level->outside[f]) level->start[f] = 1;
+        level->start[f] = level->cut[f] | (level->outside[e] != level->outside[f]);
     }
     for (e = 0; e < level->count; e++)
-        if (level->start[e] && !seen[e]) walk_run(b, level, e, level->outside[e] == SC_NONE, seen);
-    for (e = 0; e < level->count; e++) { /* what is left are closed loops */
-        if (seen[e]) continue;
-        for (lowest = e, f = level->next[e]; f != e; f = level->next[f])
-            if (level->half_edges[f] < level->half_edges[lowest]) lowest = f;
-        level->cut[lowest] = level->start[lowest] = 1;
-        walk_run(b, level, lowest, 1, seen);
-    }
+        if (!seen[e]) cut_loop(b, level, e, seen);
     sc_scratch_give(b->scratch, seen);
     return SC_OK;
 }
 
-static int add_leaf_segment(builder *b, contour_level *level, uint32_t start)
+/* There is room in the lists. */
+static void add_leaf_segment(builder *b, contour_level *level, uint32_t start)
 {
     uint32_t e = start, h;
-    if (!sc_list_reserve(b->scratch, &b->points_first, 2)) return 0; /* one for the end of all */
     level->segment[start] = b->segments++;
     sc_list_add(&b->points_first, (uint32_t)b->half_edges.count);
     do {
         h = level->half_edges[e];
-        if (!sc_list_reserve(b->scratch, &b->half_edges, 2)) return 0;
         sc_list_add(&b->half_edges, h);
         level->end[start] = e;
         e = level->next[e];
     } while (!level->start[e]);
     sc_list_add(&b->half_edges, sc_adjacency_next(h)); /* starts at the last point */
-    return 1;
 }
 
 static int add_parent_segment(builder *b, contour_level *level, const contour_level *below,
@@ -300,22 +314,36 @@ static int list_node(builder *b, uint32_t begin, uint32_t n)
     return 1;
 }
 
+/* Room for the segments of the last level; one more for the end of all. */
+static int reserve_for_leaves(builder *b, uint32_t half_edges, uint32_t runs)
+{
+    return sc_list_reserve(b->scratch, &b->points_first, (uint64_t)runs + 1) &&
+           sc_list_reserve(b->scratch, &b->half_edges, (uint64_t)half_edges + runs);
+}
+
 static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
 {
     contour_level *level = &b->levels[number];
-    uint32_t e, n, runs = 0, last = b->xbvh->level_count - 1, begin = b->xbvh->level_first[number];
+    uint32_t e, i, n, runs = 0, last = b->xbvh->level_count - 1,
+                      begin = b->xbvh->level_first[number];
     uint32_t patch = begin, *first = b->patch_first;
     level->segment = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
     level->end = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
     if (!level->segment || !level->end) return SC_ERROR_MEMORY;
     for (e = 0; e < level->count; e++) {
-        if (!level->start[e]) continue;
-        if (!(number == last ? add_leaf_segment(b, level, e)
-                             : add_parent_segment(b, level, level + 1, e)))
+        b->run_segment[runs] = e; /* where it starts, for now */
+        runs += level->start[e];
+    }
+    if (number == last && !reserve_for_leaves(b, level->count, runs)) return SC_ERROR_MEMORY;
+    for (i = 0; i < runs; i++) {
+        e = b->run_segment[i];
+        if (number == last)
+            add_leaf_segment(b, level, e);
+        else if (!add_parent_segment(b, level, level + 1, e))
             return SC_ERROR_MEMORY;
-        while (patch <= level->inside[e]) first[patch++ - begin] = runs;
-        b->run_out[runs] = level->outside[e];
-        b->run_segment[runs++] = level->segment[e];
+        while (patch <= level->inside[e]) first[patch++ - begin] = i;
+        b->run_out[i] = level->outside[e];
+        b->run_segment[i] = level->segment[e];
     }
     csf->level_segments[number] = runs;
     if (number == last) csf->leaf_count = b->segments;
@@ -463,15 +491,17 @@ static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
     csf->level_segments = (uint32_t *)sc_scratch_take(b->scratch, level_count, sizeof(uint32_t));
     if (!parent || !b->levels || !b->node_place || !csf->level_segments) return SC_ERROR_MEMORY;
     status = collect_leaves(b, order, &b->levels[level_count - 1]);
+    if (status) return status;
+    contour = b->levels[level_count - 1].count;
+    b->kept = b->run_out = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
+    if (!b->kept) return SC_ERROR_MEMORY;
     for (i = level_count - 1; !status && i-- > 0;) status = collect_level(b, i, parent);
     if (status) return status;
     sc_scratch_give(b->scratch, parent);
-    contour = b->levels[level_count - 1].count;
-    b->run_out = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
     b->run_segment = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
     b->patch_first = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->xbvh->leaf_count + 1,
                                                  sizeof(uint32_t));
-    return b->run_out && b->run_segment && b->patch_first ? SC_OK : SC_ERROR_MEMORY;
+    return b->run_segment && b->patch_first ? SC_OK : SC_ERROR_MEMORY;
 }
 
 static void give_back(builder *b)
