@@ -392,11 +392,11 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
     status = divide(b, triangles, count, leaves, whole, connected);
     if (status) return status;
     for (i = 0; i < count; i++) {
-        uint32_t t = triangles[i];
-        if (b->label[t] & 1)
-            b->queue[right++] = t;
-        else
-            triangles[left++] = t;
+        uint32_t t = triangles[i], side = b->label[t] & 1;
+        b->queue[right] = triangles[left] =
+            t; /* without a branch, which no processor could foresee */
+        right += side;
+        left += !side;
     }
     memcpy(triangles + left, b->queue, right * sizeof *triangles);
     share_leaves(b, leaves, left, right, &left_leaves, &right_leaves);

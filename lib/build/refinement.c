@@ -33,8 +33,9 @@ static float gain_of(const sc_refinement *r, uint32_t t, int *at_border)
     uint32_t k;
     *at_border = 0;
     for (k = 0; k < 3; k++) {
+        static const float part[3] = {-1, 1, 0}; /* on the same side, across, of another patch */
         uint32_t difference = r->label[u[k]] ^ r->label[t];
-        gain += difference == 0 ? -length[k] : difference == 1 ? length[k] : 0;
+        gain += part[difference < 2 ? difference : 2] * length[k];
         *at_border |= difference == 1;
     }
     return gain;

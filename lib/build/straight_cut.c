@@ -20,28 +20,37 @@ static uint64_t key_of(float along, uint32_t t)
     return (uint64_t)sc_sort_key(along) << 32 | t;
 }
 
-/* Moves the lowest `left` of count keys to the front. */
+/* Moves what is lower than the key in the middle before it, and returns where that is then. Without branches, which no
+   processor could foresee. */
+static uint32_t split_keys(uint64_t *keys, uint32_t count)
+{
+    uint64_t pivot = keys[count / 2];
+    uint32_t lower = 0, i;
+    keys[count / 2] = keys[count - 1];
+    for (i = 0; i + 1 < count; i++) {
+        uint64_t key = keys[i];
+        keys[i] = keys[lower];
+        keys[lower] = key;
+        lower += key < pivot;
+    }
+    keys[count - 1] = keys[lower];
+    keys[lower] = pivot;
+    return lower;
+}
+
+/* Moves the lowest `left` of count keys, no two of which are the same, to the front. */
 static void select_lowest(uint64_t *keys, uint32_t count, uint32_t left)
 {
-    int64_t low = 0, high = (int64_t)count - 1;
-    while (low < high) {
-        uint64_t pivot = keys[low + (high - low) / 2];
-        int64_t i = low, j = high;
-        while (i <= j) {
-            while (keys[i] < pivot) i++;
-            while (pivot < keys[j]) j--;
-            if (i <= j) {
-                uint64_t swapped = keys[i];
-                keys[i++] = keys[j];
-                keys[j--] = swapped;
-            }
+    while (count > 1) {
+        uint32_t lower = split_keys(keys, count);
+        if (left - lower < 2) return; /* up to the pivot, or with it */
+        if (left < lower) {
+            count = lower;
+        } else {
+            keys += lower + 1;
+            count -= lower + 1;
+            left -= lower + 1;
         }
-        if ((int64_t)left <= j)
-            high = j;
-        else if ((int64_t)left >= i)
-            low = i;
-        else
-            return;
     }
 }
 
