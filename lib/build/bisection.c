@@ -117,24 +117,33 @@ static uint32_t follow_border(const bisection *b, uint32_t h, int forward)
     }
 }
 
-/* Whether one walk along the border meets all of it: then the triangles beside it hang together on that side,
-   and with them all of a side of a connected patch. */
-static int is_one_walk(const bisection *b, uint32_t side)
+/* How many half-edges a walk along the border meets. */
+static uint32_t walk_border(const bisection *b, uint32_t start)
 {
-    const sc_refinement *r = &b->refinement;
-    uint32_t length = 0, start = SC_NONE, met = 1, i, k, h;
-    for (i = 0; i < r->border_count; i++)
-        for (k = 0; (b->label[r->border[i]] & 1) == side && k < 3; k++) {
-            h = 3 * r->border[i] + k;
-            if (b->label[b->neighbor[h]] != (b->label[r->border[i]] ^ 1)) continue;
-            start = h;
-            length++;
-        }
+    uint32_t met = 1, h;
     for (h = follow_border(b, start, 1); h != start && h != SC_NONE; h = follow_border(b, h, 1))
         met++;
-    if (h == start) return met == length;
+    if (h == start) return met;
     for (h = follow_border(b, start, 0); h != SC_NONE; h = follow_border(b, h, 0)) met++;
-    return met == length;
+    return met;
+}
+
+/* Whether on each side one walk along the border meets all of it: then the triangles beside it hang together there,
+   and with them all of a side of a connected patch. */
+static int are_single_walks(const bisection *b)
+{
+    const sc_refinement *r = &b->refinement;
+    uint32_t length[2] = {0, 0}, start[2] = {SC_NONE, SC_NONE}, i, k;
+    for (i = 0; i < r->border_count; i++) {
+        uint32_t t = r->border[i], label = b->label[t], last = start[label & 1];
+        for (k = 0; k < 3; k++) {
+            uint32_t across = b->label[b->neighbor[3 * (uint64_t)t + k]] == (label ^ 1);
+            length[label & 1] += across;
+            last = across ? 3 * t + k : last;
+        }
+        start[label & 1] = last;
+    }
+    return walk_border(b, start[0]) == length[0] && walk_border(b, start[1]) == length[1];
 }
 
 /* The caller's cut. */
@@ -216,7 +225,7 @@ static void connect(bisection *b, const uint32_t *triangles, uint32_t count, uin
 {
     uint32_t largest[2] = {SC_NONE, SC_NONE}, loose[2] = {0, 0}, i;
     connected[0] = connected[1] = 1;
-    if (is_one_walk(b, 0) && is_one_walk(b, 1)) return;
+    if (are_single_walks(b)) return;
     if (number_components(b, triangles, count, 1, 2) == 2) return;
     for (i = 0; i < count; i++) {
         uint32_t c = b->component[triangles[i]], s = b->label[triangles[i]] & 1;
