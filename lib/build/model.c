@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/assume.h"
+#include "base/bits.h"
 #include "build/leaf_shapes.h"
 
 /* A compiler stops here if the owner does not fit before the model. */
@@ -294,62 +295,106 @@ static uint32_t count_whole(const sc_xbvh *xbvh, uint32_t level, const uint32_t 
     return count;
 }
 
+/* Parts of leaf clusters that hang together through edges, and the edges between them. */
+typedef struct leaf_parts {
+    uint32_t count;
+    uint32_t *of; /* triangle_count: the part of the triangle at a place in the hierarchy's order */
+    uint32_t *leaf;  /* of each part, as many as triangles at most */
+    sc_pair *joints; /* two parts of different leaf clusters for each edge between those */
+    uint64_t joint_count;
+} leaf_parts;
+
+/* Numbers the parts of a leaf cluster, of which each triangle is next to some; returns how many. */
+static uint32_t number_parts(const uint32_t near[SC_LEAF_MAX], uint32_t leaf, uint32_t first,
+                             uint32_t count, leaf_parts *p)
+{
+    uint32_t left = (1u << count) - 1, before = p->count;
+    while (left) {
+        uint32_t reached = left & (0u - left), next = reached;
+        while (next) {
+            uint32_t i = sc_bits_lowest(next);
+            p->of[first + i] = p->count;
+            next = (next & (next - 1)) | (near[i] & ~reached);
+            reached |= near[i];
+        }
+        p->leaf[p->count++] = leaf;
+        left &= ~reached;
+    }
+    return p->count - before;
+}
+
+/* Finds the parts of all leaf clusters, and how many each has. place: of each triangle in the hierarchy's order. */
+static void find_parts(const sc_adjacency *adjacency, const uint32_t *order, const sc_xbvh *xbvh,
+                       const uint32_t *place, uint32_t *own, leaf_parts *p)
+{
+    uint32_t leaf, i, k;
+    for (leaf = 0; leaf < xbvh->leaf_count; leaf++) {
+        uint32_t first = xbvh->leaf_first[leaf], count = xbvh->leaf_first[leaf + 1] - first;
+        uint32_t near[SC_LEAF_MAX] = {0};
+        uint64_t n = p->joint_count;
+        for (i = 0; i < count; i++)
+            for (k = 0; k < 3; k++) {
+                uint32_t h = adjacency->opposite[3 * (uint64_t)order[first + i] + k], at;
+                if (h == SC_NONE) continue;
+                at = place[h / 3];
+                if (at - first < count) {
+                    near[i] |= 1u << (at - first);
+                } else if (at < first) {
+                    p->joints[p->joint_count].a = first + i;
+                    p->joints[p->joint_count++].b = p->of[at];
+                }
+            }
+        own[leaf] = number_parts(near, leaf, first, count, p);
+        for (; n < p->joint_count; n++) p->joints[n].a = p->of[p->joints[n].a];
+    }
+}
+
 /*
- * How many patches of each level are connected through edges. Edges within leaf clusters join pieces at once; the
- * others, fewer at each level up, wait for a patch that has both of their triangles.
+ * How many patches of each level are connected through edges. Edges between leaf clusters, fewer at each level up, wait for
+ * a patch that has both of their triangles.
  */
 static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarchy *hierarchy,
                                  const sc_xbvh *xbvh, sc_scratch *scratch, uint32_t *connected)
 {
-    uint32_t count = hierarchy->triangle_count, level = xbvh->level_count - 1, p, i, k, leaf;
-    uint32_t *place, *parent, *leaf_of, *patch_at, *pieces, *own;
-    uint64_t n, edges = 0, kept;
-    sc_pair *joint;
+    uint32_t count = hierarchy->triangle_count, level = xbvh->level_count - 1, p, i, leaf;
+    uint32_t *place, *parent, *patch_at, *pieces;
+    uint64_t n, kept;
+    leaf_parts all;
     place = (uint32_t *)sc_scratch_take(scratch, count, sizeof *place);
     parent = (uint32_t *)sc_scratch_take(scratch, count, sizeof *parent);
-    leaf_of = (uint32_t *)sc_scratch_take(scratch, count, sizeof *leaf_of);
     patch_at = (uint32_t *)sc_scratch_take(scratch, xbvh->leaf_count, sizeof *patch_at);
     pieces = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *pieces, 0);
-    joint = (sc_pair *)sc_scratch_take(scratch, 3 * (uint64_t)count / 2 + 1, sizeof *joint);
-    if (!place || !parent || !leaf_of || !patch_at || !pieces || !joint) return SC_ERROR_MEMORY;
-    own = pieces + xbvh->level_first[level]; /* of leaf clusters */
-    for (leaf = 0; leaf < xbvh->leaf_count; leaf++) {
-        own[leaf] = xbvh->leaf_first[leaf + 1] - xbvh->leaf_first[leaf];
-        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++) {
-            leaf_of[i] = leaf;
-            place[hierarchy->order[i]] = parent[i] = i;
-        }
-    }
-    for (i = 0; i < count; i++)
-        for (k = 0; k < 3; k++) {
-            uint32_t h = adjacency->opposite[3 * (uint64_t)hierarchy->order[i] + k];
-            if (h == SC_NONE || place[h / 3] <= i) continue;
-            if (leaf_of[place[h / 3]] == leaf_of[i]) {
-                own[leaf_of[i]] -= join_pieces(parent, i, place[h / 3]);
-            } else {
-                joint[edges].a = i;
-                joint[edges++].b = place[h / 3];
-            }
-        }
+    all.of = (uint32_t *)sc_scratch_take(scratch, count, sizeof *all.of);
+    all.leaf = (uint32_t *)sc_scratch_take(scratch, count, sizeof *all.leaf);
+    all.joints = (sc_pair *)sc_scratch_take(scratch, 3 * (uint64_t)count / 2 + 1, sizeof(sc_pair));
+    all.count = 0;
+    all.joint_count = 0;
+    if (!place || !parent || !patch_at || !pieces || !all.of || !all.leaf || !all.joints)
+        return SC_ERROR_MEMORY;
+    for (i = 0; i < count; i++) place[hierarchy->order[i]] = i;
+    find_parts(adjacency, hierarchy->order, xbvh, place, pieces + xbvh->level_first[level], &all);
+    for (i = 0; i < all.count; i++) parent[i] = i;
     connected[level] = count_whole(xbvh, level, pieces);
-    for (; level-- > 0; edges = kept) {
+    for (; level-- > 0; all.joint_count = kept) {
         for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++) {
             for (leaf = xbvh->leaf[p]; leaf < xbvh->leaf[p + 1]; leaf++) patch_at[leaf] = p;
             for (i = xbvh->child[p]; i < xbvh->child[p + 1]; i++) pieces[p] += pieces[i];
         }
-        for (n = kept = 0; n < edges; n++) {
-            p = patch_at[leaf_of[joint[n].a]];
-            if (p == patch_at[leaf_of[joint[n].b]])
-                pieces[p] -= join_pieces(parent, joint[n].a, joint[n].b);
+        for (n = kept = 0; n < all.joint_count; n++) {
+            sc_pair joint = all.joints[n];
+            p = patch_at[all.leaf[joint.a]];
+            if (p == patch_at[all.leaf[joint.b]])
+                pieces[p] -= join_pieces(parent, joint.a, joint.b);
             else
-                joint[kept++] = joint[n];
+                all.joints[kept++] = joint;
         }
         connected[level] = count_whole(xbvh, level, pieces);
     }
-    sc_scratch_give(scratch, joint);
+    sc_scratch_give(scratch, all.joints);
+    sc_scratch_give(scratch, all.leaf);
+    sc_scratch_give(scratch, all.of);
     sc_scratch_give(scratch, pieces);
     sc_scratch_give(scratch, patch_at);
-    sc_scratch_give(scratch, leaf_of);
     sc_scratch_give(scratch, parent);
     sc_scratch_give(scratch, place);
     return SC_OK;
