@@ -51,22 +51,23 @@ static int look_round(const sc_adjacency *adjacency, const places *at, uint32_t 
                       sc_scratch *scratch, sc_sharing *s, found *f)
 {
     uint32_t begin = adjacency->corner_first[p], end = adjacency->corner_first[p + 1], i, k;
-    uint32_t mask = 0, own = 0, others = 0, other[SC_SHARING_CROWD] = {0};
-    uint8_t row[SC_SHARING_CROWD] = {0};
+    uint32_t mask = 0, own = 0, others = 0, other[SC_SHARING_CROWD];
+    uint8_t row[SC_SHARING_CROWD];
     if (end - begin > SC_SHARING_CROWD) {
         s->crowded[leaf] = 1;
         return 1;
     }
     for (i = begin; i < end; i++) {
-        uint32_t t = adjacency->corners[i] / 3;
+        uint32_t t = adjacency->corners[i] / 3, is_own = at->leaf[t] == leaf;
         other[others] = t;
         others += at->leaf[t] > leaf;
         row[own] = at->row[t];
-        own += at->leaf[t] == leaf;
+        mask |= is_own << at->row[t];
+        own += is_own;
     }
-    for (k = 0; k < own; k++) mask |= 1u << row[k];
     for (k = 0; k < own; k++) /* those in higher rows */
         s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row[k]] |= (uint16_t)(mask & (~1u << row[k]));
+    if (!others) return 1;
     for (i = 0; i < others; i++) {
         uint16_t *rows = rows_of(scratch, f, at->leaf[other[i]]);
         uint16_t bit = (uint16_t)(1u << at->row[other[i]]);
