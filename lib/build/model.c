@@ -139,24 +139,26 @@ static void write_triangles(const sc_points *points, const sc_adjacency *adjacen
 /* The points of leaf clusters, in the order in which their triangles use them, and where the corners are. */
 static void write_leaves(sc_model *m)
 {
+    uint8_t *last_place =
+        NEW_ARRAY(m, ring_first, uint8_t); /* of each vertex; to be written to later */
     const uint32_t *first = sc_model_leaf_first(m), *corner = sc_model_triangle(m);
-    uint32_t *point = NEW_ARRAY(m, leaf_point, uint32_t), leaf, i, k, at;
+    uint32_t *point = NEW_ARRAY(m, leaf_point, uint32_t), leaf, i, k;
     uint8_t *where = NEW_ARRAY(m, leaf_corner, uint8_t);
+    memset(last_place, 0, m->vertex_count);
     for (leaf = 0; leaf < m->leaf_count;
          leaf++, point += SC_LEAF_POINTS, where += 3 * SC_LEAF_MAX) {
-        uint32_t count = first[leaf + 1] - first[leaf], points = 0, newest = 0;
+        uint32_t count = first[leaf + 1] - first[leaf], points = 0, newest;
         uint32_t known[SC_LEAF_POINTS];
         for (i = 0; i < SC_LEAF_POINTS; i++) known[i] = SC_NONE;
         for (i = 0; i < count; i++, corner += 3)
-            for (k = 0; k < 3; k++) {
-                uint32_t p = corner[k], place = 0; /* one more than where p is; all at once */
-                for (at = 0; at < SC_LEAF_POINTS; at++) place |= known[at] == p ? at + 1 : 0;
-                if (!place) {
-                    newest = known[points] = p;
-                    place = ++points;
-                }
-                where[SC_LEAF_MAX * k + i] = (uint8_t)(place - 1);
+            for (k = 0; k < 3; k++) { /* without branches, which no processor could foresee */
+                uint32_t p = corner[k], place = last_place[p], is_new = known[place] != p;
+                place = is_new ? points : place;
+                points += is_new;
+                known[place] = p;
+                last_place[p] = where[SC_LEAF_MAX * k + i] = (uint8_t)place;
             }
+        newest = known[points - 1];
         for (k = 0; k < 3; k++)
             for (i = count; i < SC_LEAF_MAX; i++)
                 where[SC_LEAF_MAX * k + i] = where[SC_LEAF_MAX * k + count - 1];
@@ -494,14 +496,14 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     if (!m) return SC_ERROR_MEMORY;
     *m = counts;
     clear_gaps(m);
-    write_rings(points, &r, m);
-    sc_scratch_give(scratch, r.points); /* before the loops need memory */
-    sc_scratch_give(scratch, r.first);
-    write_open_points(points, adjacency, number, m);
     write_triangles(points, adjacency, hierarchy->order, number, m);
     copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     write_leaves(m);
+    write_rings(points, &r, m);
+    sc_scratch_give(scratch, r.points); /* before the loops need memory */
+    sc_scratch_give(scratch, r.first);
+    write_open_points(points, adjacency, number, m);
     sc_leaf_shapes_fans(m, NEW_ARRAY(m, leaf_fan, uint16_t));
     sc_leaf_shapes_outlines(m, NEW_ARRAY(m, leaf_outline, uint8_t));
     copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
