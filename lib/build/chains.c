@@ -27,10 +27,10 @@ void sc_chains_give(sc_scratch *scratch, sc_chains *chains)
     sc_scratch_give(scratch, chains->starting_at);
 }
 
-/* Links what follows segment i, which is in no list any more; returns the last that does. */
-static uint32_t walk(const sc_chains *c, uint32_t i)
+/* Links what follows segment i, which is in no list any more; returns the last that does. *left: how many are in lists. */
+static uint32_t walk(const sc_chains *c, uint32_t i, uint32_t *left)
 {
-    for (;;) {
+    for (;; --*left) {
         uint32_t *list = &c->starting_at[c->points[c->last[c->old[i]]]], j = *list;
         if (j == SC_NONE) return i;
         *list = c->next[j];
@@ -40,33 +40,34 @@ static uint32_t walk(const sc_chains *c, uint32_t i)
 }
 
 /* Takes the first of the segments that start at a point, and what follows it; returns the last. */
-static uint32_t take_chain(const sc_chains *c, uint32_t point, uint32_t *first)
+static uint32_t take_chain(const sc_chains *c, uint32_t point, uint32_t *first, uint32_t *left)
 {
     *first = c->starting_at[point];
     c->starting_at[point] = c->next[*first];
-    return walk(c, *first);
+    --*left;
+    return walk(c, *first, left);
 }
 
 uint32_t sc_chains_order(const sc_chains *c, uint32_t *segments, uint32_t count)
 {
-    uint32_t i, at, before, last, inserted, n = 0, chains = 0;
+    uint32_t i, at, before, last, inserted, n = 0, chains = 0, left = count;
     memcpy(c->old, segments, count * sizeof *segments);
     for (i = count; i-- > 0;) {
         uint32_t *list = &c->starting_at[c->start[i] = c->points[c->first[segments[i]]]];
         c->next[i] = *list;
         *list = i;
     }
-    for (i = 0; i < count; i++) { /* the lists hold what is left */
+    for (i = 0; left; i++) {
         uint32_t point = c->start[i];
         if (c->starting_at[point] == SC_NONE) continue;
         chains++;
-        last = take_chain(c, point, &at);
+        last = take_chain(c, point, &at, &left);
         c->next[last] = SC_NONE;
         segments[n] = c->old[at];
         for (before = at, at = c->next[at]; at != SC_NONE; before = at, at = c->next[at]) {
             point = c->start[at];
-            if (c->starting_at[point] != SC_NONE) {
-                last = take_chain(c, point, &inserted);
+            if (left && c->starting_at[point] != SC_NONE) {
+                last = take_chain(c, point, &inserted, &left);
                 c->next[last] = at;
                 c->next[before] = inserted;
                 at = inserted;

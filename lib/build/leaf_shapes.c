@@ -98,22 +98,19 @@ void sc_leaf_shapes_outlines(const sc_model *m, uint8_t *outline)
     uint32_t leaf, i, k;
     for (leaf = 0; leaf < m->leaf_count;
          leaf++, where += 3 * SC_LEAF_MAX, outline += SC_LEAF_POINTS) {
-        uint32_t to[SC_LEAF_POINTS] = {0}, edges = 0, start = 0, count = 0;
+        uint32_t to[SC_LEAF_POINTS] = {0}, back[SC_LEAF_POINTS] = {0};
+        uint32_t edges = 0, start = 0, count = 0;
         int is_chain = 1;
         for (i = 0; i < first[leaf + 1] - first[leaf]; i++)
             for (k = 0; k < 3; k++) {
                 uint32_t end = where[SC_LEAF_MAX * ((k + 1) % 3) + i];
-                uint32_t *from = &to[where[SC_LEAF_MAX * k + i]];
-                is_chain &= !(*from >> end & 1u);
-                *from |= 1u << end;
-            }
-        for (i = 0; i < SC_LEAF_POINTS; i++) /* an edge and its opposite are none */
-            for (k = 0; k <= i; k++) {
-                uint32_t both = (to[i] >> k & 1u) & (to[k] >> i & 1u);
-                to[i] &= ~(both << k);
-                to[k] &= ~(both << i);
+                uint32_t begin = where[SC_LEAF_MAX * k + i];
+                is_chain &= !(to[begin] >> end & 1u);
+                to[begin] |= 1u << end;
+                back[end] |= 1u << begin;
             }
         for (i = 0; i < SC_LEAF_POINTS; i++) {
+            to[i] &= ~back[i]; /* an edge and its opposite are none */
             is_chain &= !(to[i] & (to[i] - 1));
             edges += to[i] != 0;
             start = to[i] ? i : start;
