@@ -162,16 +162,6 @@ static int share_chain(const sc_model *m, uint32_t a, uint32_t b)
     return 1;
 }
 
-void sc_leaf_shapes_mark_chains(const sc_model *m, uint16_t *list)
-{
-    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
-    const uint32_t *begin = sc_model_share_begin(m);
-    uint32_t leaf, i;
-    for (leaf = 0; leaf < m->leaf_count; leaf++)
-        for (i = first[leaf]; i < first[leaf + 1]; i++)
-            if (share_chain(m, leaf, other[i])) list[begin[i] + SC_SHARE_KINDS] |= SC_SHARE_CHAIN;
-}
-
 /* Where two leaf clusters have the one point that they share; 0 if they share more. */
 static uint16_t find_touch(const uint32_t *points, const uint32_t *other)
 {
@@ -196,6 +186,8 @@ void sc_leaf_shapes_touches(const sc_model *m, uint16_t *touch)
     uint32_t leaf, i;
     for (leaf = 0; leaf < m->leaf_count; leaf++)
         for (i = first[leaf]; i < first[leaf + 1]; i++)
-            touch[i] = find_touch(points + SC_LEAF_POINTS * (uint64_t)leaf,
-                                  points + SC_LEAF_POINTS * (uint64_t)other[i]);
+            touch[i] = share_chain(m, leaf, other[i])
+                           ? SC_TOUCH_CHAIN
+                           : find_touch(points + SC_LEAF_POINTS * (uint64_t)leaf,
+                                        points + SC_LEAF_POINTS * (uint64_t)other[i]);
 }

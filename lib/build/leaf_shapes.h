@@ -18,11 +18,8 @@ void sc_leaf_shapes_fans(const sc_model *model, uint16_t *fan);
 /* The chains of edges round each cluster: leaf_outline. */
 void sc_leaf_shapes_outlines(const sc_model *model, uint8_t *outline);
 
-/* Where two clusters have the one point that they share: share_touch. */
+/* Where two clusters have the one point that they share, or that they share a chain: share_touch; reads leaf_outline as
+   well. */
 void sc_leaf_shapes_touches(const sc_model *model, uint16_t *touch);
-
-/* Marks those lists of share_list that are of two clusters round a tube which share a chain of either (SC_SHARE_CHAIN);
-   reads leaf_outline and share_begin as well. */
-void sc_leaf_shapes_mark_chains(const sc_model *model, uint16_t *list);
 
 #endif

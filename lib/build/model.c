@@ -512,7 +512,6 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     sc_leaf_shapes_touches(m, NEW_ARRAY(m, share_touch, uint16_t));
     sc_sharing_lists_write(sharing, xbvh, sc_model_triangle(m), NEW_ARRAY(m, share_begin, uint32_t),
                            NEW_ARRAY(m, share_list, uint16_t));
-    sc_leaf_shapes_mark_chains(m, NEW_ARRAY(m, share_list, uint16_t));
     own_rows = NEW_ARRAY(m, share_own_rows, uint16_t);
     for (i = 0; i < m->leaf_count; i++)
         sc_sharing_fold(sharing->own_rows + SC_LEAF_MAX * i, own_rows + SC_OWN_WORDS * i);

@@ -42,8 +42,14 @@ enum {
 };
 
 /* Where two leaf clusters have the point that they touch in, if they share just one: its place in the lower one's leaf_point,
-   in four bits, and that in the other's; and whether it is the last point of each. */
-enum { SC_TOUCH_LAST = 8, SC_TOUCH_LAST_OF_OTHER = 9, SC_TOUCHES = 1 << 15 };
+   in four bits, and that in the other's; and whether it is the last point of each. Or SC_TOUCH_CHAIN: they share just a chain
+   of points round a tube, see sc_outline_bit. */
+enum {
+    SC_TOUCH_LAST = 8,
+    SC_TOUCH_LAST_OF_OTHER = 9,
+    SC_TOUCH_CHAIN = 1 << 14,
+    SC_TOUCHES = 1 << 15
+};
 
 /* Of the outline of a leaf cluster that is two chains: the point of a place is in the second; in none; and in the last place
    all the time that it is so. */
@@ -75,7 +81,8 @@ enum {
  *                   zeros follow, and SC_LEAF_POINTS + n is the last number. If it is two such chains, as of a tube, for each
  *                   place the one that follows it there, and what sc_outline_bit names
  *   share_...       see build/sharing.h, share_own_rows are folded; share_begin, share_list: build/sharing_lists.h
- *   share_touch     of two leaf clusters that share one point, SC_TOUCHES and where they have it, else 0
+ *   share_touch     of two leaf clusters that share one point, SC_TOUCHES and where they have it; of two that share a chain,
+ *                   SC_TOUCH_CHAIN; else 0
  *   share_node      the node of the test tree that is of the two leaf clusters, or SC_NONE
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion

@@ -55,7 +55,6 @@ static unsigned first_corner(unsigned shared)
 static uint32_t write_run(const uint16_t rows[SC_LEAF_MAX], const uint32_t *t, const uint32_t *u,
                           uint16_t *list)
 {
-    static const uint32_t most[2] = {SC_SHARE_POINTS_MOST, SC_SHARE_EDGES_MOST};
     uint16_t kept[3][SC_LEAF_MAX * SC_LEAF_MAX];
     uint32_t count[3] = {0, 0, 0}, at = SC_SHARE_ROWS, i, k;
     list[SC_SHARE_TRIANGLES] = 0;
@@ -68,7 +67,7 @@ static uint32_t write_run(const uint16_t rows[SC_LEAF_MAX], const uint32_t *t, c
             uint32_t j = sc_bits_lowest(row);
             shared_corners s = find_shared_corners(t + 3 * (uint64_t)i, u + 3 * (uint64_t)j);
             k = kind_of(&s);
-            if (k < 2 && count[k] == most[k]) k = 2;
+            if (k < 2 && count[k] == SC_SHARE_EDGE - 1) k = 2;
             kept[k][count[k]++] =
                 (uint16_t)(i | j << 4 | first_corner(s.of[0]) << 8 | first_corner(s.of[1]) << 12);
         }

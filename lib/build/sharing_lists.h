@@ -16,18 +16,12 @@
 
 enum sc_share_word {
     SC_SHARE_TRIANGLES, /* mask of those of the lower cluster that have a row */
-    SC_SHARE_KINDS, /* pairs that share a point; SC_SHARE_EDGE times those that share an edge; SC_SHARE_CHAIN */
+    SC_SHARE_KINDS,     /* pairs that share a point; SC_SHARE_EDGE times those that share an edge */
     SC_SHARE_ROWS /* the first row; the first pair is behind the last, the last ends the run */
 };
 
-/* More pairs of one kind, as there may be of triangles that are the same, are among those that are neither. SC_SHARE_CHAIN: the
-   two clusters share just a chain of points round a tube, see sc_outline_bit; build/model sets it. */
-enum {
-    SC_SHARE_EDGE = 256,
-    SC_SHARE_CHAIN = 0x8000,
-    SC_SHARE_POINTS_MOST = SC_SHARE_EDGE - 1,
-    SC_SHARE_EDGES_MOST = SC_SHARE_CHAIN / SC_SHARE_EDGE - 1
-};
+/* More pairs of one kind, as there may be of triangles that are the same, are among those that are neither. */
+enum { SC_SHARE_EDGE = 256 };
 
 static inline unsigned sc_share_points(const uint16_t *run)
 {
@@ -36,7 +30,7 @@ static inline unsigned sc_share_points(const uint16_t *run)
 
 static inline unsigned sc_share_edges(const uint16_t *run)
 {
-    return run[SC_SHARE_KINDS] % SC_SHARE_CHAIN / SC_SHARE_EDGE;
+    return run[SC_SHARE_KINDS] / SC_SHARE_EDGE;
 }
 
 /* So many words behind the last run may be read. */

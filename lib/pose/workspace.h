@@ -7,7 +7,7 @@
  *       bounds_tick | all_known | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: contour, walk,
- * some_ready, some_known, slab, far_pairs, near_pairs, candidates, neighbors, settled, settled_code, ball, ball_queue, found,
+ * some_ready, some_known, slab, far_pairs, near_list, near_pairs, candidates, neighbors, settled, settled_code, ball, ball_queue, found,
  * state, motion's from leaves to state. For each worker but the first there is a view: an sc_workspace with the pose of the
  * first, and own arrays.
  *
@@ -147,10 +147,13 @@ enum { SC_FANS_KEPT = 256 };
 /* Pairs of leaf clusters that wait to be looked at, at most, of each kind. */
 enum { SC_LEAF_QUEUE = 1024 };
 
-/* Two leaf clusters, a <= b, and where sc_model_share_rows has them, or SC_NONE if they are one. */
+/* Two leaf clusters, a <= b, and where sc_model_share_leaf has them, or SC_NONE if they are one; and what sc_model_share_touch
+   has, or SC_TOUCH_CHAIN if they are one that goes round a tube, with SC_NEAR_DROPPED when nothing is left to be looked at. */
 typedef struct sc_near_pair {
-    uint32_t a, b, shared;
+    uint32_t a, b, shared, known;
 } sc_near_pair;
+
+enum { SC_NEAR_DROPPED = 1 << 16 };
 
 /* Sides of boxes that move, three each: x, y, z. */
 enum { SC_START_LOW = 0, SC_START_HIGH = 3, SC_END_LOW = 6, SC_END_HIGH = 9, SC_MOTION_SIDES = 12 };
@@ -267,8 +270,9 @@ struct sc_workspace {
     sc_leaf_slab *slab;               /* leaf_count */
     uint32_t *far_pairs
         [2]; /* SC_LEAF_QUEUE that share no points and wait: the lower of two, and the other */
-    sc_near_pair *
-        near_pairs; /* SC_LEAF_QUEUE that share points and wait, or leaf clusters against themselves */
+    uint32_t *near_list
+        [2]; /* SC_LEAF_QUEUE that share points and wait, or leaf clusters against themselves: the lower of two, and shared */
+    sc_near_pair *near_pairs; /* SC_LEAF_QUEUE: these, when they are looked at */
     uint32_t far_count, near_count;
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     sc_pair *neighbors;  /* SC_CANDIDATES_MAX of such that share one point */

@@ -434,17 +434,52 @@ static inline int SC_KERNEL(has_cones)(const sc_query_state *state)
     return state->options.method == SC_METHOD_SCTT && state->options.contour == SC_CONTOUR_EXACT;
 }
 
+/* Takes the pairs of leaf clusters that share points from the list of what waits, and leaf clusters against themselves, and drops
+   what some tests can tell; returns how many are left. In steps with few branches, as any pair may be one of a kind. */
+static SC_NOINLINE uint32_t SC_KERNEL(take_near_list)(sc_query_state *state)
+{
+    const uint32_t *leaf = sc_model_share_leaf(state->model);
+    const uint16_t *touch = sc_model_share_touch(state->model);
+    sc_workspace *w = state->workspace;
+    sc_near_pair *pairs = w->near_pairs;
+    const int has_cones = SC_KERNEL(has_cones)(state);
+    uint16_t touching[SC_LEAF_QUEUE + 1];
+    uint32_t count = w->near_count, touch_count = 0, known = 0, kept = 0, i;
+    w->near_count = 0;
+    for (i = 0; i < count; i++) {
+        const uint32_t a = w->near_list[0][i], shared = w->near_list[1][i];
+        pairs[i].a = pairs[i].b = a;
+        pairs[i].shared = shared;
+        if (shared != SC_NONE) {
+            pairs[i].b = leaf[shared];
+            pairs[i].known = touch[shared];
+        } else {
+            pairs[i].known = SC_KERNEL(has_two_chains)(state->model, a) ? SC_TOUCH_CHAIN : 0;
+        }
+        touching[touch_count] = (uint16_t)i;
+        touch_count += (pairs[i].known & SC_TOUCHES) != 0;
+        known |= pairs[i].known;
+    }
+    if (touch_count) SC_KERNEL(drop_touching)(state, touching, touch_count);
+    if (known & SC_TOUCH_CHAIN) SC_KERNEL(drop_bands)(state, count);
+    if (has_cones) SC_KERNEL(drop_plain)(state, count);
+    for (i = 0; i < count; i++) {
+        const sc_near_pair p = pairs[i];
+        unsigned drops = p.known & SC_NEAR_DROPPED;
+        if (p.a == p.b && has_cones) drops |= (unsigned)SC_KERNEL(is_plain)(state, p.a);
+        pairs[kept] = p;
+        kept += !drops;
+    }
+    return kept;
+}
+
 /* Those that share points, and leaf clusters against themselves. */
 static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
 {
     sc_workspace *w = state->workspace;
     const sc_near_pair *pairs = w->near_pairs;
-    uint32_t count, i;
-    SC_KERNEL(drop_touching)(state);
-    SC_KERNEL(drop_bands)(state);
-    if (SC_KERNEL(has_cones)(state)) SC_KERNEL(drop_plain)(state);
-    count = w->near_count;
-    w->near_count = 0;
+    const uint32_t count = SC_KERNEL(take_near_list)(state);
+    uint32_t i;
     rows->near = 1;
     for (i = 0; i < count && !state->stop; i++) {
         if (i + SC_FETCH_READY < count) {
@@ -481,13 +516,11 @@ static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
 }
 
 /* Has a pair of leaf clusters that share points wait if that is so, 1 or 0, or one by itself. */
-static inline void SC_KERNEL(add_near_pair)(sc_workspace *w, uint32_t a, uint32_t b,
-                                            uint32_t shared, unsigned is_so)
+static inline void SC_KERNEL(add_near_pair)(sc_workspace *w, uint32_t a, uint32_t shared,
+                                            unsigned is_so)
 {
-    sc_near_pair *pair = w->near_pairs + w->near_count;
-    pair->a = a;
-    pair->b = b;
-    pair->shared = shared;
+    w->near_list[0][w->near_count] = a;
+    w->near_list[1][w->near_count] = shared;
     w->near_count += is_so;
 }
 
@@ -502,7 +535,7 @@ static inline unsigned SC_KERNEL(add_near_pairs)(sc_query_state *state, uint32_t
     for (i = share[0]; i < share[1]; i++) {
         uint32_t at = leaf[i] - first;
         unsigned bit = at < SC_LEAF_MAX ? mask & 1u << (at % SC_LEAF_MAX) : 0u;
-        SC_KERNEL(add_near_pair)(state->workspace, a, leaf[i], i, bit != 0);
+        SC_KERNEL(add_near_pair)(state->workspace, a, i, bit != 0);
         mask &= ~bit;
     }
     return mask;
@@ -547,6 +580,6 @@ static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)
         return;
     }
     if (SC_KERNEL(is_plain)(state, leaf)) return;
-    SC_KERNEL(add_near_pair)(state->workspace, leaf, leaf, SC_NONE, 1);
+    SC_KERNEL(add_near_pair)(state->workspace, leaf, SC_NONE, 1);
     SC_KERNEL(make_leaf_room)(state);
 }

@@ -295,25 +295,25 @@ static inline void SC_KERNEL(fetch_loop)(const sc_query_state *state, const sc_n
     }
 }
 
-/* Of the pairs of leaf clusters that wait, of which some are of one with itself, drops those that have certainly nothing in
-   common but what they share. Marks two of which that is so: then neither is to be looked at by itself. */
-static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state)
+/* Of so many pairs of leaf clusters that wait drops two that have certainly nothing in common but what they share, and marks
+   them: then neither is to be looked at by itself. */
+static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state, uint32_t waiting)
 {
-    enum { DISTANCE = 8 }; /* pairs between two steps of fetching */
+    enum { DISTANCE = 8 };                              /* pairs between two steps of fetching */
+    const unsigned told = SC_TOUCHES | SC_NEAR_DROPPED; /* by other tests, or not at all */
     sc_workspace *w = state->workspace;
     sc_near_pair *pairs = w->near_pairs, *some[SC_KERNEL(SHORT_PAIRS)];
     const uint32_t first = sc_model_first_leaf_patch(state->model);
     const uint16_t *mask = w->mask + first;
     uint8_t *marks = w->walk.marks + first;
     uint16_t oriented[SC_LEAF_QUEUE + 1];
-    uint32_t count = 0, kept = 0, i;
+    uint32_t count = 0, i;
     unsigned bits, taken = 0;
     int step;
-    for (i = 0; i < w->near_count; i++) {
+    for (i = 0; i < waiting; i++) {
         const sc_near_pair *p = pairs + i;
         oriented[count] = (uint16_t)i;
-        count +=
-            (p->a != p->b) & ((mask[p->a] & mask[p->b]) != 0) & !SC_KERNEL(touch)(state->model, p);
+        count += (p->a != p->b) & ((mask[p->a] & mask[p->b]) != 0) & !(p->known & told);
     }
     for (i = 0; i < count; i++) {
         for (step = 0; step < SC_KERNEL(SHORT_FETCHES); step++) {
@@ -325,14 +325,8 @@ static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state)
         for (bits = SC_KERNEL(find_plain)(state, some, taken); bits; bits &= bits - 1) {
             sc_near_pair *p = some[sc_bits_lowest(bits)];
             marks[p->a] = marks[p->b] = 1;
-            p->shared = SC_NONE;
+            p->known |= SC_NEAR_DROPPED;
         }
         taken = 0;
     }
-    for (i = 0; i < w->near_count; i++) {
-        const sc_near_pair p = pairs[i];
-        pairs[kept] = p;
-        kept += p.a != p.b ? p.shared != SC_NONE : !SC_KERNEL(is_plain)(state, p.a);
-    }
-    w->near_count = kept;
 }

@@ -54,17 +54,10 @@ static inline unsigned SC_KERNEL(lanes_of)(unsigned place, unsigned is_last)
     return ((0u - is_last) | 1u) << place;
 }
 
-/* As sc_model.share_touch has them; 0 of a leaf cluster by itself. */
-static inline unsigned SC_KERNEL(touch)(const sc_model *model, const sc_near_pair *pair)
-{
-    const unsigned is_pair = pair->shared != SC_NONE;
-    return sc_model_share_touch(model)[is_pair ? pair->shared : 0] & (0u - is_pair);
-}
-
 /* Whether two leaf clusters certainly have only the point in common that they touch in. */
 static inline unsigned SC_KERNEL(touch_only)(const sc_query_state *state, const sc_near_pair *pair)
 {
-    const unsigned touch = SC_KERNEL(touch)(state->model, pair);
+    const unsigned touch = pair->known;
     const unsigned at_a = touch & 15u, at_b = touch >> 4 & 15u;
     const float *of_a = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->a;
     const float *of_b = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->b;
@@ -81,18 +74,13 @@ static inline unsigned SC_KERNEL(touch_only)(const sc_query_state *state, const 
     return (ahead & behind & 0xffffu) == 0xffffu;
 }
 
-/* Drops such pairs of those that wait. In steps without branches, as any pair may be one. */
-static SC_NOINLINE void SC_KERNEL(drop_touching)(sc_query_state *state)
+/* Drops such pairs of those that wait, of which so many touch. */
+static SC_NOINLINE void SC_KERNEL(drop_touching)(sc_query_state *state, const uint16_t *touching,
+                                                 uint32_t count)
 {
     sc_workspace *w = state->workspace;
     sc_near_pair *pairs = w->near_pairs;
-    uint16_t touching[SC_LEAF_QUEUE + 1];
-    uint32_t count = 0, kept = 0, i;
-    for (i = 0; i < w->near_count; i++) {
-        touching[count] = (uint16_t)i;
-        count += SC_KERNEL(touch)(state->model, pairs + i) != 0;
-    }
-    if (!count) return;
+    uint32_t i;
     for (i = 0; i < count; i++) {
         sc_near_pair *p = pairs + touching[i];
         if (i + SC_FETCH_POINTS < count) {
@@ -101,12 +89,6 @@ static SC_NOINLINE void SC_KERNEL(drop_touching)(sc_query_state *state)
             for (k = 0; k < 4; k++)
                 sc_fetch(w->point_at + SC_LEAF_POINTS * (4 * next + (unsigned)k));
         }
-        p->shared |= SC_KERNEL(touch_only)(state, p) ? SC_NONE : 0;
+        p->known |= SC_KERNEL(touch_only)(state, p) ? SC_NEAR_DROPPED : 0u;
     }
-    for (i = 0; i < w->near_count; i++) {
-        const sc_near_pair p = pairs[i];
-        pairs[kept] = p;
-        kept += (unsigned)(p.shared != SC_NONE) | (unsigned)(p.a == p.b);
-    }
-    w->near_count = kept;
 }

@@ -332,10 +332,9 @@ void sc_traversal_take_alone(sc_query_state *state, const uint32_t *alone, uint3
         sc_traversal_follow_contour(state, (int)after_contour);
         previous = sc_state_switch(state, sc_state_box_task(state));
         for (i = 0; i < count && !sc_state_stops(state); i++) {
-            sc_near_pair *pair = w->near_pairs + w->near_count;
             if ((alone[i] & 1) != after_contour || culled[alone[i] / 2]) continue;
-            pair->a = pair->b = alone[i] / 2;
-            pair->shared = SC_NONE;
+            w->near_list[0][w->near_count] = alone[i] / 2;
+            w->near_list[1][w->near_count] = SC_NONE;
             if (++w->near_count > most) kernels->leaf_pairs(state);
         }
         sc_state_switch(state, previous);

@@ -17,7 +17,7 @@
  * follow each other round it, as in query/star.c, which looks at what is near one place alone. The middle, the directions, and
  * the height between the chains are any, hence have no error; where the directions are in one plane, nothing is above 0.
  *
- * Two clusters that share one chain of each, which runs in the other direction in the other cluster (SC_SHARE_CHAIN), have
+ * Two clusters that share one chain of each, which runs in the other direction in the other cluster (SC_TOUCH_CHAIN), have
  * nothing else in common if both are such bands, round the same axis, and turned to the same side: then chains that run in
  * one direction are the lower ones of both, so that the one they share is the upper one of one cluster and the lower one of the
  * other, and one band is above it and the other below.
@@ -225,48 +225,25 @@ static int SC_KERNEL(are_bands)(const sc_query_state *state, uint32_t a, uint32_
     return side && SC_KERNEL(side_of_band)(state, b, &t, height[1]) == side;
 }
 
-/* Whether a pair of clusters that wait, or one with itself, is of such as go round a tube and certainly have nothing in common
-   but what they share. */
-static int SC_KERNEL(is_of_bands)(const sc_query_state *state, const sc_near_pair *p)
+/* Of so many pairs of leaf clusters that wait, or one with itself, drops those that go round a tube and certainly have nothing
+   in common but what they share; before those of one with itself, the others, which are marked as SC_KERNEL(drop_plain) does. */
+static void SC_KERNEL(drop_bands)(sc_query_state *state, uint32_t count)
 {
-    const sc_model *model = state->model;
-    if (!SC_KERNEL(has_two_chains)(model, p->a)) return 0;
-    if (p->a == p->b) return SC_KERNEL(is_band)(state, p->a);
-    return SC_KERNEL(has_two_chains)(model, p->b) &&
-           (sc_model_share_list(model)[sc_model_share_begin(model)[p->shared] + SC_SHARE_KINDS] &
-            SC_SHARE_CHAIN) &&
-           SC_KERNEL(are_bands)(state, p->a, p->b);
-}
-
-/* Of the pairs of leaf clusters that wait drops those; before those of one with itself, the others, which are marked as
-   SC_KERNEL(drop_plain) does. */
-static void SC_KERNEL(drop_bands)(sc_query_state *state)
-{
-    enum { DISTANCE = 8 }; /* pairs between asking for memory and reading it */
-    const uint32_t *begin = sc_model_share_begin(state->model);
-    const uint16_t *list = sc_model_share_list(state->model);
     sc_workspace *w = state->workspace;
-    sc_near_pair *pairs = w->near_pairs;
     uint8_t *marks = w->walk.marks + sc_model_first_leaf_patch(state->model);
-    uint32_t i, kept;
     const int may_look =
         !state->share; /* else it depends on who does what which are marked by now */
-    int found = 0, pass;
-    for (i = 0; i < w->near_count; i++)
-        found |= SC_KERNEL(has_two_chains)(state->model, pairs[i].a);
-    for (pass = 0; found && pass < 2; pass++) {
-        for (i = kept = 0; i < w->near_count; i++) {
-            const sc_near_pair p = pairs[i];
-            const int is_one = p.a == p.b;
-            if (!pass && i + DISTANCE < w->near_count && pairs[i + DISTANCE].shared != SC_NONE)
-                sc_fetch(list + begin[pairs[i + DISTANCE].shared]);
-            pairs[kept++] = p;
-            if (is_one != pass) continue;
-            if ((is_one && may_look && marks[p.a]) || SC_KERNEL(is_of_bands)(state, &p)) {
-                marks[p.a] = marks[p.b] = 1;
-                kept--;
+    uint32_t i;
+    int pass;
+    for (pass = 0; pass < 2; pass++) {
+        for (i = 0; i < count; i++) {
+            sc_near_pair *p = w->near_pairs + i;
+            if (!(p->known & SC_TOUCH_CHAIN) || (p->a == p->b) != pass) continue;
+            if (pass ? (may_look && marks[p->a]) || SC_KERNEL(is_band)(state, p->a)
+                     : SC_KERNEL(are_bands)(state, p->a, p->b)) {
+                marks[p->a] = marks[p->b] = 1;
+                p->known |= SC_NEAR_DROPPED;
             }
         }
-        w->near_count = kept;
     }
 }
