@@ -87,6 +87,9 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
     memcpy(out->list, list, out->bits[5]);
     out->bits[18] = lanes_list_from(in->mask, in->names[0], pairs);
     memcpy(out->from, pairs, out->bits[18] * sizeof *pairs);
+    out->bits[20] = lanes_list_among(in->apart, in->split, in->names[0], in->mask, in->first[0],
+                                     pairs, &out->bits[21]);
+    memcpy(out->among, pairs, out->bits[20] * sizeof *pairs);
     lanes_list_bits(in->mask, in->bits, wide);
     memcpy(out->wide, wide, out->bits[5] * sizeof *wide);
     i = (int)lanes_list_pairs(in->mask, in->bits[0], in->number, in->first, in->through,

@@ -23,6 +23,7 @@ typedef struct lanes_input {
     uint8_t other[48];   /* the same */
     uint32_t names[32];  /* of which some are the same */
     uint16_t words[16];  /* any */
+    uint32_t apart[16];  /* all different, about names[0] */
     unsigned mask;       /* of 16 bits */
     unsigned split;      /* up to 16 */
     uint32_t first[4];   /* any */
@@ -32,8 +33,8 @@ typedef struct lanes_input {
 typedef struct lanes_outcome {
     float row[76][16], one[3];
     double eight[16][8];
-    unsigned bits[20];
-    uint32_t numbers[16], pairs[32], from[16];
+    unsigned bits[22];
+    uint32_t numbers[16], pairs[32], from[16], among[16];
     uint16_t wide[16];
     uint8_t list[16], bytes[15][16];
     uint32_t kept[3][16];

@@ -103,6 +103,8 @@ static void draw(lanes_input *in)
     for (i = 0; i < 20; i++) in->exact[i] = number(1);
     for (i = 0; i < 32; i++) in->names[i] = test_random_below(24) * 0x01010000u + 7;
     for (i = 0; i < 16; i++) in->words[i] = (uint16_t)test_random();
+    for (i = 0; i < 16; i++) in->apart[i] = in->names[0] - 16 + 3 * i + test_random_below(3);
+    if (test_random_below(4) == 0) in->apart[test_random_below(16)] += 0x80000000u;
     in->mask = test_random_below(0x10000);
     for (i = 0; i < 12; i++) in->bits[i] = (unsigned)test_random();
     if (test_random_below(4) == 0) /* all below, or none: as in most boxes */
@@ -213,7 +215,7 @@ static void lists_and_signs(void)
     uint32_t trial, i, k, wide;
     memset(&in, 0, sizeof in);
     for (trial = 0; trial < 2000; trial++) {
-        unsigned count = 0, negative = 0, marked = 0, among = 0;
+        unsigned count = 0, negative = 0, marked = 0, among = 0, found = 0;
         float ends[6];
         draw(&in);
         lanes_try_plain(&in, &out);
@@ -235,6 +237,13 @@ static void lists_and_signs(void)
         }
         CHECK(out.bits[5] == count && out.bits[18] == count && out.bits[6] == negative);
         CHECK(out.bits[16] == marked && out.bits[17] == among);
+        for (i = count = 0; i < in.split; i++) {
+            const uint32_t number = in.apart[i] - in.names[0];
+            if (number >= 16 || !(in.mask >> number & 1u)) continue;
+            CHECK(out.among[count++] == in.first[0] + i);
+            found |= 1u << number;
+        }
+        CHECK(out.bits[20] == count && out.bits[21] == found);
         for (i = 0; i < 16; i++) {
             CHECK((out.bits[0] >> i & 1u) == (unsigned)(in.a[i] < in.b[i]));
             CHECK((out.bits[1] >> i & 1u) == (unsigned)(in.a[i] <= in.b[i]));

@@ -8,7 +8,9 @@
  * to; lanes_list_from adds a first number to them, and writes sixteen words; lanes_list_pairs takes the numbers of
  * these lanes from two rows of sixteen bytes, adds the first of two first numbers, or the second in lanes of a second
  * mask, and writes pairs of words, room for sixteen. lanes_list_bits writes a number for each, bit k of which is its
- * lane's in the k-th of twelve masks, room for sixteen. lanes_index reads sixteen numbers below sixteen,
+ * lane's in the k-th of twelve masks, room for sixteen. lanes_list_among looks at words, sixteen or fewer, none of which is
+ * there twice: it writes `at` and the places of those that are a first number and one of a set of numbers below sixteen, room
+ * for sixteen, and tells which these are. lanes_index reads sixteen numbers below sixteen,
  * lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the floats
  * of these numbers of a row, in memory or not, lanes_pick_both those of numbers below 32 of two rows. lanes_choose
  * takes from a where the mask is set, else from b. lanes_same compares bits, whatever they mean; lanes_differ has
@@ -43,6 +45,7 @@
 #define lanes_list SC_KERNEL(sc_lanes_list)
 #define lanes_list_from SC_KERNEL(sc_lanes_list_from)
 #define lanes_list_pairs SC_KERNEL(sc_lanes_list_pairs)
+#define lanes_list_among SC_KERNEL(sc_lanes_list_among)
 #define lanes_list_bits SC_KERNEL(sc_lanes_list_bits)
 #define lanes_marked SC_KERNEL(sc_lanes_marked)
 #define lanes_among SC_KERNEL(sc_lanes_among)
@@ -117,6 +120,17 @@ static inline unsigned lanes_list_from(unsigned mask, uint32_t first, uint32_t *
     __m512i numbers = _mm512_add_epi32(_mm512_set1_epi32((int)first), all);
     _mm512_storeu_si512(to, _mm512_maskz_compress_epi32((__mmask16)mask, numbers));
     return (unsigned)__builtin_popcount(mask);
+}
+static inline unsigned lanes_list_among(const uint32_t *word, unsigned count, uint32_t first,
+                                        unsigned set, uint32_t at, uint32_t *to, unsigned *found)
+{
+    const __mmask16 some = (__mmask16)((1u << count) - 1u);
+    const __m512i number =
+        _mm512_sub_epi32(_mm512_maskz_loadu_epi32(some, word), _mm512_set1_epi32((int)first));
+    const __m512i bit = _mm512_sllv_epi32(_mm512_set1_epi32(1), number);
+    const __mmask16 among = _mm512_mask_test_epi32_mask(some, bit, _mm512_set1_epi32((int)set));
+    *found = (unsigned)_mm512_mask_reduce_or_epi32(among, bit);
+    return lanes_list_from(among, at, to);
 }
 static inline unsigned lanes_list_pairs(unsigned mask, unsigned second, const uint8_t *a,
                                         const uint32_t first_a[2], const uint8_t *b,
@@ -206,6 +220,54 @@ static inline unsigned lanes_list_from(unsigned mask, uint32_t first, uint32_t *
     for (i = 0; i < SC_LANES_COUNT; i++) to[i] = first + number[i];
     return count;
 }
+
+#  if SC_LANES_AVX2
+
+static inline unsigned lanes_list_among(const uint32_t *word, unsigned count, uint32_t first,
+                                        unsigned set, uint32_t at, uint32_t *to, unsigned *found)
+{
+    const __m256i one = _mm256_set1_epi32(1), all = _mm256_set1_epi32((int)set);
+    const __m256i from = _mm256_set1_epi32((int)first);
+    const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+    __m256i bits[2];
+    __m128i half;
+    unsigned among = 0;
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 2; k++) {
+        const __m256i some = _mm256_cmpgt_epi32(_mm256_set1_epi32((int)count - 8 * k), lane);
+        const __m256i number = _mm256_sub_epi32(
+            _mm256_maskload_epi32((const int *)(const void *)(word + 8 * k), some), from);
+        bits[k] = _mm256_and_si256(_mm256_and_si256(_mm256_sllv_epi32(one, number), all), some);
+        among |= (unsigned)_mm256_movemask_ps(
+                     _mm256_castsi256_ps(_mm256_cmpgt_epi32(bits[k], _mm256_setzero_si256())))
+                 << 8 * k;
+    }
+    bits[0] = _mm256_or_si256(bits[0], bits[1]);
+    half = _mm_or_si128(_mm256_castsi256_si128(bits[0]), _mm256_extracti128_si256(bits[0], 1));
+    half = _mm_or_si128(half, _mm_shuffle_epi32(half, 0x4e));
+    *found = (unsigned)_mm_cvtsi128_si32(_mm_or_si128(half, _mm_shuffle_epi32(half, 0xb1)));
+    return lanes_list_from(among, at, to);
+}
+
+#  else
+
+static inline unsigned lanes_list_among(const uint32_t *word, unsigned count, uint32_t first,
+                                        unsigned set, uint32_t at, uint32_t *to, unsigned *found)
+{
+    unsigned listed = 0, i;
+    for (*found = i = 0; i < count; i++) {
+        const uint32_t number = word[i] - first;
+        const unsigned bit = number < SC_LANES_COUNT ? set & 1u << number % SC_LANES_COUNT : 0u;
+        to[listed] = at + i;
+        listed += bit != 0;
+        *found |= bit;
+    }
+    return listed;
+}
+
+#  endif
+
 static inline unsigned lanes_list_pairs(unsigned mask, unsigned second, const uint8_t *a,
                                         const uint32_t first_a[2], const uint8_t *b,
                                         const uint32_t first_b[2], uint32_t *to)

@@ -21,6 +21,7 @@
 #undef lanes_list
 #undef lanes_list_from
 #undef lanes_list_pairs
+#undef lanes_list_among
 #undef lanes_list_bits
 #undef lanes_marked
 #undef lanes_among

@@ -62,7 +62,8 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->slab = (sc_leaf_slab *)place(block, at, model->leaf_count, sizeof(sc_leaf_slab));
     for (k = 0; k < 2; k++) {
         w->far_pairs[k] = (uint32_t *)place(block, at, SC_LEAF_QUEUE, sizeof(uint32_t));
-        w->near_list[k] = (uint32_t *)place(block, at, SC_LEAF_QUEUE, sizeof(uint32_t));
+        w->near_list[k] =
+            (uint32_t *)place(block, at, SC_LEAF_QUEUE + SC_LEAF_MAX, sizeof(uint32_t));
     }
     w->near_pairs = (sc_near_pair *)place(block, at, SC_LEAF_QUEUE, sizeof(sc_near_pair));
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));

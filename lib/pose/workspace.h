@@ -271,7 +271,8 @@ struct sc_workspace {
     uint32_t *far_pairs
         [2]; /* SC_LEAF_QUEUE that share no points and wait: the lower of two, and the other */
     uint32_t *near_list
-        [2]; /* SC_LEAF_QUEUE that share points and wait, or leaf clusters against themselves: the lower of two, and shared */
+        [2]; /* SC_LEAF_QUEUE that share points and wait, or leaf clusters against themselves: the lower of two, and shared;
+                and SC_LEAF_MAX that may be written to behind */
     sc_near_pair *near_pairs; /* SC_LEAF_QUEUE: these, when they are looked at */
     uint32_t far_count, near_count;
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */

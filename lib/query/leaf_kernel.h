@@ -515,15 +515,6 @@ static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
     SC_KERNEL(take_leaf_pairs)(state, 1);
 }
 
-/* Has a pair of leaf clusters that share points wait if that is so, 1 or 0, or one by itself. */
-static inline void SC_KERNEL(add_near_pair)(sc_workspace *w, uint32_t a, uint32_t shared,
-                                            unsigned is_so)
-{
-    w->near_list[0][w->near_count] = a;
-    w->near_list[1][w->near_count] = shared;
-    w->near_count += is_so;
-}
-
 /* Has those pairs wait that share points: of leaf cluster a with those numbered from first on, all above it, of which bits of
    a mask are set. Returns the rest of the mask. */
 static inline unsigned SC_KERNEL(add_near_pairs)(sc_query_state *state, uint32_t a, uint32_t first,
@@ -531,12 +522,17 @@ static inline unsigned SC_KERNEL(add_near_pairs)(sc_query_state *state, uint32_t
 {
     const uint32_t *share = sc_model_share_first(state->model) + a;
     const uint32_t *leaf = sc_model_share_leaf(state->model);
+    sc_workspace *w = state->workspace;
     uint32_t i;
-    for (i = share[0]; i < share[1]; i++) {
-        uint32_t at = leaf[i] - first;
-        unsigned bit = at < SC_LEAF_MAX ? mask & 1u << (at % SC_LEAF_MAX) : 0u;
-        SC_KERNEL(add_near_pair)(state->workspace, a, i, bit != 0);
-        mask &= ~bit;
+    int k;
+    for (i = share[0]; i < share[1]; i += SC_LANES_COUNT) {
+        const unsigned some = share[1] - i < SC_LANES_COUNT ? share[1] - i : SC_LANES_COUNT;
+        uint32_t *lower = w->near_list[0] + w->near_count;
+        unsigned found;
+        for (k = 0; k < SC_LANES_COUNT; k++) lower[k] = a;
+        w->near_count += lanes_list_among(leaf + i, some, first, mask, i,
+                                          w->near_list[1] + w->near_count, &found);
+        mask &= ~found;
     }
     return mask;
 }
@@ -580,6 +576,7 @@ static void SC_KERNEL(leaf_itself)(sc_query_state *state, uint32_t leaf)
         return;
     }
     if (SC_KERNEL(is_plain)(state, leaf)) return;
-    SC_KERNEL(add_near_pair)(state->workspace, leaf, SC_NONE, 1);
+    state->workspace->near_list[0][state->workspace->near_count] = leaf;
+    state->workspace->near_list[1][state->workspace->near_count++] = SC_NONE;
     SC_KERNEL(make_leaf_room)(state);
 }
