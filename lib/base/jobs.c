@@ -13,18 +13,27 @@ void sc_jobs_divide(const sc_tasks *tasks, uint32_t count, sc_jobs_ranges *range
     uint32_t i;
     ranges->count = count;
     ranges->workers = tasks->workers;
-    for (i = 0; i < tasks->workers; i++) ranges->taken[i] = 0;
+    for (i = 0; i < tasks->workers; i++)
+        ranges->taken[i] = ranges->by_owner[i] = ranges->by_others[i] = 0;
+}
+
+static uint32_t range_begin(const sc_jobs_ranges *ranges, uint32_t owner)
+{
+    return (uint32_t)((uint64_t)ranges->count * owner / ranges->workers);
 }
 
 uint32_t sc_jobs_take(sc_jobs_ranges *ranges, uint32_t part, uint32_t worker)
 {
-    const uint64_t count = ranges->count, workers = ranges->workers;
-    uint64_t i, owner = worker;
+    uint32_t i, owner = worker;
     /* there are as many parts as calls, so one is left */
-    for (i = 0; SC_ATOMIC && SC_ALWAYS(i < workers);
-         i++, owner = owner + 1 < workers ? owner + 1 : 0) {
-        uint64_t at = count * owner / workers + sc_atomic_add(&ranges->taken[owner], 1);
-        if (at < count * (owner + 1) / workers) return (uint32_t)at;
+    for (i = 0; SC_ATOMIC && SC_ALWAYS(i < ranges->workers);
+         i++, owner = owner + 1 < ranges->workers ? owner + 1 : 0) {
+        const uint32_t begin = range_begin(ranges, owner), end = range_begin(ranges, owner + 1);
+        const int is_own = owner == worker, is_odd = owner % 2;
+        size_t before;
+        if (sc_atomic_add(&ranges->taken[owner], 1) >= end - begin) continue;
+        before = is_own ? ranges->by_owner[owner]++ : sc_atomic_add(&ranges->by_others[owner], 1);
+        return is_own == is_odd ? end - 1 - (uint32_t)before : begin + (uint32_t)before;
     }
     return part;
 }
@@ -36,11 +45,6 @@ static uint32_t some_of(uint32_t left)
 {
     uint32_t some = (left - 1) / SOME_PART + 1;
     return some < SOME_MAX ? some : SOME_MAX;
-}
-
-static uint32_t range_begin(const sc_jobs_ranges *ranges, uint32_t owner)
-{
-    return (uint32_t)((uint64_t)ranges->count * owner / ranges->workers);
 }
 
 uint32_t sc_jobs_takes(const sc_jobs_ranges *ranges)

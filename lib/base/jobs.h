@@ -17,16 +17,20 @@
  */
 typedef struct sc_jobs_ranges {
     uint32_t count, workers;
-    size_t taken[SC_WORKERS_MAX]; /* parts of each range, and more once it is used up */
+    size_t taken[SC_WORKERS_MAX]; /* parts of each range, and more once it is used up; of these */
+    size_t by_owner[SC_WORKERS_MAX];  /* by its worker, */
+    size_t by_others[SC_WORKERS_MAX]; /* and by others, where these begin at the other end */
 } sc_jobs_ranges;
 
 void sc_jobs_divide(const sc_tasks *tasks, uint32_t count, sc_jobs_ranges *ranges);
 
-/* The part to do for a worker that the host has given that part: each of count once, if so often asked. */
+/* The part to do for a worker that the host has given that part: each of count once, if so often asked. Workers begin in
+   turn at the first and at the last of their range, and others at the other end: two have all between them, and meet. */
 uint32_t sc_jobs_take(sc_jobs_ranges *ranges, uint32_t part, uint32_t worker);
 
 /* The same of parts that are taken some at once, fewer when few are left, so that the last do not take long. How often they
-   are to be asked for; and the first of those to do, of which there are *some. */
+   are to be asked for; and the first of those to do, of which there are *some. All begin with the first of a range: what is
+   near takes about as long, so that none is left with long ones in the end. */
 uint32_t sc_jobs_takes(const sc_jobs_ranges *ranges);
 uint32_t sc_jobs_take_some(sc_jobs_ranges *ranges, uint32_t worker, uint32_t *some);
 
