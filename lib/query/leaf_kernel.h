@@ -525,6 +525,14 @@ static inline unsigned SC_KERNEL(add_near_pairs)(sc_query_state *state, uint32_t
     sc_workspace *w = state->workspace;
     uint32_t i;
     int k;
+    if (share[1] - share[0] < 2) { /* one, as in rods, or none */
+        const uint32_t at = share[0] < share[1] ? leaf[share[0]] - first : SC_LEAF_MAX;
+        const unsigned bit = at < SC_LEAF_MAX ? mask & 1u << at % SC_LEAF_MAX : 0u;
+        w->near_list[0][w->near_count] = a;
+        w->near_list[1][w->near_count] = share[0];
+        w->near_count += bit != 0;
+        return mask & ~bit;
+    }
     for (i = share[0]; i < share[1]; i += SC_LANES_COUNT) {
         const unsigned some = share[1] - i < SC_LANES_COUNT ? share[1] - i : SC_LANES_COUNT;
         uint32_t *lower = w->near_list[0] + w->near_count;
