@@ -266,6 +266,27 @@ static void SC_KERNEL(test_rows)(sc_query_state *state, SC_KERNEL(rows) * rows)
     SC_KERNEL(no_rows)(rows);
 }
 
+/* Names two leaf clusters, a and b when they are ready, of which rows come next; swap: b's triangles are the rows. */
+static inline void SC_KERNEL(name_pair)(uint32_t leaf_a, uint32_t leaf_b, const sc_leaf_ready *a,
+                                        const sc_leaf_ready *b, unsigned swap,
+                                        SC_KERNEL(rows) * rows)
+{
+    const unsigned k = rows->pairs;
+    rows->leaf[swap][k] = leaf_a;
+    rows->leaf[!swap][k] = leaf_b;
+    rows->ready[swap][k] = a;
+    rows->ready[!swap][k] = b;
+}
+
+/* Has these triangles wait as rows of them. Returns how many. */
+static inline unsigned SC_KERNEL(add_waiting)(unsigned some, SC_KERNEL(rows) * rows)
+{
+    unsigned count = lanes_list(some, rows->wait_row + rows->wait);
+    memset(rows->wait_pair + rows->wait, (int)rows->pairs, SC_LANES_COUNT);
+    rows->wait += count;
+    return count;
+}
+
 /* Adds two leaf clusters, a and b when they are ready, or one, of which only some triangles may overlap the other. */
 static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p,
                                 const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned some_a,
@@ -273,18 +294,13 @@ static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p,
 {
     /* either may be the rows */
     unsigned swap = !p->shares && sc_bits_count(some_b) < sc_bits_count(some_a);
-    unsigned k = rows->pairs;
-    rows->leaf[swap][k] = p->a;
-    rows->leaf[!swap][k] = p->b;
-    rows->ready[swap][k] = a;
-    rows->ready[!swap][k] = b;
-    rows->list[k] = p->list;
+    SC_KERNEL(name_pair)(p->a, p->b, a, b, swap, rows);
+    rows->list[rows->pairs] = p->list;
+    some_a = swap ? some_b : some_a;
     if (p->shares && !p->list) {
         SC_KERNEL(take_shared)(state, p, a, b, some_a, some_b, rows);
     } else {
-        some_a = swap ? some_b : some_a;
-        memset(rows->wait_pair + rows->wait, (int)k, SC_LANES_COUNT);
-        rows->wait += lanes_list(some_a, rows->wait_row + rows->wait);
+        SC_KERNEL(add_waiting)(some_a, rows);
         if (p->list && p->wanted) {
             SC_KERNEL(take_listed)(state, p, &rows->open);
             sc_candidates_make_room(state);
@@ -295,8 +311,8 @@ static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p,
 }
 
 /* The triangles of a leaf cluster that is ready whose boxes overlap that of leaf b. */
-static unsigned SC_KERNEL(rows_at)(const sc_query_state *state, const sc_leaf_ready *ready,
-                                   uint32_t b)
+static inline unsigned SC_KERNEL(rows_at)(const sc_query_state *state, const sc_leaf_ready *ready,
+                                          uint32_t b)
 {
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     uint64_t i = (uint64_t)sc_model_first_leaf_patch(state->model) + b;
@@ -379,6 +395,31 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, 
     SC_KERNEL(add_rows)(state, &p, ready_a, ready_b, some_a, some_b, rows);
 }
 
+/* Two leaf clusters, a < b, that share no points or are crowded, and that slabs do not part. Those that are ready are added
+   without branches, as boxes of triangles may be apart from the other in many. */
+static inline void SC_KERNEL(far_pair)(sc_query_state *state, uint32_t a, uint32_t b,
+                                       SC_KERNEL(rows) * rows)
+{
+    const sc_workspace *w = state->workspace;
+    const uint8_t *crowded = sc_model_share_crowded(state->model);
+    const sc_leaf_ready *ready_a = w->ready + SC_KERNEL(place)(state, a, 0);
+    const sc_leaf_ready *ready_b = w->ready + SC_KERNEL(place)(state, b, 1);
+    unsigned some_a, some_b, swap, count;
+    if ((crowded[a] & crowded[b]) |
+        !(SC_KERNEL(is_ready)(state, a, 0) & SC_KERNEL(is_ready)(state, b, 1))) {
+        SC_KERNEL(leaf_pair)(state, a, b, 0, SC_NONE, rows);
+        return;
+    }
+    if (rows->pairs == SC_ROWS_PAIRS) SC_KERNEL(test_rows)(state, rows);
+    some_a = SC_KERNEL(rows_at)(state, ready_a, b);
+    some_b = SC_KERNEL(rows_at)(state, ready_b, a);
+    swap = sc_bits_count(some_b) < sc_bits_count(some_a);
+    SC_KERNEL(name_pair)(a, b, ready_a, ready_b, swap, rows);
+    count = SC_KERNEL(add_waiting)(swap ? some_b : some_a, rows);
+    rows->pairs += count != 0;
+    state->stats.counts[sc_state_box_task(state)] += count;
+}
+
 /* Asks for the memory of a leaf cluster that is made ready; or of its slab and points, and the former if there is no
    slab yet. */
 static inline void SC_KERNEL(fetch_ready)(const sc_workspace *w, uint32_t leaf)
@@ -423,7 +464,10 @@ static void SC_KERNEL(far_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
             SC_KERNEL(fetch_ready)(w, lower[i + SC_FETCH_READY]);
             SC_KERNEL(fetch_ready)(w, upper[i + SC_FETCH_READY]);
         }
-        SC_KERNEL(leaf_pair)(state, lower[i], upper[i], !slabs_first, SC_NONE, rows);
+        if (slabs_first)
+            SC_KERNEL(far_pair)(state, lower[i], upper[i], rows);
+        else
+            SC_KERNEL(leaf_pair)(state, lower[i], upper[i], 1, SC_NONE, rows);
         if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);
     }
 }
