@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "base/bits.h"
+#include "base/isa.h"
 #include "pose/fan.h"
 #include "pose/positions.h"
 #include "query/filter.h"
@@ -291,63 +292,80 @@ static inline uint64_t bits_of(const unsigned char *from, int is_double)
     return half;
 }
 
-/* Whether the two edges of a settled pair that are not certain, if any, are in a plane across the axis that its code
-   names. */
+/* Of a triangle whose tip is named as in the code of a settled pair, bits of the edges that meet the other triangle, if that
+   from the tip to the next corner does, and that to the one after. Then of both triangles by the lowest eight bits of such a
+   code: those edges meet the other triangle that pass two edges of it on different sides. */
+#define SC_TIP_EDGES(tip, next, after) ((next) << ((tip) + 2) % 3 | (after) << ((tip) + 1) % 3)
+#define SC_DIFFER(code, i, j)                                                                      \
+  (((code) >> (SC_SETTLED_BELOW + (i)) ^ (code) >> (SC_SETTLED_BELOW + (j))) & 1)
+#define SC_CODE_EDGES(code)                                                                        \
+  (SC_TIP_EDGES((code)&3, SC_DIFFER(code, 0, 1), SC_DIFFER(code, 2, 3)) |                          \
+   SC_TIP_EDGES((code) >> 2 & 3, SC_DIFFER(code, 0, 2), SC_DIFFER(code, 1, 3)) << 3)
+#define SC_CODES_4(code)                                                                           \
+  SC_CODE_EDGES(code), SC_CODE_EDGES((code) + 1), SC_CODE_EDGES((code) + 2),                       \
+      SC_CODE_EDGES((code) + 3)
+#define SC_CODES_16(code)                                                                          \
+  SC_CODES_4(code), SC_CODES_4((code) + 4), SC_CODES_4((code) + 8), SC_CODES_4((code) + 12)
+#define SC_CODES_64(code)                                                                          \
+  SC_CODES_16(code), SC_CODES_16((code) + 16), SC_CODES_16((code) + 32), SC_CODES_16((code) + 48)
+static const uint8_t settled_edges[256] = {SC_CODES_64(0), SC_CODES_64(64), SC_CODES_64(128),
+                                           SC_CODES_64(192)};
+
+/* Where numbers of four bits have that of the edge of the first triangle, or of the second, that is not certain, if any: by
+   its tip and whether it goes to the next corner. */
+static inline unsigned level_edge(unsigned code, int second)
+{
+    return 4 * (second ? (code >> 2 & 3u) | (code >> (SC_SETTLED_COLUMN - 2) & 4u)
+                       : (code & 3u) | (code >> (SC_SETTLED_ROW - 2) & 4u));
+}
+
+/* Whether these are in a plane across the axis that the code names. */
 static inline unsigned is_level(const sc_workspace *w, const uint32_t *t, const uint32_t *u,
                                 unsigned code)
 {
-    /* corners from which and to which an edge runs, by its tip and whether it goes to the next: four bits each */
-    const uint32_t ends = 0x49428186u;
-    const unsigned axis = code >> SC_SETTLED_AXIS;
-    const unsigned a = (code & 3u) | (code >> (SC_SETTLED_ROW - 2) & 4u);
-    const unsigned b = (code >> 2 & 3u) | (code >> (SC_SETTLED_COLUMN - 2) & 4u);
-    const unsigned k = (unsigned)(ends >> 4 * a), i = (unsigned)(ends >> 4 * b);
+    const uint32_t ends = 0x49428186u; /* the corners from and to which such an edge runs */
+    const unsigned k = ends >> level_edge(code, 0), i = ends >> level_edge(code, 1);
     const int is_double = w->position_type == SC_DOUBLE;
-    const unsigned char *from = w->positions + (is_double ? sizeof(double) : sizeof(float)) * axis;
-    uint64_t level;
-    if (axis == 3) return 1;
-    level = bits_of(from + w->stride * t[k & 3u], is_double);
+    const unsigned char *from =
+        w->positions + (is_double ? sizeof(double) : sizeof(float)) * (code >> SC_SETTLED_AXIS);
+    const uint64_t level = bits_of(from + w->stride * t[k & 3u], is_double);
     return level == bits_of(from + w->stride * t[k >> 2 & 3u], is_double) &&
            level == bits_of(from + w->stride * u[i & 3u], is_double) &&
            level == bits_of(from + w->stride * u[i >> 2 & 3u], is_double);
 }
 
-/* The lanes in which edges meet the other triangle, if those from its tip to the next corner and to the one after do in
-   these. */
-static uint64_t name_edges(unsigned is_first, unsigned is_second, unsigned next, unsigned after)
+/* Which edges of such a pair meet the other triangle: those two if touching is asked for, all bits or none. */
+static inline unsigned level_edges(unsigned code, unsigned touching)
 {
-    unsigned is_third = ~(is_first | is_second);
-    return (uint64_t)((next & is_first) | (after & is_second)) |
-           (uint64_t)((next & is_second) | (after & is_third)) << SC_PAIR_LANES |
-           (uint64_t)((next & is_third) | (after & is_first)) << 2 * SC_PAIR_LANES;
+    const uint32_t bits = 0x02140142u; /* of such an edge */
+    const unsigned first = bits >> level_edge(code, 0) & 7u,
+                   second = bits >> level_edge(code, 1) & 7u;
+    const unsigned both = first | second << 3;
+    return (settled_edges[code & 255u] & ~both) | (touching & both);
 }
 
-/* Which edges of settled pairs meet: those that pass two of the other triangle on different sides. If two edges are in one
-   plane, both meet, but not properly. */
-static uint64_t edges_of_settled(uint64_t low, uint64_t high, unsigned touching)
+/* Writes down what is to be reported if some edges of a pair meet the other triangle. Returns how much; room for six. */
+static inline uint32_t name_edges(const sc_query_state *state, const sc_pair *pair, unsigned edges,
+                                  sc_pair *found)
 {
-    unsigned bit[SC_SETTLED_BITS], next[2], after[2], level, row, column, k;
-    low = turn_bits(low);
-    high = turn_bits(high);
-    SC_UNROLL
-    for (k = 0; k < 8; k++) bit[k] = (unsigned)(low >> SC_PAIR_LANES * k) & 255u;
-    SC_UNROLL
-    for (k = 8; k < SC_SETTLED_BITS; k++)
-        bit[k] = (unsigned)(high >> SC_PAIR_LANES * (k - 8)) & 255u;
-    level = ~(bit[SC_SETTLED_AXIS] & bit[SC_SETTLED_AXIS + 1]) & 255u;
-    row = bit[SC_SETTLED_ROW];
-    column = bit[SC_SETTLED_COLUMN];
-    next[0] = bit[SC_SETTLED_BELOW] ^ bit[SC_SETTLED_BELOW + 1];
-    after[0] = bit[SC_SETTLED_BELOW + 2] ^ bit[SC_SETTLED_BELOW + 3];
-    next[1] = bit[SC_SETTLED_BELOW] ^ bit[SC_SETTLED_BELOW + 2];
-    after[1] = bit[SC_SETTLED_BELOW + 1] ^ bit[SC_SETTLED_BELOW + 3];
-    next[0] = (next[0] & ~(level & row)) | (touching & level & row);
-    after[0] = (after[0] & ~(level & ~row)) | (touching & level & ~row);
-    next[1] = (next[1] & ~(level & column)) | (touching & level & column);
-    after[1] = (after[1] & ~(level & ~column)) | (touching & level & ~column);
-    return name_edges(bit[SC_SETTLED_TIP], bit[SC_SETTLED_TIP + 1], next[0], after[0]) |
-           name_edges(bit[SC_SETTLED_TIP + 2], bit[SC_SETTLED_TIP + 3], next[1], after[1])
-               << 3 * SC_PAIR_LANES;
+    const uint32_t *id = sc_model_triangle_id(state->model);
+    const uint32_t a = id[pair->a], b = id[pair->b];
+    uint32_t count = 0, i;
+    if (state->options.pairs != SC_PAIRS_EDGE) {
+        found->a = a < b ? a : b;
+        found->b = a < b ? b : a;
+        return edges != 0;
+    }
+    edges &= edges_wanted(state, pair);
+    for (i = 0; i < 2 || edges; i++) { /* seldom more than two: no branch depends on how many */
+        const uint32_t bit = sc_bits_lowest(edges | 1u << 5), second = 0u - (bit > 2);
+        const uint32_t swap = (a ^ b) & second;
+        found[i].a = (uint32_t)sc_alone(3 * (a ^ swap) + bit - (3 & second));
+        found[i].b = b ^ swap;
+        count += edges != 0;
+        edges &= edges - 1;
+    }
+    return count;
 }
 
 /* Reports settled pairs; collects as candidates those that are not, as their edges are not in one plane. */
@@ -358,31 +376,27 @@ static void take_settled(sc_query_state *state)
     uint64_t *counted = &state->stats.counts[sc_state_primitive_task(state)];
     sc_workspace *w = state->workspace;
     const uint32_t count = w->settled_count;
-    uint32_t i, j;
+    uint32_t i, end;
     *counted += count;
-    for (j = count; j % SC_PAIR_LANES; j++) { /* fills the last eight */
-        w->settled[j] = w->settled[count - 1];
-        w->settled_code[j] = SC_SETTLED_NOTHING;
-    }
-    for (i = 0; i < count && !sc_state_cancelled(state); i += SC_PAIR_LANES) {
-        const sc_pair *pairs = w->settled + i;
-        unsigned level = 0, other;
-        uint64_t low = 0, high = 0;
-        SC_UNROLL
-        for (j = 0; j < SC_PAIR_LANES; j++) {
-            const uint64_t code = w->settled_code[i + j];
-            level |= is_level(w, triangle + 3 * (uint64_t)pairs[j].a,
-                              triangle + 3 * (uint64_t)pairs[j].b, (unsigned)code)
-                     << j;
-            low |= (code & 255u) << SC_PAIR_LANES * j;
-            high |= (code >> 8) << SC_PAIR_LANES * j;
+    for (i = 0; i < count && !sc_state_cancelled(state);) {
+        sc_pair found[6 * SC_PAIR_LANES];
+        uint32_t some = 0;
+        for (end = i + SC_PAIR_LANES < count ? i + SC_PAIR_LANES : count; i < end; i++) {
+            const sc_pair *pair = &w->settled[i];
+            const unsigned code = w->settled_code[i];
+            unsigned edges = settled_edges[code & 255u];
+            if (code >> SC_SETTLED_AXIS != 3) {
+                if (!is_level(w, triangle + 3 * (uint64_t)pair->a, triangle + 3 * (uint64_t)pair->b,
+                              code)) {
+                    sc_candidates_add(state, pair->a, pair->b);
+                    --*counted;
+                    continue;
+                }
+                edges = level_edges(code, touching);
+            }
+            some += name_edges(state, pair, edges, found + some);
         }
-        take_lanes(state, pairs, edges_of_settled(low, high, touching) & edges_of(level));
-        for (other = ~level & 255u; other; other &= other - 1) {
-            const sc_pair *pair = &pairs[sc_bits_lowest(other)];
-            sc_candidates_add(state, pair->a, pair->b);
-            --*counted;
-        }
+        sc_pairs_take_all(state, found, some);
     }
     w->settled_count = 0;
 }

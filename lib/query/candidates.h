@@ -73,8 +73,7 @@ enum sc_settled_bits {
     SC_SETTLED_ROW = 8,
     SC_SETTLED_COLUMN = 9,
     SC_SETTLED_AXIS = 10,
-    SC_SETTLED_BITS = 12,
-    SC_SETTLED_NOTHING = 3 << SC_SETTLED_AXIS /* no edge meets */
+    SC_SETTLED_BITS = 12
 };
 
 /* Pairs are decided by so many at a time. */
