@@ -118,13 +118,8 @@ static inline int SC_KERNEL(side_of_tube)(const SC_KERNEL(tube) * t, const lanes
     const float m = t->most, e = t->error, q = e * (5.2f * m + 2.1f * e);
     const float bound = q * (4.2f * m + 5.2f * e) + 14.6f * m * m * e + 100 * FLT_MIN;
     lanes p[3][3], z[3], step[3], least = lanes_all(0), most = least;
-    int k, c;
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        const lanes_index i = lanes_index_load(corner + SC_LEAF_MAX * k);
-        SC_UNROLL
-        for (c = 0; c < 3; c++) p[k][c] = lanes_pick_of(at[c], i);
-    }
+    int k;
+    lanes_corners(at, corner, p);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         const lanes *a = p[k], *b = p[(k + 1) % 3];
