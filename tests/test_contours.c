@@ -334,6 +334,34 @@ static uint32_t check_projections(scene *s)
     return tried;
 }
 
+/* The vectors of all masks: along no sum of directions but 0 are they 0. */
+static void vectors_of_all_masks(void)
+{
+    static const int direction[7][3] = {{7, 0, 0},  {0, 7, 0},  {0, 0, 7},  {4, 4, 4},
+                                        {4, 4, -4}, {4, -4, 4}, {4, -4, -4}};
+    for (uint32_t first = 0; first < 1u << SC_DNC_DIRECTIONS; first += SC_DNC_VECTORS) {
+        uint16_t mask[SC_DNC_VECTORS];
+        float u[3][SC_DNC_VECTORS], w[3][SC_DNC_VECTORS];
+        for (uint32_t i = 0; i < SC_DNC_VECTORS; ++i) mask[i] = (uint16_t)(first + i);
+        sc_dnc_vectors(mask, u, w);
+        for (uint32_t i = 0; i < SC_DNC_VECTORS; ++i) {
+            const double a[3] = {(double)u[0][i], (double)u[1][i], (double)u[2][i]};
+            const double b[3] = {(double)w[0][i], (double)w[1][i], (double)w[2][i]};
+            const double square = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+            int sum[3] = {0, 0, 0}, any = 0, as_sum = 1;
+            for (uint32_t d = 0; d < SC_DNC_DIRECTIONS; ++d)
+                for (int k = 0; k < 3 && mask[i] >> d & 1; ++k)
+                    sum[k] += d < 7 ? direction[d][k] : -direction[d - 7][k];
+            for (int k = 0; k < 3; ++k) {
+                int l = (k + 1) % 3, m = (k + 2) % 3;
+                any |= sum[k] != 0;
+                as_sum &= a[l] * b[m] - a[m] * b[l] == square * sum[k];
+            }
+            CHECK_MSG(as_sum && (square > 0) == any, "mask %" PRIu32, first + i);
+        }
+    }
+}
+
 static void cones_and_projections(void)
 {
     uint32_t tried = 0;
@@ -1651,7 +1679,7 @@ static void single_fans(void)
     CHECK(!is_full() || (plain > 1000 && met > 1000));
 }
 
-SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(cones_and_projections),
+SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(vectors_of_all_masks), SC_TEST(cones_and_projections),
              SC_TEST(cones_at_zero), SC_TEST(bounds_of_segments), SC_TEST(bounds_of_long_segments),
              SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks), SC_TEST(first_tick_again),
              SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),

@@ -103,34 +103,42 @@ int sc_dnc_validate(const sc_model *model, const sc_workspace *w)
  * The direction s is a sum of integer vectors, faces and diagonals weighted by 7 and 4 because
  * 7 is about 4 sqrt(3). With u = s x h for an integer h and w = s x u, all of them integers,
  * u x w = |u|^2 s exactly: so a triangle whose normal has positive dot products with the summed
- * directions has a positive area in (u . p, w . p). h is oblique so that edges along the axes become
- * neither vertical nor horizontal. |s| <= 23, |u| <= 506, |w| <= 23276 in each component.
+ * directions has a positive area in (u . p, w . p). h = (5, 2, 11) is oblique so that edges along the axes become
+ * neither vertical nor horizontal, and along no sum s but 0, which has no positive dot product with any normal. |s| <= 23,
+ * |u| <= 506, |w| <= 23276 in each component.
  *
  * A computed coordinate u . (p - origin) collects one difference, one product, two additions: an error
  * of 4.01 * 2^-53 times the sum of |u_k| |p_k - origin_k|, at most |u|1 radius.
  */
-/* Sums of some of the diagonals (1, 1, 1), (1, 1, -1), (1, -1, 1), (1, -1, -1), which a mask has in bits 3 to 6, after
-   the axes; their negatives come HALF bits later. */
-static const signed char diagonals[16][3] = {
-    {0, 0, 0},   {1, 1, 1}, {1, 1, -1}, {2, 2, 0},  {1, -1, 1}, {2, 0, 2},  {2, 0, 0},   {3, 1, 1},
-    {1, -1, -1}, {2, 0, 0}, {2, 0, -2}, {3, 1, -1}, {2, -2, 0}, {3, -1, 1}, {3, -1, -1}, {4, 0, 0}};
-
-void sc_dnc_vectors(uint32_t mask, float u[3], float w[3])
+static inline void find_vectors(uint32_t mask, float u[3], float w[3])
 {
-    static const float oblique[2][3] = {{5, 2, 11}, {11, 3, 2}};
-    const float *h = oblique[0];
+    int along[HALF], k; /* 1: a direction, -1: the one opposite, 0: neither, or both */
     float s[3];
-    int k;
-    for (k = 0; k < 3; k++)
-        s[k] = (float)(7 * ((int)(mask >> k & 1) - (int)(mask >> (HALF + k) & 1)) +
-                       4 * (diagonals[mask >> 3 & 15][k] - diagonals[mask >> (HALF + 3) & 15][k]));
-    if (s[1] * h[2] == s[2] * h[1] && s[2] * h[0] == s[0] * h[2]) h = oblique[1];
-    u[0] = s[1] * h[2] - s[2] * h[1];
-    u[1] = s[2] * h[0] - s[0] * h[2];
-    u[2] = s[0] * h[1] - s[1] * h[0];
+    for (k = 0; k < HALF; k++) along[k] = (int)(mask >> k & 1) - (int)(mask >> (HALF + k) & 1);
+    /* after the axes come the diagonals (1, 1, 1), (1, 1, -1), (1, -1, 1), (1, -1, -1) */
+    s[0] = (float)(7 * along[0] + 4 * (along[3] + along[4] + along[5] + along[6]));
+    s[1] = (float)(7 * along[1] + 4 * (along[3] + along[4] - along[5] - along[6]));
+    s[2] = (float)(7 * along[2] + 4 * (along[3] - along[4] + along[5] - along[6]));
+    u[0] = 11 * s[1] - 2 * s[2];
+    u[1] = 5 * s[2] - 11 * s[0];
+    u[2] = 2 * s[0] - 5 * s[1];
     w[0] = s[1] * u[2] - s[2] * u[1];
     w[1] = s[2] * u[0] - s[0] * u[2];
     w[2] = s[0] * u[1] - s[1] * u[0];
+}
+
+void sc_dnc_vectors(const uint16_t mask[SC_DNC_VECTORS], float u[3][SC_DNC_VECTORS],
+                    float w[3][SC_DNC_VECTORS])
+{
+    int i, k;
+    for (i = 0; i < SC_DNC_VECTORS; i++) {
+        float one[3], other[3];
+        find_vectors(mask[i], one, other);
+        for (k = 0; k < 3; k++) {
+            u[k][i] = one[k];
+            w[k][i] = other[k];
+        }
+    }
 }
 
 void sc_dnc_projection(const sc_workspace *w, uint32_t mask, sc_projection *projection)
@@ -138,7 +146,7 @@ void sc_dnc_projection(const sc_workspace *w, uint32_t mask, sc_projection *proj
     float vector[2][3];
     double *u = projection->u, *v = projection->w;
     int k;
-    sc_dnc_vectors(mask, vector[0], vector[1]);
+    find_vectors(mask, vector[0], vector[1]);
     for (k = 0; k < 3; k++) {
         u[k] = (double)vector[0][k];
         v[k] = (double)vector[1][k];

@@ -29,7 +29,9 @@ int sc_dnc_validate(const sc_model *model, const sc_workspace *workspace);
  */
 void sc_dnc_projection(const sc_workspace *workspace, uint32_t mask, sc_projection *projection);
 
-/* Its vectors alone, integers that floats hold exactly. */
-void sc_dnc_vectors(uint32_t mask, float u[3], float w[3]);
+/* The vectors of some of these, integers that floats hold exactly. */
+enum { SC_DNC_VECTORS = 8 };
+void sc_dnc_vectors(const uint16_t mask[SC_DNC_VECTORS], float u[3][SC_DNC_VECTORS],
+                    float w[3][SC_DNC_VECTORS]);
 
 #endif

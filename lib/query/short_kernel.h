@@ -25,7 +25,7 @@
 enum {
     SC_KERNEL(SHORT_POINTS) = 2 * SC_LANES_COUNT - 3,
     SC_KERNEL(SHORT_EDGES) = SC_LANES_COUNT,
-    SC_KERNEL(SHORT_PAIRS) = 8
+    SC_KERNEL(SHORT_PAIRS) = SC_DNC_VECTORS
 };
 
 /* A contour in the plane: its points, of which the first follow the last again. */
@@ -76,26 +76,25 @@ static inline void SC_KERNEL(repeat)(float *row, unsigned count)
     lanes_store(row + count, lanes_load(row));
 }
 
-/* Sixteen points along a vector. */
-static inline lanes SC_KERNEL(measure)(const float a[3], const lanes d[3])
+/* Sixteen points along one of the two axes of a projection. */
+static inline lanes SC_KERNEL(measure)(const sc_simple_some_axes *axes, int one,
+                                       unsigned projection, const lanes d[3])
 {
-    lanes sum = lanes_multiply(lanes_all(a[0]), d[0]);
-    sum = lanes_add(sum, lanes_multiply(lanes_all(a[1]), d[1]));
-    return lanes_add(sum, lanes_multiply(lanes_all(a[2]), d[2]));
+    lanes sum = lanes_multiply(lanes_all(axes->at[one][0][projection]), d[0]);
+    sum = lanes_add(sum, lanes_multiply(lanes_all(axes->at[one][1][projection]), d[1]));
+    return lanes_add(sum, lanes_multiply(lanes_all(axes->at[one][2][projection]), d[2]));
 }
 
 /* Sees a loop of c->count points of two leaf clusters, a < b. What is read beyond its end stands in the model, too. */
 static inline void SC_KERNEL(see_loop)(const sc_query_state *state, const sc_near_pair *p,
-                                       uint32_t mask, const uint16_t *loop,
-                                       SC_KERNEL(short_points) * c)
+                                       const sc_simple_some_axes *axes, unsigned projection,
+                                       const uint16_t *loop, SC_KERNEL(short_points) * c)
 {
     const float *of_a = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->a;
     const float *of_b = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->b;
     lanes at[2][3], size = lanes_all(0), x[2], y[2];
     uint8_t number[2 * SC_LANES_COUNT];
-    float axis[2][3];
     int i, k;
-    sc_simple_axes_of(mask, axis);
     for (i = 0; i < 2 * SC_LANES_COUNT; i++)
         number[i] = (uint8_t)((loop[i] & 16) | (loop[i] & 3) << 2 | (loop[i] >> 2 & 3));
     lanes_turned(of_a, at[0]);
@@ -111,8 +110,8 @@ static inline void SC_KERNEL(see_loop)(const sc_query_state *state, const sc_nea
     }
     SC_UNROLL
     for (i = 0; i < 2; i++) {
-        x[i] = SC_KERNEL(measure)(axis[0], at[i]);
-        y[i] = SC_KERNEL(measure)(axis[1], at[i]);
+        x[i] = SC_KERNEL(measure)(axes, 0, projection, at[i]);
+        y[i] = SC_KERNEL(measure)(axes, 1, projection, at[i]);
     }
     SC_UNROLL
     for (i = 0; i < 2; i++) {
@@ -236,14 +235,17 @@ static unsigned SC_KERNEL(find_plain)(const sc_query_state *state, sc_near_pair 
     SC_KERNEL(short_points) all[SC_KERNEL(SHORT_PAIRS)], kept[SC_KERNEL(SHORT_PAIRS)];
     SC_KERNEL(short_edges) edges[SC_KERNEL(SHORT_PAIRS)];
     unsigned number[SC_KERNEL(SHORT_PAIRS)] = {0}, seen = 0, fit = 0, i, plain = 0;
+    uint16_t both[SC_DNC_VECTORS] = {0};
+    sc_simple_some_axes axes;
+    for (i = 0; i < count; i++) both[i] = mask[pair[i]->a] & mask[pair[i]->b];
+    sc_simple_axes_of(both, &axes);
     for (i = 0; i < count; i++) {
         const sc_near_pair *p = pair[i];
         const uint16_t *loop;
         number[seen] = i;
         all[seen].count = SC_KERNEL(find_loop)(state->model, p, &loop);
         if (!all[seen].count) continue;
-        SC_KERNEL(see_loop)
-        (state, p, (uint32_t)mask[p->a] & mask[p->b], loop, &all[seen++]);
+        SC_KERNEL(see_loop)(state, p, &axes, i, loop, &all[seen++]);
     }
     for (i = 0; i < seen; i++) {
         SC_KERNEL(repeat)(all[i].x, all[i].count);

@@ -146,7 +146,7 @@ static void list_loop(sc_simple_contour *c)
 }
 
 /* One over the power of two above a float from 1 to 2^125, exactly. */
-static float below_one(float f)
+static inline float below_one(float f)
 {
     uint32_t bits;
     memcpy(&bits, &f, sizeof bits);
@@ -161,22 +161,25 @@ static float below_one(float f)
  * by 3e-8 for the place of p, and by the rounding of one difference, one product and two additions: at most
  * 4.01 * 2^-24 |p - q|max, and what underflows.
  */
-static void set_axes(float axis[2][3], const float u[3], const float w[3])
+static inline void set_axis(float axis[3], const float u[3])
 {
-    const float size[2] = {below_one(fabsf(u[0]) + fabsf(u[1]) + fabsf(u[2])),
-                           below_one(fabsf(w[0]) + fabsf(w[1]) + fabsf(w[2]))};
+    const float size = below_one(fabsf(u[0]) + fabsf(u[1]) + fabsf(u[2]));
     int k;
-    for (k = 0; k < 3; k++) {
-        axis[0][k] = u[k] * size[0];
-        axis[1][k] = w[k] * size[1];
-    }
+    for (k = 0; k < 3; k++) axis[k] = u[k] * size;
 }
 
-void sc_simple_axes_of(uint32_t mask, float axis[2][3])
+void sc_simple_axes_of(const uint16_t mask[SC_DNC_VECTORS], sc_simple_some_axes *axes)
 {
-    float u[3], w[3];
-    sc_dnc_vectors(mask, u, w);
-    set_axes(axis, u, w);
+    float vector[2][3][SC_DNC_VECTORS];
+    int i, k, m;
+    sc_dnc_vectors(mask, vector[0], vector[1]);
+    for (m = 0; m < 2; m++)
+        for (i = 0; i < SC_DNC_VECTORS; i++) {
+            float u[3], one[3];
+            for (k = 0; k < 3; k++) u[k] = vector[m][k][i];
+            set_axis(one, u);
+            for (k = 0; k < 3; k++) axes->at[m][k][i] = one[k];
+        }
 }
 
 void sc_simple_axes(sc_simple_contour *c, const sc_projection *projection)
@@ -187,7 +190,8 @@ void sc_simple_axes(sc_simple_contour *c, const sc_projection *projection)
         u[k] = (float)projection->u[k];
         w[k] = (float)projection->w[k];
     }
-    set_axes(c->axis, u, w);
+    set_axis(c->axis[0], u);
+    set_axis(c->axis[1], w);
 }
 
 void sc_simple_middle(const sc_simple_contour *c, const float *unit, uint32_t stride, float from[3])
@@ -604,6 +608,7 @@ typedef struct contour_turns {
     sc_simple_contour contour[SC_CONTOUR_TURNS];
     sc_contour_edges edges[SC_CONTOUR_TURNS];
     uint32_t node[SC_CONTOUR_TURNS]; /* number in the list, or SC_NONE */
+    sc_simple_some_axes axes;        /* of some that follow each other in the list */
 } contour_turns;
 
 static int is_short(const sc_model *model, uint32_t node)
@@ -616,14 +621,33 @@ static int is_short(const sc_model *model, uint32_t node)
     return places <= SC_CONTOUR_SHORT;
 }
 
-/* Starts turn t with a node's loop, and projects it. */
-static void begin_turn(sc_query_state *state, contour_turns *all, uint32_t t, uint32_t node)
+/* What the normal cones of a node's patches have in common. */
+static uint16_t mask_of(const sc_query_state *state, uint32_t node)
 {
     const sc_pair *patches = &sc_model_node_patches(state->model)[node];
-    const uint16_t *mask = state->workspace->mask;
-    find_loop(&all->contour[t], state->model, node);
-    sc_simple_axes_of((uint32_t)mask[patches->a] & mask[patches->b], all->contour[t].axis);
-    place_contour(state, &all->contour[t]);
+    return state->workspace->mask[patches->a] & state->workspace->mask[patches->b];
+}
+
+/* The axes of the projections of some nodes. */
+static void find_axes(const sc_query_state *state, contour_turns *all, const uint32_t *nodes,
+                      uint32_t count)
+{
+    uint16_t mask[SC_DNC_VECTORS] = {0};
+    uint32_t i;
+    for (i = 0; i < SC_DNC_VECTORS && i < count; i++) mask[i] = mask_of(state, nodes[i]);
+    sc_simple_axes_of(mask, &all->axes);
+}
+
+/* Starts a turn with node i of a list, a loop, and projects it. */
+static void begin_turn(sc_query_state *state, contour_turns *all, const uint32_t *nodes, uint32_t i)
+{
+    sc_simple_contour *c = &all->contour[i % SC_CONTOUR_TURNS];
+    int k, m;
+    find_loop(c, state->model, nodes[i]);
+    for (m = 0; m < 2; m++)
+        for (k = 0; k < 3; k++) c->axis[m][k] = all->axes.at[m][k][i % SC_DNC_VECTORS];
+    place_contour(state, c);
+    all->node[i % SC_CONTOUR_TURNS] = i;
 }
 
 /* Each turn has a part of the room for a contour. */
@@ -665,10 +689,9 @@ void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t coun
         if (i < 0) continue;
         sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
         all.node[i % SC_CONTOUR_TURNS] = SC_NONE;
-        if (i < (int)count && is_short(model, nodes[i])) {
-            all.node[i % SC_CONTOUR_TURNS] = (uint32_t)i;
-            begin_turn(state, &all, (uint32_t)i % SC_CONTOUR_TURNS, nodes[i]);
-        }
+        if (i < (int)count && i % SC_DNC_VECTORS == 0)
+            find_axes(state, &all, nodes + i, count - (uint32_t)i);
+        if (i < (int)count && is_short(model, nodes[i])) begin_turn(state, &all, nodes, (uint32_t)i);
         for (k = 1; k < SC_CONTOUR_TURNS; k++) {
             uint32_t t = (uint32_t)(i + SC_CONTOUR_TURNS - k) % SC_CONTOUR_TURNS;
             c[k] = all.node[t] == SC_NONE ? NULL : &all.contour[t];
@@ -681,12 +704,9 @@ void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t coun
         }
     }
     for (i = 0; i < (int)count && !sc_state_stops(state); i++) {
-        const sc_pair *patches = &sc_model_node_patches(model)[nodes[i]];
-        const uint16_t *mask = state->workspace->mask;
         sc_projection projection;
         if (is_short(model, nodes[i])) continue;
-        sc_dnc_projection(state->workspace, (uint32_t)mask[patches->a] & mask[patches->b],
-                          &projection);
+        sc_dnc_projection(state->workspace, mask_of(state, nodes[i]), &projection);
         passed[i] = (uint8_t)sc_simple_test(state, &projection, nodes[i]);
     }
     sc_state_switch(state, previous);

@@ -12,6 +12,7 @@
 #ifndef SC_QUERY_SIMPLE_H
 #define SC_QUERY_SIMPLE_H
 
+#include "pose/dnc.h"
 #include "query/state.h"
 
 /*
@@ -25,8 +26,12 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
    once. Where the query is to end, the rest does not pass. */
 void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed);
 
-/* The vectors of the projection along the average of the directions in a mask that is not 0, over powers of two, exactly, so that
-   their absolute values sum to at most 1. */
-void sc_simple_axes_of(uint32_t mask, float axis[2][3]);
+/* The vectors of some projections, over powers of two, exactly, so that their absolute values sum to at most 1. */
+typedef struct sc_simple_some_axes {
+    float at[2][3][SC_DNC_VECTORS];
+} sc_simple_some_axes;
+
+/* Of those along the averages of the directions in some masks; 0 for a mask that is 0. */
+void sc_simple_axes_of(const uint16_t mask[SC_DNC_VECTORS], sc_simple_some_axes *axes);
 
 #endif
