@@ -43,8 +43,8 @@ void sc_levels_up(const sc_model *model, const sc_tasks *tasks, sc_levels_body b
     c.body = body;
     c.context = context;
     c.top = 0;
-    while (tasks && c.top + 1 < model->level_count &&
-           sc_model_patches(model, c.top) < 2 * SC_JOBS_PARTS &&
+    /* tasks are given with many leaf clusters: the last level, which has all of them, is none to go to */
+    while (tasks && sc_model_patches(model, c.top) < 2 * SC_JOBS_PARTS &&
            sc_model_patches(model, c.top + 1) <= model->leaf_count / LEAVES_BELOW_MIN)
         c.top++;
     (void)sc_jobs_loop(tasks, sc_model_patches(model, c.top), 1, climb_part, &c);

@@ -16,6 +16,7 @@
 
 #include <string.h>
 
+#include "base/assume.h"
 #include "base/atomic.h"
 #include "base/jobs.h"
 #include "query/filter.h"
@@ -343,14 +344,16 @@ static void sort_out_pairs(plan *p)
 /* What waits in the walk of the calling thread: what is large is opened or tested next, the rest are parts. There is
    room for those of nodes, as a job of parts would go on with that walk. Last things first: so the first child is opened
    first, and parts come about as leaf clusters are numbered. Then each worker finds in its part of the list what it did
-   of the pose. */
+   of the pose. Of open nodes there are no more than that: those that failed a test, SC_PARTS_MAX at most, are opened into nodes to
+   test, as what has a direction in common still has below, but for one of two patches in place of one that has one patch; and
+   before any test they are brothers on the way to one node, four at each level at most. */
 static void sort_out(plan *p)
 {
     const sc_model *model = p->state->model;
     sc_walk *walk = &p->w->walk;
     uint32_t i;
     for (i = walk->stack_count; i-- > 0;) {
-        if (is_large_node(model, walk->stack[i]) && p->open_count < SC_PARTS_MAX)
+        if (is_large_node(model, walk->stack[i]) && SC_ALWAYS(p->open_count < SC_PARTS_MAX))
             p->w->open[p->open_count++] = walk->stack[i];
         else
             add_part(p, PART_BELOW, walk->stack[i], 0);
@@ -376,7 +379,8 @@ static void open_nodes(plan *p)
     }
 }
 
-/* Lists the large nodes of one patch that wait, and drops all that are culled by now. */
+/* Lists the large nodes of one patch that wait, and drops all that are culled by now. No level has as many large patches as
+   LARGE_IN_NODE, and there are SC_DEPTH_MAX levels at most: the list has room. */
 static void list_selfs(plan *p)
 {
     const sc_pair *patches = sc_model_node_patches(p->state->model);
@@ -385,7 +389,7 @@ static void list_selfs(plan *p)
     for (i = 0; i < walk->self_count; i++) {
         uint32_t node = walk->self[i];
         if (p->w->culled[patches[node].a]) continue;
-        if (is_large_node(p->state->model, node) && p->test_count < SC_PARTS_MAX)
+        if (is_large_node(p->state->model, node) && SC_ALWAYS(p->test_count < SC_PARTS_MAX))
             p->w->tests[p->test_count++] = node;
         else
             walk->self[kept++] = node;
@@ -504,7 +508,8 @@ static void walk_nodes(plan *p)
     uint32_t node = 0, step;
     sc_state_switch(p->state, SC_TASK_BOXES_ORIENTATION);
     update_boxes(p);
-    for (; node < model->node_count && is_large_node(model, node); node++) {
+    /* the last node of all is of single leaf clusters, which are not large */
+    for (; SC_ALWAYS(node < model->node_count) && is_large_node(model, node); node++) {
         p->state->stats.nodes_visited++;
         add_boxes_of_node(p, node);
     }
