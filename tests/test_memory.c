@@ -210,11 +210,23 @@ static void build_fails_at_every_allocation(void)
     }
 }
 
+/* Triangles of any three vertices: those of a patch are far from each other, so that most pairs of patches share some. */
+static soup tangle(uint32_t count)
+{
+    soup s = soup_make(count, count);
+    for (uint32_t i = 0; i < 3 * count; ++i) s.positions[i] = test_random_unit();
+    for (uint32_t i = 0; i < 3 * count; ++i) s.triangles[i] = test_random_below(count);
+    return s;
+}
+
 /* Meshes large enough for levels to be taken away, and for lists to grow. */
 static void large_builds_fail_as_well(void)
 {
-    for (uint32_t i = 0; i < 3; ++i) {
-        soup s = i == 0 ? soup_cloth(30, 40) : i == 1 ? soup_sphere(40, 30) : soup_many(60);
+    for (uint32_t i = 0; i < 4; ++i) {
+        soup s = i == 0   ? soup_cloth(30, 40)
+                 : i == 1 ? soup_sphere(40, 30)
+                 : i == 2 ? soup_many(60)
+                          : tangle(400);
         check_failing_build("large", &s, NULL, SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
         soup_free(&s);
     }

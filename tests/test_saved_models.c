@@ -738,6 +738,28 @@ static void forged_sharing(void)
     end_forgery(&f);
 }
 
+/* The node of two leaf clusters is another: of one that the tree reaches early, and of a patch of several. */
+static void forged_nodes_of_sharing(void)
+{
+    uint32_t tried[2] = {0, 0};
+    for (uint32_t across = 6; across < 14; ++across) {
+        forgery f = forge(soup_cloth(across, 9));
+        const sc_pair *patches = sc_model_node_patches(f.model);
+        uint32_t *node = (uint32_t *)array_of(f.made_up, SC_ARRAY_share_node), was = node[0];
+        for (uint32_t n = 0; n < f.model->node_count; ++n) {
+            const int is_leaf = sc_model_is_leaf(f.model, patches[n].a);
+            if (is_leaf == sc_model_is_leaf(f.model, patches[n].b)) continue;
+            node[0] = n;
+            CHECK(try_forged(&f.saved, &f.mesh));
+            ++tried[is_leaf];
+        }
+        node[0] = was;
+        CHECK(!try_forged(&f.saved, &f.mesh));
+        end_forgery(&f);
+    }
+    CHECK_MSG(tried[0] > 0 && tried[1] > 0, "%u, %u", (unsigned)tried[0], (unsigned)tried[1]);
+}
+
 /* Lists of neighboring triangles with one that is none of its leaf cluster, rows and pairs alike. */
 static void forged_lists(void)
 {
@@ -777,10 +799,10 @@ static void forged_lists(void)
     end_forgery(&f);
 }
 
-/* Loops in pieces of which one has no edges, and the next has those too. */
-static void forged_pieces(void)
+/* Loops in pieces of which one has no edges, and the next has those too; and numbers of pieces that none has, or not that. */
+static void forge_pieces(soup mesh)
 {
-    forgery f = forge(soup_annulus(16, 3));
+    forgery f = forge(mesh);
     sc_model *m = f.made_up;
     const uint32_t *first = sc_model_node_loop(f.model);
     const uint8_t *kind = sc_model_node_kind(f.model);
@@ -788,7 +810,13 @@ static void forged_pieces(void)
     uint32_t tried = 0;
     for (uint32_t n = 0; n < f.model->node_count; ++n) {
         uint16_t *edges = loop + first[n] + 1;
+        const uint16_t pieces = edges[-1], others[] = {0, 1, 3, SC_LOOP_PIECES, SC_LOOP_PIECES + 1};
         if (!(kind[n] & SC_NODE_PIECES) || first[n + 1] == first[n]) continue;
+        for (size_t k = 0; k < sizeof(others) / sizeof(*others); ++k) {
+            edges[-1] = others[k];
+            CHECK(others[k] == pieces || try_forged(&f.saved, &f.mesh));
+        }
+        edges[-1] = pieces;
         for (uint32_t i = 0; i < edges[-1]; ++i) {
             uint16_t *other = &edges[(i + 1) % edges[-1]], was = edges[i];
             edges[i] = 0;
@@ -799,8 +827,14 @@ static void forged_pieces(void)
             ++tried;
         }
     }
-    CHECK(tried > 3 && !try_forged(&f.saved, &f.mesh));
+    CHECK(tried > 1 && !try_forged(&f.saved, &f.mesh));
     end_forgery(&f);
+}
+
+static void forged_pieces(void)
+{
+    forge_pieces(soup_annulus(16, 3));
+    forge_pieces(soup_annulus(4, 1)); /* with hardly more numbers than there may be pieces */
 }
 
 /* A node has the loops of those that follow as well: refused from where that is more than the sides of its triangles. */
@@ -1339,8 +1373,8 @@ static void format(void)
 SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(truncated),
              SC_TEST(changed), SC_TEST(foreign), SC_TEST(forged_arrays), SC_TEST(forged_counts),
              SC_TEST(forged_uses), SC_TEST(forged_rings), SC_TEST(forged_contour),
-             SC_TEST(forged_touches), SC_TEST(forged_sharing), SC_TEST(forged_lists),
-             SC_TEST(forged_pieces), SC_TEST(forged_loops), SC_TEST(forged_sizes),
-             SC_TEST(forged_chain), SC_TEST(messages), SC_TEST(workspaces_and_forged_hashes),
-             SC_TEST(arguments), SC_TEST(equal_bytes), SC_TEST(every_allocation_fails),
-             SC_TEST(read_only_and_shared), SC_TEST(format))
+             SC_TEST(forged_touches), SC_TEST(forged_sharing), SC_TEST(forged_nodes_of_sharing),
+             SC_TEST(forged_lists), SC_TEST(forged_pieces), SC_TEST(forged_loops),
+             SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
+             SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments), SC_TEST(equal_bytes),
+             SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))
