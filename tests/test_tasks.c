@@ -1031,9 +1031,10 @@ typedef struct step_fixture {
     sc_workspace *serial, *shared; /* for one worker, and for THREADS_MAX */
 } step_fixture;
 
-enum { STEP_SCENES = 6, STEP_METHODS = 5, STEP_KINDS = STEP_METHODS * 2 * 3 };
+enum { STEP_SCENES = 7, STEP_METHODS = 5, STEP_KINDS = STEP_METHODS * 2 * 3 };
 
-/* Layers that pass each other; a cloth that waves and folds; pieces; contours that cross; a crumpled sphere; two triangles. */
+/* Layers that pass each other; a cloth that waves and folds; pieces; contours that cross; a crumpled sphere; two triangles; a cloth of
+   a triangle in each leaf cluster, of which a level has many. */
 static int start_step(step_fixture *s, int scene)
 {
     soup mesh = scene == 0   ? soup_cloth(33, 33)
@@ -1041,18 +1042,19 @@ static int start_step(step_fixture *s, int scene)
                 : scene == 2 ? soup_many(60)
                 : scene == 3 ? soup_branched(64, 17)
                 : scene == 4 ? soup_sphere(36, 36)
-                             : soup_cloth(2, 1);
+                : scene == 5 ? soup_cloth(2, 1)
+                             : soup_cloth(18, 18);
     size_t bytes = 3 * (size_t)mesh.vertex_count * sizeof(double);
     sc_workspace_options o = for_workers(1);
     memset(s, 0, sizeof(*s));
-    if (!start_as_it_is(&s->f, mesh)) return 0;
+    if (!(scene < 6 ? start_as_it_is(&s->f, mesh) : start_tree(&s->f, mesh, 0, 0))) return 0;
     if (scene != 3) soup_smooth(s->f.posed, mesh.vertex_count, 0.05);
     if (scene == 0) soup_twist(s->f.posed, mesh.vertex_count, 3);
     s->ended = (double *)test_allocate(bytes);
     memcpy(s->ended, s->f.posed, bytes);
     soup_smooth(s->ended, mesh.vertex_count, scene == 0 ? 0.4 : scene == 3 ? 0.01 : 0.1);
     if (scene == 0) soup_twist(s->ended, mesh.vertex_count, 0.3);
-    if (scene == 1) soup_fold(s->ended, mesh.vertex_count);
+    if (scene == 1 || scene == 6) soup_fold(s->ended, mesh.vertex_count);
     if (scene == 4) soup_noise(s->ended, mesh.vertex_count, 0.03);
     s->end = input_plain_pose(s->ended, mesh.vertex_count);
     o.flags = SC_WORKSPACE_STEP;
@@ -1436,7 +1438,7 @@ static void steps_stopped_on_the_way(void)
             b.tasks.enqueue = breaker_enqueue;
             b.tasks.finish = breaker_finish;
             b.tasks.user = &b;
-            b.left = 1 + test_random_below(300);
+            b.left = 1 + test_random_below(i % 4 == 3 ? 12 : 300); /* or before there are boxes */
             options.tasks = &b.tasks;
             options.cancel = &b.flag;
             part = ask_step(&s, s.shared, &options, 40000, 40000);
