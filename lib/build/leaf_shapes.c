@@ -162,7 +162,7 @@ static int share_chain(const sc_model *m, uint32_t a, uint32_t b)
     return 1;
 }
 
-/* Where two leaf clusters have the one point that they share; 0 if they share more. */
+/* Where two leaf clusters that share points have the one point that they share; 0 if they share more. */
 static uint16_t find_touch(const uint32_t *points, const uint32_t *other)
 {
     uint32_t shared = 0, at = 0, i, k;
@@ -176,7 +176,7 @@ static uint16_t find_touch(const uint32_t *points, const uint32_t *other)
             break;
         }
     }
-    return (uint16_t)(shared ? SC_TOUCHES | at : 0);
+    return (uint16_t)(SC_TOUCHES | at);
 }
 
 void sc_leaf_shapes_touches(const sc_model *m, uint16_t *touch)
