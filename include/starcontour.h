@@ -474,8 +474,9 @@ typedef struct sc_workspace_options {
 
 /*
  * The same three for a workspace of any kind; options may be NULL, then they are the same. Such a
- * workspace also serves plain queries. Each worker but the first takes about 20 bytes a vertex and
- * 10 to 50 kilobytes more. SC_ERROR_OPTION: unknown flags, too many workers, or reserved is not 0.
+ * workspace also serves plain queries. Each worker but the first takes about 12 bytes a vertex and
+ * 130 kilobytes more, the second some 100 kilobytes besides. SC_ERROR_OPTION: unknown flags, too
+ * many workers, or reserved is not 0.
  */
 SC_API sc_status sc_workspace_size_for(const sc_model *model, const sc_workspace_options *options,
                                        uint64_t *size);

@@ -487,7 +487,7 @@ static SC_NOINLINE uint32_t SC_KERNEL(take_near_list)(sc_query_state *state)
     sc_workspace *w = state->workspace;
     sc_near_pair *pairs = w->near_pairs;
     const int has_cones = SC_KERNEL(has_cones)(state);
-    uint16_t touching[SC_LEAF_QUEUE + 1];
+    uint32_t *touching = w->near_list[0]; /* what has been read of it makes room */
     uint32_t count = w->near_count, touch_count = 0, known = 0, kept = 0, i;
     w->near_count = 0;
     for (i = 0; i < count; i++) {
@@ -500,7 +500,7 @@ static SC_NOINLINE uint32_t SC_KERNEL(take_near_list)(sc_query_state *state)
         } else {
             pairs[i].known = SC_KERNEL(has_two_chains)(state->model, a) ? SC_TOUCH_CHAIN : 0;
         }
-        touching[touch_count] = (uint16_t)i;
+        touching[touch_count] = i;
         touch_count += (pairs[i].known & SC_TOUCHES) != 0;
         known |= pairs[i].known;
     }

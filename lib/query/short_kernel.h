@@ -308,13 +308,13 @@ static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state, uint32_t wa
     const uint32_t first = sc_model_first_leaf_patch(state->model);
     const uint16_t *mask = w->mask + first;
     uint8_t *marks = w->walk.marks + first;
-    uint16_t oriented[SC_LEAF_QUEUE + 1];
+    uint32_t *oriented = w->near_list[1]; /* nothing waits there now */
     uint32_t count = 0, i;
     unsigned bits, taken = 0;
     int step;
     for (i = 0; i < waiting; i++) {
         const sc_near_pair *p = pairs + i;
-        oriented[count] = (uint16_t)i;
+        oriented[count] = i;
         count += (p->a != p->b) & ((mask[p->a] & mask[p->b]) != 0) & !(p->known & told);
     }
     for (i = 0; i < count; i++) {

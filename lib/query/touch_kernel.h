@@ -75,7 +75,7 @@ static inline unsigned SC_KERNEL(touch_only)(const sc_query_state *state, const 
 }
 
 /* Drops such pairs of those that wait, of which so many touch. */
-static SC_NOINLINE void SC_KERNEL(drop_touching)(sc_query_state *state, const uint16_t *touching,
+static SC_NOINLINE void SC_KERNEL(drop_touching)(sc_query_state *state, const uint32_t *touching,
                                                  uint32_t count)
 {
     sc_workspace *w = state->workspace;
