@@ -317,7 +317,7 @@ typedef struct sc_model sc_model;
 
 /*
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
- * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.4 to 1.4
+ * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.3 to 1.2
  * microseconds a triangle (regular grids and thin tubes least, irregular meshes of a million
  * triangles most) and, while it runs, up to 320 bytes a triangle; with METIS 5 to 7 microseconds a
  * triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 170 bytes a triangle.
