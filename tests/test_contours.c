@@ -1679,12 +1679,13 @@ static void single_fans(void)
     CHECK(!is_full() || (plain > 1000 && met > 1000));
 }
 
-SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(vectors_of_all_masks), SC_TEST(cones_and_projections),
-             SC_TEST(cones_at_zero), SC_TEST(bounds_of_segments), SC_TEST(bounds_of_long_segments),
-             SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks), SC_TEST(first_tick_again),
-             SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float), SC_TEST(spirals_overlap),
-             SC_TEST(long_contours), SC_TEST(branched_discs), SC_TEST(contours_at_shared_points),
-             SC_TEST(contours_in_pieces), SC_TEST(points_in_the_unit_box),
-             SC_TEST(poses_of_any_layout), SC_TEST(places_of_contours), SC_TEST(contours_in_turn),
-             SC_TEST(pinches_alone), SC_TEST(flat_cloths_pass), SC_TEST(patches_that_share_hubs),
+SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(vectors_of_all_masks),
+             SC_TEST(cones_and_projections), SC_TEST(cones_at_zero), SC_TEST(bounds_of_segments),
+             SC_TEST(bounds_of_long_segments), SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks),
+             SC_TEST(first_tick_again), SC_TEST(stars_have_no_pairs), SC_TEST(stars_beyond_float),
+             SC_TEST(spirals_overlap), SC_TEST(long_contours), SC_TEST(branched_discs),
+             SC_TEST(contours_at_shared_points), SC_TEST(contours_in_pieces),
+             SC_TEST(points_in_the_unit_box), SC_TEST(poses_of_any_layout),
+             SC_TEST(places_of_contours), SC_TEST(contours_in_turn), SC_TEST(pinches_alone),
+             SC_TEST(flat_cloths_pass), SC_TEST(patches_that_share_hubs),
              SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))

@@ -400,10 +400,9 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
     *node = sc_hierarchy_add(hierarchy, first, count, depth);
     status = divide(b, triangles, count, leaves, whole, connected);
     if (status) return status;
-    for (i = 0; i < count; i++) {
+    for (i = 0; i < count; i++) { /* without a branch, which no processor could foresee */
         uint32_t t = triangles[i], side = b->label[t] & 1;
-        b->queue[right] = triangles[left] =
-            t; /* without a branch, which no processor could foresee */
+        b->queue[right] = triangles[left] = t;
         right += side;
         left += !side;
     }

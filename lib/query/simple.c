@@ -691,7 +691,8 @@ void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t coun
         all.node[i % SC_CONTOUR_TURNS] = SC_NONE;
         if (i < (int)count && i % SC_DNC_VECTORS == 0)
             find_axes(state, &all, nodes + i, count - (uint32_t)i);
-        if (i < (int)count && is_short(model, nodes[i])) begin_turn(state, &all, nodes, (uint32_t)i);
+        if (i < (int)count && is_short(model, nodes[i]))
+            begin_turn(state, &all, nodes, (uint32_t)i);
         for (k = 1; k < SC_CONTOUR_TURNS; k++) {
             uint32_t t = (uint32_t)(i + SC_CONTOUR_TURNS - k) % SC_CONTOUR_TURNS;
             c[k] = all.node[t] == SC_NONE ? NULL : &all.contour[t];
