@@ -445,7 +445,7 @@ coverage_tests := $(patsubst tests/%.c,$(coverage)/release/tests/%,$(tests))
 coverage: ## lines and branches of lib/ that the tests run (gcc, AVX-512); fails if any is left out
 	$(call need,gcov,gcc)
 	+$(Q)$(MAKE) --no-print-directory config=release BUILD='$(coverage)' CC=gcc \
-	    mode='-O0 -g -DSC_COVERAGE --coverage' test_mode='-O2 -g' \
+	    mode='-O0 -g -DSC_COVERAGE --coverage -fprofile-update=atomic' test_mode='-O2 -g' \
 	    LDFLAGS='$(LDFLAGS) --coverage -Wl$(comma)--exclude-libs$(comma)ALL' \
 	    '$(coverage)/lib/$(shared_link)' $(patsubst %,'%',$(coverage_tests))
 	@find '$(coverage)/release/obj' -name '*.gcda' -exec rm -f {} +
