@@ -21,9 +21,10 @@
 #include "pose/positions.h"
 #include "query/query_kernels.h"
 
+/* Where there are gaps. */
 static int is_edge(const sc_simple_contour *c, uint32_t i)
 {
-    return !c->has_gaps || (c->edges->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1);
+    return c->edges->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1;
 }
 
 /* The point where edge i starts, or the one before it ends. */
@@ -250,19 +251,6 @@ static int lies_beside(const sc_simple_contour *c, uint32_t i, uint32_t j)
            0;
 }
 
-/* Whether the boxes of two edges certainly are apart: by two errors, and a rounding that is below another. */
-static int boxes_part(const sc_simple_contour *c, uint32_t i, uint32_t j)
-{
-    int k;
-    for (k = 0; k < 2; k++) {
-        const float *at = c->edges->at[k];
-        float low = fminf(at[i], at[i + 1]), high = fmaxf(at[i], at[i + 1]);
-        float other_low = fminf(at[j], at[j + 1]), other_high = fmaxf(at[j], at[j + 1]);
-        if (other_low - high > 4 * c->error || low - other_high > 4 * c->error) return 1;
-    }
-    return 0;
-}
-
 /* Whether two edges that share a point, the given end of each, certainly do not overlap beyond it. */
 static int is_open(const sc_simple_contour *c, uint32_t i, int end_i, uint32_t j, int end_j)
 {
@@ -281,7 +269,7 @@ int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
     const uint32_t a = point_of(c, i), b = point_of(c, i + 1);
     const uint32_t p = point_of(c, j), q = point_of(c, j + 1);
     const int shared = (a == p) + (a == q) + (b == p) + (b == q);
-    if (!shared) return boxes_part(c, i, j) || lies_beside(c, i, j) || lies_beside(c, j, i);
+    if (!shared) return lies_beside(c, i, j) || lies_beside(c, j, i);
     if (shared > 1) return 0;
     if (c->has_gaps && !is_open(c, i, b == p || b == q, j, a == q || b == q)) return 0;
     return a != p || sc_simple_note_shared(c, i, j);

@@ -41,8 +41,8 @@ typedef struct sc_simple_contour {
 /* The error of a cross or dot product of vectors with these sums of absolute components, see simple.c. */
 #define SC_SIMPLE_BOUND 12
 
-/* 1 if two edges are certainly as edges of a simple contour are: apart, or sharing one point and nothing else.
-   Notes pinches. */
+/* 1 if two edges, the boxes of which may meet, are certainly as edges of a simple contour are:
+   apart, or sharing one point and nothing else. Notes pinches. */
 int sc_simple_are_apart(sc_simple_contour *contour, uint32_t i, uint32_t j);
 
 /* The turned place of a number in a loop among those of all leaf clusters. */

@@ -84,7 +84,7 @@ static int is_beside(const sc_model *model, const sc_segment_bounds *bounds, uin
     const sc_ray_bound *top = &bounds->side[SC_SIDE_TOP], *bottom = &bounds->side[SC_SIDE_BOTTOM];
     int starts = end_point(model, segment, 0) == point,
         ends = end_point(model, segment, 1) == point;
-    if (top->ay == -INFINITY || bottom->ay == -INFINITY) return 0;
+    if (top->ay == -INFINITY) return 0; /* what is not known is not on both sides */
     if (!starts && !ends) {
         double low = (double)(top->ax < bottom->ax ? top->ax : bottom->ax);
         double high = (double)(top->bx > bottom->bx ? top->bx : bottom->bx);

@@ -1,38 +1,46 @@
 /*
- * Whether the triangles of a leaf cluster that goes round a tube, or of two such that follow each other, have nothing in common
- * but what they share: they are a band round an axis. See query_kernels.h.
+ * Whether the triangles of a leaf cluster that goes round a tube, or of two such that follow each
+ * other, have nothing in common but what they share: they are a band round an axis. See
+ * query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * Points are seen in coordinates u, v and h, along any three directions from any middle, and from there by their angle round the
- * h axis and by h: on a cylinder. The normal of a triangle in these coordinates, times (u, v, 0) of a point on it, is linear
- * along the triangle; where it is above 0 at all three corners, the triangle does not meet the axis and has an image on the
- * cylinder that keeps its orientation; where it is below 0 at all of them, one that turns it. So if this is the same for all
- * triangles, so many are over a place of the cylinder, all added with the same sign, as crossing the outline on the way there
- * from far up tells.
+ * Points are seen in coordinates u, v and h, along any three directions from any middle, and from
+ * there by their angle round the h axis and by h: on a cylinder. The normal of a triangle in these
+ * coordinates, times (u, v, 0) of a point on it, is linear along the triangle; where it is above 0
+ * at all three corners, the triangle does not meet the axis and has an image on the cylinder that
+ * keeps its orientation; where it is below 0 at all of them, one that turns it. So if this is the
+ * same for all triangles, so many are over a place of the cylinder, all added with the same sign,
+ * as crossing the outline on the way there from far up tells.
  *
- * Let the outline be two chains, each of which runs strictly in one direction round the axis, once round, and one is above
- * the other. Then each is over every angle once; one triangle is over each place between them, and none elsewhere, and
- * the outline comes to no place twice. So triangles meet in no more than points and edges that they share: those over a place
- * follow each other round it, as in query/star.c, which looks at what is near one place alone. The middle, the directions, and
- * the height between the chains are any, hence have no error; where the directions are in one plane, nothing is above 0.
+ * Let the outline be two chains, each of which runs strictly in one direction round the axis, and
+ * one is above the other; and let one go round once. So does the other, as there are as few
+ * triangles far down as far up: none. Then each is over every angle once; one triangle is over each
+ * place between them, and none elsewhere, and the outline comes to no place twice. So triangles
+ * meet in no more than points and edges that they share: those over a place follow each other round
+ * it, as in query/star.c, which looks at what is near one place alone. The middle, the directions,
+ * and the height between the chains are any, hence have no error; where the directions are in one
+ * plane, nothing is above 0.
  *
- * Two clusters that share one chain of each, which runs in the other direction in the other cluster (SC_TOUCH_CHAIN), have
- * nothing else in common if both are such bands, round the same axis, and turned to the same side: then chains that run in
- * one direction are the lower ones of both, so that the one they share is the upper one of one cluster and the lower one of the
- * other, and one band is above it and the other below.
+ * Two clusters that share one chain of each, which runs in the other direction in the other cluster
+ * (SC_TOUCH_CHAIN), have nothing else in common if both are such bands, round the same axis, and
+ * turned to the same side: then chains that run in one direction are the lower ones of both, so
+ * that the one they share is the upper one of one cluster and the lower one of the other, and one
+ * band is above it and the other below.
  *
- * In single precision on the points in the unit box, v = 2^-24. Let D bound the components of points relative to the middle; the sum
- * of those of a direction is at most 3.01. A coordinate is off by 3.01 times 3e-8 and v D, and by rounding 9.1 v D:
- * d = 9.1e-8 + 12.2 v D; it is at most M = 3.03 D, and so v M <= d / 4.02. A product z of (u, v) of two points is off by
- * 4 M d + 2 d^2, and by rounding 4.02 v M^2: at most Q = d (5.1 M + 2 d). The normal times (u, v, 0) is a difference of two
- * products of a step in h, at most 2.01 M and off by 2.5 d, and of such a z, at most 2.02 M^2: each product is off by
- * 2.01 M Q + 5.05 M^2 d + 2.5 d Q and by rounding 1.02 M^2 d, and the difference by 2.05 M^2 d more: less than
- * Q (4.1 M + 5.1 d) + 14.4 M^2 d in all. A height is off by d, and the sum of one with it by less than 0.3 d. What
- * underflows is within some FLT_MIN.
+ * In single precision on the points in the unit box, v = 2^-24. Let D bound the components of
+ * points relative to the middle; the sum of those of a direction is at most 3.01. A coordinate is
+ * off by 3.01 times 3e-8 and v D, and by rounding 9.1 v D: d = 9.1e-8 + 12.2 v D; it is at most M =
+ * 3.03 D, and so v M <= d / 4.02. A product z of (u, v) of two points is off by 4 M d + 2 d^2, and
+ * by rounding 4.02 v M^2: at most Q = d (5.1 M + 2 d). The normal times (u, v, 0) is a difference
+ * of two products of a step in h, at most 2.01 M and off by 2.5 d, and of such a z, at most 2.02
+ * M^2: each product is off by 2.01 M Q + 5.05 M^2 d + 2.5 d Q and by rounding 1.02 M^2 d, and the
+ * difference by 2.05 M^2 d more: less than Q (4.1 M + 5.1 d) + 14.4 M^2 d in all. A height is off
+ * by d, and the sum of one with it by less than 0.3 d. What underflows is within some FLT_MIN.
  *
- * All this holds for each place that the points can be at, up to these errors. If they are moved from the computed places to
- * the true ones, edges go on running in their direction, so that chains go on running once round.
+ * All this holds for each place that the points can be at, up to these errors. If they are moved
+ * from the computed places to the true ones, edges go on running in their direction, so that chains
+ * go on running once round.
  */
 typedef struct SC_KERNEL(tube) {
     float middle[3], direction[3][3]; /* of u, v and h */
@@ -84,8 +92,8 @@ static inline unsigned SC_KERNEL(places_with)(lanes_bytes outline, uint8_t bit)
     return lanes_bytes_bits(lanes_bytes_same(lanes_bytes_both(outline, some), some));
 }
 
-/* Whether the two chains of a cluster's outline certainly run round the axis, once, in different directions, one above some
-   height and the other below. */
+/* Whether the two chains of a cluster's outline certainly run round the axis, the first once, in
+   different directions, one above some height and the other below. */
 static inline int SC_KERNEL(go_round)(const SC_KERNEL(tube) * t, const lanes at[3], float height,
                                       const uint8_t *row)
 {
@@ -108,10 +116,11 @@ static inline int SC_KERNEL(go_round)(const SC_KERNEL(tube) * t, const lanes at[
         !((first & ~ahead) | (second & ~back)) || !((first & ~back) | (second & ~ahead));
     const int apart =
         !((first & ~above) | (second & ~below)) || !((first & ~below) | (second & ~above));
-    return directed && apart && sc_bits_count(up & first) == 1 && sc_bits_count(up & second) == 1;
+    return directed && apart && sc_bits_count(up & first) == 1;
 }
 
-/* To which side the triangles of a cluster are certainly turned, all of them: 1 or 2, or 0 if that is not so. */
+/* To which side the triangles of a cluster are certainly turned, all of them: 1 or 2, or 0 if that
+   is not so. */
 static inline int SC_KERNEL(side_of_tube)(const SC_KERNEL(tube) * t, const lanes at[3],
                                           const uint8_t *corner)
 {
@@ -138,7 +147,8 @@ static inline int SC_KERNEL(side_of_tube)(const SC_KERNEL(tube) * t, const lanes
     return lanes_every(lanes_below(most, lanes_all(-bound))) ? 2 : 0;
 }
 
-/* To which side a cluster is turned that is a band, the chains of which are above and below a height; 0 if it may be none. */
+/* To which side a cluster is turned that is a band, the chains of which are above and below a
+   height; 0 if it may be none. */
 static inline int SC_KERNEL(side_of_band)(const sc_query_state *state, uint32_t leaf,
                                           const SC_KERNEL(tube) * t, float height)
 {
@@ -171,7 +181,8 @@ static inline int SC_KERNEL(has_two_chains)(const sc_model *model, uint32_t leaf
     return sc_model_leaf_outline(model)[SC_LEAF_POINTS * ((uint64_t)leaf + 1) - 1] & SC_OUTLINE_TWO;
 }
 
-/* Whether such a cluster certainly is a band. The axis leads from the middle of one chain to that of the other, about. */
+/* Whether such a cluster certainly is a band. The axis leads from the middle of one chain to that
+   of the other, about. */
 static int SC_KERNEL(is_band)(const sc_query_state *state, uint32_t leaf)
 {
     static const float weight[SC_LANES_COUNT] = {-1, 1, 0};
@@ -198,8 +209,8 @@ static int SC_KERNEL(is_band)(const sc_query_state *state, uint32_t leaf)
            SC_KERNEL(side_of_band)(state, leaf, &t, 0);
 }
 
-/* Whether two of them that share a chain certainly are bands, one above it and the other below. The axis leads from the middle of
-   one to that of the other, about. */
+/* Whether two of them that share a chain certainly are bands, one above it and the other below. The
+   axis leads from the middle of one to that of the other, about. */
 static int SC_KERNEL(are_bands)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
     float low[2][3], high[2][3], middle[2][3], along[3], height[2] = {0, 0};
@@ -220,8 +231,9 @@ static int SC_KERNEL(are_bands)(const sc_query_state *state, uint32_t a, uint32_
     return side && SC_KERNEL(side_of_band)(state, b, &t, height[1]) == side;
 }
 
-/* Of so many pairs of leaf clusters that wait, or one with itself, drops those that go round a tube and certainly have nothing
-   in common but what they share; before those of one with itself, the others, which are marked as SC_KERNEL(drop_plain) does. */
+/* Of so many pairs of leaf clusters that wait, or one with itself, drops those that go round a tube
+   and certainly have nothing in common but what they share; before those of one with itself, the
+   others, which are marked as SC_KERNEL(drop_plain) does. */
 static void SC_KERNEL(drop_bands)(sc_query_state *state, uint32_t count)
 {
     sc_workspace *w = state->workspace;
