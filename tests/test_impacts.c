@@ -672,6 +672,61 @@ static void separations_in_passing(void)
     CHECK(passed > test_iterations(60000) / 100);
 }
 
+/* Two that are a little more than separation apart, and move by less than the tolerance. */
+static void steps_within_the_tolerance(void)
+{
+    tally t = {0, 0, 0, 0};
+    for (uint32_t i = 0; i < test_iterations(5000); ++i) {
+        step_oracle_kind kind = (step_oracle_kind)test_random_below(2);
+        double tolerance = exp2(-(double)(3 + test_random_below(20))), separation;
+        query q;
+        make_random(&q);
+        for (int k = 0; k < 12; ++k)
+            q.end[k / 3][k % 3] = q.start[k / 3][k % 3] + tolerance * test_random_range(-1, 1);
+        separation = distance_at(&q, kind, 0) - tolerance * test_random_range(0.4, 1.2);
+        if (separation < 0) continue;
+        check_query(&q, kind, separation, tolerance, &t);
+    }
+    print_tally(&t);
+    CHECK(t.reported > t.asked / 10 && t.reported < t.asked * 9 / 10);
+}
+
+/* Faces and edges so small that squares of their normals, or even those, vanish, above each other,
+   until they come near or leave; asked just after they are at the separation, too. */
+static void steps_of_tiny_ones(void)
+{
+    tally t = {0, 0, 0, 0};
+    for (uint32_t i = 0; i < test_iterations(6000); ++i) {
+        step_oracle_kind kind = (step_oracle_kind)test_random_below(2);
+        double tiny =
+            exp2(-(double)(i % 2 ? 266 + test_random_below(3) : 120 + test_random_below(160)));
+        double above = exp2(-(double)test_random_below(30));
+        double until = above * test_random_range(-1, 1), separation = 0, time, s;
+        uint32_t up = test_random_below(3);
+        query q;
+        for (uint32_t k = 0; k < 2; ++k)
+            for (int p = 0; p < 4; ++p) {
+                static const double place[2][2][4] = {{{0, -1, 1, 0}, {0, -1, -1, 1}},
+                                                      {{-1, 1, 0, 0}, {0, 0, -1, 1}}};
+                uint32_t axis = (up + 1 + k) % 3;
+                q.start[p][axis] = tiny * (place[kind][k][p] + test_random_range(-0.4, 0.4));
+                q.end[p][axis] = q.start[p][axis];
+            }
+        for (int p = 0; p < 4; ++p) {
+            int is_upper = p > (kind == STEP_ORACLE_VERTEX_FACE ? 0 : 1);
+            q.start[p][up] = is_upper ? above : 0;
+            q.end[p][up] = is_upper ? until : 0;
+        }
+        if (test_random_below(2)) separation = above * test_random_unit();
+        check_query(&q, kind, separation, test_random_below(2) ? 0 : above * 1e-3, &t);
+        s = (above - separation) / (above - until) * (1 + 1e-8);
+        if (s <= 1 && is_within(&q, kind, s, separation, 0))
+            CHECK(ask(&q, kind, separation, 0, &time) && time <= s);
+    }
+    print_tally(&t);
+    CHECK(t.reported > t.asked / 4 && t.reported < t.asked);
+}
+
 /* A distance of 2^-538 or so, in all of which squares vanish, is less than separation. */
 static void distances_whose_squares_vanish(void)
 {
@@ -771,5 +826,6 @@ SC_TEST_MAIN(SC_TEST(known_times), SC_TEST(same_bits_everywhere),
              SC_TEST(random_steps), SC_TEST(steps_on_a_grid), SC_TEST(steps_that_just_touch),
              SC_TEST(flat_steps), SC_TEST(degenerate_steps), SC_TEST(thin_layers),
              SC_TEST(rolling_steps), SC_TEST(slivers), SC_TEST(slivers_nearly_at_rest),
+             SC_TEST(steps_within_the_tolerance), SC_TEST(steps_of_tiny_ones),
              SC_TEST(denormal_steps), SC_TEST(wide_ranges), SC_TEST(separations_just_reached),
              SC_TEST(separations_in_passing), SC_TEST(times_close_to_contacts))

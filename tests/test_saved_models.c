@@ -10,6 +10,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include <inttypes.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -869,6 +870,38 @@ static void forged_loops(void)
     end_forgery(&f);
 }
 
+/* Two leaf clusters that face one way have a loop of two points or fewer: the next two have the rest
+   as well. They are in folds, of which two do not, so that large patches are left to boxes. */
+static void forged_short_loops(void)
+{
+    enum { FOLDS = 6, ACROSS = 4 };
+    soup mesh = soup_cloth(ACROSS, FOLDS * ACROSS);
+    uint32_t tried = 0;
+    forgery f;
+    for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
+        double *p = mesh.positions + 3 * v, along = FOLDS * p[0];
+        p[0] = (int)along % 2 ? 1 - (along - floor(along)) : along - floor(along);
+        p[2] = 0.1 * sin(2 * along);
+    }
+    f = forge(mesh);
+    for (uint32_t n = 0; n + 1 < f.model->node_count; ++n) {
+        const sc_pair *patches = sc_model_node_patches(f.model) + n;
+        const uint8_t *kind = sc_model_node_kind(f.model) + n;
+        uint32_t *first = (uint32_t *)array_of(f.made_up, SC_ARRAY_node_loop) + n, was = first[1];
+        int fits = !kind[0] && !kind[1] && was - first[0] > 2 && first[2] > was;
+        for (int i = 0; i < 2; ++i)
+            fits &= patches[i].a != patches[i].b && sc_model_is_leaf(f.model, patches[i].a) &&
+                    sc_model_is_leaf(f.model, patches[i].b);
+        for (uint32_t left = 0; fits && left < 3; ++left) {
+            first[1] = first[0] + left;
+            tried += !try_forged(&f.saved, &f.mesh);
+        }
+        first[1] = was;
+    }
+    CHECK_MSG(tried > 5, "%u", (unsigned)tried);
+    end_forgery(&f);
+}
+
 /* A header for less than any model, with the right checksum. */
 static void forged_sizes(void)
 {
@@ -1375,6 +1408,7 @@ SC_TEST_MAIN(SC_TEST(round_trips), SC_TEST(round_trips_of_mesh_files), SC_TEST(t
              SC_TEST(forged_uses), SC_TEST(forged_rings), SC_TEST(forged_contour),
              SC_TEST(forged_touches), SC_TEST(forged_sharing), SC_TEST(forged_nodes_of_sharing),
              SC_TEST(forged_lists), SC_TEST(forged_pieces), SC_TEST(forged_loops),
-             SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
-             SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments), SC_TEST(equal_bytes),
-             SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared), SC_TEST(format))
+             SC_TEST(forged_short_loops), SC_TEST(forged_sizes), SC_TEST(forged_chain),
+             SC_TEST(messages), SC_TEST(workspaces_and_forged_hashes), SC_TEST(arguments),
+             SC_TEST(equal_bytes), SC_TEST(every_allocation_fails), SC_TEST(read_only_and_shared),
+             SC_TEST(format))

@@ -912,9 +912,24 @@ static uint32_t add_chain(sc_tree_node *tree, uint32_t *count, uint32_t first, u
     return node;
 }
 
-/* The model of a mesh by a tree: leaves of one triangle, balanced; but of the first triangles, if so many are chained, each of
-   so many nodes loses one. */
-static int start_tree(fixture *f, soup mesh, uint32_t chained, uint32_t length)
+/* So many equal parts, each with its first triangles in a chain and the others balanced. */
+static uint32_t add_parts(sc_tree_node *tree, uint32_t *count, uint32_t first, uint32_t end,
+                          uint32_t parts, uint32_t chained, uint32_t length)
+{
+    const uint32_t node = (*count)++, middle = first + (end - first) / 2;
+    if (parts == 1) {
+        tree[node].left = add_chain(tree, count, first, first + chained, length);
+        tree[node].right = add_balanced(tree, count, first + chained, end);
+    } else {
+        tree[node].left = add_parts(tree, count, first, middle, parts / 2, chained, length);
+        tree[node].right = add_parts(tree, count, middle, end, parts / 2, chained, length);
+    }
+    return node;
+}
+
+/* The model of a mesh by a tree: leaves of one triangle, balanced; but of the first triangles of each
+   part, if so many are chained, each of so many nodes loses one. */
+static int start_tree(fixture *f, soup mesh, uint32_t parts, uint32_t chained, uint32_t length)
 {
     const uint32_t count = mesh.triangle_count;
     sc_tree_node *tree = (sc_tree_node *)test_allocate(2 * count * sizeof(sc_tree_node));
@@ -923,13 +938,10 @@ static int start_tree(fixture *f, soup mesh, uint32_t chained, uint32_t length)
     sc_build_options options;
     sc_status status;
     for (uint32_t t = 0; t < count; ++t) order[t] = t;
-    if (chained) {
-        used = 1;
-        tree[0].left = add_chain(tree, &used, 0, chained, length);
-        tree[0].right = add_balanced(tree, &used, chained, count);
-    } else {
+    if (chained)
+        add_parts(tree, &used, 0, count, parts, chained, length);
+    else
         add_balanced(tree, &used, 0, count);
-    }
     memset(&options, 0, sizeof(options));
     options.struct_size = sizeof(options);
     options.partition = SC_PARTITION_TREE;
@@ -970,20 +982,68 @@ static soup crumpled_fan(uint32_t count)
     return s;
 }
 
-enum { TREES = 4 };
+/* Strips with flags: so many triangles that face down; then three rows of squares that face up, and on
+   every other edge at a side of them triangles, which face up as well and get in each other's way. */
+enum { STRIPS = 8, DOWN = 10, SQUARES = 114, FLAGS = 24, STRIP = DOWN + 6 * SQUARES };
 
-/* Trees that are not balanced, with more parts than the list has room for, since a large patch meets hundreds of small ones at each
-   level; one of pairs of neighbors, of which many wait and of others none; and one of very many leaf clusters. */
+static void set_corner(double *p, double x, double y, double z)
+{
+    p[0] = x;
+    p[1] = y;
+    p[2] = z;
+}
+
+static soup strips_with_flags(void)
+{
+    enum { COLUMNS = SQUARES + 1, POINTS = 3 * DOWN + 4 * COLUMNS + FLAGS * SQUARES / 2 };
+    soup s = soup_make(STRIPS * POINTS, STRIPS * (STRIP + FLAGS * SQUARES / 2));
+    uint32_t *t = s.triangles;
+    for (uint32_t strip = 0; strip < STRIPS; ++strip) {
+        const uint32_t down = strip * POINTS, square = down + 3 * DOWN, flag = square + 4 * COLUMNS;
+        const double away = 10 * strip;
+        double(*at)[3] = (double(*)[3])s.positions;
+        for (uint32_t i = 0; i < 3 * DOWN; ++i, ++t) {
+            set_corner(at[down + i], i / 3 + i % 3 % 2, away + 5 + i % 3 / 2, -1);
+            *t = down + i / 3 * 3 + (3 - i % 3) % 3;
+        }
+        for (uint32_t i = 0; i < 4 * COLUMNS; ++i)
+            set_corner(at[square + i], i % COLUMNS, away + i / COLUMNS,
+                       test_random_range(-0.1, 0.1));
+        for (uint32_t i = 0; i < 6 * SQUARES; ++i, t += 3) {
+            uint32_t p = square + i / 2 / SQUARES * COLUMNS + i / 2 % SQUARES;
+            t[0] = p + i % 2;
+            t[1] = p + 1 + i % 2 * COLUMNS;
+            t[2] = p + COLUMNS;
+        }
+        for (uint32_t i = 0; i < FLAGS * SQUARES / 2; ++i, t += 3) {
+            uint32_t p = i / FLAGS * 2;
+            set_corner(at[flag + i], p + test_random_range(-2, 3), away - 1,
+                       test_random_range(-1, 1));
+            t[0] = square + p + 1;
+            t[1] = square + p;
+            t[2] = flag + i;
+        }
+    }
+    return s;
+}
+
+enum { TREES = 5 };
+
+/* Trees that are not balanced, with more parts than the list has room for, since a large patch meets
+   hundreds of small ones at each level; one of pairs of neighbors, of which many wait and of others
+   none; one of very many leaf clusters; and one of large patches that have more neighbors with which
+   they wait for a contour test than the list has room for. */
 static int start_tree_scene(fixture *f, int scene)
 {
-    if (scene == 2) return start_tree(f, crumpled_fan(640), 0, 0);
+    if (scene == 4) return start_tree(f, strips_with_flags(), STRIPS, STRIP, DOWN);
+    if (scene == 2) return start_tree(f, crumpled_fan(640), 1, 0, 0);
     if (scene == 3) {
-        if (!start_tree(f, soup_cloth(47, 47), 0, 0)) return 0;
+        if (!start_tree(f, soup_cloth(47, 47), 1, 0, 0)) return 0;
         soup_smooth(f->posed, f->mesh.vertex_count, 0.1);
         soup_twist(f->posed, f->mesh.vertex_count, 2);
         return 1;
     }
-    return start_tree(f, pile(scene ? 600 : 500), 240, 40);
+    return start_tree(f, pile(scene ? 600 : 500), 1, 240, 40);
 }
 
 static void by_trees(void)
@@ -1000,7 +1060,7 @@ static void by_trees(void)
                 answer serial = ask(&f, f.workspace, &options, 200000), shared, other;
                 host h;
                 CHECK(serial.status == SC_OK);
-                if (scene < 3 && options.contour != SC_CONTOUR_NONE)
+                if (scene != 3 && options.contour != SC_CONTOUR_NONE)
                     CHECK_MSG(serial.result.count > 1000, "%u", (unsigned)serial.result.count);
                 host_start(&h, HOST_AT_ONCE, 2);
                 options.tasks = &h.tasks;
@@ -1047,7 +1107,7 @@ static int start_step(step_fixture *s, int scene)
     size_t bytes = 3 * (size_t)mesh.vertex_count * sizeof(double);
     sc_workspace_options o = for_workers(1);
     memset(s, 0, sizeof(*s));
-    if (!(scene < 6 ? start_as_it_is(&s->f, mesh) : start_tree(&s->f, mesh, 0, 0))) return 0;
+    if (!(scene < 6 ? start_as_it_is(&s->f, mesh) : start_tree(&s->f, mesh, 1, 0, 0))) return 0;
     if (scene != 3) soup_smooth(s->f.posed, mesh.vertex_count, 0.05);
     if (scene == 0) soup_twist(s->f.posed, mesh.vertex_count, 3);
     s->ended = (double *)test_allocate(bytes);
