@@ -21,7 +21,7 @@ static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
     lanes_store(out->row[3], lanes_smaller(a, b));
     lanes_store(out->row[4], lanes_larger(a, b));
     lanes_store(out->row[5], lanes_absolute(a));
-    lanes_store(out->row[6], lanes_larger_size(evens, odds));
+    lanes_store(out->row[6], lanes_largest_size(evens, odds, lanes_load(in->plain + 2)));
     lanes_store(out->row[7], lanes_evens(a, b));
     lanes_store(out->row[8], lanes_odds(a, b));
     lanes_store(out->row[63], b);

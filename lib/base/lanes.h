@@ -6,7 +6,7 @@
  * SPDX-License-Identifier: MIT
  *
  * Operations round as those of single floats do, and there is no fused multiplication and addition, so that
- * all of them give the same results. lanes_larger_size takes the larger absolute value. A comparison gives a mask, of
+ * all of them give the same results. lanes_largest_size takes the largest absolute value. A comparison gives a mask, of
  * which lanes_bits makes bit i for lane i; with NaN it is false. lanes_points reads the first three of four floats at
  * sixteen places, lanes_rows those of sixteen fours of an array by their numbers. lanes_numbers writes down sixteen numbers,
  * to which one of two is added: the first if they are below a split. lanes_turned reads the first three of sixteen fours
@@ -38,7 +38,7 @@
 #define lanes_smaller SC_KERNEL(sc_lanes_smaller)
 #define lanes_larger SC_KERNEL(sc_lanes_larger)
 #define lanes_absolute SC_KERNEL(sc_lanes_absolute)
-#define lanes_larger_size SC_KERNEL(sc_lanes_larger_size)
+#define lanes_largest_size SC_KERNEL(sc_lanes_largest_size)
 #define lanes_mask SC_KERNEL(sc_lanes_mask)
 #define lanes_below SC_KERNEL(sc_lanes_below)
 #define lanes_not_above SC_KERNEL(sc_lanes_not_above)
@@ -108,11 +108,12 @@ static inline lanes lanes_absolute(lanes a)
 {
     return _mm512_andnot_ps(_mm512_set1_ps(-0.0f), a);
 }
-static inline lanes lanes_larger_size(lanes a, lanes b)
+static inline lanes lanes_largest_size(lanes a, lanes b, lanes c)
 {
 #  pragma GCC diagnostic push
 #  pragma GCC diagnostic ignored "-Wsign-conversion" /* a macro where nothing is optimised */
-    return _mm512_range_ps(a, b, 11);                /* the larger absolute value, without sign */
+    a = _mm512_range_ps(a, b, 11);                   /* the larger absolute value, without sign */
+    return _mm512_range_ps(a, c, 11);
 #  pragma GCC diagnostic pop
 }
 static inline lanes_mask lanes_below(lanes a, lanes b)
@@ -707,9 +708,9 @@ static inline void lanes_store_most(float *f, lanes a)
 #endif
 
 #if !SC_LANES_AVX512
-static inline lanes lanes_larger_size(lanes a, lanes b)
+static inline lanes lanes_largest_size(lanes a, lanes b, lanes c)
 {
-    return lanes_larger(lanes_absolute(a), lanes_absolute(b));
+    return lanes_larger(lanes_larger(lanes_absolute(a), lanes_absolute(b)), lanes_absolute(c));
 }
 #endif
 

@@ -20,7 +20,7 @@
 #undef lanes_smaller
 #undef lanes_larger
 #undef lanes_absolute
-#undef lanes_larger_size
+#undef lanes_largest_size
 #undef lanes_mask
 #undef lanes_below
 #undef lanes_not_above

@@ -38,12 +38,13 @@
 #  define part_add SC_QUAD(add_ps)
 #  define part_subtract SC_QUAD(sub_ps)
 #  define part_multiply SC_QUAD(mul_ps)
-static SC_INLINE part SC_KERNEL(part_larger_size)(part a, part b)
+static SC_INLINE part SC_KERNEL(part_largest_size)(part a, part b, part c)
 {
     const part sign = SC_QUAD(set1_ps)(-0.0f);
-    return SC_QUAD(max_ps)(SC_QUAD(andnot_ps)(sign, a), SC_QUAD(andnot_ps)(sign, b));
+    a = SC_QUAD(max_ps)(SC_QUAD(andnot_ps)(sign, a), SC_QUAD(andnot_ps)(sign, b));
+    return SC_QUAD(max_ps)(a, SC_QUAD(andnot_ps)(sign, c));
 }
-#  define part_larger_size SC_KERNEL(part_larger_size)
+#  define part_largest_size SC_KERNEL(part_largest_size)
 #  define part_signs(a) (a)
 #else
 #  define part lanes
@@ -51,7 +52,7 @@ static SC_INLINE part SC_KERNEL(part_larger_size)(part a, part b)
 #  define part_add lanes_add
 #  define part_subtract lanes_subtract
 #  define part_multiply lanes_multiply
-#  define part_larger_size lanes_larger_size
+#  define part_largest_size lanes_largest_size
 #  define part_signs lanes_signs_of
 #endif
 
@@ -81,8 +82,8 @@ static SC_INLINE void SC_KERNEL(directions_of)(part e[][3], part f[][3], lanes_s
                             part_multiply(e[i][(k + 2) % 3], f[i][(k + 1) % 3]));
     EACH(i, count)
     {
-        part e_size = part_larger_size(part_larger_size(e[i][0], e[i][1]), e[i][2]);
-        part f_size = part_larger_size(part_larger_size(f[i][0], f[i][1]), f[i][2]);
+        part e_size = part_largest_size(e[i][0], e[i][1], e[i][2]);
+        part f_size = part_largest_size(f[i][0], f[i][1], f[i][2]);
         error[i] = part_add(part_multiply(relative, part_multiply(e_size, f_size)),
                             part_multiply(moved, part_add(part_add(e_size, f_size), least)));
     }
@@ -281,6 +282,6 @@ static void SC_KERNEL(load_leaves)(const sc_model *model, sc_workspace *w, uint3
 #undef part_add
 #undef part_subtract
 #undef part_multiply
-#undef part_larger_size
+#undef part_largest_size
 #undef part_signs
 #undef EACH

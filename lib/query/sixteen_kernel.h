@@ -190,8 +190,7 @@ static inline void SC_KERNEL(find_level)(const SC_KERNEL(tips) tips[2], const la
     for (c = 0; c < 3; c++) {
         lanes e = lanes_choose(row, tips[0].edge[0][c], tips[0].edge[1][c]);
         lanes f = lanes_choose(column, tips[1].edge[0][c], tips[1].edge[1][c]);
-        level[c] = lanes_bits(
-            lanes_not_above(lanes_larger_size(lanes_larger_size(e, f), w[c]), lanes_all(0)));
+        level[c] = lanes_bits(lanes_not_above(lanes_largest_size(e, f, w[c]), lanes_all(0)));
     }
     mask &= ~((is[0][0] & (is[0][1] | is[1][0] | is[1][1])) | (is[0][1] & (is[1][0] | is[1][1])) |
               (is[1][0] & is[1][1]));
