@@ -154,8 +154,8 @@ static void SC_KERNEL(compare_near_boxes)(SC_KERNEL(rows) * rows)
 /* The same of a cluster against itself, or of two that are crowded, to come: pairs that share points are taken, and not in
    the rows. */
 static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p,
-                                   const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned some_a,
-                                   unsigned some_b, SC_KERNEL(rows) * rows)
+                                   const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned some,
+                                   SC_KERNEL(rows) * rows)
 {
     uint8_t near_a[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT], near_b[SC_LEAF_PAIRS + 2 * SC_LANES_COUNT];
     const unsigned lower = p->a == p->b ? 0 : SC_LEAF_ALL;  /* of b, those below i, too */
@@ -163,9 +163,9 @@ static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p,
     lanes low[3], high[3];
     if (p->wanted) near = p->a == p->b ? SC_KERNEL(doubtful)(state, p->a) : SC_LEAF_ALL;
     SC_KERNEL(load_boxes)(b, low, high);
-    for (; some_a; some_a &= some_a - 1) {
-        uint32_t i = sc_bits_lowest(some_a);
-        unsigned mask = SC_KERNEL(overlap_row)(a, i, low, high) & some_b, shared = p->shared[i];
+    for (; some; some &= some - 1) {
+        uint32_t i = sc_bits_lowest(some);
+        unsigned mask = SC_KERNEL(overlap_row)(a, i, low, high), shared = p->shared[i];
         mask &= ~((2u << i) - 1u) | lower;
         memset(near_a + near_count, (int)i, SC_LANES_COUNT);
         near_count += lanes_list(mask & shared & (near >> i & 1u ? near : 0u), near_b + near_count);
@@ -266,16 +266,15 @@ static void SC_KERNEL(test_rows)(sc_query_state *state, SC_KERNEL(rows) * rows)
     SC_KERNEL(no_rows)(rows);
 }
 
-/* Names two leaf clusters, a and b when they are ready, of which rows come next; swap: b's triangles are the rows. */
+/* Names two leaf clusters, a and b when they are ready, of which rows come next: triangles of a. */
 static inline void SC_KERNEL(name_pair)(uint32_t leaf_a, uint32_t leaf_b, const sc_leaf_ready *a,
-                                        const sc_leaf_ready *b, unsigned swap,
-                                        SC_KERNEL(rows) * rows)
+                                        const sc_leaf_ready *b, SC_KERNEL(rows) * rows)
 {
     const unsigned k = rows->pairs;
-    rows->leaf[swap][k] = leaf_a;
-    rows->leaf[!swap][k] = leaf_b;
-    rows->ready[swap][k] = a;
-    rows->ready[!swap][k] = b;
+    rows->leaf[0][k] = leaf_a;
+    rows->leaf[1][k] = leaf_b;
+    rows->ready[0][k] = a;
+    rows->ready[1][k] = b;
 }
 
 /* Has these triangles wait as rows of them. Returns how many. */
@@ -287,26 +286,23 @@ static inline unsigned SC_KERNEL(add_waiting)(unsigned some, SC_KERNEL(rows) * r
     return count;
 }
 
-/* Adds two leaf clusters, a and b when they are ready, or one, of which only some triangles may overlap the other. */
+/* Adds two leaf clusters, a and b when they are ready, or one; of a only some triangles may overlap b. */
 static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p,
-                                const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned some_a,
-                                unsigned some_b, SC_KERNEL(rows) * rows)
+                                const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned some,
+                                SC_KERNEL(rows) * rows)
 {
-    /* either may be the rows */
-    unsigned swap = !p->shares && sc_bits_count(some_b) < sc_bits_count(some_a);
-    SC_KERNEL(name_pair)(p->a, p->b, a, b, swap, rows);
+    SC_KERNEL(name_pair)(p->a, p->b, a, b, rows);
     rows->list[rows->pairs] = p->list;
-    some_a = swap ? some_b : some_a;
     if (p->shares && !p->list) {
-        SC_KERNEL(take_shared)(state, p, a, b, some_a, some_b, rows);
+        SC_KERNEL(take_shared)(state, p, a, b, some, rows);
     } else {
-        SC_KERNEL(add_waiting)(some_a, rows);
+        SC_KERNEL(add_waiting)(some, rows);
         if (p->list && p->wanted) {
             SC_KERNEL(take_listed)(state, p, &rows->open);
             sc_candidates_make_room(state);
         }
     }
-    state->stats.counts[sc_state_box_task(state)] += sc_bits_count(some_a);
+    state->stats.counts[sc_state_box_task(state)] += sc_bits_count(some);
     rows->pairs++;
 }
 
@@ -368,7 +364,7 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, 
 {
     const sc_leaf_ready *ready_a, *ready_b;
     sc_leaf_pair p;
-    unsigned some_a, some_b = SC_LEAF_ALL;
+    unsigned some;
     if (rows->pairs == SC_ROWS_PAIRS) SC_KERNEL(test_rows)(state, rows);
     if (state->workspace->ready_mask != SC_KEEPS_ALL &&
         !(SC_KERNEL(is_ready)(state, a, 0) & SC_KERNEL(is_ready)(state, b, b > a))) {
@@ -382,17 +378,15 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, 
     ready_a = ready_b = SC_KERNEL(ready)(state, a, 0);
     if (a == b) {
         const uint32_t *first = sc_model_leaf_first(state->model) + a;
-        some_a = (1u << (first[1] - first[0] - 1)) - 1u;
+        some = (1u << (first[1] - first[0] - 1)) - 1u;
     } else {
-        some_a = SC_KERNEL(rows_at)(state, ready_a, b);
-        if (!some_a) return;
+        some = SC_KERNEL(rows_at)(state, ready_a, b);
+        if (!some) return;
         ready_b = SC_KERNEL(ready)(state, b, 1);
-        some_b = SC_KERNEL(rows_at)(state, ready_b, a);
-        if (!some_b) return;
         if (by_slabs && SC_KERNEL(slabs_part)(state, a, b)) return;
     }
     sc_candidates_enter(state, a, b, shared, &p);
-    SC_KERNEL(add_rows)(state, &p, ready_a, ready_b, some_a, some_b, rows);
+    SC_KERNEL(add_rows)(state, &p, ready_a, ready_b, some, rows);
 }
 
 /* Two leaf clusters, a < b, that share no points or are crowded, and that slabs do not part. Those that are ready are added
@@ -404,18 +398,15 @@ static inline void SC_KERNEL(far_pair)(sc_query_state *state, uint32_t a, uint32
     const uint8_t *crowded = sc_model_share_crowded(state->model);
     const sc_leaf_ready *ready_a = w->ready + SC_KERNEL(place)(state, a, 0);
     const sc_leaf_ready *ready_b = w->ready + SC_KERNEL(place)(state, b, 1);
-    unsigned some_a, some_b, swap, count;
+    unsigned count;
     if ((crowded[a] & crowded[b]) |
         !(SC_KERNEL(is_ready)(state, a, 0) & SC_KERNEL(is_ready)(state, b, 1))) {
         SC_KERNEL(leaf_pair)(state, a, b, 0, SC_NONE, rows);
         return;
     }
     if (rows->pairs == SC_ROWS_PAIRS) SC_KERNEL(test_rows)(state, rows);
-    some_a = SC_KERNEL(rows_at)(state, ready_a, b);
-    some_b = SC_KERNEL(rows_at)(state, ready_b, a);
-    swap = sc_bits_count(some_b) < sc_bits_count(some_a);
-    SC_KERNEL(name_pair)(a, b, ready_a, ready_b, swap, rows);
-    count = SC_KERNEL(add_waiting)(swap ? some_b : some_a, rows);
+    SC_KERNEL(name_pair)(a, b, ready_a, ready_b, rows);
+    count = SC_KERNEL(add_waiting)(SC_KERNEL(rows_at)(state, ready_a, b), rows);
     rows->pairs += count != 0;
     state->stats.counts[sc_state_box_task(state)] += count;
 }
