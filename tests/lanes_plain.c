@@ -18,6 +18,7 @@
 #include "base/lanes_double.h"
 #include "base/lanes_pick.h"
 #include "base/lanes_bytes.h"
+#include "base/lanes_cells.h"
 #include "base/lanes_rows.h"
 #include "lanes_trial.h"
 

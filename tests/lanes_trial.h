@@ -138,6 +138,28 @@ static void SC_KERNEL(try_bytes)(const lanes_input *in, lanes_outcome *out)
     for (k = 0; k < 3; k++) memcpy(out->kept[k], kept[k], sc_bits_count(in->mask) * sizeof **kept);
 }
 
+static void SC_KERNEL(try_cells)(const lanes_input *in, lanes_outcome *out)
+{
+    float at[4][SC_LANES_COUNT];
+    lanes_cells cell[2], box, reach, noted = lanes_cells_none();
+    int i, k;
+    for (k = 0; k < 4; k++)
+        for (i = 0; i < SC_LANES_COUNT; i++) at[k][i] = 8388608.0f + (float)in->cell[k][i];
+    for (k = 0; k < 2; k++) {
+        cell[k] = lanes_cells_of(lanes_load(at[k]), lanes_load(at[2 + k]));
+        lanes_cells_store(out->cells[k], cell[k]);
+    }
+    box = lanes_cells_joined(cell[0], cell[1]);
+    reach = lanes_cells_reach(box);
+    lanes_cells_store(out->cells[2], box);
+    lanes_cells_store(out->cells[3], reach);
+    lanes_cells_store(out->cells[4], lanes_cells_all(out->cells[0][0]));
+    noted = lanes_cells_note(noted, lanes_cells_load(out->cells[4]), reach);
+    out->bits[22] = lanes_cells_noted(noted);
+    out->bits[23] =
+        lanes_cells_noted(lanes_cells_note(noted, lanes_cells_all(out->cells[0][1]), reach));
+}
+
 static void SC_KERNEL(try_rows)(const lanes_input *in, lanes_outcome *out)
 {
     lanes_signs row[16];
@@ -187,5 +209,6 @@ static void SC_KERNEL(try_all)(const lanes_input *in, lanes_outcome *out)
     SC_KERNEL(try_picks)(in, out);
     SC_KERNEL(try_bytes)(in, out);
     SC_KERNEL(try_rows)(in, out);
+    SC_KERNEL(try_cells)(in, out);
     SC_KERNEL(try_doubles)(in, out);
 }

@@ -28,16 +28,17 @@ typedef struct lanes_input {
     unsigned split;      /* up to 16 */
     uint32_t first[4];   /* any */
     unsigned bits[12];   /* any */
+    uint8_t cell[4][16]; /* 1 to 254: two rows of x, two of y */
 } lanes_input;
 
 typedef struct lanes_outcome {
     float row[76][16], one[3];
     double eight[16][8];
-    unsigned bits[22];
+    unsigned bits[24];
     uint32_t numbers[16], pairs[32], from[16], among[16];
     uint16_t wide[16];
     uint8_t list[16], bytes[15][16];
-    uint32_t kept[3][16];
+    uint32_t kept[3][16], cells[5][16];
 } lanes_outcome;
 
 /* By the compiler's vector types, where it has them, and one by one. */

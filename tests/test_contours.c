@@ -21,6 +21,7 @@
 #include "pose/pose_kernels.h"
 #include "pose/fan.h"
 #include "pose/positions.h"
+#include "query/query_kernels.h"
 #include "query/simple.h"
 #include "query/simple_contour.h"
 #include "query/star.h"
@@ -1434,6 +1435,128 @@ static void pinches_alone(void)
               doubtful);
 }
 
+/* A node whose contour is a loop of 64 points or more in one piece, none of them twice; SC_NONE:
+   there is none. */
+static uint32_t long_loop(const sc_model *m)
+{
+    const uint32_t *first = sc_model_node_loop(m);
+    const uint16_t *loop = sc_model_loop(m);
+    for (uint32_t node = 0; node < m->node_count; ++node) {
+        int twice = (sc_model_node_kind(m)[node] & SC_NODE_PIECES) != 0;
+        if (first[node + 1] - first[node] < 64) continue;
+        for (uint32_t i = first[node]; i < first[node] + 64; ++i)
+            for (uint32_t j = first[node]; j < i; ++j) twice |= loop[i] == loop[j];
+        if (!twice) return node;
+    }
+    return SC_NONE;
+}
+
+/* Moves the first points of a loop, as they are kept in the unit box. */
+static void move_loop(const scene *s, uint32_t node, float at[][2], uint32_t count)
+{
+    const uint32_t *leaf = sc_model_leaf(s->model);
+    const sc_pair *patches = &sc_model_node_patches(s->model)[node];
+    const uint16_t *loop = sc_model_loop(s->model) + sc_model_node_loop(s->model)[node];
+    sc_simple_contour c;
+    memset(&c, 0, sizeof(c));
+    c.first = SC_LEAF_POINTS * leaf[patches->a];
+    c.split = SC_LEAF_POINTS * leaf[patches->a + 1] - c.first;
+    c.second = SC_LEAF_POINTS * leaf[patches->b] - c.split;
+    for (uint32_t i = 0; i < count; ++i) {
+        float *to = s->workspace->point_at + 4 * (size_t)sc_simple_place(&c, loop[i]);
+        to[0] = at[i][0];
+        to[1] = at[i][1];
+        to[2] = 0.5f;
+    }
+}
+
+/* What the test of small contours says of a polygon, seen from above, as if it were the contour of
+   a node with a longer one. */
+static unsigned tell_small(scene *s, uint32_t node, float at[][2], uint32_t count)
+{
+    const uint32_t blocks = (count + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK;
+    float above[2 * 3 * SC_DNC_VECTORS] = {0};
+    const float *axes = above;
+    uint32_t *first = (uint32_t *)(uintptr_t)(sc_model_node_loop(s->model) + node);
+    const uint32_t end = first[1];
+    unsigned simple;
+    above[0] = above[4 * SC_DNC_VECTORS] = 1;
+    move_loop(s, node, at, count);
+    first[1] = first[0] + count;
+    simple = sc_query_kernels_of(s->workspace)->find_simple(&s->state, &node, 1, blocks, &axes);
+    first[1] = end;
+    return simple;
+}
+
+/* A polygon of which edge i, from left to right, crosses the one that begins at point j, from above
+   to below, and no others meet; or a convex one, if i is j. Between them it runs along a circle. */
+static void crossed_polygon(float at[][2], uint32_t count, double size, uint32_t i, uint32_t j)
+{
+    const uint32_t on = j - i;
+    for (uint32_t k = 0; k < count; ++k) {
+        double angle = 2 * pi * k / count;
+        float *to = at[(i + 1 + k) % count];
+        if (on)
+            angle =
+                k < on ? pi / 2 * k / (on - 1) : pi * 1.5 - pi / 2 * (k - on) / (count - on - 1);
+        to[0] = (float)(0.5 + size * cos(angle));
+        to[1] = (float)(0.5 + size * sin(angle));
+    }
+}
+
+/* A square with a slot from above; where it begins a number of a cell ends. */
+static void slotted_square(float at[12][2], float size, uint32_t width)
+{
+    static const float shape[12][2] = {{-1, -1},  {0, -1},   {1, -1},   {1, -0.3f},
+                                       {1, 0.2f}, {1, 0.6f}, {1, 1},    {0, 0.9f},
+                                       {0, 0},    {0, 0},    {0, 0.9f}, {-1, 1}};
+    float wall = (float)(0.5 + 10.5 * (double)size / 126);
+    for (uint32_t i = 0; i < 12; ++i)
+        for (uint32_t k = 0; k < 2; ++k) at[i][k] = 0.5f + size * shape[i][k];
+    if ((double)wall > 0.5 + 10.5 * (double)size / 126) wall = nextafterf(wall, 0);
+    at[9][0] = at[10][0] = wall;
+    while (width-- > 0) wall = nextafterf(wall, 1);
+    at[7][0] = at[8][0] = wall;
+}
+
+/* Small contours by themselves: convex ones are simple, and those of which any two edges cross are
+   not, by any instruction set. Edges that may meet, as far as their places are known, are not
+   apart, whatever cells they are in. */
+static void small_contours(void)
+{
+    uint32_t told = 0, missed = 0, node;
+    float at[64][2];
+    scene s;
+    soup mesh = soup_cloth(40, 40);
+    if (!open_scene(&s, "small", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) || !load_pose(&s)) return;
+    node = long_loop(s.model);
+    if (!CHECK(node != SC_NONE)) return;
+    for (uint32_t isa = 1; isa <= (uint32_t)sc_isa_best(); ++isa) {
+        s.workspace->isa = isa;
+        for (uint32_t count = SC_SMALL_EDGES; count <= 64; ++count) {
+            double size = test_random_below(2) ? 0.4 : 1e-4;
+            crossed_polygon(at, count, size, 0, 0);
+            told += tell_small(&s, node, at, count);
+            for (uint32_t i = 0; i < count; ++i)
+                for (uint32_t j = i + 2; j < count && (i || j + 1 < count); ++j) {
+                    crossed_polygon(at, count, size, i, j);
+                    missed += tell_small(&s, node, at, count);
+                }
+        }
+        slotted_square(at, 0.25f, 100000);
+        CHECK(tell_small(&s, node, at, 12) == 1);
+        for (uint32_t width = 0; width <= 2; ++width) {
+            slotted_square(at, 0.25f, width);
+            CHECK_MSG(!tell_small(&s, node, at, 12), "a slot of %" PRIu32, width);
+        }
+        slotted_square(at, 1 / 1048576.0f, 1);
+        CHECK(!tell_small(&s, node, at, 12));
+    }
+    CHECK_MSG(told == 56 * (uint32_t)sc_isa_best(), "%" PRIu32 " are simple", told);
+    CHECK_MSG(!missed, "%" PRIu32 " that are not", missed);
+    close_scene(&s);
+}
+
 /* Contours that are looked at in turn pass or fail as each does by itself. */
 static void contours_in_turn(void)
 {
@@ -1686,6 +1809,6 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(vectors_of_all_masks),
              SC_TEST(spirals_overlap), SC_TEST(long_contours), SC_TEST(branched_discs),
              SC_TEST(contours_at_shared_points), SC_TEST(contours_in_pieces),
              SC_TEST(points_in_the_unit_box), SC_TEST(poses_of_any_layout),
-             SC_TEST(places_of_contours), SC_TEST(contours_in_turn), SC_TEST(pinches_alone),
-             SC_TEST(flat_cloths_pass), SC_TEST(patches_that_share_hubs),
+             SC_TEST(places_of_contours), SC_TEST(small_contours), SC_TEST(contours_in_turn),
+             SC_TEST(pinches_alone), SC_TEST(flat_cloths_pass), SC_TEST(patches_that_share_hubs),
              SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))

@@ -18,9 +18,11 @@
 #include "base/lanes_double.h"
 #include "base/lanes_pick.h"
 #include "base/lanes_bytes.h"
+#include "base/lanes_cells.h"
 #include "base/lanes_rows.h"
 #include "lanes_trial.h"
 #include "base/lanes_rows_end.h"
+#include "base/lanes_cells_end.h"
 #include "base/lanes_bytes_end.h"
 #include "base/lanes_pick_end.h"
 #include "base/lanes_double_end.h"
@@ -35,9 +37,11 @@
 #  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
 #  include "base/lanes_bytes.h"
+#  include "base/lanes_cells.h"
 #  include "base/lanes_rows.h"
 #  include "lanes_trial.h"
 #  include "base/lanes_rows_end.h"
+#  include "base/lanes_cells_end.h"
 #  include "base/lanes_bytes_end.h"
 #  include "base/lanes_pick_end.h"
 #  include "base/lanes_double_end.h"
@@ -51,9 +55,11 @@
 #  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
 #  include "base/lanes_bytes.h"
+#  include "base/lanes_cells.h"
 #  include "base/lanes_rows.h"
 #  include "lanes_trial.h"
 #  include "base/lanes_rows_end.h"
+#  include "base/lanes_cells_end.h"
 #  include "base/lanes_bytes_end.h"
 #  include "base/lanes_pick_end.h"
 #  include "base/lanes_double_end.h"
@@ -107,6 +113,10 @@ static void draw(lanes_input *in)
     if (test_random_below(4) == 0) in->apart[test_random_below(16)] += 0x80000000u;
     in->mask = test_random_below(0x10000);
     for (i = 0; i < 12; i++) in->bits[i] = (unsigned)test_random();
+    for (k = 0; k < 4; k++)
+        for (i = 0; i < 16; i++)
+            in->cell[k][i] = (uint8_t)(test_random_below(4) ? 100 + test_random_below(8)
+                                                            : 1 + test_random_below(254));
     if (test_random_below(4) == 0) /* all below, or none: as in most boxes */
         for (i = 0; i < 16; i++) in->a[i] = in->b[i] = 1;
 }
@@ -207,6 +217,37 @@ static void bytes_and_names(void)
     }
 }
 
+/* Whether a cell is in the box of two others, or beside it. */
+static int is_near(const lanes_input *in, uint32_t cell, uint32_t i)
+{
+    uint32_t k;
+    for (k = 0; k < 4; k += 2) {
+        const uint8_t at = in->cell[k][cell], a = in->cell[k][i], b = in->cell[k + 1][i];
+        if (at > (a > b ? a : b) + 1 || at + 1 < (a < b ? a : b)) return 0;
+    }
+    return 1;
+}
+
+/* The same of cells. */
+static void cells_and_boxes(void)
+{
+    lanes_input in;
+    lanes_outcome out;
+    uint32_t trial, i;
+    memset(&in, 0, sizeof in);
+    for (trial = 0; trial < 2000; trial++) {
+        draw(&in);
+        lanes_try_plain(&in, &out);
+        for (i = 0; i < 16; i++) {
+            const uint32_t x = in.cell[0][i], y = in.cell[2][i];
+            const int near = is_near(&in, 0, i);
+            CHECK(out.cells[0][i] == (x | y << 8 | (255 - x) << 16 | (255 - y) << 24));
+            CHECK((out.bits[22] >> i & 1u) == (unsigned)near);
+            CHECK((out.bits[23] >> i & 1u) == (unsigned)(near || is_near(&in, 1, i)));
+        }
+    }
+}
+
 /* The same of lists and signs. */
 static void lists_and_signs(void)
 {
@@ -279,4 +320,5 @@ static void lists_and_signs(void)
     }
 }
 
-SC_TEST_MAIN(SC_TEST(all_forms_agree), SC_TEST(bytes_and_names), SC_TEST(lists_and_signs))
+SC_TEST_MAIN(SC_TEST(all_forms_agree), SC_TEST(bytes_and_names), SC_TEST(cells_and_boxes),
+             SC_TEST(lists_and_signs))

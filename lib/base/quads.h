@@ -86,6 +86,7 @@ typedef float sc_floats4 __attribute__((vector_size(16)));
 typedef double sc_doubles2 __attribute__((vector_size(16)));
 typedef int32_t sc_numbers4 __attribute__((vector_size(16)));
 typedef int64_t sc_numbers2 __attribute__((vector_size(16)));
+typedef uint32_t sc_words4 __attribute__((vector_size(16)));
 typedef uint8_t sc_bytes16 __attribute__((vector_size(16)));
 
 #  if defined(__clang__)

@@ -22,6 +22,7 @@
 #  include "base/lanes_double.h"
 #  include "base/lanes_pick.h"
 #  include "base/lanes_bytes.h"
+#  include "base/lanes_cells.h"
 #  include "pose/points_kernel.h"
 #  include "query/ready_kernel.h"
 #  include "query/neighbor_kernel.h"
@@ -35,12 +36,14 @@
 #  include "query/walk_kernel.h"
 #  include "query/decide_kernel.h"
 #  include "query/simple_kernel.h"
+#  include "query/small_kernel.h"
 
 const sc_query_kernels sc_query_kernels_avx512 = {
-    SC_KERNEL(patch_pair),  SC_KERNEL(patch_itself), SC_KERNEL(leaf_pair_waits),
-    SC_KERNEL(leaf_itself), SC_KERNEL(leaf_pairs),   SC_KERNEL(decide),
-    SC_KERNEL(project),     SC_KERNEL(look_at_edges)};
+    SC_KERNEL(patch_pair),  SC_KERNEL(patch_itself),  SC_KERNEL(leaf_pair_waits),
+    SC_KERNEL(leaf_itself), SC_KERNEL(leaf_pairs),    SC_KERNEL(decide),
+    SC_KERNEL(project),     SC_KERNEL(look_at_edges), SC_KERNEL(find_simple)};
 
+#  include "base/lanes_cells_end.h"
 #  include "base/lanes_bytes_end.h"
 #  include "base/lanes_pick_end.h"
 #  include "base/lanes_double_end.h"

@@ -28,6 +28,10 @@ typedef struct sc_query_kernels {
        contour, the second of another, all that is left of a third; each may be NULL. */
     void (*look_at_edges)(sc_simple_contour *first, sc_simple_contour *second,
                           sc_simple_contour *last);
+    /* Bits of contours that certainly are simple, of loops in one piece with so many sixteens of
+       edges, SC_DNC_VECTORS nodes or fewer. See query/small_kernel.h. */
+    unsigned (*find_simple)(sc_query_state *state, const uint32_t *nodes, uint32_t count,
+                            uint32_t blocks, const float *const axes[]);
 } sc_query_kernels;
 
 extern const sc_query_kernels sc_query_kernels_base;

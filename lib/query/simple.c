@@ -617,13 +617,13 @@ static uint16_t mask_of(const sc_query_state *state, uint32_t node)
 }
 
 /* The axes of the projections of some nodes. */
-static void find_axes(const sc_query_state *state, contour_turns *all, const uint32_t *nodes,
+static void find_axes(const sc_query_state *state, sc_simple_some_axes *axes, const uint32_t *nodes,
                       uint32_t count)
 {
     uint16_t mask[SC_DNC_VECTORS] = {0};
     uint32_t i;
     for (i = 0; i < SC_DNC_VECTORS && i < count; i++) mask[i] = mask_of(state, nodes[i]);
-    sc_simple_axes_of(mask, &all->axes);
+    sc_simple_axes_of(mask, axes);
 }
 
 /* Starts a turn with node i of a list, a loop, and projects it. */
@@ -659,11 +659,12 @@ static void start_turns(contour_turns *all, const sc_contour_edges *room)
 /* How many tests pass between two steps of fetching what a test reads. */
 enum { FETCH_DISTANCE = 2 };
 
-void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed)
+/* Tests nodes one by one, or in turn. */
+static void test_in_turn(sc_query_state *state, const uint32_t *nodes, uint32_t count,
+                         uint8_t *passed)
 {
     const sc_model *model = state->model;
     const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
-    uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
     contour_turns all;
     int i, step, k;
     memset(passed, 0, count);
@@ -678,7 +679,7 @@ void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t coun
         sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
         all.node[i % SC_CONTOUR_TURNS] = SC_NONE;
         if (i < (int)count && i % SC_DNC_VECTORS == 0)
-            find_axes(state, &all, nodes + i, count - (uint32_t)i);
+            find_axes(state, &all.axes, nodes + i, count - (uint32_t)i);
         if (i < (int)count && is_short(model, nodes[i]))
             begin_turn(state, &all, nodes, (uint32_t)i);
         for (k = 1; k < SC_CONTOUR_TURNS; k++) {
@@ -698,5 +699,107 @@ void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t coun
         sc_dnc_projection(state->workspace, mask_of(state, nodes[i]), &projection);
         passed[i] = (uint8_t)sc_simple_test(state, &projection, nodes[i]);
     }
+}
+
+/* How many sixteens of edges a small contour has, see query/small_kernel.h; 0: it is not small. */
+static uint32_t small_blocks(const sc_model *model, uint32_t node)
+{
+    const uint32_t *loop = sc_model_node_loop(model) + node;
+    const uint32_t edges = loop[1] - loop[0];
+    if (edges < SC_SMALL_EDGES || edges > SC_SMALL_BLOCKS * SC_CONTOUR_BLOCK ||
+        (sc_model_node_kind(model)[node] & SC_NODE_PIECES))
+        return 0;
+    return (edges - 1) / SC_CONTOUR_BLOCK + 1;
+}
+
+/* Some nodes, by their numbers, and the axes of their projections, SC_DNC_VECTORS each together. */
+enum { SOME_NODES = 64 };
+typedef struct some_nodes {
+    const uint32_t *nodes;
+    uint32_t count[SC_SMALL_BLOCKS + 1];
+    uint8_t number[SC_SMALL_BLOCKS + 1][SOME_NODES]; /* of those with so many sixteens of edges */
+    sc_simple_some_axes axes[SOME_NODES / SC_DNC_VECTORS];
+} some_nodes;
+
+/* Lists nodes by the sizes of their contours: what is done for as many edges is told beforehand by
+   branches. Asks for memory that their tests will read. */
+static void sort_nodes(const sc_query_state *state, const uint32_t *nodes, uint32_t count,
+                       some_nodes *some)
+{
+    const sc_model *model = state->model;
+    uint32_t i;
+    some->nodes = nodes;
+    memset(some->count, 0, sizeof some->count);
+    for (i = 0; i < count; i++) {
+        sc_fetch(sc_model_node_loop(model) + nodes[i]);
+        sc_fetch(sc_model_node_kind(model) + nodes[i]);
+        sc_fetch(sc_model_node_patches(model) + nodes[i]);
+    }
+    for (i = 0; i < count; i++) {
+        const uint16_t *loop = sc_model_loop(model) + sc_model_node_loop(model)[nodes[i]];
+        const sc_pair *patches = &sc_model_node_patches(model)[nodes[i]];
+        const uint32_t blocks = small_blocks(model, nodes[i]);
+        some->number[blocks][some->count[blocks]++] = (uint8_t)i;
+        sc_fetch(loop);
+        sc_fetch(loop + 32);
+        sc_fetch(sc_model_leaf(model) + patches->a);
+        sc_fetch(sc_model_leaf(model) + patches->b);
+        sc_fetch(state->workspace->mask + patches->a);
+        sc_fetch(state->workspace->mask + patches->b);
+    }
+    for (i = 0; i < count; i += SC_DNC_VECTORS)
+        find_axes(state, &some->axes[i / SC_DNC_VECTORS], nodes + i, count - i);
+}
+
+/* Tests nodes of small contours of so many sixteens of edges. */
+static void test_small(sc_query_state *state, const some_nodes *some, uint32_t blocks,
+                       uint8_t *passed)
+{
+    const uint32_t *first = sc_model_node_loop(state->model), end = some->count[blocks];
+    uint32_t i, k;
+    for (i = 0; i < end && !sc_state_stops(state); i += SC_DNC_VECTORS) {
+        const uint8_t *number = some->number[blocks] + i;
+        const uint32_t count = end - i < SC_DNC_VECTORS ? end - i : SC_DNC_VECTORS;
+        uint32_t nodes[SC_DNC_VECTORS];
+        const float *axes[SC_DNC_VECTORS];
+        unsigned simple;
+        for (k = 0; k < count; k++) {
+            nodes[k] = some->nodes[number[k]];
+            axes[k] = some->axes[number[k] / SC_DNC_VECTORS].at[0][0] + number[k] % SC_DNC_VECTORS;
+        }
+        simple =
+            sc_query_kernels_of(state->workspace)->find_simple(state, nodes, count, blocks, axes);
+        for (; simple; simple &= simple - 1) {
+            k = sc_bits_lowest(simple);
+            passed[number[k]] = 1;
+            state->stats.counts[SC_TASK_CONTOUR]++;
+            state->stats.counts[SC_TASK_UPDATE_CONTOURS] += first[nodes[k] + 1] - first[nodes[k]];
+        }
+    }
+}
+
+/* Tests no more than SOME_NODES, none of which has passed yet: small contours, and then what is
+   left. */
+static void test_some(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed)
+{
+    uint32_t left[SOME_NODES], left_count = 0, i;
+    uint8_t left_passed[SOME_NODES];
+    some_nodes some;
+    sort_nodes(state, nodes, count, &some);
+    for (i = 1; i <= SC_SMALL_BLOCKS; i++) test_small(state, &some, i, passed);
+    for (i = 0; i < count; i++)
+        if (!passed[i]) left[left_count++] = nodes[i];
+    if (!left_count) return;
+    test_in_turn(state, left, left_count, left_passed);
+    for (i = count; i-- > 0;)
+        if (!passed[i]) passed[i] = left_passed[--left_count];
+}
+
+void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed)
+{
+    uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS), i;
+    memset(passed, 0, count);
+    for (i = 0; i < count; i += SOME_NODES)
+        test_some(state, nodes + i, count - i < SOME_NODES ? count - i : SOME_NODES, passed + i);
     sc_state_switch(state, previous);
 }

@@ -13,6 +13,7 @@
 #define SC_QUERY_SIMPLE_H
 
 #include "pose/dnc.h"
+#include "query/simple_contour.h"
 #include "query/state.h"
 
 /*
@@ -25,11 +26,6 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
    what of nodes[i]. The contours of some are looked at together, so that what one wrote down need not be read at
    once. Where the query is to end, the rest does not pass. */
 void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed);
-
-/* The vectors of some projections, over powers of two, exactly, so that their absolute values sum to at most 1. */
-typedef struct sc_simple_some_axes {
-    float at[2][3][SC_DNC_VECTORS];
-} sc_simple_some_axes;
 
 /* Of those along the averages of the directions in some masks; 0 for a mask that is 0. */
 void sc_simple_axes_of(const uint16_t mask[SC_DNC_VECTORS], sc_simple_some_axes *axes);

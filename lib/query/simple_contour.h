@@ -7,6 +7,7 @@
 #ifndef SC_QUERY_SIMPLE_CONTOUR_H
 #define SC_QUERY_SIMPLE_CONTOUR_H
 
+#include "pose/dnc.h"
 #include "pose/workspace.h"
 
 /* Points that a contour passes more than once, at most; more are not looked at. */
@@ -38,8 +39,25 @@ typedef struct sc_simple_contour {
     sc_pinch pinch[SC_PINCHES_MAX];
 } sc_simple_contour;
 
+/* The vectors of some projections, over powers of two, exactly, so that their absolute values sum
+   to at most 1. */
+typedef struct sc_simple_some_axes {
+    float at[2][3][SC_DNC_VECTORS];
+} sc_simple_some_axes;
+
 /* The error of a cross or dot product of vectors with these sums of absolute components, see simple.c. */
 #define SC_SIMPLE_BOUND 12
+
+/* What computed coordinates are off by, of points that are no further from the middle in any
+   coordinate, see sc_simple_axes. */
+static inline float sc_simple_error(float size)
+{
+    return 3.01e-8f + 4.1f * 5.9604644775390625e-8f * size;
+}
+
+/* Small contours, see query/small_kernel.h: sixteens of edges that one has at most, and edges at
+   least: 8 b + 1 for one sixteen. */
+enum { SC_SMALL_BLOCKS = 4, SC_SMALL_EDGES = 9 };
 
 /* 1 if two edges, the boxes of which may meet, are certainly as edges of a simple contour are:
    apart, or sharing one point and nothing else. Notes pinches. */

@@ -94,7 +94,7 @@ static void SC_KERNEL(project)(sc_simple_contour *c, const sc_workspace *w)
     }
     SC_UNROLL
     for (k = 0; k < 2; k++) lanes_store(e->at[k] + c->count, lanes_load(e->at[k]));
-    c->error = 3.01e-8f + 4.1f * 5.9604644775390625e-8f * lanes_most(size);
+    c->error = sc_simple_error(lanes_most(size));
 }
 
 /* Sixteen edges, from p to q. */
@@ -113,11 +113,11 @@ static inline lanes SC_KERNEL(size_in_plane)(const lanes a[2])
 }
 
 /* What a cross product of vectors with this sum of sizes is off by, see bound_of in simple.c. */
-static inline lanes SC_KERNEL(bound_in_plane)(const sc_simple_contour *c, lanes size)
+static inline lanes SC_KERNEL(bound_in_plane)(float error, lanes size)
 {
-    return lanes_add(lanes_multiply(lanes_all(SC_SIMPLE_BOUND * c->error),
-                                    lanes_add(size, lanes_all(4 * c->error))),
-                     lanes_all(FLT_MIN));
+    return lanes_add(
+        lanes_multiply(lanes_all(SC_SIMPLE_BOUND * error), lanes_add(size, lanes_all(4 * error))),
+        lanes_all(FLT_MIN));
 }
 
 /* Bits of lanes in which both a and b are above bound, or both below -bound. */
@@ -133,8 +133,7 @@ static inline unsigned SC_KERNEL(one_side)(lanes a, lanes b, lanes bound)
  * of both edges and of the vector from p to p, but for a rounding that is in the bound's slack. Edges that share a
  * point are not apart: then one of each two products is 0.
  */
-static inline unsigned SC_KERNEL(lie_apart)(const sc_simple_contour *c,
-                                            const SC_KERNEL(sc_edge_lanes) * e,
+static inline unsigned SC_KERNEL(lie_apart)(float error, const SC_KERNEL(sc_edge_lanes) * e,
                                             const SC_KERNEL(sc_edge_lanes) * f)
 {
     lanes along[2], other[2], pp[2], pq[2], qp[2], bound;
@@ -146,9 +145,9 @@ static inline unsigned SC_KERNEL(lie_apart)(const sc_simple_contour *c,
         pq[k] = lanes_subtract(f->q[k], e->p[k]);
         qp[k] = lanes_subtract(f->p[k], e->q[k]);
     }
-    bound = SC_KERNEL(bound_in_plane)(
-        c, lanes_add(lanes_add(SC_KERNEL(size_in_plane)(along), SC_KERNEL(size_in_plane)(other)),
-                     SC_KERNEL(size_in_plane)(pp)));
+    bound = SC_KERNEL(bound_in_plane)(error, lanes_add(lanes_add(SC_KERNEL(size_in_plane)(along),
+                                                                 SC_KERNEL(size_in_plane)(other)),
+                                                       SC_KERNEL(size_in_plane)(pp)));
     return SC_KERNEL(one_side)(SC_KERNEL(cross_in_plane)(along, pp),
                                SC_KERNEL(cross_in_plane)(along, pq), bound) |
            SC_KERNEL(one_side)(SC_KERNEL(cross_in_plane)(other, pp),
@@ -170,7 +169,7 @@ static inline unsigned SC_KERNEL(folds)(const sc_simple_contour *c,
         w[k] = lanes_subtract(next[k], e->q[k]);
     }
     bound = SC_KERNEL(bound_in_plane)(
-        c, lanes_add(SC_KERNEL(size_in_plane)(v), SC_KERNEL(size_in_plane)(w)));
+        c->error, lanes_add(SC_KERNEL(size_in_plane)(v), SC_KERNEL(size_in_plane)(w)));
     dot = lanes_add(lanes_multiply(v[0], w[0]), lanes_multiply(v[1], w[1]));
     return asked &
            ~(lanes_bits(lanes_below(bound, dot)) |
@@ -203,7 +202,7 @@ static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t 
     if (!some) return 1;
     SC_KERNEL(load_edges)(c, i, &own);
     SC_KERNEL(load_edges)(c, i + on, &other);
-    for (some &= ~SC_KERNEL(lie_apart)(c, &own, &other); some; some &= some - 1) {
+    for (some &= ~SC_KERNEL(lie_apart)(c->error, &own, &other); some; some &= some - 1) {
         uint32_t edge = i + sc_bits_lowest(some);
         if (!sc_simple_are_apart(c, edge, (edge + on) % c->count)) return 0;
     }
@@ -330,7 +329,7 @@ static int SC_KERNEL(are_few_fine)(sc_simple_contour *c, uint32_t i, uint32_t j,
     }
     near &= SC_KERNEL(boxes_meet)(c, &own, &other);
     if (!near) return 1;
-    for (near &= ~SC_KERNEL(lie_apart)(c, &own, &other); near; near &= near - 1) {
+    for (near &= ~SC_KERNEL(lie_apart)(c->error, &own, &other); near; near &= near - 1) {
         unsigned pair = sc_bits_lowest(near);
         if (!sc_simple_are_apart(c, i + pair / 4, j + pair % 4)) return 0;
     }
