@@ -759,6 +759,7 @@ typedef struct sc_result {
  * Several threads. With options->tasks the passes over the pose, the walk through the tree and the
  * tests of triangles are done by all workers. The answer is the same. It pays from about 20,000
  * triangles. By the calling thread alone are done:
+ *   - the first pass over the positions, about 0.3 ns a vertex;
  *   - the sorting, about 4 ns a pair, unless there are more than about six pairs a triangle;
  *   - queries on models of fewer than 128 leaf clusters;
  *   - all but the passes with a budget, SC_CONTOUR_STAR or _NONE, and a filter's accept unless

@@ -8,7 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/jobs.h"
 #include "pose/pose_kernels.h"
 
 /* Widens the box of all points. */
@@ -49,38 +48,18 @@ static int find_extent_of_all(const sc_workspace *w, uint32_t first, uint32_t en
 }
 
 /* The same of those vertices that are used: of one run after the other, mostly all of them. */
-static int find_extent(const sc_model *model, const sc_workspace *w, uint32_t first, uint32_t end,
-                       double low[3], double high[3])
+static int find_extent(const sc_model *model, const sc_workspace *w, double low[3], double high[3])
 {
     const uint8_t *use = sc_model_vertex_use(model);
-    uint32_t stop;
+    const uint32_t end = model->vertex_count;
+    uint32_t first, stop;
     int finite = 1;
-    for (; first < end; first = stop + 1) {
+    for (first = 0; first < end; first = stop + 1) {
         const uint8_t *unused = (const uint8_t *)memchr(use + first, SC_VERTEX_UNUSED, end - first);
         stop = unused ? (uint32_t)(unused - use) : end;
         if (first < stop) finite &= find_extent_of_all(w, first, stop, low, high);
     }
     return finite;
-}
-
-/* What is found in parts of the vertices. */
-typedef struct extents {
-    const sc_model *model;
-    const sc_workspace *w;
-    int finite[SC_JOBS_PARTS];
-    double low[SC_JOBS_PARTS][3], high[SC_JOBS_PARTS][3];
-} extents;
-
-static void find_extents(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    extents *e = (extents *)context;
-    double *low = e->low[part], *high = e->high[part];
-    int k;
-    for (k = 0; k < 3; k++) {
-        low[k] = HUGE_VAL;
-        high[k] = -HUGE_VAL;
-    }
-    e->finite[part] = find_extent(e->model, e->w, first, end, low, high);
 }
 
 /*
@@ -89,16 +68,11 @@ static void find_extents(void *context, uint32_t part, uint32_t first, uint32_t 
  */
 enum { FLOAT_RANGE = 64 };
 
-/* Fewer vertices are not worth a part of their own. */
-enum { VERTICES_MIN = 2048 };
-
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
                             sc_workspace *w)
 {
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    uint32_t part, parts;
     int k, exponent;
-    extents e;
     w->positions = (const unsigned char *)pose->positions;
     w->stride = stride;
     w->position_type = pose->position_type;
@@ -108,14 +82,7 @@ sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t
     if (pose->position_type == SC_DOUBLE && stride % sizeof(double) == 0 &&
         (uintptr_t)pose->positions % sizeof(double) == 0) /* the last one has no fourth */
         w->in_place = model->vertex_count - 1;
-    e.model = model;
-    e.w = w;
-    parts = sc_jobs_loop(w->tasks, model->vertex_count, VERTICES_MIN, find_extents, &e);
-    for (part = 0; part < parts; part++) {
-        if (!e.finite[part]) return SC_ERROR_NOT_FINITE;
-        widen(e.low[part], low, high);
-        widen(e.high[part], low, high);
-    }
+    if (!find_extent(model, w, low, high)) return SC_ERROR_NOT_FINITE;
     w->radius = 0;
     for (k = 0; k < 3; k++) {
         w->center[k] = low[k] / 2 + high[k] / 2;
