@@ -82,17 +82,24 @@ static inline unsigned SC_KERNEL(just_two)(const unsigned x[3])
     return (x[0] | x[1] | x[2]) & ~(x[0] ^ x[1] ^ x[2]);
 }
 
-/* Turns corners so that the first is shared and not the last, if two are, or the others, if one is. */
-static inline void SC_KERNEL(turn)(const lanes_bytes shared[3], const lanes_bytes corner[3],
-                                   lanes_bytes turned[3])
+/* Turns corners so that they begin with the first or the second where that is to be, else the last. */
+static inline void SC_KERNEL(turn)(lanes_bytes first, lanes_bytes second,
+                                   const lanes_bytes corner[3], lanes_bytes turned[3])
 {
-    lanes_bytes first = lanes_bytes_but(shared[0], shared[2]);
-    lanes_bytes second = lanes_bytes_but(shared[1], shared[0]);
     int k;
     SC_UNROLL
     for (k = 0; k < 3; k++)
         turned[k] = lanes_bytes_choose(
             first, corner[k], lanes_bytes_choose(second, corner[(k + 1) % 3], corner[(k + 2) % 3]));
+}
+
+/* So that the first is shared and not the last, if two are, or the others, if one is. */
+static inline void SC_KERNEL(turn_shared)(const lanes_bytes shared[3], const lanes_bytes corner[3],
+                                          lanes_bytes turned[3])
+{
+    const lanes_bytes first = lanes_bytes_but(shared[0], shared[2]);
+    const lanes_bytes second = lanes_bytes_but(shared[1], shared[0]);
+    SC_KERNEL(turn)(first, second, corner, turned);
 }
 
 static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
@@ -120,8 +127,8 @@ static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
     }
     x->point = SC_KERNEL(just_one)(bits[0]) & SC_KERNEL(just_one)(bits[1]);
     x->edge = SC_KERNEL(just_two)(bits[0]) & SC_KERNEL(just_two)(bits[1]);
-    SC_KERNEL(turn)(shared[0], p, turned[0]);
-    SC_KERNEL(turn)(shared[1], q, turned[1]);
+    SC_KERNEL(turn_shared)(shared[0], p, turned[0]);
+    SC_KERNEL(turn_shared)(shared[1], q, turned[1]);
     /* the last of u twice if they share an edge: then the middle one is shared */
     turned[1][1] = lanes_bytes_choose(
         lanes_bytes_either(
@@ -135,19 +142,6 @@ static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
     for (k = 0; k < 2; k++) numbers->row[3 + k] = turned[1][1 + k];
     numbers->row[5] = lanes_bytes_load(of_a);
     numbers->row[6] = lanes_bytes_load(of_b);
-}
-
-/* Turns corners so that the one of this number, 0, 1 or 2, is the first. */
-static inline void SC_KERNEL(turn_by)(lanes_bytes number, const lanes_bytes corner[3],
-                                      lanes_bytes turned[3])
-{
-    lanes_bytes first = lanes_bytes_same(number, lanes_bytes_all(0));
-    lanes_bytes second = lanes_bytes_same(number, lanes_bytes_all(1));
-    int k;
-    SC_UNROLL
-    for (k = 0; k < 3; k++)
-        turned[k] = lanes_bytes_choose(
-            first, corner[k], lanes_bytes_choose(second, corner[(k + 1) % 3], corner[(k + 2) % 3]));
 }
 
 /* Sixteen pairs of a list (see build/sharing_lists.h), as if they shared just a point. */
@@ -165,7 +159,11 @@ static inline void SC_KERNEL(load_listed)(const SC_KERNEL(neighborhood) * a,
     lanes_triples_through(&a->corner, of[0], corner[0]);
     lanes_triples_through(&b->corner, of[1], corner[1]);
     SC_UNROLL
-    for (k = 0; k < 2; k++) SC_KERNEL(turn_by)(quarter[2 + k], corner[k], turned[k]);
+    for (k = 0; k < 2; k++) { /* seen from the corners of these numbers, 0, 1 or 2 */
+        const lanes_bytes first = lanes_bytes_same(quarter[2 + k], lanes_bytes_all(0));
+        const lanes_bytes second = lanes_bytes_same(quarter[2 + k], lanes_bytes_all(1));
+        SC_KERNEL(turn)(first, second, corner[k], turned[k]);
+    }
     lanes_edges_of(a->at, b->at, turned[0], turned[1] + 1, x->at);
     SC_UNROLL
     for (k = 0; k < 3; k++) numbers->row[k] = turned[0][k];
