@@ -318,7 +318,7 @@ static SC_INLINE void SC_KERNEL(test_some)(const SC_KERNEL(sixteen) * x, int two
 {
     SC_KERNEL(tips) tips[2];
     lanes size[2];
-    unsigned open;
+    unsigned open, asked;
     SC_KERNEL(find_tips_some)(x, 0, two, &tips[0], &size[1]);
     open = mask & ~tips[0].beside;
     if (!open) {
@@ -330,7 +330,8 @@ static SC_INLINE void SC_KERNEL(test_some)(const SC_KERNEL(sixteen) * x, int two
     open &= ~tips[1].beside;
     SC_KERNEL(cross_edges)(tips, lanes_add(size[0], size[1]), open, verdict);
     open &= ~(verdict->apart | verdict->settled);
-    if (open & ~(tips[0].split & tips[1].split)) {
+    asked = open & ~(tips[0].split & tips[1].split); /* not of others, whatever a sixteen has */
+    if (asked) {
         const sc_leaf_ready *const *ready = x->of[0].ready;
         lanes_index i = lanes_index_load(x->of[0].numbers);
         lanes at[2][3][3], n[3];
@@ -340,7 +341,7 @@ static SC_INLINE void SC_KERNEL(test_some)(const SC_KERNEL(sixteen) * x, int two
         SC_UNROLL
         for (c = 0; c < 3; c++)
             n[c] = SC_KERNEL(pick_kept)(x, two, ready[0]->normal[c], ready[1]->normal[c], i);
-        open &= ~SC_KERNEL(side_separates)(at, n, x->extent);
+        open &= ~(asked & SC_KERNEL(side_separates)(at, n, x->extent));
     }
     verdict->apart = ~(open | verdict->settled);
 }
