@@ -1574,6 +1574,9 @@ static void contours_in_turn(void)
         if (round % 4 < 2) soup_smooth(s.pose, s.mesh.vertex_count, 0.02 * round);
         if (!load_pose(&s)) continue;
         s.workspace->isa = 1 + round % (uint32_t)sc_isa_best();
+        for (uint32_t p = 0; p < s.model->patch_end && round % 3 == 1; ++p) /* seen from anywhere */
+            s.workspace->mask[p] = (uint16_t)(1u << test_random_below(SC_DNC_DIRECTIONS) |
+                                              1u << test_random_below(SC_DNC_DIRECTIONS));
         for (uint32_t node = 0; node < s.model->node_count; ++node) {
             const sc_pair *patches = &sc_model_node_patches(s.model)[node];
             if (s.workspace->mask[patches->a] & s.workspace->mask[patches->b]) nodes[n++] = node;
