@@ -1081,6 +1081,41 @@ static void by_trees(void)
     }
 }
 
+/* What becomes of a pair of triangles, and is counted, does not depend on those that are tested with it, which
+   are others with each number of workers. */
+static void in_any_company(void)
+{
+    uint32_t rounds = test_iterations(150);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        fixture f;
+        uint32_t side = 20 + test_random_below(15);
+        if (start_tree(&f, soup_cloth(side, side), 1, 0, 0)) {
+            sc_workspace_options o = for_workers(THREADS_MAX);
+            sc_workspace *workspace = NULL;
+            sc_query_options options = question(i % 2 ? 0 : METHODS - 1);
+            answer two;
+            soup_smooth(f.posed, f.mesh.vertex_count, 0.1);
+            soup_twist(f.posed, f.mesh.vertex_count, 2);
+            CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+            memset(&two, 0, sizeof(two));
+            for (uint32_t workers = 2; workers <= 4; ++workers) {
+                answer shared;
+                host h;
+                host_start(&h, workers == 2 ? HOST_AT_ONCE : HOST_BACKWARDS, workers);
+                options.tasks = &h.tasks;
+                shared = ask(&f, workspace, &options, 200000);
+                host_stop(&h);
+                free(shared.pairs);
+                if (workers == 2) two = shared;
+                CHECK_MSG(is_count_same(&two, &shared), "mesh %u, %u workers", (unsigned)i,
+                          (unsigned)workers);
+            }
+            sc_workspace_free(workspace);
+        }
+        stop(&f);
+    }
+}
+
 /* ---- steps ---- */
 
 /* A step of a fixture, whose posed is the start. */
@@ -1531,7 +1566,7 @@ SC_TEST_MAIN(SC_TEST(workspaces_for_workers), SC_TEST(workspaces_refused), SC_TE
              SC_TEST(the_same_answers), SC_TEST(without_statistics), SC_TEST(very_many_pairs),
              SC_TEST(any_array_of_positions), SC_TEST(any_pair), SC_TEST(filters),
              SC_TEST(stopped_early), SC_TEST(stopped_on_the_way), SC_TEST(by_trees),
-             SC_TEST(steps_the_same), SC_TEST(steps_without_statistics),
+             SC_TEST(in_any_company), SC_TEST(steps_the_same), SC_TEST(steps_without_statistics),
              SC_TEST(steps_in_short_lists), SC_TEST(any_pair_of_a_step),
              SC_TEST(any_positions_of_a_step), SC_TEST(steps_stopped_early),
              SC_TEST(steps_stopped_on_the_way))
