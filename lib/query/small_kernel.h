@@ -49,7 +49,7 @@ static SC_INLINE void SC_KERNEL(place_small)(const sc_model *model, uint32_t nod
     SC_UNROLL
     for (b = 0; b < blocks; b++)
         lanes_numbers(place + SC_LANES_COUNT * b, loop + SC_LANES_COUNT * b, split, first, second);
-    memcpy(place + count, place, SC_LANES_COUNT * sizeof *place);
+    memmove(place + count, place, SC_LANES_COUNT * sizeof *place); /* overlaps if there are fewer */
 }
 
 /* Projects a contour, as project in simple_kernel.h does. The numbers of its axes are
