@@ -871,7 +871,8 @@ static void forged_loops(void)
 }
 
 /* Two leaf clusters that face one way have a loop of two points or fewer: the next two have the rest
-   as well. They are in folds, of which two do not, so that large patches are left to boxes. */
+   as well. They are in folds, of which two do not, so that large patches are left to boxes. What is
+   read where nothing is, sanitizers see. */
 static void forged_short_loops(void)
 {
     enum { FOLDS = 6, ACROSS = 4 };
