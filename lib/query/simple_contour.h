@@ -1,6 +1,6 @@
 /*
- * A projected contour while the exact contour test looks at it: what query/simple.c and its inner loop
- * share.
+ * A projected contour while the exact contour test looks at it: what query/simple.c, the tests that
+ * are made of it and its inner loops share.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -88,6 +88,15 @@ void sc_simple_spread(sc_simple_contour *contour);
    a forged model: without a contour, areas are not all positive). */
 int sc_simple_list(sc_simple_contour *contour, const sc_model *model, sc_workspace *workspace,
                    uint32_t node);
+
+/* Sets how the points of a node's loop, of one that has a loop, are read. */
+void sc_simple_find_loop(sc_simple_contour *contour, const sc_model *model, uint32_t node);
+
+/* Starts a contour for the inner loops: finds its loop, whose points are listed as they are
+   projected; or lists all as a cycle: the last is followed by the first again, so that the inner
+   loops may look beyond the end. 0: as above. */
+int sc_simple_start(sc_simple_contour *contour, const sc_model *model, sc_workspace *workspace,
+                    uint32_t node);
 
 /* Sets axis: the vectors of a projection over powers of two, exactly, so that their absolute values sum to at most 1;
    and more than 1/2. */

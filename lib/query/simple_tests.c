@@ -1,0 +1,323 @@
+/*
+ * The exact contour test of one node, and of many together. See simple.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Small contours are looked at eight at a time (query/small_kernel.h); what these leave, four in
+ * turn (query/simple_kernel.h); long ones, and those without a loop, one by one. Whichever way, the
+ * memory that a test reads is asked for while others are made.
+ */
+#include <string.h>
+
+#include "base/bits.h"
+#include "pose/dnc.h"
+#include "pose/positions.h"
+#include "query/query_kernels.h"
+#include "query/simple.h"
+
+/* Asks for memory that the test of a node will read, in steps 0 to FETCHES - 1, of which each reads what the one before
+   asked for. */
+enum { FETCHES = 4 };
+static void fetch(const sc_model *model, uint32_t node, int step)
+{
+    const uint32_t *at = sc_model_node_contour(model) + node, *segments, *first, *last;
+    const uint32_t *looped = sc_model_node_loop(model) + node;
+    uint32_t i, count;
+    sc_fetch_matters();
+    if (step == 0) {
+        sc_fetch(at);
+        sc_fetch(looped);
+        sc_fetch(sc_model_node_kind(model) + node);
+        sc_fetch(sc_model_node_patches(model) + node);
+        return;
+    }
+    if (looped[1] > looped[0]) {
+        const uint16_t *loop = sc_model_loop(model) + looped[0];
+        count = looped[1] - looped[0] < 256 ? looped[1] - looped[0] : 256;
+        if (step == 1)
+            for (i = 0; i < count; i += 32) sc_fetch(loop + i);
+        return;
+    }
+    segments = sc_model_contours(model) + at[0];
+    count = at[1] - at[0] < 64 ? at[1] - at[0] : 64;
+    if (step == 1) {
+        for (i = 0; i < count; i += 16) sc_fetch(segments + i);
+        return;
+    }
+    first = sc_model_segment_first(model);
+    last = sc_model_segment_last(model);
+    for (i = 0; i < count; i++) {
+        if (step == 2) {
+            sc_fetch(first + segments[i]);
+            sc_fetch(last + segments[i]);
+        } else {
+            sc_fetch(sc_model_points(model) + first[segments[i]]);
+        }
+    }
+}
+
+/* Sets from, to about the middle of the contour. */
+static void find_middle(sc_simple_contour *c, const sc_workspace *w)
+{
+    float one[3], other[3];
+    int k;
+    if (c->loop) {
+        const float *p = w->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[0]);
+        const float *q = w->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[c->looped / 2]);
+        for (k = 0; k < 3; k++) c->from[k] = p[k] / 2 + q[k] / 2;
+        return;
+    }
+    sc_positions_unit(w, c->edges->point[0], one);
+    sc_positions_unit(w, c->edges->point[c->count / 2], other);
+    for (k = 0; k < 3; k++) c->from[k] = one[k] / 2 + other[k] / 2;
+}
+
+/* Projects a contour that was started. */
+static void place_contour(sc_query_state *state, sc_simple_contour *c)
+{
+    find_middle(c, state->workspace);
+    sc_query_kernels_of(state->workspace)->project(c, state->workspace);
+    state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c->count;
+}
+
+/* After all edges were looked at. */
+static int is_fine(const sc_simple_contour *c)
+{
+    return c->passed && ((!c->pinch_count && !c->in_pieces) || sc_simple_is_wound_well(c));
+}
+
+int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
+{
+    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
+    sc_simple_contour c;
+    int passed = sc_simple_start(&c, state->model, state->workspace, node);
+    if (passed) {
+        sc_simple_axes(&c, projection);
+        place_contour(state, &c);
+        sc_state_switch(state, SC_TASK_CONTOUR);
+        state->stats.counts[SC_TASK_CONTOUR]++;
+        kernels->look_at_edges(&c, NULL, NULL);
+        kernels->look_at_edges(NULL, NULL, &c);
+        passed = is_fine(&c);
+    }
+    sc_state_switch(state, previous);
+    return passed;
+}
+
+/*
+ * Contours of loops that are not long are looked at in turn: while one is projected, the first step is made for the one
+ * before, the second for the one before that, and what is left for a third. So no step waits for what another one has just
+ * written, which processors do not hand on if it is read in other pieces, and memory has time to arrive.
+ */
+typedef struct contour_turns {
+    sc_simple_contour contour[SC_CONTOUR_TURNS];
+    sc_contour_edges edges[SC_CONTOUR_TURNS];
+    uint32_t node[SC_CONTOUR_TURNS]; /* number in the list, or SC_NONE */
+    sc_simple_some_axes axes;        /* of some that follow each other in the list */
+} contour_turns;
+
+static int is_short(const sc_model *model, uint32_t node)
+{
+    const uint32_t *loop = sc_model_node_loop(model) + node;
+    uint32_t places = loop[1] - loop[0];
+    if (!places || places > SC_CONTOUR_SHORT) return 0;
+    if (sc_model_node_kind(model)[node] & SC_NODE_PIECES)
+        places += SC_CONTOUR_GAP * sc_model_loop(model)[loop[0]];
+    return places <= SC_CONTOUR_SHORT;
+}
+
+/* What the normal cones of a node's patches have in common. */
+static uint16_t mask_of(const sc_query_state *state, uint32_t node)
+{
+    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
+    return state->workspace->mask[patches->a] & state->workspace->mask[patches->b];
+}
+
+/* The axes of the projections of some nodes. */
+static void find_axes(const sc_query_state *state, sc_simple_some_axes *axes, const uint32_t *nodes,
+                      uint32_t count)
+{
+    uint16_t mask[SC_DNC_VECTORS] = {0};
+    uint32_t i;
+    for (i = 0; i < SC_DNC_VECTORS && i < count; i++) mask[i] = mask_of(state, nodes[i]);
+    sc_simple_axes_of(mask, axes);
+}
+
+/* Starts a turn with node i of a list, a loop, and projects it. */
+static void begin_turn(sc_query_state *state, contour_turns *all, const uint32_t *nodes, uint32_t i)
+{
+    sc_simple_contour *c = &all->contour[i % SC_CONTOUR_TURNS];
+    int k, m;
+    sc_simple_find_loop(c, state->model, nodes[i]);
+    for (m = 0; m < 2; m++)
+        for (k = 0; k < 3; k++) c->axis[m][k] = all->axes.at[m][k][i % SC_DNC_VECTORS];
+    place_contour(state, c);
+    all->node[i % SC_CONTOUR_TURNS] = i;
+}
+
+/* Each turn has a part of the room for a contour. */
+static void start_turns(contour_turns *all, const sc_contour_edges *room)
+{
+    uint32_t t;
+    int k;
+    for (t = 0; t < SC_CONTOUR_TURNS; t++) {
+        sc_contour_edges *edges = &all->edges[t];
+        *edges = *room;
+        edges->point = room->point + SC_CONTOUR_ROOM * t;
+        for (k = 0; k < 2; k++) edges->at[k] = room->at[k] + SC_CONTOUR_ROOM * t;
+        for (k = 0; k < 4; k++) edges->span_side[k] = room->span_side[k] + SC_CONTOUR_SPAN_ROOM * t;
+        edges->is_edge = room->is_edge + SC_CONTOUR_BITS_ROOM * t;
+        edges->wall = room->wall + SC_CONTOUR_ROOM * t;
+        all->contour[t].edges = edges;
+        all->node[t] = SC_NONE;
+    }
+}
+
+/* How many tests pass between two steps of fetching what a test reads. */
+enum { FETCH_DISTANCE = 2 };
+
+/* Tests nodes one by one, or in turn. */
+static void test_in_turn(sc_query_state *state, const uint32_t *nodes, uint32_t count,
+                         uint8_t *passed)
+{
+    const sc_model *model = state->model;
+    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    contour_turns all;
+    int i, step, k;
+    memset(passed, 0, count);
+    start_turns(&all, &state->workspace->contour);
+    for (i = -FETCH_DISTANCE * FETCHES; i < (int)count + 3 && !sc_state_stops(state); i++) {
+        sc_simple_contour *c[SC_CONTOUR_TURNS];
+        for (step = 0; step < FETCHES; step++) {
+            int ahead = i + FETCH_DISTANCE * (FETCHES - step);
+            if (ahead >= 0 && ahead < (int)count) fetch(model, nodes[ahead], step);
+        }
+        if (i < 0) continue;
+        sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
+        all.node[i % SC_CONTOUR_TURNS] = SC_NONE;
+        if (i < (int)count && i % SC_DNC_VECTORS == 0)
+            find_axes(state, &all.axes, nodes + i, count - (uint32_t)i);
+        if (i < (int)count && is_short(model, nodes[i]))
+            begin_turn(state, &all, nodes, (uint32_t)i);
+        for (k = 1; k < SC_CONTOUR_TURNS; k++) {
+            uint32_t t = (uint32_t)(i + SC_CONTOUR_TURNS - k) % SC_CONTOUR_TURNS;
+            c[k] = all.node[t] == SC_NONE ? NULL : &all.contour[t];
+        }
+        sc_state_switch(state, SC_TASK_CONTOUR);
+        kernels->look_at_edges(c[1], c[2], c[3]);
+        if (c[3]) {
+            state->stats.counts[SC_TASK_CONTOUR]++;
+            passed[i - 3] = (uint8_t)is_fine(c[3]);
+        }
+    }
+    for (i = 0; i < (int)count && !sc_state_stops(state); i++) {
+        sc_projection projection;
+        if (is_short(model, nodes[i])) continue;
+        sc_dnc_projection(state->workspace, mask_of(state, nodes[i]), &projection);
+        passed[i] = (uint8_t)sc_simple_test(state, &projection, nodes[i]);
+    }
+}
+
+/* How many sixteens of edges a small contour has, see query/small_kernel.h; 0: it is not small. */
+static uint32_t small_blocks(const sc_model *model, uint32_t node)
+{
+    const uint32_t *loop = sc_model_node_loop(model) + node;
+    const uint32_t edges = loop[1] - loop[0];
+    if (edges < SC_SMALL_EDGES || edges > SC_SMALL_BLOCKS * SC_CONTOUR_BLOCK ||
+        (sc_model_node_kind(model)[node] & SC_NODE_PIECES))
+        return 0;
+    return (edges - 1) / SC_CONTOUR_BLOCK + 1;
+}
+
+/* Some nodes, by their numbers, and the axes of their projections, SC_DNC_VECTORS each together. */
+enum { SOME_NODES = 64 };
+typedef struct some_nodes {
+    const uint32_t *nodes;
+    uint32_t count[SC_SMALL_BLOCKS + 1];
+    uint8_t number[SC_SMALL_BLOCKS + 1][SOME_NODES]; /* of those with so many sixteens of edges */
+    sc_simple_some_axes axes[SOME_NODES / SC_DNC_VECTORS];
+} some_nodes;
+
+/* Lists nodes by the sizes of their contours: what is done for as many edges is told beforehand by
+   branches. Asks for memory that their tests will read. */
+static void sort_nodes(const sc_query_state *state, const uint32_t *nodes, uint32_t count,
+                       some_nodes *some)
+{
+    const sc_model *model = state->model;
+    uint32_t i;
+    some->nodes = nodes;
+    memset(some->count, 0, sizeof some->count);
+    for (i = 0; i < count; i++) {
+        sc_fetch(sc_model_node_loop(model) + nodes[i]);
+        sc_fetch(sc_model_node_kind(model) + nodes[i]);
+        sc_fetch(sc_model_node_patches(model) + nodes[i]);
+    }
+    for (i = 0; i < count; i++) {
+        const uint16_t *loop = sc_model_loop(model) + sc_model_node_loop(model)[nodes[i]];
+        const sc_pair *patches = &sc_model_node_patches(model)[nodes[i]];
+        const uint32_t blocks = small_blocks(model, nodes[i]);
+        some->number[blocks][some->count[blocks]++] = (uint8_t)i;
+        sc_fetch(loop);
+        sc_fetch(loop + 32);
+        sc_fetch(sc_model_leaf(model) + patches->a);
+        sc_fetch(sc_model_leaf(model) + patches->b);
+        sc_fetch(state->workspace->mask + patches->a);
+        sc_fetch(state->workspace->mask + patches->b);
+    }
+    for (i = 0; i < count; i += SC_DNC_VECTORS)
+        find_axes(state, &some->axes[i / SC_DNC_VECTORS], nodes + i, count - i);
+}
+
+/* Tests nodes of small contours of so many sixteens of edges. */
+static void test_small(sc_query_state *state, const some_nodes *some, uint32_t blocks,
+                       uint8_t *passed)
+{
+    const uint32_t *first = sc_model_node_loop(state->model), end = some->count[blocks];
+    uint32_t i, k;
+    for (i = 0; i < end && !sc_state_stops(state); i += SC_DNC_VECTORS) {
+        const uint8_t *number = some->number[blocks] + i;
+        const uint32_t count = end - i < SC_DNC_VECTORS ? end - i : SC_DNC_VECTORS;
+        uint32_t nodes[SC_DNC_VECTORS];
+        const float *axes[SC_DNC_VECTORS];
+        unsigned simple;
+        for (k = 0; k < count; k++) {
+            nodes[k] = some->nodes[number[k]];
+            axes[k] = some->axes[number[k] / SC_DNC_VECTORS].at[0][0] + number[k] % SC_DNC_VECTORS;
+        }
+        simple =
+            sc_query_kernels_of(state->workspace)->find_simple(state, nodes, count, blocks, axes);
+        for (; simple; simple &= simple - 1) {
+            k = sc_bits_lowest(simple);
+            passed[number[k]] = 1;
+            state->stats.counts[SC_TASK_CONTOUR]++;
+            state->stats.counts[SC_TASK_UPDATE_CONTOURS] += first[nodes[k] + 1] - first[nodes[k]];
+        }
+    }
+}
+
+/* Tests no more than SOME_NODES, none of which has passed yet: small contours, and then what is
+   left. */
+static void test_some(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed)
+{
+    uint32_t left[SOME_NODES], left_count = 0, i;
+    uint8_t left_passed[SOME_NODES];
+    some_nodes some;
+    sort_nodes(state, nodes, count, &some);
+    for (i = 1; i <= SC_SMALL_BLOCKS; i++) test_small(state, &some, i, passed);
+    for (i = 0; i < count; i++)
+        if (!passed[i]) left[left_count++] = nodes[i];
+    if (!left_count) return;
+    test_in_turn(state, left, left_count, left_passed);
+    for (i = count; i-- > 0;)
+        if (!passed[i]) passed[i] = left_passed[--left_count];
+}
+
+void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed)
+{
+    uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS), i;
+    memset(passed, 0, count);
+    for (i = 0; i < count; i += SOME_NODES)
+        test_some(state, nodes + i, count - i < SOME_NODES ? count - i : SOME_NODES, passed + i);
+    sc_state_switch(state, previous);
+}
