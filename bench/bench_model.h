@@ -14,8 +14,9 @@
 enum { BENCH_FAST = 0, BENCH_METIS = 1, BENCH_STRUCTURE = 2 };
 
 /*
- * rest: the first frame. The mesh has floats where the scene has, else doubles. options says all but the
- * partition, which is set here; BENCH_STRUCTURE needs scene->order. *milliseconds is the time of sc_build.
+ * rest: the first frame. The mesh has floats where the scene has, else doubles. options says all
+ * but the partition, which is set here; BENCH_STRUCTURE needs scene->order. *milliseconds is the
+ * time of sc_build.
  */
 sc_status bench_model_build(const scene_folder *scene, const double *rest, uint32_t partition,
                             sc_build_options *options, sc_model **model, double *milliseconds);

@@ -48,9 +48,10 @@ typedef struct demo_scene {
 } demo_scene;
 
 /*
- * Cross sections turn, more towards the ends, and their two halves roll up towards each other: in the
- * section at x the point at distance y from the middle turns by an angle that grows with x and y. The
- * sheet has no self-collision until the halves meet, when the ends have rolled a quarter turn each.
+ * Cross sections turn, more towards the ends, and their two halves roll up towards each other: in
+ * the section at x the point at distance y from the middle turns by an angle that grows with x and
+ * y. The sheet has no self-collision until the halves meet, when the ends have rolled a quarter
+ * turn each.
  */
 static void twist_cloth(const mesh_file *rest, double time, float *positions)
 {

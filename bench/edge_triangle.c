@@ -45,7 +45,8 @@ static int area_sign(const double *a, const double *b, const double *c, int i, i
     return sign_of(first - second, fabs(first) + fabs(second), area_error, least_area);
 }
 
-/* Whether in some coordinate plane a line through two of the five points separates edge and triangle. */
+/* Whether in some coordinate plane a line through two of the five points separates edge and
+   triangle. */
 static bool is_separated(const double *p, const double *q, const double *const corner[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -102,8 +103,9 @@ bool edge_triangle_meet(edge_triangle *tests, const double *p, const double *q, 
 {
     const int over = volume_sign(a, b, c, p), under = volume_sign(a, b, c, q);
     if (over && over == under) return false;
-    /* Where the line through p and q passes the plane, these are the signs of that point's barycentric
-       coordinates; where it does not, the line misses the triangle or all three are zero. */
+    /* Where the line through p and q passes the plane, these are the signs of that point's
+       barycentric coordinates; where it does not, the line misses the triangle or all three are
+       zero. */
     const int ab = volume_sign(p, q, a, b), bc = volume_sign(p, q, b, c);
     if (ab && bc && ab != bc) return false;
     const int ca = volume_sign(p, q, c, a);

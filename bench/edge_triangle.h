@@ -4,10 +4,11 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Signs of determinants in double arithmetic carry error bounds (J. R. Shewchuk, "Adaptive Precision
- * Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, the bounds called A). Where
- * they leave a sign open, lines of separation in the three coordinate planes are tried, and at last
- * the library is asked about these two triangles alone, through its public interface.
+ * Signs of determinants in double arithmetic carry error bounds (J. R. Shewchuk, "Adaptive
+ * Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997, the bounds
+ * called A). Where they leave a sign open, lines of separation in the three coordinate planes are
+ * tried, and at last the library is asked about these two triangles alone, through its public
+ * interface.
  *
  * Cost: some 50 ns; about 1 microsecond where the library is asked, that is in contact to within
  * rounding. Not for several threads at once.

@@ -4,8 +4,9 @@
  * SPDX-License-Identifier: MIT
  *
  * One pass that reads every position and every vertex number once and reduces eight triangles at a
- * time to a box and to the range of their normals, four such clusters abreast. Vertex numbers are laid
- * out for this beforehand, in the order of the model's patches, so that neighbours stand together.
+ * time to a box and to the range of their normals, four such clusters abreast. Vertex numbers are
+ * laid out for this beforehand, in the order of the model's patches, so that neighbours stand
+ * together.
  *
  * No method can be faster than about this unless it leaves part of the mesh unread.
  */

@@ -19,8 +19,8 @@ lane_pool *lane_pool_create(uint32_t count);
 void lane_pool_free(lane_pool *pool);
 
 /*
- * Calls work(user, 0) to work(user, count - 1), each on a thread of its own; count is at most that of
- * create. Returns how long it took until the last was done, in milliseconds.
+ * Calls work(user, 0) to work(user, count - 1), each on a thread of its own; count is at most that
+ * of create. Returns how long it took until the last was done, in milliseconds.
  */
 double lane_pool_run(lane_pool *pool, uint32_t count, void (*work)(void *user, uint32_t lane),
                      void *user);

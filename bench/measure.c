@@ -19,8 +19,8 @@
 #include <string.h>
 #include <time.h>
 
-/* A frame in the forms in which it is asked about, and what each method has to work with. A scene is
-   measured on as many of these lanes at once as there are threads. */
+/* A frame in the forms in which it is asked about, and what each method has to work with. A scene
+   is measured on as many of these lanes at once as there are threads. */
 typedef struct measure_lane {
     double *frame;   /* as the scene has it */
     double *next;    /* of steps: the frame after it, */
@@ -129,8 +129,8 @@ static bool open_lane(measure_state *s, measure_lane *lane, const double *rest)
     return true;
 }
 
-/* How often a method is timed in a frame: the hash, which takes as long as all others, once only where
-   others have a pass each. */
+/* How often a method is timed in a frame: the hash, which takes as long as all others, once only
+   where others have a pass each. */
 static uint32_t times_timed(const measure_state *s, size_t method)
 {
     const bool once = s->options->mode == MEASURE_ONCE && s->m->methods[method]->is_hash;
@@ -263,8 +263,8 @@ static uint64_t count_missing(const method_runner *from, const method_runner *in
     return missing;
 }
 
-/* A query for pairs and statistics. At rest, where reports take tasks apart, these are of the fastest of several: the
-   first touches new memory. */
+/* A query for pairs and statistics. At rest, where reports take tasks apart, these are of the
+   fastest of several: the first touches new memory. */
 static bool take_statistics(measure_state *s, measure_lane *lane, uint32_t frame, size_t method)
 {
     method_runner *const runner = &lane->runners[method];
@@ -366,8 +366,9 @@ static bool run_turn(measure_state *s, size_t method, uint32_t count, double *mi
     return true;
 }
 
-/* Frames first to first + count - 1: every method's turn, and the floor's. Every other pass goes through the methods backwards, as
-   one finds in the caches what of the model the one before it has read. */
+/* Frames first to first + count - 1: every method's turn, and the floor's. Every other pass goes
+   through the methods backwards, as one finds in the caches what of the model the one before it has
+   read. */
 static bool run_frames(measure_state *s, uint32_t pass, uint32_t first, uint32_t count)
 {
     const measurement *m = s->m;
@@ -403,7 +404,8 @@ static bool run_frames(measure_state *s, uint32_t pass, uint32_t first, uint32_t
     return true;
 }
 
-/* What a method does for the first time (touching new memory, say) is no part of a simulation's step. */
+/* What a method does for the first time (touching new memory, say) is no part of a simulation's
+   step. */
 static bool start_pass(measure_state *s)
 {
     for (size_t method = 0; method < s->m->method_count; method++) {

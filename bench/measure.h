@@ -7,17 +7,17 @@
  * complete set, takes the statistics (which cost time) and enlarges the arrays for pairs. Then the
  * timed passes; in each frame every method has its turn before the next frame comes. A turn is
  *   MEASURE_ONCE  one query, as in a simulation: the other methods' work lies between it and the
- *                 method's last one. There are as many passes over the animation as repeats are asked
- *                 for, each beginning with a query of the first frame that does not count. The hash,
- *                 the slowest by far, has its turns in the first of them only.
+ *                 method's last one. There are as many passes over the animation as repeats are
+ *                 asked for, each beginning with a query of the first frame that does not count.
+ *                 The hash, the slowest by far, has its turns in the first of them only.
  *   MEASURE_WARM  as many queries of the same pose as repeats are asked for, one after the other.
  * Before each turn the pose is written anew to where queries read it, as a simulation would.
  *
  * Where steps are asked about (METHOD_STEPS), a frame is the step from it to the next.
  *
- * With several threads, each has a workspace of its own for the same model, and they work on as many
- * frames at once. A frame's time is then that of all of them, divided by their number: a measure of
- * throughput. A single query always runs on one thread.
+ * With several threads, each has a workspace of its own for the same model, and they work on as
+ * many frames at once. A frame's time is then that of all of them, divided by their number: a
+ * measure of throughput. A single query always runs on one thread.
  */
 #ifndef BENCH_MEASURE_H
 #define BENCH_MEASURE_H

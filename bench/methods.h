@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * All answer the same question about the same pose, and all but those called unsound must give the
- * same sorted pairs. A method to be measured gets a runner of its own: whatever it keeps from pose to
- * pose is not shared.
+ * same sorted pairs. A method to be measured gets a runner of its own: whatever it keeps from pose
+ * to pose is not shared.
  */
 #ifndef BENCH_METHODS_H
 #define BENCH_METHODS_H
@@ -42,8 +42,8 @@ typedef struct method_variant {
     char name[32];
 } method_variant;
 
-/* Reads NAME or NAME@HOW; HOW is base, avx2 or avx512 (the instructions that queries use) or serial. False, with
-   a message in *reason, if there is no such method. */
+/* Reads NAME or NAME@HOW; HOW is base, avx2 or avx512 (the instructions that queries use) or
+   serial. False, with a message in *reason, if there is no such method. */
 bool method_read(const char *text, method_variant *variant, const char **reason);
 
 /* A mesh with its model. Poses are floats where the mesh has floats, else doubles. */
@@ -73,8 +73,8 @@ typedef struct method_question {
     uint32_t pairs, contact;
 } method_question;
 
-/* What a query is about: a pose in the mesh's type, and as doubles for the hash. Of a step, end is where it
-   leads. */
+/* What a query is about: a pose in the mesh's type, and as doubles for the hash. Of a step, end is
+   where it leads. */
 typedef struct method_pose {
     const void *positions, *end;
     const double *doubles;
@@ -90,12 +90,13 @@ void method_close(method_runner *runner);
 bool method_reserve(method_runner *runner, uint64_t count);
 
 /*
- * One query; its pairs are in the runner afterwards, its duration in *milliseconds. stats may be NULL;
- * asking for it costs time. Where the room for pairs is too small it is enlarged and the query repeated:
- * only the last counts. On failure false, and a message in *reason.
+ * One query; its pairs are in the runner afterwards, its duration in *milliseconds. stats may be
+ * NULL; asking for it costs time. Where the room for pairs is too small it is enlarged and the
+ * query repeated: only the last counts. On failure false, and a message in *reason.
  *
- * Steps: pairs of both kinds are found, and with pairs_wanted also listed: those of edges last, with
- * 2^31 added to their numbers. Another query counts the candidates; runner->step has what it found.
+ * Steps: pairs of both kinds are found, and with pairs_wanted also listed: those of edges last,
+ * with 2^31 added to their numbers. Another query counts the candidates; runner->step has what it
+ * found.
  */
 bool method_query(method_runner *runner, const method_pose *pose, const method_question *question,
                   bool pairs_wanted, sc_stats *stats, double *milliseconds, const char **reason);

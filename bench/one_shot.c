@@ -61,7 +61,8 @@ static sc_status ask(one_shot_state *s, const method_kind *kind, const sc_model 
     return status;
 }
 
-/* One method from nothing. Where there is too little room for the pairs, it is made and another query is to follow. */
+/* One method from nothing. Where there is too little room for the pairs, it is made and another
+   query is to follow. */
 static sc_status take_turn(one_shot_state *s, const method_kind *kind, uint32_t repeat,
                            one_shot_record *record)
 {

@@ -5,8 +5,8 @@
  *
  * JSON Lines: the first line describes the run: commit, compiler, flags, CPU, what was measured and
  * how, build time, sizes, and the physical floor. Then one object a frame and method. CSV: the
- * description stands in lines that begin with #; then the names of the columns, and a line a frame and
- * method. Both have the same names:
+ * description stands in lines that begin with #; then the names of the columns, and a line a frame
+ * and method. Both have the same names:
  *     ms, ms_min                       median and minimum of the repeats
  *     pairs, missed, extra             found; of the complete set not found; found but not in it
  *     candidates, candidates_ms        of steps: pairs left by culling, and the time of a query for these alone

@@ -1,6 +1,6 @@
 /*
- * Animated scenes: one mesh and its vertex positions frame by frame, from a folder or from a sequence
- * of mesh files.
+ * Animated scenes: one mesh and its vertex positions frame by frame, from a folder or from a
+ * sequence of mesh files.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -12,8 +12,8 @@
  *                 patches, for SC_PARTITION_ORDER; a permutation of 0 to triangles - 1
  *
  * What does not fit together (sizes, numbers out of range, coordinates that are not finite) is
- * refused with a message that names the file. One frame at a time is in memory; reading it is linear.
- * Calls return 0, or -1 with a message in error, which is never NULL.
+ * refused with a message that names the file. One frame at a time is in memory; reading it is
+ * linear. Calls return 0, or -1 with a message in error, which is never NULL.
  */
 #ifndef BENCH_SCENE_FOLDER_H
 #define BENCH_SCENE_FOLDER_H
@@ -34,10 +34,11 @@ typedef struct scene_folder {
 int scene_folder_open(const char *path, scene_folder *scene, char *error, size_t error_size);
 
 /*
- * Opens a sequence of mesh files of any format that mesh_file.h reads; the first gives the triangles,
- * and all must have the same faces in the same order. scene_folder_open_files takes a list;
- * scene_folder_open_pattern a printf pattern with one %d, such as "run/%04d.obj" (flags 0 and width
- * only; %% is a percent sign): the numbers from 0 or 1, whichever is there, until one is missing.
+ * Opens a sequence of mesh files of any format that mesh_file.h reads; the first gives the
+ * triangles, and all must have the same faces in the same order. scene_folder_open_files takes a
+ * list; scene_folder_open_pattern a printf pattern with one %d, such as "run/%04d.obj" (flags 0 and
+ * width only; %% is a percent sign): the numbers from 0 or 1, whichever is there, until one is
+ * missing.
  */
 int scene_folder_open_files(const char *const *paths, uint32_t count, scene_folder *scene,
                             char *error, size_t error_size);

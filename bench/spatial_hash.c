@@ -209,7 +209,8 @@ static uint32_t lowest_mask(const int32_t cell[3], const cell_range *range)
     return mask;
 }
 
-/* The cell of a coordinate. What lies far out falls into the outermost cells: still the right order. */
+/* The cell of a coordinate. What lies far out falls into the outermost cells: still the right
+   order. */
 static int32_t cell_of(double coordinate, double cells_per_unit)
 {
     const double x = coordinate * cells_per_unit, limit = 1e9;

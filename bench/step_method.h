@@ -1,6 +1,6 @@
 /*
- * A step of a mesh from one pose to another, asked of the library: its collisions, and how many candidates
- * culling left.
+ * A step of a mesh from one pose to another, asked of the library: its collisions, and how many
+ * candidates culling left.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -20,8 +20,9 @@ typedef struct step_method {
 } step_method;
 
 /*
- * Two queries, of which the last of each kind is timed: candidates, counted, and collisions, which go into the
- * lists; these grow as needed. method is SC_STEP_METHOD_..., contour SC_CONTOUR_...; stats may be NULL.
+ * Two queries, of which the last of each kind is timed: candidates, counted, and collisions, which
+ * go into the lists; these grow as needed. method is SC_STEP_METHOD_..., contour SC_CONTOUR_...;
+ * stats may be NULL.
  */
 sc_status step_method_query(step_method *step, const sc_model *model, sc_workspace *workspace,
                             const sc_pose *start, const sc_pose *end, uint32_t method,

@@ -1,6 +1,6 @@
 /*
- * The entry points: arguments are checked, steps put in order, errors passed on. What the calls promise
- * is in starcontour.h.
+ * The entry points: arguments are checked, steps put in order, errors passed on. What the calls
+ * promise is in starcontour.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -54,8 +54,8 @@ typedef struct steps {
     int has_tests; /* neighbors, sctt and csf were built */
 } steps;
 
-/* In builds with SC_VALIDATE (make config=debug or sanitize): everything is as its header says. Uses
-   memory of its own, so that the caller's allocator may fail where it likes. */
+/* In builds with SC_VALIDATE (make config=debug or sanitize): everything is as its header says.
+   Uses memory of its own, so that the caller's allocator may fail where it likes. */
 static void validate(const steps *s, const sc_hooks *hooks)
 {
 #ifdef SC_VALIDATE

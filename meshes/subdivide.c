@@ -4,8 +4,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Midpoints are rounded to float. Files written read back as the same floats: nine digits in OBJ and
- * OFF, the numbers themselves in PLY.
+ * Midpoints are rounded to float. Files written read back as the same floats: nine digits in OBJ
+ * and OFF, the numbers themselves in PLY.
  */
 #include "mesh_file.h"
 #include "ply_write.h"

@@ -15,8 +15,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Under the projection of a flat mesh with normals along z, vertical lines run along (115, 46, 0) and
-   horizontal ones across them. */
+/* Under the projection of a flat mesh with normals along z, vertical lines run along (115, 46, 0)
+   and horizontal ones across them. */
 static const double upright[2] = {115, 46};
 
 static uint32_t between(uint32_t low, uint32_t high)
@@ -96,7 +96,8 @@ static double hair(double low, double high)
     return test_random_below(2) ? h : -h;
 }
 
-/* An angle at which to begin: any, or one that the projection has upright or level, but for a hair. */
+/* An angle at which to begin: any, or one that the projection has upright or level, but for a
+   hair. */
 static double start_angle(adversary *a)
 {
     if (test_random_below(2)) return test_random_range(0, 2 * pi);
@@ -105,8 +106,8 @@ static double start_angle(adversary *a)
            (test_random_below(4) ? hair(-13, -5) : 0);
 }
 
-/* Sectors of rings rings from first on: column i of vertices at angle from + i width / sectors. With
-   center SC_NONE the innermost ring has no triangles inside. */
+/* Sectors of rings rings from first on: column i of vertices at angle from + i width / sectors.
+   With center SC_NONE the innermost ring has no triangles inside. */
 static void add_sectors(adversary *a, uint32_t center, uint32_t first, uint32_t sectors,
                         uint32_t rings, double from, double width)
 {

@@ -70,8 +70,8 @@ uint64_t test_failures(void);
 void test_note(const char *format, ...) SC_TEST_PRINTF(1, 2);
 
 /*
- * Deterministic 64-bit random numbers (splitmix64). Each test function starts anew from the seed and
- * its own name, so a test selected by name alone draws the same numbers.
+ * Deterministic 64-bit random numbers (splitmix64). Each test function starts anew from the seed
+ * and its own name, so a test selected by name alone draws the same numbers.
  */
 uint64_t test_random(void);
 uint32_t test_random_below(uint32_t bound);        /* 0 to bound - 1; bound > 0 */
@@ -83,8 +83,8 @@ void test_random_reset(uint64_t state);
 /* count scaled by --scale, at least 1. */
 uint32_t test_iterations(uint32_t count);
 
-/* The same, but at least `least`: for tests that ask at the end whether they saw enough of what they are
-   about, which a few trials may not have. */
+/* The same, but at least `least`: for tests that ask at the end whether they saw enough of what
+   they are about, which a few trials may not have. */
 uint32_t test_iterations_at_least(uint32_t count, uint32_t least);
 
 /* malloc that ends the program when there is no memory; free as usual. size 0 is allowed. */

@@ -13,7 +13,8 @@
 #include "harness.h"
 #include "oracle.h"
 
-/* Room for count elements of size bytes, gap apart, and nothing behind the last; filled with 0xff. */
+/* Room for count elements of size bytes, gap apart, and nothing behind the last; filled with
+   0xff. */
 static input_array make_array(uint32_t count, uint32_t size, uint32_t type, uint32_t gap)
 {
     input_array array;
@@ -147,7 +148,8 @@ static void make_node(tree_maker *maker, uint32_t node, uint32_t first, uint32_t
         return;
     }
     left_count = maker->is_skewed ? 1 : 1 + test_random_below(count - 1);
-    /* The children's numbers are apart, and what an inner node has in first and count is no matter. */
+    /* The children's numbers are apart, and what an inner node has in first and count is no
+       matter. */
     n->right = maker->count++;
     n->left = maker->count++;
     n->first = n->count = 12345;
@@ -299,7 +301,8 @@ static int read_vertex(growing *g, const char *text)
     return 1;
 }
 
-/* Reads the corners of an f line: numbers from 1, or negative from the end, each perhaps with /... */
+/* Reads the corners of an f line: numbers from 1, or negative from the end, each perhaps with
+   /... */
 static int read_face(growing *g, const char *text)
 {
     uint32_t corner[2] = {0, 0};

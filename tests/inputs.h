@@ -57,8 +57,8 @@ uint32_t *input_weld_of(const input_choices *choices, const soup *s);
 sc_status input_bisect(void *user, const sc_dual_graph *graph, uint32_t left_target, uint8_t *side);
 
 /*
- * Reads an OBJ file (v and f lines; faces of more corners become fans). Returns 1, or 0 after leaving
- * *s empty when the file cannot be read or is no such file.
+ * Reads an OBJ file (v and f lines; faces of more corners become fans). Returns 1, or 0 after
+ * leaving *s empty when the file cannot be read or is no such file.
  */
 int input_read_obj(const char *path, soup *s);
 

@@ -1,6 +1,6 @@
 /*
- * Does all that base/lanes.h and its companions can do, once, and writes down what comes out. Included for each
- * instruction set between these headers and their ends; see test_lanes.c.
+ * Does all that base/lanes.h and its companions can do, once, and writes down what comes out.
+ * Included for each instruction set between these headers and their ends; see test_lanes.c.
  *
  * SPDX-License-Identifier: MIT
  */

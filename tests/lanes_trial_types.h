@@ -1,6 +1,6 @@
 /*
- * What test_lanes.c tries sixteen lanes on, and what comes out; and the forms of them that the library has on other
- * machines.
+ * What test_lanes.c tries sixteen lanes on, and what comes out; and the forms of them that the
+ * library has on other machines.
  *
  * SPDX-License-Identifier: MIT
  */

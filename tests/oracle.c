@@ -122,7 +122,8 @@ static void write_equations(solver *s, const uint32_t *p, uint32_t p_count, cons
     }
 }
 
-/* Solves row for column and eliminates the column elsewhere. All entries stay integers (Bareiss). */
+/* Solves row for column and eliminates the column elsewhere. All entries stay integers
+   (Bareiss). */
 static void pivot(solver *s, uint32_t row, uint32_t column)
 {
     for (uint32_t i = 0; i <= ROWS; ++i) {
@@ -140,7 +141,8 @@ static void pivot(solver *s, uint32_t row, uint32_t column)
     mpz_set(s->denominator, s->table[row][column]);
 }
 
-/* The sign of the difference of rows a and b in right-hand side over entry in column, which is > 0. */
+/* The sign of the difference of rows a and b in right-hand side over entry in column, which is >
+   0. */
 static int compare_ratios(solver *s, uint32_t a, uint32_t b, uint32_t column)
 {
     mpz_mul(s->product, s->table[a][s->columns], s->table[b][column]);
@@ -149,9 +151,9 @@ static int compare_ratios(solver *s, uint32_t a, uint32_t b, uint32_t column)
 }
 
 /*
- * Whether the hulls of two lists of vertices have a common point: phase one of the simplex method. It
- * starts from an artificial variable in each row, which never comes back once it has left, and the
- * objective row tells how much of the artificial variables is left.
+ * Whether the hulls of two lists of vertices have a common point: phase one of the simplex method.
+ * It starts from an artificial variable in each row, which never comes back once it has left, and
+ * the objective row tells how much of the artificial variables is left.
  */
 static int hulls_meet(solver *s, const uint32_t *p, uint32_t p_count, const uint32_t *q,
                       uint32_t q_count)
@@ -176,7 +178,8 @@ static int hulls_meet(solver *s, const uint32_t *p, uint32_t p_count, const uint
     }
 }
 
-/* Whether the equations of edge and triangle have one solution and all five weights are positive. */
+/* Whether the equations of edge and triangle have one solution and all five weights are
+   positive. */
 static int crosses_properly(solver *s, const uint32_t edge[2], const uint32_t triangle[3])
 {
     uint32_t row_of[MAXIMUM_COLUMNS];
@@ -229,8 +232,8 @@ static int same_direction(solver *s, mpz_t *u, mpz_t *v, mpz_t *scratch)
 }
 
 /*
- * Whether the triangles (s0, s1, p) and (s0, s1, q) have a common point off the segment s0 s1. With s0
- * as the origin and d = s1 - s0:
+ * Whether the triangles (s0, s1, p) and (s0, s1, q) have a common point off the segment s0 s1. With
+ * s0 as the origin and d = s1 - s0:
  *   d = 0: p and q must lie on the same ray from it.
  *   p and q off the line of d: they must lie in the same half-plane of it, that is, d x q must be a
  *   positive multiple of d x p; near the middle of d both triangles then cover that half-plane.
@@ -400,8 +403,8 @@ static int is_outside(const double *positions, const uint32_t edge[2], const box
 }
 
 /*
- * Adds what the ordered pair (a, b) has of edges of a that meet b, whose box is given; each edge once,
- * by its owner. Returns whether one crosses properly.
+ * Adds what the ordered pair (a, b) has of edges of a that meet b, whose box is given; each edge
+ * once, by its owner. Returns whether one crosses properly.
  */
 static int add_edges(solver *s, const double *positions, const uint32_t *corners,
                      const uint32_t *owners, uint32_t a, uint32_t b, const box *box_of_b,
@@ -465,8 +468,8 @@ void oracle_solve(const double *positions, uint32_t vertex_count, const uint32_t
             uint32_t a = low->triangle, b = high->triangle;
             int proper;
             if (!boxes_meet(low, high)) continue;
-            /* An edge that meets the other triangle makes a pair of them: it is a part of its own if
-               they share no vertex, and the opposite edge if one; if more, none is free. */
+            /* An edge that meets the other triangle makes a pair of them: it is a part of its own
+               if they share no vertex, and the opposite edge if one; if more, none is free. */
             if (!triangles_touch(&s, corners + 3 * a, corners + 3 * b)) continue;
             add_pair(&answer->lists[SC_PAIRS_TRIANGLE][SC_CONTACT_TOUCHING], a, b);
             proper = add_edges(&s, positions, corners, owners, a, b, high, answer);

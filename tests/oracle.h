@@ -5,9 +5,9 @@
  * tetrahedra and no case analysis of degenerate positions. Coordinates become integers of GMP (the
  * GNU multiple precision library), scaled by a common power of two. "Two convex hulls have a common
  * point" is the feasibility of a small linear program over barycentric coordinates, decided by the
- * simplex method with exact integer pivots and Bland's rule. "An edge crosses a triangle properly" is
- * "the same equations have exactly one solution and it is positive throughout". Any finite doubles
- * are allowed.
+ * simplex method with exact integer pivots and Bland's rule. "An edge crosses a triangle properly"
+ * is "the same equations have exactly one solution and it is positive throughout". Any finite
+ * doubles are allowed.
  *
  * Cost: about 10 microseconds for a pair of triangles whose boxes overlap, more where exponents
  * differ widely; a sweep over sorted boxes in front. Feasible to some thousand triangles.
@@ -43,8 +43,8 @@ void oracle_solve(const double *positions, uint32_t vertex_count, const uint32_t
 void oracle_free(oracle_answer *answer);
 
 /*
- * weld[v] = the lowest number of a vertex that a triangle uses and that has the same position as v, for
- * used v (-0 equals 0); v itself for others.
+ * weld[v] = the lowest number of a vertex that a triangle uses and that has the same position as v,
+ * for used v (-0 equals 0); v itself for others.
  */
 void oracle_weld(const double *rest, uint32_t vertex_count, const uint32_t *triangles,
                  uint32_t triangle_count, uint32_t *weld);

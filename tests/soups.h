@@ -22,7 +22,8 @@ soup soup_make(uint32_t vertex_count, uint32_t triangle_count); /* contents unse
 soup soup_copy(const soup *source);
 void soup_free(soup *s);
 
-/* 2 to 40 triangles on integer points 0 to range: sharing, repeats, duplicates, planes, lines, fans. */
+/* 2 to 40 triangles on integer points 0 to range: sharing, repeats, duplicates, planes, lines,
+   fans. */
 soup soup_on_grid(uint32_t range);
 
 /* 2 to 40 triangles with random coordinates, some of them slivers or of very unequal size. */

@@ -79,8 +79,8 @@ static void shorten(polynomial *p)
 }
 
 /*
- * Pseudo-division by b, not zero: rest becomes a positive multiple of what remains of it, and quotient, if not
- * NULL, a multiple of the quotient.
+ * Pseudo-division by b, not zero: rest becomes a positive multiple of what remains of it, and
+ * quotient, if not NULL, a multiple of the quotient.
  */
 static void divide(polynomial *rest, const polynomial *b, polynomial *quotient)
 {
@@ -300,12 +300,14 @@ static int holds_origin(const moving_triangle *t, const moment *when, int is_fla
         while (k < 3 && sign_then(when, &t->normals[i][k]) == 0) ++k;
         if (k == 3) return 1;
     }
-    /* In the plane of the origin, all three normals are parallel: inside if they point the same way. */
+    /* In the plane of the origin, all three normals are parallel: inside if they point the same
+       way. */
     if (!is_flat && sign_then(when, &t->volume) != 0) return 0;
     return sign_then(when, &t->turns[0]) > 0 && sign_then(when, &t->turns[1]) > 0;
 }
 
-/* Takes the roots of p in the interval, one after the other, for times at which the origin may come in. */
+/* Takes the roots of p in the interval, one after the other, for times at which the origin may come
+   in. */
 static int look_at_roots(const moving_triangle *t, const chain *s, interval *within, double *low,
                          double *high)
 {
@@ -400,9 +402,9 @@ static void relate_corners(moving_triangle *t)
 }
 
 /*
- * Whether the origin comes in at some time. It is in at a closed set of times, on which signs of the polynomials
- * decide; so the first such time is 0 or a root of one that is not zero throughout. If the volume is such a one, it
- * is a root of that.
+ * Whether the origin comes in at some time. It is in at a closed set of times, on which signs of
+ * the polynomials decide; so the first such time is 0 or a root of one that is not zero throughout.
+ * If the volume is such a one, it is a root of that.
  */
 static int meets_origin(moving_triangle *t, double *low, double *high)
 {
@@ -490,11 +492,13 @@ static void free_step(step *s)
     }
 }
 
-/* The corners of the moving triangles: differences of these points. The second is for edges only. */
+/* The corners of the moving triangles: differences of these points. The second is for edges
+   only. */
 static const int corner_points[3][3][2] = {
     {{1, 0}, {2, 0}, {3, 0}}, {{2, 0}, {3, 0}, {2, 1}}, {{3, 1}, {3, 0}, {2, 1}}};
 
-/* Whether points a and those before, or points b and those after, stay on one side of the others along an axis. */
+/* Whether points a and those before, or points b and those after, stay on one side of the others
+   along an axis. */
 static int stays_apart(step_oracle_kind kind, const double start[4][3], const double end[4][3])
 {
     int split = kind == STEP_ORACLE_VERTEX_FACE ? 1 : 2;
@@ -563,7 +567,8 @@ static void cross(mpz_t n[3], mpz_t u[3], mpz_t v[3])
 
 enum { SCALARS = 4, VECTORS = 6 };
 
-/* Whether a triangle comes within the root of square of the origin: some corner, side, or its inside. */
+/* Whether a triangle comes within the root of square of the origin: some corner, side, or its
+   inside. */
 static int is_triangle_within(mpz_t p[3][3], const mpz_t square)
 {
     mpz_t x[SCALARS], v[VECTORS][3];

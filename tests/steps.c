@@ -168,8 +168,8 @@ step step_pinch(void)
     return s;
 }
 
-/* A disc of sectors from angle low to high round vertex 0, rings deep, cut open; its two lips are the
-   vertices first in each ring and last. */
+/* A disc of sectors from angle low to high round vertex 0, rings deep, cut open; its two lips are
+   the vertices first in each ring and last. */
 static soup make_disc(uint32_t sectors, uint32_t rings)
 {
     uint32_t columns = sectors + 1, t = 0;
@@ -615,7 +615,8 @@ step step_any(void)
     return s;
 }
 
-/* ------------------------------------------------------------------------------------------------ */
+/* ------------------------------------------------------------------------------------------------
+   */
 
 /* A random rotation of all three poses. */
 static void tumble(step *s)

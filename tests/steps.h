@@ -1,10 +1,10 @@
 /*
  * Makers of steps, a start and an end pose of one mesh, that are hard on one part of the continuous
- * query: each sits on a case that some culling step would lose if it were less careful, and its harmless
- * neighbour.
+ * query: each sits on a case that some culling step would lose if it were less careful, and its
+ * harmless neighbour.
  *
- * Nothing here knows what a step's collisions are. Meshes have about 10 to 150 triangles, so that all
- * pairs can be compared and patches of several levels are still culled.
+ * Nothing here knows what a step's collisions are. Meshes have about 10 to 150 triangles, so that
+ * all pairs can be compared and patches of several levels are still culled.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -27,14 +27,15 @@ void step_free(step *s);
 
 /* ---- contours ---- */
 
-/* A small sheet over a large one, its contour within the other's; or over its hole. It falls through, or
-   past. */
+/* A small sheet over a large one, its contour within the other's; or over its hole. It falls
+   through, or past. */
 step step_nested(void);
 
 /* Cloths and petals that share one vertex; one turns about it, past or over its neighbours. */
 step step_pinch(void);
 
-/* A disc cut from the middle outwards; the lips of the cut close, open, or cross between the ends. */
+/* A disc cut from the middle outwards; the lips of the cut close, open, or cross between the
+   ends. */
 step step_lips(void);
 
 /* A strip some of whose rows fold onto their neighbours and back, or over. */
@@ -43,8 +44,8 @@ step step_fold(void);
 /* A sheet whose hole closes to a slit or to a point, or turns inside out. */
 step step_hole(void);
 
-/* Two discs, or the two ends of one ring, in one plane or nearly: apart at both ends, through each other
-   between them. */
+/* Two discs, or the two ends of one ring, in one plane or nearly: apart at both ends, through each
+   other between them. */
 step step_pass(void);
 
 /* A strip that runs into itself: its end moves over its beginning, with all normals one way. */
@@ -52,12 +53,12 @@ step step_sweep(void);
 
 /* ---- normals ---- */
 
-/* A sheet, part of which turns by half with different scales along and across: its normals are the same
-   at both ends and opposite between them. */
+/* A sheet, part of which turns by half with different scales along and across: its normals are the
+   same at both ends and opposite between them. */
 step step_flip(void);
 
-/* A disc whose outline stays, while its middle turns by half with different scales along and across, or
-   its central vertex moves over the first ring. */
+/* A disc whose outline stays, while its middle turns by half with different scales along and
+   across, or its central vertex moves over the first ring. */
 step step_whirl(void);
 
 /* A closed body that is turned inside out, or pressed flat and beyond. */

@@ -3,18 +3,18 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Pairs: comma-separated values as sc-query --out writes them: the last two fields of a line are a pair,
- * in any order of lines. A first line whose last field is "triangle_b" or "triangle" says which kind of
- * pair they are. Repeats, as of several files, do no harm.
+ * Pairs: comma-separated values as sc-query --out writes them: the last two fields of a line are a
+ * pair, in any order of lines. A first line whose last field is "triangle_b" or "triangle" says
+ * which kind of pair they are. Repeats, as of several files, do no harm.
  *
  * Groups: a line each,
  *
  *     triangle FIRST[-LAST] CATEGORY MASK
  *     vertex   FIRST[-LAST] CATEGORY MASK
  *
- * with numbers as the mesh has them, from 0, and CATEGORY and MASK of 32 bits, decimal or 0x...; a later
- * line overrides an earlier one. What no line names is in all categories and collides with all. Empty
- * lines and what follows a # are left out.
+ * with numbers as the mesh has them, from 0, and CATEGORY and MASK of 32 bits, decimal or 0x...; a
+ * later line overrides an earlier one. What no line names is in all categories and collides with
+ * all. Empty lines and what follows a # are left out.
  */
 #ifndef TOOLS_FILTER_FILE_H
 #define TOOLS_FILTER_FILE_H
@@ -38,8 +38,8 @@ typedef struct filter_file {
     sc_group *groups[2]; /* of vertices, of triangles, for the mesh at hand */
 } filter_file;
 
-/* Reads the files that are named; either may be NULL. kind is SC_PAIRS_... On failure error says why, and
-   *file is to be freed all the same. */
+/* Reads the files that are named; either may be NULL. kind is SC_PAIRS_... On failure error says
+   why, and *file is to be freed all the same. */
 bool filter_file_read(filter_file *file, const char *pairs_path, const char *groups_path,
                       uint32_t kind, char error[MESH_FILE_ERROR_SIZE]);
 

@@ -14,9 +14,9 @@ typedef struct frame_paths {
 } frame_paths;
 
 /*
- * Finds the files whose number takes the place of the one %d, or %0Nd for N digits, in a pattern; %% is a
- * percent sign. They count from 0 or 1 up to the first that is not there. On failure false, error says
- * why and nothing is to be freed.
+ * Finds the files whose number takes the place of the one %d, or %0Nd for N digits, in a pattern;
+ * %% is a percent sign. They count from 0 or 1 up to the first that is not there. On failure false,
+ * error says why and nothing is to be freed.
  */
 bool frame_paths_find(frame_paths *found, const char *pattern, char error[MESH_FILE_ERROR_SIZE]);
 

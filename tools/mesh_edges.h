@@ -23,7 +23,8 @@ mesh_side *mesh_edges_sort(const mesh_file *mesh);
 /* Whether a side runs from its lower to its higher vertex number. */
 bool mesh_edges_is_forward(const mesh_file *mesh, const mesh_side *side);
 
-/* The number of sides from sides[begin] on that are on the same edge; count is that of all sides. */
+/* The number of sides from sides[begin] on that are on the same edge; count is that of all
+   sides. */
 size_t mesh_edges_run(const mesh_side *sides, size_t begin, size_t count);
 
 #endif /* TOOLS_MESH_EDGES_H */

@@ -1,9 +1,11 @@
 /*
- * What sc-query asks about: a model, built from a mesh file or saved before, and the poses that fit it.
+ * What sc-query asks about: a model, built from a mesh file or saved before, and the poses that fit
+ * it.
  *
  * SPDX-License-Identifier: MIT
  *
- * On failure a call returns false, error says why, beginning with the path, and the subject is empty.
+ * On failure a call returns false, error says why, beginning with the path, and the subject is
+ * empty.
  */
 #ifndef TOOLS_QUERY_SUBJECT_H
 #define TOOLS_QUERY_SUBJECT_H
@@ -13,7 +15,8 @@
 
 #include "starcontour.h"
 
-/* A model with its workspace, and the mesh it was built from or for the pose of which it is asked. */
+/* A model with its workspace, and the mesh it was built from or for the pose of which it is
+   asked. */
 typedef struct query_subject {
     mesh_file mesh;
     model_file file;    /* of query_subject_open: owns the model */

@@ -22,7 +22,8 @@ double query_text_rounded(double milliseconds);
 /* Writes a field of comma-separated values (RFC 4180): quoted where it must be. */
 void query_text_field(FILE *out, const char *text);
 
-/* The tasks of a query and what became of the test tree, as lines of text, or as "stats" of an object. */
+/* The tasks of a query and what became of the test tree, as lines of text, or as "stats" of an
+   object. */
 void query_text_stats(const sc_stats *stats);
 void query_text_add_stats(cJSON *object, const sc_stats *stats);
 

@@ -10,8 +10,8 @@
 
 #include <stdbool.h>
 
-/* Starts as many as are needed for so many workers, 1 to SC_WORKERS_MAX; before any workspace is made. False if
-   they cannot be started. */
+/* Starts as many as are needed for so many workers, 1 to SC_WORKERS_MAX; before any workspace is
+   made. False if they cannot be started. */
 bool query_threads_start(uint32_t workers);
 
 /* Ends them. Queries are done by one thread then, as before the start. */

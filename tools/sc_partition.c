@@ -369,8 +369,8 @@ static bool write_model(const partition_view *view, const char *path)
     return written;
 }
 
-/* The whole job for one mesh. It is built and saved as it was read, so that poses fit; then its vertices
-   are joined, so that its edges are those of the model. */
+/* The whole job for one mesh. It is built and saved as it was read, so that poses fit; then its
+   vertices are joined, so that its edges are those of the model. */
 static bool show_mesh(mesh_file *mesh, const char *name, const partition_settings *set)
 {
     partition_view view;

@@ -3,9 +3,9 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Each file is a mesh of its own, or a pose of one mesh that is built once (--rest) or was built before
- * (--model). A file that cannot be done is reported and the others are still done. See usage below, and sc_query in
- * starcontour.h for what a pair is.
+ * Each file is a mesh of its own, or a pose of one mesh that is built once (--rest) or was built
+ * before (--model). A file that cannot be done is reported and the others are still done. See usage
+ * below, and sc_query in starcontour.h for what a pair is.
  */
 #include "filter_file.h"
 #include "ply_write.h"
@@ -543,7 +543,8 @@ static void follow_model(settings *set, const sc_model *model)
     set->method = info.node_count ? SC_METHOD_SCTT : SC_METHOD_AABB;
 }
 
-/* Does one file. rest is the common subject of --rest or --model, or NULL. Returns an exit status. */
+/* Does one file. rest is the common subject of --rest or --model, or NULL. Returns an exit
+   status. */
 static int do_file(const char *path, const settings *set, const query_subject *rest,
                    float *pose_positions, FILE *out, pair_list *list)
 {

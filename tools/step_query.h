@@ -3,8 +3,9 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Each file is a frame of one mesh, and each two that follow each other are a step: every vertex moves on a
- * straight line from one to the next. See sc_query_step in starcontour.h for what a collision is.
+ * Each file is a frame of one mesh, and each two that follow each other are a step: every vertex
+ * moves on a straight line from one to the next. See sc_query_step in starcontour.h for what a
+ * collision is.
  */
 #ifndef TOOLS_STEP_QUERY_H
 #define TOOLS_STEP_QUERY_H

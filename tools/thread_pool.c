@@ -3,11 +3,13 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * `ticket` says how many parts of the job at hand nobody has taken; a part is taken by counting it down by one, which
- * fails if it is no longer what it was. It holds the number of the job as well: so a thread that is late neither takes what
- * is not there nor holds up anybody, as the calling thread takes parts until none is left, and then waits only for those
- * that others are at. What the job is, is read once a part is taken: until that is done, it does not change. All this is
- * atomic (of gcc and clang, as C99 has nothing of the kind), so that there are locks only for threads that sleep.
+ * `ticket` says how many parts of the job at hand nobody has taken; a part is taken by counting it
+ * down by one, which fails if it is no longer what it was. It holds the number of the job as well:
+ * so a thread that is late neither takes what is not there nor holds up anybody, as the calling
+ * thread takes parts until none is left, and then waits only for those that others are at. What the
+ * job is, is read once a part is taken: until that is done, it does not change. All this is atomic
+ * (of gcc and clang, as C99 has nothing of the kind), so that there are locks only for threads that
+ * sleep.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -17,8 +19,9 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-/* How often a thread looks for a job, or for the end of one, before it sleeps: about 100 microseconds, in which a query goes
-   from one job to the next. To wake a thread costs the calling one 11 to 16, and takes 30. */
+/* How often a thread looks for a job, or for the end of one, before it sleeps: about 100
+   microseconds, in which a query goes from one job to the next. To wake a thread costs the calling
+   one 11 to 16, and takes 30. */
 enum { LOOKS = 10000 };
 
 typedef struct pool_member {
@@ -82,7 +85,8 @@ static void take_parts(thread_pool *pool, uint32_t worker)
     }
 }
 
-/* Waits for a job, or less: if it was done while the thread woke up, the next one follows soon. False: the pool ends. */
+/* Waits for a job, or less: if it was done while the thread woke up, the next one follows soon.
+   False: the pool ends. */
 static bool wait_for_job(thread_pool *pool)
 {
     for (int i = 0; i < LOOKS; i++) {

@@ -3,9 +3,10 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The thread that calls the library works as well: a pool of n workers starts n - 1 threads. A thread that has
- * nothing to do looks out for the next job for about 100 microseconds, for jobs of a query follow each other closely,
- * and then sleeps. A job is done as soon as its parts are, whether or not all threads woke up for it.
+ * The thread that calls the library works as well: a pool of n workers starts n - 1 threads. A
+ * thread that has nothing to do looks out for the next job for about 100 microseconds, for jobs of
+ * a query follow each other closely, and then sleeps. A job is done as soon as its parts are,
+ * whether or not all threads woke up for it.
  */
 #ifndef TOOLS_THREAD_POOL_H
 #define TOOLS_THREAD_POOL_H

@@ -10,7 +10,8 @@
 
 #include <stdbool.h>
 
-/* Prints an object on a line of its own and frees it; false, with a message, if there is no memory. */
+/* Prints an object on a line of its own and frees it; false, with a message, if there is no
+   memory. */
 bool tool_json_print(cJSON *object);
 
 #endif /* TOOLS_TOOL_JSON_H */

@@ -1,7 +1,7 @@
 /*
  * No peer: the triangle test on each pair of triangles whose boxes overlap, found without any tree.
- * It checks the driver and the triangle test against starcontour, on small scenes: its time grows with
- * the square of the triangles.
+ * It checks the driver and the triangle test against starcontour, on small scenes: its time grows
+ * with the square of the triangles.
  *
  * SPDX-License-Identifier: MIT
  */

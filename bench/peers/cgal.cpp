@@ -3,11 +3,13 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * For each pose: the positions go into a Surface_mesh, then boxes of all triangles are made anew and
- * their overlaps found by box_intersection_d; predicates are exact. Triangles that share vertices are
- * pairs by the same rules as ours. The mesh is an oriented 2-manifold; others are refused here.
+ * For each pose: the positions go into a Surface_mesh, then boxes of all triangles are made anew
+ * and their overlaps found by box_intersection_d; predicates are exact. Triangles that share
+ * vertices are pairs by the same rules as ours. The mesh is an oriented 2-manifold; others are
+ * refused here.
  *
- * CGAL's headers used here are under the GPL: so is a binary of this program. It is never installed.
+ * CGAL's headers used here are under the GPL: so is a binary of this program. It is never
+ * installed.
  */
 #include "peer.h"
 

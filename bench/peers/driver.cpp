@@ -7,20 +7,23 @@
  * triangle), frames.f64 or frames.f32 (frames x vertices x 3, little-endian).
  *
  * All ways of the peer and three of starcontour (exact contours, the default; star contours; boxes)
- * take turns frame by frame, one query each, as a simulation would ask: no query meets warm caches. The
- * sequence is walked once untimed, in which pairs are compared, and then N times. Everything that a new
- * pose costs is in the time: reading positions, refitting or rebuilding, finding and storing pairs.
- * Building on the first frame is not, but for the way "one shot" of starcontour, which has a turn in the
- * first frame only: a model for boxes alone, workspace, one query and freeing it all.
+ * take turns frame by frame, one query each, as a simulation would ask: no query meets warm caches.
+ * The sequence is walked once untimed, in which pairs are compared, and then N times. Everything
+ * that a new pose costs is in the time: reading positions, refitting or rebuilding, finding and
+ * storing pairs. Building on the first frame is not, but for the way "one shot" of starcontour,
+ * which has a turn in the first frame only: a model for boxes alone, workspace, one query and
+ * freeing it all.
  *
  * starcontour gets the same doubles, runs in one thread, and takes vertices as they are numbered
  * (SC_WELD_NONE), as peers do.
  *
- * Writes lines scene, triangles, frame, peer, version, what, threads, ms, pairs, matches, ms_min, missing,
- * extra, beside, processors: comma-separated, appended to FILE or printed. README.md says what the columns
- * are. A mesh that a peer cannot take is a line "# skipped: PEER on SCENE: REASON" in FILE.
+ * Writes lines scene, triangles, frame, peer, version, what, threads, ms, pairs, matches, ms_min,
+ * missing, extra, beside, processors: comma-separated, appended to FILE or printed. README.md says
+ * what the columns are. A mesh that a peer cannot take is a line "# skipped: PEER on SCENE: REASON"
+ * in FILE.
  *
- * Exit status: 0 if pairs match, 1 if some do not, 2 if a scene cannot be read or an option is wrong.
+ * Exit status: 0 if pairs match, 1 if some do not, 2 if a scene cannot be read or an option is
+ * wrong.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -60,7 +63,8 @@ struct settings {
     std::vector<std::string> scenes;
 };
 
-/* starcontour's ways, asked for by name so that they stay what they are called. The first is the default. */
+/* starcontour's ways, asked for by name so that they stay what they are called. The first is the
+   default. */
 const struct {
     const char *name;
     uint32_t method, contour;

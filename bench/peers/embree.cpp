@@ -3,11 +3,11 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Triangles are one user geometry, as rtcCollide asks for; their boxes are floats rounded outward. For
- * each pose the tree is refitted, or built anew with low quality (Morton codes), then rtcCollide hands
- * out pairs of triangles whose boxes overlap. It has no test of triangles and knows no neighbours: both
- * are done in the callback, by triangle_test.h. Each pair comes in both orders, and each triangle with
- * itself; the callback drops what is not in ascending order.
+ * Triangles are one user geometry, as rtcCollide asks for; their boxes are floats rounded outward.
+ * For each pose the tree is refitted, or built anew with low quality (Morton codes), then
+ * rtcCollide hands out pairs of triangles whose boxes overlap. It has no test of triangles and
+ * knows no neighbours: both are done in the callback, by triangle_test.h. Each pair comes in both
+ * orders, and each triangle with itself; the callback drops what is not in ascending order.
  */
 #include "peer.h"
 #include "triangle_test.h"

@@ -4,10 +4,10 @@
  * SPDX-License-Identifier: MIT
  *
  * For each pose the vertices are replaced, the boxes refitted from the leaves up (leaves of one
- * triangle, in double), and the tree is walked against itself. FCL's own collide() tests a model with
- * another one, and by rounded arithmetic; here its leaves are decided by triangle_test.h, neighbours
- * left out. (Updating a model instead of replacing its vertices makes boxes that hold the old and the
- * new triangle: for continuous tests.)
+ * triangle, in double), and the tree is walked against itself. FCL's own collide() tests a model
+ * with another one, and by rounded arithmetic; here its leaves are decided by triangle_test.h,
+ * neighbours left out. (Updating a model instead of replacing its vertices makes boxes that hold
+ * the old and the new triangle: for continuous tests.)
  */
 #include "peer.h"
 #include "triangle_test.h"

@@ -61,12 +61,13 @@ class peer
     virtual bool threaded() const = 0; /* whether it can use more than one thread */
 
     /*
-     * Gets ready for a scene, which outlives the peer; not timed. Throws std::runtime_error with the
-     * reason if the library cannot take the mesh.
+     * Gets ready for a scene, which outlives the peer; not timed. Throws std::runtime_error with
+     * the reason if the library cannot take the mesh.
      */
     virtual void build(const scene &animation, unsigned threads) = 0;
 
-    /* Everything there is to do for a new pose; timed. Adds pairs to an empty list, in any order. */
+    /* Everything there is to do for a new pose; timed. Adds pairs to an empty list, in any
+       order. */
     virtual void query(const double *positions, pair_list &found) = 0;
 };
 

@@ -132,7 +132,8 @@ void choose_axes(const double *const t[3], int &x, int &y)
     y = 0;
 }
 
-/* Whether the line of an edge of t has t on one side and all the points on the other, off the line. */
+/* Whether the line of an edge of t has t on one side and all the points on the other, off the
+   line. */
 bool edge_separates(const double *const t[3], const double *const *points, int count, int x, int y)
 {
     const int inner = turn(t[0], t[1], t[2], x, y);
@@ -145,8 +146,8 @@ bool edge_separates(const double *const t[3], const double *const *points, int c
 }
 
 /*
- * What lies in one plane. Convex polygons are apart if and only if the line of an edge separates them,
- * and a segment is one.
+ * What lies in one plane. Convex polygons are apart if and only if the line of an edge separates
+ * them, and a segment is one.
  */
 bool coplanar_meet(const double *const a[3], const double *const b[3])
 {

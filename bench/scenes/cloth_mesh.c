@@ -51,8 +51,8 @@ static void fill_cell(const cloth_mesh *mesh, uint32_t row, uint32_t column, uin
 }
 
 /*
- * The place of a cell on Hilbert's curve through a square of side cells, a power of two. Any part of
- * the curve is a compact patch, so it does not matter where an order along it is cut.
+ * The place of a cell on Hilbert's curve through a square of side cells, a power of two. Any part
+ * of the curve is a compact patch, so it does not matter where an order along it is cut.
  */
 static uint64_t curve_place(uint32_t side, uint32_t x, uint32_t y)
 {

@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * Cloth of up to 256 cells along a side is simulated as it is. Finer cloth shows the motion of 256
- * cells as a smooth surface, so all finer resolutions of a scene show the same motion, with wrinkles
- * of the same size. None of them resists passing through itself.
+ * cells as a smooth surface, so all finer resolutions of a scene show the same motion, with
+ * wrinkles of the same size. None of them resists passing through itself.
  */
 #include "scenes/motion.h"
 
@@ -38,7 +38,8 @@ static void free_cloth(void *state)
     free(scene);
 }
 
-/* The mesh, and its simulation with nothing set but the particles' distance: a square of this size. */
+/* The mesh, and its simulation with nothing set but the particles' distance: a square of this
+   size. */
 static cloth_scene *start_cloth(scene_motion *motion, uint32_t triangles, uint32_t crossed,
                                 double size, char *error, size_t error_size)
 {
@@ -70,8 +71,8 @@ static double *particle(cloth_simulation *cloth, uint32_t row, uint32_t column)
 }
 
 /* ------------------------------------------------------------------------------------------------
- * Twisted cloth: the first and the last column are bars on the x axis, which turn against each other
- * and come closer as the cloth gets shorter.
+ * Twisted cloth: the first and the last column are bars on the x axis, which turn against each
+ * other and come closer as the cloth gets shorter.
  */
 
 static void hold_bars(cloth_simulation *cloth, double time)
@@ -187,10 +188,10 @@ int scene_start_cloth_sphere(scene_motion *motion, uint32_t triangles, char *err
 }
 
 /* ------------------------------------------------------------------------------------------------
- * Wrinkled cloth: upright cloth falls on the ground and folds into a heap. Its layers do not collide;
- * instead the ground is higher for what comes later: from 0 for the lower side of the cloth to
- * heap_height for the upper one, and uneven, so that layers lie one upon the other and pass through
- * their neighbours only where wrinkles do.
+ * Wrinkled cloth: upright cloth falls on the ground and folds into a heap. Its layers do not
+ * collide; instead the ground is higher for what comes later: from 0 for the lower side of the
+ * cloth to heap_height for the upper one, and uneven, so that layers lie one upon the other and
+ * pass through their neighbours only where wrinkles do.
  */
 
 static const double heap_height = 0.25;

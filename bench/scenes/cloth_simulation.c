@@ -32,7 +32,8 @@ void cloth_simulation_free(cloth_simulation *cloth)
     memset(cloth, 0, sizeof *cloth);
 }
 
-/* Moves two particles towards their distance at rest. softness: compliance over the squared step. */
+/* Moves two particles towards their distance at rest. softness: compliance over the squared
+   step. */
 static void restore_distance(cloth_simulation *cloth, size_t a, size_t b, double rest,
                              double softness)
 {

@@ -4,9 +4,10 @@
  * SPDX-License-Identifier: MIT
  *
  * Extended position based dynamics in many short steps with one sweep each (Macklin et al., "Small
- * steps in physics simulation", 2019). Distances to the neighbours along rows, columns and diagonals,
- * and to the next but one against bending. The cloth does not collide with itself: that is what makes
- * it pass through itself, as the scenes want. Sweeps go in a fixed order, so results are repeatable.
+ * steps in physics simulation", 2019). Distances to the neighbours along rows, columns and
+ * diagonals, and to the next but one against bending. The cloth does not collide with itself: that
+ * is what makes it pass through itself, as the scenes want. Sweeps go in a fixed order, so results
+ * are repeatable.
  *
  * Cost: about 10 ns a distance and step, 6 distances a particle.
  */
@@ -45,8 +46,8 @@ struct cloth_simulation {
 int cloth_simulation_init(cloth_simulation *cloth, uint32_t cells);
 void cloth_simulation_free(cloth_simulation *cloth);
 
-/* Runs to a time from 0 to 1, never back, and returns the positions then, 3 * count: between two steps
-   on the straight line. What is returned is valid until the next call. */
+/* Runs to a time from 0 to 1, never back, and returns the positions then, 3 * count: between two
+   steps on the straight line. What is returned is valid until the next call. */
 const double *cloth_simulation_run(cloth_simulation *cloth, double time);
 
 #endif /* BENCH_CLOTH_SIMULATION_H */

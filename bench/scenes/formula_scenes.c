@@ -1,5 +1,6 @@
 /*
- * Scenes that are formulas of time: a sphere at rest, cloth crushed into tight layers, tight and squeezed rods.
+ * Scenes that are formulas of time: a sphere at rest, cloth crushed into tight layers, tight and
+ * squeezed rods.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -25,8 +26,8 @@ static int take_mesh(scene_motion *motion, mesh_file *mesh)
 }
 
 /* ------------------------------------------------------------------------------------------------
- * The sphere: radii change by a few percent in long waves, so it stays the boundary of a star-shaped
- * body and never touches itself.
+ * The sphere: radii change by a few percent in long waves, so it stays the boundary of a
+ * star-shaped body and never touches itself.
  */
 
 typedef struct sphere_scene {
@@ -87,7 +88,8 @@ typedef struct crushed_scene {
 
 /*
  * The angle of the rolled row's direction at a distance from its inner end: on the spiral of
- * Archimedes, r = hole + gap angle / (2 pi), whose length is about hole angle + gap angle^2 / (4 pi).
+ * Archimedes, r = hole + gap angle / (2 pi), whose length is about hole angle + gap angle^2 / (4
+ * pi).
  */
 static double roll_angle(double length)
 {
@@ -171,9 +173,9 @@ int scene_start_crushed_cloth(scene_motion *motion, uint32_t triangles, char *er
 }
 
 /* ------------------------------------------------------------------------------------------------
- * Tight rods: a square bundle of open tubes with little space between them, wrung about its axis, and
- * pinched in the middle, where their neighbours get into them. Squeezed rods: the same bundle pressed
- * together along its whole length, so that walls of many tubes lie side by side everywhere.
+ * Tight rods: a square bundle of open tubes with little space between them, wrung about its axis,
+ * and pinched in the middle, where their neighbours get into them. Squeezed rods: the same bundle
+ * pressed together along its whole length, so that walls of many tubes lie side by side everywhere.
  */
 
 enum { ROD_SIDE = 8, RODS = ROD_SIDE * ROD_SIDE, ROD_AROUND = 8 };

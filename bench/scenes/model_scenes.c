@@ -1,6 +1,6 @@
 /*
- * Scenes of glmark2's models: a cat that walks, a bunny that rolls down a hill, a horse that is sucked
- * empty.
+ * Scenes of glmark2's models: a cat that walks, a bunny that rolls down a hill, a horse that is
+ * sucked empty.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -26,9 +26,9 @@ static void take_triangles(scene_motion *motion, mesh_file *mesh)
 
 /* ------------------------------------------------------------------------------------------------
  * The cat, by skinning: each bone turns about a joint and takes the vertices near to it along, by
- * weights that fall off smoothly with the distance to the bone. The cat crouches, so it walks like one
- * that creeps up on a mouse: paws and haunches go forward in turn, the back sways, the head turns, the
- * tail beats.
+ * weights that fall off smoothly with the distance to the bone. The cat crouches, so it walks like
+ * one that creeps up on a mouse: paws and haunches go forward in turn, the back sways, the head
+ * turns, the tail beats.
  */
 
 /* A bone from one point to another turns about its first point. */
@@ -209,8 +209,8 @@ static int start_body(soft_scene *scene, scene_motion *motion, double stretch, d
 }
 
 /* ------------------------------------------------------------------------------------------------
- * The bunny rolls and bounces down a wavy slope, soft enough to be dented; ears and tail are limp and
- * get into the body.
+ * The bunny rolls and bounces down a wavy slope, soft enough to be dented; ears and tail are limp
+ * and get into the body.
  */
 
 static double hill_height(double x)
@@ -232,8 +232,9 @@ static void hold_above_hill(soft_body *body, double time)
 }
 
 /*
- * Moves the vertices along their normals: bumps of a smooth noise, or spikes on its peaks. Where the
- * surface does not look away from the middle, as between the ears, there is less, as bumps would meet.
+ * Moves the vertices along their normals: bumps of a smooth noise, or spikes on its peaks. Where
+ * the surface does not look away from the middle, as between the ears, there is less, as bumps
+ * would meet.
  */
 static int roughen(mesh_file *mesh, bool spikes, char *error, size_t error_size)
 {
@@ -306,8 +307,8 @@ int scene_start_bunny_spiky(scene_motion *motion, uint32_t triangles, char *erro
 }
 
 /* ------------------------------------------------------------------------------------------------
- * The horse is hollow and sucked empty: its skin hardly stretches, so it buckles, and opposite sides
- * get into each other.
+ * The horse is hollow and sucked empty: its skin hardly stretches, so it buckles, and opposite
+ * sides get into each other.
  */
 
 int scene_start_horse(scene_motion *motion, uint32_t triangles, char *error, size_t error_size)

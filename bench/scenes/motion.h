@@ -46,8 +46,8 @@ int scene_fail(char *error, size_t error_size, const char *format, ...);
 /* From 0 to 1 with level ends as x goes from low to high; 0 before and 1 after. */
 double scene_ease(double low, double high, double x);
 
-/* A smooth, repeatable field of values from -1 to 1 with a wave length of about 1, different for each
-   seed. */
+/* A smooth, repeatable field of values from -1 to 1 with a wave length of about 1, different for
+   each seed. */
 double scene_noise(double x, double y, double z, uint32_t seed);
 
 #endif /* BENCH_MOTION_H */

@@ -3,12 +3,12 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Scenes are deterministic: the same arguments give the same bytes on the same machine and build. An
- * animation is always whole: fewer frames show the same motion in longer steps. All coordinates are
- * floats, so that methods and formats that know no doubles see the very same scene.
+ * Scenes are deterministic: the same arguments give the same bytes on the same machine and build.
+ * An animation is always whole: fewer frames show the same motion in longer steps. All coordinates
+ * are floats, so that methods and formats that know no doubles see the very same scene.
  *
- * cat, bunny and horse are made from the models that `make meshes` fetches to build/meshes, or to the
- * folder named by the environment variable SC_MESHES.
+ * cat, bunny and horse are made from the models that `make meshes` fetches to build/meshes, or to
+ * the folder named by the environment variable SC_MESHES.
  *
  * Cost: seconds; about a minute at most for the largest. Memory: some hundred bytes a triangle.
  */
@@ -32,10 +32,10 @@ const scene_kind *scene_kinds(size_t *count);
 typedef void (*scene_progress)(void *user, uint32_t frame, uint32_t frames);
 
 /*
- * Makes a scene and writes it to a folder (see scene_folder.h; frames.f32, and order.u32 for cloth),
- * which is made if it is not there. triangles: what is asked for; the nearest resolution there is gets
- * made. frames: 1 or more; the first frame is the rest pose. progress may be NULL. Returns 0, or -1
- * with a message in error.
+ * Makes a scene and writes it to a folder (see scene_folder.h; frames.f32, and order.u32 for
+ * cloth), which is made if it is not there. triangles: what is asked for; the nearest resolution
+ * there is gets made. frames: 1 or more; the first frame is the rest pose. progress may be NULL.
+ * Returns 0, or -1 with a message in error.
  */
 int scene_make(const char *name, uint32_t triangles, uint32_t frames, const char *folder,
                scene_progress progress, void *user, char *error, size_t error_size);

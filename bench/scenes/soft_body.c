@@ -124,8 +124,8 @@ static double dot(const double *a, const double *b)
 
 /*
  * Turns q towards the rotation nearest to a matrix, given by its columns (Müller et al., "A robust
- * method to extract the rotational part of deformations", 2016). Begun with the last step's rotation,
- * a few rounds are enough.
+ * method to extract the rotational part of deformations", 2016). Begun with the last step's
+ * rotation, a few rounds are enough.
  */
 static void follow_rotation(double columns[3][3], double q[4])
 {

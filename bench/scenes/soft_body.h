@@ -3,11 +3,11 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * As in cloth_simulation.h: many short steps with one sweep over distances, along edges and, against
- * bending, across them. Each particle is also drawn towards its place in the rest shape, moved and
- * turned as the whole is (Müller et al., "Meshless deformations based on shape matching", 2005), and
- * may be pushed along its normal. The surface does not collide with itself. Sweeps go in a fixed
- * order, so results are repeatable.
+ * As in cloth_simulation.h: many short steps with one sweep over distances, along edges and,
+ * against bending, across them. Each particle is also drawn towards its place in the rest shape,
+ * moved and turned as the whole is (Müller et al., "Meshless deformations based on shape matching",
+ * 2005), and may be pushed along its normal. The surface does not collide with itself. Sweeps go in
+ * a fixed order, so results are repeatable.
  *
  * Cost: about 15 ns a distance and step, 3 distances a triangle.
  */
@@ -18,8 +18,8 @@
 
 typedef struct soft_body soft_body;
 
-/* Called in each step before and after distances are restored: moves what is inside of something. time
-   is from 0 to 1. */
+/* Called in each step before and after distances are restored: moves what is inside of something.
+   time is from 0 to 1. */
 typedef void (*soft_body_hold)(soft_body *body, double time);
 
 typedef struct soft_spring {
@@ -47,7 +47,8 @@ struct soft_body {
     soft_body_hold hold;
 };
 
-/* Starts at a mesh at rest. stretch and bend: compliances. Returns 0, or -1 if there is no memory. */
+/* Starts at a mesh at rest. stretch and bend: compliances. Returns 0, or -1 if there is no
+   memory. */
 int soft_body_init(soft_body *body, const mesh_file *mesh, const uint32_t *triangles,
                    double stretch, double bend);
 void soft_body_free(soft_body *body);

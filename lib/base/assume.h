@@ -8,8 +8,8 @@
  * SC_HARDLY(x)   x can be true, but it takes more memory than a test has, another machine or library, or
  *                a coincidence that no test can make.
  *
- * Where coverage is measured they are constants, so that what depends on them is not compiled; elsewhere
- * they are x. The names, and the idea, are those of SQLite and H3.
+ * Where coverage is measured they are constants, so that what depends on them is not compiled;
+ * elsewhere they are x. The names, and the idea, are those of SQLite and H3.
  */
 #ifndef SC_BASE_ASSUME_H
 #define SC_BASE_ASSUME_H

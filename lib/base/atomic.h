@@ -4,9 +4,9 @@
  * SPDX-License-Identifier: MIT
  *
  * C99 has no atomic operations, but gcc and clang have, for every machine and without a library for
- * what is no longer than a pointer. SC_ATOMIC is 0 with other compilers: a flag can be read there, as aligned words
- * are read and written as a whole on all machines there are, and nothing that takes more is done by
- * several threads. Nothing else is to be ordered by these operations.
+ * what is no longer than a pointer. SC_ATOMIC is 0 with other compilers: a flag can be read there,
+ * as aligned words are read and written as a whole on all machines there are, and nothing that
+ * takes more is done by several threads. Nothing else is to be ordered by these operations.
  */
 #ifndef SC_BASE_ATOMIC_H
 #define SC_BASE_ATOMIC_H

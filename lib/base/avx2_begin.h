@@ -1,6 +1,6 @@
 /*
- * From here to base/avx2_end.h, functions are compiled for machines with AVX2. No fused multiplication and
- * addition: it would round differently.
+ * From here to base/avx2_end.h, functions are compiled for machines with AVX2. No fused
+ * multiplication and addition: it would round differently.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -1,7 +1,7 @@
 /*
- * From here to base/avx512_end.h, functions are compiled for machines with AVX-512: its foundation, bytes and
- * words, doublewords and quadwords, and vector lengths. No fused multiplication and addition: it would round
- * differently.
+ * From here to base/avx512_end.h, functions are compiled for machines with AVX-512: its foundation,
+ * bytes and words, doublewords and quadwords, and vector lengths. No fused multiplication and
+ * addition: it would round differently.
  *
  * SPDX-License-Identifier: MIT
  */

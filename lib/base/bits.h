@@ -33,7 +33,8 @@ static inline void sc_fetch(const void *address)
 #endif
 }
 
-/* For functions that do nothing else: gcc takes them for such that have no effect, and drops calls of them. */
+/* For functions that do nothing else: gcc takes them for such that have no effect, and drops calls
+   of them. */
 static inline void sc_fetch_matters(void)
 {
 #if defined(__GNUC__)
@@ -52,8 +53,8 @@ static inline unsigned sc_bits_lowest64(uint64_t mask)
 #endif
 }
 
-/* How many bits of a mask are set. Without an instruction for it the compiler's own form is a call into its library, which
-   a DLL would then need. */
+/* How many bits of a mask are set. Without an instruction for it the compiler's own form is a call
+   into its library, which a DLL would then need. */
 static inline unsigned sc_bits_count(unsigned mask)
 {
 #if defined(__POPCNT__) || defined(__aarch64__) || defined(__wasm__)

@@ -1,6 +1,6 @@
 /*
- * Axis-aligned boxes in single precision that bound double coordinates, stored as six arrays, and the
- * test of one against another.
+ * Axis-aligned boxes in single precision that bound double coordinates, stored as six arrays, and
+ * the test of one against another.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -22,9 +22,9 @@ typedef struct sc_boxes {
 
 /*
  * A float not above (below) d. The conversion is off by half a unit in the last place, at most
- * 2^-24 |f|; one step of 2^-23 |f| or more undoes it, and FLT_MIN does so where f is denormal or zero.
- * Beyond the range of float the clamp gives FLT_MAX on the inner side and the step infinity on the
- * outer.
+ * 2^-24 |f|; one step of 2^-23 |f| or more undoes it, and FLT_MIN does so where f is denormal or
+ * zero. Beyond the range of float the clamp gives FLT_MAX on the inner side and the step infinity
+ * on the outer.
  */
 static inline float sc_boxes_clamp(double d)
 {

@@ -1,5 +1,6 @@
 /*
- * The one place that is not C99: a monotonic clock where the system has one, processor time elsewhere.
+ * The one place that is not C99: a monotonic clock where the system has one, processor time
+ * elsewhere.
  *
  * SPDX-License-Identifier: MIT
  */

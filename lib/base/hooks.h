@@ -23,9 +23,9 @@ __attribute__((format(printf, 3, 4)))
 void sc_hooks_log(const sc_hooks *hooks, uint32_t level, const char *format, ...);
 
 /*
- * In builds with SC_VALIDATE (make config=debug or sanitize): tells the caller if a condition does not
- * hold, or ends the program if nobody is to be told. hooks is a pointer, not NULL. Elsewhere the
- * condition is not computed.
+ * In builds with SC_VALIDATE (make config=debug or sanitize): tells the caller if a condition does
+ * not hold, or ends the program if nobody is to be told. hooks is a pointer, not NULL. Elsewhere
+ * the condition is not computed.
  */
 #ifdef SC_VALIDATE
 #  define SC_HOOKS_ASSERT(hooks, condition)                                                        \

@@ -3,8 +3,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Such a loop is written once, in a file named ..._kernel.h, over sixteen floats at a time (base/lanes.h), and
- * included by a .c file for each instruction set. All give the same answers.
+ * Such a loop is written once, in a file named ..._kernel.h, over sixteen floats at a time
+ * (base/lanes.h), and included by a .c file for each instruction set. All give the same answers.
  */
 #ifndef SC_BASE_ISA_H
 #define SC_BASE_ISA_H
@@ -13,23 +13,24 @@
 
 #include "base/assume.h"
 
-/* SC_NO_SIMD leaves the plain form alone, for other machines and to compare. SIMD: single instruction,
-   multiple data; SSE and AVX: x86's streaming and advanced vector extensions. */
+/* SC_NO_SIMD leaves the plain form alone, for other machines and to compare. SIMD: single
+   instruction, multiple data; SSE and AVX: x86's streaming and advanced vector extensions. */
 #if !defined(SC_NO_SIMD) && defined(__GNUC__) && defined(__x86_64__)
 #  define SC_ISA_X86 1
 #else
 #  define SC_ISA_X86 0
 #endif
 
-/* gcc's and clang's vector types, of which they make what the machine has; on 32-bit x86 only with SSE2. SC_NO_VECTORS
-   leaves them alone, too. */
+/* gcc's and clang's vector types, of which they make what the machine has; on 32-bit x86 only with
+   SSE2. SC_NO_VECTORS leaves them alone, too. */
 #if !defined(SC_NO_VECTORS) && defined(__GNUC__) && (!defined(__i386__) || defined(__SSE2__))
 #  define SC_ISA_VECTORS 1
 #else
 #  define SC_ISA_VECTORS 0
 #endif
 
-/* Before a loop of a few rounds, over axes or corners, of which the compiler is to make straight code. */
+/* Before a loop of a few rounds, over axes or corners, of which the compiler is to make straight
+   code. */
 #if defined(__clang__)
 #  define SC_UNROLL _Pragma("unroll")
 #elif defined(__GNUC__)
@@ -38,8 +39,9 @@
 #  define SC_UNROLL
 #endif
 
-/* Of functions that are to be compiled anew for each constant they are called with. Without optimization that gains
-   nothing, takes more stack, and makes steps of a debugger and counts of coverage harder to read. */
+/* Of functions that are to be compiled anew for each constant they are called with. Without
+   optimization that gains nothing, takes more stack, and makes steps of a debugger and counts of
+   coverage harder to read. */
 #if defined(__GNUC__) && defined(__OPTIMIZE__)
 #  define SC_INLINE inline __attribute__((always_inline))
 #else
@@ -53,8 +55,8 @@
 #  define SC_NOINLINE
 #endif
 
-/* The number itself, to be computed alone: compilers like to compute several addresses in one vector register, from
-   which it takes longer to get them. */
+/* The number itself, to be computed alone: compilers like to compute several addresses in one
+   vector register, from which it takes longer to get them. */
 static inline size_t sc_alone(size_t number)
 {
 #if defined(__GNUC__)

@@ -11,9 +11,10 @@
 #include "starcontour.h"
 
 /*
- * Which parts of a job which worker does. Each has a range of its own, first to last as workers are numbered, and begins with
- * that; then it takes what is left of others'. So what one pass has brought into a core's cache, the next finds there, if
- * what is near in the list of parts is near in memory.
+ * Which parts of a job which worker does. Each has a range of its own, first to last as workers are
+ * numbered, and begins with that; then it takes what is left of others'. So what one pass has
+ * brought into a core's cache, the next finds there, if what is near in the list of parts is near
+ * in memory.
  */
 typedef struct sc_jobs_ranges {
     uint32_t count, workers;
@@ -24,13 +25,15 @@ typedef struct sc_jobs_ranges {
 
 void sc_jobs_divide(const sc_tasks *tasks, uint32_t count, sc_jobs_ranges *ranges);
 
-/* The part to do for a worker that the host has given that part: each of count once, if so often asked. Workers begin in
-   turn at the first and at the last of their range, and others at the other end: two have all between them, and meet. */
+/* The part to do for a worker that the host has given that part: each of count once, if so often
+   asked. Workers begin in turn at the first and at the last of their range, and others at the other
+   end: two have all between them, and meet. */
 uint32_t sc_jobs_take(sc_jobs_ranges *ranges, uint32_t part, uint32_t worker);
 
-/* The same of parts that are taken some at once, fewer when few are left, so that the last do not take long. How often they
-   are to be asked for; and the first of those to do, of which there are *some. All begin with the first of a range: what is
-   near takes about as long, so that none is left with long ones in the end. */
+/* The same of parts that are taken some at once, fewer when few are left, so that the last do not
+   take long. How often they are to be asked for; and the first of those to do, of which there are
+   *some. All begin with the first of a range: what is near takes about as long, so that none is
+   left with long ones in the end. */
 uint32_t sc_jobs_takes(const sc_jobs_ranges *ranges);
 uint32_t sc_jobs_take_some(sc_jobs_ranges *ranges, uint32_t worker, uint32_t *some);
 
@@ -44,8 +47,9 @@ enum { SC_JOBS_PARTS = 32 };
 typedef void (*sc_jobs_body)(void *context, uint32_t part, uint32_t first, uint32_t end);
 
 /*
- * Does 0 to count - 1 in parts of about equal length, none shorter than least but the last. How they are cut
- * depends on these two numbers only, unless tasks is NULL: then all is one part. Returns how many there are.
+ * Does 0 to count - 1 in parts of about equal length, none shorter than least but the last. How
+ * they are cut depends on these two numbers only, unless tasks is NULL: then all is one part.
+ * Returns how many there are.
  */
 uint32_t sc_jobs_loop(const sc_tasks *tasks, uint32_t count, uint32_t least, sc_jobs_body body,
                       void *context);
@@ -53,12 +57,13 @@ uint32_t sc_jobs_loop(const sc_tasks *tasks, uint32_t count, uint32_t least, sc_
 /* A list is sorted in so many runs, unless they would be shorter than that. */
 enum { SC_JOBS_RUNS = 32, SC_JOBS_RUN_MIN = 500 };
 
-/* How entries first to first + count - 1 of a list are moved so that none of the first n is greater than one of the rest,
-   which returns n; and how they are sorted. */
+/* How entries first to first + count - 1 of a list are moved so that none of the first n is greater
+   than one of the rest, which returns n; and how they are sorted. */
 typedef uint64_t (*sc_jobs_split)(void *context, uint64_t first, uint64_t count);
 typedef void (*sc_jobs_order)(void *context, uint64_t first, uint64_t count);
 
-/* Sorts a list of so many entries by halves of halves: only the first split is done by one worker. */
+/* Sorts a list of so many entries by halves of halves: only the first split is done by one
+   worker. */
 void sc_jobs_sort(const sc_tasks *tasks, uint64_t count, sc_jobs_split split, sc_jobs_order order,
                   void *context);
 

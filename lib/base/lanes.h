@@ -1,21 +1,24 @@
 /*
- * Sixteen floats at a time, for the instruction set that the including file chose: SC_LANES is AVX-512 (one
- * register), AVX2 (two), registers of four floats (four; see base/quads.h: SSE2, which every x86-64 has, or what the
- * compiler makes of its vector types) or, with other compilers, plain C.
+ * Sixteen floats at a time, for the instruction set that the including file chose: SC_LANES is
+ * AVX-512 (one register), AVX2 (two), registers of four floats (four; see base/quads.h: SSE2, which
+ * every x86-64 has, or what the compiler makes of its vector types) or, with other compilers, plain
+ * C.
  *
  * SPDX-License-Identifier: MIT
  *
- * Operations round as those of single floats do, and there is no fused multiplication and addition, so that
- * all of them give the same results. lanes_largest_size takes the largest absolute value. A comparison gives a mask, of
- * which lanes_bits makes bit i for lane i; with NaN it is false. lanes_points reads the first three of four floats at
- * sixteen places, lanes_rows those of sixteen fours of an array by their numbers. lanes_numbers writes down sixteen numbers,
- * to which one of two is added: the first if they are below a split. lanes_turned reads the first three of sixteen fours
- * that follow each other in turned places (see build/loops.h): block i of sixteen floats holds points i, i + 4, i + 8 and
- * i + 12. Of the functions of fours, lanes_four repeats four floats four times, lanes_each_four each of four
- * floats, and the others store the least or greatest of each four lanes.
+ * Operations round as those of single floats do, and there is no fused multiplication and addition,
+ * so that all of them give the same results. lanes_largest_size takes the largest absolute value. A
+ * comparison gives a mask, of which lanes_bits makes bit i for lane i; with NaN it is false.
+ * lanes_points reads the first three of four floats at sixteen places, lanes_rows those of sixteen
+ * fours of an array by their numbers. lanes_numbers writes down sixteen numbers, to which one of
+ * two is added: the first if they are below a split. lanes_turned reads the first three of sixteen
+ * fours that follow each other in turned places (see build/loops.h): block i of sixteen floats
+ * holds points i, i + 4, i + 8 and i + 12. Of the functions of fours, lanes_four repeats four
+ * floats four times, lanes_each_four each of four floats, and the others store the least or
+ * greatest of each four lanes.
  *
- * Included once for each instruction set, by the .c files that include kernels, which define SC_KERNEL(name) to
- * make names of their own; so this has no guard. base/lanes_end.h ends it.
+ * Included once for each instruction set, by the .c files that include kernels, which define
+ * SC_KERNEL(name) to make names of their own; so this has no guard. base/lanes_end.h ends it.
  */
 #include <math.h>
 
@@ -715,8 +718,8 @@ static inline lanes lanes_largest_size(lanes a, lanes b, lanes c)
 #endif
 
 /*
- * Reductions: of the upper and lower halves, then of halves of these: the order in which a sum is made, the same
- * for all instruction sets. For the least and the greatest no lane is NaN.
+ * Reductions: of the upper and lower halves, then of halves of these: the order in which a sum is
+ * made, the same for all instruction sets. For the least and the greatest no lane is NaN.
  */
 #if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_QUADS
 

@@ -1,18 +1,20 @@
 /*
- * Sixteen bytes at a time, one for each of sixteen lanes: numbers below sixteen, of points of a leaf cluster. For the
- * instruction set that base/lanes.h and base/lanes_pick.h, included before, are for.
+ * Sixteen bytes at a time, one for each of sixteen lanes: numbers below sixteen, of points of a
+ * leaf cluster. For the instruction set that base/lanes.h and base/lanes_pick.h, included before,
+ * are for.
  *
  * SPDX-License-Identifier: MIT
  *
- * Masks are bytes of all bits or none; lanes_bytes_choose takes from a where one is set, else from b, and
- * lanes_bytes_bits makes bit i for byte i. lanes_bytes_quarters has the four lowest bits of each of sixteen words,
- * the four above, and so on. lanes_bytes_through reads a row by numbers below sixteen. lanes_triples are three rows,
- * which lanes_triples_through reads by the same numbers. lanes_names tells for each of sixteen numbers b where among
- * sixteen others it first is, or 255 if nowhere. lanes_index_of makes numbers of lanes (base/lanes_pick.h) of them.
- * lanes_list_rows takes from rows of numbers those of these lanes, adds to those of each row a number of its own, and
- * writes them as rows of so many words, room for sixteen in each. lanes_edges_of reads points of two tables, in
- * turned places (see base/lanes.h), by numbers: the first of three of one is subtracted from the other two, then from
- * two of the other.
+ * Masks are bytes of all bits or none; lanes_bytes_choose takes from a where one is set, else from
+ * b, and lanes_bytes_bits makes bit i for byte i. lanes_bytes_quarters has the four lowest bits of
+ * each of sixteen words, the four above, and so on. lanes_bytes_through reads a row by numbers
+ * below sixteen. lanes_triples are three rows, which lanes_triples_through reads by the same
+ * numbers. lanes_names tells for each of sixteen numbers b where among sixteen others it first is,
+ * or 255 if nowhere. lanes_index_of makes numbers of lanes (base/lanes_pick.h) of them.
+ * lanes_list_rows takes from rows of numbers those of these lanes, adds to those of each row a
+ * number of its own, and writes them as rows of so many words, room for sixteen in each.
+ * lanes_edges_of reads points of two tables, in turned places (see base/lanes.h), by numbers: the
+ * first of three of one is subtracted from the other two, then from two of the other.
  *
  * No guard, as in base/lanes.h; base/lanes_bytes_end.h ends it.
  */
@@ -99,7 +101,8 @@ static inline lanes_bytes lanes_bytes_but(lanes_bytes a, lanes_bytes b)
 {
     return a & ~b;
 }
-/* A bit of each byte; the sum of eight such bytes is in the highest byte of their product with ones. */
+/* A bit of each byte; the sum of eight such bytes is in the highest byte of their product with
+   ones. */
 static inline unsigned lanes_bytes_bits(lanes_bytes a)
 {
     const lanes_bytes bit = {1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128};
@@ -457,7 +460,8 @@ static inline lanes_bytes lanes_names(const uint32_t *a, const uint32_t *b)
 
 #elif SC_LANES_SSE2
 
-/* What is kept is 255 less a number, the largest of which is that of the first; 0 if there is none. */
+/* What is kept is 255 less a number, the largest of which is that of the first; 0 if there is
+   none. */
 static inline lanes_bytes lanes_names(const uint32_t *a, const uint32_t *b)
 {
     __m128i other[4], kept[4];

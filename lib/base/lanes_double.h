@@ -1,13 +1,15 @@
 /*
- * Eight doubles at a time, for the instruction set that the including file chose: base/lanes.h, included before,
- * says how. One register of AVX-512, two of AVX2, four of two doubles (base/quads.h); elsewhere plain C.
+ * Eight doubles at a time, for the instruction set that the including file chose: base/lanes.h,
+ * included before, says how. One register of AVX-512, two of AVX2, four of two doubles
+ * (base/quads.h); elsewhere plain C.
  *
  * SPDX-License-Identifier: MIT
  *
- * Operations round as those of single doubles do. doubles_larger_size and doubles_smaller_size take the larger or
- * smaller absolute value. A comparison gives a mask of all lanes, of which doubles_bits makes bit i for lane i; with
- * NaN it is false. doubles_signs makes such bits of signs, doubles_differ of whether the signs of two or three differ.
- * doubles_choose takes from a where the mask is set, else from b; doubles_points reads three doubles, or floats, at eight
+ * Operations round as those of single doubles do. doubles_larger_size and doubles_smaller_size take
+ * the larger or smaller absolute value. A comparison gives a mask of all lanes, of which
+ * doubles_bits makes bit i for lane i; with NaN it is false. doubles_signs makes such bits of
+ * signs, doubles_differ of whether the signs of two or three differ. doubles_choose takes from a
+ * where the mask is set, else from b; doubles_points reads three doubles, or floats, at eight
  * places, aligned or not.
  *
  * No guard, as in base/lanes.h; base/lanes_double_end.h ends it.

@@ -1,27 +1,30 @@
 /*
- * Numbers of lanes: rows of sixteen floats in any order. For the instruction set that base/lanes.h, included before,
- * is for.
+ * Numbers of lanes: rows of sixteen floats in any order. For the instruction set that base/lanes.h,
+ * included before, is for.
  *
  * SPDX-License-Identifier: MIT
  *
- * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen bytes are written
- * to; lanes_list_from adds a first number to them, and writes sixteen words; lanes_list_pairs takes the numbers of
- * these lanes from two rows of sixteen bytes, adds the first of two first numbers, or the second in lanes of a second
- * mask, and writes pairs of words, room for sixteen. lanes_list_bits writes a number for each, bit k of which is its
- * lane's in the k-th of twelve masks, room for sixteen. lanes_list_among looks at words, sixteen or fewer, none of which is
- * there twice: it writes `at` and the places of those that are a first number and one of a set of numbers below sixteen, room
- * for sixteen, and tells which these are. lanes_index reads sixteen numbers below sixteen,
- * lanes_index_through those of these numbers of a row of sixteen bytes; lanes_pick and lanes_pick_of take the floats
- * of these numbers of a row, in memory or not, lanes_pick_both those of numbers below 32 of two rows. lanes_choose
- * takes from a where the mask is set, else from b. lanes_same compares bits, whatever they mean; lanes_differ has
- * what is in one of two masks only. lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2, from
- * three rows of coordinates by three of numbers; lanes_corners_at finds the former in memory, in turned places (see
- * base/lanes.h); lanes_corners_through takes the triangles of sixteen numbers below sixteen instead of all in order.
- * lanes_pick_two and lanes_corners_two do as lanes_pick and lanes_corners_through, but from a second place in the
- * lanes that follow so many; lanes_from has these.
+ * lanes_list writes the numbers of the bits set in a mask, ascending, and returns how many; sixteen
+ * bytes are written to; lanes_list_from adds a first number to them, and writes sixteen words;
+ * lanes_list_pairs takes the numbers of these lanes from two rows of sixteen bytes, adds the first
+ * of two first numbers, or the second in lanes of a second mask, and writes pairs of words, room
+ * for sixteen. lanes_list_bits writes a number for each, bit k of which is its lane's in the k-th
+ * of twelve masks, room for sixteen. lanes_list_among looks at words, sixteen or fewer, none of
+ * which is there twice: it writes `at` and the places of those that are a first number and one of a
+ * set of numbers below sixteen, room for sixteen, and tells which these are. lanes_index reads
+ * sixteen numbers below sixteen, lanes_index_through those of these numbers of a row of sixteen
+ * bytes; lanes_pick and lanes_pick_of take the floats of these numbers of a row, in memory or not,
+ * lanes_pick_both those of numbers below 32 of two rows. lanes_choose takes from a where the mask
+ * is set, else from b. lanes_same compares bits, whatever they mean; lanes_differ has what is in
+ * one of two masks only. lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2,
+ * from three rows of coordinates by three of numbers; lanes_corners_at finds the former in memory,
+ * in turned places (see base/lanes.h); lanes_corners_through takes the triangles of sixteen numbers
+ * below sixteen instead of all in order. lanes_pick_two and lanes_corners_two do as lanes_pick and
+ * lanes_corners_through, but from a second place in the lanes that follow so many; lanes_from has
+ * these.
  *
- * lanes_marked is the set of the numbers in three rows, in lanes of three masks; lanes_among has the lanes of which
- * the number is in a set.
+ * lanes_marked is the set of the numbers in three rows, in lanes of three masks; lanes_among has
+ * the lanes of which the number is in a set.
  *
  * No guard, as in base/lanes.h; base/lanes_pick_end.h ends it.
  */
@@ -502,7 +505,8 @@ static inline lanes lanes_pick_two(const float *const row[2], lanes_index i, uns
 
 #if SC_LANES_QUADS
 
-/* There is no permutation by numbers: the points one after another, then read again as the corners. */
+/* There is no permutation by numbers: the points one after another, then read again as the
+   corners. */
 static inline void lanes_corners(const lanes at[3], const uint8_t *where, lanes corner[3][3])
 {
     float points[16][4];

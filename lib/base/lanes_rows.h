@@ -1,12 +1,13 @@
 /*
- * Sixteen rows of sixteen floats or points each, of which one thing is found at once. For the instruction set that
- * base/lanes.h, included before, is for.
+ * Sixteen rows of sixteen floats or points each, of which one thing is found at once. For the
+ * instruction set that base/lanes.h, included before, is for.
  *
  * SPDX-License-Identifier: MIT
  *
- * lanes_signs_of takes the signs of a row, and lanes_all_negative makes bit i if all of row i are set, as they are of
- * what is below 0. lanes_rows_ends makes lane i the least and the most x, y and z of row i of memory, sixteen points of
- * four floats in any order, rows being `stride` floats apart; none is NaN.
+ * lanes_signs_of takes the signs of a row, and lanes_all_negative makes bit i if all of row i are
+ * set, as they are of what is below 0. lanes_rows_ends makes lane i the least and the most x, y and
+ * z of row i of memory, sixteen points of four floats in any order, rows being `stride` floats
+ * apart; none is NaN.
  *
  * No guard, as in base/lanes.h; base/lanes_rows_end.h ends it.
  */
@@ -20,8 +21,9 @@
 #define lanes_kept_negative SC_KERNEL(sc_lanes_kept_negative)
 
 /*
- * On x86-64 words, then bytes, are made of four rows, which keeps signs since it saturates: four bytes each, in each 128
- * bits. When these are joined, a row is negative if the signs of its four bytes are set.
+ * On x86-64 words, then bytes, are made of four rows, which keeps signs since it saturates: four
+ * bytes each, in each 128 bits. When these are joined, a row is negative if the signs of its four
+ * bytes are set.
  */
 #if SC_LANES_AVX512
 
@@ -85,7 +87,8 @@ static inline lanes_signs lanes_signs_of(lanes a)
     return SC_QUAD(and_ps)(SC_QUAD(and_ps)(a.v[0], a.v[1]), SC_QUAD(and_ps)(a.v[2], a.v[3]));
 }
 
-/* Rows in pieces of four lanes, one after another: only those that are negative in all of them are kept. */
+/* Rows in pieces of four lanes, one after another: only those that are negative in all of them are
+   kept. */
 #  if SC_LANES_SSE2
 
 typedef struct lanes_signs_kept {
@@ -186,8 +189,9 @@ static inline unsigned lanes_all_negative(const lanes_signs row[16])
 #endif
 
 /*
- * Of sixteen points in a register each 128 bits are joined, two registers becoming one, until each is of one row, four
- * rows apart; four such registers, of rows that follow each other, are transposed.
+ * Of sixteen points in a register each 128 bits are joined, two registers becoming one, until each
+ * is of one row, four rows apart; four such registers, of rows that follow each other, are
+ * transposed.
  */
 #if SC_LANES_AVX512
 

@@ -3,9 +3,9 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * An sc_scratch is a list of allocations. Each can be given back at any time and all go at once with
- * sc_scratch_clear, so that an early return after a failed step leaks nothing. Not for queries, which
- * allocate nothing.
+ * An sc_scratch is a list of allocations. Each can be given back at any time and all go at once
+ * with sc_scratch_clear, so that an early return after a failed step leaks nothing. Not for
+ * queries, which allocate nothing.
  */
 #ifndef SC_BASE_MEMORY_H
 #define SC_BASE_MEMORY_H
@@ -26,8 +26,8 @@ sc_allocator sc_memory_allocator(const sc_allocator *caller);
 
 void sc_scratch_init(sc_scratch *scratch, const sc_allocator *allocator);
 
-/* Memory that is not the scratch's and outlives it, aligned to SC_ALIGNMENT: only counted with it. NULL
-   if there is none. */
+/* Memory that is not the scratch's and outlives it, aligned to SC_ALIGNMENT: only counted with it.
+   NULL if there is none. */
 void *sc_scratch_allocate(sc_scratch *scratch, uint64_t bytes);
 
 /* count elements of size bytes, aligned to SC_ALIGNMENT and not cleared; NULL if that overflows or

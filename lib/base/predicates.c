@@ -10,9 +10,9 @@
  * is_moderate ensures beforehand.
  *
  * Cost: the longest expansion has 192 terms, in theory; in practice it has a handful. It is on the
- * stack. Before, determinants of three dimensions are tried in plain arithmetic, where differences have
- * so few bits that it is exact, and in sums of two doubles, which say the sign of nearly all that is not
- * zero: 10 and 50 ns instead of 250.
+ * stack. Before, determinants of three dimensions are tried in plain arithmetic, where differences
+ * have so few bits that it is exact, and in sums of two doubles, which say the sign of nearly all
+ * that is not zero: 10 and 50 ns instead of 250.
  */
 #include "base/predicates.h"
 #include "base/wide.h"
@@ -37,7 +37,8 @@ typedef struct difference {
     double term[DIFFERENCE_TERMS];
 } difference;
 
-/* Rounded sum and, in *error, what the rounding lost: together exactly a + b, whatever their order. */
+/* Rounded sum and, in *error, what the rounding lost: together exactly a + b, whatever their
+   order. */
 static double add_exactly(double a, double b, double *error)
 {
     double sum = a + b;
@@ -132,9 +133,10 @@ static void find_differences(differences *x, const double a[3], const double b[3
 }
 
 /*
- * Whether all are multiples of one power of two and below 2^16 times that. Then minors are below 2^33 times its square
- * and the determinant below 2^51 times its cube, and all of them are exact in plain arithmetic. What is added here, and
- * taken away again, leaves of a number the multiple next to it.
+ * Whether all are multiples of one power of two and below 2^16 times that. Then minors are below
+ * 2^33 times its square and the determinant below 2^51 times its cube, and all of them are exact in
+ * plain arithmetic. What is added here, and taken away again, leaves of a number the multiple next
+ * to it.
  */
 static int have_few_bits(double value[3][3])
 {
@@ -191,13 +193,15 @@ static double multiply_factors(const factor *a, const factor *b, double *error)
 /*
  * The determinant as a sum of two doubles.
  *
- * Let u = 2^-53, P = |u_j v_k| + |u_k v_j| of a minor, M the sum of the three P |w_i|, and all to first order. A minor is
- * h + l, the difference of two products and what their roundings and that of it lost, but for the roundings of the latter
- * two sums: 3 u^2 P. With w_i it is a sum of h w_i, of which the three together are made the first double, and of what the
- * three products and the two sums lost, u M and 2 u M, and the three l w_i, of which the |l| are 2 u P at most, each
- * rounded: 2 u^2 M. What the nine differences lost adds terms of 3 u M together, rounded six times at most, and leaves out
- * 3 u^2 M. The second double is the sum of nine terms, of at most 8 u M together, rounded eight times each: 64 u^2 M. All
- * that is below 100 u^2 M; the bound is 256 u^2 M, room for what is not of first order and for the rounding of M included.
+ * Let u = 2^-53, P = |u_j v_k| + |u_k v_j| of a minor, M the sum of the three P |w_i|, and all to
+ * first order. A minor is h + l, the difference of two products and what their roundings and that
+ * of it lost, but for the roundings of the latter two sums: 3 u^2 P. With w_i it is a sum of h w_i,
+ * of which the three together are made the first double, and of what the three products and the two
+ * sums lost, u M and 2 u M, and the three l w_i, of which the |l| are 2 u P at most, each rounded:
+ * 2 u^2 M. What the nine differences lost adds terms of 3 u M together, rounded six times at most,
+ * and leaves out 3 u^2 M. The second double is the sum of nine terms, of at most 8 u M together,
+ * rounded eight times each: 64 u^2 M. All that is below 100 u^2 M; the bound is 256 u^2 M, room for
+ * what is not of first order and for the rounding of M included.
  */
 static int sign_of_two(const differences *x)
 {
@@ -240,7 +244,8 @@ static int find_sign_3d(const double a[3], const double b[3], const double c[3],
     return sign_of_two(&x);
 }
 
-/* ------------------------------------------------------------------------------------------------ */
+/* ------------------------------------------------------------------------------------------------
+   */
 
 static difference subtract(double a, double b)
 {
@@ -286,8 +291,8 @@ static int is_moderate(const double *coordinates, int count)
     return moderate;
 }
 
-/* The sum, to within 2^-51 of it: the terms before the last two add up to less than the lowest bit of
-   the last but one. */
+/* The sum, to within 2^-51 of it: the terms before the last two add up to less than the lowest bit
+   of the last but one. */
 static double sum_of_terms(const double *terms, int count)
 {
     double sum = 0;

@@ -47,9 +47,9 @@
  * rounding of this product included. These are worst cases: second_stage in
  * tests/test_predicates.c sees errors between 1 and 2 u M, and fails with bounds of 1 u M.
  *
- * Underflow: in 2d two products, off by 2^-1074 at most. In 3d with w = d - a: each component of the
- * cross product is off by 2^-1074 or a little more, which is multiplied by that of w, and the three
- * last products by 2^-1075. 2^-900 (1 + |w.x| + |w.y| + |w.z|) is more than that by far. With
+ * Underflow: in 2d two products, off by 2^-1074 at most. In 3d with w = d - a: each component of
+ * the cross product is off by 2^-1074 or a little more, which is multiplied by that of w, and the
+ * three last products by 2^-1075. 2^-900 (1 + |w.x| + |w.y| + |w.z|) is more than that by far. With
  * subnormals flushed, a difference may be off by 3 * 2^-1022; with differences up to 2^57 the 6
  * monomials of 3 factors are off by 6 * 3 * 3 * 2^-1022 * 2^114 < 2^-902, which it covers as well.
  *
@@ -113,8 +113,8 @@ static inline sc_predicates_plane sc_predicates_make_plane(const double a[3], co
 
 /*
  * The sign of ((b - a) x (c - a)) . (d - a): 1 if d is on the side of the plane to which the normal
- * (b - a) x (c - a) points, from where a, b, c run counter-clockwise; -1 on the other side; 0 if the
- * four points are in a plane. For (0,0,0), (1,0,0), (0,1,0), (0,0,1) it is 1.
+ * (b - a) x (c - a) points, from where a, b, c run counter-clockwise; -1 on the other side; 0 if
+ * the four points are in a plane. For (0,0,0), (1,0,0), (0,1,0), (0,0,1) it is 1.
  */
 static inline int sc_predicates_side_of_plane(const sc_predicates_plane *plane, const double d[3],
                                               uint64_t *fallbacks)
@@ -140,8 +140,8 @@ static inline int sc_predicates_orient3d(const double a[3], const double b[3], c
 }
 
 /*
- * The determinants whose signs these are: number times 2^exponent, to within 2^-51 of the true value,
- * however small it is. A value that is 0 is so exactly. By stages 2 and 3.
+ * The determinants whose signs these are: number times 2^exponent, to within 2^-51 of the true
+ * value, however small it is. A value that is 0 is so exactly. By stages 2 and 3.
  */
 typedef struct sc_predicates_value {
     double number;

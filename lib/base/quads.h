@@ -1,12 +1,13 @@
 /*
- * Registers of four floats or two doubles: by SSE2 on x86-64; elsewhere, with gcc and clang, by their vector types,
- * of which they make NEON, WebAssembly's SIMD or whatever there is. SIMD: single instruction, multiple data.
+ * Registers of four floats or two doubles: by SSE2 on x86-64; elsewhere, with gcc and clang, by
+ * their vector types, of which they make NEON, WebAssembly's SIMD or whatever there is. SIMD:
+ * single instruction, multiple data.
  *
  * SPDX-License-Identifier: MIT
  *
- * SC_QUADS is 0 where there are none. SC_QUAD(name) does what the SSE2 intrinsic _mm_name does: the same bits, and of two
- * NaN or zeros the same one. Masks are registers of all bits or none. Numbers of a SC_QUAD_SHUFFLE are constants: two
- * of a, then two of b.
+ * SC_QUADS is 0 where there are none. SC_QUAD(name) does what the SSE2 intrinsic _mm_name does: the
+ * same bits, and of two NaN or zeros the same one. Masks are registers of all bits or none. Numbers
+ * of a SC_QUAD_SHUFFLE are constants: two of a, then two of b.
  */
 #ifndef SC_BASE_QUADS_H
 #define SC_BASE_QUADS_H
@@ -62,8 +63,8 @@ static inline sc_floats4 sc_quad_rounded_two(sc_doubles2 a)
 {
     return _mm_cvtpd_ps(a);
 }
-/* Where points of sixteen numbers below sixteen are in a table of turned places (see base/lanes.h), in bytes: block
-   i % 4, place i / 4. */
+/* Where points of sixteen numbers below sixteen are in a table of turned places (see base/lanes.h),
+   in bytes: block i % 4, place i / 4. */
 static inline void sc_quad_places(const uint8_t *numbers, uint8_t *place)
 {
     __m128i n = _mm_loadu_si128((const __m128i *)(const void *)numbers);

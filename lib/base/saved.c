@@ -24,8 +24,8 @@ static uint64_t mix_word(uint64_t hash, uint64_t word)
 
 /*
  * Four independent chains, so that the machine need not wait for one product before it starts the
- * next. Each step is one to one in the word and in the chain: so any change within eight bytes changes
- * the checksum, and any other one misses with a chance of 2^-64 or so.
+ * next. Each step is one to one in the word and in the chain: so any change within eight bytes
+ * changes the checksum, and any other one misses with a chance of 2^-64 or so.
  */
 static uint64_t sum(uint64_t hash, const void *data, uint64_t bytes)
 {

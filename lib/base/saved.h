@@ -5,8 +5,8 @@
  * SPDX-License-Identifier: MIT
  *
  * The first four members stay as they are in every version, so that each version can tell what it
- * cannot read. The checksum finds accidents and no malice: whatever it covers is still to be checked
- * before it is used.
+ * cannot read. The checksum finds accidents and no malice: whatever it covers is still to be
+ * checked before it is used.
  */
 #ifndef SC_BASE_SAVED_H
 #define SC_BASE_SAVED_H
@@ -38,8 +38,8 @@ void sc_saved_seal(sc_saved_header *header, const char magic[8], uint32_t versio
 sc_status sc_saved_open(const void *data, uint64_t size, const char magic[8], uint32_t version,
                         sc_saved_header *header);
 
-/* SC_OK, or SC_ERROR_CHECKSUM. content is of header->bytes - sizeof *header bytes, of any alignment.
-   A pass over it, at about the speed of memory. */
+/* SC_OK, or SC_ERROR_CHECKSUM. content is of header->bytes - sizeof *header bytes, of any
+   alignment. A pass over it, at about the speed of memory. */
 sc_status sc_saved_verify(const sc_saved_header *header, const void *content);
 
 #endif

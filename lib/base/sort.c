@@ -68,7 +68,8 @@ static sc_pair median(sc_pair x, sc_pair y, sc_pair z)
     return sc_sort_less(z, y) ? z : y;
 }
 
-/* Moves pairs so that [0, i) <= pivot <= [i, count), and returns i. The pivot is one of the pairs. */
+/* Moves pairs so that [0, i) <= pivot <= [i, count), and returns i. The pivot is one of the
+   pairs. */
 static uint64_t split_at(sc_pair *pairs, uint64_t count, sc_pair pivot)
 {
     uint64_t i = 0, j = count - 1;
@@ -135,8 +136,9 @@ static void sort_some(sc_pair *pairs, uint64_t count, int most)
         sort_by_bytes(pairs, count, most - 1);
 }
 
-/* By the highest eight bits in which pairs differ: counts them, then takes each out of a wrong place to its own, and
-   what was there on to where that belongs. Then what has these bits in common. */
+/* By the highest eight bits in which pairs differ: counts them, then takes each out of a wrong
+   place to its own, and what was there on to where that belongs. Then what has these bits in
+   common. */
 static void sort_by_bytes(sc_pair *pairs, uint64_t count, int most)
 {
     uint64_t next[BYTE_VALUES] = {0}, end[BYTE_VALUES], differ = 0, sum = 0, i;

@@ -1,6 +1,6 @@
 /*
- * Sorting without allocation. In place: by digits while there are many, then quicksort with a heapsort behind it,
- * O(n log n) always.
+ * Sorting without allocation. In place: by digits while there are many, then quicksort with a
+ * heapsort behind it, O(n log n) always.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -33,16 +33,16 @@ static inline uint32_t sc_sort_key(float f)
 
 void sc_sort_pairs(sc_pair *pairs, uint64_t count);
 
-/* Moves pairs so that none of the first i is greater than one of the rest, and returns i, about half their
-   count if there are 9 or more. */
+/* Moves pairs so that none of the first i is greater than one of the rest, and returns i, about
+   half their count if there are 9 or more. */
 uint64_t sc_sort_split(sc_pair *pairs, uint64_t count);
 
-/* The same by the lowest `bits` bits of a, all others of which must be 0; pairs with equal a stay in
-   order. Linear: a pass for every ten bits. spare has room for as many. */
+/* The same by the lowest `bits` bits of a, all others of which must be 0; pairs with equal a stay
+   in order. Linear: a pass for every ten bits. spare has room for as many. */
 void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits);
 
-/* As sc_sort_pairs, in a third to a sixth of the time where there are thousands, unless many have the same a. spare has room
-   for as many. */
+/* As sc_sort_pairs, in a third to a sixth of the time where there are thousands, unless many have
+   the same a. spare has room for as many. */
 void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count);
 
 /* Restores the heap (greatest pair first) below position at, where alone it may be broken. */

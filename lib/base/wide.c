@@ -169,7 +169,8 @@ static void minor(number *result, const wide_difference *ax, const wide_differen
     add(result, &left, &right, -1);
 }
 
-/* Sets *result, of MIDDLE_LIMBS, to the determinant divided by 2^(2 (least - 1074)); returns least. */
+/* Sets *result, of MIDDLE_LIMBS, to the determinant divided by 2^(2 (least - 1074)); returns
+   least. */
 static int find_2d(number *result, const double a[2], const double b[2], const double c[2])
 {
     int least = least_exponent(a, 2, 2047);
@@ -185,7 +186,8 @@ static int find_2d(number *result, const double a[2], const double b[2], const d
     return least;
 }
 
-/* Sets *result, of LARGE_LIMBS, to the determinant divided by 2^(3 (least - 1074)); returns least. */
+/* Sets *result, of LARGE_LIMBS, to the determinant divided by 2^(3 (least - 1074)); returns
+   least. */
 static int find_3d(number *result, const double a[3], const double b[3], const double c[3],
                    const double d[3])
 {

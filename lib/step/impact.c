@@ -3,40 +3,45 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The differences between a point of one and a point of the other are, at any time, the points of a flat polygon:
- * the triangle of the three differences between face and vertex, or the parallelogram of the four differences
- * between the ends of two edges. The distance of the two is that of the polygon from the origin. Its corners move
- * on straight lines, and it is in their hull, so all that is asked of barycentric coordinates is answered for
- * all of them at once, and only time has to be searched.
+ * The differences between a point of one and a point of the other are, at any time, the points of a
+ * flat polygon: the triangle of the three differences between face and vertex, or the parallelogram
+ * of the four differences between the ends of two edges. The distance of the two is that of the
+ * polygon from the origin. Its corners move on straight lines, and it is in their hull, so all that
+ * is asked of barycentric coordinates is answered for all of them at once, and only time has to be
+ * searched.
  *
  * What proves that nothing is closer than a level throughout an interval of time (an inclusion):
- *   - a fixed direction n, |n| = 1, with n . p > level for all corners p at both ends, hence in between;
- *   - a direction that moves from m to n, with the three Bernstein coefficients of n(t) . p(t) > level for all corners.
- *     They are m . p, (m . q + n . p) / 2 and n . q, where p is the corner at the start of the interval, and q at
- *     its end; and |n(t)| <= 1.
- * The directions are those of the polygon's point next to the origin at the ends of the interval. How well that is
- * found decides about speed only: a bad direction proves nothing.
+ *   - a fixed direction n, |n| = 1, with n . p > level for all corners p at both ends, hence in
+ *     between;
+ *   - a direction that moves from m to n, with the three Bernstein coefficients of n(t) . p(t) >
+ *     level for all corners. They are m . p, (m . q + n . p) / 2 and n . q, where p is the corner
+ *     at the start of the interval, and q at its end; and |n(t)| <= 1.
+ * The directions are those of the polygon's point next to the origin at the ends of the interval.
+ * How well that is found decides about speed only: a bad direction proves nothing.
  *
- * The search goes from time 0 to 1 and always stands at a time before which all is proved. There it looks for a
- * point of the polygon that is near enough to be reported, which ends the search, so that time is the answer. Else its
- * direction proves the way to a later time (a step like Newton's). Where that converges slowly, it splits what is ahead
- * in halves, and tries to pass one or two of them at once by a moving direction, a linear or quadratic function of
- * time. Where nothing gets on, because the points are nearer than rounding lets see a direction, a short slab of time
- * is proved by splitting the polygon into small ones. Most pairs that stay apart are proved so by an axis or by the
- * direction to the mean of the corners, before any of this.
+ * The search goes from time 0 to 1 and always stands at a time before which all is proved. There it
+ * looks for a point of the polygon that is near enough to be reported, which ends the search, so
+ * that time is the answer. Else its direction proves the way to a later time (a step like
+ * Newton's). Where that converges slowly, it splits what is ahead in halves, and tries to pass one
+ * or two of them at once by a moving direction, a linear or quadratic function of time. Where
+ * nothing gets on, because the points are nearer than rounding lets see a direction, a short slab
+ * of time is proved by splitting the polygon into small ones. Most pairs that stay apart are proved
+ * so by an axis or by the direction to the mean of the corners, before any of this.
  *
- * Thresholds. d is the separation, T the tolerance, M the largest coordinate of a corner at time 0 or 1.
+ * Thresholds. d is the separation, T the tolerance, M the largest coordinate of a corner at time 0
+ * or 1.
  *   reported              if a point at a distance <= d + T / 2 (3 T / 4 in a slab) has been computed
  *   proved to be apart    by directions with level d + T / 4 (d + T / 8 in a slab)
- * u is 2^-53. A computed corner at a time is off by at most 4 u M a coordinate (the differences at both ends 1 each,
- * 1 - t, two products and a sum), 7 u M in all; a scalar product with a direction by at most 6 u M more, the
- * direction's length by 4 u, of d <= 2 M; a convex combination by less than 16 u M. So no comparison is wrong
- * by more than 64 u M = 2^-47 M, and T / 16 is at least 2^-36 M. Hence what is proved is apart by more than d, and what
- * is reported is within d + T.
+ * u is 2^-53. A computed corner at a time is off by at most 4 u M a coordinate (the differences at
+ * both ends 1 each, 1 - t, two products and a sum), 7 u M in all; a scalar product with a direction
+ * by at most 6 u M more, the direction's length by 4 u, of d <= 2 M; a convex combination by less
+ * than 16 u M. So no comparison is wrong by more than 64 u M = 2^-47 M, and T / 16 is at least
+ * 2^-36 M. Hence what is proved is apart by more than d, and what is reported is within d + T.
  *
- * Progress. A slab is so short that no point moves by more than T / 16 in it. A cell (a part of the polygon) of a
- * diameter below T / 16 is either near enough to be reported, or the direction of its nearest point proves the slab, as
- * nothing in it is farther from that point; so splitting ends after at most 40 levels.
+ * Progress. A slab is so short that no point moves by more than T / 16 in it. A cell (a part of the
+ * polygon) of a diameter below T / 16 is either near enough to be reported, or the direction of its
+ * nearest point proves the slab, as nothing in it is farther from that point; so splitting ends
+ * after at most 40 levels.
  */
 #include "step/impact.h"
 
@@ -100,8 +105,9 @@ static inline void between(double *p, const double *a, const double *b, double s
 }
 
 /*
- * The point of the polygon next to the origin, but for rounding, and a direction in which the polygon is as far
- * away, of any length. Returns the square of the point's distance. The point is a convex combination of the corners.
+ * The point of the polygon next to the origin, but for rounding, and a direction in which the
+ * polygon is as far away, of any length. Returns the square of the point's distance. The point is a
+ * convex combination of the corners.
  */
 static inline double find_nearest(int count, double corners[][3], double *nearest,
                                   double *direction)
@@ -178,11 +184,12 @@ static inline void turn_away(double *direction, const double *side)
 }
 
 /*
- * Tries directions that are at right angles to a side, or to all of them, more exactly than that from the nearest point
- * is where that is near the origin: there this is known up to u M / distance only, and moves corners
- * at M by that much. Such a direction is the best one if the nearest point is inside a side or inside the polygon, and
- * nearly so if it is a corner and a side there is nearly at right angles. Which side of the plane the origin is on is
- * told by a corner: the nearest point in a polygon almost without width may be wrong by that width.
+ * Tries directions that are at right angles to a side, or to all of them, more exactly than that
+ * from the nearest point is where that is near the origin: there this is known up to u M / distance
+ * only, and moves corners at M by that much. Such a direction is the best one if the nearest point
+ * is inside a side or inside the polygon, and nearly so if it is a corner and a side there is
+ * nearly at right angles. Which side of the plane the origin is on is told by a corner: the nearest
+ * point in a polygon almost without width may be wrong by that width.
  */
 static void improve_direction(int count, instant *at, double *least)
 {
@@ -238,7 +245,8 @@ static inline void look(int count, const motion *m, double time, instant *at)
         improve_direction(count, at, &least);
 }
 
-/* The time until which the direction at a proves what comes; to's time if it proves all until then. */
+/* The time until which the direction at a proves what comes; to's time if it proves all until
+   then. */
 static inline double advance(int count, const motion *m, const instant *a, const instant *to)
 {
     double part = 1;
@@ -267,9 +275,10 @@ static inline int is_passed(int count, const motion *m, const instant *a, const 
 }
 
 /*
- * The same with a direction that is a quadratic function of time and is that at a, at middle halfway, and at b. It follows
- * a turning polygon by one order more. Its Bernstein coefficients are those at the ends and c; its length is bounded by those of
- * its square, and the products with corners have four.
+ * The same with a direction that is a quadratic function of time and is that at a, at middle
+ * halfway, and at b. It follows a turning polygon by one order more. Its Bernstein coefficients are
+ * those at the ends and c; its length is bounded by those of its square, and the products with
+ * corners have four.
  */
 static inline int is_passed_bent(int count, const motion *m, const instant *a,
                                  const instant *middle, const instant *b)
@@ -334,9 +343,10 @@ static void place_in_polygon(double *p, double x, double y, int count, double co
 }
 
 /*
- * Whether the polygon comes near enough to be reported at the start of a slab of time, by splitting it into cells.
- * If not, nothing is within the separation from the start to the end of the slab. But it does: were it farther away than
- * that, its direction would have proved the slab, unless all that improve_direction tries were bad.
+ * Whether the polygon comes near enough to be reported at the start of a slab of time, by splitting
+ * it into cells. If not, nothing is within the separation from the start to the end of the slab.
+ * But it does: were it farther away than that, its direction would have proved the slab, unless all
+ * that improve_direction tries were bad.
  */
 static int is_near_in_slab(int count, const motion *m, double from, double to)
 {
@@ -481,7 +491,8 @@ static inline int search(int count, const motion *m, double latest, double *time
     }
 }
 
-/* Writes the polygon down, (q before - p before) after for each pair of points; returns its largest coordinate. */
+/* Writes the polygon down, (q before - p before) after for each pair of points; returns its largest
+   coordinate. */
 static inline double write_corners(int count, const double start[4][3], const double end[4][3],
                                    double before, double after, motion *m)
 {

@@ -1,20 +1,25 @@
 /*
- * Normal cones of leaf clusters that hold throughout a step, sixteen triangles at a time. See step_motion.h.
+ * Normal cones of leaf clusters that hold throughout a step, sixteen triangles at a time. See
+ * step_motion.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * With e and f the sides of a triangle from its first corner, the normal e x f is a polynomial of degree 2 in time; its
- * coefficients in Bernstein form are e0 x f0, (e0 x f1 + e1 x f0) / 2 and e1 x f1, with 0 at the start and 1 at the end.
- * A direction s for which all three have a dot product above c has that for the normal at all times. The altitudes of the
- * triangle, projected along s, are twice its projected area n . s / |s| over the projected sides, and so more than d if
- * n . s > |s| d L, where L is as long as any side at any time: and that is longest at the start or at the end. If this holds
- * for some directions it does for their sums, of which |s| is at most the sum of the lengths.
+ * With e and f the sides of a triangle from its first corner, the normal e x f is a polynomial of
+ * degree 2 in time; its coefficients in Bernstein form are e0 x f0, (e0 x f1 + e1 x f0) / 2 and e1
+ * x f1, with 0 at the start and 1 at the end. A direction s for which all three have a dot product
+ * above c has that for the normal at all times. The altitudes of the triangle, projected along s,
+ * are twice its projected area n . s / |s| over the projected sides, and so more than d if n . s >
+ * |s| d L, where L is as long as any side at any time: and that is longest at the start or at the
+ * end. If this holds for some directions it does for their sums, of which |s| is at most the sum of
+ * the lengths.
  *
- * Rounding is as in pose/cones_kernel.h: a dot product is a sum of six products of components, each component being off
- * by 2 POINT and in two of them, and rounds six times. With |e|1 and |f|1 the larger of both ends, that of the first or last
- * coefficient is off by 8 u |e|1 |f|1 + 4.1 POINT (|e|1 + |f|1 + 6 POINT), that of the middle one, an average of two,
- * by as much and another rounding: 10 u covers all. L is off by 2 sqrt(3) POINT on each side; with 1616 POINT^2,
- * (L + 4 POINT)^2 <= 1.01 L^2 + 1616 POINT^2. Squares are compared, which takes no root: those round by a few u.
+ * Rounding is as in pose/cones_kernel.h: a dot product is a sum of six products of components, each
+ * component being off by 2 POINT and in two of them, and rounds six times. With |e|1 and |f|1 the
+ * larger of both ends, that of the first or last coefficient is off by 8 u |e|1 |f|1 + 4.1 POINT
+ * (|e|1 + |f|1 + 6 POINT), that of the middle one, an average of two, by as much and another
+ * rounding: 10 u covers all. L is off by 2 sqrt(3) POINT on each side; with 1616 POINT^2, (L + 4
+ * POINT)^2 <= 1.01 L^2 + 1616 POINT^2. Squares are compared, which takes no root: those round by a
+ * few u.
  */
 static uint32_t SC_KERNEL(moving_mask_of)(const sc_motion *m, const uint32_t *corner,
                                           uint32_t count)

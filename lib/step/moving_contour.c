@@ -3,19 +3,23 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Two moving edges are clear of each other if along some fixed direction m, at both ends of the step, all of one
- * is farther than the clearance from all of the other: both ends of each edge move on straight lines, so the
- * same holds in between, and for all points of the edges. Two edges that share a point, seen from there as a and b, are
- * clear if that is so of -a and b, for then neither end comes near the line on which the other edge is going on; or if
- * a x b, a polynomial of degree 2 in time, stays of one sign and large enough, as the three coefficients of its Bernstein
- * form say. Which direction is tried does not matter for what is proved. Where none is found, the step is halved.
+ * Two moving edges are clear of each other if along some fixed direction m, at both ends of the
+ * step, all of one is farther than the clearance from all of the other: both ends of each edge move
+ * on straight lines, so the same holds in between, and for all points of the edges. Two edges that
+ * share a point, seen from there as a and b, are clear if that is so of -a and b, for then neither
+ * end comes near the line on which the other edge is going on; or if a x b, a polynomial of degree
+ * 2 in time, stays of one sign and large enough, as the three coefficients of its Bernstein form
+ * say. Which direction is tried does not matter for what is proved. Where none is found, the step
+ * is halved.
  *
- * Rounding and clearance. A computed coordinate is off by error (sc_simple_contour.error, as query/simple.c has it, for
- * the start and the end). Along m a point is off by |m|1 error, two of them by 2 |m|1 error; where sums are computed in
- * single precision (the inner loops), m . p rounds by 2.1 * 2^-24 |m|1 |p|max, which is below 0.6 |m|1 error,
- * and the difference of two by another 0.6: 3.8 |m|1 error in all. Clearance is a distance d in space, and so
- * at least d between projections along unit vectors at right angles. The axes here are such vectors times their lengths, so
- * that x and y that are d apart along m in that plane are |(m.x length.x, m.y length.y)| d apart here. Hence
+ * Rounding and clearance. A computed coordinate is off by error (sc_simple_contour.error, as
+ * query/simple.c has it, for the start and the end). Along m a point is off by |m|1 error, two of
+ * them by 2 |m|1 error; where sums are computed in single precision (the inner loops), m . p rounds
+ * by 2.1 * 2^-24 |m|1 |p|max, which is below 0.6 |m|1 error, and the difference of two by another
+ * 0.6: 3.8 |m|1 error in all. Clearance is a distance d in space, and so at least d between
+ * projections along unit vectors at right angles. The axes here are such vectors times their
+ * lengths, so that x and y that are d apart along m in that plane are |(m.x length.x, m.y
+ * length.y)| d apart here. Hence
  * |m.x| clear.x + |m.y| clear.y, with clear = 5 error + length d, a little more for its own rounding.
  */
 #include "step/moving_contour.h"
@@ -85,8 +89,8 @@ static int are_clear_along(const moving_vector *v, int count, double x, double y
     return 1;
 }
 
-/* Whether some direction is found along which all vectors are clear: their sum, or the middle of those that the
-   two outermost allow. */
+/* Whether some direction is found along which all vectors are clear: their sum, or the middle of
+   those that the two outermost allow. */
 static int are_on_one_side(const moving_vector *v, int count, clearance k)
 {
     double x = 0, y = 0, rx = v[0].x[0], ry = v[0].y[0], lx = rx, ly = ry, r, l;
@@ -129,9 +133,10 @@ static int are_edges_clear(const moving_vector v[4], clearance k, int halvings)
 }
 
 /*
- * Two edges from a shared point: v[0] is the opposite of one, v[1] the other. Their cross product is off by
- * 2 error (|a|1 + |b|1) + 8 error^2, and to be larger than d times the longer edge, in the plane of unit vectors; lengths
- * of edges there are at most |x| / length.x + |y| / length.y, and areas smaller by length.x length.y.
+ * Two edges from a shared point: v[0] is the opposite of one, v[1] the other. Their cross product
+ * is off by 2 error (|a|1 + |b|1) + 8 error^2, and to be larger than d times the longer edge, in
+ * the plane of unit vectors; lengths of edges there are at most |x| / length.x + |y| / length.y,
+ * and areas smaller by length.x length.y.
  */
 static int are_open(const sc_moving_contour *c, const moving_vector v[2], clearance k, int halvings)
 {
@@ -191,8 +196,8 @@ int sc_moving_contour_are_clear(sc_moving_contour *c, uint32_t i, uint32_t j)
     return are_open(c, v, k, HALVINGS) && sc_simple_note_shared(&c->start, i, j);
 }
 
-/* Sets what the axes and the error leave to be known. The square root of a sum of squares in double precision, rounded
-   to float, is off by less than the factor; so is the sum. */
+/* Sets what the axes and the error leave to be known. The square root of a sum of squares in double
+   precision, rounded to float, is off by less than the factor; so is the sum. */
 static void set_clearance(sc_moving_contour *c, float distance)
 {
     int k;

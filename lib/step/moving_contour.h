@@ -1,18 +1,19 @@
 /*
- * The exact contour test over a step: whether the projected contour of a node stays simple while it moves, with
- * a clearance.
+ * The exact contour test over a step: whether the projected contour of a node stays simple while it
+ * moves, with a clearance.
  *
  * SPDX-License-Identifier: MIT
  *
- * Why that is enough. At each time, a patch whose triangles have positive areas under a projection and whose
- * contour is simple is projected one to one (lib/GUARANTEE.md, section 1). If moreover all altitudes of its projected
- * triangles are more than d, and all points of its contour are more than d away from the edges of the
- * contour that they are not on, then in the projection, and hence in space, each vertex is more than d away
- * from each triangle that it is no corner of, and each edge from each edge with which it shares no vertex. For
- * the shortest way from a vertex to such a triangle either crosses a triangle at the vertex to its far side, which is
- * an altitude; or it leaves the patch at the vertex, which is then on the contour, and enters it again across
- * an edge that it is not on. Two edges that do not cross are nearest at an end of one; and if that end is the
- * corner of all triangles at the other edge, their distance is an altitude.
+ * Why that is enough. At each time, a patch whose triangles have positive areas under a projection
+ * and whose contour is simple is projected one to one (lib/GUARANTEE.md, section 1). If moreover
+ * all altitudes of its projected triangles are more than d, and all points of its contour are more
+ * than d away from the edges of the contour that they are not on, then in the projection, and hence
+ * in space, each vertex is more than d away from each triangle that it is no corner of, and each
+ * edge from each edge with which it shares no vertex. For the shortest way from a vertex to such a
+ * triangle either crosses a triangle at the vertex to its far side, which is an altitude; or it
+ * leaves the patch at the vertex, which is then on the contour, and enters it again across an edge
+ * that it is not on. Two edges that do not cross are nearest at an end of one; and if that end is
+ * the corner of all triangles at the other edge, their distance is an altitude.
  *
  * Altitudes are seen to with the normal cones (step/step_motion.h).
  */
@@ -22,25 +23,25 @@
 #include "query/simple_contour.h"
 #include "step/step_state.h"
 
-/* A projected contour at the start, whose parts serve the end as well: points, axes, error, pinches and pieces;
-   and the rest of the end. */
+/* A projected contour at the start, whose parts serve the end as well: points, axes, error, pinches
+   and pieces; and the rest of the end. */
 typedef struct sc_moving_contour {
     sc_simple_contour start;
     const sc_moving_edges *end;
     float from[3];   /* at the end */
     float length[2]; /* of the axes: |axis|2, rounded up */
-    /* Of a direction m, |m.x| clear[0] + |m.y| clear[1] is how far apart two computed sets must be along it for
-       the true ones to be as far apart as is wanted. See moving_contour.c. */
+    /* Of a direction m, |m.x| clear[0] + |m.y| clear[1] is how far apart two computed sets must be
+       along it for the true ones to be as far apart as is wanted. See moving_contour.c. */
     float clear[2];
 } sc_moving_contour;
 
-/* 1 if nothing in the node's patches comes as near as is reported. Every triangle keeps a positive area and altitudes
-   under the projection. About 10 ns a contour edge. With SC_CONTOUR_STAR asks for a point that sees the contour
-   instead, see step/moving_star.h. */
+/* 1 if nothing in the node's patches comes as near as is reported. Every triangle keeps a positive
+   area and altitudes under the projection. About 10 ns a contour edge. With SC_CONTOUR_STAR asks
+   for a point that sees the contour instead, see step/moving_star.h. */
 int sc_moving_contour_test(sc_step_state *state, const sc_projection *projection, uint32_t node);
 
-/* 1 if two edges are certainly clear of each other, or share one point and nothing else, at all times. Notes pinches
-   and pieces. */
+/* 1 if two edges are certainly clear of each other, or share one point and nothing else, at all
+   times. Notes pinches and pieces. */
 int sc_moving_contour_are_clear(sc_moving_contour *contour, uint32_t i, uint32_t j);
 
 #endif

@@ -3,11 +3,12 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Pairs of edges are gone through as query/simple_kernel.h does: sixteen edges with those that follow at a distance of up
- * to SC_CONTOUR_NEAR, then runs by their boxes at both ends of the step.
+ * Pairs of edges are gone through as query/simple_kernel.h does: sixteen edges with those that
+ * follow at a distance of up to SC_CONTOUR_NEAR, then runs by their boxes at both ends of the step.
  */
 
-/* Places of the listed points at both ends, and the error of their coordinates, see choose_axes in query/simple.c. */
+/* Places of the listed points at both ends, and the error of their coordinates, see choose_axes in
+   query/simple.c. */
 static void SC_KERNEL(project_motion)(sc_moving_contour *c, const float *unit)
 {
     const sc_contour_edges *e = c->start.edges;
@@ -76,8 +77,8 @@ static inline unsigned SC_KERNEL(are_apart_along)(const sc_moving_contour *c, co
                                                        lanes_subtract(e_least[1], f_most[1]))));
 }
 
-/* Bits of the edges e that are clear of f for certain, along the way from middle to middle or across one of the
-   two. */
+/* Bits of the edges e that are clear of f for certain, along the way from middle to middle or
+   across one of the two. */
 static inline unsigned SC_KERNEL(are_apart)(const sc_moving_contour *c,
                                             const SC_KERNEL(moving_lanes) * e,
                                             const SC_KERNEL(moving_lanes) * f, unsigned asked)
@@ -100,8 +101,8 @@ static inline unsigned SC_KERNEL(are_apart)(const sc_moving_contour *c,
     return asked & ~(left & ~SC_KERNEL(are_apart_along)(c, m, e, f));
 }
 
-/* Bits of edges e that are open to the next, f, which starts where they end: both run on along the sum of the
-   two. */
+/* Bits of edges e that are open to the next, f, which starts where they end: both run on along the
+   sum of the two. */
 static inline unsigned SC_KERNEL(run_on)(const sc_moving_contour *c,
                                          const SC_KERNEL(moving_lanes) * e, const lanes next[2][2])
 {
@@ -124,8 +125,8 @@ static inline unsigned SC_KERNEL(run_on)(const sc_moving_contour *c,
     return lanes_bits(lanes_below(SC_KERNEL(clear_along)(c, m), least));
 }
 
-/* Boxes of the runs of sixteen edges at one end of the step, each larger by half the clearance. What is no edge is in
-   them, which does no harm. */
+/* Boxes of the runs of sixteen edges at one end of the step, each larger by half the clearance.
+   What is no edge is in them, which does no harm. */
 static inline void SC_KERNEL(enclose_runs)(const sc_moving_contour *c, uint32_t i, int end,
                                            const SC_KERNEL(moving_lanes) * e)
 {
@@ -206,7 +207,8 @@ static int SC_KERNEL(are_runs_clear)(sc_moving_contour *c, uint32_t run, uint32_
     return 1;
 }
 
-/* Bit k: box i of a is not apart on one side from box j + k of b at both ends, for k from 0 to 15. */
+/* Bit k: box i of a is not apart on one side from box j + k of b at both ends, for k from 0 to
+   15. */
 static inline unsigned SC_KERNEL(near_in_plane)(float *a[2][4], uint32_t i, float *b[2][4],
                                                 uint32_t j)
 {

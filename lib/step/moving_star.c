@@ -3,17 +3,19 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Let an edge of the contour run from v, with e to its end, and let q be a point that does not move. That q is to the left
- * of the edge is e x (q - v) > 0, a polynomial of degree 2 in time; its coefficients in Bernstein form are
+ * Let an edge of the contour run from v, with e to its end, and let q be a point that does not
+ * move. That q is to the left of the edge is e x (q - v) > 0, a polynomial of degree 2 in time; its
+ * coefficients in Bernstein form are
  *     e0 x (q - v0), (e0 x (q - v1) + e1 x (q - v0)) / 2, e1 x (q - v1),
- * each of them linear in q, as if there were three edges that do not move: three rays of the paper. If all are positive for
- * all edges, the contour turns round q without a stop at all times, as often as edges pass over q at the start. If
- * that is once, it is strictly simple (query/star.c).
+ * each of them linear in q, as if there were three edges that do not move: three rays of the paper.
+ * If all are positive for all edges, the contour turns round q without a stop at all times, as
+ * often as edges pass over q at the start. If that is once, it is strictly simple (query/star.c).
  *
- * Clearance. If all coefficients are more than d r, r being at least the distance of any point of the contour from q, then
- * every point of the contour is more than d away from the edges it is not on: between them, seen from q, is at least one
- * edge of that point, v to b say; and from v to what is beyond b it is at least the distance of v from the ray from q to b, or
- * from q; at least e x (q - v) / |b - q|.
+ * Clearance. If all coefficients are more than d r, r being at least the distance of any point of
+ * the contour from q, then every point of the contour is more than d away from the edges it is not
+ * on: between them, seen from q, is at least one edge of that point, v to b say; and from v to what
+ * is beyond b it is at least the distance of v from the ray from q to b, or from q; at least e x (q
+ * - v) / |b - q|.
  *
  * Where q is found does not matter for what is proved.
  */
@@ -56,7 +58,8 @@ static void star_coefficients(const star_edge *edge, const double q[2], double c
     coefficient[2] = star_cross(edge->e[1], q, edge->v[1]);
 }
 
-/* Sets q to the middle of what of a line, vertical (0) or horizontal (1), is left of all rays, if anything is. */
+/* Sets q to the middle of what of a line, vertical (0) or horizontal (1), is left of all rays, if
+   anything is. */
 static int find_star_point(const sc_moving_contour *c, int line, double q[2])
 {
     double low = HUGE_VAL, high = -HUGE_VAL, below = -HUGE_VAL, above = HUGE_VAL;
@@ -90,8 +93,9 @@ static int find_star_point(const sc_moving_contour *c, int line, double q[2])
 }
 
 /*
- * The proof for a point. A coefficient is off by 2 error |q - v|1 + error |e|1 + 4 error^2; r in the plane of unit vectors,
- * times the lengths of both axes, is at most |x| length.y + |y| length.x, see step/moving_contour.c.
+ * The proof for a point. A coefficient is off by 2 error |q - v|1 + error |e|1 + 4 error^2; r in
+ * the plane of unit vectors, times the lengths of both axes, is at most |x| length.y + |y|
+ * length.x, see step/moving_contour.c.
  */
 static int is_star_point(const sc_moving_contour *c, const double q[2])
 {

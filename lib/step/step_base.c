@@ -1,6 +1,6 @@
 /*
- * The inner loops of a query of a step, for every machine: by SSE2 on x86-64, else as the compiler can. See
- * step_kernels.h.
+ * The inner loops of a query of a step, for every machine: by SSE2 on x86-64, else as the compiler
+ * can. See step_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */

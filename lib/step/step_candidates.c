@@ -42,7 +42,8 @@ static sc_pair name_candidate(const sc_model *model, int kind, const sc_pair *pa
     return name;
 }
 
-/* The answer must not depend on which of two edges was found first: the one with the lower name is put first. */
+/* The answer must not depend on which of two edges was found first: the one with the lower name is
+   put first. */
 static sc_pair put_in_order(const sc_model *model, int kind, sc_pair pair, sc_pair *name)
 {
     *name = name_candidate(model, kind, &pair);

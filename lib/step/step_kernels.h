@@ -21,11 +21,14 @@ typedef struct sc_step_kernels {
     /* The vertices, edges and triangles of two leaf clusters, and of one. */
     void (*leaf_pair)(sc_step_state *state, uint32_t leaf_a, uint32_t leaf_b);
     void (*leaf_itself)(sc_step_state *state, uint32_t leaf);
-    /* Bits of candidates that certainly do not collide; split: points before are one, the others the other. */
+    /* Bits of candidates that certainly do not collide; split: points before are one, the others
+       the other. */
     unsigned (*stay_apart)(const sc_motion *motion, const sc_candidate_points *points, int split);
-    /* The normal cone of 1 to SC_LEAF_MAX triangles given by their corners that holds throughout the step. */
+    /* The normal cone of 1 to SC_LEAF_MAX triangles given by their corners that holds throughout
+       the step. */
     uint32_t (*cone)(const sc_motion *motion, const uint32_t *corner, uint32_t count);
-    /* Projects the listed points of a contour, given by all points in the unit box; sets its error. */
+    /* Projects the listed points of a contour, given by all points in the unit box; sets its
+       error. */
     void (*project)(sc_moving_contour *contour, const float *unit);
     /* Whether sc_moving_contour_are_clear is true of all pairs of edges. */
     int (*are_edges_clear)(sc_moving_contour *contour);

@@ -116,15 +116,15 @@ sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uin
     w->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
     (void)sc_jobs_loop(w->tasks, model->vertex_count, STEP_VERTICES_MIN, scale_step, &pass);
     if (limits->tolerance == 0) limits->tolerance = 2e-6 * side;
-    /* Rounded up: what is lost to rounding in double is less than is added. Infinite if it is beyond float:
-       then nothing is apart. */
+    /* Rounded up: what is lost to rounding in double is less than is added. Infinite if it is
+       beyond float: then nothing is apart. */
     distance = sc_impact_thickness(limits, 2 * side) * w->scale;
     w->motion.distance =
         distance < (double)FLT_MAX / 2 ? (float)distance * 1.000001f + FLT_MIN : HUGE_VALF;
     /*
-     * Boxes are taken of points that are off by SC_MOTION_POINT_ERROR, and each moved outwards by half the
-     * distance between sets that are to be kept, rounding at most 2^-24 (1 + margin) each time: four times
-     * 3e-8, twice 6e-8 and a little.
+     * Boxes are taken of points that are off by SC_MOTION_POINT_ERROR, and each moved outwards by
+     * half the distance between sets that are to be kept, rounding at most 2^-24 (1 + margin) each
+     * time: four times 3e-8, twice 6e-8 and a little.
      */
     w->motion.margin = w->motion.distance * 1.000001f + 3e-7f;
     return SC_OK;
@@ -161,7 +161,8 @@ static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)
         }
 }
 
-/* The boxes of patches first to end - 1 of a level, which is not the last, by those of their children. */
+/* The boxes of patches first to end - 1 of a level, which is not the last, by those of their
+   children. */
 static void join_boxes(const sc_model *model, sc_motion *m, uint32_t first, uint32_t end)
 {
     const uint32_t *child = sc_model_child(model);

@@ -3,14 +3,16 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Points move on straight lines, and so a point of a patch stays inside the box that moves, side by side,
- * from the patch's box at the start to that at the end. Two such boxes are apart at all times if on one axis
- * one is below the other at both ends: what they have in common of their motion does not matter.
+ * Points move on straight lines, and so a point of a patch stays inside the box that moves, side by
+ * side, from the patch's box at the start to that at the end. Two such boxes are apart at all times
+ * if on one axis one is below the other at both ends: what they have in common of their motion does
+ * not matter.
  *
- * What is culled is farther apart than the narrow phase ever reports (sc_impact_thickness): so it alone decides,
- * whatever was culled, and all methods give the same list.
+ * What is culled is farther apart than the narrow phase ever reports (sc_impact_thickness): so it
+ * alone decides, whatever was culled, and all methods give the same list.
  *
- * All passes over vertices, leaf clusters and patches are shared out among the workspace's tasks, if there are any.
+ * All passes over vertices, leaf clusters and patches are shared out among the workspace's tasks,
+ * if there are any.
  */
 #ifndef SC_STEP_MOTION_H
 #define SC_STEP_MOTION_H
@@ -20,13 +22,14 @@
 #include "pose/workspace.h"
 #include "step/impact.h"
 
-/* Largest error of a coordinate in sc_motion.unit: 2^-25 for the rounding to float of a number of at most
-   1, and a little for those to double before. */
+/* Largest error of a coordinate in sc_motion.unit: 2^-25 for the rounding to float of a number of
+   at most 1, and a little for those to double before. */
 #define SC_MOTION_POINT_ERROR 3e-8f
 
 /*
- * Notes where positions are, and fills center, radius and scale of the workspace for the box of both poses, and
- * unit, distance and margin of its motion. A tolerance of 0 becomes the default. The poses were checked but for what this reports: SC_ERROR_NOT_FINITE. About 6 ns a vertex.
+ * Notes where positions are, and fills center, radius and scale of the workspace for the box of
+ * both poses, and unit, distance and margin of its motion. A tolerance of 0 becomes the default.
+ * The poses were checked but for what this reports: SC_ERROR_NOT_FINITE. About 6 ns a vertex.
  */
 sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
                          sc_impact_limits *limits, sc_workspace *workspace);
@@ -47,11 +50,12 @@ static inline void sc_motion_position(const sc_motion *motion, int end, uint32_t
     }
 }
 
-/* Fills the workspace's mask with normal cones that hold throughout the step. About 10 ns a triangle. */
+/* Fills the workspace's mask with normal cones that hold throughout the step. About 10 ns a
+   triangle. */
 void sc_motion_update_cones(const sc_model *model, sc_workspace *workspace);
 
-/* Fills the boxes of patches unless they are ready; where swept, with those of the whole motion, twice. About
-   10 ns a triangle. */
+/* Fills the boxes of patches unless they are ready; where swept, with those of the whole motion,
+   twice. About 10 ns a triangle. */
 void sc_motion_refit(const sc_model *model, sc_workspace *workspace);
 
 /* Whether the boxes of two patches are apart at all times, so far that nothing in them collides. */

@@ -106,8 +106,8 @@ static sc_step_list slice(const sc_step_list *list, uint64_t first, uint64_t cou
     return part;
 }
 
-/* Moves entries so that none of the first is greater than one of the rest, and returns how many these are; as
-   sc_sort_split, which does it where there are no times. */
+/* Moves entries so that none of the first is greater than one of the rest, and returns how many
+   these are; as sc_sort_split, which does it where there are no times. */
 static uint64_t split_list(void *context, uint64_t first, uint64_t count)
 {
     sc_step_list list = slice((const sc_step_list *)context, first, count);

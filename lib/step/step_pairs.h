@@ -1,5 +1,6 @@
 /*
- * The caller's lists of a step: filled in any order, sorted at the end, each with the times of its pairs.
+ * The caller's lists of a step: filled in any order, sorted at the end, each with the times of its
+ * pairs.
  *
  * SPDX-License-Identifier: MIT
  *

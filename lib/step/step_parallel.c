@@ -3,12 +3,13 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The test tree is taken level by level: first nodes of two patches, then those of one, which are left out if one of two
- * that has their patch was culled. One thread, which goes deep first, comes to a node of one patch after all nodes of two
- * that have it, and these are all of its level: so it is the same nodes that are left out. The nodes of a level are one job,
- * or two; what they leave to boxes, with the narrow phase, is one more when all levels are done. The pairs of large patches
- * are split up by the calling thread, to a list of parts which is done in that job, too, or when it is full.
- * The plain tree is nothing but such a list.
+ * The test tree is taken level by level: first nodes of two patches, then those of one, which are
+ * left out if one of two that has their patch was culled. One thread, which goes deep first, comes
+ * to a node of one patch after all nodes of two that have it, and these are all of its level: so it
+ * is the same nodes that are left out. The nodes of a level are one job, or two; what they leave to
+ * boxes, with the narrow phase, is one more when all levels are done. The pairs of large patches
+ * are split up by the calling thread, to a list of parts which is done in that job, too, or when it
+ * is full. The plain tree is nothing but such a list.
  *
  * No locks: see query/parallel.c.
  */
@@ -36,12 +37,12 @@ enum { STEP_LARGE_PART = 64 };
 /* Fewer nodes to look at are not worth a job. */
 enum { STEP_NODES_MIN = 16 };
 
-/* The nodes of a level are cut into so many parts at most, with so many to look at in each, more or less; parts of the
-   list are taken a few at once. */
+/* The nodes of a level are cut into so many parts at most, with so many to look at in each, more or
+   less; parts of the list are taken a few at once. */
 enum { STEP_NODE_PARTS = 256, STEP_NODES_AT_ONCE = 8, STEP_PARTS_AT_ONCE = 2 };
 
-/* For what nodes leave to boxes, the nodes of the first level with so many patches, each with all that is below, and those
-   above it are cut into so many parts at most. */
+/* For what nodes leave to boxes, the nodes of the first level with so many patches, each with all
+   that is below, and those above it are cut into so many parts at most. */
 enum { STEP_SUBTREES_MIN = 512, STEP_REST_PARTS = 1024 };
 
 /* What sc_motion.reached says of a node; 0: its parent was not opened. */
@@ -121,7 +122,8 @@ static void end_step_part(sc_step_state *s)
         s->query.stats.nanoseconds[s->query.task] += sc_clock_nanoseconds() - s->query.last_time;
 }
 
-/* Runs a job. The calling thread's clock stands still: what workers do is in their own statistics. */
+/* Runs a job. The calling thread's clock stands still: what workers do is in their own
+   statistics. */
 static void run_step_job(step_plan *p, void (*run)(void *context, uint32_t part, uint32_t worker),
                          uint32_t count)
 {
@@ -154,7 +156,8 @@ static uint32_t listed_parts(const step_plan *p)
     return (p->part_count + STEP_PARTS_AT_ONCE - 1) / STEP_PARTS_AT_ONCE;
 }
 
-/* What a node leaves, and if it is a root or below one, what all below it leave, which one thread does in this order, too. */
+/* What a node leaves, and if it is a root or below one, what all below it leave, which one thread
+   does in this order, too. */
 static void take_rests(const step_plan *p, sc_step_state *s, uint32_t node)
 {
     const uint32_t *child = sc_model_node_child(s->query.model) + node;
@@ -216,7 +219,8 @@ static int is_large_in_step(const sc_model *model, uint32_t patch)
     return leaf[patch + 1] - leaf[patch] > model->leaf_count / STEP_LARGE_PART;
 }
 
-/* Two patches of a level that are near each other: those of them that are large as by sc_step_kernels.patch_pair. */
+/* Two patches of a level that are near each other: those of them that are large as by
+   sc_step_kernels.patch_pair. */
 static void add_step_patches(step_plan *p, uint32_t a, uint32_t b)
 {
     sc_query_state *query = &p->state->query;
@@ -278,9 +282,9 @@ static void add_boxes_of_level(step_plan *p)
 
 /* ---- the test tree ---- */
 
-/* A node that failed: its children are reached. Boxes are left for later, when all levels are done: some nodes leave much more
-   than others, and then no level has to wait for these. But where the first pair ends the step, they are done at once,
-   unless there are too many. */
+/* A node that failed: its children are reached. Boxes are left for later, when all levels are done:
+   some nodes leave much more than others, and then no level has to wait for these. But where the
+   first pair ends the step, they are done at once, unless there are too many. */
 static void open_step_node(const step_plan *p, sc_step_state *s, uint32_t node)
 {
     const sc_model *model = s->query.model;
@@ -303,7 +307,8 @@ static void open_step_node(const step_plan *p, sc_step_state *s, uint32_t node)
     }
 }
 
-/* The first node from one on that was reached, or the end: mostly few are, so eight are looked at together. */
+/* The first node from one on that was reached, or the end: mostly few are, so eight are looked at
+   together. */
 static uint32_t next_reached(const uint8_t *reached, uint32_t node, uint32_t end)
 {
     uint64_t eight;
@@ -349,7 +354,8 @@ static void do_nodes(step_plan *p, int selfs, uint32_t reached)
     run_step_job(p, run_step_nodes, (count - 1) / p->length + 1);
 }
 
-/* Brings together which patches of the level, all of which are in nodes of two, the workers culled. */
+/* Brings together which patches of the level, all of which are in nodes of two, the workers
+   culled. */
 static void join_marks_of_level(step_plan *p, uint32_t level)
 {
     const uint32_t *level_first = sc_model_level_first(p->state->query.model);
@@ -360,8 +366,8 @@ static void join_marks_of_level(step_plan *p, uint32_t level)
     }
 }
 
-/* How many nodes of one patch, or of two, the workers have reached, and how many large ones they opened; they begin to count
-   again. */
+/* How many nodes of one patch, or of two, the workers have reached, and how many large ones they
+   opened; they begin to count again. */
 static uint32_t take_reached(const step_plan *p, int is_pair)
 {
     uint32_t worker, sum = 0;
@@ -414,8 +420,8 @@ static void walk_levels(step_plan *p)
 
 /* ---- all together ---- */
 
-/* Adds up what the workers counted, and puts the last of their pairs into the caller's lists. Returns 0 if one of these
-   is too short. */
+/* Adds up what the workers counted, and puts the last of their pairs into the caller's lists.
+   Returns 0 if one of these is too short. */
 static int gather_step(step_plan *p)
 {
     sc_step_state *state = p->state;

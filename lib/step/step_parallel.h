@@ -3,23 +3,24 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The answer is that of one thread, bit for bit, and so is all that is counted, unless the query is to end at the first
- * pair: whoever does what, each node of the test tree is looked at or not for the same reasons.
+ * The answer is that of one thread, bit for bit, and so is all that is counted, unless the query is
+ * to end at the first pair: whoever does what, each node of the test tree is looked at or not for
+ * the same reasons.
  */
 #ifndef SC_STEP_STEP_PARALLEL_H
 #define SC_STEP_STEP_PARALLEL_H
 
 #include "step/step_state.h"
 
-/* The tasks that share in a step, or at least in the passes over the poses: those of the caller if there are two workers
-   or more and the model is not small, else NULL. */
+/* The tasks that share in a step, or at least in the passes over the poses: those of the caller if
+   there are two workers or more and the model is not small, else NULL. */
 const sc_tasks *sc_step_parallel_tasks(const sc_step_state *state);
 
 /* Whether the rest is to be shared out as well: not with a budget. */
 int sc_step_parallel_pays(const sc_step_state *state);
 
-/* Does what sc_step_traversal_run and sc_step_pairs_finish do, for a step that pays. Where one of the caller's lists
-   turns out to be too short, one thread asks again. */
+/* Does what sc_step_traversal_run and sc_step_pairs_finish do, for a step that pays. Where one of
+   the caller's lists turns out to be too short, one thread asks again. */
 void sc_step_parallel_run(sc_step_state *state);
 
 #endif

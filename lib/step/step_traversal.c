@@ -32,7 +32,8 @@ void sc_step_traversal_update_cones(sc_step_state *state)
     sc_state_switch(&state->query, SC_TASK_ORIENTATION);
 }
 
-/* What is collected is decided before it would count as following another kind of test, as in query/traversal.c. */
+/* What is collected is decided before it would count as following another kind of test, as in
+   query/traversal.c. */
 void sc_step_traversal_follow_contour(sc_step_state *state, int after_contour)
 {
     if (state->query.after_contour == after_contour) return;
@@ -98,8 +99,8 @@ void sc_step_traversal_query_rest(sc_step_state *state, uint32_t node)
 }
 
 /*
- * A node, and what is below it if it is not culled. Nodes of two patches come first, since a patch that is in one that is
- * culled is culled with it. failed: the node has a contour that failed.
+ * A node, and what is below it if it is not culled. Nodes of two patches come first, since a patch
+ * that is in one that is culled is culled with it. failed: the node has a contour that failed.
  */
 static void query_step_node(sc_step_state *state, uint32_t node, int failed)
 {

@@ -23,7 +23,8 @@ void sc_step_traversal_follow_contour(sc_step_state *state, int after_contour);
 /* The normal cone of a node; 0 if there is none. */
 uint32_t sc_step_traversal_mask(const sc_step_state *state, uint32_t node);
 
-/* Whether nothing in a node collides, as its cone and contour say. failed: it has a contour that failed. */
+/* Whether nothing in a node collides, as its cone and contour say. failed: it has a contour that
+   failed. */
 int sc_step_traversal_culls(sc_step_state *state, uint32_t node, int failed);
 
 /* What a node that is not culled leaves to boxes. */

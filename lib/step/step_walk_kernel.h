@@ -1,5 +1,6 @@
 /*
- * Box recursion over a step, and the vertices, edges and triangles of leaf clusters. See step_kernels.h.
+ * Box recursion over a step, and the vertices, edges and triangles of leaf clusters. See
+ * step_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -23,9 +24,9 @@ static inline void SC_KERNEL(sides_of)(const float *side, uint32_t stride, uint3
 }
 
 /*
- * Bit k: box j + k is not apart from the box at all times. Apart: on one axis, one of the two is below the other
- * both at the start and at the end, that is, the larger of the two differences is negative; differences
- * have the sign that they should have.
+ * Bit k: box j + k is not apart from the box at all times. Apart: on one axis, one of the two is
+ * below the other both at the start and at the end, that is, the larger of the two differences is
+ * negative; differences have the sign that they should have.
  */
 static inline unsigned SC_KERNEL(near)(const SC_KERNEL(sides) * box, const float *side,
                                        uint32_t stride, uint32_t j)
@@ -116,7 +117,8 @@ static void SC_KERNEL(vertices_with_faces)(sc_step_state *state, const sc_leaf_m
     SC_KERNEL(count_tests)(state, tests);
 }
 
-/* Edges of one leaf cluster, those with a bit, against edges of another, or of the same that come later. */
+/* Edges of one leaf cluster, those with a bit, against edges of another, or of the same that come
+   later. */
 static void SC_KERNEL(edges_with_edges)(sc_step_state *state, const sc_leaf_motion *a,
                                         uint64_t some_a, const sc_leaf_motion *b, uint64_t some_b)
 {

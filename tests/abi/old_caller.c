@@ -1,6 +1,7 @@
 /*
- * A program of version 0.1: compiled with the structures of tests/abi/starcontour_0_1.h, linked with
- * the library of today, whose structures may have grown at their ends. tests/test_abi.sh runs it.
+ * A program of version 0.1: compiled with the structures of tests/abi/starcontour_0_1.h, linked
+ * with the library of today, whose structures may have grown at their ends. tests/test_abi.sh runs
+ * it.
  *
  * SPDX-License-Identifier: MIT
  *

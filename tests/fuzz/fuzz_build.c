@@ -1,10 +1,10 @@
 /*
- * Fuzz target: sc_build. Meshes with any indices, coordinates, types and strides, weld maps, orders and
- * trees right and wrong, a caller's bisection that cheats, an allocator that runs dry.
+ * Fuzz target: sc_build. Meshes with any indices, coordinates, types and strides, weld maps, orders
+ * and trees right and wrong, a caller's bisection that cheats, an allocator that runs dry.
  *
  * What is wrong with the input is worked out here as well: a build must fail with one of the causes
- * that there are, and succeed if there is none. A model must then know its own numbers and answer in
- * its rest pose as the oracle does.
+ * that there are, and succeed if there is none. A model must then know its own numbers and answer
+ * in its rest pose as the oracle does.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -1,7 +1,7 @@
 /*
- * Fuzz target: sc_model_load and sc_record_read. Bytes as they are; and saves of small models in which
- * some bytes are replaced and the checksum is made right again, so that the fuzzer gets behind it. What is
- * loaded is asked everything there is to ask; it may answer anything.
+ * Fuzz target: sc_model_load and sc_record_read. Bytes as they are; and saves of small models in
+ * which some bytes are replaced and the checksum is made right again, so that the fuzzer gets
+ * behind it. What is loaded is asked everything there is to ask; it may answer anything.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -1,11 +1,11 @@
 /*
- * Fuzz target: structures. Every structure of the interface at every struct_size, with members of any
- * value, NULL wherever a pointer can be, in blocks of exactly the size that it claims; calls with the
- * wrong workspace, level, capacity or alignment.
+ * Fuzz target: structures. Every structure of the interface at every struct_size, with members of
+ * any value, NULL wherever a pointer can be, in blocks of exactly the size that it claims; calls
+ * with the wrong workspace, level, capacity or alignment.
  *
  * A size that the library must refuse unread (no multiple of a pointer's, or too small) stands in a
- * block of four bytes. What is wrong with a call is worked out here as well, from the structure as an
- * older caller would mean it: with members that the size does not reach taken as zero.
+ * block of four bytes. What is wrong with a call is worked out here as well, from the structure as
+ * an older caller would mean it: with members that the size does not reach taken as zero.
  *
  * SPDX-License-Identifier: MIT
  */

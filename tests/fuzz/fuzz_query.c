@@ -1,7 +1,8 @@
 /*
- * Fuzz target: sc_query. A small mesh, built in some way, and a series of poses and questions on one
- * workspace: vertices at any places (huge, denormal, infinite or no numbers), all types and strides,
- * options right and wrong, all instruction sets, arrays too short. Every answer is compared with the oracle's.
+ * Fuzz target: sc_query. A small mesh, built in some way, and a series of poses and questions on
+ * one workspace: vertices at any places (huge, denormal, infinite or no numbers), all types and
+ * strides, options right and wrong, all instruction sets, arrays too short. Every answer is
+ * compared with the oracle's.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -120,7 +121,8 @@ static void ask(fuzz_bytes *bytes, const subject *s, const sc_pose *pose,
     fuzz_check_query(s->model, s->workspace, pose, &o, capacity, expected);
 }
 
-/* Positions as most callers have them: aligned, packed, with nothing behind the last. To be freed. */
+/* Positions as most callers have them: aligned, packed, with nothing behind the last. To be
+   freed. */
 static void *packed_positions(const subject *s, uint32_t type)
 {
     uint32_t count = 3 * s->mesh.vertex_count;

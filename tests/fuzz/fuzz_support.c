@@ -147,7 +147,8 @@ soup fuzz_mesh(fuzz_bytes *bytes, int wild)
     return s;
 }
 
-/* The start of a mesh as fuzz_mesh reads it, positions rounded to float; returns the number of bytes. */
+/* The start of a mesh as fuzz_mesh reads it, positions rounded to float; returns the number of
+   bytes. */
 static size_t write_mesh(const soup *s, uint8_t *bytes)
 {
     uint32_t triangles = 0, vertices = 0;

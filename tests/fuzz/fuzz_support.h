@@ -1,6 +1,6 @@
 /*
- * What the fuzz targets share: numbers out of a fuzzer's bytes, meshes out of them and back, an allocator
- * that runs dry, and the comparison of an answer with the oracle's.
+ * What the fuzz targets share: numbers out of a fuzzer's bytes, meshes out of them and back, an
+ * allocator that runs dry, and the comparison of an answer with the oracle's.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -41,8 +41,8 @@ typedef struct fuzz_bytes {
 uint32_t fuzz_byte(fuzz_bytes *bytes);
 uint64_t fuzz_number(fuzz_bytes *bytes, uint32_t size); /* size bytes, the lowest first */
 
-/* A coordinate of one of FUZZ_KINDS kinds: small integers, tenths, float and double bits, a table of
-   extremes, integers off by a few units in the last place. */
+/* A coordinate of one of FUZZ_KINDS kinds: small integers, tenths, float and double bits, a table
+   of extremes, integers off by a few units in the last place. */
 enum { FUZZ_KINDS = 6, FUZZ_KIND_FLOAT = 2, FUZZ_KIND_DOUBLE = 3 };
 double fuzz_coordinate(fuzz_bytes *bytes, uint32_t kind);
 
@@ -50,22 +50,22 @@ double fuzz_coordinate(fuzz_bytes *bytes, uint32_t kind);
    vertices and triangles. With wild set, indices and coordinates may be wrong. */
 soup fuzz_mesh(fuzz_bytes *bytes, int wild);
 
-/* Writes bytes for fuzz_build and fuzz_query that read as the first triangles of an OBJ file, followed
-   by choices that depend on the variant; at most FUZZ_SEED_ROOM. Returns their number, 0 if the file
-   cannot be read. */
+/* Writes bytes for fuzz_build and fuzz_query that read as the first triangles of an OBJ file,
+   followed by choices that depend on the variant; at most FUZZ_SEED_ROOM. Returns their number, 0
+   if the file cannot be read. */
 enum { FUZZ_SEED_VARIANTS = 4, FUZZ_SEED_ROOM = 8192 };
 size_t fuzz_seed(const char *path, uint32_t variant, uint8_t *bytes);
 
-/* Writes bytes for fuzz_load: a saved model or record of the first triangles of an OBJ file; at most
-   FUZZ_SAVED_ROOM. Returns their number, 0 if there is no such file or they are more. */
+/* Writes bytes for fuzz_load: a saved model or record of the first triangles of an OBJ file; at
+   most FUZZ_SAVED_ROOM. Returns their number, 0 if there is no such file or they are more. */
 enum { FUZZ_SAVED_ROOM = 16384 };
 size_t fuzz_saved_seed(const char *path, uint32_t variant, uint8_t *bytes);
 
 /* Copies of size bytes in a block of exactly that size; never NULL. To be freed. */
 void *fuzz_copy(const void *from, size_t size);
 
-/* What is wrong with a mesh, a bit FUZZ_BIT(status) for each cause. weld_map may be NULL. Arrays are
-   read if nothing else is wrong. */
+/* What is wrong with a mesh, a bit FUZZ_BIT(status) for each cause. weld_map may be NULL. Arrays
+   are read if nothing else is wrong. */
 #define FUZZ_BIT(status) (UINT32_C(1) << (status))
 uint32_t fuzz_mesh_faults(const sc_mesh *mesh, const uint32_t *weld_map);
 
@@ -79,8 +79,8 @@ typedef struct fuzz_memory {
 sc_allocator fuzz_allocator(fuzz_memory *memory, uint32_t countdown);
 
 /*
- * Up to FUZZ_ORACLE triangles the expected lists are the oracle's; of larger meshes they are those of
- * SC_METHOD_AABB, so that at least the methods are compared. Freed by oracle_free.
+ * Up to FUZZ_ORACLE triangles the expected lists are the oracle's; of larger meshes they are those
+ * of SC_METHOD_AABB, so that at least the methods are compared. Freed by oracle_free.
  */
 enum { FUZZ_ORACLE = 40 };
 oracle_answer fuzz_expect(const soup *s, const double *positions, const uint32_t *weld,

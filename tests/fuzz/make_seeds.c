@@ -1,6 +1,6 @@
 /*
- * Writes what fuzzing starts from: OBJ files as bytes that the targets read as these meshes, and some
- * choices.
+ * Writes what fuzzing starts from: OBJ files as bytes that the targets read as these meshes, and
+ * some choices.
  *
  *     make-seeds DIRECTORY FILE.obj...
  *

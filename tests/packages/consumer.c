@@ -1,7 +1,7 @@
 /*
- * What users of the library compile to see whether it is there and works: all pairs of a small sheet,
- * flat and then wound up, in text. C and C++; nothing but the public header and the C library.
- * tests/test_packages.sh and tests/packages/ compare what it prints.
+ * What users of the library compile to see whether it is there and works: all pairs of a small
+ * sheet, flat and then wound up, in text. C and C++; nothing but the public header and the C
+ * library. tests/test_packages.sh and tests/packages/ compare what it prints.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -26,8 +26,8 @@ static void make_sheet(void)
     unsigned row, column, t = 0;
     for (row = 0; row < SIDE; row++) {
         for (column = 0; column < SIDE; column++) {
-            /* whole numbers and halves, so that every machine has the same; the sheet zigzags through
-               itself */
+            /* whole numbers and halves, so that every machine has the same; the sheet zigzags
+               through itself */
             unsigned v = row * SIDE + column;
             rest[v][0] = (float)column;
             rest[v][1] = (float)row;

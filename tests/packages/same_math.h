@@ -1,7 +1,8 @@
 /*
- * Sine and cosine that are the same everywhere, as those of C libraries are not: sums and products only.
- * Test meshes compiled with -include of this file are the same meshes on every system, so that pairs
- * found on two systems can be compared. Good to some digits, which is all that a mesh asks for.
+ * Sine and cosine that are the same everywhere, as those of C libraries are not: sums and products
+ * only. Test meshes compiled with -include of this file are the same meshes on every system, so
+ * that pairs found on two systems can be compared. Good to some digits, which is all that a mesh
+ * asks for.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -3,9 +3,9 @@
  *
  *     soak [QUERIES]
  *
- * A pose that comes again must get the same answer, by whatever method, and after queries that were cut
- * short or refused; memory must stay where it was after the first round. The model and workspace are in
- * memory of a counting allocator. Exit status 1 if something is wrong.
+ * A pose that comes again must get the same answer, by whatever method, and after queries that were
+ * cut short or refused; memory must stay where it was after the first round. The model and
+ * workspace are in memory of a counting allocator. Exit status 1 if something is wrong.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -59,8 +59,8 @@ static long peak_kilobytes(void)
     return getrusage(RUSAGE_SELF, &usage) == 0 ? usage.ru_maxrss : 0;
 }
 
-/* Cloths that twist, wave, are folded flat or crumpled; some are not finite. None is crushed to a line:
-   then all pairs touch. */
+/* Cloths that twist, wave, are folded flat or crumpled; some are not finite. None is crushed to a
+   line: then all pairs touch. */
 static void set_pose(const soup *rest, uint32_t pose, double *positions)
 {
     size_t size = 3 * (size_t)rest->vertex_count * sizeof(double);

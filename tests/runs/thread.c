@@ -1,7 +1,7 @@
 /*
- * Threads: many at once query one model, each on a workspace of its own, and build models of their own;
- * the answers must be those of one thread alone. Meant for ThreadSanitizer (`make test-thread`), which
- * reports any write to what is shared. Exit status 1 if an answer differs.
+ * Threads: many at once query one model, each on a workspace of its own, and build models of their
+ * own; the answers must be those of one thread alone. Meant for ThreadSanitizer (`make
+ * test-thread`), which reports any write to what is shared. Exit status 1 if an answer differs.
  *
  * SPDX-License-Identifier: MIT
  */
