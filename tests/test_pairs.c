@@ -707,6 +707,7 @@ static void tubes(void)
         double turns = trouble == 1 && sides > 5 ? 2 : 1, bend = test_random_range(0, 0.4);
         double rough = exp2(-1 - (double)test_random_below(8)), flat = 1, height = 0;
         double middle[3], turn[3][3], length = 0, tall = test_random_range(0.3, 2);
+        double tilt = i % 3 ? 0 : test_random_range(-2, 2); /* loops are above and below others */
         soup s = soup_make(strip + per_band + 2, count);
         input_choices own;
         uint32_t *order = (uint32_t *)test_allocate(count * sizeof(uint32_t));
@@ -732,7 +733,8 @@ static void tubes(void)
                 double angle =
                     (k + start + rough * test_random_range(-1, 1)) * turns * 6.283185307 / sides;
                 double reach = wide * (1 + rough * test_random_range(-1, 1));
-                double up = height + tall * rough * test_random_range(-1, 1);
+                double up =
+                    height + tall * rough * test_random_range(-1, 1) + tilt * reach * cos(angle);
                 double p[3] = {reach * cos(angle) + bend * height * height,
                                flat * reach * sin(angle), up};
                 for (c = 0; c < 3; ++c)
@@ -789,6 +791,46 @@ static void tubes(void)
         own.options.partition = SC_PARTITION_ORDER;
         own.options.order = order;
         check_chosen("tube", state, &s, s.positions, SC_WELD_NONE, SC_PARTITION_ORDER, &own);
+        input_free_choices(&own);
+        free(order);
+        soup_free(&s);
+    }
+}
+
+/* Two bands round an axis on one side of a loop that they share, one in the other or through it. */
+static void sleeves(void)
+{
+    uint32_t rounds = test_iterations(100);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t sides = 5 + test_random_below(4), count = 4 * sides, k;
+        soup s = soup_make(3 * sides, count);
+        uint32_t *order = (uint32_t *)test_allocate(count * sizeof(uint32_t));
+        input_choices own;
+        for (uint32_t loop = 0; loop < 3; ++loop) {
+            double wide = loop == 0 ? 1 : test_random_range(0.7, 1.4);
+            double height = loop == 0 ? 0 : test_random_range(0.3, 1.5);
+            for (k = 0; k < sides; ++k) {
+                double *at = s.positions + 3 * (loop * sides + k);
+                double angle = (k + test_random_range(-0.1, 0.1)) * 6.283185307 / sides;
+                double reach = wide * test_random_range(0.9, 1.1);
+                at[0] = reach * cos(angle);
+                at[1] = reach * sin(angle);
+                at[2] = height + test_random_range(-0.1, 0.1);
+            }
+        }
+        for (k = 0; k < count; ++k) {
+            uint32_t *t = s.triangles + 3 * k, side = k % (2 * sides) / 2;
+            uint32_t next = (side + 1) % sides, above = (1 + k / (2 * sides)) * sides;
+            t[0] = k % 2 ? next : side;
+            t[1] = k % 2 ? above + next : next;
+            t[2] = above + side;
+            order[k] = k;
+        }
+        own = input_choose(&s, SC_WELD_NONE, SC_PARTITION_FAST);
+        own.options.partition = SC_PARTITION_ORDER;
+        own.options.order = order;
+        check_chosen("sleeves", state, &s, s.positions, SC_WELD_NONE, SC_PARTITION_ORDER, &own);
         input_free_choices(&own);
         free(order);
         soup_free(&s);
@@ -1365,8 +1407,9 @@ SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(copies_of_two_triangles),
              SC_TEST(scattered_soups), SC_TEST(extreme_coordinates), SC_TEST(nearly_coplanar),
              SC_TEST(edges_that_nearly_meet), SC_TEST(edges_that_meet_across_an_axis),
              SC_TEST(neighbors_on_a_ray), SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane),
-             SC_TEST(bands_in_a_plane), SC_TEST(tubes), SC_TEST(two_clusters_in_a_plane),
-             SC_TEST(two_clusters_at_a_point), SC_TEST(deformed_meshes),
-             SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
-             SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
-             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))
+             SC_TEST(bands_in_a_plane), SC_TEST(tubes), SC_TEST(sleeves),
+             SC_TEST(two_clusters_in_a_plane), SC_TEST(two_clusters_at_a_point),
+             SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell), SC_TEST(branched_discs),
+             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
+             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
+             SC_TEST(meshes_of_the_folder))

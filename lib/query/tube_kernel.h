@@ -13,14 +13,17 @@
  * same for all triangles, so many are over a place of the cylinder, all added with the same sign,
  * as crossing the outline on the way there from far up tells.
  *
- * Let the outline be two chains, each of which runs strictly in one direction round the axis, and
- * one is above the other; and let one go round once. So does the other, as there are as few
- * triangles far down as far up: none. Then each is over every angle once; one triangle is over each
- * place between them, and none elsewhere, and the outline comes to no place twice. So triangles
- * meet in no more than points and edges that they share: those over a place follow each other round
- * it, as in query/star.c, which looks at what is near one place alone. The middle, the directions,
- * and the height between the chains are any, hence have no error; where the directions are in one
- * plane, nothing is above 0.
+ * Let the outline be two chains that run strictly round the axis, in different directions, and let
+ * one go round once. So does the other, as there are as few triangles far down as far up: none.
+ * Then each is over every angle once. On the way down the number of triangles grows by one at the
+ * chain of one direction and falls by one at the other, and it is never below none: so the former
+ * is above the latter, or they touch. They do not: near a place of the upper one, all below it is
+ * covered, by the triangle of an edge, or by those round a point, which end at no edges but the two
+ * of the outline there; and below the lower one nothing is. So one triangle is over each place
+ * between them, and none elsewhere, and the outline comes to no place twice. So triangles meet in
+ * no more than points and edges that they share: those over a place follow each other round it, as
+ * in query/star.c, which looks at what is near one place alone. The middle and the directions are
+ * any, hence have no error; where the directions are in one plane, nothing is above 0.
  *
  * Two clusters that share one chain of each, which runs in the other direction in the other cluster
  * (SC_TOUCH_CHAIN), have nothing else in common if both are such bands, round the same axis, and
@@ -35,8 +38,8 @@
  * by rounding 4.02 v M^2: at most Q = d (5.1 M + 2 d). The normal times (u, v, 0) is a difference
  * of two products of a step in h, at most 2.01 M and off by 2.5 d, and of such a z, at most 2.02
  * M^2: each product is off by 2.01 M Q + 5.05 M^2 d + 2.5 d Q and by rounding 1.02 M^2 d, and the
- * difference by 2.05 M^2 d more: less than Q (4.1 M + 5.1 d) + 14.4 M^2 d in all. A height is off
- * by d, and the sum of one with it by less than 0.3 d. What underflows is within some FLT_MIN.
+ * difference by 2.05 M^2 d more: less than Q (4.1 M + 5.1 d) + 14.4 M^2 d in all. What underflows
+ * is within some FLT_MIN.
  *
  * All this holds for each place that the points can be at, up to these errors. If they are moved
  * from the computed places to the true ones, edges go on running in their direction, so that chains
@@ -93,8 +96,8 @@ static inline unsigned SC_KERNEL(places_with)(lanes_bytes outline, uint8_t bit)
 }
 
 /* Whether the two chains of a cluster's outline certainly run round the axis, the first once, in
-   different directions, one above some height and the other below. */
-static inline int SC_KERNEL(go_round)(const SC_KERNEL(tube) * t, const lanes at[3], float height,
+   different directions. */
+static inline int SC_KERNEL(go_round)(const SC_KERNEL(tube) * t, const lanes at[3],
                                       const uint8_t *row)
 {
     const lanes_bytes outline = lanes_bytes_load(row);
@@ -108,15 +111,11 @@ static inline int SC_KERNEL(go_round)(const SC_KERNEL(tube) * t, const lanes at[
     const lanes z = lanes_subtract(lanes_multiply(at[0], v), lanes_multiply(at[1], u));
     const unsigned ahead = lanes_bits(lanes_below(lanes_all(bound), z));
     const unsigned back = lanes_bits(lanes_below(z, lanes_all(-bound)));
-    const unsigned above = lanes_bits(lanes_below(lanes_all(height + 1.4f * t->error), at[2]));
-    const unsigned below = lanes_bits(lanes_below(at[2], lanes_all(height - 1.4f * t->error)));
     const unsigned up =
         lanes_bits(lanes_both(lanes_not_above(at[1], lanes_all(0)), lanes_below(lanes_all(0), v)));
     const int directed =
         !((first & ~ahead) | (second & ~back)) || !((first & ~back) | (second & ~ahead));
-    const int apart =
-        !((first & ~above) | (second & ~below)) || !((first & ~below) | (second & ~above));
-    return directed && apart && sc_bits_count(up & first) == 1;
+    return directed && sc_bits_count(up & first) == 1;
 }
 
 /* To which side the triangles of a cluster are certainly turned, all of them: 1 or 2, or 0 if that
@@ -147,16 +146,14 @@ static inline int SC_KERNEL(side_of_tube)(const SC_KERNEL(tube) * t, const lanes
     return lanes_every(lanes_below(most, lanes_all(-bound))) ? 2 : 0;
 }
 
-/* To which side a cluster is turned that is a band, the chains of which are above and below a
-   height; 0 if it may be none. */
+/* To which side a cluster is turned that is a band; 0 if it may be none. */
 static inline int SC_KERNEL(side_of_band)(const sc_query_state *state, uint32_t leaf,
-                                          const SC_KERNEL(tube) * t, float height)
+                                          const SC_KERNEL(tube) * t)
 {
     const sc_model *model = state->model;
     lanes at[3];
     SC_KERNEL(see_tube)(state, leaf, t, at);
-    if (!SC_KERNEL(go_round)(t, at, height,
-                             sc_model_leaf_outline(model) + SC_LEAF_POINTS * (uint64_t)leaf))
+    if (!SC_KERNEL(go_round)(t, at, sc_model_leaf_outline(model) + SC_LEAF_POINTS * (uint64_t)leaf))
         return 0;
     return SC_KERNEL(side_of_tube)(t, at,
                                    sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf);
@@ -205,15 +202,14 @@ static int SC_KERNEL(is_band)(const sc_query_state *state, uint32_t leaf)
         x[k] = lanes_subtract(x[k], lanes_all((low[k] + high[k]) / 2));
         along[k] = lanes_sum(lanes_multiply(side, x[k]));
     }
-    return SC_KERNEL(begin_tube)(along, low, high, &t) &&
-           SC_KERNEL(side_of_band)(state, leaf, &t, 0);
+    return SC_KERNEL(begin_tube)(along, low, high, &t) && SC_KERNEL(side_of_band)(state, leaf, &t);
 }
 
 /* Whether two of them that share a chain certainly are bands, one above it and the other below. The
    axis leads from the middle of one to that of the other, about. */
 static int SC_KERNEL(are_bands)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
-    float low[2][3], high[2][3], middle[2][3], along[3], height[2] = {0, 0};
+    float low[2][3], high[2][3], middle[2][3], along[3];
     SC_KERNEL(tube) t;
     int k, s, side;
     SC_KERNEL(find_box)(state, a, low[0], high[0]);
@@ -225,10 +221,8 @@ static int SC_KERNEL(are_bands)(const sc_query_state *state, uint32_t a, uint32_
         high[0][k] = high[1][k] > high[0][k] ? high[1][k] : high[0][k];
     }
     if (!SC_KERNEL(begin_tube)(along, low[0], high[0], &t)) return 0;
-    for (s = 0; s < 2; s++)
-        for (k = 0; k < 3; k++) height[s] += t.direction[2][k] * (middle[s][k] - t.middle[k]);
-    side = SC_KERNEL(side_of_band)(state, a, &t, height[0]);
-    return side && SC_KERNEL(side_of_band)(state, b, &t, height[1]) == side;
+    side = SC_KERNEL(side_of_band)(state, a, &t);
+    return side && SC_KERNEL(side_of_band)(state, b, &t) == side;
 }
 
 /* Of so many pairs of leaf clusters that wait, or one with itself, drops those that go round a tube
