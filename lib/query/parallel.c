@@ -159,6 +159,7 @@ static uint32_t divide_up(uint32_t count, uint32_t by)
 static void run_part(sc_query_state *s, const sc_part *part)
 {
     sc_walk *walk = &s->workspace->walk;
+    sc_pair pair;
     switch (part->kind) {
     case PART_BELOW:
         walk->stack[walk->stack_count++] = part->a;
@@ -171,11 +172,14 @@ static void run_part(sc_query_state *s, const sc_part *part)
         break;
     case PART_PATCH:
         sc_traversal_follow_contour(s, 0);
-        sc_query_kernels_of(s->workspace)->patch_itself(s, part->a);
+        pair.a = pair.b = part->a;
+        sc_query_kernels_of(s->workspace)->patch_pairs(s, &pair, 1);
         break;
     default:
         sc_traversal_follow_contour(s, part->kind == PART_PAIR_AFTER_CONTOUR);
-        sc_query_kernels_of(s->workspace)->patch_pair(s, part->a, part->b);
+        pair.a = part->a;
+        pair.b = part->b;
+        sc_query_kernels_of(s->workspace)->patch_pairs(s, &pair, 1);
     }
 }
 
@@ -250,8 +254,9 @@ static int is_large(const sc_model *model, uint32_t patch, uint32_t parts)
     return leaf[patch + 1] - leaf[patch] > model->leaf_count / parts;
 }
 
-/* Two patches of a level whose boxes overlap, as sc_query_kernels.patch_pair has them. If one is large, their children: level by level, where one thread goes to the fourth
-   level below at once, from which as many as 256 pairs come. */
+/* Two patches of a level whose boxes overlap, as sc_query_kernels.patch_pairs has them. If one is
+   large, their children: level by level, where one thread goes to the fourth level below at once,
+   from which as many as 256 pairs come. */
 static void add_patches(plan *p, uint32_t a, uint32_t b)
 {
     sc_query_state *state = p->state;

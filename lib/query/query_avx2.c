@@ -39,9 +39,9 @@
 #  include "query/small_kernel.h"
 
 const sc_query_kernels sc_query_kernels_avx2 = {
-    SC_KERNEL(patch_pair),  SC_KERNEL(patch_itself),  SC_KERNEL(leaf_pair_waits),
-    SC_KERNEL(leaf_itself), SC_KERNEL(leaf_pairs),    SC_KERNEL(decide),
-    SC_KERNEL(project),     SC_KERNEL(look_at_edges), SC_KERNEL(find_simple)};
+    SC_KERNEL(patch_pairs),   SC_KERNEL(leaf_pair_waits), SC_KERNEL(leaf_itself),
+    SC_KERNEL(leaf_pairs),    SC_KERNEL(decide),          SC_KERNEL(project),
+    SC_KERNEL(look_at_edges), SC_KERNEL(find_simple)};
 
 #  include "base/lanes_cells_end.h"
 #  include "base/lanes_bytes_end.h"

@@ -11,10 +11,9 @@
 #include "query/simple_contour.h"
 
 typedef struct sc_query_kernels {
-    /* Box recursion (the paper's QueryBVs) on two patches of a level whose boxes overlap, and on one. The upper one comes
-       first only if they share no points. */
-    void (*patch_pair)(sc_query_state *state, uint32_t patch_a, uint32_t patch_b);
-    void (*patch_itself)(sc_query_state *state, uint32_t patch);
+    /* Box recursion (the paper's QueryBVs) on pairs of patches of a level whose boxes overlap, or
+       twice the same. The upper one comes first only if they share no points. */
+    void (*patch_pairs)(sc_query_state *state, const sc_pair *pairs, uint32_t count);
     /* The triangles of two leaf clusters, which wait, and of one. */
     void (*leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b);
     void (*leaf_itself)(sc_query_state *state, uint32_t leaf);

@@ -59,8 +59,10 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
     for (i = sc_model_node_boxes(model)[node]; i < end && !state->stop; i++) {
         const sc_pair *pair = &sc_model_boxes(model)[i];
         state->stats.counts[sc_state_box_task(state)]++;
-        if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b))
-            kernels->patch_pair(state, pair->b, pair->a);
+        if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b)) {
+            const sc_pair turned = {pair->b, pair->a};
+            kernels->patch_pairs(state, &turned, 1);
+        }
     }
     if (sc_model_node_child(model)[node] == sc_model_node_child(model)[node + 1] &&
         sc_model_is_leaf(model, patches->a) && sc_model_is_leaf(model, patches->b)) {
@@ -168,7 +170,8 @@ static int is_left(const sc_query_state *state, uint32_t node)
     return !has_prospect(state, patches->a) || !has_prospect(state, patches->b);
 }
 
-/* Two patches, as sc_query_kernels.patch_pair has them, or one twice, are left to boxes, after a contour test or not. */
+/* Two patches, as sc_query_kernels.patch_pairs has them, or one twice, are left to boxes, after a
+   contour test or not. */
 static void leave_to_boxes(sc_query_state *state, uint32_t a, uint32_t b, int after_contour)
 {
     sc_walk *walk = &state->workspace->walk;
@@ -198,12 +201,7 @@ void sc_traversal_take_boxes(sc_query_state *state)
             pairs[count] = pairs[i];
             count += (uint32_t)sc_boxes_overlap(boxes, pairs[i].a, boxes, pairs[i].b);
         }
-        for (i = 0; i < count && !state->stop; i++) {
-            if (pairs[i].a == pairs[i].b)
-                kernels->patch_itself(state, pairs[i].a);
-            else
-                kernels->patch_pair(state, pairs[i].a, pairs[i].b);
-        }
+        kernels->patch_pairs(state, pairs, count);
         sc_state_switch(state, previous);
     }
 }
@@ -406,9 +404,10 @@ void sc_traversal_run(sc_query_state *state)
         sc_state_switch(state, SC_TASK_BOXES_ORIENTATION);
         sc_traversal_take_nodes(state, 0, state->model->node_count);
     } else {
+        const sc_pair whole = {0, 0};
         sc_traversal_update_boxes(state);
         sc_state_switch(state, SC_TASK_BOXES_ORIENTATION);
-        sc_query_kernels_of(state->workspace)->patch_itself(state, 0);
+        sc_query_kernels_of(state->workspace)->patch_pairs(state, &whole, 1);
     }
     sc_candidates_decide(state);
 }

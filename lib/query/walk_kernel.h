@@ -2,48 +2,61 @@
  * Box recursion. See query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
+ *
+ * Of pairs of patches whose children are leaf clusters, rows are listed: children of one that
+ * overlap the other. When there are many, they are compared with the other's children, and then
+ * pairs of leaf clusters are listed. Each is a loop over all rows, so that no branch depends on how
+ * many a pair of patches has.
  */
 
-/* Of the children of a patch in a mask, from first_a on, lists those whose boxes overlap some of another's in all_b, from
-   first_b on; and which these are. Returns how many. Without branches, as any row may have some. */
-static inline unsigned SC_KERNEL(list_rows)(const sc_boxes *boxes, uint32_t first_a, unsigned rows,
-                                            uint32_t first_b, unsigned all_b, uint32_t *row,
-                                            unsigned *mask)
+/* Rows that are looked at together. */
+enum { SC_KERNEL(WALK_ROWS) = 128 };
+
+/* Leaf clusters that are to be compared with some others, as patches. */
+typedef struct SC_KERNEL(walk_rows) {
+    uint32_t row[SC_KERNEL(WALK_ROWS) + SC_LEAF_MAX];
+    uint32_t first[SC_KERNEL(WALK_ROWS) + SC_LEAF_MAX]; /* of those, */
+    uint32_t all[SC_KERNEL(WALK_ROWS) + SC_LEAF_MAX];   /* and a bit for each */
+    unsigned count;
+} SC_KERNEL(walk_rows);
+
+/* Has the pairs of leaf clusters wait that overlap in these rows, and forgets them. */
+static SC_NOINLINE void SC_KERNEL(take_walk_rows)(sc_query_state *state,
+                                                  SC_KERNEL(walk_rows) * rows)
 {
-    lanes low[3], high[3];
-    lanes_mask m[3];
-    unsigned count = 0;
-    int k;
-    SC_UNROLL
-    for (k = 0; k < 3; k++) {
-        low[k] = lanes_load(boxes->side[k] + first_b);
-        high[k] = lanes_load(boxes->side[k + 3] + first_b);
+    const sc_boxes *boxes = &state->workspace->patch_boxes;
+    const uint32_t leaves = sc_model_first_leaf_patch(state->model);
+    unsigned count = 0, i;
+    for (i = 0; i < rows->count; i++) {
+        const uint32_t row = rows->row[i], first = rows->first[i];
+        const unsigned mask = SC_KERNEL(overlap)(boxes, row, boxes, first) & rows->all[i];
+        rows->row[count] = row;
+        rows->first[count] = first;
+        rows->all[count] = mask;
+        count += mask != 0;
     }
-    for (; rows; rows &= rows - 1) {
-        const uint32_t c = first_a + sc_bits_lowest(rows);
-        SC_UNROLL
-        for (k = 0; k < 3; k++)
-            m[k] = lanes_both(lanes_not_above(lanes_all(boxes->side[k][c]), high[k]),
-                              lanes_not_above(low[k], lanes_all(boxes->side[k + 3][c])));
-        row[count] = c;
-        mask[count] = lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2]))) & all_b;
-        count += mask[count] != 0;
+    for (i = 0; i < count && !state->stop; i++) {
+        SC_KERNEL(add_leaf_pairs)
+        (state, rows->row[i] - leaves, rows->first[i] - leaves, rows->all[i]);
+        SC_KERNEL(make_leaf_room)(state);
     }
-    return count;
+    rows->count = 0;
 }
 
 /*
- * Two patches of a level whose boxes overlap: the descendants of one at the next level that is visited,
- * sixteen at most, against the other's box, then row by row against the other's.
+ * Two patches of a level whose boxes overlap: the descendants of one at the next level that is
+ * visited, sixteen at most, against the other's box, then row by row against the other's; rows of
+ * leaf clusters wait.
  */
-static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b)
+static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b,
+                                  SC_KERNEL(walk_rows) * waiting)
 {
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     const uint32_t *hop = sc_model_hop(model);
     const uint32_t leaves = sc_model_first_leaf_patch(model);
-    uint32_t first_a, first_b, row[SC_LEAF_MAX];
-    unsigned rows, all_b, mask[SC_LEAF_MAX], count, i;
+    uint32_t first_a, first_b;
+    unsigned rows, all_b, i;
     if (a >= leaves) {
         SC_KERNEL(leaf_pair_waits)
         (state, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
@@ -55,21 +68,26 @@ static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b)
     all_b = (1u << (hop[b + 1] - first_b)) - 1u;
     rows = SC_KERNEL(overlap)(boxes, b, boxes, first_a) & ((1u << (hop[a + 1] - first_a)) - 1u);
     state->stats.counts[sc_state_box_task(state)] += 1 + sc_bits_count(rows);
-    count = SC_KERNEL(list_rows)(boxes, first_a, rows, first_b, all_b, row, mask);
-    if (first_a < leaves) {
-        for (i = 0; i < count; i++)
-            for (; mask[i] && !state->stop; mask[i] &= mask[i] - 1)
-                SC_KERNEL(patch_pair)(state, row[i], first_b + sc_bits_lowest(mask[i]));
+    if (first_a >= leaves) {
+        uint32_t *first = waiting->first + waiting->count, *all = waiting->all + waiting->count;
+        for (i = 0; i < SC_LANES_COUNT; i++) first[i] = first_b;
+        for (i = 0; i < SC_LANES_COUNT; i++) all[i] = all_b;
+        waiting->count += lanes_list_from(rows, first_a, waiting->row + waiting->count);
+        if (waiting->count >= SC_KERNEL(WALK_ROWS) || sc_state_may_end_early(state))
+            SC_KERNEL(take_walk_rows)(state, waiting);
     } else {
-        for (i = 0; i < count && !state->stop; i++) {
-            SC_KERNEL(add_leaf_pairs)(state, row[i] - leaves, first_b - leaves, mask[i]);
-            SC_KERNEL(make_leaf_room)(state);
+        for (; rows && !state->stop; rows &= rows - 1) {
+            const uint32_t c = first_a + sc_bits_lowest(rows);
+            unsigned mask = SC_KERNEL(overlap)(boxes, c, boxes, first_b) & all_b;
+            for (; mask && !state->stop; mask &= mask - 1)
+                SC_KERNEL(patch_pair)(state, c, first_b + sc_bits_lowest(mask), waiting);
         }
     }
 }
 
 /* A patch against itself. */
-static void SC_KERNEL(patch_itself)(sc_query_state *state, uint32_t a)
+static void SC_KERNEL(patch_itself)(sc_query_state *state, uint32_t a,
+                                    SC_KERNEL(walk_rows) * waiting)
 {
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
@@ -86,8 +104,23 @@ static void SC_KERNEL(patch_itself)(sc_query_state *state, uint32_t a)
         unsigned mask = SC_KERNEL(overlap)(boxes, c, boxes, hop[a]);
         mask &= ((1u << count) - 1u) & ~((2u << i) - 1u);
         state->stats.counts[sc_state_box_task(state)]++;
-        SC_KERNEL(patch_itself)(state, c);
+        SC_KERNEL(patch_itself)(state, c, waiting);
         for (; mask && !state->stop; mask &= mask - 1)
-            SC_KERNEL(patch_pair)(state, c, hop[a] + sc_bits_lowest(mask));
+            SC_KERNEL(patch_pair)(state, c, hop[a] + sc_bits_lowest(mask), waiting);
     }
+}
+
+/* Pairs of patches, or patches against themselves. */
+static void SC_KERNEL(patch_pairs)(sc_query_state *state, const sc_pair *pairs, uint32_t count)
+{
+    SC_KERNEL(walk_rows) waiting;
+    uint32_t i;
+    waiting.count = 0;
+    for (i = 0; i < count && !state->stop; i++) {
+        if (pairs[i].a == pairs[i].b)
+            SC_KERNEL(patch_itself)(state, pairs[i].a, &waiting);
+        else
+            SC_KERNEL(patch_pair)(state, pairs[i].a, pairs[i].b, &waiting);
+    }
+    SC_KERNEL(take_walk_rows)(state, &waiting);
 }
