@@ -23,6 +23,9 @@ enum {
     SC_LEAF_PAIRS_UNASKED = 64
 };
 
+/* Leaf clusters of which slabs are made together. */
+enum { SC_MADE_LEAVES = 64 };
+
 /* Pairs of leaf clusters that are looked at together; and of triangles in them, so many or the next pair of clusters
    more. Lists of both are written sixteen at a time. */
 enum {

@@ -443,6 +443,11 @@ static void SC_KERNEL(far_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
             SC_KERNEL(test_rows)(state, rows);
         for (i = 0; i < count; i++) {
             uint32_t a = lower[i], b = upper[i];
+            if (i % SC_MADE_LEAVES == 0 && w->ready_mask == SC_KEEPS_ALL) {
+                const uint32_t some = count - i < SC_MADE_LEAVES ? count - i : SC_MADE_LEAVES;
+                SC_KERNEL(make_slabs)(state, lower + i, some);
+                SC_KERNEL(make_slabs)(state, upper + i, some);
+            }
             if (i + SC_FETCH_POINTS < count) SC_KERNEL(fetch_points)(w, upper[i + SC_FETCH_POINTS]);
             lower[kept] = a;
             upper[kept] = b;

@@ -136,11 +136,11 @@ static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state,
     return state->workspace->ready + at;
 }
 
-/* Makes the slab of a leaf cluster; is_upper as above. */
-static void SC_KERNEL(make_slab)(const sc_query_state *state, uint32_t leaf, int is_upper)
+/* Makes the slab of a leaf cluster that is ready. */
+static inline void SC_KERNEL(make_slab)(const sc_query_state *state, uint32_t leaf,
+                                        const sc_leaf_ready *ready)
 {
     sc_leaf_slab *slab = state->workspace->slab + leaf;
-    const sc_leaf_ready *ready = SC_KERNEL(ready)(state, leaf, is_upper);
     float reach = 16 * FLT_MIN;
     lanes along;
     int c;
@@ -154,13 +154,56 @@ static void SC_KERNEL(make_slab)(const sc_query_state *state, uint32_t leaf, int
     slab->tick = state->workspace->pose_tick;
 }
 
-/* That slab. */
+/* That slab; is_upper as above. */
 static inline const sc_leaf_slab *SC_KERNEL(slab)(const sc_query_state *state, uint32_t leaf,
                                                   int is_upper)
 {
     const sc_leaf_slab *slab = state->workspace->slab + leaf;
-    if (slab->tick != state->workspace->pose_tick) SC_KERNEL(make_slab)(state, leaf, is_upper);
+    if (slab->tick != state->workspace->pose_tick)
+        SC_KERNEL(make_slab)(state, leaf, SC_KERNEL(ready)(state, leaf, is_upper));
     return slab;
+}
+
+/* Asks for what a leaf cluster is made ready of, and where. */
+static inline void SC_KERNEL(fetch_to_make)(const sc_query_state *state, uint32_t leaf)
+{
+    const sc_workspace *w = state->workspace;
+    const float *at = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
+    const uint8_t *corner = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
+    const float *to = w->ready[leaf].side[0];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 4; k++) sc_fetch(at + SC_LEAF_POINTS * k);
+    sc_fetch(corner);
+    SC_UNROLL
+    for (k = 0; k < SC_READY_ROWS; k++) sc_fetch(to + SC_LEAF_MAX * k);
+}
+
+/* Where all leaf clusters are kept, makes the slabs of so many that have none yet. These are listed
+   first, and those of them that are not ready, so that no branch depends on which they are, and
+   many are made at the same time. */
+static SC_NOINLINE void SC_KERNEL(make_slabs)(const sc_query_state *state, const uint32_t *leaf,
+                                              uint32_t count)
+{
+    enum { AHEAD = 4 };
+    const sc_workspace *w = state->workspace;
+    const uint32_t tick = w->pose_tick;
+    uint32_t bare[SC_MADE_LEAVES], unready[SC_MADE_LEAVES], bare_count = 0, unready_count = 0, i;
+    for (i = 0; i < count; i++) {
+        bare[bare_count] = leaf[i];
+        bare_count += w->slab[leaf[i]].tick != tick;
+        w->slab[leaf[i]].tick = tick; /* from now on: it may be listed again */
+    }
+    for (i = 0; i < bare_count; i++) {
+        unready[unready_count] = bare[i];
+        unready_count += !SC_KERNEL(is_ready)(state, bare[i], 0);
+    }
+    for (i = 0; i < unready_count && i < AHEAD; i++) SC_KERNEL(fetch_to_make)(state, unready[i]);
+    for (i = 0; i < unready_count; i++) {
+        if (i + AHEAD < unready_count) SC_KERNEL(fetch_to_make)(state, unready[i + AHEAD]);
+        SC_KERNEL(make_ready)(state, unready[i], unready[i]);
+    }
+    for (i = 0; i < bare_count; i++) SC_KERNEL(make_slab)(state, bare[i], w->ready + bare[i]);
 }
 
 /* Not 0 if all points of a leaf cluster are certainly before a slab, or behind. Without branches, as either may be. */
