@@ -519,17 +519,25 @@ static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     sc_workspace *w = state->workspace;
     const sc_near_pair *pairs = w->near_pairs;
     const uint32_t count = SC_KERNEL(take_near_list)(state);
+    const uint32_t *begin = sc_model_share_begin(state->model);
+    const uint8_t *corner = sc_model_leaf_corner(state->model);
     uint32_t i;
     rows->near = 1;
     for (i = 0; i < count && !state->stop; i++) {
+        if (i + 2 * SC_FETCH_READY < count && pairs[i + 2 * SC_FETCH_READY].shared != SC_NONE)
+            sc_fetch(begin + pairs[i + 2 * SC_FETCH_READY].shared);
         if (i + SC_FETCH_READY < count) {
             const sc_near_pair *next = pairs + i + SC_FETCH_READY;
             SC_KERNEL(fetch_ready)(w, next->a);
             SC_KERNEL(fetch_ready)(w, next->b);
-            sc_fetch(next->shared != SC_NONE ? sc_model_share_list(state->model) +
-                                                   sc_model_share_begin(state->model)[next->shared]
-                                             : sc_model_share_own_rows(state->model) +
-                                                   SC_OWN_WORDS * (uint64_t)next->a);
+            sc_fetch(corner + 3 * SC_LEAF_MAX * (uint64_t)next->b);
+            if (next->shared != SC_NONE) {
+                const uint16_t *list = sc_model_share_list(state->model) + begin[next->shared];
+                sc_fetch(list);
+                sc_fetch(list + 32);
+            } else {
+                sc_fetch(sc_model_share_own_rows(state->model) + SC_OWN_WORDS * (uint64_t)next->a);
+            }
         }
         SC_KERNEL(leaf_pair)(state, pairs[i].a, pairs[i].b, 0, pairs[i].shared, rows);
         if (i % SC_LEAF_PAIRS_UNASKED == 0) sc_state_stops(state);

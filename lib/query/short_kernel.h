@@ -293,7 +293,7 @@ static inline void SC_KERNEL(fetch_loop)(const sc_query_state *state, const sc_n
     } else {
         const uint16_t *loop = sc_model_loop(model) + sc_model_node_loop(model)[*node];
         sc_fetch(loop);
-        sc_fetch(loop + SC_LANES_COUNT);
+        sc_fetch(loop + 2 * SC_LANES_COUNT - 1);
     }
 }
 
@@ -316,6 +316,11 @@ static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state, uint32_t wa
         const sc_near_pair *p = pairs + i;
         oriented[count] = i;
         count += (p->a != p->b) & ((mask[p->a] & mask[p->b]) != 0) & !(p->known & told);
+    }
+    for (step = 0; step < SC_KERNEL(SHORT_FETCHES); step++) {
+        const uint32_t ahead = DISTANCE * (uint32_t)(SC_KERNEL(SHORT_FETCHES) + 1 - step);
+        for (i = 0; i < ahead && i < count; i++)
+            SC_KERNEL(fetch_loop)(state, pairs + oriented[i], step);
     }
     for (i = 0; i < count; i++) {
         for (step = 0; step < SC_KERNEL(SHORT_FETCHES); step++) {

@@ -24,8 +24,11 @@ typedef struct SC_KERNEL(walk_rows) {
 static SC_NOINLINE void SC_KERNEL(take_walk_rows)(sc_query_state *state,
                                                   SC_KERNEL(walk_rows) * rows)
 {
+    enum { AHEAD = 8 };
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     const uint32_t leaves = sc_model_first_leaf_patch(state->model);
+    const uint32_t *share = sc_model_share_first(state->model);
+    const uint32_t *shared = sc_model_share_leaf(state->model);
     unsigned count = 0, i;
     for (i = 0; i < rows->count; i++) {
         const uint32_t row = rows->row[i], first = rows->first[i];
@@ -34,8 +37,11 @@ static SC_NOINLINE void SC_KERNEL(take_walk_rows)(sc_query_state *state,
         rows->first[count] = first;
         rows->all[count] = mask;
         count += mask != 0;
+        sc_fetch(share + row - leaves);
     }
+    for (i = 0; i < count && i < AHEAD; i++) sc_fetch(shared + share[rows->row[i] - leaves]);
     for (i = 0; i < count && !state->stop; i++) {
+        if (i + AHEAD < count) sc_fetch(shared + share[rows->row[i + AHEAD] - leaves]);
         SC_KERNEL(add_leaf_pairs)
         (state, rows->row[i] - leaves, rows->first[i] - leaves, rows->all[i]);
         SC_KERNEL(make_leaf_room)(state);
