@@ -23,22 +23,15 @@ static inline unsigned sc_bits_lowest(unsigned mask)
 #endif
 }
 
-/* Asks for memory that will be read soon; any address will do. */
+/* Asks for memory that will be read soon; any address will do. gcc takes functions that do nothing
+   else for such that have no effect, and drops calls of them, hence the statement that is empty. */
 static inline void sc_fetch(const void *address)
 {
 #if defined(__GNUC__)
     __builtin_prefetch(address);
+    __asm__ volatile("");
 #else
     (void)address;
-#endif
-}
-
-/* For functions that do nothing else: gcc takes them for such that have no effect, and drops calls
-   of them. */
-static inline void sc_fetch_matters(void)
-{
-#if defined(__GNUC__)
-    __asm__ volatile("");
 #endif
 }
 

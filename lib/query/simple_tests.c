@@ -23,7 +23,6 @@ static void fetch(const sc_model *model, uint32_t node, int step)
     const uint32_t *at = sc_model_node_contour(model) + node, *segments, *first, *last;
     const uint32_t *looped = sc_model_node_loop(model) + node;
     uint32_t i, count;
-    sc_fetch_matters();
     if (step == 0) {
         sc_fetch(at);
         sc_fetch(looped);
