@@ -1195,11 +1195,12 @@ static void poses_of_any_layout(void)
         scene s;
         open_random_scene(&s, round % 3 ? 60 : 300);
         random_pose(s.pose, s.mesh.vertex_count);
-        if (round % 4 == 1) { /* where floats are hardly large or small enough, or not at all */
-            double largest = 1;
+        if (round % 2) { /* where floats are hardly large or small enough, or sums too large */
+            double largest = 1, size = exp2(test_random_range(-150, 120));
+            if (round % 4 == 3) size = round % 8 == 3 ? 0x1.8p127 : 0x1.8p1023;
             for (uint32_t i = 0; i < 3 * s.mesh.vertex_count; ++i)
                 largest = fmax(largest, fabs(s.pose[i]));
-            soup_scale(s.pose, s.mesh.vertex_count, exp2(test_random_range(-150, 120)) / largest);
+            soup_scale(s.pose, s.mesh.vertex_count, size / largest);
         }
         for (size_t l = 0; l < sizeof(layouts) / sizeof(layouts[0]); ++l) {
             const struct layout *layout = &layouts[l];

@@ -5,43 +5,67 @@
  *
  * Widens low and high by `some` vertices, one or more; 0 if a coordinate is NaN or infinite.
  *
- * Packed: three registers hold the coordinates of whole vertices: lane i of the three together is coordinate i % 3.
+ * Packed: three registers hold the coordinates of whole vertices: lane i of the three together is
+ * coordinate i % 3. They are registers of the machine, as those of sixteen floats or eight doubles
+ * are too many. Sums of what is finite are finite, unless that is huge: where they are not, all is
+ * looked at number by number.
  */
+
+#if SC_LANES_AVX512
+#  define EXTENT(name) _mm512_##name
+#  define EXTENT_DOUBLES __m512d
+#  define EXTENT_FLOATS __m512
+#elif SC_LANES_AVX2
+#  define EXTENT(name) _mm256_##name
+#  define EXTENT_DOUBLES __m256d
+#  define EXTENT_FLOATS __m256
+#elif SC_LANES_QUADS
+#  define EXTENT(name) SC_QUAD(name)
+#  define EXTENT_DOUBLES sc_doubles2
+#  define EXTENT_FLOATS sc_floats4
+#endif
 
 static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double low[3],
                                         double high[3])
 {
-    enum { WIDTH = 8, AT_ONCE = 3 * WIDTH };
     uint64_t count = 3 * some, i = 0;
-    double least[AT_ONCE], most[AT_ONCE], bad[WIDTH], not_finite = 0;
-    int j, k;
+    double not_finite = 0;
+#ifdef EXTENT
+    enum { WIDTH = sizeof(EXTENT_DOUBLES) / sizeof(double), AT_ONCE = 3 * WIDTH };
     if (count >= AT_ONCE) {
-        doubles lows[3], highs[3], x,
-            zero = doubles_all(0); /* stays 0 unless something is not finite */
+        EXTENT_DOUBLES lows[3], highs[3], sums[3], x;
+        double least[AT_ONCE], most[AT_ONCE], sum[AT_ONCE];
+        int j, k;
         SC_UNROLL
-        for (k = 0; k < 3; k++) lows[k] = highs[k] = doubles_load(p + WIDTH * k);
-        for (; i + AT_ONCE <= count; i += AT_ONCE) SC_UNROLL
+        for (k = 0; k < 3; k++) lows[k] = highs[k] = sums[k] = EXTENT(loadu_pd)(p + WIDTH * k);
+        for (i = AT_ONCE; i + AT_ONCE <= count; i += AT_ONCE) SC_UNROLL
         for (k = 0; k < 3; k++) {
-            x = doubles_load(p + i + WIDTH * (uint64_t)k);
-            lows[k] = doubles_smaller(x, lows[k]);
-            highs[k] = doubles_larger(x, highs[k]);
-            zero = doubles_add(zero, doubles_subtract(x, x));
+            x = EXTENT(loadu_pd)(p + i + WIDTH * (uint64_t)k);
+            lows[k] = EXTENT(min_pd)(x, lows[k]);
+            highs[k] = EXTENT(max_pd)(x, highs[k]);
+            sums[k] = EXTENT(add_pd)(sums[k], x);
         }
-        SC_UNROLL
         for (k = 0; k < 3; k++) {
-            doubles_store(least + WIDTH * k, lows[k]);
-            doubles_store(most + WIDTH * k, highs[k]);
+            EXTENT(storeu_pd)(least + WIDTH * k, lows[k]);
+            EXTENT(storeu_pd)(most + WIDTH * k, highs[k]);
+            EXTENT(storeu_pd)(sum + WIDTH * k, sums[k]);
         }
-        doubles_store(bad, zero);
-        for (j = 0; j < WIDTH; j++) not_finite += bad[j];
         for (j = 0; j < AT_ONCE; j++) {
-            low[j % 3] = least[j] < low[j % 3] ? least[j] : low[j % 3];
-            high[j % 3] = most[j] > high[j % 3] ? most[j] : high[j % 3];
+            double one = least[j], other = most[j];
+            low[j % 3] = one < low[j % 3] ? one : low[j % 3];
+            high[j % 3] = other > high[j % 3] ? other : high[j % 3];
+            not_finite += sum[j] - sum[j];
+        }
+        if (not_finite != 0) {
+            not_finite = 0;
+            i = 0;
         }
     }
+#endif
     for (; i < count; i++) {
-        low[i % 3] = p[i] < low[i % 3] ? p[i] : low[i % 3];
-        high[i % 3] = p[i] > high[i % 3] ? p[i] : high[i % 3];
+        double d = p[i];
+        low[i % 3] = d < low[i % 3] ? d : low[i % 3];
+        high[i % 3] = d > high[i % 3] ? d : high[i % 3];
         not_finite += p[i] - p[i];
     }
     return not_finite == 0; /* NaN is not 0 */
@@ -49,41 +73,52 @@ static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double l
 
 static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low[3], double high[3])
 {
-    enum { WIDTH = SC_LANES_COUNT, AT_ONCE = 3 * WIDTH };
     uint64_t count = 3 * some, i = 0;
-    float least[AT_ONCE], most[AT_ONCE], bad[WIDTH], not_finite = 0;
-    int j, k;
+    float not_finite = 0;
+#ifdef EXTENT
+    enum { WIDTH = sizeof(EXTENT_FLOATS) / sizeof(float), AT_ONCE = 3 * WIDTH };
     if (count >= AT_ONCE) {
-        lanes lows[3], highs[3], x, zero = lanes_all(0);
+        EXTENT_FLOATS lows[3], highs[3], sums[3], x;
+        float least[AT_ONCE], most[AT_ONCE], sum[AT_ONCE];
+        int j, k;
         SC_UNROLL
-        for (k = 0; k < 3; k++) lows[k] = highs[k] = lanes_load(p + WIDTH * k);
-        for (; i + AT_ONCE <= count; i += AT_ONCE) SC_UNROLL
+        for (k = 0; k < 3; k++) lows[k] = highs[k] = sums[k] = EXTENT(loadu_ps)(p + WIDTH * k);
+        for (i = AT_ONCE; i + AT_ONCE <= count; i += AT_ONCE) SC_UNROLL
         for (k = 0; k < 3; k++) {
-            x = lanes_load(p + i + WIDTH * (uint64_t)k);
-            lows[k] = lanes_smaller(x, lows[k]);
-            highs[k] = lanes_larger(x, highs[k]);
-            zero = lanes_add(zero, lanes_subtract(x, x));
+            x = EXTENT(loadu_ps)(p + i + WIDTH * (uint64_t)k);
+            lows[k] = EXTENT(min_ps)(x, lows[k]);
+            highs[k] = EXTENT(max_ps)(x, highs[k]);
+            sums[k] = EXTENT(add_ps)(sums[k], x);
         }
-        SC_UNROLL
         for (k = 0; k < 3; k++) {
-            lanes_store(least + WIDTH * k, lows[k]);
-            lanes_store(most + WIDTH * k, highs[k]);
+            EXTENT(storeu_ps)(least + WIDTH * k, lows[k]);
+            EXTENT(storeu_ps)(most + WIDTH * k, highs[k]);
+            EXTENT(storeu_ps)(sum + WIDTH * k, sums[k]);
         }
-        lanes_store(bad, zero);
-        for (j = 0; j < WIDTH; j++) not_finite += bad[j];
         for (j = 0; j < AT_ONCE; j++) {
-            low[j % 3] = (double)least[j] < low[j % 3] ? (double)least[j] : low[j % 3];
-            high[j % 3] = (double)most[j] > high[j % 3] ? (double)most[j] : high[j % 3];
+            double one = (double)least[j], other = (double)most[j];
+            low[j % 3] = one < low[j % 3] ? one : low[j % 3];
+            high[j % 3] = other > high[j % 3] ? other : high[j % 3];
+            not_finite += sum[j] - sum[j];
+        }
+        if (not_finite != 0) {
+            not_finite = 0;
+            i = 0;
         }
     }
+#endif
     for (; i < count; i++) {
         double d = (double)p[i];
         low[i % 3] = d < low[i % 3] ? d : low[i % 3];
         high[i % 3] = d > high[i % 3] ? d : high[i % 3];
         not_finite += p[i] - p[i];
     }
-    return not_finite == 0;
+    return not_finite == 0; /* NaN is not 0 */
 }
+
+#undef EXTENT
+#undef EXTENT_DOUBLES
+#undef EXTENT_FLOATS
 
 /* Vertices that are stride bytes apart. */
 static int SC_KERNEL(extent_of_apart_doubles)(const double *p, uint64_t stride, uint64_t some,

@@ -14,7 +14,7 @@
 #include "pose/workspace.h"
 
 /* Notes where positions are, and sets center, radius and scale. The pose was checked but for what
-   this reports: SC_ERROR_NOT_FINITE. With AVX-512 about 0.3 ns a vertex if positions are packed, 0.5
+   this reports: SC_ERROR_NOT_FINITE. With AVX-512 about 0.2 ns a vertex if positions are packed, 0.5
    if not, 3 if not aligned. One thread does it: what several read here, each a part, would go from
    core to core again when each makes its points. The center of floats is of floats, too. */
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
