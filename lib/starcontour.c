@@ -41,9 +41,6 @@
 
 /* ---- building ---- */
 
-/* Bytes a triangle of the largest scratch block that is filled, see build/adjacency.c. */
-#define LARGEST_SCRATCH (3 * (uint64_t)sizeof(sc_pair))
-
 /* What building makes, in order. */
 typedef struct steps {
     sc_points points;
@@ -202,7 +199,6 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
     allocator = sc_memory_allocator(o.allocator);
     if (!allocator.allocate || !allocator.release) return SC_ERROR_NULL;
     sc_scratch_init(&scratch, &allocator);
-    sc_scratch_expect(&scratch, m.triangle_count * LARGEST_SCRATCH);
     status = build_steps(&m, &o, &scratch, model);
     sc_scratch_clear(&scratch);
     if (status) return status;

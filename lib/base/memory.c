@@ -8,11 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/assume.h"
-
-/* No larger block moves the threshold of glibc's malloc: 32 megabytes, with what it adds. */
-#define THRESHOLD_MOST (((uint64_t)32 << 20) - 65536)
-
 /* Stands before each scratch allocation and fills one alignment unit. */
 struct sc_scratch_block {
     sc_scratch_block *previous, *next;
@@ -57,17 +52,6 @@ void sc_scratch_init(sc_scratch *scratch, const sc_allocator *allocator)
     scratch->allocator = *allocator;
     scratch->blocks = NULL;
     scratch->live_bytes = scratch->peak_bytes = scratch->allocations = 0;
-}
-
-void sc_scratch_expect(const sc_scratch *scratch, uint64_t bytes)
-{
-    const sc_allocator *allocator = &scratch->allocator;
-    void *memory;
-    if (allocator->allocate != default_allocate) return;
-    if (SC_HARDLY(bytes > THRESHOLD_MOST)) bytes = THRESHOLD_MOST;
-    memory = allocator->allocate(allocator->user, bytes, SC_ALIGNMENT);
-    if (SC_HARDLY(!memory)) return;
-    allocator->release(allocator->user, memory, bytes);
 }
 
 void *sc_scratch_allocate(sc_scratch *scratch, uint64_t bytes)

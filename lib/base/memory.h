@@ -26,13 +26,6 @@ sc_allocator sc_memory_allocator(const sc_allocator *caller);
 
 void sc_scratch_init(sc_scratch *scratch, const sc_allocator *allocator);
 
-/*
- * Says that blocks of up to so many bytes will be taken and given back. glibc's malloc asks the
- * system for a large block, and so for each of its pages, anew until one as large was given back:
- * so one is, to which nothing was written. With an allocator of the caller's nothing is done.
- */
-void sc_scratch_expect(const sc_scratch *scratch, uint64_t bytes);
-
 /* Memory that is not the scratch's and outlives it, aligned to SC_ALIGNMENT: only counted with it.
    NULL if there is none. */
 void *sc_scratch_allocate(sc_scratch *scratch, uint64_t bytes);
