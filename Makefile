@@ -640,7 +640,7 @@ mingw: ## build for Windows by mingw-w64; run its tests under wine, if that is t
 	@MAKE='$(MAKE)' tests/packages/mingw.sh '$(MINGW)' '$(BUILD)/mingw'
 
 .PHONY: test-packages
-test-packages: ## packages as their users build them: archive, Conan, MSVC's restrictions, mingw
+test-packages: ## as users build it: archive, Conan, MSVC's restrictions, mingw, ARM and s390x by QEMU
 	@MAKE='$(MAKE)' SC_FLAGS='$(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' tests/run.sh tests/packages/*.sh
 
 .PHONY: clean

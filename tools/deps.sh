@@ -56,7 +56,11 @@ program cmake cmake cmake cmake cmake
 program clang clang clang clang llvm
 program abidiff abigail-tools libabigail - -
 program x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64 mingw64-gcc mingw-w64-gcc mingw-w64
-program wine wine wine wine -"
+program wine wine wine wine -
+program aarch64-linux-gnu-gcc gcc-aarch64-linux-gnu,libc6-dev-arm64-cross - - -
+program arm-linux-gnueabihf-gcc gcc-arm-linux-gnueabihf,libc6-dev-armhf-cross - - -
+program s390x-linux-gnu-gcc gcc-s390x-linux-gnu,libc6-dev-s390x-cross - - -
+program qemu-aarch64 qemu-user qemu-user qemu-user -"
 group_peers="\
 header CGAL/version.h libcgal-dev CGAL-devel cgal cgal
 header tbb/scalable_allocator.h libtbb-dev tbb-devel onetbb tbb

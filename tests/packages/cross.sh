@@ -1,0 +1,75 @@
+#!/bin/sh
+# Built for other processors by Debian's cross compilers, and run by QEMU's emulators where they are there: 64-bit ARM
+# (NEON, by the compiler's vector types), 32-bit ARM, and s390x, where numbers have their bytes the other way round.
+# The same pairs as here, and tests that need neither GMP nor libccd.
+#
+#     tests/packages/cross.sh [MACHINE...]      aarch64-linux-gnu arm-linux-gnueabihf s390x-linux-gnu
+#
+# Debian: gcc-aarch64-linux-gnu, gcc-arm-linux-gnueabihf, gcc-s390x-linux-gnu, qemu-user. A machine takes some minutes.
+#
+# SPDX-License-Identifier: MIT
+machines=${*:-aarch64-linux-gnu arm-linux-gnueabihf s390x-linux-gnu}
+. tests/script.sh
+
+tests='base structures validators'
+flags='-std=c99 -D_POSIX_C_SOURCE=200809L -O2 -ffp-contract=off -Iinclude -Ilib -Itests'
+core="$(grep '^lib/' lib/sources.list) lib/build/partition_metis.c"
+support='tests/adversaries.c tests/harness.c tests/inputs.c tests/oracle_weld.c tests/shapes.c tests/soups.c'
+same_math='-include tests/packages/same_math.h'
+
+# library COMPILER FOLDER: the objects of the library, as many at a time as there are processors.
+library() {
+    mkdir -p "$2" || return 1
+    for source in $core; do
+        echo "$source" "$2/$(echo "$source" | tr / _).o"
+    done | xargs -n 2 -P "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)" \
+        sh -c "$1 $flags -Werror -Wall -Wextra -c"' "$0" -o "$1"'
+}
+# link COMPILER FOLDER PROGRAM SOURCE...
+link() {
+    compiler=$1
+    folder=$2
+    program=$3
+    shift 3
+    # shellcheck disable=SC2086
+    $compiler $flags "$@" $support "$folder"/*.o -o "$folder/$program" -lm
+}
+
+check "the library here" library "$CC" "$scratch/here"
+# shellcheck disable=SC2086
+check "determinism here" link "$CC" "$scratch/here" determinism $same_math tests/runs/determinism.c
+# Elsewhere there is one set of instructions, and so fewer queries.
+hash() {
+    "$@" meshes/*.obj | sed 's/ .*//'
+}
+expected=$(hash "$scratch/here/determinism")
+check "a hash of pairs" test -n "$expected"
+
+same_hash() {
+    [ "$(hash "$emulator" "$at/determinism")" = "$expected" ]
+}
+for machine in $machines; do
+    cross=$machine-gcc
+    emulator=qemu-${machine%%-*}
+    at=$scratch/$machine
+    if ! command -v "$cross" >/dev/null 2>&1; then
+        skip "nothing was built for $machine: no $cross"
+        continue
+    fi
+    check "$machine: the library" library "$cross" "$at"
+    # shellcheck disable=SC2086
+    check "$machine: determinism links" link "$cross -static" "$at" determinism $same_math \
+        tests/runs/determinism.c
+    for test in $tests; do
+        check "$machine: test_$test links" link "$cross -static" "$at" "test_$test" "tests/test_$test.c"
+    done
+    if ! command -v "$emulator" >/dev/null 2>&1; then
+        skip "nothing built for $machine was run: no $emulator"
+        continue
+    fi
+    check "$machine: the same pairs as here, by all methods, of meshes in many poses" same_hash
+    for test in $tests; do
+        check "$machine: test_$test passes" "$emulator" "$at/test_$test" --scale 20
+    done
+done
+finish
