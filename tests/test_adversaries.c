@@ -1,7 +1,8 @@
 /*
- * Adversaries: poses made to sit on the edge of each step that skips work (adversaries.h), against the
- * oracle. Every method, rest pose alike or not, in several partitions; and every node of the test tree
- * by itself, so that a test that passes in spite of a pair shows even where no query relies on it.
+ * Adversaries: poses made to sit on the edge of each step that skips work (adversaries.h), against
+ * the oracle. Every method, rest pose alike or not, in several partitions; and every node of the
+ * test tree by itself, so that a test that passes in spite of a pair shows even where no query
+ * relies on it.
  *
  * The notes say how many nodes passed and failed at the steps aimed at; both must occur.
  *
@@ -137,8 +138,8 @@ static int is_in(const sc_model *m, uint32_t patch, uint32_t place)
            place < sc_model_leaf_first(m)[sc_model_leaf(m)[patch + 1]];
 }
 
-/* Whether one of the pairs, given as places, is of a node: of its whole, or, if its patches share one
-   point, at least of one with the other. */
+/* Whether one of the pairs, given as places, is of a node: of its whole, or, if its patches share
+   one point, at least of one with the other. */
 static int has_pair(const sc_model *m, uint32_t node, int whole, const sc_pair *pairs,
                     uint64_t count)
 {
@@ -719,8 +720,8 @@ static void set_errors(bench *b, uint32_t count)
     }
 }
 
-/* What is wrong with the bounds of an edge, in exact arithmetic: 1: its extent, 2: its slope, 4: the
-   ends, 8: its side. */
+/* What is wrong with the bounds of an edge, in exact arithmetic: 1: its extent, 2: its slope, 4:
+   the ends, 8: its side. */
 static unsigned check_edge(bench *b, const sc_segment_bounds *bounds, uint32_t from, uint32_t to)
 {
     mpq_t x0, y0, x1, y1, at, d;
@@ -986,7 +987,8 @@ static void bounds_of_parents(void)
         int left = (int)(i >> 1 & 1);
         float slope = random_float(), height, gap_high, gap_low;
         double gap;
-        /* slope times a gap of 53 bits that two floats make: the product is a float but for rounding */
+        /* slope times a gap of 53 bits that two floats make: the product is a float but for
+           rounding */
         height = fabsf(random_float());
         if (slope < 0) slope = -slope;
         gap = (double)height / (double)slope;
@@ -1023,8 +1025,8 @@ static void bounds_of_parents(void)
     close_bench(&b);
 }
 
-/* Two segments beside a point: the line through it may be where its computed place is, or off by the
-   error, and so may they. */
+/* Two segments beside a point: the line through it may be where its computed place is, or off by
+   the error, and so may they. */
 static void beside_a_point(void)
 {
     bench b;
@@ -1106,8 +1108,8 @@ static void floats_below_and_above(void)
 
 /* ---- margins of cones and fans ---- */
 
-/* Normals that have an exactly known, tiny dot product with a direction, on either side of the margin;
-   and fans with a sector that is tiny. */
+/* Normals that have an exactly known, tiny dot product with a direction, on either side of the
+   margin; and fans with a sector that is tiny. */
 static void margins_are_as_documented(void)
 {
     const double u = 0x1p-53;
@@ -1138,7 +1140,8 @@ static void margins_are_as_documented(void)
         sc_model_free(model);
         soup_free(&mesh);
 
-        /* the fan's corners are 1 2 3 4: sector 1 2 has area thin, between sides 1 and 1 + thin long */
+        /* the fan's corners are 1 2 3 4: sector 1 2 has area thin, between sides 1 and 1 + thin
+           long */
         mesh = soup_make(5, 4);
         memset(mesh.positions, 0, 15 * sizeof(double));
         for (uint32_t i = 0; i < 4; ++i) {
@@ -1166,8 +1169,8 @@ static void margins_are_as_documented(void)
 
 /* ---- cones ---- */
 
-/* Single triangles whose normal is at right angles to a direction but for rounding, of ordinary size
-   and of one at which products underflow. */
+/* Single triangles whose normal is at right angles to a direction but for rounding, of ordinary
+   size and of one at which products underflow. */
 static void normals_at_right_angles(void)
 {
     static const double half[7][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 1},
@@ -1238,8 +1241,8 @@ static void normals_at_right_angles(void)
     soup_free(&mesh);
 }
 
-/* Projected coordinates where most of their roundings go the same way; more than half of the error that is
-   allowed is reached, so that half of it would not do. */
+/* Projected coordinates where most of their roundings go the same way; more than half of the error
+   that is allowed is reached, so that half of it would not do. */
 static void errors_of_projections(void)
 {
     bench b;
@@ -1282,7 +1285,8 @@ static void errors_of_projections(void)
 
 /* ---- signs ---- */
 
-/* Determinants whose differences and products are all rounded by half a unit, the way that hurts. */
+/* Determinants whose differences and products are all rounded by half a unit, the way that
+   hurts. */
 static void signs_where_all_rounds_wrong(void)
 {
     uint64_t fallbacks = 0;
@@ -1306,8 +1310,9 @@ static void signs_where_all_rounds_wrong(void)
     CHECK(decided > 0 || rounds < 1000);
 }
 
-/* The same in space: the worst found among some hundred million, off by 4.6 to 4.9 u M, where the bound
-   is 9 u M (base/predicates.h). The sum of the six products is computed on the wrong side of 0. */
+/* The same in space: the worst found among some hundred million, off by 4.6 to 4.9 u M, where the
+   bound is 9 u M (base/predicates.h). The sum of the six products is computed on the wrong side of
+   0. */
 static void worst_signs_in_space(void)
 {
     static const double worst[][12] = {

@@ -1,5 +1,6 @@
 /*
- * Sorting and memory: on orders that are hard on a quicksort, and on requests that no memory can meet; and bits of masks.
+ * Sorting and memory: on orders that are hard on a quicksort, and on requests that no memory can
+ * meet; and bits of masks.
  *
  * SPDX-License-Identifier: MIT
  */

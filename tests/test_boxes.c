@@ -1,6 +1,7 @@
 /*
- * Models for boxes (SC_MODEL_BOXES): the same pairs as the oracle finds and as full models give, by queries, steps,
- * filters, records and several workers; what they have and what they refuse; and builds that run out of memory.
+ * Models for boxes (SC_MODEL_BOXES): the same pairs as the oracle finds and as full models give, by
+ * queries, steps, filters, records and several workers; what they have and what they refuse; and
+ * builds that run out of memory.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -116,7 +117,8 @@ static void finish(void *user, void *task)
     (void)task;
 }
 
-/* Beside a full model of the same mesh, one large enough for several workers and for many levels. */
+/* Beside a full model of the same mesh, one large enough for several workers and for many
+   levels. */
 static void pairs_are_those_of_full_models(void)
 {
     soup mesh = soup_sphere(60, 60);

@@ -1,15 +1,15 @@
 /*
- * A cross-check by libccd, a library of other people: its GJK (the algorithm of Gilbert, Johnson and
- * Keerthi) tells whether a segment and a triangle meet, and sc_query must say the same of the edges of
- * two triangles.
+ * A cross-check by libccd, a library of other people: its GJK (the algorithm of Gilbert, Johnson
+ * and Keerthi) tells whether a segment and a triangle meet, and sc_query must say the same of the
+ * edges of two triangles.
  *
  * GJK works in floating point and can fail on contact, so it is asked only outside a band around
  * touching. The band is measured in yet another way: the differences of points of the triangle and
  * points of the segment form a prism, and the greatest of its five faces' signed distances to the
- * origin is negative, as deep as they penetrate, or positive, a lower bound of how far they are apart.
- * libccd's tolerances are absolute, so that both measure at unit size what sc_query sees at three sizes.
- * Where the distance is beyond BAND that sign, libccd and sc_query must all agree; within it only
- * sc_query's two kinds of contact are compared with each other.
+ * origin is negative, as deep as they penetrate, or positive, a lower bound of how far they are
+ * apart. libccd's tolerances are absolute, so that both measure at unit size what sc_query sees at
+ * three sizes. Where the distance is beyond BAND that sign, libccd and sc_query must all agree;
+ * within it only sc_query's two kinds of contact are compared with each other.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -1,7 +1,7 @@
 /*
- * Contacts are where the two of a pair meet: against an oracle in rational numbers that knows nothing of
- * planes and sides, on triangles in general, degenerate, nearly degenerate and extreme positions; on
- * whole meshes; and arguments that cannot be.
+ * Contacts are where the two of a pair meet: against an oracle in rational numbers that knows
+ * nothing of planes and sides, on triangles in general, degenerate, nearly degenerate and extreme
+ * positions; on whole meshes; and arguments that cannot be.
  *
  * The oracle: weights l of a and m of b with sum l a = sum m b, sum l = 1, sum m = 1, l and m not
  * negative, form a polytope, whose corners have linearly independent columns. All 63 sets of

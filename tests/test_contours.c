@@ -1,6 +1,6 @@
 /*
- * What culls, against exact rational arithmetic and the oracle: discrete normal cones and the projections
- * made of them, bounds of contour segments, the star-contour test, closed fans.
+ * What culls, against exact rational arithmetic and the oracle: discrete normal cones and the
+ * projections made of them, bounds of contour segments, the star-contour test, closed fans.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -290,8 +290,8 @@ static uint32_t random_part(uint32_t mask)
     return some ? some : mask;
 }
 
-/* Projections of random parts of cones leave all areas positive, and coordinates are as exact as said.
-   Returns the number of projections. */
+/* Projections of random parts of cones leave all areas positive, and coordinates are as exact as
+   said. Returns the number of projections. */
 static uint32_t check_projections(scene *s)
 {
     const sc_model *m = s->model;
@@ -672,8 +672,8 @@ static void bounds_of_huge_coordinates(void)
     }
 }
 
-/* What was found for the last pose or projection is not taken for the next one's, even when ticks start
-   anew: a workspace answers as a fresh one does. */
+/* What was found for the last pose or projection is not taken for the next one's, even when ticks
+   start anew: a workspace answers as a fresh one does. */
 static void ticks(void)
 {
     soup mesh = soup_cloth(6, 6);
@@ -692,7 +692,8 @@ static void ticks(void)
     close_scene(&s);
 }
 
-/* What was found at the first tick, and never since, is not taken for new when that tick comes again. */
+/* What was found at the first tick, and never since, is not taken for new when that tick comes
+   again. */
 static void first_tick_again(void)
 {
     soup mesh = soup_cloth(6, 6);
@@ -743,8 +744,8 @@ static int is_in(const sc_model *m, uint32_t patch, uint32_t place)
            place < sc_model_leaf_first(m)[sc_model_leaf(m)[patch + 1]];
 }
 
-/* Whether the oracle's pairs, in places, have one within a node: within its whole, or, if its patches
-   share one point, at least between the two. */
+/* Whether the oracle's pairs, in places, have one within a node: within its whole, or, if its
+   patches share one point, at least between the two. */
 static int has_pair(const sc_model *m, uint32_t node, int whole, const sc_pair *pairs,
                     uint64_t count)
 {
@@ -873,8 +874,8 @@ static void spirals_overlap(void)
     CHECK(!is_full() || (tally.colliding > 500 && tally.passed > 1000));
 }
 
-/* A long ribbon that nearly closes to a ring, or goes on over its own start: only edges that are far from each other
-   in the contour meet. */
+/* A long ribbon that nearly closes to a ring, or goes on over its own start: only edges that are
+   far from each other in the contour meet. */
 static void long_contours(void)
 {
     for (uint32_t i = 0; i < 8; ++i) {
@@ -891,8 +892,9 @@ static void long_contours(void)
     }
 }
 
-/* A disc that goes twice round its center, and so lies over itself, in a ring of which one patch borders
-   on most of it: one segment that is crossed twice, and from the center everything looks like a star. */
+/* A disc that goes twice round its center, and so lies over itself, in a ring of which one patch
+   borders on most of it: one segment that is crossed twice, and from the center everything looks
+   like a star. */
 static void branched_discs(void)
 {
     enum { SECTORS = 16 };
@@ -978,7 +980,8 @@ static soup crossing_at_a_point(void)
     return s;
 }
 
-/* Two discs that share the two points where their borders cross: a part of each is over the other. */
+/* Two discs that share the two points where their borders cross: a part of each is over the
+   other. */
 static soup crossing_at_two_points(void)
 {
     enum { INNER = 2, OUTER = 4, EACH = INNER + OUTER }; /* edges */
@@ -1072,7 +1075,8 @@ static void contours_in_pieces(void)
     CHECK(!is_full() || (tally.colliding > 300 && tally.simple > 300));
 }
 
-/* A triangle whose corner is in the middle of the straight border of two others, and of one point with it. */
+/* A triangle whose corner is in the middle of the straight border of two others, and of one point
+   with it. */
 static soup corner_at_side(void)
 {
     static const uint32_t triangles[] = {1, 0, 3, 0, 2, 3, 0, 4, 5, 1, 0, 3, 0, 2, 3};
@@ -1143,7 +1147,8 @@ static uint32_t count_listed(const sc_model *m, uint32_t node)
     return listed;
 }
 
-/* Points in the unit box are in it, and off by what the bounds allow for, whatever the pose's size. */
+/* Points in the unit box are in it, and off by what the bounds allow for, whatever the pose's
+   size. */
 static void points_in_the_unit_box(void)
 {
     static const float axis[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, origin[3] = {0, 0, 0};
@@ -1182,8 +1187,9 @@ static void points_in_the_unit_box(void)
     mpq_clears(exact, place, NULL);
 }
 
-/* Positions of any type, stride, alignment and size, with vertices that are used, welded or not used at all, are read as
-   each alone is, by all instructions alike, and nothing behind the last one; points in the unit box are where they should. */
+/* Positions of any type, stride, alignment and size, with vertices that are used, welded or not
+   used at all, are read as each alone is, by all instructions alike, and nothing behind the last
+   one; points in the unit box are where they should. */
 static void poses_of_any_layout(void)
 {
     static const struct layout {
@@ -1277,7 +1283,8 @@ static uint32_t tested_point(const scene *s, uint32_t node, uint32_t i)
         m)[SC_LEAF_POINTS * cluster + sc_loops_turn(number % SC_LEAF_POINTS)];
 }
 
-/* How many places the pieces of a node's loop are listed in, and the place of what is about the middle of its points. */
+/* How many places the pieces of a node's loop are listed in, and the place of what is about the
+   middle of its points. */
 static uint32_t list_pieces(const scene *s, uint32_t node, uint32_t *middle)
 {
     const uint16_t *loop = sc_model_loop(s->model) + sc_model_node_loop(s->model)[node];
@@ -1291,8 +1298,9 @@ static uint32_t list_pieces(const scene *s, uint32_t node, uint32_t *middle)
     return places;
 }
 
-/* The boxes of spans of two edges hold the true places of their ends, however the contour is seen: from above, or from
-   one end, so that it is small for the size that it has; and whatever its size. */
+/* The boxes of spans of two edges hold the true places of their ends, however the contour is seen:
+   from above, or from one end, so that it is small for the size that it has; and whatever its
+   size. */
 static void places_of_contours(void)
 {
     mpq_t exact, bound;
@@ -1385,8 +1393,9 @@ static int is_in_sector(const double a[2], const double b[2], const double v[2])
 }
 
 /*
- * A point that a contour passes twice, its four edges in any directions, some nearly the same or opposite: it is fine only if
- * they alternate, and then always if no two of them are nearly on one line.
+ * A point that a contour passes twice, its four edges in any directions, some nearly the same or
+ * opposite: it is fine only if they alternate, and then always if no two of them are nearly on one
+ * line.
  */
 static void pinches_alone(void)
 {
@@ -1603,8 +1612,8 @@ static void contours_in_turn(void)
     printf("    contours_in_turn: %" PRIu32 " pass, %" PRIu32 " do not\n", count[1], count[0]);
 }
 
-/* A flat square grid, in any direction: no contour crosses itself, and where two patches share one point the lines of the
-   grid go straight on from one to the other. */
+/* A flat square grid, in any direction: no contour crosses itself, and where two patches share one
+   point the lines of the grid go straight on from one to the other. */
 static void flat_cloths_pass(void)
 {
     uint32_t touching = 0;

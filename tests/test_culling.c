@@ -1,7 +1,7 @@
 /*
- * Culling loses nothing: on deformed meshes with thousands of pairs every method, partition and kind of
- * caching gives the pairs of the plain tree of boxes, and of the oracle where that is feasible. Without
- * the contour test pairs are lost: that is what it is for.
+ * Culling loses nothing: on deformed meshes with thousands of pairs every method, partition and
+ * kind of caching gives the pairs of the plain tree of boxes, and of the oracle where that is
+ * feasible. Without the contour test pairs are lost: that is what it is for.
  *
  * Meshes that `make meshes` fetched are tested as well, if they are there: in build/meshes, or the
  * folder that the environment names as SC_LARGE_MESHES.
@@ -150,7 +150,8 @@ static const char *pose_mesh(const soup *mesh, uint32_t number, double *p)
     }
 }
 
-/* Every step-th pose, as doubles and as floats, all on one workspace; returns the number of pairs met. */
+/* Every step-th pose, as doubles and as floats, all on one workspace; returns the number of pairs
+   met. */
 static uint64_t check_poses(subject *s, const soup *mesh, uint32_t first, uint32_t step,
                             uint32_t every_kind)
 {
@@ -313,7 +314,8 @@ static uint64_t count_missed(const subject *s, uint32_t contact)
     return missed;
 }
 
-/* All normals up and more than one turn: the orientation test passes, and the strip meets itself. */
+/* All normals up and more than one turn: the orientation test passes, and the strip meets
+   itself. */
 static void spirals_need_the_contour_test(void)
 {
     for (uint32_t i = 0; i < 4; ++i) {

@@ -1,7 +1,7 @@
 /*
- * Filters leave out what they are to leave out and nothing else: every method and kind of pair against
- * the unfiltered answer, filtered here by the definitions in starcontour.h, on distances found by brute
- * force; and filters that cannot be read.
+ * Filters leave out what they are to leave out and nothing else: every method and kind of pair
+ * against the unfiltered answer, filtered here by the definitions in starcontour.h, on distances
+ * found by brute force; and filters that cannot be read.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -239,7 +239,8 @@ static int is_head(const sc_pair *pairs, const pair_list *expected, uint64_t cou
     return 1;
 }
 
-/* All outputs of one method. accept says yes to those in expected, and is asked of those in asked. */
+/* All outputs of one method. accept says yes to those in expected, and is asked of those in
+   asked. */
 static void check_method(const subject *s, sc_query_options options, const pair_list *expected,
                          const pair_list *asked, accept_log *log)
 {
@@ -357,8 +358,8 @@ static void every_filter(void)
               dropped);
 }
 
-/* Every number of rings, on meshes with closed fans, boundaries and hubs, flattened so that all near
-   pairs are found. */
+/* Every number of rings, on meshes with closed fans, boundaries and hubs, flattened so that all
+   near pairs are found. */
 static void every_ring(void)
 {
     uint64_t kept = 0, dropped = 0;

@@ -1,6 +1,6 @@
 /*
- * Flattening a hierarchy: leaves and their order stay, and so do all patches but few; what is deep for no
- * good reason becomes less deep.
+ * Flattening a hierarchy: leaves and their order stay, and so do all patches but few; what is deep
+ * for no good reason becomes less deep.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -30,7 +30,8 @@ static sc_hierarchy start(sc_scratch *scratch, uint32_t leaves)
     return h;
 }
 
-/* Of which kind the nodes are: halves; halves with an island here and there; anywhere; one leaf and the rest. */
+/* Of which kind the nodes are: halves; halves with an island here and there; anywhere; one leaf and
+   the rest. */
 enum { HALVES, ISLANDS, ANYWHERE, CHAIN, KINDS };
 
 static uint32_t add_tree(sc_hierarchy *h, uint32_t first, uint32_t count, uint32_t depth, int kind)
@@ -116,8 +117,8 @@ static void trees(void)
               went[ANYWHERE]);
 }
 
-/* Some leaves one by one, then 200 in halves, and islands beside the first of these: three levels more, of which the
-   one goes that changes few patches. */
+/* Some leaves one by one, then 200 in halves, and islands beside the first of these: three levels
+   more, of which the one goes that changes few patches. */
 static void add_islands(sc_hierarchy *h, uint32_t singles)
 {
     uint32_t node = 0, single, below, depth = singles;

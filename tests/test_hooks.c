@@ -1,5 +1,6 @@
 /*
- * The caller's hooks: which messages come when, and what becomes of an invariant that does not hold.
+ * The caller's hooks: which messages come when, and what becomes of an invariant that does not
+ * hold.
  *
  * SPDX-License-Identifier: MIT
  */

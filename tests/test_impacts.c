@@ -3,8 +3,9 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Nothing that touches is missed; no reported time is after the first contact; and at the reported time the distance
- * is within the tolerance. Separations other than 0 are compared with exact distances at some times.
+ * Nothing that touches is missed; no reported time is after the first contact; and at the reported
+ * time the distance is within the tolerance. Separations other than 0 are compared with exact
+ * distances at some times.
  */
 #include <float.h>
 #include <math.h>
@@ -155,8 +156,8 @@ static void move_all(query *q, double place, double motion)
 }
 
 /*
- * Two that touch at a time in an exactly representable point: inside, on a border, or at corners; then perhaps
- * moved apart a little.
+ * Two that touch at a time in an exactly representable point: inside, on a border, or at corners;
+ * then perhaps moved apart a little.
  */
 static void make_touching(query *q, step_oracle_kind kind)
 {
@@ -235,7 +236,8 @@ static void make_degenerate(query *q)
     }
 }
 
-/* A thin gap that stays: layers, of a thickness of any order, that slide along each other and bend. */
+/* A thin gap that stays: layers, of a thickness of any order, that slide along each other and
+   bend. */
 static void make_layers(query *q, step_oracle_kind kind)
 {
     double gap = exp2(-(double)test_random_below(30)),
@@ -286,8 +288,8 @@ static void make_wide(query *q, step_oracle_kind kind)
 }
 
 /*
- * Two that keep their place to each other while they turn and stretch: in one plane, a little outside or
- * inside, or at a small distance from it.
+ * Two that keep their place to each other while they turn and stretch: in one plane, a little
+ * outside or inside, or at a small distance from it.
  */
 static void make_rolling(query *q, step_oracle_kind kind)
 {
@@ -316,8 +318,9 @@ static void make_rolling(query *q, step_oracle_kind kind)
 }
 
 /*
- * Two edges nearly parallel, or a face nearly without width, where a point of one stays within some of the least
- * tolerances of a point of the other, goes through it, or leaves it. The nearest points are then found badly.
+ * Two edges nearly parallel, or a face nearly without width, where a point of one stays within some
+ * of the least tolerances of a point of the other, goes through it, or leaves it. The nearest
+ * points are then found badly.
  */
 static void make_sliver(query *q, step_oracle_kind kind)
 {
@@ -469,7 +472,8 @@ static void rolling_steps(void)
     CHECK(t.touching > t.asked / 20 && t.extra > t.asked / 20);
 }
 
-/* At the least tolerance. No direction gets on in a tenth of these: they are decided by splitting the polygon. */
+/* At the least tolerance. No direction gets on in a tenth of these: they are decided by splitting
+   the polygon. */
 static void slivers(void)
 {
     tally t = {0, 0, 0, 0};
@@ -483,7 +487,8 @@ static void slivers(void)
     CHECK(t.touching > t.asked / 20 && t.extra > t.asked / 20 && t.reported < t.asked * 9 / 10);
 }
 
-/* The same, nearly at rest: they come near enough at the end of the step only, which may be nearer than a slab is long. */
+/* The same, nearly at rest: they come near enough at the end of the step only, which may be nearer
+   than a slab is long. */
 static void slivers_nearly_at_rest(void)
 {
     tally t = {0, 0, 0, 0};
@@ -745,8 +750,8 @@ static void distances_whose_squares_vanish(void)
 }
 
 /*
- * Answers and times as they were when this was written: they are the same on all machines. Whoever changes the search
- * changes the number.
+ * Answers and times as they were when this was written: they are the same on all machines. Whoever
+ * changes the search changes the number.
  */
 static void same_bits_everywhere(void)
 {

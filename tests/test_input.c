@@ -1,6 +1,6 @@
 /*
- * Bad input: every mistake gets the status that the header names, leaks nothing, leaves outputs as it
- * says, and leaves model and workspace able to answer right.
+ * Bad input: every mistake gets the status that the header names, leaks nothing, leaves outputs as
+ * it says, and leaves model and workspace able to answer right.
  *
  * SPDX-License-Identifier: MIT
  */

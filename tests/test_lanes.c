@@ -1,6 +1,6 @@
 /*
- * Sixteen floats and eight doubles at a time: all forms give the bits of the plain one, on random numbers, zeros of
- * both signs, infinities and NaN (not a number).
+ * Sixteen floats and eight doubles at a time: all forms give the bits of the plain one, on random
+ * numbers, zeros of both signs, infinities and NaN (not a number).
  *
  * SPDX-License-Identifier: MIT
  */

@@ -1,6 +1,6 @@
 /*
- * Memory: every allocation may fail, once each, and nothing leaks; sizes given back are those that were
- * asked for; alignment is kept; sc_query allocates nothing; the caller's memory will do for a
+ * Memory: every allocation may fail, once each, and nothing leaks; sizes given back are those that
+ * were asked for; alignment is kept; sc_query allocates nothing; the caller's memory will do for a
  * workspace.
  *
  * SPDX-License-Identifier: MIT
@@ -127,7 +127,8 @@ static void check_answer(const soup *s, const double *posed, const uint32_t *map
     oracle_free(&answer);
 }
 
-/* Fails call after call of one kind of build until none is left, in two ways. posed may be NULL: answers are not looked at. */
+/* Fails call after call of one kind of build until none is left, in two ways. posed may be NULL:
+   answers are not looked at. */
 static void check_failing_build(const char *name, const soup *s, const double *posed, uint32_t weld,
                                 uint32_t partition, uint32_t content)
 {
@@ -210,7 +211,8 @@ static void build_fails_at_every_allocation(void)
     }
 }
 
-/* Triangles of any three vertices: those of a patch are far from each other, so that most pairs of patches share some. */
+/* Triangles of any three vertices: those of a patch are far from each other, so that most pairs of
+   patches share some. */
 static soup tangle(uint32_t count)
 {
     soup s = soup_make(count, count);

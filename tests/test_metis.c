@@ -1,6 +1,6 @@
 /*
- * Partition by METIS: the same hierarchy every time, connected patches, two sides always, a process left
- * as it was found, and errors where METIS fails.
+ * Partition by METIS: the same hierarchy every time, connected patches, two sides always, a process
+ * left as it was found, and errors where METIS fails.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -217,8 +217,8 @@ static void refuses_what_makes_no_sense(void)
 
 #  if defined(__linux__) && !defined(NO_LIMITS)
 
-/* With more and more memory, until it is enough: at first not even the graph fits, then METIS gives up,
-   which says so on standard error. */
+/* With more and more memory, until it is enough: at first not even the graph fits, then METIS gives
+   up, which says so on standard error. */
 static void too_little_memory(void)
 {
     row r = make_row(100000);

@@ -1,8 +1,8 @@
 /*
  * Tests of the oracle itself, against answers known by hand and, on small integer points, against a
- * third way: by Caratheodory's theorem two hulls meet if and only if the equations of a common point
- * have a solution with independent columns and no negative weight. All such solutions are listed
- * here in plain integers; the corners of the intersection are among them.
+ * third way: by Caratheodory's theorem two hulls meet if and only if the equations of a common
+ * point have a solution with independent columns and no negative weight. All such solutions are
+ * listed here in plain integers; the corners of the intersection are among them.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -46,8 +46,8 @@ static int is_on_segment(const int64_t *x, int64_t d, const point *s, const poin
 }
 
 /*
- * Solves the columns of subset for the right-hand side; weights[j] / the returned denominator > 0 is
- * the weight of column j. 0 if they are dependent, have no solution, or a negative one.
+ * Solves the columns of subset for the right-hand side; weights[j] / the returned denominator > 0
+ * is the weight of column j. 0 if they are dependent, have no solution, or a negative one.
  */
 static int64_t solve(const int64_t columns[6][5], uint32_t subset, int64_t *weights)
 {

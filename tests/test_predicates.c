@@ -158,7 +158,8 @@ static void fill(double points[4][3], double (*coordinate)(void))
     }
 }
 
-/* Moves the last of count points into the line or plane of the others, as far as rounding allows. */
+/* Moves the last of count points into the line or plane of the others, as far as rounding
+   allows. */
 static void flatten(double points[4][3], int dimension)
 {
     double s = uniform(), t = dimension == 2 ? 0.0 : uniform();
@@ -320,8 +321,8 @@ static void make_lattice(double row[3][3], int bits, int flat)
     }
 }
 
-/* Determinants that are smaller than sums of two doubles can tell, and such as take few bits: from integers of up to
-   51 bits. Seen from a point that is not one, differences are rounded. */
+/* Determinants that are smaller than sums of two doubles can tell, and such as take few bits: from
+   integers of up to 51 bits. Seen from a point that is not one, differences are rounded. */
 static void second_stage_lattices(void)
 {
     tally t = {0, 0, 0, 0};

@@ -1,6 +1,7 @@
 /*
- * Two triangles on few points of a grid, in every position they can have, against the oracle: edge and
- * triangle pairs, touching and proper, any choice of edges. And eight pairs at once against one by one.
+ * Two triangles on few points of a grid, in every position they can have, against the oracle: edge
+ * and triangle pairs, touching and proper, any choice of edges. And eight pairs at once against one
+ * by one.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -1,6 +1,7 @@
 /*
- * What a query does beside finding pairs: it stops early if one is enough, writes what was asked for and
- * no more, and refuses what does not fit the model; and coordinates near the ends of what floats hold.
+ * What a query does beside finding pairs: it stops early if one is enough, writes what was asked
+ * for and no more, and refuses what does not fit the model; and coordinates near the ends of what
+ * floats hold.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -117,8 +118,8 @@ static void arrays_are_left_alone(void)
 }
 
 /*
- * Where coordinates or their projections leave the range of float or double on one side only, or just
- * so: each method against the plain tree.
+ * Where coordinates or their projections leave the range of float or double on one side only, or
+ * just so: each method against the plain tree.
  */
 static void largest_coordinates(void)
 {
@@ -169,8 +170,9 @@ static void largest_coordinates(void)
 }
 
 /*
- * The rest shape decides where contours are cut, so that two models of one topology may need workspaces
- * of different sizes: a smaller one must be refused, although hash and model may be of the same size.
+ * The rest shape decides where contours are cut, so that two models of one topology may need
+ * workspaces of different sizes: a smaller one must be refused, although hash and model may be of
+ * the same size.
  */
 static void other_rest_shapes(void)
 {
@@ -227,8 +229,8 @@ static void other_rest_shapes(void)
 }
 
 /*
- * Multiplied by a power of two, integers answer as before, but products of their differences underflow:
- * of two, of three, or of what is small only.
+ * Multiplied by a power of two, integers answer as before, but products of their differences
+ * underflow: of two, of three, or of what is small only.
  */
 static void tiny_coordinates(void)
 {
@@ -280,8 +282,8 @@ static void tiny_coordinates(void)
 }
 
 /*
- * Contours are cut where the rest shape turns. Where it is nothing like the pose, one segment may go
- * round a patch, or twice round where the pose does, with edges of both kinds.
+ * Contours are cut where the rest shape turns. Where it is nothing like the pose, one segment may
+ * go round a patch, or twice round where the pose does, with edges of both kinds.
  */
 static void rest_shapes_unlike_poses(void)
 {
@@ -325,7 +327,8 @@ static void rest_shapes_unlike_poses(void)
     CHECK(sum > 100);
 }
 
-/* Equal for equal triangles, welding and partition; another for another, whose workspace is refused. */
+/* Equal for equal triangles, welding and partition; another for another, whose workspace is
+   refused. */
 static void hashes_of_partitions(void)
 {
     /* two halves, each of two leaves, as far as an order or sizes of leaves tell them apart */
@@ -445,8 +448,8 @@ static void leaves_that_overlap(void)
     soup_free(&mesh);
 }
 
-/* A flat mesh of so many leaf clusters is culled at once, and has the same pairs by all methods where it is twisted, and
-   folded. */
+/* A flat mesh of so many leaf clusters is culled at once, and has the same pairs by all methods
+   where it is twisted, and folded. */
 static void check_flat_mesh(const subject *s, soup *mesh, uint32_t least_leaves,
                             uint32_t most_leaves)
 {

@@ -1,6 +1,6 @@
 /*
- * Records of queries: what is read is what was written, and gives the answer that the query gave; whatever
- * else is offered is refused, or asks a query that is refused, or does no harm.
+ * Records of queries: what is read is what was written, and gives the answer that the query gave;
+ * whatever else is offered is refused, or asks a query that is refused, or does no harm.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -318,7 +318,8 @@ static void cut_off_and_changed(void)
     check_damage(1);
 }
 
-/* Any byte changed and the checksum made right, alone and by tens: refused somewhere, or answered. */
+/* Any byte changed and the checksum made right, alone and by tens: refused somewhere, or
+   answered. */
 static void check_forgery(int filtered)
 {
     subject s;

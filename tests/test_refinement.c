@@ -1,6 +1,6 @@
 /*
- * Refinement of cuts, in small and large patches: the border becomes shorter, no side too large, and nothing else
- * changes.
+ * Refinement of cuts, in small and large patches: the border becomes shorter, no side too large,
+ * and nothing else changes.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -14,7 +14,8 @@
 
 enum { SIDE_MAX = 24, TRIANGLES_MAX = 2 * SIDE_MAX * SIDE_MAX };
 
-/* Two triangles in each square of a grid; the patch is a rectangle of it, 2 * PATCH + side in each label. */
+/* Two triangles in each square of a grid; the patch is a rectangle of it, 2 * PATCH + side in each
+   label. */
 enum { PATCH = 5, OTHER = 8 };
 
 typedef struct grid {
@@ -78,7 +79,8 @@ static void make_grid(grid *g, uint32_t columns, uint32_t rows, int kind)
     g->refinement.border = g->border;
 }
 
-/* Makes a patch of the first columns and rows, and cuts it anywhere; size[0] of its triangles are on side 0. */
+/* Makes a patch of the first columns and rows, and cuts it anywhere; size[0] of its triangles are
+   on side 0. */
 static void cut(grid *g, uint32_t columns, uint32_t rows, uint32_t size[2])
 {
     uint32_t first;
@@ -146,7 +148,8 @@ static double check_run(grid *g, int small, uint32_t size[2], const uint32_t cap
     return before > 0 ? (before - after) / before : 0;
 }
 
-/* Cuts of any patches. Lengths beyond 4096 are all the same to a small one, and below 1/1024 nothing. */
+/* Cuts of any patches. Lengths beyond 4096 are all the same to a small one, and below 1/1024
+   nothing. */
 static void any_cuts(void)
 {
     static grid g, again;

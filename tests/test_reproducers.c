@@ -1,7 +1,7 @@
 /*
- * The fuzz targets without a fuzzer: inputs that once found a bug (tests/fuzz/reproducers/, their names
- * begin with the target's), seeds made of meshes/, and random bytes. A target that finds something
- * ends the program; the input's name is printed before.
+ * The fuzz targets without a fuzzer: inputs that once found a bug (tests/fuzz/reproducers/, their
+ * names begin with the target's), seeds made of meshes/, and random bytes. A target that finds
+ * something ends the program; the input's name is printed before.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -1,9 +1,10 @@
 /*
- * Saved models: what is loaded is what was saved, byte by byte and pair by pair; whatever else is offered
- * is refused with a status that says why, or does no harm; and hooks, counters and workspaces of the
- * models concerned.
+ * Saved models: what is loaded is what was saved, byte by byte and pair by pair; whatever else is
+ * offered is refused with a status that says why, or does no harm; and hooks, counters and
+ * workspaces of the models concerned.
  *
- * Forged data have a right checksum: tests seal them with the library's own function, as anyone could.
+ * Forged data have a right checksum: tests seal them with the library's own function, as anyone
+ * could.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -379,7 +380,8 @@ static void seal(save *s)
     sc_saved_seal(header, magic, header->version, s->size, s->data + sizeof(*header));
 }
 
-/* Whether each model is used for steps as well; else one in sixteen, as that takes longer than all else. */
+/* Whether each model is used for steps as well; else one in sixteen, as that takes longer than all
+   else. */
 static int always_steps;
 
 /* A step by either contour test, on a workspace of its own. */
@@ -484,7 +486,8 @@ static uint32_t list_arrays(const sc_model *m, model_array *arrays)
     return n;
 }
 
-/* What a forged save may do: be refused as such, or be loaded and used. Returns whether it was refused. */
+/* What a forged save may do: be refused as such, or be loaded and used. Returns whether it was
+   refused. */
 static int try_forged(save *s, const soup *mesh)
 {
     sc_model *loaded = NULL;
@@ -656,7 +659,8 @@ static void forged_uses(void)
     end_forgery(&f);
 }
 
-/* The whole, which is flat and so oriented, has no contour, be it as a loop or in segments; the next node has that one, too. */
+/* The whole, which is flat and so oriented, has no contour, be it as a loop or in segments; the
+   next node has that one, too. */
 static void forged_contour(void)
 {
     forgery f = forge(soup_cloth(6, 6));
@@ -721,7 +725,8 @@ static void forged_touches(void)
     end_forgery(&f);
 }
 
-/* Leaf clusters that share points and are left to boxes; that is, others are said to share points. */
+/* Leaf clusters that share points and are left to boxes; that is, others are said to share
+   points. */
 static void forged_sharing(void)
 {
     forgery f = forge(soup_cloth(12, 12));
@@ -739,7 +744,8 @@ static void forged_sharing(void)
     end_forgery(&f);
 }
 
-/* The node of two leaf clusters is another: of one that the tree reaches early, and of a patch of several. */
+/* The node of two leaf clusters is another: of one that the tree reaches early, and of a patch of
+   several. */
 static void forged_nodes_of_sharing(void)
 {
     uint32_t tried[2] = {0, 0};
@@ -761,7 +767,8 @@ static void forged_nodes_of_sharing(void)
     CHECK_MSG(tried[0] > 0 && tried[1] > 0, "%u, %u", (unsigned)tried[0], (unsigned)tried[1]);
 }
 
-/* Lists of neighboring triangles with one that is none of its leaf cluster, rows and pairs alike. */
+/* Lists of neighboring triangles with one that is none of its leaf cluster, rows and pairs
+   alike. */
 static void forged_lists(void)
 {
     forgery f = forge(soup_cloth(12, 12));
@@ -800,7 +807,8 @@ static void forged_lists(void)
     end_forgery(&f);
 }
 
-/* Loops in pieces of which one has no edges, and the next has those too; and numbers of pieces that none has, or not that. */
+/* Loops in pieces of which one has no edges, and the next has those too; and numbers of pieces that
+   none has, or not that. */
 static void forge_pieces(soup mesh, uint32_t least)
 {
     forgery f = forge(mesh);
@@ -838,7 +846,8 @@ static void forged_pieces(void)
     forge_pieces(soup_annulus(4, 1), 2); /* with hardly more numbers than there may be pieces */
 }
 
-/* A node has the loops of those that follow as well: refused from where that is more than the sides of its triangles. */
+/* A node has the loops of those that follow as well: refused from where that is more than the sides
+   of its triangles. */
 static void forged_loops(void)
 {
     forgery f = forge(soup_cloth(24, 24));
@@ -870,9 +879,9 @@ static void forged_loops(void)
     end_forgery(&f);
 }
 
-/* Two leaf clusters that face one way have a loop of two points or fewer: the next two have the rest
-   as well. They are in folds, of which two do not, so that large patches are left to boxes. What is
-   read where nothing is, sanitizers see. */
+/* Two leaf clusters that face one way have a loop of two points or fewer: the next two have the
+   rest as well. They are in folds, of which two do not, so that large patches are left to boxes.
+   What is read where nothing is, sanitizers see. */
 static void forged_short_loops(void)
 {
     enum { FOLDS = 6, ACROSS = 4 };
@@ -940,8 +949,8 @@ static sc_hooks message_hooks(char *text)
 }
 
 /*
- * A chain of segments that would be walked down as deep as it is long: each parent has the one before it and
- * a segment without children, the first several of these.
+ * A chain of segments that would be walked down as deep as it is long: each parent has the one
+ * before it and a segment without children, the first several of these.
  */
 static void forged_chain(void)
 {
@@ -1378,9 +1387,10 @@ static void read_only_and_shared(void)
 /* ---- the format ---- */
 
 /*
- * The version of the format belongs to what is in the model. If this fails, the model's counts or arrays
- * changed: let lib/build/model_check.c check what is new, raise VERSION in lib/build/saved_model.c
- * if a version with the old ones was released, and write the new numbers here.
+ * The version of the format belongs to what is in the model. If this fails, the model's counts or
+ * arrays changed: let lib/build/model_check.c check what is new, raise VERSION in
+ * lib/build/saved_model.c if a version with the old ones was released, and write the new numbers
+ * here.
  */
 static void format(void)
 {

@@ -1,10 +1,11 @@
 /*
- * The promise of steps: on every mesh, pair of poses, type, stride, welding, partition, separation and
- * method, sc_query_step reports every vertex-face and edge-edge pair that exact arithmetic says collides,
- * and beyond these only pairs that come within the tolerance; all methods report the same.
+ * The promise of steps: on every mesh, pair of poses, type, stride, welding, partition, separation
+ * and method, sc_query_step reports every vertex-face and edge-edge pair that exact arithmetic says
+ * collides, and beyond these only pairs that come within the tolerance; all methods report the
+ * same.
  *
- * All pairs of small meshes are decided by step_oracle.h. Pairs that stay apart along one of thirteen
- * directions, by more than rounding can hide, are not handed to it.
+ * All pairs of small meshes are decided by step_oracle.h. Pairs that stay apart along one of
+ * thirteen directions, by more than rounding can hide, are not handed to it.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -127,7 +128,8 @@ static void motion_free(motion *m)
     }
 }
 
-/* The four vertices of a pair: vertex and face, or edge and edge. Returns how many belong to the first. */
+/* The four vertices of a pair: vertex and face, or edge and edge. Returns how many belong to the
+   first. */
 static uint32_t pair_vertices(const motion *m, int kind, sc_pair pair, uint32_t v[4])
 {
     if (kind == VERTEX_FACE) {
@@ -142,8 +144,8 @@ static uint32_t pair_vertices(const motion *m, int kind, sc_pair pair, uint32_t 
     return 2;
 }
 
-/* Whether a pair stays farther apart than thickness, by a simple argument: along some direction it does so
-   at both ends, hence all the time. */
+/* Whether a pair stays farther apart than thickness, by a simple argument: along some direction it
+   does so at both ends, hence all the time. */
 static int stays_apart(const motion *m, const uint32_t v[4], uint32_t first, double thickness)
 {
     for (int i = 0; i < DIRECTIONS; ++i) {
@@ -173,7 +175,8 @@ static void pair_points(const motion *m, const uint32_t v[4], double p[2][4][3])
             memcpy(p[e][k], m->ends[e] + 3 * (size_t)v[k], 3 * sizeof(double));
 }
 
-/* ---- distances in rounded arithmetic: to find times at which the exact question is worth asking ---- */
+/* ---- distances in rounded arithmetic: to find times at which the exact question is worth asking
+   ---- */
 
 static double dot(const double *u, const double *v)
 {
@@ -245,7 +248,8 @@ static double distance_at(int kind, double p[2][4][3], double time)
     return sqrt(least);
 }
 
-/* The time from low to high when the distance is least, about: the thirds of the interval in turn. */
+/* The time from low to high when the distance is least, about: the thirds of the interval in
+   turn. */
 static double nearest_time(int kind, double p[2][4][3], double low, double high)
 {
     for (int i = 0; i < 40; ++i) {
@@ -260,8 +264,9 @@ static double nearest_time(int kind, double p[2][4][3], double low, double high)
 
 /* ---- what is certain ---- */
 
-/* Whether a pair surely comes as near as the separation, and if so a time that its first such time is not
-   after. Without separation that is all there is to know; else some pairs that only just do are not seen. */
+/* Whether a pair surely comes as near as the separation, and if so a time that its first such time
+   is not after. Without separation that is all there is to know; else some pairs that only just do
+   are not seen. */
 static int surely_collides(const motion *m, int kind, sc_pair pair, double separation, double *when)
 {
     enum { SAMPLES = 16 };
@@ -295,8 +300,8 @@ static int surely_collides(const motion *m, int kind, sc_pair pair, double separ
     return collides;
 }
 
-/* Whether a pair is within separation + tolerance at a time, which is certain. The tolerance is at least
-   2^-32 of the largest difference of a coordinate between its two. */
+/* Whether a pair is within separation + tolerance at a time, which is certain. The tolerance is at
+   least 2^-32 of the largest difference of a coordinate between its two. */
 static int is_near(const motion *m, int kind, sc_pair pair, double time, double separation,
                    double tolerance)
 {
@@ -339,7 +344,8 @@ static void append(truth *found, sc_pair pair, double when)
     found->when[list->count++] = when;
 }
 
-/* Whether nothing ever leaves a plane across an axis: then each question takes the oracle a millisecond. */
+/* Whether nothing ever leaves a plane across an axis: then each question takes the oracle a
+   millisecond. */
 static int is_flat(const motion *m)
 {
     for (int k = 0; k < 3; ++k) {
@@ -357,8 +363,8 @@ static int is_flat(const motion *m)
     return 0;
 }
 
-/* All pairs of a kind that surely come as near as the separation, sorted; of flat meshes a part of them, drawn
-   by lot. */
+/* All pairs of a kind that surely come as near as the separation, sorted; of flat meshes a part of
+   them, drawn by lot. */
 static truth find_truth(const motion *m, int kind, double separation)
 {
     truth found;
@@ -721,9 +727,9 @@ static void check_step(const step *s, uint64_t state, tally *sum)
     input_free_choices(&choices);
 }
 
-/* Many steps of one maker. Both answers must really come up, for which fewer steps than those planned go on to these;
-   of makers that are about contours, so must patches with collisions that only the contour test keeps from being
-   skipped, if the steps are not fewer. */
+/* Many steps of one maker. Both answers must really come up, for which fewer steps than those
+   planned go on to these; of makers that are about contours, so must patches with collisions that
+   only the contour test keeps from being skipped, if the steps are not fewer. */
 static void check_maker(step_maker make, int is_about_contours)
 {
     enum { STEPS = 25 };
@@ -891,8 +897,8 @@ static int motion_is_corner(const motion *m, uint32_t triangle, uint32_t vertex)
     return c[0] == vertex || c[1] == vertex || c[2] == vertex;
 }
 
-/* collides_somehow of a triangle that is one vertex, which has no edges: a collision of that vertex with a triangle at the
-   edge. 1 as well if it is a corner of all of these. */
+/* collides_somehow of a triangle that is one vertex, which has no edges: a collision of that vertex
+   with a triangle at the edge. 1 as well if it is a corner of all of these. */
 static int vertex_collides(const motion *m, const answer *a, sc_pair pair, double *least)
 {
     uint32_t v = m->corner[3 * (size_t)pair.b], others = 0;
@@ -913,8 +919,8 @@ static int vertex_collides(const motion *m, const answer *a, sc_pair pair, doubl
     return found || others == 0;
 }
 
-/* Whether a collision is reported of an edge's end with a triangle, or of the edge with one of its edges;
-   *least is the earliest time of these. */
+/* Whether a collision is reported of an edge's end with a triangle, or of the edge with one of its
+   edges; *least is the earliest time of these. */
 static int collides_somehow(const motion *m, const answer *a, sc_pair pair, double *least)
 {
     uint32_t ends[2] = {edge_start(m, pair.a), edge_end(m, pair.a)};
@@ -940,8 +946,8 @@ static int collides_somehow(const motion *m, const answer *a, sc_pair pair, doub
     return found;
 }
 
-/* An edge that meets a triangle at one end of a step and not at the other has a collision in between, and
-   one that only touches it, at the start, collides then. */
+/* An edge that meets a triangle at one end of a step and not at the other has a collision in
+   between, and one that only touches it, at the start, collides then. */
 static void check_ends(const step *s, uint64_t *changes, uint64_t *touches)
 {
     uint32_t n = s->mesh.vertex_count, *map;

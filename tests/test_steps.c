@@ -1,8 +1,9 @@
 /*
- * Queries of steps: all methods against all pairs decided by the narrow phase alone, and the interface.
+ * Queries of steps: all methods against all pairs decided by the narrow phase alone, and the
+ * interface.
  *
- * That the narrow phase itself is right is the matter of test_impact, and that nothing is lost against exact
- * arithmetic that of test_step_oracle.
+ * That the narrow phase itself is right is the matter of test_impact, and that nothing is lost
+ * against exact arithmetic that of test_step_oracle.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -315,7 +316,8 @@ static void check_step(const soup *mesh, const double *start, const double *end,
     input_free_choices(&choices);
 }
 
-/* The same with a tolerance of that size; few candidates are left. Returns how many vertex-face pairs collide. */
+/* The same with a tolerance of that size; few candidates are left. Returns how many vertex-face
+   pairs collide. */
 static uint64_t check_tiny_step(const soup *mesh, const double *start, const double *end,
                                 double tolerance)
 {
@@ -381,7 +383,8 @@ static double *fold(const soup *mesh, double slope)
     return to;
 }
 
-/* Puts the points inside a cloth of 3 x 3 cells somewhere in its plane so that all triangles keep a positive area. */
+/* Puts the points inside a cloth of 3 x 3 cells somewhere in its plane so that all triangles keep a
+   positive area. */
 static void rearrange(const soup *mesh, double *to)
 {
     int good = 0;
@@ -405,8 +408,8 @@ static void rearrange(const soup *mesh, double *to)
     }
 }
 
-/* The contour stays; inside, triangles turn over on the way although they lie well at both ends, or are so
-   flat that points come near. Culling must see that without the contour's help. */
+/* The contour stays; inside, triangles turn over on the way although they lie well at both ends, or
+   are so flat that points come near. Culling must see that without the contour's help. */
 static void rearranged_insides(void)
 {
     soup mesh = soup_cloth(3, 3);
@@ -436,8 +439,8 @@ static void rearranged_insides(void)
     free(end);
 }
 
-/* A small cloth that falls through a large one: two pieces whose contours lie inside one another. corner: they share one,
-   and lie in each other's corner, where contours touch. */
+/* A small cloth that falls through a large one: two pieces whose contours lie inside one another.
+   corner: they share one, and lie in each other's corner, where contours touch. */
 static void pieces_inside_one_another(void)
 {
     for (uint32_t i = 0; i < test_iterations(24) && test_failures() == 0; ++i) {
@@ -467,7 +470,8 @@ static void pieces_inside_one_another(void)
     }
 }
 
-/* A strip bent in its plane so that its ends nearly meet, nearer than the separation; or meet on the way. */
+/* A strip bent in its plane so that its ends nearly meet, nearer than the separation; or meet on
+   the way. */
 static void ends_that_nearly_meet(void)
 {
     for (uint32_t i = 0; i < test_iterations(40) && test_failures() == 0; ++i) {
@@ -492,8 +496,8 @@ static void ends_that_nearly_meet(void)
     }
 }
 
-/* Long strips bent in their plane, of which any two parts may come near each other or cross: contours of three and more
-   times sixty-four edges, in any direction. */
+/* Long strips bent in their plane, of which any two parts may come near each other or cross:
+   contours of three and more times sixty-four edges, in any direction. */
 static void long_strips(void)
 {
     for (uint32_t i = 0; i < test_iterations(16) && test_failures() == 0; ++i) {
@@ -520,7 +524,8 @@ static void long_strips(void)
     }
 }
 
-/* A cloth and its folding, in doubles so small that to bring them to size takes more than a factor that is a double. */
+/* A cloth and its folding, in doubles so small that to bring them to size takes more than a factor
+   that is a double. */
 static void denormal_meshes(void)
 {
     uint64_t count = 0;
@@ -538,7 +543,8 @@ static void denormal_meshes(void)
     CHECK(count > 10);
 }
 
-/* A disc but for a narrow sector, whose sides a point of the disc sees, but that is narrower than the separation. */
+/* A disc but for a narrow sector, whose sides a point of the disc sees, but that is narrower than
+   the separation. */
 static void narrow_notches(void)
 {
     enum { SECTORS = 16 };
@@ -562,7 +568,8 @@ static void narrow_notches(void)
     }
 }
 
-/* Flat or nearly so, so that contours are all that keeps things apart; with patches in any number of pieces. */
+/* Flat or nearly so, so that contours are all that keeps things apart; with patches in any number
+   of pieces. */
 static void flat_meshes_that_move(void)
 {
     for (uint32_t i = 0; i < test_iterations(120) && test_failures() == 0; ++i) {

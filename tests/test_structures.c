@@ -1,8 +1,8 @@
 /*
- * What sc_build makes, step by step, against counts made anew from the definitions: patches, adjacency,
- * the self-collision test tree (SCTT) and its children in the bounding-volume test tree (BVTT), the
- * contour segment forest (CSF), what the model reports. And validators, on sound structures and on
- * corrupted ones.
+ * What sc_build makes, step by step, against counts made anew from the definitions: patches,
+ * adjacency, the self-collision test tree (SCTT) and its children in the bounding-volume test tree
+ * (BVTT), the contour segment forest (CSF), what the model reports. And validators, on sound
+ * structures and on corrupted ones.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -253,8 +253,8 @@ static void check_xbvh(const steps *s, const patches *p)
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " patches, leaves or children wrong", s->name, wrong);
 }
 
-/* shared[a * count + b], a < b: how many points two patches of a level share, up to 2, and 0 if all of
-   these are hubs; one that is no hub in which. */
+/* shared[a * count + b], a < b: how many points two patches of a level share, up to 2, and 0 if all
+   of these are hubs; one that is no hub in which. */
 static void find_shared(const steps *s, const patches *p, uint32_t level, uint8_t *shared,
                         uint32_t *which)
 {
@@ -284,8 +284,8 @@ static void find_shared(const steps *s, const patches *p, uint32_t level, uint8_
 
 /* ---- the test tree ---- */
 
-/* Every adjacent pair of a level is one node, every other pair of children of a tested pair one BVTT
-   child, all of them below the right parents. */
+/* Every adjacent pair of a level is one node, every other pair of children of a tested pair one
+   BVTT child, all of them below the right parents. */
 static void check_sctt(const steps *s, const patches *p)
 {
     const sc_sctt *t = &s->sctt;
@@ -404,8 +404,8 @@ static int compare_pairs(const void *x, const void *y)
     return a->b < b->b ? -1 : a->b > b->b;
 }
 
-/* Whether segments hold, as a multiset, the half-edges of the triangles with patch a or b that do not
-   meet their opposite within these. */
+/* Whether segments hold, as a multiset, the half-edges of the triangles with patch a or b that do
+   not meet their opposite within these. */
 static int is_contour(const steps *s, const uint32_t *patch, uint32_t a, uint32_t b,
                       const uint32_t *segments, uint32_t segment_count)
 {
@@ -512,7 +512,8 @@ static void check_hops(const steps *s, const sc_model *model)
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " hops wrong", s->name, wrong);
 }
 
-/* The ring of the point at a corner, by looking for the triangle that goes on: 0 if there is none. */
+/* The ring of the point at a corner, by looking for the triangle that goes on: 0 if there is
+   none. */
 static uint32_t find_ring(const sc_model *model, uint32_t point, uint32_t *ring)
 {
     const uint32_t *triangles = sc_model_triangle(model);
@@ -559,8 +560,9 @@ static uint32_t check_rings(const steps *s, const sc_model *model)
     return rings;
 }
 
-/* Triangles of a leaf cluster round a point of it in any order, each given as where it begins and where it ends: whether they
-   can be put in a row or, all, in a circle, so that each begins where the one before ends, and none anywhere twice. */
+/* Triangles of a leaf cluster round a point of it in any order, each given as where it begins and
+   where it ends: whether they can be put in a row or, all, in a circle, so that each begins where
+   the one before ends, and none anywhere twice. */
 static int is_fan(const uint32_t (*turn)[2], uint32_t count, int circle)
 {
     uint32_t first, i, k, row;
@@ -602,8 +604,8 @@ static void check_fans(const steps *s, const sc_model *model)
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " fans of leaf clusters wrong", s->name, wrong);
 }
 
-/* The edges of a leaf cluster that no opposite one makes up for, by their points: how many; or 0 if two begin at one point, or
-   one is there twice. */
+/* The edges of a leaf cluster that no opposite one makes up for, by their points: how many; or 0 if
+   two begin at one point, or one is there twice. */
 static uint32_t list_outline(const sc_model *model, uint32_t leaf, uint32_t edge[][2])
 {
     const uint32_t *first = sc_model_leaf_first(model), *triangle = sc_model_triangle(model);
@@ -640,8 +642,8 @@ static uint32_t sort_chain(uint32_t edge[][2], uint32_t edges)
     return count;
 }
 
-/* Outlines of leaf clusters: each edge that no opposite one makes up for once, in a circle, if there is one that comes to
-   no point twice; or in two. */
+/* Outlines of leaf clusters: each edge that no opposite one makes up for once, in a circle, if
+   there is one that comes to no point twice; or in two. */
 static void check_outlines(const steps *s, const sc_model *model)
 {
     uint32_t leaf, h, i, wrong = 0;
@@ -758,7 +760,8 @@ static void list_loop(const steps *s, const sc_model *m, uint32_t n, const uint1
     }
 }
 
-/* Lists the edges of all pieces of a node's loop, and counts what is wrong with them. Returns how many edges there are. */
+/* Lists the edges of all pieces of a node's loop, and counts what is wrong with them. Returns how
+   many edges there are. */
 static uint32_t list_loops(const steps *s, const sc_model *m, uint32_t n, sc_pair *edges,
                            uint32_t *wrong)
 {
@@ -780,8 +783,8 @@ static uint32_t list_loops(const steps *s, const sc_model *m, uint32_t n, sc_pai
     return total;
 }
 
-/* The loop of each node has the edges of its segments, one leading to the next, piece by piece; there is one unless they
-   are in many pieces, or long ones. */
+/* The loop of each node has the edges of its segments, one leading to the next, piece by piece;
+   there is one unless they are in many pieces, or long ones. */
 static void check_loops(const steps *s, const sc_model *m)
 {
     const sc_csf *csf = &s->csf;
@@ -916,7 +919,8 @@ static int share_point(const steps *s, uint32_t t, uint32_t u)
     return found;
 }
 
-/* The corner of triangle t that is shared and the one before not, of one or two; how many are in *count. */
+/* The corner of triangle t that is shared and the one before not, of one or two; how many are in
+   *count. */
 static uint32_t first_shared(const steps *s, uint32_t t, uint32_t u, uint32_t *count)
 {
     const uint32_t *a = s->points.triangles + 3 * t, *b = s->points.triangles + 3 * u;
@@ -979,7 +983,8 @@ static void check_sharing_lists(steps *s, const sc_sharing *sharing)
     free(list);
 }
 
-/* Masks of triangles within a leaf cluster, as the model has them and unfolded: each with itself and lower ones is 0. */
+/* Masks of triangles within a leaf cluster, as the model has them and unfolded: each with itself
+   and lower ones is 0. */
 static void check_own_rows(const steps *s, const sc_sharing *sharing)
 {
     uint32_t wrong = 0;
@@ -1057,7 +1062,8 @@ static void check_all(const char *name, const soup *mesh, const sc_build_options
     free_steps(&s);
 }
 
-/* A caller's tree that is a chain: one triangle leaves at each of 59 nodes, the rest is the last. */
+/* A caller's tree that is a chain: one triangle leaves at each of 59 nodes, the rest is the
+   last. */
 static void check_chain(const char *name, const soup *mesh, int to_the_left)
 {
     uint32_t count = mesh->triangle_count, inner = count - 1 < 59 ? count - 1 : 59, i;
@@ -1220,7 +1226,8 @@ static sc_status note_costs(void *user, const sc_dual_graph *graph, uint32_t lef
     return input_bisect(NULL, graph, left_target, sides);
 }
 
-/* A cloth folded by no, a right, and two right angles, at any scale: at the crease a cut costs half, and a third. */
+/* A cloth folded by no, a right, and two right angles, at any scale: at the crease a cut costs
+   half, and a third. */
 static void creases(void)
 {
     enum { SIDE = 8 };
@@ -1262,8 +1269,8 @@ static void creases(void)
     }
 }
 
-/* How many leaf clusters a mesh gets. Of every so many triangles of it in turn: how many such parts are divided between
-   clusters, and how many clusters have triangles of several. */
+/* How many leaf clusters a mesh gets. Of every so many triangles of it in turn: how many such parts
+   are divided between clusters, and how many clusters have triangles of several. */
 static uint32_t count_clusters(const soup *mesh, uint32_t partition, uint32_t together,
                                uint32_t *divided, uint32_t *mixed)
 {
@@ -1303,8 +1310,8 @@ static uint32_t count_clusters(const soup *mesh, uint32_t partition, uint32_t to
     return leaves;
 }
 
-/* Thin tubes become whole rings, as many as fit into a leaf cluster, at any scale and by any cut. Of five sides, one and a
-   half do. */
+/* Thin tubes become whole rings, as many as fit into a leaf cluster, at any scale and by any cut.
+   Of five sides, one and a half do. */
 static void slices(void)
 {
     enum { ALONG = 60 };
@@ -1327,7 +1334,8 @@ static void slices(void)
     }
 }
 
-/* A strand like a U: a plane across it meets both legs, in triangles that would fit into one leaf cluster. */
+/* A strand like a U: a plane across it meets both legs, in triangles that would fit into one leaf
+   cluster. */
 static void two_legs(void)
 {
     enum { ALONG = 128 };
@@ -1343,7 +1351,8 @@ static void two_legs(void)
     soup_free(&strand);
 }
 
-/* The point in the middle of a disc has the longest ring that there can be, and one that is too long. */
+/* The point in the middle of a disc has the longest ring that there can be, and one that is too
+   long. */
 static void long_rings(void)
 {
     for (uint32_t valence = SC_RING_MAX - 1; valence <= SC_RING_MAX + 1; ++valence) {
@@ -1413,8 +1422,8 @@ static void validators(void)
     if (!CHECK(make_steps(&s, &mesh, &options) == SC_OK)) return;
     order = s.hierarchy.order;
     while (s.hierarchy.nodes[leaf].left != SC_NONE) ++leaf;
-    /* the tree: an order that is no permutation; children before parents, out of range, lost; wrong,
-       empty and too large leaves; a wrong number of them */
+    /* the tree: an order that is no permutation; children before parents, out of range, lost;
+       wrong, empty and too large leaves; a wrong number of them */
     CHECK(is_noticed(&s, 0, &order[3], order[4]));
     CHECK(is_noticed(&s, 0, &order[3], mesh.triangle_count));
     CHECK(is_noticed(&s, 0, &s.hierarchy.nodes[0].left, 0));
@@ -1434,7 +1443,8 @@ static void validators(void)
         CHECK_MSG(is_noticed(&s, 1, &s.xbvh.child[i], s.xbvh.child[i] + 1), "child %" PRIu32, i);
         CHECK_MSG(is_noticed(&s, 1, &s.xbvh.leaf[i], s.xbvh.leaf[i] + 1), "leaf %" PRIu32, i);
     }
-    /* tests: any patch of any node, any child range, any BVTT child; a pair lost from the neighbors */
+    /* tests: any patch of any node, any child range, any BVTT child; a pair lost from the
+       neighbors */
     for (n = 0; n < s.sctt.node_count; ++n) {
         CHECK_MSG(is_noticed(&s, 2, &s.sctt.patches[n].a, s.sctt.patches[n].a + 1), "node %" PRIu32,
                   n);
@@ -1550,7 +1560,8 @@ static void locality(void)
     soup_free(&mesh);
 }
 
-/* Triangles in the cells of a lattice, in any order: the curve goes from each cell to one beside it. */
+/* Triangles in the cells of a lattice, in any order: the curve goes from each cell to one beside
+   it. */
 static void curve(void)
 {
     enum { SIDE = 16, CELLS = SIDE * SIDE * SIDE };

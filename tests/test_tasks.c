@@ -1,6 +1,6 @@
 /*
- * The host's tasks: workspaces for several workers, what is refused, and that answers are those of one
- * thread, whoever runs the parts of a query, or of a step, and in whatever order.
+ * The host's tasks: workspaces for several workers, what is refused, and that answers are those of
+ * one thread, whoever runs the parts of a query, or of a step, and in whatever order.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -117,8 +117,8 @@ static void host_stop(host *h)
     free(h->workers);
 }
 
-/* Whether a trial with this number is left out, as --scale asks for fewer: each scene has others, so that a tenth of them has
-   every method. */
+/* Whether a trial with this number is left out, as --scale asks for fewer: each scene has others,
+   so that a tenth of them has every method. */
 static int is_left_out(int scene, uint32_t number)
 {
     const uint32_t percent = test_iterations(100), step = percent < 100 ? 100 / percent : 1;
@@ -224,7 +224,8 @@ static int is_count_same(const answer *a, const answer *b)
            a->stats.exact_fallbacks == b->stats.exact_fallbacks;
 }
 
-/* The same of all but box tests: how large patches are divided is another matter with several threads. */
+/* The same of all but box tests: how large patches are divided is another matter with several
+   threads. */
 static int is_other_count_same(const answer *a, const answer *b)
 {
     answer c = *b;
@@ -437,7 +438,8 @@ static void tasks_refused(void)
 /* Scenes large enough to be shared out, but for the last one; most in heavy contact. */
 enum { SCENES = 7 };
 
-/* Discs that go twice around, side by side; some are crumpled, so that those that wait are no round number. */
+/* Discs that go twice around, side by side; some are crumpled, so that those that wait are no round
+   number. */
 static soup many_branched(uint32_t count)
 {
     soup all = soup_branched(24, 4);
@@ -927,8 +929,8 @@ static uint32_t add_parts(sc_tree_node *tree, uint32_t *count, uint32_t first, u
     return node;
 }
 
-/* The model of a mesh by a tree: leaves of one triangle, balanced; but of the first triangles of each
-   part, if so many are chained, each of so many nodes loses one. */
+/* The model of a mesh by a tree: leaves of one triangle, balanced; but of the first triangles of
+   each part, if so many are chained, each of so many nodes loses one. */
 static int start_tree(fixture *f, soup mesh, uint32_t parts, uint32_t chained, uint32_t length)
 {
     const uint32_t count = mesh.triangle_count;
@@ -982,8 +984,9 @@ static soup crumpled_fan(uint32_t count)
     return s;
 }
 
-/* Strips with flags: so many triangles that face down; then three rows of squares that face up, and on
-   every other edge at a side of them triangles, which face up as well and get in each other's way. */
+/* Strips with flags: so many triangles that face down; then three rows of squares that face up, and
+   on every other edge at a side of them triangles, which face up as well and get in each other's
+   way. */
 enum { STRIPS = 8, DOWN = 10, SQUARES = 114, FLAGS = 24, STRIP = DOWN + 6 * SQUARES };
 
 static void set_corner(double *p, double x, double y, double z)
@@ -1029,10 +1032,10 @@ static soup strips_with_flags(void)
 
 enum { TREES = 5 };
 
-/* Trees that are not balanced, with more parts than the list has room for, since a large patch meets
-   hundreds of small ones at each level; one of pairs of neighbors, of which many wait and of others
-   none; one of very many leaf clusters; and one of large patches that have more neighbors with which
-   they wait for a contour test than the list has room for. */
+/* Trees that are not balanced, with more parts than the list has room for, since a large patch
+   meets hundreds of small ones at each level; one of pairs of neighbors, of which many wait and of
+   others none; one of very many leaf clusters; and one of large patches that have more neighbors
+   with which they wait for a contour test than the list has room for. */
 static int start_tree_scene(fixture *f, int scene)
 {
     if (scene == 4) return start_tree(f, strips_with_flags(), STRIPS, STRIP, DOWN);
@@ -1081,8 +1084,8 @@ static void by_trees(void)
     }
 }
 
-/* What becomes of a pair of triangles, and is counted, does not depend on those that are tested with it, which
-   are others with each number of workers. */
+/* What becomes of a pair of triangles, and is counted, does not depend on those that are tested
+   with it, which are others with each number of workers. */
 static void in_any_company(void)
 {
     uint32_t rounds = test_iterations(150);
@@ -1128,8 +1131,9 @@ typedef struct step_fixture {
 
 enum { STEP_SCENES = 7, STEP_METHODS = 5, STEP_KINDS = STEP_METHODS * 2 * 3 };
 
-/* Layers that pass each other; a cloth that waves and folds; pieces; contours that cross; a crumpled sphere; two triangles; a cloth of
-   a triangle in each leaf cluster, of which a level has many. */
+/* Layers that pass each other; a cloth that waves and folds; pieces; contours that cross; a
+   crumpled sphere; two triangles; a cloth of a triangle in each leaf cluster, of which a level has
+   many. */
 static int start_step(step_fixture *s, int scene)
 {
     soup mesh = scene == 0   ? soup_cloth(33, 33)
@@ -1281,8 +1285,8 @@ static int start_colliding_step(step_fixture *s, int scene)
     return 0;
 }
 
-/* Each method, kind of pair, output, kind of time and length of the lists, by each host: the same list, times and
-   counts as by one thread. */
+/* Each method, kind of pair, output, kind of time and length of the lists, by each host: the same
+   list, times and counts as by one thread. */
 static void steps_the_same(void)
 {
     uint64_t jobs = 0, culled = 0;
@@ -1333,7 +1337,8 @@ static void steps_the_same(void)
               "%u jobs, %u nodes culled", (unsigned)jobs, (unsigned)culled);
 }
 
-/* Steps that read no clocks and have no arrays for times, by one thread and by several: the same lists. */
+/* Steps that read no clocks and have no arrays for times, by one thread and by several: the same
+   lists. */
 static void steps_without_statistics(void)
 {
     for (int scene = 0; scene < STEP_SCENES; ++scene) {
@@ -1410,7 +1415,8 @@ static void steps_in_short_lists(void)
     stop_step(&s);
 }
 
-/* Whether there is a pair at all: which one is found first, and so of which kind it is, is left open. */
+/* Whether there is a pair at all: which one is found first, and so of which kind it is, is left
+   open. */
 static void any_pair_of_a_step(void)
 {
     for (int scene = 0; scene < STEP_SCENES; ++scene) {

@@ -1,7 +1,8 @@
 /*
- * Where products underflow. Small integers times a power of two are exact, and so is what their products
- * ought to be; but rounded to multiples of the smallest number, sums of such products get the wrong sign.
- * The bounds of errors have a term for that. And where products overflow: what is infinite has no sign.
+ * Where products underflow. Small integers times a power of two are exact, and so is what their
+ * products ought to be; but rounded to multiples of the smallest number, sums of such products get
+ * the wrong sign. The bounds of errors have a term for that. And where products overflow: what is
+ * infinite has no sign.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -57,8 +58,8 @@ static uint64_t count_pairs(const scene *s, const double *integers, uint32_t ver
     return result.count;
 }
 
-/* Two triangles in a plane, most of them nearly touching, at sizes at which the tests by planes (products
-   of three differences) and along sides (of four) underflow. */
+/* Two triangles in a plane, most of them nearly touching, at sizes at which the tests by planes
+   (products of three differences) and along sides (of four) underflow. */
 static void flat_pairs(void)
 {
     static const uint32_t triangles[6] = {0, 1, 2, 3, 4, 5};
@@ -93,7 +94,8 @@ static void flat_pairs(void)
     close_scene(&s);
 }
 
-/* The sum of the normals of a fan, and whether each of them makes less than a right angle with it. */
+/* The sum of the normals of a fan, and whether each of them makes less than a right angle with
+   it. */
 static int is_upright(int64_t r[][3], uint32_t count)
 {
     int64_t n[8][3], d[3] = {0, 0, 0};
@@ -172,8 +174,8 @@ static int is_plain_at(scene *s, double *p, uint32_t vertex_count)
     return sc_fan_test(s->model, s->workspace, sc_model_triangle(s->model)[0]);
 }
 
-/* Fans of so large a size that areas along the sum of their normals, products of four coordinates, overflow in part.
-   None is plain that is not where it is small. */
+/* Fans of so large a size that areas along the sum of their normals, products of four coordinates,
+   overflow in part. None is plain that is not where it is small. */
 static void fans_that_overflow(void)
 {
     static const double axes[3][3] = {{1, -1, 0}, {0.5, 0.5, -1}, {1, 1, 1}};

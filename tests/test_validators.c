@@ -1,6 +1,6 @@
 /*
- * The validators that debug builds run: those of a pose, on sound cones and bounds and on changed ones,
- * and what tests/test_structures.c leaves of those of the model.
+ * The validators that debug builds run: those of a pose, on sound cones and bounds and on changed
+ * ones, and what tests/test_structures.c leaves of those of the model.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -71,8 +71,8 @@ static void cones(void)
     close_scene(&s);
 }
 
-/* Waves that are broken in some places: leaf clusters without cones, alone and in groups. Each part of them, whatever it
-   begins and ends with, has the cones that all have. */
+/* Waves that are broken in some places: leaf clusters without cones, alone and in groups. Each part
+   of them, whatever it begins and ends with, has the cones that all have. */
 static void cones_of_groups(void)
 {
     soup mesh = soup_cloth(70, 70);
@@ -291,8 +291,8 @@ static void structures(void)
     CHECK(sc_hierarchy_validate(&hierarchy, &scratch) && !sc_hierarchy_validate(&hierarchy, &none));
     CHECK(sc_csf_validate(&csf, &sctt, &scratch) && !sc_csf_validate(&csf, &sctt, &none));
     CHECK(sc_xbvh_validate(&xbvh) && sc_sctt_validate(&xbvh, &neighbors, &sctt));
-    /* the right child that does not exist, the last triangle that nobody owns, a chain of nodes that is
-       too long, which ends in another error */
+    /* the right child that does not exist, the last triangle that nobody owns, a chain of nodes
+       that is too long, which ends in another error */
     old = hierarchy.nodes[0].right;
     hierarchy.nodes[0].right = hierarchy.node_count;
     CHECK(!sc_hierarchy_validate(&hierarchy, &scratch));
@@ -329,8 +329,8 @@ static void structures(void)
     xbvh.leaf[i] = 0;
     CHECK(!sc_xbvh_validate(&xbvh));
     xbvh.leaf[i] = old;
-    /* two patches at the top; a level whose children are its own patches, and one that has all children
-       but the last, whose leaves the one before claims */
+    /* two patches at the top; a level whose children are its own patches, and one that has all
+       children but the last, whose leaves the one before claims */
     ++xbvh.level_first[1];
     CHECK(!sc_xbvh_validate(&xbvh));
     --xbvh.level_first[1];

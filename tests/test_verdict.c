@@ -1,6 +1,7 @@
 /*
- * Verdicts: a query that is not stopped says clean or found; one that is stopped, by a budget or by a
- * flag, says so by status and verdict, delivers nothing but pairs, and with a budget the same each time.
+ * Verdicts: a query that is not stopped says clean or found; one that is stopped, by a budget or by
+ * a flag, says so by status and verdict, delivers nothing but pairs, and with a budget the same
+ * each time.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -123,7 +124,8 @@ static void complete_queries(void)
     CHECK(seen[0] > 20 && seen[1] > 20);
 }
 
-/* Errors say nothing, and callers of an older version get nothing written behind their structure. */
+/* Errors say nothing, and callers of an older version get nothing written behind their
+   structure. */
 static void errors_and_older_callers(void)
 {
     subject s;
@@ -180,8 +182,8 @@ static void cancelled_before(void)
     close_subject(&s);
 }
 
-/* One budget: twice, with and without statistics. Returns the number of pairs found; *found, as long as
-   all, gets them. */
+/* One budget: twice, with and without statistics. Returns the number of pairs found; *found, as
+   long as all, gets them. */
 static uint64_t check_budget(const subject *s, sc_query_options o, uint64_t budget, uint64_t total,
                              const sc_pair *all, uint64_t all_count, sc_pair *found)
 {
@@ -272,7 +274,8 @@ static void budgets(void)
     CHECK_MSG(3 * partial > 2 * rounds, "%" PRIu64 " partial answers", partial);
 }
 
-/* What accept does in the tests below: sets the flag after some calls, or lets another thread do it. */
+/* What accept does in the tests below: sets the flag after some calls, or lets another thread do
+   it. */
 typedef struct stopper {
     uint32_t flag;
     uint64_t calls, at;

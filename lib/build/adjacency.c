@@ -13,7 +13,8 @@ static uint64_t number_of(const sc_points *points, uint32_t h)
     return 3 * (uint64_t)points->id[h / 3] + h % 3;
 }
 
-/* Half-edges in a bucket by the lower end of their edge, sorted by the upper end, then by number. */
+/* Half-edges in a bucket by the lower end of their edge, sorted by the upper end, then by
+   number. */
 static sc_status pair_half_edges(const sc_points *points, sc_scratch *scratch,
                                  sc_adjacency *adjacency)
 {
@@ -142,8 +143,9 @@ sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_ad
     return count_components(points, scratch, adjacency);
 }
 
-/* A half-edge that has an opposite is the only one between its points that runs its way. So a walk that
-   goes from one triangle to the next across such edges meets no point twice before it is back. */
+/* A half-edge that has an opposite is the only one between its points that runs its way. So a walk
+   that goes from one triangle to the next across such edges meets no point twice before it is
+   back. */
 uint32_t sc_adjacency_ring(const sc_points *points, const sc_adjacency *adjacency, uint32_t p,
                            uint32_t *ring)
 {

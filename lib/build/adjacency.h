@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * Half-edge h = 3 t + k runs from corner k of triangle t to the next corner. Two half-edges are
- * opposite if they are all there is of their edge and run against each other; whatever else meets at
- * an edge has no opposite, as at a boundary. So the walk round a point, next(opposite(h)), is a
+ * opposite if they are all there is of their edge and run against each other; whatever else meets
+ * at an edge has no opposite, as at a boundary. So the walk round a point, next(opposite(h)), is a
  * permutation whatever the mesh.
  */
 #ifndef SC_BUILD_ADJACENCY_H
@@ -40,13 +40,14 @@ static inline uint32_t sc_adjacency_previous(uint32_t h)
 /* O(n log n) at worst in the number of edges at a point, linear otherwise. */
 sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_adjacency *adjacency);
 
-/* lowest: point_count; becomes the lowest number of a point in the same component, for each point. */
+/* lowest: point_count; becomes the lowest number of a point in the same component, for each
+   point. */
 void sc_adjacency_find_components(const sc_points *points, uint32_t *lowest);
 
 /*
- * The ring of a point p: if its triangles form one closed fan (p, r0, r1), (p, r1, r2), ... (p, rn, r0)
- * with different r, and are SC_RING_MAX at most, writes r0 ... rn and returns their number; otherwise
- * returns 0. ring has room for as many as p has corners.
+ * The ring of a point p: if its triangles form one closed fan (p, r0, r1), (p, r1, r2), ... (p, rn,
+ * r0) with different r, and are SC_RING_MAX at most, writes r0 ... rn and returns their number;
+ * otherwise returns 0. ring has room for as many as p has corners.
  */
 uint32_t sc_adjacency_ring(const sc_points *points, const sc_adjacency *adjacency, uint32_t p,
                            uint32_t *ring);

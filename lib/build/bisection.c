@@ -15,24 +15,27 @@
 #include "build/small_refinement.h"
 #include "build/straight_cut.h"
 
-/* Deeper than this, patches are halved as they stand, which ends within SC_DEPTH_MAX. A cut leaves at
-   most 17 / 32 on a side, and components are dealt out between two cuts: some 100,000 triangles would
-   have to be joined in the worst way to get here. */
+/* Deeper than this, patches are halved as they stand, which ends within SC_DEPTH_MAX. A cut leaves
+   at most 17 / 32 on a side, and components are dealt out between two cuts: some 100,000 triangles
+   would have to be joined in the worst way to get here. */
 enum { DEPTH_MEASURED = 32 };
 
-/* A cut may be off its target by one triangle in this many. Tuned on the bunny: of the patches of level
-   10, 53 % pass the tests in the rest pose, 49 % with 64; without this limit, leaves are 6 % more. */
+/* A cut may be off its target by one triangle in this many. Tuned on the bunny: of the patches of
+   level 10, 53 % pass the tests in the rest pose, 49 % with 64; without this limit, leaves are 6 %
+   more. */
 enum { SLACK = 32 };
 
 /* Ten times the number of triangles that leaf clusters are to have on average. */
 enum { LEAF_AIM = 146 };
 
-/* What numbers of leaves are a power of two times, at most: by the built-in cut, and by the caller's. Larger ones make
-   fewer leaf clusters. With METIS, 63 instead of 15: 4 % fewer, 2 % less memory, queries 1 to 4 % faster (rods 5 to 9);
-   with the built-in cut 1.4 % fewer, and the bunny at rest 10 % slower. */
+/* What numbers of leaves are a power of two times, at most: by the built-in cut, and by the
+   caller's. Larger ones make fewer leaf clusters. With METIS, 63 instead of 15: 4 % fewer, 2 % less
+   memory, queries 1 to 4 % faster (rods 5 to 9); with the built-in cut 1.4 % fewer, and the bunny
+   at rest 10 % slower. */
 enum { ODD_LEAVES = 15, ODD_LEAVES_OF_CALLER = 63 };
 
-/* Of a small component, in place of its size: it has a side, bit 0; it is beside the largest there. */
+/* Of a small component, in place of its size: it has a side, bit 0; it is beside the largest
+   there. */
 enum { HELD = 2 };
 static const uint32_t DECIDED = 0x80000000u;
 
@@ -64,10 +67,10 @@ static int is_with(const bisection *b, uint32_t t, uint32_t u, int by_side)
     return (b->label[u] ^ b->label[t]) <= !by_side;
 }
 
-/* Numbers the components of a patch in the order of their first triangles, where crossing from side 0 to side 1
-   does or does not count as connected, and writes their sizes; returns how many. If they are no more than least,
-   there are no numbers. Triangles of a patch are ascending: so a pass from first to last joins each with those before
-   it, and needs no search through memory. */
+/* Numbers the components of a patch in the order of their first triangles, where crossing from side
+   0 to side 1 does or does not count as connected, and writes their sizes; returns how many. If
+   they are no more than least, there are no numbers. Triangles of a patch are ascending: so a pass
+   from first to last joins each with those before it, and needs no search through memory. */
 static uint32_t number_components(bisection *b, const uint32_t *triangles, uint32_t count,
                                   int by_side, uint32_t least)
 {
@@ -102,8 +105,8 @@ static uint32_t number_components(bisection *b, const uint32_t *triangles, uint3
     return found;
 }
 
-/* The next half-edge of the border between the two sides of a patch, seen from the side of h, which is one:
-   forward round its end, or backward round its start; SC_NONE where the border ends. */
+/* The next half-edge of the border between the two sides of a patch, seen from the side of h, which
+   is one: forward round its end, or backward round its start; SC_NONE where the border ends. */
 static uint32_t follow_border(const bisection *b, uint32_t h, int forward)
 {
     uint32_t label = b->label[h / 3];
@@ -128,8 +131,8 @@ static uint32_t walk_border(const bisection *b, uint32_t start)
     return met;
 }
 
-/* Whether on each side one walk along the border meets all of it: then the triangles beside it hang together there,
-   and with them all of a side of a connected patch. */
+/* Whether on each side one walk along the border meets all of it: then the triangles beside it hang
+   together there, and with them all of a side of a connected patch. */
 static int are_single_walks(const bisection *b)
 {
     const sc_refinement *r = &b->refinement;
@@ -218,8 +221,9 @@ static int touches_component(const bisection *b, uint32_t t, uint32_t component)
     return (int)found;
 }
 
-/* Gives the smaller components of each side to the other side. connected: whether each side is known to be: so it
-   is if nothing of its own stays apart, and each that changes over to it is beside the largest there. */
+/* Gives the smaller components of each side to the other side. connected: whether each side is
+   known to be: so it is if nothing of its own stays apart, and each that changes over to it is
+   beside the largest there. */
 static void connect(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t size[2],
                     const uint32_t capacity[2], int connected[2])
 {
@@ -254,8 +258,8 @@ static void connect(bisection *b, const uint32_t *triangles, uint32_t count, uin
 }
 
 /* Deals the components of a patch out to two sides, none cut: the largest against the rest if it is
-   half of all, else by their order along a direction of one triangle of each. connected: whether a side
-   has one. */
+   half of all, else by their order along a direction of one triangle of each. connected: whether a
+   side has one. */
 static void deal_components(bisection *b, const uint32_t *triangles, uint32_t count, uint32_t found,
                             int connected[2])
 {
@@ -294,9 +298,10 @@ static void deal_components(bisection *b, const uint32_t *triangles, uint32_t co
 }
 
 /*
- * How many leaves count triangles should get: a small number times a power of two, so that nearly all
- * patches have two halves of one size. LEAF_AIM triangles a leaf leave what connecting and smoothing patches
- * lives on; of the built-in cut that needs more, which is what rounding up to fewer numbers leaves it.
+ * How many leaves count triangles should get: a small number times a power of two, so that nearly
+ * all patches have two halves of one size. LEAF_AIM triangles a leaf leave what connecting and
+ * smoothing patches lives on; of the built-in cut that needs more, which is what rounding up to
+ * fewer numbers leaves it.
  */
 static uint32_t leaves_for(const bisection *b, uint32_t count)
 {
@@ -307,7 +312,8 @@ static uint32_t leaves_for(const bisection *b, uint32_t count)
     return (least + step - 1) / step * step;
 }
 
-/* How many of a patch's leaves its first half gets: half, as multiples of the largest power of two in them. */
+/* How many of a patch's leaves its first half gets: half, as multiples of the largest power of two
+   in them. */
 static uint32_t left_part(uint32_t leaves)
 {
     uint32_t step = leaves & (0u - leaves);
@@ -320,8 +326,8 @@ static uint32_t slack_of(uint32_t count)
     return 1 + count / SLACK;
 }
 
-/* How many leaves the two sides of a patch get: as planned, if they fit and are about as large as planned, which
-   components are not that were dealt out. */
+/* How many leaves the two sides of a patch get: as planned, if they fit and are about as large as
+   planned, which components are not that were dealt out. */
 static void share_leaves(const bisection *b, uint32_t leaves, uint32_t left, uint32_t right,
                          uint32_t *left_leaves, uint32_t *right_leaves)
 {
@@ -332,7 +338,8 @@ static void share_leaves(const bisection *b, uint32_t leaves, uint32_t left, uin
     if (left <= target + slack && target <= left + slack &&
         left <= (uint64_t)*left_leaves * SC_LEAF_MAX &&
         right <= (uint64_t)*right_leaves * SC_LEAF_MAX &&
-        /* nine triangles a leaf to begin with: only many cuts in a row that use all slack leave so few */
+        /* nine triangles a leaf to begin with: only many cuts in a row that use all slack leave so
+           few */
         !SC_HARDLY(left < *left_leaves || right < *right_leaves))
         return;
     *left_leaves = leaves_for(b, left);
@@ -416,7 +423,8 @@ static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint
     return status;
 }
 
-/* The unit normal of a triangle, by its sides; 0 if it has none, or is 1e-77 of the mesh in size. */
+/* The unit normal of a triangle, by its sides; 0 if it has none, or is 1e-77 of the mesh in
+   size. */
 static void find_normal(double sides[3][3], float normal[3])
 {
     double n[3], square = 0, inverse;
@@ -430,8 +438,8 @@ static void find_normal(double sides[3][3], float normal[3])
     for (k = 0; k < 3; k++) normal[k] = (float)(n[k] * inverse);
 }
 
-/* By what the length of a side between triangles of unit normals a and b is divided: from 1 if they lie flat, or nearly
-   so by rounding, to 3 if they are folded onto each other. */
+/* By what the length of a side between triangles of unit normals a and b is divided: from 1 if they
+   lie flat, or nearly so by rounding, to 3 if they are folded onto each other. */
 static float divisor_at(const float a[3], const float b[3])
 {
     float turn = 1 - (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
@@ -469,7 +477,8 @@ static void measure(bisection *b)
             square = sqrt(square);
             b->costs[i + j] = (float)square; /* for now */
             sum += square;
-            /* with two corners at one point a triangle may be beside itself: then it has no other neighbor */
+            /* with two corners at one point a triangle may be beside itself: then it has no other
+               neighbor */
             b->neighbor[i + j] = h == SC_NONE || h / 3 == i / 3 ? count : h / 3;
         }
         for (k = 0; k < 3; k++) b->centers[i + k] = (float)(at[0][k] + at[1][k] + at[2][k]);

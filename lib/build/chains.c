@@ -27,7 +27,8 @@ void sc_chains_give(sc_scratch *scratch, sc_chains *chains)
     sc_scratch_give(scratch, chains->starting_at);
 }
 
-/* Links what follows segment i, which is in no list any more; returns the last that does. *left: how many are in lists. */
+/* Links what follows segment i, which is in no list any more; returns the last that does. *left:
+   how many are in lists. */
 static uint32_t walk(const sc_chains *c, uint32_t i, uint32_t *left)
 {
     for (;; --*left) {

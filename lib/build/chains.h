@@ -3,9 +3,10 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The half-edges of a contour leave each point as often as they reach it. So segments that hang together at their ends
- * can be walked in one closed chain (Hierholzer 1873: walk until there is no way on, which is where the walk began; where
- * a segment is left that starts on the way, insert a walk from there). Linear in the number of segments.
+ * The half-edges of a contour leave each point as often as they reach it. So segments that hang
+ * together at their ends can be walked in one closed chain (Hierholzer 1873: walk until there is no
+ * way on, which is where the walk began; where a segment is left that starts on the way, insert a
+ * walk from there). Linear in the number of segments.
  */
 #ifndef SC_BUILD_CHAINS_H
 #define SC_BUILD_CHAINS_H
@@ -21,7 +22,8 @@ typedef struct sc_chains {
     uint32_t *next, *old, *start; /* as many as the most segments of a contour; start: points */
 } sc_chains;
 
-/* Takes scratch memory for points with numbers below point_count and up to `most` segments at once. */
+/* Takes scratch memory for points with numbers below point_count and up to `most` segments at
+   once. */
 sc_status sc_chains_take(sc_scratch *scratch, uint64_t point_count, uint64_t most,
                          sc_chains *chains);
 void sc_chains_give(sc_scratch *scratch, sc_chains *chains);

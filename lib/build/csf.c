@@ -17,8 +17,8 @@ static const double TURN_COSINE = 0.25;
 /* Room for the lists of nodes, so that it seldom has to grow. */
 enum { SEGMENTS_A_NODE = 10 };
 
-/* The contour half-edges of one level; a place is a number below count. What leads from level to level are
-   places, so that work at a level touches only what belongs to it. */
+/* The contour half-edges of one level; a place is a number below count. What leads from level to
+   level are places, so that work at a level touches only what belongs to it. */
 typedef struct contour_level {
     uint32_t count;
     uint32_t *half_edges; /* count */
@@ -39,11 +39,12 @@ typedef struct builder {
     contour_level *levels; /* level_count */
     uint32_t segments;
     sc_list points_first, half_edges, child_first, children;
-    /* Node lists, written from the end of their room, the last node's first; how much of it is in use; and of each
-       node, how much was then. */
+    /* Node lists, written from the end of their room, the last node's first; how much of it is in
+       use; and of each node, how much was then. */
     uint32_t *lists, *node_place; /* room; node_count + 1 */
     uint64_t room, listed;
-    /* The runs of the level at hand, which are in the order of their patches, and where those of each begin. */
+    /* The runs of the level at hand, which are in the order of their patches, and where those of
+       each begin. */
     uint32_t *run_out, *run_segment, *patch_first;
     uint32_t *kept; /* places that a level keeps of the one below; the same memory as run_out */
 } builder;
@@ -81,8 +82,8 @@ static void give_level(sc_scratch *scratch, const contour_level *level)
     sc_scratch_give(scratch, level->start);
 }
 
-/* The last level: the half-edges between leaf clusters, in the order of the leaves, so that segments that are
-   near have near numbers. */
+/* The last level: the half-edges between leaf clusters, in the order of the leaves, so that
+   segments that are near have near numbers. */
 static sc_status collect_leaves(builder *b, const uint32_t *order, contour_level *level)
 {
     const uint32_t *opposite = b->adjacency->opposite, *leaf_first = b->xbvh->leaf_first;
@@ -184,8 +185,8 @@ static void cut_run(const builder *b, contour_level *level, uint32_t e)
     }
 }
 
-/* Walks the loop that place e is in, marks it seen, and cuts it where that is needed: runs at the outside where they turn,
-   and a loop in which no run starts first at its lowest half-edge. */
+/* Walks the loop that place e is in, marks it seen, and cuts it where that is needed: runs at the
+   outside where they turn, and a loop in which no run starts first at its lowest half-edge. */
 static void cut_loop(const builder *b, contour_level *level, uint32_t e, uint8_t *seen)
 {
     uint32_t f = e, lowest = e, starts = 0, outside = 0;
@@ -263,7 +264,8 @@ static int add_parent_segment(builder *b, contour_level *level, const contour_le
     return 1;
 }
 
-/* Room for more items before those that are in the node lists; 0 if memory ran out, or for more than fit numbers. */
+/* Room for more items before those that are in the node lists; 0 if memory ran out, or for more
+   than fit numbers. */
 static int reserve_lists(builder *b, uint64_t more)
 {
     uint64_t room = b->room + b->room / 4 + more;
@@ -364,7 +366,8 @@ static void count_points(const sc_csf *csf, const uint32_t *segments, uint32_t c
     *points = *edges + count;
 }
 
-/* How long a node's loop is, of so many pieces and edges, where so much is taken by others; 0: it gets none, see csf.h. */
+/* How long a node's loop is, of so many pieces and edges, where so much is taken by others; 0: it
+   gets none, see csf.h. */
 static uint64_t measure_loop(const sc_xbvh *xbvh, sc_pair patches, uint32_t pieces, uint64_t edges,
                              uint64_t taken)
 {
@@ -376,8 +379,8 @@ static uint64_t measure_loop(const sc_xbvh *xbvh, sc_pair patches, uint32_t piec
     return pieces <= SC_LOOP_PIECES && edges <= SC_LOOP_PIECES_EDGES ? 1 + pieces + edges : 0;
 }
 
-/* Chains the segments of each node, and measures them. The patches of those that share one point are apart: their
-   chains, made one in all, are not stored. */
+/* Chains the segments of each node, and measures them. The patches of those that share one point
+   are apart: their chains, made one in all, are not stored. */
 static sc_status measure_contours(builder *b, sc_csf *csf)
 {
     const sc_sctt *sctt = b->sctt;

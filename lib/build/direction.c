@@ -16,13 +16,14 @@ enum { RUN = 256 };
 /* Rounds of power iteration, from the axis with the largest element. */
 enum { ROUNDS = 6 };
 
-/* By how much an axis has to have more than those before it: rounding is not to choose for a square. */
+/* By how much an axis has to have more than those before it: rounding is not to choose for a
+   square. */
 static const double CLEARLY = 1.001;
 
-/* That normals turn by a radian counts as much as this part, squared, of the patch's mean square size; and what is added
-   to variances of places, as a part of that, for patches that are flat. Tuned together on horse, cats and bunnies:
-   weights of 1 to 2.5 squared with 0.003 to 0.2 are all within 5 %, with larger weights and smaller softness at
-   up to 2 % more memory. */
+/* That normals turn by a radian counts as much as this part, squared, of the patch's mean square
+   size; and what is added to variances of places, as a part of that, for patches that are flat.
+   Tuned together on horse, cats and bunnies: weights of 1 to 2.5 squared with 0.003 to 0.2 are all
+   within 5 %, with larger weights and smaller softness at up to 2 % more memory. */
 static const double NORMALS_WEIGHT = 2.25, SOFTNESS = 0.03;
 
 /* Sums over some triangles, of places relative to one of them; the last of four is of no use. */

@@ -5,15 +5,16 @@
  */
 #include "build/flattening.h"
 
-/* A level goes if the patches that are cut anew for it have one in so many leaves at most. On meshes of 25,000 to 900,000
-   triangles they have one in 26 or fewer, or more than a third, the bunny two thirds: then large patches fall to pieces, and
-   queries at rest take 15 % longer. */
+/* A level goes if the patches that are cut anew for it have one in so many leaves at most. On
+   meshes of 25,000 to 900,000 triangles they have one in 26 or fewer, or more than a third, the
+   bunny two thirds: then large patches fall to pieces, and queries at rest take 15 % longer. */
 enum { DISTURBED_PART = 16 };
 
 typedef struct flattening {
     const sc_tree_node *tree; /* as it was */
     const uint32_t *leaves;   /* of each of its nodes */
-    /* nodes of it side by side, the first on top, that are to become patches; room for leaf_count */
+    /* nodes of it side by side, the first on top, that are to become patches; room for
+       leaf_count */
     uint32_t *row, top;
     sc_hierarchy *hierarchy;
 } flattening;
@@ -58,8 +59,9 @@ static void open_node(flattening *f, uint32_t place)
 }
 
 /*
- * Where to cut the *count nodes on top, which may become more: as near to half of the leaves as can be. While a part has
- * more than room, the node in the middle is opened; a single leaf in the middle is none of too much.
+ * Where to cut the *count nodes on top, which may become more: as near to half of the leaves as can
+ * be. While a part has more than room, the node in the middle is opened; a single leaf in the
+ * middle is none of too much.
  */
 static uint32_t find_cut(flattening *f, uint32_t *count, uint32_t total, uint32_t room)
 {
@@ -82,7 +84,8 @@ static uint32_t find_cut(flattening *f, uint32_t *count, uint32_t total, uint32_
     }
 }
 
-/* Makes one patch of the count nodes on top, which are taken from there, with levels of its own at most. */
+/* Makes one patch of the count nodes on top, which are taken from there, with levels of its own at
+   most. */
 static uint32_t make_patch(flattening *f, uint32_t count, uint32_t levels, uint32_t depth)
 {
     const sc_tree_node *first = &f->tree[f->row[f->top - 1]];

@@ -73,8 +73,8 @@ uint32_t sc_hierarchy_leaf_end(const sc_hierarchy *hierarchy, uint32_t first, ui
     return first;
 }
 
-/* A balanced subtree over count leaves, which start at start[0] to start[count - 1]; the last ends at
-   start[count]. */
+/* A balanced subtree over count leaves, which start at start[0] to start[count - 1]; the last ends
+   at start[count]. */
 static uint32_t add_leaves(sc_hierarchy *hierarchy, const uint32_t *start, uint32_t count,
                            uint32_t depth)
 {

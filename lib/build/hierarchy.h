@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * Invariants: node 0 is the root; a node comes before its children; the leaves, left to right, own
- * consecutive runs of order that cover it, each of at least one triangle, and at most SC_LEAF_MAX of at most
- * SC_LEAF_POINTS points.
+ * consecutive runs of order that cover it, each of at least one triangle, and at most SC_LEAF_MAX
+ * of at most SC_LEAF_POINTS points.
  */
 #ifndef SC_BUILD_HIERARCHY_H
 #define SC_BUILD_HIERARCHY_H
@@ -41,15 +41,16 @@ sc_status sc_hierarchy_finish(sc_hierarchy *hierarchy, sc_scratch *scratch);
 /* Appends a node without children for order[first .. first + count). depth counts from 1. */
 uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t count, uint32_t depth);
 
-/* Appends a balanced subtree for order[first .. first + count): leaves as full as the order lets them be. */
+/* Appends a balanced subtree for order[first .. first + count): leaves as full as the order lets
+   them be. */
 uint32_t sc_hierarchy_add_balanced(sc_hierarchy *hierarchy, uint32_t first, uint32_t count,
                                    uint32_t depth);
 
 /* The end of the longest run of order[first .. end) that fits into a leaf cluster. */
 uint32_t sc_hierarchy_leaf_end(const sc_hierarchy *hierarchy, uint32_t first, uint32_t end);
 
-/* Appends a balanced subtree over count leaves, which start at starts[0] to starts[count - 1]; the last ends at
-   starts[count]. */
+/* Appends a balanced subtree over count leaves, which start at starts[0] to starts[count - 1]; the
+   last ends at starts[count]. */
 uint32_t sc_hierarchy_add_leaves(sc_hierarchy *hierarchy, uint32_t count, uint32_t depth);
 
 /* For debug builds and tests: 1 if the invariants hold. */

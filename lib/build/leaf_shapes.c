@@ -10,8 +10,8 @@
 #include "base/bits.h"
 #include "build/sharing_lists.h"
 
-/* How the triangles of a cluster lie round one of its points: as places in leaf_point, where each begins and ends, counter-
-   clockwise. */
+/* How the triangles of a cluster lie round one of its points: as places in leaf_point, where each
+   begins and ends, counter- clockwise. */
 typedef struct turns {
     uint32_t begins, ends; /* sets */
     uint32_t count, twice; /* twice: some begin or end at the same place */
@@ -124,8 +124,8 @@ void sc_leaf_shapes_outlines(const sc_model *m, uint8_t *outline)
     }
 }
 
-/* Whether two leaf clusters whose outlines are two chains each share the points of just one of either, which runs in the other
-   direction in the other cluster. */
+/* Whether two leaf clusters whose outlines are two chains each share the points of just one of
+   either, which runs in the other direction in the other cluster. */
 static int share_chain(const sc_model *m, uint32_t a, uint32_t b)
 {
     const uint8_t *row[2];
@@ -162,7 +162,8 @@ static int share_chain(const sc_model *m, uint32_t a, uint32_t b)
     return 1;
 }
 
-/* Where two leaf clusters that share points have the one point that they share; 0 if they share more. */
+/* Where two leaf clusters that share points have the one point that they share; 0 if they share
+   more. */
 static uint16_t find_touch(const uint32_t *points, const uint32_t *other)
 {
     uint32_t shared = 0, at = 0, i, k;

@@ -1,11 +1,12 @@
 /*
- * Shapes of leaf clusters: what the topology alone tells of them, so that a query can see at once whether their triangles have
- * only in common what they share.
+ * Shapes of leaf clusters: what the topology alone tells of them, so that a query can see at once
+ * whether their triangles have only in common what they share.
  *
  * SPDX-License-Identifier: MIT
  *
- * Each function fills an array of a model, as build/model.h describes it, from those that are there already: leaf_first,
- * leaf_point and leaf_corner; of two leaf clusters that share points also share_first and share_leaf. Cost: linear.
+ * Each function fills an array of a model, as build/model.h describes it, from those that are there
+ * already: leaf_first, leaf_point and leaf_corner; of two leaf clusters that share points also
+ * share_first and share_leaf. Cost: linear.
  */
 #ifndef SC_BUILD_LEAF_SHAPES_H
 #define SC_BUILD_LEAF_SHAPES_H
@@ -18,8 +19,8 @@ void sc_leaf_shapes_fans(const sc_model *model, uint16_t *fan);
 /* The chains of edges round each cluster: leaf_outline. */
 void sc_leaf_shapes_outlines(const sc_model *model, uint8_t *outline);
 
-/* Where two clusters have the one point that they share, or that they share a chain: share_touch; reads leaf_outline as
-   well. */
+/* Where two clusters have the one point that they share, or that they share a chain: share_touch;
+   reads leaf_outline as well. */
 void sc_leaf_shapes_touches(const sc_model *model, uint16_t *touch);
 
 #endif

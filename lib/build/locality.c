@@ -22,11 +22,11 @@ static uint32_t spread(uint32_t cell)
 }
 
 /*
- * Turns a cell into the one in whose place along the Z-shaped curve it comes along Hilbert's. J. Skilling,
- * "Programming the Hilbert curve", 2004: from the halves of the box down, what lies in the upper half of an
- * axis is mirrored along the first axis, and what lies in the lower half has that axis exchanged with the
- * first; then the bits of each level, as a Gray code, are its place among eight. Without branches, which no
- * processor could foresee.
+ * Turns a cell into the one in whose place along the Z-shaped curve it comes along Hilbert's. J.
+ * Skilling, "Programming the Hilbert curve", 2004: from the halves of the box down, what lies in
+ * the upper half of an axis is mirrored along the first axis, and what lies in the lower half has
+ * that axis exchanged with the first; then the bits of each level, as a Gray code, are its place
+ * among eight. Without branches, which no processor could foresee.
  */
 static void turn_to_hilbert(uint32_t cell[3])
 {

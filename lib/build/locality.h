@@ -3,13 +3,14 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Triangles in the order of a space-filling curve through their centers in the rest pose, points in the order in
- * which these triangles first use them. All later steps of a build go from a triangle to its neighbors; on a
- * mesh in random order each such step would miss the cache. The order decides no answer. Linear time.
+ * Triangles in the order of a space-filling curve through their centers in the rest pose, points in
+ * the order in which these triangles first use them. All later steps of a build go from a triangle
+ * to its neighbors; on a mesh in random order each such step would miss the cache. The order
+ * decides no answer. Linear time.
  *
- * The Z-shaped curve (G. M. Morton, 1966) costs least. That of D. Hilbert (1891) never leaps, so that consecutive
- * triangles make good leaf clusters: by boxes, a query on the bunny takes 1.15 times as long as with bisected
- * patches, along the other curve 1.37 times.
+ * The Z-shaped curve (G. M. Morton, 1966) costs least. That of D. Hilbert (1891) never leaps, so
+ * that consecutive triangles make good leaf clusters: by boxes, a query on the bunny takes 1.15
+ * times as long as with bisected patches, along the other curve 1.37 times.
  */
 #ifndef SC_BUILD_LOCALITY_H
 #define SC_BUILD_LOCALITY_H

@@ -8,8 +8,8 @@
 /* Points that are written at once. */
 enum { AT_ONCE = 8 };
 
-/* Of each point of a segment: 16 times the leaf cluster of its half-edge, plus its place there, turned; and room for
-   reading as many as are written at once. */
+/* Of each point of a segment: 16 times the leaf cluster of its half-edge, plus its place there,
+   turned; and room for reading as many as are written at once. */
 static uint32_t *find_places(const sc_csf *csf, const sc_xbvh *xbvh, const uint32_t *order,
                              const uint8_t *leaf_corner, sc_scratch *scratch)
 {
@@ -33,8 +33,9 @@ static uint32_t *find_places(const sc_csf *csf, const sc_xbvh *xbvh, const uint3
     return place;
 }
 
-/* The number of pieces and how many edges each has, of closed chains of so many segments; returns what follows. A chain
-   goes on where its last segment ended, and ends where no other starts (build/chains.h). */
+/* The number of pieces and how many edges each has, of closed chains of so many segments; returns
+   what follows. A chain goes on where its last segment ended, and ends where no other starts
+   (build/chains.h). */
 static uint16_t *write_pieces(const sc_csf *csf, const uint32_t *segments, uint32_t count,
                               uint16_t *loop)
 {
@@ -52,8 +53,9 @@ static uint16_t *write_pieces(const sc_csf *csf, const uint32_t *segments, uint3
     return edges + 1;
 }
 
-/* One node's; segments are those of its chains. Points are written eight at a time, for segments are short: what is
-   written behind the last is written again by the next segment or node. Only where the array ends one by one. */
+/* One node's; segments are those of its chains. Points are written eight at a time, for segments
+   are short: what is written behind the last is written again by the next segment or node. Only
+   where the array ends one by one. */
 static void write_loop(const sc_csf *csf, const sc_xbvh *xbvh, sc_pair patches,
                        const uint32_t *segments, const uint32_t *place, uint16_t *loop,
                        const uint16_t *end, const uint16_t *array_end)

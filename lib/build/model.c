@@ -53,8 +53,8 @@ void sc_model_lay_out(sc_model *m)
     }
 }
 
-/* Zeroes what is behind each array, so that equal models are equal bytes, and the arrays that are only added to. All
-   else is written to later. */
+/* Zeroes what is behind each array, so that equal models are equal bytes, and the arrays that are
+   only added to. All else is written to later. */
 static void clear_gaps(sc_model *m)
 {
     uint64_t bytes[SC_ARRAY_COUNT], begin = sizeof *m;
@@ -136,7 +136,8 @@ static void write_triangles(const sc_points *points, const sc_adjacency *adjacen
                                                      : SC_VERTEX_POINT;
 }
 
-/* The points of leaf clusters, in the order in which their triangles use them, and where the corners are. */
+/* The points of leaf clusters, in the order in which their triangles use them, and where the
+   corners are. */
 static void write_leaves(sc_model *m)
 {
     uint8_t *last_place =
@@ -167,8 +168,8 @@ static void write_leaves(sc_model *m)
 }
 
 /*
- * The points that edges join a point with, by old numbers; returns how many. For each corner there the
- * next one; the previous one as well if no half-edge runs back to it. around NULL: only counts.
+ * The points that edges join a point with, by old numbers; returns how many. For each corner there
+ * the next one; the previous one as well if no half-edge runs back to it. around NULL: only counts.
  */
 static uint32_t list_around(const sc_points *points, const sc_adjacency *adjacency, uint32_t p,
                             uint32_t *around)
@@ -185,7 +186,8 @@ static uint32_t list_around(const sc_points *points, const sc_adjacency *adjacen
     return count;
 }
 
-/* The rings of all points, by old numbers, which are those of the order in which they are in memory. */
+/* The rings of all points, by old numbers, which are those of the order in which they are in
+   memory. */
 typedef struct rings {
     uint32_t *first;  /* point_count + 1 */
     uint32_t *points; /* by new numbers */
@@ -325,7 +327,8 @@ static uint32_t number_parts(const uint32_t near[SC_LEAF_MAX], uint32_t leaf, ui
     return p->count - before;
 }
 
-/* Finds the parts of all leaf clusters, and how many each has. place: of each triangle in the hierarchy's order. */
+/* Finds the parts of all leaf clusters, and how many each has. place: of each triangle in the
+   hierarchy's order. */
 static void find_parts(const sc_adjacency *adjacency, const uint32_t *order, const sc_xbvh *xbvh,
                        const uint32_t *place, uint32_t *own, leaf_parts *p)
 {
@@ -352,8 +355,8 @@ static void find_parts(const sc_adjacency *adjacency, const uint32_t *order, con
 }
 
 /*
- * How many patches of each level are connected through edges. Edges between leaf clusters, fewer at each level up, wait for
- * a patch that has both of their triangles.
+ * How many patches of each level are connected through edges. Edges between leaf clusters, fewer at
+ * each level up, wait for a patch that has both of their triangles.
  */
 static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarchy *hierarchy,
                                  const sc_xbvh *xbvh, sc_scratch *scratch, uint32_t *connected)

@@ -6,8 +6,8 @@
  *     | sc_model_owner | sc_model (counts and offsets) | array | array | ... |
  *
  * Arrays start at multiples of SC_ALIGNMENT from the sc_model, which can be moved as a block of
- * sc_model.bytes bytes. What frees it stands before it; before a model that is used in place where it
- * was saved stands the header of the save (build/saved_model.h), and the caller frees it.
+ * sc_model.bytes bytes. What frees it stands before it; before a model that is used in place where
+ * it was saved stands the header of the save (build/saved_model.h), and the caller frees it.
  *
  * A model with SC_MODEL_BOXES has an empty test tree: no nodes, boxes, segments or contours.
  *
@@ -41,9 +41,10 @@ enum {
     SC_NODE_PIECES = 2 /* the contour may be in pieces that share no point */
 };
 
-/* Where two leaf clusters have the point that they touch in, if they share just one: its place in the lower one's leaf_point,
-   in four bits, and that in the other's; and whether it is the last point of each. Or SC_TOUCH_CHAIN: they share just a chain
-   of points round a tube, see sc_outline_bit. */
+/* Where two leaf clusters have the point that they touch in, if they share just one: its place in
+   the lower one's leaf_point, in four bits, and that in the other's; and whether it is the last
+   point of each. Or SC_TOUCH_CHAIN: they share just a chain of points round a tube, see
+   sc_outline_bit. */
 enum {
     SC_TOUCH_LAST = 8,
     SC_TOUCH_LAST_OF_OTHER = 9,
@@ -51,8 +52,8 @@ enum {
     SC_TOUCHES = 1 << 15
 };
 
-/* Of the outline of a leaf cluster that is two chains: the point of a place is in the second; in none; and in the last place
-   all the time that it is so. */
+/* Of the outline of a leaf cluster that is two chains: the point of a place is in the second; in
+   none; and in the last place all the time that it is so. */
 enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NOWHERE = 64 };
 
 /* What the rest pose says of nodes. */
@@ -62,8 +63,8 @@ enum {
 };
 
 /*
- * All arrays: name, type, number of elements. "Places" are triangles in leaf order. A point has the number of
- * the caller's vertex that stands for it, where a query finds its position.
+ * All arrays: name, type, number of elements. "Places" are triangles in leaf order. A point has the
+ * number of the caller's vertex that stands for it, where a query finds its position.
  *
  *   vertex_use      what each of the caller's vertices is: SC_VERTEX_...
  *   triangle        three points a place
@@ -75,11 +76,13 @@ enum {
  *   leaf_corner     3 SC_LEAF_MAX a cluster: where in leaf_point the first corners of its triangles are, then the
  *                   second, then the third; the last triangle again to fill the rows
  *   leaf_fan        two sets of places in leaf_point a cluster: points round which its triangles follow each other, one
- *                   beginning where the one before ends; first those where all of them are a closed fan, then the others
+ *                   beginning where the one before ends; first those where all of them are a closed
+ *                   fan, then the others
  *   leaf_outline    SC_LEAF_POINTS a cluster: places in leaf_point of the points round its outline, counter-clockwise, if
- *                   that is one closed chain that comes to no point twice, else of none; if there are n < SC_LEAF_POINTS,
- *                   zeros follow, and SC_LEAF_POINTS + n is the last number. If it is two such chains, as of a tube, for each
- *                   place the one that follows it there, and what sc_outline_bit names
+ *                   that is one closed chain that comes to no point twice, else of none; if there
+ *                   are n < SC_LEAF_POINTS, zeros follow, and SC_LEAF_POINTS + n is the last
+ *                   number. If it is two such chains, as of a tube, for each place the one that
+ *                   follows it there, and what sc_outline_bit names
  *   share_...       see build/sharing.h, share_own_rows are folded; share_begin, share_list: build/sharing_lists.h
  *   share_touch     of two leaf clusters that share one point, SC_TOUCHES and where they have it; of two that share a chain,
  *                   SC_TOUCH_CHAIN; else 0
@@ -196,7 +199,8 @@ static inline uint32_t sc_model_first_leaf_patch(const sc_model *model)
     return sc_model_level_first(model)[model->level_count - 1];
 }
 
-/* How many levels below a patch's own its hop leads: to the last level or one of every fourth above. */
+/* How many levels below a patch's own its hop leads: to the last level or one of every fourth
+   above. */
 static inline uint32_t sc_model_hop_steps(uint32_t level_count, uint32_t level)
 {
     uint32_t steps = (level_count - 1 - level) % 4;
@@ -214,12 +218,12 @@ static inline int sc_model_is_for_boxes(const sc_model *model)
     return model->node_count == 0;
 }
 
-/* Computes offsets and bytes from the counts. Counts must be at least 1, but for those that are 0 in models
-   for boxes; as many segments as leaf segments there at least. */
+/* Computes offsets and bytes from the counts. Counts must be at least 1, but for those that are 0
+   in models for boxes; as many segments as leaf segments there at least. */
 void sc_model_lay_out(sc_model *counts);
 
-/* Memory for a model of so many bytes, behind its owner; the model's own is left unset. NULL if there
-   is none. */
+/* Memory for a model of so many bytes, behind its owner; the model's own is left unset. NULL if
+   there is none. */
 sc_model *sc_model_allocate(uint64_t bytes, sc_scratch *scratch);
 
 /* What frees a model, or NULL if the caller does. */

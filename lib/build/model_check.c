@@ -3,8 +3,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Loops collect what is wrong instead of stopping at it, where that lets them run several elements at
- * once. Whatever a later check takes as an index has passed an earlier one.
+ * Loops collect what is wrong instead of stopping at it, where that lets them run several elements
+ * at once. Whatever a later check takes as an index has passed an earlier one.
  */
 #include "build/model_check.h"
 
@@ -45,8 +45,8 @@ static int bytes_below(const uint8_t *array, uint64_t count, uint32_t limit)
     return !bad;
 }
 
-/* Whether `count` lists that start at first[i] in an array of total elements have from least to most
-   elements each. */
+/* Whether `count` lists that start at first[i] in an array of total elements have from least to
+   most elements each. */
 static int are_lists(const uint32_t *first, uint64_t count, uint32_t total, uint32_t least,
                      uint32_t most)
 {
@@ -150,7 +150,8 @@ static int check_open_points(const sc_model *m)
     return count == m->open_count;
 }
 
-/* Each level has a patch or more, and the number behind them; the first has one, the last all leaves. */
+/* Each level has a patch or more, and the number behind them; the first has one, the last all
+   leaves. */
 static int check_levels(const sc_model *m)
 {
     const uint32_t *first = sc_model_level_first(m);
@@ -259,9 +260,9 @@ static const char *check_no_nodes(const sc_model *m)
 }
 
 /*
- * The self-collision test tree (build/sctt.h). Node 0 is the mesh against itself, and the children of
- * each node are all pairs of children of its patches, each once, be it as a node or for boxes. So nodes
- * are of patches of one level, no deeper than the hierarchy.
+ * The self-collision test tree (build/sctt.h). Node 0 is the mesh against itself, and the children
+ * of each node are all pairs of children of its patches, each once, be it as a node or for boxes.
+ * So nodes are of patches of one level, no deeper than the hierarchy.
  */
 static const char *check_nodes(const sc_model *m)
 {
@@ -302,8 +303,8 @@ static uint32_t patch_size(const sc_model *m, uint32_t patch)
     return first[leaf[patch + 1]] - first[leaf[patch]];
 }
 
-/* A workspace has room for the points round a node, of which contour_max is exactly the most. No node has
-   more edges than its triangles have sides: so a test is no slower than for any mesh. */
+/* A workspace has room for the points round a node, of which contour_max is exactly the most. No
+   node has more edges than its triangles have sides: so a test is no slower than for any mesh. */
 static int check_contours(const sc_model *m)
 {
     const uint32_t *begin = sc_model_segment_first(m), *end = sc_model_segment_last(m);
@@ -333,7 +334,8 @@ static int check_contours(const sc_model *m)
     return most == m->contour_max;
 }
 
-/* How many numbers of a loop in pieces come before its points, all of which are in a piece; 0: that is wrong. */
+/* How many numbers of a loop in pieces come before its points, all of which are in a piece; 0: that
+   is wrong. */
 static uint32_t check_pieces(const uint16_t *loop, uint32_t count)
 {
     uint32_t pieces = loop[0], sum = 0, i;
@@ -345,7 +347,8 @@ static uint32_t check_pieces(const uint16_t *loop, uint32_t count)
     return sum == count - 1 - pieces ? 1 + pieces : 0;
 }
 
-/* The points of each loop are of the node's leaf clusters, and no more than its triangles have sides. */
+/* The points of each loop are of the node's leaf clusters, and no more than its triangles have
+   sides. */
 static int check_loops(const sc_model *m)
 {
     const uint32_t *first = sc_model_node_loop(m), *leaf = sc_model_leaf(m);
@@ -381,8 +384,8 @@ static int check_segments(const sc_model *m)
     return !bad;
 }
 
-/* The contour segment forest (build/csf.h): children have lower numbers, one parent at most, and are
-   nowhere deeper than the hierarchy, and their points are those of the parent, in order. */
+/* The contour segment forest (build/csf.h): children have lower numbers, one parent at most, and
+   are nowhere deeper than the hierarchy, and their points are those of the parent, in order. */
 static int check_children(const sc_model *m, uint8_t *depth)
 {
     const uint32_t *begin = sc_model_segment_first(m), *end = sc_model_segment_last(m);
@@ -404,8 +407,8 @@ static int check_children(const sc_model *m, uint8_t *depth)
     return 1;
 }
 
-/* Which clusters a cluster shares points with (build/sharing.h): higher ones, ascending, and no more than a
-   cluster can have, as a query looks through them. */
+/* Which clusters a cluster shares points with (build/sharing.h): higher ones, ascending, and no
+   more than a cluster can have, as a query looks through them. */
 static int check_share_leaf(const sc_model *m)
 {
     const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
@@ -420,8 +423,8 @@ static int check_share_leaf(const sc_model *m)
     return !bad;
 }
 
-/* A list of pairs that share points (build/sharing_lists.h), in so many words, of clusters of so many triangles: pairs are
-   of these, each once, and rows tell the same. */
+/* A list of pairs that share points (build/sharing_lists.h), in so many words, of clusters of so
+   many triangles: pairs are of these, each once, and rows tell the same. */
 static int is_share_list(const uint16_t *list, uint32_t words, uint32_t of_a, uint32_t of_b)
 {
     const uint32_t some = list[SC_SHARE_TRIANGLES], rows = sc_bits_count(some);
@@ -457,8 +460,8 @@ static int check_share_list(const sc_model *m)
     return !bad;
 }
 
-/* Of each two of them the node; none in models for boxes. That there is one matters: a query does not ask which triangles
-   share points of pairs that nodes leave to boxes. */
+/* Of each two of them the node; none in models for boxes. That there is one matters: a query does
+   not ask which triangles share points of pairs that nodes leave to boxes. */
 static int check_share_node(const sc_model *m)
 {
     const uint32_t *share_node = sc_model_share_node(m), *leaf = sc_model_leaf(m);

@@ -11,8 +11,8 @@
 #include "base/sort.h"
 
 /*
- * The points at which several patches meet, as records of a point, a number n and n different patches
- * of the level at hand in ascending order.
+ * The points at which several patches meet, as records of a point, a number n and n different
+ * patches of the level at hand in ascending order.
  */
 typedef struct meetings {
     uint32_t *words;
@@ -22,7 +22,8 @@ typedef struct meetings {
 /* Lists of up to this many numbers are sorted in place. */
 enum { SHORT_LIST = 24 };
 
-/* Sorts a list and drops repeats; returns what is left. keys: room for as many, if it is not short. */
+/* Sorts a list and drops repeats; returns what is left. keys: room for as many, if it is not
+   short. */
 static uint32_t sort_unique(uint32_t *list, uint32_t count, sc_pair *keys)
 {
     uint32_t i, j, n = 0;
@@ -111,8 +112,8 @@ static sc_status reserve_entries(sc_neighbors *neighbors, sc_scratch *scratch, u
     return SC_OK;
 }
 
-/* Lists the neighbors of all patches of a level. place: a number for each patch, which may be any: the place
-   of a neighbor among those of the patch at hand, if that neighbor is there. */
+/* Lists the neighbors of all patches of a level. place: a number for each patch, which may be any:
+   the place of a neighbor among those of the patch at hand, if that neighbor is there. */
 static sc_status list_level(const meetings *met, uint32_t begin, uint32_t end, uint32_t *place,
                             sc_scratch *scratch, sc_neighbors *neighbors)
 {

@@ -3,9 +3,9 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * A point at which more than SC_NEIGHBORS_HUB patches of a level meet makes none of them adjacent at
- * that level, or a fan of n triangles would cost n^2. That loses no pair: patches that are not adjacent
- * are tested by their boxes.
+ * A point at which more than SC_NEIGHBORS_HUB patches of a level meet makes none of them adjacent
+ * at that level, or a fan of n triangles would cost n^2. That loses no pair: patches that are not
+ * adjacent are tested by their boxes.
  */
 #ifndef SC_BUILD_NEIGHBORS_H
 #define SC_BUILD_NEIGHBORS_H
@@ -16,9 +16,9 @@
 enum { SC_NEIGHBORS_HUB = 24 };
 
 /*
- * Patch p has the neighbors entries[first[p]] to entries[first[p] + count[p] - 1], sorted, those with
- * higher numbers only. In an entry a is the neighbor, b the shared point if there is exactly one,
- * else SC_NONE. Scratch memory.
+ * Patch p has the neighbors entries[first[p]] to entries[first[p] + count[p] - 1], sorted, those
+ * with higher numbers only. In an entry a is the neighbor, b the shared point if there is exactly
+ * one, else SC_NONE. Scratch memory.
  */
 typedef struct sc_neighbors {
     uint32_t *first, *count; /* patch_end */

@@ -10,7 +10,8 @@
 #include "build/bisection.h"
 #include "build/flattening.h"
 
-/* Nodes from the root to a leaf of a caller's tree at most; splitting large leaves adds up to 29. */
+/* Nodes from the root to a leaf of a caller's tree at most; splitting large leaves adds up to
+   29. */
 enum { CALLER_DEPTH_MAX = 60 };
 
 static sc_status check_order(const uint32_t *order, uint32_t count, sc_scratch *scratch)
@@ -90,8 +91,8 @@ static sc_status copy_tree(const sc_build_options *options, sc_scratch *scratch,
     return status;
 }
 
-/* As build/locality.h left the triangles, but one component after the other: where several lie close together,
-   the curve goes from each to the others all the time. */
+/* As build/locality.h left the triangles, but one component after the other: where several lie
+   close together, the curve goes from each to the others all the time. */
 static sc_status follow_curve(const sc_points *points, const sc_adjacency *adjacency,
                               sc_scratch *scratch, uint32_t *order)
 {

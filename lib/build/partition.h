@@ -1,6 +1,6 @@
 /*
- * Where the hierarchy of patches comes from: the built-in bisection, or the caller's function, order
- * or tree.
+ * Where the hierarchy of patches comes from: the built-in bisection, or the caller's function,
+ * order or tree.
  *
  * SPDX-License-Identifier: MIT
  */

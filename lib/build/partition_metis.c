@@ -16,8 +16,8 @@
 
 #  include "base/assume.h"
 
-/* Patches of two leaf clusters. METIS would take three microseconds a triangle for them, and queries are no faster
-   for it. */
+/* Patches of two leaf clusters. METIS would take three microseconds a triangle for them, and
+   queries are no faster for it. */
 enum { SMALL = 32 };
 
 /* Writes the nodes of a small graph to order: by their distance from the first. */

@@ -10,9 +10,10 @@
 
 enum { PASSES_MAX = 3 };
 
-/* A pass ends after this many moves without a shorter border: so many, one more for so many triangles, so many
-   at most. With 4 passes rather than 3 and 64 rather than 32, and 4 rather than 2 passes in build/small_refinement.c, builds take
-   3 % longer, and queries on horse, bunnies and cats the same within the noise of 2 %. */
+/* A pass ends after this many moves without a shorter border: so many, one more for so many
+   triangles, so many at most. With 4 passes rather than 3 and 64 rather than 32, and 4 rather than
+   2 passes in build/small_refinement.c, builds take 3 % longer, and queries on horse, bunnies and
+   cats the same within the noise of 2 %. */
 enum { PATIENCE_LEAST = 8, PATIENCE_TRIANGLES = 64, PATIENCE_MOST = 32 };
 
 /* Of a triangle: it is in the list of the border, or was; it has changed sides in this pass. */
@@ -24,7 +25,8 @@ static int is_at_border(const sc_refinement *r, uint32_t t)
     return (r->label[u[0]] == across) | (r->label[u[1]] == across) | (r->label[u[2]] == across);
 }
 
-/* By how much the border shortens if t changes sides; *at_border: whether t has a neighbor there. */
+/* By how much the border shortens if t changes sides; *at_border: whether t has a neighbor
+   there. */
 static float gain_of(const sc_refinement *r, uint32_t t, int *at_border)
 {
     const uint32_t *u = r->neighbor + 3 * (uint64_t)t;

@@ -11,8 +11,8 @@
 #include "base/saved.h"
 #include "build/model_check.h"
 
-/* A byte that is no text, so that nothing takes it for one, and line ends that a transfer as text would
-   change. */
+/* A byte that is no text, so that nothing takes it for one, and line ends that a transfer as text
+   would change. */
 static const char MAGIC[8] = {'\x93', 'S', 'C', 'M', '\r', '\n', '\x1a', '\n'};
 
 /* Raised whenever the model's block changes: its counts, its arrays, or what is in them. */

@@ -21,13 +21,15 @@ uint64_t sc_saved_model_bytes(const sc_model *model);
 /* Writes that many bytes, at any alignment. */
 void sc_saved_model_write(const sc_model *model, void *memory);
 
-/* Finds how many triangles a model at data (any alignment) has, if sc_saved_model_read accepts it. */
+/* Finds how many triangles a model at data (any alignment) has, if sc_saved_model_read accepts
+   it. */
 sc_status sc_saved_model_triangles(const void *data, uint64_t size, uint32_t *count);
 
 /*
- * Makes a model of size bytes at data: in a block of its own, or, with in_place, in data itself, which
- * has to be aligned then and is only read. What else is saved in data behind the model is ignored.
- * Everything is checked before it is used (build/model_check.h). topology_hash 0 stands for any.
+ * Makes a model of size bytes at data: in a block of its own, or, with in_place, in data itself,
+ * which has to be aligned then and is only read. What else is saved in data behind the model is
+ * ignored. Everything is checked before it is used (build/model_check.h). topology_hash 0 stands
+ * for any.
  */
 sc_status sc_saved_model_read(const void *data, uint64_t size, int in_place, uint64_t topology_hash,
                               sc_scratch *scratch, const sc_hooks *hooks, sc_model **model);

@@ -59,7 +59,8 @@ static int expand(growth *g, uint32_t a, uint32_t b)
     return 1;
 }
 
-/* Room for what meshes in which about six triangles meet at a point need, so that lists seldom have to grow. */
+/* Room for what meshes in which about six triangles meet at a point need, so that lists seldom have
+   to grow. */
 static int reserve(growth *g, uint64_t nodes)
 {
     return sc_list_reserve(g->scratch, &g->patches, 2 * nodes) &&

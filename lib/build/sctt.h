@@ -1,16 +1,16 @@
 /*
- * The self-collision test tree (SCTT; paper, section 5): every test of a patch against itself and of
- * two adjacent patches of one level.
+ * The self-collision test tree (SCTT; paper, section 5): every test of a patch against itself and
+ * of two adjacent patches of one level.
  *
  * SPDX-License-Identifier: MIT
  *
- * self(P) tests a patch against itself, pair(A, B) two adjacent patches. Node 0 is self(the mesh). The
- * children of self(P) are self(C) for the children C of P, and pair(C, D) for those that are adjacent;
- * of pair(A, B), those pair(C, D) of a child of A and a child of B that are adjacent. The other pairs
- * of children are the node's children in the bounding-volume test tree (BVTT). A node whose patches
- * are single leaf clusters has no children: so each adjacent pair is in the tree once, although the
- * xBVH repeats leaves. (The paper's root is the pair of the root's children, and its self tests are
- * those of sibling pairs; the nodes are the same.)
+ * self(P) tests a patch against itself, pair(A, B) two adjacent patches. Node 0 is self(the mesh).
+ * The children of self(P) are self(C) for the children C of P, and pair(C, D) for those that are
+ * adjacent; of pair(A, B), those pair(C, D) of a child of A and a child of B that are adjacent. The
+ * other pairs of children are the node's children in the bounding-volume test tree (BVTT). A node
+ * whose patches are single leaf clusters has no children: so each adjacent pair is in the tree
+ * once, although the xBVH repeats leaves. (The paper's root is the pair of the root's children, and
+ * its self tests are those of sibling pairs; the nodes are the same.)
  *
  * Nodes are numbered level by level, so that the children of node n are nodes child[n] to
  * child[n + 1] - 1, and its BVTT children boxes[boxes_first[n]] to boxes[boxes_first[n + 1] - 1].

@@ -1,11 +1,12 @@
 /*
- * Which triangles of leaf clusters share points: bit masks, so that a query need not compare numbers.
+ * Which triangles of leaf clusters share points: bit masks, so that a query need not compare
+ * numbers.
  *
  * SPDX-License-Identifier: MIT
  *
- * Of about six pairs of triangles whose boxes overlap, for each triangle of a smooth mesh at rest, all but a few
- * share a point. They are told apart by a mask of bits for each triangle of a cluster and each
- * neighboring cluster: about 10 bytes a triangle.
+ * Of about six pairs of triangles whose boxes overlap, for each triangle of a smooth mesh at rest,
+ * all but a few share a point. They are told apart by a mask of bits for each triangle of a cluster
+ * and each neighboring cluster: about 10 bytes a triangle.
  */
 #ifndef SC_BUILD_SHARING_H
 #define SC_BUILD_SHARING_H
@@ -13,8 +14,8 @@
 #include "build/adjacency.h"
 #include "build/xbvh.h"
 
-/* Points of more triangles than this are left out, for a fan of n triangles would cost n^2; clusters that
-   have one are crowded. */
+/* Points of more triangles than this are left out, for a fan of n triangles would cost n^2;
+   clusters that have one are crowded. */
 enum { SC_SHARING_CROWD = 48 };
 
 /* Scratch memory. */
@@ -28,8 +29,9 @@ typedef struct sc_sharing {
     uint8_t *crowded;   /* leaf_count: 1 if its rows do not say all */
 } sc_sharing;
 
-/* The own rows of a cluster as the model keeps them, in half as many words: of row k the SC_LEAF_MAX - 1 - k highest bits are
-   used, hence word k has room for row SC_LEAF_MAX - 1 - k below them, whose k bits are moved there. */
+/* The own rows of a cluster as the model keeps them, in half as many words: of row k the
+   SC_LEAF_MAX - 1 - k highest bits are used, hence word k has room for row SC_LEAF_MAX - 1 - k
+   below them, whose k bits are moved there. */
 enum { SC_OWN_WORDS = SC_LEAF_MAX / 2 };
 
 static inline void sc_sharing_fold(const uint16_t rows[SC_LEAF_MAX], uint16_t words[SC_OWN_WORDS])

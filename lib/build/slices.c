@@ -10,14 +10,15 @@
 #include "base/bits.h"
 #include "base/sort.h"
 
-/* Patches of fewer leaf clusters are not worth it; larger ones than this are cut in two first, which is cheaper than
-   to find out that they are no thin part. */
+/* Patches of fewer leaf clusters are not worth it; larger ones than this are cut in two first,
+   which is cheaper than to find out that they are no thin part. */
 enum { COUNT_LEAST = 4 * SC_LEAF_MAX, COUNT_MOST = 4096 };
 
 /* Triangles of a slice at least, but for the first and the last. */
 enum { SLICE_LEAST = 12 };
 
-/* Normals look to all sides if their sum is no longer than this part of their number. Half a tube has 2 / pi. */
+/* Normals look to all sides if their sum is no longer than this part of their number. Half a tube
+   has 2 / pi. */
 static const float ONE_SIDED = 0.25f;
 
 static int looks_around(const sc_facets *facets, const uint32_t *triangles, uint32_t count)

@@ -11,8 +11,8 @@
 /* A pass ends after so many moves without a shorter border; and so many passes at most. */
 enum { SMALL_PATIENCE = 8, SMALL_PASSES = 2 };
 
-/* Lengths are counted in fractions of the mean, so many and no more than so much: then three of them, times 64, fit
-   32 bits. */
+/* Lengths are counted in fractions of the mean, so many and no more than so much: then three of
+   them, times 64, fit 32 bits. */
 enum { LENGTH_UNIT = 1024, LENGTH_MOST = 1 << 22 };
 
 /* A patch; triangles have their places in its list. Sets are bits. */

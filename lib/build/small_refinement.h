@@ -1,11 +1,13 @@
 /*
- * Shortens the border between two sides of a small patch: as build/refinement, with the sides as bits of a number.
+ * Shortens the border between two sides of a small patch: as build/refinement, with the sides as
+ * bits of a number.
  *
  * SPDX-License-Identifier: MIT
  *
- * Half of all moves that refinement tries are in patches of up to 64 triangles: here they need no heap and no search
- * through memory. And what cannot move because the other side is full may move later in the same pass, so that
- * borders become shorter: of the bunny's nodes, 74.3 instead of 71.9 % of selfs pass the tests in the rest pose.
+ * Half of all moves that refinement tries are in patches of up to 64 triangles: here they need no
+ * heap and no search through memory. And what cannot move because the other side is full may move
+ * later in the same pass, so that borders become shorter: of the bunny's nodes, 74.3 instead of
+ * 71.9 % of selfs pass the tests in the rest pose.
  */
 #ifndef SC_BUILD_SMALL_REFINEMENT_H
 #define SC_BUILD_SMALL_REFINEMENT_H

@@ -20,8 +20,8 @@ static uint64_t key_of(float along, uint32_t t)
     return (uint64_t)sc_sort_key(along) << 32 | t;
 }
 
-/* Moves what is lower than the key in the middle before it, and returns where that is then. Without branches, which no
-   processor could foresee. */
+/* Moves what is lower than the key in the middle before it, and returns where that is then. Without
+   branches, which no processor could foresee. */
 static uint32_t split_keys(uint64_t *keys, uint32_t count)
 {
     uint64_t pivot = keys[count / 2];

@@ -3,10 +3,10 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Level 0 is the whole mesh, the last level the leaf clusters. A leaf that the tree reaches early is
- * repeated at every deeper level, so that each level covers the mesh and, read left to right, is a run
- * of leaves cut into consecutive pieces. Patches are numbered level by level, and behind each level
- * comes one number that is no patch: so for every patch p
+ * Level 0 is the whole mesh, the last level the leaf clusters. A leaf that the tree reaches early
+ * is repeated at every deeper level, so that each level covers the mesh and, read left to right, is
+ * a run of leaves cut into consecutive pieces. Patches are numbered level by level, and behind each
+ * level comes one number that is no patch: so for every patch p
  *
  *     its children are the patches child[p] to child[p + 1] - 1, one or two, of the next level;
  *     its leaves   are         leaf[p]  to leaf[p + 1] - 1.

@@ -1,5 +1,6 @@
 /*
- * Near pairs: counts are those of comparing all boxes with all others, on random triangles that share vertices.
+ * Near pairs: counts are those of comparing all boxes with all others, on random triangles that
+ * share vertices.
  *
  * SPDX-License-Identifier: MIT
  */

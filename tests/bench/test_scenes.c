@@ -1,7 +1,7 @@
 /*
  * The scenes of bench/: folders read back as written, damaged ones are refused; every scene is
- * repeatable, has the counts that were asked for, one topology and finite coordinates; contacts build
- * up where they should; decimation keeps a surface a surface.
+ * repeatable, has the counts that were asked for, one topology and finite coordinates; contacts
+ * build up where they should; decimation keeps a surface a surface.
  *
  * SPDX-License-Identifier: MIT
  */
