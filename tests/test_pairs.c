@@ -1,6 +1,6 @@
 /*
- * The heart of the promise: on every mesh, pose, type, stride, welding, partition and method, sc_query
- * reports the pairs that the oracle reports, sorted, each once, in all four kinds.
+ * The heart of the promise: on every mesh, pose, type, stride, welding, partition and method,
+ * sc_query reports the pairs that the oracle reports, sorted, each once, in all four kinds.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -72,7 +72,8 @@ static int is_same(const sc_pair *x, const sc_pair *y)
     return x->a == y->a && x->b == y->b;
 }
 
-/* One query into an array of capacity pairs, which must come out as the head of the expected list. */
+/* One query into an array of capacity pairs, which must come out as the head of the expected
+   list. */
 static int check_pairs(const trial *t, const way *w, uint32_t kind, uint32_t contact,
                        uint64_t capacity)
 {
@@ -206,7 +207,8 @@ static void check_pose(const trial *t)
 
 /*
  * A mesh in its rest pose and in another, both in random types, strides and places of memory, built
- * as chosen (randomly by input_choose for a weld and a partition if own is NULL) and asked everything.
+ * as chosen (randomly by input_choose for a weld and a partition if own is NULL) and asked
+ * everything.
  */
 static void check_chosen(const char *name, uint64_t state, const soup *mesh, const double *pose,
                          uint32_t weld, uint32_t partition, const input_choices *own)
@@ -406,7 +408,8 @@ static void extreme_coordinates(void)
     }
 }
 
-/* Points in a plane that is oblique and not quite one: every orientation is a matter of rounding. */
+/* Points in a plane that is oblique and not quite one: every orientation is a matter of
+   rounding. */
 static void nearly_coplanar(void)
 {
     uint32_t rounds = test_iterations(200);
@@ -437,8 +440,8 @@ static soup soup_of_pairs(uint32_t pairs)
     return s;
 }
 
-/* Moves the second end of an edge of the second triangle of a pair so that this edge comes as close as `off` to an edge of
-   the first. Tells the ends of both. */
+/* Moves the second end of an edge of the second triangle of a pair so that this edge comes as close
+   as `off` to an edge of the first. Tells the ends of both. */
 static void cross_edges(double *pair, double off, double *end[4])
 {
     double along = test_random_range(0.1, 0.9), there = test_random_range(0.1, 0.9);
@@ -453,7 +456,8 @@ static void cross_edges(double *pair, double off, double *end[4])
     }
 }
 
-/* Pairs of triangles that cross each other's planes, of which an edge of one passes one of the other ever more closely. */
+/* Pairs of triangles that cross each other's planes, of which an edge of one passes one of the
+   other ever more closely. */
 static void edges_that_nearly_meet(void)
 {
     uint32_t rounds = test_iterations(150);
@@ -470,8 +474,8 @@ static void edges_that_nearly_meet(void)
     }
 }
 
-/* Pairs of triangles of which an edge of one and an edge of the other cross in a plane across an axis; or, of one pair in
-   three, nearly so, by less than single precision tells. */
+/* Pairs of triangles of which an edge of one and an edge of the other cross in a plane across an
+   axis; or, of one pair in three, nearly so, by less than single precision tells. */
 static void edges_that_meet_across_an_axis(void)
 {
     uint32_t rounds = test_iterations(150);
@@ -492,8 +496,9 @@ static void edges_that_meet_across_an_axis(void)
     }
 }
 
-/* Pairs of triangles that share a point, and from there lie on one ray: the shorter edge ends on the longer one. What leads
-   from the middle of one to that of the other is across the ray, but for rounding, and tells the rest of them apart. */
+/* Pairs of triangles that share a point, and from there lie on one ray: the shorter edge ends on
+   the longer one. What leads from the middle of one to that of the other is across the ray, but for
+   rounding, and tells the rest of them apart. */
 static void neighbors_on_a_ray(void)
 {
     uint32_t rounds = test_iterations(60);
@@ -527,9 +532,10 @@ static void neighbors_on_a_ray(void)
     }
 }
 
-/* A fan of triangles round a point, flat across an axis, in a mesh so much larger that single precision tells little of it.
-   It turns nearly once, or twice, from near a line of which a leaf cluster that is seen along the axis looks at the
-   sides, is closed or ends anywhere, and turns back a little here and there. */
+/* A fan of triangles round a point, flat across an axis, in a mesh so much larger that single
+   precision tells little of it. It turns nearly once, or twice, from near a line of which a leaf
+   cluster that is seen along the axis looks at the sides, is closed or ends anywhere, and turns
+   back a little here and there. */
 static void fans_in_a_plane(void)
 {
     uint32_t rounds = test_iterations(400);
@@ -570,9 +576,10 @@ static void fans_in_a_plane(void)
     }
 }
 
-/* A leaf cluster that lies flat, or nearly, across an axis: a fan, the rim of which goes in and out, and more triangles
-   at the rim, some of which reach for points far along it or just touch there. The fan turns nearly once, or twice, and
-   back a little here and there. A strip behind it makes the mesh large, so that single precision tells little of it. */
+/* A leaf cluster that lies flat, or nearly, across an axis: a fan, the rim of which goes in and
+   out, and more triangles at the rim, some of which reach for points far along it or just touch
+   there. The fan turns nearly once, or twice, and back a little here and there. A strip behind it
+   makes the mesh large, so that single precision tells little of it. */
 static void outlines_in_a_plane(void)
 {
     enum { STRIP = 16 };
@@ -640,9 +647,10 @@ static void outlines_in_a_plane(void)
     }
 }
 
-/* A band of triangles that lies flat, or nearly, across an axis, as two leaf clusters or three: it goes round, rather narrow or
-   wide, until its end comes near its beginning, reaches over it, or just touches a point there. Its edges go in and out. A
-   strip behind it makes the mesh large, so that single precision tells little of it. */
+/* A band of triangles that lies flat, or nearly, across an axis, as two leaf clusters or three: it
+   goes round, rather narrow or wide, until its end comes near its beginning, reaches over it, or
+   just touches a point there. Its edges go in and out. A strip behind it makes the mesh large, so
+   that single precision tells little of it. */
 static void bands_in_a_plane(void)
 {
     enum { STRIP = 16 };
@@ -690,10 +698,11 @@ static void bands_in_a_plane(void)
     }
 }
 
-/* A tube of three leaf clusters that go round it, straight or bent, at any angle to the axes, with loops that go up and down. In
-   places it is turned back, so that one band lies over the one before, or the loops are wound twice; it is pressed flat; a point
-   is drawn near one of any other loop, or across an edge there, or of its own triangle, or just touches; or a triangle is turned. A
-   strip behind it makes the mesh large, so that single precision tells little of it. */
+/* A tube of three leaf clusters that go round it, straight or bent, at any angle to the axes, with
+   loops that go up and down. In places it is turned back, so that one band lies over the one
+   before, or the loops are wound twice; it is pressed flat; a point is drawn near one of any other
+   loop, or across an edge there, or of its own triangle, or just touches; or a triangle is turned.
+   A strip behind it makes the mesh large, so that single precision tells little of it. */
 static void tubes(void)
 {
     enum { BANDS = 3, LOOPS = BANDS + 1 };
@@ -837,7 +846,8 @@ static void sleeves(void)
     }
 }
 
-/* Points and triangles in a plane. Triangles are counterclockwise where they are not meant to be folded. */
+/* Points and triangles in a plane. Triangles are counterclockwise where they are not meant to be
+   folded. */
 typedef struct flat_mesh {
     double at[96][2];
     uint32_t corner[64][3], points, triangles;
@@ -851,7 +861,8 @@ static void flat_add(flat_mesh *m, uint32_t a, uint32_t b, uint32_t c)
     t[2] = c;
 }
 
-/* Puts a point at a share of the way from a to b, and off that line to the right by a part of its length. */
+/* Puts a point at a share of the way from a to b, and off that line to the right by a part of its
+   length. */
 static void flat_put_beside(flat_mesh *m, uint32_t a, uint32_t b, double share, double off,
                             uint32_t point)
 {
@@ -877,8 +888,8 @@ static void flat_make_band(flat_mesh *m, uint32_t triangles, double turns)
     }
 }
 
-/* A fan that goes round twice, first near its middle, with so many points there, then farther out: its rim crosses itself
-   once. */
+/* A fan that goes round twice, first near its middle, with so many points there, then farther out:
+   its rim crosses itself once. */
 static void flat_make_fan(flat_mesh *m, uint32_t rim, uint32_t inner)
 {
     double weight[32], sum[2] = {0, 0}, angle = test_random_range(-3, 3);
@@ -909,7 +920,8 @@ static void flat_cut(flat_mesh *m, uint32_t triangle)
     flat_add(m, c, a, p);
 }
 
-/* A triangle that pokes into another one from outside, or just touches it, across the side from point a to b. */
+/* A triangle that pokes into another one from outside, or just touches it, across the side from
+   point a to b. */
 static void flat_poke(flat_mesh *m, uint32_t a, uint32_t b)
 {
     uint32_t p = m->points, turn = test_random_below(3);
@@ -921,9 +933,10 @@ static void flat_poke(flat_mesh *m, uint32_t a, uint32_t b)
     flat_add(m, p + turn, p + (turn + 1) % 3, p + (turn + 2) % 3);
 }
 
-/* Two fans that touch in point 0, from hubs on either side of a line through it: the first has the given number of triangles.
-   A rim point of each is on that line or all but on it, to the same side of point 0, and the line is across the way from the
-   middle of one's points to that of the other's, sixteen times with the last one filling up. */
+/* Two fans that touch in point 0, from hubs on either side of a line through it: the first has the
+   given number of triangles. A rim point of each is on that line or all but on it, to the same side
+   of point 0, and the line is across the way from the middle of one's points to that of the
+   other's, sixteen times with the last one filling up. */
 static void flat_make_touching(flat_mesh *m, uint32_t first, uint32_t second)
 {
     double tilt = test_random_below(2) ? test_random_range(-3, 3) : 0, sum[2] = {0, 0};
@@ -958,8 +971,9 @@ static void flat_make_touching(flat_mesh *m, uint32_t first, uint32_t second)
     }
 }
 
-/* Checks such a mesh as two leaf clusters, the first of so many triangles or, if that is 0, any number, across an axis, or
-   nearly; a triangle far away makes the whole large, so that single precision tells little of it. */
+/* Checks such a mesh as two leaf clusters, the first of so many triangles or, if that is 0, any
+   number, across an axis, or nearly; a triangle far away makes the whole large, so that single
+   precision tells little of it. */
 static void check_flat(uint64_t state, const flat_mesh *m, uint32_t count, int is_level)
 {
     soup s = soup_make(m->points + 3, m->triangles + 1);
@@ -1010,10 +1024,11 @@ static void check_flat(uint64_t state, const flat_mesh *m, uint32_t count, int i
     soup_free(&s);
 }
 
-/* Two leaf clusters in a plane whose contour tells, or all but tells, that they have nothing in common but what they share:
-   bands of which the last point is near one of the first edges; fans that go round twice, mostly so that the edges of the
-   rim that cross are few apart or as far apart as can be; contours that are simple though there is a fold inside; and
-   contours in two pieces. Contours of sixteen or seventeen points are those at the end of which sixteen at a time are most
+/* Two leaf clusters in a plane whose contour tells, or all but tells, that they have nothing in
+   common but what they share: bands of which the last point is near one of the first edges; fans
+   that go round twice, mostly so that the edges of the rim that cross are few apart or as far apart
+   as can be; contours that are simple though there is a fold inside; and contours in two pieces.
+   Contours of sixteen or seventeen points are those at the end of which sixteen at a time are most
    easily mistaken. */
 static void two_clusters_in_a_plane(void)
 {
@@ -1086,8 +1101,8 @@ static void deformed_meshes(void)
 }
 
 /*
- * Sheets in which all normals agree and only the contour tells that they lie on themselves: spirals,
- * and petals around a shared vertex; flat, or with just enough height to cross.
+ * Sheets in which all normals agree and only the contour tells that they lie on themselves:
+ * spirals, and petals around a shared vertex; flat, or with just enough height to cross.
  */
 static void what_only_contours_tell(void)
 {
@@ -1124,8 +1139,8 @@ static void what_only_contours_tell(void)
 
 /*
  * Discs that go twice around their centre, all normals up: the contour of an inner disc, and of two
- * sectors that lie on each other, in partitions that leave them one neighbor, so that a contour segment
- * is as long and as winding as can be.
+ * sectors that lie on each other, in partitions that leave them one neighbor, so that a contour
+ * segment is as long and as winding as can be.
  */
 static void branched_discs(void)
 {
@@ -1227,7 +1242,8 @@ static void every_partition(void)
     }
 }
 
-/* One model and one workspace through a whole motion: move gets the rest pose and makes a frame's of it. */
+/* One model and one workspace through a whole motion: move gets the rest pose and makes a frame's
+   of it. */
 static void check_motion(const char *name, soup *s, uint32_t frames,
                          void (*move)(const soup *s, double *pose, uint32_t frame, uint32_t frames))
 {

@@ -1,5 +1,6 @@
 /*
- * The pass over leaf clusters: their points, and their normal cones, sixteen triangles at a time. See dnc.h.
+ * The pass over leaf clusters: their points, and their normal cones, sixteen triangles at a time.
+ * See dnc.h.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -7,19 +8,21 @@
  * POINT at most: 2^-25 for the rounding to float and a little for that to double before.
  *
  * The error of a dot product of a computed normal e x f with a direction, whose components are 0 or
- * +-1. Written out, it is a sum of at most six products of a component of e and one of f, each component
- * at most twice; let E and F be the largest components. A component of e or f is off by 2 POINT and the rounding of a
- * difference, so that the products are off by 6 (2 POINT) (E + F) + 6 (2 POINT)^2 in all, and by rounding: two
- * differences, one multiplication, one subtraction and two additions each, ((1 + u)^6 - 1) < 6.01 u times its absolute
- * value, u = 2^-24; the sum of the absolute values is at most 6 E F. Hence 37 u E F + 12.1 POINT (E + F + 2.1 POINT);
- * the last term is for products that underflow, too.
+ * +-1. Written out, it is a sum of at most six products of a component of e and one of f, each
+ * component at most twice; let E and F be the largest components. A component of e or f is off by 2
+ * POINT and the rounding of a difference, so that the products are off by 6 (2 POINT) (E + F) + 6
+ * (2 POINT)^2 in all, and by rounding: two differences, one multiplication, one subtraction and two
+ * additions each, ((1 + u)^6 - 1) < 6.01 u times its absolute value, u = 2^-24; the sum of the
+ * absolute values is at most 6 E F. Hence 37 u E F + 12.1 POINT (E + F + 2.1 POINT); the last term
+ * is for products that underflow, too.
  *
- * A dot product is compared with this error, to within 8 u computed, by the sign of their difference. Where the product
- * has three terms, two of them are added, and the difference of the error and the third is taken from the sum or added to
- * it: no more roundings than above.
+ * A dot product is compared with this error, to within 8 u computed, by the sign of their
+ * difference. Where the product has three terms, two of them are added, and the difference of the
+ * error and the third is taken from the sum or added to it: no more roundings than above.
  */
 
-/* So many leaf clusters are taken at once, for the processor to do something else while one of them waits. */
+/* So many leaf clusters are taken at once, for the processor to do something else while one of them
+   waits. */
 #if SC_LANES_AVX512
 #  define CONES 4
 #elif SC_LANES_AVX2
@@ -31,7 +34,8 @@
   SC_UNROLL                                                                                        \
   for (i = 0; i < (count); i++)
 
-/* Triangles that are seen to at once: all of a cluster, or where registers are short and few, one register of them. */
+/* Triangles that are seen to at once: all of a cluster, or where registers are short and few, one
+   register of them. */
 #if SC_LANES_QUADS
 #  define part sc_floats4
 #  define part_all SC_QUAD(set1_ps)
@@ -67,8 +71,8 @@ static SC_INLINE void SC_KERNEL(edges_of)(part corner[3][3], part e[3], part f[3
     }
 }
 
-/* By edges of triangles of so many clusters, the signs of what is negative where a direction is within 90 degrees of a
-   normal, whatever it is off by. */
+/* By edges of triangles of so many clusters, the signs of what is negative where a direction is
+   within 90 degrees of a normal, whatever it is off by. */
 static SC_INLINE void SC_KERNEL(directions_of)(part e[][3], part f[][3], lanes_signs row[][16],
                                                int count)
 {
@@ -110,8 +114,8 @@ static SC_INLINE void SC_KERNEL(directions_of)(part e[][3], part f[][3], lanes_s
     }
 }
 
-/* The masks of clusters that follow each other, by their points, as points_of writes them, and corners. Returns the bits
-   that any has. */
+/* The masks of clusters that follow each other, by their points, as points_of writes them, and
+   corners. Returns the bits that any has. */
 #if SC_LANES_QUADS
 
 static SC_INLINE unsigned SC_KERNEL(masks_of)(const float *each, const uint8_t *where,
@@ -175,7 +179,8 @@ static uint32_t SC_KERNEL(cone)(const float *at, const uint8_t *where)
     return mask;
 }
 
-/* What cones there are among the first clusters of a group, before one at which a part of the pass begins. */
+/* What cones there are among the first clusters of a group, before one at which a part of the pass
+   begins. */
 static unsigned SC_KERNEL(sample_before)(const sc_model *model, const sc_workspace *w,
                                          uint32_t first)
 {
@@ -192,7 +197,8 @@ static unsigned SC_KERNEL(sample_before)(const sc_model *model, const sc_workspa
     return any;
 }
 
-/* Clusters first to end - 1 with what points_of cannot do; any: what cones the group of the first has so far. */
+/* Clusters first to end - 1 with what points_of cannot do; any: what cones the group of the first
+   has so far. */
 static void SC_KERNEL(load_one_by_one)(const sc_model *model, sc_workspace *w, uint32_t first,
                                        uint32_t end, int cones, unsigned *any)
 {

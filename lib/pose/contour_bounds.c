@@ -137,8 +137,8 @@ static int bound_lines(const edge_lines *lines, double x_error, double y_error, 
             ROUNDING * (lines->height + lines->steepness * (fabs(ax) + fabs(bx)));
     b->ay = sc_boxes_below(at_a - error);
     b->by = sc_boxes_below(at_b - error);
-    /* all of it finite: so no later sum or product is NaN. Slopes are, as runs are longer than LEAST_RUN
-       errors, which are a fixed part of all that is projected. */
+    /* all of it finite: so no later sum or product is NaN. Slopes are, as runs are longer than
+       LEAST_RUN errors, which are a fixed part of all that is projected. */
     return lines->not_finite == 0 && b->ax > -FLT_MAX && b->bx < FLT_MAX && b->ay > -FLT_MAX &&
            b->by > -FLT_MAX && SC_ALWAYS(b->least > -FLT_MAX && b->most < FLT_MAX);
 }

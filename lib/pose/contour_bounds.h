@@ -4,10 +4,11 @@
  * SPDX-License-Identifier: MIT
  *
  * A search line is vertical (line 0) or horizontal (line 1). For the horizontal one the plane is
- * turned by a quarter, (x, y) -> (y, -x), which keeps orientation, so that it is vertical too. Edges
- * that run to the left have the patch below them: top edges. Edges that run to the right are bottom
- * edges, and are kept upside down, (x, y) -> (x, -y), so that both kinds need a lower bound. A segment
- * with an edge that floating point cannot tell to be either has unbounded bounds of both kinds.
+ * turned by a quarter, (x, y) -> (y, -x), which keeps orientation, so that it is vertical too.
+ * Edges that run to the left have the patch below them: top edges. Edges that run to the right are
+ * bottom edges, and are kept upside down, (x, y) -> (x, -y), so that both kinds need a lower bound.
+ * A segment with an edge that floating point cannot tell to be either has unbounded bounds of both
+ * kinds.
  *
  * Each bound holds for the exact lines: computed values are moved outwards by their error.
  */
@@ -19,16 +20,16 @@
 enum { SC_LINE_VERTICAL = 0, SC_LINE_HORIZONTAL = 1 };
 enum { SC_SIDE_TOP = 0, SC_SIDE_BOTTOM = 1 };
 
-/* Updates bounds[line] of a segment and all it is made of, unless they are of this projection already.
-   Returns the number of segments updated. */
+/* Updates bounds[line] of a segment and all it is made of, unless they are of this projection
+   already. Returns the number of segments updated. */
 uint32_t sc_contour_bounds_update(const sc_model *model, sc_workspace *workspace,
                                   const sc_projection *projection, int line, uint32_t segment);
 
 /* A value not above any line of the bundle at x; infinity for no lines. */
 double sc_contour_bounds_lowest(const sc_ray_bound *bound, double x);
 
-/* For debug builds and tests: 1 if the bounds of a segment are of this projection, hold its edges, and
-   are above none of their lines at its ends. */
+/* For debug builds and tests: 1 if the bounds of a segment are of this projection, hold its edges,
+   and are above none of their lines at its ends. */
 int sc_contour_bounds_validate(const sc_model *model, const sc_workspace *workspace,
                                const sc_projection *projection, int line, uint32_t segment);
 

@@ -14,8 +14,9 @@
 enum { HALF = SC_DNC_DIRECTIONS / 2 };
 
 /*
- * The cones of patches first to end - 1 of a level, from those of their children. Mostly sixteen patches that follow
- * each other have two children each, or one each, and then so do these; then compilers make few instructions of them.
+ * The cones of patches first to end - 1 of a level, from those of their children. Mostly sixteen
+ * patches that follow each other have two children each, or one each, and then so do these; then
+ * compilers make few instructions of them.
  */
 static void join(uint16_t *mask, const uint32_t *child, uint32_t first, uint32_t end)
 {
@@ -103,12 +104,13 @@ int sc_dnc_validate(const sc_model *model, const sc_workspace *w)
  * The direction s is a sum of integer vectors, faces and diagonals weighted by 7 and 4 because
  * 7 is about 4 sqrt(3). With u = s x h for an integer h and w = s x u, all of them integers,
  * u x w = |u|^2 s exactly: so a triangle whose normal has positive dot products with the summed
- * directions has a positive area in (u . p, w . p). h = (5, 2, 11) is oblique so that edges along the axes become
- * neither vertical nor horizontal, and along no sum s but 0, which has no positive dot product with any normal. |s| <= 23,
+ * directions has a positive area in (u . p, w . p). h = (5, 2, 11) is oblique so that edges along
+ * the axes become neither vertical nor horizontal, and along no sum s but 0, which has no positive
+ * dot product with any normal. |s| <= 23,
  * |u| <= 506, |w| <= 23276 in each component.
  *
- * A computed coordinate u . (p - origin) collects one difference, one product, two additions: an error
- * of 4.01 * 2^-53 times the sum of |u_k| |p_k - origin_k|, at most |u|1 radius.
+ * A computed coordinate u . (p - origin) collects one difference, one product, two additions: an
+ * error of 4.01 * 2^-53 times the sum of |u_k| |p_k - origin_k|, at most |u|1 radius.
  */
 static inline void find_vectors(uint32_t mask, float u[3], float w[3])
 {

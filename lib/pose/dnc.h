@@ -5,9 +5,9 @@
  *
  * 14 directions: the six face normals and eight diagonals of a cube. Bit i of a patch's mask is set
  * only if every triangle of the patch has a normal with a positive dot product with direction i, in
- * exact arithmetic; it may be clear although that is so, within rounding, and where most of what is near has no cone
- * (pose/pose_kernels.h). The cone of a patch is the
- * intersection (AND) of its children's.
+ * exact arithmetic; it may be clear although that is so, within rounding, and where most of what is
+ * near has no cone (pose/pose_kernels.h). The cone of a patch is the intersection (AND) of its
+ * children's.
  */
 #ifndef SC_POSE_DNC_H
 #define SC_POSE_DNC_H
@@ -19,13 +19,13 @@ enum { SC_DNC_DIRECTIONS = 14 };
 /* Fills mask, and point_at. */
 void sc_dnc_update(const sc_model *model, sc_workspace *workspace);
 
-/* For debug builds and tests: 1 if every leaf cluster's mask is the AND of those of its triangles, each computed alone, or
-   0 as its group asks for; and every patch's that of its leaf clusters. */
+/* For debug builds and tests: 1 if every leaf cluster's mask is the AND of those of its triangles,
+   each computed alone, or 0 as its group asks for; and every patch's that of its leaf clusters. */
 int sc_dnc_validate(const sc_model *model, const sc_workspace *workspace);
 
 /*
- * A projection along the average of the directions in a mask that is not 0: every triangle of a patch
- * with these bits keeps a positive area, exactly.
+ * A projection along the average of the directions in a mask that is not 0: every triangle of a
+ * patch with these bits keeps a positive area, exactly.
  */
 void sc_dnc_projection(const sc_workspace *workspace, uint32_t mask, sc_projection *projection);
 

@@ -10,17 +10,18 @@
 #include "pose/positions.h"
 
 /*
- * Let r_i be the ring relative to the point, d the sum of the computed normals r_i x r_(i+1), taken as
- * an exact vector, and c = d with its smallest component dropped and the others swapped and one
+ * Let r_i be the ring relative to the point, d the sum of the computed normals r_i x r_(i+1), taken
+ * as an exact vector, and c = d with its smallest component dropped and the others swapped and one
  * negated, so that c . d = 0 exactly. Under a projection along d the sectors have areas d . (r_i x
  * r_(i+1)) / 2 (scaled); all positive, they are angles below a half turn, and the fan turns k times
  * round, where k is the number of i with y_i <= 0 < y_(i+1), y = c . r.
  *
  * The computed y_i is that of a ring moved along c by its error, at most 3 * 2^-53 |d|1 |r_i|1 (a
- * difference, a product, a subtraction, and c . r has two terms). Moving the ring there changes no sign
- * of an area, and hence not k, if the areas are larger than the change: with w = d x c, (c . a)(w . b) -
- * (w . a)(c . b) = |c|^2 d . (a x b), so the change is at most |d| / |c| <= 1.23 times the sum of the
- * errors times (|r_i| + |r_(i+1)|). That and the rounding of the area itself, 8 * 2^-53 |d|1 |r_i|1
+ * difference, a product, a subtraction, and c . r has two terms). Moving the ring there changes no
+ * sign of an area, and hence not k, if the areas are larger than the change: with w = d x c, (c .
+ * a)(w . b) - (w . a)(c . b) = |c|^2 d . (a x b), so the change is at most |d| / |c| <= 1.23 times
+ * the sum of the errors times (|r_i| + |r_(i+1)|). That and the rounding of the area itself, 8 *
+ * 2^-53 |d|1 |r_i|1
  * |r_(i+1)|1, are below 32 * 2^-53 |d|1 (|r_i|1 + |r_(i+1)|1)^2. No product or sum of an area is larger than
  * |d|1 (|r_i|1 + |r_(i+1)|1)^2 / 2, so none overflows to infinity, where sums have a wrong sign, unless that does.
  */

@@ -18,7 +18,8 @@ typedef struct climb {
     uint32_t top; /* level whose patches are shared out */
 } climb;
 
-/* All that is below patches of that level, which are counted from its first, and they themselves. */
+/* All that is below patches of that level, which are counted from its first, and they
+   themselves. */
 static void climb_part(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
     const climb *c = (const climb *)context;
@@ -43,7 +44,8 @@ void sc_levels_up(const sc_model *model, const sc_tasks *tasks, sc_levels_body b
     c.body = body;
     c.context = context;
     c.top = 0;
-    /* tasks are given with many leaf clusters: the last level, which has all of them, is none to go to */
+    /* tasks are given with many leaf clusters: the last level, which has all of them, is none to go
+       to */
     while (tasks && sc_model_patches(model, c.top) < 2 * SC_JOBS_PARTS &&
            sc_model_patches(model, c.top + 1) <= model->leaf_count / LEAVES_BELOW_MIN)
         c.top++;

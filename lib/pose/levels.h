@@ -3,8 +3,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * One job, however many levels there are: a part is what lies below some patches of a level near the top. Only the few
- * patches above that level are left to the calling thread.
+ * One job, however many levels there are: a part is what lies below some patches of a level near
+ * the top. Only the few patches above that level are left to the calling thread.
  */
 #ifndef SC_POSE_LEVELS_H
 #define SC_POSE_LEVELS_H

@@ -1,14 +1,17 @@
 /*
- * Points of the pose in the unit box, sixteen at a time, straight from the caller's array. See positions.h.
+ * Points of the pose in the unit box, sixteen at a time, straight from the caller's array. See
+ * positions.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * points_of writes sixteen points, each as four floats of which the last is 0, in turned places (see build/loops.h), as
- * lanes_turned reads them. The bits are those of sc_positions_unit: a double has more than twice the digits of a float,
- * so that floats may be subtracted without becoming doubles.
+ * points_of writes sixteen points, each as four floats of which the last is 0, in turned places
+ * (see build/loops.h), as lanes_turned reads them. The bits are those of sc_positions_unit: a
+ * double has more than twice the digits of a float, so that floats may be subtracted without
+ * becoming doubles.
  *
- * Four coordinates of a vertex may be read, the fourth only to be dropped. The last vertex may be the last thing in the
- * caller's memory: it is left to points_one_by_one, and so are poses that are too small or too large for floats.
+ * Four coordinates of a vertex may be read, the fourth only to be dropped. The last vertex may be
+ * the last thing in the caller's memory: it is left to points_one_by_one, and so are poses that are
+ * too small or too large for floats.
  */
 
 static void SC_KERNEL(points_one_by_one)(const sc_workspace *w, const uint32_t *point, float *each)
@@ -21,7 +24,8 @@ static void SC_KERNEL(points_one_by_one)(const sc_workspace *w, const uint32_t *
 
 #if SC_LANES_AVX512
 
-/* What points_of has in registers throughout a loop: where positions are, and how they get into the unit box. */
+/* What points_of has in registers throughout a loop: where positions are, and how they get into the
+   unit box. */
 typedef struct SC_KERNEL(points_frame) {
     const unsigned char *from;
     __m512d center;

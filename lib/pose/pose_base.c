@@ -1,5 +1,6 @@
 /*
- * The inner loops over a pose, for every machine: by SSE2 on x86-64, else as the compiler can. See pose_kernels.h.
+ * The inner loops over a pose, for every machine: by SSE2 on x86-64, else as the compiler can. See
+ * pose_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -3,8 +3,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * What is exact reads positions where the caller has them, which stay there until the query ends; all else
- * is computed from points moved into the unit box and rounded to float.
+ * What is exact reads positions where the caller has them, which stay there until the query ends;
+ * all else is computed from points moved into the unit box and rounded to float.
  */
 #ifndef SC_POSE_POSITIONS_H
 #define SC_POSE_POSITIONS_H
@@ -14,9 +14,9 @@
 #include "pose/workspace.h"
 
 /* Notes where positions are, and sets center, radius and scale. The pose was checked but for what
-   this reports: SC_ERROR_NOT_FINITE. With AVX-512 about 0.2 ns a vertex if positions are packed, 0.5
-   if not, 3 if not aligned. One thread does it: what several read here, each a part, would go from
-   core to core again when each makes its points. The center of floats is of floats, too. */
+   this reports: SC_ERROR_NOT_FINITE. With AVX-512 about 0.2 ns a vertex if positions are packed,
+   0.5 if not, 3 if not aligned. One thread does it: what several read here, each a part, would go
+   from core to core again when each makes its points. The center of floats is of floats, too. */
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
                             sc_workspace *workspace);
 
@@ -36,7 +36,8 @@ static inline void sc_positions_get(const sc_workspace *workspace, uint32_t poin
     }
 }
 
-/* The position as four readable doubles, of which the last means nothing: where they are, or in *copy. */
+/* The position as four readable doubles, of which the last means nothing: where they are, or in
+   *copy. */
 static inline const double *sc_positions_at(const sc_workspace *workspace, uint32_t point,
                                             double copy[4])
 {
@@ -47,7 +48,8 @@ static inline const double *sc_positions_at(const sc_workspace *workspace, uint3
     return copy;
 }
 
-/* A point in the unit box: moved by the center, rounded to float and scaled, or scaled first where that is beyond floats. */
+/* A point in the unit box: moved by the center, rounded to float and scaled, or scaled first where
+   that is beyond floats. */
 static inline void sc_positions_unit(const sc_workspace *workspace, uint32_t point, float unit[3])
 {
     const double scale = workspace->scale;

@@ -48,8 +48,8 @@ static void SC_KERNEL(refit_leaves)(const sc_model *model, sc_workspace *w, uint
 }
 
 /*
- * Patches first to end - 1 of a level, of which each has one child or two. Mostly sixteen that follow each other have
- * two each, or one each, and then so do their children.
+ * Patches first to end - 1 of a level, of which each has one child or two. Mostly sixteen that
+ * follow each other have two each, or one each, and then so do their children.
  */
 static void SC_KERNEL(refit_patches)(const sc_model *model, sc_workspace *w, uint32_t first,
                                      uint32_t end)

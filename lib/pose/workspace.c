@@ -23,7 +23,8 @@ static void *place(unsigned char *block, uint64_t *at, uint64_t count, size_t si
     return array;
 }
 
-/* How many leaf clusters are kept ready of each side of pairs: as many as there are, if they are few. */
+/* How many leaf clusters are kept ready of each side of pairs: as many as there are, if they are
+   few. */
 static uint32_t ready_kept(const sc_model *model)
 {
     uint32_t kept = 1;
@@ -108,7 +109,8 @@ static void lay_out_motion(const sc_model *model, unsigned char *block, uint64_t
     m->own_points = (uint64_t *)place(block, at, model->leaf_count, sizeof(uint64_t));
 }
 
-/* A point belongs to the first leaf cluster that has it; seen is 0 for all points, before and after. */
+/* A point belongs to the first leaf cluster that has it; seen is 0 for all points, before and
+   after. */
 static void place_motion(const sc_model *model, sc_motion *m, uint16_t *seen)
 {
     const uint32_t *point = sc_model_leaf_point(model);
@@ -153,8 +155,8 @@ static uint64_t view_bytes(const sc_model *model, uint32_t flags)
     return at;
 }
 
-/* How many leaf clusters can be kept ready at once by the first worker: all, where bounds of segments have room for
-   about as many. Models for boxes have none, so that they stay small. */
+/* How many leaf clusters can be kept ready at once by the first worker: all, where bounds of
+   segments have room for about as many. Models for boxes have none, so that they stay small. */
 static uint32_t all_ready_count(const sc_model *model)
 {
     return model->segment_count ? model->leaf_count : 0;
@@ -235,7 +237,8 @@ void sc_workspace_keep_all(const sc_model *model, sc_workspace *w)
     w->ready_upper = 0;
 }
 
-/* Gives each of so many workers a part of the room for all leaf clusters, if that is more than it has by itself. */
+/* Gives each of so many workers a part of the room for all leaf clusters, if that is more than it
+   has by itself. */
 static void keep_parts(const sc_model *model, sc_workspace *w, uint32_t workers)
 {
     const uint32_t room = all_ready_count(model) / workers;

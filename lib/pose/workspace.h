@@ -7,13 +7,14 @@
  *       bounds_tick | all_known | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: contour, walk,
- * some_ready, some_known, slab, far_pairs, near_list, near_pairs, candidates, neighbors, settled, settled_code, ball, ball_queue, found,
- * state, motion's from leaves to state. For each worker but the first there is a view: an sc_workspace with the pose of the
- * first, and own arrays.
+ * some_ready, some_known, slab, far_pairs, near_list, near_pairs, candidates, neighbors, settled,
+ * settled_code, ball, ball_queue, found, state, motion's from leaves to state. For each worker but
+ * the first there is a view: an sc_workspace with the pose of the first, and own arrays.
  *
- * The star test's bounds and leaf clusters made ready are never needed by one query, so they share their memory; what
- * tells whether they are of this query stands elsewhere. There is no room for all leaf clusters in a query with the star
- * test; several workers divide that room, where it is more than they have by themselves.
+ * The star test's bounds and leaf clusters made ready are never needed by one query, so they share
+ * their memory; what tells whether they are of this query stands elsewhere. There is no room for
+ * all leaf clusters in a query with the star test; several workers divide that room, where it is
+ * more than they have by themselves.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -29,15 +30,15 @@
  *   the line through (ax, ay) with slope most for x <= ax,
  *   the chord from (ax, ay) to (bx, by) between,
  *   the line through (bx, by) with slope least for x >= bx;
- * and the edges that the lines prolong lie within [ax, bx]. No edges: ax > bx. Nothing known, not even
- * the extent: ay is -infinity, and [ax, bx] all there is.
+ * and the edges that the lines prolong lie within [ax, bx]. No edges: ax > bx. Nothing known, not
+ * even the extent: ay is -infinity, and [ax, bx] all there is.
  */
 typedef struct sc_ray_bound {
     float ax, ay, bx, by, least, most;
 } sc_ray_bound;
 
-/* Of a contour segment under one projection, for one search line: its top edges, and its bottom edges
-   turned upside down. */
+/* Of a contour segment under one projection, for one search line: its top edges, and its bottom
+   edges turned upside down. */
 typedef struct sc_segment_bounds {
     sc_ray_bound side[2];
 } sc_segment_bounds;
@@ -48,16 +49,17 @@ typedef struct sc_projection {
     double x_error, y_error; /* |computed - true| at most */
 } sc_projection;
 
-/* Points of a contour are projected in blocks of SC_CONTOUR_BLOCK. A step tests edges with the next SC_CONTOUR_NEAR: all
-   of their own run of SC_CONTOUR_RUN and the next. */
+/* Points of a contour are projected in blocks of SC_CONTOUR_BLOCK. A step tests edges with the next
+   SC_CONTOUR_NEAR: all of their own run of SC_CONTOUR_RUN and the next. */
 enum { SC_CONTOUR_BLOCK = 16, SC_CONTOUR_RUN = 4, SC_CONTOUR_NEAR = 2 * SC_CONTOUR_RUN - 1 };
 
-/* Room for the boxes of so many spans, with those that are read beyond: full blocks, and two more. */
+/* Room for the boxes of so many spans, with those that are read beyond: full blocks, and two
+   more. */
 #define SC_CONTOUR_SPANS(count)                                                                    \
   (((count) + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK * SC_CONTOUR_BLOCK + 2 * SC_CONTOUR_BLOCK)
 
-/* Contours of a query that are looked at in turn: how many, the points of one at most, and the room for it: points with
-   those that are read beyond, and boxes of spans. */
+/* Contours of a query that are looked at in turn: how many, the points of one at most, and the room
+   for it: points with those that are read beyond, and boxes of spans. */
 enum {
     SC_CONTOUR_TURNS = 4,
     SC_CONTOUR_SHORT = 112,
@@ -66,17 +68,18 @@ enum {
     SC_CONTOUR_BITS_ROOM = SC_CONTOUR_ROOM / SC_CONTOUR_BLOCK + 3
 };
 
-/* Pieces of a contour that is stored as a loop are listed in so many places each, or a multiple of that: then spans of
-   as many edges are of one piece. */
+/* Pieces of a contour that is stored as a loop are listed in so many places each, or a multiple of
+   that: then spans of as many edges are of one piece. */
 enum { SC_CONTOUR_GAP = 4 };
 
 /* Sides of boxes in the plane. */
 enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
 
 /*
- * The projected contour of a node, see query/simple.c: a list of points, of which point i and the next are
- * edge i, but where a chain ends. Room for model.contour_max points, what gaps between pieces of loops add, and two blocks
- * more; or for those that are looked at in turn, one after the other.
+ * The projected contour of a node, see query/simple.c: a list of points, of which point i and the
+ * next are edge i, but where a chain ends. Room for model.contour_max points, what gaps between
+ * pieces of loops add, and two blocks more; or for those that are looked at in turn, one after the
+ * other.
  */
 typedef struct sc_contour_edges {
     uint32_t *point;      /* what points they are */
@@ -89,8 +92,9 @@ typedef struct sc_contour_edges {
 } sc_contour_edges;
 
 /*
- * Where a query with the exact contour test is, see query/traversal.c. The stack holds what failed of some full
- * queues, each from deeper levels than the one before; and for each of these, brothers of what is looked at.
+ * Where a query with the exact contour test is, see query/traversal.c. The stack holds what failed
+ * of some full queues, each from deeper levels than the one before; and for each of these, brothers
+ * of what is looked at.
  */
 enum { SC_WALK_QUEUE = 60, SC_WALK_CHILDREN = 4, SC_WALK_PAIRS = 64 };
 
@@ -112,8 +116,8 @@ typedef struct sc_walk {
 
 enum { SC_CANDIDATES_MAX = 1024, SC_SETTLED_MAX = 1024 };
 
-/* A leaf cluster made ready for tests of its triangles, in the unit box; see query/ready_kernel.h. Rows are filled with
-   the last triangle. */
+/* A leaf cluster made ready for tests of its triangles, in the unit box; see query/ready_kernel.h.
+   Rows are filled with the last triangle. */
 typedef struct sc_leaf_ready {
     float side[6][SC_LEAF_MAX]; /* boxes; what is no triangle is NaN and overlaps nothing */
     float normal[3][SC_LEAF_MAX];
@@ -123,7 +127,8 @@ typedef struct sc_leaf_ready {
 
 enum { SC_READY_ROWS = sizeof(sc_leaf_ready) / (SC_LEAF_MAX * sizeof(float)) };
 
-/* Which leaf cluster is kept ready, and in which pose it was made so, 0 for never; and the largest extent of its box. */
+/* Which leaf cluster is kept ready, and in which pose it was made so, 0 for never; and the largest
+   extent of its box. */
 typedef struct sc_leaf_known {
     uint32_t leaf, tick;
     float extent;
@@ -135,7 +140,8 @@ typedef struct sc_leaf_slab {
     uint32_t tick; /* of the pose; 0: nothing yet */
 } sc_leaf_slab;
 
-/* Where not all leaf clusters are kept ready, so many are at most, of each side of pairs: a power of two. */
+/* Where not all leaf clusters are kept ready, so many are at most, of each side of pairs: a power
+   of two. */
 enum { SC_READY_KEPT = 32 };
 
 /* As ready_mask: every leaf cluster has a place. */
@@ -147,8 +153,9 @@ enum { SC_FANS_KEPT = 256 };
 /* Pairs of leaf clusters that wait to be looked at, at most, of each kind. */
 enum { SC_LEAF_QUEUE = 1024 };
 
-/* Two leaf clusters, a <= b, and where sc_model_share_leaf has them, or SC_NONE if they are one; and what sc_model_share_touch
-   has, or SC_TOUCH_CHAIN if they are one that goes round a tube, with SC_NEAR_DROPPED when nothing is left to be looked at. */
+/* Two leaf clusters, a <= b, and where sc_model_share_leaf has them, or SC_NONE if they are one;
+   and what sc_model_share_touch has, or SC_TOUCH_CHAIN if they are one that goes round a tube, with
+   SC_NEAR_DROPPED when nothing is left to be looked at. */
 typedef struct sc_near_pair {
     uint32_t a, b, shared, known;
 } sc_near_pair;
@@ -161,8 +168,8 @@ enum { SC_START_LOW = 0, SC_START_HIGH = 3, SC_END_LOW = 6, SC_END_HIGH = 9, SC_
 /* Room for the edges of a leaf cluster. */
 enum { SC_LEAF_EDGES = (3 * SC_LEAF_MAX + 15) / 16 * 16 };
 
-/* The vertices, edges and triangles that a leaf cluster contributes to a step, with their boxes, which bound
-   what is in sc_motion.unit. See step/leaf_step.h. */
+/* The vertices, edges and triangles that a leaf cluster contributes to a step, with their boxes,
+   which bound what is in sc_motion.unit. See step/leaf_step.h. */
 typedef struct sc_leaf_motion {
     uint32_t leaf; /* or SC_NONE */
     uint32_t first_place, triangles, points, edges;
@@ -181,7 +188,8 @@ typedef struct sc_moving_edges {
     float *at[2], *run_side[4], *group_side[4];
 } sc_moving_edges;
 
-/* What the query of a step writes to besides, if the workspace is for those. See step/step_motion.h. */
+/* What the query of a step writes to besides, if the workspace is for those. See
+   step/step_motion.h. */
 typedef struct sc_motion {
     const unsigned char
         *positions[2]; /* the caller's, at the start and at the end; valid only in a query */
@@ -258,8 +266,8 @@ struct sc_workspace {
     sc_contour_edges contour;
     sc_walk walk;
 
-    /* leaf cluster i is at i & ready_mask, as the upper one of two ready_upper behind. Where that is 0 and not all are kept,
-       two may have one place */
+    /* leaf cluster i is at i & ready_mask, as the upper one of two ready_upper behind. Where that
+       is 0 and not all are kept, two may have one place */
     sc_leaf_ready *ready;             /* all_ready or some_ready */
     sc_leaf_known *known;             /* all_known or some_known */
     uint32_t ready_mask, ready_upper; /* the former SC_KEEPS_ALL if all are */
@@ -282,7 +290,8 @@ struct sc_workspace {
     uint16_t *settled_code; /* see query/candidates.h */
     uint32_t settled_count;
 
-    /* what the fans round some points are in this pose, point p at p % SC_FANS_KEPT; see pose/fan.h */
+    /* what the fans round some points are in this pose, point p at p % SC_FANS_KEPT; see
+       pose/fan.h */
     uint32_t fan_point[SC_FANS_KEPT]; /* or SC_NONE */
     uint8_t fan_plain[SC_FANS_KEPT];
 
@@ -306,16 +315,17 @@ struct sc_workspace {
     uint8_t *culled; /* patch_end: what the workers' walk.marks say together */
 };
 
-/* Bytes for a workspace, which fit size_t if it is for one worker. options are complete and checked;
-   NULL: for plain queries by one worker. */
+/* Bytes for a workspace, which fit size_t if it is for one worker. options are complete and
+   checked; NULL: for plain queries by one worker. */
 uint64_t sc_workspace_bytes(const sc_model *model, const sc_workspace_options *options);
 
 /* Makes a workspace in aligned memory of that many bytes. */
 sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_options *options,
                                  void *memory);
 
-/* Whether a workspace is for models of this topology hash, and each of its arrays as long as the model
-   needs it: the hash alone does not tell, for it leaves out the rest shape, and may be forged. */
+/* Whether a workspace is for models of this topology hash, and each of its arrays as long as the
+   model needs it: the hash alone does not tell, for it leaves out the rest shape, and may be
+   forged. */
 int sc_workspace_fits(sc_workspace *workspace, const sc_model *model);
 
 /* That of a worker: the workspace itself, or a view. */
@@ -324,18 +334,20 @@ sc_workspace *sc_workspace_of_worker(sc_workspace *workspace, uint32_t worker);
 /* Gives the views of so many workers the pose that is in the workspace. */
 void sc_workspace_share(const sc_model *model, sc_workspace *workspace, uint32_t workers);
 
-/* Memory for so many pairs, at a time when no more of the pose is needed in this query: all that collide are found. */
+/* Memory for so many pairs, at a time when no more of the pose is needed in this query: all that
+   collide are found. */
 sc_pair *sc_workspace_spare(const sc_model *model, const sc_workspace *workspace, uint64_t *count);
 
 /* Starts a pose and a projection, whose ticks make everything older stale. */
 void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace);
 void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace);
 
-/* Has some leaf clusters kept ready, in arrays of the worker's own: of each pair the lower and the upper one at
-   different places. */
+/* Has some leaf clusters kept ready, in arrays of the worker's own: of each pair the lower and the
+   upper one at different places. */
 void sc_workspace_keep_some(const sc_model *model, sc_workspace *workspace);
 
-/* Has all leaf clusters kept ready in this pose, for which no star test is made, if there is room. */
+/* Has all leaf clusters kept ready in this pose, for which no star test is made, if there is
+   room. */
 void sc_workspace_keep_all(const sc_model *model, sc_workspace *workspace);
 
 #endif

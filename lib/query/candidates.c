@@ -3,11 +3,12 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * What happens to a pair depends on the vertices it shares. None: it is collected; then many are decided at once,
- * eight at a time, and those of which that is not certain by the exact primitives. Of settled ones there is nothing left to
- * do but to see that two edges are in one plane, if it depends on that. One: the same, but
- * nothing if that is not certain and the fan round the shared vertex projects one to one. More: nothing if a fan round
- * one of them does, else the exact primitives.
+ * What happens to a pair depends on the vertices it shares. None: it is collected; then many are
+ * decided at once, eight at a time, and those of which that is not certain by the exact primitives.
+ * Of settled ones there is nothing left to do but to see that two edges are in one plane, if it
+ * depends on that. One: the same, but nothing if that is not certain and the fan round the shared
+ * vertex projects one to one. More: nothing if a fan round one of them does, else the exact
+ * primitives.
  */
 #include "query/candidates.h"
 
@@ -89,8 +90,8 @@ static int repeats_point(const uint32_t *t)
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/* Whether the fan round a vertex that two triangles share projects one to one: then they share all that they have in
-   common. */
+/* Whether the fan round a vertex that two triangles share projects one to one: then they share all
+   that they have in common. */
 static int have_plain_fan(sc_query_state *state, const sc_pair *places)
 {
     const uint32_t *triangle = sc_model_triangle(state->model);
@@ -292,9 +293,10 @@ static inline uint64_t bits_of(const unsigned char *from, int is_double)
     return half;
 }
 
-/* Of a triangle whose tip is named as in the code of a settled pair, bits of the edges that meet the other triangle, if that
-   from the tip to the next corner does, and that to the one after. Then of both triangles by the lowest eight bits of such a
-   code: those edges meet the other triangle that pass two edges of it on different sides. */
+/* Of a triangle whose tip is named as in the code of a settled pair, bits of the edges that meet
+   the other triangle, if that from the tip to the next corner does, and that to the one after. Then
+   of both triangles by the lowest eight bits of such a code: those edges meet the other triangle
+   that pass two edges of it on different sides. */
 #define SC_TIP_EDGES(tip, next, after) ((next) << ((tip) + 2) % 3 | (after) << ((tip) + 1) % 3)
 #define SC_DIFFER(code, i, j)                                                                      \
   (((code) >> (SC_SETTLED_BELOW + (i)) ^ (code) >> (SC_SETTLED_BELOW + (j))) & 1)
@@ -311,8 +313,8 @@ static inline uint64_t bits_of(const unsigned char *from, int is_double)
 static const uint8_t settled_edges[256] = {SC_CODES_64(0), SC_CODES_64(64), SC_CODES_64(128),
                                            SC_CODES_64(192)};
 
-/* Where numbers of four bits have that of the edge of the first triangle, or of the second, that is not certain, if any: by
-   its tip and whether it goes to the next corner. */
+/* Where numbers of four bits have that of the edge of the first triangle, or of the second, that is
+   not certain, if any: by its tip and whether it goes to the next corner. */
 static inline unsigned level_edge(unsigned code, int second)
 {
     return 4 * (second ? (code >> 2 & 3u) | (code >> (SC_SETTLED_COLUMN - 2) & 4u)
@@ -334,7 +336,8 @@ static inline unsigned is_level(const sc_workspace *w, const uint32_t *t, const 
            level == bits_of(from + w->stride * u[i >> 2 & 3u], is_double);
 }
 
-/* Which edges of such a pair meet the other triangle: those two if touching is asked for, all bits or none. */
+/* Which edges of such a pair meet the other triangle: those two if touching is asked for, all bits
+   or none. */
 static inline unsigned level_edges(unsigned code, unsigned touching)
 {
     const uint32_t bits = 0x02140142u; /* of such an edge */
@@ -344,7 +347,8 @@ static inline unsigned level_edges(unsigned code, unsigned touching)
     return (settled_edges[code & 255u] & ~both) | (touching & both);
 }
 
-/* Writes down what is to be reported if some edges of a pair meet the other triangle. Returns how much; room for six. */
+/* Writes down what is to be reported if some edges of a pair meet the other triangle. Returns how
+   much; room for six. */
 static inline uint32_t name_edges(const sc_query_state *state, const sc_pair *pair, unsigned edges,
                                   sc_pair *found)
 {
@@ -368,7 +372,8 @@ static inline uint32_t name_edges(const sc_query_state *state, const sc_pair *pa
     return count;
 }
 
-/* Reports settled pairs; collects as candidates those that are not, as their edges are not in one plane. */
+/* Reports settled pairs; collects as candidates those that are not, as their edges are not in one
+   plane. */
 static void take_settled(sc_query_state *state)
 {
     const unsigned touching = state->options.contact == SC_CONTACT_PROPER ? 0 : ~0u;

@@ -14,8 +14,9 @@
 /* Pairs of triangles of two leaf clusters, at most. */
 enum { SC_LEAF_PAIRS = SC_LEAF_MAX * SC_LEAF_MAX };
 
-/* Of pairs of leaf clusters that wait: so many or more are tested by slabs first; memory is asked for some places ahead;
-   so many are looked at before the query asks whether to stop. The first ones tuned on crushed cloth and the bunny. */
+/* Of pairs of leaf clusters that wait: so many or more are tested by slabs first; memory is asked
+   for some places ahead; so many are looked at before the query asks whether to stop. The first
+   ones tuned on crushed cloth and the bunny. */
 enum {
     SC_LEAF_SLABS_FIRST = 64,
     SC_FETCH_POINTS = 8,
@@ -26,8 +27,8 @@ enum {
 /* Leaf clusters of which slabs are made together. */
 enum { SC_MADE_LEAVES = 64 };
 
-/* Pairs of leaf clusters that are looked at together; and of triangles in them, so many or the next pair of clusters
-   more. Lists of both are written sixteen at a time. */
+/* Pairs of leaf clusters that are looked at together; and of triangles in them, so many or the next
+   pair of clusters more. Lists of both are written sixteen at a time. */
 enum {
     SC_ROWS_PAIRS = 32,
     SC_ROWS = SC_ROWS_PAIRS * SC_LEAF_MAX + 16,
@@ -35,7 +36,8 @@ enum {
     SC_ROWS_LIST = SC_ROWS_LISTED + SC_LEAF_PAIRS + 2 * 16
 };
 
-/* Numbers that tell of two triangles that share a point how they are looked at, see query/neighbor_kernel.h. */
+/* Numbers that tell of two triangles that share a point how they are looked at, see
+   query/neighbor_kernel.h. */
 enum { SC_NEIGHBORS_ROWS = 7 };
 
 /* Two leaf clusters, a <= b, and what is known of pairs of their triangles. */
@@ -50,7 +52,8 @@ typedef struct sc_leaf_pair {
     uint16_t found[SC_LEAF_MAX]; /* room for shared */
 } sc_leaf_pair;
 
-/* Fills *pair; shared is where sc_model_share_begin has the two, or SC_NONE: they share no point, or are one, or crowded. */
+/* Fills *pair; shared is where sc_model_share_begin has the two, or SC_NONE: they share no point,
+   or are one, or crowded. */
 void sc_candidates_enter(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b, uint32_t shared,
                          sc_leaf_pair *pair);
 
@@ -65,11 +68,12 @@ static inline void sc_candidates_add(sc_query_state *state, uint32_t a, uint32_t
     pair->b = b;
 }
 
-/* Bits of what is known of a settled pair, which shares nothing and of which either plane splits the other triangle's
-   corners: of each of the two, whether the corner alone on its side, the tip, is the first, and the second; whether edge i from
-   the tip of one, 0 to the next corner and 1 to the one after, passes edge j of the other below, bit 2 i + j; whether i and j are
-   0 of the two edges of which this is not certain; and the axis across which they seem to be in one plane, or 3 if there are no
-   such edges. See query/sixteen_kernel.h. */
+/* Bits of what is known of a settled pair, which shares nothing and of which either plane splits
+   the other triangle's corners: of each of the two, whether the corner alone on its side, the tip,
+   is the first, and the second; whether edge i from the tip of one, 0 to the next corner and 1 to
+   the one after, passes edge j of the other below, bit 2 i + j; whether i and j are 0 of the two
+   edges of which this is not certain; and the axis across which they seem to be in one plane, or 3
+   if there are no such edges. See query/sixteen_kernel.h. */
 enum sc_settled_bits {
     SC_SETTLED_TIP = 0,
     SC_SETTLED_BELOW = 4,
@@ -82,8 +86,8 @@ enum sc_settled_bits {
 /* Pairs are decided by so many at a time. */
 enum { SC_PAIR_LANES = 8 };
 
-/* SC_PAIR_LANES pairs of triangles that share one point at most. Bit i of shared: in pair i the corner is one of the
-   other triangle's. */
+/* SC_PAIR_LANES pairs of triangles that share one point at most. Bit i of shared: in pair i the
+   corner is one of the other triangle's. */
 typedef struct sc_pair_lanes {
     const sc_pair *pairs;           /* places of triangles */
     const uint32_t *triangle;       /* three points at each place */
@@ -95,13 +99,14 @@ typedef struct sc_pair_lanes {
     unsigned shared[2][3];
 } sc_pair_lanes;
 
-/* Which edges (k of the first triangle, 3 + k of the second) meet the other triangle, bit 8 k + i for pair i:
-   certainly; or it cannot be told. None from a shared point. */
+/* Which edges (k of the first triangle, 3 + k of the second) meet the other triangle, bit 8 k + i
+   for pair i: certainly; or it cannot be told. None from a shared point. */
 typedef struct sc_verdict {
     uint64_t meets, unsure;
 } sc_verdict;
 
-/* To be called after each pair of leaf clusters: decides what has been collected if there is no room for another. */
+/* To be called after each pair of leaf clusters: decides what has been collected if there is no
+   room for another. */
 void sc_candidates_make_room(sc_query_state *state);
 
 /* Decides what has been collected; to be called before the kind of task changes, and at the end. */

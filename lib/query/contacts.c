@@ -10,9 +10,10 @@
  *   - if all is in one plane, or one of the two has no area: where two edges cross.
  * A triangle without an area is a segment or a point, and has the corners and edges of that.
  *
- * Unless it is an area, every one of these is an end of the intersection, which lies on a line: there
- * the intersection is that of two intervals, whose ends these are, cut out by the edges of a and by those
- * of b. Hence two that differ are the two ends, and whether they differ is decided exactly.
+ * Unless it is an area, every one of these is an end of the intersection, which lies on a line:
+ * there the intersection is that of two intervals, whose ends these are, cut out by the edges of a
+ * and by those of b. Hence two that differ are the two ends, and whether they differ is decided
+ * exactly.
  */
 #include "query/contacts.h"
 
@@ -188,8 +189,8 @@ static void find_crossings(events *e)
                 add_event(e, CROSSING, 0, i, j);
 }
 
-/* Whether the interiors of two triangles of a plane meet: no line of a side has the two on different
-   sides. */
+/* Whether the interiors of two triangles of a plane meet: no line of a side has the two on
+   different sides. */
 static int interiors_meet(events *e)
 {
     int axis = find_hull_axis(e->hulls[0].p[0], e->hulls[0].p[1], e->hulls[0].p[2], &e->fallbacks);
@@ -228,9 +229,10 @@ static int is_same(events *e, const event *v, const event *w)
 /* ---- coordinates ---- */
 
 /*
- * What part of the sum of the absolute values each is. With u = 2^-53: values are off by 4 u at most,
- * their sum by 4 u and two roundings, the quotient by one more, together 11 u; a mean of two ends has
- * two roundings more, 13 u of the larger end. 2^-49, which starcontour.h promises, is 16 u.
+ * What part of the sum of the absolute values each is. With u = 2^-53: values are off by 4 u at
+ * most, their sum by 4 u and two roundings, the quotient by one more, together 11 u; a mean of two
+ * ends has two roundings more, 13 u of the larger end. 2^-49, which starcontour.h promises, is 16
+ * u.
  */
 static void find_shares(const sc_predicates_value *values, int count, double *shares)
 {

@@ -3,9 +3,9 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * What the intersection is made of is decided by exact signs; only then are coordinates computed, as
- * weighted means whose weights are determinants known to a relative error of 2^-51. So a point is as
- * good for slivers and nearly parallel planes as for any other pair. No overflow, no NaN.
+ * What the intersection is made of is decided by exact signs; only then are coordinates computed,
+ * as weighted means whose weights are determinants known to a relative error of 2^-51. So a point
+ * is as good for slivers and nearly parallel planes as for any other pair. No overflow, no NaN.
  *
  * Cost: 1 to 3 us a pair.
  */
@@ -15,8 +15,8 @@
 #include "starcontour.h"
 
 /*
- * The intersection of two closed triangles, as starcontour.h says of sc_contact; for an edge from p to
- * q give p, q, q.
+ * The intersection of two closed triangles, as starcontour.h says of sc_contact; for an edge from p
+ * to q give p, q, q.
  */
 void sc_contacts_find(const double *const a[3], const double *const b[3], sc_contact *contact);
 

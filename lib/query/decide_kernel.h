@@ -1,25 +1,27 @@
 /*
- * Pairs of triangles decided by the signs of determinants, eight at a time, as far as that is certain in doubles.
- * The scalar form, which is exact and decides the rest, is query/primitives.c.
+ * Pairs of triangles decided by the signs of determinants, eight at a time, as far as that is
+ * certain in doubles. The scalar form, which is exact and decides the rest, is query/primitives.c.
  *
  * SPDX-License-Identifier: MIT
  *
- * A pair has six signs of corners against the other's plane and nine of edges against edges. Seen from the first
- * corner of the first triangle, its others are a_1 and a_2, those of the second b_0, b_1 and b_2. With
- * n_i = b_i x b_i+1, whose sum is the second's normal, fourteen determinants make up all signs:
+ * A pair has six signs of corners against the other's plane and nine of edges against edges. Seen
+ * from the first corner of the first triangle, its others are a_1 and a_2, those of the second b_0,
+ * b_1 and b_2. With n_i = b_i x b_i+1, whose sum is the second's normal, fourteen determinants make
+ * up all signs:
  *   S_i = (a_1 x a_2) . b_i, T_0 = n_0 . b_2, T_k = T_0 - (n_0 + n_1 + n_2) . a_k       corners b_i, and minus a_k
  *   L_0i = n_i . a_1, L_2i = -n_i . a_2, L_1i = S_i+1 - S_i - L_0i - L_2i               edges k and i, from below
  *
- * Each component of a and b is a difference of two coordinates; let r be the largest of them all. In exact arithmetic
- * a determinant is a sum of at most four times six products of three of them. One of these meets the rounding of three
- * differences, two products, a subtraction and two additions, and in T_k of three more, hence is off by
- * 11.01 * 2^-53 r^3 at most, and the sum by 264.3 * 2^-53 r^3. The bound is 272 * 2^-53 r^3 with at least 2^-300 for r,
- * which covers its own three roundings and products that underflow: these change a sum by less than
- * 2^-1060 (1 + r), or 2^-1000 (1 + r) and 2^-1010 r^2 where subnormal numbers are flushed to zero. Computed as 4.25 * 2^-53 (4 r)^3
- * it is infinite, and nothing certain, before any sum can overflow.
+ * Each component of a and b is a difference of two coordinates; let r be the largest of them all.
+ * In exact arithmetic a determinant is a sum of at most four times six products of three of them.
+ * One of these meets the rounding of three differences, two products, a subtraction and two
+ * additions, and in T_k of three more, hence is off by 11.01 * 2^-53 r^3 at most, and the sum by
+ * 264.3 * 2^-53 r^3. The bound is 272 * 2^-53 r^3 with at least 2^-300 for r, which covers its own
+ * three roundings and products that underflow: these change a sum by less than 2^-1060 (1 + r), or
+ * 2^-1000 (1 + r) and 2^-1010 r^2 where subnormal numbers are flushed to zero. Computed as 4.25 *
+ * 2^-53 (4 r)^3 it is infinite, and nothing certain, before any sum can overflow.
  *
- * A sign is certainly zero if its four points have a coordinate in common, which is asked only where it matters; what
- * is coplanar otherwise is left to the scalar form.
+ * A sign is certainly zero if its four points have a coordinate in common, which is asked only
+ * where it matters; what is coplanar otherwise is left to the scalar form.
  */
 
 /* Eight pairs of triangles. */
@@ -119,8 +121,8 @@ static SC_INLINE void SC_KERNEL(read_eight)(const sc_pair_lanes *pairs, SC_KERNE
 
 /* ---- what is certain of nearly all ---- */
 
-/* Which edges of the two, the first's k and the second's i, are in one plane across an axis. Returns the lanes in which
-   any are. */
+/* Which edges of the two, the first's k and the second's i, are in one plane across an axis.
+   Returns the lanes in which any are. */
 static inline unsigned SC_KERNEL(find_level_edges)(doubles at[2][3][3], doubles_mask level[3][3])
 {
     unsigned found = 0;
@@ -161,8 +163,8 @@ static inline unsigned SC_KERNEL(find_level_edges)(doubles at[2][3][3], doubles_
     return found;
 }
 
-/* Of the six edges by their bits: whose ends are on different sides, of these whose lines have signs that are not
-   certain, and which meet the other triangle if all that is. */
+/* Of the six edges by their bits: whose ends are on different sides, of these whose lines have
+   signs that are not certain, and which meet the other triangle if all that is. */
 typedef struct SC_KERNEL(edges) {
     unsigned sides[6], open[6], meets[6];
 } SC_KERNEL(edges);
@@ -175,8 +177,9 @@ static inline void SC_KERNEL(look_along)(SC_KERNEL(edges) * e, int edge, const d
     e->meets[edge] = e->sides[edge] & ~doubles_differ3(line[0], line[1], line[2]);
 }
 
-/* The signs of lines that are certainly zero count as those next to them, or if touching is not asked for, their edges
-   do not meet. Only if there is another, which is not certain then, if it is zero, too. */
+/* The signs of lines that are certainly zero count as those next to them, or if touching is not
+   asked for, their edges do not meet. Only if there is another, which is not certain then, if it is
+   zero, too. */
 static inline void SC_KERNEL(look_along_level)(SC_KERNEL(edges) * e, int edge,
                                                const doubles line[3], const doubles_mask level[3],
                                                doubles bound, int proper)
@@ -193,7 +196,8 @@ static inline void SC_KERNEL(look_along_level)(SC_KERNEL(edges) * e, int edge,
     }
 }
 
-/* Decides eight pairs that share nothing, if no corner may be in the other's plane; else returns 0. */
+/* Decides eight pairs that share nothing, if no corner may be in the other's plane; else returns
+   0. */
 static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, SC_KERNEL(eight) * x,
                                             sc_verdict *verdict)
 {
@@ -267,11 +271,12 @@ static inline SC_KERNEL(sign) SC_KERNEL(sign_of)(doubles d, doubles bound)
 }
 
 /*
- * The lanes in which the two, projected along the axis nearest to the normal of one, are certainly on different sides
- * of the line of a projected edge: its own triangle's third corner on one side, all of the other's strictly on the
- * other, but for one that they share if it is on the line. Then they do not meet elsewhere. Nearly coplanar pairs that
- * are apart are so by one of these six lines. A side d = e_0 p_1 - e_1 p_0 meets two differences, a product and a
- * subtraction: 4.01 * 2^-53 of two products of numbers of up to 2 r, 8 r^2 together.
+ * The lanes in which the two, projected along the axis nearest to the normal of one, are certainly
+ * on different sides of the line of a projected edge: its own triangle's third corner on one side,
+ * all of the other's strictly on the other, but for one that they share if it is on the line. Then
+ * they do not meet elsewhere. Nearly coplanar pairs that are apart are so by one of these six
+ * lines. A side d = e_0 p_1 - e_1 p_0 meets two differences, a product and a subtraction: 4.01 *
+ * 2^-53 of two products of numbers of up to 2 r, 8 r^2 together.
  */
 static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(eight) * x, const unsigned shared[2][3])
 {
@@ -315,8 +320,9 @@ static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(eight) * x, const unsigned
     return apart;
 }
 
-/* The lanes in which four points have a coordinate in common: in a plane across an axis, where most signs are that are
-   zero. The points are compared, not subtracted, in case small differences are flushed to zero. */
+/* The lanes in which four points have a coordinate in common: in a plane across an axis, where most
+   signs are that are zero. The points are compared, not subtracted, in case small differences are
+   flushed to zero. */
 static unsigned SC_KERNEL(are_level)(const doubles p[3], const doubles q[3], const doubles r[3],
                                      const doubles s[3])
 {
@@ -329,8 +335,9 @@ static unsigned SC_KERNEL(are_level)(const doubles p[3], const doubles q[3], con
     return level;
 }
 
-/* An edge, by the signs of its ends against a plane and of its line against three others, where zero counts as on
-   either side if touching is asked for (all bits set), as on none if not (0). An edge in the plane stays open. */
+/* An edge, by the signs of its ends against a plane and of its line against three others, where
+   zero counts as on either side if touching is asked for (all bits set), as on none if not (0). An
+   edge in the plane stays open. */
 static inline void SC_KERNEL(decide_edge)(SC_KERNEL(sign) from, SC_KERNEL(sign) to,
                                           SC_KERNEL(sign) a, SC_KERNEL(sign) b, SC_KERNEL(sign) c,
                                           unsigned touching, unsigned *meets, unsigned *unsure)
@@ -346,12 +353,14 @@ static inline void SC_KERNEL(decide_edge)(SC_KERNEL(sign) from, SC_KERNEL(sign) 
     *unsure = ~(*meets | misses) & 255u;
 }
 
-/* All signs of eight pairs: of corners against the other's plane, and of the first's edges against the second's. */
+/* All signs of eight pairs: of corners against the other's plane, and of the first's edges against
+   the second's. */
 typedef struct SC_KERNEL(signs) {
     SC_KERNEL(sign) side[2][3], line[3][3];
 } SC_KERNEL(signs);
 
-/* Sets the lanes in which edges meet, and in which that is open; returns the lanes in which an edge is left open. */
+/* Sets the lanes in which edges meet, and in which that is open; returns the lanes in which an edge
+   is left open. */
 static inline unsigned SC_KERNEL(decide_edges)(const sc_pair_lanes *pairs,
                                                const SC_KERNEL(signs) * signs, unsigned meets[6],
                                                unsigned open[6])
@@ -377,8 +386,8 @@ static inline unsigned SC_KERNEL(decide_edges)(const sc_pair_lanes *pairs,
     return unsure;
 }
 
-/* Finds which of the signs that are not certain in some lanes are certainly zero. Returns the lanes in which a corner
-   may be in the other's plane. */
+/* Finds which of the signs that are not certain in some lanes are certainly zero. Returns the lanes
+   in which a corner may be in the other's plane. */
 static unsigned SC_KERNEL(find_zeros)(const SC_KERNEL(eight) * x, unsigned some,
                                       SC_KERNEL(signs) * signs)
 {

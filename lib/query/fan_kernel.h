@@ -1,37 +1,42 @@
 /*
- * Whether the triangles of a leaf cluster that lie round a point have only in common what they share: for all its points at
- * once, before pairs of neighbors are looked at one by one. See query_kernels.h.
+ * Whether the triangles of a leaf cluster that lie round a point have only in common what they
+ * share: for all its points at once, before pairs of neighbors are looked at one by one. See
+ * query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * All is seen along the mean normal n of the cluster, in single precision on the points in the unit box. A triangle that
- * faces the viewer has at each corner a sector below a half turn. Where the triangles round a point follow each other, one
- * beginning where the one before ends (sc_model.leaf_fan), so do their sectors:
+ * All is seen along the mean normal n of the cluster, in single precision on the points in the unit
+ * box. A triangle that faces the viewer has at each corner a sector below a half turn. Where the
+ * triangles round a point follow each other, one beginning where the one before ends
+ * (sc_model.leaf_fan), so do their sectors:
  *
- * - of a fan that is not closed they turn by less than once if there is a ray from the point that none of them holds, since
- *   sectors that turn once or more hold each;
+ * - of a fan that is not closed they turn by less than once if there is a ray from the point that
+ *   none of them holds, since sectors that turn once or more hold each;
  * - of a closed fan they turn once if there is a ray that just one of them holds.
  *
- * Then two of the sectors meet in the point alone, or, if they follow each other, in the ray between them; so the triangles,
- * none of which has two points in the same place of the projection, meet in no more than the point or the edge that they
- * share. This is so of any triangles, whatever else is at the point.
+ * Then two of the sectors meet in the point alone, or, if they follow each other, in the ray
+ * between them; so the triangles, none of which has two points in the same place of the projection,
+ * meet in no more than the point or the edge that they share. This is so of any triangles, whatever
+ * else is at the point.
  *
- * With c at right angles to n, y = c . (x - p) is above 0 on one side of a line through p that the rays r and -r make. A
- * sector that holds r runs from y <= 0 to y >= 0, and one that holds -r from y >= 0 to y <= 0. Two such c give four rays; a
- * sector may hold a ray if these differences may have these signs. So no ray that is held goes unnoticed, and if there are
- * as many sectors that may hold a ray as points where one does, no closed fan turns twice. Lanes behind the last triangle
- * have its corners, and so mark no other points.
+ * With c at right angles to n, y = c . (x - p) is above 0 on one side of a line through p that the
+ * rays r and -r make. A sector that holds r runs from y <= 0 to y >= 0, and one that holds -r from
+ * y >= 0 to y <= 0. Two such c give four rays; a sector may hold a ray if these differences may
+ * have these signs. So no ray that is held goes unnoticed, and if there are as many sectors that
+ * may hold a ray as points where one does, no closed fan turns twice. Lanes behind the last
+ * triangle have its corners, and so mark no other points.
  *
- * Each coordinate is off by POINT = 3e-8 at most, v = 2^-24. The difference of two c . x is off by 2 POINT |c|1; by rounding
- * 6.02 v |c|1 and 2.02 v |c|1; and by 2.01 v |c|1, as a component of c is the sum of two: below 6.6e-7 |c|1 in all, and a few
- * FLT_MIN. For an area, n . (e x f), let EDGE = 2 POINT and S = |e|1 + |f|1: moving e and f changes e x f by
- * 2 EDGE S + 6 EDGE^2 in all; it is rounded by 4.01 v |e|1 |f|1 <= 1.01 v S^2, and the product with n by
- * 3.01 v |n| |e x f|1 <= 0.77 v |n| S^2, where |n| is the largest component: below |n| (S (2 EDGE + 1.8 v S) + 6 EDGE^2), and
- * a few FLT_MIN.
+ * Each coordinate is off by POINT = 3e-8 at most, v = 2^-24. The difference of two c . x is off by
+ * 2 POINT |c|1; by rounding 6.02 v |c|1 and 2.02 v |c|1; and by 2.01 v |c|1, as a component of c is
+ * the sum of two: below 6.6e-7 |c|1 in all, and a few FLT_MIN. For an area, n . (e x f), let EDGE =
+ * 2 POINT and S = |e|1 + |f|1: moving e and f changes e x f by 2 EDGE S + 6 EDGE^2 in all; it is
+ * rounded by 4.01 v |e|1 |f|1 <= 1.01 v S^2, and the product with n by 3.01 v |n| |e x f|1 <= 0.77
+ * v |n| S^2, where |n| is the largest component: below |n| (S (2 EDGE + 1.8 v S) + 6 EDGE^2), and a
+ * few FLT_MIN.
  */
 
-/* Which sectors at the first, second and third corners of triangles may hold a ray, and the opposite one: those that the
-   line at right angles to a direction makes. */
+/* Which sectors at the first, second and third corners of triangles may hold a ray, and the
+   opposite one: those that the line at right angles to a direction makes. */
 static SC_INLINE void SC_KERNEL(find_rays)(const float direction[3], const lanes at[3],
                                            const lanes_index corner[3], lanes_mask ray[2][3])
 {
@@ -59,7 +64,8 @@ static SC_INLINE void SC_KERNEL(find_rays)(const float direction[3], const lanes
     }
 }
 
-/* Two directions at right angles to n, the second counter-clockwise of the first where n points to the viewer. */
+/* Two directions at right angles to n, the second counter-clockwise of the first where n points to
+   the viewer. */
 static inline void SC_KERNEL(find_across)(const float n[3], float across[2][3])
 {
     int a = fabsf(n[1]) > fabsf(n[0]) ? 1 : 0, i, j;
@@ -94,8 +100,9 @@ static inline lanes_mask SC_KERNEL(find_turned)(const sc_leaf_ready *ready, cons
     return lanes_not_above(area, bound);
 }
 
-/* The triangles of a cluster that may have more in common with others of it than what they share: two that share a point
-   have not, if one of them is no such triangle. If half of them do not face the viewer, as of a tube, it is all at once. */
+/* The triangles of a cluster that may have more in common with others of it than what they share:
+   two that share a point have not, if one of them is no such triangle. If half of them do not face
+   the viewer, as of a tube, it is all at once. */
 static unsigned SC_KERNEL(doubtful)(const sc_query_state *state, uint32_t leaf)
 {
     const sc_model *model = state->model;

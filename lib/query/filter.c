@@ -44,7 +44,8 @@ sc_status sc_filter_begin(sc_query_state *state, const sc_model *model, const sc
     if (status) return status;
     state->filter = filter;
     state->sifts = filter->vertex_groups || filter->triangle_groups;
-    /* an edge and a triangle that share no vertex are one edge apart if their triangles share one */
+    /* an edge and a triangle that share no vertex are one edge apart if their triangles share
+       one */
     state->drops_neighbors = filter->ignore_rings > (kind == SC_PAIRS_EDGE);
     return SC_OK;
 }
@@ -123,8 +124,8 @@ static const uint32_t *points_of(const sc_model *model, uint32_t triangle)
 }
 
 /*
- * Whether some points are less than ignore_rings edges away from a triangle. The ball round a triangle
- * serves all pairs with it that follow each other, as they mostly do.
+ * Whether some points are less than ignore_rings edges away from a triangle. The ball round a
+ * triangle serves all pairs with it that follow each other, as they mostly do.
  */
 static int is_near(const sc_query_state *state, uint32_t center, const uint32_t *points,
                    uint32_t count)

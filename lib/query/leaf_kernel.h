@@ -1,14 +1,15 @@
 /*
- * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then rows against planes; then what
- * is left, sixteen pairs at a time, of one pair of clusters or of two (query/sixteen_kernel.h). Pairs of which it is
- * settled how they meet are collected, and those of which nothing is certain. Each of these goes through some pairs
- * of leaf clusters before the next begins, so that few branches depend on how many rows or triangles one of them has.
- * See query_kernels.h.
+ * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then rows against
+ * planes; then what is left, sixteen pairs at a time, of one pair of clusters or of two
+ * (query/sixteen_kernel.h). Pairs of which it is settled how they meet are collected, and those of
+ * which nothing is certain. Each of these goes through some pairs of leaf clusters before the next
+ * begins, so that few branches depend on how many rows or triangles one of them has. See
+ * query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */
-/* What is left of pairs of leaf clusters: rows, that is triangles of one of them and a mask of the other's. Those of one pair
-   are together. */
+/* What is left of pairs of leaf clusters: rows, that is triangles of one of them and a mask of the
+   other's. Those of one pair are together. */
 typedef struct SC_KERNEL(rows) {
     uint32_t leaf[2][SC_ROWS_PAIRS];
     const sc_leaf_ready *ready[2][SC_ROWS_PAIRS]; /* all of them are, as long as there are rows */
@@ -31,7 +32,8 @@ static inline void SC_KERNEL(no_rows)(SC_KERNEL(rows) * rows)
     rows->pairs = rows->wait = rows->count = 0;
 }
 
-/* Pairs of triangles of two leaf clusters, or of two such pairs of clusters, lanes from split on being of the second. */
+/* Pairs of triangles of two leaf clusters, or of two such pairs of clusters, lanes from split on
+   being of the second. */
 typedef struct SC_KERNEL(window) {
     const uint8_t *numbers[2]; /* of triangles in their clusters, sixteen may be read */
     unsigned pair[2];          /* of clusters */
@@ -64,8 +66,9 @@ static inline void SC_KERNEL(fill_sixteen)(const sc_query_state *state,
                              lanes_all(rows->extent[window->pair[0]]));
 }
 
-/* Collects those of pairs of triangles that are not certainly apart, settled or not. What becomes of a pair does not depend on
-   which others are in its sixteen: these are not the same with several workers. */
+/* Collects those of pairs of triangles that are not certainly apart, settled or not. What becomes
+   of a pair does not depend on which others are in its sixteen: these are not the same with several
+   workers. */
 static void SC_KERNEL(collect)(sc_query_state *state, const SC_KERNEL(rows) * rows,
                                const SC_KERNEL(window) * window)
 {
@@ -151,8 +154,8 @@ static void SC_KERNEL(compare_near_boxes)(SC_KERNEL(rows) * rows)
     rows->wait = 0;
 }
 
-/* The same of a cluster against itself, or of two that are crowded, to come: pairs that share points are taken, and not in
-   the rows. */
+/* The same of a cluster against itself, or of two that are crowded, to come: pairs that share
+   points are taken, and not in the rows. */
 static void SC_KERNEL(take_shared)(sc_query_state *state, const sc_leaf_pair *p,
                                    const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned some,
                                    SC_KERNEL(rows) * rows)
@@ -286,7 +289,8 @@ static inline unsigned SC_KERNEL(add_waiting)(unsigned some, SC_KERNEL(rows) * r
     return count;
 }
 
-/* Adds two leaf clusters, a and b when they are ready, or one; of a only some triangles may overlap b. */
+/* Adds two leaf clusters, a and b when they are ready, or one; of a only some triangles may overlap
+   b. */
 static void SC_KERNEL(add_rows)(sc_query_state *state, const sc_leaf_pair *p,
                                 const sc_leaf_ready *a, const sc_leaf_ready *b, unsigned some,
                                 SC_KERNEL(rows) * rows)
@@ -357,8 +361,9 @@ static void SC_KERNEL(leaf_pair_elsewhere)(sc_query_state *state, uint32_t a, ui
     w->ready_upper = 0;
 }
 
-/* Two leaf clusters, a <= b; by_slabs: slabs may tell them apart, and were not looked at; shared as sc_candidates_enter has
-   it. What is made ready may take the place of a leaf cluster that the rows are of, so these are tested before. */
+/* Two leaf clusters, a <= b; by_slabs: slabs may tell them apart, and were not looked at; shared as
+   sc_candidates_enter has it. What is made ready may take the place of a leaf cluster that the rows
+   are of, so these are tested before. */
 static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, int by_slabs,
                                  uint32_t shared, SC_KERNEL(rows) * rows)
 {
@@ -389,8 +394,9 @@ static void SC_KERNEL(leaf_pair)(sc_query_state *state, uint32_t a, uint32_t b, 
     SC_KERNEL(add_rows)(state, &p, ready_a, ready_b, some, rows);
 }
 
-/* Two leaf clusters, a < b, that share no points or are crowded, and that slabs do not part. Those that are ready are added
-   without branches, as boxes of triangles may be apart from the other in many. */
+/* Two leaf clusters, a < b, that share no points or are crowded, and that slabs do not part. Those
+   that are ready are added without branches, as boxes of triangles may be apart from the other in
+   many. */
 static inline void SC_KERNEL(far_pair)(sc_query_state *state, uint32_t a, uint32_t b,
                                        SC_KERNEL(rows) * rows)
 {
@@ -411,8 +417,8 @@ static inline void SC_KERNEL(far_pair)(sc_query_state *state, uint32_t a, uint32
     state->stats.counts[sc_state_box_task(state)] += count;
 }
 
-/* Asks for the memory of a leaf cluster that is made ready; or of its slab and points, and the former if there is no
-   slab yet. */
+/* Asks for the memory of a leaf cluster that is made ready; or of its slab and points, and the
+   former if there is no slab yet. */
 static inline void SC_KERNEL(fetch_ready)(const sc_workspace *w, uint32_t leaf)
 {
     const float *at = w->ready[leaf & w->ready_mask].side[0];
@@ -428,9 +434,9 @@ static inline void SC_KERNEL(fetch_points)(const sc_workspace *w, uint32_t leaf)
     if (w->slab[leaf].tick != w->pose_tick) SC_KERNEL(fetch_ready)(w, leaf);
 }
 
-/* The pairs of leaf clusters that wait and share no points, or are crowded. If they are many, slabs drop most of those that
-   hold no pair of triangles; some pairs ahead, memory is asked for. If they are few, it does not pay to make slabs before
-   boxes meet. */
+/* The pairs of leaf clusters that wait and share no points, or are crowded. If they are many, slabs
+   drop most of those that hold no pair of triangles; some pairs ahead, memory is asked for. If they
+   are few, it does not pay to make slabs before boxes meet. */
 static void SC_KERNEL(far_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
 {
     sc_workspace *w = state->workspace;
@@ -474,8 +480,9 @@ static inline int SC_KERNEL(has_cones)(const sc_query_state *state)
     return state->options.method == SC_METHOD_SCTT && state->options.contour == SC_CONTOUR_EXACT;
 }
 
-/* Takes the pairs of leaf clusters that share points from the list of what waits, and leaf clusters against themselves, and drops
-   what some tests can tell; returns how many are left. In steps with few branches, as any pair may be one of a kind. */
+/* Takes the pairs of leaf clusters that share points from the list of what waits, and leaf clusters
+   against themselves, and drops what some tests can tell; returns how many are left. In steps with
+   few branches, as any pair may be one of a kind. */
 static SC_NOINLINE uint32_t SC_KERNEL(take_near_list)(sc_query_state *state)
 {
     const uint32_t *leaf = sc_model_share_leaf(state->model);
@@ -563,8 +570,8 @@ static void SC_KERNEL(leaf_pairs)(sc_query_state *state)
     SC_KERNEL(take_leaf_pairs)(state, 1);
 }
 
-/* Has those pairs wait that share points: of leaf cluster a with those numbered from first on, all above it, of which bits of
-   a mask are set. Returns the rest of the mask. */
+/* Has those pairs wait that share points: of leaf cluster a with those numbered from first on, all
+   above it, of which bits of a mask are set. Returns the rest of the mask. */
 static inline unsigned SC_KERNEL(add_near_pairs)(sc_query_state *state, uint32_t a, uint32_t first,
                                                  unsigned mask)
 {
@@ -593,8 +600,8 @@ static inline unsigned SC_KERNEL(add_near_pairs)(sc_query_state *state, uint32_t
     return mask;
 }
 
-/* Has pairs of a leaf cluster wait: with those numbered from first on, of which bits of a mask are set. They are all above
-   it; or all below it, and then they share no points with it. */
+/* Has pairs of a leaf cluster wait: with those numbered from first on, of which bits of a mask are
+   set. They are all above it; or all below it, and then they share no points with it. */
 static inline void SC_KERNEL(add_leaf_pairs)(sc_query_state *state, uint32_t leaf, uint32_t first,
                                              unsigned mask)
 {

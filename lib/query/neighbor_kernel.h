@@ -1,29 +1,34 @@
 /*
- * Pairs of triangles of two leaf clusters, or of one, that share points: sixteen at a time, which have nothing in common
- * but what they share. See query_kernels.h.
+ * Pairs of triangles of two leaf clusters, or of one, that share points: sixteen at a time, which
+ * have nothing in common but what they share. See query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * Two triangles t and u that share one point p are looked at from there: a_0 and a_1 lead from p to the other corners of t,
- * b_0 and b_1 to those of u. They have p alone in common if
+ * Two triangles t and u that share one point p are looked at from there: a_0 and a_1 lead from p to
+ * the other corners of t, b_0 and b_1 to those of u. They have p alone in common if
  *
  * - along some direction m, both a are strictly ahead of p and both b behind;
  * - both b are strictly on one side of the plane of t, or both a on one of that of u;
- * - in a projection, the line of one of the four has the other of its triangle strictly on one side, and both of the other
- *   triangle strictly on the other.
+ * - in a projection, the line of one of the four has the other of its triangle strictly on one
+ *   side, and both of the other triangle strictly on the other.
  *
- * Of two that share an edge, p is one end of it, a_0 the other, and a_1 leads to the third corner of t; b_0 and b_1 are
- * both set to what leads to that of u. They have nothing else in common if both b are strictly on one side of the plane
- * of t, or in a projection the line of a_0 has a_1 strictly on one side and both b on the other. All other tests fail of
- * themselves, b_0 and b_1 being the same, but the first and that by the line of a_1, which do not count. (If both have p
- * twice, a_0 is zero, and all fail; each edge of either has a point of the other, as if they shared an edge.)
+ * Of two that share an edge, p is one end of it, a_0 the other, and a_1 leads to the third corner
+ * of t; b_0 and b_1 are both set to what leads to that of u. They have nothing else in common if
+ * both b are strictly on one side of the plane of t, or in a projection the line of a_0 has a_1
+ * strictly on one side and both b on the other. All other tests fail of themselves, b_0 and b_1
+ * being the same, but the first and that by the line of a_1, which do not count. (If both have p
+ * twice, a_0 is zero, and all fail; each edge of either has a point of the other, as if they shared
+ * an edge.)
  *
- * In single precision. A component of a_k or b_k is off by EDGE and its own rounding; the bounds of planes and sides are
- * derived in sixteen_kernel.h, in the terms of which the product of three meets eight roundings here: 8.01 v |e|1 |f|1 D
- * <= 12.1 v D^2 S; that of a plane is below S (4 EDGE (D + EDGE) + 13 v D^2) + 7 EDGE^2 (D + EDGE), however it is rounded.
- * The direction m is any, hence has no error: m . a is off by |m|1 (EDGE + 4.1 v D) and a few FLT_MIN if products underflow.
+ * In single precision. A component of a_k or b_k is off by EDGE and its own rounding; the bounds of
+ * planes and sides are derived in sixteen_kernel.h, in the terms of which the product of three
+ * meets eight roundings here: 8.01 v |e|1 |f|1 D <= 12.1 v D^2 S; that of a plane is below S (4
+ * EDGE (D + EDGE) + 13 v D^2) + 7 EDGE^2 (D + EDGE), however it is rounded. The direction m is any,
+ * hence has no error: m . a is off by |m|1 (EDGE + 4.1 v D) and a few FLT_MIN if products
+ * underflow.
  *
- * A direction tells most of them apart. The others, of whatever leaf clusters, wait until there are sixteen.
+ * A direction tells most of them apart. The others, of whatever leaf clusters, wait until there are
+ * sixteen.
  */
 
 /* Sixteen pairs, as above; and which are of such that share just a point, or an edge. */
@@ -32,13 +37,14 @@ typedef struct SC_KERNEL(neighbors) {
     unsigned point, edge;
 } SC_KERNEL(neighbors);
 
-/* Numbers of these: of p, of both ends of a and of b among the points of their leaf cluster, and of t and u among its
-   triangles. */
+/* Numbers of these: of p, of both ends of a and of b among the points of their leaf cluster, and of
+   t and u among its triangles. */
 typedef struct SC_KERNEL(neighbor_rows) {
     lanes_bytes row[SC_NEIGHBORS_ROWS];
 } SC_KERNEL(neighbor_rows);
 
-/* Pairs that no direction tells apart, of any leaf clusters. Behind the last are such as were here before. */
+/* Pairs that no direction tells apart, of any leaf clusters. Behind the last are such as were here
+   before. */
 typedef struct SC_KERNEL(open_neighbors) {
     uint32_t number[SC_NEIGHBORS_ROWS]
                    [2 * SC_LANES_COUNT]; /* as above, of all points and triangles */
@@ -46,8 +52,8 @@ typedef struct SC_KERNEL(open_neighbors) {
     unsigned count;
 } SC_KERNEL(open_neighbors);
 
-/* A leaf cluster: where its points are, which are the corners of its triangles, and what these are called: points of two
-   clusters, or of one, are the same if they have the same name. */
+/* A leaf cluster: where its points are, which are the corners of its triangles, and what these are
+   called: points of two clusters, or of one, are the same if they have the same name. */
 typedef struct SC_KERNEL(neighborhood) {
     const float *at;
     lanes_triples corner, name;
@@ -82,7 +88,8 @@ static inline unsigned SC_KERNEL(just_two)(const unsigned x[3])
     return (x[0] | x[1] | x[2]) & ~(x[0] ^ x[1] ^ x[2]);
 }
 
-/* Turns corners so that they begin with the first or the second where that is to be, else the last. */
+/* Turns corners so that they begin with the first or the second where that is to be, else the
+   last. */
 static inline void SC_KERNEL(turn)(lanes_bytes first, lanes_bytes second,
                                    const lanes_bytes corner[3], lanes_bytes turned[3])
 {
@@ -179,7 +186,8 @@ static inline lanes SC_KERNEL(dot)(const lanes x[3], const lanes y[3])
                      lanes_multiply(x[2], y[2]));
 }
 
-/* The lanes in which t is certainly ahead of p and u behind, along the direction from the middle of u to that of t. */
+/* The lanes in which t is certainly ahead of p and u behind, along the direction from the middle of
+   u to that of t. */
 static inline unsigned SC_KERNEL(direction_parts)(const SC_KERNEL(neighbors) * x, float extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
@@ -303,7 +311,8 @@ static inline unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, lan
     return apart;
 }
 
-/* Takes those of the last pairs that are open, sixteen or all, that may meet outside of what they share. */
+/* Takes those of the last pairs that are open, sixteen or all, that may meet outside of what they
+   share. */
 static void SC_KERNEL(settle_neighbors)(sc_query_state *state, SC_KERNEL(open_neighbors) * open)
 {
     const unsigned some = open->count < SC_LANES_COUNT ? open->count : SC_LANES_COUNT;
@@ -387,8 +396,8 @@ static inline unsigned SC_KERNEL(lanes_before)(unsigned at, unsigned end)
     return end - at < SC_LANES_COUNT ? (1u << (end - at)) - 1u : 0xffffu;
 }
 
-/* Takes those of pairs of triangles with these numbers, of two leaf clusters or one, that may meet outside of what they
-   share. */
+/* Takes those of pairs of triangles with these numbers, of two leaf clusters or one, that may meet
+   outside of what they share. */
 static void SC_KERNEL(take_neighbors)(sc_query_state *state, const sc_leaf_pair *p, uint8_t *of_a,
                                       uint8_t *of_b, unsigned count,
                                       SC_KERNEL(open_neighbors) * open)

@@ -1,28 +1,34 @@
 /*
- * Whether a leaf cluster's triangles have nothing in common but what they share, by its outline. See query_kernels.h.
+ * Whether a leaf cluster's triangles have nothing in common but what they share, by its outline.
+ * See query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * All is seen along the mean normal of the cluster, or nearly, in single precision on the points in the unit box. If all
- * triangles face the viewer, so many are over a place as the outline winds round it; and if that is a star, it winds round
- * no place twice and comes to none twice, so that triangles meet in no more than points and edges that they share: see
- * query/star.c, which argues with any set of triangles. So some may be added that are not there: where the outline turns in
- * at a point, the triangle of that and of those before and behind it. Without the point, the outline is that of both.
+ * All is seen along the mean normal of the cluster, or nearly, in single precision on the points in
+ * the unit box. If all triangles face the viewer, so many are over a place as the outline winds
+ * round it; and if that is a star, it winds round no place twice and comes to none twice, so that
+ * triangles meet in no more than points and edges that they share: see query/star.c, which argues
+ * with any set of triangles. So some may be added that are not there: where the outline turns in at
+ * a point, the triangle of that and of those before and behind it. Without the point, the outline
+ * is that of both.
  *
- * Points at which the outline turns in are dropped, of two that follow each other the first; it is a star if seen from the
- * middle each edge runs counter-clockwise, and once round if one of them comes from below or level with the middle to above.
- * A star does not cease to be one thereby.
+ * Points at which the outline turns in are dropped, of two that follow each other the first; it is
+ * a star if seen from the middle each edge runs counter-clockwise, and once round if one of them
+ * comes from below or level with the middle to above. A star does not cease to be one thereby.
  *
- * The directions c that make the two coordinates are any, hence have no error, and so is the middle. With v = 2^-24, let D
- * bound the computed coordinates of points relative to the middle, and C the larger |c|1. A coordinate of a point is off by
- * 3e-8, which is there after the middle is subtracted, and by v D; the one in the plane by 3e-8 C + 1.01 v C D of that, and
- * by rounding 3.01 v C D: d <= 3e-8 C + 4.02 v C D in all. It is at most M = 1.01 C D. A product of vectors between points has
- * components up to 2 M, off by e = 2 d + 2.01 v M: moving them changes it by 8 M e + 2 e^2, and it is rounded by 16.1 v M^2.
- * With E = d + 2.1 v M <= C (3e-8 + 6.2 v D) that is below 16 M E + 8 E^2; and so are products of vectors from the middle. What
- * underflows is within a few FLT_MIN.
+ * The directions c that make the two coordinates are any, hence have no error, and so is the
+ * middle. With v = 2^-24, let D bound the computed coordinates of points relative to the middle,
+ * and C the larger |c|1. A coordinate of a point is off by 3e-8, which is there after the middle is
+ * subtracted, and by v D; the one in the plane by 3e-8 C + 1.01 v C D of that, and by rounding 3.01
+ * v C D: d <= 3e-8 C + 4.02 v C D in all. It is at most M = 1.01 C D. A product of vectors between
+ * points has components up to 2 M, off by e = 2 d + 2.01 v M: moving them changes it by 8 M e + 2
+ * e^2, and it is rounded by 16.1 v M^2. With E = d + 2.1 v M <= C (3e-8 + 6.2 v D) that is below 16
+ * M E + 8 E^2; and so are products of vectors from the middle. What underflows is within a few
+ * FLT_MIN.
  *
- * All signs hold for each place that the points can be at, up to these errors. If they are moved from the computed places to
- * the true ones, every edge goes on running counter-clockwise about the middle, so that they are as often round.
+ * All signs hold for each place that the points can be at, up to these errors. If they are moved
+ * from the computed places to the true ones, every edge goes on running counter-clockwise about the
+ * middle, so that they are as often round.
  */
 
 /* Of so many points in a circle, which one is next. */
@@ -115,7 +121,8 @@ static inline int SC_KERNEL(all_face)(const SC_KERNEL(plane_points) * p, const u
     return lanes_every(lanes_below(lanes_all(p->bound), SC_KERNEL(area_of)(x[0], x[1], x[2])));
 }
 
-/* Whether so many points in a circle, listed from the second on, certainly make a star when some are dropped. */
+/* Whether so many points in a circle, listed from the second on, certainly make a star when some
+   are dropped. */
 static inline int SC_KERNEL(is_star)(const SC_KERNEL(plane_points) * p, lanes_bytes second,
                                      unsigned count)
 {

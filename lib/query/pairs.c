@@ -12,7 +12,8 @@
 #include "base/sort.h"
 #include "query/filter.h"
 
-/* Entries of the caller's array are claimed for many pairs at once, so that no two workers write to one. */
+/* Entries of the caller's array are claimed for many pairs at once, so that no two workers write to
+   one. */
 static void deliver(sc_query_state *state)
 {
     sc_workspace *w = state->workspace;
@@ -95,7 +96,8 @@ static void order_pairs(void *context, uint64_t first, uint64_t count)
     sc_sort_pairs((sc_pair *)context + first, count);
 }
 
-/* With room besides, one thread takes no longer than two, each of which needs what the other has in its cache. */
+/* With room besides, one thread takes no longer than two, each of which needs what the other has in
+   its cache. */
 void sc_pairs_finish(sc_query_state *state, const sc_tasks *tasks)
 {
     const uint64_t count = state->count < state->capacity ? state->count : state->capacity;

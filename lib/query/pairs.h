@@ -24,7 +24,8 @@ static inline int sc_pairs_are_counted(const sc_query_state *state)
 /* Takes several such. */
 void sc_pairs_take_all(sc_query_state *state, const sc_pair *pairs, uint32_t count);
 
-/* Sorts the array, at the end of a query: what is known of the pose is lost. Tasks, or NULL, share in that if there are very many. */
+/* Sorts the array, at the end of a query: what is known of the pose is lost. Tasks, or NULL, share
+   in that if there are very many. */
 void sc_pairs_finish(sc_query_state *state, const sc_tasks *tasks);
 
 #endif

@@ -3,14 +3,15 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The large nodes at the top of the test tree are opened one after the other by the calling thread; their
- * contour tests are a job, again and again, since what fails leads to further large nodes. What hangs below is
- * a list of parts, each of which a worker walks through by itself, with a state, a stack and scratch of its own. The
- * list depends on the model and the pose only. As with one thread, nodes of one patch, and leaf clusters by themselves, wait until
- * all others are done: which patches were culled by then is the union of what workers wrote down.
+ * The large nodes at the top of the test tree are opened one after the other by the calling thread;
+ * their contour tests are a job, again and again, since what fails leads to further large nodes.
+ * What hangs below is a list of parts, each of which a worker walks through by itself, with a
+ * state, a stack and scratch of its own. The list depends on the model and the pose only. As with
+ * one thread, nodes of one patch, and leaf clusters by themselves, wait until all others are done:
+ * which patches were culled by then is the union of what workers wrote down.
  *
- * No locks: a worker writes to what is its own, and to parts of the caller's array that it claims by an atomic
- * addition, for many pairs at a time. What is left in the end goes behind them.
+ * No locks: a worker writes to what is its own, and to parts of the caller's array that it claims
+ * by an atomic addition, for many pairs at a time. What is left in the end goes behind them.
  */
 #include "query/parallel.h"
 
@@ -29,9 +30,10 @@ typedef char state_fits[sizeof(sc_query_state) <= SC_STATE_ROOM ? 1 : -1];
 /* Models with fewer leaf clusters are not worth a job. */
 enum { LEAVES_MIN = 128 };
 
-/* A patch with more than one of so many leaf clusters is large: in a node of the test tree; in a pair of patches, most of which
-   turn out to have little in common, so that listing smaller ones takes longer than it saves; and against itself, which is as much
-   work as there are leaf clusters, so that no part that is left for the end takes long. */
+/* A patch with more than one of so many leaf clusters is large: in a node of the test tree; in a
+   pair of patches, most of which turn out to have little in common, so that listing smaller ones
+   takes longer than it saves; and against itself, which is as much work as there are leaf clusters,
+   so that no part that is left for the end takes long. */
 enum { LARGE_IN_NODE = 32, LARGE_IN_PAIR = 16, LARGE_BY_ITSELF = 128 };
 
 /* Fewer contour tests are not worth a job. */
@@ -120,8 +122,8 @@ static sc_query_state *begin_part(const plan *p, uint32_t worker)
     return s;
 }
 
-/* What waits to be compared or decided goes on waiting if it is little, unless the first hit ends the query: many at once
-   take less time. */
+/* What waits to be compared or decided goes on waiting if it is little, unless the first hit ends
+   the query: many at once take less time. */
 static void end_part(sc_query_state *s)
 {
     const sc_workspace *w = s->workspace;
@@ -132,8 +134,8 @@ static void end_part(sc_query_state *s)
     if (s->timed) s->stats.nanoseconds[s->task] += sc_clock_nanoseconds() - s->last_time;
 }
 
-/* Runs a job; some: of parts that are taken some at once. The calling thread's clock stands still: what workers do is in their own
-   statistics. */
+/* Runs a job; some: of parts that are taken some at once. The calling thread's clock stands still:
+   what workers do is in their own statistics. */
 static void run_job(plan *p, void (*run)(void *context, uint32_t part, uint32_t worker),
                     uint32_t count, int some)
 {
@@ -183,7 +185,8 @@ static void run_part(sc_query_state *s, const sc_part *part)
     }
 }
 
-/* Some parts, whose nodes wait in the walk together: contour tests take less time when there are many. */
+/* Some parts, whose nodes wait in the walk together: contour tests take less time when there are
+   many. */
 static void run_parts(void *context, uint32_t part, uint32_t worker)
 {
     plan *p = (plan *)context;
@@ -223,8 +226,8 @@ static void run_waiting(void *context, uint32_t part, uint32_t worker)
     end_part(s);
 }
 
-/* Decides all that waits, or drops it if the query is to end: the next one begins with nothing. Mostly workers have done so when they
-   saw that no part was left. */
+/* Decides all that waits, or drops it if the query is to end: the next one begins with nothing.
+   Mostly workers have done so when they saw that no part was left. */
 static void do_waiting(plan *p)
 {
     uint32_t worker, waits = 0;
@@ -346,12 +349,14 @@ static void sort_out_pairs(plan *p)
     }
 }
 
-/* What waits in the walk of the calling thread: what is large is opened or tested next, the rest are parts. There is
-   room for those of nodes, as a job of parts would go on with that walk. Last things first: so the first child is opened
-   first, and parts come about as leaf clusters are numbered. Then each worker finds in its part of the list what it did
-   of the pose. Of open nodes there are no more than that: those that failed a test, SC_PARTS_MAX at most, are opened into nodes to
-   test, as what has a direction in common still has below, but for one of two patches in place of one that has one patch; and
-   before any test they are brothers on the way to one node, four at each level at most. */
+/* What waits in the walk of the calling thread: what is large is opened or tested next, the rest
+   are parts. There is room for those of nodes, as a job of parts would go on with that walk. Last
+   things first: so the first child is opened first, and parts come about as leaf clusters are
+   numbered. Then each worker finds in its part of the list what it did of the pose. Of open nodes
+   there are no more than that: those that failed a test, SC_PARTS_MAX at most, are opened into
+   nodes to test, as what has a direction in common still has below, but for one of two patches in
+   place of one that has one patch; and before any test they are brothers on the way to one node,
+   four at each level at most. */
 static void sort_out(plan *p)
 {
     const sc_model *model = p->state->model;
@@ -384,8 +389,9 @@ static void open_nodes(plan *p)
     }
 }
 
-/* Lists the large nodes of one patch that wait, and drops all that are culled by now. No level has as many large patches as
-   LARGE_IN_NODE, and there are SC_DEPTH_MAX levels at most: the list has room. */
+/* Lists the large nodes of one patch that wait, and drops all that are culled by now. No level has
+   as many large patches as LARGE_IN_NODE, and there are SC_DEPTH_MAX levels at most: the list has
+   room. */
 static void list_selfs(plan *p)
 {
     const sc_pair *patches = sc_model_node_patches(p->state->model);
@@ -440,8 +446,9 @@ static void join_marks(plan *p)
     }
 }
 
-/* What waited with a worker until all else was done: a part is some nodes of one patch, of which those are tested that are not
-   culled by now; or some leaf clusters to be looked at by themselves. */
+/* What waited with a worker until all else was done: a part is some nodes of one patch, of which
+   those are tested that are not culled by now; or some leaf clusters to be looked at by
+   themselves. */
 static void run_last(void *context, uint32_t part, uint32_t worker)
 {
     plan *p = (plan *)context;
@@ -535,8 +542,8 @@ static void walk_boxes(plan *p)
 
 /* ---- all together ---- */
 
-/* Adds up what the workers counted, and puts the last of their pairs into the caller's array. Returns 0 if that
-   is too short. */
+/* Adds up what the workers counted, and puts the last of their pairs into the caller's array.
+   Returns 0 if that is too short. */
 static int gather(plan *p)
 {
     sc_query_state *state = p->state;

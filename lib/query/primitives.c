@@ -6,7 +6,8 @@
  * In general position an edge p q meets a triangle t if p and q are on different sides of its plane
  * and the three signs orient3d(p, q, t_k, t_k+1), which say on which side of the line p q the sides
  * of t pass, do not contradict each other. The signs of a pair of triangles are shared by its six
- * edges: six of points against planes and nine of edges against edges, the latter found when needed.
+ * edges: six of points against planes and nine of edges against edges, the latter found when
+ * needed.
  *
  * What is coplanar is decided in a projection along an axis along which it does not collapse, what
  * is collinear by comparing points in lexicographic order, which is their order along the line.
@@ -197,7 +198,8 @@ static void find_sides(int side[3], const double *const points[3], const sc_pred
     }
 }
 
-/* Whether the points of a plane are certainly not on one line: a component of the normal is not zero. */
+/* Whether the points of a plane are certainly not on one line: a component of the normal is not
+   zero. */
 static int has_area(const sc_predicates_plane *plane)
 {
     int certain = 0;

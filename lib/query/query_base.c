@@ -1,5 +1,6 @@
 /*
- * The inner loops of a query, for every machine: by SSE2 on x86-64, else as the compiler can. See query_kernels.h.
+ * The inner loops of a query, for every machine: by SSE2 on x86-64, else as the compiler can. See
+ * query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -23,8 +23,9 @@ typedef struct sc_query_kernels {
     void (*decide)(const sc_pair_lanes *pairs, sc_verdict *verdict);
     /* Projects the listed points of a contour, and sets its error. */
     void (*project)(sc_simple_contour *contour, const sc_workspace *workspace);
-    /* Whether sc_simple_are_apart is true of all pairs of edges whose boxes overlap, in three steps: the first of one
-       contour, the second of another, all that is left of a third; each may be NULL. */
+    /* Whether sc_simple_are_apart is true of all pairs of edges whose boxes overlap, in three
+       steps: the first of one contour, the second of another, all that is left of a third; each may
+       be NULL. */
     void (*look_at_edges)(sc_simple_contour *first, sc_simple_contour *second,
                           sc_simple_contour *last);
     /* Bits of contours that certainly are simple, of loops in one piece with so many sixteens of

@@ -1,15 +1,15 @@
 /*
- * What is kept of a leaf cluster for tests of its triangles: their boxes, their planes, and a slab that it is in.
- * See query_kernels.h and pose/workspace.h.
+ * What is kept of a leaf cluster for tests of its triangles: their boxes, their planes, and a slab
+ * that it is in. See query_kernels.h and pose/workspace.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * Slabs are found in single precision on the points in the unit box. Each coordinate is off by POINT = 3e-8 at most;
- * v = 2^-24.
+ * Slabs are found in single precision on the points in the unit box. Each coordinate is off by
+ * POINT = 3e-8 at most; v = 2^-24.
  *
- * A place along a direction n of the points of a cluster, x in the unit box: off by POINT |n|1, and by rounding 3.01 v |n|1,
- * 2.1e-7 |n|1 in all, and a few FLT_MIN for products that underflow. Two of them and the sum of one with the bound are
- * below 5e-7 |n|1 + 16 FLT_MIN.
+ * A place along a direction n of the points of a cluster, x in the unit box: off by POINT |n|1, and
+ * by rounding 3.01 v |n|1, 2.1e-7 |n|1 in all, and a few FLT_MIN for products that underflow. Two
+ * of them and the sum of one with the bound are below 5e-7 |n|1 + 16 FLT_MIN.
  */
 /* Bit k: box i of a overlaps box j + k of b, for k from 0 to 15. */
 static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const sc_boxes *b,
@@ -45,7 +45,8 @@ static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t
                      sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
 }
 
-/* Boxes of the triangles of a leaf cluster, by their corners; what is no triangle is NaN and overlaps nothing. */
+/* Boxes of the triangles of a leaf cluster, by their corners; what is no triangle is NaN and
+   overlaps nothing. */
 static inline void SC_KERNEL(make_boxes)(lanes x[3][3], uint32_t triangles, sc_leaf_ready *ready)
 {
     const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(FLT_MIN); /* see base/boxes.h */
@@ -206,7 +207,8 @@ static SC_NOINLINE void SC_KERNEL(make_slabs)(const sc_query_state *state, const
     for (i = 0; i < bare_count; i++) SC_KERNEL(make_slab)(state, bare[i], w->ready + bare[i]);
 }
 
-/* Not 0 if all points of a leaf cluster are certainly before a slab, or behind. Without branches, as either may be. */
+/* Not 0 if all points of a leaf cluster are certainly before a slab, or behind. Without branches,
+   as either may be. */
 static inline unsigned SC_KERNEL(is_beside)(const sc_query_state *state, uint32_t leaf,
                                             const sc_leaf_slab *slab)
 {
@@ -215,15 +217,16 @@ static inline unsigned SC_KERNEL(is_beside)(const sc_query_state *state, uint32_
            (unsigned)(lanes_every(lanes_below(lanes_all(slab->ends[1]), along)));
 }
 
-/* Whether the slab of one of two leaf clusters, a < b, certainly has the other on one side. If they share a point, it
-   is in both, to the last bit. */
+/* Whether the slab of one of two leaf clusters, a < b, certainly has the other on one side. If they
+   share a point, it is in both, to the last bit. */
 static inline unsigned SC_KERNEL(slabs_part)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
     const sc_leaf_slab *of_a = SC_KERNEL(slab)(state, a, 0), *of_b = SC_KERNEL(slab)(state, b, 1);
     return SC_KERNEL(is_beside)(state, b, of_a) | SC_KERNEL(is_beside)(state, a, of_b);
 }
 
-/* Bounds the largest extent of two leaf clusters together, or of one, that are ready and whose boxes overlap. */
+/* Bounds the largest extent of two leaf clusters together, or of one, that are ready and whose
+   boxes overlap. */
 static inline float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t b)
 {
     const sc_leaf_known *known = state->workspace->known;

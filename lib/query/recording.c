@@ -12,7 +12,8 @@
 
 static const char RECORD_MAGIC[8] = {'\x93', 'S', 'C', 'R', '\r', '\n', '\x1a', '\n'};
 
-/* Raised whenever what follows the header changes, but for the model, which has a version of its own. */
+/* Raised whenever what follows the header changes, but for the model, which has a version of its
+   own. */
 enum { RECORD_VERSION = 1 };
 
 /* What of a filter there is. */

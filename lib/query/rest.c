@@ -3,9 +3,9 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The test tree is walked as by a query (paper, section 7) that culls nothing: once a node passes the
- * orientation test, its projection is that of all below. A query in another pose may have another
- * projection there; the cache is a heuristic for culling and decides no answer.
+ * The test tree is walked as by a query (paper, section 7) that culls nothing: once a node passes
+ * the orientation test, its projection is that of all below. A query in another pose may have
+ * another projection there; the cache is a heuristic for culling and decides no answer.
  */
 #include "query/rest.h"
 

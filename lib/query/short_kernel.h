@@ -1,27 +1,33 @@
 /*
- * Whether two leaf clusters that share points have nothing in common but what they share, by the contour of both: whether
- * that is simple, all of its edges against all, sixteen at a time. See query_kernels.h.
+ * Whether two leaf clusters that share points have nothing in common but what they share, by the
+ * contour of both: whether that is simple, all of its edges against all, sixteen at a time. See
+ * query_kernels.h.
  *
  * SPDX-License-Identifier: MIT
  *
- * If all triangles of both face a direction, as their normal cones tell, so many are over a place as the contour winds round
- * it; and if that is one loop that is simple, they meet in no more than points and edges that they share: see query/simple.h.
- * This is so of any triangles, hence some may be added that are not there: where the contour turns in at a point, the triangle
- * of that and of those before and behind it. Without the point, the contour is that of all. So such points are dropped, of
- * those that follow each other the first; most contours of two leaf clusters have sixteen points or fewer then.
+ * If all triangles of both face a direction, as their normal cones tell, so many are over a place
+ * as the contour winds round it; and if that is one loop that is simple, they meet in no more than
+ * points and edges that they share: see query/simple.h. This is so of any triangles, hence some may
+ * be added that are not there: where the contour turns in at a point, the triangle of that and of
+ * those before and behind it. Without the point, the contour is that of all. So such points are
+ * dropped, of those that follow each other the first; most contours of two leaf clusters have
+ * sixteen points or fewer then.
  *
- * A loop is simple if edges that follow each other turn at the point between or go straight on, and of each two others
- * one is on one side of the line of the other.
+ * A loop is simple if edges that follow each other turn at the point between or go straight on, and
+ * of each two others one is on one side of the line of the other.
  *
- * The projection is as in query/simple.c: a coordinate is at most 1.01 D, where D is the largest component of any point of the
- * clusters relative to the middle, and off by d = error >= 4.1 v D, v = 2^-24. Let e lead from point p to the next. On which
- * side of its line a point q is tells e x q, compared with e x p. Moving points changes e x (q - p) by
- * 2 d (|e|1 + |q - p|1) + 8 d^2; by rounding, e is off by v |e|1 times what it is multiplied with, and either product by
- * 3.01 v |e|1 1.01 D; to add a bound to one takes v (1.02 |e|1 D + bound). As |q - p|1 <= 4.04 D, all is below
- * d (4 |e|1 + 8.1 D + 8.1 d), and so is what a product e . f of two edges is off by; what underflows is within a few FLT_MIN.
+ * The projection is as in query/simple.c: a coordinate is at most 1.01 D, where D is the largest
+ * component of any point of the clusters relative to the middle, and off by d = error >= 4.1 v D, v
+ * = 2^-24. Let e lead from point p to the next. On which side of its line a point q is tells e x q,
+ * compared with e x p. Moving points changes e x (q - p) by 2 d (|e|1 + |q - p|1) + 8 d^2; by
+ * rounding, e is off by v |e|1 times what it is multiplied with, and either product by 3.01 v |e|1
+ * 1.01 D; to add a bound to one takes v (1.02 |e|1 D + bound). As |q - p|1 <= 4.04 D, all is below
+ * d (4 |e|1 + 8.1 D + 8.1 d), and so is what a product e . f of two edges is off by; what
+ * underflows is within a few FLT_MIN.
  */
 
-/* Points of a contour that is looked at, at most; edges of one of which all are compared; pairs of clusters at a time. */
+/* Points of a contour that is looked at, at most; edges of one of which all are compared; pairs of
+   clusters at a time. */
 enum {
     SC_KERNEL(SHORT_POINTS) = 2 * SC_LANES_COUNT - 3,
     SC_KERNEL(SHORT_EDGES) = SC_LANES_COUNT,
@@ -85,7 +91,8 @@ static inline lanes SC_KERNEL(measure)(const sc_simple_some_axes *axes, int one,
     return lanes_add(sum, lanes_multiply(lanes_all(axes->at[one][2][projection]), d[2]));
 }
 
-/* Sees a loop of c->count points of two leaf clusters, a < b. What is read beyond its end stands in the model, too. */
+/* Sees a loop of c->count points of two leaf clusters, a < b. What is read beyond its end stands in
+   the model, too. */
 static inline void SC_KERNEL(see_loop)(const sc_query_state *state, const sc_near_pair *p,
                                        const sc_simple_some_axes *axes, unsigned projection,
                                        const uint16_t *loop, SC_KERNEL(short_points) * c)
@@ -172,8 +179,8 @@ static inline void SC_KERNEL(write_edges)(const SC_KERNEL(short_points) * c,
     }
 }
 
-/* Above 0 where each of sixteen edges certainly is on one side of the line of that so many further on, or that of its own;
-   at is where the other begins, and then where it ends. */
+/* Above 0 where each of sixteen edges certainly is on one side of the line of that so many further
+   on, or that of its own; at is where the other begins, and then where it ends. */
 static SC_INLINE lanes SC_KERNEL(room_between)(const SC_KERNEL(short_points) * c,
                                                const SC_KERNEL(short_edges) * e, unsigned on,
                                                lanes *at)
@@ -215,7 +222,8 @@ static inline int SC_KERNEL(is_simple)(const SC_KERNEL(short_points) * c,
     return !(~lanes_bits(lanes_below(lanes_all(0), least)) & ((1u << c->count) - 1u));
 }
 
-/* The contour of two leaf clusters that share points: a loop, and how many points it has, 0 if it will not do. */
+/* The contour of two leaf clusters that share points: a loop, and how many points it has, 0 if it
+   will not do. */
 static inline unsigned SC_KERNEL(find_loop)(const sc_model *model, const sc_near_pair *p,
                                             const uint16_t **loop)
 {
@@ -226,8 +234,9 @@ static inline unsigned SC_KERNEL(find_loop)(const sc_model *model, const sc_near
     return count > 2 && count <= SC_KERNEL(SHORT_POINTS) ? count : 0;
 }
 
-/* Of some pairs, of which all triangles face a direction, those that have certainly nothing in common but what they share.
-   Each step is made for all of them before the next: what was just written is read slowly in other pieces. */
+/* Of some pairs, of which all triangles face a direction, those that have certainly nothing in
+   common but what they share. Each step is made for all of them before the next: what was just
+   written is read slowly in other pieces. */
 static unsigned SC_KERNEL(find_plain)(const sc_query_state *state, sc_near_pair *const pair[],
                                       unsigned count)
 {
@@ -266,7 +275,8 @@ static unsigned SC_KERNEL(find_plain)(const sc_query_state *state, sc_near_pair 
     return plain;
 }
 
-/* Asks for memory that two leaf clusters need here, in steps, of which each reads what the one before asked for. */
+/* Asks for memory that two leaf clusters need here, in steps, of which each reads what the one
+   before asked for. */
 enum { SC_KERNEL(SHORT_FETCHES) = 3 };
 static inline void SC_KERNEL(fetch_loop)(const sc_query_state *state, const sc_near_pair *p,
                                          int step)
@@ -297,8 +307,8 @@ static inline void SC_KERNEL(fetch_loop)(const sc_query_state *state, const sc_n
     }
 }
 
-/* Of so many pairs of leaf clusters that wait drops two that have certainly nothing in common but what they share, and marks
-   them: then neither is to be looked at by itself. */
+/* Of so many pairs of leaf clusters that wait drops two that have certainly nothing in common but
+   what they share, and marks them: then neither is to be looked at by itself. */
 static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state, uint32_t waiting)
 {
     enum { DISTANCE = 8 };                              /* pairs between two steps of fetching */

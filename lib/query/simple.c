@@ -3,11 +3,12 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * All tests are in single precision on projected points, relative to a point of the contour and scaled
- * to a size of about one, and hold for every place that the true points can be at, up to a distance of
- * error in each coordinate: they say something about the contour that is, not about the one computed. Edges that
- * share no point must be apart by their boxes, or one on one side of the other's line. The inner loops
- * (query/simple_kernel.h) settle nearly all pairs, sixteen at a time; what they leave comes to sc_simple_are_apart.
+ * All tests are in single precision on projected points, relative to a point of the contour and
+ * scaled to a size of about one, and hold for every place that the true points can be at, up to a
+ * distance of error in each coordinate: they say something about the contour that is, not about the
+ * one computed. Edges that share no point must be apart by their boxes, or one on one side of the
+ * other's line. The inner loops (query/simple_kernel.h) settle nearly all pairs, sixteen at a time;
+ * what they leave comes to sc_simple_are_apart.
  */
 #include "query/simple.h"
 
@@ -87,7 +88,8 @@ void sc_simple_find_loop(sc_simple_contour *c, const sc_model *model, uint32_t n
     c->second = SC_LEAF_POINTS * leaf[patches->b] - c->split;
 }
 
-/* How many places a piece of so many edges takes: its points, the first again, and what fills it up. */
+/* How many places a piece of so many edges takes: its points, the first again, and what fills it
+   up. */
 static uint32_t places_of(uint32_t edges)
 {
     return edges / SC_CONTOUR_GAP * SC_CONTOUR_GAP + SC_CONTOUR_GAP;
@@ -153,10 +155,10 @@ static inline float below_one(float f)
 }
 
 /*
- * The projection x = U . (p - q) of points in the unit box, q being about the middle of the contour and
- * U the integer vector u over a power of two, exactly, so that |U|1 <= 1; and y likewise. A computed coordinate is off
- * by 3e-8 for the place of p, and by the rounding of one difference, one product and two additions: at most
- * 4.01 * 2^-24 |p - q|max, and what underflows.
+ * The projection x = U . (p - q) of points in the unit box, q being about the middle of the contour
+ * and U the integer vector u over a power of two, exactly, so that |U|1 <= 1; and y likewise. A
+ * computed coordinate is off by 3e-8 for the place of p, and by the rounding of one difference, one
+ * product and two additions: at most 4.01 * 2^-24 |p - q|max, and what underflows.
  */
 static inline void set_axis(float axis[3], const float u[3])
 {
@@ -205,9 +207,9 @@ typedef struct vector2 {
 
 /*
  * Vectors between computed points are off by 2 error, and by the rounding of a difference, at most
- * 2^-23 of the largest coordinate, another 2 error: 4 error in all. A cross or dot product of a and b is then off
- * by 4 error (|a|1 + |b|1) + 32 error^2, and by its own rounding, 2.1 * 2^-24 |a|1 |b|max or less, which is below
- * 4.2 error |a|1 as b is at most two coordinates long.
+ * 2^-23 of the largest coordinate, another 2 error: 4 error in all. A cross or dot product of a and
+ * b is then off by 4 error (|a|1 + |b|1) + 32 error^2, and by its own rounding, 2.1 * 2^-24 |a|1
+ * |b|max or less, which is below 4.2 error |a|1 as b is at most two coordinates long.
  */
 static inline float bound_of(vector2 a, vector2 b, float error)
 {
@@ -247,7 +249,8 @@ static int lies_beside(const sc_simple_contour *c, uint32_t i, uint32_t j)
            0;
 }
 
-/* Whether two edges that share a point, the given end of each, certainly do not overlap beyond it. */
+/* Whether two edges that share a point, the given end of each, certainly do not overlap beyond
+   it. */
 static int is_open(const sc_simple_contour *c, uint32_t i, int end_i, uint32_t j, int end_j)
 {
     vector2 at = edge_end(c, i, end_i);
@@ -256,9 +259,10 @@ static int is_open(const sc_simple_contour *c, uint32_t i, int end_i, uint32_t j
 }
 
 /*
- * Edges that share one point: the contour passes it twice, or one of them ends a chain and the other begins it, beyond a gap;
- * these must not fold back. Where it passes it twice, how its edges lie round the point is asked once, of the two that start
- * there, when all were looked at: if they alternate (is_pinch_fine), no two of them have one direction.
+ * Edges that share one point: the contour passes it twice, or one of them ends a chain and the
+ * other begins it, beyond a gap; these must not fold back. Where it passes it twice, how its edges
+ * lie round the point is asked once, of the two that start there, when all were looked at: if they
+ * alternate (is_pinch_fine), no two of them have one direction.
  */
 int sc_simple_are_apart(sc_simple_contour *c, uint32_t i, uint32_t j)
 {
@@ -289,7 +293,8 @@ int sc_simple_note_shared(sc_simple_contour *c, uint32_t i, uint32_t j)
     return 1;
 }
 
-/* The edge that leads to where edge i starts. Chains are closed: before the first of one comes the last. */
+/* The edge that leads to where edge i starts. Chains are closed: before the first of one comes the
+   last. */
 static uint32_t edge_before(const sc_simple_contour *c, uint32_t i)
 {
     if (!c->has_gaps) return (i ? i : c->count) - 1;
@@ -299,13 +304,15 @@ static uint32_t edge_before(const sc_simple_contour *c, uint32_t i)
 }
 
 /*
- * Where the contour passes a point twice, its four edges must alternate round the point, one in, one
- * out: else it crosses itself there. That is so if just one of those that come in is in the sector that begins with the
- * first that goes out, lies to its left, and ends with the second; and then no two of the four have one direction. What is left
- * of the first and right of the second is in it, and what is right of the first and left of the second is not, whatever the sector's angle: edges of flat grids
- * go straight on through the point, and nobody knows whether that is less than half a turn. If it is less for certain, what
- * is right of the first or left of the second is outside; if more, what is left of the first or right of the second is inside.
- * More than four are not looked at.
+ * Where the contour passes a point twice, its four edges must alternate round the point, one in,
+ * one out: else it crosses itself there. That is so if just one of those that come in is in the
+ * sector that begins with the first that goes out, lies to its left, and ends with the second; and
+ * then no two of the four have one direction. What is left of the first and right of the second is
+ * in it, and what is right of the first and left of the second is not, whatever the sector's angle:
+ * edges of flat grids go straight on through the point, and nobody knows whether that is less than
+ * half a turn. If it is less for certain, what is right of the first or left of the second is
+ * outside; if more, what is left of the first or right of the second is inside. More than four are
+ * not looked at.
  */
 static int is_pinch_fine(const sc_simple_contour *c, const sc_pinch *pinch)
 {
@@ -356,8 +363,8 @@ static int find_piece(const sc_simple_contour *c, uint32_t i, piece *p)
     return 1;
 }
 
-/* 1 if a piece certainly runs counter-clockwise, -1 if clockwise, by twice its signed area; 0: neither is certain. Sums
-   are of doubles, so that only errors of vectors count. */
+/* 1 if a piece certainly runs counter-clockwise, -1 if clockwise, by twice its signed area; 0:
+   neither is certain. Sums are of doubles, so that only errors of vectors count. */
 static int turn_of_piece(const sc_simple_contour *c, piece p)
 {
     const vector2 at = edge_end(c, p.begin, 0);
@@ -376,8 +383,8 @@ static int turn_of_piece(const sc_simple_contour *c, piece p)
     return (area > 1.001 * bound) - (area < -1.001 * bound);
 }
 
-/* How often the edges of other pieces go round a point of one; a number that cannot be if that is not
-   certain. They pass it at a distance. */
+/* How often the edges of other pieces go round a point of one; a number that cannot be if that is
+   not certain. They pass it at a distance. */
 static int winding(const sc_simple_contour *c, piece p)
 {
     const vector2 at = edge_end(c, p.begin, 0);
@@ -399,14 +406,15 @@ static int winding(const sc_simple_contour *c, piece p)
 }
 
 /*
- * Each piece by itself is a closed polygon that crosses itself nowhere, so that it winds round no point but once
- * counter-clockwise, or round no point but once clockwise. The contour, the sum of all, winds round no point less than 0
- * times. So if all pieces but one run clockwise, it winds round no point more than once, wherever they lie, and all is well:
- * the longest is not even looked at.
+ * Each piece by itself is a closed polygon that crosses itself nowhere, so that it winds round no
+ * point but once counter-clockwise, or round no point but once clockwise. The contour, the sum of
+ * all, winds round no point less than 0 times. So if all pieces but one run clockwise, it winds
+ * round no point more than once, wherever they lie, and all is well: the longest is not even looked
+ * at.
  *
- * Else: the contour winds round the points beside a piece once more on its left than on its right; as the
- * other pieces wind round it n times, those are n + 1 and n if it runs counter-clockwise, else n and n - 1. That
- * must be 1 and 0.
+ * Else: the contour winds round the points beside a piece once more on its left than on its right;
+ * as the other pieces wind round it n times, those are n + 1 and n if it runs counter-clockwise,
+ * else n and n - 1. That must be 1 and 0.
  */
 static int are_pieces_fine(const sc_simple_contour *c)
 {

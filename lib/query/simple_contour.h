@@ -45,7 +45,8 @@ typedef struct sc_simple_some_axes {
     float at[2][3][SC_DNC_VECTORS];
 } sc_simple_some_axes;
 
-/* The error of a cross or dot product of vectors with these sums of absolute components, see simple.c. */
+/* The error of a cross or dot product of vectors with these sums of absolute components, see
+   simple.c. */
 #define SC_SIMPLE_BOUND 12
 
 /* What computed coordinates are off by, of points that are no further from the middle in any
@@ -80,8 +81,8 @@ static inline uint32_t sc_simple_point(const sc_simple_contour *c, uint32_t numb
 /* Lets bits of is_edge for the first edges follow those of the last. */
 void sc_simple_close_bits(const sc_simple_contour *contour);
 
-/* Makes room for gaps between the pieces of a loop, whose points or places are listed one after the other: each is
-   followed by its first point, up to a multiple of SC_CONTOUR_GAP. */
+/* Makes room for gaps between the pieces of a loop, whose points or places are listed one after the
+   other: each is followed by its first point, up to a multiple of SC_CONTOUR_GAP. */
 void sc_simple_spread(sc_simple_contour *contour);
 
 /* Starts a contour: lists its points, with a gap after each chain. 0: there is none (of
@@ -98,19 +99,20 @@ void sc_simple_find_loop(sc_simple_contour *contour, const sc_model *model, uint
 int sc_simple_start(sc_simple_contour *contour, const sc_model *model, sc_workspace *workspace,
                     uint32_t node);
 
-/* Sets axis: the vectors of a projection over powers of two, exactly, so that their absolute values sum to at most 1;
-   and more than 1/2. */
+/* Sets axis: the vectors of a projection over powers of two, exactly, so that their absolute values
+   sum to at most 1; and more than 1/2. */
 void sc_simple_axes(sc_simple_contour *contour, const sc_projection *projection);
 
 /* About the middle of a contour, of points in the unit box with so many floats each. */
 void sc_simple_middle(const sc_simple_contour *contour, const float *unit, uint32_t stride,
                       float from[3]);
 
-/* Notes that edges i < j share one point, if it is a pinch. 0: too many pinches, or more than two edges that start at
-   one. */
+/* Notes that edges i < j share one point, if it is a pinch. 0: too many pinches, or more than two
+   edges that start at one. */
 int sc_simple_note_shared(sc_simple_contour *contour, uint32_t i, uint32_t j);
 
-/* Whether pinches and pieces are as those of a simple contour, after all edges were found to be so. */
+/* Whether pinches and pieces are as those of a simple contour, after all edges were found to be
+   so. */
 int sc_simple_is_wound_well(const sc_simple_contour *contour);
 
 #endif

@@ -3,13 +3,14 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The edges of a contour, as they are listed, are taken as a cycle. They are compared sixteen at a time with those
- * two and three further on; then boxes of spans of two edges with those of the spans two and three further on; boxes
- * of spans of four, and so on, until there are at most sixteen spans, of which all are compared. Where the boxes of
- * two spans overlap, the spans within are compared, down to edges. All pairs of edges are covered but those that
- * follow each other: take the longest spans that do not follow each other and have one edge each; those of twice the
- * length do, or are the same, and so hold the spans taken, no more than three apart. A last span may be shorter, and
- * brings its ends nearer.
+ * The edges of a contour, as they are listed, are taken as a cycle. They are compared sixteen at a
+ * time with those two and three further on; then boxes of spans of two edges with those of the
+ * spans two and three further on; boxes of spans of four, and so on, until there are at most
+ * sixteen spans, of which all are compared. Where the boxes of two spans overlap, the spans within
+ * are compared, down to edges. All pairs of edges are covered but those that follow each other:
+ * take the longest spans that do not follow each other and have one edge each; those of twice the
+ * length do, or are the same, and so hold the spans taken, no more than three apart. A last span
+ * may be shorter, and brings its ends nearer.
  *
  * Pairs that cannot be told apart here are few and go to sc_simple_are_apart.
  */
@@ -20,7 +21,8 @@ static inline unsigned SC_KERNEL(first_lanes)(uint32_t count)
     return count < SC_LANES_COUNT ? (1u << count) - 1u : 0xffffu;
 }
 
-/* Which of sixteen edges are edges, from any one on; those that follow the last are the first again. */
+/* Which of sixteen edges are edges, from any one on; those that follow the last are the first
+   again. */
 static inline unsigned SC_KERNEL(edges_from)(const sc_simple_contour *c, uint32_t i)
 {
     const uint16_t *is_edge = c->edges->is_edge + i / SC_CONTOUR_BLOCK;
@@ -63,7 +65,8 @@ static inline void SC_KERNEL(load_contour)(const sc_simple_contour *c, const sc_
     for (k = 0; k < 3; k++) unit[k] = lanes_load(row + SC_CONTOUR_BLOCK * k);
 }
 
-/* Places of the points, and the error of their coordinates, see sc_simple_axes. The last is followed by the first. */
+/* Places of the points, and the error of their coordinates, see sc_simple_axes. The last is
+   followed by the first. */
 static void SC_KERNEL(project)(sc_simple_contour *c, const sc_workspace *w)
 {
     const sc_contour_edges *e = c->edges;
@@ -128,10 +131,11 @@ static inline unsigned SC_KERNEL(one_side)(lanes a, lanes b, lanes bound)
 }
 
 /*
- * Bits of the edges e that are certainly apart from f, as one is on one side of the other's line. The sizes of an
- * edge and of a vector from its line to an end of the other edge, of which bound_of wants the sum, are at most those
- * of both edges and of the vector from p to p, but for a rounding that is in the bound's slack. Edges that share a
- * point are not apart: then one of each two products is 0.
+ * Bits of the edges e that are certainly apart from f, as one is on one side of the other's line.
+ * The sizes of an edge and of a vector from its line to an end of the other edge, of which bound_of
+ * wants the sum, are at most those of both edges and of the vector from p to p, but for a rounding
+ * that is in the bound's slack. Edges that share a point are not apart: then one of each two
+ * products is 0.
  */
 static inline unsigned SC_KERNEL(lie_apart)(float error, const SC_KERNEL(sc_edge_lanes) * e,
                                             const SC_KERNEL(sc_edge_lanes) * f)
@@ -155,8 +159,8 @@ static inline unsigned SC_KERNEL(lie_apart)(float error, const SC_KERNEL(sc_edge
 }
 
 /*
- * Bits of edges that may fold back on the next, of those for which that is asked. See is_open in simple.c: with
- * a = -v and b = w, a x b != 0 or a . b < 0 for certain.
+ * Bits of edges that may fold back on the next, of those for which that is asked. See is_open in
+ * simple.c: with a = -v and b = w, a x b != 0 or a . b < 0 for certain.
  */
 static inline unsigned SC_KERNEL(folds)(const sc_simple_contour *c,
                                         const SC_KERNEL(sc_edge_lanes) * e, const lanes next[2],
@@ -210,10 +214,11 @@ static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t 
 }
 
 /*
- * Sixteen edges and those that follow: the next one, and the two after that by their boxes. Two boxes are to be four
- * errors apart: two for the places of points, and two, 2^-23 of a coordinate or more, for the rounding here. So are
- * those of spans, which are two errors larger each; this writes the boxes of spans of two edges, without the end of a
- * second that is none. What else is no edge is in boxes, which does no harm.
+ * Sixteen edges and those that follow: the next one, and the two after that by their boxes. Two
+ * boxes are to be four errors apart: two for the places of points, and two, 2^-23 of a coordinate
+ * or more, for the rounding here. So are those of spans, which are two errors larger each; this
+ * writes the boxes of spans of two edges, without the end of a second that is none. What else is no
+ * edge is in boxes, which does no harm.
  */
 static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
                                            float first[4][SC_LANES_COUNT])
@@ -271,8 +276,8 @@ static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
                                     SC_KERNEL(are_pairs_fine)(c, i, 3, near[1]));
 }
 
-/* All edges with those next to them; and the spans of two edges, of which the first follow the last again, as many as are
-   read beyond it. */
+/* All edges with those next to them; and the spans of two edges, of which the first follow the last
+   again, as many as are read beyond it. */
 static int SC_KERNEL(are_all_near_fine)(sc_simple_contour *c)
 {
     float first[4][SC_LANES_COUNT];
@@ -379,8 +384,9 @@ static inline unsigned SC_KERNEL(overlap_on)(float *const *side, const lanes own
     return SC_KERNEL(overlap_in_plane)(own, other);
 }
 
-/* All spans of 2^level edges, more than SC_LANES_COUNT, with those two and three places on; and the spans of the next
-   level, of two each, followed by the first again. One that is left over is joined with the first, which does no harm. */
+/* All spans of 2^level edges, more than SC_LANES_COUNT, with those two and three places on; and the
+   spans of the next level, of two each, followed by the first again. One that is left over is
+   joined with the first, which does no harm. */
 static int SC_KERNEL(is_level_fine)(sc_simple_contour *c)
 {
     const uint32_t level = c->level++;
@@ -450,8 +456,9 @@ static void SC_KERNEL(look_at_spans)(sc_simple_contour *c)
     if (!c->passed) c->spans = 0;
 }
 
-/* Sets passed, as far as is known after the step that is next for each of three contours; NULL: there is none. What was
-   written in one step is read in the next, when it has arrived in the cache. */
+/* Sets passed, as far as is known after the step that is next for each of three contours; NULL:
+   there is none. What was written in one step is read in the next, when it has arrived in the
+   cache. */
 static void SC_KERNEL(look_at_edges)(sc_simple_contour *first, sc_simple_contour *second,
                                      sc_simple_contour *last)
 {

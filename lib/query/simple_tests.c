@@ -15,8 +15,8 @@
 #include "query/query_kernels.h"
 #include "query/simple.h"
 
-/* Asks for memory that the test of a node will read, in steps 0 to FETCHES - 1, of which each reads what the one before
-   asked for. */
+/* Asks for memory that the test of a node will read, in steps 0 to FETCHES - 1, of which each reads
+   what the one before asked for. */
 enum { FETCHES = 4 };
 static void fetch(const sc_model *model, uint32_t node, int step)
 {
@@ -105,9 +105,10 @@ int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint3
 }
 
 /*
- * Contours of loops that are not long are looked at in turn: while one is projected, the first step is made for the one
- * before, the second for the one before that, and what is left for a third. So no step waits for what another one has just
- * written, which processors do not hand on if it is read in other pieces, and memory has time to arrive.
+ * Contours of loops that are not long are looked at in turn: while one is projected, the first step
+ * is made for the one before, the second for the one before that, and what is left for a third. So
+ * no step waits for what another one has just written, which processors do not hand on if it is
+ * read in other pieces, and memory has time to arrive.
  */
 typedef struct contour_turns {
     sc_simple_contour contour[SC_CONTOUR_TURNS];

@@ -1,41 +1,48 @@
 /*
- * Sixteen pairs of triangles that share nothing: by planes, by the order along the line in which two planes meet, and by
- * sides in a projection. What is certain of them is said; see leaf_kernel.h, which puts them together.
+ * Sixteen pairs of triangles that share nothing: by planes, by the order along the line in which
+ * two planes meet, and by sides in a projection. What is certain of them is said; see
+ * leaf_kernel.h, which puts them together.
  *
  * SPDX-License-Identifier: MIT
  *
- * All of it is in single precision on the points in the unit box. Each coordinate is off by POINT = 3e-8 at most, so
- * that the difference of two is by EDGE = 6e-8. Let D be the largest extent of the two clusters' boxes together, which
- * bounds all differences, and v = 2^-24.
+ * All of it is in single precision on the points in the unit box. Each coordinate is off by POINT =
+ * 3e-8 at most, so that the difference of two is by EDGE = 6e-8. Let D be the largest extent of the
+ * two clusters' boxes together, which bounds all differences, and v = 2^-24.
  *
- * A distance from a plane, up to a factor, is d = (e x f) . w, a sum of six products; e and f are two edges, w runs from
- * their corner p to a corner x of another triangle. With S = |e|1 + |f|1 <= 6 D: moving the components of one of them by
- * EDGE changes d by 2 EDGE |f|1 D, 2 EDGE |e|1 D and EDGE |e|1 |f|1 <= 1.5 EDGE D S at most; of two, by
- * 2 EDGE^2 S + 6 EDGE^2 D; of all three, by 6 EDGE^3: below S 4 EDGE (D + EDGE) + 7 EDGE^2 (D + EDGE) in all. The normal
- * n = e x f is rounded, by 4.01 v |e|1 |f|1 in all, which changes d by 6.02 v D^2 S at most. It is computed as n . x - n . p,
- * where one product is compared with the other and the bound, or their difference with the bound: both products are off by
- * 3.01 v |n|1, as no coordinate is above 1, the sum of one with the bound by 1.01 v |n|1 and a part of the bound, and the
- * difference by a part of itself. |n|1 <= 1.01 |e|1 |f|1 <= S^2 / 3.96: together 1.8 v S^2. All of it is below
- * S (2.1 v S + 4 EDGE (D + EDGE) + 7 v D^2) + 8 EDGE^2 (D + EDGE), however that is rounded.
+ * A distance from a plane, up to a factor, is d = (e x f) . w, a sum of six products; e and f are
+ * two edges, w runs from their corner p to a corner x of another triangle. With S = |e|1 + |f|1 <=
+ * 6 D: moving the components of one of them by EDGE changes d by 2 EDGE |f|1 D, 2 EDGE |e|1 D and
+ * EDGE |e|1 |f|1 <= 1.5 EDGE D S at most; of two, by 2 EDGE^2 S + 6 EDGE^2 D; of all three, by 6
+ * EDGE^3: below S 4 EDGE (D + EDGE) + 7 EDGE^2 (D + EDGE) in all. The normal n = e x f is rounded,
+ * by 4.01 v |e|1 |f|1 in all, which changes d by 6.02 v D^2 S at most. It is computed as n . x - n
+ * . p, where one product is compared with the other and the bound, or their difference with the
+ * bound: both products are off by 3.01 v |n|1, as no coordinate is above 1, the sum of one with the
+ * bound by 1.01 v |n|1 and a part of the bound, and the difference by a part of itself. |n|1 <=
+ * 1.01 |e|1 |f|1 <= S^2 / 3.96: together 1.8 v S^2. All of it is below S (2.1 v S + 4 EDGE (D +
+ * EDGE) + 7 v D^2) + 8 EDGE^2 (D + EDGE), however that is rounded.
  *
- * If the plane of each of two triangles has a corner of the other, its tip, on one side and two on the other, the planes meet
- * in a line, which crosses the edges from the tips inside them; of a triangle, what is between its two crossings is on that
- * line. Let e and f be such edges of either, w run from tip to tip, and x and y be where the line crosses e and f. Then
- * d = (e x f) . w = (e x f) . (y - x), and as n x n' is along the line and (e x f) . (n x n') = -(e . n') (f . n), of
- * which the sign is the same for all four of such edges, the signs of the four d tell in which order x and y are. If they
- * are the same the triangles are apart, if not they meet; and so does an edge whose two signs differ, no matter
- * how contacts are defined, as nothing is zero. With W = |w|1, moving one of the three by EDGE changes d by EDGE |e|1 |f|1,
- * EDGE |e|1 W and EDGE |f|1 W at most; two, by 2 EDGE^2 (|e|1 + |f|1 + W), all three, by 6 EDGE^3. Each of six products meets
- * three differences, two products and three sums: 8.01 v |e|1 |f|1 W. Let S be the sum of that of both triangles, >= |e|1 + |f|1,
- * so that |e|1 |f|1 <= S^2 / 4. With T = S + 2 EDGE and U = W + 4 EDGE all that is below T (1.01 EDGE U + 0.26 EDGE T + 2.03 v T U),
- * rounding of S and W included. Here W is that of two triangles that nearly meet, D that of whole clusters.
+ * If the plane of each of two triangles has a corner of the other, its tip, on one side and two on
+ * the other, the planes meet in a line, which crosses the edges from the tips inside them; of a
+ * triangle, what is between its two crossings is on that line. Let e and f be such edges of either,
+ * w run from tip to tip, and x and y be where the line crosses e and f. Then d = (e x f) . w = (e x
+ * f) . (y - x), and as n x n' is along the line and (e x f) . (n x n') = -(e . n') (f . n), of
+ * which the sign is the same for all four of such edges, the signs of the four d tell in which
+ * order x and y are. If they are the same the triangles are apart, if not they meet; and so does an
+ * edge whose two signs differ, no matter how contacts are defined, as nothing is zero. With W =
+ * |w|1, moving one of the three by EDGE changes d by EDGE |e|1 |f|1, EDGE |e|1 W and EDGE |f|1 W at
+ * most; two, by 2 EDGE^2 (|e|1 + |f|1 + W), all three, by 6 EDGE^3. Each of six products meets
+ * three differences, two products and three sums: 8.01 v |e|1 |f|1 W. Let S be the sum of that of
+ * both triangles, >= |e|1 + |f|1, so that |e|1 |f|1 <= S^2 / 4. With T = S + 2 EDGE and U = W + 4
+ * EDGE all that is below T (1.01 EDGE U + 0.26 EDGE T + 2.03 v T U), rounding of S and W included.
+ * Here W is that of two triangles that nearly meet, D that of whole clusters.
  *
- * If one of the four signs just is not certain, it says no more than on which side of each other two edges pass. If these are in
- * one plane their crossings are one point, where either meets the other's triangle and the contact is not proper; all else is
- * known. Such edges are mostly in a plane across an axis, then their points have a coordinate in common, here too.
+ * If one of the four signs just is not certain, it says no more than on which side of each other
+ * two edges pass. If these are in one plane their crossings are one point, where either meets the
+ * other's triangle and the contact is not proper; all else is known. Such edges are mostly in a
+ * plane across an axis, then their points have a coordinate in common, here too.
  *
- * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4 EDGE D, 2 EDGE^2, and by
- * rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
+ * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4
+ * EDGE D, 2 EDGE^2, and by rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
  *
  * The other bounds are above 1e-21: what underflows does not matter.
  */
@@ -93,7 +100,8 @@ static inline float SC_KERNEL(one_plane_bound)(float size, float extent)
     return size * bound + 8 * edge * edge * (extent + edge);
 }
 
-/* What a determinant of edges of two triangles may be off by; size is that of both, w runs from tip to tip. */
+/* What a determinant of edges of two triangles may be off by; size is that of both, w runs from tip
+   to tip. */
 static inline lanes SC_KERNEL(edges_bound)(lanes size, const lanes w[3])
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
@@ -106,15 +114,16 @@ static inline lanes SC_KERNEL(edges_bound)(lanes size, const lanes w[3])
     return lanes_multiply(t, bound);
 }
 
-/* Of triangles of which the plane of another splits the corners: the one alone on its side, and the edges from there to the
-   next corner and to the one after. */
+/* Of triangles of which the plane of another splits the corners: the one alone on its side, and the
+   edges from there to the next corner and to the one after. */
 typedef struct SC_KERNEL(tips) {
     lanes at[3], edge[2][3];
     unsigned is[2];         /* the lanes in which the corner is the first, and the second */
     unsigned beside, split; /* where all corners are certainly on one side, or certainly not */
 } SC_KERNEL(tips);
 
-/* Of first triangles with the second's planes, s = 0, or the other way round. Sets size to that of the latter. */
+/* Of first triangles with the second's planes, s = 0, or the other way round. Sets size to that of
+   the latter. */
 static SC_INLINE void SC_KERNEL(find_tips)(const SC_KERNEL(sixteen) * sixteen, int s, int two,
                                            SC_KERNEL(tips) * tips, lanes *size)
 {
@@ -160,15 +169,15 @@ static SC_INLINE void SC_KERNEL(find_tips)(const SC_KERNEL(sixteen) * sixteen, i
     tips->split = sure & ~tips->beside;
 }
 
-/* What is certain of pairs: the lanes in which they are apart, and in which they are settled, that is, all is certain of them
-   that sc_settled_bits name. */
+/* What is certain of pairs: the lanes in which they are apart, and in which they are settled, that
+   is, all is certain of them that sc_settled_bits name. */
 typedef struct SC_KERNEL(verdict) {
     unsigned apart, settled;
     unsigned bits[SC_SETTLED_BITS];
 } SC_KERNEL(verdict);
 
-/* Of pairs in a mask finds those of which just one sign is not certain, and the two edges that it is of seem to be in a
-   plane across an axis; w runs from tip to tip. */
+/* Of pairs in a mask finds those of which just one sign is not certain, and the two edges that it
+   is of seem to be in a plane across an axis; w runs from tip to tip. */
 static inline void SC_KERNEL(find_level)(const SC_KERNEL(tips) tips[2], const lanes w[3],
                                          lanes far[2][2], lanes bound, unsigned mask,
                                          SC_KERNEL(verdict) * verdict)
@@ -201,7 +210,8 @@ static inline void SC_KERNEL(find_level)(const SC_KERNEL(tips) tips[2], const la
     verdict->bits[SC_SETTLED_AXIS + 1] = ~mask | ~(level[0] | level[1]);
 }
 
-/* Settles those of pairs in a mask of which each plane splits the other; size is that of both triangles. */
+/* Settles those of pairs in a mask of which each plane splits the other; size is that of both
+   triangles. */
 static SC_INLINE void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes size,
                                              unsigned mask, SC_KERNEL(verdict) * verdict)
 {
@@ -249,8 +259,9 @@ static SC_INLINE void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lane
     verdict->apart = certain & (all | ~any);
 }
 
-/* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge certainly has the third
-   corner of its triangle on one side and all of the other triangle on the other. */
+/* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge
+   certainly has the third corner of its triangle on one side and all of the other triangle on the
+   other. */
 static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], lanes extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
@@ -290,7 +301,8 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], la
     return apart;
 }
 
-/* With few registers for sixteen floats, code for one pair of clusters and for two is kept apart where it is shorter. */
+/* With few registers for sixteen floats, code for one pair of clusters and for two is kept apart
+   where it is shorter. */
 static void SC_KERNEL(find_tips_one)(const SC_KERNEL(sixteen) * x, int s, SC_KERNEL(tips) * tips,
                                      lanes *size)
 {

@@ -6,11 +6,11 @@
  * Why it is sound. Let q be a point on the search line, below every top edge's line and above every
  * bottom edge's: strictly to the left of every contour edge. Seen from q, each contour edge turns
  * counter-clockwise, so each closed loop of the contour goes round q at least once, and the loops
- * together as often as top edges pass over q. If at most one does, there is one loop, once round, and
- * the angle at q tells its points apart: the contour is strictly simple. With all triangles of positive
- * area, the number of triangles over any point is the winding number of the contour, at most 1; so
- * triangles overlap nowhere and touch only where they share vertices. Neither connectivity nor a
- * manifold is needed: what does not cancel is in the contour.
+ * together as often as top edges pass over q. If at most one does, there is one loop, once round,
+ * and the angle at q tells its points apart: the contour is strictly simple. With all triangles of
+ * positive area, the number of triangles over any point is the winding number of the contour, at
+ * most 1; so triangles overlap nowhere and touch only where they share vertices. Neither
+ * connectivity nor a manifold is needed: what does not cancel is in the contour.
  */
 #include "query/star.h"
 
@@ -54,7 +54,8 @@ static int is_star(const sc_segment_bounds *bounds, const uint32_t *segments, ui
         if (t < top) top = t;
         if (b < bottom) bottom = b;
     }
-    /* bottom bounds are upside down: highest bottom line = -bottom < top. A sum has the exact sign. */
+    /* bottom bounds are upside down: highest bottom line = -bottom < top. A sum has the exact
+       sign. */
     if (!(top + bottom > 0)) return 0;
     for (i = 0; i < count; i++) {
         const sc_segment_bounds *s = &bounds[segments[i]];
@@ -73,10 +74,10 @@ static uint32_t end_point(const sc_model *model, uint32_t segment, int last)
 }
 
 /*
- * Whether all points of a segment but the shared one are strictly on one side of the line through it:
- * sign -1 to its left, 1 to its right; x is where the line is, computed, and error how far off.
- * Segments that end at the shared point may touch the line there: if all their edges run the same way,
- * they leave it for good.
+ * Whether all points of a segment but the shared one are strictly on one side of the line through
+ * it: sign -1 to its left, 1 to its right; x is where the line is, computed, and error how far off.
+ * Segments that end at the shared point may touch the line there: if all their edges run the same
+ * way, they leave it for good.
  */
 static int is_beside(const sc_model *model, const sc_segment_bounds *bounds, uint32_t segment,
                      uint32_t point, double x, double error, int sign)

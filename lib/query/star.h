@@ -1,6 +1,6 @@
 /*
- * The star-contour test on the contour segments of a node (paper, section 6.2), and its special case
- * of two patches that share a single point (appendix).
+ * The star-contour test on the contour segments of a node (paper, section 6.2), and its special
+ * case of two patches that share a single point (appendix).
  *
  * SPDX-License-Identifier: MIT
  */
@@ -10,8 +10,8 @@
 #include "query/state.h"
 
 /*
- * 1 if no two triangles of the node (of its two patches, one from each, if they share a single point)
- * meet elsewhere than in what they share. Every triangle must have a positive area under the
+ * 1 if no two triangles of the node (of its two patches, one from each, if they share a single
+ * point) meet elsewhere than in what they share. Every triangle must have a positive area under the
  * projection. Tries the vertical line, then the horizontal. Updates the bounds of segments that it
  * needs; counts updates and tests.
  */

@@ -49,15 +49,15 @@ static inline int sc_state_cancelled(sc_query_state *state)
     return state->stop || (state->options.cancel && sc_state_ask_flag(state));
 }
 
-/* The same, and whether the budget is used up: only where it does not depend on the flag or on statistics
-   that asking comes after the same work in each run. */
+/* The same, and whether the budget is used up: only where it does not depend on the flag or on
+   statistics that asking comes after the same work in each run. */
 static inline int sc_state_stops(sc_query_state *state)
 {
     return sc_state_cancelled(state) || (state->options.budget && sc_state_ask_budget(state));
 }
 
-/* Whether pairs should not wait for long to be decided: the first hit ends the query, or a budget does, and what
-   has been found by then counts. */
+/* Whether pairs should not wait for long to be decided: the first hit ends the query, or a budget
+   does, and what has been found by then counts. */
 static inline int sc_state_may_end_early(const sc_query_state *state)
 {
     return state->options.output == SC_OUTPUT_ANY || state->options.budget;

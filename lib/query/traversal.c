@@ -3,8 +3,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Recursion is as deep as the hierarchy, SC_DEPTH_MAX at most, but for box recursion, which is a quarter
- * as deep.
+ * Recursion is as deep as the hierarchy, SC_DEPTH_MAX at most, but for box recursion, which is a
+ * quarter as deep.
  */
 #include "query/traversal.h"
 
@@ -44,8 +44,8 @@ void sc_traversal_update_normals(sc_query_state *state)
     sc_state_switch(state, SC_TASK_ORIENTATION);
 }
 
-/* What a node that is not culled leaves to boxes and primitives: its BVTT children, and the triangles
-   of leaf clusters. */
+/* What a node that is not culled leaves to boxes and primitives: its BVTT children, and the
+   triangles of leaf clusters. */
 static void query_rest_of_node(sc_query_state *state, uint32_t node)
 {
     const sc_model *model = state->model;
@@ -83,8 +83,8 @@ void sc_traversal_take_nodes(sc_query_state *state, uint32_t node, uint32_t end)
     }
 }
 
-/* What was collected before is decided first, if somebody reads the statistics; and with a budget, which is to
-   end a query at the same place whether they are read or not. */
+/* What was collected before is decided first, if somebody reads the statistics; and with a budget,
+   which is to end a query at the same place whether they are read or not. */
 void sc_traversal_follow_contour(sc_query_state *state, int after_contour)
 {
     if (state->after_contour == after_contour) return;
@@ -112,24 +112,26 @@ static void query_contour(sc_query_state *state, uint32_t node, const sc_project
 }
 
 /*
- * The walk with the exact contour test. The test keeps nothing from node to node, so that each node has its
- * own projection, and nodes can be tested in any order: those that pass the orientation test wait in
- * a short queue, so that the memory for some is fetched while others are tested. Nodes of one patch wait
- * until all else is done, since a patch that is in a node of two that was culled is culled with it; and so do leaf clusters
- * that are to be looked at by themselves, for which the same is true of two that share points and are dropped.
- * A node of two patches with one parent has the contour of that parent, which failed. Pairs of patches that are left to
- * boxes wait as well: tests of boxes that do not depend on each other wait for memory at the same time.
- * Two patches that share one point, as diagonally in a grid, are left to boxes, too: few overlap there, and a contour costs
- * most that passes a point twice.
+ * The walk with the exact contour test. The test keeps nothing from node to node, so that each node
+ * has its own projection, and nodes can be tested in any order: those that pass the orientation
+ * test wait in a short queue, so that the memory for some is fetched while others are tested. Nodes
+ * of one patch wait until all else is done, since a patch that is in a node of two that was culled
+ * is culled with it; and so do leaf clusters that are to be looked at by themselves, for which the
+ * same is true of two that share points and are dropped. A node of two patches with one parent has
+ * the contour of that parent, which failed. Pairs of patches that are left to boxes wait as well:
+ * tests of boxes that do not depend on each other wait for memory at the same time. Two patches
+ * that share one point, as diagonally in a grid, are left to boxes, too: few overlap there, and a
+ * contour costs most that passes a point twice.
  */
 
 /*
- * Where little can be culled, the test tree is a waste: its nodes are many, and boxes are faster by themselves. A patch of
- * more than PROSPECT_MIN leaf clusters that passes the orientation test has a prospect; for fewer, a contour test and
- * the nodes on the way to it cost as much as the pairs of leaf clusters that are saved. The prospect of another patch is
- * the number of seams between leaf clusters in such patches below it, m - 1 for one of m, which must be one for
- * PROSPECT_PART leaf clusters. A node that fails the orientation test is left to boxes unless both its patches have
- * a prospect. (Tuned on single frames of scenes from smooth to crumpled.)
+ * Where little can be culled, the test tree is a waste: its nodes are many, and boxes are faster by
+ * themselves. A patch of more than PROSPECT_MIN leaf clusters that passes the orientation test has
+ * a prospect; for fewer, a contour test and the nodes on the way to it cost as much as the pairs of
+ * leaf clusters that are saved. The prospect of another patch is the number of seams between leaf
+ * clusters in such patches below it, m - 1 for one of m, which must be one for PROSPECT_PART leaf
+ * clusters. A node that fails the orientation test is left to boxes unless both its patches have a
+ * prospect. (Tuned on single frames of scenes from smooth to crumpled.)
  */
 enum { PROSPECT_MIN = 2, PROSPECT_PART = 8 };
 
@@ -138,8 +140,8 @@ static uint32_t leaves_of(const sc_model *model, uint32_t patch)
     return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch];
 }
 
-/* The prospect of a patch. It is written down for those of more than PROSPECT_MIN leaf clusters without a cone, above
-   which all are such. */
+/* The prospect of a patch. It is written down for those of more than PROSPECT_MIN leaf clusters
+   without a cone, above which all are such. */
 static uint32_t find_prospect(const sc_query_state *state, uint32_t patch)
 {
     const uint32_t *child = sc_model_child(state->model) + patch;
@@ -206,7 +208,8 @@ void sc_traversal_take_boxes(sc_query_state *state)
     }
 }
 
-/* A node that failed a test, or has a contour that did, mask being what its patches' cones have in common. */
+/* A node that failed a test, or has a contour that did, mask being what its patches' cones have in
+   common. */
 static void put_back(sc_query_state *state, uint32_t node, uint32_t mask)
 {
     const sc_model *model = state->model;

@@ -12,8 +12,8 @@
 void sc_traversal_run(sc_query_state *state);
 
 /*
- * The steps that this is made of, for several workers to share (query/parallel.c). Each worker walks by
- * itself, on the sc_walk of its workspace.
+ * The steps that this is made of, for several workers to share (query/parallel.c). Each worker
+ * walks by itself, on the sc_walk of its workspace.
  */
 
 /* Normal cones; and boxes, unless they are ready. */
@@ -42,7 +42,8 @@ void sc_traversal_take_boxes(sc_query_state *state);
 /* Orientation tests of the children of a node that failed a test; its pairs of patches wait. */
 void sc_traversal_open(sc_query_state *state, uint32_t node);
 
-/* Leaf clusters to be looked at by themselves, as sc_walk.alone has them, but those that are culled with others. */
+/* Leaf clusters to be looked at by themselves, as sc_walk.alone has them, but those that are culled
+   with others. */
 void sc_traversal_take_alone(sc_query_state *state, const uint32_t *alone, uint32_t count);
 
 /* Goes on until neither queue nor stack has anything left. */
