@@ -317,7 +317,7 @@ typedef struct sc_model sc_model;
 
 /*
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
- * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.3 to 1.2
+ * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.4 to 1.4
  * microseconds a triangle (regular grids and thin tubes least, irregular meshes of a million
  * triangles most) and, while it runs, up to 320 bytes a triangle; with METIS 5 to 7 microseconds a
  * triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 170 bytes a triangle.
@@ -759,7 +759,7 @@ typedef struct sc_result {
  * Several threads. With options->tasks the passes over the pose, the walk through the tree and the
  * tests of triangles are done by all workers. The answer is the same. It pays from about 20,000
  * triangles. By the calling thread alone are done:
- *   - the first pass over the positions, about 0.3 ns a vertex;
+ *   - the first pass over the positions, about 0.2 ns a vertex where they are in the cache;
  *   - the sorting, about 4 ns a pair, unless there are more than about six pairs a triangle;
  *   - queries on models of fewer than 128 leaf clusters;
  *   - all but the passes with a budget, SC_CONTOUR_STAR or _NONE, and a filter's accept unless

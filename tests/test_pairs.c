@@ -698,6 +698,19 @@ static void bands_in_a_plane(void)
     }
 }
 
+/* A mesh whose triangles are in leaf clusters in this order, in the pose it was made in; frees
+   both. */
+static void check_in_order(const char *name, uint64_t state, soup *s, uint32_t *order)
+{
+    input_choices own = input_choose(s, SC_WELD_NONE, SC_PARTITION_FAST);
+    own.options.partition = SC_PARTITION_ORDER;
+    own.options.order = order;
+    check_chosen(name, state, s, s->positions, SC_WELD_NONE, SC_PARTITION_ORDER, &own);
+    input_free_choices(&own);
+    free(order);
+    soup_free(s);
+}
+
 /* A tube of three leaf clusters that go round it, straight or bent, at any angle to the axes, with
    loops that go up and down. In places it is turned back, so that one band lies over the one
    before, or the loops are wound twice; it is pressed flat; a point is drawn near one of any other
@@ -718,7 +731,6 @@ static void tubes(void)
         double middle[3], turn[3][3], length = 0, tall = test_random_range(0.3, 2);
         double tilt = i % 3 ? 0 : test_random_range(-2, 2); /* loops are above and below others */
         soup s = soup_make(strip + per_band + 2, count);
-        input_choices own;
         uint32_t *order = (uint32_t *)test_allocate(count * sizeof(uint32_t));
         at = (double(*)[3])s.positions;
         if (trouble == 2) flat = exp2(-(double)test_random_below(30));
@@ -796,13 +808,7 @@ static void tubes(void)
                 p[c] = to + off * (to - p[c]);
             }
         }
-        own = input_choose(&s, SC_WELD_NONE, SC_PARTITION_FAST);
-        own.options.partition = SC_PARTITION_ORDER;
-        own.options.order = order;
-        check_chosen("tube", state, &s, s.positions, SC_WELD_NONE, SC_PARTITION_ORDER, &own);
-        input_free_choices(&own);
-        free(order);
-        soup_free(&s);
+        check_in_order("tube", state, &s, order);
     }
 }
 
@@ -815,7 +821,6 @@ static void sleeves(void)
         uint32_t sides = 5 + test_random_below(4), count = 4 * sides, k;
         soup s = soup_make(3 * sides, count);
         uint32_t *order = (uint32_t *)test_allocate(count * sizeof(uint32_t));
-        input_choices own;
         for (uint32_t loop = 0; loop < 3; ++loop) {
             double wide = loop == 0 ? 1 : test_random_range(0.7, 1.4);
             double height = loop == 0 ? 0 : test_random_range(0.3, 1.5);
@@ -836,13 +841,7 @@ static void sleeves(void)
             t[2] = above + side;
             order[k] = k;
         }
-        own = input_choose(&s, SC_WELD_NONE, SC_PARTITION_FAST);
-        own.options.partition = SC_PARTITION_ORDER;
-        own.options.order = order;
-        check_chosen("sleeves", state, &s, s.positions, SC_WELD_NONE, SC_PARTITION_ORDER, &own);
-        input_free_choices(&own);
-        free(order);
-        soup_free(&s);
+        check_in_order("sleeves", state, &s, order);
     }
 }
 

@@ -244,8 +244,7 @@ static int find_sign_3d(const double a[3], const double b[3], const double c[3],
     return sign_of_two(&x);
 }
 
-/* ------------------------------------------------------------------------------------------------
-   */
+/* ---------------------------------------------------------------------------------------------- */
 
 static difference subtract(double a, double b)
 {
