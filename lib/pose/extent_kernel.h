@@ -25,6 +25,13 @@
 #  define EXTENT_FLOATS sc_floats4
 #endif
 
+/* Widens the box by the least and the most of some coordinates k; NaN does not. */
+static inline void SC_KERNEL(widen)(double least, double most, int k, double low[3], double high[3])
+{
+    low[k] = least < low[k] ? least : low[k];
+    high[k] = most > high[k] ? most : high[k];
+}
+
 static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double low[3],
                                         double high[3])
 {
@@ -51,9 +58,7 @@ static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double l
             EXTENT(storeu_pd)(sum + WIDTH * k, sums[k]);
         }
         for (j = 0; j < AT_ONCE; j++) {
-            double one = least[j], other = most[j];
-            low[j % 3] = one < low[j % 3] ? one : low[j % 3];
-            high[j % 3] = other > high[j % 3] ? other : high[j % 3];
+            SC_KERNEL(widen)(least[j], most[j], j % 3, low, high);
             not_finite += sum[j] - sum[j];
         }
         if (not_finite != 0) {
@@ -63,9 +68,7 @@ static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double l
     }
 #endif
     for (; i < count; i++) {
-        double d = p[i];
-        low[i % 3] = d < low[i % 3] ? d : low[i % 3];
-        high[i % 3] = d > high[i % 3] ? d : high[i % 3];
+        SC_KERNEL(widen)(p[i], p[i], (int)(i % 3), low, high);
         not_finite += p[i] - p[i];
     }
     return not_finite == 0; /* NaN is not 0 */
@@ -96,9 +99,7 @@ static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low
             EXTENT(storeu_ps)(sum + WIDTH * k, sums[k]);
         }
         for (j = 0; j < AT_ONCE; j++) {
-            double one = (double)least[j], other = (double)most[j];
-            low[j % 3] = one < low[j % 3] ? one : low[j % 3];
-            high[j % 3] = other > high[j % 3] ? other : high[j % 3];
+            SC_KERNEL(widen)((double)least[j], (double)most[j], j % 3, low, high);
             not_finite += sum[j] - sum[j];
         }
         if (not_finite != 0) {
@@ -108,9 +109,7 @@ static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low
     }
 #endif
     for (; i < count; i++) {
-        double d = (double)p[i];
-        low[i % 3] = d < low[i % 3] ? d : low[i % 3];
-        high[i % 3] = d > high[i % 3] ? d : high[i % 3];
+        SC_KERNEL(widen)((double)p[i], (double)p[i], (int)(i % 3), low, high);
         not_finite += p[i] - p[i];
     }
     return not_finite == 0; /* NaN is not 0 */
