@@ -244,6 +244,19 @@ static void take_lanes(sc_query_state *state, const sc_pair *pairs, uint64_t mee
     sc_pairs_take_all(state, found, count);
 }
 
+/* Asks for what is read of two triangles. */
+static inline void fetch_triangles(const sc_model *model, const sc_pair *pair)
+{
+    const uint32_t *triangle = sc_model_triangle(model), *id = sc_model_triangle_id(model);
+    const uint8_t *owned = sc_model_edge_owned(model);
+    sc_fetch(triangle + 3 * (uint64_t)pair->a);
+    sc_fetch(triangle + 3 * (uint64_t)pair->b);
+    sc_fetch(id + pair->a);
+    sc_fetch(id + pair->b);
+    sc_fetch(owned + pair->a);
+    sc_fetch(owned + pair->b);
+}
+
 /* Decides pairs that share nothing, or one point each. */
 static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t count, int share)
 {
@@ -263,6 +276,8 @@ static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
         sc_verdict verdict;
         unsigned some = (1u << SC_PAIR_LANES) - 1u, open;
         lanes.pairs = pairs + i;
+        for (j = i + SC_PAIR_LANES; j < i + 2 * SC_PAIR_LANES && j < count; j++)
+            fetch_triangles(state->model, pairs + j);
         if (count - i < SC_PAIR_LANES) {
             for (j = 0; j < SC_PAIR_LANES; j++) last[j] = pairs[i + j < count ? i + j : count - 1];
             lanes.pairs = last;
@@ -376,6 +391,7 @@ static inline uint32_t name_edges(const sc_query_state *state, const sc_pair *pa
    plane. */
 static void take_settled(sc_query_state *state)
 {
+    enum { AHEAD = 16 };
     const unsigned touching = state->options.contact == SC_CONTACT_PROPER ? 0 : ~0u;
     const uint32_t *triangle = sc_model_triangle(state->model);
     uint64_t *counted = &state->stats.counts[sc_state_primitive_task(state)];
@@ -390,6 +406,7 @@ static void take_settled(sc_query_state *state)
             const sc_pair *pair = &w->settled[i];
             const unsigned code = w->settled_code[i];
             unsigned edges = settled_edges[code & 255u];
+            if (i + AHEAD < count) fetch_triangles(state->model, pair + AHEAD);
             if (code >> SC_SETTLED_AXIS != 3) {
                 if (!is_level(w, triangle + 3 * (uint64_t)pair->a, triangle + 3 * (uint64_t)pair->b,
                               code)) {

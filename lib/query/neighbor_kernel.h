@@ -318,7 +318,8 @@ static void SC_KERNEL(settle_neighbors)(sc_query_state *state, SC_KERNEL(open_ne
     const unsigned some = open->count < SC_LANES_COUNT ? open->count : SC_LANES_COUNT;
     const unsigned at = open->count - some;
     const lanes extent = lanes_load(open->extent + at);
-    unsigned mask = (1u << some) - 1u;
+    const uint32_t *triangle = sc_model_triangle(state->model);
+    unsigned mask = (1u << some) - 1u, rest;
     SC_KERNEL(neighbors) x;
     lanes_mask same[3];
     lanes from[3], to[3];
@@ -348,6 +349,11 @@ static void SC_KERNEL(settle_neighbors)(sc_query_state *state, SC_KERNEL(open_ne
     if (mask) {
         mask &= ~SC_KERNEL(plane_parts)(&x, 1, extent);
         mask &= ~SC_KERNEL(plane_parts)(&x, 0, extent);
+    }
+    for (rest = mask; rest; rest &= rest - 1) {
+        const unsigned lane = at + sc_bits_lowest(rest);
+        sc_fetch(triangle + 3 * (uint64_t)open->number[5][lane]);
+        sc_fetch(triangle + 3 * (uint64_t)open->number[6][lane]);
     }
     for (; mask; mask &= mask - 1) {
         unsigned lane = at + sc_bits_lowest(mask);
