@@ -32,6 +32,17 @@ static inline void SC_KERNEL(widen)(double least, double most, int k, double low
     high[k] = most > high[k] ? most : high[k];
 }
 
+#ifdef EXTENT
+/* Asks for so many bytes a page ahead: what processors foresee by themselves ends with the page. */
+static SC_INLINE void SC_KERNEL(fetch_ahead)(const void *at, uint64_t bytes)
+{
+    enum { PAGE = 4096, LINE = 64 };
+    uint64_t i;
+    SC_UNROLL
+    for (i = 0; i < bytes; i += LINE) sc_fetch((const unsigned char *)at + PAGE + i);
+}
+#endif
+
 static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double low[3],
                                         double high[3])
 {
@@ -45,12 +56,15 @@ static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double l
         int j, k;
         SC_UNROLL
         for (k = 0; k < 3; k++) lows[k] = highs[k] = sums[k] = EXTENT(loadu_pd)(p + WIDTH * k);
-        for (i = AT_ONCE; i + AT_ONCE <= count; i += AT_ONCE) SC_UNROLL
-        for (k = 0; k < 3; k++) {
-            x = EXTENT(loadu_pd)(p + i + WIDTH * (uint64_t)k);
-            lows[k] = EXTENT(min_pd)(x, lows[k]);
-            highs[k] = EXTENT(max_pd)(x, highs[k]);
-            sums[k] = EXTENT(add_pd)(sums[k], x);
+        for (i = AT_ONCE; i + AT_ONCE <= count; i += AT_ONCE) {
+            SC_KERNEL(fetch_ahead)(p + i, AT_ONCE * sizeof *p);
+            SC_UNROLL
+            for (k = 0; k < 3; k++) {
+                x = EXTENT(loadu_pd)(p + i + WIDTH * (uint64_t)k);
+                lows[k] = EXTENT(min_pd)(x, lows[k]);
+                highs[k] = EXTENT(max_pd)(x, highs[k]);
+                sums[k] = EXTENT(add_pd)(sums[k], x);
+            }
         }
         for (k = 0; k < 3; k++) {
             EXTENT(storeu_pd)(least + WIDTH * k, lows[k]);
@@ -86,12 +100,15 @@ static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low
         int j, k;
         SC_UNROLL
         for (k = 0; k < 3; k++) lows[k] = highs[k] = sums[k] = EXTENT(loadu_ps)(p + WIDTH * k);
-        for (i = AT_ONCE; i + AT_ONCE <= count; i += AT_ONCE) SC_UNROLL
-        for (k = 0; k < 3; k++) {
-            x = EXTENT(loadu_ps)(p + i + WIDTH * (uint64_t)k);
-            lows[k] = EXTENT(min_ps)(x, lows[k]);
-            highs[k] = EXTENT(max_ps)(x, highs[k]);
-            sums[k] = EXTENT(add_ps)(sums[k], x);
+        for (i = AT_ONCE; i + AT_ONCE <= count; i += AT_ONCE) {
+            SC_KERNEL(fetch_ahead)(p + i, AT_ONCE * sizeof *p);
+            SC_UNROLL
+            for (k = 0; k < 3; k++) {
+                x = EXTENT(loadu_ps)(p + i + WIDTH * (uint64_t)k);
+                lows[k] = EXTENT(min_ps)(x, lows[k]);
+                highs[k] = EXTENT(max_ps)(x, highs[k]);
+                sums[k] = EXTENT(add_ps)(sums[k], x);
+            }
         }
         for (k = 0; k < 3; k++) {
             EXTENT(storeu_ps)(least + WIDTH * k, lows[k]);
