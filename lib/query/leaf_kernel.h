@@ -588,6 +588,7 @@ static inline unsigned SC_KERNEL(add_near_pairs)(sc_query_state *state, uint32_t
         w->near_count += bit != 0;
         return mask & ~bit;
     }
+    sc_fetch(sc_model_share_touch(state->model) + share[0]);
     for (i = share[0]; i < share[1]; i += SC_LANES_COUNT) {
         const unsigned some = share[1] - i < SC_LANES_COUNT ? share[1] - i : SC_LANES_COUNT;
         uint32_t *lower = w->near_list[0] + w->near_count;

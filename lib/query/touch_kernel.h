@@ -87,10 +87,12 @@ static SC_NOINLINE void SC_KERNEL(drop_touching)(sc_query_state *state, const ui
     for (i = 0; i < count; i++) {
         sc_near_pair *p = pairs + touching[i];
         if (i + SC_FETCH_POINTS < count) {
-            const uint64_t next = pairs[touching[i + SC_FETCH_POINTS]].b;
+            const sc_near_pair *next = pairs + touching[i + SC_FETCH_POINTS];
             int k;
-            for (k = 0; k < 4; k++)
-                sc_fetch(w->point_at + SC_LEAF_POINTS * (4 * next + (unsigned)k));
+            for (k = 0; k < 4; k++) {
+                sc_fetch(w->point_at + SC_LEAF_POINTS * (4 * (uint64_t)next->a + (unsigned)k));
+                sc_fetch(w->point_at + SC_LEAF_POINTS * (4 * (uint64_t)next->b + (unsigned)k));
+            }
         }
         p->known |= SC_KERNEL(touch_only)(state, p) ? SC_NEAR_DROPPED : 0u;
     }

@@ -182,6 +182,8 @@ static void leave_to_boxes(sc_query_state *state, uint32_t a, uint32_t b, int af
     pair = &walk->pairs[after_contour][walk->pair_count[after_contour]++];
     pair->a = a;
     pair->b = b;
+    sc_fetch(sc_model_hop(state->model) + a);
+    sc_fetch((a == b ? sc_model_leaf(state->model) : sc_model_hop(state->model)) + b);
 }
 
 void sc_traversal_take_boxes(sc_query_state *state)

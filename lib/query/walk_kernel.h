@@ -37,7 +37,6 @@ static SC_NOINLINE void SC_KERNEL(take_walk_rows)(sc_query_state *state,
         rows->first[count] = first;
         rows->all[count] = mask;
         count += mask != 0;
-        sc_fetch(share + row - leaves);
     }
     for (i = 0; i < count && i < AHEAD; i++) sc_fetch(shared + share[rows->row[i] - leaves]);
     for (i = 0; i < count && !state->stop; i++) {
@@ -59,13 +58,12 @@ static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b,
 {
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
-    const uint32_t *hop = sc_model_hop(model);
+    const uint32_t *hop = sc_model_hop(model), *share = sc_model_share_first(model);
     const uint32_t leaves = sc_model_first_leaf_patch(model);
     uint32_t first_a, first_b;
     unsigned rows, all_b, i;
     if (a >= leaves) {
-        SC_KERNEL(leaf_pair_waits)
-        (state, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
+        SC_KERNEL(leaf_pair_waits)(state, a - leaves, b - leaves);
         return;
     }
     if (sc_state_stops(state)) return;
@@ -76,6 +74,8 @@ static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b,
     state->stats.counts[sc_state_box_task(state)] += 1 + sc_bits_count(rows);
     if (first_a >= leaves) {
         uint32_t *first = waiting->first + waiting->count, *all = waiting->all + waiting->count;
+        sc_fetch(share + (first_a - leaves));
+        sc_fetch(share + (hop[a + 1] - leaves));
         for (i = 0; i < SC_LANES_COUNT; i++) first[i] = first_b;
         for (i = 0; i < SC_LANES_COUNT; i++) all[i] = all_b;
         waiting->count += lanes_list_from(rows, first_a, waiting->row + waiting->count);
@@ -98,7 +98,12 @@ static void SC_KERNEL(patch_itself)(sc_query_state *state, uint32_t a,
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     const uint32_t *hop = sc_model_hop(model);
+    const uint32_t leaves = sc_model_first_leaf_patch(model);
     uint32_t count, i;
+    if (a >= leaves) {
+        SC_KERNEL(leaf_itself)(state, a - leaves);
+        return;
+    }
     if (sc_model_is_leaf(model, a)) {
         SC_KERNEL(leaf_itself)(state, sc_model_leaf(model)[a]);
         return;
