@@ -19,7 +19,8 @@ typedef struct sc_chains {
     const uint32_t *first,
         *last;             /* of each segment: places of its first and last point in points */
     uint32_t *starting_at; /* of each point: a list of segments, empty before and after */
-    uint32_t *next, *old, *start; /* as many as the most segments of a contour; start: points */
+    uint32_t *next, *old, *start, *end; /* as many as the most segments of a contour; the last two:
+                                           points */
 } sc_chains;
 
 /* Takes scratch memory for points with numbers below point_count and up to `most` segments at

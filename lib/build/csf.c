@@ -379,12 +379,21 @@ static uint64_t measure_loop(const sc_xbvh *xbvh, sc_pair patches, uint32_t piec
     return pieces <= SC_LOOP_PIECES && edges <= SC_LOOP_PIECES_EDGES ? 1 + pieces + edges : 0;
 }
 
-/* Chains the segments of each node, and measures them. The patches of those that share one point
-   are apart: their chains, made one in all, are not stored. */
+/* Whether one of some segments starts at a point. */
+static uint32_t start_at(const sc_csf *csf, const uint32_t *segments, uint32_t count,
+                         uint32_t point)
+{
+    uint32_t i, found = 0;
+    for (i = 0; i < count; i++) found |= csf->points[csf->point_first[segments[i]]] == point;
+    return found;
+}
+
+/* Chains the segments of each node, and measures them. Those of patches that share one point stay
+   apart; as pieces, the chain through it on one side and that on the other are one. */
 static sc_status measure_contours(builder *b, sc_csf *csf)
 {
     const sc_sctt *sctt = b->sctt;
-    uint32_t nodes = sctt->node_count, n, longest = 0, *both;
+    uint32_t nodes = sctt->node_count, n, longest = 0;
     uint64_t loops = 0, points, edges;
     sc_chains chains;
     for (n = 0; n < nodes; n++)
@@ -393,11 +402,10 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
     chains.points = csf->points;
     chains.first = csf->point_first;
     chains.last = csf->point_last;
-    both = (uint32_t *)sc_scratch_take(b->scratch, longest, sizeof *both);
     csf->in_pieces = (uint8_t *)sc_scratch_take(b->scratch, nodes, 1);
     csf->loop_first =
         (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)nodes + 1, sizeof(uint32_t));
-    if (!both || !csf->in_pieces || !csf->loop_first ||
+    if (!csf->in_pieces || !csf->loop_first ||
         sc_chains_take(b->scratch, b->points->point_count, longest, &chains))
         return SC_ERROR_MEMORY;
     csf->contour_max = 0;
@@ -410,10 +418,10 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
             first = segments[1];
             segments += 2;
             count -= 2;
-            memcpy(both, segments, count * sizeof *both);
-            pieces = sc_chains_order(&chains, both, count);
-            (void)sc_chains_order(&chains, segments, first);
-            (void)sc_chains_order(&chains, segments + first, count - first);
+            pieces = sc_chains_order(&chains, segments, first) +
+                     sc_chains_order(&chains, segments + first, count - first) -
+                     (start_at(csf, segments, first, sctt->touch[n]) &
+                      start_at(csf, segments + first, count - first, sctt->touch[n]));
         }
         csf->in_pieces[n] = pieces > 1;
         count_points(csf, segments, count, &points, &edges);
@@ -424,7 +432,6 @@ static sc_status measure_contours(builder *b, sc_csf *csf)
     }
     csf->loop_first[nodes] = (uint32_t)loops;
     sc_chains_give(b->scratch, &chains);
-    sc_scratch_give(b->scratch, both);
     return SC_OK;
 }
 
