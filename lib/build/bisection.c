@@ -500,8 +500,7 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
 {
     uint32_t count = points->triangle_count, t, root;
     bisection b;
-    sc_status status = sc_hierarchy_init(hierarchy, points, scratch);
-    if (status) return status;
+    sc_status status;
     memset(&b, 0, sizeof b);
     b.points = points;
     b.adjacency = adjacency;
@@ -533,6 +532,10 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
         !b.queue || !b.keys || !b.sizes || !b.refinement.gain || !b.refinement.state ||
         !b.refinement.heap || (bisect && !b.graph))
         return SC_ERROR_MEMORY;
+    /* taken last, since it stays: where memory is taken from one end of a range, what is given back
+       before it is there for the next steps */
+    status = sc_hierarchy_init(hierarchy, points, scratch);
+    if (status) return status;
     b.centers[3 * (uint64_t)count] = b.normals[3 * (uint64_t)count] = 0;
     b.facets.centers = b.centers;
     b.facets.normals = b.normals;

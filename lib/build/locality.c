@@ -122,15 +122,14 @@ sc_status sc_locality_sort(sc_points *points, int curve, sc_scratch *scratch)
     sc_pair *keys, *spare;
     double *rest;
     keys = (sc_pair *)sc_scratch_take(scratch, count, sizeof *keys);
-    spare = (sc_pair *)sc_scratch_take(scratch, count, sizeof *spare);
-    if (!keys || !spare) return SC_ERROR_MEMORY;
+    triangles = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof *triangles);
+    if (!keys || !triangles) return SC_ERROR_MEMORY;
+    spare = (sc_pair *)(void *)triangles; /* until the keys are sorted */
     list_keys(points, curve, keys);
     sc_sort_by_digits(keys, spare, count, 3 * CELL_BITS);
-    sc_scratch_give(scratch, spare);
-    triangles = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof *triangles);
     rest = (double *)sc_scratch_take(scratch, 3 * (uint64_t)points->point_count, sizeof *rest);
     number = (uint32_t *)sc_scratch_take_filled(scratch, points->point_count, sizeof *number, 0xff);
-    if (!triangles || !rest || !number) return SC_ERROR_MEMORY;
+    if (!rest || !number) return SC_ERROR_MEMORY;
     renumber_along(points, keys, triangles, number, rest);
     sc_scratch_give(scratch, keys);
     sc_scratch_give(scratch, number);
