@@ -186,11 +186,15 @@ static uint32_t list_around(const sc_points *points, const sc_adjacency *adjacen
     return count;
 }
 
+/* Rings are copied so many points at once, as nearly all have fewer; what is too much is written
+   over by the next. Their memory is asked for so many vertices ahead. */
+enum { RING_AT_ONCE = 8, RINGS_AHEAD = 16 };
+
 /* The rings of all points, by old numbers, which are those of the order in which they are in
    memory. */
 typedef struct rings {
     uint32_t *first;  /* point_count + 1 */
-    uint32_t *points; /* by new numbers */
+    uint32_t *points; /* by new numbers; and room to read RING_AT_ONCE behind */
     uint32_t open_count;
     uint64_t open_total;
 } rings;
@@ -215,14 +219,20 @@ static void list_rings(const sc_points *points, const sc_adjacency *adjacency,
 
 static void write_rings(const sc_points *points, const rings *r, sc_model *m)
 {
-    uint32_t *first = NEW_ARRAY(m, ring_first, uint32_t), *ring = NEW_ARRAY(m, ring, uint32_t), v,
-             i;
+    uint32_t *first = NEW_ARRAY(m, ring_first, uint32_t), *ring = NEW_ARRAY(m, ring, uint32_t), v;
     uint32_t at = 0;
     for (v = 0; v < m->vertex_count; v++) {
-        uint32_t p = points->slot[v];
+        uint32_t p = points->slot[v], n, ahead = v + RINGS_AHEAD;
+        if (ahead < m->vertex_count && points->slot[ahead] < SC_SLOT_WELDED)
+            sc_fetch(r->points + r->first[points->slot[ahead]]);
         first[v] = at;
         if (p >= SC_SLOT_WELDED) continue;
-        for (i = r->first[p]; i < r->first[p + 1]; i++) ring[at++] = r->points[i];
+        n = r->first[p + 1] - r->first[p];
+        if (n <= RING_AT_ONCE && m->ring_total - at >= RING_AT_ONCE)
+            memcpy(ring + at, r->points + r->first[p], RING_AT_ONCE * sizeof *ring);
+        else
+            memcpy(ring + at, r->points + r->first[p], n * sizeof *ring);
+        at += n;
     }
     first[v] = at;
 }
@@ -481,8 +491,8 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
     r.first =
         (uint32_t *)sc_scratch_take(scratch, (uint64_t)points->point_count + 1, sizeof *r.first);
-    r.points = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)points->triangle_count,
-                                           sizeof *r.points);
+    r.points = (uint32_t *)sc_scratch_take(
+        scratch, 3 * (uint64_t)points->triangle_count + RING_AT_ONCE, sizeof *r.points);
     if (!number || !r.first || !r.points) return SC_ERROR_MEMORY;
     number_points(points, number);
     list_rings(points, adjacency, number, &r);
