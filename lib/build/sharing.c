@@ -13,12 +13,6 @@ enum { ROW_ITEMS = SC_LEAF_MAX / 2 };
 /* Room for so many neighbors a cluster with higher numbers, so that lists seldom have to grow. */
 enum { NEIGHBORS = 4 };
 
-/* Where a triangle is: its leaf cluster and its place in that. */
-typedef struct places {
-    uint32_t *leaf; /* triangle_count */
-    uint8_t *row;   /* triangle_count */
-} places;
-
 /* The clusters that share a point with the one at hand, as they turn up. */
 typedef struct found {
     uint32_t *entry; /* leaf_count: 1 + entry of a cluster in the lists, 0 if it did not turn up */
@@ -46,31 +40,33 @@ static uint16_t *rows_of(sc_scratch *scratch, found *f, uint32_t other)
     return rows_at(f, f->entry[other] - 1);
 }
 
-/* Looks at the triangles round a point of a cluster. */
-static int look_round(const sc_adjacency *adjacency, const places *at, uint32_t leaf, uint32_t p,
-                      sc_scratch *scratch, sc_sharing *s, found *f)
+/* Looks at the triangles round a point of a cluster. place: of each triangle, SC_LEAF_MAX times its
+   leaf cluster, and its place in that. */
+static int look_round(const sc_adjacency *adjacency, const uint32_t *place, uint32_t leaf,
+                      uint32_t p, sc_scratch *scratch, sc_sharing *s, found *f)
 {
     uint32_t begin = adjacency->corner_first[p], end = adjacency->corner_first[p + 1], i, k;
     uint32_t mask = 0, own = 0, others = 0, other[SC_SHARING_CROWD];
+    uint32_t first = SC_LEAF_MAX * leaf;
     uint8_t row[SC_SHARING_CROWD];
     if (end - begin > SC_SHARING_CROWD) {
         s->crowded[leaf] = 1;
         return 1;
     }
     for (i = begin; i < end; i++) {
-        uint32_t t = adjacency->corners[i] / 3, is_own = at->leaf[t] == leaf;
-        other[others] = t;
-        others += at->leaf[t] > leaf;
-        row[own] = at->row[t];
-        mask |= is_own << at->row[t];
+        uint32_t at = place[adjacency->corners[i] / 3], is_own = at - first < SC_LEAF_MAX;
+        other[others] = at;
+        others += at >= first + SC_LEAF_MAX;
+        row[own] = (uint8_t)(at % SC_LEAF_MAX);
+        mask |= is_own << at % SC_LEAF_MAX;
         own += is_own;
     }
     for (k = 0; k < own; k++) /* those in higher rows */
         s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row[k]] |= (uint16_t)(mask & (~1u << row[k]));
     if (!others) return 1;
     for (i = 0; i < others; i++) {
-        uint16_t *rows = rows_of(scratch, f, at->leaf[other[i]]);
-        uint16_t bit = (uint16_t)(1u << at->row[other[i]]);
+        uint16_t *rows = rows_of(scratch, f, other[i] / SC_LEAF_MAX);
+        uint16_t bit = (uint16_t)(1u << other[i] % SC_LEAF_MAX);
         if (!rows) return 0;
         for (k = 0; k < own; k++) rows[row[k]] |= bit;
     }
@@ -99,43 +95,39 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
                            const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
                            sc_sharing *s)
 {
-    uint32_t leaf, i, leaves = xbvh->leaf_count, *looked; /* looked: a point's last cluster */
-    places at;
+    uint32_t leaf, i, leaves = xbvh->leaf_count, *place;
+    uint32_t *looked; /* a point's last cluster */
     found f;
     memset(&f, 0, sizeof f);
-    at.leaf = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof *at.leaf);
-    at.row = (uint8_t *)sc_scratch_take(scratch, points->triangle_count, 1);
+    place = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof *place);
     f.entry = (uint32_t *)sc_scratch_take_filled(scratch, leaves, sizeof *f.entry, 0);
     looked = (uint32_t *)sc_scratch_take_filled(scratch, points->point_count, sizeof *looked, 0xff);
     s->first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)leaves + 1, sizeof *s->first);
     s->own_rows = (uint16_t *)sc_scratch_take_filled(scratch, (uint64_t)leaves * SC_LEAF_MAX,
                                                      sizeof *s->own_rows, 0);
     s->crowded = (uint8_t *)sc_scratch_take_filled(scratch, leaves, 1, 0);
-    if (!at.leaf || !at.row || !f.entry || !looked || !s->first || !s->own_rows || !s->crowded)
+    if (!place || !f.entry || !looked || !s->first || !s->own_rows || !s->crowded)
         return SC_ERROR_MEMORY;
     if (!sc_list_reserve(scratch, &f.leaf, NEIGHBORS * (uint64_t)leaves) ||
         !sc_list_reserve(scratch, &f.rows, ROW_ITEMS * NEIGHBORS * (uint64_t)leaves))
         return SC_ERROR_MEMORY;
     for (leaf = 0; leaf < leaves; leaf++)
-        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++) {
-            at.leaf[order[i]] = leaf;
-            at.row[order[i]] = (uint8_t)(i - xbvh->leaf_first[leaf]);
-        }
+        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++)
+            place[order[i]] = SC_LEAF_MAX * leaf + (i - xbvh->leaf_first[leaf]);
     for (leaf = 0; leaf < leaves; leaf++) {
         s->first[leaf] = (uint32_t)f.leaf.count;
         for (i = 3 * xbvh->leaf_first[leaf]; i < 3 * xbvh->leaf_first[leaf + 1]; i++) {
             uint32_t p = points->triangles[3 * (uint64_t)order[i / 3] + i % 3];
             if (looked[p] == leaf) continue;
             looked[p] = leaf;
-            if (!look_round(adjacency, &at, leaf, p, scratch, s, &f)) return SC_ERROR_MEMORY;
+            if (!look_round(adjacency, place, leaf, p, scratch, s, &f)) return SC_ERROR_MEMORY;
         }
         sort_tail(&f, s->first[leaf]);
     }
     s->first[leaves] = (uint32_t)f.leaf.count;
     s->leaf = f.leaf.items;
     s->rows = rows_at(&f, 0);
-    sc_scratch_give(scratch, at.leaf);
-    sc_scratch_give(scratch, at.row);
+    sc_scratch_give(scratch, place);
     sc_scratch_give(scratch, f.entry);
     sc_scratch_give(scratch, looked);
     return SC_OK;
