@@ -28,7 +28,8 @@ enum {
 typedef struct SC_KERNEL(small_contour) {
     lanes aligned;
     float at[2][SC_KERNEL(SMALL_POINTS)];
-    uint32_t cell[SC_KERNEL(SMALL_POINTS)], box[SC_KERNEL(SMALL_POINTS)];
+    uint32_t cell[SC_KERNEL(SMALL_POINTS)]; /* until it is projected, where its points are */
+    uint32_t box[SC_KERNEL(SMALL_POINTS)];
     uint32_t reach[SC_KERNEL(SMALL_REACHES)];
     float error, size; /* of a coordinate */
     uint32_t count;
@@ -37,40 +38,36 @@ typedef struct SC_KERNEL(small_contour) {
 /* The turned places of a loop's points, and beyond its end the first again. What is read there
    stands in the model, too. */
 static SC_INLINE void SC_KERNEL(place_small)(const sc_model *model, uint32_t node, uint32_t blocks,
-                                             uint32_t count, uint32_t *place)
+                                             SC_KERNEL(small_contour) * c)
 {
     const uint32_t *leaf = sc_model_leaf(model);
     const sc_pair *patches = &sc_model_node_patches(model)[node];
-    const uint16_t *loop = sc_model_loop(model) + sc_model_node_loop(model)[node];
+    const uint32_t *looped = sc_model_node_loop(model) + node;
+    const uint16_t *loop = sc_model_loop(model) + looped[0];
     const uint32_t first = SC_LEAF_POINTS * leaf[patches->a];
     const uint32_t split = SC_LEAF_POINTS * leaf[patches->a + 1] - first;
     const uint32_t second = SC_LEAF_POINTS * leaf[patches->b] - split;
     uint32_t b;
     SC_UNROLL
     for (b = 0; b < blocks; b++)
-        lanes_numbers(place + SC_LANES_COUNT * b, loop + SC_LANES_COUNT * b, split, first, second);
-    memmove(place + count, place, SC_LANES_COUNT * sizeof *place); /* overlaps if there are fewer */
+        lanes_numbers(c->cell + SC_LANES_COUNT * b, loop + SC_LANES_COUNT * b, split, first,
+                      second);
+    c->count = looped[1] - looped[0];
+    memmove(c->cell + c->count, c->cell, /* overlaps if there are fewer */
+            SC_LANES_COUNT * sizeof *c->cell);
 }
 
 /* Projects a contour, as project in simple_kernel.h does. The numbers of its axes are
    SC_DNC_VECTORS floats apart, as in sc_simple_some_axes. */
-static SC_INLINE void SC_KERNEL(see_small)(const sc_query_state *state, uint32_t node,
-                                           uint32_t blocks, const float *axes,
-                                           SC_KERNEL(small_contour) * c)
+static SC_INLINE void SC_KERNEL(see_small)(const sc_query_state *state, uint32_t blocks,
+                                           const float *axes, SC_KERNEL(small_contour) * c)
 {
-    const uint32_t *loop = sc_model_node_loop(state->model) + node;
     const float *at = state->workspace->point_at, *one, *other;
-    union {
-        lanes aligned;
-        uint32_t place[SC_KERNEL(SMALL_POINTS)];
-    } room;
     lanes from[3], axis[2][3], d[3], x[2], size = lanes_all(0), size_in_plane = lanes_all(0);
     uint32_t b;
     int k, m;
-    c->count = loop[1] - loop[0];
-    SC_KERNEL(place_small)(state->model, node, blocks, c->count, room.place);
-    one = at + 4 * (uint64_t)room.place[0];
-    other = at + 4 * (uint64_t)room.place[c->count / 2];
+    one = at + 4 * (uint64_t)c->cell[0];
+    other = at + 4 * (uint64_t)c->cell[c->count / 2];
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         from[k] = lanes_all(one[k] / 2 + other[k] / 2);
@@ -79,7 +76,7 @@ static SC_INLINE void SC_KERNEL(see_small)(const sc_query_state *state, uint32_t
     }
     SC_UNROLL
     for (b = 0; b < blocks; b++) {
-        lanes_rows(at, room.place + SC_LANES_COUNT * b, &d[0], &d[1], &d[2]);
+        lanes_rows(at, c->cell + SC_LANES_COUNT * b, &d[0], &d[1], &d[2]);
         SC_UNROLL
         for (k = 0; k < 3; k++) {
             d[k] = lanes_subtract(d[k], from[k]);
@@ -201,7 +198,8 @@ static SC_INLINE unsigned SC_KERNEL(find_simple_of)(sc_query_state *state, const
     SC_KERNEL(small_contour) all[SC_DNC_VECTORS];
     unsigned simple = (1u << count) - 1u, i;
     sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
-    for (i = 0; i < count; i++) SC_KERNEL(see_small)(state, nodes[i], blocks, axes[i], &all[i]);
+    for (i = 0; i < count; i++) SC_KERNEL(place_small)(state->model, nodes[i], blocks, &all[i]);
+    for (i = 0; i < count; i++) SC_KERNEL(see_small)(state, blocks, axes[i], &all[i]);
     sc_state_switch(state, SC_TASK_CONTOUR);
     for (i = 0; i < count; i++) SC_KERNEL(find_cells)(&all[i], blocks);
     for (i = 0; i < count; i++) SC_KERNEL(find_boxes)(&all[i], blocks);
