@@ -1646,7 +1646,7 @@ static void flat_cloths_pass(void)
    these make nobody adjacent. The second patch folds over the first. */
 static void patches_that_share_hubs(void)
 {
-    enum { FINS = 30, HUBS = 3, TRIANGLES = 6 + HUBS * FINS };
+    enum { FINS = 60, HUBS = 3, TRIANGLES = 6 + HUBS * FINS };
     static const double flat[9][2] = {{0, 0},   {10, -5}, {4, 0}, {10, 5}, {9, -6},
                                       {9, 4.4}, {9.5, 0}, {9, 6}, {0, 0}};
     static const uint32_t corners[6][3] = {{0, 1, 2}, {0, 2, 3}, {1, 0, 4},

@@ -852,6 +852,37 @@ static void tubes_that_are_no_bands(void)
     }
 }
 
+/* Strips in planes across the axes that have one point in common, each a leaf cluster of its own: so
+   many of them meet there, up to the most of which each two are a node of the test tree, and more. */
+static void strips_from_one_point(void)
+{
+    enum { STRIP = 14 };
+    static const uint32_t counts[] = {24, 25, 40, 48, 49};
+    for (size_t i = 0; i < sizeof(counts) / sizeof(counts[0]); ++i) {
+        uint64_t state = test_random_state();
+        uint32_t strips = counts[i], count = strips * STRIP, k;
+        soup s = soup_make(1 + strips * (STRIP + 1), count);
+        uint32_t *order = (uint32_t *)test_allocate(count * sizeof(uint32_t));
+        memset(s.positions, 0, 3 * sizeof(double));
+        for (uint32_t v = 1; v < s.vertex_count; ++v) {
+            uint32_t strip = (v - 1) / (STRIP + 1), place = (v - 1) % (STRIP + 1);
+            double *at = s.positions + 3 * (size_t)v;
+            at[strip % 3] = place < 2 ? 0 : test_random_range(-0.1, 0.1);
+            at[(strip + 1) % 3] = place / 2 + (place == 1) + test_random_below(2);
+            at[(strip + 2) % 3] = place < 2 ? 1 - (double)place : 1 - 2.0 * (place % 2);
+            if (strip / 3 % 2) at[(strip + 1) % 3] *= -1;
+        }
+        for (k = 0; k < count; ++k) {
+            uint32_t *t = s.triangles + 3 * k, first = 1 + k / STRIP * (STRIP + 1) + k % STRIP;
+            t[0] = k % STRIP ? first - 1 : 0;
+            t[1] = first;
+            t[2] = first + 1;
+            order[k] = k;
+        }
+        check_in_order("strips from one point", state, &s, order);
+    }
+}
+
 /* Two bands round an axis on one side of a loop that they share, one in the other or through it. */
 static void sleeves(void)
 {
@@ -1463,8 +1494,8 @@ SC_TEST_MAIN(SC_TEST(small_soups_on_a_grid), SC_TEST(copies_of_two_triangles),
              SC_TEST(edges_that_nearly_meet), SC_TEST(edges_that_meet_across_an_axis),
              SC_TEST(neighbors_on_a_ray), SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane),
              SC_TEST(bands_in_a_plane), SC_TEST(tubes), SC_TEST(tubes_that_are_no_bands),
-             SC_TEST(sleeves), SC_TEST(two_clusters_in_a_plane), SC_TEST(two_clusters_at_a_point),
-             SC_TEST(deformed_meshes), SC_TEST(what_only_contours_tell), SC_TEST(branched_discs),
-             SC_TEST(every_partition), SC_TEST(one_workspace_many_poses),
-             SC_TEST(fans_that_fold_flat), SC_TEST(short_buffers), SC_TEST(unused_vertices),
-             SC_TEST(meshes_of_the_folder))
+             SC_TEST(sleeves), SC_TEST(strips_from_one_point), SC_TEST(two_clusters_in_a_plane),
+             SC_TEST(two_clusters_at_a_point), SC_TEST(deformed_meshes),
+             SC_TEST(what_only_contours_tell), SC_TEST(branched_discs), SC_TEST(every_partition),
+             SC_TEST(one_workspace_many_poses), SC_TEST(fans_that_fold_flat),
+             SC_TEST(short_buffers), SC_TEST(unused_vertices), SC_TEST(meshes_of_the_folder))

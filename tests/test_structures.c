@@ -1154,7 +1154,7 @@ static void named_meshes(void)
 /* Points at which more patches meet than are called adjacent. */
 static void hubs(void)
 {
-    soup s = shape_hub(260);
+    soup s = shape_hub(600);
     uint32_t partition, hubs_met = 0;
     for (partition = SC_PARTITION_FAST; partition <= SC_PARTITION_BISECT; ++partition) {
         input_choices c = input_choose(&s, SC_WELD_REST, partition);

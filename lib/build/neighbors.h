@@ -5,15 +5,18 @@
  *
  * A point at which more than SC_NEIGHBORS_HUB patches of a level meet makes none of them adjacent
  * at that level, or a fan of n triangles would cost n^2. That loses no pair: patches that are not
- * adjacent are tested by their boxes.
+ * adjacent are tested by their boxes. Of leaf clusters that are not adjacent it is not asked there
+ * which triangles share points, unless they are crowded: so no point is a hub that does not make
+ * those with it crowded.
  */
 #ifndef SC_BUILD_NEIGHBORS_H
 #define SC_BUILD_NEIGHBORS_H
 
 #include "build/adjacency.h"
+#include "build/sharing.h"
 #include "build/xbvh.h"
 
-enum { SC_NEIGHBORS_HUB = 24 };
+enum { SC_NEIGHBORS_HUB = SC_SHARING_CROWD };
 
 /*
  * Patch p has the neighbors entries[first[p]] to entries[first[p] + count[p] - 1], sorted, those

@@ -602,7 +602,8 @@ static inline unsigned SC_KERNEL(add_near_pairs)(sc_query_state *state, uint32_t
 }
 
 /* Has pairs of a leaf cluster wait: with those numbered from first on, of which bits of a mask are
-   set. They are all above it; or all below it, and then they share no points with it. */
+   set. They are all above it; or all below it, of pairs that the test tree leaves to boxes: then
+   they share no points with it, unless both are crowded (build/neighbors.h). */
 static inline void SC_KERNEL(add_leaf_pairs)(sc_query_state *state, uint32_t leaf, uint32_t first,
                                              unsigned mask)
 {
