@@ -449,6 +449,10 @@ static void SC_KERNEL(far_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
             SC_KERNEL(test_rows)(state, rows);
         for (i = 0; i < count; i++) {
             uint32_t a = lower[i], b = upper[i];
+            if (i + SC_MADE_LEAVES < count) {
+                sc_fetch(w->slab + lower[i + SC_MADE_LEAVES]);
+                sc_fetch(w->slab + upper[i + SC_MADE_LEAVES]);
+            }
             if (i % SC_MADE_LEAVES == 0 && w->ready_mask == SC_KEEPS_ALL) {
                 const uint32_t some = count - i < SC_MADE_LEAVES ? count - i : SC_MADE_LEAVES;
                 SC_KERNEL(make_slabs)(state, lower + i, some);
@@ -481,11 +485,13 @@ static inline int SC_KERNEL(has_cones)(const sc_query_state *state)
 }
 
 /* Takes the pairs of leaf clusters that share points from the list of what waits, and leaf clusters
-   against themselves, and drops what some tests can tell; returns how many are left. In steps with
-   few branches, as any pair may be one of a kind. */
+   against themselves, and drops what some tests can tell; returns how many are left, and has asked
+   for what tells whether they are ready, and where their lists begin. In steps with few branches,
+   as any pair may be one of a kind. */
 static SC_NOINLINE uint32_t SC_KERNEL(take_near_list)(sc_query_state *state)
 {
     const uint32_t *leaf = sc_model_share_leaf(state->model);
+    const uint32_t *begin = sc_model_share_begin(state->model);
     const uint16_t *touch = sc_model_share_touch(state->model);
     sc_workspace *w = state->workspace;
     sc_near_pair *pairs = w->near_pairs;
@@ -514,6 +520,9 @@ static SC_NOINLINE uint32_t SC_KERNEL(take_near_list)(sc_query_state *state)
         const sc_near_pair p = pairs[i];
         unsigned drops = p.known & SC_NEAR_DROPPED;
         if (p.a == p.b && has_cones) drops |= (unsigned)SC_KERNEL(is_plain)(state, p.a);
+        sc_fetch(w->known + (p.a & w->ready_mask));
+        sc_fetch(w->known + (p.b & w->ready_mask));
+        sc_fetch(begin + (p.a == p.b ? 0 : p.shared));
         pairs[kept] = p;
         kept += !drops;
     }
@@ -531,8 +540,6 @@ static void SC_KERNEL(near_pairs)(sc_query_state *state, SC_KERNEL(rows) * rows)
     uint32_t i;
     rows->near = 1;
     for (i = 0; i < count && !state->stop; i++) {
-        if (i + 2 * SC_FETCH_READY < count && pairs[i + 2 * SC_FETCH_READY].shared != SC_NONE)
-            sc_fetch(begin + pairs[i + 2 * SC_FETCH_READY].shared);
         if (i + SC_FETCH_READY < count) {
             const sc_near_pair *next = pairs + i + SC_FETCH_READY;
             SC_KERNEL(fetch_ready)(w, next->a);
