@@ -125,7 +125,7 @@ static sc_status leave_out_tests(steps *s, sc_scratch *scratch)
     uint32_t *none = (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)s->xbvh.level_count + 1,
                                                         sizeof *none, 0);
     if (!none) return SC_ERROR_MEMORY;
-    s->sctt.child = s->sctt.boxes_first = s->sctt.level_first = none;
+    s->sctt.child = s->sctt.level_first = none;
     s->csf.child_first = s->csf.contour_first = s->csf.loop_first = s->csf.level_segments = none;
     return SC_OK;
 }

@@ -143,8 +143,8 @@ static int is_in(const sc_model *m, uint32_t patch, uint32_t place)
 static int has_pair(const sc_model *m, uint32_t node, int whole, const sc_pair *pairs,
                     uint64_t count)
 {
-    uint32_t a = sc_model_node_patches(m)[node].a, b = sc_model_node_patches(m)[node].b;
-    int touches = !whole && sc_model_node_kind(m)[node] & SC_NODE_TOUCHES;
+    uint32_t a = sc_model_node(m)[node].patches.a, b = sc_model_node(m)[node].patches.b;
+    int touches = !whole && sc_model_node(m)[node].kind & SC_NODE_TOUCHES;
     for (uint64_t i = 0; i < count; ++i) {
         int p = is_in(m, a, pairs[i].a), q = is_in(m, b, pairs[i].a);
         int r = is_in(m, a, pairs[i].b), s = is_in(m, b, pairs[i].b);
@@ -168,7 +168,7 @@ static void check_nodes(const scene *s, sc_pair *pairs, uint64_t count, tally *t
     state.model = m;
     state.workspace = s->workspace;
     for (uint32_t node = 0; node < m->node_count; ++node) {
-        const sc_pair *patches = &sc_model_node_patches(m)[node];
+        const sc_pair *patches = &sc_model_node(m)[node].patches;
         uint32_t mask = (uint32_t)s->workspace->mask[patches->a] & s->workspace->mask[patches->b];
         int bad = has_pair(m, node, 0, pairs, count), worse = has_pair(m, node, 1, pairs, count);
         t->turned += mask == 0;
@@ -184,7 +184,7 @@ static void check_nodes(const scene *s, sc_pair *pairs, uint64_t count, tally *t
             *(passed ? &t->passed : &t->failed) += 1;
             if (node == 0) *(passed ? &t->roots_passed : &t->roots_failed) += 1;
             t->touching_passed +=
-                (uint64_t)(passed && sc_model_node_kind(m)[node] & SC_NODE_TOUCHES);
+                (uint64_t)(passed && sc_model_node(m)[node].kind & SC_NODE_TOUCHES);
             t->colliding += (uint64_t)bad;
         }
     }
@@ -609,29 +609,14 @@ enum { LEFT_POINTS = 3, BENCH_POINTS = 6 }; /* points 0 1 2 and 2 3 4 of segment
 
 static int open_bench(bench *b)
 {
-    static const uint32_t parts[] = {0,
-                                     2,
-                                     0, /* segment_first */
-                                     2,
-                                     4,
-                                     4, /* segment_last */
-                                     0,
-                                     1,
-                                     2,
-                                     3,
-                                     4,
-                                     3, /* points */
-                                     0,
-                                     2, /* segment_children */
-                                     0,
-                                     1, /* children */
-                                     0,
-                                     4, /* node_contour */
-                                     5,
-                                     1,
-                                     0,
-                                     1, /* contours: point, count of the first, segments */
-                                     SC_NODE_TOUCHES /* node_kind, a byte */};
+    static const uint32_t parts[] = {
+        0, 2, 0,          /* segment_first */
+        2, 4, 4,          /* segment_last */
+        0, 1, 2, 3, 4, 3, /* points */
+        0, 2,             /* segment_children */
+        0, 1,             /* children */
+        5, 1, 0, 1 /* contours: point, count of the first, segments */};
+    sc_node *node;
     sc_mesh input;
     memset(b, 0, sizeof(*b));
     b->mesh = soup_cloth(5, 5);
@@ -651,9 +636,11 @@ static int open_bench(bench *b)
     b->fake->offset[SC_ARRAY_points] = b->real->bytes + 6 * sizeof(uint32_t);
     b->fake->offset[SC_ARRAY_segment_children] = b->real->bytes + 12 * sizeof(uint32_t);
     b->fake->offset[SC_ARRAY_children] = b->real->bytes + 14 * sizeof(uint32_t);
-    b->fake->offset[SC_ARRAY_node_contour] = b->real->bytes + 16 * sizeof(uint32_t);
-    b->fake->offset[SC_ARRAY_contours] = b->real->bytes + 18 * sizeof(uint32_t);
-    b->fake->offset[SC_ARRAY_node_kind] = b->real->bytes + 22 * sizeof(uint32_t);
+    b->fake->offset[SC_ARRAY_contours] = b->real->bytes + 16 * sizeof(uint32_t);
+    node = (sc_node *)(uintptr_t)sc_model_node(b->fake);
+    node[0].contour = 0;
+    node[0].kind = SC_NODE_TOUCHES;
+    node[1].contour = 4;
     sc_workspace_new_pose(b->real, b->workspace);
     b->pose = (double *)test_allocate(3 * b->mesh.vertex_count * sizeof(double));
     memcpy(b->pose, b->mesh.positions, 3 * b->mesh.vertex_count * sizeof(double));

@@ -749,8 +749,8 @@ static int is_in(const sc_model *m, uint32_t patch, uint32_t place)
 static int has_pair(const sc_model *m, uint32_t node, int whole, const sc_pair *pairs,
                     uint64_t count)
 {
-    uint32_t a = sc_model_node_patches(m)[node].a, b = sc_model_node_patches(m)[node].b;
-    int touches = !whole && sc_model_node_kind(m)[node] & SC_NODE_TOUCHES;
+    uint32_t a = sc_model_node(m)[node].patches.a, b = sc_model_node(m)[node].patches.b;
+    int touches = !whole && sc_model_node(m)[node].kind & SC_NODE_TOUCHES;
     for (uint64_t i = 0; i < count; ++i) {
         int first_a = is_in(m, a, pairs[i].a), first_b = is_in(m, b, pairs[i].a);
         int second_a = is_in(m, a, pairs[i].b), second_b = is_in(m, b, pairs[i].b);
@@ -788,9 +788,9 @@ static void check_stars(scene *s, star_tally *tally)
     const oracle_list *list = &answer.lists[SC_PAIRS_TRIANGLE][SC_CONTACT_TOUCHING];
     uint32_t wrong = 0, node;
     for (node = 0; node < m->node_count; ++node) {
-        const sc_pair *patches = &sc_model_node_patches(m)[node];
+        const sc_pair *patches = &sc_model_node(m)[node].patches;
         uint32_t mask = (uint32_t)s->workspace->mask[patches->a] & s->workspace->mask[patches->b];
-        int bad, worse, tries, touches = sc_model_node_kind(m)[node] & SC_NODE_TOUCHES;
+        int bad, worse, tries, touches = sc_model_node(m)[node].kind & SC_NODE_TOUCHES;
         if (mask == 0) continue;
         bad = has_pair(m, node, 0, list->pairs, list->count);
         worse = has_pair(m, node, 1, list->pairs, list->count);
@@ -1134,10 +1134,10 @@ static void exact_place(mpq_t result, const sc_workspace *w, uint32_t point, con
 /* The points that a contour has in its list, with those between which there is no edge. */
 static uint32_t count_listed(const sc_model *m, uint32_t node)
 {
-    const uint32_t *contour = sc_model_node_contour(m) + node;
-    uint32_t listed = 0, i = contour[0] + (sc_model_node_kind(m)[node] & SC_NODE_TOUCHES ? 2 : 0);
+    const sc_node *n = sc_model_node(m) + node;
+    uint32_t listed = 0, i = n->contour + (n->kind & SC_NODE_TOUCHES ? 2 : 0);
     uint32_t before = SC_NONE;
-    for (; i < contour[1]; ++i) {
+    for (; i < n[1].contour; ++i) {
         uint32_t segment = sc_model_contours(m)[i];
         uint32_t first = sc_model_segment_first(m)[segment],
                  last = sc_model_segment_last(m)[segment];
@@ -1270,13 +1270,14 @@ static void poses_of_any_layout(void)
 static uint32_t tested_point(const scene *s, uint32_t node, uint32_t i)
 {
     const sc_model *m = s->model;
-    const uint32_t *first = sc_model_node_loop(m) + node, *leaf = sc_model_leaf(m);
-    const sc_pair *patches = &sc_model_node_patches(m)[node];
+    const uint32_t *leaf = sc_model_leaf(m);
+    const sc_node *n = sc_model_node(m) + node;
+    const sc_pair *patches = &n->patches;
     uint32_t split = leaf[patches->a + 1] - leaf[patches->a], number, cluster;
-    if (first[0] == first[1]) return s->workspace->contour.point[i];
-    if (sc_model_node_kind(m)[node] & SC_NODE_PIECES)
+    if (!n->loop_length) return s->workspace->contour.point[i];
+    if (n->kind & SC_NODE_PIECES)
         return sc_model_leaf_point(m)[sc_loops_turn(s->workspace->contour.point[i])];
-    number = sc_model_loop(m)[first[0] + i % (first[1] - first[0])];
+    number = sc_model_loop(m)[n->loop + i % n->loop_length];
     cluster = number / SC_LEAF_POINTS;
     cluster = cluster < split ? leaf[patches->a] + cluster : leaf[patches->b] + cluster - split;
     return sc_model_leaf_point(
@@ -1287,7 +1288,7 @@ static uint32_t tested_point(const scene *s, uint32_t node, uint32_t i)
    middle of its points. */
 static uint32_t list_pieces(const scene *s, uint32_t node, uint32_t *middle)
 {
-    const uint16_t *loop = sc_model_loop(s->model) + sc_model_node_loop(s->model)[node];
+    const uint16_t *loop = sc_model_loop(s->model) + sc_model_node(s->model)[node].loop;
     uint32_t edges = 0, places = 0, before = 0;
     for (uint32_t p = 0; p < loop[0]; ++p) edges += loop[1 + p];
     for (uint32_t p = 0; p < loop[0]; ++p) {
@@ -1335,17 +1336,16 @@ static void places_of_contours(void)
             const sc_contour_edges *e = &s.workspace->contour;
             uint32_t wrong = 0, edges = 0;
             for (uint32_t node = 0; node < s.model->node_count; ++node) {
-                const uint32_t *loop = sc_model_node_loop(s.model) + node;
-                int in_pieces = sc_model_node_kind(s.model)[node] & SC_NODE_PIECES;
-                int has_gaps = loop[0] == loop[1] || in_pieces;
-                uint32_t listed =
-                    loop[0] == loop[1] ? count_listed(s.model, node) : loop[1] - loop[0];
+                const uint32_t length = sc_model_node(s.model)[node].loop_length;
+                int in_pieces = sc_model_node(s.model)[node].kind & SC_NODE_PIECES;
+                int has_gaps = !length || in_pieces;
+                uint32_t listed = length ? length : count_listed(s.model, node);
                 uint32_t middle;
                 float from[3], one[3], other[3];
                 int passed;
                 if (listed == 0) continue;
                 middle = listed / 2;
-                if (loop[0] < loop[1] && in_pieces) listed = list_pieces(&s, node, &middle);
+                if (length && in_pieces) listed = list_pieces(&s, node, &middle);
                 s.workspace->isa = 1 + node % (uint32_t)sc_isa_best();
                 passed = sc_simple_test(&s.state, &projection, node);
                 sc_positions_unit(s.workspace, tested_point(&s, node, 0), one);
@@ -1449,13 +1449,13 @@ static void pinches_alone(void)
    there is none. */
 static uint32_t long_loop(const sc_model *m)
 {
-    const uint32_t *first = sc_model_node_loop(m);
-    const uint16_t *loop = sc_model_loop(m);
     for (uint32_t node = 0; node < m->node_count; ++node) {
-        int twice = (sc_model_node_kind(m)[node] & SC_NODE_PIECES) != 0;
-        if (first[node + 1] - first[node] < 64) continue;
-        for (uint32_t i = first[node]; i < first[node] + 64; ++i)
-            for (uint32_t j = first[node]; j < i; ++j) twice |= loop[i] == loop[j];
+        const sc_node *n = sc_model_node(m) + node;
+        const uint16_t *loop = sc_model_loop(m) + n->loop;
+        int twice = (n->kind & SC_NODE_PIECES) != 0;
+        if (n->loop_length < 64) continue;
+        for (uint32_t i = 0; i < 64; ++i)
+            for (uint32_t j = 0; j < i; ++j) twice |= loop[i] == loop[j];
         if (!twice) return node;
     }
     return SC_NONE;
@@ -1465,8 +1465,8 @@ static uint32_t long_loop(const sc_model *m)
 static void move_loop(const scene *s, uint32_t node, float at[][2], uint32_t count)
 {
     const uint32_t *leaf = sc_model_leaf(s->model);
-    const sc_pair *patches = &sc_model_node_patches(s->model)[node];
-    const uint16_t *loop = sc_model_loop(s->model) + sc_model_node_loop(s->model)[node];
+    const sc_pair *patches = &sc_model_node(s->model)[node].patches;
+    const uint16_t *loop = sc_model_loop(s->model) + sc_model_node(s->model)[node].loop;
     sc_simple_contour c;
     memset(&c, 0, sizeof(c));
     c.first = SC_LEAF_POINTS * leaf[patches->a];
@@ -1487,14 +1487,14 @@ static unsigned tell_small(scene *s, uint32_t node, float at[][2], uint32_t coun
     const uint32_t blocks = (count + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK;
     float above[2 * 3 * SC_DNC_VECTORS] = {0};
     const float *axes = above;
-    uint32_t *first = (uint32_t *)(uintptr_t)(sc_model_node_loop(s->model) + node);
-    const uint32_t end = first[1];
+    sc_node *n = (sc_node *)(uintptr_t)(sc_model_node(s->model) + node);
+    const uint16_t length = n->loop_length;
     unsigned simple;
     above[0] = above[4 * SC_DNC_VECTORS] = 1;
     move_loop(s, node, at, count);
-    first[1] = first[0] + count;
+    n->loop_length = (uint16_t)count;
     simple = sc_query_kernels_of(s->workspace)->find_simple(&s->state, &node, 1, blocks, &axes);
-    first[1] = end;
+    n->loop_length = length;
     return simple;
 }
 
@@ -1588,20 +1588,20 @@ static void contours_in_turn(void)
             s.workspace->mask[p] = (uint16_t)(1u << test_random_below(SC_DNC_DIRECTIONS) |
                                               1u << test_random_below(SC_DNC_DIRECTIONS));
         for (uint32_t node = 0; node < s.model->node_count; ++node) {
-            const sc_pair *patches = &sc_model_node_patches(s.model)[node];
+            const sc_pair *patches = &sc_model_node(s.model)[node].patches;
             if (s.workspace->mask[patches->a] & s.workspace->mask[patches->b]) nodes[n++] = node;
             if (n < most && node + 1 < s.model->node_count) continue;
             sc_simple_tests(&s.state, nodes, n, passed);
             for (uint32_t i = 0; i < n; ++i) {
                 sc_projection projection;
-                patches = &sc_model_node_patches(s.model)[nodes[i]];
+                patches = &sc_model_node(s.model)[nodes[i]].patches;
                 sc_dnc_projection(s.workspace,
                                   (uint32_t)s.workspace->mask[patches->a] &
                                       s.workspace->mask[patches->b],
                                   &projection);
                 wrong += sc_simple_test(&s.state, &projection, nodes[i]) != passed[i];
                 ++count[passed[i] != 0];
-                in_pieces += (sc_model_node_kind(s.model)[nodes[i]] & SC_NODE_PIECES) != 0;
+                in_pieces += (sc_model_node(s.model)[nodes[i]].kind & SC_NODE_PIECES) != 0;
             }
             n = 0;
         }
@@ -1626,13 +1626,13 @@ static void flat_cloths_pass(void)
             uint32_t failed = 0, node;
             s.workspace->isa = 1 + i % (uint32_t)sc_isa_best();
             for (node = 0; node < s.model->node_count; ++node) {
-                const sc_pair *patches = &sc_model_node_patches(s.model)[node];
+                const sc_pair *patches = &sc_model_node(s.model)[node].patches;
                 uint32_t mask =
                     (uint32_t)s.workspace->mask[patches->a] & s.workspace->mask[patches->b];
                 sc_projection projection;
                 sc_dnc_projection(s.workspace, mask, &projection);
                 failed += !CHECK(mask != 0) || !sc_simple_test(&s.state, &projection, node);
-                touching += (sc_model_node_kind(s.model)[node] & SC_NODE_TOUCHES) != 0;
+                touching += (sc_model_node(s.model)[node].kind & SC_NODE_TOUCHES) != 0;
             }
             CHECK_MSG(!failed, "%" PRIu32 " of %" PRIu32 " nodes failed", failed,
                       s.model->node_count);

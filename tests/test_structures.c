@@ -284,6 +284,14 @@ static void find_shared(const steps *s, const patches *p, uint32_t level, uint8_
 
 /* ---- the test tree ---- */
 
+/* Whether a pair of children of a node's patches is left to boxes, and which two these are. */
+static int is_for_boxes(const steps *s, uint32_t node, uint32_t bit, uint32_t *a, uint32_t *b)
+{
+    *a = s->xbvh.child[s->sctt.patches[node].a] + bit / 2;
+    *b = s->xbvh.child[s->sctt.patches[node].b] + bit % 2;
+    return s->sctt.pairs[node] >> (SC_PAIR_BOXES + bit) & 1;
+}
+
 /* Every adjacent pair of a level is one node, every other pair of children of a tested pair one
    BVTT child, all of them below the right parents. */
 static void check_sctt(const steps *s, const patches *p)
@@ -319,8 +327,11 @@ static void check_sctt(const steps *s, const patches *p)
                 for (k = t->child[n]; k < t->child[n + 1]; ++k)
                     wrong +=
                         parent[t->patches[k].a - base] != a || parent[t->patches[k].b - base] != b;
-                for (k = t->boxes_first[n]; k < t->boxes_first[n + 1]; ++k) {
-                    uint32_t c = t->boxes[k].a - base, d = t->boxes[k].b - base;
+                for (k = 0; k < 4; ++k) {
+                    uint32_t c, d;
+                    if (!is_for_boxes(s, n, k, &c, &d)) continue;
+                    c -= base;
+                    d -= base;
                     if (!CHECK(c < d && d < count)) goto end;
                     wrong += parent[c] != a || parent[d] != b;
                     ++boxes[(size_t)c * count + d];
@@ -367,10 +378,10 @@ static void check_leaf_pairs(const steps *s)
         if (t->child[n] == t->child[n + 1] && sc_xbvh_is_leaf(&s->xbvh, a) &&
             sc_xbvh_is_leaf(&s->xbvh, b))
             ++reached[leaf[a] * leaves + leaf[b]];
-        for (k = t->boxes_first[n]; k < t->boxes_first[n + 1]; ++k)
-            for (i = leaf[t->boxes[k].a]; i < leaf[t->boxes[k].a + 1]; ++i)
-                for (j = leaf[t->boxes[k].b]; j < leaf[t->boxes[k].b + 1]; ++j)
-                    ++reached[i * leaves + j];
+        for (k = 0; k < 4; ++k)
+            if (is_for_boxes(s, n, k, &a, &b))
+                for (i = leaf[a]; i < leaf[a + 1]; ++i)
+                    for (j = leaf[b]; j < leaf[b + 1]; ++j) ++reached[i * leaves + j];
     }
     for (i = 0; i < leaves; ++i)
         for (j = 0; j < leaves; ++j) wrong += reached[i * leaves + j] != (i <= j);
@@ -730,7 +741,7 @@ static void check_share_nodes(const steps *s, const sc_model *model)
     for (uint32_t i = 0; i < model->share_count; ++i)
         known += sc_model_share_node(model)[i] != SC_NONE;
     for (uint32_t n = 0; n < model->node_count; ++n) {
-        sc_pair pair = sc_model_node_patches(model)[n];
+        sc_pair pair = sc_model_node(model)[n].patches;
         uint32_t a = leaf[pair.a], b = leaf[pair.b];
         if (pair.a == pair.b || leaf[pair.a + 1] > a + 1 || leaf[pair.b + 1] > b + 1) continue;
         for (uint32_t i = first[a]; i < first[a + 1]; ++i) {
@@ -747,7 +758,7 @@ static void check_share_nodes(const steps *s, const sc_model *model)
 static void list_loop(const steps *s, const sc_model *m, uint32_t n, const uint16_t *loop,
                       uint32_t count, sc_pair *edges)
 {
-    sc_pair pair = sc_model_node_patches(m)[n];
+    sc_pair pair = sc_model_node(m)[n].patches;
     const uint32_t *leaf = sc_model_leaf(m);
     uint32_t split = leaf[pair.a + 1] - leaf[pair.a];
     for (uint32_t i = 0; i < count; ++i) {
@@ -765,9 +776,8 @@ static void list_loop(const steps *s, const sc_model *m, uint32_t n, const uint1
 static uint32_t list_loops(const steps *s, const sc_model *m, uint32_t n, sc_pair *edges,
                            uint32_t *wrong)
 {
-    const uint32_t *first = sc_model_node_loop(m) + n;
-    const uint16_t *loop = sc_model_loop(m) + first[0];
-    uint32_t count = first[1] - first[0], pieces = loop[0], total = 0;
+    const uint16_t *loop = sc_model_loop(m) + sc_model_node(m)[n].loop;
+    uint32_t count = sc_model_node(m)[n].loop_length, pieces = loop[0], total = 0;
     if (!s->csf.in_pieces[n]) {
         list_loop(s, m, n, loop, count, edges);
         return count;
@@ -791,12 +801,11 @@ static void check_loops(const steps *s, const sc_model *m)
     uint32_t most = 0, wrong = 0;
     sc_pair *loop, *edges;
     for (uint32_t n = 0; n < m->node_count; ++n)
-        if (most < sc_model_node_loop(m)[n + 1] - sc_model_node_loop(m)[n])
-            most = sc_model_node_loop(m)[n + 1] - sc_model_node_loop(m)[n];
+        if (most < sc_model_node(m)[n].loop_length) most = sc_model_node(m)[n].loop_length;
     loop = (sc_pair *)test_allocate((most + 1) * sizeof(sc_pair));
     edges = (sc_pair *)test_allocate((most + 1) * sizeof(sc_pair));
     for (uint32_t n = 0; n < m->node_count; ++n) {
-        uint32_t looped = sc_model_node_loop(m)[n + 1] - sc_model_node_loop(m)[n], count = 0;
+        uint32_t looped = sc_model_node(m)[n].loop_length, count = 0;
         uint32_t i = csf->contour_first[n] + (s->sctt.touch[n] == SC_NONE ? 0 : 2);
         sc_pair *end = edges;
         if (looped == 0) {
@@ -855,7 +864,7 @@ static void check_model(const steps *s, const patches *p, const soup *mesh,
             for (k = 0; k < i && k < 50; ++k) wrong += now[i] == now[k] && before[i] != before[k];
         for (n = s->sctt.level_first[l]; n < s->sctt.level_first[l + 1]; ++n) {
             int self = s->sctt.patches[n].a == s->sctt.patches[n].b;
-            uint8_t flags = sc_model_node_flags(model)[n];
+            int flags = sc_model_node(model)[n].kind & (SC_NODE_REST_TURNED | SC_NODE_REST_CROSSED);
             *(self ? &selves : &pairs) += 1;
             if (marked.rest == SC_REST_UNMARKED) {
                 wrong += flags != 0;
@@ -1452,13 +1461,11 @@ static void validators(void)
                   n);
         CHECK_MSG(is_noticed(&s, 2, &s.sctt.child[n + 1], s.sctt.child[n + 1] - 1), "node %" PRIu32,
                   n);
-        CHECK_MSG(is_noticed(&s, 2, &s.sctt.boxes_first[n + 1], s.sctt.boxes_first[n + 1] + 1),
-                  "node %" PRIu32, n);
+        for (i = 0; i < 8; ++i)
+            CHECK_MSG(is_noticed(&s, 2, &s.sctt.pairs[n], s.sctt.pairs[n] ^ 1u << i),
+                      "node %" PRIu32, n);
         if (s.sctt.child[n] != s.sctt.child[n + 1]) inner = n;
     }
-    for (i = 0; i < s.sctt.box_count; ++i)
-        CHECK(is_noticed(&s, 2, &s.sctt.boxes[i].a, s.sctt.boxes[i].a + 1) &&
-              is_noticed(&s, 2, &s.sctt.boxes[i].b, s.sctt.boxes[i].b - 1));
     i = s.sctt.patches[s.sctt.child[inner + 1] - 1].a;
     CHECK(s.neighbors.count[i] > 0 && is_noticed(&s, 2, &s.neighbors.count[i], 0));
     /* segments: a point too few, a child before or twice, a gap between children, a contour of what

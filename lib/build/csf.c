@@ -374,7 +374,8 @@ static uint64_t measure_loop(const sc_xbvh *xbvh, sc_pair patches, uint32_t piec
     uint32_t leaves = xbvh->leaf[patches.a + 1] - xbvh->leaf[patches.a];
     if (patches.b != patches.a) leaves += xbvh->leaf[patches.b + 1] - xbvh->leaf[patches.b];
     (void)taken; /* where coverage is measured */
-    if (leaves > SC_LOOP_LEAVES || SC_HARDLY(taken + edges >= 0xfffff000u)) return 0;
+    if (leaves > SC_LOOP_LEAVES || edges > SC_LOOP_MAX) return 0;
+    if (SC_HARDLY(taken + edges >= 0xfffff000u)) return 0;
     if (pieces < 2) return edges;
     return pieces <= SC_LOOP_PIECES && edges <= SC_LOOP_PIECES_EDGES ? 1 + pieces + edges : 0;
 }

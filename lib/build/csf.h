@@ -26,9 +26,15 @@
 
 #include "build/sctt.h"
 
-/* So many leaf clusters have numbers for their points in 16 bits. Loops in pieces have so many of
-   these, and of edges, at most: others are long contours of large patches, which seldom pass. */
-enum { SC_LOOP_LEAVES = 65536 / SC_LEAF_POINTS, SC_LOOP_PIECES = 16, SC_LOOP_PIECES_EDGES = 100 };
+/* So many leaf clusters have numbers for their points in 16 bits, and the length of a loop has as
+   many. Loops in pieces have so many of these, and of edges, at most: others are long contours of
+   large patches, which seldom pass. */
+enum {
+    SC_LOOP_LEAVES = 65536 / SC_LEAF_POINTS,
+    SC_LOOP_MAX = 65535,
+    SC_LOOP_PIECES = 16,
+    SC_LOOP_PIECES_EDGES = 100
+};
 
 /* Scratch memory. */
 typedef struct sc_csf {
@@ -48,7 +54,7 @@ typedef struct sc_csf {
     uint32_t *contours;      /* contour_first[node_count] */
     uint8_t *in_pieces;      /* node_count: 1 if there is more than one chain */
     /* Loops: how long each node's is; 0 for those in many pieces or long ones, and those of more
-       than SC_LOOP_LEAVES leaf clusters. See build/loops.h. */
+       than SC_LOOP_LEAVES leaf clusters or SC_LOOP_MAX edges. See build/loops.h. */
     uint32_t *loop_first;     /* node_count + 1 */
     uint32_t *level_segments; /* level_count: segments of each level */
     uint32_t contour_max;     /* points of the segments round a node, at most */

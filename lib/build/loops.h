@@ -15,8 +15,9 @@
  * (sc_workspace.point_at), for that is how vector units have them at hand.
  *
  * Contours in more than SC_LOOP_PIECES pieces or of more than SC_LOOP_PIECES_EDGES edges in pieces,
- * and of more than SC_LOOP_LEAVES leaf clusters, which are few, have an empty loop; and so have
- * nodes of two patches that share one point, of which queries do not ask for the contour.
+ * and of more than SC_LOOP_LEAVES leaf clusters or SC_LOOP_MAX edges, which are few, have an empty
+ * loop; and so have nodes of two patches that share one point, of which queries do not ask for the
+ * contour.
  */
 #ifndef SC_BUILD_LOOPS_H
 #define SC_BUILD_LOOPS_H

@@ -24,8 +24,7 @@ static void measure_arrays(const sc_model *m, uint64_t bytes[SC_ARRAY_COUNT])
     uint32_t vertex_count = m->vertex_count, triangle_count = m->triangle_count;
     uint32_t leaf_count = m->leaf_count, level_count = m->level_count;
     uint32_t patch_end = m->patch_end, ring_total = m->ring_total, node_count = m->node_count;
-    uint32_t box_count = m->box_count, contour_total = m->contour_total;
-    uint32_t loop_total = m->loop_total;
+    uint32_t contour_total = m->contour_total, loop_total = m->loop_total;
     uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
     uint32_t segment_point_total = m->segment_point_total, share_count = m->share_count;
     uint32_t share_total = m->share_total;
@@ -60,7 +59,7 @@ static void clear_gaps(sc_model *m)
     uint64_t bytes[SC_ARRAY_COUNT], begin = sizeof *m;
     int array;
     measure_arrays(m, bytes);
-    bytes[SC_ARRAY_node_flags] = bytes[SC_ARRAY_level_info] = 0;
+    bytes[SC_ARRAY_level_info] = 0;
     for (array = 0; array <= SC_ARRAY_COUNT; array++) {
         uint64_t end = array < SC_ARRAY_COUNT ? m->offset[array] : m->bytes;
         memset((unsigned char *)m + begin, 0, (size_t)(end - begin));
@@ -268,20 +267,35 @@ static void write_hops(const sc_xbvh *xbvh, sc_model *m)
     }
 }
 
+static void write_nodes(const sc_sctt *sctt, const sc_csf *csf, sc_model *m)
+{
+    sc_node *node = NEW_ARRAY(m, node, sc_node);
+    uint32_t n;
+    for (n = 0; n < m->node_count; n++, node++) {
+        node->patches = sctt->patches[n];
+        node->child = sctt->child[n];
+        node->loop = csf->loop_first[n];
+        node->contour = csf->contour_first[n];
+        node->loop_length = (uint16_t)(csf->loop_first[n + 1] - csf->loop_first[n]);
+        node->pairs = (uint8_t)sctt->pairs[n];
+        node->kind = csf->in_pieces[n] ? SC_NODE_PIECES : 0;
+        if (sctt->touch[n] != SC_NONE) node->kind |= SC_NODE_TOUCHES;
+    }
+    memset(node, 0, sizeof *node);
+    node->child = m->node_count;
+    node->contour = m->contour_total;
+}
+
 static void write_segments(const sc_csf *csf, const uint32_t *number, const sc_sctt *sctt,
                            sc_model *m)
 {
     uint32_t *list = NEW_ARRAY(m, points, uint32_t), *contours = NEW_ARRAY(m, contours, uint32_t),
              i;
-    uint8_t *kind = NEW_ARRAY(m, node_kind, uint8_t);
     for (i = 0; i < m->segment_point_total; i++) list[i] = number[csf->points[i]];
     copy(contours, csf->contours, m->contour_total * sizeof(uint32_t));
-    for (i = 0; i < m->node_count; i++) {
-        kind[i] = csf->in_pieces[i] ? SC_NODE_PIECES : 0;
-        if (sctt->touch[i] == SC_NONE) continue;
-        kind[i] |= SC_NODE_TOUCHES;
-        contours[csf->contour_first[i]] = number[contours[csf->contour_first[i]]];
-    }
+    for (i = 0; i < m->node_count; i++)
+        if (sctt->touch[i] != SC_NONE)
+            contours[csf->contour_first[i]] = number[contours[csf->contour_first[i]]];
 }
 
 /* Of pieces that hang together: the first of the piece that i is in. */
@@ -445,7 +459,6 @@ static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
     m->level_count = xbvh->level_count;
     m->patch_end = xbvh->patch_end;
     m->node_count = sctt->node_count;
-    m->box_count = sctt->box_count;
     m->contour_total = csf->contour_first[sctt->node_count];
     m->loop_total = csf->loop_first[sctt->node_count];
     m->segment_count = csf->segment_count;
@@ -461,11 +474,11 @@ static void write_share_nodes(sc_model *m)
     uint32_t *share_node = NEW_ARRAY(m, share_node, uint32_t), n, i;
     const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
     const uint32_t *leaf = sc_model_leaf(m);
-    const sc_pair *patches = sc_model_node_patches(m);
+    const sc_node *node = sc_model_node(m);
     memset(share_node, 0xff, m->share_count * sizeof *share_node);
     for (n = 0; n < m->node_count; n++) {
-        const uint32_t a = patches[n].a, b = patches[n].b;
-        if (a == b || !sc_model_is_leaf(m, a) || !sc_model_is_leaf(m, b)) continue;
+        const uint32_t a = node[n].patches.a, b = node[n].patches.b;
+        if (a == b || !sc_node_is_leaf(&node[n])) continue;
         for (i = first[leaf[a]]; i < first[leaf[a] + 1]; i++)
             if (other[i] == leaf[b]) share_node[i] = n;
     }
@@ -534,17 +547,8 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, child, uint32_t), xbvh->child, m->patch_end * sizeof(uint32_t));
     copy(NEW_ARRAY(m, leaf, uint32_t), xbvh->leaf, m->patch_end * sizeof(uint32_t));
     write_hops(xbvh, m);
-    copy(NEW_ARRAY(m, node_patches, sc_pair), sctt->patches, m->node_count * sizeof(sc_pair));
+    write_nodes(sctt, csf, m);
     write_share_nodes(m);
-    copy(NEW_ARRAY(m, node_child, uint32_t), sctt->child,
-         ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, node_boxes, uint32_t), sctt->boxes_first,
-         ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, boxes, sc_pair), sctt->boxes, m->box_count * sizeof(sc_pair));
-    copy(NEW_ARRAY(m, node_contour, uint32_t), csf->contour_first,
-         ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, node_loop, uint32_t), csf->loop_first,
-         ((uint64_t)m->node_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, segment_first, uint32_t), csf->point_first,
          m->segment_count * sizeof(uint32_t));
     copy(NEW_ARRAY(m, segment_last, uint32_t), csf->point_last,
@@ -567,9 +571,9 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     return SC_OK;
 }
 
-uint8_t *sc_model_flags_of_new(sc_model *model)
+sc_node *sc_model_nodes_of_new(sc_model *model)
 {
-    return NEW_ARRAY(model, node_flags, uint8_t);
+    return NEW_ARRAY(model, node, sc_node);
 }
 
 sc_level *sc_model_levels_of_new(sc_model *model)

@@ -9,7 +9,7 @@
  * sc_model.bytes bytes. What frees it stands before it; before a model that is used in place where
  * it was saved stands the header of the save (build/saved_model.h), and the caller frees it.
  *
- * A model with SC_MODEL_BOXES has an empty test tree: no nodes, boxes, segments or contours.
+ * A model with SC_MODEL_BOXES has an empty test tree: no nodes, segments or contours.
  *
  * The block is the format of saved models: whoever changes what is in it raises the version in
  * build/saved_model.c, and makes build/model_check.c check it.
@@ -34,12 +34,48 @@ enum {
     SC_VERTEX_UNUSED = 2  /* in no triangle: not even read */
 };
 
-/* What is known of nodes from the topology. */
+/* What is known of nodes from the topology; and what the rest pose says of them. */
 enum {
     SC_NODE_TOUCHES =
         1, /* its two patches share one point; the contour is listed as build/csf.h says */
-    SC_NODE_PIECES = 2 /* the contour may be in pieces that share no point */
+    SC_NODE_PIECES = 2,      /* the contour may be in pieces that share no point */
+    SC_NODE_REST_TURNED = 4, /* failed the orientation test in the rest pose */
+    SC_NODE_REST_CROSSED = 8 /* passed it and failed the contour test */
 };
+
+/*
+ * A node of the test tree (build/sctt.h), with all that a query needs to test or to open it. Behind
+ * the last node comes one that has only child and contour: where those of a further one would
+ * begin.
+ */
+typedef struct sc_node {
+    sc_pair patches;      /* a == b: of one patch */
+    uint32_t child;       /* its first child; see sc_node_end */
+    uint32_t loop;        /* first number of its contour in loop: build/loops.h */
+    uint32_t contour;     /* first number of the list of segments in contours: build/csf.h */
+    uint16_t loop_length; /* 0: there is no loop */
+    uint8_t pairs;        /* build/sctt.h */
+    uint8_t kind;         /* SC_NODE_... */
+} sc_node;
+
+/* Behind the last child of a node. */
+static inline uint32_t sc_node_end(const sc_node *node)
+{
+    const uint64_t counts = UINT64_C(0x4332322132212110); /* of the bits in 15, 14, ... 0 */
+    return node->child + (uint32_t)(counts >> 4 * (node->pairs & 15u) & 15u);
+}
+
+/* The pairs of patches that a node leaves to boxes, as bits; see sc_model_pair. */
+static inline uint32_t sc_node_boxes(const sc_node *node)
+{
+    return (uint32_t)node->pairs >> SC_PAIR_BOXES;
+}
+
+/* Whether a node is of single leaf clusters: then it leaves these. */
+static inline int sc_node_is_leaf(const sc_node *node)
+{
+    return !node->pairs;
+}
 
 /* Where two leaf clusters have the point that they touch in, if they share just one: its place in
    the lower one's leaf_point, in four bits, and that in the other's; and whether it is the last
@@ -55,12 +91,6 @@ enum {
 /* Of the outline of a leaf cluster that is two chains: the point of a place is in the second; in
    none; and in the last place all the time that it is so. */
 enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NOWHERE = 64 };
-
-/* What the rest pose says of nodes. */
-enum {
-    SC_NODE_REST_TURNED = 1, /* failed the orientation test in the rest pose */
-    SC_NODE_REST_CROSSED = 2 /* passed it and failed the contour test */
-};
 
 /*
  * All arrays: name, type, number of elements. "Places" are triangles in leaf order. A point has the
@@ -93,9 +123,9 @@ enum {
  *   ring_first, ring  the points round each closed fan, in order; empty where there is none
  *   open_point      the points without a ring, ascending; open_first, open_around: the points that edges
  *                   join each of them with, some perhaps twice
- *   node_...        see build/sctt.h (patches, child, boxes) and build/csf.h (contour)
- *   boxes           BVTT children
- *   node_loop, loop   see build/loops.h
+ *   node            the test tree, see above
+ *   contours        the segments round each node, see build/csf.h
+ *   loop            see build/loops.h
  *   segment_...     see build/csf.h
  *   level_info      see above
  */
@@ -127,16 +157,9 @@ enum {
   X(open_point, uint32_t, open_count)                                                              \
   X(open_first, uint32_t, (uint64_t)open_count + 1)                                                \
   X(open_around, uint32_t, open_total)                                                             \
-  X(node_patches, sc_pair, node_count)                                                             \
-  X(node_child, uint32_t, (uint64_t)node_count + 1)                                                \
-  X(node_boxes, uint32_t, (uint64_t)node_count + 1)                                                \
-  X(boxes, sc_pair, box_count)                                                                     \
-  X(node_contour, uint32_t, (uint64_t)node_count + 1)                                              \
+  X(node, sc_node, (uint64_t)node_count + 1)                                                       \
   X(contours, uint32_t, contour_total)                                                             \
-  X(node_loop, uint32_t, (uint64_t)node_count + 1)                                                 \
   X(loop, uint16_t, loop_total)                                                                    \
-  X(node_flags, uint8_t, node_count)                                                               \
-  X(node_kind, uint8_t, node_count)                                                                \
   X(segment_first, uint32_t, segment_count)                                                        \
   X(segment_last, uint32_t, segment_count)                                                         \
   X(points, uint32_t, segment_point_total)                                                         \
@@ -159,11 +182,11 @@ struct sc_model {
     uint32_t vertex_count, point_count, triangle_count, edge_count;
     uint32_t component_count, boundary_edges, irregular_edges;
     uint32_t leaf_count, level_count, patch_end;
-    uint32_t node_count, box_count, contour_total, loop_total;
+    uint32_t node_count, contour_total, loop_total;
     uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
     uint32_t contour_max; /* points of the segments round a node, at most */
-    uint32_t ring_total, open_count, open_total, share_count,
-        share_total; /* an even number of these */
+    uint32_t ring_total, open_count, open_total, share_count, share_total;
+    uint32_t reserved; /* 0: an even number of these */
 };
 
 /* Stands before the model and fills one alignment unit. */
@@ -212,6 +235,16 @@ static inline int sc_model_is_leaf(const sc_model *model, uint32_t patch)
     return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch] == 1;
 }
 
+/* The pair of children of a node's patches that a bit stands for. */
+static inline sc_pair sc_model_pair(const sc_model *model, const sc_node *node, uint32_t bit)
+{
+    const uint32_t *child = sc_model_child(model);
+    sc_pair pair;
+    pair.a = child[node->patches.a] + bit / 2;
+    pair.b = child[node->patches.b] + bit % 2;
+    return pair;
+}
+
 /* Whether it is a model with SC_MODEL_BOXES. */
 static inline int sc_model_is_for_boxes(const sc_model *model)
 {
@@ -232,14 +265,14 @@ const sc_model_owner *sc_model_owner_of(const sc_model *model);
 /* Notes in an owned model what its making took. */
 void sc_model_note_memory(sc_model *model, const sc_scratch *scratch);
 
-/* Puts everything together. Node flags and what the rest pose says of levels are left at zero. */
+/* Puts everything together. What the rest pose says of nodes and levels is left at zero. */
 sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacency,
                             const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
                             const sc_csf *csf, const sc_sharing *sharing, sc_scratch *scratch,
                             sc_model **model);
 
 /* While the model is being built, its arrays may be written to. */
-uint8_t *sc_model_flags_of_new(sc_model *model);
+sc_node *sc_model_nodes_of_new(sc_model *model);
 sc_level *sc_model_levels_of_new(sc_model *model);
 
 void sc_model_release(sc_model *model);

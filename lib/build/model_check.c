@@ -22,8 +22,10 @@ int sc_model_check_counts(const sc_model *m, uint64_t bytes)
     if (!m->leaf_count || m->leaf_count > m->triangle_count) return 0;
     if (!m->level_count || m->level_count > SC_DEPTH_MAX) return 0;
     if (!m->patch_end || m->segment_count < m->leaf_segment_count) return 0;
-    if (sc_model_is_for_boxes(m) && (m->box_count || m->segment_count || m->contour_max)) return 0;
-    if (m->patch_end > limit || m->node_count > limit || m->box_count > limit) return 0;
+    if (sc_model_is_for_boxes(m) &&
+        (m->segment_count || m->contour_max || m->contour_total || m->loop_total))
+        return 0;
+    if (m->patch_end > limit || m->node_count > limit || m->reserved) return 0;
     sc_model_lay_out(&expected);
     if (m->bytes != bytes || expected.bytes != bytes) return 0;
     return memcmp(m->offset, expected.offset, sizeof m->offset) == 0;
@@ -212,36 +214,46 @@ static int check_hop(const sc_model *m)
     return 1;
 }
 
-/* The pairs that a node has to have among its children, one after the other. */
-typedef struct node_walk {
-    const sc_pair *nodes, *boxes;
-    uint32_t node_count, box_count;
-    uint32_t node, box; /* taken so far */
-} node_walk;
-
-static int take(node_walk *walk, uint32_t a, uint32_t b)
+/* Whether a node's next child is of two patches. */
+static int is_node_of(const sc_model *m, uint32_t node, uint32_t a, uint32_t b)
 {
-    const sc_pair *node = walk->nodes + walk->node, *box = walk->boxes + walk->box;
-    if (walk->node < walk->node_count && node->a == a && node->b == b)
-        walk->node++;
-    else if (a != b && walk->box < walk->box_count && box->a == a && box->b == b)
-        walk->box++;
-    else
-        return 0;
-    return 1;
+    return node < m->node_count && sc_model_node(m)[node].patches.a == a &&
+           sc_model_node(m)[node].patches.b == b;
 }
 
-static int take_children(const sc_model *m, node_walk *walk, uint32_t a, uint32_t b)
+/* Whether a node's children, of which *next is the first, and what it leaves to boxes are all pairs
+   of children of its patches, each once; *next becomes what follows them. */
+static int check_children_of_node(const sc_model *m, const sc_node *node, uint32_t *next)
 {
     const uint32_t *child = sc_model_child(m);
-    uint32_t c, d;
-    if (sc_model_is_leaf(m, a) && sc_model_is_leaf(m, b)) return 1;
-    for (c = child[a]; a == b && c < child[a + 1]; c++)
-        if (!take(walk, c, c)) return 0;
+    const uint32_t a = node->patches.a, b = node->patches.b;
+    uint32_t pairs = 0, c, d, bit;
+    if (sc_model_is_leaf(m, a) && sc_model_is_leaf(m, b)) return !node->pairs;
+    for (c = child[a]; a == b && c < child[a + 1]; c++) {
+        if (!is_node_of(m, (*next)++, c, c)) return 0;
+        pairs |= 1u << 3 * (c - child[a]);
+    }
     for (c = child[a]; c < child[a + 1]; c++)
-        for (d = a == b ? c + 1 : child[b]; d < child[b + 1]; d++)
-            if (!take(walk, c, d)) return 0;
-    return 1;
+        for (d = a == b ? c + 1 : child[b]; d < child[b + 1]; d++) {
+            bit = 1u << (2 * (c - child[a]) + d - child[b]);
+            if (node->pairs & bit) {
+                if (!is_node_of(m, (*next)++, c, d)) return 0;
+            } else {
+                bit <<= SC_PAIR_BOXES;
+            }
+            pairs |= bit;
+        }
+    return node->pairs == pairs;
+}
+
+/* Behind the last node. */
+static int check_last_node(const sc_model *m)
+{
+    sc_node expected;
+    memset(&expected, 0, sizeof expected);
+    expected.child = m->node_count;
+    expected.contour = m->contour_total;
+    return memcmp(&expected, &sc_model_node(m)[m->node_count], sizeof expected) == 0;
 }
 
 /* An empty test tree. */
@@ -255,45 +267,38 @@ static const char *check_no_nodes(const sc_model *m)
         if (memcmp(&expected, &sc_model_level_info(m)[level], sizeof expected) != 0)
             return "level_info";
     }
-    if (*sc_model_node_child(m)) return "node_child";
-    return *sc_model_node_boxes(m) ? "node_boxes" : NULL;
+    return check_last_node(m) ? NULL : "node";
 }
 
 /*
  * The self-collision test tree (build/sctt.h). Node 0 is the mesh against itself, and the children
  * of each node are all pairs of children of its patches, each once, be it as a node or for boxes.
- * So nodes are of patches of one level, no deeper than the hierarchy.
+ * So nodes are of patches of one level, no deeper than the hierarchy. Lists of segments follow each
+ * other, and so do loops.
  */
 static const char *check_nodes(const sc_model *m)
 {
-    const sc_pair *patches = sc_model_node_patches(m);
-    const uint32_t *child = sc_model_node_child(m), *boxes = sc_model_node_boxes(m);
+    const sc_node *node = sc_model_node(m);
     const sc_level *info = sc_model_level_info(m);
-    node_walk walk;
-    uint32_t n, level, level_end, selves;
-    memset(&walk, 0, sizeof walk);
-    walk.nodes = patches;
-    walk.boxes = sc_model_boxes(m);
-    walk.node_count = m->node_count;
-    walk.box_count = m->box_count;
-    walk.node = 1;
+    uint32_t n, level, level_end, selves, next = 1;
+    uint64_t loops = 0;
     if (sc_model_is_for_boxes(m)) return check_no_nodes(m);
-    if (patches[0].a != 0 || patches[0].b != 0) return "node_patches";
+    if (node->patches.a != 0 || node->patches.b != 0 || node->contour != 0) return "node";
     for (n = 0, level = 0; level < m->level_count; level++) {
         uint32_t begin = n;
-        for (level_end = walk.node, selves = 0; n < level_end; n++) {
-            if (child[n] != walk.node) return "node_child";
-            if (boxes[n] != walk.box) return "node_boxes";
-            if (!take_children(m, &walk, patches[n].a, patches[n].b)) return "node_patches";
-            selves += patches[n].a == patches[n].b;
+        for (level_end = next, selves = 0; n < level_end; n++, node++) {
+            if (node->child != next || !check_children_of_node(m, node, &next)) return "node";
+            if (node->loop != loops || node[1].contour < node->contour) return "node";
+            if (node->loop_length > m->contour_max + 1 || node->kind > 15) return "node";
+            loops += node->loop_length;
+            selves += node->patches.a == node->patches.b;
         }
         if (info[level].patch_count != sc_model_patches(m, level) ||
             info[level].connected_patches > info[level].patch_count ||
             info[level].self_nodes != selves || info[level].pair_nodes != n - begin - selves)
             return "level_info";
     }
-    if (walk.node != m->node_count || child[n] != n) return "node_child";
-    return walk.box != m->box_count || boxes[n] != walk.box ? "node_boxes" : NULL;
+    return n == m->node_count && loops == m->loop_total && check_last_node(m) ? NULL : "node";
 }
 
 /* The triangles of a patch. */
@@ -308,27 +313,26 @@ static uint32_t patch_size(const sc_model *m, uint32_t patch)
 static int check_contours(const sc_model *m)
 {
     const uint32_t *begin = sc_model_segment_first(m), *end = sc_model_segment_last(m);
-    const uint32_t *first = sc_model_node_contour(m), *contours = sc_model_contours(m);
-    const sc_pair *patches = sc_model_node_patches(m);
-    const uint8_t *kind = sc_model_node_kind(m);
+    const uint32_t *contours = sc_model_contours(m);
+    const sc_node *node = sc_model_node(m);
     uint64_t most = 0;
     uint32_t n, i;
-    for (n = 0; n < m->node_count; n++) {
+    for (n = 0; n < m->node_count; n++, node++) {
         uint64_t edges = 0, listed;
-        i = first[n];
-        if (kind[n] & SC_NODE_TOUCHES) {
-            if (first[n + 1] - i < 2 || contours[i] >= m->vertex_count ||
-                contours[i + 1] > first[n + 1] - i - 2)
+        i = node->contour;
+        if (node->kind & SC_NODE_TOUCHES) {
+            if (node[1].contour - i < 2 || contours[i] >= m->vertex_count ||
+                contours[i + 1] > node[1].contour - i - 2)
                 return 0;
             i += 2;
         }
-        for (listed = first[n + 1] - i; i < first[n + 1]; i++) {
+        for (listed = node[1].contour - i; i < node[1].contour; i++) {
             if (contours[i] >= m->segment_count) return 0;
             edges += end[contours[i]] - begin[contours[i]];
         }
         listed += edges;
         if (listed > most) most = listed;
-        if (edges > 3 * ((uint64_t)patch_size(m, patches[n].a) + patch_size(m, patches[n].b)))
+        if (edges > 3 * ((uint64_t)patch_size(m, node->patches.a) + patch_size(m, node->patches.b)))
             return 0;
     }
     return most == m->contour_max;
@@ -351,24 +355,24 @@ static uint32_t check_pieces(const uint16_t *loop, uint32_t count)
    sides. */
 static int check_loops(const sc_model *m)
 {
-    const uint32_t *first = sc_model_node_loop(m), *leaf = sc_model_leaf(m);
-    const uint16_t *loop = sc_model_loop(m);
-    const sc_pair *patches = sc_model_node_patches(m);
+    const uint32_t *leaf = sc_model_leaf(m);
+    const sc_node *node = sc_model_node(m);
     uint32_t n, i;
-    for (n = 0; n < m->node_count; n++) {
-        uint32_t a = patches[n].a, b = patches[n].b, bad = 0;
+    for (n = 0; n < m->node_count; n++, node++) {
+        const uint16_t *loop = sc_model_loop(m) + node->loop;
+        uint32_t a = node->patches.a, b = node->patches.b, count = node->loop_length, bad = 0;
         uint64_t leaves = leaf[a + 1] - leaf[a], triangles = patch_size(m, a);
         if (a != b) {
             leaves += leaf[b + 1] - leaf[b];
             triangles += patch_size(m, b);
         }
-        i = first[n];
-        if (i < first[n + 1] && sc_model_node_kind(m)[n] & SC_NODE_PIECES) {
-            i += check_pieces(loop + i, first[n + 1] - i);
-            if (i == first[n]) return 0;
+        i = 0;
+        if (count && node->kind & SC_NODE_PIECES) {
+            i = check_pieces(loop, count);
+            if (!i) return 0;
         }
-        if (first[n + 1] - i > 3 * triangles) return 0;
-        for (; i < first[n + 1]; i++) bad |= loop[i] >= SC_LEAF_POINTS * leaves;
+        if (count - i > 3 * triangles) return 0;
+        for (; i < count; i++) bad |= loop[i] >= SC_LEAF_POINTS * leaves;
         if (bad) return 0;
     }
     return 1;
@@ -466,7 +470,7 @@ static int check_share_node(const sc_model *m)
 {
     const uint32_t *share_node = sc_model_share_node(m), *leaf = sc_model_leaf(m);
     const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
-    const sc_pair *patches = sc_model_node_patches(m);
+    const sc_node *node = sc_model_node(m);
     uint32_t a, i, n, bad = 0;
     for (a = 0; a < m->leaf_count; a++)
         for (i = first[a]; i < first[a + 1]; i++) {
@@ -474,10 +478,8 @@ static int check_share_node(const sc_model *m)
             if (sc_model_is_for_boxes(m)) {
                 bad |= n != SC_NONE;
             } else {
-                if (n >= m->node_count) return 0;
-                if (!sc_model_is_leaf(m, patches[n].a) || !sc_model_is_leaf(m, patches[n].b))
-                    return 0;
-                bad |= (leaf[patches[n].a] != a) | (leaf[patches[n].b] != other[i]);
+                if (n >= m->node_count || !sc_node_is_leaf(&node[n])) return 0;
+                bad |= (leaf[node[n].patches.a] != a) | (leaf[node[n].patches.b] != other[i]);
             }
         }
     return !bad;
@@ -521,12 +523,6 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     wrong = check_nodes(m);
     if (wrong) return wrong;
     CHECK(share_node, check_share_node(m));
-    CHECK(node_flags, bytes_below(sc_model_node_flags(m), m->node_count, 4));
-    CHECK(node_kind, bytes_below(sc_model_node_kind(m), m->node_count, 4));
-    CHECK(node_contour,
-          are_lists(sc_model_node_contour(m), m->node_count, m->contour_total, 0, SC_NONE));
-    CHECK(node_loop,
-          are_lists(sc_model_node_loop(m), m->node_count, m->loop_total, 0, m->contour_max + 1));
     CHECK(loop, check_loops(m));
     CHECK(segment_first, check_segments(m));
     CHECK(points, are_points(m, sc_model_points(m), m->segment_point_total));

@@ -16,7 +16,7 @@ typedef struct growth {
     const sc_xbvh *xbvh;
     const sc_neighbors *neighbors;
     sc_scratch *scratch;
-    sc_list patches, child, boxes_first, boxes, touch;
+    sc_list patches, child, pairs, touch;
 } growth;
 
 static int add_node(growth *g, uint32_t a, uint32_t b, uint32_t touch)
@@ -29,33 +29,28 @@ static int add_node(growth *g, uint32_t a, uint32_t b, uint32_t touch)
     return 1;
 }
 
-/* A pair of children becomes a node or a BVTT child. */
-static int add_pair(growth *g, uint32_t a, uint32_t b)
+/* A pair of children becomes a node or a BVTT child, of which bit is set. */
+static int add_pair(growth *g, uint32_t a, uint32_t b, uint32_t bit, uint32_t *pairs)
 {
     const sc_pair *entry = sc_neighbors_find(g->neighbors, a, b);
-    if (entry) return add_node(g, a, b, entry->b);
-    if (!sc_list_reserve(g->scratch, &g->boxes, 2)) return 0;
-    sc_list_add(&g->boxes, a);
-    sc_list_add(&g->boxes, b);
-    return 1;
+    *pairs |= entry ? bit : bit << SC_PAIR_BOXES;
+    return !entry || add_node(g, a, b, entry->b);
 }
 
-static int expand(growth *g, uint32_t a, uint32_t b)
+/* All pairs of children of two patches. */
+static int expand(growth *g, uint32_t a, uint32_t b, uint32_t *pairs)
 {
     const uint32_t *child = g->xbvh->child;
     uint32_t c, d;
+    *pairs = 0;
     if (sc_xbvh_is_leaf(g->xbvh, a) && sc_xbvh_is_leaf(g->xbvh, b)) return 1;
-    if (a == b) {
-        for (c = child[a]; c < child[a + 1]; c++)
-            if (!add_node(g, c, c, SC_NONE)) return 0;
-        for (c = child[a]; c < child[a + 1]; c++)
-            for (d = c + 1; d < child[a + 1]; d++)
-                if (!add_pair(g, c, d)) return 0;
-    } else {
-        for (c = child[a]; c < child[a + 1]; c++)
-            for (d = child[b]; d < child[b + 1]; d++)
-                if (!add_pair(g, c, d)) return 0;
+    for (c = child[a]; a == b && c < child[a + 1]; c++) {
+        *pairs |= 1u << 3 * (c - child[a]);
+        if (!add_node(g, c, c, SC_NONE)) return 0;
     }
+    for (c = child[a]; c < child[a + 1]; c++)
+        for (d = a == b ? c + 1 : child[b]; d < child[b + 1]; d++)
+            if (!add_pair(g, c, d, 1u << (2 * (c - child[a]) + d - child[b]), pairs)) return 0;
     return 1;
 }
 
@@ -66,15 +61,14 @@ static int reserve(growth *g, uint64_t nodes)
     return sc_list_reserve(g->scratch, &g->patches, 2 * nodes) &&
            sc_list_reserve(g->scratch, &g->touch, nodes) &&
            sc_list_reserve(g->scratch, &g->child, nodes) &&
-           sc_list_reserve(g->scratch, &g->boxes_first, nodes) &&
-           sc_list_reserve(g->scratch, &g->boxes, 2 * nodes);
+           sc_list_reserve(g->scratch, &g->pairs, nodes);
 }
 
 sc_status sc_sctt_build(const sc_xbvh *xbvh, const sc_neighbors *neighbors, sc_scratch *scratch,
                         sc_sctt *sctt)
 {
     growth g;
-    uint32_t level;
+    uint32_t level, pairs;
     uint64_t n, end;
     memset(&g, 0, sizeof g);
     g.xbvh = xbvh;
@@ -88,27 +82,23 @@ sc_status sc_sctt_build(const sc_xbvh *xbvh, const sc_neighbors *neighbors, sc_s
     for (n = 0, level = 0; level < xbvh->level_count; level++) {
         sctt->level_first[level] = (uint32_t)n;
         for (end = g.touch.count; n < end; n++) {
-            if (!sc_list_reserve(scratch, &g.child, 2) ||
-                !sc_list_reserve(scratch, &g.boxes_first, 2))
+            if (!sc_list_reserve(scratch, &g.child, 2) || !sc_list_reserve(scratch, &g.pairs, 1))
                 return SC_ERROR_MEMORY;
             sc_list_add(&g.child, (uint32_t)g.touch.count);
-            sc_list_add(&g.boxes_first, (uint32_t)(g.boxes.count / 2));
-            if (!expand(&g, g.patches.items[2 * n], g.patches.items[2 * n + 1]))
+            if (!expand(&g, g.patches.items[2 * n], g.patches.items[2 * n + 1], &pairs))
                 return SC_ERROR_MEMORY;
-            if (SC_HARDLY(g.touch.count > 0xfffffff0u || g.boxes.count / 2 > 0xfffffff0u))
+            sc_list_add(&g.pairs, pairs);
+            if (SC_HARDLY(g.touch.count > 0xfffffff0u))
                 return SC_ERROR_COUNT; /* tens of gigabytes */
         }
     }
     sctt->level_first[xbvh->level_count] = (uint32_t)n;
     sc_list_add(&g.child, (uint32_t)n);
-    sc_list_add(&g.boxes_first, (uint32_t)(g.boxes.count / 2));
     sctt->node_count = (uint32_t)n;
-    sctt->box_count = (uint32_t)(g.boxes.count / 2);
     sctt->patches = (sc_pair *)(void *)g.patches.items;
     sctt->touch = g.touch.items;
     sctt->child = g.child.items;
-    sctt->boxes_first = g.boxes_first.items;
-    sctt->boxes = (sc_pair *)(void *)g.boxes.items;
+    sctt->pairs = g.pairs.items;
     return SC_OK;
 }
 
@@ -119,24 +109,27 @@ int sc_sctt_validate(const sc_xbvh *xbvh, const sc_neighbors *neighbors, const s
     if (sctt->child[sctt->node_count] != sctt->node_count) return 0;
     for (n = 0; n < sctt->node_count; n++) {
         uint32_t a = sctt->patches[n].a, b = sctt->patches[n].b, c, d;
-        uint32_t node = sctt->child[n], box = sctt->boxes_first[n];
+        uint32_t node = sctt->child[n], pairs = 0;
         if (!(sc_xbvh_is_leaf(xbvh, a) && sc_xbvh_is_leaf(xbvh, b))) {
-            for (c = xbvh->child[a]; a == b && c < xbvh->child[a + 1]; c++, node++)
+            for (c = xbvh->child[a]; a == b && c < xbvh->child[a + 1]; c++, node++) {
                 if (node >= sctt->node_count || sctt->patches[node].a != c ||
                     sctt->patches[node].b != c)
                     return 0;
+                pairs |= 1u << 3 * (c - xbvh->child[a]);
+            }
             for (c = xbvh->child[a]; c < xbvh->child[a + 1]; c++)
                 for (d = a == b ? c + 1 : xbvh->child[b]; d < xbvh->child[b + 1]; d++) {
+                    uint32_t bit = 1u << (2 * (c - xbvh->child[a]) + d - xbvh->child[b]);
                     if (sc_neighbors_find(neighbors, c, d)) {
                         if (node >= sctt->node_count) return 0;
                         if (sctt->patches[node].a != c || sctt->patches[node++].b != d) return 0;
+                        pairs |= bit;
                     } else {
-                        if (box >= sctt->box_count) return 0;
-                        if (sctt->boxes[box].a != c || sctt->boxes[box++].b != d) return 0;
+                        pairs |= bit << SC_PAIR_BOXES;
                     }
                 }
         }
-        if (node != sctt->child[n + 1] || box != sctt->boxes_first[n + 1]) return 0;
+        if (node != sctt->child[n + 1] || pairs != sctt->pairs[n]) return 0;
     }
     return 1;
 }

@@ -13,7 +13,9 @@
  * its self tests are those of sibling pairs; the nodes are the same.)
  *
  * Nodes are numbered level by level, so that the children of node n are nodes child[n] to
- * child[n + 1] - 1, and its BVTT children boxes[boxes_first[n]] to boxes[boxes_first[n + 1] - 1].
+ * child[n + 1] - 1, those of one patch first. Which of the pairs of children are nodes, and which
+ * BVTT children, stands in pairs[n]: bit 2 i + j for child i of the first patch and child j of the
+ * second, and that of a BVTT child SC_PAIR_BOXES higher. A patch has two children at most.
  * About one node per triangle.
  */
 #ifndef SC_BUILD_SCTT_H
@@ -21,13 +23,14 @@
 
 #include "build/neighbors.h"
 
+enum { SC_PAIR_BOXES = 4 };
+
 /* Scratch memory. Patches are numbers of the xBVH, a <= b. */
 typedef struct sc_sctt {
-    uint32_t node_count, box_count;
+    uint32_t node_count;
     sc_pair *patches;      /* node_count; a == b in self nodes */
     uint32_t *child;       /* node_count + 1 */
-    uint32_t *boxes_first; /* node_count + 1 */
-    sc_pair *boxes;        /* box_count */
+    uint32_t *pairs;       /* node_count; 0: of single leaf clusters */
     uint32_t *touch;       /* node_count: the one point that a pair shares, else SC_NONE */
     uint32_t *level_first; /* level_count + 1 */
 } sc_sctt;

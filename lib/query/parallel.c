@@ -19,6 +19,7 @@
 
 #include "base/assume.h"
 #include "base/atomic.h"
+#include "base/bits.h"
 #include "base/jobs.h"
 #include "query/filter.h"
 #include "query/pairs.h"
@@ -301,7 +302,7 @@ static void add_patch(plan *p, uint32_t a)
 
 static int is_large_node(const sc_model *model, uint32_t node)
 {
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
+    const sc_pair *patches = &sc_model_node(model)[node].patches;
     return is_large(model, patches->a, LARGE_IN_NODE) || is_large(model, patches->b, LARGE_IN_NODE);
 }
 
@@ -310,12 +311,13 @@ static void add_boxes_of_node(plan *p, uint32_t node)
 {
     sc_query_state *state = p->state;
     const sc_boxes *boxes = &p->w->patch_boxes;
-    uint32_t i, end = sc_model_node_boxes(state->model)[node + 1], previous;
+    const sc_node *n = sc_model_node(state->model) + node;
+    uint32_t bits, previous;
     previous = sc_state_switch(state, sc_state_box_task(state));
-    for (i = sc_model_node_boxes(state->model)[node]; i < end; i++) {
-        const sc_pair *pair = &sc_model_boxes(state->model)[i];
+    for (bits = sc_node_boxes(n); bits; bits &= bits - 1) {
+        const sc_pair pair = sc_model_pair(state->model, n, sc_bits_lowest(bits));
         state->stats.counts[sc_state_box_task(state)]++;
-        if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b)) add_patches(p, pair->b, pair->a);
+        if (sc_boxes_overlap(boxes, pair.a, boxes, pair.b)) add_patches(p, pair.b, pair.a);
     }
     sc_state_switch(state, previous);
 }
@@ -394,12 +396,12 @@ static void open_nodes(plan *p)
    room. */
 static void list_selfs(plan *p)
 {
-    const sc_pair *patches = sc_model_node_patches(p->state->model);
+    const sc_node *nodes = sc_model_node(p->state->model);
     sc_walk *walk = &p->w->walk;
     uint32_t i, kept = 0;
     for (i = 0; i < walk->self_count; i++) {
         uint32_t node = walk->self[i];
-        if (p->w->culled[patches[node].a]) continue;
+        if (p->w->culled[nodes[node].patches.a]) continue;
         if (is_large_node(p->state->model, node) && SC_ALWAYS(p->test_count < SC_PARTS_MAX))
             p->w->tests[p->test_count++] = node;
         else
@@ -419,7 +421,7 @@ static void run_tests(void *context, uint32_t part, uint32_t worker)
 /* The contour tests of all listed nodes, while none is open. */
 static void do_tests(plan *p)
 {
-    const sc_pair *patches = sc_model_node_patches(p->state->model);
+    const sc_node *nodes = sc_model_node(p->state->model);
     uint32_t i;
     if (p->test_count < TESTS_MIN)
         sc_traversal_test(p->state, p->w->tests, p->test_count, p->w->passed);
@@ -428,7 +430,7 @@ static void do_tests(plan *p)
     for (i = p->test_count; i-- > 0;) {
         uint32_t node = p->w->tests[i];
         if (p->w->passed[i])
-            p->w->culled[patches[node].a] = p->w->culled[patches[node].b] = 1;
+            p->w->culled[nodes[node].patches.a] = p->w->culled[nodes[node].patches.b] = 1;
         else
             p->w->open[p->open_count++] = node;
     }
@@ -452,7 +454,7 @@ static void join_marks(plan *p)
 static void run_last(void *context, uint32_t part, uint32_t worker)
 {
     plan *p = (plan *)context;
-    const sc_pair *patches = sc_model_node_patches(p->state->model);
+    const sc_node *nodes = sc_model_node(p->state->model);
     sc_query_state *s = begin_part(p, worker);
     sc_walk *walk = &s->workspace->walk;
     const sc_walk *from;
@@ -468,7 +470,7 @@ static void run_last(void *context, uint32_t part, uint32_t worker)
         i = part * NODES_AT_ONCE;
         end = from->self_count - i < NODES_AT_ONCE ? from->self_count : i + NODES_AT_ONCE;
         for (; i < end && !sc_state_stops(s); i++)
-            if (!walk->culled[patches[from->self[i]].a])
+            if (!walk->culled[nodes[from->self[i]].patches.a])
                 walk->queue[walk->queue_count++] = from->self[i];
         sc_traversal_walk(s);
         sc_traversal_take_alone(s, walk->alone + before, walk->alone_count - before);

@@ -17,7 +17,7 @@
 
 typedef struct rest_walk {
     sc_query_state state;
-    uint8_t *flags;
+    sc_node *node;
     sc_level *levels;
 } rest_walk;
 
@@ -26,14 +26,14 @@ static void mark(rest_walk *walk, uint32_t node, uint32_t level, const sc_projec
 {
     const sc_model *model = walk->state.model;
     sc_workspace *w = walk->state.workspace;
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
-    const uint32_t *child = sc_model_node_child(model);
-    uint32_t mask = (uint32_t)w->mask[patches->a] & w->mask[patches->b], c;
+    sc_node *n = walk->node + node;
+    const sc_pair *patches = &n->patches;
+    uint32_t mask = (uint32_t)w->mask[patches->a] & w->mask[patches->b], c, end = sc_node_end(n);
     sc_level *l = &walk->levels[level];
     sc_projection own;
     int culled = 0;
     if (!mask) {
-        walk->flags[node] = SC_NODE_REST_TURNED;
+        n->kind |= SC_NODE_REST_TURNED;
     } else {
         if (!projection) {
             sc_dnc_projection(w, mask, &own);
@@ -41,7 +41,7 @@ static void mark(rest_walk *walk, uint32_t node, uint32_t level, const sc_projec
             projection = &own;
         }
         culled = sc_star_test(&walk->state, projection, node);
-        walk->flags[node] = culled ? 0 : SC_NODE_REST_CROSSED;
+        if (!culled) n->kind |= SC_NODE_REST_CROSSED;
     }
     if (patches->a == patches->b) {
         l->self_oriented += mask != 0;
@@ -50,7 +50,7 @@ static void mark(rest_walk *walk, uint32_t node, uint32_t level, const sc_projec
         l->pair_oriented += mask != 0;
         l->pair_culled += (uint32_t)culled;
     }
-    for (c = child[node]; c < child[node + 1]; c++) mark(walk, c, level + 1, projection);
+    for (c = n->child; c < end; c++) mark(walk, c, level + 1, projection);
 }
 
 sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc_scratch *scratch,
@@ -62,7 +62,7 @@ sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc
     memory = sc_scratch_take(scratch, sc_workspace_bytes(model, NULL), 1);
     if (!memory) return SC_ERROR_MEMORY;
     memset(&walk, 0, sizeof walk);
-    walk.flags = sc_model_flags_of_new(model);
+    walk.node = sc_model_nodes_of_new(model);
     walk.levels = sc_model_levels_of_new(model);
     walk.state.model = model;
     walk.state.workspace = sc_workspace_place(model, NULL, memory);

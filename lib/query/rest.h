@@ -8,7 +8,7 @@
 
 #include "build/model.h"
 
-/* Tests every node of a new model in its rest pose and fills node_flags and the counts per
+/* Tests every node of a new model in its rest pose and marks them, and fills the counts per
    level. */
 sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc_scratch *scratch,
                        const sc_hooks *hooks);

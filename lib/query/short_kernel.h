@@ -227,11 +227,11 @@ static inline int SC_KERNEL(is_simple)(const SC_KERNEL(short_points) * c,
 static inline unsigned SC_KERNEL(find_loop)(const sc_model *model, const sc_near_pair *p,
                                             const uint16_t **loop)
 {
-    uint32_t node = sc_model_share_node(model)[p->shared], count;
-    if (node == SC_NONE || sc_model_node_kind(model)[node]) return 0;
-    *loop = sc_model_loop(model) + sc_model_node_loop(model)[node];
-    count = sc_model_node_loop(model)[node + 1] - sc_model_node_loop(model)[node];
-    return count > 2 && count <= SC_KERNEL(SHORT_POINTS) ? count : 0;
+    const uint32_t node = sc_model_share_node(model)[p->shared];
+    const sc_node *n = sc_model_node(model) + node;
+    if (node == SC_NONE || n->kind & (SC_NODE_TOUCHES | SC_NODE_PIECES)) return 0;
+    *loop = sc_model_loop(model) + n->loop;
+    return n->loop_length > 2 && n->loop_length <= SC_KERNEL(SHORT_POINTS) ? n->loop_length : 0;
 }
 
 /* Of some pairs, of which all triangles face a direction, those that have certainly nothing in
@@ -298,10 +298,9 @@ static inline void SC_KERNEL(fetch_loop)(const sc_query_state *state, const sc_n
     }
     if (*node == SC_NONE) return;
     if (step == 1) {
-        sc_fetch(sc_model_node_loop(model) + *node);
-        sc_fetch(sc_model_node_kind(model) + *node);
+        sc_fetch(sc_model_node(model) + *node);
     } else {
-        const uint16_t *loop = sc_model_loop(model) + sc_model_node_loop(model)[*node];
+        const uint16_t *loop = sc_model_loop(model) + sc_model_node(model)[*node].loop;
         sc_fetch(loop);
         sc_fetch(loop + 2 * SC_LANES_COUNT - 1);
     }

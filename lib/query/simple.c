@@ -69,12 +69,12 @@ static void list_points(sc_simple_contour *c, const sc_model *model, const uint3
 
 void sc_simple_find_loop(sc_simple_contour *c, const sc_model *model, uint32_t node)
 {
-    const uint32_t *first = sc_model_node_loop(model) + node, *leaf = sc_model_leaf(model);
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
-    c->count = first[1] - first[0];
-    c->loop = sc_model_loop(model) + first[0];
+    const uint32_t *leaf = sc_model_leaf(model);
+    const sc_node *n = sc_model_node(model) + node;
+    c->count = n->loop_length;
+    c->loop = sc_model_loop(model) + n->loop;
     c->pinch_count = 0;
-    c->has_gaps = c->in_pieces = (sc_model_node_kind(model)[node] & SC_NODE_PIECES) != 0;
+    c->has_gaps = c->in_pieces = (n->kind & SC_NODE_PIECES) != 0;
     if (c->in_pieces) {
         c->pieces = c->loop[0];
         c->piece_edges = c->loop + 1;
@@ -83,9 +83,9 @@ void sc_simple_find_loop(sc_simple_contour *c, const sc_model *model, uint32_t n
     }
     c->looped = c->count;
     c->leaf_point = sc_model_leaf_point(model);
-    c->first = SC_LEAF_POINTS * leaf[patches->a];
-    c->split = SC_LEAF_POINTS * leaf[patches->a + 1] - c->first;
-    c->second = SC_LEAF_POINTS * leaf[patches->b] - c->split;
+    c->first = SC_LEAF_POINTS * leaf[n->patches.a];
+    c->split = SC_LEAF_POINTS * leaf[n->patches.a + 1] - c->first;
+    c->second = SC_LEAF_POINTS * leaf[n->patches.b] - c->split;
 }
 
 /* How many places a piece of so many edges takes: its points, the first again, and what fills it
@@ -442,15 +442,15 @@ int sc_simple_is_wound_well(const sc_simple_contour *c)
 
 static int is_looped(const sc_model *model, uint32_t node)
 {
-    return sc_model_node_loop(model)[node + 1] > sc_model_node_loop(model)[node];
+    return sc_model_node(model)[node].loop_length > 0;
 }
 
 int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *workspace,
                    uint32_t node)
 {
-    const uint32_t *segments = sc_model_contours(model) + sc_model_node_contour(model)[node];
-    uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
-    int kind = sc_model_node_kind(model)[node];
+    const sc_node *n = sc_model_node(model) + node;
+    const uint32_t *segments = sc_model_contours(model) + n->contour;
+    uint32_t count = n[1].contour - n->contour;
     memset(c, 0, sizeof *c);
     c->edges = &workspace->contour;
     c->has_gaps = 1;
@@ -461,11 +461,11 @@ int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *wo
         c->has_gaps = 1;
         return 1;
     }
-    if (kind & SC_NODE_TOUCHES) {
+    if (n->kind & SC_NODE_TOUCHES) {
         segments += 2;
         count -= 2;
     }
-    c->in_pieces = kind & SC_NODE_PIECES;
+    c->in_pieces = n->kind & SC_NODE_PIECES;
     if (!count) return 0;
     list_points(c, model, segments, count);
     return 1;

@@ -20,25 +20,22 @@
 enum { FETCHES = 4 };
 static void fetch(const sc_model *model, uint32_t node, int step)
 {
-    const uint32_t *at = sc_model_node_contour(model) + node, *segments, *first, *last;
-    const uint32_t *looped = sc_model_node_loop(model) + node;
+    const sc_node *n = sc_model_node(model) + node;
+    const uint32_t *segments, *first, *last;
     uint32_t i, count;
     if (step == 0) {
-        sc_fetch(at);
-        sc_fetch(looped);
-        sc_fetch(sc_model_node_kind(model) + node);
-        sc_fetch(sc_model_node_patches(model) + node);
+        sc_fetch(n);
         return;
     }
-    if (looped[1] > looped[0]) {
-        const uint16_t *loop = sc_model_loop(model) + looped[0];
-        count = looped[1] - looped[0] < 256 ? looped[1] - looped[0] : 256;
+    if (n->loop_length) {
+        const uint16_t *loop = sc_model_loop(model) + n->loop;
+        count = n->loop_length < 256 ? n->loop_length : 256;
         if (step == 1)
             for (i = 0; i < count; i += 32) sc_fetch(loop + i);
         return;
     }
-    segments = sc_model_contours(model) + at[0];
-    count = at[1] - at[0] < 64 ? at[1] - at[0] : 64;
+    segments = sc_model_contours(model) + n->contour;
+    count = n[1].contour - n->contour < 64 ? n[1].contour - n->contour : 64;
     if (step == 1) {
         for (i = 0; i < count; i += 16) sc_fetch(segments + i);
         return;
@@ -119,18 +116,17 @@ typedef struct contour_turns {
 
 static int is_short(const sc_model *model, uint32_t node)
 {
-    const uint32_t *loop = sc_model_node_loop(model) + node;
-    uint32_t places = loop[1] - loop[0];
+    const sc_node *n = sc_model_node(model) + node;
+    uint32_t places = n->loop_length;
     if (!places || places > SC_CONTOUR_SHORT) return 0;
-    if (sc_model_node_kind(model)[node] & SC_NODE_PIECES)
-        places += SC_CONTOUR_GAP * sc_model_loop(model)[loop[0]];
+    if (n->kind & SC_NODE_PIECES) places += SC_CONTOUR_GAP * sc_model_loop(model)[n->loop];
     return places <= SC_CONTOUR_SHORT;
 }
 
 /* What the normal cones of a node's patches have in common. */
 static uint16_t mask_of(const sc_query_state *state, uint32_t node)
 {
-    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
+    const sc_pair *patches = &sc_model_node(state->model)[node].patches;
     return state->workspace->mask[patches->a] & state->workspace->mask[patches->b];
 }
 
@@ -220,12 +216,11 @@ static void test_in_turn(sc_query_state *state, const uint32_t *nodes, uint32_t 
 }
 
 /* How many sixteens of edges a small contour has, see query/small_kernel.h; 0: it is not small. */
-static uint32_t small_blocks(const sc_model *model, uint32_t node)
+static uint32_t small_blocks(const sc_node *node)
 {
-    const uint32_t *loop = sc_model_node_loop(model) + node;
-    const uint32_t edges = loop[1] - loop[0];
+    const uint32_t edges = node->loop_length;
     if (edges < SC_SMALL_EDGES || edges > SC_SMALL_BLOCKS * SC_CONTOUR_BLOCK ||
-        (sc_model_node_kind(model)[node] & SC_NODE_PIECES))
+        (node->kind & SC_NODE_PIECES))
         return 0;
     return (edges - 1) / SC_CONTOUR_BLOCK + 1;
 }
@@ -248,22 +243,18 @@ static void sort_nodes(const sc_query_state *state, const uint32_t *nodes, uint3
     uint32_t i;
     some->nodes = nodes;
     memset(some->count, 0, sizeof some->count);
+    for (i = 0; i < count; i++) sc_fetch(sc_model_node(model) + nodes[i]);
     for (i = 0; i < count; i++) {
-        sc_fetch(sc_model_node_loop(model) + nodes[i]);
-        sc_fetch(sc_model_node_kind(model) + nodes[i]);
-        sc_fetch(sc_model_node_patches(model) + nodes[i]);
-    }
-    for (i = 0; i < count; i++) {
-        const uint16_t *loop = sc_model_loop(model) + sc_model_node_loop(model)[nodes[i]];
-        const sc_pair *patches = &sc_model_node_patches(model)[nodes[i]];
-        const uint32_t blocks = small_blocks(model, nodes[i]);
+        const sc_node *n = sc_model_node(model) + nodes[i];
+        const uint16_t *loop = sc_model_loop(model) + n->loop;
+        const uint32_t blocks = small_blocks(n);
         some->number[blocks][some->count[blocks]++] = (uint8_t)i;
         sc_fetch(loop);
         sc_fetch(loop + 32);
-        sc_fetch(sc_model_leaf(model) + patches->a);
-        sc_fetch(sc_model_leaf(model) + patches->b);
-        sc_fetch(state->workspace->mask + patches->a);
-        sc_fetch(state->workspace->mask + patches->b);
+        sc_fetch(sc_model_leaf(model) + n->patches.a);
+        sc_fetch(sc_model_leaf(model) + n->patches.b);
+        sc_fetch(state->workspace->mask + n->patches.a);
+        sc_fetch(state->workspace->mask + n->patches.b);
     }
     for (i = 0; i < count; i += SC_DNC_VECTORS)
         find_axes(state, &some->axes[i / SC_DNC_VECTORS], nodes + i, count - i);
@@ -273,7 +264,8 @@ static void sort_nodes(const sc_query_state *state, const uint32_t *nodes, uint3
 static void test_small(sc_query_state *state, const some_nodes *some, uint32_t blocks,
                        uint8_t *passed)
 {
-    const uint32_t *first = sc_model_node_loop(state->model), end = some->count[blocks];
+    const sc_node *node = sc_model_node(state->model);
+    const uint32_t end = some->count[blocks];
     uint32_t i, k;
     for (i = 0; i < end && !sc_state_stops(state); i += SC_DNC_VECTORS) {
         const uint8_t *number = some->number[blocks] + i;
@@ -291,7 +283,7 @@ static void test_small(sc_query_state *state, const some_nodes *some, uint32_t b
             k = sc_bits_lowest(simple);
             passed[number[k]] = 1;
             state->stats.counts[SC_TASK_CONTOUR]++;
-            state->stats.counts[SC_TASK_UPDATE_CONTOURS] += first[nodes[k] + 1] - first[nodes[k]];
+            state->stats.counts[SC_TASK_UPDATE_CONTOURS] += node[nodes[k]].loop_length;
         }
     }
 }

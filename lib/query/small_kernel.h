@@ -41,18 +41,17 @@ static SC_INLINE void SC_KERNEL(place_small)(const sc_model *model, uint32_t nod
                                              SC_KERNEL(small_contour) * c)
 {
     const uint32_t *leaf = sc_model_leaf(model);
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
-    const uint32_t *looped = sc_model_node_loop(model) + node;
-    const uint16_t *loop = sc_model_loop(model) + looped[0];
-    const uint32_t first = SC_LEAF_POINTS * leaf[patches->a];
-    const uint32_t split = SC_LEAF_POINTS * leaf[patches->a + 1] - first;
-    const uint32_t second = SC_LEAF_POINTS * leaf[patches->b] - split;
+    const sc_node *n = sc_model_node(model) + node;
+    const uint16_t *loop = sc_model_loop(model) + n->loop;
+    const uint32_t first = SC_LEAF_POINTS * leaf[n->patches.a];
+    const uint32_t split = SC_LEAF_POINTS * leaf[n->patches.a + 1] - first;
+    const uint32_t second = SC_LEAF_POINTS * leaf[n->patches.b] - split;
     uint32_t b;
     SC_UNROLL
     for (b = 0; b < blocks; b++)
         lanes_numbers(c->cell + SC_LANES_COUNT * b, loop + SC_LANES_COUNT * b, split, first,
                       second);
-    c->count = looped[1] - looped[0];
+    c->count = n->loop_length;
     memmove(c->cell + c->count, c->cell, /* overlaps if there are fewer */
             SC_LANES_COUNT * sizeof *c->cell);
 }

@@ -119,10 +119,11 @@ static int is_separated(const sc_query_state *state, const sc_projection *projec
 int sc_star_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
 {
     const sc_model *model = state->model;
-    const uint32_t *segments = sc_model_contours(model) + sc_model_node_contour(model)[node];
-    uint32_t count = sc_model_node_contour(model)[node + 1] - sc_model_node_contour(model)[node];
+    const sc_node *n = sc_model_node(model) + node;
+    const uint32_t *segments = sc_model_contours(model) + n->contour;
+    uint32_t count = n[1].contour - n->contour;
     uint32_t previous = sc_state_switch(state, SC_TASK_CONTOUR), point = 0, first_count = 0;
-    int touches = sc_model_node_kind(model)[node] & SC_NODE_TOUCHES, line, passed = 0;
+    int touches = n->kind & SC_NODE_TOUCHES, line, passed = 0;
     state->stats.counts[SC_TASK_CONTOUR]++;
     if (touches) {
         point = segments[0];

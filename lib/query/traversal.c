@@ -18,12 +18,6 @@
 #include "query/simple.h"
 #include "query/star.h"
 
-/* The leaf cluster of a patch that is one. */
-static uint32_t leaf_of(const sc_model *model, uint32_t patch)
-{
-    return sc_model_leaf(model)[patch];
-}
-
 void sc_traversal_update_boxes(sc_query_state *state)
 {
     const sc_model *model = state->model;
@@ -50,26 +44,26 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
 {
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
+    const sc_node *n = sc_model_node(model) + node;
     const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
-    uint32_t i, end = sc_model_node_boxes(model)[node + 1], previous;
+    uint32_t bits, previous;
     if (sc_state_stops(state)) return;
     sc_traversal_update_boxes(state);
     previous = sc_state_switch(state, sc_state_box_task(state));
-    for (i = sc_model_node_boxes(model)[node]; i < end && !state->stop; i++) {
-        const sc_pair *pair = &sc_model_boxes(model)[i];
+    for (bits = sc_node_boxes(n); bits && !state->stop; bits &= bits - 1) {
+        const sc_pair pair = sc_model_pair(model, n, sc_bits_lowest(bits));
         state->stats.counts[sc_state_box_task(state)]++;
-        if (sc_boxes_overlap(boxes, pair->a, boxes, pair->b)) {
-            const sc_pair turned = {pair->b, pair->a};
+        if (sc_boxes_overlap(boxes, pair.a, boxes, pair.b)) {
+            const sc_pair turned = {pair.b, pair.a};
             kernels->patch_pairs(state, &turned, 1);
         }
     }
-    if (sc_model_node_child(model)[node] == sc_model_node_child(model)[node + 1] &&
-        sc_model_is_leaf(model, patches->a) && sc_model_is_leaf(model, patches->b)) {
-        if (patches->a == patches->b)
-            kernels->leaf_itself(state, leaf_of(model, patches->a));
+    if (sc_node_is_leaf(n)) {
+        const uint32_t *leaf = sc_model_leaf(model);
+        if (n->patches.a == n->patches.b)
+            kernels->leaf_itself(state, leaf[n->patches.a]);
         else
-            kernels->leaf_pair(state, leaf_of(model, patches->a), leaf_of(model, patches->b));
+            kernels->leaf_pair(state, leaf[n->patches.a], leaf[n->patches.b]);
     }
     sc_state_switch(state, previous);
 }
@@ -95,18 +89,17 @@ void sc_traversal_follow_contour(sc_query_state *state, int after_contour)
 /* The paper's QueryContour: the projection is valid for all that is below. */
 static void query_contour(sc_query_state *state, uint32_t node, const sc_projection *projection)
 {
-    const sc_model *model = state->model;
-    const uint32_t *child = sc_model_node_child(model);
+    const sc_node *n = sc_model_node(state->model) + node;
+    const uint32_t end = sc_node_end(n);
     uint32_t c;
-    int cached = state->options.rest_cache == SC_REST_CACHE_ON &&
-                 (sc_model_node_flags(model)[node] & SC_NODE_REST_CROSSED) != 0;
+    int cached =
+        state->options.rest_cache == SC_REST_CACHE_ON && (n->kind & SC_NODE_REST_CROSSED) != 0;
     state->stats.nodes_visited++;
     if (!cached && sc_star_test(state, projection, node)) {
         state->stats.nodes_culled++;
         return;
     }
-    for (c = child[node]; c < child[node + 1] && !state->stop; c++)
-        query_contour(state, c, projection);
+    for (c = n->child; c < end && !state->stop; c++) query_contour(state, c, projection);
     sc_traversal_follow_contour(state, 1);
     query_rest_of_node(state, node);
 }
@@ -166,10 +159,9 @@ static int has_prospect(const sc_query_state *state, uint32_t patch)
 }
 
 /* Whether a node that failed the orientation test is left to boxes, all of it. */
-static int is_left(const sc_query_state *state, uint32_t node)
+static int is_left(const sc_query_state *state, const sc_node *node)
 {
-    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
-    return !has_prospect(state, patches->a) || !has_prospect(state, patches->b);
+    return !has_prospect(state, node->patches.a) || !has_prospect(state, node->patches.b);
 }
 
 /* Two patches, as sc_query_kernels.patch_pairs has them, or one twice, are left to boxes, after a
@@ -214,26 +206,25 @@ void sc_traversal_take_boxes(sc_query_state *state)
    common. */
 static void put_back(sc_query_state *state, uint32_t node, uint32_t mask)
 {
-    const sc_model *model = state->model;
+    const sc_node *n = sc_model_node(state->model) + node;
     sc_walk *walk = &state->workspace->walk;
-    if (!mask && is_left(state, node)) {
-        const sc_pair *patches = &sc_model_node_patches(model)[node];
-        leave_to_boxes(state, patches->a, patches->b, 0);
+    if (!mask && is_left(state, n)) {
+        leave_to_boxes(state, n->patches.a, n->patches.b, 0);
         return;
     }
     walk->stack[walk->stack_count++] = node;
-    sc_fetch(sc_model_node_patches(model) + sc_model_node_child(model)[node]);
-    sc_fetch(sc_model_boxes(model) + sc_model_node_boxes(model)[node]);
+    sc_fetch(sc_model_node(state->model) + n->child);
+    sc_fetch(sc_model_node(state->model) + n->child + 2);
 }
 
 void sc_traversal_orient(sc_query_state *state, uint32_t node)
 {
-    const sc_pair *patches = &sc_model_node_patches(state->model)[node];
+    const sc_node *n = sc_model_node(state->model) + node;
     sc_workspace *w = state->workspace;
-    uint32_t mask = (uint32_t)w->mask[patches->a] & w->mask[patches->b];
+    uint32_t mask = (uint32_t)w->mask[n->patches.a] & w->mask[n->patches.b];
     state->stats.nodes_visited++;
-    if (sc_model_node_kind(state->model)[node] & SC_NODE_TOUCHES) {
-        leave_to_boxes(state, patches->a, patches->b, 0);
+    if (n->kind & SC_NODE_TOUCHES) {
+        leave_to_boxes(state, n->patches.a, n->patches.b, 0);
         return;
     }
     state->stats.counts[SC_TASK_ORIENTATION]++;
@@ -242,7 +233,7 @@ void sc_traversal_orient(sc_query_state *state, uint32_t node)
         return;
     }
     state->stats.nodes_oriented++;
-    if (patches->a == patches->b && w->walk.selfs_wait)
+    if (n->patches.a == n->patches.b && w->walk.selfs_wait)
         w->walk.self[w->walk.self_count++] = node;
     else
         w->walk.queue[w->walk.queue_count++] = node;
@@ -265,7 +256,7 @@ static void test_queue(sc_query_state *state)
     if (!walk->queue_count) return;
     sc_traversal_test(state, walk->queue, walk->queue_count, passed);
     for (i = 0; i < walk->queue_count; i++) {
-        const sc_pair *patches = &sc_model_node_patches(state->model)[walk->queue[i]];
+        const sc_pair *patches = &sc_model_node(state->model)[walk->queue[i]].patches;
         if (passed[i])
             walk->marks[patches->a] = walk->marks[patches->b] = 1;
         else
@@ -275,42 +266,40 @@ static void test_queue(sc_query_state *state)
 }
 
 /* What a node that is not culled leaves to boxes: its BVTT children, and leaf clusters. */
-static void leave_rest_of_node(sc_query_state *state, uint32_t node)
+static void leave_rest_of_node(sc_query_state *state, const sc_node *node)
 {
     const sc_model *model = state->model;
-    const uint32_t *child = sc_model_node_child(model) + node;
-    const uint32_t *box = sc_model_node_boxes(model) + node;
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
-    int after_contour =
-        (state->workspace->mask[patches->a] & state->workspace->mask[patches->b]) != 0;
-    uint32_t i;
-    for (i = box[0]; i < box[1]; i++)
-        leave_to_boxes(state, sc_model_boxes(model)[i].b, sc_model_boxes(model)[i].a,
+    const uint16_t *mask = state->workspace->mask;
+    const int after_contour = (mask[node->patches.a] & mask[node->patches.b]) != 0;
+    uint32_t bits;
+    for (bits = sc_node_boxes(node); bits; bits &= bits - 1) {
+        const sc_pair pair = sc_model_pair(model, node, sc_bits_lowest(bits));
+        leave_to_boxes(state, pair.b, pair.a, after_contour);
+    }
+    if (sc_node_is_leaf(node)) {
+        const uint32_t *leaf = sc_model_leaf(model), first = sc_model_first_leaf_patch(model);
+        leave_to_boxes(state, first + leaf[node->patches.a], first + leaf[node->patches.b],
                        after_contour);
-    if (child[0] == child[1] && sc_model_is_leaf(model, patches->a) &&
-        sc_model_is_leaf(model, patches->b)) {
-        uint32_t first = sc_model_first_leaf_patch(model);
-        leave_to_boxes(state, first + leaf_of(model, patches->a),
-                       first + leaf_of(model, patches->b), after_contour);
     }
 }
 
 void sc_traversal_open(sc_query_state *state, uint32_t node)
 {
-    const uint32_t *child = sc_model_node_child(state->model);
-    const sc_pair *patches = sc_model_node_patches(state->model);
+    const sc_node *nodes = sc_model_node(state->model), *n = nodes + node;
+    const uint32_t end = sc_node_end(n);
     sc_workspace *w = state->workspace;
     uint32_t c;
-    for (c = child[node]; c < child[node + 1]; c++) {
-        int is_self = patches[c].a == patches[c].b;
-        if (is_self != (patches[node].a == patches[node].b)) {
+    for (c = n->child; c < end; c++) {
+        const sc_pair patches = nodes[c].patches;
+        int is_self = patches.a == patches.b;
+        if (is_self != (n->patches.a == n->patches.b)) {
             state->stats.nodes_visited++;
-            put_back(state, c, (uint32_t)w->mask[patches[c].a] & w->mask[patches[c].b]);
-        } else if (!is_self || w->walk.selfs_wait || !w->walk.culled[patches[c].a]) {
+            put_back(state, c, (uint32_t)w->mask[patches.a] & w->mask[patches.b]);
+        } else if (!is_self || w->walk.selfs_wait || !w->walk.culled[patches.a]) {
             sc_traversal_orient(state, c);
         }
     }
-    leave_rest_of_node(state, node);
+    leave_rest_of_node(state, n);
 }
 
 void sc_traversal_walk(sc_query_state *state)
@@ -346,7 +335,7 @@ void sc_traversal_take_alone(sc_query_state *state, const uint32_t *alone, uint3
 
 static void query_exact(sc_query_state *state)
 {
-    const sc_pair *patches = sc_model_node_patches(state->model);
+    const sc_node *node = sc_model_node(state->model);
     sc_walk *walk = &state->workspace->walk;
     uint32_t i;
     walk->stack_count = walk->queue_count = walk->self_count = walk->alone_count = 0;
@@ -357,7 +346,7 @@ static void query_exact(sc_query_state *state)
     sc_traversal_walk(state);
     walk->selfs_wait = 0;
     for (i = 0; i < walk->self_count && !state->stop; i++) {
-        if (walk->culled[patches[walk->self[i]].a]) continue;
+        if (walk->culled[node[walk->self[i]].patches.a]) continue;
         walk->queue[walk->queue_count++] = walk->self[i];
         if (walk->queue_count == SC_WALK_QUEUE) sc_traversal_walk(state);
     }
@@ -370,13 +359,13 @@ static void query_exact(sc_query_state *state)
 static void query_orientation(sc_query_state *state, uint32_t node)
 {
     const sc_model *model = state->model;
-    const uint32_t *child = sc_model_node_child(model);
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
+    const sc_node *n = sc_model_node(model) + node;
+    const uint16_t *masks = state->workspace->mask;
+    const uint32_t end = sc_node_end(n);
     uint32_t c, mask = 0;
-    if (state->options.rest_cache == SC_REST_CACHE_OFF ||
-        (sc_model_node_flags(model)[node] & SC_NODE_REST_TURNED) == 0) {
+    if (state->options.rest_cache == SC_REST_CACHE_OFF || (n->kind & SC_NODE_REST_TURNED) == 0) {
         state->stats.counts[SC_TASK_ORIENTATION]++;
-        mask = (uint32_t)state->workspace->mask[patches->a] & state->workspace->mask[patches->b];
+        mask = (uint32_t)masks[n->patches.a] & masks[n->patches.b];
     }
     if (mask) {
         sc_projection projection;
@@ -391,7 +380,7 @@ static void query_orientation(sc_query_state *state, uint32_t node)
         return;
     }
     state->stats.nodes_visited++;
-    for (c = child[node]; c < child[node + 1] && !state->stop; c++) query_orientation(state, c);
+    for (c = n->child; c < end && !state->stop; c++) query_orientation(state, c);
     sc_traversal_follow_contour(state, 0);
     query_rest_of_node(state, node);
 }

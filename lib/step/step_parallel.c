@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "base/atomic.h"
+#include "base/bits.h"
 #include "base/jobs.h"
 #include "step/leaf_step.h"
 #include "step/step_candidates.h"
@@ -160,10 +161,11 @@ static uint32_t listed_parts(const step_plan *p)
    does in this order, too. */
 static void take_rests(const step_plan *p, sc_step_state *s, uint32_t node)
 {
-    const uint32_t *child = sc_model_node_child(s->query.model) + node;
+    const sc_node *n = sc_model_node(s->query.model) + node;
+    const uint32_t end = sc_node_end(n);
     uint32_t c;
     if (p->w->motion.reached[node] != REACHED_REST) return;
-    for (c = node < p->roots ? child[1] : child[0]; c < child[1]; c++) take_rests(p, s, c);
+    for (c = node < p->roots ? end : n->child; c < end; c++) take_rests(p, s, c);
     sc_step_traversal_query_rest(s, node);
 }
 
@@ -265,16 +267,17 @@ static void add_boxes_of_level(step_plan *p)
 {
     sc_step_state *state = p->state;
     const sc_model *model = state->query.model;
-    uint32_t node, i, previous;
+    uint32_t node, bits, previous;
     for (node = p->first; node < p->end && !sc_state_stops(&state->query); node++) {
+        const sc_node *n = sc_model_node(model) + node;
         if (p->w->motion.reached[node] != REACHED_OPEN) continue;
         sc_step_traversal_follow_contour(state, sc_step_traversal_mask(state, node) != 0);
         previous = sc_state_switch(&state->query, sc_state_box_task(&state->query));
-        for (i = sc_model_node_boxes(model)[node]; i < sc_model_node_boxes(model)[node + 1]; i++) {
-            const sc_pair *pair = &sc_model_boxes(model)[i];
+        for (bits = sc_node_boxes(n); bits; bits &= bits - 1) {
+            const sc_pair pair = sc_model_pair(model, n, sc_bits_lowest(bits));
             state->query.stats.counts[sc_state_box_task(&state->query)]++;
-            if (!sc_motion_boxes_apart(&p->w->motion, pair->a, pair->b))
-                add_step_patches(p, pair->a, pair->b);
+            if (!sc_motion_boxes_apart(&p->w->motion, pair.a, pair.b))
+                add_step_patches(p, pair.a, pair.b);
         }
         sc_state_switch(&state->query, previous);
     }
@@ -288,16 +291,16 @@ static void add_boxes_of_level(step_plan *p)
 static void open_step_node(const step_plan *p, sc_step_state *s, uint32_t node)
 {
     const sc_model *model = s->query.model;
-    const uint32_t *child = sc_model_node_child(model);
-    const sc_pair *patches = sc_model_node_patches(model);
+    const sc_node *nodes = sc_model_node(model), *n = nodes + node;
+    const uint32_t end = sc_node_end(n);
     int failed = p->selfs && sc_step_traversal_mask(s, node);
     uint32_t c;
-    for (c = child[node]; c < child[node + 1]; c++) {
-        int is_pair = patches[c].a != patches[c].b;
+    for (c = n->child; c < end; c++) {
+        int is_pair = nodes[c].patches.a != nodes[c].patches.b;
         p->w->motion.reached[c] = failed && is_pair ? REACHED_FAILED : REACHED_TEST;
         s->reached[is_pair]++;
     }
-    if (is_large_in_step(model, patches[node].a) || is_large_in_step(model, patches[node].b)) {
+    if (is_large_in_step(model, n->patches.a) || is_large_in_step(model, n->patches.b)) {
         p->w->motion.reached[node] = REACHED_OPEN;
         s->large++;
     } else if (s->options.output != SC_OUTPUT_ANY) {
@@ -324,7 +327,7 @@ static void run_step_nodes(void *context, uint32_t part, uint32_t worker)
 {
     step_plan *p = (step_plan *)context;
     sc_step_state *s = begin_step_part(p, worker);
-    const sc_pair *patches = sc_model_node_patches(s->query.model);
+    const sc_node *nodes = sc_model_node(s->query.model);
     uint8_t *reached = p->w->motion.reached, *marks = s->query.workspace->walk.marks;
     uint32_t first = p->first + sc_jobs_take(&p->ranges, part, worker) * p->length, node;
     uint32_t end = p->end - first < p->length ? p->end : first + p->length;
@@ -332,8 +335,8 @@ static void run_step_nodes(void *context, uint32_t part, uint32_t worker)
         uint32_t a, b;
         node = next_reached(reached, node, end);
         if (node == end) break;
-        a = patches[node].a;
-        b = patches[node].b;
+        a = nodes[node].patches.a;
+        b = nodes[node].patches.b;
         if ((a == b) != p->selfs || (p->selfs && p->w->culled[a])) continue;
         if (sc_step_traversal_culls(s, node, reached[node] == REACHED_FAILED))
             marks[a] = marks[b] = 1;
@@ -391,7 +394,6 @@ static uint32_t take_large(const step_plan *p)
 static void walk_levels(step_plan *p)
 {
     const sc_model *model = p->state->query.model;
-    const uint32_t *child = sc_model_node_child(model);
     uint32_t level, end = 1, reached[2] = {1, 0}, few = 1; /* levels so far have few patches */
     p->w->motion.reached[0] = REACHED_TEST;
     p->end = 1;
@@ -409,7 +411,7 @@ static void walk_levels(step_plan *p)
         }
         few &= sc_model_patches(model, level) < STEP_SUBTREES_MIN;
         p->first = p->end;
-        p->end = child[p->end];
+        p->end = sc_model_node(model)[p->end].child;
     }
     if (sc_state_stops(&p->state->query)) return;
     p->end = end;

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/bits.h"
 #include "pose/dnc.h"
 #include "step/leaf_step.h"
 #include "step/step_motion.h"
@@ -52,7 +53,7 @@ static int is_clear(sc_step_state *state, uint32_t node, uint32_t mask)
 
 uint32_t sc_step_traversal_mask(const sc_step_state *state, uint32_t node)
 {
-    const sc_pair *patches = &sc_model_node_patches(state->query.model)[node];
+    const sc_pair *patches = &sc_model_node(state->query.model)[node].patches;
     const uint16_t *mask = state->query.workspace->mask;
     return (uint32_t)mask[patches->a] & mask[patches->b];
 }
@@ -74,26 +75,25 @@ void sc_step_traversal_query_rest(sc_step_state *state, uint32_t node)
 {
     const sc_model *model = state->query.model;
     const sc_motion *motion = &state->query.workspace->motion;
-    const sc_pair *patches = &sc_model_node_patches(model)[node];
+    const sc_node *n = sc_model_node(model) + node;
     const sc_step_kernels *kernels = sc_step_kernels_of(state->query.workspace);
-    const uint32_t *leaf = sc_model_leaf(model);
-    uint32_t i, end = sc_model_node_boxes(model)[node + 1], previous;
+    uint32_t bits, previous;
     if (sc_state_stops(&state->query)) return;
     sc_step_traversal_follow_contour(state, sc_step_traversal_mask(state, node) != 0);
     sc_step_traversal_refit(state);
     previous = sc_state_switch(&state->query, sc_state_box_task(&state->query));
-    for (i = sc_model_node_boxes(model)[node]; i < end && !state->query.stop; i++) {
-        const sc_pair *pair = &sc_model_boxes(model)[i];
+    for (bits = sc_node_boxes(n); bits && !state->query.stop; bits &= bits - 1) {
+        const sc_pair pair = sc_model_pair(model, n, sc_bits_lowest(bits));
         state->query.stats.counts[sc_state_box_task(&state->query)]++;
-        if (!sc_motion_boxes_apart(motion, pair->a, pair->b))
-            kernels->patch_pair(state, pair->a, pair->b);
+        if (!sc_motion_boxes_apart(motion, pair.a, pair.b))
+            kernels->patch_pair(state, pair.a, pair.b);
     }
-    if (sc_model_node_child(model)[node] == sc_model_node_child(model)[node + 1] &&
-        sc_model_is_leaf(model, patches->a) && sc_model_is_leaf(model, patches->b)) {
-        if (patches->a == patches->b)
-            kernels->leaf_itself(state, leaf[patches->a]);
+    if (sc_node_is_leaf(n)) {
+        const uint32_t *leaf = sc_model_leaf(model);
+        if (n->patches.a == n->patches.b)
+            kernels->leaf_itself(state, leaf[n->patches.a]);
         else
-            kernels->leaf_pair(state, leaf[patches->a], leaf[patches->b]);
+            kernels->leaf_pair(state, leaf[n->patches.a], leaf[n->patches.b]);
     }
     sc_state_switch(&state->query, previous);
 }
@@ -104,10 +104,8 @@ void sc_step_traversal_query_rest(sc_step_state *state, uint32_t node)
  */
 static void query_step_node(sc_step_state *state, uint32_t node, int failed)
 {
-    const sc_model *model = state->query.model;
-    const uint32_t *child = sc_model_node_child(model);
-    const sc_pair *patches = sc_model_node_patches(model);
-    uint32_t a = patches[node].a, b = patches[node].b, c;
+    const sc_node *nodes = sc_model_node(state->query.model), *n = nodes + node;
+    uint32_t a = n->patches.a, b = n->patches.b, end = sc_node_end(n), c;
     uint8_t *culled = state->query.workspace->walk.culled;
     int is_self = a == b, selfs;
     if (is_self && culled[a]) return;
@@ -117,8 +115,8 @@ static void query_step_node(sc_step_state *state, uint32_t node, int failed)
     }
     failed = is_self && sc_step_traversal_mask(state, node);
     for (selfs = 0; selfs < 2; selfs++)
-        for (c = child[node]; c < child[node + 1] && !state->query.stop; c++)
-            if ((patches[c].a == patches[c].b) == selfs)
+        for (c = n->child; c < end && !state->query.stop; c++)
+            if ((nodes[c].patches.a == nodes[c].patches.b) == selfs)
                 query_step_node(state, c, failed && !selfs);
     sc_step_traversal_query_rest(state, node);
 }
