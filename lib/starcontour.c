@@ -18,6 +18,7 @@
 #include "base/structs.h"
 #include "build/locality.h"
 #include "build/model.h"
+#include "build/model_check.h"
 #include "build/partition.h"
 #include "build/saved_model.h"
 #include "pose/positions.h"
@@ -72,6 +73,22 @@ static void validate(const steps *s, const sc_hooks *hooks)
     sc_scratch_clear(&scratch);
 #else
     (void)s;
+    (void)hooks;
+#endif
+}
+
+/* The same of the model: what is built is also what would be taken if it had been saved. */
+static void validate_model(const sc_model *model, const sc_hooks *hooks)
+{
+#ifdef SC_VALIDATE
+    sc_allocator standard = sc_memory_allocator(NULL);
+    const char *wrong;
+    sc_scratch scratch;
+    sc_scratch_init(&scratch, &standard);
+    SC_HOOKS_ASSERT(hooks, sc_model_check(model, &scratch, &wrong) == SC_OK);
+    sc_scratch_clear(&scratch);
+#else
+    (void)model;
     (void)hooks;
 #endif
 }
@@ -157,6 +174,7 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
     if ((status = sc_model_assemble(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
                                     &s.sharing, scratch, model)))
         return status;
+    validate_model(*model, options->hooks);
     if (options->rest == SC_REST_UNMARKED) return SC_OK;
     sc_scratch_clear(scratch); /* make room for the workspace of the rest pose */
     memset(&rest, 0, sizeof rest);
