@@ -34,12 +34,12 @@ static inline void SC_KERNEL(widen)(double least, double most, int k, double low
 
 #ifdef EXTENT
 /* Asks for so many bytes a page ahead: what processors foresee by themselves ends with the page. */
-static SC_INLINE void SC_KERNEL(fetch_ahead)(const void *at, uint64_t bytes)
+static SC_INLINE void SC_KERNEL(fetch_ahead)(const void *at, uintptr_t bytes)
 {
     enum { PAGE = 4096, LINE = 64 };
-    uint64_t i;
+    uintptr_t i; /* of an address: it may be behind all positions */
     SC_UNROLL
-    for (i = 0; i < bytes; i += LINE) sc_fetch((const unsigned char *)at + PAGE + i);
+    for (i = 0; i < bytes; i += LINE) sc_fetch((const void *)((uintptr_t)at + PAGE + i));
 }
 #endif
 
