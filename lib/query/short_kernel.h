@@ -228,8 +228,10 @@ static inline unsigned SC_KERNEL(find_loop)(const sc_model *model, const sc_near
                                             const uint16_t **loop)
 {
     const uint32_t node = sc_model_share_node(model)[p->shared];
-    const sc_node *n = sc_model_node(model) + node;
-    if (node == SC_NONE || n->kind & (SC_NODE_TOUCHES | SC_NODE_PIECES)) return 0;
+    const sc_node *n;
+    if (node == SC_NONE) return 0;
+    n = sc_model_node(model) + node;
+    if (n->kind & (SC_NODE_TOUCHES | SC_NODE_PIECES)) return 0;
     *loop = sc_model_loop(model) + n->loop;
     return n->loop_length > 2 && n->loop_length <= SC_KERNEL(SHORT_POINTS) ? n->loop_length : 0;
 }
