@@ -319,7 +319,7 @@ typedef struct sc_model sc_model;
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
  * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.4 to 1.4
  * microseconds a triangle (regular grids and thin tubes least, irregular meshes of a million
- * triangles most) and, while it runs, up to 320 bytes a triangle; with METIS 5 to 7 microseconds a
+ * triangles most) and, while it runs, up to 310 bytes a triangle; with METIS 5 to 7 microseconds a
  * triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 170 bytes a triangle.
  */
 SC_API sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model);
@@ -426,7 +426,7 @@ typedef struct sc_load_options {
  * a query will rely on is checked first: a model that was made up by someone who knows the format
  * may give wrong answers, but no query on it reads or writes where it must not, or fails to end.
  *
- * 0.07 to 0.1 microseconds a triangle in place, 0.1 to 0.16 with the copy. Either mode takes some
+ * 0.06 to 0.1 microseconds a triangle in place, 0.1 to 0.16 with the copy. Either mode takes some
  * 1.1 bytes a triangle from the allocator while it checks, and SC_LOAD_IN_PLACE nothing that stays.
  */
 SC_API sc_status sc_model_load(const void *data, uint64_t size, const sc_load_options *options,
