@@ -812,10 +812,10 @@ static void tubes(void)
     }
 }
 
-/* One leaf cluster round a tube that is no band and meets itself: a flap at the end of the tube that
-   curls back into it, seen from the axis always from outside; a triangle whose plane the axis sees
-   from outside at two corners only; and a collar in a plane right across the axis, of which rounding
-   does not tell from where it is seen. */
+/* One leaf cluster round a tube that is no band and meets itself: a flap at the end of the tube
+   that curls back into it, seen from the axis always from outside; a triangle whose plane the axis
+   sees from outside at two corners only; and a collar in a plane right across the axis, of which
+   rounding does not tell from where it is seen. */
 static void tubes_that_are_no_bands(void)
 {
     enum { POINTS = 10, TRIANGLES = 12 };
@@ -852,8 +852,9 @@ static void tubes_that_are_no_bands(void)
     }
 }
 
-/* Strips in planes across the axes that have one point in common, each a leaf cluster of its own: so
-   many of them meet there, up to the most of which each two are a node of the test tree, and more. */
+/* Strips in planes across the axes that have one point in common, each a leaf cluster of its own:
+   so many of them meet there, up to the most of which each two are a node of the test tree, and
+   more. */
 static void strips_from_one_point(void)
 {
     enum { STRIP = 14 };

@@ -33,10 +33,10 @@ static uint32_t owner_of(const sc_points *points, uint32_t h, uint32_t g)
 
 /*
  * Lists the edges from a point to those with higher numbers; returns how many. place: a number for
- * each point, which may be any: the place of an edge that ends there, if it is listed. First come the
- * half-edges that start at the point, nearly all with an edge of their own, then those that end
- * there, nearly all with one that is known. An edge to a lower number is written behind the list,
- * and written over, since no processor could foresee which these are.
+ * each point, which may be any: the place of an edge that ends there, if it is listed. First come
+ * the half-edges that start at the point, nearly all with an edge of their own, then those that end
+ * there, nearly all with one that is known. An edge to a lower number, or of no length, is written
+ * behind the list, and written over, since no processor could foresee which these are.
  */
 static uint32_t list_edges(const sc_points *points, const sc_adjacency *adjacency, uint32_t p,
                            uint32_t *place, edge *edges)

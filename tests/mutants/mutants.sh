@@ -11,7 +11,7 @@
 # what depends on it.
 #
 # Prints a table, and as the last line "killed N, survived M". Exit status 1 if any survived, does not
-# fit or does not compile, or if a test fails without any fault. About 15 minutes on two processors.
+# fit or does not compile, or if a test fails without any fault. Some 20 seconds a fault: hours for all.
 # CC and MAKE are taken from the environment.
 #
 # SPDX-License-Identifier: MIT
