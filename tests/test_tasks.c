@@ -1129,11 +1129,11 @@ typedef struct step_fixture {
     sc_workspace *serial, *shared; /* for one worker, and for THREADS_MAX */
 } step_fixture;
 
-enum { STEP_SCENES = 7, STEP_METHODS = 5, STEP_KINDS = STEP_METHODS * 2 * 3 };
+enum { STEP_SCENES = 8, STEP_METHODS = 5, STEP_KINDS = STEP_METHODS * 2 * 3 };
 
 /* Layers that pass each other; a cloth that waves and folds; pieces; contours that cross; a
    crumpled sphere; two triangles; a cloth of a triangle in each leaf cluster, of which a level has
-   many. */
+   many; another one by an uneven tree, in which such a level has a large patch besides. */
 static int start_step(step_fixture *s, int scene)
 {
     soup mesh = scene == 0   ? soup_cloth(33, 33)
@@ -1142,18 +1142,22 @@ static int start_step(step_fixture *s, int scene)
                 : scene == 3 ? soup_branched(64, 17)
                 : scene == 4 ? soup_sphere(36, 36)
                 : scene == 5 ? soup_cloth(2, 1)
-                             : soup_cloth(18, 18);
+                : scene == 6 ? soup_cloth(18, 18)
+                             : soup_cloth(25, 25);
     size_t bytes = 3 * (size_t)mesh.vertex_count * sizeof(double);
     sc_workspace_options o = for_workers(1);
     memset(s, 0, sizeof(*s));
-    if (!(scene < 6 ? start_as_it_is(&s->f, mesh) : start_tree(&s->f, mesh, 1, 0, 0))) return 0;
+    if (!(scene < 6    ? start_as_it_is(&s->f, mesh)
+          : scene == 6 ? start_tree(&s->f, mesh, 1, 0, 0)
+                       : start_tree(&s->f, mesh, 1, 600, 20)))
+        return 0;
     if (scene != 3) soup_smooth(s->f.posed, mesh.vertex_count, 0.05);
     if (scene == 0) soup_twist(s->f.posed, mesh.vertex_count, 3);
     s->ended = (double *)test_allocate(bytes);
     memcpy(s->ended, s->f.posed, bytes);
     soup_smooth(s->ended, mesh.vertex_count, scene == 0 ? 0.4 : scene == 3 ? 0.01 : 0.1);
     if (scene == 0) soup_twist(s->ended, mesh.vertex_count, 0.3);
-    if (scene == 1 || scene == 6) soup_fold(s->ended, mesh.vertex_count);
+    if (scene == 1 || scene > 5) soup_fold(s->ended, mesh.vertex_count);
     if (scene == 4) soup_noise(s->ended, mesh.vertex_count, 0.03);
     s->end = input_plain_pose(s->ended, mesh.vertex_count);
     o.flags = SC_WORKSPACE_STEP;

@@ -158,15 +158,16 @@ static uint32_t listed_parts(const step_plan *p)
 }
 
 /* What a node leaves, and if it is a root or below one, what all below it leave, which one thread
-   does in this order, too. */
+   does in this order, too. A large node has left its boxes to the list already, but not what is
+   below it: in an uneven tree of the caller's such nodes may be anywhere. */
 static void take_rests(const step_plan *p, sc_step_state *s, uint32_t node)
 {
     const sc_node *n = sc_model_node(s->query.model) + node;
-    const uint32_t end = sc_node_end(n);
+    const uint32_t end = sc_node_end(n), left = p->w->motion.reached[node];
     uint32_t c;
-    if (p->w->motion.reached[node] != REACHED_REST) return;
+    if (left != REACHED_REST && left != REACHED_OPEN) return;
     for (c = node < p->roots ? end : n->child; c < end; c++) take_rests(p, s, c);
-    sc_step_traversal_query_rest(s, node);
+    if (left == REACHED_REST) sc_step_traversal_query_rest(s, node);
 }
 
 /* Some of the list, or behind that what some nodes leave. */
