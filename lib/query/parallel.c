@@ -200,23 +200,6 @@ static void run_parts(void *context, uint32_t part, uint32_t worker)
     end_part(s);
 }
 
-/* Empties the list of parts. */
-static void do_parts(plan *p)
-{
-    run_job(p, run_parts, p->part_count, 1);
-    p->part_count = 0;
-}
-
-static void add_part(plan *p, uint32_t kind, uint32_t a, uint32_t b)
-{
-    sc_part *part;
-    if (p->part_count == SC_PARTS_MAX) do_parts(p);
-    part = &p->w->parts[p->part_count++];
-    part->kind = kind;
-    part->a = a;
-    part->b = b;
-}
-
 /* A part is what waits with one worker, whoever does it. */
 static void run_waiting(void *context, uint32_t part, uint32_t worker)
 {
@@ -238,6 +221,25 @@ static void do_waiting(plan *p)
                  w->settled_count;
     }
     if (waits) run_job(p, run_waiting, p->tasks->workers, 0);
+}
+
+/* Empties the list of parts. Nothing goes on waiting: the calling thread goes on with the workspace
+   of the first worker, and would count what waits there as its own, after a contour test or not. */
+static void do_parts(plan *p)
+{
+    run_job(p, run_parts, p->part_count, 1);
+    p->part_count = 0;
+    do_waiting(p);
+}
+
+static void add_part(plan *p, uint32_t kind, uint32_t a, uint32_t b)
+{
+    sc_part *part;
+    if (p->part_count == SC_PARTS_MAX) do_parts(p);
+    part = &p->w->parts[p->part_count++];
+    part->kind = kind;
+    part->a = a;
+    part->b = b;
 }
 
 /* ---- boxes ---- */
@@ -509,7 +511,6 @@ static void walk_exact(plan *p)
         do_tests(p);
     }
     do_parts(p);
-    do_waiting(p); /* which marks more that are culled */
     join_marks(p);
     if (!sc_state_stops(p->state)) do_last(p);
 }
