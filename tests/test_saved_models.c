@@ -639,7 +639,7 @@ static void end_forgery(forgery *f)
     soup_free(&f->mesh);
 }
 
-/* What stands for a point is a point. */
+/* What stands for a point is a point, and there are so many. */
 static void forged_uses(void)
 {
     forgery f = forge(soup_cloth(8, 7));
@@ -655,6 +655,11 @@ static void forged_uses(void)
         }
         use[v] = SC_VERTEX_POINT;
     }
+    ++m->point_count;
+    CHECK(try_forged(&f.saved, &f.mesh));
+    m->point_count -= 2;
+    CHECK(try_forged(&f.saved, &f.mesh));
+    ++m->point_count;
     CHECK(!try_forged(&f.saved, &f.mesh));
     end_forgery(&f);
 }
