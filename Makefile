@@ -653,8 +653,7 @@ clean: ## remove everything built; downloaded meshes stay
 help: ## this list
 	@echo "starcontour $(version)"; echo
 	@echo "Targets:"
-	@sed -n 's/^\([a-z][a-z-]*\):.*## \(.*\)$$/\1#\2/p' Makefile | sort -u | \
-	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
+	@awk -F ':.*## ' '/^[a-z][a-z-]*:.*## / { printf "  %-16s %s\n", $$1, $$2 }' Makefile | sort -u
 	@echo; echo "Variables:"
 	@sed -n 's/^#: \([A-Za-z_]*\) *\(.*\)$$/\1#\2/p' Makefile | \
 	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
