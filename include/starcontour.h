@@ -485,7 +485,8 @@ SC_API sc_status sc_workspace_init_for(const sc_model *model, const sc_workspace
 SC_API sc_status sc_workspace_create_for(const sc_model *model, const sc_workspace_options *options,
                                          sc_workspace **workspace);
 
-/* Hooks for the queries on a workspace, copied; NULL for none, as at first. */
+/* Hooks for the queries on a workspace, copied; NULL for none, as at first. The log hears which
+   vertex is NaN or infinite. */
 SC_API sc_status sc_workspace_set_hooks(sc_workspace *workspace, const sc_hooks *hooks);
 
 /* Frees what sc_workspace_create(_for) made; does nothing to what sc_workspace_init(_for) made.

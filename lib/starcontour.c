@@ -8,6 +8,7 @@
 
 #include <float.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -551,6 +552,22 @@ static sc_status check_query(const sc_model *model, sc_workspace *workspace, con
     return SC_OK;
 }
 
+/* Says which vertex it is that makes a pose not finite; where: the end of the message. */
+static void log_not_finite(const sc_hooks *hooks, const sc_model *model, const sc_pose *pose,
+                           uint64_t stride, const char *where)
+{
+    const uint8_t *use = sc_model_vertex_use(model);
+    double p[3];
+    uint32_t v;
+    for (v = 0; hooks->log && v < model->vertex_count; v++) {
+        if (use[v] == SC_VERTEX_UNUSED) continue;
+        sc_mesh_read_position(pose->positions, pose->position_type, stride, v, p);
+        if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])) continue;
+        sc_hooks_log(hooks, SC_LOG_ERROR, "vertex %" PRIu32 " is NaN or infinite%s", v, where);
+        return;
+    }
+}
+
 static int uses_star(const sc_query_options *o)
 {
     return o->method == SC_METHOD_SCTT && o->contour == SC_CONTOUR_STAR;
@@ -570,7 +587,10 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
     sc_workspace_new_pose(model, workspace);
     if (!uses_star(&state->options)) sc_workspace_keep_all(model, workspace);
     status = sc_positions_read(model, pose, stride, workspace);
-    if (status) return status;
+    if (status) {
+        log_not_finite(&workspace->hooks, model, pose, stride, "");
+        return status;
+    }
     if (sc_parallel_pays(state)) {
         sc_parallel_run(state);
     } else {
@@ -716,7 +736,12 @@ static sc_status run_step(sc_step_state *state, const sc_pose pose[2], const uin
     state->limits.tolerance = state->options.tolerance;
     state->limits.latest = 1;
     status = sc_motion_read(query->model, pose, stride, &state->limits, query->workspace);
-    if (status) return status;
+    if (status) {
+        const sc_hooks *hooks = &query->workspace->hooks;
+        log_not_finite(hooks, query->model, &pose[0], stride[0], " at the start");
+        log_not_finite(hooks, query->model, &pose[1], stride[1], " at the end");
+        return status;
+    }
     if (sc_step_parallel_pays(state)) {
         sc_step_parallel_run(state);
     } else {

@@ -157,6 +157,60 @@ static void hooks_are_read(void)
     soup_free(&s);
 }
 
+/* Poses that are refused: which vertex is at fault, and at which end of a step. */
+static void messages_of_queries(void)
+{
+    journal j;
+    soup s = soup_make(5, 1);
+    sc_mesh m;
+    sc_hooks hooks = make_hooks(&j);
+    sc_model *model = NULL;
+    sc_workspace *workspace = NULL;
+    sc_workspace_options options;
+    for (uint32_t i = 0; i < 15; ++i) s.positions[i] = i % 4 == 0;
+    for (uint32_t i = 0; i < 3; ++i) s.triangles[i] = i + 1;
+    m = input_plain_mesh(&s);
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.flags = SC_WORKSPACE_STEP;
+    if (CHECK(sc_build(&m, NULL, &model) == SC_OK) &&
+        CHECK(sc_workspace_create_for(model, &options, &workspace) == SC_OK) &&
+        CHECK(sc_workspace_set_hooks(workspace, &hooks) == SC_OK)) {
+        double bad[15];
+        sc_pose good = input_plain_pose(s.positions, 5), pose = input_plain_pose(bad, 5);
+        sc_result result;
+        sc_step_result step;
+        memset(&result, 0, sizeof(result));
+        result.struct_size = sizeof(result);
+        memset(&step, 0, sizeof(step));
+        step.struct_size = sizeof(step);
+        memcpy(bad, s.positions, sizeof(bad));
+        bad[1] = (double)NAN; /* in no triangle */
+        CHECK(sc_query(model, workspace, &pose, NULL, &result) == SC_OK && j.text[0] == '\0');
+        for (int k = 0; k < 3; k++) {
+            bad[6 + k] = k == 1 ? -HUGE_VAL : (double)NAN;
+            CHECK(sc_query(model, workspace, &pose, NULL, &result) == SC_ERROR_NOT_FINITE);
+            CHECK_MSG(strcmp(j.text, "vertex 2 is NaN or infinite\n") == 0, "%s", j.text);
+            j.text[0] = '\0';
+            bad[6 + k] = 0;
+        }
+        bad[10] = (double)NAN;
+        CHECK(sc_query_step(model, workspace, &pose, &good, NULL, &step) == SC_ERROR_NOT_FINITE);
+        CHECK_MSG(strcmp(j.text, "vertex 3 is NaN or infinite at the start\n") == 0, "%s", j.text);
+        j.text[0] = '\0';
+        CHECK(sc_query_step(model, workspace, &good, &pose, NULL, &step) == SC_ERROR_NOT_FINITE);
+        CHECK_MSG(strcmp(j.text, "vertex 3 is NaN or infinite at the end\n") == 0, "%s", j.text);
+        CHECK(j.levels == 1u << SC_LOG_ERROR && j.failures == 0);
+        j.text[0] = '\0';
+        CHECK(sc_workspace_set_hooks(workspace, NULL) == SC_OK);
+        CHECK(sc_query(model, workspace, &pose, NULL, &result) == SC_ERROR_NOT_FINITE);
+        CHECK(j.text[0] == '\0');
+    }
+    sc_workspace_free(workspace);
+    sc_model_free(model);
+    soup_free(&s);
+}
+
 static void long_and_missing_messages(void)
 {
     journal j;
@@ -188,5 +242,5 @@ static void failed_invariants(void)
     SC_HOOKS_ASSERT(&hooks, one == 1);
 }
 
-SC_TEST_MAIN(SC_TEST(messages_of_builds), SC_TEST(hooks_are_read),
+SC_TEST_MAIN(SC_TEST(messages_of_builds), SC_TEST(hooks_are_read), SC_TEST(messages_of_queries),
              SC_TEST(long_and_missing_messages), SC_TEST(failed_invariants))
