@@ -96,7 +96,7 @@ static void bend_solid(const mesh_file *rest, double time, float *positions)
 
 static bool report(sc_status status, const char *what)
 {
-    if (status != SC_OK) tool_error("%s: %s", what, sc_status_string(status));
+    if (status != SC_OK) tool_error("%s: %s", what, tool_why(status));
     return status == SC_OK;
 }
 

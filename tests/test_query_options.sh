@@ -60,6 +60,27 @@ echo "1,4000000" >"$scratch/bad.csv"
 check "no such triangle" says 2 "list of pairs" "$query" --ignore "$scratch/bad.csv" "$sheet"
 check "no such file" says 2 absent "$query" --ignore "$scratch/absent.csv" "$sheet"
 
+# ---- files that are not read, and files that are not written over ----
+
+printf 'v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n' >"$scratch/inf.obj"
+check "which vertex is not finite" says 2 "inf.obj: vertex 2 is NaN" "$query" "$scratch/inf.obj"
+mkfifo "$scratch/pipe.obj"
+check "a pipe" says 2 "pipe or device" "$query" "$scratch/pipe.obj"
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nend_head' >"$scratch/cut.ply"
+check "a PLY file cut in its header" says 2 "the header does not end" "$query" "$scratch/cut.ply"
+cp "$sheet" "$scratch/own.obj"
+for option in --out --ply --record; do
+    check "not over the mesh: $option" says 2 "own.obj is to be read" \
+        "$query" $option "$scratch/../${scratch##*/}/own.obj" "$scratch/own.obj"
+done
+check "not over the rest mesh" says 2 "own.obj is to be read" \
+    "$query" --rest "$scratch/own.obj" --out "$scratch/own.obj" "$sheet"
+check "nor by sc-partition" says 2 "own.obj is to be read" \
+    "$SC_BIN/sc-partition" -o "$scratch/own.obj" "$scratch/own.obj"
+check "the mesh is whole" cmp "$sheet" "$scratch/own.obj"
+check "over a list that was read" status 0 \
+    "$query" --ignore "$scratch/own.csv" --out "$scratch/own.csv" "$sheet"
+
 # Two cloths of 288 triangles that cross: apart as groups, or each alone.
 printf '# two\ntriangle 0-287 1 2\n\ntriangle 288-575 0x2 0x1 # the other\n' >"$scratch/groups"
 check "all pairs of the cloths" pairs "$scratch/all" "$cloths"

@@ -103,8 +103,16 @@ check "the other steps are done" says 2 "f0.obj to .*f1.obj" \
     "$query" --step "$c" "$scratch/absent.obj" "$a" "$b"
 check "each step that it spoils fails" test "$(grep -c absent "$scratch/err")" -eq 2
 printf 'v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 nan\nv 2 1 2\nv 1 2 2\nf 1 2 3\nf 4 5 6\n' >"$scratch/nan.obj"
-check "not a number" says 2 "nan.obj" "$query" --step --json "$a" "$scratch/nan.obj"
+check "not a number" says 2 "nan.obj: vertex 3 is NaN or infinite at the end" \
+    "$query" --step --json "$a" "$scratch/nan.obj"
 check "as JSON too" grep -q '"status":"error"' "$scratch/out"
+check "a mesh that is through itself all the time: no pair" status 0 \
+    "$query" --step meshes/crossing_cloths.obj meshes/crossing_cloths.obj
+cp "$a" "$scratch/g0.obj"
+cp "$b" "$scratch/g1.obj"
+check "not over a frame" says 2 "g1.obj is to be read" \
+    "$query" --step --out "$scratch/g1.obj" "$scratch/g%d.obj"
+check "the frame is whole" cmp "$b" "$scratch/g1.obj"
 printf 'v 0 0' >"$scratch/cut.obj"
 check "a truncated frame" status 2 "$query" --step "$a" "$scratch/cut.obj"
 head -c 300 /dev/urandom >"$scratch/noise.obj"

@@ -3,6 +3,8 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#define _POSIX_C_SOURCE 200809L
+
 #include "mesh_file.h"
 
 #include "text_mesh.h"
@@ -15,6 +17,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* An affine map: rows of x, y, z; the last column is the translation. */
 typedef struct affine {
@@ -147,22 +150,47 @@ static scene_walk walk_scene(const struct aiScene *scene, float *positions, uint
     return walk;
 }
 
-/* Tells apart what assimp calls by one name: no file, no permission, a folder, nothing in it. */
+/* Whether the rest of a PLY file has the end of a header. */
+static bool ends_header(FILE *file)
+{
+    static const char word[10] = {'e', 'n', 'd', '_', 'h', 'e', 'a', 'd', 'e', 'r'};
+    char last[sizeof word] = {0};
+    for (int c; memcmp(last, word, sizeof word) != 0;) {
+        if ((c = fgetc(file)) == EOF) return false;
+        memmove(last, last + 1, sizeof last - 1);
+        last[sizeof last - 1] = (char)c;
+    }
+    return true;
+}
+
+/*
+ * Tells apart what assimp calls by one name: no file, no permission, a folder, nothing in it. And
+ * refuses what it does not come back from: a pipe, which it would open once more, and a PLY file
+ * whose header does not end.
+ */
 static bool check_file(const char *path, char error[MESH_FILE_ERROR_SIZE])
 {
+    struct stat what;
+    FILE *file = NULL;
+    char magic[3];
+    const char *reason = NULL;
     errno = 0;
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, strerror(errno));
-        return false;
+    if (stat(path, &what) != 0) {
+        reason = strerror(errno);
+    } else if (S_ISFIFO(what.st_mode) || S_ISSOCK(what.st_mode) || S_ISCHR(what.st_mode)) {
+        reason = "a pipe or device; meshes are read from files, whose names tell the format";
+    } else if (!(file = fopen(path, "rb"))) {
+        reason = strerror(errno);
+    } else {
+        const size_t size = fread(magic, 1, sizeof magic, file);
+        if (size == 0)
+            reason = ferror(file) ? strerror(errno) : "the file is empty";
+        else if (size == 3 && memcmp(magic, "ply", 3) == 0 && !ends_header(file))
+            reason = "the header does not end; is the file truncated?";
     }
-    const bool has_data = fgetc(file) != EOF;
-    if (!has_data) {
-        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path,
-                 ferror(file) ? strerror(errno) : "the file is empty");
-    }
-    fclose(file);
-    return has_data;
+    if (reason) snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
+    if (file) fclose(file);
+    return reason == NULL;
 }
 
 /* Imports a file as it is, without post-processing, and counts what is in it. */

@@ -38,7 +38,7 @@ bool query_subject_load(query_subject *subject, const char *path, const query_su
         if (!subject->weld_map) status = SC_ERROR_MEMORY;
     }
     if (status == SC_OK) return true;
-    snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
+    snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, tool_why(status));
     query_subject_free(subject);
     return false;
 }
@@ -54,7 +54,7 @@ bool query_subject_open(query_subject *subject, const char *path, uint32_t flags
     subject->weld_map = subject->file.weld_map;
     const sc_status status = query_threads_workspace(subject->model, flags, &subject->workspace);
     if (status == SC_OK) return true;
-    snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
+    snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, tool_why(status));
     query_subject_free(subject);
     return false;
 }

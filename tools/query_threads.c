@@ -6,6 +6,7 @@
 #include "query_threads.h"
 
 #include "thread_pool.h"
+#include "tool.h"
 
 #include <string.h>
 
@@ -36,5 +37,6 @@ sc_status query_threads_workspace(const sc_model *model, uint32_t flags, sc_work
     options.struct_size = sizeof options;
     options.flags = flags;
     options.workers = pool ? thread_pool_tasks(pool)->workers : 1;
-    return sc_workspace_create_for(model, &options, workspace);
+    const sc_status status = sc_workspace_create_for(model, &options, workspace);
+    return status ? status : sc_workspace_set_hooks(*workspace, tool_hooks());
 }

@@ -166,7 +166,7 @@ static bool view_open(partition_view *view, const mesh_file *mesh, uint32_t part
     sc_status status = tool_build(mesh, SC_WELD_REST, partition, rest, SC_MODEL_FULL, &view->model,
                                   &view->build_ms);
     if (status == SC_OK) status = sc_model_get_info(view->model, &view->info);
-    if (status != SC_OK) tool_error("%s: %s", name, sc_status_string(status));
+    if (status != SC_OK) tool_error("%s: %s", name, tool_why(status));
     return status == SC_OK;
 }
 
@@ -452,6 +452,9 @@ static bool run(const partition_settings *set, char **paths, int path_count)
         return false;
     }
     if (set->scaling) return show_scaling(set);
+    if (path_count > 0 &&
+        (!tool_spares(set->output_path, paths[0]) || !tool_spares(set->ply_path, paths[0])))
+        return false;
 
     char error[MESH_FILE_ERROR_SIZE];
     char name[32];

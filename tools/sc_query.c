@@ -32,9 +32,8 @@ static const char usage[] =
     "joined,\n"
     "polygons are triangulated, points and lines left out. Coordinates are rounded to the nearest\n"
     "float on reading (text formats other than OBJ and OFF: as assimp does it), and the answer is\n"
-    "exact for those. Triangles are numbered from 0 in the order of the file's faces (assimp: in "
-    "that\n"
-    "of the scene's meshes).\n"
+    "exact for those. Vertices and triangles are numbered from 0 in the order of the file\n"
+    "(assimp: in that of the scene's meshes).\n"
     "\n"
     "What is sought\n"
     "  --pairs triangle|edge|none  the pairs that --out and --ply show and that decide the exit\n"
@@ -59,9 +58,8 @@ static const char usage[] =
     "a\n"
     "                              straight line: vertex-face and edge-edge pairs that meet, when "
     "the\n"
-    "                              first does, and how many candidates there were. One pattern "
-    "such "
-    "as\n"
+    "                              first does, and how many candidates there were, but not what\n"
+    "                              is through itself from start to end. One pattern such as\n"
     "                              f%04d.obj is all files with numbers from 0 or 1\n"
     "  --separation D              that come as near as D, in units of the coordinates (0)\n"
     "  --tolerance T               of distances (a millionth of the size); pairs up to D + T apart "
@@ -314,7 +312,7 @@ static bool run_pose(const query_subject *subject, const char *path, const sc_po
     if (status == SC_OK && set->contacts) status = find_contacts(subject, pose, set, list);
     answer->collides = answer->counts[chosen] > 0;
     if (status != SC_OK) {
-        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, sc_status_string(status));
+        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, tool_why(status));
     }
     return status == SC_OK;
 }
@@ -799,6 +797,21 @@ static bool check_settings(const settings *set, int path_count)
     return false;
 }
 
+/* No file that is to be read is written over. */
+static bool spares_files(const settings *set, char *const *paths, int count)
+{
+    const char *const out[] = {set->out_path, set->ply_path, set->record_path};
+    for (int i = 0; i < 3; i++) {
+        if (!tool_spares(out[i], set->rest_path) || !tool_spares(out[i], set->model_path) ||
+            !tool_spares(out[i], set->replay_path) || !tool_spares(out[i], set->groups_path))
+            return false;
+        for (int path = 0; path < count; path++) {
+            if (!tool_spares(out[i], paths[path])) return false;
+        }
+    }
+    return true;
+}
+
 int main(int argc, char **argv)
 {
     enum {
@@ -988,7 +1001,9 @@ int main(int argc, char **argv)
         valid &=
             tool_choose("--method", set.method_name, set.is_step ? step_methods : method_choices,
                         set.is_step ? &set.step.method : &set.method);
-    if (!valid || !check_settings(&set, argc - optind)) return tool_finish(TOOL_FAILED);
+    if (!valid || !check_settings(&set, argc - optind) ||
+        !spares_files(&set, argv + optind, argc - optind))
+        return tool_finish(TOOL_FAILED);
     choose_method(&set);
     if (set.contour == SC_CONTOUR_NONE &&
         (set.is_step ? set.step.method == SC_STEP_METHOD_SCTT : set.method == SC_METHOD_SCTT)) {

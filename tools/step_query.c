@@ -169,7 +169,7 @@ static bool ask(step_run *run, const frame *from, const frame *to, step_answer *
         status = count_candidates(run, poses, answer);
     if (status != SC_OK)
         snprintf(error, MESH_FILE_ERROR_SIZE, "%s to %s: %s", answer->start, answer->end,
-                 sc_status_string(status));
+                 tool_why(status));
     return status == SC_OK;
 }
 
@@ -400,6 +400,15 @@ static int do_steps(step_run *run, char **paths, uint32_t count)
     return status;
 }
 
+/* Also those of a pattern. */
+static bool spares_frames(char *const *paths, int count, const char *out)
+{
+    for (int i = 0; i < count; i++) {
+        if (!tool_spares(out, paths[i])) return false;
+    }
+    return true;
+}
+
 int step_query_frames(char **paths, int count, const step_settings *set)
 {
     char error[MESH_FILE_ERROR_SIZE];
@@ -418,6 +427,8 @@ int step_query_frames(char **paths, int count, const step_settings *set)
     run.set = set;
     if (count < 2) {
         tool_error("--step takes two frames or more");
+    } else if (!spares_frames(paths, count, set->out_path)) {
+        status = TOOL_FAILED;
     } else if (set->out_path && !(run.out = fopen(set->out_path, "w"))) {
         tool_error("%s: cannot be written: %s", set->out_path, strerror(errno));
     } else {

@@ -14,6 +14,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 
 const tool_choice tool_partitions[] = {
@@ -95,11 +96,38 @@ bool tool_parse_real(const char *option, const char *text, double *value)
     return true;
 }
 
-/* What is wrong with a mesh, in more detail than a status. */
-static void tell_errors(void *user, uint32_t level, const char *message)
+static char said[256]; /* the last error that tool_hooks heard, "" if tool_why told it */
+
+static void hear(void *user, uint32_t level, const char *message)
 {
     (void)user;
-    if (level == SC_LOG_ERROR) tool_error("%s", message);
+    if (level == SC_LOG_ERROR) snprintf(said, sizeof said, "%s", message);
+}
+
+const sc_hooks *tool_hooks(void)
+{
+    static sc_hooks hooks;
+    hooks.struct_size = sizeof hooks;
+    hooks.log = hear;
+    return &hooks;
+}
+
+const char *tool_why(sc_status status)
+{
+    static char why[sizeof said];
+    memcpy(why, said, sizeof why);
+    said[0] = '\0';
+    return why[0] ? why : sc_status_string(status);
+}
+
+bool tool_spares(const char *out, const char *in)
+{
+    struct stat one, other;
+    if (!out || !in || stat(out, &one) != 0 || stat(in, &other) != 0 || !S_ISREG(one.st_mode) ||
+        one.st_dev != other.st_dev || one.st_ino != other.st_ino)
+        return true;
+    tool_error("%s is to be read, and would be written over", in);
+    return false;
 }
 
 sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, uint32_t rest,
@@ -115,15 +143,10 @@ sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, u
     input.positions = mesh->positions;
     input.indices = mesh->indices;
 
-    sc_hooks hooks;
-    memset(&hooks, 0, sizeof hooks);
-    hooks.struct_size = sizeof hooks;
-    hooks.log = tell_errors;
-
     sc_build_options options;
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
-    options.hooks = &hooks;
+    options.hooks = tool_hooks();
     options.weld = weld;
     options.rest = rest;
     options.content = content;

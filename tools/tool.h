@@ -28,6 +28,17 @@ void tool_set_name(const char *name);
 /* Prints "name: message" and a line end to stderr, after what stands in stdout. */
 void tool_error(const char *format, ...) TOOL_PRINTF;
 
+/* Hooks that keep the last error that the library says more of than a status. */
+const sc_hooks *tool_hooks(void);
+
+/* What is wrong: the error that tool_hooks kept, which is forgotten then, or the status in words.
+   Valid until the next call. */
+const char *tool_why(sc_status status);
+
+/* Whether writing to out leaves alone a file that is to be read; otherwise says that it does not.
+   Each may be NULL. */
+bool tool_spares(const char *out, const char *in);
+
 /* Milliseconds on a clock that never goes back. */
 double tool_clock(void);
 
