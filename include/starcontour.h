@@ -87,7 +87,7 @@ enum {
     SC_OK = 0,
     SC_ERROR_NULL = 1,          /* a pointer that the call needs is NULL */
     SC_ERROR_STRUCT_SIZE = 2,   /* a struct_size this library cannot read */
-    SC_ERROR_OPTION = 3,        /* a member has a value that is not one of its enumerators */
+    SC_ERROR_OPTION = 3,        /* a member has a value that it cannot have */
     SC_ERROR_EMPTY = 4,         /* a mesh without triangles or without vertices */
     SC_ERROR_COUNT = 5,         /* more vertices or triangles than can be indexed or addressed */
     SC_ERROR_STRIDE = 6,        /* a stride smaller than what it steps over */
@@ -932,7 +932,9 @@ typedef struct sc_step_result {
  * limit to it: the tolerance of a pair is at least 2^-32 times the largest difference of a
  * coordinate in it. The list depends on mesh, welding, poses, separation and tolerance and on
  * nothing else: not on method, partition, number of threads, compiler or machine, for what is near
- * the limit is decided pair by pair and culling keeps clear of it.
+ * the limit is decided pair by pair and culling keeps clear of it. An edge that is through the
+ * inside of a triangle from start to end collides with nothing by that: sc_query tells whether the
+ * start is free.
  *
  * A pair's time is not after the first time at which it comes within separation, and at the time
  * itself it is within separation + tolerance. earliest is the least of all times. Candidates have
