@@ -413,7 +413,8 @@ typedef struct sc_load_options {
     uint32_t mode;                 /* SC_LOAD_... */
     uint64_t topology_hash;        /* 0, or SC_ERROR_TOPOLOGY for a model with any other */
     const sc_allocator *allocator; /* copied; its functions must outlive the model */
-    const sc_hooks *hooks;         /* for this call; the log says what is wrong with refused data */
+    const sc_hooks *hooks;         /* for this call; the log says more of SC_ERROR_TOPOLOGY and
+                                      _INCONSISTENT */
 } sc_load_options;
 
 /*
