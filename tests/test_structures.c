@@ -1606,6 +1606,42 @@ static void curve(void)
     soup_free(&mesh);
 }
 
+/* Triangles in a row, each of which touches the next in a corner: one closed chain of all their
+   edges, just as many as the length of a loop can say; and one triangle more, which has none. */
+static void longest_loop(void)
+{
+    for (uint32_t more = 0; more < 2; ++more) {
+        const uint32_t count = SC_LOOP_MAX / 3 + more;
+        soup s = soup_make(2 * count + 1, count);
+        uint32_t *order = (uint32_t *)test_allocate(count * sizeof(uint32_t));
+        sc_mesh mesh = input_plain_mesh(&s);
+        sc_build_options options;
+        sc_model *model = NULL;
+        for (uint32_t v = 0; v < s.vertex_count; ++v) {
+            s.positions[3 * v] = v;
+            s.positions[3 * v + 1] = v % 2;
+            s.positions[3 * v + 2] = 0;
+        }
+        for (uint32_t t = 0; t < count; ++t) {
+            for (uint32_t k = 0; k < 3; ++k) s.triangles[3 * t + k] = 2 * t + (k ? 3 - k : 0);
+            order[t] = t;
+        }
+        memset(&options, 0, sizeof(options));
+        options.struct_size = sizeof(options);
+        options.partition = SC_PARTITION_ORDER;
+        options.order = order;
+        if (CHECK(sc_build(&mesh, &options, &model) == SC_OK)) {
+            const sc_node *root = sc_model_node(model);
+            CHECK(model->leaf_count <= SC_LOOP_LEAVES && !(root->kind & SC_NODE_PIECES));
+            CHECK(root->loop_length == (more ? 0 : SC_LOOP_MAX));
+        }
+        sc_model_free(model);
+        free(order);
+        soup_free(&s);
+    }
+}
+
 SC_TEST_MAIN(SC_TEST(locality), SC_TEST(curve), SC_TEST(named_meshes), SC_TEST(hubs),
              SC_TEST(copies), SC_TEST(creases), SC_TEST(slices), SC_TEST(two_legs),
-             SC_TEST(long_rings), SC_TEST(random_meshes), SC_TEST(validators))
+             SC_TEST(long_rings), SC_TEST(longest_loop), SC_TEST(random_meshes),
+             SC_TEST(validators))
