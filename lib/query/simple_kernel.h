@@ -12,6 +12,12 @@
  * length do, or are the same, and so hold the spans taken, no more than three apart. A last span
  * may be shorter, and brings its ends nearer.
  *
+ * Those need not be compared: if an edge folded back on the next, one of the two would have the
+ * other's far end on it, where a third ends or begins. That one is not apart from it, so they share
+ * a point. Beyond a gap they overlap there (is_open in simple.c). Else the contour passes that point
+ * twice, where two of its edges have one direction (is_pinch_fine); or it is of three edges, and has
+ * no area, as all triangles have, or its piece has none (are_pieces_fine).
+ *
  * Pairs that cannot be told apart here are few and go to sc_simple_are_apart.
  */
 
@@ -158,28 +164,6 @@ static inline unsigned SC_KERNEL(lie_apart)(float error, const SC_KERNEL(sc_edge
                                SC_KERNEL(cross_in_plane)(other, qp), bound);
 }
 
-/*
- * Bits of edges that may fold back on the next, of those for which that is asked. See is_open in
- * simple.c: with a = -v and b = w, a x b != 0 or a . b < 0 for certain.
- */
-static inline unsigned SC_KERNEL(folds)(const sc_simple_contour *c,
-                                        const SC_KERNEL(sc_edge_lanes) * e, const lanes next[2],
-                                        unsigned asked)
-{
-    lanes v[2], w[2], bound, dot;
-    int k;
-    for (k = 0; k < 2; k++) {
-        v[k] = lanes_subtract(e->q[k], e->p[k]);
-        w[k] = lanes_subtract(next[k], e->q[k]);
-    }
-    bound = SC_KERNEL(bound_in_plane)(
-        c->error, lanes_add(SC_KERNEL(size_in_plane)(v), SC_KERNEL(size_in_plane)(w)));
-    dot = lanes_add(lanes_multiply(v[0], w[0]), lanes_multiply(v[1], w[1]));
-    return asked &
-           ~(lanes_bits(lanes_below(bound, dot)) |
-             lanes_bits(lanes_below(bound, lanes_absolute(SC_KERNEL(cross_in_plane)(v, w)))));
-}
-
 static inline void SC_KERNEL(load_edges)(const sc_simple_contour *c, uint32_t i,
                                          SC_KERNEL(sc_edge_lanes) * e)
 {
@@ -214,7 +198,7 @@ static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t 
 }
 
 /*
- * Sixteen edges and those that follow: the next one, and the two after that by their boxes. Two
+ * Sixteen edges and those two and three further on, by their boxes. Two
  * boxes are to be four errors apart: two for the places of points, and two, 2^-23 of a coordinate
  * or more, for the rounding here. So are those of spans, which are two errors larger each; this
  * writes the boxes of spans of two edges, without the end of a second that is none. What else is no
@@ -258,7 +242,6 @@ static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
             lanes_store_half(first[2 * k + 1], high);
         }
     }
-    if (SC_KERNEL(folds)(c, &own, other.q, edges & SC_KERNEL(edges_from)(c, i + 1))) return 0;
     SC_UNROLL
     for (s = 0; s < 2; s++) {
         SC_UNROLL
