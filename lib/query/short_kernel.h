@@ -13,8 +13,9 @@
  * dropped, of those that follow each other the first; most contours of two leaf clusters have
  * sixteen points or fewer then.
  *
- * A loop is simple if edges that follow each other turn at the point between or go straight on, and
- * of each two others one is on one side of the line of the other.
+ * A loop is simple if of each two edges that do not follow each other one is on one side of the line
+ * of the other. None folds back on the next then: one of the two would have the other's far end on
+ * it, where a third begins or ends; and one of three edges has an area, as all triangles have.
  *
  * The projection is as in query/simple.c: a coordinate is at most 1.01 D, where D is the largest
  * component of any point of the clusters relative to the middle, and off by d = error >= 4.1 v D, v
@@ -22,8 +23,7 @@
  * compared with e x p. Moving points changes e x (q - p) by 2 d (|e|1 + |q - p|1) + 8 d^2; by
  * rounding, e is off by v |e|1 times what it is multiplied with, and either product by 3.01 v |e|1
  * 1.01 D; to add a bound to one takes v (1.02 |e|1 D + bound). As |q - p|1 <= 4.04 D, all is below
- * d (4 |e|1 + 8.1 D + 8.1 d), and so is what a product e . f of two edges is off by; what
- * underflows is within a few FLT_MIN.
+ * d (4 |e|1 + 8.1 D + 8.1 d); what underflows is within a few FLT_MIN.
  */
 
 /* Points of a contour that is looked at, at most; edges of one of which all are compared; pairs of
@@ -202,14 +202,10 @@ static SC_INLINE lanes SC_KERNEL(room_between)(const SC_KERNEL(short_points) * c
 static inline int SC_KERNEL(is_simple)(const SC_KERNEL(short_points) * c,
                                        const SC_KERNEL(short_edges) * e)
 {
-    const lanes x = lanes_load(e->x), y = lanes_load(e->y);
-    const lanes from = lanes_load(e->from), to = lanes_load(e->to);
-    lanes at = SC_KERNEL(place_of)(x, y, lanes_load(c->x + 2), lanes_load(c->y + 2));
-    lanes ahead =
-        lanes_add(lanes_multiply(x, lanes_load(e->x + 1)), lanes_multiply(y, lanes_load(e->y + 1)));
-    lanes least = lanes_larger(lanes_subtract(at, to), lanes_subtract(from, at));
+    lanes at = SC_KERNEL(place_of)(lanes_load(e->x), lanes_load(e->y), lanes_load(c->x + 2),
+                                   lanes_load(c->y + 2));
+    lanes least = lanes_all(INFINITY);
     unsigned on;
-    least = lanes_larger(least, lanes_subtract(ahead, lanes_subtract(to, from)));
     if (c->count >
         SC_LANES_COUNT / 2 + 1) { /* all at most; some pairs twice, but none that follow */
         SC_UNROLL
