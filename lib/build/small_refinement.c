@@ -27,6 +27,10 @@ typedef struct small_patch {
     uint8_t near[SC_SMALL_REFINEMENT_MAX][3];   /* what is, else the triangle itself */
 } small_patch;
 
+/* A triangle is a bit of a number, and choose takes its place off a gain that may be negative,
+   modulo 2^32: so a power of two up to 64. */
+typedef char size_divides_64[64 % SC_SMALL_REFINEMENT_MAX == 0 ? 1 : -1];
+
 static uint64_t bit(uint32_t i)
 {
     return (uint64_t)1 << i;
