@@ -11,6 +11,7 @@
 
 #include "harness.h"
 #include "inputs.h"
+#include "pose/workspace.h"
 #include "shapes.h"
 #include "soups.h"
 #include "starcontour.h"
@@ -750,6 +751,56 @@ static void filters(void)
                 }
             sc_workspace_free(workspace);
             free(groups);
+        }
+        stop(&f);
+    }
+}
+
+/* Whether the workers of a workspace answer as one does, twice in a row. */
+static void check_workers(const fixture *f, sc_workspace *workspace, sc_query_options *options)
+{
+    answer serial;
+    options->tasks = NULL;
+    serial = ask(f, f->workspace, options, 100000);
+    for (int way = 0; way < 2; ++way) {
+        host h;
+        host_start(&h, HOST_BACKWARDS, workspace->workers);
+        options->tasks = &h.tasks;
+        CHECK(is_same(&serial, ask(f, workspace, options, 100000)));
+        CHECK(h.parts > 0 && h.mistakes == 0);
+        host_stop(&h);
+    }
+    free(serial.pairs);
+}
+
+/* What a worker found in an early pose is not taken for new when ticks begin anew; on models that
+   keep all leaf clusters ready, and on others. */
+static void ticks_of_workers(void)
+{
+    for (uint32_t content = SC_MODEL_FULL; content <= SC_MODEL_BOXES; ++content) {
+        sc_workspace_options o = for_workers(3);
+        sc_query_options options = no_options();
+        sc_workspace *workspace = NULL;
+        fixture f;
+        if (start(&f, soup_cloth(40, 40), 0.5, 0.03)) {
+            sc_build_options build;
+            sc_mesh mesh = input_plain_mesh(&f.mesh);
+            sc_workspace_free(f.workspace);
+            sc_model_free(f.model);
+            memset(&build, 0, sizeof(build));
+            build.struct_size = sizeof(build);
+            build.content = content;
+            CHECK(sc_build(&mesh, &build, &f.model) == SC_OK);
+            CHECK(sc_workspace_create(f.model, NULL, &f.workspace) == SC_OK);
+            CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+            check_workers(&f, workspace, &options);
+            CHECK(workspace->pose_tick == 2);
+            workspace->pose_tick = 0x7fffffff;
+            soup_twist(f.posed, f.mesh.vertex_count, 2);
+            soup_noise(f.posed, f.mesh.vertex_count, 0.1);
+            check_workers(&f, workspace, &options);
+            CHECK(workspace->pose_tick == 2);
+            sc_workspace_free(workspace);
         }
         stop(&f);
     }
@@ -1586,8 +1637,8 @@ static void steps_stopped_on_the_way(void)
 SC_TEST_MAIN(SC_TEST(workspaces_for_workers), SC_TEST(workspaces_refused), SC_TEST(tasks_refused),
              SC_TEST(the_same_answers), SC_TEST(without_statistics), SC_TEST(very_many_pairs),
              SC_TEST(any_array_of_positions), SC_TEST(any_pair), SC_TEST(filters),
-             SC_TEST(stopped_early), SC_TEST(stopped_on_the_way), SC_TEST(by_trees),
-             SC_TEST(in_any_company), SC_TEST(steps_the_same), SC_TEST(steps_without_statistics),
-             SC_TEST(steps_in_short_lists), SC_TEST(any_pair_of_a_step),
-             SC_TEST(any_positions_of_a_step), SC_TEST(steps_stopped_early),
-             SC_TEST(steps_stopped_on_the_way))
+             SC_TEST(ticks_of_workers), SC_TEST(stopped_early), SC_TEST(stopped_on_the_way),
+             SC_TEST(by_trees), SC_TEST(in_any_company), SC_TEST(steps_the_same),
+             SC_TEST(steps_without_statistics), SC_TEST(steps_in_short_lists),
+             SC_TEST(any_pair_of_a_step), SC_TEST(any_positions_of_a_step),
+             SC_TEST(steps_stopped_early), SC_TEST(steps_stopped_on_the_way))
