@@ -723,7 +723,8 @@ typedef struct sc_result {
     uint32_t collides; /* out: 1 if there is a pair, else 0 */
     uint64_t count;    /* out: the number of pairs; 0 or 1 for SC_OUTPUT_ANY */
     uint64_t capacity; /* in: entries of pairs */
-    sc_pair *pairs;    /* in: the caller's array. Each pair is written once, sorted by a, then b */
+    sc_pair *pairs;    /* in: the caller's array. Each pair is written once, sorted by a, then b;
+                          entries behind them may have been written to */
     sc_stats *stats;  /* in: where to put statistics (its struct_size set), or NULL. Clocks are read
                          only if it is not NULL */
     uint32_t verdict; /* out: SC_VERDICT_... */
@@ -770,7 +771,7 @@ typedef struct sc_result {
  *   - all but the passes once more, where the array turns out to be too short.
  * Counts in statistics do not depend on the number of workers if that is 2 or more, but for
  * SC_OUTPUT_ANY. Times of walk and tests are added up over the workers. Which pairs a query has
- * found when a flag ends it depends on the threads.
+ * found when a flag ends it depends on the threads; where the array is too short it may be none.
  *
  * Pairs and their order depend on the mesh, the welding, the pose, the kind of pair asked for and
  * the filter, and on nothing else: not on partition, method, threads, compiler or machine.
