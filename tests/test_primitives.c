@@ -287,6 +287,51 @@ static void eight_pairs_at_once(void)
               anywhere);
 }
 
+/* Along one axis or two, corners are at one of three places each, but not all of a triangle at one:
+   some edges of both are in one plane across the axis, others in another, and no corner is in the
+   other's plane. */
+static void points_in_layers(two *t)
+{
+    uint32_t axes = 1 + test_random_below(2), axis = test_random_below(3);
+    points_anywhere(t);
+    for (; axes > 0; --axes, axis = (axis + 1) % 3) {
+        double place[3];
+        for (int i = 0; i < 3; ++i) place[i] = test_random_unit();
+        for (uint32_t s = 0; s < 2; ++s) {
+            double *corner = t->points + 9 * s + axis;
+            do {
+                for (int k = 0; k < 3; ++k) corner[3 * k] = place[test_random_below(3)];
+            } while (corner[0] == corner[3] && corner[3] == corner[6]);
+        }
+    }
+}
+
+static void eight_pairs_in_layers(void)
+{
+    const sc_query_kernels *kernels[SC_ISA_AVX512 + 1];
+    uint32_t rounds = test_iterations(20000), meetings = 0;
+    list_kernels(kernels);
+    for (uint32_t round = 0; round < rounds; ++round) {
+        two t[SC_PAIR_LANES];
+        batch b;
+        uint64_t state = test_random_state();
+        clear_batch(&b);
+        b.lanes.proper = round % 2 != 0;
+        for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane) {
+            points_in_layers(&t[lane]);
+            set_lane(&b, lane, &t[lane]);
+        }
+        for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
+            sc_verdict verdict;
+            kernels[isa]->decide(&b.lanes, &verdict);
+            meetings += verdict.meets != 0;
+            for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane)
+                check_lane(&b, &verdict, lane, &t[lane], isa_name[isa], state);
+        }
+    }
+    CHECK(meetings > rounds / 10);
+}
+
 /* Positions are read wherever they are, as floats, too. */
 static void any_stride_and_type(void)
 {
@@ -347,5 +392,5 @@ static void apart_in_a_plane(void)
         }
 }
 
-SC_TEST_MAIN(SC_TEST(two_triangles), SC_TEST(eight_pairs_at_once), SC_TEST(any_stride_and_type),
-             SC_TEST(apart_in_a_plane))
+SC_TEST_MAIN(SC_TEST(two_triangles), SC_TEST(eight_pairs_at_once), SC_TEST(eight_pairs_in_layers),
+             SC_TEST(any_stride_and_type), SC_TEST(apart_in_a_plane))
