@@ -64,7 +64,8 @@ static int find_extent(const sc_model *model, const sc_workspace *w, double low[
 
 /*
  * Poses of a radius from 2^-FLOAT_RANGE to 2^FLOAT_RANGE can be moved in floats: what underflows is
- * less than 2^(FLOAT_RANGE - 149) in the unit box.
+ * less than 2^(FLOAT_RANGE - 149) in the unit box. Boxes step outwards by less there, 2^-126; but
+ * as moving, rounding and scaling keep order, boxes of triangles that meet overlap all the same.
  */
 enum { FLOAT_RANGE = 64 };
 
