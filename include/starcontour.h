@@ -159,7 +159,10 @@ enum {
  * Functions that the library calls, each of which may be NULL, in the thread that called the
  * library. They must not call it back with what that call was given, nor leave by longjmp or an
  * exception.
- *   log     gets messages in English, without a line end, that last as long as the call
+ *   log     gets messages in English, without a line end, that last as long as the call. Of what is
+ *           wrong with an argument it hears which member it is, and why, as in
+ *           "options.tasks.workers is 4, but the workspace is for 2"; calls without hooks, such as
+ *           those that make a workspace, tell nobody
  *   failed  gets each internal invariant that does not hold: a bug in the library, please report
  *           it. Invariants are looked at only if the library was compiled with SC_VALIDATE (make
  *           config=debug or sanitize); such a library goes on when failed returns, and ends the
@@ -413,8 +416,8 @@ typedef struct sc_load_options {
     uint32_t mode;                 /* SC_LOAD_... */
     uint64_t topology_hash;        /* 0, or SC_ERROR_TOPOLOGY for a model with any other */
     const sc_allocator *allocator; /* copied; its functions must outlive the model */
-    const sc_hooks *hooks;         /* for this call; the log says more of SC_ERROR_TOPOLOGY and
-                                      _INCONSISTENT */
+    const sc_hooks *hooks;         /* for this call; the log hears more of SC_ERROR_TOPOLOGY and
+                                      _INCONSISTENT, too */
 } sc_load_options;
 
 /*
@@ -486,8 +489,8 @@ SC_API sc_status sc_workspace_init_for(const sc_model *model, const sc_workspace
 SC_API sc_status sc_workspace_create_for(const sc_model *model, const sc_workspace_options *options,
                                          sc_workspace **workspace);
 
-/* Hooks for the queries on a workspace, copied; NULL for none, as at first. The log hears which
-   vertex is NaN or infinite. */
+/* Hooks for the queries on a workspace, copied; NULL for none, as at first. The log hears what
+   is wrong with a query that is refused, and which vertex is NaN or infinite. */
 SC_API sc_status sc_workspace_set_hooks(sc_workspace *workspace, const sc_hooks *hooks);
 
 /* Frees what sc_workspace_create(_for) made; does nothing to what sc_workspace_init(_for) made.

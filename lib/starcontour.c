@@ -6,16 +6,14 @@
  */
 #include "starcontour.h"
 
-#include <float.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
 
+#include "base/arguments.h"
 #include "base/assume.h"
 #include "base/clock.h"
 #include "base/hooks.h"
-#include "base/isa.h"
 #include "base/structs.h"
 #include "build/locality.h"
 #include "build/model.h"
@@ -27,19 +25,15 @@
 #include "query/filter.h"
 #include "query/pairs.h"
 #include "query/parallel.h"
+#include "query/question.h"
 #include "query/recording.h"
 #include "query/rest.h"
 #include "query/traversal.h"
 #include "step/step_motion.h"
 #include "step/step_pairs.h"
 #include "step/step_parallel.h"
+#include "step/step_question.h"
 #include "step/step_traversal.h"
-
-/* The size up to the end of a member. */
-#define UP_TO(type, member) (uint32_t)(offsetof(type, member) + sizeof(((type *)0)->member))
-
-/* The least struct_size of structures all of whose members have defaults. */
-#define LEAST_OPTIONS 8u
 
 /* ---- building ---- */
 
@@ -182,7 +176,8 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
     rest.vertex_count = mesh->vertex_count;
     rest.position_type = mesh->position_type;
     rest.positions = mesh->positions;
-    status = sc_mesh_position_stride(mesh->position_type, mesh->position_stride, &stride);
+    status = sc_mesh_position_stride(options->hooks, "mesh", mesh->position_type,
+                                     mesh->position_stride, &stride);
     if (SC_ALWAYS(!status)) /* sc_mesh_read has looked */
         status = sc_rest_mark(*model, &rest, stride, scratch, options->hooks);
     if (status) {
@@ -190,6 +185,43 @@ static sc_status build_steps(const sc_mesh *mesh, const sc_build_options *option
         *model = NULL;
     }
     return status;
+}
+
+static sc_status check_build_choices(const sc_build_options *o)
+{
+    const sc_choice choices[] = {
+        {"weld", o->weld, SC_WELD_NONE},
+        {"partition", o->partition, SC_PARTITION_BISECT},
+        {"rest", o->rest, SC_REST_MARKED},
+        {"content", o->content, SC_MODEL_BOXES},
+    };
+    sc_status status =
+        sc_arguments_choose(o->hooks, "options", choices, sizeof choices / sizeof *choices);
+    if (status) return status;
+    return o->content == SC_MODEL_BOXES && o->rest == SC_REST_MARKED ? SC_ERROR_BOXES_ONLY : SC_OK;
+}
+
+/* The caller's functions; options.allocator is from, which may be NULL. */
+static sc_status read_allocator(const sc_hooks *hooks, const sc_allocator *from,
+                                sc_allocator *allocator)
+{
+    *allocator = sc_memory_allocator(from);
+    if (allocator->allocate && allocator->release) return SC_OK;
+    sc_hooks_log(hooks, SC_LOG_ERROR, "options.allocator.%s is NULL",
+                 allocator->allocate ? "release" : "allocate");
+    return SC_ERROR_NULL;
+}
+
+/* The options of a build; o->hooks is hooks then. */
+static sc_status read_build_options(const sc_build_options *options, sc_build_options *o,
+                                    sc_hooks *hooks, sc_allocator *allocator)
+{
+    sc_status status = sc_arguments_read_options(NULL, "options", o, sizeof *o, options);
+    if (!status) status = sc_hooks_read(o->hooks, hooks);
+    if (status) return status;
+    o->hooks = hooks;
+    status = check_build_choices(o);
+    return status ? status : read_allocator(hooks, o->allocator, allocator);
 }
 
 sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model)
@@ -202,21 +234,12 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
     sc_status status;
     if (!model) return SC_ERROR_NULL;
     *model = NULL;
-    if (!mesh) return SC_ERROR_NULL;
-    status = sc_structs_read(&m, sizeof m, mesh, UP_TO(sc_mesh, indices));
+    status = read_build_options(options, &o, &hooks, &allocator);
+    if (!status) status = sc_arguments_need(&hooks, "mesh", NULL, mesh);
+    if (!status)
+        status = sc_arguments_read(&hooks, "mesh", &m, sizeof m, mesh,
+                                   SC_ARGUMENTS_UP_TO(sc_mesh, indices));
     if (status) return status;
-    memset(&o, 0, sizeof o);
-    if (options) {
-        status = sc_structs_read(&o, sizeof o, options, LEAST_OPTIONS);
-        if (status) return status;
-    }
-    if (o.rest > SC_REST_MARKED || o.content > SC_MODEL_BOXES) return SC_ERROR_OPTION;
-    if (o.content == SC_MODEL_BOXES && o.rest == SC_REST_MARKED) return SC_ERROR_BOXES_ONLY;
-    status = sc_hooks_read(o.hooks, &hooks);
-    if (status) return status;
-    o.hooks = &hooks;
-    allocator = sc_memory_allocator(o.allocator);
-    if (!allocator.allocate || !allocator.release) return SC_ERROR_NULL;
     sc_scratch_init(&scratch, &allocator);
     status = build_steps(&m, &o, &scratch, model);
     sc_scratch_clear(&scratch);
@@ -237,7 +260,7 @@ sc_status sc_model_get_info(const sc_model *model, sc_model_info *info)
     sc_model_info i;
     sc_status status;
     if (!model || !info) return SC_ERROR_NULL;
-    status = sc_structs_check(info, sizeof i, LEAST_OPTIONS);
+    status = sc_arguments_check(NULL, "info", info, sizeof i, SC_ARGUMENTS_DEFAULTS);
     if (status) return status;
     memset(&i, 0, sizeof i);
     owner = sc_model_owner_of(model);
@@ -269,7 +292,7 @@ sc_status sc_model_get_level(const sc_model *model, uint32_t level, sc_level_inf
     const sc_level *l;
     sc_status status;
     if (!model || !info) return SC_ERROR_NULL;
-    status = sc_structs_check(info, sizeof i, LEAST_OPTIONS);
+    status = sc_arguments_check(NULL, "info", info, sizeof i, SC_ARGUMENTS_DEFAULTS);
     if (status) return status;
     if (level >= model->level_count) return SC_ERROR_LEVEL;
     l = &sc_model_level_info(model)[level];
@@ -330,6 +353,7 @@ sc_status sc_model_save(const sc_model *model, void *memory, uint64_t size, uint
 sc_status sc_model_load(const void *data, uint64_t size, const sc_load_options *options,
                         sc_model **model)
 {
+    sc_choice mode = {"mode", 0, SC_LOAD_IN_PLACE};
     sc_load_options o;
     sc_hooks hooks;
     sc_allocator allocator;
@@ -337,17 +361,14 @@ sc_status sc_model_load(const void *data, uint64_t size, const sc_load_options *
     sc_status status;
     if (!model) return SC_ERROR_NULL;
     *model = NULL;
-    if (!data) return SC_ERROR_NULL;
-    memset(&o, 0, sizeof o);
-    if (options) {
-        status = sc_structs_read(&o, sizeof o, options, LEAST_OPTIONS);
-        if (status) return status;
-    }
-    if (o.mode > SC_LOAD_IN_PLACE) return SC_ERROR_OPTION;
-    status = sc_hooks_read(o.hooks, &hooks);
+    status = sc_arguments_read_options(NULL, "options", &o, sizeof o, options);
+    if (!status) status = sc_hooks_read(o.hooks, &hooks);
     if (status) return status;
-    allocator = sc_memory_allocator(o.allocator);
-    if (!allocator.allocate || !allocator.release) return SC_ERROR_NULL;
+    mode.value = o.mode;
+    status = sc_arguments_need(&hooks, "data", NULL, data);
+    if (!status) status = sc_arguments_choose(&hooks, "options", &mode, 1);
+    if (!status) status = read_allocator(&hooks, o.allocator, &allocator);
+    if (status) return status;
     sc_scratch_init(&scratch, &allocator);
     status = sc_saved_model_read(data, size, o.mode == SC_LOAD_IN_PLACE, o.topology_hash, &scratch,
                                  &hooks, model);
@@ -362,12 +383,8 @@ sc_status sc_model_load(const void *data, uint64_t size, const sc_load_options *
 static sc_status read_workspace_options(const sc_workspace_options *options,
                                         sc_workspace_options *o)
 {
-    sc_status status;
-    memset(o, 0, sizeof *o);
-    if (options) {
-        status = sc_structs_read(o, sizeof *o, options, LEAST_OPTIONS);
-        if (status) return status;
-    }
+    sc_status status = sc_arguments_read_options(NULL, "options", o, sizeof *o, options);
+    if (status) return status;
     if ((o->flags & ~(uint32_t)SC_WORKSPACE_STEP) || o->workers > SC_WORKERS_MAX || o->reserved)
         return SC_ERROR_OPTION;
     if (!o->workers) o->workers = 1;
@@ -414,8 +431,8 @@ sc_status sc_workspace_create_for(const sc_model *model, const sc_workspace_opti
     if (!model) return SC_ERROR_NULL;
     status = read_workspace_options(options, &o);
     if (status) return status;
-    a = sc_memory_allocator(o.allocator);
-    if (!a.allocate || !a.release) return SC_ERROR_NULL;
+    status = read_allocator(NULL, o.allocator, &a);
+    if (status) return status;
     bytes = sc_workspace_bytes(model, &o);
     if (SC_HARDLY(bytes > SIZE_MAX)) return SC_ERROR_MEMORY; /* where addresses have 32 bits */
     memory = a.allocate(a.user, bytes, SC_ALIGNMENT);
@@ -464,93 +481,6 @@ void sc_workspace_free(sc_workspace *workspace)
 }
 
 /* ---- queries ---- */
-
-/* On a model for boxes, what asks for no method and no contour test gets boxes. */
-static sc_status check_method(const sc_model *model, uint32_t contour, uint32_t *method)
-{
-    if (!sc_model_is_for_boxes(model)) return SC_OK;
-    if (*method == SC_METHOD_DEFAULT && contour == SC_CONTOUR_DEFAULT) *method = SC_METHOD_AABB;
-    return *method == SC_METHOD_AABB ? SC_OK : SC_ERROR_BOXES_ONLY;
-}
-
-static sc_status check_step_method(const sc_model *model, uint32_t contour, uint32_t *method)
-{
-    if (!sc_model_is_for_boxes(model)) return SC_OK;
-    if (*method == SC_STEP_METHOD_DEFAULT && contour == SC_CONTOUR_DEFAULT)
-        *method = SC_STEP_METHOD_TWO_BOXES;
-    return *method > SC_STEP_METHOD_SCTT ? SC_OK : SC_ERROR_BOXES_ONLY;
-}
-
-static sc_status check_options(const sc_model *model, sc_query_options *o)
-{
-    sc_status status;
-    if (o->output > SC_OUTPUT_ANY || o->pairs > SC_PAIRS_EDGE || o->contact > SC_CONTACT_PROPER ||
-        o->method > SC_METHOD_AABB || o->contour > SC_CONTOUR_EXACT ||
-        o->rest_cache > SC_REST_CACHE_OFF || o->simd > SC_SIMD_AVX512)
-        return SC_ERROR_OPTION;
-    status = check_method(model, o->contour, &o->method);
-    if (status) return status;
-    if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
-    if (SC_HARDLY(o->simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;
-    if (o->method == SC_METHOD_DEFAULT) o->method = SC_METHOD_SCTT;
-    if (o->contour == SC_CONTOUR_DEFAULT) o->contour = SC_CONTOUR_EXACT;
-    return SC_OK;
-}
-
-static sc_status check_pose(const sc_model *model, const sc_pose *pose, uint64_t *stride)
-{
-    sc_status status;
-    if (pose->vertex_count != model->vertex_count) return SC_ERROR_VERTEX_COUNT;
-    if (!pose->positions) return SC_ERROR_NULL;
-    status = sc_mesh_position_stride(pose->position_type, pose->position_stride, stride);
-    if (status) return status;
-    /* where addresses have 32 bits: */
-    return SC_HARDLY(*stride > SIZE_MAX / pose->vertex_count) ? SC_ERROR_COUNT : SC_OK;
-}
-
-/* Copies the caller's tasks, if any, and checks them; *given refers to the copy then. */
-static sc_status read_tasks(const sc_workspace *workspace, const sc_tasks **given, sc_tasks *tasks)
-{
-    sc_status status;
-    if (!*given) return SC_OK;
-    status = sc_structs_read(tasks, sizeof *tasks, *given, UP_TO(sc_tasks, finish));
-    if (status) return status;
-    if (!tasks->enqueue || !tasks->finish) return SC_ERROR_NULL;
-    if (!tasks->workers) tasks->workers = 1;
-    if (tasks->workers > workspace->workers) return SC_ERROR_WORKSPACE;
-    *given = tasks;
-    return SC_OK;
-}
-
-/* Everything about a query that can be wrong; afterwards only the positions can be. */
-static sc_status check_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
-                             const sc_query_options *options, const sc_result *result,
-                             sc_query_state *state, sc_pose *checked_pose, sc_filter *filter,
-                             sc_tasks *tasks, uint64_t *stride)
-{
-    sc_status status;
-    if (!model || !workspace || !pose) return SC_ERROR_NULL;
-    if (!sc_workspace_fits(workspace, model)) return SC_ERROR_WORKSPACE;
-    if (options) {
-        status = sc_structs_read(&state->options, sizeof state->options, options, LEAST_OPTIONS);
-        if (status) return status;
-    }
-    status = check_options(model, &state->options);
-    if (!status) status = read_tasks(workspace, &state->options.tasks, tasks);
-    if (status) return status;
-    if (state->options.filter) {
-        status = sc_filter_begin(state, model, state->options.filter, filter);
-        if (status) return status;
-    }
-    status = sc_structs_read(checked_pose, sizeof *checked_pose, pose, UP_TO(sc_pose, positions));
-    if (status) return status;
-    status = check_pose(model, checked_pose, stride);
-    if (status) return status;
-    if (state->options.output == SC_OUTPUT_PAIRS && result->capacity && !result->pairs)
-        return SC_ERROR_NULL;
-    if (result->stats) return sc_structs_check(result->stats, sizeof(sc_stats), LEAST_OPTIONS);
-    return SC_OK;
-}
 
 /* Says which vertex it is that makes a pose not finite; where: the end of the message. */
 static void log_not_finite(const sc_hooks *hooks, const sc_model *model, const sc_pose *pose,
@@ -611,15 +541,14 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
 sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
                    const sc_query_options *options, sc_result *result)
 {
+    const sc_hooks *hooks = workspace ? &workspace->hooks : NULL;
     sc_query_state state;
+    sc_question question;
     sc_result r;
-    sc_pose p;
-    sc_filter filter;
-    sc_tasks tasks;
-    uint64_t stride;
-    sc_status status;
-    if (!result) return SC_ERROR_NULL;
-    status = sc_structs_read(&r, sizeof r, result, UP_TO(sc_result, pairs));
+    sc_status status = sc_arguments_need(hooks, "result", NULL, result);
+    if (!status)
+        status = sc_arguments_read(hooks, "result", &r, sizeof r, result,
+                                   SC_ARGUMENTS_UP_TO(sc_result, pairs));
     if (status) return status;
     r.collides = 0;
     r.count = 0;
@@ -629,11 +558,11 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     state.pairs = r.pairs;
     state.capacity = r.capacity;
     state.timed = r.stats != NULL;
-    status = check_query(model, workspace, pose, options, &r, &state, &p, &filter, &tasks, &stride);
+    status = sc_question_read(model, workspace, pose, options, &r, &state, &question);
     if (!status) {
         state.model = model;
         workspace->tasks = sc_parallel_tasks(&state);
-        status = run_query(model, workspace, &p, stride, &state);
+        status = run_query(model, workspace, &question.pose, question.stride, &state);
         workspace->tasks = NULL;
     }
     if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE) {
@@ -649,56 +578,6 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
 }
 
 /* ---- steps ---- */
-
-static sc_status check_step_options(const sc_model *model, sc_step_options *o)
-{
-    uint32_t best = (uint32_t)sc_isa_best();
-    sc_status status;
-    if (o->output > SC_OUTPUT_ANY || o->pairs > SC_STEP_CANDIDATES ||
-        o->times > SC_STEP_TIMES_EACH || o->method > SC_STEP_METHOD_SWEPT ||
-        o->contour > SC_CONTOUR_EXACT || o->simd > SC_SIMD_AVX512 || o->reserved)
-        return SC_ERROR_OPTION;
-    if (!(o->separation >= 0) || !(o->tolerance >= 0) || o->separation > DBL_MAX ||
-        o->tolerance > DBL_MAX)
-        return SC_ERROR_OPTION;
-    status = check_step_method(model, o->contour, &o->method);
-    if (status) return status;
-    if (o->simd == SC_SIMD_BEST) o->simd = best;
-    if (SC_HARDLY(o->simd > best)) return SC_ERROR_UNSUPPORTED;
-    if (o->method == SC_STEP_METHOD_DEFAULT) o->method = SC_STEP_METHOD_SCTT;
-    if (!o->contour) o->contour = SC_CONTOUR_EXACT;
-    return SC_OK;
-}
-
-/* Everything about a step that can be wrong but the positions. */
-static sc_status check_step(const sc_model *model, sc_workspace *workspace,
-                            const sc_pose *const pose[2], const sc_step_options *options,
-                            const sc_step_result *r, sc_step_options *o, sc_tasks *tasks,
-                            sc_pose checked[2], uint64_t stride[2])
-{
-    sc_status status;
-    int s;
-    if (!model || !workspace || !pose[0] || !pose[1]) return SC_ERROR_NULL;
-    if (!sc_workspace_fits(workspace, model) || !(workspace->flags & SC_WORKSPACE_STEP))
-        return SC_ERROR_WORKSPACE;
-    if (options) {
-        status = sc_structs_read(o, sizeof *o, options, LEAST_OPTIONS);
-        if (status) return status;
-    }
-    status = check_step_options(model, o);
-    if (!status) status = read_tasks(workspace, &o->tasks, tasks);
-    for (s = 0; s < 2 && !status; s++) {
-        status =
-            sc_structs_read(&checked[s], sizeof checked[s], pose[s], UP_TO(sc_pose, positions));
-        if (!status) status = check_pose(model, &checked[s], &stride[s]);
-    }
-    if (status) return status;
-    if (o->output == SC_OUTPUT_PAIRS && ((r->vertex_face_capacity && !r->vertex_faces) ||
-                                         (r->edge_edge_capacity && !r->edge_edges)))
-        return SC_ERROR_NULL;
-    if (r->stats) return sc_structs_check(r->stats, sizeof(sc_stats), LEAST_OPTIONS);
-    return SC_OK;
-}
 
 static void begin_step(sc_step_state *state, const sc_model *model, sc_workspace *workspace,
                        const sc_step_result *r)
@@ -782,15 +661,14 @@ static void fill_step_result(const sc_step_state *state, sc_status status, sc_st
 sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc_pose *start,
                         const sc_pose *end, const sc_step_options *options, sc_step_result *result)
 {
-    const sc_pose *pose[2];
+    const sc_hooks *hooks = workspace ? &workspace->hooks : NULL;
     sc_step_state state;
+    sc_step_question question;
     sc_step_result r;
-    sc_tasks tasks;
-    sc_pose checked[2];
-    uint64_t stride[2];
-    sc_status status;
-    if (!result) return SC_ERROR_NULL;
-    status = sc_structs_read(&r, sizeof r, result, UP_TO(sc_step_result, earliest));
+    sc_status status = sc_arguments_need(hooks, "result", NULL, result);
+    if (!status)
+        status = sc_arguments_read(hooks, "result", &r, sizeof r, result,
+                                   SC_ARGUMENTS_UP_TO(sc_step_result, earliest));
     if (status) return status;
     r.collides = 0;
     r.verdict = SC_VERDICT_NONE;
@@ -798,15 +676,13 @@ sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc
     r.vertex_face_count = 0;
     r.edge_edge_count = 0;
     r.earliest = 0;
-    pose[0] = start;
-    pose[1] = end;
     memset(&state, 0, sizeof state);
     status =
-        check_step(model, workspace, pose, options, &r, &state.options, &tasks, checked, stride);
+        sc_step_question_read(model, workspace, start, end, options, &r, &state.options, &question);
     if (!status) {
         begin_step(&state, model, workspace, &r);
         workspace->tasks = sc_step_parallel_tasks(&state);
-        status = run_step(&state, checked, stride);
+        status = run_step(&state, question.pose, question.stride);
         workspace->tasks = NULL;
     }
     if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE)
@@ -843,8 +719,7 @@ sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_t kind,
     int is_edge = kind == SC_PAIRS_EDGE;
     if (!model || !pose || (count && (!pairs || !contacts))) return SC_ERROR_NULL;
     if (kind > SC_PAIRS_EDGE) return SC_ERROR_OPTION;
-    status = sc_structs_read(&p, sizeof p, pose, UP_TO(sc_pose, positions));
-    if (!status) status = check_pose(model, &p, &stride);
+    status = sc_question_read_pose(NULL, "pose", model, pose, &p, &stride);
     for (i = 0; !status && i < count; i++) {
         uint32_t a = is_edge ? pairs[i].a / 3 : pairs[i].a, b = pairs[i].b;
         double at[2][3][3];
@@ -873,21 +748,17 @@ static sc_status check_record(const sc_model *model, const sc_pose *pose,
     sc_query_options checked;
     sc_status status;
     if (!model || !pose) return SC_ERROR_NULL;
-    memset(o, 0, sizeof *o);
-    if (options) {
-        status = sc_structs_read(o, sizeof *o, options, LEAST_OPTIONS);
-        if (status) return status;
-    }
+    status = sc_question_read_options(NULL, options, o);
+    if (status) return status;
     checked = *o; /* defaults stay defaults */
-    status = check_options(model, &checked);
+    status = sc_question_choose(model, &checked);
     if (status) return status;
     if (o->filter) {
-        status = sc_filter_read(model, o->pairs, o->filter, filter);
+        status = sc_filter_read(NULL, model, o->pairs, o->filter, filter);
         if (status) return status;
         o->filter = filter;
     }
-    status = sc_structs_read(p, sizeof *p, pose, UP_TO(sc_pose, positions));
-    return status ? status : check_pose(model, p, stride);
+    return sc_question_read_pose(NULL, "pose", model, pose, p, stride);
 }
 
 sc_status sc_record_size(const sc_model *model, const sc_pose *pose,
@@ -930,14 +801,19 @@ sc_status sc_record_read(const void *data, uint64_t size, sc_record *record)
     sc_record r;
     sc_status status;
     if (!data || !record) return SC_ERROR_NULL;
-    status = sc_structs_read(&r, sizeof r, record, UP_TO(sc_record, model_size));
+    status = sc_arguments_read(NULL, "record", &r, sizeof r, record,
+                               SC_ARGUMENTS_UP_TO(sc_record, model_size));
     if (status) return status;
     if (!r.pose || !r.options) return SC_ERROR_NULL;
-    status = sc_structs_check(r.pose, sizeof found.pose, UP_TO(sc_pose, positions));
+    status = sc_arguments_check(NULL, "record.pose", r.pose, sizeof found.pose,
+                                SC_ARGUMENTS_UP_TO(sc_pose, positions));
     if (status) return status;
-    status = sc_structs_check(r.options, sizeof found.options, LEAST_OPTIONS);
+    status = sc_arguments_check(NULL, "record.options", r.options, sizeof found.options,
+                                SC_ARGUMENTS_DEFAULTS);
     if (status) return status;
-    if (r.filter) status = sc_structs_check(r.filter, sizeof found.filter, LEAST_OPTIONS);
+    if (r.filter)
+        status = sc_arguments_check(NULL, "record.filter", r.filter, sizeof found.filter,
+                                    SC_ARGUMENTS_DEFAULTS);
     if (status) return status;
     status = sc_recording_read(data, size, &found);
     if (status) return status;

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/arguments.h"
 #include "base/assume.h"
-#include "base/hooks.h"
 
 #define MAX_TRIANGLES 0x55555554u
 #define MAX_VERTICES 0xfffffff0u
@@ -30,20 +30,30 @@ void sc_mesh_read_position(const void *positions, uint32_t type, uint64_t stride
     }
 }
 
-sc_status sc_mesh_position_stride(uint32_t type, uint32_t given, uint64_t *stride)
+sc_status sc_mesh_position_stride(const sc_hooks *hooks, const char *of, uint32_t type,
+                                  uint32_t given, uint64_t *stride)
 {
-    uint64_t packed = 3 * (type == SC_DOUBLE ? sizeof(double) : sizeof(float));
-    if (type != SC_FLOAT && type != SC_DOUBLE) return SC_ERROR_OPTION;
-    if (given != 0 && given < packed) return SC_ERROR_STRIDE;
-    *stride = given ? given : packed;
-    return SC_OK;
+    const sc_choice choice = {"position_type", type, SC_DOUBLE};
+    sc_status status = sc_arguments_choose(hooks, of, &choice, 1);
+    if (status) return status;
+    return sc_arguments_stride(hooks, of, "position_stride", given,
+                               3 * (type == SC_DOUBLE ? sizeof(double) : sizeof(float)), stride);
 }
 
-static sc_status read_triangles(const sc_mesh *mesh, const sc_hooks *hooks, uint32_t *triangles)
+static sc_status read_index_stride(const sc_hooks *hooks, const sc_mesh *mesh, uint64_t *stride)
+{
+    const sc_choice choice = {"index_type", mesh->index_type, SC_UINT16};
+    const int narrow = mesh->index_type == SC_UINT16;
+    sc_status status = sc_arguments_choose(hooks, "mesh", &choice, 1);
+    if (status) return status;
+    return sc_arguments_stride(hooks, "mesh", "index_stride", mesh->index_stride,
+                               3 * (narrow ? sizeof(uint16_t) : sizeof(uint32_t)), stride);
+}
+
+static sc_status read_triangles(const sc_mesh *mesh, uint64_t stride, const sc_hooks *hooks,
+                                uint32_t *triangles)
 {
     const unsigned char *at = (const unsigned char *)mesh->indices;
-    uint64_t packed = 3 * (mesh->index_type == SC_UINT16 ? sizeof(uint16_t) : sizeof(uint32_t));
-    uint64_t stride = mesh->index_stride ? mesh->index_stride : packed;
     uint32_t t;
     int k;
     for (t = 0; t < mesh->triangle_count; t++, at += stride, triangles += 3) {
@@ -107,43 +117,58 @@ static sc_status weld_rest(const sc_mesh *mesh, uint64_t stride, const uint8_t *
     return SC_OK;
 }
 
-static sc_status check_weld_map(const uint32_t *map, uint32_t count)
+static sc_status check_weld_map(const sc_build_options *options, uint32_t count)
 {
+    const uint32_t *map = options->weld_map;
     uint32_t v;
-    if (!map) return SC_ERROR_NULL;
+    sc_status status = sc_arguments_need(options->hooks, "options", "weld_map", map);
+    if (status) return status;
     for (v = 0; v < count; v++)
-        if (map[v] >= count || map[map[v]] != map[v]) return SC_ERROR_WELD_MAP;
+        if (map[v] >= count || map[map[v]] != map[v]) {
+            sc_hooks_log(options->hooks, SC_LOG_ERROR,
+                         "options.weld_map[%" PRIu32 "] is %" PRIu32 ", which %s", v, map[v],
+                         map[v] >= count ? "is no vertex" : "does not represent itself");
+            return SC_ERROR_WELD_MAP;
+        }
     return SC_OK;
+}
+
+/* All that can be wrong but what is in the arrays. */
+static sc_status check_mesh(const sc_mesh *mesh, const sc_hooks *hooks, uint64_t *position_stride,
+                            uint64_t *index_stride)
+{
+    const sc_choice reserved = {"reserved", mesh->reserved, 0};
+    sc_status status = sc_arguments_choose(hooks, "mesh", &reserved, 1);
+    if (status) return status;
+    if (!mesh->vertex_count || !mesh->triangle_count) return SC_ERROR_EMPTY;
+    if (mesh->vertex_count > MAX_VERTICES || mesh->triangle_count > MAX_TRIANGLES)
+        return SC_ERROR_COUNT;
+    status = sc_arguments_need(hooks, "mesh", "positions", mesh->positions);
+    if (!status) status = sc_arguments_need(hooks, "mesh", "indices", mesh->indices);
+    if (!status)
+        status = sc_mesh_position_stride(hooks, "mesh", mesh->position_type, mesh->position_stride,
+                                         position_stride);
+    if (!status) status = read_index_stride(hooks, mesh, index_stride);
+    if (status) return status;
+    /* where addresses have 32 bits: */
+    return SC_HARDLY(*position_stride > SIZE_MAX / mesh->vertex_count ||
+                     *index_stride > SIZE_MAX / mesh->triangle_count)
+               ? SC_ERROR_COUNT
+               : SC_OK;
 }
 
 sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_scratch *scratch,
                        sc_points *points)
 {
-    uint64_t position_stride, index_bytes, h, corners;
+    uint64_t position_stride, index_stride, h, corners;
     uint32_t *representative, v, t;
     uint8_t *used;
     sc_status status;
 
-    if (mesh->reserved) return SC_ERROR_OPTION;
-    if (!mesh->vertex_count || !mesh->triangle_count) return SC_ERROR_EMPTY;
-    if (mesh->vertex_count > MAX_VERTICES || mesh->triangle_count > MAX_TRIANGLES)
-        return SC_ERROR_COUNT;
-    if (!mesh->positions || !mesh->indices) return SC_ERROR_NULL;
-    status = sc_mesh_position_stride(mesh->position_type, mesh->position_stride, &position_stride);
+    status = check_mesh(mesh, options->hooks, &position_stride, &index_stride);
+    if (!status && options->weld == SC_WELD_MAP)
+        status = check_weld_map(options, mesh->vertex_count);
     if (status) return status;
-    if (mesh->index_type != SC_UINT32 && mesh->index_type != SC_UINT16) return SC_ERROR_OPTION;
-    index_bytes = 3 * (mesh->index_type == SC_UINT16 ? sizeof(uint16_t) : sizeof(uint32_t));
-    if (mesh->index_stride && mesh->index_stride < index_bytes) return SC_ERROR_STRIDE;
-    /* where addresses have 32 bits: */
-    if (SC_HARDLY(position_stride > SIZE_MAX / mesh->vertex_count ||
-                  (mesh->index_stride ? mesh->index_stride : index_bytes) >
-                      SIZE_MAX / mesh->triangle_count))
-        return SC_ERROR_COUNT;
-    if (options->weld > SC_WELD_NONE) return SC_ERROR_OPTION;
-    if (options->weld == SC_WELD_MAP) {
-        status = check_weld_map(options->weld_map, mesh->vertex_count);
-        if (status) return status;
-    }
 
     corners = 3 * (uint64_t)mesh->triangle_count;
     points->vertex_count = mesh->vertex_count;
@@ -155,7 +180,7 @@ sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_
     used = (uint8_t *)sc_scratch_take_filled(scratch, mesh->vertex_count, 1, 0);
     if (!points->triangles || !points->id || !points->slot || !representative || !used)
         return SC_ERROR_MEMORY;
-    status = read_triangles(mesh, options->hooks, points->triangles);
+    status = read_triangles(mesh, index_stride, options->hooks, points->triangles);
     if (status) return status;
 
     for (h = 0; h < corners; h++) used[points->triangles[h]] = 1;

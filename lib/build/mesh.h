@@ -27,10 +27,12 @@ typedef struct sc_points {
 void sc_mesh_read_position(const void *positions, uint32_t type, uint64_t stride, uint64_t e,
                            double position[3]);
 
-/* Checks a position array's type and stride and gives the stride in bytes. */
-sc_status sc_mesh_position_stride(uint32_t type, uint32_t given, uint64_t *stride);
+/* Checks type and stride of a position array, which the log hears of as of's, and gives the stride
+   in bytes. */
+sc_status sc_mesh_position_stride(const sc_hooks *hooks, const char *of, uint32_t type,
+                                  uint32_t given, uint64_t *stride);
 
-/* options may have any weld value; linear time but for unlucky hashing. */
+/* Linear time but for unlucky hashing. */
 sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_scratch *scratch,
                        sc_points *points);
 

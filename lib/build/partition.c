@@ -5,8 +5,10 @@
  */
 #include "build/partition.h"
 
+#include <inttypes.h>
 #include <string.h>
 
+#include "base/arguments.h"
 #include "build/bisection.h"
 #include "build/flattening.h"
 
@@ -14,15 +16,21 @@
    29. */
 enum { CALLER_DEPTH_MAX = 60 };
 
-static sc_status check_order(const uint32_t *order, uint32_t count, sc_scratch *scratch)
+static sc_status check_order(const sc_hooks *hooks, const uint32_t *order, uint32_t count,
+                             sc_scratch *scratch)
 {
     uint8_t *seen;
     uint32_t i;
-    if (!order) return SC_ERROR_NULL;
+    sc_status status = sc_arguments_need(hooks, "options", "order", order);
+    if (status) return status;
     seen = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
     if (!seen) return SC_ERROR_MEMORY;
     for (i = 0; i < count; i++) {
-        if (order[i] >= count || seen[order[i]]) return SC_ERROR_TREE;
+        if (order[i] >= count || seen[order[i]]) {
+            sc_hooks_log(hooks, SC_LOG_ERROR, "options.order[%" PRIu32 "] is %" PRIu32 ", which %s",
+                         i, order[i], order[i] >= count ? "is no triangle" : "came before");
+            return SC_ERROR_TREE;
+        }
         seen[order[i]] = 1;
     }
     sc_scratch_give(scratch, seen);
@@ -36,23 +44,41 @@ typedef struct caller_tree {
     uint32_t taken;                  /* triangles put into the hierarchy's order */
 } caller_tree;
 
+/* What is wrong with a node by itself, or NULL. */
+static const char *check_node(const caller_tree *tree, uint32_t at, uint32_t depth)
+{
+    const uint32_t triangles = tree->hierarchy->triangle_count;
+    const sc_tree_node *given;
+    uint32_t i;
+    if (at >= tree->options->tree_count) return "does not exist";
+    if (tree->node_seen[at]) return "has two parents, or is the root";
+    if (depth > CALLER_DEPTH_MAX) return "is too deep";
+    given = &tree->options->tree[at];
+    if (given->left != SC_NONE || given->right != SC_NONE) return NULL;
+    if (given->count < 1 || given->count > triangles || given->first > triangles - given->count)
+        return "is a leaf of entries of options.order that do not exist";
+    for (i = 0; i < given->count; i++)
+        if (tree->place_seen[given->first + i])
+            return "is a leaf of entries of options.order that another leaf has";
+    return NULL;
+}
+
 static sc_status copy_node(caller_tree *tree, uint32_t at, uint32_t depth, uint32_t *node)
 {
     const sc_build_options *options = tree->options;
     sc_hierarchy *hierarchy = tree->hierarchy;
     const sc_tree_node *given;
+    const char *wrong = check_node(tree, at, depth);
     uint32_t i, child, first = tree->taken;
     sc_status status;
-    if (at >= options->tree_count || tree->node_seen[at] || depth > CALLER_DEPTH_MAX)
+    if (wrong) {
+        sc_hooks_log(options->hooks, SC_LOG_ERROR, "options.tree: node %" PRIu32 " %s", at, wrong);
         return SC_ERROR_TREE;
+    }
     tree->node_seen[at] = 1;
     given = &options->tree[at];
     if (given->left == SC_NONE && given->right == SC_NONE) {
-        if (given->count < 1 || given->count > hierarchy->triangle_count ||
-            given->first > hierarchy->triangle_count - given->count)
-            return SC_ERROR_TREE;
         for (i = 0; i < given->count; i++) {
-            if (tree->place_seen[given->first + i]) return SC_ERROR_TREE;
             tree->place_seen[given->first + i] = 1;
             hierarchy->order[tree->taken++] = options->order[given->first + i];
         }
@@ -76,8 +102,12 @@ static sc_status copy_tree(const sc_build_options *options, sc_scratch *scratch,
     caller_tree tree;
     uint32_t root;
     sc_status status;
-    if (!options->tree) return SC_ERROR_NULL;
-    if (!options->tree_count) return SC_ERROR_TREE;
+    status = sc_arguments_need(options->hooks, "options", "tree", options->tree);
+    if (status) return status;
+    if (!options->tree_count) {
+        sc_hooks_log(options->hooks, SC_LOG_ERROR, "options.tree_count is 0");
+        return SC_ERROR_TREE;
+    }
     tree.options = options;
     tree.hierarchy = hierarchy;
     tree.taken = 0;
@@ -85,7 +115,12 @@ static sc_status copy_tree(const sc_build_options *options, sc_scratch *scratch,
     tree.place_seen = (uint8_t *)sc_scratch_take_filled(scratch, hierarchy->triangle_count, 1, 0);
     if (!tree.node_seen || !tree.place_seen) return SC_ERROR_MEMORY;
     status = copy_node(&tree, 0, 1, &root);
-    if (!status && tree.taken != hierarchy->triangle_count) status = SC_ERROR_TREE;
+    if (!status && tree.taken != hierarchy->triangle_count) {
+        sc_hooks_log(options->hooks, SC_LOG_ERROR,
+                     "options.tree: its leaves have %" PRIu32 " of %" PRIu32 " triangles",
+                     tree.taken, hierarchy->triangle_count);
+        status = SC_ERROR_TREE;
+    }
     sc_scratch_give(scratch, tree.place_seen);
     sc_scratch_give(scratch, tree.node_seen);
     return status;
@@ -121,13 +156,15 @@ static sc_status make_hierarchy(const sc_points *points, const sc_adjacency *adj
     if (options->partition == SC_PARTITION_FAST && options->content == SC_MODEL_FULL)
         return sc_bisection_build(points, adjacency, NULL, NULL, scratch, hierarchy);
     if (options->partition == SC_PARTITION_BISECT) {
-        if (!options->bisect) return SC_ERROR_NULL;
+        if (!options->bisect) {
+            sc_hooks_log(options->hooks, SC_LOG_ERROR, "options.bisect is NULL");
+            return SC_ERROR_NULL;
+        }
         return sc_bisection_build(points, adjacency, options->bisect, options->bisect_user, scratch,
                                   hierarchy);
     }
-    if (options->partition > SC_PARTITION_BISECT) return SC_ERROR_OPTION;
     if (options->partition != SC_PARTITION_FAST) {
-        status = check_order(options->order, count, scratch);
+        status = check_order(options->hooks, options->order, count, scratch);
         if (status) return status;
     }
     status = sc_hierarchy_init(hierarchy, points, scratch);

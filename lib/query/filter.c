@@ -5,10 +5,11 @@
  */
 #include "query/filter.h"
 
+#include <inttypes.h>
 #include <string.h>
 
+#include "base/arguments.h"
 #include "base/sort.h"
-#include "base/structs.h"
 
 static int is_pair(const sc_model *model, uint32_t kind, sc_pair pair)
 {
@@ -17,30 +18,41 @@ static int is_pair(const sc_model *model, uint32_t kind, sc_pair pair)
     return pair.a < pair.b && pair.b < count;
 }
 
-static sc_status check_filter(const sc_model *model, uint32_t kind, const sc_filter *filter)
+static sc_status check_filter(const sc_hooks *hooks, const sc_model *model, uint32_t kind,
+                              const sc_filter *filter)
 {
+    const sc_choice rings = {"ignore_rings", filter->ignore_rings, SC_RINGS_MAX};
+    const char *wrong = NULL;
     uint64_t i;
-    if (filter->ignore_rings > SC_RINGS_MAX) return SC_ERROR_OPTION;
-    if (filter->ignore_count && !filter->ignore) return SC_ERROR_NULL;
-    for (i = 0; i < filter->ignore_count; i++) {
-        if (!is_pair(model, kind, filter->ignore[i])) return SC_ERROR_PAIRS;
-        if (i && sc_sort_less(filter->ignore[i], filter->ignore[i - 1])) return SC_ERROR_PAIRS;
+    sc_status status = sc_arguments_choose(hooks, "options.filter", &rings, 1);
+    if (!status && filter->ignore_count)
+        status = sc_arguments_need(hooks, "options.filter", "ignore", filter->ignore);
+    for (i = 0; !status && i < filter->ignore_count; i++) {
+        if (!is_pair(model, kind, filter->ignore[i]))
+            wrong = "is no pair of this model";
+        else if (i && sc_sort_less(filter->ignore[i], filter->ignore[i - 1]))
+            wrong = "comes before the one before it";
+        else
+            continue;
+        sc_hooks_log(hooks, SC_LOG_ERROR, "options.filter.ignore[%" PRIu64 "] %s", i, wrong);
+        return SC_ERROR_PAIRS;
     }
-    return SC_OK;
+    return status;
 }
 
-sc_status sc_filter_read(const sc_model *model, uint32_t kind, const sc_filter *from,
-                         sc_filter *filter)
+sc_status sc_filter_read(const sc_hooks *hooks, const sc_model *model, uint32_t kind,
+                         const sc_filter *from, sc_filter *filter)
 {
-    sc_status status = sc_structs_read(filter, sizeof *filter, from, sizeof(void *));
-    return status ? status : check_filter(model, kind, filter);
+    sc_status status =
+        sc_arguments_read(hooks, "options.filter", filter, sizeof *filter, from, sizeof(void *));
+    return status ? status : check_filter(hooks, model, kind, filter);
 }
 
-sc_status sc_filter_begin(sc_query_state *state, const sc_model *model, const sc_filter *from,
-                          sc_filter *filter)
+sc_status sc_filter_begin(sc_query_state *state, const sc_hooks *hooks, const sc_model *model,
+                          const sc_filter *from, sc_filter *filter)
 {
     uint32_t kind = state->options.pairs;
-    sc_status status = sc_filter_read(model, kind, from, filter);
+    sc_status status = sc_filter_read(hooks, model, kind, from, filter);
     if (status) return status;
     state->filter = filter;
     state->sifts = filter->vertex_groups || filter->triangle_groups;

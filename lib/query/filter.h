@@ -11,14 +11,14 @@
 
 #include "query/state.h"
 
-/* Copies the caller's filter to *filter and checks it, for one kind of pair. Linear in the list of
-   pairs to ignore. */
-sc_status sc_filter_read(const sc_model *model, uint32_t kind, const sc_filter *from,
-                         sc_filter *filter);
+/* Copies the caller's filter to *filter and checks it, for one kind of pair; hooks may be NULL.
+   Linear in the list of pairs to ignore. */
+sc_status sc_filter_read(const sc_hooks *hooks, const sc_model *model, uint32_t kind,
+                         const sc_filter *from, sc_filter *filter);
 
 /* The same, and makes *filter the one of the query. */
-sc_status sc_filter_begin(sc_query_state *state, const sc_model *model, const sc_filter *from,
-                          sc_filter *filter);
+sc_status sc_filter_begin(sc_query_state *state, const sc_hooks *hooks, const sc_model *model,
+                          const sc_filter *from, sc_filter *filter);
 
 /* Where state->sifts: takes from the candidates those whose groups leave nothing that is wanted. A
    few nanoseconds each. */

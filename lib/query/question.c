@@ -1,0 +1,139 @@
+/*
+ * What a query is asked. See question.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "query/question.h"
+
+#include <inttypes.h>
+
+#include "base/arguments.h"
+#include "base/assume.h"
+#include "base/isa.h"
+#include "build/mesh.h"
+#include "query/filter.h"
+
+sc_status sc_question_read_pose(const sc_hooks *hooks, const char *name, const sc_model *model,
+                                const sc_pose *from, sc_pose *pose, uint64_t *stride)
+{
+    sc_status status = sc_arguments_read(hooks, name, pose, sizeof *pose, from,
+                                         SC_ARGUMENTS_UP_TO(sc_pose, positions));
+    if (status) return status;
+    if (pose->vertex_count != model->vertex_count) {
+        sc_hooks_log(hooks, SC_LOG_ERROR,
+                     "%s.vertex_count is %" PRIu32 ", but the model has %" PRIu32, name,
+                     pose->vertex_count, model->vertex_count);
+        return SC_ERROR_VERTEX_COUNT;
+    }
+    status = sc_arguments_need(hooks, name, "positions", pose->positions);
+    if (!status)
+        status = sc_mesh_position_stride(hooks, name, pose->position_type, pose->position_stride,
+                                         stride);
+    if (status) return status;
+    /* where addresses have 32 bits: */
+    return SC_HARDLY(*stride > SIZE_MAX / pose->vertex_count) ? SC_ERROR_COUNT : SC_OK;
+}
+
+static sc_status check_choices(const sc_hooks *hooks, const sc_query_options *o)
+{
+    const sc_choice choices[] = {
+        {"output", o->output, SC_OUTPUT_ANY},
+        {"pairs", o->pairs, SC_PAIRS_EDGE},
+        {"contact", o->contact, SC_CONTACT_PROPER},
+        {"method", o->method, SC_METHOD_AABB},
+        {"contour", o->contour, SC_CONTOUR_EXACT},
+        {"rest_cache", o->rest_cache, SC_REST_CACHE_OFF},
+        {"simd", o->simd, SC_SIMD_AVX512},
+    };
+    return sc_arguments_choose(hooks, "options", choices, sizeof choices / sizeof *choices);
+}
+
+sc_status sc_question_read_options(const sc_hooks *hooks, const sc_query_options *from,
+                                   sc_query_options *options)
+{
+    sc_status status = sc_arguments_read_options(hooks, "options", options, sizeof *options, from);
+    return status ? status : check_choices(hooks, options);
+}
+
+/* On a model for boxes, what asks for no method and no contour test gets boxes. */
+static sc_status choose_method(const sc_model *model, uint32_t contour, uint32_t *method)
+{
+    if (!sc_model_is_for_boxes(model)) return SC_OK;
+    if (*method == SC_METHOD_DEFAULT && contour == SC_CONTOUR_DEFAULT) *method = SC_METHOD_AABB;
+    return *method == SC_METHOD_AABB ? SC_OK : SC_ERROR_BOXES_ONLY;
+}
+
+sc_status sc_question_choose(const sc_model *model, sc_query_options *o)
+{
+    sc_status status = choose_method(model, o->contour, &o->method);
+    if (status) return status;
+    if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
+    if (SC_HARDLY(o->simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;
+    if (o->method == SC_METHOD_DEFAULT) o->method = SC_METHOD_SCTT;
+    if (o->contour == SC_CONTOUR_DEFAULT) o->contour = SC_CONTOUR_EXACT;
+    return SC_OK;
+}
+
+sc_status sc_question_read_tasks(const sc_workspace *workspace, const sc_tasks **given,
+                                 sc_tasks *tasks)
+{
+    const sc_hooks *hooks = &workspace->hooks;
+    sc_status status;
+    if (!*given) return SC_OK;
+    status = sc_arguments_read(hooks, "options.tasks", tasks, sizeof *tasks, *given,
+                               SC_ARGUMENTS_UP_TO(sc_tasks, finish));
+    if (status) return status;
+    if (!tasks->enqueue || !tasks->finish) {
+        sc_hooks_log(hooks, SC_LOG_ERROR, "options.tasks.%s is NULL",
+                     tasks->enqueue ? "finish" : "enqueue");
+        return SC_ERROR_NULL;
+    }
+    if (!tasks->workers) tasks->workers = 1;
+    if (tasks->workers > workspace->workers) {
+        sc_hooks_log(hooks, SC_LOG_ERROR,
+                     "options.tasks.workers is %" PRIu32 ", but the workspace is for %" PRIu32,
+                     tasks->workers, workspace->workers);
+        return SC_ERROR_WORKSPACE;
+    }
+    *given = tasks;
+    return SC_OK;
+}
+
+sc_status sc_question_check_workspace(const sc_model *model, sc_workspace *workspace,
+                                      uint32_t flags)
+{
+    const char *wrong = NULL;
+    if (!sc_workspace_fits(workspace, model))
+        wrong = "the workspace is for another model";
+    else if ((workspace->flags & flags) != flags)
+        wrong = "the workspace is not for steps: SC_WORKSPACE_STEP";
+    if (wrong) sc_hooks_log(&workspace->hooks, SC_LOG_ERROR, "%s", wrong);
+    return wrong ? SC_ERROR_WORKSPACE : SC_OK;
+}
+
+sc_status sc_question_read(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
+                           const sc_query_options *options, const sc_result *result,
+                           sc_query_state *state, sc_question *question)
+{
+    const sc_hooks *hooks;
+    sc_status status;
+    if (!workspace) return SC_ERROR_NULL;
+    hooks = &workspace->hooks;
+    if ((status = sc_arguments_need(hooks, "model", NULL, model))) return status;
+    if ((status = sc_arguments_need(hooks, "pose", NULL, pose))) return status;
+    if ((status = sc_question_check_workspace(model, workspace, 0))) return status;
+    if ((status = sc_question_read_options(hooks, options, &state->options))) return status;
+    if ((status = sc_question_choose(model, &state->options))) return status;
+    status = sc_question_read_tasks(workspace, &state->options.tasks, &question->tasks);
+    if (!status && state->options.filter)
+        status = sc_filter_begin(state, hooks, model, state->options.filter, &question->filter);
+    if (!status)
+        status =
+            sc_question_read_pose(hooks, "pose", model, pose, &question->pose, &question->stride);
+    if (!status && state->options.output == SC_OUTPUT_PAIRS && result->capacity)
+        status = sc_arguments_need(hooks, "result", "pairs", result->pairs);
+    if (!status && result->stats)
+        status = sc_arguments_check(hooks, "result.stats", result->stats, sizeof(sc_stats),
+                                    SC_ARGUMENTS_DEFAULTS);
+    return status;
+}

@@ -1,0 +1,47 @@
+/*
+ * What a query is asked: pose, options and tasks as the caller passed them, checked and copied.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * What is wrong is told the log, whose hooks may be NULL.
+ */
+#ifndef SC_QUERY_QUESTION_H
+#define SC_QUERY_QUESTION_H
+
+#include "query/state.h"
+
+/* All of a question that is not in the state of its query. */
+typedef struct sc_question {
+    sc_pose pose;
+    uint64_t stride; /* of the pose, in bytes */
+    sc_filter filter;
+    sc_tasks tasks;
+} sc_question;
+
+/* A pose, which the header calls `name`, of a model; what may be wrong afterwards are its
+   positions. */
+sc_status sc_question_read_pose(const sc_hooks *hooks, const char *name, const sc_model *model,
+                                const sc_pose *from, sc_pose *pose, uint64_t *stride);
+
+/* Options of a query, which may be NULL. */
+sc_status sc_question_read_options(const sc_hooks *hooks, const sc_query_options *from,
+                                   sc_query_options *options);
+
+/* Puts in place of defaults what they stand for on this model and machine. */
+sc_status sc_question_choose(const sc_model *model, sc_query_options *options);
+
+/* Copies the caller's tasks, if any, and checks them; *given refers to the copy then. */
+sc_status sc_question_read_tasks(const sc_workspace *workspace, const sc_tasks **given,
+                                 sc_tasks *tasks);
+
+/* SC_ERROR_WORKSPACE if a workspace is for another model, or has not all of some flags. */
+sc_status sc_question_check_workspace(const sc_model *model, sc_workspace *workspace,
+                                      uint32_t flags);
+
+/* Everything about a query but which result it goes to; state is zero and gets its options and its
+   filter, which are the question's. */
+sc_status sc_question_read(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
+                           const sc_query_options *options, const sc_result *result,
+                           sc_query_state *state, sc_question *question);
+
+#endif

@@ -1,0 +1,93 @@
+/*
+ * What a step is asked. See step_question.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "step/step_question.h"
+
+#include <float.h>
+
+#include "base/arguments.h"
+#include "base/assume.h"
+#include "base/isa.h"
+#include "query/question.h"
+
+static sc_status check_length(const sc_hooks *hooks, const char *name, double length)
+{
+    if (length >= 0 && length <= DBL_MAX) return SC_OK;
+    sc_hooks_log(hooks, SC_LOG_ERROR, "options.%s is %g, but finite and at least 0", name, length);
+    return SC_ERROR_OPTION;
+}
+
+static sc_status check_step_choices(const sc_hooks *hooks, const sc_step_options *o)
+{
+    const sc_choice choices[] = {
+        {"output", o->output, SC_OUTPUT_ANY},
+        {"pairs", o->pairs, SC_STEP_CANDIDATES},
+        {"times", o->times, SC_STEP_TIMES_EACH},
+        {"method", o->method, SC_STEP_METHOD_SWEPT},
+        {"contour", o->contour, SC_CONTOUR_EXACT},
+        {"simd", o->simd, SC_SIMD_AVX512},
+        {"reserved", o->reserved, 0},
+    };
+    sc_status status =
+        sc_arguments_choose(hooks, "options", choices, sizeof choices / sizeof *choices);
+    if (!status) status = check_length(hooks, "separation", o->separation);
+    return status ? status : check_length(hooks, "tolerance", o->tolerance);
+}
+
+/* On a model for boxes, what asks for no method and no contour test gets boxes. */
+static sc_status choose_step_method(const sc_model *model, uint32_t contour, uint32_t *method)
+{
+    if (!sc_model_is_for_boxes(model)) return SC_OK;
+    if (*method == SC_STEP_METHOD_DEFAULT && contour == SC_CONTOUR_DEFAULT)
+        *method = SC_STEP_METHOD_TWO_BOXES;
+    return *method > SC_STEP_METHOD_SCTT ? SC_OK : SC_ERROR_BOXES_ONLY;
+}
+
+/* Puts in place of defaults what they stand for on this model and machine. */
+static sc_status choose_for_step(const sc_model *model, sc_step_options *o)
+{
+    const uint32_t best = (uint32_t)sc_isa_best();
+    sc_status status = choose_step_method(model, o->contour, &o->method);
+    if (status) return status;
+    if (o->simd == SC_SIMD_BEST) o->simd = best;
+    if (SC_HARDLY(o->simd > best)) return SC_ERROR_UNSUPPORTED;
+    if (o->method == SC_STEP_METHOD_DEFAULT) o->method = SC_STEP_METHOD_SCTT;
+    if (!o->contour) o->contour = SC_CONTOUR_EXACT;
+    return SC_OK;
+}
+
+sc_status sc_step_question_read(const sc_model *model, sc_workspace *workspace,
+                                const sc_pose *start, const sc_pose *end,
+                                const sc_step_options *from, const sc_step_result *result,
+                                sc_step_options *options, sc_step_question *question)
+{
+    const sc_hooks *hooks;
+    sc_status status;
+    if (!workspace) return SC_ERROR_NULL;
+    hooks = &workspace->hooks;
+    if ((status = sc_arguments_need(hooks, "model", NULL, model))) return status;
+    if ((status = sc_arguments_need(hooks, "start", NULL, start))) return status;
+    if ((status = sc_arguments_need(hooks, "end", NULL, end))) return status;
+    status = sc_question_check_workspace(model, workspace, SC_WORKSPACE_STEP);
+    if (!status)
+        status = sc_arguments_read_options(hooks, "options", options, sizeof *options, from);
+    if (!status) status = check_step_choices(hooks, options);
+    if (!status) status = choose_for_step(model, options);
+    if (!status) status = sc_question_read_tasks(workspace, &options->tasks, &question->tasks);
+    if (!status)
+        status = sc_question_read_pose(hooks, "start", model, start, &question->pose[0],
+                                       &question->stride[0]);
+    if (!status)
+        status = sc_question_read_pose(hooks, "end", model, end, &question->pose[1],
+                                       &question->stride[1]);
+    if (!status && options->output == SC_OUTPUT_PAIRS && result->vertex_face_capacity)
+        status = sc_arguments_need(hooks, "result", "vertex_faces", result->vertex_faces);
+    if (!status && options->output == SC_OUTPUT_PAIRS && result->edge_edge_capacity)
+        status = sc_arguments_need(hooks, "result", "edge_edges", result->edge_edges);
+    if (!status && result->stats)
+        status = sc_arguments_check(hooks, "result.stats", result->stats, sizeof(sc_stats),
+                                    SC_ARGUMENTS_DEFAULTS);
+    return status;
+}
