@@ -57,7 +57,7 @@ check "edges ignored: clean" status 0 "$query" --pairs edge --ignore "$scratch/e
 echo "no,numbers" >"$scratch/bad.csv"
 check "no numbers" says 2 "bad.csv: line 1" "$query" --ignore "$scratch/bad.csv" "$sheet"
 echo "1,4000000" >"$scratch/bad.csv"
-check "no such triangle" says 2 "list of pairs" "$query" --ignore "$scratch/bad.csv" "$sheet"
+check "no such triangle" says 2 "no pair of this model" "$query" --ignore "$scratch/bad.csv" "$sheet"
 check "no such file" says 2 absent "$query" --ignore "$scratch/absent.csv" "$sheet"
 
 # ---- files that are not read, and files that are not written over ----
