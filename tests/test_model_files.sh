@@ -178,8 +178,8 @@ check "a record of --any" "$query" --replay "$scratch/any.scq"
 check "has no list" refuses "no list" "$query" --replay "$scratch/any.scq" --out "$scratch/list"
 head -c 3000 "$scratch/query.scq" >"$scratch/cut.scq"
 check "half a record is refused" refuses "end too early" "$query" --replay "$scratch/cut.scq"
-check "a model is no record" refuses "not a saved" "$query" --replay "$scratch/cloths.scm"
-check "a record is no model" refuses "not a saved" \
+check "a model is no record" refuses "not a record" "$query" --replay "$scratch/cloths.scm"
+check "a record is no model" refuses "not a saved model" \
     "$query" --model "$scratch/query.scq" meshes/sphere.obj
 check "a record that cannot be written is reported" refuses "cannot be written" \
     "$query" --record "$scratch/absent/query.scq" meshes/sphere.obj

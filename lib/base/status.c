@@ -50,7 +50,7 @@ const char *sc_status_string(sc_status status)
     case SC_ERROR_LEVEL:
         return "the model has no such level";
     case SC_ERROR_NOT_SAVED:
-        return "not a saved model or record, whichever was expected";
+        return "not a saved model; or not a record, where one is to be read";
     case SC_ERROR_TRUNCATED:
         return "saved data end too early";
     case SC_ERROR_BYTE_ORDER:
