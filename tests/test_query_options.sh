@@ -66,6 +66,8 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n' >"$scratch/inf.obj"
 check "which vertex is not finite" says 2 "inf.obj: vertex 2 is NaN" "$query" "$scratch/inf.obj"
 mkfifo "$scratch/pipe.obj"
 check "a pipe" says 2 "pipe or device" "$query" "$scratch/pipe.obj"
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nend_head' >"$scratch/cut.ply"
+check "a PLY file cut in its header" says 2 "the header does not end" "$query" "$scratch/cut.ply"
 cp "$sheet" "$scratch/own.obj"
 for option in --out --ply --record; do
     check "not over the mesh: $option" says 2 "own.obj is to be read" \

@@ -7,7 +7,6 @@
 
 #include "mesh_file.h"
 
-#include "ply_mesh.h"
 #include "text_mesh.h"
 
 #include <assimp/cimport.h>
@@ -151,14 +150,29 @@ static scene_walk walk_scene(const struct aiScene *scene, float *positions, uint
     return walk;
 }
 
+/* Whether the rest of a PLY file has the end of a header. */
+static bool ends_header(FILE *file)
+{
+    static const char word[10] = {'e', 'n', 'd', '_', 'h', 'e', 'a', 'd', 'e', 'r'};
+    char last[sizeof word] = {0};
+    for (int c; memcmp(last, word, sizeof word) != 0;) {
+        if ((c = fgetc(file)) == EOF) return false;
+        memmove(last, last + 1, sizeof last - 1);
+        last[sizeof last - 1] = (char)c;
+    }
+    return true;
+}
+
 /*
  * Tells apart what assimp calls by one name: no file, no permission, a folder, nothing in it. And
- * refuses what it does not come back from: a pipe, which it would open once more.
+ * refuses what it does not come back from: a pipe, which it would open once more, and a PLY file
+ * whose header does not end.
  */
 static bool check_file(const char *path, char error[MESH_FILE_ERROR_SIZE])
 {
     struct stat what;
     FILE *file = NULL;
+    char magic[3];
     const char *reason = NULL;
     errno = 0;
     if (stat(path, &what) != 0) {
@@ -168,7 +182,11 @@ static bool check_file(const char *path, char error[MESH_FILE_ERROR_SIZE])
     } else if (!(file = fopen(path, "rb"))) {
         reason = strerror(errno);
     } else {
-        if (fgetc(file) == EOF) reason = ferror(file) ? strerror(errno) : "the file is empty";
+        const size_t size = fread(magic, 1, sizeof magic, file);
+        if (size == 0)
+            reason = ferror(file) ? strerror(errno) : "the file is empty";
+        else if (size == 3 && memcmp(magic, "ply", 3) == 0 && !ends_header(file))
+            reason = "the header does not end; is the file truncated?";
     }
     if (reason) snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
     if (file) fclose(file);
@@ -179,6 +197,7 @@ static bool check_file(const char *path, char error[MESH_FILE_ERROR_SIZE])
 static const struct aiScene *import_scene(const char *path, scene_walk *walk,
                                           char error[MESH_FILE_ERROR_SIZE])
 {
+    if (!check_file(path, error)) return NULL;
     const struct aiScene *scene = aiImportFile(path, 0);
     if (!scene) {
         snprintf(error, MESH_FILE_ERROR_SIZE, "%s: cannot be read as a mesh: %s", path,
@@ -240,68 +259,57 @@ static bool read_scene(mesh_file *mesh, const char *path, char error[MESH_FILE_E
     return reason == NULL;
 }
 
-/* Whether a file is read without assimp. */
-static bool is_read_here(const char *path)
+/* Reads an OBJ or OFF file's polygons and hashes them as walk_mesh does. */
+static bool open_text(text_mesh *text, const char *path, uint64_t *face_hash,
+                      char error[MESH_FILE_ERROR_SIZE])
 {
-    return text_mesh_knows(path) || ply_mesh_knows(path);
-}
-
-/* Reads the polygons of a file without assimp and hashes them as walk_mesh does. */
-static bool read_polygons(polygon_mesh *polygons, const char *path, uint64_t *face_hash,
-                          char error[MESH_FILE_ERROR_SIZE])
-{
-    if (!(text_mesh_knows(path) ? text_mesh_read(polygons, path, error, MESH_FILE_ERROR_SIZE)
-                                : ply_mesh_read(polygons, path, error, MESH_FILE_ERROR_SIZE)))
-        return false;
-    if (polygons->face_count == 0) {
+    if (!check_file(path, error)) return false;
+    if (!text_mesh_read(text, path, error, MESH_FILE_ERROR_SIZE)) return false;
+    if (text->face_count == 0) {
         snprintf(error, MESH_FILE_ERROR_SIZE, "%s: no triangles in it", path);
-        polygon_mesh_free(polygons);
+        text_mesh_free(text);
         return false;
     }
     *face_hash = face_hash_start;
-    for (size_t f = 0; f < polygons->face_count; f++) {
-        add_to_hash(face_hash, (uint32_t)(polygons->offsets[f + 1] - polygons->offsets[f]));
-        for (size_t c = polygons->offsets[f]; c < polygons->offsets[f + 1]; c++) {
-            add_to_hash(face_hash, polygons->corners[c]);
+    for (size_t f = 0; f < text->face_count; f++) {
+        add_to_hash(face_hash, (uint32_t)(text->offsets[f + 1] - text->offsets[f]));
+        for (size_t c = text->offsets[f]; c < text->offsets[f + 1]; c++) {
+            add_to_hash(face_hash, text->corners[c]);
         }
     }
     return true;
 }
 
-static bool read_without_assimp(mesh_file *mesh, const char *path, char error[MESH_FILE_ERROR_SIZE])
+static bool read_text(mesh_file *mesh, const char *path, char error[MESH_FILE_ERROR_SIZE])
 {
-    polygon_mesh polygons;
+    text_mesh text;
     uint64_t face_hash;
-    if (!read_polygons(&polygons, path, &face_hash, error)) return false;
-    const size_t triangle_count = polygons.offsets[polygons.face_count] - 2 * polygons.face_count;
+    if (!open_text(&text, path, &face_hash, error)) return false;
+    const size_t triangle_count = text.offsets[text.face_count] - 2 * text.face_count;
     const char *reason = NULL;
     if (triangle_count > UINT32_MAX / 3) {
         reason = "too many triangles";
-    } else if (!mesh_file_allocate(mesh, (uint32_t)polygons.vertex_count,
-                                   (uint32_t)triangle_count)) {
+    } else if (!mesh_file_allocate(mesh, (uint32_t)text.vertex_count, (uint32_t)triangle_count)) {
         reason = "out of memory";
     } else {
-        memcpy(mesh->positions, polygons.positions, 3 * polygons.vertex_count * sizeof(float));
+        memcpy(mesh->positions, text.positions, 3 * text.vertex_count * sizeof(float));
         mesh->face_hash = face_hash;
         uint32_t *out = mesh->indices;
-        for (size_t f = 0; f < polygons.face_count; f++) {
-            const uint32_t count = (uint32_t)(polygons.offsets[f + 1] - polygons.offsets[f]);
-            polygon_mesh_triangulate(mesh->positions, polygons.corners + polygons.offsets[f], count,
-                                     out);
+        for (size_t f = 0; f < text.face_count; f++) {
+            const uint32_t count = (uint32_t)(text.offsets[f + 1] - text.offsets[f]);
+            text_mesh_triangulate(mesh->positions, text.corners + text.offsets[f], count, out);
             out += 3 * ((size_t)count - 2);
         }
     }
     if (reason) snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
-    polygon_mesh_free(&polygons);
+    text_mesh_free(&text);
     return reason == NULL;
 }
 
 bool mesh_file_read(mesh_file *mesh, const char *path, char error[MESH_FILE_ERROR_SIZE])
 {
     memset(mesh, 0, sizeof *mesh);
-    if (!check_file(path, error)) return false;
-    return is_read_here(path) ? read_without_assimp(mesh, path, error)
-                              : read_scene(mesh, path, error);
+    return text_mesh_knows(path) ? read_text(mesh, path, error) : read_scene(mesh, path, error);
 }
 
 /* Says why a file is not a pose of rest, if it is not. */
@@ -324,14 +332,13 @@ bool mesh_file_read_pose(const mesh_file *rest, const char *path, float *positio
                          char error[MESH_FILE_ERROR_SIZE])
 {
     bool good;
-    if (!check_file(path, error)) return false;
-    if (is_read_here(path)) {
-        polygon_mesh polygons;
+    if (text_mesh_knows(path)) {
+        text_mesh text;
         uint64_t face_hash;
-        if (!read_polygons(&polygons, path, &face_hash, error)) return false;
-        good = check_pose(rest, path, polygons.vertex_count, face_hash, error);
-        if (good) memcpy(positions, polygons.positions, 3 * polygons.vertex_count * sizeof(float));
-        polygon_mesh_free(&polygons);
+        if (!open_text(&text, path, &face_hash, error)) return false;
+        good = check_pose(rest, path, text.vertex_count, face_hash, error);
+        if (good) memcpy(positions, text.positions, 3 * text.vertex_count * sizeof(float));
+        text_mesh_free(&text);
     } else {
         scene_walk counted;
         const struct aiScene *scene = import_scene(path, &counted, error);

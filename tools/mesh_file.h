@@ -4,9 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * A mesh_file is what the library wants of a mesh: packed float positions and uint32 triangles.
- * OBJ and OFF files are read by text_mesh.h, PLY files by ply_mesh.h, all others by assimp, whose
- * positions are floats too, moved by the node transforms of the scene. What the library promises
- * holds for these floats.
+ * OBJ and OFF files are read by text_mesh.h, all others by assimp, whose positions are floats too,
+ * moved by the node transforms of the scene. What the library promises holds for these floats.
  *
  * All meshes of a scene come one after the other, in the order of its nodes. Polygons are
  * triangulated; points and lines are left out; nothing else is reordered, joined or dropped.
