@@ -7,6 +7,7 @@
 
 #include "mesh_file.h"
 
+#include "ply_header.h"
 #include "text_mesh.h"
 
 #include <assimp/cimport.h>
@@ -150,23 +151,10 @@ static scene_walk walk_scene(const struct aiScene *scene, float *positions, uint
     return walk;
 }
 
-/* Whether the rest of a PLY file has the end of a header. */
-static bool ends_header(FILE *file)
-{
-    static const char word[10] = {'e', 'n', 'd', '_', 'h', 'e', 'a', 'd', 'e', 'r'};
-    char last[sizeof word] = {0};
-    for (int c; memcmp(last, word, sizeof word) != 0;) {
-        if ((c = fgetc(file)) == EOF) return false;
-        memmove(last, last + 1, sizeof last - 1);
-        last[sizeof last - 1] = (char)c;
-    }
-    return true;
-}
-
 /*
  * Tells apart what assimp calls by one name: no file, no permission, a folder, nothing in it. And
- * refuses what it does not come back from: a pipe, which it would open once more, and a PLY file
- * whose header does not end.
+ * refuses what it does not come back from: a pipe, which it would open once more, and PLY files
+ * with headers that it believes too much of.
  */
 static bool check_file(const char *path, char error[MESH_FILE_ERROR_SIZE])
 {
@@ -185,8 +173,8 @@ static bool check_file(const char *path, char error[MESH_FILE_ERROR_SIZE])
         const size_t size = fread(magic, 1, sizeof magic, file);
         if (size == 0)
             reason = ferror(file) ? strerror(errno) : "the file is empty";
-        else if (size == 3 && memcmp(magic, "ply", 3) == 0 && !ends_header(file))
-            reason = "the header does not end; is the file truncated?";
+        else if (size == 3 && memcmp(magic, "ply", 3) == 0)
+            reason = ply_header_check(file, (uint64_t)what.st_size);
     }
     if (reason) snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
     if (file) fclose(file);
