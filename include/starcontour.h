@@ -245,7 +245,8 @@ enum {
 /*
  * A node of a caller's tree. An inner node names its two children. A leaf has left == right ==
  * SC_NONE and owns order[first] to order[first + count - 1]; its count is 1 or more. Leaves with
- * more triangles than the library's clusters hold are split on, in order.
+ * more triangles than the library's clusters hold are split on, in order. From 2^28 clusters on,
+ * whatever the partition, sc_build returns SC_ERROR_COUNT.
  */
 typedef struct sc_tree_node {
     uint32_t left, right;

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "build/locality.h"
-#include "build/model.h"
+#include "build/model_check.h"
 #include "build/partition.h"
 #include "build/sharing_lists.h"
 #include "harness.h"
@@ -1641,7 +1641,40 @@ static void longest_loop(void)
     }
 }
 
+static void *allocate_nothing(void *user, uint64_t size, uint64_t alignment)
+{
+    (void)user, (void)size, (void)alignment;
+    return NULL;
+}
+
+/* As many leaf clusters as there can be, and one more: by a tree, and by a saved model. What is
+   behind the numbers would take a hundred gigabytes, and is not looked at. */
+static void most_leaves(void)
+{
+    const sc_allocator nothing = {allocate_nothing, NULL, NULL};
+    for (uint32_t more = 0; more < 2; ++more) {
+        sc_scratch scratch;
+        sc_hierarchy hierarchy;
+        sc_xbvh xbvh;
+        sc_model counts;
+        memset(&hierarchy, 0, sizeof(hierarchy));
+        hierarchy.triangle_count = 0x55555554u;
+        hierarchy.leaf_count = SC_LEAVES_MAX + more;
+        hierarchy.depth = 30;
+        sc_scratch_init(&scratch, &nothing);
+        CHECK(sc_xbvh_build(&hierarchy, &scratch, &xbvh) ==
+              (more ? SC_ERROR_COUNT : SC_ERROR_MEMORY));
+        memset(&counts, 0, sizeof(counts));
+        counts.vertex_count = counts.point_count = counts.triangle_count = 0x55555554u;
+        counts.leaf_count = SC_LEAVES_MAX + more;
+        counts.level_count = 30;
+        counts.patch_end = 0xfffffff0u;
+        sc_model_lay_out(&counts);
+        CHECK(sc_model_check_counts(&counts, counts.bytes) == !more);
+    }
+}
+
 SC_TEST_MAIN(SC_TEST(locality), SC_TEST(curve), SC_TEST(named_meshes), SC_TEST(hubs),
              SC_TEST(copies), SC_TEST(creases), SC_TEST(slices), SC_TEST(two_legs),
              SC_TEST(long_rings), SC_TEST(longest_loop), SC_TEST(random_meshes),
-             SC_TEST(validators))
+             SC_TEST(validators), SC_TEST(most_leaves))

@@ -15,6 +15,10 @@
 /* Triangles in a leaf cluster at most, and points: one row of sixteen-wide tests each. */
 enum { SC_LEAF_MAX = 16, SC_LEAF_POINTS = 16 };
 
+/* Leaf clusters at most: 32 bits hold the place of a triangle or a point in all of them, which is
+   SC_LEAF_MAX or SC_LEAF_POINTS times the number of its cluster, and its place in that. */
+enum { SC_LEAVES_MAX = 0x0fffffff };
+
 /* Nodes from the root to a leaf are fewer: see build/partition.c and build/bisection.c. */
 enum { SC_DEPTH_MAX = 96 };
 

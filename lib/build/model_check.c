@@ -20,6 +20,7 @@ int sc_model_check_counts(const sc_model *m, uint64_t bytes)
     if (!m->triangle_count || m->triangle_count > 0x55555554u) return 0;
     if (!m->point_count || m->point_count > m->vertex_count) return 0;
     if (!m->leaf_count || m->leaf_count > m->triangle_count) return 0;
+    if (m->leaf_count > SC_LEAVES_MAX) return 0;
     if (!m->level_count || m->level_count > SC_DEPTH_MAX) return 0;
     if (!m->patch_end || m->segment_count < m->leaf_segment_count) return 0;
     if (sc_model_is_for_boxes(m) &&

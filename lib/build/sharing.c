@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+#include "base/assume.h"
+
 /* Items of a list for the masks of all rows, which have 16 bits each. */
 enum { ROW_ITEMS = SC_LEAF_MAX / 2 };
 
@@ -122,6 +124,8 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
             looked[p] = leaf;
             if (!look_round(adjacency, place, leaf, p, scratch, s, &f)) return SC_ERROR_MEMORY;
         }
+        /* 150 gigabytes; of a cluster there are fewer than 0xffff, so that no number wraps round */
+        if (SC_HARDLY(f.leaf.count > 0xffff0000u)) return SC_ERROR_COUNT;
         sort_tail(&f, s->first[leaf]);
     }
     s->first[leaves] = (uint32_t)f.leaf.count;
