@@ -10,7 +10,8 @@
  * A loop in one piece of n edges is simple if each is apart from those 2 to n / 2 places on. None
  * folds back on the next then: one of the two would have the other's far end on it, where a third
  * begins or ends. n / 2 is no more than 8 b. Those 2 to 8 b - 1 on are always compared, some pairs
- * twice; that is at most n - 2, so that none of them follow each other.
+ * twice; that is at most n - 2, so that none of them follow each other: n is more than 16 (b - 1),
+ * and 9 or more (SC_SMALL_EDGES) if b is 1. Contours of fewer edges are left open at once.
  *
  * Boxes tell most edges apart, in cells. A coordinate times 126 / s, s being size or 512 error,
  * whichever is larger, is at most 126.01 and off by 2^-18, then rounded and moved by 128: to 2 to
