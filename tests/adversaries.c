@@ -396,6 +396,22 @@ adversary adversary_upright(void)
     return a;
 }
 
+adversary adversary_shallow(void)
+{
+    uint32_t columns = between(3, 5), rows = between(3, 5);
+    adversary a = start(columns * rows, 2 * (columns - 1) * (rows - 1));
+    double step = ldexp(1, -25 - (int)test_random_below(39));
+    add_cloth(&a, 0, columns, rows);
+    for (uint32_t v = 0; v < a.mesh.vertex_count; ++v) {
+        double *p = point(&a, v);
+        p[0] = (p[0] - (columns - 1) / 2.0) * step;
+        p[1] = (p[1] - (rows - 1) / 2.0) * step;
+        p[2] = ((double)test_random_below(64) - 31.5) * 0x1p-152;
+    }
+    a.is_aligned = 1;
+    return a;
+}
+
 adversary adversary_ring(void)
 {
     uint32_t n = between(3, 11), turns = test_random_below(5) == 0 ? 2 : 1;

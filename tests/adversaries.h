@@ -65,6 +65,9 @@ adversary adversary_sheets(void);
    mesh, but for an angle from 1e-13 to 1e-6; cut or whole. */
 adversary adversary_upright(void);
 
+/* A cloth of 1e-7 to 1e-19 in length, and of a height at which floats underflow. */
+adversary adversary_shallow(void);
+
 /* A fan with corners on one ray from the middle, or on opposite ones, and a ring round it; once or
    twice round. */
 adversary adversary_ring(void);

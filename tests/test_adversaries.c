@@ -501,6 +501,13 @@ static void near_vertical_sides(void)
     check_both(&t);
 }
 
+static void shallow_cloths(void)
+{
+    tally t = try_many("shallow", adversary_shallow, 70);
+    report(&t);
+    CHECK(!is_full() || t.rows > 1000);
+}
+
 static void sheets_an_ulp_apart(void)
 {
     tally t = try_many("sheets", adversary_sheets, 350);
@@ -1328,12 +1335,12 @@ static void worst_signs_in_space(void)
 }
 
 SC_TEST_MAIN(SC_TEST(slit_discs), SC_TEST(closing_strips), SC_TEST(pinched_petals),
-             SC_TEST(doubled_cloths), SC_TEST(near_vertical_sides), SC_TEST(sheets_an_ulp_apart),
-             SC_TEST(degenerate_cloths), SC_TEST(one_sided_bands), SC_TEST(klein_bottles),
-             SC_TEST(books_of_triangles), SC_TEST(rings_round_a_point), SC_TEST(touching_corners),
-             SC_TEST(touching_faces), SC_TEST(sheets_seen_edge_on), SC_TEST(bounds_of_edges),
-             SC_TEST(edges_without_a_slope), SC_TEST(values_of_bounds), SC_TEST(bounds_of_parents),
-             SC_TEST(beside_a_point), SC_TEST(floats_below_and_above),
+             SC_TEST(doubled_cloths), SC_TEST(near_vertical_sides), SC_TEST(shallow_cloths),
+             SC_TEST(sheets_an_ulp_apart), SC_TEST(degenerate_cloths), SC_TEST(one_sided_bands),
+             SC_TEST(klein_bottles), SC_TEST(books_of_triangles), SC_TEST(rings_round_a_point),
+             SC_TEST(touching_corners), SC_TEST(touching_faces), SC_TEST(sheets_seen_edge_on),
+             SC_TEST(bounds_of_edges), SC_TEST(edges_without_a_slope), SC_TEST(values_of_bounds),
+             SC_TEST(bounds_of_parents), SC_TEST(beside_a_point), SC_TEST(floats_below_and_above),
              SC_TEST(margins_are_as_documented), SC_TEST(normals_at_right_angles),
              SC_TEST(errors_of_projections), SC_TEST(signs_where_all_rounds_wrong),
              SC_TEST(worst_signs_in_space))

@@ -43,6 +43,10 @@ static inline float sc_boxes_above(double d)
     return f + ((f < 0 ? -f : f) * 1.1920929e-7f + FLT_MIN);
 }
 
+/* Boxes of points in the unit box are moved outwards by 2^-23 |f| and this, 2^-85, for what
+   underflows: see pose/positions.c. */
+#define SC_BOXES_LEAST 2.58493941422821148e-26f
+
 static inline int sc_boxes_overlap(const sc_boxes *a, uint64_t i, const sc_boxes *b, uint64_t j)
 {
     return (a->side[0][i] <= b->side[3][j]) & (b->side[0][j] <= a->side[3][i]) &

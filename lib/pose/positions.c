@@ -63,9 +63,9 @@ static int find_extent(const sc_model *model, const sc_workspace *w, double low[
 }
 
 /*
- * Poses of a radius from 2^-FLOAT_RANGE to 2^FLOAT_RANGE can be moved in floats: what underflows is
- * less than 2^(FLOAT_RANGE - 149) in the unit box. Boxes step outwards by less there, 2^-126; but
- * as moving, rounding and scaling keep order, boxes of triangles that meet overlap all the same.
+ * Poses of a radius from 2^-FLOAT_RANGE to 2^FLOAT_RANGE can be moved in floats. What underflows is
+ * a coordinate below 2^-126, off by 2^-150 at most before it is scaled: by 2^(FLOAT_RANGE - 150) in
+ * the unit box, half of what boxes step outwards by at least, SC_BOXES_LEAST.
  */
 enum { FLOAT_RANGE = 64 };
 

@@ -49,7 +49,7 @@ static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t
    overlaps nothing. */
 static inline void SC_KERNEL(make_boxes)(lanes x[3][3], uint32_t triangles, sc_leaf_ready *ready)
 {
-    const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(FLT_MIN); /* see base/boxes.h */
+    const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(SC_BOXES_LEAST);
     const lanes nothing = lanes_all((float)NAN);
     const lanes_mask is_none = lanes_from(triangles);
     int c;
