@@ -756,6 +756,36 @@ static void filters(void)
     }
 }
 
+/* What workers that get no further part are left with in the end: pairs within leaf clusters, which
+   are looked at last. */
+static void what_waits_in_the_end(void)
+{
+    for (uint32_t trial = 0; trial < test_iterations(10); ++trial) {
+        sc_workspace_options o = for_workers(THREADS_MAX);
+        sc_query_options options = no_options();
+        sc_workspace *workspace = NULL;
+        fixture f;
+        if (start(&f, soup_cloth(40, 40), 0, 0.004 * (1 + trial))) {
+            CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
+            for (uint32_t workers = 2; workers <= THREADS_MAX; ++workers) {
+                answer serial;
+                host h;
+                options.tasks = NULL;
+                serial = ask_with(&f, f.workspace, &options, 100000, 0);
+                host_start(&h, HOST_BACKWARDS, workers);
+                options.tasks = &h.tasks;
+                CHECK_MSG(is_same(&serial, ask_with(&f, workspace, &options, 100000, 0)),
+                          "trial %u, %u workers", (unsigned)trial, (unsigned)workers);
+                CHECK(h.mistakes == 0);
+                host_stop(&h);
+                free(serial.pairs);
+            }
+            sc_workspace_free(workspace);
+        }
+        stop(&f);
+    }
+}
+
 /* Whether the workers of a workspace answer as one does, twice in a row. */
 static void check_workers(const fixture *f, sc_workspace *workspace, sc_query_options *options)
 {
@@ -1637,8 +1667,9 @@ static void steps_stopped_on_the_way(void)
 SC_TEST_MAIN(SC_TEST(workspaces_for_workers), SC_TEST(workspaces_refused), SC_TEST(tasks_refused),
              SC_TEST(the_same_answers), SC_TEST(without_statistics), SC_TEST(very_many_pairs),
              SC_TEST(any_array_of_positions), SC_TEST(any_pair), SC_TEST(filters),
-             SC_TEST(ticks_of_workers), SC_TEST(stopped_early), SC_TEST(stopped_on_the_way),
-             SC_TEST(by_trees), SC_TEST(in_any_company), SC_TEST(steps_the_same),
-             SC_TEST(steps_without_statistics), SC_TEST(steps_in_short_lists),
-             SC_TEST(any_pair_of_a_step), SC_TEST(any_positions_of_a_step),
-             SC_TEST(steps_stopped_early), SC_TEST(steps_stopped_on_the_way))
+             SC_TEST(what_waits_in_the_end), SC_TEST(ticks_of_workers), SC_TEST(stopped_early),
+             SC_TEST(stopped_on_the_way), SC_TEST(by_trees), SC_TEST(in_any_company),
+             SC_TEST(steps_the_same), SC_TEST(steps_without_statistics),
+             SC_TEST(steps_in_short_lists), SC_TEST(any_pair_of_a_step),
+             SC_TEST(any_positions_of_a_step), SC_TEST(steps_stopped_early),
+             SC_TEST(steps_stopped_on_the_way))
