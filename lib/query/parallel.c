@@ -92,6 +92,12 @@ static sc_query_state *state_of(const plan *p, uint32_t worker)
 
 /* ---- jobs ---- */
 
+static void empty_walk(sc_walk *walk)
+{
+    walk->stack_count = walk->queue_count = walk->self_count = walk->alone_count = 0;
+    walk->pair_count[0] = walk->pair_count[1] = 0;
+}
+
 static void start_workers(plan *p)
 {
     const sc_model *model = p->state->model;
@@ -107,9 +113,8 @@ static void start_workers(plan *p)
         walk = &s->workspace->walk;
         walk->culled = p->w->culled;
         memset(walk->marks, 0, model->patch_end);
-        walk->stack_count = walk->queue_count = walk->self_count = 0;
-        walk->pair_count[0] = walk->pair_count[1] = walk->alone_count = 0;
         walk->selfs_wait = 1;
+        empty_walk(walk);
     }
     memset(p->w->culled, 0, model->patch_end);
 }
@@ -588,7 +593,7 @@ static void ask_function(sc_query_state *state)
 void sc_parallel_run(sc_query_state *state)
 {
     sc_query_state before = *state;
-    sc_walk walk = state->workspace->walk;
+    sc_walk *walk = &state->workspace->walk;
     plan p;
     int fits;
     memset(&p, 0, sizeof p);
@@ -612,7 +617,9 @@ void sc_parallel_run(sc_query_state *state)
     do_waiting(&p);
     fits = gather(&p);
     state->share = NULL;
-    state->workspace->walk = walk;
+    walk->culled = walk->marks; /* as one thread has it */
+    walk->selfs_wait = 0;
+    empty_walk(walk);
     if (!fits) {
         *state = before;
         state->workspace->boxes_ready = 0;
