@@ -84,18 +84,6 @@ static sc_status read_allocator(const sc_hooks *hooks, const sc_allocator *from,
     return SC_ERROR_NULL;
 }
 
-/* The options of a build; o->hooks is hooks then. */
-static sc_status read_build_options(const sc_build_options *options, sc_build_options *o,
-                                    sc_hooks *hooks, sc_allocator *allocator)
-{
-    sc_status status = sc_arguments_read_options(NULL, "options", o, sizeof *o, options);
-    if (!status) status = sc_hooks_read(o->hooks, hooks);
-    if (status) return status;
-    o->hooks = hooks;
-    status = check_build_choices(o);
-    return status ? status : read_allocator(hooks, o->allocator, allocator);
-}
-
 sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model)
 {
     sc_mesh m;
@@ -106,11 +94,16 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
     sc_status status;
     if (!model) return SC_ERROR_NULL;
     *model = NULL;
-    status = read_build_options(options, &o, &hooks, &allocator);
-    if (!status) status = sc_arguments_need(&hooks, "mesh", NULL, mesh);
+    status = sc_arguments_read_options(NULL, "options", &o, sizeof o, options);
+    if (!status) status = sc_hooks_read(o.hooks, &hooks);
+    if (status) return status;
+    o.hooks = &hooks;
+    status = sc_arguments_need(&hooks, "mesh", NULL, mesh);
     if (!status)
         status = sc_arguments_read(&hooks, "mesh", &m, sizeof m, mesh,
                                    SC_ARGUMENTS_UP_TO(sc_mesh, indices));
+    if (!status) status = check_build_choices(&o);
+    if (!status) status = read_allocator(&hooks, o.allocator, &allocator);
     if (status) return status;
     sc_scratch_init(&scratch, &allocator);
     status = sc_pipeline_run(&m, &o, &scratch, model);
