@@ -95,10 +95,14 @@ ply 4000000000 "element face 1" "3 0 1 2"
 check "more vertices than lines" refuses "truncated"
 ply 3 "element face 4000000000" "3 0 1 2"
 check "more faces than lines" refuses "truncated"
-ply 3 "element face 1" "4000000000 0 1 2"
-check "a face of more corners than there are" refuses "cannot be read"
-ply 3 "element face 1" "-3 0 1 2"
-check "of less than none" refuses "cannot be read"
+if [ "$SC_CONFIG" = sanitize ]; then
+    skip "faces for which assimp asks for gigabytes: AddressSanitizer ends a program for that"
+else
+    ply 3 "element face 1" "4000000000 0 1 2"
+    check "a face of more corners than there are" refuses "cannot be read"
+    ply 3 "element face 1" "-3 0 1 2"
+    check "of less than none" refuses "cannot be read"
+fi
 for corner in 3 -1 4294967295; do
     ply 3 "element face 1" "3 0 1 $corner"
     check "a corner $corner" refuses "names"
