@@ -1634,8 +1634,9 @@ static int is_left_open(const sc_model *model, sc_workspace *workspace, uint32_t
    point the lines of the grid go straight on from one to the other. */
 static void flat_cloths_pass(void)
 {
+    enum { ALL_PASS = 12 }; /* in the first of these cloths; none of --scale 100 is left open */
     uint32_t touching = 0, all = 0, open = 0;
-    for (uint32_t i = 0; i < test_iterations(12); ++i) {
+    for (uint32_t i = 0; i < test_iterations(ALL_PASS); ++i) {
         scene s;
         soup mesh = soup_cloth(20 + i, 30);
         if (!open_scene(&s, "flat cloth", &mesh, SC_WELD_NONE, SC_PARTITION_FAST)) continue;
@@ -1651,7 +1652,8 @@ static void flat_cloths_pass(void)
                 sc_dnc_projection(s.workspace, mask, &projection);
                 ++all;
                 if (!CHECK(mask != 0) || !sc_simple_test(&s.state, &projection, node))
-                    ++*(is_left_open(s.model, s.workspace, node) ? &open : &failed);
+                    ++*(i >= ALL_PASS && is_left_open(s.model, s.workspace, node) ? &open
+                                                                                  : &failed);
                 touching += (sc_model_node(s.model)[node].kind & SC_NODE_TOUCHES) != 0;
             }
             CHECK_MSG(!failed, "%" PRIu32 " of %" PRIu32 " nodes failed", failed,
