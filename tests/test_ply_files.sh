@@ -89,7 +89,7 @@ refuses() {
 }
 for number in -1 1.5 x 4294967295 99999999999999999999; do
     ply $number "element face 1" "3 0 1 2"
-    check "$number vertices" refuses "counts more than the file can hold"
+    check "$number vertices" refuses "without a number that the file can hold"
 done
 ply 4000000000 "element face 1" "3 0 1 2"
 check "more vertices than lines" refuses "truncated"
@@ -124,6 +124,10 @@ for word in "comment end_header" "obj_info end_header" "end_headers" "endheader"
     awk -v word="$word" '/end_header/ { print word; exit } { print }' "$scratch/whole.ply" \
         >"$scratch/small.ply"
     check "nor after that" refuses ""
+done
+for word in "ply end_header" "plyend_header" "ply 1"; do
+    sed "1s/.*/$word/" "$scratch/whole.ply" >"$scratch/small.ply"
+    check "a first line $word" refuses "begins with a line ply"
 done
 begin() {
     sed '/end_header/,$d' "$scratch/whole.ply"

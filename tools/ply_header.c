@@ -13,7 +13,8 @@
 /* Bytes of a header at most, and characters of a line that are looked at: comments may be longer. */
 enum { HEADER_MAX = 1 << 20, LINE_SEEN = 128 };
 
-static const char never_ends[] = "the header does not end; is the file truncated?";
+static const char never_ends[] =
+    "the header does not end within a megabyte; is the file truncated?";
 
 /* Reads a line, which ends in LF, CR or both, and keeps its beginning. False at the end of the file,
    or where the header is too long. */
@@ -53,6 +54,8 @@ const char *ply_header_check(FILE *file, uint64_t size)
     char line[LINE_SEEN], keyword[LINE_SEEN], first[LINE_SEEN], second[LINE_SEEN];
     size_t left = HEADER_MAX;
     int vertices = 0, faces = 0;
+    if (!read_line(file, line, &left)) return never_ends;
+    if (line[strspn(line, " \t")]) return "a PLY file begins with a line ply and nothing else";
     while (read_line(file, line, &left)) {
         *keyword = *first = *second = 0;
         sscanf(line, "%127s %127s %127s", keyword, first, second);
@@ -62,7 +65,8 @@ const char *ply_header_check(FILE *file, uint64_t size)
             return "its header has a property of an unknown type";
         if (strcmp(keyword, "element") != 0) continue;
         if (!is_count(second, size))
-            return "its header counts more than the file can hold; is it truncated?";
+            return "its header has an element without a number that the file can hold; is it "
+                   "truncated?";
         vertices += strcmp(first, "vertex") == 0;
         faces += strcmp(first, "face") == 0;
         if (vertices > 1 || faces > 1) return "its header has vertices or faces twice";
