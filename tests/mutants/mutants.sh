@@ -1,18 +1,22 @@
 #!/bin/sh
 # Plants the faults of faults.txt one at a time in a copy of the tree and looks which test fails.
 #
-#     tests/mutants/mutants.sh [WORD...]      all, or those whose names contain a word
-#     tests/mutants/mutants.sh --check        only whether each still fits the sources
+#     tests/mutants/mutants.sh [--jobs N] [--shard I/N] [WORD...]
+#     tests/mutants/mutants.sh --check [WORD...]      only whether each still fits the sources
+#
+# With words: the faults whose names contain one of them; else all. --shard 2/3: of these the second,
+# fifth, eighth and so on, for runs on several machines. --jobs: how many at a time (by default as
+# many as there are processors), each in a copy of its own of a tree that is built once.
 #
 # A fault is killed if a test program that `make test` runs fails, crashes or hangs with it: then
 # `make test` fails as well, and so it is not run to its end. The tests that faults.txt names come
 # first, then all others, one function at a time, quick programs first; scripts are not run.
-# Everything is compiled with -O1 instead of -O3, which changes no answer, and each change compiles only
-# what depends on it.
+# lib/ is compiled with -O0 instead of -O3, which changes no answer, and each change compiles only
+# what depends on it; after a fault, what it changed is copied back, so nothing is compiled twice.
 #
-# Prints a table, and as the last line "killed N, survived M". Exit status 1 if any survived, does not
-# fit or does not compile, or if a test fails without any fault. Some 20 seconds a fault: hours for all.
-# CC and MAKE are taken from the environment.
+# Prints a line for each fault when its fate is known, and as the last line "killed N, survived M".
+# Exit status 1 if any survived, does not fit or does not compile, or if a test fails without any
+# fault. CC and MAKE are taken from the environment.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -21,45 +25,63 @@ export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
 top=$(cd "$here/../.." && pwd)
 faults=$here/faults.txt
+jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
+shard=1/1
+check=0
+while [ $# -gt 0 ]; do
+    case $1 in
+    --check) check=1 ;;
+    --jobs) jobs=${2:?} && shift ;;
+    --shard) shard=${2:?} && shift ;;
+    --*) echo "mutants.sh: unknown option $1" >&2 && exit 2 ;;
+    *) break ;;
+    esac
+    shift
+done
+
 scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
-trap 'exit 1' HUP INT TERM
-tree=$scratch/tree
-tests=$tree/build/release/tests
+trap 'kill $(jobs -p) 2>/dev/null; exit 1' HUP INT TERM
+pristine=$scratch/pristine
+tests=build/release/tests
+unset MAKEFLAGS MFLAGS MAKELEVEL
 
-make_in_copy() {
-    "${MAKE:-make}" -s -C "$tree" -j"$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)" \
-        CC="${CC:-cc}" CFLAGS=-O1 config=release BUILD=build WERROR=0 "$@" >"$scratch/make.log" 2>&1
-}
+# make_in TREE JOBS TARGET...
+make_in() (
+    tree=$1 threads=$2
+    shift 2
+    exec "${MAKE:-make}" -s -C "$tree" -j"$threads" CC="${CC:-cc}" config=release BUILD=build WERROR=0 \
+        mode='-O0 -DNDEBUG' test_mode=-O1 "$@" >"$tree.make.log" 2>&1
+)
 
-# run_test PROGRAM [NAME]: one test function, or all; it may take five minutes and 8 GB.
+# run_test TREE PROGRAM [NAME]: one test function, or all; it may take five minutes and 8 GB.
 run_test() {
     ( # not exec: so that this shell, whose output goes to the log, is the one to speak of crashes
         ulimit -c 0
         ulimit -t 300
         ulimit -v 8000000 2>/dev/null
-        cd "$tree" || exit 1
-        SC_LIB=build/lib "build/release/tests/$1" ${2:+"$2"}
+        cd "$1" || exit 1
+        SC_LIB=build/lib "$tests/$2" ${3:+"$3"}
         exit $?
-    ) >"$scratch/test.log" 2>&1
+    ) >"$1.test.log" 2>&1
 }
 
 # Which function of a program failed, or that it could not say.
 reason() {
-    failing=$(sed -n 's/^FAILED \([a-z0-9_]*\):.*/\1/p' "$scratch/test.log" | head -n 1)
-    echo "$1: ${failing:-crashed}"
+    failing=$(sed -n 's/^FAILED \([a-z0-9_]*\):.*/\1/p' "$1.test.log" | head -n 1)
+    echo "$2: ${failing:-crashed}"
 }
 
 # Quick programs first; new ones last.
 order_programs() {
-    for program in predicates primitives input structures memory oracle ccd metis contours; do
-        [ -f "$tree/tests/test_$program.c" ] && echo "test_$program"
+    quick="predicates primitives input structures memory oracle ccd metis contours"
+    for program in $quick; do
+        [ -f "$pristine/tests/test_$program.c" ] && echo "test_$program"
     done
-    for source in "$tree"/tests/test_*.c; do
+    for source in "$pristine"/tests/test_*.c; do
         program=$(basename "$source" .c)
-        case $program in
-        test_predicates | test_primitives | test_input | test_structures | test_memory | test_oracle) ;;
-        test_ccd | test_metis | test_contours | test_culling | test_pairs) ;;
+        case " $quick culling pairs " in
+        *" ${program#test_} "*) ;;
         *) echo "$program" ;;
         esac
     done
@@ -67,33 +89,33 @@ order_programs() {
     echo test_pairs
 }
 
-# try PROGRAM NAME: builds and runs; 0 if the test failed, with the reason in $killer. If there is no
-# such program or test, or the fault does not compile, $killer is empty.
+# try TREE PROGRAM NAME: builds and runs; 0 if the test failed, with the reason in $killer. If there
+# is no such program or test, or the fault does not compile, $killer is empty.
 try() {
     killer=
-    make_in_copy "build/release/tests/$1" || return 0
+    make_in "$1" 1 "$tests/$2" || return 0
     run_test "$@" && return 1
-    if grep -q ': no such test$' "$scratch/test.log"; then
-        echo "$1: no test $2" >"$scratch/make.log"
+    if grep -q ': no such test$' "$1.test.log"; then
+        echo "$2: no test $3" >"$1.make.log"
     else
-        killer=$(reason "$1")
+        killer=$(reason "$1" "$2")
     fi
     return 0
 }
 
-# The tests to try first, then all functions of all programs. 0 if one failed.
+# hunt TREE HINTS: the tests to try first, then all functions of all programs. 0 if one failed.
 hunt() {
-    for hint in $1; do
-        try "${hint%%:*}" "${hint#*:}" && return 0
+    for hint in $2; do
+        try "$1" "${hint%%:*}" "${hint#*:}" && return 0
     done
     for program in $(order_programs); do
-        if ! make_in_copy all "build/release/tests/$program"; then
+        if ! make_in "$1" 1 all "$tests/$program"; then
             killer=
             return 0
         fi
-        for one in $("$tests/$program" --list); do
-            if ! run_test "$program" "$one"; then
-                killer=$(reason "$program")
+        for one in $("$1/$tests/$program" --list); do
+            if ! run_test "$1" "$program" "$one"; then
+                killer=$(reason "$1" "$program")
                 return 0
             fi
         done
@@ -101,70 +123,94 @@ hunt() {
     return 1
 }
 
-mkdir "$tree" || exit 1
-for entry in "$top"/*; do
-    [ "$(basename "$entry")" = build ] || cp -R "$entry" "$tree/" || exit 1
-done
-mkdir -p "$tree/build"
-[ -d "$top/build/meshes" ] && ln -s "$top/build/meshes" "$tree/build/meshes"
-cp -R "$top/lib" "$scratch/lib"
-unset MAKEFLAGS MFLAGS MAKELEVEL
+# restore TREE: makes it again what the pristine tree is, modification times included.
+restore() {
+    find "$1" -type f -newer "$1.marker" >"$1.changed"
+    while read -r file; do
+        if [ -f "$pristine/${file#"$1"/}" ]; then
+            cp -p "$pristine/${file#"$1"/}" "$file"
+        else
+            rm -f "$file"
+        fi
+    done <"$1.changed"
+}
 
-check=0
-if [ "${1:-}" = --check ]; then
-    check=1
-    shift
-fi
-awk -f "$here/plant.awk" "$faults" >"$scratch/all" || exit 1
-if [ $# -eq 0 ]; then
-    cp "$scratch/all" "$scratch/list"
-else
-    for word in "$@"; do echo "^[^ ]*$word"; done >"$scratch/words"
-    grep -f "$scratch/words" "$scratch/all" >"$scratch/list"
-fi
-
-if [ $check -eq 0 ] && [ $# -eq 0 ]; then
-    if ! make_in_copy all $(order_programs | sed 's|^|build/release/tests/|'); then
-        cat "$scratch/make.log"
-        echo "does not build without any fault"
-        exit 1
-    fi
-    for program in $(order_programs); do
-        run_test "$program" && continue
-        cat "$scratch/test.log"
-        echo "$program fails without any fault"
-        exit 1
-    done
-fi
-
-killed=0
-survived=0
-broken=0
-while read -r name hints; do
+# one_fault TREE NAME HINTS: prints its line and leaves its fate in a file of its name.
+one_fault() {
     begin=$(date +%s)
-    if ! changed=$(awk -f "$here/plant.awk" -v name="$name" -v root="$tree" "$faults"); then
+    fate=broken
+    if ! awk -f "$here/plant.awk" -v name="$2" -v root="$1" "$faults" >/dev/null; then
         result="DOES NOT FIT"
-        broken=$((broken + 1))
-        changed=
     elif [ $check -eq 1 ]; then
         result=fits
-    elif hunt "$hints" </dev/null; then
+        fate=fits
+    elif hunt "$1" "$3" </dev/null; then
         result=$killer
         if [ -z "$result" ]; then
             result="DOES NOT COMPILE OR HAS NO SUCH TEST"
-            broken=$((broken + 1))
-            sed 's/^/    /' "$scratch/make.log" | head -n 20
+            sed 's/^/    /' "$1.make.log" | head -n 20
         else
-            killed=$((killed + 1))
+            fate=killed
         fi
     else
         result=SURVIVED
-        survived=$((survived + 1))
+        fate=survived
     fi
-    printf '%-28s %-50s %4d s\n' "$name" "$result" $(($(date +%s) - begin))
-    for file in $changed; do cp "$scratch/$file" "$tree/$file"; done
-done <"$scratch/list"
+    printf '%-28s %-50s %4d s\n' "$2" "$result" $(($(date +%s) - begin))
+    echo "$fate" >"$scratch/fates/$2"
+    restore "$1"
+}
 
+# worker TREE: takes the next fault that nobody has taken, until none is left.
+worker() {
+    cp -Rp "$pristine" "$1" || exit 1
+    touch "$1.marker"
+    sleep 1
+    while read -r name hints; do
+        mkdir "$scratch/taken/$name" 2>/dev/null || continue
+        one_fault "$1" "$name" "$hints"
+    done <"$scratch/list"
+}
+
+mkdir "$pristine" "$scratch/fates" "$scratch/taken" || exit 1
+for entry in "$top"/*; do
+    [ "$(basename "$entry")" = build ] || cp -Rp "$entry" "$pristine/" || exit 1
+done
+mkdir -p "$pristine/build"
+[ -d "$top/build/meshes" ] && ln -s "$top/build/meshes" "$pristine/build/meshes"
+
+awk -f "$here/plant.awk" "$faults" >"$scratch/all" || exit 1
+for word in "$@"; do echo "^[^ ]*$word"; done >"$scratch/words"
+[ $# -gt 0 ] || echo . >"$scratch/words"
+grep -f "$scratch/words" "$scratch/all" |
+    awk -v part="${shard%/*}" -v of="${shard#*/}" '(NR - part) % of == 0' >"$scratch/list"
+
+if [ $check -eq 0 ]; then
+    if ! make_in "$pristine" "$jobs" all $(order_programs | sed "s|^|$tests/|"); then
+        cat "$pristine.make.log"
+        echo "does not build without any fault"
+        exit 1
+    fi
+    if [ $# -eq 0 ]; then
+        if ! (cd "$pristine" && SC_LIB=build/lib TEST_JOBS=$jobs \
+            tests/run.sh $(order_programs | sed "s|^|$tests/|")); then
+            echo "tests fail without any fault"
+            exit 1
+        fi
+    fi
+fi
+
+i=0
+while [ $i -lt "$jobs" ]; do
+    i=$((i + 1))
+    worker "$scratch/tree$i" &
+done
+wait
+
+# how_many FATE
+how_many() { cat "$scratch"/fates/* /dev/null | grep -c "^$1\$"; }
+lost=$(($(wc -l <"$scratch/list") - $(how_many '.*')))
+broken=$(($(how_many broken) + lost))
 [ $broken -eq 0 ] || echo "$broken do not fit or do not compile"
-[ $check -eq 0 ] && echo "killed $killed, survived $survived"
-[ $survived -eq 0 ] && [ $broken -eq 0 ]
+[ $check -eq 1 ] || echo "killed $(how_many killed), survived $(how_many survived)"
+[ "$(how_many survived)" -eq 0 ] && [ $broken -eq 0 ]
