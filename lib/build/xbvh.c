@@ -13,7 +13,7 @@ sc_status sc_xbvh_build(const sc_hierarchy *hierarchy, sc_scratch *scratch, sc_x
     uint64_t total = 0;
     const sc_tree_node *tree = hierarchy->nodes;
     /* tens of gigabytes */
-    if (SC_HARDLY(hierarchy->leaf_count > SC_LEAVES_MAX)) return SC_ERROR_COUNT;
+    if (hierarchy->leaf_count > SC_LEAVES_MAX) return SC_ERROR_COUNT;
     nodes = (uint32_t *)sc_scratch_take(scratch, hierarchy->leaf_count, sizeof *nodes);
     next = (uint32_t *)sc_scratch_take(scratch, hierarchy->leaf_count, sizeof *next);
     xbvh->level_count = hierarchy->depth;
