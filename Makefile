@@ -403,12 +403,14 @@ fuzz: ## fuzz each target for SECONDS (clang); findings go to tests/fuzz/reprodu
 soak: $(work)/runs/soak ## SOAK queries on changing poses of one model, in bounded memory
 	$< $(SOAK)
 
+thread_tests := test_tasks test_task_steps
+
 .PHONY: test-thread
 test-thread: ## many threads on one model, and in one query, under ThreadSanitizer
 	+$(Q)$(MAKE) --no-print-directory config=release BUILD='$(BUILD)/thread' CFLAGS='-O1 -fsanitize=thread' \
-	    '$(BUILD)/thread/release/runs/thread' '$(BUILD)/thread/release/tests/test_tasks'
+	    '$(BUILD)/thread/release/runs/thread' $(patsubst %,'$(BUILD)/thread/release/tests/%',$(thread_tests))
 	'$(BUILD)/thread/release/runs/thread'
-	SC_TEST_SCALE=10 '$(BUILD)/thread/release/tests/test_tasks'
+	SC_TEST_SCALE=10 tests/run.sh $(patsubst %,'$(BUILD)/thread/release/tests/%',$(thread_tests))
 
 # Files that take results from libraries without MemorySanitizer are left out, see
 # tests/runs/memory_ignore.txt, and so is test_ccd, which is about such a library.
