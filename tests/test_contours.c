@@ -1445,16 +1445,16 @@ static void pinches_alone(void)
               doubtful);
 }
 
-/* A node whose contour is a loop of 64 points or more in one piece, none of them twice; SC_NONE:
-   there is none. */
-static uint32_t long_loop(const sc_model *m)
+/* A node whose contour is a loop of at least so many points, in one piece, none of those twice;
+   SC_NONE: there is none. */
+static uint32_t long_loop(const sc_model *m, uint32_t least)
 {
     for (uint32_t node = 0; node < m->node_count; ++node) {
         const sc_node *n = sc_model_node(m) + node;
         const uint16_t *loop = sc_model_loop(m) + n->loop;
         int twice = (n->kind & SC_NODE_PIECES) != 0;
-        if (n->loop_length < 64) continue;
-        for (uint32_t i = 0; i < 64; ++i)
+        if (n->loop_length < least) continue;
+        for (uint32_t i = 0; i < least; ++i)
             for (uint32_t j = 0; j < i; ++j) twice |= loop[i] == loop[j];
         if (!twice) return node;
     }
@@ -1539,7 +1539,7 @@ static void small_contours(void)
     scene s;
     soup mesh = soup_cloth(40, 40);
     if (!open_scene(&s, "small", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) || !load_pose(&s)) return;
-    node = long_loop(s.model);
+    node = long_loop(s.model, 64);
     if (!CHECK(node != SC_NONE)) return;
     for (uint32_t isa = 1; isa <= (uint32_t)sc_isa_best(); ++isa) {
         s.workspace->isa = isa;
@@ -1563,6 +1563,44 @@ static void small_contours(void)
         CHECK(!tell_small(&s, node, at, 12));
     }
     CHECK_MSG(told == 56 * (uint32_t)sc_isa_best(), "%" PRIu32 " are simple", told);
+    CHECK_MSG(!missed, "%" PRIu32 " that are not", missed);
+    close_scene(&s);
+}
+
+/* Contours of more edges than one row of spans: convex ones pass, and those of which any two edges
+   cross, and no others meet, do not, by any instruction set. */
+static void two_edges_that_cross(void)
+{
+    static const uint32_t counts[] = {33, 34, 40, 47, 48, 49, 64, 65, 66, 67, 97, 128, 129, 160};
+    enum { MOST = 160 };
+    const sc_projection above = {{1, 0, 0}, {0, 1, 0}, {0, 0, 0}, 0, 0};
+    uint32_t told = 0, missed = 0, node;
+    float at[MOST][2];
+    scene s;
+    soup mesh = soup_cloth(60, 60);
+    if (!open_scene(&s, "crossing", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) || !load_pose(&s))
+        return;
+    node = long_loop(s.model, MOST);
+    if (!CHECK(node != SC_NONE)) return;
+    for (uint32_t isa = 1; isa <= (uint32_t)sc_isa_best(); ++isa)
+        for (uint32_t k = 0; k < sizeof(counts) / sizeof(*counts); ++k) {
+            const uint32_t count = counts[k];
+            sc_node *n = (sc_node *)(uintptr_t)(sc_model_node(s.model) + node);
+            const uint16_t length = n->loop_length;
+            s.workspace->isa = isa;
+            n->loop_length = (uint16_t)count;
+            crossed_polygon(at, count, 0.4, 0, 0);
+            move_loop(&s, node, at, count);
+            told += sc_simple_test(&s.state, &above, node) != 0;
+            for (uint32_t i = 0; i < count; ++i)
+                for (uint32_t j = i + 2; j < count && (i || j + 1 < count); ++j) {
+                    crossed_polygon(at, count, 0.4, i, j);
+                    move_loop(&s, node, at, count);
+                    missed += sc_simple_test(&s.state, &above, node) != 0;
+                }
+            n->loop_length = length;
+        }
+    CHECK_MSG(told == 14 * (uint32_t)sc_isa_best(), "%" PRIu32 " are simple", told);
     CHECK_MSG(!missed, "%" PRIu32 " that are not", missed);
     close_scene(&s);
 }
@@ -1845,6 +1883,6 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(vectors_of_all_masks),
              SC_TEST(spirals_overlap), SC_TEST(long_contours), SC_TEST(branched_discs),
              SC_TEST(contours_at_shared_points), SC_TEST(contours_in_pieces),
              SC_TEST(points_in_the_unit_box), SC_TEST(poses_of_any_layout),
-             SC_TEST(places_of_contours), SC_TEST(small_contours), SC_TEST(contours_in_turn),
-             SC_TEST(pinches_alone), SC_TEST(flat_cloths_pass), SC_TEST(patches_that_share_hubs),
-             SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
+             SC_TEST(places_of_contours), SC_TEST(small_contours), SC_TEST(two_edges_that_cross),
+             SC_TEST(contours_in_turn), SC_TEST(pinches_alone), SC_TEST(flat_cloths_pass),
+             SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))

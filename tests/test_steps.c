@@ -568,6 +568,42 @@ static void narrow_notches(void)
     }
 }
 
+/* A flat ring round a hole of three corners, of which one dips below the side across from it, or
+   nearly, while that turns: at both ends the hole is the right way round, and each of its edges
+   shares a point with each other one, so that only how they turn there can tell. */
+static void holes_of_three_corners(void)
+{
+    static const uint32_t triangles[] = {1, 0, 3, 2, 1, 4, 0, 2, 5, 0, 5, 3, 1, 3, 4, 2, 4, 5};
+    uint32_t dipped = 0;
+    for (uint32_t i = 0; i < test_iterations(200) && test_failures() == 0; ++i) {
+        const double depth = test_random_range(-0.2, 0.2), far = test_random_range(5, 30);
+        const double turn = test_random_range(0, 6.3);
+        double to[2][18];
+        soup s = soup_make(6, 6);
+        memcpy(s.triangles, triangles, sizeof(triangles));
+        for (int end = 0; end < 2; ++end) {
+            const double t = end ? 1 : -1;
+            const double corner[6][2] = {{0, 0},
+                                         {1, t},
+                                         {0.5 - 0.3 * t, 0.5 * t - depth},
+                                         {0.5, -far},
+                                         {0.25 * far, far},
+                                         {-0.25 * far, far}};
+            for (int v = 0; v < 6; ++v) {
+                double x = corner[v][0], y = corner[v][1] * (i % 2 ? 1 : -1);
+                to[end][3 * v] = x * cos(turn) - y * sin(turn);
+                to[end][3 * v + 1] = x * sin(turn) + y * cos(turn);
+                to[end][3 * v + 2] = 0;
+            }
+        }
+        memcpy(s.positions, to[0], sizeof(to[0]));
+        dipped += depth > 0.01;
+        check_step(&s, to[0], to[1], i % 3 ? 0 : 0.01, "a hole");
+        soup_free(&s);
+    }
+    CHECK_MSG(dipped >= test_iterations(40), "%u holes", (unsigned)dipped);
+}
+
 /* Flat or nearly so, so that contours are all that keeps things apart; with patches in any number
    of pieces. */
 static void flat_meshes_that_move(void)
@@ -789,7 +825,7 @@ static void refuses_what_does_not_fit(void)
 }
 
 SC_TEST_MAIN(SC_TEST(soups_that_move), SC_TEST(meshes_that_move), SC_TEST(flat_meshes_that_move),
-             SC_TEST(rearranged_insides), SC_TEST(pieces_inside_one_another),
-             SC_TEST(ends_that_nearly_meet), SC_TEST(narrow_notches), SC_TEST(long_strips),
-             SC_TEST(denormal_meshes), SC_TEST(arrays_and_counts), SC_TEST(ends_early),
-             SC_TEST(refuses_what_does_not_fit))
+             SC_TEST(holes_of_three_corners), SC_TEST(rearranged_insides),
+             SC_TEST(pieces_inside_one_another), SC_TEST(ends_that_nearly_meet),
+             SC_TEST(narrow_notches), SC_TEST(long_strips), SC_TEST(denormal_meshes),
+             SC_TEST(arrays_and_counts), SC_TEST(ends_early), SC_TEST(refuses_what_does_not_fit))
