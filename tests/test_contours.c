@@ -1299,6 +1299,29 @@ static uint32_t list_pieces(const scene *s, uint32_t node, uint32_t *middle)
     return places;
 }
 
+/* Whether the error that a contour carries when it is projected is less than that of a point as far
+   from the middle as its points are, in any of the three axes. */
+static uint32_t is_too_sure(const scene *s, const sc_projection *projection, uint32_t node,
+                            const float from[3], uint32_t listed, int has_gaps)
+{
+    const sc_contour_edges *e = &s->workspace->contour;
+    sc_simple_contour c;
+    float most = 0;
+    memset(&c, 0, sizeof(c));
+    if (!sc_simple_start(&c, s->model, s->workspace, node)) return 0;
+    sc_simple_axes(&c, projection);
+    memcpy(c.from, from, sizeof(c.from));
+    sc_query_kernels_of(s->workspace)->project(&c, s->workspace);
+    for (uint32_t i = 0; i < listed; ++i) {
+        float unit[3];
+        if (has_gaps && (e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1) == 0)
+            continue;
+        sc_positions_unit(s->workspace, tested_point(s, node, i), unit);
+        for (int k = 0; k < 3; ++k) most = fmaxf(most, fabsf(unit[k] - from[k]));
+    }
+    return c.error < sc_simple_error(most);
+}
+
 /* The boxes of spans of two edges hold the true places of their ends, however the contour is seen:
    from above, or from one end, so that it is small for the size that it has; and whatever its
    size. */
@@ -1328,13 +1351,16 @@ static void places_of_contours(void)
             for (uint32_t i = 3; i < 3 * mesh.vertex_count; ++i)
                 s.pose[i] = s.pose[i % 3] + 7 * (i % 3 + 1) + shrink * (s.pose[i] - s.pose[i % 3]);
         }
+        if (round % 5 > 1) /* long in one axis alone */
+            for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i)
+                if (i % 3 != round % 5 - 2) s.pose[i] *= 0x1p-12;
         if (round % 4 == 3)
             soup_scale(s.pose, mesh.vertex_count,
                        exp2(test_random_below(2) ? test_random_range(1008, 1012)
                                                  : test_random_range(-1060, 1012)));
         if (load_pose(&s)) {
             const sc_contour_edges *e = &s.workspace->contour;
-            uint32_t wrong = 0, edges = 0;
+            uint32_t wrong = 0, edges = 0, too_sure = 0;
             for (uint32_t node = 0; node < s.model->node_count; ++node) {
                 const uint32_t length = sc_model_node(s.model)[node].loop_length;
                 int in_pieces = sc_model_node(s.model)[node].kind & SC_NODE_PIECES;
@@ -1351,6 +1377,7 @@ static void places_of_contours(void)
                 sc_positions_unit(s.workspace, tested_point(&s, node, 0), one);
                 sc_positions_unit(s.workspace, tested_point(&s, node, middle), other);
                 for (int k = 0; k < 3; ++k) from[k] = one[k] / 2 + other[k] / 2;
+                too_sure += is_too_sure(&s, &projection, node, from, listed, has_gaps);
                 if (!passed && listed > SC_CONTOUR_BLOCK) listed = SC_CONTOUR_BLOCK; /* at least */
                 for (uint32_t i = 0; i < listed; ++i) {
                     if (has_gaps &&
@@ -1372,6 +1399,7 @@ static void places_of_contours(void)
                     }
                 }
             }
+            CHECK_MSG(!too_sure, "%" PRIu32 " errors are too small", too_sure);
             CHECK_MSG(wrong == 0 && edges > 100, "flat %g: %" PRIu32 " places of %" PRIu32 " edges",
                       flat, wrong, edges);
         }
@@ -1461,8 +1489,9 @@ static uint32_t long_loop(const sc_model *m, uint32_t least)
     return SC_NONE;
 }
 
-/* Moves the first points of a loop, as they are kept in the unit box. */
-static void move_loop(const scene *s, uint32_t node, float at[][2], uint32_t count)
+/* Moves the first points of a loop, as they are kept in the unit box; the second is higher by
+   lift. */
+static void move_loop(const scene *s, uint32_t node, float at[][2], uint32_t count, float lift)
 {
     const uint32_t *leaf = sc_model_leaf(s->model);
     const sc_pair *patches = &sc_model_node(s->model)[node].patches;
@@ -1476,13 +1505,13 @@ static void move_loop(const scene *s, uint32_t node, float at[][2], uint32_t cou
         float *to = s->workspace->point_at + 4 * (size_t)sc_simple_place(&c, loop[i]);
         to[0] = at[i][0];
         to[1] = at[i][1];
-        to[2] = 0.5f;
+        to[2] = i == 1 ? 0.5f + lift : 0.5f;
     }
 }
 
 /* What the test of small contours says of a polygon, seen from above, as if it were the contour of
    a node with a longer one. */
-static unsigned tell_small(scene *s, uint32_t node, float at[][2], uint32_t count)
+static unsigned tell_small(scene *s, uint32_t node, float at[][2], uint32_t count, float lift)
 {
     const uint32_t blocks = (count + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK;
     float above[2 * 3 * SC_DNC_VECTORS] = {0};
@@ -1491,7 +1520,7 @@ static unsigned tell_small(scene *s, uint32_t node, float at[][2], uint32_t coun
     const uint16_t length = n->loop_length;
     unsigned simple;
     above[0] = above[4 * SC_DNC_VECTORS] = 1;
-    move_loop(s, node, at, count);
+    move_loop(s, node, at, count, lift);
     n->loop_length = (uint16_t)count;
     simple = sc_query_kernels_of(s->workspace)->find_simple(&s->state, &node, 1, blocks, &axes);
     n->loop_length = length;
@@ -1546,21 +1575,24 @@ static void small_contours(void)
         for (uint32_t count = SC_SMALL_EDGES; count <= 64; ++count) {
             double size = test_random_below(2) ? 0.4 : 1e-4;
             crossed_polygon(at, count, size, 0, 0);
-            told += tell_small(&s, node, at, count);
+            told += tell_small(&s, node, at, count, 0);
             for (uint32_t i = 0; i < count; ++i)
                 for (uint32_t j = i + 2; j < count && (i || j + 1 < count); ++j) {
                     crossed_polygon(at, count, size, i, j);
-                    missed += tell_small(&s, node, at, count);
+                    missed += tell_small(&s, node, at, count, 0);
                 }
         }
         slotted_square(at, 0.25f, 100000);
-        CHECK(tell_small(&s, node, at, 12) == 1);
+        CHECK(tell_small(&s, node, at, 12, 0) == 1);
         for (uint32_t width = 0; width <= 2; ++width) {
             slotted_square(at, 0.25f, width);
-            CHECK_MSG(!tell_small(&s, node, at, 12), "a slot of %" PRIu32, width);
+            CHECK_MSG(!tell_small(&s, node, at, 12, 0), "a slot of %" PRIu32, width);
         }
+        slotted_square(at, 1 / 32768.0f, 8); /* wide enough, but not for one so high */
+        CHECK(tell_small(&s, node, at, 12, 0) == 1);
+        CHECK(!tell_small(&s, node, at, 12, 0.45f));
         slotted_square(at, 1 / 1048576.0f, 1);
-        CHECK(!tell_small(&s, node, at, 12));
+        CHECK(!tell_small(&s, node, at, 12, 0));
     }
     CHECK_MSG(told == 56 * (uint32_t)sc_isa_best(), "%" PRIu32 " are simple", told);
     CHECK_MSG(!missed, "%" PRIu32 " that are not", missed);
@@ -1590,12 +1622,12 @@ static void two_edges_that_cross(void)
             s.workspace->isa = isa;
             n->loop_length = (uint16_t)count;
             crossed_polygon(at, count, 0.4, 0, 0);
-            move_loop(&s, node, at, count);
+            move_loop(&s, node, at, count, 0);
             told += sc_simple_test(&s.state, &above, node) != 0;
             for (uint32_t i = 0; i < count; ++i)
                 for (uint32_t j = i + 2; j < count && (i || j + 1 < count); ++j) {
                     crossed_polygon(at, count, 0.4, i, j);
-                    move_loop(&s, node, at, count);
+                    move_loop(&s, node, at, count, 0);
                     missed += sc_simple_test(&s.state, &above, node) != 0;
                 }
             n->loop_length = length;
