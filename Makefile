@@ -310,8 +310,8 @@ $(work)/tests/header_cxx: tests/header_cxx.cpp include/starcontour.h $(obj)/flag
 # Comparison with CGAL; by hand, as it takes libraries and meshes that nothing else needs.
 missing_for_cgal := $(if $(call has,CGAL/version.h),,CGAL) $(if $(gmp),,gmp) \
     $(if $(assimp),,assimp) $(if $(cjson),,cJSON)
-cgal_objects := $(call objects,tools/mesh_file.c tools/ply_header.c \
-    tools/text_mesh.c tests/oracle.c tests/harness.c)
+cgal_objects := $(call objects,tools/mesh_file.c tools/file_bytes.c tools/ply_header.c \
+    tools/polygon_mesh.c tools/scene_read.c tools/text_mesh.c tests/oracle.c tests/harness.c)
 
 .PHONY: test-cgal
 ifneq ($(strip $(missing_for_cgal)),)

@@ -55,9 +55,10 @@ typedef struct demo_scene {
  */
 static void twist_cloth(const mesh_file *rest, double time, float *positions)
 {
+    const float *from = (const float *)rest->positions;
     const double twist = 4.0 * time, roll = 4.5 * time;
     for (size_t v = 0; v < rest->vertex_count; v++) {
-        const double x = (double)rest->positions[3 * v], y = (double)rest->positions[3 * v + 1];
+        const double x = (double)from[3 * v], y = (double)from[3 * v + 1];
         const double angle = twist * x + roll * x * y;
         positions[3 * v] = (float)(x * (1.0 - 0.25 * time));
         positions[3 * v + 1] = (float)(y * cos(angle));
@@ -68,10 +69,11 @@ static void twist_cloth(const mesh_file *rest, double time, float *positions)
 /* Bends the longest axis of the mesh's box to an arc, in the plane of that and the next axis. */
 static void bend_solid(const mesh_file *rest, double time, float *positions)
 {
+    const float *from = (const float *)rest->positions;
     float low[3], high[3];
-    for (size_t k = 0; k < 3; k++) low[k] = high[k] = rest->positions[k];
+    for (size_t k = 0; k < 3; k++) low[k] = high[k] = from[k];
     for (size_t i = 3; i < 3 * (size_t)rest->vertex_count; i++) {
-        const float x = rest->positions[i];
+        const float x = from[i];
         if (x < low[i % 3]) low[i % 3] = x;
         if (x > high[i % 3]) high[i % 3] = x;
     }
@@ -82,7 +84,7 @@ static void bend_solid(const mesh_file *rest, double time, float *positions)
     const double length = (double)high[along] - (double)low[along];
     const double total = 9.0 * time; /* the angle between the ends */
     for (size_t v = 0; v < rest->vertex_count; v++) {
-        const float *p = rest->positions + 3 * v;
+        const float *p = from + 3 * v;
         float *out = positions + 3 * v;
         memcpy(out, p, 3 * sizeof *out);
         if (total <= 0.0) continue;
@@ -116,7 +118,7 @@ static bool run_method(demo_scene *scene, int method, uint64_t *count, double *m
         return done;
     }
     const double start = tool_clock();
-    const sc_pose pose = tool_pose(scene->positions, scene->mesh->vertex_count);
+    const sc_pose pose = tool_pose(scene->positions, SC_FLOAT, scene->mesh->vertex_count);
     sc_query_options options;
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
@@ -172,7 +174,7 @@ static bool run_frame(demo_scene *scene, int frame)
 /* Asks once more for the pairs of the worst frame, of triangles now, and draws them. */
 static bool draw_worst(demo_scene *scene, const char *folder)
 {
-    const sc_pose pose = tool_pose(scene->worst_positions, scene->mesh->vertex_count);
+    const sc_pose pose = tool_pose(scene->worst_positions, SC_FLOAT, scene->mesh->vertex_count);
     const uint32_t triangles = scene->mesh->triangle_count;
     sc_result result;
     memset(&result, 0, sizeof result);
@@ -197,7 +199,7 @@ static bool draw_worst(demo_scene *scene, const char *folder)
         }
         snprintf(path, sizeof path, "%s/%s.ply", folder, scene->name);
         errno = 0;
-        done = ply_write(path, scene->worst_positions, scene->mesh->vertex_count,
+        done = ply_write(path, scene->worst_positions, SC_FLOAT, scene->mesh->vertex_count,
                          scene->mesh->indices, triangles, colors);
         if (done)
             printf("Frame %d, colliding triangles in red: %s\n\n", scene->worst_frame, path);
@@ -219,7 +221,7 @@ static bool scene_open(demo_scene *scene, const mesh_file *mesh, const char *nam
     scene->worst_positions = (float *)malloc(size);
     scene->doubles = (double *)malloc(3 * (size_t)mesh->vertex_count * sizeof(double));
     for (size_t i = 0; scene->doubles && i < 3 * (size_t)mesh->vertex_count; i++)
-        scene->doubles[i] = (double)mesh->positions[i];
+        scene->doubles[i] = (double)((const float *)mesh->positions)[i];
     const char *reason = "out of memory";
     if (scene->doubles)
         scene->hash = spatial_hash_create(scene->doubles, mesh->vertex_count, mesh->indices,
@@ -313,13 +315,15 @@ static bool run_bunny(const char *meshes, const char *folder)
             return false;
         }
         printf("The bunny of glmark2 is bent until its ends meet.\n");
+        mesh_file_floats(&mesh); /* frames are floats */
         ready = mesh_file_join(&mesh);
     } else {
         printf("%s is not there ('make meshes' gets it): a generated closed surface instead,\n"
                "bent until its ends meet.\n",
                path);
         ready = shape_make_sphere(&mesh, 6);
-        for (size_t v = 0; ready && v < mesh.vertex_count; v++) mesh.positions[3 * v] *= 3.0f;
+        for (size_t v = 0; ready && v < mesh.vertex_count; v++)
+            ((float *)mesh.positions)[3 * v] *= 3.0f;
     }
     if (!ready)
         tool_error("out of memory");

@@ -28,7 +28,6 @@ typedef struct scene_source {
     uint8_t *bytes;        /* one frame as it stands in file */
     size_t number_size;    /* 8 or 4 */
     mesh_file rest;        /* of mesh files */
-    float *floats;         /* one frame of them */
     char **paths;          /* frame_count */
     uint32_t paths_length; /* how many of them there are so far */
 } scene_source;
@@ -298,6 +297,21 @@ static int add_path(scene_source *source, const char *path)
     return 0;
 }
 
+/* Whether the first file, which is read, and all others have nothing but floats. Those that cannot be
+   read are told of when their turn comes. */
+static bool are_floats(const scene_source *source)
+{
+    bool single = source->rest.position_type == SC_FLOAT;
+    for (uint32_t i = 1; single && i < source->paths_length; i++) {
+        char message[MESH_FILE_ERROR_SIZE];
+        mesh_pose pose;
+        if (!mesh_file_read_pose(&source->rest, source->paths[i], &pose, message)) continue;
+        single = pose.position_type == SC_FLOAT;
+        mesh_pose_free(&pose);
+    }
+    return single;
+}
+
 /* The paths are in source: reads the first of them. */
 static int open_rest(scene_folder *scene, char *error, size_t error_size)
 {
@@ -310,10 +324,9 @@ static int open_rest(scene_folder *scene, char *error, size_t error_size)
     scene->triangle_count = source->rest.triangle_count;
     scene->vertex_count = source->rest.vertex_count;
     scene->frame_count = source->paths_length;
-    scene->single = true;
+    scene->single = are_floats(source);
     scene->triangles = (uint32_t *)malloc(corners * sizeof(uint32_t));
-    source->floats = (float *)malloc(3 * (size_t)scene->vertex_count * sizeof(float));
-    if (!scene->triangles || !source->floats) {
+    if (!scene->triangles) {
         return fail(error, error_size, "%s: out of memory", source->paths[0]);
     }
     memcpy(scene->triangles, source->rest.indices, corners * sizeof(uint32_t));
@@ -371,10 +384,14 @@ static int read_frame(scene_folder *scene, uint32_t frame, double *positions, co
     if (!source->file) {
         char message[MESH_FILE_ERROR_SIZE];
         *name = source->paths[frame];
-        if (!mesh_file_read_pose(&source->rest, *name, source->floats, message)) {
+        mesh_pose pose;
+        if (!mesh_file_read_pose(&source->rest, *name, &pose, message)) {
             return fail(error, error_size, "%s", message);
         }
-        for (size_t i = 0; i < count; i++) positions[i] = (double)source->floats[i];
+        for (size_t v = 0; v < scene->vertex_count; v++) {
+            mesh_file_position(pose.positions, pose.position_type, v, positions + 3 * v);
+        }
+        mesh_pose_free(&pose);
         return 0;
     }
     *name = source->path;
@@ -415,7 +432,6 @@ void scene_folder_close(scene_folder *scene)
         free(source->paths);
         free(source->path);
         free(source->bytes);
-        free(source->floats);
         mesh_file_free(&source->rest);
         free(source);
     }
@@ -584,9 +600,7 @@ static bool write_obj(FILE *file, const scene_folder *scene, const double *posit
 {
     for (size_t v = 0; v < scene->vertex_count; v++) {
         const double *p = positions + 3 * v;
-        bool single = true;
-        for (int k = 0; k < 3; k++) single = single && (double)(float)p[k] == p[k];
-        fprintf(file, single ? "v %.9g %.9g %.9g\n" : "v %.17g %.17g %.17g\n", p[0], p[1], p[2]);
+        fprintf(file, "v %.17g %.17g %.17g\n", p[0], p[1], p[2]);
     }
     for (size_t t = 0; t < scene->triangle_count; t++) {
         const uint32_t *v = scene->triangles + 3 * t;

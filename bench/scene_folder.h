@@ -54,7 +54,7 @@ void scene_folder_close(scene_folder *scene);
 
 /*
  * Writes all frames as PATH/frame_0000.obj and so on; the folder is made. Digits are enough to read
- * back the same floats, or doubles where a coordinate is not a float.
+ * back the same doubles, and so the same floats.
  */
 int scene_folder_export_obj(scene_folder *scene, const char *path, char *error, size_t error_size);
 

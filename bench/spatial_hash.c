@@ -135,7 +135,11 @@ static const char *prepare(spatial_hash *hash, const double *positions, uint32_t
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
             return "a triangle names a vertex twice, which the hash cannot handle";
     }
-    const mesh_file view = {NULL, hash->indices, vertex_count, hash->triangle_count, 0};
+    mesh_file view;
+    memset(&view, 0, sizeof view);
+    view.indices = hash->indices;
+    view.vertex_count = vertex_count;
+    view.triangle_count = hash->triangle_count;
     hash->sides = mesh_edges_sort(&view);
     if (!hash->sides || !edge_triangle_open(&hash->tests)) return "out of memory";
     const double length = find_edges(hash, positions);

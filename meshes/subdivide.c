@@ -30,9 +30,9 @@ static bool write_text(const char *path, const mesh_file *mesh, bool off)
                 (unsigned long)mesh->triangle_count);
     }
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        const float *p = mesh->positions + 3 * v;
-        fprintf(file, "%s%.9g %.9g %.9g\n", off ? "" : "v ", (double)p[0], (double)p[1],
-                (double)p[2]);
+        double p[3];
+        mesh_file_position(mesh->positions, mesh->position_type, v, p);
+        fprintf(file, "%s%.17g %.17g %.17g\n", off ? "" : "v ", p[0], p[1], p[2]);
     }
     const unsigned long base = off ? 0 : 1;
     for (size_t t = 0; t < mesh->triangle_count; t++) {
@@ -50,8 +50,8 @@ static bool write_mesh(const char *path, const mesh_file *mesh)
     errno = 0;
     bool written = false;
     if (strcmp(type, ".ply") == 0) {
-        written = ply_write(path, mesh->positions, mesh->vertex_count, mesh->indices,
-                            mesh->triangle_count, NULL);
+        written = ply_write(path, mesh->positions, mesh->position_type, mesh->vertex_count,
+                            mesh->indices, mesh->triangle_count, NULL);
     } else if (strcmp(type, ".obj") == 0 || strcmp(type, ".off") == 0) {
         written = write_text(path, mesh, strcmp(type, ".off") == 0);
     } else {

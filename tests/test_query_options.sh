@@ -65,7 +65,27 @@ check "no such file" says 2 absent "$query" --ignore "$scratch/absent.csv" "$she
 printf 'v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n' >"$scratch/inf.obj"
 check "which vertex is not finite" says 2 "inf.obj: vertex 2 is NaN" "$query" "$scratch/inf.obj"
 mkfifo "$scratch/pipe.obj"
-check "a pipe" says 2 "pipe or device" "$query" "$scratch/pipe.obj"
+from_pipe() {
+    timeout 20 cat "$1" >"$scratch/pipe.obj" &
+    timeout 20 "$query" --out "$scratch/piped.csv" "$scratch/pipe.obj" >/dev/null
+    test $? -eq 1 && "$query" --out "$scratch/file.csv" "$1" >/dev/null
+    sed 's/^[^,]*,//' "$scratch/piped.csv" >"$scratch/piped"
+    sed 's/^[^,]*,//' "$scratch/file.csv" | diff - "$scratch/piped"
+}
+check "a pipe is read as a file is" from_pipe "$sheet"
+check "a device" says 2 "a device" "$query" /dev/null
+ln -s /dev/null "$scratch/null.obj"
+check "with a name" says 2 "a device" "$query" "$scratch/null.obj"
+echo 'v 1e300 -1e300 0
+v 0 1e300 0
+v 1e-300 0 1e300
+f 1 2 3' >"$scratch/large.obj"
+check "numbers that only doubles hold" says 0 "large.obj" "$query" "$scratch/large.obj"
+printf 'v 0 0 0\nv 0 -1e400 0\nv 0 0 0\nf 1 2 3\n' >"$scratch/large.obj"
+check "and that not even they do" says 2 "line 2: vertex 1: -1e400 is too large for a double" \
+    "$query" "$scratch/large.obj"
+printf 'OFF\n3 1 0\n0 0 0\n0 0 1e400\n0 1 0\n3 0 1 2\n' >"$scratch/large.off"
+check "also in OFF" says 2 "line 4: vertex 1: 1e400 is too large" "$query" "$scratch/large.off"
 printf 'ply\nformat ascii 1.0\nelement vertex 3\nend_head' >"$scratch/cut.ply"
 check "a PLY file cut in its header" says 2 "the header does not end" "$query" "$scratch/cut.ply"
 cp "$sheet" "$scratch/own.obj"

@@ -3,75 +3,27 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#define _POSIX_C_SOURCE 200809L
-
 #include "mesh_file.h"
 
-#include "ply_header.h"
+#include "file_bytes.h"
+#include "polygon_mesh.h"
+#include "scene_read.h"
 #include "text_mesh.h"
 
-#include <assimp/cimport.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
-#include <errno.h>
+#include <float.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
-/* An affine map: rows of x, y, z; the last column is the translation. */
-typedef struct affine {
-    double m[3][4];
-} affine;
-
-/* A walk over the meshes that the nodes of a scene show. */
-typedef struct scene_walk {
-    const struct aiScene *scene;
-    float *positions; /* NULL: only count */
-    uint32_t *indices;
-    uint64_t vertex_count;
-    uint64_t triangle_count;
-    uint64_t face_hash; /* FNV-1a (Fowler, Noll, Vo) over corner counts and indices */
-    bool has_polygons;
-    bool bad_index;
-    bool bad_node; /* assimp's reader of RAW files leaves out nodes: NULL */
-} scene_walk;
-
-static const uint64_t face_hash_start = UINT64_C(0xcbf29ce484222325);
-
-static affine affine_from_node(const struct aiNode *node)
+static size_t number_size(uint32_t position_type)
 {
-    const struct aiMatrix4x4 *t = &node->mTransformation;
-    const affine result = {{{(double)t->a1, (double)t->a2, (double)t->a3, (double)t->a4},
-                            {(double)t->b1, (double)t->b2, (double)t->b3, (double)t->b4},
-                            {(double)t->c1, (double)t->c2, (double)t->c3, (double)t->c4}}};
-    return result;
+    return position_type == SC_DOUBLE ? sizeof(double) : sizeof(float);
 }
 
-/* first after second */
-static affine affine_multiply(const affine *first, const affine *second)
-{
-    affine result;
-    for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 4; column++) {
-            double sum = column == 3 ? first->m[row][3] : 0.0;
-            for (int k = 0; k < 3; k++) sum += first->m[row][k] * second->m[k][column];
-            result.m[row][column] = sum;
-        }
-    }
-    return result;
-}
-
-static bool affine_is_identity(const affine *map)
-{
-    for (int row = 0; row < 3; row++) {
-        for (int column = 0; column < 4; column++) {
-            if (map->m[row][column] != (row == column ? 1.0 : 0.0)) return false;
-        }
-    }
-    return true;
-}
+/* ------------------------------------------------------------------------------------------------
+ * Reading
+ */
 
 static void add_to_hash(uint64_t *hash, uint32_t value)
 {
@@ -80,224 +32,137 @@ static void add_to_hash(uint64_t *hash, uint32_t value)
     }
 }
 
-static void copy_positions(const struct aiMesh *mesh, const affine *map, float *positions)
+/* FNV-1a (Fowler, Noll, Vo) over corner counts and corners. */
+static uint64_t hash_faces(const polygon_mesh *polygons)
 {
-    const bool identity = affine_is_identity(map);
-    for (uint32_t i = 0; i < mesh->mNumVertices; i++) {
-        const struct aiVector3D *v = &mesh->mVertices[i];
-        float *out = positions + 3 * (size_t)i;
-        if (identity) {
-            out[0] = v->x;
-            out[1] = v->y;
-            out[2] = v->z;
-            continue;
-        }
-        for (int row = 0; row < 3; row++) {
-            const double *m = map->m[row];
-            out[row] =
-                (float)(m[0] * (double)v->x + m[1] * (double)v->y + m[2] * (double)v->z + m[3]);
+    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    for (size_t f = 0; f < polygons->face_count; f++) {
+        add_to_hash(&hash, (uint32_t)(polygons->offsets[f + 1] - polygons->offsets[f]));
+        for (size_t c = polygons->offsets[f]; c < polygons->offsets[f + 1]; c++) {
+            add_to_hash(&hash, polygons->corners[c]);
         }
     }
+    return hash;
 }
 
-static void walk_mesh(scene_walk *walk, const struct aiMesh *mesh, const affine *map)
+static bool ends_with(const char *path, const char *lower, const char *upper)
 {
-    const uint32_t base = (uint32_t)walk->vertex_count;
-    if (walk->positions) copy_positions(mesh, map, walk->positions + 3 * walk->vertex_count);
-    for (uint32_t f = 0; f < mesh->mNumFaces; f++) {
-        const struct aiFace *face = &mesh->mFaces[f];
-        add_to_hash(&walk->face_hash, face->mNumIndices);
-        for (uint32_t k = 0; k < face->mNumIndices; k++) {
-            add_to_hash(&walk->face_hash, base + face->mIndices[k]);
-            if (face->mIndices[k] >= mesh->mNumVertices) walk->bad_index = true;
-        }
-        if (face->mNumIndices > 3) walk->has_polygons = true;
-        if (face->mNumIndices != 3) continue;
-        if (walk->indices) {
-            for (int k = 0; k < 3; k++) {
-                walk->indices[3 * walk->triangle_count + (uint64_t)k] = base + face->mIndices[k];
-            }
-        }
-        walk->triangle_count++;
-    }
-    walk->vertex_count += mesh->mNumVertices;
+    const size_t length = strlen(path), tail = strlen(lower);
+    if (length < tail) return false;
+    const char *end = path + length - tail;
+    return strcmp(end, lower) == 0 || strcmp(end, upper) == 0;
 }
 
-static void walk_node(scene_walk *walk, const struct aiNode *node, const affine *parent)
+/* Reads a file's polygons, of which there are some. */
+static bool read_polygons(polygon_mesh *polygons, const char *path,
+                          char error[MESH_FILE_ERROR_SIZE])
 {
-    if (!node) {
-        walk->bad_node = true;
-        return;
-    }
-    const affine own = affine_from_node(node);
-    const affine map = affine_multiply(parent, &own);
-    for (uint32_t i = 0; i < node->mNumMeshes; i++) {
-        walk_mesh(walk, walk->scene->mMeshes[node->mMeshes[i]], &map);
-    }
-    for (uint32_t i = 0; i < node->mNumChildren; i++) walk_node(walk, node->mChildren[i], &map);
-}
-
-/* Counts, and copies if there are arrays to copy to. */
-static scene_walk walk_scene(const struct aiScene *scene, float *positions, uint32_t *indices)
-{
-    const affine identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-    scene_walk walk;
-    memset(&walk, 0, sizeof walk);
-    walk.scene = scene;
-    walk.positions = positions;
-    walk.indices = indices;
-    walk.face_hash = face_hash_start;
-    if (scene->mRootNode) walk_node(&walk, scene->mRootNode, &identity);
-    return walk;
-}
-
-/*
- * Tells apart what assimp calls by one name: no file, no permission, a folder, nothing in it. And
- * refuses what it does not come back from: a pipe, which it would open once more, and PLY files
- * with headers that it believes too much of.
- */
-static bool check_file(const char *path, char error[MESH_FILE_ERROR_SIZE])
-{
-    struct stat what;
-    FILE *file = NULL;
-    char magic[3];
-    const char *reason = NULL;
-    errno = 0;
-    if (stat(path, &what) != 0) {
-        reason = strerror(errno);
-    } else if (S_ISFIFO(what.st_mode) || S_ISSOCK(what.st_mode) || S_ISCHR(what.st_mode)) {
-        reason = "a pipe or device; meshes are read from files, whose names tell the format";
-    } else if (!(file = fopen(path, "rb"))) {
-        reason = strerror(errno);
-    } else {
-        const size_t size = fread(magic, 1, sizeof magic, file);
-        if (size == 0)
-            reason = ferror(file) ? strerror(errno) : "the file is empty";
-        else if (size == 3 && memcmp(magic, "ply", 3) == 0)
-            reason = ply_header_check(file, (uint64_t)what.st_size);
-    }
-    if (reason) snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
-    if (file) fclose(file);
-    return reason == NULL;
-}
-
-/* Imports a file as it is, without post-processing, and counts what is in it. */
-static const struct aiScene *import_scene(const char *path, scene_walk *walk,
-                                          char error[MESH_FILE_ERROR_SIZE])
-{
-    if (!check_file(path, error)) return NULL;
-    const struct aiScene *scene = aiImportFile(path, 0);
-    if (!scene) {
-        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: cannot be read as a mesh: %s", path,
-                 aiGetErrorString());
-        return NULL;
-    }
-    *walk = walk_scene(scene, NULL, NULL);
-    const char *reason = NULL;
-    if (walk->bad_node)
-        reason = "cannot be read as a mesh: assimp gives a scene with missing nodes";
-    else if (walk->bad_index)
-        reason = "a face names a vertex that does not exist; is the file truncated?";
-    else if (walk->vertex_count >= UINT32_MAX)
-        reason = "too many vertices";
-    else if (walk->triangle_count == 0 && !walk->has_polygons)
-        reason = "no triangles in it";
-    if (reason) {
-        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
-        aiReleaseImport(scene);
-        return NULL;
-    }
-    return scene;
-}
-
-static bool read_scene(mesh_file *mesh, const char *path, char error[MESH_FILE_ERROR_SIZE])
-{
-    scene_walk counted;
-    const struct aiScene *scene = import_scene(path, &counted, error);
-    if (!scene) return false;
-    const uint64_t face_hash = counted.face_hash;
-    const uint64_t vertex_count = counted.vertex_count;
-    if (counted.has_polygons) {
-        scene = aiApplyPostProcessing(scene, aiProcess_Triangulate);
-        if (!scene) {
-            snprintf(error, MESH_FILE_ERROR_SIZE, "%s: its polygons cannot be triangulated: %s",
-                     path, aiGetErrorString());
-            return false;
-        }
-        counted = walk_scene(scene, NULL, NULL);
-    }
-    const char *reason = NULL;
-    if (counted.has_polygons || counted.bad_index || counted.vertex_count != vertex_count) {
-        reason = "its polygons cannot be triangulated";
-    } else if (counted.triangle_count == 0) {
-        reason = "no triangles in it";
-    } else if (counted.triangle_count > UINT32_MAX / 3) {
-        reason = "too many triangles";
-    } else if (!mesh_file_allocate(mesh, (uint32_t)vertex_count,
-                                   (uint32_t)counted.triangle_count)) {
-        reason = "out of memory";
-    }
-    if (reason) {
-        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
-    } else {
-        walk_scene(scene, mesh->positions, mesh->indices);
-        mesh->face_hash = face_hash;
-    }
-    aiReleaseImport(scene);
-    return reason == NULL;
-}
-
-/* Reads an OBJ or OFF file's polygons and hashes them as walk_mesh does. */
-static bool open_text(text_mesh *text, const char *path, uint64_t *face_hash,
-                      char error[MESH_FILE_ERROR_SIZE])
-{
-    if (!check_file(path, error)) return false;
-    if (!text_mesh_read(text, path, error, MESH_FILE_ERROR_SIZE)) return false;
-    if (text->face_count == 0) {
-        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: no triangles in it", path);
-        text_mesh_free(text);
+    const bool is_off = ends_with(path, ".off", ".OFF");
+    memset(polygons, 0, sizeof *polygons);
+    if (is_off || ends_with(path, ".obj", ".OBJ")) {
+        file_bytes bytes;
+        if (!file_bytes_read(&bytes, path, error, MESH_FILE_ERROR_SIZE)) return false;
+        const bool done =
+            text_mesh_read(polygons, path, is_off, bytes.data, error, MESH_FILE_ERROR_SIZE);
+        free(bytes.data);
+        if (!done) return false;
+    } else if (!scene_read(polygons, path, error, MESH_FILE_ERROR_SIZE)) {
         return false;
     }
-    *face_hash = face_hash_start;
-    for (size_t f = 0; f < text->face_count; f++) {
-        add_to_hash(face_hash, (uint32_t)(text->offsets[f + 1] - text->offsets[f]));
-        for (size_t c = text->offsets[f]; c < text->offsets[f + 1]; c++) {
-            add_to_hash(face_hash, text->corners[c]);
+    if (polygon_mesh_triangle_count(polygons) > 0) return true;
+    snprintf(error, MESH_FILE_ERROR_SIZE, "%s: no triangles in it", path);
+    polygon_mesh_free(polygons);
+    return false;
+}
+
+/* Whether a number that is not finite, which the library will refuse, or a float. */
+static bool is_float(double value)
+{
+    return !(fabs(value) <= (double)FLT_MAX) ? !isfinite(value) : (double)(float)value == value;
+}
+
+/* Makes doubles floats, in place. Larger than any float becomes infinite. */
+static void narrow(double *positions, size_t count)
+{
+    char *out = (char *)positions;
+    for (size_t i = 0; i < count; i++) {
+        const double value = positions[i];
+        const float single = fabs(value) <= (double)FLT_MAX || isnan(value) ? (float)value
+                             : value > 0.0                                  ? HUGE_VALF
+                                                                            : -HUGE_VALF;
+        memcpy(out + i * sizeof single, &single, sizeof single);
+    }
+}
+
+/* Takes the positions out of the polygons, as floats if that is what they are. */
+static void *take_positions(polygon_mesh *polygons, uint32_t *position_type)
+{
+    double *positions = polygons->positions;
+    const size_t count = 3 * polygons->vertex_count;
+    size_t floats = 0;
+    while (floats < count && is_float(positions[floats])) floats++;
+    *position_type = floats == count ? SC_FLOAT : SC_DOUBLE;
+    if (floats == count) narrow(positions, count);
+    polygons->positions = NULL;
+    void *fitting = realloc(positions, count * number_size(*position_type));
+    return fitting ? fitting : positions;
+}
+
+/* Cuts faces into triangles, and notes which are of which face if that is not plain. */
+static bool make_triangles(mesh_file *mesh, const polygon_mesh *polygons)
+{
+    mesh->face_count = (uint32_t)polygons->face_count;
+    mesh->indices = (uint32_t *)malloc(3 * (size_t)mesh->triangle_count * sizeof(uint32_t));
+    bool plain = mesh->face_count == mesh->triangle_count;
+    for (size_t f = 0; plain && f < polygons->face_count; f++) {
+        plain = polygons->offsets[f + 1] - polygons->offsets[f] == 3;
+    }
+    if (!plain)
+        mesh->face_of_triangle =
+            (uint32_t *)malloc((size_t)mesh->triangle_count * sizeof(uint32_t));
+    if (!mesh->indices || (!plain && !mesh->face_of_triangle)) return false;
+    size_t triangle = 0;
+    for (size_t f = 0; f < polygons->face_count; f++) {
+        const uint32_t *corners = polygons->corners + polygons->offsets[f];
+        const uint32_t count = (uint32_t)(polygons->offsets[f + 1] - polygons->offsets[f]);
+        if (count < 3) continue;
+        polygon_mesh_triangulate(polygons->positions, corners, count, mesh->indices + 3 * triangle);
+        for (uint32_t t = 2; t < count; t++, triangle++) {
+            if (!plain) mesh->face_of_triangle[triangle] = (uint32_t)f;
         }
     }
     return true;
 }
 
-static bool read_text(mesh_file *mesh, const char *path, char error[MESH_FILE_ERROR_SIZE])
-{
-    text_mesh text;
-    uint64_t face_hash;
-    if (!open_text(&text, path, &face_hash, error)) return false;
-    const size_t triangle_count = text.offsets[text.face_count] - 2 * text.face_count;
-    const char *reason = NULL;
-    if (triangle_count > UINT32_MAX / 3) {
-        reason = "too many triangles";
-    } else if (!mesh_file_allocate(mesh, (uint32_t)text.vertex_count, (uint32_t)triangle_count)) {
-        reason = "out of memory";
-    } else {
-        memcpy(mesh->positions, text.positions, 3 * text.vertex_count * sizeof(float));
-        mesh->face_hash = face_hash;
-        uint32_t *out = mesh->indices;
-        for (size_t f = 0; f < text.face_count; f++) {
-            const uint32_t count = (uint32_t)(text.offsets[f + 1] - text.offsets[f]);
-            text_mesh_triangulate(mesh->positions, text.corners + text.offsets[f], count, out);
-            out += 3 * ((size_t)count - 2);
-        }
-    }
-    if (reason) snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
-    text_mesh_free(&text);
-    return reason == NULL;
-}
-
 bool mesh_file_read(mesh_file *mesh, const char *path, char error[MESH_FILE_ERROR_SIZE])
 {
+    polygon_mesh polygons;
     memset(mesh, 0, sizeof *mesh);
-    return text_mesh_knows(path) ? read_text(mesh, path, error) : read_scene(mesh, path, error);
+    if (!read_polygons(&polygons, path, error)) return false;
+    const uint64_t triangle_count = polygon_mesh_triangle_count(&polygons);
+    const char *reason = triangle_count > UINT32_MAX / 3 ? "too many triangles" : NULL;
+    if (!reason) {
+        mesh->vertex_count = (uint32_t)polygons.vertex_count;
+        mesh->triangle_count = (uint32_t)triangle_count;
+        if (!make_triangles(mesh, &polygons)) reason = "out of memory";
+    }
+    if (reason) {
+        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
+        mesh_file_free(mesh);
+    } else {
+        mesh->face_hash = hash_faces(&polygons);
+        mesh->positions = take_positions(&polygons, &mesh->position_type);
+        mesh->object_count = polygons.object_count;
+        mesh->object_names = polygons.object_names;
+        mesh->object_of_face = polygons.object_of_face;
+        mesh->rounded = polygons.rounded;
+        mesh->has_animation = polygons.has_animation;
+        polygons.object_count = 0;
+        polygons.object_names = NULL;
+        polygons.object_of_face = NULL;
+    }
+    polygon_mesh_free(&polygons);
+    return reason == NULL;
 }
 
 /* Says why a file is not a pose of rest, if it is not. */
@@ -316,54 +181,83 @@ static bool check_pose(const mesh_file *rest, const char *path, uint64_t vertex_
     return vertex_count == rest->vertex_count && face_hash == rest->face_hash;
 }
 
-bool mesh_file_read_pose(const mesh_file *rest, const char *path, float *positions,
+bool mesh_file_read_pose(const mesh_file *rest, const char *path, mesh_pose *pose,
                          char error[MESH_FILE_ERROR_SIZE])
 {
-    bool good;
-    if (text_mesh_knows(path)) {
-        text_mesh text;
-        uint64_t face_hash;
-        if (!open_text(&text, path, &face_hash, error)) return false;
-        good = check_pose(rest, path, text.vertex_count, face_hash, error);
-        if (good) memcpy(positions, text.positions, 3 * text.vertex_count * sizeof(float));
-        text_mesh_free(&text);
-    } else {
-        scene_walk counted;
-        const struct aiScene *scene = import_scene(path, &counted, error);
-        if (!scene) return false;
-        good = check_pose(rest, path, counted.vertex_count, counted.face_hash, error);
-        if (good) walk_scene(scene, positions, NULL);
-        aiReleaseImport(scene);
+    polygon_mesh polygons;
+    memset(pose, 0, sizeof *pose);
+    if (!read_polygons(&polygons, path, error)) return false;
+    const bool fits = check_pose(rest, path, polygons.vertex_count, hash_faces(&polygons), error);
+    if (fits) {
+        pose->positions = take_positions(&polygons, &pose->position_type);
+        pose->rounded = polygons.rounded;
+        pose->has_animation = polygons.has_animation;
     }
-    return good;
+    polygon_mesh_free(&polygons);
+    return fits;
 }
+
+void mesh_pose_free(mesh_pose *pose)
+{
+    free(pose->positions);
+    memset(pose, 0, sizeof *pose);
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Meshes
+ */
 
 bool mesh_file_allocate(mesh_file *mesh, uint32_t vertex_count, uint32_t triangle_count)
 {
     memset(mesh, 0, sizeof *mesh);
-    mesh->positions = (float *)malloc(3 * (size_t)vertex_count * sizeof(float));
+    mesh->positions = malloc(3 * (size_t)vertex_count * sizeof(float));
     mesh->indices = (uint32_t *)malloc(3 * (size_t)triangle_count * sizeof(uint32_t));
     if (!mesh->positions || !mesh->indices) {
         mesh_file_free(mesh);
         return false;
     }
+    mesh->position_type = SC_FLOAT;
     mesh->vertex_count = vertex_count;
-    mesh->triangle_count = triangle_count;
+    mesh->triangle_count = mesh->face_count = triangle_count;
     return true;
 }
 
 void mesh_file_free(mesh_file *mesh)
 {
+    for (uint32_t i = 0; i < mesh->object_count; i++) free(mesh->object_names[i]);
+    free(mesh->object_names);
+    free(mesh->object_of_face);
+    free(mesh->face_of_triangle);
     free(mesh->positions);
     free(mesh->indices);
     memset(mesh, 0, sizeof *mesh);
 }
 
-/* The bits of a position, those of -0 taken as those of 0. */
-static void position_key(const float *position, uint32_t key[3])
+void mesh_file_position(const void *positions, uint32_t position_type, size_t vertex,
+                        double position[3])
 {
+    for (size_t k = 0; k < 3; k++) {
+        position[k] = position_type == SC_DOUBLE
+                          ? ((const double *)positions)[3 * vertex + k]
+                          : (double)((const float *)positions)[3 * vertex + k];
+    }
+}
+
+float *mesh_file_floats(mesh_file *mesh)
+{
+    if (mesh->position_type == SC_DOUBLE)
+        narrow((double *)mesh->positions, 3 * (size_t)mesh->vertex_count);
+    mesh->position_type = SC_FLOAT;
+    return (float *)mesh->positions;
+}
+
+/* The bits of a position, those of -0 taken as those of 0. */
+static void position_key(const mesh_file *mesh, size_t vertex, uint64_t key[3])
+{
+    double position[3];
+    mesh_file_position(mesh->positions, mesh->position_type, vertex, position);
     for (int k = 0; k < 3; k++) {
-        const float value = position[k] == 0.0f ? 0.0f : position[k];
+        const double value = position[k] == 0.0 ? 0.0 : position[k];
         memcpy(&key[k], &value, sizeof value);
     }
 }
@@ -382,8 +276,8 @@ uint32_t *mesh_file_weld_map(const mesh_file *mesh)
     }
     memset(table, 0xff, (size_t)slots * sizeof *table);
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        uint32_t key[3], other[3];
-        position_key(mesh->positions + 3 * (size_t)v, key);
+        uint64_t key[3], other[3];
+        position_key(mesh, v, key);
         uint64_t hash = UINT64_C(0x9e3779b97f4a7c15);
         for (int k = 0; k < 3; k++) {
             hash = (hash ^ key[k]) * UINT64_C(0xff51afd7ed558ccd);
@@ -391,7 +285,7 @@ uint32_t *mesh_file_weld_map(const mesh_file *mesh)
         }
         uint64_t slot = hash & (slots - 1);
         for (; table[slot] != UINT32_MAX; slot = (slot + 1) & (slots - 1)) {
-            position_key(mesh->positions + 3 * (size_t)table[slot], other);
+            position_key(mesh, table[slot], other);
             if (memcmp(key, other, sizeof key) == 0) break;
         }
         if (table[slot] == UINT32_MAX) table[slot] = v;
@@ -405,14 +299,15 @@ bool mesh_file_join(mesh_file *mesh)
 {
     uint32_t *map = mesh_file_weld_map(mesh);
     if (!map) return false;
+    const size_t size = 3 * number_size(mesh->position_type);
+    char *positions = (char *)mesh->positions;
     uint32_t count = 0;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         if (map[v] != v) {
             map[v] = map[map[v]]; /* lower, hence renumbered already */
             continue;
         }
-        memmove(mesh->positions + 3 * (size_t)count, mesh->positions + 3 * (size_t)v,
-                3 * sizeof(float));
+        memmove(positions + size * count, positions + size * v, size);
         map[v] = count++;
     }
     for (size_t c = 0; c < 3 * (size_t)mesh->triangle_count; c++) {

@@ -5,6 +5,8 @@
  */
 #include "ply_write.h"
 
+#include "starcontour.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -14,25 +16,34 @@ static uint8_t *put_uint32(uint8_t *out, uint32_t value)
     return out;
 }
 
-bool ply_write(const char *path, const float *positions, uint32_t vertex_count,
-               const uint32_t *indices, uint32_t triangle_count, const uint8_t *colors)
+bool ply_write(const char *path, const void *positions, uint32_t position_type,
+               uint32_t vertex_count, const uint32_t *indices, uint32_t triangle_count,
+               const uint8_t *colors)
 {
     FILE *file = fopen(path, "wb");
     if (!file) return false;
+    const char *type = position_type == SC_DOUBLE ? "double" : "float";
     fprintf(file,
             "ply\nformat binary_little_endian 1.0\ncomment written by starcontour\n"
-            "element vertex %lu\nproperty float x\nproperty float y\nproperty float z\n"
+            "element vertex %lu\nproperty %s x\nproperty %s y\nproperty %s z\n"
             "element face %lu\nproperty list uchar int vertex_indices\n%send_header\n",
-            (unsigned long)vertex_count, (unsigned long)triangle_count,
+            (unsigned long)vertex_count, type, type, type, (unsigned long)triangle_count,
             colors ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "");
     for (uint32_t v = 0; v < vertex_count; v++) {
-        uint8_t record[12], *out = record;
+        uint8_t record[24], *out = record;
         for (size_t k = 0; k < 3; k++) {
-            uint32_t bits;
-            memcpy(&bits, &positions[3 * (size_t)v + k], sizeof bits);
-            out = put_uint32(out, bits);
+            const size_t at = 3 * (size_t)v + k;
+            if (position_type == SC_DOUBLE) {
+                uint64_t bits;
+                memcpy(&bits, (const double *)positions + at, sizeof bits);
+                out = put_uint32(put_uint32(out, (uint32_t)bits), (uint32_t)(bits >> 32));
+            } else {
+                uint32_t bits;
+                memcpy(&bits, (const float *)positions + at, sizeof bits);
+                out = put_uint32(out, bits);
+            }
         }
-        fwrite(record, sizeof record, 1, file);
+        fwrite(record, (size_t)(out - record), 1, file);
     }
     for (uint32_t t = 0; t < triangle_count; t++) {
         uint8_t record[16], *out = record;

@@ -82,14 +82,17 @@ bool query_subject_fits(const query_subject *subject, const char *path, const me
 }
 
 bool query_subject_keeps_welds(const query_subject *subject, const mesh_file *mesh,
-                               const char *path, const float *positions,
+                               const char *path, const void *positions, uint32_t position_type,
                                char error[MESH_FILE_ERROR_SIZE])
 {
     if (!subject->weld_map) return true;
     for (size_t c = 0; c < 3 * (size_t)mesh->triangle_count; c++) {
         const uint32_t vertex = mesh->indices[c], joined = subject->weld_map[vertex];
-        const float *a = positions + 3 * (size_t)vertex, *b = positions + 3 * (size_t)joined;
-        if (vertex == joined || (a[0] == b[0] && a[1] == b[1] && a[2] == b[2])) continue;
+        if (vertex == joined) continue;
+        double a[3], b[3];
+        mesh_file_position(positions, position_type, vertex, a);
+        mesh_file_position(positions, position_type, joined, b);
+        if (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]) continue;
         snprintf(error, MESH_FILE_ERROR_SIZE,
                  "%s: vertices %lu and %lu are at one place in the rest mesh but not in this pose; "
                  "is it another mesh? If they are to move apart, use --weld none",

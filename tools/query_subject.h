@@ -47,7 +47,7 @@ bool query_subject_fits(const query_subject *subject, const char *path, const me
 
 /* Welded vertices that a pose takes apart would be read from one of them only: refuse that. */
 bool query_subject_keeps_welds(const query_subject *subject, const mesh_file *mesh,
-                               const char *path, const float *positions,
+                               const char *path, const void *positions, uint32_t position_type,
                                char error[MESH_FILE_ERROR_SIZE]);
 
 /* Frees everything and empties the subject. */

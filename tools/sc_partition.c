@@ -81,24 +81,22 @@ typedef struct partition_view {
 
 static double side_length(const mesh_file *mesh, const mesh_side *side)
 {
-    const float *a = mesh->positions + 3 * (size_t)side->low;
-    const float *b = mesh->positions + 3 * (size_t)side->high;
-    double sum = 0.0;
-    for (int k = 0; k < 3; k++) {
-        const double d = (double)b[k] - (double)a[k];
-        sum += d * d;
-    }
+    double a[3], b[3], sum = 0.0;
+    mesh_file_position(mesh->positions, mesh->position_type, side->low, a);
+    mesh_file_position(mesh->positions, mesh->position_type, side->high, b);
+    for (int k = 0; k < 3; k++) sum += (b[k] - a[k]) * (b[k] - a[k]);
     return sqrt(sum);
 }
 
 static double triangle_area(const mesh_file *mesh, uint32_t triangle)
 {
     const uint32_t *v = mesh->indices + 3 * (size_t)triangle;
-    double u[3], w[3], sum = 0.0;
+    double p[3][3], u[3], w[3], sum = 0.0;
+    for (int k = 0; k < 3; k++)
+        mesh_file_position(mesh->positions, mesh->position_type, v[k], p[k]);
     for (int k = 0; k < 3; k++) {
-        const double a = (double)mesh->positions[3 * (size_t)v[0] + (size_t)k];
-        u[k] = (double)mesh->positions[3 * (size_t)v[1] + (size_t)k] - a;
-        w[k] = (double)mesh->positions[3 * (size_t)v[2] + (size_t)k] - a;
+        u[k] = p[1][k] - p[0][k];
+        w[k] = p[2][k] - p[0][k];
     }
     for (int k = 0; k < 3; k++) {
         const double n = u[(k + 1) % 3] * w[(k + 2) % 3] - u[(k + 2) % 3] * w[(k + 1) % 3];
@@ -354,8 +352,8 @@ static bool write_picture(partition_view *view, const partition_settings *set)
         patch_color(view->patches[t], colors + 3 * (size_t)t);
     }
     errno = 0;
-    const bool written = ply_write(set->ply_path, mesh->positions, mesh->vertex_count,
-                                   mesh->indices, mesh->triangle_count, colors);
+    const bool written = ply_write(set->ply_path, mesh->positions, mesh->position_type,
+                                   mesh->vertex_count, mesh->indices, mesh->triangle_count, colors);
     if (!written) tool_error("%s: cannot be written: %s", set->ply_path, strerror(errno));
     free(colors);
     return written;

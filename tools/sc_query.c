@@ -317,7 +317,7 @@ static bool run_pose(const query_subject *subject, const char *path, const sc_po
     return status == SC_OK;
 }
 
-static bool write_ply(const mesh_file *mesh, const float *positions, const settings *set,
+static bool write_ply(const mesh_file *mesh, const sc_pose *pose, const settings *set,
                       const pair_list *list)
 {
     const uint32_t count = mesh->triangle_count;
@@ -335,8 +335,8 @@ static bool write_ply(const mesh_file *mesh, const float *positions, const setti
         memcpy(colors + 3 * (size_t)pair.b, red, 3);
     }
     errno = 0;
-    const bool written =
-        ply_write(set->ply_path, positions, mesh->vertex_count, mesh->indices, count, colors);
+    const bool written = ply_write(set->ply_path, pose->positions, pose->position_type,
+                                   mesh->vertex_count, mesh->indices, count, colors);
     if (!written) tool_error("%s: cannot be written: %s", set->ply_path, strerror(errno));
     free(colors);
     return written;
@@ -543,12 +543,14 @@ static void follow_model(settings *set, const sc_model *model)
 
 /* Does one file. rest is the common subject of --rest or --model, or NULL. Returns an exit
    status. */
-static int do_file(const char *path, const settings *set, const query_subject *rest,
-                   float *pose_positions, FILE *out, pair_list *list)
+static int do_file(const char *path, const settings *set, const query_subject *rest, FILE *out,
+                   pair_list *list)
 {
     char error[MESH_FILE_ERROR_SIZE];
     query_subject own;
     memset(&own, 0, sizeof own);
+    mesh_pose moved; /* of --rest */
+    memset(&moved, 0, sizeof moved);
     file_answer answer;
     memset(&answer, 0, sizeof answer);
     answer.path = path;
@@ -557,26 +559,28 @@ static int do_file(const char *path, const settings *set, const query_subject *r
                                    0,         false};
     const query_subject *subject = rest ? rest : &own;
     const mesh_file *mesh = set->rest_path ? &rest->mesh : &own.mesh;
-    const float *positions = pose_positions;
     bool done;
     if (set->rest_path) {
-        done = mesh_file_read_pose(&rest->mesh, path, pose_positions, error) &&
-               query_subject_keeps_welds(rest, mesh, path, pose_positions, error);
+        done = mesh_file_read_pose(&rest->mesh, path, &moved, error) &&
+               query_subject_keeps_welds(rest, mesh, path, moved.positions, moved.position_type,
+                                         error);
     } else if (rest) {
         done = mesh_file_read(&own.mesh, path, error) &&
                query_subject_fits(rest, path, mesh, error) &&
-               query_subject_keeps_welds(rest, mesh, path, mesh->positions, error);
-        positions = mesh->positions;
+               query_subject_keeps_welds(rest, mesh, path, mesh->positions, mesh->position_type,
+                                         error);
     } else {
         done = query_subject_load(&own, path, &how, error);
-        positions = own.mesh.positions;
     }
-    const sc_pose pose = tool_pose(positions, mesh->vertex_count);
+    const sc_pose pose = set->rest_path
+                             ? tool_pose(moved.positions, moved.position_type, mesh->vertex_count)
+                             : tool_pose(mesh->positions, mesh->position_type, mesh->vertex_count);
     const bool recorded = !done || !set->record_path || write_record(subject, &pose, set);
     if (done) done = run_pose(subject, path, &pose, set, list, &answer, error);
     int status = report(&answer, set, done, error, out, list);
     if (!recorded) status = TOOL_FAILED;
-    if (done && set->ply_path && !write_ply(mesh, positions, set, list)) status = TOOL_FAILED;
+    if (done && set->ply_path && !write_ply(mesh, &pose, set, list)) status = TOOL_FAILED;
+    mesh_pose_free(&moved);
     query_subject_free(&own);
     return status;
 }
@@ -669,7 +673,6 @@ static int do_files(char **paths, int path_count, settings *set)
     query_subject rest;
     memset(&rest, 0, sizeof rest);
     pair_list list = {NULL, 0, 0, NULL};
-    float *pose_positions = NULL;
     FILE *out = NULL;
     int status = TOOL_CLEAN;
 
@@ -680,11 +683,6 @@ static int do_files(char **paths, int path_count, settings *set)
         if (!query_subject_load(&rest, set->rest_path, &how, error)) {
             tool_error("%s", error);
             return TOOL_FAILED;
-        }
-        pose_positions = (float *)malloc(3 * (size_t)rest.mesh.vertex_count * sizeof(float));
-        if (!pose_positions) {
-            tool_error("%s: out of memory", set->rest_path);
-            status = TOOL_FAILED;
         }
     } else if (set->model_path) {
         char error[MESH_FILE_ERROR_SIZE];
@@ -708,7 +706,7 @@ static int do_files(char **paths, int path_count, settings *set)
         if (!set->json) print_table_head(set);
         if (set->replay_path) status = do_replay(set, out, &list);
         for (int i = 0; i < path_count; i++) {
-            const int done = do_file(paths[i], set, common, pose_positions, out, &list);
+            const int done = do_file(paths[i], set, common, out, &list);
             status = query_text_worse(status, done);
         }
     }
@@ -719,7 +717,6 @@ static int do_files(char **paths, int path_count, settings *set)
             status = TOOL_FAILED;
         }
     }
-    free(pose_positions);
     free(list.pairs);
     free(list.contacts);
     query_subject_free(&rest);

@@ -27,7 +27,7 @@ bool shape_make_grid(mesh_file *mesh, uint32_t cells)
     if (!mesh_file_allocate(mesh, side * side, 2 * cells * cells)) return false;
     for (uint32_t row = 0; row < side; row++) {
         for (uint32_t column = 0; column < side; column++) {
-            float *out = mesh->positions + 3 * ((size_t)row * side + column);
+            float *out = (float *)mesh->positions + 3 * ((size_t)row * side + column);
             out[0] = (float)(2.0 * column / cells - 1.0);
             out[1] = (float)(2.0 * row / cells - 1.0);
             out[2] = 0.0f;
@@ -52,7 +52,7 @@ bool shape_make_grid(mesh_file *mesh, uint32_t cells)
 static void normalize_positions(mesh_file *mesh)
 {
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        float *p = mesh->positions + 3 * (size_t)v;
+        float *p = (float *)mesh->positions + 3 * (size_t)v;
         const double x = (double)p[0], y = (double)p[1], z = (double)p[2];
         const double length = sqrt(x * x + y * y + z * z);
         p[0] = (float)(x / length);
@@ -73,7 +73,7 @@ bool shape_make_sphere(mesh_file *mesh, uint32_t level)
     if (level > 11 || !mesh_file_allocate(mesh, 12, 20)) return false;
     for (int v = 0; v < 12; v++) {
         const int plane = v / 4;
-        float *p = mesh->positions + 3 * v;
+        float *p = (float *)mesh->positions + 3 * v;
         p[plane] = v & 1 ? 1.0f : -1.0f;
         p[(plane + 1) % 3] = v & 2 ? -golden : golden;
         p[(plane + 2) % 3] = 0.0f;
@@ -116,11 +116,13 @@ bool shape_subdivide(mesh_file *mesh)
                mesh_file_allocate(&fine, mesh->vertex_count + edges, 4 * mesh->triangle_count);
     }
     if (done) {
-        memcpy(fine.positions, mesh->positions, 3 * (size_t)mesh->vertex_count * sizeof(float));
+        const float *from = mesh_file_floats(mesh);
+        float *to = (float *)fine.positions;
+        memcpy(to, from, 3 * (size_t)mesh->vertex_count * sizeof(float));
         for (size_t c = 0; c < side_count; c++) {
-            const float *low = mesh->positions + 3 * (size_t)sides[c].low;
-            const float *high = mesh->positions + 3 * (size_t)sides[c].high;
-            float *out = fine.positions + 3 * (size_t)middle[sides[c].corner];
+            const float *low = from + 3 * (size_t)sides[c].low;
+            const float *high = from + 3 * (size_t)sides[c].high;
+            float *out = to + 3 * (size_t)middle[sides[c].corner];
             for (int k = 0; k < 3; k++) out[k] = (float)(((double)low[k] + (double)high[k]) / 2.0);
         }
         for (uint32_t t = 0; t < mesh->triangle_count; t++) {

@@ -18,8 +18,8 @@ bool shape_make_grid(mesh_file *mesh, uint32_t cells);
 /* A unit sphere: an icosahedron subdivided level times, 20 * 4^level triangles. */
 bool shape_make_sphere(mesh_file *mesh, uint32_t level);
 
-/* Cuts every triangle into four at the midpoints of its sides. Join vertices first; on failure the
-   mesh is as it was. */
+/* Cuts every triangle into four at the midpoints of its sides. Positions are rounded
+   to floats. Join vertices first; on failure the mesh is as it was. */
 bool shape_subdivide(mesh_file *mesh);
 
 #endif /* TOOLS_SHAPE_H */

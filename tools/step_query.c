@@ -28,7 +28,7 @@ static const char *const kind_names[KINDS] = {"vertex-face", "edge-edge"};
 
 /* A frame's positions. */
 typedef struct frame {
-    float *positions;
+    mesh_pose pose;
     char error[MESH_FILE_ERROR_SIZE]; /* why it could not be read, or empty */
 } frame;
 
@@ -160,7 +160,8 @@ static bool ask(step_run *run, const frame *from, const frame *to, step_answer *
                 char error[MESH_FILE_ERROR_SIZE])
 {
     const uint32_t count = run->mesh->vertex_count;
-    const sc_pose poses[2] = {tool_pose(from->positions, count), tool_pose(to->positions, count)};
+    const sc_pose poses[2] = {tool_pose(from->pose.positions, from->pose.position_type, count),
+                              tool_pose(to->pose.positions, to->pose.position_type, count)};
     answer->build_ms = run->subject.build_ms;
     answer->info.struct_size = sizeof answer->info;
     sc_status status = sc_model_get_info(run->subject.model, &answer->info);
@@ -354,20 +355,40 @@ static bool open_run(step_run *run, const char *first, char error[MESH_FILE_ERRO
             return false;
         run->mesh = &run->subject.mesh;
     }
-    for (int i = 0; i < 2; i++) {
-        run->frames[i].positions =
-            (float *)malloc(3 * (size_t)run->mesh->vertex_count * sizeof(float));
-        if (run->frames[i].positions) continue;
-        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: out of memory", first);
-        return false;
-    }
     return true;
 }
 
 static void read_frame(const step_run *run, const char *path, frame *to)
 {
-    if (mesh_file_read_pose(run->mesh, path, to->positions, to->error) &&
-        query_subject_keeps_welds(&run->subject, run->mesh, path, to->positions, to->error))
+    mesh_pose_free(&to->pose);
+    if (mesh_file_read_pose(run->mesh, path, &to->pose, to->error) &&
+        query_subject_keeps_welds(&run->subject, run->mesh, path, to->pose.positions,
+                                  to->pose.position_type, to->error))
+        to->error[0] = '\0';
+}
+
+/* The first frame, which unless there is a rest mesh was read already, and a pipe cannot be read
+   twice. */
+static void take_first(const step_run *run, const char *path, frame *to)
+{
+    const mesh_file *mesh = run->mesh;
+    if (run->set->rest_path) {
+        read_frame(run, path, to);
+        return;
+    }
+    const size_t number = mesh->position_type == SC_DOUBLE ? sizeof(double) : sizeof(float);
+    const size_t size = 3 * (size_t)mesh->vertex_count * number;
+    to->pose.positions = malloc(size);
+    if (!to->pose.positions) {
+        snprintf(to->error, sizeof to->error, "%s: out of memory", path);
+        return;
+    }
+    memcpy(to->pose.positions, mesh->positions, size);
+    to->pose.position_type = mesh->position_type;
+    to->pose.rounded = mesh->rounded;
+    to->pose.has_animation = mesh->has_animation;
+    if (query_subject_keeps_welds(&run->subject, mesh, path, to->pose.positions,
+                                  to->pose.position_type, to->error))
         to->error[0] = '\0';
 }
 
@@ -382,7 +403,7 @@ static int do_steps(step_run *run, char **paths, uint32_t count)
     if (!run->set->json) print_table_head(run->set);
     if (run->out) fputs("start,end,kind,a,b,time\n", run->out);
     frame *from = &run->frames[0], *to = &run->frames[1];
-    read_frame(run, paths[0], from);
+    take_first(run, paths[0], from);
     for (uint32_t i = 1; i < count; i++) {
         step_answer answer;
         memset(&answer, 0, sizeof answer);
@@ -444,7 +465,7 @@ int step_query_frames(char **paths, int count, const step_settings *set)
     for (int i = 0; i < KINDS; i++) {
         free(run.lists[i].pairs);
         free(run.lists[i].times);
-        free(run.frames[i].positions);
+        mesh_pose_free(&run.frames[i].pose);
     }
     mesh_file_free(&run.first);
     query_subject_free(&run.subject);

@@ -14,13 +14,11 @@
 /* A file being read, line by line. */
 typedef struct text_reader {
     const char *path;
-    char *text; /* the whole file, with a 0 after it */
     char *next; /* the line after the present one */
     unsigned long line;
     char *error;
     size_t error_size;
-    text_mesh *mesh;
-    size_t vertex_room, corner_room, face_room; /* allocated entries */
+    polygon_mesh *mesh;
 } text_reader;
 
 static bool fail(text_reader *reader, const char *reason)
@@ -28,57 +26,6 @@ static bool fail(text_reader *reader, const char *reason)
     snprintf(reader->error, reader->error_size, "%s: line %lu: %s", reader->path, reader->line,
              reason);
     return false;
-}
-
-static bool ends_with(const char *path, const char *lower, const char *upper)
-{
-    const size_t length = strlen(path), tail = strlen(lower);
-    if (length < tail) return false;
-    const char *end = path + length - tail;
-    return strcmp(end, lower) == 0 || strcmp(end, upper) == 0;
-}
-
-bool text_mesh_knows(const char *path)
-{
-    return ends_with(path, ".obj", ".OBJ") || ends_with(path, ".off", ".OFF");
-}
-
-/* Grows an array to hold more than count entries. */
-static bool reserve(void **array, size_t *room, size_t count, size_t size)
-{
-    if (count < *room) return true;
-    const size_t wanted = *room < 1024 ? 1024 : 2 * *room;
-    void *grown = wanted > SIZE_MAX / size ? NULL : realloc(*array, wanted * size);
-    if (!grown) return false;
-    *array = grown;
-    *room = wanted;
-    return true;
-}
-
-static char *read_whole(const char *path, char *error, size_t error_size)
-{
-    errno = 0;
-    FILE *file = fopen(path, "rb");
-    void *text = NULL;
-    size_t size = 0, room = 0;
-    bool good = file != NULL;
-    while (good) {
-        good = reserve(&text, &room, size + 65536, 1);
-        if (!good) continue;
-        const size_t got = fread((char *)text + size, 1, room - size - 1, file);
-        size += got;
-        if (got == 0) break;
-    }
-    good = good && !ferror(file);
-    if (!good) {
-        snprintf(error, error_size, "%s: %s", path, errno ? strerror(errno) : "out of memory");
-        free(text);
-        text = NULL;
-    } else {
-        ((char *)text)[size] = 0;
-    }
-    if (file) fclose(file);
-    return (char *)text;
 }
 
 static bool is_space(char c)
@@ -121,53 +68,45 @@ static char *next_line(text_reader *reader, bool continues)
     return NULL;
 }
 
+/* Says that a coordinate is larger than any double, with its text up to the next space. */
+static bool fail_overflow(text_reader *reader, const char *at)
+{
+    at += strspn(at, " \t\r\v\f");
+    snprintf(reader->error, reader->error_size,
+             "%s: line %lu: vertex %lu: %.*s is too large for a double", reader->path, reader->line,
+             (unsigned long)reader->mesh->vertex_count, (int)strcspn(at, " \t\r\v\f"), at);
+    return false;
+}
+
 static bool add_vertex(text_reader *reader, char *at)
 {
-    text_mesh *const mesh = reader->mesh;
-    void *array = mesh->positions;
-    if (!reserve(&array, &reader->vertex_room, mesh->vertex_count, 3 * sizeof(float))) {
-        return fail(reader, "out of memory");
-    }
-    mesh->positions = (float *)array;
+    double position[3];
     for (size_t k = 0; k < 3; k++) {
         char *end;
-        mesh->positions[3 * mesh->vertex_count + k] = strtof(at, &end);
+        errno = 0;
+        position[k] = strtod(at, &end);
         if (end == at || (*end && !is_space(*end))) {
             return fail(reader, "a vertex needs three numbers");
         }
+        if (errno == ERANGE && fabs(position[k]) > 1.0) return fail_overflow(reader, at);
         at = end;
     }
-    if (mesh->vertex_count >= UINT32_MAX - 1) return fail(reader, "too many vertices");
-    mesh->vertex_count++;
+    if (reader->mesh->vertex_count >= UINT32_MAX - 1) return fail(reader, "too many vertices");
+    if (!polygon_mesh_add_vertex(reader->mesh, position)) return fail(reader, "out of memory");
     return true;
 }
 
-/* Puts a corner to the face that is being read, the one after the last. */
-static bool add_corner(text_reader *reader, size_t index, size_t count)
+static bool add_corner(text_reader *reader, size_t index, size_t vertex)
 {
-    text_mesh *const mesh = reader->mesh;
-    void *array = mesh->corners;
-    const size_t at = mesh->offsets[mesh->face_count] + index;
-    if (!reserve(&array, &reader->corner_room, at, sizeof(uint32_t))) {
+    if (!polygon_mesh_add_corner(reader->mesh, index, (uint32_t)vertex))
         return fail(reader, "out of memory");
-    }
-    mesh->corners = (uint32_t *)array;
-    mesh->corners[at] = (uint32_t)count;
     return true;
 }
 
-/* Ends the face that is being read; points and lines are dropped. */
 static bool end_face(text_reader *reader, size_t corner_count)
 {
-    text_mesh *const mesh = reader->mesh;
-    if (corner_count < 3) return true;
-    void *array = mesh->offsets;
-    if (!reserve(&array, &reader->face_room, mesh->face_count + 1, sizeof(size_t))) {
-        return fail(reader, "out of memory");
-    }
-    mesh->offsets = (size_t *)array;
-    mesh->offsets[mesh->face_count + 1] = mesh->offsets[mesh->face_count] + corner_count;
-    mesh->face_count++;
+    if (reader->mesh->face_count >= UINT32_MAX - 1) return fail(reader, "too many faces");
+    if (!polygon_mesh_end_face(reader->mesh, corner_count)) return fail(reader, "out of memory");
     return true;
 }
 
@@ -194,26 +133,50 @@ static bool read_obj_face(text_reader *reader, char *at)
     return end_face(reader, count);
 }
 
+/* The name behind o or g, which may have spaces inside. */
+static bool read_obj_name(text_reader *reader, char kind, char *at)
+{
+    at = skip_space(at);
+    size_t length = strlen(at);
+    while (length && is_space(at[length - 1])) length--;
+    if (!polygon_mesh_mark(reader->mesh, kind, at, length)) return fail(reader, "out of memory");
+    return true;
+}
+
+/* The objects, or the groups where they say more. */
+static bool name_obj_parts(text_reader *reader)
+{
+    const size_t objects = polygon_mesh_marked(reader->mesh, 'o');
+    const bool by_group = objects < 2 && polygon_mesh_marked(reader->mesh, 'g') > objects;
+    if (!polygon_mesh_name_objects(reader->mesh, by_group ? 'g' : 'o', true))
+        return fail(reader, "out of memory");
+    return true;
+}
+
 static bool read_obj(text_reader *reader)
 {
     for (char *at; (at = next_line(reader, true)) != NULL;) {
+        const bool is_word = is_space(at[1]) || !at[1];
         if (at[0] == 'v' && is_space(at[1])) {
             if (!add_vertex(reader, at + 1)) return false;
-        } else if (at[0] == 'f' && (is_space(at[1]) || !at[1])) {
+        } else if (at[0] == 'f' && is_word) {
             if (!read_obj_face(reader, at + 1)) return false;
+        } else if ((at[0] == 'o' || at[0] == 'g') && is_word) {
+            if (!read_obj_name(reader, at[0], at + 1)) return false;
         }
     }
     /* A face may come before its vertices, so this is known only now. */
-    const text_mesh *mesh = reader->mesh;
-    for (size_t c = 0; c < mesh->offsets[mesh->face_count]; c++) {
-        if (mesh->corners[c] >= mesh->vertex_count) {
-            snprintf(reader->error, reader->error_size,
-                     "%s: a face names vertex %lu, the file has %lu", reader->path,
-                     (unsigned long)mesh->corners[c] + 1, (unsigned long)mesh->vertex_count);
-            return false;
-        }
+    const polygon_mesh *mesh = reader->mesh;
+    const size_t bad = polygon_mesh_bad_face(mesh);
+    if (bad < mesh->face_count) {
+        size_t c = mesh->offsets[bad];
+        while (mesh->corners[c] < mesh->vertex_count) c++;
+        snprintf(reader->error, reader->error_size, "%s: a face names vertex %lu, the file has %lu",
+                 reader->path, (unsigned long)mesh->corners[c] + 1,
+                 (unsigned long)mesh->vertex_count);
+        return false;
     }
-    return true;
+    return name_obj_parts(reader);
 }
 
 /* A number without sign at the start of *at, which moves behind it. */
@@ -277,122 +240,15 @@ static bool read_off(text_reader *reader)
     return true;
 }
 
-bool text_mesh_read(text_mesh *mesh, const char *path, char *error, size_t error_size)
+bool text_mesh_read(polygon_mesh *mesh, const char *path, bool is_off, char *text, char *error,
+                    size_t error_size)
 {
-    memset(mesh, 0, sizeof *mesh);
-    text_reader reader;
-    memset(&reader, 0, sizeof reader);
-    reader.path = path;
-    reader.error = error;
-    reader.error_size = error_size;
-    reader.mesh = mesh;
-    reader.text = read_whole(path, error, error_size);
-    if (!reader.text) return false;
-    reader.next = reader.text;
-    void *offsets = NULL;
-    bool done;
-    if (!reserve(&offsets, &reader.face_room, 0, sizeof(size_t))) {
-        done = fail(&reader, "out of memory");
-    } else {
-        mesh->offsets = (size_t *)offsets;
-        mesh->offsets[0] = 0;
-        done = ends_with(path, ".off", ".OFF") ? read_off(&reader) : read_obj(&reader);
+    text_reader reader = {path, text, 0, error, error_size, mesh};
+    if (!polygon_mesh_init(mesh)) {
+        snprintf(error, error_size, "%s: out of memory", path);
+        return false;
     }
-    free(reader.text);
-    if (!done) text_mesh_free(mesh);
-    return done;
-}
-
-void text_mesh_free(text_mesh *mesh)
-{
-    free(mesh->positions);
-    free(mesh->corners);
-    free(mesh->offsets);
-    memset(mesh, 0, sizeof *mesh);
-}
-
-/* A corner of a polygon in the plane that it is cut in. */
-typedef struct plane_point {
-    double x, y;
-} plane_point;
-
-/* The two axes to keep, so that the polygon turns to the left: Newell's normal decides. */
-static void choose_plane(const float *positions, const uint32_t *corners, uint32_t count, int *x,
-                         int *y)
-{
-    double normal[3] = {0.0, 0.0, 0.0};
-    for (uint32_t i = 0; i < count; i++) {
-        const float *a = positions + 3 * (size_t)corners[i];
-        const float *b = positions + 3 * (size_t)corners[(i + 1) % count];
-        for (int k = 0; k < 3; k++) {
-            const int u = (k + 1) % 3, v = (k + 2) % 3;
-            normal[k] += ((double)a[u] - (double)b[u]) * ((double)a[v] + (double)b[v]);
-        }
-    }
-    int axis = 0;
-    for (int k = 1; k < 3; k++) axis = fabs(normal[k]) > fabs(normal[axis]) ? k : axis;
-    *x = normal[axis] < 0.0 ? (axis + 2) % 3 : (axis + 1) % 3;
-    *y = normal[axis] < 0.0 ? (axis + 1) % 3 : (axis + 2) % 3;
-}
-
-static plane_point project(const float *positions, uint32_t vertex, int x, int y)
-{
-    const float *p = positions + 3 * (size_t)vertex;
-    const plane_point point = {(double)p[x], (double)p[y]};
-    return point;
-}
-
-static double turn(plane_point a, plane_point b, plane_point c)
-{
-    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-static bool same_point(plane_point a, plane_point b)
-{
-    return a.x == b.x && a.y == b.y;
-}
-
-/* Whether the corner in the middle can be cut off: it turns left and no other corner is inside. */
-static bool is_ear(const float *positions, const uint32_t *ring, uint32_t count, uint32_t middle,
-                   int x, int y)
-{
-    const plane_point a = project(positions, ring[(middle + count - 1) % count], x, y);
-    const plane_point b = project(positions, ring[middle], x, y);
-    const plane_point c = project(positions, ring[(middle + 1) % count], x, y);
-    if (!(turn(a, b, c) > 0.0)) return false;
-    for (uint32_t i = 0; i < count; i++) {
-        const plane_point p = project(positions, ring[i], x, y);
-        if (same_point(p, a) || same_point(p, b) || same_point(p, c)) continue;
-        if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return false;
-    }
-    return true;
-}
-
-void text_mesh_triangulate(const float *positions, const uint32_t *corners, uint32_t count,
-                           uint32_t *triangles)
-{
-    /* The ring of corners that are left is kept in the end of the output, which it never outgrows:
-       of count - 2 triangles, count - left are written when left corners remain. */
-    int x, y;
-    choose_plane(positions, corners, count, &x, &y);
-    uint32_t *out = triangles;
-    if (count == 3) {
-        memcpy(out, corners, 3 * sizeof *out);
-        return;
-    }
-    uint32_t *ring = triangles + 3 * ((size_t)count - 2) - count;
-    memcpy(ring, corners, count * sizeof *ring);
-    for (uint32_t left = count; left > 3; left--) {
-        uint32_t middle = 1;
-        while (middle < left && !is_ear(positions, ring, left, middle, x, y)) middle++;
-        if (middle == left) middle = is_ear(positions, ring, left, 0, x, y) ? 0 : 1;
-        const uint32_t triangle[3] = {ring[(middle + left - 1) % left], ring[middle],
-                                      ring[(middle + 1) % left]};
-        /* Close the gap towards the end, so that the front of the ring becomes free. */
-        memmove(ring + 1, ring, middle * sizeof *ring);
-        ring++;
-        memcpy(out, triangle, sizeof triangle);
-        out += 3;
-    }
-    memmove(out, ring, 3 * sizeof *out);
+    if (is_off ? read_off(&reader) : read_obj(&reader)) return true;
+    polygon_mesh_free(mesh);
+    return false;
 }

@@ -138,7 +138,7 @@ sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, u
     input.struct_size = sizeof input;
     input.vertex_count = mesh->vertex_count;
     input.triangle_count = mesh->triangle_count;
-    input.position_type = SC_FLOAT;
+    input.position_type = mesh->position_type;
     input.index_type = SC_UINT32;
     input.positions = mesh->positions;
     input.indices = mesh->indices;
@@ -160,13 +160,13 @@ sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, u
     return status;
 }
 
-sc_pose tool_pose(const float *positions, uint32_t vertex_count)
+sc_pose tool_pose(const void *positions, uint32_t position_type, uint32_t vertex_count)
 {
     sc_pose pose;
     memset(&pose, 0, sizeof pose);
     pose.struct_size = sizeof pose;
     pose.vertex_count = vertex_count;
-    pose.position_type = SC_FLOAT;
+    pose.position_type = position_type;
     pose.positions = positions;
     return pose;
 }

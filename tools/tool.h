@@ -73,8 +73,8 @@ extern const tool_choice tool_welds[];
 sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, uint32_t rest,
                      uint32_t content, sc_model **model, double *milliseconds);
 
-/* A pose of floats, packed. */
-sc_pose tool_pose(const float *positions, uint32_t vertex_count);
+/* A pose of packed positions. */
+sc_pose tool_pose(const void *positions, uint32_t position_type, uint32_t vertex_count);
 
 /* Closes stdout and returns status, or, if not all could be written, says so and TOOL_FAILED. */
 int tool_finish(int status);

@@ -340,7 +340,8 @@ static bool init(decimation *d, const mesh_file *mesh)
         !d->marks)
         return false;
     memset(d->first, 0xff, n * sizeof(uint32_t));
-    for (size_t i = 0; i < 3 * n; i++) d->positions[i] = (double)mesh->positions[i];
+    for (size_t i = 0; i < 3 * n; i++)
+        d->positions[i] = (double)((const float *)mesh->positions)[i];
     for (uint32_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *v = mesh->indices + 3 * (size_t)t;
         uint32_t *corner = d->corners + 3 * (size_t)t;
@@ -377,7 +378,7 @@ static bool take_rest(const decimation *d, mesh_file *mesh)
     if (done) {
         for (uint32_t v = 0; v < d->vertex_count; v++) {
             for (size_t k = 0; k < 3 && numbers[v] != none; k++) {
-                rest.positions[3 * (size_t)numbers[v] + k] = (float)position(d, v)[k];
+                ((float *)rest.positions)[3 * (size_t)numbers[v] + k] = (float)position(d, v)[k];
             }
         }
         for (uint32_t t = 0; t < d->triangle_count; t++) {

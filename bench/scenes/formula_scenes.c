@@ -39,7 +39,7 @@ static void pose_sphere(void *state, double time, double *positions)
     const sphere_scene *scene = (const sphere_scene *)state;
     const double size = 0.06 * scene_ease(0.0, 0.2, time);
     for (size_t v = 0; v < scene->rest.vertex_count; v++) {
-        const float *p = scene->rest.positions + 3 * v;
+        const float *p = (const float *)scene->rest.positions + 3 * v;
         const double x = (double)p[0], y = (double)p[1], z = (double)p[2];
         const double waves = sin(3.0 * x + 12.0 * time) + sin(3.0 * y - 17.0 * time) * cos(2.0 * z);
         for (size_t k = 0; k < 3; k++) positions[3 * v + k] = (double)p[k] * (1.0 + size * waves);

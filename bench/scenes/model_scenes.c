@@ -108,7 +108,7 @@ static void pose_cat(void *state, double time, double *positions)
     for (size_t v = 0; v < scene->rest.vertex_count; v++) {
         double p[3], moved[3];
         for (size_t k = 0; k < 3; k++) {
-            p[k] = moved[k] = (double)scene->rest.positions[3 * v + k];
+            p[k] = moved[k] = (double)((const float *)scene->rest.positions)[3 * v + k];
         }
         for (size_t b = 0; b < CAT_BONES; b++) {
             const double weight = (double)scene->weights[CAT_BONES * v + b];
@@ -145,7 +145,8 @@ int scene_start_cat(scene_motion *motion, uint32_t triangles, char *error, size_
     if (!scene->weights) return scene_fail(error, error_size, "cat: out of memory");
     for (size_t v = 0; v < n; v++) {
         double p[3];
-        for (size_t k = 0; k < 3; k++) p[k] = (double)scene->rest.positions[3 * v + k];
+        for (size_t k = 0; k < 3; k++)
+            p[k] = (double)((const float *)scene->rest.positions)[3 * v + k];
         for (size_t b = 0; b < CAT_BONES; b++) {
             const cat_bone *bone = &cat_bones[b];
             scene->weights[CAT_BONES * v + b] =
@@ -242,7 +243,8 @@ static int roughen(mesh_file *mesh, bool spikes, char *error, size_t error_size)
     double *positions = (double *)malloc(6 * n * sizeof *positions);
     if (!positions) return scene_fail(error, error_size, "bunny: out of memory");
     double *normals = positions + 3 * n;
-    for (size_t i = 0; i < 3 * n; i++) positions[i] = (double)mesh->positions[i];
+    float *rough = (float *)mesh->positions;
+    for (size_t i = 0; i < 3 * n; i++) positions[i] = (double)rough[i];
     scene_model_normals(mesh->indices, mesh->triangle_count, positions, mesh->vertex_count,
                         normals);
     for (size_t v = 0; v < n; v++) {
@@ -255,7 +257,7 @@ static int roughen(mesh_file *mesh, bool spikes, char *error, size_t error_size)
         const double height = scene_ease(0.3, 0.8, length > 0.0 ? outward : 0.0) *
                               (spikes ? 0.4 * peak * peak * peak : 0.05 * noise);
         for (size_t k = 0; k < 3; k++) {
-            mesh->positions[3 * v + k] = (float)(p[k] + height * normals[3 * v + k]);
+            rough[3 * v + k] = (float)(p[k] + height * normals[3 * v + k]);
         }
     }
     free(positions);
@@ -281,7 +283,8 @@ static int start_bunny(scene_motion *motion, uint32_t triangles, int surface, ch
     body->steps = 590;
     for (size_t v = 0; v < body->vertex_count; v++) {
         /* The ears rise above the head. */
-        const double ear = scene_ease(0.25, 0.5, (double)scene->rest.positions[3 * v + 2]);
+        const double ear =
+            scene_ease(0.25, 0.5, (double)((const float *)scene->rest.positions)[3 * v + 2]);
         body->keep[v] = 0.03 - 0.027 * ear;
     }
     const double speed[3] = {2.0, 0.0, 0.0};

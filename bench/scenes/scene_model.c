@@ -15,12 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Turns the mesh upright and fits it into its box. */
+/* Turns the mesh upright and fits it into its box, in floats. */
 static void stand_up(mesh_file *mesh, int up)
 {
+    float *positions = mesh_file_floats(mesh);
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        float *p = mesh->positions + 3 * v;
+        float *p = positions + 3 * v;
         const float y = p[1], z = p[2];
         if (up == 1) {
             p[1] = -z;
@@ -38,7 +39,7 @@ static void stand_up(mesh_file *mesh, int up)
     const double scale = size > 0.0 ? 2.0 / size : 1.0;
     for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++) {
         const double middle = 0.5 * (low[i % 3] + high[i % 3]);
-        mesh->positions[i] = (float)(scale * ((double)mesh->positions[i] - middle));
+        positions[i] = (float)(scale * ((double)positions[i] - middle));
     }
 }
 
@@ -65,6 +66,7 @@ static bool mark_borders(const mesh_file *mesh, uint8_t *border)
 static bool smooth_mesh(mesh_file *mesh, int times)
 {
     const size_t n = mesh->vertex_count;
+    float *positions = mesh_file_floats(mesh);
     uint8_t *border = (uint8_t *)calloc(n, 1);
     double *sums = (double *)malloc(3 * n * sizeof *sums);
     uint32_t *counts = (uint32_t *)malloc(n * sizeof *counts);
@@ -77,13 +79,13 @@ static bool smooth_mesh(mesh_file *mesh, int times)
             /* Inside each edge is met twice, once from each end to the other. */
             const size_t v = mesh->indices[c];
             const size_t w = mesh->indices[c - c % 3 + (c + 1) % 3];
-            for (size_t k = 0; k < 3; k++) sums[3 * v + k] += (double)mesh->positions[3 * w + k];
+            for (size_t k = 0; k < 3; k++) sums[3 * v + k] += (double)positions[3 * w + k];
             counts[v]++;
         }
         for (size_t v = 0; v < n; v++) {
             if (border[v] || counts[v] == 0) continue;
             for (size_t k = 0; k < 3; k++) {
-                float *p = &mesh->positions[3 * v + k];
+                float *p = &positions[3 * v + k];
                 *p = (float)((double)*p + part * (sums[3 * v + k] / counts[v] - (double)*p));
             }
         }

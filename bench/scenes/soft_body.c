@@ -80,7 +80,7 @@ int soft_body_init(soft_body *body, const mesh_file *mesh, const uint32_t *trian
     body->keep = body->shown + 3 * n;
     double mean[3] = {0.0, 0.0, 0.0};
     for (size_t i = 0; i < 3 * n; i++) {
-        body->positions[i] = body->before[i] = (double)mesh->positions[i];
+        body->positions[i] = body->before[i] = (double)((const float *)mesh->positions)[i];
         mean[i % 3] += body->positions[i] / (double)n;
     }
     for (size_t i = 0; i < 3 * n; i++) body->rest[i] = body->positions[i] - mean[i % 3];

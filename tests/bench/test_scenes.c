@@ -615,7 +615,7 @@ static void decimation_keeps_surfaces(void)
         /* Euler: a sphere, or a disc. */
         CHECK(mesh.vertex_count + mesh.triangle_count == edges + (closed ? 2 : 1));
         for (size_t v = 0; v < mesh.vertex_count; v++) {
-            const float *p = mesh.positions + 3 * v;
+            const float *p = (const float *)mesh.positions + 3 * v;
             const double x = (double)p[0], y = (double)p[1], z = (double)p[2];
             const double off = closed ? fabs(sqrt(x * x + y * y + z * z) - 1.0) : fabs(z);
             farthest = fmax(farthest, off);

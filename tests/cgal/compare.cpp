@@ -4,7 +4,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Both sides get the same float coordinates, as tools/mesh_file.h reads them, equal positions joined.
+ * Both sides get the same coordinates, as tools/mesh_file.h reads them, equal positions joined.
  * Ours: SC_PAIRS_TRIANGLE, touching, by all three methods. CGAL's: Polygon_mesh_processing::
  * self_intersections with exact predicates (the kernel named below, whose constructions are not used),
  * brought to our definition as follows. Statements about CGAL are those of its headers, version 5.5.1.
@@ -195,8 +195,9 @@ cgal_answer ask_cgal(const mesh_file &mesh)
     std::vector<point> points;
     surface cgal_mesh;
     for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
-        const float *p = mesh.positions + 3 * size_t(v);
-        points.push_back(point(double(p[0]), double(p[1]), double(p[2])));
+        double p[3];
+        mesh_file_position(mesh.positions, mesh.position_type, v, p);
+        points.push_back(point(p[0], p[1], p[2]));
         cgal_mesh.add_vertex(points.back());
     }
 
@@ -288,11 +289,13 @@ our_answer ask_starcontour(const mesh_file &mesh, uint32_t contour)
     input.struct_size = sizeof(input);
     input.vertex_count = mesh.vertex_count;
     input.triangle_count = mesh.triangle_count;
+    input.position_type = mesh.position_type;
     input.positions = mesh.positions;
     input.indices = mesh.indices;
     sc_pose pose = sc_pose();
     pose.struct_size = sizeof(pose);
     pose.vertex_count = mesh.vertex_count;
+    pose.position_type = mesh.position_type;
     pose.positions = mesh.positions;
 
     std::vector<sc_pair> buffer(1024);
@@ -344,8 +347,7 @@ bool oracle_says(const mesh_file &mesh, const pair &p)
         triangles[c] = i;
         if (i < count) continue;
         numbers[count++] = v;
-        for (size_t k = 0; k < 3; ++k)
-            positions[3 * i + k] = double(mesh.positions[3 * size_t(v) + k]);
+        mesh_file_position(mesh.positions, mesh.position_type, v, positions + 3 * i);
     }
     oracle_answer answer;
     oracle_solve(positions, count, triangles, 2, nullptr, &answer);
@@ -358,10 +360,10 @@ void print_triangle(const mesh_file &mesh, uint32_t t)
 {
     for (size_t k = 0; k < 3; ++k) {
         const uint32_t v = mesh.indices[3 * size_t(t) + k];
-        const float *f = mesh.positions + 3 * size_t(v);
-        const double x = double(f[0]), y = double(f[1]), z = double(f[2]);
-        std::printf("        triangle %u vertex %u: %a %a %a = %.9g %.9g %.9g\n", t, v, x, y, z, x,
-                    y, z);
+        double p[3];
+        mesh_file_position(mesh.positions, mesh.position_type, v, p);
+        std::printf("        triangle %u vertex %u: %a %a %a = %.17g %.17g %.17g\n", t, v, p[0],
+                    p[1], p[2], p[0], p[1], p[2]);
     }
 }
 

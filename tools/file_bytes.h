@@ -1,0 +1,21 @@
+/*
+ * A file's bytes, read whole and once, so that pipes can be read as files are.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef TOOLS_FILE_BYTES_H
+#define TOOLS_FILE_BYTES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct file_bytes {
+    char *data; /* size bytes and a 0 behind them; to be freed by free */
+    size_t size;
+} file_bytes;
+
+/* Reads a file or pipe. On failure error, of error_size characters, says why, beginning with the
+   path, and *bytes is empty. A file without any byte, and a device, are failures. */
+bool file_bytes_read(file_bytes *bytes, const char *path, char *error, size_t error_size);
+
+#endif /* TOOLS_FILE_BYTES_H */
