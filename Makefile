@@ -4,7 +4,7 @@
 #
 # What is compiled into the library stands in lib/sources.list, which CMakeLists.txt reads as well;
 # version numbers stand in include/starcontour.h. Nothing is configured beforehand: libraries that
-# only parts need (METIS, assimp, cJSON) are looked for on each run; one line says what is left out.
+# only parts need (METIS, assimp, cJSON, zlib) are looked for on each run; one line says what is left out.
 
 # The default goal, whatever comes first below.
 all:
@@ -116,6 +116,7 @@ has = $(shell echo '$(hash)include <$(1)>' | \
 metis := $(call has,metis.h)
 assimp := $(call has,assimp/cimport.h)
 cjson := $(call has,cjson/cJSON.h)
+zlib := $(call has,zlib.h)
 gmp := $(call has,gmp.h)
 ccd := $(call has,ccd/ccd.h)
 
@@ -135,8 +136,8 @@ tests_support := $(filter-out $(tests),$(wildcard tests/*.c))
 test_scripts := $(sort $(wildcard tests/test_*.sh))
 
 # A program is built if its source is there and what it needs is: those that read meshes share
-# tools/, which reads by assimp and writes JSON by cJSON.
-missing_for_programs := $(if $(assimp),,assimp) $(if $(cjson),,cJSON)
+# tools/, which reads by assimp, unpacks by zlib and writes JSON by cJSON.
+missing_for_programs := $(if $(assimp),,assimp) $(if $(cjson),,cJSON) $(if $(zlib),,zlib)
 offered = $(if $(wildcard $(2)),$(bin)/$(1))
 mesh_readers := $(call offered,sc-query,tools/sc_query.c) \
     $(call offered,sc-partition,tools/sc_partition.c) $(call offered,sc-demo,bench/demo.c) \
@@ -218,7 +219,7 @@ define link
 	$(Q)$(CC) $(link_mode) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(1) $(LDLIBS) -lm
 endef
 
-mesh_libs := $(metis_link) -lassimp -lcjson -lpthread
+mesh_libs := $(metis_link) -lassimp -lcjson -lz -lpthread
 $(bin)/sc-query: $(call objects,tools/sc_query.c $(tools_support))
 $(bin)/sc-partition: $(call objects,tools/sc_partition.c $(tools_support))
 $(bin)/sc-demo: $(call objects,bench/demo.c $(bench_support) $(tools_support))
@@ -309,9 +310,10 @@ $(work)/tests/header_cxx: tests/header_cxx.cpp include/starcontour.h $(obj)/flag
 
 # Comparison with CGAL; by hand, as it takes libraries and meshes that nothing else needs.
 missing_for_cgal := $(if $(call has,CGAL/version.h),,CGAL) $(if $(gmp),,gmp) \
-    $(if $(assimp),,assimp) $(if $(cjson),,cJSON)
-cgal_objects := $(call objects,tools/mesh_file.c tools/file_bytes.c tools/ply_header.c \
-    tools/polygon_mesh.c tools/scene_read.c tools/text_mesh.c tests/oracle.c tests/harness.c)
+    $(if $(assimp),,assimp) $(if $(cjson),,cJSON) $(if $(zlib),,zlib)
+cgal_objects := $(call objects,tools/mesh_file.c tools/file_bytes.c tools/ply_read.c \
+    tools/polygon_mesh.c tools/scene_read.c tools/stl_read.c tools/text_mesh.c tests/oracle.c \
+    tests/harness.c)
 
 .PHONY: test-cgal
 ifneq ($(strip $(missing_for_cgal)),)
@@ -329,7 +331,7 @@ $(work)/tests/cgal/compare: tests/cgal/compare.cpp include/starcontour.h tools/m
 	$(if $(Q),@echo "  c++  $<")
 	$(Q)$(CXX) -std=c++17 $(cxx_warnings) $(werror) $(exact) -frounding-math $(mode) -Iinclude \
 	    -Itools -Itests $(CPPFLAGS) $(CXXFLAGS) $(LDFLAGS) -o $@ $< $(cgal_objects) $(static) \
-	    -lassimp -lmpfr -lgmp $(LDLIBS) -lm
+	    -lassimp -lz -lmpfr -lgmp $(LDLIBS) -lm
 
 # Comparison of steps with ipc-toolkit, from PyPI; by hand, too.
 .PHONY: test-ipctk

@@ -22,6 +22,7 @@ program pkg-config pkg-config pkgconf-pkg-config pkgconf pkgconf
 header metis.h libmetis-dev metis-devel metis metis
 header assimp/cimport.h libassimp-dev assimp-devel assimp assimp
 header cjson/cJSON.h libcjson-dev cjson-devel cjson cjson
+header zlib.h zlib1g-dev zlib-devel zlib zlib
 header ccd/ccd.h libccd-dev libccd-devel libccd libccd
 header gmp.h libgmp-dev gmp-devel gmp gmp"
 

@@ -1,5 +1,6 @@
 /*
- * A file's bytes, read whole and once, so that pipes can be read as files are.
+ * A file's bytes, read whole and once, so that pipes can be read as files are, and unpacked by zlib
+ * if they are packed by gzip, whatever the name says.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -12,9 +13,10 @@
 typedef struct file_bytes {
     char *data; /* size bytes and a 0 behind them; to be freed by free */
     size_t size;
+    bool is_plain; /* the bytes stand in a file as they are, which can be read again */
 } file_bytes;
 
-/* Reads a file or pipe. On failure error, of error_size characters, says why, beginning with the
+/* Reads a file or pipe, or standard input if path is "-", once. On failure error, of error_size characters, says why, beginning with the
    path, and *bytes is empty. A file without any byte, and a device, are failures. */
 bool file_bytes_read(file_bytes *bytes, const char *path, char *error, size_t error_size);
 

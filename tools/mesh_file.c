@@ -6,8 +6,10 @@
 #include "mesh_file.h"
 
 #include "file_bytes.h"
+#include "ply_read.h"
 #include "polygon_mesh.h"
 #include "scene_read.h"
+#include "stl_read.h"
 #include "text_mesh.h"
 
 #include <float.h>
@@ -45,30 +47,84 @@ static uint64_t hash_faces(const polygon_mesh *polygons)
     return hash;
 }
 
-static bool ends_with(const char *path, const char *lower, const char *upper)
+static uint32_t assumed = MESH_FORMAT_UNKNOWN;
+
+void mesh_file_assume(uint32_t format)
 {
-    const size_t length = strlen(path), tail = strlen(lower);
+    assumed = format;
+}
+
+/* Whether a name of so many characters ends in that, in large or small letters. */
+static bool ends_in(const char *name, size_t length, const char *ending)
+{
+    const size_t tail = strlen(ending);
     if (length < tail) return false;
-    const char *end = path + length - tail;
-    return strcmp(end, lower) == 0 || strcmp(end, upper) == 0;
+    for (size_t i = 0; i < tail; i++) {
+        if ((name[length - tail + i] | 0x20) != (ending[i] | 0x20)) return false;
+    }
+    return true;
+}
+
+/* The format that a name tells, which may end in .gz. */
+static uint32_t format_of_name(const char *path)
+{
+    static const char *const endings[] = {NULL, ".obj", ".off", ".ply", ".stl"};
+    size_t length = strlen(path);
+    if (ends_in(path, length, ".gz")) length -= 3;
+    for (uint32_t format = MESH_FORMAT_OBJ; format <= MESH_FORMAT_STL; format++) {
+        if (ends_in(path, length, endings[format])) return format;
+    }
+    return MESH_FORMAT_UNKNOWN;
+}
+
+/* The format of a file that its name does not tell; unknown: one that assimp is to find out. */
+static uint32_t format_of_content(const char *path, const file_bytes *bytes)
+{
+    if (strcmp(path, "-") != 0 && scene_read_knows(path)) return MESH_FORMAT_UNKNOWN;
+    if (assumed != MESH_FORMAT_UNKNOWN) return assumed;
+    if (ply_read_knows(bytes->data, bytes->size)) return MESH_FORMAT_PLY;
+    if (stl_read_knows(bytes->data, bytes->size)) return MESH_FORMAT_STL;
+    return MESH_FORMAT_UNKNOWN;
+}
+
+static bool read_format(polygon_mesh *polygons, const char *path, uint32_t format,
+                        file_bytes *bytes, char error[MESH_FILE_ERROR_SIZE])
+{
+    switch (format) {
+    case MESH_FORMAT_OBJ:
+    case MESH_FORMAT_OFF:
+        return text_mesh_read(polygons, path, format == MESH_FORMAT_OFF, bytes->data, error,
+                              MESH_FILE_ERROR_SIZE);
+    case MESH_FORMAT_PLY:
+        return ply_read(polygons, path, bytes->data, bytes->size, error, MESH_FILE_ERROR_SIZE);
+    case MESH_FORMAT_STL:
+        return stl_read(polygons, path, bytes->data, bytes->size, error, MESH_FILE_ERROR_SIZE);
+    default:
+        if (!bytes->is_plain && !scene_read_knows(path)) {
+            snprintf(error, MESH_FILE_ERROR_SIZE,
+                     "%s: neither the name nor the content tells the format: --format does", path);
+            return false;
+        }
+        if (bytes->is_plain) {
+            free(bytes->data); /* assimp takes its own copy */
+            bytes->data = NULL;
+        }
+        return scene_read(polygons, path, bytes->data, bytes->size, error, MESH_FILE_ERROR_SIZE);
+    }
 }
 
 /* Reads a file's polygons, of which there are some. */
 static bool read_polygons(polygon_mesh *polygons, const char *path,
                           char error[MESH_FILE_ERROR_SIZE])
 {
-    const bool is_off = ends_with(path, ".off", ".OFF");
+    file_bytes bytes;
     memset(polygons, 0, sizeof *polygons);
-    if (is_off || ends_with(path, ".obj", ".OBJ")) {
-        file_bytes bytes;
-        if (!file_bytes_read(&bytes, path, error, MESH_FILE_ERROR_SIZE)) return false;
-        const bool done =
-            text_mesh_read(polygons, path, is_off, bytes.data, error, MESH_FILE_ERROR_SIZE);
-        free(bytes.data);
-        if (!done) return false;
-    } else if (!scene_read(polygons, path, error, MESH_FILE_ERROR_SIZE)) {
-        return false;
-    }
+    if (!file_bytes_read(&bytes, path, error, MESH_FILE_ERROR_SIZE)) return false;
+    uint32_t format = format_of_name(path);
+    if (format == MESH_FORMAT_UNKNOWN) format = format_of_content(path, &bytes);
+    const bool done = read_format(polygons, path, format, &bytes, error);
+    free(bytes.data);
+    if (!done) return false;
     if (polygon_mesh_triangle_count(polygons) > 0) return true;
     snprintf(error, MESH_FILE_ERROR_SIZE, "%s: no triangles in it", path);
     polygon_mesh_free(polygons);

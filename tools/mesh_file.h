@@ -5,8 +5,9 @@
  *
  * A mesh_file is what the library wants of a mesh: packed positions and uint32 triangles. Positions
  * are the nearest doubles to what the file says, and are floats if all of them are exactly floats.
- * OBJ and OFF files are read by text_mesh.h, all others by assimp, which reads floats and whose
- * positions are moved by the node transforms of the scene, in doubles: see `rounded`.
+ * OBJ and OFF files are read by text_mesh.h, PLY by ply_read.h, STL by stl_read.h, all others by
+ * assimp, which reads floats and whose positions are moved by the node transforms of the scene, in
+ * doubles: see `rounded`. A file is opened once; it may be a pipe, standard input, or packed by gzip.
  *
  * All meshes of a scene come one after the other, in the order of its nodes. Polygons are
  * triangulated; nothing else is reordered, joined or dropped. Some files (STL) and some of assimp's
@@ -36,8 +37,8 @@ typedef struct mesh_file {
     uint32_t triangle_count;
     uint32_t face_count;        /* of the file's own faces */
     uint32_t *face_of_triangle; /* triangle_count, ascending; NULL: each triangle is its face */
-    /* Objects: `o`, or `g` where there is but one `o`, of OBJ; nodes that have meshes of what
-       assimp reads. Their names, "" where the file gives none; equal names of `o` or `g` are one
+    /* Objects: `o`, or `g` where there is but one `o`, of OBJ; each `solid` of text STL; nodes that
+       have meshes of what assimp reads. Their names, "" where the file gives none; equal names of `o` or `g` are one
        object. */
     uint32_t object_count;    /* 0: the file names none */
     char **object_names;      /* object_count */
@@ -53,6 +54,19 @@ typedef struct mesh_pose {
     uint32_t position_type;      /* its own, whatever that of the rest mesh is */
     bool rounded, has_animation; /* as in mesh_file */
 } mesh_pose;
+
+/* Formats that are read here, for mesh_file_assume. */
+enum {
+    MESH_FORMAT_UNKNOWN = 0,
+    MESH_FORMAT_OBJ,
+    MESH_FORMAT_OFF,
+    MESH_FORMAT_PLY,
+    MESH_FORMAT_STL
+};
+
+/* The format of files that are read from now on and whose names tell none, such as "-", standard
+   input; MESH_FORMAT_UNKNOWN, as at first: their content tells it, or does not. */
+void mesh_file_assume(uint32_t format);
 
 /* Room for any message that the readers write. */
 enum { MESH_FILE_ERROR_SIZE = 1024 };

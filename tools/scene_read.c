@@ -3,20 +3,13 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#define _POSIX_C_SOURCE 200809L
-
 #include "scene_read.h"
-
-#include "ply_header.h"
 
 #include <assimp/cimport.h>
 #include <assimp/scene.h>
 
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* An affine map: rows of x, y, z; the last column is the translation. */
 typedef struct affine {
@@ -130,58 +123,52 @@ static bool walk_node(scene_walk *walk, const struct aiNode *node, const affine 
     return true;
 }
 
+/* The ending of a name without .gz. */
+static void find_ending(const char *path, char ending[16])
+{
+    size_t length = strlen(path);
+    if (length > 3 && strcmp(path + length - 3, ".gz") == 0) length -= 3;
+    size_t start = length;
+    while (start > 0 && path[start - 1] != '.' && path[start - 1] != '/') start--;
+    ending[0] = '\0';
+    if (start > 0 && path[start - 1] == '.' && length - start < 16)
+        snprintf(ending, 16, "%.*s", (int)(length - start), path + start);
+}
+
 /* Whether a format has floats and nothing but floats for positions, so that assimp rounds none. */
-static bool has_floats(const struct aiScene *scene, const char *path)
+static bool has_floats(const char *path)
 {
     static const char *const endings[] = {"gltf", "glb", "vrm", "3ds", "b3d", "lwo", "pmx"};
-    const char *ending = strrchr(path, '.');
-    (void)scene;
-    for (size_t i = 0; ending && i < sizeof endings / sizeof *endings; i++) {
-        const char *a = ending + 1, *b = endings[i];
+    char ending[16];
+    find_ending(path, ending);
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        const char *a = ending, *b = endings[i];
         while (*a && (*a | 0x20) == *b) a++, b++;
         if (!*a && !*b) return true;
     }
     return false;
 }
 
-/*
- * Tells apart what assimp calls by one name: no file, no permission, a folder, nothing in it. And
- * refuses what it does not come back from: a pipe, which it would open once more, and PLY files
- * with headers that it believes too much of.
- */
-static bool check_file(const char *path, char *error, size_t error_size)
+bool scene_read_knows(const char *path)
 {
-    struct stat what;
-    FILE *file = NULL;
-    char magic[3];
-    const char *reason = NULL;
-    errno = 0;
-    if (stat(path, &what) != 0) {
-        reason = strerror(errno);
-    } else if (S_ISCHR(what.st_mode) || S_ISBLK(what.st_mode)) {
-        reason = "a device, not a mesh";
-    } else if (S_ISFIFO(what.st_mode) || S_ISSOCK(what.st_mode)) {
-        reason = "a pipe, whose name does not tell a format that can be read from one";
-    } else if (!(file = fopen(path, "rb"))) {
-        reason = strerror(errno);
-    } else {
-        const size_t size = fread(magic, 1, sizeof magic, file);
-        if (size == 0)
-            reason = ferror(file) ? strerror(errno) : "the file is empty";
-        else if (size == 3 && memcmp(magic, "ply", 3) == 0)
-            reason = ply_header_check(file, (uint64_t)what.st_size);
-    }
-    if (reason) snprintf(error, error_size, "%s: %s", path, reason);
-    if (file) fclose(file);
-    return reason == NULL;
+    char ending[16], dotted[17];
+    find_ending(path, ending);
+    snprintf(dotted, sizeof dotted, ".%s", ending);
+    return ending[0] && aiIsExtensionSupported(dotted) == AI_TRUE;
 }
 
-bool scene_read(polygon_mesh *mesh, const char *path, char *error, size_t error_size)
+bool scene_read(polygon_mesh *mesh, const char *path, const char *data, size_t size, char *error,
+                size_t error_size)
 {
     const affine identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
     memset(mesh, 0, sizeof *mesh);
-    if (!check_file(path, error, error_size)) return false;
-    const struct aiScene *scene = aiImportFile(path, 0); /* as it is: no post-processing */
+    char ending[16];
+    find_ending(path, ending);
+    /* as it is: no post-processing */
+    const struct aiScene *scene = !data ? aiImportFile(path, 0)
+                                  : size < UINT32_MAX
+                                      ? aiImportFileFromMemory(data, (unsigned)size, 0, ending)
+                                      : NULL;
     if (!scene) {
         snprintf(error, error_size, "%s: cannot be read as a mesh: %s", path, aiGetErrorString());
         return false;
@@ -192,7 +179,7 @@ bool scene_read(polygon_mesh *mesh, const char *path, char *error, size_t error_
         !polygon_mesh_name_objects(mesh, 'o', false))
         walk.reason = "out of memory";
     mesh->has_animation = scene->mNumAnimations > 0;
-    mesh->rounded = walk.is_moved || !has_floats(scene, path);
+    mesh->rounded = walk.is_moved || !has_floats(path);
     aiReleaseImport(scene);
     if (!walk.reason) return true;
     snprintf(error, error_size, "%s: %s", path, walk.reason);

@@ -15,8 +15,15 @@
 
 #include "polygon_mesh.h"
 
-/* Reads a file. On failure *mesh is empty and error, of error_size characters, says why, beginning
-   with the path. */
-bool scene_read(polygon_mesh *mesh, const char *path, char *error, size_t error_size);
+/* Whether the ending of a name, but for .gz, is of a format that assimp reads. */
+bool scene_read_knows(const char *path);
+
+/*
+ * Reads a file that is there. data: NULL, or its size bytes if they cannot be had from the path, as
+ * of pipes; formats of several files cannot be read then. On failure *mesh is empty and error, of
+ * error_size characters, says why, beginning with the path.
+ */
+bool scene_read(polygon_mesh *mesh, const char *path, const char *data, size_t size, char *error,
+                size_t error_size);
 
 #endif /* TOOLS_SCENE_READ_H */
