@@ -351,12 +351,19 @@ static bool make_folder(const char *path)
 int main(int argc, char **argv)
 {
     tool_set_name("sc-demo");
-    if (argc > 3 || (argc > 1 && argv[1][0] == '-')) {
+    const char *first = argc > 1 ? argv[1] : "";
+    if (strcmp(first, "-V") == 0 || strcmp(first, "--version") == 0) {
+        printf("sc-demo (starcontour) %s\n", sc_version_string());
+        return tool_finish(TOOL_CLEAN);
+    }
+    if (argc > 3 || first[0] == '-') {
+        const bool is_asked = strcmp(first, "-h") == 0 || strcmp(first, "--help") == 0;
         fputs("Usage: sc-demo [MESHES [OUTPUT]]\n"
               "MESHES: folder that may hold bunny.obj (build/meshes); OUTPUT: folder for pictures\n"
-              "(build/demo)\n",
-              stderr);
-        return TOOL_FAILED;
+              "(build/demo)\n"
+              "-V, --version, -h, --help: print the version, or this\n",
+              is_asked ? stdout : stderr);
+        return is_asked ? tool_finish(TOOL_CLEAN) : TOOL_FAILED;
     }
     const char *meshes = argc > 1 ? argv[1] : "build/meshes";
     const char *folder = argc > 2 ? argv[2] : "build/demo";

@@ -70,7 +70,7 @@ static const char usage[] =
     "nothing\n"
     "  --export-obj DIR   writes the frames as OBJ files, and measures nothing\n"
     "  --cache DIR        where generated scenes are kept (build/scenes)\n"
-    "  --version, --help\n"
+    "  -V, --version, -h, --help\n"
     "\n"
     "Exit status: 0, or 1 if a method that must agree with the others does not, or 2 if the job "
     "could\n"
@@ -392,8 +392,8 @@ int main(int argc, char **argv)
         OPTION_EXPORT,
         OPTION_EXPORT_OBJ,
         OPTION_CACHE,
-        OPTION_VERSION,
-        OPTION_HELP
+        OPTION_VERSION = 'V',
+        OPTION_HELP = 'h'
     };
     static const struct option options[] = {
         {"scene", required_argument, NULL, OPTION_SCENE},
@@ -430,7 +430,7 @@ int main(int argc, char **argv)
     set.measure.threads = set.measure.workers = 1;
     bool valid = true;
     int option;
-    while ((option = getopt_long(argc, argv, "", options, NULL)) != -1) {
+    while ((option = getopt_long(argc, argv, "hV", options, NULL)) != -1) {
         switch (option) {
         case OPTION_SCENE:
             set.scene = optarg;

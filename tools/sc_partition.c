@@ -49,7 +49,9 @@ static const char usage[] =
     "  --scaling               cloths of 10 thousand, 100 thousand and 1 million triangles: build\n"
     "                          time and size, which should grow linearly. With --json an object a "
     "line\n"
-    "  --version, --help\n"
+    "  --format obj|off|ply|stl  the format of a MESH whose name tells none, or of -, standard "
+    "input\n"
+    "  -V, --version, -h, --help\n"
     "\n"
     "Exit status: 0, or 2 if something could not be done; the reason is on standard error.\n";
 
@@ -204,6 +206,9 @@ static cJSON *json_totals(const partition_view *view, const char *name,
     cJSON *object = cJSON_CreateObject();
     cJSON_AddStringToObject(object, "file", name);
     cJSON_AddStringToObject(object, "partition", tool_choice_name(tool_partitions, set->partition));
+    cJSON_AddStringToObject(object, "coordinates",
+                            tool_coordinates(view->mesh->rounded, view->mesh->position_type));
+    if (view->mesh->has_animation) cJSON_AddStringToObject(object, "animation", "not played");
     cJSON_AddNumberToObject(object, "vertices", info->point_count);
     cJSON_AddNumberToObject(object, "triangles", triangles);
     cJSON_AddNumberToObject(object, "edges", info->edge_count);
@@ -303,10 +308,11 @@ static void print_totals(const partition_view *view, const char *name)
     const sc_model_info *info = &view->info;
     const double triangles = info->triangle_count;
     printf(
-        "%s: %lu vertices, %lu triangles, %lu components, %lu boundary and %lu irregular edges\n",
+        "%s: %lu vertices, %lu triangles, %lu components, %lu boundary and %lu irregular edges%s\n",
         name, (unsigned long)info->point_count, (unsigned long)info->triangle_count,
         (unsigned long)info->component_count, (unsigned long)info->boundary_edges,
-        (unsigned long)info->irregular_edges);
+        (unsigned long)info->irregular_edges,
+        tool_reading_note(view->mesh->rounded, view->mesh->has_animation));
     printf("%lu leaves, %lu test-tree nodes, %lu contour segments\n",
            (unsigned long)info->leaf_count, (unsigned long)info->node_count,
            (unsigned long)info->segment_count);
@@ -481,8 +487,9 @@ int main(int argc, char **argv)
         OPTION_JSON = OPTION_LEVEL + 1,
         OPTION_GRID,
         OPTION_SCALING,
-        OPTION_VERSION,
-        OPTION_HELP
+        OPTION_FORMAT,
+        OPTION_VERSION = 'V',
+        OPTION_HELP = 'h'
     };
     static const struct option options[] = {
         {"partition", required_argument, NULL, OPTION_PARTITION},
@@ -492,6 +499,7 @@ int main(int argc, char **argv)
         {"json", no_argument, NULL, OPTION_JSON},
         {"grid", required_argument, NULL, OPTION_GRID},
         {"scaling", no_argument, NULL, OPTION_SCALING},
+        {"format", required_argument, NULL, OPTION_FORMAT},
         {"version", no_argument, NULL, OPTION_VERSION},
         {"help", no_argument, NULL, OPTION_HELP},
         {NULL, 0, NULL, 0}};
@@ -502,8 +510,9 @@ int main(int argc, char **argv)
     partition_settings set;
     memset(&set, 0, sizeof set);
     bool valid = true;
+    uint32_t format = MESH_FORMAT_UNKNOWN;
     int option;
-    while ((option = getopt_long(argc, argv, "o:", options, NULL)) != -1) {
+    while ((option = getopt_long(argc, argv, "o:hV", options, NULL)) != -1) {
         switch (option) {
         case OPTION_PARTITION:
             valid &= tool_choose("--partition", optarg, tool_partitions, &set.partition);
@@ -526,6 +535,10 @@ int main(int argc, char **argv)
             break;
         case OPTION_SCALING:
             set.scaling = true;
+            break;
+        case OPTION_FORMAT:
+            valid &= tool_choose("--format", optarg, tool_formats, &format);
+            mesh_file_assume(format);
             break;
         case OPTION_VERSION:
             printf("sc-partition (starcontour) %s\n", sc_version_string());

@@ -28,13 +28,16 @@ static const char usage[] =
     "       sc-query --step [options] MESH MESH... | PATTERN\n"
     "Finds every self-collision of triangle meshes, exactly.\n"
     "\n"
-    "Reads OBJ, OFF and all other formats that assimp reads. Vertices at equal positions are "
-    "joined,\n"
-    "polygons are triangulated, points and lines left out. Coordinates are rounded to the nearest\n"
-    "float on reading (text formats other than OBJ and OFF: as assimp does it), and the answer is\n"
-    "exact for those. Vertices and triangles are numbered from 0 in the order of the file\n"
-    "(assimp: in that of the scene's meshes).\n"
+    "Reads OBJ, OFF, PLY, STL and all other formats that assimp reads, packed by gzip or not; - "
+    "is\n"
+    "standard input. Vertices at equal positions are joined, polygons triangulated, points and "
+    "lines\n"
+    "left out. The answer is exact for the nearest doubles to the file's coordinates; what only "
+    "assimp\n"
+    "reads may be rounded to floats, and the table and --json say so. Vertices and triangles are\n"
+    "numbered from 0 in the order of the file (assimp: of the scene's meshes).\n"
     "\n"
+    "  --format obj|off|ply|stl    the format of -, and of files whose names tell none\n"
     "What is sought\n"
     "  --pairs triangle|edge|none  the pairs that --out and --ply show and that decide the exit\n"
     "                              status: of triangles (default), or of an edge and a triangle "
@@ -44,8 +47,8 @@ static const char usage[] =
     "                              without it touching is enough\n"
     "  --any                       stop at the first pair: whether there is one, not how many\n"
     "  --weld rest|none            join vertices at equal positions (default), or take them as "
-    "assimp\n"
-    "                              delivers them, which for some formats is one a corner of a "
+    "they\n"
+    "                              are read, which for some formats (STL) is one a corner of a "
     "face\n"
     "  --rest MESH                 build once from MESH; the files are poses of it, with the same\n"
     "                              vertices and faces in the same order\n"
@@ -107,7 +110,7 @@ static const char usage_continued[] =
     "shown\n"
     "  --threads K                 threads that a query uses (1)\n"
     "\n"
-    "  --version, --help\n"
+    "  -V, --version, -h, --help\n"
     "\n"
     "Exit status: 0 no self-collision, 1 at least one, 2 something could not be done; the reason "
     "is\n"
@@ -149,7 +152,9 @@ typedef struct file_answer {
     uint64_t counts[2];
     bool known[2]; /* whether counts and query_ms are there */
     bool collides;
-    bool incomplete; /* a budget ended a query */
+    bool incomplete;             /* a budget ended a query */
+    bool rounded, has_animation; /* as in mesh_file */
+    uint32_t position_type;      /* of the pose */
     sc_stats stats;
 } file_answer;
 
@@ -295,6 +300,7 @@ static bool run_pose(const query_subject *subject, const char *path, const sc_po
 {
     const uint32_t chosen = chosen_pairs(set);
     answer->build_ms = subject->build_ms;
+    answer->position_type = pose->position_type;
     answer->info.struct_size = sizeof answer->info;
     sc_status status = sc_model_get_info(subject->model, &answer->info);
     sc_filter filter;
@@ -407,6 +413,9 @@ static bool print_json_answer(const file_answer *answer, const settings *set, co
                             : answer->collides ? "collides"
                                                : "clean");
     cJSON_AddBoolToObject(object, "collides", answer->collides);
+    cJSON_AddStringToObject(object, "coordinates",
+                            tool_coordinates(answer->rounded, answer->position_type));
+    if (answer->has_animation) cJSON_AddStringToObject(object, "animation", "not played");
     cJSON_AddNumberToObject(object, "vertices", answer->info.point_count);
     cJSON_AddNumberToObject(object, "vertices_read", answer->info.vertex_count);
     cJSON_AddNumberToObject(object, "triangles", answer->info.triangle_count);
@@ -472,15 +481,16 @@ static void print_count(const file_answer *answer, uint32_t kind)
         printf("%13s ", "-");
 }
 
-static void print_contacts(const pair_list *list)
+/* Digits enough for what the coordinates are; those of doubles may be far from the origin. */
+static void print_contacts(const pair_list *list, uint32_t position_type)
 {
+    const int digits = position_type == SC_DOUBLE ? 17 : 9;
     for (uint64_t i = 0; i < list->count; i++) {
         const sc_contact *c = &list->contacts[i];
-        printf("    %lu %lu %s %.9g %.9g %.9g", (unsigned long)list->pairs[i].a,
-               (unsigned long)list->pairs[i].b, meet_names[c->kind], c->points[0][0],
-               c->points[0][1], c->points[0][2]);
-        if (c->kind != SC_MEET_POINT)
-            printf(" %.9g %.9g %.9g", c->points[1][0], c->points[1][1], c->points[1][2]);
+        printf("    %lu %lu %s", (unsigned long)list->pairs[i].a, (unsigned long)list->pairs[i].b,
+               meet_names[c->kind]);
+        for (int k = 0; k < (c->kind == SC_MEET_POINT ? 3 : 6); k++)
+            printf(" %.*g", digits, c->points[k / 3][k % 3]);
         puts("");
     }
 }
@@ -496,8 +506,8 @@ static void print_table_row(const file_answer *answer, const settings *set)
         printf(" ");
         print_count(answer, SC_PAIRS_EDGE);
     }
-    printf(" %9.2f %9.3f  %s\n", answer->build_ms, answer->query_ms[chosen_pairs(set)],
-           answer->path);
+    printf(" %9.2f %9.3f  %s%s\n", answer->build_ms, answer->query_ms[chosen_pairs(set)],
+           answer->path, tool_reading_note(answer->rounded, answer->has_animation));
     if (set->stats) query_text_stats(&answer->stats);
 }
 
@@ -514,7 +524,7 @@ static int report(const file_answer *answer, const settings *set, bool done, con
             written = print_json_answer(answer, set, list);
         else
             print_table_row(answer, set);
-        if (set->contacts && !set->json) print_contacts(list);
+        if (set->contacts && !set->json) print_contacts(list, answer->position_type);
         if (out) write_pairs(out, answer->path, list);
     }
     fflush(stdout);
@@ -575,6 +585,8 @@ static int do_file(const char *path, const settings *set, const query_subject *r
     const sc_pose pose = set->rest_path
                              ? tool_pose(moved.positions, moved.position_type, mesh->vertex_count)
                              : tool_pose(mesh->positions, mesh->position_type, mesh->vertex_count);
+    answer.rounded = set->rest_path ? moved.rounded : mesh->rounded;
+    answer.has_animation = set->rest_path ? moved.has_animation : mesh->has_animation;
     const bool recorded = !done || !set->record_path || write_record(subject, &pose, set);
     if (done) done = run_pose(subject, path, &pose, set, list, &answer, error);
     int status = report(&answer, set, done, error, out, list);
@@ -838,8 +850,9 @@ int main(int argc, char **argv)
         OPTION_CONTACTS,
         OPTION_BUDGET,
         OPTION_THREADS,
-        OPTION_VERSION,
-        OPTION_HELP
+        OPTION_FORMAT,
+        OPTION_VERSION = 'V',
+        OPTION_HELP = 'h'
     };
     static const struct option options[] = {
         {"pairs", required_argument, NULL, OPTION_PAIRS},
@@ -868,6 +881,7 @@ int main(int argc, char **argv)
         {"contacts", no_argument, NULL, OPTION_CONTACTS},
         {"budget", required_argument, NULL, OPTION_BUDGET},
         {"threads", required_argument, NULL, OPTION_THREADS},
+        {"format", required_argument, NULL, OPTION_FORMAT},
         {"version", no_argument, NULL, OPTION_VERSION},
         {"help", no_argument, NULL, OPTION_HELP},
         {NULL, 0, NULL, 0}};
@@ -879,9 +893,9 @@ int main(int argc, char **argv)
     memset(&set, 0, sizeof set);
     set.step.method = SC_STEP_METHOD_SCTT;
     bool valid = true;
-    uint32_t budget = 0, threads = 1;
+    uint32_t budget = 0, threads = 1, format = MESH_FORMAT_UNKNOWN;
     int option, which = 0;
-    while ((option = getopt_long(argc, argv, "", options, &which)) != -1) {
+    while ((option = getopt_long(argc, argv, "hV", options, &which)) != -1) {
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_PLY ||
             option == OPTION_RECORD || option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
             option == OPTION_IGNORE_RINGS || option == OPTION_IGNORE || option == OPTION_GROUPS ||
@@ -980,6 +994,10 @@ int main(int argc, char **argv)
             break;
         case OPTION_THREADS:
             valid &= tool_parse_number("--threads", optarg, 1, SC_WORKERS_MAX, &threads);
+            break;
+        case OPTION_FORMAT:
+            valid &= tool_choose("--format", optarg, tool_formats, &format);
+            mesh_file_assume(format);
             break;
         case OPTION_VERSION:
             printf("sc-query (starcontour) %s\n", sc_version_string());

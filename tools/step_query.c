@@ -48,6 +48,8 @@ typedef struct step_answer {
     bool candidates_known, collides, incomplete;
     double earliest;
     sc_stats stats;
+    bool rounded, has_animation; /* either frame, as in mesh_file */
+    uint32_t position_type;      /* SC_DOUBLE if either frame has doubles */
 } step_answer;
 
 typedef struct step_run {
@@ -163,6 +165,10 @@ static bool ask(step_run *run, const frame *from, const frame *to, step_answer *
     const sc_pose poses[2] = {tool_pose(from->pose.positions, from->pose.position_type, count),
                               tool_pose(to->pose.positions, to->pose.position_type, count)};
     answer->build_ms = run->subject.build_ms;
+    answer->rounded = from->pose.rounded || to->pose.rounded;
+    answer->has_animation = from->pose.has_animation || to->pose.has_animation;
+    answer->position_type =
+        from->pose.position_type == SC_DOUBLE ? SC_DOUBLE : to->pose.position_type;
     answer->info.struct_size = sizeof answer->info;
     sc_status status = sc_model_get_info(run->subject.model, &answer->info);
     if (status == SC_OK) status = find_collisions(run, poses, answer);
@@ -204,8 +210,8 @@ static void print_table_row(const step_answer *answer, const step_run *run)
         printf("%10s ", "-");
     else
         printf("%10.7f ", answer->earliest);
-    printf("%9.2f %9.3f  %s to %s\n", answer->build_ms, answer->query_ms, answer->start,
-           answer->end);
+    printf("%9.2f %9.3f  %s to %s%s\n", answer->build_ms, answer->query_ms, answer->start,
+           answer->end, tool_reading_note(answer->rounded, answer->has_animation));
     if (run->set->stats) query_text_stats(&answer->stats);
     for (int kind = 0; run->set->times && kind < KINDS; kind++) {
         const step_list *list = &run->lists[kind];
@@ -252,6 +258,9 @@ static bool print_json_answer(const step_answer *answer, const step_run *run)
                             : answer->collides ? "collides"
                                                : "clean");
     cJSON_AddBoolToObject(object, "collides", answer->collides);
+    cJSON_AddStringToObject(object, "coordinates",
+                            tool_coordinates(answer->rounded, answer->position_type));
+    if (answer->has_animation) cJSON_AddStringToObject(object, "animation", "not played");
     cJSON_AddNumberToObject(object, "vertices", answer->info.point_count);
     cJSON_AddNumberToObject(object, "triangles", answer->info.triangle_count);
     add_count(object, "vertex_face_pairs", answer->counts[VERTEX_FACE], !set->any);

@@ -22,6 +22,12 @@ const tool_choice tool_partitions[] = {
 
 const tool_choice tool_welds[] = {{"rest", SC_WELD_REST}, {"none", SC_WELD_NONE}, {NULL, 0}};
 
+const tool_choice tool_formats[] = {{"obj", MESH_FORMAT_OBJ},
+                                    {"off", MESH_FORMAT_OFF},
+                                    {"ply", MESH_FORMAT_PLY},
+                                    {"stl", MESH_FORMAT_STL},
+                                    {NULL, 0}};
+
 static const char *tool_name = "starcontour";
 
 void tool_set_name(const char *name)
@@ -169,6 +175,17 @@ sc_pose tool_pose(const void *positions, uint32_t position_type, uint32_t vertex
     pose.position_type = position_type;
     pose.positions = positions;
     return pose;
+}
+
+const char *tool_coordinates(bool rounded, uint32_t position_type)
+{
+    return rounded ? "rounded" : position_type == SC_DOUBLE ? "double" : "float";
+}
+
+const char *tool_reading_note(bool rounded, bool has_animation)
+{
+    if (rounded && has_animation) return " (coordinates rounded, animation not played)";
+    return rounded ? " (coordinates rounded)" : has_animation ? " (animation not played)" : "";
 }
 
 int tool_finish(int status)

@@ -65,6 +65,9 @@ bool tool_parse_real(const char *option, const char *text, double *value);
 enum { TOOL_PARTITION_FAST = 0, TOOL_PARTITION_METIS = 1 };
 extern const tool_choice tool_partitions[];
 
+/* Values of --format: MESH_FORMAT_.... */
+extern const tool_choice tool_formats[];
+
 /* Values of --weld. */
 extern const tool_choice tool_welds[];
 
@@ -75,6 +78,13 @@ sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, u
 
 /* A pose of packed positions. */
 sc_pose tool_pose(const void *positions, uint32_t position_type, uint32_t vertex_count);
+
+/* What coordinates a file gave: "float", "double", or "rounded" where a reader may have cost it
+   digits. */
+const char *tool_coordinates(bool rounded, uint32_t position_type);
+
+/* What the table says behind the name of a file that is not answered for as it stands; or "". */
+const char *tool_reading_note(bool rounded, bool has_animation);
 
 /* Closes stdout and returns status, or, if not all could be written, says so and TOOL_FAILED. */
 int tool_finish(int status);
