@@ -6,6 +6,7 @@ SPDX-License-Identifier: MIT
 """
 
 import ctypes
+import inspect
 import os
 import pickle
 import sys
@@ -38,11 +39,16 @@ def raised(status, call):
 
 
 def refused(kind, call):
+    """The text of the exception of this kind that the call raises, else None."""
     try:
         call()
-    except kind:
-        return True
-    return False
+    except kind as error:
+        return str(error) or repr(error)
+    return None
+
+
+def says(what, wanted, text):
+    check(f"{what}: says {text!r}, not {wanted!r}", text == wanted)
 
 
 mesh_path, golden_path, layout_path = sys.argv[1:4]
@@ -143,6 +149,68 @@ check("vertex out of range", raised(_binding.SC_ERROR_INDEX, lambda: starcontour
 check("no triangles", raised(_binding.SC_ERROR_EMPTY, lambda: starcontour.Model(rest, np.empty((0, 3), np.uint32))))
 check("patches", len(model.patches(0)) == len(triangles) and raised(_binding.SC_ERROR_LEVEL, lambda: model.patches(99)))
 check("usable after errors", same(model.query(rest), "rest"))
+
+# They say which argument it is, and why; in a workspace of one's own, too.
+for asked in (model, model.workspace()):
+    says("NaN", "vertex 7 is NaN or infinite",
+         raised(_binding.SC_ERROR_NOT_FINITE, lambda: asked.query(spoilt)))
+    says("NaN at both ends", "vertex 7 is NaN or infinite at the start; vertex 7 is NaN or infinite at the end",
+         raised(_binding.SC_ERROR_NOT_FINITE, lambda: asked.step(spoilt, spoilt)))
+    says("rings", "ignore_rings is 99, but at most 32",
+         raised(_binding.SC_ERROR_OPTION, lambda: asked.query(rest, ignore_rings=99)))
+    says("separation", "separation is -1, but finite and at least 0",
+         raised(_binding.SC_ERROR_OPTION, lambda: asked.step(rest, rest, separation=-1)))
+    says("tolerance", "tolerance is nan, but finite and at least 0",
+         raised(_binding.SC_ERROR_OPTION, lambda: asked.step_collides(rest, rest, tolerance=np.nan)))
+    says("number of vertices", f"pose.vertex_count is {len(rest) - 1}, but the model has {len(rest)}",
+         raised(_binding.SC_ERROR_VERTEX_COUNT, lambda: asked.count(rest[:-1])))
+    check("the reason of one call is not told of the next", raised(_binding.SC_ERROR_NOT_FINITE, lambda: asked.query(
+        spoilt)) == "vertex 7 is NaN or infinite" and same(asked.query(rest), "rest"))
+    kind = asked.__class__.__name__
+    for name in ("query", "count", "collides"):
+        says("misspelt", f"{kind}.{name}() got an unexpected keyword argument 'ignore_ring'; did you mean "
+             "'ignore_rings'?", refused(TypeError, lambda: getattr(asked, name)(rest, ignore_ring=1)))
+    for name in ("step", "step_collides"):
+        says("misspelt", f"{kind}.{name}() got an unexpected keyword argument 'seperation'; did you mean "
+             "'separation'?", refused(TypeError, lambda: getattr(asked, name)(rest, rest, seperation=1)))
+    says("unknown", f"{kind}.step() got an unexpected keyword argument 'ignore_rings'",
+         refused(TypeError, lambda: asked.step(rest, rest, ignore_rings=1)))
+    check("poses by name", same(asked.query(pose=rest), "rest") and asked.step(start=rest, end=rest) is not None)
+signature = inspect.signature(model.query)
+check("help shows keywords", "ignore_rings" in signature.parameters and signature.parameters["budget"].default == 0)
+check("help of steps", {"separation", "candidates"} <= set(inspect.signature(model.step).parameters))
+says("NaN at rest", "vertex 7 is NaN or infinite",
+     raised(_binding.SC_ERROR_NOT_FINITE, lambda: starcontour.Model(spoilt, triangles)))
+says("vertex out of range", f"triangle 1 names vertex {len(rest)} of {len(rest)}", raised(
+    _binding.SC_ERROR_INDEX, lambda: starcontour.Model(rest, [[0, 1, 2], [0, 1, len(rest)]])))
+says("negative vertex", "no triangle or vertex has the number -1",
+     raised(_binding.SC_ERROR_INDEX, lambda: starcontour.Model(rest, [[0, 1, -1]])))
+says("order", "order[1] is 0, which came before", raised(_binding.SC_ERROR_TREE, lambda: starcontour.Model(
+    rest, triangles, order=np.zeros(len(triangles), np.uint32))))
+says("weld", "weld_map[0] is 1, which does not represent itself", raised(
+    _binding.SC_ERROR_WELD_MAP, lambda: starcontour.Model(
+        rest, triangles, weld=np.r_[1, 2, np.arange(2, len(rest))])))
+says("ignore", "ignore[1] comes before the one before it", raised(
+    _binding.SC_ERROR_PAIRS, lambda: model.query(rest, ignore=golden["moved"][1::-1])))
+says("what is below 0", "ignore_rings must be from 0 to 2**32 - 1, not -1",
+     refused(ValueError, lambda: model.query(rest, ignore_rings=-1)))
+says("a budget below 0", "budget must be from 0 to 2**64 - 1, not -1",
+     refused(ValueError, lambda: model.step(rest, rest, budget=-1)))
+says("no whole number", "ignore_rings must be a whole number, not 1.5",
+     refused(TypeError, lambda: model.query(rest, ignore_rings=1.5)))
+says("no number", "separation must be a number, not '1'",
+     refused(TypeError, lambda: model.step(rest, rest, separation="1")))
+says("no flag", "cancel must be a uint32 array of shape (1,)",
+     refused(ValueError, lambda: model.query(rest, cancel=True)))
+
+# Doubles are taken as they are: far from the origin these two triangles meet, and as floats they do not.
+far = np.array([[500000.155, 5400000.362, 100.080], [500000.208, 5400000.167, 100.355],
+                [500000.397, 5400000.115, 100.197], [500000.358, 5400000.218, 100.086],
+                [500000.304, 5400000.135, 100.194], [500000.003, 5400000.396, 100.263]])
+two = np.arange(6).reshape(2, 3)
+check("doubles far from the origin", starcontour.Model(far, two).count(far) == 1 and starcontour.Model(
+    far, two).query(far.tolist()).tolist() == [[0, 1]])
+check("which floats cannot tell", starcontour.Model(far, two).count(far.astype(np.float32)) == 0)
 
 # Pairs that are not wanted, and queries that are ended.
 def incomplete(call):

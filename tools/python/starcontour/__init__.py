@@ -41,6 +41,11 @@ SPDX-License-Identifier: MIT
 """
 
 import ctypes
+import difflib
+import functools
+import inspect
+import operator
+import re
 import threading
 import weakref
 from collections import namedtuple
@@ -88,7 +93,8 @@ class Step(namedtuple("Step", "vertex_faces edge_edges vertex_face_times edge_ed
 
 
 class Error(Exception):
-    """What the library refused: its text, and its number in `status` (SC_ERROR_... in the header)."""
+    """What the library refused: which argument it is and why, as far as the library says that, and its
+    number in `status` (SC_ERROR_... in the header)."""
 
     def __init__(self, status, text=None):
         super().__init__(text or lib.sc_status_string(status).decode())
@@ -111,10 +117,86 @@ def _check(status):
         raise Error(status)
 
 
+class _Log:
+    """Listens to what the library logs about an argument that it refuses. One call at a time."""
+
+    def __init__(self):
+        reasons = []
+
+        def log(user, level, message):
+            if level == _binding.SC_LOG_ERROR:
+                reasons.append(message.decode())
+
+        self._reasons = reasons
+        self.hooks = _binding.sc_hooks(
+            struct_size=ctypes.sizeof(_binding.sc_hooks), log=_binding.sc_hooks_log(log))
+
+    def check(self, status):
+        """Raises an Error if status is one. Members of options are named as the keywords here are."""
+        reasons = [re.sub(r"^options\.(filter\.)?", "", reason) for reason in self._reasons]
+        self._reasons.clear()
+        if status:
+            raise Error(status, "; ".join(reasons))
+
+
+def _keywords_of(source):
+    """Decorates public methods that hand **options on to the function source: the keywords of that
+    are theirs, in help() and in what is said about a keyword that does not exist."""
+    keywords = [parameter for parameter in inspect.signature(source).parameters.values()
+                if parameter.kind == parameter.KEYWORD_ONLY]
+
+    def decorate(method):
+        signature = inspect.signature(method)
+        own = list(signature.parameters.values())[:-1]
+        known = {parameter.name for parameter in own + keywords}
+
+        @functools.wraps(method)
+        def checked(*arguments, **options):
+            for name in options:
+                if name not in known:
+                    near = difflib.get_close_matches(name, known, 1)
+                    raise TypeError(
+                        f"{method.__qualname__}() got an unexpected keyword argument {name!r}"
+                        + (f"; did you mean {near[0]!r}?" if near else ""))
+            return method(*arguments, **options)
+
+        checked.__signature__ = signature.replace(parameters=own + keywords)
+        return checked
+
+    return decorate
+
+
 def _choice(name, value, choices):
     if value not in choices:
         raise ValueError(f"{name} must be one of {', '.join(choices)}, not {value!r}")
     return choices[value]
+
+
+def _whole(name, value, bits):
+    """A whole number that an unsigned integer of so many bits holds; ctypes would wrap others round."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be a whole number, not {value!r}") from None
+    if not 0 <= number < 1 << bits:
+        raise ValueError(f"{name} must be from 0 to 2**{bits} - 1, not {number}")
+    return number
+
+
+def _length(name, value):
+    try:
+        return ctypes.c_double(value).value
+    except TypeError:
+        raise TypeError(f"{name} must be a number, not {value!r}") from None
+
+
+def _cancel(cancel):
+    """The address of what another thread sets to end a query."""
+    if cancel is None:
+        return None
+    if not isinstance(cancel, np.ndarray) or cancel.dtype != np.uint32 or cancel.shape != (1,):
+        raise ValueError("cancel must be a uint32 array of shape (1,)")
+    return cancel.ctypes.data
 
 
 def _rows(array):
@@ -163,8 +245,9 @@ def _indices(values):
         raise TypeError(f"triangles and vertices are numbered by integers, not {array.dtype}")
     if array.dtype in (np.uint32, np.uint16):
         return array
-    if array.size and (array.min() < 0 or array.max() > 0xFFFFFFFF):
-        raise Error(_binding.SC_ERROR_INDEX)
+    for number in (array.min(), array.max()) if array.size else ():
+        if not 0 <= number <= 0xFFFFFFFF:
+            raise Error(_binding.SC_ERROR_INDEX, f"no triangle or vertex has the number {number}")
     return array.astype(np.uint32)
 
 
@@ -215,11 +298,142 @@ class _Scratch:
         options = _binding.sc_workspace_options(
             struct_size=ctypes.sizeof(_binding.sc_workspace_options), flags=flags)
         _check(lib.sc_workspace_create_for(model, ctypes.byref(options), ctypes.byref(handle)))
+        weakref.finalize(self, lib.sc_workspace_free, handle)
+        self.log = _Log()
+        _check(lib.sc_workspace_set_hooks(handle, ctypes.byref(self.log.hooks)))
         self.handle = handle
         self.pairs = np.empty((64, 2), np.uint32)
         self.lists = [_step_list(64), _step_list(64)] if flags & _binding.SC_WORKSPACE_STEP else []
         self.lock = threading.Lock()
-        weakref.finalize(self, lib.sc_workspace_free, handle)
+
+
+def _query(model, scratch, pose, **options):
+    def pairs(result):
+        return scratch.pairs[: result.count].copy()
+
+    return _ask(model, scratch, pose, _binding.SC_OUTPUT_PAIRS, pairs, **options)
+
+
+def _count(model, scratch, pose, **options):
+    return _ask(model, scratch, pose, _binding.SC_OUTPUT_COUNT, lambda result: result.count, **options)
+
+
+def _collides(model, scratch, pose, **options):
+    return _ask(model, scratch, pose, _binding.SC_OUTPUT_ANY, lambda result: bool(result.collides), **options)
+
+
+def _filter(model, ignore_rings, ignore, vertex_groups, triangle_groups):
+    """An sc_filter, and the arrays that it refers to."""
+    structure = _binding.sc_filter(
+        struct_size=ctypes.sizeof(_binding.sc_filter),
+        ignore_rings=_whole("ignore_rings", ignore_rings, 32))
+    arrays = []
+    if ignore is not None:
+        array, structure.ignore = _table(ignore, None, "ignore")
+        structure.ignore_count = len(array)
+        arrays.append(array)
+    if vertex_groups is not None:
+        array, structure.vertex_groups = _table(
+            vertex_groups, model.info.vertex_count, "vertex_groups")
+        arrays.append(array)
+    if triangle_groups is not None:
+        array, structure.triangle_groups = _table(
+            triangle_groups, model.info.triangle_count, "triangle_groups")
+        arrays.append(array)
+    return structure, arrays
+
+
+def _ask(model, scratch, pose, output, answer, *, pairs="triangle", contact="touching",
+         method="default", rest_cache=True, ignore_rings=0, ignore=None, vertex_groups=None,
+         triangle_groups=None, cancel=None, budget=0):
+    given, positions = _pose(pose)
+    filter, arrays = _filter(model, ignore_rings, ignore, vertex_groups, triangle_groups)
+    options = _binding.sc_query_options(
+        struct_size=ctypes.sizeof(_binding.sc_query_options),
+        output=output,
+        pairs=_choice("pairs", pairs, _PAIRS),
+        contact=_choice("contact", contact, _CONTACT),
+        method=_choice("method", method, _METHOD),
+        rest_cache=_binding.SC_REST_CACHE_ON if rest_cache else _binding.SC_REST_CACHE_OFF,
+        filter=ctypes.addressof(filter),
+        cancel=_cancel(cancel),
+        budget=_whole("budget", budget, 64),
+    )
+    result = _binding.sc_result(struct_size=ctypes.sizeof(_binding.sc_result))
+    if not scratch.lock.acquire(blocking=False):
+        raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
+    try:
+        while True:
+            result.capacity, result.pairs = len(scratch.pairs), scratch.pairs.ctypes.data
+            status = lib.sc_query(model._handle, scratch.handle, ctypes.byref(given),
+                                  ctypes.byref(options), ctypes.byref(result))
+            if status == _binding.SC_ERROR_INCOMPLETE:
+                raise Incomplete(answer(result))
+            if status != _binding.SC_ERROR_SHORT_BUFFER:
+                break
+            scratch.pairs = np.empty((result.count + result.count // 4, 2), np.uint32)
+        scratch.log.check(status)
+        return answer(result)
+    finally:
+        scratch.lock.release()
+
+
+def _step(model, scratch, start, end, *, candidates=False, **options):
+    def found(result):
+        counts = result.vertex_face_count, result.edge_edge_count
+        pairs = [array[:count].copy() for (array, _), count in zip(scratch.lists, counts)]
+        times = [None if candidates else array[:count].copy()
+                 for (_, array), count in zip(scratch.lists, counts)]
+        return Step(*pairs, *times, result.earliest)
+
+    return _ask_step(model, scratch, start, end, _binding.SC_OUTPUT_PAIRS, found,
+                     candidates=candidates, **options)
+
+
+def _step_collides(model, scratch, start, end, **options):
+    return _ask_step(model, scratch, start, end, _binding.SC_OUTPUT_ANY,
+                     lambda result: bool(result.collides), **options)
+
+
+def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tolerance=0.0,
+              method="default", candidates=False, cancel=None, budget=0):
+    (given, positions), (goal, positions_then) = _pose(start), _pose(end)
+    timed = output == _binding.SC_OUTPUT_PAIRS and not candidates
+    options = _binding.sc_step_options(
+        struct_size=ctypes.sizeof(_binding.sc_step_options),
+        output=output,
+        pairs=_binding.SC_STEP_CANDIDATES if candidates else _binding.SC_STEP_COLLISIONS,
+        times=_binding.SC_STEP_TIMES_EACH if timed else _binding.SC_STEP_TIMES_NONE,
+        method=_choice("method", method, _STEP_METHOD),
+        separation=_length("separation", separation),
+        tolerance=_length("tolerance", tolerance),
+        cancel=_cancel(cancel),
+        budget=_whole("budget", budget, 64),
+    )
+    result = _binding.sc_step_result(struct_size=ctypes.sizeof(_binding.sc_step_result))
+    if not scratch.lock.acquire(blocking=False):
+        raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
+    try:
+        while True:
+            (faces, face_times), (edges, edge_times) = scratch.lists
+            result.vertex_face_capacity, result.vertex_faces = len(faces), faces.ctypes.data
+            result.edge_edge_capacity, result.edge_edges = len(edges), edges.ctypes.data
+            if timed:
+                result.vertex_face_times = face_times.ctypes.data
+                result.edge_edge_times = edge_times.ctypes.data
+            status = lib.sc_query_step(model._handle, scratch.handle, ctypes.byref(given),
+                                       ctypes.byref(goal), ctypes.byref(options),
+                                       ctypes.byref(result))
+            if status == _binding.SC_ERROR_INCOMPLETE:
+                raise Incomplete(answer(result))
+            if status != _binding.SC_ERROR_SHORT_BUFFER:
+                break
+            scratch.lists = [_step_list(count + count // 4) for count in
+                             (result.vertex_face_count, result.edge_edge_count)]
+        scratch.log.check(status)
+        return answer(result)
+    finally:
+        scratch.lock.release()
 
 
 class Workspace:
@@ -229,25 +443,30 @@ class Workspace:
         self.model = model
         self._scratch = _Scratch(model._handle, _binding.SC_WORKSPACE_STEP)
 
+    @_keywords_of(_ask)
     def query(self, pose, **options):
         """Like Model.query."""
-        return self.model._query(self._scratch, pose, **options)
+        return _query(self.model, self._scratch, pose, **options)
 
+    @_keywords_of(_ask)
     def count(self, pose, **options):
         """Like Model.count."""
-        return self.model._count(self._scratch, pose, **options)
+        return _count(self.model, self._scratch, pose, **options)
 
+    @_keywords_of(_ask)
     def collides(self, pose, **options):
         """Like Model.collides."""
-        return self.model._collides(self._scratch, pose, **options)
+        return _collides(self.model, self._scratch, pose, **options)
 
+    @_keywords_of(_ask_step)
     def step(self, start, end, **options):
         """Like Model.step."""
-        return self.model._step(self._scratch, start, end, **options)
+        return _step(self.model, self._scratch, start, end, **options)
 
+    @_keywords_of(_ask_step)
     def step_collides(self, start, end, **options):
         """Like Model.step_collides."""
-        return self.model._step_collides(self._scratch, start, end, **options)
+        return _step_collides(self.model, self._scratch, start, end, **options)
 
 
 class Model:
@@ -286,8 +505,9 @@ class Model:
             order = _numbers(order, len(triangles), "order")
             options.partition, options.order = _binding.SC_PARTITION_ORDER, order.ctypes.data
         options.content = _binding.SC_MODEL_BOXES if boxes else _binding.SC_MODEL_FULL
-        handle = ctypes.c_void_p()
-        _check(lib.sc_build(ctypes.byref(mesh), ctypes.byref(options), ctypes.byref(handle)))
+        log, handle = _Log(), ctypes.c_void_p()
+        options.hooks = ctypes.addressof(log.hooks)
+        log.check(lib.sc_build(ctypes.byref(mesh), ctypes.byref(options), ctypes.byref(handle)))
         self._adopt(handle)
 
     def _adopt(self, handle):
@@ -304,14 +524,15 @@ class Model:
                         change as long as the model lives
         """
         data = np.frombuffer(data, np.uint8)
+        log, handle = _Log(), ctypes.c_void_p()
         options = _binding.sc_load_options(
             struct_size=ctypes.sizeof(_binding.sc_load_options),
             mode=_binding.SC_LOAD_IN_PLACE if in_place else _binding.SC_LOAD_COPY,
-            topology_hash=topology_hash,
+            topology_hash=_whole("topology_hash", topology_hash, 64),
+            hooks=ctypes.addressof(log.hooks),
         )
-        handle = ctypes.c_void_p()
-        _check(lib.sc_model_load(data.ctypes.data, data.nbytes, ctypes.byref(options),
-                                 ctypes.byref(handle)))
+        log.check(lib.sc_model_load(data.ctypes.data, data.nbytes, ctypes.byref(options),
+                                    ctypes.byref(handle)))
         model = cls.__new__(cls)
         model._adopt(handle)
         model._data = data if in_place else None
@@ -349,6 +570,7 @@ class Model:
     def patches(self, level):
         """The number of each triangle's patch at a level from 0 to info.level_count - 1."""
         patches = np.empty(self.info.triangle_count, np.uint32)
+        level = _whole("level", level, 32)
         _check(lib.sc_model_get_patches(self._handle, level, patches.ctypes.data, len(patches)))
         return patches
 
@@ -369,29 +591,34 @@ class Model:
         """A new Workspace, for queries that run at the same time as others in this thread's name."""
         return Workspace(self)
 
+    @_keywords_of(_ask)
     def query(self, pose, **options):
         """All pairs in a pose, sorted: a new uint32 array of shape (n, 2). Options: see the module."""
-        return self._query(self._own(), pose, **options)
+        return _query(self, self._own(), pose, **options)
 
+    @_keywords_of(_ask)
     def count(self, pose, **options):
         """The number of pairs in a pose."""
-        return self._count(self._own(), pose, **options)
+        return _count(self, self._own(), pose, **options)
 
+    @_keywords_of(_ask)
     def collides(self, pose, **options):
         """Whether there is any pair in a pose. Stops at the first."""
-        return self._collides(self._own(), pose, **options)
+        return _collides(self, self._own(), pose, **options)
 
+    @_keywords_of(_ask_step)
     def step(self, start, end, **options):
         """What collides while each vertex moves on a straight line from one pose to another: a Step.
 
         Options: see the module. vertex_faces: a vertex and a triangle that it is no corner of;
         edge_edges: two edges without a common vertex.
         """
-        return self._step(self._own_for_steps(), start, end, **options)
+        return _step(self, self._own_for_steps(), start, end, **options)
 
+    @_keywords_of(_ask_step)
     def step_collides(self, start, end, **options):
         """Whether anything collides in a step. Stops at the first pair."""
-        return self._step_collides(self._own_for_steps(), start, end, **options)
+        return _step_collides(self, self._own_for_steps(), start, end, **options)
 
     def _own_for_steps(self):
         """This thread's workspace for steps, which is larger."""
@@ -404,126 +631,3 @@ class Model:
         if not hasattr(self._local, "scratch"):
             self._local.scratch = _Scratch(self._handle)
         return self._local.scratch
-
-    def _query(self, scratch, pose, **options):
-        def pairs(result):
-            return scratch.pairs[: result.count].copy()
-
-        return self._ask(scratch, pose, _binding.SC_OUTPUT_PAIRS, pairs, **options)
-
-    def _count(self, scratch, pose, **options):
-        return self._ask(scratch, pose, _binding.SC_OUTPUT_COUNT, lambda result: result.count, **options)
-
-    def _collides(self, scratch, pose, **options):
-        return self._ask(scratch, pose, _binding.SC_OUTPUT_ANY, lambda result: bool(result.collides), **options)
-
-    def _filter(self, ignore_rings, ignore, vertex_groups, triangle_groups):
-        """An sc_filter, and the arrays that it refers to."""
-        structure = _binding.sc_filter(
-            struct_size=ctypes.sizeof(_binding.sc_filter), ignore_rings=ignore_rings)
-        arrays = []
-        if ignore is not None:
-            array, structure.ignore = _table(ignore, None, "ignore")
-            structure.ignore_count = len(array)
-            arrays.append(array)
-        if vertex_groups is not None:
-            array, structure.vertex_groups = _table(
-                vertex_groups, self.info.vertex_count, "vertex_groups")
-            arrays.append(array)
-        if triangle_groups is not None:
-            array, structure.triangle_groups = _table(
-                triangle_groups, self.info.triangle_count, "triangle_groups")
-            arrays.append(array)
-        return structure, arrays
-
-    def _ask(self, scratch, pose, output, answer, *, pairs="triangle", contact="touching",
-             method="default", rest_cache=True, ignore_rings=0, ignore=None, vertex_groups=None,
-             triangle_groups=None, cancel=None, budget=0):
-        given, positions = _pose(pose)
-        filter, arrays = self._filter(ignore_rings, ignore, vertex_groups, triangle_groups)
-        if cancel is not None and (cancel.dtype != np.uint32 or cancel.shape != (1,)):
-            raise ValueError("cancel must be a uint32 array of shape (1,)")
-        options = _binding.sc_query_options(
-            struct_size=ctypes.sizeof(_binding.sc_query_options),
-            output=output,
-            pairs=_choice("pairs", pairs, _PAIRS),
-            contact=_choice("contact", contact, _CONTACT),
-            method=_choice("method", method, _METHOD),
-            rest_cache=_binding.SC_REST_CACHE_ON if rest_cache else _binding.SC_REST_CACHE_OFF,
-            filter=ctypes.addressof(filter),
-            cancel=None if cancel is None else cancel.ctypes.data,
-            budget=budget,
-        )
-        result = _binding.sc_result(struct_size=ctypes.sizeof(_binding.sc_result))
-        if not scratch.lock.acquire(blocking=False):
-            raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
-        try:
-            while True:
-                result.capacity, result.pairs = len(scratch.pairs), scratch.pairs.ctypes.data
-                status = lib.sc_query(self._handle, scratch.handle, ctypes.byref(given),
-                                      ctypes.byref(options), ctypes.byref(result))
-                if status == _binding.SC_ERROR_INCOMPLETE:
-                    raise Incomplete(answer(result))
-                if status != _binding.SC_ERROR_SHORT_BUFFER:
-                    break
-                scratch.pairs = np.empty((result.count + result.count // 4, 2), np.uint32)
-            _check(status)
-            return answer(result)
-        finally:
-            scratch.lock.release()
-
-    def _step(self, scratch, start, end, *, candidates=False, **options):
-        def found(result):
-            counts = result.vertex_face_count, result.edge_edge_count
-            pairs = [array[:count].copy() for (array, _), count in zip(scratch.lists, counts)]
-            times = [None if candidates else array[:count].copy()
-                     for (_, array), count in zip(scratch.lists, counts)]
-            return Step(*pairs, *times, result.earliest)
-
-        return self._ask_step(scratch, start, end, _binding.SC_OUTPUT_PAIRS, found, candidates, **options)
-
-    def _step_collides(self, scratch, start, end, *, candidates=False, **options):
-        return self._ask_step(scratch, start, end, _binding.SC_OUTPUT_ANY,
-                              lambda result: bool(result.collides), candidates, **options)
-
-    def _ask_step(self, scratch, start, end, output, answer, candidates, *, separation=0.0,
-                  tolerance=0.0, method="default", cancel=None, budget=0):
-        (given, positions), (goal, positions_then) = _pose(start), _pose(end)
-        if cancel is not None and (cancel.dtype != np.uint32 or cancel.shape != (1,)):
-            raise ValueError("cancel must be a uint32 array of shape (1,)")
-        timed = output == _binding.SC_OUTPUT_PAIRS and not candidates
-        options = _binding.sc_step_options(
-            struct_size=ctypes.sizeof(_binding.sc_step_options),
-            output=output,
-            pairs=_binding.SC_STEP_CANDIDATES if candidates else _binding.SC_STEP_COLLISIONS,
-            times=_binding.SC_STEP_TIMES_EACH if timed else _binding.SC_STEP_TIMES_NONE,
-            method=_choice("method", method, _STEP_METHOD),
-            separation=separation,
-            tolerance=tolerance,
-            cancel=None if cancel is None else cancel.ctypes.data,
-            budget=budget,
-        )
-        result = _binding.sc_step_result(struct_size=ctypes.sizeof(_binding.sc_step_result))
-        if not scratch.lock.acquire(blocking=False):
-            raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
-        try:
-            while True:
-                (faces, face_times), (edges, edge_times) = scratch.lists
-                result.vertex_face_capacity, result.vertex_faces = len(faces), faces.ctypes.data
-                result.edge_edge_capacity, result.edge_edges = len(edges), edges.ctypes.data
-                if timed:
-                    result.vertex_face_times = face_times.ctypes.data
-                    result.edge_edge_times = edge_times.ctypes.data
-                status = lib.sc_query_step(self._handle, scratch.handle, ctypes.byref(given),
-                                           ctypes.byref(goal), ctypes.byref(options),
-                                           ctypes.byref(result))
-                if status == _binding.SC_ERROR_INCOMPLETE:
-                    raise Incomplete(answer(result))
-                if status != _binding.SC_ERROR_SHORT_BUFFER:
-                    break
-                scratch.lists = [_step_list(count + count // 4) for count in
-                                 (result.vertex_face_count, result.edge_edge_count)]
-            _check(status)
-            return answer(result)
-        finally:
-            scratch.lock.release()

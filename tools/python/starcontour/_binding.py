@@ -9,7 +9,7 @@ SPDX-License-Identifier: MIT
 import ctypes
 import os
 import sys
-from ctypes import POINTER, c_char_p, c_double, c_int32, c_uint32, c_uint64, c_void_p
+from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_uint32, c_uint64, c_void_p
 
 # The enumerators that the package and its tests use.
 SC_ERROR_OPTION = 3
@@ -19,6 +19,8 @@ SC_ERROR_NOT_FINITE = 8
 SC_ERROR_VERTEX_COUNT = 9
 SC_ERROR_SHORT_BUFFER = 11
 SC_ERROR_WORKSPACE = 12
+SC_ERROR_WELD_MAP = 13
+SC_ERROR_TREE = 14
 SC_ERROR_LEVEL = 18
 SC_ERROR_NOT_SAVED = 19
 SC_ERROR_TRUNCATED = 20
@@ -27,6 +29,7 @@ SC_ERROR_TOPOLOGY = 26
 SC_ERROR_PAIRS = 27
 SC_ERROR_INCOMPLETE = 28
 SC_ERROR_BOXES_ONLY = 29
+SC_LOG_ERROR = 2
 SC_FLOAT, SC_DOUBLE = 0, 1
 SC_UINT32, SC_UINT16 = 0, 1
 SC_WELD_REST, SC_WELD_MAP, SC_WELD_NONE = 0, 1, 2
@@ -42,6 +45,20 @@ SC_WORKSPACE_STEP = 1
 SC_STEP_METHOD_DEFAULT, SC_STEP_METHOD_SCTT, SC_STEP_METHOD_TWO_BOXES, SC_STEP_METHOD_SWEPT = 0, 1, 2, 3
 SC_STEP_COLLISIONS, SC_STEP_CANDIDATES = 0, 1
 SC_STEP_TIMES_NONE, SC_STEP_TIMES_EARLIEST, SC_STEP_TIMES_EACH = 0, 1, 2
+
+
+# The type of the member log of sc_hooks.
+sc_hooks_log = CFUNCTYPE(None, c_void_p, c_uint32, c_char_p)
+
+
+class sc_hooks(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("log", sc_hooks_log),
+        ("failed", c_void_p),
+        ("user", c_void_p),
+    ]
 
 
 class sc_mesh(ctypes.Structure):
@@ -218,8 +235,8 @@ sc_contact = [
     ("weights_b", "f8", (2, 3)),
 ]
 
-structures = (sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info, sc_query_options,
-              sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result)
+structures = (sc_hooks, sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info,
+              sc_query_options, sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result)
 
 _suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarcontour" + _suffix)
@@ -243,6 +260,7 @@ _declare("sc_model_save_size", _status, c_void_p, POINTER(c_uint64))
 _declare("sc_model_save", _status, c_void_p, c_void_p, c_uint64, POINTER(c_uint64))
 _declare("sc_model_load", _status, c_void_p, c_uint64, POINTER(sc_load_options), POINTER(c_void_p))
 _declare("sc_workspace_create_for", _status, c_void_p, POINTER(sc_workspace_options), POINTER(c_void_p))
+_declare("sc_workspace_set_hooks", _status, c_void_p, POINTER(sc_hooks))
 _declare("sc_workspace_free", None, c_void_p)
 _declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_query_options),
          POINTER(sc_result))
