@@ -18,7 +18,7 @@ const char *sc_status_string(sc_status status)
     case SC_ERROR_STRUCT_SIZE:
         return "struct_size is none this library can read";
     case SC_ERROR_OPTION:
-        return "an option or type has an unknown value";
+        return "an option or type has a value that it cannot have";
     case SC_ERROR_EMPTY:
         return "the mesh has no triangles or no vertices";
     case SC_ERROR_COUNT:
