@@ -36,9 +36,11 @@ BINDIR ?= $(PREFIX)/bin
 LIBDIR ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
 MANDIR ?= $(PREFIX)/share/man
+DOCDIR ?= $(PREFIX)/share/doc/starcontour
 WERROR ?= 0
 V ?= 0
 INSTALL ?= install
+OBJCOPY ?= objcopy
 PYTHON ?=
 MINGW ?= x86_64-w64-mingw32
 
@@ -587,16 +589,23 @@ peers: ## all peers that are there, into a new CSV
 # ------------------------------------------------------------------------------------------------
 # Installing.
 
-headers := include/starcontour.h $(if $(metis),include/starcontour_metis.h)
+headers := include/starcontour.h $(if $(metis),include/starcontour_metis.h) \
+    tests/ffi/cxx/starcontour.hpp
 # Written from tools/NAME.in; by folders below LIBDIR.
 pkgconfigs := starcontour.pc $(if $(metis),starcontour_metis.pc)
 cmakes := starcontour-config.cmake starcontour-config-version.cmake
+# Below DOCDIR: these; the programs that the documents are, as NAME.c of FILE; bindings, in their folders.
+documents := LICENSE CHANGELOG.md include/EMBEDDING.md
+examples := first_query:README.md engine:include/EMBEDDING.md
+bindings := $(patsubst tests/ffi/%,%,$(wildcard tests/ffi/README.md \
+    $(addprefix tests/ffi/,*/*.* */src/*.rs)))
 pointer_bytes = $(shell echo __SIZEOF_POINTER__ | $(CC) $(CPPFLAGS) $(CFLAGS) -E -P -x c -)
 
 .PHONY: install
-install: all ## install headers, libraries, pkg-config and CMake files, and programs
+install: all ## install headers, stripped libraries and programs, pkg-config and CMake files, documents
 	$(INSTALL) -d '$(DESTDIR)$(INCLUDEDIR)' '$(DESTDIR)$(LIBDIR)/pkgconfig' \
-	    '$(DESTDIR)$(LIBDIR)/cmake/starcontour' '$(DESTDIR)$(BINDIR)'
+	    '$(DESTDIR)$(LIBDIR)/cmake/starcontour' '$(DESTDIR)$(BINDIR)' \
+	    '$(DESTDIR)$(DOCDIR)/examples'
 	$(INSTALL) -m 644 $(headers) '$(DESTDIR)$(INCLUDEDIR)'
 	$(INSTALL) -m 644 $(static) $(if $(metis),$(metis_library)) '$(DESTDIR)$(LIBDIR)'
 	$(INSTALL) -m 755 $(shared) '$(DESTDIR)$(LIBDIR)'
@@ -613,17 +622,30 @@ ifneq ($(installed),)
 	$(INSTALL) -d '$(DESTDIR)$(MANDIR)/man1'
 	$(INSTALL) -m 644 $(patsubst %,tools/man/%.1,$(notdir $(installed))) '$(DESTDIR)$(MANDIR)/man1'
 endif
+	for file in $(patsubst %,'$(DESTDIR)$(LIBDIR)/%',$(notdir $(static) $(shared) \
+	    $(if $(metis),$(metis_library)))) $(patsubst %,'$(DESTDIR)$(BINDIR)/%',$(notdir $(installed))); do \
+	    OBJCOPY='$(OBJCOPY)' tools/install_binary.sh "$$file" || exit 1; done
+	$(INSTALL) -m 644 $(documents) '$(DESTDIR)$(DOCDIR)'
+	for example in $(examples); do \
+	    awk -f tools/example.awk "$${example#*:}" >'$(DESTDIR)$(DOCDIR)/examples/'"$${example%%:*}.c" || exit 1; done
+	for file in $(bindings); do \
+	    $(INSTALL) -d '$(DESTDIR)$(DOCDIR)/bindings/'"$$(dirname "$$file")" && \
+	    $(INSTALL) -m 644 "tests/ffi/$$file" '$(DESTDIR)$(DOCDIR)/bindings/'"$$file" || exit 1; done
 
 .PHONY: uninstall
 uninstall: ## remove what install installs
-	for name in starcontour.h starcontour_metis.h; do \
+	for name in starcontour.h starcontour_metis.h starcontour.hpp; do \
 	    rm -f '$(DESTDIR)$(INCLUDEDIR)/'$$name || exit 1; done
 	for name in libstarcontour.a libstarcontour_metis.a $(shared_name) $(soname) $(shared_link) \
-	    pkgconfig/starcontour.pc pkgconfig/starcontour_metis.pc $(cmakes:%=cmake/starcontour/%); do \
+	    .debug/$(shared_name).debug pkgconfig/starcontour.pc pkgconfig/starcontour_metis.pc $(cmakes:%=cmake/starcontour/%); do \
 	    rm -f '$(DESTDIR)$(LIBDIR)/'$$name || exit 1; done
 	for name in sc-query sc-partition; do rm -f '$(DESTDIR)$(BINDIR)/'$$name \
-	    '$(DESTDIR)$(MANDIR)/man1/'$$name.1 || exit 1; done
-	rmdir '$(DESTDIR)$(LIBDIR)/cmake/starcontour' 2>/dev/null || true
+	    '$(DESTDIR)$(BINDIR)/.debug/'$$name.debug '$(DESTDIR)$(MANDIR)/man1/'$$name.1 || exit 1; done
+	for name in $(notdir $(documents)) $(patsubst %,examples/%.c,first_query engine) \
+	    $(bindings:%=bindings/%); do rm -f '$(DESTDIR)$(DOCDIR)/'"$$name" || exit 1; done
+	[ ! -d '$(DESTDIR)$(DOCDIR)' ] || find '$(DESTDIR)$(DOCDIR)' -depth -type d -exec rmdir {} \; 2>/dev/null || true
+	rmdir '$(DESTDIR)$(LIBDIR)/cmake/starcontour' '$(DESTDIR)$(LIBDIR)/.debug' \
+	    '$(DESTDIR)$(BINDIR)/.debug' 2>/dev/null || true
 
 # ------------------------------------------------------------------------------------------------
 # Other ways to take the library along.
@@ -686,11 +708,13 @@ help: ## this list
 #: V           1: show commands
 #: BUILD       where everything goes [build]
 #: DESTDIR     put before every path of install and uninstall
-#: PREFIX      where install installs [/usr/local]; also BINDIR, LIBDIR, INCLUDEDIR, MANDIR
+#: PREFIX      where install installs [/usr/local]; also BINDIR, LIBDIR, INCLUDEDIR, MANDIR, DOCDIR
 #: BINDIR      [PREFIX/bin]
 #: LIBDIR      [PREFIX/lib]
 #: INCLUDEDIR  [PREFIX/include]
 #: MANDIR      [PREFIX/share/man]
+#: DOCDIR      [PREFIX/share/doc/starcontour]
+#: OBJCOPY     strips what is installed; empty: it is installed as it was built [objcopy]
 
 -include $(shell find $(obj) -name '*.d' 2>/dev/null)
 

@@ -99,11 +99,74 @@ check "make install" remake install DESTDIR="$root" PREFIX=/opt/sc
 home=$root/opt/sc
 check "only PREFIX is written to" test "$(ls "$root")$(ls "$root/opt")" = optsc
 check "the header is installed" cmp include/starcontour.h "$home/include/starcontour.h"
-check "the static library is installed" cmp "$SC_LIB/libstarcontour.a" "$home/lib/libstarcontour.a"
+check "the C++ header is installed" cmp tests/ffi/cxx/starcontour.hpp "$home/include/starcontour.hpp"
+check "the static library is installed" test -s "$home/lib/libstarcontour.a"
 for program in sc-query sc-partition; do
     [ ! -x "$SC_BIN/$program" ] ||
         check "$program is installed" test -x "$home/bin/$program"
 done
+
+# What is installed is stripped; the debug symbols are beside it, and the link to them is right.
+if command -v readelf >/dev/null 2>&1 && command -v objcopy >/dev/null 2>&1 &&
+    readelf -h "$SC_LIB/libstarcontour.so" >/dev/null 2>&1; then
+    # debug_of FILE: lists its sections of debug symbols.
+    debug_of() {
+        readelf -S -W "$1" 2>/dev/null | grep -o '\.debug_info'
+    }
+    has_debug() {
+        debug_of "$1" && ! readelf -S -W "$1" 2>/dev/null | grep -q '\.text  *PROGBITS'
+    }
+    is_stripped() {
+        test -s "$1" && ! debug_of "$1"
+    }
+    links_to() {
+        readelf -p .gnu_debuglink "$1" | grep -q " $2\$"
+    }
+    names() {
+        nm "$1" 2>/dev/null | grep -q ' T sc_query$'
+    }
+    if debug_of "$SC_LIB/libstarcontour.so" >"$scratch/debug"; then
+        shared=libstarcontour.so.$version
+        for file in "lib/$shared" bin/sc-query bin/sc-partition; do
+            [ -e "$home/$file" ] || continue
+            symbols=$home/${file%/*}/.debug/${file##*/}.debug
+            check "$file is stripped" is_stripped "$home/$file"
+            check "its debug symbols are beside it" has_debug "$symbols"
+            check "it names them" links_to "$home/$file" "${file##*/}.debug"
+            check "they are no program" test ! -x "$symbols"
+        done
+        check "the shared library has no names but those it exports" test -z "$(nm "$home/lib/$shared" 2>/dev/null)"
+        check "the static library is stripped" is_stripped "$home/lib/libstarcontour.a"
+        check "and can be linked" names "$home/lib/libstarcontour.a"
+        as_built() {
+            remake install DESTDIR="$scratch/as_built" PREFIX=/opt/sc OBJCOPY= &&
+                cmp "$SC_LIB/$shared" "$scratch/as_built/opt/sc/lib/$shared" &&
+                cmp "$SC_LIB/libstarcontour.a" "$scratch/as_built/opt/sc/lib/libstarcontour.a" &&
+                test -z "$(find "$scratch/as_built" -name .debug)"
+        }
+        check "without objcopy all is installed as it was built" as_built
+        rm -rf "$scratch/as_built"
+    else
+        skip "stripped libraries: this build has no debug symbols"
+    fi
+else
+    skip "stripped libraries: no readelf, no objcopy or no ELF library"
+fi
+
+# Documents, examples, and bindings for other languages.
+documents=$home/share/doc/starcontour
+for file in LICENSE CHANGELOG.md include/EMBEDDING.md; do
+    check "${file##*/} is installed" cmp "$file" "$documents/${file##*/}"
+done
+same_bindings() {
+    (cd tests/ffi && find . -type f ! -path './[a-z]*.sh' ! -path './golden*' ! -name '*.awk' \
+        ! -name '*.pyc') | sort >"$scratch/bindings"
+    (cd "$documents/bindings" && find . -type f) | sort | diff "$scratch/bindings" - || return 1
+    while read -r file; do
+        cmp "tests/ffi/$file" "$documents/bindings/$file" || return 1
+    done <"$scratch/bindings"
+}
+check "all bindings are installed" same_bindings
 
 no_build_paths() {
     ! grep -r -F -e "$root" -e "$PWD" "$home/lib/pkgconfig"
@@ -122,12 +185,12 @@ else
     skip "soname: no readelf or no ELF library"
 fi
 
-# link_with NAME FLAGS...: builds and runs use.c against the installed library.
+# link_with NAME FLAGS...: builds and runs a program against the installed library.
 link_with() {
     name=$1
     shift
     # shellcheck disable=SC2086
-    $CC -std=c99 "$scratch/use.c" -o "$scratch/$name" "$@" $SC_FLAGS &&
+    $CC -std=c99 -o "$scratch/$name" "$@" $SC_FLAGS &&
         LD_LIBRARY_PATH=$home/lib "$scratch/$name"
 }
 
@@ -139,15 +202,30 @@ if command -v pkg-config >/dev/null 2>&1; then
     check "pkg-config knows the version" test "$(config --modversion starcontour)" = "$version"
     # shellcheck disable=SC2046
     check "the shared library works by pkg-config" \
-        link_with use_shared $(config --cflags --libs starcontour)
+        link_with use_shared "$scratch/use.c" $(config --cflags --libs starcontour)
     [ ! -e "$home/lib/libstarcontour_metis.a" ] ||
         check "pkg-config knows starcontour_metis" config --exists starcontour_metis
 else
     skip "pkg-config: not installed"
 fi
-check "the static library works" link_with use_static -I"$home/include" "$home/lib/libstarcontour.a" -lm
+check "the static library works" link_with use_static "$scratch/use.c" -I"$home/include" "$home/lib/libstarcontour.a" -lm
+
+for example in first_query engine; do
+    check "the installed example $example works" link_with "$example" -x c \
+        "$documents/examples/$example.c" -x none -I"$home/include" "$home/lib/libstarcontour.a" -pthread -lm
+done
+if command -v "${CXX:-g++}" >/dev/null 2>&1; then
+    in_cxx() {
+        "${CXX:-g++}" -std=c++17 -Wall -Wextra -Werror -I"$home/include" -fsyntax-only -x c++ \
+            "$home/include/starcontour.hpp" -Wno-pragma-once-outside-header
+    }
+    check "the installed C++ header compiles" in_cxx
+else
+    skip "the C++ header: no ${CXX:-g++}"
+fi
 
 check "make uninstall" remake uninstall DESTDIR="$root" PREFIX=/opt/sc
 check "nothing is left" test -z "$(find "$root" ! -type d)"
+check "no folder of its own is left" test -z "$(find "$root" -name '*starcontour*' -o -name .debug)"
 
 finish

@@ -269,6 +269,24 @@ for name in inside fetched; do
         -B "$scratch/$name/build" -DSTARCONTOUR_INSTALL=ON -DCMAKE_INSTALL_PREFIX="$tree"
     check "CMake installs" cmake --build "$scratch/$name/build" --target install
     check "find_package after CMake's install" finds "$tree" "$version"
+    documents=$tree/share/doc/starcontour
+    has_documents() {
+        cmp LICENSE "$documents/LICENSE" && cmp include/EMBEDDING.md "$documents/EMBEDDING.md" &&
+            cmp CHANGELOG.md "$documents/CHANGELOG.md" &&
+            cmp tests/ffi/cxx/starcontour.hpp "$tree/include/starcontour.hpp" &&
+            cmp tests/ffi/rust/src/raw.rs "$documents/bindings/rust/src/raw.rs" &&
+            test -z "$(find "$documents" -name '*.sh' -o -name '*.awk')" &&
+            $CC -std=c99 -fsyntax-only -I"$tree/include" "$documents"/examples/*.c
+    }
+    check "CMake installs documents, examples and bindings" has_documents
+    if [ "$shared" = ON ] && command -v readelf >/dev/null 2>&1 && command -v objcopy >/dev/null 2>&1; then
+        stripped() {
+            library=$(find "$tree" -name "libstarcontour.so.$version") &&
+                ! readelf -S -W "$library" | grep -q '\.debug_info' &&
+                readelf -S -W "${library%/*}/.debug/libstarcontour.so.$version.debug" | grep -q '\.debug_info'
+        }
+        check "CMake installs a stripped library, and its debug symbols beside it" stripped
+    fi
 done
 check "a later version is not found" not_found "$tree" "$newer"
 if command -v pkg-config >/dev/null 2>&1; then

@@ -134,7 +134,7 @@ if wanted cxx; then
     if has "${CXX%% *}"; then
         # shellcheck disable=SC2086
         build "c++17" $CXX -std=c++17 -O2 -Wall -Wextra -Wpedantic -Wshadow -Wold-style-cast \
-            -Wconversion -Werror -Iinclude -o "$work/ffi_cxx" "$here/cxx/ffi_cxx.cpp" -L"$SC_LIB" \
+            -Wconversion -Werror -Iinclude -I"$here/cxx" -o "$work/ffi_cxx" "$here/cxx/ffi_cxx.cpp" -L"$SC_LIB" \
             -lstarcontour -pthread && run "c++17" "$work/ffi_cxx"
     else
         skip "c++17" "$missing"

@@ -1,4 +1,4 @@
-// C++17: owning handles, spans of the application's own vertex type, exceptions, two threads.
+// C++17 by starcontour.hpp: the application's own vertex type, exceptions, two threads.
 //
 //     ffi_cxx MESH GOLDEN
 //
@@ -8,54 +8,19 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <memory>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include <starcontour.h>
+#include <starcontour.hpp>
 
 namespace
 {
 
-// What the library refused.
-class Error : public std::runtime_error
-{
-  public:
-    explicit Error(sc_status code) : std::runtime_error(sc_status_string(code)), status(code)
-    {
-    }
-    sc_status status;
-};
-
-void check_status(sc_status status)
-{
-    if (status != SC_OK) throw Error(status);
-}
-
-// A structure of the library: all zero but its size.
-template <typename T> T sized()
-{
-    T structure{};
-    structure.struct_size = sizeof(structure);
-    return structure;
-}
-
-struct Free {
-    void operator()(sc_model *model) const
-    {
-        sc_model_free(model);
-    }
-    void operator()(sc_workspace *workspace) const
-    {
-        sc_workspace_free(workspace);
-    }
-};
-
-using Workspace = std::unique_ptr<sc_workspace, Free>;
+using starcontour::Error;
+using starcontour::Workspace;
 
 // A vertex as the application stores it. Only position is read, in steps of sizeof(Vertex).
 struct Vertex {
@@ -67,54 +32,24 @@ struct Vertex {
 using Triangle = std::array<std::uint32_t, 3>;
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-// A model in its owner. Const calls may come from several threads, each with its own Workspace.
-class Model
+starcontour::Positions positions(const std::vector<Vertex> &vertices)
 {
-  public:
-    Model(const std::vector<Vertex> &vertices, const std::vector<Triangle> &triangles)
-    {
-        auto mesh = sized<sc_mesh>();
-        mesh.vertex_count = static_cast<std::uint32_t>(vertices.size());
-        mesh.triangle_count = static_cast<std::uint32_t>(triangles.size());
-        mesh.position_stride = sizeof(Vertex);
-        mesh.positions = vertices.empty() ? nullptr : &vertices[0].position;
-        mesh.indices = triangles.data();
-        sc_model *model;
-        check_status(sc_build(&mesh, nullptr, &model));
-        model_.reset(model);
-    }
+    return {vertices.empty() ? nullptr : vertices[0].position.data(), vertices.size(),
+            sizeof(Vertex)};
+}
 
-    Workspace workspace() const
-    {
-        sc_workspace *workspace;
-        check_status(sc_workspace_create(model_.get(), nullptr, &workspace));
-        return Workspace(workspace);
-    }
+starcontour::Model build(const std::vector<Vertex> &rest, const std::vector<Triangle> &triangles)
+{
+    return {positions(rest), triangles.empty() ? nullptr : triangles[0].data(), triangles.size()};
+}
 
-    Pairs query(const Workspace &workspace, const std::vector<Vertex> &vertices) const
-    {
-        auto pose = sized<sc_pose>();
-        pose.vertex_count = static_cast<std::uint32_t>(vertices.size());
-        pose.position_stride = sizeof(Vertex);
-        pose.positions = vertices.empty() ? nullptr : &vertices[0].position;
-        std::vector<sc_pair> found(16);
-        auto result = sized<sc_result>();
-        for (;;) {
-            result.capacity = found.size();
-            result.pairs = found.data();
-            const auto status = sc_query(model_.get(), workspace.get(), &pose, nullptr, &result);
-            if (status == SC_OK) break;
-            if (status != SC_ERROR_SHORT_BUFFER) throw Error(status);
-            found.resize(result.count);
-        }
-        Pairs pairs;
-        for (std::uint64_t i = 0; i < result.count; ++i) pairs.emplace_back(found[i].a, found[i].b);
-        return pairs;
-    }
-
-  private:
-    std::unique_ptr<sc_model, Free> model_;
-};
+Pairs query(Workspace &workspace, const std::vector<Vertex> &vertices)
+{
+    Pairs pairs;
+    for (const sc_pair &pair : workspace.query(positions(vertices)))
+        pairs.emplace_back(pair.a, pair.b);
+    return pairs;
+}
 
 int passed, failed;
 
@@ -167,15 +102,15 @@ void test(const char *mesh_path, const char *golden_path)
     }
     check("there is something to compare", !golden_rest.empty() && golden_rest != golden_moved);
 
-    const Model model(rest, triangles);
-    auto workspace = model.workspace();
-    check("pairs at rest", model.query(workspace, rest) == golden_rest);
-    check("pairs when moved", model.query(workspace, moved) == golden_moved);
+    const auto model = build(rest, triangles);
+    Workspace workspace(model);
+    check("pairs at rest", query(workspace, rest) == golden_rest);
+    check("pairs when moved", query(workspace, moved) == golden_moved);
 
     bool fine[2] = {true, true};
     const auto work = [&](bool &right, const std::vector<Vertex> &pose, const Pairs &golden) {
-        const auto own = model.workspace();
-        for (int i = 0; i < 200; ++i) right = right && model.query(own, pose) == golden;
+        Workspace own(model);
+        for (int i = 0; i < 200; ++i) right = right && query(own, pose) == golden;
     };
     std::thread one(work, std::ref(fine[0]), std::cref(rest), std::cref(golden_rest));
     std::thread two(work, std::ref(fine[1]), std::cref(moved), std::cref(golden_moved));
@@ -185,16 +120,35 @@ void test(const char *mesh_path, const char *golden_path)
 
     auto spoilt = moved;
     spoilt[3].position[1] = NAN;
-    check("NaN", refused(SC_ERROR_NOT_FINITE, "NaN", [&] { model.query(workspace, spoilt); }));
+    check("NaN", refused(SC_ERROR_NOT_FINITE, "vertex 3 is NaN or infinite",
+                         [&] { query(workspace, spoilt); }));
     spoilt.pop_back();
-    check("number of vertices",
-          refused(SC_ERROR_VERTEX_COUNT, "vert", [&] { model.query(workspace, spoilt); }));
-    check("no triangles", refused(SC_ERROR_EMPTY, "triangle", [&] { Model(rest, {}); }));
-    check("usable after errors", model.query(workspace, rest) == golden_rest);
+    check("number of vertices", refused(SC_ERROR_VERTEX_COUNT, "pose.vertex_count is",
+                                        [&] { query(workspace, spoilt); }));
+    check("no triangles", refused(SC_ERROR_EMPTY, "triangle", [&] { build(rest, {}); }));
+    check("vertex out of range", refused(SC_ERROR_INDEX, "triangle 1 names vertex", [&] {
+              build(rest, {{0, 1, 2}, {0, 1, 1u << 30}});
+          }));
+    auto options = starcontour::sized<sc_query_options>();
+    options.method = 99;
+    check("option", refused(SC_ERROR_OPTION, "options.method is 99, but at most",
+                            [&] { workspace.query(positions(rest), &options); }));
+    check("usable after errors", query(workspace, rest) == golden_rest);
 
-    auto other = Model(rest, triangles);
+    auto other = build(rest, triangles);
     auto moved_away = std::move(other);
-    check("moved model", moved_away.query(moved_away.workspace(), rest) == golden_rest);
+    Workspace before(moved_away);
+    auto after = std::move(before);
+    check("moved model and workspace", query(after, rest) == golden_rest);
+
+    // Doubles are read as they are: as floats these two triangles do not meet.
+    const double far[] = {500000.155, 5400000.362, 100.080, 500000.208, 5400000.167, 100.355,
+                          500000.397, 5400000.115, 100.197, 500000.358, 5400000.218, 100.086,
+                          500000.304, 5400000.135, 100.194, 500000.003, 5400000.396, 100.263};
+    const std::uint32_t corners[] = {0, 1, 2, 3, 4, 5};
+    const starcontour::Model wide({far, 6}, corners, 2);
+    Workspace of_wide(wide);
+    check("doubles", of_wide.query({far, 6}).size() == 1);
 }
 
 } // namespace

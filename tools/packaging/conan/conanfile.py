@@ -39,7 +39,8 @@ class Starcontour(ConanFile):
             for part in ("MAJOR", "MINOR", "PATCH"))
 
     def export_sources(self):
-        for pattern in ("CMakeLists.txt", "LICENSE", "include/*", "lib/*", "tools/*.in"):
+        for pattern in ("CMakeLists.txt", "*.md", "LICENSE", "include/*", "lib/*", "tests/ffi/*",
+                        "tools/*.in", "tools/example.awk", "tools/install_binary.sh"):
             copy(self, pattern, self.top, self.export_sources_folder)
 
     def layout(self):
