@@ -8,6 +8,7 @@
 #include <assimp/cimport.h>
 #include <assimp/scene.h>
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -20,7 +21,7 @@ typedef struct affine {
 typedef struct scene_walk {
     const struct aiScene *scene;
     polygon_mesh *mesh;
-    bool is_moved;      /* some node has a transform */
+    bool is_moved;      /* some node has a transform that may round */
     const char *reason; /* why the scene is of no use, or NULL */
 } scene_walk;
 
@@ -57,6 +58,22 @@ static bool affine_is_identity(const affine *map)
     return true;
 }
 
+/* Whether a map does no more than exchange axes and turn them round, as some of assimp's readers
+   have it done: that rounds nothing. */
+static bool affine_is_exact(const affine *map)
+{
+    for (int row = 0; row < 3; row++) {
+        int ones = 0;
+        for (int column = 0; column < 4; column++) {
+            const double entry = map->m[row][column];
+            if (entry != 0.0 && (column == 3 || fabs(entry) != 1.0)) return false;
+            ones += entry != 0.0;
+        }
+        if (ones != 1) return false;
+    }
+    return true;
+}
+
 static bool add_positions(scene_walk *walk, const struct aiMesh *mesh, const affine *map)
 {
     const bool identity = affine_is_identity(map);
@@ -71,7 +88,7 @@ static bool add_positions(scene_walk *walk, const struct aiMesh *mesh, const aff
         }
         if (!polygon_mesh_add_vertex(walk->mesh, out)) return false;
     }
-    if (!identity) walk->is_moved = true;
+    if (!affine_is_exact(map)) walk->is_moved = true;
     return true;
 }
 
