@@ -29,7 +29,7 @@ check "a corner passes a face" says 1 " 1 .* 0 .* 0\.\(4999\|5000\)" "$query" --
 check "nothing between one frame and itself" status 0 "$query" --step "$a" "$a"
 check "nothing that stays on its side" status 0 "$query" --step "$a" "$c"
 check "two steps" says 1 "f1.obj to .*f2.obj" "$query" --step "$a" "$b" "$c"
-check "a line for each" test "$(grep -c " to " "$scratch/out")" -eq 2
+check "a line for each" test "$(grep -c "^ .* to " "$scratch/out")" -eq 2
 check "of three frames" status 1 "$query" --step "$a" "$c" "$b"
 check "a pattern" says 1 "f1.obj to .*f2.obj" "$query" --step "$scratch/f%d.obj"
 check "nearer than half" status 1 "$query" --step --separation 0.5 "$a" "$c"
@@ -86,8 +86,8 @@ done
 check "JSON without collision" says 0 '"status":"clean".*"earliest":1,' "$query" --step --json "$a" "$c"
 check "JSON of any" says 1 '"earliest":null' "$query" --step --json --any "$a" "$b"
 check "pairs to a file" status 1 "$query" --step --out "$scratch/pairs.csv" "$a" "$b"
-check "its heading" grep -qx "start,end,kind,a,b,time" "$scratch/pairs.csv"
-check "its pair" grep -q ",vertex-face,3,0,0\." "$scratch/pairs.csv"
+check "its heading" grep -qx "start,end,kind,object_a,face_a,object_b,face_b,a,b,time" "$scratch/pairs.csv"
+check "its pair" grep -q ",vertex-face,,,,0,3,0,0\." "$scratch/pairs.csv"
 check "a budget" says 3 "+" "$query" --step --budget 1 meshes/folded_sheet.obj meshes/folded_sheet.obj
 
 # ---- what is wrong ----

@@ -50,6 +50,57 @@ void query_text_field(FILE *out, const char *text)
     fputc('"', out);
 }
 
+void query_text_owner(FILE *out, const mesh_file *mesh, uint32_t triangle, uint32_t object)
+{
+    query_text_field(out, mesh_object_name(mesh, object));
+    fputc(',', out);
+    if (triangle != SC_NONE) fprintf(out, "%lu", (unsigned long)mesh_face_of(mesh, triangle));
+}
+
+void query_text_owners(const mesh_file *mesh, uint32_t one, uint32_t other)
+{
+    printf(" faces %lu %lu", (unsigned long)mesh_face_of(mesh, one),
+           (unsigned long)mesh_face_of(mesh, other));
+    if (mesh->object_count) {
+        fputs(" of ", stdout);
+        mesh_print_name(mesh_object_name(mesh, mesh_object_of(mesh, one)));
+        fputs(" / ", stdout);
+        mesh_print_name(mesh_object_name(mesh, mesh_object_of(mesh, other)));
+    }
+}
+
+/* null: the file names no objects. */
+static void add_object(cJSON *object, const char *name, const mesh_file *mesh, uint32_t number)
+{
+    if (number == MESH_NO_OBJECT)
+        cJSON_AddNullToObject(object, name);
+    else
+        cJSON_AddStringToObject(object, name, mesh_object_name(mesh, number));
+}
+
+void query_text_add_owner(cJSON *to, char which, const mesh_file *mesh, uint32_t triangle,
+                          uint32_t object)
+{
+    const char *const face = which == 'a' ? "face_a" : "face_b";
+    if (triangle == SC_NONE)
+        cJSON_AddNullToObject(to, face);
+    else
+        cJSON_AddNumberToObject(to, face, mesh_face_of(mesh, triangle));
+    add_object(to, which == 'a' ? "object_a" : "object_b", mesh, object);
+}
+
+void query_text_add_tally(cJSON *object, const mesh_tally *tally, const mesh_file *mesh)
+{
+    cJSON *list = cJSON_AddArrayToObject(object, "object_pairs");
+    for (size_t i = 0; i < tally->count; i++) {
+        cJSON *entry = cJSON_CreateObject();
+        add_object(entry, "a", mesh, tally->entries[i].a);
+        add_object(entry, "b", mesh, tally->entries[i].b);
+        cJSON_AddNumberToObject(entry, "pairs", (double)tally->entries[i].pairs);
+        cJSON_AddItemToArray(list, entry);
+    }
+}
+
 void query_text_stats(const sc_stats *stats)
 {
     printf("    %-34s %10s %12s\n", "task", "ms", "count");

@@ -203,7 +203,7 @@ static cJSON *json_totals(const partition_view *view, const char *name,
 {
     const sc_model_info *info = &view->info;
     const double triangles = info->triangle_count;
-    cJSON *object = cJSON_CreateObject();
+    cJSON *object = tool_json_object("partition");
     cJSON_AddStringToObject(object, "file", name);
     cJSON_AddStringToObject(object, "partition", tool_choice_name(tool_partitions, set->partition));
     cJSON_AddStringToObject(object, "coordinates",

@@ -6,7 +6,9 @@
 #include "step_query.h"
 
 #include "frame_paths.h"
+#include "mesh_faces.h"
 #include "query_subject.h"
+#include "query_summary.h"
 #include "query_text.h"
 #include "query_threads.h"
 #include "tool_json.h"
@@ -48,6 +50,7 @@ typedef struct step_answer {
     bool candidates_known, collides, incomplete;
     double earliest;
     sc_stats stats;
+    mesh_tally tally;            /* pairs by their objects, if there are several */
     bool rounded, has_animation; /* either frame, as in mesh_file */
     uint32_t position_type;      /* SC_DOUBLE if either frame has doubles */
 } step_answer;
@@ -59,12 +62,20 @@ typedef struct step_run {
     mesh_file first;
     frame frames[2];
     step_list lists[KINDS];
+    uint32_t *vertex_objects; /* where they are told */
+    query_summary summary;
     FILE *out;
 } step_run;
 
-static bool wants_list(const step_settings *set)
+/* Whether the pairs between each two objects are counted. */
+static bool names_objects(const step_run *run)
 {
-    return set->out_path || set->times;
+    return run->mesh->object_count > 1 && !run->set->any;
+}
+
+static bool wants_list(const step_run *run)
+{
+    return run->set->out_path || run->set->times || names_objects(run);
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -83,12 +94,13 @@ static bool grow(step_list *list, uint64_t count)
     return list->capacity == count;
 }
 
-static sc_step_options make_options(const step_settings *set)
+static sc_step_options make_options(const step_run *run)
 {
+    const step_settings *set = run->set;
     sc_step_options options;
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
-    options.output = set->any ? SC_OUTPUT_ANY : wants_list(set) ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT;
+    options.output = set->any ? SC_OUTPUT_ANY : wants_list(run) ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT;
     options.times = set->any ? SC_STEP_TIMES_NONE : SC_STEP_TIMES_EARLIEST;
     if (options.output == SC_OUTPUT_PAIRS) options.times = SC_STEP_TIMES_EACH;
     options.method = set->method;
@@ -102,7 +114,7 @@ static sc_step_options make_options(const step_settings *set)
 
 static sc_status find_collisions(step_run *run, const sc_pose poses[2], step_answer *answer)
 {
-    const sc_step_options options = make_options(run->set);
+    const sc_step_options options = make_options(run);
     sc_step_result result;
     memset(&result, 0, sizeof result);
     result.struct_size = sizeof result;
@@ -141,7 +153,7 @@ static sc_status find_collisions(step_run *run, const sc_pose poses[2], step_ans
 /* How many pairs boxes and culling leave; not with a budget, which is the collisions'. */
 static sc_status count_candidates(step_run *run, const sc_pose poses[2], step_answer *answer)
 {
-    sc_step_options options = make_options(run->set);
+    sc_step_options options = make_options(run);
     options.output = SC_OUTPUT_COUNT;
     options.pairs = SC_STEP_CANDIDATES;
     options.times = SC_STEP_TIMES_NONE;
@@ -156,6 +168,33 @@ static sc_status count_candidates(step_run *run, const sc_pose poses[2], step_an
     answer->candidates[EDGE_EDGE] = result.edge_edge_count;
     answer->candidates_known = status == SC_OK;
     return status;
+}
+
+/* The object of one side of a pair, 0 or 1; *triangle: what is a part of it, or SC_NONE of a
+   vertex. */
+static uint32_t object_of(const step_run *run, int kind, sc_pair pair, int side, uint32_t *triangle)
+{
+    const uint32_t number = side ? pair.b : pair.a;
+    *triangle = kind == EDGE_EDGE ? number / 3 : side ? number : SC_NONE;
+    if (*triangle != SC_NONE) return mesh_object_of(run->mesh, *triangle);
+    return run->vertex_objects[number];
+}
+
+/* How many pairs there are between each two objects; false if there is no memory. */
+static bool count_objects(step_run *run, step_answer *answer)
+{
+    if (!names_objects(run)) return true;
+    for (int kind = 0; kind < KINDS; kind++) {
+        for (uint64_t i = 0; i < answer->counts[kind]; i++) {
+            const sc_pair pair = run->lists[kind].pairs[i];
+            uint32_t of[2], triangle;
+            for (int side = 0; side < 2; side++)
+                of[side] = object_of(run, kind, pair, side, &triangle);
+            if (!mesh_tally_add(&answer->tally, of[0], of[1])) return false;
+        }
+    }
+    mesh_tally_sort(&answer->tally);
+    return true;
 }
 
 static bool ask(step_run *run, const frame *from, const frame *to, step_answer *answer,
@@ -174,6 +213,7 @@ static bool ask(step_run *run, const frame *from, const frame *to, step_answer *
     if (status == SC_OK) status = find_collisions(run, poses, answer);
     if (status == SC_OK && !run->set->any && !run->set->budget)
         status = count_candidates(run, poses, answer);
+    if (status == SC_OK && !count_objects(run, answer)) status = SC_ERROR_MEMORY;
     if (status != SC_OK)
         snprintf(error, MESH_FILE_ERROR_SIZE, "%s to %s: %s", answer->start, answer->end,
                  tool_why(status));
@@ -212,6 +252,7 @@ static void print_table_row(const step_answer *answer, const step_run *run)
         printf("%10.7f ", answer->earliest);
     printf("%9.2f %9.3f  %s to %s%s\n", answer->build_ms, answer->query_ms, answer->start,
            answer->end, tool_reading_note(answer->rounded, answer->has_animation));
+    mesh_tally_print(&answer->tally, run->mesh);
     if (run->set->stats) query_text_stats(&answer->stats);
     for (int kind = 0; run->set->times && kind < KINDS; kind++) {
         const step_list *list = &run->lists[kind];
@@ -219,6 +260,16 @@ static void print_table_row(const step_answer *answer, const step_run *run)
             printf("    %s %lu %lu %.17g\n", kind_names[kind], (unsigned long)list->pairs[i].a,
                    (unsigned long)list->pairs[i].b, list->times[i]);
         }
+    }
+}
+
+/* Faces and objects of both sides; of a vertex no face. */
+static void add_owners(cJSON *object, const step_run *run, int kind, sc_pair pair)
+{
+    for (int side = 0; side < 2; side++) {
+        uint32_t triangle;
+        const uint32_t of = object_of(run, kind, pair, side, &triangle);
+        query_text_add_owner(object, side ? 'b' : 'a', run->mesh, triangle, of);
     }
 }
 
@@ -233,6 +284,7 @@ static void add_pairs(cJSON *object, const step_answer *answer, const step_run *
             cJSON_AddNumberToObject(pair, "a", list->pairs[i].a);
             cJSON_AddNumberToObject(pair, "b", list->pairs[i].b);
             cJSON_AddNumberToObject(pair, "time", list->times[i]);
+            add_owners(pair, run, kind, list->pairs[i]);
             cJSON_AddItemToArray(pairs, pair);
         }
     }
@@ -250,7 +302,7 @@ static bool print_json_answer(const step_answer *answer, const step_run *run)
 {
     const step_settings *set = run->set;
     const bool known = answer->candidates_known;
-    cJSON *object = cJSON_CreateObject();
+    cJSON *object = tool_json_object("step");
     cJSON_AddStringToObject(object, "start", answer->start);
     cJSON_AddStringToObject(object, "end", answer->end);
     cJSON_AddStringToObject(object, "status",
@@ -263,6 +315,9 @@ static bool print_json_answer(const step_answer *answer, const step_run *run)
     if (answer->has_animation) cJSON_AddStringToObject(object, "animation", "not played");
     cJSON_AddNumberToObject(object, "vertices", answer->info.point_count);
     cJSON_AddNumberToObject(object, "triangles", answer->info.triangle_count);
+    cJSON_AddNumberToObject(object, "faces", run->mesh->face_count);
+    cJSON_AddNumberToObject(object, "objects", run->mesh->object_count);
+    if (names_objects(run)) query_text_add_tally(object, &answer->tally, run->mesh);
     add_count(object, "vertex_face_pairs", answer->counts[VERTEX_FACE], !set->any);
     add_count(object, "edge_edge_pairs", answer->counts[EDGE_EDGE], !set->any);
     add_count(object, "collisions", answer->counts[0] + answer->counts[1], !set->any);
@@ -306,9 +361,15 @@ static void write_pairs(const step_answer *answer, const step_run *run)
             query_text_field(run->out, answer->start);
             fputc(',', run->out);
             query_text_field(run->out, answer->end);
-            fprintf(run->out, ",%s,%lu,%lu,%.17g\n", kind_names[kind],
-                    (unsigned long)list->pairs[i].a, (unsigned long)list->pairs[i].b,
-                    list->times[i]);
+            fprintf(run->out, ",%s", kind_names[kind]);
+            for (int side = 0; side < 2; side++) {
+                uint32_t triangle;
+                const uint32_t of = object_of(run, kind, list->pairs[i], side, &triangle);
+                fputc(',', run->out);
+                query_text_owner(run->out, run->mesh, triangle, of);
+            }
+            fprintf(run->out, ",%lu,%lu,%.17g\n", (unsigned long)list->pairs[i].a,
+                    (unsigned long)list->pairs[i].b, list->times[i]);
         }
     }
 }
@@ -317,7 +378,7 @@ static int report_failure(const step_answer *answer, const step_run *run, const 
 {
     tool_error("%s", error);
     if (run->set->json) {
-        cJSON *object = cJSON_CreateObject();
+        cJSON *object = tool_json_object("step");
         cJSON_AddStringToObject(object, "start", answer->start);
         cJSON_AddStringToObject(object, "end", answer->end);
         cJSON_AddStringToObject(object, "status", "error");
@@ -364,6 +425,11 @@ static bool open_run(step_run *run, const char *first, char error[MESH_FILE_ERRO
             return false;
         run->mesh = &run->subject.mesh;
     }
+    if (wants_list(run)) {
+        run->vertex_objects = mesh_vertex_objects(run->mesh);
+        if (!run->vertex_objects) snprintf(error, MESH_FILE_ERROR_SIZE, "%s: out of memory", first);
+        return run->vertex_objects != NULL;
+    }
     return true;
 }
 
@@ -406,11 +472,14 @@ static int do_steps(step_run *run, char **paths, uint32_t count)
     char error[MESH_FILE_ERROR_SIZE];
     int status = TOOL_CLEAN;
     if (!open_run(run, paths[0], error)) {
-        tool_error("%s", error);
-        return TOOL_FAILED;
+        step_answer none;
+        memset(&none, 0, sizeof none);
+        none.start = paths[0];
+        none.end = paths[1];
+        return report_failure(&none, run, error);
     }
     if (!run->set->json) print_table_head(run->set);
-    if (run->out) fputs("start,end,kind,a,b,time\n", run->out);
+    if (run->out) fputs("start,end,kind,object_a,face_a,object_b,face_b,a,b,time\n", run->out);
     frame *from = &run->frames[0], *to = &run->frames[1];
     take_first(run, paths[0], from);
     for (uint32_t i = 1; i < count; i++) {
@@ -422,11 +491,15 @@ static int do_steps(step_run *run, char **paths, uint32_t count)
         const char *reason = from->error[0] ? from->error : to->error[0] ? to->error : NULL;
         if (!reason && !ask(run, from, to, &answer, error)) reason = error;
         const int done = reason ? report_failure(&answer, run, reason) : report(&answer, run);
+        query_summary_add(&run->summary, done, answer.collides, answer.start, answer.end,
+                          run->set->any ? 0 : answer.counts[0] + answer.counts[1]);
+        mesh_tally_free(&answer.tally);
         status = query_text_worse(status, done);
         frame *const last = from;
         from = to;
         to = last;
     }
+    if (!query_summary_print(&run->summary, true, run->set->json)) status = TOOL_FAILED;
     return status;
 }
 
@@ -476,6 +549,7 @@ int step_query_frames(char **paths, int count, const step_settings *set)
         free(run.lists[i].times);
         mesh_pose_free(&run.frames[i].pose);
     }
+    free(run.vertex_objects);
     mesh_file_free(&run.first);
     query_subject_free(&run.subject);
     frame_paths_free(&found);

@@ -9,6 +9,15 @@
 
 #include <stdio.h>
 
+cJSON *tool_json_object(const char *type)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddNumberToObject(object, "schema", TOOL_JSON_SCHEMA);
+    cJSON_AddStringToObject(object, "version", sc_version_string());
+    cJSON_AddStringToObject(object, "type", type);
+    return object;
+}
+
 bool tool_json_print(cJSON *object)
 {
     char *text = cJSON_PrintUnformatted(object);

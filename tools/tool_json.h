@@ -10,6 +10,14 @@
 
 #include <stdbool.h>
 
+/* The number of the form that objects have, as sc-query.schema.json describes it: another one where a
+   reader of this one would be misled. More members do not change it. */
+enum { TOOL_JSON_SCHEMA = 1 };
+
+/* A new object of a type, with that number and the library's version; NULL, on which cJSON does
+   nothing, if there is no memory. */
+cJSON *tool_json_object(const char *type);
+
 /* Prints an object on a line of its own and frees it; false, with a message, if there is no
    memory. */
 bool tool_json_print(cJSON *object);

@@ -1,0 +1,384 @@
+/*
+ * The command line of sc-query; see query_options.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "query_options.h"
+
+#include "query_text.h"
+
+#include <getopt.h>
+#include <string.h>
+
+static const char usage[] =
+    "Usage: sc-query [options] MESH...\n"
+    "       sc-query --step [options] MESH MESH... | PATTERN\n"
+    "Finds every self-collision of triangle meshes, exactly.\n"
+    "\n"
+    "Reads OBJ, OFF, PLY, STL and all other formats that assimp reads, packed by gzip or not; - "
+    "is\n"
+    "standard input. Vertices at equal positions are joined, polygons triangulated, points and "
+    "lines\n"
+    "left out. The answer is exact for the nearest doubles to the file's coordinates; what only "
+    "assimp\n"
+    "reads may be rounded to floats, and the table and --json say so. Vertices and triangles are\n"
+    "numbered from 0 in the order of the file (assimp: of the scene's meshes).\n"
+    "\n"
+    "  --format obj|off|ply|stl    the format of -, and of files whose names tell none\n"
+    "What is sought\n"
+    "  --pairs triangle|edge|none  the pairs that --out and --ply show and that decide the exit\n"
+    "                              status: of triangles (default), or of an edge and a triangle "
+    "that\n"
+    "                              share no vertex; none: only count, triangles decide\n"
+    "  --proper                    only edges' interiors that pass through triangles' interiors;\n"
+    "                              without it touching is enough\n"
+    "  --any                       stop at the first pair: whether there is one, not how many\n"
+    "  --weld rest|none            join vertices at equal positions (default), or take them as "
+    "they\n"
+    "                              are read, which for some formats (STL) is one a corner of a "
+    "face\n"
+    "  --rest MESH                 build once from MESH; the files are poses of it, with the same\n"
+    "                              vertices and faces in the same order\n"
+    "  --model FILE                the same, with the model that sc-partition -o wrote\n"
+    "  --replay FILE               in place of meshes: the query that --record wrote, with its "
+    "options\n"
+    "What collides on the way from each MESH to the next\n"
+    "  --step                      the files are frames, two or more, in which every vertex moves "
+    "on "
+    "a\n"
+    "                              straight line: vertex-face and edge-edge pairs that meet, when "
+    "the\n"
+    "                              first does, and how many candidates there were, but not what\n"
+    "                              is through itself from start to end. One pattern such as\n"
+    "                              f%04d.obj is all files with numbers from 0 or 1\n"
+    "  --separation D              that come as near as D, in units of the coordinates (0)\n"
+    "  --tolerance T               of distances (a millionth of the size); pairs up to D + T apart "
+    "may\n"
+    "                              be among those reported, and none up to D is missing\n"
+    "  --times                     each pair with its time, from 0 to 1\n";
+
+/* In two: C99 has strings of up to 4095 characters. */
+static const char usage_continued[] =
+    "Which pairs are left out\n"
+    "  --ignore-rings N            those less than N edges of the mesh apart; 1: that share a "
+    "vertex\n"
+    "  --ignore FILE               those in FILE, as --out writes them; only --pairs are sought "
+    "then\n"
+    "  --groups FILE               those whose groups do not collide. Lines: triangle|vertex\n"
+    "                              FIRST[-LAST] CATEGORY MASK; a category has to be in the other's "
+    "mask\n"
+    "Output\n"
+    "  --json                      a JSON object a line for each file, in place of the table\n"
+    "  --out FILE                  write the pairs as comma-separated values. An edge is a number\n"
+    "                              3 t + k: from vertex k to vertex k + 1 (mod 3) of triangle t\n"
+    "  --ply FILE                  write the mesh with colliding triangles in red; one MESH only\n"
+    "  --contacts                  where each pair meets, and how: a point, a segment, or an area\n"
+    "  --stats                     time and count of the nine tasks of the query\n"
+    "  --record FILE               write the query, with model, pose, options and filter, to "
+    "report\n"
+    "                              a bug; one MESH only\n"
+    "How it is sought (the answer is the same, but for --contour none)\n"
+    "  --method auto|sctt|aabb-sctt|aabb  self-collision test tree, boxes from that tree on, or "
+    "the\n"
+    "                              plain tree of boxes. auto (default): for a mesh asked about "
+    "once\n"
+    "                              the plain tree alone, which is built fastest; sctt with "
+    "--rest,\n"
+    "                              --model, --record, --stats, --budget or what follows\n"
+    "                              With --step: sctt (default), two-boxes or swept, plain trees "
+    "of\n"
+    "                              boxes at both ends, or round the motion\n"
+    "  --contour exact|star|none   contour test of method sctt: is the contour simple (default), "
+    "the\n"
+    "                              star test, or none, which MISSES PAIRS and is for measuring\n"
+    "  --partition fast|metis      where the patches come from\n"
+    "  --no-rest-cache             test again what failed in the rest pose\n"
+    "  --budget N                  stop each query after N tests; what was found so far is "
+    "shown\n"
+    "  --threads K                 threads that a query uses (1)\n"
+    "\n"
+    "  -V, --version, -h, --help\n"
+    "\n"
+    "Exit status: 0 no self-collision, 1 at least one, 2 something could not be done; the reason "
+    "is\n"
+    "on standard error. 3: a --budget ended a query, whether it had found any or not.\n";
+
+const tool_choice query_pair_choices[] = {
+    {"triangle", SC_PAIRS_TRIANGLE}, {"edge", SC_PAIRS_EDGE}, {"none", 2}, {NULL, 0}};
+const tool_choice query_method_choices[] = {{"auto", SC_METHOD_DEFAULT},
+                                            {"sctt", SC_METHOD_SCTT},
+                                            {"aabb-sctt", SC_METHOD_AABB_SCTT},
+                                            {"aabb", SC_METHOD_AABB},
+                                            {NULL, 0}};
+/* What --method auto is, where models are built: boxes alone pay for one query. */
+static void choose_method(query_settings *set)
+{
+    const bool is_once = !set->rest_path && !set->model_path && !set->replay_path;
+    const bool is_plain = set->contour == SC_CONTOUR_DEFAULT && !set->no_rest_cache &&
+                          set->partition == TOOL_PARTITION_FAST && !set->record_path &&
+                          !set->stats && !set->budget;
+    if (set->method == SC_METHOD_DEFAULT && is_once && is_plain) {
+        set->content = SC_MODEL_BOXES;
+        set->method = SC_METHOD_AABB;
+    } else if (set->method == SC_METHOD_DEFAULT && (is_once || set->rest_path)) {
+        set->method = SC_METHOD_SCTT;
+    }
+    if (set->contour != SC_CONTOUR_DEFAULT && set->method == SC_METHOD_DEFAULT)
+        set->method = SC_METHOD_SCTT;
+    if (set->contour == SC_CONTOUR_DEFAULT) set->contour = SC_CONTOUR_EXACT;
+}
+
+/* What cannot be asked for together. */
+static bool check_settings(const query_settings *set)
+{
+    const int path_count = set->path_count;
+    const char *reason = NULL;
+    if (set->is_step && set->not_of_steps) {
+        tool_error("--step does not go with --%s; see sc-query --help", set->not_of_steps);
+        return false;
+    }
+    if (set->replay_path &&
+        (path_count > 0 || set->rest_path || set->model_path || set->record_path))
+        reason = "--replay takes no mesh, rest mesh or model, and makes no record";
+    else if (set->replay_path && set->is_asked)
+        reason = "--replay asks what the record asks, and as it does";
+    else if (set->replay_path && set->ply_path)
+        reason = "--replay has no faces for --ply";
+    else if (set->is_step_asked && !set->is_step)
+        reason = "--separation, --tolerance and --times are of --step";
+    else if (set->step.times && set->any)
+        reason = "--any finds no times";
+    else if (path_count == 0 && !set->replay_path)
+        reason = "no mesh given";
+    else if (set->model_path && (set->rest_path || set->is_built))
+        reason = "--model is in place of --rest, --weld and --partition";
+    else if (set->record_path && path_count > 1)
+        reason = "--record takes one mesh only";
+    else if (query_wants_list(set) && set->any)
+        reason = "--any finds no list for --out, --ply or --contacts";
+    else if (query_wants_list(set) && set->pairs == 2)
+        reason = "--pairs none leaves no list for --out, --ply or --contacts";
+    else if (set->ply_path && path_count > 1)
+        reason = "--ply takes one mesh only";
+    if (!reason) return true;
+    tool_error("%s; see sc-query --help", reason);
+    return false;
+}
+
+/* No file that is to be read is written over. */
+static bool spares_files(const query_settings *set)
+{
+    const char *const out[] = {set->out_path, set->ply_path, set->record_path};
+    for (int i = 0; i < 3; i++) {
+        if (!tool_spares(out[i], set->rest_path) || !tool_spares(out[i], set->model_path) ||
+            !tool_spares(out[i], set->replay_path) || !tool_spares(out[i], set->groups_path))
+            return false;
+        for (int path = 0; path < set->path_count; path++) {
+            if (!tool_spares(out[i], set->paths[path])) return false;
+        }
+    }
+    return true;
+}
+
+int query_options_read(int argc, char **argv, query_settings *set)
+{
+    enum {
+        OPTION_PAIRS = 256,
+        OPTION_PROPER,
+        OPTION_STEP,
+        OPTION_SEPARATION,
+        OPTION_TOLERANCE,
+        OPTION_TIMES,
+        OPTION_ANY,
+        OPTION_WELD,
+        OPTION_REST,
+        OPTION_JSON,
+        OPTION_OUT,
+        OPTION_PLY,
+        OPTION_MODEL,
+        OPTION_RECORD,
+        OPTION_REPLAY,
+        OPTION_STATS,
+        OPTION_METHOD,
+        OPTION_CONTOUR,
+        OPTION_PARTITION,
+        OPTION_NO_REST_CACHE,
+        OPTION_IGNORE_RINGS,
+        OPTION_IGNORE,
+        OPTION_GROUPS,
+        OPTION_CONTACTS,
+        OPTION_BUDGET,
+        OPTION_THREADS,
+        OPTION_FORMAT,
+        OPTION_VERSION = 'V',
+        OPTION_HELP = 'h'
+    };
+    static const struct option options[] = {
+        {"pairs", required_argument, NULL, OPTION_PAIRS},
+        {"proper", no_argument, NULL, OPTION_PROPER},
+        {"any", no_argument, NULL, OPTION_ANY},
+        {"step", no_argument, NULL, OPTION_STEP},
+        {"separation", required_argument, NULL, OPTION_SEPARATION},
+        {"tolerance", required_argument, NULL, OPTION_TOLERANCE},
+        {"times", no_argument, NULL, OPTION_TIMES},
+        {"weld", required_argument, NULL, OPTION_WELD},
+        {"rest", required_argument, NULL, OPTION_REST},
+        {"json", no_argument, NULL, OPTION_JSON},
+        {"out", required_argument, NULL, OPTION_OUT},
+        {"ply", required_argument, NULL, OPTION_PLY},
+        {"model", required_argument, NULL, OPTION_MODEL},
+        {"record", required_argument, NULL, OPTION_RECORD},
+        {"replay", required_argument, NULL, OPTION_REPLAY},
+        {"stats", no_argument, NULL, OPTION_STATS},
+        {"method", required_argument, NULL, OPTION_METHOD},
+        {"contour", required_argument, NULL, OPTION_CONTOUR},
+        {"partition", required_argument, NULL, OPTION_PARTITION},
+        {"no-rest-cache", no_argument, NULL, OPTION_NO_REST_CACHE},
+        {"ignore-rings", required_argument, NULL, OPTION_IGNORE_RINGS},
+        {"ignore", required_argument, NULL, OPTION_IGNORE},
+        {"groups", required_argument, NULL, OPTION_GROUPS},
+        {"contacts", no_argument, NULL, OPTION_CONTACTS},
+        {"budget", required_argument, NULL, OPTION_BUDGET},
+        {"threads", required_argument, NULL, OPTION_THREADS},
+        {"format", required_argument, NULL, OPTION_FORMAT},
+        {"version", no_argument, NULL, OPTION_VERSION},
+        {"help", no_argument, NULL, OPTION_HELP},
+        {NULL, 0, NULL, 0}};
+
+    memset(set, 0, sizeof *set);
+    set->step.method = SC_STEP_METHOD_SCTT;
+    bool valid = true;
+    uint32_t budget = 0, format = MESH_FORMAT_UNKNOWN;
+    set->threads = 1;
+    int option, which = 0;
+    while ((option = getopt_long(argc, argv, "hV", options, &which)) != -1) {
+        if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_PLY ||
+            option == OPTION_RECORD || option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
+            option == OPTION_IGNORE_RINGS || option == OPTION_IGNORE || option == OPTION_GROUPS ||
+            option == OPTION_CONTACTS)
+            set->not_of_steps = options[which].name;
+        set->is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
+        set->is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER ||
+                         option == OPTION_ANY || option == OPTION_WELD || option == OPTION_METHOD ||
+                         option == OPTION_CONTOUR || option == OPTION_PARTITION ||
+                         option == OPTION_NO_REST_CACHE || option == OPTION_BUDGET ||
+                         option == OPTION_IGNORE_RINGS || option == OPTION_IGNORE ||
+                         option == OPTION_GROUPS;
+        switch (option) {
+        case OPTION_PAIRS:
+            valid &= tool_choose("--pairs", optarg, query_pair_choices, &set->pairs);
+            break;
+        case OPTION_PROPER:
+            set->proper = true;
+            break;
+        case OPTION_STEP:
+            set->is_step = true;
+            break;
+        case OPTION_SEPARATION:
+            valid &= tool_parse_real("--separation", optarg, &set->step.separation);
+            set->is_step_asked = true;
+            break;
+        case OPTION_TOLERANCE:
+            valid &= tool_parse_real("--tolerance", optarg, &set->step.tolerance);
+            if (set->step.tolerance == 0) {
+                tool_error("--tolerance: '%s' is not more than 0", optarg);
+                valid = false;
+            }
+            set->is_step_asked = true;
+            break;
+        case OPTION_TIMES:
+            set->step.times = set->is_step_asked = true;
+            break;
+        case OPTION_ANY:
+            set->any = true;
+            break;
+        case OPTION_WELD:
+            valid &= tool_choose("--weld", optarg, tool_welds, &set->weld);
+            break;
+        case OPTION_REST:
+            set->rest_path = optarg;
+            break;
+        case OPTION_JSON:
+            set->json = true;
+            break;
+        case OPTION_OUT:
+            set->out_path = optarg;
+            break;
+        case OPTION_PLY:
+            set->ply_path = optarg;
+            break;
+        case OPTION_MODEL:
+            set->model_path = optarg;
+            break;
+        case OPTION_RECORD:
+            set->record_path = optarg;
+            break;
+        case OPTION_REPLAY:
+            set->replay_path = optarg;
+            break;
+        case OPTION_STATS:
+            set->stats = true;
+            break;
+        case OPTION_METHOD:
+            set->method_name = optarg;
+            break;
+        case OPTION_CONTOUR:
+            valid &= tool_choose("--contour", optarg, query_text_contours, &set->contour);
+            break;
+        case OPTION_PARTITION:
+            valid &= tool_choose("--partition", optarg, tool_partitions, &set->partition);
+            break;
+        case OPTION_NO_REST_CACHE:
+            set->no_rest_cache = true;
+            break;
+        case OPTION_IGNORE_RINGS:
+            valid &=
+                tool_parse_number("--ignore-rings", optarg, 0, SC_RINGS_MAX, &set->ignore_rings);
+            break;
+        case OPTION_IGNORE:
+            set->ignore_path = optarg;
+            break;
+        case OPTION_GROUPS:
+            set->groups_path = optarg;
+            break;
+        case OPTION_CONTACTS:
+            set->contacts = true;
+            break;
+        case OPTION_BUDGET:
+            valid &= tool_parse_number("--budget", optarg, 1, UINT32_MAX, &budget);
+            set->budget = budget;
+            break;
+        case OPTION_THREADS:
+            valid &= tool_parse_number("--threads", optarg, 1, SC_WORKERS_MAX, &set->threads);
+            break;
+        case OPTION_FORMAT:
+            valid &= tool_choose("--format", optarg, tool_formats, &format);
+            mesh_file_assume(format);
+            break;
+        case OPTION_VERSION:
+            printf("sc-query (starcontour) %s\n", sc_version_string());
+            return TOOL_CLEAN;
+        case OPTION_HELP:
+            fputs(usage, stdout);
+            fputs(usage_continued, stdout);
+            return TOOL_CLEAN;
+        default:
+            tool_error("see sc-query --help");
+            valid = false;
+            break;
+        }
+    }
+    if (set->method_name)
+        valid &= tool_choose("--method", set->method_name,
+                             set->is_step ? step_methods : query_method_choices,
+                             set->is_step ? &set->step.method : &set->method);
+    set->paths = argv + optind;
+    set->path_count = argc - optind;
+    if (!valid || !check_settings(set) || !spares_files(set)) return TOOL_FAILED;
+    choose_method(set);
+    if (set->contour == SC_CONTOUR_NONE &&
+        (set->is_step ? set->step.method == SC_STEP_METHOD_SCTT : set->method == SC_METHOD_SCTT)) {
+        tool_error("note: --contour none can miss pairs");
+    }
+    return QUERY_OPTIONS_READ;
+}
