@@ -317,6 +317,12 @@ static int open_rest(scene_folder *scene, char *error, size_t error_size)
 {
     scene_source *source = scene->source;
     char message[MESH_FILE_ERROR_SIZE];
+    struct stat info;
+    for (uint32_t i = 0; i < source->paths_length; i++) {
+        if (stat(source->paths[i], &info) == 0 && S_ISFIFO(info.st_mode))
+            return fail(error, error_size, "%s: a pipe, but frames are read more than once",
+                        source->paths[i]);
+    }
     if (!mesh_file_read(&source->rest, source->paths[0], message)) {
         return fail(error, error_size, "%s", message);
     }

@@ -205,6 +205,17 @@ check "--scene-dir has the scene's order" run --scene-dir "$scratch/folder/" --p
     --repeats 1
 check "--export-obj" small --export-obj "$scratch/obj"
 check "files have the same pairs" same_pairs run "$scratch"/obj/*.obj
+# Two triangles that cross in the numbers of the file, and not in floats; before them a frame of floats.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 2 0\nv 3 2 0\nv 2 3 0\nf 1 2 3\nf 4 5 6\n' >"$scratch/near.obj"
+printf 'v 500000.155 5400000.362 100.080\nv 500000.208 5400000.167 100.355
+v 500000.397 5400000.115 100.197\nv 500000.358 5400000.218 100.086
+v 500000.304 5400000.135 100.194\nv 500000.003 5400000.396 100.263\nf 1 2 3\nf 4 5 6\n' >"$scratch/far.obj"
+check "files of doubles" says 0 "^far.obj,2,0,exact,triangle,1,[^,]*,[^,]*,1," \
+    "$bench" --csv --methods exact,aabb --repeats 1 "$scratch/far.obj"
+check "after a file of floats" says 0 ",2,1,exact,triangle,1,[^,]*,[^,]*,1," \
+    "$bench" --csv --methods exact,aabb --repeats 1 "$scratch/near.obj" "$scratch/far.obj"
+mkfifo "$scratch/pipe.obj"
+check "a pipe is not measured" says 2 "pipe.obj: a pipe" timeout 20 "$bench" "$scratch/pipe.obj"
 check "a pattern has the same pairs" same_pairs run "$scratch/obj/frame_%04d.obj"
 shorter() {
     test "$(pairs_of run --scene-dir "$scratch/folder" --frames 2 | wc -l)" -eq 2

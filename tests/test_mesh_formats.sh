@@ -193,6 +193,17 @@ awk '$1 == "v" { printf "v %s %.4f %s\n", $2, $3 + 5400000.0625, $4; next } { pr
 check "contacts far from the origin have their digits" says 1 " 5400002.8125 0.75 " \
     "$query" --contacts "$scratch/far.obj"
 
+replayed() {
+    timeout 30 "$query" --record "$scratch/record" --out "$scratch/list" "$1" >/dev/null
+    sed 's/^[^,]*,//' "$scratch/list" >"$scratch/asked"
+    timeout 30 "$query" --json --replay "$scratch/record" >"$scratch/json"
+    grep '"coordinates":"double"' "$scratch/json" || return 1
+    timeout 30 "$query" --replay "$scratch/record" --out "$scratch/list" >/dev/null
+    sed 's/^[^,]*,//' "$scratch/list" | diff "$scratch/asked" - && grep , "$scratch/asked"
+}
+sed 's/5400000[0-9.]*/&1/' "$scratch/far.obj" | sed 's/^v 0 /v 0.1 /' >"$scratch/double_far.obj"
+check "a record keeps doubles" replayed "$scratch/double_far.obj"
+
 # gltf NODE ANIMATIONS: two triangles that cross, of floats.
 gltf() {
     data=$(printf '\000\000\000\000\000\000\000\000\000\000\000\000\000\000\200\077\000\000\000\000\000\000\000\000\000\000\000\000\000\000\200\077\000\000\000\000\000\000\200\076\000\000\200\076\000\000\200\277\000\000\200\076\000\000\200\076\000\000\200\077\000\000\000\077\000\000\000\077\000\000\000\000' |

@@ -184,11 +184,13 @@ check "of fewer than it says" refuses "truncated"
 ply 3 "element face 1" "3 0 1 two"
 check "a word in place of a number" refuses "line 13: two is not a number"
 ply 3 "element face 1" "3 0 1 2"
-sed -i 's/^1 0 0$/1e400 0 0/' "$scratch/small.ply"
+sed 's/^1 0 0$/1e400 0 0/' "$scratch/small.ply" >"$scratch/changed.ply"
+mv "$scratch/changed.ply" "$scratch/small.ply"
 check "a number too large" refuses "line 11: 1e400 is too large for a double"
 for line in 4 5 6 8; do
     ply 3 "element face 1" "3 0 1 2"
-    sed -i "${line}d" "$scratch/small.ply"
+    sed "${line}d" "$scratch/small.ply" >"$scratch/changed.ply"
+    mv "$scratch/changed.ply" "$scratch/small.ply"
     check "without property $line" refuses "have no"
 done
 for corner in 3 -1 4294967295; do
