@@ -291,7 +291,7 @@ test: all $(test_programs)
 	@meshes/fetch.sh build/meshes $(bin)/subdivide >$(work)/fetch.log 2>&1 || \
 	    echo "not all real meshes could be fetched (see $(work)/fetch.log): tests with them are skipped"
 	@$(if $(strip $(missing_for_programs)),echo "skipped: $(notdir $(bench_tests)): needs $(strip $(missing_for_programs)) ('make deps')")
-	@CC='$(CC)' SC_CONFIG='$(config)' SC_BIN='$(bin)' SC_LIB='$(lib)' \
+	@SKIPPED='$(if $(strip $(missing_for_programs)),$(words $(bench_tests)),0)' CC='$(CC)' SC_CONFIG='$(config)' SC_BIN='$(bin)' SC_LIB='$(lib)' \
 	    SC_METIS='$(metis)' SC_FLAGS='$(link_mode) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' \
 	    tests/run.sh $(test_scripts) $(test_programs)
 endif

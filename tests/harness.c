@@ -25,7 +25,7 @@
 enum { TEST_SHOWN_FAILURES = 10 };
 
 static const char *running_name;
-static uint64_t running_checks, running_failures;
+static uint64_t running_checks, running_failures, running_skips;
 static uint64_t seed = 1, random_state;
 static uint32_t scale = TEST_DEFAULT_SCALE;
 
@@ -56,6 +56,17 @@ void test_note(const char *format, ...)
     va_list arguments;
     ++running_checks;
     printf("    %s: ", running_name);
+    va_start(arguments, format);
+    vprintf(format, arguments);
+    va_end(arguments);
+    printf("\n");
+}
+
+void test_skip(const char *format, ...)
+{
+    va_list arguments;
+    ++running_skips;
+    printf("skipped: %s: ", running_name);
     va_start(arguments, format);
     vprintf(format, arguments);
     va_end(arguments);
@@ -154,7 +165,8 @@ int test_main(int argc, char **argv, const test_case *cases, size_t count)
     const char *program = slash != NULL ? slash + 1 : argv[0];
     const char *environment = getenv("SC_TEST_SCALE");
     uint64_t number;
-    unsigned passed = 0, failed = 0;
+    unsigned passed = 0, failed = 0, run = 0;
+    uint64_t skipped = 0;
 
     if (environment != NULL && read_number(environment, &number)) scale = (uint32_t)number;
     for (int i = 1; i < argc; ++i) {
@@ -183,10 +195,12 @@ int test_main(int argc, char **argv, const test_case *cases, size_t count)
     for (size_t k = 0; k < count; ++k) {
         if (!is_selected(cases[k].name, argc, argv)) continue;
         running_name = cases[k].name;
-        running_checks = running_failures = 0;
+        running_checks = running_failures = running_skips = 0;
         random_state = state_of(running_name);
         cases[k].run();
-        if (running_checks == 0) {
+        ++run;
+        skipped += running_skips;
+        if (running_checks == 0 && running_skips == 0) {
             printf("%s: no check was made\n", running_name);
             running_failures = 1;
         }
@@ -194,15 +208,15 @@ int test_main(int argc, char **argv, const test_case *cases, size_t count)
             printf("FAILED %s: %" PRIu64 " of %" PRIu64 " checks\n", running_name, running_failures,
                    running_checks);
             ++failed;
-        } else {
+        } else if (running_checks != 0) {
             ++passed;
         }
         fflush(stdout);
     }
-    if (passed + failed == 0) {
+    if (run == 0) {
         fprintf(stderr, "%s: no such test\n", program);
         return 2;
     }
-    printf("%s: %u passed, %u failed\n", program, passed, failed);
+    printf("%s: %u passed, %u failed, %" PRIu64 " skipped\n", program, passed, failed, skipped);
     return failed != 0;
 }

@@ -14,8 +14,9 @@
  * Arguments: words that select the test functions whose names contain one of them; --seed N for the
  * random numbers; --scale P to run P percent of the random trials (default: SC_TEST_SCALE of the
  * environment, else 100, or 20 under sanitizers); --list.
- * The last line printed is "<program>: N passed, N failed", where functions are counted; the exit
- * status is 1 if one failed, 2 for wrong arguments. A function without any CHECK fails.
+ * The last line printed is "<program>: N passed, N failed, N skipped": functions that passed, those
+ * that failed, and what test_skip left out. The exit status is 1 if one failed, 2 for wrong
+ * arguments. A function without any CHECK fails; one that only skips neither passes nor fails.
  *
  * Not thread-safe: CHECK on the main thread only.
  *
@@ -66,8 +67,11 @@ int test_check(int ok, const char *file, int line, const char *condition, const 
 /* Number of failed checks in the running test so far. */
 uint64_t test_failures(void);
 
-/* A note printed under the running test, such as "skipped: ..."; no failure. Counts as a check. */
+/* A note printed under the running test; no failure. Counts as a check. */
 void test_note(const char *format, ...) SC_TEST_PRINTF(1, 2);
+
+/* Says that the running test leaves something out, and why; counted in the last line. No check. */
+void test_skip(const char *format, ...) SC_TEST_PRINTF(1, 2);
 
 /*
  * Deterministic 64-bit random numbers (splitmix64). Each test function starts anew from the seed

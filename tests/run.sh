@@ -4,9 +4,10 @@
 #     tests/run.sh PROGRAM...
 #
 # Of a program that succeeds the last line is printed and what it skipped, of one that fails all it said; in the order
-# of the arguments. A program whose last line is not "...: N passed, N failed", or whose exit status does not fit that
-# line, counts as one more failure: it crashed or gave up. The last line is the sum, alone: "N passed, N failed".
-# Exit status 1 if anything failed or nothing ran.
+# of the arguments. A program whose last line is not "...: N passed, N failed, N skipped" (the last of which may be
+# missing), or whose exit status does not fit that line, counts as one more failure: it crashed or gave up. The last
+# line is the sum, alone: "N passed, N failed, N skipped". SKIPPED of the environment is the number of programs that
+# the caller left out. Exit status 1 if anything failed or nothing passed.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -35,6 +36,7 @@ done | xargs -0 -n 2 -P "${jobs:-1}" sh -c "$run_one" "$logs" &
 
 passed=0
 failed=0
+skipped=${SKIPPED:-0}
 n=0
 for program in "$@"; do
     n=$((n + 1))
@@ -46,13 +48,11 @@ for program in "$@"; do
     done
     status=$(cat "$logs/$n.status")
     last=$(tail -n 1 "$log")
-    sums=$(printf '%s\n' "$last" | sed -n 's/^.*: \([0-9][0-9]*\) passed, \([0-9][0-9]*\) failed$/\1 \2/p')
-    p=0
-    f=0
-    if [ -n "$sums" ]; then
-        p=${sums% *}
-        f=${sums#* }
-    fi
+    sums=$(printf '%s\n' "$last" | sed -n -e 's/ failed$/ failed, 0 skipped/' \
+        -e 's/^.*: \([0-9][0-9]*\) passed, \([0-9][0-9]*\) failed, \([0-9][0-9]*\) skipped$/\1 \2 \3/p')
+    # shellcheck disable=SC2086
+    set -- ${sums:-0 0 0}
+    p=$1 f=$2 s=$3
     broken=0
     if [ -z "$sums" ]; then
         broken=1
@@ -70,7 +70,8 @@ for program in "$@"; do
     fi
     passed=$((passed + p))
     failed=$((failed + f + broken))
+    skipped=$((skipped + s))
 done
 
-printf '%d passed, %d failed\n' "$passed" "$failed"
+printf '%d passed, %d failed, %d skipped\n' "$passed" "$failed" "$skipped"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]

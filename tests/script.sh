@@ -1,10 +1,10 @@
 # What the test scripts share: sourced by tests/test_*.sh, from the top of the repository.
 #
 #     check "what should be true" command [argument...]
-#     skip "what was not checked, and why"
+#     skip "what was not checked, and why" [number of checks or tests, if not 1]
 #     status N command [argument...]     whether the command ends with status N
 #     says N "words" command...          whether it does, and prints the words
-#     finish                             last: prints "<script>: N passed, N failed" and exits
+#     finish                             last: prints "<script>: N passed, N failed, N skipped" and exits
 #
 # A command's output is shown only if it fails. $scratch is a directory that is removed at the end.
 # From `make test` come CC, SC_CONFIG, SC_BIN, SC_LIB, SC_METIS (yes if METIS is there) and SC_FLAGS
@@ -25,6 +25,7 @@ export CC MAKE SC_CONFIG SC_BIN SC_LIB SC_FLAGS
 
 checks_passed=0
 checks_failed=0
+checks_skipped=0
 scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
 trap 'exit 1' HUP INT TERM
@@ -42,6 +43,7 @@ check() {
 }
 
 skip() {
+    checks_skipped=$((checks_skipped + ${2:-1}))
     echo "skipped: $1"
 }
 
@@ -63,7 +65,7 @@ says() {
 }
 
 finish() {
-    echo "$(basename "$0" .sh): $checks_passed passed, $checks_failed failed"
-    [ "$checks_failed" -eq 0 ] && [ "$checks_passed" -gt 0 ]
+    echo "$(basename "$0" .sh): $checks_passed passed, $checks_failed failed, $checks_skipped skipped"
+    [ "$checks_failed" -eq 0 ] && [ $((checks_passed + checks_skipped)) -gt 0 ]
     exit
 }

@@ -387,7 +387,7 @@ static int read_large(const char *file, soup *mesh)
     int longest = 0;
     snprintf(path, sizeof(path), "%s/%s", folder, file);
     if (!(strstr(file, ".ply") != NULL ? shape_read_ply(path, mesh) : input_read_obj(path, mesh))) {
-        test_note("skipped: no %s", path);
+        test_skip("no %s", path);
         return 0;
     }
     memcpy(low, mesh->positions, sizeof(low));

@@ -151,7 +151,7 @@ static void all_forms_agree(void)
         }
 #endif
     }
-    if (sc_isa_best() < SC_ISA_AVX512) test_note("skipped: what this machine does not have");
+    if (sc_isa_best() < SC_ISA_AVX512) test_skip("what this machine does not have");
 }
 
 /* Point i of plain, of four floats in turned places. */

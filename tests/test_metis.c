@@ -247,7 +247,7 @@ static void too_little_memory(void)
 
 static void too_little_memory(void)
 {
-    test_note("skipped: memory cannot be limited here");
+    test_skip("memory cannot be limited here");
 }
 
 #  endif

@@ -9,7 +9,8 @@
 # that has a struct_size change it, yet break nothing: of such changes grown.awk is the judge.
 #
 # Fails if programs would break while the soname is the same. Without a git checkout, or before the first
-# release, it says so and compares nothing.
+# release, it says so and compares nothing. The last line is "abi-check: N passed, N failed, N skipped", where
+# opinions are counted.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -28,6 +29,7 @@ else
     tag=$(git describe --tags --abbrev=0 --match 'v[0-9]*' 2>/dev/null)
     if [ -z "$tag" ]; then
         echo "abi-check: skipped: nothing to compare with (no tag v[0-9]*, or no git checkout)"
+        echo "abi-check: 0 passed, 0 failed, 2 skipped"
         exit 0
     fi
     echo "abi-check: compares with $tag"
@@ -46,6 +48,8 @@ soname() {
 }
 
 breaks=0
+opinions=1
+skipped=0
 mkdir "$scratch/old" "$scratch/new"
 tests/abi/goldens.sh "$scratch/old" "$old" "$old_include" || exit 1
 tests/abi/goldens.sh "$scratch/new" "$new" "$new_include" || exit 1
@@ -69,7 +73,9 @@ if command -v abidiff >/dev/null 2>&1; then
         exit 1
     fi
     [ $((status & 8)) -eq 0 ] || breaks=1
+    opinions=2
 else
+    skipped=1
     echo "abi-check: abidiff's opinion is skipped: it is not there (Debian: apt-get install abigail-tools)"
 fi
 
@@ -79,5 +85,7 @@ elif [ "$(soname "$old")" != "$(soname "$new")" ]; then
     echo "abi-check: would break programs, but for another soname: $(soname "$old"), now $(soname "$new")"
 else
     echo "abi-check: programs linked with the old library would break, and the soname is still $(soname "$new")" >&2
+    echo "abi-check: 0 passed, $opinions failed, $skipped skipped"
     exit 1
 fi
+echo "abi-check: $opinions passed, 0 failed, $skipped skipped"

@@ -167,6 +167,8 @@ def main():
     parser.add_argument("--every", type=int, default=1, help="one of so many steps [1]")
     parser.add_argument("--contour-none", action="store_true",
                         help="ask without a contour test, which misses collisions")
+    parser.add_argument("--skipped", type=int, default=0,
+                        help="how many scenes the caller left out, for the last line [0]")
     parser.add_argument("scenes", nargs="+", metavar="SCENE", help="folder of a scene")
     arguments = parser.parse_args()
     ipctk.set_logger_level(ipctk.LoggerLevel.error)
@@ -182,7 +184,7 @@ def main():
     except (OSError, peers.Unusable) as error:
         print(error, file=sys.stderr)
         return 2
-    print(f"{len(arguments.scenes) - failed} passed, {failed} failed")
+    print(f"{len(arguments.scenes) - failed} passed, {failed} failed, {arguments.skipped} skipped")
     return 1 if failed else 0
 
 

@@ -6,7 +6,7 @@
 # ipc-toolkit comes from PyPI, into a virtual environment below BUILD; if it cannot be had, the comparison
 # is skipped with a message. Scenes are small: ipc-toolkit's candidates, hundreds of thousands, are gone
 # through in Python; of 60 frames every tenth step is taken. Scenes whose meshes were not fetched are
-# skipped, too. A minute or two.
+# skipped, too. Last line: "N passed, N failed, N skipped", where scenes are counted. A minute or two.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -16,10 +16,15 @@ library=$2
 build=$3
 
 mkdir -p "$build/ipctk" || exit 2
-bench/peers/venv.sh "$build/peers/venv" ipctk "$build/ipctk/skipped" || { test $? -eq 3 && exit 0; exit 1; }
+bench/peers/venv.sh "$build/peers/venv" ipctk "$build/ipctk/skipped" || {
+    test $? -eq 3 || exit 1
+    echo "0 passed, 0 failed, 1 skipped"
+    exit 0
+}
 
 # Name, triangles, frames.
 scenes=
+skipped=0
 while read -r name triangles frames; do
     scene=$build/ipctk/$triangles-$frames/$name
     if [ ! -d "$scene" ]; then
@@ -28,6 +33,7 @@ while read -r name triangles frames; do
         if ! "$bench" --scene "$name" --triangles "$triangles" --frames "$frames" \
             --cache "$build/scenes" --export "$scene.new" </dev/null || ! mv "$scene.new" "$scene"; then
             echo "skipped: $name: sc-bench could not write it"
+            skipped=$((skipped + 1))
             continue
         fi
     fi
@@ -47,6 +53,7 @@ tight-rods 6144 60
 END
 if [ -z "$scenes" ]; then
     echo "skipped: no scene to compare on"
+    echo "0 passed, 0 failed, $skipped skipped"
     exit 0
 fi
 compare() {
@@ -59,8 +66,9 @@ if [ -d "$wrinkled" ]; then
     if [ $? -ne 1 ]; then
         cat "$build/ipctk/none.log"
         echo "failed: missing collisions are not noticed"
+        echo "0 passed, 1 failed, $skipped skipped"
         exit 1
     fi
 fi
 # shellcheck disable=SC2086
-compare $scenes
+compare --skipped "$skipped" $scenes

@@ -9,8 +9,7 @@
 for program in conan cmake; do
     if ! command -v $program >/dev/null 2>&1; then
         skip "the Conan recipe is untested here: no $program"
-        echo "conan: 0 passed, 0 failed"
-        exit 0
+        finish
     fi
 done
 

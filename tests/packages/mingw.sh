@@ -16,8 +16,7 @@ cross=$prefix-gcc
 
 if ! command -v "$cross" >/dev/null 2>&1; then
     skip "nothing was built for Windows: no $cross"
-    echo "mingw: 0 passed, 0 failed"
-    exit 0
+    finish
 fi
 unset MAKEFLAGS MFLAGS MAKELEVEL
 jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
@@ -55,7 +54,8 @@ left_out=$(for file in tests/test_*.c; do
     esac
 done)
 # shellcheck disable=SC2086
-skip "$(echo $left_out): not built for Windows; they need GMP, libccd or POSIX, which are not there"
+skip "$(echo $left_out): not built for Windows; they need GMP, libccd or POSIX, which are not there" \
+    "$(echo "$left_out" | wc -l)"
 
 static=$at/lib/libstarcontour.a
 # shellcheck disable=SC2086

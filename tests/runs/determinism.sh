@@ -6,7 +6,8 @@
 #
 # OBJECTs are tests/runs/determinism.c and what it needs, compiled once, so that all get the same input;
 # the library is compiled anew each time, in DIRECTORY. SC_CC: the compilers. Prints a line for each
-# build; exit status 1 if hashes differ or there was only one build.
+# build, and last "N passed, N failed, N skipped", where builds are counted; exit status 1 if hashes
+# differ or there was only one build.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -31,26 +32,29 @@ one() {
 }
 
 objects=$*
-builds=0
+passed=0
+failed=0
+skipped=0
 first=
-bad=0
 for compiler in ${SC_CC:-gcc clang}; do
     if ! command -v "$compiler" >/dev/null 2>&1; then
-        echo "determinism: no $compiler here: left out"
+        echo "skipped: 8 builds by $compiler, which is not there"
+        skipped=$((skipped + 8))
         continue
     fi
     for flags in -O0 -O1 -O2 -O3 '-O3 -march=native' '-O2 -DSC_NO_SIMD' '-O3 -DSC_NO_SIMD' \
         '-O3 -DSC_NO_SIMD -DSC_NO_VECTORS'; do
         # shellcheck disable=SC2086
-        hash=$(one "$compiler" $flags) || { bad=1 && hash="failed: $hash"; }
+        hash=$(one "$compiler" $flags) || hash="failed: $hash"
         echo "$compiler $flags: $hash"
-        builds=$((builds + 1))
         [ -n "$first" ] || first=${hash%% *}
-        [ "${hash%% *}" = "$first" ] || bad=1 # without SIMD there are fewer queries
+        # without SIMD there are fewer queries
+        if [ "${hash%% *}" = "$first" ] && [ "$first" != failed: ]; then
+            passed=$((passed + 1))
+        else
+            failed=$((failed + 1))
+        fi
     done
 done
-if [ "$bad" -ne 0 ] || [ "$builds" -lt 2 ]; then
-    echo "determinism: $builds builds do not agree"
-    exit 1
-fi
-echo "determinism: $builds builds, one hash"
+echo "determinism: $passed passed, $failed failed, $skipped skipped"
+[ "$failed" -eq 0 ] && [ "$passed" -ge 2 ]
