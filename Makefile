@@ -595,7 +595,7 @@ headers := include/starcontour.h $(if $(metis),include/starcontour_metis.h) \
 pkgconfigs := starcontour.pc $(if $(metis),starcontour_metis.pc)
 cmakes := starcontour-config.cmake starcontour-config-version.cmake
 # Below DOCDIR: these; the programs that the documents are, as NAME.c of FILE; bindings, in their folders.
-documents := LICENSE CHANGELOG.md include/EMBEDDING.md
+documents := LICENSE CHANGELOG.md include/EMBEDDING.md tools/starcontour.schema.json
 examples := first_query:README.md engine:include/EMBEDDING.md
 bindings := $(patsubst tests/ffi/%,%,$(wildcard tests/ffi/README.md \
     $(addprefix tests/ffi/,*/*.* */src/*.rs)))

@@ -23,6 +23,7 @@ header metis.h libmetis-dev metis-devel metis metis
 header assimp/cimport.h libassimp-dev assimp-devel assimp assimp
 header cjson/cJSON.h libcjson-dev cjson-devel cjson cjson
 header zlib.h zlib1g-dev zlib-devel zlib zlib
+module jsonschema python3-jsonschema python3-jsonschema python-jsonschema -
 header ccd/ccd.h libccd-dev libccd-devel libccd libccd
 header gmp.h libgmp-dev gmp-devel gmp gmp"
 

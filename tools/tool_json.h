@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-/* The number of the form that objects have, as sc-query.schema.json describes it: another one where a
+/* The number of the form that objects have, as starcontour.schema.json describes it: another one where a
    reader of this one would be misled. More members do not change it. */
 enum { TOOL_JSON_SCHEMA = 1 };
 
