@@ -242,9 +242,11 @@ static bool has_roles(const ply_reader *reader, const ply_element *element, int 
 
 static bool check_elements(ply_reader *reader)
 {
+    bool has_faces = false;
     if (reader->format == PLY_NO_FORMAT) return fail(reader, "its header has no format");
     for (size_t i = 0; i < reader->element_count; i++) {
         const ply_element *element = &reader->elements[i];
+        has_faces |= element->kind >= PLY_FACES && element->count > 0;
         if (element->kind == PLY_VERTICES && !has_roles(reader, element, 0, 2))
             return fail(reader, "its vertices have no x, y and z");
         if ((element->kind == PLY_FACES && !has_roles(reader, element, PLY_CORNERS, PLY_CORNERS)) ||
@@ -252,6 +254,7 @@ static bool check_elements(ply_reader *reader)
             return fail(reader, "its faces have no list vertex_indices or vertex_index");
     }
     if (reader->vertex_count > UINT32_MAX - 2) return fail(reader, "too many vertices");
+    if (!has_faces) return fail(reader, "no triangles in it");
     return true;
 }
 
@@ -372,7 +375,7 @@ static bool take_length(ply_reader *reader, const ply_property *property, uint64
     if (!(value >= 0.0 && value <= most && value == floor(value)))
         return fail(
             reader,
-            "a list of %.17g numbers cannot be read: the file has no such; is it truncated?",
+            "a list of %.10g numbers cannot be read: the file has no such; is it truncated?",
             value);
     *length = (uint64_t)value;
     return true;
@@ -384,7 +387,7 @@ static bool take_vertex(ply_reader *reader, ply_type type, double *vertex)
     if (!take(reader, type, vertex)) return false;
     if (*vertex >= 0.0 && *vertex < (double)reader->vertex_count && *vertex == floor(*vertex))
         return true;
-    return fail(reader, "face %lu names vertex %.17g, the file has %lu",
+    return fail(reader, "face %lu names vertex %.10g, the file has %lu",
                 (unsigned long)reader->mesh->face_count, *vertex,
                 (unsigned long)reader->vertex_count);
 }
