@@ -9,6 +9,8 @@
  * All coordinates are multiples of 1/1024 and are written in full, so that a reader gets the same
  * numbers in float, double or whole 1024ths, and the files do not depend on the machine's sine.
  */
+#include "starcontour.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -392,14 +394,21 @@ int main(int argc, char **argv)
                   {"annulus", make_annulus},
                   {"roll", make_roll}};
     static drawing d;
-    if (argc != 2) {
-        fputs("Usage: make-meshes FOLDER\n", stderr);
-        return 2;
+    const char *folder = argc == 2 ? argv[1] : "-";
+    if (strcmp(folder, "-V") == 0 || strcmp(folder, "--version") == 0) {
+        printf("make-meshes (starcontour) %d.%d.%d\n", SC_VERSION_MAJOR, SC_VERSION_MINOR,
+               SC_VERSION_PATCH);
+        return 0;
+    }
+    if (folder[0] == '-') {
+        const int is_asked = strcmp(folder, "-h") == 0 || strcmp(folder, "--help") == 0;
+        fputs("Usage: make-meshes FOLDER\n", is_asked ? stdout : stderr);
+        return is_asked ? 0 : 2;
     }
     for (size_t i = 0; i < sizeof meshes / sizeof meshes[0]; i++) {
         d.point_count = d.triangle_count = 0;
         meshes[i].make(&d);
-        if (!write_obj(&d, argv[1], meshes[i].name)) return 2;
+        if (!write_obj(&d, folder, meshes[i].name)) return 2;
         printf("%s: %d vertices, %d triangles\n", meshes[i].name, d.point_count, d.triangle_count);
     }
     return 0;

@@ -66,9 +66,15 @@ int main(int argc, char **argv)
 {
     tool_set_name("subdivide");
     uint32_t times;
+    const char *first = argc == 2 ? argv[1] : "";
+    if (strcmp(first, "-V") == 0 || strcmp(first, "--version") == 0) {
+        printf("subdivide (starcontour) %s\n", sc_version_string());
+        return tool_finish(TOOL_CLEAN);
+    }
     if (argc != 4) {
-        fputs(usage, stderr);
-        return TOOL_FAILED;
+        const bool is_asked = strcmp(first, "-h") == 0 || strcmp(first, "--help") == 0;
+        fputs(usage, is_asked ? stdout : stderr);
+        return is_asked ? tool_finish(TOOL_CLEAN) : TOOL_FAILED;
     }
     if (!tool_parse_number("TIMES", argv[2], 0, 10, &times)) return TOOL_FAILED;
 

@@ -193,6 +193,23 @@ awk '$1 == "v" { printf "v %s %.4f %s\n", $2, $3 + 5400000.0625, $4; next } { pr
 check "contacts far from the origin have their digits" says 1 " 5400002.8125 0.75 " \
     "$query" --contacts "$scratch/far.obj"
 
+# boxes EAST NORTH: two boxes of 10 cm that cross, there.
+boxes() {
+    awk -v east="$1" -v north="$2" 'function box(x, y, z, first,   i) {
+            for (i = 0; i < 8; i++) printf "v %.3f %.3f %.3f\n", east + x + i % 2 * 0.1, \
+                north + y + int(i / 2) % 2 * 0.1, 100 + z + int(i / 4) * 0.1
+            n = split("1 3 4 2 5 6 8 7 1 2 6 5 3 7 8 4 1 5 7 3 2 4 8 6", c, " ")
+            for (i = 1; i <= n; i += 4) print "f", c[i] + first, c[i + 1] + first, \
+                c[i + 2] + first, c[i + 3] + first }
+        BEGIN { box(0.155, 0.362, 0.08, 0); box(0.201, 0.407, 0.123, 8) }'
+}
+boxes 0 0 >"$scratch/near_boxes.obj"
+boxes 500000 5400000 >"$scratch/far_boxes.obj"
+same_boxes() {
+    pairs "$scratch/near_boxes.obj" >"$scratch/near_pairs"
+    pairs "$scratch/far_boxes.obj" | diff "$scratch/near_pairs" - && grep , "$scratch/near_pairs"
+}
+check "boxes far from the origin collide as near it" same_boxes
 replayed() {
     timeout 30 "$query" --record "$scratch/record" --out "$scratch/list" "$1" >/dev/null
     sed 's/^[^,]*,//' "$scratch/list" >"$scratch/asked"
@@ -235,7 +252,7 @@ check "and none where there is none" test $still = quiet
 
 # ---- short options ----
 
-for program in sc-query sc-partition sc-bench sc-demo; do
+for program in sc-query sc-partition sc-bench sc-demo subdivide make-meshes; do
     check "$program -h" says 0 "Usage: $program" "$SC_BIN/$program" -h
     check "$program -V" says 0 "^$program (starcontour) [0-9]" "$SC_BIN/$program" -V
     check "$program --version" says 0 "^$program (starcontour) [0-9]" "$SC_BIN/$program" --version
