@@ -297,8 +297,8 @@ static int add_path(scene_source *source, const char *path)
     return 0;
 }
 
-/* Whether the first file, which is read, and all others have nothing but floats. Those that cannot be
-   read are told of when their turn comes. */
+/* Whether the first file, which is read, and all others have nothing but floats. Those that cannot
+   be read are told of when their turn comes. */
 static bool are_floats(const scene_source *source)
 {
     bool single = source->rest.position_type == SC_FLOAT;

@@ -16,8 +16,11 @@ typedef struct file_bytes {
     bool is_plain; /* the bytes stand in a file as they are, which can be read again */
 } file_bytes;
 
-/* Reads a file or pipe, or standard input if path is "-", once. On failure error, of error_size characters, says why, beginning with the
-   path, and *bytes is empty. A file without any byte, and a device, are failures. */
+/*
+ * Reads a file or pipe, or standard input if path is "-", which can be read only once. On failure
+ * error, of error_size characters, says why, beginning with the path, and *bytes is empty. A file
+ * without any byte, and a device, are failures.
+ */
 bool file_bytes_read(file_bytes *bytes, const char *path, char *error, size_t error_size);
 
 #endif /* TOOLS_FILE_BYTES_H */

@@ -113,7 +113,7 @@ static bool read_format(polygon_mesh *polygons, const char *path, uint32_t forma
     }
 }
 
-/* Reads a file's polygons, of which there are some. */
+/* Reads a file's polygons, of which at least one has three corners. */
 static bool read_polygons(polygon_mesh *polygons, const char *path,
                           char error[MESH_FILE_ERROR_SIZE])
 {
@@ -131,13 +131,13 @@ static bool read_polygons(polygon_mesh *polygons, const char *path,
     return false;
 }
 
-/* Whether a number that is not finite, which the library will refuse, or a float. */
+/* Whether a float is the same number; so are NaN and infinity, which the library will refuse. */
 static bool is_float(double value)
 {
     return !(fabs(value) <= (double)FLT_MAX) ? !isfinite(value) : (double)(float)value == value;
 }
 
-/* Makes doubles floats, in place. Larger than any float becomes infinite. */
+/* Makes doubles floats, in place. What is larger than any float becomes infinite. */
 static void narrow(double *positions, size_t count)
 {
     char *out = (char *)positions;

@@ -7,7 +7,7 @@
  * are the nearest doubles to what the file says, and are floats if all of them are exactly floats.
  * OBJ and OFF files are read by text_mesh.h, PLY by ply_read.h, STL by stl_read.h, all others by
  * assimp, which reads floats and whose positions are moved by the node transforms of the scene, in
- * doubles: see `rounded`. A file is opened once; it may be a pipe, standard input, or packed by gzip.
+ * doubles: see `rounded`. A file may be a pipe, standard input, or packed by gzip.
  *
  * All meshes of a scene come one after the other, in the order of its nodes. Polygons are
  * triangulated; nothing else is reordered, joined or dropped. Some files (STL) and some of assimp's
@@ -38,8 +38,8 @@ typedef struct mesh_file {
     uint32_t face_count;        /* of the file's own faces */
     uint32_t *face_of_triangle; /* triangle_count, ascending; NULL: each triangle is its face */
     /* Objects: `o`, or `g` where there is but one `o`, of OBJ; each `solid` of text STL; nodes that
-       have meshes of what assimp reads. Their names, "" where the file gives none; equal names of `o` or `g` are one
-       object. */
+       have meshes of what assimp reads. Their names, "" where the file gives none; equal names of
+       `o` or `g` are one object. */
     uint32_t object_count;    /* 0: the file names none */
     char **object_names;      /* object_count */
     uint32_t *object_of_face; /* face_count; NULL: at most one object */

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Bytes of a header at most, and characters of a line that are looked at: comments may be longer. */
+/* Bytes of a header at most, and characters of a line that are looked at; comments may be longer */
 enum { HEADER_MAX = 1 << 20, LINE_SEEN = 128 };
 
 typedef enum ply_format { PLY_NO_FORMAT, PLY_TEXT, PLY_LITTLE, PLY_BIG } ply_format;
@@ -405,7 +405,7 @@ static bool read_face(ply_reader *reader, const ply_property *property)
     return polygon_mesh_end_face(reader->mesh, (size_t)length) || fail_memory(reader);
 }
 
-/* A strip of triangles, each a face, of which every other turns the other way; -1 begins another. */
+/* A strip of triangles, each a face; every other is turned round. -1 begins another strip. */
 static bool read_strip(ply_reader *reader, const ply_property *property)
 {
     uint64_t length;
@@ -470,7 +470,7 @@ static bool read_data(ply_reader *reader)
     for (size_t i = 0; i < reader->element_count; i++) {
         const ply_element *element = &reader->elements[i];
         if (element->property_count == 0) continue;
-        /* An element takes a byte at least, so this asks for no more than the file's size allows. */
+        /* An element takes a byte at least, so the size of the file limits this. */
         if (element->kind == PLY_VERTICES &&
             !polygon_mesh_reserve_vertices(reader->mesh, (size_t)element->count))
             return fail_memory(reader);

@@ -4,9 +4,9 @@
  * SPDX-License-Identifier: MIT
  *
  * Greg Turk, "The PLY Polygon File Format", 1994: all scalar types under both of their names, list
- * properties, elements and properties in any order; what is not vertices' x, y, z, or the corners of
- * faces or triangle strips, is skipped. Lines of the header end in LF, CR, or CR and LF; data begins
- * behind the end of the line that the first line shows, so it may begin with any byte.
+ * properties, elements and properties in any order; what is not vertices' x, y, z, or the corners
+ * of faces or triangle strips, is skipped. Lines of the header end in LF, CR, or CR and LF. Data
+ * may begin with any byte: the first line shows how lines end, and so where the last one does.
  *
  * Numbers in text are read as the nearest doubles, also where a property is said to be a float. A
  * file that is cut short, says of itself what cannot be, or names a vertex that does not exist is

@@ -12,8 +12,9 @@
 #include <stdint.h>
 
 /*
- * positions: 3 * vertex_count of position_type (SC_FLOAT or SC_DOUBLE); indices: 3 * triangle_count; colors: red, green, blue of each face,
- * 3 * triangle_count, or NULL. On failure errno says why and what was written is of no use.
+ * positions: 3 * vertex_count of position_type (SC_FLOAT or SC_DOUBLE); indices: 3 *
+ * triangle_count; colors: red, green, blue of each face, 3 * triangle_count, or NULL. On failure
+ * errno says why and what was written is of no use.
  */
 bool ply_write(const char *path, const void *positions, uint32_t position_type,
                uint32_t vertex_count, const uint32_t *indices, uint32_t triangle_count,

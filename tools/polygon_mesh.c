@@ -249,8 +249,8 @@ typedef struct plane_point {
     double x, y;
 } plane_point;
 
-/* The two axes to keep, so that the polygon turns to the left: Newell's normal decides, taken from the
-   first corner, so that far from the origin it is as exact. */
+/* The two axes to keep, so that the polygon turns to the left: Newell's normal decides, taken from
+   the first corner, so that far from the origin it is as exact. */
 static void choose_plane(const double *positions, const uint32_t *corners, uint32_t count, int *x,
                          int *y)
 {
@@ -309,12 +309,12 @@ void polygon_mesh_triangulate(const double *positions, const uint32_t *corners, 
     /* The ring of corners that are left is kept in the end of the output, which it never outgrows:
        of count - 2 triangles, count - left are written when left corners remain. */
     int x, y;
-    choose_plane(positions, corners, count, &x, &y);
     uint32_t *out = triangles;
     if (count == 3) {
         memcpy(out, corners, 3 * sizeof *out);
         return;
     }
+    choose_plane(positions, corners, count, &x, &y);
     uint32_t *ring = triangles + 3 * ((size_t)count - 2) - count;
     memcpy(ring, corners, count * sizeof *ring);
     for (uint32_t left = count; left > 3; left--) {

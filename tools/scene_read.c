@@ -152,10 +152,11 @@ static void find_ending(const char *path, char ending[16])
         snprintf(ending, 16, "%.*s", (int)(length - start), path + start);
 }
 
-/* Whether a format has floats and nothing but floats for positions, so that assimp rounds none. */
+/* Whether a format has nothing but floats for positions, which assimp hands out as they are. Not so
+   3DS, of whose floats assimp subtracts others. */
 static bool has_floats(const char *path)
 {
-    static const char *const endings[] = {"gltf", "glb", "vrm", "3ds", "b3d", "lwo", "pmx"};
+    static const char *const endings[] = {"gltf", "glb", "vrm"};
     char ending[16];
     find_ending(path, ending);
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {

@@ -5,8 +5,8 @@
  *
  * assimp hands out floats, of formats that hold decimals or doubles too, and node transforms of
  * floats. Positions are moved by these in doubles. `rounded` says that either may have cost digits:
- * in all formats but those whose positions are floats, and where a transform does more than exchange
- * axes.
+ * in all formats but glTF, whose positions are floats, and where a transform does more than
+ * exchange axes.
  *
  * Faces are those of the scene's meshes in the order of its nodes; each node that has meshes is an
  * object, of its name.

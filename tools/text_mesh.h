@@ -6,10 +6,10 @@
  * These two text formats are read here because what matters to this library is vertex identity, the
  * order of faces and every digit: numbers are rounded to the nearest double, vertices and faces
  * keep the numbers they have in the file, and a file that is cut short or names a vertex that does
- * not exist is an error with a line number. Colours, normals, texture coordinates, materials, points
- * and lines are ignored. Objects of OBJ are those of `o`, or, where there are not two of them with
- * faces, of `g` if that tells more apart. OFF: text only, one vertex or face a line, comments
- * anywhere.
+ * not exist is an error with a line number. Colours, normals, texture coordinates, materials,
+ * points and lines are ignored. Objects of OBJ are those of `o`, or, where there are not two of
+ * them with faces, of `g` if that tells more apart. OFF: text only, one vertex or face a line,
+ * comments anywhere.
  *
  * Cost: linear.
  */
