@@ -368,6 +368,7 @@ endif
 CLANG ?= clang
 SECONDS ?= 60
 SOAK ?= 100000
+TRIALS ?= 100000000
 
 fuzz_targets := fuzz_build fuzz_query fuzz_options fuzz_load
 fuzz_sources := tests/fuzz/fuzz_support.c $(patsubst %,tests/fuzz/%.c,$(fuzz_targets))
@@ -408,6 +409,9 @@ soak: $(work)/runs/soak ## SOAK queries on changing poses of one model, in bound
 	$< $(SOAK)
 
 thread_tests := test_tasks test_task_steps
+.PHONY: search-rounding
+search-rounding: $(work)/runs/search_rounding ## which share of each error bound rounding reaches, by TRIALS a bound
+	nice -n 10 $< $(TRIALS)
 
 .PHONY: test-thread
 test-thread: ## many threads on one model, and in one query, under ThreadSanitizer
@@ -699,6 +703,7 @@ help: ## this list
 #: MINGW       what the names of the cross compiler's programs begin with [x86_64-w64-mingw32]
 #: SECONDS     how long fuzz runs each target [60]
 #: SOAK        how many queries soak asks [100000]
+#: TRIALS      how many trials search-rounding makes of a bound [100000000]
 #: WERROR      1: warnings are errors
 #: TEST_JOBS   how many tests run at a time; an environment variable too [the processors]
 #: SC_TEST_SCALE random trials in tests, in percent; the same [100]

@@ -16,6 +16,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#ifdef __SSE2__
+#  include <xmmintrin.h>
+#endif
+
 #include "adversaries.h"
 #include "base/predicates.h"
 #include "base/wide.h"
@@ -1100,6 +1104,26 @@ static void floats_below_and_above(void)
     CHECK(sc_boxes_below(0) < 0 && sc_boxes_above(0) > 0);
 }
 
+/* The same where subnormal numbers are flushed to zero: then a float is off by up to FLT_MIN, and
+   half of that is no number to step by. */
+static void floats_where_subnormals_are_flushed(void)
+{
+#ifdef __SSE2__
+    const unsigned mode = _mm_getcsr();
+    uint32_t wrong = 0;
+    for (uint32_t i = 0; i < test_iterations(100000); ++i) {
+        volatile double d = either(ldexp(1 + test_random_unit(), -(int)test_random_below(40) - 110));
+        volatile float below, above;
+        _mm_setcsr(mode | 0x8040); /* flush to zero, denormals are zero */
+        below = sc_boxes_below(d);
+        above = sc_boxes_above(d);
+        _mm_setcsr(mode);
+        wrong += !((double)below <= d) || !((double)above >= d);
+    }
+    CHECK_MSG(wrong == 0, "%" PRIu32 " wrong", wrong);
+#endif
+}
+
 /* ---- margins of cones and fans ---- */
 
 /* Normals that have an exactly known, tiny dot product with a direction, on either side of the
@@ -1341,6 +1365,7 @@ SC_TEST_MAIN(SC_TEST(slit_discs), SC_TEST(closing_strips), SC_TEST(pinched_petal
              SC_TEST(touching_corners), SC_TEST(touching_faces), SC_TEST(sheets_seen_edge_on),
              SC_TEST(bounds_of_edges), SC_TEST(edges_without_a_slope), SC_TEST(values_of_bounds),
              SC_TEST(bounds_of_parents), SC_TEST(beside_a_point), SC_TEST(floats_below_and_above),
+             SC_TEST(floats_where_subnormals_are_flushed),
              SC_TEST(margins_are_as_documented), SC_TEST(normals_at_right_angles),
              SC_TEST(errors_of_projections), SC_TEST(signs_where_all_rounds_wrong),
              SC_TEST(worst_signs_in_space))

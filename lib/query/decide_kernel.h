@@ -270,6 +270,13 @@ static inline SC_KERNEL(sign) SC_KERNEL(sign_of)(doubles d, doubles bound)
     return sign;
 }
 
+/* What a side in a projection may be off by; see below. */
+static inline doubles SC_KERNEL(beside_bound)(doubles reach)
+{
+    return doubles_multiply(doubles_all(SC_PREDICATES_BOUND_2D / 2),
+                            doubles_multiply(reach, reach));
+}
+
 /*
  * The lanes in which the two, projected along the axis nearest to the normal of one, are certainly
  * on different sides of the line of a projected edge: its own triangle's third corner on one side,
@@ -281,8 +288,7 @@ static inline SC_KERNEL(sign) SC_KERNEL(sign_of)(doubles d, doubles bound)
 static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(eight) * x, const unsigned shared[2][3])
 {
     doubles e[2][3], n[3], size[3], flat[2][3][2], zero = doubles_all(0);
-    doubles bound = doubles_multiply(doubles_all(SC_PREDICATES_BOUND_2D / 2),
-                                     doubles_multiply(x->reach, x->reach));
+    doubles bound = SC_KERNEL(beside_bound)(x->reach);
     doubles_mask first, second;
     unsigned apart = 0;
     int s, k, i, c;

@@ -35,13 +35,19 @@
  * few FLT_MIN.
  */
 
+/* What the difference of two points along a direction across the normal may be off by. */
+static inline float SC_KERNEL(ray_bound)(const float direction[3])
+{
+    const float size = fabsf(direction[0]) + fabsf(direction[1]) + fabsf(direction[2]);
+    return 7e-7f * size + 16 * FLT_MIN;
+}
+
 /* Which sectors at the first, second and third corners of triangles may hold a ray, and the
    opposite one: those that the line at right angles to a direction makes. */
 static SC_INLINE void SC_KERNEL(find_rays)(const float direction[3], const lanes at[3],
                                            const lanes_index corner[3], lanes_mask ray[2][3])
 {
-    const float size = fabsf(direction[0]) + fabsf(direction[1]) + fabsf(direction[2]);
-    const lanes bound = lanes_all(7e-7f * size + 16 * FLT_MIN);
+    const lanes bound = lanes_all(SC_KERNEL(ray_bound)(direction));
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
     lanes along = lanes_multiply(lanes_all(direction[0]), at[0]), y[3];
     lanes_mask falls[3], rises[3]; /* edges may */
@@ -82,22 +88,28 @@ static inline void SC_KERNEL(find_across)(const float n[3], float across[2][3])
     across[1][a] = side * (-n[i] - 0.5f * n[j]);
 }
 
+/* What an area may be off by, of triangles of these sizes; largest is the largest component of the
+   normal that they are seen along. */
+static inline lanes SC_KERNEL(area_bound)(lanes size, lanes largest)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    lanes bound = lanes_add(lanes_multiply(size, lanes_all(2 * v)), lanes_all(2.1f * edge));
+    bound = lanes_add(lanes_multiply(size, bound), lanes_all(7 * edge * edge));
+    return lanes_add(lanes_multiply(largest, bound), lanes_all(16 * FLT_MIN));
+}
+
 /* The triangles of a cluster that may not face the viewer. */
 static inline lanes_mask SC_KERNEL(find_turned)(const sc_leaf_ready *ready, const float n[3])
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    const lanes size = lanes_load(ready->size);
     float largest = fabsf(n[0]) > fabsf(n[1]) ? fabsf(n[0]) : fabsf(n[1]);
-    lanes area = lanes_multiply(lanes_all(n[0]), lanes_load(ready->normal[0])), bound;
+    lanes area = lanes_multiply(lanes_all(n[0]), lanes_load(ready->normal[0]));
     int k;
     largest = fabsf(n[2]) > largest ? fabsf(n[2]) : largest;
     SC_UNROLL
     for (k = 1; k < 3; k++)
         area = lanes_add(area, lanes_multiply(lanes_all(n[k]), lanes_load(ready->normal[k])));
-    bound = lanes_add(lanes_multiply(size, lanes_all(2 * v)), lanes_all(2.1f * edge));
-    bound = lanes_add(lanes_multiply(size, bound), lanes_all(7 * edge * edge));
-    bound = lanes_add(lanes_multiply(lanes_all(largest), bound), lanes_all(16 * FLT_MIN));
-    return lanes_not_above(area, bound);
+    return lanes_not_above(
+        area, SC_KERNEL(area_bound)(lanes_load(ready->size), lanes_all(largest)));
 }
 
 /* The triangles of a cluster that may have more in common with others of it than what they share:

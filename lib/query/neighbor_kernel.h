@@ -186,11 +186,18 @@ static inline lanes SC_KERNEL(dot)(const lanes x[3], const lanes y[3])
                      lanes_multiply(x[2], y[2]));
 }
 
+/* What a place along a direction may be off by; size is the direction's |m|1. */
+static inline lanes SC_KERNEL(direction_bound)(lanes size, float extent)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    return lanes_add(lanes_multiply(size, lanes_all(1.1f * edge + 5 * v * extent)),
+                     lanes_all(16 * FLT_MIN));
+}
+
 /* The lanes in which t is certainly ahead of p and u behind, along the direction from the middle of
    u to that of t. */
 static inline unsigned SC_KERNEL(direction_parts)(const SC_KERNEL(neighbors) * x, float extent)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     lanes m[3], size, bound, ahead, behind;
     int c;
     SC_UNROLL
@@ -198,8 +205,7 @@ static inline unsigned SC_KERNEL(direction_parts)(const SC_KERNEL(neighbors) * x
         m[c] = lanes_subtract(lanes_add(x->at[0][0][c], x->at[0][1][c]),
                               lanes_add(x->at[1][0][c], x->at[1][1][c]));
     size = lanes_add(lanes_add(lanes_absolute(m[0]), lanes_absolute(m[1])), lanes_absolute(m[2]));
-    bound = lanes_add(lanes_multiply(size, lanes_all(1.1f * edge + 5 * v * extent)),
-                      lanes_all(16 * FLT_MIN));
+    bound = SC_KERNEL(direction_bound)(size, extent);
     ahead = lanes_smaller(SC_KERNEL(dot)(m, x->at[0][0]), SC_KERNEL(dot)(m, x->at[0][1]));
     behind = lanes_larger(SC_KERNEL(dot)(m, x->at[1][0]), SC_KERNEL(dot)(m, x->at[1][1]));
     return lanes_bits(lanes_both(lanes_below(bound, ahead),
@@ -217,22 +223,27 @@ static inline void SC_KERNEL(find_normal)(const SC_KERNEL(neighbors) * x, int s,
                               lanes_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
 }
 
+/* What a distance from a plane, up to a factor, may be off by here: of a triangle of this size. */
+static inline lanes SC_KERNEL(neighbor_plane_bound)(lanes size, lanes extent)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const lanes more = lanes_add(extent, lanes_all(edge));
+    lanes bound = lanes_add(lanes_multiply(lanes_all(4 * edge), more),
+                            lanes_multiply(lanes_all(13 * v), lanes_multiply(extent, extent)));
+    return lanes_add(lanes_multiply(size, bound), lanes_multiply(lanes_all(7 * edge * edge), more));
+}
+
 /* The lanes in which the plane of triangle s certainly has both of the other on one side. */
 static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, int s, lanes extent)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     const lanes *e = x->at[s][0], *f = x->at[s][1];
-    const lanes more = lanes_add(extent, lanes_all(edge));
     lanes n[3], size = lanes_all(0), bound, d[2];
     int c;
     SC_KERNEL(find_normal)(x, s, n);
     SC_UNROLL
     for (c = 0; c < 3; c++)
         size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
-    bound = lanes_add(lanes_multiply(lanes_all(4 * edge), more),
-                      lanes_multiply(lanes_all(13 * v), lanes_multiply(extent, extent)));
-    bound =
-        lanes_add(lanes_multiply(size, bound), lanes_multiply(lanes_all(7 * edge * edge), more));
+    bound = SC_KERNEL(neighbor_plane_bound)(size, extent);
     d[0] = SC_KERNEL(dot)(n, x->at[1 - s][0]);
     d[1] = SC_KERNEL(dot)(n, x->at[1 - s][1]);
     return lanes_bits(lanes_below(bound, lanes_smaller(d[0], d[1]))) |

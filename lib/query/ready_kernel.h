@@ -137,18 +137,25 @@ static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state,
     return state->workspace->ready + at;
 }
 
+/* How far the places of two points along a direction, and an end of a slab, may be off. */
+static inline float SC_KERNEL(slab_reach)(const float direction[3])
+{
+    float reach = 16 * FLT_MIN;
+    int c;
+    for (c = 0; c < 3; c++) reach += 5e-7f * fabsf(direction[c]);
+    return reach;
+}
+
 /* Makes the slab of a leaf cluster that is ready. */
 static inline void SC_KERNEL(make_slab)(const sc_query_state *state, uint32_t leaf,
                                         const sc_leaf_ready *ready)
 {
     sc_leaf_slab *slab = state->workspace->slab + leaf;
-    float reach = 16 * FLT_MIN;
+    float reach;
     lanes along;
     int c;
-    for (c = 0; c < 3; c++) {
-        slab->direction[c] = lanes_sum(lanes_load(ready->normal[c]));
-        reach += 5e-7f * fabsf(slab->direction[c]);
-    }
+    for (c = 0; c < 3; c++) slab->direction[c] = lanes_sum(lanes_load(ready->normal[c]));
+    reach = SC_KERNEL(slab_reach)(slab->direction);
     along = SC_KERNEL(along)(state, leaf, slab->direction);
     slab->ends[0] = lanes_least(along) - reach;
     slab->ends[1] = lanes_most(along) + reach;

@@ -34,11 +34,23 @@ static inline void SC_KERNEL(find_way)(const float *from, const float *to, float
     for (k = 0; k < 3; k++) way[k] = (row[k] + row[4 + k]) + (row[8 + k] + row[12 + k]);
 }
 
+/* What a place along a direction m may be off by, where points are; and of what its products m_k
+   d_k add up to, which part the rounding is. */
+static inline float SC_KERNEL(touch_reach)(const float m[3])
+{
+    const float edge = 6e-8f;
+    return (fabsf(m[0]) + fabsf(m[1]) + fabsf(m[2])) * (1.1f * edge) + 16 * FLT_MIN;
+}
+static inline lanes SC_KERNEL(touch_rounding)(lanes size)
+{
+    const float v = 5.9604644775390625e-8f;
+    return lanes_multiply(size, lanes_all(6 * v));
+}
+
 /* The points of a cluster that are certainly ahead of p along a direction. */
 static inline unsigned SC_KERNEL(find_ahead)(const float *at, const float m[3], const float p[3])
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    const float reach = (fabsf(m[0]) + fabsf(m[1]) + fabsf(m[2])) * (1.1f * edge) + 16 * FLT_MIN;
+    const float reach = SC_KERNEL(touch_reach)(m);
     lanes x[3], along, size;
     int k;
     lanes_turned(at, x);
@@ -48,7 +60,7 @@ static inline unsigned SC_KERNEL(find_ahead)(const float *at, const float m[3], 
     along = lanes_add(lanes_add(x[0], x[1]), x[2]);
     size = lanes_add(lanes_add(lanes_absolute(x[0]), lanes_absolute(x[1])), lanes_absolute(x[2]));
     return lanes_bits(lanes_below(lanes_all(reach),
-                                  lanes_subtract(along, lanes_multiply(size, lanes_all(6 * v)))));
+                                  lanes_subtract(along, SC_KERNEL(touch_rounding)(size))));
 }
 
 /* The lanes that a point at a place is in: if it is the last one, it fills the row. */

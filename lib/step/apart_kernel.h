@@ -73,6 +73,14 @@ static inline void SC_KERNEL(side_in_space)(const SC_KERNEL(candidate_lanes) c[2
                                lanes_add(c[0].at[i][k], c[1].at[i][k]));
 }
 
+/* How far apart the computed points must be along a direction, over its |m|1; reach is the largest
+   coordinate of a difference. */
+static inline lanes SC_KERNEL(clear_in_space)(float distance, lanes reach)
+{
+    return lanes_add(lanes_all(distance * 1.00001f + 2.1f * SC_MOTION_POINT_ERROR),
+                     lanes_multiply(reach, lanes_all(5 * 5.9604644775390625e-8f)));
+}
+
 static unsigned SC_KERNEL(stay_apart)(const sc_motion *motion, const sc_candidate_points *points,
                                       int split)
 {
@@ -92,8 +100,7 @@ static unsigned SC_KERNEL(stay_apart)(const sc_motion *motion, const sc_candidat
                     sum[end][k] = lanes_add(sum[end][k], r);
                 }
     }
-    clear = lanes_add(lanes_all(motion->distance * 1.00001f + 2.1f * SC_MOTION_POINT_ERROR),
-                      lanes_multiply(reach, lanes_all(5 * 5.9604644775390625e-8f)));
+    clear = SC_KERNEL(clear_in_space)(motion->distance, reach);
     for (k = 0; k < 3; k++) m[k] = lanes_add(sum[0][k], sum[1][k]);
     apart = SC_KERNEL(apart_in_space)(m, difference, count, clear);
     SC_KERNEL(side_in_space)(c, split == 1 ? 1 : 0, split == 1 ? 2 : 1, side[0]);

@@ -121,12 +121,7 @@ sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uin
     distance = sc_impact_thickness(limits, 2 * side) * w->scale;
     w->motion.distance =
         distance < (double)FLT_MAX / 2 ? (float)distance * 1.000001f + FLT_MIN : HUGE_VALF;
-    /*
-     * Boxes are taken of points that are off by SC_MOTION_POINT_ERROR, and each moved outwards by
-     * half the distance between sets that are to be kept, rounding at most 2^-24 (1 + margin) each
-     * time: four times 3e-8, twice 6e-8 and a little.
-     */
-    w->motion.margin = w->motion.distance * 1.000001f + 3e-7f;
+    w->motion.margin = sc_motion_margin(w->motion.distance);
     return SC_OK;
 }
 
