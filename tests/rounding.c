@@ -462,19 +462,16 @@ static void sixteen_edges(const double (*x)[N], double share[N])
 /* Three points in a projection: the third seen from the line of the others. */
 static void sides(const double (*x)[N], double share[N])
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    lanes p[3][2], d, extent = extent_of(x, 3, 2), bound;
+    lanes p[3][2], d;
     double exact[N];
     for (int k = 0; k < 6; ++k) p[k / 2][k % 2] = rounded(x[k]);
-    bound = lanes_add(lanes_multiply(lanes_all(5 * edge), lanes_add(extent, lanes_all(edge))),
-                      lanes_multiply(lanes_multiply(lanes_all(9 * v), extent), extent));
     d = lanes_subtract(
         lanes_multiply(lanes_subtract(p[1][0], p[0][0]), lanes_subtract(p[2][1], p[0][1])),
         lanes_multiply(lanes_subtract(p[1][1], p[0][1]), lanes_subtract(p[2][0], p[0][0])));
     for (int i = 0; i < N; ++i)
         exact[i] = (x[2][i] - x[0][i]) * (x[5][i] - x[1][i]) -
                    (x[3][i] - x[1][i]) * (x[4][i] - x[0][i]);
-    share_of(d, bound, exact, share);
+    share_of(d, SC_KERNEL(side_bound)(extent_of(x, 3, 2)), exact, share);
 }
 
 /* A direction, and two points along it. */
@@ -1060,6 +1057,9 @@ static const double known_area[] = {
     0x1.5aa834fff2e49p-1,  -0x1.5aa8338926941p-1, 0x1.5aa833000d1b7p-1,  0x1.52c5b0fff2e49p-1,
     0x1.a6c63efff2e49p-1,  -0x1.27a761000d1b7p-2, 0x1.52c5af000d1b7p-1,  0x1.a6c63d000d1b7p-1,
     -0x1.27a761000d1b7p-2, 0x1.52c5b0fff2e49p-1,  0x1.a6c63d000d1b7p-1,  -0x1.280c9efff2e49p-2};
+static const double known_float_side[] = {-0x1.9ea800fff2e49p-11, 0x1.ff8bff0132cp-10,
+                                          0x1.fffc83000d1b7p-1, -0x1.ff6744fff2e49p-1,
+                                          0x1.fff1c8fff2e49p-1, -0x1.ff5c37000d1b7p-1};
 static const double known_side[] = {-0x1.ffffffa68e913p-2, -0x1p-13,
                                     -0x1.fffffffe97d83p-1, 0x1.fff337a6a4cb5p-2,
                                     -0x1.fffffff85edap-1,  0x1.fffffff475fc7p-2,
@@ -1102,7 +1102,7 @@ const rounding_bound rounding_bounds[] = {
     {"query/sixteen_kernel.h, order", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1, sixteen_edges,
      0.9, NULL},
     {"query/sixteen_kernel.h, sides", "triangles in the unit box", ROUNDING_UNIT, 6, 2, 1, sides,
-     0, NULL},
+     0.56, known_float_side},
     {"query/ready_kernel.h, slabs", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1, slabs,
      0.6, NULL},
     {"query/neighbor_kernel.h, planes", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1, neighbor_planes,

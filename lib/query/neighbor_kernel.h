@@ -269,6 +269,14 @@ static SC_INLINE void SC_KERNEL(see_along)(const lanes n[3], const lanes corner[
     }
 }
 
+/* What a side in a projection may be off by; see query/sixteen_kernel.h. */
+static inline lanes SC_KERNEL(side_bound)(lanes extent)
+{
+    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    return lanes_add(lanes_multiply(lanes_all(5 * edge), lanes_add(extent, lanes_all(edge))),
+                     lanes_multiply(lanes_all(9 * v), lanes_multiply(extent, extent)));
+}
+
 /* On which side of e f is, certainly. */
 typedef struct SC_KERNEL(side) {
     unsigned left, right;
@@ -287,10 +295,7 @@ static inline SC_KERNEL(side)
 /* The lanes in which a line parts them, seen along the axis nearest to the normal of t. */
 static inline unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, lanes extent)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    const lanes bound =
-        lanes_add(lanes_multiply(lanes_all(5 * edge), lanes_add(extent, lanes_all(edge))),
-                  lanes_multiply(lanes_all(9 * v), lanes_multiply(extent, extent)));
+    const lanes bound = SC_KERNEL(side_bound)(extent);
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
     lanes n[3], flat[2][2][2];
     SC_KERNEL(side) own[2], of[2][2]; /* a_0, a_1; b_0, b_1; a_i, b_k */

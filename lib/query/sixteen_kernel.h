@@ -264,10 +264,7 @@ static SC_INLINE void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lane
    other. */
 static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], lanes extent)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
-    const lanes bound =
-        lanes_add(lanes_multiply(lanes_all(5 * edge), lanes_add(extent, lanes_all(edge))),
-                  lanes_multiply(lanes_multiply(lanes_all(9 * v), extent), extent));
+    const lanes bound = SC_KERNEL(side_bound)(extent);
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
     lanes flat[2][3][2];
     unsigned apart = 0;
