@@ -145,7 +145,7 @@ offenders=$(
             may["tests/abi"] = "tests tests/abi"
             may["tests/packages"] = "include"
             may["tests/cgal"] = "include tools tests tests/cgal"
-            may["tests/ffi/cxx"] = "include"
+            may["tests/ffi/cxx"] = "include tests/ffi/cxx"
         }
 
         { known[$0] = 1; order[++count] = $0 }
