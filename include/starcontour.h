@@ -584,7 +584,9 @@ enum {
     SC_METHOD_AABB_SCTT = 2, /* box recursion from the non-adjacent children of the test tree's
                                 nodes: the paper's optimised tree of axis-aligned bounding boxes
                                 (AABB) */
-    SC_METHOD_AABB = 3       /* the plain tree of boxes, for comparison */
+    SC_METHOD_AABB = 3       /* the plain tree of boxes: all that a model with SC_MODEL_BOXES needs;
+                                of a full one, the choice for strands and thin tubes alone, whose
+                                patches face all directions */
 };
 
 /* The contour test of SC_METHOD_SCTT. */

@@ -23,7 +23,7 @@ here=${0%/*}
 usual="\
 twisted-cloth 65536 6 all
 cloth-sphere 80000 6
-cat 41000 6 all
+cat 165000 6 all
 bunny 54500 6 all
 bunny-bumpy 54500 6
 bunny-spiky 54500 6
