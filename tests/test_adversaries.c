@@ -1112,7 +1112,8 @@ static void floats_where_subnormals_are_flushed(void)
     const unsigned mode = _mm_getcsr();
     uint32_t wrong = 0;
     for (uint32_t i = 0; i < test_iterations(100000); ++i) {
-        volatile double d = either(ldexp(1 + test_random_unit(), -(int)test_random_below(40) - 110));
+        volatile double d =
+            either(ldexp(1 + test_random_unit(), -(int)test_random_below(40) - 110));
         volatile float below, above;
         _mm_setcsr(mode | 0x8040); /* flush to zero, denormals are zero */
         below = sc_boxes_below(d);
@@ -1365,7 +1366,6 @@ SC_TEST_MAIN(SC_TEST(slit_discs), SC_TEST(closing_strips), SC_TEST(pinched_petal
              SC_TEST(touching_corners), SC_TEST(touching_faces), SC_TEST(sheets_seen_edge_on),
              SC_TEST(bounds_of_edges), SC_TEST(edges_without_a_slope), SC_TEST(values_of_bounds),
              SC_TEST(bounds_of_parents), SC_TEST(beside_a_point), SC_TEST(floats_below_and_above),
-             SC_TEST(floats_where_subnormals_are_flushed),
-             SC_TEST(margins_are_as_documented), SC_TEST(normals_at_right_angles),
-             SC_TEST(errors_of_projections), SC_TEST(signs_where_all_rounds_wrong),
-             SC_TEST(worst_signs_in_space))
+             SC_TEST(floats_where_subnormals_are_flushed), SC_TEST(margins_are_as_documented),
+             SC_TEST(normals_at_right_angles), SC_TEST(errors_of_projections),
+             SC_TEST(signs_where_all_rounds_wrong), SC_TEST(worst_signs_in_space))

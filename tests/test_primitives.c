@@ -395,8 +395,8 @@ static void apart_in_a_plane(void)
 /*
  * A triangle that lies on a line seems to have an area, so far is its computed normal off, and
  * another lies over it: not in its plane, though all corners of the other have sign 0 there. With
- * the products of two odd numbers a little above 2^26.5, less 1, each difference to -1 is half a unit
- * in the last place off: 0.59 of the bound of an area is reached.
+ * the products of two odd numbers a little above 2^26.5, less 1, each difference to -1 is half a
+ * unit in the last place off: 0.59 of the bound of an area is reached.
  */
 static void lines_that_seem_to_have_areas(void)
 {
@@ -422,8 +422,7 @@ static void lines_that_seem_to_have_areas(void)
             pair.va[k] = (uint32_t)k;
             pair.vb[k] = 3 + (uint32_t)k;
         }
-        wrong +=
-            sc_primitives_edge_hits(&pair, 0, SC_PRIMITIVES_ALL_EDGES, &fallbacks) != 0;
+        wrong += sc_primitives_edge_hits(&pair, 0, SC_PRIMITIVES_ALL_EDGES, &fallbacks) != 0;
     }
     CHECK_MSG(wrong == 0, "%" PRIu32 " of %" PRIu32 " meet", wrong, rounds);
     CHECK_MSG(rounds < 1000 || (most > 0.55 && most < 1), "%g of the bound", most);

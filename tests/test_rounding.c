@@ -1,14 +1,14 @@
 /*
  * Actual rounding errors stay within the bounds that lib/GUARANTEE.md lists: some random and
- * adversarial trials of each; see rounding.h. Of many bounds more than half is reached, so that a
- * test here fails if one of them is halved.
+ * adversarial trials of each; see rounding_search.h. Of many bounds more than half is reached, so
+ * that a test here fails if one of them is halved.
  *
  * SPDX-License-Identifier: MIT
  */
 #include <string.h>
 
 #include "harness.h"
-#include "rounding.h"
+#include "rounding_search.h"
 
 /* All bounds of a group. What they reach at least is the search's own test: one that found nothing
    would pass whatever the bound. */

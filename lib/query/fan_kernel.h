@@ -108,8 +108,8 @@ static inline lanes_mask SC_KERNEL(find_turned)(const sc_leaf_ready *ready, cons
     SC_UNROLL
     for (k = 1; k < 3; k++)
         area = lanes_add(area, lanes_multiply(lanes_all(n[k]), lanes_load(ready->normal[k])));
-    return lanes_not_above(
-        area, SC_KERNEL(area_bound)(lanes_load(ready->size), lanes_all(largest)));
+    return lanes_not_above(area,
+                           SC_KERNEL(area_bound)(lanes_load(ready->size), lanes_all(largest)));
 }
 
 /* The triangles of a cluster that may have more in common with others of it than what they share:

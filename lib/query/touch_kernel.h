@@ -59,8 +59,8 @@ static inline unsigned SC_KERNEL(find_ahead)(const float *at, const float m[3], 
         x[k] = lanes_multiply(lanes_all(m[k]), lanes_subtract(x[k], lanes_all(p[k])));
     along = lanes_add(lanes_add(x[0], x[1]), x[2]);
     size = lanes_add(lanes_add(lanes_absolute(x[0]), lanes_absolute(x[1])), lanes_absolute(x[2]));
-    return lanes_bits(lanes_below(lanes_all(reach),
-                                  lanes_subtract(along, SC_KERNEL(touch_rounding)(size))));
+    return lanes_bits(
+        lanes_below(lanes_all(reach), lanes_subtract(along, SC_KERNEL(touch_rounding)(size))));
 }
 
 /* The lanes that a point at a place is in: if it is the last one, it fills the row. */

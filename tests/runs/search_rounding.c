@@ -1,19 +1,22 @@
 /*
- * Which share of each error bound rounding can be made to use, by search: see tests/rounding.h.
+ * Which share of each error bound rounding can be made to use, by search: see
+ * tests/rounding_search.h.
  *
  * SPDX-License-Identifier: MIT
  *
- *     rounding [TRIALS [WORD]]     TRIALS a bound [100000000]; only bounds whose name has WORD in it
+ *     rounding [TRIALS [WORD]]
+ *
+ * Makes TRIALS of each bound [100000000], of some a tenth; only of those whose name has WORD in it.
  *
  * Prints a line a bound: the largest share, the number of trials, the name; and the numbers of that
  * trial. Exit status 1 if a share is above 1: then that bound is wrong.
  */
-#include "rounding.h"
-
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "rounding_search.h"
 
 int main(int argc, char **argv)
 {

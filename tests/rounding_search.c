@@ -1,9 +1,9 @@
 /*
- * See rounding.h.
+ * See rounding_search.h.
  *
  * SPDX-License-Identifier: MIT
  */
-#include "rounding.h"
+#include "rounding_search.h"
 
 #include <float.h>
 #include <gmp.h>
@@ -218,8 +218,8 @@ static void space_tiny(const double (*x)[N], double share[N])
         magnitude = 0;
         for (int k = 0; k < 3; ++k) {
             int m = (k + 1) % 3, n = (k + 2) % 3;
-            magnitude += fabs(e[2][k].high) * (fabs(e[0][m].high * e[1][n].high) +
-                                               fabs(e[0][n].high * e[1][m].high));
+            magnitude += fabs(e[2][k].high) *
+                         (fabs(e[0][m].high * e[1][n].high) + fabs(e[0][n].high * e[1][m].high));
         }
         error = off_by(ldexp(determinant, 2 * s), determinant_of(e[0], e[1], e[2]));
         error = ldexp(error - 9 * U * magnitude, -2 * s + 1000); /* more: from underflow */
@@ -306,9 +306,8 @@ static void area(const double (*x)[N], double share[N])
         sc_predicates_plane plane = sc_predicates_make_plane(p[0], p[1], p[2]);
         for (int k = 0; k < 3; ++k) {
             int a = (k + 1) % 3, b = (k + 2) % 3;
-            twice exact =
-                minor_of(difference(p[1][a], p[0][a]), difference(p[1][b], p[0][b]),
-                         difference(p[2][a], p[0][a]), difference(p[2][b], p[0][b]));
+            twice exact = minor_of(difference(p[1][a], p[0][a]), difference(p[1][b], p[0][b]),
+                                   difference(p[2][a], p[0][a]), difference(p[2][b], p[0][b]));
             double bound = SC_PREDICATES_BOUND_2D * plane.magnitude[k] + SC_PREDICATES_BOUND_TINY;
             double off = off_by(plane.normal[k], exact) - U * fabs(plane.normal[k]);
             most = fmax(most, off / bound);
@@ -341,7 +340,7 @@ static void unit_tiny(const double (*x)[N], double share[N])
 }
 
 /* The boxes of two triangles that touch, by the corners at which they do: whether floats are
-   ordered as what is rounded to them. The share is of a step, the least that keeps them together. */
+   ordered as what is rounded to them. The share is of the step as made. */
 static void box_step(const double (*x)[N], double share[N])
 {
     lanes at[3][3], low, high;
@@ -394,9 +393,9 @@ static void fan_tiny(const double (*x)[N], double share[N])
         size = ldexp(size_of(r[0]) + size_of(r[1]), s);
         bound = 32 * U * size_of(d) * size * size;
         computed = off_by(ldexp(computed, 2 * s), determinant_of(e[0], e[1], e[2])) - bound;
-        share[i] = computed > 0 ? ldexp(computed, -2 * s + 1000) /
-                                      ldexp(1e-290 * (1 + size_of(d)), 1000)
-                                : 0;
+        share[i] = computed > 0
+                       ? ldexp(computed, -2 * s + 1000) / ldexp(1e-290 * (1 + size_of(d)), 1000)
+                       : 0;
     }
 }
 
@@ -415,8 +414,7 @@ static void sixteen_planes(const double (*x)[N], double share[N])
     SC_KERNEL(make_normals)(at, &ready);
     bound = SC_KERNEL(plane_bound)(lanes_load(ready.size), extent_of(x, 4, 3));
     d = lanes_multiply(lanes_load(ready.normal[0]), p[0]);
-    for (int k = 1; k < 3; ++k)
-        d = lanes_add(d, lanes_multiply(lanes_load(ready.normal[k]), p[k]));
+    for (int k = 1; k < 3; ++k) d = lanes_add(d, lanes_multiply(lanes_load(ready.normal[k]), p[k]));
     d = lanes_subtract(d, lanes_load(ready.offset));
     for (int i = 0; i < N; ++i) {
         double e[3], f[3], w[3], n[3];
@@ -470,8 +468,8 @@ static void sides(const double (*x)[N], double share[N])
         lanes_multiply(lanes_subtract(p[1][0], p[0][0]), lanes_subtract(p[2][1], p[0][1])),
         lanes_multiply(lanes_subtract(p[1][1], p[0][1]), lanes_subtract(p[2][0], p[0][0])));
     for (int i = 0; i < N; ++i)
-        exact[i] = (x[2][i] - x[0][i]) * (x[5][i] - x[1][i]) -
-                   (x[3][i] - x[1][i]) * (x[4][i] - x[0][i]);
+        exact[i] =
+            (x[2][i] - x[0][i]) * (x[5][i] - x[1][i]) - (x[3][i] - x[1][i]) * (x[4][i] - x[0][i]);
     share_of(d, SC_KERNEL(side_bound)(extent_of(x, 3, 2)), exact, share);
 }
 
@@ -494,10 +492,9 @@ static void slabs(const double (*x)[N], double share[N])
     lanes_store(far, to);
     for (int i = 0; i < N; ++i) {
         double way = 0;
-        for (int k = 0; k < 3; ++k)
-            way += (double)(float)x[k][i] * (x[3 + k][i] - x[6 + k][i]);
-        share[i] = fabs((double)near[i] - ((double)far[i] + (double)bound[i]) - way) /
-                   (double)bound[i];
+        for (int k = 0; k < 3; ++k) way += (double)(float)x[k][i] * (x[3 + k][i] - x[6 + k][i]);
+        share[i] =
+            fabs((double)near[i] - ((double)far[i] + (double)bound[i]) - way) / (double)bound[i];
     }
 }
 
@@ -514,8 +511,8 @@ static void neighbor_planes(const double (*x)[N], double share[N])
         for (int k = 0; k < 3; ++k) both.at[s / 2][s % 2][k] = lanes_subtract(q[k], p[k]);
     }
     for (int k = 0; k < 3; ++k)
-        size = lanes_add(size, lanes_add(lanes_absolute(both.at[0][0][k]),
-                                         lanes_absolute(both.at[0][1][k])));
+        size = lanes_add(
+            size, lanes_add(lanes_absolute(both.at[0][0][k]), lanes_absolute(both.at[0][1][k])));
     bound = SC_KERNEL(neighbor_plane_bound)(size, extent_of(x, 4, 3));
     SC_KERNEL(find_normal)(&both, 0, n);
     for (int i = 0; i < N; ++i) {
@@ -688,9 +685,8 @@ static void contour_places(const double (*x)[N], double share[N])
         find_places(x, i, 2, 6, &p);
         share[i] = 0;
         for (int k = 0; k < 4; ++k)
-            share[i] =
-                fmax(share[i], fabs((double)p.at[k / 2][k % 2] - p.exact[k / 2][k % 2]) /
-                                   (double)p.error);
+            share[i] = fmax(share[i], fabs((double)p.at[k / 2][k % 2] - p.exact[k / 2][k % 2]) /
+                                          (double)p.error);
     }
 }
 
@@ -705,8 +701,8 @@ static void boxes_in_plane(const double (*x)[N], float own, float other, double 
         for (int k = 0; k < 2; ++k) {
             float high = p.at[0][k] + own * p.error, low = p.at[1][k] - other * p.error;
             double kept = (double)high - (double)low - ((double)p.at[0][k] - (double)p.at[1][k]);
-            double off = (p.exact[0][k] - p.exact[1][k]) -
-                         ((double)p.at[0][k] - (double)p.at[1][k]);
+            double off =
+                (p.exact[0][k] - p.exact[1][k]) - ((double)p.at[0][k] - (double)p.at[1][k]);
             share[i] = fmax(share[i], off / kept);
         }
     }
@@ -730,8 +726,8 @@ static void contour_cells(const double (*x)[N], double share[N])
         find_places(x, i, 2, 6, &p);
         share[i] = 0;
         for (int k = 0; k < 2; ++k) {
-            double off = (p.exact[0][k] - p.exact[1][k]) -
-                         ((double)p.at[0][k] - (double)p.at[1][k]);
+            double off =
+                (p.exact[0][k] - p.exact[1][k]) - ((double)p.at[0][k] - (double)p.at[1][k]);
             share[i] = fmax(share[i], fabs(off) / (0.999 * 512 / 126 * (double)p.error));
         }
     }
@@ -783,7 +779,8 @@ static void eight_pairs(const double (*x)[N], int s, double share[N])
             pair[i].b = 2 * (uint32_t)i + 1;
             for (int k = 0; k < 18; ++k)
                 at[2 * i + k / 9][k / 3 % 3][k % 3] = ldexp(x[k][half + i], -s);
-            for (int k = 0; k < 6; ++k) triangle[2 * i + k / 3][k % 3] = 6 * (uint32_t)i + (uint32_t)k;
+            for (int k = 0; k < 6; ++k)
+                triangle[2 * i + k / 3][k % 3] = 6 * (uint32_t)i + (uint32_t)k;
         }
         SC_KERNEL(read_eight)(&pairs, &e);
         doubles_store(bound, e.bound);
@@ -855,8 +852,7 @@ static void sides_of_eight(const double (*x)[N], int s, double share[N])
         bound = bounds[0];
         d = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
         for (int k = 0; k < 4; ++k)
-            e[k / 2][k % 2] =
-                difference(ldexp(p[1 + k / 2][k % 2], s), ldexp(p[0][k % 2], s));
+            e[k / 2][k % 2] = difference(ldexp(p[1 + k / 2][k % 2], s), ldexp(p[0][k % 2], s));
         exact = minor_of(e[0][0], e[0][1], e[1][0], e[1][1]);
         d = ldexp(d, 2 * s); /* what the subtraction lost changes no sign */
         share[i] = fmax(0, off_by(d, exact) - U * fabs(d)) / ldexp(bound, 2 * s);
@@ -941,7 +937,7 @@ static void step_boxes(const double (*x)[N], double share[N])
 /* Sides of a triangle at both ends, and a direction of the cone: the coefficients of n . s. */
 static void moving_cones(const double (*x)[N], double share[N])
 {
-    static const double direction[7][3] = {{1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 1},
+    static const double direction[7][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 1},
                                            {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
     for (int i = 0; i < N; ++i) {
         float e[2][3], f[2][3], n[3][3], size[2] = {0, 0}, errors[N];
@@ -969,8 +965,7 @@ static void moving_cones(const double (*x)[N], double share[N])
             exact[1][k] = 0.5 * ((a[0][u] * b[1][v] - a[0][v] * b[1][u]) +
                                  (a[1][u] * b[0][v] - a[1][v] * b[0][u]));
         }
-        lanes_store(errors,
-                    SC_KERNEL(moving_normal_error)(lanes_all(size[0]), lanes_all(size[1])));
+        lanes_store(errors, SC_KERNEL(moving_normal_error)(lanes_all(size[0]), lanes_all(size[1])));
         for (int s = 0; s < 7; ++s)
             for (int k = 0; k < 3; ++k) {
                 float dot = n[k][0];
@@ -1055,95 +1050,87 @@ static const double known_ray[] = {
     -0x1.edbb79000d1b7p-1, -0x1.fffeeb000d1b7p-1, 0x1.5cbdc6fff2e49p-1,
     0x1.edbb79000d1b7p-1,  0x1.fffeeb000d1b7p-1,  0x1.deaf59000d1b7p-1};
 static const double known_area[] = {
-    0x1.5aa834fff2e49p-1,  -0x1.5aa8338926941p-1, 0x1.5aa833000d1b7p-1,  0x1.52c5b0fff2e49p-1,
-    0x1.a6c63efff2e49p-1,  -0x1.27a761000d1b7p-2, 0x1.52c5af000d1b7p-1,  0x1.a6c63d000d1b7p-1,
-    -0x1.27a761000d1b7p-2, 0x1.52c5b0fff2e49p-1,  0x1.a6c63d000d1b7p-1,  -0x1.280c9efff2e49p-2};
+    0x1.5aa834fff2e49p-1,  -0x1.5aa8338926941p-1, 0x1.5aa833000d1b7p-1, 0x1.52c5b0fff2e49p-1,
+    0x1.a6c63efff2e49p-1,  -0x1.27a761000d1b7p-2, 0x1.52c5af000d1b7p-1, 0x1.a6c63d000d1b7p-1,
+    -0x1.27a761000d1b7p-2, 0x1.52c5b0fff2e49p-1,  0x1.a6c63d000d1b7p-1, -0x1.280c9efff2e49p-2};
 static const double known_float_side[] = {-0x1.9ea800fff2e49p-11, 0x1.ff8bff0132cp-10,
-                                          0x1.fffc83000d1b7p-1, -0x1.ff6744fff2e49p-1,
-                                          0x1.fff1c8fff2e49p-1, -0x1.ff5c37000d1b7p-1};
+                                          0x1.fffc83000d1b7p-1,   -0x1.ff6744fff2e49p-1,
+                                          0x1.fff1c8fff2e49p-1,   -0x1.ff5c37000d1b7p-1};
 static const double known_side[] = {-0x1.ffffffa68e913p-2, -0x1p-13,
                                     -0x1.fffffffe97d83p-1, 0x1.fff337a6a4cb5p-2,
                                     -0x1.fffffff85edap-1,  0x1.fffffff475fc7p-2,
                                     -0x1.8000bc667286p-1,  0x1.ffdffff48dc65p-3};
 
 static const double known_moving[] = {
-    -0x1.ff1330fff2e49p-1, 0x1.000000282479p-15, -0x1.45a738a925338p-11,
-    0x1.0da128fff2e49p-11, 0x1.c4a17efff2e49p-1, 0x1.5cd4960fe4a01p-3,
-    0x1.23f1c7000d1b7p-4, -0x1.171f24fff2e49p-1, 0x1.1c1fff000d1b7p-15,
-    -0x1.ffa003000d1b7p-1, 0x1.af8526ffd66f7p-3, -0x1.ff885d000d1b7p-1,
-    -0x1.e3c752fff2e49p-2, -0x1.6095b7000d1b7p-7, -0x1.ff89bcfff2e49p-1,
-    0x1.5bf2e8fff2e49p-11, -0x1.6095c6fff2e49p-7, -0x1.ffffff000d1b7p-1};
+    -0x1.ff1330fff2e49p-1, 0x1.000000282479p-15,  -0x1.45a738a925338p-11, 0x1.0da128fff2e49p-11,
+    0x1.c4a17efff2e49p-1,  0x1.5cd4960fe4a01p-3,  0x1.23f1c7000d1b7p-4,   -0x1.171f24fff2e49p-1,
+    0x1.1c1fff000d1b7p-15, -0x1.ffa003000d1b7p-1, 0x1.af8526ffd66f7p-3,   -0x1.ff885d000d1b7p-1,
+    -0x1.e3c752fff2e49p-2, -0x1.6095b7000d1b7p-7, -0x1.ff89bcfff2e49p-1,  0x1.5bf2e8fff2e49p-11,
+    -0x1.6095c6fff2e49p-7, -0x1.ffffff000d1b7p-1};
 
 /* In the order of the table in lib/GUARANTEE.md. */
 const rounding_bound rounding_bounds[] = {
-    {"base/predicates.h, tiny term", "exact signs", ROUNDING_TINY, 12, 3, 1, space_tiny,
-     0, NULL},
-    {"base/predicates.c, sums of two doubles", "exact signs", ROUNDING_DOUBLES, 12, 3, 1, two_doubles,
-     0, NULL},
-    {"base/predicates.c, plain arithmetic", "exact signs", ROUNDING_WHOLE, 9, 3, 1, few_bits,
-     0, NULL},
-    {"query/primitives.c, a triangle's area", "exact signs", ROUNDING_DOUBLES, 9, 3, 1, area,
-     0.55, NULL},
-    {"base/boxes.h, tiny term", "boxes and points", ROUNDING_UNIT, 1, 1, 1, float_tiny,
-     0, NULL},
-    {"base/boxes.h, tiny term in the unit box", "boxes and points", ROUNDING_UNIT, 1, 1, 1, unit_tiny,
-     0, NULL},
-    {"query/ready_kernel.h, boxes of triangles", "boxes and points", ROUNDING_UNIT, 1, 1, 1, box_step,
-     0, NULL},
-    {"pose/points_kernel.h, points", "boxes and points", ROUNDING_UNIT, 1, 1, 1, unit_box,
-     0.98, NULL},
-    {"query/simple_kernel.h, places", "contours", ROUNDING_UNIT, 12, 3, 1, contour_places,
-     0.95, NULL},
-    {"query/simple_kernel.h, boxes of runs", "contours", ROUNDING_UNIT, 12, 3, 1, contour_spans,
-     0, NULL},
-    {"query/simple_kernel.h, boxes of edges", "contours", ROUNDING_UNIT, 12, 3, 1, contour_boxes,
-     0, NULL},
-    {"query/simple_kernel.h, turns", "contours", ROUNDING_UNIT, 18, 3, 1, contour_turns,
-     0, NULL},
-    {"query/small_kernel.h, boxes of cells", "contours", ROUNDING_UNIT, 12, 3, 1, contour_cells,
-     0, NULL},
-    {"query/star.c, one shared point", "contours", ROUNDING_DOUBLES, 9, 3, 1, beside_a_point,
-     0, NULL},
-    {"pose/fan.c, tiny term", "boxes and points", ROUNDING_TINY, 12, 3, 1, fan_tiny,
-     0, NULL},
-    {"query/sixteen_kernel.h, planes", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1, sixteen_planes,
-     0, NULL},
-    {"query/sixteen_kernel.h, order", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1, sixteen_edges,
-     0.9, NULL},
+    {"base/predicates.h, tiny term", "exact signs", ROUNDING_TINY, 12, 3, 1, space_tiny, 0, NULL},
+    {"base/predicates.c, sums of two doubles", "exact signs", ROUNDING_DOUBLES, 12, 3, 1,
+     two_doubles, 0, NULL},
+    {"base/predicates.c, plain arithmetic", "exact signs", ROUNDING_WHOLE, 9, 3, 1, few_bits, 0,
+     NULL},
+    {"query/primitives.c, a triangle's area", "exact signs", ROUNDING_DOUBLES, 9, 3, 1, area, 0.55,
+     NULL},
+    {"base/boxes.h, tiny term", "boxes and points", ROUNDING_UNIT, 1, 1, 1, float_tiny, 0, NULL},
+    {"base/boxes.h, tiny term in the unit box", "boxes and points", ROUNDING_UNIT, 1, 1, 1,
+     unit_tiny, 0, NULL},
+    {"query/ready_kernel.h, boxes of triangles", "boxes and points", ROUNDING_UNIT, 1, 1, 1,
+     box_step, 0, NULL},
+    {"pose/points_kernel.h, points", "boxes and points", ROUNDING_UNIT, 1, 1, 1, unit_box, 0.98,
+     NULL},
+    {"query/simple_kernel.h, places", "contours", ROUNDING_UNIT, 12, 3, 1, contour_places, 0.95,
+     NULL},
+    {"query/simple_kernel.h, boxes of runs", "contours", ROUNDING_UNIT, 12, 3, 1, contour_spans, 0,
+     NULL},
+    {"query/simple_kernel.h, boxes of edges", "contours", ROUNDING_UNIT, 12, 3, 1, contour_boxes, 0,
+     NULL},
+    {"query/simple_kernel.h, turns", "contours", ROUNDING_UNIT, 18, 3, 1, contour_turns, 0, NULL},
+    {"query/small_kernel.h, boxes of cells", "contours", ROUNDING_UNIT, 12, 3, 1, contour_cells, 0,
+     NULL},
+    {"query/star.c, one shared point", "contours", ROUNDING_DOUBLES, 9, 3, 1, beside_a_point, 0,
+     NULL},
+    {"pose/fan.c, tiny term", "boxes and points", ROUNDING_TINY, 12, 3, 1, fan_tiny, 0, NULL},
+    {"query/sixteen_kernel.h, planes", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1,
+     sixteen_planes, 0, NULL},
+    {"query/sixteen_kernel.h, order", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1,
+     sixteen_edges, 0.9, NULL},
     {"query/sixteen_kernel.h, sides", "triangles in the unit box", ROUNDING_UNIT, 6, 2, 1, sides,
      0.56, known_float_side},
-    {"query/ready_kernel.h, slabs", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1, slabs,
-     0.6, NULL},
-    {"query/neighbor_kernel.h, planes", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1, neighbor_planes,
-     0, NULL},
-    {"query/neighbor_kernel.h, directions", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1, neighbor_directions,
-     0.85, NULL},
-    {"query/touch_kernel.h", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1, touching,
-     0.85, NULL},
+    {"query/ready_kernel.h, slabs", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1, slabs, 0.6,
+     NULL},
+    {"query/neighbor_kernel.h, planes", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1,
+     neighbor_planes, 0, NULL},
+    {"query/neighbor_kernel.h, directions", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1,
+     neighbor_directions, 0.85, NULL},
+    {"query/touch_kernel.h", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1, touching, 0.85,
+     NULL},
     {"query/fan_kernel.h, rays", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1, fan_rays,
      0.66, known_ray},
     {"query/fan_kernel.h, areas", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1, fan_areas,
      0.6, known_area},
-    {"step/impact.c", "steps", ROUNDING_DOUBLES, 16, 3, 1, impacts,
-     0, NULL},
-    {"query/decide_kernel.h, signs", "triangles in doubles", ROUNDING_DOUBLES, 18, 3, 10, decide_signs,
-     0, NULL},
-    {"query/decide_kernel.h, tiny term", "triangles in doubles", ROUNDING_TINY, 18, 3, 10, decide_tiny,
-     0, NULL},
-    {"query/decide_kernel.h, sides", "triangles in doubles", ROUNDING_DOUBLES, 8, 2, 1, decide_sides,
-     0.59, known_side},
-    {"query/decide_kernel.h, tiny term of sides", "triangles in doubles", ROUNDING_TINY, 8, 2, 1, decide_sides_tiny,
-     0, NULL},
-    {"step/step_motion.c, boxes", "steps", ROUNDING_UNIT, 3, 1, 1, step_boxes,
-     0.57, NULL},
-    {"step/moving_cones_kernel.h, n . s", "steps", ROUNDING_UNIT, 18, 3, 1, moving_cones,
-     0.9, NULL},
+    {"step/impact.c", "steps", ROUNDING_DOUBLES, 16, 3, 1, impacts, 0, NULL},
+    {"query/decide_kernel.h, signs", "triangles in doubles", ROUNDING_DOUBLES, 18, 3, 10,
+     decide_signs, 0, NULL},
+    {"query/decide_kernel.h, tiny term", "triangles in doubles", ROUNDING_TINY, 18, 3, 10,
+     decide_tiny, 0, NULL},
+    {"query/decide_kernel.h, sides", "triangles in doubles", ROUNDING_DOUBLES, 8, 2, 1,
+     decide_sides, 0.59, known_side},
+    {"query/decide_kernel.h, tiny term of sides", "triangles in doubles", ROUNDING_TINY, 8, 2, 1,
+     decide_sides_tiny, 0, NULL},
+    {"step/step_motion.c, boxes", "steps", ROUNDING_UNIT, 3, 1, 1, step_boxes, 0.57, NULL},
+    {"step/moving_cones_kernel.h, n . s", "steps", ROUNDING_UNIT, 18, 3, 1, moving_cones, 0.9,
+     NULL},
     {"step/moving_cones_kernel.h, longest side", "steps", ROUNDING_UNIT, 6, 3, 1, moving_sides,
      0.99, NULL},
-    {"step/apart_kernel.h", "steps", ROUNDING_UNIT, 9, 3, 1, moving_apart,
-     0.9, NULL},
-    {"step/moving_contour.c", "steps", ROUNDING_UNIT, 18, 3, 1, moving_contours,
-     0.52, known_moving},
+    {"step/apart_kernel.h", "steps", ROUNDING_UNIT, 9, 3, 1, moving_apart, 0.9, NULL},
+    {"step/moving_contour.c", "steps", ROUNDING_UNIT, 18, 3, 1, moving_contours, 0.52,
+     known_moving},
 };
 const int rounding_bound_count = (int)(sizeof rounding_bounds / sizeof rounding_bounds[0]);
 
@@ -1231,12 +1218,21 @@ static void draw_trial(const rounding_bound *b, const trial_style *s, uint64_t *
             t[1] = draw_real(state);
         }
         switch (s->style) {
-        case 0: break;                                                        /* anywhere */
-        case 1: f = (s->base[axis] + s->extent * f) / 2; break;               /* close together */
-        case 2: f *= power_of_two(-(int)(draw(state) % 30)); break;           /* of all sizes */
-        case 3: f = (s->way[0][axis] * t[0] + s->way[1][axis] * t[1]) / 2; break; /* in a plane */
-        case 4: f = s->way[0][axis] * t[0] + s->extent * 0x1p-20 * f; break;  /* along a line */
-        default:                                                              /* at the ends */
+        case 0:
+            break; /* anywhere */
+        case 1:
+            f = (s->base[axis] + s->extent * f) / 2;
+            break; /* close together */
+        case 2:
+            f *= power_of_two(-(int)(draw(state) % 30));
+            break; /* of all sizes */
+        case 3:
+            f = (s->way[0][axis] * t[0] + s->way[1][axis] * t[1]) / 2;
+            break; /* in a plane */
+        case 4:
+            f = s->way[0][axis] * t[0] + s->extent * 0x1p-20 * f;
+            break; /* along a line */
+        default:   /* at the ends */
             f = (f > 0 ? 1 : -1) * (f * f > 0.5 ? 1 - s->extent * fabs(f) : fabs(f) * s->extent);
         }
         x[i][lane] = fitting(s, f, state);
@@ -1258,14 +1254,29 @@ static void change_trial(const rounding_bound *b, const trial_style *s, uint64_t
         f = x[i][lane];
         step = b->kind == ROUNDING_UNIT ? 0x1p-24 : 0x1p-53;
         switch (r & 7) {
-        case 0: f = 2 * (double)(float)f - f; break; /* the other side of a float */
-        case 1: f += f * step * (double)(1 + (r >> 8 & 3)) * (r >> 10 & 1 ? 1 : -1); break;
-        case 2: f += f * draw_real(state) * power_of_two(-(int)(r >> 8 & 31)); break;
-        case 3: f = draw_real(state); break;
-        case 4: f = x[other - other % s->axes + i % s->axes < b->inputs
-                         ? other - other % s->axes + i % s->axes : i][lane]; break;
-        case 5: f = -f; break;
-        case 6: f *= r >> 8 & 1 ? 0.5 : 2; break;
+        case 0:
+            f = 2 * (double)(float)f - f;
+            break; /* the other side of a float */
+        case 1:
+            f += f * step * (double)(1 + (r >> 8 & 3)) * (r >> 10 & 1 ? 1 : -1);
+            break;
+        case 2:
+            f += f * draw_real(state) * power_of_two(-(int)(r >> 8 & 31));
+            break;
+        case 3:
+            f = draw_real(state);
+            break;
+        case 4:
+            f = x[other - other % s->axes + i % s->axes < b->inputs
+                      ? other - other % s->axes + i % s->axes
+                      : i][lane];
+            break;
+        case 5:
+            f = -f;
+            break;
+        case 6:
+            f *= r >> 8 & 1 ? 0.5 : 2;
+            break;
         default: { /* to a power of two, or just before */
             int exponent;
             (void)frexp(f, &exponent);

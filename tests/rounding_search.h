@@ -13,8 +13,8 @@
  *
  * tests/test_rounding.c makes few trials, `make search-rounding` many.
  */
-#ifndef SC_TESTS_ROUNDING_H
-#define SC_TESTS_ROUNDING_H
+#ifndef SC_TESTS_ROUNDING_SEARCH_H
+#define SC_TESTS_ROUNDING_SEARCH_H
 
 #include <stdint.h>
 
@@ -23,7 +23,7 @@ enum { ROUNDING_LANES = 16, ROUNDING_INPUTS = 18 };
 /* What the numbers of a trial are. */
 typedef enum rounding_kind {
     ROUNDING_UNIT,    /* from -1 to 1, to be rounded to float, often near the middle of two */
-    ROUNDING_DOUBLES, /* doubles of similar or of quite different sizes, often nearly in one plane */
+    ROUNDING_DOUBLES, /* doubles of similar or of different sizes, often nearly in one plane */
     ROUNDING_TINY,    /* the same, to be scaled so that products underflow */
     ROUNDING_WHOLE    /* whole numbers below 2^16 */
 } rounding_kind;
@@ -38,7 +38,7 @@ typedef struct rounding_bound {
     int slowness;     /* the searches make so many times fewer trials */
     rounding_share *share;
     double seen;         /* the share that 200000 trials, over slowness, find at least */
-    const double *known; /* a trial to begin with, that random ones do not come near soon, or NULL */
+    const double *known; /* a trial to begin with, that random ones come near late, or NULL */
 } rounding_bound;
 
 extern const rounding_bound rounding_bounds[];
