@@ -4,7 +4,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     rounding [TRIALS [WORD]]
+ *     search_rounding [TRIALS [WORD]]
  *
  * Makes TRIALS of each bound [100000000], of some a tenth; only of those whose name has WORD in it.
  *
@@ -24,7 +24,7 @@ int main(int argc, char **argv)
     const char *word = argc > 2 ? argv[2] : "";
     int wrong = 0, searched = 0;
     if (trials == 0) {
-        fputs("rounding: the number of trials must be 1 or more\n", stderr);
+        fputs("search_rounding: the number of trials must be 1 or more\n", stderr);
         return 2;
     }
     for (int i = 0; i < rounding_bound_count; ++i) {
