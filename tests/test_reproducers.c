@@ -34,28 +34,38 @@ static void replay(const target *t, const char *name, const uint8_t *bytes, size
     free(copy);
 }
 
+/* Each file is of a target, and described in the folder's README.md; each target has one at least. */
 static void reproducers(void)
 {
     static uint8_t bytes[1 << 20];
+    static char described[1 << 16];
     static const char folder[] = "tests/fuzz/reproducers";
+    uint32_t replayed[TARGETS] = {0};
+    FILE *file = fopen("tests/fuzz/reproducers/README.md", "rb");
     DIR *directory = opendir(folder);
     struct dirent *entry;
-    uint32_t replayed = 0;
+    if (CHECK(file != NULL)) {
+        described[fread(described, 1, sizeof(described) - 1, file)] = '\0';
+        fclose(file);
+    }
+    CHECK_MSG(directory != NULL, "%s cannot be read from here", folder);
     while (directory != NULL && (entry = readdir(directory)) != NULL) {
+        int is_known = entry->d_name[0] == '.' || strcmp(entry->d_name, "README.md") == 0;
         for (size_t i = 0; i < TARGETS; ++i) {
             char path[1024];
-            FILE *file;
             if (strncmp(entry->d_name, targets[i].name, strlen(targets[i].name)) != 0) continue;
+            is_known = strstr(described, entry->d_name) != NULL;
             snprintf(path, sizeof(path), "%s/%s", folder, entry->d_name);
             file = fopen(path, "rb");
             if (!CHECK(file != NULL)) continue;
             replay(&targets[i], path, bytes, fread(bytes, 1, sizeof(bytes), file));
             fclose(file);
-            ++replayed;
+            ++replayed[i];
         }
+        CHECK_MSG(is_known, "%s: say in README.md what it reproduces", entry->d_name);
     }
     if (directory != NULL) closedir(directory);
-    test_note("%u replayed", (unsigned)replayed);
+    for (size_t i = 0; i < TARGETS; ++i) CHECK_MSG(replayed[i] > 0, "none of %s", targets[i].name);
 }
 
 static void seeds_of_meshes(void)
