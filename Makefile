@@ -256,8 +256,8 @@ bench-report: ## make that report anew from its CSV files and build/peers/peers.
 
 .PHONY: bench bench-quick
 ifneq ($(strip $(missing_for_programs)),)
-bench: ## measure all methods on all scenes; report and plots in bench/results/<machine>
-bench-quick: ## a small version of bench, in build/bench-quick
+bench: ## measure all methods on all scenes; report and plots in bench/results/<machine>; a quarter of an hour
+bench-quick: ## a small version of bench, in build/bench-quick; two minutes
 bench bench-quick:
 	@echo "make $@ needs $(strip $(missing_for_programs)): run 'make deps with=bench' first" >&2; exit 1
 else
@@ -284,7 +284,7 @@ test_libs := $(metis_link) -lgmp -lccd -lpthread
 
 .PHONY: test
 ifneq ($(strip $(missing_for_tests)),)
-test: ## build and run all tests
+test: ## build and run all tests; about five minutes
 	@echo "make test needs $(strip $(missing_for_tests)): run 'make deps' first" >&2; exit 1
 else
 test: all $(test_programs)
@@ -319,7 +319,7 @@ cgal_objects := $(call objects,tools/mesh_file.c tools/file_bytes.c tools/ply_re
 
 .PHONY: test-cgal
 ifneq ($(strip $(missing_for_cgal)),)
-test-cgal: ## compare pairs with CGAL's on hundreds of real meshes (make deps with=cgal test-cgal)
+test-cgal: ## compare pairs with CGAL's on hundreds of real meshes (make deps with=cgal test-cgal); a minute, and the time to fetch them
 	@echo "make test-cgal needs $(strip $(missing_for_cgal)): run 'make deps with=cgal' first" >&2; exit 1
 else
 test-cgal: $(work)/tests/cgal/compare $(programs)
@@ -338,7 +338,7 @@ $(work)/tests/cgal/compare: tests/cgal/compare.cpp include/starcontour.h tools/m
 # Comparison of steps with ipc-toolkit, from PyPI; by hand, too.
 .PHONY: test-ipctk
 ifneq ($(strip $(missing_for_programs)),)
-test-ipctk: ## compare steps with ipc-toolkit's (PyPI) on all scenes
+test-ipctk: ## compare steps with ipc-toolkit's (PyPI) on all scenes; a minute or two
 	@echo "make test-ipctk needs $(strip $(missing_for_programs)): run 'make deps' first" >&2; exit 1
 else
 test-ipctk: $(lib)/$(shared_link) $(programs)
@@ -354,7 +354,7 @@ deps-ffi: ## install toolchains and modules that test-ffi needs (as deps with=ff
 	@CC='$(CC)' CXX='$(CXX)' CPPFLAGS='$(CPPFLAGS)' WITH=ffi tools/deps.sh
 
 .PHONY: test-ffi
-test-ffi: all ## call the library from C++, Python, LuaJIT, LÖVE, C#, Rust, Go, Java (what is there)
+test-ffi: all ## call the library from C++, Python, LuaJIT, LÖVE, C#, Rust, Go, Java (what is there); some minutes
 ifeq ($(config),sanitize)
 	@echo "make test-ffi: these programs cannot load a library with sanitizers" >&2; exit 1
 else
@@ -405,7 +405,7 @@ fuzz: ## fuzz each target for SECONDS (clang); findings go to tests/fuzz/reprodu
 	@tests/fuzz/fuzz.sh '$(BUILD)/fuzz/debug/fuzz' '$(SECONDS)'
 
 .PHONY: soak
-soak: $(work)/runs/soak ## SOAK queries on changing poses of one model, in bounded memory
+soak: $(work)/runs/soak ## SOAK queries on changing poses of one model, in bounded memory; half a minute
 	$< $(SOAK)
 
 thread_tests := test_tasks test_task_steps
@@ -414,7 +414,7 @@ search-rounding: $(work)/runs/search_rounding ## which share of each error bound
 	nice -n 10 $< $(TRIALS)
 
 .PHONY: test-thread
-test-thread: ## many threads on one model, and in one query, under ThreadSanitizer
+test-thread: ## many threads on one model, and in one query, under ThreadSanitizer; two minutes
 	+$(Q)$(MAKE) --no-print-directory config=release BUILD='$(BUILD)/thread' CFLAGS='-O1 -fsanitize=thread' \
 	    '$(BUILD)/thread/release/runs/thread' $(patsubst %,'$(BUILD)/thread/release/tests/%',$(thread_tests))
 	'$(BUILD)/thread/release/runs/thread'
@@ -425,7 +425,7 @@ test-thread: ## many threads on one model, and in one query, under ThreadSanitiz
 memory_tests := $(patsubst tests/%.c,tests/%,$(filter-out tests/test_ccd.c,$(tests)))
 
 .PHONY: test-memory-clang
-test-memory-clang: ## tests, shortened, under MemorySanitizer (clang); all but test_ccd
+test-memory-clang: ## tests, shortened, under MemorySanitizer (clang); all but test_ccd; some minutes
 	$(call need,$(CLANG),clang)
 	$(call variant,memory,CC='$(CLANG)' CFLAGS='-O1 -fno-omit-frame-pointer -fsanitize=memory \
 	    -fno-sanitize-recover=all -fsanitize-ignorelist=tests/runs/memory_ignore.txt',$(memory_tests) runs/soak)
@@ -435,7 +435,7 @@ test-memory-clang: ## tests, shortened, under MemorySanitizer (clang); all but t
 valgrind_tests := $(patsubst %,$(work)/tests/test_%,memory input structures reproducers)
 
 .PHONY: test-valgrind
-test-valgrind: $(valgrind_tests) ## small tests under valgrind; leaks are errors
+test-valgrind: $(valgrind_tests) ## small tests under valgrind; leaks are errors; two minutes
 	$(call need,valgrind,valgrind)
 	@for test in $(valgrind_tests); do echo "valgrind $$test"; SC_TEST_SCALE=2 valgrind -q \
 	    --leak-check=full --error-exitcode=9 "$$test" >'$(work)/valgrind.log' 2>&1 || \
@@ -444,7 +444,7 @@ test-valgrind: $(valgrind_tests) ## small tests under valgrind; leaks are errors
 determinism := $(call objects,tests/runs/determinism.c $(tests_support))
 
 .PHONY: test-determinism
-test-determinism: $(determinism) ## the same pairs by gcc and clang, -O0 to -O3, with and without SIMD
+test-determinism: $(determinism) ## the same pairs by gcc and clang, -O0 to -O3, with and without SIMD; some minutes
 	@tests/runs/determinism.sh '$(work)/determinism' $(determinism)
 
 # lib/ without optimization, so that each line is one; conditions that no test can bring about are
@@ -453,7 +453,7 @@ coverage := $(BUILD)/coverage
 coverage_tests := $(patsubst tests/%.c,$(coverage)/release/tests/%,$(tests))
 
 .PHONY: coverage
-coverage: ## lines and branches of lib/ that the tests run (gcc, AVX-512); fails if any is left out
+coverage: ## lines and branches of lib/ that the tests run (gcc, AVX-512); fails if any is left out; some minutes
 	$(call need,gcov,gcc)
 	+$(Q)$(MAKE) --no-print-directory config=release BUILD='$(coverage)' CC=gcc \
 	    mode='-O0 -g -DSC_COVERAGE --coverage -fprofile-update=atomic' test_mode='-O2 -g' \
@@ -464,7 +464,7 @@ coverage: ## lines and branches of lib/ that the tests run (gcc, AVX-512); fails
 	@tests/coverage.sh '$(coverage)/release/obj/lib'
 
 .PHONY: mutants
-mutants: $(programs) ## plant faults in a copy of lib/ one by one: a test has to fail each time
+mutants: $(programs) ## plant faults in a copy of lib/ one by one: a test has to fail each time; hours
 	@meshes/fetch.sh build/meshes $(bin)/subdivide >/dev/null 2>&1 || echo "not all real meshes could be fetched: tests with them are skipped"
 	@CC='$(CC)' MAKE='$(MAKE)' tests/mutants/mutants.sh
 
@@ -584,7 +584,7 @@ peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (Py
 	$(call python_peer,trueform)
 
 .PHONY: peers
-peers: ## all peers that are there, into a new CSV
+peers: ## all peers that are there, into a new CSV; a minute or two for each
 	@mkdir -p '$(dir $(CSV))' && echo "# commit: $$(git describe --always --abbrev=12 --dirty=+ \
 	    --exclude='*' 2>/dev/null || echo unknown)" >'$(CSV)'
 	+@status=0; for peer in cgal embree fcl ipctk libigl meshlib trueform; do \
@@ -671,7 +671,7 @@ mingw: ## build for Windows by mingw-w64; run its tests under wine, if that is t
 	@MAKE='$(MAKE)' tests/packages/mingw.sh '$(MINGW)' '$(BUILD)/mingw'
 
 .PHONY: test-packages
-test-packages: ## as users build it: archive, Conan, MSVC's restrictions, mingw, ARM and s390x by QEMU
+test-packages: ## as users build it: archive, Conan, MSVC's restrictions, mingw, ARM and s390x by QEMU; some minutes for each machine
 	@MAKE='$(MAKE)' SC_FLAGS='$(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' tests/run.sh tests/packages/*.sh
 
 .PHONY: clean

@@ -23,6 +23,15 @@ check "each target that make help lists exists" \
     test -z "$(comm -23 "$scratch/listed" "$scratch/rules")"
 check "make help lists all targets" diff "$scratch/phony" "$scratch/listed"
 
+says_how_long() {
+    for target in bench bench-quick coverage mutants peers soak test test-cgal test-determinism test-ffi \
+        test-ipctk test-memory-clang test-packages test-thread test-valgrind; do
+        remake help 2>/dev/null | grep -q "^  $target .*\(minute\|hour\)" ||
+            { echo "$target: not how long it takes"; return 1; }
+    done
+}
+check "make help says about how long the long targets take" says_how_long
+
 variables_exist() {
     for variable in $(remake help 2>/dev/null |
         sed -n -e '1,/^Variables:/d' -e 's/^  \([A-Za-z]*\) .*/\1/p'); do
