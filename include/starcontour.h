@@ -429,8 +429,8 @@ typedef struct sc_load_options {
  * Any bytes may be given. Data that are cut off, changed, foreign, of another version or impossible
  * are refused, each with a status of its own (SC_ERROR_NOT_SAVED to SC_ERROR_TOPOLOGY). Everything
  * that a query will rely on is checked first: a model that was made up by someone who knows the
- * format may be loaded and give wrong answers, but no query on it reads or writes where it must not,
- * or fails to end.
+ * format may be loaded and give wrong answers, but no query on it reads or writes where it must
+ * not, or fails to end.
  *
  * 0.06 to 0.1 microseconds a triangle in place, 0.1 to 0.16 with the copy. Either mode takes some
  * 1.1 bytes a triangle from the allocator while it checks, and SC_LOAD_IN_PLACE nothing that stays.
