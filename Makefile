@@ -130,6 +130,7 @@ with_metis := $(if $(metis),-DSC_WITH_METIS)
 metis_link := $(metis_library) $(static) $(if $(metis),-lmetis)
 
 program_sources := tools/sc_query.c tools/sc_partition.c bench/demo.c bench/sc_bench.c \
+    bench/against.c \
     meshes/make_meshes.c meshes/subdivide.c
 tools_support := $(filter-out $(program_sources),$(wildcard tools/*.c))
 bench_support := $(filter-out $(program_sources),$(wildcard bench/*.c bench/scenes/*.c))
@@ -143,7 +144,7 @@ missing_for_programs := $(if $(assimp),,assimp) $(if $(cjson),,cJSON) $(if $(zli
 offered = $(if $(wildcard $(2)),$(bin)/$(1))
 mesh_readers := $(call offered,sc-query,tools/sc_query.c) \
     $(call offered,sc-partition,tools/sc_partition.c) $(call offered,sc-demo,bench/demo.c) \
-    $(call offered,sc-bench,bench/sc_bench.c) \
+    $(call offered,sc-bench,bench/sc_bench.c) $(call offered,sc-against,bench/against.c) \
     $(call offered,subdivide,meshes/subdivide.c)
 programs := $(call offered,make-meshes,meshes/make_meshes.c) \
     $(if $(strip $(missing_for_programs)),,$(mesh_readers))
@@ -222,10 +223,13 @@ define link
 endef
 
 mesh_libs := $(metis_link) -lassimp -lcjson -lz -lpthread
+# dlopen is in libc, or in a libdl of its own where that is old.
+$(bin)/sc-against: mesh_libs += $(if $(filter Linux,$(shell uname -s)),-ldl)
 $(bin)/sc-query: $(call objects,tools/sc_query.c $(tools_support))
 $(bin)/sc-partition: $(call objects,tools/sc_partition.c $(tools_support))
 $(bin)/sc-demo: $(call objects,bench/demo.c $(bench_support) $(tools_support))
 $(bin)/sc-bench: $(call objects,bench/sc_bench.c $(bench_support) $(tools_support))
+$(bin)/sc-against: $(call objects,bench/against.c bench/scene_folder.c $(tools_support))
 $(bin)/subdivide: $(call objects,meshes/subdivide.c $(tools_support))
 $(bin)/make-meshes: $(call objects,meshes/make_meshes.c)
 $(mesh_readers): $(static) $(metis_library)
@@ -264,6 +268,20 @@ else
 bench bench-quick: $(programs)
 	@meshes/fetch.sh build/meshes $(bin)/subdivide >/dev/null 2>&1 || echo "not all real meshes could be fetched: scenes made of them are skipped" >&2
 	@SC_BIN='$(bin)' PYTHON='$(PYTHON)' bench/run_bench.sh $(if $(filter bench,$@),full,quick)
+endif
+
+REV ?=
+AGAINST ?=
+
+.PHONY: bench-against
+ifneq ($(strip $(missing_for_programs)),)
+bench-against: ## time another commit, REV, and this tree on the same frames, in turns; about ten minutes
+	@echo "make $@ needs $(strip $(missing_for_programs)): run 'make deps' first" >&2; exit 1
+else
+bench-against: $(programs) $(lib)/$(shared_link)
+	@meshes/fetch.sh build/meshes $(bin)/subdivide >/dev/null 2>&1 || echo "not all real meshes could be fetched: scenes made of them are skipped"
+	@CC='$(CC)' CFLAGS='$(CFLAGS)' MAKE='$(MAKE)' SCENE_DIRS='$(SCENE_DIRS)' \
+	    bench/against.sh '$(REV)' '$(bin)/sc-against' '$(bin)/sc-bench' '$(lib)/$(shared_link)' $(AGAINST)
 endif
 
 .PHONY: meshes
@@ -707,6 +725,9 @@ help: ## this list
 #: WERROR      1: warnings are errors
 #: TEST_JOBS   how many tests run at a time; an environment variable too [the processors]
 #: SC_TEST_SCALE random trials in tests, in percent; the same [100]
+#: REV         commit that bench-against compares with
+#: AGAINST     options of sc-against for it, such as --ways exact,step
+#: SCENE_DIRS  folders with more scenes for it [../shared/scenes]
 #: SCENES      folders of scenes that peer-... and peers measure [build/peers/scenes/*]
 #: CSV         where they add lines [build/peers/peers.csv]
 #: LIMIT       seconds after which they give up on a scene [30]

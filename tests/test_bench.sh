@@ -331,4 +331,75 @@ else
     skip "the report: there is no python3"
 fi
 
+# ---- two builds of the library against each other ----
+
+against=$SC_BIN/sc-against
+library=$SC_LIB/libstarcontour.so
+if [ "$SC_CONFIG" = sanitize ] || [ ! -e "$library" ]; then
+    skip "sc-against: a library with sanitizers cannot be loaded by it, or there is none"
+else
+    cp "$library" "$scratch/other.so"
+    check "a scene" small --export "$scratch/scene"
+    check "a library against itself" says 0 "geometric mean *step\*2" \
+        "$against" --ways exact,aabb@base,step*2 --frames 2 --rounds 1 \
+        "$scratch/other.so" "$library" "$scratch/scene"
+    check "a row for each way" test "$(grep -c '^scene  *\(exact\|aabb@base\|step\*2\) ' "$scratch/out")" -eq 3
+    check "no such way" says 2 "no method 'exakt'" "$against" --ways exakt "$library" "$library" "$scratch/scene"
+    check "no such set" says 2 "'neon'" "$against" --ways exact@neon "$library" "$library" "$scratch/scene"
+    check "no such library" says 2 "absent.so" "$against" "$scratch/absent.so" "$library" "$scratch/scene"
+    check "no library" says 2 "scene" "$against" "$scratch/scene" "$library" "$scratch/scene"
+    check "no such scene" says 2 "absent" "$against" "$library" "$library" "$scratch/absent"
+    check "no scene" says 2 "are wanted" "$against" "$library" "$library"
+    # A library that counts one pair more than there are.
+    cat >"$scratch/wrong.c" <<'EOT'
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <string.h>
+#include "starcontour.h"
+static void *find(const char *name)
+{
+    static void *handle;
+    if (!handle) handle = dlopen(getenv("SC_RIGHT"), RTLD_NOW | RTLD_LOCAL);
+    return dlsym(handle, name);
+}
+#define CALL(type, name, list, ...)                                                                \
+    __attribute__((visibility("default"))) type name list                                          \
+    {                                                                                              \
+        type(*call) list;                                                                          \
+        void *found = find(#name);                                                                 \
+        memcpy(&call, &found, sizeof(found));                                                      \
+        return call(__VA_ARGS__);                                                                  \
+    }
+CALL(sc_status, sc_build, (const sc_mesh *m, const sc_build_options *o, sc_model **r), m, o, r)
+CALL(void, sc_model_free, (sc_model * m), m)
+CALL(sc_status, sc_workspace_create_for,
+     (const sc_model *m, const sc_workspace_options *o, sc_workspace **w), m, o, w)
+CALL(void, sc_workspace_free, (sc_workspace * w), w)
+CALL(sc_status, sc_query_step,
+     (const sc_model *m, sc_workspace *w, const sc_pose *a, const sc_pose *b,
+      const sc_step_options *o, sc_step_result *r), m, w, a, b, o, r)
+sc_status sc_query(const sc_model *m, sc_workspace *w, const sc_pose *p, const sc_query_options *o,
+                   sc_result *r)
+{
+    sc_status (*call)(const sc_model *, sc_workspace *, const sc_pose *, const sc_query_options *,
+                      sc_result *);
+    void *found = find("sc_query");
+    sc_status status;
+    memcpy(&call, &found, sizeof(found));
+    status = call(m, w, p, o, r);
+    ++r->count;
+    return status;
+}
+EOT
+    # shellcheck disable=SC2086
+    if $CC -shared -fPIC -Iinclude $SC_FLAGS -o "$scratch/wrong.so" "$scratch/wrong.c" 2>"$scratch/wrong.log"; then
+        SC_RIGHT=$library
+        export SC_RIGHT
+        check "numbers of pairs that differ" says 1 "frame 0, exact: .* pairs, and" \
+            "$against" --ways exact --frames 1 --rounds 1 "$library" "$scratch/wrong.so" "$scratch/scene"
+    else
+        skip "a library that counts wrongly: it cannot be built here"
+    fi
+fi
+
 finish
