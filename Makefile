@@ -549,6 +549,7 @@ format: ## clang-format on all C and C++ files, in place
 SCENES ?=
 CSV ?= $(BUILD)/peers/peers.csv
 LIMIT ?= 30
+MEMORY ?= 8
 
 peer_scenes := $(filter %/sc-bench,$(programs))
 peer_programs := $(patsubst %,$(work)/peers/%,cgal embree fcl)
@@ -575,11 +576,11 @@ $(peer_programs) $(work)/peers/brute: $(work)/peers/%: $(obj)/bench/peers/%.o \
 compiled_peer = +@$(if $(filter-out yes,$(foreach header,$(2),$(or $(call has,$(header)),$(header)))), \
     bench/peers/skip.sh '$(CSV)' $(1) "$(2) not found ('make deps with=peers')", \
     $(MAKE) --no-print-directory '$(work)/peers/$(1)' && \
-    LIMIT='$(LIMIT)' bench/peers/measure_peer.sh $(1) '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' '$(work)/peers/$(1)')
+    LIMIT='$(LIMIT)' MEMORY='$(MEMORY)' bench/peers/measure_peer.sh $(1) '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' '$(work)/peers/$(1)')
 
 # $(call python_peer,PACKAGE): measured if it can be installed into a virtual environment in build/.
 python_peer = @bench/peers/venv.sh '$(BUILD)/peers/venv' $(1) '$(CSV)' || { test $$? -eq 3 && exit 0; exit 1; }; \
-    LIMIT='$(LIMIT)' bench/peers/measure_peer.sh $(1) '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' \
+    LIMIT='$(LIMIT)' MEMORY='$(MEMORY)' bench/peers/measure_peer.sh $(1) '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' \
     '$(BUILD)/peers/venv/bin/python' bench/peers/peers.py \
     --peer $(1) --lib '$(lib)/$(shared_link)'
 
@@ -731,6 +732,7 @@ help: ## this list
 #: SCENES      folders of scenes that peer-... and peers measure [build/peers/scenes/*]
 #: CSV         where they add lines [build/peers/peers.csv]
 #: LIMIT       seconds after which they give up on a scene [30]
+#: MEMORY      GB of memory a peer may take for it, or unlimited [8]
 #: V           1: show commands
 #: BUILD       where everything goes [build]
 #: DESTDIR     put before every path of install and uninstall

@@ -63,6 +63,11 @@ status() {
     test $? -eq "$wanted"
 }
 
+# lacks "words" FILE
+lacks() {
+    ! grep -q "$1" "$2"
+}
+
 # says "words" command...
 says() {
     words=$1
@@ -244,7 +249,7 @@ check "and has a status of its own" status 3 no_python
 check "no scene is said" says "SCENES names folders" bench/peers/measure_peer.sh some "$scratch/x.csv" "" absent true
 check "and is an error" status 2 bench/peers/measure_peer.sh some "$scratch/x.csv" "" absent true
 measured() {
-    bench/peers/measure_peer.sh brute "$scratch/driven.csv" "$scene" absent "$brute" --repeats 1 &&
+    MEMORY=unlimited bench/peers/measure_peer.sh brute "$scratch/driven.csv" "$scene" absent "$brute" --repeats 1 &&
         test "$(grep -c '^scene,' "$scratch/driven.csv")" -eq 1 &&
         test "$(grep -c '^touching,' "$scratch/driven.csv")" -eq 9
 }
@@ -257,6 +262,35 @@ if command -v timeout >/dev/null 2>&1; then
     check "and ends one that takes too long" ended
 else
     skip "ending a peer that takes too long: there is no timeout"
+fi
+check "an unusable limit of memory is said" says "MEMORY is a number of GB" \
+    env MEMORY=much bench/peers/measure_peer.sh some "$scratch/x.csv" "$scene" absent true
+check "and is an error" status 2 \
+    env MEMORY=much bench/peers/measure_peer.sh some "$scratch/x.csv" "$scene" absent true
+# The fake peer leaves a line before it fails, which must not be taken.
+fails() {
+    MEMORY=$1 bench/peers/measure_peer.sh greedy "$scratch/greedy.csv" "$scene" absent \
+        sh -c "while [ \"\$1\" != --csv ]; do shift; done; echo a line >\"\$2\"; $2" greedy
+}
+check "a peer that fails for another reason is a failure" status 5 fails 4 "echo broken >&2; exit 5"
+check "which is not called a lack of memory" lacks memory "$scratch/greedy.csv"
+check "and one without memory is, where there is no limit" \
+    status 5 fails unlimited "echo MemoryError >&2; exit 5"
+if ! command -v python3 >/dev/null 2>&1 || ! (ulimit -v 1000000) 2>/dev/null; then
+    skip "ending a peer that takes too much memory: there is no python3, or no limit of memory"
+else
+    greedy() {
+        rm -f "$scratch/greedy.csv"
+        fails 1 "exec python3 -S -c 'bytearray(2 * 10**9)'" &&
+            grep -q '^# skipped: greedy on touching: needed more than 1 GB of memory' "$scratch/greedy.csv" &&
+            lacks "a line" "$scratch/greedy.csv"
+    }
+    check "and one that takes too much memory is ended" greedy
+    modest() {
+        rm -f "$scratch/greedy.csv"
+        fails 4 "exec python3 -S -c 'bytearray(2 * 10**9)'" && lacks skipped "$scratch/greedy.csv"
+    }
+    check "but not one that stays below the limit" modest
 fi
 
 finish

@@ -5,7 +5,8 @@
 #
 # Where no scenes are named, those below are written by sc-bench into build/peers/scenes, once; one that
 # cannot be made is skipped with a message. Named scenes are run with one thread and then with all. A process that takes
-# more than $LIMIT seconds (30) is ended, and the file says so. Fails as the command does.
+# more than $LIMIT seconds (30) is ended, and so is one that asks for more than $MEMORY GB of address space (8; "unlimited":
+# no limit), where the shell can set such a limit; the file says so. Fails as the command does.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -16,6 +17,15 @@ scenes=$3
 bench=$4
 shift 4
 limit=${LIMIT:-30}
+memory=${MEMORY:-8}
+case $memory in
+unlimited) kilobytes=unlimited ;;
+*[!0-9.]* | . | *.*.*)
+    echo "MEMORY is a number of GB, or 'unlimited', but not '$memory'" >&2
+    exit 2
+    ;;
+*) kilobytes=$(awk -v gb="$memory" 'BEGIN { printf "%.0f", gb * 1e9 / 1024 }') ;;
+esac
 here=${0%/*}
 
 # Name, triangles, frames, and whether they are run with all threads as well: whole animations in long steps and three
@@ -45,6 +55,15 @@ cat 41000 6
 bunny 54500 6
 horse 25000 6"
 
+# Steps of ipc-toolkit by a part of the way to the next of all frames, for which meshes may be large: scene, triangles,
+# frames, and at which frames the steps start: rest, in motion, the last. Each is a process of its own.
+steps=
+parts="1/50 1/10 1"
+[ "$peer" != ipctk ] || steps="\
+twisted-cloth 65536 60 0 19 39 58
+bunny 54500 60 0 29 58
+crushed-cloth 92416 60 0 19 39 58"
+
 # Writes a scene, and says in which folder.
 write_scene() {
     scene=build/peers/scenes/$2-$3/$1
@@ -56,21 +75,34 @@ write_scene() {
     echo "$scene"
 }
 
-# Its lines go to a file of their own first, so that one that is ended leaves none.
+# What Python, C++ and C libraries say when they get no memory.
+out_of_memory() {
+    grep -Eqi 'MemoryError|bad_alloc|out of memory|cannot allocate memory'
+}
+
+# Its lines go to a file of their own first, so that one that is ended leaves none. $step says which step it is.
+step=
 measure() {
     threads=$1
     scene=$2
     shift 2
-    rm -f "$csv.part"
+    rm -f "$csv.part" "$csv.said"
     guard="timeout $limit"
     command -v timeout >/dev/null 2>&1 || guard=
     # shellcheck disable=SC2086
-    $guard "$@" --threads "$threads" --csv "$csv.part" "$scene" </dev/null
+    (
+        ulimit -v "$kilobytes" 2>/dev/null
+        exec $guard "$@" --threads "$threads" --csv "$csv.part" "$scene"
+    ) </dev/null 2>"$csv.said"
     result=$?
+    cat "$csv.said" >&2
+    with=$step
+    [ "$threads" = 1 ] || with="$step with all threads"
     if [ "$result" -eq 124 ] && [ -n "$guard" ]; then
-        with=
-        [ "$threads" = 1 ] || with=' with all threads'
         "$here/skip.sh" "$csv" "$peer on ${scene##*/}" "took more than $limit s$with"
+        result=0
+    elif [ "$result" -ne 0 ] && [ "$kilobytes" != unlimited ] && out_of_memory <"$csv.said"; then
+        "$here/skip.sh" "$csv" "$peer on ${scene##*/}" "needed more than $memory GB of memory$with"
         result=0
     elif [ -f "$csv.part" ]; then
         if grep -q '^scene,' "$csv"; then
@@ -79,7 +111,7 @@ measure() {
             cat "$csv.part" >>"$csv"
         fi
     fi
-    rm -f "$csv.part"
+    rm -f "$csv.part" "$csv.said"
     return $result
 }
 
@@ -110,6 +142,17 @@ while read -r name triangles frames also; do
     fi
 done <<END
 $usual
+END
+while read -r name triangles frames starts; do
+    [ -n "$name" ] && scene=$(write_scene "$name" "$triangles" "$frames") || continue
+    for start in $starts; do
+        for part in $parts; do
+            step=" (step $part from frame $start)"
+            measure 1 "$scene" "$@" --repeats 3 --step "$part" --from "$start" || status=$?
+        done
+    done
+done <<END
+$steps
 END
 if [ "$measured" -eq 0 ]; then
     echo "no scene to measure" >&2

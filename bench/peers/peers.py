@@ -2,12 +2,15 @@
 """Times peers from PyPI beside starcontour, in one process each, and compares their pairs.
 
     peers.py [--peer NAME] [--threads 1|all|N] [--repeats N] [--frames N] [--csv FILE] [--lib FILE]
-             SCENE...
+             [--step PART [--from FRAME,...]] SCENE...
     peers.py --list
 
 What a SCENE is, how turns are taken and what is written is the same as in driver.cpp. Positions are
 brought into the form that a peer asks for (floats, another order in memory) before the clock starts.
 starcontour is asked through its C interface (ctypes); it gets floats where the peer takes floats.
+
+--step measures steps alone, of small motion: from each FRAME (all but the last, unless named) a PART of
+the way to the next, such as 1/50. 1 is the whole way.
 
 Without --peer all are run, each in a process of its own, since they bring different versions of the
 same libraries. The peer "starcontour" runs nothing else, and needs no package. A peer that cannot be
@@ -22,6 +25,7 @@ SPDX-License-Identifier: MIT
 import argparse
 import array
 import ctypes
+import fractions
 import glob
 import importlib.metadata
 import math
@@ -41,9 +45,13 @@ ANY_APART = "any apart"  # whether there is one of those
 ANY_EDGE = "any edge"  # whether there is a pair of an edge and a triangle that share no vertex
 EDGES = "edges"  # at least all pairs of an edge and a triangle that share no vertex
 STEPS = "steps"  # at least all that collide in the step to the next frame; candidates are counted
+TIME = "time"  # how large a part of the step is free: whether all of it is
 
-# Lists of candidates of a step are compared as Python objects, of which larger meshes have too many for memory.
+# Without --step, only meshes of so many triangles are asked for steps, as whole ones take seconds on others.
 STEP_TRIANGLES = 20000
+
+# Candidates of a step are compared as Python objects, of which more take too much time and memory.
+COMPARED_CANDIDATES = 4000000
 
 
 class Skipped(Exception):
@@ -74,7 +82,7 @@ class Scene:
         self.positions = self.read(path, scalar, 3 * self.vertices * self.frames)
         if not all(map(math.isfinite, self.positions)):
             raise Unusable(f"{path}: a position is not finite")
-        self.vertex_sets = None
+        self.part = None  # of the way to the next frame, a Fraction: steps alone are measured
 
     @staticmethod
     def read(path, scalar, count):
@@ -94,6 +102,21 @@ class Scene:
         """Positions of a frame, as an array of floats ("f") or doubles ("d")."""
         size = 3 * self.vertices
         return array.array(scalar, self.positions[size * number : size * (number + 1)])
+
+    def end(self, number, scalar):
+        """Positions at the end of the step from a frame; None if it is the last."""
+        if number + 1 >= self.frames:
+            return None
+        end = self.frame(number + 1, scalar)
+        if self.part in (None, 1):
+            return end
+        part = float(self.part)
+        return array.array(scalar, (a + part * (b - a)
+                                    for a, b in zip(self.frame(number, scalar), end)))
+
+    def step_name(self):
+        """What descriptions of steps begin with."""
+        return "step" if self.part is None else f"step {self.part}"
 
     def edge(self, corner):
         """The vertices of an edge that a corner of a triangle names, in ascending order."""
@@ -154,7 +177,9 @@ sc_step_result = structure(
     ("edge_edges", POINTER), ("edge_edge_times", POINTER), ("earliest", ctypes.c_double),
     ("stats", POINTER))
 SC_WORKSPACE_STEP = 1
-SC_STEP_COLLISIONS, SC_STEP_CANDIDATES, SC_STEP_TIMES_NONE, SC_STEP_TIMES_EACH = 0, 1, 0, 2
+SC_STEP_COLLISIONS, SC_STEP_CANDIDATES = 0, 1
+SC_STEP_TIMES_NONE, SC_STEP_TIMES_EARLIEST, SC_STEP_TIMES_EACH = 0, 1, 2
+SC_OUTPUT_ANY = 2
 SC_ERROR_SHORT_BUFFER, SC_WELD_NONE, SC_PAIRS_TRIANGLE, SC_PAIRS_EDGE = 11, 2, 0, 1
 SC_METHOD_SCTT, SC_METHOD_AABB = 1, 3
 SC_CONTOUR_DEFAULT, SC_CONTOUR_STAR, SC_CONTOUR_NONE, SC_CONTOUR_EXACT = 0, 1, 2, 3
@@ -229,9 +254,8 @@ class Starcontour:
         return sc_pose(struct_size=ctypes.sizeof(sc_pose), vertex_count=self.scene.vertices,
                        position_type=self.type, positions=positions.buffer_info()[0])
 
-    def step(self, start, end, pairs=SC_STEP_CANDIDATES, **options):
-        """Asks about a step between two poses: how many candidates there are, or, for collisions, these:
-        vertex-face and edge-edge pairs, a list each of (a, b, time), and the earliest time."""
+    def step_workspace(self):
+        """A workspace for steps, made when it is first asked for."""
         if "step" not in self.workspaces:
             workspace = POINTER()
             how = sc_workspace_options(struct_size=ctypes.sizeof(sc_workspace_options),
@@ -239,6 +263,22 @@ class Starcontour:
             self.must(self.library.sc_workspace_create_for(self.model, ctypes.byref(how),
                                                            ctypes.byref(workspace)))
             self.workspaces["step"] = workspace
+        return self.workspaces["step"]
+
+    def free_part(self, start, end):
+        """The largest part of a step between two poses that is known to be free, from 0 to 1."""
+        poses = [self.pose(start), self.pose(end)]
+        how = sc_step_options(struct_size=ctypes.sizeof(sc_step_options), output=SC_OUTPUT_ANY,
+                              pairs=SC_STEP_COLLISIONS, times=SC_STEP_TIMES_EARLIEST)
+        result = sc_step_result(struct_size=ctypes.sizeof(sc_step_result))
+        self.must(self.library.sc_query_step(self.model, self.step_workspace(),
+                                             ctypes.byref(poses[0]), ctypes.byref(poses[1]),
+                                             ctypes.byref(how), ctypes.byref(result)))
+        return result.earliest
+
+    def step(self, start, end, pairs=SC_STEP_CANDIDATES, **options):
+        """Asks about a step between two poses: how many candidates there are, or, for collisions, these:
+        vertex-face and edge-edge pairs, a list each of (a, b, time), and the earliest time."""
         poses = [self.pose(start), self.pose(end)]
         timed = pairs == SC_STEP_COLLISIONS
         how = sc_step_options(struct_size=ctypes.sizeof(sc_step_options), pairs=pairs,
@@ -252,7 +292,7 @@ class Starcontour:
                 vertex_face_times=ctypes.addressof(times[0]) if timed else None,
                 edge_edge_capacity=room[1], edge_edges=self.lists[1].buffer_info()[0],
                 edge_edge_times=ctypes.addressof(times[1]) if timed else None)
-            status = self.library.sc_query_step(self.model, self.workspaces["step"],
+            status = self.library.sc_query_step(self.model, self.step_workspace(),
                                                 ctypes.byref(poses[0]), ctypes.byref(poses[1]),
                                                 ctypes.byref(how), ctypes.byref(result))
             found = [result.vertex_face_count, result.edge_edge_count]
@@ -298,6 +338,9 @@ class Expected:
         if kind in (ANY_APART, ANY_EDGE):
             there = bool(self.apart() if kind == ANY_APART else self.edges())
             return int(there > answer), int(there < answer)
+        if kind == TIME:
+            free = self.ours.free_part(self.positions, self.end) >= 1
+            return int(answer >= 1 and not free), int(answer < 1 and free)
         if kind == STEPS:  # the answer tells which of ours it has
             return sum(not there for there in answer(self.steps())), 0
         wanted = {ALL: lambda: self.all, APART: self.apart, EDGES: self.edges}[kind]()
@@ -315,9 +358,10 @@ class Way:
     what     says what a query does, without commas
     kind     what its answer is compared with
     query    everything there is to do for a new pose, timed: takes what prepare made, and returns
-             anything that answer understands. Of STEPS: for two poses
+             anything that answer understands. Of STEPS and TIME: for two poses
     answer   not timed: a list of pairs, or whether there is one, as kind says. Of STEPS: how many
-             candidates there are, and a function that says of each pair of a list whether it is one
+             candidates there are, and a function that says of each pair of a list whether it is one,
+             or None if there are too many to look. Of TIME: the part of the step that is free
     prepare  not timed: brings an array of positions, vertices x 3, into the peer's form
     exact    whether it claims exactness, so that a wrong answer is an error and not only reported
     """
@@ -356,7 +400,9 @@ def ipctk(scene, np):
         return found
 
     def holds(found):
-        """Whether candidates hold each pair of a list."""
+        """How many candidates there are, and whether they hold each pair of a list."""
+        if len(found) > COMPARED_CANDIDATES:
+            return len(found), None
         faces, pairs = found.fv_candidates, found.ee_candidates
 
         def check(wanted):
@@ -369,7 +415,7 @@ def ipctk(scene, np):
 
         return len(faces) + len(pairs), check
 
-    ways = [
+    ways = [] if scene.part else [
         Way("has_intersections: trees rebuilt; robust edge-triangle test; yes or no",
             ANY_EDGE, lambda vertices: ipc.has_intersections(mesh, vertices, ipc.LBVH()),
             prepare=np.asfortranarray),
@@ -377,10 +423,17 @@ def ipctk(scene, np):
             EDGES, candidates, lambda found: [(ends[c.edge_id], c.face_id) for c in found],
             np.asfortranarray),
     ]
-    if scene.triangles <= STEP_TRIANGLES:
+    if scene.part:
         ways.append(
-            Way("step: LBVH round the motion: trees rebuilt; vertex-face and edge-edge candidates",
-                STEPS, step_candidates, holds, np.asfortranarray))
+            Way(f"{scene.step_name()}: time of impact: compute_collision_free_stepsize: LBVH rebuilt; "
+                "tight inclusion with conservative rescaling 0.8", TIME,
+                lambda start, end: ipc.compute_collision_free_stepsize(mesh, start, end, 0, ipc.LBVH()),
+                prepare=np.asfortranarray, exact=False))
+    if scene.part or scene.triangles <= STEP_TRIANGLES:
+        kind = "candidates: " if scene.part else ""
+        ways.append(
+            Way(f"{scene.step_name()}: {kind}LBVH round the motion: trees rebuilt; vertex-face and "
+                "edge-edge candidates", STEPS, step_candidates, holds, np.asfortranarray))
     return ways
 
 
@@ -477,14 +530,33 @@ def find_ways(peer, scene):
 # --------------------------------------------------------------------------------------------------
 # Turns
 
+UNKNOWN = (None, None)  # pairs missing and extra, where answers are not compared
+
+
+def own_ways(ours, scene, steps):
+    """What starcontour is asked for. steps: these as well."""
+    ways = [] if scene.part else [
+        Way(what, ALL, lambda positions, w=what: ours.query(w, positions), lambda found: ours.list())
+        for what in OWN_WAYS]
+    if steps:
+        ways.append(Way(f"{scene.step_name()}: candidates", STEPS, ours.step,
+                        lambda count: (count, lambda wanted: [True for _ in wanted])))
+    if scene.part:
+        ways.append(Way(f"{scene.step_name()}: time of impact", TIME, ours.free_part))
+        ways.append(Way(f"{scene.step_name()}: pairs at the start", ALL,
+                        lambda positions: ours.query("exact", positions), lambda found: ours.list()))
+    for way in ways:
+        way.own = True
+    return ways
+
 
 def walk(scene, scalar, ours, ways, frames, first):
-    """Walks the animation once; compares answers if first, else records times."""
-    for f in range(frames):
-        poses = [scene.frame(f, scalar), scene.frame(f + 1, scalar) if f + 1 < scene.frames else None]
+    """Walks through these frames once; compares answers if first, else records times."""
+    for k, f in enumerate(frames):
+        poses = [scene.frame(f, scalar), scene.end(f, scalar)]
         expected = Expected(ours, *poses) if first else None
         for way in ways:
-            if way.kind != STEPS:
+            if way.kind not in (STEPS, TIME):
                 given = poses[:1]
             elif poses[1] is not None:
                 given = poses
@@ -500,13 +572,16 @@ def walk(scene, scalar, ours, ways, frames, first):
             found = way.query(*given)
             elapsed = time.perf_counter() - start
             if not first:
-                way.times[f].append(1000 * elapsed)
+                way.times[k].append(1000 * elapsed)
                 continue
             answer = way.answer(found)
             if way.kind == STEPS:
                 count, check = answer
                 way.counts.append(count)
-                way.errors.append(expected.judge(STEPS, check))
+                way.errors.append(expected.judge(STEPS, check) if check else UNKNOWN)
+            elif way.kind == TIME:
+                way.counts.append(f"{answer:.9g}")
+                way.errors.append(expected.judge(TIME, answer))
             else:
                 way.counts.append(int(answer) if isinstance(answer, bool) else len(answer))
                 way.errors.append(expected.judge(way.kind, answer))
@@ -526,17 +601,14 @@ def measure(peer, scene, arguments, out):
             print(f"# skipped: {peer} on {scene.name}: {reason}", file=out)
         return True
     ours = Starcontour(arguments.lib, scene, scalar)
-    for what in OWN_WAYS:
-        ways.append(Way(what, ALL, lambda positions, w=what: ours.query(w, positions),
-                        lambda found: ours.list()))
-        ways[-1].own = True
-    if any(way.kind == STEPS for way in ways):
-        ways.append(Way("step: candidates", STEPS, ours.step,
-                        lambda count: (count, lambda wanted: [True for _ in wanted])))
-        ways[-1].own = True
-    frames = min(scene.frames, arguments.frames or scene.frames)
+    ways += own_ways(ours, scene, scene.part or any(way.kind == STEPS for way in ways))
+    frames = list(range(min(scene.frames, arguments.frames or scene.frames)))
+    if scene.part:
+        frames = arguments.starts or [f for f in frames if f + 1 < scene.frames]
+        if not frames or max(frames) + 1 >= scene.frames:
+            raise Unusable(f"{scene.name}: of {scene.frames} frames none follows one that was named")
     for way in ways:
-        way.times = [[] for _ in range(frames)]
+        way.times = [[] for _ in frames]
     for repeat in range(arguments.repeats + 1):
         walk(scene, scalar, ours, ways, frames, repeat == 0)
 
@@ -545,18 +617,19 @@ def measure(peer, scene, arguments, out):
         name, number = (NOTHING_ELSE, ours.version) if way.own else (peer, version)
         threads = 1 if way.own else arguments.threads
         medians = [statistics.median(times) for times in way.times if times]
-        for f in range(len(medians)):
-            print(scene.name, scene.triangles, f, name, number, way.what, threads,
-                  f"{medians[f]:.4f}", way.counts[f],
-                  "no" if any(way.errors[f]) else "yes", f"{min(way.times[f]):.4f}",
-                  *way.errors[f], peer, arguments.threads, sep=",", file=out)
+        for k, median in enumerate(medians):
+            errors = way.errors[k]
+            verdict = "unknown" if errors == UNKNOWN else "no" if any(errors) else "yes"
+            print(scene.name, scene.triangles, frames[k], name, number, way.what, threads,
+                  f"{median:.4f}", way.counts[k], verdict, f"{min(way.times[k]):.4f}",
+                  *(count or 0 for count in errors), peer, arguments.threads, sep=",", file=out)
         if arguments.csv:
             print(f"{scene.name:<14} {name:<12} {threads} thread{' ' if threads == 1 else 's'}"
                   f"{statistics.fmean(medians):10.3f} ms a frame  {way.what}" if medians else "no steps")
-        different = len(way.errors) - way.errors.count((0, 0))
+        different = len(way.errors) - way.errors.count((0, 0)) - way.errors.count(UNKNOWN)
         if different:
             same &= not way.exact
-            print(f"different pairs in {different} of {frames} frames: {name} on {scene.name}")
+            print(f"different pairs in {different} of {len(frames)} frames: {name} on {scene.name}")
     sys.stdout.flush()
     return same
 
@@ -580,6 +653,24 @@ def has_heading(path):
         return any(not line.startswith("#") for line in file)
 
 
+def read_step(parser, arguments):
+    """--step as a Fraction, --from as a list of numbers."""
+    try:
+        if arguments.step is not None:
+            arguments.step = fractions.Fraction(arguments.step)
+            if not 0 < arguments.step <= 1:
+                raise ValueError
+    except (ValueError, ZeroDivisionError):
+        parser.error("--step: a part of the way to the next frame, such as 1/50")
+    if arguments.starts is not None:
+        if arguments.step is None:
+            parser.error("--from goes with --step")
+        numbers = arguments.starts.split(",")
+        if not all(number.isdigit() for number in numbers):
+            parser.error("--from: numbers of frames, such as 0,19")
+        arguments.starts = [int(number) for number in numbers]
+
+
 def parse():
     top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
     names = sorted(PEERS) + [NOTHING_ELSE]
@@ -589,6 +680,10 @@ def parse():
     parser.add_argument("--threads", default="1", help="1, all, or how many [1]")
     parser.add_argument("--repeats", type=int, default=5, help="walks that are timed [5]")
     parser.add_argument("--frames", type=int, help="only the first frames")
+    parser.add_argument("--step", metavar="PART", help="steps alone: this part of the way to the next "
+                        "frame, from more than 0 to 1, such as 1/50")
+    parser.add_argument("--from", dest="starts", metavar="FRAME,...",
+                        help="frames at which these steps start [all but the last]")
     parser.add_argument("--csv", help="file to add lines to [standard output]")
     parser.add_argument("--lib", help="starcontour's shared library [build/lib]")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help="folder of a scene")
@@ -602,6 +697,7 @@ def parse():
         arguments.threads = count if arguments.threads == "all" else int(arguments.threads)
         if arguments.threads < 1 or arguments.repeats < 1 or (arguments.frames or 1) < 1:
             parser.error("threads, repeats and frames are 1 or more")
+        read_step(parser, arguments)
         if not arguments.lib:
             libraries = glob.glob(os.path.join(top, "build", "lib", "libstarcontour.*"))
             shared = [path for path in sorted(libraries) if not path.endswith(".a")]
@@ -641,7 +737,9 @@ def main():
             print(COLUMNS, file=out)
         same = True
         for folder in arguments.scenes:
-            same &= measure(arguments.peer, Scene(folder), arguments, out)
+            scene = Scene(folder)
+            scene.part = arguments.step
+            same &= measure(arguments.peer, scene, arguments, out)
         if arguments.csv:
             out.close()
         return 0 if same else 1
