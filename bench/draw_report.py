@@ -256,9 +256,12 @@ class Results:
             for path in (os.path.join(folder, name + ".csv")
                          for name in ("steps", "turns", "shots", "built")))
         peers = os.path.join(folder, "peers.csv")
-        rows, self.peers_skipped, self.peers_commit = read_peers(peers)
-        self.peers = [row for row in rows if not row["what"].startswith("step: ")]
+        rows, skipped, self.peers_commit = read_peers(peers)
+        self.peers_skipped = [line for line in skipped if "(step " not in line]
+        self.small_steps_skipped = [line for line in skipped if "(step " in line]
+        self.peers = [row for row in rows if not row["what"].startswith(("step: ", "step "))]
         self.peer_steps = [row for row in rows if row["what"].startswith("step: ")]
+        self.peer_small_steps = [row for row in rows if row["what"].startswith("step ")]
         self.runs = collections.OrderedDict()
         for row in self.rows:
             key = (row["scene"], row["triangles"], row["partition"], row["pairs_kind"],
@@ -497,6 +500,43 @@ def peer_steps(results):
                      "%d steps lack collisions" % wrong if wrong else "hold all collisions"])
     return table(["peer", "scene", "triangles", "steps", "threads", "candidates", "ours", "%", "ms",
                   "ours, ms", "× ours", "candidates of the peer"], rows, left=2) if rows else ""
+
+
+def small_steps(results):
+    """Steps of a part of a frame beside those of a peer: candidates, times of impact. A row for each step
+    that has both sides of both."""
+    groups = collections.OrderedDict()
+    for row in results.peer_small_steps:
+        part, asked = row["what"].split(": ")[:2]
+        step = (row["beside"], row["scene"], row["triangles"], row["frame"], row["processors"], part)
+        side = "ours" if row["peer"] == "starcontour" else "theirs"
+        groups.setdefault(step, {})[side, asked] = row
+    rows = []
+    for (_, scene, triangles, frame, _, part), of in groups.items():
+        begin = [scene, whole(triangles), whole(frame), part[len("step "):]]
+        try:
+            pairs = [whole(of["ours", "pairs at the start"]["pairs"])]
+            for asked in ("candidates", "time of impact"):
+                ours, theirs = of["ours", asked], of["theirs", asked]
+                show = whole if asked == "candidates" else part_of_step
+                pairs += [show(theirs["pairs"]), show(ours["pairs"]), figure(theirs["ms"]),
+                          figure(ours["ms"]), times(theirs["ms"] / ours["ms"])]
+        except KeyError:
+            continue
+        rows.append(begin + pairs + [verdict_of_step(of["theirs", "candidates"])])
+    return table(["scene", "triangles", "frame", "step", "pairs at start", "candidates", "ours", "ms",
+                  "ours, ms", "× ours", "free until", "ours", "ms", "ours, ms", "× ours",
+                  "collisions in its candidates"], rows) if rows else ""
+
+
+def part_of_step(value):
+    """A time of impact: 1 is the end of the step."""
+    return "1" if value == 1 else figure(value)
+
+
+def verdict_of_step(row):
+    """Whether a peer's candidates hold our collisions."""
+    return {"yes": "all", "unknown": "not looked at"}.get(row["matches"], "%s missing" % whole(row["missing"]))
 
 
 def modes(results):
@@ -846,6 +886,20 @@ def report(results, drawn, slope_table, reading):
                    "`make peers` at commit %s. *%%*: ours as a part of theirs. Ours runs on one thread.\n" %
                    results.peers_commit)
         out.append(peer_table)
+    small = small_steps(results)
+    if small:
+        out.append("### Steps beside ipc-toolkit\n")
+        out.append("From a frame a part of the way to the next of all 60, both on one thread in one process,\n"
+                   "taking turns; made by `make peers` at commit %s. Candidates: trees of boxes rebuilt\n"
+                   "(`Candidates.build`, LBVH) beside `SC_STEP_CANDIDATES`. *Free until*: the largest part of the\n"
+                   "step known to be free, 1 if all of it (`compute_collision_free_stepsize` with tight inclusion,\n"
+                   "beside `SC_OUTPUT_ANY` with `SC_STEP_TIMES_EARLIEST`); milliseconds include the candidates.\n"
+                   "Where the start has *pairs* of triangles that meet, both end at or near 0, and that is no\n"
+                   "step a simulation would take.\n" % results.peers_commit)
+        out.append(small)
+        absent = "".join("- %s\n" % line for line in results.small_steps_skipped)
+        if absent:
+            out.append("Left out:\n\n" + absent)
     out.append("## One query a frame, and repeated queries\n")
     out.append("The same frame asked for again and again, which favours what fits the cache.\n")
     out.append(modes(results))

@@ -230,6 +230,39 @@ END
                 test "$(found "$csv" starcontour star $frame)" = "$pairs yes"
             check "and with boxes" test "$(found "$csv" starcontour aabb $frame)" = "$pairs yes"
         done
+        # A corner that falls through a triangle, from 1 above to 1 below.
+        falling=$scratch/falling
+        mkdir "$falling"
+        echo "2 6 2" >"$falling/meta.txt"
+        indices 0 1 2 3 4 5 >"$falling/tris.u32"
+        doubles 0 0 0 4 0 0 0 4 0  1 1 1 2 1 4 1 2 4  0 0 0 4 0 0 0 4 0  1 1 -1 2 1 2 1 2 2 \
+            >"$falling/frames.f64"
+        # step PART: candidates, the free part of the step, and pairs at its start.
+        step() {
+            rm -f "$scratch/step.csv"
+            # shellcheck disable=SC2086
+            $ask --step "$1" --from 0 --repeats 1 --csv "$scratch/step.csv" "$falling" >"$scratch/step.log" &&
+                rows "$scratch/step.csv" &&
+                awk -F, -v step="step $1: " 'NR > 1 {
+                        if (index($6, step) != 1) exit 1
+                        found[substr($6, length(step) + 1)] = $9
+                    }
+                    END { print (found["candidates"] > 0), sprintf("%.4f", found["time of impact"]),
+                        found["pairs at the start"] }' "$scratch/step.csv"
+        }
+        check "a whole step is free until half of it" test "$(step 1 2>/dev/null)" = "1 0.5000 0"
+        check "a part of a step until later" test "$(step 5/8 2>/dev/null)" = "1 0.8000 0"
+        check "a small step is free" test "$(step 1/50 2>/dev/null)" = "0 1.0000 0"
+        # shellcheck disable=SC2086
+        check "no step from the last frame" says "none follows" $ask --step 1/50 --from 0,1 "$falling"
+        for part in 0 2 1/0 much; do
+            # shellcheck disable=SC2086
+            check "no step by $part" says "--step: a part" $ask --step $part "$falling"
+        done
+        # shellcheck disable=SC2086
+        check "--from needs a step" says "--from goes with" $ask --from 0 "$falling"
+        # shellcheck disable=SC2086
+        check "--from takes frames" says "--from: numbers" $ask --step 1/50 --from all "$falling"
         # shellcheck disable=SC2086
         refused $ask
     fi
