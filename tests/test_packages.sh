@@ -31,6 +31,8 @@ reference() {
         grep -q '^wound: [1-9]' "$scratch/expected"
 }
 check "the user runs with the library of this build" reference
+check "and prints what it does everywhere" \
+    sh -c 'cksum <"$1" | cmp - tests/packages/consumer.cksum' - "$scratch/expected"
 
 # ------------------------------------------------------------------------------------------------
 # Amalgamation
@@ -246,6 +248,12 @@ check "make install" remake install DESTDIR="$scratch/root" PREFIX=/opt/sc
 # Moved, too: nothing in it may name its first place.
 mv "$scratch/root/opt/sc" "$scratch/moved"
 check "find_package after make install: the static library" finds "$scratch/moved" "$abi"
+standing_user() { # the project that stands in the repository
+    cmake -S tests/packages -B "$scratch/standing" -DCMAKE_C_COMPILER="$CC" \
+        -DCMAKE_PREFIX_PATH="$scratch/moved" && cmake --build "$scratch/standing" &&
+        same "$scratch/standing/consumer"
+}
+check "the project in tests/packages, likewise" standing_user
 uses_static() {
     ! grep -q 'libstarcontour\.so' "$scratch/found/build/CMakeFiles/user.dir/link.txt"
 }

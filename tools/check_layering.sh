@@ -6,7 +6,7 @@
 #   - Folders include only what `may` below allows: lib/ in the order base, build, pose, query, step, and
 #     programs only the public headers. No "../", no circles, nothing that does not exist.
 #   - The oracle of the tests reaches no header of lib/, however indirectly.
-#   - File names are unique (but README.md), and the top level holds only what belongs there.
+#   - File names are unique (but README.md and CMakeLists.txt), and the top level holds only what belongs there.
 #   - lib/sources.list names each C file in lib/ once, in the order of the layers.
 #   - What C files in lib/ keep to themselves has a name that no other one uses: all of them can be
 #     compiled as one (tools/amalgamate.awk). Seen are functions, constants, types and macros.
@@ -31,7 +31,8 @@ offenders=$(
     # Top level.
     for entry in *; do
         case $entry in
-        Makefile | CMakeLists.txt | README.md | CHANGELOG.md | LICENSE) ;;
+        Makefile | CMakeLists.txt | LICENSE) ;;
+        README.md | CHANGELOG.md | CONTRIBUTING.md | SECURITY.md) ;;
         include | lib | tools | tests | bench | meshes | build) ;;
         *) echo "$entry: does not belong at the top level" ;;
         esac
@@ -39,7 +40,7 @@ offenders=$(
 
     # Names.
     files | awk -F/ '
-        $NF == "README.md" { next }
+        $NF == "README.md" || $NF == "CMakeLists.txt" { next }
         $NF in first { print $0 ": same name as " first[$NF]; next }
         { first[$NF] = $0 }' || echo "check_layering: awk failed"
 
