@@ -492,7 +492,7 @@ def peer_steps(results):
             continue
         theirs, ours = both[False], both[True]
         count, ms = ([mean(r[key] for r in side) for side in (theirs, ours)] for key in ("pairs", "ms"))
-        wrong = sum(r["matches"] != "yes" for r in theirs)
+        wrong = sum(r["matches"] == "no" for r in theirs)
         rows.append(["%s %s" % (theirs[0]["peer"], theirs[0]["version"]), scene, whole(triangles),
                      whole(len(theirs)), whole(processors), whole(count[0]), whole(count[1]),
                      "%.2f" % (100.0 * count[1] / count[0]) if count[0] else "–",
@@ -523,10 +523,10 @@ def small_steps(results):
                           figure(ours["ms"]), times(theirs["ms"] / ours["ms"])]
         except KeyError:
             continue
-        rows.append(begin + pairs + [verdict_of_step(of["theirs", "candidates"])])
+        rows.append(begin + pairs + [verdict_of_step(of)])
     return table(["scene", "triangles", "frame", "step", "pairs at start", "candidates", "ours", "ms",
                   "ours, ms", "× ours", "free until", "ours", "ms", "ours, ms", "× ours",
-                  "collisions in its candidates"], rows) if rows else ""
+                  "answers"], rows) if rows else ""
 
 
 def part_of_step(value):
@@ -534,9 +534,19 @@ def part_of_step(value):
     return "1" if value == 1 else figure(value)
 
 
-def verdict_of_step(row):
-    """Whether a peer's candidates hold our collisions."""
-    return {"yes": "all", "unknown": "not looked at"}.get(row["matches"], "%s missing" % whole(row["missing"]))
+def verdict_of_step(rows):
+    """What is wrong with a peer's candidates and with both times, or what was not looked at."""
+    parts = []
+    candidates = rows["theirs", "candidates"]
+    if candidates["matches"] != "yes":
+        parts.append("candidates not looked through" if candidates["matches"] == "unknown" else
+                     "%s collisions not in its candidates" % whole(candidates["missing"]))
+    for side, whose in (("theirs", "its"), ("ours", "our")):
+        time = rows[side, "time of impact"]
+        if time["matches"] != "yes":
+            parts.append("%s time is %s" % (whose, "after the first contact" if time["missing"] else
+                                            "less than 1 though nothing meets"))
+    return "; ".join(parts) or "right"
 
 
 def modes(results):
@@ -894,8 +904,10 @@ def report(results, drawn, slope_table, reading):
                    "(`Candidates.build`, LBVH) beside `SC_STEP_CANDIDATES`. *Free until*: the largest part of the\n"
                    "step known to be free, 1 if all of it (`compute_collision_free_stepsize` with tight inclusion,\n"
                    "beside `SC_OUTPUT_ANY` with `SC_STEP_TIMES_EARLIEST`); milliseconds include the candidates.\n"
-                   "Where the start has *pairs* of triangles that meet, both end at or near 0, and that is no\n"
-                   "step a simulation would take.\n" % results.peers_commit)
+                   "*Answers* are right if the candidates hold all collisions and no time is after the first\n"
+                   "contact. Both stop a little early: ours where a pair is within a millionth of the mesh's\n"
+                   "size. Frames with *pairs at start*, of triangles that meet, are in contact already, in which\n"
+                   "a simulation that keeps meshes apart would not begin a step.\n" % results.peers_commit)
         out.append(small)
         absent = "".join("- %s\n" % line for line in results.small_steps_skipped)
         if absent:

@@ -288,6 +288,11 @@ rod,500,3,ipctk,1.6.1,step 1: candidates: LBVH,1,80,9000,no,80,2,0,ipctk,1
 rod,500,3,starcontour,0.1.0,step 1: candidates,1,8,60,yes,8,0,0,ipctk,1
 rod,500,3,starcontour,0.1.0,step 1: time of impact,1,9,0.5,yes,9,0,0,ipctk,1
 rod,500,3,starcontour,0.1.0,step 1: pairs at the start,1,1,0,yes,1,0,0,ipctk,1
+rod,500,4,ipctk,1.6.1,step 1: time of impact: tight inclusion,1,90,1,yes,90,0,0,ipctk,1
+rod,500,4,ipctk,1.6.1,step 1: candidates: LBVH,1,80,9000000,unknown,80,0,0,ipctk,1
+rod,500,4,starcontour,0.1.0,step 1: candidates,1,8,60,yes,8,0,0,ipctk,1
+rod,500,4,starcontour,0.1.0,step 1: time of impact,1,9,0,no,9,0,1,ipctk,1
+rod,500,4,starcontour,0.1.0,step 1: pairs at the start,1,1,0,yes,1,0,0,ipctk,1
 rod,500,5,ipctk,1.6.1,step 1: time of impact: tight inclusion,1,90,1,yes,90,0,0,ipctk,1
 END
     cat >"$scratch/results/turns.csv" <<'END'
@@ -321,8 +326,9 @@ END
     for line in "| rod | 500 | 2 | 5 | 8.00 | 2.00 | 4.00 | – | – | – | 3 missing in 1 of 2 frames |" \
         "| rod | 500 | 1 | 4 | 30.0 | 3.00 | 10.0 | 20.0 | 5.00 | 4.00 | match |" \
         "| cgal 5.5.1 | swept | 1 | 10.0 | 4.00 | match |" \
-        "| rod | 500 | 3 | 1/50 | 7 | 1,500 | 30 | 40.0 | 4.00 | 10.0 | 0.250 | 0.250 | 60.0 | 5.00 | 12.0 | all |" \
-        "| rod | 500 | 3 | 1 | 0 | 9,000 | 60 | 80.0 | 8.00 | 10.0 | 1 | 0.500 | 90.0 | 9.00 | 10.0 | 2 missing |" \
+        "| rod | 500 | 3 | 1/50 | 7 | 1,500 | 30 | 40.0 | 4.00 | 10.0 | 0.250 | 0.250 | 60.0 | 5.00 | 12.0 | right |" \
+        "| rod | 500 | 3 | 1 | 0 | 9,000 | 60 | 80.0 | 8.00 | 10.0 | 1 | 0.500 | 90.0 | 9.00 | 10.0 | 2 collisions not in its candidates; its time is after the first contact |" \
+        "| 1 | 0 | 90.0 | 9.00 | 10.0 | candidates not looked through; our time is less than 1 though nothing meets |" \
         "- ipctk on rod: needed more than 8 GB of memory (step 1 from frame 5)" "- ipctk: no results" \
         "| rod | 500 | 10.0 | 10.0 | – | – | – | – | 3.00 | 4.00 | – | – | – | – |" \
         "| rod | 500 | trueform 1.0 | 20.0 | 15.0 | 0.75 |" \

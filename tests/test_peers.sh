@@ -253,6 +253,21 @@ END
         check "a whole step is free until half of it" test "$(step 1 2>/dev/null)" = "1 0.5000 0"
         check "a part of a step until later" test "$(step 5/8 2>/dev/null)" = "1 0.8000 0"
         check "a small step is free" test "$(step 1/50 2>/dev/null)" = "0 1.0000 0"
+        cat >"$scratch/judge.py" <<'END'
+import fractions, sys
+sys.path.insert(0, "bench/peers")
+import peers
+scene = peers.Scene(sys.argv[1])
+ours = peers.Starcontour(sys.argv[2], scene, "d")
+for part, free, wanted in ((1, 0.4, (0, 0)), (1, 0.6, (1, 0)), (1, 1, (1, 0)),
+                           (fractions.Fraction(1, 50), 1, (0, 0)),
+                           (fractions.Fraction(1, 50), 0.9, (0, 1))):
+    scene.part = part
+    expected = peers.Expected(ours, scene.frame(0, "d"), scene.end(0, "d"))
+    assert expected.judge(peers.TIME, free) == wanted, (part, free)
+END
+        check "a time after the first contact is wrong, and one in a free step too small" \
+            python3 -B -S "$scratch/judge.py" "$falling" "$library"
         # shellcheck disable=SC2086
         check "no step from the last frame" says "none follows" $ask --step 1/50 --from 0,1 "$falling"
         for part in 0 2 1/0 much; do
