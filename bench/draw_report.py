@@ -493,11 +493,15 @@ def peer_steps(results):
         theirs, ours = both[False], both[True]
         count, ms = ([mean(r[key] for r in side) for side in (theirs, ours)] for key in ("pairs", "ms"))
         wrong = sum(r["matches"] == "no" for r in theirs)
+        unknown = sum(r["matches"] == "unknown" for r in theirs)
         rows.append(["%s %s" % (theirs[0]["peer"], theirs[0]["version"]), scene, whole(triangles),
                      whole(len(theirs)), whole(processors), whole(count[0]), whole(count[1]),
                      "%.2f" % (100.0 * count[1] / count[0]) if count[0] else "–",
                      figure(ms[0]), figure(ms[1]), times(ms[0] / ms[1]),
-                     "%d steps lack collisions" % wrong if wrong else "hold all collisions"])
+                     "%d steps lack collisions" % wrong if wrong else
+                     "hold all collisions" if not unknown else
+                     "hold all collisions; not looked through in %d steps" % unknown
+                     if unknown < len(theirs) else "not looked through"])
     return table(["peer", "scene", "triangles", "steps", "threads", "candidates", "ours", "%", "ms",
                   "ours, ms", "× ours", "candidates of the peer"], rows, left=2) if rows else ""
 

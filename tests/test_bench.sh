@@ -278,6 +278,10 @@ rod,500,0,starcontour,0.1.0,exact,1,5,4,yes,1,0,0,cgal,2
 rod,500,0,trueform,1.0,tree rebuilt,1,20,4,yes,20,0,0,trueform,1
 rod,500,0,starcontour,0.1.0,exact,1,3,4,yes,2,0,0,trueform,1
 rod,500,0,starcontour,0.1.0,one shot,1,15,4,yes,15,0,0,trueform,1
+rod,500,0,ipctk,1.6.1,step: LBVH,1,40,100,yes,40,0,0,ipctk,1
+rod,500,1,ipctk,1.6.1,step: LBVH,1,60,300,unknown,60,0,0,ipctk,1
+rod,500,0,starcontour,0.1.0,step: candidates,1,5,10,yes,5,0,0,ipctk,1
+rod,500,1,starcontour,0.1.0,step: candidates,1,5,10,yes,5,0,0,ipctk,1
 rod,500,3,ipctk,1.6.1,step 1/50: time of impact: tight inclusion,1,60,0.25,yes,60,0,0,ipctk,1
 rod,500,3,ipctk,1.6.1,step 1/50: candidates: LBVH,1,40,1500,yes,40,0,0,ipctk,1
 rod,500,3,starcontour,0.1.0,step 1/50: candidates,1,4,30,yes,4,0,0,ipctk,1
@@ -328,6 +332,7 @@ END
         "| cgal 5.5.1 | swept | 1 | 10.0 | 4.00 | match |" \
         "| rod | 500 | 3 | 1/50 | 7 | 1,500 | 30 | 40.0 | 4.00 | 10.0 | 0.250 | 0.250 | 60.0 | 5.00 | 12.0 | right |" \
         "| rod | 500 | 3 | 1 | 0 | 9,000 | 60 | 80.0 | 8.00 | 10.0 | 1 | 0.500 | 90.0 | 9.00 | 10.0 | 2 collisions not in its candidates; its time is after the first contact |" \
+        "| 200 | 10 | 5.00 | 50.0 | 5.00 | 10.0 | hold all collisions; not looked through in 1 steps |" \
         "| 1 | 0 | 90.0 | 9.00 | 10.0 | candidates not looked through; our time is less than 1 though nothing meets |" \
         "- ipctk on rod: needed more than 8 GB of memory (step 1 from frame 5)" "- ipctk: no results" \
         "| rod | 500 | 10.0 | 10.0 | – | – | – | – | 3.00 | 4.00 | – | – | – | – |" \

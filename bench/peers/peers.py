@@ -408,7 +408,7 @@ def ipctk(scene, np):
 
     def holds(found):
         """How many candidates there are, and whether they hold each pair of a list."""
-        if scene.part and len(found) > COMPARED_CANDIDATES:
+        if len(found) > COMPARED_CANDIDATES:
             return len(found), None
         faces, pairs = found.fv_candidates, found.ee_candidates
 
