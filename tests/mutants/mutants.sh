@@ -11,7 +11,7 @@
 # A fault is killed if a test program that `make test` runs fails, crashes or hangs with it: then
 # `make test` fails as well, and so it is not run to its end. The tests that faults.txt names come
 # first, then all others, one function at a time, quick programs first; scripts are not run.
-# lib/ is compiled with -O0 instead of -O3, which changes no answer, and each change compiles only
+# lib/ is compiled with -O1 instead of -O3, which changes no answer, and each change compiles only
 # what depends on it; after a fault, what it changed is copied back, so nothing is compiled twice.
 #
 # Prints a line for each fault when its fate is known, and as the last line "killed N, survived M".
@@ -51,17 +51,17 @@ make_in() (
     tree=$1 threads=$2
     shift 2
     exec "${MAKE:-make}" -s -C "$tree" -j"$threads" CC="${CC:-cc}" config=release BUILD=build WERROR=0 \
-        mode='-O0 -DNDEBUG' test_mode=-O1 "$@" >"$tree.make.log" 2>&1
+        mode='-O1 -DNDEBUG' test_mode=-O1 "$@" >"$tree.make.log" 2>&1
 )
 
-# run_test TREE PROGRAM [NAME]: one test function, or all; it may take five minutes and 8 GB.
+# run_test TREE PROGRAM NAME: one test function; it may take five minutes and 8 GB.
 run_test() {
     ( # not exec: so that this shell, whose output goes to the log, is the one to speak of crashes
         ulimit -c 0
         ulimit -t 300
         ulimit -v 8000000 2>/dev/null
         cd "$1" || exit 1
-        SC_LIB=build/lib "$tests/$2" ${3:+"$3"}
+        SC_LIB=build/lib "$tests/$2" "$3"
         exit $?
     ) >"$1.test.log" 2>&1
 }
@@ -89,18 +89,22 @@ order_programs() {
     echo test_pairs
 }
 
-# try TREE PROGRAM NAME: builds and runs; 0 if the test failed, with the reason in $killer. If there
-# is no such program or test, or the fault does not compile, $killer is empty.
+# try TREE PROGRAM [NAME]: builds and runs one test function, or each by itself; 0 if one failed,
+# with the reason in $killer. If there is no such program or test, or the fault does not compile,
+# $killer is empty.
 try() {
     killer=
     make_in "$1" 1 "$tests/$2" || return 0
-    run_test "$@" && return 1
-    if grep -q ': no such test$' "$1.test.log"; then
-        echo "$2: no test $3" >"$1.make.log"
-    else
-        killer=$(reason "$1" "$2")
-    fi
-    return 0
+    for one in ${3:-$("$1/$tests/$2" --list)}; do
+        run_test "$1" "$2" "$one" && continue
+        if grep -q ': no such test$' "$1.test.log"; then
+            echo "$2: no test $3" >"$1.make.log"
+        else
+            killer=$(reason "$1" "$2")
+        fi
+        return 0
+    done
+    return 1
 }
 
 # hunt TREE HINTS: the tests to try first, then all functions of all programs. 0 if one failed.
@@ -108,17 +112,10 @@ hunt() {
     for hint in $2; do
         try "$1" "${hint%%:*}" "${hint#*:}" && return 0
     done
+    killer=
+    make_in "$1" 1 all || return 0
     for program in $(order_programs); do
-        if ! make_in "$1" 1 all "$tests/$program"; then
-            killer=
-            return 0
-        fi
-        for one in $("$1/$tests/$program" --list); do
-            if ! run_test "$1" "$program" "$one"; then
-                killer=$(reason "$1" "$program")
-                return 0
-            fi
-        done
+        try "$1" "$program" && return 0
     done
     return 1
 }
