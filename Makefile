@@ -482,7 +482,7 @@ coverage: ## lines and branches of lib/ that the tests run (gcc, AVX-512); fails
 	@tests/coverage.sh '$(coverage)/release/obj/lib'
 
 .PHONY: mutants
-mutants: $(programs) ## plant faults in a copy of lib/ one by one: a test has to fail each time; hours
+mutants: $(programs) ## plant faults in a copy of lib/ one by one: a test has to fail each time; about an hour
 	@meshes/fetch.sh build/meshes $(bin)/subdivide >/dev/null 2>&1 || echo "not all real meshes could be fetched: tests with them are skipped"
 	@CC='$(CC)' MAKE='$(MAKE)' tests/mutants/mutants.sh
 
