@@ -5,11 +5,12 @@
  *
  *     sc-against [options] OLD.so NEW.so SCENE-FOLDER...
  *
- * For each scene and way of asking (method, instruction set, workers) both libraries build a model of
- * the first frame, and then take turns in each frame that is asked about, in every other round the
- * other way round; the least time of each frame counts. A ratio is new / old: below 1 the new one is
- * faster. Ratios of a scene are those of the sums over its frames; *worst* is the greatest of single
- * frames that take long enough to be told. The last lines are geometric means over the scenes.
+ * For each scene and way of asking (method, instruction set, workers) both libraries build a model
+ * of the first frame. They take turns in each frame that is asked about, in every other round the
+ * other way round, and the least time of each frame counts. A ratio is new / old: below 1 the new
+ * one is faster. That of a scene is the ratio of the sums over its frames; *worst* is the greatest
+ * of single frames of more than 0.05 milliseconds. The last lines are geometric means over the
+ * scenes.
  *
  * Both must count the same pairs in every frame, or the exit status is 1. 2: something could not be
  * done.

@@ -24,8 +24,8 @@ const char *mesh_object_name(const mesh_file *mesh, uint32_t object);
 /* Prints a name, without the control characters that a file may bring; "(unnamed)" for "". */
 void mesh_print_name(const char *name);
 
-/* A new array: for each vertex the object of the first triangle that has it, or MESH_NO_OBJECT. NULL
-   if there is no memory. */
+/* A new array: for each vertex the object of the first triangle that has it, or MESH_NO_OBJECT.
+   NULL if there is no memory. */
 uint32_t *mesh_vertex_objects(const mesh_file *mesh);
 
 /* So many pairs between two objects, a <= b. */

@@ -10,8 +10,8 @@
 
 #include <stdbool.h>
 
-/* The number of the form that objects have, as starcontour.schema.json describes it: another one where a
-   reader of this one would be misled. More members do not change it. */
+/* The number of the form that objects have, as starcontour.schema.json describes it: another one
+   where a reader of this one would be misled. More members do not change it. */
 enum { TOOL_JSON_SCHEMA = 1 };
 
 /* A new object of a type, with that number and the library's version; NULL, on which cJSON does

@@ -139,8 +139,8 @@ static int are_edges_clear(const moving_vector v[4], clearance k, int halvings)
  * and areas smaller by length.x length.y.
  *
  * If the two fold onto each other between the ends, the far end of the shorter one lies on the
- * other edge then, and a third edge begins there. That one and the other edge are a pair, too, and not
- * clear, unless they share a point: then the three are a loop. One that turns to the right goes
+ * other edge then, and a third edge begins there. That one and the other edge are a pair, too, and
+ * not clear, unless they share a point: then the three are a loop. One that turns to the right goes
  * round a hole, which can turn inside out and back: only cross[1] tells (holes_of_three_corners in
  * tests/test_steps.c). One that turns to the left is the outside of a piece, with the area of its
  * triangles and holes; those of the triangles stay positive, and a hole that turned inside out is
