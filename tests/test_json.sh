@@ -141,7 +141,7 @@ valid() {
     kinds=$1
     shift
     "$@" >"$scratch/json"
-    "$python" -S -c '' && "$python" "$scratch/validate.py" tools/starcontour.schema.json "$scratch/json" "$kinds"
+    "$python" "$scratch/validate.py" tools/starcontour.schema.json "$scratch/json" "$kinds"
 }
 
 check "JSON of files" valid "mesh-clean mesh-collides mesh-error summary" \
@@ -158,8 +158,12 @@ check "of a rest pose" valid "mesh-collides" "$query" --json --rest "$scratch/cl
 check "of a rest pose that is not there" valid "mesh-error" \
     "$query" --json --rest "$scratch/absent.obj" "$scratch/hit.obj"
 check "of a model" valid "mesh-collides" "$query" --json --model "$scratch/car.scm" "$scratch/hit.obj"
+echo "0,2" >"$scratch/ignored.csv"
 check "of a list that is not there" valid "mesh-error" \
     "$query" --json --ignore "$scratch/absent.csv" "$scratch/hit.obj"
+check "of groups that are not there" valid "mesh-error" \
+    "$query" --json --ignore "$scratch/ignored.csv" --groups "$scratch/absent.txt" "$scratch/hit.obj"
+check "which are named" grep -q '"file":"[^"]*absent.txt"' "$scratch/json"
 check "a record" status 1 "$query" --record "$scratch/one.scq" "$scratch/hit.obj"
 check "of a replay" valid "mesh-collides" "$query" --json --replay "$scratch/one.scq" --contacts
 check "of steps" valid "step-clean step-collides step-error step-error summary" \

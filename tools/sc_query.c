@@ -423,8 +423,12 @@ int main(int argc, char **argv)
     else if (filter_file_read(&filters, set.ignore_path, set.groups_path, query_chosen_pairs(&set),
                               error))
         status = do_files(&set);
-    else
-        query_report_failure(set.ignore_path ? set.ignore_path : set.groups_path, &set, error);
+    else { /* one of the two files, with which the message begins */
+        const char *path = set.ignore_path;
+        if (!path || (set.groups_path && !strncmp(error, set.groups_path, strlen(set.groups_path))))
+            path = set.groups_path;
+        query_report_failure(path, &set, error);
+    }
     filter_file_free(&filters);
     query_threads_stop();
     return tool_finish(status);
