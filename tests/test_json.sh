@@ -38,6 +38,7 @@ EOT
 make_car "$scratch/hit.obj" -1
 make_car "$scratch/clean.obj" 1
 make_car "$scratch/odd.obj" -1 'a,"b'
+make_car "$scratch/latin.obj" -1 "$(printf 'wh\351\303\251l')"
 grep -v '^o ' "$scratch/hit.obj" >"$scratch/plain.obj"
 echo "v 0 0" >"$scratch/broken.obj"
 cloths=meshes/crossing_cloths.obj
@@ -67,6 +68,8 @@ check "faces of edges and triangles" test $? -eq 0
 check "names with a comma" status 1 "$query" --out "$scratch/list" "$scratch/odd.obj"
 check "are quoted" grep -q ',body,0,"a,""b",1,' "$scratch/list"
 check "and the list is read again" status 0 "$query" --ignore "$scratch/list" "$scratch/odd.obj"
+check "names that are not UTF-8 become it" says 1 "\"b\":\"$(printf 'wh\303\251\303\251l')\"" \
+    "$query" --json "$scratch/latin.obj"
 check "with --rest" says 1 "body / wheel 6" "$query" --rest "$scratch/clean.obj" "$scratch/hit.obj"
 check "the model of a car" status 0 "$partition" "$scratch/clean.obj" -o "$scratch/car.scm"
 check "with --model" says 1 "body / wheel 6" "$query" --model "$scratch/car.scm" "$scratch/hit.obj"
@@ -107,7 +110,7 @@ import sys
 
 import jsonschema
 
-with open(sys.argv[1]) as file:
+with open(sys.argv[1], encoding="utf-8") as file:
     schema = json.load(file)
 jsonschema.Draft202012Validator.check_schema(schema)
 
@@ -127,7 +130,7 @@ def close(part):
 close(schema)
 validator = jsonschema.Draft202012Validator(schema)
 kinds = []
-with open(sys.argv[2]) as file:
+with open(sys.argv[2], encoding="utf-8") as file:
     for line in file:
         one = json.loads(line)
         validator.validate(one)
@@ -146,6 +149,7 @@ valid() {
 
 check "JSON of files" valid "mesh-clean mesh-collides mesh-error summary" \
     "$query" --json "$scratch/clean.obj" "$scratch/hit.obj" "$scratch/broken.obj"
+check "of a name that is not UTF-8" valid "mesh-collides" "$query" --json "$scratch/latin.obj"
 check "of contacts and statistics" valid "mesh-collides" \
     "$query" --json --contacts --stats --method sctt "$scratch/hit.obj"
 check "of contacts without objects" valid "mesh-collides" \

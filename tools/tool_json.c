@@ -18,11 +18,43 @@ cJSON *tool_json_object(const char *type)
     return object;
 }
 
+/* How many bytes of a string that ends in 0 are a character in UTF-8; 0: none are. */
+static size_t character_length(const char *text)
+{
+    const unsigned char *s = (const unsigned char *)text;
+    const size_t length = s[0] < 0x80 ? 1 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
+    if (length > 1 && (s[0] < 0xc2 || s[0] > 0xf4)) return 0;
+    for (size_t i = 1; i < length; i++) {
+        if ((s[i] & 0xc0) != 0x80) return 0;
+    }
+    /* longer than need be, half of a pair of UTF-16, or beyond the last one */
+    if ((s[0] == 0xe0 && s[1] < 0xa0) || (s[0] == 0xed && s[1] > 0x9f) ||
+        (s[0] == 0xf0 && s[1] < 0x90) || (s[0] == 0xf4 && s[1] > 0x8f))
+        return 0;
+    return length;
+}
+
+static void print_line(const char *text)
+{
+    while (*text) {
+        const size_t length = character_length(text);
+        const unsigned byte = (unsigned char)*text;
+        if (length == 0) {
+            putchar((int)(0xc0 | byte >> 6));
+            putchar((int)(0x80 | (byte & 0x3f)));
+        } else {
+            fwrite(text, 1, length, stdout);
+        }
+        text += length ? length : 1;
+    }
+    putchar('\n');
+}
+
 bool tool_json_print(cJSON *object)
 {
     char *text = cJSON_PrintUnformatted(object);
     if (text)
-        puts(text);
+        print_line(text);
     else
         tool_error("out of memory");
     cJSON_free(text);

@@ -18,8 +18,8 @@ enum { TOOL_JSON_SCHEMA = 1 };
    nothing, if there is no memory. */
 cJSON *tool_json_object(const char *type);
 
-/* Prints an object on a line of its own and frees it; false, with a message, if there is no
-   memory. */
+/* Prints an object on a line of its own and frees it; false, with a message, if there is no memory.
+   JSON is UTF-8: bytes of names and paths that are not are taken for Latin-1. */
 bool tool_json_print(cJSON *object);
 
 #endif /* TOOLS_TOOL_JSON_H */
