@@ -1,7 +1,7 @@
 #!/bin/sh
-# How sc-query takes meshes: STL as text and binary, what gzip packed, pipes and standard input, and what
-# assimp rounds or does not play; files that are cut short, and what is said of them. PLY has a test of
-# its own.
+# How sc-query takes meshes: OBJ, OFF and STL, what gzip packed, pipes and standard input, and what
+# assimp rounds or does not play; files that are cut short, and what is said of them. PLY has a test
+# of its own.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
@@ -99,6 +99,14 @@ check "a number too large" refuses "$scratch/bad.stl" "line 4: vertex 0: 1e999 i
 sed '4s/vertex [^ ]*/vertex nan/' "$scratch/text.stl" >"$scratch/bad.stl"
 check "one that is none" refuses "$scratch/bad.stl" "vertex 0 is NaN"
 
+(cat "$scratch/text.stl"; printf '%1100s\000\n' ' '; cat "$scratch/text.stl") \
+    >"$scratch/bad.stl"
+check "a byte of value 0" refuses "$scratch/bad.stl" "line $((lines + 1)): a byte of value 0"
+(cat "$scratch/binary.stl"; printf '%50s' ' ') >"$scratch/bad.stl"
+check "binary, with a facet more" refuses "$scratch/bad.stl" "of 8 triangles, but with room for 9"
+(cat "$scratch/binary.stl"; printf '%49s' ' ') >"$scratch/more.stl"
+check "binary, with some bytes more" same_pairs "$scratch/more.stl"
+
 # ---- packed, piped ----
 
 "$query" --ply "$scratch/mesh.ply" "$obj" >/dev/null
@@ -107,6 +115,39 @@ cp "$scratch/text.stl" "$scratch/mesh.stl"
 awk '$1 == "v" { v[n++] = $2 " " $3 " " $4 } $1 == "f" { f[m++] = "3 " $2 - 1 " " $3 - 1 " " $4 - 1 }
     END { print "OFF"; print n, m, 0; for (i = 0; i < n; i++) print v[i]
         for (i = 0; i < m; i++) print f[i] }' "$obj" >"$scratch/mesh.off"
+# In each text format: how lines end, and the mark that some editors put before UTF-8.
+for format in obj off stl; do
+    tr '\n' '\r' <"$scratch/mesh.$format" >"$scratch/cr.$format"
+    check "$format, lines that end in CR" same_pairs "$scratch/cr.$format"
+    awk '{ printf "%s\r\n", $0 }' "$scratch/mesh.$format" >"$scratch/crlf.$format"
+    check "$format, in CR and LF" same_pairs "$scratch/crlf.$format"
+    printf '%s' "$(cat "$scratch/mesh.$format")" >"$scratch/open.$format"
+    check "$format, without an end of the last line" same_pairs "$scratch/open.$format"
+    (printf '\357\273\277'; cat "$scratch/mesh.$format") >"$scratch/mark.$format"
+    check "$format, behind a mark of UTF-8" same_pairs "$scratch/mark.$format"
+done
+grep '^[vf]' "$obj" >"$scratch/bare.obj"
+(printf '\357\273\277'; cat "$scratch/bare.obj") >"$scratch/mark.obj"
+check "before a vertex" same_pairs "$scratch/mark.obj"
+sed 's/ \([^ ]*\)$/ \\\n\1/' "$scratch/bare.obj" | tr '\n' '\r' >"$scratch/cr.obj"
+check "lines that go on behind a CR" same_pairs "$scratch/cr.obj"
+sed 's/^f \([^ ]*\)/f \1\/\/-7/' "$obj" >"$scratch/slash.obj"
+check "corners with normals" same_pairs "$scratch/slash.obj"
+for corner in 1x 1.7 1/2x 1+2; do
+    (cat "$obj"; echo "f $corner 2 3") >"$scratch/bad.obj"
+    check "a corner $corner" refuses "$scratch/bad.obj" "vertices must be numbers"
+done
+lines=$(wc -l <"$scratch/bare.obj")
+for zero in '' '# '; do
+    (cat "$scratch/bare.obj"; printf '%s\000\nf 1 2 3\n' "$zero") >"$scratch/bad.obj"
+    check "a byte of value 0" refuses "$scratch/bad.obj" "line $((lines + 1)): a byte of value 0"
+done
+(cat "$scratch/mesh.off"; echo "# the end") >"$scratch/more.off"
+check "OFF, a comment at the end" same_pairs "$scratch/more.off"
+(cat "$scratch/mesh.off"; echo "3 0 1 2") >"$scratch/bad.off"
+check "OFF, a face more than it says" refuses "$scratch/bad.off" "goes on behind its last face"
+(cat "$scratch/mesh.off"; printf '\000') >"$scratch/bad.off"
+check "OFF, a byte of value 0" refuses "$scratch/bad.off" "a byte of value 0"
 # AC3D, for what assimp reads.
 ac() {
     printf 'AC3Db\nMATERIAL "" rgb 1 1 1 amb 0 0 0 emis 0 0 0 spec 0 0 0 shi 0 trans 0\n'

@@ -105,6 +105,11 @@ static bool is_packed(const file_bytes *bytes)
     return bytes->size > 2 && memcmp(bytes->data, "\x1f\x8b", 2) == 0;
 }
 
+size_t file_bytes_mark(const char *data, size_t size)
+{
+    return size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+}
+
 bool file_bytes_read(file_bytes *bytes, const char *path, char *error, size_t error_size)
 {
     static bool has_read_input = false;

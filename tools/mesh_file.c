@@ -93,8 +93,8 @@ static bool read_format(polygon_mesh *polygons, const char *path, uint32_t forma
     switch (format) {
     case MESH_FORMAT_OBJ:
     case MESH_FORMAT_OFF:
-        return text_mesh_read(polygons, path, format == MESH_FORMAT_OFF, bytes->data, error,
-                              MESH_FILE_ERROR_SIZE);
+        return text_mesh_read(polygons, path, format == MESH_FORMAT_OFF, bytes->data, bytes->size,
+                              error, MESH_FILE_ERROR_SIZE);
     case MESH_FORMAT_PLY:
         return ply_read(polygons, path, bytes->data, bytes->size, error, MESH_FILE_ERROR_SIZE);
     case MESH_FORMAT_STL:

@@ -5,6 +5,8 @@
  */
 #include "ply_read.h"
 
+#include "file_bytes.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
@@ -478,11 +480,16 @@ static bool read_data(ply_reader *reader)
             if (!read_element(reader, element)) return false;
         }
     }
-    return true;
+    if (reader->format != PLY_TEXT) return true;
+    while (is_blank(*reader->at)) reader->at++;
+    return reader->at >= reader->end ||
+           fail_text(reader, "stands behind all that the header says is there");
 }
 
 bool ply_read_knows(const char *data, size_t size)
 {
+    const size_t mark = file_bytes_mark(data, size);
+    data += mark, size -= mark;
     return size > 3 && memcmp(data, "ply", 3) == 0 && (data[3] == '\n' || data[3] == '\r');
 }
 
@@ -492,7 +499,7 @@ bool ply_read(polygon_mesh *mesh, const char *path, const char *data, size_t siz
     ply_reader reader;
     memset(&reader, 0, sizeof reader);
     reader.path = path;
-    reader.begin = reader.at = data;
+    reader.begin = reader.at = data + file_bytes_mark(data, size);
     reader.end = data + size;
     reader.error = error;
     reader.error_size = error_size;

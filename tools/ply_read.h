@@ -10,7 +10,7 @@
  *
  * Numbers in text are read as the nearest doubles, also where a property is said to be a float. A
  * file that is cut short, says of itself what cannot be, or names a vertex that does not exist is
- * an error.
+ * an error; so is text that goes on behind what the header says.
  *
  * Cost: linear.
  */

@@ -5,6 +5,8 @@
  */
 #include "stl_read.h"
 
+#include "file_bytes.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -65,7 +67,8 @@ static bool is_word(const char *word, size_t length, const char *keyword)
 /* The next word; its length is 0 at the end of the file. */
 static const char *next_word(stl_reader *reader, size_t *length)
 {
-    for (; is_blank(*reader->at); reader->at++) reader->line += *reader->at == '\n';
+    for (; is_blank(*reader->at); reader->at++)
+        reader->line += *reader->at == '\n' || (*reader->at == '\r' && reader->at[1] != '\n');
     const char *begin = reader->at;
     while (*reader->at && !is_blank(*reader->at)) reader->at++;
     *length = (size_t)(reader->at - begin);
@@ -82,12 +85,17 @@ static bool expect(stl_reader *reader, const char *keyword)
     return false;
 }
 
+static bool ends_line(char c)
+{
+    return c == '\n' || c == '\r';
+}
+
 /* What stands behind a word on its line. */
 static const char *rest_of_line(stl_reader *reader, size_t *length)
 {
-    while (is_blank(*reader->at) && *reader->at != '\n') reader->at++;
+    while (is_blank(*reader->at) && !ends_line(*reader->at)) reader->at++;
     const char *begin = reader->at;
-    while (*reader->at && *reader->at != '\n') reader->at++;
+    while (*reader->at && !ends_line(*reader->at)) reader->at++;
     *length = (size_t)(reader->at - begin);
     while (*length && is_blank(begin[*length - 1])) --*length;
     return begin;
@@ -139,12 +147,14 @@ static bool read_facet(stl_reader *reader)
     return expect(reader, "endfacet");
 }
 
-static bool read_text(stl_reader *reader)
+static bool read_text(stl_reader *reader, const char *end)
 {
     bool inside = false; /* between solid and endsolid */
     for (;;) {
         size_t length;
         const char *word = next_word(reader, &length);
+        if (length == 0 && reader->at < end)
+            return fail(reader, "a byte of value 0: this is no text");
         if (length == 0) break;
         if (!inside && is_word(word, length, "solid")) {
             const char *name = rest_of_line(reader, &length);
@@ -173,17 +183,17 @@ static bool read_binary(stl_reader *reader, size_t size)
     polygon_mesh *const mesh = reader->mesh;
     const size_t room = size < HEADER_SIZE ? 0 : (size - HEADER_SIZE) / FACET_SIZE;
     const uint32_t count = size < HEADER_SIZE ? 0 : get_uint32(reader->at + HEADER_SIZE - 4);
-    if (size < HEADER_SIZE || count > room) {
-        if (size < HEADER_SIZE)
-            snprintf(
-                reader->error, reader->error_size,
-                "%s: neither a text STL file nor long enough for a binary one; is it truncated?",
-                reader->path);
-        else
-            snprintf(
-                reader->error, reader->error_size,
-                "%s: a binary STL file of %lu triangles, of which it has %lu; is it truncated?",
-                reader->path, (unsigned long)count, (unsigned long)room);
+    if (size < HEADER_SIZE) {
+        snprintf(reader->error, reader->error_size,
+                 "%s: neither a text STL file nor long enough for a binary one; is it truncated?",
+                 reader->path);
+        return false;
+    }
+    if (count != room) {
+        snprintf(reader->error, reader->error_size,
+                 "%s: a binary STL file of %lu triangles, %s %lu%s", reader->path,
+                 (unsigned long)count, count > room ? "of which it has" : "but with room for",
+                 (unsigned long)room, count > room ? "; is it truncated?" : "");
         return false;
     }
     if (count > UINT32_MAX / 3) return fail(reader, "too many triangles");
@@ -209,6 +219,8 @@ static bool read_binary(stl_reader *reader, size_t size)
 
 bool stl_read_knows(const char *data, size_t size)
 {
+    const size_t mark = file_bytes_mark(data, size);
+    data += mark, size -= mark;
     while (is_blank(*data)) data++, size--;
     return size > 5 && is_word(data, 5, "solid") && is_blank(data[5]);
 }
@@ -226,8 +238,13 @@ bool stl_read(polygon_mesh *mesh, const char *path, const char *data, size_t siz
               size_t error_size)
 {
     stl_reader reader = {path, data, 1, error, error_size, mesh, 0};
-    const bool done = (polygon_mesh_init(mesh) || fail_memory(&reader)) &&
-                      (is_text(data, size) ? read_text(&reader) : read_binary(&reader, size));
+    bool done = polygon_mesh_init(mesh) || fail_memory(&reader);
+    if (done && is_text(data, size)) {
+        reader.at += file_bytes_mark(data, size);
+        done = read_text(&reader, data + size);
+    } else {
+        done = done && read_binary(&reader, size);
+    }
     if (!done) polygon_mesh_free(mesh);
     return done;
 }

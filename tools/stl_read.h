@@ -4,8 +4,9 @@
  * SPDX-License-Identifier: MIT
  *
  * Each corner of each facet is a vertex of its own. Numbers of text files are the nearest doubles;
- * those of binary files are floats. Each `solid` of a text file is an object. Normals, attributes
- * and what follows the facets of a binary file are ignored. A file that is cut short is an error.
+ * those of binary files are floats. Each `solid` of a text file is an object. Lines end in LF, CR,
+ * or CR and LF. Normals, attributes and what follows the facets of a binary file are ignored. A
+ * file that is cut short, or has room for more facets than it says, is an error.
  *
  * Cost: linear.
  */

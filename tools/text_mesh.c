@@ -5,6 +5,8 @@
  */
 #include "text_mesh.h"
 
+#include "file_bytes.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -39,6 +41,12 @@ static char *skip_space(char *at)
     return at;
 }
 
+/* How many characters end a line here: LF, CR, or CR and LF. */
+static size_t line_end(const char *at)
+{
+    return *at == '\n' ? 1 : *at != '\r' ? 0 : at[1] == '\n' ? 2 : 1;
+}
+
 /*
  * The next line with something on it, comments removed and ended by a 0; NULL at the end. A line of
  * an OBJ file that ends in a backslash goes on in the next.
@@ -50,17 +58,16 @@ static char *next_line(text_reader *reader, bool continues)
         bool comment = false;
         char *at = begin;
         reader->line++;
-        for (; *at && *at != '\n'; at++) {
+        for (; *at && !line_end(at); at++) {
             if (*at == '#') comment = true;
-            const char *after = at + 1;
-            if (*after == '\r') after++;
-            if (continues && *at == '\\' && *after == '\n') {
-                memset(at, ' ', (size_t)(after - at) + 1);
+            const size_t ending = continues && *at == '\\' ? line_end(at + 1) : 0;
+            if (ending) {
+                memset(at, ' ', ending + 1);
                 reader->line++;
             }
             if (comment) *at = ' ';
         }
-        reader->next = *at ? at + 1 : at;
+        reader->next = at + line_end(at);
         *at = 0;
         char *const content = skip_space(begin);
         if (*content) return content;
@@ -127,7 +134,9 @@ static bool read_obj_face(text_reader *reader, char *at)
             return fail(reader, "a face names a vertex that does not exist");
         }
         if (!add_corner(reader, count, (size_t)index)) return false;
-        for (at = end; *at && !is_space(*at); at++) continue;
+        at = end;
+        if (*at == '/') at += strspn(at, "/-0123456789");
+        if (*at && !is_space(*at)) return fail(reader, "a face's vertices must be numbers");
     }
     if (count < 3) return fail(reader, "a face needs three vertices");
     return end_face(reader, count);
@@ -237,18 +246,33 @@ static bool read_off(text_reader *reader)
         }
         if (!end_face(reader, corner_count)) return false;
     }
+    if (next_line(reader, false)) return fail(reader, "the file goes on behind its last face");
     return true;
 }
 
-bool text_mesh_read(polygon_mesh *mesh, const char *path, bool is_off, char *text, char *error,
-                    size_t error_size)
+/* A 0 would end the text before the file does. */
+static bool is_text(text_reader *reader, size_t size)
 {
-    text_reader reader = {path, text, 0, error, error_size, mesh};
+    const char *const zero = (const char *)memchr(reader->next, '\0', size);
+    if (!zero) return true;
+    reader->line = 1;
+    for (const char *at = reader->next; at < zero; at++) {
+        reader->line += *at == '\n' || (*at == '\r' && at[1] != '\n');
+    }
+    return fail(reader, "a byte of value 0: this is no text, or not in UTF-8");
+}
+
+bool text_mesh_read(polygon_mesh *mesh, const char *path, bool is_off, char *text, size_t size,
+                    char *error, size_t error_size)
+{
+    const size_t mark = file_bytes_mark(text, size);
+    text_reader reader = {path, text + mark, 0, error, error_size, mesh};
     if (!polygon_mesh_init(mesh)) {
         snprintf(error, error_size, "%s: out of memory", path);
         return false;
     }
-    if (is_off ? read_off(&reader) : read_obj(&reader)) return true;
+    if (is_text(&reader, size - mark) && (is_off ? read_off(&reader) : read_obj(&reader)))
+        return true;
     polygon_mesh_free(mesh);
     return false;
 }

@@ -6,7 +6,8 @@
  * These two text formats are read here because what matters to this library is vertex identity, the
  * order of faces and every digit: numbers are rounded to the nearest double, vertices and faces
  * keep the numbers they have in the file, and a file that is cut short or names a vertex that does
- * not exist is an error with a line number. Colours, normals, texture coordinates, materials,
+ * not exist, has more faces than it says, or holds a byte that no text has, is an error with a line
+ * number. Lines end in LF, CR, or CR and LF. Colours, normals, texture coordinates, materials,
  * points and lines are ignored. Objects of OBJ are those of `o`, or, where there are not two of
  * them with faces, of `g` if that tells more apart. OFF: text only, one vertex or face a line,
  * comments anywhere.
@@ -18,9 +19,9 @@
 
 #include "polygon_mesh.h"
 
-/* Reads a file's text, which ends in a 0 and is changed; path is for messages. On failure *mesh is
-   empty and error, of error_size characters, says why. */
-bool text_mesh_read(polygon_mesh *mesh, const char *path, bool is_off, char *text, char *error,
-                    size_t error_size);
+/* Reads the size bytes of a file, which have a 0 behind them and are changed; path is for messages.
+   On failure *mesh is empty and error, of error_size characters, says why. */
+bool text_mesh_read(polygon_mesh *mesh, const char *path, bool is_off, char *text, size_t size,
+                    char *error, size_t error_size);
 
 #endif /* TOOLS_TEXT_MESH_H */

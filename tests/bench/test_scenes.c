@@ -284,7 +284,7 @@ static void sequences_of_meshes_are_scenes(void)
         snprintf(to, sizeof to, "%%%d.obj", k + 1);
         CHECK(rename(at(from), at(to)) == 0);
     }
-    write_file(at("%3.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n", 41);
+    write_file(at("%3.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n", 40);
     char pattern[100];
     snprintf(pattern, sizeof pattern, "%s/%%%%%%d.obj", scratch);
     if (CHECK_MSG(scene_folder_open_pattern(pattern, &scene, error, sizeof error) == 0, "%s",
