@@ -4,7 +4,8 @@
 #
 # What is compiled into the library stands in lib/sources.list, which CMakeLists.txt reads as well;
 # version numbers stand in include/starcontour.h. Nothing is configured beforehand: libraries that
-# only parts need (METIS, assimp, cJSON, zlib) are looked for on each run; one line says what is left out.
+# only parts need (METIS, assimp, cJSON, zlib) are looked for on each run; one line says what is
+# left out.
 
 # The default goal, whatever comes first below.
 all:
@@ -380,8 +381,8 @@ else
 endif
 
 # ------------------------------------------------------------------------------------------------
-# Beyond `make test`: fuzzing, soak, other sanitizers, analysis. What is compiled with other flags goes
-# into a folder of its own; programs are in tests/fuzz/ and tests/runs/.
+# Beyond `make test`: fuzzing, soak, other sanitizers, analysis. What is compiled with other flags
+# goes into a folder of its own; programs are in tests/fuzz/ and tests/runs/.
 
 CLANG ?= clang
 SECONDS ?= 60
@@ -489,8 +490,8 @@ mutants: $(programs) ## plant faults in a copy of lib/ one by one: a test has to
 core_check = $(core_sources) $(metis_source)
 bare_flags := -std=c99 $(exact) -Iinclude -Ilib
 
-# gcc 12 warns wrongly in some files: it loses count of loops over three coordinates, and does not see
-# that a loop's condition asks for NULL.
+# gcc 12 warns wrongly in some files: it loses count of loops over three coordinates, and does not
+# see that a loop's condition asks for NULL.
 analyzer_wrong = $(if $(filter %/bisection.c %/candidates.c %/contacts.c %/fan.c %/query_base.c %/query_avx2.c %/query_avx512.c %/pose_avx512.c,$(1)),-Wno-analyzer-use-of-uninitialized-value) \
     $(if $(filter %/partition_metis.c,$(1)),-Wno-analyzer-possible-null-dereference)
 
@@ -543,8 +544,8 @@ format: ## clang-format on all C and C++ files, in place
 
 # ------------------------------------------------------------------------------------------------
 # Peers: other libraries on the same frames, each left out with a message where it is not installed;
-# see bench/peers/README.md. They are measured one after the other, whatever -j says. Where no SCENES are
-# named, sc-bench writes some into build/.
+# see bench/peers/README.md. They are measured one after the other, whatever -j says. Where no
+# SCENES are named, sc-bench writes some into build/.
 
 SCENES ?=
 CSV ?= $(BUILD)/peers/peers.csv
@@ -617,7 +618,8 @@ headers := include/starcontour.h $(if $(metis),include/starcontour_metis.h) \
 # Written from tools/NAME.in; by folders below LIBDIR.
 pkgconfigs := starcontour.pc $(if $(metis),starcontour_metis.pc)
 cmakes := starcontour-config.cmake starcontour-config-version.cmake
-# Below DOCDIR: these; the programs that the documents are, as NAME.c of FILE; bindings, in their folders.
+# Below DOCDIR: these; the programs that the documents are, as NAME.c of FILE; bindings, in their
+# folders.
 documents := LICENSE CHANGELOG.md include/EMBEDDING.md tools/starcontour.schema.json
 examples := first_query:README.md engine:include/EMBEDDING.md
 bindings := $(patsubst tests/ffi/%,%,$(wildcard tests/ffi/README.md \

@@ -3,8 +3,8 @@
 #
 #     bench/against.sh REV SC-AGAINST SC-BENCH NEW.so [OPTION...]     options of sc-against
 #
-# The other commit's library is built in build/against/COMMIT, once. Scenes are some of sc-bench's own,
-# written to build/against/scenes, once, and all folders in SCENE_DIRS (a list) that are there.
+# The other commit's library is built in build/against/COMMIT, once. Scenes are some of sc-bench's
+# own, written to build/against/scenes, once, and all folders in SCENE_DIRS (a list) that are there.
 # Exit status as sc-against has it.
 #
 # SPDX-License-Identifier: MIT

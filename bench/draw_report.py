@@ -39,7 +39,8 @@ TASKS = ["update_boxes", "update_normals", "orientation", "boxes_orientation",
 TASK_TITLES = ["update boxes", "update normals", "orientation", "boxes (o.)", "primitives (o.)",
                "update contours", "contour", "boxes (c.)", "primitives (c.)"]
 
-# Okabe and Ito's colours, which the colour-blind can tell apart, and markers for prints without colour.
+# Okabe and Ito's colours, which the colour-blind can tell apart, and markers for prints without
+# colour.
 STYLES = {
     "exact": ("#0072B2", "o", "-"),
     "star": ("#009E73", "s", "-"),

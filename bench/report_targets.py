@@ -10,7 +10,8 @@ import collections
 
 from report_text import figure, mean, ratio, table, times, whole
 
-# A line a frame and method of runs that compare instructions, threads of one query, or count near pairs.
+# A line a frame and method of runs that compare instructions, threads of one query, or count near
+# pairs.
 TURNS = ["what", "scene", "triangles", "partition", "workers", "frame", "method", "ms", "ms_min",
          "pairs", "near_pairs"]
 

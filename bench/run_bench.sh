@@ -3,10 +3,10 @@
 #
 #     bench/run_bench.sh full|quick|report [FOLDER]
 #
-# FOLDER is where results go; by default bench/results/<machine>, and the overview into README.md, or,
-# for quick, build/bench-quick. report measures nothing and makes the report anew from the CSV files.
-# What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv, if it is there.
-# From make come SC_BIN and PYTHON, the interpreter that draws.
+# FOLDER is where results go; by default bench/results/<machine>, and the overview into README.md,
+# or, for quick, build/bench-quick. report measures nothing and makes the report anew from the CSV
+# files. What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv, if it
+# is there. From make come SC_BIN and PYTHON, the interpreter that draws.
 #
 # Exit status 1 if methods disagree or no report could be made, 2 if nothing could be started.
 #
@@ -18,17 +18,18 @@ SC_BIN=${SC_BIN:-build/bin}
 kind=${1:-full}
 cores=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 
-# With each set of instructions that this machine has; on other systems than Linux only the compiler's own.
+# With each set of instructions that this machine has; on other systems than Linux only the
+# compiler's own.
 sets=exact@base,aabb@base
 if grep -qw avx2 /proc/cpuinfo 2>/dev/null; then sets=exact@avx2,aabb@avx2,$sets; fi
 if grep -qw avx512vl /proc/cpuinfo 2>/dev/null; then sets=exact@avx512,aabb@avx512,$sets; fi
 turns=exact,exact@serial,aabb,aabb@serial
 
-# A line a run: scene, triangles, frames, passes, partition, pairs, methods or -, other options.
-# The default build, with the built-in partition; pairs of an edge and a triangle, as in the paper. The other
-# runs compare partitions (METIS, and the order that the maker of a cloth knows), resolutions, kinds of pairs, threads, and repeated queries
-# with single ones; instructions and threads of one query; heavy contact, on the frames that peers get; and
-# single queries from nothing.
+# A line a run: scene, triangles, frames, passes, partition, pairs, methods or -, other options. The
+# default build, with the built-in partition; pairs of an edge and a triangle, as in the paper. The
+# other runs compare partitions (METIS, and the order that the maker of a cloth knows), resolutions,
+# kinds of pairs, threads, and repeated queries with single ones; instructions and threads of one
+# query; heavy contact, on the frames that peers get; and single queries from nothing.
 full="\
 twisted-cloth 4096 60 3 fast edge -
 twisted-cloth 16384 60 3 fast edge -
@@ -142,8 +143,9 @@ bunny 13600 8 1 metis edge exact --one-shot
 twisted-cloth 16384 8 1 fast step -
 bunny 13600 8 1 fast step -"
 
-# The two that the contour test's price, and that of culling in vain, are read from: two methods in turn, so that each
-# follows the other. Where all take turns, what follows the hash finds the caches full of it.
+# The two that the contour test's price, and that of culling in vain, are read from: two methods in
+# turn, so that each follows the other. Where all take turns, what follows the hash finds the caches
+# full of it.
 by_two() {
     awk '$6 == "edge" && $7 == "-" && $2 < 400000 {
         for (i = 0; i < 2; i++)
@@ -151,8 +153,8 @@ by_two() {
     }'
 }
 
-# Runs that are repeated by the library as other compilers make it, or for other processors: a name and what make is
-# told. Each takes its turn, rounds times, in a process of its own.
+# Runs that are repeated by the library as other compilers make it, or for other processors: a name
+# and what make is told. Each takes its turn, rounds times, in a process of its own.
 builds="\
 clang CC=clang
 plain CPPFLAGS=-DSC_NO_SIMD"
@@ -211,7 +213,8 @@ raw=build/bench/$kind
 mkdir -p "$raw" || exit 2
 rm -f "$raw"/*.jsonl "$raw"/*.shots "$raw"/*.built "$raw"/*.log
 
-# Makes sc-bench as the others of $builds have it, before anything is timed; $others are those that can be run.
+# Makes sc-bench as the others of $builds have it, before anything is timed; $others are those that
+# can be run.
 others=
 while read -r name settings; do
     [ -n "$name" ] || continue

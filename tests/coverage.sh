@@ -3,10 +3,10 @@
 #
 #     tests/coverage.sh OBJECTS        the folder of lib's objects and counts; run at the top by `make coverage`
 #
-# Prints every line that was not run and every branch that was not taken, then a table. A function of a
-# header counts as run if one of its copies was. A branch is a way that a condition can go, and each
-# condition of an && or || counts. Exit status 1 if there are any, or if nothing was counted: what no test
-# can bring about is marked in the source, see lib/base/assume.h.
+# Prints every line that was not run and every branch that was not taken, then a table. A function
+# of a header counts as run if one of its copies was. A branch is a way that a condition can go, and
+# each condition of an && or || counts. Exit status 1 if there are any, or if nothing was counted:
+# what no test can bring about is marked in the source, see lib/base/assume.h.
 #
 # SPDX-License-Identifier: MIT
 set -eu

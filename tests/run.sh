@@ -3,11 +3,12 @@
 #
 #     tests/run.sh PROGRAM...
 #
-# Of a program that succeeds the last line is printed and what it skipped, of one that fails all it said; in the order
-# of the arguments. A program whose last line is not "...: N passed, N failed, N skipped" (the last of which may be
-# missing), or whose exit status does not fit that line, counts as one more failure: it crashed or gave up. The last
-# line is the sum, alone: "N passed, N failed, N skipped". SKIPPED of the environment is the number of programs that
-# the caller left out. Exit status 1 if anything failed or nothing passed.
+# Of a program that succeeds the last line is printed and what it skipped, of one that fails all it
+# said; in the order of the arguments. A program whose last line is not "...: N passed, N failed, N
+# skipped" (the last of which may be missing), or whose exit status does not fit that line, counts
+# as one more failure: it crashed or gave up. The last line is the sum, alone: "N passed, N failed,
+# N skipped". SKIPPED of the environment is the number of programs that the caller left out. Exit
+# status 1 if anything failed or nothing passed.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -8,8 +8,8 @@
 #
 # A command's output is shown only if it fails. $scratch is a directory that is removed at the end.
 # From `make test` come CC, SC_CONFIG, SC_BIN, SC_LIB, SC_METIS (yes if METIS is there) and SC_FLAGS
-# (flags that whatever is linked with this build of the library needs); by hand, the release build is
-# taken.
+# (flags that whatever is linked with this build of the library needs); by hand, the release build
+# is taken.
 #
 # SPDX-License-Identifier: MIT
 set -u

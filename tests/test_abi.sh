@@ -1,6 +1,7 @@
 #!/bin/sh
-# The binary interface: it is what was committed (tests/abi/*.txt), a program compiled for an earlier
-# version runs with this library, and what compares a release with the next sees what it has to see.
+# The binary interface: it is what was committed (tests/abi/*.txt), a program compiled for an
+# earlier version runs with this library, and what compares a release with the next sees what it has
+# to see.
 #
 # After a change that is meant: `make abi-update`, and review the diff.
 #
@@ -56,8 +57,8 @@ check "a program of version 0.1 runs" old_caller "$SC_LIB" "$SC_FLAGS"
 # ------------------------------------------------------------------------------------------------
 # Changes, planted in copies of the library
 
-# library NAME SONAME EDIT: a copy of the library whose header EDIT (for sed) has changed, and which has a
-# further function.
+# library NAME SONAME EDIT: a copy of the library whose header EDIT (for sed) has changed, and which
+# has a further function.
 library() {
     mkdir "$scratch/$1" && cp -R include lib "$scratch/$1" &&
         sed -e "$3" -e 's/^SC_API uint32_t sc_version(void);/&\

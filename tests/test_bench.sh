@@ -1,6 +1,6 @@
 #!/bin/sh
-# sc-bench: what it lists, its JSON Lines and CSV, that methods agree on it, that what it exports is the
-# same scene, that it says what is wrong; and the report made of its output.
+# sc-bench: what it lists, its JSON Lines and CSV, that methods agree on it, that what it exports is
+# the same scene, that it says what is wrong; and the report made of its output.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
@@ -205,7 +205,8 @@ check "--scene-dir has the scene's order" run --scene-dir "$scratch/folder/" --p
     --repeats 1
 check "--export-obj" small --export-obj "$scratch/obj"
 check "files have the same pairs" same_pairs run "$scratch"/obj/*.obj
-# Two triangles that cross in the numbers of the file, and not in floats; before them a frame of floats.
+# Two triangles that cross in the numbers of the file, and not in floats; before them a frame of
+# floats.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 2 0\nv 3 2 0\nv 2 3 0\nf 1 2 3\nf 4 5 6\n' >"$scratch/near.obj"
 printf 'v 500000.155 5400000.362 100.080\nv 500000.208 5400000.167 100.355
 v 500000.397 5400000.115 100.197\nv 500000.358 5400000.218 100.086

@@ -1,6 +1,7 @@
 #!/bin/sh
-# The documents beside README.md: include/EMBEDDING.md is a program that compiles, runs and prints what is
-# said there, and its sizes are right; man pages have the tools' options; the API pages have every call.
+# The documents beside README.md: include/EMBEDDING.md is a program that compiles, runs and prints
+# what is said there, and its sizes are right; man pages have the tools' options; the API pages have
+# every call.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

@@ -139,7 +139,8 @@ print(" ".join(kinds))
 sys.exit(" ".join(kinds) != sys.argv[3])
 EOT
 
-# valid KINDS COMMAND...: whether it prints objects of these types and statuses, all as the schema says.
+# valid KINDS COMMAND...: whether it prints objects of these types and statuses, all as the schema
+# says.
 valid() {
     kinds=$1
     shift

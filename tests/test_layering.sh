@@ -1,6 +1,6 @@
 #!/bin/sh
-# The repository keeps its layering, and tools/check_layering.sh sees each kind of offence: planted in
-# a copy, one at a time.
+# The repository keeps its layering, and tools/check_layering.sh sees each kind of offence: planted
+# in a copy, one at a time.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

@@ -1,6 +1,6 @@
 #!/bin/sh
-# sc-query on meshes whose counts are known: the small ones (meshes/expected.csv) and, if `make meshes`
-# could fetch them, glmark2's cat, bunny and horse. All methods and partitions, same counts.
+# sc-query on meshes whose counts are known: the small ones (meshes/expected.csv) and, if `make
+# meshes` could fetch them, glmark2's cat, bunny and horse. All methods and partitions, same counts.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Models and records as files: sc-partition -o, sc-query --model, --record and --replay. The answer is
-# the one that the mesh gives; files that are damaged, of another mesh or of another kind are refused with
-# status 2 and a reason.
+# Models and records as files: sc-partition -o, sc-query --model, --record and --replay. The answer
+# is the one that the mesh gives; files that are damaged, of another mesh or of another kind are
+# refused with status 2 and a reason.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

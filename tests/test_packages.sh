@@ -1,7 +1,7 @@
 #!/bin/sh
-# The ways in which others take the library along: as one file, by CMake, as an archive; and that MSVC
-# could compile it. tests/packages/consumer.c is the user; what it prints has to be the same each time.
-# What takes longer is in tests/packages/ (make test-packages).
+# The ways in which others take the library along: as one file, by CMake, as an archive; and that
+# MSVC could compile it. tests/packages/consumer.c is the user; what it prints has to be the same
+# each time. What takes longer is in tests/packages/ (make test-packages).
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
@@ -69,8 +69,8 @@ else
 fi
 
 # ------------------------------------------------------------------------------------------------
-# MSVC's restrictions: clang, as if it were MSVC, with no headers but those declared here. No variable
-# length arrays, no GNU syntax; nothing of the C library but what is here.
+# MSVC's restrictions: clang, as if it were MSVC, with no headers but those declared here. No
+# variable length arrays, no GNU syntax; nothing of the C library but what is here.
 
 stubs() {
     mkdir "$scratch/msvc" && cd "$scratch/msvc" || return 1
@@ -121,7 +121,8 @@ like_msvc() {
 accepted() {
     like_msvc -fsyntax-only -Wpedantic -Wgnu -Wvla -Werror "$1"
 }
-# Builtins and attributes that no #if keeps from MSVC; clang has offsetof and what is in stdarg.h as such.
+# Builtins and attributes that no #if keeps from MSVC; clang has offsetof and what is in stdarg.h as
+# such.
 no_builtins() {
     like_msvc -E -P "$1" | sed -e 's/__builtin_va_[a-z]*//g' | grep -n -v -e '^#' |
         grep -e __attribute__ -e __int128 -e __asm__ -e __typeof \
@@ -267,7 +268,8 @@ uses_shared() {
 check "a later version is not found" not_found "$scratch/moved" "$newer"
 check "an earlier soname is not found" not_found "$scratch/moved" 0.0.1
 
-# What CMake installs: with the projects above, which have built the library already, static and shared.
+# What CMake installs: with the projects above, which have built the library already, static and
+# shared.
 for name in inside fetched; do
     [ -d "$scratch/$name/build" ] || continue
     tree=$scratch/$name/installed_too

@@ -1,7 +1,7 @@
 #!/bin/sh
 # The drivers of bench/peers, without any peer: scenes are read and refused as they say, lines have
-# their columns, and a peer that is absent is skipped with a message. The compiled one is linked with
-# the triangle test of peers that bring none, which must find the pairs that the library finds.
+# their columns, and a peer that is absent is skipped with a message. The compiled one is linked
+# with the triangle test of peers that bring none, which must find the pairs that the library finds.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
@@ -9,8 +9,8 @@
 columns=scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,extra,beside,processors
 scene=$scratch/touching
 
-# Four triangles in a plane, two that stand on it, one that crosses it; then the last three go away. Of
-# the eight bytes of these doubles only the last two are not zero.
+# Four triangles in a plane, two that stand on it, one that crosses it; then the last three go away.
+# Of the eight bytes of these doubles only the last two are not zero.
 doubles() {
     for number in "$@"; do
         case $number in
@@ -39,8 +39,8 @@ indices 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 >"$scene/tris.u32"
     doubles $still  1 1 1 1 1 2 2 1 2  0 2 1 3 2 1 1 2 3  9 9 -1 9 9 1 9 4 1
 } >"$scene/frames.f64"
 
-# Pairs in frame 0: in the plane 0-1 (inside), 0-2 (along an edge), 0-3, 2-3 (at a corner); a corner of
-# 4 in 0 and on 1; an edge of 5 in 0 and 2 and at 1; 2-6 cross. In frame 1 the first four.
+# Pairs in frame 0: in the plane 0-1 (inside), 0-2 (along an edge), 0-3, 2-3 (at a corner); a corner
+# of 4 in 0 and on 1; an edge of 5 in 0 and 2 and at 1; 2-6 cross. In frame 1 the first four.
 pairs_0=10
 pairs_1=4
 

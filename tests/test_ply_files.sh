@@ -81,7 +81,8 @@ for end in lf cr crlf; do
     done
 done
 
-# typed FORMAT TYPE: coordinates of that type, eight times as large, corners of the last integer type.
+# typed FORMAT TYPE: coordinates of that type, eight times as large, corners of the last integer
+# type.
 typed() {
     printf '%s\n' "ply" "format $1 1.0" "element face 8" "property $2 tag" \
         "property list uint32 $3 vertex_index" "element vertex 8" "property list $3 $2 more" \

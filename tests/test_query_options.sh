@@ -1,6 +1,6 @@
 #!/bin/sh
-# sc-query's filters, contacts and budget: what they leave of the pairs, what they print, the exit status,
-# and files that cannot be read.
+# sc-query's filters, contacts and budget: what they leave of the pairs, what they print, the exit
+# status, and files that cannot be read.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

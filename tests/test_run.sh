@@ -1,6 +1,6 @@
 #!/bin/sh
-# The sums at the end of a run of tests: what passed, failed and was skipped, from each kind of program to the
-# last line, and on to CI's. What ran nothing must not pass for a success.
+# The sums at the end of a run of tests: what passed, failed and was skipped, from each kind of
+# program to the last line, and on to CI's. What ran nothing must not pass for a success.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

@@ -1,6 +1,6 @@
 #!/bin/sh
-# sc-query --step: what it finds between frames, what it prints, the exit status, and frames that cannot
-# be read.
+# sc-query --step: what it finds between frames, what it prints, the exit status, and frames that
+# cannot be read.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

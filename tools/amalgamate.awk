@@ -1,5 +1,6 @@
-# Writes the library as one C file that needs nothing but starcontour.h: the files of lib/sources.list in
-# their order, with the library's own headers in the place where each is included.
+# Writes the library as one C file that needs nothing but starcontour.h: the files of
+# lib/sources.list in their order, with the library's own headers in the place where each is
+# included.
 #
 #     awk -f tools/amalgamate.awk lib/sources.list >starcontour.c     from the top of the repository
 #
@@ -16,8 +17,8 @@ function own(name,    line, path) {
     return path
 }
 
-# Headers with a guard are put in once, those that are meant to be included several times each time. Where
-# an #include depends on a condition (its # stands apart), a later one may still be needed.
+# Headers with a guard are put in once, those that are meant to be included several times each time.
+# Where an #include depends on a condition (its # stands apart), a later one may still be needed.
 function add(path,    line, name, header, status) {
     print "\n/* ---- " path " ---- */\n"
     while ((status = (getline line < path)) > 0) {
@@ -60,8 +61,8 @@ BEGIN {
     print " *"
     print " * Made by `make amalgamation` from the files named below."
     print " */"
-    # What warnings make of files apart does not hold where they follow one another: names that are one
-    # file's functions and another's variables, and functions of headers that not all use.
+    # What warnings make of files apart does not hold where they follow one another: names that are
+    # one file's functions and another's variables, and functions of headers that not all use.
     print "#if defined(__GNUC__)"
     print "#  pragma GCC diagnostic push"
     print "#  pragma GCC diagnostic ignored \"-Wshadow\""

@@ -77,8 +77,8 @@ offenders=$(
                 print FILENAME ": " name " is also a name of " first[name]
             first[name] = FILENAME
         }
-        # static functions and constants, the end of a structure that is a type, macros (but for SC_KERNEL and SC_LANES,
-        # which base/lanes_end.h ends), enumerators
+        # static functions and constants, the end of a structure that is a type, macros (but for
+        # SC_KERNEL and SC_LANES, which base/lanes_end.h ends), enumerators
         /^static / { if (match($0, /[A-Za-z_0-9]+(\(|\[| = )/)) { name = substr($0, RSTART, RLENGTH)
                      sub(/[^A-Za-z_0-9]+$/, "", name); found(name) } }
         /^} [A-Za-z_0-9]+;/ { name = $2; sub(/;.*/, "", name); found(name) }

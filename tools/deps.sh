@@ -13,8 +13,8 @@ set -u
 CC=${CC:-cc}
 CXX=${CXX:-g++}
 
-# What is needed: how it is looked for; its package in Debian, Fedora, Arch Linux and Homebrew (a dash:
-# it comes with the system's compilers, or is not offered there).
+# What is needed: how it is looked for; its package in Debian, Fedora, Arch Linux and Homebrew (a
+# dash: it comes with the system's compilers, or is not offered there).
 needs="\
 compiler CC gcc gcc gcc -
 compiler CXX g++ gcc-c++ gcc -
@@ -104,8 +104,8 @@ there() {
     esac
 }
 
-# The packages, in the system's column, of all that is missing. What Debian calls libclang-rt-dev comes
-# with clang in older releases.
+# The packages, in the system's column, of all that is missing. What Debian calls libclang-rt-dev
+# comes with clang in older releases.
 missing() {
     echo "$needs" | while read -r kind what debian fedora arch brew; do
         there "$kind" "$what" </dev/null && continue

@@ -1,11 +1,11 @@
 #!/bin/sh
-# Packs starcontour-VERSION.tar.gz, the same bytes for the same files: sorted, owned by nobody, dated by
-# the last commit.
+# Packs starcontour-VERSION.tar.gz, the same bytes for the same files: sorted, owned by nobody,
+# dated by the last commit.
 #
 #     tools/dist.sh VERSION FOLDER        from the top of the repository; needs GNU tar
 #
-# In a git checkout: the tracked files, as they are now. In an unpacked archive: all files but build/,
-# dated as they are, which gives that archive again.
+# In a git checkout: the tracked files, as they are now. In an unpacked archive: all files but
+# build/, dated as they are, which gives that archive again.
 #
 # SPDX-License-Identifier: MIT
 set -eu

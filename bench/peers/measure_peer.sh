@@ -3,10 +3,11 @@
 #
 #     bench/peers/measure_peer.sh PEER CSV "SCENE..." SC-BENCH COMMAND...
 #
-# Where no scenes are named, those below are written by sc-bench into build/peers/scenes, once; one that
-# cannot be made is skipped with a message. Named scenes are run with one thread and then with all. A process that takes
-# more than $LIMIT seconds (30) is ended, and so is one that asks for more than $MEMORY GB of address space (8; "unlimited":
-# no limit), where the shell can set such a limit; the file says so. Fails as the command does.
+# Where no scenes are named, those below are written by sc-bench into build/peers/scenes, once; one
+# that cannot be made is skipped with a message. Named scenes are run with one thread and then with
+# all. A process that takes more than $LIMIT seconds (30) is ended, and so is one that asks for more
+# than $MEMORY GB of address space (8; "unlimited": no limit), where the shell can set such a limit;
+# the file says so. Fails as the command does.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -28,8 +29,9 @@ unlimited) kilobytes=unlimited ;;
 esac
 here=${0%/*}
 
-# Name, triangles, frames, and whether they are run with all threads as well: whole animations in long steps and three
-# timed walks, so that a peer is through in a minute or two. Two of them are also the frames of heavy contact in reports.
+# Name, triangles, frames, and whether they are run with all threads as well: whole animations in
+# long steps and three timed walks, so that a peer is through in a minute or two. Two of them are
+# also the frames of heavy contact in reports.
 usual="\
 twisted-cloth 65536 6 all
 cloth-sphere 80000 6
@@ -55,8 +57,9 @@ cat 41000 6
 bunny 54500 6
 horse 25000 6"
 
-# Steps of ipc-toolkit by a part of the way to the next of all frames, for which meshes may be large: scene, triangles,
-# frames, and at which frames the steps start: rest, in motion, the last. Each is a process of its own.
+# Steps of ipc-toolkit by a part of the way to the next of all frames, for which meshes may be
+# large: scene, triangles, frames, and at which frames the steps start: rest, in motion, the last.
+# Each is a process of its own.
 steps=
 parts="1/50 1/10 1"
 [ "$peer" != ipctk ] || steps="\
@@ -80,7 +83,8 @@ out_of_memory() {
     grep -Eqi 'MemoryError|bad_alloc|out of memory|cannot allocate memory'
 }
 
-# Its lines go to a file of their own first, so that one that is ended leaves none. $step says which step it is.
+# Its lines go to a file of their own first, so that one that is ended leaves none. $step says which
+# step it is.
 step=
 measure() {
     threads=$1

@@ -47,12 +47,13 @@ EDGES = "edges"  # at least all pairs of an edge and a triangle that share no ve
 STEPS = "steps"  # at least all that collide in the step to the next frame; candidates are counted
 TIME = "time"  # how large a part of the step is free: not more than until the first contact
 
-# The first contact is found with so small a tolerance, of distances, that rounding alone limits it. A part of
-# the step may be larger by the slack.
+# The first contact is found with so small a tolerance, of distances, that rounding alone limits it.
+# A part of the step may be larger by the slack.
 FINEST_TOLERANCE = 1e-300
 TIME_SLACK = 1e-6
 
-# Without --step, only meshes of so many triangles are asked for steps, as whole ones take seconds on others.
+# Without --step, only meshes of so many triangles are asked for steps, as whole ones take seconds
+# on others.
 STEP_TRIANGLES = 20000
 
 # Candidates of a step are compared as Python objects, of which more take too much time and memory.

@@ -4,13 +4,14 @@
 #     tests/abi/compare.sh NEW_LIBRARY NEW_INCLUDE OLD_LIBRARY OLD_INCLUDE
 #     tests/abi/compare.sh NEW_LIBRARY            the old one is the last release: the last tag v[0-9]*
 #
-# Two opinions: abidiff's (Debian: abigail-tools) on the libraries, where it is installed, and that of
-# tests/abi/grown.awk on the headers. abidiff reports all that changed. Members added behind a structure
-# that has a struct_size change it, yet break nothing: of such changes grown.awk is the judge.
+# Two opinions: abidiff's (Debian: abigail-tools) on the libraries, where it is installed, and that
+# of tests/abi/grown.awk on the headers. abidiff reports all that changed. Members added behind a
+# structure that has a struct_size change it, yet break nothing: of such changes grown.awk is the
+# judge.
 #
-# Fails if programs would break while the soname is the same. Without a git checkout, or before the first
-# release, it says so and compares nothing. The last line is "abi-check: N passed, N failed, N skipped", where
-# opinions are counted.
+# Fails if programs would break while the soname is the same. Without a git checkout, or before the
+# first release, it says so and compares nothing. The last line is "abi-check: N passed, N failed, N
+# skipped", where opinions are counted.
 #
 # SPDX-License-Identifier: MIT
 set -u

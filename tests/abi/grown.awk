@@ -3,10 +3,10 @@
 #
 #     awk -f tests/abi/grown.awk OLD_INTERFACE NEW_INTERFACE
 #
-# Every old line must still be there. Allowed are further lines; that a member named reserved, in which old
-# callers have 0, becomes another of its size; and that a structure which has a struct_size grows, by
-# members behind what was its end, padding included. It may be aligned more strictly then, as the library
-# copies it byte by byte. Status 1 if something breaks.
+# Every old line must still be there. Allowed are further lines; that a member named reserved, in
+# which old callers have 0, becomes another of its size; and that a structure which has a
+# struct_size grows, by members behind what was its end, padding included. It may be aligned more
+# strictly then, as the library copies it byte by byte. Status 1 if something breaks.
 #
 # SPDX-License-Identifier: MIT
 

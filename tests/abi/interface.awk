@@ -7,9 +7,9 @@
 #
 #     awk -f tests/abi/interface.awk include/starcontour.h >interface.c
 #
-# Whatever a header declares is found, so nothing can be added or changed without a line that changes.
-# It reads the plain C of these headers: no nested structures, no bit fields, no declarations across
-# conditionals. What it cannot read ends it with status 1.
+# Whatever a header declares is found, so nothing can be added or changed without a line that
+# changes. It reads the plain C of these headers: no nested structures, no bit fields, no
+# declarations across conditionals. What it cannot read ends it with status 1.
 #
 # SPDX-License-Identifier: MIT
 
@@ -101,7 +101,8 @@ END {
     print "#define ALIGNMENT(type) (unsigned)offsetof(struct { char c; type t; }, t)"
     print "int main(void)\n{"
 
-    # Comments go first: they hold anything. Then the preprocessor's lines, of which constants count.
+    # Comments go first: they hold anything. Then the preprocessor's lines, of which constants
+    # count.
     while ((start = index(all, "/*")) > 0) {
         end = index(substr(all, start), "*/")
         if (!end) give_up("a comment that does not end")

@@ -1,15 +1,16 @@
 #!/bin/sh
-# `make test-cgal`: compares triangle pairs with CGAL's, by compare.cpp, on every file below meshes/ and
-# below what meshes/fetch.sh --models fetched that can be read as a mesh.
+# `make test-cgal`: compares triangle pairs with CGAL's, by compare.cpp, on every file below meshes/
+# and below what meshes/fetch.sh --models fetched that can be read as a mesh.
 #
 #     tests/cgal/compare_all.sh COMPARE FOLDER LOG     from the top of the repository
 #
-# One line for each mesh; see compare.cpp. Files that cannot be read as meshes (most are none) are named
-# in LOG with the reason, and counted. Skipped, and named: meshes of more than $limit triangles, and
-# those with coordinates that are not finite. A process for each file, so that one that crashes or takes
-# more than $seconds counts as one failure.
+# One line for each mesh; see compare.cpp. Files that cannot be read as meshes (most are none) are
+# named in LOG with the reason, and counted. Skipped, and named: meshes of more than $limit
+# triangles, and those with coordinates that are not finite. A process for each file, so that one
+# that crashes or takes more than $seconds counts as one failure.
 #
-# Last line: "N passed, N failed, N skipped", where meshes are counted; exit status 1 if any failed. About a minute.
+# Last line: "N passed, N failed, N skipped", where meshes are counted; exit status 1 if any failed.
+# About a minute.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -3,10 +3,10 @@
 #
 #     tests/ffi/ffi.sh LIBRARY_FOLDER WORK_FOLDER [LANGUAGE...]       default: all languages
 #
-# Each program is run on meshes/crossing_cloths.obj with the pairs it should find and the structures as
-# a C compiler lays them out; then with one pair changed, which it has to notice. What misses its
-# toolchain is skipped and counted as that. The last line is the sum: "N passed, N failed, N skipped".
-# Exit status 1 if anything failed or nothing ran. CC, CXX, PYTHON: what to use for these.
+# Each program is run on meshes/crossing_cloths.obj with the pairs it should find and the structures
+# as a C compiler lays them out; then with one pair changed, which it has to notice. What misses its
+# toolchain is skipped and counted as that. The last line is the sum: "N passed, N failed, N
+# skipped". Exit status 1 if anything failed or nothing ran. CC, CXX, PYTHON: what to use for these.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Fuzzes: each target for some time, as many at once as there are processors, from what earlier runs and
-# meshes/ gave. Run by `make fuzz`.
+# Fuzzes: each target for some time, as many at once as there are processors, from what earlier runs
+# and meshes/ gave. Run by `make fuzz`.
 #
 #     tests/fuzz/fuzz.sh DIRECTORY SECONDS [TARGET...]
 #
-# DIRECTORY has the programs and gets the corpora (corpus/TARGET) and logs (TARGET.log). What a target
-# finds is kept in tests/fuzz/reproducers/, where tests/test_reproducers.c replays it. Prints a summary
-# for each target; exit status 1 if one found something.
+# DIRECTORY has the programs and gets the corpora (corpus/TARGET) and logs (TARGET.log). What a
+# target finds is kept in tests/fuzz/reproducers/, where tests/test_reproducers.c replays it. Prints
+# a summary for each target; exit status 1 if one found something.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -1,12 +1,14 @@
 #!/bin/sh
-# `make test-ipctk`: compares steps with those of ipc-toolkit, by compare.py, on all scenes of sc-bench.
+# `make test-ipctk`: compares steps with those of ipc-toolkit, by compare.py, on all scenes of
+# sc-bench.
 #
 #     tests/ipctk/ipctk.sh SC-BENCH LIBRARY BUILD     from the top of the repository
 #
-# ipc-toolkit comes from PyPI, into a virtual environment below BUILD; if it cannot be had, the comparison
-# is skipped with a message. Scenes are small: ipc-toolkit's candidates, hundreds of thousands, are gone
-# through in Python; of 60 frames every tenth step is taken. Scenes whose meshes were not fetched are
-# skipped, too. Last line: "N passed, N failed, N skipped", where scenes are counted. A minute or two.
+# ipc-toolkit comes from PyPI, into a virtual environment below BUILD; if it cannot be had, the
+# comparison is skipped with a message. Scenes are small: ipc-toolkit's candidates, hundreds of
+# thousands, are gone through in Python; of 60 frames every tenth step is taken. Scenes whose meshes
+# were not fetched are skipped, too. Last line: "N passed, N failed, N skipped", where scenes are
+# counted. A minute or two.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -59,7 +61,8 @@ fi
 compare() {
     "$build/peers/venv/bin/python" tests/ipctk/compare.py --lib "$library" --every 10 "$@"
 }
-# The comparison notices what is missing: without the contour test, a collision of the wrinkled cloth is.
+# The comparison notices what is missing: without the contour test, a collision of the wrinkled
+# cloth is.
 wrinkled=$build/ipctk/6272-60/wrinkled-cloth
 if [ -d "$wrinkled" ]; then
     compare --contour-none "$wrinkled" >"$build/ipctk/none.log"

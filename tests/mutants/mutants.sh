@@ -4,9 +4,9 @@
 #     tests/mutants/mutants.sh [--jobs N] [--shard I/N] [WORD...]
 #     tests/mutants/mutants.sh --check [WORD...]      only whether each still fits the sources
 #
-# With words: the faults whose names contain one of them; else all. --shard 2/3: of these the second,
-# fifth, eighth and so on, for runs on several machines. --jobs: how many at a time (by default as
-# many as there are processors), each in a copy of its own of a tree that is built once.
+# With words: the faults whose names contain one of them; else all. --shard 2/3: of these the
+# second, fifth, eighth and so on, for runs on several machines. --jobs: how many at a time (by
+# default as many as there are processors), each in a copy of its own of a tree that is built once.
 #
 # A fault is killed if a test program that `make test` runs fails, crashes or hangs with it: then
 # `make test` fails as well, and so it is not run to its end. The tests that faults.txt names come

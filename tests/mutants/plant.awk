@@ -3,8 +3,8 @@
 #     awk -f plant.awk -v name=NAME -v root=FOLDER faults.txt     changes files below FOLDER, prints them
 #     awk -f plant.awk faults.txt                                 prints NAME and tests to try, a line each
 #
-# Exit status 1, and nothing is changed, if there is no such fault, or if lines that it replaces are not
-# in their file, or are there more than once.
+# Exit status 1, and nothing is changed, if there is no such fault, or if lines that it replaces are
+# not in their file, or are there more than once.
 #
 # SPDX-License-Identifier: MIT
 

@@ -1,7 +1,7 @@
 #!/bin/sh
-# The Conan recipe in tools/packaging/conan builds the checkout, and a CMake project that requires the
-# package finds it and works; static and shared. Needs Conan 2 (python3 -m pip install conan), CMake, and
-# no network.
+# The Conan recipe in tools/packaging/conan builds the checkout, and a CMake project that requires
+# the package finds it and works; static and shared. Needs Conan 2 (python3 -m pip install conan),
+# CMake, and no network.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

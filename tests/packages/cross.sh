@@ -1,11 +1,13 @@
 #!/bin/sh
-# Built for other processors by Debian's cross compilers, and run by QEMU's emulators where they are there: 64-bit ARM
-# (NEON, by the compiler's vector types), 32-bit ARM, and s390x, where numbers have their bytes the other way round.
-# The same pairs as here, and tests that need neither GMP nor libccd.
+# Built for other processors by Debian's cross compilers, and run by QEMU's emulators where they are
+# there: 64-bit ARM (NEON, by the compiler's vector types), 32-bit ARM, and s390x, where numbers
+# have their bytes the other way round. The same pairs as here, and tests that need neither GMP nor
+# libccd.
 #
 #     tests/packages/cross.sh [MACHINE...]      aarch64-linux-gnu arm-linux-gnueabihf s390x-linux-gnu
 #
-# Debian: gcc-aarch64-linux-gnu, gcc-arm-linux-gnueabihf, gcc-s390x-linux-gnu, qemu-user. A machine takes some minutes.
+# Debian: gcc-aarch64-linux-gnu, gcc-arm-linux-gnueabihf, gcc-s390x-linux-gnu, qemu-user. A machine
+# takes some minutes.
 #
 # SPDX-License-Identifier: MIT
 machines=${*:-aarch64-linux-gnu arm-linux-gnueabihf s390x-linux-gnu}

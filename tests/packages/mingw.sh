@@ -1,6 +1,7 @@
 #!/bin/sh
-# Built for Windows by mingw-w64: the static library, the DLL, the programs and tests that need neither
-# assimp nor GMP nor POSIX. Under wine, where that is there, they run, and give the same pairs as here.
+# Built for Windows by mingw-w64: the static library, the DLL, the programs and tests that need
+# neither assimp nor GMP nor POSIX. Under wine, where that is there, they run, and give the same
+# pairs as here.
 #
 #     tests/packages/mingw.sh [PREFIX [FOLDER]]      x86_64-w64-mingw32, build/mingw
 #
@@ -22,8 +23,8 @@ unset MAKEFLAGS MFLAGS MAKELEVEL
 jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 mkdir -p "$at"
 
-# cross_make FOLDER CPPFLAGS TARGET...; not warned of: mingw's isfinite converts, and its formats are not
-# those of the printf that is asked for.
+# cross_make FOLDER CPPFLAGS TARGET...; not warned of: mingw's isfinite converts, and its formats
+# are not those of the printf that is asked for.
 cross_make() {
     folder=$1
     flags=$2

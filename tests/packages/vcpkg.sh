@@ -1,7 +1,7 @@
 #!/bin/sh
-# The vcpkg port in tools/packaging/vcpkg. With vcpkg: it is installed from the checkout, and a CMake
-# project finds it. Without: its steps are walked through with stand-ins for vcpkg's functions, which shows
-# that the sources are found and installed, not that vcpkg takes the port.
+# The vcpkg port in tools/packaging/vcpkg. With vcpkg: it is installed from the checkout, and a
+# CMake project finds it. Without: its steps are walked through with stand-ins for vcpkg's
+# functions, which shows that the sources are found and installed, not that vcpkg takes the port.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

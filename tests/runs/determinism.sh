@@ -4,10 +4,10 @@
 #
 #     tests/runs/determinism.sh DIRECTORY OBJECT...
 #
-# OBJECTs are tests/runs/determinism.c and what it needs, compiled once, so that all get the same input;
-# the library is compiled anew each time, in DIRECTORY. SC_CC: the compilers. Prints a line for each
-# build, and last "N passed, N failed, N skipped", where builds are counted; exit status 1 if hashes
-# differ or there was only one build.
+# OBJECTs are tests/runs/determinism.c and what it needs, compiled once, so that all get the same
+# input; the library is compiled anew each time, in DIRECTORY. SC_CC: the compilers. Prints a line
+# for each build, and last "N passed, N failed, N skipped", where builds are counted; exit status 1
+# if hashes differ or there was only one build.
 #
 # SPDX-License-Identifier: MIT
 set -u

@@ -203,7 +203,8 @@ says("no number", "separation must be a number, not '1'",
 says("no flag", "cancel must be a uint32 array of shape (1,)",
      refused(ValueError, lambda: model.query(rest, cancel=True)))
 
-# Doubles are taken as they are: far from the origin these two triangles meet, and as floats they do not.
+# Doubles are taken as they are: far from the origin these two triangles meet, and as floats they do
+# not.
 far = np.array([[500000.155, 5400000.362, 100.080], [500000.208, 5400000.167, 100.355],
                 [500000.397, 5400000.115, 100.197], [500000.358, 5400000.218, 100.086],
                 [500000.304, 5400000.135, 100.194], [500000.003, 5400000.396, 100.263]])

@@ -4,9 +4,9 @@
 #
 #   vcpkg install starcontour --overlay-ports=tools/packaging/vcpkg
 #
-# An example of a port; tests/packages/vcpkg.sh runs it where there is vcpkg, and else only reads it, with
-# stand-ins for vcpkg's functions. One for a registry would take the sources from a released archive
-# (vcpkg_from_github) instead of the folder above.
+# An example of a port; tests/packages/vcpkg.sh runs it where there is vcpkg, and else only reads
+# it, with stand-ins for vcpkg's functions. One for a registry would take the sources from a
+# released archive (vcpkg_from_github) instead of the folder above.
 get_filename_component(SOURCE_PATH "${CURRENT_PORT_DIR}/../../../.." ABSOLUTE)
 
 vcpkg_cmake_configure(SOURCE_PATH "${SOURCE_PATH}")
