@@ -377,7 +377,7 @@ static sc_status run_query(const sc_model *model, sc_workspace *workspace, const
     state->model = model;
     state->workspace = workspace;
     state->task = SC_TASK_UPDATE_BOXES;
-    workspace->isa = state->options.simd;
+    workspace->kernels = sc_kernels_for(state->options.simd);
     if (state->timed) start = state->last_time = sc_clock_nanoseconds();
     if (sc_state_stops(state)) return SC_ERROR_INCOMPLETE;
     sc_workspace_new_pose(model, workspace);
@@ -465,7 +465,7 @@ static void begin_step(sc_step_state *state, const sc_model *model, sc_workspace
     state->list[SC_STEP_EDGE_EDGE].times = times ? r->edge_edge_times : NULL;
     state->list[SC_STEP_EDGE_EDGE].capacity = r->edge_edge_capacity;
     state->earliest = 1;
-    workspace->isa = state->options.simd;
+    workspace->kernels = sc_kernels_for(state->options.simd);
 }
 
 static sc_status run_step(sc_step_state *state, const sc_pose pose[2], const uint64_t stride[2])

@@ -1,10 +1,16 @@
 /*
- * Does all that base/lanes.h and its companions can do, once, and writes down what comes out.
- * Included for each instruction set between these headers and their ends; see test_lanes.c.
+ * Does all that simd/lanes.h can do, once, and writes down what comes out: LANES_TRY, for the
+ * instruction set that SC_LANES says. Included for each of them by a file; see test_lanes.c.
  *
  * SPDX-License-Identifier: MIT
  */
-static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
+#include "lanes_trial_types.h"
+
+#include "simd/target_begin.h"
+
+#include "simd/lanes.h"
+
+static void try_floats(const lanes_input *in, lanes_outcome *out)
 {
     lanes a = lanes_load(in->a), b = lanes_load(in->b), evens = lanes_load(in->plain);
     lanes odds = lanes_load(in->plain + 1);
@@ -51,7 +57,7 @@ static void SC_KERNEL(try_floats)(const lanes_input *in, lanes_outcome *out)
     out->bits[4] = (unsigned)lanes_every(once);
 }
 
-static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
+static void try_picks(const lanes_input *in, lanes_outcome *out)
 {
     const float *const row[2] = {in->a, in->b}, *const points[2] = {in->plain, in->row[0]};
     const uint8_t *const corners[2] = {in->number, in->other};
@@ -103,7 +109,7 @@ static void SC_KERNEL(try_picks)(const lanes_input *in, lanes_outcome *out)
     out->bits[17] = lanes_among(number[0], in->mask);
 }
 
-static void SC_KERNEL(try_bytes)(const lanes_input *in, lanes_outcome *out)
+static void try_bytes(const lanes_input *in, lanes_outcome *out)
 {
     lanes_bytes a = lanes_bytes_load(in->number), b = lanes_bytes_load(in->through), row[3];
     lanes_bytes same = lanes_bytes_same(a, b), other;
@@ -138,7 +144,7 @@ static void SC_KERNEL(try_bytes)(const lanes_input *in, lanes_outcome *out)
     for (k = 0; k < 3; k++) memcpy(out->kept[k], kept[k], sc_bits_count(in->mask) * sizeof **kept);
 }
 
-static void SC_KERNEL(try_cells)(const lanes_input *in, lanes_outcome *out)
+static void try_cells(const lanes_input *in, lanes_outcome *out)
 {
     float at[4][SC_LANES_COUNT];
     lanes_cells cell[2], box, reach, noted = lanes_cells_none();
@@ -160,7 +166,7 @@ static void SC_KERNEL(try_cells)(const lanes_input *in, lanes_outcome *out)
         lanes_cells_noted(lanes_cells_note(noted, lanes_cells_all(out->cells[0][1]), reach));
 }
 
-static void SC_KERNEL(try_rows)(const lanes_input *in, lanes_outcome *out)
+static void try_rows(const lanes_input *in, lanes_outcome *out)
 {
     lanes_signs row[16];
     lanes ends[6];
@@ -171,7 +177,7 @@ static void SC_KERNEL(try_rows)(const lanes_input *in, lanes_outcome *out)
     for (i = 0; i < 6; i++) lanes_store(out->row[33 + i], ends[i]);
 }
 
-static void SC_KERNEL(try_doubles)(const lanes_input *in, lanes_outcome *out)
+static void try_doubles(const lanes_input *in, lanes_outcome *out)
 {
     doubles a = doubles_load(in->c), b = doubles_load(in->d), p = doubles_load(in->exact);
     doubles q = doubles_load(in->exact + 1), x[3];
@@ -203,12 +209,14 @@ static void SC_KERNEL(try_doubles)(const lanes_input *in, lanes_outcome *out)
     out->bits[13] = doubles_signs(a);
 }
 
-static void SC_KERNEL(try_all)(const lanes_input *in, lanes_outcome *out)
+void LANES_TRY(const lanes_input *in, lanes_outcome *out)
 {
-    SC_KERNEL(try_floats)(in, out);
-    SC_KERNEL(try_picks)(in, out);
-    SC_KERNEL(try_bytes)(in, out);
-    SC_KERNEL(try_rows)(in, out);
-    SC_KERNEL(try_cells)(in, out);
-    SC_KERNEL(try_doubles)(in, out);
+    try_floats(in, out);
+    try_picks(in, out);
+    try_bytes(in, out);
+    try_rows(in, out);
+    try_cells(in, out);
+    try_doubles(in, out);
 }
+
+#include "simd/target_end.h"

@@ -1,6 +1,5 @@
 /*
- * What test_lanes.c tries sixteen lanes on, and what comes out; and the forms of them that the
- * library has on other machines.
+ * What test_lanes.c tries sixteen lanes on, and what comes out; and who tries.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -41,7 +40,12 @@ typedef struct lanes_outcome {
     uint32_t kept[3][16], cells[5][16];
 } lanes_outcome;
 
-/* By the compiler's vector types, where it has them, and one by one. */
+/* As kernels_base.c, kernels_avx2.c and kernels_avx512.c have them; the latter two do nothing where
+   these are not compiled. */
+void lanes_try_base(const lanes_input *in, lanes_outcome *out);
+void lanes_try_avx2(const lanes_input *in, lanes_outcome *out);
+void lanes_try_avx512(const lanes_input *in, lanes_outcome *out);
+/* As on other machines: by the compiler's vector types, where it has them, and one by one. */
 void lanes_try_vectors(const lanes_input *in, lanes_outcome *out);
 void lanes_try_plain(const lanes_input *in, lanes_outcome *out);
 

@@ -11,53 +11,14 @@
 #include <string.h>
 
 #include "base/boxes.h"
-#include "base/predicates.h"
-#include "pose/positions.h"
-#include "query/query_kernels.h"
-#include "query/simple.h"
+#include "simd/quads.h"
 #include "step/moving_contour.h"
-#include "step/step_candidates.h"
-#include "step/step_kernels.h"
-#include "step/step_motion.h"
 
-/* The kernels, as query/query_base.c and step/step_base.c have them. */
-#define SC_KERNEL(name) name##_rounding
+/* The kernels, as simd/kernels_base.c has them. */
+#define SC_KERNELS rounding_kernels
 #define SC_LANES SC_QUADS
 
-#include "base/lanes.h"
-#include "base/lanes_double.h"
-#include "base/lanes_pick.h"
-#include "base/lanes_bytes.h"
-#include "base/lanes_cells.h"
-#include "pose/points_kernel.h"
-#include "query/ready_kernel.h"
-#include "query/neighbor_kernel.h"
-#include "query/fan_kernel.h"
-#include "query/outline_kernel.h"
-#include "query/touch_kernel.h"
-#include "query/short_kernel.h"
-#include "query/tube_kernel.h"
-#include "query/sixteen_kernel.h"
-#include "query/leaf_kernel.h"
-#include "query/walk_kernel.h"
-#include "query/decide_kernel.h"
-#include "query/simple_kernel.h"
-#include "query/small_kernel.h"
-#include "step/apart_kernel.h"
-#include "step/moving_cones_kernel.h"
-
-/* So that none of them is unused. */
-extern const sc_query_kernels rounding_query_kernels;
-const sc_query_kernels rounding_query_kernels = {
-    SC_KERNEL(patch_pairs),   SC_KERNEL(leaf_pair_waits), SC_KERNEL(leaf_itself),
-    SC_KERNEL(leaf_pairs),    SC_KERNEL(decide),          SC_KERNEL(project),
-    SC_KERNEL(look_at_edges), SC_KERNEL(find_simple)};
-extern unsigned (*const rounding_apart)(const sc_motion *, const sc_candidate_points *, int);
-unsigned (*const rounding_apart)(const sc_motion *, const sc_candidate_points *,
-                                 int) = SC_KERNEL(stay_apart);
-extern uint32_t (*const rounding_cone)(const sc_motion *, const uint32_t *, uint32_t);
-uint32_t (*const rounding_cone)(const sc_motion *, const uint32_t *,
-                                uint32_t) = SC_KERNEL(moving_mask_of);
+#include "simd/all_kernels.h"
 
 enum { N = ROUNDING_LANES };
 
@@ -347,7 +308,7 @@ static void box_step(const double (*x)[N], double share[N])
     sc_leaf_ready ready;
     float one[N], other[N], f[N];
     for (int k = 0; k < 9; ++k) at[k / 3][k % 3] = rounded(x[0]);
-    SC_KERNEL(make_boxes)(at, N, &ready);
+    make_boxes(at, N, &ready);
     low = lanes_load(ready.side[0]);
     high = lanes_load(ready.side[3]);
     lanes_store(one, low);
@@ -411,8 +372,8 @@ static void sixteen_planes(const double (*x)[N], double share[N])
     double exact[N];
     for (int k = 0; k < 3; ++k) read_point(x, 3 * k, at[k]);
     read_point(x, 9, p);
-    SC_KERNEL(make_normals)(at, &ready);
-    bound = SC_KERNEL(plane_bound)(lanes_load(ready.size), extent_of(x, 4, 3));
+    make_normals(at, &ready);
+    bound = plane_bound(lanes_load(ready.size), extent_of(x, 4, 3));
     d = lanes_multiply(lanes_load(ready.normal[0]), p[0]);
     for (int k = 1; k < 3; ++k) d = lanes_add(d, lanes_multiply(lanes_load(ready.normal[k]), p[k]));
     d = lanes_subtract(d, lanes_load(ready.offset));
@@ -455,7 +416,7 @@ static void sixteen_edges(const double (*x)[N], double share[N])
         cross_of(b, c, n);
         exact[i] = dot_of(a, n);
     }
-    share_of(d, SC_KERNEL(edges_bound)(size, w), exact, share);
+    share_of(d, edges_bound(size, w), exact, share);
 }
 
 /* Three points in a projection: the third seen from the line of the others. */
@@ -470,7 +431,7 @@ static void sides(const double (*x)[N], double share[N])
     for (int i = 0; i < N; ++i)
         exact[i] =
             (x[2][i] - x[0][i]) * (x[5][i] - x[1][i]) - (x[3][i] - x[1][i]) * (x[4][i] - x[0][i]);
-    share_of(d, SC_KERNEL(side_bound)(extent_of(x, 3, 2)), exact, share);
+    share_of(d, side_bound(extent_of(x, 3, 2)), exact, share);
 }
 
 /* A direction, and two points along it. */
@@ -481,13 +442,13 @@ static void slabs(const double (*x)[N], double share[N])
     for (int i = 0; i < N; ++i) {
         float one[3];
         for (int k = 0; k < 3; ++k) one[k] = (float)x[k][i];
-        bound[i] = SC_KERNEL(slab_reach)(one);
+        bound[i] = slab_reach(one);
     }
     read_point(x, 0, n);
     read_point(x, 3, p);
     read_point(x, 6, q);
-    from = SC_KERNEL(dot)(n, p);
-    to = lanes_subtract(SC_KERNEL(dot)(n, q), lanes_load(bound)); /* as make_slab has it */
+    from = dot_product(n, p);
+    to = lanes_subtract(dot_product(n, q), lanes_load(bound)); /* as make_slab has it */
     lanes_store(near, from);
     lanes_store(far, to);
     for (int i = 0; i < N; ++i) {
@@ -501,7 +462,7 @@ static void slabs(const double (*x)[N], double share[N])
 /* Two triangles that share a point: the plane of one, and a corner of the other. */
 static void neighbor_planes(const double (*x)[N], double share[N])
 {
-    SC_KERNEL(neighbors) both;
+    neighbors both;
     lanes p[3], q[3], n[3], size = lanes_all(0), bound;
     double exact[N];
     memset(&both, 0, sizeof both);
@@ -513,8 +474,8 @@ static void neighbor_planes(const double (*x)[N], double share[N])
     for (int k = 0; k < 3; ++k)
         size = lanes_add(
             size, lanes_add(lanes_absolute(both.at[0][0][k]), lanes_absolute(both.at[0][1][k])));
-    bound = SC_KERNEL(neighbor_plane_bound)(size, extent_of(x, 4, 3));
-    SC_KERNEL(find_normal)(&both, 0, n);
+    bound = neighbor_plane_bound(size, extent_of(x, 4, 3));
+    find_normal(&both, 0, n);
     for (int i = 0; i < N; ++i) {
         double e[3], f[3], w[3], m[3];
         way_of(x, i, 0, 3, e);
@@ -523,7 +484,7 @@ static void neighbor_planes(const double (*x)[N], double share[N])
         cross_of(e, f, m);
         exact[i] = dot_of(m, w);
     }
-    share_of(SC_KERNEL(dot)(n, both.at[1][0]), bound, exact, share);
+    share_of(dot_product(n, both.at[1][0]), bound, exact, share);
 }
 
 /* A direction, and two points. */
@@ -540,7 +501,7 @@ static void neighbor_directions(const double (*x)[N], double share[N])
     lanes_store(sizes, size);
     lanes_store(extents, extent_of(x + 3, 2, 3));
     for (int i = 0; i < N; ++i) {
-        lanes_store(one, SC_KERNEL(direction_bound)(lanes_all(sizes[i]), extents[i]));
+        lanes_store(one, direction_bound(lanes_all(sizes[i]), extents[i]));
         bounds[i] = one[0];
     }
     bound = lanes_load(bounds);
@@ -550,7 +511,7 @@ static void neighbor_directions(const double (*x)[N], double share[N])
         way_of(x, i, 3, 6, way);
         exact[i] = dot_of(direction, way);
     }
-    share_of(SC_KERNEL(dot)(m, q), bound, exact, share);
+    share_of(dot_product(m, q), bound, exact, share);
 }
 
 /* The same as query/touch_kernel.h has it: the error of a difference, to which the part of the
@@ -565,7 +526,7 @@ static void touching(const double (*x)[N], double share[N])
     for (int k = 0; k < 3; ++k) q[k] = lanes_multiply(m[k], lanes_subtract(q[k], p[k]));
     along = lanes_add(lanes_add(q[0], q[1]), q[2]);
     size = lanes_add(lanes_add(lanes_absolute(q[0]), lanes_absolute(q[1])), lanes_absolute(q[2]));
-    size = SC_KERNEL(touch_rounding)(size);
+    size = touch_rounding(size);
     lanes_store(a, lanes_subtract(along, size));
     lanes_store(s, size);
     for (int i = 0; i < N; ++i) {
@@ -577,7 +538,7 @@ static void touching(const double (*x)[N], double share[N])
         }
         way_of(x, i, 3, 6, way);
         share[i] = fabs((double)a[i] + (double)s[i] - dot_of(direction, way)) /
-                   ((double)SC_KERNEL(touch_reach)(one) + (double)s[i]);
+                   ((double)touch_reach(one) + (double)s[i]);
     }
 }
 
@@ -589,7 +550,7 @@ static void fan_rays(const double (*x)[N], double share[N])
         double c[3], way[3];
         int a, b, first;
         for (int k = 0; k < 3; ++k) n[k] = (float)x[k][i];
-        SC_KERNEL(find_across)(n, across);
+        find_across(n, across);
         first = x[0][i] * x[3][i] > 0;
         for (int k = 0; k < 3; ++k) c[k] = (double)across[first][k];
         /* the component that is a sum, unrounded */
@@ -598,7 +559,7 @@ static void fan_rays(const double (*x)[N], double share[N])
         b = (a + 1) % 3;
         c[a] = first ? (n[a] < 0 ? -1 : 1) * (-(double)n[b] - 0.5 * (double)n[3 - a - b])
                      : (double)n[3 - a - b] - 0.5 * (double)n[b];
-        bound = SC_KERNEL(ray_bound)(across[first]);
+        bound = ray_bound(across[first]);
         for (int s = 0; s < 2; ++s) {
             float along = across[first][0] * (float)x[3 + 3 * s][i];
             for (int k = 1; k < 3; ++k) along += across[first][k] * (float)x[3 + 3 * s + k][i];
@@ -617,7 +578,7 @@ static void fan_areas(const double (*x)[N], double share[N])
     double exact[N];
     read_point(x, 0, n);
     for (int k = 0; k < 3; ++k) read_point(x, 3 + 3 * k, at[k]);
-    SC_KERNEL(make_normals)(at, &ready);
+    make_normals(at, &ready);
     largest = lanes_larger(lanes_larger(lanes_absolute(n[0]), lanes_absolute(n[1])),
                            lanes_absolute(n[2]));
     area = lanes_multiply(n[0], lanes_load(ready.normal[0]));
@@ -631,7 +592,7 @@ static void fan_areas(const double (*x)[N], double share[N])
         cross_of(e, f, m);
         exact[i] = dot_of(direction, m);
     }
-    share_of(area, SC_KERNEL(area_bound)(lanes_load(ready.size), largest), exact, share);
+    share_of(area, area_bound(lanes_load(ready.size), largest), exact, share);
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -748,9 +709,8 @@ static void contour_turns(const double (*x)[N], double share[N])
             f[k] = p.exact[3][k] - p.exact[2][k];
         }
         d = a[0] * b[1] - a[1] * b[0];
-        lanes_store(bound,
-                    SC_KERNEL(bound_in_plane)(
-                        p.error, lanes_all(fabsf(a[0]) + fabsf(a[1]) + fabsf(b[0]) + fabsf(b[1]))));
+        lanes_store(bound, bound_in_plane(p.error, lanes_all(fabsf(a[0]) + fabsf(a[1]) +
+                                                             fabsf(b[0]) + fabsf(b[1]))));
         share[i] = fabs((double)d - (e[0] * f[1] - e[1] * f[0])) / (double)bound[0];
     }
 }
@@ -773,7 +733,7 @@ static void eight_pairs(const double (*x)[N], int s, double share[N])
     pairs.positions = (const unsigned char *)at;
     pairs.stride = 3 * sizeof(double);
     for (int half = 0; half < N; half += SC_PAIR_LANES) {
-        SC_KERNEL(eight) e;
+        eight_triangle_pairs e;
         for (int i = 0; i < SC_PAIR_LANES; ++i) {
             pair[i].a = 2 * (uint32_t)i;
             pair[i].b = 2 * (uint32_t)i + 1;
@@ -782,7 +742,7 @@ static void eight_pairs(const double (*x)[N], int s, double share[N])
             for (int k = 0; k < 6; ++k)
                 triangle[2 * i + k / 3][k % 3] = 6 * (uint32_t)i + (uint32_t)k;
         }
-        SC_KERNEL(read_eight)(&pairs, &e);
+        read_eight(&pairs, &e);
         doubles_store(bound, e.bound);
         for (int k = 0; k < 3; ++k) {
             doubles_store(computed[k], e.side[0][k]);
@@ -848,7 +808,7 @@ static void sides_of_eight(const double (*x)[N], int s, double share[N])
             r = fmax(r, fabs(p[1 + k / 2][k % 2] - ldexp(x[6 + k % 2][i], -s)));
         for (int k = 0; k < 2; ++k) r = fmax(r, fabs(p[0][k] - ldexp(x[6 + k][i], -s)));
         reach = 4 * r;
-        doubles_store(bounds, SC_KERNEL(beside_bound)(doubles_all(reach)));
+        doubles_store(bounds, beside_bound(doubles_all(reach)));
         bound = bounds[0];
         d = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
         for (int k = 0; k < 4; ++k)
@@ -965,7 +925,7 @@ static void moving_cones(const double (*x)[N], double share[N])
             exact[1][k] = 0.5 * ((a[0][u] * b[1][v] - a[0][v] * b[1][u]) +
                                  (a[1][u] * b[0][v] - a[1][v] * b[0][u]));
         }
-        lanes_store(errors, SC_KERNEL(moving_normal_error)(lanes_all(size[0]), lanes_all(size[1])));
+        lanes_store(errors, moving_normal_error(lanes_all(size[0]), lanes_all(size[1])));
         for (int s = 0; s < 7; ++s)
             for (int k = 0; k < 3; ++k) {
                 float dot = n[k][0];
@@ -992,7 +952,7 @@ static void moving_sides(const double (*x)[N], double share[N])
             square += d[k] * d[k];
         }
         way_of(x, i, 0, 3, way);
-        lanes_store(bound, SC_KERNEL(longest_square)(lanes_all(square)));
+        lanes_store(bound, longest_square(lanes_all(square)));
         share[i] = dot_of(way, way) / (double)bound[0];
     }
 }
@@ -1009,7 +969,7 @@ static void moving_apart(const double (*x)[N], double share[N])
         r[k] = lanes_subtract(r[k], p[k]);
         reach = lanes_larger(reach, lanes_absolute(r[k]));
     }
-    clear = SC_KERNEL(clear_in_space)(0, reach);
+    clear = clear_in_space(0, reach);
     size = lanes_add(lanes_add(lanes_absolute(m[0]), lanes_absolute(m[1])), lanes_absolute(m[2]));
     for (int i = 0; i < N; ++i) {
         double direction[3], way[3];
@@ -1017,7 +977,7 @@ static void moving_apart(const double (*x)[N], double share[N])
         way_of(x, i, 3, 6, way);
         exact[i] = dot_of(direction, way);
     }
-    share_of(SC_KERNEL(dot_in_space)((const lanes *)m, (const lanes *)r),
+    share_of(dot_in_space((const lanes *)m, (const lanes *)r),
              lanes_add(lanes_multiply(size, clear), lanes_all(16 * FLT_MIN)), exact, share);
 }
 
@@ -1037,12 +997,6 @@ static void moving_contours(const double (*x)[N], double share[N])
         share[i] = fabs((double)(along[1] - along[0]) - exact) / bound;
     }
 }
-
-#include "base/lanes_cells_end.h"
-#include "base/lanes_bytes_end.h"
-#include "base/lanes_pick_end.h"
-#include "base/lanes_double_end.h"
-#include "base/lanes_end.h"
 
 /* Found by longer searches. */
 static const double known_ray[] = {

@@ -31,7 +31,7 @@
 #include "pose/fan.h"
 #include "pose/positions.h"
 #include "pose/refit.h"
-#include "base/isa.h"
+#include "simd/isa.h"
 #include "query/simple.h"
 #include "query/star.h"
 #include "starcontour.h"
@@ -303,7 +303,7 @@ static void check_instructions(const scene *s)
     uint16_t *mask = (uint16_t *)test_allocate(m->patch_end * sizeof(uint16_t));
     float *box[6];
     for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
-        w->isa = isa;
+        w->kernels = sc_kernels_for(isa);
         sc_workspace_new_pose(m, w);
         sc_dnc_update(m, w);
         sc_refit_boxes(m, w);

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/isa.h"
+#include "simd/isa.h"
 #include "harness.h"
 #include "inputs.h"
 #include "oracle.h"
@@ -884,7 +884,7 @@ static void long_contours(void)
         sc_projection projection;
         if (open_scene(&s, "ribbon", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) && load_pose(&s) &&
             CHECK(s.workspace->mask[0] != 0)) {
-            s.workspace->isa = 1 + i / 2 % (uint32_t)sc_isa_best();
+            s.workspace->kernels = sc_kernels_for(1 + i / 2 % (uint32_t)sc_isa_best());
             sc_dnc_projection(s.workspace, s.workspace->mask[0], &projection);
             CHECK_MSG(sc_simple_test(&s.state, &projection, 0) == (i % 2 == 0), "ribbon %u", i);
         }
@@ -1232,7 +1232,7 @@ static void poses_of_any_layout(void)
             pose.position_type = layout->type;
             for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
                 sc_workspace *w = s.workspace;
-                w->isa = isa;
+                w->kernels = sc_kernels_for(isa);
                 sc_workspace_new_pose(s.model, w);
                 if (is_finite != (sc_positions_read(s.model, &pose, stride, w) == SC_OK)) ++wrong;
                 if (!is_finite) continue; /* too large for floats */
@@ -1311,7 +1311,7 @@ static uint32_t is_too_sure(const scene *s, const sc_projection *projection, uin
     if (!sc_simple_start(&c, s->model, s->workspace, node)) return 0;
     sc_simple_axes(&c, projection);
     memcpy(c.from, from, sizeof(c.from));
-    sc_query_kernels_of(s->workspace)->project(&c, s->workspace);
+    s->workspace->kernels->query->project(&c, s->workspace);
     for (uint32_t i = 0; i < listed; ++i) {
         float unit[3];
         if (has_gaps && (e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1) == 0)
@@ -1372,7 +1372,7 @@ static void places_of_contours(void)
                 if (listed == 0) continue;
                 middle = listed / 2;
                 if (length && in_pieces) listed = list_pieces(&s, node, &middle);
-                s.workspace->isa = 1 + node % (uint32_t)sc_isa_best();
+                s.workspace->kernels = sc_kernels_for(1 + node % (uint32_t)sc_isa_best());
                 passed = sc_simple_test(&s.state, &projection, node);
                 sc_positions_unit(s.workspace, tested_point(&s, node, 0), one);
                 sc_positions_unit(s.workspace, tested_point(&s, node, middle), other);
@@ -1522,7 +1522,7 @@ static unsigned tell_small(scene *s, uint32_t node, float at[][2], uint32_t coun
     above[0] = above[4 * SC_DNC_VECTORS] = 1;
     move_loop(s, node, at, count, lift);
     n->loop_length = (uint16_t)count;
-    simple = sc_query_kernels_of(s->workspace)->find_simple(&s->state, &node, 1, blocks, &axes);
+    simple = s->workspace->kernels->query->find_simple(&s->state, &node, 1, blocks, &axes);
     n->loop_length = length;
     return simple;
 }
@@ -1571,7 +1571,7 @@ static void small_contours(void)
     node = long_loop(s.model, 64);
     if (!CHECK(node != SC_NONE)) return;
     for (uint32_t isa = 1; isa <= (uint32_t)sc_isa_best(); ++isa) {
-        s.workspace->isa = isa;
+        s.workspace->kernels = sc_kernels_for(isa);
         for (uint32_t count = SC_SMALL_EDGES; count <= 64; ++count) {
             double size = test_random_below(2) ? 0.4 : 1e-4;
             crossed_polygon(at, count, size, 0, 0);
@@ -1619,7 +1619,7 @@ static void two_edges_that_cross(void)
             const uint32_t count = counts[k];
             sc_node *n = (sc_node *)(uintptr_t)(sc_model_node(s.model) + node);
             const uint16_t length = n->loop_length;
-            s.workspace->isa = isa;
+            s.workspace->kernels = sc_kernels_for(isa);
             n->loop_length = (uint16_t)count;
             crossed_polygon(at, count, 0.4, 0, 0);
             move_loop(&s, node, at, count, 0);
@@ -1653,7 +1653,7 @@ static void contours_in_turn(void)
         if (!open_scene(&s, "in turn", &mesh, SC_WELD_NONE, SC_PARTITION_FAST)) continue;
         if (round % 4 < 2) soup_smooth(s.pose, s.mesh.vertex_count, 0.02 * round);
         if (!load_pose(&s)) continue;
-        s.workspace->isa = 1 + round % (uint32_t)sc_isa_best();
+        s.workspace->kernels = sc_kernels_for(1 + round % (uint32_t)sc_isa_best());
         for (uint32_t p = 0; p < s.model->patch_end && round % 3 == 1; ++p) /* seen from anywhere */
             s.workspace->mask[p] = (uint16_t)(1u << test_random_below(SC_DNC_DIRECTIONS) |
                                               1u << test_random_below(SC_DNC_DIRECTIONS));
@@ -1713,7 +1713,7 @@ static void flat_cloths_pass(void)
         if (i % 3) rotate(s.pose, s.mesh.vertex_count);
         if (load_pose(&s)) {
             uint32_t failed = 0, node;
-            s.workspace->isa = 1 + i % (uint32_t)sc_isa_best();
+            s.workspace->kernels = sc_kernels_for(1 + i % (uint32_t)sc_isa_best());
             for (node = 0; node < s.model->node_count; ++node) {
                 const sc_pair *patches = &sc_model_node(s.model)[node].patches;
                 uint32_t mask =

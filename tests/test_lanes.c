@@ -8,65 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/isa.h"
+#include "simd/isa.h"
 #include "harness.h"
 #include "lanes_trial_types.h"
-
-#define SC_KERNEL(name) name##_test_base
-#define SC_LANES SC_QUADS
-#include "base/lanes.h"
-#include "base/lanes_double.h"
-#include "base/lanes_pick.h"
-#include "base/lanes_bytes.h"
-#include "base/lanes_cells.h"
-#include "base/lanes_rows.h"
-#include "lanes_trial.h"
-#include "base/lanes_rows_end.h"
-#include "base/lanes_cells_end.h"
-#include "base/lanes_bytes_end.h"
-#include "base/lanes_pick_end.h"
-#include "base/lanes_double_end.h"
-#include "base/lanes_end.h"
-
-#if SC_ISA_X86
-
-#  include "base/avx2_begin.h"
-#  define SC_KERNEL(name) name##_test_avx2
-#  define SC_LANES 2
-#  include "base/lanes.h"
-#  include "base/lanes_double.h"
-#  include "base/lanes_pick.h"
-#  include "base/lanes_bytes.h"
-#  include "base/lanes_cells.h"
-#  include "base/lanes_rows.h"
-#  include "lanes_trial.h"
-#  include "base/lanes_rows_end.h"
-#  include "base/lanes_cells_end.h"
-#  include "base/lanes_bytes_end.h"
-#  include "base/lanes_pick_end.h"
-#  include "base/lanes_double_end.h"
-#  include "base/lanes_end.h"
-#  include "base/avx2_end.h"
-
-#  include "base/avx512_begin.h"
-#  define SC_KERNEL(name) name##_test_avx512
-#  define SC_LANES 3
-#  include "base/lanes.h"
-#  include "base/lanes_double.h"
-#  include "base/lanes_pick.h"
-#  include "base/lanes_bytes.h"
-#  include "base/lanes_cells.h"
-#  include "base/lanes_rows.h"
-#  include "lanes_trial.h"
-#  include "base/lanes_rows_end.h"
-#  include "base/lanes_cells_end.h"
-#  include "base/lanes_bytes_end.h"
-#  include "base/lanes_pick_end.h"
-#  include "base/lanes_double_end.h"
-#  include "base/lanes_end.h"
-#  include "base/avx512_end.h"
-
-#endif
 
 /* Of any kind: small numbers, so that some are the same; or large and small ones. */
 static double number(int plain)
@@ -136,20 +80,18 @@ static void all_forms_agree(void)
         lanes_try_vectors(&in, &other);
         CHECK_MSG(!memcmp(&plain, &other, sizeof plain), "vector types, trial %u", trial);
         memset(&other, 0, sizeof other);
-        try_all_test_base(&in, &other);
+        lanes_try_base(&in, &other);
         CHECK_MSG(!memcmp(&plain, &other, sizeof plain), "base, trial %u", trial);
-#if SC_ISA_X86
         if (sc_isa_best() >= SC_ISA_AVX2) {
             memset(&other, 0, sizeof other);
-            try_all_test_avx2(&in, &other);
+            lanes_try_avx2(&in, &other);
             CHECK_MSG(!memcmp(&plain, &other, sizeof plain), "AVX2, trial %u", trial);
         }
         if (sc_isa_best() >= SC_ISA_AVX512) {
             memset(&other, 0, sizeof other);
-            try_all_test_avx512(&in, &other);
+            lanes_try_avx512(&in, &other);
             CHECK_MSG(!memcmp(&plain, &other, sizeof plain), "AVX-512, trial %u", trial);
         }
-#endif
     }
     if (sc_isa_best() < SC_ISA_AVX512) test_skip("what this machine does not have");
 }

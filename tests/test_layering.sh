@@ -10,8 +10,9 @@ check "the repository has no offenders" tools/check_layering.sh
 copy=$scratch/copy
 mkdir "$copy"
 cp -R Makefile include lib tools tests bench "$copy"
-mkdir -p "$copy/lib/base" "$copy/lib/build" "$copy/lib/pose" "$copy/lib/query" "$copy/lib/step"
-for layer in base build pose query step; do
+mkdir -p "$copy/lib/base" "$copy/lib/simd" "$copy/lib/build" "$copy/lib/pose" "$copy/lib/query" \
+    "$copy/lib/step"
+for layer in base simd build pose query step; do
     echo "/* planted */" >"$copy/lib/$layer/planted_$layer.h"
 done
 echo "/* planted */" >"$copy/tests/planted_tests.h"
@@ -34,6 +35,9 @@ seen() {
 }
 
 offence "lib/base must not include lib/build" lib/base/planted_base.h '#include "build/planted_build.h"'
+offence "lib/base must not include lib/simd" lib/base/planted_base.h '#include "simd/planted_simd.h"'
+offence "lib/simd must not include lib/build" lib/simd/planted_simd.h '#include "build/planted_build.h"'
+offence "lib/step must not include lib/simd/all_kernels.h" lib/step/planted_step.h '#include "simd/all_kernels.h"'
 offence "lib/build must not include lib/pose" lib/build/planted_build.h '# include "pose/planted_pose.h"'
 offence "lib/pose must not include lib/query" lib/pose/planted_pose.h '#include "query/planted_query.h"'
 offence "lib/query must not include lib/step" lib/query/planted_query.h '#include "step/planted_step.h"'
@@ -50,6 +54,7 @@ offence "the oracle must not reach lib/base" tests/oracle.h '#include "base/plan
 offence "same name as" tools/planted_base.h '/* planted */'
 offence "does not belong at the top level" planted.txt 'planted'
 offence "lacks lib/base/planted.c" lib/base/planted.c '/* planted */'
+offence "lacks lib/simd/kernels_planted.c" lib/simd/kernels_planted.c '/* planted */'
 offence "no file lib/base/planted.c" lib/sources.list 'lib/base/planted.c'
 offence "number_components is also a name of" lib/query/star.c 'static int number_components(int i)'
 offence "FAN_ERROR_RELATIVE is also a name of" lib/query/star.c 'static const double FAN_ERROR_RELATIVE = 1;'

@@ -222,22 +222,11 @@ static int check_lane(const batch *b, const sc_verdict *verdict, uint32_t lane, 
     return (int)unsure;
 }
 
-static void list_kernels(const sc_query_kernels *kernels[SC_ISA_AVX512 + 1])
-{
-    kernels[SC_ISA_BASE] = &sc_query_kernels_base;
-#if SC_ISA_X86
-    kernels[SC_ISA_AVX2] = &sc_query_kernels_avx2;
-    kernels[SC_ISA_AVX512] = &sc_query_kernels_avx512;
-#endif
-}
-
 static const char *const isa_name[] = {"", "base", "AVX2", "AVX-512"};
 
 static void eight_pairs_at_once(void)
 {
-    const sc_query_kernels *kernels[SC_ISA_AVX512 + 1];
     uint32_t rounds = test_iterations(30000), left_open = 0, anywhere = 0;
-    list_kernels(kernels);
     for (uint32_t round = 0; round < rounds; ++round) {
         two t[SC_PAIR_LANES];
         batch b;
@@ -262,13 +251,13 @@ static void eight_pairs_at_once(void)
             fine |= (unsigned)set_lane(&b, lane, &t[lane]) << lane;
         }
         for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
-            kernels[isa]->decide(&b.lanes, &verdict);
+            sc_kernels_for(isa)->query->decide(&b.lanes, &verdict);
             if (isa == SC_ISA_BASE) first = verdict;
             CHECK_MSG(!memcmp(&first, &verdict, sizeof verdict),
                       "%s differs from base; started at %" PRIu64, isa_name[isa], state);
             if (!b.lanes.shares) { /* as if some were shared: edge by edge */
                 b.lanes.shares = 1;
-                kernels[isa]->decide(&b.lanes, &verdict);
+                sc_kernels_for(isa)->query->decide(&b.lanes, &verdict);
                 b.lanes.shares = 0;
                 CHECK_MSG(!memcmp(&first, &verdict, sizeof verdict),
                           "%s differs edge by edge; started at %" PRIu64, isa_name[isa], state);
@@ -308,9 +297,7 @@ static void points_in_layers(two *t)
 
 static void eight_pairs_in_layers(void)
 {
-    const sc_query_kernels *kernels[SC_ISA_AVX512 + 1];
     uint32_t rounds = test_iterations(20000), meetings = 0;
-    list_kernels(kernels);
     for (uint32_t round = 0; round < rounds; ++round) {
         two t[SC_PAIR_LANES];
         batch b;
@@ -323,7 +310,7 @@ static void eight_pairs_in_layers(void)
         }
         for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
             sc_verdict verdict;
-            kernels[isa]->decide(&b.lanes, &verdict);
+            sc_kernels_for(isa)->query->decide(&b.lanes, &verdict);
             meetings += verdict.meets != 0;
             for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane)
                 check_lane(&b, &verdict, lane, &t[lane], isa_name[isa], state);
@@ -335,8 +322,6 @@ static void eight_pairs_in_layers(void)
 /* Positions are read wherever they are, as floats, too. */
 static void any_stride_and_type(void)
 {
-    const sc_query_kernels *kernels[SC_ISA_AVX512 + 1];
-    list_kernels(kernels);
     for (uint32_t round = 0; round < test_iterations(2000); ++round) {
         batch b;
         sc_verdict first, verdict;
@@ -348,7 +333,7 @@ static void any_stride_and_type(void)
             for (int i = 0; i < 18; ++i) t.points[i] = (double)(float)t.points[i];
             set_lane(&b, lane, &t);
         }
-        sc_query_kernels_base.decide(&b.lanes, &first);
+        sc_kernels_base.query->decide(&b.lanes, &first);
         b.lanes.positions = b.bytes;
         for (int floats = 0; floats < 2; ++floats) {
             b.lanes.floats = floats;
@@ -362,7 +347,7 @@ static void any_stride_and_type(void)
                     memcpy(at + i % 3 * sizeof(double), b.points + i, sizeof(double));
             }
             for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
-                kernels[isa]->decide(&b.lanes, &verdict);
+                sc_kernels_for(isa)->query->decide(&b.lanes, &verdict);
                 CHECK_MSG(!memcmp(&first, &verdict, sizeof verdict), "%s differs", isa_name[isa]);
             }
         }
@@ -387,7 +372,7 @@ static void apart_in_a_plane(void)
                 t.points[3 * i + (axis + 2) % 3] = corner[i][1];
             }
             for (uint32_t lane = 0; lane < SC_PAIR_LANES; ++lane) set_lane(&b, lane, &t);
-            sc_query_kernels_base.decide(&b.lanes, &verdict);
+            sc_kernels_base.query->decide(&b.lanes, &verdict);
             CHECK(verdict.meets == 0 && verdict.unsure == 0);
         }
 }

@@ -96,7 +96,7 @@ static void cones_of_groups(void)
             pose = input_plain_pose(at, mesh.vertex_count);
             for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
                 const uint32_t count = model->leaf_count;
-                w->isa = isa;
+                w->kernels = sc_kernels_for(isa);
                 sc_workspace_new_pose(model, w);
                 if (!CHECK(sc_positions_read(model, &pose, 24, w) == SC_OK)) break;
                 sc_dnc_update(model, w);
@@ -106,7 +106,7 @@ static void cones_of_groups(void)
                 for (uint32_t first = 0, end; first < count; first = end) {
                     end = first + 1 + test_random_below(40);
                     if (end > count) end = count;
-                    sc_pose_kernels_of(w)->load_leaves(model, w, first, end, 1);
+                    w->kernels->pose->load_leaves(model, w, first, end, 1);
                 }
                 CHECK(!memcmp(all, w->mask + leaves, count * sizeof *all));
             }

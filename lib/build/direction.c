@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/quads.h"
+#include "simd/quads.h"
 
 /* Triangles whose moments are added up in single precision. */
 enum { RUN = 256 };

@@ -42,13 +42,12 @@
 #  define part_add SC_QUAD(add_ps)
 #  define part_subtract SC_QUAD(sub_ps)
 #  define part_multiply SC_QUAD(mul_ps)
-static SC_INLINE part SC_KERNEL(part_largest_size)(part a, part b, part c)
+static SC_INLINE part part_largest_size(part a, part b, part c)
 {
     const part sign = SC_QUAD(set1_ps)(-0.0f);
     a = SC_QUAD(max_ps)(SC_QUAD(andnot_ps)(sign, a), SC_QUAD(andnot_ps)(sign, b));
     return SC_QUAD(max_ps)(a, SC_QUAD(andnot_ps)(sign, c));
 }
-#  define part_largest_size SC_KERNEL(part_largest_size)
 #  define part_signs(a) (a)
 #else
 #  define part lanes
@@ -61,7 +60,7 @@ static SC_INLINE part SC_KERNEL(part_largest_size)(part a, part b, part c)
 #endif
 
 /* The edges from corner 0. */
-static SC_INLINE void SC_KERNEL(edges_of)(part corner[3][3], part e[3], part f[3])
+static SC_INLINE void edges_of(part corner[3][3], part e[3], part f[3])
 {
     int k;
     EACH(k, 3)
@@ -73,8 +72,7 @@ static SC_INLINE void SC_KERNEL(edges_of)(part corner[3][3], part e[3], part f[3
 
 /* By edges of triangles of so many clusters, the signs of what is negative where a direction is
    within 90 degrees of a normal, whatever it is off by. */
-static SC_INLINE void SC_KERNEL(directions_of)(part e[][3], part f[][3], lanes_signs row[][16],
-                                               int count)
+static SC_INLINE void directions_of(part e[][3], part f[][3], lanes_signs row[][16], int count)
 {
     const part relative = part_all(37 * 5.9604644775390625e-8f);
     const part moved = part_all(12.1f * 3e-8f), least = part_all(2.1f * 3e-8f);
@@ -118,8 +116,8 @@ static SC_INLINE void SC_KERNEL(directions_of)(part e[][3], part f[][3], lanes_s
    corners. Returns the bits that any has. */
 #if SC_LANES_QUADS
 
-static SC_INLINE unsigned SC_KERNEL(masks_of)(const float *each, const uint8_t *where,
-                                              uint16_t *mask, int count)
+static SC_INLINE unsigned masks_of(const float *each, const uint8_t *where, uint16_t *mask,
+                                   int count)
 {
     lanes_signs_kept kept = lanes_keep_all();
     int c, k, first;
@@ -137,8 +135,8 @@ static SC_INLINE unsigned SC_KERNEL(masks_of)(const float *each, const uint8_t *
             sc_quad_transpose(x);
             EACH(k, 3) corner[c][k] = x[k];
         }
-        SC_KERNEL(edges_of)(corner, e[0], f[0]);
-        SC_KERNEL(directions_of)(e, f, row, 1);
+        edges_of(corner, e[0], f[0]);
+        directions_of(e, f, row, 1);
         lanes_keep(&kept, row[0]);
     }
     *mask = (uint16_t)(lanes_kept_negative(&kept) & 0x3fffu);
@@ -147,8 +145,8 @@ static SC_INLINE unsigned SC_KERNEL(masks_of)(const float *each, const uint8_t *
 
 #else
 
-static SC_INLINE unsigned SC_KERNEL(masks_of)(const float *each, const uint8_t *where,
-                                              uint16_t *mask, int count)
+static SC_INLINE unsigned masks_of(const float *each, const uint8_t *where, uint16_t *mask,
+                                   int count)
 {
     unsigned any = 0;
     lanes e[CONES][3], f[CONES][3];
@@ -158,9 +156,9 @@ static SC_INLINE unsigned SC_KERNEL(masks_of)(const float *each, const uint8_t *
     {
         lanes corner[3][3];
         lanes_corners_at(each + 4 * SC_LEAF_POINTS * i, where + 3 * SC_LEAF_MAX * i, corner);
-        SC_KERNEL(edges_of)(corner, e[i], f[i]);
+        edges_of(corner, e[i], f[i]);
     }
-    SC_KERNEL(directions_of)(e, f, row, count);
+    directions_of(e, f, row, count);
     EACH(i, count)
     {
         unsigned bits = lanes_all_negative(row[i]) & 0x3fffu;
@@ -172,81 +170,77 @@ static SC_INLINE unsigned SC_KERNEL(masks_of)(const float *each, const uint8_t *
 
 #endif
 
-static uint32_t SC_KERNEL(cone)(const float *at, const uint8_t *where)
+static uint32_t cone(const float *at, const uint8_t *where)
 {
     uint16_t mask;
-    SC_KERNEL(masks_of)(at, where, &mask, 1);
+    masks_of(at, where, &mask, 1);
     return mask;
 }
 
 /* What cones there are among the first clusters of a group, before one at which a part of the pass
    begins. */
-static unsigned SC_KERNEL(sample_before)(const sc_model *model, const sc_workspace *w,
-                                         uint32_t first)
+static unsigned sample_before(const sc_model *model, const sc_workspace *w, uint32_t first)
 {
     const uint32_t in = first % SC_CONES_GROUP;
     uint32_t leaf = first - in, end = in < SC_CONES_SAMPLE ? first : leaf + SC_CONES_SAMPLE;
     unsigned any = 0;
     for (; leaf < end; leaf++) {
         float each[4 * SC_LEAF_POINTS];
-        SC_KERNEL(points_one_by_one)
-        (w, sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf, each);
-        any |=
-            SC_KERNEL(cone)(each, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf);
+        points_one_by_one(w, sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf, each);
+        any |= cone(each, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf);
     }
     return any;
 }
 
 /* Clusters first to end - 1 with what points_of cannot do; any: what cones the group of the first
    has so far. */
-static void SC_KERNEL(load_one_by_one)(const sc_model *model, sc_workspace *w, uint32_t first,
-                                       uint32_t end, int cones, unsigned *any)
+static void load_one_by_one(const sc_model *model, sc_workspace *w, uint32_t first, uint32_t end,
+                            int cones, unsigned *any)
 {
     uint16_t *mask = w->mask + sc_model_first_leaf_patch(model);
     for (; first < end; first++) {
         const uint32_t in = first % SC_CONES_GROUP;
         float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)first;
         const uint64_t leaf = first;
-        SC_KERNEL(points_one_by_one)(w, sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf, each);
+        points_one_by_one(w, sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf, each);
         if (!cones) continue;
         if (!in) *any = 0;
         mask[first] = 0;
         if (*any || in < SC_CONES_SAMPLE)
-            *any |= SC_KERNEL(masks_of)(each, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * leaf,
-                                        mask + first, 1);
+            *any |= masks_of(each, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * leaf,
+                             mask + first, 1);
     }
 }
 
 /* Clusters that follow each other, CONES at a time, and what is left one by one. */
-static SC_INLINE void SC_KERNEL(load_some)(const sc_model *model, sc_workspace *w, uint32_t first,
-                                           uint32_t end, int cones, int is_double, uint64_t stride)
+static SC_INLINE void load_some(const sc_model *model, sc_workspace *w, uint32_t first,
+                                uint32_t end, int cones, int is_double, uint64_t stride)
 {
-    const SC_KERNEL(points_frame) frame = SC_KERNEL(points_frame_of)(w);
-    const lanes last = SC_KERNEL(points_last)(w);
+    const points_frame frame = points_frame_of(w);
+    const lanes last = points_last(w);
     const uint32_t aligned = (first + CONES - 1) / CONES * CONES;
-    unsigned any = cones ? SC_KERNEL(sample_before)(model, w, first) : 0;
+    unsigned any = cones ? sample_before(model, w, first) : 0;
     if (aligned < end) {
         const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)aligned;
         const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)aligned;
         uint16_t *mask = w->mask + sc_model_first_leaf_patch(model) + aligned;
         float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)aligned;
-        SC_KERNEL(load_one_by_one)(model, w, first, aligned, cones, &any);
+        load_one_by_one(model, w, first, aligned, cones, &any);
         for (first = aligned; end - first >= CONES; first += CONES) {
             int i, odd = 0;
             EACH(i, CONES)
-            odd |= SC_KERNEL(points_have)(point + SC_LEAF_POINTS * i, last, is_double);
+            odd |= points_have(point + SC_LEAF_POINTS * i, last, is_double);
             if (odd) {
-                SC_KERNEL(load_one_by_one)(model, w, first, first + CONES, cones, &any);
+                load_one_by_one(model, w, first, first + CONES, cones, &any);
             } else {
                 EACH(i, CONES)
-                SC_KERNEL(points_of)
-                (&frame, point + SC_LEAF_POINTS * i, is_double, stride,
-                 each + 4 * SC_LEAF_POINTS * i);
+                points_of(&frame, point + SC_LEAF_POINTS * i, is_double, stride,
+                          each + 4 * SC_LEAF_POINTS * i);
                 if (cones) {
                     const uint32_t in = first % SC_CONES_GROUP;
                     if (!in) any = 0;
                     if (any || in < SC_CONES_SAMPLE)
-                        any |= SC_KERNEL(masks_of)(each, where, mask, CONES);
+                        any |= masks_of(each, where, mask, CONES);
                     else
                         memset(mask, 0, CONES * sizeof *mask);
                 }
@@ -257,29 +251,29 @@ static SC_INLINE void SC_KERNEL(load_some)(const sc_model *model, sc_workspace *
             mask += CONES;
         }
     }
-    SC_KERNEL(load_one_by_one)(model, w, first, end, cones, &any);
+    load_one_by_one(model, w, first, end, cones, &any);
 }
 
-static void SC_KERNEL(load_leaves)(const sc_model *model, sc_workspace *w, uint32_t first,
-                                   uint32_t end, int cones)
+static void load_leaves(const sc_model *model, sc_workspace *w, uint32_t first, uint32_t end,
+                        int cones)
 {
     const uint64_t stride = w->stride;
     unsigned any = 0;
-    if (!w->fits_float && cones) any = SC_KERNEL(sample_before)(model, w, first);
+    if (!w->fits_float && cones) any = sample_before(model, w, first);
     if (!w->fits_float)
-        SC_KERNEL(load_one_by_one)(model, w, first, end, cones, &any);
+        load_one_by_one(model, w, first, end, cones, &any);
     else if (w->position_type == SC_DOUBLE && !cones)
-        SC_KERNEL(load_some)(model, w, first, end, 0, 1, stride);
+        load_some(model, w, first, end, 0, 1, stride);
     else if (w->position_type == SC_DOUBLE && stride == 3 * sizeof(double))
-        SC_KERNEL(load_some)(model, w, first, end, 1, 1, 3 * sizeof(double));
+        load_some(model, w, first, end, 1, 1, 3 * sizeof(double));
     else if (w->position_type == SC_DOUBLE)
-        SC_KERNEL(load_some)(model, w, first, end, 1, 1, stride);
+        load_some(model, w, first, end, 1, 1, stride);
     else if (!cones)
-        SC_KERNEL(load_some)(model, w, first, end, 0, 0, stride);
+        load_some(model, w, first, end, 0, 0, stride);
     else if (stride == 3 * sizeof(float))
-        SC_KERNEL(load_some)(model, w, first, end, 1, 0, 3 * sizeof(float));
+        load_some(model, w, first, end, 1, 0, 3 * sizeof(float));
     else
-        SC_KERNEL(load_some)(model, w, first, end, 1, 0, stride);
+        load_some(model, w, first, end, 1, 0, stride);
 }
 
 #undef CONES

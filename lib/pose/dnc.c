@@ -46,8 +46,7 @@ static void update_cones(void *context, uint32_t level, uint32_t first, uint32_t
     if (level + 1 < pass->model->level_count)
         join(pass->w->mask, sc_model_child(pass->model), first, end);
     else
-        sc_pose_kernels_of(pass->w)->load_leaves(pass->model, pass->w, first - leaves, end - leaves,
-                                                 1);
+        pass->w->kernels->pose->load_leaves(pass->model, pass->w, first - leaves, end - leaves, 1);
 }
 
 void sc_dnc_update(const sc_model *model, sc_workspace *w)
@@ -68,7 +67,7 @@ static uint32_t cone_of_triangle(const sc_model *model, const sc_workspace *w, u
     uint32_t k;
     for (k = 0; k < 3; k++)
         memset(where + SC_LEAF_MAX * k, corner[SC_LEAF_MAX * k + i], SC_LEAF_MAX);
-    return sc_pose_kernels_of(w)->cone(w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, where);
+    return w->kernels->pose->cone(w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, where);
 }
 
 /* The cone of a leaf cluster by those of its triangles. */

@@ -26,7 +26,7 @@
 #endif
 
 /* Widens the box by the least and the most of some coordinates k; NaN does not. */
-static inline void SC_KERNEL(widen)(double least, double most, int k, double low[3], double high[3])
+static inline void widen(double least, double most, int k, double low[3], double high[3])
 {
     low[k] = least < low[k] ? least : low[k];
     high[k] = most > high[k] ? most : high[k];
@@ -34,7 +34,7 @@ static inline void SC_KERNEL(widen)(double least, double most, int k, double low
 
 #ifdef EXTENT
 /* Asks for so many bytes a page ahead: what processors foresee by themselves ends with the page. */
-static SC_INLINE void SC_KERNEL(fetch_ahead)(const void *at, uintptr_t bytes)
+static SC_INLINE void fetch_ahead(const void *at, uintptr_t bytes)
 {
     enum { PAGE = 4096, LINE = 64 };
     uintptr_t i; /* of an address: it may be behind all positions */
@@ -43,8 +43,7 @@ static SC_INLINE void SC_KERNEL(fetch_ahead)(const void *at, uintptr_t bytes)
 }
 #endif
 
-static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double low[3],
-                                        double high[3])
+static int extent_of_doubles(const double *p, uint64_t some, double low[3], double high[3])
 {
     uint64_t count = 3 * some, i = 0;
     double not_finite = 0;
@@ -57,7 +56,7 @@ static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double l
         SC_UNROLL
         for (k = 0; k < 3; k++) lows[k] = highs[k] = sums[k] = EXTENT(loadu_pd)(p + WIDTH * k);
         for (i = AT_ONCE; i + AT_ONCE <= count; i += AT_ONCE) {
-            SC_KERNEL(fetch_ahead)(p + i, AT_ONCE * sizeof *p);
+            fetch_ahead(p + i, AT_ONCE * sizeof *p);
             SC_UNROLL
             for (k = 0; k < 3; k++) {
                 x = EXTENT(loadu_pd)(p + i + WIDTH * (uint64_t)k);
@@ -72,7 +71,7 @@ static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double l
             EXTENT(storeu_pd)(sum + WIDTH * k, sums[k]);
         }
         for (j = 0; j < AT_ONCE; j++) {
-            SC_KERNEL(widen)(least[j], most[j], j % 3, low, high);
+            widen(least[j], most[j], j % 3, low, high);
             not_finite += sum[j] - sum[j];
         }
         if (not_finite != 0) {
@@ -82,13 +81,13 @@ static int SC_KERNEL(extent_of_doubles)(const double *p, uint64_t some, double l
     }
 #endif
     for (; i < count; i++) {
-        SC_KERNEL(widen)(p[i], p[i], (int)(i % 3), low, high);
+        widen(p[i], p[i], (int)(i % 3), low, high);
         not_finite += p[i] - p[i];
     }
     return not_finite == 0; /* NaN is not 0 */
 }
 
-static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low[3], double high[3])
+static int extent_of_floats(const float *p, uint64_t some, double low[3], double high[3])
 {
     uint64_t count = 3 * some, i = 0;
     float not_finite = 0;
@@ -101,7 +100,7 @@ static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low
         SC_UNROLL
         for (k = 0; k < 3; k++) lows[k] = highs[k] = sums[k] = EXTENT(loadu_ps)(p + WIDTH * k);
         for (i = AT_ONCE; i + AT_ONCE <= count; i += AT_ONCE) {
-            SC_KERNEL(fetch_ahead)(p + i, AT_ONCE * sizeof *p);
+            fetch_ahead(p + i, AT_ONCE * sizeof *p);
             SC_UNROLL
             for (k = 0; k < 3; k++) {
                 x = EXTENT(loadu_ps)(p + i + WIDTH * (uint64_t)k);
@@ -116,7 +115,7 @@ static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low
             EXTENT(storeu_ps)(sum + WIDTH * k, sums[k]);
         }
         for (j = 0; j < AT_ONCE; j++) {
-            SC_KERNEL(widen)((double)least[j], (double)most[j], j % 3, low, high);
+            widen((double)least[j], (double)most[j], j % 3, low, high);
             not_finite += sum[j] - sum[j];
         }
         if (not_finite != 0) {
@@ -126,7 +125,7 @@ static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low
     }
 #endif
     for (; i < count; i++) {
-        SC_KERNEL(widen)((double)p[i], (double)p[i], (int)(i % 3), low, high);
+        widen((double)p[i], (double)p[i], (int)(i % 3), low, high);
         not_finite += p[i] - p[i];
     }
     return not_finite == 0; /* NaN is not 0 */
@@ -137,8 +136,8 @@ static int SC_KERNEL(extent_of_floats)(const float *p, uint64_t some, double low
 #undef EXTENT_FLOATS
 
 /* Vertices that are stride bytes apart. */
-static int SC_KERNEL(extent_of_apart_doubles)(const double *p, uint64_t stride, uint64_t some,
-                                              double low[3], double high[3])
+static int extent_of_apart_doubles(const double *p, uint64_t stride, uint64_t some, double low[3],
+                                   double high[3])
 {
     enum { WIDTH = 8 };
     const unsigned char *from = (const unsigned char *)(const void *)p;
@@ -183,8 +182,8 @@ static int SC_KERNEL(extent_of_apart_doubles)(const double *p, uint64_t stride, 
     return not_finite == 0;
 }
 
-static int SC_KERNEL(extent_of_apart_floats)(const float *p, uint64_t stride, uint64_t some,
-                                             double low[3], double high[3])
+static int extent_of_apart_floats(const float *p, uint64_t stride, uint64_t some, double low[3],
+                                  double high[3])
 {
     enum { WIDTH = SC_LANES_COUNT };
     const unsigned char *from = (const unsigned char *)(const void *)p;

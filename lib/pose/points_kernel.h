@@ -14,7 +14,7 @@
  * too small or too large for floats.
  */
 
-static void SC_KERNEL(points_one_by_one)(const sc_workspace *w, const uint32_t *point, float *each)
+static void points_one_by_one(const sc_workspace *w, const uint32_t *point, float *each)
 {
     int i;
     memset(each, 0, 4 * SC_LANES_COUNT * sizeof *each);
@@ -26,15 +26,15 @@ static void SC_KERNEL(points_one_by_one)(const sc_workspace *w, const uint32_t *
 
 /* What points_of has in registers throughout a loop: where positions are, and how they get into the
    unit box. */
-typedef struct SC_KERNEL(points_frame) {
+typedef struct points_frame {
     const unsigned char *from;
     __m512d center;
     __m512 float_center, scale;
-} SC_KERNEL(points_frame);
+} points_frame;
 
-static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
+static SC_INLINE points_frame points_frame_of(const sc_workspace *w)
 {
-    SC_KERNEL(points_frame) f;
+    points_frame f;
     f.from = w->positions;
     f.center = _mm512_broadcast_f64x4(_mm256_set_pd(0, w->center[2], w->center[1], w->center[0]));
     f.float_center = _mm512_broadcast_f32x4(_mm256_cvtpd_ps(_mm512_castpd512_pd256(f.center)));
@@ -42,14 +42,14 @@ static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_wor
     return f;
 }
 
-static SC_INLINE __m128 SC_KERNEL(sc_points_float)(const unsigned char *p)
+static SC_INLINE __m128 points_float(const unsigned char *p)
 {
     return _mm_loadu_ps((const float *)(const void *)p);
 }
 
 /* Two vertices of doubles, moved and rounded. */
-static SC_INLINE __m256 SC_KERNEL(sc_points_two)(const SC_KERNEL(points_frame) * f,
-                                                 const unsigned char *p, const unsigned char *q)
+static SC_INLINE __m256 points_two(const points_frame *f, const unsigned char *p,
+                                   const unsigned char *q)
 {
     __m512d d =
         _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd((const double *)(const void *)p)),
@@ -57,8 +57,8 @@ static SC_INLINE __m256 SC_KERNEL(sc_points_two)(const SC_KERNEL(points_frame) *
     return _mm512_cvtpd_ps(_mm512_maskz_sub_pd(0x77, d, f->center));
 }
 
-static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, float *each)
+static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, int is_double,
+                                uint64_t stride, float *each)
 {
     int i;
     SC_UNROLL
@@ -68,13 +68,13 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
         const unsigned char *d = f->from + point[i + 12] * stride;
         __m512 r;
         if (is_double) {
-            r = _mm512_insertf32x8(_mm512_castps256_ps512(SC_KERNEL(sc_points_two)(f, a, b)),
-                                   SC_KERNEL(sc_points_two)(f, c, d), 1);
+            r = _mm512_insertf32x8(_mm512_castps256_ps512(points_two(f, a, b)), points_two(f, c, d),
+                                   1);
         } else {
-            r = _mm512_castps128_ps512(SC_KERNEL(sc_points_float)(a));
-            r = _mm512_insertf32x4(r, SC_KERNEL(sc_points_float)(b), 1);
-            r = _mm512_insertf32x4(r, SC_KERNEL(sc_points_float)(c), 2);
-            r = _mm512_insertf32x4(r, SC_KERNEL(sc_points_float)(d), 3);
+            r = _mm512_castps128_ps512(points_float(a));
+            r = _mm512_insertf32x4(r, points_float(b), 1);
+            r = _mm512_insertf32x4(r, points_float(c), 2);
+            r = _mm512_insertf32x4(r, points_float(d), 3);
             r = _mm512_maskz_sub_ps(0x7777, r, f->float_center);
         }
         _mm512_storeu_ps(each + 16 * i, _mm512_mul_ps(r, f->scale));
@@ -83,15 +83,15 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
 
 #elif SC_LANES_AVX2
 
-typedef struct SC_KERNEL(points_frame) {
+typedef struct points_frame {
     const unsigned char *from;
     __m256d center;
     __m256 float_center, scale;
-} SC_KERNEL(points_frame);
+} points_frame;
 
-static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
+static SC_INLINE points_frame points_frame_of(const sc_workspace *w)
 {
-    SC_KERNEL(points_frame) f;
+    points_frame f;
     f.from = w->positions;
     f.center = _mm256_set_pd(0, w->center[2], w->center[1], w->center[0]);
     f.float_center = _mm256_set_m128(_mm256_cvtpd_ps(f.center), _mm256_cvtpd_ps(f.center));
@@ -100,8 +100,7 @@ static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_wor
 }
 
 /* A vertex, of doubles moved and rounded. */
-static SC_INLINE __m128 SC_KERNEL(sc_points_one)(const SC_KERNEL(points_frame) * f,
-                                                 const unsigned char *p, int is_double)
+static SC_INLINE __m128 points_one(const points_frame *f, const unsigned char *p, int is_double)
 {
     if (!is_double) return _mm_loadu_ps((const float *)(const void *)p);
     return _mm256_cvtpd_ps(_mm256_sub_pd(
@@ -109,16 +108,16 @@ static SC_INLINE __m128 SC_KERNEL(sc_points_one)(const SC_KERNEL(points_frame) *
         f->center));
 }
 
-static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, float *each)
+static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, int is_double,
+                                uint64_t stride, float *each)
 {
     const __m256 three = _mm256_castsi256_ps(_mm256_set_epi32(0, -1, -1, -1, 0, -1, -1, -1));
     int i;
     SC_UNROLL
     for (i = 0; i < 8; i++) {
         const uint32_t *at = point + i % 4 + i / 4 * 8;
-        __m128 a = SC_KERNEL(sc_points_one)(f, f->from + at[0] * stride, is_double);
-        __m128 b = SC_KERNEL(sc_points_one)(f, f->from + at[4] * stride, is_double);
+        __m128 a = points_one(f, f->from + at[0] * stride, is_double);
+        __m128 b = points_one(f, f->from + at[4] * stride, is_double);
         __m256 r = _mm256_set_m128(b, a);
         if (!is_double) r = _mm256_sub_ps(_mm256_and_ps(r, three), f->float_center);
         _mm256_storeu_ps(each + 16 * (i % 4) + 8 * (i / 4), _mm256_mul_ps(r, f->scale));
@@ -127,16 +126,16 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
 
 #elif SC_LANES_QUADS
 
-typedef struct SC_KERNEL(points_frame) {
+typedef struct points_frame {
     const unsigned char *from;
     sc_doubles2 center[2];
     sc_floats4 float_center, scale, three;
-} SC_KERNEL(points_frame);
+} points_frame;
 
-static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
+static SC_INLINE points_frame points_frame_of(const sc_workspace *w)
 {
     const uint32_t bits[4] = {~(uint32_t)0, ~(uint32_t)0, ~(uint32_t)0, 0};
-    SC_KERNEL(points_frame) f;
+    points_frame f;
     f.from = w->positions;
     f.center[0] = SC_QUAD(setr_pd)(w->center[0], w->center[1]);
     f.center[1] = SC_QUAD(set1_pd)(w->center[2]);
@@ -146,15 +145,15 @@ static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_wor
     return f;
 }
 
-static SC_INLINE double SC_KERNEL(sc_points_one)(const unsigned char *p)
+static SC_INLINE double points_one(const unsigned char *p)
 {
     double d; /* at any address */
     memcpy(&d, p, sizeof d);
     return d;
 }
 
-static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, float *each)
+static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, int is_double,
+                                uint64_t stride, float *each)
 {
     int i;
     SC_UNROLL
@@ -168,9 +167,8 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
                 SC_QUAD(sub_pd)(SC_QUAD(loadu_pd)((const double *)(const void *)p), f->center[0]);
             sc_doubles2 y =
                 SC_QUAD(sub_pd)(SC_QUAD(loadu_pd)((const double *)(const void *)q), f->center[0]);
-            sc_doubles2 z = SC_QUAD(sub_pd)(SC_QUAD(setr_pd)(SC_KERNEL(sc_points_one)(p + 16),
-                                                             SC_KERNEL(sc_points_one)(q + 16)),
-                                            f->center[1]);
+            sc_doubles2 z = SC_QUAD(sub_pd)(
+                SC_QUAD(setr_pd)(points_one(p + 16), points_one(q + 16)), f->center[1]);
             sc_floats4 xy = sc_quad_rounded(x, y), zz = sc_quad_rounded_two(z);
             a = SC_QUAD_SHUFFLE(xy, zz, 0, 1, 0, 2);
             b = SC_QUAD_SHUFFLE(xy, zz, 2, 3, 1, 2);
@@ -190,14 +188,14 @@ static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, co
 #if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_QUADS
 
 /* Whether the last vertex is among sixteen points, and four coordinates of each are read. */
-static SC_INLINE int SC_KERNEL(points_have)(const uint32_t *point, lanes last, int is_double)
+static SC_INLINE int points_have(const uint32_t *point, lanes last, int is_double)
 {
     if (is_double && !SC_LANES_AVX512) return 0;
     return lanes_bits(lanes_same(lanes_load((const float *)(const void *)point), last)) != 0;
 }
 
 /* The number of the last vertex in each lane, bit by bit. */
-static SC_INLINE lanes SC_KERNEL(points_last)(const sc_workspace *w)
+static SC_INLINE lanes points_last(const sc_workspace *w)
 {
     float last;
     memcpy(&last, &w->last_vertex, sizeof last);
@@ -206,22 +204,22 @@ static SC_INLINE lanes SC_KERNEL(points_last)(const sc_workspace *w)
 
 #else
 
-typedef const sc_workspace *SC_KERNEL(points_frame);
+typedef const sc_workspace *points_frame;
 
-static SC_INLINE SC_KERNEL(points_frame) SC_KERNEL(points_frame_of)(const sc_workspace *w)
+static SC_INLINE points_frame points_frame_of(const sc_workspace *w)
 {
     return w;
 }
 
-static SC_INLINE void SC_KERNEL(points_of)(const SC_KERNEL(points_frame) * f, const uint32_t *point,
-                                           int is_double, uint64_t stride, float *each)
+static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, int is_double,
+                                uint64_t stride, float *each)
 {
     (void)is_double;
     (void)stride;
-    SC_KERNEL(points_one_by_one)(*f, point, each);
+    points_one_by_one(*f, point, each);
 }
 
-static SC_INLINE int SC_KERNEL(points_have)(const uint32_t *point, lanes last, int is_double)
+static SC_INLINE int points_have(const uint32_t *point, lanes last, int is_double)
 {
     (void)point;
     (void)last;
@@ -229,7 +227,7 @@ static SC_INLINE int SC_KERNEL(points_have)(const uint32_t *point, lanes last, i
     return 0;
 }
 
-static SC_INLINE lanes SC_KERNEL(points_last)(const sc_workspace *w)
+static SC_INLINE lanes points_last(const sc_workspace *w)
 {
     (void)w;
     return lanes_all(0);
@@ -238,19 +236,19 @@ static SC_INLINE lanes SC_KERNEL(points_last)(const sc_workspace *w)
 #endif
 
 /* Sixteen points: at gets their x, then y, then z. */
-static inline void SC_KERNEL(load_points)(const sc_workspace *w, const uint32_t *point, float *at)
+static inline void load_points(const sc_workspace *w, const uint32_t *point, float *at)
 {
-    const SC_KERNEL(points_frame) f = SC_KERNEL(points_frame_of)(w);
+    const points_frame f = points_frame_of(w);
     const int is_double = w->position_type == SC_DOUBLE;
     float each[4 * SC_LANES_COUNT];
     lanes row[3];
     int k;
-    if (!w->fits_float || SC_KERNEL(points_have)(point, SC_KERNEL(points_last)(w), is_double))
-        SC_KERNEL(points_one_by_one)(w, point, each);
+    if (!w->fits_float || points_have(point, points_last(w), is_double))
+        points_one_by_one(w, point, each);
     else if (is_double)
-        SC_KERNEL(points_of)(&f, point, 1, w->stride, each);
+        points_of(&f, point, 1, w->stride, each);
     else
-        SC_KERNEL(points_of)(&f, point, 0, w->stride, each);
+        points_of(&f, point, 0, w->stride, each);
     lanes_turned(each, row);
     SC_UNROLL
     for (k = 0; k < 3; k++) lanes_store(at + SC_LANES_COUNT * k, row[k]);

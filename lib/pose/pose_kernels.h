@@ -6,7 +6,6 @@
 #ifndef SC_POSE_KERNELS_H
 #define SC_POSE_KERNELS_H
 
-#include "base/isa.h"
 #include "pose/workspace.h"
 
 /*
@@ -40,21 +39,5 @@ typedef struct sc_pose_kernels {
     void (*refit_patches)(const sc_model *model, sc_workspace *workspace, uint32_t first,
                           uint32_t end);
 } sc_pose_kernels;
-
-extern const sc_pose_kernels sc_pose_kernels_base;
-#if SC_ISA_X86
-extern const sc_pose_kernels sc_pose_kernels_avx2, sc_pose_kernels_avx512;
-#endif
-
-/* Those for the query at hand. */
-static inline const sc_pose_kernels *sc_pose_kernels_of(const sc_workspace *workspace)
-{
-#if SC_ISA_X86
-    if (workspace->isa == SC_ISA_AVX512) return &sc_pose_kernels_avx512;
-    if (workspace->isa == SC_ISA_AVX2) return &sc_pose_kernels_avx2;
-#endif
-    (void)workspace;
-    return &sc_pose_kernels_base;
-}
 
 #endif

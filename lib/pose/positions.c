@@ -24,7 +24,7 @@ static inline void widen(const double p[3], double low[3], double high[3])
 static int find_extent_of_all(const sc_workspace *w, uint32_t first, uint32_t end, double low[3],
                               double high[3])
 {
-    const sc_pose_kernels *kernels = sc_pose_kernels_of(w);
+    const sc_pose_kernels *kernels = w->kernels->pose;
     const unsigned char *at = w->positions + first * w->stride;
     const double *doubles = (const double *)(const void *)at;
     const float *floats = (const float *)(const void *)at;

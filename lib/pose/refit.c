@@ -16,7 +16,7 @@ typedef struct refit_pass {
 static void refit(void *context, uint32_t level, uint32_t first, uint32_t end)
 {
     const refit_pass *pass = (const refit_pass *)context;
-    const sc_pose_kernels *kernels = sc_pose_kernels_of(pass->w);
+    const sc_pose_kernels *kernels = pass->w->kernels->pose;
     const uint32_t leaves = sc_model_first_leaf_patch(pass->model);
     if (level + 1 < pass->model->level_count) {
         kernels->refit_patches(pass->model, pass->w, first, end);

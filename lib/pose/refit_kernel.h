@@ -5,26 +5,25 @@
  */
 
 /* How far a bound has to be moved outwards, see base/boxes.h. */
-static inline lanes SC_KERNEL(step)(lanes bound)
+static inline lanes rounding_step(lanes bound)
 {
     return lanes_add(lanes_multiply(lanes_absolute(bound), lanes_all(1.1920929e-7f)),
                      lanes_all(SC_BOXES_LEAST));
 }
 
 /* Boxes of sixteen leaf clusters, whose points are `stride` floats apart. */
-static SC_INLINE void SC_KERNEL(boxes_of)(const float *at, uint64_t stride, lanes side[6])
+static SC_INLINE void boxes_of(const float *at, uint64_t stride, lanes side[6])
 {
     int k;
     lanes_rows_ends(at, stride, side, side + 3);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        side[k] = lanes_subtract(side[k], SC_KERNEL(step)(side[k]));
-        side[k + 3] = lanes_add(side[k + 3], SC_KERNEL(step)(side[k + 3]));
+        side[k] = lanes_subtract(side[k], rounding_step(side[k]));
+        side[k + 3] = lanes_add(side[k + 3], rounding_step(side[k + 3]));
     }
 }
 
-static void SC_KERNEL(refit_leaves)(const sc_model *model, sc_workspace *w, uint32_t first,
-                                    uint32_t end)
+static void refit_leaves(const sc_model *model, sc_workspace *w, uint32_t first, uint32_t end)
 {
     const uint32_t patch = sc_model_first_leaf_patch(model), length = 4 * SC_LEAF_POINTS;
     uint32_t leaf = first;
@@ -33,13 +32,13 @@ static void SC_KERNEL(refit_leaves)(const sc_model *model, sc_workspace *w, uint
     int k;
     while (leaf < end && end - first >= SC_LANES_COUNT) {
         if (end - leaf < SC_LANES_COUNT) leaf = end - SC_LANES_COUNT; /* some once more */
-        SC_KERNEL(boxes_of)(w->point_at + length * (uint64_t)leaf, length, side);
+        boxes_of(w->point_at + length * (uint64_t)leaf, length, side);
         SC_UNROLL
         for (k = 0; k < 6; k++) lanes_store(w->patch_boxes.side[k] + patch + leaf, side[k]);
         leaf += SC_LANES_COUNT;
     }
     for (; leaf < end; leaf++) { /* fewer than sixteen: each sixteen times */
-        SC_KERNEL(boxes_of)(w->point_at + length * (uint64_t)leaf, 0, side);
+        boxes_of(w->point_at + length * (uint64_t)leaf, 0, side);
         for (k = 0; k < 6; k++) {
             lanes_store(one, side[k]);
             w->patch_boxes.side[k][patch + leaf] = one[0];
@@ -51,8 +50,7 @@ static void SC_KERNEL(refit_leaves)(const sc_model *model, sc_workspace *w, uint
  * Patches first to end - 1 of a level, of which each has one child or two. Mostly sixteen that
  * follow each other have two each, or one each, and then so do their children.
  */
-static void SC_KERNEL(refit_patches)(const sc_model *model, sc_workspace *w, uint32_t first,
-                                     uint32_t end)
+static void refit_patches(const sc_model *model, sc_workspace *w, uint32_t first, uint32_t end)
 {
     const uint32_t *child = sc_model_child(model);
     uint32_t p, q;

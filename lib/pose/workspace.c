@@ -8,8 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/isa.h"
-
 static uint64_t align(uint64_t bytes)
 {
     return (bytes + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
@@ -288,7 +286,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     w->workers = options ? options->workers : 1;
     w->bytes = lay_out_arrays(model, (unsigned char *)memory, w);
     w->topology_hash = model->topology_hash;
-    w->isa = (uint32_t)sc_isa_best();
+    w->kernels = sc_kernels_for((uint32_t)sc_isa_best());
     for (k = 0; k < 6; k++)
         for (i = 0; i < patches; i++) w->patch_boxes.side[k][i] = (float)NAN;
     memset(w->mask, 0, model->patch_end * sizeof *w->mask);

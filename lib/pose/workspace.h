@@ -23,6 +23,7 @@
 #define SC_POSE_WORKSPACE_H
 
 #include "base/boxes.h"
+#include "simd/kernels.h"
 #include "build/model.h"
 
 /*
@@ -227,12 +228,12 @@ struct sc_workspace {
     uint64_t bytes;
     uint64_t topology_hash; /* of the model it is for */
     sc_allocator allocator;
-    uint32_t owned;       /* allocated by sc_workspace_create or _create_for */
-    uint32_t isa;         /* of the query, see base/isa.h */
-    uint32_t flags;       /* SC_WORKSPACE_..., as it was made for */
-    uint32_t workers;     /* as it was made for, 1 or more */
-    unsigned char *views; /* workers - 1 */
-    uint64_t view_bytes;  /* of one; 0 if there is none */
+    uint32_t owned;            /* allocated by sc_workspace_create or _create_for */
+    uint32_t flags;            /* SC_WORKSPACE_..., as it was made for */
+    uint32_t workers;          /* as it was made for, 1 or more */
+    unsigned char *views;      /* workers - 1 */
+    uint64_t view_bytes;       /* of one; 0 if there is none */
+    const sc_kernels *kernels; /* for the query at hand */
     sc_hooks hooks;
 
     const sc_tasks

@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "base/bits.h"
-#include "base/isa.h"
+#include "simd/isa.h"
 #include "pose/fan.h"
 #include "pose/positions.h"
 #include "query/filter.h"
@@ -284,7 +284,7 @@ static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
             some = (1u << (count - i)) - 1u;
         }
         if (share) mark_shared(&lanes);
-        sc_query_kernels_of(w)->decide(&lanes, &verdict);
+        w->kernels->query->decide(&lanes, &verdict);
         open = lanes_of(verdict.unsure) & some;
         if (verdict.meets) take_lanes(state, lanes.pairs, verdict.meets & edges_of(some & ~open));
         for (; open && !state->stop; open &= open - 1) {
@@ -444,7 +444,7 @@ void sc_candidates_decide(sc_query_state *state)
 {
     uint32_t previous = sc_state_switch(state, sc_state_box_task(state));
     if (state->workspace->near_count || state->workspace->far_count)
-        sc_query_kernels_of(state->workspace)->leaf_pairs(state);
+        state->workspace->kernels->query->leaf_pairs(state);
     sc_state_switch(state, previous);
     decide_collected(state);
 }

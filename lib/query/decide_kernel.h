@@ -25,16 +25,15 @@
  */
 
 /* Eight pairs of triangles. */
-typedef struct SC_KERNEL(eight) {
+typedef struct eight_triangle_pairs {
     doubles at[2][3][3]; /* triangle, corner, axis */
     doubles side[2][3];  /* of corners against the other's plane: T and S */
     doubles line[3][3];  /* of edges against edges: L */
     doubles reach;       /* four times r */
     doubles bound;       /* what is larger than this has a certain sign */
-} SC_KERNEL(eight);
+} eight_triangle_pairs;
 
-static SC_INLINE void SC_KERNEL(read_points)(const sc_pair_lanes *pairs, int floats,
-                                             doubles at[2][3][3])
+static SC_INLINE void read_points(const sc_pair_lanes *pairs, int floats, doubles at[2][3][3])
 {
     const uint32_t *triangle[2][SC_PAIR_LANES];
     int s, k, i;
@@ -53,12 +52,12 @@ static SC_INLINE void SC_KERNEL(read_points)(const sc_pair_lanes *pairs, int flo
         }
 }
 
-static SC_NOINLINE void SC_KERNEL(read_floats)(const sc_pair_lanes *pairs, doubles at[2][3][3])
+static SC_NOINLINE void read_floats(const sc_pair_lanes *pairs, doubles at[2][3][3])
 {
-    SC_KERNEL(read_points)(pairs, 1, at);
+    read_points(pairs, 1, at);
 }
 
-static inline void SC_KERNEL(cross_eight)(const doubles e[3], const doubles f[3], doubles n[3])
+static inline void cross_eight(const doubles e[3], const doubles f[3], doubles n[3])
 {
     int c;
     SC_UNROLL
@@ -67,22 +66,22 @@ static inline void SC_KERNEL(cross_eight)(const doubles e[3], const doubles f[3]
                                 doubles_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
 }
 
-static inline doubles SC_KERNEL(dot_eight)(const doubles n[3], const doubles p[3])
+static inline doubles dot_eight(const doubles n[3], const doubles p[3])
 {
     return doubles_add(doubles_add(doubles_multiply(n[0], p[0]), doubles_multiply(n[1], p[1])),
                        doubles_multiply(n[2], p[2]));
 }
 
 /* Reads the corners and computes all else. */
-static SC_INLINE void SC_KERNEL(read_eight)(const sc_pair_lanes *pairs, SC_KERNEL(eight) * x)
+static SC_INLINE void read_eight(const sc_pair_lanes *pairs, eight_triangle_pairs *x)
 {
     doubles a[2][3], b[3][3], n[3], along[2][3], reach = doubles_all(0x1p-300);
     doubles *side = x->side[1], (*line)[3] = x->line;
     int k, i, c;
     if (pairs->floats)
-        SC_KERNEL(read_floats)(pairs, x->at);
+        read_floats(pairs, x->at);
     else
-        SC_KERNEL(read_points)(pairs, 0, x->at);
+        read_points(pairs, 0, x->at);
     SC_UNROLL
     for (k = 0; k < 5; k++) {
         const doubles *from = x->at[0][0], *to = k < 2 ? x->at[0][k + 1] : x->at[1][k - 2];
@@ -93,15 +92,15 @@ static SC_INLINE void SC_KERNEL(read_eight)(const sc_pair_lanes *pairs, SC_KERNE
             reach = doubles_larger_size(reach, p[c]);
         }
     }
-    SC_KERNEL(cross_eight)(a[0], a[1], n);
+    cross_eight(a[0], a[1], n);
     SC_UNROLL
-    for (i = 0; i < 3; i++) side[i] = SC_KERNEL(dot_eight)(n, b[i]);
+    for (i = 0; i < 3; i++) side[i] = dot_eight(n, b[i]);
     SC_UNROLL
     for (i = 0; i < 3; i++) {
-        SC_KERNEL(cross_eight)(b[i], b[(i + 1) % 3], n);
-        along[0][i] = SC_KERNEL(dot_eight)(n, a[0]);
-        along[1][i] = SC_KERNEL(dot_eight)(n, a[1]);
-        if (i == 0) x->side[0][0] = SC_KERNEL(dot_eight)(n, b[2]);
+        cross_eight(b[i], b[(i + 1) % 3], n);
+        along[0][i] = dot_eight(n, a[0]);
+        along[1][i] = dot_eight(n, a[1]);
+        if (i == 0) x->side[0][0] = dot_eight(n, b[2]);
     }
     SC_UNROLL
     for (k = 0; k < 2; k++)
@@ -123,7 +122,7 @@ static SC_INLINE void SC_KERNEL(read_eight)(const sc_pair_lanes *pairs, SC_KERNE
 
 /* Which edges of the two, the first's k and the second's i, are in one plane across an axis.
    Returns the lanes in which any are. */
-static inline unsigned SC_KERNEL(find_level_edges)(doubles at[2][3][3], doubles_mask level[3][3])
+static inline unsigned find_level_edges(doubles at[2][3][3], doubles_mask level[3][3])
 {
     unsigned found = 0;
     const doubles_mask none = doubles_below(doubles_all(0), doubles_all(0));
@@ -165,12 +164,11 @@ static inline unsigned SC_KERNEL(find_level_edges)(doubles at[2][3][3], doubles_
 
 /* Of the six edges by their bits: whose ends are on different sides, of these whose lines have
    signs that are not certain, and which meet the other triangle if all that is. */
-typedef struct SC_KERNEL(edges) {
+typedef struct edge_bits {
     unsigned sides[6], open[6], meets[6];
-} SC_KERNEL(edges);
+} edge_bits;
 
-static inline void SC_KERNEL(look_along)(SC_KERNEL(edges) * e, int edge, const doubles line[3],
-                                         doubles bound)
+static inline void look_along(edge_bits *e, int edge, const doubles line[3], doubles bound)
 {
     doubles least = doubles_smaller_size(doubles_smaller_size(line[0], line[1]), line[2]);
     e->open[edge] = e->sides[edge] & ~doubles_bits(doubles_below(bound, least));
@@ -180,15 +178,14 @@ static inline void SC_KERNEL(look_along)(SC_KERNEL(edges) * e, int edge, const d
 /* The signs of lines that are certainly zero count as those next to them, or if touching is not
    asked for, their edges do not meet. Only if there is another, which is not certain then, if it is
    zero, too. */
-static inline void SC_KERNEL(look_along_level)(SC_KERNEL(edges) * e, int edge,
-                                               const doubles line[3], const doubles_mask level[3],
-                                               doubles bound, int proper)
+static inline void look_along_level(edge_bits *e, int edge, const doubles line[3],
+                                    const doubles_mask level[3], doubles bound, int proper)
 {
     doubles next[3];
     int i;
     SC_UNROLL
     for (i = 0; i < 3; i++) next[i] = doubles_choose(level[i], line[(i + 1) % 3], line[i]);
-    SC_KERNEL(look_along)(e, edge, next, bound);
+    look_along(e, edge, next, bound);
     if (proper) {
         unsigned none = ~doubles_bits(doubles_either(doubles_either(level[0], level[1]), level[2]));
         e->open[edge] &= none;
@@ -198,10 +195,10 @@ static inline void SC_KERNEL(look_along_level)(SC_KERNEL(edges) * e, int edge,
 
 /* Decides eight pairs that share nothing, if no corner may be in the other's plane; else returns
    0. */
-static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, SC_KERNEL(eight) * x,
-                                            sc_verdict *verdict)
+static SC_INLINE int decide_most(const sc_pair_lanes *pairs, eight_triangle_pairs *x,
+                                 sc_verdict *verdict)
 {
-    SC_KERNEL(edges) e;
+    edge_bits e;
     unsigned certain[2], apart = 0, open = 0;
     uint64_t meets = 0;
     int s, k;
@@ -221,14 +218,14 @@ static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, SC_KERNE
         across[0] = x->line[0][k];
         across[1] = x->line[1][k];
         across[2] = x->line[2][k];
-        SC_KERNEL(look_along)(&e, k, x->line[k], x->bound);
-        SC_KERNEL(look_along)(&e, 3 + k, across, x->bound);
+        look_along(&e, k, x->line[k], x->bound);
+        look_along(&e, 3 + k, across, x->bound);
         open |= e.open[k] | e.open[3 + k];
     }
     open &= ~apart;
     if (open) {
         doubles_mask level[3][3];
-        unsigned found = SC_KERNEL(find_level_edges)(x->at, level);
+        unsigned found = find_level_edges(x->at, level);
         if (open & ~found) return 0;
         open = 0;
         SC_UNROLL
@@ -240,9 +237,8 @@ static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, SC_KERNE
                 across[s] = x->line[s][k];
                 level_across[s] = level[s][k];
             }
-            SC_KERNEL(look_along_level)(&e, k, x->line[k], level[k], x->bound, pairs->proper);
-            SC_KERNEL(look_along_level)
-            (&e, 3 + k, across, level_across, x->bound, pairs->proper);
+            look_along_level(&e, k, x->line[k], level[k], x->bound, pairs->proper);
+            look_along_level(&e, 3 + k, across, level_across, x->bound, pairs->proper);
             open |= e.open[k] | e.open[3 + k];
         }
         if (open & ~apart) return 0;
@@ -257,13 +253,13 @@ static SC_INLINE int SC_KERNEL(decide_most)(const sc_pair_lanes *pairs, SC_KERNE
 /* ---- what is certain of the rest ---- */
 
 /* In which lanes a determinant is certainly positive, negative or zero. */
-typedef struct SC_KERNEL(sign) {
+typedef struct sign_bits {
     unsigned above, below, zero;
-} SC_KERNEL(sign);
+} sign_bits;
 
-static inline SC_KERNEL(sign) SC_KERNEL(sign_of)(doubles d, doubles bound)
+static inline sign_bits sign_of(doubles d, doubles bound)
 {
-    SC_KERNEL(sign) sign;
+    sign_bits sign;
     sign.above = doubles_bits(doubles_below(bound, d));
     sign.below = doubles_bits(doubles_below(d, doubles_subtract(doubles_all(0), bound)));
     sign.zero = 0;
@@ -271,7 +267,7 @@ static inline SC_KERNEL(sign) SC_KERNEL(sign_of)(doubles d, doubles bound)
 }
 
 /* What a side in a projection may be off by; see below. */
-static inline doubles SC_KERNEL(beside_bound)(doubles reach)
+static inline doubles beside_bound(doubles reach)
 {
     return doubles_multiply(doubles_all(SC_PREDICATES_BOUND_2D / 2),
                             doubles_multiply(reach, reach));
@@ -285,16 +281,16 @@ static inline doubles SC_KERNEL(beside_bound)(doubles reach)
  * lines. A side d = e_0 p_1 - e_1 p_0 meets two differences, a product and a subtraction: 4.01 *
  * 2^-53 of two products of numbers of up to 2 r, 8 r^2 together.
  */
-static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(eight) * x, const unsigned shared[2][3])
+static unsigned are_beside(const eight_triangle_pairs *x, const unsigned shared[2][3])
 {
     doubles e[2][3], n[3], size[3], flat[2][3][2], zero = doubles_all(0);
-    doubles bound = SC_KERNEL(beside_bound)(x->reach);
+    doubles bound = beside_bound(x->reach);
     doubles_mask first, second;
     unsigned apart = 0;
     int s, k, i, c;
     for (k = 0; k < 2; k++)
         for (c = 0; c < 3; c++) e[k][c] = doubles_subtract(x->at[0][k + 1][c], x->at[0][0][c]);
-    SC_KERNEL(cross_eight)(e[0], e[1], n);
+    cross_eight(e[0], e[1], n);
     for (c = 0; c < 3; c++) size[c] = doubles_absolute(n[c]);
     first = doubles_below(doubles_larger(size[1], size[2]), size[0]);
     second = doubles_below(size[2], size[1]);
@@ -329,8 +325,8 @@ static unsigned SC_KERNEL(are_beside)(const SC_KERNEL(eight) * x, const unsigned
 /* The lanes in which four points have a coordinate in common: in a plane across an axis, where most
    signs are that are zero. The points are compared, not subtracted, in case small differences are
    flushed to zero. */
-static unsigned SC_KERNEL(are_level)(const doubles p[3], const doubles q[3], const doubles r[3],
-                                     const doubles s[3])
+static unsigned are_level(const doubles p[3], const doubles q[3], const doubles r[3],
+                          const doubles s[3])
 {
     unsigned level = 0;
     int c;
@@ -344,9 +340,8 @@ static unsigned SC_KERNEL(are_level)(const doubles p[3], const doubles q[3], con
 /* An edge, by the signs of its ends against a plane and of its line against three others, where
    zero counts as on either side if touching is asked for (all bits set), as on none if not (0). An
    edge in the plane stays open. */
-static inline void SC_KERNEL(decide_edge)(SC_KERNEL(sign) from, SC_KERNEL(sign) to,
-                                          SC_KERNEL(sign) a, SC_KERNEL(sign) b, SC_KERNEL(sign) c,
-                                          unsigned touching, unsigned *meets, unsigned *unsure)
+static inline void decide_edge(sign_bits from, sign_bits to, sign_bits a, sign_bits b, sign_bits c,
+                               unsigned touching, unsigned *meets, unsigned *unsure)
 {
     unsigned zero = from.zero | to.zero | a.zero | b.zero | c.zero;
     unsigned passes = ((a.above | a.zero) & (b.above | b.zero) & (c.above | c.zero)) |
@@ -361,28 +356,25 @@ static inline void SC_KERNEL(decide_edge)(SC_KERNEL(sign) from, SC_KERNEL(sign) 
 
 /* All signs of eight pairs: of corners against the other's plane, and of the first's edges against
    the second's. */
-typedef struct SC_KERNEL(signs) {
-    SC_KERNEL(sign) side[2][3], line[3][3];
-} SC_KERNEL(signs);
+typedef struct pair_signs {
+    sign_bits side[2][3], line[3][3];
+} pair_signs;
 
 /* Sets the lanes in which edges meet, and in which that is open; returns the lanes in which an edge
    is left open. */
-static inline unsigned SC_KERNEL(decide_edges)(const sc_pair_lanes *pairs,
-                                               const SC_KERNEL(signs) * signs, unsigned meets[6],
-                                               unsigned open[6])
+static inline unsigned decide_edges(const sc_pair_lanes *pairs, const pair_signs *signs,
+                                    unsigned meets[6], unsigned open[6])
 {
     unsigned touching = pairs->proper ? 0 : ~0u, unsure = 0;
     int k, s;
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        const SC_KERNEL(sign)(*side)[3] = signs->side, (*line)[3] = signs->line;
+        const sign_bits(*side)[3] = signs->side, (*line)[3] = signs->line;
         int next = (k + 1) % 3;
-        SC_KERNEL(decide_edge)
-        (side[0][k], side[0][next], line[k][0], line[k][1], line[k][2], touching, &meets[k],
-         &open[k]);
-        SC_KERNEL(decide_edge)
-        (side[1][k], side[1][next], line[0][k], line[1][k], line[2][k], touching, &meets[3 + k],
-         &open[3 + k]);
+        decide_edge(side[0][k], side[0][next], line[k][0], line[k][1], line[k][2], touching,
+                    &meets[k], &open[k]);
+        decide_edge(side[1][k], side[1][next], line[0][k], line[1][k], line[2][k], touching,
+                    &meets[3 + k], &open[3 + k]);
         for (s = 0; s < 2; s++) {
             meets[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
             open[3 * s + k] &= ~(pairs->shared[s][k] | pairs->shared[s][next]);
@@ -394,8 +386,7 @@ static inline unsigned SC_KERNEL(decide_edges)(const sc_pair_lanes *pairs,
 
 /* Finds which of the signs that are not certain in some lanes are certainly zero. Returns the lanes
    in which a corner may be in the other's plane. */
-static unsigned SC_KERNEL(find_zeros)(const SC_KERNEL(eight) * x, unsigned some,
-                                      SC_KERNEL(signs) * signs)
+static unsigned find_zeros(const eight_triangle_pairs *x, unsigned some, pair_signs *signs)
 {
     unsigned level = 0;
     int s, k, i;
@@ -404,8 +395,7 @@ static unsigned SC_KERNEL(find_zeros)(const SC_KERNEL(eight) * x, unsigned some,
             const doubles(*t)[3] = x->at[1 - s];
             unsigned open = some & ~(signs->side[s][k].above | signs->side[s][k].below);
             level |= open;
-            if (open)
-                signs->side[s][k].zero = open & SC_KERNEL(are_level)(t[0], t[1], t[2], x->at[s][k]);
+            if (open) signs->side[s][k].zero = open & are_level(t[0], t[1], t[2], x->at[s][k]);
         }
     for (k = 0; k < 3; k++)
         for (i = 0; i < 3; i++) {
@@ -413,34 +403,34 @@ static unsigned SC_KERNEL(find_zeros)(const SC_KERNEL(eight) * x, unsigned some,
             unsigned open = some & ~(signs->line[k][i].above | signs->line[k][i].below);
             if (open)
                 signs->line[k][i].zero =
-                    open & SC_KERNEL(are_level)(a[k], a[(k + 1) % 3], b[i], b[(i + 1) % 3]);
+                    open & are_level(a[k], a[(k + 1) % 3], b[i], b[(i + 1) % 3]);
         }
     return level;
 }
 
 /* Decides eight pairs, edge by edge, as far as that is certain. */
-static SC_NOINLINE void SC_KERNEL(decide_rest)(const sc_pair_lanes *pairs,
-                                               const SC_KERNEL(eight) * x, sc_verdict *verdict)
+static SC_NOINLINE void decide_rest(const sc_pair_lanes *pairs, const eight_triangle_pairs *x,
+                                    sc_verdict *verdict)
 {
-    SC_KERNEL(signs) signs;
+    pair_signs signs;
     unsigned apart = 0, unsure, meets[6], open[6];
     int s, k, i;
     for (s = 0; s < 2; s++) {
         unsigned above = 255, below = 255;
         for (k = 0; k < 3; k++) {
-            signs.side[s][k] = SC_KERNEL(sign_of)(x->side[s][k], x->bound);
+            signs.side[s][k] = sign_of(x->side[s][k], x->bound);
             above &= signs.side[s][k].above | pairs->shared[s][k];
             below &= signs.side[s][k].below | pairs->shared[s][k];
         }
         apart |= above | below;
     }
     for (k = 0; k < 3; k++)
-        for (i = 0; i < 3; i++) signs.line[k][i] = SC_KERNEL(sign_of)(x->line[k][i], x->bound);
-    unsure = SC_KERNEL(decide_edges)(pairs, &signs, meets, open) & ~apart;
+        for (i = 0; i < 3; i++) signs.line[k][i] = sign_of(x->line[k][i], x->bound);
+    unsure = decide_edges(pairs, &signs, meets, open) & ~apart;
     if (unsure) {
-        unsigned level = SC_KERNEL(find_zeros)(x, unsure, &signs);
-        unsure = SC_KERNEL(decide_edges)(pairs, &signs, meets, open) & ~apart;
-        if (unsure & level) apart |= SC_KERNEL(are_beside)(x, pairs->shared);
+        unsigned level = find_zeros(x, unsure, &signs);
+        unsure = decide_edges(pairs, &signs, meets, open) & ~apart;
+        if (unsure & level) apart |= are_beside(x, pairs->shared);
     }
     verdict->meets = verdict->unsure = 0;
     for (k = 0; k < 6; k++) {
@@ -449,10 +439,9 @@ static SC_NOINLINE void SC_KERNEL(decide_rest)(const sc_pair_lanes *pairs,
     }
 }
 
-static void SC_KERNEL(decide)(const sc_pair_lanes *pairs, sc_verdict *verdict)
+static void decide(const sc_pair_lanes *pairs, sc_verdict *verdict)
 {
-    SC_KERNEL(eight) x;
-    SC_KERNEL(read_eight)(pairs, &x);
-    if (pairs->shares || !SC_KERNEL(decide_most)(pairs, &x, verdict))
-        SC_KERNEL(decide_rest)(pairs, &x, verdict);
+    eight_triangle_pairs x;
+    read_eight(pairs, &x);
+    if (pairs->shares || !decide_most(pairs, &x, verdict)) decide_rest(pairs, &x, verdict);
 }

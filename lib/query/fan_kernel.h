@@ -36,7 +36,7 @@
  */
 
 /* What the difference of two points along a direction across the normal may be off by. */
-static inline float SC_KERNEL(ray_bound)(const float direction[3])
+static inline float ray_bound(const float direction[3])
 {
     const float size = fabsf(direction[0]) + fabsf(direction[1]) + fabsf(direction[2]);
     return 7e-7f * size + 16 * FLT_MIN;
@@ -44,10 +44,10 @@ static inline float SC_KERNEL(ray_bound)(const float direction[3])
 
 /* Which sectors at the first, second and third corners of triangles may hold a ray, and the
    opposite one: those that the line at right angles to a direction makes. */
-static SC_INLINE void SC_KERNEL(find_rays)(const float direction[3], const lanes at[3],
-                                           const lanes_index corner[3], lanes_mask ray[2][3])
+static SC_INLINE void find_rays(const float direction[3], const lanes at[3],
+                                const lanes_index corner[3], lanes_mask ray[2][3])
 {
-    const lanes bound = lanes_all(SC_KERNEL(ray_bound)(direction));
+    const lanes bound = lanes_all(ray_bound(direction));
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
     lanes along = lanes_multiply(lanes_all(direction[0]), at[0]), y[3];
     lanes_mask falls[3], rises[3]; /* edges may */
@@ -72,7 +72,7 @@ static SC_INLINE void SC_KERNEL(find_rays)(const float direction[3], const lanes
 
 /* Two directions at right angles to n, the second counter-clockwise of the first where n points to
    the viewer. */
-static inline void SC_KERNEL(find_across)(const float n[3], float across[2][3])
+static inline void find_across(const float n[3], float across[2][3])
 {
     int a = fabsf(n[1]) > fabsf(n[0]) ? 1 : 0, i, j;
     float side;
@@ -90,7 +90,7 @@ static inline void SC_KERNEL(find_across)(const float n[3], float across[2][3])
 
 /* What an area may be off by, of triangles of these sizes; largest is the largest component of the
    normal that they are seen along. */
-static inline lanes SC_KERNEL(area_bound)(lanes size, lanes largest)
+static inline lanes area_bound(lanes size, lanes largest)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     lanes bound = lanes_add(lanes_multiply(size, lanes_all(2 * v)), lanes_all(2.1f * edge));
@@ -99,7 +99,7 @@ static inline lanes SC_KERNEL(area_bound)(lanes size, lanes largest)
 }
 
 /* The triangles of a cluster that may not face the viewer. */
-static inline lanes_mask SC_KERNEL(find_turned)(const sc_leaf_ready *ready, const float n[3])
+static inline lanes_mask find_turned(const sc_leaf_ready *ready, const float n[3])
 {
     float largest = fabsf(n[0]) > fabsf(n[1]) ? fabsf(n[0]) : fabsf(n[1]);
     lanes area = lanes_multiply(lanes_all(n[0]), lanes_load(ready->normal[0]));
@@ -108,21 +108,20 @@ static inline lanes_mask SC_KERNEL(find_turned)(const sc_leaf_ready *ready, cons
     SC_UNROLL
     for (k = 1; k < 3; k++)
         area = lanes_add(area, lanes_multiply(lanes_all(n[k]), lanes_load(ready->normal[k])));
-    return lanes_not_above(area,
-                           SC_KERNEL(area_bound)(lanes_load(ready->size), lanes_all(largest)));
+    return lanes_not_above(area, area_bound(lanes_load(ready->size), lanes_all(largest)));
 }
 
 /* The triangles of a cluster that may have more in common with others of it than what they share:
    two that share a point have not, if one of them is no such triangle. If half of them do not face
    the viewer, as of a tube, it is all at once. */
-static unsigned SC_KERNEL(doubtful)(const sc_query_state *state, uint32_t leaf)
+static unsigned doubtful(const sc_query_state *state, uint32_t leaf)
 {
     const sc_model *model = state->model;
     const uint32_t *first = sc_model_leaf_first(model) + leaf;
     const uint16_t *fan = sc_model_leaf_fan(model) + 2 * (uint64_t)leaf;
     const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
-    const float *n = SC_KERNEL(slab)(state, leaf, 0)->direction;
-    const sc_leaf_ready *ready = SC_KERNEL(ready)(state, leaf, 0);
+    const float *n = slab_of(state, leaf, 0)->direction;
+    const sc_leaf_ready *ready = ready_leaf(state, leaf, 0);
     const unsigned triangles = (1u << (first[1] - first[0])) - 1u;
     unsigned held_all = ~0u, turns_once = 0, settled, open, i;
     float across[2][3];
@@ -133,11 +132,11 @@ static unsigned SC_KERNEL(doubtful)(const sc_query_state *state, uint32_t leaf)
     lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
     SC_UNROLL
     for (k = 0; k < 3; k++) corner[k] = lanes_index_load(where + SC_LEAF_MAX * k);
-    turned[0] = turned[1] = turned[2] = SC_KERNEL(find_turned)(ready, n);
+    turned[0] = turned[1] = turned[2] = find_turned(ready, n);
     if (sc_bits_count(lanes_bits(turned[0])) >= SC_LEAF_MAX / 2) return triangles;
-    SC_KERNEL(find_across)(n, across);
+    find_across(n, across);
     SC_UNROLL
-    for (k = 0; k < 2; k++) SC_KERNEL(find_rays)(across[k], at, corner, ray[k]);
+    for (k = 0; k < 2; k++) find_rays(across[k], at, corner, ray[k]);
     SC_UNROLL
     for (i = 0; i < 4; i++) {
         const lanes_mask *r = ray[i / 2][i % 2];

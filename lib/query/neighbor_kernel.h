@@ -32,36 +32,35 @@
  */
 
 /* Sixteen pairs, as above; and which are of such that share just a point, or an edge. */
-typedef struct SC_KERNEL(neighbors) {
+typedef struct neighbors {
     lanes at[2][2][3]; /* a and b, first and second, axis */
     unsigned point, edge;
-} SC_KERNEL(neighbors);
+} neighbors;
 
 /* Numbers of these: of p, of both ends of a and of b among the points of their leaf cluster, and of
    t and u among its triangles. */
-typedef struct SC_KERNEL(neighbor_rows) {
+typedef struct neighbor_rows {
     lanes_bytes row[SC_NEIGHBORS_ROWS];
-} SC_KERNEL(neighbor_rows);
+} neighbor_rows;
 
 /* Pairs that no direction tells apart, of any leaf clusters. Behind the last are such as were here
    before. */
-typedef struct SC_KERNEL(open_neighbors) {
+typedef struct open_neighbors {
     uint32_t number[SC_NEIGHBORS_ROWS]
                    [2 * SC_LANES_COUNT]; /* as above, of all points and triangles */
     float extent[2 * SC_LANES_COUNT];    /* of both clusters */
     unsigned count;
-} SC_KERNEL(open_neighbors);
+} open_neighbors;
 
 /* A leaf cluster: where its points are, which are the corners of its triangles, and what these are
    called: points of two clusters, or of one, are the same if they have the same name. */
-typedef struct SC_KERNEL(neighborhood) {
+typedef struct neighborhood {
     const float *at;
     lanes_triples corner, name;
-} SC_KERNEL(neighborhood);
+} neighborhood;
 
 /* Of clusters a and b. Points are called as they are numbered in a. */
-static inline void SC_KERNEL(find_points)(const sc_query_state *state, uint32_t a, uint32_t b,
-                                          SC_KERNEL(neighborhood) * n)
+static inline void find_points(const sc_query_state *state, uint32_t a, uint32_t b, neighborhood *n)
 {
     const uint32_t *point = sc_model_leaf_point(state->model);
     const uint8_t *corner = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)b;
@@ -79,19 +78,19 @@ static inline void SC_KERNEL(find_points)(const sc_query_state *state, uint32_t 
 }
 
 /* The lanes in which just one of three is set, and just two. */
-static inline unsigned SC_KERNEL(just_one)(const unsigned x[3])
+static inline unsigned just_one(const unsigned x[3])
 {
     return (x[0] ^ x[1] ^ x[2]) & ~(x[0] & x[1]);
 }
-static inline unsigned SC_KERNEL(just_two)(const unsigned x[3])
+static inline unsigned just_two(const unsigned x[3])
 {
     return (x[0] | x[1] | x[2]) & ~(x[0] ^ x[1] ^ x[2]);
 }
 
 /* Turns corners so that they begin with the first or the second where that is to be, else the
    last. */
-static inline void SC_KERNEL(turn)(lanes_bytes first, lanes_bytes second,
-                                   const lanes_bytes corner[3], lanes_bytes turned[3])
+static inline void turn(lanes_bytes first, lanes_bytes second, const lanes_bytes corner[3],
+                        lanes_bytes turned[3])
 {
     int k;
     SC_UNROLL
@@ -101,18 +100,16 @@ static inline void SC_KERNEL(turn)(lanes_bytes first, lanes_bytes second,
 }
 
 /* So that the first is shared and not the last, if two are, or the others, if one is. */
-static inline void SC_KERNEL(turn_shared)(const lanes_bytes shared[3], const lanes_bytes corner[3],
-                                          lanes_bytes turned[3])
+static inline void turn_shared(const lanes_bytes shared[3], const lanes_bytes corner[3],
+                               lanes_bytes turned[3])
 {
     const lanes_bytes first = lanes_bytes_but(shared[0], shared[2]);
     const lanes_bytes second = lanes_bytes_but(shared[1], shared[0]);
-    SC_KERNEL(turn)(first, second, corner, turned);
+    turn(first, second, corner, turned);
 }
 
-static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
-                                             const SC_KERNEL(neighborhood) * b, const uint8_t *of_a,
-                                             const uint8_t *of_b, SC_KERNEL(neighbors) * x,
-                                             SC_KERNEL(neighbor_rows) * numbers)
+static inline void load_neighbors(const neighborhood *a, const neighborhood *b, const uint8_t *of_a,
+                                  const uint8_t *of_b, neighbors *x, neighbor_rows *numbers)
 {
     lanes_bytes p[3], q[3], name[3], same[3][3], shared[2][3], turned[2][3];
     unsigned bits[2][3];
@@ -132,10 +129,10 @@ static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
         bits[0][k] = lanes_bytes_bits(shared[0][k]);
         bits[1][k] = lanes_bytes_bits(shared[1][k]);
     }
-    x->point = SC_KERNEL(just_one)(bits[0]) & SC_KERNEL(just_one)(bits[1]);
-    x->edge = SC_KERNEL(just_two)(bits[0]) & SC_KERNEL(just_two)(bits[1]);
-    SC_KERNEL(turn_shared)(shared[0], p, turned[0]);
-    SC_KERNEL(turn_shared)(shared[1], q, turned[1]);
+    x->point = just_one(bits[0]) & just_one(bits[1]);
+    x->edge = just_two(bits[0]) & just_two(bits[1]);
+    turn_shared(shared[0], p, turned[0]);
+    turn_shared(shared[1], q, turned[1]);
     /* the last of u twice if they share an edge: then the middle one is shared */
     turned[1][1] = lanes_bytes_choose(
         lanes_bytes_either(
@@ -152,10 +149,8 @@ static inline void SC_KERNEL(load_neighbors)(const SC_KERNEL(neighborhood) * a,
 }
 
 /* Sixteen pairs of a list (see build/sharing_lists.h), as if they shared just a point. */
-static inline void SC_KERNEL(load_listed)(const SC_KERNEL(neighborhood) * a,
-                                          const SC_KERNEL(neighborhood) * b, const uint16_t *list,
-                                          SC_KERNEL(neighbors) * x,
-                                          SC_KERNEL(neighbor_rows) * numbers)
+static inline void load_listed(const neighborhood *a, const neighborhood *b, const uint16_t *list,
+                               neighbors *x, neighbor_rows *numbers)
 {
     lanes_bytes quarter[4], corner[2][3], turned[2][3];
     uint8_t of[2][SC_LANES_COUNT];
@@ -169,7 +164,7 @@ static inline void SC_KERNEL(load_listed)(const SC_KERNEL(neighborhood) * a,
     for (k = 0; k < 2; k++) { /* seen from the corners of these numbers, 0, 1 or 2 */
         const lanes_bytes first = lanes_bytes_same(quarter[2 + k], lanes_bytes_all(0));
         const lanes_bytes second = lanes_bytes_same(quarter[2 + k], lanes_bytes_all(1));
-        SC_KERNEL(turn)(first, second, corner[k], turned[k]);
+        turn(first, second, corner[k], turned[k]);
     }
     lanes_edges_of(a->at, b->at, turned[0], turned[1] + 1, x->at);
     SC_UNROLL
@@ -180,14 +175,14 @@ static inline void SC_KERNEL(load_listed)(const SC_KERNEL(neighborhood) * a,
     numbers->row[6] = quarter[1];
 }
 
-static inline lanes SC_KERNEL(dot)(const lanes x[3], const lanes y[3])
+static inline lanes dot_product(const lanes x[3], const lanes y[3])
 {
     return lanes_add(lanes_add(lanes_multiply(x[0], y[0]), lanes_multiply(x[1], y[1])),
                      lanes_multiply(x[2], y[2]));
 }
 
 /* What a place along a direction may be off by; size is the direction's |m|1. */
-static inline lanes SC_KERNEL(direction_bound)(lanes size, float extent)
+static inline lanes direction_bound(lanes size, float extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     return lanes_add(lanes_multiply(size, lanes_all(1.1f * edge + 5 * v * extent)),
@@ -196,7 +191,7 @@ static inline lanes SC_KERNEL(direction_bound)(lanes size, float extent)
 
 /* The lanes in which t is certainly ahead of p and u behind, along the direction from the middle of
    u to that of t. */
-static inline unsigned SC_KERNEL(direction_parts)(const SC_KERNEL(neighbors) * x, float extent)
+static inline unsigned direction_parts(const neighbors *x, float extent)
 {
     lanes m[3], size, bound, ahead, behind;
     int c;
@@ -205,15 +200,15 @@ static inline unsigned SC_KERNEL(direction_parts)(const SC_KERNEL(neighbors) * x
         m[c] = lanes_subtract(lanes_add(x->at[0][0][c], x->at[0][1][c]),
                               lanes_add(x->at[1][0][c], x->at[1][1][c]));
     size = lanes_add(lanes_add(lanes_absolute(m[0]), lanes_absolute(m[1])), lanes_absolute(m[2]));
-    bound = SC_KERNEL(direction_bound)(size, extent);
-    ahead = lanes_smaller(SC_KERNEL(dot)(m, x->at[0][0]), SC_KERNEL(dot)(m, x->at[0][1]));
-    behind = lanes_larger(SC_KERNEL(dot)(m, x->at[1][0]), SC_KERNEL(dot)(m, x->at[1][1]));
+    bound = direction_bound(size, extent);
+    ahead = lanes_smaller(dot_product(m, x->at[0][0]), dot_product(m, x->at[0][1]));
+    behind = lanes_larger(dot_product(m, x->at[1][0]), dot_product(m, x->at[1][1]));
     return lanes_bits(lanes_both(lanes_below(bound, ahead),
                                  lanes_below(behind, lanes_subtract(lanes_all(0), bound))));
 }
 
 /* Of the plane of triangle s. */
-static inline void SC_KERNEL(find_normal)(const SC_KERNEL(neighbors) * x, int s, lanes n[3])
+static inline void find_normal(const neighbors *x, int s, lanes n[3])
 {
     const lanes *e = x->at[s][0], *f = x->at[s][1];
     int c;
@@ -224,7 +219,7 @@ static inline void SC_KERNEL(find_normal)(const SC_KERNEL(neighbors) * x, int s,
 }
 
 /* What a distance from a plane, up to a factor, may be off by here: of a triangle of this size. */
-static inline lanes SC_KERNEL(neighbor_plane_bound)(lanes size, lanes extent)
+static inline lanes neighbor_plane_bound(lanes size, lanes extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     const lanes more = lanes_add(extent, lanes_all(edge));
@@ -234,25 +229,25 @@ static inline lanes SC_KERNEL(neighbor_plane_bound)(lanes size, lanes extent)
 }
 
 /* The lanes in which the plane of triangle s certainly has both of the other on one side. */
-static inline unsigned SC_KERNEL(plane_parts)(const SC_KERNEL(neighbors) * x, int s, lanes extent)
+static inline unsigned plane_parts(const neighbors *x, int s, lanes extent)
 {
     const lanes *e = x->at[s][0], *f = x->at[s][1];
     lanes n[3], size = lanes_all(0), bound, d[2];
     int c;
-    SC_KERNEL(find_normal)(x, s, n);
+    find_normal(x, s, n);
     SC_UNROLL
     for (c = 0; c < 3; c++)
         size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
-    bound = SC_KERNEL(neighbor_plane_bound)(size, extent);
-    d[0] = SC_KERNEL(dot)(n, x->at[1 - s][0]);
-    d[1] = SC_KERNEL(dot)(n, x->at[1 - s][1]);
+    bound = neighbor_plane_bound(size, extent);
+    d[0] = dot_product(n, x->at[1 - s][0]);
+    d[1] = dot_product(n, x->at[1 - s][1]);
     return lanes_bits(lanes_below(bound, lanes_smaller(d[0], d[1]))) |
            lanes_bits(lanes_below(lanes_larger(d[0], d[1]), lanes_subtract(lanes_all(0), bound)));
 }
 
 /* Corners as they are seen along the axis nearest to n. */
-static SC_INLINE void SC_KERNEL(see_along)(const lanes n[3], const lanes corner[][3], int count,
-                                           lanes flat[][2])
+static SC_INLINE void see_along(const lanes n[3], const lanes corner[][3], int count,
+                                lanes flat[][2])
 {
     lanes size[3];
     lanes_mask first, second;
@@ -270,7 +265,7 @@ static SC_INLINE void SC_KERNEL(see_along)(const lanes n[3], const lanes corner[
 }
 
 /* What a side in a projection may be off by; see query/sixteen_kernel.h. */
-static inline lanes SC_KERNEL(side_bound)(lanes extent)
+static inline lanes side_bound(lanes extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     return lanes_add(lanes_multiply(lanes_all(5 * edge), lanes_add(extent, lanes_all(edge))),
@@ -278,40 +273,38 @@ static inline lanes SC_KERNEL(side_bound)(lanes extent)
 }
 
 /* On which side of e f is, certainly. */
-typedef struct SC_KERNEL(side) {
+typedef struct side_bits {
     unsigned left, right;
-} SC_KERNEL(side);
+} side_bits;
 
-static inline SC_KERNEL(side)
-    SC_KERNEL(side_of)(const lanes e[2], const lanes f[2], lanes bound, lanes minus_bound)
+static inline side_bits side_of(const lanes e[2], const lanes f[2], lanes bound, lanes minus_bound)
 {
     lanes d = lanes_subtract(lanes_multiply(e[0], f[1]), lanes_multiply(e[1], f[0]));
-    SC_KERNEL(side) r;
+    side_bits r;
     r.left = lanes_bits(lanes_below(bound, d));
     r.right = lanes_bits(lanes_below(d, minus_bound));
     return r;
 }
 
 /* The lanes in which a line parts them, seen along the axis nearest to the normal of t. */
-static inline unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, lanes extent)
+static inline unsigned side_parts(const neighbors *x, lanes extent)
 {
-    const lanes bound = SC_KERNEL(side_bound)(extent);
+    const lanes bound = side_bound(extent);
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
     lanes n[3], flat[2][2][2];
-    SC_KERNEL(side) own[2], of[2][2]; /* a_0, a_1; b_0, b_1; a_i, b_k */
+    side_bits own[2], of[2][2]; /* a_0, a_1; b_0, b_1; a_i, b_k */
     unsigned apart = 0;
     int s, i, k;
-    SC_KERNEL(find_normal)(x, 0, n);
+    find_normal(x, 0, n);
     SC_UNROLL
     for (s = 0; s < 2; s++) {
-        SC_KERNEL(see_along)(n, (const lanes(*)[3])x->at[s], 2, flat[s]);
-        own[s] = SC_KERNEL(side_of)(flat[s][0], flat[s][1], bound, minus_bound);
+        see_along(n, (const lanes(*)[3])x->at[s], 2, flat[s]);
+        own[s] = side_of(flat[s][0], flat[s][1], bound, minus_bound);
     }
     SC_UNROLL
     for (i = 0; i < 2; i++) {
         SC_UNROLL
-        for (k = 0; k < 2; k++)
-            of[i][k] = SC_KERNEL(side_of)(flat[0][i], flat[1][k], bound, minus_bound);
+        for (k = 0; k < 2; k++) of[i][k] = side_of(flat[0][i], flat[1][k], bound, minus_bound);
     }
     /* a_0 has b_k on side of[0][k] and a_1 on its own; a_1 has a_0 on the other */
     apart |= (own[0].left & of[0][0].right & of[0][1].right) |
@@ -329,14 +322,14 @@ static inline unsigned SC_KERNEL(side_parts)(const SC_KERNEL(neighbors) * x, lan
 
 /* Takes those of the last pairs that are open, sixteen or all, that may meet outside of what they
    share. */
-static void SC_KERNEL(settle_neighbors)(sc_query_state *state, SC_KERNEL(open_neighbors) * open)
+static void settle_neighbors(sc_query_state *state, open_neighbors *open)
 {
     const unsigned some = open->count < SC_LANES_COUNT ? open->count : SC_LANES_COUNT;
     const unsigned at = open->count - some;
     const lanes extent = lanes_load(open->extent + at);
     const uint32_t *triangle = sc_model_triangle(state->model);
     unsigned mask = (1u << some) - 1u, rest;
-    SC_KERNEL(neighbors) x;
+    neighbors x;
     lanes_mask same[3];
     lanes from[3], to[3];
     int i, k, c;
@@ -361,10 +354,10 @@ static void SC_KERNEL(settle_neighbors)(sc_query_state *state, SC_KERNEL(open_ne
     for (c = 0; c < 3; c++) same[c] = lanes_same(x.at[1][0][c], x.at[1][1][c]);
     x.edge = lanes_bits(lanes_both(same[0], lanes_both(same[1], same[2])));
     x.point = ~x.edge;
-    mask &= ~SC_KERNEL(side_parts)(&x, extent);
+    mask &= ~side_parts(&x, extent);
     if (mask) {
-        mask &= ~SC_KERNEL(plane_parts)(&x, 1, extent);
-        mask &= ~SC_KERNEL(plane_parts)(&x, 0, extent);
+        mask &= ~plane_parts(&x, 1, extent);
+        mask &= ~plane_parts(&x, 0, extent);
     }
     for (rest = mask; rest; rest &= rest - 1) {
         const unsigned lane = at + sc_bits_lowest(rest);
@@ -378,68 +371,65 @@ static void SC_KERNEL(settle_neighbors)(sc_query_state *state, SC_KERNEL(open_ne
 }
 
 /* Two leaf clusters, or one twice, of which pairs are taken. */
-typedef struct SC_KERNEL(neighborhoods) {
-    SC_KERNEL(neighborhood) a, b;
+typedef struct neighborhoods {
+    neighborhood a, b;
     uint32_t first[SC_NEIGHBORS_ROWS]; /* what is added to numbers to list pairs as open */
     float extent;                      /* of both */
     int take_edges;                    /* pairs that share an edge are wanted */
-} SC_KERNEL(neighborhoods);
+} neighborhoods;
 
 /* Sets all but what the triangles' corners are. */
-static inline void SC_KERNEL(begin_neighbors)(const sc_query_state *state, const sc_leaf_pair *p,
-                                              SC_KERNEL(neighborhoods) * n)
+static inline void begin_neighbors(const sc_query_state *state, const sc_leaf_pair *p,
+                                   neighborhoods *n)
 {
     const uint32_t *first = sc_model_leaf_first(state->model);
     n->first[0] = n->first[1] = n->first[2] = SC_LEAF_POINTS * p->a;
     n->first[3] = n->first[4] = SC_LEAF_POINTS * p->b;
     n->first[5] = first[p->a];
     n->first[6] = first[p->b];
-    n->extent = SC_KERNEL(extent)(state, p->a, p->b);
+    n->extent = pair_extent(state, p->a, p->b);
     n->take_edges =
         state->options.pairs != SC_PAIRS_EDGE && state->options.contact != SC_CONTACT_PROPER;
 }
 
 /* Lists pairs as open. */
-static inline void SC_KERNEL(add_open)(sc_query_state *state, unsigned mask,
-                                       const SC_KERNEL(neighborhoods) * n,
-                                       const SC_KERNEL(neighbor_rows) * numbers,
-                                       SC_KERNEL(open_neighbors) * open)
+static inline void add_open(sc_query_state *state, unsigned mask, const neighborhoods *n,
+                            const neighbor_rows *numbers, open_neighbors *open)
 {
     lanes_store(open->extent + open->count, lanes_all(n->extent));
     lanes_list_rows(mask, numbers->row, n->first, SC_NEIGHBORS_ROWS, &open->number[0][open->count],
                     2 * SC_LANES_COUNT);
     open->count += sc_bits_count(mask);
-    if (open->count >= SC_LANES_COUNT) SC_KERNEL(settle_neighbors)(state, open);
+    if (open->count >= SC_LANES_COUNT) settle_neighbors(state, open);
 }
 
 /* The lanes of those of sixteen from a number on that are below an end. */
-static inline unsigned SC_KERNEL(lanes_before)(unsigned at, unsigned end)
+static inline unsigned lanes_before(unsigned at, unsigned end)
 {
     return end - at < SC_LANES_COUNT ? (1u << (end - at)) - 1u : 0xffffu;
 }
 
 /* Takes those of pairs of triangles with these numbers, of two leaf clusters or one, that may meet
    outside of what they share. */
-static void SC_KERNEL(take_neighbors)(sc_query_state *state, const sc_leaf_pair *p, uint8_t *of_a,
-                                      uint8_t *of_b, unsigned count,
-                                      SC_KERNEL(open_neighbors) * open)
+static void take_neighbors(sc_query_state *state, const sc_leaf_pair *p, uint8_t *of_a,
+                           uint8_t *of_b, unsigned count, open_neighbors *open)
 {
-    SC_KERNEL(neighborhoods) n;
-    SC_KERNEL(neighbors) x;
-    SC_KERNEL(neighbor_rows) numbers;
+    neighborhoods n;
+    neighbors x;
+    neighbor_rows numbers;
     unsigned at;
-    SC_KERNEL(begin_neighbors)(state, p, &n);
-    SC_KERNEL(find_points)(state, p->a, p->a, &n.a);
-    SC_KERNEL(find_points)(state, p->a, p->b, &n.b);
+    begin_neighbors(state, p, &n);
+    find_points(state, p->a, p->a, &n.a);
+    find_points(state, p->a, p->b, &n.b);
     memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
     memset(of_b + count, 0, SC_LANES_COUNT);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
-        unsigned mask = SC_KERNEL(lanes_before)(at, count), odd;
-        SC_KERNEL(load_neighbors)(&n.a, &n.b, of_a + at, of_b + at, &x, &numbers);
+        unsigned mask = lanes_before(at, count), odd;
+        load_neighbors(&n.a, &n.b, of_a + at, of_b + at, &x, &numbers);
         odd = mask & ~(x.point | x.edge);
         mask &= n.take_edges ? x.point | x.edge : x.point;
-        mask &= ~(SC_KERNEL(direction_parts)(&x, n.extent) & x.point);
-        if (mask) SC_KERNEL(add_open)(state, mask, &n, &numbers, open);
+        mask &= ~(direction_parts(&x, n.extent) & x.point);
+        if (mask) add_open(state, mask, &n, &numbers, open);
         for (; odd; odd &= odd - 1) {
             uint32_t lane = at + sc_bits_lowest(odd);
             sc_candidates_add_neighbors(state, n.first[5] + of_a[lane], n.first[6] + of_b[lane]);
@@ -448,28 +438,27 @@ static void SC_KERNEL(take_neighbors)(sc_query_state *state, const sc_leaf_pair 
 }
 
 /* The same of pairs that the model lists. */
-static void SC_KERNEL(take_listed)(sc_query_state *state, const sc_leaf_pair *p,
-                                   SC_KERNEL(open_neighbors) * open)
+static void take_listed(sc_query_state *state, const sc_leaf_pair *p, open_neighbors *open)
 {
     const uint16_t *list = p->list + SC_SHARE_ROWS + sc_bits_count(p->list[SC_SHARE_TRIANGLES]);
     const unsigned points = sc_share_points(p->list), edges = points + sc_share_edges(p->list);
     const unsigned count = (unsigned)(p->list_end - list);
-    SC_KERNEL(neighborhoods) n;
-    SC_KERNEL(neighbors) x;
-    SC_KERNEL(neighbor_rows) numbers;
+    neighborhoods n;
+    neighbors x;
+    neighbor_rows numbers;
     unsigned at, mask;
-    SC_KERNEL(begin_neighbors)(state, p, &n);
-    SC_KERNEL(find_points)(state, p->a, p->a, &n.a);
-    SC_KERNEL(find_points)(state, p->b, p->b, &n.b);
+    begin_neighbors(state, p, &n);
+    find_points(state, p->a, p->a, &n.a);
+    find_points(state, p->b, p->b, &n.b);
     for (at = 0; at < points; at += SC_LANES_COUNT) {
-        SC_KERNEL(load_listed)(&n.a, &n.b, list + at, &x, &numbers);
-        mask = SC_KERNEL(lanes_before)(at, points) & ~SC_KERNEL(direction_parts)(&x, n.extent);
-        if (mask) SC_KERNEL(add_open)(state, mask, &n, &numbers, open);
+        load_listed(&n.a, &n.b, list + at, &x, &numbers);
+        mask = lanes_before(at, points) & ~direction_parts(&x, n.extent);
+        if (mask) add_open(state, mask, &n, &numbers, open);
     }
     for (at = points; n.take_edges && at < edges; at += SC_LANES_COUNT) {
-        SC_KERNEL(load_listed)(&n.a, &n.b, list + at, &x, &numbers);
+        load_listed(&n.a, &n.b, list + at, &x, &numbers);
         numbers.row[3] = numbers.row[4];
-        SC_KERNEL(add_open)(state, SC_KERNEL(lanes_before)(at, edges), &n, &numbers, open);
+        add_open(state, lanes_before(at, edges), &n, &numbers, open);
     }
     for (at = edges; at < count; at++)
         sc_candidates_add_neighbors(state, n.first[5] + (list[at] & 15u),

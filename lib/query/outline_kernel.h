@@ -32,7 +32,7 @@
  */
 
 /* Of so many points in a circle, which one is next. */
-static const uint8_t SC_KERNEL(next_of)[SC_LEAF_POINTS + 1][SC_LANES_COUNT] = {
+static const uint8_t next_of[SC_LEAF_POINTS + 1][SC_LANES_COUNT] = {
     {0},
     {0},
     {1, 0},
@@ -52,13 +52,13 @@ static const uint8_t SC_KERNEL(next_of)[SC_LEAF_POINTS + 1][SC_LANES_COUNT] = {
     {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 0}};
 
 /* The points of a leaf cluster in the plane, relative to some middle. */
-typedef struct SC_KERNEL(plane_points) {
+typedef struct plane_points {
     lanes at[2];
     float bound; /* what a product of vectors between them, or from the middle, may be off by */
-} SC_KERNEL(plane_points);
+} plane_points;
 
-static inline void SC_KERNEL(see_points)(const sc_query_state *state, uint32_t leaf,
-                                         const float direction[3], SC_KERNEL(plane_points) * p)
+static inline void see_points(const sc_query_state *state, uint32_t leaf, const float direction[3],
+                              plane_points *p)
 {
     float across[2][3], size[2], most, error;
     lanes at[3], far = lanes_all(0);
@@ -70,7 +70,7 @@ static inline void SC_KERNEL(see_points)(const sc_query_state *state, uint32_t l
         far = lanes_larger(far, lanes_absolute(at[k]));
     }
     most = lanes_most(far);
-    SC_KERNEL(find_across)(direction, across);
+    find_across(direction, across);
     SC_UNROLL
     for (k = 0; k < 2; k++) {
         const float *c = across[k];
@@ -85,20 +85,19 @@ static inline void SC_KERNEL(see_points)(const sc_query_state *state, uint32_t l
 }
 
 /* Those of them with these numbers. */
-static inline void SC_KERNEL(pick_points)(const SC_KERNEL(plane_points) * p, lanes_index i,
-                                          lanes at[2])
+static inline void pick_points(const plane_points *p, lanes_index i, lanes at[2])
 {
     at[0] = lanes_pick_of(p->at[0], i);
     at[1] = lanes_pick_of(p->at[1], i);
 }
 
-static inline lanes SC_KERNEL(cross)(const lanes a[2], const lanes b[2])
+static inline lanes cross(const lanes a[2], const lanes b[2])
 {
     return lanes_subtract(lanes_multiply(a[0], b[1]), lanes_multiply(a[1], b[0]));
 }
 
 /* Twice the area of triangles, negative if they run clockwise. */
-static inline lanes SC_KERNEL(area_of)(const lanes a[2], const lanes b[2], const lanes c[2])
+static inline lanes area_of(const lanes a[2], const lanes b[2], const lanes c[2])
 {
     lanes ab[2], ac[2];
     int k;
@@ -107,52 +106,49 @@ static inline lanes SC_KERNEL(area_of)(const lanes a[2], const lanes b[2], const
         ab[k] = lanes_subtract(b[k], a[k]);
         ac[k] = lanes_subtract(c[k], a[k]);
     }
-    return SC_KERNEL(cross)(ab, ac);
+    return cross(ab, ac);
 }
 
 /* Whether each of sixteen triangles certainly runs counter-clockwise. */
-static inline int SC_KERNEL(all_face)(const SC_KERNEL(plane_points) * p, const uint8_t *corner)
+static inline int all_face(const plane_points *p, const uint8_t *corner)
 {
     lanes x[3][2];
     int k;
     SC_UNROLL
-    for (k = 0; k < 3; k++)
-        SC_KERNEL(pick_points)(p, lanes_index_load(corner + SC_LEAF_MAX * k), x[k]);
-    return lanes_every(lanes_below(lanes_all(p->bound), SC_KERNEL(area_of)(x[0], x[1], x[2])));
+    for (k = 0; k < 3; k++) pick_points(p, lanes_index_load(corner + SC_LEAF_MAX * k), x[k]);
+    return lanes_every(lanes_below(lanes_all(p->bound), area_of(x[0], x[1], x[2])));
 }
 
 /* Whether so many points in a circle, listed from the second on, certainly make a star when some
    are dropped. */
-static inline int SC_KERNEL(is_star)(const SC_KERNEL(plane_points) * p, lanes_bytes second,
-                                     unsigned count)
+static inline int is_star(const plane_points *p, lanes_bytes second, unsigned count)
 {
-    const lanes_bytes next = lanes_bytes_load(SC_KERNEL(next_of)[count]);
+    const lanes_bytes next = lanes_bytes_load(next_of[count]);
     const lanes_bytes third = lanes_bytes_through(second, next);
     const lanes bound = lanes_all(p->bound), minus_bound = lanes_subtract(lanes_all(0), bound);
     uint8_t number[SC_LANES_COUNT + 4] = {0};
     lanes_bytes kept;
     lanes x[3][2];
     unsigned in, ahead, up;
-    SC_KERNEL(pick_points)(p, lanes_index_of(second), x[0]);
-    SC_KERNEL(pick_points)(p, lanes_index_of(third), x[1]);
-    SC_KERNEL(pick_points)(p, lanes_index_of(lanes_bytes_through(third, next)), x[2]);
-    in = lanes_bits(lanes_below(SC_KERNEL(area_of)(x[0], x[1], x[2]), minus_bound));
+    pick_points(p, lanes_index_of(second), x[0]);
+    pick_points(p, lanes_index_of(third), x[1]);
+    pick_points(p, lanes_index_of(lanes_bytes_through(third, next)), x[2]);
+    in = lanes_bits(lanes_below(area_of(x[0], x[1], x[2]), minus_bound));
     in &= (1u << count) - 1u;
     in &= ~(in << 1 | in >> (count - 1));
     count = lanes_list(((1u << count) - 1u) & ~in, number);
     kept = lanes_bytes_through(third, lanes_bytes_load(number));
-    SC_KERNEL(pick_points)(p, lanes_index_of(kept), x[0]);
-    SC_KERNEL(pick_points)
-    (p, lanes_index_of(lanes_bytes_through(kept, lanes_bytes_load(SC_KERNEL(next_of)[count]))),
-     x[1]);
-    ahead = lanes_bits(lanes_below(bound, SC_KERNEL(cross)(x[0], x[1])));
+    pick_points(p, lanes_index_of(kept), x[0]);
+    pick_points(p, lanes_index_of(lanes_bytes_through(kept, lanes_bytes_load(next_of[count]))),
+                x[1]);
+    ahead = lanes_bits(lanes_below(bound, cross(x[0], x[1])));
     up = lanes_bits(
         lanes_both(lanes_not_above(x[0][1], lanes_all(0)), lanes_below(lanes_all(0), x[1][1])));
     return !(~ahead & ((1u << count) - 1u)) && sc_bits_count(up & ((1u << count) - 1u)) == 1;
 }
 
 /* Whether the triangles of a cluster certainly have nothing in common but what they share. */
-static int SC_KERNEL(is_plain)(const sc_query_state *state, uint32_t leaf)
+static int is_plain(const sc_query_state *state, uint32_t leaf)
 {
     const sc_model *model = state->model;
     const uint8_t *outline = sc_model_leaf_outline(model) + SC_LEAF_POINTS * (uint64_t)leaf;
@@ -160,13 +156,11 @@ static int SC_KERNEL(is_plain)(const sc_query_state *state, uint32_t leaf)
     const unsigned count = last < SC_LEAF_POINTS   ? SC_LEAF_POINTS
                            : last & SC_OUTLINE_TWO ? 0
                                                    : last - SC_LEAF_POINTS;
-    SC_KERNEL(plane_points) p;
+    plane_points p;
     if (!count) return 0;
-    SC_KERNEL(see_points)(state, leaf, SC_KERNEL(slab)(state, leaf, 0)->direction, &p);
-    return SC_KERNEL(all_face)(&p,
-                               sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf) &&
-           SC_KERNEL(is_star)(&p,
-                              lanes_bytes_through(lanes_bytes_load(outline),
-                                                  lanes_bytes_load(SC_KERNEL(next_of)[count])),
-                              count);
+    see_points(state, leaf, slab_of(state, leaf, 0)->direction, &p);
+    return all_face(&p, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf) &&
+           is_star(&p,
+                   lanes_bytes_through(lanes_bytes_load(outline), lanes_bytes_load(next_of[count])),
+                   count);
 }

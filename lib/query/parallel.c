@@ -181,13 +181,13 @@ static void run_part(sc_query_state *s, const sc_part *part)
     case PART_PATCH:
         sc_traversal_follow_contour(s, 0);
         pair.a = pair.b = part->a;
-        sc_query_kernels_of(s->workspace)->patch_pairs(s, &pair, 1);
+        s->workspace->kernels->query->patch_pairs(s, &pair, 1);
         break;
     default:
         sc_traversal_follow_contour(s, part->kind == PART_PAIR_AFTER_CONTOUR);
         pair.a = part->a;
         pair.b = part->b;
-        sc_query_kernels_of(s->workspace)->patch_pairs(s, &pair, 1);
+        s->workspace->kernels->query->patch_pairs(s, &pair, 1);
     }
 }
 

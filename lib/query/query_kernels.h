@@ -6,7 +6,6 @@
 #ifndef SC_QUERY_KERNELS_H
 #define SC_QUERY_KERNELS_H
 
-#include "base/isa.h"
 #include "query/candidates.h"
 #include "query/simple_contour.h"
 
@@ -33,21 +32,5 @@ typedef struct sc_query_kernels {
     unsigned (*find_simple)(sc_query_state *state, const uint32_t *nodes, uint32_t count,
                             uint32_t blocks, const float *const axes[]);
 } sc_query_kernels;
-
-extern const sc_query_kernels sc_query_kernels_base;
-#if SC_ISA_X86
-extern const sc_query_kernels sc_query_kernels_avx2, sc_query_kernels_avx512;
-#endif
-
-/* Those for the query at hand. */
-static inline const sc_query_kernels *sc_query_kernels_of(const sc_workspace *workspace)
-{
-#if SC_ISA_X86
-    if (workspace->isa == SC_ISA_AVX512) return &sc_query_kernels_avx512;
-    if (workspace->isa == SC_ISA_AVX2) return &sc_query_kernels_avx2;
-#endif
-    (void)workspace;
-    return &sc_query_kernels_base;
-}
 
 #endif

@@ -9,7 +9,7 @@
 
 #include "base/arguments.h"
 #include "base/assume.h"
-#include "base/isa.h"
+#include "simd/isa.h"
 #include "build/mesh.h"
 #include "query/filter.h"
 

@@ -12,8 +12,7 @@
  * of them and the sum of one with the bound are below 5e-7 |n|1 + 16 FLT_MIN.
  */
 /* Bit k: box i of a overlaps box j + k of b, for k from 0 to 15. */
-static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const sc_boxes *b,
-                                          uint64_t j)
+static inline unsigned overlap(const sc_boxes *a, uint64_t i, const sc_boxes *b, uint64_t j)
 {
     lanes_mask m[3];
     int k;
@@ -26,8 +25,8 @@ static inline unsigned SC_KERNEL(overlap)(const sc_boxes *a, uint64_t i, const s
 }
 
 /* Where the points of a leaf cluster are along a direction. */
-static inline lanes SC_KERNEL(along)(const sc_query_state *state, uint32_t leaf,
-                                     const float direction[3])
+static inline lanes points_along(const sc_query_state *state, uint32_t leaf,
+                                 const float direction[3])
 {
     lanes at[3];
     int k;
@@ -38,8 +37,7 @@ static inline lanes SC_KERNEL(along)(const sc_query_state *state, uint32_t leaf,
 }
 
 /* The corners of a leaf cluster's triangles. */
-static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t leaf,
-                                           lanes x[3][3])
+static inline void leaf_corners(const sc_query_state *state, uint32_t leaf, lanes x[3][3])
 {
     lanes_corners_at(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf,
                      sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf, x);
@@ -47,7 +45,7 @@ static inline void SC_KERNEL(leaf_corners)(const sc_query_state *state, uint32_t
 
 /* Boxes of the triangles of a leaf cluster, by their corners; what is no triangle is NaN and
    overlaps nothing. */
-static inline void SC_KERNEL(make_boxes)(lanes x[3][3], uint32_t triangles, sc_leaf_ready *ready)
+static inline void make_boxes(lanes x[3][3], uint32_t triangles, sc_leaf_ready *ready)
 {
     const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(SC_BOXES_LEAST);
     const lanes nothing = lanes_all((float)NAN);
@@ -65,7 +63,7 @@ static inline void SC_KERNEL(make_boxes)(lanes x[3][3], uint32_t triangles, sc_l
 }
 
 /* Their planes. */
-static inline void SC_KERNEL(make_normals)(lanes x[3][3], sc_leaf_ready *ready)
+static inline void make_normals(lanes x[3][3], sc_leaf_ready *ready)
 {
     lanes e[3], f[3], n[3], size, offset;
     int c;
@@ -92,7 +90,7 @@ static inline void SC_KERNEL(make_normals)(lanes x[3][3], sc_leaf_ready *ready)
 }
 
 /* Makes a leaf cluster ready, at some place. */
-static void SC_KERNEL(make_ready)(const sc_query_state *state, uint32_t leaf, uint32_t at)
+static void make_ready(const sc_query_state *state, uint32_t leaf, uint32_t at)
 {
     const uint32_t *first = sc_model_leaf_first(state->model) + leaf;
     sc_workspace *w = state->workspace;
@@ -101,9 +99,9 @@ static void SC_KERNEL(make_ready)(const sc_query_state *state, uint32_t leaf, ui
     float extent = 0;
     lanes x[3][3];
     int c;
-    SC_KERNEL(leaf_corners)(state, leaf, x);
-    SC_KERNEL(make_boxes)(x, first[1] - first[0], w->ready + at);
-    SC_KERNEL(make_normals)(x, w->ready + at);
+    leaf_corners(state, leaf, x);
+    make_boxes(x, first[1] - first[0], w->ready + at);
+    make_normals(x, w->ready + at);
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         const float length = boxes->side[c + 3][box] - boxes->side[c][box];
@@ -115,30 +113,30 @@ static void SC_KERNEL(make_ready)(const sc_query_state *state, uint32_t leaf, ui
 }
 
 /* Where a leaf cluster is kept; is_upper: it is the upper of the two of a pair. */
-static inline uint32_t SC_KERNEL(place)(const sc_query_state *state, uint32_t leaf, int is_upper)
+static inline uint32_t ready_place(const sc_query_state *state, uint32_t leaf, int is_upper)
 {
     const sc_workspace *w = state->workspace;
     return (leaf & w->ready_mask) + (is_upper ? w->ready_upper : 0);
 }
 
 /* Whether a leaf cluster is ready; and a leaf cluster that is. */
-static inline unsigned SC_KERNEL(is_ready)(const sc_query_state *state, uint32_t leaf, int is_upper)
+static inline unsigned is_ready(const sc_query_state *state, uint32_t leaf, int is_upper)
 {
     const sc_workspace *w = state->workspace;
-    const sc_leaf_known *known = w->known + SC_KERNEL(place)(state, leaf, is_upper);
+    const sc_leaf_known *known = w->known + ready_place(state, leaf, is_upper);
     return (unsigned)(known->leaf == leaf) & (unsigned)(known->tick == w->pose_tick);
 }
 
-static inline const sc_leaf_ready *SC_KERNEL(ready)(const sc_query_state *state, uint32_t leaf,
-                                                    int is_upper)
+static inline const sc_leaf_ready *ready_leaf(const sc_query_state *state, uint32_t leaf,
+                                              int is_upper)
 {
-    uint32_t at = SC_KERNEL(place)(state, leaf, is_upper);
-    if (!SC_KERNEL(is_ready)(state, leaf, is_upper)) SC_KERNEL(make_ready)(state, leaf, at);
+    uint32_t at = ready_place(state, leaf, is_upper);
+    if (!is_ready(state, leaf, is_upper)) make_ready(state, leaf, at);
     return state->workspace->ready + at;
 }
 
 /* How far the places of two points along a direction, and an end of a slab, may be off. */
-static inline float SC_KERNEL(slab_reach)(const float direction[3])
+static inline float slab_reach(const float direction[3])
 {
     float reach = 16 * FLT_MIN;
     int c;
@@ -147,33 +145,31 @@ static inline float SC_KERNEL(slab_reach)(const float direction[3])
 }
 
 /* Makes the slab of a leaf cluster that is ready. */
-static inline void SC_KERNEL(make_slab)(const sc_query_state *state, uint32_t leaf,
-                                        const sc_leaf_ready *ready)
+static inline void make_slab(const sc_query_state *state, uint32_t leaf, const sc_leaf_ready *ready)
 {
     sc_leaf_slab *slab = state->workspace->slab + leaf;
     float reach;
     lanes along;
     int c;
     for (c = 0; c < 3; c++) slab->direction[c] = lanes_sum(lanes_load(ready->normal[c]));
-    reach = SC_KERNEL(slab_reach)(slab->direction);
-    along = SC_KERNEL(along)(state, leaf, slab->direction);
+    reach = slab_reach(slab->direction);
+    along = points_along(state, leaf, slab->direction);
     slab->ends[0] = lanes_least(along) - reach;
     slab->ends[1] = lanes_most(along) + reach;
     slab->tick = state->workspace->pose_tick;
 }
 
 /* That slab; is_upper as above. */
-static inline const sc_leaf_slab *SC_KERNEL(slab)(const sc_query_state *state, uint32_t leaf,
-                                                  int is_upper)
+static inline const sc_leaf_slab *slab_of(const sc_query_state *state, uint32_t leaf, int is_upper)
 {
     const sc_leaf_slab *slab = state->workspace->slab + leaf;
     if (slab->tick != state->workspace->pose_tick)
-        SC_KERNEL(make_slab)(state, leaf, SC_KERNEL(ready)(state, leaf, is_upper));
+        make_slab(state, leaf, ready_leaf(state, leaf, is_upper));
     return slab;
 }
 
 /* Asks for what a leaf cluster is made ready of, and where. */
-static inline void SC_KERNEL(fetch_to_make)(const sc_query_state *state, uint32_t leaf)
+static inline void fetch_to_make(const sc_query_state *state, uint32_t leaf)
 {
     const sc_workspace *w = state->workspace;
     const float *at = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
@@ -190,8 +186,8 @@ static inline void SC_KERNEL(fetch_to_make)(const sc_query_state *state, uint32_
 /* Where all leaf clusters are kept, makes the slabs of so many that have none yet. These are listed
    first, and those of them that are not ready, so that no branch depends on which they are, and
    many are made at the same time. */
-static SC_NOINLINE void SC_KERNEL(make_slabs)(const sc_query_state *state, const uint32_t *leaf,
-                                              uint32_t count)
+static SC_NOINLINE void make_slabs(const sc_query_state *state, const uint32_t *leaf,
+                                   uint32_t count)
 {
     enum { AHEAD = 4 };
     const sc_workspace *w = state->workspace;
@@ -204,39 +200,39 @@ static SC_NOINLINE void SC_KERNEL(make_slabs)(const sc_query_state *state, const
     }
     for (i = 0; i < bare_count; i++) {
         unready[unready_count] = bare[i];
-        unready_count += !SC_KERNEL(is_ready)(state, bare[i], 0);
+        unready_count += !is_ready(state, bare[i], 0);
     }
-    for (i = 0; i < unready_count && i < AHEAD; i++) SC_KERNEL(fetch_to_make)(state, unready[i]);
+    for (i = 0; i < unready_count && i < AHEAD; i++) fetch_to_make(state, unready[i]);
     for (i = 0; i < unready_count; i++) {
-        if (i + AHEAD < unready_count) SC_KERNEL(fetch_to_make)(state, unready[i + AHEAD]);
-        SC_KERNEL(make_ready)(state, unready[i], unready[i]);
+        if (i + AHEAD < unready_count) fetch_to_make(state, unready[i + AHEAD]);
+        make_ready(state, unready[i], unready[i]);
     }
-    for (i = 0; i < bare_count; i++) SC_KERNEL(make_slab)(state, bare[i], w->ready + bare[i]);
+    for (i = 0; i < bare_count; i++) make_slab(state, bare[i], w->ready + bare[i]);
 }
 
 /* Not 0 if all points of a leaf cluster are certainly before a slab, or behind. Without branches,
    as either may be. */
-static inline unsigned SC_KERNEL(is_beside)(const sc_query_state *state, uint32_t leaf,
-                                            const sc_leaf_slab *slab)
+static inline unsigned is_beside(const sc_query_state *state, uint32_t leaf,
+                                 const sc_leaf_slab *slab)
 {
-    lanes along = SC_KERNEL(along)(state, leaf, slab->direction);
+    lanes along = points_along(state, leaf, slab->direction);
     return (unsigned)(lanes_every(lanes_below(along, lanes_all(slab->ends[0])))) |
            (unsigned)(lanes_every(lanes_below(lanes_all(slab->ends[1]), along)));
 }
 
 /* Whether the slab of one of two leaf clusters, a < b, certainly has the other on one side. If they
    share a point, it is in both, to the last bit. */
-static inline unsigned SC_KERNEL(slabs_part)(const sc_query_state *state, uint32_t a, uint32_t b)
+static inline unsigned slabs_part(const sc_query_state *state, uint32_t a, uint32_t b)
 {
-    const sc_leaf_slab *of_a = SC_KERNEL(slab)(state, a, 0), *of_b = SC_KERNEL(slab)(state, b, 1);
-    return SC_KERNEL(is_beside)(state, b, of_a) | SC_KERNEL(is_beside)(state, a, of_b);
+    const sc_leaf_slab *of_a = slab_of(state, a, 0), *of_b = slab_of(state, b, 1);
+    return is_beside(state, b, of_a) | is_beside(state, a, of_b);
 }
 
 /* Bounds the largest extent of two leaf clusters together, or of one, that are ready and whose
    boxes overlap. */
-static inline float SC_KERNEL(extent)(const sc_query_state *state, uint32_t a, uint32_t b)
+static inline float pair_extent(const sc_query_state *state, uint32_t a, uint32_t b)
 {
     const sc_leaf_known *known = state->workspace->known;
-    const float extent = known[SC_KERNEL(place)(state, a, a > b)].extent;
-    return a == b ? extent : extent + known[SC_KERNEL(place)(state, b, b > a)].extent;
+    const float extent = known[ready_place(state, a, a > b)].extent;
+    return a == b ? extent : extent + known[ready_place(state, b, b > a)].extent;
 }

@@ -29,35 +29,34 @@
 /* Points of a contour that is looked at, at most; edges of one of which all are compared; pairs of
    clusters at a time. */
 enum {
-    SC_KERNEL(SHORT_POINTS) = 2 * SC_LANES_COUNT - 3,
-    SC_KERNEL(SHORT_EDGES) = SC_LANES_COUNT,
-    SC_KERNEL(SHORT_PAIRS) = SC_DNC_VECTORS
+    SHORT_POINTS = 2 * SC_LANES_COUNT - 3,
+    SHORT_EDGES = SC_LANES_COUNT,
+    SHORT_PAIRS = SC_DNC_VECTORS
 };
 
 /* A contour in the plane: its points, of which the first follow the last again. */
-typedef struct SC_KERNEL(short_points) {
+typedef struct short_points {
     float x[3 * SC_LANES_COUNT], y[3 * SC_LANES_COUNT];
     float error, reach; /* of a coordinate; D */
     unsigned count;
-} SC_KERNEL(short_points);
+} short_points;
 
 /* Where its edges lead, and for which e x q a point may be on their line, between which numbers. */
-typedef struct SC_KERNEL(short_edges) {
+typedef struct short_edges {
     float x[2 * SC_LANES_COUNT], y[2 * SC_LANES_COUNT];
     float from[2 * SC_LANES_COUNT], to[2 * SC_LANES_COUNT];
-} SC_KERNEL(short_edges);
+} short_edges;
 
 /* Sixteen of those. */
-typedef struct SC_KERNEL(edges_at) {
+typedef struct edges_at {
     lanes x, y, from, to;
-} SC_KERNEL(edges_at);
+} edges_at;
 
-static SC_INLINE SC_KERNEL(edges_at)
-    SC_KERNEL(find_edges)(const SC_KERNEL(short_points) * c, unsigned first)
+static SC_INLINE edges_at find_edges(const short_points *c, unsigned first)
 {
     const lanes x = lanes_load(c->x + first), y = lanes_load(c->y + first);
     const lanes least = lanes_all(c->error * (8.2f * c->reach + 8.2f * c->error) + 16 * FLT_MIN);
-    SC_KERNEL(edges_at) e;
+    edges_at e;
     lanes at, bound;
     e.x = lanes_subtract(lanes_load(c->x + first + 1), x);
     e.y = lanes_subtract(lanes_load(c->y + first + 1), y);
@@ -71,20 +70,20 @@ static SC_INLINE SC_KERNEL(edges_at)
 }
 
 /* Where points are: e x q. */
-static inline lanes SC_KERNEL(place_of)(lanes e_x, lanes e_y, lanes q_x, lanes q_y)
+static inline lanes place_of(lanes e_x, lanes e_y, lanes q_x, lanes q_y)
 {
     return lanes_subtract(lanes_multiply(e_x, q_y), lanes_multiply(e_y, q_x));
 }
 
 /* Lets the first sixteen of a row follow so many. */
-static inline void SC_KERNEL(repeat)(float *row, unsigned count)
+static inline void repeat(float *row, unsigned count)
 {
     lanes_store(row + count, lanes_load(row));
 }
 
 /* Sixteen points along one of the two axes of a projection. */
-static inline lanes SC_KERNEL(measure)(const sc_simple_some_axes *axes, int one,
-                                       unsigned projection, const lanes d[3])
+static inline lanes measure(const sc_simple_some_axes *axes, int one, unsigned projection,
+                            const lanes d[3])
 {
     lanes sum = lanes_multiply(lanes_all(axes->at[one][0][projection]), d[0]);
     sum = lanes_add(sum, lanes_multiply(lanes_all(axes->at[one][1][projection]), d[1]));
@@ -93,9 +92,9 @@ static inline lanes SC_KERNEL(measure)(const sc_simple_some_axes *axes, int one,
 
 /* Sees a loop of c->count points of two leaf clusters, a < b. What is read beyond its end stands in
    the model, too. */
-static inline void SC_KERNEL(see_loop)(const sc_query_state *state, const sc_near_pair *p,
-                                       const sc_simple_some_axes *axes, unsigned projection,
-                                       const uint16_t *loop, SC_KERNEL(short_points) * c)
+static inline void see_loop(const sc_query_state *state, const sc_near_pair *p,
+                            const sc_simple_some_axes *axes, unsigned projection,
+                            const uint16_t *loop, short_points *c)
 {
     const float *of_a = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->a;
     const float *of_b = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->b;
@@ -117,8 +116,8 @@ static inline void SC_KERNEL(see_loop)(const sc_query_state *state, const sc_nea
     }
     SC_UNROLL
     for (i = 0; i < 2; i++) {
-        x[i] = SC_KERNEL(measure)(axes, 0, projection, at[i]);
-        y[i] = SC_KERNEL(measure)(axes, 1, projection, at[i]);
+        x[i] = measure(axes, 0, projection, at[i]);
+        y[i] = measure(axes, 1, projection, at[i]);
     }
     SC_UNROLL
     for (i = 0; i < 2; i++) {
@@ -132,25 +131,24 @@ static inline void SC_KERNEL(see_loop)(const sc_query_state *state, const sc_nea
 }
 
 /* The points at which a contour certainly turns in, without those that follow another one. */
-static inline unsigned SC_KERNEL(find_turns)(const SC_KERNEL(short_points) * c)
+static inline unsigned find_turns(const short_points *c)
 {
     const unsigned all = (1u << c->count) - 1u, last = c->count - 1;
     unsigned in = 0, first;
     SC_UNROLL
     for (first = 0; first < 2 * SC_LANES_COUNT; first += SC_LANES_COUNT) {
-        const SC_KERNEL(edges_at) e = SC_KERNEL(find_edges)(c, first);
+        const edges_at e = find_edges(c, first);
         const lanes x = lanes_load(c->x + first + 2), y = lanes_load(c->y + first + 2);
-        in |= lanes_bits(lanes_below(SC_KERNEL(place_of)(e.x, e.y, x, y), e.from)) << first;
+        in |= lanes_bits(lanes_below(place_of(e.x, e.y, x, y), e.from)) << first;
     }
     in &= all; /* edges; now the points they lead to */
     in = (in << 1 | in >> last) & all;
     return in & ~(in << 1 | in >> last);
 }
 
-static inline void SC_KERNEL(drop_turns)(const SC_KERNEL(short_points) * c,
-                                         SC_KERNEL(short_points) * kept)
+static inline void drop_turns(const short_points *c, short_points *kept)
 {
-    const unsigned left = ((1u << c->count) - 1u) & ~SC_KERNEL(find_turns)(c);
+    const unsigned left = ((1u << c->count) - 1u) & ~find_turns(c);
     uint8_t number[2][SC_LANES_COUNT + 4] = {{0}, {0}};
     unsigned first = lanes_list(left & 0xffffu, number[0]), i;
     kept->count = first + lanes_list(left >> SC_LANES_COUNT, number[1]);
@@ -164,10 +162,9 @@ static inline void SC_KERNEL(drop_turns)(const SC_KERNEL(short_points) * c,
     kept->reach = c->reach;
 }
 
-static inline void SC_KERNEL(write_edges)(const SC_KERNEL(short_points) * c,
-                                          SC_KERNEL(short_edges) * edges)
+static inline void write_edges(const short_points *c, short_edges *edges)
 {
-    const SC_KERNEL(edges_at) e = SC_KERNEL(find_edges)(c, 0);
+    const edges_at e = find_edges(c, 0);
     int i;
     SC_UNROLL
     for (i = 0; i < 2; i++) {
@@ -181,15 +178,14 @@ static inline void SC_KERNEL(write_edges)(const SC_KERNEL(short_points) * c,
 
 /* Above 0 where each of sixteen edges certainly is on one side of the line of that so many further
    on, or that of its own; at is where the other begins, and then where it ends. */
-static SC_INLINE lanes SC_KERNEL(room_between)(const SC_KERNEL(short_points) * c,
-                                               const SC_KERNEL(short_edges) * e, unsigned on,
-                                               lanes *at)
+static SC_INLINE lanes room_between(const short_points *c, const short_edges *e, unsigned on,
+                                    lanes *at)
 {
-    const lanes end = SC_KERNEL(place_of)(lanes_load(e->x), lanes_load(e->y),
-                                          lanes_load(c->x + on + 1), lanes_load(c->y + on + 1));
+    const lanes end = place_of(lanes_load(e->x), lanes_load(e->y), lanes_load(c->x + on + 1),
+                               lanes_load(c->y + on + 1));
     const lanes x = lanes_load(e->x + on), y = lanes_load(e->y + on);
-    const lanes p = SC_KERNEL(place_of)(x, y, lanes_load(c->x), lanes_load(c->y));
-    const lanes q = SC_KERNEL(place_of)(x, y, lanes_load(c->x + 1), lanes_load(c->y + 1));
+    const lanes p = place_of(x, y, lanes_load(c->x), lanes_load(c->y));
+    const lanes q = place_of(x, y, lanes_load(c->x + 1), lanes_load(c->y + 1));
     lanes room = lanes_subtract(lanes_smaller(*at, end), lanes_load(e->to));
     room = lanes_larger(room, lanes_subtract(lanes_load(e->from), lanes_larger(*at, end)));
     room = lanes_larger(room, lanes_subtract(lanes_smaller(p, q), lanes_load(e->to + on)));
@@ -199,29 +195,28 @@ static SC_INLINE lanes SC_KERNEL(room_between)(const SC_KERNEL(short_points) * c
 }
 
 /* Whether a contour of SHORT_EDGES edges or fewer is certainly simple. */
-static inline int SC_KERNEL(is_simple)(const SC_KERNEL(short_points) * c,
-                                       const SC_KERNEL(short_edges) * e)
+static inline int is_simple(const short_points *c, const short_edges *e)
 {
-    lanes at = SC_KERNEL(place_of)(lanes_load(e->x), lanes_load(e->y), lanes_load(c->x + 2),
-                                   lanes_load(c->y + 2));
+    lanes at =
+        place_of(lanes_load(e->x), lanes_load(e->y), lanes_load(c->x + 2), lanes_load(c->y + 2));
     lanes least = lanes_all(INFINITY);
     unsigned on;
     if (c->count >
         SC_LANES_COUNT / 2 + 1) { /* all at most; some pairs twice, but none that follow */
         SC_UNROLL
         for (on = 2; on <= SC_LANES_COUNT / 2; on++)
-            least = lanes_smaller(least, SC_KERNEL(room_between)(c, e, on, &at));
+            least = lanes_smaller(least, room_between(c, e, on, &at));
     } else {
         for (on = 2; 2 * on <= c->count; on++)
-            least = lanes_smaller(least, SC_KERNEL(room_between)(c, e, on, &at));
+            least = lanes_smaller(least, room_between(c, e, on, &at));
     }
     return !(~lanes_bits(lanes_below(lanes_all(0), least)) & ((1u << c->count) - 1u));
 }
 
 /* The contour of two leaf clusters that share points: a loop, and how many points it has, 0 if it
    will not do. */
-static inline unsigned SC_KERNEL(find_loop)(const sc_model *model, const sc_near_pair *p,
-                                            const uint16_t **loop)
+static inline unsigned find_loop(const sc_model *model, const sc_near_pair *p,
+                                 const uint16_t **loop)
 {
     const uint32_t node = sc_model_share_node(model)[p->shared];
     const sc_node *n;
@@ -229,19 +224,18 @@ static inline unsigned SC_KERNEL(find_loop)(const sc_model *model, const sc_near
     n = sc_model_node(model) + node;
     if (n->kind & (SC_NODE_TOUCHES | SC_NODE_PIECES)) return 0;
     *loop = sc_model_loop(model) + n->loop;
-    return n->loop_length > 2 && n->loop_length <= SC_KERNEL(SHORT_POINTS) ? n->loop_length : 0;
+    return n->loop_length > 2 && n->loop_length <= SHORT_POINTS ? n->loop_length : 0;
 }
 
 /* Of some pairs, of which all triangles face a direction, those that have certainly nothing in
    common but what they share. Each step is made for all of them before the next: what was just
    written is read slowly in other pieces. */
-static unsigned SC_KERNEL(find_plain)(const sc_query_state *state, sc_near_pair *const pair[],
-                                      unsigned count)
+static unsigned find_plain(const sc_query_state *state, sc_near_pair *const pair[], unsigned count)
 {
     const uint16_t *mask = state->workspace->mask + sc_model_first_leaf_patch(state->model);
-    SC_KERNEL(short_points) all[SC_KERNEL(SHORT_PAIRS)], kept[SC_KERNEL(SHORT_PAIRS)];
-    SC_KERNEL(short_edges) edges[SC_KERNEL(SHORT_PAIRS)];
-    unsigned number[SC_KERNEL(SHORT_PAIRS)] = {0}, seen = 0, fit = 0, i, plain = 0;
+    short_points all[SHORT_PAIRS], kept[SHORT_PAIRS];
+    short_edges edges[SHORT_PAIRS];
+    unsigned number[SHORT_PAIRS] = {0}, seen = 0, fit = 0, i, plain = 0;
     uint16_t both[SC_DNC_VECTORS] = {0};
     sc_simple_some_axes axes;
     for (i = 0; i < count; i++) both[i] = mask[pair[i]->a] & mask[pair[i]->b];
@@ -250,34 +244,32 @@ static unsigned SC_KERNEL(find_plain)(const sc_query_state *state, sc_near_pair 
         const sc_near_pair *p = pair[i];
         const uint16_t *loop;
         number[seen] = i;
-        all[seen].count = SC_KERNEL(find_loop)(state->model, p, &loop);
+        all[seen].count = find_loop(state->model, p, &loop);
         if (!all[seen].count) continue;
-        SC_KERNEL(see_loop)(state, p, &axes, i, loop, &all[seen++]);
+        see_loop(state, p, &axes, i, loop, &all[seen++]);
     }
     for (i = 0; i < seen; i++) {
-        SC_KERNEL(repeat)(all[i].x, all[i].count);
-        SC_KERNEL(repeat)(all[i].y, all[i].count);
+        repeat(all[i].x, all[i].count);
+        repeat(all[i].y, all[i].count);
     }
     for (i = 0; i < seen; i++) {
         number[fit] = number[i];
-        SC_KERNEL(drop_turns)(&all[i], &kept[fit]);
-        fit += kept[fit].count <= SC_KERNEL(SHORT_EDGES);
+        drop_turns(&all[i], &kept[fit]);
+        fit += kept[fit].count <= SHORT_EDGES;
     }
     for (i = 0; i < fit; i++) {
-        SC_KERNEL(repeat)(kept[i].x, kept[i].count);
-        SC_KERNEL(repeat)(kept[i].y, kept[i].count);
+        repeat(kept[i].x, kept[i].count);
+        repeat(kept[i].y, kept[i].count);
     }
-    for (i = 0; i < fit; i++) SC_KERNEL(write_edges)(&kept[i], &edges[i]);
-    for (i = 0; i < fit; i++)
-        plain |= (unsigned)SC_KERNEL(is_simple)(&kept[i], &edges[i]) << number[i];
+    for (i = 0; i < fit; i++) write_edges(&kept[i], &edges[i]);
+    for (i = 0; i < fit; i++) plain |= (unsigned)is_simple(&kept[i], &edges[i]) << number[i];
     return plain;
 }
 
 /* Asks for memory that two leaf clusters need here, in steps, of which each reads what the one
    before asked for. */
-enum { SC_KERNEL(SHORT_FETCHES) = 3 };
-static inline void SC_KERNEL(fetch_loop)(const sc_query_state *state, const sc_near_pair *p,
-                                         int step)
+enum { SHORT_FETCHES = 3 };
+static inline void fetch_loop(const sc_query_state *state, const sc_near_pair *p, int step)
 {
     const sc_model *model = state->model;
     const uint32_t *node = sc_model_share_node(model) + p->shared;
@@ -306,12 +298,12 @@ static inline void SC_KERNEL(fetch_loop)(const sc_query_state *state, const sc_n
 
 /* Of so many pairs of leaf clusters that wait drops two that have certainly nothing in common but
    what they share, and marks them: then neither is to be looked at by itself. */
-static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state, uint32_t waiting)
+static SC_NOINLINE void drop_plain(sc_query_state *state, uint32_t waiting)
 {
     enum { DISTANCE = 8 };                              /* pairs between two steps of fetching */
     const unsigned told = SC_TOUCHES | SC_NEAR_DROPPED; /* by other tests, or not at all */
     sc_workspace *w = state->workspace;
-    sc_near_pair *pairs = w->near_pairs, *some[SC_KERNEL(SHORT_PAIRS)];
+    sc_near_pair *pairs = w->near_pairs, *some[SHORT_PAIRS];
     const uint32_t first = sc_model_first_leaf_patch(state->model);
     const uint16_t *mask = w->mask + first;
     uint8_t *marks = w->walk.marks + first;
@@ -324,19 +316,18 @@ static SC_NOINLINE void SC_KERNEL(drop_plain)(sc_query_state *state, uint32_t wa
         oriented[count] = i;
         count += (p->a != p->b) & ((mask[p->a] & mask[p->b]) != 0) & !(p->known & told);
     }
-    for (step = 0; step < SC_KERNEL(SHORT_FETCHES); step++) {
-        const uint32_t ahead = DISTANCE * (uint32_t)(SC_KERNEL(SHORT_FETCHES) + 1 - step);
-        for (i = 0; i < ahead && i < count; i++)
-            SC_KERNEL(fetch_loop)(state, pairs + oriented[i], step);
+    for (step = 0; step < SHORT_FETCHES; step++) {
+        const uint32_t ahead = DISTANCE * (uint32_t)(SHORT_FETCHES + 1 - step);
+        for (i = 0; i < ahead && i < count; i++) fetch_loop(state, pairs + oriented[i], step);
     }
     for (i = 0; i < count; i++) {
-        for (step = 0; step < SC_KERNEL(SHORT_FETCHES); step++) {
-            uint32_t ahead = i + DISTANCE * (uint32_t)(SC_KERNEL(SHORT_FETCHES) + 1 - step);
-            if (ahead < count) SC_KERNEL(fetch_loop)(state, pairs + oriented[ahead], step);
+        for (step = 0; step < SHORT_FETCHES; step++) {
+            uint32_t ahead = i + DISTANCE * (uint32_t)(SHORT_FETCHES + 1 - step);
+            if (ahead < count) fetch_loop(state, pairs + oriented[ahead], step);
         }
         some[taken++] = pairs + oriented[i];
-        if (taken < SC_KERNEL(SHORT_PAIRS) && i + 1 < count) continue;
-        for (bits = SC_KERNEL(find_plain)(state, some, taken); bits; bits &= bits - 1) {
+        if (taken < SHORT_PAIRS && i + 1 < count) continue;
+        for (bits = find_plain(state, some, taken); bits; bits &= bits - 1) {
             sc_near_pair *p = some[sc_bits_lowest(bits)];
             marks[p->a] = marks[p->b] = 1;
             p->known |= SC_NEAR_DROPPED;

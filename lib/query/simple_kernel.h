@@ -22,14 +22,14 @@
  */
 
 /* The bits of the first lanes. */
-static inline unsigned SC_KERNEL(first_lanes)(uint32_t count)
+static inline unsigned first_lanes(uint32_t count)
 {
     return count < SC_LANES_COUNT ? (1u << count) - 1u : 0xffffu;
 }
 
 /* Which of sixteen edges are edges, from any one on; those that follow the last are the first
    again. */
-static inline unsigned SC_KERNEL(edges_from)(const sc_simple_contour *c, uint32_t i)
+static inline unsigned edges_from(const sc_simple_contour *c, uint32_t i)
 {
     const uint16_t *is_edge = c->edges->is_edge + i / SC_CONTOUR_BLOCK;
     if (!c->has_gaps) return 0xffffu;
@@ -37,7 +37,7 @@ static inline unsigned SC_KERNEL(edges_from)(const sc_simple_contour *c, uint32_
 }
 
 /* The turned places of a loop's points, and beyond its end the first again. */
-static void SC_KERNEL(place_loop)(sc_simple_contour *c)
+static void place_loop(sc_simple_contour *c)
 {
     uint32_t *place = c->edges->point, i;
     const uint32_t count = c->looped;
@@ -57,8 +57,8 @@ static void SC_KERNEL(place_loop)(sc_simple_contour *c)
 }
 
 /* Sixteen points in the unit box. */
-static inline void SC_KERNEL(load_contour)(const sc_simple_contour *c, const sc_workspace *w,
-                                           uint32_t i, lanes unit[3])
+static inline void load_contour(const sc_simple_contour *c, const sc_workspace *w, uint32_t i,
+                                lanes unit[3])
 {
     float row[3 * SC_CONTOUR_BLOCK];
     int k;
@@ -66,14 +66,14 @@ static inline void SC_KERNEL(load_contour)(const sc_simple_contour *c, const sc_
         lanes_rows(w->point_at, c->edges->point + i, &unit[0], &unit[1], &unit[2]);
         return;
     }
-    SC_KERNEL(load_points)(w, c->edges->point + i, row);
+    load_points(w, c->edges->point + i, row);
     SC_UNROLL
     for (k = 0; k < 3; k++) unit[k] = lanes_load(row + SC_CONTOUR_BLOCK * k);
 }
 
 /* Places of the points, and the error of their coordinates, see sc_simple_axes. The last is
    followed by the first. */
-static void SC_KERNEL(project)(sc_simple_contour *c, const sc_workspace *w)
+static void project(sc_simple_contour *c, const sc_workspace *w)
 {
     const sc_contour_edges *e = c->edges;
     lanes size = lanes_all(0), d[3], at, from[3], axis[2][3];
@@ -85,9 +85,9 @@ static void SC_KERNEL(project)(sc_simple_contour *c, const sc_workspace *w)
         SC_UNROLL
         for (m = 0; m < 2; m++) axis[m][k] = lanes_all(c->axis[m][k]);
     }
-    if (c->loop) SC_KERNEL(place_loop)(c);
+    if (c->loop) place_loop(c);
     for (i = 0; i < c->count; i += SC_CONTOUR_BLOCK) {
-        SC_KERNEL(load_contour)(c, w, i, d);
+        load_contour(c, w, i, d);
         SC_UNROLL
         for (k = 0; k < 3; k++) {
             d[k] = lanes_subtract(d[k], from[k]);
@@ -107,22 +107,22 @@ static void SC_KERNEL(project)(sc_simple_contour *c, const sc_workspace *w)
 }
 
 /* Sixteen edges, from p to q. */
-typedef struct SC_KERNEL(sc_edge_lanes) {
+typedef struct edge_lanes {
     lanes p[2], q[2];
-} SC_KERNEL(sc_edge_lanes);
+} edge_lanes;
 
-static inline lanes SC_KERNEL(cross_in_plane)(const lanes a[2], const lanes b[2])
+static inline lanes cross_in_plane(const lanes a[2], const lanes b[2])
 {
     return lanes_subtract(lanes_multiply(a[0], b[1]), lanes_multiply(a[1], b[0]));
 }
 
-static inline lanes SC_KERNEL(size_in_plane)(const lanes a[2])
+static inline lanes size_in_plane(const lanes a[2])
 {
     return lanes_add(lanes_absolute(a[0]), lanes_absolute(a[1]));
 }
 
 /* What a cross product of vectors with this sum of sizes is off by, see bound_of in simple.c. */
-static inline lanes SC_KERNEL(bound_in_plane)(float error, lanes size)
+static inline lanes bound_in_plane(float error, lanes size)
 {
     return lanes_add(
         lanes_multiply(lanes_all(SC_SIMPLE_BOUND * error), lanes_add(size, lanes_all(4 * error))),
@@ -130,7 +130,7 @@ static inline lanes SC_KERNEL(bound_in_plane)(float error, lanes size)
 }
 
 /* Bits of lanes in which both a and b are above bound, or both below -bound. */
-static inline unsigned SC_KERNEL(one_side)(lanes a, lanes b, lanes bound)
+static inline unsigned one_side(lanes a, lanes b, lanes bound)
 {
     return lanes_bits(lanes_below(bound, lanes_smaller(a, b))) |
            lanes_bits(lanes_below(lanes_larger(a, b), lanes_subtract(lanes_all(0), bound)));
@@ -143,8 +143,7 @@ static inline unsigned SC_KERNEL(one_side)(lanes a, lanes b, lanes bound)
  * that is in the bound's slack. Edges that share a point are not apart: then one of each two
  * products is 0.
  */
-static inline unsigned SC_KERNEL(lie_apart)(float error, const SC_KERNEL(sc_edge_lanes) * e,
-                                            const SC_KERNEL(sc_edge_lanes) * f)
+static inline unsigned lie_apart(float error, const edge_lanes *e, const edge_lanes *f)
 {
     lanes along[2], other[2], pp[2], pq[2], qp[2], bound;
     int k;
@@ -155,17 +154,13 @@ static inline unsigned SC_KERNEL(lie_apart)(float error, const SC_KERNEL(sc_edge
         pq[k] = lanes_subtract(f->q[k], e->p[k]);
         qp[k] = lanes_subtract(f->p[k], e->q[k]);
     }
-    bound = SC_KERNEL(bound_in_plane)(error, lanes_add(lanes_add(SC_KERNEL(size_in_plane)(along),
-                                                                 SC_KERNEL(size_in_plane)(other)),
-                                                       SC_KERNEL(size_in_plane)(pp)));
-    return SC_KERNEL(one_side)(SC_KERNEL(cross_in_plane)(along, pp),
-                               SC_KERNEL(cross_in_plane)(along, pq), bound) |
-           SC_KERNEL(one_side)(SC_KERNEL(cross_in_plane)(other, pp),
-                               SC_KERNEL(cross_in_plane)(other, qp), bound);
+    bound = bound_in_plane(
+        error, lanes_add(lanes_add(size_in_plane(along), size_in_plane(other)), size_in_plane(pp)));
+    return one_side(cross_in_plane(along, pp), cross_in_plane(along, pq), bound) |
+           one_side(cross_in_plane(other, pp), cross_in_plane(other, qp), bound);
 }
 
-static inline void SC_KERNEL(load_edges)(const sc_simple_contour *c, uint32_t i,
-                                         SC_KERNEL(sc_edge_lanes) * e)
+static inline void load_edges(const sc_simple_contour *c, uint32_t i, edge_lanes *e)
 {
     int k;
     for (k = 0; k < 2; k++) {
@@ -175,7 +170,7 @@ static inline void SC_KERNEL(load_edges)(const sc_simple_contour *c, uint32_t i,
 }
 
 /* Bits of lanes in which boxes overlap: low x, high x, low y, high y of each. */
-static inline unsigned SC_KERNEL(overlap_in_plane)(const lanes a[4], const lanes b[4])
+static inline unsigned overlap_in_plane(const lanes a[4], const lanes b[4])
 {
     return lanes_bits(lanes_both(lanes_both(lanes_not_above(a[SC_LOW_X], b[SC_HIGH_X]),
                                             lanes_not_above(b[SC_LOW_X], a[SC_HIGH_X])),
@@ -184,13 +179,13 @@ static inline unsigned SC_KERNEL(overlap_in_plane)(const lanes a[4], const lanes
 }
 
 /* Some of sixteen edges and those `on` places further on. */
-static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t on, unsigned some)
+static int are_pairs_fine(sc_simple_contour *c, uint32_t i, uint32_t on, unsigned some)
 {
-    SC_KERNEL(sc_edge_lanes) own, other;
+    edge_lanes own, other;
     if (!some) return 1;
-    SC_KERNEL(load_edges)(c, i, &own);
-    SC_KERNEL(load_edges)(c, i + on, &other);
-    for (some &= ~SC_KERNEL(lie_apart)(c->error, &own, &other); some; some &= some - 1) {
+    load_edges(c, i, &own);
+    load_edges(c, i + on, &other);
+    for (some &= ~lie_apart(c->error, &own, &other); some; some &= some - 1) {
         uint32_t edge = i + sc_bits_lowest(some);
         if (!sc_simple_are_apart(c, edge, (edge + on) % c->count)) return 0;
     }
@@ -204,19 +199,18 @@ static int SC_KERNEL(are_pairs_fine)(sc_simple_contour *c, uint32_t i, uint32_t 
  * writes the boxes of spans of two edges, without the end of a second that is none. What else is no
  * edge is in boxes, which does no harm.
  */
-static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
-                                           float first[4][SC_LANES_COUNT])
+static inline int are_near_fine(sc_simple_contour *c, uint32_t i, float first[4][SC_LANES_COUNT])
 {
     const sc_contour_edges *e = c->edges;
     const lanes margin = lanes_all(4 * c->error), half = lanes_all(2 * c->error);
     const lanes none = lanes_all(0);
-    const unsigned edges = SC_KERNEL(first_lanes)(c->count - i) & SC_KERNEL(edges_from)(c, i);
-    SC_KERNEL(sc_edge_lanes) own, other;
+    const unsigned edges = first_lanes(c->count - i) & edges_from(c, i);
+    edge_lanes own, other;
     lanes box[4], next[4], low, high;
     unsigned near[2], s;
     int k;
-    SC_KERNEL(load_edges)(c, i, &own);
-    SC_KERNEL(load_edges)(c, i + 1, &other);
+    load_edges(c, i, &own);
+    load_edges(c, i + 1, &other);
     SC_UNROLL
     for (k = 0; k < 2; k++) {
         low = lanes_smaller(own.p[k], own.q[k]);
@@ -251,24 +245,24 @@ static inline int SC_KERNEL(are_near_fine)(sc_simple_contour *c, uint32_t i,
             next[2 * k + 1] = lanes_larger(other.q[k], q);
             other.q[k] = q;
         }
-        near[s] = SC_KERNEL(overlap_in_plane)(box, next);
+        near[s] = overlap_in_plane(box, next);
     }
-    near[0] &= c->count > 3 ? edges & SC_KERNEL(edges_from)(c, i + 2) : 0;
-    near[1] &= c->count > 4 ? edges & SC_KERNEL(edges_from)(c, i + 3) : 0;
-    return !(near[0] | near[1]) || (SC_KERNEL(are_pairs_fine)(c, i, 2, near[0]) &&
-                                    SC_KERNEL(are_pairs_fine)(c, i, 3, near[1]));
+    near[0] &= c->count > 3 ? edges & edges_from(c, i + 2) : 0;
+    near[1] &= c->count > 4 ? edges & edges_from(c, i + 3) : 0;
+    return !(near[0] | near[1]) ||
+           (are_pairs_fine(c, i, 2, near[0]) && are_pairs_fine(c, i, 3, near[1]));
 }
 
 /* All edges with those next to them; and the spans of two edges, of which the first follow the last
    again, as many as are read beyond it. */
-static int SC_KERNEL(are_all_near_fine)(sc_simple_contour *c)
+static int are_all_near_fine(sc_simple_contour *c)
 {
     float first[4][SC_LANES_COUNT];
     uint32_t i;
     int k;
     c->spans = 0;
     for (i = 0; i < c->count; i += SC_CONTOUR_BLOCK)
-        if (!SC_KERNEL(are_near_fine)(c, i, first)) return 0;
+        if (!are_near_fine(c, i, first)) return 0;
     c->spans = (c->count + 1) / 2;
     c->level = 1;
     c->span_first[1] = 0;
@@ -278,9 +272,8 @@ static int SC_KERNEL(are_all_near_fine)(sc_simple_contour *c)
 }
 
 /* Bits of lanes in which the boxes of edges are not certainly apart. */
-static inline unsigned SC_KERNEL(boxes_meet)(const sc_simple_contour *c,
-                                             const SC_KERNEL(sc_edge_lanes) * e,
-                                             const SC_KERNEL(sc_edge_lanes) * f)
+static inline unsigned boxes_meet(const sc_simple_contour *c, const edge_lanes *e,
+                                  const edge_lanes *f)
 {
     const lanes margin = lanes_all(4 * c->error);
     lanes a[4], b[4];
@@ -292,22 +285,22 @@ static inline unsigned SC_KERNEL(boxes_meet)(const sc_simple_contour *c,
         b[2 * k] = lanes_smaller(f->p[k], f->q[k]);
         b[2 * k + 1] = lanes_larger(f->p[k], f->q[k]);
     }
-    return SC_KERNEL(overlap_in_plane)(a, b);
+    return overlap_in_plane(a, b);
 }
 
 /* The edges of two spans, four each or less, that do not follow each other. */
-static int SC_KERNEL(are_few_fine)(sc_simple_contour *c, uint32_t i, uint32_t j, uint32_t most)
+static int are_few_fine(sc_simple_contour *c, uint32_t i, uint32_t j, uint32_t most)
 {
     static const uint16_t four_times[16] = {0x0000, 0x000f, 0x00f0, 0x00ff, 0x0f00, 0x0f0f,
                                             0x0ff0, 0x0fff, 0xf000, 0xf00f, 0xf0f0, 0xf0ff,
                                             0xff00, 0xff0f, 0xfff0, 0xffff};
     const sc_contour_edges *e = c->edges;
-    unsigned own_edges = SC_KERNEL(first_lanes)(c->count - i < most ? c->count - i : most);
-    unsigned other_edges = SC_KERNEL(first_lanes)(c->count - j < most ? c->count - j : most), near;
-    SC_KERNEL(sc_edge_lanes) own, other;
+    unsigned own_edges = first_lanes(c->count - i < most ? c->count - i : most);
+    unsigned other_edges = first_lanes(c->count - j < most ? c->count - j : most), near;
+    edge_lanes own, other;
     int k;
-    own_edges &= SC_KERNEL(edges_from)(c, i);
-    other_edges &= SC_KERNEL(edges_from)(c, j);
+    own_edges &= edges_from(c, i);
+    other_edges &= edges_from(c, j);
     near = four_times[own_edges] & other_edges * 0x1111u;
     for (k = 0; k < 2; k++) {
         own.p[k] = lanes_each_four(e->at[k] + i);
@@ -315,9 +308,9 @@ static int SC_KERNEL(are_few_fine)(sc_simple_contour *c, uint32_t i, uint32_t j,
         other.p[k] = lanes_four(e->at[k] + j);
         other.q[k] = lanes_four(e->at[k] + j + 1);
     }
-    near &= SC_KERNEL(boxes_meet)(c, &own, &other);
+    near &= boxes_meet(c, &own, &other);
     if (!near) return 1;
-    for (near &= ~SC_KERNEL(lie_apart)(c->error, &own, &other); near; near &= near - 1) {
+    for (near &= ~lie_apart(c->error, &own, &other); near; near &= near - 1) {
         unsigned pair = sc_bits_lowest(near);
         if (!sc_simple_are_apart(c, i + pair / 4, j + pair % 4)) return 0;
     }
@@ -325,11 +318,11 @@ static int SC_KERNEL(are_few_fine)(sc_simple_contour *c, uint32_t i, uint32_t j,
 }
 
 /* Two spans of 2^level edges that overlap and do not follow each other. */
-static int SC_KERNEL(are_spans_fine)(sc_simple_contour *c, uint32_t level, uint32_t a, uint32_t b)
+static int are_spans_fine(sc_simple_contour *c, uint32_t level, uint32_t a, uint32_t b)
 {
     float *const *side = c->edges->span_side;
     uint32_t first, count, i, j;
-    if (level <= 2) return SC_KERNEL(are_few_fine)(c, a << level, b << level, 1u << level);
+    if (level <= 2) return are_few_fine(c, a << level, b << level, 1u << level);
     level--;
     first = c->span_first[level];
     count = ((c->count - 1) >> level) + 1;
@@ -339,32 +332,31 @@ static int SC_KERNEL(are_spans_fine)(sc_simple_contour *c, uint32_t level, uint3
             if (side[SC_LOW_X][p] <= side[SC_HIGH_X][q] &&
                 side[SC_LOW_X][q] <= side[SC_HIGH_X][p] &&
                 side[SC_LOW_Y][p] <= side[SC_HIGH_Y][q] &&
-                side[SC_LOW_Y][q] <= side[SC_HIGH_Y][p] &&
-                !SC_KERNEL(are_spans_fine)(c, level, i, j))
+                side[SC_LOW_Y][q] <= side[SC_HIGH_Y][p] && !are_spans_fine(c, level, i, j))
                 return 0;
         }
     return 1;
 }
 
 /* Some of sixteen spans of 2^level edges, of so many, and those `on` places further on. */
-static int SC_KERNEL(are_some_fine)(sc_simple_contour *c, uint32_t level, uint32_t count,
-                                    uint32_t i, uint32_t on, unsigned some)
+static int are_some_fine(sc_simple_contour *c, uint32_t level, uint32_t count, uint32_t i,
+                         uint32_t on, unsigned some)
 {
     for (; some; some &= some - 1) {
         uint32_t a = i + sc_bits_lowest(some);
-        if (!SC_KERNEL(are_spans_fine)(c, level, a, (a + on) % count)) return 0;
+        if (!are_spans_fine(c, level, a, (a + on) % count)) return 0;
     }
     return 1;
 }
 
 /* Bits of sixteen spans that overlap those `on` places further on. */
-static inline unsigned SC_KERNEL(overlap_on)(float *const *side, const lanes own[4], uint32_t at)
+static inline unsigned overlap_on(float *const *side, const lanes own[4], uint32_t at)
 {
     lanes other[4];
     int k;
     SC_UNROLL
     for (k = 0; k < 4; k++) other[k] = lanes_load(side[k] + at);
-    return SC_KERNEL(overlap_in_plane)(own, other);
+    return overlap_in_plane(own, other);
 }
 
 /* All spans of 2^level edges, more than SC_LANES_COUNT, with those two and three places on; and the
@@ -372,7 +364,7 @@ static inline unsigned SC_KERNEL(overlap_on)(float *const *side, const lanes own
    joined with the first, which does no harm. Three places on, only spans of even number have to be
    compared: 2m + 1 and 2m + 4 lie in spans m and m + 2 of the next level, which are compared there;
    to leave the odd ones out would save nothing where no boxes overlap. */
-static int SC_KERNEL(is_level_fine)(sc_simple_contour *c)
+static int is_level_fine(sc_simple_contour *c)
 {
     const uint32_t level = c->level++;
     float *const *side = c->edges->span_side;
@@ -381,7 +373,7 @@ static int SC_KERNEL(is_level_fine)(sc_simple_contour *c)
     const uint32_t next = first + SC_CONTOUR_SPANS(count);
     uint32_t i, k;
     for (i = 0; i < count; i += SC_LANES_COUNT) {
-        const unsigned spans = SC_KERNEL(first_lanes)(count - i);
+        const unsigned spans = first_lanes(count - i);
         lanes own[4];
         unsigned near[2];
         SC_UNROLL
@@ -394,10 +386,10 @@ static int SC_KERNEL(is_level_fine)(sc_simple_contour *c)
             lanes_store_half(side[k] + next + i / 2, even);
             if (!i) lanes_store_half(start[k], even);
         }
-        near[0] = spans & SC_KERNEL(overlap_on)(side, own, first + i + 2);
-        near[1] = spans & SC_KERNEL(overlap_on)(side, own, first + i + 3);
-        if ((near[0] | near[1]) && !(SC_KERNEL(are_some_fine)(c, level, count, i, 2, near[0]) &&
-                                     SC_KERNEL(are_some_fine)(c, level, count, i, 3, near[1])))
+        near[0] = spans & overlap_on(side, own, first + i + 2);
+        near[1] = spans & overlap_on(side, own, first + i + 3);
+        if ((near[0] | near[1]) && !(are_some_fine(c, level, count, i, 2, near[0]) &&
+                                     are_some_fine(c, level, count, i, 3, near[1])))
             return 0;
     }
     c->span_first[level + 1] = next;
@@ -408,11 +400,11 @@ static int SC_KERNEL(is_level_fine)(sc_simple_contour *c)
 }
 
 /* The spans of the last level, all pairs. */
-static int SC_KERNEL(is_last_level_fine)(sc_simple_contour *c, uint32_t level, uint32_t count)
+static int is_last_level_fine(sc_simple_contour *c, uint32_t level, uint32_t count)
 {
     float *const *side = c->edges->span_side;
     const uint32_t first = c->span_first[level];
-    const unsigned spans = SC_KERNEL(first_lanes)(count);
+    const unsigned spans = first_lanes(count);
     unsigned near[SC_LANES_COUNT / 2 + 1], any = 0;
     lanes own[4];
     uint32_t s, k;
@@ -421,21 +413,21 @@ static int SC_KERNEL(is_last_level_fine)(sc_simple_contour *c, uint32_t level, u
     SC_UNROLL
     for (s = 2; s <= SC_LANES_COUNT / 2; s++) {
         unsigned some = 2 * s <= count ? spans : 0;
-        near[s] = some & SC_KERNEL(overlap_on)(side, own, first + s);
+        near[s] = some & overlap_on(side, own, first + s);
         any |= near[s];
     }
     for (s = 2; any && s <= SC_LANES_COUNT / 2; s++)
-        if (!SC_KERNEL(are_some_fine)(c, level, count, 0, s, near[s])) return 0;
+        if (!are_some_fine(c, level, count, 0, s, near[s])) return 0;
     return 1;
 }
 
 /* The spans of the next level. */
-static void SC_KERNEL(look_at_spans)(sc_simple_contour *c)
+static void look_at_spans(sc_simple_contour *c)
 {
     if (c->spans > SC_LANES_COUNT) {
-        c->passed = SC_KERNEL(is_level_fine)(c);
+        c->passed = is_level_fine(c);
     } else {
-        if (c->spans) c->passed = SC_KERNEL(is_last_level_fine)(c, c->level, c->spans);
+        if (c->spans) c->passed = is_last_level_fine(c, c->level, c->spans);
         c->spans = 0;
     }
     if (!c->passed) c->spans = 0;
@@ -444,10 +436,10 @@ static void SC_KERNEL(look_at_spans)(sc_simple_contour *c)
 /* Sets passed, as far as is known after the step that is next for each of three contours; NULL:
    there is none. What was written in one step is read in the next, when it has arrived in the
    cache. */
-static void SC_KERNEL(look_at_edges)(sc_simple_contour *first, sc_simple_contour *second,
-                                     sc_simple_contour *last)
+static void look_at_edges(sc_simple_contour *first, sc_simple_contour *second,
+                          sc_simple_contour *last)
 {
-    if (first) first->passed = SC_KERNEL(are_all_near_fine)(first);
-    if (second) SC_KERNEL(look_at_spans)(second);
-    while (last && last->spans) SC_KERNEL(look_at_spans)(last);
+    if (first) first->passed = are_all_near_fine(first);
+    if (second) look_at_spans(second);
+    while (last && last->spans) look_at_spans(last);
 }

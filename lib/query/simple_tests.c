@@ -72,7 +72,7 @@ static void find_middle(sc_simple_contour *c, const sc_workspace *w)
 static void place_contour(sc_query_state *state, sc_simple_contour *c)
 {
     find_middle(c, state->workspace);
-    sc_query_kernels_of(state->workspace)->project(c, state->workspace);
+    state->workspace->kernels->query->project(c, state->workspace);
     state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c->count;
 }
 
@@ -84,7 +84,7 @@ static int is_fine(const sc_simple_contour *c)
 
 int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
 {
-    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    const sc_query_kernels *kernels = state->workspace->kernels->query;
     uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
     sc_simple_contour c;
     int passed = sc_simple_start(&c, state->model, state->workspace, node);
@@ -178,7 +178,7 @@ static void test_in_turn(sc_query_state *state, const uint32_t *nodes, uint32_t 
                          uint8_t *passed)
 {
     const sc_model *model = state->model;
-    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    const sc_query_kernels *kernels = state->workspace->kernels->query;
     contour_turns all;
     int i, step, k;
     memset(passed, 0, count);
@@ -277,8 +277,7 @@ static void test_small(sc_query_state *state, const some_nodes *some, uint32_t b
             nodes[k] = some->nodes[number[k]];
             axes[k] = some->axes[number[k] / SC_DNC_VECTORS].at[0][0] + number[k] % SC_DNC_VECTORS;
         }
-        simple =
-            sc_query_kernels_of(state->workspace)->find_simple(state, nodes, count, blocks, axes);
+        simple = state->workspace->kernels->query->find_simple(state, nodes, count, blocks, axes);
         for (; simple; simple &= simple - 1) {
             k = sc_bits_lowest(simple);
             passed[number[k]] = 1;

@@ -47,23 +47,23 @@
  * The other bounds are above 1e-21: what underflows does not matter.
  */
 /* Triangles as they are picked: sixteen by number, of a leaf cluster, or of two. */
-typedef struct SC_KERNEL(picked) {
+typedef struct picked {
     const sc_leaf_ready *ready[2];
     const float *points[2];   /* see sc_workspace.point_at */
     const uint8_t *corner[2]; /* see sc_model.leaf_corner */
     const uint8_t *numbers;   /* of the triangles */
-} SC_KERNEL(picked);
+} picked;
 
 /* Sixteen pairs of triangles of two leaf clusters; or of two such pairs of clusters. */
-typedef struct SC_KERNEL(sixteen) {
-    SC_KERNEL(picked) of[2]; /* first and second triangles of pairs */
-    unsigned split;          /* lanes from here on are of the second pair of clusters */
-    lanes extent;            /* of both clusters of a pair */
-} SC_KERNEL(sixteen);
+typedef struct sixteen_pairs {
+    picked of[2];   /* first and second triangles of pairs */
+    unsigned split; /* lanes from here on are of the second pair of clusters */
+    lanes extent;   /* of both clusters of a pair */
+} sixteen_pairs;
 
 /* A row of what is kept of these, at the same place in both clusters. */
-static SC_INLINE lanes SC_KERNEL(pick_kept)(const SC_KERNEL(sixteen) * x, int two, const float *row,
-                                            const float *other, lanes_index i)
+static SC_INLINE lanes pick_kept(const sixteen_pairs *x, int two, const float *row,
+                                 const float *other, lanes_index i)
 {
     const float *rows[2];
     rows[0] = row;
@@ -72,10 +72,9 @@ static SC_INLINE lanes SC_KERNEL(pick_kept)(const SC_KERNEL(sixteen) * x, int tw
 }
 
 /* The corners of these. */
-static SC_INLINE void SC_KERNEL(pick_corners)(const SC_KERNEL(sixteen) * x, int s, int two,
-                                              lanes at[3][3])
+static SC_INLINE void pick_corners(const sixteen_pairs *x, int s, int two, lanes at[3][3])
 {
-    const SC_KERNEL(picked) *t = &x->of[s];
+    const picked *t = &x->of[s];
     if (two)
         lanes_corners_two(t->points, t->corner, t->numbers, x->split, at);
     else
@@ -83,7 +82,7 @@ static SC_INLINE void SC_KERNEL(pick_corners)(const SC_KERNEL(sixteen) * x, int 
 }
 
 /* What a distance from a plane, up to a factor, may be off by: of sixteen, and of one. */
-static inline lanes SC_KERNEL(plane_bound)(lanes size, lanes extent)
+static inline lanes plane_bound(lanes size, lanes extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     lanes wide = lanes_add(extent, lanes_all(edge));
@@ -93,7 +92,7 @@ static inline lanes SC_KERNEL(plane_bound)(lanes size, lanes extent)
                             lanes_multiply(lanes_multiply(lanes_all(7 * v), extent), extent)));
     return lanes_add(lanes_multiply(size, bound), lanes_multiply(lanes_all(8 * edge * edge), wide));
 }
-static inline float SC_KERNEL(one_plane_bound)(float size, float extent)
+static inline float one_plane_bound(float size, float extent)
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     float bound = size * (2.1f * v) + (4 * edge * (extent + edge) + 7 * v * extent * extent);
@@ -102,7 +101,7 @@ static inline float SC_KERNEL(one_plane_bound)(float size, float extent)
 
 /* What a determinant of edges of two triangles may be off by; size is that of both, w runs from tip
    to tip. */
-static inline lanes SC_KERNEL(edges_bound)(lanes size, const lanes w[3])
+static inline lanes edges_bound(lanes size, const lanes w[3])
 {
     const float edge = 6e-8f, v = 5.9604644775390625e-8f;
     lanes t = lanes_add(size, lanes_all(2 * edge)), u = lanes_all(4 * edge), bound;
@@ -116,31 +115,30 @@ static inline lanes SC_KERNEL(edges_bound)(lanes size, const lanes w[3])
 
 /* Of triangles of which the plane of another splits the corners: the one alone on its side, and the
    edges from there to the next corner and to the one after. */
-typedef struct SC_KERNEL(tips) {
+typedef struct tip_corners {
     lanes at[3], edge[2][3];
     unsigned is[2];         /* the lanes in which the corner is the first, and the second */
     unsigned beside, split; /* where all corners are certainly on one side, or certainly not */
-} SC_KERNEL(tips);
+} tip_corners;
 
 /* Of first triangles with the second's planes, s = 0, or the other way round. Sets size to that of
    the latter. */
-static SC_INLINE void SC_KERNEL(find_tips)(const SC_KERNEL(sixteen) * sixteen, int s, int two,
-                                           SC_KERNEL(tips) * tips, lanes *size)
+static SC_INLINE void find_tips(const sixteen_pairs *sixteen, int s, int two, tip_corners *tips,
+                                lanes *size)
 {
-    const SC_KERNEL(picked) *plane = &sixteen->of[1 - s];
+    const picked *plane = &sixteen->of[1 - s];
     const sc_leaf_ready *ready = plane->ready[0], *other = plane->ready[1];
     lanes_index i = lanes_index_load(plane->numbers);
-    lanes offset = SC_KERNEL(pick_kept)(sixteen, two, ready->offset, other->offset, i);
+    lanes offset = pick_kept(sixteen, two, ready->offset, other->offset, i);
     lanes bound, x[3][3], n[3], least = offset;
     lanes_mask below[3], is_not[2];
     unsigned sure;
     int k, c;
-    *size = SC_KERNEL(pick_kept)(sixteen, two, ready->size, other->size, i);
-    bound = SC_KERNEL(plane_bound)(*size, sixteen->extent);
-    SC_KERNEL(pick_corners)(sixteen, s, two, x);
+    *size = pick_kept(sixteen, two, ready->size, other->size, i);
+    bound = plane_bound(*size, sixteen->extent);
+    pick_corners(sixteen, s, two, x);
     SC_UNROLL
-    for (c = 0; c < 3; c++)
-        n[c] = SC_KERNEL(pick_kept)(sixteen, two, ready->normal[c], other->normal[c], i);
+    for (c = 0; c < 3; c++) n[c] = pick_kept(sixteen, two, ready->normal[c], other->normal[c], i);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         lanes d = lanes_multiply(n[0], x[k][0]);
@@ -171,16 +169,15 @@ static SC_INLINE void SC_KERNEL(find_tips)(const SC_KERNEL(sixteen) * sixteen, i
 
 /* What is certain of pairs: the lanes in which they are apart, and in which they are settled, that
    is, all is certain of them that sc_settled_bits name. */
-typedef struct SC_KERNEL(verdict) {
+typedef struct sixteen_verdict {
     unsigned apart, settled;
     unsigned bits[SC_SETTLED_BITS];
-} SC_KERNEL(verdict);
+} sixteen_verdict;
 
 /* Of pairs in a mask finds those of which just one sign is not certain, and the two edges that it
    is of seem to be in a plane across an axis; w runs from tip to tip. */
-static inline void SC_KERNEL(find_level)(const SC_KERNEL(tips) tips[2], const lanes w[3],
-                                         lanes far[2][2], lanes bound, unsigned mask,
-                                         SC_KERNEL(verdict) * verdict)
+static inline void find_level(const tip_corners tips[2], const lanes w[3], lanes far[2][2],
+                              lanes bound, unsigned mask, sixteen_verdict *verdict)
 {
     lanes_mask open[2][2], row, column;
     unsigned is[2][2], level[3];
@@ -212,15 +209,15 @@ static inline void SC_KERNEL(find_level)(const SC_KERNEL(tips) tips[2], const la
 
 /* Settles those of pairs in a mask of which each plane splits the other; size is that of both
    triangles. */
-static SC_INLINE void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lanes size,
-                                             unsigned mask, SC_KERNEL(verdict) * verdict)
+static SC_INLINE void cross_edges(const tip_corners tips[2], lanes size, unsigned mask,
+                                  sixteen_verdict *verdict)
 {
     lanes w[3], m[3], far[2][2], bound, least = lanes_all(0);
     unsigned below[2][2], any, all, certain, *bits = verdict->bits;
     int i, j, c;
     SC_UNROLL
     for (c = 0; c < 3; c++) w[c] = lanes_subtract(tips[1].at[c], tips[0].at[c]);
-    bound = SC_KERNEL(edges_bound)(size, w);
+    bound = edges_bound(size, w);
     SC_UNROLL
     for (j = 0; j < 2; j++) {
         const lanes *f = tips[1].edge[j];
@@ -251,7 +248,7 @@ static SC_INLINE void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lane
     all = below[0][0] & below[0][1] & below[1][0] & below[1][1];
     verdict->settled = certain & any & ~all;
     if (mask & ~certain) {
-        SC_KERNEL(find_level)(tips, w, far, bound, mask & ~certain, verdict);
+        find_level(tips, w, far, bound, mask & ~certain, verdict);
     } else {
         bits[SC_SETTLED_ROW] = bits[SC_SETTLED_COLUMN] = 0;
         bits[SC_SETTLED_AXIS] = bits[SC_SETTLED_AXIS + 1] = ~0u;
@@ -262,15 +259,15 @@ static SC_INLINE void SC_KERNEL(cross_edges)(const SC_KERNEL(tips) tips[2], lane
 /* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge
    certainly has the third corner of its triangle on one side and all of the other triangle on the
    other. */
-static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], lanes extent)
+static unsigned side_separates(lanes x[2][3][3], const lanes n[3], lanes extent)
 {
-    const lanes bound = SC_KERNEL(side_bound)(extent);
+    const lanes bound = side_bound(extent);
     const lanes minus_bound = lanes_subtract(lanes_all(0), bound);
     lanes flat[2][3][2];
     unsigned apart = 0;
     int s, k, i;
     SC_UNROLL
-    for (s = 0; s < 2; s++) SC_KERNEL(see_along)(n, (const lanes(*)[3])x[s], 3, flat[s]);
+    for (s = 0; s < 2; s++) see_along(n, (const lanes(*)[3])x[s], 3, flat[s]);
     SC_UNROLL
     for (s = 0; s < 2; s++) {
         SC_UNROLL
@@ -300,44 +297,42 @@ static unsigned SC_KERNEL(side_separates)(lanes x[2][3][3], const lanes n[3], la
 
 /* With few registers for sixteen floats, code for one pair of clusters and for two is kept apart
    where it is shorter. */
-static void SC_KERNEL(find_tips_one)(const SC_KERNEL(sixteen) * x, int s, SC_KERNEL(tips) * tips,
-                                     lanes *size)
+static void find_tips_one(const sixteen_pairs *x, int s, tip_corners *tips, lanes *size)
 {
-    SC_KERNEL(find_tips)(x, s, 0, tips, size);
+    find_tips(x, s, 0, tips, size);
 }
-static void SC_KERNEL(find_tips_two)(const SC_KERNEL(sixteen) * x, int s, SC_KERNEL(tips) * tips,
-                                     lanes *size)
+static void find_tips_two(const sixteen_pairs *x, int s, tip_corners *tips, lanes *size)
 {
-    SC_KERNEL(find_tips)(x, s, 1, tips, size);
+    find_tips(x, s, 1, tips, size);
 }
-static SC_INLINE void SC_KERNEL(find_tips_some)(const SC_KERNEL(sixteen) * x, int s, int two,
-                                                SC_KERNEL(tips) * tips, lanes *size)
+static SC_INLINE void find_tips_some(const sixteen_pairs *x, int s, int two, tip_corners *tips,
+                                     lanes *size)
 {
     if (SC_LANES_AVX512)
-        SC_KERNEL(find_tips)(x, s, two, tips, size);
+        find_tips(x, s, two, tips, size);
     else if (two)
-        SC_KERNEL(find_tips_two)(x, s, tips, size);
+        find_tips_two(x, s, tips, size);
     else
-        SC_KERNEL(find_tips_one)(x, s, tips, size);
+        find_tips_one(x, s, tips, size);
 }
 
 /* Pairs in a mask, of triangles of two clusters, or of two such pairs of clusters. */
-static SC_INLINE void SC_KERNEL(test_some)(const SC_KERNEL(sixteen) * x, int two, unsigned mask,
-                                           SC_KERNEL(verdict) * verdict)
+static SC_INLINE void test_some(const sixteen_pairs *x, int two, unsigned mask,
+                                sixteen_verdict *verdict)
 {
-    SC_KERNEL(tips) tips[2];
+    tip_corners tips[2];
     lanes size[2];
     unsigned open, asked;
-    SC_KERNEL(find_tips_some)(x, 0, two, &tips[0], &size[1]);
+    find_tips_some(x, 0, two, &tips[0], &size[1]);
     open = mask & ~tips[0].beside;
     if (!open) {
         memset(verdict, 0, sizeof *verdict);
         verdict->apart = ~0u;
         return;
     }
-    SC_KERNEL(find_tips_some)(x, 1, two, &tips[1], &size[0]);
+    find_tips_some(x, 1, two, &tips[1], &size[0]);
     open &= ~tips[1].beside;
-    SC_KERNEL(cross_edges)(tips, lanes_add(size[0], size[1]), open, verdict);
+    cross_edges(tips, lanes_add(size[0], size[1]), open, verdict);
     open &= ~(verdict->apart | verdict->settled);
     asked = open & ~(tips[0].split & tips[1].split); /* not of others, whatever a sixteen has */
     if (asked) {
@@ -346,31 +341,28 @@ static SC_INLINE void SC_KERNEL(test_some)(const SC_KERNEL(sixteen) * x, int two
         lanes at[2][3][3], n[3];
         int c;
         SC_UNROLL
-        for (c = 0; c < 2; c++) SC_KERNEL(pick_corners)(x, c, two, at[c]);
+        for (c = 0; c < 2; c++) pick_corners(x, c, two, at[c]);
         SC_UNROLL
         for (c = 0; c < 3; c++)
-            n[c] = SC_KERNEL(pick_kept)(x, two, ready[0]->normal[c], ready[1]->normal[c], i);
-        open &= ~(asked & SC_KERNEL(side_separates)(at, n, x->extent));
+            n[c] = pick_kept(x, two, ready[0]->normal[c], ready[1]->normal[c], i);
+        open &= ~(asked & side_separates(at, n, x->extent));
     }
     verdict->apart = ~(open | verdict->settled);
 }
 
 /* The same, split or not. With many registers for sixteen floats each is code of its own. */
-static SC_NOINLINE void SC_KERNEL(test_one)(const SC_KERNEL(sixteen) * x, unsigned mask,
-                                            SC_KERNEL(verdict) * verdict)
+static SC_NOINLINE void test_one(const sixteen_pairs *x, unsigned mask, sixteen_verdict *verdict)
 {
-    SC_KERNEL(test_some)(x, SC_LANES_AVX512 ? 0 : x->split < SC_LANES_COUNT, mask, verdict);
+    test_some(x, SC_LANES_AVX512 ? 0 : x->split < SC_LANES_COUNT, mask, verdict);
 }
-static SC_NOINLINE void SC_KERNEL(test_two)(const SC_KERNEL(sixteen) * x, unsigned mask,
-                                            SC_KERNEL(verdict) * verdict)
+static SC_NOINLINE void test_two(const sixteen_pairs *x, unsigned mask, sixteen_verdict *verdict)
 {
-    SC_KERNEL(test_some)(x, 1, mask, verdict);
+    test_some(x, 1, mask, verdict);
 }
-static inline void SC_KERNEL(test_pairs)(const SC_KERNEL(sixteen) * x, unsigned mask,
-                                         SC_KERNEL(verdict) * verdict)
+static inline void test_pairs(const sixteen_pairs *x, unsigned mask, sixteen_verdict *verdict)
 {
     if (SC_LANES_AVX512 && x->split < SC_LANES_COUNT)
-        SC_KERNEL(test_two)(x, mask, verdict);
+        test_two(x, mask, verdict);
     else
-        SC_KERNEL(test_one)(x, mask, verdict);
+        test_one(x, mask, verdict);
 }

@@ -20,26 +20,26 @@
  * one edge has to be on one side of the other's line.
  */
 enum {
-    SC_KERNEL(SMALL_POINTS) = (SC_SMALL_BLOCKS + 1) * SC_LANES_COUNT,
-    SC_KERNEL(SMALL_REACHES) = (SC_SMALL_BLOCKS + SC_SMALL_BLOCKS / 2) * SC_LANES_COUNT
+    SMALL_POINTS = (SC_SMALL_BLOCKS + 1) * SC_LANES_COUNT,
+    SMALL_REACHES = (SC_SMALL_BLOCKS + SC_SMALL_BLOCKS / 2) * SC_LANES_COUNT
 };
 
 /* A contour in the plane: its points and their cells, of which the first follow the last again; the
    boxes of its edges, and their reaches, of which those of the first edges follow again. */
-typedef struct SC_KERNEL(small_contour) {
+typedef struct small_contour {
     lanes aligned;
-    float at[2][SC_KERNEL(SMALL_POINTS)];
-    uint32_t cell[SC_KERNEL(SMALL_POINTS)]; /* until it is projected, where its points are */
-    uint32_t box[SC_KERNEL(SMALL_POINTS)];
-    uint32_t reach[SC_KERNEL(SMALL_REACHES)];
+    float at[2][SMALL_POINTS];
+    uint32_t cell[SMALL_POINTS]; /* until it is projected, where its points are */
+    uint32_t box[SMALL_POINTS];
+    uint32_t reach[SMALL_REACHES];
     float error, size; /* of a coordinate */
     uint32_t count;
-} SC_KERNEL(small_contour);
+} small_contour;
 
 /* The turned places of a loop's points, and beyond its end the first again. What is read there
    stands in the model, too. */
-static SC_INLINE void SC_KERNEL(place_small)(const sc_model *model, uint32_t node, uint32_t blocks,
-                                             SC_KERNEL(small_contour) * c)
+static SC_INLINE void place_small(const sc_model *model, uint32_t node, uint32_t blocks,
+                                  small_contour *c)
 {
     const uint32_t *leaf = sc_model_leaf(model);
     const sc_node *n = sc_model_node(model) + node;
@@ -59,8 +59,8 @@ static SC_INLINE void SC_KERNEL(place_small)(const sc_model *model, uint32_t nod
 
 /* Projects a contour, as project in simple_kernel.h does. The numbers of its axes are
    SC_DNC_VECTORS floats apart, as in sc_simple_some_axes. */
-static SC_INLINE void SC_KERNEL(see_small)(const sc_query_state *state, uint32_t blocks,
-                                           const float *axes, SC_KERNEL(small_contour) * c)
+static SC_INLINE void see_small(const sc_query_state *state, uint32_t blocks, const float *axes,
+                                small_contour *c)
 {
     const float *at = state->workspace->point_at, *one, *other;
     lanes from[3], axis[2][3], d[3], x[2], size = lanes_all(0), size_in_plane = lanes_all(0);
@@ -95,7 +95,7 @@ static SC_INLINE void SC_KERNEL(see_small)(const sc_query_state *state, uint32_t
 }
 
 /* The cells of the points. */
-static SC_INLINE void SC_KERNEL(find_cells)(SC_KERNEL(small_contour) * c, uint32_t blocks)
+static SC_INLINE void find_cells(small_contour *c, uint32_t blocks)
 {
     const float least = 512 * c->error;
     const lanes scale = lanes_all(126 / (c->size > least ? c->size : least));
@@ -118,7 +118,7 @@ static SC_INLINE void SC_KERNEL(find_cells)(SC_KERNEL(small_contour) * c, uint32
 }
 
 /* The boxes of the edges, and their reaches. */
-static SC_INLINE void SC_KERNEL(find_boxes)(SC_KERNEL(small_contour) * c, uint32_t blocks)
+static SC_INLINE void find_boxes(small_contour *c, uint32_t blocks)
 {
     lanes_cells reach[SC_SMALL_BLOCKS];
     uint32_t b;
@@ -137,8 +137,7 @@ static SC_INLINE void SC_KERNEL(find_boxes)(SC_KERNEL(small_contour) * c, uint32
 
 /* Bits of edges of which boxes overlap those of edges further on. What is read behind the last
    reach is compared with what is no edge. */
-static SC_INLINE uint64_t SC_KERNEL(find_overlaps)(const SC_KERNEL(small_contour) * c,
-                                                   uint32_t blocks)
+static SC_INLINE uint64_t find_overlaps(const small_contour *c, uint32_t blocks)
 {
     const uint32_t most = blocks * (SC_LANES_COUNT / 2);
     uint64_t overlaps = 0;
@@ -154,20 +153,20 @@ static SC_INLINE uint64_t SC_KERNEL(find_overlaps)(const SC_KERNEL(small_contour
             noted = lanes_cells_note(noted, box, lanes_cells_load(reach + on));
         last = lanes_cells_note(lanes_cells_none(), box, lanes_cells_load(reach + most));
         some = lanes_cells_noted(noted) | (c->count == 2 * most ? lanes_cells_noted(last) : 0);
-        some &= SC_KERNEL(first_lanes)(c->count - SC_LANES_COUNT * b);
+        some &= first_lanes(c->count - SC_LANES_COUNT * b);
         overlaps |= (uint64_t)some << SC_LANES_COUNT * b;
     }
     return overlaps;
 }
 
 /* Whether an edge is certainly apart from all but those before and behind it. */
-static int SC_KERNEL(is_edge_apart)(const SC_KERNEL(small_contour) * c, uint32_t edge)
+static int is_edge_apart(const small_contour *c, uint32_t edge)
 {
     const lanes_cells reach = lanes_cells_all(c->reach[edge]);
     const uint32_t last = c->count - 1;
     const uint64_t next = (uint64_t)1 << edge | (uint64_t)1 << (edge == last ? 0 : edge + 1) |
                           (uint64_t)1 << (edge ? edge - 1 : last);
-    SC_KERNEL(sc_edge_lanes) own, other;
+    edge_lanes own, other;
     uint32_t i;
     int k;
     SC_UNROLL
@@ -178,45 +177,44 @@ static int SC_KERNEL(is_edge_apart)(const SC_KERNEL(small_contour) * c, uint32_t
     for (i = 0; i < c->count; i += SC_LANES_COUNT) {
         unsigned some = lanes_cells_noted(
             lanes_cells_note(lanes_cells_none(), lanes_cells_load(c->box + i), reach));
-        some &= SC_KERNEL(first_lanes)(c->count - i) & ~(unsigned)(next >> i);
+        some &= first_lanes(c->count - i) & ~(unsigned)(next >> i);
         if (!some) continue;
         SC_UNROLL
         for (k = 0; k < 2; k++) {
             other.p[k] = lanes_load(c->at[k] + i);
             other.q[k] = lanes_load(c->at[k] + i + 1);
         }
-        if (some & ~SC_KERNEL(lie_apart)(c->error, &own, &other)) return 0;
+        if (some & ~lie_apart(c->error, &own, &other)) return 0;
     }
     return 1;
 }
 
 /* Bits of contours that are certainly simple, some of so many sixteens of edges. */
-static SC_INLINE unsigned SC_KERNEL(find_simple_of)(sc_query_state *state, const uint32_t *nodes,
-                                                    uint32_t count, uint32_t blocks,
-                                                    const float *const axes[])
+static SC_INLINE unsigned find_simple_of(sc_query_state *state, const uint32_t *nodes,
+                                         uint32_t count, uint32_t blocks, const float *const axes[])
 {
-    SC_KERNEL(small_contour) all[SC_DNC_VECTORS];
+    small_contour all[SC_DNC_VECTORS];
     unsigned simple = (1u << count) - 1u, i;
     sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
-    for (i = 0; i < count; i++) SC_KERNEL(place_small)(state->model, nodes[i], blocks, &all[i]);
-    for (i = 0; i < count; i++) SC_KERNEL(see_small)(state, blocks, axes[i], &all[i]);
+    for (i = 0; i < count; i++) place_small(state->model, nodes[i], blocks, &all[i]);
+    for (i = 0; i < count; i++) see_small(state, blocks, axes[i], &all[i]);
     sc_state_switch(state, SC_TASK_CONTOUR);
-    for (i = 0; i < count; i++) SC_KERNEL(find_cells)(&all[i], blocks);
-    for (i = 0; i < count; i++) SC_KERNEL(find_boxes)(&all[i], blocks);
+    for (i = 0; i < count; i++) find_cells(&all[i], blocks);
+    for (i = 0; i < count; i++) find_boxes(&all[i], blocks);
     for (i = 0; i < count; i++) {
-        uint64_t some = SC_KERNEL(find_overlaps)(&all[i], blocks);
+        uint64_t some = find_overlaps(&all[i], blocks);
         for (; some; some &= some - 1)
-            if (!SC_KERNEL(is_edge_apart)(&all[i], sc_bits_lowest64(some))) simple &= ~(1u << i);
+            if (!is_edge_apart(&all[i], sc_bits_lowest64(some))) simple &= ~(1u << i);
     }
     return simple;
 }
 
 /* Compiled anew for each number of sixteens. */
-static unsigned SC_KERNEL(find_simple)(sc_query_state *state, const uint32_t *nodes, uint32_t count,
-                                       uint32_t blocks, const float *const axes[])
+static unsigned find_simple(sc_query_state *state, const uint32_t *nodes, uint32_t count,
+                            uint32_t blocks, const float *const axes[])
 {
-    if (blocks == 1) return SC_KERNEL(find_simple_of)(state, nodes, count, 1, axes);
-    if (blocks == 2) return SC_KERNEL(find_simple_of)(state, nodes, count, 2, axes);
-    if (blocks == 3) return SC_KERNEL(find_simple_of)(state, nodes, count, 3, axes);
-    return SC_KERNEL(find_simple_of)(state, nodes, count, 4, axes);
+    if (blocks == 1) return find_simple_of(state, nodes, count, 1, axes);
+    if (blocks == 2) return find_simple_of(state, nodes, count, 2, axes);
+    if (blocks == 3) return find_simple_of(state, nodes, count, 3, axes);
+    return find_simple_of(state, nodes, count, 4, axes);
 }

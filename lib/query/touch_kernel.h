@@ -17,7 +17,7 @@
  */
 
 /* From about the middle of the points of one cluster to that of another's, sixteen times. */
-static inline void SC_KERNEL(find_way)(const float *from, const float *to, float way[3])
+static inline void find_way(const float *from, const float *to, float way[3])
 {
     lanes sum[2];
     float row[SC_LANES_COUNT];
@@ -36,21 +36,21 @@ static inline void SC_KERNEL(find_way)(const float *from, const float *to, float
 
 /* What a place along a direction m may be off by, where points are; and of what its products m_k
    d_k add up to, which part the rounding is. */
-static inline float SC_KERNEL(touch_reach)(const float m[3])
+static inline float touch_reach(const float m[3])
 {
     const float edge = 6e-8f;
     return (fabsf(m[0]) + fabsf(m[1]) + fabsf(m[2])) * (1.1f * edge) + 16 * FLT_MIN;
 }
-static inline lanes SC_KERNEL(touch_rounding)(lanes size)
+static inline lanes touch_rounding(lanes size)
 {
     const float v = 5.9604644775390625e-8f;
     return lanes_multiply(size, lanes_all(6 * v));
 }
 
 /* The points of a cluster that are certainly ahead of p along a direction. */
-static inline unsigned SC_KERNEL(find_ahead)(const float *at, const float m[3], const float p[3])
+static inline unsigned find_ahead(const float *at, const float m[3], const float p[3])
 {
-    const float reach = SC_KERNEL(touch_reach)(m);
+    const float reach = touch_reach(m);
     lanes x[3], along, size;
     int k;
     lanes_turned(at, x);
@@ -59,39 +59,38 @@ static inline unsigned SC_KERNEL(find_ahead)(const float *at, const float m[3], 
         x[k] = lanes_multiply(lanes_all(m[k]), lanes_subtract(x[k], lanes_all(p[k])));
     along = lanes_add(lanes_add(x[0], x[1]), x[2]);
     size = lanes_add(lanes_add(lanes_absolute(x[0]), lanes_absolute(x[1])), lanes_absolute(x[2]));
-    return lanes_bits(
-        lanes_below(lanes_all(reach), lanes_subtract(along, SC_KERNEL(touch_rounding)(size))));
+    return lanes_bits(lanes_below(lanes_all(reach), lanes_subtract(along, touch_rounding(size))));
 }
 
 /* The lanes that a point at a place is in: if it is the last one, it fills the row. */
-static inline unsigned SC_KERNEL(lanes_of)(unsigned place, unsigned is_last)
+static inline unsigned lanes_of(unsigned place, unsigned is_last)
 {
     return ((0u - is_last) | 1u) << place;
 }
 
 /* Whether two leaf clusters certainly have only the point in common that they touch in. */
-static inline unsigned SC_KERNEL(touch_only)(const sc_query_state *state, const sc_near_pair *pair)
+static inline unsigned touch_only(const sc_query_state *state, const sc_near_pair *pair)
 {
     const unsigned touch = pair->known;
     const unsigned at_a = touch & 15u, at_b = touch >> 4 & 15u;
     const float *of_a = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->a;
     const float *of_b = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->b;
     const float *p = of_a + 4 * sc_loops_turn(at_a);
-    unsigned ahead = SC_KERNEL(lanes_of)(at_a, touch >> SC_TOUCH_LAST & 1u);
-    unsigned behind = SC_KERNEL(lanes_of)(at_b, touch >> SC_TOUCH_LAST_OF_OTHER & 1u);
+    unsigned ahead = lanes_of(at_a, touch >> SC_TOUCH_LAST & 1u);
+    unsigned behind = lanes_of(at_b, touch >> SC_TOUCH_LAST_OF_OTHER & 1u);
     float m[3], back[3];
     int k;
-    SC_KERNEL(find_way)(of_b, of_a, m);
+    find_way(of_b, of_a, m);
     SC_UNROLL
     for (k = 0; k < 3; k++) back[k] = -m[k];
-    ahead |= SC_KERNEL(find_ahead)(of_a, m, p);
-    behind |= SC_KERNEL(find_ahead)(of_b, back, p);
+    ahead |= find_ahead(of_a, m, p);
+    behind |= find_ahead(of_b, back, p);
     return (ahead & behind & 0xffffu) == 0xffffu;
 }
 
 /* Drops such pairs of those that wait, of which so many touch. */
-static SC_NOINLINE void SC_KERNEL(drop_touching)(sc_query_state *state, const uint32_t *touching,
-                                                 uint32_t count)
+static SC_NOINLINE void drop_touching(sc_query_state *state, const uint32_t *touching,
+                                      uint32_t count)
 {
     sc_workspace *w = state->workspace;
     sc_near_pair *pairs = w->near_pairs;
@@ -106,6 +105,6 @@ static SC_NOINLINE void SC_KERNEL(drop_touching)(sc_query_state *state, const ui
                 sc_fetch(w->point_at + SC_LEAF_POINTS * (4 * (uint64_t)next->b + (unsigned)k));
             }
         }
-        p->known |= SC_KERNEL(touch_only)(state, p) ? SC_NEAR_DROPPED : 0u;
+        p->known |= touch_only(state, p) ? SC_NEAR_DROPPED : 0u;
     }
 }

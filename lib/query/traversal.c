@@ -45,7 +45,7 @@ static void query_rest_of_node(sc_query_state *state, uint32_t node)
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     const sc_node *n = sc_model_node(model) + node;
-    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    const sc_query_kernels *kernels = state->workspace->kernels->query;
     uint32_t bits, previous;
     if (sc_state_stops(state)) return;
     sc_traversal_update_boxes(state);
@@ -181,7 +181,7 @@ static void leave_to_boxes(sc_query_state *state, uint32_t a, uint32_t b, int af
 void sc_traversal_take_boxes(sc_query_state *state)
 {
     sc_walk *walk = &state->workspace->walk;
-    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    const sc_query_kernels *kernels = state->workspace->kernels->query;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     int after_contour;
     for (after_contour = 0; after_contour < 2; after_contour++) {
@@ -315,7 +315,7 @@ void sc_traversal_walk(sc_query_state *state)
 
 void sc_traversal_take_alone(sc_query_state *state, const uint32_t *alone, uint32_t count)
 {
-    const sc_query_kernels *kernels = sc_query_kernels_of(state->workspace);
+    const sc_query_kernels *kernels = state->workspace->kernels->query;
     const uint32_t most = sc_state_may_end_early(state) ? 16 : SC_LEAF_QUEUE - SC_LEAF_MAX - 1;
     sc_workspace *w = state->workspace;
     const uint8_t *culled = w->walk.culled + sc_model_first_leaf_patch(state->model);
@@ -401,7 +401,7 @@ void sc_traversal_run(sc_query_state *state)
         const sc_pair whole = {0, 0};
         sc_traversal_update_boxes(state);
         sc_state_switch(state, SC_TASK_BOXES_ORIENTATION);
-        sc_query_kernels_of(state->workspace)->patch_pairs(state, &whole, 1);
+        state->workspace->kernels->query->patch_pairs(state, &whole, 1);
     }
     sc_candidates_decide(state);
 }

@@ -45,14 +45,13 @@
  * from the computed places to the true ones, edges go on running in their direction, so that chains
  * go on running once round.
  */
-typedef struct SC_KERNEL(tube) {
+typedef struct tube {
     float middle[3], direction[3][3]; /* of u, v and h */
     float error, most;                /* of a coordinate: d, M */
-} SC_KERNEL(tube);
+} tube;
 
 /* Of points in a box, with an axis that leads along a vector. Returns 0 if that is zero. */
-static inline int SC_KERNEL(begin_tube)(const float along[3], const float low[3],
-                                        const float high[3], SC_KERNEL(tube) * t)
+static inline int begin_tube(const float along[3], const float low[3], const float high[3], tube *t)
 {
     float length = 0, reach = 0;
     int k;
@@ -64,15 +63,14 @@ static inline int SC_KERNEL(begin_tube)(const float along[3], const float low[3]
     }
     if (!(length > FLT_MIN)) return 0;
     for (k = 0; k < 3; k++) t->direction[2][k] = along[k] / length;
-    SC_KERNEL(find_across)(t->direction[2], t->direction);
+    find_across(t->direction[2], t->direction);
     reach = 1.001f * reach + 1e-6f; /* the middle is nearly that of the box */
     t->error = 9.2e-8f + 7.4e-7f * reach;
     t->most = 3.04f * reach;
     return 1;
 }
 
-static inline void SC_KERNEL(see_tube)(const sc_query_state *state, uint32_t leaf,
-                                       const SC_KERNEL(tube) * t, lanes at[3])
+static inline void see_tube(const sc_query_state *state, uint32_t leaf, const tube *t, lanes at[3])
 {
     lanes x[3];
     int k;
@@ -89,7 +87,7 @@ static inline void SC_KERNEL(see_tube)(const sc_query_state *state, uint32_t lea
 }
 
 /* Of places of a cluster's outline, which is two chains, those that have some bit. */
-static inline unsigned SC_KERNEL(places_with)(lanes_bytes outline, uint8_t bit)
+static inline unsigned places_with(lanes_bytes outline, uint8_t bit)
 {
     const lanes_bytes some = lanes_bytes_all(bit);
     return lanes_bytes_bits(lanes_bytes_same(lanes_bytes_both(outline, some), some));
@@ -97,15 +95,13 @@ static inline unsigned SC_KERNEL(places_with)(lanes_bytes outline, uint8_t bit)
 
 /* Whether the two chains of a cluster's outline certainly run round the axis, the first once, in
    different directions. */
-static inline int SC_KERNEL(go_round)(const SC_KERNEL(tube) * t, const lanes at[3],
-                                      const uint8_t *row)
+static inline int go_round(const tube *t, const lanes at[3], const uint8_t *row)
 {
     const lanes_bytes outline = lanes_bytes_load(row);
     const lanes_index next =
         lanes_index_of(lanes_bytes_both(outline, lanes_bytes_all(SC_LEAF_POINTS - 1)));
-    const unsigned second = SC_KERNEL(places_with)(outline, SC_OUTLINE_SECOND);
-    const unsigned first =
-        ~(second | SC_KERNEL(places_with)(outline, SC_OUTLINE_NOWHERE)) & 0xffffu;
+    const unsigned second = places_with(outline, SC_OUTLINE_SECOND);
+    const unsigned first = ~(second | places_with(outline, SC_OUTLINE_NOWHERE)) & 0xffffu;
     const float bound = t->error * (5.2f * t->most + 2.1f * t->error) + 16 * FLT_MIN;
     const lanes u = lanes_pick_of(at[0], next), v = lanes_pick_of(at[1], next);
     const lanes z = lanes_subtract(lanes_multiply(at[0], v), lanes_multiply(at[1], u));
@@ -120,8 +116,7 @@ static inline int SC_KERNEL(go_round)(const SC_KERNEL(tube) * t, const lanes at[
 
 /* To which side the triangles of a cluster are certainly turned, all of them: 1 or 2, or 0 if that
    is not so. */
-static inline int SC_KERNEL(side_of_tube)(const SC_KERNEL(tube) * t, const lanes at[3],
-                                          const uint8_t *corner)
+static inline int side_of_tube(const tube *t, const lanes at[3], const uint8_t *corner)
 {
     const float m = t->most, e = t->error, q = e * (5.2f * m + 2.1f * e);
     const float bound = q * (4.2f * m + 5.2f * e) + 14.6f * m * m * e + 100 * FLT_MIN;
@@ -147,20 +142,16 @@ static inline int SC_KERNEL(side_of_tube)(const SC_KERNEL(tube) * t, const lanes
 }
 
 /* To which side a cluster is turned that is a band; 0 if it may be none. */
-static inline int SC_KERNEL(side_of_band)(const sc_query_state *state, uint32_t leaf,
-                                          const SC_KERNEL(tube) * t)
+static inline int side_of_band(const sc_query_state *state, uint32_t leaf, const tube *t)
 {
     const sc_model *model = state->model;
     lanes at[3];
-    SC_KERNEL(see_tube)(state, leaf, t, at);
-    if (!SC_KERNEL(go_round)(t, at, sc_model_leaf_outline(model) + SC_LEAF_POINTS * (uint64_t)leaf))
-        return 0;
-    return SC_KERNEL(side_of_tube)(t, at,
-                                   sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf);
+    see_tube(state, leaf, t, at);
+    if (!go_round(t, at, sc_model_leaf_outline(model) + SC_LEAF_POINTS * (uint64_t)leaf)) return 0;
+    return side_of_tube(t, at, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf);
 }
 
-static inline void SC_KERNEL(find_box)(const sc_query_state *state, uint32_t leaf, float low[3],
-                                       float high[3])
+static inline void find_box(const sc_query_state *state, uint32_t leaf, float low[3], float high[3])
 {
     const sc_boxes *boxes = &state->workspace->patch_boxes;
     const uint64_t i = (uint64_t)sc_model_first_leaf_patch(state->model) + leaf;
@@ -173,14 +164,14 @@ static inline void SC_KERNEL(find_box)(const sc_query_state *state, uint32_t lea
 }
 
 /* Whether a leaf cluster goes round a tube, as the model tells. */
-static inline int SC_KERNEL(has_two_chains)(const sc_model *model, uint32_t leaf)
+static inline int has_two_chains(const sc_model *model, uint32_t leaf)
 {
     return sc_model_leaf_outline(model)[SC_LEAF_POINTS * ((uint64_t)leaf + 1) - 1] & SC_OUTLINE_TWO;
 }
 
 /* Whether such a cluster certainly is a band. The axis leads from the middle of one chain to that
    of the other, about. */
-static int SC_KERNEL(is_band)(const sc_query_state *state, uint32_t leaf)
+static int is_band(const sc_query_state *state, uint32_t leaf)
 {
     static const float weight[SC_LANES_COUNT] = {-1, 1, 0};
     const lanes_bytes outline =
@@ -193,42 +184,42 @@ static int SC_KERNEL(is_band)(const sc_query_state *state, uint32_t leaf)
                                               lanes_bytes_both(is_second, lanes_bytes_all(1)),
                                               lanes_bytes_both(is_nowhere, lanes_bytes_all(2)))));
     float low[3], high[3], along[3];
-    SC_KERNEL(tube) t;
+    tube t;
     lanes x[3];
     int k;
-    SC_KERNEL(find_box)(state, leaf, low, high);
+    find_box(state, leaf, low, high);
     lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, x);
     for (k = 0; k < 3; k++) {
         x[k] = lanes_subtract(x[k], lanes_all((low[k] + high[k]) / 2));
         along[k] = lanes_sum(lanes_multiply(side, x[k]));
     }
-    return SC_KERNEL(begin_tube)(along, low, high, &t) && SC_KERNEL(side_of_band)(state, leaf, &t);
+    return begin_tube(along, low, high, &t) && side_of_band(state, leaf, &t);
 }
 
 /* Whether two of them that share a chain certainly are bands, one above it and the other below. The
    axis leads from the middle of one to that of the other, about. */
-static int SC_KERNEL(are_bands)(const sc_query_state *state, uint32_t a, uint32_t b)
+static int are_bands(const sc_query_state *state, uint32_t a, uint32_t b)
 {
     float low[2][3], high[2][3], middle[2][3], along[3];
-    SC_KERNEL(tube) t;
+    tube t;
     int k, s, side;
-    SC_KERNEL(find_box)(state, a, low[0], high[0]);
-    SC_KERNEL(find_box)(state, b, low[1], high[1]);
+    find_box(state, a, low[0], high[0]);
+    find_box(state, b, low[1], high[1]);
     for (k = 0; k < 3; k++) {
         for (s = 0; s < 2; s++) middle[s][k] = (low[s][k] + high[s][k]) / 2;
         along[k] = middle[1][k] - middle[0][k];
         low[0][k] = low[1][k] < low[0][k] ? low[1][k] : low[0][k];
         high[0][k] = high[1][k] > high[0][k] ? high[1][k] : high[0][k];
     }
-    if (!SC_KERNEL(begin_tube)(along, low[0], high[0], &t)) return 0;
-    side = SC_KERNEL(side_of_band)(state, a, &t);
-    return side && SC_KERNEL(side_of_band)(state, b, &t) == side;
+    if (!begin_tube(along, low[0], high[0], &t)) return 0;
+    side = side_of_band(state, a, &t);
+    return side && side_of_band(state, b, &t) == side;
 }
 
 /* Of so many pairs of leaf clusters that wait, or one with itself, drops those that go round a tube
    and certainly have nothing in common but what they share; before those of one with itself, the
-   others, which are marked as SC_KERNEL(drop_plain) does. */
-static void SC_KERNEL(drop_bands)(sc_query_state *state, uint32_t count)
+   others, which are marked as drop_plain does. */
+static void drop_bands(sc_query_state *state, uint32_t count)
 {
     sc_workspace *w = state->workspace;
     uint8_t *marks = w->walk.marks + sc_model_first_leaf_patch(state->model);
@@ -240,8 +231,8 @@ static void SC_KERNEL(drop_bands)(sc_query_state *state, uint32_t count)
         for (i = 0; i < count; i++) {
             sc_near_pair *p = w->near_pairs + i;
             if (!(p->known & SC_TOUCH_CHAIN) || (p->a == p->b) != pass) continue;
-            if (pass ? (may_look && marks[p->a]) || SC_KERNEL(is_band)(state, p->a)
-                     : SC_KERNEL(are_bands)(state, p->a, p->b)) {
+            if (pass ? (may_look && marks[p->a]) || is_band(state, p->a)
+                     : are_bands(state, p->a, p->b)) {
                 marks[p->a] = marks[p->b] = 1;
                 p->known |= SC_NEAR_DROPPED;
             }

@@ -10,19 +10,18 @@
  */
 
 /* Rows that are looked at together. */
-enum { SC_KERNEL(WALK_ROWS) = 128 };
+enum { WALK_ROWS = 128 };
 
 /* Leaf clusters that are to be compared with some others, as patches. */
-typedef struct SC_KERNEL(walk_rows) {
-    uint32_t row[SC_KERNEL(WALK_ROWS) + SC_LEAF_MAX];
-    uint32_t first[SC_KERNEL(WALK_ROWS) + SC_LEAF_MAX]; /* of those, */
-    uint32_t all[SC_KERNEL(WALK_ROWS) + SC_LEAF_MAX];   /* and a bit for each */
+typedef struct walk_rows {
+    uint32_t row[WALK_ROWS + SC_LEAF_MAX];
+    uint32_t first[WALK_ROWS + SC_LEAF_MAX]; /* of those, */
+    uint32_t all[WALK_ROWS + SC_LEAF_MAX];   /* and a bit for each */
     unsigned count;
-} SC_KERNEL(walk_rows);
+} walk_rows;
 
 /* Has the pairs of leaf clusters wait that overlap in these rows, and forgets them. */
-static SC_NOINLINE void SC_KERNEL(take_walk_rows)(sc_query_state *state,
-                                                  SC_KERNEL(walk_rows) * rows)
+static SC_NOINLINE void take_walk_rows(sc_query_state *state, walk_rows *rows)
 {
     enum { AHEAD = 8 };
     const sc_boxes *boxes = &state->workspace->patch_boxes;
@@ -32,7 +31,7 @@ static SC_NOINLINE void SC_KERNEL(take_walk_rows)(sc_query_state *state,
     unsigned count = 0, i;
     for (i = 0; i < rows->count; i++) {
         const uint32_t row = rows->row[i], first = rows->first[i];
-        const unsigned mask = SC_KERNEL(overlap)(boxes, row, boxes, first) & rows->all[i];
+        const unsigned mask = overlap(boxes, row, boxes, first) & rows->all[i];
         rows->row[count] = row;
         rows->first[count] = first;
         rows->all[count] = mask;
@@ -41,9 +40,8 @@ static SC_NOINLINE void SC_KERNEL(take_walk_rows)(sc_query_state *state,
     for (i = 0; i < count && i < AHEAD; i++) sc_fetch(shared + share[rows->row[i] - leaves]);
     for (i = 0; i < count && !state->stop; i++) {
         if (i + AHEAD < count) sc_fetch(shared + share[rows->row[i + AHEAD] - leaves]);
-        SC_KERNEL(add_leaf_pairs)
-        (state, rows->row[i] - leaves, rows->first[i] - leaves, rows->all[i]);
-        SC_KERNEL(make_leaf_room)(state);
+        add_leaf_pairs(state, rows->row[i] - leaves, rows->first[i] - leaves, rows->all[i]);
+        make_leaf_room(state);
     }
     rows->count = 0;
 }
@@ -53,8 +51,7 @@ static SC_NOINLINE void SC_KERNEL(take_walk_rows)(sc_query_state *state,
  * visited, sixteen at most, against the other's box, then row by row against the other's; rows of
  * leaf clusters wait.
  */
-static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b,
-                                  SC_KERNEL(walk_rows) * waiting)
+static void patch_pair(sc_query_state *state, uint32_t a, uint32_t b, walk_rows *waiting)
 {
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
@@ -63,14 +60,14 @@ static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b,
     uint32_t first_a, first_b;
     unsigned rows, all_b, i;
     if (a >= leaves) {
-        SC_KERNEL(leaf_pair_waits)(state, a - leaves, b - leaves);
+        leaf_pair_waits(state, a - leaves, b - leaves);
         return;
     }
     if (sc_state_stops(state)) return;
     first_a = hop[a];
     first_b = hop[b];
     all_b = (1u << (hop[b + 1] - first_b)) - 1u;
-    rows = SC_KERNEL(overlap)(boxes, b, boxes, first_a) & ((1u << (hop[a + 1] - first_a)) - 1u);
+    rows = overlap(boxes, b, boxes, first_a) & ((1u << (hop[a + 1] - first_a)) - 1u);
     state->stats.counts[sc_state_box_task(state)] += 1 + sc_bits_count(rows);
     if (first_a >= leaves) {
         uint32_t *first = waiting->first + waiting->count, *all = waiting->all + waiting->count;
@@ -79,21 +76,20 @@ static void SC_KERNEL(patch_pair)(sc_query_state *state, uint32_t a, uint32_t b,
         for (i = 0; i < SC_LANES_COUNT; i++) first[i] = first_b;
         for (i = 0; i < SC_LANES_COUNT; i++) all[i] = all_b;
         waiting->count += lanes_list_from(rows, first_a, waiting->row + waiting->count);
-        if (waiting->count >= SC_KERNEL(WALK_ROWS) || sc_state_may_end_early(state))
-            SC_KERNEL(take_walk_rows)(state, waiting);
+        if (waiting->count >= WALK_ROWS || sc_state_may_end_early(state))
+            take_walk_rows(state, waiting);
     } else {
         for (; rows && !state->stop; rows &= rows - 1) {
             const uint32_t c = first_a + sc_bits_lowest(rows);
-            unsigned mask = SC_KERNEL(overlap)(boxes, c, boxes, first_b) & all_b;
+            unsigned mask = overlap(boxes, c, boxes, first_b) & all_b;
             for (; mask && !state->stop; mask &= mask - 1)
-                SC_KERNEL(patch_pair)(state, c, first_b + sc_bits_lowest(mask), waiting);
+                patch_pair(state, c, first_b + sc_bits_lowest(mask), waiting);
         }
     }
 }
 
 /* A patch against itself. */
-static void SC_KERNEL(patch_itself)(sc_query_state *state, uint32_t a,
-                                    SC_KERNEL(walk_rows) * waiting)
+static void patch_itself(sc_query_state *state, uint32_t a, walk_rows *waiting)
 {
     const sc_model *model = state->model;
     const sc_boxes *boxes = &state->workspace->patch_boxes;
@@ -101,37 +97,37 @@ static void SC_KERNEL(patch_itself)(sc_query_state *state, uint32_t a,
     const uint32_t leaves = sc_model_first_leaf_patch(model);
     uint32_t count, i;
     if (a >= leaves) {
-        SC_KERNEL(leaf_itself)(state, a - leaves);
+        leaf_itself(state, a - leaves);
         return;
     }
     if (sc_model_is_leaf(model, a)) {
-        SC_KERNEL(leaf_itself)(state, sc_model_leaf(model)[a]);
+        leaf_itself(state, sc_model_leaf(model)[a]);
         return;
     }
     if (sc_state_stops(state)) return;
     count = hop[a + 1] - hop[a];
     for (i = 0; i < count && !state->stop; i++) {
         uint32_t c = hop[a] + i;
-        unsigned mask = SC_KERNEL(overlap)(boxes, c, boxes, hop[a]);
+        unsigned mask = overlap(boxes, c, boxes, hop[a]);
         mask &= ((1u << count) - 1u) & ~((2u << i) - 1u);
         state->stats.counts[sc_state_box_task(state)]++;
-        SC_KERNEL(patch_itself)(state, c, waiting);
+        patch_itself(state, c, waiting);
         for (; mask && !state->stop; mask &= mask - 1)
-            SC_KERNEL(patch_pair)(state, c, hop[a] + sc_bits_lowest(mask), waiting);
+            patch_pair(state, c, hop[a] + sc_bits_lowest(mask), waiting);
     }
 }
 
 /* Pairs of patches, or patches against themselves. */
-static void SC_KERNEL(patch_pairs)(sc_query_state *state, const sc_pair *pairs, uint32_t count)
+static void patch_pairs(sc_query_state *state, const sc_pair *pairs, uint32_t count)
 {
-    SC_KERNEL(walk_rows) waiting;
+    walk_rows waiting;
     uint32_t i;
     waiting.count = 0;
     for (i = 0; i < count && !state->stop; i++) {
         if (pairs[i].a == pairs[i].b)
-            SC_KERNEL(patch_itself)(state, pairs[i].a, &waiting);
+            patch_itself(state, pairs[i].a, &waiting);
         else
-            SC_KERNEL(patch_pair)(state, pairs[i].a, pairs[i].b, &waiting);
+            patch_pair(state, pairs[i].a, pairs[i].b, &waiting);
     }
-    SC_KERNEL(take_walk_rows)(state, &waiting);
+    take_walk_rows(state, &waiting);
 }

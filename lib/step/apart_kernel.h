@@ -15,12 +15,12 @@
  */
 
 /* The points of sixteen candidates at the start or at the end, three coordinates each. */
-typedef struct SC_KERNEL(candidate_lanes) {
+typedef struct candidate_lanes {
     lanes at[4][3];
-} SC_KERNEL(candidate_lanes);
+} candidate_lanes;
 
-static inline void SC_KERNEL(read_candidates)(const sc_motion *m, const sc_candidate_points *points,
-                                              int end, SC_KERNEL(candidate_lanes) * c)
+static inline void read_candidates(const sc_motion *m, const sc_candidate_points *points, int end,
+                                   candidate_lanes *c)
 {
     const float *at[SC_LANES_COUNT];
     int i, j;
@@ -31,23 +31,23 @@ static inline void SC_KERNEL(read_candidates)(const sc_motion *m, const sc_candi
     }
 }
 
-static inline lanes SC_KERNEL(dot_in_space)(const lanes a[3], const lanes b[3])
+static inline lanes dot_in_space(const lanes a[3], const lanes b[3])
 {
     return lanes_add(lanes_add(lanes_multiply(a[0], b[0]), lanes_multiply(a[1], b[1])),
                      lanes_multiply(a[2], b[2]));
 }
 
 /* Bits of those that are apart along m, on either side; count differences. */
-static inline unsigned SC_KERNEL(apart_in_space)(const lanes m[3], lanes (*difference)[3],
-                                                 int count, lanes clear)
+static inline unsigned apart_in_space(const lanes m[3], lanes (*difference)[3], int count,
+                                      lanes clear)
 {
     lanes size =
         lanes_add(lanes_add(lanes_absolute(m[0]), lanes_absolute(m[1])), lanes_absolute(m[2]));
     lanes bound = lanes_add(lanes_multiply(size, clear), lanes_all(16 * FLT_MIN));
-    lanes least = SC_KERNEL(dot_in_space)(m, (const lanes *)difference[0]), most = least;
+    lanes least = dot_in_space(m, (const lanes *)difference[0]), most = least;
     int i;
     for (i = 1; i < count; i++) {
-        lanes dot = SC_KERNEL(dot_in_space)(m, (const lanes *)difference[i]);
+        lanes dot = dot_in_space(m, (const lanes *)difference[i]);
         least = lanes_smaller(least, dot);
         most = lanes_larger(most, dot);
     }
@@ -55,7 +55,7 @@ static inline unsigned SC_KERNEL(apart_in_space)(const lanes m[3], lanes (*diffe
            lanes_bits(lanes_below(most, lanes_subtract(lanes_all(0), bound)));
 }
 
-static inline void SC_KERNEL(cross_in_space)(const lanes a[3], const lanes b[3], lanes to[3])
+static inline void cross_in_space(const lanes a[3], const lanes b[3], lanes to[3])
 {
     int k;
     for (k = 0; k < 3; k++)
@@ -64,8 +64,7 @@ static inline void SC_KERNEL(cross_in_space)(const lanes a[3], const lanes b[3],
 }
 
 /* From point i to point j, both ends of the step together. */
-static inline void SC_KERNEL(side_in_space)(const SC_KERNEL(candidate_lanes) c[2], int i, int j,
-                                            lanes to[3])
+static inline void side_in_space(const candidate_lanes c[2], int i, int j, lanes to[3])
 {
     int k;
     for (k = 0; k < 3; k++)
@@ -75,21 +74,20 @@ static inline void SC_KERNEL(side_in_space)(const SC_KERNEL(candidate_lanes) c[2
 
 /* How far apart the computed points must be along a direction, over its |m|1; reach is the largest
    coordinate of a difference. */
-static inline lanes SC_KERNEL(clear_in_space)(float distance, lanes reach)
+static inline lanes clear_in_space(float distance, lanes reach)
 {
     return lanes_add(lanes_all(distance * 1.00001f + 2.1f * SC_MOTION_POINT_ERROR),
                      lanes_multiply(reach, lanes_all(5 * 5.9604644775390625e-8f)));
 }
 
-static unsigned SC_KERNEL(stay_apart)(const sc_motion *motion, const sc_candidate_points *points,
-                                      int split)
+static unsigned stay_apart(const sc_motion *motion, const sc_candidate_points *points, int split)
 {
-    SC_KERNEL(candidate_lanes) c[2];
+    candidate_lanes c[2];
     lanes difference[8][3], sum[2][3], side[3][3], m[3], reach = lanes_all(0), clear;
     int i, j, k, end, count = 0;
     unsigned apart;
     for (end = 0; end < 2; end++) {
-        SC_KERNEL(read_candidates)(motion, points, end, &c[end]);
+        read_candidates(motion, points, end, &c[end]);
         for (k = 0; k < 3; k++) sum[end][k] = lanes_all(0);
         for (i = 0; i < split; i++)
             for (j = split; j < 4; j++, count++)
@@ -100,18 +98,18 @@ static unsigned SC_KERNEL(stay_apart)(const sc_motion *motion, const sc_candidat
                     sum[end][k] = lanes_add(sum[end][k], r);
                 }
     }
-    clear = SC_KERNEL(clear_in_space)(motion->distance, reach);
+    clear = clear_in_space(motion->distance, reach);
     for (k = 0; k < 3; k++) m[k] = lanes_add(sum[0][k], sum[1][k]);
-    apart = SC_KERNEL(apart_in_space)(m, difference, count, clear);
-    SC_KERNEL(side_in_space)(c, split == 1 ? 1 : 0, split == 1 ? 2 : 1, side[0]);
-    SC_KERNEL(side_in_space)(c, split == 1 ? 1 : 2, 3, side[1]);
-    SC_KERNEL(side_in_space)(c, 2, 3, side[2]);
-    SC_KERNEL(cross_in_space)((const lanes *)side[0], (const lanes *)side[1], m);
-    apart |= SC_KERNEL(apart_in_space)(m, difference, count, clear);
+    apart = apart_in_space(m, difference, count, clear);
+    side_in_space(c, split == 1 ? 1 : 0, split == 1 ? 2 : 1, side[0]);
+    side_in_space(c, split == 1 ? 1 : 2, 3, side[1]);
+    side_in_space(c, 2, 3, side[2]);
+    cross_in_space((const lanes *)side[0], (const lanes *)side[1], m);
+    apart |= apart_in_space(m, difference, count, clear);
     for (k = 0; k < 3; k++) sum[1][k] = lanes_subtract(sum[1][k], sum[0][k]); /* the way */
     for (i = 0; i < (split == 1 ? 3 : 2) && apart != 0xffffu; i++) {
-        SC_KERNEL(cross_in_space)((const lanes *)sum[1], (const lanes *)side[i], m);
-        apart |= SC_KERNEL(apart_in_space)(m, difference, count, clear);
+        cross_in_space((const lanes *)sum[1], (const lanes *)side[i], m);
+        apart |= apart_in_space(m, difference, count, clear);
     }
     return apart;
 }

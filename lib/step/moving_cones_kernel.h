@@ -22,7 +22,7 @@
  * few u.
  */
 /* What the coefficients of n . s may be off by, |e|1 and |f|1 being so large. */
-static inline lanes SC_KERNEL(moving_normal_error)(lanes e_size, lanes f_size)
+static inline lanes moving_normal_error(lanes e_size, lanes f_size)
 {
     const lanes relative = lanes_all(10 * 5.9604644775390625e-8f);
     const lanes moved = lanes_all(4.1f * SC_MOTION_POINT_ERROR),
@@ -33,14 +33,13 @@ static inline lanes SC_KERNEL(moving_normal_error)(lanes e_size, lanes f_size)
 }
 
 /* The square of the length that a side may have, by the computed one. */
-static inline lanes SC_KERNEL(longest_square)(lanes square)
+static inline lanes longest_square(lanes square)
 {
     return lanes_add(lanes_multiply(lanes_all(1.01f), square),
                      lanes_all(1.0001f * 1616 * SC_MOTION_POINT_ERROR * SC_MOTION_POINT_ERROR));
 }
 
-static uint32_t SC_KERNEL(moving_mask_of)(const sc_motion *m, const uint32_t *corner,
-                                          uint32_t count)
+static uint32_t moving_mask_of(const sc_motion *m, const uint32_t *corner, uint32_t count)
 {
     const lanes half = lanes_all(0.5f), none = lanes_all(0);
     lanes e[2][3], f[2][3], n[3][3], error, e_size = none, f_size = none, longest = none, clear[2];
@@ -85,8 +84,8 @@ static uint32_t SC_KERNEL(moving_mask_of)(const sc_motion *m, const uint32_t *co
         two = lanes_subtract(lanes_multiply(e[1][x], f[0][y]), lanes_multiply(e[1][y], f[0][x]));
         n[1][k] = lanes_multiply(half, lanes_add(one, two));
     }
-    error = SC_KERNEL(moving_normal_error)(e_size, f_size);
-    longest = SC_KERNEL(longest_square)(longest);
+    error = moving_normal_error(e_size, f_size);
+    longest = longest_square(longest);
     clear[0] = lanes_add(lanes_multiply(lanes_all(1.0001f * d * d), longest), lanes_all(FLT_MIN));
     clear[1] = lanes_multiply(lanes_all(3), clear[0]); /* of corners; of faces */
     for (s = 0; s < 7; s++) {

@@ -221,7 +221,7 @@ static void set_clearance(sc_moving_contour *c, float distance)
 int sc_moving_contour_test(sc_step_state *state, const sc_projection *projection, uint32_t node)
 {
     int star = state->options.contour == SC_CONTOUR_STAR;
-    const sc_step_kernels *kernels = sc_step_kernels_of(state->query.workspace);
+    const sc_step_kernels *kernels = state->query.workspace->kernels->step;
     sc_workspace *w = state->query.workspace;
     uint32_t previous = sc_state_switch(&state->query, SC_TASK_UPDATE_CONTOURS);
     sc_moving_contour c;

@@ -9,7 +9,7 @@
 
 /* Places of the listed points at both ends, and the error of their coordinates, see choose_axes in
    query/simple.c. */
-static void SC_KERNEL(project_motion)(sc_moving_contour *c, const float *unit)
+static void project_motion(sc_moving_contour *c, const float *unit)
 {
     const sc_contour_edges *e = c->start.edges;
     lanes size = lanes_all(0), d[3];
@@ -38,13 +38,13 @@ static void SC_KERNEL(project_motion)(sc_moving_contour *c, const float *unit)
 }
 
 /* Sixteen moving edges, from p to q, at the start and at the end. */
-typedef struct SC_KERNEL(moving_lanes) {
+typedef struct moving_lanes {
     lanes p[2][2], q[2][2];
-} SC_KERNEL(moving_lanes);
+} moving_lanes;
 
 /* m . p for both points of an edge at one end of the step: the least and the greatest. */
-static inline void SC_KERNEL(extent_along)(const lanes m[2], const SC_KERNEL(moving_lanes) * e,
-                                           int end, lanes *least, lanes *most)
+static inline void extent_along(const lanes m[2], const moving_lanes *e, int end, lanes *least,
+                                lanes *most)
 {
     lanes p = lanes_add(lanes_multiply(m[0], e->p[end][0]), lanes_multiply(m[1], e->p[end][1]));
     lanes q = lanes_add(lanes_multiply(m[0], e->q[end][0]), lanes_multiply(m[1], e->q[end][1]));
@@ -53,7 +53,7 @@ static inline void SC_KERNEL(extent_along)(const lanes m[2], const SC_KERNEL(mov
 }
 
 /* How far apart two points along m must be, see moving_contour.c. */
-static inline lanes SC_KERNEL(clear_along)(const sc_moving_contour *c, const lanes m[2])
+static inline lanes clear_along(const sc_moving_contour *c, const lanes m[2])
 {
     return lanes_add(lanes_add(lanes_multiply(lanes_absolute(m[0]), lanes_all(c->clear[0])),
                                lanes_multiply(lanes_absolute(m[1]), lanes_all(c->clear[1]))),
@@ -61,15 +61,14 @@ static inline lanes SC_KERNEL(clear_along)(const sc_moving_contour *c, const lan
 }
 
 /* Bits of the edges e that are clear of f along m: beyond it, or on this side if that counts. */
-static inline unsigned SC_KERNEL(are_apart_along)(const sc_moving_contour *c, const lanes m[2],
-                                                  const SC_KERNEL(moving_lanes) * e,
-                                                  const SC_KERNEL(moving_lanes) * f)
+static inline unsigned are_apart_along(const sc_moving_contour *c, const lanes m[2],
+                                       const moving_lanes *e, const moving_lanes *f)
 {
-    lanes clear = SC_KERNEL(clear_along)(c, m), e_least[2], e_most[2], f_least[2], f_most[2];
+    lanes clear = clear_along(c, m), e_least[2], e_most[2], f_least[2], f_most[2];
     int end;
     for (end = 0; end < 2; end++) {
-        SC_KERNEL(extent_along)(m, e, end, &e_least[end], &e_most[end]);
-        SC_KERNEL(extent_along)(m, f, end, &f_least[end], &f_most[end]);
+        extent_along(m, e, end, &e_least[end], &e_most[end]);
+        extent_along(m, f, end, &f_least[end], &f_most[end]);
     }
     return lanes_bits(lanes_below(clear, lanes_smaller(lanes_subtract(f_least[0], e_most[0]),
                                                        lanes_subtract(f_least[1], e_most[1])))) |
@@ -79,9 +78,8 @@ static inline unsigned SC_KERNEL(are_apart_along)(const sc_moving_contour *c, co
 
 /* Bits of the edges e that are clear of f for certain, along the way from middle to middle or
    across one of the two. */
-static inline unsigned SC_KERNEL(are_apart)(const sc_moving_contour *c,
-                                            const SC_KERNEL(moving_lanes) * e,
-                                            const SC_KERNEL(moving_lanes) * f, unsigned asked)
+static inline unsigned are_apart(const sc_moving_contour *c, const moving_lanes *e,
+                                 const moving_lanes *f, unsigned asked)
 {
     lanes m[2];
     unsigned left;
@@ -90,21 +88,21 @@ static inline unsigned SC_KERNEL(are_apart)(const sc_moving_contour *c,
         m[k] = lanes_subtract(
             lanes_add(lanes_add(f->p[0][k], f->q[0][k]), lanes_add(f->p[1][k], f->q[1][k])),
             lanes_add(lanes_add(e->p[0][k], e->q[0][k]), lanes_add(e->p[1][k], e->q[1][k])));
-    left = asked & ~SC_KERNEL(are_apart_along)(c, m, e, f);
+    left = asked & ~are_apart_along(c, m, e, f);
     if (!left) return asked;
     m[0] = lanes_subtract(lanes_add(e->q[0][1], e->q[1][1]), lanes_add(e->p[0][1], e->p[1][1]));
     m[1] = lanes_subtract(lanes_add(e->p[0][0], e->p[1][0]), lanes_add(e->q[0][0], e->q[1][0]));
-    left &= ~SC_KERNEL(are_apart_along)(c, m, e, f);
+    left &= ~are_apart_along(c, m, e, f);
     if (!left) return asked;
     m[0] = lanes_subtract(lanes_add(f->q[0][1], f->q[1][1]), lanes_add(f->p[0][1], f->p[1][1]));
     m[1] = lanes_subtract(lanes_add(f->p[0][0], f->p[1][0]), lanes_add(f->q[0][0], f->q[1][0]));
-    return asked & ~(left & ~SC_KERNEL(are_apart_along)(c, m, e, f));
+    return asked & ~(left & ~are_apart_along(c, m, e, f));
 }
 
 /* Bits of edges e that are open to the next, f, which starts where they end: both run on along the
    sum of the two. */
-static inline unsigned SC_KERNEL(run_on)(const sc_moving_contour *c,
-                                         const SC_KERNEL(moving_lanes) * e, const lanes next[2][2])
+static inline unsigned run_on(const sc_moving_contour *c, const moving_lanes *e,
+                              const lanes next[2][2])
 {
     lanes v[2][2], w[2][2], m[2], least, dot;
     int k, end;
@@ -122,13 +120,13 @@ static inline unsigned SC_KERNEL(run_on)(const sc_moving_contour *c,
         dot = lanes_add(lanes_multiply(m[0], w[end][0]), lanes_multiply(m[1], w[end][1]));
         least = lanes_smaller(least, dot);
     }
-    return lanes_bits(lanes_below(SC_KERNEL(clear_along)(c, m), least));
+    return lanes_bits(lanes_below(clear_along(c, m), least));
 }
 
 /* Boxes of the runs of sixteen edges at one end of the step, each larger by half the clearance.
    What is no edge is in them, which does no harm. */
-static inline void SC_KERNEL(enclose_runs)(const sc_moving_contour *c, uint32_t i, int end,
-                                           const SC_KERNEL(moving_lanes) * e)
+static inline void enclose_runs(const sc_moving_contour *c, uint32_t i, int end,
+                                const moving_lanes *e)
 {
     float *const *side = end ? c->end->run_side : c->start.edges->run_side;
     int k;
@@ -141,12 +139,12 @@ static inline void SC_KERNEL(enclose_runs)(const sc_moving_contour *c, uint32_t 
     }
 }
 
-static int SC_KERNEL(are_near_clear)(sc_moving_contour *c, uint32_t block)
+static int are_near_clear(sc_moving_contour *c, uint32_t block)
 {
     const sc_contour_edges *e = c->start.edges;
     uint32_t i = block * SC_CONTOUR_BLOCK, s;
     unsigned edges = e->is_edge[block], following = edges | (unsigned)e->is_edge[block + 1] << 16;
-    SC_KERNEL(moving_lanes) own, other;
+    moving_lanes own, other;
     unsigned left;
     int k, end;
     for (end = 0; end < 2; end++)
@@ -156,9 +154,9 @@ static int SC_KERNEL(are_near_clear)(sc_moving_contour *c, uint32_t block)
             own.q[end][k] = lanes_load(at + 1);
             other.q[end][k] = lanes_load(at + 2);
         }
-    for (end = 0; end < 2; end++) SC_KERNEL(enclose_runs)(c, i, end, &own);
+    for (end = 0; end < 2; end++) enclose_runs(c, i, end, &own);
     left = edges & following >> 1;
-    for (left &= ~SC_KERNEL(run_on)(c, &own, (const lanes(*)[2])other.q); left; left &= left - 1) {
+    for (left &= ~run_on(c, &own, (const lanes(*)[2])other.q); left; left &= left - 1) {
         uint32_t edge = i + sc_bits_lowest(left);
         if (!sc_moving_contour_are_clear(c, edge, edge + 1)) return 0;
     }
@@ -170,7 +168,7 @@ static int SC_KERNEL(are_near_clear)(sc_moving_contour *c, uint32_t block)
             }
         left = edges & following >> s;
         if (!left) continue;
-        for (left &= ~SC_KERNEL(are_apart)(c, &own, &other, left); left; left &= left - 1) {
+        for (left &= ~are_apart(c, &own, &other, left); left; left &= left - 1) {
             uint32_t edge = i + sc_bits_lowest(left);
             if (!sc_moving_contour_are_clear(c, edge, edge + s)) return 0;
         }
@@ -179,7 +177,7 @@ static int SC_KERNEL(are_near_clear)(sc_moving_contour *c, uint32_t block)
 }
 
 /* The edges of two runs. */
-static int SC_KERNEL(are_runs_clear)(sc_moving_contour *c, uint32_t run, uint32_t other_run)
+static int are_runs_clear(sc_moving_contour *c, uint32_t run, uint32_t other_run)
 {
     static const uint16_t four_times[16] = {0x0000, 0x000f, 0x00f0, 0x00ff, 0x0f00, 0x0f0f,
                                             0x0ff0, 0x0fff, 0xf000, 0xf00f, 0xf0f0, 0xf0ff,
@@ -189,7 +187,7 @@ static int SC_KERNEL(are_runs_clear)(sc_moving_contour *c, uint32_t run, uint32_
     unsigned own_edges = (unsigned)e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 15u;
     unsigned other_edges = (unsigned)e->is_edge[j / SC_CONTOUR_BLOCK] >> j % SC_CONTOUR_BLOCK & 15u;
     unsigned left = four_times[own_edges] & other_edges * 0x1111u;
-    SC_KERNEL(moving_lanes) own, other;
+    moving_lanes own, other;
     int k, end;
     if (!left) return 1;
     for (end = 0; end < 2; end++)
@@ -200,7 +198,7 @@ static int SC_KERNEL(are_runs_clear)(sc_moving_contour *c, uint32_t run, uint32_
             other.p[end][k] = lanes_four(at + j);
             other.q[end][k] = lanes_four(at + j + 1);
         }
-    for (left &= ~SC_KERNEL(are_apart)(c, &own, &other, left); left; left &= left - 1) {
+    for (left &= ~are_apart(c, &own, &other, left); left; left &= left - 1) {
         unsigned pair = sc_bits_lowest(left);
         if (!sc_moving_contour_are_clear(c, i + pair / 4, j + pair % 4)) return 0;
     }
@@ -209,8 +207,7 @@ static int SC_KERNEL(are_runs_clear)(sc_moving_contour *c, uint32_t run, uint32_
 
 /* Bit k: box i of a is not apart on one side from box j + k of b at both ends, for k from 0 to
    15. */
-static inline unsigned SC_KERNEL(near_in_plane)(float *a[2][4], uint32_t i, float *b[2][4],
-                                                uint32_t j)
+static inline unsigned near_in_plane(float *a[2][4], uint32_t i, float *b[2][4], uint32_t j)
 {
     lanes least = lanes_all(0);
     int k;
@@ -227,16 +224,16 @@ static inline unsigned SC_KERNEL(near_in_plane)(float *a[2][4], uint32_t i, floa
 }
 
 /* A run and some of sixteen runs from another on. */
-static int SC_KERNEL(are_far_clear)(sc_moving_contour *c, float *side[2][4], uint32_t run,
-                                    uint32_t first, unsigned some)
+static int are_far_clear(sc_moving_contour *c, float *side[2][4], uint32_t run, uint32_t first,
+                         unsigned some)
 {
-    for (some &= SC_KERNEL(near_in_plane)(side, run, side, first); some; some &= some - 1)
-        if (!SC_KERNEL(are_runs_clear)(c, run, first + sc_bits_lowest(some))) return 0;
+    for (some &= near_in_plane(side, run, side, first); some; some &= some - 1)
+        if (!are_runs_clear(c, run, first + sc_bits_lowest(some))) return 0;
     return 1;
 }
 
 /* Runs that do not follow each other, in groups of sixteen, first by the boxes of groups. */
-static int SC_KERNEL(are_groups_clear)(sc_moving_contour *c)
+static int are_groups_clear(sc_moving_contour *c)
 {
     const sc_contour_edges *e = c->start.edges;
     uint32_t runs = (c->start.count + SC_CONTOUR_RUN - 1) / SC_CONTOUR_RUN;
@@ -259,17 +256,16 @@ static int SC_KERNEL(are_groups_clear)(sc_moving_contour *c)
     for (a = 0; a < groups; a++) {
         uint32_t end_of = runs - 16 * a < 16 ? runs - 16 * a : 16;
         for (r = 0; r + 2 < end_of; r++)
-            if (!SC_KERNEL(are_far_clear)(c, side, 16 * a + r, 16 * a, 0xfffcu << r & 0xffffu))
-                return 0;
+            if (!are_far_clear(c, side, 16 * a + r, 16 * a, 0xfffcu << r & 0xffffu)) return 0;
         for (b = a + 1; b < groups; b += 16) {
-            unsigned others = SC_KERNEL(near_in_plane)(group_side, a, group_side, b);
+            unsigned others = near_in_plane(group_side, a, group_side, b);
             for (; others; others &= others - 1) {
                 uint32_t other = b + sc_bits_lowest(others);
-                unsigned rows = SC_KERNEL(near_in_plane)(group_side, other, side, 16 * a);
+                unsigned rows = near_in_plane(group_side, other, side, 16 * a);
                 for (; rows; rows &= rows - 1) {
                     r = sc_bits_lowest(rows);
-                    if (!SC_KERNEL(are_far_clear)(c, side, 16 * a + r, 16 * other,
-                                                  r == 15 && other == a + 1 ? 0xfffeu : 0xffffu))
+                    if (!are_far_clear(c, side, 16 * a + r, 16 * other,
+                                       r == 15 && other == a + 1 ? 0xfffeu : 0xffffu))
                         return 0;
                 }
             }
@@ -278,10 +274,10 @@ static int SC_KERNEL(are_groups_clear)(sc_moving_contour *c)
     return 1;
 }
 
-static int SC_KERNEL(are_edges_clear)(sc_moving_contour *c)
+static int are_edges_clear(sc_moving_contour *c)
 {
     uint32_t a;
     for (a = 0; a < c->start.blocks; a++)
-        if (!SC_KERNEL(are_near_clear)(c, a)) return 0;
-    return SC_KERNEL(are_groups_clear)(c);
+        if (!are_near_clear(c, a)) return 0;
+    return are_groups_clear(c);
 }

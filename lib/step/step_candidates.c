@@ -81,7 +81,7 @@ static void decide_candidate(sc_step_state *state, int kind, sc_pair pair)
 /* Up to sixteen candidates: most are seen to stay apart all at once. */
 static void decide_some(sc_step_state *state, int kind, const sc_pair *pairs, uint32_t count)
 {
-    const sc_step_kernels *kernels = sc_step_kernels_of(state->query.workspace);
+    const sc_step_kernels *kernels = state->query.workspace->kernels->step;
     sc_candidate_points points;
     unsigned left;
     uint32_t i, k, point[4];

@@ -6,7 +6,6 @@
 #ifndef SC_STEP_KERNELS_H
 #define SC_STEP_KERNELS_H
 
-#include "base/isa.h"
 #include "step/moving_contour.h"
 
 /* The points of sixteen candidates of a kind, as the narrow phase takes them. */
@@ -33,22 +32,5 @@ typedef struct sc_step_kernels {
     /* Whether sc_moving_contour_are_clear is true of all pairs of edges. */
     int (*are_edges_clear)(sc_moving_contour *contour);
 } sc_step_kernels;
-
-extern const sc_step_kernels sc_step_kernels_base;
-#if SC_ISA_X86
-extern const sc_step_kernels sc_step_kernels_avx2;
-extern const sc_step_kernels sc_step_kernels_avx512;
-#endif
-
-/* Those for the query at hand. */
-static inline const sc_step_kernels *sc_step_kernels_of(const sc_workspace *workspace)
-{
-#if SC_ISA_X86
-    if (workspace->isa == SC_ISA_AVX512) return &sc_step_kernels_avx512;
-    if (workspace->isa == SC_ISA_AVX2) return &sc_step_kernels_avx2;
-#endif
-    (void)workspace;
-    return &sc_step_kernels_base;
-}
 
 #endif

@@ -209,7 +209,7 @@ static void find_cones(void *context, uint32_t level, uint32_t first, uint32_t e
     }
     leaf += first - sc_model_first_leaf_patch(model);
     for (p = first; p < end; p++, leaf++)
-        mask[p] = (uint16_t)sc_step_kernels_of(pass->w)->cone(
+        mask[p] = (uint16_t)pass->w->kernels->step->cone(
             &pass->w->motion, triangle + 3 * (uint64_t)leaf[0], leaf[1] - leaf[0]);
 }
 

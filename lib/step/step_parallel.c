@@ -142,7 +142,7 @@ static void run_step_job(step_plan *p, void (*run)(void *context, uint32_t part,
 
 static void do_step_part(sc_step_state *s, const sc_part *part)
 {
-    const sc_step_kernels *kernels = sc_step_kernels_of(s->query.workspace);
+    const sc_step_kernels *kernels = s->query.workspace->kernels->step;
     sc_step_traversal_follow_contour(s, part->kind == STEP_PART_PAIR_AFTER_CONTOUR);
     sc_state_switch(&s->query, sc_state_box_task(&s->query));
     if (part->kind == STEP_PART_PATCH)

@@ -9,7 +9,7 @@
 
 #include "base/arguments.h"
 #include "base/assume.h"
-#include "base/isa.h"
+#include "simd/isa.h"
 #include "query/question.h"
 
 static sc_status check_length(const sc_hooks *hooks, const char *name, double length)

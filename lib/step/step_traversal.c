@@ -76,7 +76,7 @@ void sc_step_traversal_query_rest(sc_step_state *state, uint32_t node)
     const sc_model *model = state->query.model;
     const sc_motion *motion = &state->query.workspace->motion;
     const sc_node *n = sc_model_node(model) + node;
-    const sc_step_kernels *kernels = sc_step_kernels_of(state->query.workspace);
+    const sc_step_kernels *kernels = state->query.workspace->kernels->step;
     uint32_t bits, previous;
     if (sc_state_stops(&state->query)) return;
     sc_step_traversal_follow_contour(state, sc_step_traversal_mask(state, node) != 0);
@@ -133,7 +133,7 @@ void sc_step_traversal_run(sc_step_state *state)
     } else {
         sc_state_switch(&state->query, SC_TASK_BOXES_ORIENTATION);
         sc_step_traversal_refit(state);
-        sc_step_kernels_of(w)->patch_itself(state, 0);
+        w->kernels->step->patch_itself(state, 0);
     }
     sc_step_candidates_decide(state);
 }

@@ -8,13 +8,13 @@
 #define SC_LANES_ALL ((1u << SC_LANES_COUNT) - 1u)
 
 /* The sides of a box that moves, for comparison with many. */
-typedef struct SC_KERNEL(sides) {
+typedef struct box_sides {
     lanes side[SC_MOTION_SIDES];
-} SC_KERNEL(sides);
+} box_sides;
 
 /* Those of box i of an array of boxes, each moved outwards. */
-static inline void SC_KERNEL(sides_of)(const float *side, uint32_t stride, uint32_t i, float margin,
-                                       SC_KERNEL(sides) * box)
+static inline void sides_of(const float *side, uint32_t stride, uint32_t i, float margin,
+                            box_sides *box)
 {
     int k;
     for (k = 0; k < SC_MOTION_SIDES; k++) {
@@ -28,8 +28,8 @@ static inline void SC_KERNEL(sides_of)(const float *side, uint32_t stride, uint3
  * below the other both at the start and at the end, that is, the larger of the two differences is
  * negative; differences have the sign that they should have.
  */
-static inline unsigned SC_KERNEL(near)(const SC_KERNEL(sides) * box, const float *side,
-                                       uint32_t stride, uint32_t j)
+static inline unsigned lie_near(const box_sides *box, const float *side, uint32_t stride,
+                                uint32_t j)
 {
     lanes least = lanes_all(0);
     int k;
@@ -47,19 +47,18 @@ static inline unsigned SC_KERNEL(near)(const SC_KERNEL(sides) * box, const float
 }
 
 /* Bits of the first count boxes that are near one. */
-static inline uint64_t SC_KERNEL(all_near)(const SC_KERNEL(sides) * box, const float *side,
-                                           uint32_t stride, uint32_t count)
+static inline uint64_t all_near(const box_sides *box, const float *side, uint32_t stride,
+                                uint32_t count)
 {
     uint64_t bits = 0;
     uint32_t j;
     for (j = 0; j < count; j += SC_LANES_COUNT)
-        bits |= (uint64_t)SC_KERNEL(near)(box, side, stride, j) << j;
+        bits |= (uint64_t)lie_near(box, side, stride, j) << j;
     return bits & (((uint64_t)1 << count) - 1);
 }
 
 /* Sides of patches are in twelve arrays. */
-static inline void SC_KERNEL(patch_sides)(const sc_motion *m, uint32_t patch, float margin,
-                                          SC_KERNEL(sides) * box)
+static inline void patch_sides(const sc_motion *m, uint32_t patch, float margin, box_sides *box)
 {
     int k;
     for (k = 0; k < SC_MOTION_SIDES; k++) {
@@ -69,8 +68,7 @@ static inline void SC_KERNEL(patch_sides)(const sc_motion *m, uint32_t patch, fl
 }
 
 /* Bit k: patch j + k is not apart from the box at all times. */
-static inline unsigned SC_KERNEL(near_patches)(const SC_KERNEL(sides) * box, const sc_motion *m,
-                                               uint32_t j)
+static inline unsigned near_patches(const box_sides *box, const sc_motion *m, uint32_t j)
 {
     lanes least = lanes_all(0);
     int k;
@@ -86,26 +84,24 @@ static inline unsigned SC_KERNEL(near_patches)(const SC_KERNEL(sides) * box, con
     return ~lanes_bits(lanes_below(least, lanes_all(0))) & SC_LANES_ALL;
 }
 
-static inline void SC_KERNEL(count_tests)(sc_step_state *state, uint64_t tests)
+static inline void count_tests(sc_step_state *state, uint64_t tests)
 {
     state->query.stats.counts[sc_state_box_task(&state->query)] += tests;
 }
 
 /* Vertices of one leaf cluster, those with a bit, against triangles of another or the same. */
-static void SC_KERNEL(vertices_with_faces)(sc_step_state *state, const sc_leaf_motion *a,
-                                           uint64_t points, const sc_leaf_motion *b,
-                                           uint64_t triangles)
+static void vertices_with_faces(sc_step_state *state, const sc_leaf_motion *a, uint64_t points,
+                                const sc_leaf_motion *b, uint64_t triangles)
 {
     const uint32_t *corner = sc_model_triangle(state->query.model);
     float margin = state->query.workspace->motion.margin;
     uint64_t tests = 0;
     for (; points && !state->query.stop; points &= points - 1) {
         uint32_t i = sc_bits_lowest64(points), point = a->point[i];
-        SC_KERNEL(sides) box;
+        box_sides box;
         uint64_t some;
-        SC_KERNEL(sides_of)(a->point_side[0], SC_LEAF_POINTS, i, margin, &box);
-        some =
-            SC_KERNEL(all_near)(&box, b->triangle_side[0], SC_LEAF_MAX, b->triangles) & triangles;
+        sides_of(a->point_side[0], SC_LEAF_POINTS, i, margin, &box);
+        some = all_near(&box, b->triangle_side[0], SC_LEAF_MAX, b->triangles) & triangles;
         tests++;
         for (; some && !state->query.stop; some &= some - 1) {
             uint32_t place = b->first_place + sc_bits_lowest64(some);
@@ -114,23 +110,23 @@ static void SC_KERNEL(vertices_with_faces)(sc_step_state *state, const sc_leaf_m
                 sc_step_candidates_take(state, SC_STEP_VERTEX_FACE, point, place);
         }
     }
-    SC_KERNEL(count_tests)(state, tests);
+    count_tests(state, tests);
 }
 
 /* Edges of one leaf cluster, those with a bit, against edges of another, or of the same that come
    later. */
-static void SC_KERNEL(edges_with_edges)(sc_step_state *state, const sc_leaf_motion *a,
-                                        uint64_t some_a, const sc_leaf_motion *b, uint64_t some_b)
+static void edges_with_edges(sc_step_state *state, const sc_leaf_motion *a, uint64_t some_a,
+                             const sc_leaf_motion *b, uint64_t some_b)
 {
     float margin = state->query.workspace->motion.margin;
     uint64_t tests = 0;
     for (; some_a && !state->query.stop; some_a &= some_a - 1) {
         uint32_t i = sc_bits_lowest64(some_a);
         const uint32_t *e = a->edge_end[i];
-        SC_KERNEL(sides) box;
+        box_sides box;
         uint64_t some;
-        SC_KERNEL(sides_of)(a->edge_side[0], SC_LEAF_EDGES, i, margin, &box);
-        some = SC_KERNEL(all_near)(&box, b->edge_side[0], SC_LEAF_EDGES, b->edges) & some_b;
+        sides_of(a->edge_side[0], SC_LEAF_EDGES, i, margin, &box);
+        some = all_near(&box, b->edge_side[0], SC_LEAF_EDGES, b->edges) & some_b;
         if (a->leaf == b->leaf) some &= ~(((uint64_t)2 << i) - 1);
         tests++;
         for (; some && !state->query.stop; some &= some - 1) {
@@ -140,109 +136,108 @@ static void SC_KERNEL(edges_with_edges)(sc_step_state *state, const sc_leaf_moti
                 sc_step_candidates_take(state, SC_STEP_EDGE_EDGE, a->edge_name[i], b->edge_name[j]);
         }
     }
-    SC_KERNEL(count_tests)(state, tests);
+    count_tests(state, tests);
 }
 
 /* Bits of what of a leaf cluster is near the box of another. */
-typedef struct SC_KERNEL(parts) {
+typedef struct part_counts {
     uint64_t points, edges, triangles;
-} SC_KERNEL(parts);
+} part_counts;
 
-static inline void SC_KERNEL(parts_near)(const sc_leaf_motion *a, const SC_KERNEL(sides) * box,
-                                         SC_KERNEL(parts) * some)
+static inline void parts_near(const sc_leaf_motion *a, const box_sides *box, part_counts *some)
 {
     some->points = some->edges = 0;
-    some->triangles = SC_KERNEL(all_near)(box, a->triangle_side[0], SC_LEAF_MAX, a->triangles);
+    some->triangles = all_near(box, a->triangle_side[0], SC_LEAF_MAX, a->triangles);
     if (!some->triangles) return;
-    some->points = SC_KERNEL(all_near)(box, a->point_side[0], SC_LEAF_POINTS, a->points);
-    some->edges = SC_KERNEL(all_near)(box, a->edge_side[0], SC_LEAF_EDGES, a->edges);
+    some->points = all_near(box, a->point_side[0], SC_LEAF_POINTS, a->points);
+    some->edges = all_near(box, a->edge_side[0], SC_LEAF_EDGES, a->edges);
 }
 
-static void SC_KERNEL(leaf_pair)(sc_step_state *state, uint32_t leaf_a, uint32_t leaf_b)
+static void step_leaf_pair(sc_step_state *state, uint32_t leaf_a, uint32_t leaf_b)
 {
     const sc_motion *m = &state->query.workspace->motion;
     uint32_t first = sc_model_first_leaf_patch(state->query.model);
     const sc_leaf_motion *a, *b;
-    SC_KERNEL(sides) box;
-    SC_KERNEL(parts) some_a, some_b;
+    box_sides box;
+    part_counts some_a, some_b;
     state->query.stats.leaf_pairs++;
     a = sc_leaf_step_get(state, leaf_a, 0);
-    SC_KERNEL(patch_sides)(m, first + leaf_b, m->margin / 2, &box);
-    SC_KERNEL(parts_near)(a, &box, &some_a);
-    SC_KERNEL(count_tests)(state, 1);
+    patch_sides(m, first + leaf_b, m->margin / 2, &box);
+    parts_near(a, &box, &some_a);
+    count_tests(state, 1);
     if (!some_a.triangles) return;
     b = sc_leaf_step_get(state, leaf_b, 1);
-    SC_KERNEL(patch_sides)(m, first + leaf_a, m->margin / 2, &box);
-    SC_KERNEL(parts_near)(b, &box, &some_b);
-    SC_KERNEL(count_tests)(state, 1);
+    patch_sides(m, first + leaf_a, m->margin / 2, &box);
+    parts_near(b, &box, &some_b);
+    count_tests(state, 1);
     if (!some_b.triangles) return;
-    SC_KERNEL(vertices_with_faces)(state, a, some_a.points, b, some_b.triangles);
-    SC_KERNEL(vertices_with_faces)(state, b, some_b.points, a, some_a.triangles);
-    SC_KERNEL(edges_with_edges)(state, a, some_a.edges, b, some_b.edges);
+    vertices_with_faces(state, a, some_a.points, b, some_b.triangles);
+    vertices_with_faces(state, b, some_b.points, a, some_a.triangles);
+    edges_with_edges(state, a, some_a.edges, b, some_b.edges);
 }
 
-static void SC_KERNEL(leaf_itself)(sc_step_state *state, uint32_t leaf)
+static void step_leaf_itself(sc_step_state *state, uint32_t leaf)
 {
     const sc_leaf_motion *a = sc_leaf_step_get(state, leaf, 0);
     state->query.stats.leaf_pairs++;
-    SC_KERNEL(vertices_with_faces)(state, a, ((uint64_t)1 << a->points) - 1, a, ~(uint64_t)0);
-    SC_KERNEL(edges_with_edges)(state, a, ((uint64_t)1 << a->edges) - 1, a, ~(uint64_t)0);
+    vertices_with_faces(state, a, ((uint64_t)1 << a->points) - 1, a, ~(uint64_t)0);
+    edges_with_edges(state, a, ((uint64_t)1 << a->edges) - 1, a, ~(uint64_t)0);
 }
 
 /* Two patches of a level whose boxes are near each other, as query/walk_kernel.h does it. */
-static void SC_KERNEL(patch_pair)(sc_step_state *state, uint32_t a, uint32_t b)
+static void step_patch_pair(sc_step_state *state, uint32_t a, uint32_t b)
 {
     const sc_model *model = state->query.model;
     const sc_motion *m = &state->query.workspace->motion;
     const uint32_t *hop = sc_model_hop(model);
     uint32_t a_count, b_count;
-    SC_KERNEL(sides) box;
+    box_sides box;
     unsigned rows;
     if (a >= sc_model_first_leaf_patch(model)) {
-        SC_KERNEL(leaf_pair)(state, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
+        step_leaf_pair(state, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
         return;
     }
     if (sc_state_stops(&state->query)) return;
     a_count = hop[a + 1] - hop[a];
     b_count = hop[b + 1] - hop[b];
-    SC_KERNEL(patch_sides)(m, b, 0, &box);
-    rows = SC_KERNEL(near_patches)(&box, m, hop[a]) & ((1u << a_count) - 1u);
-    SC_KERNEL(count_tests)(state, 1);
+    patch_sides(m, b, 0, &box);
+    rows = near_patches(&box, m, hop[a]) & ((1u << a_count) - 1u);
+    count_tests(state, 1);
     for (; rows && !state->query.stop; rows &= rows - 1) {
         uint32_t c = hop[a] + sc_bits_lowest(rows);
         unsigned some;
-        SC_KERNEL(patch_sides)(m, c, 0, &box);
-        some = SC_KERNEL(near_patches)(&box, m, hop[b]) & ((1u << b_count) - 1u);
-        SC_KERNEL(count_tests)(state, 1);
+        patch_sides(m, c, 0, &box);
+        some = near_patches(&box, m, hop[b]) & ((1u << b_count) - 1u);
+        count_tests(state, 1);
         for (; some && !state->query.stop; some &= some - 1)
-            SC_KERNEL(patch_pair)(state, c, hop[b] + sc_bits_lowest(some));
+            step_patch_pair(state, c, hop[b] + sc_bits_lowest(some));
     }
 }
 
 /* A patch against itself. */
-static void SC_KERNEL(patch_itself)(sc_step_state *state, uint32_t a)
+static void step_patch_itself(sc_step_state *state, uint32_t a)
 {
     const sc_model *model = state->query.model;
     const sc_motion *m = &state->query.workspace->motion;
     const uint32_t *hop = sc_model_hop(model);
     uint32_t count, i;
     if (sc_model_is_leaf(model, a)) {
-        SC_KERNEL(leaf_itself)(state, sc_model_leaf(model)[a]);
+        step_leaf_itself(state, sc_model_leaf(model)[a]);
         return;
     }
     if (sc_state_stops(&state->query)) return;
     count = hop[a + 1] - hop[a];
     for (i = 0; i < count && !state->query.stop; i++) {
         uint32_t c = hop[a] + i;
-        SC_KERNEL(sides) box;
+        box_sides box;
         unsigned some;
-        SC_KERNEL(patch_sides)(m, c, 0, &box);
-        some = SC_KERNEL(near_patches)(&box, m, hop[a]);
+        patch_sides(m, c, 0, &box);
+        some = near_patches(&box, m, hop[a]);
         some &= ((1u << count) - 1u) & ~((2u << i) - 1u);
-        SC_KERNEL(count_tests)(state, 1);
-        SC_KERNEL(patch_itself)(state, c);
+        count_tests(state, 1);
+        step_patch_itself(state, c);
         for (; some && !state->query.stop; some &= some - 1)
-            SC_KERNEL(patch_pair)(state, c, hop[a] + sc_bits_lowest(some));
+            step_patch_pair(state, c, hop[a] + sc_bits_lowest(some));
     }
 }
 

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/isa.h"
+#include "simd/isa.h"
 #include "harness.h"
 
 enum { MAXIMUM_POSES = 4, MAXIMUM_QUERIES = 5 };

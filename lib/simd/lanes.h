@@ -1,6 +1,6 @@
 /*
  * Sixteen floats at a time, for the instruction set that the including file chose: SC_LANES is
- * AVX-512 (one register), AVX2 (two), registers of four floats (four; see base/quads.h: SSE2, which
+ * AVX-512 (one register), AVX2 (two), registers of four floats (four; see simd/quads.h: SSE2, which
  * every x86-64 has, or what the compiler makes of its vector types) or, with other compilers, plain
  * C.
  *
@@ -17,50 +17,19 @@
  * floats four times, lanes_each_four each of four floats, and the others store the least or
  * greatest of each four lanes.
  *
- * Included once for each instruction set, by the .c files that include kernels, which define
- * SC_KERNEL(name) to make names of their own; so this has no guard. base/lanes_end.h ends it.
+ * Included once for each instruction set (see simd/all_kernels.h), and tools/amalgamate.awk tells
+ * files that are included several times from others by their having no guard.
  */
 #include <math.h>
+#include <string.h>
 
 #include "base/bits.h"
-#include "base/quads.h"
+#include "simd/quads.h"
 
 #define SC_LANES_AVX512 (SC_LANES == 3)
 #define SC_LANES_AVX2 (SC_LANES == 2)
 #define SC_LANES_QUADS (SC_LANES == 1)
 #define SC_LANES_SSE2 (SC_LANES_QUADS && SC_ISA_X86)
-
-#define lanes SC_KERNEL(sc_lanes)
-#define lanes_all SC_KERNEL(sc_lanes_all)
-#define lanes_load SC_KERNEL(sc_lanes_load)
-#define lanes_store SC_KERNEL(sc_lanes_store)
-#define lanes_store_half SC_KERNEL(sc_lanes_store_half)
-#define lanes_add SC_KERNEL(sc_lanes_add)
-#define lanes_subtract SC_KERNEL(sc_lanes_subtract)
-#define lanes_multiply SC_KERNEL(sc_lanes_multiply)
-#define lanes_smaller SC_KERNEL(sc_lanes_smaller)
-#define lanes_larger SC_KERNEL(sc_lanes_larger)
-#define lanes_absolute SC_KERNEL(sc_lanes_absolute)
-#define lanes_largest_size SC_KERNEL(sc_lanes_largest_size)
-#define lanes_mask SC_KERNEL(sc_lanes_mask)
-#define lanes_below SC_KERNEL(sc_lanes_below)
-#define lanes_not_above SC_KERNEL(sc_lanes_not_above)
-#define lanes_both SC_KERNEL(sc_lanes_both)
-#define lanes_bits SC_KERNEL(sc_lanes_bits)
-#define lanes_every SC_KERNEL(sc_lanes_every)
-#define lanes_evens SC_KERNEL(sc_lanes_evens)
-#define lanes_odds SC_KERNEL(sc_lanes_odds)
-#define lanes_sum SC_KERNEL(sc_lanes_sum)
-#define lanes_least SC_KERNEL(sc_lanes_least)
-#define lanes_most SC_KERNEL(sc_lanes_most)
-#define lanes_points SC_KERNEL(sc_lanes_points)
-#define lanes_numbers SC_KERNEL(sc_lanes_numbers)
-#define lanes_rows SC_KERNEL(sc_lanes_rows)
-#define lanes_turned SC_KERNEL(sc_lanes_turned)
-#define lanes_four SC_KERNEL(sc_lanes_four)
-#define lanes_each_four SC_KERNEL(sc_lanes_each_four)
-#define lanes_store_least SC_KERNEL(sc_lanes_store_least)
-#define lanes_store_most SC_KERNEL(sc_lanes_store_most)
 
 #ifndef SC_LANES_COUNT
 #  define SC_LANES_COUNT 16
@@ -161,16 +130,15 @@ static inline void lanes_numbers(uint32_t *to, const uint16_t *number, uint32_t 
     _mm512_storeu_si512(to, _mm512_add_epi32(i, add));
 }
 /* The points i, i + 4, i + 8 and i + 12 of sixteen. */
-static inline __m512 SC_KERNEL(sc_lanes_four_points)(const float *a, const float *b, const float *c,
-                                                     const float *d)
+static inline __m512 lanes_four_points(const float *a, const float *b, const float *c,
+                                       const float *d)
 {
     __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(a));
     r = _mm512_insertf32x4(r, _mm_loadu_ps(b), 1);
     r = _mm512_insertf32x4(r, _mm_loadu_ps(c), 2);
     return _mm512_insertf32x4(r, _mm_loadu_ps(d), 3);
 }
-static inline void SC_KERNEL(sc_lanes_transposed)(const __m512 r[4], __m512 *x, __m512 *y,
-                                                  __m512 *z)
+static inline void lanes_transposed(const __m512 r[4], __m512 *x, __m512 *y, __m512 *z)
 {
     __m512 low = _mm512_unpacklo_ps(r[0], r[1]), low2 = _mm512_unpacklo_ps(r[2], r[3]);
     *x = _mm512_shuffle_ps(low, low2, 0x44);
@@ -184,8 +152,8 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
     int i;
     SC_UNROLL
     for (i = 0; i < 4; i++)
-        r[i] = SC_KERNEL(sc_lanes_four_points)(point[i], point[i + 4], point[i + 8], point[i + 12]);
-    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
+        r[i] = lanes_four_points(point[i], point[i + 4], point[i + 8], point[i + 12]);
+    lanes_transposed(r, x, y, z);
 }
 static inline void lanes_rows(const float *at, const uint32_t row[SC_LANES_COUNT], lanes *x,
                               lanes *y, lanes *z)
@@ -194,10 +162,9 @@ static inline void lanes_rows(const float *at, const uint32_t row[SC_LANES_COUNT
     int i;
     SC_UNROLL
     for (i = 0; i < 4; i++)
-        r[i] = SC_KERNEL(sc_lanes_four_points)(
-            at + 4 * (uint64_t)row[i], at + 4 * (uint64_t)row[i + 4], at + 4 * (uint64_t)row[i + 8],
-            at + 4 * (uint64_t)row[i + 12]);
-    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
+        r[i] = lanes_four_points(at + 4 * (uint64_t)row[i], at + 4 * (uint64_t)row[i + 4],
+                                 at + 4 * (uint64_t)row[i + 8], at + 4 * (uint64_t)row[i + 12]);
+    lanes_transposed(r, x, y, z);
 }
 static inline void lanes_turned(const float *at, lanes row[3])
 {
@@ -205,7 +172,7 @@ static inline void lanes_turned(const float *at, lanes row[3])
     int i;
     SC_UNROLL
     for (i = 0; i < 4; i++) r[i] = _mm512_loadu_ps(at + 16 * i);
-    SC_KERNEL(sc_lanes_transposed)(r, &row[0], &row[1], &row[2]);
+    lanes_transposed(r, &row[0], &row[1], &row[2]);
 }
 static inline lanes lanes_four(const float *f)
 {
@@ -216,19 +183,19 @@ static inline lanes lanes_each_four(const float *f)
     const __m512i place = _mm512_set_epi32(3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0);
     return _mm512_permutexvar_ps(place, _mm512_castps128_ps512(_mm_loadu_ps(f)));
 }
-static inline void SC_KERNEL(sc_lanes_store_fourth)(float *f, __m512 a)
+static inline void lanes_store_fourth(float *f, __m512 a)
 {
     _mm_storeu_ps(f, _mm512_castps512_ps128(_mm512_maskz_compress_ps(0x1111, a)));
 }
 static inline void lanes_store_least(float *f, lanes a)
 {
     a = _mm512_min_ps(a, _mm512_permute_ps(a, 0xb1));
-    SC_KERNEL(sc_lanes_store_fourth)(f, _mm512_min_ps(a, _mm512_permute_ps(a, 0x4e)));
+    lanes_store_fourth(f, _mm512_min_ps(a, _mm512_permute_ps(a, 0x4e)));
 }
 static inline void lanes_store_most(float *f, lanes a)
 {
     a = _mm512_max_ps(a, _mm512_permute_ps(a, 0xb1));
-    SC_KERNEL(sc_lanes_store_fourth)(f, _mm512_max_ps(a, _mm512_permute_ps(a, 0x4e)));
+    lanes_store_fourth(f, _mm512_max_ps(a, _mm512_permute_ps(a, 0x4e)));
 }
 
 #elif SC_LANES_AVX2 || SC_LANES_QUADS
@@ -353,41 +320,39 @@ static inline int lanes_every(lanes_mask a)
 {
     return _mm256_movemask_ps(_mm256_and_ps(a.v[0], a.v[1])) == 255;
 }
-static inline __m256 SC_KERNEL(sc_lanes_half)(__m256 a)
+static inline __m256 lanes_half(__m256 a)
 {
     return _mm256_castpd_ps(_mm256_permute4x64_pd(_mm256_castps_pd(a), 0xd8));
 }
 static inline lanes lanes_evens(lanes a, lanes b)
 {
     lanes r;
-    r.v[0] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(a.v[0], a.v[1], 0x88));
-    r.v[1] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(b.v[0], b.v[1], 0x88));
+    r.v[0] = lanes_half(_mm256_shuffle_ps(a.v[0], a.v[1], 0x88));
+    r.v[1] = lanes_half(_mm256_shuffle_ps(b.v[0], b.v[1], 0x88));
     return r;
 }
 static inline lanes lanes_odds(lanes a, lanes b)
 {
     lanes r;
-    r.v[0] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(a.v[0], a.v[1], 0xdd));
-    r.v[1] = SC_KERNEL(sc_lanes_half)(_mm256_shuffle_ps(b.v[0], b.v[1], 0xdd));
+    r.v[0] = lanes_half(_mm256_shuffle_ps(a.v[0], a.v[1], 0xdd));
+    r.v[1] = lanes_half(_mm256_shuffle_ps(b.v[0], b.v[1], 0xdd));
     return r;
 }
-static inline void SC_KERNEL(sc_lanes_transposed)(const __m256 r[4], __m256 *x, __m256 *y,
-                                                  __m256 *z)
+static inline void lanes_transposed(const __m256 r[4], __m256 *x, __m256 *y, __m256 *z)
 {
     __m256 low = _mm256_unpacklo_ps(r[0], r[1]), low2 = _mm256_unpacklo_ps(r[2], r[3]);
     *x = _mm256_shuffle_ps(low, low2, 0x44);
     *y = _mm256_shuffle_ps(low, low2, 0xee);
     *z = _mm256_shuffle_ps(_mm256_unpackhi_ps(r[0], r[1]), _mm256_unpackhi_ps(r[2], r[3]), 0x44);
 }
-static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, __m256 *x, __m256 *y,
-                                                   __m256 *z)
+static inline void lanes_points_part(const float *const *point, __m256 *x, __m256 *y, __m256 *z)
 {
     __m256 r[4];
     int i;
     for (i = 0; i < 4; i++)
         r[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(point[i])),
                                     _mm_loadu_ps(point[i + 4]), 1);
-    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
+    lanes_transposed(r, x, y, z);
 }
 static inline void lanes_numbers(uint32_t *to, const uint16_t *number, uint32_t split,
                                  uint32_t below, uint32_t others)
@@ -403,8 +368,8 @@ static inline void lanes_numbers(uint32_t *to, const uint16_t *number, uint32_t 
         _mm256_storeu_si256((__m256i *)(void *)(to + k), _mm256_add_epi32(i, add));
     }
 }
-static inline void SC_KERNEL(sc_lanes_rows_part)(const float *at, const uint32_t *row, __m256 *x,
-                                                 __m256 *y, __m256 *z)
+static inline void lanes_rows_part(const float *at, const uint32_t *row, __m256 *x, __m256 *y,
+                                   __m256 *z)
 {
     __m256 r[4];
     int i;
@@ -412,7 +377,7 @@ static inline void SC_KERNEL(sc_lanes_rows_part)(const float *at, const uint32_t
     for (i = 0; i < 4; i++)
         r[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(at + 4 * (uint64_t)row[i])),
                                     _mm_loadu_ps(at + 4 * (uint64_t)row[i + 4]), 1);
-    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
+    lanes_transposed(r, x, y, z);
 }
 static inline lanes lanes_four(const float *f)
 {
@@ -457,22 +422,21 @@ static inline lanes lanes_odds(lanes a, lanes b)
     r.v[3] = SC_QUAD_SHUFFLE(b.v[2], b.v[3], 1, 3, 1, 3);
     return r;
 }
-static inline void SC_KERNEL(sc_lanes_transposed)(sc_floats4 r[4], sc_floats4 *x, sc_floats4 *y,
-                                                  sc_floats4 *z)
+static inline void lanes_transposed(sc_floats4 r[4], sc_floats4 *x, sc_floats4 *y, sc_floats4 *z)
 {
     sc_quad_transpose(r);
     *x = r[0];
     *y = r[1];
     *z = r[2];
 }
-static inline void SC_KERNEL(sc_lanes_points_part)(const float *const *point, sc_floats4 *x,
-                                                   sc_floats4 *y, sc_floats4 *z)
+static inline void lanes_points_part(const float *const *point, sc_floats4 *x, sc_floats4 *y,
+                                     sc_floats4 *z)
 {
     sc_floats4 r[4];
     int i;
     SC_UNROLL
     for (i = 0; i < 4; i++) r[i] = SC_QUAD(loadu_ps)(point[i]);
-    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
+    lanes_transposed(r, x, y, z);
 }
 static inline void lanes_numbers(uint32_t *to, const uint16_t *number, uint32_t split,
                                  uint32_t below, uint32_t others)
@@ -480,14 +444,14 @@ static inline void lanes_numbers(uint32_t *to, const uint16_t *number, uint32_t 
     int i;
     for (i = 0; i < SC_LANES_COUNT; i++) to[i] = number[i] + (number[i] < split ? below : others);
 }
-static inline void SC_KERNEL(sc_lanes_rows_part)(const float *at, const uint32_t *row,
-                                                 sc_floats4 *x, sc_floats4 *y, sc_floats4 *z)
+static inline void lanes_rows_part(const float *at, const uint32_t *row, sc_floats4 *x,
+                                   sc_floats4 *y, sc_floats4 *z)
 {
     sc_floats4 r[4];
     int i;
     SC_UNROLL
     for (i = 0; i < 4; i++) r[i] = SC_QUAD(loadu_ps)(at + 4 * (uint64_t)row[i]);
-    SC_KERNEL(sc_lanes_transposed)(r, x, y, z);
+    lanes_transposed(r, x, y, z);
 }
 static inline lanes lanes_four(const float *f)
 {
@@ -536,16 +500,16 @@ static inline void lanes_points(const float *const point[SC_LANES_COUNT], lanes 
                                 lanes *z)
 {
     int i;
-    for (i = 0; i < SC_LANES_PARTS; i++) SC_KERNEL(sc_lanes_points_part)
-    (point + i * SC_LANES_WIDTH, &x->v[i], &y->v[i], &z->v[i]);
+    for (i = 0; i < SC_LANES_PARTS; i++)
+        lanes_points_part(point + i * SC_LANES_WIDTH, &x->v[i], &y->v[i], &z->v[i]);
 }
 static inline void lanes_rows(const float *at, const uint32_t row[SC_LANES_COUNT], lanes *x,
                               lanes *y, lanes *z)
 {
     int i;
     SC_UNROLL
-    for (i = 0; i < SC_LANES_PARTS; i++) SC_KERNEL(sc_lanes_rows_part)
-    (at, row + i * SC_LANES_WIDTH, &x->v[i], &y->v[i], &z->v[i]);
+    for (i = 0; i < SC_LANES_PARTS; i++)
+        lanes_rows_part(at, row + i * SC_LANES_WIDTH, &x->v[i], &y->v[i], &z->v[i]);
 }
 static inline void lanes_turned(const float *at, lanes row[3])
 {
@@ -555,7 +519,7 @@ static inline void lanes_turned(const float *at, lanes row[3])
         SC_LANES_PART r[4];
         SC_UNROLL
         for (k = 0; k < 4; k++) r[k] = SC_LANES_OF(loadu_ps)(at + 16 * k + i * SC_LANES_WIDTH);
-        SC_KERNEL(sc_lanes_transposed)(r, &row[0].v[i], &row[1].v[i], &row[2].v[i]);
+        lanes_transposed(r, &row[0].v[i], &row[1].v[i], &row[2].v[i]);
     }
 }
 
@@ -778,3 +742,9 @@ static inline float lanes_most(lanes a)
 #  undef SC_LANES_REDUCE
 
 #endif
+
+#include "simd/lanes_double.h"
+#include "simd/lanes_pick.h"
+#include "simd/lanes_bytes.h"
+#include "simd/lanes_cells.h"
+#include "simd/lanes_rows.h"

@@ -9,13 +9,13 @@
  * same bits, and of two NaN or zeros the same one. Masks are registers of all bits or none. Numbers
  * of a SC_QUAD_SHUFFLE are constants: two of a, then two of b.
  */
-#ifndef SC_BASE_QUADS_H
-#define SC_BASE_QUADS_H
+#ifndef SC_SIMD_QUADS_H
+#define SC_SIMD_QUADS_H
 
 #include <stdint.h>
 #include <string.h>
 
-#include "base/isa.h"
+#include "simd/isa.h"
 
 #if SC_ISA_X86
 
@@ -63,7 +63,7 @@ static inline sc_floats4 sc_quad_rounded_two(sc_doubles2 a)
 {
     return _mm_cvtpd_ps(a);
 }
-/* Where points of sixteen numbers below sixteen are in a table of turned places (see base/lanes.h),
+/* Where points of sixteen numbers below sixteen are in a table of turned places (see simd/lanes.h),
    in bytes: block i % 4, place i / 4. */
 static inline void sc_quad_places(const uint8_t *numbers, uint8_t *place)
 {

@@ -1,6 +1,6 @@
 /*
- * Sixteen rows of sixteen floats or points each, of which one thing is found at once. For the
- * instruction set that base/lanes.h, included before, is for.
+ * Sixteen rows of sixteen floats or points each, of which one thing is found at once. A part of
+ * simd/lanes.h.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -8,17 +8,7 @@
  * set, as they are of what is below 0. lanes_rows_ends makes lane i the least and the most x, y and
  * z of row i of memory, sixteen points of four floats in any order, rows being `stride` floats
  * apart; none is NaN.
- *
- * No guard, as in base/lanes.h; base/lanes_rows_end.h ends it.
  */
-#define lanes_signs SC_KERNEL(sc_lanes_signs)
-#define lanes_signs_of SC_KERNEL(sc_lanes_signs_of)
-#define lanes_all_negative SC_KERNEL(sc_lanes_all_negative)
-#define lanes_rows_ends SC_KERNEL(sc_lanes_rows_ends)
-#define lanes_signs_kept SC_KERNEL(sc_lanes_signs_kept)
-#define lanes_keep_all SC_KERNEL(sc_lanes_keep_all)
-#define lanes_keep SC_KERNEL(sc_lanes_keep)
-#define lanes_kept_negative SC_KERNEL(sc_lanes_kept_negative)
 
 /*
  * On x86-64 words, then bytes, are made of four rows, which keeps signs since it saturates: four
@@ -33,7 +23,7 @@ static inline lanes_signs lanes_signs_of(lanes a)
 {
     return _mm512_castps_si512(a);
 }
-static inline __m512i SC_KERNEL(sc_lanes_four_signs)(const lanes_signs row[4])
+static inline __m512i lanes_four_signs(const lanes_signs row[4])
 {
     return _mm512_packs_epi16(_mm512_packs_epi32(row[0], row[1]),
                               _mm512_packs_epi32(row[2], row[3]));
@@ -41,9 +31,8 @@ static inline __m512i SC_KERNEL(sc_lanes_four_signs)(const lanes_signs row[4])
 static inline unsigned lanes_all_negative(const lanes_signs row[16])
 {
     const __m512i signs = _mm512_set1_epi8(-128);
-    __m512i a = SC_KERNEL(sc_lanes_four_signs)(row), b = SC_KERNEL(sc_lanes_four_signs)(row + 4);
-    __m512i c = SC_KERNEL(sc_lanes_four_signs)(row + 8),
-            d = SC_KERNEL(sc_lanes_four_signs)(row + 12);
+    __m512i a = lanes_four_signs(row), b = lanes_four_signs(row + 4);
+    __m512i c = lanes_four_signs(row + 8), d = lanes_four_signs(row + 12);
     a = _mm512_and_si512(_mm512_shuffle_i32x4(a, b, 0x44), _mm512_shuffle_i32x4(a, b, 0xee));
     c = _mm512_and_si512(_mm512_shuffle_i32x4(c, d, 0x44), _mm512_shuffle_i32x4(c, d, 0xee));
     a = _mm512_and_si512(_mm512_shuffle_i32x4(a, c, 0x88), _mm512_shuffle_i32x4(a, c, 0xdd));
@@ -58,15 +47,15 @@ static inline lanes_signs lanes_signs_of(lanes a)
 {
     return _mm256_castps_si256(_mm256_and_ps(a.v[0], a.v[1]));
 }
-static inline __m256i SC_KERNEL(sc_lanes_four_signs)(const lanes_signs row[4])
+static inline __m256i lanes_four_signs(const lanes_signs row[4])
 {
     return _mm256_packs_epi16(_mm256_packs_epi32(row[0], row[1]),
                               _mm256_packs_epi32(row[2], row[3]));
 }
-static inline unsigned SC_KERNEL(sc_lanes_eight_negative)(const lanes_signs row[8])
+static inline unsigned lanes_eight_negative(const lanes_signs row[8])
 {
     const __m256i signs = _mm256_set1_epi8(-128);
-    __m256i a = SC_KERNEL(sc_lanes_four_signs)(row), b = SC_KERNEL(sc_lanes_four_signs)(row + 4);
+    __m256i a = lanes_four_signs(row), b = lanes_four_signs(row + 4);
     a = _mm256_and_si256(_mm256_permute2x128_si256(a, b, 0x20),
                          _mm256_permute2x128_si256(a, b, 0x31));
     a = _mm256_cmpeq_epi32(_mm256_and_si256(a, signs), signs);
@@ -74,8 +63,7 @@ static inline unsigned SC_KERNEL(sc_lanes_eight_negative)(const lanes_signs row[
 }
 static inline unsigned lanes_all_negative(const lanes_signs row[16])
 {
-    return SC_KERNEL(sc_lanes_eight_negative)(row) | SC_KERNEL(sc_lanes_eight_negative)(row + 8)
-                                                         << 8;
+    return lanes_eight_negative(row) | lanes_eight_negative(row + 8) << 8;
 }
 
 #elif SC_LANES_QUADS
@@ -222,8 +210,8 @@ static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes leas
         low[i] = SC_LANES_JOINED_AGAIN(min, a[0], a[2]);
         high[i] = SC_LANES_JOINED_AGAIN(max, b[0], b[2]);
     }
-    SC_KERNEL(sc_lanes_transposed)(low, &least[0], &least[1], &least[2]);
-    SC_KERNEL(sc_lanes_transposed)(high, &most[0], &most[1], &most[2]);
+    lanes_transposed(low, &least[0], &least[1], &least[2]);
+    lanes_transposed(high, &most[0], &most[1], &most[2]);
 }
 #  undef SC_LANES_JOINED
 #  undef SC_LANES_JOINED_AGAIN
@@ -255,10 +243,8 @@ static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes leas
             low[i] = SC_LANES_JOINED(min, a[0], a[1]);
             high[i] = SC_LANES_JOINED(max, b[0], b[1]);
         }
-        SC_KERNEL(sc_lanes_transposed)
-        (low, &least[0].v[half], &least[1].v[half], &least[2].v[half]);
-        SC_KERNEL(sc_lanes_transposed)
-        (high, &most[0].v[half], &most[1].v[half], &most[2].v[half]);
+        lanes_transposed(low, &least[0].v[half], &least[1].v[half], &least[2].v[half]);
+        lanes_transposed(high, &most[0].v[half], &most[1].v[half], &most[2].v[half]);
     }
 }
 #  undef SC_LANES_JOINED
@@ -281,8 +267,8 @@ static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes leas
                 high[j] = SC_QUAD(max_ps)(high[j], next);
             }
         }
-        SC_KERNEL(sc_lanes_transposed)(low, &least[0].v[i], &least[1].v[i], &least[2].v[i]);
-        SC_KERNEL(sc_lanes_transposed)(high, &most[0].v[i], &most[1].v[i], &most[2].v[i]);
+        lanes_transposed(low, &least[0].v[i], &least[1].v[i], &least[2].v[i]);
+        lanes_transposed(high, &most[0].v[i], &most[1].v[i], &most[2].v[i]);
     }
 }
 

@@ -1,7 +1,6 @@
 /*
- * Eight doubles at a time, for the instruction set that the including file chose: base/lanes.h,
- * included before, says how. One register of AVX-512, two of AVX2, four of two doubles
- * (base/quads.h); elsewhere plain C.
+ * Eight doubles at a time: one register of AVX-512, two of AVX2, four of two doubles
+ * (simd/quads.h), elsewhere plain C. A part of simd/lanes.h.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -11,35 +10,10 @@
  * signs, doubles_differ of whether the signs of two or three differ. doubles_choose takes from a
  * where the mask is set, else from b; doubles_points reads three doubles, or floats, at eight
  * places, aligned or not.
- *
- * No guard, as in base/lanes.h; base/lanes_double_end.h ends it.
  */
-#define doubles SC_KERNEL(sc_doubles)
-#define doubles_mask SC_KERNEL(sc_doubles_mask)
-#define doubles_all SC_KERNEL(sc_doubles_all)
-#define doubles_load SC_KERNEL(sc_doubles_load)
-#define doubles_store SC_KERNEL(sc_doubles_store)
-#define doubles_add SC_KERNEL(sc_doubles_add)
-#define doubles_subtract SC_KERNEL(sc_doubles_subtract)
-#define doubles_multiply SC_KERNEL(sc_doubles_multiply)
-#define doubles_smaller SC_KERNEL(sc_doubles_smaller)
-#define doubles_larger SC_KERNEL(sc_doubles_larger)
-#define doubles_absolute SC_KERNEL(sc_doubles_absolute)
-#define doubles_larger_size SC_KERNEL(sc_doubles_larger_size)
-#define doubles_smaller_size SC_KERNEL(sc_doubles_smaller_size)
-#define doubles_signs SC_KERNEL(sc_doubles_signs)
-#define doubles_differ SC_KERNEL(sc_doubles_differ)
-#define doubles_differ3 SC_KERNEL(sc_doubles_differ3)
-#define doubles_below SC_KERNEL(sc_doubles_below)
-#define doubles_equal SC_KERNEL(sc_doubles_equal)
-#define doubles_both SC_KERNEL(sc_doubles_both)
-#define doubles_either SC_KERNEL(sc_doubles_either)
-#define doubles_bits SC_KERNEL(sc_doubles_bits)
-#define doubles_choose SC_KERNEL(sc_doubles_choose)
-#define doubles_points SC_KERNEL(sc_doubles_points)
 
 #if !SC_LANES_AVX512 && !SC_LANES_AVX2
-static SC_INLINE void SC_KERNEL(sc_doubles_point)(const unsigned char *at, int floats, double p[3])
+static SC_INLINE void doubles_point(const unsigned char *at, int floats, double p[3])
 {
     float f[3];
     int c;
@@ -141,8 +115,7 @@ static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
 {
     return _mm512_mask_blend_pd(m, b, a);
 }
-static SC_INLINE __m512d SC_KERNEL(sc_doubles_two)(const unsigned char *const at[8], int floats,
-                                                   int i)
+static SC_INLINE __m512d doubles_two(const unsigned char *const at[8], int floats, int i)
 {
     const void *p = at[i], *q = at[i + 4];
     __m256d a = floats ? _mm256_cvtps_pd(_mm_maskz_loadu_ps(7, p)) : _mm256_maskz_loadu_pd(7, p);
@@ -153,10 +126,10 @@ static SC_INLINE void doubles_points(const unsigned char *const at[8], int float
 {
     const __m512i first = _mm512_set_epi64(13, 12, 5, 4, 9, 8, 1, 0);
     const __m512i second = _mm512_set_epi64(15, 14, 7, 6, 11, 10, 3, 2);
-    __m512d r0 = SC_KERNEL(sc_doubles_two)(at, floats, 0);
-    __m512d r1 = SC_KERNEL(sc_doubles_two)(at, floats, 1);
-    __m512d r2 = SC_KERNEL(sc_doubles_two)(at, floats, 2);
-    __m512d r3 = SC_KERNEL(sc_doubles_two)(at, floats, 3);
+    __m512d r0 = doubles_two(at, floats, 0);
+    __m512d r1 = doubles_two(at, floats, 1);
+    __m512d r2 = doubles_two(at, floats, 2);
+    __m512d r3 = doubles_two(at, floats, 3);
     __m512d low = _mm512_unpacklo_pd(r0, r1), low2 = _mm512_unpacklo_pd(r2, r3);
     point[0] = _mm512_permutex2var_pd(low, first, low2);
     point[1] =
@@ -309,19 +282,19 @@ static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
     SC_DOUBLES_MAP(SC_DOUBLES_ONE);
 #    undef SC_DOUBLES_ONE
 }
-static SC_INLINE __m256d SC_KERNEL(sc_doubles_point)(const void *at, int floats)
+static SC_INLINE __m256d doubles_point(const void *at, int floats)
 {
     return floats
                ? _mm256_cvtps_pd(_mm_maskload_ps((const float *)at, _mm_setr_epi32(-1, -1, -1, 0)))
                : _mm256_maskload_pd((const double *)at, _mm256_setr_epi64x(-1, -1, -1, 0));
 }
-static SC_INLINE void SC_KERNEL(sc_doubles_transpose)(const unsigned char *const at[4], int floats,
-                                                      __m256d *x, __m256d *y, __m256d *z)
+static SC_INLINE void doubles_transpose(const unsigned char *const at[4], int floats, __m256d *x,
+                                        __m256d *y, __m256d *z)
 {
-    __m256d a = SC_KERNEL(sc_doubles_point)(at[0], floats);
-    __m256d b = SC_KERNEL(sc_doubles_point)(at[1], floats);
-    __m256d c = SC_KERNEL(sc_doubles_point)(at[2], floats);
-    __m256d d = SC_KERNEL(sc_doubles_point)(at[3], floats);
+    __m256d a = doubles_point(at[0], floats);
+    __m256d b = doubles_point(at[1], floats);
+    __m256d c = doubles_point(at[2], floats);
+    __m256d d = doubles_point(at[3], floats);
     __m256d low = _mm256_unpacklo_pd(a, b), low2 = _mm256_unpacklo_pd(c, d);
     *x = _mm256_permute2f128_pd(low, low2, 0x20);
     *y = _mm256_permute2f128_pd(_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d), 0x20);
@@ -329,8 +302,8 @@ static SC_INLINE void SC_KERNEL(sc_doubles_transpose)(const unsigned char *const
 }
 static SC_INLINE void doubles_points(const unsigned char *const at[8], int floats, doubles point[3])
 {
-    SC_KERNEL(sc_doubles_transpose)(at, floats, &point[0].p0, &point[1].p0, &point[2].p0);
-    SC_KERNEL(sc_doubles_transpose)(at + 4, floats, &point[0].p1, &point[1].p1, &point[2].p1);
+    doubles_transpose(at, floats, &point[0].p0, &point[1].p0, &point[2].p0);
+    doubles_transpose(at + 4, floats, &point[0].p1, &point[1].p1, &point[2].p1);
 }
 
 #  else
@@ -362,23 +335,22 @@ static inline doubles doubles_choose(doubles_mask m, doubles a, doubles b)
     SC_DOUBLES_MAP(SC_DOUBLES_ONE);
 #    undef SC_DOUBLES_ONE
 }
-static SC_INLINE void SC_KERNEL(sc_doubles_transpose)(const unsigned char *const at[2], int floats,
-                                                      sc_doubles2 *x, sc_doubles2 *y,
-                                                      sc_doubles2 *z)
+static SC_INLINE void doubles_transpose(const unsigned char *const at[2], int floats,
+                                        sc_doubles2 *x, sc_doubles2 *y, sc_doubles2 *z)
 {
     double p[3], q[3];
-    SC_KERNEL(sc_doubles_point)(at[0], floats, p);
-    SC_KERNEL(sc_doubles_point)(at[1], floats, q);
+    doubles_point(at[0], floats, p);
+    doubles_point(at[1], floats, q);
     *x = SC_QUAD(setr_pd)(p[0], q[0]);
     *y = SC_QUAD(setr_pd)(p[1], q[1]);
     *z = SC_QUAD(setr_pd)(p[2], q[2]);
 }
 static SC_INLINE void doubles_points(const unsigned char *const at[8], int floats, doubles point[3])
 {
-    SC_KERNEL(sc_doubles_transpose)(at, floats, &point[0].p0, &point[1].p0, &point[2].p0);
-    SC_KERNEL(sc_doubles_transpose)(at + 2, floats, &point[0].p1, &point[1].p1, &point[2].p1);
-    SC_KERNEL(sc_doubles_transpose)(at + 4, floats, &point[0].p2, &point[1].p2, &point[2].p2);
-    SC_KERNEL(sc_doubles_transpose)(at + 6, floats, &point[0].p3, &point[1].p3, &point[2].p3);
+    doubles_transpose(at, floats, &point[0].p0, &point[1].p0, &point[2].p0);
+    doubles_transpose(at + 2, floats, &point[0].p1, &point[1].p1, &point[2].p1);
+    doubles_transpose(at + 4, floats, &point[0].p2, &point[1].p2, &point[2].p2);
+    doubles_transpose(at + 6, floats, &point[0].p3, &point[1].p3, &point[2].p3);
 }
 
 #  endif
@@ -476,7 +448,7 @@ static SC_INLINE void doubles_points(const unsigned char *const at[8], int float
     int i, c;
     for (i = 0; i < 8; i++) {
         double p[3];
-        SC_KERNEL(sc_doubles_point)(at[i], floats, p);
+        doubles_point(at[i], floats, p);
         for (c = 0; c < 3; c++) point[c].v[i] = p[c];
     }
 }

@@ -1,6 +1,5 @@
 /*
- * Numbers of lanes: rows of sixteen floats in any order. For the instruction set that base/lanes.h,
- * included before, is for.
+ * Numbers of lanes: rows of sixteen floats in any order. A part of simd/lanes.h.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -18,41 +17,14 @@
  * is set, else from b. lanes_same compares bits, whatever they mean; lanes_differ has what is in
  * one of two masks only. lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2,
  * from three rows of coordinates by three of numbers; lanes_corners_at finds the former in memory,
- * in turned places (see base/lanes.h); lanes_corners_through takes the triangles of sixteen numbers
+ * in turned places (see simd/lanes.h); lanes_corners_through takes the triangles of sixteen numbers
  * below sixteen instead of all in order. lanes_pick_two and lanes_corners_two do as lanes_pick and
  * lanes_corners_through, but from a second place in the lanes that follow so many; lanes_from has
  * these.
  *
  * lanes_marked is the set of the numbers in three rows, in lanes of three masks; lanes_among has
  * the lanes of which the number is in a set.
- *
- * No guard, as in base/lanes.h; base/lanes_pick_end.h ends it.
  */
-#include <string.h>
-
-#define lanes_index SC_KERNEL(sc_lanes_index)
-#define lanes_from SC_KERNEL(sc_lanes_from)
-#define lanes_corners_two SC_KERNEL(sc_lanes_corners_two)
-#define lanes_index_load SC_KERNEL(sc_lanes_index_load)
-#define lanes_index_through SC_KERNEL(sc_lanes_index_through)
-#define lanes_pick SC_KERNEL(sc_lanes_pick)
-#define lanes_pick_of SC_KERNEL(sc_lanes_pick_of)
-#define lanes_pick_both SC_KERNEL(sc_lanes_pick_both)
-#define lanes_pick_two SC_KERNEL(sc_lanes_pick_two)
-#define lanes_choose SC_KERNEL(sc_lanes_choose)
-#define lanes_same SC_KERNEL(sc_lanes_same)
-#define lanes_differ SC_KERNEL(sc_lanes_differ)
-#define lanes_corners SC_KERNEL(sc_lanes_corners)
-#define lanes_corners_at SC_KERNEL(sc_lanes_corners_at)
-#define lanes_corners_through SC_KERNEL(sc_lanes_corners_through)
-#define lanes_list SC_KERNEL(sc_lanes_list)
-#define lanes_list_from SC_KERNEL(sc_lanes_list_from)
-#define lanes_list_pairs SC_KERNEL(sc_lanes_list_pairs)
-#define lanes_list_among SC_KERNEL(sc_lanes_list_among)
-#define lanes_list_bits SC_KERNEL(sc_lanes_list_bits)
-#define lanes_marked SC_KERNEL(sc_lanes_marked)
-#define lanes_among SC_KERNEL(sc_lanes_among)
-
 #if SC_LANES_AVX512
 
 static inline lanes_mask lanes_from(unsigned count)
@@ -307,7 +279,7 @@ static inline lanes_index lanes_index_through(const uint8_t *row, const uint8_t 
     return r;
 }
 /* The sign bit of the number shifted, which a blend looks at, tells whether it is above seven. */
-static inline __m256 SC_KERNEL(sc_lanes_pick_part)(__m256 low, __m256 high, __m256i i)
+static inline __m256 lanes_pick_part(__m256 low, __m256 high, __m256i i)
 {
     return _mm256_blendv_ps(_mm256_permutevar8x32_ps(low, i), _mm256_permutevar8x32_ps(high, i),
                             _mm256_castsi256_ps(_mm256_slli_epi32(i, 28)));
@@ -315,8 +287,8 @@ static inline __m256 SC_KERNEL(sc_lanes_pick_part)(__m256 low, __m256 high, __m2
 static inline lanes lanes_pick_of(lanes row, lanes_index i)
 {
     lanes r;
-    r.v[0] = SC_KERNEL(sc_lanes_pick_part)(row.v[0], row.v[1], i.v[0]);
-    r.v[1] = SC_KERNEL(sc_lanes_pick_part)(row.v[0], row.v[1], i.v[1]);
+    r.v[0] = lanes_pick_part(row.v[0], row.v[1], i.v[0]);
+    r.v[1] = lanes_pick_part(row.v[0], row.v[1], i.v[1]);
     return r;
 }
 static inline lanes lanes_pick(const float *row, lanes_index i)

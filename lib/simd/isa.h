@@ -4,10 +4,10 @@
  * SPDX-License-Identifier: MIT
  *
  * Such a loop is written once, in a file named ..._kernel.h, over sixteen floats at a time
- * (base/lanes.h), and included by a .c file for each instruction set. All give the same answers.
+ * (simd/lanes.h), and included by a .c file for each instruction set. All give the same answers.
  */
-#ifndef SC_BASE_ISA_H
-#define SC_BASE_ISA_H
+#ifndef SC_SIMD_ISA_H
+#define SC_SIMD_ISA_H
 
 #include <stddef.h>
 

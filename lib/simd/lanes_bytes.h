@@ -1,7 +1,6 @@
 /*
  * Sixteen bytes at a time, one for each of sixteen lanes: numbers below sixteen, of points of a
- * leaf cluster. For the instruction set that base/lanes.h and base/lanes_pick.h, included before,
- * are for.
+ * leaf cluster. A part of simd/lanes.h.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -10,33 +9,12 @@
  * each of sixteen words, the four above, and so on. lanes_bytes_through reads a row by numbers
  * below sixteen. lanes_triples are three rows, which lanes_triples_through reads by the same
  * numbers. lanes_names tells for each of sixteen numbers b where among sixteen others it first is,
- * or 255 if nowhere. lanes_index_of makes numbers of lanes (base/lanes_pick.h) of them.
+ * or 255 if nowhere. lanes_index_of makes numbers of lanes (simd/lanes_pick.h) of them.
  * lanes_list_rows takes from rows of numbers those of these lanes, adds to those of each row a
  * number of its own, and writes them as rows of so many words, room for sixteen in each.
- * lanes_edges_of reads points of two tables, in turned places (see base/lanes.h), by numbers: the
+ * lanes_edges_of reads points of two tables, in turned places (see simd/lanes.h), by numbers: the
  * first of three of one is subtracted from the other two, then from two of the other.
- *
- * No guard, as in base/lanes.h; base/lanes_bytes_end.h ends it.
  */
-#define lanes_bytes SC_KERNEL(sc_lanes_bytes)
-#define lanes_bytes_load SC_KERNEL(sc_lanes_bytes_load)
-#define lanes_bytes_all SC_KERNEL(sc_lanes_bytes_all)
-#define lanes_bytes_quarters SC_KERNEL(sc_lanes_bytes_quarters)
-#define lanes_bytes_store SC_KERNEL(sc_lanes_bytes_store)
-#define lanes_bytes_same SC_KERNEL(sc_lanes_bytes_same)
-#define lanes_bytes_both SC_KERNEL(sc_lanes_bytes_both)
-#define lanes_bytes_either SC_KERNEL(sc_lanes_bytes_either)
-#define lanes_bytes_but SC_KERNEL(sc_lanes_bytes_but)
-#define lanes_bytes_choose SC_KERNEL(sc_lanes_bytes_choose)
-#define lanes_bytes_bits SC_KERNEL(sc_lanes_bytes_bits)
-#define lanes_bytes_through SC_KERNEL(sc_lanes_bytes_through)
-#define lanes_triples SC_KERNEL(sc_lanes_triples)
-#define lanes_triples_of SC_KERNEL(sc_lanes_triples_of)
-#define lanes_triples_through SC_KERNEL(sc_lanes_triples_through)
-#define lanes_list_rows SC_KERNEL(sc_lanes_list_rows)
-#define lanes_names SC_KERNEL(sc_lanes_names)
-#define lanes_index_of SC_KERNEL(sc_lanes_index_of)
-#define lanes_edges_of SC_KERNEL(sc_lanes_edges_of)
 
 #if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_SSE2
 
@@ -301,7 +279,7 @@ static inline lanes_triples lanes_triples_of(const lanes_bytes row[3])
 #  if SC_LANES_SSE2
 
 /* The lowest bytes of four registers of four numbers. */
-static inline lanes_bytes SC_KERNEL(sc_lanes_lowest)(const __m128i four[4])
+static inline lanes_bytes lanes_lowest(const __m128i four[4])
 {
     const __m128i lowest = _mm_set1_epi32(255);
     return _mm_packus_epi16(
@@ -321,7 +299,7 @@ static inline void lanes_triples_through(const lanes_triples *t, const uint8_t *
     }
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        to[k] = SC_KERNEL(sc_lanes_lowest)(four);
+        to[k] = lanes_lowest(four);
         SC_UNROLL
         for (i = 0; i < 4; i++) four[i] = _mm_srli_epi32(four[i], 8);
     }
@@ -478,7 +456,7 @@ static inline lanes_bytes lanes_names(const uint32_t *a, const uint32_t *b)
         for (k = 0; k < 4; k++)
             kept[k] = _mm_max_epi16(kept[k], _mm_and_si128(_mm_cmpeq_epi32(other[k], one), number));
     }
-    return _mm_xor_si128(SC_KERNEL(sc_lanes_lowest)(kept), _mm_set1_epi8(-1));
+    return _mm_xor_si128(lanes_lowest(kept), _mm_set1_epi8(-1));
 }
 
 #else

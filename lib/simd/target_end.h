@@ -1,10 +1,10 @@
 /*
- * Ends what base/avx2_begin.h began.
+ * Ends what simd/target_begin.h began.
  *
  * SPDX-License-Identifier: MIT
  */
-#if defined(__clang__)
+#if SC_LANES > 1 && defined(__clang__)
 #  pragma clang attribute pop
-#else
+#elif SC_LANES > 1
 #  pragma GCC pop_options
 #endif

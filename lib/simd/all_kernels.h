@@ -1,0 +1,88 @@
+/*
+ * All kernels for one instruction set, and SC_KERNELS, their table. Included by kernels_base.c,
+ * kernels_avx2.c and kernels_avx512.c, which say by SC_LANES for which (see simd/lanes.h).
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Unlike the rest of this folder, this file and those three see all others, as lib/starcontour.c
+ * does; nothing in the library includes them. So whatever kernels define has a name of one meaning
+ * here. tools/amalgamate.awk, which puts all three into one file, makes three names of it.
+ */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/predicates.h"
+#include "pose/pose_kernels.h"
+#include "pose/positions.h"
+#include "query/query_kernels.h"
+#include "query/simple.h"
+#include "step/leaf_step.h"
+#include "step/step_candidates.h"
+#include "step/step_kernels.h"
+#include "step/step_motion.h"
+
+#include "simd/target_begin.h"
+
+#include "simd/lanes.h"
+
+#include "pose/extent_kernel.h"
+#include "pose/points_kernel.h"
+#include "pose/cones_kernel.h"
+#include "pose/refit_kernel.h"
+
+#include "query/ready_kernel.h"
+#include "query/neighbor_kernel.h"
+#include "query/fan_kernel.h"
+#include "query/outline_kernel.h"
+#include "query/touch_kernel.h"
+#include "query/short_kernel.h"
+#include "query/tube_kernel.h"
+#include "query/sixteen_kernel.h"
+#include "query/leaf_kernel.h"
+#include "query/walk_kernel.h"
+#include "query/decide_kernel.h"
+#include "query/simple_kernel.h"
+#include "query/small_kernel.h"
+
+#include "step/apart_kernel.h"
+#include "step/moving_cones_kernel.h"
+#include "step/moving_contour_kernel.h"
+#include "step/step_walk_kernel.h"
+
+#include "simd/target_end.h"
+
+static const sc_pose_kernels pose_kernels = {
+    .extent_of_doubles = extent_of_doubles,
+    .extent_of_floats = extent_of_floats,
+    .extent_of_apart_doubles = extent_of_apart_doubles,
+    .extent_of_apart_floats = extent_of_apart_floats,
+    .load_leaves = load_leaves,
+    .cone = cone,
+    .refit_leaves = refit_leaves,
+    .refit_patches = refit_patches,
+};
+
+static const sc_query_kernels query_kernels = {
+    .patch_pairs = patch_pairs,
+    .leaf_pair = leaf_pair_waits,
+    .leaf_itself = leaf_itself,
+    .leaf_pairs = leaf_pairs,
+    .decide = decide,
+    .project = project,
+    .look_at_edges = look_at_edges,
+    .find_simple = find_simple,
+};
+
+static const sc_step_kernels step_kernels = {
+    .patch_pair = step_patch_pair,
+    .patch_itself = step_patch_itself,
+    .leaf_pair = step_leaf_pair,
+    .leaf_itself = step_leaf_itself,
+    .stay_apart = stay_apart,
+    .cone = moving_mask_of,
+    .project = project_motion,
+    .are_edges_clear = are_edges_clear,
+};
+
+const sc_kernels SC_KERNELS = {&pose_kernels, &query_kernels, &step_kernels};

@@ -1,0 +1,40 @@
+/*
+ * Kernels: inner loops that are compiled for each instruction set, in files named ..._kernel.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * A workspace has the table of those for the query at hand. What a folder's part of it holds is
+ * declared in that folder, so that only those who call kernels see what these take.
+ */
+#ifndef SC_SIMD_KERNELS_H
+#define SC_SIMD_KERNELS_H
+
+#include "simd/isa.h"
+
+struct sc_pose_kernels;  /* pose/pose_kernels.h */
+struct sc_query_kernels; /* query/query_kernels.h */
+struct sc_step_kernels;  /* step/step_kernels.h */
+
+typedef struct sc_kernels {
+    const struct sc_pose_kernels *pose;
+    const struct sc_query_kernels *query;
+    const struct sc_step_kernels *step;
+} sc_kernels;
+
+extern const sc_kernels sc_kernels_base;
+#if SC_ISA_X86
+extern const sc_kernels sc_kernels_avx2, sc_kernels_avx512;
+#endif
+
+/* Those for an instruction set that this machine has. */
+static inline const sc_kernels *sc_kernels_for(uint32_t isa)
+{
+#if SC_ISA_X86
+    if (isa == SC_ISA_AVX512) return &sc_kernels_avx512;
+    if (isa == SC_ISA_AVX2) return &sc_kernels_avx2;
+#endif
+    (void)isa;
+    return &sc_kernels_base;
+}
+
+#endif
