@@ -67,8 +67,6 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->near_pairs = (sc_near_pair *)place(block, at, SC_LEAF_QUEUE, sizeof(sc_near_pair));
     w->candidates = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
     w->neighbors = (sc_pair *)place(block, at, SC_CANDIDATES_MAX, sizeof(sc_pair));
-    w->settled = (sc_pair *)place(block, at, SC_SETTLED_MAX, sizeof(sc_pair));
-    w->settled_code = (uint16_t *)place(block, at, SC_SETTLED_MAX, sizeof(uint16_t));
     w->ball = (uint16_t *)place(block, at, model->vertex_count, sizeof(uint16_t));
     w->ball_queue = (uint32_t *)place(block, at, model->vertex_count, sizeof(uint32_t));
     w->found = (sc_pair *)place(block, at, SC_FOUND_MAX, sizeof(sc_pair));
@@ -335,7 +333,7 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
     workspace->pose_tick++;
     sc_workspace_keep_some(model, workspace);
     workspace->leaves_ready = workspace->boxes_ready = 0;
-    workspace->near_count = workspace->far_count = workspace->settled_count = 0;
+    workspace->near_count = workspace->far_count = 0;
     workspace->candidate_count = workspace->neighbor_count = workspace->found_count = 0;
     workspace->ball_center = SC_NONE;
     memset(workspace->fan_point, 0xff, sizeof workspace->fan_point);

@@ -7,9 +7,9 @@
  *       bounds_tick | all_known | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: contour, walk,
- * some_ready, some_known, slab, far_pairs, near_list, near_pairs, candidates, neighbors, settled,
- * settled_code, ball, ball_queue, found, state, motion's from leaves to state. For each worker but
- * the first there is a view: an sc_workspace with the pose of the first, and own arrays.
+ * some_ready, some_known, slab, far_pairs, near_list, near_pairs, candidates, neighbors, ball,
+ * ball_queue, found, state, motion's from leaves to state. For each worker but the first there is a
+ * view: an sc_workspace with the pose of the first, and own arrays.
  *
  * The star test's bounds and leaf clusters made ready are never needed by one query, so they share
  * their memory; what tells whether they are of this query stands elsewhere. There is no room for
@@ -115,7 +115,7 @@ typedef struct sc_walk {
     uint32_t pair_count[2];
 } sc_walk;
 
-enum { SC_CANDIDATES_MAX = 1024, SC_SETTLED_MAX = 1024 };
+enum { SC_CANDIDATES_MAX = 1024 };
 
 /* A leaf cluster made ready for tests of its triangles, in the unit box; see query/ready_kernel.h.
    Rows are filled with the last triangle. */
@@ -287,9 +287,6 @@ struct sc_workspace {
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     sc_pair *neighbors;  /* SC_CANDIDATES_MAX of such that share one point */
     uint32_t candidate_count, neighbor_count;
-    sc_pair *settled;       /* SC_SETTLED_MAX that meet as a code says, */
-    uint16_t *settled_code; /* see query/candidates.h */
-    uint32_t settled_count;
 
     /* what the fans round some points are in this pose, point p at p % SC_FANS_KEPT; see
        pose/fan.h */

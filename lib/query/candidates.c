@@ -5,8 +5,7 @@
  *
  * What happens to a pair depends on the vertices it shares. None: it is collected; then many are
  * decided at once, eight at a time, and those of which that is not certain by the exact primitives.
- * Of settled ones there is nothing left to do but to see that two edges are in one plane, if it
- * depends on that. One: the same, but nothing if that is not certain and the fan round the shared
+ * One: the same, but nothing if that is not certain and the fan round the shared
  * vertex projects one to one. More: nothing if a fan round one of them does, else the exact
  * primitives.
  */
@@ -295,148 +294,17 @@ static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
     }
 }
 
-/* The bits of a coordinate. */
-static inline uint64_t bits_of(const unsigned char *from, int is_double)
-{
-    uint64_t whole;
-    uint32_t half;
-    if (is_double) {
-        memcpy(&whole, from, sizeof whole);
-        return whole;
-    }
-    memcpy(&half, from, sizeof half);
-    return half;
-}
-
-/* Of a triangle whose tip is named as in the code of a settled pair, bits of the edges that meet
-   the other triangle, if that from the tip to the next corner does, and that to the one after. Then
-   of both triangles by the lowest eight bits of such a code: those edges meet the other triangle
-   that pass two edges of it on different sides. */
-#define SC_TIP_EDGES(tip, next, after) ((next) << ((tip) + 2) % 3 | (after) << ((tip) + 1) % 3)
-#define SC_DIFFER(code, i, j)                                                                      \
-  (((code) >> (SC_SETTLED_BELOW + (i)) ^ (code) >> (SC_SETTLED_BELOW + (j))) & 1)
-#define SC_CODE_EDGES(code)                                                                        \
-  (SC_TIP_EDGES((code)&3, SC_DIFFER(code, 0, 1), SC_DIFFER(code, 2, 3)) |                          \
-   SC_TIP_EDGES((code) >> 2 & 3, SC_DIFFER(code, 0, 2), SC_DIFFER(code, 1, 3)) << 3)
-#define SC_CODES_4(code)                                                                           \
-  SC_CODE_EDGES(code), SC_CODE_EDGES((code) + 1), SC_CODE_EDGES((code) + 2),                       \
-      SC_CODE_EDGES((code) + 3)
-#define SC_CODES_16(code)                                                                          \
-  SC_CODES_4(code), SC_CODES_4((code) + 4), SC_CODES_4((code) + 8), SC_CODES_4((code) + 12)
-#define SC_CODES_64(code)                                                                          \
-  SC_CODES_16(code), SC_CODES_16((code) + 16), SC_CODES_16((code) + 32), SC_CODES_16((code) + 48)
-static const uint8_t settled_edges[256] = {SC_CODES_64(0), SC_CODES_64(64), SC_CODES_64(128),
-                                           SC_CODES_64(192)};
-
-/* Where numbers of four bits have that of the edge of the first triangle, or of the second, that is
-   not certain, if any: by its tip and whether it goes to the next corner. */
-static inline unsigned level_edge(unsigned code, int second)
-{
-    return 4 * (second ? (code >> 2 & 3u) | (code >> (SC_SETTLED_COLUMN - 2) & 4u)
-                       : (code & 3u) | (code >> (SC_SETTLED_ROW - 2) & 4u));
-}
-
-/* Whether these are in a plane across the axis that the code names. */
-static inline unsigned is_level(const sc_workspace *w, const uint32_t *t, const uint32_t *u,
-                                unsigned code)
-{
-    const uint32_t ends = 0x49428186u; /* the corners from and to which such an edge runs */
-    const unsigned k = ends >> level_edge(code, 0), i = ends >> level_edge(code, 1);
-    const int is_double = w->position_type == SC_DOUBLE;
-    const unsigned char *from =
-        w->positions + (is_double ? sizeof(double) : sizeof(float)) * (code >> SC_SETTLED_AXIS);
-    const uint64_t level = bits_of(from + w->stride * t[k & 3u], is_double);
-    return level == bits_of(from + w->stride * t[k >> 2 & 3u], is_double) &&
-           level == bits_of(from + w->stride * u[i & 3u], is_double) &&
-           level == bits_of(from + w->stride * u[i >> 2 & 3u], is_double);
-}
-
-/* Which edges of such a pair meet the other triangle: those two if touching is asked for, all bits
-   or none. */
-static inline unsigned level_edges(unsigned code, unsigned touching)
-{
-    const uint32_t bits = 0x02140142u; /* of such an edge */
-    const unsigned first = bits >> level_edge(code, 0) & 7u,
-                   second = bits >> level_edge(code, 1) & 7u;
-    const unsigned both = first | second << 3;
-    return (settled_edges[code & 255u] & ~both) | (touching & both);
-}
-
-/* Writes down what is to be reported if some edges of a pair meet the other triangle. Returns how
-   much; room for six. */
-static inline uint32_t name_edges(const sc_query_state *state, const sc_pair *pair, unsigned edges,
-                                  sc_pair *found)
-{
-    const uint32_t *id = sc_model_triangle_id(state->model);
-    const uint32_t a = id[pair->a], b = id[pair->b];
-    uint32_t count = 0, i;
-    if (state->options.pairs != SC_PAIRS_EDGE) {
-        found->a = a < b ? a : b;
-        found->b = a < b ? b : a;
-        return edges != 0;
-    }
-    edges &= edges_wanted(state, pair);
-    for (i = 0; i < 2 || edges; i++) { /* seldom more than two: no branch depends on how many */
-        const uint32_t bit = sc_bits_lowest(edges | 1u << 5), second = 0u - (bit > 2);
-        const uint32_t swap = (a ^ b) & second;
-        found[i].a = (uint32_t)sc_alone(3 * (a ^ swap) + bit - (3 & second));
-        found[i].b = b ^ swap;
-        count += edges != 0;
-        edges &= edges - 1;
-    }
-    return count;
-}
-
-/* Reports settled pairs; collects as candidates those that are not, as their edges are not in one
-   plane. */
-static void take_settled(sc_query_state *state)
-{
-    enum { AHEAD = 16 };
-    const unsigned touching = state->options.contact == SC_CONTACT_PROPER ? 0 : ~0u;
-    const uint32_t *triangle = sc_model_triangle(state->model);
-    uint64_t *counted = &state->stats.counts[sc_state_primitive_task(state)];
-    sc_workspace *w = state->workspace;
-    const uint32_t count = w->settled_count;
-    uint32_t i, end;
-    *counted += count;
-    for (i = 0; i < count && !sc_state_cancelled(state);) {
-        sc_pair found[6 * SC_PAIR_LANES];
-        uint32_t some = 0;
-        for (end = i + SC_PAIR_LANES < count ? i + SC_PAIR_LANES : count; i < end; i++) {
-            const sc_pair *pair = &w->settled[i];
-            const unsigned code = w->settled_code[i];
-            unsigned edges = settled_edges[code & 255u];
-            if (i + AHEAD < count) fetch_triangles(state->model, pair + AHEAD);
-            if (code >> SC_SETTLED_AXIS != 3) {
-                if (!is_level(w, triangle + 3 * (uint64_t)pair->a, triangle + 3 * (uint64_t)pair->b,
-                              code)) {
-                    sc_candidates_add(state, pair->a, pair->b);
-                    --*counted;
-                    continue;
-                }
-                edges = level_edges(code, touching);
-            }
-            some += name_edges(state, pair, edges, found + some);
-        }
-        sc_pairs_take_all(state, found, some);
-    }
-    w->settled_count = 0;
-}
-
 /* Decides what has been collected of triangles. */
 static void decide_collected(sc_query_state *state)
 {
     sc_workspace *w = state->workspace;
     uint32_t previous;
     if (state->sifts) sc_filter_sift(state);
-    if (!w->candidate_count && !w->neighbor_count && !w->settled_count) return;
+    if (!w->candidate_count && !w->neighbor_count) return;
     previous = sc_state_switch(state, sc_state_primitive_task(state));
     decide_all(state, w->candidates, w->candidate_count, 0);
     decide_all(state, w->neighbors, w->neighbor_count, 1);
     w->candidate_count = w->neighbor_count = 0;
-    take_settled(state);
-    decide_all(state, w->candidates, w->candidate_count, 0);
-    w->candidate_count = 0;
     sc_state_switch(state, previous);
 }
 
@@ -453,12 +321,9 @@ void sc_candidates_make_room(sc_query_state *state)
 {
     /* up to SC_LEAF_MAX places are written to behind the last pair */
     const int soon = sc_state_may_end_early(state);
-    const uint32_t room = SC_LEAF_MAX * (SC_LEAF_MAX + 1);
-    const uint32_t most = soon ? 64 : SC_CANDIDATES_MAX - room;
-    const uint32_t most_settled = soon ? 1 : SC_SETTLED_MAX - room;
+    const uint32_t most = soon ? 64 : SC_CANDIDATES_MAX - SC_LEAF_MAX * (SC_LEAF_MAX + 1);
     const sc_workspace *w = state->workspace;
-    if (w->candidate_count >= most || w->neighbor_count >= most || w->settled_count >= most_settled)
-        decide_collected(state);
+    if (w->candidate_count >= most || w->neighbor_count >= most) decide_collected(state);
 }
 
 /* Whether two triangles share a vertex, without branches. */

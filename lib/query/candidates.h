@@ -68,21 +68,6 @@ static inline void sc_candidates_add(sc_query_state *state, uint32_t a, uint32_t
     pair->b = b;
 }
 
-/* Bits of what is known of a settled pair, which shares nothing and of which either plane splits
-   the other triangle's corners: of each of the two, whether the corner alone on its side, the tip,
-   is the first, and the second; whether edge i from the tip of one, 0 to the next corner and 1 to
-   the one after, passes edge j of the other below, bit 2 i + j; whether i and j are 0 of the two
-   edges of which this is not certain; and the axis across which they seem to be in one plane, or 3
-   if there are no such edges. See query/sixteen_kernel.h. */
-enum sc_settled_bits {
-    SC_SETTLED_TIP = 0,
-    SC_SETTLED_BELOW = 4,
-    SC_SETTLED_ROW = 8,
-    SC_SETTLED_COLUMN = 9,
-    SC_SETTLED_AXIS = 10,
-    SC_SETTLED_BITS = 12
-};
-
 /* Pairs are decided by so many at a time. */
 enum { SC_PAIR_LANES = 8 };
 

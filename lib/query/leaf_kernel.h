@@ -1,8 +1,7 @@
 /*
  * The triangles of two leaf clusters, or of one: boxes against boxes, row by row; then rows against
  * planes; then what is left, sixteen pairs at a time, of one pair of clusters or of two
- * (query/sixteen_kernel.h). Pairs of which it is settled how they meet are collected, and those of
- * which nothing is certain. Each of these goes through some pairs of leaf clusters before the next
+ * (query/sixteen_kernel.h). Pairs that are not certainly apart are collected. Each of these goes through some pairs of leaf clusters before the next
  * begins, so that few branches depend on how many rows or triangles one of them has. See
  * query_kernels.h.
  *
@@ -63,30 +62,19 @@ static inline void fill_sixteen(const sc_query_state *state, const leaf_rows *ro
                              lanes_all(rows->extent[window->pair[0]]));
 }
 
-/* Collects those of pairs of triangles that are not certainly apart, settled or not. What becomes
-   of a pair does not depend on which others are in its sixteen: these are not the same with several
-   workers. */
+/* Collects those of pairs of triangles that are not certainly apart. What becomes of a pair does not
+   depend on which others are in its sixteen: these are not the same with several workers. */
 static void collect(sc_query_state *state, const leaf_rows *rows, const rows_window *window)
 {
     sc_workspace *w = state->workspace;
-    unsigned mask = (1u << window->count) - 1u, second = ~0u << window->split;
-    sixteen_verdict verdict;
+    unsigned mask = (1u << window->count) - 1u;
     sixteen_pairs x;
     uint32_t first[2][2];
     fill_sixteen(state, rows, window, &x, first);
-    test_pairs(&x, mask, &verdict);
-    mask &= ~verdict.apart;
-    if (!state->sifts) { /* which may want it left out */
-        const unsigned settled = mask & verdict.settled;
-        lanes_list_bits(settled, verdict.bits, w->settled_code + w->settled_count);
-        w->settled_count +=
-            lanes_list_pairs(settled, second, window->numbers[0], first[0], window->numbers[1],
-                             first[1], (uint32_t *)(void *)(w->settled + w->settled_count));
-        mask &= ~settled;
-    }
-    w->candidate_count +=
-        lanes_list_pairs(mask, second, window->numbers[0], first[0], window->numbers[1], first[1],
-                         (uint32_t *)(void *)(w->candidates + w->candidate_count));
+    mask &= ~part_pairs(&x, mask);
+    w->candidate_count += lanes_list_pairs(
+        mask, ~0u << window->split, window->numbers[0], first[0], window->numbers[1], first[1],
+        (uint32_t *)(void *)(w->candidates + w->candidate_count));
 }
 
 /* The boxes of the triangles of a leaf cluster that overlap that of triangle i of another. */

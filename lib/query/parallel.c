@@ -135,7 +135,7 @@ static void end_part(sc_query_state *s)
     const sc_workspace *w = s->workspace;
     const uint32_t most = s->options.output == SC_OUTPUT_ANY ? 0 : WAITING_MAX;
     if (w->near_count + w->far_count > most || w->candidate_count > most ||
-        w->neighbor_count > most || w->settled_count > most)
+        w->neighbor_count > most)
         sc_candidates_decide(s);
     if (s->timed) s->stats.nanoseconds[s->task] += sc_clock_nanoseconds() - s->last_time;
 }
@@ -222,8 +222,7 @@ static void do_waiting(plan *p)
     uint32_t worker, waits = 0;
     for (worker = 0; worker < p->tasks->workers; worker++) {
         const sc_workspace *w = sc_workspace_of_worker(p->w, worker);
-        waits |= w->near_count | w->far_count | w->candidate_count | w->neighbor_count |
-                 w->settled_count;
+        waits |= w->near_count | w->far_count | w->candidate_count | w->neighbor_count;
     }
     if (waits) run_job(p, run_waiting, p->tasks->workers, 0);
 }

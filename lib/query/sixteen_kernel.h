@@ -1,7 +1,7 @@
 /*
  * Sixteen pairs of triangles that share nothing: by planes, by the order along the line in which
- * two planes meet, and by sides in a projection. What is certain of them is said; see
- * leaf_kernel.h, which puts them together.
+ * two planes meet, and by sides in a projection: which are certainly apart. See leaf_kernel.h, which
+ * puts them together.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -23,23 +23,17 @@
  *
  * If the plane of each of two triangles has a corner of the other, its tip, on one side and two on
  * the other, the planes meet in a line, which crosses the edges from the tips inside them; of a
- * triangle, what is between its two crossings is on that line. Let e and f be such edges of either,
- * w run from tip to tip, and x and y be where the line crosses e and f. Then d = (e x f) . w = (e x
- * f) . (y - x), and as n x n' is along the line and (e x f) . (n x n') = -(e . n') (f . n), of
- * which the sign is the same for all four of such edges, the signs of the four d tell in which
- * order x and y are. If they are the same the triangles are apart, if not they meet; and so does an
- * edge whose two signs differ, no matter how contacts are defined, as nothing is zero. With W =
- * |w|1, moving one of the three by EDGE changes d by EDGE |e|1 |f|1, EDGE |e|1 W and EDGE |f|1 W at
- * most; two, by 2 EDGE^2 (|e|1 + |f|1 + W), all three, by 6 EDGE^3. Each of six products meets
- * three differences, two products and three sums: 8.01 v |e|1 |f|1 W. Let S be the sum of that of
- * both triangles, >= |e|1 + |f|1, so that |e|1 |f|1 <= S^2 / 4. With T = S + 2 EDGE and U = W + 4
- * EDGE all that is below T (1.01 EDGE U + 0.26 EDGE T + 2.03 v T U), rounding of S and W included.
- * Here W is that of two triangles that nearly meet, D that of whole clusters.
- *
- * If one of the four signs just is not certain, it says no more than on which side of each other
- * two edges pass. If these are in one plane their crossings are one point, where either meets the
- * other's triangle and the contact is not proper; all else is known. Such edges are mostly in a
- * plane across an axis, then their points have a coordinate in common, here too.
+ * triangle, what is between its two crossings is on that line. Let e and f be such edges of
+ * either, w run from tip to tip, and x and y be where the line crosses e and f. Then d = (e x f) .
+ * w = (e x f) . (y - x), and as n x n' is along the line and (e x f) . (n x n') = -(e . n') (f .
+ * n), of which the sign is the same for all four of such edges, the signs of the four d tell in
+ * which order x and y are. If they are the same the triangles are apart. With W = |w|1, moving one
+ * of the three by EDGE changes d by EDGE |e|1 |f|1, EDGE |e|1 W and EDGE |f|1 W at most; two, by 2
+ * EDGE^2 (|e|1 + |f|1 + W), all three, by 6 EDGE^3. Each of six products meets three differences,
+ * two products and three sums: 8.01 v |e|1 |f|1 W. Let S be the sum of that of both triangles, >=
+ * |e|1 + |f|1, so that |e|1 |f|1 <= S^2 / 4. With T = S + 2 EDGE and U = W + 4 EDGE all that is
+ * below T (1.01 EDGE U + 0.26 EDGE T + 2.03 v T U), rounding of S and W included. Here W is that
+ * of two triangles that nearly meet, D that of whole clusters.
  *
  * A side in a projection is d = e_0 p_1 - e_1 p_0, |e|, |p| <= D: off by EDGE (|e|1 + |p|1) <= 4
  * EDGE D, 2 EDGE^2, and by rounding 4.01 v 2 D^2: below 5 EDGE (D + EDGE) + 9 v D^2.
@@ -117,7 +111,6 @@ static inline lanes edges_bound(lanes size, const lanes w[3])
    edges from there to the next corner and to the one after. */
 typedef struct tip_corners {
     lanes at[3], edge[2][3];
-    unsigned is[2];         /* the lanes in which the corner is the first, and the second */
     unsigned beside, split; /* where all corners are certainly on one side, or certainly not */
 } tip_corners;
 
@@ -132,7 +125,7 @@ static SC_INLINE void find_tips(const sixteen_pairs *sixteen, int s, int two, ti
     lanes offset = pick_kept(sixteen, two, ready->offset, other->offset, i);
     lanes bound, x[3][3], n[3], least = offset;
     lanes_mask below[3], is_not[2];
-    unsigned sure;
+    unsigned sure, same;
     int k, c;
     *size = pick_kept(sixteen, two, ready->size, other->size, i);
     bound = plane_bound(*size, sixteen->extent);
@@ -149,10 +142,7 @@ static SC_INLINE void find_tips(const sixteen_pairs *sixteen, int s, int two, ti
         least = k ? lanes_smaller(least, d) : d;
     }
     SC_UNROLL
-    for (k = 0; k < 2; k++) {
-        is_not[k] = lanes_differ(below[1 - k], below[2]);
-        tips->is[k] = ~lanes_bits(is_not[k]);
-    }
+    for (k = 0; k < 2; k++) is_not[k] = lanes_differ(below[1 - k], below[2]);
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         lanes p = lanes_choose(is_not[0], lanes_choose(is_not[1], x[2][c], x[1][c]), x[0][c]);
@@ -163,57 +153,16 @@ static SC_INLINE void find_tips(const sixteen_pairs *sixteen, int s, int two, ti
         tips->edge[1][c] = lanes_subtract(r, p);
     }
     sure = lanes_bits(lanes_below(bound, least));
-    tips->beside = sure & tips->is[0] & tips->is[1];
+    same = ~(lanes_bits(is_not[0]) | lanes_bits(is_not[1]));
+    tips->beside = sure & same;
     tips->split = sure & ~tips->beside;
 }
 
-/* What is certain of pairs: the lanes in which they are apart, and in which they are settled, that
-   is, all is certain of them that sc_settled_bits name. */
-typedef struct sixteen_verdict {
-    unsigned apart, settled;
-    unsigned bits[SC_SETTLED_BITS];
-} sixteen_verdict;
-
-/* Of pairs in a mask finds those of which just one sign is not certain, and the two edges that it
-   is of seem to be in a plane across an axis; w runs from tip to tip. */
-static inline void find_level(const tip_corners tips[2], const lanes w[3], lanes far[2][2],
-                              lanes bound, unsigned mask, sixteen_verdict *verdict)
+/* Of pairs in a mask, of which each plane splits the other, those that are certainly apart; size is
+   that of both triangles. */
+static SC_INLINE unsigned miss_along_line(const tip_corners tips[2], lanes size, unsigned mask)
 {
-    lanes_mask open[2][2], row, column;
-    unsigned is[2][2], level[3];
-    int i, j, c;
-    SC_UNROLL
-    for (i = 0; i < 2; i++) {
-        SC_UNROLL
-        for (j = 0; j < 2; j++) {
-            open[i][j] = lanes_not_above(far[i][j], bound);
-            is[i][j] = lanes_bits(open[i][j]);
-        }
-    }
-    row = lanes_differ(open[0][0], open[0][1]); /* if it is just one */
-    column = lanes_differ(open[0][0], open[1][0]);
-    SC_UNROLL
-    for (c = 0; c < 3; c++) {
-        lanes e = lanes_choose(row, tips[0].edge[0][c], tips[0].edge[1][c]);
-        lanes f = lanes_choose(column, tips[1].edge[0][c], tips[1].edge[1][c]);
-        level[c] = lanes_bits(lanes_not_above(lanes_largest_size(e, f, w[c]), lanes_all(0)));
-    }
-    mask &= ~((is[0][0] & (is[0][1] | is[1][0] | is[1][1])) | (is[0][1] & (is[1][0] | is[1][1])) |
-              (is[1][0] & is[1][1]));
-    verdict->settled |= mask &= level[0] | level[1] | level[2];
-    verdict->bits[SC_SETTLED_ROW] = lanes_bits(row);
-    verdict->bits[SC_SETTLED_COLUMN] = lanes_bits(column);
-    verdict->bits[SC_SETTLED_AXIS] = ~mask | (~level[0] & level[1]);
-    verdict->bits[SC_SETTLED_AXIS + 1] = ~mask | ~(level[0] | level[1]);
-}
-
-/* Settles those of pairs in a mask of which each plane splits the other; size is that of both
-   triangles. */
-static SC_INLINE void cross_edges(const tip_corners tips[2], lanes size, unsigned mask,
-                                  sixteen_verdict *verdict)
-{
-    lanes w[3], m[3], far[2][2], bound, least = lanes_all(0);
-    unsigned below[2][2], any, all, certain, *bits = verdict->bits;
+    lanes w[3], m[3], bound, least = lanes_all(INFINITY), most = lanes_all(-INFINITY);
     int i, j, c;
     SC_UNROLL
     for (c = 0; c < 3; c++) w[c] = lanes_subtract(tips[1].at[c], tips[0].at[c]);
@@ -231,29 +180,12 @@ static SC_INLINE void cross_edges(const tip_corners tips[2], lanes size, unsigne
             lanes d = lanes_multiply(e[0], m[0]);
             SC_UNROLL
             for (c = 1; c < 3; c++) d = lanes_add(d, lanes_multiply(e[c], m[c]));
-            bits[SC_SETTLED_BELOW + 2 * i + j] = below[i][j] =
-                lanes_bits(lanes_below(d, lanes_all(0)));
-            far[i][j] = lanes_absolute(d);
-            least = i + j > 0 ? lanes_smaller(least, far[i][j]) : far[i][j];
+            least = lanes_smaller(least, d);
+            most = lanes_larger(most, d);
         }
     }
-    SC_UNROLL
-    for (i = 0; i < 2; i++) {
-        SC_UNROLL
-        for (j = 0; j < 2; j++) bits[SC_SETTLED_TIP + 2 * i + j] = tips[i].is[j];
-    }
-    mask &= tips[0].split & tips[1].split;
-    certain = mask & lanes_bits(lanes_below(bound, least));
-    any = below[0][0] | below[0][1] | below[1][0] | below[1][1];
-    all = below[0][0] & below[0][1] & below[1][0] & below[1][1];
-    verdict->settled = certain & any & ~all;
-    if (mask & ~certain) {
-        find_level(tips, w, far, bound, mask & ~certain, verdict);
-    } else {
-        bits[SC_SETTLED_ROW] = bits[SC_SETTLED_COLUMN] = 0;
-        bits[SC_SETTLED_AXIS] = bits[SC_SETTLED_AXIS + 1] = ~0u;
-    }
-    verdict->apart = certain & (all | ~any);
+    return mask & (lanes_bits(lanes_below(bound, least)) |
+                   lanes_bits(lanes_below(most, lanes_subtract(lanes_all(0), bound))));
 }
 
 /* The lanes in which, seen along the axis nearest to the normal n of one, the line of an edge
@@ -316,26 +248,21 @@ static SC_INLINE void find_tips_some(const sixteen_pairs *x, int s, int two, tip
         find_tips_one(x, s, tips, size);
 }
 
-/* Pairs in a mask, of triangles of two clusters, or of two such pairs of clusters. */
-static SC_INLINE void test_some(const sixteen_pairs *x, int two, unsigned mask,
-                                sixteen_verdict *verdict)
+/* Of pairs in a mask, of triangles of two clusters or of two such pairs of clusters, those that are
+   certainly apart. */
+static SC_INLINE unsigned part_some(const sixteen_pairs *x, int two, unsigned mask)
 {
     tip_corners tips[2];
     lanes size[2];
-    unsigned open, asked;
+    unsigned open, split;
     find_tips_some(x, 0, two, &tips[0], &size[1]);
     open = mask & ~tips[0].beside;
-    if (!open) {
-        memset(verdict, 0, sizeof *verdict);
-        verdict->apart = ~0u;
-        return;
-    }
+    if (!open) return mask;
     find_tips_some(x, 1, two, &tips[1], &size[0]);
     open &= ~tips[1].beside;
-    cross_edges(tips, lanes_add(size[0], size[1]), open, verdict);
-    open &= ~(verdict->apart | verdict->settled);
-    asked = open & ~(tips[0].split & tips[1].split); /* not of others, whatever a sixteen has */
-    if (asked) {
+    split = open & tips[0].split & tips[1].split;
+    if (split) open &= ~miss_along_line(tips, lanes_add(size[0], size[1]), split);
+    if (open & ~split) { /* not of others, whatever a sixteen has */
         const sc_leaf_ready *const *ready = x->of[0].ready;
         lanes_index i = lanes_index_load(x->of[0].numbers);
         lanes at[2][3][3], n[3];
@@ -345,24 +272,21 @@ static SC_INLINE void test_some(const sixteen_pairs *x, int two, unsigned mask,
         SC_UNROLL
         for (c = 0; c < 3; c++)
             n[c] = pick_kept(x, two, ready[0]->normal[c], ready[1]->normal[c], i);
-        open &= ~(asked & side_separates(at, n, x->extent));
+        open &= ~(~split & side_separates(at, n, x->extent));
     }
-    verdict->apart = ~(open | verdict->settled);
+    return mask & ~open;
 }
 
 /* The same, split or not. With many registers for sixteen floats each is code of its own. */
-static SC_NOINLINE void test_one(const sixteen_pairs *x, unsigned mask, sixteen_verdict *verdict)
+static SC_NOINLINE unsigned part_one(const sixteen_pairs *x, unsigned mask)
 {
-    test_some(x, SC_LANES_AVX512 ? 0 : x->split < SC_LANES_COUNT, mask, verdict);
+    return part_some(x, SC_LANES_AVX512 ? 0 : x->split < SC_LANES_COUNT, mask);
 }
-static SC_NOINLINE void test_two(const sixteen_pairs *x, unsigned mask, sixteen_verdict *verdict)
+static SC_NOINLINE unsigned part_two(const sixteen_pairs *x, unsigned mask)
 {
-    test_some(x, 1, mask, verdict);
+    return part_some(x, 1, mask);
 }
-static inline void test_pairs(const sixteen_pairs *x, unsigned mask, sixteen_verdict *verdict)
+static inline unsigned part_pairs(const sixteen_pairs *x, unsigned mask)
 {
-    if (SC_LANES_AVX512 && x->split < SC_LANES_COUNT)
-        test_two(x, mask, verdict);
-    else
-        test_one(x, mask, verdict);
+    return SC_LANES_AVX512 && x->split < SC_LANES_COUNT ? part_two(x, mask) : part_one(x, mask);
 }
