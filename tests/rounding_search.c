@@ -332,34 +332,6 @@ static void unit_box(const double (*x)[N], double share[N])
         share[i] = fabs(x[0][i] - (double)(float)x[0][i]) / (double)SC_MOTION_POINT_ERROR;
 }
 
-/* Two spokes of a fan: what underflows, of 1e-290. */
-static void fan_tiny(const double (*x)[N], double share[N])
-{
-    const int s = 520;
-    for (int i = 0; i < N; ++i) {
-        double r[2][3], n[3], d[3], computed, bound, size;
-        twice e[3][3];
-        for (int k = 0; k < 6; ++k) {
-            r[k / 3][k % 3] = ldexp(x[k][i], -s) - ldexp(x[6 + k % 3][i], -s);
-            e[k / 3][k % 3] =
-                difference(ldexp(ldexp(x[k][i], -s), s), ldexp(ldexp(x[6 + k % 3][i], -s), s));
-        }
-        for (int k = 0; k < 3; ++k) {
-            n[k] = r[0][(k + 1) % 3] * r[1][(k + 2) % 3] - r[0][(k + 2) % 3] * r[1][(k + 1) % 3];
-            d[k] = x[9 + k][i]; /* any direction */
-            e[2][k].high = d[k];
-            e[2][k].low = 0;
-        }
-        computed = d[0] * n[0] + d[1] * n[1] + d[2] * n[2];
-        size = ldexp(size_of(r[0]) + size_of(r[1]), s);
-        bound = 32 * U * size_of(d) * size * size;
-        computed = off_by(ldexp(computed, 2 * s), determinant_of(e[0], e[1], e[2])) - bound;
-        share[i] = computed > 0
-                       ? ldexp(computed, -2 * s + 1000) / ldexp(1e-290 * (1 + size_of(d)), 1000)
-                       : 0;
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------
  * query/, floats
  */
@@ -1049,7 +1021,6 @@ const rounding_bound rounding_bounds[] = {
      NULL},
     {"query/star.c, one shared point", "contours", ROUNDING_DOUBLES, 9, 3, 1, beside_a_point, 0,
      NULL},
-    {"pose/fan.c, tiny term", "boxes and points", ROUNDING_TINY, 12, 3, 1, fan_tiny, 0, NULL},
     {"query/sixteen_kernel.h, planes", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1,
      sixteen_planes, 0, NULL},
     {"query/sixteen_kernel.h, order", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1,

@@ -19,7 +19,6 @@
 #include "pose/contour_bounds.h"
 #include "pose/dnc.h"
 #include "pose/pose_kernels.h"
-#include "pose/fan.h"
 #include "pose/positions.h"
 #include "query/query_kernels.h"
 #include "query/simple.h"
@@ -1811,103 +1810,6 @@ static void patches_that_share_hubs(void)
     }
 }
 
-/* ---- fans ---- */
-
-static int has_point(const sc_model *m, uint32_t place, uint32_t point)
-{
-    const uint32_t *t = sc_model_triangle(m) + 3 * (size_t)place;
-    return t[0] == point || t[1] == point || t[2] == point;
-}
-
-static void fans_have_no_pairs(void)
-{
-    uint64_t plain = 0, points = 0, sharing = 0;
-    for (uint32_t i = 0; i < test_iterations(250); ++i) {
-        scene s;
-        oracle_answer answer;
-        const oracle_list *list;
-        uint32_t wrong = 0, p;
-        open_random_scene(&s, 40 + i % 60);
-        random_pose(s.pose, s.mesh.vertex_count);
-        if (i % 4 == 0) soup_noise(s.pose, s.mesh.vertex_count, 0.1);
-        if (i % 8 == 1) soup_snap(s.pose, s.mesh.vertex_count, 0.25);
-        if (!load_pose(&s)) continue;
-        answer = solve_in_places(&s);
-        list = &answer.lists[SC_PAIRS_TRIANGLE][SC_CONTACT_TOUCHING];
-        for (p = 0; p < s.model->vertex_count; ++p) {
-            int is_plain = sc_fan_test(s.model, s.workspace, p);
-            ++points;
-            plain += (uint64_t)is_plain;
-        }
-        for (uint64_t k = 0; k < list->count; ++k)
-            for (int c = 0; c < 3; ++c) {
-                p = sc_model_triangle(s.model)[3 * (size_t)list->pairs[k].a + (size_t)c];
-                if (!has_point(s.model, list->pairs[k].b, p)) continue;
-                ++sharing;
-                wrong += (uint32_t)sc_fan_test(s.model, s.workspace, p);
-            }
-        CHECK_MSG(wrong == 0, "%s: %" PRIu32 " pairs in plain fans", s.name, wrong);
-        oracle_free(&answer);
-        close_scene(&s);
-    }
-    test_note("%" PRIu64 " of %" PRIu64 " fans are plain; %" PRIu64 " pairs share a point", plain,
-              points, sharing);
-    CHECK(!is_full() || (15 * plain > points && sharing > 2000));
-}
-
-/* A star of points round one, once or twice, flat or as a cone, of any number of corners. */
-static void single_fans(void)
-{
-    uint32_t plain = 0, met = 0;
-    for (uint32_t i = 0; i < test_iterations(4000); ++i) {
-        uint32_t n = 3 + test_random_below(i % 5 == 0 ? 62 : 8), turns = 1 + i % 3 / 2;
-        soup mesh = soup_make(n + 1, n);
-        double height = test_random_below(3) ? test_random_range(-1, 1) : 0;
-        double rough = i % 4 == 0 ? 0.4 : 0;
-        scene s;
-        for (uint32_t v = 0; v <= n; ++v) {
-            double angle = 2 * pi * turns * v / n;
-            double *p = mesh.positions + 3 * (size_t)v;
-            p[0] = v == n ? 0 : cos(angle) + test_random_range(-rough, rough);
-            p[1] = v == n ? 0 : sin(angle) + test_random_range(-rough, rough);
-            p[2] = v == n ? height : test_random_range(-rough, rough);
-        }
-        for (uint32_t t = 0; t < n; ++t) {
-            mesh.triangles[3 * t] = n;
-            mesh.triangles[3 * t + 1] = t;
-            mesh.triangles[3 * t + 2] = (t + 1) % n;
-        }
-        if (i % 2) rotate(mesh.positions, n + 1);
-        if (i % 7 == 0) soup_snap(mesh.positions, n + 1, 0.25);
-        if (i % 7 == 1) { /* flat, two corners on one ray but for rounding */
-            uint32_t v = test_random_below(n - 1);
-            double *p = mesh.positions + 3 * (size_t)v, stretch = test_random_range(0.5, 2);
-            for (uint32_t k = 0; k <= n; ++k) mesh.positions[3 * k + 2] = 0.1;
-            for (uint32_t k = 0; k < 2; ++k) {
-                double from = mesh.positions[3 * n + k];
-                p[3 + k] = from + stretch * (p[k] - from);
-            }
-        }
-        if (open_scene(&s, "fan", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) && load_pose(&s)) {
-            uint32_t center = n;
-            if (sc_fan_test(s.model, s.workspace, center)) {
-                oracle_answer answer = solve_in_places(&s);
-                ++plain;
-                CHECK_MSG(answer.lists[0][0].count == 0, "%" PRIu32 " corners, %" PRIu32 " turns",
-                          n, turns);
-                oracle_free(&answer);
-            } else {
-                ++met;
-                /* once round, flat, and no two corners alike: that is plain */
-                CHECK_MSG(turns > 1 || rough > 0 || i % 7 < 2, "%" PRIu32 " corners, height %g", n,
-                          height);
-            }
-        }
-        close_scene(&s);
-    }
-    CHECK(!is_full() || (plain > 1000 && met > 1000));
-}
-
 SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(vectors_of_all_masks),
              SC_TEST(cones_and_projections), SC_TEST(cones_at_zero), SC_TEST(bounds_of_segments),
              SC_TEST(bounds_of_long_segments), SC_TEST(bounds_of_huge_coordinates), SC_TEST(ticks),
@@ -1917,4 +1819,4 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(vectors_of_all_masks),
              SC_TEST(points_in_the_unit_box), SC_TEST(poses_of_any_layout),
              SC_TEST(places_of_contours), SC_TEST(small_contours), SC_TEST(two_edges_that_cross),
              SC_TEST(contours_in_turn), SC_TEST(pinches_alone), SC_TEST(flat_cloths_pass),
-             SC_TEST(patches_that_share_hubs), SC_TEST(fans_have_no_pairs), SC_TEST(single_fans))
+             SC_TEST(patches_that_share_hubs))

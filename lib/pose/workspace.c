@@ -336,7 +336,6 @@ void sc_workspace_new_pose(const sc_model *model, sc_workspace *workspace)
     workspace->near_count = workspace->far_count = 0;
     workspace->candidate_count = workspace->neighbor_count = workspace->found_count = 0;
     workspace->ball_center = SC_NONE;
-    memset(workspace->fan_point, 0xff, sizeof workspace->fan_point);
 }
 
 void sc_workspace_new_projection(const sc_model *model, sc_workspace *workspace)

@@ -148,9 +148,6 @@ enum { SC_READY_KEPT = 32 };
 /* As ready_mask: every leaf cluster has a place. */
 #define SC_KEEPS_ALL 0xffffffffu
 
-/* Fans that are remembered. */
-enum { SC_FANS_KEPT = 256 };
-
 /* Pairs of leaf clusters that wait to be looked at, at most, of each kind. */
 enum { SC_LEAF_QUEUE = 1024 };
 
@@ -287,11 +284,6 @@ struct sc_workspace {
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     sc_pair *neighbors;  /* SC_CANDIDATES_MAX of such that share one point */
     uint32_t candidate_count, neighbor_count;
-
-    /* what the fans round some points are in this pose, point p at p % SC_FANS_KEPT; see
-       pose/fan.h */
-    uint32_t fan_point[SC_FANS_KEPT]; /* or SC_NONE */
-    uint8_t fan_plain[SC_FANS_KEPT];
 
     /* points near a triangle in number of edges, see query/filter.c */
     uint16_t *ball;       /* vertex_count: ball_tick if in the ball */

@@ -5,9 +5,7 @@
  *
  * What happens to a pair depends on the vertices it shares. None: it is collected; then many are
  * decided at once, eight at a time, and those of which that is not certain by the exact primitives.
- * One: the same, but nothing if that is not certain and the fan round the shared
- * vertex projects one to one. More: nothing if a fan round one of them does, else the exact
- * primitives.
+ * One: the same. More: the exact primitives.
  */
 #include "query/candidates.h"
 
@@ -15,7 +13,6 @@
 
 #include "base/bits.h"
 #include "simd/isa.h"
-#include "pose/fan.h"
 #include "pose/positions.h"
 #include "query/filter.h"
 #include "query/pairs.h"
@@ -89,19 +86,6 @@ static int repeats_point(const uint32_t *t)
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/* Whether the fan round a vertex that two triangles share projects one to one: then they share all
-   that they have in common. */
-static int have_plain_fan(sc_query_state *state, const sc_pair *places)
-{
-    const uint32_t *triangle = sc_model_triangle(state->model);
-    uint32_t shared[3];
-    int i, count = list_shared(triangle + 3 * (uint64_t)places->a,
-                               triangle + 3 * (uint64_t)places->b, shared);
-    for (i = 0; i < count; i++)
-        if (sc_fan_is_plain(state->model, state->workspace, shared[i])) return 1;
-    return 0;
-}
-
 void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b)
 {
     const uint32_t *triangle = sc_model_triangle(state->model);
@@ -122,7 +106,7 @@ void sc_candidates_add_neighbors(sc_query_state *state, uint32_t a, uint32_t b)
         return;
     previous = sc_state_switch(state, sc_state_primitive_task(state));
     state->stats.counts[sc_state_primitive_task(state)]++;
-    if (!state->stop && !have_plain_fan(state, &pair)) decide_pair(state, &pair);
+    if (!state->stop) decide_pair(state, &pair);
     sc_state_switch(state, previous);
 }
 
@@ -167,26 +151,19 @@ static uint64_t edges_of(unsigned lanes)
     return lanes * (uint64_t)0x010101010101;
 }
 
-/* Decides a pair alone, unless the fan round what it shares does. */
-static void decide_rest(sc_query_state *state, const sc_pair *places, int share)
-{
-    if (!share || !have_plain_fan(state, places)) decide_pair(state, places);
-}
-
 /* Decides a pair alone, of which not all is certain. */
-static void conclude(sc_query_state *state, const sc_pair *places, unsigned meets, unsigned unsure,
-                     int share)
+static void conclude(sc_query_state *state, const sc_pair *places, unsigned meets, unsigned unsure)
 {
     if (state->options.pairs == SC_PAIRS_EDGE) {
         unsigned wanted = edges_wanted(state, places);
         if (unsure & wanted)
-            decide_rest(state, places, share);
+            decide_pair(state, places);
         else
             take_edges(state, places, meets & wanted);
     } else if (meets) {
         take_triangles(state, places);
     } else {
-        decide_rest(state, places, share);
+        decide_pair(state, places);
     }
 }
 
@@ -289,7 +266,7 @@ static void decide_all(sc_query_state *state, const sc_pair *pairs, uint32_t cou
         for (; open && !state->stop; open &= open - 1) {
             j = sc_bits_lowest(open);
             conclude(state, &lanes.pairs[j], edges_of_lane(verdict.meets, j),
-                     edges_of_lane(verdict.unsure, j), share);
+                     edges_of_lane(verdict.unsure, j));
         }
     }
 }
