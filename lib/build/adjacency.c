@@ -172,22 +172,3 @@ sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_ad
     if (status) return status;
     return count_components(points, scratch, adjacency);
 }
-
-/* A half-edge that has an opposite is the only one between its points that runs its way. So a walk
-   that goes from one triangle to the next across such edges meets no point twice before it is
-   back. */
-uint32_t sc_adjacency_ring(const sc_points *points, const sc_adjacency *adjacency, uint32_t p,
-                           uint32_t *ring)
-{
-    uint32_t begin = adjacency->corner_first[p], count = adjacency->corner_first[p + 1] - begin;
-    uint32_t start = adjacency->corners[begin], h = start, i;
-    if (count < 3 || count > SC_RING_MAX) return 0;
-    for (i = 0; i < count; i++) {
-        ring[i] = points->triangles[sc_adjacency_next(h)];
-        if (ring[i] == p) return 0;
-        h = adjacency
-                ->opposite[sc_adjacency_previous(h)]; /* the next triangle, counter-clockwise */
-        if (h == SC_NONE || (h == start) != (i + 1 == count)) return 0;
-    }
-    return count;
-}

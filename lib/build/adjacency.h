@@ -13,9 +13,6 @@
 
 #include "build/mesh.h"
 
-/* Longer rings are not told of: what tests them keeps them on the stack. */
-enum { SC_RING_MAX = 64 };
-
 /* All arrays are scratch memory. */
 typedef struct sc_adjacency {
     uint32_t edge_count, boundary_edges, irregular_edges;
@@ -43,13 +40,5 @@ sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_ad
 /* lowest: point_count; becomes the lowest number of a point in the same component, for each
    point. */
 void sc_adjacency_find_components(const sc_points *points, uint32_t *lowest);
-
-/*
- * The ring of a point p: if its triangles form one closed fan (p, r0, r1), (p, r1, r2), ... (p, rn,
- * r0) with different r, and are SC_RING_MAX at most, writes r0 ... rn and returns their number;
- * otherwise returns 0. ring has room for as many as p has corners.
- */
-uint32_t sc_adjacency_ring(const sc_points *points, const sc_adjacency *adjacency, uint32_t p,
-                           uint32_t *ring);
 
 #endif

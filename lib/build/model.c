@@ -23,13 +23,12 @@ static void measure_arrays(const sc_model *m, uint64_t bytes[SC_ARRAY_COUNT])
 {
     uint32_t vertex_count = m->vertex_count, triangle_count = m->triangle_count;
     uint32_t leaf_count = m->leaf_count, level_count = m->level_count;
-    uint32_t patch_end = m->patch_end, ring_total = m->ring_total, node_count = m->node_count;
+    uint32_t patch_end = m->patch_end, around_total = m->around_total, node_count = m->node_count;
     uint32_t contour_total = m->contour_total, loop_total = m->loop_total;
     uint32_t segment_count = m->segment_count, leaf_segment_count = m->leaf_segment_count;
     uint32_t segment_point_total = m->segment_point_total, share_count = m->share_count;
     uint32_t share_total = m->share_total;
     uint32_t segment_child_total = m->segment_child_total;
-    uint32_t open_count = m->open_count, open_total = m->open_total;
 #define MEASURE(name, type, count) bytes[SC_ARRAY_##name] = (uint64_t)(count) * sizeof(type);
     SC_MODEL_ARRAYS(MEASURE)
 #undef MEASURE
@@ -140,7 +139,7 @@ static void write_triangles(const sc_points *points, const sc_adjacency *adjacen
 static void write_leaves(sc_model *m)
 {
     uint8_t *last_place =
-        NEW_ARRAY(m, ring_first, uint8_t); /* of each vertex; to be written to later */
+        NEW_ARRAY(m, around_first, uint8_t); /* of each vertex; to be written to later */
     const uint32_t *first = sc_model_leaf_first(m), *corner = sc_model_triangle(m);
     uint32_t *point = NEW_ARRAY(m, leaf_point, uint32_t), leaf, i, k;
     uint8_t *where = NEW_ARRAY(m, leaf_corner, uint8_t);
@@ -166,93 +165,62 @@ static void write_leaves(sc_model *m)
     }
 }
 
-/*
- * The points that edges join a point with, by old numbers; returns how many. For each corner there
- * the next one; the previous one as well if no half-edge runs back to it. around NULL: only counts.
- */
-static uint32_t list_around(const sc_points *points, const sc_adjacency *adjacency, uint32_t p,
-                            uint32_t *around)
+/* Lists of neighbors are copied so many points at once, as nearly all are shorter; what is too much
+   is written over by the next. Their memory is asked for so many vertices ahead. */
+enum { AROUND_AT_ONCE = 8, AROUND_AHEAD = 16 };
+
+/* The points that edges join each point with, by old numbers, which are those of the order in which
+   they are in memory. */
+typedef struct surroundings {
+    uint32_t *first;  /* point_count + 1 */
+    uint32_t *points; /* by new numbers; and room to read AROUND_AT_ONCE behind */
+} surroundings;
+
+/* For each corner at a point the next one; the previous one as well if no half-edge runs back to
+   it. */
+static void list_around(const sc_points *points, const sc_adjacency *adjacency,
+                        const uint32_t *number, surroundings *s)
 {
-    uint32_t i, count = 0;
-    for (i = adjacency->corner_first[p]; i < adjacency->corner_first[p + 1]; i++) {
-        uint32_t h = adjacency->corners[i], before = sc_adjacency_previous(h);
-        if (around) around[count] = points->triangles[sc_adjacency_next(h)];
-        count++;
-        if (adjacency->opposite[before] != SC_NONE) continue;
-        if (around) around[count] = points->triangles[before];
-        count++;
+    const uint32_t *triangles = points->triangles;
+    uint32_t p, i, at = 0;
+    for (p = 0; p < points->point_count; p++) {
+        s->first[p] = at;
+        for (i = adjacency->corner_first[p]; i < adjacency->corner_first[p + 1]; i++) {
+            uint32_t h = adjacency->corners[i], before = sc_adjacency_previous(h);
+            s->points[at++] = number[triangles[sc_adjacency_next(h)]];
+            if (adjacency->opposite[before] == SC_NONE) s->points[at++] = number[triangles[before]];
+        }
     }
+    s->first[p] = at;
+}
+
+/* How long these lists are together. */
+static uint64_t count_around(const sc_points *points, const sc_adjacency *adjacency)
+{
+    const uint64_t corners = 3 * (uint64_t)points->triangle_count;
+    uint64_t count = corners, h;
+    for (h = 0; h < corners; h++) count += adjacency->opposite[h] == SC_NONE;
     return count;
 }
 
-/* Rings are copied so many points at once, as nearly all have fewer; what is too much is written
-   over by the next. Their memory is asked for so many vertices ahead. */
-enum { RING_AT_ONCE = 8, RINGS_AHEAD = 16 };
-
-/* The rings of all points, by old numbers, which are those of the order in which they are in
-   memory. */
-typedef struct rings {
-    uint32_t *first;  /* point_count + 1 */
-    uint32_t *points; /* by new numbers; and room to read RING_AT_ONCE behind */
-    uint32_t open_count;
-    uint64_t open_total;
-} rings;
-
-static void list_rings(const sc_points *points, const sc_adjacency *adjacency,
-                       const uint32_t *number, rings *r)
+static void write_around(const sc_points *points, const surroundings *s, sc_model *m)
 {
-    uint32_t p, i, at = 0;
-    r->open_count = 0;
-    r->open_total = 0;
-    for (p = 0; p < points->point_count; p++) {
-        uint32_t n = sc_adjacency_ring(points, adjacency, p, r->points + at);
-        r->first[p] = at;
-        for (i = at; i < at + n; i++) r->points[i] = number[r->points[i]];
-        at += n;
-        if (n) continue;
-        r->open_count++;
-        r->open_total += list_around(points, adjacency, p, NULL);
-    }
-    r->first[p] = at;
-}
-
-static void write_rings(const sc_points *points, const rings *r, sc_model *m)
-{
-    uint32_t *first = NEW_ARRAY(m, ring_first, uint32_t), *ring = NEW_ARRAY(m, ring, uint32_t), v;
-    uint32_t at = 0;
+    uint32_t *first = NEW_ARRAY(m, around_first, uint32_t);
+    uint32_t *around = NEW_ARRAY(m, around, uint32_t), at = 0, v;
     for (v = 0; v < m->vertex_count; v++) {
-        uint32_t p = points->slot[v], n, ahead = v + RINGS_AHEAD;
+        uint32_t p = points->slot[v], n, ahead = v + AROUND_AHEAD;
         if (ahead < m->vertex_count && points->slot[ahead] < SC_SLOT_WELDED)
-            sc_fetch(r->points + r->first[points->slot[ahead]]);
+            sc_fetch(s->points + s->first[points->slot[ahead]]);
         first[v] = at;
         if (p >= SC_SLOT_WELDED) continue;
-        n = r->first[p + 1] - r->first[p];
-        if (n <= RING_AT_ONCE && m->ring_total - at >= RING_AT_ONCE)
-            memcpy(ring + at, r->points + r->first[p], RING_AT_ONCE * sizeof *ring);
+        n = s->first[p + 1] - s->first[p];
+        if (n <= AROUND_AT_ONCE && m->around_total - at >= AROUND_AT_ONCE)
+            memcpy(around + at, s->points + s->first[p], AROUND_AT_ONCE * sizeof *around);
         else
-            memcpy(ring + at, r->points + r->first[p], n * sizeof *ring);
+            memcpy(around + at, s->points + s->first[p], n * sizeof *around);
         at += n;
     }
     first[v] = at;
-}
-
-static void write_open_points(const sc_points *points, const sc_adjacency *adjacency,
-                              const uint32_t *number, sc_model *m)
-{
-    const uint32_t *ring_first = sc_model_ring_first(m);
-    uint32_t *point = NEW_ARRAY(m, open_point, uint32_t);
-    uint32_t *first = NEW_ARRAY(m, open_first, uint32_t);
-    uint32_t *around = NEW_ARRAY(m, open_around, uint32_t), q, i, at = 0, total = 0;
-    for (q = 0; q < m->vertex_count; q++) {
-        uint32_t count;
-        if (points->slot[q] >= SC_SLOT_WELDED || ring_first[q + 1] > ring_first[q]) continue;
-        count = list_around(points, adjacency, points->slot[q], around + total);
-        for (i = 0; i < count; i++) around[total + i] = number[around[total + i]];
-        point[at] = q;
-        first[at++] = total;
-        total += count;
-    }
-    first[at] = total;
 }
 
 static void write_hops(const sc_xbvh *xbvh, sc_model *m)
@@ -492,8 +460,9 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     sc_model counts, *m;
     uint32_t *number, connected[SC_DEPTH_MAX] = {0};
     uint64_t share_total = sc_sharing_lists_count(sharing, xbvh), i;
+    const uint64_t around_total = count_around(points, adjacency);
     uint16_t *own_rows;
-    rings r;
+    surroundings around;
     sc_status status = SC_OK;
 
     memset(&counts, 0, sizeof counts);
@@ -501,20 +470,18 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     if (!sc_model_is_for_boxes(&counts))
         status = count_connected(adjacency, hierarchy, xbvh, scratch, connected);
     if (status) return status;
+    if (SC_HARDLY(around_total > UINT32_MAX || share_total > UINT32_MAX)) return SC_ERROR_COUNT;
     number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
-    r.first =
-        (uint32_t *)sc_scratch_take(scratch, (uint64_t)points->point_count + 1, sizeof *r.first);
-    r.points = (uint32_t *)sc_scratch_take(
-        scratch, 3 * (uint64_t)points->triangle_count + RING_AT_ONCE, sizeof *r.points);
-    if (!number || !r.first || !r.points) return SC_ERROR_MEMORY;
+    around.first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)points->point_count + 1,
+                                               sizeof *around.first);
+    around.points =
+        (uint32_t *)sc_scratch_take(scratch, around_total + AROUND_AT_ONCE, sizeof *around.points);
+    if (!number || !around.first || !around.points) return SC_ERROR_MEMORY;
     number_points(points, number);
-    list_rings(points, adjacency, number, &r);
-    if (SC_HARDLY(r.open_total > UINT32_MAX || share_total > UINT32_MAX)) return SC_ERROR_COUNT;
-    counts.open_count = r.open_count;
-    counts.open_total = (uint32_t)r.open_total;
+    list_around(points, adjacency, number, &around);
     counts.share_count = sharing->first[xbvh->leaf_count];
     counts.share_total = (uint32_t)share_total;
-    counts.ring_total = r.first[points->point_count];
+    counts.around_total = (uint32_t)around_total;
     sc_model_lay_out(&counts);
     if (SC_HARDLY(counts.bytes > SIZE_MAX - SC_ALIGNMENT)) /* where addresses have 32 bits */
         return SC_ERROR_COUNT;
@@ -526,10 +493,9 @@ sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacen
     copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     write_leaves(m);
-    write_rings(points, &r, m);
-    sc_scratch_give(scratch, r.points); /* before the loops need memory */
-    sc_scratch_give(scratch, r.first);
-    write_open_points(points, adjacency, number, m);
+    write_around(points, &around, m);
+    sc_scratch_give(scratch, around.points); /* before the loops need memory */
+    sc_scratch_give(scratch, around.first);
     sc_leaf_shapes_fans(m, NEW_ARRAY(m, leaf_fan, uint16_t));
     sc_leaf_shapes_outlines(m, NEW_ARRAY(m, leaf_outline, uint8_t));
     copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,

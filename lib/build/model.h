@@ -120,9 +120,8 @@ enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NO
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
  *                   visits: every fourth, ending with the last
- *   ring_first, ring  the points round each closed fan, in order; empty where there is none
- *   open_point      the points without a ring, ascending; open_first, open_around: the points that edges
- *                   join each of them with, some perhaps twice
+ *   around_first, around  the points that edges join each point with: all if every edge there has an opposite one, else
+ *                   some perhaps twice
  *   node            the test tree, see above
  *   contours        the segments round each node, see build/csf.h
  *   loop            see build/loops.h
@@ -152,11 +151,8 @@ enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NO
   X(child, uint32_t, patch_end)                                                                    \
   X(leaf, uint32_t, patch_end)                                                                     \
   X(hop, uint32_t, patch_end)                                                                      \
-  X(ring_first, uint32_t, (uint64_t)vertex_count + 1)                                              \
-  X(ring, uint32_t, ring_total)                                                                    \
-  X(open_point, uint32_t, open_count)                                                              \
-  X(open_first, uint32_t, (uint64_t)open_count + 1)                                                \
-  X(open_around, uint32_t, open_total)                                                             \
+  X(around_first, uint32_t, (uint64_t)vertex_count + 1)                                            \
+  X(around, uint32_t, around_total)                                                                \
   X(node, sc_node, (uint64_t)node_count + 1)                                                       \
   X(contours, uint32_t, contour_total)                                                             \
   X(loop, uint16_t, loop_total)                                                                    \
@@ -185,7 +181,7 @@ struct sc_model {
     uint32_t node_count, contour_total, loop_total;
     uint32_t segment_count, leaf_segment_count, segment_point_total, segment_child_total;
     uint32_t contour_max; /* points of the segments round a node, at most */
-    uint32_t ring_total, open_count, open_total, share_count, share_total;
+    uint32_t around_total, share_count, share_total;
     uint32_t reserved; /* 0: an even number of these */
 };
 

@@ -139,20 +139,6 @@ static int check_places(const sc_model *m)
     return !bad;
 }
 
-/* All points without a ring and no others. */
-static int check_open_points(const sc_model *m)
-{
-    const uint32_t *ring_first = sc_model_ring_first(m), *open = sc_model_open_point(m);
-    uint32_t p, count = 0;
-    for (p = 0; p < m->vertex_count; p++) {
-        if (sc_model_vertex_use(m)[p] != SC_VERTEX_POINT || ring_first[p + 1] > ring_first[p])
-            continue;
-        if (count == m->open_count || open[count] != p) return 0;
-        count++;
-    }
-    return count == m->open_count;
-}
-
 /* Each level has a patch or more, and the number behind them; the first has one, the last all
    leaves. */
 static int check_levels(const sc_model *m)
@@ -506,12 +492,9 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(child, check_child(m));
     CHECK(leaf, check_leaf(m));
     CHECK(hop, check_hop(m));
-    CHECK(ring_first,
-          are_lists(sc_model_ring_first(m), m->vertex_count, m->ring_total, 0, SC_NONE));
-    CHECK(ring, are_points(m, sc_model_ring(m), m->ring_total));
-    CHECK(open_point, check_open_points(m));
-    CHECK(open_first, are_lists(sc_model_open_first(m), m->open_count, m->open_total, 0, SC_NONE));
-    CHECK(open_around, are_points(m, sc_model_open_around(m), m->open_total));
+    CHECK(around_first,
+          are_lists(sc_model_around_first(m), m->vertex_count, m->around_total, 0, SC_NONE));
+    CHECK(around, are_points(m, sc_model_around(m), m->around_total));
     CHECK(share_first, are_lists(sc_model_share_first(m), m->leaf_count, m->share_count, 0,
                                  3 * SC_LEAF_MAX * SC_SHARING_CROWD));
     CHECK(share_leaf, check_share_leaf(m));

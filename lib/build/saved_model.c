@@ -16,7 +16,7 @@
 static const char MAGIC[8] = {'\x93', 'S', 'C', 'M', '\r', '\n', '\x1a', '\n'};
 
 /* Raised whenever the model's block changes: its counts, its arrays, or what is in them. */
-enum { VERSION = 1 };
+enum { VERSION = 2 };
 
 uint64_t sc_saved_model_bytes(const sc_model *model)
 {

@@ -84,29 +84,11 @@ static sc_group group_of_points(const sc_query_state *state, const uint32_t *poi
 
 /* ---- rings ---- */
 
-/* The points that edges join p with: writes where they are, returns how many. */
-static uint32_t find_around(const sc_model *model, uint32_t p, const uint32_t **around)
-{
-    const uint32_t *first = sc_model_ring_first(model) + p, *open = sc_model_open_point(model);
-    uint32_t low = 0, high = model->open_count;
-    *around = sc_model_ring(model) + first[0];
-    if (first[1] > first[0]) return first[1] - first[0];
-    while (high - low > 1) {
-        uint32_t middle = low + (high - low) / 2;
-        if (open[middle] <= p)
-            low = middle;
-        else
-            high = middle;
-    }
-    first = sc_model_open_first(model) + low;
-    *around = sc_model_open_around(model) + first[0];
-    return first[1] - first[0];
-}
-
 /* Marks the points at most steps edges away from the three of a triangle. */
 static void mark_ball(const sc_model *model, sc_workspace *w, const uint32_t center[3],
                       uint32_t steps)
 {
+    const uint32_t *first = sc_model_around_first(model), *around = sc_model_around(model);
     uint32_t head = 0, tail = 0, end, i;
     if (w->ball_tick == 0xffff) {
         memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
@@ -119,15 +101,12 @@ static void mark_ball(const sc_model *model, sc_workspace *w, const uint32_t cen
             w->ball_queue[tail++] = center[i];
         }
     for (; steps && head < tail; steps--)
-        for (end = tail; head < end; head++) {
-            const uint32_t *around;
-            uint32_t count = find_around(model, w->ball_queue[head], &around);
-            for (i = 0; i < count; i++)
+        for (end = tail; head < end; head++)
+            for (i = first[w->ball_queue[head]]; i < first[w->ball_queue[head] + 1]; i++)
                 if (w->ball[around[i]] != w->ball_tick) {
                     w->ball[around[i]] = w->ball_tick;
                     w->ball_queue[tail++] = around[i];
                 }
-        }
 }
 
 static const uint32_t *points_of(const sc_model *model, uint32_t triangle)
