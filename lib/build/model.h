@@ -113,10 +113,12 @@ enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NO
  *                   are n < SC_LEAF_POINTS, zeros follow, and SC_LEAF_POINTS + n is the last
  *                   number. If it is two such chains, as of a tube, for each place the one that
  *                   follows it there, and what sc_outline_bit names
- *   share_...       see build/sharing.h, share_own_rows are folded; share_begin, share_list: build/sharing_lists.h
- *   share_touch     of two leaf clusters that share one point, SC_TOUCHES and where they have it; of two that share a chain,
- *                   SC_TOUCH_CHAIN; else 0
- *   share_node      the node of the test tree that is of the two leaf clusters, or SC_NONE
+ *   share_...       see build/sharing.h, share_own_rows are folded; share_begin, share_list:
+ *                   build/sharing_lists.h
+ *   share_touch     of two leaf clusters that share one point, SC_TOUCHES and where they have it;
+ *                   of two that share a chain, SC_TOUCH_CHAIN; else 0
+ *   share_node      the node of the test tree that is of the two leaf clusters; SC_NONE in models
+ *                   for boxes
  *   level_first, child, leaf   see build/xbvh.h
  *   hop             first descendant of a patch at the next level down of those that box recursion
  *                   visits: every fourth, ending with the last

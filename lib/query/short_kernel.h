@@ -218,10 +218,7 @@ static inline int is_simple(const short_points *c, const short_edges *e)
 static inline unsigned find_loop(const sc_model *model, const sc_near_pair *p,
                                  const uint16_t **loop)
 {
-    const uint32_t node = sc_model_share_node(model)[p->shared];
-    const sc_node *n;
-    if (node == SC_NONE) return 0;
-    n = sc_model_node(model) + node;
+    const sc_node *n = sc_model_node(model) + sc_model_share_node(model)[p->shared];
     if (n->kind & (SC_NODE_TOUCHES | SC_NODE_PIECES)) return 0;
     *loop = sc_model_loop(model) + n->loop;
     return n->loop_length > 2 && n->loop_length <= SHORT_POINTS ? n->loop_length : 0;
@@ -286,7 +283,6 @@ static inline void fetch_loop(const sc_query_state *state, const sc_near_pair *p
             sc_fetch(at + SC_LEAF_POINTS * (4 * (uint64_t)p->b + (unsigned)k));
         }
     }
-    if (*node == SC_NONE) return;
     if (step == 1) {
         sc_fetch(sc_model_node(model) + *node);
     } else {
