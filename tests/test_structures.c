@@ -1262,6 +1262,30 @@ static void creases(void)
     }
 }
 
+/* A point of a flat cloth's rim is pulled away: what an edge costs ends at 1000, and at 1. */
+static void edges_of_all_lengths(void)
+{
+    soup mesh = soup_cloth(8, 8);
+    sc_build_options options;
+    sc_model *model = NULL;
+    costs found;
+    uint32_t v = 0;
+    while (!(mesh.positions[3 * v + 1] == 0 && mesh.positions[3 * v] == 0.5)) ++v;
+    mesh.positions[3 * v + 1] = -1e6;
+    memset(&options, 0, sizeof(options));
+    memset(&found, 0, sizeof(found));
+    options.struct_size = sizeof(options);
+    options.partition = SC_PARTITION_BISECT;
+    options.weld = SC_WELD_NONE;
+    options.bisect = note_costs;
+    options.bisect_user = &found;
+    sc_mesh m = input_plain_mesh(&mesh);
+    CHECK(sc_build(&m, &options, &model) == SC_OK);
+    CHECK(found.most == 1000 && found.least == 1);
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
 /* How many leaf clusters a mesh gets. Of every so many triangles of it in turn: how many such parts
    are divided between clusters, and how many clusters have triangles of several. */
 static uint32_t count_clusters(const soup *mesh, uint32_t partition, uint32_t together,
@@ -1639,6 +1663,6 @@ static void most_leaves(void)
 }
 
 SC_TEST_MAIN(SC_TEST(locality), SC_TEST(curve), SC_TEST(named_meshes), SC_TEST(hubs),
-             SC_TEST(copies), SC_TEST(creases), SC_TEST(slices), SC_TEST(two_legs),
-             SC_TEST(longest_loop), SC_TEST(random_meshes), SC_TEST(validators),
+             SC_TEST(copies), SC_TEST(creases), SC_TEST(edges_of_all_lengths), SC_TEST(slices),
+             SC_TEST(two_legs), SC_TEST(longest_loop), SC_TEST(random_meshes), SC_TEST(validators),
              SC_TEST(most_leaves))

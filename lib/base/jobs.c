@@ -29,7 +29,7 @@ uint32_t sc_jobs_take(sc_jobs_ranges *ranges, uint32_t part, uint32_t worker)
     for (i = 0; SC_ATOMIC && SC_ALWAYS(i < ranges->workers);
          i++, owner = owner + 1 < ranges->workers ? owner + 1 : 0) {
         const uint32_t begin = range_begin(ranges, owner), end = range_begin(ranges, owner + 1);
-        const int is_own = owner == worker, is_odd = owner % 2;
+        const int is_own = owner == worker, is_odd = owner % 2 != 0;
         size_t before;
         if (sc_atomic_add(&ranges->taken[owner], 1) >= end - begin) continue;
         before = is_own ? ranges->by_owner[owner]++ : sc_atomic_add(&ranges->by_others[owner], 1);
@@ -60,7 +60,9 @@ uint32_t sc_jobs_takes(const sc_jobs_ranges *ranges)
 uint32_t sc_jobs_take_some(sc_jobs_ranges *ranges, uint32_t worker, uint32_t *some)
 {
     uint32_t i, owner = worker;
-    for (i = 0; i < ranges->workers; i++, owner = owner + 1 < ranges->workers ? owner + 1 : 0) {
+    /* it is called sc_jobs_takes times, so that something is left */
+    for (i = 0; SC_ALWAYS(i < ranges->workers);
+         i++, owner = owner + 1 < ranges->workers ? owner + 1 : 0) {
         uint32_t begin = range_begin(ranges, owner),
                  length = range_begin(ranges, owner + 1) - begin;
         size_t taken = sc_atomic_get(&ranges->taken[owner]);

@@ -551,11 +551,10 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
         if (status) return status;
     }
     csf->segment_count = b.segments;
-    if (!sc_list_reserve(scratch, &b.points_first, 1) ||
-        !sc_list_reserve(scratch, &b.child_first, 1) ||
+    if (!sc_list_reserve(scratch, &b.child_first, 1) ||
         !sc_list_reserve(scratch, &b.half_edges, 1) || !sc_list_reserve(scratch, &b.children, 1))
         return SC_ERROR_MEMORY;
-    sc_list_add(&b.points_first, (uint32_t)b.half_edges.count);
+    sc_list_add(&b.points_first, (uint32_t)b.half_edges.count); /* see reserve_for_leaves */
     sc_list_add(&b.child_first, (uint32_t)b.children.count);
     csf->child_first = b.child_first.items;
     csf->children = b.children.items;
