@@ -43,7 +43,7 @@ link() {
 tests='base queries structures underflow validators'
 support=$(for file in tests/*.c; do
     case $file in
-    tests/test_*.c | tests/oracle.c | tests/step_oracle.c) ;;
+    tests/test_*.c | tests/oracle.c | tests/step_oracle.c | tests/rounding_search.c) ;;
     *) echo "$at/release/obj/${file%.c}.o" ;;
     esac
 done)
