@@ -113,7 +113,10 @@ static SC_INLINE void find_cells(small_contour *c, uint32_t blocks)
         lanes_cells_store(c->cell + SC_LANES_COUNT * b, lanes_cells_of(x[0], x[1]));
     }
     SC_UNROLL
-    for (k = 0; k < 2; k++) c->at[k][c->count] = c->at[k][0];
+    for (k = 0; k < 2; k++) {
+        c->at[k][SC_LANES_COUNT * blocks] = 0; /* is read, and nothing depends on it */
+        c->at[k][c->count] = c->at[k][0];
+    }
     c->cell[c->count] = c->cell[0];
 }
 
