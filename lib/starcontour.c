@@ -425,7 +425,7 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     state.capacity = r.capacity;
     state.timed = r.stats != NULL;
     status = sc_question_read(model, workspace, pose, options, &r, &state, &question);
-    if (!status) {
+    if (!status && SC_ALWAYS(workspace)) { /* it is refused if it is NULL */
         state.model = model;
         workspace->tasks = sc_parallel_tasks(&state);
         status = run_query(model, workspace, &question.pose, question.stride, &state);
@@ -545,7 +545,7 @@ sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc
     memset(&state, 0, sizeof state);
     status =
         sc_step_question_read(model, workspace, start, end, options, &r, &state.options, &question);
-    if (!status) {
+    if (!status && SC_ALWAYS(workspace)) { /* likewise */
         begin_step(&state, model, workspace, &r);
         workspace->tasks = sc_step_parallel_tasks(&state);
         status = run_step(&state, question.pose, question.stride);

@@ -92,6 +92,6 @@ void sc_sharing_lists_write(const sc_sharing *sharing, const sc_xbvh *xbvh,
                             triangle + 3 * (uint64_t)first[leaf],
                             triangle + 3 * (uint64_t)first[sharing->leaf[i]], list + at);
         }
-    begin[i = sharing->first[xbvh->leaf_count]] = at;
+    begin[sharing->first[xbvh->leaf_count]] = at;
     memset(list + at, 0, SC_SHARE_BEHIND * sizeof *list);
 }

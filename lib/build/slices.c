@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/assume.h"
 #include "base/bits.h"
 #include "base/sort.h"
 
@@ -46,7 +47,7 @@ static int is_one_piece(const sc_slices *slices, uint32_t at, uint32_t end)
             next |= bit;
         }
     }
-    return reached == (1u << count) - 1;
+    return SC_ALWAYS(count < 32) && reached == (1u << count) - 1; /* SC_LEAF_MAX at most */
 }
 
 /* Where among the ends least .. end of a slice the way to the next triangle is furthest. */
