@@ -462,7 +462,7 @@ SC_API sc_status sc_workspace_create(const sc_model *model, const sc_allocator *
 
 /* What a workspace is for besides plain queries; a sum. */
 enum {
-    SC_WORKSPACE_STEP = 1 /* sc_query_step: about 60 bytes a triangle more, and 300 kilobytes a
+    SC_WORKSPACE_STEP = 1 /* sc_query_step: about 30 bytes a triangle more, and 80 kilobytes a
                              worker */
 };
 
@@ -856,17 +856,17 @@ enum {
                                      move */
     SC_STEP_METHOD_TWO_BOXES = 2, /* the plain tree, with a box at the start and one at the end:
                                      a pair whose boxes are apart on the same side at both times
-                                     is so at all times */
-    SC_STEP_METHOD_SWEPT = 3      /* the plain tree, with one box round the whole motion; for
-                                     comparison */
+                                     is so at all times; likewise slabs of triangles */
+    SC_STEP_METHOD_SWEPT = 3      /* the plain tree, with one box round the whole motion, and no
+                                     slabs; for comparison */
 };
 
 /* What is reported. */
 enum {
     SC_STEP_COLLISIONS = 0, /* the pairs that collide */
-    SC_STEP_CANDIDATES = 1  /* the pairs that boxes and culling leave, for a narrow phase of the
-                               caller's: every collision and others. They depend on the method,
-                               not on the machine */
+    SC_STEP_CANDIDATES = 1  /* the pairs that boxes, slabs and culling leave, for a narrow phase of
+                               the caller's: every collision and others. They depend on the
+                               method, not on the machine */
 };
 
 /* Which times of impact are wanted. */

@@ -144,6 +144,15 @@ static void try_bytes(const lanes_input *in, lanes_outcome *out)
     for (k = 0; k < 3; k++) memcpy(out->kept[k], kept[k], sc_bits_count(in->mask) * sizeof **kept);
 }
 
+static void try_sets(const lanes_input *in, lanes_outcome *out)
+{
+    const lanes_sets one = lanes_sets_of(in->number);
+    const lanes_sets both = lanes_sets_join(one, lanes_sets_of(in->number + SC_LANES_COUNT));
+    out->bits[24] = lanes_within(one, in->mask);
+    out->bits[25] = lanes_within(both, in->mask);
+    out->bits[26] = lanes_within(lanes_sets_load(in->words), in->mask | in->words[0]);
+}
+
 static void try_cells(const lanes_input *in, lanes_outcome *out)
 {
     float at[4][SC_LANES_COUNT];
@@ -215,6 +224,7 @@ void LANES_TRY(const lanes_input *in, lanes_outcome *out)
     try_picks(in, out);
     try_bytes(in, out);
     try_rows(in, out);
+    try_sets(in, out);
     try_cells(in, out);
     try_doubles(in, out);
 }

@@ -866,6 +866,60 @@ static void step_boxes(const double (*x)[N], double share[N])
     }
 }
 
+/* The same where the box of one is compared with the other: that of leaf clusters, triangles and
+   edges, moved by all of it. */
+static void step_point_boxes(const double (*x)[N], double share[N])
+{
+    for (int i = 0; i < N; ++i) {
+        float distance = (float)fabs(x[2][i]) * 0.25f, margin = sc_motion_margin(distance);
+        float high = (float)x[0][i] + margin;
+        double off = (x[0][i] - x[1][i]) - ((double)high - (double)(float)x[1][i]) + (double)margin;
+        share[i] = off / ((double)margin - (double)distance);
+    }
+}
+
+/* A direction, two points and a clearance: what the places of these and the plane of a slab, as
+   make_moving_slabs has it, are off by, beyond that clearance. */
+static void step_slabs(const double (*x)[N], double share[N])
+{
+    lanes n[3], p[3], q[3], other;
+    float place[N];
+    read_point(x, 0, n);
+    read_point(x, 3, p);
+    read_point(x, 6, q);
+    lanes_store(place, places_along((const lanes *)n, (const lanes *)p));
+    other = places_along((const lanes *)n, (const lanes *)q);
+    for (int i = 0; i < N; ++i) {
+        const float distance = (float)fabs(x[9][i]) * 0x1p-22f;
+        const lanes margin = slab_margin((const lanes *)n, distance);
+        float plane[N], kept[N];
+        double direction[3], way[3], clear;
+        lanes_store(kept, margin);
+        lanes_store(plane, lanes_add(other, margin));
+        for (int k = 0; k < 3; ++k) direction[k] = (double)(float)x[k][i];
+        way_of(x, i, 6, 3, way);
+        clear = (double)distance * sqrt(dot_of(direction, direction));
+        share[i] =
+            ((double)place[i] - (double)plane[i] + (double)kept[i] - dot_of(direction, way)) /
+            ((double)kept[i] - clear);
+    }
+}
+
+/* A direction, whose length is bounded. */
+static void slab_lengths(const double (*x)[N], double share[N])
+{
+    lanes n[3];
+    float kept[N], without[N];
+    read_point(x, 0, n);
+    lanes_store(kept, slab_margin((const lanes *)n, 1));
+    lanes_store(without, slab_margin((const lanes *)n, 0));
+    for (int i = 0; i < N; ++i) {
+        double direction[3];
+        for (int k = 0; k < 3; ++k) direction[k] = (double)(float)x[k][i];
+        share[i] = sqrt(dot_of(direction, direction)) / ((double)kept[i] - (double)without[i]);
+    }
+}
+
 /* Sides of a triangle at both ends, and a direction of the cone: the coefficients of n . s. */
 static void moving_cones(const double (*x)[N], double share[N])
 {
@@ -1027,7 +1081,7 @@ const rounding_bound rounding_bounds[] = {
      sixteen_edges, 0.9, NULL},
     {"query/sixteen_kernel.h, sides", "triangles in the unit box", ROUNDING_UNIT, 6, 2, 1, sides,
      0.56, known_float_side},
-    {"query/ready_kernel.h, slabs", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1, slabs, 0.6,
+    {"query/slab_kernel.h, slabs", "triangles in the unit box", ROUNDING_UNIT, 9, 3, 1, slabs, 0.6,
      NULL},
     {"query/neighbor_kernel.h, planes", "triangles in the unit box", ROUNDING_UNIT, 12, 3, 1,
      neighbor_planes, 0, NULL},
@@ -1049,6 +1103,11 @@ const rounding_bound rounding_bounds[] = {
     {"query/decide_kernel.h, tiny term of sides", "triangles in doubles", ROUNDING_TINY, 8, 2, 1,
      decide_sides_tiny, 0, NULL},
     {"step/step_motion.c, boxes", "steps", ROUNDING_UNIT, 3, 1, 1, step_boxes, 0.57, NULL},
+    {"step/leaf_motion_kernel.h, boxes", "steps", ROUNDING_UNIT, 3, 1, 1, step_point_boxes, 0,
+     NULL},
+    {"step/leaf_motion_kernel.h, slabs", "steps", ROUNDING_UNIT, 10, 3, 10, step_slabs, 0.6, NULL},
+    {"step/leaf_motion_kernel.h, lengths", "steps", ROUNDING_UNIT, 3, 3, 1, slab_lengths, 0.99,
+     NULL},
     {"step/moving_cones_kernel.h, n . s", "steps", ROUNDING_UNIT, 18, 3, 1, moving_cones, 0.9,
      NULL},
     {"step/moving_cones_kernel.h, longest side", "steps", ROUNDING_UNIT, 6, 3, 1, moving_sides,

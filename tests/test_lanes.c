@@ -159,6 +159,26 @@ static void bytes_and_names(void)
     }
 }
 
+/* The same of sets. */
+static void sets_within_sets(void)
+{
+    lanes_input in;
+    lanes_outcome out;
+    uint32_t trial, i;
+    memset(&in, 0, sizeof in);
+    for (trial = 0; trial < 2000; trial++) {
+        draw(&in);
+        lanes_try_plain(&in, &out);
+        for (i = 0; i < 16; i++) {
+            const unsigned one = 1u << in.number[i], other = 1u << in.number[16 + i];
+            CHECK((out.bits[24] >> i & 1u) == (unsigned)((in.mask & one) != 0));
+            CHECK((out.bits[25] >> i & 1u) == (unsigned)((~in.mask & (one | other)) == 0));
+            CHECK((out.bits[26] >> i & 1u) ==
+                  (unsigned)((in.words[i] & ~(in.mask | in.words[0])) == 0));
+        }
+    }
+}
+
 /* Whether a cell is in the box of two others, or beside it. */
 static int is_near(const lanes_input *in, uint32_t cell, uint32_t i)
 {
@@ -262,5 +282,5 @@ static void lists_and_signs(void)
     }
 }
 
-SC_TEST_MAIN(SC_TEST(all_forms_agree), SC_TEST(bytes_and_names), SC_TEST(cells_and_boxes),
-             SC_TEST(lists_and_signs))
+SC_TEST_MAIN(SC_TEST(all_forms_agree), SC_TEST(bytes_and_names), SC_TEST(sets_within_sets),
+             SC_TEST(cells_and_boxes), SC_TEST(lists_and_signs))

@@ -18,241 +18,7 @@
 #include "oracle.h"
 #include "shapes.h"
 #include "starcontour.h"
-#include "step/impact.h"
-
-static const uint32_t methods[] = {SC_STEP_METHOD_SCTT, SC_STEP_METHOD_SCTT,
-                                   SC_STEP_METHOD_TWO_BOXES, SC_STEP_METHOD_SWEPT};
-enum { METHODS = 4, KINDS = 2 };
-
-/* A list of pairs with their times. */
-typedef struct timed_list {
-    sc_pair *pairs;
-    double *times;
-    uint64_t count, room;
-} timed_list;
-
-static void add(timed_list *list, uint32_t a, uint32_t b, double time)
-{
-    if (list->count == list->room) {
-        list->room = 2 * list->room + 16;
-        list->pairs = (sc_pair *)realloc(list->pairs, (size_t)list->room * sizeof(sc_pair));
-        list->times = (double *)realloc(list->times, (size_t)list->room * sizeof(double));
-        if (!list->pairs || !list->times) abort();
-    }
-    list->pairs[list->count].a = a;
-    list->pairs[list->count].b = b;
-    list->times[list->count++] = time;
-}
-
-static void free_lists(timed_list lists[KINDS])
-{
-    for (int i = 0; i < KINDS; ++i) {
-        free(lists[i].pairs);
-        free(lists[i].times);
-    }
-}
-
-static void take_point(const double *from, uint32_t v, double to[3])
-{
-    memcpy(to, from + 3 * (size_t)v, 3 * sizeof(double));
-}
-
-typedef struct edge {
-    uint32_t a, b, name;
-} edge;
-
-/* The edges of a welded soup: each by the first triangle and side that has it. */
-static edge *edges_of(const soup *s, const uint32_t *weld, uint32_t *count)
-{
-    edge *edges = (edge *)test_allocate(3 * (size_t)s->triangle_count * sizeof(edge));
-    *count = 0;
-    for (uint32_t i = 0; i < 3 * s->triangle_count; ++i) {
-        uint32_t a = weld[s->triangles[i]], b = weld[s->triangles[i - i % 3 + (i % 3 + 1) % 3]], j;
-        if (a == b) continue;
-        for (j = 0; j < *count; ++j)
-            if ((edges[j].a == a && edges[j].b == b) || (edges[j].a == b && edges[j].b == a)) break;
-        if (j < *count) continue;
-        edges[*count].a = a;
-        edges[*count].b = b;
-        edges[(*count)++].name = i;
-    }
-    return edges;
-}
-
-/* What the narrow phase says of all pairs. */
-static void solve(const soup *s, const double *start, const double *end,
-                  const sc_impact_limits *limits, timed_list lists[KINDS])
-{
-    uint32_t *weld = (uint32_t *)test_allocate(s->vertex_count * sizeof(uint32_t)), count;
-    uint8_t *used = (uint8_t *)calloc(s->vertex_count, 1);
-    double from[4][3], to[4][3], time;
-    const double(*f)[3] = (const double(*)[3])from, (*t)[3] = (const double(*)[3])to;
-    edge *edges;
-    memset(lists, 0, KINDS * sizeof(timed_list));
-    oracle_weld(s->positions, s->vertex_count, s->triangles, s->triangle_count, weld);
-    for (uint32_t i = 0; i < 3 * s->triangle_count; ++i) used[weld[s->triangles[i]]] = 1;
-    edges = edges_of(s, weld, &count);
-    for (uint32_t v = 0; v < s->vertex_count; ++v)
-        for (uint32_t i = 0; used[v] && i < s->triangle_count; ++i) {
-            int corner = 0;
-            take_point(start, v, from[0]);
-            take_point(end, v, to[0]);
-            for (uint32_t k = 0; k < 3; ++k) {
-                uint32_t c = weld[s->triangles[3 * i + k]];
-                corner |= c == v;
-                take_point(start, c, from[k + 1]);
-                take_point(end, c, to[k + 1]);
-            }
-            if (!corner && sc_impact_vertex_face(f, t, limits, &time)) add(&lists[0], v, i, time);
-        }
-    for (uint32_t i = 0; i < count; ++i)
-        for (uint32_t j = i + 1; j < count; ++j) {
-            const edge *x = &edges[i], *y = &edges[j];
-            if (x->a == y->a || x->a == y->b || x->b == y->a || x->b == y->b) continue;
-            take_point(start, x->a, from[0]);
-            take_point(start, x->b, from[1]);
-            take_point(start, y->a, from[2]);
-            take_point(start, y->b, from[3]);
-            take_point(end, x->a, to[0]);
-            take_point(end, x->b, to[1]);
-            take_point(end, y->a, to[2]);
-            take_point(end, y->b, to[3]);
-            if (sc_impact_edge_edge(f, t, limits, &time)) add(&lists[1], x->name, y->name, time);
-        }
-    free(weld);
-    free(used);
-    free(edges);
-}
-
-typedef struct step_subject {
-    sc_model *model;
-    sc_workspace *workspace;
-} step_subject;
-
-static int open_step(step_subject *s, const soup *mesh, const sc_build_options *options)
-{
-    sc_mesh m = input_plain_mesh(mesh);
-    sc_workspace_options w;
-    s->model = NULL;
-    s->workspace = NULL;
-    memset(&w, 0, sizeof(w));
-    w.struct_size = sizeof(w);
-    w.flags = SC_WORKSPACE_STEP;
-    return CHECK(sc_build(&m, options, &s->model) == SC_OK) &&
-           CHECK(sc_workspace_create_for(s->model, &w, &s->workspace) == SC_OK);
-}
-
-static void close_step(step_subject *s)
-{
-    sc_workspace_free(s->workspace);
-    sc_model_free(s->model);
-}
-
-static sc_step_options plain_options(void)
-{
-    sc_step_options o;
-    memset(&o, 0, sizeof(o));
-    o.struct_size = sizeof(o);
-    return o;
-}
-
-/* A result with room for some pairs of each kind. */
-typedef struct answer {
-    sc_step_result result;
-    sc_stats stats;
-} answer;
-
-static answer make_answer(uint64_t capacity)
-{
-    answer a;
-    memset(&a, 0, sizeof(a));
-    a.result.struct_size = sizeof(a.result);
-    a.result.vertex_face_capacity = a.result.edge_edge_capacity = capacity;
-    a.result.vertex_faces = (sc_pair *)test_allocate((size_t)capacity * sizeof(sc_pair));
-    a.result.edge_edges = (sc_pair *)test_allocate((size_t)capacity * sizeof(sc_pair));
-    a.result.vertex_face_times = (double *)test_allocate((size_t)capacity * sizeof(double));
-    a.result.edge_edge_times = (double *)test_allocate((size_t)capacity * sizeof(double));
-    return a;
-}
-
-static void free_answer(answer *a)
-{
-    free(a->result.vertex_faces);
-    free(a->result.edge_edges);
-    free(a->result.vertex_face_times);
-    free(a->result.edge_edge_times);
-}
-
-static int same_list(const timed_list *wanted, uint64_t count, const sc_pair *pairs,
-                     const double *times)
-{
-    if (count != wanted->count) return 0;
-    return count == 0 || (memcmp(pairs, wanted->pairs, (size_t)count * sizeof(sc_pair)) == 0 &&
-                          memcmp(times, wanted->times, (size_t)count * sizeof(double)) == 0);
-}
-
-/* Whether every pair of a sorted list is in another. */
-static int holds_all(const timed_list *wanted, uint64_t count, const sc_pair *pairs)
-{
-    uint64_t j = 0;
-    for (uint64_t i = 0; i < wanted->count; ++i) {
-        while (j < count && (pairs[j].a != wanted->pairs[i].a || pairs[j].b != wanted->pairs[i].b))
-            ++j;
-        if (j == count) return 0;
-    }
-    return 1;
-}
-
-/* All methods on one step against the lists. */
-static int check_methods(const soup *mesh, step_subject *s, const double *start, const double *end,
-                         const sc_impact_limits *limits, const timed_list lists[KINDS],
-                         const char *what)
-{
-    sc_pose from = input_plain_pose(start, mesh->vertex_count),
-            to = input_plain_pose(end, mesh->vertex_count);
-    double earliest = 1;
-    int good = 1;
-    for (int kind = 0; kind < KINDS; ++kind)
-        for (uint64_t i = 0; i < lists[kind].count; ++i)
-            if (lists[kind].times[i] < earliest) earliest = lists[kind].times[i];
-    for (uint32_t i = 0; i < 3 * METHODS && good; ++i) {
-        sc_step_options o = plain_options();
-        answer a = make_answer(lists[0].count + lists[1].count + 5000);
-        sc_status status;
-        o.method = methods[i / 3];
-        o.simd = i % 3 + 1;
-        if (i / 3 == 1) o.contour = SC_CONTOUR_STAR;
-        o.times = SC_STEP_TIMES_EACH;
-        o.separation = limits->separation;
-        o.tolerance = limits->tolerance;
-        status = sc_query_step(s->model, s->workspace, &from, &to, &o, &a.result);
-        if (status != SC_ERROR_UNSUPPORTED) {
-            good =
-                CHECK_MSG(status == SC_OK, "%s: status %d", what, (int)status) &&
-                CHECK_MSG(same_list(&lists[0], a.result.vertex_face_count, a.result.vertex_faces,
-                                    a.result.vertex_face_times),
-                          "%s, method %u, contour %u: %" PRIu64 " vertex-face pairs of %" PRIu64,
-                          what, o.method, o.contour, a.result.vertex_face_count, lists[0].count) &&
-                CHECK_MSG(same_list(&lists[1], a.result.edge_edge_count, a.result.edge_edges,
-                                    a.result.edge_edge_times),
-                          "%s, method %u, contour %u: %" PRIu64 " edge-edge pairs of %" PRIu64,
-                          what, o.method, o.contour, a.result.edge_edge_count, lists[1].count) &&
-                CHECK_MSG(a.result.earliest == earliest, "%s: earliest %.17g, not %.17g", what,
-                          a.result.earliest, earliest);
-            o.pairs = SC_STEP_CANDIDATES;
-            status = sc_query_step(s->model, s->workspace, &from, &to, &o, &a.result);
-            if (status != SC_ERROR_SHORT_BUFFER)
-                good =
-                    good & CHECK(status == SC_OK) &
-                    CHECK_MSG(
-                        holds_all(&lists[0], a.result.vertex_face_count, a.result.vertex_faces) &&
-                            holds_all(&lists[1], a.result.edge_edge_count, a.result.edge_edges),
-                        "%s, method %u: candidates lack a collision", what, o.method);
-        }
-        free_answer(&a);
-    }
-    return good;
-}
+#include "step_check.h"
 
 /* One random step of a mesh: the poses of soups.h, a small or a large motion. */
 static void try_step(const soup *mesh, const char *name)
@@ -260,7 +26,7 @@ static void try_step(const soup *mesh, const char *name)
     size_t bytes = 3 * (size_t)mesh->vertex_count * sizeof(double);
     double *start = (double *)test_allocate(bytes), *end = (double *)test_allocate(bytes);
     sc_impact_limits limits;
-    timed_list lists[KINDS];
+    timed_list lists[STEP_KINDS];
     input_choices choices = input_choose(mesh, SC_WELD_REST, test_random_below(4));
     step_subject s;
     memcpy(start, mesh->positions, bytes);
@@ -287,33 +53,22 @@ static void try_step(const soup *mesh, const char *name)
     limits.separation = test_random_below(3) ? 0 : pow(10, test_random_range(-5, -1));
     limits.tolerance = pow(10, test_random_range(-5, -3));
     limits.latest = 1;
-    solve(mesh, start, end, &limits, lists);
-    if (open_step(&s, mesh, &choices.options))
-        check_methods(mesh, &s, start, end, &limits, lists, name);
-    close_step(&s);
-    free_lists(lists);
+    step_solve(mesh, start, end, &limits, lists);
+    if (step_open(&s, mesh, &choices.options))
+        step_check_methods(mesh, &s, start, end, &limits, lists, name);
+    step_close(&s);
+    step_free_lists(lists);
     input_free_choices(&choices);
     free(start);
     free(end);
 }
 
 /* All methods on a step that has pairs in most cases. */
-static void check_step(const soup *mesh, const double *start, const double *end, double separation,
-                       const char *what)
+static void check_near_step(const soup *mesh, const double *start, const double *end,
+                            double separation, const char *what)
 {
-    sc_impact_limits limits;
-    timed_list lists[KINDS];
-    input_choices choices = input_choose(mesh, SC_WELD_REST, test_random_below(4));
-    step_subject s;
-    limits.separation = separation;
-    limits.tolerance = 1e-4;
-    limits.latest = 1;
-    solve(mesh, start, end, &limits, lists);
-    if (open_step(&s, mesh, &choices.options))
-        check_methods(mesh, &s, start, end, &limits, lists, what);
-    close_step(&s);
-    free_lists(lists);
-    input_free_choices(&choices);
+    const sc_impact_limits limits = {separation, 1e-4, 1};
+    step_check(mesh, start, end, &limits, what);
 }
 
 /* The same with a tolerance of that size; few candidates are left. Returns how many vertex-face
@@ -323,16 +78,16 @@ static uint64_t check_tiny_step(const soup *mesh, const double *start, const dou
 {
     uint64_t count;
     sc_impact_limits limits = {0, tolerance, 1};
-    timed_list lists[KINDS];
+    timed_list lists[STEP_KINDS];
     input_choices choices = input_choose(mesh, SC_WELD_NONE, SC_PARTITION_FAST);
     step_subject s;
-    solve(mesh, start, end, &limits, lists);
-    if (open_step(&s, mesh, &choices.options)) {
+    step_solve(mesh, start, end, &limits, lists);
+    if (step_open(&s, mesh, &choices.options)) {
         sc_pose from = input_plain_pose(start, mesh->vertex_count);
         sc_pose to = input_plain_pose(end, mesh->vertex_count);
-        sc_step_options o = plain_options();
-        answer a = make_answer(0);
-        check_methods(mesh, &s, start, end, &limits, lists, "tiny");
+        sc_step_options o = step_plain_options();
+        step_answer a = step_make_answer(0);
+        step_check_methods(mesh, &s, start, end, &limits, lists, "tiny");
         o.output = SC_OUTPUT_COUNT;
         o.pairs = SC_STEP_CANDIDATES;
         o.tolerance = tolerance;
@@ -340,11 +95,11 @@ static uint64_t check_tiny_step(const soup *mesh, const double *start, const dou
         CHECK_MSG(a.result.vertex_face_count >= lists[0].count &&
                       5 * a.result.vertex_face_count < mesh->vertex_count * mesh->triangle_count,
                   "%" PRIu64 " candidates", a.result.vertex_face_count);
-        free_answer(&a);
+        step_free_answer(&a);
     }
     count = lists[0].count;
-    close_step(&s);
-    free_lists(lists);
+    step_close(&s);
+    step_free_lists(lists);
     input_free_choices(&choices);
     return count;
 }
@@ -417,23 +172,23 @@ static void rearranged_insides(void)
     double *start = (double *)test_allocate(bytes), *end = (double *)test_allocate(bytes);
     uint32_t hits = 0;
     step_subject s;
-    if (open_step(&s, &mesh, NULL))
+    if (step_open(&s, &mesh, NULL))
         for (uint32_t i = 0; i < test_iterations(150) && test_failures() == 0; ++i) {
             sc_impact_limits limits;
-            timed_list lists[KINDS];
+            timed_list lists[STEP_KINDS];
             rearrange(&mesh, start);
             rearrange(&mesh, end);
             if (i % 3 == 0) memcpy(end, start, bytes);
             limits.separation = i % 3 == 1 ? 0 : test_random_range(0.001, 0.05);
             limits.tolerance = 1e-4;
             limits.latest = 1;
-            solve(&mesh, start, end, &limits, lists);
+            step_solve(&mesh, start, end, &limits, lists);
             hits += lists[0].count + lists[1].count > 0;
-            check_methods(&mesh, &s, start, end, &limits, lists, "rearranged");
-            free_lists(lists);
+            step_check_methods(&mesh, &s, start, end, &limits, lists, "rearranged");
+            step_free_lists(lists);
         }
     test_note("%u steps with pairs", hits);
-    close_step(&s);
+    step_close(&s);
     soup_free(&mesh);
     free(start);
     free(end);
@@ -461,8 +216,8 @@ static void pieces_inside_one_another(void)
         end = (double *)test_allocate(3 * (size_t)both.vertex_count * sizeof(double));
         memcpy(end, both.positions, 3 * (size_t)both.vertex_count * sizeof(double));
         for (uint32_t v = first; v < both.vertex_count; ++v) end[3 * (size_t)v + 2] *= -1;
-        check_step(&both, both.positions, end, 0,
-                   corner ? "a corner in a corner" : "a piece in a piece");
+        check_near_step(&both, both.positions, end, 0,
+                        corner ? "a corner in a corner" : "a piece in a piece");
         free(end);
         soup_free(&large);
         soup_free(&small);
@@ -488,8 +243,8 @@ static void ends_that_nearly_meet(void)
                 q[2] = 0;
             }
         }
-        check_step(&mesh, to[0], to[i % 2], i % 4 == 1 ? 0 : test_random_range(0.02, 0.1),
-                   "a strip");
+        check_near_step(&mesh, to[0], to[i % 2], i % 4 == 1 ? 0 : test_random_range(0.02, 0.1),
+                        "a strip");
         free(to[0]);
         free(to[1]);
         soup_free(&mesh);
@@ -517,7 +272,7 @@ static void long_strips(void)
                 q[2] = 0;
             }
         }
-        check_step(&mesh, to[0], to[1], i % 3 == 0 ? 0.001 : 0, "a long strip");
+        check_near_step(&mesh, to[0], to[1], i % 3 == 0 ? 0.001 : 0, "a long strip");
         free(to[0]);
         free(to[1]);
         soup_free(&mesh);
@@ -563,7 +318,7 @@ static void narrow_notches(void)
             s.triangles[3 * t + 1] = t + 1;
             s.triangles[3 * t + 2] = t + 2;
         }
-        check_step(&s, s.positions, s.positions, notch + 0.02, "a notch");
+        check_near_step(&s, s.positions, s.positions, notch + 0.02, "a notch");
         soup_free(&s);
     }
 }
@@ -598,7 +353,7 @@ static void holes_of_three_corners(void)
         }
         memcpy(s.positions, to[0], sizeof(to[0]));
         dipped += depth > 0.01;
-        check_step(&s, to[0], to[1], i % 3 ? 0 : 0.01, "a hole");
+        check_near_step(&s, to[0], to[1], i % 3 ? 0 : 0.01, "a hole");
         soup_free(&s);
     }
     CHECK_MSG(dipped >= test_iterations(40), "%u holes", (unsigned)dipped);
@@ -643,9 +398,9 @@ static void arrays_and_counts(void)
     sc_pose from = input_plain_pose(start, mesh.vertex_count),
             to = input_plain_pose(end, mesh.vertex_count);
     step_subject s;
-    if (open_step(&s, &mesh, NULL)) {
-        answer all = make_answer(100000), a = make_answer(100000);
-        sc_step_options o = plain_options();
+    if (step_open(&s, &mesh, NULL)) {
+        step_answer all = step_make_answer(100000), a = step_make_answer(100000);
+        sc_step_options o = step_plain_options();
         uint64_t v, e;
         o.times = SC_STEP_TIMES_EACH;
         CHECK(sc_query_step(s.model, s.workspace, &from, &to, &o, &all.result) == SC_OK);
@@ -683,10 +438,10 @@ static void arrays_and_counts(void)
         CHECK(sc_query_step(s.model, s.workspace, &from, &from, &o, &a.result) == SC_OK);
         CHECK(a.result.collides == 0 && a.result.earliest == 1);
         CHECK(a.result.verdict == SC_VERDICT_CLEAN);
-        free_answer(&all);
-        free_answer(&a);
+        step_free_answer(&all);
+        step_free_answer(&a);
     }
-    close_step(&s);
+    step_close(&s);
     soup_free(&mesh);
     free(start);
     free(end);
@@ -699,9 +454,9 @@ static void ends_early(void)
     sc_pose from = input_plain_pose(start, mesh.vertex_count),
             to = input_plain_pose(end, mesh.vertex_count);
     step_subject s;
-    if (open_step(&s, &mesh, NULL)) {
-        answer all = make_answer(100000), a = make_answer(100000);
-        sc_step_options o = plain_options();
+    if (step_open(&s, &mesh, NULL)) {
+        step_answer all = step_make_answer(100000), a = step_make_answer(100000);
+        sc_step_options o = step_plain_options();
         volatile uint32_t flag = 1;
         uint64_t budget = 1, work = 0;
         sc_status status = SC_ERROR_INCOMPLETE;
@@ -722,10 +477,10 @@ static void ends_early(void)
             CHECK(a.result.edge_edge_count <= all.result.edge_edge_count);
         }
         CHECK(a.result.edge_edge_count == all.result.edge_edge_count);
-        free_answer(&all);
-        free_answer(&a);
+        step_free_answer(&all);
+        step_free_answer(&a);
     }
-    close_step(&s);
+    step_close(&s);
     soup_free(&mesh);
     free(start);
     free(end);
@@ -735,13 +490,13 @@ static void refuses_what_does_not_fit(void)
 {
     soup mesh = soup_cloth(3, 3), other = soup_cloth(4, 3);
     sc_pose pose = input_plain_pose(mesh.positions, mesh.vertex_count), bad = pose;
-    sc_step_options o = plain_options();
-    answer a = make_answer(16);
+    sc_step_options o = step_plain_options();
+    step_answer a = step_make_answer(16);
     step_subject s, t;
     sc_workspace *plain = NULL;
     double nan_at[3 * 16];
     sc_tasks tasks;
-    if (open_step(&s, &mesh, NULL) && open_step(&t, &other, NULL) &&
+    if (step_open(&s, &mesh, NULL) && step_open(&t, &other, NULL) &&
         CHECK(sc_workspace_create(s.model, NULL, &plain) == SC_OK)) {
 #define ASK(start, end) sc_query_step(s.model, s.workspace, start, end, &o, &a.result)
         CHECK(ASK(&pose, &pose) == SC_OK);
@@ -768,10 +523,10 @@ static void refuses_what_does_not_fit(void)
         CHECK(ASK(&bad, &pose) == SC_ERROR_NOT_FINITE);
 #define REFUSED(member, value, status)                                                             \
   do {                                                                                             \
-    o = plain_options();                                                                           \
+    o = step_plain_options();                                                                      \
     o.member = value;                                                                              \
     CHECK(ASK(&pose, &pose) == status);                                                            \
-    o = plain_options();                                                                           \
+    o = step_plain_options();                                                                      \
   } while (0)
         REFUSED(struct_size, 4, SC_ERROR_STRUCT_SIZE);
         REFUSED(output, 3, SC_ERROR_OPTION);
@@ -817,9 +572,9 @@ static void refuses_what_does_not_fit(void)
 #undef ASK
     }
     sc_workspace_free(plain);
-    close_step(&s);
-    close_step(&t);
-    free_answer(&a);
+    step_close(&s);
+    step_close(&t);
+    step_free_answer(&a);
     soup_free(&mesh);
     soup_free(&other);
 }

@@ -30,6 +30,14 @@ static uint32_t ready_kept(const sc_model *model)
     return kept;
 }
 
+/* The same for steps. */
+static uint32_t leaves_kept(const sc_model *model)
+{
+    uint32_t kept = 1;
+    while (kept < SC_LEAVES_KEPT && kept < model->leaf_count) kept *= 2;
+    return kept;
+}
+
 /* The arrays that each worker has for itself, see workspace.h. */
 static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *at, sc_workspace *w)
 {
@@ -72,8 +80,9 @@ static void lay_out_own(const sc_model *model, unsigned char *block, uint64_t *a
     w->found = (sc_pair *)place(block, at, SC_FOUND_MAX, sizeof(sc_pair));
     w->state = (unsigned char *)place(block, at, SC_STATE_ROOM, 1);
     if (!(w->flags & SC_WORKSPACE_STEP)) return;
-    w->motion.leaves =
-        (sc_leaf_motion *)place(block, at, (uint64_t)2 * SC_LEAVES_KEPT, sizeof(sc_leaf_motion));
+    w->motion.made = (uint8_t *)place(block, at, model->leaf_count + (uint64_t)SC_LEAVES_KEPT, 1);
+    w->motion.own_leaves =
+        (sc_leaf_motion *)place(block, at, 1 + leaves_kept(model), sizeof(sc_leaf_motion));
     for (k = 0; k < 2; k++) {
         w->motion.found[k] = (sc_pair *)place(block, at, SC_FOUND_MAX, sizeof(sc_pair));
         w->motion.found_time[k] = (double *)place(block, at, SC_FOUND_MAX, sizeof(double));
@@ -102,7 +111,7 @@ static void lay_out_motion(const sc_model *model, unsigned char *block, uint64_t
     for (s = 0; s < 2; s++)
         for (k = 0; k < 6; k++)
             m->boxes[s].side[k] = (float *)place(block, at, patches, sizeof(float));
-    m->own_points = (uint64_t *)place(block, at, model->leaf_count, sizeof(uint64_t));
+    m->own_points = (uint16_t *)place(block, at, model->leaf_count, sizeof(uint16_t));
 }
 
 /* A point belongs to the first leaf cluster that has it; seen is 0 for all points, before and
@@ -119,11 +128,12 @@ static void place_motion(const sc_model *model, sc_motion *m, uint16_t *seen)
                 m->boxes[s].side[k][i] = k < 3 ? HUGE_VALF : -HUGE_VALF; /* near nothing */
     memset(m->unit, 0, 8 * (size_t)model->vertex_count * sizeof *m->unit);
     for (leaf = 0; leaf < model->leaf_count; leaf++, point += SC_LEAF_POINTS) {
-        m->own_points[leaf] = 0;
+        uint32_t own = 0;
         for (i = 0; i < SC_LEAF_POINTS; i++) {
-            if (!seen[point[i]]) m->own_points[leaf] |= (uint64_t)1 << i;
+            if (!seen[point[i]]) own |= 1u << i;
             seen[point[i]] = 1;
         }
+        m->own_points[leaf] = (uint16_t)own;
     }
     memset(seen, 0, model->vertex_count * sizeof *seen);
 }
@@ -137,8 +147,6 @@ static void clear_own(const sc_model *model, sc_workspace *w)
     memset(w->some_known, 0, 2 * ready_kept(model) * sizeof *w->some_known);
     memset(w->slab, 0, model->leaf_count * sizeof *w->slab);
     memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
-    if (w->flags & SC_WORKSPACE_STEP) /* likewise */
-        memset(w->motion.leaves, 0, (size_t)2 * SC_LEAVES_KEPT * sizeof *w->motion.leaves);
 }
 
 /* How long the view of a further worker is, with its arrays. */
@@ -180,13 +188,13 @@ static uint64_t lay_out_arrays(const sc_model *model, unsigned char *block, sc_w
 {
     uint64_t at = align(sizeof *w), patches = (uint64_t)model->patch_end + SC_BOXES_PADDING;
     int k;
-    w->point_at =
-        (float *)place(block, &at, 4 * SC_LEAF_POINTS * (uint64_t)model->leaf_count, sizeof(float));
     for (k = 0; k < 6; k++)
         w->patch_boxes.side[k] = (float *)place(block, &at, patches, sizeof(float));
     w->mask = (uint16_t *)place(block, &at, model->patch_end, sizeof(uint16_t));
     w->prospect = (uint32_t *)place(block, &at, model->patch_end, sizeof(uint32_t));
-    lay_out_bounds(model, block, &at, w);
+    w->point_at =
+        (float *)place(block, &at, 4 * SC_LEAF_POINTS * (uint64_t)model->leaf_count, sizeof(float));
+    lay_out_bounds(model, block, &at, w); /* next to point_at, see sc_workspace_keep_motions */
     if (w->flags & SC_WORKSPACE_STEP) lay_out_motion(model, block, &at, &w->motion);
     lay_out_own(model, block, &at, w);
     if (w->workers == 1) return at;
@@ -247,6 +255,26 @@ static void keep_parts(const sc_model *model, sc_workspace *w, uint32_t workers)
         own->known = w->all_known + (uint64_t)worker * room;
         own->ready_mask = kept - 1;
         own->ready_upper = 0;
+    }
+}
+
+void sc_workspace_keep_motions(const sc_model *model, sc_workspace *w, uint32_t workers)
+{
+    unsigned char *room = (unsigned char *)(void *)w->point_at;
+    const unsigned char *end =
+        (const unsigned char *)(const void *)(w->all_ready + all_ready_count(model));
+    const uint64_t count = (uint64_t)(end - room) / sizeof(sc_leaf_motion) / workers;
+    uint32_t kept = 1, worker;
+    while (kept <= count / 2) kept *= 2;
+    for (worker = 0; worker < workers; worker++) {
+        sc_motion *m = &sc_workspace_of_worker(w, worker)->motion;
+        m->leaves = (sc_leaf_motion *)(void *)room + worker * count;
+        m->leaves_mask = count >= model->leaf_count ? SC_KEEPS_ALL : kept - 1;
+        if (count < model->leaf_count && kept <= leaves_kept(model)) {
+            m->leaves = m->own_leaves + 1;
+            m->leaves_mask = leaves_kept(model) - 1;
+        }
+        memset(m->made, 0, model->leaf_count + (size_t)SC_LEAVES_KEPT);
     }
 }
 

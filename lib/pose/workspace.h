@@ -3,18 +3,19 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | point_at | patch boxes | mask | prospect | bounds or all_ready |
+ *     | sc_workspace | patch boxes | mask | prospect | point_at | bounds or all_ready |
  *       bounds_tick | all_known | motion | own arrays | view | view | ... |
  *
  * Own arrays are those that only one thread may write to: contour, walk,
  * some_ready, some_known, slab, far_pairs, near_list, near_pairs, candidates, neighbors, ball,
- * ball_queue, found, state, motion's from leaves to state. For each worker but the first there is a
+ * ball_queue, found, state, motion's from made to state. For each worker but the first there is a
  * view: an sc_workspace with the pose of the first, and own arrays.
  *
  * The star test's bounds and leaf clusters made ready are never needed by one query, so they share
  * their memory; what tells whether they are of this query stands elsewhere. There is no room for
  * all leaf clusters in a query with the star test; several workers divide that room, where it is
- * more than they have by themselves.
+ * more than they have by themselves. A step needs neither of them, nor point_at, which stands next
+ * to them: together they have room for all leaf clusters made ready for a step.
  *
  * Arrays start at multiples of SC_ALIGNMENT. It keeps nothing from one query to the next but clock
  * ticks, by which what an earlier query left is known to be stale.
@@ -163,23 +164,30 @@ enum { SC_NEAR_DROPPED = 1 << 16 };
 /* Sides of boxes that move, three each: x, y, z. */
 enum { SC_START_LOW = 0, SC_START_HIGH = 3, SC_END_LOW = 6, SC_END_HIGH = 9, SC_MOTION_SIDES = 12 };
 
-/* Room for the edges of a leaf cluster. */
-enum { SC_LEAF_EDGES = (3 * SC_LEAF_MAX + 15) / 16 * 16 };
+/* A box that moves: its three lows at the start, from the fourth on at the end, and likewise its
+   highs. */
+typedef struct sc_moving_box {
+    float low[8], high[8];
+} sc_moving_box;
 
-/* The vertices, edges and triangles that a leaf cluster contributes to a step, with their boxes,
-   which bound what is in sc_motion.unit. See step/leaf_step.h. */
+/* A leaf cluster made ready for a step, in the unit box; see step/leaf_motion_kernel.h. Rows are
+   filled with the last point or triangle. */
 typedef struct sc_leaf_motion {
-    uint32_t leaf; /* or SC_NONE */
-    uint32_t first_place, triangles, points, edges;
-    uint32_t point[SC_LEAF_POINTS];
-    uint32_t edge_end[SC_LEAF_EDGES][2], edge_name[SC_LEAF_EDGES]; /* 3 place + k */
-    float triangle_side[SC_MOTION_SIDES][SC_LEAF_MAX];
-    float edge_side[SC_MOTION_SIDES][SC_LEAF_EDGES];
-    float point_side[SC_MOTION_SIDES][SC_LEAF_POINTS];
+    float at[2][3][SC_LEAF_POINTS]; /* points at the start and at the end */
+    float normal[3][SC_LEAF_MAX];
+    float slab[4][SC_LEAF_MAX]; /* of triangles along their normals: the lower and upper ends at the
+                                   start, then at the end */
+    sc_moving_box box;          /* of all points; it keeps the margin */
+    float direction[3], ends[4]; /* the slab of all points, likewise */
+    uint32_t leaf;
+    uint16_t owned[3];   /* bit i of k: triangle i names its side k */
+    uint16_t own;        /* bit i: the leaf cluster is the first to have point i */
+    uint16_t triangles;  /* bit i: there is a triangle i */
+    uint16_t unused[11]; /* so that rows begin where cache lines do */
 } sc_leaf_motion;
 
-/* So many leaf clusters are kept ready, twice. */
-enum { SC_LEAVES_KEPT = 32 };
+/* Where there is no room for all leaf clusters, so many are kept ready at least: a power of two. */
+enum { SC_LEAVES_KEPT = 64 };
 
 /* What an sc_contour_edges lacks for the end of a step. */
 typedef struct sc_moving_edges {
@@ -195,10 +203,13 @@ typedef struct sc_motion {
     uint32_t type[2];  /* SC_FLOAT or SC_DOUBLE */
     float *unit;       /* 8 * vertex_count: start, 0, end, 0 in the unit box of both */
     sc_boxes boxes[2]; /* patch_end: of patches at the start and at the end */
-    uint64_t
+    uint16_t
         *own_points;  /* leaf_count: bit i: the leaf cluster is the first to have leaf_point i */
     uint8_t *reached; /* node_count, for several workers: see step/step_parallel.c */
-    sc_leaf_motion *leaves; /* 2 * SC_LEAVES_KEPT */
+    sc_leaf_motion *leaves;     /* leaf cluster i made ready is at i & leaves_mask */
+    uint8_t *made;              /* leaf_count + SC_LEAVES_KEPT: 1 if there is one at that place */
+    sc_leaf_motion *own_leaves; /* 1 + SC_LEAVES_KEPT, or fewer in small models: the first is for
+                                   the second of two that have one place */
     sc_moving_edges contour;
     sc_pair *found[2];     /* SC_FOUND_MAX each: pairs that are not yet in the caller's lists */
     double *found_time[2]; /* theirs */
@@ -208,6 +219,7 @@ typedef struct sc_motion {
     float margin;   /* how far apart two sets of sc_motion.unit must be, so that the true ones are
                                more than that distance apart */
     uint32_t swept; /* boxes are those of the whole motion */
+    uint32_t leaves_mask; /* SC_KEEPS_ALL if all leaf clusters have a place of their own */
 } sc_motion;
 
 /* A part of a query for a worker to do by itself, see query/parallel.c. */
@@ -249,11 +261,10 @@ struct sc_workspace {
     float *point_at; /* 4 SC_LEAF_POINTS per leaf: x, y, z of its points in the unit box, that is
                           scale * (position - center), at most 1, and 0; in turned places, see
                           build/loops.h */
-    uint32_t leaves_ready;
+    uint32_t leaves_ready, boxes_ready;
     sc_boxes patch_boxes; /* patch_end */
-    uint32_t boxes_ready;
-    uint16_t *mask;     /* patch_end: discrete normal cones, see pose/dnc.h */
-    uint32_t *prospect; /* patch_end: where culling has prospects, see query/traversal.c */
+    uint16_t *mask;       /* patch_end: discrete normal cones, see pose/dnc.h */
+    uint32_t *prospect;   /* patch_end: where culling has prospects, see query/traversal.c */
     uint32_t pose_tick;
 
     /* contours under the projection at hand */
@@ -283,7 +294,7 @@ struct sc_workspace {
     uint32_t far_count, near_count;
     sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles whose boxes overlap */
     sc_pair *neighbors;  /* SC_CANDIDATES_MAX of such that share one point */
-    uint32_t candidate_count, neighbor_count;
+    uint32_t candidate_count, neighbor_count, found_count;
 
     /* points near a triangle in number of edges, see query/filter.c */
     uint16_t *ball;       /* vertex_count: ball_tick if in the ball */
@@ -293,8 +304,7 @@ struct sc_workspace {
 
     sc_motion motion;
 
-    sc_pair *found; /* SC_FOUND_MAX pairs that are not yet in the caller's array */
-    uint32_t found_count;
+    sc_pair *found; /* SC_FOUND_MAX pairs that are not yet in the caller's array: found_count */
     unsigned char *state; /* SC_STATE_ROOM: this worker's sc_query_state */
 
     /* for several workers */
@@ -304,6 +314,10 @@ struct sc_workspace {
     uint8_t *passed; /* SC_PARTS_MAX: whether they passed */
     uint8_t *culled; /* patch_end: what the workers' walk.marks say together */
 };
+
+/* Has each of so many workers keep leaf clusters ready for a step where there is room, and makes it
+   forget those of the last. */
+void sc_workspace_keep_motions(const sc_model *model, sc_workspace *workspace, uint32_t workers);
 
 /* Bytes for a workspace, which fit size_t if it is for one worker. options are complete and
    checked; NULL: for plain queries by one worker. */

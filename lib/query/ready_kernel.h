@@ -3,13 +3,6 @@
  * that it is in. See query_kernels.h and pose/workspace.h.
  *
  * SPDX-License-Identifier: MIT
- *
- * Slabs are found in single precision on the points in the unit box. Each coordinate is off by
- * POINT = 3e-8 at most; v = 2^-24.
- *
- * A place along a direction n of the points of a cluster, x in the unit box: off by POINT |n|1, and
- * by rounding 3.01 v |n|1, 2.1e-7 |n|1 in all, and a few FLT_MIN for products that underflow. Two
- * of them and the sum of one with the bound are below 5e-7 |n|1 + 16 FLT_MIN.
  */
 /* Bit k: box i of a overlaps box j + k of b, for k from 0 to 15. */
 static inline unsigned overlap(const sc_boxes *a, uint64_t i, const sc_boxes *b, uint64_t j)
@@ -28,12 +21,12 @@ static inline unsigned overlap(const sc_boxes *a, uint64_t i, const sc_boxes *b,
 static inline lanes points_along(const sc_query_state *state, uint32_t leaf,
                                  const float direction[3])
 {
-    lanes at[3];
+    lanes at[3], n[3];
     int k;
     lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
     SC_UNROLL
-    for (k = 0; k < 3; k++) at[k] = lanes_multiply(lanes_all(direction[k]), at[k]);
-    return lanes_add(lanes_add(at[0], at[1]), at[2]);
+    for (k = 0; k < 3; k++) n[k] = lanes_all(direction[k]);
+    return places_along((const lanes *)n, (const lanes *)at);
 }
 
 /* The corners of a leaf cluster's triangles. */
@@ -67,25 +60,15 @@ static inline void make_normals(lanes x[3][3], sc_leaf_ready *ready)
 {
     lanes e[3], f[3], n[3], size, offset;
     int c;
-    SC_UNROLL
-    for (c = 0; c < 3; c++) {
-        e[c] = lanes_subtract(x[1][c], x[0][c]);
-        f[c] = lanes_subtract(x[2][c], x[0][c]);
-    }
+    sides_and_normals(x, e, f, n);
     size = lanes_add(lanes_absolute(e[0]), lanes_absolute(f[0]));
     SC_UNROLL
     for (c = 1; c < 3; c++)
         size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
     lanes_store(ready->size, size);
     SC_UNROLL
-    for (c = 0; c < 3; c++) {
-        n[c] = lanes_subtract(lanes_multiply(e[(c + 1) % 3], f[(c + 2) % 3]),
-                              lanes_multiply(e[(c + 2) % 3], f[(c + 1) % 3]));
-        lanes_store(ready->normal[c], n[c]);
-    }
-    offset = lanes_multiply(n[0], x[0][0]);
-    SC_UNROLL
-    for (c = 1; c < 3; c++) offset = lanes_add(offset, lanes_multiply(n[c], x[0][c]));
+    for (c = 0; c < 3; c++) lanes_store(ready->normal[c], n[c]);
+    offset = places_along((const lanes *)n, (const lanes *)x[0]);
     lanes_store(ready->offset, offset);
 }
 
@@ -133,15 +116,6 @@ static inline const sc_leaf_ready *ready_leaf(const sc_query_state *state, uint3
     uint32_t at = ready_place(state, leaf, is_upper);
     if (!is_ready(state, leaf, is_upper)) make_ready(state, leaf, at);
     return state->workspace->ready + at;
-}
-
-/* How far the places of two points along a direction, and an end of a slab, may be off. */
-static inline float slab_reach(const float direction[3])
-{
-    float reach = 16 * FLT_MIN;
-    int c;
-    for (c = 0; c < 3; c++) reach += 5e-7f * fabsf(direction[c]);
-    return reach;
 }
 
 /* Makes the slab of a leaf cluster that is ready. */

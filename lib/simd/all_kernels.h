@@ -17,7 +17,6 @@
 #include "pose/positions.h"
 #include "query/query_kernels.h"
 #include "query/simple.h"
-#include "step/leaf_step.h"
 #include "step/step_candidates.h"
 #include "step/step_kernels.h"
 #include "step/step_motion.h"
@@ -31,6 +30,7 @@
 #include "pose/cones_kernel.h"
 #include "pose/refit_kernel.h"
 
+#include "query/slab_kernel.h"
 #include "query/ready_kernel.h"
 #include "query/neighbor_kernel.h"
 #include "query/fan_kernel.h"
@@ -48,6 +48,8 @@
 #include "step/apart_kernel.h"
 #include "step/moving_cones_kernel.h"
 #include "step/moving_contour_kernel.h"
+#include "step/leaf_motion_kernel.h"
+#include "step/step_rows_kernel.h"
 #include "step/step_walk_kernel.h"
 
 #include "simd/target_end.h"

@@ -748,3 +748,4 @@ static inline float lanes_most(lanes a)
 #include "simd/lanes_bytes.h"
 #include "simd/lanes_cells.h"
 #include "simd/lanes_rows.h"
+#include "simd/lanes_sets.h"

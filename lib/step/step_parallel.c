@@ -20,7 +20,6 @@
 #include "base/atomic.h"
 #include "base/bits.h"
 #include "base/jobs.h"
-#include "step/leaf_step.h"
 #include "step/step_candidates.h"
 #include "step/step_kernels.h"
 #include "step/step_motion.h"
@@ -94,6 +93,7 @@ static void start_step_workers(step_plan *p)
     const sc_model *model = p->state->query.model;
     uint32_t worker;
     sc_workspace_share(model, p->w, p->tasks->workers);
+    sc_workspace_keep_motions(model, p->w, p->tasks->workers);
     for (worker = 0; worker < p->tasks->workers; worker++) {
         sc_step_state *s = step_state_of(p, worker);
         *s = *p->state;
@@ -101,7 +101,6 @@ static void start_step_workers(step_plan *p)
         memset(&s->query.stats, 0, sizeof s->query.stats);
         memset(s->query.workspace->walk.marks, 0, model->patch_end);
         s->query.workspace->motion.found_count[0] = s->query.workspace->motion.found_count[1] = 0;
-        sc_leaf_step_reset(&s->query.workspace->motion);
     }
     memset(p->w->culled, 0, model->patch_end);
     memset(p->w->motion.reached, 0, model->node_count);

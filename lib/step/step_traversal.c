@@ -9,7 +9,6 @@
 
 #include "base/bits.h"
 #include "pose/dnc.h"
-#include "step/leaf_step.h"
 #include "step/step_motion.h"
 #include "step/step_candidates.h"
 #include "step/step_kernels.h"
@@ -124,7 +123,7 @@ static void query_step_node(sc_step_state *state, uint32_t node, int failed)
 void sc_step_traversal_run(sc_step_state *state)
 {
     sc_workspace *w = state->query.workspace;
-    sc_leaf_step_reset(&w->motion);
+    sc_workspace_keep_motions(state->query.model, w, 1);
     w->motion.swept = state->options.method == SC_STEP_METHOD_SWEPT;
     if (state->options.method == SC_STEP_METHOD_SCTT) {
         sc_step_traversal_update_cones(state);
