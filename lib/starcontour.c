@@ -22,15 +22,14 @@
 #include "query/contacts.h"
 #include "query/filter.h"
 #include "query/pairs.h"
-#include "query/parallel.h"
-#include "query/question.h"
 #include "query/recording.h"
-#include "query/rest.h"
-#include "query/traversal.h"
+#include "run/plan.h"
+#include "run/question.h"
+#include "run/rest.h"
+#include "run/step_parallel.h"
+#include "run/step_question.h"
 #include "step/step_motion.h"
 #include "step/step_pairs.h"
-#include "step/step_parallel.h"
-#include "step/step_question.h"
 #include "step/step_traversal.h"
 
 /* ---- building ---- */
@@ -369,47 +368,58 @@ static int uses_star(const sc_query_options *o)
     return o->method == SC_METHOD_SCTT && o->contour == SC_CONTOUR_STAR;
 }
 
-static sc_status run_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
-                           uint64_t stride, sc_query_state *state)
+/* The clock of a query that began then stands still. */
+static void stop_clock_of(sc_worker *w, uint64_t start)
 {
+    uint64_t now;
+    if (!w->question->timed) return;
+    now = sc_clock_nanoseconds();
+    w->stats.nanoseconds[w->task] += now - w->last_time;
+    w->stats.total_nanoseconds = now - start;
+}
+
+/* What was found and counted is in the first worker. */
+static sc_status run_query(const sc_model *model, sc_workspace *workspace, const sc_asked *asked,
+                           const sc_question *question)
+{
+    sc_worker *w = sc_workspace_begin(model, workspace, question);
+    sc_frame *frame = &workspace->frame;
     uint64_t start = 0;
     sc_status status;
-    state->model = model;
-    state->workspace = workspace;
-    state->task = SC_TASK_UPDATE_BOXES;
-    workspace->kernels = sc_kernels_for(state->options.simd);
-    if (state->timed) start = state->last_time = sc_clock_nanoseconds();
-    if (sc_state_stops(state)) return SC_ERROR_INCOMPLETE;
-    sc_workspace_new_pose(model, workspace);
-    if (!uses_star(&state->options)) sc_workspace_keep_all(model, workspace);
-    status = sc_positions_read(model, pose, stride, workspace);
+    frame->kernels = sc_kernels_for(question->options.simd);
+    if (question->timed) start = w->last_time = sc_clock_nanoseconds();
+    if (sc_worker_stops(w)) return SC_ERROR_INCOMPLETE;
+    if (!uses_star(&question->options)) sc_workspace_keep_all(workspace);
+    status = sc_positions_read(model, &asked->pose, asked->stride, frame);
     if (status) {
-        log_not_finite(&workspace->hooks, model, pose, stride, "");
+        log_not_finite(&workspace->hooks, model, &asked->pose, asked->stride, "");
         return status;
     }
-    if (sc_parallel_pays(state)) {
-        sc_parallel_run(state);
-    } else {
-        sc_traversal_run(state);
-        sc_pairs_finish(state, NULL);
-    }
-    if (state->timed) {
-        uint64_t now = sc_clock_nanoseconds();
-        state->stats.nanoseconds[state->task] += now - state->last_time;
-        state->stats.total_nanoseconds = now - start;
-    }
-    if (state->incomplete) return SC_ERROR_INCOMPLETE;
-    if (state->options.output == SC_OUTPUT_PAIRS && state->count > state->capacity)
+    sc_plan_run(workspace);
+    stop_clock_of(w, start);
+    if (w->incomplete) return SC_ERROR_INCOMPLETE;
+    if (question->options.output == SC_OUTPUT_PAIRS && w->count > question->capacity)
         return SC_ERROR_SHORT_BUFFER;
     return SC_OK;
+}
+
+/* What is known after a query that did not fail. */
+static void fill_result(const sc_worker *w, sc_status status, sc_result *r)
+{
+    r->count = w->question->options.output == SC_OUTPUT_ANY ? w->count > 0 : w->count;
+    r->collides = w->count > 0;
+    r->verdict = status == SC_ERROR_INCOMPLETE ? SC_VERDICT_INCOMPLETE
+                 : w->count > 0                ? SC_VERDICT_FOUND
+                                               : SC_VERDICT_CLEAN;
+    if (r->stats) sc_structs_write(r->stats, &w->stats, sizeof w->stats);
 }
 
 sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
                    const sc_query_options *options, sc_result *result)
 {
     const sc_hooks *hooks = workspace ? &workspace->hooks : NULL;
-    sc_query_state state;
     sc_question question;
+    sc_asked asked;
     sc_result r;
     sc_status status = sc_arguments_need(hooks, "result", NULL, result);
     if (!status)
@@ -420,24 +430,13 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     r.count = 0;
     r.verdict = SC_VERDICT_NONE;
     r.reserved = 0;
-    memset(&state, 0, sizeof state);
-    state.pairs = r.pairs;
-    state.capacity = r.capacity;
-    state.timed = r.stats != NULL;
-    status = sc_question_read(model, workspace, pose, options, &r, &state, &question);
+    memset(&question, 0, sizeof question);
+    status = sc_question_read(model, workspace, pose, options, &r, &asked, &question);
     if (!status && SC_ALWAYS(workspace)) { /* it is refused if it is NULL */
-        state.model = model;
-        workspace->tasks = sc_parallel_tasks(&state);
-        status = run_query(model, workspace, &question.pose, question.stride, &state);
-        workspace->tasks = NULL;
-    }
-    if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE) {
-        r.count = state.options.output == SC_OUTPUT_ANY ? state.count > 0 : state.count;
-        r.collides = state.count > 0;
-        r.verdict = status == SC_ERROR_INCOMPLETE ? SC_VERDICT_INCOMPLETE
-                    : state.count > 0             ? SC_VERDICT_FOUND
-                                                  : SC_VERDICT_CLEAN;
-        if (r.stats) sc_structs_write(r.stats, &state.stats, sizeof state.stats);
+        workspace->frame.tasks = sc_plan_tasks(model, &question);
+        status = run_query(model, workspace, &asked, &question);
+        if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE)
+            fill_result(&workspace->worker[0], status, &r);
     }
     sc_structs_write(result, &r, sizeof r);
     return status;
@@ -445,91 +444,64 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
 
 /* ---- steps ---- */
 
-static void begin_step(sc_step_state *state, const sc_model *model, sc_workspace *workspace,
-                       const sc_step_result *r)
+/* What was found and counted is in the first worker. */
+static sc_status run_step(const sc_model *model, sc_workspace *workspace,
+                          const sc_step_asked *asked, sc_step_question *question)
 {
-    int times = state->options.times == SC_STEP_TIMES_EACH;
-    sc_query_state *query = &state->query;
-    query->model = model;
-    query->workspace = workspace;
-    query->options.output = state->options.output;
-    query->options.simd = state->options.simd;
-    query->options.cancel = state->options.cancel;
-    query->options.budget = state->options.budget;
-    query->task = SC_TASK_UPDATE_BOXES;
-    query->timed = r->stats != NULL;
-    state->list[SC_STEP_VERTEX_FACE].pairs = r->vertex_faces;
-    state->list[SC_STEP_VERTEX_FACE].times = times ? r->vertex_face_times : NULL;
-    state->list[SC_STEP_VERTEX_FACE].capacity = r->vertex_face_capacity;
-    state->list[SC_STEP_EDGE_EDGE].pairs = r->edge_edges;
-    state->list[SC_STEP_EDGE_EDGE].times = times ? r->edge_edge_times : NULL;
-    state->list[SC_STEP_EDGE_EDGE].capacity = r->edge_edge_capacity;
-    state->earliest = 1;
-    workspace->kernels = sc_kernels_for(state->options.simd);
-}
-
-static sc_status run_step(sc_step_state *state, const sc_pose pose[2], const uint64_t stride[2])
-{
-    sc_query_state *query = &state->query;
+    sc_worker *w = sc_workspace_begin_step(model, workspace, question);
+    sc_frame *frame = &workspace->frame;
     uint64_t start = 0;
     sc_status status;
     int kind;
-    if (query->timed) start = query->last_time = sc_clock_nanoseconds();
-    if (sc_state_stops(query)) return SC_ERROR_INCOMPLETE;
-    sc_workspace_new_pose(query->model, query->workspace);
-    state->limits.separation = state->options.separation;
-    state->limits.tolerance = state->options.tolerance;
-    state->limits.latest = 1;
-    status = sc_motion_read(query->model, pose, stride, &state->limits, query->workspace);
+    frame->kernels = sc_kernels_for(question->options.simd);
+    if (question->query.timed) start = w->last_time = sc_clock_nanoseconds();
+    if (sc_worker_stops(w)) return SC_ERROR_INCOMPLETE;
+    status = sc_motion_read(model, asked->pose, asked->stride, &question->limits, frame);
     if (status) {
-        const sc_hooks *hooks = &query->workspace->hooks;
-        log_not_finite(hooks, query->model, &pose[0], stride[0], " at the start");
-        log_not_finite(hooks, query->model, &pose[1], stride[1], " at the end");
+        const sc_hooks *hooks = &workspace->hooks;
+        log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], " at the start");
+        log_not_finite(hooks, model, &asked->pose[1], asked->stride[1], " at the end");
         return status;
     }
-    if (sc_step_parallel_pays(state)) {
-        sc_step_parallel_run(state);
+    if (sc_step_parallel_pays(model, question)) {
+        sc_step_parallel_run(workspace);
     } else {
-        sc_step_traversal_run(state);
-        sc_step_pairs_finish(state, NULL);
+        sc_step_traversal_run(w);
+        sc_step_pairs_finish(question, w->step->count, NULL);
     }
-    if (query->timed) {
-        uint64_t now = sc_clock_nanoseconds();
-        query->stats.nanoseconds[query->task] += now - query->last_time;
-        query->stats.total_nanoseconds = now - start;
-    }
-    if (query->incomplete) return SC_ERROR_INCOMPLETE;
+    stop_clock_of(w, start);
+    if (w->incomplete) return SC_ERROR_INCOMPLETE;
     for (kind = 0; kind < 2; kind++)
-        if (state->options.output == SC_OUTPUT_PAIRS &&
-            state->list[kind].count > state->list[kind].capacity)
+        if (question->options.output == SC_OUTPUT_PAIRS &&
+            w->step->count[kind] > question->list[kind].capacity)
             return SC_ERROR_SHORT_BUFFER;
     return SC_OK;
 }
 
 /* What is known after a step that did not fail. */
-static void fill_step_result(const sc_step_state *state, sc_status status, sc_step_result *r)
+static void fill_step_result(const sc_worker *w, sc_status status, sc_step_result *r)
 {
-    uint64_t v = state->list[SC_STEP_VERTEX_FACE].count, e = state->list[SC_STEP_EDGE_EDGE].count;
-    int any = state->options.output == SC_OUTPUT_ANY;
+    const sc_step_options *o = &w->step->question->options;
+    uint64_t v = w->step->count[SC_STEP_VERTEX_FACE], e = w->step->count[SC_STEP_EDGE_EDGE];
+    int any = o->output == SC_OUTPUT_ANY;
     r->vertex_face_count = any ? v > 0 : v;
     r->edge_edge_count = any ? e > 0 && v == 0 : e;
     r->collides = v + e > 0;
     r->verdict = status == SC_ERROR_INCOMPLETE ? SC_VERDICT_INCOMPLETE
                  : r->collides                 ? SC_VERDICT_FOUND
                                                : SC_VERDICT_CLEAN;
-    r->earliest = state->earliest;
-    if (status == SC_ERROR_INCOMPLETE ||
-        (r->collides && state->options.times == SC_STEP_TIMES_NONE))
+    r->earliest = w->step->earliest;
+    if (status == SC_ERROR_INCOMPLETE || (r->collides && o->times == SC_STEP_TIMES_NONE))
         r->earliest = 0;
-    if (r->stats) sc_structs_write(r->stats, &state->query.stats, sizeof state->query.stats);
+    if (r->stats) sc_structs_write(r->stats, &w->stats, sizeof w->stats);
 }
 
 sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc_pose *start,
                         const sc_pose *end, const sc_step_options *options, sc_step_result *result)
 {
     const sc_hooks *hooks = workspace ? &workspace->hooks : NULL;
-    sc_step_state state;
     sc_step_question question;
+    sc_step_asked asked;
     sc_step_result r;
     sc_status status = sc_arguments_need(hooks, "result", NULL, result);
     if (!status)
@@ -542,17 +514,14 @@ sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc
     r.vertex_face_count = 0;
     r.edge_edge_count = 0;
     r.earliest = 0;
-    memset(&state, 0, sizeof state);
-    status =
-        sc_step_question_read(model, workspace, start, end, options, &r, &state.options, &question);
+    memset(&question, 0, sizeof question);
+    status = sc_step_question_read(model, workspace, start, end, options, &r, &asked, &question);
     if (!status && SC_ALWAYS(workspace)) { /* likewise */
-        begin_step(&state, model, workspace, &r);
-        workspace->tasks = sc_step_parallel_tasks(&state);
-        status = run_step(&state, question.pose, question.stride);
-        workspace->tasks = NULL;
+        workspace->frame.tasks = sc_step_parallel_tasks(model, &question);
+        status = run_step(model, workspace, &asked, &question);
+        if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE)
+            fill_step_result(&workspace->worker[0], status, &r);
     }
-    if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE)
-        fill_step_result(&state, status, &r);
     sc_structs_write(result, &r, sizeof r);
     return status;
 }

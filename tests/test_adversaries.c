@@ -33,7 +33,22 @@
 #include "simd/isa.h"
 #include "query/simple.h"
 #include "query/star.h"
+#include "run/workspace.h"
 #include "starcontour.h"
+
+/* What is asked where nothing is. */
+static sc_question nothing_asked;
+
+/* A point under a projection. */
+static void project_point(const sc_workspace *w, const sc_projection *projection, int line,
+                          uint32_t point, double *x, double *y)
+{
+    sc_contour_bounds bounds;
+    memset(&bounds, 0, sizeof(bounds));
+    bounds.positions = &w->frame.positions[0];
+    bounds.projection = *projection;
+    sc_contour_bounds_project(&bounds, line, point, x, y);
+}
 
 /* What came of the cases of a test. */
 typedef struct tally {
@@ -164,25 +179,23 @@ static uint32_t random_part(uint32_t mask)
 static void check_nodes(const scene *s, sc_pair *pairs, uint64_t count, tally *t)
 {
     const sc_model *m = s->model;
-    sc_query_state state;
+    sc_worker *w = s->workspace->worker;
     uint32_t wrong = 0;
-    memset(&state, 0, sizeof(state));
-    state.model = m;
-    state.workspace = s->workspace;
     for (uint32_t node = 0; node < m->node_count; ++node) {
         const sc_pair *patches = &sc_model_node(m)[node].patches;
-        uint32_t mask = (uint32_t)s->workspace->mask[patches->a] & s->workspace->mask[patches->b];
+        uint32_t mask =
+            (uint32_t)s->workspace->frame.mask[patches->a] & s->workspace->frame.mask[patches->b];
         int bad = has_pair(m, node, 0, pairs, count), worse = has_pair(m, node, 1, pairs, count);
         t->turned += mask == 0;
         for (int tries = 0; tries < 2 && mask != 0; ++tries) {
             sc_projection projection;
             int passed;
-            sc_dnc_projection(s->workspace, tries ? random_part(mask) : mask, &projection);
-            sc_workspace_new_projection(m, s->workspace);
-            passed = sc_star_test(&state, &projection, node);
+            sc_dnc_projection(&s->workspace->frame, tries ? random_part(mask) : mask, &projection);
+            sc_contour_bounds_begin(m, &w->frame->positions[0], &projection, w->bounds);
+            passed = sc_star_test(w, node);
             wrong += (uint32_t)(passed && bad);
-            t->simple += (uint64_t)sc_simple_test(&state, &projection, node);
-            wrong += (uint32_t)(worse && sc_simple_test(&state, &projection, node));
+            t->simple += (uint64_t)sc_simple_test(w, &projection, node);
+            wrong += (uint32_t)(worse && sc_simple_test(w, &projection, node));
             *(passed ? &t->passed : &t->failed) += 1;
             if (node == 0) *(passed ? &t->roots_passed : &t->roots_failed) += 1;
             t->touching_passed +=
@@ -203,12 +216,12 @@ static int is_between(const sc_workspace *w, uint32_t point, uint32_t k, float l
     mpq_t x, y;
     int within;
     double at[3];
-    sc_positions_get(w, point, at);
+    sc_positions_get(&w->frame.positions[0], point, at);
     mpq_inits(x, y, NULL);
     mpq_set_d(x, at[k]);
-    mpq_set_d(y, w->center[k]);
+    mpq_set_d(y, w->frame.center[k]);
     mpq_sub(x, x, y);
-    mpq_set_d(y, w->scale);
+    mpq_set_d(y, w->frame.scale);
     mpq_mul(x, x, y);
     mpq_set_d(y, (double)low);
     within = mpq_cmp(y, x) <= 0;
@@ -224,15 +237,15 @@ static void check_boxes(const scene *s)
     const sc_model *m = s->model;
     sc_workspace *w = s->workspace;
     uint32_t wrong = 0;
-    sc_refit_boxes(m, w);
+    sc_refit_boxes(m, &w->frame);
     for (uint32_t leaf = 0; leaf < m->leaf_count; ++leaf)
         for (uint32_t i = sc_model_leaf_first(m)[leaf]; i < sc_model_leaf_first(m)[leaf + 1]; ++i)
             for (uint32_t c = 0; c < 9; ++c) {
                 uint32_t k = c % 3;
                 uint32_t patch = sc_model_first_leaf_patch(m) + leaf;
                 uint32_t p = sc_model_triangle(m)[3 * i + c / 3];
-                wrong += !is_between(w, p, k, w->patch_boxes.side[k][patch],
-                                     w->patch_boxes.side[k + 3][patch]);
+                wrong += !is_between(w, p, k, w->frame.patch_boxes.side[k][patch],
+                                     w->frame.patch_boxes.side[k + 3][patch]);
             }
     if (!CHECK_MSG(wrong == 0,
                    "%s: %" PRIu32 " bounds of boxes; the adversary's random state "
@@ -247,10 +260,12 @@ static void check_rows(const scene *s, tally *t)
     const sc_model *m = s->model;
     const sc_workspace *w = s->workspace;
     uint32_t wrong = 0;
-    for (uint32_t kept = 0; kept < (w->ready_upper ? 2 * SC_READY_KEPT : m->leaf_count); ++kept) {
-        const sc_leaf_ready *ready = &w->ready[kept];
-        const uint32_t *first = sc_model_leaf_first(m) + w->known[kept].leaf;
-        if (w->known[kept].tick != w->pose_tick) continue;
+    for (uint32_t kept = 0;
+         kept < (w->worker->kept.mask == SC_KEEPS_ALL ? m->leaf_count : w->worker->kept.spare + 1);
+         ++kept) {
+        const sc_leaf_ready *ready = &w->worker->kept.ready[kept];
+        const uint32_t *first = sc_model_leaf_first(m) + w->worker->kept.known[kept].leaf;
+        if (w->worker->kept.known[kept].epoch != w->frame.epoch) continue;
         for (uint32_t c = 0; c < 9 * (first[1] - first[0]); ++c, ++t->rows) {
             uint32_t i = c / 9, k = c % 3, p = sc_model_triangle(m)[3 * first[0] + c / 3];
             wrong += !is_between(w, p, k, ready->side[k][i], ready->side[k + 3][i]);
@@ -274,20 +289,21 @@ static void check_instructions(const scene *s)
     uint16_t *mask = (uint16_t *)test_allocate(m->patch_end * sizeof(uint16_t));
     float *box[6];
     for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
-        w->kernels = sc_kernels_for(isa);
-        sc_workspace_new_pose(m, w);
-        sc_dnc_update(m, w);
-        sc_refit_boxes(m, w);
-        if (isa == SC_ISA_BASE) memcpy(mask, w->mask, m->patch_end * sizeof(uint16_t));
-        wrong += memcmp(mask, w->mask, m->patch_end * sizeof(uint16_t)) != 0;
-        if (isa == SC_ISA_BASE) memcpy(point_at, w->point_at, points * sizeof(float));
-        wrong += memcmp(point_at, w->point_at, points * sizeof(float)) != 0;
+        w->frame.kernels = sc_kernels_for(isa);
+        sc_workspace_begin(m, w, &nothing_asked);
+        sc_dnc_update(m, &w->frame);
+        sc_refit_boxes(m, &w->frame);
+        if (isa == SC_ISA_BASE) memcpy(mask, w->frame.mask, m->patch_end * sizeof(uint16_t));
+        wrong += memcmp(mask, w->frame.mask, m->patch_end * sizeof(uint16_t)) != 0;
+        if (isa == SC_ISA_BASE) memcpy(point_at, w->frame.point_at, points * sizeof(float));
+        wrong += memcmp(point_at, w->frame.point_at, points * sizeof(float)) != 0;
         for (int k = 0; k < 6; ++k) {
             if (isa == SC_ISA_BASE) {
                 box[k] = (float *)test_allocate(m->patch_end * sizeof(float));
-                memcpy(box[k], w->patch_boxes.side[k], m->patch_end * sizeof(float));
+                memcpy(box[k], w->frame.patch_boxes.side[k], m->patch_end * sizeof(float));
             }
-            wrong += memcmp(box[k], w->patch_boxes.side[k], m->patch_end * sizeof(float)) != 0;
+            wrong +=
+                memcmp(box[k], w->frame.patch_boxes.side[k], m->patch_end * sizeof(float)) != 0;
         }
     }
     if (!CHECK_MSG(wrong == 0, "%s: %zu arrays differ; the adversary's random state %" PRIu64,
@@ -304,15 +320,15 @@ static void check_parts(const scene *s, tally *t)
     uint32_t count = s->model->triangle_count;
     uint32_t *place = (uint32_t *)test_allocate(count * sizeof(uint32_t));
     sc_pair *pairs = (sc_pair *)test_allocate((list->count + 1) * sizeof(sc_pair));
-    sc_workspace_new_pose(s->model, s->workspace);
-    if (CHECK(sc_positions_read(s->model, &s->pose, 24, s->workspace) == SC_OK)) {
+    sc_workspace_begin(s->model, s->workspace, &nothing_asked);
+    if (CHECK(sc_positions_read(s->model, &s->pose, 24, &s->workspace->frame) == SC_OK)) {
         for (uint32_t i = 0; i < count; ++i) place[sc_model_triangle_id(s->model)[i]] = i;
         for (uint64_t i = 0; i < list->count; ++i) {
             pairs[i].a = place[list->pairs[i].a];
             pairs[i].b = place[list->pairs[i].b];
         }
         check_instructions(s);
-        sc_dnc_update(s->model, s->workspace);
+        sc_dnc_update(s->model, &s->workspace->frame);
         check_boxes(s);
         check_nodes(s, pairs, list->count, t);
     }
@@ -621,12 +637,12 @@ static int open_bench(bench *b)
     node[0].contour = 0;
     node[0].kind = SC_NODE_TOUCHES;
     node[1].contour = 4;
-    sc_workspace_new_pose(b->real, b->workspace);
+    sc_workspace_begin(b->real, b->workspace, &nothing_asked);
     b->pose = (double *)test_allocate(3 * b->mesh.vertex_count * sizeof(double));
     memcpy(b->pose, b->mesh.positions, 3 * b->mesh.vertex_count * sizeof(double));
-    b->workspace->positions = (const unsigned char *)b->pose;
-    b->workspace->stride = 3 * sizeof(double);
-    b->workspace->position_type = SC_DOUBLE;
+    b->workspace->frame.positions[0].at = (const unsigned char *)b->pose;
+    b->workspace->frame.positions[0].stride = 3 * sizeof(double);
+    b->workspace->frame.positions[0].type = SC_DOUBLE;
     return 1;
 }
 
@@ -681,7 +697,7 @@ static void set_errors(bench *b, uint32_t count)
     p->x_error = p->y_error = 0;
     for (uint32_t i = 0; i < count; ++i) {
         double x, y;
-        sc_contour_bounds_project(b->workspace, p, SC_LINE_VERTICAL, i, &x, &y);
+        project_point(b->workspace, p, SC_LINE_VERTICAL, i, &x, &y);
         p->x_error = fmax(p->x_error, exact_error(p->u, bench_point(b, i), p->origin, x));
         p->y_error = fmax(p->y_error, exact_error(p->w, bench_point(b, i), p->origin, y));
     }
@@ -765,7 +781,7 @@ static void bounds_of_edges(void)
     if (!open_bench(&b)) return;
     for (uint32_t i = 0; i < rounds; ++i) {
         uint32_t family = i % 3, kind = test_random_below(5);
-        const sc_segment_bounds *bounds = &b.workspace->bounds[SC_LINE_VERTICAL][0];
+        const sc_segment_bounds *bounds = &b.workspace->bounds.of[SC_LINE_VERTICAL][0];
         double x = test_random_range(0.01, 0.4), slope = test_random_range(-2, 2), run, to;
         double ax;
         if (family == 0 && test_random_below(2)) slope *= pow(2, test_random_range(-10, 10));
@@ -789,9 +805,9 @@ static void bounds_of_edges(void)
             uint32_t last = test_random_below(2) ? 0 : 2;
             double *p = bench_point(&b, 0), *q = bench_point(&b, 1), *r = bench_point(&b, 2);
             if (last == 0) r[0] = q[0] + 0.1 * run;
-            sc_contour_bounds_project(b.workspace, &b.projection, SC_LINE_VERTICAL, 0, &x0, &y);
-            sc_contour_bounds_project(b.workspace, &b.projection, SC_LINE_VERTICAL, 1, &x1, &y);
-            sc_contour_bounds_project(b.workspace, &b.projection, SC_LINE_VERTICAL, 2, &x2, &y);
+            project_point(b.workspace, &b.projection, SC_LINE_VERTICAL, 0, &x0, &y);
+            project_point(b.workspace, &b.projection, SC_LINE_VERTICAL, 1, &x1, &y);
+            project_point(b.workspace, &b.projection, SC_LINE_VERTICAL, 2, &x2, &y);
             x2 = last == 0 ? x0 : x2;
             ax = x2 < x1 ? (double)sc_boxes_below(x2) : (double)sc_boxes_above(x2);
             p[1] = slope * (x0 - ax) + b.projection.origin[1];
@@ -802,8 +818,9 @@ static void bounds_of_edges(void)
             q[1] += test_random_below(4) * tiny_part();
         }
         set_errors(&b, LEFT_POINTS);
-        sc_workspace_new_projection(b.real, b.workspace);
-        sc_contour_bounds_update(b.fake, b.workspace, &b.projection, SC_LINE_VERTICAL, 0);
+        sc_contour_bounds_begin(b.real, &b.workspace->frame.positions[0], &b.projection,
+                                &b.workspace->bounds);
+        sc_contour_bounds_update(b.fake, &b.workspace->bounds, SC_LINE_VERTICAL, 0);
         ++tried;
         bounded += bounds->side[0].ay != -INFINITY;
         for (uint32_t k = 0; k + 1 < LEFT_POINTS; ++k) {
@@ -827,7 +844,7 @@ static void edges_without_a_slope(void)
     uint32_t sides = 0, wrong = 0;
     if (!open_bench(&b)) return;
     for (uint32_t i = 0; i < test_iterations(4000); ++i) {
-        const sc_segment_bounds *bounds = &b.workspace->bounds[SC_LINE_VERTICAL][0];
+        const sc_segment_bounds *bounds = &b.workspace->bounds.of[SC_LINE_VERTICAL][0];
         double x = test_random_range(0.01, 0.4);
         choose_projection(&b, i % 4);
         for (uint32_t k = 0; k < LEFT_POINTS; ++k) {
@@ -837,8 +854,9 @@ static void edges_without_a_slope(void)
             p[2] = 0.5 * x + tiny_part();
         }
         set_errors(&b, LEFT_POINTS);
-        sc_workspace_new_projection(b.real, b.workspace);
-        sc_contour_bounds_update(b.fake, b.workspace, &b.projection, SC_LINE_VERTICAL, 0);
+        sc_contour_bounds_begin(b.real, &b.workspace->frame.positions[0], &b.projection,
+                                &b.workspace->bounds);
+        sc_contour_bounds_update(b.fake, &b.workspace->bounds, SC_LINE_VERTICAL, 0);
         for (uint32_t k = 0; k + 1 < LEFT_POINTS; ++k)
             wrong += check_edge(&b, bounds, k, k + 1) != 0;
         sides += bounds->side[0].ay != -INFINITY;
@@ -856,9 +874,10 @@ static void edges_without_a_slope(void)
                 p[1] = k;
                 p[2] = 0;
             }
-            sc_workspace_new_projection(b.real, b.workspace);
-            sc_contour_bounds_update(b.fake, b.workspace, &b.projection, SC_LINE_VERTICAL, 0);
-            CHECK((b.workspace->bounds[0][0].side[0].ay == -INFINITY) == (step == 0));
+            sc_contour_bounds_begin(b.real, &b.workspace->frame.positions[0], &b.projection,
+                                    &b.workspace->bounds);
+            sc_contour_bounds_update(b.fake, &b.workspace->bounds, SC_LINE_VERTICAL, 0);
+            CHECK((b.workspace->bounds.of[0][0].side[0].ay == -INFINITY) == (step == 0));
         }
     close_bench(&b);
 }
@@ -972,13 +991,13 @@ static void bounds_of_parents(void)
         far->ay = far->by = height;
         near->least = near->most = 0;
         near->ay = near->by = 3 * height;
-        sc_workspace_new_projection(b.real, w);
+        sc_contour_bounds_begin(b.real, &w->frame.positions[0], &b.projection, &w->bounds);
         for (int k = 0; k < 2; ++k) {
-            w->bounds_tick[0][k] = w->tick;
-            w->bounds[0][k].side[0] = w->bounds[0][k].side[1] = child[k];
+            w->bounds.epoch_of[0][k] = w->bounds.epoch;
+            w->bounds.of[0][k].side[0] = w->bounds.of[0][k].side[1] = child[k];
         }
-        sc_contour_bounds_update(b.fake, w, &b.projection, SC_LINE_VERTICAL, 2);
-        parent = &w->bounds[0][2].side[0];
+        sc_contour_bounds_update(b.fake, &w->bounds, SC_LINE_VERTICAL, 2);
+        parent = &w->bounds.of[0][2].side[0];
         for (int k = 0; k < 4; ++k) {
             mpq_t exact, bound;
             mpq_inits(exact, bound, NULL);
@@ -997,12 +1016,9 @@ static void bounds_of_parents(void)
 static void beside_a_point(void)
 {
     bench b;
-    sc_query_state state;
     uint32_t passed = 0, failed = 0, wrong = 0;
     if (!open_bench(&b)) return;
-    memset(&state, 0, sizeof(state));
-    state.model = b.fake;
-    state.workspace = b.workspace;
+    b.workspace->worker->model = b.fake;
     b.parts[1] = 3; /* segment 1 becomes 3 4 3: there and back, apart from the first */
     b.parts[4] = 5;
     for (uint32_t i = 0; i < test_iterations(30000); ++i) {
@@ -1026,8 +1042,9 @@ static void beside_a_point(void)
             at[0] = p->origin[0] + 2 - far[0] - far[1] + x + tiny_part();
         }
         set_errors(&b, BENCH_POINTS);
-        sc_workspace_new_projection(b.real, b.workspace);
-        if (sc_star_test(&state, p, 0)) {
+        sc_contour_bounds_begin(b.real, &b.workspace->frame.positions[0], &b.projection,
+                                &b.workspace->bounds);
+        if (sc_star_test(b.workspace->worker, 0)) {
             mpq_t at, x;
             int signs[5], separated = 0;
             ++passed;
@@ -1117,10 +1134,10 @@ static void margins_are_as_documented(void)
         pose = input_plain_pose(mesh.positions, mesh.vertex_count);
         if (CHECK(sc_build(&input, NULL, &model) == SC_OK) &&
             CHECK(sc_workspace_create(model, NULL, &w) == SC_OK) &&
-            CHECK(sc_positions_read(model, &pose, 24, w) == SC_OK)) {
-            sc_dnc_update(model, w);
-            CHECK((int)(w->mask[0] >> 2 & 1) == step);
-            CHECK((w->mask[0] >> 8 & 1) == 1);
+            CHECK(sc_positions_read(model, &pose, 24, &w->frame) == SC_OK)) {
+            sc_dnc_update(model, &w->frame);
+            CHECK((int)(w->frame.mask[0] >> 2 & 1) == step);
+            CHECK((w->frame.mask[0] >> 8 & 1) == 1);
         }
         sc_workspace_free(w);
         sc_model_free(model);
@@ -1165,8 +1182,8 @@ static void normals_at_right_angles(void)
         }
         for (uint32_t c = 0; c < 9; ++c)
             mesh.positions[3 * mesh.triangles[c / 3] + c % 3] = p[c / 3][c % 3] * size;
-        CHECK(sc_positions_read(model, &pose, 24, w) == SC_OK);
-        sc_dnc_update(model, w);
+        CHECK(sc_positions_read(model, &pose, 24, &w->frame) == SC_OK);
+        sc_dnc_update(model, &w->frame);
         mpq_inits(dot, product, e[0], e[1], e[2], f[0], f[1], f[2], n, NULL);
         for (uint32_t k = 0; k < 3; ++k) {
             mpq_set_d(n, mesh.positions[3 * t[0] + k]);
@@ -1185,13 +1202,13 @@ static void normals_at_right_angles(void)
         }
         sign = mpq_sgn(dot);
         mpq_clears(dot, product, e[0], e[1], e[2], f[0], f[1], f[2], n, NULL);
-        if (w->mask[0] >> bit & 1) {
+        if (w->frame.mask[0] >> bit & 1) {
             ++set;
             wrong += sign <= 0;
         } else {
             ++unset;
         }
-        wrong += (w->mask[0] >> (bit + 7) & 1) && sign >= 0;
+        wrong += (w->frame.mask[0] >> (bit + 7) & 1) && sign >= 0;
     }
     CHECK_MSG(wrong == 0, "%" PRIu32 " signs wrong", wrong);
     test_note("%" PRIu32 " certainly within the direction's half-space, %" PRIu32 " not", set,
@@ -1220,18 +1237,19 @@ static void errors_of_projections(void)
         if (i % 8 == 6) mask = 0x12c0; /* w = (30, -548, -14), the worst found for y */
         mask &= ~(mask >> 7 & 0x7f);   /* no direction and its negative */
         if (mask == 0) continue;
-        w->radius = 1;
-        sc_dnc_projection(w, mask, p);
+        w->frame.radius = 1;
+        sc_dnc_projection(&w->frame, mask, p);
         for (int k = 0; k < 3; ++k) {
             const double *along = i % 4 < 2 ? p->u : p->w;
             double d = along[k] < 0 ? -1 : 1;
-            w->center[k] = -d * 0x1p-52 * test_random_unit();
+            w->frame.center[k] = -d * 0x1p-52 * test_random_unit();
             at[k] = d * (1 + (double)test_random_below(i % 16 > 8 ? 4 : 1 << 30) * 0x1p-52);
         }
-        w->radius = 0;
-        for (int k = 0; k < 3; ++k) w->radius = fmax(w->radius, fabs(at[k] - w->center[k]));
-        sc_dnc_projection(w, mask, p);
-        sc_contour_bounds_project(w, p, SC_LINE_VERTICAL, 0, &x, &y);
+        w->frame.radius = 0;
+        for (int k = 0; k < 3; ++k)
+            w->frame.radius = fmax(w->frame.radius, fabs(at[k] - w->frame.center[k]));
+        sc_dnc_projection(&w->frame, mask, p);
+        project_point(w, p, SC_LINE_VERTICAL, 0, &x, &y);
         x = exact_error(p->u, at, p->origin, x) / p->x_error;
         y = exact_error(p->w, at, p->origin, y) / p->y_error;
         wrong += x > 1 || y > 1;

@@ -25,7 +25,22 @@
 #include "query/simple_contour.h"
 #include "query/star.h"
 #include "shapes.h"
+#include "run/workspace.h"
 #include "starcontour.h"
+
+/* What is asked where nothing is. */
+static sc_question nothing_asked;
+
+/* A point under a projection. */
+static void project_point(const sc_workspace *w, const sc_projection *projection, int line,
+                          uint32_t point, double *x, double *y)
+{
+    sc_contour_bounds bounds;
+    memset(&bounds, 0, sizeof(bounds));
+    bounds.positions = &w->frame.positions[0];
+    bounds.projection = *projection;
+    sc_contour_bounds_project(&bounds, line, point, x, y);
+}
 
 static const double pi = 3.14159265358979323846;
 
@@ -37,18 +52,14 @@ typedef struct scene {
     input_choices choices;
     sc_model *model;
     sc_workspace *workspace;
-    sc_query_state state;
 } scene;
 
 static int load_pose(scene *s)
 {
     sc_pose pose = input_plain_pose(s->pose, s->mesh.vertex_count);
-    sc_workspace_new_pose(s->model, s->workspace);
-    if (!CHECK(sc_positions_read(s->model, &pose, 24, s->workspace) == SC_OK)) return 0;
-    sc_dnc_update(s->model, s->workspace);
-    memset(&s->state, 0, sizeof(s->state));
-    s->state.model = s->model;
-    s->state.workspace = s->workspace;
+    sc_workspace_begin(s->model, s->workspace, &nothing_asked);
+    if (!CHECK(sc_positions_read(s->model, &pose, 24, &s->workspace->frame) == SC_OK)) return 0;
+    sc_dnc_update(s->model, &s->workspace->frame);
     return 1;
 }
 
@@ -153,7 +164,7 @@ static void open_random_scene(scene *s, uint32_t maximum)
 /* Poses here are packed doubles. */
 static const double *place_of(const sc_workspace *w, uint32_t point)
 {
-    return (const double *)(const void *)w->positions + 3 * (size_t)point;
+    return (const double *)(const void *)w->frame.positions[0].at + 3 * (size_t)point;
 }
 
 static double part(const sc_workspace *w, uint32_t point, int k)
@@ -205,7 +216,7 @@ static void find_directions(const sc_workspace *w, double directions[SC_DNC_DIRE
 {
     for (int d = 0; d < SC_DNC_DIRECTIONS; ++d) {
         sc_projection p;
-        sc_dnc_projection(w, 1u << d, &p);
+        sc_dnc_projection(&w->frame, 1u << d, &p);
         for (int k = 0; k < 3; ++k) {
             double c = p.u[(k + 1) % 3] * p.w[(k + 2) % 3] - p.u[(k + 2) % 3] * p.w[(k + 1) % 3];
             directions[d][k] = (c > 0) - (c < 0);
@@ -243,7 +254,8 @@ static int is_clear(const sc_workspace *w, const uint32_t *t, const double d[3])
     }
     for (int k = 0; k < 3; ++k)
         dot += d[k] * (e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3]);
-    return dot > 1e-6 * (e_size * f_size + w->radius * (e_size + f_size + 1e-7 * w->radius)) &&
+    return dot > 1e-6 * (e_size * f_size +
+                         w->frame.radius * (e_size + f_size + 1e-7 * w->frame.radius)) &&
            e_size > 1e-100 && f_size > 1e-100 && e_size < 1e100 && f_size < 1e100;
 }
 
@@ -255,7 +267,7 @@ static void check_cones(scene *s)
     uint32_t leaf, p, level, bit, i, wrong = 0, sample = 0;
     find_directions(w, d);
     for (leaf = 0; leaf < m->leaf_count; ++leaf) {
-        uint32_t mask = w->mask[sc_model_first_leaf_patch(m) + leaf];
+        uint32_t mask = w->frame.mask[sc_model_first_leaf_patch(m) + leaf];
         uint32_t in = leaf % SC_CONES_GROUP, is_made;
         if (!in) sample = 0;
         is_made = in < SC_CONES_SAMPLE || sample;
@@ -263,7 +275,7 @@ static void check_cones(scene *s)
         for (bit = 0; bit < SC_DNC_DIRECTIONS; ++bit) {
             uint32_t clear = 1, set = mask >> bit & 1;
             sc_projection one;
-            sc_dnc_projection(w, 1u << bit, &one);
+            sc_dnc_projection(&w->frame, 1u << bit, &one);
             for (i = sc_model_leaf_first(m)[leaf]; i < sc_model_leaf_first(m)[leaf + 1]; ++i) {
                 const uint32_t *t = sc_model_triangle(m) + 3 * (size_t)i;
                 clear &= (uint32_t)is_clear(w, t, d[bit]);
@@ -277,8 +289,8 @@ static void check_cones(scene *s)
         for (p = sc_model_level_first(m)[level]; p + 1 < sc_model_level_first(m)[level + 1]; ++p) {
             uint32_t all = (1u << SC_DNC_DIRECTIONS) - 1;
             for (leaf = sc_model_leaf(m)[p]; leaf < sc_model_leaf(m)[p + 1]; ++leaf)
-                all &= w->mask[sc_model_first_leaf_patch(m) + leaf];
-            wrong += w->mask[p] != all;
+                all &= w->frame.mask[sc_model_first_leaf_patch(m) + leaf];
+            wrong += w->frame.mask[p] != all;
         }
     CHECK_MSG(wrong == 0, "%s: %" PRIu32 " cones are not their leaves'", s->name, wrong);
 }
@@ -299,10 +311,10 @@ static uint32_t check_projections(scene *s)
     for (p = 0; p < m->patch_end && tried < 40; ++p) {
         uint32_t from, to;
         sc_projection projection;
-        if (w->mask[p] == 0 || p + 1 == m->patch_end) continue;
+        if (w->frame.mask[p] == 0 || p + 1 == m->patch_end) continue;
         if (sc_model_leaf(m)[p] >= sc_model_leaf(m)[p + 1]) continue; /* no patch */
         ++tried;
-        sc_dnc_projection(w, random_part(w->mask[p]), &projection);
+        sc_dnc_projection(&w->frame, random_part(w->frame.mask[p]), &projection);
         for (k = 0; k < 3; ++k) /* what makes the projection exact */
             CHECK(projection.u[k] == floor(projection.u[k]) && fabs(projection.u[k]) <= 506 &&
                   projection.w[k] == floor(projection.w[k]) && fabs(projection.w[k]) <= 23276);
@@ -316,7 +328,7 @@ static uint32_t check_projections(scene *s)
             const double *at = place_of(w, point);
             double x, y;
             mpq_t exact, computed, error;
-            sc_contour_bounds_project(w, &projection, SC_LINE_VERTICAL, point, &x, &y);
+            project_point(w, &projection, SC_LINE_VERTICAL, point, &x, &y);
             mpq_inits(exact, computed, error, NULL);
             for (k = 0; k < 2; ++k) {
                 exact_dot(exact, k ? projection.w : projection.u, at, projection.origin);
@@ -411,8 +423,8 @@ static void cones_at_zero(void)
                 p[3 * corner[0] + (uint32_t)k] + (x * e + y * d[bit][k]);
         }
         if (!load_pose(&s)) break;
-        sc_dnc_projection(s.workspace, 1u << bit, &one);
-        if (s.workspace->mask[0] >> bit & 1) {
+        sc_dnc_projection(&s.workspace->frame, 1u << bit, &one);
+        if (s.workspace->frame.mask[0] >> bit & 1) {
             ++set;
             wrong += exact_area_sign(s.workspace, sc_model_triangle(s.model), one.u, one.w) <= 0;
         }
@@ -517,7 +529,7 @@ static void choose_samples(bounds_check *c)
     const sc_ray_bound *b = &c->bounds->side[test_random_below(2)];
     double low = fmax((double)b->ax, -1e300), high = fmin((double)b->bx, 1e300), length;
     if (!(low <= high)) low = high = 0;
-    length = high - low + c->s->workspace->radius * 0x1p-20;
+    length = high - low + c->s->workspace->frame.radius * 0x1p-20;
     c->samples[0] = low;
     c->samples[1] = high;
     c->samples[2] = low / 2 + high / 2;
@@ -527,7 +539,7 @@ static void choose_samples(bounds_check *c)
     c->samples[6] = low - 1e6 * length * test_random_unit();
     c->samples[7] = high + 1e6 * length * test_random_unit();
     c->samples[8] = 0;
-    c->samples[9] = test_random_range(-1, 1) * c->s->workspace->radius * 1e3;
+    c->samples[9] = test_random_range(-1, 1) * c->s->workspace->frame.radius * 1e3;
     for (int i = 0; i < 10; ++i)
         if (!isfinite(c->samples[i])) c->samples[i] = 0;
 }
@@ -539,7 +551,7 @@ typedef struct bounds_tally {
 /* A random projection, of a node if any is oriented, else of nobody. */
 static void random_projection(scene *s, sc_projection *projection)
 {
-    uint32_t p = test_random_below(s->model->patch_end), mask = s->workspace->mask[p];
+    uint32_t p = test_random_below(s->model->patch_end), mask = s->workspace->frame.mask[p];
     if (mask == 0) { /* the normals of a random half-space */
         double d[SC_DNC_DIRECTIONS][3], n[3];
         for (int k = 0; k < 3; ++k) n[k] = test_random_range(-1, 1);
@@ -547,8 +559,9 @@ static void random_projection(scene *s, sc_projection *projection)
         for (int i = 0; i < SC_DNC_DIRECTIONS; ++i)
             mask |= (uint32_t)(d[i][0] * n[0] + d[i][1] * n[1] + d[i][2] * n[2] > 0) << i;
     }
-    sc_dnc_projection(s->workspace, random_part(mask), projection);
-    sc_workspace_new_projection(s->model, s->workspace);
+    sc_dnc_projection(&s->workspace->frame, random_part(mask), projection);
+    sc_contour_bounds_begin(s->model, &s->workspace->frame.positions[0], projection,
+                            &s->workspace->bounds);
 }
 
 static void check_bounds(scene *s, bounds_tally *tally)
@@ -567,9 +580,9 @@ static void check_bounds(scene *s, bounds_tally *tally)
             c.projection = &projection;
             c.line = line;
             c.gap[0] = c.gap[1] = HUGE_VAL;
-            sc_contour_bounds_update(m, s->workspace, &projection, line, segment);
-            CHECK(sc_contour_bounds_update(m, s->workspace, &projection, line, segment) == 0);
-            c.bounds = &s->workspace->bounds[line][segment];
+            sc_contour_bounds_update(m, &s->workspace->bounds, line, segment);
+            CHECK(sc_contour_bounds_update(m, &s->workspace->bounds, line, segment) == 0);
+            c.bounds = &s->workspace->bounds.of[line][segment];
             choose_samples(&c);
             check_edges_of(&c, segment);
             CHECK_MSG(c.wrong_extent == 0,
@@ -586,7 +599,7 @@ static void check_bounds(scene *s, bounds_tally *tally)
                 if (segment >= m->leaf_segment_count || c.gap[side] == HUGE_VAL) continue;
                 ++tally->leaves;
                 tally->tight +=
-                    c.gap[side] < 1e-4 * fabs(projection.w[0] + 1e3) * s->workspace->radius;
+                    c.gap[side] < 1e-4 * fabs(projection.w[0] + 1e3) * s->workspace->frame.radius;
             }
         }
 }
@@ -681,8 +694,8 @@ static void ticks(void)
     memset(&tally, 0, sizeof(tally));
     if (!open_scene(&s, "cloth", &mesh, SC_WELD_REST, SC_PARTITION_FAST)) return;
     for (uint32_t i = 0; i < 12; ++i) {
-        if (i == 4) s.workspace->tick = 0xfffe;
-        if (i == 8) s.workspace->pose_tick = 0x7ffffffe;
+        if (i == 4) s.workspace->bounds.epoch = 0xfffe;
+        if (i == 8) s.workspace->frame.epoch = 0x7ffffffe;
         random_pose(s.pose, s.mesh.vertex_count);
         if (i % 2) soup_shuffle(s.pose, s.mesh.vertex_count);
         if (load_pose(&s)) check_bounds(&s, &tally);
@@ -700,30 +713,30 @@ static void first_tick_again(void)
     sc_projection projection;
     if (!open_scene(&s, "cloth", &mesh, SC_WELD_REST, SC_PARTITION_FAST)) return;
     if (CHECK(load_pose(&s))) {
-        sc_dnc_projection(s.workspace, 1u << 2, &projection);
+        sc_dnc_projection(&s.workspace->frame, 1u << 2, &projection);
         for (int round = 0; round < 2; ++round) {
-            sc_workspace_new_projection(s.model, s.workspace);
-            CHECK(s.workspace->tick == 1);
+            sc_contour_bounds_begin(s.model, &s.workspace->frame.positions[0], &projection,
+                                    &s.workspace->bounds);
+            CHECK(s.workspace->bounds.epoch == 1);
             for (int line = 0; line < 2; ++line)
                 for (uint32_t i = 0; i < s.model->segment_count; ++i) {
-                    CHECK(sc_contour_bounds_update(s.model, s.workspace, &projection, line, i) > 0);
-                    CHECK(sc_contour_bounds_update(s.model, s.workspace, &projection, line, i) ==
-                          0);
+                    CHECK(sc_contour_bounds_update(s.model, &s.workspace->bounds, line, i) > 0);
+                    CHECK(sc_contour_bounds_update(s.model, &s.workspace->bounds, line, i) == 0);
                 }
-            s.workspace->tick = 0xffff;
+            s.workspace->bounds.epoch = 0xffff;
         }
     }
     for (int round = 0; round < 2; ++round) {
-        s.workspace->pose_tick = round == 0 ? 0 : 0x7fffffff;
+        s.workspace->frame.epoch = round == 0 ? 0 : 0x7fffffff;
         for (uint32_t i = 0; i < 3 * s.mesh.vertex_count && round == 1; ++i)
             s.pose[i] = test_random_unit();
-        s.workspace->some_known[0].tick = s.workspace->all_known[0].tick = 1;
-        s.workspace->slab[0].tick = 1;
+        s.workspace->worker->kept.some_known[0].epoch = s.workspace->all_known[0].epoch = 1;
+        s.workspace->worker->kept.slab[0].epoch = 1;
         if (!load_pose(&s)) break;
-        CHECK(s.workspace->pose_tick == 1);
-        CHECK(s.workspace->some_known[0].tick == (uint32_t)(round == 0));
-        CHECK(s.workspace->all_known[0].tick == (uint32_t)(round == 0));
-        CHECK(s.workspace->slab[0].tick == (uint32_t)(round == 0));
+        CHECK(s.workspace->frame.epoch == 1);
+        CHECK(s.workspace->worker->kept.some_known[0].epoch == (uint32_t)(round == 0));
+        CHECK(s.workspace->all_known[0].epoch == (uint32_t)(round == 0));
+        CHECK(s.workspace->worker->kept.slab[0].epoch == (uint32_t)(round == 0));
     }
     close_scene(&s);
 }
@@ -788,7 +801,8 @@ static void check_stars(scene *s, star_tally *tally)
     uint32_t wrong = 0, node;
     for (node = 0; node < m->node_count; ++node) {
         const sc_pair *patches = &sc_model_node(m)[node].patches;
-        uint32_t mask = (uint32_t)s->workspace->mask[patches->a] & s->workspace->mask[patches->b];
+        uint32_t mask =
+            (uint32_t)s->workspace->frame.mask[patches->a] & s->workspace->frame.mask[patches->b];
         int bad, worse, tries, touches = sc_model_node(m)[node].kind & SC_NODE_TOUCHES;
         if (mask == 0) continue;
         bad = has_pair(m, node, 0, list->pairs, list->count);
@@ -796,15 +810,17 @@ static void check_stars(scene *s, star_tally *tally)
         for (tries = 0; tries < 3; ++tries) {
             sc_projection projection;
             int passed;
-            sc_dnc_projection(s->workspace, tries == 0 ? mask : random_part(mask), &projection);
-            sc_workspace_new_projection(m, s->workspace);
-            passed = sc_star_test(&s->state, &projection, node);
+            sc_dnc_projection(&s->workspace->frame, tries == 0 ? mask : random_part(mask),
+                              &projection);
+            sc_contour_bounds_begin(m, &s->workspace->frame.positions[0], &projection,
+                                    &s->workspace->bounds);
+            passed = sc_star_test(s->workspace->worker, node);
             wrong += passed && bad;
-            passed = sc_simple_test(&s->state, &projection, node);
+            passed = sc_simple_test(s->workspace->worker, &projection, node);
             wrong += passed && worse;
             tally->simple += (uint64_t)passed;
             tally->pinched += (uint64_t)(passed && touches);
-            passed = sc_star_test(&s->state, &projection, node);
+            passed = sc_star_test(s->workspace->worker, node);
             tally->oriented++;
             tally->passed += (uint64_t)passed;
             tally->touching += (uint64_t)touches;
@@ -882,10 +898,11 @@ static void long_contours(void)
         soup mesh = shape_spiral(1400 + 37 * i, 1, i % 2 ? 1.001 : 0.999, 0);
         sc_projection projection;
         if (open_scene(&s, "ribbon", &mesh, SC_WELD_NONE, SC_PARTITION_FAST) && load_pose(&s) &&
-            CHECK(s.workspace->mask[0] != 0)) {
-            s.workspace->kernels = sc_kernels_for(1 + i / 2 % (uint32_t)sc_isa_best());
-            sc_dnc_projection(s.workspace, s.workspace->mask[0], &projection);
-            CHECK_MSG(sc_simple_test(&s.state, &projection, 0) == (i % 2 == 0), "ribbon %u", i);
+            CHECK(s.workspace->frame.mask[0] != 0)) {
+            s.workspace->frame.kernels = sc_kernels_for(1 + i / 2 % (uint32_t)sc_isa_best());
+            sc_dnc_projection(&s.workspace->frame, s.workspace->frame.mask[0], &projection);
+            CHECK_MSG(sc_simple_test(s.workspace->worker, &projection, 0) == (i % 2 == 0),
+                      "ribbon %u", i);
         }
         close_scene(&s);
     }
@@ -1117,9 +1134,9 @@ static void exact_place(mpq_t result, const sc_workspace *w, uint32_t point, con
     mpq_set_ui(result, 0, 1);
     for (int k = 0; k < 3; ++k) {
         mpq_set_d(a, part(w, point, k));
-        mpq_set_d(b, w->center[k]);
+        mpq_set_d(b, w->frame.center[k]);
         mpq_sub(a, a, b);
-        mpq_set_d(b, w->scale);
+        mpq_set_d(b, w->frame.scale);
         mpq_mul(a, a, b);
         mpq_set_d(b, (double)from[k]);
         mpq_sub(a, a, b);
@@ -1167,9 +1184,9 @@ static void points_in_the_unit_box(void)
                 uint32_t leaf = i / 3 / SC_LEAF_POINTS, k = i % 3, at = i / 3 % SC_LEAF_POINTS;
                 uint32_t point = sc_model_leaf_point(s.model)[SC_LEAF_POINTS * leaf + at];
                 uint32_t turned = SC_LEAF_POINTS * leaf + sc_loops_turn(at);
-                double off, unit = (double)s.workspace->point_at[4 * turned + k];
+                double off, unit = (double)s.workspace->frame.point_at[4 * turned + k];
                 float one[3];
-                sc_positions_unit(s.workspace, point, one);
+                sc_positions_unit(&s.workspace->frame, point, one);
                 differ += one[k] != (float)unit;
                 exact_place(exact, s.workspace, point, axis[k], origin);
                 mpq_set_d(place, unit);
@@ -1231,28 +1248,29 @@ static void poses_of_any_layout(void)
             pose.position_type = layout->type;
             for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
                 sc_workspace *w = s.workspace;
-                w->kernels = sc_kernels_for(isa);
-                sc_workspace_new_pose(s.model, w);
-                if (is_finite != (sc_positions_read(s.model, &pose, stride, w) == SC_OK)) ++wrong;
+                w->frame.kernels = sc_kernels_for(isa);
+                sc_workspace_begin(s.model, w, &nothing_asked);
+                if (is_finite != (sc_positions_read(s.model, &pose, stride, &w->frame) == SC_OK))
+                    ++wrong;
                 if (!is_finite) continue; /* too large for floats */
-                sc_dnc_update(s.model, w);
+                sc_dnc_update(s.model, &w->frame);
                 for (uint32_t k = 0; k < 3; ++k) {
                     double middle = low[k] / 2 + high[k] / 2;
                     if (layout->type == SC_FLOAT) middle = (double)(float)middle;
-                    wrong += w->center[k] != middle;
+                    wrong += w->frame.center[k] != middle;
                 }
                 for (uint32_t i = 0; i < SC_LEAF_POINTS * s.model->leaf_count; ++i) {
                     uint32_t point = sc_model_leaf_point(s.model)[i];
-                    const float *at = w->point_at + 4 * sc_loops_turn(i);
+                    const float *at = w->frame.point_at + 4 * sc_loops_turn(i);
                     double p[3];
                     float one[3];
-                    sc_positions_get(w, point, p);
-                    sc_positions_unit(w, point, one);
+                    sc_positions_get(&w->frame.positions[0], point, p);
+                    sc_positions_unit(&w->frame, point, one);
                     for (uint32_t k = 0; k < 3; ++k) {
                         double d = s.pose[3 * point + k];
                         wrong += p[k] != (layout->type == SC_DOUBLE ? d : (double)(float)d);
                         wrong += at[k] != one[k];
-                        d = (p[k] - w->center[k]) * w->scale;
+                        d = (p[k] - w->frame.center[k]) * w->frame.scale;
                         wrong += fabs((double)one[k] - d) > 3e-8;
                     }
                     wrong += at[3] != 0;
@@ -1273,9 +1291,9 @@ static uint32_t tested_point(const scene *s, uint32_t node, uint32_t i)
     const sc_node *n = sc_model_node(m) + node;
     const sc_pair *patches = &n->patches;
     uint32_t split = leaf[patches->a + 1] - leaf[patches->a], number, cluster;
-    if (!n->loop_length) return s->workspace->contour.point[i];
+    if (!n->loop_length) return s->workspace->worker->contour.point[i];
     if (n->kind & SC_NODE_PIECES)
-        return sc_model_leaf_point(m)[sc_loops_turn(s->workspace->contour.point[i])];
+        return sc_model_leaf_point(m)[sc_loops_turn(s->workspace->worker->contour.point[i])];
     number = sc_model_loop(m)[n->loop + i % n->loop_length];
     cluster = number / SC_LEAF_POINTS;
     cluster = cluster < split ? leaf[patches->a] + cluster : leaf[patches->b] + cluster - split;
@@ -1303,19 +1321,19 @@ static uint32_t list_pieces(const scene *s, uint32_t node, uint32_t *middle)
 static uint32_t is_too_sure(const scene *s, const sc_projection *projection, uint32_t node,
                             const float from[3], uint32_t listed, int has_gaps)
 {
-    const sc_contour_edges *e = &s->workspace->contour;
+    const sc_contour_edges *e = &s->workspace->worker->contour;
     sc_simple_contour c;
     float most = 0;
     memset(&c, 0, sizeof(c));
-    if (!sc_simple_start(&c, s->model, s->workspace, node)) return 0;
+    if (!sc_simple_start(&c, s->model, &s->workspace->worker->contour, node)) return 0;
     sc_simple_axes(&c, projection);
     memcpy(c.from, from, sizeof(c.from));
-    s->workspace->kernels->query->project(&c, s->workspace);
+    s->workspace->frame.kernels->query->project(&c, &s->workspace->frame);
     for (uint32_t i = 0; i < listed; ++i) {
         float unit[3];
         if (has_gaps && (e->is_edge[i / SC_CONTOUR_BLOCK] >> i % SC_CONTOUR_BLOCK & 1) == 0)
             continue;
-        sc_positions_unit(s->workspace, tested_point(s, node, i), unit);
+        sc_positions_unit(&s->workspace->frame, tested_point(s, node, i), unit);
         for (int k = 0; k < 3; ++k) most = fmaxf(most, fabsf(unit[k] - from[k]));
     }
     return c.error < sc_simple_error(most);
@@ -1334,8 +1352,8 @@ static void places_of_contours(void)
         sc_projection projection;
         scene s;
         if (!open_scene(&s, "cloth", &mesh, SC_WELD_REST, SC_PARTITION_FAST)) break;
-        sc_dnc_projection(s.workspace, 1 + test_random_below((1 << SC_DNC_DIRECTIONS / 2) - 1),
-                          &projection);
+        sc_dnc_projection(&s.workspace->frame,
+                          1 + test_random_below((1 << SC_DNC_DIRECTIONS / 2) - 1), &projection);
         for (uint32_t v = 0; v < mesh.vertex_count; ++v) {
             double along = test_random_range(-1, 1);
             const double *u = projection.u, *w = projection.w;
@@ -1358,7 +1376,7 @@ static void places_of_contours(void)
                        exp2(test_random_below(2) ? test_random_range(1008, 1012)
                                                  : test_random_range(-1060, 1012)));
         if (load_pose(&s)) {
-            const sc_contour_edges *e = &s.workspace->contour;
+            const sc_contour_edges *e = &s.workspace->worker->contour;
             uint32_t wrong = 0, edges = 0, too_sure = 0;
             for (uint32_t node = 0; node < s.model->node_count; ++node) {
                 const uint32_t length = sc_model_node(s.model)[node].loop_length;
@@ -1371,10 +1389,10 @@ static void places_of_contours(void)
                 if (listed == 0) continue;
                 middle = listed / 2;
                 if (length && in_pieces) listed = list_pieces(&s, node, &middle);
-                s.workspace->kernels = sc_kernels_for(1 + node % (uint32_t)sc_isa_best());
-                passed = sc_simple_test(&s.state, &projection, node);
-                sc_positions_unit(s.workspace, tested_point(&s, node, 0), one);
-                sc_positions_unit(s.workspace, tested_point(&s, node, middle), other);
+                s.workspace->frame.kernels = sc_kernels_for(1 + node % (uint32_t)sc_isa_best());
+                passed = sc_simple_test(s.workspace->worker, &projection, node);
+                sc_positions_unit(&s.workspace->frame, tested_point(&s, node, 0), one);
+                sc_positions_unit(&s.workspace->frame, tested_point(&s, node, middle), other);
                 for (int k = 0; k < 3; ++k) from[k] = one[k] / 2 + other[k] / 2;
                 too_sure += is_too_sure(&s, &projection, node, from, listed, has_gaps);
                 if (!passed && listed > SC_CONTOUR_BLOCK) listed = SC_CONTOUR_BLOCK; /* at least */
@@ -1501,7 +1519,7 @@ static void move_loop(const scene *s, uint32_t node, float at[][2], uint32_t cou
     c.split = SC_LEAF_POINTS * leaf[patches->a + 1] - c.first;
     c.second = SC_LEAF_POINTS * leaf[patches->b] - c.split;
     for (uint32_t i = 0; i < count; ++i) {
-        float *to = s->workspace->point_at + 4 * (size_t)sc_simple_place(&c, loop[i]);
+        float *to = s->workspace->frame.point_at + 4 * (size_t)sc_simple_place(&c, loop[i]);
         to[0] = at[i][0];
         to[1] = at[i][1];
         to[2] = i == 1 ? 0.5f + lift : 0.5f;
@@ -1521,7 +1539,8 @@ static unsigned tell_small(scene *s, uint32_t node, float at[][2], uint32_t coun
     above[0] = above[4 * SC_DNC_VECTORS] = 1;
     move_loop(s, node, at, count, lift);
     n->loop_length = (uint16_t)count;
-    simple = s->workspace->kernels->query->find_simple(&s->state, &node, 1, blocks, &axes);
+    simple = s->workspace->frame.kernels->query->find_simple(s->workspace->worker, &node, 1, blocks,
+                                                             &axes);
     n->loop_length = length;
     return simple;
 }
@@ -1570,7 +1589,7 @@ static void small_contours(void)
     node = long_loop(s.model, 64);
     if (!CHECK(node != SC_NONE)) return;
     for (uint32_t isa = 1; isa <= (uint32_t)sc_isa_best(); ++isa) {
-        s.workspace->kernels = sc_kernels_for(isa);
+        s.workspace->frame.kernels = sc_kernels_for(isa);
         for (uint32_t count = SC_SMALL_EDGES; count <= 64; ++count) {
             double size = test_random_below(2) ? 0.4 : 1e-4;
             crossed_polygon(at, count, size, 0, 0);
@@ -1618,16 +1637,16 @@ static void two_edges_that_cross(void)
             const uint32_t count = counts[k];
             sc_node *n = (sc_node *)(uintptr_t)(sc_model_node(s.model) + node);
             const uint16_t length = n->loop_length;
-            s.workspace->kernels = sc_kernels_for(isa);
+            s.workspace->frame.kernels = sc_kernels_for(isa);
             n->loop_length = (uint16_t)count;
             crossed_polygon(at, count, 0.4, 0, 0);
             move_loop(&s, node, at, count, 0);
-            told += sc_simple_test(&s.state, &above, node) != 0;
+            told += sc_simple_test(s.workspace->worker, &above, node) != 0;
             for (uint32_t i = 0; i < count; ++i)
                 for (uint32_t j = i + 2; j < count && (i || j + 1 < count); ++j) {
                     crossed_polygon(at, count, 0.4, i, j);
                     move_loop(&s, node, at, count, 0);
-                    missed += sc_simple_test(&s.state, &above, node) != 0;
+                    missed += sc_simple_test(s.workspace->worker, &above, node) != 0;
                 }
             n->loop_length = length;
         }
@@ -1652,23 +1671,24 @@ static void contours_in_turn(void)
         if (!open_scene(&s, "in turn", &mesh, SC_WELD_NONE, SC_PARTITION_FAST)) continue;
         if (round % 4 < 2) soup_smooth(s.pose, s.mesh.vertex_count, 0.02 * round);
         if (!load_pose(&s)) continue;
-        s.workspace->kernels = sc_kernels_for(1 + round % (uint32_t)sc_isa_best());
+        s.workspace->frame.kernels = sc_kernels_for(1 + round % (uint32_t)sc_isa_best());
         for (uint32_t p = 0; p < s.model->patch_end && round % 3 == 1; ++p) /* seen from anywhere */
-            s.workspace->mask[p] = (uint16_t)(1u << test_random_below(SC_DNC_DIRECTIONS) |
-                                              1u << test_random_below(SC_DNC_DIRECTIONS));
+            s.workspace->frame.mask[p] = (uint16_t)(1u << test_random_below(SC_DNC_DIRECTIONS) |
+                                                    1u << test_random_below(SC_DNC_DIRECTIONS));
         for (uint32_t node = 0; node < s.model->node_count; ++node) {
             const sc_pair *patches = &sc_model_node(s.model)[node].patches;
-            if (s.workspace->mask[patches->a] & s.workspace->mask[patches->b]) nodes[n++] = node;
+            if (s.workspace->frame.mask[patches->a] & s.workspace->frame.mask[patches->b])
+                nodes[n++] = node;
             if (n < most && node + 1 < s.model->node_count) continue;
-            sc_simple_tests(&s.state, nodes, n, passed);
+            sc_simple_tests(s.workspace->worker, nodes, n, passed);
             for (uint32_t i = 0; i < n; ++i) {
                 sc_projection projection;
                 patches = &sc_model_node(s.model)[nodes[i]].patches;
-                sc_dnc_projection(s.workspace,
-                                  (uint32_t)s.workspace->mask[patches->a] &
-                                      s.workspace->mask[patches->b],
+                sc_dnc_projection(&s.workspace->frame,
+                                  (uint32_t)s.workspace->frame.mask[patches->a] &
+                                      s.workspace->frame.mask[patches->b],
                                   &projection);
-                wrong += sc_simple_test(&s.state, &projection, nodes[i]) != passed[i];
+                wrong += sc_simple_test(s.workspace->worker, &projection, nodes[i]) != passed[i];
                 ++count[passed[i] != 0];
                 in_pieces += (sc_model_node(s.model)[nodes[i]].kind & SC_NODE_PIECES) != 0;
             }
@@ -1684,11 +1704,11 @@ static void contours_in_turn(void)
 /* Whether a contour is one that may be left open though it is simple: if it passes a point three
    times, how its edges lie round that is not looked at; if pieces share a point, one of them may
    begin there, of which nobody can say then how often the others go round it. */
-static int is_left_open(const sc_model *model, sc_workspace *workspace, uint32_t node)
+static int is_left_open(const sc_model *model, const sc_workspace *workspace, uint32_t node)
 {
     uint32_t most = 0;
     sc_simple_contour c;
-    if (!sc_simple_list(&c, model, workspace, node)) return 0;
+    if (!sc_simple_list(&c, model, &workspace->worker->contour, node)) return 0;
     for (uint32_t i = 0; i < c.count; ++i) {
         uint32_t begin = 0;
         for (uint32_t k = 0; k < c.count; ++k)
@@ -1712,15 +1732,15 @@ static void flat_cloths_pass(void)
         if (i % 3) rotate(s.pose, s.mesh.vertex_count);
         if (load_pose(&s)) {
             uint32_t failed = 0, node;
-            s.workspace->kernels = sc_kernels_for(1 + i % (uint32_t)sc_isa_best());
+            s.workspace->frame.kernels = sc_kernels_for(1 + i % (uint32_t)sc_isa_best());
             for (node = 0; node < s.model->node_count; ++node) {
                 const sc_pair *patches = &sc_model_node(s.model)[node].patches;
-                uint32_t mask =
-                    (uint32_t)s.workspace->mask[patches->a] & s.workspace->mask[patches->b];
+                uint32_t mask = (uint32_t)s.workspace->frame.mask[patches->a] &
+                                s.workspace->frame.mask[patches->b];
                 sc_projection projection;
-                sc_dnc_projection(s.workspace, mask, &projection);
+                sc_dnc_projection(&s.workspace->frame, mask, &projection);
                 ++all;
-                if (!CHECK(mask != 0) || !sc_simple_test(&s.state, &projection, node))
+                if (!CHECK(mask != 0) || !sc_simple_test(s.workspace->worker, &projection, node))
                     ++*(i >= ALL_PASS && is_left_open(s.model, s.workspace, node) ? &open
                                                                                   : &failed);
                 touching += (sc_model_node(s.model)[node].kind & SC_NODE_TOUCHES) != 0;

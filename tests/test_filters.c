@@ -11,7 +11,7 @@
 
 #include "harness.h"
 #include "inputs.h"
-#include "pose/workspace.h"
+#include "run/workspace.h"
 #include "shapes.h"
 #include "starcontour.h"
 
@@ -373,7 +373,7 @@ static void every_ring(void)
                 for (uint32_t rings = 0; rings <= 8; ++rings) {
                     sc_filter f = no_filter();
                     f.ignore_rings = rings;
-                    if (rings == 5) s.workspace->ball_tick = 0xfffd; /* about to wrap */
+                    if (rings == 5) s.workspace->worker->ball.epoch = 0xfffd; /* about to wrap */
                     check_filter(&s, &f, kind, 0, &all, 0, &kept, &dropped);
                 }
                 free(all.pairs);

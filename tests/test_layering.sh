@@ -11,7 +11,7 @@ copy=$scratch/copy
 mkdir "$copy"
 cp -R Makefile include lib tools tests bench "$copy"
 mkdir -p "$copy/lib/base" "$copy/lib/simd" "$copy/lib/build" "$copy/lib/pose" "$copy/lib/query" \
-    "$copy/lib/step"
+    "$copy/lib/step" "$copy/lib/run"
 for layer in base simd build pose query step; do
     echo "/* planted */" >"$copy/lib/$layer/planted_$layer.h"
 done
@@ -41,6 +41,7 @@ offence "lib/step must not include lib/simd/all_kernels.h" lib/step/planted_step
 offence "lib/build must not include lib/pose" lib/build/planted_build.h '# include "pose/planted_pose.h"'
 offence "lib/pose must not include lib/query" lib/pose/planted_pose.h '#include "query/planted_query.h"'
 offence "lib/query must not include lib/step" lib/query/planted_query.h '#include "step/planted_step.h"'
+offence "lib/step must not include lib/run" lib/step/planted_step.h '#include "run/runner.h"'
 offence "lib/query must not include tests" lib/query/planted_query.h '#include "planted_tests.h"'
 offence "tools must not include lib/base" tools/planted.c '#include "base/planted_base.h"'
 offence "tools must not include lib/base" tools/planted.c '#include <base/planted_base.h>'

@@ -11,7 +11,7 @@
 
 #include "harness.h"
 #include "inputs.h"
-#include "pose/workspace.h"
+#include "run/workspace.h"
 #include "shapes.h"
 #include "soups.h"
 #include "starcontour.h"
@@ -608,7 +608,7 @@ static void check_workers(const fixture *f, sc_workspace *workspace, sc_query_op
     serial = fixture_ask(f, f->workspace, options, 100000);
     for (int way = 0; way < 2; ++way) {
         host h;
-        host_start(&h, HOST_BACKWARDS, workspace->workers);
+        host_start(&h, HOST_BACKWARDS, workspace->sizes.workers);
         options->tasks = &h.tasks;
         CHECK(answer_is_same(&serial, fixture_ask(f, workspace, options, 100000)));
         CHECK(h.parts > 0 && h.mistakes == 0);
@@ -638,12 +638,12 @@ static void ticks_of_workers(void)
             CHECK(sc_workspace_create(f.model, NULL, &f.workspace) == SC_OK);
             CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
             check_workers(&f, workspace, &options);
-            CHECK(workspace->pose_tick == 2);
-            workspace->pose_tick = 0x7fffffff;
+            CHECK(workspace->frame.epoch == 2);
+            workspace->frame.epoch = 0x7fffffff;
             soup_twist(f.posed, f.mesh.vertex_count, 2);
             soup_noise(f.posed, f.mesh.vertex_count, 0.1);
             check_workers(&f, workspace, &options);
-            CHECK(workspace->pose_tick == 2);
+            CHECK(workspace->frame.epoch == 2);
             sc_workspace_free(workspace);
         }
         fixture_stop(&f);

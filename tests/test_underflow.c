@@ -14,6 +14,7 @@
 #include "harness.h"
 #include "inputs.h"
 #include "pose/positions.h"
+#include "run/workspace.h"
 
 typedef struct scene {
     sc_model *model;

@@ -18,6 +18,10 @@
 #include "pose/pose_kernels.h"
 #include "pose/positions.h"
 #include "pose/refit.h"
+#include "run/workspace.h"
+
+/* What is asked where nothing is. */
+static sc_question nothing_asked;
 
 /* A waved cloth with its cones. */
 typedef struct scene {
@@ -39,9 +43,9 @@ static int open_scene(scene *s)
         return 0;
     soup_smooth(s->mesh.positions, s->mesh.vertex_count, 0.05);
     pose = input_plain_pose(s->mesh.positions, s->mesh.vertex_count);
-    sc_workspace_new_pose(s->model, s->workspace);
-    if (!CHECK(sc_positions_read(s->model, &pose, 24, s->workspace) == SC_OK)) return 0;
-    sc_dnc_update(s->model, s->workspace);
+    sc_workspace_begin(s->model, s->workspace, &nothing_asked);
+    if (!CHECK(sc_positions_read(s->model, &pose, 24, &s->workspace->frame) == SC_OK)) return 0;
+    sc_dnc_update(s->model, &s->workspace->frame);
     return 1;
 }
 
@@ -57,16 +61,16 @@ static void cones(void)
     scene s;
     if (open_scene(&s)) {
         const uint32_t *first = sc_model_level_first(s.model);
-        CHECK(sc_dnc_validate(s.model, s.workspace));
+        CHECK(sc_dnc_validate(s.model, &s.workspace->frame));
         for (uint32_t level = 0; level < s.model->level_count; ++level)
             for (uint32_t p = first[level]; p + 1 < first[level + 1]; ++p) {
-                uint16_t *mask = &s.workspace->mask[p];
+                uint16_t *mask = &s.workspace->frame.mask[p];
                 uint16_t bit = (uint16_t)(1u << test_random_below(SC_DNC_DIRECTIONS));
                 *mask = (uint16_t)(*mask ^ bit);
-                CHECK_MSG(!sc_dnc_validate(s.model, s.workspace), "patch %" PRIu32, p);
+                CHECK_MSG(!sc_dnc_validate(s.model, &s.workspace->frame), "patch %" PRIu32, p);
                 *mask = (uint16_t)(*mask ^ bit);
             }
-        CHECK(sc_dnc_validate(s.model, s.workspace));
+        CHECK(sc_dnc_validate(s.model, &s.workspace->frame));
     }
     close_scene(&s);
 }
@@ -96,19 +100,19 @@ static void cones_of_groups(void)
             pose = input_plain_pose(at, mesh.vertex_count);
             for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
                 const uint32_t count = model->leaf_count;
-                w->kernels = sc_kernels_for(isa);
-                sc_workspace_new_pose(model, w);
-                if (!CHECK(sc_positions_read(model, &pose, 24, w) == SC_OK)) break;
-                sc_dnc_update(model, w);
-                CHECK(sc_dnc_validate(model, w));
-                memcpy(all, w->mask + leaves, count * sizeof *all);
-                memset(w->mask + leaves, 0xff, count * sizeof *all);
+                w->frame.kernels = sc_kernels_for(isa);
+                sc_workspace_begin(model, w, &nothing_asked);
+                if (!CHECK(sc_positions_read(model, &pose, 24, &w->frame) == SC_OK)) break;
+                sc_dnc_update(model, &w->frame);
+                CHECK(sc_dnc_validate(model, &w->frame));
+                memcpy(all, w->frame.mask + leaves, count * sizeof *all);
+                memset(w->frame.mask + leaves, 0xff, count * sizeof *all);
                 for (uint32_t first = 0, end; first < count; first = end) {
                     end = first + 1 + test_random_below(40);
                     if (end > count) end = count;
-                    w->kernels->pose->load_leaves(model, w, first, end, 1);
+                    w->frame.kernels->pose->load_leaves(model, &w->frame, first, end, 1);
                 }
-                CHECK(!memcmp(all, w->mask + leaves, count * sizeof *all));
+                CHECK(!memcmp(all, w->frame.mask + leaves, count * sizeof *all));
             }
             for (uint32_t i = 0; i + SC_CONES_GROUP <= model->leaf_count; i += SC_CONES_GROUP) {
                 uint32_t sample = 0, others = 0;
@@ -129,12 +133,11 @@ static void cones_of_groups(void)
 }
 
 /* Ends raised, slopes and extents narrowed: each alone is noticed. */
-static void check_changes(const scene *s, const sc_projection *projection, int line,
-                          uint32_t segment)
+static void check_changes(const scene *s, int line, uint32_t segment)
 {
     sc_workspace *w = s->workspace;
     for (int side = 0; side < 2; ++side) {
-        sc_ray_bound *b = &w->bounds[line][segment].side[side], old = *b;
+        sc_ray_bound *b = &w->bounds.of[line][segment].side[side], old = *b;
         float extent = old.bx - old.ax;
         if (sc_contour_bounds_empty(b) || b->ay == -INFINITY) continue;
         for (int k = 0; k < 6; ++k) {
@@ -144,7 +147,7 @@ static void check_changes(const scene *s, const sc_projection *projection, int l
             if (k == 3) b->by += 1e8f;
             if (k == 4) b->least = b->most + 1 + fabsf(b->most);
             if (k == 5) b->most = old.least - 1 - fabsf(old.least);
-            CHECK_MSG(!sc_contour_bounds_validate(s->model, w, projection, line, segment),
+            CHECK_MSG(!sc_contour_bounds_validate(s->model, &w->bounds, line, segment),
                       "segment %" PRIu32 ", line %d, side %d, member %d", segment, line, side, k);
             *b = old;
         }
@@ -156,21 +159,21 @@ static void bounds(void)
     scene s;
     if (open_scene(&s)) {
         sc_workspace *w = s.workspace;
-        uint32_t mask = w->mask[0], parents = 0;
+        uint32_t mask = w->frame.mask[0], parents = 0;
         sc_projection projection;
         if (CHECK(mask != 0)) {
-            sc_dnc_projection(w, mask, &projection);
-            sc_workspace_new_projection(s.model, w);
+            sc_dnc_projection(&w->frame, mask, &projection);
+            sc_contour_bounds_begin(s.model, &w->frame.positions[0], &projection, &w->bounds);
             for (int line = 0; line < 2; ++line)
                 for (uint32_t i = s.model->segment_count; i-- > 0;) {
-                    uint32_t before = w->bounds_tick[line][i] == w->tick;
+                    uint32_t before = w->bounds.epoch_of[line][i] == w->bounds.epoch;
                     CHECK(before ==
-                          (uint32_t)sc_contour_bounds_validate(s.model, w, &projection, line, i));
-                    sc_contour_bounds_update(s.model, w, &projection, line, i);
-                    CHECK_MSG(sc_contour_bounds_validate(s.model, w, &projection, line, i),
+                          (uint32_t)sc_contour_bounds_validate(s.model, &w->bounds, line, i));
+                    sc_contour_bounds_update(s.model, &w->bounds, line, i);
+                    CHECK_MSG(sc_contour_bounds_validate(s.model, &w->bounds, line, i),
                               "segment %" PRIu32, i);
                     parents += i >= s.model->leaf_segment_count;
-                    check_changes(&s, &projection, line, i);
+                    check_changes(&s, line, i);
                 }
             CHECK(parents > 10);
         }
@@ -184,16 +187,16 @@ static void no_bounds(void)
     scene s;
     if (open_scene(&s)) {
         sc_workspace *w = s.workspace;
-        uint32_t mask = w->mask[0], i;
+        uint32_t mask = w->frame.mask[0], i;
         sc_projection projection;
         for (i = 0; i < 3 * s.model->vertex_count; ++i) s.mesh.positions[i] *= 1e60;
         if (CHECK(mask != 0)) {
-            sc_dnc_projection(w, mask, &projection);
-            sc_workspace_new_projection(s.model, w);
+            sc_dnc_projection(&w->frame, mask, &projection);
+            sc_contour_bounds_begin(s.model, &w->frame.positions[0], &projection, &w->bounds);
             for (i = 0; i < s.model->segment_count; ++i) {
-                sc_contour_bounds_update(s.model, w, &projection, 0, i);
-                CHECK(w->bounds[0][i].side[0].ay == -INFINITY);
-                CHECK(sc_contour_bounds_validate(s.model, w, &projection, 0, i));
+                sc_contour_bounds_update(s.model, &w->bounds, 0, i);
+                CHECK(w->bounds.of[0][i].side[0].ay == -INFINITY);
+                CHECK(sc_contour_bounds_validate(s.model, &w->bounds, 0, i));
             }
         }
     }
@@ -205,14 +208,14 @@ static void boxes(void)
 {
     scene s;
     if (open_scene(&s)) {
-        float *low = s.workspace->patch_boxes.side[0], right;
-        sc_refit_boxes(s.model, s.workspace);
+        float *low = s.workspace->frame.patch_boxes.side[0], right;
+        sc_refit_boxes(s.model, &s.workspace->frame);
         right = low[0];
         low[0] = 77;
-        sc_refit_boxes(s.model, s.workspace);
+        sc_refit_boxes(s.model, &s.workspace->frame);
         CHECK(low[0] == 77);
-        sc_workspace_new_pose(s.model, s.workspace);
-        sc_refit_boxes(s.model, s.workspace);
+        sc_workspace_begin(s.model, s.workspace, &nothing_asked);
+        sc_refit_boxes(s.model, &s.workspace->frame);
         CHECK(low[0] == right);
     }
     close_scene(&s);

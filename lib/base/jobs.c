@@ -8,13 +8,12 @@
 #include "base/assume.h"
 #include "base/atomic.h"
 
-void sc_jobs_divide(const sc_tasks *tasks, uint32_t count, sc_jobs_ranges *ranges)
+void sc_jobs_divide(uint32_t workers, uint32_t count, sc_jobs_ranges *ranges)
 {
     uint32_t i;
     ranges->count = count;
-    ranges->workers = tasks->workers;
-    for (i = 0; i < tasks->workers; i++)
-        ranges->taken[i] = ranges->by_owner[i] = ranges->by_others[i] = 0;
+    ranges->workers = workers;
+    for (i = 0; i < workers; i++) ranges->taken[i] = ranges->by_owner[i] = ranges->by_others[i] = 0;
 }
 
 static uint32_t range_begin(const sc_jobs_ranges *ranges, uint32_t owner)
@@ -117,7 +116,7 @@ uint32_t sc_jobs_loop(const sc_tasks *tasks, uint32_t count, uint32_t least, sc_
         body(context, 0, 0, count);
         return 1;
     }
-    sc_jobs_divide(tasks, parts, &l.ranges);
+    sc_jobs_divide(tasks->workers, parts, &l.ranges);
     tasks->finish(tasks->user, tasks->enqueue(tasks->user, run_range, &l, parts));
     return parts;
 }

@@ -23,7 +23,7 @@ typedef struct sc_jobs_ranges {
     size_t by_others[SC_WORKERS_MAX]; /* and by others, where these begin at the other end */
 } sc_jobs_ranges;
 
-void sc_jobs_divide(const sc_tasks *tasks, uint32_t count, sc_jobs_ranges *ranges);
+void sc_jobs_divide(uint32_t workers, uint32_t count, sc_jobs_ranges *ranges);
 
 /* The part to do for a worker that the host has given that part: each of count once, if so often
    asked. Workers begin in turn at the first and at the last of their range, and others at the other

@@ -12,7 +12,7 @@
  *
  * Places in leaf clusters are not as in leaf_point but turned: its sixteen are taken as a table of
  * four by four, of which rows and columns are exchanged. So are the points of a pose kept
- * (sc_workspace.point_at), for that is how vector units have them at hand.
+ * (sc_frame.point_at), for that is how vector units have them at hand.
  *
  * Contours in more than SC_LOOP_PIECES pieces or of more than SC_LOOP_PIECES_EDGES edges in pieces,
  * and of more than SC_LOOP_LEAVES leaf clusters or SC_LOOP_MAX edges, which are few, have an empty

@@ -179,14 +179,15 @@ static uint32_t cone(const float *at, const uint8_t *where)
 
 /* What cones there are among the first clusters of a group, before one at which a part of the pass
    begins. */
-static unsigned sample_before(const sc_model *model, const sc_workspace *w, uint32_t first)
+static unsigned sample_before(const sc_model *model, const sc_frame *frame, uint32_t first)
 {
     const uint32_t in = first % SC_CONES_GROUP;
     uint32_t leaf = first - in, end = in < SC_CONES_SAMPLE ? first : leaf + SC_CONES_SAMPLE;
     unsigned any = 0;
     for (; leaf < end; leaf++) {
         float each[4 * SC_LEAF_POINTS];
-        points_one_by_one(w, sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf, each);
+        points_one_by_one(frame, sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf,
+                          each);
         any |= cone(each, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf);
     }
     return any;
@@ -194,15 +195,15 @@ static unsigned sample_before(const sc_model *model, const sc_workspace *w, uint
 
 /* Clusters first to end - 1 with what points_of cannot do; any: what cones the group of the first
    has so far. */
-static void load_one_by_one(const sc_model *model, sc_workspace *w, uint32_t first, uint32_t end,
+static void load_one_by_one(const sc_model *model, sc_frame *frame, uint32_t first, uint32_t end,
                             int cones, unsigned *any)
 {
-    uint16_t *mask = w->mask + sc_model_first_leaf_patch(model);
+    uint16_t *mask = frame->mask + sc_model_first_leaf_patch(model);
     for (; first < end; first++) {
         const uint32_t in = first % SC_CONES_GROUP;
-        float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)first;
+        float *each = frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)first;
         const uint64_t leaf = first;
-        points_one_by_one(w, sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf, each);
+        points_one_by_one(frame, sc_model_leaf_point(model) + SC_LEAF_POINTS * leaf, each);
         if (!cones) continue;
         if (!in) *any = 0;
         mask[first] = 0;
@@ -213,28 +214,28 @@ static void load_one_by_one(const sc_model *model, sc_workspace *w, uint32_t fir
 }
 
 /* Clusters that follow each other, CONES at a time, and what is left one by one. */
-static SC_INLINE void load_some(const sc_model *model, sc_workspace *w, uint32_t first,
+static SC_INLINE void load_some(const sc_model *model, sc_frame *frame, uint32_t first,
                                 uint32_t end, int cones, int is_double, uint64_t stride)
 {
-    const points_frame frame = points_frame_of(w);
-    const lanes last = points_last(w);
+    const point_reader reader = point_reader_of(frame);
+    const lanes last = points_last(frame);
     const uint32_t aligned = (first + CONES - 1) / CONES * CONES;
-    unsigned any = cones ? sample_before(model, w, first) : 0;
+    unsigned any = cones ? sample_before(model, frame, first) : 0;
     if (aligned < end) {
         const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)aligned;
         const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)aligned;
-        uint16_t *mask = w->mask + sc_model_first_leaf_patch(model) + aligned;
-        float *each = w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)aligned;
-        load_one_by_one(model, w, first, aligned, cones, &any);
+        uint16_t *mask = frame->mask + sc_model_first_leaf_patch(model) + aligned;
+        float *each = frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)aligned;
+        load_one_by_one(model, frame, first, aligned, cones, &any);
         for (first = aligned; end - first >= CONES; first += CONES) {
             int i, odd = 0;
             EACH(i, CONES)
             odd |= points_have(point + SC_LEAF_POINTS * i, last, is_double);
             if (odd) {
-                load_one_by_one(model, w, first, first + CONES, cones, &any);
+                load_one_by_one(model, frame, first, first + CONES, cones, &any);
             } else {
                 EACH(i, CONES)
-                points_of(&frame, point + SC_LEAF_POINTS * i, is_double, stride,
+                points_of(&reader, point + SC_LEAF_POINTS * i, is_double, stride,
                           each + 4 * SC_LEAF_POINTS * i);
                 if (cones) {
                     const uint32_t in = first % SC_CONES_GROUP;
@@ -251,29 +252,29 @@ static SC_INLINE void load_some(const sc_model *model, sc_workspace *w, uint32_t
             mask += CONES;
         }
     }
-    load_one_by_one(model, w, first, end, cones, &any);
+    load_one_by_one(model, frame, first, end, cones, &any);
 }
 
-static void load_leaves(const sc_model *model, sc_workspace *w, uint32_t first, uint32_t end,
+static void load_leaves(const sc_model *model, sc_frame *frame, uint32_t first, uint32_t end,
                         int cones)
 {
-    const uint64_t stride = w->stride;
+    const uint64_t stride = frame->positions[0].stride;
     unsigned any = 0;
-    if (!w->fits_float && cones) any = sample_before(model, w, first);
-    if (!w->fits_float)
-        load_one_by_one(model, w, first, end, cones, &any);
-    else if (w->position_type == SC_DOUBLE && !cones)
-        load_some(model, w, first, end, 0, 1, stride);
-    else if (w->position_type == SC_DOUBLE && stride == 3 * sizeof(double))
-        load_some(model, w, first, end, 1, 1, 3 * sizeof(double));
-    else if (w->position_type == SC_DOUBLE)
-        load_some(model, w, first, end, 1, 1, stride);
+    if (!frame->fits_float && cones) any = sample_before(model, frame, first);
+    if (!frame->fits_float)
+        load_one_by_one(model, frame, first, end, cones, &any);
+    else if (frame->positions[0].type == SC_DOUBLE && !cones)
+        load_some(model, frame, first, end, 0, 1, stride);
+    else if (frame->positions[0].type == SC_DOUBLE && stride == 3 * sizeof(double))
+        load_some(model, frame, first, end, 1, 1, 3 * sizeof(double));
+    else if (frame->positions[0].type == SC_DOUBLE)
+        load_some(model, frame, first, end, 1, 1, stride);
     else if (!cones)
-        load_some(model, w, first, end, 0, 0, stride);
+        load_some(model, frame, first, end, 0, 0, stride);
     else if (stride == 3 * sizeof(float))
-        load_some(model, w, first, end, 1, 0, 3 * sizeof(float));
+        load_some(model, frame, first, end, 1, 0, 3 * sizeof(float));
     else
-        load_some(model, w, first, end, 1, 0, stride);
+        load_some(model, frame, first, end, 1, 0, stride);
 }
 
 #undef CONES

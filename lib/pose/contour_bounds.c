@@ -6,6 +6,7 @@
 #include "pose/contour_bounds.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/assume.h"
 #include "pose/positions.h"
@@ -16,11 +17,12 @@ static const double ROUNDING = 1e-15;
 
 static const sc_ray_bound NO_LINES = {INFINITY, INFINITY, -INFINITY, INFINITY, INFINITY, -INFINITY};
 
-void sc_contour_bounds_project(const sc_workspace *w, const sc_projection *projection, int line,
-                               uint32_t point, double *x, double *y)
+void sc_contour_bounds_project(const sc_contour_bounds *bounds, int line, uint32_t point, double *x,
+                               double *y)
 {
+    const sc_projection *projection = &bounds->projection;
     double p[3], d0, d1, d2, u, v;
-    sc_positions_get(w, point, p);
+    sc_positions_get(bounds->positions, point, p);
     d0 = p[0] - projection->origin[0];
     d1 = p[1] - projection->origin[1];
     d2 = p[2] - projection->origin[2];
@@ -144,9 +146,10 @@ static int bound_lines(const edge_lines *lines, double x_error, double y_error, 
 }
 
 /* From edges (paper, section 6.4); 0 if an edge's side or slope is not certain. */
-static int bound_edges(const sc_workspace *w, const sc_projection *projection, int line,
-                       const uint32_t *points, uint32_t edges, sc_segment_bounds *bounds)
+static int bound_edges(const sc_contour_bounds *b, int line, const uint32_t *points, uint32_t edges,
+                       sc_segment_bounds *bounds)
 {
+    const sc_projection *projection = &b->projection;
     double x_error = line == SC_LINE_VERTICAL ? projection->x_error : projection->y_error;
     double y_error = line == SC_LINE_VERTICAL ? projection->y_error : projection->x_error;
     edge_lines top, bottom;
@@ -155,10 +158,10 @@ static int bound_edges(const sc_workspace *w, const sc_projection *projection, i
     if (edges > EDGES_MAX) return 0;
     top.count = bottom.count = 0;
     top.not_finite = bottom.not_finite = 0;
-    sc_contour_bounds_project(w, projection, line, points[0], &x0, &y0);
+    sc_contour_bounds_project(b, line, points[0], &x0, &y0);
     for (i = 1; i <= edges; i++) {
         double x1, y1, dx, inverse;
-        sc_contour_bounds_project(w, projection, line, points[i], &x1, &y1);
+        sc_contour_bounds_project(b, line, points[i], &x1, &y1);
         dx = x1 - x0;
         inverse = 1 / dx;
         if (dx < -LEAST_RUN * x_error)
@@ -199,31 +202,43 @@ static inline void unite_ends(sc_ray_bound *b, const sc_ray_bound *child)
     if (at_b < (double)b->by) b->by = sc_boxes_below(at_b);
 }
 
-uint32_t sc_contour_bounds_update(const sc_model *model, sc_workspace *w,
-                                  const sc_projection *projection, int line, uint32_t segment)
+void sc_contour_bounds_begin(const sc_model *model, const sc_positions *positions,
+                             const sc_projection *projection, sc_contour_bounds *bounds)
 {
-    sc_segment_bounds *bounds = &w->bounds[line][segment];
+    int k;
+    if (bounds->epoch == 0xffff) {
+        for (k = 0; k < 2; k++)
+            memset(bounds->epoch_of[k], 0, model->segment_count * sizeof *bounds->epoch_of[k]);
+        bounds->epoch = 0;
+    }
+    bounds->epoch++;
+    bounds->positions = positions;
+    bounds->projection = *projection;
+}
+
+uint32_t sc_contour_bounds_update(const sc_model *model, sc_contour_bounds *b, int line,
+                                  uint32_t segment)
+{
+    sc_segment_bounds *of = b->of[line], *bounds = &of[segment];
     const uint32_t *first, *children = sc_model_children(model);
     uint32_t i, updated = 1;
     int side;
-    if (w->bounds_tick[line][segment] == w->tick) return 0;
-    w->bounds_tick[line][segment] = w->tick;
+    if (b->epoch_of[line][segment] == b->epoch) return 0;
+    b->epoch_of[line][segment] = b->epoch;
     if (segment < model->leaf_segment_count) {
         uint32_t begin = sc_model_segment_first(model)[segment];
-        if (!bound_edges(w, projection, line, sc_model_points(model) + begin,
+        if (!bound_edges(b, line, sc_model_points(model) + begin,
                          sc_model_segment_last(model)[segment] - begin, bounds))
             make_unbounded(bounds);
         return 1;
     }
     first = sc_model_segment_children(model) + (segment - model->leaf_segment_count);
     for (i = first[0]; i < first[1]; i++)
-        updated += sc_contour_bounds_update(model, w, projection, line, children[i]);
+        updated += sc_contour_bounds_update(model, b, line, children[i]);
     for (side = 0; side < 2; side++) {
         sc_ray_bound all = NO_LINES;
-        for (i = first[0]; i < first[1]; i++)
-            unite_extent(&all, &w->bounds[line][children[i]].side[side]);
-        for (i = first[0]; i < first[1]; i++)
-            unite_ends(&all, &w->bounds[line][children[i]].side[side]);
+        for (i = first[0]; i < first[1]; i++) unite_extent(&all, &of[children[i]].side[side]);
+        for (i = first[0]; i < first[1]; i++) unite_ends(&all, &of[children[i]].side[side]);
         bounds->side[side] = all;
     }
     return updated;
@@ -242,26 +257,18 @@ static int is_edge_bounded(const sc_segment_bounds *bounds, double x0, double y0
            flip * y0 + slope * ((double)b->bx - x0) >= (double)b->by;
 }
 
-/* The edges of a segment against bounds of it. */
-static int are_edges_bounded(const sc_model *model, const sc_workspace *w,
-                             const sc_projection *projection, int line, uint32_t segment,
-                             const sc_segment_bounds *bounds)
+int sc_contour_bounds_validate(const sc_model *model, const sc_contour_bounds *b, int line,
+                               uint32_t segment)
 {
     const uint32_t *points = sc_model_points(model);
     uint32_t i;
     double x0, y0, x1, y1;
+    if (b->epoch_of[line][segment] != b->epoch) return 0;
     for (i = sc_model_segment_first(model)[segment]; i < sc_model_segment_last(model)[segment];
          i++) {
-        sc_contour_bounds_project(w, projection, line, points[i], &x0, &y0);
-        sc_contour_bounds_project(w, projection, line, points[i + 1], &x1, &y1);
-        if (!is_edge_bounded(bounds, x0, y0, x1, y1)) return 0;
+        sc_contour_bounds_project(b, line, points[i], &x0, &y0);
+        sc_contour_bounds_project(b, line, points[i + 1], &x1, &y1);
+        if (!is_edge_bounded(&b->of[line][segment], x0, y0, x1, y1)) return 0;
     }
     return 1;
-}
-
-int sc_contour_bounds_validate(const sc_model *model, const sc_workspace *w,
-                               const sc_projection *projection, int line, uint32_t segment)
-{
-    return w->bounds_tick[line][segment] == w->tick &&
-           are_edges_bounded(model, w, projection, line, segment, &w->bounds[line][segment]);
 }

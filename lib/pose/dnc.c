@@ -36,7 +36,7 @@ static void join(uint16_t *mask, const uint32_t *child, uint32_t first, uint32_t
 
 typedef struct cones_pass {
     const sc_model *model;
-    sc_workspace *w;
+    sc_frame *frame;
 } cones_pass;
 
 static void update_cones(void *context, uint32_t level, uint32_t first, uint32_t end)
@@ -44,22 +44,23 @@ static void update_cones(void *context, uint32_t level, uint32_t first, uint32_t
     const cones_pass *pass = (const cones_pass *)context;
     const uint32_t leaves = sc_model_first_leaf_patch(pass->model);
     if (level + 1 < pass->model->level_count)
-        join(pass->w->mask, sc_model_child(pass->model), first, end);
+        join(pass->frame->mask, sc_model_child(pass->model), first, end);
     else
-        pass->w->kernels->pose->load_leaves(pass->model, pass->w, first - leaves, end - leaves, 1);
+        pass->frame->kernels->pose->load_leaves(pass->model, pass->frame, first - leaves,
+                                                end - leaves, 1);
 }
 
-void sc_dnc_update(const sc_model *model, sc_workspace *w)
+void sc_dnc_update(const sc_model *model, sc_frame *frame)
 {
     cones_pass pass;
     pass.model = model;
-    pass.w = w;
-    sc_levels_up(model, w->tasks, update_cones, &pass);
-    w->leaves_ready = 1;
+    pass.frame = frame;
+    sc_levels_up(model, frame->tasks, update_cones, &pass);
+    frame->leaves_ready = 1;
 }
 
 /* The cone of one triangle of a leaf cluster: as of a cluster of nothing else. */
-static uint32_t cone_of_triangle(const sc_model *model, const sc_workspace *w, uint32_t leaf,
+static uint32_t cone_of_triangle(const sc_model *model, const sc_frame *frame, uint32_t leaf,
                                  uint32_t i)
 {
     const uint8_t *corner = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
@@ -67,25 +68,25 @@ static uint32_t cone_of_triangle(const sc_model *model, const sc_workspace *w, u
     uint32_t k;
     for (k = 0; k < 3; k++)
         memset(where + SC_LEAF_MAX * k, corner[SC_LEAF_MAX * k + i], SC_LEAF_MAX);
-    return w->kernels->pose->cone(w->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, where);
+    return frame->kernels->pose->cone(frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, where);
 }
 
 /* The cone of a leaf cluster by those of its triangles. */
-static uint32_t cone_of_leaf(const sc_model *model, const sc_workspace *w, uint32_t leaf)
+static uint32_t cone_of_leaf(const sc_model *model, const sc_frame *frame, uint32_t leaf)
 {
     const uint32_t *first = sc_model_leaf_first(model) + leaf;
     uint32_t mask = (1u << SC_DNC_DIRECTIONS) - 1u, i;
-    for (i = 0; i < first[1] - first[0]; i++) mask &= cone_of_triangle(model, w, leaf, i);
+    for (i = 0; i < first[1] - first[0]; i++) mask &= cone_of_triangle(model, frame, leaf, i);
     return mask;
 }
 
-int sc_dnc_validate(const sc_model *model, const sc_workspace *w)
+int sc_dnc_validate(const sc_model *model, const sc_frame *frame)
 {
     const uint32_t *level_first = sc_model_level_first(model), *leaf = sc_model_leaf(model);
-    const uint16_t *of_leaf = w->mask + sc_model_first_leaf_patch(model);
+    const uint16_t *of_leaf = frame->mask + sc_model_first_leaf_patch(model);
     uint32_t level, p, l, any = 0;
     for (l = 0; l < model->leaf_count; l++) {
-        const uint32_t mask = cone_of_leaf(model, w, l), in = l % SC_CONES_GROUP;
+        const uint32_t mask = cone_of_leaf(model, frame, l), in = l % SC_CONES_GROUP;
         if (!in) any = 0;
         if (of_leaf[l] != (any || in < SC_CONES_SAMPLE ? mask : 0)) return 0;
         if (in < SC_CONES_SAMPLE) any |= mask;
@@ -94,7 +95,7 @@ int sc_dnc_validate(const sc_model *model, const sc_workspace *w)
         for (p = level_first[level]; p + 1 < level_first[level + 1]; p++) {
             uint32_t mask = (1u << SC_DNC_DIRECTIONS) - 1u;
             for (l = leaf[p]; l < leaf[p + 1]; l++) mask &= of_leaf[l];
-            if (mask != w->mask[p]) return 0;
+            if (mask != frame->mask[p]) return 0;
         }
     return 1;
 }
@@ -142,7 +143,7 @@ void sc_dnc_vectors(const uint16_t mask[SC_DNC_VECTORS], float u[3][SC_DNC_VECTO
     }
 }
 
-void sc_dnc_projection(const sc_workspace *w, uint32_t mask, sc_projection *projection)
+void sc_dnc_projection(const sc_frame *frame, uint32_t mask, sc_projection *projection)
 {
     float vector[2][3];
     double *u = projection->u, *v = projection->w;
@@ -151,10 +152,10 @@ void sc_dnc_projection(const sc_workspace *w, uint32_t mask, sc_projection *proj
     for (k = 0; k < 3; k++) {
         u[k] = (double)vector[0][k];
         v[k] = (double)vector[1][k];
-        projection->origin[k] = w->center[k];
+        projection->origin[k] = frame->center[k];
     }
     projection->x_error =
-        5 * 1.1102230246251565e-16 * (fabs(u[0]) + fabs(u[1]) + fabs(u[2])) * w->radius;
+        5 * 1.1102230246251565e-16 * (fabs(u[0]) + fabs(u[1]) + fabs(u[2])) * frame->radius;
     projection->y_error =
-        5 * 1.1102230246251565e-16 * (fabs(v[0]) + fabs(v[1]) + fabs(v[2])) * w->radius;
+        5 * 1.1102230246251565e-16 * (fabs(v[0]) + fabs(v[1]) + fabs(v[2])) * frame->radius;
 }

@@ -14,31 +14,32 @@
  * too small or too large for floats.
  */
 
-static void points_one_by_one(const sc_workspace *w, const uint32_t *point, float *each)
+static void points_one_by_one(const sc_frame *frame, const uint32_t *point, float *each)
 {
     int i;
     memset(each, 0, 4 * SC_LANES_COUNT * sizeof *each);
     for (i = 0; i < SC_LANES_COUNT; i++)
-        sc_positions_unit(w, point[i], each + 16 * (i % 4) + i / 4 * 4);
+        sc_positions_unit(frame, point[i], each + 16 * (i % 4) + i / 4 * 4);
 }
 
 #if SC_LANES_AVX512
 
 /* What points_of has in registers throughout a loop: where positions are, and how they get into the
    unit box. */
-typedef struct points_frame {
+typedef struct point_reader {
     const unsigned char *from;
     __m512d center;
     __m512 float_center, scale;
-} points_frame;
+} point_reader;
 
-static SC_INLINE points_frame points_frame_of(const sc_workspace *w)
+static SC_INLINE point_reader point_reader_of(const sc_frame *frame)
 {
-    points_frame f;
-    f.from = w->positions;
-    f.center = _mm512_broadcast_f64x4(_mm256_set_pd(0, w->center[2], w->center[1], w->center[0]));
+    point_reader f;
+    f.from = frame->positions[0].at;
+    f.center = _mm512_broadcast_f64x4(
+        _mm256_set_pd(0, frame->center[2], frame->center[1], frame->center[0]));
     f.float_center = _mm512_broadcast_f32x4(_mm256_cvtpd_ps(_mm512_castpd512_pd256(f.center)));
-    f.scale = _mm512_set1_ps((float)w->scale);
+    f.scale = _mm512_set1_ps((float)frame->scale);
     return f;
 }
 
@@ -48,7 +49,7 @@ static SC_INLINE __m128 points_float(const unsigned char *p)
 }
 
 /* Two vertices of doubles, moved and rounded. */
-static SC_INLINE __m256 points_two(const points_frame *f, const unsigned char *p,
+static SC_INLINE __m256 points_two(const point_reader *f, const unsigned char *p,
                                    const unsigned char *q)
 {
     __m512d d =
@@ -57,7 +58,7 @@ static SC_INLINE __m256 points_two(const points_frame *f, const unsigned char *p
     return _mm512_cvtpd_ps(_mm512_maskz_sub_pd(0x77, d, f->center));
 }
 
-static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, int is_double,
+static SC_INLINE void points_of(const point_reader *f, const uint32_t *point, int is_double,
                                 uint64_t stride, float *each)
 {
     int i;
@@ -83,24 +84,24 @@ static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, in
 
 #elif SC_LANES_AVX2
 
-typedef struct points_frame {
+typedef struct point_reader {
     const unsigned char *from;
     __m256d center;
     __m256 float_center, scale;
-} points_frame;
+} point_reader;
 
-static SC_INLINE points_frame points_frame_of(const sc_workspace *w)
+static SC_INLINE point_reader point_reader_of(const sc_frame *frame)
 {
-    points_frame f;
-    f.from = w->positions;
-    f.center = _mm256_set_pd(0, w->center[2], w->center[1], w->center[0]);
+    point_reader f;
+    f.from = frame->positions[0].at;
+    f.center = _mm256_set_pd(0, frame->center[2], frame->center[1], frame->center[0]);
     f.float_center = _mm256_set_m128(_mm256_cvtpd_ps(f.center), _mm256_cvtpd_ps(f.center));
-    f.scale = _mm256_set1_ps((float)w->scale);
+    f.scale = _mm256_set1_ps((float)frame->scale);
     return f;
 }
 
 /* A vertex, of doubles moved and rounded. */
-static SC_INLINE __m128 points_one(const points_frame *f, const unsigned char *p, int is_double)
+static SC_INLINE __m128 points_one(const point_reader *f, const unsigned char *p, int is_double)
 {
     if (!is_double) return _mm_loadu_ps((const float *)(const void *)p);
     return _mm256_cvtpd_ps(_mm256_sub_pd(
@@ -108,7 +109,7 @@ static SC_INLINE __m128 points_one(const points_frame *f, const unsigned char *p
         f->center));
 }
 
-static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, int is_double,
+static SC_INLINE void points_of(const point_reader *f, const uint32_t *point, int is_double,
                                 uint64_t stride, float *each)
 {
     const __m256 three = _mm256_castsi256_ps(_mm256_set_epi32(0, -1, -1, -1, 0, -1, -1, -1));
@@ -126,21 +127,21 @@ static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, in
 
 #elif SC_LANES_QUADS
 
-typedef struct points_frame {
+typedef struct point_reader {
     const unsigned char *from;
     sc_doubles2 center[2];
     sc_floats4 float_center, scale, three;
-} points_frame;
+} point_reader;
 
-static SC_INLINE points_frame points_frame_of(const sc_workspace *w)
+static SC_INLINE point_reader point_reader_of(const sc_frame *frame)
 {
     const uint32_t bits[4] = {~(uint32_t)0, ~(uint32_t)0, ~(uint32_t)0, 0};
-    points_frame f;
-    f.from = w->positions;
-    f.center[0] = SC_QUAD(setr_pd)(w->center[0], w->center[1]);
-    f.center[1] = SC_QUAD(set1_pd)(w->center[2]);
-    f.float_center = sc_quad_rounded(f.center[0], SC_QUAD(setr_pd)(w->center[2], 0));
-    f.scale = SC_QUAD(set1_ps)((float)w->scale);
+    point_reader f;
+    f.from = frame->positions[0].at;
+    f.center[0] = SC_QUAD(setr_pd)(frame->center[0], frame->center[1]);
+    f.center[1] = SC_QUAD(set1_pd)(frame->center[2]);
+    f.float_center = sc_quad_rounded(f.center[0], SC_QUAD(setr_pd)(frame->center[2], 0));
+    f.scale = SC_QUAD(set1_ps)((float)frame->scale);
     memcpy(&f.three, bits, sizeof f.three);
     return f;
 }
@@ -152,7 +153,7 @@ static SC_INLINE double points_one(const unsigned char *p)
     return d;
 }
 
-static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, int is_double,
+static SC_INLINE void points_of(const point_reader *f, const uint32_t *point, int is_double,
                                 uint64_t stride, float *each)
 {
     int i;
@@ -195,23 +196,23 @@ static SC_INLINE int points_have(const uint32_t *point, lanes last, int is_doubl
 }
 
 /* The number of the last vertex in each lane, bit by bit. */
-static SC_INLINE lanes points_last(const sc_workspace *w)
+static SC_INLINE lanes points_last(const sc_frame *frame)
 {
     float last;
-    memcpy(&last, &w->last_vertex, sizeof last);
+    memcpy(&last, &frame->positions[0].last, sizeof last);
     return lanes_all(last);
 }
 
 #else
 
-typedef const sc_workspace *points_frame;
+typedef const sc_frame *point_reader;
 
-static SC_INLINE points_frame points_frame_of(const sc_workspace *w)
+static SC_INLINE point_reader point_reader_of(const sc_frame *frame)
 {
-    return w;
+    return frame;
 }
 
-static SC_INLINE void points_of(const points_frame *f, const uint32_t *point, int is_double,
+static SC_INLINE void points_of(const point_reader *f, const uint32_t *point, int is_double,
                                 uint64_t stride, float *each)
 {
     (void)is_double;
@@ -227,28 +228,28 @@ static SC_INLINE int points_have(const uint32_t *point, lanes last, int is_doubl
     return 0;
 }
 
-static SC_INLINE lanes points_last(const sc_workspace *w)
+static SC_INLINE lanes points_last(const sc_frame *frame)
 {
-    (void)w;
+    (void)frame;
     return lanes_all(0);
 }
 
 #endif
 
 /* Sixteen points: at gets their x, then y, then z. */
-static inline void load_points(const sc_workspace *w, const uint32_t *point, float *at)
+static inline void load_points(const sc_frame *frame, const uint32_t *point, float *at)
 {
-    const points_frame f = points_frame_of(w);
-    const int is_double = w->position_type == SC_DOUBLE;
+    const point_reader f = point_reader_of(frame);
+    const int is_double = frame->positions[0].type == SC_DOUBLE;
     float each[4 * SC_LANES_COUNT];
     lanes row[3];
     int k;
-    if (!w->fits_float || points_have(point, points_last(w), is_double))
-        points_one_by_one(w, point, each);
+    if (!frame->fits_float || points_have(point, points_last(frame), is_double))
+        points_one_by_one(frame, point, each);
     else if (is_double)
-        points_of(&f, point, 1, w->stride, each);
+        points_of(&f, point, 1, frame->positions[0].stride, each);
     else
-        points_of(&f, point, 0, w->stride, each);
+        points_of(&f, point, 0, frame->positions[0].stride, each);
     lanes_turned(each, row);
     SC_UNROLL
     for (k = 0; k < 3; k++) lanes_store(at + SC_LANES_COUNT * k, row[k]);

@@ -6,7 +6,7 @@
 #ifndef SC_POSE_KERNELS_H
 #define SC_POSE_KERNELS_H
 
-#include "pose/workspace.h"
+#include "pose/frame.h"
 
 /*
  * Where nothing can be culled, as in heaps of rods, cones are a waste: those of a group of leaf
@@ -27,17 +27,15 @@ typedef struct sc_pose_kernels {
                                   double low[3], double high[3]);
     /* Fills point_at of leaf clusters first to end - 1, and their masks if cones; see pose/dnc.h.
        Groups may be cut. */
-    void (*load_leaves)(const sc_model *model, sc_workspace *workspace, uint32_t first,
-                        uint32_t end, int cones);
+    void (*load_leaves)(const sc_model *model, sc_frame *frame, uint32_t first, uint32_t end,
+                        int cones);
     /* The normal cone of one cluster's points, as in point_at, and SC_LEAF_MAX triangles given as
        in leaf_corner. */
     uint32_t (*cone)(const float *at, const uint8_t *where);
     /* Boxes of leaf clusters, then of patches of one level by those of their children; see
        pose/refit.h. */
-    void (*refit_leaves)(const sc_model *model, sc_workspace *workspace, uint32_t first,
-                         uint32_t end);
-    void (*refit_patches)(const sc_model *model, sc_workspace *workspace, uint32_t first,
-                          uint32_t end);
+    void (*refit_leaves)(const sc_model *model, sc_frame *frame, uint32_t first, uint32_t end);
+    void (*refit_patches)(const sc_model *model, sc_frame *frame, uint32_t first, uint32_t end);
 } sc_pose_kernels;
 
 #endif

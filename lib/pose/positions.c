@@ -10,6 +10,20 @@
 
 #include "pose/pose_kernels.h"
 
+void sc_positions_note(const sc_model *model, const sc_pose *pose, uint64_t stride,
+                       sc_positions *positions)
+{
+    const uint32_t last = model->vertex_count - 1; /* which has no fourth double */
+    positions->at = (const unsigned char *)pose->positions;
+    positions->stride = stride;
+    positions->type = pose->position_type;
+    positions->last = last;
+    positions->in_place = pose->position_type == SC_DOUBLE && stride % sizeof(double) == 0 &&
+                                  (uintptr_t)pose->positions % sizeof(double) == 0
+                              ? last
+                              : 0;
+}
+
 /* Widens the box of all points. */
 static inline void widen(const double p[3], double low[3], double high[3])
 {
@@ -21,26 +35,25 @@ static inline void widen(const double p[3], double low[3], double high[3])
 }
 
 /* The box of vertices first to end - 1, all of which are used; 0 if one is not finite. */
-static int find_extent_of_all(const sc_workspace *w, uint32_t first, uint32_t end, double low[3],
-                              double high[3])
+static int find_extent_of_all(const sc_pose_kernels *kernels, const sc_positions *positions,
+                              uint32_t first, uint32_t end, double low[3], double high[3])
 {
-    const sc_pose_kernels *kernels = w->kernels->pose;
-    const unsigned char *at = w->positions + first * w->stride;
+    const uint64_t stride = positions->stride;
+    const unsigned char *at = positions->at + first * stride;
     const double *doubles = (const double *)(const void *)at;
     const float *floats = (const float *)(const void *)at;
-    const uint64_t size = w->position_type == SC_DOUBLE ? sizeof *doubles : sizeof *floats;
+    const int is_double = positions->type == SC_DOUBLE;
+    const uint64_t size = is_double ? sizeof *doubles : sizeof *floats;
     double p[3], not_finite = 0; /* stays 0 unless something is NaN or infinite */
-    if (w->stride % size == 0 && (uintptr_t)at % size == 0) {
-        if (w->stride == 3 * size)
-            return w->position_type == SC_DOUBLE
-                       ? kernels->extent_of_doubles(doubles, end - first, low, high)
-                       : kernels->extent_of_floats(floats, end - first, low, high);
-        return w->position_type == SC_DOUBLE
-                   ? kernels->extent_of_apart_doubles(doubles, w->stride, end - first, low, high)
-                   : kernels->extent_of_apart_floats(floats, w->stride, end - first, low, high);
+    if (stride % size == 0 && (uintptr_t)at % size == 0) {
+        if (stride == 3 * size)
+            return is_double ? kernels->extent_of_doubles(doubles, end - first, low, high)
+                             : kernels->extent_of_floats(floats, end - first, low, high);
+        return is_double ? kernels->extent_of_apart_doubles(doubles, stride, end - first, low, high)
+                         : kernels->extent_of_apart_floats(floats, stride, end - first, low, high);
     }
     for (; first < end; first++) {
-        sc_positions_get(w, first, p);
+        sc_positions_get(positions, first, p);
         not_finite += (p[0] - p[0]) + (p[1] - p[1]) + (p[2] - p[2]);
         widen(p, low, high);
     }
@@ -48,7 +61,7 @@ static int find_extent_of_all(const sc_workspace *w, uint32_t first, uint32_t en
 }
 
 /* The same of those vertices that are used: of one run after the other, mostly all of them. */
-static int find_extent(const sc_model *model, const sc_workspace *w, double low[3], double high[3])
+static int find_extent(const sc_model *model, const sc_frame *frame, double low[3], double high[3])
 {
     const uint8_t *use = sc_model_vertex_use(model);
     const uint32_t end = model->vertex_count;
@@ -57,7 +70,9 @@ static int find_extent(const sc_model *model, const sc_workspace *w, double low[
     for (first = 0; first < end; first = stop + 1) {
         const uint8_t *unused = (const uint8_t *)memchr(use + first, SC_VERTEX_UNUSED, end - first);
         stop = unused ? (uint32_t)(unused - use) : end;
-        if (first < stop) finite &= find_extent_of_all(w, first, stop, low, high);
+        if (first < stop)
+            finite &= find_extent_of_all(frame->kernels->pose, &frame->positions[0], first, stop,
+                                         low, high);
     }
     return finite;
 }
@@ -70,30 +85,23 @@ static int find_extent(const sc_model *model, const sc_workspace *w, double low[
 enum { FLOAT_RANGE = 64 };
 
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
-                            sc_workspace *w)
+                            sc_frame *frame)
 {
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     int k, exponent;
-    w->positions = (const unsigned char *)pose->positions;
-    w->stride = stride;
-    w->position_type = pose->position_type;
-    w->leaves_ready = w->boxes_ready = 0;
-    w->in_place = 0;
-    w->last_vertex = model->vertex_count - 1;
-    if (pose->position_type == SC_DOUBLE && stride % sizeof(double) == 0 &&
-        (uintptr_t)pose->positions % sizeof(double) == 0) /* the last one has no fourth */
-        w->in_place = model->vertex_count - 1;
-    if (!find_extent(model, w, low, high)) return SC_ERROR_NOT_FINITE;
-    w->radius = 0;
+    sc_positions_note(model, pose, stride, &frame->positions[0]);
+    frame->leaves_ready = frame->boxes_ready = 0;
+    if (!find_extent(model, frame, low, high)) return SC_ERROR_NOT_FINITE;
+    frame->radius = 0;
     for (k = 0; k < 3; k++) {
-        w->center[k] = low[k] / 2 + high[k] / 2;
-        if (w->position_type == SC_FLOAT) w->center[k] = (double)(float)w->center[k];
-        if (high[k] - w->center[k] > w->radius) w->radius = high[k] - w->center[k];
-        if (w->center[k] - low[k] > w->radius) w->radius = w->center[k] - low[k];
+        frame->center[k] = low[k] / 2 + high[k] / 2;
+        if (pose->position_type == SC_FLOAT) frame->center[k] = (double)(float)frame->center[k];
+        if (high[k] - frame->center[k] > frame->radius) frame->radius = high[k] - frame->center[k];
+        if (frame->center[k] - low[k] > frame->radius) frame->radius = frame->center[k] - low[k];
     }
     /* the power of two above the radius, so that scaling is exact but where it underflows */
-    (void)frexp(w->radius, &exponent);
-    w->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
-    w->fits_float = -FLOAT_RANGE <= exponent && exponent <= FLOAT_RANGE;
+    (void)frexp(frame->radius, &exponent);
+    frame->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
+    frame->fits_float = -FLOAT_RANGE <= exponent && exponent <= FLOAT_RANGE;
     return SC_OK;
 }

@@ -11,21 +11,25 @@
 
 #include <string.h>
 
-#include "pose/workspace.h"
+#include "pose/frame.h"
 
 /* Notes where positions are, and sets center, radius and scale. The pose was checked but for what
    this reports: SC_ERROR_NOT_FINITE. With AVX-512 about 0.2 ns a vertex if positions are packed,
    0.5 if not, 3 if not aligned. One thread does it: what several read here, each a part, would go
    from core to core again when each makes its points. The center of floats is of floats, too. */
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
-                            sc_workspace *workspace);
+                            sc_frame *frame);
+
+/* Notes where the positions of a pose are. */
+void sc_positions_note(const sc_model *model, const sc_pose *pose, uint64_t stride,
+                       sc_positions *positions);
 
 /* The position of a point. */
-static inline void sc_positions_get(const sc_workspace *workspace, uint32_t point,
+static inline void sc_positions_get(const sc_positions *positions, uint32_t point,
                                     double position[3])
 {
-    const unsigned char *at = workspace->positions + point * workspace->stride;
-    if (workspace->position_type == SC_DOUBLE) {
+    const unsigned char *at = positions->at + point * positions->stride;
+    if (positions->type == SC_DOUBLE) {
         memcpy(position, at, 3 * sizeof *position);
     } else {
         float f[3];
@@ -38,27 +42,27 @@ static inline void sc_positions_get(const sc_workspace *workspace, uint32_t poin
 
 /* The position as four readable doubles, of which the last means nothing: where they are, or in
    *copy. */
-static inline const double *sc_positions_at(const sc_workspace *workspace, uint32_t point,
+static inline const double *sc_positions_at(const sc_positions *positions, uint32_t point,
                                             double copy[4])
 {
-    if (point < workspace->in_place)
-        return (const double *)(const void *)(workspace->positions + point * workspace->stride);
-    sc_positions_get(workspace, point, copy);
+    if (point < positions->in_place)
+        return (const double *)(const void *)(positions->at + point * positions->stride);
+    sc_positions_get(positions, point, copy);
     copy[3] = 0;
     return copy;
 }
 
-/* A point in the unit box: moved by the center, rounded to float and scaled, or scaled first where
-   that is beyond floats. */
-static inline void sc_positions_unit(const sc_workspace *workspace, uint32_t point, float unit[3])
+/* A point of a pose in the unit box: moved by the center, rounded to float and scaled, or scaled
+   first where that is beyond floats. */
+static inline void sc_positions_unit(const sc_frame *frame, uint32_t point, float unit[3])
 {
-    const double scale = workspace->scale;
+    const double scale = frame->scale;
     double p[3];
     int k;
-    sc_positions_get(workspace, point, p);
+    sc_positions_get(&frame->positions[0], point, p);
     for (k = 0; k < 3; k++) {
-        double moved = p[k] - workspace->center[k];
-        unit[k] = workspace->fits_float ? (float)moved * (float)scale : (float)(moved * scale);
+        double moved = p[k] - frame->center[k];
+        unit[k] = frame->fits_float ? (float)moved * (float)scale : (float)(moved * scale);
     }
 }
 

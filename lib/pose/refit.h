@@ -9,9 +9,9 @@
 #ifndef SC_POSE_REFIT_H
 #define SC_POSE_REFIT_H
 
-#include "pose/workspace.h"
+#include "pose/frame.h"
 
 /* Fills patch_boxes, and point_at, unless they are ready. */
-void sc_refit_boxes(const sc_model *model, sc_workspace *workspace);
+void sc_refit_boxes(const sc_model *model, sc_frame *frame);
 
 #endif

@@ -23,7 +23,7 @@ static SC_INLINE void boxes_of(const float *at, uint64_t stride, lanes side[6])
     }
 }
 
-static void refit_leaves(const sc_model *model, sc_workspace *w, uint32_t first, uint32_t end)
+static void refit_leaves(const sc_model *model, sc_frame *frame, uint32_t first, uint32_t end)
 {
     const uint32_t patch = sc_model_first_leaf_patch(model), length = 4 * SC_LEAF_POINTS;
     uint32_t leaf = first;
@@ -32,16 +32,16 @@ static void refit_leaves(const sc_model *model, sc_workspace *w, uint32_t first,
     int k;
     while (leaf < end && end - first >= SC_LANES_COUNT) {
         if (end - leaf < SC_LANES_COUNT) leaf = end - SC_LANES_COUNT; /* some once more */
-        boxes_of(w->point_at + length * (uint64_t)leaf, length, side);
+        boxes_of(frame->point_at + length * (uint64_t)leaf, length, side);
         SC_UNROLL
-        for (k = 0; k < 6; k++) lanes_store(w->patch_boxes.side[k] + patch + leaf, side[k]);
+        for (k = 0; k < 6; k++) lanes_store(frame->patch_boxes.side[k] + patch + leaf, side[k]);
         leaf += SC_LANES_COUNT;
     }
     for (; leaf < end; leaf++) { /* fewer than sixteen: each sixteen times */
-        boxes_of(w->point_at + length * (uint64_t)leaf, 0, side);
+        boxes_of(frame->point_at + length * (uint64_t)leaf, 0, side);
         for (k = 0; k < 6; k++) {
             lanes_store(one, side[k]);
-            w->patch_boxes.side[k][patch + leaf] = one[0];
+            frame->patch_boxes.side[k][patch + leaf] = one[0];
         }
     }
 }
@@ -50,7 +50,7 @@ static void refit_leaves(const sc_model *model, sc_workspace *w, uint32_t first,
  * Patches first to end - 1 of a level, of which each has one child or two. Mostly sixteen that
  * follow each other have two each, or one each, and then so do their children.
  */
-static void refit_patches(const sc_model *model, sc_workspace *w, uint32_t first, uint32_t end)
+static void refit_patches(const sc_model *model, sc_frame *frame, uint32_t first, uint32_t end)
 {
     const uint32_t *child = sc_model_child(model);
     uint32_t p, q;
@@ -61,7 +61,7 @@ static void refit_patches(const sc_model *model, sc_workspace *w, uint32_t first
         children = child[q] - from;
         SC_UNROLL
         for (k = 0; k < 3; k++) {
-            float *low = w->patch_boxes.side[k], *high = w->patch_boxes.side[k + 3];
+            float *low = frame->patch_boxes.side[k], *high = frame->patch_boxes.side[k + 3];
             if (children == 2 * SC_LANES_COUNT) {
                 lanes a = lanes_load(low + from), b = lanes_load(low + from + SC_LANES_COUNT);
                 lanes_store(low + p, lanes_smaller(lanes_evens(a, b), lanes_odds(a, b)));

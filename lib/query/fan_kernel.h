@@ -114,14 +114,14 @@ static inline lanes_mask find_turned(const sc_leaf_ready *ready, const float n[3
 /* The triangles of a cluster that may have more in common with others of it than what they share:
    two that share a point have not, if one of them is no such triangle. If half of them do not face
    the viewer, as of a tube, it is all at once. */
-static unsigned doubtful(const sc_query_state *state, uint32_t leaf)
+static unsigned doubtful(const sc_worker *w, uint32_t leaf)
 {
-    const sc_model *model = state->model;
+    const sc_model *model = w->model;
     const uint32_t *first = sc_model_leaf_first(model) + leaf;
     const uint16_t *fan = sc_model_leaf_fan(model) + 2 * (uint64_t)leaf;
     const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
-    const float *n = slab_of(state, leaf, 0)->direction;
-    const sc_leaf_ready *ready = ready_leaf(state, leaf, 0);
+    const float *n = slab_of(w, leaf, ready_place(w, leaf))->direction;
+    const sc_leaf_ready *ready = ready_leaf(w, leaf, ready_place(w, leaf));
     const unsigned triangles = (1u << (first[1] - first[0])) - 1u;
     unsigned held_all = ~0u, turns_once = 0, settled, open, i;
     float across[2][3];
@@ -129,7 +129,7 @@ static unsigned doubtful(const sc_query_state *state, uint32_t leaf)
     lanes_index corner[3];
     lanes_mask turned[3], ray[2][2][3];
     int k;
-    lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
+    lanes_turned(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
     SC_UNROLL
     for (k = 0; k < 3; k++) corner[k] = lanes_index_load(where + SC_LEAF_MAX * k);
     turned[0] = turned[1] = turned[2] = find_turned(ready, n);

@@ -48,17 +48,17 @@ sc_status sc_filter_read(const sc_hooks *hooks, const sc_model *model, uint32_t 
     return status ? status : check_filter(hooks, model, kind, filter);
 }
 
-sc_status sc_filter_begin(sc_query_state *state, const sc_hooks *hooks, const sc_model *model,
+sc_status sc_filter_begin(sc_question *question, const sc_hooks *hooks, const sc_model *model,
                           const sc_filter *from, sc_filter *filter)
 {
-    uint32_t kind = state->options.pairs;
+    uint32_t kind = question->options.pairs;
     sc_status status = sc_filter_read(hooks, model, kind, from, filter);
     if (status) return status;
-    state->filter = filter;
-    state->sifts = filter->vertex_groups || filter->triangle_groups;
+    question->filter = filter;
+    question->sifts = filter->vertex_groups || filter->triangle_groups;
     /* an edge and a triangle that share no vertex are one edge apart if their triangles share
        one */
-    state->drops_neighbors = filter->ignore_rings > (kind == SC_PAIRS_EDGE);
+    question->drops_neighbors = filter->ignore_rings > (kind == SC_PAIRS_EDGE);
     return SC_OK;
 }
 
@@ -70,12 +70,12 @@ static int groups_collide(sc_group a, sc_group b)
 }
 
 /* The group of some points together. */
-static sc_group group_of_points(const sc_query_state *state, const uint32_t *points, uint32_t count)
+static sc_group group_of_points(const sc_worker *w, const uint32_t *points, uint32_t count)
 {
     sc_group all = {0, 0};
     uint32_t i;
     for (i = 0; i < count; i++) {
-        const sc_group *one = &state->filter->vertex_groups[points[i]];
+        const sc_group *one = &w->question->filter->vertex_groups[points[i]];
         all.category |= one->category;
         all.mask |= one->mask;
     }
@@ -85,27 +85,27 @@ static sc_group group_of_points(const sc_query_state *state, const uint32_t *poi
 /* ---- rings ---- */
 
 /* Marks the points at most steps edges away from the three of a triangle. */
-static void mark_ball(const sc_model *model, sc_workspace *w, const uint32_t center[3],
+static void mark_ball(const sc_model *model, sc_ball *ball, const uint32_t center[3],
                       uint32_t steps)
 {
     const uint32_t *first = sc_model_around_first(model), *around = sc_model_around(model);
     uint32_t head = 0, tail = 0, end, i;
-    if (w->ball_tick == 0xffff) {
-        memset(w->ball, 0, model->vertex_count * sizeof *w->ball);
-        w->ball_tick = 0;
+    if (ball->epoch == 0xffff) {
+        memset(ball->epoch_of, 0, model->vertex_count * sizeof *ball->epoch_of);
+        ball->epoch = 0;
     }
-    w->ball_tick++;
+    ball->epoch++;
     for (i = 0; i < 3; i++)
-        if (w->ball[center[i]] != w->ball_tick) {
-            w->ball[center[i]] = w->ball_tick;
-            w->ball_queue[tail++] = center[i];
+        if (ball->epoch_of[center[i]] != ball->epoch) {
+            ball->epoch_of[center[i]] = ball->epoch;
+            ball->queue[tail++] = center[i];
         }
     for (; steps && head < tail; steps--)
         for (end = tail; head < end; head++)
-            for (i = first[w->ball_queue[head]]; i < first[w->ball_queue[head] + 1]; i++)
-                if (w->ball[around[i]] != w->ball_tick) {
-                    w->ball[around[i]] = w->ball_tick;
-                    w->ball_queue[tail++] = around[i];
+            for (i = first[ball->queue[head]]; i < first[ball->queue[head] + 1]; i++)
+                if (ball->epoch_of[around[i]] != ball->epoch) {
+                    ball->epoch_of[around[i]] = ball->epoch;
+                    ball->queue[tail++] = around[i];
                 }
 }
 
@@ -118,43 +118,39 @@ static const uint32_t *points_of(const sc_model *model, uint32_t triangle)
  * Whether some points are less than ignore_rings edges away from a triangle. The ball round a
  * triangle serves all pairs with it that follow each other, as they mostly do.
  */
-static int is_near(const sc_query_state *state, uint32_t center, const uint32_t *points,
-                   uint32_t count)
+static int is_near(sc_worker *w, uint32_t center, const uint32_t *points, uint32_t count)
 {
-    sc_workspace *w = state->workspace;
     uint32_t i;
-    if (w->ball_center != center) {
-        mark_ball(state->model, w, points_of(state->model, center),
-                  state->filter->ignore_rings - 1);
-        w->ball_center = center;
+    if (w->ball.center != center) {
+        mark_ball(w->model, &w->ball, points_of(w->model, center),
+                  w->question->filter->ignore_rings - 1);
+        w->ball.center = center;
     }
     for (i = 0; i < count; i++)
-        if (w->ball[points[i]] == w->ball_tick) return 1;
+        if (w->ball.epoch_of[points[i]] == w->ball.epoch) return 1;
     return 0;
 }
 
 /* ---- all together ---- */
 
-void sc_filter_sift(sc_query_state *state)
+uint32_t sc_filter_sift(const sc_worker *w, sc_pair *pairs, uint32_t count)
 {
-    const sc_filter *f = state->filter;
-    const uint32_t *triangle = sc_model_triangle(state->model);
-    const uint32_t *id = sc_model_triangle_id(state->model);
-    sc_workspace *w = state->workspace;
+    const sc_filter *f = w->question->filter;
+    const uint32_t *triangle = sc_model_triangle(w->model);
+    const uint32_t *id = sc_model_triangle_id(w->model);
     uint32_t i, kept = 0;
-    for (i = 0; i < w->candidate_count; i++) {
-        const sc_pair pair = w->candidates[i];
+    for (i = 0; i < count; i++) {
+        const uint32_t a = pairs[i].a & SC_ITEM, b = pairs[i].b;
         if (f->triangle_groups &&
-            !groups_collide(f->triangle_groups[id[pair.a]], f->triangle_groups[id[pair.b]]))
+            !groups_collide(f->triangle_groups[id[a]], f->triangle_groups[id[b]]))
             continue;
         /* an edge's group is part of its triangle's */
-        if (f->vertex_groups &&
-            !groups_collide(group_of_points(state, triangle + 3 * (uint64_t)pair.a, 3),
-                            group_of_points(state, triangle + 3 * (uint64_t)pair.b, 3)))
+        if (f->vertex_groups && !groups_collide(group_of_points(w, triangle + 3 * (uint64_t)a, 3),
+                                                group_of_points(w, triangle + 3 * (uint64_t)b, 3)))
             continue;
-        w->candidates[kept++] = pair;
+        pairs[kept++] = pairs[i];
     }
-    w->candidate_count = kept;
+    return kept;
 }
 
 static int is_ignored(const sc_filter *f, uint32_t a, uint32_t b)
@@ -173,23 +169,23 @@ static int is_ignored(const sc_filter *f, uint32_t a, uint32_t b)
     return low < f->ignore_count && f->ignore[low].a == a && f->ignore[low].b == b;
 }
 
-int sc_filter_admits(sc_query_state *state, uint32_t a, uint32_t b)
+int sc_filter_admits(sc_worker *w, uint32_t a, uint32_t b)
 {
-    const sc_filter *f = state->filter;
-    int is_edge = state->options.pairs == SC_PAIRS_EDGE;
+    const sc_filter *f = w->question->filter;
+    int is_edge = w->question->options.pairs == SC_PAIRS_EDGE;
     uint32_t triangle = is_edge ? a / 3 : a, count = is_edge ? 2 : 3, points[3], k;
-    const uint32_t *corner = points_of(state->model, triangle);
+    const uint32_t *corner = points_of(w->model, triangle);
     for (k = 0; k < count; k++) points[k] = corner[is_edge ? (a + k) % 3 : k];
     if (f->triangle_groups && !groups_collide(f->triangle_groups[triangle], f->triangle_groups[b]))
         return 0;
-    if (f->vertex_groups && !groups_collide(group_of_points(state, points, count),
-                                            group_of_points(state, points_of(state->model, b), 3)))
+    if (f->vertex_groups && !groups_collide(group_of_points(w, points, count),
+                                            group_of_points(w, points_of(w->model, b), 3)))
         return 0;
     if (is_ignored(f, a, b)) return 0;
     if (f->ignore_rings) {
-        if (is_edge || state->workspace->ball_center != a) {
-            if (is_near(state, b, points, count)) return 0;
-        } else if (is_near(state, a, points_of(state->model, b), 3)) {
+        if (is_edge || w->ball.center != a) {
+            if (is_near(w, b, points, count)) return 0;
+        } else if (is_near(w, a, points_of(w->model, b), 3)) {
             return 0;
         }
     }

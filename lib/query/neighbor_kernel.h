@@ -40,17 +40,8 @@ typedef struct neighbors {
 /* Numbers of these: of p, of both ends of a and of b among the points of their leaf cluster, and of
    t and u among its triangles. */
 typedef struct neighbor_rows {
-    lanes_bytes row[SC_NEIGHBORS_ROWS];
+    lanes_bytes row[SC_OPEN_NUMBERS];
 } neighbor_rows;
-
-/* Pairs that no direction tells apart, of any leaf clusters. Behind the last are such as were here
-   before. */
-typedef struct open_neighbors {
-    uint32_t number[SC_NEIGHBORS_ROWS]
-                   [2 * SC_LANES_COUNT]; /* as above, of all points and triangles */
-    float extent[2 * SC_LANES_COUNT];    /* of both clusters */
-    unsigned count;
-} open_neighbors;
 
 /* A leaf cluster: where its points are, which are the corners of its triangles, and what these are
    called: points of two clusters, or of one, are the same if they have the same name. */
@@ -60,13 +51,13 @@ typedef struct neighborhood {
 } neighborhood;
 
 /* Of clusters a and b. Points are called as they are numbered in a. */
-static inline void find_points(const sc_query_state *state, uint32_t a, uint32_t b, neighborhood *n)
+static inline void find_points(const sc_worker *w, uint32_t a, uint32_t b, neighborhood *n)
 {
-    const uint32_t *point = sc_model_leaf_point(state->model);
-    const uint8_t *corner = sc_model_leaf_corner(state->model) + 3 * SC_LEAF_MAX * (uint64_t)b;
+    const uint32_t *point = sc_model_leaf_point(w->model);
+    const uint8_t *corner = sc_model_leaf_corner(w->model) + 3 * SC_LEAF_MAX * (uint64_t)b;
     lanes_bytes row[3], name;
     int k;
-    n->at = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)b;
+    n->at = w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)b;
     SC_UNROLL
     for (k = 0; k < 3; k++) row[k] = lanes_bytes_load(corner + SC_LEAF_MAX * k);
     n->name = n->corner = lanes_triples_of(row);
@@ -320,20 +311,22 @@ static inline unsigned side_parts(const neighbors *x, lanes extent)
     return apart;
 }
 
-/* Takes those of the last pairs that are open, sixteen or all, that may meet outside of what they
+/* Of the last pairs that are open, up to sixteen, leaves those that may meet outside of what they
    share. */
-static void settle_neighbors(sc_query_state *state, open_neighbors *open)
+static void settle_open(sc_worker *w, uint32_t most)
 {
-    const unsigned some = open->count < SC_LANES_COUNT ? open->count : SC_LANES_COUNT;
-    const unsigned at = open->count - some;
+    sc_open_pairs *open = w->lists.open;
+    uint32_t *left = &w->lists.count[SC_LIST_OPEN];
+    const unsigned count = *left < most ? *left : most;
+    const unsigned some = count < SC_LANES_COUNT ? count : SC_LANES_COUNT;
+    const unsigned at = *left -= some;
     const lanes extent = lanes_load(open->extent + at);
-    const uint32_t *triangle = sc_model_triangle(state->model);
+    const uint32_t *triangle = sc_model_triangle(w->model);
     unsigned mask = (1u << some) - 1u, rest;
     neighbors x;
     lanes_mask same[3];
     lanes from[3], to[3];
     int i, k, c;
-    open->count = at;
     SC_UNROLL
     for (k = 0; k < 5; k++) {
         uint32_t row[SC_LANES_COUNT];
@@ -341,7 +334,7 @@ static void settle_neighbors(sc_query_state *state, open_neighbors *open)
             uint32_t number = open->number[k][at + (unsigned)i];
             row[i] = (number & ~15u) | (number << 2 & 12u) | (number >> 2 & 3u);
         }
-        lanes_rows(state->workspace->point_at, row, &to[0], &to[1], &to[2]);
+        lanes_rows(w->frame->point_at, row, &to[0], &to[1], &to[2]);
         SC_UNROLL
         for (c = 0; c < 3; c++) {
             if (k == 0)
@@ -361,46 +354,47 @@ static void settle_neighbors(sc_query_state *state, open_neighbors *open)
     }
     for (rest = mask; rest; rest &= rest - 1) {
         const unsigned lane = at + sc_bits_lowest(rest);
-        sc_fetch(triangle + 3 * (uint64_t)open->number[5][lane]);
+        sc_fetch(triangle + 3 * (uint64_t)(open->number[5][lane] & SC_ITEM));
         sc_fetch(triangle + 3 * (uint64_t)open->number[6][lane]);
     }
     for (; mask; mask &= mask - 1) {
         unsigned lane = at + sc_bits_lowest(mask);
-        sc_candidates_add_neighbors(state, open->number[5][lane], open->number[6][lane]);
+        sc_decide_add_neighbors(w, open->number[5][lane], open->number[6][lane]);
     }
 }
 
 /* Two leaf clusters, or one twice, of which pairs are taken. */
 typedef struct neighborhoods {
     neighborhood a, b;
-    uint32_t first[SC_NEIGHBORS_ROWS]; /* what is added to numbers to list pairs as open */
-    float extent;                      /* of both */
-    int take_edges;                    /* pairs that share an edge are wanted */
+    uint32_t first[SC_OPEN_NUMBERS]; /* what is added to numbers to list pairs as open */
+    float extent;                    /* of both */
+    int take_edges;                  /* pairs that share an edge are wanted */
 } neighborhoods;
 
 /* Sets all but what the triangles' corners are. */
-static inline void begin_neighbors(const sc_query_state *state, const sc_leaf_pair *p,
+static inline void begin_neighbors(const sc_worker *w, const sc_leaf_pair *p, float extent,
                                    neighborhoods *n)
 {
-    const uint32_t *first = sc_model_leaf_first(state->model);
+    const uint32_t *first = sc_model_leaf_first(w->model);
     n->first[0] = n->first[1] = n->first[2] = SC_LEAF_POINTS * p->a;
     n->first[3] = n->first[4] = SC_LEAF_POINTS * p->b;
-    n->first[5] = first[p->a];
+    n->first[5] = first[p->a] | p->bit;
     n->first[6] = first[p->b];
-    n->extent = pair_extent(state, p->a, p->b);
-    n->take_edges =
-        state->options.pairs != SC_PAIRS_EDGE && state->options.contact != SC_CONTACT_PROPER;
+    n->extent = extent;
+    n->take_edges = w->question->options.pairs != SC_PAIRS_EDGE &&
+                    w->question->options.contact != SC_CONTACT_PROPER;
 }
 
 /* Lists pairs as open. */
-static inline void add_open(sc_query_state *state, unsigned mask, const neighborhoods *n,
-                            const neighbor_rows *numbers, open_neighbors *open)
+static inline void add_open(sc_worker *w, unsigned mask, const neighborhoods *n,
+                            const neighbor_rows *numbers)
 {
-    lanes_store(open->extent + open->count, lanes_all(n->extent));
-    lanes_list_rows(mask, numbers->row, n->first, SC_NEIGHBORS_ROWS, &open->number[0][open->count],
-                    2 * SC_LANES_COUNT);
-    open->count += sc_bits_count(mask);
-    if (open->count >= SC_LANES_COUNT) settle_neighbors(state, open);
+    sc_open_pairs *open = w->lists.open;
+    uint32_t *count = &w->lists.count[SC_LIST_OPEN];
+    lanes_store(open->extent + *count, lanes_all(n->extent));
+    lanes_list_rows(mask, numbers->row, n->first, SC_OPEN_NUMBERS, &open->number[0][*count],
+                    SC_OPEN_MAX + 16);
+    *count += sc_bits_count(mask);
 }
 
 /* The lanes of those of sixteen from a number on that are below an end. */
@@ -409,18 +403,18 @@ static inline unsigned lanes_before(unsigned at, unsigned end)
     return end - at < SC_LANES_COUNT ? (1u << (end - at)) - 1u : 0xffffu;
 }
 
-/* Takes those of pairs of triangles with these numbers, of two leaf clusters or one, that may meet
+/* Lists those of pairs of triangles with these numbers, of two leaf clusters or one, that may meet
    outside of what they share. */
-static void take_neighbors(sc_query_state *state, const sc_leaf_pair *p, uint8_t *of_a,
-                           uint8_t *of_b, unsigned count, open_neighbors *open)
+static void take_neighbors(sc_worker *w, const sc_leaf_pair *p, float extent, uint8_t *of_a,
+                           uint8_t *of_b, unsigned count)
 {
     neighborhoods n;
     neighbors x;
     neighbor_rows numbers;
     unsigned at;
-    begin_neighbors(state, p, &n);
-    find_points(state, p->a, p->a, &n.a);
-    find_points(state, p->a, p->b, &n.b);
+    begin_neighbors(w, p, extent, &n);
+    find_points(w, p->a, p->a, &n.a);
+    find_points(w, p->a, p->b, &n.b);
     memset(of_a + count, 0, SC_LANES_COUNT); /* fills the last row */
     memset(of_b + count, 0, SC_LANES_COUNT);
     for (at = 0; at < count; at += SC_LANES_COUNT) {
@@ -429,16 +423,16 @@ static void take_neighbors(sc_query_state *state, const sc_leaf_pair *p, uint8_t
         odd = mask & ~(x.point | x.edge);
         mask &= n.take_edges ? x.point | x.edge : x.point;
         mask &= ~(direction_parts(&x, n.extent) & x.point);
-        if (mask) add_open(state, mask, &n, &numbers, open);
+        if (mask) add_open(w, mask, &n, &numbers);
         for (; odd; odd &= odd - 1) {
             uint32_t lane = at + sc_bits_lowest(odd);
-            sc_candidates_add_neighbors(state, n.first[5] + of_a[lane], n.first[6] + of_b[lane]);
+            sc_decide_add_neighbors(w, n.first[5] + of_a[lane], n.first[6] + of_b[lane]);
         }
     }
 }
 
 /* The same of pairs that the model lists. */
-static void take_listed(sc_query_state *state, const sc_leaf_pair *p, open_neighbors *open)
+static void take_listed(sc_worker *w, const sc_leaf_pair *p, float extent)
 {
     const uint16_t *list = p->list + SC_SHARE_ROWS + sc_bits_count(p->list[SC_SHARE_TRIANGLES]);
     const unsigned points = sc_share_points(p->list), edges = points + sc_share_edges(p->list);
@@ -447,20 +441,20 @@ static void take_listed(sc_query_state *state, const sc_leaf_pair *p, open_neigh
     neighbors x;
     neighbor_rows numbers;
     unsigned at, mask;
-    begin_neighbors(state, p, &n);
-    find_points(state, p->a, p->a, &n.a);
-    find_points(state, p->b, p->b, &n.b);
+    begin_neighbors(w, p, extent, &n);
+    find_points(w, p->a, p->a, &n.a);
+    find_points(w, p->b, p->b, &n.b);
     for (at = 0; at < points; at += SC_LANES_COUNT) {
         load_listed(&n.a, &n.b, list + at, &x, &numbers);
         mask = lanes_before(at, points) & ~direction_parts(&x, n.extent);
-        if (mask) add_open(state, mask, &n, &numbers, open);
+        if (mask) add_open(w, mask, &n, &numbers);
     }
     for (at = points; n.take_edges && at < edges; at += SC_LANES_COUNT) {
         load_listed(&n.a, &n.b, list + at, &x, &numbers);
         numbers.row[3] = numbers.row[4];
-        add_open(state, lanes_before(at, edges), &n, &numbers, open);
+        add_open(w, lanes_before(at, edges), &n, &numbers);
     }
     for (at = edges; at < count; at++)
-        sc_candidates_add_neighbors(state, n.first[5] + (list[at] & 15u),
-                                    n.first[6] + (list[at] >> 4 & 15u));
+        sc_decide_add_neighbors(w, n.first[5] + (list[at] & 15u),
+                                n.first[6] + (list[at] >> 4 & 15u));
 }

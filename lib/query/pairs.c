@@ -14,76 +14,78 @@
 
 /* Entries of the caller's array are claimed for many pairs at once, so that no two workers write to
    one. */
-static void deliver(sc_query_state *state)
+static void deliver(sc_worker *w)
 {
-    sc_workspace *w = state->workspace;
-    uint64_t at = sc_atomic_add(&state->share->claimed, SC_FOUND_MAX);
+    uint64_t at = sc_atomic_add(&w->share->claimed, SC_FOUND_MAX);
     w->found_count = 0;
-    if (at + SC_FOUND_MAX <= state->capacity)
-        memcpy(state->pairs + at, w->found, sizeof(sc_pair) * SC_FOUND_MAX);
+    if (at + SC_FOUND_MAX <= w->question->capacity)
+        memcpy(w->question->pairs + at, w->found, sizeof(sc_pair) * SC_FOUND_MAX);
     else
-        sc_atomic_write(&state->share->halt, 1); /* too short for certain */
+        sc_atomic_write(&w->share->halt, 1); /* too short for certain */
 }
 
-static void take_shared(sc_query_state *state, const sc_pair *pairs, uint32_t count)
+static void take_shared(sc_worker *w, const sc_pair *pairs, uint32_t count)
 {
-    sc_workspace *w = state->workspace;
     uint32_t some;
     for (; count; pairs += some, count -= some) {
         some = SC_FOUND_MAX - w->found_count < count ? SC_FOUND_MAX - w->found_count : count;
         memcpy(w->found + w->found_count, pairs, some * sizeof *pairs);
         w->found_count += some;
-        if (w->found_count == SC_FOUND_MAX) deliver(state);
+        if (w->found_count == SC_FOUND_MAX) deliver(w);
     }
 }
 
-void sc_pairs_take(sc_query_state *state, uint32_t a, uint32_t b)
+void sc_pairs_take(sc_worker *w, uint32_t a, uint32_t b)
 {
+    const sc_question *q = w->question;
     sc_pair pair;
-    if (state->filter && (state->stop || !sc_filter_admits(state, a, b))) return;
+    if (q->filter && (w->stop || !sc_filter_admits(w, a, b))) return;
     pair.a = a;
     pair.b = b;
-    state->count++;
-    if (state->options.output == SC_OUTPUT_ANY) {
-        state->stop = 1;
-        if (state->share) sc_atomic_write(&state->share->halt, 1);
+    w->count++;
+    /* the caller's function may have set the flag: it is not to be called again then */
+    if (q->filter && q->options.cancel) sc_worker_ask_flag(w);
+    if (q->options.output == SC_OUTPUT_ANY) {
+        w->stop = 1;
+        if (w->share) sc_atomic_write(&w->share->halt, 1);
     }
-    if (state->options.output != SC_OUTPUT_PAIRS || state->capacity == 0) return;
-    if (state->share) {
-        take_shared(state, &pair, 1);
+    if (q->options.output != SC_OUTPUT_PAIRS || q->capacity == 0) return;
+    if (w->share) {
+        take_shared(w, &pair, 1);
         return;
     }
-    if (state->count <= state->capacity) {
-        state->pairs[state->count - 1] = pair;
+    if (w->count <= q->capacity) {
+        q->pairs[w->count - 1] = pair;
         return;
     }
-    if (state->count == state->capacity + 1) sc_sort_heapify(state->pairs, state->capacity);
-    if (sc_sort_less(pair, state->pairs[0])) {
-        state->pairs[0] = pair;
-        sc_sort_sift(state->pairs, state->capacity, 0);
+    if (w->count == q->capacity + 1) sc_sort_heapify(q->pairs, q->capacity);
+    if (sc_sort_less(pair, q->pairs[0])) {
+        q->pairs[0] = pair;
+        sc_sort_sift(q->pairs, q->capacity, 0);
     }
 }
 
-void sc_pairs_take_all(sc_query_state *state, const sc_pair *pairs, uint32_t count)
+void sc_pairs_take_all(sc_worker *w, const sc_pair *pairs, uint32_t count)
 {
+    const sc_question *q = w->question;
     uint32_t i;
-    if (!state->filter && state->options.output != SC_OUTPUT_ANY) {
-        if (state->options.output == SC_OUTPUT_COUNT || state->capacity == 0) {
-            state->count += count;
+    if (!q->filter && q->options.output != SC_OUTPUT_ANY) {
+        if (q->options.output == SC_OUTPUT_COUNT || q->capacity == 0) {
+            w->count += count;
             return;
         }
-        if (state->share) {
-            state->count += count;
-            take_shared(state, pairs, count);
+        if (w->share) {
+            w->count += count;
+            take_shared(w, pairs, count);
             return;
         }
-        if (state->capacity >= count && state->count <= state->capacity - count) {
-            memcpy(state->pairs + state->count, pairs, count * sizeof *pairs);
-            state->count += count;
+        if (q->capacity >= count && w->count <= q->capacity - count) {
+            memcpy(q->pairs + w->count, pairs, count * sizeof *pairs);
+            w->count += count;
             return;
         }
     }
-    for (i = 0; i < count; i++) sc_pairs_take(state, pairs[i].a, pairs[i].b);
+    for (i = 0; i < count; i++) sc_pairs_take(w, pairs[i].a, pairs[i].b);
 }
 
 static uint64_t split_pairs(void *context, uint64_t first, uint64_t count)
@@ -98,16 +100,15 @@ static void order_pairs(void *context, uint64_t first, uint64_t count)
 
 /* With room besides, one thread takes no longer than two, each of which needs what the other has in
    its cache. */
-void sc_pairs_finish(sc_query_state *state, const sc_tasks *tasks)
+void sc_pairs_finish(const sc_question *question, uint64_t found, sc_pair *spare, uint64_t room,
+                     const sc_tasks *tasks)
 {
-    const uint64_t count = state->count < state->capacity ? state->count : state->capacity;
-    uint64_t room;
-    sc_pair *spare = sc_workspace_spare(state->model, state->workspace, &room);
-    if (state->options.output != SC_OUTPUT_PAIRS || count < 2) return;
+    const uint64_t count = found < question->capacity ? found : question->capacity;
+    if (question->options.output != SC_OUTPUT_PAIRS || count < 2) return;
     if (count <= room)
-        sc_sort_with_room(state->pairs, spare, count);
+        sc_sort_with_room(question->pairs, spare, count);
     else if (tasks)
-        sc_jobs_sort(tasks, count, split_pairs, order_pairs, state->pairs);
+        sc_jobs_sort(tasks, count, split_pairs, order_pairs, question->pairs);
     else
-        sc_sort_pairs(state->pairs, count);
+        sc_sort_pairs(question->pairs, count);
 }

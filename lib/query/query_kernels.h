@@ -6,22 +6,26 @@
 #ifndef SC_QUERY_KERNELS_H
 #define SC_QUERY_KERNELS_H
 
-#include "query/candidates.h"
+#include "query/clusters.h"
+#include "query/decide.h"
 #include "query/simple_contour.h"
 
 typedef struct sc_query_kernels {
-    /* Box recursion (the paper's QueryBVs) on pairs of patches of a level whose boxes overlap, or
-       twice the same. The upper one comes first only if they share no points. */
-    void (*patch_pairs)(sc_query_state *state, const sc_pair *pairs, uint32_t count);
-    /* The triangles of two leaf clusters, which wait, and of one. */
-    void (*leaf_pair)(sc_query_state *state, uint32_t leaf_a, uint32_t leaf_b);
-    void (*leaf_itself)(sc_query_state *state, uint32_t leaf);
-    /* Those that wait. */
-    void (*leaf_pairs)(sc_query_state *state);
+    /* Stages, see query/lists.h: from pairs of patches to rows of leaf clusters; from these to pairs
+       of leaf clusters; proofs that strike out pairs that share no points, and that share some; the
+       triangles of those that are left, by boxes and planes; sixteen pairs of triangles that share
+       nothing, and that share points. */
+    void (*open_patch_pairs)(sc_worker *w, uint32_t most);
+    void (*list_rows)(sc_worker *w, uint32_t most);
+    void (*part_far)(sc_worker *w, uint32_t most);
+    void (*part_near)(sc_worker *w, uint32_t most);
+    void (*compare_clusters)(sc_worker *w, uint32_t most);
+    void (*compare_triangles)(sc_worker *w, uint32_t most);
+    void (*settle_open)(sc_worker *w, uint32_t most);
     /* Whether triangles meet, as far as that is certain in doubles; SC_PAIR_LANES pairs. */
     void (*decide)(const sc_pair_lanes *pairs, sc_verdict *verdict);
     /* Projects the listed points of a contour, and sets its error. */
-    void (*project)(sc_simple_contour *contour, const sc_workspace *workspace);
+    void (*project)(sc_simple_contour *contour, const sc_frame *frame);
     /* Whether sc_simple_are_apart is true of all pairs of edges whose boxes overlap, in three
        steps: the first of one contour, the second of another, all that is left of a third; each may
        be NULL. */
@@ -29,8 +33,8 @@ typedef struct sc_query_kernels {
                           sc_simple_contour *last);
     /* Bits of contours that certainly are simple, of loops in one piece with so many sixteens of
        edges, SC_DNC_VECTORS nodes or fewer. See query/small_kernel.h. */
-    unsigned (*find_simple)(sc_query_state *state, const uint32_t *nodes, uint32_t count,
-                            uint32_t blocks, const float *const axes[]);
+    unsigned (*find_simple)(sc_worker *w, const uint32_t *nodes, uint32_t count, uint32_t blocks,
+                            const float *const axes[]);
 } sc_query_kernels;
 
 #endif

@@ -92,12 +92,12 @@ static inline lanes measure(const sc_simple_some_axes *axes, int one, unsigned p
 
 /* Sees a loop of c->count points of two leaf clusters, a < b. What is read beyond its end stands in
    the model, too. */
-static inline void see_loop(const sc_query_state *state, const sc_near_pair *p,
+static inline void see_loop(const sc_worker *w, const sc_cluster_pair *p,
                             const sc_simple_some_axes *axes, unsigned projection,
                             const uint16_t *loop, short_points *c)
 {
-    const float *of_a = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->a;
-    const float *of_b = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->b;
+    const float *of_a = w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->a;
+    const float *of_b = w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)p->b;
     lanes at[2][3], size = lanes_all(0), x[2], y[2];
     uint8_t number[2 * SC_LANES_COUNT];
     int i, k;
@@ -215,7 +215,7 @@ static inline int is_simple(const short_points *c, const short_edges *e)
 
 /* The contour of two leaf clusters that share points: a loop, and how many points it has, 0 if it
    will not do. */
-static inline unsigned find_loop(const sc_model *model, const sc_near_pair *p,
+static inline unsigned find_loop(const sc_model *model, const sc_cluster_pair *p,
                                  const uint16_t **loop)
 {
     const sc_node *n = sc_model_node(model) + sc_model_share_node(model)[p->shared];
@@ -227,9 +227,9 @@ static inline unsigned find_loop(const sc_model *model, const sc_near_pair *p,
 /* Of some pairs, of which all triangles face a direction, those that have certainly nothing in
    common but what they share. Each step is made for all of them before the next: what was just
    written is read slowly in other pieces. */
-static unsigned find_plain(const sc_query_state *state, sc_near_pair *const pair[], unsigned count)
+static unsigned find_plain(const sc_worker *w, sc_cluster_pair *const pair[], unsigned count)
 {
-    const uint16_t *mask = state->workspace->mask + sc_model_first_leaf_patch(state->model);
+    const uint16_t *mask = w->frame->mask + sc_model_first_leaf_patch(w->model);
     short_points all[SHORT_PAIRS], kept[SHORT_PAIRS];
     short_edges edges[SHORT_PAIRS];
     unsigned number[SHORT_PAIRS] = {0}, seen = 0, fit = 0, i, plain = 0;
@@ -238,12 +238,12 @@ static unsigned find_plain(const sc_query_state *state, sc_near_pair *const pair
     for (i = 0; i < count; i++) both[i] = mask[pair[i]->a] & mask[pair[i]->b];
     sc_simple_axes_of(both, &axes);
     for (i = 0; i < count; i++) {
-        const sc_near_pair *p = pair[i];
+        const sc_cluster_pair *p = pair[i];
         const uint16_t *loop;
         number[seen] = i;
-        all[seen].count = find_loop(state->model, p, &loop);
+        all[seen].count = find_loop(w->model, p, &loop);
         if (!all[seen].count) continue;
-        see_loop(state, p, &axes, i, loop, &all[seen++]);
+        see_loop(w, p, &axes, i, loop, &all[seen++]);
     }
     for (i = 0; i < seen; i++) {
         repeat(all[i].x, all[i].count);
@@ -266,11 +266,11 @@ static unsigned find_plain(const sc_query_state *state, sc_near_pair *const pair
 /* Asks for memory that two leaf clusters need here, in steps, of which each reads what the one
    before asked for. */
 enum { SHORT_FETCHES = 3 };
-static inline void fetch_loop(const sc_query_state *state, const sc_near_pair *p, int step)
+static inline void fetch_loop(const sc_worker *w, const sc_cluster_pair *p, int step)
 {
-    const sc_model *model = state->model;
+    const sc_model *model = w->model;
     const uint32_t *node = sc_model_share_node(model) + p->shared;
-    const float *at = state->workspace->point_at;
+    const float *at = w->frame->point_at;
     int k;
     if (step == 0) {
         sc_fetch(node);
@@ -292,41 +292,40 @@ static inline void fetch_loop(const sc_query_state *state, const sc_near_pair *p
     }
 }
 
-/* Of so many pairs of leaf clusters that wait drops two that have certainly nothing in common but
+/* Of so many pairs of leaf clusters drops two that have certainly nothing in common but
    what they share, and marks them: then neither is to be looked at by itself. */
-static SC_NOINLINE void drop_plain(sc_query_state *state, uint32_t waiting)
+static SC_NOINLINE void drop_plain(sc_worker *w, sc_cluster_pair *pairs, uint32_t pair_count)
 {
-    enum { DISTANCE = 8 };                              /* pairs between two steps of fetching */
-    const unsigned told = SC_TOUCHES | SC_NEAR_DROPPED; /* by other tests, or not at all */
-    sc_workspace *w = state->workspace;
-    sc_near_pair *pairs = w->near_pairs, *some[SHORT_PAIRS];
-    const uint32_t first = sc_model_first_leaf_patch(state->model);
-    const uint16_t *mask = w->mask + first;
-    uint8_t *marks = w->walk.marks + first;
-    uint32_t *oriented = w->near_list[1]; /* nothing waits there now */
+    enum { DISTANCE = 8 }; /* pairs between two steps of fetching */
+    const unsigned told = SC_TOUCHES | SC_CLUSTERS_DROPPED; /* by other tests, or not at all */
+    sc_cluster_pair *some[SHORT_PAIRS];
+    const uint32_t first = sc_model_first_leaf_patch(w->model);
+    const uint16_t *mask = w->frame->mask + first;
+    uint8_t *marks = w->last.marks + first;
+    uint32_t *oriented = w->lists.scratch;
     uint32_t count = 0, i;
     unsigned bits, taken = 0;
     int step;
-    for (i = 0; i < waiting; i++) {
-        const sc_near_pair *p = pairs + i;
+    for (i = 0; i < pair_count; i++) {
+        const sc_cluster_pair *p = pairs + i;
         oriented[count] = i;
         count += (p->a != p->b) & ((mask[p->a] & mask[p->b]) != 0) & !(p->known & told);
     }
     for (step = 0; step < SHORT_FETCHES; step++) {
         const uint32_t ahead = DISTANCE * (uint32_t)(SHORT_FETCHES + 1 - step);
-        for (i = 0; i < ahead && i < count; i++) fetch_loop(state, pairs + oriented[i], step);
+        for (i = 0; i < ahead && i < count; i++) fetch_loop(w, pairs + oriented[i], step);
     }
     for (i = 0; i < count; i++) {
         for (step = 0; step < SHORT_FETCHES; step++) {
             uint32_t ahead = i + DISTANCE * (uint32_t)(SHORT_FETCHES + 1 - step);
-            if (ahead < count) fetch_loop(state, pairs + oriented[ahead], step);
+            if (ahead < count) fetch_loop(w, pairs + oriented[ahead], step);
         }
         some[taken++] = pairs + oriented[i];
         if (taken < SHORT_PAIRS && i + 1 < count) continue;
-        for (bits = find_plain(state, some, taken); bits; bits &= bits - 1) {
-            sc_near_pair *p = some[sc_bits_lowest(bits)];
+        for (bits = find_plain(w, some, taken); bits; bits &= bits - 1) {
+            sc_cluster_pair *p = some[sc_bits_lowest(bits)];
             marks[p->a] = marks[p->b] = 1;
-            p->known |= SC_NEAR_DROPPED;
+            p->known |= SC_CLUSTERS_DROPPED;
         }
         taken = 0;
     }

@@ -445,14 +445,14 @@ static int is_looped(const sc_model *model, uint32_t node)
     return sc_model_node(model)[node].loop_length > 0;
 }
 
-int sc_simple_list(sc_simple_contour *c, const sc_model *model, sc_workspace *workspace,
+int sc_simple_list(sc_simple_contour *c, const sc_model *model, const sc_contour_edges *room,
                    uint32_t node)
 {
     const sc_node *n = sc_model_node(model) + node;
     const uint32_t *segments = sc_model_contours(model) + n->contour;
     uint32_t count = n[1].contour - n->contour;
     memset(c, 0, sizeof *c);
-    c->edges = &workspace->contour;
+    c->edges = room;
     c->has_gaps = 1;
     if (is_looped(model, node)) {
         sc_simple_find_loop(c, model, node);
@@ -485,15 +485,15 @@ static void raise_walls(const sc_simple_contour *c)
     }
 }
 
-int sc_simple_start(sc_simple_contour *c, const sc_model *model, sc_workspace *workspace,
+int sc_simple_start(sc_simple_contour *c, const sc_model *model, const sc_contour_edges *room,
                     uint32_t node)
 {
     if (is_looped(model, node)) {
-        c->edges = &workspace->contour;
+        c->edges = room;
         sc_simple_find_loop(c, model, node);
         return 1;
     }
-    if (!sc_simple_list(c, model, workspace, node)) return 0;
+    if (!sc_simple_list(c, model, room, node)) return 0;
     raise_walls(c);
     sc_simple_close_bits(c);
     return 1;

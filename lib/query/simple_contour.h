@@ -8,7 +8,48 @@
 #define SC_QUERY_SIMPLE_CONTOUR_H
 
 #include "pose/dnc.h"
-#include "pose/workspace.h"
+
+/* Points of a contour are projected in blocks of SC_CONTOUR_BLOCK. A step tests edges with the next
+   SC_CONTOUR_NEAR: all of their own run of SC_CONTOUR_RUN and the next. */
+enum { SC_CONTOUR_BLOCK = 16, SC_CONTOUR_RUN = 4, SC_CONTOUR_NEAR = 2 * SC_CONTOUR_RUN - 1 };
+
+/* Room for the boxes of so many spans, with those that are read beyond: full blocks, and two
+   more. */
+#define SC_CONTOUR_SPANS(count)                                                                    \
+  (((count) + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK * SC_CONTOUR_BLOCK + 2 * SC_CONTOUR_BLOCK)
+
+/* Contours of a query that are looked at in turn: how many, the points of one at most, and the room
+   for it: points with those that are read beyond, and boxes of spans. */
+enum {
+    SC_CONTOUR_TURNS = 4,
+    SC_CONTOUR_SHORT = 112,
+    SC_CONTOUR_ROOM = SC_CONTOUR_SHORT + SC_CONTOUR_BLOCK,
+    SC_CONTOUR_SPAN_ROOM = 208,
+    SC_CONTOUR_BITS_ROOM = SC_CONTOUR_ROOM / SC_CONTOUR_BLOCK + 3
+};
+
+/* Pieces of a contour that is stored as a loop are listed in so many places each, or a multiple of
+   that: then spans of as many edges are of one piece. */
+enum { SC_CONTOUR_GAP = 4 };
+
+/* Sides of boxes in the plane. */
+enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
+
+/*
+ * The projected contour of a node, see query/simple.c: a list of points, of which point i and the
+ * next are edge i, but where a chain ends. Room for model.contour_max points, what gaps between
+ * pieces of loops add, and two blocks more; or for those that are looked at in turn, one after the
+ * other.
+ */
+typedef struct sc_contour_edges {
+    uint32_t *point;      /* what points they are */
+    float *at[2];         /* x and y */
+    float *span_side[4];  /* boxes of spans of 2, 4, 8... edges, see query/simple_kernel.h */
+    float *run_side[4];   /* of steps: boxes of runs, and 16 more */
+    float *group_side[4]; /* of steps: boxes of 16 runs, and 16 more */
+    uint16_t *is_edge;    /* bit i of block b: SC_CONTOUR_BLOCK b + i is an edge */
+    float *wall;          /* if there are gaps: infinity for what is no edge, -infinity for edges */
+} sc_contour_edges;
 
 /* Points that a contour passes more than once, at most; more are not looked at. */
 enum { SC_PINCHES_MAX = 24 };
@@ -87,7 +128,7 @@ void sc_simple_spread(sc_simple_contour *contour);
 
 /* Starts a contour: lists its points, with a gap after each chain. 0: there is none (of
    a forged model: without a contour, areas are not all positive). */
-int sc_simple_list(sc_simple_contour *contour, const sc_model *model, sc_workspace *workspace,
+int sc_simple_list(sc_simple_contour *contour, const sc_model *model, const sc_contour_edges *room,
                    uint32_t node);
 
 /* Sets how the points of a node's loop, of one that has a loop, are read. */
@@ -96,7 +137,7 @@ void sc_simple_find_loop(sc_simple_contour *contour, const sc_model *model, uint
 /* Starts a contour for the inner loops: finds its loop, whose points are listed as they are
    projected; or lists all as a cycle: the last is followed by the first again, so that the inner
    loops may look beyond the end. 0: as above. */
-int sc_simple_start(sc_simple_contour *contour, const sc_model *model, sc_workspace *workspace,
+int sc_simple_start(sc_simple_contour *contour, const sc_model *model, const sc_contour_edges *room,
                     uint32_t node);
 
 /* Sets axis: the vectors of a projection over powers of two, exactly, so that their absolute values

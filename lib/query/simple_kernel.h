@@ -57,23 +57,23 @@ static void place_loop(sc_simple_contour *c)
 }
 
 /* Sixteen points in the unit box. */
-static inline void load_contour(const sc_simple_contour *c, const sc_workspace *w, uint32_t i,
+static inline void load_contour(const sc_simple_contour *c, const sc_frame *frame, uint32_t i,
                                 lanes unit[3])
 {
     float row[3 * SC_CONTOUR_BLOCK];
     int k;
     if (c->loop) {
-        lanes_rows(w->point_at, c->edges->point + i, &unit[0], &unit[1], &unit[2]);
+        lanes_rows(frame->point_at, c->edges->point + i, &unit[0], &unit[1], &unit[2]);
         return;
     }
-    load_points(w, c->edges->point + i, row);
+    load_points(frame, c->edges->point + i, row);
     SC_UNROLL
     for (k = 0; k < 3; k++) unit[k] = lanes_load(row + SC_CONTOUR_BLOCK * k);
 }
 
 /* Places of the points, and the error of their coordinates, see sc_simple_axes. The last is
    followed by the first. */
-static void project(sc_simple_contour *c, const sc_workspace *w)
+static void project(sc_simple_contour *c, const sc_frame *frame)
 {
     const sc_contour_edges *e = c->edges;
     lanes size = lanes_all(0), d[3], at, from[3], axis[2][3];
@@ -87,7 +87,7 @@ static void project(sc_simple_contour *c, const sc_workspace *w)
     }
     if (c->loop) place_loop(c);
     for (i = 0; i < c->count; i += SC_CONTOUR_BLOCK) {
-        load_contour(c, w, i, d);
+        load_contour(c, frame, i, d);
         SC_UNROLL
         for (k = 0; k < 3; k++) {
             d[k] = lanes_subtract(d[k], from[k]);

@@ -53,27 +53,27 @@ static void fetch(const sc_model *model, uint32_t node, int step)
 }
 
 /* Sets from, to about the middle of the contour. */
-static void find_middle(sc_simple_contour *c, const sc_workspace *w)
+static void find_middle(sc_simple_contour *c, const sc_frame *frame)
 {
     float one[3], other[3];
     int k;
     if (c->loop) {
-        const float *p = w->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[0]);
-        const float *q = w->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[c->looped / 2]);
+        const float *p = frame->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[0]);
+        const float *q = frame->point_at + 4 * (uint64_t)sc_simple_place(c, c->loop[c->looped / 2]);
         for (k = 0; k < 3; k++) c->from[k] = p[k] / 2 + q[k] / 2;
         return;
     }
-    sc_positions_unit(w, c->edges->point[0], one);
-    sc_positions_unit(w, c->edges->point[c->count / 2], other);
+    sc_positions_unit(frame, c->edges->point[0], one);
+    sc_positions_unit(frame, c->edges->point[c->count / 2], other);
     for (k = 0; k < 3; k++) c->from[k] = one[k] / 2 + other[k] / 2;
 }
 
 /* Projects a contour that was started. */
-static void place_contour(sc_query_state *state, sc_simple_contour *c)
+static void place_contour(sc_worker *w, sc_simple_contour *c)
 {
-    find_middle(c, state->workspace);
-    state->workspace->kernels->query->project(c, state->workspace);
-    state->stats.counts[SC_TASK_UPDATE_CONTOURS] += c->count;
+    find_middle(c, w->frame);
+    w->frame->kernels->query->project(c, w->frame);
+    w->stats.counts[SC_TASK_UPDATE_CONTOURS] += c->count;
 }
 
 /* After all edges were looked at. */
@@ -82,22 +82,22 @@ static int is_fine(const sc_simple_contour *c)
     return c->passed && ((!c->pinch_count && !c->in_pieces) || sc_simple_is_wound_well(c));
 }
 
-int sc_simple_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
+int sc_simple_test(sc_worker *w, const sc_projection *projection, uint32_t node)
 {
-    const sc_query_kernels *kernels = state->workspace->kernels->query;
-    uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
+    const sc_query_kernels *kernels = w->frame->kernels->query;
+    uint32_t previous = sc_worker_switch(w, SC_TASK_UPDATE_CONTOURS);
     sc_simple_contour c;
-    int passed = sc_simple_start(&c, state->model, state->workspace, node);
+    int passed = sc_simple_start(&c, w->model, &w->contour, node);
     if (passed) {
         sc_simple_axes(&c, projection);
-        place_contour(state, &c);
-        sc_state_switch(state, SC_TASK_CONTOUR);
-        state->stats.counts[SC_TASK_CONTOUR]++;
+        place_contour(w, &c);
+        sc_worker_switch(w, SC_TASK_CONTOUR);
+        w->stats.counts[SC_TASK_CONTOUR]++;
         kernels->look_at_edges(&c, NULL, NULL);
         kernels->look_at_edges(NULL, NULL, &c);
         passed = is_fine(&c);
     }
-    sc_state_switch(state, previous);
+    sc_worker_switch(w, previous);
     return passed;
 }
 
@@ -124,31 +124,31 @@ static int is_short(const sc_model *model, uint32_t node)
 }
 
 /* What the normal cones of a node's patches have in common. */
-static uint16_t mask_of(const sc_query_state *state, uint32_t node)
+static uint16_t mask_of(const sc_worker *w, uint32_t node)
 {
-    const sc_pair *patches = &sc_model_node(state->model)[node].patches;
-    return state->workspace->mask[patches->a] & state->workspace->mask[patches->b];
+    const sc_pair *patches = &sc_model_node(w->model)[node].patches;
+    return w->frame->mask[patches->a] & w->frame->mask[patches->b];
 }
 
 /* The axes of the projections of some nodes. */
-static void find_axes(const sc_query_state *state, sc_simple_some_axes *axes, const uint32_t *nodes,
+static void find_axes(const sc_worker *w, sc_simple_some_axes *axes, const uint32_t *nodes,
                       uint32_t count)
 {
     uint16_t mask[SC_DNC_VECTORS] = {0};
     uint32_t i;
-    for (i = 0; i < SC_DNC_VECTORS && i < count; i++) mask[i] = mask_of(state, nodes[i]);
+    for (i = 0; i < SC_DNC_VECTORS && i < count; i++) mask[i] = mask_of(w, nodes[i]);
     sc_simple_axes_of(mask, axes);
 }
 
 /* Starts a turn with node i of a list, a loop, and projects it. */
-static void begin_turn(sc_query_state *state, contour_turns *all, const uint32_t *nodes, uint32_t i)
+static void begin_turn(sc_worker *w, contour_turns *all, const uint32_t *nodes, uint32_t i)
 {
     sc_simple_contour *c = &all->contour[i % SC_CONTOUR_TURNS];
     int k, m;
-    sc_simple_find_loop(c, state->model, nodes[i]);
+    sc_simple_find_loop(c, w->model, nodes[i]);
     for (m = 0; m < 2; m++)
         for (k = 0; k < 3; k++) c->axis[m][k] = all->axes.at[m][k][i % SC_DNC_VECTORS];
-    place_contour(state, c);
+    place_contour(w, c);
     all->node[i % SC_CONTOUR_TURNS] = i;
 }
 
@@ -174,44 +174,42 @@ static void start_turns(contour_turns *all, const sc_contour_edges *room)
 enum { FETCH_DISTANCE = 2 };
 
 /* Tests nodes one by one, or in turn. */
-static void test_in_turn(sc_query_state *state, const uint32_t *nodes, uint32_t count,
-                         uint8_t *passed)
+static void test_in_turn(sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed)
 {
-    const sc_model *model = state->model;
-    const sc_query_kernels *kernels = state->workspace->kernels->query;
+    const sc_model *model = w->model;
+    const sc_query_kernels *kernels = w->frame->kernels->query;
     contour_turns all;
     int i, step, k;
     memset(passed, 0, count);
-    start_turns(&all, &state->workspace->contour);
-    for (i = -FETCH_DISTANCE * FETCHES; i < (int)count + 3 && !sc_state_stops(state); i++) {
+    start_turns(&all, &w->contour);
+    for (i = -FETCH_DISTANCE * FETCHES; i < (int)count + 3 && !sc_worker_stops(w); i++) {
         sc_simple_contour *c[SC_CONTOUR_TURNS];
         for (step = 0; step < FETCHES; step++) {
             int ahead = i + FETCH_DISTANCE * (FETCHES - step);
             if (ahead >= 0 && ahead < (int)count) fetch(model, nodes[ahead], step);
         }
         if (i < 0) continue;
-        sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
+        sc_worker_switch(w, SC_TASK_UPDATE_CONTOURS);
         all.node[i % SC_CONTOUR_TURNS] = SC_NONE;
         if (i < (int)count && i % SC_DNC_VECTORS == 0)
-            find_axes(state, &all.axes, nodes + i, count - (uint32_t)i);
-        if (i < (int)count && is_short(model, nodes[i]))
-            begin_turn(state, &all, nodes, (uint32_t)i);
+            find_axes(w, &all.axes, nodes + i, count - (uint32_t)i);
+        if (i < (int)count && is_short(model, nodes[i])) begin_turn(w, &all, nodes, (uint32_t)i);
         for (k = 1; k < SC_CONTOUR_TURNS; k++) {
             uint32_t t = (uint32_t)(i + SC_CONTOUR_TURNS - k) % SC_CONTOUR_TURNS;
             c[k] = all.node[t] == SC_NONE ? NULL : &all.contour[t];
         }
-        sc_state_switch(state, SC_TASK_CONTOUR);
+        sc_worker_switch(w, SC_TASK_CONTOUR);
         kernels->look_at_edges(c[1], c[2], c[3]);
         if (c[3]) {
-            state->stats.counts[SC_TASK_CONTOUR]++;
+            w->stats.counts[SC_TASK_CONTOUR]++;
             passed[i - 3] = (uint8_t)is_fine(c[3]);
         }
     }
-    for (i = 0; i < (int)count && !sc_state_stops(state); i++) {
+    for (i = 0; i < (int)count && !sc_worker_stops(w); i++) {
         sc_projection projection;
         if (is_short(model, nodes[i])) continue;
-        sc_dnc_projection(state->workspace, mask_of(state, nodes[i]), &projection);
-        passed[i] = (uint8_t)sc_simple_test(state, &projection, nodes[i]);
+        sc_dnc_projection(w->frame, mask_of(w, nodes[i]), &projection);
+        passed[i] = (uint8_t)sc_simple_test(w, &projection, nodes[i]);
     }
 }
 
@@ -236,10 +234,9 @@ typedef struct some_nodes {
 
 /* Lists nodes by the sizes of their contours: what is done for as many edges is told beforehand by
    branches. Asks for memory that their tests will read. */
-static void sort_nodes(const sc_query_state *state, const uint32_t *nodes, uint32_t count,
-                       some_nodes *some)
+static void sort_nodes(const sc_worker *w, const uint32_t *nodes, uint32_t count, some_nodes *some)
 {
-    const sc_model *model = state->model;
+    const sc_model *model = w->model;
     uint32_t i;
     some->nodes = nodes;
     memset(some->count, 0, sizeof some->count);
@@ -253,21 +250,20 @@ static void sort_nodes(const sc_query_state *state, const uint32_t *nodes, uint3
         sc_fetch(loop + 32);
         sc_fetch(sc_model_leaf(model) + n->patches.a);
         sc_fetch(sc_model_leaf(model) + n->patches.b);
-        sc_fetch(state->workspace->mask + n->patches.a);
-        sc_fetch(state->workspace->mask + n->patches.b);
+        sc_fetch(w->frame->mask + n->patches.a);
+        sc_fetch(w->frame->mask + n->patches.b);
     }
     for (i = 0; i < count; i += SC_DNC_VECTORS)
-        find_axes(state, &some->axes[i / SC_DNC_VECTORS], nodes + i, count - i);
+        find_axes(w, &some->axes[i / SC_DNC_VECTORS], nodes + i, count - i);
 }
 
 /* Tests nodes of small contours of so many sixteens of edges. */
-static void test_small(sc_query_state *state, const some_nodes *some, uint32_t blocks,
-                       uint8_t *passed)
+static void test_small(sc_worker *w, const some_nodes *some, uint32_t blocks, uint8_t *passed)
 {
-    const sc_node *node = sc_model_node(state->model);
+    const sc_node *node = sc_model_node(w->model);
     const uint32_t end = some->count[blocks];
     uint32_t i, k;
-    for (i = 0; i < end && !sc_state_stops(state); i += SC_DNC_VECTORS) {
+    for (i = 0; i < end && !sc_worker_stops(w); i += SC_DNC_VECTORS) {
         const uint8_t *number = some->number[blocks] + i;
         const uint32_t count = end - i < SC_DNC_VECTORS ? end - i : SC_DNC_VECTORS;
         uint32_t nodes[SC_DNC_VECTORS];
@@ -277,38 +273,38 @@ static void test_small(sc_query_state *state, const some_nodes *some, uint32_t b
             nodes[k] = some->nodes[number[k]];
             axes[k] = some->axes[number[k] / SC_DNC_VECTORS].at[0][0] + number[k] % SC_DNC_VECTORS;
         }
-        simple = state->workspace->kernels->query->find_simple(state, nodes, count, blocks, axes);
+        simple = w->frame->kernels->query->find_simple(w, nodes, count, blocks, axes);
         for (; simple; simple &= simple - 1) {
             k = sc_bits_lowest(simple);
             passed[number[k]] = 1;
-            state->stats.counts[SC_TASK_CONTOUR]++;
-            state->stats.counts[SC_TASK_UPDATE_CONTOURS] += node[nodes[k]].loop_length;
+            w->stats.counts[SC_TASK_CONTOUR]++;
+            w->stats.counts[SC_TASK_UPDATE_CONTOURS] += node[nodes[k]].loop_length;
         }
     }
 }
 
 /* Tests no more than SOME_NODES, none of which has passed yet: small contours, and then what is
    left. */
-static void test_some(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed)
+static void test_some(sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed)
 {
     uint32_t left[SOME_NODES], left_count = 0, i;
     uint8_t left_passed[SOME_NODES];
     some_nodes some;
-    sort_nodes(state, nodes, count, &some);
-    for (i = 1; i <= SC_SMALL_BLOCKS; i++) test_small(state, &some, i, passed);
+    sort_nodes(w, nodes, count, &some);
+    for (i = 1; i <= SC_SMALL_BLOCKS; i++) test_small(w, &some, i, passed);
     for (i = 0; i < count; i++)
         if (!passed[i]) left[left_count++] = nodes[i];
     if (!left_count) return;
-    test_in_turn(state, left, left_count, left_passed);
+    test_in_turn(w, left, left_count, left_passed);
     for (i = count; i-- > 0;)
         if (!passed[i]) passed[i] = left_passed[--left_count];
 }
 
-void sc_simple_tests(sc_query_state *state, const uint32_t *nodes, uint32_t count, uint8_t *passed)
+void sc_simple_tests(sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed)
 {
-    uint32_t previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS), i;
+    uint32_t previous = sc_worker_switch(w, SC_TASK_UPDATE_CONTOURS), i;
     memset(passed, 0, count);
     for (i = 0; i < count; i += SOME_NODES)
-        test_some(state, nodes + i, count - i < SOME_NODES ? count - i : SOME_NODES, passed + i);
-    sc_state_switch(state, previous);
+        test_some(w, nodes + i, count - i < SOME_NODES ? count - i : SOME_NODES, passed + i);
+    sc_worker_switch(w, previous);
 }

@@ -1,6 +1,6 @@
 /*
  * Sixteen pairs of triangles that share nothing: by planes, by the order along the line in which
- * two planes meet, and by sides in a projection: which are certainly apart. See leaf_kernel.h, which
+ * two planes meet, and by sides in a projection: which are certainly apart. See cluster_kernel.h, which
  * puts them together.
  *
  * SPDX-License-Identifier: MIT
@@ -43,7 +43,7 @@
 /* Triangles as they are picked: sixteen by number, of a leaf cluster, or of two. */
 typedef struct picked {
     const sc_leaf_ready *ready[2];
-    const float *points[2];   /* see sc_workspace.point_at */
+    const float *points[2];   /* see sc_frame.point_at */
     const uint8_t *corner[2]; /* see sc_model.leaf_corner */
     const uint8_t *numbers;   /* of the triangles */
 } picked;

@@ -59,11 +59,11 @@ static SC_INLINE void place_small(const sc_model *model, uint32_t node, uint32_t
 
 /* Projects a contour, as project in simple_kernel.h does. The numbers of its axes are
    SC_DNC_VECTORS floats apart, as in sc_simple_some_axes. */
-static SC_INLINE void see_small(const sc_query_state *state, uint32_t blocks, const float *axes,
+static SC_INLINE void see_small(const sc_worker *w, uint32_t blocks, const float *axes,
                                 small_contour *c)
 {
-    const float *at = state->workspace->point_at, *one, *other;
-    lanes from[3], axis[2][3], d[3], x[2], size = lanes_all(0), size_in_plane = lanes_all(0);
+    const float *at = w->frame->point_at, *one, *other;
+    lanes from[3], axis[2][3], d[3], x[2], size = lanes_all(0), flat_size = lanes_all(0);
     uint32_t b;
     int k, m;
     one = at + 4 * (uint64_t)c->cell[0];
@@ -88,10 +88,10 @@ static SC_INLINE void see_small(const sc_query_state *state, uint32_t blocks, co
             x[m] = lanes_add(x[m], lanes_multiply(axis[m][2], d[2]));
             lanes_store(c->at[m] + SC_LANES_COUNT * b, x[m]);
         }
-        size_in_plane = lanes_largest_size(size_in_plane, x[0], x[1]);
+        flat_size = lanes_largest_size(flat_size, x[0], x[1]);
     }
     c->error = sc_simple_error(lanes_most(size));
-    c->size = lanes_most(size_in_plane);
+    c->size = lanes_most(flat_size);
 }
 
 /* The cells of the points. */
@@ -193,15 +193,15 @@ static int is_edge_apart(const small_contour *c, uint32_t edge)
 }
 
 /* Bits of contours that are certainly simple, some of so many sixteens of edges. */
-static SC_INLINE unsigned find_simple_of(sc_query_state *state, const uint32_t *nodes,
-                                         uint32_t count, uint32_t blocks, const float *const axes[])
+static SC_INLINE unsigned find_simple_of(sc_worker *w, const uint32_t *nodes, uint32_t count,
+                                         uint32_t blocks, const float *const axes[])
 {
     small_contour all[SC_DNC_VECTORS];
     unsigned simple = (1u << count) - 1u, i;
-    sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
-    for (i = 0; i < count; i++) place_small(state->model, nodes[i], blocks, &all[i]);
-    for (i = 0; i < count; i++) see_small(state, blocks, axes[i], &all[i]);
-    sc_state_switch(state, SC_TASK_CONTOUR);
+    sc_worker_switch(w, SC_TASK_UPDATE_CONTOURS);
+    for (i = 0; i < count; i++) place_small(w->model, nodes[i], blocks, &all[i]);
+    for (i = 0; i < count; i++) see_small(w, blocks, axes[i], &all[i]);
+    sc_worker_switch(w, SC_TASK_CONTOUR);
     for (i = 0; i < count; i++) find_cells(&all[i], blocks);
     for (i = 0; i < count; i++) find_boxes(&all[i], blocks);
     for (i = 0; i < count; i++) {
@@ -213,11 +213,11 @@ static SC_INLINE unsigned find_simple_of(sc_query_state *state, const uint32_t *
 }
 
 /* Compiled anew for each number of sixteens. */
-static unsigned find_simple(sc_query_state *state, const uint32_t *nodes, uint32_t count,
-                            uint32_t blocks, const float *const axes[])
+static unsigned find_simple(sc_worker *w, const uint32_t *nodes, uint32_t count, uint32_t blocks,
+                            const float *const axes[])
 {
-    if (blocks == 1) return find_simple_of(state, nodes, count, 1, axes);
-    if (blocks == 2) return find_simple_of(state, nodes, count, 2, axes);
-    if (blocks == 3) return find_simple_of(state, nodes, count, 3, axes);
-    return find_simple_of(state, nodes, count, 4, axes);
+    if (blocks == 1) return find_simple_of(w, nodes, count, 1, axes);
+    if (blocks == 2) return find_simple_of(w, nodes, count, 2, axes);
+    if (blocks == 3) return find_simple_of(w, nodes, count, 3, axes);
+    return find_simple_of(w, nodes, count, 4, axes);
 }

@@ -19,20 +19,18 @@
 #include "base/hooks.h"
 #include "pose/contour_bounds.h"
 
-static void update(sc_query_state *state, const sc_projection *projection, int line,
-                   const uint32_t *segments, uint32_t count)
+static void update(sc_worker *w, int line, const uint32_t *segments, uint32_t count)
 {
-    uint32_t i, previous = sc_state_switch(state, SC_TASK_UPDATE_CONTOURS);
+    uint32_t i, previous = sc_worker_switch(w, SC_TASK_UPDATE_CONTOURS);
     for (i = 0; i < count; i++)
-        state->stats.counts[SC_TASK_UPDATE_CONTOURS] +=
-            sc_contour_bounds_update(state->model, state->workspace, projection, line, segments[i]);
+        w->stats.counts[SC_TASK_UPDATE_CONTOURS] +=
+            sc_contour_bounds_update(w->model, w->bounds, line, segments[i]);
 #ifdef SC_VALIDATE
     for (i = 0; i < count; i++)
-        SC_HOOKS_ASSERT(&state->workspace->hooks,
-                        sc_contour_bounds_validate(state->model, state->workspace, projection, line,
-                                                   segments[i]));
+        SC_HOOKS_ASSERT(w->hooks,
+                        sc_contour_bounds_validate(w->model, w->bounds, line, segments[i]));
 #endif
-    sc_state_switch(state, previous);
+    sc_worker_switch(w, previous);
 }
 
 /* Steps 1 to 7 of section 6.2 for one line. */
@@ -98,33 +96,33 @@ static int is_beside(const sc_model *model, const sc_segment_bounds *bounds, uin
 }
 
 /* Appendix: a line through the shared point that has the two patches on different sides. */
-static int is_separated(const sc_query_state *state, const sc_projection *projection, int line,
-                        uint32_t point, const uint32_t *segments, uint32_t first_count,
-                        uint32_t count)
+static int is_separated(const sc_worker *w, int line, uint32_t point, const uint32_t *segments,
+                        uint32_t first_count, uint32_t count)
 {
-    double x, y, error = line == SC_LINE_VERTICAL ? projection->x_error : projection->y_error;
+    const sc_contour_bounds *b = w->bounds;
+    double x, y, error = line == SC_LINE_VERTICAL ? b->projection.x_error : b->projection.y_error;
     uint32_t i;
     int sign;
-    sc_contour_bounds_project(state->workspace, projection, line, point, &x, &y);
+    sc_contour_bounds_project(b, line, point, &x, &y);
     for (sign = -1; sign <= 1; sign += 2) {
         for (i = 0; i < count; i++)
-            if (!is_beside(state->model, &state->workspace->bounds[line][segments[i]], segments[i],
-                           point, x, error, i < first_count ? sign : -sign))
+            if (!is_beside(w->model, &b->of[line][segments[i]], segments[i], point, x, error,
+                           i < first_count ? sign : -sign))
                 break;
         if (i == count) return 1;
     }
     return 0;
 }
 
-int sc_star_test(sc_query_state *state, const sc_projection *projection, uint32_t node)
+int sc_star_test(sc_worker *w, uint32_t node)
 {
-    const sc_model *model = state->model;
+    const sc_model *model = w->model;
     const sc_node *n = sc_model_node(model) + node;
     const uint32_t *segments = sc_model_contours(model) + n->contour;
     uint32_t count = n[1].contour - n->contour;
-    uint32_t previous = sc_state_switch(state, SC_TASK_CONTOUR), point = 0, first_count = 0;
+    uint32_t previous = sc_worker_switch(w, SC_TASK_CONTOUR), point = 0, first_count = 0;
     int touches = n->kind & SC_NODE_TOUCHES, line, passed = 0;
-    state->stats.counts[SC_TASK_CONTOUR]++;
+    w->stats.counts[SC_TASK_CONTOUR]++;
     if (touches) {
         point = segments[0];
         first_count = segments[1];
@@ -132,11 +130,10 @@ int sc_star_test(sc_query_state *state, const sc_projection *projection, uint32_
         count -= 2;
     }
     for (line = 0; line < 2 && !passed; line++) {
-        update(state, projection, line, segments, count);
-        passed = touches
-                     ? is_separated(state, projection, line, point, segments, first_count, count)
-                     : is_star(state->workspace->bounds[line], segments, count);
+        update(w, line, segments, count);
+        passed = touches ? is_separated(w, line, point, segments, first_count, count)
+                         : is_star(w->bounds->of[line], segments, count);
     }
-    sc_state_switch(state, previous);
+    sc_worker_switch(w, previous);
     return passed;
 }

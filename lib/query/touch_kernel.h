@@ -69,12 +69,12 @@ static inline unsigned lanes_of(unsigned place, unsigned is_last)
 }
 
 /* Whether two leaf clusters certainly have only the point in common that they touch in. */
-static inline unsigned touch_only(const sc_query_state *state, const sc_near_pair *pair)
+static inline unsigned touch_only(const sc_worker *w, const sc_cluster_pair *pair)
 {
     const unsigned touch = pair->known;
     const unsigned at_a = touch & 15u, at_b = touch >> 4 & 15u;
-    const float *of_a = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->a;
-    const float *of_b = state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->b;
+    const float *of_a = w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->a;
+    const float *of_b = w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)pair->b;
     const float *p = of_a + 4 * sc_loops_turn(at_a);
     unsigned ahead = lanes_of(at_a, touch >> SC_TOUCH_LAST & 1u);
     unsigned behind = lanes_of(at_b, touch >> SC_TOUCH_LAST_OF_OTHER & 1u);
@@ -88,23 +88,23 @@ static inline unsigned touch_only(const sc_query_state *state, const sc_near_pai
     return (ahead & behind & 0xffffu) == 0xffffu;
 }
 
-/* Drops such pairs of those that wait, of which so many touch. */
-static SC_NOINLINE void drop_touching(sc_query_state *state, const uint32_t *touching,
-                                      uint32_t count)
+/* Drops such pairs of some, of which so many touch. */
+static SC_NOINLINE void drop_touching(const sc_worker *w, sc_cluster_pair *pairs,
+                                      const uint32_t *touching, uint32_t count)
 {
-    sc_workspace *w = state->workspace;
-    sc_near_pair *pairs = w->near_pairs;
     uint32_t i;
     for (i = 0; i < count; i++) {
-        sc_near_pair *p = pairs + touching[i];
+        sc_cluster_pair *p = pairs + touching[i];
         if (i + SC_FETCH_POINTS < count) {
-            const sc_near_pair *next = pairs + touching[i + SC_FETCH_POINTS];
+            const sc_cluster_pair *next = pairs + touching[i + SC_FETCH_POINTS];
             int k;
             for (k = 0; k < 4; k++) {
-                sc_fetch(w->point_at + SC_LEAF_POINTS * (4 * (uint64_t)next->a + (unsigned)k));
-                sc_fetch(w->point_at + SC_LEAF_POINTS * (4 * (uint64_t)next->b + (unsigned)k));
+                sc_fetch(w->frame->point_at +
+                         SC_LEAF_POINTS * (4 * (uint64_t)next->a + (unsigned)k));
+                sc_fetch(w->frame->point_at +
+                         SC_LEAF_POINTS * (4 * (uint64_t)next->b + (unsigned)k));
             }
         }
-        p->known |= touch_only(state, p) ? SC_NEAR_DROPPED : 0u;
+        p->known |= touch_only(w, p) ? SC_CLUSTERS_DROPPED : 0u;
     }
 }

@@ -70,11 +70,11 @@ static inline int begin_tube(const float along[3], const float low[3], const flo
     return 1;
 }
 
-static inline void see_tube(const sc_query_state *state, uint32_t leaf, const tube *t, lanes at[3])
+static inline void see_tube(const sc_worker *w, uint32_t leaf, const tube *t, lanes at[3])
 {
     lanes x[3];
     int k;
-    lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, x);
+    lanes_turned(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, x);
     SC_UNROLL
     for (k = 0; k < 3; k++) x[k] = lanes_subtract(x[k], lanes_all(t->middle[k]));
     SC_UNROLL
@@ -142,19 +142,19 @@ static inline int side_of_tube(const tube *t, const lanes at[3], const uint8_t *
 }
 
 /* To which side a cluster is turned that is a band; 0 if it may be none. */
-static inline int side_of_band(const sc_query_state *state, uint32_t leaf, const tube *t)
+static inline int side_of_band(const sc_worker *w, uint32_t leaf, const tube *t)
 {
-    const sc_model *model = state->model;
+    const sc_model *model = w->model;
     lanes at[3];
-    see_tube(state, leaf, t, at);
+    see_tube(w, leaf, t, at);
     if (!go_round(t, at, sc_model_leaf_outline(model) + SC_LEAF_POINTS * (uint64_t)leaf)) return 0;
     return side_of_tube(t, at, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf);
 }
 
-static inline void find_box(const sc_query_state *state, uint32_t leaf, float low[3], float high[3])
+static inline void find_box(const sc_worker *w, uint32_t leaf, float low[3], float high[3])
 {
-    const sc_boxes *boxes = &state->workspace->patch_boxes;
-    const uint64_t i = (uint64_t)sc_model_first_leaf_patch(state->model) + leaf;
+    const sc_boxes *boxes = &w->frame->patch_boxes;
+    const uint64_t i = (uint64_t)sc_model_first_leaf_patch(w->model) + leaf;
     int k;
     SC_UNROLL
     for (k = 0; k < 3; k++) {
@@ -171,11 +171,11 @@ static inline int has_two_chains(const sc_model *model, uint32_t leaf)
 
 /* Whether such a cluster certainly is a band. The axis leads from the middle of one chain to that
    of the other, about. */
-static int is_band(const sc_query_state *state, uint32_t leaf)
+static int is_band(const sc_worker *w, uint32_t leaf)
 {
     static const float weight[SC_LANES_COUNT] = {-1, 1, 0};
     const lanes_bytes outline =
-        lanes_bytes_load(sc_model_leaf_outline(state->model) + SC_LEAF_POINTS * (uint64_t)leaf);
+        lanes_bytes_load(sc_model_leaf_outline(w->model) + SC_LEAF_POINTS * (uint64_t)leaf);
     const lanes_bytes second = lanes_bytes_all(SC_OUTLINE_SECOND);
     const lanes_bytes nowhere = lanes_bytes_all(SC_OUTLINE_NOWHERE);
     const lanes_bytes is_second = lanes_bytes_same(lanes_bytes_both(outline, second), second);
@@ -187,24 +187,24 @@ static int is_band(const sc_query_state *state, uint32_t leaf)
     tube t;
     lanes x[3];
     int k;
-    find_box(state, leaf, low, high);
-    lanes_turned(state->workspace->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, x);
+    find_box(w, leaf, low, high);
+    lanes_turned(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, x);
     for (k = 0; k < 3; k++) {
         x[k] = lanes_subtract(x[k], lanes_all((low[k] + high[k]) / 2));
         along[k] = lanes_sum(lanes_multiply(side, x[k]));
     }
-    return begin_tube(along, low, high, &t) && side_of_band(state, leaf, &t);
+    return begin_tube(along, low, high, &t) && side_of_band(w, leaf, &t);
 }
 
 /* Whether two of them that share a chain certainly are bands, one above it and the other below. The
    axis leads from the middle of one to that of the other, about. */
-static int are_bands(const sc_query_state *state, uint32_t a, uint32_t b)
+static int are_bands(const sc_worker *w, uint32_t a, uint32_t b)
 {
     float low[2][3], high[2][3], middle[2][3], along[3];
     tube t;
     int k, s, side;
-    find_box(state, a, low[0], high[0]);
-    find_box(state, b, low[1], high[1]);
+    find_box(w, a, low[0], high[0]);
+    find_box(w, b, low[1], high[1]);
     for (k = 0; k < 3; k++) {
         for (s = 0; s < 2; s++) middle[s][k] = (low[s][k] + high[s][k]) / 2;
         along[k] = middle[1][k] - middle[0][k];
@@ -212,29 +212,26 @@ static int are_bands(const sc_query_state *state, uint32_t a, uint32_t b)
         high[0][k] = high[1][k] > high[0][k] ? high[1][k] : high[0][k];
     }
     if (!begin_tube(along, low[0], high[0], &t)) return 0;
-    side = side_of_band(state, a, &t);
-    return side && side_of_band(state, b, &t) == side;
+    side = side_of_band(w, a, &t);
+    return side && side_of_band(w, b, &t) == side;
 }
 
-/* Of so many pairs of leaf clusters that wait, or one with itself, drops those that go round a tube
+/* Of so many pairs of leaf clusters, or one with itself, drops those that go round a tube
    and certainly have nothing in common but what they share; before those of one with itself, the
    others, which are marked as drop_plain does. */
-static void drop_bands(sc_query_state *state, uint32_t count)
+static void drop_bands(sc_worker *w, sc_cluster_pair *pairs, uint32_t count)
 {
-    sc_workspace *w = state->workspace;
-    uint8_t *marks = w->walk.marks + sc_model_first_leaf_patch(state->model);
-    const int may_look =
-        !state->share; /* else it depends on who does what which are marked by now */
+    uint8_t *marks = w->last.marks + sc_model_first_leaf_patch(w->model);
+    const int may_look = !w->share; /* else it depends on who does what which are marked by now */
     uint32_t i;
     int pass;
     for (pass = 0; pass < 2; pass++) {
         for (i = 0; i < count; i++) {
-            sc_near_pair *p = w->near_pairs + i;
+            sc_cluster_pair *p = pairs + i;
             if (!(p->known & SC_TOUCH_CHAIN) || (p->a == p->b) != pass) continue;
-            if (pass ? (may_look && marks[p->a]) || is_band(state, p->a)
-                     : are_bands(state, p->a, p->b)) {
+            if (pass ? (may_look && marks[p->a]) || is_band(w, p->a) : are_bands(w, p->a, p->b)) {
                 marks[p->a] = marks[p->b] = 1;
-                p->known |= SC_NEAR_DROPPED;
+                p->known |= SC_CLUSTERS_DROPPED;
             }
         }
     }

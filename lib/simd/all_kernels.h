@@ -39,8 +39,8 @@
 #include "query/short_kernel.h"
 #include "query/tube_kernel.h"
 #include "query/sixteen_kernel.h"
-#include "query/leaf_kernel.h"
-#include "query/walk_kernel.h"
+#include "query/cluster_kernel.h"
+#include "query/broad_kernel.h"
 #include "query/decide_kernel.h"
 #include "query/simple_kernel.h"
 #include "query/small_kernel.h"
@@ -66,10 +66,13 @@ static const sc_pose_kernels pose_kernels = {
 };
 
 static const sc_query_kernels query_kernels = {
-    .patch_pairs = patch_pairs,
-    .leaf_pair = leaf_pair_waits,
-    .leaf_itself = leaf_itself,
-    .leaf_pairs = leaf_pairs,
+    .open_patch_pairs = open_patch_pairs,
+    .list_rows = list_rows,
+    .part_far = part_far,
+    .part_near = part_near,
+    .compare_clusters = compare_clusters,
+    .compare_triangles = compare_triangles,
+    .settle_open = settle_open,
     .decide = decide,
     .project = project,
     .look_at_edges = look_at_edges,

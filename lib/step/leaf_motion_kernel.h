@@ -1,6 +1,6 @@
 /*
  * Leaf clusters made ready for a step: points, slabs and a box, at its start and end. See
- * pose/workspace.h.
+ * step/step_worker.h.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -170,24 +170,23 @@ static SC_NOINLINE void make_leaf_motion(const sc_model *model, const sc_motion 
 }
 
 /* The place of a leaf cluster, in which it is when this returns. */
-static inline const sc_leaf_motion *leaf_motion(const sc_step_state *state, uint32_t leaf)
+static inline const sc_leaf_motion *leaf_motion(const sc_worker *w, uint32_t leaf)
 {
-    const sc_motion *m = &state->query.workspace->motion;
-    const uint32_t place = leaf & m->leaves_mask;
-    sc_leaf_motion *kept = m->leaves + place;
-    if (!m->made[place] || kept->leaf != leaf) {
-        make_leaf_motion(state->query.model, m, leaf, kept);
-        m->made[place] = 1;
+    const sc_kept_motions *kept = &w->step->kept;
+    const uint32_t place = leaf & kept->mask;
+    sc_leaf_motion *motion = kept->leaves + place;
+    if (!kept->made[place] || motion->leaf != leaf) {
+        make_leaf_motion(w->model, &w->frame->motion, leaf, motion);
+        kept->made[place] = 1;
     }
-    return kept;
+    return motion;
 }
 
 /* That of the second of two, of which the first has been asked for: they may have one place. */
-static inline const sc_leaf_motion *other_motion(const sc_step_state *state, uint32_t first,
-                                                 uint32_t leaf)
+static inline const sc_leaf_motion *other_motion(const sc_worker *w, uint32_t first, uint32_t leaf)
 {
-    const sc_motion *m = &state->query.workspace->motion;
-    if ((first & m->leaves_mask) != (leaf & m->leaves_mask)) return leaf_motion(state, leaf);
-    make_leaf_motion(state->query.model, m, leaf, m->own_leaves);
-    return m->own_leaves;
+    const sc_kept_motions *kept = &w->step->kept;
+    if ((first & kept->mask) != (leaf & kept->mask)) return leaf_motion(w, leaf);
+    make_leaf_motion(w->model, &w->frame->motion, leaf, kept->own);
+    return kept->own;
 }

@@ -218,27 +218,26 @@ static void set_clearance(sc_moving_contour *c, float distance)
     }
 }
 
-int sc_moving_contour_test(sc_step_state *state, const sc_projection *projection, uint32_t node)
+int sc_moving_contour_test(sc_worker *w, const sc_projection *projection, uint32_t node)
 {
-    int star = state->options.contour == SC_CONTOUR_STAR;
-    const sc_step_kernels *kernels = state->query.workspace->kernels->step;
-    sc_workspace *w = state->query.workspace;
-    uint32_t previous = sc_state_switch(&state->query, SC_TASK_UPDATE_CONTOURS);
+    int star = w->step->question->options.contour == SC_CONTOUR_STAR;
+    const sc_step_kernels *kernels = w->frame->kernels->step;
+    uint32_t previous = sc_worker_switch(w, SC_TASK_UPDATE_CONTOURS);
     sc_moving_contour c;
-    int passed = sc_simple_list(&c.start, state->query.model, w, node);
+    int passed = sc_simple_list(&c.start, w->model, &w->contour, node);
     if (passed) {
-        c.end = &w->motion.contour;
+        c.end = &w->step->contour;
         sc_simple_axes(&c.start, projection);
-        sc_simple_middle(&c.start, w->motion.unit, 8, c.start.from);
-        sc_simple_middle(&c.start, w->motion.unit + 4, 8, c.from);
-        kernels->project(&c, w->motion.unit);
-        set_clearance(&c, w->motion.distance);
-        state->query.stats.counts[SC_TASK_UPDATE_CONTOURS] += c.start.count;
-        sc_state_switch(&state->query, SC_TASK_CONTOUR);
-        state->query.stats.counts[SC_TASK_CONTOUR]++;
+        sc_simple_middle(&c.start, w->frame->motion.unit, 8, c.start.from);
+        sc_simple_middle(&c.start, w->frame->motion.unit + 4, 8, c.from);
+        kernels->project(&c, w->frame->motion.unit);
+        set_clearance(&c, w->frame->motion.distance);
+        w->stats.counts[SC_TASK_UPDATE_CONTOURS] += c.start.count;
+        sc_worker_switch(w, SC_TASK_CONTOUR);
+        w->stats.counts[SC_TASK_CONTOUR]++;
         passed = star ? sc_moving_star_passes(&c)
                       : kernels->are_edges_clear(&c) && sc_simple_is_wound_well(&c.start);
     }
-    sc_state_switch(&state->query, previous);
+    sc_worker_switch(w, previous);
     return passed;
 }

@@ -21,7 +21,7 @@
 #define SC_STEP_MOVING_CONTOUR_H
 
 #include "query/simple_contour.h"
-#include "step/step_state.h"
+#include "step/step_worker.h"
 
 /* So many errors of a coordinate two points must be apart along a direction, over its |m|1; see
    moving_contour.c. */
@@ -42,7 +42,7 @@ typedef struct sc_moving_contour {
 /* 1 if nothing in the node's patches comes as near as is reported. Every triangle keeps a positive
    area and altitudes under the projection. About 10 ns a contour edge. With SC_CONTOUR_STAR asks
    for a point that sees the contour instead, see step/moving_star.h. */
-int sc_moving_contour_test(sc_step_state *state, const sc_projection *projection, uint32_t node);
+int sc_moving_contour_test(sc_worker *w, const sc_projection *projection, uint32_t node);
 
 /* 1 if two edges are certainly clear of each other, or share one point and nothing else, at all
    times. Notes pinches and pieces. */

@@ -59,70 +59,70 @@ static sc_pair put_in_order(const sc_model *model, int kind, sc_pair pair, sc_pa
 }
 
 /* The narrow phase. */
-static void decide_candidate(sc_step_state *state, int kind, sc_pair pair)
+static void decide_candidate(sc_worker *w, int kind, sc_pair pair)
 {
-    const sc_motion *motion = &state->query.workspace->motion;
+    const sc_positions *positions = w->frame->positions;
     double start[4][3], end[4][3], time = 0;
     const double(*from)[3] = (const double(*)[3])start, (*to)[3] = (const double(*)[3])end;
     uint32_t point[4], k;
     sc_pair name;
-    if (sc_state_cancelled(&state->query)) return;
-    pair = put_in_order(state->query.model, kind, pair, &name);
-    points_of_candidate(state->query.model, kind, &pair, point);
+    if (sc_worker_is_cancelled(w)) return;
+    pair = put_in_order(w->model, kind, pair, &name);
+    points_of_candidate(w->model, kind, &pair, point);
     for (k = 0; k < 4; k++) {
-        sc_motion_position(motion, 0, point[k], start[k]);
-        sc_motion_position(motion, 1, point[k], end[k]);
+        sc_positions_get(&positions[0], point[k], start[k]);
+        sc_positions_get(&positions[1], point[k], end[k]);
     }
-    if (kind == SC_STEP_VERTEX_FACE ? sc_impact_vertex_face(from, to, &state->limits, &time)
-                                    : sc_impact_edge_edge(from, to, &state->limits, &time))
-        sc_step_pairs_take(state, kind, name.a, name.b, time);
+    if (kind == SC_STEP_VERTEX_FACE
+            ? sc_impact_vertex_face(from, to, &w->step->question->limits, &time)
+            : sc_impact_edge_edge(from, to, &w->step->question->limits, &time))
+        sc_step_pairs_take(w, kind, name.a, name.b, time);
 }
 
 /* Up to sixteen candidates: most are seen to stay apart all at once. */
-static void decide_some(sc_step_state *state, int kind, const sc_pair *pairs, uint32_t count)
+static void decide_sixteen(sc_worker *w, int kind, const sc_pair *pairs, uint32_t count)
 {
-    const sc_step_kernels *kernels = state->query.workspace->kernels->step;
+    const sc_step_kernels *kernels = w->frame->kernels->step;
     sc_candidate_points points;
     unsigned left;
     uint32_t i, k, point[4];
     for (i = 0; i < 16; i++) { /* the last one fills the row */
-        points_of_candidate(state->query.model, kind, &pairs[i < count ? i : count - 1], point);
+        points_of_candidate(w->model, kind, &pairs[i < count ? i : count - 1], point);
         for (k = 0; k < 4; k++) points.point[k][i] = point[k];
     }
-    left = ~kernels->stay_apart(&state->query.workspace->motion, &points,
-                                kind == SC_STEP_VERTEX_FACE ? 1 : 2) &
+    left = ~kernels->stay_apart(&w->frame->motion, &points, kind == SC_STEP_VERTEX_FACE ? 1 : 2) &
            ((1u << count) - 1u);
-    for (; left && !state->query.stop; left &= left - 1)
-        decide_candidate(state, kind, pairs[sc_bits_lowest(left)]);
+    for (; left && !w->stop; left &= left - 1)
+        decide_candidate(w, kind, pairs[sc_bits_lowest(left)]);
 }
 
-void sc_step_candidates_decide(sc_step_state *state)
+void sc_step_candidates_decide(sc_worker *w)
 {
-    uint32_t i, previous = sc_state_switch(&state->query, sc_state_primitive_task(&state->query));
+    uint32_t i, previous = sc_worker_switch(w, sc_step_primitive_task(w));
     int kind;
     for (kind = 0; kind < 2; kind++) {
-        uint32_t count = state->candidate_count[kind];
-        const sc_pair *pairs = state->candidates[kind];
-        state->query.stats.counts[sc_state_primitive_task(&state->query)] += count;
-        if (state->options.pairs == SC_STEP_COLLISIONS) {
-            for (i = 0; i < count && !state->query.stop; i += 16)
-                decide_some(state, kind, pairs + i, count - i < 16 ? count - i : 16);
+        uint32_t count = w->step->candidate_count[kind];
+        const sc_pair *pairs = w->step->candidates[kind];
+        w->stats.counts[sc_step_primitive_task(w)] += count;
+        if (w->step->question->options.pairs == SC_STEP_COLLISIONS) {
+            for (i = 0; i < count && !w->stop; i += 16)
+                decide_sixteen(w, kind, pairs + i, count - i < 16 ? count - i : 16);
         } else {
-            for (i = 0; i < count && !state->query.stop; i++) {
+            for (i = 0; i < count && !w->stop; i++) {
                 sc_pair name;
-                put_in_order(state->query.model, kind, pairs[i], &name);
-                sc_step_pairs_take(state, kind, name.a, name.b, 0);
+                put_in_order(w->model, kind, pairs[i], &name);
+                sc_step_pairs_take(w, kind, name.a, name.b, 0);
             }
         }
-        state->candidate_count[kind] = 0;
+        w->step->candidate_count[kind] = 0;
     }
-    sc_state_switch(&state->query, previous);
+    sc_worker_switch(w, previous);
 }
 
-void sc_step_candidates_take(sc_step_state *state, int kind, uint32_t a, uint32_t b)
+void sc_step_candidates_take(sc_worker *w, int kind, uint32_t a, uint32_t b)
 {
-    sc_pair *to = &state->candidates[kind][state->candidate_count[kind]];
+    sc_pair *to = &w->step->candidates[kind][w->step->candidate_count[kind]];
     to->a = a;
     to->b = b;
-    if (++state->candidate_count[kind] == SC_STEP_BATCH) sc_step_candidates_decide(state);
+    if (++w->step->candidate_count[kind] == SC_STEP_BATCH) sc_step_candidates_decide(w);
 }

@@ -15,11 +15,11 @@ typedef struct sc_candidate_points {
 
 typedef struct sc_step_kernels {
     /* Box recursion on two patches of a level, and on one. */
-    void (*patch_pair)(sc_step_state *state, uint32_t patch_a, uint32_t patch_b);
-    void (*patch_itself)(sc_step_state *state, uint32_t patch);
+    void (*patch_pair)(sc_worker *w, uint32_t patch_a, uint32_t patch_b);
+    void (*patch_itself)(sc_worker *w, uint32_t patch);
     /* The vertices, edges and triangles of two leaf clusters, and of one. */
-    void (*leaf_pair)(sc_step_state *state, uint32_t leaf_a, uint32_t leaf_b);
-    void (*leaf_itself)(sc_step_state *state, uint32_t leaf);
+    void (*leaf_pair)(sc_worker *w, uint32_t leaf_a, uint32_t leaf_b);
+    void (*leaf_itself)(sc_worker *w, uint32_t leaf);
     /* Bits of candidates that certainly do not collide; split: points before are one, the others
        the other. */
     unsigned (*stay_apart)(const sc_motion *motion, const sc_candidate_points *points, int split);

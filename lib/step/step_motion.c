@@ -23,11 +23,11 @@ typedef struct bounds {
 /* A pass over vertices or patches. */
 typedef struct motion_pass {
     const sc_model *model;
-    sc_workspace *w;
+    sc_frame *frame;
     bounds found[SC_JOBS_PARTS];
 } motion_pass;
 
-static void bound_pose(const sc_model *model, const sc_motion *m, int end, uint32_t first,
+static void bound_pose(const sc_model *model, const sc_positions *positions, uint32_t first,
                        uint32_t last, bounds *b)
 {
     const uint8_t *use = sc_model_vertex_use(model);
@@ -36,7 +36,7 @@ static void bound_pose(const sc_model *model, const sc_motion *m, int end, uint3
     for (v = first; v < last; v++) {
         double p[3];
         if (use[v] == SC_VERTEX_UNUSED) continue;
-        sc_motion_position(m, end, v, p);
+        sc_positions_get(positions, v, p);
         b->not_finite += (p[0] - p[0]) + (p[1] - p[1]) + (p[2] - p[2]);
         if (use[v] != SC_VERTEX_POINT) continue;
         for (k = 0; k < 3; k++) {
@@ -56,16 +56,16 @@ static void bound_poses(void *context, uint32_t part, uint32_t first, uint32_t l
         b->high[k] = -HUGE_VAL;
     }
     b->not_finite = 0;
-    for (k = 0; k < 2; k++) bound_pose(pass->model, &pass->w->motion, k, first, last, b);
+    for (k = 0; k < 2; k++) bound_pose(pass->model, &pass->frame->positions[k], first, last, b);
 }
 
 /* Points of both poses in the unit box, as pose/positions.c has them for one. */
 static void scale_step(void *context, uint32_t part, uint32_t first, uint32_t last)
 {
     const motion_pass *pass = (const motion_pass *)context;
-    const sc_workspace *w = pass->w;
+    const sc_frame *frame = pass->frame;
     const uint8_t *use = sc_model_vertex_use(pass->model);
-    float *unit = w->motion.unit + 8 * (uint64_t)first;
+    float *unit = frame->motion.unit + 8 * (uint64_t)first;
     uint32_t v;
     int k, end;
     (void)part;
@@ -73,28 +73,25 @@ static void scale_step(void *context, uint32_t part, uint32_t first, uint32_t la
         if (use[v] != SC_VERTEX_POINT) continue;
         for (end = 0; end < 2; end++) {
             double p[3];
-            sc_motion_position(&w->motion, end, v, p);
-            for (k = 0; k < 3; k++) unit[4 * end + k] = (float)((p[k] - w->center[k]) * w->scale);
+            sc_positions_get(&frame->positions[end], v, p);
+            for (k = 0; k < 3; k++)
+                unit[4 * end + k] = (float)((p[k] - frame->center[k]) * frame->scale);
         }
     }
 }
 
 sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
-                         sc_impact_limits *limits, sc_workspace *w)
+                         sc_impact_limits *limits, sc_frame *frame)
 {
     motion_pass pass;
     bounds b;
     double side = 0, distance;
     uint32_t part, parts;
     int k, exponent;
-    for (k = 0; k < 2; k++) {
-        w->motion.positions[k] = (const unsigned char *)pose[k].positions;
-        w->motion.stride[k] = stride[k];
-        w->motion.type[k] = pose[k].position_type;
-    }
+    for (k = 0; k < 2; k++) sc_positions_note(model, &pose[k], stride[k], &frame->positions[k]);
     pass.model = model;
-    pass.w = w;
-    parts = sc_jobs_loop(w->tasks, model->vertex_count, STEP_VERTICES_MIN, bound_poses, &pass);
+    pass.frame = frame;
+    parts = sc_jobs_loop(frame->tasks, model->vertex_count, STEP_VERTICES_MIN, bound_poses, &pass);
     b = pass.found[0];
     for (part = 0; part < parts; part++) {
         const bounds *found = &pass.found[part];
@@ -104,33 +101,35 @@ sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uin
             b.high[k] = found->high[k] > b.high[k] ? found->high[k] : b.high[k];
         }
     }
-    w->radius = 0;
+    frame->radius = 0;
     for (k = 0; k < 3; k++) {
         double half = b.high[k] / 2 - b.low[k] / 2;
-        w->center[k] = b.low[k] / 2 + b.high[k] / 2;
-        if (b.high[k] - w->center[k] > w->radius) w->radius = b.high[k] - w->center[k];
-        if (w->center[k] - b.low[k] > w->radius) w->radius = w->center[k] - b.low[k];
+        frame->center[k] = b.low[k] / 2 + b.high[k] / 2;
+        if (b.high[k] - frame->center[k] > frame->radius)
+            frame->radius = b.high[k] - frame->center[k];
+        if (frame->center[k] - b.low[k] > frame->radius)
+            frame->radius = frame->center[k] - b.low[k];
         if (half > side) side = half;
     }
-    (void)frexp(w->radius, &exponent);
-    w->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
-    (void)sc_jobs_loop(w->tasks, model->vertex_count, STEP_VERTICES_MIN, scale_step, &pass);
+    (void)frexp(frame->radius, &exponent);
+    frame->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
+    (void)sc_jobs_loop(frame->tasks, model->vertex_count, STEP_VERTICES_MIN, scale_step, &pass);
     if (limits->tolerance == 0) limits->tolerance = 2e-6 * side;
     /* Rounded up: what is lost to rounding in double is less than is added. Infinite if it is
        beyond float: then nothing is apart. */
-    distance = sc_impact_thickness(limits, 2 * side) * w->scale;
-    w->motion.distance =
+    distance = sc_impact_thickness(limits, 2 * side) * frame->scale;
+    frame->motion.distance =
         distance < (double)FLT_MAX / 2 ? (float)distance * 1.000001f + FLT_MIN : HUGE_VALF;
-    w->motion.margin = sc_motion_margin(w->motion.distance);
+    frame->motion.margin = sc_motion_margin(frame->motion.distance);
     return SC_OK;
 }
 
-static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)
+static void refit_leaf(const sc_model *model, sc_frame *frame, uint32_t leaf)
 {
     const uint32_t *first = sc_model_leaf_first(model), *corner = sc_model_triangle(model);
     uint32_t patch = sc_model_first_leaf_patch(model) + leaf;
     uint64_t i;
-    float low[2][3], high[2][3], margin = w->motion.margin / 2;
+    float low[2][3], high[2][3], margin = frame->motion.margin / 2;
     int s, k;
     for (s = 0; s < 2; s++)
         for (k = 0; k < 3; k++) {
@@ -138,7 +137,7 @@ static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)
             high[s][k] = -HUGE_VALF;
         }
     for (i = 3 * (uint64_t)first[leaf]; i < 3 * (uint64_t)first[leaf + 1]; i++) {
-        const float *unit = w->motion.unit + 8 * (uint64_t)corner[i];
+        const float *unit = frame->motion.unit + 8 * (uint64_t)corner[i];
         for (s = 0; s < 2; s++)
             for (k = 0; k < 3; k++) {
                 float x = unit[4 * s + k];
@@ -148,11 +147,11 @@ static void refit_leaf(const sc_model *model, sc_workspace *w, uint32_t leaf)
     }
     for (s = 0; s < 2; s++)
         for (k = 0; k < 3; k++) {
-            int other = w->motion.swept ? 1 - s : s;
+            int other = frame->motion.swept ? 1 - s : s;
             float l = low[s][k] < low[other][k] ? low[s][k] : low[other][k];
             float h = high[s][k] > high[other][k] ? high[s][k] : high[other][k];
-            w->motion.boxes[s].side[k][patch] = l - margin;
-            w->motion.boxes[s].side[k + 3][patch] = h + margin;
+            frame->motion.boxes[s].side[k][patch] = l - margin;
+            frame->motion.boxes[s].side[k + 3][patch] = h + margin;
         }
 }
 
@@ -180,19 +179,19 @@ static void refit_step(void *context, uint32_t level, uint32_t first, uint32_t e
     const uint32_t leaves = sc_model_first_leaf_patch(pass->model);
     uint32_t p;
     if (level + 1 < pass->model->level_count) {
-        join_boxes(pass->model, &pass->w->motion, first, end);
+        join_boxes(pass->model, &pass->frame->motion, first, end);
         return;
     }
-    for (p = first; p < end; p++) refit_leaf(pass->model, pass->w, p - leaves);
+    for (p = first; p < end; p++) refit_leaf(pass->model, pass->frame, p - leaves);
 }
 
-void sc_motion_refit(const sc_model *model, sc_workspace *w)
+void sc_motion_refit(const sc_model *model, sc_frame *frame)
 {
     motion_pass pass;
     pass.model = model;
-    pass.w = w;
-    sc_levels_up(model, w->tasks, refit_step, &pass);
-    w->boxes_ready = 1;
+    pass.frame = frame;
+    sc_levels_up(model, frame->tasks, refit_step, &pass);
+    frame->boxes_ready = 1;
 }
 
 static void find_cones(void *context, uint32_t level, uint32_t first, uint32_t end)
@@ -201,7 +200,7 @@ static void find_cones(void *context, uint32_t level, uint32_t first, uint32_t e
     const sc_model *model = pass->model;
     const uint32_t *child = sc_model_child(model);
     const uint32_t *triangle = sc_model_triangle(model), *leaf = sc_model_leaf_first(model);
-    uint16_t *mask = pass->w->mask;
+    uint16_t *mask = pass->frame->mask;
     uint32_t p;
     if (level + 1 < model->level_count) {
         for (p = first; p < end; p++) mask[p] = mask[child[p]] & mask[child[p + 1] - 1];
@@ -209,16 +208,16 @@ static void find_cones(void *context, uint32_t level, uint32_t first, uint32_t e
     }
     leaf += first - sc_model_first_leaf_patch(model);
     for (p = first; p < end; p++, leaf++)
-        mask[p] = (uint16_t)pass->w->kernels->step->cone(
-            &pass->w->motion, triangle + 3 * (uint64_t)leaf[0], leaf[1] - leaf[0]);
+        mask[p] = (uint16_t)pass->frame->kernels->step->cone(
+            &pass->frame->motion, triangle + 3 * (uint64_t)leaf[0], leaf[1] - leaf[0]);
 }
 
-void sc_motion_update_cones(const sc_model *model, sc_workspace *w)
+void sc_motion_update_cones(const sc_model *model, sc_frame *frame)
 {
     motion_pass pass;
     pass.model = model;
-    pass.w = w;
-    sc_levels_up(model, w->tasks, find_cones, &pass);
+    pass.frame = frame;
+    sc_levels_up(model, frame->tasks, find_cones, &pass);
 }
 
 int sc_motion_boxes_apart(const sc_motion *m, uint32_t a, uint32_t b)

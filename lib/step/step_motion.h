@@ -11,15 +11,13 @@
  * What is culled is farther apart than the narrow phase ever reports (sc_impact_thickness): so it
  * alone decides, whatever was culled, and all methods give the same list.
  *
- * All passes over vertices, leaf clusters and patches are shared out among the workspace's tasks,
- * if there are any.
+ * All passes over vertices, leaf clusters and patches are shared out among the frame's tasks, if
+ * there are any.
  */
 #ifndef SC_STEP_MOTION_H
 #define SC_STEP_MOTION_H
 
-#include <string.h>
-
-#include "pose/workspace.h"
+#include "pose/positions.h"
 #include "step/impact.h"
 
 /* Largest error of a coordinate in sc_motion.unit: 2^-25 for the rounding to float of a number of
@@ -37,36 +35,20 @@ static inline float sc_motion_margin(float distance)
 }
 
 /*
- * Notes where positions are, and fills center, radius and scale of the workspace for the box of
- * both poses, and unit, distance and margin of its motion. A tolerance of 0 becomes the default.
+ * Notes where positions are, and fills center, radius and scale of the frame for the box of both
+ * poses, and unit, distance and margin of its motion. A tolerance of 0 becomes the default.
  * The poses were checked but for what this reports: SC_ERROR_NOT_FINITE. About 6 ns a vertex.
  */
 sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
-                         sc_impact_limits *limits, sc_workspace *workspace);
+                         sc_impact_limits *limits, sc_frame *frame);
 
-/* The position of a point at the start (0) or at the end (1), exactly. */
-static inline void sc_motion_position(const sc_motion *motion, int end, uint32_t point,
-                                      double position[3])
-{
-    const unsigned char *at = motion->positions[end] + point * motion->stride[end];
-    if (motion->type[end] == SC_DOUBLE) {
-        memcpy(position, at, 3 * sizeof *position);
-    } else {
-        float f[3];
-        memcpy(f, at, sizeof f);
-        position[0] = (double)f[0];
-        position[1] = (double)f[1];
-        position[2] = (double)f[2];
-    }
-}
-
-/* Fills the workspace's mask with normal cones that hold throughout the step. About 10 ns a
+/* Fills the frame's mask with normal cones that hold throughout the step. About 10 ns a
    triangle. */
-void sc_motion_update_cones(const sc_model *model, sc_workspace *workspace);
+void sc_motion_update_cones(const sc_model *model, sc_frame *frame);
 
 /* Fills the boxes of patches unless they are ready; where swept, with those of the whole motion,
    twice. About 10 ns a triangle. */
-void sc_motion_refit(const sc_model *model, sc_workspace *workspace);
+void sc_motion_refit(const sc_model *model, sc_frame *frame);
 
 /* Whether the boxes of two patches are apart at all times, so far that nothing in them collides. */
 int sc_motion_boxes_apart(const sc_motion *motion, uint32_t a, uint32_t b);

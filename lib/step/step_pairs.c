@@ -48,47 +48,49 @@ static void swap(const sc_step_list *list, uint64_t i, uint64_t j)
 }
 
 /* Entries of a list are claimed for many pairs at once, as in query/pairs.c. */
-static void take_shared_of_step(sc_step_state *state, int kind, sc_pair pair, double time)
+static void take_shared_of_step(sc_step_worker *step, int kind, sc_pair pair, double time)
 {
-    const sc_step_list *list = &state->list[kind];
-    sc_motion *m = &state->query.workspace->motion;
+    const sc_step_list *list = &step->question->list[kind];
     uint64_t at;
-    m->found[kind][m->found_count[kind]] = pair;
-    m->found_time[kind][m->found_count[kind]++] = time;
-    if (m->found_count[kind] < SC_FOUND_MAX) return;
-    m->found_count[kind] = 0;
-    at = sc_atomic_add(&state->share->claimed[kind], SC_FOUND_MAX);
+    step->found[kind][step->found_count[kind]] = pair;
+    step->found_time[kind][step->found_count[kind]++] = time;
+    if (step->found_count[kind] < SC_FOUND_MAX) return;
+    step->found_count[kind] = 0;
+    at = sc_atomic_add(&step->share->claimed[kind], SC_FOUND_MAX);
     if (at + SC_FOUND_MAX > list->capacity) {
-        sc_atomic_write(&state->share->query.halt, 1); /* too short for certain */
+        sc_atomic_write(&step->share->query.halt, 1); /* too short for certain */
         return;
     }
-    memcpy(list->pairs + at, m->found[kind], sizeof(sc_pair) * SC_FOUND_MAX);
-    if (list->times) memcpy(list->times + at, m->found_time[kind], sizeof(double) * SC_FOUND_MAX);
+    memcpy(list->pairs + at, step->found[kind], sizeof(sc_pair) * SC_FOUND_MAX);
+    if (list->times)
+        memcpy(list->times + at, step->found_time[kind], sizeof(double) * SC_FOUND_MAX);
 }
 
-void sc_step_pairs_take(sc_step_state *state, int kind, uint32_t a, uint32_t b, double time)
+void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double time)
 {
-    sc_step_list *list = &state->list[kind];
+    sc_step_worker *step = w->step;
+    const sc_step_options *o = &step->question->options;
+    const sc_step_list *list = &step->question->list[kind];
+    const uint64_t count = ++step->count[kind];
     sc_pair pair;
     pair.a = a;
     pair.b = b;
-    list->count++;
-    if (time < state->earliest) state->earliest = time;
-    if (state->options.output == SC_OUTPUT_ANY && state->options.times == SC_STEP_TIMES_NONE) {
-        state->query.stop = 1;
-        if (state->share) sc_atomic_write(&state->share->query.halt, 1);
+    if (time < step->earliest) step->earliest = time;
+    if (o->output == SC_OUTPUT_ANY && o->times == SC_STEP_TIMES_NONE) {
+        w->stop = 1;
+        if (step->share) sc_atomic_write(&step->share->query.halt, 1);
     }
-    if (state->options.output != SC_OUTPUT_PAIRS || list->capacity == 0) return;
-    if (state->share) {
-        take_shared_of_step(state, kind, pair, time);
+    if (o->output != SC_OUTPUT_PAIRS || list->capacity == 0) return;
+    if (step->share) {
+        take_shared_of_step(step, kind, pair, time);
         return;
     }
-    if (list->count <= list->capacity) {
-        list->pairs[list->count - 1] = pair;
-        if (list->times) list->times[list->count - 1] = time;
+    if (count <= list->capacity) {
+        list->pairs[count - 1] = pair;
+        if (list->times) list->times[count - 1] = time;
         return;
     }
-    if (list->count == list->capacity + 1) heapify(list, list->capacity);
+    if (count == list->capacity + 1) heapify(list, list->capacity);
     if (sc_sort_less(pair, list->pairs[0])) {
         list->pairs[0] = pair;
         if (list->times) list->times[0] = time;
@@ -102,7 +104,7 @@ static sc_step_list slice(const sc_step_list *list, uint64_t first, uint64_t cou
     sc_step_list part = *list;
     part.pairs += first;
     if (part.times) part.times += first;
-    part.count = part.capacity = count;
+    part.capacity = count;
     return part;
 }
 
@@ -165,17 +167,18 @@ static void order_list(void *context, uint64_t first, uint64_t count)
         sc_sort_pairs(list->pairs + first, count);
 }
 
-void sc_step_pairs_finish(sc_step_state *state, const sc_tasks *tasks)
+void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2],
+                          const sc_tasks *tasks)
 {
     int kind;
-    if (state->options.output != SC_OUTPUT_PAIRS) return;
+    if (question->options.output != SC_OUTPUT_PAIRS) return;
     for (kind = 0; kind < 2; kind++) {
-        sc_step_list *list = &state->list[kind];
-        uint64_t count = list->count < list->capacity ? list->count : list->capacity;
+        sc_step_list list = question->list[kind];
+        const uint64_t count = found[kind] < list.capacity ? found[kind] : list.capacity;
         if (!count) continue; /* there may be no array */
         if (tasks)
-            sc_jobs_sort(tasks, count, split_list, order_list, list);
+            sc_jobs_sort(tasks, count, split_list, order_list, &list);
         else
-            order_list(list, 0, count);
+            order_list(&list, 0, count);
     }
 }

@@ -9,12 +9,13 @@
 #ifndef SC_STEP_PAIRS_H
 #define SC_STEP_PAIRS_H
 
-#include "step/step_state.h"
+#include "step/step_worker.h"
 
 /* Takes a pair that was not taken before, in the caller's numbers. */
-void sc_step_pairs_take(sc_step_state *state, int kind, uint32_t a, uint32_t b, double time);
+void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double time);
 
-/* Sorts the lists; tasks share in it, unless NULL. */
-void sc_step_pairs_finish(sc_step_state *state, const sc_tasks *tasks);
+/* Sorts the lists, of which each was given so many pairs; tasks share in it, unless NULL. */
+void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2],
+                          const sc_tasks *tasks);
 
 #endif

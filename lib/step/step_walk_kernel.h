@@ -38,16 +38,15 @@ static inline unsigned near_patches(const box_sides *box, const sc_motion *m, ui
     return ~lanes_bits(lanes_below(least, lanes_all(0))) & SC_LANES_ALL;
 }
 
-static inline void count_tests(sc_step_state *state, uint64_t tests)
+static inline void count_tests(sc_worker *w, uint64_t tests)
 {
-    state->query.stats.counts[sc_state_box_task(&state->query)] += tests;
+    w->stats.counts[sc_step_box_task(w)] += tests;
 }
 
 /* Hands on what is left of two leaf clusters, or of one. */
-static void take_step_rows(sc_step_state *state, uint32_t leaf_a, uint32_t leaf_b,
-                           const step_rows *rows)
+static void take_step_rows(sc_worker *w, uint32_t leaf_a, uint32_t leaf_b, const step_rows *rows)
 {
-    const sc_model *model = state->query.model;
+    const sc_model *model = w->model;
     const uint32_t leaf[2] = {leaf_a, leaf_b}, *point = sc_model_leaf_point(model);
     const uint32_t first[2] = {sc_model_leaf_first(model)[leaf_a],
                                sc_model_leaf_first(model)[leaf_b]};
@@ -55,95 +54,93 @@ static void take_step_rows(sc_step_state *state, uint32_t leaf_a, uint32_t leaf_
     for (r = 0; r < rows->faces; r++) {
         const uint32_t of = rows->of[r];
         const uint32_t *others = point + SC_LEAF_POINTS * (uint64_t)leaf[1 - of];
-        for (some = rows->points[r]; some && !state->query.stop; some &= some - 1)
-            sc_step_candidates_take(state, SC_STEP_VERTEX_FACE, others[sc_bits_lowest(some)],
+        for (some = rows->points[r]; some && !w->stop; some &= some - 1)
+            sc_step_candidates_take(w, SC_STEP_VERTEX_FACE, others[sc_bits_lowest(some)],
                                     first[of] + rows->face[r]);
     }
     for (r = 0; r < rows->edges; r++) {
         const uint32_t edge = rows->edge[r];
         const uint32_t name = 3 * (first[0] + edge % SC_LEAF_MAX) + edge / SC_LEAF_MAX;
         for (k = 0; k < 3; k++)
-            for (some = rows->others[r][k]; some && !state->query.stop; some &= some - 1)
-                sc_step_candidates_take(state, SC_STEP_EDGE_EDGE, name,
+            for (some = rows->others[r][k]; some && !w->stop; some &= some - 1)
+                sc_step_candidates_take(w, SC_STEP_EDGE_EDGE, name,
                                         3 * (first[1] + sc_bits_lowest(some)) + k);
     }
 }
 
-static void step_leaf_pair(sc_step_state *state, uint32_t leaf_a, uint32_t leaf_b)
+static void step_leaf_pair(sc_worker *w, uint32_t leaf_a, uint32_t leaf_b)
 {
-    const sc_leaf_motion *a = leaf_motion(state, leaf_a);
-    const sc_leaf_motion *b = other_motion(state, leaf_a, leaf_b);
-    const sc_motion *m = &state->query.workspace->motion;
+    const sc_leaf_motion *a = leaf_motion(w, leaf_a);
+    const sc_leaf_motion *b = other_motion(w, leaf_a, leaf_b);
     step_rows rows;
-    state->query.stats.leaf_pairs++;
-    count_tests(state, find_rows(state->query.model, m, a, b, &rows));
-    take_step_rows(state, leaf_a, leaf_b, &rows);
+    w->stats.leaf_pairs++;
+    count_tests(w, find_rows(w->model, &w->frame->motion, a, b, &rows));
+    take_step_rows(w, leaf_a, leaf_b, &rows);
 }
 
-static void step_leaf_itself(sc_step_state *state, uint32_t leaf)
+static void step_leaf_itself(sc_worker *w, uint32_t leaf)
 {
-    const sc_leaf_motion *a = leaf_motion(state, leaf);
-    const sc_motion *m = &state->query.workspace->motion;
+    const sc_leaf_motion *a = leaf_motion(w, leaf);
     step_rows rows;
-    state->query.stats.leaf_pairs++;
-    count_tests(state, find_own_rows(state->query.model, m, a, &rows));
-    take_step_rows(state, leaf, leaf, &rows);
+    w->stats.leaf_pairs++;
+    count_tests(w, find_own_rows(w->model, &w->frame->motion, a, &rows));
+    take_step_rows(w, leaf, leaf, &rows);
 }
 
-/* Two patches of a level whose boxes are near each other, as query/walk_kernel.h does it. */
-static void step_patch_pair(sc_step_state *state, uint32_t a, uint32_t b)
+/* Two patches of a level whose boxes are near each other, as query/broad_kernel.h does it. */
+static void step_patch_pair(sc_worker *w, uint32_t a, uint32_t b)
 {
-    const sc_model *model = state->query.model;
-    const sc_motion *m = &state->query.workspace->motion;
+    const sc_model *model = w->model;
+    const sc_motion *m = &w->frame->motion;
     const uint32_t *hop = sc_model_hop(model);
     uint32_t a_count, b_count;
     box_sides box;
     unsigned rows;
     if (a >= sc_model_first_leaf_patch(model)) {
-        step_leaf_pair(state, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
+        step_leaf_pair(w, sc_model_leaf(model)[a], sc_model_leaf(model)[b]);
         return;
     }
-    if (sc_state_stops(&state->query)) return;
+    if (sc_worker_stops(w)) return;
     a_count = hop[a + 1] - hop[a];
     b_count = hop[b + 1] - hop[b];
     patch_sides(m, b, 0, &box);
     rows = near_patches(&box, m, hop[a]) & ((1u << a_count) - 1u);
-    count_tests(state, 1);
-    for (; rows && !state->query.stop; rows &= rows - 1) {
+    count_tests(w, 1);
+    for (; rows && !w->stop; rows &= rows - 1) {
         uint32_t c = hop[a] + sc_bits_lowest(rows);
         unsigned some;
         patch_sides(m, c, 0, &box);
         some = near_patches(&box, m, hop[b]) & ((1u << b_count) - 1u);
-        count_tests(state, 1);
-        for (; some && !state->query.stop; some &= some - 1)
-            step_patch_pair(state, c, hop[b] + sc_bits_lowest(some));
+        count_tests(w, 1);
+        for (; some && !w->stop; some &= some - 1)
+            step_patch_pair(w, c, hop[b] + sc_bits_lowest(some));
     }
 }
 
 /* A patch against itself. */
-static void step_patch_itself(sc_step_state *state, uint32_t a)
+static void step_patch_itself(sc_worker *w, uint32_t a)
 {
-    const sc_model *model = state->query.model;
-    const sc_motion *m = &state->query.workspace->motion;
+    const sc_model *model = w->model;
+    const sc_motion *m = &w->frame->motion;
     const uint32_t *hop = sc_model_hop(model);
     uint32_t count, i;
     if (sc_model_is_leaf(model, a)) {
-        step_leaf_itself(state, sc_model_leaf(model)[a]);
+        step_leaf_itself(w, sc_model_leaf(model)[a]);
         return;
     }
-    if (sc_state_stops(&state->query)) return;
+    if (sc_worker_stops(w)) return;
     count = hop[a + 1] - hop[a];
-    for (i = 0; i < count && !state->query.stop; i++) {
+    for (i = 0; i < count && !w->stop; i++) {
         uint32_t c = hop[a] + i;
         box_sides box;
         unsigned some;
         patch_sides(m, c, 0, &box);
         some = near_patches(&box, m, hop[a]);
         some &= ((1u << count) - 1u) & ~((2u << i) - 1u);
-        count_tests(state, 1);
-        step_patch_itself(state, c);
-        for (; some && !state->query.stop; some &= some - 1)
-            step_patch_pair(state, c, hop[a] + sc_bits_lowest(some));
+        count_tests(w, 1);
+        step_patch_itself(w, c);
+        for (; some && !w->stop; some &= some - 1)
+            step_patch_pair(w, c, hop[a] + sc_bits_lowest(some));
     }
 }
 

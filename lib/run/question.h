@@ -5,18 +5,18 @@
  *
  * What is wrong is told the log, whose hooks may be NULL.
  */
-#ifndef SC_QUERY_QUESTION_H
-#define SC_QUERY_QUESTION_H
+#ifndef SC_RUN_QUESTION_H
+#define SC_RUN_QUESTION_H
 
-#include "query/state.h"
+#include "run/workspace.h"
 
-/* All of a question that is not in the state of its query. */
-typedef struct sc_question {
+/* What the caller passed, copied: a question refers to it. */
+typedef struct sc_asked {
     sc_pose pose;
     uint64_t stride; /* of the pose, in bytes */
     sc_filter filter;
     sc_tasks tasks;
-} sc_question;
+} sc_asked;
 
 /* A pose, which the header calls `name`, of a model; what may be wrong afterwards are its
    positions. */
@@ -35,13 +35,12 @@ sc_status sc_question_read_tasks(const sc_workspace *workspace, const sc_tasks *
                                  sc_tasks *tasks);
 
 /* SC_ERROR_WORKSPACE if a workspace is for another model, or has not all of some flags. */
-sc_status sc_question_check_workspace(const sc_model *model, sc_workspace *workspace,
+sc_status sc_question_check_workspace(const sc_model *model, const sc_workspace *workspace,
                                       uint32_t flags);
 
-/* Everything about a query but which result it goes to; state is zero and gets its options and its
-   filter, which are the question's. */
-sc_status sc_question_read(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
-                           const sc_query_options *options, const sc_result *result,
-                           sc_query_state *state, sc_question *question);
+/* Everything about a query; *question is zero before. */
+sc_status sc_question_read(const sc_model *model, const sc_workspace *workspace,
+                           const sc_pose *pose, const sc_query_options *options,
+                           const sc_result *result, sc_asked *asked, sc_question *question);
 
 #endif

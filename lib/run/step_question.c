@@ -3,14 +3,13 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#include "step/step_question.h"
+#include "run/step_question.h"
 
 #include <float.h>
 
 #include "base/arguments.h"
 #include "base/assume.h"
-#include "simd/isa.h"
-#include "query/question.h"
+#include "run/question.h"
 
 static sc_status check_length(const sc_hooks *hooks, const char *name, double length)
 {
@@ -58,11 +57,35 @@ static sc_status choose_for_step(const sc_model *model, sc_step_options *o)
     return SC_OK;
 }
 
-sc_status sc_step_question_read(const sc_model *model, sc_workspace *workspace,
+/* What all queries are asked, and where the answer goes. */
+static void fill_question(const sc_step_result *result, sc_step_question *question)
+{
+    const sc_step_options *o = &question->options;
+    const int times = o->times == SC_STEP_TIMES_EACH;
+    sc_step_list *list = question->list;
+    question->query.options.output = o->output;
+    question->query.options.simd = o->simd;
+    question->query.options.cancel = o->cancel;
+    question->query.options.budget = o->budget;
+    question->query.options.tasks = o->tasks;
+    question->query.timed = result->stats != NULL;
+    list[SC_STEP_VERTEX_FACE].pairs = result->vertex_faces;
+    list[SC_STEP_VERTEX_FACE].times = times ? result->vertex_face_times : NULL;
+    list[SC_STEP_VERTEX_FACE].capacity = result->vertex_face_capacity;
+    list[SC_STEP_EDGE_EDGE].pairs = result->edge_edges;
+    list[SC_STEP_EDGE_EDGE].times = times ? result->edge_edge_times : NULL;
+    list[SC_STEP_EDGE_EDGE].capacity = result->edge_edge_capacity;
+    question->limits.separation = o->separation;
+    question->limits.tolerance = o->tolerance;
+    question->limits.latest = 1;
+}
+
+sc_status sc_step_question_read(const sc_model *model, const sc_workspace *workspace,
                                 const sc_pose *start, const sc_pose *end,
                                 const sc_step_options *from, const sc_step_result *result,
-                                sc_step_options *options, sc_step_question *question)
+                                sc_step_asked *asked, sc_step_question *question)
 {
+    sc_step_options *o = &question->options;
     const sc_hooks *hooks;
     sc_status status;
     if (!workspace) return SC_ERROR_NULL;
@@ -71,23 +94,23 @@ sc_status sc_step_question_read(const sc_model *model, sc_workspace *workspace,
     if ((status = sc_arguments_need(hooks, "start", NULL, start))) return status;
     if ((status = sc_arguments_need(hooks, "end", NULL, end))) return status;
     status = sc_question_check_workspace(model, workspace, SC_WORKSPACE_STEP);
+    if (!status) status = sc_arguments_read_options(hooks, "options", o, sizeof *o, from);
+    if (!status) status = check_step_choices(hooks, o);
+    if (!status) status = choose_for_step(model, o);
+    if (!status) status = sc_question_read_tasks(workspace, &o->tasks, &asked->tasks);
     if (!status)
-        status = sc_arguments_read_options(hooks, "options", options, sizeof *options, from);
-    if (!status) status = check_step_choices(hooks, options);
-    if (!status) status = choose_for_step(model, options);
-    if (!status) status = sc_question_read_tasks(workspace, &options->tasks, &question->tasks);
+        status =
+            sc_question_read_pose(hooks, "start", model, start, &asked->pose[0], &asked->stride[0]);
     if (!status)
-        status = sc_question_read_pose(hooks, "start", model, start, &question->pose[0],
-                                       &question->stride[0]);
-    if (!status)
-        status = sc_question_read_pose(hooks, "end", model, end, &question->pose[1],
-                                       &question->stride[1]);
-    if (!status && options->output == SC_OUTPUT_PAIRS && result->vertex_face_capacity)
+        status =
+            sc_question_read_pose(hooks, "end", model, end, &asked->pose[1], &asked->stride[1]);
+    if (!status && o->output == SC_OUTPUT_PAIRS && result->vertex_face_capacity)
         status = sc_arguments_need(hooks, "result", "vertex_faces", result->vertex_faces);
-    if (!status && options->output == SC_OUTPUT_PAIRS && result->edge_edge_capacity)
+    if (!status && o->output == SC_OUTPUT_PAIRS && result->edge_edge_capacity)
         status = sc_arguments_need(hooks, "result", "edge_edges", result->edge_edges);
     if (!status && result->stats)
         status = sc_arguments_check(hooks, "result.stats", result->stats, sizeof(sc_stats),
                                     SC_ARGUMENTS_DEFAULTS);
+    if (!status) fill_question(result, question);
     return status;
 }

@@ -11,9 +11,9 @@
  * are split up by the calling thread, to a list of parts which is done in that job, too, or when it
  * is full. The plain tree is nothing but such a list.
  *
- * No locks: see query/parallel.c.
+ * No locks: see run/parallel.c.
  */
-#include "step/step_parallel.h"
+#include "run/step_parallel.h"
 
 #include <string.h>
 
@@ -25,8 +25,6 @@
 #include "step/step_motion.h"
 #include "step/step_pairs.h"
 #include "step/step_traversal.h"
-
-typedef char step_state_fits[sizeof(sc_step_state) <= SC_STEP_STATE_ROOM ? 1 : -1];
 
 /* Models with fewer leaf clusters are not worth a job. */
 enum { STEP_MODEL_MIN = 128 };
@@ -45,7 +43,7 @@ enum { STEP_NODE_PARTS = 256, STEP_NODES_AT_ONCE = 8, STEP_PARTS_AT_ONCE = 2 };
    that is below, and those above it are cut into so many parts at most. */
 enum { STEP_SUBTREES_MIN = 512, STEP_REST_PARTS = 1024 };
 
-/* What sc_motion.reached says of a node; 0: its parent was not opened. */
+/* What sc_plan_room.reached says of a node; 0: its parent was not opened. */
 enum {
     REACHED_TEST = 1,   /* it is to be tested */
     REACHED_FAILED = 2, /* it has the contour of its parent, which failed */
@@ -57,69 +55,56 @@ enum { STEP_PART_PAIR, STEP_PART_PAIR_AFTER_CONTOUR, STEP_PART_PATCH };
 
 /* A step that is shared out. */
 typedef struct step_plan {
-    sc_step_state *state; /* of the calling thread, and the sums in the end */
-    sc_workspace *w;
+    sc_workspace *workspace;
+    sc_plan_room *room;
+    sc_worker *w; /* the first, as which the calling thread plans, and the sums in the end */
     const sc_tasks *tasks;
     sc_step_share share;
-    uint32_t part_count;         /* of those in w->parts */
+    uint32_t part_count;         /* of those in room */
     uint32_t first, end, length; /* nodes of a level, and of a part */
     uint32_t roots; /* the first node that is done with all below it, see STEP_SUBTREES_MIN */
     sc_jobs_ranges ranges; /* of the job at hand */
     int selfs;             /* of these, those of one patch; else those of two */
 } step_plan;
 
-const sc_tasks *sc_step_parallel_tasks(const sc_step_state *state)
+const sc_tasks *sc_step_parallel_tasks(const sc_model *model, const sc_step_question *question)
 {
-    const sc_tasks *tasks = state->options.tasks;
-    if (!tasks || tasks->workers < 2 || state->query.model->leaf_count < STEP_MODEL_MIN)
-        return NULL;
+    const sc_tasks *tasks = question->options.tasks;
+    if (!tasks || tasks->workers < 2 || model->leaf_count < STEP_MODEL_MIN) return NULL;
     return tasks;
 }
 
-int sc_step_parallel_pays(const sc_step_state *state)
+int sc_step_parallel_pays(const sc_model *model, const sc_step_question *question)
 {
-    return SC_ATOMIC && sc_step_parallel_tasks(state) && !state->options.budget;
-}
-
-static sc_step_state *step_state_of(const step_plan *p, uint32_t worker)
-{
-    return (sc_step_state *)(void *)sc_workspace_of_worker(p->w, worker)->motion.state;
+    return SC_ATOMIC && sc_step_parallel_tasks(model, question) && !question->options.budget;
 }
 
 /* ---- jobs ---- */
 
 static void start_step_workers(step_plan *p)
 {
-    const sc_model *model = p->state->query.model;
-    uint32_t worker;
-    sc_workspace_share(model, p->w, p->tasks->workers);
-    sc_workspace_keep_motions(model, p->w, p->tasks->workers);
-    for (worker = 0; worker < p->tasks->workers; worker++) {
-        sc_step_state *s = step_state_of(p, worker);
-        *s = *p->state;
-        s->query.workspace = sc_workspace_of_worker(p->w, worker);
-        memset(&s->query.stats, 0, sizeof s->query.stats);
-        memset(s->query.workspace->walk.marks, 0, model->patch_end);
-        s->query.workspace->motion.found_count[0] = s->query.workspace->motion.found_count[1] = 0;
-    }
-    memset(p->w->culled, 0, model->patch_end);
-    memset(p->w->motion.reached, 0, model->node_count);
+    const sc_model *model = p->w->model;
+    uint32_t i;
+    sc_workspace_share_step(model, p->workspace, &p->share, p->tasks->workers);
+    for (i = 0; i < p->tasks->workers; i++)
+        memset(p->workspace->worker[i].last.marks, 0, model->patch_end);
+    memset(p->room->culled, 0, model->patch_end);
+    memset(p->room->reached, 0, model->node_count);
 }
 
 /* A worker begins and ends a part; its clock stands still between parts. */
-static sc_step_state *begin_step_part(const step_plan *p, uint32_t worker)
+static sc_worker *begin_step_part(const step_plan *p, uint32_t worker)
 {
-    sc_step_state *s = step_state_of(p, worker);
-    s->query.task = p->state->query.task;
-    if (s->query.timed) s->query.last_time = sc_clock_nanoseconds();
-    return s;
+    sc_worker *w = &p->workspace->worker[worker];
+    w->task = p->w->task;
+    if (w->question->timed) w->last_time = sc_clock_nanoseconds();
+    return w;
 }
 
-static void end_step_part(sc_step_state *s)
+static void end_step_part(sc_worker *w)
 {
-    sc_step_candidates_decide(s);
-    if (s->query.timed)
-        s->query.stats.nanoseconds[s->query.task] += sc_clock_nanoseconds() - s->query.last_time;
+    sc_step_candidates_decide(w);
+    if (w->question->timed) w->stats.nanoseconds[w->task] += sc_clock_nanoseconds() - w->last_time;
 }
 
 /* Runs a job. The calling thread's clock stands still: what workers do is in their own
@@ -127,24 +112,23 @@ static void end_step_part(sc_step_state *s)
 static void run_step_job(step_plan *p, void (*run)(void *context, uint32_t part, uint32_t worker),
                          uint32_t count)
 {
-    sc_query_state *query = &p->state->query;
+    sc_worker *w = p->w;
     if (!count) return;
-    sc_jobs_divide(p->tasks, count, &p->ranges);
-    if (query->timed)
-        query->stats.nanoseconds[query->task] += sc_clock_nanoseconds() - query->last_time;
+    sc_jobs_divide(p->tasks->workers, count, &p->ranges);
+    if (w->question->timed) w->stats.nanoseconds[w->task] += sc_clock_nanoseconds() - w->last_time;
     if (count == 1)
         run(p, 0, 0);
     else
         p->tasks->finish(p->tasks->user, p->tasks->enqueue(p->tasks->user, run, p, count));
-    if (query->timed) query->last_time = sc_clock_nanoseconds();
+    if (w->question->timed) w->last_time = sc_clock_nanoseconds();
 }
 
-static void do_step_part(sc_step_state *s, const sc_part *part)
+static void do_step_part(sc_worker *s, const sc_part *part)
 {
-    const sc_step_kernels *kernels = s->query.workspace->kernels->step;
-    sc_step_traversal_follow_contour(s, part->kind == STEP_PART_PAIR_AFTER_CONTOUR);
-    sc_state_switch(&s->query, sc_state_box_task(&s->query));
-    if (part->kind == STEP_PART_PATCH)
+    const sc_step_kernels *kernels = s->frame->kernels->step;
+    sc_step_traversal_follow_contour(s, part->list == STEP_PART_PAIR_AFTER_CONTOUR);
+    sc_worker_switch(s, sc_step_box_task(s));
+    if (part->list == STEP_PART_PATCH)
         kernels->patch_itself(s, part->a);
     else
         kernels->patch_pair(s, part->a, part->b);
@@ -159,10 +143,10 @@ static uint32_t listed_parts(const step_plan *p)
 /* What a node leaves, and if it is a root or below one, what all below it leave, which one thread
    does in this order, too. A large node has left its boxes to the list already, but not what is
    below it: in an uneven tree of the caller's such nodes may be anywhere. */
-static void take_rests(const step_plan *p, sc_step_state *s, uint32_t node)
+static void take_rests(const step_plan *p, sc_worker *s, uint32_t node)
 {
-    const sc_node *n = sc_model_node(s->query.model) + node;
-    const uint32_t end = sc_node_end(n), left = p->w->motion.reached[node];
+    const sc_node *n = sc_model_node(s->model) + node;
+    const uint32_t end = sc_node_end(n), left = p->room->reached[node];
     uint32_t c;
     if (left != REACHED_REST && left != REACHED_OPEN) return;
     for (c = node < p->roots ? end : n->child; c < end; c++) take_rests(p, s, c);
@@ -173,13 +157,13 @@ static void take_rests(const step_plan *p, sc_step_state *s, uint32_t node)
 static void run_step_parts(void *context, uint32_t part, uint32_t worker)
 {
     step_plan *p = (step_plan *)context;
-    sc_step_state *s = begin_step_part(p, worker);
+    sc_worker *s = begin_step_part(p, worker);
     const uint32_t listed = listed_parts(p);
     uint32_t i, node;
     part = sc_jobs_take(&p->ranges, part, worker);
     if (part < listed) {
         for (i = part * STEP_PARTS_AT_ONCE; i < (part + 1) * STEP_PARTS_AT_ONCE; i++)
-            if (i < p->part_count && !sc_state_stops(&s->query)) do_step_part(s, &p->w->parts[i]);
+            if (i < p->part_count && !sc_worker_stops(s)) do_step_part(s, &p->room->parts[i]);
     } else {
         node = (part - listed) * p->length;
         for (i = node; i < p->end && i < node + p->length; i++) take_rests(p, s, i);
@@ -198,22 +182,13 @@ static void add_step_part(step_plan *p, uint32_t kind, uint32_t a, uint32_t b)
 {
     sc_part *part;
     if (p->part_count == SC_PARTS_MAX) do_step_parts(p);
-    part = &p->w->parts[p->part_count++];
-    part->kind = kind;
+    part = &p->room->parts[p->part_count++];
+    part->list = kind;
     part->a = a;
     part->b = b;
 }
 
 /* ---- boxes ---- */
-
-/* Boxes must be there before workers need them. */
-static void refit_for_all(step_plan *p)
-{
-    uint32_t worker;
-    sc_step_traversal_refit(p->state);
-    for (worker = 1; worker < p->tasks->workers; worker++)
-        sc_workspace_of_worker(p->w, worker)->boxes_ready = 1;
-}
 
 static int is_large_in_step(const sc_model *model, uint32_t patch)
 {
@@ -223,63 +198,63 @@ static int is_large_in_step(const sc_model *model, uint32_t patch)
 
 /* Two patches of a level that are near each other: those of them that are large as by
    sc_step_kernels.patch_pair. */
-static void add_step_patches(step_plan *p, uint32_t a, uint32_t b)
+static void add_step_patches(step_plan *p, uint32_t a, uint32_t b, int after_contour)
 {
-    sc_query_state *query = &p->state->query;
-    const sc_motion *motion = &p->w->motion;
-    const uint32_t *hop = sc_model_hop(query->model);
-    uint32_t c, d, task = sc_state_box_task(query);
-    if (!is_large_in_step(query->model, a) && !is_large_in_step(query->model, b)) {
-        add_step_part(p, query->after_contour ? STEP_PART_PAIR_AFTER_CONTOUR : STEP_PART_PAIR, a,
-                      b);
+    sc_worker *w = p->w;
+    const sc_motion *motion = &w->frame->motion;
+    const uint32_t *hop = sc_model_hop(w->model);
+    const uint32_t task = after_contour ? SC_TASK_BOXES_CONTOUR : SC_TASK_BOXES_ORIENTATION;
+    uint32_t c, d;
+    if (!is_large_in_step(w->model, a) && !is_large_in_step(w->model, b)) {
+        add_step_part(p, after_contour ? STEP_PART_PAIR_AFTER_CONTOUR : STEP_PART_PAIR, a, b);
         return;
     }
-    query->stats.counts[task]++;
-    for (c = hop[a]; c < hop[a + 1] && !sc_state_stops(query); c++) {
+    w->stats.counts[task]++;
+    for (c = hop[a]; c < hop[a + 1] && !sc_worker_stops(w); c++) {
         if (sc_motion_boxes_apart(motion, b, c)) continue;
-        query->stats.counts[task]++;
+        w->stats.counts[task]++;
         for (d = hop[b]; d < hop[b + 1]; d++)
-            if (!sc_motion_boxes_apart(motion, c, d)) add_step_patches(p, c, d);
+            if (!sc_motion_boxes_apart(motion, c, d)) add_step_patches(p, c, d, after_contour);
     }
 }
 
 /* The same for sc_step_kernels.patch_itself. */
 static void add_step_patch(step_plan *p, uint32_t a)
 {
-    sc_query_state *query = &p->state->query;
-    const sc_motion *motion = &p->w->motion;
-    const uint32_t *hop = sc_model_hop(query->model);
+    sc_worker *w = p->w;
+    const sc_motion *motion = &w->frame->motion;
+    const uint32_t *hop = sc_model_hop(w->model);
     uint32_t c, d;
-    if (!is_large_in_step(query->model, a)) {
+    if (!is_large_in_step(w->model, a)) {
         add_step_part(p, STEP_PART_PATCH, a, 0);
         return;
     }
-    for (c = hop[a]; c < hop[a + 1] && !sc_state_stops(query); c++) {
-        query->stats.counts[SC_TASK_BOXES_ORIENTATION]++;
+    for (c = hop[a]; c < hop[a + 1] && !sc_worker_stops(w); c++) {
+        w->stats.counts[SC_TASK_BOXES_ORIENTATION]++;
         add_step_patch(p, c);
         for (d = c + 1; d < hop[a + 1]; d++)
-            if (!sc_motion_boxes_apart(motion, c, d)) add_step_patches(p, c, d);
+            if (!sc_motion_boxes_apart(motion, c, d)) add_step_patches(p, c, d, 0);
     }
 }
 
 /* What large nodes of a level leave to boxes; such nodes have no leaf clusters of their own. */
 static void add_boxes_of_level(step_plan *p)
 {
-    sc_step_state *state = p->state;
-    const sc_model *model = state->query.model;
+    sc_worker *w = p->w;
     uint32_t node, bits, previous;
-    for (node = p->first; node < p->end && !sc_state_stops(&state->query); node++) {
-        const sc_node *n = sc_model_node(model) + node;
-        if (p->w->motion.reached[node] != REACHED_OPEN) continue;
-        sc_step_traversal_follow_contour(state, sc_step_traversal_mask(state, node) != 0);
-        previous = sc_state_switch(&state->query, sc_state_box_task(&state->query));
+    for (node = p->first; node < p->end && !sc_worker_stops(w); node++) {
+        const sc_node *n = sc_model_node(w->model) + node;
+        const int after_contour = sc_step_traversal_mask(w, node) != 0;
+        if (p->room->reached[node] != REACHED_OPEN) continue;
+        sc_step_traversal_follow_contour(w, after_contour);
+        previous = sc_worker_switch(w, sc_step_box_task(w));
         for (bits = sc_node_boxes(n); bits; bits &= bits - 1) {
-            const sc_pair pair = sc_model_pair(model, n, sc_bits_lowest(bits));
-            state->query.stats.counts[sc_state_box_task(&state->query)]++;
-            if (!sc_motion_boxes_apart(&p->w->motion, pair.a, pair.b))
-                add_step_patches(p, pair.a, pair.b);
+            const sc_pair pair = sc_model_pair(w->model, n, sc_bits_lowest(bits));
+            w->stats.counts[sc_step_box_task(w)]++;
+            if (!sc_motion_boxes_apart(&w->frame->motion, pair.a, pair.b))
+                add_step_patches(p, pair.a, pair.b, after_contour);
         }
-        sc_state_switch(&state->query, previous);
+        sc_worker_switch(w, previous);
     }
 }
 
@@ -288,23 +263,23 @@ static void add_boxes_of_level(step_plan *p)
 /* A node that failed: its children are reached. Boxes are left for later, when all levels are done:
    some nodes leave much more than others, and then no level has to wait for these. But where the
    first pair ends the step, they are done at once, unless there are too many. */
-static void open_step_node(const step_plan *p, sc_step_state *s, uint32_t node)
+static void open_step_node(const step_plan *p, sc_worker *s, uint32_t node)
 {
-    const sc_model *model = s->query.model;
+    const sc_model *model = s->model;
     const sc_node *nodes = sc_model_node(model), *n = nodes + node;
     const uint32_t end = sc_node_end(n);
     int failed = p->selfs && sc_step_traversal_mask(s, node);
     uint32_t c;
     for (c = n->child; c < end; c++) {
         int is_pair = nodes[c].patches.a != nodes[c].patches.b;
-        p->w->motion.reached[c] = failed && is_pair ? REACHED_FAILED : REACHED_TEST;
-        s->reached[is_pair]++;
+        p->room->reached[c] = failed && is_pair ? REACHED_FAILED : REACHED_TEST;
+        s->step->reached[is_pair]++;
     }
     if (is_large_in_step(model, n->patches.a) || is_large_in_step(model, n->patches.b)) {
-        p->w->motion.reached[node] = REACHED_OPEN;
-        s->large++;
-    } else if (s->options.output != SC_OUTPUT_ANY) {
-        p->w->motion.reached[node] = REACHED_REST;
+        p->room->reached[node] = REACHED_OPEN;
+        s->step->large++;
+    } else if (s->step->question->options.output != SC_OUTPUT_ANY) {
+        p->room->reached[node] = REACHED_REST;
     } else {
         sc_step_traversal_query_rest(s, node);
     }
@@ -326,18 +301,18 @@ static uint32_t next_reached(const uint8_t *reached, uint32_t node, uint32_t end
 static void run_step_nodes(void *context, uint32_t part, uint32_t worker)
 {
     step_plan *p = (step_plan *)context;
-    sc_step_state *s = begin_step_part(p, worker);
-    const sc_node *nodes = sc_model_node(s->query.model);
-    uint8_t *reached = p->w->motion.reached, *marks = s->query.workspace->walk.marks;
+    sc_worker *s = begin_step_part(p, worker);
+    const sc_node *nodes = sc_model_node(s->model);
+    uint8_t *reached = p->room->reached, *marks = s->last.marks;
     uint32_t first = p->first + sc_jobs_take(&p->ranges, part, worker) * p->length, node;
     uint32_t end = p->end - first < p->length ? p->end : first + p->length;
-    for (node = first; node < end && !sc_state_stops(&s->query); node++) {
+    for (node = first; node < end && !sc_worker_stops(s); node++) {
         uint32_t a, b;
         node = next_reached(reached, node, end);
         if (node == end) break;
         a = nodes[node].patches.a;
         b = nodes[node].patches.b;
-        if ((a == b) != p->selfs || (p->selfs && p->w->culled[a])) continue;
+        if ((a == b) != p->selfs || (p->selfs && p->room->culled[a])) continue;
         if (sc_step_traversal_culls(s, node, reached[node] == REACHED_FAILED))
             marks[a] = marks[b] = 1;
         else
@@ -350,7 +325,7 @@ static void run_step_nodes(void *context, uint32_t part, uint32_t worker)
 static void do_nodes(step_plan *p, int selfs, uint32_t reached)
 {
     uint32_t count = p->end - p->first, parts;
-    if (!reached || sc_state_stops(&p->state->query)) return;
+    if (!reached || sc_worker_stops(p->w)) return;
     p->selfs = selfs;
     parts = reached < STEP_NODES_MIN ? 1 : reached / STEP_NODES_AT_ONCE;
     p->length = (count - 1) / (parts < STEP_NODE_PARTS ? parts : STEP_NODE_PARTS) + 1;
@@ -361,11 +336,12 @@ static void do_nodes(step_plan *p, int selfs, uint32_t reached)
    culled. */
 static void join_marks_of_level(step_plan *p, uint32_t level)
 {
-    const uint32_t *level_first = sc_model_level_first(p->state->query.model);
+    const uint32_t *level_first = sc_model_level_first(p->w->model);
     uint32_t worker, i;
     for (worker = 0; worker < p->tasks->workers; worker++) {
-        const uint8_t *marks = sc_workspace_of_worker(p->w, worker)->walk.marks;
-        for (i = level_first[level]; i < level_first[level + 1]; i++) p->w->culled[i] |= marks[i];
+        const uint8_t *marks = p->workspace->worker[worker].last.marks;
+        for (i = level_first[level]; i < level_first[level + 1]; i++)
+            p->room->culled[i] |= marks[i];
     }
 }
 
@@ -375,8 +351,8 @@ static uint32_t take_reached(const step_plan *p, int is_pair)
 {
     uint32_t worker, sum = 0;
     for (worker = 0; worker < p->tasks->workers; worker++) {
-        sum += step_state_of(p, worker)->reached[is_pair];
-        step_state_of(p, worker)->reached[is_pair] = 0;
+        sum += p->workspace->step[worker].reached[is_pair];
+        p->workspace->step[worker].reached[is_pair] = 0;
     }
     return sum;
 }
@@ -385,25 +361,25 @@ static uint32_t take_large(const step_plan *p)
 {
     uint32_t worker, sum = 0;
     for (worker = 0; worker < p->tasks->workers; worker++) {
-        sum += step_state_of(p, worker)->large;
-        step_state_of(p, worker)->large = 0;
+        sum += p->workspace->step[worker].large;
+        p->workspace->step[worker].large = 0;
     }
     return sum;
 }
 
 static void walk_levels(step_plan *p)
 {
-    const sc_model *model = p->state->query.model;
+    const sc_model *model = p->w->model;
     uint32_t level, end = 1, reached[2] = {1, 0}, few = 1; /* levels so far have few patches */
-    p->w->motion.reached[0] = REACHED_TEST;
+    p->room->reached[0] = REACHED_TEST;
     p->end = 1;
-    for (level = 0; reached[0] + reached[1] && !sc_state_stops(&p->state->query); level++) {
+    for (level = 0; reached[0] + reached[1] && !sc_worker_stops(p->w); level++) {
         do_nodes(p, 0, reached[1]);
         if (reached[1]) join_marks_of_level(p, level);
         do_nodes(p, 1, reached[0]);
         reached[0] = take_reached(p, 0);
         reached[1] = take_reached(p, 1);
-        if (!level && reached[0]) refit_for_all(p); /* the root is large */
+        if (!level && reached[0]) sc_step_traversal_refit(p->w); /* the root is large */
         if (take_large(p)) add_boxes_of_level(p);
         if (few) {
             p->roots = p->first;
@@ -413,7 +389,7 @@ static void walk_levels(step_plan *p)
         p->first = p->end;
         p->end = sc_model_node(model)[p->end].child;
     }
-    if (sc_state_stops(&p->state->query)) return;
+    if (sc_worker_stops(p->w)) return;
     p->end = end;
     p->length = (end - 1) / STEP_REST_PARTS + 1;
     run_step_job(p, run_step_parts, listed_parts(p) + (end - 1) / p->length + 1);
@@ -426,72 +402,69 @@ static void walk_levels(step_plan *p)
    Returns 0 if one of these is too short. */
 static int gather_step(step_plan *p)
 {
-    sc_step_state *state = p->state;
-    uint32_t worker, i;
+    const sc_step_list *list = p->w->step->question->list;
+    sc_worker *sum = p->w;
+    uint32_t i, k;
     int fits = 1, kind;
-    for (worker = 0; worker < p->tasks->workers; worker++) {
-        const sc_step_state *s = step_state_of(p, worker);
-        const sc_stats *stats = &s->query.stats;
-        for (i = 0; i < SC_TASK_COUNT; i++) {
-            state->query.stats.counts[i] += stats->counts[i];
-            state->query.stats.nanoseconds[i] += stats->nanoseconds[i];
-        }
-        state->query.stats.nodes_visited += stats->nodes_visited;
-        state->query.stats.nodes_oriented += stats->nodes_oriented;
-        state->query.stats.nodes_culled += stats->nodes_culled;
-        state->query.stats.leaf_pairs += stats->leaf_pairs;
-        state->query.incomplete |= s->query.incomplete;
-        if (s->earliest < state->earliest) state->earliest = s->earliest;
-        for (kind = 0; kind < 2; kind++) state->list[kind].count += s->list[kind].count;
-    }
-    for (kind = 0; kind < 2; kind++) {
-        const sc_step_list *list = &state->list[kind];
-        uint64_t at = p->share.claimed[kind];
-        for (worker = 0; worker < p->tasks->workers; worker++) {
-            const sc_motion *m = &sc_workspace_of_worker(p->w, worker)->motion;
-            uint32_t count = m->found_count[kind];
-            if (at <= list->capacity && count && count <= list->capacity - at) {
-                memcpy(list->pairs + at, m->found[kind], sizeof(sc_pair) * count);
-                if (list->times)
-                    memcpy(list->times + at, m->found_time[kind], sizeof(double) * count);
+    for (i = 0; i < p->tasks->workers; i++) {
+        const sc_worker *w = &p->workspace->worker[i];
+        const sc_step_worker *step = w->step;
+        for (kind = 0; kind < 2; kind++) {
+            const uint64_t at = p->share.claimed[kind];
+            const uint32_t count = step->found_count[kind];
+            if (at <= list[kind].capacity && count && count <= list[kind].capacity - at) {
+                memcpy(list[kind].pairs + at, step->found[kind], sizeof(sc_pair) * count);
+                if (list[kind].times)
+                    memcpy(list[kind].times + at, step->found_time[kind], sizeof(double) * count);
             }
-            at += count;
+            p->share.claimed[kind] += count;
         }
-        if (at > list->capacity) fits = 0;
+        if (w == sum) continue;
+        for (k = 0; k < SC_TASK_COUNT; k++) {
+            sum->stats.counts[k] += w->stats.counts[k];
+            sum->stats.nanoseconds[k] += w->stats.nanoseconds[k];
+        }
+        sum->stats.nodes_visited += w->stats.nodes_visited;
+        sum->stats.nodes_oriented += w->stats.nodes_oriented;
+        sum->stats.nodes_culled += w->stats.nodes_culled;
+        sum->stats.leaf_pairs += w->stats.leaf_pairs;
+        sum->incomplete |= w->incomplete;
+        if (step->earliest < sum->step->earliest) sum->step->earliest = step->earliest;
+        for (kind = 0; kind < 2; kind++) sum->step->count[kind] += step->count[kind];
     }
+    for (kind = 0; kind < 2; kind++) fits &= p->share.claimed[kind] <= list[kind].capacity;
     return fits;
 }
 
-void sc_step_parallel_run(sc_step_state *state)
+void sc_step_parallel_run(sc_workspace *workspace)
 {
-    sc_step_state before = *state;
+    sc_worker *w = &workspace->worker[0];
+    const sc_step_question *question = w->step->question;
+    const sc_stats before = w->stats;
     step_plan p;
     memset(&p, 0, sizeof p);
-    p.state = state;
-    p.w = state->query.workspace;
-    p.tasks = state->options.tasks;
-    p.w->motion.swept = state->options.method == SC_STEP_METHOD_SWEPT;
-    state->share = &p.share;
-    state->query.share = &p.share.query;
+    p.workspace = workspace;
+    p.room = &workspace->plan;
+    p.w = w;
+    p.tasks = question->options.tasks;
+    w->frame->motion.swept = question->options.method == SC_STEP_METHOD_SWEPT;
     start_step_workers(&p);
-    if (state->options.method == SC_STEP_METHOD_SCTT) {
-        sc_step_traversal_update_cones(state);
+    if (question->options.method == SC_STEP_METHOD_SCTT) {
+        sc_step_traversal_update_cones(w);
         walk_levels(&p);
     } else {
-        sc_state_switch(&state->query, SC_TASK_BOXES_ORIENTATION);
-        refit_for_all(&p);
+        sc_worker_switch(w, SC_TASK_BOXES_ORIENTATION);
+        sc_step_traversal_refit(w);
         add_step_patch(&p, 0);
         do_step_parts(&p);
     }
     if (gather_step(&p)) {
-        state->share = NULL;
-        state->query.share = NULL;
-        sc_step_pairs_finish(state, p.tasks);
+        sc_step_pairs_finish(question, w->step->count, p.tasks);
         return;
     }
-    *state = before;
-    p.w->boxes_ready = 0;
-    if (state->query.timed) state->query.last_time = sc_clock_nanoseconds();
-    sc_step_traversal_run(state);
-    sc_step_pairs_finish(state, NULL);
+    sc_workspace_begin_step(w->model, workspace, question);
+    w->stats = before;
+    if (question->query.timed) w->last_time = sc_clock_nanoseconds();
+    sc_step_traversal_run(w);
+    sc_step_pairs_finish(question, w->step->count, NULL);
 }

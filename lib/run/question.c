@@ -3,13 +3,12 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#include "query/question.h"
+#include "run/question.h"
 
 #include <inttypes.h>
 
 #include "base/arguments.h"
 #include "base/assume.h"
-#include "simd/isa.h"
 #include "build/mesh.h"
 #include "query/filter.h"
 
@@ -89,32 +88,33 @@ sc_status sc_question_read_tasks(const sc_workspace *workspace, const sc_tasks *
         return SC_ERROR_NULL;
     }
     if (!tasks->workers) tasks->workers = 1;
-    if (tasks->workers > workspace->workers) {
+    if (tasks->workers > workspace->sizes.workers) {
         sc_hooks_log(hooks, SC_LOG_ERROR,
                      "options.tasks.workers is %" PRIu32 ", but the workspace is for %" PRIu32,
-                     tasks->workers, workspace->workers);
+                     tasks->workers, workspace->sizes.workers);
         return SC_ERROR_WORKSPACE;
     }
     *given = tasks;
     return SC_OK;
 }
 
-sc_status sc_question_check_workspace(const sc_model *model, sc_workspace *workspace,
+sc_status sc_question_check_workspace(const sc_model *model, const sc_workspace *workspace,
                                       uint32_t flags)
 {
     const char *wrong = NULL;
     if (!sc_workspace_fits(workspace, model))
         wrong = "the workspace is for another model";
-    else if ((workspace->flags & flags) != flags)
+    else if ((workspace->sizes.flags & flags) != flags)
         wrong = "the workspace is not for steps: SC_WORKSPACE_STEP";
     if (wrong) sc_hooks_log(&workspace->hooks, SC_LOG_ERROR, "%s", wrong);
     return wrong ? SC_ERROR_WORKSPACE : SC_OK;
 }
 
-sc_status sc_question_read(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
-                           const sc_query_options *options, const sc_result *result,
-                           sc_query_state *state, sc_question *question)
+sc_status sc_question_read(const sc_model *model, const sc_workspace *workspace,
+                           const sc_pose *pose, const sc_query_options *options,
+                           const sc_result *result, sc_asked *asked, sc_question *question)
 {
+    sc_query_options *o = &question->options;
     const sc_hooks *hooks;
     sc_status status;
     if (!workspace) return SC_ERROR_NULL;
@@ -122,15 +122,18 @@ sc_status sc_question_read(const sc_model *model, sc_workspace *workspace, const
     if ((status = sc_arguments_need(hooks, "model", NULL, model))) return status;
     if ((status = sc_arguments_need(hooks, "pose", NULL, pose))) return status;
     if ((status = sc_question_check_workspace(model, workspace, 0))) return status;
-    if ((status = sc_question_read_options(hooks, options, &state->options))) return status;
-    if ((status = sc_question_choose(model, &state->options))) return status;
-    status = sc_question_read_tasks(workspace, &state->options.tasks, &question->tasks);
-    if (!status && state->options.filter)
-        status = sc_filter_begin(state, hooks, model, state->options.filter, &question->filter);
+    if ((status = sc_question_read_options(hooks, options, o))) return status;
+    if ((status = sc_question_choose(model, o))) return status;
+    question->pairs = result->pairs;
+    question->capacity = result->capacity;
+    question->timed = result->stats != NULL;
+    question->has_last = o->method == SC_METHOD_SCTT && o->contour == SC_CONTOUR_EXACT;
+    status = sc_question_read_tasks(workspace, &o->tasks, &asked->tasks);
+    if (!status && o->filter)
+        status = sc_filter_begin(question, hooks, model, o->filter, &asked->filter);
     if (!status)
-        status =
-            sc_question_read_pose(hooks, "pose", model, pose, &question->pose, &question->stride);
-    if (!status && state->options.output == SC_OUTPUT_PAIRS && result->capacity)
+        status = sc_question_read_pose(hooks, "pose", model, pose, &asked->pose, &asked->stride);
+    if (!status && o->output == SC_OUTPUT_PAIRS && result->capacity)
         status = sc_arguments_need(hooks, "result", "pairs", result->pairs);
     if (!status && result->stats)
         status = sc_arguments_check(hooks, "result.stats", result->stats, sizeof(sc_stats),

@@ -3,8 +3,8 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#ifndef SC_QUERY_REST_H
-#define SC_QUERY_REST_H
+#ifndef SC_RUN_REST_H
+#define SC_RUN_REST_H
 
 #include "build/model.h"
 

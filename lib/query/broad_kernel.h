@@ -1,0 +1,191 @@
+/*
+ * The broad phase: from pairs of patches whose boxes overlap to pairs of leaf clusters. See
+ * query_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Of pairs of patches whose children are leaf clusters, rows are listed: children of one that
+ * overlap the other. When there are many, they are compared with the other's children, and then
+ * pairs of leaf clusters are listed. Each is a loop over all rows, so that no branch depends on how
+ * many a pair of patches has.
+ */
+
+/* Two patches of a level whose boxes overlap: the descendants of one at the next level that is
+   visited, sixteen at most, against the other's box, then row by row against the other's; rows of
+   leaf clusters wait. */
+static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b)
+{
+    const sc_model *model = w->model;
+    const sc_boxes *boxes = &w->frame->patch_boxes;
+    const uint32_t *hop = sc_model_hop(model), *share = sc_model_share_first(model);
+    const uint32_t leaves = sc_model_first_leaf_patch(model);
+    const uint32_t a = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
+    sc_lists *l = &w->lists;
+    uint32_t first_a, first_b;
+    unsigned rows, all_b, i;
+    if (a >= leaves) {
+        sc_worker_add_leaf_pair(w, (a - leaves) | bit, b - leaves);
+        return;
+    }
+    first_a = hop[a];
+    first_b = hop[b];
+    all_b = (1u << (hop[b + 1] - first_b)) - 1u;
+    rows = overlap(boxes, b, boxes, first_a) & ((1u << (hop[a + 1] - first_a)) - 1u);
+    sc_worker_count_boxes(w, sc_item_follows(item), 1 + sc_bits_count(rows));
+    if (first_a >= leaves) {
+        const uint32_t at = l->count[SC_LIST_ROWS];
+        uint32_t *first = l->row[1] + at, *all = l->row[2] + at;
+        sc_fetch(share + (first_a - leaves));
+        sc_fetch(share + (hop[a + 1] - leaves));
+        for (i = 0; i < SC_LANES_COUNT; i++) first[i] = first_b - leaves;
+        for (i = 0; i < SC_LANES_COUNT; i++) all[i] = all_b;
+        l->count[SC_LIST_ROWS] += lanes_list_from(rows, (first_a - leaves) | bit, l->row[0] + at);
+        return;
+    }
+    for (; rows; rows &= rows - 1) {
+        const uint32_t c = first_a + sc_bits_lowest(rows);
+        unsigned mask = overlap(boxes, c, boxes, first_b) & all_b;
+        for (; mask; mask &= mask - 1) {
+            sc_pair *to = &l->patches[l->count[SC_LIST_PATCHES]++];
+            to->a = c | bit;
+            to->b = first_b + sc_bits_lowest(mask);
+        }
+    }
+}
+
+/* A patch against itself: its descendants at that level, and each of them with those behind it. */
+static inline void open_patch(sc_worker *w, uint32_t item)
+{
+    const sc_model *model = w->model;
+    const sc_boxes *boxes = &w->frame->patch_boxes;
+    const uint32_t *hop = sc_model_hop(model);
+    const uint32_t leaves = sc_model_first_leaf_patch(model);
+    const uint32_t a = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
+    sc_lists *l = &w->lists;
+    uint32_t first, count, i;
+    if (a >= leaves || sc_model_is_leaf(model, a)) {
+        sc_worker_add_leaf(w, (a >= leaves ? a - leaves : sc_model_leaf(model)[a]) | bit);
+        return;
+    }
+    first = hop[a];
+    count = hop[a + 1] - first;
+    sc_worker_count_boxes(w, sc_item_follows(item), count);
+    for (i = 0; i < count && first < leaves; i++) { /* below the pairs: the list is a stack */
+        l->patches[l->count[SC_LIST_PATCHES]].a = (first + i) | bit;
+        l->patches[l->count[SC_LIST_PATCHES]++].b = first + i;
+    }
+    for (i = 0; i < count; i++) {
+        const uint32_t c = first + i;
+        unsigned mask = ((1u << count) - 1u) >> (i + 1); /* those behind it */
+        if (c >= leaves) {
+            const uint32_t at = l->count[SC_LIST_ROWS];
+            l->row[0][at] = (c - leaves) | bit;
+            l->row[1][at] = c - leaves + 1;
+            l->row[2][at] = mask;
+            l->count[SC_LIST_ROWS] += mask != 0;
+            sc_worker_add_leaf(w, (c - leaves) | bit);
+            continue;
+        }
+        mask &= overlap(boxes, c, boxes, c + 1);
+        for (; mask; mask &= mask - 1) {
+            sc_pair *to = &l->patches[l->count[SC_LIST_PATCHES]++];
+            to->a = c | bit;
+            to->b = c + 1 + sc_bits_lowest(mask);
+        }
+    }
+}
+
+/* Pairs of patches, or patches against themselves: their descendants are pairs, too, or leaf
+   clusters. The list is a stack. */
+static void open_patch_pairs(sc_worker *w, uint32_t most)
+{
+    sc_lists *l = &w->lists;
+    uint32_t *count = &l->count[SC_LIST_PATCHES];
+    for (; most && *count && l->count[SC_LIST_ROWS] < SC_ROWS_ENOUGH &&
+           l->count[SC_LIST_NEAR] < SC_LEAF_LIST_ENOUGH;
+         most--) {
+        const sc_pair pair = l->patches[--*count];
+        if ((pair.a & SC_ITEM) == pair.b)
+            open_patch(w, pair.a);
+        else
+            open_patches(w, pair.a, pair.b);
+    }
+}
+
+/* Lists those pairs that share points: of a leaf cluster with those numbered from first on, all
+   above it, of which bits of a mask are set. Returns the rest of the mask. */
+static inline unsigned list_near_pairs(sc_worker *w, uint32_t item, uint32_t first, unsigned mask)
+{
+    const uint32_t *share = sc_model_share_first(w->model) + (item & SC_ITEM);
+    const uint32_t *leaf = sc_model_share_leaf(w->model);
+    sc_lists *l = &w->lists;
+    uint32_t *count = &l->count[SC_LIST_NEAR], i;
+    int k;
+    if (share[1] - share[0] < 2) { /* one, as in rods, or none */
+        const uint32_t at = share[0] < share[1] ? leaf[share[0]] - first : SC_LEAF_MAX;
+        const unsigned bit = at < SC_LEAF_MAX ? mask & 1u << at % SC_LEAF_MAX : 0u;
+        l->near[0][*count] = item;
+        l->near[1][*count] = share[0];
+        *count += bit != 0;
+        return mask & ~bit;
+    }
+    sc_fetch(sc_model_share_touch(w->model) + share[0]);
+    for (i = share[0]; i < share[1]; i += SC_LANES_COUNT) {
+        const unsigned some = share[1] - i < SC_LANES_COUNT ? share[1] - i : SC_LANES_COUNT;
+        uint32_t *lower = l->near[0] + *count;
+        unsigned found;
+        for (k = 0; k < SC_LANES_COUNT; k++) lower[k] = item;
+        *count += lanes_list_among(leaf + i, some, first, mask, i, l->near[1] + *count, &found);
+        mask &= ~found;
+    }
+    return mask;
+}
+
+/* Lists pairs of a leaf cluster with those numbered from first on, of which bits of a mask are set.
+   They are all above it; or all below it, of pairs that the test tree leaves to boxes: then they
+   share no points with it, unless both are crowded (build/neighbors.h). */
+static inline void list_leaf_pairs(sc_worker *w, uint32_t item, uint32_t first, unsigned mask)
+{
+    const uint32_t leaf = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
+    const int is_upper = leaf > first;
+    const unsigned pairs = sc_bits_count(mask);
+    sc_lists *l = &w->lists;
+    uint32_t *count = &l->count[SC_LIST_FAR], *same = l->far[is_upper] + *count;
+    int i;
+    w->stats.leaf_pairs += pairs;
+    sc_worker_count_boxes(w, sc_item_follows(item), pairs);
+    if (!is_upper) mask = list_near_pairs(w, item, first, mask);
+    for (i = 0; i < SC_LANES_COUNT; i++) same[i] = is_upper ? leaf : item;
+    *count += lanes_list_from(mask, is_upper ? first | bit : first, l->far[!is_upper] + *count);
+}
+
+/* Pairs of leaf clusters that overlap in rows. */
+static void list_rows(sc_worker *w, uint32_t most)
+{
+    enum { AHEAD = 8 };
+    const sc_boxes *boxes = &w->frame->patch_boxes;
+    const uint32_t leaves = sc_model_first_leaf_patch(w->model);
+    const uint32_t *share = sc_model_share_first(w->model);
+    const uint32_t *shared = sc_model_share_leaf(w->model);
+    sc_lists *l = &w->lists;
+    const uint32_t have = l->count[SC_LIST_ROWS], begin = have < most ? 0 : have - most;
+    uint32_t *row = l->row[0], *first = l->row[1], *all = l->row[2], end = begin, i;
+    for (i = begin; i < have; i++) {
+        const uint32_t item = row[i], from = first[i];
+        const unsigned mask =
+            overlap(boxes, leaves + (item & SC_ITEM), boxes, leaves + from) & all[i];
+        row[end] = item;
+        first[end] = from;
+        all[end] = mask;
+        end += mask != 0;
+    }
+    for (i = end; i > begin && end - i < AHEAD; i--) sc_fetch(shared + share[row[i - 1] & SC_ITEM]);
+    for (i = end; i > begin; i--) {
+        if (i - begin > AHEAD) sc_fetch(shared + share[row[i - 1 - AHEAD] & SC_ITEM]);
+        if (l->count[SC_LIST_FAR] > SC_LEAF_LIST_MAX - SC_LEAF_MAX ||
+            l->count[SC_LIST_NEAR] > SC_LEAF_LIST_MAX - SC_LEAF_MAX)
+            break;
+        list_leaf_pairs(w, row[i - 1], first[i - 1], all[i - 1]);
+    }
+    l->count[SC_LIST_ROWS] = i;
+}

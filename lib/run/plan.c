@@ -1,0 +1,578 @@
+/*
+ * One query by one worker or several. See plan.h.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * One worker begins with the root of the test tree, or of the tree of boxes, and runs until nothing
+ * waits. For several, the calling thread opens what is large first, by the same stages as the first
+ * of them; contour tests of large nodes are a job, again and again, since what fails leads to
+ * further large nodes. What hangs below is a list of parts, items of the lists that each worker has
+ * (query/lists.h), and depends on the model and the pose only. Nodes of one patch, and leaf clusters
+ * by themselves, wait until all others are done: which patches were culled by then is the union of
+ * what workers wrote down.
+ *
+ * No locks: a worker writes to what is its own, and to parts of the caller's array that it claims
+ * by an atomic addition, for many pairs at a time. What is left in the end goes behind them.
+ */
+#include "run/plan.h"
+
+#include <string.h>
+
+#include "base/assume.h"
+#include "base/atomic.h"
+#include "base/hooks.h"
+#include "base/jobs.h"
+#include "pose/dnc.h"
+#include "query/culling.h"
+#include "query/pairs.h"
+#include "run/runner.h"
+
+/* Models with fewer leaf clusters are not worth a job. */
+enum { LEAVES_MIN = 128 };
+
+/* A patch with more than one of so many leaf clusters is large: in a node of the test tree; in a
+   pair of patches, most of which turn out to have little in common, so that listing smaller ones
+   takes longer than it saves; and against itself, which is as much work as there are leaf clusters,
+   so that no part that is left for the end takes long. */
+enum { LARGE_IN_NODE = 32, LARGE_IN_PAIR = 16, LARGE_BY_ITSELF = 128 };
+
+/* Fewer contour tests are not worth a job. */
+enum { TESTS_MIN = 16 };
+
+/* How many waiting nodes, and leaf clusters by themselves, a worker takes at once. */
+enum { NODES_AT_ONCE = SC_NODES_AT_ONCE, ALONE_AT_ONCE = 64 };
+
+/* More items are not kept waiting from one part to the next. */
+enum { WAITING_MAX = 64 };
+
+/* What opening one large node, or one large pair of patches, adds to the list of parts at most. */
+enum { PARTS_OF_ONE = SC_PATCHES_CHILDREN + 2 * SC_NODE_CHILDREN };
+
+typedef struct plan {
+    sc_workspace *workspace;
+    sc_plan_room *room;
+    sc_worker *w; /* the first, as which the calling thread plans, and the sums in the end */
+    const sc_tasks *tasks; /* of two workers or more, or NULL: of one */
+    uint32_t workers;
+    sc_share share;
+    sc_question question;                                    /* with this filter: */
+    sc_filter filter;                                        /* the caller's without its function */
+    uint32_t part_count, test_count, open_count, pair_count; /* of those in room */
+    uint32_t last_end[SC_WORKERS_MAX]; /* parts that were left for the end by workers up to each */
+    sc_jobs_ranges ranges;             /* of the job at hand */
+} plan;
+
+const sc_tasks *sc_plan_tasks(const sc_model *model, const sc_question *question)
+{
+    const sc_tasks *tasks = question->options.tasks;
+    if (!tasks || tasks->workers < 2 || model->leaf_count < LEAVES_MIN) return NULL;
+    return tasks;
+}
+
+/* Those that share in all of it. */
+static const sc_tasks *tasks_for(const sc_model *model, const sc_question *question)
+{
+    const sc_query_options *o = &question->options;
+    if (!SC_ATOMIC || o->budget) return NULL;
+    if (o->method == SC_METHOD_SCTT && o->contour != SC_CONTOUR_EXACT) return NULL;
+    /* the caller's function is asked of all pairs afterwards */
+    if (question->filter && question->filter->accept &&
+        !(o->output == SC_OUTPUT_PAIRS && question->capacity))
+        return NULL;
+    return sc_plan_tasks(model, question);
+}
+
+/* ---- jobs ---- */
+
+/* A worker begins and ends a part; its clock stands still between parts. */
+static sc_worker *begin_part(const plan *p, uint32_t worker)
+{
+    sc_worker *w = &p->workspace->worker[worker];
+    if (p->question.timed) w->last_time = sc_clock_nanoseconds();
+    return w;
+}
+
+static void stop_clock(sc_worker *w)
+{
+    if (w->question->timed) w->stats.nanoseconds[w->task] += sc_clock_nanoseconds() - w->last_time;
+}
+
+/* What waits goes on waiting if it is little and parts are left, unless the first hit ends the
+   query: many at once take less time. */
+static void end_part(sc_worker *w, int is_last)
+{
+    sc_runner_run(w, is_last || w->question->options.output == SC_OUTPUT_ANY ||
+                         sc_runner_waiting(w) > WAITING_MAX);
+    stop_clock(w);
+}
+
+/* Runs a job; some: of parts that are taken some at once. The calling thread's clock stands still:
+   what workers do is in their own statistics. */
+static void run_job(plan *p, void (*run)(void *context, uint32_t part, uint32_t worker),
+                    uint32_t count, int some)
+{
+    uint32_t part;
+    if (!count) return;
+    sc_jobs_divide(p->workers, count, &p->ranges);
+    if (some) count = sc_jobs_takes(&p->ranges);
+    stop_clock(p->w);
+    if (count == 1 || !p->tasks)
+        for (part = 0; part < count; part++) run(p, part, 0);
+    else
+        p->tasks->finish(p->tasks->user, p->tasks->enqueue(p->tasks->user, run, p, count));
+    if (p->question.timed) p->w->last_time = sc_clock_nanoseconds();
+}
+
+static uint32_t divide_up(uint32_t count, uint32_t by)
+{
+    return count / by + (count % by != 0);
+}
+
+/* ---- the list of parts ---- */
+
+/* Puts a part into the list that it is an item of. */
+static void take_part(sc_worker *w, const sc_part *part)
+{
+    sc_lists *l = &w->lists;
+    const uint32_t at = l->count[part->list]++;
+    sc_pair *pairs = part->list == SC_LIST_SPANS ? l->spans : l->patches;
+    uint32_t *nodes = part->list == SC_LIST_FAILED ? l->failed : l->oriented;
+    if (part->list == SC_LIST_SPANS || part->list == SC_LIST_PATCHES) {
+        pairs[at].a = part->a;
+        pairs[at].b = part->b;
+    } else {
+        nodes[at] = part->a;
+    }
+}
+
+/* Some parts, whose nodes wait in lists together: contour tests take less time when there are
+   many. */
+static void run_parts(void *context, uint32_t part, uint32_t worker)
+{
+    plan *p = (plan *)context;
+    sc_worker *w = begin_part(p, worker);
+    uint32_t some;
+    part = sc_jobs_take_some(&p->ranges, worker, &some);
+    while (some-- && !sc_worker_stops(w)) take_part(w, &p->room->parts[part + some]);
+    end_part(w, sc_jobs_are_taken(&p->ranges));
+}
+
+/* A part is what waits with one worker, whoever does it. */
+static void run_waiting(void *context, uint32_t part, uint32_t worker)
+{
+    const plan *p = (const plan *)context;
+    (void)worker;
+    end_part(begin_part(p, part), 1);
+}
+
+/* Does all that waits. Mostly workers have done so when they saw that no part was left. */
+static void do_waiting(plan *p)
+{
+    uint32_t i, k, waits = 0;
+    for (i = 0; i < p->workers; i++)
+        for (k = 0; k < SC_LIST_COUNT; k++) waits |= p->workspace->worker[i].lists.count[k];
+    if (waits) run_job(p, run_waiting, p->workers, 0);
+}
+
+/* Empties the list of parts. */
+static void do_parts(plan *p)
+{
+    run_job(p, run_parts, p->part_count, 1);
+    p->part_count = 0;
+    do_waiting(p);
+}
+
+static void add_part(plan *p, sc_list_id list, uint32_t a, uint32_t b)
+{
+    sc_part *part = &p->room->parts[p->part_count++];
+    part->list = list;
+    part->a = a;
+    part->b = b;
+}
+
+/* ---- what is large ---- */
+
+static int is_large(const sc_model *model, uint32_t patch, uint32_t parts)
+{
+    const uint32_t *leaf = sc_model_leaf(model);
+    return leaf[patch + 1] - leaf[patch] > model->leaf_count / parts;
+}
+
+static int is_large_node(const sc_model *model, uint32_t node)
+{
+    const sc_pair *patches = &sc_model_node(model)[node].patches;
+    return is_large(model, patches->a, LARGE_IN_NODE) || is_large(model, patches->b, LARGE_IN_NODE);
+}
+
+static int is_large_pair(const sc_model *model, sc_pair item)
+{
+    const uint32_t a = item.a & SC_ITEM, b = item.b;
+    if (a == b) return is_large(model, a, LARGE_BY_ITSELF);
+    return is_large(model, a, LARGE_IN_PAIR) || is_large(model, b, LARGE_IN_PAIR);
+}
+
+/* Takes what waits in lists of the first worker: what is large is opened or tested next, the rest
+   are parts. Last things first: so the first child is opened first, and parts come about as leaf
+   clusters are numbered. Then each worker finds in its part of the list what it did of the pose. Of
+   open nodes there are no more than there is room for: those that failed a test, SC_PARTS_MAX at
+   most, are opened into nodes to test, as what has a direction in common still has below, but for
+   one of two patches in place of one that has one patch; and before any test they are brothers on
+   the way to one node, four at each level at most. */
+static void sort_out(plan *p)
+{
+    const sc_model *model = p->w->model;
+    sc_lists *l = &p->w->lists;
+    uint32_t *count = l->count, i;
+    if (count[SC_LIST_LEFT]) {
+        sc_runner_make_boxes(p->w);
+        sc_worker_switch(p->w, SC_TASK_BOXES_ORIENTATION);
+        sc_runner_run_stage(p->w, SC_LIST_LEFT, SC_LEFT_MAX);
+    }
+    for (i = count[SC_LIST_FAILED]; i-- > 0;) {
+        if (is_large_node(model, l->failed[i]) && SC_ALWAYS(p->open_count < SC_PARTS_MAX))
+            p->room->open[p->open_count++] = l->failed[i];
+        else
+            add_part(p, SC_LIST_FAILED, l->failed[i], 0);
+    }
+    for (i = 0; i < count[SC_LIST_ORIENTED]; i++) {
+        if (is_large_node(model, l->oriented[i]) && p->test_count < SC_PARTS_MAX)
+            p->room->tests[p->test_count++] = l->oriented[i];
+        else
+            add_part(p, SC_LIST_ORIENTED, l->oriented[i], 0);
+    }
+    for (i = 0; i < count[SC_LIST_PATCHES]; i++) {
+        if (is_large_pair(model, l->patches[i]) && p->pair_count < SC_PLAN_PAIRS)
+            p->room->pairs[p->pair_count++] = l->patches[i];
+        else
+            add_part(p, SC_LIST_PATCHES, l->patches[i].a, l->patches[i].b);
+    }
+    count[SC_LIST_FAILED] = count[SC_LIST_ORIENTED] = count[SC_LIST_PATCHES] = 0;
+}
+
+/* Opens large pairs of patches, and large nodes that failed, and those that fail below them. */
+static void open_large(plan *p)
+{
+    sc_lists *l = &p->w->lists;
+    for (;;) {
+        sort_out(p);
+        sc_runner_run(p->w, 0); /* leaf clusters, if there are any so near the root */
+        if (p->part_count > SC_PARTS_MAX - PARTS_OF_ONE) do_parts(p);
+        if (sc_worker_stops(p->w)) return;
+        if (p->pair_count) {
+            l->patches[l->count[SC_LIST_PATCHES]++] = p->room->pairs[--p->pair_count];
+            sc_worker_switch(p->w, SC_TASK_BOXES_ORIENTATION);
+            sc_runner_run_stage(p->w, SC_LIST_PATCHES, 1);
+        } else if (p->open_count) {
+            sc_runner_make_boxes(p->w); /* before workers need them */
+            l->failed[l->count[SC_LIST_FAILED]++] = p->room->open[--p->open_count];
+            sc_worker_switch(p->w, SC_TASK_ORIENTATION);
+            sc_runner_run_stage(p->w, SC_LIST_FAILED, 1);
+        } else {
+            return;
+        }
+    }
+}
+
+/* Lists the large nodes of one patch that wait, and drops all that are culled by now. No level has
+   as many large patches as LARGE_IN_NODE, and there are SC_DEPTH_MAX levels at most: the list has
+   room. */
+static void list_selfs(plan *p)
+{
+    const sc_node *nodes = sc_model_node(p->w->model);
+    sc_last *last = &p->w->last;
+    uint32_t i, kept = 0;
+    for (i = 0; i < last->self_count; i++) {
+        uint32_t node = last->self[i];
+        if (last->culled[nodes[node].patches.a]) continue;
+        if (is_large_node(p->w->model, node) && SC_ALWAYS(p->test_count < SC_PARTS_MAX))
+            p->room->tests[p->test_count++] = node;
+        else
+            last->self[kept++] = node;
+    }
+    last->self_count = kept;
+}
+
+static void run_tests(void *context, uint32_t part, uint32_t worker)
+{
+    const plan *p = (const plan *)context;
+    sc_worker *w = begin_part(p, worker);
+    sc_culling_test_all(w, &p->room->tests[part], 1, &p->room->passed[part]);
+    stop_clock(w);
+}
+
+/* The contour tests of all listed nodes, while none is open. */
+static void do_tests(plan *p)
+{
+    const sc_node *nodes = sc_model_node(p->w->model);
+    uint8_t *culled = p->w->last.culled;
+    uint32_t i;
+    if (p->test_count < TESTS_MIN)
+        sc_culling_test_all(p->w, p->room->tests, p->test_count, p->room->passed);
+    else
+        run_job(p, run_tests, p->test_count, 0);
+    for (i = p->test_count; i-- > 0;) {
+        uint32_t node = p->room->tests[i];
+        if (p->room->passed[i])
+            culled[nodes[node].patches.a] = culled[nodes[node].patches.b] = 1;
+        else
+            p->room->open[p->open_count++] = node;
+    }
+    p->test_count = 0;
+}
+
+/* ---- what comes last ---- */
+
+/* Brings together what the workers wrote down of patches that are culled. */
+static void join_marks(plan *p)
+{
+    uint8_t *culled = p->room->culled;
+    uint32_t worker, i, end = p->w->model->patch_end;
+    for (worker = 0; p->tasks && worker < p->workers; worker++) {
+        const uint8_t *marks = p->workspace->worker[worker].last.marks;
+        for (i = 0; i < end; i++) culled[i] |= marks[i];
+    }
+}
+
+/* Of which worker a part was left for the end, and where it begins there. */
+static const sc_last *find_last(plan *p, uint32_t *part, uint32_t worker)
+{
+    uint32_t k = 0;
+    *part = sc_jobs_take(&p->ranges, *part, worker);
+    while (*part >= p->last_end[k]) k++;
+    *part -= k ? p->last_end[k - 1] : 0;
+    return &p->workspace->worker[k].last;
+}
+
+/* Some nodes of one patch, of which those are tested that are not culled by now. */
+static void run_selfs(void *context, uint32_t part, uint32_t worker)
+{
+    plan *p = (plan *)context;
+    const sc_node *nodes = sc_model_node(p->w->model);
+    sc_worker *w = begin_part(p, worker);
+    sc_lists *l = &w->lists;
+    const sc_last *last = find_last(p, &part, worker);
+    uint32_t i = part * NODES_AT_ONCE;
+    const uint32_t end =
+        last->self_count - i < NODES_AT_ONCE ? last->self_count : i + NODES_AT_ONCE;
+    for (; i < end; i++)
+        if (!w->last.culled[nodes[last->self[i]].patches.a])
+            l->oriented[l->count[SC_LIST_ORIENTED]++] = last->self[i];
+    end_part(w, sc_jobs_are_taken(&p->ranges));
+}
+
+/* Some leaf clusters to be looked at by themselves, but those that are culled with others. */
+static void run_alone(void *context, uint32_t part, uint32_t worker)
+{
+    plan *p = (plan *)context;
+    sc_worker *w = begin_part(p, worker);
+    const uint8_t *culled = w->last.culled + sc_model_first_leaf_patch(w->model);
+    sc_lists *l = &w->lists;
+    const sc_last *last = find_last(p, &part, worker);
+    uint32_t i = part * ALONE_AT_ONCE;
+    const uint32_t end =
+        last->alone_count - i < ALONE_AT_ONCE ? last->alone_count : i + ALONE_AT_ONCE;
+    for (; i < end; i++) {
+        const uint32_t item = last->alone[i], at = l->count[SC_LIST_NEAR];
+        if (culled[item & SC_ITEM]) continue;
+        l->near[0][at] = item;
+        l->near[1][at] = SC_NONE;
+        l->count[SC_LIST_NEAR]++;
+    }
+    end_part(w, sc_jobs_are_taken(&p->ranges));
+}
+
+/* What waited with workers until all else was done. Parts of one worker are behind each other, so
+   that mostly it does them. */
+static void do_last(plan *p, int selfs)
+{
+    uint32_t i, count = 0;
+    if (sc_worker_stops(p->w)) return;
+    join_marks(p);
+    for (i = 0; i < p->workers; i++) {
+        sc_last *last = &p->workspace->worker[i].last;
+        last->selfs_wait = 0;
+        count += selfs ? divide_up(last->self_count, NODES_AT_ONCE)
+                       : divide_up(last->alone_count, ALONE_AT_ONCE);
+        p->last_end[i] = count;
+    }
+    run_job(p, selfs ? run_selfs : run_alone, count, 0);
+    do_waiting(p);
+}
+
+/* ---- the methods ---- */
+
+static void walk_exact(plan *p)
+{
+    sc_culling_find_prospects(p->w);
+    sc_culling_orient(p->w, 0);
+    while (p->tasks) {
+        open_large(p);
+        if (!p->test_count) list_selfs(p);
+        if (!p->test_count || sc_worker_stops(p->w)) break;
+        do_tests(p);
+    }
+    do_parts(p);
+    do_last(p, 1);
+    do_last(p, 0);
+}
+
+static void walk_stars(plan *p)
+{
+    p->w->lists.stars[p->w->lists.count[SC_LIST_STARS]++] = 0;
+    do_parts(p);
+}
+
+static void add_span(sc_worker *w, uint32_t first, uint32_t end)
+{
+    sc_pair *span = &w->lists.spans[w->lists.count[SC_LIST_SPANS]++];
+    span->a = first;
+    span->b = end;
+}
+
+static void walk_nodes(plan *p)
+{
+    const sc_model *model = p->w->model;
+    uint32_t node = 0, step;
+    sc_runner_make_boxes(p->w); /* before workers need them */
+    if (!p->tasks) add_span(p->w, 0, model->node_count);
+    /* the last node of all is of single leaf clusters, which are not large */
+    for (; p->tasks && SC_ALWAYS(node < model->node_count) && is_large_node(model, node); node++) {
+        add_span(p->w, node, node + 1);
+        sc_runner_run_stage(p->w, SC_LIST_SPANS, 1);
+        open_large(p);
+    }
+    step = divide_up(model->node_count - node, SC_PARTS_MAX / 4);
+    for (; p->tasks && node < model->node_count; node += step) {
+        if (p->part_count == SC_PARTS_MAX) do_parts(p);
+        add_part(p, SC_LIST_SPANS, node,
+                 model->node_count - node < step ? model->node_count : node + step);
+    }
+    do_parts(p);
+}
+
+static void walk_boxes(plan *p)
+{
+    sc_pair *root = &p->w->lists.patches[p->w->lists.count[SC_LIST_PATCHES]++];
+    root->a = root->b = 0;
+    sc_runner_make_boxes(p->w);
+    if (p->tasks) open_large(p);
+    do_parts(p);
+}
+
+static void make_cones(sc_worker *w)
+{
+    sc_worker_switch(w, SC_TASK_UPDATE_NORMALS);
+    sc_dnc_update(w->model, w->frame);
+    SC_HOOKS_ASSERT(w->hooks, sc_dnc_validate(w->model, w->frame));
+    w->stats.counts[SC_TASK_UPDATE_NORMALS] += w->model->patch_end;
+    sc_worker_switch(w, SC_TASK_ORIENTATION);
+}
+
+/* ---- all together ---- */
+
+/* The marks of one worker are what may be looked at, if it does all. */
+static void begin_workers(plan *p)
+{
+    const sc_model *model = p->w->model;
+    uint32_t i;
+    if (p->tasks) {
+        sc_workspace_share(model, p->workspace, &p->question, &p->share, p->workers);
+        memset(p->room->culled, 0, model->patch_end);
+    }
+    for (i = 0; i < p->workers; i++) {
+        sc_last *last = &p->workspace->worker[i].last;
+        memset(last->marks, 0, model->patch_end);
+        last->culled = p->tasks ? p->room->culled : last->marks;
+        last->selfs_wait = 1;
+    }
+}
+
+/* Adds up what the workers counted, and puts the last of their pairs into the caller's array.
+   Returns 0 if that is too short. */
+static int gather(plan *p)
+{
+    const sc_question *q = &p->question;
+    sc_worker *sum = p->w;
+    uint64_t at = p->share.claimed;
+    uint32_t i, k;
+    for (i = 0; p->tasks && i < p->workers; i++) {
+        const sc_worker *w = &p->workspace->worker[i];
+        if (w->found_count && at <= q->capacity && w->found_count <= q->capacity - at)
+            memcpy(q->pairs + at, w->found, sizeof(sc_pair) * w->found_count);
+        at += w->found_count;
+        if (w == sum) continue;
+        for (k = 0; k < SC_TASK_COUNT; k++) {
+            sum->stats.counts[k] += w->stats.counts[k];
+            sum->stats.nanoseconds[k] += w->stats.nanoseconds[k];
+        }
+        sum->stats.nodes_visited += w->stats.nodes_visited;
+        sum->stats.nodes_oriented += w->stats.nodes_oriented;
+        sum->stats.nodes_culled += w->stats.nodes_culled;
+        sum->stats.leaf_pairs += w->stats.leaf_pairs;
+        sum->stats.exact_fallbacks += w->stats.exact_fallbacks;
+        sum->incomplete |= w->incomplete;
+        sum->count += w->count;
+    }
+    return at <= q->capacity;
+}
+
+/* Pairs of the sorted list that the caller's function wants. */
+static void ask_function(const sc_filter *f, sc_worker *w)
+{
+    sc_pair *pairs = w->question->pairs;
+    uint64_t i, kept = 0;
+    for (i = 0; i < w->count; i++)
+        if (f->accept(f->accept_user, pairs[i].a, pairs[i].b)) pairs[kept++] = pairs[i];
+    w->count = kept;
+}
+
+/* Finds all pairs; 0: the caller's array is too short for several workers. */
+static int find_pairs(sc_workspace *workspace, const sc_tasks *tasks, plan *p)
+{
+    const sc_question *question = workspace->worker[0].question;
+    const sc_query_options *o = &question->options;
+    memset(p, 0, sizeof *p);
+    p->workspace = workspace;
+    p->room = &workspace->plan;
+    p->w = &workspace->worker[0];
+    p->tasks = tasks;
+    p->workers = tasks ? tasks->workers : 1;
+    p->question = *question;
+    if (tasks && question->filter) {
+        p->filter = *question->filter;
+        p->filter.accept = NULL;
+        p->question.filter = &p->filter;
+    }
+    begin_workers(p);
+    if (o->method == SC_METHOD_SCTT) make_cones(p->w);
+    if (o->method == SC_METHOD_AABB)
+        walk_boxes(p);
+    else if (o->method == SC_METHOD_AABB_SCTT)
+        walk_nodes(p);
+    else if (o->contour == SC_CONTOUR_EXACT)
+        walk_exact(p);
+    else
+        walk_stars(p);
+    p->w->question = question;
+    return gather(p);
+}
+
+void sc_plan_run(sc_workspace *workspace)
+{
+    sc_worker *w = &workspace->worker[0];
+    const sc_question *question = w->question;
+    const sc_tasks *tasks = tasks_for(w->model, question);
+    const sc_stats before = w->stats;
+    uint64_t room;
+    sc_pair *spare = sc_workspace_spare(workspace, &room);
+    plan p;
+    if (!find_pairs(workspace, tasks, &p)) {
+        sc_workspace_begin(w->model, workspace, question);
+        w->stats = before;
+        if (question->timed) w->last_time = sc_clock_nanoseconds();
+        tasks = NULL;
+        (void)find_pairs(workspace, tasks, &p);
+    }
+    sc_pairs_finish(question, w->count, spare, room, tasks);
+    if (tasks && question->filter && question->filter->accept) ask_function(question->filter, w);
+}

@@ -1,0 +1,481 @@
+/*
+ * The workspace. See workspace.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "run/workspace.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/assume.h"
+
+/* ---- layout ---- */
+
+/* Where the next array goes; block is NULL when only the size is wanted. */
+typedef struct layout {
+    unsigned char *block;
+    uint64_t at;
+} layout;
+
+static void *place(layout *l, uint64_t count, size_t size)
+{
+    unsigned char *array = l->block ? l->block + l->at : NULL;
+    l->at += (count * size + SC_ALIGNMENT - 1) / SC_ALIGNMENT * SC_ALIGNMENT;
+    return array;
+}
+
+#define SC_PLACE(layout, count, type) ((type *)place((layout), (count), sizeof(type)))
+
+static sc_workspace_sizes sizes_for(const sc_model *model, uint32_t workers, uint32_t flags)
+{
+    sc_workspace_sizes s;
+    s.vertices = model->vertex_count;
+    s.leaves = model->leaf_count;
+    s.patches = model->patch_end;
+    s.nodes = model->node_count;
+    s.levels = model->level_count;
+    s.segments = model->segment_count;
+    s.contour = model->contour_max;
+    s.workers = workers;
+    s.flags = flags;
+    return s;
+}
+
+/* How many leaf clusters a worker keeps ready: as many as there are, if they are few. */
+static uint32_t some_ready(const sc_workspace_sizes *s)
+{
+    uint32_t kept = 1;
+    while (kept < SC_READY_KEPT && kept < s->leaves) kept *= 2;
+    return kept;
+}
+
+/* How many leaf clusters can be kept ready at once by the first worker: all, where bounds of
+   segments have room for about as many. Models for boxes have none, so that they stay small. */
+static uint32_t all_ready(const sc_workspace_sizes *s)
+{
+    return s->segments ? s->leaves : 0;
+}
+
+/* The same for steps. */
+static uint32_t some_motions(const sc_workspace_sizes *s)
+{
+    uint32_t kept = 1;
+    while (kept < SC_MOTIONS_KEPT && kept < s->leaves) kept *= 2;
+    return kept;
+}
+
+static void lay_out_boxes(const sc_workspace_sizes *s, layout *l, sc_boxes *boxes)
+{
+    int k;
+    for (k = 0; k < 6; k++)
+        boxes->side[k] = SC_PLACE(l, (uint64_t)s->patches + SC_BOXES_PADDING, float);
+}
+
+static void lay_out_frame(const sc_workspace_sizes *s, layout *l, sc_frame *frame)
+{
+    int k;
+    lay_out_boxes(s, l, &frame->patch_boxes);
+    frame->mask = SC_PLACE(l, s->patches, uint16_t);
+    frame->prospect = SC_PLACE(l, s->patches, uint32_t);
+    if (!(s->flags & SC_WORKSPACE_STEP)) return;
+    frame->motion.unit = SC_PLACE(l, 8 * (uint64_t)s->vertices, float);
+    for (k = 0; k < 2; k++) lay_out_boxes(s, l, &frame->motion.boxes[k]);
+    frame->motion.own_points = SC_PLACE(l, s->leaves, uint16_t);
+}
+
+/* Points of leaf clusters; next to them bounds of segments, and leaf clusters made ready in the same
+   place. */
+static void lay_out_bounds(const sc_workspace_sizes *s, layout *l, sc_workspace *w)
+{
+    uint64_t start, end;
+    int k;
+    w->frame.point_at = SC_PLACE(l, 4 * SC_LEAF_POINTS * (uint64_t)s->leaves, float);
+    start = l->at;
+    w->all_ready = SC_PLACE(l, all_ready(s), sc_leaf_ready);
+    end = l->at;
+    l->at = start;
+    for (k = 0; k < 2; k++) w->bounds.of[k] = SC_PLACE(l, s->segments, sc_segment_bounds);
+    if (l->at < end) l->at = end;
+    for (k = 0; k < 2; k++) w->bounds.epoch_of[k] = SC_PLACE(l, s->segments, uint16_t);
+    w->all_known = SC_PLACE(l, all_ready(s), sc_leaf_known);
+}
+
+static void lay_out_plan(const sc_workspace_sizes *s, layout *l, sc_plan_room *plan)
+{
+    plan->parts = SC_PLACE(l, SC_PARTS_MAX, sc_part);
+    plan->tests = SC_PLACE(l, SC_PARTS_MAX, uint32_t);
+    plan->open = SC_PLACE(l, SC_PARTS_MAX, uint32_t);
+    plan->pairs = SC_PLACE(l, SC_PLAN_PAIRS, sc_pair);
+    plan->passed = SC_PLACE(l, SC_PARTS_MAX, uint8_t);
+    plan->culled = SC_PLACE(l, s->patches, uint8_t);
+    if (s->flags & SC_WORKSPACE_STEP) plan->reached = SC_PLACE(l, s->nodes, uint8_t);
+}
+
+/* How many points of a contour are listed at most, with what is read beyond. */
+static uint64_t listed_points(const sc_workspace_sizes *s)
+{
+    const uint64_t turns = s->contour ? SC_CONTOUR_TURNS : 0;
+    const uint64_t listed = ((uint64_t)s->contour / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK +
+                            (uint64_t)SC_LOOP_PIECES * SC_CONTOUR_GAP;
+    return listed < turns * SC_CONTOUR_ROOM ? turns * SC_CONTOUR_ROOM : listed;
+}
+
+static void lay_out_contour(const sc_workspace_sizes *s, layout *l, sc_contour_edges *c)
+{
+    const uint64_t listed = listed_points(s), turns = s->contour ? SC_CONTOUR_TURNS : 0;
+    uint64_t spans, n;
+    int k;
+    c->point = SC_PLACE(l, listed, uint32_t);
+    for (k = 0; k < 2; k++) c->at[k] = SC_PLACE(l, listed, float);
+    for (spans = 0, n = listed / 2; n; n = n > SC_CONTOUR_BLOCK ? (n + 1) / 2 : 0)
+        spans += SC_CONTOUR_SPANS(n);
+    if (spans < turns * SC_CONTOUR_SPAN_ROOM) spans = turns * SC_CONTOUR_SPAN_ROOM;
+    for (k = 0; k < 4; k++) c->span_side[k] = SC_PLACE(l, spans, float);
+    c->is_edge = SC_PLACE(l, listed / SC_CONTOUR_BLOCK + 3 * SC_CONTOUR_TURNS, uint16_t);
+    c->wall = SC_PLACE(l, listed, float);
+}
+
+/* What is written sixteen at a time goes beyond the end. */
+enum { BEYOND = 16 };
+
+static void lay_out_lists(const sc_workspace_sizes *s, layout *l, sc_lists *lists)
+{
+    const uint32_t levels = s->levels + 1;
+    uint32_t *room = lists->room;
+    int k;
+    room[SC_LIST_SPANS] = SC_SPANS_MAX;
+    room[SC_LIST_STARS] = levels * SC_NODE_CHILDREN;
+    room[SC_LIST_FAILED] = levels * (SC_ORIENTED_MAX + levels * SC_NODE_CHILDREN);
+    room[SC_LIST_ORIENTED] = SC_ORIENTED_MAX;
+    room[SC_LIST_LEFT] = SC_LEFT_MAX;
+    room[SC_LIST_PATCHES] = SC_LEFT_MAX + s->levels / 4 * SC_PATCHES_CHILDREN;
+    room[SC_LIST_ROWS] = SC_ROWS_MAX;
+    room[SC_LIST_FAR] = room[SC_LIST_NEAR] = SC_LEAF_LIST_MAX;
+    room[SC_LIST_CLUSTERS] = SC_CLUSTERS_MAX;
+    room[SC_LIST_TRIANGLES] = SC_TRIANGLES_MAX;
+    room[SC_LIST_OPEN] = SC_OPEN_MAX;
+    room[SC_LIST_CANDIDATES] = SC_CANDIDATES_MAX;
+    room[SC_LIST_NEIGHBORS] = room[SC_LIST_EXACT] = SC_FEW_MAX;
+    lists->spans = SC_PLACE(l, room[SC_LIST_SPANS], sc_pair);
+    lists->stars = SC_PLACE(l, room[SC_LIST_STARS], uint32_t);
+    lists->failed = SC_PLACE(l, room[SC_LIST_FAILED], uint32_t);
+    lists->oriented = SC_PLACE(l, room[SC_LIST_ORIENTED], uint32_t);
+    lists->left = SC_PLACE(l, room[SC_LIST_LEFT], sc_pair);
+    lists->patches = SC_PLACE(l, room[SC_LIST_PATCHES], sc_pair);
+    for (k = 0; k < 3; k++) lists->row[k] = SC_PLACE(l, room[SC_LIST_ROWS] + BEYOND, uint32_t);
+    for (k = 0; k < 2; k++) {
+        lists->far[k] = SC_PLACE(l, room[SC_LIST_FAR] + BEYOND, uint32_t);
+        lists->near[k] = SC_PLACE(l, room[SC_LIST_NEAR] + BEYOND, uint32_t);
+    }
+    lists->clusters = SC_PLACE(l, room[SC_LIST_CLUSTERS], sc_cluster_pair);
+    lists->triangles = SC_PLACE(l, 1, sc_triangle_rows);
+    lists->open = SC_PLACE(l, 1, sc_open_pairs);
+    lists->candidates = SC_PLACE(l, room[SC_LIST_CANDIDATES] + BEYOND, sc_pair);
+    lists->neighbors = SC_PLACE(l, room[SC_LIST_NEIGHBORS], sc_pair);
+    lists->exact = SC_PLACE(l, room[SC_LIST_EXACT], sc_pair);
+    lists->scratch = SC_PLACE(l, SC_LEAF_LIST_AT_ONCE, uint32_t);
+}
+
+static void lay_out_last(const sc_workspace_sizes *s, layout *l, sc_last *last)
+{
+    last->self = SC_PLACE(l, s->leaves, uint32_t);
+    last->alone = SC_PLACE(l, s->leaves, uint32_t);
+    last->culled = last->marks = SC_PLACE(l, s->patches, uint8_t);
+}
+
+/* What a worker has besides, for steps. */
+static void lay_out_step(const sc_workspace_sizes *s, layout *l, sc_contour_edges *start,
+                         sc_step_worker *step)
+{
+    const uint64_t runs = listed_points(s) / SC_CONTOUR_RUN;
+    int k;
+    step->kept.some = some_motions(s);
+    step->kept.made = SC_PLACE(l, s->leaves + (uint64_t)SC_MOTIONS_KEPT, uint8_t);
+    step->kept.own = SC_PLACE(l, 1 + (uint64_t)step->kept.some, sc_leaf_motion);
+    for (k = 0; k < 2; k++) {
+        step->candidates[k] = SC_PLACE(l, SC_STEP_BATCH, sc_pair);
+        step->found[k] = SC_PLACE(l, SC_FOUND_MAX, sc_pair);
+        step->found_time[k] = SC_PLACE(l, SC_FOUND_MAX, double);
+        step->contour.at[k] = SC_PLACE(l, listed_points(s), float);
+    }
+    for (k = 0; k < 4; k++) {
+        start->run_side[k] = SC_PLACE(l, runs + 16, float);
+        start->group_side[k] = SC_PLACE(l, runs / 16 + 17, float);
+        step->contour.run_side[k] = SC_PLACE(l, runs + 16, float);
+        step->contour.group_side[k] = SC_PLACE(l, runs / 16 + 17, float);
+    }
+}
+
+static void lay_out_worker(const sc_workspace_sizes *s, layout *l, sc_worker *worker,
+                           sc_step_worker *step)
+{
+    memset(worker, 0, sizeof *worker);
+    memset(step, 0, sizeof *step);
+    lay_out_contour(s, l, &worker->contour);
+    lay_out_lists(s, l, &worker->lists);
+    lay_out_last(s, l, &worker->last);
+    worker->kept.some = some_ready(s);
+    worker->kept.some_ready = SC_PLACE(l, (uint64_t)worker->kept.some + 1, sc_leaf_ready);
+    worker->kept.some_known = SC_PLACE(l, (uint64_t)worker->kept.some + 1, sc_leaf_known);
+    worker->kept.slab = SC_PLACE(l, s->leaves, sc_leaf_slab);
+    worker->ball.epoch_of = SC_PLACE(l, s->vertices, uint16_t);
+    worker->ball.queue = SC_PLACE(l, s->vertices, uint32_t);
+    worker->found = SC_PLACE(l, SC_FOUND_MAX, sc_pair);
+    if (s->flags & SC_WORKSPACE_STEP) lay_out_step(s, l, &worker->contour, step);
+}
+
+/* Places all arrays behind a workspace, or of a workspace that is nowhere; returns its size. */
+static uint64_t lay_out(const sc_workspace_sizes *s, unsigned char *block, sc_workspace *w)
+{
+    const int steps = (s->flags & SC_WORKSPACE_STEP) != 0;
+    sc_worker no_worker;
+    sc_step_worker no_step;
+    uint32_t i;
+    layout l;
+    l.block = block;
+    l.at = 0;
+    (void)place(&l, 1, sizeof *w);
+    lay_out_frame(s, &l, &w->frame);
+    lay_out_bounds(s, &l, w);
+    if (s->workers > 1) lay_out_plan(s, &l, &w->plan);
+    w->worker = SC_PLACE(&l, s->workers, sc_worker);
+    if (steps) w->step = SC_PLACE(&l, s->workers, sc_step_worker);
+    for (i = 0; i < s->workers; i++)
+        lay_out_worker(s, &l, block ? &w->worker[i] : &no_worker,
+                       block && steps ? &w->step[i] : &no_step);
+    return l.at;
+}
+
+uint64_t sc_workspace_bytes(const sc_model *model, const sc_workspace_options *options)
+{
+    const sc_workspace_sizes sizes =
+        sizes_for(model, options ? options->workers : 1, options ? options->flags : 0);
+    sc_workspace nowhere;
+    return lay_out(&sizes, NULL, &nowhere);
+}
+
+/* ---- what is in a new workspace ---- */
+
+/* Boxes behind the last patch are not there: near and overlapping nothing. */
+static void clear_boxes(const sc_workspace_sizes *s, const sc_boxes *boxes)
+{
+    uint64_t i, end = (uint64_t)s->patches + SC_BOXES_PADDING;
+    int k;
+    for (k = 0; k < 6; k++)
+        for (i = 0; i < end; i++) boxes->side[k][i] = k < 3 ? HUGE_VALF : -HUGE_VALF;
+}
+
+/* A point belongs to the first leaf cluster that has it; seen is 0 for all points, before and
+   after. */
+static void find_own_points(const sc_model *model, uint16_t *own_points, uint16_t *seen)
+{
+    const uint32_t *point = sc_model_leaf_point(model);
+    uint32_t leaf, i;
+    for (leaf = 0; leaf < model->leaf_count; leaf++, point += SC_LEAF_POINTS) {
+        uint32_t own = 0;
+        for (i = 0; i < SC_LEAF_POINTS; i++) {
+            if (!seen[point[i]]) own |= 1u << i;
+            seen[point[i]] = 1;
+        }
+        own_points[leaf] = (uint16_t)own;
+    }
+    memset(seen, 0, model->vertex_count * sizeof *seen);
+}
+
+/* Nothing is known yet in the arrays of a worker. */
+static void clear_worker(const sc_workspace_sizes *s, const sc_worker *worker)
+{
+    /* whole lanes of places and spans are read, with some behind the last that was written */
+    unsigned char *places = (unsigned char *)(void *)worker->contour.at[0];
+    memset(places, 0, (size_t)((unsigned char *)(void *)worker->contour.is_edge - places));
+    memset(worker->kept.some_known, 0,
+           ((size_t)worker->kept.some + 1) * sizeof *worker->kept.some_known);
+    memset(worker->lists.open, 0, sizeof *worker->lists.open); /* which are read, too */
+    memset(worker->kept.slab, 0, s->leaves * sizeof *worker->kept.slab);
+    memset(worker->ball.epoch_of, 0, s->vertices * sizeof *worker->ball.epoch_of);
+}
+
+sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_options *options,
+                                 void *memory)
+{
+    sc_workspace *w = (sc_workspace *)memory;
+    sc_workspace_sizes *s = &w->sizes;
+    uint32_t i;
+    int k;
+    memset(w, 0, sizeof *w);
+    w->topology_hash = model->topology_hash;
+    *s = sizes_for(model, options ? options->workers : 1, options ? options->flags : 0);
+    w->bytes = lay_out(s, (unsigned char *)memory, w);
+    w->frame.kernels = sc_kernels_for((uint32_t)sc_isa_best());
+    clear_boxes(s, &w->frame.patch_boxes);
+    memset(w->frame.mask, 0, s->patches * sizeof *w->frame.mask);
+    for (k = 0; k < 2; k++) memset(w->bounds.epoch_of[k], 0, s->segments * sizeof(uint16_t));
+    memset(w->all_known, 0, all_ready(s) * sizeof *w->all_known);
+    for (i = 0; i < s->workers; i++) {
+        w->worker[i].step = w->step ? &w->step[i] : NULL;
+        clear_worker(s, &w->worker[i]);
+    }
+    w->worker[0].bounds = &w->bounds;
+    if (!w->step) return w;
+    for (k = 0; k < 2; k++) clear_boxes(s, &w->frame.motion.boxes[k]);
+    memset(w->frame.motion.unit, 0, 8 * (size_t)s->vertices * sizeof *w->frame.motion.unit);
+    find_own_points(model, w->frame.motion.own_points, w->worker[0].ball.epoch_of);
+    return w;
+}
+
+int sc_workspace_fits(const sc_workspace *w, const sc_model *model)
+{
+    const sc_workspace_sizes s = sizes_for(model, w->sizes.workers, w->sizes.flags);
+    return w->topology_hash == model->topology_hash && memcmp(&s, &w->sizes, sizeof s) == 0;
+}
+
+/* ---- queries ---- */
+
+/* Epochs up to here; then all that has one is cleared. */
+enum { EPOCH_MAX = 0x7fffffff };
+
+static void begin_epoch(sc_workspace *w)
+{
+    uint32_t i;
+    if (w->frame.epoch == EPOCH_MAX) {
+        for (i = 0; i < w->sizes.workers; i++) {
+            const sc_kept_leaves *kept = &w->worker[i].kept;
+            memset(kept->some_known, 0, ((size_t)kept->some + 1) * sizeof *kept->some_known);
+            memset(kept->slab, 0, w->sizes.leaves * sizeof *kept->slab);
+        }
+        memset(w->all_known, 0, all_ready(&w->sizes) * sizeof *w->all_known);
+        w->frame.epoch = 0;
+    }
+    w->frame.epoch++;
+    w->frame.leaves_ready = w->frame.boxes_ready = 0;
+}
+
+/* Nothing waits, nothing is found. */
+static void begin_worker(const sc_model *model, sc_workspace *workspace,
+                         const sc_question *question, sc_share *share, sc_worker *w)
+{
+    w->model = model;
+    w->frame = &workspace->frame;
+    w->question = question;
+    w->hooks = &workspace->hooks;
+    w->share = share;
+    sc_kept_leaves_some(&w->kept);
+    memset(w->lists.count, 0, sizeof w->lists.count);
+    w->last.culled = w->last.marks;
+    w->last.self_count = w->last.alone_count = w->last.selfs_wait = 0;
+    w->ball.center = SC_NONE;
+    w->found_count = 0;
+    w->count = 0;
+    w->stop = w->incomplete = 0;
+    w->task = SC_TASK_UPDATE_BOXES;
+    w->last_time = 0;
+    w->follow_part = 0;
+    memset(&w->stats, 0, sizeof w->stats);
+}
+
+sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
+                              const sc_question *question)
+{
+    begin_epoch(workspace);
+    begin_worker(model, workspace, question, NULL, &workspace->worker[0]);
+    return &workspace->worker[0];
+}
+
+/* Gives each of so many workers a part of the room for all leaf clusters, if that is more than it
+   has by itself. */
+static void keep_parts(sc_workspace *w, uint32_t workers)
+{
+    const uint32_t room = all_ready(&w->sizes) / workers;
+    uint32_t kept = 1, i;
+    while (2 * kept < room) kept *= 2; /* and one place more */
+    if (kept <= w->worker[0].kept.some) return;
+    for (i = 0; i < workers; i++)
+        sc_kept_leaves_in(&w->worker[i].kept, w->all_ready + (uint64_t)i * room,
+                          w->all_known + (uint64_t)i * room, kept);
+}
+
+void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc_question *question,
+                        sc_share *share, uint32_t workers)
+{
+    sc_worker *first = &workspace->worker[0];
+    const int keeps_all = first->kept.mask == SC_KEEPS_ALL;
+    const uint32_t task = first->task;
+    const uint64_t last_time = first->last_time;
+    const sc_stats stats = first->stats;
+    uint32_t i;
+    for (i = 0; i < workers; i++)
+        begin_worker(model, workspace, question, share, &workspace->worker[i]);
+    first->task = task;
+    first->last_time = last_time;
+    first->stats = stats;
+    if (keeps_all && SC_ALWAYS(workers)) keep_parts(workspace, workers);
+}
+
+static void begin_step_worker(const sc_step_question *question, sc_step_share *share,
+                              sc_step_worker *step)
+{
+    int k;
+    step->question = question;
+    step->share = share;
+    step->earliest = 1;
+    step->large = 0;
+    step->after_contour = 0;
+    for (k = 0; k < 2; k++)
+        step->count[k] = step->found_count[k] = step->candidate_count[k] = step->reached[k] = 0;
+}
+
+/* Has each of so many workers keep leaf clusters ready for a step, in the room that points of leaf
+   clusters and leaf clusters made ready for queries have, or its own, and forget those of the
+   last. */
+static void keep_motions(sc_workspace *w, uint32_t workers)
+{
+    unsigned char *room = (unsigned char *)(void *)w->frame.point_at;
+    const unsigned char *end =
+        (const unsigned char *)(const void *)(w->all_ready + all_ready(&w->sizes));
+    const uint64_t count = (uint64_t)(end - room) / sizeof(sc_leaf_motion) / workers;
+    uint32_t kept = 1, i;
+    while (kept <= count / 2) kept *= 2;
+    for (i = 0; i < workers; i++) {
+        sc_kept_motions *motions = &w->step[i].kept;
+        motions->leaves = (sc_leaf_motion *)(void *)room + i * count;
+        motions->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
+        if (count < w->sizes.leaves && kept <= motions->some) {
+            motions->leaves = motions->own + 1;
+            motions->mask = motions->some - 1;
+        }
+        memset(motions->made, 0, w->sizes.leaves + (size_t)SC_MOTIONS_KEPT);
+    }
+}
+
+sc_worker *sc_workspace_begin_step(const sc_model *model, sc_workspace *workspace,
+                                   const sc_step_question *question)
+{
+    begin_step_worker(question, NULL, &workspace->step[0]);
+    keep_motions(workspace, 1);
+    return sc_workspace_begin(model, workspace, &question->query);
+}
+
+void sc_workspace_share_step(const sc_model *model, sc_workspace *workspace, sc_step_share *share,
+                             uint32_t workers)
+{
+    const sc_step_question *question = workspace->step[0].question;
+    uint32_t i;
+    keep_motions(workspace, workers);
+    for (i = 0; i < workers; i++) begin_step_worker(question, share, &workspace->step[i]);
+    sc_workspace_share(model, workspace, &question->query, &share->query, workers);
+}
+
+void sc_workspace_keep_all(sc_workspace *w)
+{
+    if (all_ready(&w->sizes))
+        sc_kept_leaves_in(&w->worker[0].kept, w->all_ready, w->all_known, SC_KEEPS_ALL);
+}
+
+sc_pair *sc_workspace_spare(const sc_workspace *w, uint64_t *count)
+{
+    const uint64_t ready = all_ready(&w->sizes) * (uint64_t)sizeof(sc_leaf_ready);
+    const uint64_t points = 4 * SC_LEAF_POINTS * sizeof(float) * (uint64_t)w->sizes.leaves;
+    *count = (ready ? ready : points) / sizeof(sc_pair);
+    return ready ? (sc_pair *)(void *)w->all_ready : (sc_pair *)(void *)w->frame.point_at;
+}

@@ -1,0 +1,105 @@
+/*
+ * The workspace: everything that a query writes to, in one block.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ *     | sc_workspace | arrays of the frame | point_at | bounds or all_ready | epochs of these |
+ *       arrays of the plan | sc_worker, sc_worker, ... | arrays of a worker | arrays of a worker |
+ *       ... |
+ *
+ * Arrays start at multiples of SC_ALIGNMENT. How long they are depends on sc_workspace_sizes alone.
+ * The star test's bounds and leaf clusters made ready are never needed by one query, so they share
+ * their memory; what tells whether they are of this query stands elsewhere. There is no room for
+ * all leaf clusters in a query with the star test; several workers divide that room, where it is
+ * more than they have by themselves. A step needs neither of them, nor point_at, which stands next
+ * to them: together they have room for all leaf clusters made ready for a step.
+ *
+ * It keeps nothing from one query to the next but epochs, by which what an earlier query left is
+ * known to be stale.
+ */
+#ifndef SC_RUN_WORKSPACE_H
+#define SC_RUN_WORKSPACE_H
+
+#include "query/worker.h"
+#include "step/step_worker.h"
+
+/* A part of a query for a worker to do by itself: an item of a list, see run/plan.c. */
+typedef struct sc_part {
+    uint32_t list, a, b;
+} sc_part;
+
+/* How many parts are listed at once, and large pairs of patches. */
+enum { SC_PARTS_MAX = 4096, SC_PLAN_PAIRS = 512 };
+
+/* What is to be done, where there are several workers. */
+typedef struct sc_plan_room {
+    sc_part *parts;   /* SC_PARTS_MAX */
+    uint32_t *tests;  /* SC_PARTS_MAX: nodes to test */
+    uint32_t *open;   /* SC_PARTS_MAX: nodes that failed */
+    sc_pair *pairs;   /* SC_PLAN_PAIRS: of patches whose boxes overlap, as items */
+    uint8_t *passed;  /* SC_PARTS_MAX: whether they passed */
+    uint8_t *culled;  /* patch_end: what the workers' marks say together */
+    uint8_t *reached; /* node_count, of steps: see run/step_parallel.c */
+} sc_plan_room;
+
+/* All that the lengths of a workspace's arrays are made of: numbers of a model, and what the
+   workspace was made for. */
+typedef struct sc_workspace_sizes {
+    uint32_t vertices, leaves, patches, nodes, levels, segments, contour;
+    uint32_t workers; /* 1 or more */
+    uint32_t flags;   /* SC_WORKSPACE_... */
+} sc_workspace_sizes;
+
+struct sc_workspace {
+    uint64_t bytes;
+    uint64_t topology_hash; /* of the model it is for */
+    sc_workspace_sizes sizes;
+    sc_allocator allocator;
+    uint32_t owned; /* allocated by sc_workspace_create or _create_for */
+    sc_hooks hooks;
+    sc_frame frame;
+    sc_contour_bounds bounds; /* the first worker's */
+    sc_leaf_ready *all_ready; /* leaf_count; 0 if there are no segments */
+    sc_leaf_known *all_known; /* the same */
+    sc_plan_room plan;
+    sc_worker *worker;    /* sizes.workers */
+    sc_step_worker *step; /* as many, of workspaces for steps */
+};
+
+/* Bytes for a workspace, which fit size_t if it is for one worker. options are complete and
+   checked; NULL: for plain queries by one worker. */
+uint64_t sc_workspace_bytes(const sc_model *model, const sc_workspace_options *options);
+
+/* Makes a workspace in aligned memory of that many bytes. */
+sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_options *options,
+                                 void *memory);
+
+/* Whether a workspace is for models of this topology hash, and each of its arrays as long as the
+   model needs it: the hash alone does not tell, for it leaves out the rest shape, and may be
+   forged. */
+int sc_workspace_fits(const sc_workspace *workspace, const sc_model *model);
+
+/* Starts a query by one worker, and returns it: what earlier ones left is stale. */
+sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
+                              const sc_question *question);
+
+/* Lets so many workers share in the query that was begun, with this question and a share that is
+   zero; what the first has counted stays. */
+void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc_question *question,
+                        sc_share *share, uint32_t workers);
+
+/* The same for steps. */
+sc_worker *sc_workspace_begin_step(const sc_model *model, sc_workspace *workspace,
+                                   const sc_step_question *question);
+void sc_workspace_share_step(const sc_model *model, sc_workspace *workspace, sc_step_share *share,
+                             uint32_t workers);
+
+/* Has the first worker keep all leaf clusters ready in this query, for which no star test is made,
+   if there is room. */
+void sc_workspace_keep_all(sc_workspace *workspace);
+
+/* Memory for so many pairs, at a time when no more of the pose is needed in this query: all that
+   collide are found. */
+sc_pair *sc_workspace_spare(const sc_workspace *workspace, uint64_t *count);
+
+#endif

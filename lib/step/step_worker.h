@@ -1,0 +1,110 @@
+/*
+ * What a worker has for steps: what a step is asked, where its answer goes, and room.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef SC_STEP_WORKER_H
+#define SC_STEP_WORKER_H
+
+#include "query/worker.h"
+#include "step/impact.h"
+
+/* Sides of boxes that move, three each: x, y, z. */
+enum { SC_START_LOW = 0, SC_START_HIGH = 3, SC_END_LOW = 6, SC_END_HIGH = 9, SC_MOTION_SIDES = 12 };
+
+/* A box that moves: its three lows at the start, from the fourth on at the end, and likewise its
+   highs. */
+typedef struct sc_moving_box {
+    float low[8], high[8];
+} sc_moving_box;
+
+/* A leaf cluster made ready for a step, in the unit box; see step/leaf_motion_kernel.h. Rows are
+   filled with the last point or triangle. */
+typedef struct sc_leaf_motion {
+    float at[2][3][SC_LEAF_POINTS]; /* points at the start and at the end */
+    float normal[3][SC_LEAF_MAX];
+    float slab[4][SC_LEAF_MAX]; /* of triangles along their normals: the lower and upper ends at the
+                                   start, then at the end */
+    sc_moving_box box;          /* of all points; it keeps the margin */
+    float direction[3], ends[4]; /* the slab of all points, likewise */
+    uint32_t leaf;
+    uint16_t owned[3];   /* bit i of k: triangle i names its side k */
+    uint16_t own;        /* bit i: the leaf cluster is the first to have point i */
+    uint16_t triangles;  /* bit i: there is a triangle i */
+    uint16_t unused[11]; /* so that rows begin where cache lines do */
+} sc_leaf_motion;
+
+/* Where there is no room for all leaf clusters, so many are kept ready at least: a power of two. */
+enum { SC_MOTIONS_KEPT = 64 };
+
+/* What a worker keeps of leaf clusters in a step. */
+typedef struct sc_kept_motions {
+    sc_leaf_motion *leaves; /* leaf cluster i is kept at i & mask, if it is there */
+    uint8_t *made;          /* leaf_count + SC_MOTIONS_KEPT: 1 if there is one at that place */
+    uint32_t mask;          /* SC_KEEPS_ALL if all leaf clusters have a place of their own */
+    uint32_t some;          /* SC_MOTIONS_KEPT, fewer in small models: */
+    sc_leaf_motion *own;    /* 1 + some, the worker's own; the first is for the second of two that
+                               have one place */
+} sc_kept_motions;
+
+/* What an sc_contour_edges lacks for the end of a step. */
+typedef struct sc_moving_edges {
+    float *at[2], *run_side[4], *group_side[4];
+} sc_moving_edges;
+
+/* Which of the caller's two lists. */
+enum { SC_STEP_VERTEX_FACE = 0, SC_STEP_EDGE_EDGE = 1 };
+
+/* So many candidates are collected before they are decided. */
+enum { SC_STEP_BATCH = 128 };
+
+/* One of the caller's lists. */
+typedef struct sc_step_list {
+    sc_pair *pairs;
+    double *times; /* or NULL */
+    uint64_t capacity;
+} sc_step_list;
+
+/* What a step is asked, checked and complete. */
+typedef struct sc_step_question {
+    sc_question query; /* what all queries are asked: of its options output, cancel and budget */
+    sc_step_options options;
+    sc_impact_limits limits; /* of the narrow phase */
+    sc_step_list list[2];
+} sc_step_question;
+
+/* What the workers of a step have in common and write to besides, see run/step_parallel.c. */
+typedef struct sc_step_share {
+    sc_share query;    /* of which claimed is not used */
+    size_t claimed[2]; /* entries of the lists that were given out, perhaps beyond their ends */
+} sc_step_share;
+
+/* What a worker has besides, for steps. */
+typedef struct sc_step_worker {
+    const sc_step_question *question;
+    sc_step_share *share;  /* NULL, if one worker does all */
+    uint64_t count[2];     /* pairs found */
+    double earliest;       /* least time of one, else 1 */
+    sc_pair *found[2];     /* SC_FOUND_MAX each: pairs that are not yet in the caller's lists */
+    double *found_time[2]; /* theirs */
+    uint32_t found_count[2];
+    uint32_t reached[2]; /* nodes of one patch, and of two, whose parents this worker opened */
+    uint32_t large;      /* large nodes of a level that it opened */
+    sc_moving_edges contour;
+    sc_kept_motions kept;
+    int after_contour; /* box and primitive tests count as following a failed contour test */
+    uint32_t candidate_count[2];
+    sc_pair *candidates[2]; /* SC_STEP_BATCH: see step_candidates.h */
+} sc_step_worker;
+
+static inline uint32_t sc_step_box_task(const sc_worker *w)
+{
+    return w->step->after_contour ? SC_TASK_BOXES_CONTOUR : SC_TASK_BOXES_ORIENTATION;
+}
+
+static inline uint32_t sc_step_primitive_task(const sc_worker *w)
+{
+    return w->step->after_contour ? SC_TASK_PRIMITIVES_CONTOUR : SC_TASK_PRIMITIVES_ORIENTATION;
+}
+
+#endif
