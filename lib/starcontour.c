@@ -26,11 +26,9 @@
 #include "run/plan.h"
 #include "run/question.h"
 #include "run/rest.h"
-#include "run/step_parallel.h"
 #include "run/step_question.h"
 #include "step/step_motion.h"
 #include "step/step_pairs.h"
-#include "step/step_traversal.h"
 
 /* ---- building ---- */
 
@@ -448,7 +446,7 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
 static sc_status run_step(const sc_model *model, sc_workspace *workspace,
                           const sc_step_asked *asked, sc_step_question *question)
 {
-    sc_worker *w = sc_workspace_begin_step(model, workspace, question);
+    sc_worker *w = sc_workspace_begin(model, workspace, &question->query);
     sc_frame *frame = &workspace->frame;
     uint64_t start = 0;
     sc_status status;
@@ -463,12 +461,8 @@ static sc_status run_step(const sc_model *model, sc_workspace *workspace,
         log_not_finite(hooks, model, &asked->pose[1], asked->stride[1], " at the end");
         return status;
     }
-    if (sc_step_parallel_pays(model, question)) {
-        sc_step_parallel_run(workspace);
-    } else {
-        sc_step_traversal_run(w);
-        sc_step_pairs_finish(question, w->step->count, NULL);
-    }
+    frame->motion.swept = question->options.method == SC_STEP_METHOD_SWEPT;
+    sc_plan_run(workspace);
     stop_clock_of(w, start);
     if (w->incomplete) return SC_ERROR_INCOMPLETE;
     for (kind = 0; kind < 2; kind++)
@@ -517,7 +511,7 @@ sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc
     memset(&question, 0, sizeof question);
     status = sc_step_question_read(model, workspace, start, end, options, &r, &asked, &question);
     if (!status && SC_ALWAYS(workspace)) { /* likewise */
-        workspace->frame.tasks = sc_step_parallel_tasks(model, &question);
+        workspace->frame.tasks = sc_plan_tasks(model, &question.query);
         status = run_step(model, workspace, &asked, &question);
         if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE)
             fill_step_result(&workspace->worker[0], status, &r);

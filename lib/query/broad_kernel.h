@@ -4,19 +4,66 @@
  *
  * SPDX-License-Identifier: MIT
  *
+ * The same source serves steps, in which boxes move: two are apart if on one axis one is below the
+ * other at both ends, see step/step_motion.h.
+ *
  * Of pairs of patches whose children are leaf clusters, rows are listed: children of one that
  * overlap the other. When there are many, they are compared with the other's children, and then
  * pairs of leaf clusters are listed. Each is a loop over all rows, so that no branch depends on how
  * many a pair of patches has.
  */
 
+/* Bit k: patch j + k of a step is not apart from patch i at all times. Behind the last patch, lows
+   are infinite and highs are -infinite: those are. */
+static inline unsigned stay_near(const sc_motion *m, uint64_t i, uint64_t j)
+{
+    lanes least = lanes_all(0);
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        float *const *s = m->boxes[0].side, *const *e = m->boxes[1].side;
+        const lanes below =
+            lanes_larger(lanes_subtract(lanes_all(s[k + 3][i]), lanes_load(s[k] + j)),
+                         lanes_subtract(lanes_all(e[k + 3][i]), lanes_load(e[k] + j)));
+        const lanes above =
+            lanes_larger(lanes_subtract(lanes_load(s[k + 3] + j), lanes_all(s[k][i])),
+                         lanes_subtract(lanes_load(e[k + 3] + j), lanes_all(e[k][i])));
+        least = lanes_smaller(least, lanes_smaller(below, above));
+    }
+    return ~lanes_bits(lanes_below(least, lanes_all(0))) & ((1u << SC_LANES_COUNT) - 1u);
+}
+
+/* Bit k: patch j + k may meet patch i. */
+static inline unsigned near_patches(const sc_frame *frame, uint64_t i, uint64_t j, int moves)
+{
+    if (moves) return stay_near(&frame->motion, i, j);
+    return overlap(&frame->patch_boxes, i, &frame->patch_boxes, j);
+}
+
+/* Box tests of pairs of patches that nodes leave. */
+static inline void leave_pairs(sc_worker *w, uint32_t most, int moves)
+{
+    sc_lists *l = &w->lists;
+    uint32_t *left = &l->count[SC_LIST_LEFT], count = *left < most ? *left : most, follow = 0, i;
+    const sc_pair *pairs = l->left + (*left -= count);
+    sc_pair *to = l->patches + l->count[SC_LIST_PATCHES];
+    uint32_t kept = 0;
+    for (i = 0; i < count; i++) {
+        to[kept] = pairs[i];
+        kept += near_patches(w->frame, pairs[i].a & SC_ITEM, pairs[i].b, moves) & 1u;
+        follow += sc_item_follows(pairs[i].a);
+    }
+    l->count[SC_LIST_PATCHES] += kept;
+    sc_worker_count_boxes(w, 0, count - follow);
+    sc_worker_count_boxes(w, 1, follow);
+}
+
 /* Two patches of a level whose boxes overlap: the descendants of one at the next level that is
    visited, sixteen at most, against the other's box, then row by row against the other's; rows of
    leaf clusters wait. */
-static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b)
+static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b, int moves)
 {
     const sc_model *model = w->model;
-    const sc_boxes *boxes = &w->frame->patch_boxes;
     const uint32_t *hop = sc_model_hop(model), *share = sc_model_share_first(model);
     const uint32_t leaves = sc_model_first_leaf_patch(model);
     const uint32_t a = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
@@ -30,7 +77,7 @@ static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b)
     first_a = hop[a];
     first_b = hop[b];
     all_b = (1u << (hop[b + 1] - first_b)) - 1u;
-    rows = overlap(boxes, b, boxes, first_a) & ((1u << (hop[a + 1] - first_a)) - 1u);
+    rows = near_patches(w->frame, b, first_a, moves) & ((1u << (hop[a + 1] - first_a)) - 1u);
     sc_worker_count_boxes(w, sc_item_follows(item), 1 + sc_bits_count(rows));
     if (first_a >= leaves) {
         const uint32_t at = l->count[SC_LIST_ROWS];
@@ -44,7 +91,7 @@ static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b)
     }
     for (; rows; rows &= rows - 1) {
         const uint32_t c = first_a + sc_bits_lowest(rows);
-        unsigned mask = overlap(boxes, c, boxes, first_b) & all_b;
+        unsigned mask = near_patches(w->frame, c, first_b, moves) & all_b;
         for (; mask; mask &= mask - 1) {
             sc_pair *to = &l->patches[l->count[SC_LIST_PATCHES]++];
             to->a = c | bit;
@@ -54,10 +101,9 @@ static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b)
 }
 
 /* A patch against itself: its descendants at that level, and each of them with those behind it. */
-static inline void open_patch(sc_worker *w, uint32_t item)
+static inline void open_patch(sc_worker *w, uint32_t item, int moves)
 {
     const sc_model *model = w->model;
-    const sc_boxes *boxes = &w->frame->patch_boxes;
     const uint32_t *hop = sc_model_hop(model);
     const uint32_t leaves = sc_model_first_leaf_patch(model);
     const uint32_t a = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
@@ -86,7 +132,7 @@ static inline void open_patch(sc_worker *w, uint32_t item)
             sc_worker_add_leaf(w, (c - leaves) | bit);
             continue;
         }
-        mask &= overlap(boxes, c, boxes, c + 1);
+        mask &= near_patches(w->frame, c, c + 1, moves);
         for (; mask; mask &= mask - 1) {
             sc_pair *to = &l->patches[l->count[SC_LIST_PATCHES]++];
             to->a = c | bit;
@@ -97,7 +143,7 @@ static inline void open_patch(sc_worker *w, uint32_t item)
 
 /* Pairs of patches, or patches against themselves: their descendants are pairs, too, or leaf
    clusters. The list is a stack. */
-static void open_patch_pairs(sc_worker *w, uint32_t most)
+static inline void open_pairs(sc_worker *w, uint32_t most, int moves)
 {
     sc_lists *l = &w->lists;
     uint32_t *count = &l->count[SC_LIST_PATCHES];
@@ -106,9 +152,9 @@ static void open_patch_pairs(sc_worker *w, uint32_t most)
          most--) {
         const sc_pair pair = l->patches[--*count];
         if ((pair.a & SC_ITEM) == pair.b)
-            open_patch(w, pair.a);
+            open_patch(w, pair.a, moves);
         else
-            open_patches(w, pair.a, pair.b);
+            open_patches(w, pair.a, pair.b, moves);
     }
 }
 
@@ -159,26 +205,50 @@ static inline void list_leaf_pairs(sc_worker *w, uint32_t item, uint32_t first, 
     *count += lanes_list_from(mask, is_upper ? first | bit : first, l->far[!is_upper] + *count);
 }
 
-/* Pairs of leaf clusters that overlap in rows. */
-static void list_rows(sc_worker *w, uint32_t most)
+/* The same in a step, where pairs that share points are not told apart from others here. */
+static inline void list_moving_pairs(sc_worker *w, uint32_t item, uint32_t first, unsigned mask)
 {
-    enum { AHEAD = 8 };
-    const sc_boxes *boxes = &w->frame->patch_boxes;
+    const unsigned pairs = sc_bits_count(mask);
+    sc_cluster_pair *to = w->lists.clusters + w->lists.count[SC_LIST_CLUSTERS];
+    w->stats.leaf_pairs += pairs;
+    w->lists.count[SC_LIST_CLUSTERS] += pairs;
+    sc_worker_count_boxes(w, sc_item_follows(item), pairs);
+    for (; mask; mask &= mask - 1, to++) {
+        to->a = item & SC_ITEM;
+        to->b = first + sc_bits_lowest(mask);
+        to->shared = SC_NONE;
+        to->known = item & SC_AFTER_CONTOUR;
+    }
+}
+
+/* Drops those of some rows, the last ones, that overlap nothing; returns how many rows are left. */
+static inline uint32_t compare_rows(sc_worker *w, uint32_t begin, int moves)
+{
     const uint32_t leaves = sc_model_first_leaf_patch(w->model);
-    const uint32_t *share = sc_model_share_first(w->model);
-    const uint32_t *shared = sc_model_share_leaf(w->model);
     sc_lists *l = &w->lists;
-    const uint32_t have = l->count[SC_LIST_ROWS], begin = have < most ? 0 : have - most;
     uint32_t *row = l->row[0], *first = l->row[1], *all = l->row[2], end = begin, i;
-    for (i = begin; i < have; i++) {
+    for (i = begin; i < l->count[SC_LIST_ROWS]; i++) {
         const uint32_t item = row[i], from = first[i];
         const unsigned mask =
-            overlap(boxes, leaves + (item & SC_ITEM), boxes, leaves + from) & all[i];
+            near_patches(w->frame, leaves + (item & SC_ITEM), leaves + from, moves) & all[i];
         row[end] = item;
         first[end] = from;
         all[end] = mask;
         end += mask != 0;
     }
+    return end;
+}
+
+/* Pairs of leaf clusters that overlap in rows. */
+static void list_rows(sc_worker *w, uint32_t most)
+{
+    enum { AHEAD = 8 };
+    const uint32_t *share = sc_model_share_first(w->model);
+    const uint32_t *shared = sc_model_share_leaf(w->model);
+    sc_lists *l = &w->lists;
+    const uint32_t have = l->count[SC_LIST_ROWS], begin = have < most ? 0 : have - most;
+    const uint32_t *row = l->row[0], *first = l->row[1], *all = l->row[2];
+    uint32_t end = compare_rows(w, begin, 0), i;
     for (i = end; i > begin && end - i < AHEAD; i--) sc_fetch(shared + share[row[i - 1] & SC_ITEM]);
     for (i = end; i > begin; i--) {
         if (i - begin > AHEAD) sc_fetch(shared + share[row[i - 1 - AHEAD] & SC_ITEM]);
@@ -188,4 +258,37 @@ static void list_rows(sc_worker *w, uint32_t most)
         list_leaf_pairs(w, row[i - 1], first[i - 1], all[i - 1]);
     }
     l->count[SC_LIST_ROWS] = i;
+}
+
+/* The same in a step. */
+static void list_moving_rows(sc_worker *w, uint32_t most)
+{
+    sc_lists *l = &w->lists;
+    const uint32_t have = l->count[SC_LIST_ROWS], begin = have < most ? 0 : have - most;
+    uint32_t i = compare_rows(w, begin, 1);
+    for (; i > begin && l->count[SC_LIST_CLUSTERS] <= SC_CLUSTERS_MAX - SC_LEAF_MAX; i--)
+        list_moving_pairs(w, l->row[0][i - 1], l->row[1][i - 1], l->row[2][i - 1]);
+    l->count[SC_LIST_ROWS] = i;
+}
+
+/* ---- the same for poses and for steps ---- */
+
+static void leave_patch_pairs(sc_worker *w, uint32_t most)
+{
+    leave_pairs(w, most, 0);
+}
+
+static void leave_moving_pairs(sc_worker *w, uint32_t most)
+{
+    leave_pairs(w, most, 1);
+}
+
+static void open_patch_pairs(sc_worker *w, uint32_t most)
+{
+    open_pairs(w, most, 0);
+}
+
+static void open_moving_pairs(sc_worker *w, uint32_t most)
+{
+    open_pairs(w, most, 1);
 }

@@ -17,9 +17,6 @@ void sc_culling_open(sc_worker *w, uint32_t most);
 /* The contour tests of nodes that passed the orientation test. */
 void sc_culling_test(sc_worker *w, uint32_t most);
 
-/* Box tests of pairs of patches that nodes leave. */
-void sc_culling_leave(sc_worker *w, uint32_t most);
-
 /* The paper's optimised tree of boxes: opens nodes all of which are taken as colliding. */
 void sc_culling_take_spans(sc_worker *w, uint32_t most);
 

@@ -35,6 +35,10 @@ typedef enum sc_list_id {
     SC_LIST_CANDIDATES, /* pairs of triangles that share nothing */
     SC_LIST_NEIGHBORS,  /* pairs of triangles that share one point */
     SC_LIST_EXACT,      /* pairs of triangles for the exact primitives */
+    SC_LIST_FACE_ROWS,  /* of a step: triangles, each with some points of a leaf cluster */
+    SC_LIST_EDGE_ROWS,  /* edges, each with some sides of a leaf cluster's triangles */
+    SC_LIST_FACES,      /* pairs of a vertex and a triangle for its narrow phase */
+    SC_LIST_EDGES,      /* pairs of edges for that */
     SC_LIST_COUNT
 } sc_list_id;
 
@@ -74,7 +78,15 @@ enum {
     SC_CANDIDATES_MAX = 4 * SC_LEAF_PAIRS,
     SC_NEIGHBORS_ENOUGH = 64,
     SC_EXACT_ENOUGH = 32,
-    SC_FEW_MAX = SC_LEAF_PAIRS + 64 /* of neighbors, and of pairs for exact primitives */
+    SC_FEW_MAX = SC_LEAF_PAIRS + 64, /* of neighbors, and of pairs for exact primitives */
+    /* what slabs leave of two leaf clusters in a step: triangles of both, edges of one with three
+       sides of the other's triangles; and what rows list at once, or one row more */
+    SC_MOVING_ROWS_ENOUGH = 64,
+    SC_FACE_ROWS_MAX = SC_MOVING_ROWS_ENOUGH + 2 * SC_LEAF_MAX,
+    SC_EDGE_ROWS_MAX = SC_MOVING_ROWS_ENOUGH + 9 * SC_LEAF_MAX,
+    SC_MOVING_LISTED = 128,
+    SC_MOVING_ENOUGH = 16,
+    SC_MOVING_MAX = SC_MOVING_ENOUGH + SC_MOVING_LISTED + SC_LEAF_MAX
 };
 
 /* Two leaf clusters, a <= b, or one twice; and where sc_model_share_leaf has them, or SC_NONE, with
@@ -111,6 +123,14 @@ typedef struct sc_open_pairs {
     float extent[SC_OPEN_MAX + 16]; /* of both clusters */
 } sc_open_pairs;
 
+/* A triangle, by its place, and points of a leaf cluster; or an edge, as 3 place + k, and sides k of
+   its triangles, with 16 k in the upper bits. */
+typedef struct sc_moving_row {
+    uint32_t of;
+    uint32_t leaf; /* with the bit for what follows a contour test */
+    uint32_t bits;
+} sc_moving_row;
+
 typedef struct sc_lists {
     uint32_t count[SC_LIST_COUNT];
     uint32_t room[SC_LIST_COUNT]; /* of how many items, as follows */
@@ -132,10 +152,13 @@ typedef struct sc_lists {
     sc_cluster_pair *clusters; /* SC_CLUSTERS_MAX */
     sc_triangle_rows *triangles;
     sc_open_pairs *open;
-    sc_pair *candidates; /* SC_CANDIDATES_MAX places of triangles */
-    sc_pair *neighbors;  /* SC_FEW_MAX of the same */
-    sc_pair *exact;      /* SC_FEW_MAX of the same */
-    uint32_t *scratch;   /* SC_LEAF_LIST_AT_ONCE, for a stage while it runs */
+    sc_pair *candidates;           /* SC_CANDIDATES_MAX places of triangles */
+    sc_pair *neighbors;            /* SC_FEW_MAX of the same */
+    sc_pair *exact;                /* SC_FEW_MAX of the same */
+    sc_moving_row *moving_rows[2]; /* SC_FACE_ROWS_MAX, SC_EDGE_ROWS_MAX */
+    sc_pair *moving[2];            /* SC_MOVING_MAX each: a point and the place of a triangle; two
+                                      edges as 3 place + k */
+    uint32_t *scratch;             /* SC_LEAF_LIST_AT_ONCE, for a stage while it runs */
 } sc_lists;
 
 /* Whether no list has more than it has room for. */

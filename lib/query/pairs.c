@@ -16,7 +16,7 @@
    one. */
 static void deliver(sc_worker *w)
 {
-    uint64_t at = sc_atomic_add(&w->share->claimed, SC_FOUND_MAX);
+    uint64_t at = sc_atomic_add(&w->share->claimed[0], SC_FOUND_MAX);
     w->found_count = 0;
     if (at + SC_FOUND_MAX <= w->question->capacity)
         memcpy(w->question->pairs + at, w->found, sizeof(sc_pair) * SC_FOUND_MAX);

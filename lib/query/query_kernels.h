@@ -11,10 +11,11 @@
 #include "query/simple_contour.h"
 
 typedef struct sc_query_kernels {
-    /* Stages, see query/lists.h: from pairs of patches to rows of leaf clusters; from these to pairs
-       of leaf clusters; proofs that strike out pairs that share no points, and that share some; the
+    /* Stages, see query/lists.h: box tests of pairs of patches that nodes leave; from pairs of
+       patches to rows of leaf clusters; from these to pairs of leaf clusters; proofs that strike out pairs that share no points, and that share some; the
        triangles of those that are left, by boxes and planes; sixteen pairs of triangles that share
        nothing, and that share points. */
+    void (*leave_patch_pairs)(sc_worker *w, uint32_t most);
     void (*open_patch_pairs)(sc_worker *w, uint32_t most);
     void (*list_rows)(sc_worker *w, uint32_t most);
     void (*part_far)(sc_worker *w, uint32_t most);

@@ -18,6 +18,9 @@
 #include "query/lists.h"
 #include "query/simple_contour.h"
 
+struct sc_worker;
+struct sc_step_question;
+
 /* What a query is asked, checked and complete; and the caller's array. */
 typedef struct sc_question {
     sc_query_options options;
@@ -26,15 +29,23 @@ typedef struct sc_question {
     int drops_neighbors; /* of triangles that share a vertex nothing is wanted */
     int has_last; /* of culling by exact contour tests: some of it waits until all else is done, and
                      the frame has normal cones of leaf clusters */
-    int timed;    /* statistics are wanted: clocks are read */
-    sc_pair *pairs; /* the caller's array */
+    int keeps_no_marks; /* what is culled in a node of two patches is tested by itself all the same,
+                           so that what is left does not depend on the order of tests */
+    int timed;          /* statistics are wanted: clocks are read */
+    int ends_early;     /* the first pair or a budget may end it: pairs do not wait for long */
+    /* The contour test of some nodes: passed[i] says whether nothing in nodes[i] can meet. */
+    void (*test)(struct sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed);
+    const struct sc_step_question *step; /* what a step is asked besides, step/step_worker.h; NULL:
+                                            it is none */
+    sc_pair *pairs;                      /* the caller's array */
     uint64_t capacity;
 } sc_question;
 
 /* What the workers of a query have in common and write to, see run/plan.c. */
 typedef struct sc_share {
-    size_t claimed; /* entries of the caller's array that were given out, perhaps beyond its end */
-    uint32_t halt;  /* enough is known */
+    size_t claimed[2]; /* entries of the caller's array, or of the two of a step, that were given
+                          out, perhaps beyond its end */
+    uint32_t halt;     /* enough is known */
 } sc_share;
 
 /* What waits until all else is done, since it may turn out that it need not be looked at: a patch

@@ -26,6 +26,8 @@
 #include "query/culling.h"
 #include "query/pairs.h"
 #include "run/runner.h"
+#include "step/step_motion.h"
+#include "step/step_pairs.h"
 
 /* Models with fewer leaf clusters are not worth a job. */
 enum { LEAVES_MIN = 128 };
@@ -101,8 +103,7 @@ static void stop_clock(sc_worker *w)
    query: many at once take less time. */
 static void end_part(sc_worker *w, int is_last)
 {
-    sc_runner_run(w, is_last || w->question->options.output == SC_OUTPUT_ANY ||
-                         sc_runner_waiting(w) > WAITING_MAX);
+    sc_runner_run(w, is_last || w->question->ends_early || sc_runner_waiting(w) > WAITING_MAX);
     stop_clock(w);
 }
 
@@ -312,10 +313,10 @@ static void do_tests(plan *p)
         run_job(p, run_tests, p->test_count, 0);
     for (i = p->test_count; i-- > 0;) {
         uint32_t node = p->room->tests[i];
-        if (p->room->passed[i])
-            culled[nodes[node].patches.a] = culled[nodes[node].patches.b] = 1;
-        else
+        if (!p->room->passed[i])
             p->room->open[p->open_count++] = node;
+        else if (!p->question.keeps_no_marks)
+            culled[nodes[node].patches.a] = culled[nodes[node].patches.b] = 1;
     }
     p->test_count = 0;
 }
@@ -403,7 +404,7 @@ static void do_last(plan *p, int selfs)
 
 static void walk_exact(plan *p)
 {
-    sc_culling_find_prospects(p->w);
+    if (!p->question.step) sc_culling_find_prospects(p->w);
     sc_culling_orient(p->w, 0);
     while (p->tasks) {
         open_large(p);
@@ -462,8 +463,12 @@ static void walk_boxes(plan *p)
 static void make_cones(sc_worker *w)
 {
     sc_worker_switch(w, SC_TASK_UPDATE_NORMALS);
-    sc_dnc_update(w->model, w->frame);
-    SC_HOOKS_ASSERT(w->hooks, sc_dnc_validate(w->model, w->frame));
+    if (w->question->step) {
+        sc_motion_update_cones(w->model, w->frame);
+    } else {
+        sc_dnc_update(w->model, w->frame);
+        SC_HOOKS_ASSERT(w->hooks, sc_dnc_validate(w->model, w->frame));
+    }
     w->stats.counts[SC_TASK_UPDATE_NORMALS] += w->model->patch_end;
     sc_worker_switch(w, SC_TASK_ORIENTATION);
 }
@@ -487,33 +492,70 @@ static void begin_workers(plan *p)
     }
 }
 
-/* Adds up what the workers counted, and puts the last of their pairs into the caller's array.
-   Returns 0 if that is too short. */
+/* What a worker counted. */
+static void add_counts(sc_worker *sum, const sc_worker *w)
+{
+    uint32_t k;
+    for (k = 0; k < SC_TASK_COUNT; k++) {
+        sum->stats.counts[k] += w->stats.counts[k];
+        sum->stats.nanoseconds[k] += w->stats.nanoseconds[k];
+    }
+    sum->stats.nodes_visited += w->stats.nodes_visited;
+    sum->stats.nodes_oriented += w->stats.nodes_oriented;
+    sum->stats.nodes_culled += w->stats.nodes_culled;
+    sum->stats.leaf_pairs += w->stats.leaf_pairs;
+    sum->stats.exact_fallbacks += w->stats.exact_fallbacks;
+    sum->incomplete |= w->incomplete;
+    sum->count += w->count;
+}
+
+/* Puts the last pairs that a worker found behind those that are in an array; 0: it is too short. */
+static int put_last(sc_pair *pairs, uint64_t capacity, const sc_pair *found, uint32_t count,
+                    size_t *claimed)
+{
+    const uint64_t at = *claimed;
+    *claimed += count;
+    if (at > capacity || count > capacity - at) return 0;
+    if (count) memcpy(pairs + at, found, sizeof(sc_pair) * count);
+    return 1;
+}
+
+/* The same for the two lists of a step, with their times. */
+static int put_last_of_step(plan *p, const sc_worker *w)
+{
+    sc_step_worker *sum = p->w->step;
+    const sc_step_worker *step = w->step;
+    int fits = 1, kind;
+    for (kind = 0; kind < 2; kind++) {
+        const sc_step_list *list = &step->question->list[kind];
+        const uint32_t count = step->found_count[kind];
+        const size_t at = p->share.claimed[kind];
+        const int ends_well = put_last(list->pairs, list->capacity, step->found[kind], count,
+                                       &p->share.claimed[kind]);
+        if (ends_well && count && list->times)
+            memcpy(list->times + at, step->found_time[kind], sizeof(double) * count);
+        fits &= ends_well;
+        if (step != sum) sum->count[kind] += step->count[kind];
+    }
+    if (step->earliest < sum->earliest) sum->earliest = step->earliest;
+    return fits;
+}
+
+/* Adds up what the workers counted, and puts the last of their pairs into the caller's arrays.
+   Returns 0 if one of these is too short. */
 static int gather(plan *p)
 {
     const sc_question *q = &p->question;
-    sc_worker *sum = p->w;
-    uint64_t at = p->share.claimed;
-    uint32_t i, k;
+    int fits = 1;
+    uint32_t i;
     for (i = 0; p->tasks && i < p->workers; i++) {
         const sc_worker *w = &p->workspace->worker[i];
-        if (w->found_count && at <= q->capacity && w->found_count <= q->capacity - at)
-            memcpy(q->pairs + at, w->found, sizeof(sc_pair) * w->found_count);
-        at += w->found_count;
-        if (w == sum) continue;
-        for (k = 0; k < SC_TASK_COUNT; k++) {
-            sum->stats.counts[k] += w->stats.counts[k];
-            sum->stats.nanoseconds[k] += w->stats.nanoseconds[k];
-        }
-        sum->stats.nodes_visited += w->stats.nodes_visited;
-        sum->stats.nodes_oriented += w->stats.nodes_oriented;
-        sum->stats.nodes_culled += w->stats.nodes_culled;
-        sum->stats.leaf_pairs += w->stats.leaf_pairs;
-        sum->stats.exact_fallbacks += w->stats.exact_fallbacks;
-        sum->incomplete |= w->incomplete;
-        sum->count += w->count;
+        fits &= q->step ? put_last_of_step(p, w)
+                        : put_last(q->pairs, q->capacity, w->found, w->found_count,
+                                   &p->share.claimed[0]);
+        if (w != p->w) add_counts(p->w, w);
     }
-    return at <= q->capacity;
+    return fits;
 }
 
 /* Pairs of the sorted list that the caller's function wants. */
@@ -557,14 +599,26 @@ static int find_pairs(sc_workspace *workspace, const sc_tasks *tasks, plan *p)
     return gather(p);
 }
 
+/* Sorts what was found. */
+static void finish(sc_workspace *workspace, const sc_question *question, const sc_tasks *tasks)
+{
+    sc_worker *w = &workspace->worker[0];
+    uint64_t room;
+    sc_pair *spare = sc_workspace_spare(workspace, &room);
+    if (question->step) {
+        sc_step_pairs_finish(question->step, w->step->count, tasks);
+        return;
+    }
+    sc_pairs_finish(question, w->count, spare, room, tasks);
+    if (tasks && question->filter && question->filter->accept) ask_function(question->filter, w);
+}
+
 void sc_plan_run(sc_workspace *workspace)
 {
     sc_worker *w = &workspace->worker[0];
     const sc_question *question = w->question;
     const sc_tasks *tasks = tasks_for(w->model, question);
     const sc_stats before = w->stats;
-    uint64_t room;
-    sc_pair *spare = sc_workspace_spare(workspace, &room);
     plan p;
     if (!find_pairs(workspace, tasks, &p)) {
         sc_workspace_begin(w->model, workspace, question);
@@ -573,6 +627,5 @@ void sc_plan_run(sc_workspace *workspace)
         tasks = NULL;
         (void)find_pairs(workspace, tasks, &p);
     }
-    sc_pairs_finish(question, w->count, spare, room, tasks);
-    if (tasks && question->filter && question->filter->accept) ask_function(question->filter, w);
+    finish(workspace, question, tasks);
 }

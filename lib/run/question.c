@@ -11,6 +11,7 @@
 #include "base/assume.h"
 #include "build/mesh.h"
 #include "query/filter.h"
+#include "query/simple.h"
 
 sc_status sc_question_read_pose(const sc_hooks *hooks, const char *name, const sc_model *model,
                                 const sc_pose *from, sc_pose *pose, uint64_t *stride)
@@ -127,6 +128,8 @@ sc_status sc_question_read(const sc_model *model, const sc_workspace *workspace,
     question->pairs = result->pairs;
     question->capacity = result->capacity;
     question->timed = result->stats != NULL;
+    question->ends_early = o->output == SC_OUTPUT_ANY || o->budget != 0;
+    question->test = sc_simple_tests;
     question->has_last = o->method == SC_METHOD_SCTT && o->contour == SC_CONTOUR_EXACT;
     status = sc_question_read_tasks(workspace, &o->tasks, &asked->tasks);
     if (!status && o->filter)

@@ -11,42 +11,49 @@
 #include "pose/refit.h"
 #include "query/culling.h"
 #include "query/query_kernels.h"
+#include "step/step_candidates.h"
+#include "step/step_kernels.h"
+#include "step/step_motion.h"
 
 /* How long a list must be to be worth a stage, and how many items that takes at once; and both where
    a query may end early, by the first pair or by a budget: then pairs do not wait for long, as what
    has been found by then counts. What its time is filed under: that task, or the one of the same
    name for what follows a contour test. */
 typedef struct list_rule {
-    uint32_t enough[2], at_once[2], task;
+    uint32_t enough, at_once, soon_enough, soon_at_once, task;
 } list_rule;
 
 enum { BOXES = SC_TASK_BOXES_ORIENTATION, PRIMITIVES = SC_TASK_PRIMITIVES_ORIENTATION };
 
 static const list_rule rules[SC_LIST_COUNT] = {
-    {{1, 1}, {16, 16}, BOXES},               /* SPANS */
-    {{1, 1}, {16, 16}, SC_TASK_ORIENTATION}, /* STARS */
-    {{1, 1}, {64, 64}, SC_TASK_ORIENTATION}, /* FAILED */
-    {{SC_ORIENTED_ENOUGH, SC_ORIENTED_ENOUGH},
-     {SC_ORIENTED_MAX, SC_ORIENTED_MAX},
-     SC_TASK_CONTOUR},                                                          /* ORIENTED */
-    {{SC_LEFT_ENOUGH, SC_LEFT_ENOUGH}, {SC_LEFT_MAX, SC_LEFT_MAX}, BOXES},      /* LEFT */
-    {{1, 1}, {64, 1}, BOXES},                                                   /* PATCHES */
-    {{SC_ROWS_ENOUGH, 1}, {SC_ROWS_MAX, 1}, BOXES},                             /* ROWS */
-    {{SC_LEAF_LIST_ENOUGH, 16}, {SC_LEAF_LIST_AT_ONCE, 16}, BOXES},             /* FAR */
-    {{SC_LEAF_LIST_ENOUGH, 16}, {SC_LEAF_LIST_AT_ONCE, 16}, BOXES},             /* NEAR */
-    {{SC_CLUSTERS_ENOUGH, 1}, {SC_CLUSTERS_ENOUGH, SC_CLUSTERS_ENOUGH}, BOXES}, /* CLUSTERS */
-    {{1, 1}, {SC_TRIANGLES_MAX, SC_TRIANGLES_MAX}, BOXES},                      /* TRIANGLES */
-    {{SC_OPEN_ENOUGH, 1}, {SC_OPEN_ENOUGH, SC_OPEN_ENOUGH}, BOXES},             /* OPEN */
-    {{SC_CANDIDATES_ENOUGH, 1},
-     {SC_CANDIDATES_ENOUGH, SC_CANDIDATES_ENOUGH},
-     PRIMITIVES}, /* CANDIDATES */
-    {{SC_NEIGHBORS_ENOUGH, 1},
-     {SC_NEIGHBORS_ENOUGH, SC_NEIGHBORS_ENOUGH},
-     PRIMITIVES},                                                           /* NEIGHBORS */
-    {{SC_EXACT_ENOUGH, 1}, {SC_EXACT_ENOUGH, SC_EXACT_ENOUGH}, PRIMITIVES}, /* EXACT */
+    [SC_LIST_SPANS] = {1, 16, 1, 16, BOXES},
+    [SC_LIST_STARS] = {1, 16, 1, 16, SC_TASK_ORIENTATION},
+    [SC_LIST_FAILED] = {1, 64, 1, 64, SC_TASK_ORIENTATION},
+    [SC_LIST_ORIENTED] = {SC_ORIENTED_ENOUGH, SC_ORIENTED_MAX, SC_ORIENTED_ENOUGH, SC_ORIENTED_MAX,
+                          SC_TASK_CONTOUR},
+    [SC_LIST_LEFT] = {SC_LEFT_ENOUGH, SC_LEFT_MAX, SC_LEFT_ENOUGH, SC_LEFT_MAX, BOXES},
+    [SC_LIST_PATCHES] = {1, 64, 1, 1, BOXES},
+    [SC_LIST_ROWS] = {SC_ROWS_ENOUGH, SC_ROWS_MAX, 1, 1, BOXES},
+    [SC_LIST_FAR] = {SC_LEAF_LIST_ENOUGH, SC_LEAF_LIST_AT_ONCE, 16, 16, BOXES},
+    [SC_LIST_NEAR] = {SC_LEAF_LIST_ENOUGH, SC_LEAF_LIST_AT_ONCE, 16, 16, BOXES},
+    [SC_LIST_CLUSTERS] = {SC_CLUSTERS_ENOUGH, SC_CLUSTERS_ENOUGH, 1, SC_CLUSTERS_ENOUGH, BOXES},
+    [SC_LIST_TRIANGLES] = {1, SC_TRIANGLES_MAX, 1, SC_TRIANGLES_MAX, BOXES},
+    [SC_LIST_OPEN] = {SC_OPEN_ENOUGH, SC_OPEN_ENOUGH, 1, SC_OPEN_ENOUGH, BOXES},
+    [SC_LIST_CANDIDATES] = {SC_CANDIDATES_ENOUGH, SC_CANDIDATES_ENOUGH, 1, SC_CANDIDATES_ENOUGH,
+                            PRIMITIVES},
+    [SC_LIST_NEIGHBORS] = {SC_NEIGHBORS_ENOUGH, SC_NEIGHBORS_ENOUGH, 1, SC_NEIGHBORS_ENOUGH,
+                           PRIMITIVES},
+    [SC_LIST_EXACT] = {SC_EXACT_ENOUGH, SC_EXACT_ENOUGH, 1, SC_EXACT_ENOUGH, PRIMITIVES},
+    [SC_LIST_FACE_ROWS] = {SC_MOVING_ROWS_ENOUGH, SC_MOVING_ROWS_ENOUGH, 1, SC_MOVING_ROWS_ENOUGH,
+                           PRIMITIVES},
+    [SC_LIST_EDGE_ROWS] = {SC_MOVING_ROWS_ENOUGH, SC_MOVING_ROWS_ENOUGH, 1, SC_MOVING_ROWS_ENOUGH,
+                           PRIMITIVES},
+    [SC_LIST_FACES] = {SC_MOVING_ENOUGH, SC_MOVING_ENOUGH, 1, SC_MOVING_ENOUGH, PRIMITIVES},
+    [SC_LIST_EDGES] = {SC_MOVING_ENOUGH, SC_MOVING_ENOUGH, 1, SC_MOVING_ENOUGH, PRIMITIVES},
 };
 
-void sc_runner_run_stage(sc_worker *w, sc_list_id list, uint32_t most)
+/* The stages of a query. */
+static void run_query_stage(sc_worker *w, sc_list_id list, uint32_t most)
 {
     const sc_query_kernels *kernels = w->frame->kernels->query;
     switch (list) {
@@ -63,7 +70,7 @@ void sc_runner_run_stage(sc_worker *w, sc_list_id list, uint32_t most)
         sc_culling_test(w, most);
         break;
     case SC_LIST_LEFT:
-        sc_culling_leave(w, most);
+        kernels->leave_patch_pairs(w, most);
         break;
     case SC_LIST_PATCHES:
         kernels->open_patch_pairs(w, most);
@@ -92,11 +99,59 @@ void sc_runner_run_stage(sc_worker *w, sc_list_id list, uint32_t most)
     case SC_LIST_NEIGHBORS:
         sc_decide_neighbors(w, most);
         break;
-    case SC_LIST_EXACT:
-    case SC_LIST_COUNT:
+    default: /* SC_LIST_EXACT */
         sc_decide_exactly(w, most);
         break;
     }
+}
+
+/* The stages of a step: culling is that of a query, by other tests. */
+static void run_step_stage(sc_worker *w, sc_list_id list, uint32_t most)
+{
+    const sc_step_kernels *kernels = w->frame->kernels->step;
+    switch (list) {
+    case SC_LIST_FAILED:
+        sc_culling_open(w, most);
+        break;
+    case SC_LIST_ORIENTED:
+        sc_culling_test(w, most);
+        break;
+    case SC_LIST_LEFT:
+        kernels->leave_pairs(w, most);
+        break;
+    case SC_LIST_PATCHES:
+        kernels->open_pairs(w, most);
+        break;
+    case SC_LIST_ROWS:
+        kernels->list_rows(w, most);
+        break;
+    case SC_LIST_NEAR:
+        kernels->compare_leaves(w, most);
+        break;
+    case SC_LIST_CLUSTERS:
+        kernels->compare_clusters(w, most);
+        break;
+    case SC_LIST_FACE_ROWS:
+        kernels->list_faces(w, most);
+        break;
+    case SC_LIST_EDGE_ROWS:
+        kernels->list_edges(w, most);
+        break;
+    case SC_LIST_FACES:
+        sc_step_candidates_take_faces(w, most);
+        break;
+    default: /* SC_LIST_EDGES */
+        sc_step_candidates_take_edges(w, most);
+        break;
+    }
+}
+
+void sc_runner_run_stage(sc_worker *w, sc_list_id list, uint32_t most)
+{
+    if (w->question->step)
+        run_step_stage(w, list, most);
+    else
+        run_query_stage(w, list, most);
     SC_HOOKS_ASSERT(w->hooks, sc_lists_have_room(&w->lists));
 }
 
@@ -105,9 +160,13 @@ void sc_runner_make_boxes(sc_worker *w)
     uint32_t previous;
     if (w->frame->boxes_ready) return;
     previous = sc_worker_switch(w, SC_TASK_UPDATE_BOXES);
-    sc_refit_boxes(w->model, w->frame);
-    w->stats.counts[SC_TASK_UPDATE_BOXES] +=
-        w->model->triangle_count + (uint64_t)w->model->patch_end;
+    w->stats.counts[SC_TASK_UPDATE_BOXES] += w->model->patch_end;
+    if (w->question->step) {
+        sc_motion_refit(w->model, w->frame);
+    } else {
+        sc_refit_boxes(w->model, w->frame);
+        w->stats.counts[SC_TASK_UPDATE_BOXES] += w->model->triangle_count;
+    }
     sc_worker_switch(w, previous);
 }
 
@@ -133,8 +192,11 @@ static void divide_time(sc_worker *w, uint32_t task, const uint64_t before[SC_TA
 static void run_list(sc_worker *w, sc_list_id list, int soon)
 {
     const sc_query_options *o = &w->question->options;
-    const int takes_long = list == SC_LIST_STARS || list == SC_LIST_EXACT;
-    const uint32_t most = takes_long && (o->cancel || o->budget) ? 1 : rules[list].at_once[soon];
+    const int takes_long = list == SC_LIST_STARS || list == SC_LIST_EXACT ||
+                           list == SC_LIST_FACES || list == SC_LIST_EDGES;
+    const uint32_t most = takes_long && (o->cancel || o->budget) ? 1
+                          : soon                                 ? rules[list].soon_at_once
+                                                                 : rules[list].at_once;
     const uint32_t task = rules[list].task;
     uint64_t before[SC_TASK_COUNT];
     if (list >= SC_LIST_LEFT) sc_runner_make_boxes(w);
@@ -153,8 +215,10 @@ static void run_list(sc_worker *w, sc_list_id list, int soon)
 static sc_list_id choose_list(const uint32_t *count, uint32_t last, int soon, int all)
 {
     uint32_t k;
-    for (k = SC_LIST_COUNT; k-- > 0;)
-        if (count[k] >= (k == last ? 1 : rules[k].enough[soon])) return (sc_list_id)k;
+    for (k = SC_LIST_COUNT; k-- > 0;) {
+        const uint32_t enough = soon ? rules[k].soon_enough : rules[k].enough;
+        if (count[k] >= (k == last ? 1 : enough)) return (sc_list_id)k;
+    }
     for (k = 0; all && k < SC_LIST_COUNT; k++)
         if (count[k]) return (sc_list_id)k;
     return SC_LIST_COUNT;
@@ -162,8 +226,7 @@ static sc_list_id choose_list(const uint32_t *count, uint32_t last, int soon, in
 
 void sc_runner_run(sc_worker *w, int all)
 {
-    const sc_query_options *o = &w->question->options;
-    const int soon = o->output == SC_OUTPUT_ANY || o->budget != 0;
+    const int soon = w->question->ends_early;
     sc_list_id list = SC_LIST_COUNT;
     while (!sc_worker_stops(w)) {
         list = choose_list(w->lists.count, list, soon, all);

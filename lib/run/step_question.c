@@ -10,6 +10,7 @@
 #include "base/arguments.h"
 #include "base/assume.h"
 #include "run/question.h"
+#include "step/moving_contour.h"
 
 static sc_status check_length(const sc_hooks *hooks, const char *name, double length)
 {
@@ -68,7 +69,16 @@ static void fill_question(const sc_step_result *result, sc_step_question *questi
     question->query.options.cancel = o->cancel;
     question->query.options.budget = o->budget;
     question->query.options.tasks = o->tasks;
+    question->query.options.method =
+        o->method == SC_STEP_METHOD_SCTT ? SC_METHOD_SCTT : SC_METHOD_AABB;
+    question->query.options.contour = SC_CONTOUR_EXACT; /* for the order of nodes */
+    question->query.has_last = o->method == SC_STEP_METHOD_SCTT;
+    question->query.ends_early =
+        o->budget || (o->output == SC_OUTPUT_ANY && o->times == SC_STEP_TIMES_NONE);
+    question->query.keeps_no_marks = o->pairs == SC_STEP_CANDIDATES;
     question->query.timed = result->stats != NULL;
+    question->query.test = sc_moving_contour_tests;
+    question->query.step = question;
     list[SC_STEP_VERTEX_FACE].pairs = result->vertex_faces;
     list[SC_STEP_VERTEX_FACE].times = times ? result->vertex_face_times : NULL;
     list[SC_STEP_VERTEX_FACE].capacity = result->vertex_face_capacity;

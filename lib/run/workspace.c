@@ -109,7 +109,6 @@ static void lay_out_plan(const sc_workspace_sizes *s, layout *l, sc_plan_room *p
     plan->pairs = SC_PLACE(l, SC_PLAN_PAIRS, sc_pair);
     plan->passed = SC_PLACE(l, SC_PARTS_MAX, uint8_t);
     plan->culled = SC_PLACE(l, s->patches, uint8_t);
-    if (s->flags & SC_WORKSPACE_STEP) plan->reached = SC_PLACE(l, s->nodes, uint8_t);
 }
 
 /* How many points of a contour are listed at most, with what is read beyond. */
@@ -143,6 +142,7 @@ static void lay_out_lists(const sc_workspace_sizes *s, layout *l, sc_lists *list
 {
     const uint32_t levels = s->levels + 1;
     uint32_t *room = lists->room;
+    uint64_t start, end;
     int k;
     room[SC_LIST_SPANS] = SC_SPANS_MAX;
     room[SC_LIST_STARS] = levels * SC_NODE_CHILDREN;
@@ -157,6 +157,9 @@ static void lay_out_lists(const sc_workspace_sizes *s, layout *l, sc_lists *list
     room[SC_LIST_OPEN] = SC_OPEN_MAX;
     room[SC_LIST_CANDIDATES] = SC_CANDIDATES_MAX;
     room[SC_LIST_NEIGHBORS] = room[SC_LIST_EXACT] = SC_FEW_MAX;
+    room[SC_LIST_FACE_ROWS] = SC_FACE_ROWS_MAX;
+    room[SC_LIST_EDGE_ROWS] = SC_EDGE_ROWS_MAX;
+    room[SC_LIST_FACES] = room[SC_LIST_EDGES] = SC_MOVING_MAX;
     lists->spans = SC_PLACE(l, room[SC_LIST_SPANS], sc_pair);
     lists->stars = SC_PLACE(l, room[SC_LIST_STARS], uint32_t);
     lists->failed = SC_PLACE(l, room[SC_LIST_FAILED], uint32_t);
@@ -171,10 +174,19 @@ static void lay_out_lists(const sc_workspace_sizes *s, layout *l, sc_lists *list
     lists->clusters = SC_PLACE(l, room[SC_LIST_CLUSTERS], sc_cluster_pair);
     lists->triangles = SC_PLACE(l, 1, sc_triangle_rows);
     lists->open = SC_PLACE(l, 1, sc_open_pairs);
+    lists->scratch = SC_PLACE(l, SC_LEAF_LIST_AT_ONCE, uint32_t);
+    start = l->at;
     lists->candidates = SC_PLACE(l, room[SC_LIST_CANDIDATES] + BEYOND, sc_pair);
     lists->neighbors = SC_PLACE(l, room[SC_LIST_NEIGHBORS], sc_pair);
     lists->exact = SC_PLACE(l, room[SC_LIST_EXACT], sc_pair);
-    lists->scratch = SC_PLACE(l, SC_LEAF_LIST_AT_ONCE, uint32_t);
+    end = l->at;
+    l->at = start;
+    for (k = 0; k < 2; k++) { /* in the same place: a step has no use for those */
+        lists->moving_rows[k] =
+            SC_PLACE(l, room[SC_LIST_FACE_ROWS + k] + (uint64_t)1, sc_moving_row);
+        lists->moving[k] = SC_PLACE(l, room[SC_LIST_FACES + k], sc_pair);
+    }
+    if (l->at < end) l->at = end;
 }
 
 static void lay_out_last(const sc_workspace_sizes *s, layout *l, sc_last *last)
@@ -194,7 +206,6 @@ static void lay_out_step(const sc_workspace_sizes *s, layout *l, sc_contour_edge
     step->kept.made = SC_PLACE(l, s->leaves + (uint64_t)SC_MOTIONS_KEPT, uint8_t);
     step->kept.own = SC_PLACE(l, 1 + (uint64_t)step->kept.some, sc_leaf_motion);
     for (k = 0; k < 2; k++) {
-        step->candidates[k] = SC_PLACE(l, SC_STEP_BATCH, sc_pair);
         step->found[k] = SC_PLACE(l, SC_FOUND_MAX, sc_pair);
         step->found_time[k] = SC_PLACE(l, SC_FOUND_MAX, double);
         step->contour.at[k] = SC_PLACE(l, listed_points(s), float);
@@ -351,6 +362,14 @@ static void begin_epoch(sc_workspace *w)
     w->frame.leaves_ready = w->frame.boxes_ready = 0;
 }
 
+static void begin_step_worker(const sc_step_question *question, sc_step_worker *step)
+{
+    int k;
+    step->question = question;
+    step->earliest = 1;
+    for (k = 0; k < 2; k++) step->count[k] = step->found_count[k] = 0;
+}
+
 /* Nothing waits, nothing is found. */
 static void begin_worker(const sc_model *model, sc_workspace *workspace,
                          const sc_question *question, sc_share *share, sc_worker *w)
@@ -372,6 +391,30 @@ static void begin_worker(const sc_model *model, sc_workspace *workspace,
     w->last_time = 0;
     w->follow_part = 0;
     memset(&w->stats, 0, sizeof w->stats);
+    if (question->step) begin_step_worker(question->step, w->step);
+}
+
+/* Has each of so many workers keep leaf clusters ready for a step, in the room that points of leaf
+   clusters and leaf clusters made ready for queries have, or its own, and forget those of the
+   last. */
+static void keep_motions(sc_workspace *w, uint32_t workers)
+{
+    unsigned char *room = (unsigned char *)(void *)w->frame.point_at;
+    const unsigned char *end =
+        (const unsigned char *)(const void *)(w->all_ready + all_ready(&w->sizes));
+    const uint64_t count = (uint64_t)(end - room) / sizeof(sc_leaf_motion) / workers;
+    uint32_t kept = 1, i;
+    while (kept <= count / 2) kept *= 2;
+    for (i = 0; i < workers; i++) {
+        sc_kept_motions *motions = &w->step[i].kept;
+        motions->leaves = (sc_leaf_motion *)(void *)room + i * count;
+        motions->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
+        if (count < w->sizes.leaves && kept <= motions->some) {
+            motions->leaves = motions->own + 1;
+            motions->mask = motions->some - 1;
+        }
+        memset(motions->made, 0, w->sizes.leaves + (size_t)SC_MOTIONS_KEPT);
+    }
 }
 
 sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
@@ -379,6 +422,7 @@ sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
 {
     begin_epoch(workspace);
     begin_worker(model, workspace, question, NULL, &workspace->worker[0]);
+    if (question->step) keep_motions(workspace, 1);
     return &workspace->worker[0];
 }
 
@@ -409,61 +453,9 @@ void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc
     first->task = task;
     first->last_time = last_time;
     first->stats = stats;
-    if (keeps_all && SC_ALWAYS(workers)) keep_parts(workspace, workers);
-}
-
-static void begin_step_worker(const sc_step_question *question, sc_step_share *share,
-                              sc_step_worker *step)
-{
-    int k;
-    step->question = question;
-    step->share = share;
-    step->earliest = 1;
-    step->large = 0;
-    step->after_contour = 0;
-    for (k = 0; k < 2; k++)
-        step->count[k] = step->found_count[k] = step->candidate_count[k] = step->reached[k] = 0;
-}
-
-/* Has each of so many workers keep leaf clusters ready for a step, in the room that points of leaf
-   clusters and leaf clusters made ready for queries have, or its own, and forget those of the
-   last. */
-static void keep_motions(sc_workspace *w, uint32_t workers)
-{
-    unsigned char *room = (unsigned char *)(void *)w->frame.point_at;
-    const unsigned char *end =
-        (const unsigned char *)(const void *)(w->all_ready + all_ready(&w->sizes));
-    const uint64_t count = (uint64_t)(end - room) / sizeof(sc_leaf_motion) / workers;
-    uint32_t kept = 1, i;
-    while (kept <= count / 2) kept *= 2;
-    for (i = 0; i < workers; i++) {
-        sc_kept_motions *motions = &w->step[i].kept;
-        motions->leaves = (sc_leaf_motion *)(void *)room + i * count;
-        motions->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
-        if (count < w->sizes.leaves && kept <= motions->some) {
-            motions->leaves = motions->own + 1;
-            motions->mask = motions->some - 1;
-        }
-        memset(motions->made, 0, w->sizes.leaves + (size_t)SC_MOTIONS_KEPT);
-    }
-}
-
-sc_worker *sc_workspace_begin_step(const sc_model *model, sc_workspace *workspace,
-                                   const sc_step_question *question)
-{
-    begin_step_worker(question, NULL, &workspace->step[0]);
-    keep_motions(workspace, 1);
-    return sc_workspace_begin(model, workspace, &question->query);
-}
-
-void sc_workspace_share_step(const sc_model *model, sc_workspace *workspace, sc_step_share *share,
-                             uint32_t workers)
-{
-    const sc_step_question *question = workspace->step[0].question;
-    uint32_t i;
-    keep_motions(workspace, workers);
-    for (i = 0; i < workers; i++) begin_step_worker(question, share, &workspace->step[i]);
-    sc_workspace_share(model, workspace, &question->query, &share->query, workers);
+    if (!SC_ALWAYS(workers)) return;
+    if (keeps_all) keep_parts(workspace, workers);
+    if (question->step) keep_motions(workspace, workers);
 }
 
 void sc_workspace_keep_all(sc_workspace *w)

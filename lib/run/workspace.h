@@ -33,13 +33,12 @@ enum { SC_PARTS_MAX = 4096, SC_PLAN_PAIRS = 512 };
 
 /* What is to be done, where there are several workers. */
 typedef struct sc_plan_room {
-    sc_part *parts;   /* SC_PARTS_MAX */
-    uint32_t *tests;  /* SC_PARTS_MAX: nodes to test */
-    uint32_t *open;   /* SC_PARTS_MAX: nodes that failed */
-    sc_pair *pairs;   /* SC_PLAN_PAIRS: of patches whose boxes overlap, as items */
-    uint8_t *passed;  /* SC_PARTS_MAX: whether they passed */
-    uint8_t *culled;  /* patch_end: what the workers' marks say together */
-    uint8_t *reached; /* node_count, of steps: see run/step_parallel.c */
+    sc_part *parts;  /* SC_PARTS_MAX */
+    uint32_t *tests; /* SC_PARTS_MAX: nodes to test */
+    uint32_t *open;  /* SC_PARTS_MAX: nodes that failed */
+    sc_pair *pairs;  /* SC_PLAN_PAIRS: of patches whose boxes overlap, as items */
+    uint8_t *passed; /* SC_PARTS_MAX: whether they passed */
+    uint8_t *culled; /* patch_end: what the workers' marks say together */
 } sc_plan_room;
 
 /* All that the lengths of a workspace's arrays are made of: numbers of a model, and what the
@@ -79,7 +78,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
    forged. */
 int sc_workspace_fits(const sc_workspace *workspace, const sc_model *model);
 
-/* Starts a query by one worker, and returns it: what earlier ones left is stale. */
+/* Starts a query or a step by one worker, and returns it: what earlier ones left is stale. */
 sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
                               const sc_question *question);
 
@@ -87,12 +86,6 @@ sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
    zero; what the first has counted stays. */
 void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc_question *question,
                         sc_share *share, uint32_t workers);
-
-/* The same for steps. */
-sc_worker *sc_workspace_begin_step(const sc_model *model, sc_workspace *workspace,
-                                   const sc_step_question *question);
-void sc_workspace_share_step(const sc_model *model, sc_workspace *workspace, sc_step_share *share,
-                             uint32_t workers);
 
 /* Has the first worker keep all leaf clusters ready in this query, for which no star test is made,
    if there is room. */

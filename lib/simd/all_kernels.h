@@ -50,7 +50,7 @@
 #include "step/moving_contour_kernel.h"
 #include "step/leaf_motion_kernel.h"
 #include "step/step_rows_kernel.h"
-#include "step/step_walk_kernel.h"
+#include "step/step_cluster_kernel.h"
 
 #include "simd/target_end.h"
 
@@ -66,6 +66,7 @@ static const sc_pose_kernels pose_kernels = {
 };
 
 static const sc_query_kernels query_kernels = {
+    .leave_patch_pairs = leave_patch_pairs,
     .open_patch_pairs = open_patch_pairs,
     .list_rows = list_rows,
     .part_far = part_far,
@@ -80,11 +81,13 @@ static const sc_query_kernels query_kernels = {
 };
 
 static const sc_step_kernels step_kernels = {
-    .patch_pair = step_patch_pair,
-    .patch_itself = step_patch_itself,
-    .leaf_pair = step_leaf_pair,
-    .leaf_itself = step_leaf_itself,
-    .stay_apart = stay_apart,
+    .leave_pairs = leave_moving_pairs,
+    .open_pairs = open_moving_pairs,
+    .list_rows = list_moving_rows,
+    .compare_leaves = compare_moving_leaves,
+    .compare_clusters = compare_moving_clusters,
+    .list_faces = list_faces,
+    .list_edges = list_edges,
     .cone = moving_mask_of,
     .project = project_motion,
     .are_edges_clear = are_edges_clear,

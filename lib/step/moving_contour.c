@@ -27,6 +27,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "pose/dnc.h"
 #include "step/moving_star.h"
 #include "step/step_kernels.h"
 
@@ -218,7 +219,8 @@ static void set_clearance(sc_moving_contour *c, float distance)
     }
 }
 
-int sc_moving_contour_test(sc_worker *w, const sc_projection *projection, uint32_t node)
+/* Whether the contour of a node stays simple. */
+static int stays_simple(sc_worker *w, const sc_projection *projection, uint32_t node)
 {
     int star = w->step->question->options.contour == SC_CONTOUR_STAR;
     const sc_step_kernels *kernels = w->frame->kernels->step;
@@ -240,4 +242,18 @@ int sc_moving_contour_test(sc_worker *w, const sc_projection *projection, uint32
     }
     sc_worker_switch(w, previous);
     return passed;
+}
+
+void sc_moving_contour_tests(sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed)
+{
+    const uint16_t *mask = w->frame->mask;
+    sc_projection projection;
+    uint32_t i;
+    for (i = 0; i < count; i++) {
+        const sc_pair *patches = &sc_model_node(w->model)[nodes[i]].patches;
+        passed[i] = 1;
+        if (w->step->question->options.contour == SC_CONTOUR_NONE) continue;
+        sc_dnc_projection(w->frame, (uint32_t)mask[patches->a] & mask[patches->b], &projection);
+        passed[i] = (uint8_t)stays_simple(w, &projection, nodes[i]);
+    }
 }

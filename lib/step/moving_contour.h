@@ -39,10 +39,11 @@ typedef struct sc_moving_contour {
     float clear[2];
 } sc_moving_contour;
 
-/* 1 if nothing in the node's patches comes as near as is reported. Every triangle keeps a positive
-   area and altitudes under the projection. About 10 ns a contour edge. With SC_CONTOUR_STAR asks
-   for a point that sees the contour instead, see step/moving_star.h. */
-int sc_moving_contour_test(sc_worker *w, const sc_projection *projection, uint32_t node);
+/* Whether nothing in the patches of nodes[i] comes as near as is reported: passed[i]. Under the
+   projection for what their normal cones have in common, which is something, every triangle keeps a
+   positive area and altitudes. About 10 ns a contour edge. With SC_CONTOUR_STAR asks for a point
+   that sees the contour instead, see step/moving_star.h. */
+void sc_moving_contour_tests(sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed);
 
 /* 1 if two edges are certainly clear of each other, or share one point and nothing else, at all
    times. Notes pinches and pieces. */

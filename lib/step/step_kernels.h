@@ -14,15 +14,16 @@ typedef struct sc_candidate_points {
 } sc_candidate_points;
 
 typedef struct sc_step_kernels {
-    /* Box recursion on two patches of a level, and on one. */
-    void (*patch_pair)(sc_worker *w, uint32_t patch_a, uint32_t patch_b);
-    void (*patch_itself)(sc_worker *w, uint32_t patch);
-    /* The vertices, edges and triangles of two leaf clusters, and of one. */
-    void (*leaf_pair)(sc_worker *w, uint32_t leaf_a, uint32_t leaf_b);
-    void (*leaf_itself)(sc_worker *w, uint32_t leaf);
-    /* Bits of candidates that certainly do not collide; split: points before are one, the others
-       the other. */
-    unsigned (*stay_apart)(const sc_motion *motion, const sc_candidate_points *points, int split);
+    /* Stages, see query/lists.h: box tests of what nodes leave; from pairs of patches to rows of
+       leaf clusters; from these to pairs of leaf clusters; what slabs leave of those by themselves,
+       and of pairs; which pairs of theirs do not stay apart. */
+    void (*leave_pairs)(sc_worker *w, uint32_t most);
+    void (*open_pairs)(sc_worker *w, uint32_t most);
+    void (*list_rows)(sc_worker *w, uint32_t most);
+    void (*compare_leaves)(sc_worker *w, uint32_t most);
+    void (*compare_clusters)(sc_worker *w, uint32_t most);
+    void (*list_faces)(sc_worker *w, uint32_t most);
+    void (*list_edges)(sc_worker *w, uint32_t most);
     /* The normal cone of 1 to SC_LEAF_MAX triangles given by their corners that holds throughout
        the step. */
     uint32_t (*cone)(const sc_motion *motion, const uint32_t *corner, uint32_t count);

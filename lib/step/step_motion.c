@@ -219,14 +219,3 @@ void sc_motion_update_cones(const sc_model *model, sc_frame *frame)
     pass.frame = frame;
     sc_levels_up(model, frame->tasks, find_cones, &pass);
 }
-
-int sc_motion_boxes_apart(const sc_motion *m, uint32_t a, uint32_t b)
-{
-    int k;
-    for (k = 0; k < 3; k++) {
-        float *const *s = m->boxes[0].side, *const *e = m->boxes[1].side;
-        if (s[k + 3][a] < s[k][b] && e[k + 3][a] < e[k][b]) return 1;
-        if (s[k + 3][b] < s[k][a] && e[k + 3][b] < e[k][a]) return 1;
-    }
-    return 0;
-}

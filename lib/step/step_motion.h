@@ -50,7 +50,4 @@ void sc_motion_update_cones(const sc_model *model, sc_frame *frame);
    twice. About 10 ns a triangle. */
 void sc_motion_refit(const sc_model *model, sc_frame *frame);
 
-/* Whether the boxes of two patches are apart at all times, so far that nothing in them collides. */
-int sc_motion_boxes_apart(const sc_motion *motion, uint32_t a, uint32_t b);
-
 #endif

@@ -48,17 +48,18 @@ static void swap(const sc_step_list *list, uint64_t i, uint64_t j)
 }
 
 /* Entries of a list are claimed for many pairs at once, as in query/pairs.c. */
-static void take_shared_of_step(sc_step_worker *step, int kind, sc_pair pair, double time)
+static void take_shared_of_step(const sc_worker *w, int kind, sc_pair pair, double time)
 {
+    sc_step_worker *step = w->step;
     const sc_step_list *list = &step->question->list[kind];
     uint64_t at;
     step->found[kind][step->found_count[kind]] = pair;
     step->found_time[kind][step->found_count[kind]++] = time;
     if (step->found_count[kind] < SC_FOUND_MAX) return;
     step->found_count[kind] = 0;
-    at = sc_atomic_add(&step->share->claimed[kind], SC_FOUND_MAX);
+    at = sc_atomic_add(&w->share->claimed[kind], SC_FOUND_MAX);
     if (at + SC_FOUND_MAX > list->capacity) {
-        sc_atomic_write(&step->share->query.halt, 1); /* too short for certain */
+        sc_atomic_write(&w->share->halt, 1); /* too short for certain */
         return;
     }
     memcpy(list->pairs + at, step->found[kind], sizeof(sc_pair) * SC_FOUND_MAX);
@@ -78,11 +79,11 @@ void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double t
     if (time < step->earliest) step->earliest = time;
     if (o->output == SC_OUTPUT_ANY && o->times == SC_STEP_TIMES_NONE) {
         w->stop = 1;
-        if (step->share) sc_atomic_write(&step->share->query.halt, 1);
+        if (w->share) sc_atomic_write(&w->share->halt, 1);
     }
     if (o->output != SC_OUTPUT_PAIRS || list->capacity == 0) return;
-    if (step->share) {
-        take_shared_of_step(step, kind, pair, time);
+    if (w->share) {
+        take_shared_of_step(w, kind, pair, time);
         return;
     }
     if (count <= list->capacity) {

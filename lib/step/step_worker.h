@@ -9,9 +9,6 @@
 #include "query/worker.h"
 #include "step/impact.h"
 
-/* Sides of boxes that move, three each: x, y, z. */
-enum { SC_START_LOW = 0, SC_START_HIGH = 3, SC_END_LOW = 6, SC_END_HIGH = 9, SC_MOTION_SIDES = 12 };
-
 /* A box that moves: its three lows at the start, from the fourth on at the end, and likewise its
    highs. */
 typedef struct sc_moving_box {
@@ -55,9 +52,6 @@ typedef struct sc_moving_edges {
 /* Which of the caller's two lists. */
 enum { SC_STEP_VERTEX_FACE = 0, SC_STEP_EDGE_EDGE = 1 };
 
-/* So many candidates are collected before they are decided. */
-enum { SC_STEP_BATCH = 128 };
-
 /* One of the caller's lists. */
 typedef struct sc_step_list {
     sc_pair *pairs;
@@ -67,44 +61,22 @@ typedef struct sc_step_list {
 
 /* What a step is asked, checked and complete. */
 typedef struct sc_step_question {
-    sc_question query; /* what all queries are asked: of its options output, cancel and budget */
+    sc_question query; /* what all queries are asked; its step is this */
     sc_step_options options;
     sc_impact_limits limits; /* of the narrow phase */
     sc_step_list list[2];
 } sc_step_question;
 
-/* What the workers of a step have in common and write to besides, see run/step_parallel.c. */
-typedef struct sc_step_share {
-    sc_share query;    /* of which claimed is not used */
-    size_t claimed[2]; /* entries of the lists that were given out, perhaps beyond their ends */
-} sc_step_share;
-
 /* What a worker has besides, for steps. */
 typedef struct sc_step_worker {
     const sc_step_question *question;
-    sc_step_share *share;  /* NULL, if one worker does all */
     uint64_t count[2];     /* pairs found */
     double earliest;       /* least time of one, else 1 */
     sc_pair *found[2];     /* SC_FOUND_MAX each: pairs that are not yet in the caller's lists */
     double *found_time[2]; /* theirs */
     uint32_t found_count[2];
-    uint32_t reached[2]; /* nodes of one patch, and of two, whose parents this worker opened */
-    uint32_t large;      /* large nodes of a level that it opened */
     sc_moving_edges contour;
     sc_kept_motions kept;
-    int after_contour; /* box and primitive tests count as following a failed contour test */
-    uint32_t candidate_count[2];
-    sc_pair *candidates[2]; /* SC_STEP_BATCH: see step_candidates.h */
 } sc_step_worker;
-
-static inline uint32_t sc_step_box_task(const sc_worker *w)
-{
-    return w->step->after_contour ? SC_TASK_BOXES_CONTOUR : SC_TASK_BOXES_ORIENTATION;
-}
-
-static inline uint32_t sc_step_primitive_task(const sc_worker *w)
-{
-    return w->step->after_contour ? SC_TASK_PRIMITIVES_CONTOUR : SC_TASK_PRIMITIVES_ORIENTATION;
-}
 
 #endif

@@ -1,0 +1,138 @@
+/*
+ * Stages of a step from leaf clusters to the narrow phase. See step_kernels.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+
+/* Adds what is left of two leaf clusters, or of one, the former with the bit for what follows a
+   contour test, to the rows. */
+static void add_step_rows(sc_worker *w, uint32_t item, uint32_t other, const step_rows *rows)
+{
+    const uint32_t *first = sc_model_leaf_first(w->model);
+    const uint32_t bit = item & SC_AFTER_CONTOUR, leaf[2] = {item & SC_ITEM, other};
+    uint32_t *count = &w->lists.count[SC_LIST_FACE_ROWS], r, k;
+    sc_moving_row *to = w->lists.moving_rows[0] + *count;
+    for (r = 0; r < rows->faces; r++, to++) {
+        const uint32_t of = rows->of[r];
+        to->of = first[leaf[of]] + rows->face[r];
+        to->leaf = leaf[1 - of] | bit;
+        to->bits = rows->points[r];
+    }
+    *count += rows->faces;
+    count = &w->lists.count[SC_LIST_EDGE_ROWS];
+    to = w->lists.moving_rows[1] + *count;
+    for (r = 0; r < rows->edges; r++) {
+        const uint32_t edge = rows->edge[r];
+        for (k = 0; k < 3; k++) {
+            to->of = 3 * (first[leaf[0]] + edge % SC_LEAF_MAX) + edge / SC_LEAF_MAX;
+            to->leaf = leaf[1] | bit;
+            to->bits = rows->others[r][k] | k << SC_LEAF_MAX;
+            to += rows->others[r][k] != 0;
+        }
+    }
+    *count = (uint32_t)(to - w->lists.moving_rows[1]);
+}
+
+/* Whether there is room for what two leaf clusters add. */
+static inline int have_room_for_rows(const sc_worker *w)
+{
+    return w->lists.count[SC_LIST_FACE_ROWS] < SC_MOVING_ROWS_ENOUGH &&
+           w->lists.count[SC_LIST_EDGE_ROWS] < SC_MOVING_ROWS_ENOUGH;
+}
+
+/* Vertices, edges and triangles of pairs of leaf clusters, by slabs and boxes that move. */
+static void compare_moving_clusters(sc_worker *w, uint32_t most)
+{
+    uint32_t *left = &w->lists.count[SC_LIST_CLUSTERS];
+    step_rows rows;
+    for (; most && *left && have_room_for_rows(w); most--) {
+        const sc_cluster_pair p = w->lists.clusters[--*left];
+        const sc_leaf_motion *a = leaf_motion(w, p.a), *b = other_motion(w, p.a, p.b);
+        sc_worker_count_boxes(w, sc_item_follows(p.known),
+                              find_rows(w->model, &w->frame->motion, a, b, &rows));
+        add_step_rows(w, p.a | p.known, p.b, &rows);
+    }
+}
+
+/* The same of leaf clusters by themselves. */
+static void compare_moving_leaves(sc_worker *w, uint32_t most)
+{
+    uint32_t *left = &w->lists.count[SC_LIST_NEAR];
+    step_rows rows;
+    for (; most && *left && have_room_for_rows(w); most--) {
+        const uint32_t item = w->lists.near[0][--*left], leaf = item & SC_ITEM;
+        sc_worker_count_boxes(
+            w, sc_item_follows(item),
+            find_own_rows(w->model, &w->frame->motion, leaf_motion(w, leaf), &rows));
+        add_step_rows(w, item, leaf, &rows);
+    }
+}
+
+/* Lists the pairs of a row; returns how many. */
+static uint32_t list_moving_row(const sc_model *model, const sc_moving_row *row, int kind,
+                                sc_pair *to)
+{
+    const uint32_t leaf = row->leaf & SC_ITEM, first = sc_model_leaf_first(model)[leaf];
+    const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf;
+    uint32_t bits = row->bits & ((1u << SC_LEAF_MAX) - 1u), count = 0;
+    for (; bits; bits &= bits - 1, count++) {
+        const uint32_t i = sc_bits_lowest(bits);
+        if (kind == SC_STEP_VERTEX_FACE) {
+            to[count].a = point[i];
+            to[count].b = row->of;
+        } else {
+            to[count].a = row->of;
+            to[count].b = 3 * (first + i) + (row->bits >> SC_LEAF_MAX);
+        }
+    }
+    return count;
+}
+
+/* The points of up to sixteen pairs; the last one fills them up. */
+static void read_moving_pairs(const sc_model *model, const sc_pair *pairs, uint32_t count, int kind,
+                              sc_candidate_points *to)
+{
+    uint32_t i, k, point[4];
+    for (i = 0; i < SC_LANES_COUNT; i++) {
+        sc_step_candidates_points(model, kind, &pairs[i < count ? i : count - 1], point);
+        for (k = 0; k < 4; k++) to->point[k][i] = point[k];
+    }
+}
+
+/* Pairs of some rows: if collisions are wanted, those that do not stay apart along a direction,
+   sixteen at a time. */
+static void list_moving(sc_worker *w, uint32_t most, int kind)
+{
+    const int part = w->step->question->options.pairs == SC_STEP_COLLISIONS;
+    sc_lists *l = &w->lists;
+    uint32_t *left = &l->count[SC_LIST_FACE_ROWS + kind], *kept = &l->count[SC_LIST_FACES + kind];
+    sc_pair pairs[SC_MOVING_LISTED + SC_LEAF_MAX];
+    uint32_t count = 0, follow = 0, i;
+    for (; most && *left && count < SC_MOVING_LISTED; most--) {
+        const sc_moving_row *row = &l->moving_rows[kind][--*left];
+        const uint32_t some = list_moving_row(w->model, row, kind, pairs + count);
+        count += some;
+        follow += sc_item_follows(row->leaf) * some;
+    }
+    sc_worker_count_primitives(w, 0, count - follow);
+    sc_worker_count_primitives(w, 1, follow);
+    for (i = 0; i < count; i += SC_LANES_COUNT) {
+        const uint32_t some = count - i < SC_LANES_COUNT ? count - i : SC_LANES_COUNT;
+        unsigned mask = (1u << some) - 1u;
+        sc_candidate_points points;
+        read_moving_pairs(w->model, pairs + i, some, kind, &points);
+        if (part)
+            mask &= ~stay_apart(&w->frame->motion, &points, kind == SC_STEP_VERTEX_FACE ? 1 : 2);
+        for (; mask; mask &= mask - 1) l->moving[kind][(*kept)++] = pairs[i + sc_bits_lowest(mask)];
+    }
+}
+
+static void list_faces(sc_worker *w, uint32_t most)
+{
+    list_moving(w, most, SC_STEP_VERTEX_FACE);
+}
+
+static void list_edges(sc_worker *w, uint32_t most)
+{
+    list_moving(w, most, SC_STEP_EDGE_EDGE);
+}
