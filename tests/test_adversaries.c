@@ -588,7 +588,8 @@ static void sheets_seen_edge_on(void)
 
 /* ================================================================================================
  * Single bounds, against rational numbers. A bound may be of any projection and any error of its
- * coordinates that holds: here it is the error itself, found exactly, so that no slack hides a fault.
+ * coordinates that holds: here it is the error itself, found exactly, so that no slack hides a
+ * fault.
  */
 
 /* A model whose contour is what a test wants: two segments of points, and one made of both. */

@@ -34,7 +34,8 @@ static void replay(const target *t, const char *name, const uint8_t *bytes, size
     free(copy);
 }
 
-/* Each file is of a target, and described in the folder's README.md; each target has one at least. */
+/* Each file is of a target, and described in the folder's README.md; each target has one at least.
+   */
 static void reproducers(void)
 {
     static uint8_t bytes[1 << 20];

@@ -1,6 +1,6 @@
 /*
- * The host's tasks in steps: answers are those of one thread, whoever runs the parts and in whatever
- * order. Queries, and what is refused: test_tasks.c.
+ * The host's tasks in steps: answers are those of one thread, whoever runs the parts and in
+ * whatever order. Queries, and what is refused: test_tasks.c.
  *
  * SPDX-License-Identifier: MIT
  */

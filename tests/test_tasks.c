@@ -813,9 +813,9 @@ enum { TREES = 6 };
 
 /* Trees that are not balanced, with more parts than the list has room for, since a large patch
    meets hundreds of small ones at each level; one of pairs of neighbors, of which many wait and of
-   others none; one of very many leaf clusters; one of large patches that have more neighbors
-   with which they wait for a contour test than the list has room for; and a spiral of which one half
-   is flat, where contours cross, and the other one crumpled, again with more parts. */
+   others none; one of very many leaf clusters; one of large patches that have more neighbors with
+   which they wait for a contour test than the list has room for; and a spiral of which one half is
+   flat, where contours cross, and the other one crumpled, again with more parts. */
 static int start_tree_scene(fixture *f, int scene)
 {
     if (scene == 5) {

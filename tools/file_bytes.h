@@ -23,7 +23,8 @@ typedef struct file_bytes {
  */
 bool file_bytes_read(file_bytes *bytes, const char *path, char *error, size_t error_size);
 
-/* The length of the mark that some programs put before text in UTF-8, if size bytes begin with it. */
+/* The length of the mark that some programs put before text in UTF-8, if size bytes begin with it.
+   */
 size_t file_bytes_mark(const char *data, size_t size);
 
 #endif /* TOOLS_FILE_BYTES_H */

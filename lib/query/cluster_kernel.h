@@ -1,7 +1,7 @@
 /*
  * Pairs of leaf clusters: proofs that strike out those that have nothing in common but what they
- * share; and of the others the triangles: boxes against boxes, row by row; then rows against planes;
- * then what is left, sixteen pairs at a time, of one pair of clusters or of two
+ * share; and of the others the triangles: boxes against boxes, row by row; then rows against
+ * planes; then what is left, sixteen pairs at a time, of one pair of clusters or of two
  * (query/sixteen_kernel.h). Each of these goes through some pairs of leaf clusters before the next
  * begins, so that few branches depend on how many rows or triangles one of them has. See
  * query_kernels.h.
@@ -71,8 +71,8 @@ static void part_far(sc_worker *w, uint32_t most)
 }
 
 /* Pairs of leaf clusters that share points, and leaf clusters against themselves: drops what some
-   tests can tell, and asks for what tells whether those left are ready, and where their lists begin.
-   In steps with few branches, as any pair may be one of a kind. */
+   tests can tell, and asks for what tells whether those left are ready, and where their lists
+   begin. In steps with few branches, as any pair may be one of a kind. */
 static SC_NOINLINE void part_near(sc_worker *w, uint32_t most)
 {
     const uint32_t *leaf = sc_model_share_leaf(w->model);

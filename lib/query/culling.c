@@ -6,11 +6,12 @@
  * With the exact contour test, which keeps nothing from node to node, each node has its own
  * projection, and nodes can be tested in any order: those that pass the orientation test wait in a
  * short list, so that the memory for some is fetched while others are tested. Nodes of one patch
- * wait until all else is done, since a patch that is in a node of two that was culled is culled with
- * it. A node of two patches with one parent has the contour of that parent, which failed. Pairs of
- * patches that are left to boxes wait as well: tests of boxes that do not depend on each other wait
- * for memory at the same time. Two patches that share one point, as diagonally in a grid, are left
- * to boxes, too: few overlap there, and a contour costs most that passes a point twice.
+ * wait until all else is done, since a patch that is in a node of two that was culled is culled
+ * with it. A node of two patches with one parent has the contour of that parent, which failed.
+ * Pairs of patches that are left to boxes wait as well: tests of boxes that do not depend on each
+ * other wait for memory at the same time. Two patches that share one point, as diagonally in a
+ * grid, are left to boxes, too: few overlap there, and a contour costs most that passes a point
+ * twice.
  */
 #include "query/culling.h"
 
@@ -25,8 +26,8 @@
  * leaf clusters that are saved. The prospect of another patch is the number of seams between leaf
  * clusters in such patches below it, m - 1 for one of m, which must be one for PROSPECT_PART leaf
  * clusters. A node that fails the orientation test is left to boxes unless both its patches have a
- * prospect. (Tuned on single frames of scenes from smooth to crumpled.) In a step leaf clusters cost
- * more: all such nodes are opened, 0.95 of the time in the mean.
+ * prospect. (Tuned on single frames of scenes from smooth to crumpled.) In a step leaf clusters
+ * cost more: all such nodes are opened, 0.95 of the time in the mean.
  */
 enum { PROSPECT_MIN = 2, PROSPECT_PART = 8 };
 

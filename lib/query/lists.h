@@ -123,8 +123,8 @@ typedef struct sc_open_pairs {
     float extent[SC_OPEN_MAX + 16]; /* of both clusters */
 } sc_open_pairs;
 
-/* A triangle, by its place, and points of a leaf cluster; or an edge, as 3 place + k, and sides k of
-   its triangles, with 16 k in the upper bits. */
+/* A triangle, by its place, and points of a leaf cluster; or an edge, as 3 place + k, and sides k
+   of its triangles, with k in the upper half of bits. */
 typedef struct sc_moving_row {
     uint32_t of;
     uint32_t leaf; /* with the bit for what follows a contour test */

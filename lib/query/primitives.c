@@ -250,8 +250,9 @@ static int start_signs(pair_signs *signs, const sc_triangle_pair *pair, int m, i
     }
     signs->axis[0] = signs->axis[1] = signs->flat_axis = UNKNOWN_AXIS;
     if (m >= 0) {
-        /* An edge through the shared vertex and the opposite edge of the other triangle make up that
-         * triangle and a point: the same four points as those of a side, differently ordered. */
+        /* An edge through the shared vertex and the opposite edge of the other triangle make up
+           that triangle and a point: the same four points as those of a side, differently
+           ordered. */
         int opposite_m = next(m), opposite_n = next(n);
         signs->cross[opposite_m][n] = signs->b_side[next(n)];
         signs->cross[opposite_m][previous(n)] = -signs->b_side[previous(n)];

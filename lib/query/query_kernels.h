@@ -11,18 +11,6 @@
 #include "query/simple_contour.h"
 
 typedef struct sc_query_kernels {
-    /* Stages, see query/lists.h: box tests of pairs of patches that nodes leave; from pairs of
-       patches to rows of leaf clusters; from these to pairs of leaf clusters; proofs that strike out pairs that share no points, and that share some; the
-       triangles of those that are left, by boxes and planes; sixteen pairs of triangles that share
-       nothing, and that share points. */
-    void (*leave_patch_pairs)(sc_worker *w, uint32_t most);
-    void (*open_patch_pairs)(sc_worker *w, uint32_t most);
-    void (*list_rows)(sc_worker *w, uint32_t most);
-    void (*part_far)(sc_worker *w, uint32_t most);
-    void (*part_near)(sc_worker *w, uint32_t most);
-    void (*compare_clusters)(sc_worker *w, uint32_t most);
-    void (*compare_triangles)(sc_worker *w, uint32_t most);
-    void (*settle_open)(sc_worker *w, uint32_t most);
     /* Whether triangles meet, as far as that is certain in doubles; SC_PAIR_LANES pairs. */
     void (*decide)(const sc_pair_lanes *pairs, sc_verdict *verdict);
     /* Projects the listed points of a contour, and sets its error. */

@@ -149,9 +149,9 @@ static inline void fetch_to_make(const sc_worker *w, uint32_t leaf)
     for (k = 0; k < SC_READY_ROWS; k++) sc_fetch(to + SC_LEAF_MAX * k);
 }
 
-/* Where all leaf clusters are kept, makes the slabs of so many, items of lists, that have none yet. These are listed
-   first, and those of them that are not ready, so that no branch depends on which they are, and
-   many are made at the same time. */
+/* Where all leaf clusters are kept, makes the slabs of so many, items of lists, that have none yet.
+   These are listed first, and those of them that are not ready, so that no branch depends on which
+   they are, and many are made at the same time. */
 static SC_NOINLINE void make_slabs(const sc_worker *w, const uint32_t *items, uint32_t count)
 {
     enum { AHEAD = 4 };

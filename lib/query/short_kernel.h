@@ -13,9 +13,10 @@
  * dropped, of those that follow each other the first; most contours of two leaf clusters have
  * sixteen points or fewer then.
  *
- * A loop is simple if of each two edges that do not follow each other one is on one side of the line
- * of the other. None folds back on the next then: one of the two would have the other's far end on
- * it, where a third begins or ends; and one of three edges has an area, as all triangles have.
+ * A loop is simple if of each two edges that do not follow each other one is on one side of the
+ * line of the other. None folds back on the next then: one of the two would have the other's far
+ * end on it, where a third begins or ends; and one of three edges has an area, as all triangles
+ * have.
  *
  * The projection is as in query/simple.c: a coordinate is at most 1.01 D, where D is the largest
  * component of any point of the clusters relative to the middle, and off by d = error >= 4.1 v D, v

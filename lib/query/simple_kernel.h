@@ -14,9 +14,9 @@
  *
  * Those need not be compared: if an edge folded back on the next, one of the two would have the
  * other's far end on it, where a third ends or begins. That one is not apart from it, so they share
- * a point. Beyond a gap they overlap there (is_open in simple.c). Else the contour passes that point
- * twice, where two of its edges have one direction (is_pinch_fine); or it is of three edges, and has
- * no area, as all triangles have, or its piece has none (are_pieces_fine).
+ * a point. Beyond a gap they overlap there (is_open in simple.c). Else the contour passes that
+ * point twice, where two of its edges have one direction (is_pinch_fine); or it is of three edges,
+ * and has no area, as all triangles have, or its piece has none (are_pieces_fine).
  *
  * Pairs that cannot be told apart here are few and go to sc_simple_are_apart.
  */

@@ -1,7 +1,7 @@
 /*
  * Sixteen pairs of triangles that share nothing: by planes, by the order along the line in which
- * two planes meet, and by sides in a projection: which are certainly apart. See cluster_kernel.h, which
- * puts them together.
+ * two planes meet, and by sides in a projection: which are certainly apart. See cluster_kernel.h,
+ * which puts them together.
  *
  * SPDX-License-Identifier: MIT
  *

@@ -12,8 +12,8 @@
 /*
  * 1 if no two triangles of the node (of its two patches, one from each, if they share a single
  * point) meet elsewhere than in what they share. Every triangle must have a positive area under the
- * projection of w->bounds. Tries the vertical line, then the horizontal. Updates the bounds of segments that it
- * needs; counts updates and tests.
+ * projection of w->bounds. Tries the vertical line, then the horizontal. Updates the bounds of
+ * segments that it needs; counts updates and tests.
  */
 int sc_star_test(sc_worker *w, uint32_t node);
 

@@ -9,11 +9,10 @@
  * clusters round a point two face each other there.
  *
  * The direction is any, hence has no error: with d = x - p, m . d is off by |m|1 EDGE and 4.1 v
- * (|m_0 d_0| + |m_1 d_1| +
- * |m_2 d_2|), as in neighbor_kernel.h; to subtract a bound takes another v of that. The way from the middle of one's points to
- * that of the other's tells two of three pairs apart (horse, spiky bunny and wrinkled cloth); sums
- * of vectors from p over their squares would tell four of five, but take three sums and a division
- * more.
+ * (|m_0 d_0| + |m_1 d_1| + |m_2 d_2|), as in neighbor_kernel.h; to subtract a bound takes another v
+ * of that. The way from the middle of one's points to that of the other's tells two of three pairs
+ * apart (horse, spiky bunny and wrinkled cloth); sums of vectors from p over their squares would
+ * tell four of five, but take three sums and a division more.
  */
 
 /* From about the middle of the points of one cluster to that of another's, sixteen times. */

@@ -7,9 +7,9 @@
  * waits. For several, the calling thread opens what is large first, by the same stages as the first
  * of them; contour tests of large nodes are a job, again and again, since what fails leads to
  * further large nodes. What hangs below is a list of parts, items of the lists that each worker has
- * (query/lists.h), and depends on the model and the pose only. Nodes of one patch, and leaf clusters
- * by themselves, wait until all others are done: which patches were culled by then is the union of
- * what workers wrote down.
+ * (query/lists.h), and depends on the model and the pose only. Nodes of one patch, and leaf
+ * clusters by themselves, wait until all others are done: which patches were culled by then is the
+ * union of what workers wrote down.
  *
  * No locks: a worker writes to what is its own, and to parts of the caller's array that it claims
  * by an atomic addition, for many pairs at a time. What is left in the end goes behind them.

@@ -9,16 +9,12 @@
 
 #include "base/hooks.h"
 #include "pose/refit.h"
-#include "query/culling.h"
-#include "query/query_kernels.h"
-#include "step/step_candidates.h"
-#include "step/step_kernels.h"
 #include "step/step_motion.h"
 
-/* How long a list must be to be worth a stage, and how many items that takes at once; and both where
-   a query may end early, by the first pair or by a budget: then pairs do not wait for long, as what
-   has been found by then counts. What its time is filed under: that task, or the one of the same
-   name for what follows a contour test. */
+/* How long a list must be to be worth a stage, and how many items that takes at once; and both
+   where a query may end early, by the first pair or by a budget: then pairs do not wait for long,
+   as what has been found by then counts. What its time is filed under: that task, or the one of the
+   same name for what follows a contour test. */
 typedef struct list_rule {
     uint32_t enough, at_once, soon_enough, soon_at_once, task;
 } list_rule;
@@ -52,106 +48,10 @@ static const list_rule rules[SC_LIST_COUNT] = {
     [SC_LIST_EDGES] = {SC_MOVING_ENOUGH, SC_MOVING_ENOUGH, 1, SC_MOVING_ENOUGH, PRIMITIVES},
 };
 
-/* The stages of a query. */
-static void run_query_stage(sc_worker *w, sc_list_id list, uint32_t most)
-{
-    const sc_query_kernels *kernels = w->frame->kernels->query;
-    switch (list) {
-    case SC_LIST_SPANS:
-        sc_culling_take_spans(w, most);
-        break;
-    case SC_LIST_STARS:
-        sc_culling_take_stars(w, most);
-        break;
-    case SC_LIST_FAILED:
-        sc_culling_open(w, most);
-        break;
-    case SC_LIST_ORIENTED:
-        sc_culling_test(w, most);
-        break;
-    case SC_LIST_LEFT:
-        kernels->leave_patch_pairs(w, most);
-        break;
-    case SC_LIST_PATCHES:
-        kernels->open_patch_pairs(w, most);
-        break;
-    case SC_LIST_ROWS:
-        kernels->list_rows(w, most);
-        break;
-    case SC_LIST_FAR:
-        kernels->part_far(w, most);
-        break;
-    case SC_LIST_NEAR:
-        kernels->part_near(w, most);
-        break;
-    case SC_LIST_CLUSTERS:
-        kernels->compare_clusters(w, most);
-        break;
-    case SC_LIST_TRIANGLES:
-        kernels->compare_triangles(w, most);
-        break;
-    case SC_LIST_OPEN:
-        kernels->settle_open(w, most);
-        break;
-    case SC_LIST_CANDIDATES:
-        sc_decide_candidates(w, most);
-        break;
-    case SC_LIST_NEIGHBORS:
-        sc_decide_neighbors(w, most);
-        break;
-    default: /* SC_LIST_EXACT */
-        sc_decide_exactly(w, most);
-        break;
-    }
-}
-
-/* The stages of a step: culling is that of a query, by other tests. */
-static void run_step_stage(sc_worker *w, sc_list_id list, uint32_t most)
-{
-    const sc_step_kernels *kernels = w->frame->kernels->step;
-    switch (list) {
-    case SC_LIST_FAILED:
-        sc_culling_open(w, most);
-        break;
-    case SC_LIST_ORIENTED:
-        sc_culling_test(w, most);
-        break;
-    case SC_LIST_LEFT:
-        kernels->leave_pairs(w, most);
-        break;
-    case SC_LIST_PATCHES:
-        kernels->open_pairs(w, most);
-        break;
-    case SC_LIST_ROWS:
-        kernels->list_rows(w, most);
-        break;
-    case SC_LIST_NEAR:
-        kernels->compare_leaves(w, most);
-        break;
-    case SC_LIST_CLUSTERS:
-        kernels->compare_clusters(w, most);
-        break;
-    case SC_LIST_FACE_ROWS:
-        kernels->list_faces(w, most);
-        break;
-    case SC_LIST_EDGE_ROWS:
-        kernels->list_edges(w, most);
-        break;
-    case SC_LIST_FACES:
-        sc_step_candidates_take_faces(w, most);
-        break;
-    default: /* SC_LIST_EDGES */
-        sc_step_candidates_take_edges(w, most);
-        break;
-    }
-}
-
 void sc_runner_run_stage(sc_worker *w, sc_list_id list, uint32_t most)
 {
-    if (w->question->step)
-        run_step_stage(w, list, most);
-    else
-        run_query_stage(w, list, most);
+    const sc_kernels *kernels = w->frame->kernels;
+    (w->question->step ? kernels->step_stages : kernels->query_stages)[list](w, most);
     SC_HOOKS_ASSERT(w->hooks, sc_lists_have_room(&w->lists));
 }
 

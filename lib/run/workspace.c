@@ -84,8 +84,8 @@ static void lay_out_frame(const sc_workspace_sizes *s, layout *l, sc_frame *fram
     frame->motion.own_points = SC_PLACE(l, s->leaves, uint16_t);
 }
 
-/* Points of leaf clusters; next to them bounds of segments, and leaf clusters made ready in the same
-   place. */
+/* Points of leaf clusters; next to them bounds of segments, and leaf clusters made ready in the
+   same place. */
 static void lay_out_bounds(const sc_workspace_sizes *s, layout *l, sc_workspace *w)
 {
     uint64_t start, end;

@@ -15,6 +15,7 @@
 #include "base/predicates.h"
 #include "pose/pose_kernels.h"
 #include "pose/positions.h"
+#include "query/culling.h"
 #include "query/query_kernels.h"
 #include "query/simple.h"
 #include "step/step_candidates.h"
@@ -66,14 +67,6 @@ static const sc_pose_kernels pose_kernels = {
 };
 
 static const sc_query_kernels query_kernels = {
-    .leave_patch_pairs = leave_patch_pairs,
-    .open_patch_pairs = open_patch_pairs,
-    .list_rows = list_rows,
-    .part_far = part_far,
-    .part_near = part_near,
-    .compare_clusters = compare_clusters,
-    .compare_triangles = compare_triangles,
-    .settle_open = settle_open,
     .decide = decide,
     .project = project,
     .look_at_edges = look_at_edges,
@@ -81,16 +74,12 @@ static const sc_query_kernels query_kernels = {
 };
 
 static const sc_step_kernels step_kernels = {
-    .leave_pairs = leave_moving_pairs,
-    .open_pairs = open_moving_pairs,
-    .list_rows = list_moving_rows,
-    .compare_leaves = compare_moving_leaves,
-    .compare_clusters = compare_moving_clusters,
-    .list_faces = list_faces,
-    .list_edges = list_edges,
     .cone = moving_mask_of,
     .project = project_motion,
     .are_edges_clear = are_edges_clear,
 };
 
-const sc_kernels SC_KERNELS = {&pose_kernels, &query_kernels, &step_kernels};
+#include "run/stages.h"
+
+const sc_kernels SC_KERNELS = {&pose_kernels, &query_kernels, &step_kernels, query_stages,
+                               step_stages};

@@ -14,11 +14,16 @@
 struct sc_pose_kernels;  /* pose/pose_kernels.h */
 struct sc_query_kernels; /* query/query_kernels.h */
 struct sc_step_kernels;  /* step/step_kernels.h */
+struct sc_worker;        /* query/worker.h */
+
+/* A stage: takes `most` items of its list or fewer, see run/stages.h. */
+typedef void sc_stage(struct sc_worker *w, uint32_t most);
 
 typedef struct sc_kernels {
     const struct sc_pose_kernels *pose;
     const struct sc_query_kernels *query;
     const struct sc_step_kernels *step;
+    sc_stage *const *query_stages, *const *step_stages; /* by lists, query/lists.h */
 } sc_kernels;
 
 extern const sc_kernels sc_kernels_base;

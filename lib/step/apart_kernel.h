@@ -7,12 +7,17 @@
  * If the differences from each point of one to each point of the other all have a scalar product
  * with a fixed direction m above c |m|, at the start and at the end, the two are farther apart than
  * c at all times. Points are off by POINT in each coordinate, differences by 2 POINT + u |r|, and
- * scalar products by |m|1 times that and 3.01 u |m|1 |r|, u = 2^-24 and
- * |r| the largest coordinate of a difference; |m| is at most |m|1. So products above |m|1 (c + 2.1 POINT + 5 u |r|) are
+ * scalar products by |m|1 times that and 3.01 u |m|1 |r|, u = 2^-24 and |r| the largest coordinate
+ * of a difference; |m| is at most |m|1. So products above |m|1 (c + 2.1 POINT + 5 u |r|) are
  * enough; the last term is for those that underflow. Which m are tried does not matter: the sum of
  * the differences; the common normal of the face or the two edges in the middle of the step; and
  * those of their sides and the way by which one moves past the other.
  */
+
+/* The points of sixteen candidates of a kind, as the narrow phase takes them. */
+typedef struct sc_candidate_points {
+    uint32_t point[4][SC_LANES_COUNT];
+} sc_candidate_points;
 
 /* The points of sixteen candidates at the start or at the end, three coordinates each. */
 typedef struct candidate_lanes {

@@ -19,8 +19,8 @@
  * 0.6: 3.8 |m|1 error in all. Clearance is a distance d in space, and so at least d between
  * projections along unit vectors at right angles. The axes here are such vectors times their
  * lengths, so that x and y that are d apart along m in that plane are |(m.x length.x, m.y
- * length.y)| d apart here. Hence
- * |m.x| clear.x + |m.y| clear.y, with clear = 5 error + length d, a little more for its own rounding.
+ * length.y)| d apart here. Hence |m.x| clear.x + |m.y| clear.y, with clear = 5 error + length d, a
+ * little more for its own rounding.
  */
 #include "step/moving_contour.h"
 
