@@ -92,7 +92,7 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
     if (!model) return SC_ERROR_NULL;
     *model = NULL;
     status = sc_arguments_read_options(NULL, "options", &o, sizeof o, options);
-    if (!status) status = sc_hooks_read(o.hooks, &hooks);
+    if (!status) status = sc_arguments_read_hooks(o.hooks, &hooks);
     if (status) return status;
     o.hooks = &hooks;
     status = sc_arguments_need(&hooks, "mesh", NULL, mesh);
@@ -225,7 +225,7 @@ sc_status sc_model_load(const void *data, uint64_t size, const sc_load_options *
     if (!model) return SC_ERROR_NULL;
     *model = NULL;
     status = sc_arguments_read_options(NULL, "options", &o, sizeof o, options);
-    if (!status) status = sc_hooks_read(o.hooks, &hooks);
+    if (!status) status = sc_arguments_read_hooks(o.hooks, &hooks);
     if (status) return status;
     mode.value = o.mode;
     status = sc_arguments_need(&hooks, "data", NULL, data);
@@ -332,7 +332,7 @@ sc_status sc_workspace_set_hooks(sc_workspace *workspace, const sc_hooks *hooks)
     sc_hooks checked;
     sc_status status;
     if (!workspace) return SC_ERROR_NULL;
-    status = sc_hooks_read(hooks, &checked);
+    status = sc_arguments_read_hooks(hooks, &checked);
     if (!status) workspace->hooks = checked;
     return status;
 }

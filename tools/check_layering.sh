@@ -4,9 +4,9 @@
 #     tools/check_layering.sh [DIRECTORY]      default: the directory above this script
 #
 #   - Folders include only what `may` below allows: lib/ in the order base, simd, build, pose,
-#     query, step, run, and programs only the public headers. No "../", no circles, nothing that does
-#     not exist. In lib/simd, all_kernels.h and kernels_SET.c see all of lib/, as if they stood beside
-#     starcontour.c.
+#     query, step, run, and programs only the public headers. No "../", no circles, where a header
+#     and the C file of its name count as one, nothing that does not exist. In lib/simd,
+#     all_kernels.h and kernels_SET.c see all of lib/, as if they stood beside starcontour.c.
 #   - The oracle of the tests reaches no header of lib/, however indirectly.
 #   - File names are unique (but README.md and CMakeLists.txt), and the top level holds only what belongs there.
 #   - lib/sources.list names each C file in lib/ once, in the order of the layers.
@@ -97,6 +97,9 @@ offenders=$(
     # Includes.
     files | grep -E '^(include|lib|tools|tests|bench|meshes)/.*\.(c|h|cpp|hpp|inc)$' | awk '
         function folder(path) { sub(/\/[^\/]*$/, "", path); return path }
+
+        # A header and the C file of its name, as one.
+        function unit(path) { sub(/\.[ch]$/, "", path); return path }
 
         # The folder whose rules hold for a file.
         function room(path) {
@@ -192,10 +195,12 @@ offenders=$(
                     if (index(" " may[home] " ", " " room(to) " ") == 0)
                         print where home " must not include " to
                     edge[path, ++edges[path]] = to
+                    if (unit(path) != unit(to)) edge[unit(path), ++edges[unit(path)]] = unit(to)
                 }
                 close(path)
             }
             for (f = 1; f <= count; ++f) if (!(order[f] in state)) visit(order[f])
+            for (f = 1; f <= count; ++f) if (!(unit(order[f]) in state)) visit(unit(order[f]))
             for (f = 1; f <= count; ++f)
                 if (order[f] ~ /^tests\/(step_)?oracle[^\/]*$/) oracle(order[f], order[f])
         }' || echo "check_layering: awk failed"

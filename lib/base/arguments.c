@@ -82,3 +82,12 @@ sc_status sc_arguments_read_options(const sc_hooks *hooks, const char *of, void 
     memset(to, 0, size);
     return SC_OK;
 }
+
+sc_status sc_arguments_read_hooks(const sc_hooks *caller, sc_hooks *hooks)
+{
+    sc_status status;
+    memset(hooks, 0, sizeof *hooks);
+    if (!caller) return SC_OK;
+    status = sc_arguments_read(NULL, "hooks", hooks, sizeof *hooks, caller, SC_ARGUMENTS_DEFAULTS);
+    return !status && hooks->reserved ? SC_ERROR_OPTION : status;
+}

@@ -55,4 +55,7 @@ sc_status sc_arguments_read(const sc_hooks *hooks, const char *of, void *to, uin
 sc_status sc_arguments_read_options(const sc_hooks *hooks, const char *of, void *to, uint32_t size,
                                     const void *from);
 
+/* Reads the caller's hooks; NULL gives none. */
+sc_status sc_arguments_read_hooks(const sc_hooks *caller, sc_hooks *hooks);
+
 #endif

@@ -12,9 +12,6 @@
 #  include <assert.h>
 #endif
 
-/* Reads the caller's hooks; NULL gives none. */
-sc_status sc_hooks_read(const sc_hooks *caller, sc_hooks *hooks);
-
 /* Makes a message, as printf would, cut off at some 250 characters. Does nothing without
    hooks or a log among them. */
 #if defined(__GNUC__)

@@ -257,21 +257,15 @@ void sc_model_lay_out(sc_model *counts);
    there is none. */
 sc_model *sc_model_allocate(uint64_t bytes, sc_scratch *scratch);
 
+/* Zeroes what is behind each array, so that equal models are equal bytes, and the array that is only
+   added to. All else is written to later. */
+void sc_model_clear_gaps(sc_model *model);
+
 /* What frees a model, or NULL if the caller does. */
 const sc_model_owner *sc_model_owner_of(const sc_model *model);
 
 /* Notes in an owned model what its making took. */
 void sc_model_note_memory(sc_model *model, const sc_scratch *scratch);
-
-/* Puts everything together. What the rest pose says of nodes and levels is left at zero. */
-sc_status sc_model_assemble(const sc_points *points, const sc_adjacency *adjacency,
-                            const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
-                            const sc_csf *csf, const sc_sharing *sharing, sc_scratch *scratch,
-                            sc_model **model);
-
-/* While the model is being built, its arrays may be written to. */
-sc_node *sc_model_nodes_of_new(sc_model *model);
-sc_level *sc_model_levels_of_new(sc_model *model);
 
 void sc_model_release(sc_model *model);
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/hooks.h"
+#include "build/assembly.h"
 #include "build/locality.h"
 #include "build/model_check.h"
 #include "build/partition.h"
@@ -111,8 +112,8 @@ sc_status sc_pipeline_run(const sc_mesh *mesh, const sc_build_options *options, 
         return status;
     validate(&s, options->hooks);
     sc_neighbors_free(&s.neighbors, scratch);
-    if ((status = sc_model_assemble(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
-                                    &s.sharing, scratch, model)))
+    if ((status = sc_assembly_make(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
+                                   &s.sharing, scratch, model)))
         return status;
     validate_model(*model, options->hooks);
     return SC_OK;

@@ -7,8 +7,29 @@
 #define SC_QUERY_KERNELS_H
 
 #include "query/clusters.h"
-#include "query/decide.h"
 #include "query/simple_contour.h"
+
+/* Pairs are decided by so many at a time. */
+enum { SC_PAIR_LANES = 8 };
+
+/* SC_PAIR_LANES pairs of triangles that share one point at most. Bit i of shared: in pair i the
+   corner is one of the other triangle's. */
+typedef struct sc_pair_lanes {
+    const sc_pair *pairs;           /* places of triangles */
+    const uint32_t *triangle;       /* three points at each place */
+    const unsigned char *positions; /* as in sc_positions */
+    uint64_t stride;
+    int floats; /* positions are floats */
+    int proper; /* contacts are proper ones only */
+    int shares; /* some points are shared */
+    unsigned shared[2][3];
+} sc_pair_lanes;
+
+/* Which edges (k of the first triangle, 3 + k of the second) meet the other triangle, bit 8 k + i
+   for pair i: certainly; or it cannot be told. None from a shared point. */
+typedef struct sc_verdict {
+    uint64_t meets, unsure;
+} sc_verdict;
 
 typedef struct sc_query_kernels {
     /* Whether triangles meet, as far as that is certain in doubles; SC_PAIR_LANES pairs. */

@@ -11,6 +11,7 @@
 
 #include <string.h>
 
+#include "build/assembly.h"
 #include "pose/dnc.h"
 #include "pose/positions.h"
 #include "query/star.h"
@@ -69,8 +70,8 @@ sc_status sc_rest_mark(sc_model *model, const sc_pose *rest, uint64_t stride, sc
     workspace = sc_workspace_place(model, NULL, memory);
     workspace->hooks = *hooks;
     walk.w = sc_workspace_begin(model, workspace, &question);
-    walk.node = sc_model_nodes_of_new(model);
-    walk.levels = sc_model_levels_of_new(model);
+    walk.node = sc_assembly_nodes(model);
+    walk.levels = sc_assembly_levels(model);
     status = sc_positions_read(model, rest, stride, &workspace->frame);
     if (status) return status; /* a caller's bisection may have spoiled what was checked */
     sc_dnc_update(model, &workspace->frame);

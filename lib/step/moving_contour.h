@@ -20,24 +20,7 @@
 #ifndef SC_STEP_MOVING_CONTOUR_H
 #define SC_STEP_MOVING_CONTOUR_H
 
-#include "query/simple_contour.h"
-#include "step/step_worker.h"
-
-/* So many errors of a coordinate two points must be apart along a direction, over its |m|1; see
-   moving_contour.c. */
-#define SC_MOVING_ERRORS 5
-
-/* A projected contour at the start, whose parts serve the end as well: points, axes, error, pinches
-   and pieces; and the rest of the end. */
-typedef struct sc_moving_contour {
-    sc_simple_contour start;
-    const sc_moving_edges *end;
-    float from[3];   /* at the end */
-    float length[2]; /* of the axes: |axis|2, rounded up */
-    /* Of a direction m, |m.x| clear[0] + |m.y| clear[1] is how far apart two computed sets must be
-       along it for the true ones to be as far apart as is wanted. See moving_contour.c. */
-    float clear[2];
-} sc_moving_contour;
+#include "step/moving_projection.h"
 
 /* Whether nothing in the patches of nodes[i] comes as near as is reported: passed[i]. Under the
    projection for what their normal cones have in common, which is something, every triangle keeps a

@@ -9,7 +9,7 @@
 #ifndef SC_STEP_MOVING_STAR_H
 #define SC_STEP_MOVING_STAR_H
 
-#include "step/moving_contour.h"
+#include "step/moving_projection.h"
 
 /* Whether some point, in the frame that moves with the middle of a projected contour, certainly
    sees all of it at all times, far enough from its edges. */

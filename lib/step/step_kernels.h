@@ -6,7 +6,7 @@
 #ifndef SC_STEP_KERNELS_H
 #define SC_STEP_KERNELS_H
 
-#include "step/moving_contour.h"
+#include "step/moving_projection.h"
 
 typedef struct sc_step_kernels {
     /* The normal cone of 1 to SC_LEAF_MAX triangles given by their corners that holds throughout

@@ -1,0 +1,484 @@
+/*
+ * Putting a model together. See assembly.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "build/assembly.h"
+
+#include <string.h>
+
+#include "base/assume.h"
+#include "base/bits.h"
+#include "build/leaf_shapes.h"
+
+/* One array of the model while it is being written. */
+#define NEW_ARRAY(model, name, type)                                                               \
+  ((type *)(void *)((unsigned char *)(model) + (model)->offset[SC_ARRAY_##name]))
+
+static void copy(void *to, const void *from, uint64_t bytes)
+{
+    if (bytes) memcpy(to, from, (size_t)bytes);
+}
+
+static uint64_t mix(uint64_t hash, uint64_t value)
+{
+    hash = (hash ^ value) * 0x9fb21c651e98df25u;
+    return hash ^ (hash >> 29);
+}
+
+static uint64_t hash_topology(const sc_model *m)
+{
+    const uint32_t *triangle = sc_model_triangle(m);
+    const uint8_t *use = sc_model_vertex_use(m);
+    const uint32_t *id = sc_model_triangle_id(m), *leaf = sc_model_leaf_first(m);
+    const uint32_t *child = sc_model_child(m);
+    uint64_t hash = 0x51ed270b7a1c4e35u, i;
+    hash = mix(mix(mix(hash, m->vertex_count), m->triangle_count), m->level_count);
+    for (i = 0; i < m->vertex_count; i++) hash = mix(hash, use[i]);
+    for (i = 0; i < 3 * (uint64_t)m->triangle_count; i++) hash = mix(hash, triangle[i]);
+    for (i = 0; i < m->triangle_count; i++) hash = mix(hash, id[i]);
+    for (i = 0; i <= m->leaf_count; i++) hash = mix(hash, leaf[i]);
+    for (i = 0; i < m->patch_end; i++) hash = mix(hash, child[i]);
+    return sc_model_is_for_boxes(m) ? mix(hash, SC_MODEL_BOXES) : hash;
+}
+
+/* Numbers points as the vertices that stand for them. */
+static void number_points(const sc_points *points, uint32_t *number)
+{
+    uint32_t v;
+    for (v = 0; v < points->vertex_count; v++)
+        if (points->slot[v] < SC_SLOT_WELDED) number[points->slot[v]] = v;
+}
+
+static void write_triangles(const sc_points *points, const sc_adjacency *adjacency,
+                            const uint32_t *order, const uint32_t *number, sc_model *m)
+{
+    uint32_t *triangle = NEW_ARRAY(m, triangle, uint32_t), i;
+    uint32_t *id = NEW_ARRAY(m, triangle_id, uint32_t), *place = NEW_ARRAY(m, place, uint32_t);
+    uint8_t *owned = NEW_ARRAY(m, edge_owned, uint8_t), *use = NEW_ARRAY(m, vertex_use, uint8_t);
+    int k;
+    for (i = 0; i < m->triangle_count; i++) {
+        for (k = 0; k < 3; k++)
+            *triangle++ = number[points->triangles[3 * (uint64_t)order[i] + (uint64_t)k]];
+        id[i] = points->id[order[i]];
+        place[id[i]] = i;
+        owned[i] = adjacency->owned[order[i]];
+    }
+    for (i = 0; i < m->vertex_count; i++)
+        use[i] = points->slot[i] == SC_SLOT_UNUSED   ? SC_VERTEX_UNUSED
+                 : points->slot[i] == SC_SLOT_WELDED ? SC_VERTEX_WELDED
+                                                     : SC_VERTEX_POINT;
+}
+
+/* The points of leaf clusters, in the order in which their triangles use them, and where the
+   corners are. */
+static void write_leaves(sc_model *m)
+{
+    uint8_t *last_place =
+        NEW_ARRAY(m, around_first, uint8_t); /* of each vertex; to be written to later */
+    const uint32_t *first = sc_model_leaf_first(m), *corner = sc_model_triangle(m);
+    uint32_t *point = NEW_ARRAY(m, leaf_point, uint32_t), leaf, i, k;
+    uint8_t *where = NEW_ARRAY(m, leaf_corner, uint8_t);
+    memset(last_place, 0, m->vertex_count);
+    for (leaf = 0; leaf < m->leaf_count;
+         leaf++, point += SC_LEAF_POINTS, where += 3 * SC_LEAF_MAX) {
+        uint32_t count = first[leaf + 1] - first[leaf], points = 0, newest;
+        uint32_t known[SC_LEAF_POINTS];
+        for (i = 0; i < SC_LEAF_POINTS; i++) known[i] = SC_NONE;
+        for (i = 0; i < count; i++, corner += 3)
+            for (k = 0; k < 3; k++) { /* without branches, which no processor could foresee */
+                uint32_t p = corner[k], place = last_place[p], is_new = known[place] != p;
+                place = is_new ? points : place;
+                points += is_new;
+                known[place] = p;
+                last_place[p] = where[SC_LEAF_MAX * k + i] = (uint8_t)place;
+            }
+        newest = known[points - 1];
+        for (k = 0; k < 3; k++)
+            for (i = count; i < SC_LEAF_MAX; i++)
+                where[SC_LEAF_MAX * k + i] = where[SC_LEAF_MAX * k + count - 1];
+        for (i = 0; i < SC_LEAF_POINTS; i++) point[i] = i < points ? known[i] : newest;
+    }
+}
+
+/* Lists of neighbors are copied so many points at once, as nearly all are shorter; what is too much
+   is written over by the next. Their memory is asked for so many vertices ahead. */
+enum { AROUND_AT_ONCE = 8, AROUND_AHEAD = 16 };
+
+/* The points that edges join each point with, by old numbers, which are those of the order in which
+   they are in memory. */
+typedef struct surroundings {
+    uint32_t *first;  /* point_count + 1 */
+    uint32_t *points; /* by new numbers; and room to read AROUND_AT_ONCE behind */
+} surroundings;
+
+/* For each corner at a point the next one; the previous one as well if no half-edge runs back to
+   it. */
+static void list_around(const sc_points *points, const sc_adjacency *adjacency,
+                        const uint32_t *number, surroundings *s)
+{
+    const uint32_t *triangles = points->triangles;
+    uint32_t p, i, at = 0;
+    for (p = 0; p < points->point_count; p++) {
+        s->first[p] = at;
+        for (i = adjacency->corner_first[p]; i < adjacency->corner_first[p + 1]; i++) {
+            uint32_t h = adjacency->corners[i], before = sc_adjacency_previous(h);
+            s->points[at++] = number[triangles[sc_adjacency_next(h)]];
+            if (adjacency->opposite[before] == SC_NONE) s->points[at++] = number[triangles[before]];
+        }
+    }
+    s->first[p] = at;
+}
+
+/* How long these lists are together. */
+static uint64_t count_around(const sc_points *points, const sc_adjacency *adjacency)
+{
+    const uint64_t corners = 3 * (uint64_t)points->triangle_count;
+    uint64_t count = corners, h;
+    for (h = 0; h < corners; h++) count += adjacency->opposite[h] == SC_NONE;
+    return count;
+}
+
+static void write_around(const sc_points *points, const surroundings *s, sc_model *m)
+{
+    uint32_t *first = NEW_ARRAY(m, around_first, uint32_t);
+    uint32_t *around = NEW_ARRAY(m, around, uint32_t), at = 0, v;
+    for (v = 0; v < m->vertex_count; v++) {
+        uint32_t p = points->slot[v], n, ahead = v + AROUND_AHEAD;
+        if (ahead < m->vertex_count && points->slot[ahead] < SC_SLOT_WELDED)
+            sc_fetch(s->points + s->first[points->slot[ahead]]);
+        first[v] = at;
+        if (p >= SC_SLOT_WELDED) continue;
+        n = s->first[p + 1] - s->first[p];
+        if (n <= AROUND_AT_ONCE && m->around_total - at >= AROUND_AT_ONCE)
+            memcpy(around + at, s->points + s->first[p], AROUND_AT_ONCE * sizeof *around);
+        else
+            memcpy(around + at, s->points + s->first[p], n * sizeof *around);
+        at += n;
+    }
+    first[v] = at;
+}
+
+static void write_hops(const sc_xbvh *xbvh, sc_model *m)
+{
+    uint32_t *hop = NEW_ARRAY(m, hop, uint32_t), level, p, step;
+    for (level = 0; level < xbvh->level_count; level++) {
+        uint32_t steps = sc_model_hop_steps(xbvh->level_count, level);
+        for (p = xbvh->level_first[level]; p < xbvh->level_first[level + 1]; p++) {
+            hop[p] = p;
+            for (step = 0; step < steps; step++) hop[p] = xbvh->child[hop[p]];
+        }
+    }
+}
+
+static void write_nodes(const sc_sctt *sctt, const sc_csf *csf, sc_model *m)
+{
+    sc_node *node = NEW_ARRAY(m, node, sc_node);
+    uint32_t n;
+    for (n = 0; n < m->node_count; n++, node++) {
+        node->patches = sctt->patches[n];
+        node->child = sctt->child[n];
+        node->loop = csf->loop_first[n];
+        node->contour = csf->contour_first[n];
+        node->loop_length = (uint16_t)(csf->loop_first[n + 1] - csf->loop_first[n]);
+        node->pairs = (uint8_t)sctt->pairs[n];
+        node->kind = csf->in_pieces[n] ? SC_NODE_PIECES : 0;
+        if (sctt->touch[n] != SC_NONE) node->kind |= SC_NODE_TOUCHES;
+    }
+    memset(node, 0, sizeof *node);
+    node->child = m->node_count;
+    node->contour = m->contour_total;
+}
+
+static void write_segments(const sc_csf *csf, const uint32_t *number, const sc_sctt *sctt,
+                           sc_model *m)
+{
+    uint32_t *list = NEW_ARRAY(m, points, uint32_t), *contours = NEW_ARRAY(m, contours, uint32_t),
+             i;
+    for (i = 0; i < m->segment_point_total; i++) list[i] = number[csf->points[i]];
+    copy(contours, csf->contours, m->contour_total * sizeof(uint32_t));
+    for (i = 0; i < m->node_count; i++)
+        if (sctt->touch[i] != SC_NONE)
+            contours[csf->contour_first[i]] = number[contours[csf->contour_first[i]]];
+}
+
+/* Of pieces that hang together: the first of the piece that i is in. */
+static uint32_t find_first(uint32_t *parent, uint32_t i)
+{
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+}
+
+/* Joins the pieces of a and b; returns whether they were two. */
+static uint32_t join_pieces(uint32_t *parent, uint32_t a, uint32_t b)
+{
+    a = find_first(parent, a);
+    b = find_first(parent, b);
+    parent[a < b ? b : a] = a < b ? a : b;
+    return a != b;
+}
+
+/* How many of the patches of a level are in one piece. */
+static uint32_t count_whole(const sc_xbvh *xbvh, uint32_t level, const uint32_t *pieces)
+{
+    uint32_t p, count = 0;
+    for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++)
+        count += pieces[p] == 1;
+    return count;
+}
+
+/* Parts of leaf clusters that hang together through edges, and the edges between them. */
+typedef struct leaf_parts {
+    uint32_t count;
+    uint32_t *of; /* triangle_count: the part of the triangle at a place in the hierarchy's order */
+    uint32_t *leaf;  /* of each part, as many as triangles at most */
+    sc_pair *joints; /* two parts of different leaf clusters for each edge between those */
+    uint64_t joint_count;
+} leaf_parts;
+
+/* Numbers the parts of a leaf cluster, of which each triangle is next to some; returns how many. */
+static uint32_t number_parts(const uint32_t near[SC_LEAF_MAX], uint32_t leaf, uint32_t first,
+                             uint32_t count, leaf_parts *p)
+{
+    uint32_t left = (1u << count) - 1, before = p->count;
+    while (left) {
+        uint32_t reached = left & (0u - left), next = reached;
+        while (next) {
+            uint32_t i = sc_bits_lowest(next);
+            p->of[first + i] = p->count;
+            next = (next & (next - 1)) | (near[i] & ~reached);
+            reached |= near[i];
+        }
+        p->leaf[p->count++] = leaf;
+        left &= ~reached;
+    }
+    return p->count - before;
+}
+
+/* Finds the parts of all leaf clusters, and how many each has. place: of each triangle in the
+   hierarchy's order. */
+static void find_parts(const sc_adjacency *adjacency, const uint32_t *order, const sc_xbvh *xbvh,
+                       const uint32_t *place, uint32_t *own, leaf_parts *p)
+{
+    uint32_t leaf, i, k;
+    for (leaf = 0; leaf < xbvh->leaf_count; leaf++) {
+        uint32_t first = xbvh->leaf_first[leaf], count = xbvh->leaf_first[leaf + 1] - first;
+        uint32_t near[SC_LEAF_MAX] = {0};
+        uint64_t n = p->joint_count;
+        for (i = 0; i < count; i++)
+            for (k = 0; k < 3; k++) {
+                uint32_t h = adjacency->opposite[3 * (uint64_t)order[first + i] + k], at;
+                if (h == SC_NONE) continue;
+                at = place[h / 3];
+                if (at - first < count) {
+                    near[i] |= 1u << (at - first);
+                } else if (at < first) {
+                    p->joints[p->joint_count].a = first + i;
+                    p->joints[p->joint_count++].b = p->of[at];
+                }
+            }
+        own[leaf] = number_parts(near, leaf, first, count, p);
+        for (; n < p->joint_count; n++) p->joints[n].a = p->of[p->joints[n].a];
+    }
+}
+
+/*
+ * How many patches of each level are connected through edges. Edges between leaf clusters, fewer at
+ * each level up, wait for a patch that has both of their triangles.
+ */
+static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarchy *hierarchy,
+                                 const sc_xbvh *xbvh, sc_scratch *scratch, uint32_t *connected)
+{
+    uint32_t count = hierarchy->triangle_count, level = xbvh->level_count - 1, p, i, leaf;
+    uint32_t *place, *parent, *patch_at, *pieces;
+    uint64_t n, kept;
+    leaf_parts all;
+    place = (uint32_t *)sc_scratch_take(scratch, count, sizeof *place);
+    parent = (uint32_t *)sc_scratch_take(scratch, count, sizeof *parent);
+    patch_at = (uint32_t *)sc_scratch_take(scratch, xbvh->leaf_count, sizeof *patch_at);
+    pieces = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *pieces, 0);
+    all.of = (uint32_t *)sc_scratch_take(scratch, count, sizeof *all.of);
+    all.leaf = (uint32_t *)sc_scratch_take(scratch, count, sizeof *all.leaf);
+    all.joints = (sc_pair *)sc_scratch_take(scratch, 3 * (uint64_t)count / 2 + 1, sizeof(sc_pair));
+    all.count = 0;
+    all.joint_count = 0;
+    if (!place || !parent || !patch_at || !pieces || !all.of || !all.leaf || !all.joints)
+        return SC_ERROR_MEMORY;
+    for (i = 0; i < count; i++) place[hierarchy->order[i]] = i;
+    find_parts(adjacency, hierarchy->order, xbvh, place, pieces + xbvh->level_first[level], &all);
+    for (i = 0; i < all.count; i++) parent[i] = i;
+    connected[level] = count_whole(xbvh, level, pieces);
+    for (; level-- > 0; all.joint_count = kept) {
+        for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++) {
+            for (leaf = xbvh->leaf[p]; leaf < xbvh->leaf[p + 1]; leaf++) patch_at[leaf] = p;
+            for (i = xbvh->child[p]; i < xbvh->child[p + 1]; i++) pieces[p] += pieces[i];
+        }
+        for (n = kept = 0; n < all.joint_count; n++) {
+            sc_pair joint = all.joints[n];
+            p = patch_at[all.leaf[joint.a]];
+            if (p == patch_at[all.leaf[joint.b]])
+                pieces[p] -= join_pieces(parent, joint.a, joint.b);
+            else
+                all.joints[kept++] = joint;
+        }
+        connected[level] = count_whole(xbvh, level, pieces);
+    }
+    sc_scratch_give(scratch, all.joints);
+    sc_scratch_give(scratch, all.leaf);
+    sc_scratch_give(scratch, all.of);
+    sc_scratch_give(scratch, pieces);
+    sc_scratch_give(scratch, patch_at);
+    sc_scratch_give(scratch, parent);
+    sc_scratch_give(scratch, place);
+    return SC_OK;
+}
+
+static void write_levels(const sc_xbvh *xbvh, const sc_sctt *sctt, const sc_csf *csf,
+                         const uint32_t *connected, sc_level *levels)
+{
+    uint32_t level, n;
+    for (level = 0; level < xbvh->level_count; level++) {
+        levels[level].patch_count = sc_xbvh_patches(xbvh, level);
+        levels[level].connected_patches = connected[level];
+        levels[level].segment_count = csf->level_segments[level];
+        for (n = sctt->level_first[level]; n < sctt->level_first[level + 1]; n++)
+            if (sctt->patches[n].a == sctt->patches[n].b)
+                levels[level].self_nodes++;
+            else
+                levels[level].pair_nodes++;
+    }
+}
+
+static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
+                         const sc_xbvh *xbvh, const sc_sctt *sctt, const sc_csf *csf, sc_model *m)
+{
+    m->vertex_count = points->vertex_count;
+    m->point_count = points->point_count;
+    m->triangle_count = points->triangle_count;
+    m->edge_count = adjacency->edge_count;
+    m->component_count = adjacency->component_count;
+    m->boundary_edges = adjacency->boundary_edges;
+    m->irregular_edges = adjacency->irregular_edges;
+    m->leaf_count = xbvh->leaf_count;
+    m->level_count = xbvh->level_count;
+    m->patch_end = xbvh->patch_end;
+    m->node_count = sctt->node_count;
+    m->contour_total = csf->contour_first[sctt->node_count];
+    m->loop_total = csf->loop_first[sctt->node_count];
+    m->segment_count = csf->segment_count;
+    m->leaf_segment_count = csf->leaf_count;
+    m->segment_point_total = csf->point_count;
+    m->contour_max = csf->contour_max;
+    m->segment_child_total = csf->child_first[csf->segment_count - csf->leaf_count];
+}
+
+/* The node of each two leaf clusters that share points. */
+static void write_share_nodes(sc_model *m)
+{
+    uint32_t *share_node = NEW_ARRAY(m, share_node, uint32_t), n, i;
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const uint32_t *leaf = sc_model_leaf(m);
+    const sc_node *node = sc_model_node(m);
+    memset(share_node, 0xff, m->share_count * sizeof *share_node);
+    for (n = 0; n < m->node_count; n++) {
+        const uint32_t a = node[n].patches.a, b = node[n].patches.b;
+        if (a == b || !sc_node_is_leaf(&node[n])) continue;
+        for (i = first[leaf[a]]; i < first[leaf[a] + 1]; i++)
+            if (other[i] == leaf[b]) share_node[i] = n;
+    }
+}
+
+sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacency,
+                           const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
+                           const sc_csf *csf, const sc_sharing *sharing, sc_scratch *scratch,
+                           sc_model **model)
+{
+    sc_model counts, *m;
+    uint32_t *number, connected[SC_DEPTH_MAX] = {0};
+    uint64_t share_total = sc_sharing_lists_count(sharing, xbvh), i;
+    const uint64_t around_total = count_around(points, adjacency);
+    uint16_t *own_rows;
+    surroundings around;
+    sc_status status = SC_OK;
+
+    memset(&counts, 0, sizeof counts);
+    count_arrays(points, adjacency, xbvh, sctt, csf, &counts);
+    if (!sc_model_is_for_boxes(&counts))
+        status = count_connected(adjacency, hierarchy, xbvh, scratch, connected);
+    if (status) return status;
+    if (SC_HARDLY(around_total > UINT32_MAX || share_total > UINT32_MAX)) return SC_ERROR_COUNT;
+    number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
+    around.first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)points->point_count + 1,
+                                               sizeof *around.first);
+    around.points =
+        (uint32_t *)sc_scratch_take(scratch, around_total + AROUND_AT_ONCE, sizeof *around.points);
+    if (!number || !around.first || !around.points) return SC_ERROR_MEMORY;
+    number_points(points, number);
+    list_around(points, adjacency, number, &around);
+    counts.share_count = sharing->first[xbvh->leaf_count];
+    counts.share_total = (uint32_t)share_total;
+    counts.around_total = (uint32_t)around_total;
+    sc_model_lay_out(&counts);
+    if (SC_HARDLY(counts.bytes > SIZE_MAX - SC_ALIGNMENT)) /* where addresses have 32 bits */
+        return SC_ERROR_COUNT;
+    m = sc_model_allocate(counts.bytes, scratch);
+    if (!m) return SC_ERROR_MEMORY;
+    *m = counts;
+    sc_model_clear_gaps(m);
+    write_triangles(points, adjacency, hierarchy->order, number, m);
+    copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
+         ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
+    write_leaves(m);
+    write_around(points, &around, m);
+    sc_scratch_give(scratch, around.points); /* before the loops need memory */
+    sc_scratch_give(scratch, around.first);
+    sc_leaf_shapes_fans(m, NEW_ARRAY(m, leaf_fan, uint16_t));
+    sc_leaf_shapes_outlines(m, NEW_ARRAY(m, leaf_outline, uint8_t));
+    copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
+         ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
+    sc_leaf_shapes_touches(m, NEW_ARRAY(m, share_touch, uint16_t));
+    sc_sharing_lists_write(sharing, xbvh, sc_model_triangle(m), NEW_ARRAY(m, share_begin, uint32_t),
+                           NEW_ARRAY(m, share_list, uint16_t));
+    own_rows = NEW_ARRAY(m, share_own_rows, uint16_t);
+    for (i = 0; i < m->leaf_count; i++)
+        sc_sharing_fold(sharing->own_rows + SC_LEAF_MAX * i, own_rows + SC_OWN_WORDS * i);
+    copy(NEW_ARRAY(m, share_crowded, uint8_t), sharing->crowded, m->leaf_count);
+    copy(NEW_ARRAY(m, level_first, uint32_t), xbvh->level_first,
+         ((uint64_t)m->level_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, child, uint32_t), xbvh->child, m->patch_end * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, leaf, uint32_t), xbvh->leaf, m->patch_end * sizeof(uint32_t));
+    write_hops(xbvh, m);
+    write_nodes(sctt, csf, m);
+    write_share_nodes(m);
+    copy(NEW_ARRAY(m, segment_first, uint32_t), csf->point_first,
+         m->segment_count * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, segment_last, uint32_t), csf->point_last,
+         m->segment_count * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, segment_children, uint32_t), csf->child_first,
+         ((uint64_t)m->segment_count - m->leaf_segment_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, children, uint32_t), csf->children,
+         m->segment_child_total * sizeof(uint32_t));
+    write_segments(csf, number, sctt, m);
+    write_levels(xbvh, sctt, csf, connected, NEW_ARRAY(m, level_info, sc_level));
+    if (!sc_model_is_for_boxes(m))
+        status = sc_loops_write(csf, sctt, xbvh, hierarchy->order, sc_model_leaf_corner(m), scratch,
+                                NEW_ARRAY(m, loop, uint16_t));
+    if (status) {
+        sc_model_release(m);
+        return status;
+    }
+    m->topology_hash = hash_topology(m);
+    *model = m;
+    return SC_OK;
+}
+
+sc_node *sc_assembly_nodes(sc_model *model)
+{
+    return NEW_ARRAY(model, node, sc_node);
+}
+
+sc_level *sc_assembly_levels(sc_model *model)
+{
+    return NEW_ARRAY(model, level_info, sc_level);
+}
