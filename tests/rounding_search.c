@@ -169,7 +169,7 @@ static void space_tiny(const double (*x)[N], double share[N])
         sc_predicates_plane plane = sc_predicates_make_plane(p[0], p[1], p[2]);
         for (int k = 0; k < 3; ++k) d[k] = p[3][k] - p[0][k];
         determinant = d[0] * plane.normal[0] + d[1] * plane.normal[1] + d[2] * plane.normal[2];
-        tiny = SC_PREDICATES_BOUND_TINY * (1.0 + size_of(d));
+        tiny = SC_BOUNDS_SIGN_TINY * (1.0 + size_of(d));
         for (int k = 0; k < 3; ++k) {
             double from = ldexp(p[0][k], s);
             e[0][k] = difference(ldexp(p[1][k], s), from);
@@ -269,7 +269,7 @@ static void area(const double (*x)[N], double share[N])
             int a = (k + 1) % 3, b = (k + 2) % 3;
             twice exact = minor_of(difference(p[1][a], p[0][a]), difference(p[1][b], p[0][b]),
                                    difference(p[2][a], p[0][a]), difference(p[2][b], p[0][b]));
-            double bound = SC_PREDICATES_BOUND_2D * plane.magnitude[k] + SC_PREDICATES_BOUND_TINY;
+            double bound = SC_BOUNDS_SIGN_2D * plane.magnitude[k] + SC_BOUNDS_SIGN_TINY;
             double off = off_by(plane.normal[k], exact) - U * fabs(plane.normal[k]);
             most = fmax(most, off / bound);
         }
@@ -296,7 +296,7 @@ static void unit_tiny(const double (*x)[N], double share[N])
         double d = x[0][i] * 0x1p-124;
         float f = (float)d * 0x1p+64f; /* of doubles, moved and rounded */
         double off = fabs(d * 0x1p+64 - (double)f) - 0x1p-24 * fabs((double)f);
-        share[i] = off > 0 ? off / (double)SC_BOXES_LEAST : 0;
+        share[i] = off > 0 ? off / (double)SC_BOUNDS_STEP_LEAST : 0;
     }
 }
 
@@ -329,7 +329,7 @@ static void box_step(const double (*x)[N], double share[N])
 static void unit_box(const double (*x)[N], double share[N])
 {
     for (int i = 0; i < N; ++i)
-        share[i] = fabs(x[0][i] - (double)(float)x[0][i]) / (double)SC_MOTION_POINT_ERROR;
+        share[i] = fabs(x[0][i] - (double)(float)x[0][i]) / (double)SC_BOUNDS_POINT;
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -573,7 +573,7 @@ static void fan_areas(const double (*x)[N], double share[N])
 
 typedef struct places {
     double axis[2][3];            /* exactly those that are used */
-    float at[4][2], error, reach; /* computed; see sc_simple_error */
+    float at[4][2], error, reach; /* computed; see sc_bounds_contour */
     double exact[4][2];
 } places;
 
@@ -607,7 +607,7 @@ static void find_places(const double (*x)[N], int lane, int count, int first, pl
             p->exact[i][m] = dot_of(p->axis[m], way);
         }
     }
-    p->error = sc_simple_error(size);
+    p->error = sc_bounds_contour(size);
     p->reach = size;
 }
 
@@ -1017,7 +1017,7 @@ static void moving_contours(const double (*x)[N], double share[N])
         find_places(x, i, 4, 6, &p);
         for (int k = 0; k < 2; ++k) m[k] = p.at[3][k] - p.at[2][k];
         for (int s = 0; s < 2; ++s) along[s] = m[0] * p.at[s][0] + m[1] * p.at[s][1];
-        clear = SC_MOVING_ERRORS * p.error * 1.000001f;
+        clear = SC_BOUNDS_MOVING_TURN * p.error * 1.000001f;
         bound = (double)(fabsf(m[0]) * clear + fabsf(m[1]) * clear + 16 * FLT_MIN);
         for (int k = 0; k < 2; ++k) exact += (double)m[k] * (p.exact[1][k] - p.exact[0][k]);
         share[i] = fabs((double)(along[1] - along[0]) - exact) / bound;

@@ -1336,7 +1336,7 @@ static uint32_t is_too_sure(const scene *s, const sc_projection *projection, uin
         sc_positions_unit(&s->workspace->frame, tested_point(s, node, i), unit);
         for (int k = 0; k < 3; ++k) most = fmaxf(most, fabsf(unit[k] - from[k]));
     }
-    return c.error < sc_simple_error(most);
+    return c.error < sc_bounds_contour(most);
 }
 
 /* The boxes of spans of two edges hold the true places of their ends, however the contour is seen:

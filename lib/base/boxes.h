@@ -12,6 +12,8 @@
 #include <float.h>
 #include <stdint.h>
 
+#include "base/bounds.h"
+
 /* Boxes that sixteen-wide reads may start at must be followed by this many readable ones. */
 enum { SC_BOXES_PADDING = 16 };
 
@@ -21,10 +23,8 @@ typedef struct sc_boxes {
 } sc_boxes;
 
 /*
- * A float not above (below) d. The conversion is off by half a unit in the last place, at most
- * 2^-24 |f|; one step of 2^-23 |f| or more undoes it, and FLT_MIN does so where f is denormal or
- * zero. Beyond the range of float the clamp gives FLT_MAX on the inner side and the step infinity
- * on the outer.
+ * A float not above (below) d: see SC_BOUNDS_STEP. Beyond the range of float the clamp gives
+ * FLT_MAX on the inner side and the step infinity on the outer.
  */
 static inline float sc_boxes_clamp(double d)
 {
@@ -34,18 +34,14 @@ static inline float sc_boxes_clamp(double d)
 static inline float sc_boxes_below(double d)
 {
     float f = sc_boxes_clamp(d);
-    return f - ((f < 0 ? -f : f) * 1.1920929e-7f + FLT_MIN);
+    return f - ((f < 0 ? -f : f) * SC_BOUNDS_STEP + FLT_MIN);
 }
 
 static inline float sc_boxes_above(double d)
 {
     float f = sc_boxes_clamp(d);
-    return f + ((f < 0 ? -f : f) * 1.1920929e-7f + FLT_MIN);
+    return f + ((f < 0 ? -f : f) * SC_BOUNDS_STEP + FLT_MIN);
 }
-
-/* Boxes of points in the unit box are moved outwards by 2^-23 |f| and this, 2^-85, for what
-   underflows: see pose/positions.c. */
-#define SC_BOXES_LEAST 2.58493941422821148e-26f
 
 static inline int sc_boxes_overlap(const sc_boxes *a, uint64_t i, const sc_boxes *b, uint64_t j)
 {

@@ -231,8 +231,8 @@ static int sign_of_two(const differences *x)
                                          w[i].value;
         }
     }
-    if (first + second > 0x1p-98 * magnitude) return 1;
-    if (first + second < -0x1p-98 * magnitude) return -1;
+    if (first + second > SC_BOUNDS_SIGN_SUMS * magnitude) return 1;
+    if (first + second < -SC_BOUNDS_SIGN_SUMS * magnitude) return -1;
     return UNCERTAIN;
 }
 

@@ -25,40 +25,14 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "base/bounds.h"
+
 #ifdef __FAST_MATH__
 #  error "exact signs need strict floating-point arithmetic: compile without -ffast-math"
 #endif
 #if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD < 0 || FLT_EVAL_METHOD == 2
 #  error "exact signs need doubles evaluated as doubles: on 32-bit x86 use -msse2 -mfpmath=sse"
 #endif
-
-/*
- * The error bounds. Let u = 2^-53, so that an operation returns the true value times 1 + e with
- * |e| <= u. A sum or difference does so even if it is subnormal, being then exact. A product that
- * underflows is off by at most 2^-1075 more.
- *
- * Multiply a determinant out into monomials, products of differences of coordinates. A rounding
- * multiplies some monomials by 1 + e; let n be the most that any of them meets:
- *   2d: 2 differences, 1 product, 1 subtraction:                               n = 4
- *   3d: 3 differences, 1 product, 1 subtraction, 1 product, 2 additions:       n = 8
- * With M the sum of the absolute monomials, the determinant is off by at most ((1 + u)^n - 1) M. M
- * is computed by the same operations on absolute values, hence to a factor of (1 - u)^n or better,
- * so that the error is at most n u (1 + 20 u) times the computed M. (n + 1) u M is larger, the
- * rounding of this product included. These are worst cases: second_stage in
- * tests/test_predicates.c sees errors between 1 and 2 u M, and fails with bounds of 1 u M.
- *
- * Underflow: in 2d two products, off by 2^-1074 at most. In 3d with w = d - a: each component of
- * the cross product is off by 2^-1074 or a little more, which is multiplied by that of w, and the
- * three last products by 2^-1075. 2^-900 (1 + |w.x| + |w.y| + |w.z|) is more than that by far. With
- * subnormals flushed, a difference may be off by 3 * 2^-1022; with differences up to 2^57 the 6
- * monomials of 3 factors are off by 6 * 3 * 3 * 2^-1022 * 2^114 < 2^-902, which it covers as well.
- *
- * Overflow: the computed M is never less than the computed determinant, rounding being monotonic.
- * If anything overflows, then M is infinite or NaN, and the comparison with the bound fails.
- */
-#define SC_PREDICATES_BOUND_2D (5.0 * 0x1p-53)
-#define SC_PREDICATES_BOUND_3D (9.0 * 0x1p-53)
-#define SC_PREDICATES_BOUND_TINY 0x1p-900
 
 /* Stages 2 and 3; arguments and results as below. */
 int sc_predicates_orient2d_exact(const double a[2], const double b[2], const double c[2]);
@@ -76,7 +50,7 @@ static inline int sc_predicates_orient2d(const double a[2], const double b[2], c
     double right = (b[1] - a[1]) * (c[0] - a[0]);
     double determinant = left - right;
     double magnitude = fabs(left) + fabs(right);
-    double bound = SC_PREDICATES_BOUND_2D * magnitude + SC_PREDICATES_BOUND_TINY;
+    double bound = SC_BOUNDS_SIGN_2D * magnitude + SC_BOUNDS_SIGN_TINY;
     if (determinant > bound) return 1;
     if (determinant < -bound) return -1;
     ++*fallbacks;
@@ -123,8 +97,8 @@ static inline int sc_predicates_side_of_plane(const sc_predicates_plane *plane, 
     double determinant = x * plane->normal[0] + y * plane->normal[1] + z * plane->normal[2];
     double magnitude = fabs(x) * plane->magnitude[0] + fabs(y) * plane->magnitude[1] +
                        fabs(z) * plane->magnitude[2];
-    double tiny = SC_PREDICATES_BOUND_TINY * (1.0 + (fabs(x) + fabs(y) + fabs(z)));
-    double bound = SC_PREDICATES_BOUND_3D * magnitude + tiny;
+    double tiny = SC_BOUNDS_SIGN_TINY * (1.0 + (fabs(x) + fabs(y) + fabs(z)));
+    double bound = SC_BOUNDS_SIGN_3D * magnitude + tiny;
     if (determinant > bound) return 1;
     if (determinant < -bound) return -1;
     ++*fallbacks;

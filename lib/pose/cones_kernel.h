@@ -74,8 +74,8 @@ static SC_INLINE void edges_of(part corner[3][3], part e[3], part f[3])
    within 90 degrees of a normal, whatever it is off by. */
 static SC_INLINE void directions_of(part e[][3], part f[][3], lanes_signs row[][16], int count)
 {
-    const part relative = part_all(37 * 5.9604644775390625e-8f);
-    const part moved = part_all(12.1f * 3e-8f), least = part_all(2.1f * 3e-8f);
+    const part relative = part_all(37 * SC_BOUNDS_V);
+    const part moved = part_all(12.1f * SC_BOUNDS_POINT), least = part_all(2.1f * SC_BOUNDS_POINT);
     part n[CONES][3], error[CONES], up[CONES][3], down[CONES][3];
     int i, k;
     EACH(k, 3)

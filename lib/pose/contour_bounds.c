@@ -3,6 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#include "base/bounds.h"
 #include "pose/contour_bounds.h"
 
 #include <math.h>
@@ -10,10 +11,6 @@
 
 #include "base/assume.h"
 #include "pose/positions.h"
-
-/* Rounding of the few operations in each step below: five or fewer, each 2^-53, of the sum of the
-   absolute terms. */
-static const double ROUNDING = 1e-15;
 
 static const sc_ray_bound NO_LINES = {INFINITY, INFINITY, -INFINITY, INFINITY, INFINITY, -INFINITY};
 
@@ -47,7 +44,7 @@ double sc_contour_bounds_lowest(const sc_ray_bound *bound, double x)
         base = ay;
         rise = (by - ay) * ((x - ax) / (bx - ax));
     }
-    base = base + rise - ROUNDING * (fabs(ay) + fabs(by) + fabs(rise));
+    base = base + rise - SC_BOUNDS_RAY_SUM * (fabs(ay) + fabs(by) + fabs(rise));
     return base == base ? base : -HUGE_VAL; /* infinities that met */
 }
 
@@ -82,8 +79,8 @@ static inline void add_line(edge_lines *lines, double x, double y, double slope,
                             double low, double high, double x_error, double y_error)
 {
     double steepness = fabs(slope);
-    double error =
-        2.0001 * (y_error + steepness * x_error) * fabs(inverse_run) + ROUNDING * steepness;
+    double error = 2.0001 * (y_error + steepness * x_error) * fabs(inverse_run) +
+                   SC_BOUNDS_RAY_SUM * steepness;
     uint32_t i = lines->count++;
     lines->x[i] = x;
     lines->y[i] = y;
@@ -136,7 +133,7 @@ static int bound_lines(const edge_lines *lines, double x_error, double y_error, 
     reach = bx - ax;
     error = y_error + (lines->steepness + lines->slope_error) * x_error +
             lines->slope_error * reach +
-            ROUNDING * (lines->height + lines->steepness * (fabs(ax) + fabs(bx)));
+            SC_BOUNDS_RAY_SUM * (lines->height + lines->steepness * (fabs(ax) + fabs(bx)));
     b->ay = sc_boxes_below(at_a - error);
     b->by = sc_boxes_below(at_b - error);
     /* all of it finite: so no later sum or product is NaN. Slopes are, as runs are longer than
@@ -196,8 +193,10 @@ static inline void unite_ends(sc_ray_bound *b, const sc_ray_bound *child)
     bx = (double)b->bx;
     rise_a = (double)child->most * (ax - (double)child->ax);
     rise_b = (double)child->least * (bx - (double)child->bx);
-    at_a = (double)child->ay + rise_a - ROUNDING * (fabs((double)child->ay) + fabs(rise_a));
-    at_b = (double)child->by + rise_b - ROUNDING * (fabs((double)child->by) + fabs(rise_b));
+    at_a =
+        (double)child->ay + rise_a - SC_BOUNDS_RAY_SUM * (fabs((double)child->ay) + fabs(rise_a));
+    at_b =
+        (double)child->by + rise_b - SC_BOUNDS_RAY_SUM * (fabs((double)child->by) + fabs(rise_b));
     if (at_a < (double)b->ay) b->ay = sc_boxes_below(at_a);
     if (at_b < (double)b->by) b->by = sc_boxes_below(at_b);
 }

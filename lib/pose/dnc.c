@@ -3,6 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#include "base/bounds.h"
 #include "pose/dnc.h"
 
 #include <math.h>
@@ -154,8 +155,6 @@ void sc_dnc_projection(const sc_frame *frame, uint32_t mask, sc_projection *proj
         v[k] = (double)vector[1][k];
         projection->origin[k] = frame->center[k];
     }
-    projection->x_error =
-        5 * 1.1102230246251565e-16 * (fabs(u[0]) + fabs(u[1]) + fabs(u[2])) * frame->radius;
-    projection->y_error =
-        5 * 1.1102230246251565e-16 * (fabs(v[0]) + fabs(v[1]) + fabs(v[2])) * frame->radius;
+    projection->x_error = 5 * SC_BOUNDS_U * (fabs(u[0]) + fabs(u[1]) + fabs(u[2])) * frame->radius;
+    projection->y_error = 5 * SC_BOUNDS_U * (fabs(v[0]) + fabs(v[1]) + fabs(v[2])) * frame->radius;
 }

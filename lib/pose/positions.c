@@ -3,6 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#include "base/bounds.h"
 #include "pose/positions.h"
 
 #include <math.h>
@@ -80,7 +81,7 @@ static int find_extent(const sc_model *model, const sc_frame *frame, double low[
 /*
  * Poses of a radius from 2^-FLOAT_RANGE to 2^FLOAT_RANGE can be moved in floats. What underflows is
  * a coordinate below 2^-126, off by 2^-150 at most before it is scaled: by 2^(FLOAT_RANGE - 150) in
- * the unit box, half of what boxes step outwards by at least, SC_BOXES_LEAST.
+ * the unit box, half of what boxes step outwards by at least, SC_BOUNDS_STEP_LEAST.
  */
 enum { FLOAT_RANGE = 64 };
 

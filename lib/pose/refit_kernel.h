@@ -4,11 +4,11 @@
  * SPDX-License-Identifier: MIT
  */
 
-/* How far a bound has to be moved outwards, see base/boxes.h. */
+/* How far a bound has to be moved outwards, see SC_BOUNDS_STEP. */
 static inline lanes rounding_step(lanes bound)
 {
-    return lanes_add(lanes_multiply(lanes_absolute(bound), lanes_all(1.1920929e-7f)),
-                     lanes_all(SC_BOXES_LEAST));
+    return lanes_add(lanes_multiply(lanes_absolute(bound), lanes_all(SC_BOUNDS_STEP)),
+                     lanes_all(SC_BOUNDS_STEP_LEAST));
 }
 
 /* Boxes of sixteen leaf clusters, whose points are `stride` floats apart. */

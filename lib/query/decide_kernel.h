@@ -75,7 +75,7 @@ static inline doubles dot_eight(const doubles n[3], const doubles p[3])
 /* Reads the corners and computes all else. */
 static SC_INLINE void read_eight(const sc_pair_lanes *pairs, eight_triangle_pairs *x)
 {
-    doubles a[2][3], b[3][3], n[3], along[2][3], reach = doubles_all(0x1p-300);
+    doubles a[2][3], b[3][3], n[3], along[2][3], reach = doubles_all(SC_BOUNDS_EIGHT_LEAST);
     doubles *side = x->side[1], (*line)[3] = x->line;
     int k, i, c;
     if (pairs->floats)
@@ -114,7 +114,7 @@ static SC_INLINE void read_eight(const sc_pair_lanes *pairs, eight_triangle_pair
         line[2][i] = doubles_subtract(doubles_all(0), along[1][i]);
     }
     x->reach = reach = doubles_multiply(doubles_all(4), reach);
-    x->bound = doubles_multiply(doubles_all(4.25 * 0x1p-53),
+    x->bound = doubles_multiply(doubles_all(SC_BOUNDS_EIGHT),
                                 doubles_multiply(doubles_multiply(reach, reach), reach));
 }
 
@@ -269,8 +269,7 @@ static inline sign_bits sign_of(doubles d, doubles bound)
 /* What a side in a projection may be off by; see below. */
 static inline doubles beside_bound(doubles reach)
 {
-    return doubles_multiply(doubles_all(SC_PREDICATES_BOUND_2D / 2),
-                            doubles_multiply(reach, reach));
+    return doubles_multiply(doubles_all(SC_BOUNDS_SIGN_2D / 2), doubles_multiply(reach, reach));
 }
 
 /*

@@ -39,7 +39,7 @@
 static inline float ray_bound(const float direction[3])
 {
     const float size = fabsf(direction[0]) + fabsf(direction[1]) + fabsf(direction[2]);
-    return 7e-7f * size + 16 * FLT_MIN;
+    return SC_BOUNDS_RAYS * size + 16 * FLT_MIN;
 }
 
 /* Which sectors at the first, second and third corners of triangles may hold a ray, and the
@@ -92,7 +92,7 @@ static inline void find_across(const float n[3], float across[2][3])
    normal that they are seen along. */
 static inline lanes area_bound(lanes size, lanes largest)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const float edge = SC_BOUNDS_EDGE, v = SC_BOUNDS_V;
     lanes bound = lanes_add(lanes_multiply(size, lanes_all(2 * v)), lanes_all(2.1f * edge));
     bound = lanes_add(lanes_multiply(size, bound), lanes_all(7 * edge * edge));
     return lanes_add(lanes_multiply(largest, bound), lanes_all(16 * FLT_MIN));

@@ -175,7 +175,7 @@ static inline lanes dot_product(const lanes x[3], const lanes y[3])
 /* What a place along a direction may be off by; size is the direction's |m|1. */
 static inline lanes direction_bound(lanes size, float extent)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const float edge = SC_BOUNDS_EDGE, v = SC_BOUNDS_V;
     return lanes_add(lanes_multiply(size, lanes_all(1.1f * edge + 5 * v * extent)),
                      lanes_all(16 * FLT_MIN));
 }
@@ -212,7 +212,7 @@ static inline void find_normal(const neighbors *x, int s, lanes n[3])
 /* What a distance from a plane, up to a factor, may be off by here: of a triangle of this size. */
 static inline lanes neighbor_plane_bound(lanes size, lanes extent)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const float edge = SC_BOUNDS_EDGE, v = SC_BOUNDS_V;
     const lanes more = lanes_add(extent, lanes_all(edge));
     lanes bound = lanes_add(lanes_multiply(lanes_all(4 * edge), more),
                             lanes_multiply(lanes_all(13 * v), lanes_multiply(extent, extent)));
@@ -258,7 +258,7 @@ static SC_INLINE void see_along(const lanes n[3], const lanes corner[][3], int c
 /* What a side in a projection may be off by; see query/sixteen_kernel.h. */
 static inline lanes side_bound(lanes extent)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const float edge = SC_BOUNDS_EDGE, v = SC_BOUNDS_V;
     return lanes_add(lanes_multiply(lanes_all(5 * edge), lanes_add(extent, lanes_all(edge))),
                      lanes_multiply(lanes_all(9 * v), lanes_multiply(extent, extent)));
 }

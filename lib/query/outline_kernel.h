@@ -80,7 +80,7 @@ static inline void see_points(const sc_worker *w, uint32_t leaf, const float dir
         size[k] = fabsf(c[0]) + fabsf(c[1]) + fabsf(c[2]);
     }
     size[0] = size[0] > size[1] ? size[0] : size[1];
-    error = size[0] * (3.1e-8f + 4e-7f * most);
+    error = size[0] * sc_bounds_outline(most);
     p->bound = 8 * error * (2.1f * size[0] * most + error) + 16 * FLT_MIN;
 }
 

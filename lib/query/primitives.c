@@ -12,6 +12,7 @@
  * What is coplanar is decided in a projection along an axis along which it does not collapse, what
  * is collinear by comparing points in lexicographic order, which is their order along the line.
  */
+#include "base/bounds.h"
 #include "query/primitives.h"
 #include "base/predicates.h"
 
@@ -204,7 +205,7 @@ static int has_area(const sc_predicates_plane *plane)
 {
     int certain = 0;
     for (int i = 0; i < 3; ++i) {
-        double bound = SC_PREDICATES_BOUND_2D * plane->magnitude[i] + SC_PREDICATES_BOUND_TINY;
+        double bound = SC_BOUNDS_SIGN_2D * plane->magnitude[i] + SC_BOUNDS_SIGN_TINY;
         certain |= fabs(plane->normal[i]) > bound;
     }
     return certain;

@@ -39,7 +39,7 @@ static inline void leaf_corners(const sc_worker *w, uint32_t leaf, lanes x[3][3]
    overlaps nothing. */
 static inline void make_boxes(lanes x[3][3], uint32_t triangles, sc_leaf_ready *ready)
 {
-    const lanes ulp = lanes_all(1.1920929e-7f), least = lanes_all(SC_BOXES_LEAST);
+    const lanes ulp = lanes_all(SC_BOUNDS_STEP), least = lanes_all(SC_BOUNDS_STEP_LEAST);
     const lanes nothing = lanes_all((float)NAN);
     const lanes_mask is_none = lanes_from(triangles);
     int c;

@@ -128,7 +128,7 @@ static inline void see_loop(const sc_worker *w, const sc_cluster_pair *p,
     lanes_store(c->x + 2 * SC_LANES_COUNT, lanes_all(0));
     lanes_store(c->y + 2 * SC_LANES_COUNT, lanes_all(0));
     c->reach = lanes_most(size);
-    c->error = 3.01e-8f + 4.1f * 5.9604644775390625e-8f * c->reach;
+    c->error = sc_bounds_contour(c->reach);
 }
 
 /* The points at which a contour certainly turns in, without those that follow another one. */

@@ -10,6 +10,7 @@
  * other's line. The inner loops (query/simple_kernel.h) settle nearly all pairs, sixteen at a time;
  * what they leave comes to sc_simple_are_apart.
  */
+#include "base/bounds.h"
 #include "query/simple.h"
 
 #include <float.h>
@@ -213,7 +214,7 @@ typedef struct vector2 {
  */
 static inline float bound_of(vector2 a, vector2 b, float error)
 {
-    return SC_SIMPLE_BOUND * error *
+    return SC_BOUNDS_TURN * error *
                (fabsf(a.x) + fabsf(a.y) + fabsf(b.x) + fabsf(b.y) + 4 * error) +
            FLT_MIN;
 }
@@ -377,7 +378,7 @@ static int turn_of_piece(const sc_simple_contour *c, piece p)
         sizes += (double)(fabsf(b.x) + fabsf(b.y));
     }
     /* the sum of bound_of each two vectors, in which each is twice */
-    bound = SC_SIMPLE_BOUND * (double)c->error *
+    bound = SC_BOUNDS_TURN * (double)c->error *
                 (2 * sizes + 4 * (double)c->error * (double)(p.end - p.begin)) +
             (double)FLT_MIN * (double)(p.end - p.begin);
     return (area > 1.001 * bound) - (area < -1.001 * bound);

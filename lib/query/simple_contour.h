@@ -7,6 +7,7 @@
 #ifndef SC_QUERY_SIMPLE_CONTOUR_H
 #define SC_QUERY_SIMPLE_CONTOUR_H
 
+#include "base/bounds.h"
 #include "pose/dnc.h"
 
 /* Points of a contour are projected in blocks of SC_CONTOUR_BLOCK. A step tests edges with the next
@@ -85,17 +86,6 @@ typedef struct sc_simple_contour {
 typedef struct sc_simple_some_axes {
     float at[2][3][SC_DNC_VECTORS];
 } sc_simple_some_axes;
-
-/* The error of a cross or dot product of vectors with these sums of absolute components, see
-   simple.c. */
-#define SC_SIMPLE_BOUND 12
-
-/* What computed coordinates are off by, of points that are no further from the middle in any
-   coordinate, see sc_simple_axes. */
-static inline float sc_simple_error(float size)
-{
-    return 3.01e-8f + 4.1f * 5.9604644775390625e-8f * size;
-}
 
 /* Small contours, see query/small_kernel.h: sixteens of edges that one has at most, and edges at
    least: 8 b + 1 for one sixteen. */

@@ -103,7 +103,7 @@ static void project(sc_simple_contour *c, const sc_frame *frame)
     }
     SC_UNROLL
     for (k = 0; k < 2; k++) lanes_store(e->at[k] + c->count, lanes_load(e->at[k]));
-    c->error = sc_simple_error(lanes_most(size));
+    c->error = sc_bounds_contour(lanes_most(size));
 }
 
 /* Sixteen edges, from p to q. */
@@ -125,7 +125,7 @@ static inline lanes size_in_plane(const lanes a[2])
 static inline lanes bound_in_plane(float error, lanes size)
 {
     return lanes_add(
-        lanes_multiply(lanes_all(SC_SIMPLE_BOUND * error), lanes_add(size, lanes_all(4 * error))),
+        lanes_multiply(lanes_all(SC_BOUNDS_TURN * error), lanes_add(size, lanes_all(4 * error))),
         lanes_all(FLT_MIN));
 }
 

@@ -78,7 +78,7 @@ static SC_INLINE void pick_corners(const sixteen_pairs *x, int s, int two, lanes
 /* What a distance from a plane, up to a factor, may be off by: of sixteen, and of one. */
 static inline lanes plane_bound(lanes size, lanes extent)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const float edge = SC_BOUNDS_EDGE, v = SC_BOUNDS_V;
     lanes wide = lanes_add(extent, lanes_all(edge));
     lanes bound =
         lanes_add(lanes_multiply(size, lanes_all(2.1f * v)),
@@ -88,7 +88,7 @@ static inline lanes plane_bound(lanes size, lanes extent)
 }
 static inline float one_plane_bound(float size, float extent)
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const float edge = SC_BOUNDS_EDGE, v = SC_BOUNDS_V;
     float bound = size * (2.1f * v) + (4 * edge * (extent + edge) + 7 * v * extent * extent);
     return size * bound + 8 * edge * edge * (extent + edge);
 }
@@ -97,7 +97,7 @@ static inline float one_plane_bound(float size, float extent)
    to tip. */
 static inline lanes edges_bound(lanes size, const lanes w[3])
 {
-    const float edge = 6e-8f, v = 5.9604644775390625e-8f;
+    const float edge = SC_BOUNDS_EDGE, v = SC_BOUNDS_V;
     lanes t = lanes_add(size, lanes_all(2 * edge)), u = lanes_all(4 * edge), bound;
     int c;
     SC_UNROLL

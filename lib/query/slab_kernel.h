@@ -4,15 +4,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Everything is computed in single precision on points in the unit box. Each coordinate is off by
- * POINT = 3e-8 at most; v = 2^-24.
- *
- * The place of a point x along a direction n, n . x, is off by POINT |n|1, and by rounding 3.01 v
- * |n|1, 2.1e-7 |n|1 in all, and a few FLT_MIN for products that underflow. An end of a slab is the
- * place of one of its points and a sum, off by 6e-8 |n|1 more. The places of two points and an end
- * together are off by less than SC_PLACES_ERROR |n|1 + 16 FLT_MIN.
+ * Everything is computed in single precision on points in the unit box, see SC_BOUNDS_PLACES.
  */
-#define SC_PLACES_ERROR 5e-7f
 
 /* Where points are along directions. */
 static inline lanes places_along(const lanes direction[3], const lanes at[3])
@@ -27,7 +20,7 @@ static inline float slab_reach(const float direction[3])
 {
     float reach = 16 * FLT_MIN;
     int c;
-    for (c = 0; c < 3; c++) reach += SC_PLACES_ERROR * fabsf(direction[c]);
+    for (c = 0; c < 3; c++) reach += SC_BOUNDS_PLACES * fabsf(direction[c]);
     return reach;
 }
 

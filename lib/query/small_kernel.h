@@ -90,7 +90,7 @@ static SC_INLINE void see_small(const sc_worker *w, uint32_t blocks, const float
         }
         flat_size = lanes_largest_size(flat_size, x[0], x[1]);
     }
-    c->error = sc_simple_error(lanes_most(size));
+    c->error = sc_bounds_contour(lanes_most(size));
     c->size = lanes_most(flat_size);
 }
 

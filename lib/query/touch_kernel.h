@@ -37,12 +37,12 @@ static inline void find_way(const float *from, const float *to, float way[3])
    d_k add up to, which part the rounding is. */
 static inline float touch_reach(const float m[3])
 {
-    const float edge = 6e-8f;
+    const float edge = SC_BOUNDS_EDGE;
     return (fabsf(m[0]) + fabsf(m[1]) + fabsf(m[2])) * (1.1f * edge) + 16 * FLT_MIN;
 }
 static inline lanes touch_rounding(lanes size)
 {
-    const float v = 5.9604644775390625e-8f;
+    const float v = SC_BOUNDS_V;
     return lanes_multiply(size, lanes_all(6 * v));
 }
 

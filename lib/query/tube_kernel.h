@@ -65,7 +65,7 @@ static inline int begin_tube(const float along[3], const float low[3], const flo
     for (k = 0; k < 3; k++) t->direction[2][k] = along[k] / length;
     find_across(t->direction[2], t->direction);
     reach = 1.001f * reach + 1e-6f; /* the middle is nearly that of the box */
-    t->error = 9.2e-8f + 7.4e-7f * reach;
+    t->error = sc_bounds_tube(reach);
     t->most = 3.04f * reach;
     return 1;
 }

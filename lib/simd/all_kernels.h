@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/bounds.h"
 #include "base/predicates.h"
 #include "pose/pose_kernels.h"
 #include "pose/positions.h"

@@ -81,8 +81,8 @@ static inline void side_in_space(const candidate_lanes c[2], int i, int j, lanes
    coordinate of a difference. */
 static inline lanes clear_in_space(float distance, lanes reach)
 {
-    return lanes_add(lanes_all(distance * 1.00001f + 2.1f * SC_MOTION_POINT_ERROR),
-                     lanes_multiply(reach, lanes_all(5 * 5.9604644775390625e-8f)));
+    return lanes_add(lanes_all(distance * 1.00001f + 2.1f * SC_BOUNDS_POINT),
+                     lanes_multiply(reach, lanes_all(5 * SC_BOUNDS_V)));
 }
 
 static unsigned stay_apart(const sc_motion *motion, const sc_candidate_points *points, int split)

@@ -25,7 +25,7 @@ static inline lanes slab_margin(const lanes n[3], float distance)
     const lanes length =
         lanes_add(lanes_multiply(lanes_all(0.5858f), lanes_largest_size(n[0], n[1], n[2])),
                   lanes_multiply(lanes_all(0.4143f), sum));
-    return lanes_add(lanes_add(lanes_multiply(lanes_all(SC_PLACES_ERROR), sum),
+    return lanes_add(lanes_add(lanes_multiply(lanes_all(SC_BOUNDS_PLACES), sum),
                                lanes_multiply(lanes_all(distance * 1.00001f), length)),
                      lanes_all(16 * FLT_MIN));
 }

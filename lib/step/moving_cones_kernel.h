@@ -24,9 +24,8 @@
 /* What the coefficients of n . s may be off by, |e|1 and |f|1 being so large. */
 static inline lanes moving_normal_error(lanes e_size, lanes f_size)
 {
-    const lanes relative = lanes_all(10 * 5.9604644775390625e-8f);
-    const lanes moved = lanes_all(4.1f * SC_MOTION_POINT_ERROR),
-                least = lanes_all(6 * SC_MOTION_POINT_ERROR);
+    const lanes relative = lanes_all(10 * SC_BOUNDS_V);
+    const lanes moved = lanes_all(4.1f * SC_BOUNDS_POINT), least = lanes_all(6 * SC_BOUNDS_POINT);
     return lanes_add(lanes_add(lanes_multiply(relative, lanes_multiply(e_size, f_size)),
                                lanes_multiply(moved, lanes_add(lanes_add(e_size, f_size), least))),
                      lanes_all(32 * FLT_MIN));
@@ -36,7 +35,7 @@ static inline lanes moving_normal_error(lanes e_size, lanes f_size)
 static inline lanes longest_square(lanes square)
 {
     return lanes_add(lanes_multiply(lanes_all(1.01f), square),
-                     lanes_all(1.0001f * 1616 * SC_MOTION_POINT_ERROR * SC_MOTION_POINT_ERROR));
+                     lanes_all(1.0001f * 1616 * SC_BOUNDS_POINT * SC_BOUNDS_POINT));
 }
 
 static uint32_t moving_mask_of(const sc_motion *m, const uint32_t *corner, uint32_t count)

@@ -22,6 +22,7 @@
  * length.y)| d apart here. Hence |m.x| clear.x + |m.y| clear.y, with clear = 5 error + length d, a
  * little more for its own rounding.
  */
+#include "base/bounds.h"
 #include "step/moving_contour.h"
 
 #include <float.h>
@@ -151,7 +152,7 @@ static int are_edges_clear(const moving_vector v[4], clearance k, int halvings)
 static int are_open(const sc_moving_contour *c, const moving_vector v[2], clearance k, int halvings)
 {
     double error = (double)c->start.error;
-    double known = SC_MOVING_ERRORS * error, dx = k.x - known, dy = k.y - known; /* length d */
+    double known = SC_BOUNDS_MOVING_TURN * error, dx = k.x - known, dy = k.y - known; /* length d */
     double cross[3], size = 0, longest = 0, least;
     moving_vector half[2];
     int i, s, second;
@@ -215,7 +216,8 @@ static void set_clearance(sc_moving_contour *c, float distance)
         double x = (double)c->start.axis[k][0], y = (double)c->start.axis[k][1],
                z = (double)c->start.axis[k][2];
         c->length[k] = (float)sqrt(x * x + y * y + z * z) * 1.000001f;
-        c->clear[k] = (SC_MOVING_ERRORS * c->start.error + c->length[k] * distance) * 1.000001f;
+        c->clear[k] =
+            (SC_BOUNDS_MOVING_TURN * c->start.error + c->length[k] * distance) * 1.000001f;
     }
 }
 

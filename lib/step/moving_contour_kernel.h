@@ -34,7 +34,7 @@ static void project_motion(sc_moving_contour *c, const float *unit)
                 lanes_store(to[k] + i, at);
             }
         }
-    c->start.error = 3.01e-8f + 4.1f * 5.9604644775390625e-8f * lanes_most(size);
+    c->start.error = sc_bounds_contour(lanes_most(size));
 }
 
 /* Sixteen moving edges, from p to q, at the start and at the end. */

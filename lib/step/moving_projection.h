@@ -9,10 +9,6 @@
 #include "query/simple_contour.h"
 #include "step/step_worker.h"
 
-/* So many errors of a coordinate two points must be apart along a direction, over its |m|1; see
-   moving_contour.c. */
-#define SC_MOVING_ERRORS 5
-
 /* A projected contour at the start, whose parts serve the end as well: points, axes, error, pinches
    and pieces; and the rest of the end. */
 typedef struct sc_moving_contour {

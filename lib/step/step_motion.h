@@ -17,21 +17,14 @@
 #ifndef SC_STEP_MOTION_H
 #define SC_STEP_MOTION_H
 
+#include "base/bounds.h"
 #include "pose/positions.h"
 #include "step/impact.h"
 
-/* Largest error of a coordinate in sc_motion.unit: 2^-25 for the rounding to float of a number of
-   at most 1, and a little for those to double before. */
-#define SC_MOTION_POINT_ERROR 3e-8f
-
-/*
- * How far apart boxes of points that are off by this are kept, together, for sets that are to be
- * told apart by a distance. Each is moved outwards by half of it, which rounds by at most
- * 2^-24 (1 + margin) each time: four times 3e-8, twice 6e-8 and a little.
- */
+/* How far apart boxes of points are kept for sets that are to be told apart by a distance. */
 static inline float sc_motion_margin(float distance)
 {
-    return distance * 1.000001f + 3e-7f;
+    return distance * 1.000001f + SC_BOUNDS_MOVING_BOX;
 }
 
 /*
