@@ -1655,8 +1655,8 @@ static void two_edges_that_cross(void)
     close_scene(&s);
 }
 
-/* Contours that are looked at in turn pass or fail as each does by itself. */
-static void contours_in_turn(void)
+/* Contours that are looked at together pass or fail as each does by itself. */
+static void contours_together(void)
 {
     enum { MOST = 60 };
     uint32_t wrong = 0, in_pieces = 0, count[2] = {0, 0};
@@ -1668,7 +1668,7 @@ static void contours_in_turn(void)
                                      : nested_discs();
         uint32_t nodes[MOST], most = 1 + test_random_below(MOST), n = 0;
         uint8_t passed[MOST];
-        if (!open_scene(&s, "in turn", &mesh, SC_WELD_NONE, SC_PARTITION_FAST)) continue;
+        if (!open_scene(&s, "together", &mesh, SC_WELD_NONE, SC_PARTITION_FAST)) continue;
         if (round % 4 < 2) soup_smooth(s.pose, s.mesh.vertex_count, 0.02 * round);
         if (!load_pose(&s)) continue;
         s.workspace->frame.kernels = sc_kernels_for(1 + round % (uint32_t)sc_isa_best());
@@ -1698,7 +1698,7 @@ static void contours_in_turn(void)
     }
     CHECK_MSG(!wrong, "%" PRIu32 " of %" PRIu32 " differ", wrong, count[0] + count[1]);
     CHECK(!is_full() || (count[0] > 50 && count[1] > 1000 && in_pieces > 10));
-    printf("    contours_in_turn: %" PRIu32 " pass, %" PRIu32 " do not\n", count[1], count[0]);
+    printf("    contours_together: %" PRIu32 " pass, %" PRIu32 " do not\n", count[1], count[0]);
 }
 
 /* Whether a contour is one that may be left open though it is simple: if it passes a point three
@@ -1838,5 +1838,5 @@ SC_TEST_MAIN(SC_TEST(directions_of_the_cone), SC_TEST(vectors_of_all_masks),
              SC_TEST(contours_at_shared_points), SC_TEST(contours_in_pieces),
              SC_TEST(points_in_the_unit_box), SC_TEST(poses_of_any_layout),
              SC_TEST(places_of_contours), SC_TEST(small_contours), SC_TEST(two_edges_that_cross),
-             SC_TEST(contours_in_turn), SC_TEST(pinches_alone), SC_TEST(flat_cloths_pass),
+             SC_TEST(contours_together), SC_TEST(pinches_alone), SC_TEST(flat_cloths_pass),
              SC_TEST(patches_that_share_hubs))

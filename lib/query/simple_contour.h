@@ -19,16 +19,6 @@ enum { SC_CONTOUR_BLOCK = 16, SC_CONTOUR_RUN = 4, SC_CONTOUR_NEAR = 2 * SC_CONTO
 #define SC_CONTOUR_SPANS(count)                                                                    \
   (((count) + SC_CONTOUR_BLOCK - 1) / SC_CONTOUR_BLOCK * SC_CONTOUR_BLOCK + 2 * SC_CONTOUR_BLOCK)
 
-/* Contours of a query that are looked at in turn: how many, the points of one at most, and the room
-   for it: points with those that are read beyond, and boxes of spans. */
-enum {
-    SC_CONTOUR_TURNS = 4,
-    SC_CONTOUR_SHORT = 112,
-    SC_CONTOUR_ROOM = SC_CONTOUR_SHORT + SC_CONTOUR_BLOCK,
-    SC_CONTOUR_SPAN_ROOM = 208,
-    SC_CONTOUR_BITS_ROOM = SC_CONTOUR_ROOM / SC_CONTOUR_BLOCK + 3
-};
-
 /* Pieces of a contour that is stored as a loop are listed in so many places each, or a multiple of
    that: then spans of as many edges are of one piece. */
 enum { SC_CONTOUR_GAP = 4 };
@@ -39,8 +29,7 @@ enum { SC_LOW_X, SC_HIGH_X, SC_LOW_Y, SC_HIGH_Y };
 /*
  * The projected contour of a node, see query/simple.c: a list of points, of which point i and the
  * next are edge i, but where a chain ends. Room for model.contour_max points, what gaps between
- * pieces of loops add, and two blocks more; or for those that are looked at in turn, one after the
- * other.
+ * pieces of loops add, and two blocks more.
  */
 typedef struct sc_contour_edges {
     uint32_t *point;      /* what points they are */
@@ -75,7 +64,6 @@ typedef struct sc_simple_contour {
     float axis[2][3], from[3];     /* the projection: x = axis[0] . (unit - from), likewise y */
     float error;                   /* |computed - true| of each coordinate, at most */
     int in_pieces;                 /* there may be several */
-    int passed;                    /* as far as is known */
     uint32_t level, spans;         /* what is looked at next: so many spans; 0: nothing */
     uint32_t pinch_count;
     sc_pinch pinch[SC_PINCHES_MAX];

@@ -421,25 +421,11 @@ static int is_last_level_fine(sc_simple_contour *c, uint32_t level, uint32_t cou
     return 1;
 }
 
-/* The spans of the next level. */
-static void look_at_spans(sc_simple_contour *c)
+/* Whether sc_simple_are_apart is true of all pairs of edges. */
+static int look_at_edges(sc_simple_contour *c)
 {
-    if (c->spans > SC_LANES_COUNT) {
-        c->passed = is_level_fine(c);
-    } else {
-        if (c->spans) c->passed = is_last_level_fine(c, c->level, c->spans);
-        c->spans = 0;
-    }
-    if (!c->passed) c->spans = 0;
-}
-
-/* Sets passed, as far as is known after the step that is next for each of three contours; NULL:
-   there is none. What was written in one step is read in the next, when it has arrived in the
-   cache. */
-static void look_at_edges(sc_simple_contour *first, sc_simple_contour *second,
-                          sc_simple_contour *last)
-{
-    if (first) first->passed = are_all_near_fine(first);
-    if (second) look_at_spans(second);
-    while (last && last->spans) look_at_spans(last);
+    if (!are_all_near_fine(c)) return 0;
+    while (c->spans > SC_LANES_COUNT)
+        if (!is_level_fine(c)) return 0;
+    return !c->spans || is_last_level_fine(c, c->level, c->spans);
 }

@@ -3,9 +3,9 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Small contours are looked at eight at a time (query/small_kernel.h); what these leave, four in
- * turn (query/simple_kernel.h); long ones, and those without a loop, one by one. Whichever way, the
- * memory that a test reads is asked for while others are made.
+ * Small contours are looked at eight at a time (query/small_kernel.h); what these leave, long ones,
+ * and those without a loop, one by one (query/simple_kernel.h). Whichever way, the memory that a
+ * test reads is asked for while others are made.
  */
 #include <string.h>
 
@@ -76,51 +76,27 @@ static void place_contour(sc_worker *w, sc_simple_contour *c)
     w->stats.counts[SC_TASK_UPDATE_CONTOURS] += c->count;
 }
 
-/* After all edges were looked at. */
-static int is_fine(const sc_simple_contour *c)
+/* Tests a contour that was started, and has axes. */
+static int test_contour(sc_worker *w, sc_simple_contour *c)
 {
-    return c->passed && ((!c->pinch_count && !c->in_pieces) || sc_simple_is_wound_well(c));
+    place_contour(w, c);
+    sc_worker_switch(w, SC_TASK_CONTOUR);
+    w->stats.counts[SC_TASK_CONTOUR]++;
+    return w->frame->kernels->query->look_at_edges(c) &&
+           ((!c->pinch_count && !c->in_pieces) || sc_simple_is_wound_well(c));
 }
 
 int sc_simple_test(sc_worker *w, const sc_projection *projection, uint32_t node)
 {
-    const sc_query_kernels *kernels = w->frame->kernels->query;
     uint32_t previous = sc_worker_switch(w, SC_TASK_UPDATE_CONTOURS);
     sc_simple_contour c;
     int passed = sc_simple_start(&c, w->model, &w->contour, node);
     if (passed) {
         sc_simple_axes(&c, projection);
-        place_contour(w, &c);
-        sc_worker_switch(w, SC_TASK_CONTOUR);
-        w->stats.counts[SC_TASK_CONTOUR]++;
-        kernels->look_at_edges(&c, NULL, NULL);
-        kernels->look_at_edges(NULL, NULL, &c);
-        passed = is_fine(&c);
+        passed = test_contour(w, &c);
     }
     sc_worker_switch(w, previous);
     return passed;
-}
-
-/*
- * Contours of loops that are not long are looked at in turn: while one is projected, the first step
- * is made for the one before, the second for the one before that, and what is left for a third. So
- * no step waits for what another one has just written, which processors do not hand on if it is
- * read in other pieces, and memory has time to arrive.
- */
-typedef struct contour_turns {
-    sc_simple_contour contour[SC_CONTOUR_TURNS];
-    sc_contour_edges edges[SC_CONTOUR_TURNS];
-    uint32_t node[SC_CONTOUR_TURNS]; /* number in the list, or SC_NONE */
-    sc_simple_some_axes axes;        /* of some that follow each other in the list */
-} contour_turns;
-
-static int is_short(const sc_model *model, uint32_t node)
-{
-    const sc_node *n = sc_model_node(model) + node;
-    uint32_t places = n->loop_length;
-    if (!places || places > SC_CONTOUR_SHORT) return 0;
-    if (n->kind & SC_NODE_PIECES) places += SC_CONTOUR_GAP * sc_model_loop(model)[n->loop];
-    return places <= SC_CONTOUR_SHORT;
 }
 
 /* What the normal cones of a node's patches have in common. */
@@ -138,79 +114,6 @@ static void find_axes(const sc_worker *w, sc_simple_some_axes *axes, const uint3
     uint32_t i;
     for (i = 0; i < SC_DNC_VECTORS && i < count; i++) mask[i] = mask_of(w, nodes[i]);
     sc_simple_axes_of(mask, axes);
-}
-
-/* Starts a turn with node i of a list, a loop, and projects it. */
-static void begin_turn(sc_worker *w, contour_turns *all, const uint32_t *nodes, uint32_t i)
-{
-    sc_simple_contour *c = &all->contour[i % SC_CONTOUR_TURNS];
-    int k, m;
-    sc_simple_find_loop(c, w->model, nodes[i]);
-    for (m = 0; m < 2; m++)
-        for (k = 0; k < 3; k++) c->axis[m][k] = all->axes.at[m][k][i % SC_DNC_VECTORS];
-    place_contour(w, c);
-    all->node[i % SC_CONTOUR_TURNS] = i;
-}
-
-/* Each turn has a part of the room for a contour. */
-static void start_turns(contour_turns *all, const sc_contour_edges *room)
-{
-    uint32_t t;
-    int k;
-    for (t = 0; t < SC_CONTOUR_TURNS; t++) {
-        sc_contour_edges *edges = &all->edges[t];
-        *edges = *room;
-        edges->point = room->point + SC_CONTOUR_ROOM * t;
-        for (k = 0; k < 2; k++) edges->at[k] = room->at[k] + SC_CONTOUR_ROOM * t;
-        for (k = 0; k < 4; k++) edges->span_side[k] = room->span_side[k] + SC_CONTOUR_SPAN_ROOM * t;
-        edges->is_edge = room->is_edge + SC_CONTOUR_BITS_ROOM * t;
-        edges->wall = room->wall + SC_CONTOUR_ROOM * t;
-        all->contour[t].edges = edges;
-        all->node[t] = SC_NONE;
-    }
-}
-
-/* How many tests pass between two steps of fetching what a test reads. */
-enum { FETCH_DISTANCE = 2 };
-
-/* Tests nodes one by one, or in turn. */
-static void test_in_turn(sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed)
-{
-    const sc_model *model = w->model;
-    const sc_query_kernels *kernels = w->frame->kernels->query;
-    contour_turns all;
-    int i, step, k;
-    memset(passed, 0, count);
-    start_turns(&all, &w->contour);
-    for (i = -FETCH_DISTANCE * FETCHES; i < (int)count + 3 && !sc_worker_stops(w); i++) {
-        sc_simple_contour *c[SC_CONTOUR_TURNS];
-        for (step = 0; step < FETCHES; step++) {
-            int ahead = i + FETCH_DISTANCE * (FETCHES - step);
-            if (ahead >= 0 && ahead < (int)count) fetch(model, nodes[ahead], step);
-        }
-        if (i < 0) continue;
-        sc_worker_switch(w, SC_TASK_UPDATE_CONTOURS);
-        all.node[i % SC_CONTOUR_TURNS] = SC_NONE;
-        if (i < (int)count && i % SC_DNC_VECTORS == 0)
-            find_axes(w, &all.axes, nodes + i, count - (uint32_t)i);
-        if (i < (int)count && is_short(model, nodes[i])) begin_turn(w, &all, nodes, (uint32_t)i);
-        for (k = 1; k < SC_CONTOUR_TURNS; k++) {
-            uint32_t t = (uint32_t)(i + SC_CONTOUR_TURNS - k) % SC_CONTOUR_TURNS;
-            c[k] = all.node[t] == SC_NONE ? NULL : &all.contour[t];
-        }
-        sc_worker_switch(w, SC_TASK_CONTOUR);
-        kernels->look_at_edges(c[1], c[2], c[3]);
-        if (c[3]) {
-            w->stats.counts[SC_TASK_CONTOUR]++;
-            passed[i - 3] = (uint8_t)is_fine(c[3]);
-        }
-    }
-    for (i = 0; i < (int)count && !sc_worker_stops(w); i++) {
-        sc_projection projection;
-        if (is_short(model, nodes[i])) continue;
-        sc_dnc_projection(w->frame, mask_of(w, nodes[i]), &projection);
-        passed[i] = (uint8_t)sc_simple_test(w, &projection, nodes[i]);
-    }
 }
 
 /* How many sixteens of edges a small contour has, see query/small_kernel.h; 0: it is not small. */
@@ -283,21 +186,45 @@ static void test_small(sc_worker *w, const some_nodes *some, uint32_t blocks, ui
     }
 }
 
+/* How many tests pass between two steps of fetching what a test reads. */
+enum { FETCH_DISTANCE = 2 };
+
+/* Tests those of some nodes that have not passed, one by one. */
+static void test_rest(sc_worker *w, const some_nodes *some, const uint8_t *number, uint32_t count,
+                      uint8_t *passed)
+{
+    sc_simple_contour c;
+    int i, step, k, m;
+    for (i = -FETCH_DISTANCE * FETCHES; i < (int)count && !sc_worker_stops(w); i++) {
+        for (step = 0; step < FETCHES; step++) {
+            int ahead = i + FETCH_DISTANCE * (FETCHES - step);
+            if (ahead >= 0 && ahead < (int)count) fetch(w->model, some->nodes[number[ahead]], step);
+        }
+        if (i < 0) continue;
+        sc_worker_switch(w, SC_TASK_UPDATE_CONTOURS);
+        if (!sc_simple_start(&c, w->model, &w->contour, some->nodes[number[i]])) continue;
+        for (m = 0; m < 2; m++)
+            for (k = 0; k < 3; k++)
+                c.axis[m][k] =
+                    some->axes[number[i] / SC_DNC_VECTORS].at[m][k][number[i] % SC_DNC_VECTORS];
+        passed[number[i]] = (uint8_t)test_contour(w, &c);
+    }
+}
+
 /* Tests no more than SOME_NODES, none of which has passed yet: small contours, and then what is
    left. */
 static void test_some(sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed)
 {
-    uint32_t left[SOME_NODES], left_count = 0, i;
-    uint8_t left_passed[SOME_NODES];
+    uint8_t left[SOME_NODES];
+    uint32_t left_count = 0, i;
     some_nodes some;
     sort_nodes(w, nodes, count, &some);
     for (i = 1; i <= SC_SMALL_BLOCKS; i++) test_small(w, &some, i, passed);
-    for (i = 0; i < count; i++)
-        if (!passed[i]) left[left_count++] = nodes[i];
-    if (!left_count) return;
-    test_in_turn(w, left, left_count, left_passed);
-    for (i = count; i-- > 0;)
-        if (!passed[i]) passed[i] = left_passed[--left_count];
+    for (i = 0; i < count; i++) {
+        left[left_count] = (uint8_t)i;
+        left_count += !passed[i];
+    }
+    test_rest(w, &some, left, left_count, passed);
 }
 
 void sc_simple_tests(sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed)

@@ -114,24 +114,21 @@ static void lay_out_plan(const sc_workspace_sizes *s, layout *l, sc_plan_room *p
 /* How many points of a contour are listed at most, with what is read beyond. */
 static uint64_t listed_points(const sc_workspace_sizes *s)
 {
-    const uint64_t turns = s->contour ? SC_CONTOUR_TURNS : 0;
-    const uint64_t listed = ((uint64_t)s->contour / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK +
-                            (uint64_t)SC_LOOP_PIECES * SC_CONTOUR_GAP;
-    return listed < turns * SC_CONTOUR_ROOM ? turns * SC_CONTOUR_ROOM : listed;
+    return ((uint64_t)s->contour / SC_CONTOUR_BLOCK + 3) * SC_CONTOUR_BLOCK +
+           (uint64_t)SC_LOOP_PIECES * SC_CONTOUR_GAP;
 }
 
 static void lay_out_contour(const sc_workspace_sizes *s, layout *l, sc_contour_edges *c)
 {
-    const uint64_t listed = listed_points(s), turns = s->contour ? SC_CONTOUR_TURNS : 0;
+    const uint64_t listed = listed_points(s);
     uint64_t spans, n;
     int k;
     c->point = SC_PLACE(l, listed, uint32_t);
     for (k = 0; k < 2; k++) c->at[k] = SC_PLACE(l, listed, float);
     for (spans = 0, n = listed / 2; n; n = n > SC_CONTOUR_BLOCK ? (n + 1) / 2 : 0)
         spans += SC_CONTOUR_SPANS(n);
-    if (spans < turns * SC_CONTOUR_SPAN_ROOM) spans = turns * SC_CONTOUR_SPAN_ROOM;
     for (k = 0; k < 4; k++) c->span_side[k] = SC_PLACE(l, spans, float);
-    c->is_edge = SC_PLACE(l, listed / SC_CONTOUR_BLOCK + 3 * SC_CONTOUR_TURNS, uint16_t);
+    c->is_edge = SC_PLACE(l, listed / SC_CONTOUR_BLOCK + 3, uint16_t);
     c->wall = SC_PLACE(l, listed, float);
 }
 
