@@ -962,10 +962,10 @@ typedef struct sc_step_result {
  * SC_ERROR_NULL for a capacity without its array.
  *
  * Several threads. With options->tasks the passes over both poses, the walk through the tree,
- * boxes, the narrow phase and the sorting are done by all workers. The answer is the same as of one
- * thread, but for SC_OUTPUT_ANY: which pair is found first, and so which of the two counts is 1,
- * depends on the threads, as does what a step has found when a flag ends it. Of counts in
- * statistics what sc_query says is true. By the calling thread alone are done:
+ * boxes, the narrow phase and the sorting are done by all workers. Answer and counts in statistics
+ * are the same as of one thread, but for SC_OUTPUT_ANY: which pair is found first, and so which of
+ * the two counts is 1, depends on the threads, as does what a step has found when a flag ends it.
+ * By the calling thread alone are done:
  *   - steps of models of fewer than 128 leaf clusters;
  *   - all but the passes with a budget, and where the library was compiled by other compilers than
  *     gcc or clang;

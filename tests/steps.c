@@ -257,7 +257,7 @@ step step_fold(void)
 
 step step_hole(void)
 {
-    uint32_t around = between(6, 24), rings = between(2, 4);
+    uint32_t around = between(6, 14), rings = between(2, 3);
     step s = begin("hole", soup_annulus(around, rings));
     uint32_t which = test_random_below(5), all = s.mesh.vertex_count;
     double inner = HUGE_VAL, center[2] = {0, 0}, through = test_random_range(-1, 0.5);

@@ -189,20 +189,20 @@ static inline unsigned list_near_pairs(sc_worker *w, uint32_t item, uint32_t fir
 
 /* Lists pairs of a leaf cluster with those numbered from first on, of which bits of a mask are set.
    They are all above it; or all below it, of pairs that the test tree leaves to boxes: then they
-   share no points with it, unless both are crowded (build/neighbors.h). */
+   share no points with it, unless both are crowded (build/neighbors.h). Which of two that share no
+   points comes first is the same. */
 static inline void list_leaf_pairs(sc_worker *w, uint32_t item, uint32_t first, unsigned mask)
 {
-    const uint32_t leaf = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
-    const int is_upper = leaf > first;
+    const uint32_t leaf = item & SC_ITEM;
     const unsigned pairs = sc_bits_count(mask);
     sc_lists *l = &w->lists;
-    uint32_t *count = &l->count[SC_LIST_FAR], *same = l->far[is_upper] + *count;
+    uint32_t *count = &l->count[SC_LIST_FAR], *same = l->far[0] + *count;
     int i;
     w->stats.leaf_pairs += pairs;
     sc_worker_count_boxes(w, sc_item_follows(item), pairs);
-    if (!is_upper) mask = list_near_pairs(w, item, first, mask);
-    for (i = 0; i < SC_LANES_COUNT; i++) same[i] = is_upper ? leaf : item;
-    *count += lanes_list_from(mask, is_upper ? first | bit : first, l->far[!is_upper] + *count);
+    if (leaf < first) mask = list_near_pairs(w, item, first, mask);
+    for (i = 0; i < SC_LANES_COUNT; i++) same[i] = item;
+    *count += lanes_list_from(mask, first, l->far[1] + *count);
 }
 
 /* The same in a step, where pairs that share points are not told apart from others here. */

@@ -29,12 +29,12 @@ static inline void fetch_points(const sc_worker *w, uint32_t leaf)
 }
 
 /* Lists such a pair as left. */
-static inline void list_far(uint32_t lower, uint32_t upper, uint32_t known, sc_cluster_pair *to)
+static inline void list_far(uint32_t item, uint32_t other, uint32_t known, sc_cluster_pair *to)
 {
-    to->a = lower & SC_ITEM;
-    to->b = upper;
+    to->a = item & SC_ITEM;
+    to->b = other;
     to->shared = SC_NONE;
-    to->known = (lower & SC_AFTER_CONTOUR) | SC_CLUSTERS_FAR | known;
+    to->known = (item & SC_AFTER_CONTOUR) | SC_CLUSTERS_FAR | known;
 }
 
 /* Pairs of leaf clusters that share no points, or are crowded. If they are many, slabs drop most of
@@ -44,27 +44,27 @@ static void part_far(sc_worker *w, uint32_t most)
 {
     sc_lists *l = &w->lists;
     uint32_t *left = &l->count[SC_LIST_FAR], count = *left < most ? *left : most, kept = 0, i;
-    const uint32_t *lower = l->far[0] + (*left -= count), *upper = l->far[1] + *left;
+    const uint32_t *item = l->far[0] + (*left -= count), *other = l->far[1] + *left;
     const int keeps_all = w->kept.mask == SC_KEEPS_ALL;
     sc_cluster_pair *to = l->clusters + l->count[SC_LIST_CLUSTERS];
     if (count < SC_LEAF_SLABS_FIRST) {
-        for (i = 0; i < count; i++) list_far(lower[i], upper[i], SC_CLUSTERS_UNSLABBED, to + i);
+        for (i = 0; i < count; i++) list_far(item[i], other[i], SC_CLUSTERS_UNSLABBED, to + i);
         l->count[SC_LIST_CLUSTERS] += count;
         return;
     }
     for (i = 0; i < count; i++) {
-        const uint32_t a = lower[i] & SC_ITEM, b = upper[i];
+        const uint32_t a = item[i] & SC_ITEM, b = other[i];
         if (i + SC_MADE_LEAVES < count) {
-            sc_fetch(w->kept.slab + (lower[i + SC_MADE_LEAVES] & SC_ITEM));
-            sc_fetch(w->kept.slab + upper[i + SC_MADE_LEAVES]);
+            sc_fetch(w->kept.slab + (item[i + SC_MADE_LEAVES] & SC_ITEM));
+            sc_fetch(w->kept.slab + other[i + SC_MADE_LEAVES]);
         }
         if (i % SC_MADE_LEAVES == 0 && keeps_all) {
             const uint32_t some = count - i < SC_MADE_LEAVES ? count - i : SC_MADE_LEAVES;
-            make_slabs(w, lower + i, some);
-            make_slabs(w, upper + i, some);
+            make_slabs(w, item + i, some);
+            make_slabs(w, other + i, some);
         }
-        if (i + SC_FETCH_POINTS < count) fetch_points(w, upper[i + SC_FETCH_POINTS]);
-        list_far(lower[i], b, 0, to + kept);
+        if (i + SC_FETCH_POINTS < count) fetch_points(w, other[i + SC_FETCH_POINTS]);
+        list_far(item[i], b, 0, to + kept);
         kept += !slabs_part(w, a, ready_place(w, a), b, ready_place(w, b));
     }
     l->count[SC_LIST_CLUSTERS] += kept;
@@ -321,8 +321,8 @@ typedef struct added_rows {
     waiting_rows wait;
 } added_rows;
 
-/* Two leaf clusters, a < b, that share no points, are not crowded and that slabs do not part; both
-   are ready. Without branches, as boxes of triangles may be apart from the other in many. */
+/* Two leaf clusters that share no points, are not crowded and that slabs do not part; both are
+   ready. Without branches, as boxes of triangles may be apart from the other in many. */
 static inline void add_far(sc_worker *w, const sc_cluster_pair *p, kept_places at, added_rows *to)
 {
     const sc_leaf_ready *ready = w->kept.ready + at.a;

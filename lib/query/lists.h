@@ -89,7 +89,7 @@ enum {
     SC_MOVING_MAX = SC_MOVING_ENOUGH + SC_MOVING_LISTED + SC_LEAF_MAX
 };
 
-/* Two leaf clusters, a <= b, or one twice; and where sc_model_share_leaf has them, or SC_NONE, with
+/* Two leaf clusters, a < b if they share points, or one twice; and where sc_model_share_leaf has them, or SC_NONE, with
    what sc_model_share_touch has, and the bits below. */
 typedef struct sc_cluster_pair {
     uint32_t a, b, shared, known;
@@ -146,7 +146,7 @@ typedef struct sc_lists {
                            visits between the first and the last one: a stack */
     uint32_t *row[3];   /* SC_ROWS_MAX: a leaf cluster, the first of the others, and a bit for each
                            of these */
-    uint32_t *far[2];   /* SC_LEAF_LIST_MAX: the lower of two, and the other */
+    uint32_t *far[2];   /* SC_LEAF_LIST_MAX: one of two, and the other */
     uint32_t *near[2];  /* SC_LEAF_LIST_MAX: the lower of two, and where sc_model_share_leaf has
                            them; or SC_NONE */
     sc_cluster_pair *clusters; /* SC_CLUSTERS_MAX */

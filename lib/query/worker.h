@@ -29,10 +29,8 @@ typedef struct sc_question {
     int drops_neighbors; /* of triangles that share a vertex nothing is wanted */
     int has_last; /* of culling by exact contour tests: some of it waits until all else is done, and
                      the frame has normal cones of leaf clusters */
-    int keeps_no_marks; /* what is culled in a node of two patches is tested by itself all the same,
-                           so that what is left does not depend on the order of tests */
-    int timed;          /* statistics are wanted: clocks are read */
-    int ends_early;     /* the first pair or a budget may end it: pairs do not wait for long */
+    int timed;    /* statistics are wanted: clocks are read */
+    int ends_early; /* the first pair or a budget may end it: pairs do not wait for long */
     /* The contour test of some nodes: passed[i] says whether nothing in nodes[i] can meet. */
     void (*test)(struct sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed);
     const struct sc_step_question *step; /* what a step is asked besides, step/step_worker.h; NULL:

@@ -315,7 +315,7 @@ static void do_tests(plan *p)
         uint32_t node = p->room->tests[i];
         if (!p->room->passed[i])
             p->room->open[p->open_count++] = node;
-        else if (!p->question.keeps_no_marks)
+        else if (!p->question.step)
             culled[nodes[node].patches.a] = culled[nodes[node].patches.b] = 1;
     }
     p->test_count = 0;

@@ -75,7 +75,6 @@ static void fill_question(const sc_step_result *result, sc_step_question *questi
     question->query.has_last = o->method == SC_STEP_METHOD_SCTT;
     question->query.ends_early =
         o->budget || (o->output == SC_OUTPUT_ANY && o->times == SC_STEP_TIMES_NONE);
-    question->query.keeps_no_marks = o->pairs == SC_STEP_CANDIDATES;
     question->query.timed = result->stats != NULL;
     question->query.test = sc_moving_contour_tests;
     question->query.step = question;
