@@ -6,13 +6,12 @@
  * With the exact contour test, which keeps nothing from node to node, each node has its own
  * projection, and nodes can be tested in any order: those that pass the orientation test wait in
  * a short list, so that the memory for some is fetched while others are tested. Nodes of one
- * patch wait until all else is done, since a patch that is in a node of two that was culled is
- * culled with it. In a step it is not, so that what is left does not depend on the order of
- * tests; that takes 6 % longer. A node of two patches with one parent has the contour of that
- * parent, which failed. Pairs of patches that are left to boxes wait as well: tests of boxes
- * that do not depend on each other wait for memory at the same time. Two patches that share one
- * point, as diagonally in a grid, are left to boxes, too: few overlap there, and a contour costs
- * most that passes a point twice.
+ * patch wait until all that hangs below their ancestors is done, since a patch that is in a node
+ * of two that was culled is culled with it. A node of two patches with one parent has the
+ * contour of that parent, which failed. Pairs of patches that are left to boxes wait as well:
+ * tests of boxes that do not depend on each other wait for memory at the same time. Two patches
+ * that share one point, as diagonally in a grid, are left to boxes, too: few overlap there, and
+ * a contour costs most that passes a point twice.
  */
 #include "query/culling.h"
 
@@ -110,7 +109,7 @@ void sc_culling_orient(sc_worker *w, uint32_t node)
         return;
     }
     w->stats.nodes_oriented++;
-    if (n->patches.a == n->patches.b && w->last.selfs_wait)
+    if (n->patches.a == n->patches.b)
         w->last.self[w->last.self_count++] = node;
     else
         w->lists.oriented[w->lists.count[SC_LIST_ORIENTED]++] = node;
@@ -139,11 +138,10 @@ static void open_failed(sc_worker *w, uint32_t node)
     const uint32_t end = sc_node_end(n);
     uint32_t c;
     for (c = n->child; c < end; c++) {
-        const int is_self = nodes[c].patches.a == nodes[c].patches.b;
-        if (of_one && !is_self) {
+        if (of_one && nodes[c].patches.a != nodes[c].patches.b) {
             w->stats.nodes_visited++;
             put_back(w, c, mask_of_node(w, nodes + c));
-        } else if (!is_self || w->last.selfs_wait || !w->last.culled[nodes[c].patches.a]) {
+        } else {
             sc_culling_orient(w, c);
         }
     }
@@ -195,7 +193,7 @@ void sc_culling_test(sc_worker *w, uint32_t most)
         const sc_pair *patches = &sc_model_node(w->model)[nodes[i]].patches;
         if (!passed[i])
             put_back(w, nodes[i], 1);
-        else if (!w->question->step)
+        else
             w->last.marks[patches->a] = w->last.marks[patches->b] = 1;
     }
 }

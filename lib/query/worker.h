@@ -50,12 +50,12 @@ typedef struct sc_share {
    that is in a node of two that was culled is culled with it, and a leaf cluster by itself is, with
    another one that shares points with it and is dropped. */
 typedef struct sc_last {
-    uint32_t *self;  /* leaf_count: nodes of one patch to test */
+    uint32_t *self;  /* patch_end: nodes of one patch to test, and those tested */
     uint32_t *alone; /* leaf_count: leaf clusters to look at by themselves, as items of lists */
     uint32_t self_count, alone_count;
-    uint32_t selfs_wait; /* nodes of one patch are put there */
-    uint8_t *culled;     /* patch_end: 1 if in a node that passed, as far as may be looked at */
-    uint8_t *marks; /* patch_end: where that is written down; the same, if one worker does all */
+    uint32_t self_first, self_end; /* those nodes that are tested now */
+    uint8_t *culled; /* patch_end: 1 if in a node that passed, as far as may be looked at */
+    uint8_t *marks;  /* patch_end: where that is written down; the same, if one worker does all */
 } sc_last;
 
 /* Points near a triangle in number of edges, see query/filter.c. */

@@ -7,9 +7,9 @@
  * waits. For several, the calling thread opens what is large first, by the same stages as the first
  * of them; contour tests of large nodes are a job, again and again, since what fails leads to
  * further large nodes. What hangs below is a list of parts, items of the lists that each worker has
- * (query/lists.h), and depends on the model and the pose only. Nodes of one patch, and leaf
- * clusters by themselves, wait until all others are done: which patches were culled by then is the
- * union of what workers wrote down.
+ * (query/lists.h), and depends on the model and the pose only. Nodes of one patch wait until all
+ * that hangs below their ancestors is done, level by level, and leaf clusters by themselves until
+ * all others are: which patches were culled by then is the union of what workers wrote down.
  *
  * No locks: a worker writes to what is its own, and to parts of the caller's array that it claims
  * by an atomic addition, for many pairs at a time. What is left in the end goes behind them.
@@ -315,7 +315,7 @@ static void do_tests(plan *p)
         uint32_t node = p->room->tests[i];
         if (!p->room->passed[i])
             p->room->open[p->open_count++] = node;
-        else if (!p->question.step)
+        else
             culled[nodes[node].patches.a] = culled[nodes[node].patches.b] = 1;
     }
     p->test_count = 0;
@@ -352,9 +352,8 @@ static void run_selfs(void *context, uint32_t part, uint32_t worker)
     sc_worker *w = begin_part(p, worker);
     sc_lists *l = &w->lists;
     const sc_last *last = find_last(p, &part, worker);
-    uint32_t i = part * NODES_AT_ONCE;
-    const uint32_t end =
-        last->self_count - i < NODES_AT_ONCE ? last->self_count : i + NODES_AT_ONCE;
+    uint32_t i = last->self_first + part * NODES_AT_ONCE;
+    const uint32_t end = last->self_end - i < NODES_AT_ONCE ? last->self_end : i + NODES_AT_ONCE;
     for (; i < end; i++)
         if (!w->last.culled[nodes[last->self[i]].patches.a])
             l->oriented[l->count[SC_LIST_ORIENTED]++] = last->self[i];
@@ -382,21 +381,38 @@ static void run_alone(void *context, uint32_t part, uint32_t worker)
     end_part(w, sc_jobs_are_taken(&p->ranges));
 }
 
-/* What waited with workers until all else was done. Parts of one worker are behind each other, so
+/* Nodes of one patch that wait with workers, level by level: when those of a level are tested, all
+   nodes of two patches that could cull one of them have been, as they hang below its ancestors. So
+   which are culled does not depend on who does what. Parts of one worker are behind each other, so
    that mostly it does them. */
-static void do_last(plan *p, int selfs)
+static void do_selfs(plan *p)
+{
+    uint32_t i, count = 1;
+    while (count && !sc_worker_stops(p->w)) {
+        join_marks(p);
+        for (count = i = 0; i < p->workers; i++) {
+            sc_last *last = &p->workspace->worker[i].last;
+            last->self_first = last->self_end;
+            last->self_end = last->self_count;
+            count += divide_up(last->self_end - last->self_first, NODES_AT_ONCE);
+            p->last_end[i] = count;
+        }
+        run_job(p, run_selfs, count, 0);
+        do_waiting(p);
+    }
+}
+
+/* The same for leaf clusters by themselves, which lead to nothing further. */
+static void do_alone(plan *p)
 {
     uint32_t i, count = 0;
     if (sc_worker_stops(p->w)) return;
     join_marks(p);
     for (i = 0; i < p->workers; i++) {
-        sc_last *last = &p->workspace->worker[i].last;
-        last->selfs_wait = 0;
-        count += selfs ? divide_up(last->self_count, NODES_AT_ONCE)
-                       : divide_up(last->alone_count, ALONE_AT_ONCE);
+        count += divide_up(p->workspace->worker[i].last.alone_count, ALONE_AT_ONCE);
         p->last_end[i] = count;
     }
-    run_job(p, selfs ? run_selfs : run_alone, count, 0);
+    run_job(p, run_alone, count, 0);
     do_waiting(p);
 }
 
@@ -413,8 +429,8 @@ static void walk_exact(plan *p)
         do_tests(p);
     }
     do_parts(p);
-    do_last(p, 1);
-    do_last(p, 0);
+    do_selfs(p);
+    do_alone(p);
 }
 
 static void walk_stars(plan *p)
@@ -488,7 +504,6 @@ static void begin_workers(plan *p)
         sc_last *last = &p->workspace->worker[i].last;
         memset(last->marks, 0, model->patch_end);
         last->culled = p->tasks ? p->room->culled : last->marks;
-        last->selfs_wait = 1;
     }
 }
 

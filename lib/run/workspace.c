@@ -188,7 +188,7 @@ static void lay_out_lists(const sc_workspace_sizes *s, layout *l, sc_lists *list
 
 static void lay_out_last(const sc_workspace_sizes *s, layout *l, sc_last *last)
 {
-    last->self = SC_PLACE(l, s->leaves, uint32_t);
+    last->self = SC_PLACE(l, s->patches, uint32_t);
     last->alone = SC_PLACE(l, s->leaves, uint32_t);
     last->culled = last->marks = SC_PLACE(l, s->patches, uint8_t);
 }
@@ -379,7 +379,7 @@ static void begin_worker(const sc_model *model, sc_workspace *workspace,
     sc_kept_leaves_some(&w->kept);
     memset(w->lists.count, 0, sizeof w->lists.count);
     w->last.culled = w->last.marks;
-    w->last.self_count = w->last.alone_count = w->last.selfs_wait = 0;
+    w->last.self_count = w->last.alone_count = w->last.self_first = w->last.self_end = 0;
     w->ball.center = SC_NONE;
     w->found_count = 0;
     w->count = 0;
