@@ -458,7 +458,7 @@ static void ends_early(void)
         step_answer all = step_make_answer(100000), a = step_make_answer(100000);
         sc_step_options o = step_plain_options();
         volatile uint32_t flag = 1;
-        uint64_t budget = 1, work = 0;
+        uint64_t budget = 1, work = 0, stopped = 0;
         sc_status status = SC_ERROR_INCOMPLETE;
         all.stats.struct_size = sizeof(all.stats);
         all.result.stats = &all.stats;
@@ -474,9 +474,11 @@ static void ends_early(void)
             status = sc_query_step(s.model, s.workspace, &from, &to, &o, &a.result);
             CHECK(status == SC_OK || budget <= work);
             CHECK(status == SC_ERROR_INCOMPLETE || status == SC_OK);
+            stopped += status == SC_ERROR_INCOMPLETE;
             CHECK(a.result.edge_edge_count <= all.result.edge_edge_count);
         }
         CHECK(a.result.edge_edge_count == all.result.edge_edge_count);
+        CHECK_MSG(stopped > 3, "%" PRIu64 " budgets were too small", stopped);
         step_free_answer(&all);
         step_free_answer(&a);
     }

@@ -242,6 +242,10 @@ static void budgets(void)
             sc_stats stats;
             sc_result r;
             sc_pair *all, *found;
+            if (round % 3 == 2) { /* a stage of its own */
+                o.method = SC_METHOD_SCTT;
+                o.contour = SC_CONTOUR_STAR;
+            }
             ask(&s, &o, NULL, 0, &stats, &r);
             all = (sc_pair *)test_allocate(r.count * sizeof(sc_pair));
             found = (sc_pair *)test_allocate(r.count * sizeof(sc_pair));
