@@ -242,7 +242,7 @@ static void budgets(void)
             sc_stats stats;
             sc_result r;
             sc_pair *all, *found;
-            if (round % 3 == 2) { /* a stage of its own */
+            if (round % 3 == 2) { /* the star test is a stage of its own */
                 o.method = SC_METHOD_SCTT;
                 o.contour = SC_CONTOUR_STAR;
             }

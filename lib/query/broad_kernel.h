@@ -189,8 +189,8 @@ static inline unsigned list_near_pairs(sc_worker *w, uint32_t item, uint32_t fir
 
 /* Lists pairs of a leaf cluster with those numbered from first on, of which bits of a mask are set.
    They are all above it; or all below it, of pairs that the test tree leaves to boxes: then they
-   share no points with it, unless both are crowded (build/neighbors.h). Which of two that share no
-   points comes first is the same. */
+   share no points with it, unless both are crowded (build/neighbors.h). In which order two that
+   share no points are listed makes no difference. */
 static inline void list_leaf_pairs(sc_worker *w, uint32_t item, uint32_t first, unsigned mask)
 {
     const uint32_t leaf = item & SC_ITEM;

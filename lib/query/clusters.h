@@ -22,7 +22,8 @@ enum { SC_MADE_LEAVES = 64 };
    at a time. */
 enum { SC_ROWS_LISTED = 512, SC_ROWS_LIST = SC_ROWS_LISTED + SC_LEAF_PAIRS + 2 * 16 };
 
-/* Two leaf clusters, in any order unless they have a list, and what is known of pairs of their triangles. */
+/* Two leaf clusters, in any order unless they have a list, and what is known of pairs of their
+   triangles. */
 typedef struct sc_leaf_pair {
     uint32_t a, b;
     uint32_t bit; /* of items: they follow a contour test */

@@ -89,8 +89,8 @@ enum {
     SC_MOVING_MAX = SC_MOVING_ENOUGH + SC_MOVING_LISTED + SC_LEAF_MAX
 };
 
-/* Two leaf clusters, a < b if they share points, or one twice; and where sc_model_share_leaf has them, or SC_NONE, with
-   what sc_model_share_touch has, and the bits below. */
+/* Two leaf clusters, a < b if they share points, or one twice; and where sc_model_share_leaf has
+   them, or SC_NONE, with what sc_model_share_touch has, and the bits below. */
 typedef struct sc_cluster_pair {
     uint32_t a, b, shared, known;
 } sc_cluster_pair;

@@ -46,7 +46,7 @@ typedef struct sc_share {
     uint32_t halt;     /* enough is known */
 } sc_share;
 
-/* What waits until all else is done, since it may turn out that it need not be looked at: a patch
+/* What waits for tests of other nodes, since it may turn out that it need not be looked at: a patch
    that is in a node of two that was culled is culled with it, and a leaf cluster by itself is, with
    another one that shares points with it and is dropped. */
 typedef struct sc_last {
