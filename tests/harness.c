@@ -86,6 +86,12 @@ uint32_t test_random_below(uint32_t bound)
     return (uint32_t)(((test_random() >> 32) * bound) >> 32);
 }
 
+uint32_t test_random_part(uint32_t mask)
+{
+    uint32_t some = mask & (uint32_t)test_random();
+    return some ? some : mask;
+}
+
 double test_random_unit(void)
 {
     return (double)(test_random() >> 11) * 0x1p-53;
@@ -116,6 +122,11 @@ uint32_t test_iterations_at_least(uint32_t count, uint32_t least)
 {
     uint32_t scaled = test_iterations(count);
     return scaled < least ? least : scaled;
+}
+
+int test_is_full(void)
+{
+    return test_iterations(100) >= 100;
 }
 
 void *test_allocate(size_t size)

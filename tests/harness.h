@@ -79,6 +79,7 @@ void test_skip(const char *format, ...) SC_TEST_PRINTF(1, 2);
  */
 uint64_t test_random(void);
 uint32_t test_random_below(uint32_t bound);        /* 0 to bound - 1; bound > 0 */
+uint32_t test_random_part(uint32_t mask);          /* some of these bits, or all */
 double test_random_unit(void);                     /* [0, 1), 53 bits */
 double test_random_range(double low, double high); /* uniform between */
 uint64_t test_random_state(void);                  /* printed with a failure, goes back by ... */
@@ -90,6 +91,10 @@ uint32_t test_iterations(uint32_t count);
 /* The same, but at least `least`: for tests that ask at the end whether they saw enough of what
    they are about, which a few trials may not have. */
 uint32_t test_iterations_at_least(uint32_t count, uint32_t least);
+
+/* Whether that leaves out nothing: shares and numbers of cases are asked for where there are cases
+   enough. */
+int test_is_full(void);
 
 /* malloc that ends the program when there is no memory; free as usual. size 0 is allowed. */
 void *test_allocate(size_t size);

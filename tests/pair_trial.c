@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "harness.h"
 const trial_way trial_ways[TRIAL_WAYS] = {
     {"default", SC_METHOD_DEFAULT, SC_CONTOUR_DEFAULT, SC_REST_CACHE_ON},
     {"sctt", SC_METHOD_SCTT, SC_CONTOUR_DEFAULT, SC_REST_CACHE_ON},

@@ -9,7 +9,6 @@
 
 #include <stdint.h>
 
-#include "harness.h"
 #include "inputs.h"
 #include "oracle.h"
 #include "soups.h"

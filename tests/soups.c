@@ -31,6 +31,14 @@ soup soup_copy(const soup *source)
     return s;
 }
 
+double *soup_copy_positions(const soup *source)
+{
+    size_t bytes = 3 * (size_t)source->vertex_count * sizeof(double);
+    double *copy = (double *)test_allocate(bytes);
+    memcpy(copy, source->positions, bytes);
+    return copy;
+}
+
 void soup_free(soup *s)
 {
     free(s->positions);

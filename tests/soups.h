@@ -20,6 +20,7 @@ typedef struct soup {
 
 soup soup_make(uint32_t vertex_count, uint32_t triangle_count); /* contents unset */
 soup soup_copy(const soup *source);
+double *soup_copy_positions(const soup *source); /* 3 * vertex_count; the caller frees them */
 void soup_free(soup *s);
 
 /* 2 to 40 triangles on integer points 0 to range: sharing, repeats, duplicates, planes, lines,

@@ -33,14 +33,6 @@ static double hair(double low, double high)
     return chance(2) ? h : -h;
 }
 
-static double *copy_positions(const soup *mesh)
-{
-    size_t bytes = 3 * (size_t)mesh->vertex_count * sizeof(double);
-    double *copy = (double *)test_allocate(bytes);
-    memcpy(copy, mesh->positions, bytes);
-    return copy;
-}
-
 /* A step of a mesh that does not move yet. */
 static step begin(const char *name, soup mesh)
 {
@@ -48,8 +40,8 @@ static step begin(const char *name, soup mesh)
     memset(&s, 0, sizeof(s));
     s.name = name;
     s.mesh = mesh;
-    s.start = copy_positions(&mesh);
-    s.end = copy_positions(&mesh);
+    s.start = soup_copy_positions(&mesh);
+    s.end = soup_copy_positions(&mesh);
     s.type = SC_DOUBLE;
     s.size = 1;
     return s;

@@ -106,13 +106,6 @@ static uint64_t check_ways(const subject *s, uint32_t kind, uint32_t contact)
     return count;
 }
 
-static double *copy_positions(const soup *mesh)
-{
-    double *p = (double *)test_allocate(3 * (size_t)mesh->vertex_count * sizeof(double));
-    memcpy(p, mesh->positions, 3 * (size_t)mesh->vertex_count * sizeof(double));
-    return p;
-}
-
 /* The poses; those that crumple leave hardly a normal cone, those that bend leave most. */
 enum { POSES = 7 };
 
@@ -352,7 +345,7 @@ static void culling_saves_work(void)
     s.mesh = "cloth";
     s.pose_name = "waved";
     if (build(&s, &mesh, NULL, "fast")) {
-        double *p = copy_positions(&mesh);
+        double *p = soup_copy_positions(&mesh);
         answer flat, all, waved, all_waved;
         s.pose = input_plain_pose(p, mesh.vertex_count);
         flat = ask(&s, &star, 0, 0);
@@ -415,7 +408,7 @@ static void cat(void)
     s.mesh = "cat";
     if (!read_large("cat_x4.ply", &mesh)) return;
     if (build(&s, &mesh, NULL, "fast")) {
-        double *p = copy_positions(&mesh);
+        double *p = soup_copy_positions(&mesh);
         uint64_t missed = 0;
         s.pose = input_plain_pose(p, mesh.vertex_count);
         for (uint32_t i = 1; i < POSES; i += 4) { /* bent and rough */

@@ -6,7 +6,6 @@
  */
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,11 +16,9 @@
 #include "pose/dnc.h"
 #include "pose/pose_kernels.h"
 #include "pose/positions.h"
+#include "posed_model.h"
 #include "pose/refit.h"
 #include "run/workspace.h"
-
-/* What is asked where nothing is. */
-static sc_question nothing_asked;
 
 /* A waved cloth with its cones. */
 typedef struct scene {
@@ -43,7 +40,7 @@ static int open_scene(scene *s)
         return 0;
     soup_smooth(s->mesh.positions, s->mesh.vertex_count, 0.05);
     pose = input_plain_pose(s->mesh.positions, s->mesh.vertex_count);
-    sc_workspace_begin(s->model, s->workspace, &nothing_asked);
+    sc_workspace_begin(s->model, s->workspace, &posed_model_nothing_asked);
     if (!CHECK(sc_positions_read(s->model, &pose, 24, &s->workspace->frame) == SC_OK)) return 0;
     sc_dnc_update(s->model, &s->workspace->frame);
     return 1;
@@ -101,7 +98,7 @@ static void cones_of_groups(void)
             for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
                 const uint32_t count = model->leaf_count;
                 w->frame.kernels = sc_kernels_for(isa);
-                sc_workspace_begin(model, w, &nothing_asked);
+                sc_workspace_begin(model, w, &posed_model_nothing_asked);
                 if (!CHECK(sc_positions_read(model, &pose, 24, &w->frame) == SC_OK)) break;
                 sc_dnc_update(model, &w->frame);
                 CHECK(sc_dnc_validate(model, &w->frame));
@@ -214,7 +211,7 @@ static void boxes(void)
         low[0] = 77;
         sc_refit_boxes(s.model, &s.workspace->frame);
         CHECK(low[0] == 77);
-        sc_workspace_begin(s.model, s.workspace, &nothing_asked);
+        sc_workspace_begin(s.model, s.workspace, &posed_model_nothing_asked);
         sc_refit_boxes(s.model, &s.workspace->frame);
         CHECK(low[0] == right);
     }
