@@ -19,375 +19,10 @@
 #include "inputs.h"
 #include "oracle.h"
 #include "shapes.h"
+#include "soups.h"
 #include "starcontour.h"
-#include "step_oracle.h"
+#include "step_truth.h"
 #include "steps.h"
-
-enum { VERTEX_FACE = 0, EDGE_EDGE = 1, KINDS = 2, DIRECTIONS = 13 };
-
-static const char *const kind_names[KINDS] = {"vertex-face", "edge-edge"};
-
-/* ------------------------------------------------------------------------------------------------
- * Brute force
- */
-
-/* Four points, as the oracle takes them. */
-typedef const double (*points)[3];
-
-/* A mesh in motion, as the oracle sees it. */
-typedef struct motion {
-    const uint32_t *triangles;
-    uint32_t vertex_count, triangle_count, edge_count;
-    uint32_t *corner; /* 3 * triangle_count: vertices after welding */
-    uint32_t *edge;   /* edge_count corners 3 t + k, ascending */
-    uint8_t *used;    /* vertex_count: represents a vertex of a triangle */
-    double *ends[2];  /* 3 * vertex_count */
-    double *along[2]; /* DIRECTIONS * vertex_count */
-    double size;      /* largest absolute value along a direction */
-    double extent;    /* largest extent of the box round both poses */
-} motion;
-
-static const double directions[DIRECTIONS][3] = {
-    {1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {1, 0, 1}, {1, 0, -1},
-    {0, 1, 1}, {0, 1, -1}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
-
-static uint32_t edge_start(const motion *m, uint32_t corner)
-{
-    return m->corner[corner];
-}
-
-static uint32_t edge_end(const motion *m, uint32_t corner)
-{
-    return m->corner[corner / 3 * 3 + (corner + 1) % 3];
-}
-
-/* Whether a corner is the first to name its edge. */
-static int names_edge(const motion *m, uint32_t corner)
-{
-    uint32_t a = edge_start(m, corner), b = edge_end(m, corner);
-    if (a == b) return 0;
-    for (uint32_t c = 0; c < corner; ++c) {
-        uint32_t p = edge_start(m, c), q = edge_end(m, c);
-        if ((p == a && q == b) || (p == b && q == a)) return 0;
-    }
-    return 1;
-}
-
-static motion motion_make(const soup *mesh, const double *start, const double *end,
-                          const uint32_t *weld)
-{
-    const double *given[2] = {start, end};
-    uint32_t n = mesh->vertex_count, corners = 3 * mesh->triangle_count;
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    motion m;
-    memset(&m, 0, sizeof(m));
-    m.triangles = mesh->triangles;
-    m.vertex_count = n;
-    m.triangle_count = mesh->triangle_count;
-    m.corner = (uint32_t *)test_allocate(corners * sizeof(uint32_t));
-    m.edge = (uint32_t *)test_allocate(corners * sizeof(uint32_t));
-    m.used = (uint8_t *)test_allocate(n);
-    memset(m.used, 0, n);
-    for (uint32_t c = 0; c < corners; ++c) {
-        m.corner[c] = weld[mesh->triangles[c]];
-        m.used[m.corner[c]] = 1;
-    }
-    for (uint32_t c = 0; c < corners; ++c)
-        if (names_edge(&m, c)) m.edge[m.edge_count++] = c;
-    for (int e = 0; e < 2; ++e) {
-        m.ends[e] = (double *)test_allocate(3 * (size_t)n * sizeof(double));
-        m.along[e] = (double *)test_allocate(DIRECTIONS * (size_t)n * sizeof(double));
-        memcpy(m.ends[e], given[e], 3 * (size_t)n * sizeof(double));
-        for (uint32_t v = 0; v < n; ++v) {
-            const double *p = given[e] + 3 * (size_t)v;
-            if (!m.used[v]) continue;
-            for (int k = 0; k < 3; ++k) {
-                low[k] = fmin(low[k], p[k]);
-                high[k] = fmax(high[k], p[k]);
-            }
-            for (int i = 0; i < DIRECTIONS; ++i) {
-                const double *d = directions[i];
-                double x = d[0] * p[0] + d[1] * p[1] + d[2] * p[2];
-                m.along[e][DIRECTIONS * (size_t)v + (size_t)i] = x;
-                m.size = fmax(m.size, fabs(x));
-            }
-        }
-    }
-    for (int k = 0; k < 3; ++k) m.extent = fmax(m.extent, high[k] - low[k]);
-    return m;
-}
-
-static void motion_free(motion *m)
-{
-    free(m->corner);
-    free(m->edge);
-    free(m->used);
-    for (int e = 0; e < 2; ++e) {
-        free(m->ends[e]);
-        free(m->along[e]);
-    }
-}
-
-/* The four vertices of a pair: vertex and face, or edge and edge. Returns how many belong to the
-   first. */
-static uint32_t pair_vertices(const motion *m, int kind, sc_pair pair, uint32_t v[4])
-{
-    if (kind == VERTEX_FACE) {
-        v[0] = pair.a;
-        for (uint32_t k = 0; k < 3; ++k) v[1 + k] = m->corner[3 * (size_t)pair.b + k];
-        return 1;
-    }
-    v[0] = edge_start(m, pair.a);
-    v[1] = edge_end(m, pair.a);
-    v[2] = edge_start(m, pair.b);
-    v[3] = edge_end(m, pair.b);
-    return 2;
-}
-
-/* Whether a pair stays farther apart than thickness, by a simple argument: along some direction it
-   does so at both ends, hence all the time. */
-static int stays_apart(const motion *m, const uint32_t v[4], uint32_t first, double thickness)
-{
-    for (int i = 0; i < DIRECTIONS; ++i) {
-        const double *d = directions[i];
-        double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-        double wanted = thickness * length * (1 + 1e-9) + 1e-12 * m->size;
-        int above = 1, below = 1;
-        for (int e = 0; e < 2 && (above || below); ++e) {
-            double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-            for (uint32_t k = 0; k < 4; ++k) {
-                double x = m->along[e][DIRECTIONS * (size_t)v[k] + (size_t)i];
-                low[k >= first] = fmin(low[k >= first], x);
-                high[k >= first] = fmax(high[k >= first], x);
-            }
-            above &= low[0] - high[1] > wanted;
-            below &= low[1] - high[0] > wanted;
-        }
-        if (above || below) return 1;
-    }
-    return 0;
-}
-
-static void pair_points(const motion *m, const uint32_t v[4], double p[2][4][3])
-{
-    for (int e = 0; e < 2; ++e)
-        for (int k = 0; k < 4; ++k)
-            memcpy(p[e][k], m->ends[e] + 3 * (size_t)v[k], 3 * sizeof(double));
-}
-
-/* ---- distances in rounded arithmetic: to find times at which the exact question is worth asking
-   ---- */
-
-static double dot(const double *u, const double *v)
-{
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-}
-
-static double clamp(double x)
-{
-    return x > 0 ? fmin(x, 1) : 0;
-}
-
-/* The squared distance of two segments, from a along u and from b along v. */
-static double segments_apart(const double *a, const double *u, const double *b, const double *v)
-{
-    double w[3], uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), least = HUGE_VAL;
-    double determinant = uu * vv - uv * uv, wu, wv, s[6], t[6];
-    int count = 0;
-    for (int k = 0; k < 3; ++k) w[k] = b[k] - a[k];
-    wu = dot(w, u);
-    wv = dot(w, v);
-    for (int end = 0; end < 2; ++end) { /* the nearest points to all four ends, and inside */
-        s[count] = end;
-        t[count++] = vv > 0 ? clamp((end * uv - wv) / vv) : 0;
-        t[count] = end;
-        s[count++] = uu > 0 ? clamp((end * uv + wu) / uu) : 0;
-    }
-    if (determinant > 0) {
-        s[count] = clamp((wu * vv - wv * uv) / determinant);
-        t[count++] = clamp((wu * uv - wv * uu) / determinant);
-    }
-    for (int i = 0; i < count; ++i) {
-        double d[3];
-        for (int k = 0; k < 3; ++k) d[k] = w[k] + t[i] * v[k] - s[i] * u[k];
-        least = fmin(least, dot(d, d));
-    }
-    return least;
-}
-
-/* The distance of a pair at a time, about. */
-static double distance_at(int kind, double p[2][4][3], double time)
-{
-    double x[4][3], u[3], v[3], w[3], n[3] = {0, 0, 0}, least = HUGE_VAL;
-    for (int i = 0; i < 4; ++i)
-        for (int k = 0; k < 3; ++k) x[i][k] = (1 - time) * p[0][i][k] + time * p[1][i][k];
-    if (kind == EDGE_EDGE) {
-        for (int k = 0; k < 3; ++k) {
-            u[k] = x[1][k] - x[0][k];
-            v[k] = x[3][k] - x[2][k];
-        }
-        return sqrt(segments_apart(x[0], u, x[2], v));
-    }
-    for (int i = 1; i < 4; ++i) {
-        for (int k = 0; k < 3; ++k) u[k] = x[i % 3 + 1][k] - x[i][k];
-        least = fmin(least, segments_apart(x[0], n, x[i], u));
-    }
-    for (int k = 0; k < 3; ++k) {
-        u[k] = x[2][k] - x[1][k];
-        v[k] = x[3][k] - x[1][k];
-        w[k] = x[0][k] - x[1][k];
-    }
-    for (int k = 0; k < 3; ++k)
-        n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
-    if (dot(n, n) > 0) {
-        double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), wu = dot(w, u), wv = dot(w, v);
-        double determinant = uu * vv - uv * uv;
-        double s = (wu * vv - wv * uv) / determinant, t = (wv * uu - wu * uv) / determinant;
-        if (s >= 0 && t >= 0 && s + t <= 1) least = fmin(least, dot(w, n) * dot(w, n) / dot(n, n));
-    }
-    return sqrt(least);
-}
-
-/* The time from low to high when the distance is least, about: the thirds of the interval in
-   turn. */
-static double nearest_time(int kind, double p[2][4][3], double low, double high)
-{
-    for (int i = 0; i < 40; ++i) {
-        double a = low + (high - low) / 3, b = high - (high - low) / 3;
-        if (distance_at(kind, p, a) < distance_at(kind, p, b))
-            high = b;
-        else
-            low = a;
-    }
-    return low + (high - low) / 2;
-}
-
-/* ---- what is certain ---- */
-
-/* Whether a pair surely comes as near as the separation, and if so a time that its first such time
-   is not after. Without separation that is all there is to know; else some pairs that only just do
-   are not seen. */
-static int surely_collides(const motion *m, int kind, sc_pair pair, double separation, double *when)
-{
-    enum { SAMPLES = 16 };
-    uint32_t v[4], first = pair_vertices(m, kind, pair, v);
-    double p[2][4][3], low, at[SAMPLES + 1];
-    int collides;
-    if (stays_apart(m, v, first, separation)) return 0;
-    pair_points(m, v, p);
-    collides = step_oracle_touches((step_oracle_kind)kind, (points)p[0], (points)p[1], &low, when);
-    if (separation == 0) return collides;
-    if (!collides) *when = 1;
-    for (int i = 0; i <= SAMPLES; ++i) at[i] = distance_at(kind, p, (double)i / SAMPLES);
-    for (int i = 0; i <= SAMPLES && (double)(i - 1) / SAMPLES < *when; ++i) {
-        double before = at[i > 0 ? i - 1 : 0], after = at[i < SAMPLES ? i + 1 : SAMPLES], t;
-        if (at[i] > before || at[i] > after) continue; /* no local minimum */
-        t = nearest_time(kind, p, fmax(0, (double)(i - 1) / SAMPLES),
-                         fmin(1, (double)(i + 1) / SAMPLES));
-        if (!(t < *when) && collides) break;
-        if (step_oracle_is_within((step_oracle_kind)kind, (points)p[0], (points)p[1], t, separation,
-                                  0)) {
-            *when = t;
-            return 1;
-        }
-        t = (double)i / SAMPLES;
-        if (step_oracle_is_within((step_oracle_kind)kind, (points)p[0], (points)p[1], t, separation,
-                                  0)) {
-            *when = t;
-            return 1;
-        }
-    }
-    return collides;
-}
-
-/* Whether a pair is within separation + tolerance at a time, which is certain. The tolerance is at
-   least 2^-32 of the largest difference of a coordinate between its two. */
-static int is_near(const motion *m, int kind, sc_pair pair, double time, double separation,
-                   double tolerance)
-{
-    uint32_t v[4], first = pair_vertices(m, kind, pair, v);
-    double p[2][4][3], size = 0;
-    pair_points(m, v, p);
-    for (int e = 0; e < 2; ++e)
-        for (uint32_t i = 0; i < first; ++i)
-            for (uint32_t j = first; j < 4; ++j)
-                for (int k = 0; k < 3; ++k) size = fmax(size, fabs(p[e][i][k] - p[e][j][k]));
-    tolerance = fmax(tolerance, 0x1p-32 * size) * (1 + 1e-12);
-    return step_oracle_is_within((step_oracle_kind)kind, (points)p[0], (points)p[1], time,
-                                 separation, tolerance);
-}
-
-static int share(const uint32_t *v, uint32_t first)
-{
-    for (uint32_t i = 0; i < first; ++i)
-        for (uint32_t k = first; k < 4; ++k)
-            if (v[i] == v[k]) return 1;
-    return 0;
-}
-
-/* Pairs, and for each a time that its first contact is not after. */
-typedef struct truth {
-    oracle_list list;
-    double *when;
-} truth;
-
-static void append(truth *found, sc_pair pair, double when)
-{
-    oracle_list *list = &found->list;
-    if (list->count == list->capacity) {
-        list->capacity = 2 * list->capacity + 64;
-        list->pairs = (sc_pair *)realloc(list->pairs, list->capacity * sizeof(sc_pair));
-        found->when = (double *)realloc(found->when, list->capacity * sizeof(double));
-        if (list->pairs == NULL || found->when == NULL) abort();
-    }
-    list->pairs[list->count] = pair;
-    found->when[list->count++] = when;
-}
-
-/* Whether nothing ever leaves a plane across an axis: then each question takes the oracle a
-   millisecond. */
-static int is_flat(const motion *m)
-{
-    for (int k = 0; k < 3; ++k) {
-        double first = (double)NAN;
-        int flat = 1;
-        for (int e = 0; e < 2; ++e)
-            for (uint32_t v = 0; v < m->vertex_count; ++v) {
-                double x = m->ends[e][3 * (size_t)v + (size_t)k];
-                if (!m->used[v]) continue;
-                if (isnan(first)) first = x;
-                flat &= x == first;
-            }
-        if (flat) return 1;
-    }
-    return 0;
-}
-
-/* All pairs of a kind that surely come as near as the separation, sorted; of flat meshes a part of
-   them, drawn by lot. */
-static truth find_truth(const motion *m, int kind, double separation)
-{
-    truth found;
-    double when;
-    uint32_t rows = kind == VERTEX_FACE ? m->vertex_count : m->edge_count;
-    uint32_t one_of = is_flat(m) ? 1 + m->triangle_count * m->triangle_count / 100 : 1;
-    memset(&found, 0, sizeof(found));
-    for (uint32_t i = 0; i < rows; ++i) {
-        uint32_t from = kind == VERTEX_FACE ? 0 : i + 1;
-        uint32_t to = kind == VERTEX_FACE ? m->triangle_count : m->edge_count;
-        if (kind == VERTEX_FACE && !m->used[i]) continue;
-        for (uint32_t j = from; j < to; ++j) {
-            sc_pair pair;
-            uint32_t v[4], first;
-            pair.a = kind == VERTEX_FACE ? i : m->edge[i];
-            pair.b = kind == VERTEX_FACE ? j : m->edge[j];
-            first = pair_vertices(m, kind, pair, v);
-            if (share(v, first) || (one_of > 1 && test_random_below(one_of))) continue;
-            if (surely_collides(m, kind, pair, separation, &when)) append(&found, pair, when);
-        }
-    }
-    return found;
-}
 
 /* ------------------------------------------------------------------------------------------------
  * Queries
@@ -407,6 +42,7 @@ static const way ways[] = {
     {"two boxes, base", SC_STEP_METHOD_TWO_BOXES, SC_CONTOUR_DEFAULT, SC_SIMD_BASE},
     {"swept", SC_STEP_METHOD_SWEPT, SC_CONTOUR_DEFAULT, SC_SIMD_BEST},
 };
+
 enum { WAYS = sizeof(ways) / sizeof(ways[0]) };
 
 /* What is asked, and of what. */
@@ -423,16 +59,16 @@ typedef struct question {
 typedef struct answer {
     sc_status status;
     sc_step_result result;
-    sc_pair *pairs[KINDS];
-    double *times[KINDS];
-    uint64_t count[KINDS], capacity[KINDS];
+    sc_pair *pairs[STEP_KINDS];
+    double *times[STEP_KINDS];
+    uint64_t count[STEP_KINDS], capacity[STEP_KINDS];
 } answer;
 
 static const sc_pair guard_pair = {0xdeadbeefu, 0xfeedfaceu};
 
 static void answer_free(answer *a)
 {
-    for (int kind = 0; kind < KINDS; ++kind) {
+    for (int kind = 0; kind < STEP_KINDS; ++kind) {
         free(a->pairs[kind]);
         free(a->times[kind]);
     }
@@ -454,9 +90,9 @@ static answer ask(const question *q, const way *w, uint32_t output, uint32_t pai
     options.simd = w->simd;
     options.separation = q->separation;
     options.tolerance = q->tolerance;
-    a.capacity[VERTEX_FACE] = faces;
-    a.capacity[EDGE_EDGE] = edges;
-    for (int kind = 0; kind < KINDS; ++kind) {
+    a.capacity[STEP_VERTEX_FACE] = faces;
+    a.capacity[STEP_EDGE_EDGE] = edges;
+    for (int kind = 0; kind < STEP_KINDS; ++kind) {
         uint64_t room = a.capacity[kind] + 1;
         a.pairs[kind] = (sc_pair *)test_allocate(room * sizeof(sc_pair));
         a.times[kind] = (double *)test_allocate(room * sizeof(double));
@@ -467,20 +103,20 @@ static answer ask(const question *q, const way *w, uint32_t output, uint32_t pai
     }
     a.result.struct_size = sizeof(a.result);
     a.result.vertex_face_capacity = faces;
-    a.result.vertex_faces = a.pairs[VERTEX_FACE];
-    a.result.vertex_face_times = a.times[VERTEX_FACE];
+    a.result.vertex_faces = a.pairs[STEP_VERTEX_FACE];
+    a.result.vertex_face_times = a.times[STEP_VERTEX_FACE];
     a.result.edge_edge_capacity = edges;
-    a.result.edge_edges = a.pairs[EDGE_EDGE];
-    a.result.edge_edge_times = a.times[EDGE_EDGE];
+    a.result.edge_edges = a.pairs[STEP_EDGE_EDGE];
+    a.result.edge_edge_times = a.times[STEP_EDGE_EDGE];
     a.result.collides = 7;
     a.result.earliest = -7;
     a.status = sc_query_step(q->model, q->workspace, q->start, q->end, &options, &a.result);
-    a.count[VERTEX_FACE] = a.result.vertex_face_count;
-    a.count[EDGE_EDGE] = a.result.edge_edge_count;
-    for (int kind = 0; kind < KINDS; ++kind)
+    a.count[STEP_VERTEX_FACE] = a.result.vertex_face_count;
+    a.count[STEP_EDGE_EDGE] = a.result.edge_edge_count;
+    for (int kind = 0; kind < STEP_KINDS; ++kind)
         CHECK_MSG(memcmp(&a.pairs[kind][a.capacity[kind]], &guard_pair, sizeof(sc_pair)) == 0 &&
                       a.times[kind][a.capacity[kind]] == -7,
-                  "%s, %s: writes behind the end of %s", q->name, w->name, kind_names[kind]);
+                  "%s, %s: writes behind the end of %s", q->name, w->name, step_kind_names[kind]);
     return a;
 }
 
@@ -532,10 +168,10 @@ static uint64_t find(const sc_pair *pairs, uint64_t count, sc_pair pair)
  * Comparing
  */
 
-static void print_pair(const motion *m, int kind, sc_pair pair)
+static void print_pair(const step_motion *m, int kind, sc_pair pair)
 {
     uint32_t v[4];
-    pair_vertices(m, kind, pair, v);
+    step_pair_vertices(m, kind, pair, v);
     for (int k = 0; k < 4; ++k) {
         const double *p = m->ends[0] + 3 * (size_t)v[k], *q = m->ends[1] + 3 * (size_t)v[k];
         printf("    vertex %" PRIu32 ": %.17g %.17g %.17g to %.17g %.17g %.17g\n", v[k], p[0], p[1],
@@ -544,24 +180,24 @@ static void print_pair(const motion *m, int kind, sc_pair pair)
 }
 
 /* The list of the default method: nothing lost, nothing beyond the tolerance, times as promised. */
-static void check_answer(const question *q, const motion *m, const answer *a)
+static void check_answer(const question *q, const step_motion *m, const answer *a)
 {
     double tolerance = q->tolerance > 0 ? q->tolerance : 1e-6 * m->extent * (1 + 1e-6), least = 1;
-    for (int kind = 0; kind < KINDS; ++kind) {
-        truth found = find_truth(m, kind, q->separation);
+    for (int kind = 0; kind < STEP_KINDS; ++kind) {
+        step_truth found = step_truth_find(m, kind, q->separation);
         for (uint64_t i = 0; i < found.list.count; ++i) {
             sc_pair pair = found.list.pairs[i];
             uint64_t at = find(a->pairs[kind], a->count[kind], pair);
-            int ok = CHECK_MSG(at < a->count[kind],
-                               "%s: %s (%" PRIu32 ", %" PRIu32
-                               ") is lost; separation %g, state %" PRIu64,
-                               q->name, kind_names[kind], pair.a, pair.b, q->separation, q->state);
+            int ok = CHECK_MSG(
+                at < a->count[kind],
+                "%s: %s (%" PRIu32 ", %" PRIu32 ") is lost; separation %g, state %" PRIu64, q->name,
+                step_kind_names[kind], pair.a, pair.b, q->separation, q->state);
             if (ok)
                 ok =
                     CHECK_MSG(a->times[kind][at] <= found.when[i],
                               "%s: %s (%" PRIu32 ", %" PRIu32
                               ") collides by %.17g, not after %.17g; separation %g, state %" PRIu64,
-                              q->name, kind_names[kind], pair.a, pair.b, found.when[i],
+                              q->name, step_kind_names[kind], pair.a, pair.b, found.when[i],
                               a->times[kind][at], q->separation, q->state);
             if (!ok && test_failures() <= 3) print_pair(m, kind, pair);
         }
@@ -570,10 +206,11 @@ static void check_answer(const question *q, const motion *m, const answer *a)
             double time = a->times[kind][i];
             CHECK_MSG(i == 0 || is_before(a->pairs[kind][i - 1], pair), "%s: not sorted", q->name);
             if (CHECK_MSG(time >= 0 && time <= 1, "%s: time %g", q->name, time))
-                CHECK_MSG(is_near(m, kind, pair, time, q->separation, tolerance),
+                CHECK_MSG(step_is_near(m, kind, pair, time, q->separation, tolerance),
                           "%s: %s (%" PRIu32 ", %" PRIu32
                           ") is not within tolerance %g at %.17g, state %" PRIu64,
-                          q->name, kind_names[kind], pair.a, pair.b, tolerance, time, q->state);
+                          q->name, step_kind_names[kind], pair.a, pair.b, tolerance, time,
+                          q->state);
             least = fmin(least, time);
         }
         free(found.list.pairs);
@@ -585,7 +222,7 @@ static void check_answer(const question *q, const motion *m, const answer *a)
 
 static void check_same(const question *q, const way *w, const answer *a, const answer *b)
 {
-    for (int kind = 0; kind < KINDS; ++kind) {
+    for (int kind = 0; kind < STEP_KINDS; ++kind) {
         uint64_t i = 0, least = a->count[kind] < b->count[kind] ? a->count[kind] : b->count[kind];
         while (i < least && is_same(a->pairs[kind][i], b->pairs[kind][i]) &&
                memcmp(&a->times[kind][i], &b->times[kind][i], sizeof(double)) == 0)
@@ -593,7 +230,8 @@ static void check_same(const question *q, const way *w, const answer *a, const a
         CHECK_MSG(i == least && a->count[kind] == b->count[kind],
                   "%s: %s of %s: %" PRIu64 " instead of %" PRIu64 ", %" PRIu64
                   " are the same at the head; state %" PRIu64,
-                  q->name, kind_names[kind], w->name, b->count[kind], a->count[kind], i, q->state);
+                  q->name, step_kind_names[kind], w->name, b->count[kind], a->count[kind], i,
+                  q->state);
     }
     CHECK_MSG(memcmp(&a->result.earliest, &b->result.earliest, sizeof(double)) == 0,
               "%s: earliest of %s: %.17g instead of %.17g, state %" PRIu64, q->name, w->name,
@@ -603,7 +241,7 @@ static void check_same(const question *q, const way *w, const answer *a, const a
 /* Every pair of the first, which the way found or should have found, is in the second. */
 static void check_superset(const question *q, const way *w, const answer *a, const answer *b)
 {
-    for (int kind = 0; kind < KINDS; ++kind)
+    for (int kind = 0; kind < STEP_KINDS; ++kind)
         for (uint64_t i = 0; i < a->count[kind]; ++i)
             CHECK_MSG(find(b->pairs[kind], b->count[kind], a->pairs[kind][i]) < b->count[kind],
                       "%s: a pair is in one list of %s, not in the other, state %" PRIu64, q->name,
@@ -629,7 +267,7 @@ static void check_outputs(const question *q, const way *w, const answer *a)
     if (sum == 0) return;
     b = ask(q, w, SC_OUTPUT_PAIRS, SC_STEP_COLLISIONS, SC_STEP_TIMES_EACH,
             test_random() % (a->count[0] + 1), test_random() % (a->count[1] + 1));
-    for (int kind = 0; kind < KINDS; ++kind) {
+    for (int kind = 0; kind < STEP_KINDS; ++kind) {
         CHECK_MSG(b.count[kind] == a->count[kind], "%s: a short array is counted wrongly", q->name);
         for (uint64_t i = 0; i < b.capacity[kind]; ++i)
             CHECK_MSG(is_same(a->pairs[kind][i], b.pairs[kind][i]) &&
@@ -688,7 +326,7 @@ static void check_step(const step *s, uint64_t state, tally *sum)
     q.state = state;
     if (test_random_below(3) == 0) q.tolerance = s->size * pow(10, test_random_range(-9, -3));
     if (q.workspace != NULL) {
-        motion m = motion_make(&s->mesh, s->start, s->end, map);
+        step_motion m = step_motion_make(&s->mesh, s->start, s->end, map);
         answer all = ask_all(&q, &ways[0], SC_STEP_COLLISIONS);
         check_answer(&q, &m, &all);
         for (uint32_t w = 1; w < WAYS; ++w) {
@@ -717,7 +355,7 @@ static void check_step(const step *s, uint64_t state, tally *sum)
         sum->collisions += all.count[0] + all.count[1];
         sum->clean += all.count[0] + all.count[1] == 0;
         answer_free(&all);
-        motion_free(&m);
+        step_motion_free(&m);
     }
     sc_workspace_free(q.workspace);
     sc_model_free(model);
@@ -749,6 +387,7 @@ static void check_maker(step_maker make, int is_about_contours)
               sum.steps, sum.clean, sum.collisions, sum.missed);
     CHECK(sum.collisions > 0 && (sum.missed > 0 || !is_about_contours));
 }
+
 static void steps_nested(void)
 {
     check_maker(step_nested, 1);
@@ -859,10 +498,10 @@ static void steps_any(void)
  */
 
 /* The corner that names an edge with these two vertices, or SC_NONE. */
-static uint32_t name_edge(const motion *m, uint32_t a, uint32_t b)
+static uint32_t name_edge(const step_motion *m, uint32_t a, uint32_t b)
 {
     for (uint32_t i = 0; i < m->edge_count; ++i) {
-        uint32_t p = edge_start(m, m->edge[i]), q = edge_end(m, m->edge[i]);
+        uint32_t p = step_edge_start(m, m->edge[i]), q = step_edge_end(m, m->edge[i]);
         if ((p == a && q == b) || (p == b && q == a)) return m->edge[i];
     }
     return SC_NONE;
@@ -891,7 +530,7 @@ static oracle_list query_edges(const question *q, const sc_pose *pose, uint32_t 
     return list;
 }
 
-static int motion_is_corner(const motion *m, uint32_t triangle, uint32_t vertex)
+static int motion_is_corner(const step_motion *m, uint32_t triangle, uint32_t vertex)
 {
     const uint32_t *c = m->corner + 3 * (size_t)triangle;
     return c[0] == vertex || c[1] == vertex || c[2] == vertex;
@@ -899,21 +538,21 @@ static int motion_is_corner(const motion *m, uint32_t triangle, uint32_t vertex)
 
 /* collides_somehow of a triangle that is one vertex, which has no edges: a collision of that vertex
    with a triangle at the edge. 1 as well if it is a corner of all of these. */
-static int vertex_collides(const motion *m, const answer *a, sc_pair pair, double *least)
+static int vertex_collides(const step_motion *m, const answer *a, sc_pair pair, double *least)
 {
     uint32_t v = m->corner[3 * (size_t)pair.b], others = 0;
     int found = 0;
     for (uint32_t t = 0; t < m->triangle_count; ++t) {
         sc_pair wanted = {v, t};
         uint64_t at;
-        if (!motion_is_corner(m, t, edge_start(m, pair.a)) ||
-            !motion_is_corner(m, t, edge_end(m, pair.a)) || motion_is_corner(m, t, v))
+        if (!motion_is_corner(m, t, step_edge_start(m, pair.a)) ||
+            !motion_is_corner(m, t, step_edge_end(m, pair.a)) || motion_is_corner(m, t, v))
             continue;
         ++others;
-        at = find(a->pairs[VERTEX_FACE], a->count[VERTEX_FACE], wanted);
-        if (at == a->count[VERTEX_FACE]) continue;
+        at = find(a->pairs[STEP_VERTEX_FACE], a->count[STEP_VERTEX_FACE], wanted);
+        if (at == a->count[STEP_VERTEX_FACE]) continue;
         found = 1;
-        *least = fmin(*least, a->times[VERTEX_FACE][at]);
+        *least = fmin(*least, a->times[STEP_VERTEX_FACE][at]);
     }
     if (others == 0) *least = 0;
     return found || others == 0;
@@ -921,19 +560,19 @@ static int vertex_collides(const motion *m, const answer *a, sc_pair pair, doubl
 
 /* Whether a collision is reported of an edge's end with a triangle, or of the edge with one of its
    edges; *least is the earliest time of these. */
-static int collides_somehow(const motion *m, const answer *a, sc_pair pair, double *least)
+static int collides_somehow(const step_motion *m, const answer *a, sc_pair pair, double *least)
 {
-    uint32_t ends[2] = {edge_start(m, pair.a), edge_end(m, pair.a)};
+    uint32_t ends[2] = {step_edge_start(m, pair.a), step_edge_end(m, pair.a)};
     const uint32_t *corner = m->corner + 3 * (size_t)pair.b;
     int found = 0;
     *least = 1;
     if (corner[0] == corner[1] && corner[1] == corner[2]) return vertex_collides(m, a, pair, least);
-    for (int kind = 0; kind < KINDS; ++kind)
-        for (uint32_t k = 0; k < (kind == VERTEX_FACE ? 2u : 3u); ++k) {
+    for (int kind = 0; kind < STEP_KINDS; ++kind)
+        for (uint32_t k = 0; k < (kind == STEP_VERTEX_FACE ? 2u : 3u); ++k) {
             const uint32_t *v = m->corner + 3 * (size_t)pair.b;
             sc_pair wanted = {ends[k % 2], pair.b};
             uint64_t at;
-            if (kind == EDGE_EDGE) {
+            if (kind == STEP_EDGE_EDGE) {
                 uint32_t side = name_edge(m, v[k], v[(k + 1) % 3]);
                 wanted.a = pair.a < side ? pair.a : side;
                 wanted.b = pair.a < side ? side : pair.a;
@@ -956,7 +595,7 @@ static void check_ends(const step *s, uint64_t *changes, uint64_t *touches)
     sc_build_options options;
     question q;
     answer all;
-    motion m;
+    step_motion m;
     oracle_list met[2], proper;
     sc_model *model = NULL;
     memset(&options, 0, sizeof(options));
@@ -972,7 +611,7 @@ static void check_ends(const step *s, uint64_t *changes, uint64_t *touches)
     q.start = &start;
     q.end = &end;
     q.separation = s->separation;
-    m = motion_make(&s->mesh, s->start, s->end, map);
+    m = step_motion_make(&s->mesh, s->start, s->end, map);
     all = ask_all(&q, &ways[0], SC_STEP_COLLISIONS);
     met[0] = query_edges(&q, &start, SC_CONTACT_TOUCHING);
     met[1] = query_edges(&q, &end, SC_CONTACT_TOUCHING);
@@ -994,7 +633,7 @@ static void check_ends(const step *s, uint64_t *changes, uint64_t *touches)
     for (int e = 0; e < 2; ++e) free(met[e].pairs);
     free(proper.pairs);
     answer_free(&all);
-    motion_free(&m);
+    step_motion_free(&m);
     free(map);
     sc_workspace_free(q.workspace);
     sc_model_free(model);
