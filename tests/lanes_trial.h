@@ -45,7 +45,7 @@ static void try_floats(const lanes_input *in, lanes_outcome *out)
     for (i = 0; i < SC_LANES_COUNT; i++) rows[i] = in->number[i] % 15u;
     lanes_rows(in->plain + 1, rows, &x[0], &x[1], &x[2]);
     for (i = 0; i < 3; i++) lanes_store(out->row[48 + i], x[i]);
-    lanes_turned(in->plain, x);
+    lanes_coordinates(in->plain, x);
     for (i = 0; i < 3; i++) lanes_store(out->row[30 + i], x[i]);
     out->one[0] = lanes_sum(evens);
     out->one[1] = lanes_least(evens);

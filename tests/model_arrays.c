@@ -39,9 +39,9 @@ static uint32_t count_connected(const structures *s, const uint32_t *patch, uint
 }
 
 /* What box recursion visits: the descendants of each patch, eight at most, some levels down. */
-static void check_hops(const structures *s, const sc_model *model)
+static void check_box_children(const structures *s, const sc_model *model)
 {
-    const uint32_t *hop = sc_model_hop(model), *leaf = sc_model_leaf(model);
+    const uint32_t *hop = sc_model_box_child(model), *leaf = sc_model_leaf(model);
     uint32_t l, p, wrong = 0;
     for (l = 0; l + 1 < model->level_count; ++l)
         for (p = sc_model_level_first(model)[l]; p + 1 < sc_model_level_first(model)[l + 1]; ++p) {
@@ -226,7 +226,7 @@ static void check_shared_chains(const structures *s, const sc_model *model)
                 shared += same && (k == 0 || p[k] != p[k - 1]);
             }
             expected = expected == 2;
-            if (expected) { /* opposite edges of some chain of either: all of both, and no other shared point */
+            if (expected) { /* edges of a chain of both, and no other shared point */
                 uint32_t most = 0;
                 for (uint32_t k = 0; k < 4; ++k) {
                     uint32_t from[2] = {k & 1 ? chain[0] : 0, k & 2 ? chain[1] : 0}, same = 0;
@@ -408,7 +408,7 @@ void model_arrays_check(const structures *s, const structures_patches *p, const 
         }
     }
     CHECK_MSG(wrong == 0, "%s: triangles of the model are wrong", s->name);
-    check_hops(s, model);
+    check_box_children(s, model);
     check_loops(s, model);
     if (model->triangle_count < 120) check_around(s, model);
     check_fans(s, model);

@@ -114,7 +114,7 @@ static void unit_tiny(const double (*x)[N], double share[N])
 static void box_step(const double (*x)[N], double share[N])
 {
     lanes at[3][3], low, high;
-    sc_leaf_ready ready;
+    sc_leaf_derived ready;
     float one[N], other[N], f[N];
     for (int k = 0; k < 9; ++k) at[k / 3][k % 3] = rounded(x[0]);
     make_boxes(at, N, &ready);
@@ -149,7 +149,7 @@ static void unit_box(const double (*x)[N], double share[N])
 static void sixteen_planes(const double (*x)[N], double share[N])
 {
     lanes at[3][3], p[3], d, bound;
-    sc_leaf_ready ready;
+    sc_leaf_derived ready;
     double exact[N];
     for (int k = 0; k < 3; ++k) read_point(x, 3 * k, at[k]);
     read_point(x, 9, p);
@@ -355,7 +355,7 @@ static void fan_rays(const double (*x)[N], double share[N])
 static void fan_areas(const double (*x)[N], double share[N])
 {
     lanes n[3], at[3][3], area, largest;
-    sc_leaf_ready ready;
+    sc_leaf_derived ready;
     double exact[N];
     read_point(x, 0, n);
     for (int k = 0; k < 3; ++k) read_point(x, 3 + 3 * k, at[k]);
@@ -870,7 +870,7 @@ const rounding_bound rounding_bounds[] = {
     {"base/boxes.h, tiny term", "boxes and points", ROUNDING_UNIT, 1, 1, 1, float_tiny, 0, NULL},
     {"base/boxes.h, tiny term in the unit box", "boxes and points", ROUNDING_UNIT, 1, 1, 1,
      unit_tiny, 0, NULL},
-    {"query/ready_kernel.h, boxes of triangles", "boxes and points", ROUNDING_UNIT, 1, 1, 1,
+    {"query/derived_kernel.h, boxes of triangles", "boxes and points", ROUNDING_UNIT, 1, 1, 1,
      box_step, 0, NULL},
     {"pose/points_kernel.h, points", "boxes and points", ROUNDING_UNIT, 1, 1, 1, unit_box, 0.98,
      NULL},

@@ -214,15 +214,15 @@ static void check_rows(const scene *s, tally *t)
     for (uint32_t kept = 0;
          kept < (w->worker->kept.mask == SC_KEEPS_ALL ? m->leaf_count : w->worker->kept.spare + 1);
          ++kept) {
-        const sc_leaf_ready *ready = &w->worker->kept.ready[kept];
+        const sc_leaf_derived *derived = &w->worker->kept.derived[kept];
         const uint32_t *first = sc_model_leaf_first(m) + w->worker->kept.known[kept].leaf;
         if (w->worker->kept.known[kept].epoch != w->frame.epoch) continue;
         for (uint32_t c = 0; c < 9 * (first[1] - first[0]); ++c, ++t->rows) {
             uint32_t i = c / 9, k = c % 3, p = sc_model_triangle(m)[3 * first[0] + c / 3];
-            wrong += !is_between(w, p, k, ready->side[k][i], ready->side[k + 3][i]);
+            wrong += !is_between(w, p, k, derived->side[k][i], derived->side[k + 3][i]);
         }
         for (uint32_t i = first[1] - first[0]; i < SC_LEAF_MAX; ++i)
-            for (uint32_t k = 0; k < 6; ++k) wrong += isnan(ready->side[k][i]) ? 0 : 1;
+            for (uint32_t k = 0; k < 6; ++k) wrong += isnan(derived->side[k][i]) ? 0 : 1;
     }
     if (!CHECK_MSG(wrong == 0,
                    "%s: %" PRIu32 " sides of triangles; the adversary's random state %" PRIu64,

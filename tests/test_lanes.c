@@ -96,7 +96,7 @@ static void all_forms_agree(void)
     if (sc_isa_best() < SC_ISA_AVX512) test_skip("what this machine does not have");
 }
 
-/* Point i of plain, of four floats in turned places. */
+/* Point i of plain, of four floats in transposed places. */
 static const float *turned_point(const lanes_input *in, uint32_t i)
 {
     static const uint8_t place[16] = {0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15};

@@ -3,10 +3,10 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * SC_NEVER(x)    x is false and SC_ALWAYS(x) true, for a reason that stands at the line; the check is
- *                there in case the reason is wrong. Debug builds assert it.
- * SC_HARDLY(x)   x can be true, but it takes more memory than a test has, another machine or library, or
- *                a coincidence that no test can make.
+ * SC_NEVER(x)    x is false and SC_ALWAYS(x) true, for a reason that stands at the line; the check
+ *                is there in case the reason is wrong. Debug builds assert it.
+ * SC_HARDLY(x)   x can be true, but it takes more memory than a test has, another machine or
+ *                library, or a coincidence that no test can make.
  *
  * Where coverage is measured they are constants, so that what depends on them is not compiled;
  * elsewhere they are x. The names, and the idea, are those of SQLite and H3.

@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * Whatever skips work widens by a bound, so that nothing is lost to rounding. Here are the numbers
- * that bounds are made of, with their derivations. Where a bound is a formula of several of them, it
- * is derived at the line, in these names. lib/GUARANTEE.md lists all bounds, with the tests that
+ * that bounds are made of, with their derivations. Where a bound is a formula of several of them,
+ * it is derived at the line, in these names. lib/GUARANTEE.md lists all bounds, with the tests that
  * fail when one is left out or halved.
  *
  * An operation returns the true value times 1 + e, |e| <= u, half a unit in the last place of 1. A
@@ -20,9 +20,9 @@
 #define SC_BOUNDS_V 5.9604644775390625e-8f
 
 /*
- * Signs of determinants in doubles (base/predicates.h). Multiply one out into monomials, products of
- * differences of coordinates. A rounding multiplies some monomials by 1 + e; let n be the most that
- * any of them meets:
+ * Signs of determinants in doubles (base/predicates.h). Multiply one out into monomials, products
+ * of differences of coordinates. A rounding multiplies some monomials by 1 + e; let n be the most
+ * that any of them meets:
  *   2d: 2 differences, 1 product, 1 subtraction:                               n = 4
  *   3d: 3 differences, 1 product, 1 subtraction, 1 product, 2 additions:       n = 8
  * With M the sum of the absolute monomials, the determinant is off by at most ((1 + u)^n - 1) M. M
@@ -59,16 +59,17 @@
 #define SC_BOUNDS_STEP 1.1920929e-7f
 #define SC_BOUNDS_STEP_LEAST 2.58493941422821148e-26f
 
-/* A coordinate of a point in the unit box: 2^-25 for the rounding to float of a number of at most 1,
-   and a little for those to double before. POINT in formulas. The difference of two of them, EDGE. */
+/* A coordinate of a point in the unit box: 2^-25 for the rounding to float of a number of at most
+   1, and a little for those to double before. POINT in formulas. The difference of two of them,
+   EDGE. */
 #define SC_BOUNDS_POINT 3e-8f
 #define SC_BOUNDS_EDGE 6e-8f
 
 /*
- * Places of points along a direction n, in the unit box. n . x is off by POINT |n|1, and by rounding
- * 3.01 v |n|1, 2.1e-7 |n|1 in all, and a few FLT_MIN for products that underflow. An end of a slab
- * is the place of one of its points and a sum, off by 6e-8 |n|1 more. The places of two points and
- * an end together are off by less than this times |n|1, and 16 FLT_MIN.
+ * Places of points along a direction n, in the unit box. n . x is off by POINT |n|1, and by
+ * rounding 3.01 v |n|1, 2.1e-7 |n|1 in all, and a few FLT_MIN for products that underflow. An end
+ * of a slab is the place of one of its points and a sum, off by 6e-8 |n|1 more. The places of two
+ * points and an end together are off by less than this times |n|1, and 16 FLT_MIN.
  */
 #define SC_BOUNDS_PLACES 5e-7f
 
@@ -84,9 +85,9 @@ static inline float sc_bounds_contour(float size)
     return 3.01e-8f + 4.1f * SC_BOUNDS_V * size;
 }
 
-/* What a coordinate in a projection of one leaf cluster is off by, as query/outline_kernel.h has it,
-   over |c|1, where no point is further than this from the middle; and in cylinder coordinates, as
-   query/tube_kernel.h has them. */
+/* What a coordinate in a projection of one leaf cluster is off by, as query/outline_kernel.h has
+   it, over |c|1, where no point is further than this from the middle; and in cylinder coordinates,
+   as query/tube_kernel.h has them. */
 static inline float sc_bounds_outline(float most)
 {
     return 3.1e-8f + 4e-7f * most;

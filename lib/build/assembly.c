@@ -159,14 +159,14 @@ static void write_around(const sc_points *points, const surroundings *s, sc_mode
     first[v] = at;
 }
 
-static void write_hops(const sc_xbvh *xbvh, sc_model *m)
+static void write_box_children(const sc_xbvh *xbvh, sc_model *m)
 {
-    uint32_t *hop = NEW_ARRAY(m, hop, uint32_t), level, p, step;
+    uint32_t *box_child = NEW_ARRAY(m, box_child, uint32_t), level, p, step;
     for (level = 0; level < xbvh->level_count; level++) {
-        uint32_t steps = sc_model_hop_steps(xbvh->level_count, level);
+        uint32_t steps = sc_model_box_steps(xbvh->level_count, level);
         for (p = xbvh->level_first[level]; p < xbvh->level_first[level + 1]; p++) {
-            hop[p] = p;
-            for (step = 0; step < steps; step++) hop[p] = xbvh->child[hop[p]];
+            box_child[p] = p;
+            for (step = 0; step < steps; step++) box_child[p] = xbvh->child[box_child[p]];
         }
     }
 }
@@ -448,7 +448,7 @@ sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacenc
          ((uint64_t)m->level_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, child, uint32_t), xbvh->child, m->patch_end * sizeof(uint32_t));
     copy(NEW_ARRAY(m, leaf, uint32_t), xbvh->leaf, m->patch_end * sizeof(uint32_t));
-    write_hops(xbvh, m);
+    write_box_children(xbvh, m);
     write_nodes(sctt, csf, m);
     write_share_nodes(m);
     copy(NEW_ARRAY(m, segment_first, uint32_t), csf->point_first,

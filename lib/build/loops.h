@@ -10,8 +10,8 @@
  * 12 points a triangle in all. Before the points of a contour in pieces (SC_NODE_PIECES), closed
  * chains, stand their number and the number of edges of each.
  *
- * Places in leaf clusters are not as in leaf_point but turned: its sixteen are taken as a table of
- * four by four, of which rows and columns are exchanged. So are the points of a pose kept
+ * Places in leaf clusters are not as in leaf_point but transposed: its sixteen are taken as a table
+ * of four by four, of which rows and columns are exchanged. So are the points of a pose kept
  * (sc_frame.point_at), for that is how vector units have them at hand.
  *
  * Contours in more than SC_LOOP_PIECES pieces or of more than SC_LOOP_PIECES_EDGES edges in pieces,
@@ -24,7 +24,7 @@
 
 #include "build/csf.h"
 
-/* From a place in leaf_point to a turned one, and back. */
+/* From a place in leaf_point to a transposed one, and back. */
 static inline uint32_t sc_loops_turn(uint32_t place)
 {
     return (place & ~15u) | (place & 3u) << 2 | (place >> 2 & 3u);

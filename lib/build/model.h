@@ -102,17 +102,18 @@ enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NO
  *   place           the place of the caller's triangle
  *   edge_owned      bit k: side k of the triangle at a place names its edge
  *   leaf_first      first place of each leaf cluster
- *   leaf_point      SC_LEAF_POINTS a cluster: the points of its triangles, the last one again to fill the row
- *   leaf_corner     3 SC_LEAF_MAX a cluster: where in leaf_point the first corners of its triangles are, then the
- *                   second, then the third; the last triangle again to fill the rows
- *   leaf_fan        two sets of places in leaf_point a cluster: points round which its triangles follow each other, one
- *                   beginning where the one before ends; first those where all of them are a closed
- *                   fan, then the others
- *   leaf_outline    SC_LEAF_POINTS a cluster: places in leaf_point of the points round its outline, counter-clockwise, if
- *                   that is one closed chain that comes to no point twice, else of none; if there
- *                   are n < SC_LEAF_POINTS, zeros follow, and SC_LEAF_POINTS + n is the last
- *                   number. If it is two such chains, as of a tube, for each place the one that
- *                   follows it there, and what sc_outline_bit names
+ *   leaf_point      SC_LEAF_POINTS a cluster: the points of its triangles, the last one again to
+ *                   fill the row
+ *   leaf_corner     3 SC_LEAF_MAX a cluster: where in leaf_point the first corners of its triangles
+ *                   are, then the second, then the third; the last triangle again to fill the rows
+ *   leaf_fan        two sets of places in leaf_point a cluster: points round which its triangles
+ *                   follow each other, one beginning where the one before ends; first those where
+ *                   all of them are a closed fan, then the others
+ *   leaf_outline    SC_LEAF_POINTS a cluster: places in leaf_point of the points round its outline,
+ *                   counter-clockwise, if that is one closed chain that comes to no point twice,
+ *                   else of none; if there are n < SC_LEAF_POINTS, zeros follow, and SC_LEAF_POINTS
+ *                   + n is the last number. If it is two such chains, as of a tube, for each place
+ *                   the one that follows it there, and what sc_outline_bit names
  *   share_...       see build/sharing.h, share_own_rows are folded; share_begin, share_list:
  *                   build/sharing_lists.h
  *   share_touch     of two leaf clusters that share one point, SC_TOUCHES and where they have it;
@@ -120,10 +121,10 @@ enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NO
  *   share_node      the node of the test tree that is of the two leaf clusters; SC_NONE in models
  *                   for boxes
  *   level_first, child, leaf   see build/xbvh.h
- *   hop             first descendant of a patch at the next level down of those that box recursion
- *                   visits: every fourth, ending with the last
- *   around_first, around  the points that edges join each point with: all if every edge there has an opposite one, else
- *                   some perhaps twice
+ *   box_child       first child of a patch in box recursion, which visits every fourth level,
+ *                   ending with the last
+ *   around_first, around  the points that edges join each point with: all if every edge there has
+ *                   an opposite one, else some perhaps twice
  *   node            the test tree, see above
  *   contours        the segments round each node, see build/csf.h
  *   loop            see build/loops.h
@@ -152,7 +153,7 @@ enum sc_outline_bit { SC_OUTLINE_SECOND = 16, SC_OUTLINE_TWO = 32, SC_OUTLINE_NO
   X(level_first, uint32_t, (uint64_t)level_count + 1)                                              \
   X(child, uint32_t, patch_end)                                                                    \
   X(leaf, uint32_t, patch_end)                                                                     \
-  X(hop, uint32_t, patch_end)                                                                      \
+  X(box_child, uint32_t, patch_end)                                                                \
   X(around_first, uint32_t, (uint64_t)vertex_count + 1)                                            \
   X(around, uint32_t, around_total)                                                                \
   X(node, sc_node, (uint64_t)node_count + 1)                                                       \
@@ -220,9 +221,9 @@ static inline uint32_t sc_model_first_leaf_patch(const sc_model *model)
     return sc_model_level_first(model)[model->level_count - 1];
 }
 
-/* How many levels below a patch's own its hop leads: to the last level or one of every fourth
-   above. */
-static inline uint32_t sc_model_hop_steps(uint32_t level_count, uint32_t level)
+/* How many levels below a patch its children in box recursion are: at the last level, or at one of
+   every fourth above. */
+static inline uint32_t sc_model_box_steps(uint32_t level_count, uint32_t level)
 {
     uint32_t steps = (level_count - 1 - level) % 4;
     return steps ? steps : 4;
@@ -257,8 +258,8 @@ void sc_model_lay_out(sc_model *counts);
    there is none. */
 sc_model *sc_model_allocate(uint64_t bytes, sc_scratch *scratch);
 
-/* Zeroes what is behind each array, so that equal models are equal bytes, and the array that is only
-   added to. All else is written to later. */
+/* Zeroes what is behind each array, so that equal models are equal bytes, and the array that is
+   only added to. All else is written to later. */
 void sc_model_clear_gaps(sc_model *model);
 
 /* What frees a model, or NULL if the caller does. */

@@ -185,17 +185,17 @@ static int check_leaf(const sc_model *m)
     return 1;
 }
 
-static int check_hop(const sc_model *m)
+static int check_box_child(const sc_model *m)
 {
     const uint32_t *first = sc_model_level_first(m), *child = sc_model_child(m);
-    const uint32_t *hop = sc_model_hop(m);
+    const uint32_t *box_child = sc_model_box_child(m);
     uint32_t level, p, step;
     for (level = 0; level < m->level_count; level++) {
-        uint32_t steps = sc_model_hop_steps(m->level_count, level);
+        uint32_t steps = sc_model_box_steps(m->level_count, level);
         for (p = first[level]; p < first[level + 1]; p++) {
             uint32_t to = p;
             for (step = 0; step < steps; step++) to = child[to];
-            if (hop[p] != to) return 0;
+            if (box_child[p] != to) return 0;
         }
     }
     return 1;
@@ -491,7 +491,7 @@ static const char *check_arrays(const sc_model *m, uint8_t *bytes)
     CHECK(level_first, check_levels(m));
     CHECK(child, check_child(m));
     CHECK(leaf, check_leaf(m));
-    CHECK(hop, check_hop(m));
+    CHECK(box_child, check_box_child(m));
     CHECK(around_first,
           are_lists(sc_model_around_first(m), m->vertex_count, m->around_total, 0, SC_NONE));
     CHECK(around, are_points(m, sc_model_around(m), m->around_total));

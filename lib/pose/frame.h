@@ -47,7 +47,7 @@ typedef struct sc_frame {
     int fits_float; /* that and what it scales are well within the range of floats */
 
     float *point_at; /* 4 SC_LEAF_POINTS per leaf: x, y, z of its points in the unit box, that is
-                        scale * (position - center), at most 1, and 0; in turned places, see
+                        scale * (position - center), at most 1, and 0; in transposed places, see
                         build/loops.h */
     uint32_t leaves_ready;
     sc_boxes patch_boxes; /* patch_end */

@@ -4,8 +4,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * points_of writes sixteen points, each as four floats of which the last is 0, in turned places
- * (see build/loops.h), as lanes_turned reads them. The bits are those of sc_positions_unit: a
+ * points_of writes sixteen points, each as four floats of which the last is 0, in transposed places
+ * (see build/loops.h), as lanes_coordinates reads them. The bits are those of sc_positions_unit: a
  * double has more than twice the digits of a float, so that floats may be subtracted without
  * becoming doubles.
  *
@@ -250,7 +250,7 @@ static inline void load_points(const sc_frame *frame, const uint32_t *point, flo
         points_of(&f, point, 1, frame->positions[0].stride, each);
     else
         points_of(&f, point, 0, frame->positions[0].stride, each);
-    lanes_turned(each, row);
+    lanes_coordinates(each, row);
     SC_UNROLL
     for (k = 0; k < 3; k++) lanes_store(at + SC_LANES_COUNT * k, row[k]);
 }

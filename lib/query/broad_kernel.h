@@ -64,7 +64,7 @@ static inline void leave_pairs(sc_worker *w, uint32_t most, int moves)
 static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b, int moves)
 {
     const sc_model *model = w->model;
-    const uint32_t *hop = sc_model_hop(model), *share = sc_model_share_first(model);
+    const uint32_t *box_child = sc_model_box_child(model), *share = sc_model_share_first(model);
     const uint32_t leaves = sc_model_first_leaf_patch(model);
     const uint32_t a = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
     sc_lists *l = &w->lists;
@@ -74,16 +74,16 @@ static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b, int mov
         sc_worker_add_leaf_pair(w, (a - leaves) | bit, b - leaves);
         return;
     }
-    first_a = hop[a];
-    first_b = hop[b];
-    all_b = (1u << (hop[b + 1] - first_b)) - 1u;
-    rows = near_patches(w->frame, b, first_a, moves) & ((1u << (hop[a + 1] - first_a)) - 1u);
+    first_a = box_child[a];
+    first_b = box_child[b];
+    all_b = (1u << (box_child[b + 1] - first_b)) - 1u;
+    rows = near_patches(w->frame, b, first_a, moves) & ((1u << (box_child[a + 1] - first_a)) - 1u);
     sc_worker_count_boxes(w, sc_item_follows(item), 1 + sc_bits_count(rows));
     if (first_a >= leaves) {
         const uint32_t at = l->count[SC_LIST_ROWS];
         uint32_t *first = l->row[1] + at, *all = l->row[2] + at;
         sc_fetch(share + (first_a - leaves));
-        sc_fetch(share + (hop[a + 1] - leaves));
+        sc_fetch(share + (box_child[a + 1] - leaves));
         for (i = 0; i < SC_LANES_COUNT; i++) first[i] = first_b - leaves;
         for (i = 0; i < SC_LANES_COUNT; i++) all[i] = all_b;
         l->count[SC_LIST_ROWS] += lanes_list_from(rows, (first_a - leaves) | bit, l->row[0] + at);
@@ -104,7 +104,7 @@ static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b, int mov
 static inline void open_patch(sc_worker *w, uint32_t item, int moves)
 {
     const sc_model *model = w->model;
-    const uint32_t *hop = sc_model_hop(model);
+    const uint32_t *box_child = sc_model_box_child(model);
     const uint32_t leaves = sc_model_first_leaf_patch(model);
     const uint32_t a = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
     sc_lists *l = &w->lists;
@@ -113,8 +113,8 @@ static inline void open_patch(sc_worker *w, uint32_t item, int moves)
         sc_worker_add_leaf(w, (a >= leaves ? a - leaves : sc_model_leaf(model)[a]) | bit);
         return;
     }
-    first = hop[a];
-    count = hop[a + 1] - first;
+    first = box_child[a];
+    count = box_child[a + 1] - first;
     sc_worker_count_boxes(w, sc_item_follows(item), count);
     for (i = 0; i < count && first < leaves; i++) { /* below the pairs: the list is a stack */
         l->patches[l->count[SC_LIST_PATCHES]].a = (first + i) | bit;
@@ -205,7 +205,7 @@ static inline void list_leaf_pairs(sc_worker *w, uint32_t item, uint32_t first, 
     *count += lanes_list_from(mask, first, l->far[1] + *count);
 }
 
-/* The same in a step, where pairs that share points are not told apart from others here. */
+/* The same in a step, where pairs that share points are listed with the others. */
 static inline void list_moving_pairs(sc_worker *w, uint32_t item, uint32_t first, unsigned mask)
 {
     const unsigned pairs = sc_bits_count(mask);

@@ -11,13 +11,13 @@
 
 /* ---- proofs ---- */
 
-/* Asks for the memory of a leaf cluster that is made ready; or of its slab and points, and the
-   former if there is no slab yet. */
-static inline void fetch_ready(const sc_worker *w, uint32_t leaf)
+/* Prefetches the derived data of a leaf cluster; fetch_points its slab and points, and the derived
+   data that a slab is made of where there is none yet. */
+static inline void fetch_derived(const sc_worker *w, uint32_t leaf)
 {
-    const float *at = w->kept.ready[ready_place(w, leaf)].side[0];
+    const float *at = w->kept.derived[derived_place(w, leaf)].side[0];
     int k;
-    for (k = 0; k < SC_READY_ROWS; k++) sc_fetch(at + SC_LEAF_MAX * k);
+    for (k = 0; k < SC_DERIVED_ROWS; k++) sc_fetch(at + SC_LEAF_MAX * k);
 }
 
 static inline void fetch_points(const sc_worker *w, uint32_t leaf)
@@ -25,7 +25,7 @@ static inline void fetch_points(const sc_worker *w, uint32_t leaf)
     const float *at = w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
     int k;
     for (k = 0; k < 4; k++) sc_fetch(at + SC_LEAF_POINTS * k);
-    if (w->kept.slab[leaf].epoch != w->frame->epoch) fetch_ready(w, leaf);
+    if (w->kept.slab[leaf].epoch != w->frame->epoch) fetch_derived(w, leaf);
 }
 
 /* Lists such a pair as left. */
@@ -65,14 +65,14 @@ static void part_far(sc_worker *w, uint32_t most)
         }
         if (i + SC_FETCH_POINTS < count) fetch_points(w, other[i + SC_FETCH_POINTS]);
         list_far(item[i], b, 0, to + kept);
-        kept += !slabs_part(w, a, ready_place(w, a), b, ready_place(w, b));
+        kept += !slabs_part(w, a, derived_place(w, a), b, derived_place(w, b));
     }
     l->count[SC_LIST_CLUSTERS] += kept;
 }
 
-/* Pairs of leaf clusters that share points, and leaf clusters against themselves: drops what some
-   tests can tell, and asks for what tells whether those left are ready, and where their lists
-   begin. In steps with few branches, as any pair may be one of a kind. */
+/* Pairs of leaf clusters that share points, and leaf clusters against themselves: drops those that
+   a proof separates, and prefetches for the others what tells whether their derived data is made,
+   and where their lists begin. In steps with few branches, as any pair may be one of a kind. */
 static SC_NOINLINE void part_near(sc_worker *w, uint32_t most)
 {
     const uint32_t *leaf = sc_model_share_leaf(w->model);
@@ -101,13 +101,13 @@ static SC_NOINLINE void part_near(sc_worker *w, uint32_t most)
     }
     if (touch_count) drop_touching(w, pairs, l->scratch, touch_count);
     if (known & SC_TOUCH_CHAIN) drop_bands(w, pairs, count);
-    if (has_cones) drop_plain(w, pairs, count);
+    if (has_cones) drop_certified(w, pairs, count);
     for (i = 0; i < count; i++) {
         const sc_cluster_pair p = pairs[i];
         unsigned drops = p.known & SC_CLUSTERS_DROPPED;
-        if (p.a == p.b) drops |= (unsigned)is_plain(w, p.a);
-        sc_fetch(w->kept.known + ready_place(w, p.a));
-        sc_fetch(w->kept.known + ready_place(w, p.b));
+        if (p.a == p.b) drops |= (unsigned)is_certified(w, p.a);
+        sc_fetch(w->kept.known + derived_place(w, p.a));
+        sc_fetch(w->kept.known + derived_place(w, p.b));
         sc_fetch(begin + (p.a == p.b ? 0 : p.shared));
         pairs[kept] = p;
         kept += !drops;
@@ -125,7 +125,7 @@ typedef struct waiting_rows {
 } waiting_rows;
 
 /* The boxes of the triangles of a leaf cluster that overlap that of triangle i of another. */
-static inline unsigned overlap_row(const sc_leaf_ready *a, uint32_t i, const lanes low[3],
+static inline unsigned overlap_row(const sc_leaf_derived *a, uint32_t i, const lanes low[3],
                                    const lanes high[3])
 {
     lanes_mask m[3];
@@ -137,13 +137,13 @@ static inline unsigned overlap_row(const sc_leaf_ready *a, uint32_t i, const lan
     return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
 }
 
-static inline void load_boxes(const sc_leaf_ready *ready, lanes low[3], lanes high[3])
+static inline void load_boxes(const sc_leaf_derived *derived, lanes low[3], lanes high[3])
 {
     int k;
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        low[k] = lanes_load(ready->side[k]);
-        high[k] = lanes_load(ready->side[k + 3]);
+        low[k] = lanes_load(derived->side[k]);
+        high[k] = lanes_load(derived->side[k + 3]);
     }
 }
 
@@ -154,10 +154,10 @@ static unsigned compare_boxes(const waiting_rows *wait, sc_triangle_rows *rows, 
     for (t = 0; t < wait->count; t++) {
         const unsigned pair = wait->pair[t], row = wait->row[t];
         lanes low[3], high[3];
-        load_boxes(rows->ready[1][pair], low, high);
+        load_boxes(rows->derived[1][pair], low, high);
         rows->pair[count] = (uint8_t)pair;
         rows->row[count] = (uint8_t)row;
-        rows->mask[count] = (uint16_t)overlap_row(rows->ready[0][pair], row, low, high);
+        rows->mask[count] = (uint16_t)overlap_row(rows->derived[0][pair], row, low, high);
         count += rows->mask[count] != 0;
     }
     return count;
@@ -171,8 +171,8 @@ static unsigned compare_near_boxes(const waiting_rows *wait, sc_triangle_rows *r
         unsigned pair = wait->pair[t], row = wait->row[t], mask, shared;
         const uint16_t *list = rows->list[pair];
         lanes low[3], high[3];
-        load_boxes(rows->ready[1][pair], low, high);
-        mask = overlap_row(rows->ready[0][pair], row, low, high);
+        load_boxes(rows->derived[1][pair], low, high);
+        mask = overlap_row(rows->derived[0][pair], row, low, high);
         shared = list[SC_SHARE_ROWS + sc_bits_count(list[SC_SHARE_TRIANGLES] & ((1u << row) - 1u))];
         mask &= ~(shared & (0u - ((unsigned)list[SC_SHARE_TRIANGLES] >> row & 1u)));
         rows->pair[count] = (uint8_t)pair;
@@ -194,10 +194,10 @@ static unsigned take_shared(sc_worker *w, const sc_leaf_pair *p, unsigned pair, 
     unsigned near_count = 0, near = 0;                     /* triangles that are looked at */
     lanes low[3], high[3];
     if (p->wanted) near = p->a == p->b ? doubtful(w, p->a) : SC_LEAF_ALL;
-    load_boxes(rows->ready[1][pair], low, high);
+    load_boxes(rows->derived[1][pair], low, high);
     for (; some; some &= some - 1) {
         uint32_t i = sc_bits_lowest(some);
-        unsigned mask = overlap_row(rows->ready[0][pair], i, low, high), shared = p->shared[i];
+        unsigned mask = overlap_row(rows->derived[0][pair], i, low, high), shared = p->shared[i];
         mask &= ~((2u << i) - 1u) | lower;
         memset(near_a + near_count, (int)i, SC_LANES_COUNT);
         near_count += lanes_list(mask & shared & (near >> i & 1u ? near : 0u), near_b + near_count);
@@ -219,12 +219,12 @@ static unsigned compare_planes(const sc_worker *w, sc_triangle_rows *rows, unsig
     while (r < rows_count) {
         const unsigned pair = rows->pair[r];
         const uint64_t leaf_b = rows->leaf[1][pair];
-        const sc_leaf_ready *a = rows->ready[0][pair];
+        const sc_leaf_derived *a = rows->derived[0][pair];
         const uint8_t *where = sc_model_leaf_corner(w->model) + 3 * SC_LEAF_MAX * leaf_b;
         const float extent = rows->extent[pair];
         lanes_index corner[3];
         lanes at[3];
-        lanes_turned(w->frame->point_at + 4 * SC_LEAF_POINTS * leaf_b, at);
+        lanes_coordinates(w->frame->point_at + 4 * SC_LEAF_POINTS * leaf_b, at);
         SC_UNROLL
         for (k = 0; k < 3; k++) corner[k] = lanes_index_load(where + SC_LEAF_MAX * k);
         do {
@@ -250,8 +250,9 @@ static unsigned compare_planes(const sc_worker *w, sc_triangle_rows *rows, unsig
     return count;
 }
 
-/* The triangles of a leaf cluster that is ready whose boxes overlap that of leaf b. */
-static inline unsigned rows_at(const sc_worker *w, const sc_leaf_ready *ready, uint32_t b)
+/* The triangles of a leaf cluster, given as its derived data, whose boxes overlap that of leaf
+   b. */
+static inline unsigned rows_at(const sc_worker *w, const sc_leaf_derived *derived, uint32_t b)
 {
     const sc_boxes *boxes = &w->frame->patch_boxes;
     uint64_t i = (uint64_t)sc_model_first_leaf_patch(w->model) + b;
@@ -260,8 +261,8 @@ static inline unsigned rows_at(const sc_worker *w, const sc_leaf_ready *ready, u
     SC_UNROLL
     for (k = 0; k < 3; k++)
         m[k] = lanes_both(
-            lanes_not_above(lanes_all(boxes->side[k][i]), lanes_load(ready->side[k + 3])),
-            lanes_not_above(lanes_load(ready->side[k]), lanes_all(boxes->side[k + 3][i])));
+            lanes_not_above(lanes_all(boxes->side[k][i]), lanes_load(derived->side[k + 3])),
+            lanes_not_above(lanes_load(derived->side[k]), lanes_all(boxes->side[k + 3][i])));
     return lanes_bits(lanes_both(m[0], lanes_both(m[1], m[2])));
 }
 
@@ -273,8 +274,8 @@ typedef struct kept_places {
 static inline kept_places places_of_pair(const sc_worker *w, const sc_cluster_pair *p)
 {
     kept_places at;
-    at.a = ready_place(w, p->a);
-    at.b = ready_place(w, p->b);
+    at.a = derived_place(w, p->a);
+    at.b = derived_place(w, p->b);
     if (at.a == at.b && p->a != p->b) at.b = w->kept.spare;
     return at;
 }
@@ -283,17 +284,20 @@ static inline kept_places places_of_pair(const sc_worker *w, const sc_cluster_pa
 static int is_taken(const sc_worker *w, const sc_cluster_pair *p, kept_places at, unsigned pairs)
 {
     const sc_triangle_rows *rows = w->lists.triangles;
-    const sc_leaf_ready *a = w->kept.ready + at.a, *b = w->kept.ready + at.b;
+    const sc_leaf_derived *a = w->kept.derived + at.a, *b = w->kept.derived + at.b;
     int taken = 0;
     unsigned k;
-    if (!is_ready(w, p->a, at.a))
-        for (k = 0; k < pairs; k++) taken |= (rows->ready[0][k] == a) | (rows->ready[1][k] == a);
-    if (!is_ready(w, p->b, at.b))
-        for (k = 0; k < pairs; k++) taken |= (rows->ready[0][k] == b) | (rows->ready[1][k] == b);
+    if (!has_derived(w, p->a, at.a))
+        for (k = 0; k < pairs; k++)
+            taken |= (rows->derived[0][k] == a) | (rows->derived[1][k] == a);
+    if (!has_derived(w, p->b, at.b))
+        for (k = 0; k < pairs; k++)
+            taken |= (rows->derived[0][k] == b) | (rows->derived[1][k] == b);
     return taken;
 }
 
-/* Names two leaf clusters, a and b when they are ready, of which rows come next: triangles of a. */
+/* Names two leaf clusters whose derived data is made, and of which rows come next: triangles of
+   a. */
 static inline void name_pair(const sc_worker *w, const sc_cluster_pair *p, kept_places at,
                              unsigned k)
 {
@@ -301,8 +305,8 @@ static inline void name_pair(const sc_worker *w, const sc_cluster_pair *p, kept_
     const sc_leaf_known *known = w->kept.known;
     rows->leaf[0][k] = p->a | (p->known & SC_AFTER_CONTOUR);
     rows->leaf[1][k] = p->b;
-    rows->ready[0][k] = w->kept.ready + at.a;
-    rows->ready[1][k] = w->kept.ready + at.b;
+    rows->derived[0][k] = w->kept.derived + at.a;
+    rows->derived[1][k] = w->kept.derived + at.b;
     rows->extent[k] = known[at.a].extent + (p->a == p->b ? 0 : known[at.b].extent);
 }
 
@@ -321,14 +325,15 @@ typedef struct added_rows {
     waiting_rows wait;
 } added_rows;
 
-/* Two leaf clusters that share no points, are not crowded and that slabs do not part; both are
-   ready. Without branches, as boxes of triangles may be apart from the other in many. */
+/* Two leaf clusters that share no points, are not crowded and that slabs do not part; the derived
+   data of both is made. Without branches, as boxes of triangles may be apart from the other in
+   many. */
 static inline void add_far(sc_worker *w, const sc_cluster_pair *p, kept_places at, added_rows *to)
 {
-    const sc_leaf_ready *ready = w->kept.ready + at.a;
+    const sc_leaf_derived *derived = w->kept.derived + at.a;
     unsigned count;
     name_pair(w, p, at, to->pairs);
-    count = add_waiting(rows_at(w, ready, p->b), to->pairs, &to->wait);
+    count = add_waiting(rows_at(w, derived, p->b), to->pairs, &to->wait);
     to->pairs += count != 0;
     sc_worker_count_boxes(w, sc_item_follows(p->known), count);
 }
@@ -337,7 +342,7 @@ static inline void add_far(sc_worker *w, const sc_cluster_pair *p, kept_places a
 static void add_clusters(sc_worker *w, const sc_cluster_pair *clusters, kept_places at,
                          added_rows *to)
 {
-    const sc_leaf_ready *a = ready_leaf(w, clusters->a, at.a);
+    const sc_leaf_derived *a = derived_leaf(w, clusters->a, at.a);
     sc_leaf_pair p;
     unsigned some;
     if (clusters->a == clusters->b) {
@@ -346,7 +351,7 @@ static void add_clusters(sc_worker *w, const sc_cluster_pair *clusters, kept_pla
     } else {
         some = rows_at(w, a, clusters->b);
         if (!some) return;
-        (void)ready_leaf(w, clusters->b, at.b);
+        (void)derived_leaf(w, clusters->b, at.b);
         if (clusters->known & SC_CLUSTERS_UNSLABBED &&
             slabs_part(w, clusters->a, at.a, clusters->b, at.b))
             return;
@@ -388,7 +393,8 @@ static inline int have_room_for_clusters(const sc_worker *w)
 }
 
 /* Triangles of pairs of leaf clusters, of one kind, by their boxes, and by planes of one of each.
-   What is made ready may take the place of a leaf cluster that the rows are of: then it waits. */
+   Derived data may have to be made where that of a leaf cluster of these rows is kept: then the
+   rows are compared first. */
 static void compare_clusters(sc_worker *w, uint32_t most)
 {
     const uint8_t *crowded = sc_model_share_crowded(w->model);
@@ -404,14 +410,14 @@ static void compare_clusters(sc_worker *w, uint32_t most)
         const kept_places at = places_of_pair(w, p);
         if ((p->known & SC_CLUSTERS_FAR) != far || (!keeps_all && is_taken(w, p, at, to.pairs)))
             break;
-        if (left > SC_FETCH_READY) {
-            const sc_cluster_pair *next = p - SC_FETCH_READY;
-            fetch_ready(w, next->a);
-            fetch_ready(w, next->b);
+        if (left > SC_FETCH_DERIVED) {
+            const sc_cluster_pair *next = p - SC_FETCH_DERIVED;
+            fetch_derived(w, next->a);
+            fetch_derived(w, next->b);
             if (!far) fetch_near(w, next);
         }
         if (far && !((p->known & SC_CLUSTERS_UNSLABBED) | (crowded[p->a] & crowded[p->b])) &&
-            is_ready(w, p->a, at.a) & is_ready(w, p->b, at.b))
+            has_derived(w, p->a, at.a) & has_derived(w, p->b, at.b))
             add_far(w, p, at, &to);
         else if (have_room_for_clusters(w))
             add_clusters(w, p, at, &to);
@@ -450,7 +456,7 @@ static inline void fill_sixteen(const sc_worker *w, const rows_window *window, s
             const unsigned pair = window->pair[k];
             const uint32_t item = rows->leaf[s][pair];
             const uint64_t leaf = item & SC_ITEM;
-            t->ready[k] = rows->ready[s][pair];
+            t->derived[k] = rows->derived[s][pair];
             t->points[k] = w->frame->point_at + 4 * SC_LEAF_POINTS * leaf;
             t->corner[k] = sc_model_leaf_corner(w->model) + 3 * SC_LEAF_MAX * leaf;
             first[s][k] = sc_model_leaf_first(w->model)[leaf] | (item & SC_AFTER_CONTOUR);

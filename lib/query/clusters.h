@@ -13,7 +13,7 @@
 
 /* Of pairs of leaf clusters that wait: so many or more are tested by slabs first; memory is asked
    for some places ahead. The first ones tuned on crushed cloth and the bunny. */
-enum { SC_LEAF_SLABS_FIRST = 64, SC_FETCH_POINTS = 8, SC_FETCH_READY = 5 };
+enum { SC_LEAF_SLABS_FIRST = 64, SC_FETCH_POINTS = 8, SC_FETCH_DERIVED = 5 };
 
 /* Leaf clusters of which slabs are made together. */
 enum { SC_MADE_LEAVES = 64 };

@@ -68,8 +68,8 @@ static void leave_to_boxes(sc_worker *w, uint32_t a, uint32_t b, int follows)
     sc_pair *pair = &l->left[l->count[SC_LIST_LEFT]++];
     pair->a = follows ? a | SC_AFTER_CONTOUR : a;
     pair->b = b;
-    sc_fetch(sc_model_hop(w->model) + a);
-    sc_fetch((a == b ? sc_model_leaf(w->model) : sc_model_hop(w->model)) + b);
+    sc_fetch(sc_model_box_child(w->model) + a);
+    sc_fetch((a == b ? sc_model_leaf(w->model) : sc_model_box_child(w->model)) + b);
 }
 
 /* A node that failed a test, or has a contour that did, mask being what its patches' cones have in

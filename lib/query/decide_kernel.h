@@ -8,8 +8,10 @@
  * from the first corner of the first triangle, its others are a_1 and a_2, those of the second b_0,
  * b_1 and b_2. With n_i = b_i x b_i+1, whose sum is the second's normal, fourteen determinants make
  * up all signs:
- *   S_i = (a_1 x a_2) . b_i, T_0 = n_0 . b_2, T_k = T_0 - (n_0 + n_1 + n_2) . a_k       corners b_i, and minus a_k
- *   L_0i = n_i . a_1, L_2i = -n_i . a_2, L_1i = S_i+1 - S_i - L_0i - L_2i               edges k and i, from below
+ *   corners b_i, and minus a_k:  S_i = (a_1 x a_2) . b_i
+ *                                T_0 = n_0 . b_2, T_k = T_0 - (n_0 + n_1 + n_2) . a_k
+ *   edges k and i, from below:   L_0i = n_i . a_1, L_2i = -n_i . a_2
+ *                                L_1i = S_i+1 - S_i - L_0i - L_2i
  *
  * Each component of a and b is a difference of two coordinates; let r be the largest of them all.
  * In exact arithmetic a determinant is a sum of at most four times six products of three of them.

@@ -99,16 +99,16 @@ static inline lanes area_bound(lanes size, lanes largest)
 }
 
 /* The triangles of a cluster that may not face the viewer. */
-static inline lanes_mask find_turned(const sc_leaf_ready *ready, const float n[3])
+static inline lanes_mask find_turned(const sc_leaf_derived *derived, const float n[3])
 {
     float largest = fabsf(n[0]) > fabsf(n[1]) ? fabsf(n[0]) : fabsf(n[1]);
-    lanes area = lanes_multiply(lanes_all(n[0]), lanes_load(ready->normal[0]));
+    lanes area = lanes_multiply(lanes_all(n[0]), lanes_load(derived->normal[0]));
     int k;
     largest = fabsf(n[2]) > largest ? fabsf(n[2]) : largest;
     SC_UNROLL
     for (k = 1; k < 3; k++)
-        area = lanes_add(area, lanes_multiply(lanes_all(n[k]), lanes_load(ready->normal[k])));
-    return lanes_not_above(area, area_bound(lanes_load(ready->size), lanes_all(largest)));
+        area = lanes_add(area, lanes_multiply(lanes_all(n[k]), lanes_load(derived->normal[k])));
+    return lanes_not_above(area, area_bound(lanes_load(derived->size), lanes_all(largest)));
 }
 
 /* The triangles of a cluster that may have more in common with others of it than what they share:
@@ -120,19 +120,19 @@ static unsigned doubtful(const sc_worker *w, uint32_t leaf)
     const uint32_t *first = sc_model_leaf_first(model) + leaf;
     const uint16_t *fan = sc_model_leaf_fan(model) + 2 * (uint64_t)leaf;
     const uint8_t *where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
-    const float *n = slab_of(w, leaf, ready_place(w, leaf))->direction;
-    const sc_leaf_ready *ready = ready_leaf(w, leaf, ready_place(w, leaf));
+    const float *n = slab_of(w, leaf, derived_place(w, leaf))->direction;
+    const sc_leaf_derived *derived = derived_leaf(w, leaf, derived_place(w, leaf));
     const unsigned triangles = (1u << (first[1] - first[0])) - 1u;
-    unsigned held_all = ~0u, turns_once = 0, settled, open, i;
+    unsigned held_all = ~0u, turns_once = 0, classified, open, i;
     float across[2][3];
     lanes at[3];
     lanes_index corner[3];
     lanes_mask turned[3], ray[2][2][3];
     int k;
-    lanes_turned(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
+    lanes_coordinates(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
     SC_UNROLL
     for (k = 0; k < 3; k++) corner[k] = lanes_index_load(where + SC_LEAF_MAX * k);
-    turned[0] = turned[1] = turned[2] = find_turned(ready, n);
+    turned[0] = turned[1] = turned[2] = find_turned(derived, n);
     if (sc_bits_count(lanes_bits(turned[0])) >= SC_LEAF_MAX / 2) return triangles;
     find_across(n, across);
     SC_UNROLL
@@ -146,9 +146,9 @@ static unsigned doubtful(const sc_worker *w, uint32_t leaf)
         held_all &= held;
         turns_once |= sectors == sc_bits_count(held);
     }
-    settled = (fan[1] & ~held_all) | (turns_once ? fan[0] : 0u);
-    if (lanes_bits(turned[0])) settled &= ~lanes_marked(corner, turned);
-    open = ~settled;
+    classified = (fan[1] & ~held_all) | (turns_once ? fan[0] : 0u);
+    if (lanes_bits(turned[0])) classified &= ~lanes_marked(corner, turned);
+    open = ~classified;
     return (lanes_among(corner[0], open) | lanes_among(corner[1], open) |
             lanes_among(corner[2], open)) &
            triangles;

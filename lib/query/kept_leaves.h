@@ -1,6 +1,6 @@
 /*
  * What a worker keeps of leaf clusters in a query, made when it is first needed: boxes and planes
- * of their triangles, and slabs that they are in. See query/ready_kernel.h.
+ * of their triangles, and slabs that they are in. See query/derived_kernel.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -9,19 +9,19 @@
 
 #include "build/hierarchy.h"
 
-/* A leaf cluster made ready for tests of its triangles, in the unit box. Rows are filled with the
-   last triangle. */
-typedef struct sc_leaf_ready {
+/* The derived data of a leaf cluster: what tests of its triangles need, in the unit box. Rows are
+   filled with the last triangle. */
+typedef struct sc_leaf_derived {
     float side[6][SC_LEAF_MAX]; /* boxes; what is no triangle is NaN and overlaps nothing */
     float normal[3][SC_LEAF_MAX];
     float offset[SC_LEAF_MAX]; /* where the first corner is along the normal */
     float size[SC_LEAF_MAX];   /* |e|1 + |f|1, e and f the edges from the first corner */
-} sc_leaf_ready;
+} sc_leaf_derived;
 
-enum { SC_READY_ROWS = sizeof(sc_leaf_ready) / (SC_LEAF_MAX * sizeof(float)) };
+enum { SC_DERIVED_ROWS = sizeof(sc_leaf_derived) / (SC_LEAF_MAX * sizeof(float)) };
 
-/* Which leaf cluster is kept ready, and in which epoch it was made so, 0 for never; and the largest
-   extent of its box. */
+/* Of which leaf cluster derived data is kept, from which epoch, 0 for never; and the largest extent
+   of its box. */
 typedef struct sc_leaf_known {
     uint32_t leaf, epoch;
     float extent;
@@ -33,32 +33,33 @@ typedef struct sc_leaf_slab {
     uint32_t epoch; /* 0: nothing yet */
 } sc_leaf_slab;
 
-/* Where not all leaf clusters are kept ready, so many are at least: a power of two. */
-enum { SC_READY_KEPT = 64 };
+/* Where there is no room for the derived data of all leaf clusters, there is for so many: a power
+   of two. */
+enum { SC_DERIVED_KEPT = 64 };
 
 /* As mask: every leaf cluster has a place. */
 #define SC_KEEPS_ALL 0xffffffffu
 
 /*
- * Leaf cluster i is kept at i & mask, if it is there. Of two with one place the second is at the
- * place behind all of them, `spare`.
+ * The derived data of leaf cluster i is kept at i & mask, if it is there. Of two with one place the
+ * second is at the place behind all of them, `spare`.
  */
 typedef struct sc_kept_leaves {
-    sc_leaf_ready *ready;
+    sc_leaf_derived *derived;
     sc_leaf_known *known;
     uint32_t mask; /* SC_KEEPS_ALL, or spare - 1 */
     uint32_t spare;
-    sc_leaf_ready *some_ready; /* some + 1, the worker's own */
-    sc_leaf_known *some_known; /* as many */
-    uint32_t some;             /* SC_READY_KEPT, fewer in small models */
-    sc_leaf_slab *slab;        /* leaf_count */
+    sc_leaf_derived *some_derived; /* some + 1, the worker's own */
+    sc_leaf_known *some_known;     /* as many */
+    uint32_t some;                 /* SC_DERIVED_KEPT, fewer in small models */
+    sc_leaf_slab *slab;            /* leaf_count */
 } sc_kept_leaves;
 
 /* Has a power of two of them kept in arrays with one place more; or all. */
-static inline void sc_kept_leaves_in(sc_kept_leaves *kept, sc_leaf_ready *ready,
+static inline void sc_kept_leaves_in(sc_kept_leaves *kept, sc_leaf_derived *derived,
                                      sc_leaf_known *known, uint32_t count)
 {
-    kept->ready = ready;
+    kept->derived = derived;
     kept->known = known;
     kept->spare = count == SC_KEEPS_ALL ? 0 : count;
     kept->mask = count == SC_KEEPS_ALL ? count : count - 1;
@@ -67,7 +68,7 @@ static inline void sc_kept_leaves_in(sc_kept_leaves *kept, sc_leaf_ready *ready,
 /* Has some kept, in the worker's own arrays. */
 static inline void sc_kept_leaves_some(sc_kept_leaves *kept)
 {
-    sc_kept_leaves_in(kept, kept->some_ready, kept->some_known, kept->some);
+    sc_kept_leaves_in(kept, kept->some_derived, kept->some_known, kept->some);
 }
 
 #endif

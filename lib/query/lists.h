@@ -3,7 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * A stage takes items from the end of its list, writes what it cannot settle to lists further on,
+ * A stage takes items from the end of its list, writes what it cannot classify to lists further on,
  * and what it found to the worker's results; it calls no other stage. The runner calls stages
  * (run/runner.h): the last one whose list is long enough to be worth it, so that what is found is
  * decided soon, lists are short, and each stage has many items at a time: then few branches depend
@@ -29,7 +29,7 @@ typedef enum sc_list_id {
     SC_LIST_ROWS,       /* leaf clusters, each with up to sixteen others */
     SC_LIST_FAR,        /* pairs of leaf clusters that share no points */
     SC_LIST_NEAR,       /* pairs of leaf clusters that share points, and leaf clusters themselves */
-    SC_LIST_CLUSTERS,   /* pairs of leaf clusters that no proof has told apart */
+    SC_LIST_CLUSTERS,   /* pairs of leaf clusters that no proof has separated */
     SC_LIST_TRIANGLES,  /* triangles of one of two leaf clusters, each with some of the other */
     SC_LIST_OPEN,       /* pairs of triangles that share points */
     SC_LIST_CANDIDATES, /* pairs of triangles that share nothing */
@@ -107,9 +107,9 @@ enum { SC_ROWS_PAIRS = SC_CLUSTERS_ENOUGH, SC_TRIANGLES_MAX = SC_ROWS_PAIRS * SC
 
 typedef struct sc_triangle_rows {
     uint32_t leaf[2][SC_ROWS_PAIRS]; /* the former with the bit for what follows a contour test */
-    const sc_leaf_ready *ready[2][SC_ROWS_PAIRS]; /* they are, as long as there are rows */
-    const uint16_t *list[SC_ROWS_PAIRS];          /* as in sc_leaf_pair */
-    float extent[SC_ROWS_PAIRS];                  /* of both */
+    const sc_leaf_derived *derived[2][SC_ROWS_PAIRS]; /* kept, as long as there are rows */
+    const uint16_t *list[SC_ROWS_PAIRS];              /* as in sc_leaf_pair */
+    float extent[SC_ROWS_PAIRS];                      /* of both */
     uint8_t pair[SC_TRIANGLES_MAX];
     uint8_t row[SC_TRIANGLES_MAX];
     uint16_t mask[SC_TRIANGLES_MAX];

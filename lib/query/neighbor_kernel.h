@@ -313,7 +313,7 @@ static inline unsigned side_parts(const neighbors *x, lanes extent)
 
 /* Of the last pairs that are open, up to sixteen, leaves those that may meet outside of what they
    share. */
-static void settle_open(sc_worker *w, uint32_t most)
+static void classify_open(sc_worker *w, uint32_t most)
 {
     sc_open_pairs *open = w->lists.open;
     uint32_t *left = &w->lists.count[SC_LIST_OPEN];
@@ -330,7 +330,7 @@ static void settle_open(sc_worker *w, uint32_t most)
     SC_UNROLL
     for (k = 0; k < 5; k++) {
         uint32_t row[SC_LANES_COUNT];
-        for (i = 0; i < SC_LANES_COUNT; i++) { /* in turned places */
+        for (i = 0; i < SC_LANES_COUNT; i++) { /* in transposed places */
             uint32_t number = open->number[k][at + (unsigned)i];
             row[i] = (number & ~15u) | (number << 2 & 12u) | (number >> 2 & 3u);
         }

@@ -63,7 +63,7 @@ static inline void see_points(const sc_worker *w, uint32_t leaf, const float dir
     float across[2][3], size[2], most, error;
     lanes at[3], far = lanes_all(0);
     int k;
-    lanes_turned(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
+    lanes_coordinates(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         at[k] = lanes_subtract(at[k], lanes_all(lanes_sum(at[k]) * (1.0f / SC_LANES_COUNT)));
@@ -148,7 +148,7 @@ static inline int is_star(const plane_points *p, lanes_bytes second, unsigned co
 }
 
 /* Whether the triangles of a cluster certainly have nothing in common but what they share. */
-static int is_plain(const sc_worker *w, uint32_t leaf)
+static int is_certified(const sc_worker *w, uint32_t leaf)
 {
     const sc_model *model = w->model;
     const uint8_t *outline = sc_model_leaf_outline(model) + SC_LEAF_POINTS * (uint64_t)leaf;
@@ -158,7 +158,7 @@ static int is_plain(const sc_worker *w, uint32_t leaf)
                                                    : last - SC_LEAF_POINTS;
     plane_points p;
     if (!count) return 0;
-    see_points(w, leaf, slab_of(w, leaf, ready_place(w, leaf))->direction, &p);
+    see_points(w, leaf, slab_of(w, leaf, derived_place(w, leaf))->direction, &p);
     return all_face(&p, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf) &&
            is_star(&p,
                    lanes_bytes_through(lanes_bytes_load(outline), lanes_bytes_load(next_of[count])),

@@ -104,8 +104,8 @@ static inline void see_loop(const sc_worker *w, const sc_cluster_pair *p,
     int i, k;
     for (i = 0; i < 2 * SC_LANES_COUNT; i++)
         number[i] = (uint8_t)((loop[i] & 16) | (loop[i] & 3) << 2 | (loop[i] >> 2 & 3));
-    lanes_turned(of_a, at[0]);
-    lanes_turned(of_b, at[1]);
+    lanes_coordinates(of_a, at[0]);
+    lanes_coordinates(of_b, at[1]);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         const lanes middle = lanes_all(of_a[k] / 2 + of_b[k] / 2); /* of one point of each */
@@ -228,12 +228,12 @@ static inline unsigned find_loop(const sc_model *model, const sc_cluster_pair *p
 /* Of some pairs, of which all triangles face a direction, those that have certainly nothing in
    common but what they share. Each step is made for all of them before the next: what was just
    written is read slowly in other pieces. */
-static unsigned find_plain(const sc_worker *w, sc_cluster_pair *const pair[], unsigned count)
+static unsigned find_certified(const sc_worker *w, sc_cluster_pair *const pair[], unsigned count)
 {
     const uint16_t *mask = w->frame->mask + sc_model_first_leaf_patch(w->model);
     short_points all[SHORT_PAIRS], kept[SHORT_PAIRS];
     short_edges edges[SHORT_PAIRS];
-    unsigned number[SHORT_PAIRS] = {0}, seen = 0, fit = 0, i, plain = 0;
+    unsigned number[SHORT_PAIRS] = {0}, seen = 0, fit = 0, i, certified = 0;
     uint16_t both[SC_DNC_VECTORS] = {0};
     sc_simple_some_axes axes;
     for (i = 0; i < count; i++) both[i] = mask[pair[i]->a] & mask[pair[i]->b];
@@ -260,8 +260,8 @@ static unsigned find_plain(const sc_worker *w, sc_cluster_pair *const pair[], un
         repeat(kept[i].y, kept[i].count);
     }
     for (i = 0; i < fit; i++) write_edges(&kept[i], &edges[i]);
-    for (i = 0; i < fit; i++) plain |= (unsigned)is_simple(&kept[i], &edges[i]) << number[i];
-    return plain;
+    for (i = 0; i < fit; i++) certified |= (unsigned)is_simple(&kept[i], &edges[i]) << number[i];
+    return certified;
 }
 
 /* Asks for memory that two leaf clusters need here, in steps, of which each reads what the one
@@ -295,7 +295,7 @@ static inline void fetch_loop(const sc_worker *w, const sc_cluster_pair *p, int 
 
 /* Of so many pairs of leaf clusters drops two that have certainly nothing in common but
    what they share, and marks them: then neither is to be looked at by itself. */
-static SC_NOINLINE void drop_plain(sc_worker *w, sc_cluster_pair *pairs, uint32_t pair_count)
+static SC_NOINLINE void drop_certified(sc_worker *w, sc_cluster_pair *pairs, uint32_t pair_count)
 {
     enum { DISTANCE = 8 }; /* pairs between two steps of fetching */
     const unsigned told = SC_TOUCHES | SC_CLUSTERS_DROPPED; /* by other tests, or not at all */
@@ -323,7 +323,7 @@ static SC_NOINLINE void drop_plain(sc_worker *w, sc_cluster_pair *pairs, uint32_
         }
         some[taken++] = pairs + oriented[i];
         if (taken < SHORT_PAIRS && i + 1 < count) continue;
-        for (bits = find_plain(w, some, taken); bits; bits &= bits - 1) {
+        for (bits = find_certified(w, some, taken); bits; bits &= bits - 1) {
             sc_cluster_pair *p = some[sc_bits_lowest(bits)];
             marks[p->a] = marks[p->b] = 1;
             p->known |= SC_CLUSTERS_DROPPED;

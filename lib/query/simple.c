@@ -7,8 +7,8 @@
  * scaled to a size of about one, and hold for every place that the true points can be at, up to a
  * distance of error in each coordinate: they say something about the contour that is, not about the
  * one computed. Edges that share no point must be apart by their boxes, or one on one side of the
- * other's line. The inner loops (query/simple_kernel.h) settle nearly all pairs, sixteen at a time;
- * what they leave comes to sc_simple_are_apart.
+ * other's line. The inner loops (query/simple_kernel.h) classify nearly all pairs, sixteen at a
+ * time; what they leave comes to sc_simple_are_apart.
  */
 #include "base/bounds.h"
 #include "query/simple.h"

@@ -83,7 +83,7 @@ enum { SC_SMALL_BLOCKS = 4, SC_SMALL_EDGES = 9 };
    apart, or sharing one point and nothing else. Notes pinches. */
 int sc_simple_are_apart(sc_simple_contour *contour, uint32_t i, uint32_t j);
 
-/* The turned place of a number in a loop among those of all leaf clusters. */
+/* The transposed place of a number in a loop among those of all leaf clusters. */
 static inline uint32_t sc_simple_place(const sc_simple_contour *c, uint32_t number)
 {
     return number + (number < c->split ? c->first : c->second);

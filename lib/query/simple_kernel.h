@@ -18,7 +18,7 @@
  * point twice, where two of its edges have one direction (is_pinch_fine); or it is of three edges,
  * and has no area, as all triangles have, or its piece has none (are_pieces_fine).
  *
- * Pairs that cannot be told apart here are few and go to sc_simple_are_apart.
+ * Pairs of edges that cannot be separated here are few and go to sc_simple_are_apart.
  */
 
 /* The bits of the first lanes. */
@@ -36,7 +36,7 @@ static inline unsigned edges_from(const sc_simple_contour *c, uint32_t i)
     return (is_edge[0] | (unsigned)is_edge[1] << 16) >> i % SC_CONTOUR_BLOCK & 0xffffu;
 }
 
-/* The turned places of a loop's points, and beyond its end the first again. */
+/* The transposed places of a loop's points, and beyond its end the first again. */
 static void place_loop(sc_simple_contour *c)
 {
     uint32_t *place = c->edges->point, i;

@@ -42,7 +42,7 @@
  */
 /* Triangles as they are picked: sixteen by number, of a leaf cluster, or of two. */
 typedef struct picked {
-    const sc_leaf_ready *ready[2];
+    const sc_leaf_derived *derived[2];
     const float *points[2];   /* see sc_frame.point_at */
     const uint8_t *corner[2]; /* see sc_model.leaf_corner */
     const uint8_t *numbers;   /* of the triangles */
@@ -120,18 +120,18 @@ static SC_INLINE void find_tips(const sixteen_pairs *sixteen, int s, int two, ti
                                 lanes *size)
 {
     const picked *plane = &sixteen->of[1 - s];
-    const sc_leaf_ready *ready = plane->ready[0], *other = plane->ready[1];
+    const sc_leaf_derived *derived = plane->derived[0], *other = plane->derived[1];
     lanes_index i = lanes_index_load(plane->numbers);
-    lanes offset = pick_kept(sixteen, two, ready->offset, other->offset, i);
+    lanes offset = pick_kept(sixteen, two, derived->offset, other->offset, i);
     lanes bound, x[3][3], n[3], least = offset;
     lanes_mask below[3], is_not[2];
     unsigned sure, same;
     int k, c;
-    *size = pick_kept(sixteen, two, ready->size, other->size, i);
+    *size = pick_kept(sixteen, two, derived->size, other->size, i);
     bound = plane_bound(*size, sixteen->extent);
     pick_corners(sixteen, s, two, x);
     SC_UNROLL
-    for (c = 0; c < 3; c++) n[c] = pick_kept(sixteen, two, ready->normal[c], other->normal[c], i);
+    for (c = 0; c < 3; c++) n[c] = pick_kept(sixteen, two, derived->normal[c], other->normal[c], i);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         lanes d = lanes_multiply(n[0], x[k][0]);
@@ -263,7 +263,7 @@ static SC_INLINE unsigned part_some(const sixteen_pairs *x, int two, unsigned ma
     split = open & tips[0].split & tips[1].split;
     if (split) open &= ~miss_along_line(tips, lanes_add(size[0], size[1]), split);
     if (open & ~split) { /* not of others, whatever a sixteen has */
-        const sc_leaf_ready *const *ready = x->of[0].ready;
+        const sc_leaf_derived *const *derived = x->of[0].derived;
         lanes_index i = lanes_index_load(x->of[0].numbers);
         lanes at[2][3][3], n[3];
         int c;
@@ -271,7 +271,7 @@ static SC_INLINE unsigned part_some(const sixteen_pairs *x, int two, unsigned ma
         for (c = 0; c < 2; c++) pick_corners(x, c, two, at[c]);
         SC_UNROLL
         for (c = 0; c < 3; c++)
-            n[c] = pick_kept(x, two, ready[0]->normal[c], ready[1]->normal[c], i);
+            n[c] = pick_kept(x, two, derived[0]->normal[c], derived[1]->normal[c], i);
         open &= ~(~split & side_separates(at, n, x->extent));
     }
     return mask & ~open;

@@ -36,7 +36,7 @@ typedef struct small_contour {
     uint32_t count;
 } small_contour;
 
-/* The turned places of a loop's points, and beyond its end the first again. What is read there
+/* The transposed places of a loop's points, and beyond its end the first again. What is read there
    stands in the model, too. */
 static SC_INLINE void place_small(const sc_model *model, uint32_t node, uint32_t blocks,
                                   small_contour *c)

@@ -52,7 +52,7 @@ static inline unsigned find_ahead(const float *at, const float m[3], const float
     const float reach = touch_reach(m);
     lanes x[3], along, size;
     int k;
-    lanes_turned(at, x);
+    lanes_coordinates(at, x);
     SC_UNROLL
     for (k = 0; k < 3; k++)
         x[k] = lanes_multiply(lanes_all(m[k]), lanes_subtract(x[k], lanes_all(p[k])));

@@ -74,7 +74,7 @@ static inline void see_tube(const sc_worker *w, uint32_t leaf, const tube *t, la
 {
     lanes x[3];
     int k;
-    lanes_turned(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, x);
+    lanes_coordinates(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, x);
     SC_UNROLL
     for (k = 0; k < 3; k++) x[k] = lanes_subtract(x[k], lanes_all(t->middle[k]));
     SC_UNROLL
@@ -188,7 +188,7 @@ static int is_band(const sc_worker *w, uint32_t leaf)
     lanes x[3];
     int k;
     find_box(w, leaf, low, high);
-    lanes_turned(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, x);
+    lanes_coordinates(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, x);
     for (k = 0; k < 3; k++) {
         x[k] = lanes_subtract(x[k], lanes_all((low[k] + high[k]) / 2));
         along[k] = lanes_sum(lanes_multiply(side, x[k]));
@@ -218,7 +218,7 @@ static int are_bands(const sc_worker *w, uint32_t a, uint32_t b)
 
 /* Of so many pairs of leaf clusters, or one with itself, drops those that go round a tube
    and certainly have nothing in common but what they share; before those of one with itself, the
-   others, which are marked as drop_plain does. */
+   others, which are marked as drop_certified does. */
 static void drop_bands(sc_worker *w, sc_cluster_pair *pairs, uint32_t count)
 {
     uint8_t *marks = w->last.marks + sc_model_first_leaf_patch(w->model);

@@ -5,7 +5,7 @@
  *
  * A stage takes so many of the last items of its list (query/lists.h), or fewer where the next list
  * might not have room for what one more adds, but one at least. It reads the model and the frame,
- * settles what it can, adds the rest to lists behind its own, and calls no other stage.
+ * classifies what it can, adds the rest to lists behind its own, and calls no other stage.
  *
  * Stages whose inner loops are compiled for each instruction set make this a table for each of
  * them: simd/all_kernels.h includes it, and nothing else.
@@ -25,7 +25,7 @@ static sc_stage *const query_stages[SC_LIST_COUNT] = {
     [SC_LIST_NEAR] = part_near,
     [SC_LIST_CLUSTERS] = compare_clusters,
     [SC_LIST_TRIANGLES] = compare_triangles,
-    [SC_LIST_OPEN] = settle_open,
+    [SC_LIST_OPEN] = classify_open,
     /* the narrow phase: eight pairs of triangles in doubles, then exact signs */
     [SC_LIST_CANDIDATES] = sc_decide_candidates,
     [SC_LIST_NEIGHBORS] = sc_decide_neighbors,

@@ -42,17 +42,17 @@ static sc_workspace_sizes sizes_for(const sc_model *model, uint32_t workers, uin
     return s;
 }
 
-/* How many leaf clusters a worker keeps ready: as many as there are, if they are few. */
-static uint32_t some_ready(const sc_workspace_sizes *s)
+/* Of how many leaf clusters a worker keeps derived data: of all, if they are few. */
+static uint32_t some_derived(const sc_workspace_sizes *s)
 {
     uint32_t kept = 1;
-    while (kept < SC_READY_KEPT && kept < s->leaves) kept *= 2;
+    while (kept < SC_DERIVED_KEPT && kept < s->leaves) kept *= 2;
     return kept;
 }
 
-/* How many leaf clusters can be kept ready at once by the first worker: all, where bounds of
+/* Of how many the first worker can keep it at once: of all, where bounds of
    segments have room for about as many. Models for boxes have none, so that they stay small. */
-static uint32_t all_ready(const sc_workspace_sizes *s)
+static uint32_t all_derived(const sc_workspace_sizes *s)
 {
     return s->segments ? s->leaves : 0;
 }
@@ -84,21 +84,21 @@ static void lay_out_frame(const sc_workspace_sizes *s, layout *l, sc_frame *fram
     frame->motion.own_points = SC_PLACE(l, s->leaves, uint16_t);
 }
 
-/* Points of leaf clusters; next to them bounds of segments, and leaf clusters made ready in the
-   same place. */
+/* Points of leaf clusters; next to them bounds of segments, and derived data of leaf clusters in
+   the same place. */
 static void lay_out_bounds(const sc_workspace_sizes *s, layout *l, sc_workspace *w)
 {
     uint64_t start, end;
     int k;
     w->frame.point_at = SC_PLACE(l, 4 * SC_LEAF_POINTS * (uint64_t)s->leaves, float);
     start = l->at;
-    w->all_ready = SC_PLACE(l, all_ready(s), sc_leaf_ready);
+    w->all_derived = SC_PLACE(l, all_derived(s), sc_leaf_derived);
     end = l->at;
     l->at = start;
     for (k = 0; k < 2; k++) w->bounds.of[k] = SC_PLACE(l, s->segments, sc_segment_bounds);
     if (l->at < end) l->at = end;
     for (k = 0; k < 2; k++) w->bounds.epoch_of[k] = SC_PLACE(l, s->segments, uint16_t);
-    w->all_known = SC_PLACE(l, all_ready(s), sc_leaf_known);
+    w->all_known = SC_PLACE(l, all_derived(s), sc_leaf_known);
 }
 
 static void lay_out_plan(const sc_workspace_sizes *s, layout *l, sc_plan_room *plan)
@@ -223,8 +223,8 @@ static void lay_out_worker(const sc_workspace_sizes *s, layout *l, sc_worker *wo
     lay_out_contour(s, l, &worker->contour);
     lay_out_lists(s, l, &worker->lists);
     lay_out_last(s, l, &worker->last);
-    worker->kept.some = some_ready(s);
-    worker->kept.some_ready = SC_PLACE(l, (uint64_t)worker->kept.some + 1, sc_leaf_ready);
+    worker->kept.some = some_derived(s);
+    worker->kept.some_derived = SC_PLACE(l, (uint64_t)worker->kept.some + 1, sc_leaf_derived);
     worker->kept.some_known = SC_PLACE(l, (uint64_t)worker->kept.some + 1, sc_leaf_known);
     worker->kept.slab = SC_PLACE(l, s->leaves, sc_leaf_slab);
     worker->ball.epoch_of = SC_PLACE(l, s->vertices, uint16_t);
@@ -319,7 +319,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     clear_boxes(s, &w->frame.patch_boxes);
     memset(w->frame.mask, 0, s->patches * sizeof *w->frame.mask);
     for (k = 0; k < 2; k++) memset(w->bounds.epoch_of[k], 0, s->segments * sizeof(uint16_t));
-    memset(w->all_known, 0, all_ready(s) * sizeof *w->all_known);
+    memset(w->all_known, 0, all_derived(s) * sizeof *w->all_known);
     for (i = 0; i < s->workers; i++) {
         w->worker[i].step = w->step ? &w->step[i] : NULL;
         clear_worker(s, &w->worker[i]);
@@ -352,7 +352,7 @@ static void begin_epoch(sc_workspace *w)
             memset(kept->some_known, 0, ((size_t)kept->some + 1) * sizeof *kept->some_known);
             memset(kept->slab, 0, w->sizes.leaves * sizeof *kept->slab);
         }
-        memset(w->all_known, 0, all_ready(&w->sizes) * sizeof *w->all_known);
+        memset(w->all_known, 0, all_derived(&w->sizes) * sizeof *w->all_known);
         w->frame.epoch = 0;
     }
     w->frame.epoch++;
@@ -391,14 +391,13 @@ static void begin_worker(const sc_model *model, sc_workspace *workspace,
     if (question->step) begin_step_worker(question->step, w->step);
 }
 
-/* Has each of so many workers keep leaf clusters ready for a step, in the room that points of leaf
-   clusters and leaf clusters made ready for queries have, or its own, and forget those of the
-   last. */
+/* Lets each of so many workers keep leaf clusters for a step, in the room of points and derived
+   data of leaf clusters in queries, or in its own, and forget those of the last step. */
 static void keep_motions(sc_workspace *w, uint32_t workers)
 {
     unsigned char *room = (unsigned char *)(void *)w->frame.point_at;
     const unsigned char *end =
-        (const unsigned char *)(const void *)(w->all_ready + all_ready(&w->sizes));
+        (const unsigned char *)(const void *)(w->all_derived + all_derived(&w->sizes));
     const uint64_t count = (uint64_t)(end - room) / sizeof(sc_leaf_motion) / workers;
     uint32_t kept = 1, i;
     while (kept <= count / 2) kept *= 2;
@@ -427,12 +426,12 @@ sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
    has by itself. */
 static void keep_parts(sc_workspace *w, uint32_t workers)
 {
-    const uint32_t room = all_ready(&w->sizes) / workers;
+    const uint32_t room = all_derived(&w->sizes) / workers;
     uint32_t kept = 1, i;
     while (2 * kept < room) kept *= 2; /* and one place more */
     if (kept <= w->worker[0].kept.some) return;
     for (i = 0; i < workers; i++)
-        sc_kept_leaves_in(&w->worker[i].kept, w->all_ready + (uint64_t)i * room,
+        sc_kept_leaves_in(&w->worker[i].kept, w->all_derived + (uint64_t)i * room,
                           w->all_known + (uint64_t)i * room, kept);
 }
 
@@ -457,14 +456,14 @@ void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc
 
 void sc_workspace_keep_all(sc_workspace *w)
 {
-    if (all_ready(&w->sizes))
-        sc_kept_leaves_in(&w->worker[0].kept, w->all_ready, w->all_known, SC_KEEPS_ALL);
+    if (all_derived(&w->sizes))
+        sc_kept_leaves_in(&w->worker[0].kept, w->all_derived, w->all_known, SC_KEEPS_ALL);
 }
 
 sc_pair *sc_workspace_spare(const sc_workspace *w, uint64_t *count)
 {
-    const uint64_t ready = all_ready(&w->sizes) * (uint64_t)sizeof(sc_leaf_ready);
+    const uint64_t derived = all_derived(&w->sizes) * (uint64_t)sizeof(sc_leaf_derived);
     const uint64_t points = 4 * SC_LEAF_POINTS * sizeof(float) * (uint64_t)w->sizes.leaves;
-    *count = (ready ? ready : points) / sizeof(sc_pair);
-    return ready ? (sc_pair *)(void *)w->all_ready : (sc_pair *)(void *)w->frame.point_at;
+    *count = (derived ? derived : points) / sizeof(sc_pair);
+    return derived ? (sc_pair *)(void *)w->all_derived : (sc_pair *)(void *)w->frame.point_at;
 }

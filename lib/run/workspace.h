@@ -3,16 +3,16 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | arrays of the frame | point_at | bounds or all_ready | epochs of these |
+ *     | sc_workspace | arrays of the frame | point_at | bounds or all_derived | epochs of these |
  *       arrays of the plan | sc_worker, sc_worker, ... | arrays of a worker | arrays of a worker |
  *       ... |
  *
  * Arrays start at multiples of SC_ALIGNMENT. How long they are depends on sc_workspace_sizes alone.
- * The star test's bounds and leaf clusters made ready are never needed by one query, so they share
- * their memory; what tells whether they are of this query stands elsewhere. There is no room for
- * all leaf clusters in a query with the star test; several workers divide that room, where it is
- * more than they have by themselves. A step needs neither of them, nor point_at, which stands next
- * to them: together they have room for all leaf clusters made ready for a step.
+ * The star test's bounds and derived data of leaf clusters are never needed by one query, so they
+ * share their memory; what tells whether they are of this query stands elsewhere. There is no room
+ * for all leaf clusters in a query with the star test; several workers divide that room, where it
+ * is more than they have by themselves. A step needs neither of them, nor point_at, which stands
+ * next to them: together they have room for what a step keeps of all leaf clusters.
  *
  * It keeps nothing from one query to the next but epochs, by which what an earlier query left is
  * known to be stale.
@@ -57,9 +57,9 @@ struct sc_workspace {
     uint32_t owned; /* allocated by sc_workspace_create or _create_for */
     sc_hooks hooks;
     sc_frame frame;
-    sc_contour_bounds bounds; /* the first worker's */
-    sc_leaf_ready *all_ready; /* leaf_count; 0 if there are no segments */
-    sc_leaf_known *all_known; /* the same */
+    sc_contour_bounds bounds;     /* the first worker's */
+    sc_leaf_derived *all_derived; /* leaf_count; 0 if there are no segments */
+    sc_leaf_known *all_known;     /* the same */
     sc_plan_room plan;
     sc_worker *worker;    /* sizes.workers */
     sc_step_worker *step; /* as many, of workspaces for steps */
@@ -87,8 +87,8 @@ sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
 void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc_question *question,
                         sc_share *share, uint32_t workers);
 
-/* Has the first worker keep all leaf clusters ready in this query, for which no star test is made,
-   if there is room. */
+/* Lets the first worker keep the derived data of all leaf clusters in this query, in which no star
+   test is made, if there is room. */
 void sc_workspace_keep_all(sc_workspace *workspace);
 
 /* Memory for so many pairs, at a time when no more of the pose is needed in this query: all that

@@ -35,7 +35,7 @@
 #include "pose/refit_kernel.h"
 
 #include "query/slab_kernel.h"
-#include "query/ready_kernel.h"
+#include "query/derived_kernel.h"
 #include "query/neighbor_kernel.h"
 #include "query/fan_kernel.h"
 #include "query/outline_kernel.h"

@@ -11,10 +11,10 @@
  * comparison gives a mask, of which lanes_bits makes bit i for lane i; with NaN it is false.
  * lanes_points reads the first three of four floats at sixteen places, lanes_rows those of sixteen
  * fours of an array by their numbers. lanes_numbers writes down sixteen numbers, to which one of
- * two is added: the first if they are below a split. lanes_turned reads the first three of sixteen
- * fours that follow each other in turned places (see build/loops.h): block i of sixteen floats
- * holds points i, i + 4, i + 8 and i + 12. Of the functions of fours, lanes_four repeats four
- * floats four times, lanes_each_four each of four floats, and the others store the least or
+ * two is added: the first if they are below a split. lanes_coordinates reads the first three of
+ * sixteen fours that follow each other in transposed places (see build/loops.h): block i of sixteen
+ * floats holds points i, i + 4, i + 8 and i + 12. Of the functions of fours, lanes_four repeats
+ * four floats four times, lanes_each_four each of four floats, and the others store the least or
  * greatest of each four lanes.
  *
  * Included once for each instruction set (see simd/all_kernels.h), and tools/amalgamate.awk tells
@@ -166,7 +166,7 @@ static inline void lanes_rows(const float *at, const uint32_t row[SC_LANES_COUNT
                                  at + 4 * (uint64_t)row[i + 8], at + 4 * (uint64_t)row[i + 12]);
     lanes_transposed(r, x, y, z);
 }
-static inline void lanes_turned(const float *at, lanes row[3])
+static inline void lanes_coordinates(const float *at, lanes row[3])
 {
     __m512 r[4];
     int i;
@@ -511,7 +511,7 @@ static inline void lanes_rows(const float *at, const uint32_t row[SC_LANES_COUNT
     for (i = 0; i < SC_LANES_PARTS; i++)
         lanes_rows_part(at, row + i * SC_LANES_WIDTH, &x->v[i], &y->v[i], &z->v[i]);
 }
-static inline void lanes_turned(const float *at, lanes row[3])
+static inline void lanes_coordinates(const float *at, lanes row[3])
 {
     int i, k;
     SC_UNROLL
@@ -645,7 +645,7 @@ static inline void lanes_rows(const float *at, const uint32_t row[SC_LANES_COUNT
         z->v[i] = at[4 * (uint64_t)row[i] + 2];
     }
 }
-static inline void lanes_turned(const float *at, lanes row[3])
+static inline void lanes_coordinates(const float *at, lanes row[3])
 {
     int i, k;
     for (i = 0; i < SC_LANES_COUNT; i++)

@@ -12,8 +12,8 @@
  * or 255 if nowhere. lanes_index_of makes numbers of lanes (simd/lanes_pick.h) of them.
  * lanes_list_rows takes from rows of numbers those of these lanes, adds to those of each row a
  * number of its own, and writes them as rows of so many words, room for sixteen in each.
- * lanes_edges_of reads points of two tables, in turned places (see simd/lanes.h), by numbers: the
- * first of three of one is subtracted from the other two, then from two of the other.
+ * lanes_edges_of reads points of two tables, in transposed places (see simd/lanes.h), by numbers:
+ * the first of three of one is subtracted from the other two, then from two of the other.
  */
 
 #if SC_LANES_AVX512 || SC_LANES_AVX2 || SC_LANES_SSE2
@@ -219,8 +219,8 @@ static SC_INLINE void lanes_edges_of(const float *a, const float *b, const lanes
     lanes row[2][3];
     lanes_index at[5];
     int s, k, c;
-    lanes_turned(a, row[0]);
-    lanes_turned(b, row[1]);
+    lanes_coordinates(a, row[0]);
+    lanes_coordinates(b, row[1]);
     SC_UNROLL
     for (k = 0; k < 3; k++) at[k] = lanes_index_of(of_a[k]);
     SC_UNROLL

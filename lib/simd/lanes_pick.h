@@ -17,10 +17,10 @@
  * is set, else from b. lanes_same compares bits, whatever they mean; lanes_differ has what is in
  * one of two masks only. lanes_corners picks corners 0 to 2 of triangles, their coordinates 0 to 2,
  * from three rows of coordinates by three of numbers; lanes_corners_at finds the former in memory,
- * in turned places (see simd/lanes.h); lanes_corners_through takes the triangles of sixteen numbers
- * below sixteen instead of all in order. lanes_pick_two and lanes_corners_two do as lanes_pick and
- * lanes_corners_through, but from a second place in the lanes that follow so many; lanes_from has
- * these.
+ * in transposed places (see simd/lanes.h); lanes_corners_through takes the triangles of sixteen
+ * numbers below sixteen instead of all in order. lanes_pick_two and lanes_corners_two do as
+ * lanes_pick and lanes_corners_through, but from a second place in the lanes that follow so many;
+ * lanes_from has these.
  *
  * lanes_marked is the set of the numbers in three rows, in lanes of three masks; lanes_among has
  * the lanes of which the number is in a set.
@@ -550,7 +550,7 @@ static inline void lanes_corners(const lanes at[3], const uint8_t *where, lanes 
 static inline void lanes_corners_at(const float *at, const uint8_t *where, lanes corner[3][3])
 {
     lanes row[3];
-    lanes_turned(at, row);
+    lanes_coordinates(at, row);
     lanes_corners(row, where, corner);
 }
 static inline void lanes_corners_through(const float *at, const uint8_t *where,
@@ -558,7 +558,7 @@ static inline void lanes_corners_through(const float *at, const uint8_t *where,
 {
     lanes row[3];
     int c, k;
-    lanes_turned(at, row);
+    lanes_coordinates(at, row);
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         lanes_index from = lanes_index_through(where + SC_LANES_COUNT * c, numbers);

@@ -279,7 +279,7 @@ static inline void lanes_rows_ends(const float *row, uint64_t stride, lanes leas
     int i, k;
     for (i = 0; i < SC_LANES_COUNT; i++, row += stride) {
         lanes at[3];
-        lanes_turned(row, at);
+        lanes_coordinates(row, at);
         for (k = 0; k < 3; k++) {
             least[k].v[i] = lanes_least(at[k]);
             most[k].v[i] = lanes_most(at[k]);

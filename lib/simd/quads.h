@@ -63,8 +63,8 @@ static inline sc_floats4 sc_quad_rounded_two(sc_doubles2 a)
 {
     return _mm_cvtpd_ps(a);
 }
-/* Where points of sixteen numbers below sixteen are in a table of turned places (see simd/lanes.h),
-   in bytes: block i % 4, place i / 4. */
+/* Where points of sixteen numbers below sixteen are in a table of transposed places (see
+   simd/lanes.h), in bytes: block i % 4, place i / 4. */
 static inline void sc_quad_places(const uint8_t *numbers, uint8_t *place)
 {
     __m128i n = _mm_loadu_si128((const __m128i *)(const void *)numbers);

@@ -30,8 +30,8 @@
  *
  * Thresholds. d is the separation, T the tolerance, M the largest coordinate of a corner at time 0
  * or 1.
- *   reported              if a point at a distance <= d + T / 2 (3 T / 4 in a slab) has been computed
- *   proved to be apart    by directions with level d + T / 4 (d + T / 8 in a slab)
+ *   reported             if a point is computed at a distance <= d + T / 2 (3 T / 4 in a slab)
+ *   proved to be apart   by directions with level d + T / 4 (d + T / 8 in a slab)
  * u is 2^-53. A computed corner at a time is off by at most 4 u M a coordinate (the differences at
  * both ends 1 each, 1 - t, two products and a sum), 7 u M in all; a scalar product with a direction
  * by at most 6 u M more, the direction's length by 4 u, of d <= 2 M; a convex combination by less

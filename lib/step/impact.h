@@ -41,8 +41,7 @@
 typedef struct sc_impact_limits {
     double separation; /* >= 0, finite, units of the coordinates */
     double tolerance;  /* >= 0, finite, the same units; 0: as little as SC_IMPACT_FLOOR allows */
-    double
-        latest; /* 0 to 1: collisions after this time count as none. Does not change other answers */
+    double latest;     /* 0 to 1: collisions after it count as none; other answers are the same */
 } sc_impact_limits;
 
 /* Points 0: the vertex, 1 to 3: the face. 1 if they collide, with the time; else 0, and *time is

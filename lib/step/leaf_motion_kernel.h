@@ -1,5 +1,5 @@
 /*
- * Leaf clusters made ready for a step: points, slabs and a box, at its start and end. See
+ * The derived data of leaf clusters in a step: points, slabs and a box, at its start and end. See
  * step/step_worker.h.
  *
  * SPDX-License-Identifier: MIT

@@ -21,7 +21,7 @@
 #include "pose/positions.h"
 #include "step/impact.h"
 
-/* How far apart boxes of points are kept for sets that are to be told apart by a distance. */
+/* By how much boxes of points are enlarged, for sets that are to be separated by a distance. */
 static inline float sc_motion_margin(float distance)
 {
     return distance * 1.000001f + SC_BOUNDS_MOVING_BOX;

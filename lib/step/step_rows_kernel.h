@@ -4,7 +4,7 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Only points are looked at. A triangle or an edge is told apart from a slab or a box that moves if
+ * Only points are looked at. A triangle or an edge is separated from a slab or a box that moves if
  * all its points are beyond the same side, at both ends: these are sets of points of a leaf
  * cluster, and which of its triangles and edges are within such a set is asked of sixteen at once.
  * That is tried from the cheapest to the dearest, and each step only looks at what the one before
@@ -114,7 +114,7 @@ static inline unsigned points_left(const unsigned *beyond, int count)
 
 /* What is left of a leaf cluster. */
 typedef struct leaf_left {
-    const sc_leaf_motion *ready;
+    const sc_leaf_motion *moving;
     const uint32_t *point;                /* its points, */
     const uint8_t *where;                 /* and which of these are the corners of triangles */
     lanes_sets corners, ends[3];          /* of triangles, of their sides k */
@@ -122,13 +122,13 @@ typedef struct leaf_left {
     uint16_t shared[SC_LEAF_POINTS];      /* which points of the other each point is */
 } leaf_left;
 
-static inline void begin_left(const sc_model *model, const sc_leaf_motion *ready, leaf_left *a)
+static inline void begin_left(const sc_model *model, const sc_leaf_motion *moving, leaf_left *a)
 {
     lanes_sets corner[3];
     int k;
-    a->ready = ready;
-    a->point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)ready->leaf;
-    a->where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)ready->leaf;
+    a->moving = moving;
+    a->point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)moving->leaf;
+    a->where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)moving->leaf;
     SC_UNROLL
     for (k = 0; k < 3; k++) corner[k] = lanes_sets_of(a->where + SC_LEAF_MAX * k);
     SC_UNROLL
@@ -142,12 +142,12 @@ static inline void leave_near(leaf_left *a, const sc_leaf_motion *other, unsigne
 {
     unsigned beyond[4];
     int k;
-    beyond_box(a->ready, &other->box, beyond);
+    beyond_box(a->moving, &other->box, beyond);
     beyond[3] = slab;
-    a->triangles = left_of(a->corners, beyond, 4) & a->ready->triangles;
-    a->points = points_left(beyond, 4) & a->ready->own;
+    a->triangles = left_of(a->corners, beyond, 4) & a->moving->triangles;
+    a->points = points_left(beyond, 4) & a->moving->own;
     SC_UNROLL
-    for (k = 0; k < 3; k++) a->edges[k] = left_of(a->ends[k], beyond, 4) & a->ready->owned[k];
+    for (k = 0; k < 3; k++) a->edges[k] = left_of(a->ends[k], beyond, 4) & a->moving->owned[k];
 }
 
 /* Finds which points of two leaf clusters are the same. */
@@ -182,7 +182,7 @@ static inline void add_face(const sc_motion *m, const leaf_left *a, uint32_t i, 
     }
     if (!points) return;
     make_moving_box(m, point, 3, &box);
-    beyond_box(b->ready, &box, beyond);
+    beyond_box(b->moving, &box, beyond);
     points &= points_left(beyond, 3);
     rows->of[rows->faces] = (uint8_t)of;
     rows->face[rows->faces] = (uint8_t)i;
@@ -205,7 +205,7 @@ static inline void add_edge(const sc_motion *m, const leaf_left *a, uint32_t i, 
     for (l = 0; l < 3; l++) left[l] = edges[l] & lanes_within(b->ends[l], apart & 0xffffu);
     if (!(left[0] | left[1] | left[2])) return;
     make_moving_box(m, point, 2, &box);
-    beyond_box(b->ready, &box, beyond);
+    beyond_box(b->moving, &box, beyond);
     SC_UNROLL
     for (l = 0; l < 3; l++) {
         left[l] &= left_of(b->ends[l], beyond, 3);
@@ -227,7 +227,7 @@ static uint32_t compare_faces(const sc_motion *m, leaf_left *a, leaf_left *b, st
     int k, l;
     for (some = a->triangles; some; some &= some - 1) {
         const uint32_t i = sc_bits_lowest(some);
-        beyond_a[i] = beyond_face(b->ready, a->ready, i);
+        beyond_a[i] = beyond_face(b->moving, a->moving, i);
         near_a[i] = left_of(b->corners, &beyond_a[i], 1) & b->triangles;
         faces_a |= (unsigned)(near_a[i] != 0) << i;
         faces_b |= near_a[i];
@@ -238,7 +238,7 @@ static uint32_t compare_faces(const sc_motion *m, leaf_left *a, leaf_left *b, st
     memset(sides, 0, sizeof sides);
     for (some = faces_b; some; some &= some - 1) {
         const uint32_t j = sc_bits_lowest(some);
-        const unsigned beyond = beyond_face(a->ready, b->ready, j);
+        const unsigned beyond = beyond_face(a->moving, b->moving, j);
         if (!(left_of(a->corners, &beyond, 1) & faces_a)) {
             faces_b &= ~(1u << j);
             continue;
@@ -270,19 +270,19 @@ static uint32_t compare_faces(const sc_motion *m, leaf_left *a, leaf_left *b, st
 
 /* Finds what is left of two leaf clusters. Returns how many slabs and boxes were compared with
    points. */
-static uint32_t find_rows(const sc_model *model, const sc_motion *m, const sc_leaf_motion *ready_a,
-                          const sc_leaf_motion *ready_b, step_rows *rows)
+static uint32_t find_rows(const sc_model *model, const sc_motion *m, const sc_leaf_motion *moving_a,
+                          const sc_leaf_motion *moving_b, step_rows *rows)
 {
-    const unsigned slab_b = beyond_leaf(ready_b, ready_a);
-    const unsigned slab_a = beyond_leaf(ready_a, ready_b);
+    const unsigned slab_b = beyond_leaf(moving_b, moving_a);
+    const unsigned slab_a = beyond_leaf(moving_a, moving_b);
     leaf_left a, b;
     rows->faces = rows->edges = 0;
     if (all_beyond(slab_a) | all_beyond(slab_b)) return 2;
-    begin_left(model, ready_a, &a);
-    leave_near(&a, ready_b, slab_a);
+    begin_left(model, moving_a, &a);
+    leave_near(&a, moving_b, slab_a);
     if (!a.triangles) return 3;
-    begin_left(model, ready_b, &b);
-    leave_near(&b, ready_a, slab_b);
+    begin_left(model, moving_b, &b);
+    leave_near(&b, moving_a, slab_b);
     if (!b.triangles) return 4;
     return 4 + compare_faces(m, &a, &b, rows);
 }
@@ -290,7 +290,7 @@ static uint32_t find_rows(const sc_model *model, const sc_motion *m, const sc_le
 /* The same for one: its triangles with its points, and its edges with those of triangles that come
    later. */
 static uint32_t find_own_rows(const sc_model *model, const sc_motion *m,
-                              const sc_leaf_motion *ready, step_rows *rows)
+                              const sc_leaf_motion *moving, step_rows *rows)
 {
     uint16_t sides[3][SC_LEAF_MAX];
     lanes_sets left_by[3];
@@ -299,19 +299,19 @@ static uint32_t find_own_rows(const sc_model *model, const sc_motion *m,
     int i, k;
     rows->faces = rows->edges = 0;
     memset(sides, 0, sizeof sides);
-    begin_left(model, ready, &a);
+    begin_left(model, moving, &a);
     for (i = 0; i < SC_LEAF_POINTS; i++) a.shared[i] = (uint16_t)(1u << i);
-    for (some = ready->triangles; some; some &= some - 1) {
+    for (some = moving->triangles; some; some &= some - 1) {
         const uint32_t j = sc_bits_lowest(some);
-        const unsigned beyond = beyond_face(ready, ready, j);
-        add_face(m, &a, j, &a, points_left(&beyond, 1) & ready->own, 0, rows);
+        const unsigned beyond = beyond_face(moving, moving, j);
+        add_face(m, &a, j, &a, points_left(&beyond, 1) & moving->own, 0, rows);
         SC_UNROLL
         for (k = 0; k < 3; k++)
-            sides[k][j] = (uint16_t)(left_of(a.ends[k], &beyond, 1) & ready->owned[k]);
+            sides[k][j] = (uint16_t)(left_of(a.ends[k], &beyond, 1) & moving->owned[k]);
     }
     SC_UNROLL
     for (k = 0; k < 3; k++) left_by[k] = lanes_sets_load(sides[k]);
-    for (some = ready->triangles; some; some &= some - 1) {
+    for (some = moving->triangles; some; some &= some - 1) {
         const uint32_t j = sc_bits_lowest(some);
         const unsigned later = ~((2u << j) - 1u) & 0xffffu;
         SC_UNROLL
@@ -322,5 +322,5 @@ static uint32_t find_own_rows(const sc_model *model, const sc_motion *m,
             if (faces) add_edge(m, &a, j, k, &a, left, rows);
         }
     }
-    return sc_bits_count(ready->triangles);
+    return sc_bits_count(moving->triangles);
 }

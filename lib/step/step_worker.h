@@ -15,8 +15,8 @@ typedef struct sc_moving_box {
     float low[8], high[8];
 } sc_moving_box;
 
-/* A leaf cluster made ready for a step, in the unit box; see step/leaf_motion_kernel.h. Rows are
-   filled with the last point or triangle. */
+/* The derived data of a leaf cluster in a step, in the unit box; see step/leaf_motion_kernel.h.
+   Rows are filled with the last point or triangle. */
 typedef struct sc_leaf_motion {
     float at[2][3][SC_LEAF_POINTS]; /* points at the start and at the end */
     float normal[3][SC_LEAF_MAX];
@@ -31,7 +31,7 @@ typedef struct sc_leaf_motion {
     uint16_t unused[11]; /* so that rows begin where cache lines do */
 } sc_leaf_motion;
 
-/* Where there is no room for all leaf clusters, so many are kept ready at least: a power of two. */
+/* Where there is no room for that of all leaf clusters, there is for so many: a power of two. */
 enum { SC_MOTIONS_KEPT = 64 };
 
 /* What a worker keeps of leaf clusters in a step. */

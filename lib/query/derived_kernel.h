@@ -1,6 +1,7 @@
 /*
- * What is kept of a leaf cluster for tests of its triangles: their boxes, their planes, and a slab
- * that it is in. See query_kernels.h and query/kept_leaves.h.
+ * The derived data of a leaf cluster: boxes and planes of its triangles, and the slab that it is
+ * in, which is the interval of its points along their mean normal. See query_kernels.h and
+ * query/kept_leaves.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -22,7 +23,7 @@ static inline lanes points_along(const sc_worker *w, uint32_t leaf, const float 
 {
     lanes at[3], n[3];
     int k;
-    lanes_turned(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
+    lanes_coordinates(w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf, at);
     SC_UNROLL
     for (k = 0; k < 3; k++) n[k] = lanes_all(direction[k]);
     return places_along((const lanes *)n, (const lanes *)at);
@@ -37,7 +38,7 @@ static inline void leaf_corners(const sc_worker *w, uint32_t leaf, lanes x[3][3]
 
 /* Boxes of the triangles of a leaf cluster, by their corners; what is no triangle is NaN and
    overlaps nothing. */
-static inline void make_boxes(lanes x[3][3], uint32_t triangles, sc_leaf_ready *ready)
+static inline void make_boxes(lanes x[3][3], uint32_t triangles, sc_leaf_derived *derived)
 {
     const lanes ulp = lanes_all(SC_BOUNDS_STEP), least = lanes_all(SC_BOUNDS_STEP_LEAST);
     const lanes nothing = lanes_all((float)NAN);
@@ -49,13 +50,13 @@ static inline void make_boxes(lanes x[3][3], uint32_t triangles, sc_leaf_ready *
         lanes high = lanes_larger(x[0][c], lanes_larger(x[1][c], x[2][c]));
         low = lanes_subtract(low, lanes_add(lanes_multiply(lanes_absolute(low), ulp), least));
         high = lanes_add(high, lanes_add(lanes_multiply(lanes_absolute(high), ulp), least));
-        lanes_store(ready->side[c], lanes_choose(is_none, nothing, low));
-        lanes_store(ready->side[c + 3], lanes_choose(is_none, nothing, high));
+        lanes_store(derived->side[c], lanes_choose(is_none, nothing, low));
+        lanes_store(derived->side[c + 3], lanes_choose(is_none, nothing, high));
     }
 }
 
 /* Their planes. */
-static inline void make_normals(lanes x[3][3], sc_leaf_ready *ready)
+static inline void make_normals(lanes x[3][3], sc_leaf_derived *derived)
 {
     lanes e[3], f[3], n[3], size, offset;
     int c;
@@ -64,15 +65,15 @@ static inline void make_normals(lanes x[3][3], sc_leaf_ready *ready)
     SC_UNROLL
     for (c = 1; c < 3; c++)
         size = lanes_add(size, lanes_add(lanes_absolute(e[c]), lanes_absolute(f[c])));
-    lanes_store(ready->size, size);
+    lanes_store(derived->size, size);
     SC_UNROLL
-    for (c = 0; c < 3; c++) lanes_store(ready->normal[c], n[c]);
+    for (c = 0; c < 3; c++) lanes_store(derived->normal[c], n[c]);
     offset = places_along((const lanes *)n, (const lanes *)x[0]);
-    lanes_store(ready->offset, offset);
+    lanes_store(derived->offset, offset);
 }
 
-/* Makes a leaf cluster ready, at some place. */
-static void make_ready(const sc_worker *w, uint32_t leaf, uint32_t at)
+/* Makes the derived data of a leaf cluster, at some place. */
+static void make_derived(const sc_worker *w, uint32_t leaf, uint32_t at)
 {
     const uint32_t *first = sc_model_leaf_first(w->model) + leaf;
     const sc_boxes *boxes = &w->frame->patch_boxes;
@@ -81,8 +82,8 @@ static void make_ready(const sc_worker *w, uint32_t leaf, uint32_t at)
     lanes x[3][3];
     int c;
     leaf_corners(w, leaf, x);
-    make_boxes(x, first[1] - first[0], w->kept.ready + at);
-    make_normals(x, w->kept.ready + at);
+    make_boxes(x, first[1] - first[0], w->kept.derived + at);
+    make_normals(x, w->kept.derived + at);
     SC_UNROLL
     for (c = 0; c < 3; c++) {
         const float length = boxes->side[c + 3][box] - boxes->side[c][box];
@@ -94,32 +95,32 @@ static void make_ready(const sc_worker *w, uint32_t leaf, uint32_t at)
 }
 
 /* Where a leaf cluster is kept, unless another one is looked at with it that is kept there. */
-static inline uint32_t ready_place(const sc_worker *w, uint32_t leaf)
+static inline uint32_t derived_place(const sc_worker *w, uint32_t leaf)
 {
     return leaf & w->kept.mask;
 }
 
-/* Whether a leaf cluster is ready at a place; and one that is. */
-static inline unsigned is_ready(const sc_worker *w, uint32_t leaf, uint32_t at)
+/* Whether that data is at a place; and the data itself, made if it is not. */
+static inline unsigned has_derived(const sc_worker *w, uint32_t leaf, uint32_t at)
 {
     const sc_leaf_known *known = w->kept.known + at;
     return (unsigned)(known->leaf == leaf) & (unsigned)(known->epoch == w->frame->epoch);
 }
 
-static inline const sc_leaf_ready *ready_leaf(const sc_worker *w, uint32_t leaf, uint32_t at)
+static inline const sc_leaf_derived *derived_leaf(const sc_worker *w, uint32_t leaf, uint32_t at)
 {
-    if (!is_ready(w, leaf, at)) make_ready(w, leaf, at);
-    return w->kept.ready + at;
+    if (!has_derived(w, leaf, at)) make_derived(w, leaf, at);
+    return w->kept.derived + at;
 }
 
-/* Makes the slab of a leaf cluster that is ready. */
-static inline void make_slab(const sc_worker *w, uint32_t leaf, const sc_leaf_ready *ready)
+/* Makes the slab of a leaf cluster from its derived data. */
+static inline void make_slab(const sc_worker *w, uint32_t leaf, const sc_leaf_derived *derived)
 {
     sc_leaf_slab *slab = w->kept.slab + leaf;
     float reach;
     lanes along;
     int c;
-    for (c = 0; c < 3; c++) slab->direction[c] = lanes_sum(lanes_load(ready->normal[c]));
+    for (c = 0; c < 3; c++) slab->direction[c] = lanes_sum(lanes_load(derived->normal[c]));
     reach = slab_reach(slab->direction);
     along = points_along(w, leaf, slab->direction);
     slab->ends[0] = lanes_least(along) - reach;
@@ -127,36 +128,36 @@ static inline void make_slab(const sc_worker *w, uint32_t leaf, const sc_leaf_re
     slab->epoch = w->frame->epoch;
 }
 
-/* That slab, of one that is ready at a place or will be. */
+/* That slab, made if there is none; the derived data has its place at `at`. */
 static inline const sc_leaf_slab *slab_of(const sc_worker *w, uint32_t leaf, uint32_t at)
 {
     const sc_leaf_slab *slab = w->kept.slab + leaf;
-    if (slab->epoch != w->frame->epoch) make_slab(w, leaf, ready_leaf(w, leaf, at));
+    if (slab->epoch != w->frame->epoch) make_slab(w, leaf, derived_leaf(w, leaf, at));
     return slab;
 }
 
-/* Asks for what a leaf cluster is made ready of, and where. */
+/* Prefetches what derived data is made of, and where it is written. */
 static inline void fetch_to_make(const sc_worker *w, uint32_t leaf)
 {
     const float *at = w->frame->point_at + 4 * SC_LEAF_POINTS * (uint64_t)leaf;
     const uint8_t *corner = sc_model_leaf_corner(w->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
-    const float *to = w->kept.ready[leaf].side[0];
+    const float *to = w->kept.derived[leaf].side[0];
     int k;
     SC_UNROLL
     for (k = 0; k < 4; k++) sc_fetch(at + SC_LEAF_POINTS * k);
     sc_fetch(corner);
     SC_UNROLL
-    for (k = 0; k < SC_READY_ROWS; k++) sc_fetch(to + SC_LEAF_MAX * k);
+    for (k = 0; k < SC_DERIVED_ROWS; k++) sc_fetch(to + SC_LEAF_MAX * k);
 }
 
 /* Where all leaf clusters are kept, makes the slabs of so many, items of lists, that have none yet.
-   These are listed first, and those of them that are not ready, so that no branch depends on which
-   they are, and many are made at the same time. */
+   These are listed first, and those of them without derived data, so that no branch depends on
+   which they are, and many are made at the same time. */
 static SC_NOINLINE void make_slabs(const sc_worker *w, const uint32_t *items, uint32_t count)
 {
     enum { AHEAD = 4 };
     const uint32_t epoch = w->frame->epoch;
-    uint32_t bare[SC_MADE_LEAVES], unready[SC_MADE_LEAVES], bare_count = 0, unready_count = 0, i;
+    uint32_t bare[SC_MADE_LEAVES], missing[SC_MADE_LEAVES], bare_count = 0, missing_count = 0, i;
     for (i = 0; i < count; i++) {
         const uint32_t leaf = items[i] & SC_ITEM;
         bare[bare_count] = leaf;
@@ -164,15 +165,15 @@ static SC_NOINLINE void make_slabs(const sc_worker *w, const uint32_t *items, ui
         w->kept.slab[leaf].epoch = epoch; /* from now on: it may be listed again */
     }
     for (i = 0; i < bare_count; i++) {
-        unready[unready_count] = bare[i];
-        unready_count += !is_ready(w, bare[i], bare[i]);
+        missing[missing_count] = bare[i];
+        missing_count += !has_derived(w, bare[i], bare[i]);
     }
-    for (i = 0; i < unready_count && i < AHEAD; i++) fetch_to_make(w, unready[i]);
-    for (i = 0; i < unready_count; i++) {
-        if (i + AHEAD < unready_count) fetch_to_make(w, unready[i + AHEAD]);
-        make_ready(w, unready[i], unready[i]);
+    for (i = 0; i < missing_count && i < AHEAD; i++) fetch_to_make(w, missing[i]);
+    for (i = 0; i < missing_count; i++) {
+        if (i + AHEAD < missing_count) fetch_to_make(w, missing[i + AHEAD]);
+        make_derived(w, missing[i], missing[i]);
     }
-    for (i = 0; i < bare_count; i++) make_slab(w, bare[i], w->kept.ready + bare[i]);
+    for (i = 0; i < bare_count; i++) make_slab(w, bare[i], w->kept.derived + bare[i]);
 }
 
 /* Not 0 if all points of a leaf cluster are certainly before a slab, or behind. Without branches,
@@ -184,8 +185,8 @@ static inline unsigned is_beside(const sc_worker *w, uint32_t leaf, const sc_lea
            (unsigned)(lanes_every(lanes_below(lanes_all(slab->ends[1]), along)));
 }
 
-/* Whether the slab of one of two leaf clusters certainly has the other on one side; they are ready
-   at these places or will be. If they share a point, it is in both, to the last bit. */
+/* Whether the slab of one of two leaf clusters certainly has the other on one side; their derived
+   data has its place at at_a and at_b. If they share a point, it is in both, to the last bit. */
 static inline unsigned slabs_part(const sc_worker *w, uint32_t a, uint32_t at_a, uint32_t b,
                                   uint32_t at_b)
 {
