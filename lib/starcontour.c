@@ -376,39 +376,63 @@ static void stop_clock_of(sc_worker *w, uint64_t start)
     w->stats.total_nanoseconds = now - start;
 }
 
-/* What was found and counted is in the first worker. */
-static sc_status run_query(const sc_model *model, sc_workspace *workspace, const sc_asked *asked,
-                           const sc_question *question)
+/* Reads the pose, or both of a step: step is NULL for a query. */
+static sc_status read_frame(const sc_model *model, sc_workspace *workspace, const sc_asked *asked,
+                            sc_step_question *step)
 {
-    sc_worker *w = sc_workspace_begin(model, workspace, question);
+    const sc_hooks *hooks = &workspace->hooks;
     sc_frame *frame = &workspace->frame;
-    uint64_t start = 0;
     sc_status status;
-    frame->kernels = sc_kernels_for(question->options.simd);
-    if (question->timed) start = w->last_time = sc_clock_nanoseconds();
-    if (sc_worker_stops(w)) return SC_ERROR_INCOMPLETE;
-    if (!uses_star(&question->options)) sc_workspace_keep_all(workspace);
-    status = sc_positions_read(model, &asked->pose, asked->stride, frame);
-    if (status) {
-        log_not_finite(&workspace->hooks, model, &asked->pose, asked->stride, "");
+    if (!step) {
+        status = sc_positions_read(model, &asked->pose[0], asked->stride[0], frame);
+        if (status) log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], "");
         return status;
     }
-    sc_plan_run(workspace);
-    stop_clock_of(w, start);
-    if (w->incomplete) return SC_ERROR_INCOMPLETE;
-    if (question->options.output == SC_OUTPUT_PAIRS && w->count > question->capacity)
-        return SC_ERROR_SHORT_BUFFER;
-    return SC_OK;
+    frame->motion.swept = step->options.method == SC_STEP_METHOD_SWEPT;
+    status = sc_motion_read(model, asked->pose, asked->stride, &step->limits, frame);
+    if (status) {
+        log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], " at the start");
+        log_not_finite(hooks, model, &asked->pose[1], asked->stride[1], " at the end");
+    }
+    return status;
 }
 
-/* What is known after a query that did not fail. */
+/* A query, or a step. What was found and counted is in the first worker. */
+static sc_status run(const sc_model *model, sc_workspace *workspace, const sc_asked *asked,
+                     const sc_question *question, sc_step_question *step)
+{
+    sc_worker *w = sc_workspace_begin(model, workspace, question);
+    uint64_t start = 0;
+    sc_status status;
+    workspace->frame.tasks = sc_plan_tasks(model, question);
+    workspace->frame.kernels = sc_kernels_for(question->options.simd);
+    if (question->timed) start = w->last_time = sc_clock_nanoseconds();
+    if (sc_worker_stops(w)) return SC_ERROR_INCOMPLETE;
+    if (!step && !uses_star(&question->options)) sc_workspace_keep_all(workspace);
+    status = read_frame(model, workspace, asked, step);
+    if (status) return status;
+    sc_plan_run(workspace);
+    stop_clock_of(w, start);
+    return w->incomplete ? SC_ERROR_INCOMPLETE : SC_OK;
+}
+
+/* Whether something is known: all, or what fits, or what was found until it ended. */
+static int has_answer(sc_status status)
+{
+    return !status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE;
+}
+
+static uint32_t verdict_of(sc_status status, uint32_t found)
+{
+    if (status == SC_ERROR_INCOMPLETE) return SC_VERDICT_INCOMPLETE;
+    return found ? SC_VERDICT_FOUND : SC_VERDICT_CLEAN;
+}
+
 static void fill_result(const sc_worker *w, sc_status status, sc_result *r)
 {
     r->count = w->question->options.output == SC_OUTPUT_ANY ? w->count > 0 : w->count;
     r->collides = w->count > 0;
-    r->verdict = status == SC_ERROR_INCOMPLETE ? SC_VERDICT_INCOMPLETE
-                 : w->count > 0                ? SC_VERDICT_FOUND
-                                               : SC_VERDICT_CLEAN;
+    r->verdict = verdict_of(status, r->collides);
     if (r->stats) sc_structs_write(r->stats, &w->stats, sizeof w->stats);
 }
 
@@ -431,10 +455,11 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     memset(&question, 0, sizeof question);
     status = sc_question_read(model, workspace, pose, options, &r, &asked, &question);
     if (!status && SC_ALWAYS(workspace)) { /* it is refused if it is NULL */
-        workspace->frame.tasks = sc_plan_tasks(model, &question);
-        status = run_query(model, workspace, &asked, &question);
-        if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE)
-            fill_result(&workspace->worker[0], status, &r);
+        const sc_worker *w = &workspace->worker[0];
+        status = run(model, workspace, &asked, &question, NULL);
+        if (!status && question.options.output == SC_OUTPUT_PAIRS && w->count > question.capacity)
+            status = SC_ERROR_SHORT_BUFFER;
+        if (has_answer(status)) fill_result(w, status, &r);
     }
     sc_structs_write(result, &r, sizeof r);
     return status;
@@ -442,37 +467,15 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
 
 /* ---- steps ---- */
 
-/* What was found and counted is in the first worker. */
-static sc_status run_step(const sc_model *model, sc_workspace *workspace,
-                          const sc_step_asked *asked, sc_step_question *question)
+/* Whether one of the lists has more than the caller's array holds. */
+static int is_short(const sc_step_worker *w)
 {
-    sc_worker *w = sc_workspace_begin(model, workspace, &question->query);
-    sc_frame *frame = &workspace->frame;
-    uint64_t start = 0;
-    sc_status status;
-    int kind;
-    frame->kernels = sc_kernels_for(question->options.simd);
-    if (question->query.timed) start = w->last_time = sc_clock_nanoseconds();
-    if (sc_worker_stops(w)) return SC_ERROR_INCOMPLETE;
-    status = sc_motion_read(model, asked->pose, asked->stride, &question->limits, frame);
-    if (status) {
-        const sc_hooks *hooks = &workspace->hooks;
-        log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], " at the start");
-        log_not_finite(hooks, model, &asked->pose[1], asked->stride[1], " at the end");
-        return status;
-    }
-    frame->motion.swept = question->options.method == SC_STEP_METHOD_SWEPT;
-    sc_plan_run(workspace);
-    stop_clock_of(w, start);
-    if (w->incomplete) return SC_ERROR_INCOMPLETE;
-    for (kind = 0; kind < 2; kind++)
-        if (question->options.output == SC_OUTPUT_PAIRS &&
-            w->step->count[kind] > question->list[kind].capacity)
-            return SC_ERROR_SHORT_BUFFER;
-    return SC_OK;
+    const sc_step_question *q = w->question;
+    int kind, more = 0;
+    for (kind = 0; kind < 2; kind++) more |= w->count[kind] > q->list[kind].capacity;
+    return more && q->options.output == SC_OUTPUT_PAIRS;
 }
 
-/* What is known after a step that did not fail. */
 static void fill_step_result(const sc_worker *w, sc_status status, sc_step_result *r)
 {
     const sc_step_options *o = &w->step->question->options;
@@ -481,9 +484,7 @@ static void fill_step_result(const sc_worker *w, sc_status status, sc_step_resul
     r->vertex_face_count = any ? v > 0 : v;
     r->edge_edge_count = any ? e > 0 && v == 0 : e;
     r->collides = v + e > 0;
-    r->verdict = status == SC_ERROR_INCOMPLETE ? SC_VERDICT_INCOMPLETE
-                 : r->collides                 ? SC_VERDICT_FOUND
-                                               : SC_VERDICT_CLEAN;
+    r->verdict = verdict_of(status, r->collides);
     r->earliest = w->step->earliest;
     if (status == SC_ERROR_INCOMPLETE || (r->collides && o->times == SC_STEP_TIMES_NONE))
         r->earliest = 0;
@@ -495,7 +496,7 @@ sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc
 {
     const sc_hooks *hooks = workspace ? &workspace->hooks : NULL;
     sc_step_question question;
-    sc_step_asked asked;
+    sc_asked asked;
     sc_step_result r;
     sc_status status = sc_arguments_need(hooks, "result", NULL, result);
     if (!status)
@@ -511,10 +512,10 @@ sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc
     memset(&question, 0, sizeof question);
     status = sc_step_question_read(model, workspace, start, end, options, &r, &asked, &question);
     if (!status && SC_ALWAYS(workspace)) { /* likewise */
-        workspace->frame.tasks = sc_plan_tasks(model, &question.query);
-        status = run_step(model, workspace, &asked, &question);
-        if (!status || status == SC_ERROR_SHORT_BUFFER || status == SC_ERROR_INCOMPLETE)
-            fill_step_result(&workspace->worker[0], status, &r);
+        const sc_worker *w = &workspace->worker[0];
+        status = run(model, workspace, &asked, &question.query, &question);
+        if (!status && is_short(w->step)) status = SC_ERROR_SHORT_BUFFER;
+        if (has_answer(status)) fill_step_result(w, status, &r);
     }
     sc_structs_write(result, &r, sizeof r);
     return status;

@@ -1,5 +1,5 @@
 /*
- * What a query is asked: pose, options and tasks as the caller passed them, checked and copied.
+ * What a query is asked: poses, options and tasks as the caller passed them, checked and copied.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -12,8 +12,8 @@
 
 /* What the caller passed, copied: a question refers to it. */
 typedef struct sc_asked {
-    sc_pose pose;
-    uint64_t stride; /* of the pose, in bytes */
+    sc_pose pose[2];    /* of a query the first; of a step those at the start and at the end */
+    uint64_t stride[2]; /* of these, in bytes */
     sc_filter filter;
     sc_tasks tasks;
 } sc_asked;

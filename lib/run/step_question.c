@@ -92,7 +92,7 @@ static void fill_question(const sc_step_result *result, sc_step_question *questi
 sc_status sc_step_question_read(const sc_model *model, const sc_workspace *workspace,
                                 const sc_pose *start, const sc_pose *end,
                                 const sc_step_options *from, const sc_step_result *result,
-                                sc_step_asked *asked, sc_step_question *question)
+                                sc_asked *asked, sc_step_question *question)
 {
     sc_step_options *o = &question->options;
     const sc_hooks *hooks;

@@ -6,19 +6,12 @@
 #ifndef SC_RUN_STEP_QUESTION_H
 #define SC_RUN_STEP_QUESTION_H
 
-#include "run/workspace.h"
-
-/* What the caller passed, copied: a question refers to it. */
-typedef struct sc_step_asked {
-    sc_pose pose[2];    /* at the start and at the end */
-    uint64_t stride[2]; /* of these, in bytes */
-    sc_tasks tasks;
-} sc_step_asked;
+#include "run/question.h"
 
 /* Everything about a step; *question is zero before. What is wrong is told the log. */
 sc_status sc_step_question_read(const sc_model *model, const sc_workspace *workspace,
                                 const sc_pose *start, const sc_pose *end,
                                 const sc_step_options *from, const sc_step_result *result,
-                                sc_step_asked *asked, sc_step_question *question);
+                                sc_asked *asked, sc_step_question *question);
 
 #endif
