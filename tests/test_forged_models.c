@@ -14,7 +14,7 @@
 #include "build/model.h"
 #include "harness.h"
 #include "inputs.h"
-#include "saved.h"
+#include "saved_models.h"
 #include "soups.h"
 #include "starcontour.h"
 

@@ -4,8 +4,8 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#ifndef TESTS_SAVED_H
-#define TESTS_SAVED_H
+#ifndef TESTS_SAVED_MODELS_H
+#define TESTS_SAVED_MODELS_H
 
 #include <stdint.h>
 

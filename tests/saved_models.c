@@ -1,9 +1,9 @@
 /*
- * See saved.h.
+ * See saved_models.h.
  *
  * SPDX-License-Identifier: MIT
  */
-#include "saved.h"
+#include "saved_models.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
