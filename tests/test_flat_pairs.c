@@ -367,6 +367,31 @@ static void strips_from_one_point(void)
     }
 }
 
+/* A tube turned inside out at its middle, so that both halves lie on each other. */
+static void tubes_turned_inside_out(void)
+{
+    for (uint32_t sides = 3; sides <= 8; ++sides) {
+        uint64_t state = test_random_state();
+        soup s = soup_make(5 * sides, 8 * sides);
+        uint32_t *order = (uint32_t *)test_allocate(s.triangle_count * sizeof(uint32_t));
+        for (uint32_t v = 0; v < s.vertex_count; ++v) {
+            double angle = v % sides * 6.283185307 / sides;
+            s.positions[3 * v] = cos(angle);
+            s.positions[3 * v + 1] = sin(angle);
+            s.positions[3 * v + 2] = fabs(v / sides - 2.0);
+        }
+        for (uint32_t k = 0; k < s.triangle_count; ++k) {
+            uint32_t *t = s.triangles + 3 * k, loop = k / (2 * sides) * sides;
+            uint32_t p = loop + k / 2 % sides, q = loop + (k / 2 + 1) % sides;
+            t[0] = k % 2 ? q : p;
+            t[1] = k % 2 ? q + sides : q;
+            t[2] = p + sides;
+            order[k] = k;
+        }
+        check_in_order("tube turned inside out", state, &s, order);
+    }
+}
+
 /* Two bands round an axis on one side of a loop that they share, one in the other or through it. */
 static void sleeves(void)
 {
@@ -665,5 +690,6 @@ static void fans_that_fold_flat(void)
 
 SC_TEST_MAIN(SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane), SC_TEST(bands_in_a_plane),
              SC_TEST(tubes), SC_TEST(tubes_that_are_no_bands), SC_TEST(sleeves),
-             SC_TEST(strips_from_one_point), SC_TEST(two_clusters_in_a_plane),
-             SC_TEST(two_clusters_at_a_point), SC_TEST(fans_that_fold_flat))
+             SC_TEST(tubes_turned_inside_out), SC_TEST(strips_from_one_point),
+             SC_TEST(two_clusters_in_a_plane), SC_TEST(two_clusters_at_a_point),
+             SC_TEST(fans_that_fold_flat))

@@ -383,12 +383,12 @@ static inline void fetch_near(const sc_worker *w, const sc_cluster_pair *p)
     }
 }
 
-/* Whether there is room for what two leaf clusters list that share points. */
+/* Whether there is room for what two leaf clusters list that share points. Pairs of triangles that
+   share one are open first. */
 static inline int have_room_for_clusters(const sc_worker *w)
 {
     const uint32_t *count = w->lists.count;
     return count[SC_LIST_OPEN] <= SC_OPEN_MAX - SC_LEAF_PAIRS &&
-           count[SC_LIST_NEIGHBORS] <= SC_FEW_MAX - SC_LEAF_PAIRS &&
            count[SC_LIST_EXACT] <= SC_FEW_MAX - SC_LEAF_PAIRS;
 }
 

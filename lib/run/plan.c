@@ -218,7 +218,9 @@ static int is_large_pair(const sc_model *model, sc_pair item)
    open nodes there are no more than there is room for: those that failed a test, SC_PARTS_MAX at
    most, are opened into nodes to test, as what has a direction in common still has below, but for
    one of two patches in place of one that has one patch; and before any test they are brothers on
-   the way to one node, four at each level at most. */
+   the way to one node, four at each level at most. Pairs are opened before the next node, and each
+   large patch of one adds 31 pairs at most where one in sixteen below it is large as well: there is
+   room for all unless a dozen such lines of patches lie side by side. */
 static void sort_out(plan *p)
 {
     const sc_model *model = p->w->model;
@@ -242,7 +244,7 @@ static void sort_out(plan *p)
             add_part(p, SC_LIST_ORIENTED, l->oriented[i], 0);
     }
     for (i = 0; i < count[SC_LIST_PATCHES]; i++) {
-        if (is_large_pair(model, l->patches[i]) && p->pair_count < SC_PLAN_PAIRS)
+        if (is_large_pair(model, l->patches[i]) && !SC_HARDLY(p->pair_count == SC_PLAN_PAIRS))
             p->room->pairs[p->pair_count++] = l->patches[i];
         else
             add_part(p, SC_LIST_PATCHES, l->patches[i].a, l->patches[i].b);
@@ -458,12 +460,10 @@ static void walk_nodes(plan *p)
         sc_runner_run_stage(p->w, SC_LIST_SPANS, 1);
         open_large(p);
     }
-    step = divide_up(model->node_count - node, SC_PARTS_MAX / 4);
-    for (; p->tasks && node < model->node_count; node += step) {
-        if (p->part_count == SC_PARTS_MAX) do_parts(p);
+    step = divide_up(model->node_count - node, SC_PARTS_MAX - p->part_count);
+    for (; p->tasks && node < model->node_count; node += step)
         add_part(p, SC_LIST_SPANS, node,
                  model->node_count - node < step ? model->node_count : node + step);
-    }
     do_parts(p);
 }
 

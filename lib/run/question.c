@@ -135,7 +135,8 @@ sc_status sc_question_read(const sc_model *model, const sc_workspace *workspace,
     if (!status && o->filter)
         status = sc_filter_begin(question, hooks, model, o->filter, &asked->filter);
     if (!status)
-        status = sc_question_read_pose(hooks, "pose", model, pose, &asked->pose[0], &asked->stride[0]);
+        status =
+            sc_question_read_pose(hooks, "pose", model, pose, &asked->pose[0], &asked->stride[0]);
     if (!status && o->output == SC_OUTPUT_PAIRS && result->capacity)
         status = sc_arguments_need(hooks, "result", "pairs", result->pairs);
     if (!status && result->stats)
