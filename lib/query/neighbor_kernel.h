@@ -140,7 +140,7 @@ static inline void load_neighbors(const neighborhood *a, const neighborhood *b, 
 }
 
 /* Sixteen pairs of a list (see build/sharing_lists.h), as if they shared just a point. */
-static inline void load_listed(const neighborhood *a, const neighborhood *b, const uint16_t *list,
+static SC_INLINE void load_listed(const neighborhood *a, const neighborhood *b, const uint16_t *list,
                                neighbors *x, neighbor_rows *numbers)
 {
     lanes_bytes quarter[4], corner[2][3], turned[2][3];
