@@ -229,6 +229,12 @@ static inline uint32_t sc_model_box_steps(uint32_t level_count, uint32_t level)
     return steps ? steps : 4;
 }
 
+/* How many leaf clusters a patch has. */
+static inline uint32_t sc_model_leaves_of(const sc_model *model, uint32_t patch)
+{
+    return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch];
+}
+
 static inline int sc_model_is_leaf(const sc_model *model, uint32_t patch)
 {
     return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch] == 1;

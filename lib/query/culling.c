@@ -31,17 +31,12 @@
  */
 enum { PROSPECT_MIN = 2, PROSPECT_PART = 8 };
 
-static uint32_t leaves_of(const sc_model *model, uint32_t patch)
-{
-    return sc_model_leaf(model)[patch + 1] - sc_model_leaf(model)[patch];
-}
-
 /* The prospect of a patch. It is written down for those of more than PROSPECT_MIN leaf clusters
    without a cone, above which all are such. */
 static uint32_t find_prospect(const sc_worker *w, uint32_t patch)
 {
     const uint32_t *child = sc_model_child(w->model) + patch;
-    uint32_t leaves = leaves_of(w->model, patch), sum, c;
+    uint32_t leaves = sc_model_leaves_of(w->model, patch), sum, c;
     if (leaves <= PROSPECT_MIN) return 0;
     if (w->frame->mask[patch]) return leaves - 1;
     for (sum = 0, c = child[0]; c < child[1]; c++) sum += find_prospect(w, c);
@@ -55,7 +50,7 @@ void sc_culling_find_prospects(const sc_worker *w)
 
 static int has_prospect(const sc_worker *w, uint32_t patch)
 {
-    uint32_t leaves = leaves_of(w->model, patch);
+    uint32_t leaves = sc_model_leaves_of(w->model, patch);
     if (leaves <= PROSPECT_MIN) return 0;
     return w->frame->mask[patch] || PROSPECT_PART * (uint64_t)w->frame->prospect[patch] >= leaves;
 }

@@ -140,8 +140,8 @@ static inline void load_neighbors(const neighborhood *a, const neighborhood *b, 
 }
 
 /* Sixteen pairs of a list (see build/sharing_lists.h), as if they shared just a point. */
-static SC_INLINE void load_listed(const neighborhood *a, const neighborhood *b, const uint16_t *list,
-                               neighbors *x, neighbor_rows *numbers)
+static SC_INLINE void load_listed(const neighborhood *a, const neighborhood *b,
+                                  const uint16_t *list, neighbors *x, neighbor_rows *numbers)
 {
     lanes_bytes quarter[4], corner[2][3], turned[2][3];
     uint8_t of[2][SC_LANES_COUNT];

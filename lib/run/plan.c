@@ -38,6 +38,10 @@ enum { LEAVES_MIN = 128 };
    so that no part that is left for the end takes long. */
 enum { LARGE_IN_NODE = 32, LARGE_IN_PAIR = 16, LARGE_BY_ITSELF = 128 };
 
+/* Patches of so many leaf clusters are small as a pair in any model: opening them leads to leaf
+   clusters, which the calling thread would compare while the others wait. */
+enum { SMALL_PAIR = 128 };
+
 /* Fewer contour tests are not worth a job. */
 enum { TESTS_MIN = 16 };
 
@@ -195,8 +199,7 @@ static void add_part(plan *p, sc_list_id list, uint32_t a, uint32_t b)
 
 static int is_large(const sc_model *model, uint32_t patch, uint32_t parts)
 {
-    const uint32_t *leaf = sc_model_leaf(model);
-    return leaf[patch + 1] - leaf[patch] > model->leaf_count / parts;
+    return sc_model_leaves_of(model, patch) > model->leaf_count / parts;
 }
 
 static int is_large_node(const sc_model *model, uint32_t node)
@@ -208,6 +211,8 @@ static int is_large_node(const sc_model *model, uint32_t node)
 static int is_large_pair(const sc_model *model, sc_pair item)
 {
     const uint32_t a = item.a & SC_ITEM, b = item.b;
+    if (sc_model_leaves_of(model, a) <= SMALL_PAIR && sc_model_leaves_of(model, b) <= SMALL_PAIR)
+        return 0;
     if (a == b) return is_large(model, a, LARGE_BY_ITSELF);
     return is_large(model, a, LARGE_IN_PAIR) || is_large(model, b, LARGE_IN_PAIR);
 }
