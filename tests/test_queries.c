@@ -288,7 +288,7 @@ static void tiny_coordinates(void)
 static void rest_shapes_unlike_poses(void)
 {
     uint64_t sum = 0;
-    for (uint32_t round = 0; round < test_iterations_at_least(60, 8); ++round) {
+    for (uint32_t round = 0; round < test_iterations_at_least(60, 60); ++round) {
         enum { ROOM = 20000 };
         static sc_pair right[ROOM], pairs[ROOM];
         soup mesh = round % 3 == 0   ? soup_branched(5 + test_random_below(4), 1 + round / 3 % 4)
