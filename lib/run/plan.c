@@ -465,7 +465,8 @@ static void walk_nodes(plan *p)
         sc_runner_run_stage(p->w, SC_LIST_SPANS, 1);
         open_large(p);
     }
-    step = divide_up(model->node_count - node, SC_PARTS_MAX - p->part_count);
+    /* more parts cost more than they even out */
+    step = divide_up(model->node_count - node, (SC_PARTS_MAX - p->part_count) / 4);
     for (; p->tasks && node < model->node_count; node += step)
         add_part(p, SC_LIST_SPANS, node,
                  model->node_count - node < step ? model->node_count : node + step);
