@@ -534,6 +534,26 @@ static void slivers_nearly_at_rest(void)
 }
 
 /* Coordinates that are a few times the smallest double there is. */
+/* Two edges that come so near to each other for so long that the search looks ahead at as many times
+   as it has room for. */
+static void as_many_guards_as_there_are(void)
+{
+    static const query edges = {
+        .start = {{0x1.40455210a62b2p-4, 0x1.5576313db9775p-5, -0x1.29a4b63d6219dp-4},
+                  {-0x1.69a325ba2c242p+1, -0x1.4d738ec6623fcp-1, 0x1.2c8f1521b591ap+0},
+                  {-0x1.e6d1257d24c5bp+0, 0x1.ffdb7a8f50bdfp+0, 0x1.4d4e24ad57d75p+0},
+                  {0x1.0e1234589e388p+1, -0x1.e73ba8b807a2bp+0, -0x1.df853841a77c6p+0}},
+        .end = {{0x1.06d595e2f8749p-4, 0x1.1ceceeede8c8p-3, 0x1.1bd3e79ee45e4p-9},
+                {-0x1.dbb4c4a356aedp+1, 0x1.a5fdd65fbbc1bp+1, -0x1.72bd6c0b87689p-1},
+                {0x1.eb122840325c5p+0, -0x1.84a542492e0f1p+1, 0x1.2f06d5d741f3fp+1},
+                {-0x1.6ce89239d0e5cp-9, 0x1.5f59ca124f6eap-1, 0x1.d972e70eb76e7p+0}},
+    };
+    query q = edges;
+    tally t = {0, 0, 0, 0};
+    check_query(&q, STEP_ORACLE_EDGE_EDGE, 0, 0, &t);
+    CHECK(t.asked == 1);
+}
+
 static void denormal_steps(void)
 {
     tally t = {0, 0, 0, 0};
@@ -832,5 +852,6 @@ SC_TEST_MAIN(SC_TEST(known_times), SC_TEST(same_bits_everywhere),
              SC_TEST(flat_steps), SC_TEST(degenerate_steps), SC_TEST(thin_layers),
              SC_TEST(rolling_steps), SC_TEST(slivers), SC_TEST(slivers_nearly_at_rest),
              SC_TEST(steps_within_the_tolerance), SC_TEST(steps_of_tiny_ones),
-             SC_TEST(denormal_steps), SC_TEST(wide_ranges), SC_TEST(separations_just_reached),
-             SC_TEST(separations_in_passing), SC_TEST(times_close_to_contacts))
+             SC_TEST(as_many_guards_as_there_are), SC_TEST(denormal_steps), SC_TEST(wide_ranges),
+             SC_TEST(separations_just_reached), SC_TEST(separations_in_passing),
+             SC_TEST(times_close_to_contacts))
