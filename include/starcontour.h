@@ -462,8 +462,9 @@ SC_API sc_status sc_workspace_create(const sc_model *model, const sc_allocator *
 
 /* What a workspace is for besides plain queries; a sum. */
 enum {
-    SC_WORKSPACE_STEP = 1 /* sc_query_step: about 30 bytes a triangle more, and 80 kilobytes a
-                             worker */
+    SC_WORKSPACE_STEP = 1, /* sc_query_step: about 30 bytes a triangle more, and 80 kilobytes a
+                              worker */
+    SC_WORKSPACE_NEAR = 2  /* sc_query_near, and sc_query_step */
 };
 
 /* The largest number of workers. */
@@ -977,6 +978,94 @@ typedef struct sc_step_result {
 SC_API sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc_pose *start,
                                const sc_pose *end, const sc_step_options *options,
                                sc_step_result *result);
+
+/* ------------------------------------------------------------------------------------------------
+ * Proximity
+ *
+ * What comes within a distance in one pose, as contact solvers need it, and as checks of wall
+ * thickness and gaps do.
+ *
+ *     a workspace for it: sc_workspace_create_for with SC_WORKSPACE_NEAR
+ *     sc_query_near(model, workspace, &pose, &options, &result)
+ *     sc_near_stencils   closest points of the pairs that were found, if wanted
+ */
+
+/* Which kinds of pairs are sought. */
+enum {
+    SC_NEAR_BOTH = 0,
+    SC_NEAR_VERTEX_FACE = 1,
+    SC_NEAR_EDGE_EDGE = 2
+};
+
+/* Which way pairs are sought. The answer is the same. The default is SC_NEAR_METHOD_SCTT, on a model
+   with SC_MODEL_BOXES SC_NEAR_METHOD_BOXES. */
+enum {
+    SC_NEAR_METHOD_DEFAULT = 0,
+    SC_NEAR_METHOD_SCTT = 1, /* self-collision test tree: contours that are simple with a clearance
+                                of the distance cull what is smooth, where the distance is below the
+                                altitudes of triangles */
+    SC_NEAR_METHOD_BOXES = 2 /* the plain tree of boxes */
+};
+
+typedef struct sc_near_options {
+    uint32_t struct_size;
+    uint32_t output;   /* SC_OUTPUT_PAIRS, _COUNT or _ANY; see there */
+    uint32_t kinds;    /* SC_NEAR_BOTH, _VERTEX_FACE or _EDGE_EDGE */
+    uint32_t method;   /* SC_NEAR_METHOD_... */
+    uint32_t simd;     /* SC_SIMD_... */
+    uint32_t reserved; /* 0 */
+    double distance;   /* pairs that are this near or nearer are reported; 0 or more, finite, in units
+                          of the coordinates. 0: those that touch */
+    const sc_filter *vertex_face_filter; /* which pairs of a kind are not wanted, or NULL; see "Filters
+                                            of pairs of features" at sc_query_step */
+    const sc_filter *edge_edge_filter;
+    const sc_pose *rest; /* a pose, or NULL; pairs that are within rest_distance of each other in it
+                            are left out */
+    double rest_distance;            /* 0 or more, finite; 0: those that touch in it */
+    const sc_tasks *tasks;           /* the host's threads, or NULL */
+    const volatile uint32_t *cancel; /* as in sc_query_options */
+    uint64_t budget;                 /* as in sc_query_options */
+} sc_near_options;
+
+/*
+ * The answer of a query. The caller sets struct_size and, for SC_OUTPUT_PAIRS, the arrays and
+ * capacities, and may set stats; the library sets the rest. An array may be NULL when its capacity
+ * is 0. Pairs are those of sc_step_result: a vertex and a triangle of which it is no corner; two
+ * edges without a common vertex, a < b. Each comes once, sorted by a, then b.
+ */
+typedef struct sc_near_result {
+    uint32_t struct_size;
+    uint32_t found;    /* out: 1 if there is a pair, else 0 */
+    uint32_t verdict;  /* out: SC_VERDICT_... */
+    uint32_t reserved; /* out: 0 */
+    uint64_t vertex_face_count;    /* out: the number of such pairs; of both kinds together 0 or 1 for
+                                      SC_OUTPUT_ANY */
+    uint64_t vertex_face_capacity; /* in: entries of vertex_faces */
+    sc_pair *vertex_faces;         /* in: the caller's array */
+    uint64_t edge_edge_count;      /* the same for pairs of edges */
+    uint64_t edge_edge_capacity;
+    sc_pair *edge_edges;
+    sc_stats *stats; /* in: where to put statistics, or NULL; see sc_stats */
+} sc_near_result;
+
+/*
+ * Finds what is within a distance in a pose: of each pair the Euclidean distance of the two closed
+ * sets, of a point from a triangle or of two segments, compared exactly with options->distance. There
+ * is no tolerance: a pair is reported if and only if its distance is that or less. So the list grows
+ * with the distance, and depends on mesh, welding, pose, distance, filters and rest pose alone: not
+ * on method, partition, number of threads, compiler or machine. options may be NULL: pairs of both
+ * kinds that touch. The workspace was made with SC_WORKSPACE_NEAR; SC_ERROR_WORKSPACE if not.
+ *
+ * Returns SC_OK; SC_ERROR_SHORT_BUFFER if one of the arrays is too short: both counts are then what
+ * is needed, and each array holds the first capacity pairs of its sorted list; or
+ * SC_ERROR_INCOMPLETE, if it was cancelled or ran out of budget, see sc_query. On any other error
+ * counts, found and verdict are 0, and the arrays as they were: those of sc_query_step,
+ * SC_ERROR_OPTION for a distance or rest_distance that is negative or not finite.
+ *
+ * Several threads: as for sc_query_step. No memory is allocated.
+ */
+SC_API sc_status sc_query_near(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
+                               const sc_near_options *options, sc_near_result *result);
 
 /* ------------------------------------------------------------------------------------------------
  * Records
