@@ -23,6 +23,7 @@
 #include "query/filter.h"
 #include "query/pairs.h"
 #include "query/recording.h"
+#include "run/near_question.h"
 #include "run/plan.h"
 #include "run/question.h"
 #include "run/rest.h"
@@ -248,8 +249,10 @@ static sc_status read_workspace_options(const sc_workspace_options *options,
 {
     sc_status status = sc_arguments_read_options(NULL, "options", o, sizeof *o, options);
     if (status) return status;
-    if ((o->flags & ~(uint32_t)SC_WORKSPACE_STEP) || o->workers > SC_WORKERS_MAX || o->reserved)
+    if ((o->flags & ~(uint32_t)(SC_WORKSPACE_STEP | SC_WORKSPACE_NEAR)) ||
+        o->workers > SC_WORKERS_MAX || o->reserved)
         return SC_ERROR_OPTION;
+    if (o->flags & SC_WORKSPACE_NEAR) o->flags |= SC_WORKSPACE_STEP;
     if (!o->workers) o->workers = 1;
     return SC_OK;
 }
@@ -516,6 +519,48 @@ sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, const sc
         status = run(model, workspace, &asked, &question.query, &question);
         if (!status && is_short(w->step)) status = SC_ERROR_SHORT_BUFFER;
         if (has_answer(status)) fill_step_result(w, status, &r);
+    }
+    sc_structs_write(result, &r, sizeof r);
+    return status;
+}
+
+/* ---- proximity ---- */
+
+static void fill_near_result(const sc_worker *w, sc_status status, sc_near_result *r)
+{
+    const uint64_t v = w->step->count[SC_STEP_VERTEX_FACE], e = w->step->count[SC_STEP_EDGE_EDGE];
+    const int any = w->question->options.output == SC_OUTPUT_ANY;
+    r->vertex_face_count = any ? v > 0 : v;
+    r->edge_edge_count = any ? e > 0 && v == 0 : e;
+    r->found = v + e > 0;
+    r->verdict = verdict_of(status, r->found);
+    if (r->stats) sc_structs_write(r->stats, &w->stats, sizeof w->stats);
+}
+
+sc_status sc_query_near(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
+                        const sc_near_options *options, sc_near_result *result)
+{
+    const sc_hooks *hooks = workspace ? &workspace->hooks : NULL;
+    sc_near_question question;
+    sc_asked asked;
+    sc_near_result r;
+    sc_status status = sc_arguments_need(hooks, "result", NULL, result);
+    if (!status)
+        status = sc_arguments_read(hooks, "result", &r, sizeof r, result,
+                                   SC_ARGUMENTS_UP_TO(sc_near_result, edge_edges));
+    if (status) return status;
+    r.found = 0;
+    r.verdict = SC_VERDICT_NONE;
+    r.reserved = 0;
+    r.vertex_face_count = 0;
+    r.edge_edge_count = 0;
+    memset(&question, 0, sizeof question);
+    status = sc_near_question_read(model, workspace, pose, options, &r, &asked, &question);
+    if (!status && SC_ALWAYS(workspace)) { /* likewise */
+        const sc_worker *w = &workspace->worker[0];
+        status = run(model, workspace, &asked, &question.step.query, &question.step);
+        if (!status && is_short(w->step)) status = SC_ERROR_SHORT_BUFFER;
+        if (has_answer(status)) fill_near_result(w, status, &r);
     }
     sc_structs_write(result, &r, sizeof r);
     return status;

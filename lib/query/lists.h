@@ -86,7 +86,10 @@ enum {
     SC_EDGE_ROWS_MAX = SC_MOVING_ROWS_ENOUGH + 9 * SC_LEAF_MAX,
     SC_MOVING_LISTED = 128,
     SC_MOVING_ENOUGH = 16,
-    SC_MOVING_MAX = SC_MOVING_ENOUGH + SC_MOVING_LISTED + SC_LEAF_MAX
+    SC_MOVING_MAX = SC_MOVING_ENOUGH + SC_MOVING_LISTED + SC_LEAF_MAX,
+    /* and what distances leave open of two: points with triangles, edges with edges */
+    SC_NEAR_FACES_MAX = SC_MOVING_ENOUGH + 2 * SC_LEAF_PAIRS,
+    SC_NEAR_EDGES_MAX = SC_MOVING_ENOUGH + 9 * SC_LEAF_PAIRS
 };
 
 /* Two leaf clusters, a < b if they share points, or one twice; and where sc_model_share_leaf has

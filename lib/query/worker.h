@@ -20,6 +20,8 @@
 
 struct sc_worker;
 struct sc_step_question;
+struct sc_near_question;
+struct sc_near_worker;
 
 /* What a query is asked, checked and complete; and the caller's array. */
 typedef struct sc_question {
@@ -35,6 +37,8 @@ typedef struct sc_question {
     void (*test)(struct sc_worker *w, const uint32_t *nodes, uint32_t count, uint8_t *passed);
     const struct sc_step_question *step; /* what a step is asked besides, step/step_worker.h; NULL:
                                             it is none */
+    const struct sc_near_question *near; /* what is asked of what is near, near/near_worker.h; then
+                                            it is a step that stays where it is; or NULL */
     sc_pair *pairs;                      /* the caller's array */
     uint64_t capacity;
 } sc_question;
@@ -83,6 +87,7 @@ typedef struct sc_worker {
     sc_kept_leaves kept;
     sc_ball ball;
     struct sc_step_worker *step; /* step/step_worker.h; NULL where the workspace is not for steps */
+    struct sc_near_worker *near; /* near/near_worker.h; NULL where it is not for what is near */
 
     sc_pair *found; /* SC_FOUND_MAX pairs that are not yet in the caller's array */
     uint32_t found_count;

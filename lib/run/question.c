@@ -106,7 +106,9 @@ sc_status sc_question_check_workspace(const sc_model *model, const sc_workspace 
     if (!sc_workspace_fits(workspace, model))
         wrong = "the workspace is for another model";
     else if ((workspace->sizes.flags & flags) != flags)
-        wrong = "the workspace is not for steps: SC_WORKSPACE_STEP";
+        wrong = flags & SC_WORKSPACE_NEAR
+                    ? "the workspace is not for what is near: SC_WORKSPACE_NEAR"
+                    : "the workspace is not for steps: SC_WORKSPACE_STEP";
     if (wrong) sc_hooks_log(&workspace->hooks, SC_LOG_ERROR, "%s", wrong);
     return wrong ? SC_ERROR_WORKSPACE : SC_OK;
 }

@@ -1,5 +1,5 @@
 /*
- * The stages of a query, and of a step, in the order of their lists.
+ * The stages of a query, of a step and of a search for what is near, in the order of their lists.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -47,4 +47,19 @@ static sc_stage *const step_stages[SC_LIST_COUNT] = {
     [SC_LIST_EDGE_ROWS] = list_edges,
     [SC_LIST_FACES] = sc_step_candidates_take_faces,
     [SC_LIST_EDGES] = sc_step_candidates_take_edges,
+};
+
+static sc_stage *const near_stages[SC_LIST_COUNT] = {
+    [SC_LIST_FAILED] = sc_culling_open,
+    [SC_LIST_ORIENTED] = sc_culling_test,
+    /* the broad phase, of a step that stays where it is */
+    [SC_LIST_LEFT] = leave_moving_pairs,
+    [SC_LIST_PATCHES] = open_moving_pairs,
+    [SC_LIST_ROWS] = list_moving_rows,
+    /* leaf clusters by themselves and in pairs: boxes, slabs, distances sixteen at a time */
+    [SC_LIST_NEAR] = decide_near_alone,
+    [SC_LIST_CLUSTERS] = decide_near_clusters,
+    /* what rounding leaves open, by exact signs */
+    [SC_LIST_FACES] = sc_near_candidates_take_faces,
+    [SC_LIST_EDGES] = sc_near_candidates_take_edges,
 };

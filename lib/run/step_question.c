@@ -12,7 +12,7 @@
 #include "run/question.h"
 #include "step/moving_contour.h"
 
-static sc_status check_length(const sc_hooks *hooks, const char *name, double length)
+sc_status sc_step_question_check_length(const sc_hooks *hooks, const char *name, double length)
 {
     if (length >= 0 && length <= DBL_MAX) return SC_OK;
     sc_hooks_log(hooks, SC_LOG_ERROR, "options.%s is %g, but finite and at least 0", name, length);
@@ -32,8 +32,8 @@ static sc_status check_step_choices(const sc_hooks *hooks, const sc_step_options
     };
     sc_status status =
         sc_arguments_choose(hooks, "options", choices, sizeof choices / sizeof *choices);
-    if (!status) status = check_length(hooks, "separation", o->separation);
-    return status ? status : check_length(hooks, "tolerance", o->tolerance);
+    if (!status) status = sc_step_question_check_length(hooks, "separation", o->separation);
+    return status ? status : sc_step_question_check_length(hooks, "tolerance", o->tolerance);
 }
 
 /* On a model for boxes, what asks for no method and no contour test gets boxes. */
@@ -58,8 +58,7 @@ static sc_status choose_for_step(const sc_model *model, sc_step_options *o)
     return SC_OK;
 }
 
-/* What all queries are asked, and where the answer goes. */
-static void fill_question(const sc_step_result *result, sc_step_question *question)
+void sc_step_question_fill(const sc_step_result *result, sc_step_question *question)
 {
     const sc_step_options *o = &question->options;
     const int times = o->times == SC_STEP_TIMES_EACH;
@@ -120,6 +119,6 @@ sc_status sc_step_question_read(const sc_model *model, const sc_workspace *works
     if (!status && result->stats)
         status = sc_arguments_check(hooks, "result.stats", result->stats, sizeof(sc_stats),
                                     SC_ARGUMENTS_DEFAULTS);
-    if (!status) fill_question(result, question);
+    if (!status) sc_step_question_fill(result, question);
     return status;
 }

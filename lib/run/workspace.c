@@ -42,11 +42,12 @@ static sc_workspace_sizes sizes_for(const sc_model *model, uint32_t workers, uin
     return s;
 }
 
-/* Of how many leaf clusters a worker keeps derived data: of all, if they are few. */
-static uint32_t some_derived(const sc_workspace_sizes *s)
+/* Of how many leaf clusters a worker keeps what it makes of them, a power of two: of so many, or of
+   all, if they are few. */
+static uint32_t some_leaves(const sc_workspace_sizes *s, uint32_t most)
 {
     uint32_t kept = 1;
-    while (kept < SC_DERIVED_KEPT && kept < s->leaves) kept *= 2;
+    while (kept < most && kept < s->leaves) kept *= 2;
     return kept;
 }
 
@@ -55,14 +56,6 @@ static uint32_t some_derived(const sc_workspace_sizes *s)
 static uint32_t all_derived(const sc_workspace_sizes *s)
 {
     return s->segments ? s->leaves : 0;
-}
-
-/* The same for steps. */
-static uint32_t some_motions(const sc_workspace_sizes *s)
-{
-    uint32_t kept = 1;
-    while (kept < SC_MOTIONS_KEPT && kept < s->leaves) kept *= 2;
-    return kept;
 }
 
 static void lay_out_boxes(const sc_workspace_sizes *s, layout *l, sc_boxes *boxes)
@@ -156,7 +149,8 @@ static void lay_out_lists(const sc_workspace_sizes *s, layout *l, sc_lists *list
     room[SC_LIST_NEIGHBORS] = room[SC_LIST_EXACT] = SC_FEW_MAX;
     room[SC_LIST_FACE_ROWS] = SC_FACE_ROWS_MAX;
     room[SC_LIST_EDGE_ROWS] = SC_EDGE_ROWS_MAX;
-    room[SC_LIST_FACES] = room[SC_LIST_EDGES] = SC_MOVING_MAX;
+    room[SC_LIST_FACES] = s->flags & SC_WORKSPACE_NEAR ? SC_NEAR_FACES_MAX : SC_MOVING_MAX;
+    room[SC_LIST_EDGES] = s->flags & SC_WORKSPACE_NEAR ? SC_NEAR_EDGES_MAX : SC_MOVING_MAX;
     lists->spans = SC_PLACE(l, room[SC_LIST_SPANS], sc_pair);
     lists->stars = SC_PLACE(l, room[SC_LIST_STARS], uint32_t);
     lists->failed = SC_PLACE(l, room[SC_LIST_FAILED], uint32_t);
@@ -183,7 +177,7 @@ static void lay_out_lists(const sc_workspace_sizes *s, layout *l, sc_lists *list
             SC_PLACE(l, room[SC_LIST_FACE_ROWS + k] + (uint64_t)1, sc_moving_row);
         lists->moving[k] = SC_PLACE(l, room[SC_LIST_FACES + k], sc_pair);
     }
-    if (SC_ALWAYS(l->at < end)) l->at = end; /* 6 of 13 kB */
+    if (l->at < end) l->at = end; /* 6 of 13 kB, for what is near 30 */
 }
 
 static void lay_out_last(const sc_workspace_sizes *s, layout *l, sc_last *last)
@@ -199,7 +193,7 @@ static void lay_out_step(const sc_workspace_sizes *s, layout *l, sc_contour_edge
 {
     const uint64_t runs = listed_points(s) / SC_CONTOUR_RUN;
     int k;
-    step->kept.some = some_motions(s);
+    step->kept.some = some_leaves(s, SC_MOTIONS_KEPT);
     step->kept.made = SC_PLACE(l, s->leaves + (uint64_t)SC_MOTIONS_KEPT, uint8_t);
     step->kept.own = SC_PLACE(l, 1 + (uint64_t)step->kept.some, sc_leaf_motion);
     for (k = 0; k < 2; k++) {
@@ -215,15 +209,24 @@ static void lay_out_step(const sc_workspace_sizes *s, layout *l, sc_contour_edge
     }
 }
 
+/* And for what is near. */
+static void lay_out_near(const sc_workspace_sizes *s, layout *l, sc_near_worker *near)
+{
+    near->some = some_leaves(s, SC_NEAR_KEPT);
+    near->made = SC_PLACE(l, s->leaves + (uint64_t)SC_NEAR_KEPT, uint8_t);
+    near->own = SC_PLACE(l, 1 + (uint64_t)near->some, sc_near_leaf);
+}
+
 static void lay_out_worker(const sc_workspace_sizes *s, layout *l, sc_worker *worker,
-                           sc_step_worker *step)
+                           sc_step_worker *step, sc_near_worker *near)
 {
     memset(worker, 0, sizeof *worker);
     memset(step, 0, sizeof *step);
+    memset(near, 0, sizeof *near);
     lay_out_contour(s, l, &worker->contour);
     lay_out_lists(s, l, &worker->lists);
     lay_out_last(s, l, &worker->last);
-    worker->kept.some = some_derived(s);
+    worker->kept.some = some_leaves(s, SC_DERIVED_KEPT);
     worker->kept.some_derived = SC_PLACE(l, (uint64_t)worker->kept.some + 1, sc_leaf_derived);
     worker->kept.some_known = SC_PLACE(l, (uint64_t)worker->kept.some + 1, sc_leaf_known);
     worker->kept.slab = SC_PLACE(l, s->leaves, sc_leaf_slab);
@@ -231,14 +234,17 @@ static void lay_out_worker(const sc_workspace_sizes *s, layout *l, sc_worker *wo
     worker->ball.queue = SC_PLACE(l, s->vertices, uint32_t);
     worker->found = SC_PLACE(l, SC_FOUND_MAX, sc_pair);
     if (s->flags & SC_WORKSPACE_STEP) lay_out_step(s, l, &worker->contour, step);
+    if (s->flags & SC_WORKSPACE_NEAR) lay_out_near(s, l, near);
 }
 
 /* Places all arrays behind a workspace, or of a workspace that is nowhere; returns its size. */
 static uint64_t lay_out(const sc_workspace_sizes *s, unsigned char *block, sc_workspace *w)
 {
     const int steps = (s->flags & SC_WORKSPACE_STEP) != 0;
+    const int near = (s->flags & SC_WORKSPACE_NEAR) != 0;
     sc_worker no_worker;
     sc_step_worker no_step;
+    sc_near_worker no_near;
     uint32_t i;
     layout l;
     l.block = block;
@@ -249,9 +255,11 @@ static uint64_t lay_out(const sc_workspace_sizes *s, unsigned char *block, sc_wo
     if (s->workers > 1) lay_out_plan(s, &l, &w->plan);
     w->worker = SC_PLACE(&l, s->workers, sc_worker);
     if (steps) w->step = SC_PLACE(&l, s->workers, sc_step_worker);
+    if (near) w->near = SC_PLACE(&l, s->workers, sc_near_worker);
     for (i = 0; i < s->workers; i++)
         lay_out_worker(s, &l, block ? &w->worker[i] : &no_worker,
-                       block && steps ? &w->step[i] : &no_step);
+                       block && steps ? &w->step[i] : &no_step,
+                       block && near ? &w->near[i] : &no_near);
     return l.at;
 }
 
@@ -322,6 +330,7 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     memset(w->all_known, 0, all_derived(s) * sizeof *w->all_known);
     for (i = 0; i < s->workers; i++) {
         w->worker[i].step = w->step ? &w->step[i] : NULL;
+        w->worker[i].near = w->near ? &w->near[i] : NULL;
         clear_worker(s, &w->worker[i]);
     }
     w->worker[0].bounds = &w->bounds;
@@ -391,19 +400,31 @@ static void begin_worker(const sc_model *model, sc_workspace *workspace,
     if (question->step) begin_step_worker(question->step, w->step);
 }
 
-/* Lets each of so many workers keep leaf clusters for a step, in the room of points and derived
-   data of leaf clusters in queries, or in its own, and forget those of the last step. */
-static void keep_motions(sc_workspace *w, uint32_t workers)
+/* How many leaf clusters each of so many workers may keep, of so many bytes each, in the room of
+   points and derived data of leaf clusters in queries, which starts at *room; and, as a power of two,
+   in *kept. */
+static uint64_t room_for_each(const sc_workspace *w, uint32_t workers, size_t bytes, void **room,
+                              uint32_t *kept)
 {
-    unsigned char *room = (unsigned char *)(void *)w->frame.point_at;
     const unsigned char *end =
         (const unsigned char *)(const void *)(w->all_derived + all_derived(&w->sizes));
-    const uint64_t count = (uint64_t)(end - room) / sizeof(sc_leaf_motion) / workers;
-    uint32_t kept = 1, i;
-    while (kept <= count / 2) kept *= 2;
+    uint64_t count;
+    *room = w->frame.point_at;
+    count = (uint64_t)(end - (const unsigned char *)*room) / bytes / workers;
+    for (*kept = 1; *kept <= count / 2;) *kept *= 2;
+    return count;
+}
+
+/* Lets each of so many workers keep leaf clusters for a step, there or in its own room, and forget
+   those of the last step. */
+static void keep_motions(sc_workspace *w, uint32_t workers)
+{
+    void *room;
+    uint32_t kept, i;
+    const uint64_t count = room_for_each(w, workers, sizeof(sc_leaf_motion), &room, &kept);
     for (i = 0; i < workers; i++) {
         sc_kept_motions *motions = &w->step[i].kept;
-        motions->leaves = (sc_leaf_motion *)(void *)room + i * count;
+        motions->leaves = (sc_leaf_motion *)room + i * count;
         motions->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
         if (count < w->sizes.leaves && kept <= motions->some) {
             motions->leaves = motions->own + 1;
@@ -413,12 +434,38 @@ static void keep_motions(sc_workspace *w, uint32_t workers)
     }
 }
 
+/* The same for what is near. */
+static void keep_near(sc_workspace *w, uint32_t workers)
+{
+    void *room;
+    uint32_t kept, i;
+    const uint64_t count = room_for_each(w, workers, sizeof(sc_near_leaf), &room, &kept);
+    for (i = 0; i < workers; i++) {
+        sc_near_worker *near = &w->near[i];
+        near->leaves = (sc_near_leaf *)room + i * count;
+        near->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
+        if (count < w->sizes.leaves && kept <= near->some) {
+            near->leaves = near->own + 1;
+            near->mask = near->some - 1;
+        }
+        memset(near->made, 0, w->sizes.leaves + (size_t)SC_NEAR_KEPT);
+    }
+}
+
+static void keep_leaves(sc_workspace *w, const sc_question *question, uint32_t workers)
+{
+    if (question->near)
+        keep_near(w, workers);
+    else if (question->step)
+        keep_motions(w, workers);
+}
+
 sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
                               const sc_question *question)
 {
     begin_epoch(workspace);
     begin_worker(model, workspace, question, NULL, &workspace->worker[0]);
-    if (question->step) keep_motions(workspace, 1);
+    keep_leaves(workspace, question, 1);
     return &workspace->worker[0];
 }
 
@@ -451,7 +498,7 @@ void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc
     first->stats = stats;
     if (!SC_ALWAYS(workers)) return;
     if (keeps_all) keep_parts(workspace, workers);
-    if (question->step) keep_motions(workspace, workers);
+    keep_leaves(workspace, question, workers);
 }
 
 void sc_workspace_keep_all(sc_workspace *w)

@@ -20,8 +20,8 @@
 #ifndef SC_RUN_WORKSPACE_H
 #define SC_RUN_WORKSPACE_H
 
+#include "near/near_worker.h"
 #include "query/worker.h"
-#include "step/step_worker.h"
 
 /* A part of a query for a worker to do by itself: an item of a list, see run/plan.c. */
 typedef struct sc_part {
@@ -63,6 +63,7 @@ struct sc_workspace {
     sc_plan_room plan;
     sc_worker *worker;    /* sizes.workers */
     sc_step_worker *step; /* as many, of workspaces for steps */
+    sc_near_worker *near; /* and for what is near */
 };
 
 /* Bytes for a workspace, which fit size_t if it is for one worker. options are complete and

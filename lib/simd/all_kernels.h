@@ -14,6 +14,7 @@
 
 #include "base/bounds.h"
 #include "base/predicates.h"
+#include "near/near_candidates.h"
 #include "pose/pose_kernels.h"
 #include "pose/positions.h"
 #include "query/culling.h"
@@ -56,6 +57,10 @@
 #include "step/step_rows_kernel.h"
 #include "step/step_cluster_kernel.h"
 
+#include "near/distance_kernel.h"
+#include "near/near_leaf_kernel.h"
+#include "near/near_kernel.h"
+
 #include "simd/target_end.h"
 
 static const sc_pose_kernels pose_kernels = {
@@ -85,4 +90,4 @@ static const sc_step_kernels step_kernels = {
 #include "run/stages.h"
 
 const sc_kernels SC_KERNELS = {&pose_kernels, &query_kernels, &step_kernels, query_stages,
-                               step_stages};
+                               step_stages, near_stages};

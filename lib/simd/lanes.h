@@ -68,6 +68,10 @@ static inline lanes lanes_multiply(lanes a, lanes b)
 {
     return _mm512_mul_ps(a, b);
 }
+static inline lanes lanes_divide(lanes a, lanes b)
+{
+    return _mm512_div_ps(a, b);
+}
 static inline lanes lanes_smaller(lanes a, lanes b)
 {
     return _mm512_min_ps(a, b);
@@ -270,6 +274,12 @@ static inline lanes lanes_subtract(lanes a, lanes b)
 static inline lanes lanes_multiply(lanes a, lanes b)
 {
 #  define SC_LANES_F(i) SC_LANES_OF(mul_ps)(a.v[i], b.v[i])
+    SC_LANES_MAP(SC_LANES_F);
+#  undef SC_LANES_F
+}
+static inline lanes lanes_divide(lanes a, lanes b)
+{
+#  define SC_LANES_F(i) SC_LANES_OF(div_ps)(a.v[i], b.v[i])
     SC_LANES_MAP(SC_LANES_F);
 #  undef SC_LANES_F
 }
@@ -573,6 +583,10 @@ static inline lanes lanes_subtract(lanes a, lanes b)
 static inline lanes lanes_multiply(lanes a, lanes b)
 {
     SC_LANES_EACH(a.v[i] * b.v[i]);
+}
+static inline lanes lanes_divide(lanes a, lanes b)
+{
+    SC_LANES_EACH(a.v[i] / b.v[i]);
 }
 /* as x86 has them: the second operand if one is NaN */
 static inline lanes lanes_smaller(lanes a, lanes b)

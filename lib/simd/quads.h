@@ -145,6 +145,7 @@ static inline float sc_quad_cvtss_f32(sc_floats4 a)
     SC_QUAD_ONE(type, add_##end, a + b)                                                            \
     SC_QUAD_ONE(type, sub_##end, a - b)                                                            \
     SC_QUAD_ONE(type, mul_##end, a *b)                                                             \
+    SC_QUAD_ONE(type, div_##end, a / b)                                                            \
     SC_QUAD_ONE(type, and_##end, (mask)a &(mask)b)                                                 \
     SC_QUAD_ONE(type, andnot_##end, ~(mask)a &(mask)b)                                             \
     SC_QUAD_ONE(type, or_##end, (mask)a | (mask)b)                                                 \

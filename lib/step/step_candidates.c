@@ -8,8 +8,7 @@
 #include "pose/positions.h"
 #include "step/step_pairs.h"
 
-/* A pair in the caller's numbers; edges with the lower first. */
-static sc_pair name_candidate(const sc_model *model, int kind, const sc_pair *pair)
+sc_pair sc_step_candidates_name(const sc_model *model, int kind, const sc_pair *pair)
 {
     const uint32_t *id = sc_model_triangle_id(model);
     sc_pair name;
@@ -27,7 +26,7 @@ static sc_pair name_candidate(const sc_model *model, int kind, const sc_pair *pa
    put first. */
 static sc_pair put_in_order(const sc_model *model, int kind, sc_pair pair, sc_pair *name)
 {
-    *name = name_candidate(model, kind, &pair);
+    *name = sc_step_candidates_name(model, kind, &pair);
     if (kind == SC_STEP_EDGE_EDGE && name->a > name->b) {
         uint32_t t = name->a;
         name->a = name->b;

@@ -25,6 +25,9 @@ static inline void sc_step_candidates_points(const sc_model *model, int kind, co
     point[3] = triangle[pair->b - pair->b % 3 + (pair->b + 1) % 3];
 }
 
+/* A pair in the caller's numbers. */
+sc_pair sc_step_candidates_name(const sc_model *model, int kind, const sc_pair *pair);
+
 /* Stages, see query/lists.h: the narrow phase of pairs, or, if candidates are wanted, these. */
 void sc_step_candidates_take_faces(sc_worker *w, uint32_t most);
 void sc_step_candidates_take_edges(sc_worker *w, uint32_t most);

@@ -1,0 +1,493 @@
+/*
+ * What is near of two leaf clusters, or of one: the stages of proximity before the exact one.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * First points, triangles and edges of each of the two that the box of the other is near, and the
+ * slab of all its points. Then rows: a triangle of one with those points of the other, an edge with
+ * those edges of the other, whose boxes are near; where the distance is small beside triangles, the
+ * slabs of triangles strike out most of these: a point beyond that of the triangle; an edge of which
+ * both ends are beyond the slab of a triangle that has the other edge. What rows leave is listed,
+ * and its distances are computed sixteen at a time (near/distance_kernel.h).
+ *
+ * A vertex belongs to the first leaf cluster that has it, an edge to the triangle that names it: so
+ * each vertex meets each triangle, and each edge each other edge, in one pair of leaf clusters, or
+ * in one with itself. What shares a point is left out.
+ */
+
+/* Slabs of triangles pay where the distance is below this times the extents of triangles. */
+#define NEAR_SLABS_PAY 0.25f
+
+/* Pairs that are listed before their distances are computed, and what one row adds. */
+enum { NEAR_LISTED = 256, NEAR_ROW = SC_NEAR_EDGES };
+
+/* Of two leaf clusters: point a and triangle b; or edges a and b, with their ends. */
+typedef struct near_list {
+    uint32_t count;
+    uint8_t a[NEAR_LISTED + NEAR_ROW], b[NEAR_LISTED + NEAR_ROW];
+    uint8_t end[4][NEAR_LISTED + NEAR_ROW];
+} near_list;
+
+/* One of two leaf clusters. */
+typedef struct near_side {
+    const sc_near_leaf *leaf;
+    unsigned points, triangles;      /* bits of those that are left */
+    uint64_t edges;
+    uint16_t shared[SC_LEAF_POINTS]; /* which points of the other each point is */
+} near_side;
+
+/* The boxes of edges, moved outwards by the margin or not. */
+typedef struct near_boxes {
+    float side[6][SC_NEAR_EDGES];
+} near_boxes;
+
+/* What looking at two leaf clusters goes on with. */
+typedef struct near_search {
+    sc_worker *w;
+    near_limits limits;
+    near_side a, b;
+    float margin;
+    uint32_t follows;
+    int kinds, names; /* which are wanted, and whether they are wanted by name */
+} near_search;
+
+/* Points before the low sides of a box, and in the upper half those behind the high ones. */
+static inline void beyond_near_box(const sc_near_leaf *p, const float box[6], unsigned beyond[3])
+{
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        const lanes at = lanes_load(p->at[k]);
+        beyond[k] = lanes_bits(lanes_below(at, lanes_all(box[k]))) |
+                    lanes_bits(lanes_below(lanes_all(box[3 + k]), at)) << 16;
+    }
+}
+
+/* The same of a slab. */
+static inline unsigned beyond_near_slab(const sc_near_leaf *p, const lanes n[3], float low,
+                                        float high)
+{
+    lanes at[3], place;
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) at[k] = lanes_load(p->at[k]);
+    place = places_along(n, (const lanes *)at);
+    return lanes_bits(lanes_below(place, lanes_all(low))) |
+           lanes_bits(lanes_below(lanes_all(high), place)) << 16;
+}
+
+static inline unsigned beyond_near_leaf(const sc_near_leaf *p, const sc_near_leaf *a)
+{
+    lanes n[3];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) n[k] = lanes_all(a->direction[k]);
+    return beyond_near_slab(p, (const lanes *)n, a->leaf_slab[0], a->leaf_slab[1]);
+}
+
+static inline unsigned beyond_near_face(const sc_near_leaf *p, const sc_near_leaf *a, uint32_t i)
+{
+    lanes n[3];
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) n[k] = lanes_all(a->normal[k][i]);
+    return beyond_near_slab(p, (const lanes *)n, a->slab[0][i], a->slab[1][i]);
+}
+
+/* Edges that are neither all before one of so many sides nor all behind it. */
+static inline uint64_t near_edges_left(const sc_near_leaf *a, const unsigned *beyond, int count)
+{
+    uint64_t left = left_of(lanes_sets_load(a->ends), beyond, count);
+    left |= (uint64_t)left_of(lanes_sets_load(a->ends + SC_LEAF_MAX), beyond, count) << SC_LEAF_MAX;
+    if (a->edges > 2 * SC_LEAF_MAX)
+        left |= (uint64_t)left_of(lanes_sets_load(a->ends + 2 * SC_LEAF_MAX), beyond, count)
+                << 2 * SC_LEAF_MAX;
+    return left;
+}
+
+/* Leaves of one what the box and the slab of the other do not tell apart from it; 0: nothing. */
+static inline int leave_of_near(near_side *a, const sc_near_leaf *other)
+{
+    unsigned beyond[4];
+    beyond_near_box(a->leaf, other->box, beyond);
+    beyond[3] = beyond_near_leaf(a->leaf, other);
+    a->triangles = left_of(lanes_sets_load(a->leaf->corners), beyond, 4) & a->leaf->triangles;
+    if (!a->triangles) return 0;
+    a->points = points_left(beyond, 4) & a->leaf->own;
+    a->edges = near_edges_left(a->leaf, beyond, 4);
+    return 1;
+}
+
+/* Finds which points of two leaf clusters are the same; 0: none. */
+static inline unsigned find_near_shared(near_side *a, near_side *b)
+{
+    const lanes_bytes name = lanes_names(a->leaf->point, b->leaf->point);
+    unsigned some = ~lanes_bytes_bits(lanes_bytes_same(name, lanes_bytes_all(255))) & 0xffffu;
+    const unsigned any = some;
+    uint8_t number[SC_LANES_COUNT];
+    memset(a->shared, 0, sizeof a->shared);
+    memset(b->shared, 0, sizeof b->shared);
+    if (!some) return 0;
+    lanes_bytes_store(number, name);
+    for (; some; some &= some - 1) {
+        const uint32_t j = sc_bits_lowest(some), i = number[j];
+        a->shared[i] = (uint16_t)(a->shared[i] | 1u << j);
+        b->shared[j] = (uint16_t)(1u << i);
+    }
+    return any;
+}
+
+/* ---- what is found ---- */
+
+/* Pairs that are near or, in the upper half, far; the rest is left to exact signs. */
+static inline void take_near_faces(near_search *s, const near_side *p, const near_side *f,
+                                   const near_list *list, uint32_t at, unsigned judged,
+                                   unsigned wanted)
+{
+    sc_lists *l = &s->w->lists;
+    unsigned near = judged & wanted, open = ~(judged | judged >> 16) & wanted;
+    if (!s->names) {
+        s->w->step->count[SC_STEP_VERTEX_FACE] += sc_bits_count(near);
+        near = 0;
+    }
+    for (; near; near &= near - 1) {
+        const uint32_t i = at + sc_bits_lowest(near);
+        sc_pair inner;
+        inner.a = p->leaf->point[list->a[i]];
+        inner.b = f->leaf->first + list->b[i];
+        sc_near_candidates_take(s->w, SC_STEP_VERTEX_FACE, inner, inner.a,
+                                f->leaf->face[list->b[i]]);
+    }
+    for (; open; open &= open - 1) {
+        const uint32_t i = at + sc_bits_lowest(open);
+        sc_pair *to = &l->moving[0][l->count[SC_LIST_FACES]++];
+        to->a = p->leaf->point[list->a[i]];
+        to->b = f->leaf->first + list->b[i];
+    }
+}
+
+static inline uint32_t inner_near_edge(const sc_near_leaf *a, uint32_t edge)
+{
+    const uint32_t of = a->of[edge];
+    return 3 * (a->first + of % SC_LEAF_MAX) + of / SC_LEAF_MAX;
+}
+
+static inline void take_near_edges(near_search *s, const near_list *list, uint32_t at,
+                                   unsigned judged, unsigned wanted)
+{
+    const sc_near_leaf *a = s->a.leaf, *b = s->b.leaf;
+    sc_lists *l = &s->w->lists;
+    unsigned near = judged & wanted, open = ~(judged | judged >> 16) & wanted;
+    if (!s->names) {
+        s->w->step->count[SC_STEP_EDGE_EDGE] += sc_bits_count(near);
+        near = 0;
+    }
+    for (; near; near &= near - 1) {
+        const uint32_t i = at + sc_bits_lowest(near);
+        sc_pair inner;
+        inner.a = inner_near_edge(a, list->a[i]);
+        inner.b = inner_near_edge(b, list->b[i]);
+        sc_near_candidates_take(s->w, SC_STEP_EDGE_EDGE, inner, a->edge[list->a[i]],
+                                b->edge[list->b[i]]);
+    }
+    for (; open; open &= open - 1) {
+        const uint32_t i = at + sc_bits_lowest(open);
+        sc_pair *to = &l->moving[1][l->count[SC_LIST_EDGES]++];
+        to->a = inner_near_edge(a, list->a[i]);
+        to->b = inner_near_edge(b, list->b[i]);
+    }
+}
+
+/* ---- distances ---- */
+
+static inline void decide_near_faces(near_search *s, const near_side *p, const near_side *f,
+                                     near_list *list)
+{
+    const uint32_t count = list->count;
+    uint32_t i;
+    int k;
+    sc_worker_count_primitives(s->w, s->follows, count);
+    memset(list->a + count, 0, SC_LANES_COUNT);
+    memset(list->b + count, 0, SC_LANES_COUNT);
+    for (i = 0; i < count; i += SC_LANES_COUNT) {
+        const unsigned wanted = count - i < SC_LANES_COUNT ? (1u << (count - i)) - 1u : 0xffffu;
+        const lanes_index point = lanes_index_load(list->a + i);
+        const lanes_index a = lanes_index_through(f->leaf->corner[0], list->b + i);
+        const lanes_index b = lanes_index_through(f->leaf->corner[1], list->b + i);
+        const lanes_index c = lanes_index_through(f->leaf->corner[2], list->b + i);
+        lanes v[3], e[3], g[3];
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            const lanes from = lanes_pick(f->leaf->at[k], a);
+            v[k] = lanes_subtract(lanes_pick(p->leaf->at[k], point), from);
+            e[k] = lanes_subtract(lanes_pick(f->leaf->at[k], b), from);
+            g[k] = lanes_subtract(lanes_pick(f->leaf->at[k], c), from);
+        }
+        take_near_faces(s, p, f, list, i,
+                        judge_faces((const lanes *)v, (const lanes *)e, (const lanes *)g,
+                                    &s->limits),
+                        wanted);
+    }
+    list->count = 0;
+}
+
+/* Those of whole sixteens, or all; what is left moves to the front. */
+static inline void decide_near_edges(near_search *s, near_list *list, int all)
+{
+    const uint32_t count = all ? list->count : list->count & ~(uint32_t)(SC_LANES_COUNT - 1);
+    const float(*at)[SC_LEAF_POINTS] = s->a.leaf->at, (*other)[SC_LEAF_POINTS] = s->b.leaf->at;
+    uint32_t i;
+    int k;
+    sc_worker_count_primitives(s->w, s->follows, count);
+    if (all)
+        for (k = 0; k < 4; k++) memset(list->end[k] + count, 0, SC_LANES_COUNT);
+    for (i = 0; i < count; i += SC_LANES_COUNT) {
+        const unsigned wanted = count - i < SC_LANES_COUNT ? (1u << (count - i)) - 1u : 0xffffu;
+        lanes_index end[4];
+        lanes v[3], e[3], f[3];
+        for (k = 0; k < 4; k++) end[k] = lanes_index_load(list->end[k] + i);
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            const lanes from = lanes_pick(at[k], end[0]), to = lanes_pick(other[k], end[2]);
+            v[k] = lanes_subtract(from, to);
+            e[k] = lanes_subtract(lanes_pick(at[k], end[1]), from);
+            f[k] = lanes_subtract(lanes_pick(other[k], end[3]), to);
+        }
+        take_near_edges(s, list, i,
+                        judge_edges((const lanes *)v, (const lanes *)e, (const lanes *)f,
+                                    &s->limits),
+                        wanted);
+    }
+    list->count -= count;
+    if (all) return;
+    lanes_bytes_store(list->a, lanes_bytes_load(list->a + count));
+    lanes_bytes_store(list->b, lanes_bytes_load(list->b + count));
+    for (k = 0; k < 4; k++)
+        lanes_bytes_store(list->end[k], lanes_bytes_load(list->end[k] + count));
+}
+
+/* ---- rows ---- */
+
+/* Triangles of f with points of p. */
+static inline uint32_t compare_near_faces(near_search *s, const near_side *p, const near_side *f,
+                                          int slabs)
+{
+    near_list list;
+    const lanes margin = lanes_all(s->margin);
+    uint32_t rows = sc_bits_count(f->triangles);
+    unsigned some;
+    int k;
+    list.count = 0;
+    if (!p->points) return 0;
+    for (some = f->triangles; some; some &= some - 1) {
+        const uint32_t i = sc_bits_lowest(some);
+        unsigned points = p->points;
+        lanes_mask near[3];
+        for (k = 0; k < 3; k++) {
+            points &= ~(unsigned)f->shared[f->leaf->corner[k][i]];
+            near[k] = lanes_both(
+                lanes_not_above(lanes_subtract(lanes_all(f->leaf->side[k][i]), margin),
+                                lanes_load(p->leaf->at[k])),
+                lanes_not_above(lanes_load(p->leaf->at[k]),
+                                lanes_add(lanes_all(f->leaf->side[3 + k][i]), margin)));
+        }
+        points &= lanes_bits(lanes_both(lanes_both(near[0], near[1]), near[2]));
+        if (slabs && points) {
+            const unsigned beyond = beyond_near_face(p->leaf, f->leaf, i);
+            points &= ~(beyond | beyond >> 16);
+        }
+        if (!points) continue;
+        lanes_bytes_store(list.b + list.count, lanes_bytes_all((uint8_t)i));
+        list.count += lanes_list(points, list.a + list.count);
+    }
+    if (list.count) decide_near_faces(s, p, f, &list);
+    return rows;
+}
+
+/* Boxes of edges, moved outwards by a margin. */
+static inline void make_near_boxes(const sc_near_leaf *a, float margin, near_boxes *to)
+{
+    const lanes out = lanes_all(margin);
+    uint32_t i;
+    int k;
+    for (i = 0; i < a->edges; i += SC_LEAF_MAX) {
+        const lanes_index first = lanes_index_load(a->end[0] + i);
+        const lanes_index second = lanes_index_load(a->end[1] + i);
+        SC_UNROLL
+        for (k = 0; k < 3; k++) {
+            const lanes p = lanes_pick(a->at[k], first), q = lanes_pick(a->at[k], second);
+            lanes_store(to->side[k] + i, lanes_subtract(lanes_smaller(p, q), out));
+            lanes_store(to->side[3 + k] + i, lanes_add(lanes_larger(p, q), out));
+        }
+    }
+}
+
+/* Of each edge of a those of b that slabs of triangles leave. */
+static inline void compare_near_slabs(const near_side *a, const near_side *b,
+                                      uint64_t allowed[SC_NEAR_EDGES])
+{
+    uint64_t by_slab[SC_LEAF_MAX], edges;
+    unsigned some, beyond;
+    uint32_t j;
+    memset(allowed, 0, SC_NEAR_EDGES * sizeof *allowed);
+    for (some = a->triangles; some; some &= some - 1) {
+        j = sc_bits_lowest(some);
+        beyond = beyond_near_face(b->leaf, a->leaf, j);
+        by_slab[j] = near_edges_left(b->leaf, &beyond, 1) & b->edges;
+    }
+    for (some = b->triangles; some; some &= some - 1) {
+        uint64_t own;
+        j = sc_bits_lowest(some);
+        own = ((uint64_t)1 << b->leaf->edge_first[j + 1]) - ((uint64_t)1 << b->leaf->edge_first[j]);
+        own &= b->edges;
+        if (!own) continue;
+        beyond = beyond_near_face(a->leaf, b->leaf, j);
+        for (edges = near_edges_left(a->leaf, &beyond, 1) & a->edges; edges; edges &= edges - 1) {
+            const uint32_t e = sc_bits_lowest64(edges);
+            allowed[e] |= own & by_slab[a->leaf->of[e] % SC_LEAF_MAX];
+        }
+    }
+}
+
+/* Lists edge e of a with those of b in a mask. */
+static inline void list_near_edges(const near_search *s, uint32_t e, uint64_t mask, near_list *list)
+{
+    const sc_near_leaf *a = s->a.leaf, *b = s->b.leaf;
+    uint32_t first;
+    for (first = 0; mask >> first; first += SC_LEAF_MAX) {
+        const unsigned some = (unsigned)(mask >> first) & 0xffffu;
+        const uint32_t at = list->count;
+        lanes_bytes numbers;
+        uint8_t number[SC_LANES_COUNT];
+        if (!some) continue;
+        list->count += lanes_list(some, number);
+        numbers = lanes_bytes_load(number);
+        lanes_bytes_store(list->end[0] + at, lanes_bytes_all(a->end[0][e]));
+        lanes_bytes_store(list->end[1] + at, lanes_bytes_all(a->end[1][e]));
+        lanes_bytes_store(list->end[2] + at,
+                          lanes_bytes_through(lanes_bytes_load(b->end[0] + first), numbers));
+        lanes_bytes_store(list->end[3] + at,
+                          lanes_bytes_through(lanes_bytes_load(b->end[1] + first), numbers));
+        lanes_bytes_store(list->a + at, lanes_bytes_all((uint8_t)e));
+        lanes_bytes_store(list->b + at, lanes_bytes_either(numbers, lanes_bytes_all((uint8_t)first)));
+    }
+}
+
+/* Edges with edges; of one leaf cluster with itself, with those behind. */
+static inline uint32_t compare_near_edges(near_search *s, int itself, int slabs)
+{
+    const near_side *a = &s->a, *b = &s->b;
+    near_boxes around, boxes;
+    near_list list;
+    uint64_t allowed[SC_NEAR_EDGES], some;
+    uint32_t rows = 0, i;
+    int k;
+    list.count = 0;
+    if (!a->edges || !b->edges) return 0;
+    if (slabs) compare_near_slabs(a, b, allowed);
+    make_near_boxes(a->leaf, s->margin, &around);
+    make_near_boxes(b->leaf, 0, &boxes);
+    for (some = a->edges; some; some &= some - 1) {
+        const uint32_t e = sc_bits_lowest64(some);
+        const unsigned shared =
+            a->shared[a->leaf->end[0][e]] | (unsigned)a->shared[a->leaf->end[1][e]];
+        uint64_t others = slabs ? allowed[e] : b->edges, near = 0;
+        if (itself) others &= ~(uint64_t)0 << e << 1;
+        if (!others) continue;
+        rows++;
+        for (i = 0; others >> i; i += SC_LEAF_MAX) {
+            lanes_mask apart[3];
+            unsigned mask;
+            SC_UNROLL
+            for (k = 0; k < 3; k++)
+                apart[k] = lanes_both(
+                    lanes_not_above(lanes_load(boxes.side[k] + i),
+                                    lanes_all(around.side[3 + k][e])),
+                    lanes_not_above(lanes_all(around.side[k][e]),
+                                    lanes_load(boxes.side[3 + k] + i)));
+            mask = lanes_bits(lanes_both(lanes_both(apart[0], apart[1]), apart[2]));
+            if (shared) mask &= lanes_within(lanes_sets_load(b->leaf->ends + i), ~shared & 0xffffu);
+            near |= (uint64_t)mask << i;
+        }
+        near &= others;
+        if (!near) continue;
+        list_near_edges(s, e, near, &list);
+        if (list.count >= NEAR_LISTED - SC_LANES_COUNT) decide_near_edges(s, &list, 0);
+    }
+    if (list.count) decide_near_edges(s, &list, 1);
+    return rows;
+}
+
+/* ---- stages ---- */
+
+static inline void begin_near_search(near_search *s, sc_worker *w)
+{
+    const sc_near_options *o = &w->question->near->options;
+    s->w = w;
+    s->margin = w->frame->motion.margin;
+    s->kinds = o->kinds == SC_NEAR_BOTH ? SC_NEAR_VERTEX_FACE | SC_NEAR_EDGE_EDGE : (int)o->kinds;
+    s->names = sc_near_candidates_want_names(w->question);
+}
+
+static inline void begin_near_pair(near_search *s, uint32_t item, const sc_near_leaf *a,
+                                   const sc_near_leaf *b)
+{
+    const double distance = s->w->question->near->options.distance * s->w->frame->scale;
+    s->follows = sc_item_follows(item);
+    s->a.leaf = a;
+    s->b.leaf = b;
+    /* nothing in the unit box is farther apart than 4 */
+    s->limits = near_limits_for(distance < 8 ? distance : 8, (double)a->extent + (double)b->extent);
+}
+
+/* Whether there is room for all of two leaf clusters that may be left open. */
+static inline int have_room_for_near(const sc_worker *w)
+{
+    return w->lists.count[SC_LIST_FACES] < SC_MOVING_ENOUGH &&
+           w->lists.count[SC_LIST_EDGES] < SC_MOVING_ENOUGH && !w->stop;
+}
+
+static void decide_near_clusters(sc_worker *w, uint32_t most)
+{
+    uint32_t *left = &w->lists.count[SC_LIST_CLUSTERS];
+    near_search s;
+    begin_near_search(&s, w);
+    for (; most && *left && have_room_for_near(w); most--) {
+        const sc_cluster_pair p = w->lists.clusters[--*left];
+        const sc_near_leaf *a = near_leaf(w, p.a), *b = other_near_leaf(w, p.a, p.b);
+        uint32_t rows = 2;
+        int slabs;
+        begin_near_pair(&s, p.known, a, b);
+        if (leave_of_near(&s.a, b) && leave_of_near(&s.b, a)) {
+            slabs = w->frame->motion.distance < NEAR_SLABS_PAY * (a->extent + b->extent);
+            (void)find_near_shared(&s.a, &s.b);
+            if (s.kinds & SC_NEAR_VERTEX_FACE) {
+                rows += compare_near_faces(&s, &s.a, &s.b, slabs);
+                rows += compare_near_faces(&s, &s.b, &s.a, slabs);
+            }
+            if (s.kinds & SC_NEAR_EDGE_EDGE) rows += compare_near_edges(&s, 0, slabs);
+        }
+        sc_worker_count_boxes(w, s.follows, rows);
+    }
+}
+
+static void decide_near_alone(sc_worker *w, uint32_t most)
+{
+    uint32_t *left = &w->lists.count[SC_LIST_NEAR];
+    near_search s;
+    begin_near_search(&s, w);
+    for (; most && *left && have_room_for_near(w); most--) {
+        const uint32_t item = w->lists.near[0][--*left];
+        const sc_near_leaf *a = near_leaf(w, item & SC_ITEM);
+        uint32_t rows = 0, i;
+        begin_near_pair(&s, item, a, a);
+        s.a.points = a->own;
+        s.a.triangles = a->triangles;
+        s.a.edges = ((uint64_t)1 << a->edges) - 1;
+        for (i = 0; i < SC_LEAF_POINTS; i++) s.a.shared[i] = (uint16_t)(1u << i);
+        s.b = s.a;
+        if (s.kinds & SC_NEAR_VERTEX_FACE) rows += compare_near_faces(&s, &s.a, &s.b, 0);
+        if (s.kinds & SC_NEAR_EDGE_EDGE) rows += compare_near_edges(&s, 1, 0);
+        sc_worker_count_boxes(w, s.follows, rows);
+    }
+}
