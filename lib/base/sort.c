@@ -9,7 +9,8 @@ enum {
     INSERTION_MAX = 24,
     BYTE_VALUES = 256,
     BYTE_MIN = 512, /* pairs, for which counting them pays */
-    BYTES_MOST = 3  /* one in another; 4 KB of stack each */
+    BYTES_MOST = 3, /* one in another; 4 KB of stack each */
+    SAME_FEW = 4    /* with the same a, which are not worth passes by b */
 };
 
 void sc_sort_sift(sc_pair *heap, uint64_t count, uint64_t at)
@@ -136,33 +137,42 @@ static void sort_some(sc_pair *pairs, uint64_t count, int most)
         sort_by_bytes(pairs, count, most - 1);
 }
 
-/* By the highest eight bits in which pairs differ: counts them, then takes each out of a wrong
-   place to its own, and what was there on to where that belongs. Then what has these bits in
-   common. */
-static void sort_by_bytes(sc_pair *pairs, uint64_t count, int most)
+/* Orders pairs by the highest bits in which they differ, of which there are so many values, 256 at
+   most: counts them, then takes each out of a wrong place to its own, and what was there on to where
+   that belongs. end: where those with each value end. Returns how many bits are below these. */
+static unsigned split_by_bits(sc_pair *pairs, uint64_t count, unsigned values,
+                              uint64_t end[BYTE_VALUES])
 {
-    uint64_t next[BYTE_VALUES] = {0}, end[BYTE_VALUES], differ = 0, sum = 0, i;
+    uint64_t next[BYTE_VALUES] = {0}, differ = 0, sum = 0, i;
     unsigned shift = 0, value;
     for (i = 1; i < count; i++) differ |= sc_sort_number(pairs[i]) ^ sc_sort_number(pairs[0]);
-    while (differ >> shift >= BYTE_VALUES) shift++;
-    for (i = 0; i < count; i++) next[sc_sort_number(pairs[i]) >> shift & (BYTE_VALUES - 1)]++;
-    for (value = 0; value < BYTE_VALUES; value++) {
+    while (differ >> shift >= values) shift++;
+    for (i = 0; i < count; i++) next[sc_sort_number(pairs[i]) >> shift & (values - 1)]++;
+    for (value = 0; value < values; value++) {
         uint64_t some = next[value];
         next[value] = sum;
         end[value] = sum += some;
     }
-    for (value = 0; value < BYTE_VALUES; value++)
+    for (value = 0; value < values; value++)
         while (next[value] < end[value]) {
             sc_pair moved = pairs[next[value]];
-            unsigned to = sc_sort_number(moved) >> shift & (BYTE_VALUES - 1);
+            unsigned to = sc_sort_number(moved) >> shift & (values - 1);
             while (to != value) {
                 sc_pair there = pairs[next[to]];
                 pairs[next[to]++] = moved;
                 moved = there;
-                to = sc_sort_number(moved) >> shift & (BYTE_VALUES - 1);
+                to = sc_sort_number(moved) >> shift & (values - 1);
             }
             pairs[next[value]++] = moved;
         }
+    return shift;
+}
+
+static void sort_by_bytes(sc_pair *pairs, uint64_t count, int most)
+{
+    uint64_t end[BYTE_VALUES];
+    const unsigned shift = split_by_bits(pairs, count, BYTE_VALUES, end);
+    unsigned value;
     for (value = 0; value < BYTE_VALUES; value++) {
         uint64_t begin = value ? end[value - 1] : 0;
         if (shift > 0 && end[value] - begin > 1) sort_some(pairs + begin, end[value] - begin, most);
@@ -176,36 +186,88 @@ void sc_sort_pairs(sc_pair *pairs, uint64_t count)
 
 enum { DIGIT_BITS = 10, DIGIT_VALUES = 1 << DIGIT_BITS };
 
-void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits)
+/* One pass by the ten bits from shift on; pairs that have the same stay in order. */
+static void pass_by_digit(const sc_pair *from, sc_pair *to, uint64_t count, unsigned shift)
 {
-    sc_pair *from = pairs, *to = spare;
     uint32_t first[DIGIT_VALUES + 1], digit;
-    unsigned shift;
     uint64_t i;
-    for (shift = 0; shift < bits; shift += DIGIT_BITS) {
+    memset(first, 0, sizeof first);
+    for (i = 0; i < count; i++) first[(sc_sort_number(from[i]) >> shift & (DIGIT_VALUES - 1)) + 1]++;
+    for (digit = 0; digit < DIGIT_VALUES; digit++) first[digit + 1] += first[digit];
+    for (i = 0; i < count; i++)
+        to[first[sc_sort_number(from[i]) >> shift & (DIGIT_VALUES - 1)]++] = from[i];
+}
+
+/* By some bits of the number of a pair, from lowest on; returns where the sorted ones are. */
+static sc_pair *pass_by_digits(sc_pair *from, sc_pair *to, uint64_t count, unsigned lowest,
+                               unsigned bits)
+{
+    unsigned done;
+    for (done = 0; done < bits; done += DIGIT_BITS) {
         sc_pair *swapped = from;
-        memset(first, 0, sizeof first);
-        for (i = 0; i < count; i++) first[(from[i].a >> shift & (DIGIT_VALUES - 1)) + 1]++;
-        for (digit = 0; digit < DIGIT_VALUES; digit++) first[digit + 1] += first[digit];
-        for (i = 0; i < count; i++) to[first[from[i].a >> shift & (DIGIT_VALUES - 1)]++] = from[i];
+        pass_by_digit(from, to, count, lowest + done);
         from = to;
         to = swapped;
     }
-    if (from != pairs) memcpy(pairs, from, (size_t)count * sizeof *pairs);
+    return from;
+}
+
+void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits)
+{
+    const sc_pair *sorted = pass_by_digits(pairs, spare, count, 32, bits);
+    if (sorted != pairs) memcpy(pairs, sorted, (size_t)count * sizeof *pairs);
+}
+
+static unsigned bits_of(uint32_t number)
+{
+    unsigned bits = 0;
+    while (bits < 32 && number >> bits) bits++;
+    return bits;
 }
 
 void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count)
 {
-    uint64_t i;
-    uint32_t all = 0;
-    unsigned bits = 0;
+    uint64_t i, differ = 0;
+    unsigned bits_a, bits_b;
+    sc_pair *sorted = pairs;
     if (count < BYTE_MIN) {
         sc_sort_pairs(pairs, count);
         return;
     }
-    for (i = 0; i < count; i++) all |= pairs[i].a;
-    while (bits < 32 && all >> bits) bits++;
-    sc_sort_by_digits(pairs, spare, count, bits);
-    /* few have the same a */
+    for (i = 1; i < count; i++) differ |= sc_sort_number(pairs[i]) ^ sc_sort_number(pairs[0]);
+    bits_a = bits_of((uint32_t)(differ >> 32));
+    bits_b = bits_of((uint32_t)differ);
+    /* where many have the same a, by b as well; else what is left is near its place */
+    if (count >> bits_a >= SAME_FEW)
+        sorted = pass_by_digits(pairs, spare, count, 0, bits_b);
+    sorted = pass_by_digits(sorted, sorted == pairs ? spare : pairs, count, 32, bits_a);
+    if (sorted != pairs) memcpy(pairs, sorted, (size_t)count * sizeof *pairs);
     if (!insertion_sort(pairs, count, 4 * count)) sc_sort_pairs(pairs, count);
+}
+
+/* More are split first, so that what is sorted with room is in the cache: into parts of about so
+   many, as smaller ones take longer. */
+enum { CACHED_MAX = 1 << 16, CACHED = 1 << 14 };
+
+static void sort_in_some(sc_pair *pairs, sc_pair *spare, uint64_t room, uint64_t count, int most)
+{
+    uint64_t end[BYTE_VALUES], begin = 0;
+    unsigned values = 2, value;
+    if (count <= room && count <= CACHED_MAX) {
+        sc_sort_with_room(pairs, spare, count);
+        return;
+    }
+    if (most == 0 || room < CACHED) {
+        sc_sort_pairs(pairs, count);
+        return;
+    }
+    while (values < BYTE_VALUES && count / values > CACHED) values *= 2;
+    if (split_by_bits(pairs, count, values, end) == 0) return;
+    for (value = 0; value < values; begin = end[value++])
+        sort_in_some(pairs + begin, spare, room, end[value] - begin, most - 1);
+}
+
+void sc_sort_in_room(sc_pair *pairs, sc_pair *spare, uint64_t room, uint64_t count)
+{
+    sort_in_some(pairs, spare, room, count, BYTES_MOST);
 }

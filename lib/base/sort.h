@@ -37,13 +37,17 @@ void sc_sort_pairs(sc_pair *pairs, uint64_t count);
    half their count if there are 9 or more. */
 uint64_t sc_sort_split(sc_pair *pairs, uint64_t count);
 
-/* The same by the lowest `bits` bits of a, all others of which must be 0; pairs with equal a stay
+/* The same by the lowest `bits` bits of a, all others of which must be the same; pairs with equal a stay
    in order. Linear: a pass for every ten bits. spare has room for as many. */
 void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits);
 
 /* As sc_sort_pairs, in a third to a sixth of the time where there are thousands, unless many have
    the same a. spare has room for as many. */
 void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count);
+
+/* As sc_sort_pairs, with room for so many pairs, however many are sorted: these are split in place
+   into parts that have room, and are in the cache. */
+void sc_sort_in_room(sc_pair *pairs, sc_pair *spare, uint64_t room, uint64_t count);
 
 /* Restores the heap (greatest pair first) below position at, where alone it may be broken. */
 void sc_sort_sift(sc_pair *heap, uint64_t count, uint64_t at);

@@ -146,18 +146,18 @@ static inline void take_near_faces(near_search *s, const near_side *p, const nea
 {
     sc_lists *l = &s->w->lists;
     unsigned near = judged & wanted, open = ~(judged | judged >> 16) & wanted;
+    sc_pair some[SC_LANES_COUNT];
+    uint32_t count = 0;
     if (!s->names) {
         s->w->step->count[SC_STEP_VERTEX_FACE] += sc_bits_count(near);
         near = 0;
     }
     for (; near; near &= near - 1) {
         const uint32_t i = at + sc_bits_lowest(near);
-        sc_pair inner;
-        inner.a = p->leaf->point[list->a[i]];
-        inner.b = f->leaf->first + list->b[i];
-        sc_near_candidates_take(s->w, SC_STEP_VERTEX_FACE, inner, inner.a,
-                                f->leaf->face[list->b[i]]);
+        some[count].a = p->leaf->point[list->a[i]];
+        some[count++].b = f->leaf->face[list->b[i]];
     }
+    if (count) sc_step_pairs_take_all(s->w, SC_STEP_VERTEX_FACE, some, count);
     for (; open; open &= open - 1) {
         const uint32_t i = at + sc_bits_lowest(open);
         sc_pair *to = &l->moving[0][l->count[SC_LIST_FACES]++];
@@ -178,18 +178,19 @@ static inline void take_near_edges(near_search *s, const near_list *list, uint32
     const sc_near_leaf *a = s->a.leaf, *b = s->b.leaf;
     sc_lists *l = &s->w->lists;
     unsigned near = judged & wanted, open = ~(judged | judged >> 16) & wanted;
+    sc_pair some[SC_LANES_COUNT];
+    uint32_t count = 0;
     if (!s->names) {
         s->w->step->count[SC_STEP_EDGE_EDGE] += sc_bits_count(near);
         near = 0;
     }
-    for (; near; near &= near - 1) {
+    for (; near; near &= near - 1, count++) {
         const uint32_t i = at + sc_bits_lowest(near);
-        sc_pair inner;
-        inner.a = inner_near_edge(a, list->a[i]);
-        inner.b = inner_near_edge(b, list->b[i]);
-        sc_near_candidates_take(s->w, SC_STEP_EDGE_EDGE, inner, a->edge[list->a[i]],
-                                b->edge[list->b[i]]);
+        const uint32_t one = a->edge[list->a[i]], other = b->edge[list->b[i]];
+        some[count].a = one < other ? one : other;
+        some[count].b = one < other ? other : one;
     }
+    if (count) sc_step_pairs_take_all(s->w, SC_STEP_EDGE_EDGE, some, count);
     for (; open; open &= open - 1) {
         const uint32_t i = at + sc_bits_lowest(open);
         sc_pair *to = &l->moving[1][l->count[SC_LIST_EDGES]++];

@@ -627,7 +627,7 @@ static void finish(sc_workspace *workspace, const sc_question *question, const s
     uint64_t room;
     sc_pair *spare = sc_workspace_spare(workspace, &room);
     if (question->step) {
-        sc_step_pairs_finish(question->step, w->step->count, tasks);
+        sc_step_pairs_finish(question->step, w->step->count, spare, room, tasks);
         return;
     }
     sc_pairs_finish(question, w->count, spare, room, tasks);

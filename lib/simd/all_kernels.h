@@ -25,6 +25,7 @@
 #include "step/step_candidates.h"
 #include "step/step_kernels.h"
 #include "step/step_motion.h"
+#include "step/step_pairs.h"
 
 #include "simd/target_begin.h"
 

@@ -48,16 +48,12 @@ static void swap(const sc_step_list *list, uint64_t i, uint64_t j)
 }
 
 /* Entries of a list are claimed for many pairs at once, as in query/pairs.c. */
-static void take_shared_of_step(const sc_worker *w, int kind, sc_pair pair, double time)
+static void deliver_of_step(const sc_worker *w, int kind)
 {
     sc_step_worker *step = w->step;
     const sc_step_list *list = &step->question->list[kind];
-    uint64_t at;
-    step->found[kind][step->found_count[kind]] = pair;
-    step->found_time[kind][step->found_count[kind]++] = time;
-    if (step->found_count[kind] < SC_FOUND_MAX) return;
+    const uint64_t at = sc_atomic_add(&w->share->claimed[kind], SC_FOUND_MAX);
     step->found_count[kind] = 0;
-    at = sc_atomic_add(&w->share->claimed[kind], SC_FOUND_MAX);
     if (at + SC_FOUND_MAX > list->capacity) {
         sc_atomic_write(&w->share->halt, 1); /* too short for certain */
         return;
@@ -65,6 +61,14 @@ static void take_shared_of_step(const sc_worker *w, int kind, sc_pair pair, doub
     memcpy(list->pairs + at, step->found[kind], sizeof(sc_pair) * SC_FOUND_MAX);
     if (list->times)
         memcpy(list->times + at, step->found_time[kind], sizeof(double) * SC_FOUND_MAX);
+}
+
+static void take_shared_of_step(const sc_worker *w, int kind, sc_pair pair, double time)
+{
+    sc_step_worker *step = w->step;
+    step->found[kind][step->found_count[kind]] = pair;
+    step->found_time[kind][step->found_count[kind]++] = time;
+    if (step->found_count[kind] == SC_FOUND_MAX) deliver_of_step(w, kind);
 }
 
 void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double time)
@@ -97,6 +101,27 @@ void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double t
         if (list->times) list->times[0] = time;
         sift(list, list->capacity, 0);
     }
+}
+
+void sc_step_pairs_take_all(sc_worker *w, int kind, const sc_pair *pairs, uint32_t count)
+{
+    sc_step_worker *step = w->step;
+    const sc_step_list *list = &step->question->list[kind];
+    uint32_t i;
+    if (step->question->options.output == SC_OUTPUT_PAIRS && !list->times && list->capacity) {
+        if (!w->share && step->count[kind] + count <= list->capacity) {
+            memcpy(list->pairs + step->count[kind], pairs, count * sizeof *pairs);
+            step->count[kind] += count;
+            return;
+        }
+        if (w->share && step->found_count[kind] + count < SC_FOUND_MAX) {
+            memcpy(step->found[kind] + step->found_count[kind], pairs, count * sizeof *pairs);
+            step->found_count[kind] += count;
+            step->count[kind] += count;
+            return;
+        }
+    }
+    for (i = 0; i < count; i++) sc_step_pairs_take(w, kind, pairs[i].a, pairs[i].b, 0);
 }
 
 /* Entries of a list by themselves. */
@@ -156,30 +181,50 @@ static void order_timed(sc_step_list *list, uint64_t first, uint64_t count, int 
     }
 }
 
+/* A list to be sorted, and room for some pairs. */
+typedef struct list_order {
+    sc_step_list list;
+    uint64_t count; /* of all of it */
+    sc_pair *spare;
+    uint64_t room;
+} list_order;
+
+static uint64_t split_some(void *context, uint64_t first, uint64_t count)
+{
+    return split_list(&((list_order *)context)->list, first, count);
+}
+
+/* What is sorted by several workers has its part of the room. */
 static void order_list(void *context, uint64_t first, uint64_t count)
 {
-    sc_step_list *list = (sc_step_list *)context;
+    list_order *o = (list_order *)context;
+    const double part = (double)o->room / (double)o->count;
+    const uint64_t from = (uint64_t)(part * (double)first);
     int splits = 2;
     uint64_t n;
     for (n = count; n > 1; n >>= 1) splits += 2;
-    if (list->times)
-        order_timed(list, first, count, splits);
+    if (o->list.times)
+        order_timed(&o->list, first, count, splits);
     else
-        sc_sort_pairs(list->pairs + first, count);
+        sc_sort_in_room(o->list.pairs + first, o->spare + from,
+                        (uint64_t)(part * (double)(first + count)) - from, count);
 }
 
 void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2],
-                          const sc_tasks *tasks)
+                          sc_pair *spare, uint64_t room, const sc_tasks *tasks)
 {
     int kind;
     if (question->options.output != SC_OUTPUT_PAIRS) return;
     for (kind = 0; kind < 2; kind++) {
-        sc_step_list list = question->list[kind];
-        const uint64_t count = found[kind] < list.capacity ? found[kind] : list.capacity;
-        if (!count) continue; /* there may be no array */
+        list_order o;
+        o.list = question->list[kind];
+        o.count = found[kind] < o.list.capacity ? found[kind] : o.list.capacity;
+        o.spare = spare;
+        o.room = room;
+        if (!o.count) continue; /* there may be no array */
         if (tasks)
-            sc_jobs_sort(tasks, count, split_list, order_list, &list);
+            sc_jobs_sort(tasks, o.count, split_some, order_list, &o);
         else
-            order_list(&list, 0, count);
+            order_list(&o, 0, o.count);
     }
 }

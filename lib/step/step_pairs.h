@@ -14,8 +14,12 @@
 /* Takes a pair that was not taken before, in the caller's numbers. */
 void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double time);
 
-/* Sorts the lists, of which each was given so many pairs; tasks share in it, unless NULL. */
+/* The same for some pairs without times, fewer than SC_FOUND_MAX. */
+void sc_step_pairs_take_all(sc_worker *w, int kind, const sc_pair *pairs, uint32_t count);
+
+/* Sorts the lists, of which each was given so many pairs; spare is room for some. tasks share in it,
+   unless NULL. */
 void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2],
-                          const sc_tasks *tasks);
+                          sc_pair *spare, uint64_t room, const sc_tasks *tasks);
 
 #endif
