@@ -16,7 +16,7 @@
  */
 
 /* Slabs of triangles pay where the distance is below this times the extents of triangles. */
-#define NEAR_SLABS_PAY 0.25f
+#define NEAR_SLABS_PAY 0.16f
 
 /* Pairs that are listed before their distances are computed, and what one row adds. */
 enum { NEAR_LISTED = 256, NEAR_ROW = SC_NEAR_EDGES };
@@ -33,6 +33,7 @@ typedef struct near_side {
     const sc_near_leaf *leaf;
     unsigned points, triangles;      /* bits of those that are left */
     uint64_t edges;
+    unsigned beyond[SC_LEAF_MAX];    /* of slabs of these triangles: points of the other */
     uint16_t shared[SC_LEAF_POINTS]; /* which points of the other each point is */
 } near_side;
 
@@ -94,15 +95,33 @@ static inline unsigned beyond_near_face(const sc_near_leaf *p, const sc_near_lea
     return beyond_near_slab(p, (const lanes *)n, a->slab[0][i], a->slab[1][i]);
 }
 
-/* Edges that are neither all before one of so many sides nor all behind it. */
-static inline uint64_t near_edges_left(const sc_near_leaf *a, const unsigned *beyond, int count)
+/* The corners of triangles as sets, and the ends of edges first to first + 15. */
+static inline lanes_sets near_corners(const sc_near_leaf *a)
 {
-    uint64_t left = left_of(lanes_sets_load(a->ends), beyond, count);
-    left |= (uint64_t)left_of(lanes_sets_load(a->ends + SC_LEAF_MAX), beyond, count) << SC_LEAF_MAX;
-    if (a->edges > 2 * SC_LEAF_MAX)
-        left |= (uint64_t)left_of(lanes_sets_load(a->ends + 2 * SC_LEAF_MAX), beyond, count)
-                << 2 * SC_LEAF_MAX;
-    return left;
+    return lanes_sets_join(lanes_sets_join(lanes_sets_of(a->corner),
+                                           lanes_sets_of(a->corner + SC_LEAF_MAX)),
+                           lanes_sets_of(a->corner + 2 * SC_LEAF_MAX));
+}
+
+static inline lanes_sets near_ends(const sc_near_leaf *a, uint32_t first)
+{
+    return lanes_sets_join(lanes_sets_of(a->end[0] + first), lanes_sets_of(a->end[1] + first));
+}
+
+/* Those of some edges that are neither all before one of so many sides nor all behind it. */
+static inline uint64_t near_edges_left(const sc_near_leaf *a, uint64_t edges,
+                                       const unsigned *beyond, int count)
+{
+    uint64_t left = 0;
+    uint32_t first;
+    for (first = 0; edges >> first; first += SC_LEAF_MAX)
+        left |= (uint64_t)left_of(near_ends(a, first), beyond, count) << first;
+    return left & edges;
+}
+
+static inline uint64_t all_near_edges(const sc_near_leaf *a)
+{
+    return ((uint64_t)1 << a->edges) - 1;
 }
 
 /* Leaves of one what the box and the slab of the other do not tell apart from it; 0: nothing. */
@@ -111,30 +130,28 @@ static inline int leave_of_near(near_side *a, const sc_near_leaf *other)
     unsigned beyond[4];
     beyond_near_box(a->leaf, other->box, beyond);
     beyond[3] = beyond_near_leaf(a->leaf, other);
-    a->triangles = left_of(lanes_sets_load(a->leaf->corners), beyond, 4) & a->leaf->triangles;
+    a->triangles = left_of(near_corners(a->leaf), beyond, 4) & a->leaf->triangles;
     if (!a->triangles) return 0;
     a->points = points_left(beyond, 4) & a->leaf->own;
-    a->edges = near_edges_left(a->leaf, beyond, 4);
+    a->edges = near_edges_left(a->leaf, all_near_edges(a->leaf), beyond, 4);
     return 1;
 }
 
-/* Finds which points of two leaf clusters are the same; 0: none. */
-static inline unsigned find_near_shared(near_side *a, near_side *b)
+/* Finds which points of two leaf clusters are the same. */
+static inline void find_near_shared(near_side *a, near_side *b)
 {
     const lanes_bytes name = lanes_names(a->leaf->point, b->leaf->point);
     unsigned some = ~lanes_bytes_bits(lanes_bytes_same(name, lanes_bytes_all(255))) & 0xffffu;
-    const unsigned any = some;
     uint8_t number[SC_LANES_COUNT];
     memset(a->shared, 0, sizeof a->shared);
     memset(b->shared, 0, sizeof b->shared);
-    if (!some) return 0;
+    if (!some) return;
     lanes_bytes_store(number, name);
     for (; some; some &= some - 1) {
         const uint32_t j = sc_bits_lowest(some), i = number[j];
         a->shared[i] = (uint16_t)(a->shared[i] | 1u << j);
         b->shared[j] = (uint16_t)(1u << i);
     }
-    return any;
 }
 
 /* ---- what is found ---- */
@@ -166,10 +183,17 @@ static inline void take_near_faces(near_search *s, const near_side *p, const nea
     }
 }
 
+/* An edge by its place, and in the caller's numbers. */
 static inline uint32_t inner_near_edge(const sc_near_leaf *a, uint32_t edge)
 {
     const uint32_t of = a->of[edge];
     return 3 * (a->first + of % SC_LEAF_MAX) + of / SC_LEAF_MAX;
+}
+
+static inline uint32_t name_near_edge(const sc_near_leaf *a, uint32_t edge)
+{
+    const uint32_t of = a->of[edge];
+    return 3 * a->face[of % SC_LEAF_MAX] + of / SC_LEAF_MAX;
 }
 
 static inline void take_near_edges(near_search *s, const near_list *list, uint32_t at,
@@ -186,7 +210,7 @@ static inline void take_near_edges(near_search *s, const near_list *list, uint32
     }
     for (; near; near &= near - 1, count++) {
         const uint32_t i = at + sc_bits_lowest(near);
-        const uint32_t one = a->edge[list->a[i]], other = b->edge[list->b[i]];
+        const uint32_t one = name_near_edge(a, list->a[i]), other = name_near_edge(b, list->b[i]);
         some[count].a = one < other ? one : other;
         some[count].b = one < other ? other : one;
     }
@@ -213,9 +237,9 @@ static inline void decide_near_faces(near_search *s, const near_side *p, const n
     for (i = 0; i < count; i += SC_LANES_COUNT) {
         const unsigned wanted = count - i < SC_LANES_COUNT ? (1u << (count - i)) - 1u : 0xffffu;
         const lanes_index point = lanes_index_load(list->a + i);
-        const lanes_index a = lanes_index_through(f->leaf->corner[0], list->b + i);
-        const lanes_index b = lanes_index_through(f->leaf->corner[1], list->b + i);
-        const lanes_index c = lanes_index_through(f->leaf->corner[2], list->b + i);
+        const lanes_index a = lanes_index_through(f->leaf->corner, list->b + i);
+        const lanes_index b = lanes_index_through(f->leaf->corner + SC_LEAF_MAX, list->b + i);
+        const lanes_index c = lanes_index_through(f->leaf->corner + 2 * SC_LEAF_MAX, list->b + i);
         lanes v[3], e[3], g[3];
         SC_UNROLL
         for (k = 0; k < 3; k++) {
@@ -285,7 +309,7 @@ static inline uint32_t compare_near_faces(near_search *s, const near_side *p, co
         unsigned points = p->points;
         lanes_mask near[3];
         for (k = 0; k < 3; k++) {
-            points &= ~(unsigned)f->shared[f->leaf->corner[k][i]];
+            points &= ~(unsigned)f->shared[f->leaf->corner[SC_LEAF_MAX * k + (int)i]];
             near[k] = lanes_both(
                 lanes_not_above(lanes_subtract(lanes_all(f->leaf->side[k][i]), margin),
                                 lanes_load(p->leaf->at[k])),
@@ -293,10 +317,7 @@ static inline uint32_t compare_near_faces(near_search *s, const near_side *p, co
                                 lanes_add(lanes_all(f->leaf->side[3 + k][i]), margin)));
         }
         points &= lanes_bits(lanes_both(lanes_both(near[0], near[1]), near[2]));
-        if (slabs && points) {
-            const unsigned beyond = beyond_near_face(p->leaf, f->leaf, i);
-            points &= ~(beyond | beyond >> 16);
-        }
+        if (slabs) points &= ~(f->beyond[i] | f->beyond[i] >> 16);
         if (!points) continue;
         lanes_bytes_store(list.b + list.count, lanes_bytes_all((uint8_t)i));
         list.count += lanes_list(points, list.a + list.count);
@@ -323,31 +344,69 @@ static inline void make_near_boxes(const sc_near_leaf *a, float margin, near_box
     }
 }
 
-/* Of each edge of a those of b that slabs of triangles leave. */
-static inline void compare_near_slabs(const near_side *a, const near_side *b,
-                                      uint64_t allowed[SC_NEAR_EDGES])
+/* Leaves those triangles of two leaf clusters of which slabs do not tell all of the other's apart,
+   and notes what is beyond slabs; 0: nothing. */
+static inline int leave_by_slabs(near_side *a, near_side *b)
 {
-    uint64_t by_slab[SC_LEAF_MAX], edges;
-    unsigned some, beyond;
-    uint32_t j;
+    const lanes_sets corners = near_corners(b->leaf), others = near_corners(a->leaf);
+    unsigned faces_a = 0, faces_b = 0, some;
+    for (some = a->triangles; some; some &= some - 1) {
+        const uint32_t i = sc_bits_lowest(some);
+        unsigned left;
+        a->beyond[i] = beyond_near_face(b->leaf, a->leaf, i);
+        left = left_of(corners, &a->beyond[i], 1) & b->triangles;
+        faces_a |= (unsigned)(left != 0) << i;
+        faces_b |= left;
+    }
+    a->triangles = faces_a;
+    b->triangles = 0;
+    for (some = faces_b; some; some &= some - 1) {
+        const uint32_t i = sc_bits_lowest(some);
+        b->beyond[i] = beyond_near_face(a->leaf, b->leaf, i);
+        b->triangles |= (unsigned)((left_of(others, &b->beyond[i], 1) & faces_a) != 0) << i;
+    }
+    return b->triangles != 0;
+}
+
+/* The edges that a triangle names. */
+static inline uint64_t near_edges_of(const sc_near_leaf *a, uint32_t i)
+{
+    uint64_t edges = 0;
+    uint32_t first = 0;
+    int k;
+    SC_UNROLL
+    for (k = 0; k < 3; k++) {
+        const unsigned owned = a->owned[k];
+        edges |= (uint64_t)(owned >> i & 1) << (first + sc_bits_count(owned & ((1u << i) - 1)));
+        first += sc_bits_count(owned);
+    }
+    return edges;
+}
+
+/* Of each edge of a those of b that slabs of triangles leave; returns those of a that have some. */
+static inline uint64_t compare_near_slabs(const near_side *a, const near_side *b,
+                                          uint64_t allowed[SC_NEAR_EDGES])
+{
+    uint64_t by_slab[SC_LEAF_MAX], edges, left = 0;
+    unsigned some;
+    memset(by_slab, 0, sizeof by_slab);
     memset(allowed, 0, SC_NEAR_EDGES * sizeof *allowed);
     for (some = a->triangles; some; some &= some - 1) {
-        j = sc_bits_lowest(some);
-        beyond = beyond_near_face(b->leaf, a->leaf, j);
-        by_slab[j] = near_edges_left(b->leaf, &beyond, 1) & b->edges;
+        const uint32_t i = sc_bits_lowest(some);
+        by_slab[i] = near_edges_left(b->leaf, b->edges, &a->beyond[i], 1);
     }
     for (some = b->triangles; some; some &= some - 1) {
-        uint64_t own;
-        j = sc_bits_lowest(some);
-        own = ((uint64_t)1 << b->leaf->edge_first[j + 1]) - ((uint64_t)1 << b->leaf->edge_first[j]);
-        own &= b->edges;
+        const uint32_t j = sc_bits_lowest(some);
+        const uint64_t own = near_edges_of(b->leaf, j) & b->edges;
         if (!own) continue;
-        beyond = beyond_near_face(a->leaf, b->leaf, j);
-        for (edges = near_edges_left(a->leaf, &beyond, 1) & a->edges; edges; edges &= edges - 1) {
+        edges = near_edges_left(a->leaf, a->edges, &b->beyond[j], 1);
+        for (; edges; edges &= edges - 1) {
             const uint32_t e = sc_bits_lowest64(edges);
             allowed[e] |= own & by_slab[a->leaf->of[e] % SC_LEAF_MAX];
+            left |= (uint64_t)(allowed[e] != 0) << e;
         }
     }
+    return left;
 }
 
 /* Lists edge e of a with those of b in a mask. */
@@ -359,7 +418,7 @@ static inline void list_near_edges(const near_search *s, uint32_t e, uint64_t ma
         const unsigned some = (unsigned)(mask >> first) & 0xffffu;
         const uint32_t at = list->count;
         lanes_bytes numbers;
-        uint8_t number[SC_LANES_COUNT];
+        uint8_t number[SC_LANES_COUNT] = {0};
         if (!some) continue;
         list->count += lanes_list(some, number);
         numbers = lanes_bytes_load(number);
@@ -380,15 +439,15 @@ static inline uint32_t compare_near_edges(near_search *s, int itself, int slabs)
     const near_side *a = &s->a, *b = &s->b;
     near_boxes around, boxes;
     near_list list;
-    uint64_t allowed[SC_NEAR_EDGES], some;
+    uint64_t allowed[SC_NEAR_EDGES], some = b->edges ? a->edges : 0;
     uint32_t rows = 0, i;
     int k;
     list.count = 0;
-    if (!a->edges || !b->edges) return 0;
-    if (slabs) compare_near_slabs(a, b, allowed);
+    if (slabs) some = compare_near_slabs(a, b, allowed);
+    if (!some) return 0;
     make_near_boxes(a->leaf, s->margin, &around);
     make_near_boxes(b->leaf, 0, &boxes);
-    for (some = a->edges; some; some &= some - 1) {
+    for (; some; some &= some - 1) {
         const uint32_t e = sc_bits_lowest64(some);
         const unsigned shared =
             a->shared[a->leaf->end[0][e]] | (unsigned)a->shared[a->leaf->end[1][e]];
@@ -407,7 +466,7 @@ static inline uint32_t compare_near_edges(near_search *s, int itself, int slabs)
                     lanes_not_above(lanes_all(around.side[k][e]),
                                     lanes_load(boxes.side[3 + k] + i)));
             mask = lanes_bits(lanes_both(lanes_both(apart[0], apart[1]), apart[2]));
-            if (shared) mask &= lanes_within(lanes_sets_load(b->leaf->ends + i), ~shared & 0xffffu);
+            if (shared) mask &= lanes_within(near_ends(b->leaf, i), ~shared & 0xffffu);
             near |= (uint64_t)mask << i;
         }
         near &= others;
@@ -461,12 +520,14 @@ static void decide_near_clusters(sc_worker *w, uint32_t most)
         begin_near_pair(&s, p.known, a, b);
         if (leave_of_near(&s.a, b) && leave_of_near(&s.b, a)) {
             slabs = w->frame->motion.distance < NEAR_SLABS_PAY * (a->extent + b->extent);
-            (void)find_near_shared(&s.a, &s.b);
-            if (s.kinds & SC_NEAR_VERTEX_FACE) {
-                rows += compare_near_faces(&s, &s.a, &s.b, slabs);
-                rows += compare_near_faces(&s, &s.b, &s.a, slabs);
+            if (!slabs || leave_by_slabs(&s.a, &s.b)) {
+                find_near_shared(&s.a, &s.b);
+                if (s.kinds & SC_NEAR_VERTEX_FACE) {
+                    rows += compare_near_faces(&s, &s.a, &s.b, slabs);
+                    rows += compare_near_faces(&s, &s.b, &s.a, slabs);
+                }
+                if (s.kinds & SC_NEAR_EDGE_EDGE) rows += compare_near_edges(&s, 0, slabs);
             }
-            if (s.kinds & SC_NEAR_EDGE_EDGE) rows += compare_near_edges(&s, 0, slabs);
         }
         sc_worker_count_boxes(w, s.follows, rows);
     }
@@ -484,7 +545,7 @@ static void decide_near_alone(sc_worker *w, uint32_t most)
         begin_near_pair(&s, item, a, a);
         s.a.points = a->own;
         s.a.triangles = a->triangles;
-        s.a.edges = ((uint64_t)1 << a->edges) - 1;
+        s.a.edges = all_near_edges(a);
         for (i = 0; i < SC_LEAF_POINTS; i++) s.a.shared[i] = (uint16_t)(1u << i);
         s.b = s.a;
         if (s.kinds & SC_NEAR_VERTEX_FACE) rows += compare_near_faces(&s, &s.a, &s.b, 0);

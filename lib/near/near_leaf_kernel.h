@@ -9,30 +9,30 @@
  * distance from all that is in it.
  */
 
-/* The edges that the triangles of a leaf cluster name, and how long they are at most. */
-static inline void make_near_edges(const sc_model *model, sc_near_leaf *to, uint32_t count)
+/* The edges that the triangles of a leaf cluster name. */
+static inline void list_own_edges(const uint8_t *owned, uint32_t count, sc_near_leaf *to)
 {
-    const uint8_t *owned = sc_model_edge_owned(model) + to->first;
-    uint32_t i, k, edges = 0;
+    unsigned sides[3] = {0, 0, 0};
+    uint32_t edges = 0, i;
+    int k;
     memset(to->end, 0, sizeof to->end);
     memset(to->of, 0, sizeof to->of);
-    memset(to->ends, 0, sizeof to->ends);
-    memset(to->corners, 0, sizeof to->corners);
-    for (i = 0; i < count; i++) {
-        to->edge_first[i] = (uint8_t)edges;
-        for (k = 0; k < 3; k++) {
-            const uint8_t a = to->corner[k][i], b = to->corner[(k + 1) % 3][i];
-            to->corners[i] = (uint16_t)(to->corners[i] | 1u << a);
-            if (!(owned[i] >> k & 1)) continue;
-            to->end[0][edges] = a;
-            to->end[1][edges] = b;
-            to->ends[edges] = (uint16_t)(1u << a | 1u << b);
-            to->of[edges] = (uint8_t)(SC_LEAF_MAX * k + i);
-            to->edge[edges++] = 3 * to->face[i] + k;
-        }
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) sides[k] |= (owned[i] >> k & 1u) << i;
+    for (k = 0; k < 3; k++) {
+        uint8_t number[SC_LANES_COUNT] = {0};
+        const uint32_t some = lanes_list(sides[k], number);
+        const lanes_bytes numbers = lanes_bytes_load(number);
+        const uint8_t *from = to->corner + SC_LEAF_MAX * k;
+        const uint8_t *on = to->corner + SC_LEAF_MAX * ((k + 1) % 3);
+        lanes_bytes_store(to->end[0] + edges, lanes_bytes_through(lanes_bytes_load(from), numbers));
+        lanes_bytes_store(to->end[1] + edges, lanes_bytes_through(lanes_bytes_load(on), numbers));
+        lanes_bytes_store(to->of + edges, lanes_bytes_either(
+                                              numbers, lanes_bytes_all((uint8_t)(SC_LEAF_MAX * k))));
+        to->owned[k] = (uint16_t)sides[k];
+        edges += some;
     }
-    for (; i <= SC_LEAF_MAX; i++) to->edge_first[i] = (uint8_t)edges;
-    to->edges = edges;
+    to->edges = (uint16_t)edges;
 }
 
 static inline void make_near_slabs(const sc_motion *m, lanes at[3], lanes corner[3][3],
@@ -69,19 +69,17 @@ static SC_NOINLINE void make_near_leaf(const sc_model *model, const sc_motion *m
                                        sc_near_leaf *to)
 {
     const uint32_t *first = sc_model_leaf_first(model) + leaf;
-    const uint32_t *id = sc_model_triangle_id(model) + first[0];
     const uint32_t count = first[1] - first[0];
     const float *from[SC_LANES_COUNT];
     lanes at[3], corner[3][3], longest = lanes_all(0);
     uint32_t i;
     int k;
-    memcpy(to->point, sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf,
-           sizeof to->point);
-    memcpy(to->corner, sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf,
-           sizeof to->corner);
+    to->point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf;
+    to->corner = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
+    to->face = sc_model_triangle_id(model) + first[0];
     for (i = 0; i < SC_LANES_COUNT; i++) from[i] = m->unit + 8 * (uint64_t)to->point[i];
     lanes_points(from, &at[0], &at[1], &at[2]);
-    lanes_corners((const lanes *)at, to->corner[0], corner);
+    lanes_corners((const lanes *)at, to->corner, corner);
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         const lanes low = lanes_smaller(lanes_smaller(corner[0][k], corner[1][k]), corner[2][k]);
@@ -95,9 +93,8 @@ static SC_NOINLINE void make_near_leaf(const sc_model *model, const sc_motion *m
     }
     to->extent = lanes_most(longest);
     make_near_slabs(m, at, corner, to);
-    for (i = 0; i < SC_LEAF_MAX; i++) to->face[i] = id[i < count ? i : count - 1];
     to->first = first[0];
-    make_near_edges(model, to, count);
+    list_own_edges(sc_model_edge_owned(model) + first[0], count, to);
     to->own = m->own_points[leaf];
     to->triangles = (uint16_t)((1u << count) - 1u);
     to->leaf = leaf;

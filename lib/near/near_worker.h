@@ -23,18 +23,15 @@ typedef struct sc_near_leaf {
     float box[6];                  /* of all points, moved outwards by the margin: lows, highs */
     float extent;                  /* the largest extent of an edge along an axis */
     uint32_t leaf, first;          /* and the place of its first triangle */
-    uint32_t point[SC_LEAF_POINTS];      /* the caller's numbers */
-    uint32_t face[SC_LEAF_MAX];          /* the caller's numbers of triangles */
-    uint32_t edge[SC_NEAR_EDGES];        /* the caller's names of edges */
-    uint8_t corner[3][SC_LEAF_MAX];      /* which points are corners of triangles */
-    uint8_t end[2][SC_NEAR_EDGES];       /* and ends of edges */
-    uint8_t of[SC_NEAR_EDGES];           /* side k of triangle i as 16 k + i */
-    uint16_t ends[SC_NEAR_EDGES];        /* both ends as a set */
-    uint16_t corners[SC_LEAF_MAX];       /* the corners of triangles as sets */
-    uint8_t edge_first[SC_LEAF_MAX + 1]; /* edges of triangle i: from [i] to [i + 1] */
-    uint16_t own;                        /* bit i: the leaf cluster is the first to have point i */
-    uint16_t triangles;                  /* bit i: there is a triangle i */
-    uint32_t edges;                      /* how many */
+    const uint32_t *point;         /* SC_LEAF_POINTS: the caller's numbers of points */
+    const uint32_t *face;          /* and of triangles */
+    const uint8_t *corner;         /* 3 SC_LEAF_MAX: which points are corners of triangles */
+    uint8_t end[2][SC_NEAR_EDGES]; /* and ends of edges: first sides 0, then 1, then 2 */
+    uint8_t of[SC_NEAR_EDGES];     /* side k of triangle i as 16 k + i */
+    uint16_t owned[3];             /* bit i of k: triangle i names its side k */
+    uint16_t own;                  /* bit i: the leaf cluster is the first to have point i */
+    uint16_t triangles;            /* bit i: there is a triangle i */
+    uint16_t edges;                /* how many */
 } sc_near_leaf;
 
 /* Where there is no room for that of all leaf clusters, there is for so many: a power of two. */
