@@ -33,6 +33,8 @@ typedef struct sc_motion {
     float margin;    /* how far apart two sets of unit must be, so that the true ones are more than
                         that distance apart */
     uint32_t swept;  /* boxes are those of the whole motion */
+    uint32_t ends;   /* 2; 1 where nothing moves, and what is of the end need not be there, but for
+                        unit */
 } sc_motion;
 
 typedef struct sc_frame {

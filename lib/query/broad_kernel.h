@@ -21,7 +21,7 @@ static inline unsigned stay_near(const sc_motion *m, uint64_t i, uint64_t j)
     int k;
     SC_UNROLL
     for (k = 0; k < 3; k++) {
-        float *const *s = m->boxes[0].side, *const *e = m->boxes[1].side;
+        float *const *s = m->boxes[0].side, *const *e = m->boxes[m->ends - 1].side;
         const lanes below =
             lanes_larger(lanes_subtract(lanes_all(s[k + 3][i]), lanes_load(s[k] + j)),
                          lanes_subtract(lanes_all(e[k + 3][i]), lanes_load(e[k] + j)));

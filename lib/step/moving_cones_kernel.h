@@ -38,14 +38,16 @@ static inline lanes longest_square(lanes square)
                      lanes_all(1.0001f * 1616 * SC_BOUNDS_POINT * SC_BOUNDS_POINT));
 }
 
-static uint32_t moving_mask_of(const sc_motion *m, const uint32_t *corner, uint32_t count)
+static inline uint32_t mask_over(const sc_motion *m, const uint32_t *corner, uint32_t count,
+                                 const int ends)
 {
+    const int normals = ends == 1 ? 1 : 3;
     const lanes half = lanes_all(0.5f), none = lanes_all(0);
     lanes e[2][3], f[2][3], n[3][3], error, e_size = none, f_size = none, longest = none, clear[2];
     float d = m->distance;
     uint32_t mask = 0, i;
     int k, s, end;
-    for (end = 0; end < 2; end++) {
+    for (end = 0; end < ends; end++) {
         const float *point[3][SC_LANES_COUNT];
         lanes a[3], square[3], size[2];
         for (i = 0; i < SC_LANES_COUNT; i++) { /* the last triangle fills the row */
@@ -77,6 +79,7 @@ static uint32_t moving_mask_of(const sc_motion *m, const uint32_t *corner, uint3
         lanes one, two;
         n[0][k] =
             lanes_subtract(lanes_multiply(e[0][x], f[0][y]), lanes_multiply(e[0][y], f[0][x]));
+        if (ends == 1) continue;
         n[2][k] =
             lanes_subtract(lanes_multiply(e[1][x], f[1][y]), lanes_multiply(e[1][y], f[1][x]));
         one = lanes_subtract(lanes_multiply(e[0][x], f[1][y]), lanes_multiply(e[0][y], f[1][x]));
@@ -90,7 +93,7 @@ static uint32_t moving_mask_of(const sc_motion *m, const uint32_t *corner, uint3
     for (s = 0; s < 7; s++) {
         lanes low, high, up, down;
         lanes_mask good[2];
-        for (k = 0; k < 3; k++) {
+        for (k = 0; k < normals; k++) {
             lanes dot;
             if (s < 3)
                 dot = n[k][s];
@@ -111,4 +114,9 @@ static uint32_t moving_mask_of(const sc_motion *m, const uint32_t *corner, uint3
         mask |= (uint32_t)(lanes_bits(good[1]) == 0xffff) << (s + 7);
     }
     return mask;
+}
+
+static uint32_t moving_mask_of(const sc_motion *m, const uint32_t *corner, uint32_t count)
+{
+    return m->ends == 1 ? mask_over(m, corner, count, 1) : mask_over(m, corner, count, 2);
 }

@@ -7,6 +7,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "base/jobs.h"
 #include "pose/levels.h"
@@ -56,7 +57,8 @@ static void bound_poses(void *context, uint32_t part, uint32_t first, uint32_t l
         b->high[k] = -HUGE_VAL;
     }
     b->not_finite = 0;
-    for (k = 0; k < 2; k++) bound_pose(pass->model, &pass->frame->positions[k], first, last, b);
+    for (k = 0; k < (int)pass->frame->motion.ends; k++)
+        bound_pose(pass->model, &pass->frame->positions[k], first, last, b);
 }
 
 /* Points of both poses in the unit box, as pose/positions.c has them for one. */
@@ -66,17 +68,19 @@ static void scale_step(void *context, uint32_t part, uint32_t first, uint32_t la
     const sc_frame *frame = pass->frame;
     const uint8_t *use = sc_model_vertex_use(pass->model);
     float *unit = frame->motion.unit + 8 * (uint64_t)first;
+    const int ends = (int)frame->motion.ends;
     uint32_t v;
     int k, end;
     (void)part;
     for (v = first; v < last; v++, unit += 8) {
         if (use[v] != SC_VERTEX_POINT) continue;
-        for (end = 0; end < 2; end++) {
+        for (end = 0; end < ends; end++) {
             double p[3];
             sc_positions_get(&frame->positions[end], v, p);
             for (k = 0; k < 3; k++)
                 unit[4 * end + k] = (float)((p[k] - frame->center[k]) * frame->scale);
         }
+        if (ends == 1) memcpy(unit + 4, unit, 4 * sizeof *unit);
     }
 }
 
@@ -126,30 +130,25 @@ sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uin
 
 static void refit_leaf(const sc_model *model, sc_frame *frame, uint32_t leaf)
 {
-    const uint32_t *first = sc_model_leaf_first(model), *corner = sc_model_triangle(model);
-    uint32_t patch = sc_model_first_leaf_patch(model) + leaf;
-    uint64_t i;
-    float low[2][3], high[2][3], margin = frame->motion.margin / 2;
-    int s, k;
-    for (s = 0; s < 2; s++)
-        for (k = 0; k < 3; k++) {
-            low[s][k] = HUGE_VALF;
-            high[s][k] = -HUGE_VALF;
+    const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf;
+    const uint32_t patch = sc_model_first_leaf_patch(model) + leaf;
+    const float margin = frame->motion.margin / 2;
+    float low[8], high[8];
+    int s, k, i;
+    memcpy(low, frame->motion.unit + 8 * (uint64_t)point[0], sizeof low);
+    memcpy(high, low, sizeof high);
+    for (i = 1; i < SC_LEAF_POINTS; i++) {
+        const float *unit = frame->motion.unit + 8 * (uint64_t)point[i];
+        for (k = 0; k < 8; k++) {
+            low[k] = unit[k] < low[k] ? unit[k] : low[k];
+            high[k] = unit[k] > high[k] ? unit[k] : high[k];
         }
-    for (i = 3 * (uint64_t)first[leaf]; i < 3 * (uint64_t)first[leaf + 1]; i++) {
-        const float *unit = frame->motion.unit + 8 * (uint64_t)corner[i];
-        for (s = 0; s < 2; s++)
-            for (k = 0; k < 3; k++) {
-                float x = unit[4 * s + k];
-                low[s][k] = x < low[s][k] ? x : low[s][k];
-                high[s][k] = x > high[s][k] ? x : high[s][k];
-            }
     }
-    for (s = 0; s < 2; s++)
+    for (s = 0; s < (int)frame->motion.ends; s++)
         for (k = 0; k < 3; k++) {
-            int other = frame->motion.swept ? 1 - s : s;
-            float l = low[s][k] < low[other][k] ? low[s][k] : low[other][k];
-            float h = high[s][k] > high[other][k] ? high[s][k] : high[other][k];
+            const int one = 4 * s + k, other = frame->motion.swept ? 4 * (1 - s) + k : one;
+            const float l = low[one] < low[other] ? low[one] : low[other];
+            const float h = high[one] > high[other] ? high[one] : high[other];
             frame->motion.boxes[s].side[k][patch] = l - margin;
             frame->motion.boxes[s].side[k + 3][patch] = h + margin;
         }
@@ -162,7 +161,7 @@ static void join_boxes(const sc_model *model, sc_motion *m, uint32_t first, uint
     const uint32_t *child = sc_model_child(model);
     uint32_t p, k;
     int s;
-    for (s = 0; s < 2; s++)
+    for (s = 0; s < (int)m->ends; s++)
         for (k = 0; k < 3; k++) {
             float *low = m->boxes[s].side[k], *high = m->boxes[s].side[k + 3];
             for (p = first; p < end; p++) {
