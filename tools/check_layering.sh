@@ -4,7 +4,7 @@
 #     tools/check_layering.sh [DIRECTORY]      default: the directory above this script
 #
 #   - Folders include only what `may` below allows: lib/ in the order base, simd, build, pose,
-#     query, step, run, and programs only the public headers. No "../", no circles, where a header
+#     query, step, near, run, and programs only the public headers. No "../", no circles, where a header
 #     and the C file of its name count as one, nothing that does not exist. In lib/simd,
 #     all_kernels.h and kernels_SET.c see all of lib/, as if they stood beside starcontour.c.
 #   - The oracle of the tests reaches no header of lib/, however indirectly.
@@ -53,15 +53,16 @@ offenders=$(
         files | sed -n -e '/^lib\/build\/partition_metis\.c$/d' -e 's/^\(lib\/.*\.c\)$/found \1/p'
     } | awk '
         function layer(path) {
-            if (path ~ /^lib\/simd\/kernels_/) return 8
+            if (path ~ /^lib\/simd\/kernels_/) return 9
             if (path ~ /^lib\/base\//) return 1
             if (path ~ /^lib\/simd\//) return 2
             if (path ~ /^lib\/build\//) return 3
             if (path ~ /^lib\/pose\//) return 4
             if (path ~ /^lib\/query\//) return 5
             if (path ~ /^lib\/step\//) return 6
-            if (path ~ /^lib\/run\//) return 7
-            return 8
+            if (path ~ /^lib\/near\//) return 7
+            if (path ~ /^lib\/run\//) return 8
+            return 9
         }
         $1 == "listed" {
             if ($2 in listed) print "lib/sources.list: names " $2 " twice"
@@ -149,7 +150,8 @@ offenders=$(
             may["lib/pose"] = may["lib/build"] " lib/pose"
             may["lib/query"] = may["lib/pose"] " lib/query"
             may["lib/step"] = may["lib/query"] " lib/step"
-            may["lib/run"] = may["lib/step"] " lib/run"
+            may["lib/near"] = may["lib/step"] " lib/near"
+            may["lib/run"] = may["lib/near"] " lib/run"
             may["lib"] = may["lib/run"] " lib"
             may["tools"] = "include tools"
             may["bench"] = may["bench/scenes"] = "include tools bench bench/scenes"
@@ -202,7 +204,7 @@ offenders=$(
             for (f = 1; f <= count; ++f) if (!(order[f] in state)) visit(order[f])
             for (f = 1; f <= count; ++f) if (!(unit(order[f]) in state)) visit(unit(order[f]))
             for (f = 1; f <= count; ++f)
-                if (order[f] ~ /^tests\/(step_)?oracle[^\/]*$/) oracle(order[f], order[f])
+                if (order[f] ~ /^tests\/((step|stencil)_)?oracle[^\/]*$/) oracle(order[f], order[f])
         }' || echo "check_layering: awk failed"
 )
 
