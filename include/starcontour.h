@@ -1087,8 +1087,8 @@ enum {
  * of b is the sum of weights[i] times the position of vertices[i].
  *
  * Which feature is exact. If several hold closest points, it is one with the fewest vertices: so it
- * does not depend on rounding, and a vertex that is right above an edge is a vertex and an edge. The
- * weights of the feature's vertices are not 0, all others are. Among several features of as few
+ * does not depend on rounding, and a vertex that is right above an edge is a vertex and an edge.
+ * The weights of the feature's vertices are not 0, all others are. Among several features of as few
  * vertices it is
  *   - of parallel edges that lie side by side for a part: an end of this part; the one where two
  *     vertices face each other, if only one is so, else the lower one, that is where x is less
@@ -1097,10 +1097,10 @@ enum {
  *   - of vertices at one place, the one that stands first in vertices.
  * So it does not depend on the order of edges, ends and corners, but for vertices at one place.
  *
- * With u = 2^-53, however thin the triangles and however small the angle: a weight is off by at most
- * 8 u = 2^-50 times its value, or by 2^-1022; likewise each coordinate of vector, and distance. 0 is
- * exact. Where differences are too large for a double they are infinite. The sum of rounded weights
- * times positions has a larger error than vector.
+ * With u = 2^-53, however thin the triangles and however small the angle: a weight is off by at
+ * most 8 u = 2^-50 times its value, or by 2^-1022; likewise each coordinate of vector, and
+ * distance. 0 is exact. Where differences are too large for a double they are infinite. The sum of
+ * rounded weights times positions has a larger error than vector.
  */
 typedef struct sc_near_stencil {
     uint32_t feature;     /* SC_FEATURE_... */
@@ -1114,23 +1114,23 @@ typedef struct sc_near_stencil {
 } sc_near_stencil;
 
 /*
- * Finds the closest points of pairs: stencils[i] is that of pairs[i]. kind is SC_NEAR_VERTEX_FACE or
- * SC_NEAR_EDGE_EDGE, pairs and stencils have count entries. The pairs may be any of the model's, in
- * any order, near or not, such as those that sc_query_near or sc_query_step found:
+ * Finds the closest points of pairs: stencils[i] is that of pairs[i]. kind is SC_NEAR_VERTEX_FACE
+ * or SC_NEAR_EDGE_EDGE, pairs and stencils have count entries. The pairs may be any of the model's,
+ * in any order, near or not, such as those that sc_query_near or sc_query_step found:
  *
  *     sc_near_stencils(model, &pose, SC_NEAR_EDGE_EDGE, result.edge_edges, result.edge_edge_count,
  *                      stencils);
  *
- * No memory is taken and no workspace, so threads may share a list of pairs. 0.1 to 0.4 us a pair (measured
- * on COST_MACHINE); ties of coordinates with many bits some us, and 60 us and more where exponents
- * differ widely.
+ * No memory is taken and no workspace, so threads may share a list of pairs. 0.1 to 0.4 us a pair
+ * (Zen 4); ties of coordinates with many bits some us, and 60 us and more where exponents differ
+ * widely.
  *
  * SC_ERROR_OPTION: kind is another. SC_ERROR_PAIRS: a pair names a vertex, triangle or edge that
  * does not exist; a vertex that no triangle uses, that another one represents, or that is a corner
  * of the face; or two edges with a common vertex. An edge may be named by any of its triangles; it
  * is then as that has it. A side from a vertex to itself is an edge without length here.
- * SC_ERROR_NOT_FINITE: a vertex of a pair is NaN or infinite. On these and other errors stencils may
- * have been written to in part.
+ * SC_ERROR_NOT_FINITE: a vertex of a pair is NaN or infinite. On these and other errors stencils
+ * may have been written to in part.
  */
 SC_API sc_status sc_near_stencils(const sc_model *model, const sc_pose *pose, uint32_t kind,
                                   const sc_pair *pairs, uint64_t count, sc_near_stencil *stencils);

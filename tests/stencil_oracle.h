@@ -1,7 +1,7 @@
 /*
  * The closest points of a vertex and a face or of two edges, in rational numbers: of each set of
- * vertices of both sides the closest points of the lines or planes through them, if these are inside;
- * of all these the closest. Knows nothing of regions, and shares no code with the library.
+ * vertices of both sides the closest points of the lines or planes through them, if these are
+ * inside; of all these the closest. Knows nothing of regions, and shares no code with the library.
  *
  * SPDX-License-Identifier: MIT
  */

@@ -53,8 +53,8 @@
 
 /*
  * Polynomials of differences of points (near/differences.c). As a sum of two doubles: 256 u^2 M,
- * derived there. In plain arithmetic, n as above: a dot product 2 differences, 1 product, 2 sums; of
- * two cross products twice the 4 of a determinant in 2d, 1 product, 2 sums.
+ * derived there. In plain arithmetic, n as above: a dot product 2 differences, 1 product, 2 sums;
+ * of two cross products twice the 4 of a determinant in 2d, 1 product, 2 sums.
  */
 #define SC_BOUNDS_TWOFOLD 0x1p-98
 #define SC_BOUNDS_NEAR_DOT (6.0 * SC_BOUNDS_U)

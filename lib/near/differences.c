@@ -6,11 +6,11 @@
  * Sums of two doubles. Let u = 2^-53. A number X is high + low with
  *     |X - high - low| <= A u^2 m,   |low| <= L u m,
  * m its magnitude, to first order. A difference of two coordinates has A = 0 and L = 1, as what its
- * rounding lost is known. A sum of up to three products X Y, whose magnitude M is the sum of theirs,
- * is made so: high is the sum of all high parts' products; what that loses is known exactly, u M by
- * the products and 2 u M by the sums. low is the sum of that and of all high low' + low high', which
- * are (L + L') u M. So it is at most (3 + L + L') u M, and each of its terms is rounded seven times
- * at most. Left out are low low', L L' u^2 M, and X and Y are off themselves:
+ * rounding lost is known. A sum of up to three products X Y, whose magnitude M is the sum of
+ * theirs, is made so: high is the sum of all high parts' products; what that loses is known
+ * exactly, u M by the products and 2 u M by the sums. low is the sum of that and of all high low' +
+ * low high', which are (L + L') u M. So it is at most (3 + L + L') u M, and each of its terms is
+ * rounded seven times at most. Left out are low low', L L' u^2 M, and X and Y are off themselves:
  *     L'' = 3 + L + L',   A'' = 7 L'' + L L' + A + A'.
  *   degree 2, a dot product or a part of a cross product:   L =  5, A =  36
  *   degree 3, one of a difference and of a cross product:   L =  9, A = 104

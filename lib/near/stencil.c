@@ -8,24 +8,24 @@
  *   - inside an edge, if both of its ends look along it at the point, and the point is above the
  *     outer side of the edge in the plane, or above the edge itself;
  *   - else inside the triangle.
- * Exactly one corner, edge or the inside is so, as the closest point is unique. Of two segments
- * a0 + s d and b0 + t e that are not parallel, the squared distance is a strictly convex function of
- * s and t. It has one minimum in the square, which is where it does not fall towards the inside:
+ * Exactly one corner, edge or the inside is so, as the closest point is unique. Of two segments a0
+ * + s d and b0 + t e that are not parallel, the squared distance is a strictly convex function of s
+ * and t. It has one minimum in the square, which is where it does not fall towards the inside:
  *   - in a corner, if it does not fall along either side from there. Its derivatives are dot
  *     products of the difference of the two ends with d and e;
  *   - inside a side, say s = 0, if both ends of b look along it at a0, and the s where the function
- *     is least without any bounds is <= 0: for each s let t be the best; what is left is a quadratic
- *     function of s alone with its minimum there;
+ *     is least without any bounds is <= 0: for each s let t be the best; what is left is a
+ *     quadratic function of s alone with its minimum there;
  *   - else inside.
  * With n = d x e, r from ai to bj, that s is ((r x e) . n) / n^2, and so on. All that is decided by
  * exact signs. The order "corners, sides, inside" gives ties to the feature of fewest vertices.
  *
  * Values. Weights are shares of polynomials that are all known to within 1.51 u, u = 2^-53. Their
- * sum is off by 2 u more, the quotient by 1 u: 6.1 u. Of the vector in space, n (r . n) / n^2, three
- * polynomials and two operations: 6.6 u; from a vertex to an edge e with v from one to the other,
- * (e x (v x e)) / e^2: 4.1 u. Distances, |r . n| / |n|: 1.51 u, half of 1.51 u, and three
- * operations; |e x (v x e)| / e^2: 3.02 u, half of four operations, a root and a quotient. Each is
- * below 8 u, the 2^-50 that starcontour.h promises.
+ * sum is off by 2 u more, the quotient by 1 u: 6.1 u. Of the vector in space, n (r . n) / n^2,
+ * three polynomials and two operations: 6.6 u; from a vertex to an edge e with v from one to the
+ * other, (e x (v x e)) / e^2: 4.1 u. Distances, |r . n| / |n|: 1.51 u, half of that, and two
+ * operations, 4.3 u; |e x (v x e)| / e^2: 3.1 u, half of three operations, a root and a quotient,
+ * 6.6 u; of two vertices less. Each is below 8 u, the 2^-50 that starcontour.h promises.
  */
 #include "near/stencil.h"
 
