@@ -18,6 +18,8 @@
 #include "build/model.h"
 #include "build/pipeline.h"
 #include "build/saved_model.h"
+#include "near/merging.h"
+#include "near/stencil.h"
 #include "pose/positions.h"
 #include "query/contacts.h"
 #include "query/filter.h"
@@ -611,6 +613,79 @@ sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_t kind,
         if (!status) sc_contacts_find(corners[0], corners[1], &contacts[i]);
     }
     return status;
+}
+
+/* ---- proximity ---- */
+
+static sc_status read_vertices(const sc_pose *pose, uint64_t stride, const uint32_t vertices[4],
+                               double positions[4][3])
+{
+    int i, k;
+    for (i = 0; i < 4; i++) {
+        sc_mesh_read_position(pose->positions, pose->position_type, stride, vertices[i],
+                              positions[i]);
+        for (k = 0; k < 3; k++)
+            if (positions[i][k] - positions[i][k] != 0) return SC_ERROR_NOT_FINITE;
+    }
+    return SC_OK;
+}
+
+/* The vertices of a pair, those of a first; an error if there is no such pair. */
+static sc_status find_vertices(const sc_model *model, uint32_t kind, const sc_pair *pair,
+                               uint32_t vertices[4])
+{
+    const uint32_t *triangle = sc_model_triangle(model), *place = sc_model_place(model);
+    uint32_t i, j, count_a = kind == SC_NEAR_VERTEX_FACE ? 1 : 2;
+    if (kind == SC_NEAR_VERTEX_FACE) {
+        if (pair->a >= model->vertex_count || pair->b >= model->triangle_count ||
+            sc_model_vertex_use(model)[pair->a] != SC_VERTEX_POINT)
+            return SC_ERROR_PAIRS;
+        vertices[0] = pair->a;
+        memcpy(&vertices[1], &triangle[3 * (uint64_t)place[pair->b]], 3 * sizeof *vertices);
+    } else {
+        for (i = 0; i < 2; i++) {
+            uint32_t edge = i ? pair->b : pair->a;
+            const uint32_t *corner;
+            if (edge / 3 >= model->triangle_count) return SC_ERROR_PAIRS;
+            corner = &triangle[3 * (uint64_t)place[edge / 3]];
+            vertices[2 * i] = corner[edge % 3];
+            vertices[2 * i + 1] = corner[(edge + 1) % 3];
+        }
+    }
+    for (i = 0; i < count_a; i++)
+        for (j = count_a; j < 4; j++)
+            if (vertices[i] == vertices[j]) return SC_ERROR_PAIRS;
+    return SC_OK;
+}
+
+sc_status sc_near_stencils(const sc_model *model, const sc_pose *pose, uint32_t kind,
+                           const sc_pair *pairs, uint64_t count, sc_near_stencil *stencils)
+{
+    sc_pose p;
+    sc_status status;
+    uint64_t stride, i;
+    if (!model || !pose || (count && (!pairs || !stencils))) return SC_ERROR_NULL;
+    if (kind != SC_NEAR_VERTEX_FACE && kind != SC_NEAR_EDGE_EDGE) return SC_ERROR_OPTION;
+    status = sc_question_read_pose(NULL, "pose", model, pose, &p, &stride);
+    for (i = 0; !status && i < count; i++) {
+        double at[4][3];
+        const double *points[4] = {at[0], at[1], at[2], at[3]};
+        status = find_vertices(model, kind, &pairs[i], stencils[i].vertices);
+        if (!status) status = read_vertices(&p, stride, stencils[i].vertices, at);
+        if (!status) sc_stencil_find(kind, points, &stencils[i]);
+    }
+    return status;
+}
+
+sc_status sc_near_merge(sc_near_stencil *stencils, uint64_t count, uint64_t *merged_count,
+                        uint32_t *multiplicities)
+{
+    if (!merged_count) return SC_ERROR_NULL;
+    *merged_count = 0;
+    if (count && (!stencils || !multiplicities)) return SC_ERROR_NULL;
+    if (count > UINT32_MAX) return SC_ERROR_COUNT;
+    *merged_count = sc_merging_run(stencils, (uint32_t)count, multiplicities);
+    return SC_OK;
 }
 
 /* ---- records ---- */

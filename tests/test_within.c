@@ -1,5 +1,5 @@
 /*
- * Tests of exact comparisons of distances, lib/near/within, against fractions of integers.
+ * Tests of exact comparisons of distances, lib/step/within, against fractions of integers.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -13,8 +13,8 @@
 #include <string.h>
 
 #include "harness.h"
-#include "near/limbs.h"
-#include "near/within.h"
+#include "step/limbs.h"
+#include "step/within.h"
 #include "near_oracle.h"
 
 typedef struct points {

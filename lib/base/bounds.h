@@ -52,8 +52,17 @@
 #define SC_BOUNDS_EIGHT_LEAST 0x1p-300
 
 /* The distance of a point and a triangle, or of two segments, compared with another in doubles: so
-   much of the sum of that and of the largest distance of two of their points. near/within.c. */
+   much of the sum of that and of the largest distance of two of their points. step/within.c. */
 #define SC_BOUNDS_WITHIN (8.0 * SC_BOUNDS_U)
+
+/*
+ * Polynomials of differences of points (near/differences.c). As a sum of two doubles: 256 u^2 M,
+ * derived there. In plain arithmetic, n as above: a dot product 2 differences, 1 product, 2 sums;
+ * of two cross products twice the 4 of a determinant in 2d, 1 product, 2 sums.
+ */
+#define SC_BOUNDS_TWOFOLD 0x1p-98
+#define SC_BOUNDS_NEAR_DOT (6.0 * SC_BOUNDS_U)
+#define SC_BOUNDS_NEAR_CROSS (12.0 * SC_BOUNDS_U)
 
 /*
  * Boxes. A double that becomes a float is off by at most 2^-24 |f|; one step of 2^-23 |f| or more

@@ -156,7 +156,7 @@ static unsigned split_by_bits(sc_pair *pairs, uint64_t count, unsigned values,
     for (value = 0; value < values; value++)
         while (next[value] < end[value]) {
             sc_pair moved = pairs[next[value]];
-            unsigned to = sc_sort_number(moved) >> shift & (values - 1);
+            uint64_t to = sc_sort_number(moved) >> shift & (values - 1);
             while (to != value) {
                 sc_pair there = pairs[next[to]];
                 pairs[next[to]++] = moved;

@@ -7,14 +7,16 @@
  * these powers leaves integers and does not change the sign. Their length is that of the span of
  * the exponents: from 2^-1074 to below 2^1024 at most, 2098 bits. A difference has one bit more, a
  * product of two differences 4198, a difference of such products 4199, a product with a third
- * difference 6298, a sum of three 6300 bits.
+ * difference 6298, a sum of three 6300 bits; a product of two differences of products 8398, a sum
+ * of three 8400 bits.
  */
 #include "base/wide.h"
 
 #include <stdint.h>
 #include <string.h>
 
-enum { SMALL_LIMBS = 66, MIDDLE_LIMBS = 132, LARGE_LIMBS = 198 }; /* limbs of 32 bits */
+/* limbs of 32 bits */
+enum { SMALL_LIMBS = 66, MIDDLE_LIMBS = 132, LARGE_LIMBS = 198, HUGE_LIMBS = 264 };
 
 /* sign times the sum of limb[i] 2^(32 i). Zero has sign 0 and count 0; the last limb is not 0. */
 typedef struct number {
@@ -263,5 +265,65 @@ double sc_wide_orient3d_value(const double a[3], const double b[3], const double
     int least = find_3d(&result, a, b, c, d);
     double value = round_number(&result, exponent);
     *exponent += 3 * (least - 1074);
+    return value;
+}
+
+/* A factor of a product divided by 2^(least - 1074) or its square, of at most MIDDLE_LIMBS. Returns
+   of how many differences it is made. */
+static int find_factor(number *result, const double *const points[4], const sc_wide_factor *factor,
+                       int least)
+{
+    wide_difference u[2], v[2];
+    int i, of_two = factor->from2 != factor->to2;
+    for (i = 0; i < 1 + of_two; ++i) {
+        int k = (factor->axis + of_two + i) % 3;
+        subtract_doubles(&u[i], points[factor->to][k], points[factor->from][k], least);
+        if (of_two)
+            subtract_doubles(&v[i], points[factor->to2][k], points[factor->from2][k], least);
+    }
+    if (of_two)
+        minor(result, &u[0], &v[1], &u[1], &v[0]);
+    else
+        copy_number(result, &u[0].value, 1);
+    return 1 + of_two;
+}
+
+/* The first 64 bits as an integer, which becomes the nearest double. */
+static double round_once(const number *n, int *exponent)
+{
+    uint64_t bits = 0;
+    int last = n->count - 1, free_bits = 0;
+    *exponent = 0;
+    if (n->count == 0) return 0;
+    while (!(n->limb[last] << free_bits & UINT32_C(0x80000000))) ++free_bits;
+    for (int i = last; i > last - 3; --i) {
+        uint64_t limb = i >= 0 ? n->limb[i] : 0;
+        int shift = 32 * (i - last + 1) + free_bits;
+        bits |= shift >= 0 ? limb << shift : limb >> -shift;
+    }
+    *exponent = 32 * (last - 1) - free_bits;
+    return n->sign * (double)bits;
+}
+
+double sc_wide_products_value(const double *const points[4], const sc_wide_factor (*factors)[2],
+                              int count, int *exponent)
+{
+    uint32_t limbs[2][HUGE_LIMBS], product_limb[HUGE_LIMBS], factor_limb[2][MIDDLE_LIMBS];
+    number sum = {0, 0, limbs[0]}, next = {0, 0, limbs[1]}, product = {0, 0, product_limb};
+    number factor[2] = {{0, 0, factor_limb[0]}, {0, 0, factor_limb[1]}};
+    int least = 2047, degree = 0;
+    double value;
+    for (int i = 0; i < 4; ++i) least = least_exponent(points[i], 3, least);
+    for (int i = 0; i < count; ++i) {
+        degree = find_factor(&factor[0], points, &factors[i][0], least);
+        degree += find_factor(&factor[1], points, &factors[i][1], least);
+        multiply(&product, &factor[0], &factor[1]);
+        add(&next, &sum, &product, 1);
+        number swap = sum;
+        sum = next;
+        next = swap;
+    }
+    value = round_once(&sum, exponent);
+    *exponent += degree * (least - 1074);
     return value;
 }

@@ -5,7 +5,7 @@
  *
  * Signs as in predicates.h. The cost grows with the square of the span of the exponents: about
  * 0.5 us for coordinates of similar size, up to 30 us for the whole range of doubles. Takes about
- * 8 KB of stack. Signs use no floating-point arithmetic at all.
+ * 10 KB of stack. Signs use no floating-point arithmetic at all.
  */
 #ifndef SC_BASE_WIDE_H
 #define SC_BASE_WIDE_H
@@ -18,5 +18,21 @@ double sc_wide_orient2d_value(const double a[2], const double b[2], const double
                               int *exponent);
 double sc_wide_orient3d_value(const double a[3], const double b[3], const double c[3],
                               const double d[3], int *exponent);
+
+/*
+ * Sums of products of differences of four points, of degree 2 to 4: each product has two factors,
+ * and each factor is a coordinate of a difference or of a cross product of two differences. All
+ * products have as many differences.
+ */
+typedef struct sc_wide_factor {
+    int axis;
+    int from, to;   /* points: the difference to - from */
+    int from2, to2; /* the second one of a cross product; equal: there is none */
+} sc_wide_factor;
+
+/* The sum of count products, 1 to 3, of two factors each: the number returned times 2^*exponent, to
+   within 2^-53 + 2^-62 of it, with a magnitude from 2^63 to 2^64 or exactly 0. */
+double sc_wide_products_value(const double *const points[4], const sc_wide_factor (*factors)[2],
+                              int count, int *exponent);
 
 #endif /* SC_BASE_WIDE_H */

@@ -5,7 +5,7 @@
  */
 #include "near/near_candidates.h"
 
-#include "near/within.h"
+#include "step/within.h"
 #include "pose/positions.h"
 #include "step/step_candidates.h"
 #include "step/step_pairs.h"

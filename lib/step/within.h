@@ -16,8 +16,8 @@
  *     the others;
  *   - integers as long as it takes, up to 2,112 bits for a coordinate.
  */
-#ifndef SC_NEAR_WITHIN_H
-#define SC_NEAR_WITHIN_H
+#ifndef SC_STEP_WITHIN_H
+#define SC_STEP_WITHIN_H
 
 /* p[0] is the vertex, p[1] to p[3] are the corners of the face. */
 int sc_within_vertex_face(const double p[4][3], double distance);
@@ -40,4 +40,4 @@ int sc_within_by_words(sc_within_kind kind, const double p[4][3], double distanc
 /* 1 or 0. Takes 15 KB of stack. */
 int sc_within_by_integers(sc_within_kind kind, const double p[4][3], double distance, int guess);
 
-#endif /* SC_NEAR_WITHIN_H */
+#endif /* SC_STEP_WITHIN_H */

@@ -8,8 +8,8 @@
  * operands, unless said otherwise. The number of limbs is an argument: where it is a constant, loops
  * unroll; where it is not, the same text does for numbers of any length.
  */
-#ifndef SC_NEAR_LIMBS_H
-#define SC_NEAR_LIMBS_H
+#ifndef SC_STEP_LIMBS_H
+#define SC_STEP_LIMBS_H
 
 #include <stdint.h>
 
@@ -116,4 +116,4 @@ static SC_INLINE void sc_limbs_multiply(uint64_t *result, const uint64_t *a, int
     sc_limbs_take_masked(result, an + bn, bn, a, sc_limbs_mask(b, bn));
 }
 
-#endif /* SC_NEAR_LIMBS_H */
+#endif /* SC_STEP_LIMBS_H */

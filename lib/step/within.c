@@ -71,7 +71,7 @@
  * c_0 . n below 6 2^(192 n - 6), its square below 36 2^(384 n - 12), and d^2 times |n|^2 below
  * 12 2^(384 n - 12): each of degree k fits into k n limbs, with its sign.
  */
-#include "near/within.h"
+#include "step/within.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -80,7 +80,7 @@
 #include "base/bits.h"
 #include "base/bounds.h"
 #include "base/predicates.h"
-#include "near/limbs.h"
+#include "step/limbs.h"
 
 enum {
     WITHIN_CORNERS = 4,
