@@ -11,8 +11,8 @@ copy=$scratch/copy
 mkdir "$copy"
 cp -R Makefile include lib tools tests bench "$copy"
 mkdir -p "$copy/lib/base" "$copy/lib/simd" "$copy/lib/build" "$copy/lib/pose" "$copy/lib/query" \
-    "$copy/lib/step" "$copy/lib/run"
-for layer in base simd build pose query step; do
+    "$copy/lib/step" "$copy/lib/near" "$copy/lib/run"
+for layer in base simd build pose query step near; do
     echo "/* planted */" >"$copy/lib/$layer/planted_$layer.h"
 done
 echo "/* planted */" >"$copy/tests/planted_tests.h"
@@ -41,6 +41,8 @@ offence "lib/step must not include lib/simd/all_kernels.h" lib/step/planted_step
 offence "lib/build must not include lib/pose" lib/build/planted_build.h '# include "pose/planted_pose.h"'
 offence "lib/pose must not include lib/query" lib/pose/planted_pose.h '#include "query/planted_query.h"'
 offence "lib/query must not include lib/step" lib/query/planted_query.h '#include "step/planted_step.h"'
+offence "lib/step must not include lib/near" lib/step/planted_step.h '#include "near/planted_near.h"'
+offence "lib/near must not include lib/run" lib/near/planted_near.h '#include "run/runner.h"'
 offence "lib/step must not include lib/run" lib/step/planted_step.h '#include "run/runner.h"'
 offence "lib/query must not include tests" lib/query/planted_query.h '#include "planted_tests.h"'
 offence "tools must not include lib/base" tools/planted.c '#include "base/planted_base.h"'
@@ -70,6 +72,7 @@ offence "includes itself" lib/base/planted_base.h '#include "base/planted_other.
 echo '#include "base/planted_base.h"' >"$copy/tests/planted_tests.h"
 offence "includes itself" lib/base/hooks.c '#include "base/arguments.h"'
 offence "the oracle must not reach lib/base" tests/oracle.h '#include "planted_tests.h"'
+offence "the oracle must not reach lib/base" tests/near_oracle.h '#include "planted_tests.h"'
 
 check "after all that the copy is as before" tools/check_layering.sh "$copy"
 

@@ -204,7 +204,7 @@ offenders=$(
             for (f = 1; f <= count; ++f) if (!(order[f] in state)) visit(order[f])
             for (f = 1; f <= count; ++f) if (!(unit(order[f]) in state)) visit(unit(order[f]))
             for (f = 1; f <= count; ++f)
-                if (order[f] ~ /^tests\/(step_)?oracle[^\/]*$/) oracle(order[f], order[f])
+                if (order[f] ~ /^tests\/((step|near)_)?oracle[^\/]*$/) oracle(order[f], order[f])
         }' || echo "check_layering: awk failed"
 )
 

@@ -51,6 +51,10 @@
 #define SC_BOUNDS_EIGHT (4.25 * SC_BOUNDS_U)
 #define SC_BOUNDS_EIGHT_LEAST 0x1p-300
 
+/* The distance of a point and a triangle, or of two segments, compared with another in doubles: so
+   much of the sum of that and of the largest distance of two of their points. near/within.c. */
+#define SC_BOUNDS_WITHIN (8.0 * SC_BOUNDS_U)
+
 /*
  * Boxes. A double that becomes a float is off by at most 2^-24 |f|; one step of 2^-23 |f| or more
  * undoes it, and FLT_MIN does so where f is denormal or zero. Boxes of points in the unit box are
