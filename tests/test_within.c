@@ -247,7 +247,8 @@ static void make_degenerate(sc_within_kind kind, points *q)
             }
         }
     }
-    if (test_random_below(4) == 0) q->p[0][test_random_below(3)] += exp2(-(double)test_random_below(52));
+    if (test_random_below(4) == 0)
+        q->p[0][test_random_below(3)] += exp2(-(double)test_random_below(52));
 }
 
 /*
@@ -298,22 +299,22 @@ static double make_exact(sc_within_kind kind, points *q)
 static void random_pairs(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    check_made(make_random, 60000, &t);
+    check_made(make_random, 50000, &t);
     check_seen(&t, 0, 1, 0);
 }
 
 static void mixed_pairs(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    check_made(make_mixed, 40000, &t);
+    check_made(make_mixed, 30000, &t);
     check_seen(&t, 0, 0, 1);
 }
 
 static void pairs_on_a_grid(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    uint32_t n = test_iterations(60000);
-    check_made(make_on_grid, 60000, &t);
+    uint32_t n = test_iterations(30000);
+    check_made(make_on_grid, 40000, &t);
     for (uint32_t i = 0; i < n; ++i) {
         sc_within_kind kind = i & 1 ? SC_WITHIN_EDGE_EDGE : SC_WITHIN_VERTEX_FACE;
         points q;
@@ -328,14 +329,14 @@ static void pairs_on_a_grid(void)
 static void degenerate_pairs(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    check_made(make_degenerate, 60000, &t);
+    check_made(make_degenerate, 40000, &t);
     check_seen(&t, 1, 1, 0);
 }
 
 static void exact_distances(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    uint32_t n = test_iterations(40000), reached = 0;
+    uint32_t n = test_iterations(30000), reached = 0;
     for (uint32_t i = 0; i < n; ++i) {
         sc_within_kind kind = i & 1 ? SC_WITHIN_EDGE_EDGE : SC_WITHIN_VERTEX_FACE;
         points q;
@@ -397,7 +398,7 @@ static void huge_and_tiny_pairs(void)
    coordinates, beside one that is a unit less. */
 static void distances_that_vanish_when_scaled(void)
 {
-    static const int sizes[] = {-1070, -1000, -500, -399, 0, 100, 300, 399, 400, 401, 1000};
+    static const int sizes[] = {-1070, -1000, -901, -900, -500, 0, 100, 300, 900, 901, 1000};
     static const double heights[] = {0x1p-1074, 3 * 0x1p-1074, 0x1p-1022, 1e-300, 1e-160, 1e-18};
     tally t = {{0}, {0}, {0}, {0}, {0}};
     for (int i = 0; i < 11; ++i) {
@@ -422,15 +423,18 @@ static void distances_that_vanish_when_scaled(void)
 static void touching_pairs(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    uint32_t n = test_iterations(60000);
+    uint32_t n = test_iterations(40000);
     for (uint32_t i = 0; i < n; ++i) {
         sc_within_kind kind = i & 1 ? SC_WITHIN_EDGE_EDGE : SC_WITHIN_VERTEX_FACE;
         points q;
+        int touches;
         if (i % 4 < 2)
             make_degenerate(kind, &q);
         else
             make_on_grid(kind, &q);
-        CHECK(check(kind, &q, 0, &t) == (true_distance(kind, &q) == 0));
+        touches = check(kind, &q, 0, &t);
+        CHECK(!touches || true_distance(kind, &q) == 0);
+        CHECK(touches || true_distance(kind, &q) > 0 || is_near(kind, &q, 0x1p-1074));
         check(kind, &q, 0x1p-1074, &t);
     }
     check_seen(&t, 0, 1, 0);
