@@ -5,8 +5,8 @@
  *
  * A number of n limbs is the sum of limb[i] 2^(64 i), modulo 2^(64 n), in two's complement: the top
  * bit of the last limb is its sign. The caller sees to it that results fit. Results are never
- * operands, unless said otherwise. The number of limbs is an argument: where it is a constant, loops
- * unroll; where it is not, the same text does for numbers of any length.
+ * operands, unless said otherwise. The number of limbs is an argument: where it is a constant,
+ * loops unroll; where it is not, the same text does for numbers of any length.
  */
 #ifndef SC_NEAR_LIMBS_H
 #define SC_NEAR_LIMBS_H

@@ -6,9 +6,9 @@
  * The differences between a point of one set and a point of the other are the points of a flat
  * convex polygon: a triangle with the three differences between corners and vertex, or a
  * parallelogram with the four differences between the ends of two edges. The distance of the two
- * sets is that of the polygon from the origin. So there is one text for both kinds, for three or four
- * corners c_0, c_1, ... in order; e_i = c_(i+1) - c_i are the edges, n = e_0 x e_1 is a normal. Each
- * corner, and each edge, is the difference of two given points.
+ * sets is that of the polygon from the origin. So there is one text for both kinds, for three or
+ * four corners c_0, c_1, ... in order; e_i = c_(i+1) - c_i are the edges, n = e_0 x e_1 is a
+ * normal. Each corner, and each edge, is the difference of two given points.
  *
  * Doubles. The nearest point of the polygon is guessed: on each of the edges, and inside.
  *
@@ -16,32 +16,36 @@
  *   for rounding; so a point of the polygon is next to q, wherever the guess came from, and if |q|
  *   and errors are no more than the distance d, then the answer is 1.
  *
- *   Far: if q . c_i > |q| d for all corners, with room for errors, then q . x > |q| d for all points x
- *   of the polygon, hence |x| > d. This holds for any q but 0.
+ *   Far: if q . c_i > |q| d for all corners, with room for errors, then q . x > |q| d for all
+ *   points x of the polygon, hence |x| > d. This holds for any q but 0.
  *
  *   Errors. u = 2^-53. R is the largest |c_i|, computed; it is within 2.6 u of itself, as |c_i|^2
- *   has three roundings and the root one. A corner is off by one rounding a coordinate, u R together.
+ *   has three roundings and the root one. A corner is off by one rounding a coordinate, u R
+ *   together.
  *     - Weights of a parallelogram are products of s, t, 1 - s and 1 - t, of which the latter are
  *       off by u / 2 at most, being 1 or less, and the products by u: they add up to 1 to within
- *       2.1 u. Those of a triangle are quotients by the sum of three positive numbers, which has two
- *       roundings, and the quotient one: to within 3.1 u. On an edge they are t and 1 - t: u / 2.
- *     - A point x of the polygon is q computed without roundings from true corners, over the sum of the
- *       weights. q has up to four terms, rounded four times at most (parallelogram; three times, of
- *       a triangle), which is 4.1 u R in all, as the weights of the |c_i| add up to 1; corners 1.1 u R;
- *       the sum of the weights 2.1 u R; for a triangle 3.1, 1.1 and 3.1. So |x - q| < 7.4 u R.
+ *       2.1 u. Those of a triangle are quotients by the sum of three positive numbers, which has
+ *       two roundings, and the quotient one: to within 3.1 u. On an edge they are t and 1 - t: u /
+ *       2.
+ *     - A point x of the polygon is q computed without roundings from true corners, over the sum of
+ *       the weights. q has up to four terms, rounded four times at most (parallelogram; three
+ *       times, of a triangle), which is 4.1 u R in all, as the weights of the |c_i| add up to 1;
+ *       corners 1.1 u R; the sum of the weights 2.1 u R; for a triangle 3.1, 1.1 and 3.1. So |x -
+ *       q| < 7.4 u R.
  *     - |q|^2, computed, has three roundings; the square of r = d - E one, and r one: what passes
  *       |q|^2 <= r^2 has a true |q| <= (d - E) (1 + 3.1 u). So it suffices that
  *       E (1 - 3.1 u) >= 7.4 u R + 3.1 u d.
- *     - q . c_i has three roundings of terms that add up to |q| |c_i| at most, and the corner another:
- *       4.1 u R |q|. The other side is a root (2.6 u), d + E (u) and their product (u). So it
- *       suffices that E (1 - 4.7 u) >= 4.1 u R + 4.7 u d.
+ *     - q . c_i has three roundings of terms that add up to |q| |c_i| at most, and the corner
+ *       another: 4.1 u R |q|. The other side is a root (2.6 u), d + E (u) and their product (u). So
+ *       it suffices that E (1 - 4.7 u) >= 4.1 u R + 4.7 u d.
  *   E = 8 u (R + d) is enough for both, with its own three roundings, and half a u R to spare.
  *
  *   Underflow. R is above 2^-250, so that what is spared is above 2^-305. What underflows in q and
  *   |q|^2 is off by less than 2^-1000, of |q| itself by the root of that, 2^-500. A direction is
- *   believed only if |q| > E computed, which is above 2^-301: then what underflows in q . c_i, again
- *   less than 2^-1000, is nothing beside u R |q|, which is above 2^-604. R is below 2^250, so that no
- *   product of four coordinates overflows. Guesses may be spoilt by underflow; they need not be good.
+ *   believed only if |q| > E computed, which is above 2^-301: then what underflows in q . c_i,
+ *   again less than 2^-1000, is nothing beside u R |q|, which is above 2^-604. R is below 2^250, so
+ *   that no product of four coordinates overflows. Guesses may be spoilt by underflow; they need
+ *   not be good.
  *
  * Exactly. The nearest point of the polygon is a corner, or inside an edge, or inside the polygon.
  * For each of these
@@ -51,10 +55,10 @@
  *     inside   (c_0 . n)^2 <= d^2 |n|^2           where (c_i x c_(i+1)) . n > 0 for all i
  *
  * says of a point of the polygon that it is near enough; on the right, that the foot of the
- * perpendicular is inside. So if any of them holds, the answer is 1. If none holds, it is 0, for the
- * nearest point of the polygon is such a foot: if it lies inside and n is not 0, or inside an edge that is
- * not 0, then the origin is over it, and otherwise (n = 0, and all is on a line) it is in an edge or
- * a corner as well. The conditions on the right are false where e_i or n is 0.
+ * perpendicular is inside. So if any of them holds, the answer is 1. If none holds, it is 0, for
+ * the nearest point of the polygon is such a foot: if it lies inside and n is not 0, or inside an
+ * edge that is not 0, then the origin is over it, and otherwise (n = 0, and all is on a line) it is
+ * in an edge or a corner as well. The conditions on the right are false where e_i or n is 0.
  *
  * The one that was guessed comes first. It often tells that nothing else is nearer:
  *
@@ -365,7 +369,8 @@ static int decide_by_signs(int kind, const uint64_t *x, int n, int guess)
     }
     sc_limbs_multiply(s.square, distance, n, distance, n);
     answer = decide_at(&s, guess);
-    for (int i = 0; answer == SC_WITHIN_UNSURE && i <= 2 * s.corners; ++i) answer = decide_at(&s, i);
+    for (int i = 0; answer == SC_WITHIN_UNSURE && i <= 2 * s.corners; ++i)
+        answer = decide_at(&s, i);
     return answer == 1;
 }
 
@@ -389,8 +394,8 @@ static SC_INLINE double power_of_two(int exponent)
     return value;
 }
 
-/* Two powers of two, far apart, each times 1.5 2^52: what is added to one of them becomes a multiple
-   of that power, in the last bits of the sum. */
+/* Two powers of two, far apart, each times 1.5 2^52: what is added to one of them becomes a
+   multiple of that power, in the last bits of the sum. */
 typedef struct word_scale {
     double coarse, fine;
     uint64_t coarse_bits, fine_bits;
@@ -418,9 +423,9 @@ static SC_INLINE int64_t scale_to_word(const word_scale *s, double value, uint64
                      (fine_bits - s->fine_bits));
 }
 
-/* Sets x to the twelve coordinates and the distance over one power of two, each below 2^61; 0 if they
-   are no multiples of it. The largest is from 2^-900 to below 2^901, so that
-   both powers and their sums are normal numbers. */
+/* Sets x to the twelve coordinates and the distance over one power of two, each below 2^61; 0 if
+   they are no multiples of it. The largest is from 2^-900 to below 2^901, so that both powers and
+   their sums are normal numbers. */
 static SC_INLINE int scale_to_words(int64_t *x, const double p[4][3], double distance)
 {
     const double *values = p[0];
@@ -522,8 +527,7 @@ static SC_NOINLINE int decide_at_length(int kind, const double p[4][3], double d
     int least = 2 * 2048, most = 0, n;
     for (int i = 0; i <= WITHIN_NUMBERS; ++i) {
         int exponent;
-        uint64_t mantissa =
-            mantissa_of(i < WITHIN_NUMBERS ? values[i] : distance, &exponent);
+        uint64_t mantissa = mantissa_of(i < WITHIN_NUMBERS ? values[i] : distance, &exponent);
         if (mantissa == 0) continue;
         int low = exponent + (int)sc_bits_lowest64(mantissa);
         least = low < least ? low : least;

@@ -6,8 +6,8 @@
  * The signs of near/within.c, which says what they are and why they fit, for compilers that have
  * integers of 128 bits: three to five times as fast as the text there, with n = 1.
  *
- * A component of a product of two words fits into 128 bits with its sign; those of four words are two
- * such numbers, low and high; and those of six three.
+ * A component of a product of two words fits into 128 bits with its sign; those of four words are
+ * two such numbers, low and high; and those of six three.
  */
 #ifndef SC_NEAR_WORDS_H
 #define SC_NEAR_WORDS_H
@@ -35,9 +35,9 @@ typedef struct sc_words_shape {
 } sc_words_shape;
 
 /*
- * Divides all by the largest power of two that leaves integers. 1 if corners are then below 2^29 and
- * so is the distance: a narrow shape. Of these edges are below 2^30, components of products of two
- * below 2^61, which is one word, and of four below 3 2^122.
+ * Divides all by the largest power of two that leaves integers. 1 if corners are then below 2^29
+ * and so is the distance: a narrow shape. Of these edges are below 2^30, components of products of
+ * two below 2^61, which is one word, and of four below 3 2^122.
  */
 static SC_INLINE int sc_words_narrow(sc_words_shape *s)
 {
