@@ -85,6 +85,7 @@
 #include "base/bounds.h"
 #include "base/predicates.h"
 #include "near/limbs.h"
+#include "simd/isa.h"
 #if defined(__SIZEOF_INT128__)
 #  include "near/words.h"
 #endif

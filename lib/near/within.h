@@ -15,6 +15,8 @@
  *     2^61 times it. That is so of grids, and of most points of which no coordinate is much smaller
  *     than the others;
  *   - integers as long as it takes, up to 2,112 bits for a coordinate.
+ * They take about 25 to 80 ns, 20 to 150 ns, and 1 microsecond where exponents differ by 20, up to
+ * 100 microseconds for the whole range of doubles.
  */
 #ifndef SC_NEAR_WITHIN_H
 #define SC_NEAR_WITHIN_H
