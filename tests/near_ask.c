@@ -209,6 +209,11 @@ int near_truth_draw(const step_motion *m, int kind, sc_pair *pair)
             if (m->edge_count == 0) return 0;
             pair->a = m->edge[test_random_below(m->edge_count)];
             pair->b = m->edge[test_random_below(m->edge_count)];
+            if (pair->a > pair->b) {
+                const uint32_t a = pair->a;
+                pair->a = pair->b;
+                pair->b = a;
+            }
         }
         if (is_one(m, kind, *pair)) return 1;
     }
