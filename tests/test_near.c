@@ -18,6 +18,7 @@
 #include "harness.h"
 #include "inputs.h"
 #include "near_ask.h"
+#include "posed_model.h"
 #include "shapes.h"
 #include "soups.h"
 #include "starcontour.h"
@@ -464,6 +465,40 @@ static void ties_on_flat_grids(void)
     CHECK(ties > within / 5);
 }
 
+/* Two flat sheets in any direction, a small part of an edge apart, and that as a distance, but for
+   what floats hide: the slabs of their triangles end there. */
+static void layers_at_the_distance(void)
+{
+    uint64_t within = 0;
+    for (uint32_t i = 0; i < test_iterations_at_least(60, 30); ++i) {
+        const uint64_t state = test_random_state();
+        soup one = soup_cloth(5, 5), two = soup_cloth(4, 5), mesh;
+        const double apart = 0.2 * pow(10, test_random_range(-5, -0.5));
+        double *posed;
+        scene s;
+        for (uint32_t v = 0; v < two.vertex_count; ++v) two.positions[3 * v + 2] = apart;
+        mesh = soup_join(&one, &two);
+        soup_free(&one);
+        soup_free(&two);
+        posed = copy_positions(mesh.positions, mesh.vertex_count);
+        posed_model_rotate(posed, mesh.vertex_count);
+        soup_noise(posed, mesh.vertex_count, 1e-9);
+        if (scene_start(&s, "layers", mesh, posed, SC_DOUBLE, state)) {
+            static const double parts[] = {1, 1 + 1e-8, 1 + 1e-6, 1 - 1e-6, 1 + 1e-4};
+            for (int d = 0; d < 5; ++d) {
+                sc_near_options options = near_options_for(&near_ways[d % 2 ? 0 : 4],
+                                                           apart * parts[d]);
+                near_answer all = near_ask_all(&s.q, &options);
+                near_truth_check(&s.q, &s.m, &all, options.distance, "layers");
+                within += all.count[0] + all.count[1];
+                near_answer_free(&all);
+            }
+        }
+        scene_stop(&s);
+    }
+    CHECK_MSG(within > 0, "%" PRIu64 " pairs", within);
+}
+
 /* Of distance 0 are those that touch, as another oracle says; and a distance larger than the mesh
    has all pairs without a common vertex. */
 static void none_apart_and_all(void)
@@ -513,4 +548,5 @@ static void none_apart_and_all(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_scene), SC_TEST(poses_of_steps), SC_TEST(adversaries),
-             SC_TEST(soups_on_grids), SC_TEST(ties_on_flat_grids), SC_TEST(none_apart_and_all))
+             SC_TEST(soups_on_grids), SC_TEST(ties_on_flat_grids), SC_TEST(layers_at_the_distance),
+             SC_TEST(none_apart_and_all))
