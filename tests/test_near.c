@@ -465,6 +465,27 @@ static void ties_on_flat_grids(void)
     CHECK(ties > within / 5);
 }
 
+/* Triangles between any three of a few points: leaf clusters of which triangles share few edges. */
+static void many_edges_in_a_leaf(void)
+{
+    tally sum;
+    memset(&sum, 0, sizeof(sum));
+    for (uint32_t i = 0; i < test_iterations_at_least(40, 20); ++i) {
+        const uint64_t state = test_random_state();
+        soup mesh = soup_make(32, 36);
+        scene s;
+        for (uint32_t c = 0; c < 96; ++c) mesh.positions[c] = test_random_unit();
+        for (uint32_t t = 0; t < 36; ++t)
+            for (uint32_t k = 0; k < 3; ++k)
+                mesh.triangles[3 * t + k] = t / 18 * 16 + (5 * k + test_random_below(5));
+        if (scene_start(&s, "many edges", mesh, copy_positions(mesh.positions, 32), SC_DOUBLE,
+                        state))
+            check_scene(&s, &sum);
+        scene_stop(&s);
+    }
+    check_tally(&sum);
+}
+
 /* Two flat sheets in any direction, a small part of an edge apart, and that as a distance, but for
    what floats hide: the slabs of their triangles end there. */
 static void layers_at_the_distance(void)
@@ -548,5 +569,5 @@ static void none_apart_and_all(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_scene), SC_TEST(poses_of_steps), SC_TEST(adversaries),
-             SC_TEST(soups_on_grids), SC_TEST(ties_on_flat_grids), SC_TEST(layers_at_the_distance),
+             SC_TEST(soups_on_grids), SC_TEST(ties_on_flat_grids), SC_TEST(layers_at_the_distance), SC_TEST(many_edges_in_a_leaf),
              SC_TEST(none_apart_and_all))
