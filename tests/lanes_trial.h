@@ -24,6 +24,7 @@ static void try_floats(const lanes_input *in, lanes_outcome *out)
     lanes_store(out->row[0], lanes_add(evens, odds));
     lanes_store(out->row[1], lanes_subtract(evens, odds));
     lanes_store(out->row[2], lanes_multiply(evens, odds));
+    lanes_store(out->row[76], lanes_divide(evens, odds));
     lanes_store(out->row[3], lanes_smaller(a, b));
     lanes_store(out->row[4], lanes_larger(a, b));
     lanes_store(out->row[5], lanes_absolute(a));

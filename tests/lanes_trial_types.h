@@ -31,7 +31,7 @@ typedef struct lanes_input {
 } lanes_input;
 
 typedef struct lanes_outcome {
-    float row[76][16], one[3];
+    float row[77][16], one[3];
     double eight[16][8];
     unsigned bits[27];
     uint32_t numbers[16], pairs[32], from[16], among[16];

@@ -1,6 +1,6 @@
 /*
- * The oracle of proximity: is the distance of a point and a triangle, or of two segments, at most d?
- * In exact arithmetic.
+ * The oracle of proximity: is the distance of a point and a triangle, or of two segments, at most
+ * d? In exact arithmetic.
  *
  * It shares nothing with the library, and goes another way: by squared distances as quotients of
  * integers (GMP, the GNU multiple precision library), made of scalar products alone. Any finite

@@ -21,7 +21,8 @@ typedef struct target {
 static const target targets[] = {{"fuzz_build", fuzz_build},
                                  {"fuzz_query", fuzz_query},
                                  {"fuzz_options", fuzz_options},
-                                 {"fuzz_load", fuzz_load}};
+                                 {"fuzz_load", fuzz_load},
+                                 {"fuzz_near", fuzz_near}};
 enum { TARGETS = sizeof(targets) / sizeof(targets[0]) };
 
 /* Runs a target on a copy that ends where it ends. */
@@ -83,6 +84,7 @@ static void seeds_of_meshes(void)
             if (!CHECK_MSG(size > 0, "%s cannot be read", path)) continue;
             replay(&targets[0], path, bytes, size);
             replay(&targets[1], path, bytes, size);
+            replay(&targets[4], path, bytes, size);
             size = fuzz_saved_seed(path, variant, bytes);
             if (size > 0) replay(&targets[3], path, bytes, size);
         }

@@ -47,6 +47,7 @@ typedef struct call {
     sc_workspace *workspace;
     sc_result result;
     sc_step_result stepped;
+    sc_near_result near;
     sc_contact *contacts;
     void *saved;
     uint64_t saved_size;
@@ -104,6 +105,15 @@ static void *step(void *argument)
                                      .separation = c->separation,
                                      .tasks = c->tasks};
     c->status = sc_query_step(c->model, c->workspace, c->start, c->pose, &options, &c->stepped);
+    return NULL;
+}
+
+static void *near(void *argument)
+{
+    call *c = (call *)argument;
+    const sc_near_options options = {
+        .struct_size = sizeof(options), .distance = c->separation, .tasks = c->tasks};
+    c->status = sc_query_near(c->model, c->workspace, c->pose, &options, &c->near);
     return NULL;
 }
 
@@ -195,7 +205,7 @@ static void calls_take_little_stack(void)
     CHECK_MSG(building - empty <= PROMISED, "%zu bytes", building - empty);
     test_note("sc_build: %zu bytes", building - empty);
     const sc_workspace_options how = {
-        .struct_size = sizeof(how), .flags = SC_WORKSPACE_STEP, .workers = 2};
+        .struct_size = sizeof(how), .flags = SC_WORKSPACE_NEAR, .workers = 2};
     if (!CHECK(sc_workspace_create_for(c.model, &how, &c.workspace) == SC_OK)) return;
 
     if (!CHECK(sc_model_save_size(c.model, &c.saved_size) == SC_OK)) return;
@@ -210,7 +220,7 @@ static void calls_take_little_stack(void)
     static sc_pair pairs[PAIRS];
     static sc_contact contacts[PAIRS];
     static sc_pair edges[PAIRS];
-    size_t most = 0, most_meeting = 0, most_stepping = 0;
+    size_t most = 0, most_meeting = 0, most_stepping = 0, most_near = 0;
     uint64_t fallbacks = 0;
     for (size_t u = 0; u < sizeof(units) / sizeof(units[0]); ++u) {
         folded(moved, units[u]);
@@ -241,6 +251,15 @@ static void calls_take_little_stack(void)
             CHECK_MSG(stepping > empty && c.status == SC_ERROR_SHORT_BUFFER, "status %d",
                       (int)c.status);
             if (stepping - empty > most_stepping) most_stepping = stepping - empty;
+            c.near = (sc_near_result){.struct_size = sizeof(c.near),
+                                      .vertex_face_capacity = PAIRS,
+                                      .vertex_faces = pairs,
+                                      .edge_edge_capacity = PAIRS,
+                                      .edge_edges = edges};
+            const size_t looking = stack_of(near, &c);
+            CHECK_MSG(looking > empty && c.status == SC_ERROR_SHORT_BUFFER, "status %d",
+                      (int)c.status);
+            if (looking - empty > most_near) most_near = looking - empty;
         }
     }
     CHECK_MSG(most <= PROMISED, "%zu bytes", most);
@@ -250,6 +269,8 @@ static void calls_take_little_stack(void)
     test_note("sc_contacts: %zu bytes", most_meeting);
     CHECK_MSG(most_stepping <= PROMISED, "%zu bytes", most_stepping);
     test_note("sc_query_step: %zu bytes", most_stepping);
+    CHECK_MSG(most_near <= PROMISED, "%zu bytes", most_near);
+    test_note("sc_query_near: %zu bytes", most_near);
     sc_workspace_free(c.workspace);
     sc_model_free(c.model);
 }

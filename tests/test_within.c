@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * Each pair is asked about as a whole, in another order of its points, and of each stage by itself;
- * all that answers must be right. Distances are those of the pair, rounded down and up, and others next
- * to them.
+ * all that answers must be right. Distances are those of the pair, rounded down and up, and others
+ * next to them.
  */
 #include <float.h>
 #include <gmp.h>
@@ -44,9 +44,9 @@ static int is_settled_by_doubles(sc_within_kind kind, const points *q, double d)
     return sc_within_by_doubles(kind, q->p, d, &guess) != SC_WITHIN_UNSURE;
 }
 
-static int is_settled_by_words(sc_within_kind kind, const points *q, double d)
+static int answer_in_words(sc_within_kind kind, const points *q, double d, int guess)
 {
-    return sc_within_by_words(kind, q->p, d, 0) != SC_WITHIN_UNSURE;
+    return sc_within_by_words(kind, q->p, d, guess);
 }
 
 static double true_distance(sc_within_kind kind, const points *q)
@@ -247,7 +247,8 @@ static void make_degenerate(sc_within_kind kind, points *q)
             }
         }
     }
-    if (test_random_below(4) == 0) q->p[0][test_random_below(3)] += exp2(-(double)test_random_below(52));
+    if (test_random_below(4) == 0)
+        q->p[0][test_random_below(3)] += exp2(-(double)test_random_below(52));
 }
 
 /*
@@ -298,29 +299,29 @@ static double make_exact(sc_within_kind kind, points *q)
 static void random_pairs(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    check_made(make_random, 60000, &t);
+    check_made(make_random, 50000, &t);
     check_seen(&t, 0, 1, 0);
 }
 
 static void mixed_pairs(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    check_made(make_mixed, 40000, &t);
+    check_made(make_mixed, 30000, &t);
     check_seen(&t, 0, 0, 1);
 }
 
 static void pairs_on_a_grid(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    uint32_t n = test_iterations(60000);
-    check_made(make_on_grid, 60000, &t);
+    uint32_t n = test_iterations(30000);
+    check_made(make_on_grid, 40000, &t);
     for (uint32_t i = 0; i < n; ++i) {
         sc_within_kind kind = i & 1 ? SC_WITHIN_EDGE_EDGE : SC_WITHIN_VERTEX_FACE;
         points q;
         for (int j = 0; j < 12; ++j) q.p[j / 3][j % 3] = whole(2) + 1e6;
         check(kind, &q, 1, &t);
         check(kind, &q, 2, &t);
-        CHECK(is_settled_by_words(kind, &q, 1));
+        CHECK(answer_in_words(kind, &q, 1, 0) != SC_WITHIN_UNSURE);
     }
     check_seen(&t, 1, 1, 0);
 }
@@ -328,14 +329,14 @@ static void pairs_on_a_grid(void)
 static void degenerate_pairs(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    check_made(make_degenerate, 60000, &t);
+    check_made(make_degenerate, 40000, &t);
     check_seen(&t, 1, 1, 0);
 }
 
 static void exact_distances(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    uint32_t n = test_iterations(40000), reached = 0;
+    uint32_t n = test_iterations(30000), reached = 0;
     for (uint32_t i = 0; i < n; ++i) {
         sc_within_kind kind = i & 1 ? SC_WITHIN_EDGE_EDGE : SC_WITHIN_VERTEX_FACE;
         points q;
@@ -352,7 +353,8 @@ static void exact_distances(void)
     check_seen(&t, 0, 1, 0);
 }
 
-/* Everything by powers of two that no product survives, and coordinates at both ends of the range. */
+/* Everything by powers of two that no product survives, and coordinates at both ends of the range.
+   */
 static void huge_and_tiny_pairs(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
@@ -393,11 +395,11 @@ static void huge_and_tiny_pairs(void)
     check_seen(&t, 0, 0, 1);
 }
 
-/* A vertex over a face, or an edge over an edge, at a distance that vanishes if it is scaled with the
-   coordinates, beside one that is a unit less. */
+/* A vertex over a face, or an edge over an edge, at a distance that vanishes if it is scaled with
+   the coordinates, beside one that is a unit less. */
 static void distances_that_vanish_when_scaled(void)
 {
-    static const int sizes[] = {-1070, -1000, -500, -399, 0, 100, 300, 399, 400, 401, 1000};
+    static const int sizes[] = {-1070, -1000, -901, -900, -500, 0, 100, 300, 900, 901, 1000};
     static const double heights[] = {0x1p-1074, 3 * 0x1p-1074, 0x1p-1022, 1e-300, 1e-160, 1e-18};
     tally t = {{0}, {0}, {0}, {0}, {0}};
     for (int i = 0; i < 11; ++i) {
@@ -418,38 +420,85 @@ static void distances_that_vanish_when_scaled(void)
     }
 }
 
+/* Integers of 27 to 35 bits, at distances next to the true one: products of them fill one word, or
+   do not fit any more. The origin of what makes feet inside likely is the middle of the others. */
+static void words_at_the_limit(void)
+{
+    tally t = {{0}, {0}, {0}, {0}, {0}};
+    uint32_t n = test_iterations(40000);
+    for (uint32_t i = 0; i < n; ++i) {
+        sc_within_kind kind = i & 1 ? SC_WITHIN_EDGE_EDGE : SC_WITHIN_VERTEX_FACE;
+        double size = exp2(27 + test_random_below(9)), d;
+        int inside = kind == SC_WITHIN_VERTEX_FACE ? 6 : 8, truth;
+        points q;
+        for (int j = 0; j < 12; ++j) q.p[j / 3][j % 3] = floor(test_random_range(-size, size));
+        for (int k = 0; k < 3; ++k) {
+            if (kind == SC_WITHIN_VERTEX_FACE)
+                q.p[0][k] = floor((q.p[1][k] + q.p[2][k] + q.p[3][k]) / 4);
+            else
+                q.p[0][k] = floor((q.p[2][k] + q.p[3][k]) / 2) - q.p[1][k];
+        }
+        d = floor(true_distance(kind, &q)) + test_random_below(2);
+        truth = check(kind, &q, d, &t);
+        CHECK(answer_in_words(kind, &q, d, inside) == truth);
+    }
+    check_seen(&t, 1, 0, 0);
+}
+
 /* d = 0 tells what touches. */
 static void touching_pairs(void)
 {
     tally t = {{0}, {0}, {0}, {0}, {0}};
-    uint32_t n = test_iterations(60000);
+    uint32_t n = test_iterations(40000);
     for (uint32_t i = 0; i < n; ++i) {
         sc_within_kind kind = i & 1 ? SC_WITHIN_EDGE_EDGE : SC_WITHIN_VERTEX_FACE;
         points q;
+        int touches;
         if (i % 4 < 2)
             make_degenerate(kind, &q);
         else
             make_on_grid(kind, &q);
-        CHECK(check(kind, &q, 0, &t) == (true_distance(kind, &q) == 0));
+        touches = check(kind, &q, 0, &t);
+        CHECK(!touches || true_distance(kind, &q) == 0);
+        CHECK(touches || true_distance(kind, &q) > 0 || is_near(kind, &q, 0x1p-1074));
         check(kind, &q, 0x1p-1074, &t);
     }
     check_seen(&t, 0, 1, 0);
 }
 
-/* Most pairs must not need more than doubles: those that are off by more than forty roundings. */
+/* The largest distance of a point of one and a point of the other. */
+static double largest_distance(sc_within_kind kind, const points *q)
+{
+    int split = kind == SC_WITHIN_VERTEX_FACE ? 1 : 2;
+    double largest = 0;
+    for (int i = 0; i < split; ++i) {
+        for (int j = split; j < 4; ++j) {
+            double x = q->p[j][0] - q->p[i][0], y = q->p[j][1] - q->p[i][1];
+            double z = q->p[j][2] - q->p[i][2];
+            largest = fmax(largest, sqrt(x * x + y * y + z * z));
+        }
+    }
+    return largest;
+}
+
+/* Doubles settle what is off by more than their bound and some errors, but where edges are short or
+   nearly parallel, and leave what is off by less than the bound and no errors: both to a few pairs.
+   */
 static void doubles_settle_most(void)
 {
-    uint32_t n = test_iterations(20000), settled = 0;
+    uint32_t n = test_iterations(20000), settled = 0, left = 0;
     for (uint32_t i = 0; i < n; ++i) {
         sc_within_kind kind = i & 1 ? SC_WITHIN_EDGE_EDGE : SC_WITHIN_VERTEX_FACE;
         points q;
-        double d;
+        double d, unit;
         make_random(kind, &q);
         d = true_distance(kind, &q);
-        d += (test_random_below(2) ? 40 : -40) * 0x1p-53 * (4 + d);
-        settled += (uint32_t)is_settled_by_doubles(kind, &q, d);
+        unit = (test_random_below(2) ? 0x1p-53 : -0x1p-53) * (largest_distance(kind, &q) + d);
+        settled += (uint32_t)is_settled_by_doubles(kind, &q, d + 16 * unit);
+        left += (uint32_t)!is_settled_by_doubles(kind, &q, d + 6 * unit);
     }
-    CHECK_MSG(settled >= n - n / 50, "%u of %u", settled, n);
+    CHECK_MSG(settled >= n - n / 20, "%u of %u", settled, n);
+    CHECK_MSG(left >= n - n / 20, "%u of %u", left, n);
 }
 
 /* Products of limbs, by halves and as the compiler does it, against those of GMP. */
@@ -485,5 +534,6 @@ static void products_of_limbs(void)
 
 SC_TEST_MAIN(SC_TEST(random_pairs), SC_TEST(mixed_pairs), SC_TEST(pairs_on_a_grid),
              SC_TEST(degenerate_pairs), SC_TEST(exact_distances), SC_TEST(huge_and_tiny_pairs),
-             SC_TEST(distances_that_vanish_when_scaled), SC_TEST(touching_pairs),
+             SC_TEST(distances_that_vanish_when_scaled), SC_TEST(words_at_the_limit),
+             SC_TEST(touching_pairs),
              SC_TEST(doubles_settle_most), SC_TEST(products_of_limbs))

@@ -5,15 +5,13 @@
  *
  * A number of n limbs is the sum of limb[i] 2^(64 i), modulo 2^(64 n), in two's complement: the top
  * bit of the last limb is its sign. The caller sees to it that results fit. Results are never
- * operands, unless said otherwise. The number of limbs is an argument: where it is a constant, loops
- * unroll; where it is not, the same text does for numbers of any length.
+ * operands, unless said otherwise. The number of limbs is an argument: where it is a constant,
+ * loops unroll; where it is not, the same text does for numbers of any length.
  */
 #ifndef SC_STEP_LIMBS_H
 #define SC_STEP_LIMBS_H
 
 #include <stdint.h>
-
-#include "simd/isa.h"
 
 /* Low half of a b + c + d, which is below 2^128; the high half goes to *high. By halves of 32 bits,
    for compilers that have no larger integers. */
@@ -29,7 +27,7 @@ static inline uint64_t sc_limbs_multiply_halves(uint64_t a, uint64_t b, uint64_t
 }
 
 /* The same as the compiler does it best. */
-static SC_INLINE uint64_t sc_limbs_multiply_add(uint64_t a, uint64_t b, uint64_t c, uint64_t d,
+static inline uint64_t sc_limbs_multiply_add(uint64_t a, uint64_t b, uint64_t c, uint64_t d,
                                                 uint64_t *high)
 {
 #if defined(__SIZEOF_INT128__)
@@ -43,13 +41,13 @@ static SC_INLINE uint64_t sc_limbs_multiply_add(uint64_t a, uint64_t b, uint64_t
 }
 
 /* All bits of the sign. */
-static SC_INLINE uint64_t sc_limbs_mask(const uint64_t *a, int n)
+static inline uint64_t sc_limbs_mask(const uint64_t *a, int n)
 {
     return (uint64_t)0 - (a[n - 1] >> 63);
 }
 
 /* 1, 0 or -1. */
-static SC_INLINE int sc_limbs_sign(const uint64_t *a, int n)
+static inline int sc_limbs_sign(const uint64_t *a, int n)
 {
     uint64_t any = 0;
     for (int i = 0; i < n; ++i) any |= a[i];
@@ -57,7 +55,7 @@ static SC_INLINE int sc_limbs_sign(const uint64_t *a, int n)
 }
 
 /* Adds b to a. */
-static SC_INLINE void sc_limbs_add(uint64_t *a, const uint64_t *b, int n)
+static inline void sc_limbs_add(uint64_t *a, const uint64_t *b, int n)
 {
     uint64_t carry = 0;
     for (int i = 0; i < n; ++i) {
@@ -70,7 +68,7 @@ static SC_INLINE void sc_limbs_add(uint64_t *a, const uint64_t *b, int n)
 }
 
 /* result = a - b; result may be a or b. */
-static SC_INLINE void sc_limbs_subtract(uint64_t *result, const uint64_t *a, const uint64_t *b,
+static inline void sc_limbs_subtract(uint64_t *result, const uint64_t *a, const uint64_t *b,
                                         int n)
 {
     uint64_t borrow = 0;
@@ -84,7 +82,7 @@ static SC_INLINE void sc_limbs_subtract(uint64_t *result, const uint64_t *a, con
 
 /* Subtracts from the limbs of a from the one numbered `from` on as many bits of b as mask has: all
    or none. a has n limbs, b n - from or more. */
-static SC_INLINE void sc_limbs_take_masked(uint64_t *a, int n, int from, const uint64_t *b,
+static inline void sc_limbs_take_masked(uint64_t *a, int n, int from, const uint64_t *b,
                                            uint64_t mask)
 {
     uint64_t borrow = 0;
@@ -102,7 +100,7 @@ static SC_INLINE void sc_limbs_take_masked(uint64_t *a, int n, int from, const u
  * where A and B are 1 for what is negative: modulo 2^(64 (an + bn)), A b 2^(64 an) + B a 2^(64 bn)
  * too much.
  */
-static SC_INLINE void sc_limbs_multiply(uint64_t *result, const uint64_t *a, int an,
+static inline void sc_limbs_multiply(uint64_t *result, const uint64_t *a, int an,
                                         const uint64_t *b, int bn)
 {
     for (int j = 0; j < bn; ++j) result[j] = 0;

@@ -6,9 +6,9 @@
  * The differences between a point of one set and a point of the other are the points of a flat
  * convex polygon: a triangle with the three differences between corners and vertex, or a
  * parallelogram with the four differences between the ends of two edges. The distance of the two
- * sets is that of the polygon from the origin. So there is one text for both kinds, for three or four
- * corners c_0, c_1, ... in order; e_i = c_(i+1) - c_i are the edges, n = e_0 x e_1 is a normal. Each
- * corner, and each edge, is the difference of two given points.
+ * sets is that of the polygon from the origin. So there is one text for both kinds, for three or
+ * four corners c_0, c_1, ... in order; e_i = c_(i+1) - c_i are the edges, n = e_0 x e_1 is a
+ * normal. Each corner, and each edge, is the difference of two given points.
  *
  * Doubles. The nearest point of the polygon is guessed: on each of the edges, and inside.
  *
@@ -16,32 +16,36 @@
  *   for rounding; so a point of the polygon is next to q, wherever the guess came from, and if |q|
  *   and errors are no more than the distance d, then the answer is 1.
  *
- *   Far: if q . c_i > |q| d for all corners, with room for errors, then q . x > |q| d for all points x
- *   of the polygon, hence |x| > d. This holds for any q but 0.
+ *   Far: if q . c_i > |q| d for all corners, with room for errors, then q . x > |q| d for all
+ *   points x of the polygon, hence |x| > d. This holds for any q but 0.
  *
  *   Errors. u = 2^-53. R is the largest |c_i|, computed; it is within 2.6 u of itself, as |c_i|^2
- *   has three roundings and the root one. A corner is off by one rounding a coordinate, u R together.
+ *   has three roundings and the root one. A corner is off by one rounding a coordinate, u R
+ *   together.
  *     - Weights of a parallelogram are products of s, t, 1 - s and 1 - t, of which the latter are
  *       off by u / 2 at most, being 1 or less, and the products by u: they add up to 1 to within
- *       2.1 u. Those of a triangle are quotients by the sum of three positive numbers, which has two
- *       roundings, and the quotient one: to within 3.1 u. On an edge they are t and 1 - t: u / 2.
- *     - A point x of the polygon is q computed without roundings from true corners, over the sum of the
- *       weights. q has up to four terms, rounded four times at most (parallelogram; three times, of
- *       a triangle), which is 4.1 u R in all, as the weights of the |c_i| add up to 1; corners 1.1 u R;
- *       the sum of the weights 2.1 u R; for a triangle 3.1, 1.1 and 3.1. So |x - q| < 7.4 u R.
+ *       2.1 u. Those of a triangle are quotients by the sum of three positive numbers, which has
+ *       two roundings, and the quotient one: to within 3.1 u. On an edge they are t and 1 - t: u /
+ *       2.
+ *     - A point x of the polygon is q computed without roundings from true corners, over the sum of
+ *       the weights. q has up to four terms, rounded four times at most (parallelogram; three
+ *       times, of a triangle), which is 4.1 u R in all, as the weights of the |c_i| add up to 1;
+ *       corners 1.1 u R; the sum of the weights 2.1 u R; for a triangle 3.1, 1.1 and 3.1. So |x -
+ *       q| < 7.4 u R.
  *     - |q|^2, computed, has three roundings; the square of r = d - E one, and r one: what passes
  *       |q|^2 <= r^2 has a true |q| <= (d - E) (1 + 3.1 u). So it suffices that
  *       E (1 - 3.1 u) >= 7.4 u R + 3.1 u d.
- *     - q . c_i has three roundings of terms that add up to |q| |c_i| at most, and the corner another:
- *       4.1 u R |q|. The other side is a root (2.6 u), d + E (u) and their product (u). So it
- *       suffices that E (1 - 4.7 u) >= 4.1 u R + 4.7 u d.
+ *     - q . c_i has three roundings of terms that add up to |q| |c_i| at most, and the corner
+ *       another: 4.1 u R |q|. The other side is a root (2.6 u), d + E (u) and their product (u). So
+ *       it suffices that E (1 - 4.7 u) >= 4.1 u R + 4.7 u d.
  *   E = 8 u (R + d) is enough for both, with its own three roundings, and half a u R to spare.
  *
  *   Underflow. R is above 2^-250, so that what is spared is above 2^-305. What underflows in q and
  *   |q|^2 is off by less than 2^-1000, of |q| itself by the root of that, 2^-500. A direction is
- *   believed only if |q| > E computed, which is above 2^-301: then what underflows in q . c_i, again
- *   less than 2^-1000, is nothing beside u R |q|, which is above 2^-604. R is below 2^250, so that no
- *   product of four coordinates overflows. Guesses may be spoilt by underflow; they need not be good.
+ *   believed only if |q| > E computed, which is above 2^-301: then what underflows in q . c_i,
+ *   again less than 2^-1000, is nothing beside u R |q|, which is above 2^-604. R is below 2^250, so
+ *   that no product of four coordinates overflows. Guesses may be spoilt by underflow; they need
+ *   not be good.
  *
  * Exactly. The nearest point of the polygon is a corner, or inside an edge, or inside the polygon.
  * For each of these
@@ -51,10 +55,10 @@
  *     inside   (c_0 . n)^2 <= d^2 |n|^2           where (c_i x c_(i+1)) . n > 0 for all i
  *
  * says of a point of the polygon that it is near enough; on the right, that the foot of the
- * perpendicular is inside. So if any of them holds, the answer is 1. If none holds, it is 0, for the
- * nearest point of the polygon is such a foot: if it lies inside and n is not 0, or inside an edge that is
- * not 0, then the origin is over it, and otherwise (n = 0, and all is on a line) it is in an edge or
- * a corner as well. The conditions on the right are false where e_i or n is 0.
+ * perpendicular is inside. So if any of them holds, the answer is 1. If none holds, it is 0, for
+ * the nearest point of the polygon is such a foot: if it lies inside and n is not 0, or inside an
+ * edge that is not 0, then the origin is over it, and otherwise (n = 0, and all is on a line) it is
+ * in an edge or a corner as well. The conditions on the right are false where e_i or n is 0.
  *
  * The one that was guessed comes first. It often tells that nothing else is nearer:
  *
@@ -81,6 +85,10 @@
 #include "base/bounds.h"
 #include "base/predicates.h"
 #include "step/limbs.h"
+#include "simd/isa.h"
+#if defined(__SIZEOF_INT128__)
+#  include "step/words.h"
+#endif
 
 enum {
     WITHIN_CORNERS = 4,
@@ -122,22 +130,24 @@ static SC_INLINE void within_outer(double result[3], const double a[3], const do
 /* The best point of all edges. What is not a number, where an edge is 0, becomes 0. */
 static SC_INLINE void guess_on_edges(within_polygon *g)
 {
-    g->square = HUGE_VAL;
+    double q[WITHIN_CORNERS][3], t[WITHIN_CORNERS], square[WITHIN_CORNERS];
+    int best = 0, next;
     for (int i = 0; i < g->corners; ++i) {
-        int j = i + 1 < g->corners ? i + 1 : 0;
-        const double *a = g->corner[i], *b = g->corner[j];
-        double e[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, q[3], square;
-        double t = -within_inner(a, e) / within_inner(e, e), s;
-        t = t > 0 ? t < 1 ? t : 1 : 0;
-        s = 1 - t;
-        for (int k = 0; k < 3; ++k) q[k] = s * a[k] + t * b[k];
-        square = within_inner(q, q);
-        if (square < g->square) {
-            g->square = square;
-            g->guess = t == 0 ? i : t == 1 ? j : g->corners + i;
-            memcpy(g->point, q, sizeof q);
-        }
+        const double *a = g->corner[i], *b = g->corner[i + 1 < g->corners ? i + 1 : 0];
+        double e[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+        double s = -within_inner(a, e) / within_inner(e, e), s_rest;
+        s = s > 0 ? s : 0;
+        s = s < 1 ? s : 1;
+        s_rest = 1 - s;
+        for (int k = 0; k < 3; ++k) q[i][k] = s_rest * a[k] + s * b[k];
+        square[i] = within_inner(q[i], q[i]);
+        t[i] = s;
+        best = square[i] < square[best] ? i : best;
     }
+    next = best + 1 < g->corners ? best + 1 : 0;
+    g->square = square[best];
+    g->guess = t[best] == 0 ? best : t[best] == 1 ? next : g->corners + best;
+    memcpy(g->point, q[best], sizeof q[best]);
 }
 
 /* The foot of the perpendicular, if it seems to be inside. */
@@ -216,7 +226,7 @@ static SC_INLINE int decide_in_doubles(int kind, const double p[4][3], double di
  */
 
 /* result = a . b, of an + bn limbs */
-static SC_INLINE void within_dot(uint64_t *result, const uint64_t *a, int an, const uint64_t *b,
+static void within_dot(uint64_t *result, const uint64_t *a, int an, const uint64_t *b,
                                  int bn)
 {
     uint64_t product[6 * WITHIN_LIMBS];
@@ -228,7 +238,7 @@ static SC_INLINE void within_dot(uint64_t *result, const uint64_t *a, int an, co
 }
 
 /* result = a x b, three of 2 n limbs */
-static SC_INLINE void within_cross(uint64_t *result, const uint64_t *a, const uint64_t *b, int n)
+static void within_cross(uint64_t *result, const uint64_t *a, const uint64_t *b, int n)
 {
     uint64_t product[2 * WITHIN_LIMBS];
     for (int k = 0; k < 3; ++k) {
@@ -247,12 +257,12 @@ typedef struct within_shape {
     uint64_t normal[6 * WITHIN_LIMBS]; /* once it is asked for */
 } within_shape;
 
-static SC_INLINE const uint64_t *shape_corner(const within_shape *s, int i)
+static const uint64_t *shape_corner(const within_shape *s, int i)
 {
     return s->corner + 3 * (i < s->corners ? i : i - s->corners) * s->n;
 }
 
-static SC_INLINE void shape_edge(uint64_t *result, const within_shape *s, int i)
+static void shape_edge(uint64_t *result, const within_shape *s, int i)
 {
     const uint64_t *to = shape_corner(s, i + 1), *from = shape_corner(s, i);
     for (int k = 0; k < 3; ++k)
@@ -260,14 +270,14 @@ static SC_INLINE void shape_edge(uint64_t *result, const within_shape *s, int i)
 }
 
 /* The sign of corner . edge. */
-static SC_INLINE int corner_along_edge(const within_shape *s, int corner, const uint64_t *edge)
+static int corner_along_edge(const within_shape *s, int corner, const uint64_t *edge)
 {
     uint64_t along[2 * WITHIN_LIMBS];
     within_dot(along, shape_corner(s, corner), s->n, edge, s->n);
     return sc_limbs_sign(along, 2 * s->n);
 }
 
-static SC_INLINE void find_shape_normal(within_shape *s)
+static void find_shape_normal(within_shape *s)
 {
     uint64_t e[3 * WITHIN_LIMBS], f[3 * WITHIN_LIMBS];
     shape_edge(e, s, 0);
@@ -276,7 +286,7 @@ static SC_INLINE void find_shape_normal(within_shape *s)
 }
 
 /* The sign of m . normal, m = c_i x c_(i+1): on which side of edge i the origin is. */
-static SC_INLINE int side_of_edge(const within_shape *s, const uint64_t *m)
+static int side_of_edge(const within_shape *s, const uint64_t *m)
 {
     uint64_t side[4 * WITHIN_LIMBS];
     within_dot(side, m, 2 * s->n, s->normal, 2 * s->n);
@@ -284,7 +294,7 @@ static SC_INLINE int side_of_edge(const within_shape *s, const uint64_t *m)
 }
 
 /* Whether a <= the square of the distance times b, of an and bn limbs; an = bn + 2 n. */
-static SC_INLINE int is_within(const within_shape *s, const uint64_t *a, int an, const uint64_t *b,
+static int is_within(const within_shape *s, const uint64_t *a, int an, const uint64_t *b,
                                int bn)
 {
     uint64_t rest[6 * WITHIN_LIMBS];
@@ -295,7 +305,7 @@ static SC_INLINE int is_within(const within_shape *s, const uint64_t *a, int an,
 
 /* Each of the next three answers 1 if a point is near enough there, 0 if nothing else is nearer,
    else SC_WITHIN_UNSURE. */
-static SC_INLINE int decide_corner(const within_shape *s, int i)
+static int decide_corner(const within_shape *s, int i)
 {
     uint64_t square[2 * WITHIN_LIMBS], edge[3 * WITHIN_LIMBS];
     within_dot(square, shape_corner(s, i), s->n, shape_corner(s, i), s->n);
@@ -307,7 +317,7 @@ static SC_INLINE int decide_corner(const within_shape *s, int i)
     return corner_along_edge(s, i, edge) <= 0 ? 0 : SC_WITHIN_UNSURE;
 }
 
-static SC_INLINE int decide_edge(within_shape *s, int i)
+static int decide_edge(within_shape *s, int i)
 {
     uint64_t edge[3 * WITHIN_LIMBS], m[6 * WITHIN_LIMBS];
     uint64_t length[2 * WITHIN_LIMBS], area[4 * WITHIN_LIMBS];
@@ -322,7 +332,7 @@ static SC_INLINE int decide_edge(within_shape *s, int i)
     return side_of_edge(s, m) <= 0 ? 0 : SC_WITHIN_UNSURE;
 }
 
-static SC_INLINE int decide_inside(within_shape *s)
+static int decide_inside(within_shape *s)
 {
     uint64_t m[6 * WITHIN_LIMBS], length[4 * WITHIN_LIMBS];
     uint64_t height[3 * WITHIN_LIMBS], square[6 * WITHIN_LIMBS];
@@ -337,7 +347,7 @@ static SC_INLINE int decide_inside(within_shape *s)
     return is_within(s, square, 6 * s->n, length, 4 * s->n);
 }
 
-static SC_INLINE int decide_at(within_shape *s, int guess)
+static int decide_at(within_shape *s, int guess)
 {
     if (guess < s->corners) return decide_corner(s, guess);
     if (guess < 2 * s->corners) return decide_edge(s, guess - s->corners);
@@ -345,7 +355,7 @@ static SC_INLINE int decide_at(within_shape *s, int guess)
 }
 
 /* x holds the coordinates of the four points and the distance, n limbs each. */
-static SC_INLINE int decide_by_signs(int kind, const uint64_t *x, int n, int guess)
+static int decide_by_signs(int kind, const uint64_t *x, int n, int guess)
 {
     within_shape s;
     const uint64_t *distance = x + WITHIN_NUMBERS * n;
@@ -360,7 +370,8 @@ static SC_INLINE int decide_by_signs(int kind, const uint64_t *x, int n, int gue
     }
     sc_limbs_multiply(s.square, distance, n, distance, n);
     answer = decide_at(&s, guess);
-    for (int i = 0; answer == SC_WITHIN_UNSURE && i <= 2 * s.corners; ++i) answer = decide_at(&s, i);
+    for (int i = 0; answer == SC_WITHIN_UNSURE && i <= 2 * s.corners; ++i)
+        answer = decide_at(&s, i);
     return answer == 1;
 }
 
@@ -384,41 +395,93 @@ static SC_INLINE double power_of_two(int exponent)
     return value;
 }
 
+/* Two powers of two, far apart, each times 1.5 2^52: what is added to one of them becomes a
+   multiple of that power, in the last bits of the sum. */
+typedef struct word_scale {
+    double coarse, fine;
+    uint64_t coarse_bits, fine_bits;
+} word_scale;
+
+enum { WORD_BITS = 61, WORD_FINE_BITS = 35 };
+
 /*
- * Sets x to the twelve coordinates and the distance over one power of two, each below 2^61; 0 if they
- * are no multiples of it. The largest is from 2^-400 to below 2^401, so that the scale and its inverse
- * are normal numbers. What is multiplied by a power of two is exact, unless it underflows: then the
- * integer, multiplied back, is not what it was. Compared are bits, lest subnormal numbers be taken
- * for 0 where a machine does so.
+ * The integer that value is over the fine power, exactly, or bits in *wrong: value is the sum of a
+ * multiple of the coarse power and a rest of up to half of it, both exact, and the rest is to be a
+ * multiple of the fine power. Sums are compared with the value by their bits, so that what is
+ * subnormal is not taken for 0 where a machine does so; the sign of 0 does not matter.
  */
-static SC_INLINE int scale_to_words(uint64_t *x, const double p[4][3], double distance)
+static SC_INLINE int64_t scale_to_word(const word_scale *s, double value, uint64_t *wrong)
 {
-    uint64_t largest = magnitude_bits(distance), wrong = 0;
+    double coarse = value + s->coarse, high = coarse - s->coarse;
+    double fine = (value - high) + s->fine, low = fine - s->fine, sum = high + low;
+    uint64_t coarse_bits, fine_bits, value_bits, sum_bits;
+    memcpy(&coarse_bits, &coarse, sizeof coarse);
+    memcpy(&fine_bits, &fine, sizeof fine);
+    memcpy(&value_bits, &value, sizeof value);
+    memcpy(&sum_bits, &sum, sizeof sum);
+    *wrong |= (value_bits ^ sum_bits) << 1;
+    return (int64_t)(((coarse_bits - s->coarse_bits) << WORD_FINE_BITS) +
+                     (fine_bits - s->fine_bits));
+}
+
+/* Sets x to the twelve coordinates and the distance over one power of two, each below 2^61; 0 if
+   they are no multiples of it. The largest is from 2^-900 to below 2^901, so that both powers and
+   their sums are normal numbers. */
+static SC_INLINE int scale_to_words(int64_t *x, const double p[4][3], double distance)
+{
     const double *values = p[0];
-    double scale, inverse;
+    double largest = distance, some[4];
+    uint64_t wrong = 0;
+    word_scale s;
     int exponent;
-    for (int i = 0; i < WITHIN_NUMBERS; ++i) {
-        uint64_t bits = magnitude_bits(values[i]);
-        largest = bits > largest ? bits : largest;
+    for (int i = 0; i < 4; ++i) {
+        double a = fabs(values[i]), b = fabs(values[i + 4]), c = fabs(values[i + 8]);
+        a = a > b ? a : b;
+        some[i] = a > c ? a : c;
     }
-    exponent = (int)(largest >> 52) - 1023;
-    if (exponent < -400 || exponent > 400) return 0;
-    scale = power_of_two(60 - exponent);
-    inverse = power_of_two(exponent - 60);
-    for (int i = 0; i <= WITHIN_NUMBERS; ++i) {
-        double value = i < WITHIN_NUMBERS ? values[i] : distance;
-        int64_t whole = (int64_t)(value * scale);
-        wrong |= magnitude_bits((double)whole * inverse) ^ magnitude_bits(value);
-        x[i] = (uint64_t)whole;
-    }
+    for (int i = 0; i < 4; ++i) largest = some[i] > largest ? some[i] : largest;
+    exponent = (int)(magnitude_bits(largest) >> 52) - 1023;
+    if (exponent < -900 || exponent > 900) return 0;
+    s.fine = 1.5 * power_of_two(exponent + 1 - WORD_BITS + 52);
+    s.coarse = 1.5 * power_of_two(exponent + 1 - WORD_BITS + WORD_FINE_BITS + 52);
+    s.fine_bits = magnitude_bits(s.fine);
+    s.coarse_bits = magnitude_bits(s.coarse);
+    for (int i = 0; i < WITHIN_NUMBERS; ++i) x[i] = scale_to_word(&s, values[i], &wrong);
+    x[WITHIN_NUMBERS] = scale_to_word(&s, distance, &wrong);
     return wrong == 0;
 }
 
+#if defined(__SIZEOF_INT128__)
+
+static SC_INLINE int decide_scaled_words(int kind, const int64_t *x, int guess)
+{
+    sc_words_shape s;
+    s.corners = within_corner_count[kind];
+    for (int i = 0; i < s.corners; ++i) {
+        const int64_t *to = x + 3 * within_corner[kind][i][0];
+        const int64_t *from = x + 3 * within_corner[kind][i][1];
+        for (int k = 0; k < 3; ++k) s.corner[i][k] = to[k] - from[k];
+    }
+    s.distance = x[WITHIN_NUMBERS];
+    return sc_words_decide(&s, guess);
+}
+
+#else
+
+static int decide_scaled_words(int kind, const int64_t *x, int guess)
+{
+    uint64_t limbs[WITHIN_NUMBERS + 1];
+    for (int i = 0; i <= WITHIN_NUMBERS; ++i) limbs[i] = (uint64_t)x[i];
+    return decide_by_signs(kind, limbs, 1, guess);
+}
+
+#endif
+
 static SC_INLINE int decide_in_words(int kind, const double p[4][3], double distance, int guess)
 {
-    uint64_t x[WITHIN_NUMBERS + 1];
+    int64_t x[WITHIN_NUMBERS + 1];
     if (!scale_to_words(x, p, distance)) return SC_WITHIN_UNSURE;
-    return decide_by_signs(kind, x, 1, guess);
+    return decide_scaled_words(kind, x, guess);
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -465,8 +528,7 @@ static SC_NOINLINE int decide_at_length(int kind, const double p[4][3], double d
     int least = 2 * 2048, most = 0, n;
     for (int i = 0; i <= WITHIN_NUMBERS; ++i) {
         int exponent;
-        uint64_t mantissa =
-            mantissa_of(i < WITHIN_NUMBERS ? values[i] : distance, &exponent);
+        uint64_t mantissa = mantissa_of(i < WITHIN_NUMBERS ? values[i] : distance, &exponent);
         if (mantissa == 0) continue;
         int low = exponent + (int)sc_bits_lowest64(mantissa);
         least = low < least ? low : least;

@@ -4,17 +4,19 @@
  * SPDX-License-Identifier: MIT
  *
  * The answer is 1 if and only if the Euclidean distance of the two closed sets, of the real numbers
- * that the doubles are, is the given one or less. All finite doubles are allowed, the distance being
- * 0 or more; so are triangles without area and segments without length. The answer does not depend
- * on the order of corners, ends or segments, nor on compiler or machine.
+ * that the doubles are, is the given one or less. All finite doubles are allowed, the distance
+ * being 0 or more; so are triangles without area and segments without length. The answer does not
+ * depend on the order of corners, ends or segments, nor on compiler or machine.
  *
  * Three stages, each of which answers only what it is sure of:
  *   - doubles: two proofs, that of a point that is near enough and that of a direction that
  *     separates. Settles what is not within a few roundings of the distance;
- *   - words: where all coordinates and the distance are multiples of one power of two and below 2^61
- *     times it. That is so of grids, and of most points of which no coordinate is much smaller than
- *     the others;
+ *   - words: where all coordinates and the distance are multiples of one power of two and below
+ *     2^61 times it. That is so of grids, and of most points of which no coordinate is much smaller
+ *     than the others;
  *   - integers as long as it takes, up to 2,112 bits for a coordinate.
+ * They take about 25 to 80 ns, 20 to 150 ns, and 1 microsecond where exponents differ by 20, up to
+ * 100 microseconds for the whole range of doubles.
  */
 #ifndef SC_STEP_WITHIN_H
 #define SC_STEP_WITHIN_H
@@ -37,7 +39,7 @@ enum { SC_WITHIN_UNSURE = -1 };
 int sc_within_by_doubles(sc_within_kind kind, const double p[4][3], double distance, int *guess);
 int sc_within_by_words(sc_within_kind kind, const double p[4][3], double distance, int guess);
 
-/* 1 or 0. Takes 15 KB of stack. */
+/* 1 or 0. Takes up to 19 KB of stack. */
 int sc_within_by_integers(sc_within_kind kind, const double p[4][3], double distance, int guess);
 
 #endif /* SC_STEP_WITHIN_H */

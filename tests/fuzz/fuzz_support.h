@@ -21,6 +21,7 @@
 /* The targets. Each returns 0. */
 int fuzz_build(const uint8_t *data, size_t size);   /* meshes and build options, right and wrong */
 int fuzz_query(const uint8_t *data, size_t size);   /* poses and query options, one workspace */
+int fuzz_near(const uint8_t *data, size_t size);    /* poses and distances, what is near */
 int fuzz_options(const uint8_t *data, size_t size); /* structures of every size and content */
 int fuzz_load(const uint8_t *data, size_t size);    /* saved models and records, right and wrong */
 
