@@ -121,9 +121,48 @@ static void make_parallel_fine(double points[4][3])
     }
 }
 
+/* Differences of points 0 and 1, and of 2 and 3, at right angles but for rounding. */
+static void make_perpendicular(double points[4][3])
+{
+    double u[3], dot = 0, square = 0;
+    make_random(points);
+    for (int c = 0; c < 3; ++c) {
+        u[c] = points[1][c] - points[0][c];
+        dot += u[c] * (points[3][c] - points[2][c]);
+        square += u[c] * u[c];
+    }
+    for (int c = 0; c < 3; ++c) points[3][c] -= dot / square * u[c];
+}
+
+/* On a grid, but for what is too little to be seen in rounded differences. */
+static void make_on_noisy_grid(double points[4][3])
+{
+    make_on_grid(points, 3);
+    for (int i = 0; i < 12; ++i)
+        if (!(points[i / 3][i % 3] > 0) && test_random_below(2))
+            points[i / 3][i % 3] = ldexp(test_random_range(-1, 1), -60);
+}
+
+/* Differences are exact, but of many bits; the last point near the line or plane of others. */
+static void make_exact(double points[4][3])
+{
+    make_random(points);
+    if (test_random_below(2))
+        put_in_plane(points);
+    else
+        put_on_line(points, 3, 1, 2);
+    for (int i = 0; i < 12; ++i) {
+        double *x = &points[i / 3][i % 3];
+        *x = (*x + 24) - 24; /* a multiple of 2^-48 */
+    }
+}
+
 static void make_any(double points[4][3])
 {
-    switch (test_random_below(10)) {
+    switch (test_random_below(13)) {
+    case 10: make_perpendicular(points); break;
+    case 11: make_on_noisy_grid(points); break;
+    case 12: make_exact(points); break;
     case 0: make_random(points); break;
     case 1: make_on_grid(points, 2); break;
     case 2: make_on_grid(points, 1 + test_random_below(6)); break;
