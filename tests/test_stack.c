@@ -48,6 +48,8 @@ typedef struct call {
     sc_result result;
     sc_step_result stepped;
     sc_contact *contacts;
+    sc_pair apart; /* two edges */
+    sc_near_stencil stencil;
     void *saved;
     uint64_t saved_size;
     sc_status status;
@@ -93,6 +95,13 @@ static void *meet(void *argument)
 {
     call *c = (call *)argument;
     c->status = sc_contacts(c->model, c->pose, c->pairs, c->result.pairs, PAIRS, c->contacts);
+    return NULL;
+}
+
+static void *find_closest(void *argument)
+{
+    call *c = (call *)argument;
+    c->status = sc_near_stencils(c->model, c->pose, SC_NEAR_EDGE_EDGE, &c->apart, 1, &c->stencil);
     return NULL;
 }
 
@@ -210,7 +219,7 @@ static void calls_take_little_stack(void)
     static sc_pair pairs[PAIRS];
     static sc_contact contacts[PAIRS];
     static sc_pair edges[PAIRS];
-    size_t most = 0, most_meeting = 0, most_stepping = 0;
+    size_t most = 0, most_meeting = 0, most_near = 0, most_stepping = 0;
     uint64_t fallbacks = 0;
     for (size_t u = 0; u < sizeof(units) / sizeof(units[0]); ++u) {
         folded(moved, units[u]);
@@ -231,6 +240,10 @@ static void calls_take_little_stack(void)
             const size_t meeting = stack_of(meet, &c);
             CHECK_MSG(meeting > empty && c.status == SC_OK, "status %d", (int)c.status);
             if (meeting - empty > most_meeting) most_meeting = meeting - empty;
+            c.apart = (sc_pair){0, 3 * 40 + (uint32_t)k % 3};
+            const size_t near = stack_of(find_closest, &c);
+            CHECK_MSG(near > empty && c.status == SC_OK, "status %d", (int)c.status);
+            if (near - empty > most_near) most_near = near - empty;
             c.separation = k % 2 ? 0.01 * units[u] : 0;
             c.stepped = (sc_step_result){.struct_size = sizeof(c.stepped),
                                          .vertex_face_capacity = PAIRS,
@@ -248,6 +261,8 @@ static void calls_take_little_stack(void)
     test_note("sc_query: %zu bytes", most);
     CHECK_MSG(most_meeting <= PROMISED, "%zu bytes", most_meeting);
     test_note("sc_contacts: %zu bytes", most_meeting);
+    CHECK_MSG(most_near <= PROMISED, "%zu bytes", most_near);
+    test_note("sc_near_stencils: %zu bytes", most_near);
     CHECK_MSG(most_stepping <= PROMISED, "%zu bytes", most_stepping);
     test_note("sc_query_step: %zu bytes", most_stepping);
     sc_workspace_free(c.workspace);
