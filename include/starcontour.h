@@ -1121,9 +1121,9 @@ typedef struct sc_near_stencil {
  *     sc_near_stencils(model, &pose, SC_NEAR_EDGE_EDGE, result.edge_edges, result.edge_edge_count,
  *                      stencils);
  *
- * No memory is taken and no workspace, so threads may share a list of pairs. 0.1 to 0.4 us a pair
- * (Zen 4); ties of coordinates with many bits some us, and 60 us and more where exponents differ
- * widely.
+ * No memory is taken and no workspace, so threads may share a list of pairs. 0.3 us a pair (Zen 4:
+ * 0.1 us of two vertices, 0.4 us of two edges); 3 us where coordinates of many bits make ties; up
+ * to 1.5 ms where exponents are spread over the whole range of doubles.
  *
  * SC_ERROR_OPTION: kind is another. SC_ERROR_PAIRS: a pair names a vertex, triangle or edge that
  * does not exist; a vertex that no triangle uses, that another one represents, or that is a corner
@@ -1144,8 +1144,8 @@ SC_API sc_status sc_near_stencils(const sc_model *model, const sc_pose *pose, ui
  * multiplicities, which has count entries, gets for each of them how many it stands for. What is
  * behind them in both arrays means nothing.
  *
- * No memory is taken. O(n log n), MERGE_COST. SC_ERROR_COUNT: count is 2^32 or more; *merged_count
- * is 0 on errors.
+ * No memory is taken. O(n log n): 0.2 us a stencil of 10,000, 0.5 us of a million. SC_ERROR_COUNT:
+ * count is 2^32 or more; *merged_count is 0 on errors.
  */
 SC_API sc_status sc_near_merge(sc_near_stencil *stencils, uint64_t count, uint64_t *merged_count,
                                uint32_t *multiplicities);

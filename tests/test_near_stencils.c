@@ -98,8 +98,7 @@ static void make_parallel(double points[4][3])
     double by = test_random_below(2) ? 1 : -1;
     int exact = test_random_below(3) > 0;
     make_on_grid(points, 8);
-    if (exact) by *= (double)(1 + test_random_below(3));
-    else by *= test_random_range(0.1, 3);
+    by *= exact ? (double)(1 + test_random_below(3)) : test_random_range(0.1, 3);
     for (int c = 0; c < 3; ++c) points[3][c] = points[2][c] + by * (points[1][c] - points[0][c]);
     if (test_random_below(3) == 0) /* exactly parallel, of many bits */
         for (int i = 0; i < 12; ++i) points[i / 3][i % 3] *= 0x1.23456789abcdep-3;
@@ -121,9 +120,48 @@ static void make_parallel_fine(double points[4][3])
     }
 }
 
+/* Differences of points 0 and 1, and of 2 and 3, at right angles but for rounding. */
+static void make_perpendicular(double points[4][3])
+{
+    double u[3], dot = 0, square = 0;
+    make_random(points);
+    for (int c = 0; c < 3; ++c) {
+        u[c] = points[1][c] - points[0][c];
+        dot += u[c] * (points[3][c] - points[2][c]);
+        square += u[c] * u[c];
+    }
+    for (int c = 0; c < 3; ++c) points[3][c] -= dot / square * u[c];
+}
+
+/* On a grid, but for what is too little to be seen in rounded differences. */
+static void make_on_noisy_grid(double points[4][3])
+{
+    make_on_grid(points, 3);
+    for (int i = 0; i < 12; ++i)
+        if (!(points[i / 3][i % 3] > 0) && test_random_below(2))
+            points[i / 3][i % 3] = ldexp(test_random_range(-1, 1), -60);
+}
+
+/* Differences are exact, but of many bits; the last point near the line or plane of others. */
+static void make_exact(double points[4][3])
+{
+    make_random(points);
+    if (test_random_below(2))
+        put_in_plane(points);
+    else
+        put_on_line(points, 3, 1, 2);
+    for (int i = 0; i < 12; ++i) {
+        double *x = &points[i / 3][i % 3];
+        *x = (*x + 24) - 24; /* a multiple of 2^-48 */
+    }
+}
+
 static void make_any(double points[4][3])
 {
-    switch (test_random_below(10)) {
+    switch (test_random_below(13)) {
+    case 10: make_perpendicular(points); break;
+    case 11: make_on_noisy_grid(points); break;
+    case 12: make_exact(points); break;
     case 0: make_random(points); break;
     case 1: make_on_grid(points, 2); break;
     case 2: make_on_grid(points, 1 + test_random_below(6)); break;
@@ -236,7 +274,8 @@ static void scaled(void)
 static void tiny_weights(void)
 {
     double face[4][3] = {{0x1p-1060, 1, 0}, {0, 0, 0}, {0x1p+1000, 0, 0}, {0, -1, 0}};
-    double edges[4][3] = {{0, 0, 1}, {0x1p+1000, 0, 1}, {0x1p-1060, -1, 0}, {0x1p-1060, 0x1p+1000, 0}};
+    double edges[4][3] = {
+        {0, 0, 1}, {0x1p+1000, 0, 1}, {0x1p-1060, -1, 0}, {0x1p-1060, 0x1p+1000, 0}};
     tally t;
     stencil_oracle o;
     sc_near_stencil s;
@@ -405,8 +444,10 @@ static void polynomials(void)
         sc_cross sn, sm;
         make_any(points);
         if (i % 7 == 0)
-            for (int k = 0; k < 12; ++k)
-                points[k / 3][k % 3] = ldexp(points[k / 3][k % 3], (int)test_random_below(400) - 200);
+            for (int k = 0; k < 12; ++k) {
+                double *x = &points[k / 3][k % 3];
+                *x = ldexp(*x, (int)test_random_below(400) - 200);
+            }
         sc_quad_set(&quad, p);
         sc_quad_span(&quad, 0, 1, &su);
         sc_quad_span(&quad, i % 3 == 0 ? 0 : 2, 3, &sv);
@@ -498,7 +539,8 @@ static void pairs_of_meshes(void)
         if (type == SC_FLOAT) soup_round_to_float(posed.positions, posed.vertex_count);
         positions = input_positions(posed.positions, posed.vertex_count, type, round % 3 * 4);
         memset(is_used, 0, mesh.vertex_count);
-        for (uint32_t i = 0; i < 3 * mesh.triangle_count; ++i) is_used[corner_of(&mesh, weld, i)] = 1;
+        for (uint32_t i = 0; i < 3 * mesh.triangle_count; ++i)
+            is_used[corner_of(&mesh, weld, i)] = 1;
         if (CHECK(sc_build(&input, &choices.options, &model) == SC_OK)) {
             sc_pose pose = input_pose(posed.vertex_count, &positions);
             for (uint32_t i = 0; i < 200; ++i) {
@@ -564,8 +606,10 @@ static void make_stencil(sc_near_stencil *s, uint32_t vertices, uint32_t number)
         uint32_t out = 1 + kind + test_random_below(3 - kind);
         s->weights[kind ? test_random_below(2) : 0] = -1;
         for (uint32_t i = 1 + kind; i < 4; ++i) {
-            if (feature == 1) s->weights[i] = i == out;
-            else if (kind || i != out) s->weights[i] = 0.5;
+            if (feature == 1)
+                s->weights[i] = i == out;
+            else if (kind || i != out)
+                s->weights[i] = 0.5;
         }
     }
 }
@@ -579,10 +623,11 @@ static int are_alike(const sc_near_stencil *s, const sc_near_stencil *t)
             for (int side = -1; side < 2; side += 2) {
                 const sc_near_stencil *from = side < 0 ? s : t, *to = side < 0 ? t : s;
                 int found = !(from->weights[i] < 0) && !(from->weights[i] > 0);
-                for (int j = 0; j < 4; ++j)
+                for (int j = 0; j < 4; ++j) {
+                    double w = turn ? -to->weights[j] : to->weights[j];
                     found |= from->vertices[i] == to->vertices[j] &&
-                             (from->weights[i] > 0 ? (turn ? to->weights[j] < 0 : to->weights[j] > 0)
-                                                   : (turn ? to->weights[j] > 0 : to->weights[j] < 0));
+                             (from->weights[i] > 0 ? w > 0 : w < 0);
+                }
                 alike &= found;
             }
         if (alike) return 1;

@@ -49,6 +49,8 @@ typedef struct call {
     sc_step_result stepped;
     sc_near_result near;
     sc_contact *contacts;
+    sc_pair apart; /* two edges */
+    sc_near_stencil stencil;
     void *saved;
     uint64_t saved_size;
     sc_status status;
@@ -94,6 +96,13 @@ static void *meet(void *argument)
 {
     call *c = (call *)argument;
     c->status = sc_contacts(c->model, c->pose, c->pairs, c->result.pairs, PAIRS, c->contacts);
+    return NULL;
+}
+
+static void *find_closest(void *argument)
+{
+    call *c = (call *)argument;
+    c->status = sc_near_stencils(c->model, c->pose, SC_NEAR_EDGE_EDGE, &c->apart, 1, &c->stencil);
     return NULL;
 }
 
@@ -241,6 +250,10 @@ static void calls_take_little_stack(void)
             const size_t meeting = stack_of(meet, &c);
             CHECK_MSG(meeting > empty && c.status == SC_OK, "status %d", (int)c.status);
             if (meeting - empty > most_meeting) most_meeting = meeting - empty;
+            c.apart = (sc_pair){0, 3 * 40 + (uint32_t)k % 3};
+            const size_t near = stack_of(find_closest, &c);
+            CHECK_MSG(near > empty && c.status == SC_OK, "status %d", (int)c.status);
+            if (near - empty > most_near) most_near = near - empty;
             c.separation = k % 2 ? 0.01 * units[u] : 0;
             c.stepped = (sc_step_result){.struct_size = sizeof(c.stepped),
                                          .vertex_face_capacity = PAIRS,
@@ -270,7 +283,7 @@ static void calls_take_little_stack(void)
     CHECK_MSG(most_stepping <= PROMISED, "%zu bytes", most_stepping);
     test_note("sc_query_step: %zu bytes", most_stepping);
     CHECK_MSG(most_near <= PROMISED, "%zu bytes", most_near);
-    test_note("sc_query_near: %zu bytes", most_near);
+    test_note("sc_query_near, sc_near_stencils: %zu bytes", most_near);
     sc_workspace_free(c.workspace);
     sc_model_free(c.model);
 }

@@ -8,7 +8,7 @@
  * Each polynomial is sought in two stages:
  *   1. as the sum of two doubles (sc_twofold), 10 to 50 ns. It is believed if it is much larger
  *      than what it can be off by, or if differences have so few bits that it is exact;
- *   2. in integers (base/wide.h), 0.5 to 3 us, for widely different exponents up to 60 us.
+ *   2. in integers (base/wide.h), 0.5 to 1 us, for widely different exponents more.
  *
  * Points that are not finite give results that mean nothing, but cause no harm.
  */

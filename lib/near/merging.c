@@ -3,14 +3,15 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The array of multiplicities first holds the numbers of all stencils that may be merged, sorted by
- * what they are of, then by number. A heap does that, in O(n log n) whatever the input. Then all of
- * a group but its first are marked as gone; as they are not needed any more, the second keeps the
- * number of the first and the size of the group. So the array is free for the multiplicities.
+ * The array of multiplicities first links all stencils that may be merged to a list, which is
+ * sorted by what they are of, merging sorted lists of 1, 2, 4, ... stencils: O(n log n), and those
+ * of one subject keep their order. Then all of a group but its first are marked as gone; as they
+ * are not needed any more, the second keeps the number of the first and the size of the group. So
+ * the array is free for the multiplicities.
  */
 #include "near/merging.h"
 
-enum { GONE = 0 }; /* as a feature */
+enum { GONE = 0 /* as a feature */, LISTS = 33 /* of 2^0, 2^1, ... 2^32 */ };
 
 /* What a stencil is of: two vertices in order; or a vertex, and the ends of an edge in order. */
 typedef struct subject {
@@ -56,58 +57,78 @@ static int compare_subjects(const subject *s, const subject *t)
     return 0;
 }
 
-static int comes_before(const sc_near_stencil *stencils, uint32_t i, uint32_t j)
+/* Merges two sorted lists; of equals those of the first come first. next[i] follows i, SC_NONE ends
+   a list. */
+static uint32_t merge_lists(const sc_near_stencil *stencils, uint32_t *next, uint32_t one,
+                            uint32_t two)
 {
-    subject s = subject_of(&stencils[i]), t = subject_of(&stencils[j]);
-    int order = compare_subjects(&s, &t);
-    return order ? order < 0 : i < j;
-}
-
-/* Lets a number sink into a heap, the last one on top, from a place that is free. */
-static void sink(const sc_near_stencil *stencils, uint32_t *heap, uint64_t count, uint64_t at,
-                 uint32_t number)
-{
+    uint32_t first = SC_NONE, last = SC_NONE;
+    subject s, t;
+    s = subject_of(&stencils[one]);
+    t = subject_of(&stencils[two]);
     for (;;) {
-        uint64_t child = 2 * at + 1;
-        if (child >= count) break;
-        if (child + 1 < count && comes_before(stencils, heap[child], heap[child + 1])) child++;
-        if (!comes_before(stencils, number, heap[child])) break;
-        heap[at] = heap[child];
-        at = child;
+        int takes_two = compare_subjects(&t, &s) < 0;
+        uint32_t taken = takes_two ? two : one, follows = next[taken];
+        if (last == SC_NONE)
+            first = taken;
+        else
+            next[last] = taken;
+        last = taken;
+        if (follows == SC_NONE) {
+            next[last] = takes_two ? one : two;
+            return first;
+        }
+        if (takes_two) {
+            two = follows;
+            t = subject_of(&stencils[two]);
+        } else {
+            one = follows;
+            s = subject_of(&stencils[one]);
+        }
     }
-    heap[at] = number;
 }
 
-static void sort_numbers(const sc_near_stencil *stencils, uint32_t *numbers, uint64_t count)
+/* Links what may be merged to a sorted list; returns its first, or SC_NONE. */
+static uint32_t link_sorted(const sc_near_stencil *stencils, uint32_t count, uint32_t *next)
 {
-    uint64_t i;
-    for (i = count / 2; i-- > 0;) sink(stencils, numbers, count, i, numbers[i]);
-    for (i = count; i-- > 1;) {
-        uint32_t number = numbers[i];
-        numbers[i] = numbers[0];
-        sink(stencils, numbers, i, 0, number);
+    uint32_t list[LISTS], all = SC_NONE, i;
+    int k;
+    for (k = 0; k < LISTS; k++) list[k] = SC_NONE;
+    for (i = 0; i < count; i++) {
+        uint32_t carried = i;
+        if (stencils[i].feature != SC_FEATURE_VERTEX_VERTEX &&
+            stencils[i].feature != SC_FEATURE_VERTEX_EDGE)
+            continue;
+        next[i] = SC_NONE;
+        for (k = 0; list[k] != SC_NONE; k++) {
+            carried = merge_lists(stencils, next, list[k], carried);
+            list[k] = SC_NONE;
+        }
+        list[k] = carried;
     }
+    for (k = 0; k < LISTS; k++)
+        if (list[k] != SC_NONE)
+            all = all == SC_NONE ? list[k] : merge_lists(stencils, next, list[k], all);
+    return all;
 }
 
 uint32_t sc_merging_run(sc_near_stencil *stencils, uint32_t count, uint32_t *multiplicities)
 {
-    uint32_t i, first, end, some = 0, left = 0;
-    for (i = 0; i < count; i++)
-        if (stencils[i].feature == SC_FEATURE_VERTEX_VERTEX ||
-            stencils[i].feature == SC_FEATURE_VERTEX_EDGE)
-            multiplicities[some++] = i;
-    sort_numbers(stencils, multiplicities, some);
-    for (first = 0; first < some; first = end) {
-        subject s = subject_of(&stencils[multiplicities[first]]);
-        for (end = first + 1; end < some; end++) {
-            subject t = subject_of(&stencils[multiplicities[end]]);
+    uint32_t i, first, left = 0;
+    for (first = link_sorted(stencils, count, multiplicities); first != SC_NONE;) {
+        subject s = subject_of(&stencils[first]);
+        uint32_t member = multiplicities[first], second = member, size = 1;
+        for (; member != SC_NONE; member = multiplicities[member], size++) {
+            subject t = subject_of(&stencils[member]);
             if (compare_subjects(&s, &t)) break;
-            stencils[multiplicities[end]].feature = GONE;
-            stencils[multiplicities[end]].vertices[1] = 0;
+            stencils[member].feature = GONE;
+            stencils[member].vertices[1] = 0;
         }
-        if (end == first + 1) continue;
-        stencils[multiplicities[first + 1]].vertices[0] = multiplicities[first];
-        stencils[multiplicities[first + 1]].vertices[1] = end - first;
+        if (size > 1) {
+            stencils[second].vertices[0] = first;
+            stencils[second].vertices[1] = size;
+        }
+        first = member;
     }
     for (i = 0; i < count; i++) multiplicities[i] = 1;
     for (i = 0; i < count; i++)

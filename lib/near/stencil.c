@@ -107,15 +107,10 @@ static void write_vertices(seeker *s, int i, int j)
     s->out->weights[i] = -1;
     s->out->weights[j] = 1;
     for (k = 0; k < 3; k++) {
-        double p = s->quad.point[i][k], q = s->quad.point[j][k], difference = q - p;
+        double difference = s->quad.point[j][k] - s->quad.point[i][k];
         s->out->vector[k] = difference;
-        v[k].exponent = 0;
-        if (difference - difference != 0) { /* halves do not overflow */
-            difference = q / 2 - p / 2;
-            v[k].exponent = 1;
-        }
         v[k].number = frexp(difference, &own);
-        v[k].exponent += own;
+        v[k].exponent = own;
     }
     length = length_of(v, &exponent);
     s->out->distance = to_double(length, exponent);
