@@ -630,11 +630,11 @@ typedef struct sc_group {
 #define SC_RINGS_MAX 32
 
 /*
- * Which pairs are not wanted; what is said here is for sc_query. Of pairs of a vertex and a face, or
- * of two edges, see "Filters of pairs of features" at sc_query_step. A pair is reported, counted, or ends a query for SC_OUTPUT_ANY only
+ * Which pairs are not wanted. A pair is reported, counted, or ends a query for SC_OUTPUT_ANY only
  * if nothing here says no; culling is as without a filter, and so no wanted pair is missed. Arrays
  * are the caller's and are only read, during the call; they need the alignment of uint32_t. All
- * members but struct_size may be zero: nothing is left out.
+ * members but struct_size may be zero: nothing is left out. What members mean is said here of the
+ * pairs of sc_query, and under "Filters of pairs of features" at sc_query_step of its pairs.
  *
  *   ignore_rings    1: leaves out pairs that share a vertex. n: pairs less than n edges of the mesh
  *                   apart, counted from the vertices of one to those of the other, after welding;
@@ -1015,8 +1015,9 @@ typedef struct sc_step_result {
  *   - steps of models of fewer than 128 leaf clusters;
  *   - all but the passes with a budget, and where the library was compiled by other compilers than
  *     gcc or clang;
- *   - all but the passes with accept in a filter, unless both arrays have room, and, where times are
- *     wanted, arrays for the times of both; then it is called at the end, in the order of the lists;
+ *   - all but the passes with accept in a filter, unless both arrays have room and, where times
+ *     are wanted, there are arrays for those of both; then it is called at the end, in the order of
+ *     the lists;
  *   - all but the passes once more, where one of the arrays turns out to be too short.
  *
  * No memory is allocated. Cost, on one thread: reading the poses, 10 ns a triangle for normal

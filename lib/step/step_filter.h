@@ -8,8 +8,8 @@
  * where filters->sifts or ->decides says that there is nothing to ask, not at all:
  *
  *     sc_step_filter_sift      groups, a few nanoseconds: before a pair is decided
- *     sc_step_filter_admits    the rest, of pairs that were found: the list of pairs to ignore, rings,
- *                              the distance in the rest pose, at last the caller's function
+ *     sc_step_filter_admits    the rest, of pairs that were found: the list of pairs to ignore,
+ *                              rings, the distance in the rest pose, at last the caller's function
  *     sc_step_pairs_take
  *
  * Of several workers none asks the caller's function: sc_step_filter_ask does it at the end, in the
