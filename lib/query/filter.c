@@ -82,29 +82,40 @@ sc_group sc_filter_group_of(const sc_group *groups, const uint32_t *points, uint
 
 /* ---- rings ---- */
 
-/* Marks the points at most steps edges away from some points. */
-static void mark_ball(const sc_model *model, sc_ball *ball, const uint32_t *center, uint32_t count,
-                      uint32_t steps)
+/* Begins a ball with the points that it is round. It may grow by so many edges. */
+static void begin_ball(const sc_model *model, sc_ball *ball, const uint32_t *center, uint32_t count,
+                       uint32_t steps)
 {
-    const uint32_t *first = sc_model_around_first(model), *around = sc_model_around(model);
-    uint32_t head = 0, tail = 0, end, i;
+    uint32_t i;
     if (ball->epoch == 0xffff) {
         memset(ball->epoch_of, 0, model->vertex_count * sizeof *ball->epoch_of);
         ball->epoch = 0;
     }
     ball->epoch++;
+    ball->head = ball->tail = 0;
+    ball->steps = steps;
     for (i = 0; i < count; i++)
         if (ball->epoch_of[center[i]] != ball->epoch) {
             ball->epoch_of[center[i]] = ball->epoch;
-            ball->queue[tail++] = center[i];
+            ball->queue[ball->tail++] = center[i];
         }
-    for (; steps && head < tail; steps--)
-        for (end = tail; head < end; head++)
-            for (i = first[ball->queue[head]]; i < first[ball->queue[head] + 1]; i++)
-                if (ball->epoch_of[around[i]] != ball->epoch) {
-                    ball->epoch_of[around[i]] = ball->epoch;
-                    ball->queue[tail++] = around[i];
-                }
+}
+
+/* Adds the points that are one edge farther away; 0: it is not to grow, or cannot. */
+static int grow_ball(const sc_model *model, sc_ball *ball)
+{
+    const uint32_t *first = sc_model_around_first(model), *around = sc_model_around(model);
+    const uint32_t end = ball->tail;
+    uint32_t i;
+    if (!ball->steps || ball->head == end) return 0;
+    ball->steps--;
+    for (; ball->head < end; ball->head++)
+        for (i = first[ball->queue[ball->head]]; i < first[ball->queue[ball->head] + 1]; i++)
+            if (ball->epoch_of[around[i]] != ball->epoch) {
+                ball->epoch_of[around[i]] = ball->epoch;
+                ball->queue[ball->tail++] = around[i];
+            }
+    return 1;
 }
 
 static const uint32_t *points_of(const sc_model *model, uint32_t triangle)
@@ -121,12 +132,14 @@ int sc_filter_is_near(const sc_model *model, sc_ball *ball, const sc_ball_side s
     if (center != SC_NONE && center == sides[1].number) {
         other = &sides[0];
     } else if (center != sides[0].number) {
-        mark_ball(model, ball, sides[0].points, sides[0].count, rings - 1);
+        begin_ball(model, ball, sides[0].points, sides[0].count, rings - 1);
         ball->center = sides[0].number;
         ball->kind = (uint16_t)kind;
     }
-    for (i = 0; i < other->count; i++)
-        if (ball->epoch_of[other->points[i]] == ball->epoch) return 1;
+    do
+        for (i = 0; i < other->count; i++)
+            if (ball->epoch_of[other->points[i]] == ball->epoch) return 1;
+    while (grow_ball(model, ball));
     return 0;
 }
 

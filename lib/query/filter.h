@@ -57,9 +57,9 @@ typedef struct sc_ball_side {
 
 /*
  * Whether two are less than so many edges apart, 1 or more. kind: SC_FILTER_..., as which numbers
- * are meant. A ball is made round the first, unless there is one round either: it serves all pairs
- * with that one which follow each other, as they mostly do. Within a query the rings of a kind are
- * always the same.
+ * are meant. A ball is begun round the first, unless there is one round either: it serves all pairs
+ * with that one which follow each other, as they mostly do, and grows until it reaches the other or
+ * has all rings. Within a query the rings of a kind are always the same.
  */
 int sc_filter_is_near(const sc_model *model, sc_ball *ball, const sc_ball_side sides[2],
                       uint32_t kind, uint32_t rings);

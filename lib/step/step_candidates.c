@@ -42,7 +42,7 @@ static void take_moving(sc_worker *w, int kind, sc_pair pair)
         name.b = k;
         first = 2;
     }
-    if (question->filters.sifts[kind] && !sc_step_filter_sift(w, kind, point, name)) return;
+    if (question->filters.sifts[kind] && !sc_step_filter_admits(w, kind, pair, point, name)) return;
     if (question->options.pairs == SC_STEP_COLLISIONS) {
         for (k = 0; k < 4; k++) {
             sc_positions_get(&positions[0], point[k ^ first], start[k]);
@@ -53,8 +53,7 @@ static void take_moving(sc_worker *w, int kind, sc_pair pair)
                   : sc_impact_edge_edge(from, to, &question->limits, &time)))
             return;
     }
-    if (question->filters.decides[kind] && !sc_step_filter_admits(w, kind, pair, point, name))
-        return;
+    if (question->filters.asks[kind] && !sc_step_filter_accepts(w, kind, name)) return;
     sc_step_pairs_take(w, kind, name.a, name.b, time);
 }
 

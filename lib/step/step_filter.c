@@ -13,7 +13,7 @@
 #include "step/within.h"
 
 /* Fewer vertices are not worth a part of their own. */
-enum { REST_VERTICES_MIN = 4096 };
+enum { REST_VERTICES_MIN = 1024 };
 
 sc_status sc_step_filter_read(const sc_hooks *hooks, const sc_model *model,
                               const sc_filter *vertex_face, const sc_filter *edge_edge,
@@ -30,9 +30,10 @@ sc_status sc_step_filter_read(const sc_hooks *hooks, const sc_model *model,
         if (!from[kind]) continue;
         status = sc_filter_read(hooks, names[kind], model, SC_FILTER_VERTEX_FACE + (uint32_t)kind,
                                 from[kind], f);
-        filters->sifts[kind] = f->vertex_groups || f->triangle_groups;
         /* the two never share a vertex */
-        filters->decides[kind] = f->ignore_rings > 1 || f->ignore_count || f->accept;
+        filters->sifts[kind] = f->vertex_groups || f->triangle_groups || f->ignore_count ||
+                               f->ignore_rings > 1;
+        filters->asks[kind] = f->accept != NULL;
     }
     return status;
 }
@@ -98,7 +99,7 @@ sc_status sc_step_filter_begin(const sc_model *model, const sc_pose *rest, uint6
     if (!rest) return SC_OK;
     sc_positions_note(model, rest, stride, &filters->rest);
     filters->rest_distance = rest_distance;
-    filters->decides[0] = filters->decides[1] = 1;
+    filters->sifts[0] = filters->sifts[1] = 1;
     return read_rest(model, &filters->rest, tasks);
 }
 
@@ -110,9 +111,10 @@ static uint32_t points_of_first(int kind)
     return kind == SC_STEP_VERTEX_FACE ? 1 : 2;
 }
 
-int sc_step_filter_sift(const sc_worker *w, int kind, const uint32_t point[4], sc_pair name)
+/* Whether the groups of two leave their pair. */
+static int groups_leave(const sc_pair_filters *filters, int kind, const uint32_t point[4],
+                        sc_pair name)
 {
-    const sc_pair_filters *filters = &w->step->question->filters;
     const sc_filter *f = &filters->of[kind];
     const uint32_t first = points_of_first(kind);
     if (f->triangle_groups) {
@@ -160,10 +162,16 @@ int sc_step_filter_admits(sc_worker *w, int kind, sc_pair inner, const uint32_t 
 {
     const sc_pair_filters *filters = &w->step->question->filters;
     const sc_filter *f = &filters->of[kind];
+    if (!groups_leave(filters, kind, point, name)) return 0;
     if (f->ignore_count && sc_filter_ignores(f, name.a, name.b)) return 0;
     if (f->ignore_rings > 1 && is_in_rings(w, kind, inner, point, f->ignore_rings)) return 0;
-    if (filters->rest_distance >= 0 && is_near_at_rest(filters, kind, point)) return 0;
-    return !f->accept || w->share || f->accept(f->accept_user, name.a, name.b);
+    return filters->rest_distance < 0 || !is_near_at_rest(filters, kind, point);
+}
+
+int sc_step_filter_accepts(const sc_worker *w, int kind, sc_pair name)
+{
+    const sc_filter *f = &w->step->question->filters.of[kind];
+    return w->share || f->accept(f->accept_user, name.a, name.b);
 }
 
 /* ---- several workers ---- */

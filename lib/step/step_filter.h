@@ -4,13 +4,17 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Culling knows nothing of them, and so loses nothing by them. A last stage asks in this order, and
- * where filters->sifts or ->decides says that there is nothing to ask, not at all:
+ * Culling knows nothing of them, and so loses nothing by them. A last stage asks twice, and where
+ * filters->sifts or ->asks says that there is nothing to ask, not at all:
  *
- *     sc_step_filter_sift      groups, a few nanoseconds: before a pair is decided
- *     sc_step_filter_admits    the rest, of pairs that were found: the list of pairs to ignore,
- *                              rings, the distance in the rest pose, at last the caller's function
+ *     sc_step_filter_admits     groups, the list of pairs to ignore, rings, the rest pose
+ *     sc_step_filter_accepts    the caller's function, of a pair that was found and admitted
  *     sc_step_pairs_take
+ *
+ * A step asks the former before it decides a pair: where a thickness is more than the size of
+ * cells, most pairs are left out, and their times of impact would take longer. A flat cloth of
+ * 65,000 triangles with a thickness of two cells takes 610 ms in place of 830 with a rest pose, 575
+ * in place of 990 with four rings; a folded one in motion about the same.
  *
  * Of several workers none asks the caller's function: sc_step_filter_ask does it at the end, in the
  * thread that called the library, of the sorted lists.
@@ -35,15 +39,16 @@ sc_status sc_step_filter_begin(const sc_model *model, const sc_pose *rest, uint6
                                double rest_distance, const sc_tasks *tasks, sc_group *room,
                                sc_pair_filters *filters);
 
-/* Whether a pair's groups leave it. point: its four points as sc_step_candidates_points gives them,
-   either edge first; name: the pair in the caller's numbers. */
-int sc_step_filter_sift(const sc_worker *w, int kind, const uint32_t point[4], sc_pair name);
-
-/* Whether all else leaves a pair that was found. inner: the pair in the model's numbers, in the
-   order of its points; of edges best the one first that the next pairs have, too. To be called once
-   for a pair. */
+/*
+ * Whether all but the caller's function leaves a pair. inner: the pair in the model's numbers, either
+ * edge first, best the one that the next pairs have, too; point: its four points, as
+ * sc_step_candidates_points gives them; name: the pair in the caller's numbers, the lower edge first.
+ */
 int sc_step_filter_admits(sc_worker *w, int kind, sc_pair inner, const uint32_t point[4],
                           sc_pair name);
+
+/* Whether the caller's function wants a pair that was found. To be called once for a pair. */
+int sc_step_filter_accepts(const sc_worker *w, int kind, sc_pair name);
 
 /* Whether several workers may find pairs: the caller's functions can be asked of them afterwards,
    and the earliest time is known from what they leave. */

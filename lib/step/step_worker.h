@@ -66,7 +66,7 @@ typedef struct sc_pair_filters {
     double rest_distance; /* pairs that are this near in it are left out; < 0: there is none */
     const sc_group *vertex_groups; /* vertex_count: of all triangles at each vertex together; where
                                       triangles have groups */
-    uint8_t sifts[2], decides[2];  /* there is something to ask: step/step_filter.h */
+    uint8_t sifts[2], asks[2];     /* there is something to ask: step/step_filter.h */
 } sc_pair_filters;
 
 /* What a step is asked, checked and complete. */
