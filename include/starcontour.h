@@ -950,8 +950,8 @@ typedef struct sc_step_result {
  * less. Every pair that does so is reported. What is reported beyond these came within separation +
  * tolerance at some time; a smaller tolerance costs time where much is that near. Rounding sets a
  * limit to it: the tolerance of a pair is at least 2^-32 times the largest difference of a
- * coordinate in it. The list depends on mesh, welding, poses, separation and tolerance and on
- * nothing else: not on method, partition, number of threads, compiler or machine, for what is near
+ * coordinate in it. The list depends on mesh, welding, poses, separation, tolerance, filters and
+ * rest pose and on nothing else: not on method, partition, number of threads, compiler or machine, for what is near
  * the limit is decided pair by pair and culling keeps clear of it. An edge that is through the
  * inside of a triangle from start to end collides with nothing by that: sc_query tells whether the
  * start is free.
@@ -986,9 +986,10 @@ typedef struct sc_step_result {
  *                    vertices, and its mask is the union of theirs. For vertices welded together,
  *                    the group of the one that represents them is read. Where there are groups of
  *                    both kinds, both must collide
- *   ignore           the pairs as this kind of list has them: of vertex_faces a vertex a and a
- *                    triangle b, a vertex that another one represents matching nothing; of
- *                    edge_edges two edges a < b, a name that is none matching nothing
+ *   ignore           pairs as this kind of list has them, sorted likewise: of vertex_faces a vertex
+ *                    a and a triangle b, of edge_edges two edges a < b. What is no pair, such as a
+ *                    vertex that another one represents, or a corner that names no edge, does no
+ *                    harm; a number that is too large is SC_ERROR_PAIRS
  *   ignore_rings     n: leaves out a vertex and a face from one of whose corners fewer than n edges
  *                    of the mesh lead to the vertex; and two edges from an end of one of which
  *                    fewer than n lead to an end of the other, after welding. As the two share no
