@@ -605,7 +605,7 @@ static int open_shared(subject *s, uint32_t side, int is_thick)
 static void several_workers(void)
 {
     uint64_t kept = 0, dropped = 0;
-    for (uint32_t round = 0; round < test_iterations_at_least(4, 1); ++round) {
+    for (uint32_t round = 0; round < test_iterations_at_least(4, 2); ++round) {
         subject s;
         if (open_shared(&s, 14, round % 2)) {
             step_list all[KINDS];
@@ -653,7 +653,7 @@ static void every_ring(void)
 static void rest_ties(void)
 {
     uint64_t kept = 0, dropped = 0;
-    for (uint32_t round = 0; round < test_iterations_at_least(20, 8); ++round) {
+    for (uint32_t round = 0; round < test_iterations_at_least(24, 16); ++round) {
         subject s;
         memset(&s, 0, sizeof(s));
         s.state = test_random_state();
@@ -676,7 +676,7 @@ static void rest_ties(void)
         }
         close_subject(&s);
     }
-    CHECK_MSG(kept > 100 && dropped > 100, "%" PRIu64 " kept, %" PRIu64 " dropped", kept, dropped);
+    CHECK_MSG(kept > 10 && dropped > 10, "%" PRIu64 " kept, %" PRIu64 " dropped", kept, dropped);
 }
 
 /* A flat cloth with a thickness of two cells lets itself go, and not what falls onto it. */
@@ -791,6 +791,7 @@ static void rest_not_finite(void)
 /* accept may ask the query to stop: what was found until then is reported. */
 static void stopped_by_accept(void)
 {
+    uint32_t stopped = 0;
     for (uint32_t round = 0; round < test_iterations_at_least(20, 8); ++round) {
         subject s;
         if (open_shared(&s, 14, 1)) {
@@ -812,9 +813,16 @@ static void stopped_by_accept(void)
             o.tasks = NULL;
             r = result_for(got);
             status = ask(&s, &o, &r);
-            CHECK(status == SC_ERROR_INCOMPLETE && r.verdict == SC_VERDICT_INCOMPLETE &&
-                  r.earliest == 0);
-            CHECK(log.count >= log.until && log.count < all[0].count + all[1].count);
+            if (all[0].count + all[1].count <= log.until) { /* it may end before */
+                log.until = log.count;
+            } else {
+                stopped++;
+                CHECK_MSG(status == SC_ERROR_INCOMPLETE && r.verdict == SC_VERDICT_INCOMPLETE &&
+                              r.earliest == 0,
+                          "status %d after %" PRIu64 " of %" PRIu64 " calls", (int)status,
+                          log.count, all[0].count + all[1].count);
+            }
+            CHECK(log.count == log.until);
             for (uint64_t i = 0; i < r.vertex_face_count; ++i)
                 CHECK(pair_is_among(got[0].pairs[i], all[0].pairs, all[0].count) &&
                       filter_rules_is_liked(log.salt, got[0].pairs[i].a, got[0].pairs[i].b));
@@ -827,6 +835,7 @@ static void stopped_by_accept(void)
         }
         close_subject(&s);
     }
+    CHECK(stopped > 0);
 }
 
 SC_TEST_MAIN(SC_TEST(every_filter), SC_TEST(several_workers), SC_TEST(every_ring),
