@@ -47,7 +47,7 @@ int sc_within_vertex_face(const double p[4][3], double distance)
     ee = dot_of_within(e, e), ef = dot_of_within(e, f), ff = dot_of_within(f, f);
     ev = dot_of_within(e, v), fv = dot_of_within(f, v), det = ee * ff - ef * ef;
     s = ff * ev - ef * fv, t = ee * fv - ef * ev;
-    if (det > 0 && s >= 0 && t >= 0 && s + t <= det) {
+    if (det > 1e-12 * ee * ff && s >= 0 && t >= 0 && s + t <= det) {
         d = dot_of_within(v, n);
         d = d * d / dot_of_within(n, n);
         if (d < least) least = d;
@@ -73,7 +73,7 @@ int sc_within_edge_edge(const double p[4][3], double distance)
     ee = dot_of_within(e, e), ef = dot_of_within(e, f), ff = dot_of_within(f, f);
     ev = dot_of_within(e, v), fv = dot_of_within(f, v), det = ee * ff - ef * ef;
     s = ff * ev - ef * fv, t = ef * ev - ee * fv;
-    if (det > 0 && s >= 0 && s <= det && t >= 0 && t <= det) {
+    if (det > 1e-12 * ee * ff && s >= 0 && s <= det && t >= 0 && t <= det) {
         d = dot_of_within(v, n);
         d = d * d / dot_of_within(n, n);
         if (d < least) least = d;
