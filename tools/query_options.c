@@ -64,6 +64,9 @@ static const char usage_continued[] =
     "vertex\n"
     "  --ignore FILE               those in FILE, as --out writes them; only --pairs are sought "
     "then\n"
+    "  --ignore-rest R             of --step: those within R of each other in the mesh that the "
+    "steps\n"
+    "                              are of: that of --rest, else the first frame\n"
     "  --groups FILE               those whose groups do not collide. Lines: triangle|vertex\n"
     "                              FIRST[-LAST] CATEGORY MASK; a category has to be in the other's "
     "mask\n"
@@ -147,7 +150,7 @@ static bool check_settings(const query_settings *set)
     else if (set->replay_path && set->ply_path)
         reason = "--replay has no faces for --ply";
     else if (set->is_step_asked && !set->is_step)
-        reason = "--separation, --tolerance and --times are of --step";
+        reason = "--separation, --tolerance, --times and --ignore-rest are of --step";
     else if (set->step.times && set->any)
         reason = "--any finds no times";
     else if (path_count == 0 && !set->replay_path)
@@ -207,6 +210,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
         OPTION_NO_REST_CACHE,
         OPTION_IGNORE_RINGS,
         OPTION_IGNORE,
+        OPTION_IGNORE_REST,
         OPTION_GROUPS,
         OPTION_CONTACTS,
         OPTION_BUDGET,
@@ -238,6 +242,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
         {"no-rest-cache", no_argument, NULL, OPTION_NO_REST_CACHE},
         {"ignore-rings", required_argument, NULL, OPTION_IGNORE_RINGS},
         {"ignore", required_argument, NULL, OPTION_IGNORE},
+        {"ignore-rest", required_argument, NULL, OPTION_IGNORE_REST},
         {"groups", required_argument, NULL, OPTION_GROUPS},
         {"contacts", no_argument, NULL, OPTION_CONTACTS},
         {"budget", required_argument, NULL, OPTION_BUDGET},
@@ -256,7 +261,6 @@ int query_options_read(int argc, char **argv, query_settings *set)
     while ((option = getopt_long(argc, argv, "hV", options, &which)) != -1) {
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_PLY ||
             option == OPTION_RECORD || option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
-            option == OPTION_IGNORE_RINGS || option == OPTION_IGNORE || option == OPTION_GROUPS ||
             option == OPTION_CONTACTS)
             set->not_of_steps = options[which].name;
         set->is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
@@ -339,6 +343,10 @@ int query_options_read(int argc, char **argv, query_settings *set)
             break;
         case OPTION_IGNORE:
             set->ignore_path = optarg;
+            break;
+        case OPTION_IGNORE_REST:
+            valid &= tool_parse_real("--ignore-rest", optarg, &set->step.ignore_rest);
+            set->step.ignores_rest = set->is_step_asked = true;
             break;
         case OPTION_GROUPS:
             set->groups_path = optarg;

@@ -395,6 +395,10 @@ static int do_steps(query_settings *set)
     step->model_path = set->model_path;
     step->out_path = set->out_path;
     step->budget = set->budget;
+    step->ignore_rings = set->ignore_rings;
+    step->ignore_path = set->ignore_path;
+    step->groups_path = set->groups_path;
+    step->filters = set->filters;
     step->any = set->any;
     step->json = set->json;
     step->stats = set->stats;
@@ -418,11 +422,9 @@ int main(int argc, char **argv)
     status = TOOL_FAILED;
     memset(&filters, 0, sizeof filters);
     set.filters = &filters;
-    if (set.is_step)
-        status = do_steps(&set);
-    else if (filter_file_read(&filters, set.ignore_path, set.groups_path, query_chosen_pairs(&set),
-                              error))
-        status = do_files(&set);
+    if (filter_file_read(&filters, set.ignore_path, set.groups_path,
+                         set.is_step ? FILTER_FILE_STEP : query_chosen_pairs(&set), error))
+        status = set.is_step ? do_steps(&set) : do_files(&set);
     else { /* one of the two files, with which the message begins */
         const char *path = set.ignore_path;
         if (!path || (set.groups_path && !strncmp(error, set.groups_path, strlen(set.groups_path))))

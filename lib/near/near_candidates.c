@@ -8,22 +8,39 @@
 #include "step/within.h"
 #include "pose/positions.h"
 #include "step/step_candidates.h"
+#include "step/step_filter.h"
 #include "step/step_pairs.h"
 
 int sc_near_candidates_want_names(const sc_question *question)
 {
-    return question->options.output != SC_OUTPUT_COUNT;
+    const sc_pair_filters *f = &question->near->step.filters;
+    return question->options.output != SC_OUTPUT_COUNT || f->sifts[0] || f->sifts[1] ||
+           f->asks[0] || f->asks[1];
 }
 
-void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, uint32_t a, uint32_t b)
+int sc_near_candidates_are_asked(const sc_worker *w, int kind)
 {
-    (void)inner;
-    if (kind == SC_STEP_EDGE_EDGE && a > b) {
-        const uint32_t t = a;
-        a = b;
-        b = t;
+    const sc_pair_filters *f = &w->step->question->filters;
+    return f->sifts[kind] || f->asks[kind];
+}
+
+void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner)
+{
+    const sc_pair_filters *f = &w->step->question->filters;
+    sc_pair name = sc_step_candidates_name(w->model, kind, &inner);
+    uint32_t point[4];
+    if (w->stop) return;
+    if (kind == SC_STEP_EDGE_EDGE && name.a > name.b) {
+        const uint32_t t = name.a;
+        name.a = name.b;
+        name.b = t;
     }
-    sc_step_pairs_take(w, kind, a, b, 0);
+    if (f->sifts[kind]) {
+        sc_step_candidates_points(w->model, kind, &inner, point);
+        if (!sc_step_filter_admits(w, kind, inner, point, name)) return;
+    }
+    if (f->asks[kind] && !sc_step_filter_accepts(w, kind, name)) return;
+    sc_step_pairs_take(w, kind, name.a, name.b, 0);
 }
 
 static int is_near_enough(const sc_worker *w, int kind, const sc_pair *pair)
@@ -43,10 +60,7 @@ static void take_open(sc_worker *w, uint32_t most, int kind)
     uint32_t *left = &w->lists.count[SC_LIST_FACES + kind];
     for (; most && *left && !w->stop; most--) {
         const sc_pair pair = w->lists.moving[kind][--*left];
-        sc_pair name;
-        if (!is_near_enough(w, kind, &pair)) continue;
-        name = sc_step_candidates_name(w->model, kind, &pair);
-        sc_near_candidates_take(w, kind, pair, name.a, name.b);
+        if (is_near_enough(w, kind, &pair)) sc_near_candidates_take(w, kind, pair);
     }
 }
 

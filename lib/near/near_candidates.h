@@ -12,9 +12,12 @@
 /* Whether pairs are wanted by name, and not only counted. */
 int sc_near_candidates_want_names(const sc_question *question);
 
-/* Takes a pair that is near, which was not taken before: in numbers of places, and in the caller's
-   numbers, edges in any order. */
-void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, uint32_t a, uint32_t b);
+/* Whether the caller's filters are asked of pairs of a kind. */
+int sc_near_candidates_are_asked(const sc_worker *w, int kind);
+
+/* Takes a pair that is near, which was not taken before, in numbers of places, if filters leave
+   it. */
+void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner);
 
 /* Stages, see query/lists.h: by exact signs. */
 void sc_near_candidates_take_faces(sc_worker *w, uint32_t most);

@@ -92,6 +92,12 @@ sc_status sc_near_question_read(const sc_model *model, const sc_workspace *works
         status = sc_arguments_check(hooks, "result.stats", result->stats, sizeof(sc_stats),
                                     SC_ARGUMENTS_DEFAULTS);
     if (status) return status;
+    question->step.options.vertex_face_filter = o->vertex_face_filter;
+    question->step.options.edge_edge_filter = o->edge_edge_filter;
+    question->step.options.rest = o->rest;
+    question->step.options.rest_distance = o->rest_distance;
+    status = sc_step_question_read_filters(hooks, model, asked, &question->step);
+    if (status) return status;
     asked->pose[1] = asked->pose[0];
     asked->stride[1] = asked->stride[0];
     fill_near_question(result, question);

@@ -17,6 +17,10 @@ sc_status sc_step_question_read(const sc_model *model, const sc_workspace *works
 /* SC_ERROR_OPTION if a length is negative, infinite or NaN. */
 sc_status sc_step_question_check_length(const sc_hooks *hooks, const char *name, double length);
 
+/* Which pairs are not wanted: the filters and the rest pose of the question's options. */
+sc_status sc_step_question_read_filters(const sc_hooks *hooks, const sc_model *model,
+                                        sc_asked *asked, sc_step_question *question);
+
 /* What all queries are asked, and where the answer goes, from options that are complete. */
 void sc_step_question_fill(const sc_step_result *result, sc_step_question *question);
 

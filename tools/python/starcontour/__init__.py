@@ -20,12 +20,15 @@ guaranteed, and what the options mean. Here they are keywords with the names of 
     cancel            a uint32 array of one element: another thread ends the query by setting it
     budget            end the query after so many units of work; 0 (default): no limit
 
-Steps take cancel and budget, too, and
+Steps take cancel, budget, ignore_rings and both kinds of groups, too, and
 
     separation  how near is a collision: 0 (default), or a distance in units of the coordinates
     tolerance   how exactly distances are told, the same units; 0 (default): a millionth of the size
     method      "default", "sctt", "two_boxes" or "swept": the answer is the same
     candidates  True: what boxes and culling leave, in place of collisions; without times
+    ignore      leave out these pairs: a Step, or two arrays of shape (k, 2) as its first two
+
+    rest, rest_distance   leave out pairs that are within this distance of each other in this pose
 
 A query that cancel or budget ended raises Incomplete, which has what was found so far.
 
@@ -133,7 +136,7 @@ class _Log:
 
     def check(self, status):
         """Raises an Error if status is one. Members of options are named as the keywords here are."""
-        reasons = [re.sub(r"^options\.(filter\.)?", "", reason) for reason in self._reasons]
+        reasons = [re.sub(r"^options\.(\w*filter\.)?", "", reason) for reason in self._reasons]
         self._reasons.clear()
         if status:
             raise Error(status, "; ".join(reasons))
@@ -396,8 +399,14 @@ def _step_collides(model, scratch, start, end, **options):
 
 
 def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tolerance=0.0,
-              method="default", candidates=False, cancel=None, budget=0):
+              method="default", candidates=False, ignore_rings=0, ignore=None, vertex_groups=None,
+              triangle_groups=None, rest=None, rest_distance=0.0, cancel=None, budget=0):
     (given, positions), (goal, positions_then) = _pose(start), _pose(end)
+    ignored = (None, None) if ignore is None else tuple(ignore)[:2]
+    if len(ignored) != 2:
+        raise ValueError("ignore must be a Step or two arrays")
+    filters = [_filter(model, ignore_rings, pairs, vertex_groups, triangle_groups) for pairs in ignored]
+    pose_at_rest, positions_at_rest = (None, None) if rest is None else _pose(rest)
     timed = output == _binding.SC_OUTPUT_PAIRS and not candidates
     options = _binding.sc_step_options(
         struct_size=ctypes.sizeof(_binding.sc_step_options),
@@ -409,6 +418,10 @@ def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tol
         tolerance=_length("tolerance", tolerance),
         cancel=_cancel(cancel),
         budget=_whole("budget", budget, 64),
+        vertex_face_filter=ctypes.addressof(filters[0][0]),
+        edge_edge_filter=ctypes.addressof(filters[1][0]),
+        rest=None if rest is None else ctypes.addressof(pose_at_rest),
+        rest_distance=_length("rest_distance", rest_distance),
     )
     result = _binding.sc_step_result(struct_size=ctypes.sizeof(_binding.sc_step_result))
     if not scratch.lock.acquire(blocking=False):
