@@ -8,6 +8,7 @@
  * query_options.c for the options, and sc_query in starcontour.h for what a pair is.
  */
 #include "model_file.h"
+#include "near_report.h"
 #include "query_options.h"
 #include "query_report.h"
 #include "query_subject.h"
@@ -401,6 +402,26 @@ static int do_steps(query_settings *set)
     return step_query_frames(set->paths, set->path_count, step);
 }
 
+/* What is near, in place of do_files. */
+static int do_near(query_settings *set)
+{
+    near_settings *near = &set->near;
+    near->weld = set->weld;
+    near->partition = set->partition;
+    near->rest_path = set->rest_path;
+    near->model_path = set->model_path;
+    near->out_path = set->out_path;
+    near->ply_path = set->ply_path;
+    near->groups_path = set->groups_path;
+    near->filters = set->filters;
+    near->ignore_rings = set->ignore_rings;
+    near->budget = set->budget;
+    near->any = set->any;
+    near->json = set->json;
+    near->stats = set->stats;
+    return near_query_files(set->paths, set->path_count, near);
+}
+
 int main(int argc, char **argv)
 {
     static char name[] = "sc-query";
@@ -422,12 +443,16 @@ int main(int argc, char **argv)
         status = do_steps(&set);
     else if (filter_file_read(&filters, set.ignore_path, set.groups_path, query_chosen_pairs(&set),
                               error))
-        status = do_files(&set);
+        status = set.is_near ? do_near(&set) : do_files(&set);
     else { /* one of the two files, with which the message begins */
         const char *path = set.ignore_path;
         if (!path || (set.groups_path && !strncmp(error, set.groups_path, strlen(set.groups_path))))
             path = set.groups_path;
-        query_report_failure(path, &set, error);
+        set.near.json = set.json;
+        if (set.is_near)
+            near_report_failure(path, &set.near, error);
+        else
+            query_report_failure(path, &set, error);
     }
     filter_file_free(&filters);
     query_threads_stop();
