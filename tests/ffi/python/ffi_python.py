@@ -63,12 +63,12 @@ moved = rest.astype(np.float64)
 later = len(rest) // 2
 moved[later:, 2] += moved[later:, 0] / 4 - 0.25
 
-golden = {"rest": [], "moved": []}
+golden = {}
 with open(golden_path) as file:
     for line in file:
         if not line.startswith("#"):
             pose, a, b = line.split()
-            golden[pose].append((int(a), int(b)))
+            golden.setdefault(pose, []).append((int(a), int(b)))
 golden = {pose: np.array(pairs, np.uint32) for pose, pairs in golden.items()}
 
 
@@ -297,6 +297,11 @@ check("vertices of edges", np.array_equal(
     starcontour.edge_vertices(triangles, wide.edge_edges).reshape(-1, 4),
     wide.edge_edge_stencils["vertices"]) and starcontour.edge_vertices(triangles, 5).tolist() == [
     triangles[1][2], triangles[1][0]])
+check("pairs that are near", all(np.array_equal(x, golden[name]) for x, name in zip(
+    narrow, ("nearfaces", "nearedges"))))
+fall = model.step(rest, moved)
+check("pairs of a step", all(np.array_equal(x, golden[name]) for x, name in zip(
+    fall, ("stepfaces", "stepedges"))))
 check("counts of near pairs", model.near_counts(moved, 0.09) == (len(wide.vertex_faces), len(wide.edge_edges)))
 check("any", model.is_near(moved, 0.045) and not model.is_near(apart, 1e-5))
 check("without stencils", model.near(moved, 0.09).vertex_face_stencils is None)
