@@ -462,7 +462,7 @@ SC_API sc_status sc_workspace_create(const sc_model *model, const sc_allocator *
 
 /* What a workspace is for besides plain queries; a sum. */
 enum {
-    SC_WORKSPACE_STEP = 1, /* sc_query_step: about 30 bytes a triangle more, and 80 kilobytes a
+    SC_WORKSPACE_STEP = 1, /* sc_query_step: about 34 bytes a triangle more, and 80 kilobytes a
                               worker */
     SC_WORKSPACE_NEAR = 2  /* sc_query_near, and sc_query_step */
 };
@@ -633,7 +633,8 @@ typedef struct sc_group {
  * Which pairs are not wanted. A pair is reported, counted, or ends a query for SC_OUTPUT_ANY only
  * if nothing here says no; culling is as without a filter, and so no wanted pair is missed. Arrays
  * are the caller's and are only read, during the call; they need the alignment of uint32_t. All
- * members but struct_size may be zero: nothing is left out.
+ * members but struct_size may be zero: nothing is left out. What members mean is said here of the
+ * pairs of sc_query, and under "Filters of pairs of features" at sc_query_step of its pairs.
  *
  *   ignore_rings    1: leaves out pairs that share a vertex. n: pairs less than n edges of the mesh
  *                   apart, counted from the vertices of one to those of the other, after welding;
@@ -899,6 +900,13 @@ typedef struct sc_step_options {
                                         sc_query_step */
     const volatile uint32_t *cancel; /* as in sc_query_options */
     uint64_t budget;                 /* as in sc_query_options */
+    const sc_filter *vertex_face_filter; /* which pairs of a kind are not wanted, or NULL; see
+                                            "Filters of pairs of features" at sc_query_step */
+    const sc_filter *edge_edge_filter;
+    const sc_pose *rest;  /* a pose, or NULL: pairs that are within rest_distance of each other in
+                             it are left out */
+    double rest_distance; /* 0 or more, finite, the same units; 0: those that touch in it. 0 where
+                             there is no such pose */
 } sc_step_options;
 
 /*
@@ -942,8 +950,8 @@ typedef struct sc_step_result {
  * less. Every pair that does so is reported. What is reported beyond these came within separation +
  * tolerance at some time; a smaller tolerance costs time where much is that near. Rounding sets a
  * limit to it: the tolerance of a pair is at least 2^-32 times the largest difference of a
- * coordinate in it. The list depends on mesh, welding, poses, separation and tolerance and on
- * nothing else: not on method, partition, number of threads, compiler or machine, for what is near
+ * coordinate in it. The list depends on mesh, welding, poses, separation, tolerance, filters and
+ * rest pose and on nothing else: not on method, partition, number of threads, compiler or machine, for what is near
  * the limit is decided pair by pair and culling keeps clear of it. An edge that is through the
  * inside of a triangle from start to end collides with nothing by that: sc_query tells whether the
  * start is free.
@@ -959,8 +967,47 @@ typedef struct sc_step_result {
  * is needed, and each array holds the first capacity pairs of its sorted list; or
  * SC_ERROR_INCOMPLETE, if it was cancelled or ran out of budget, see sc_query: earliest is 0 then.
  * On any other error counts, collides and verdict are 0, and the arrays as they were: those of
- * sc_query, SC_ERROR_OPTION also for a separation or tolerance that is negative or not finite, and
- * SC_ERROR_NULL for a capacity without its array.
+ * sc_query, SC_ERROR_OPTION also for a separation, tolerance or rest_distance that is negative or
+ * not finite, and SC_ERROR_NULL for a capacity without its array or a rest_distance above 0 without
+ * a rest pose. Of filters and of the rest pose the errors are those of a query's filter and pose.
+ *
+ * Filters of pairs of features. A thickness above the size of a cell brings each feature together
+ * with its own neighbourhood. vertex_face_filter, edge_edge_filter and rest say which pairs are not
+ * wanted: these are not reported, neither as collisions nor as candidates, not counted, end no
+ * query, and earliest does not see them. Culling is as without, and so no wanted pair is missed. A
+ * filter is an sc_filter, one for each kind, and its members mean, in the order in which pairs are
+ * asked about them:
+ *
+ *   triangle_groups  a triangle has its group. An edge has that of the triangle that names it, e /
+ *                    3. A vertex is in all categories of the triangles that have it as a corner,
+ *                    and its mask is the union of theirs: at a border between groups it belongs to
+ *                    all of them
+ *   vertex_groups    a vertex has its group; an edge or triangle is in all categories of its
+ *                    vertices, and its mask is the union of theirs. For vertices welded together,
+ *                    the group of the one that represents them is read. Where there are groups of
+ *                    both kinds, both must collide
+ *   ignore           pairs as this kind of list has them, sorted likewise: of vertex_faces a vertex
+ *                    a and a triangle b, of edge_edges two edges a < b. What is no pair, such as a
+ *                    vertex that another one represents, or a corner that names no edge, does no
+ *                    harm; a number that is too large is SC_ERROR_PAIRS
+ *   ignore_rings     n: leaves out a vertex and a face from one of whose corners fewer than n edges
+ *                    of the mesh lead to the vertex; and two edges from an end of one of which
+ *                    fewer than n lead to an end of the other, after welding. As the two share no
+ *                    vertex, 1 is without effect; 2 leaves out those that one edge joins
+ *   rest             not a member of a filter but an option for both kinds: leaves out pairs whose
+ *                    Euclidean distance in that pose is rest_distance or less, compared exactly. It
+ *                    is a pose as start and end are, of any type and stride. With the rest shape
+ *                    of a cloth and its thickness there, what is as near as that by the shape of
+ *                    the mesh is let go, and all else is kept
+ *   accept           called last, once for each pair that nothing else leaves out, with a and b as
+ *                    reported, in any order, in the thread that called sc_query_step; 0 leaves it
+ *                    out. It must not use the workspace. After SC_OUTPUT_ANY found a pair it is
+ *                    called no more, unless the earliest time is sought
+ *
+ * All but accept is asked before a pair is decided. Cost: with a rest pose a pass over its vertices,
+ * and about 0.1 microseconds for each pair that boxes and culling leave; with triangle_groups for
+ * vertices a pass over the triangles; rings walk the mesh round each feature until they reach the
+ * other, or as far as they go; a list is read once, and looked up for each of these pairs.
  *
  * Several threads. With options->tasks the passes over both poses, the walk through the tree,
  * boxes, the narrow phase and the sorting are done by all workers. Answer and counts in statistics
@@ -970,6 +1017,9 @@ typedef struct sc_step_result {
  *   - steps of models of fewer than 128 leaf clusters;
  *   - all but the passes with a budget, and where the library was compiled by other compilers than
  *     gcc or clang;
+ *   - all but the passes with accept in a filter, unless both arrays have room and, where times
+ *     are wanted, there are arrays for those of both; then it is called at the end, in the order of
+ *     the lists;
  *   - all but the passes once more, where one of the arrays turns out to be too short.
  *
  * No memory is allocated. Cost, on one thread: reading the poses, 10 ns a triangle for normal

@@ -30,6 +30,7 @@
 #include "run/question.h"
 #include "run/rest.h"
 #include "run/step_question.h"
+#include "step/step_filter.h"
 #include "step/step_motion.h"
 #include "step/step_pairs.h"
 
@@ -399,7 +400,12 @@ static sc_status read_frame(const sc_model *model, sc_workspace *workspace, cons
     if (status) {
         log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], " at the start");
         log_not_finite(hooks, model, &asked->pose[1], asked->stride[1], " at the end");
+        return status;
     }
+    status = sc_step_filter_begin(model, step->options.rest, asked->rest_stride,
+                                  step->options.rest_distance, frame->tasks,
+                                  frame->motion.vertex_groups, &step->filters);
+    if (status) log_not_finite(hooks, model, &asked->rest, asked->rest_stride, " in the rest pose");
     return status;
 }
 
@@ -705,7 +711,7 @@ static sc_status check_record(const sc_model *model, const sc_pose *pose,
     status = sc_question_choose(model, &checked);
     if (status) return status;
     if (o->filter) {
-        status = sc_filter_read(NULL, model, o->pairs, o->filter, filter);
+        status = sc_filter_read(NULL, "options.filter", model, o->pairs, o->filter, filter);
         if (status) return status;
         o->filter = filter;
     }

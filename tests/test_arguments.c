@@ -51,7 +51,7 @@ typedef struct call {
     sc_tree_node tree[3];
     sc_model *model;
     sc_workspace *workspace;
-    sc_pose pose, end;
+    sc_pose pose, end, rest;
     struct {
         sc_query_options known;
         uint64_t later;
@@ -345,6 +345,69 @@ static void tasks_filters_and_workspaces(void)
     end(&other);
 }
 
+/* Filters of a step and its rest pose. */
+static void step_filters(void)
+{
+    call c;
+    char text[200];
+#define VERTEX_FACE(change) (c.step.vertex_face_filter = &c.filter, change)
+#define EDGE_EDGE(change) (c.step.edge_edge_filter = &c.filter, change)
+#define REST(change) (c.rest = c.pose, c.step.rest = &c.rest, change)
+#define IGNORE(x, y)                                                                               \
+  (c.pairs[0].a = x, c.pairs[0].b = y, c.filter.ignore = c.pairs, c.filter.ignore_count = 1)
+    if (!begin(&c, SC_WORKSPACE_STEP)) {
+        end(&c);
+        return;
+    }
+    snprintf(text, sizeof(text),
+             "options.vertex_face_filter.struct_size is 4, but at least %u and a multiple of %u",
+             (unsigned)sizeof(void *), (unsigned)sizeof(void *));
+    REFUSED(step, VERTEX_FACE(c.filter.struct_size = 4), SC_ERROR_STRUCT_SIZE, text);
+    REFUSED(step, VERTEX_FACE(c.filter.ignore_rings = 33), SC_ERROR_OPTION,
+            "options.vertex_face_filter.ignore_rings is 33, but at most 32");
+    REFUSED(step, EDGE_EDGE(c.filter.ignore_rings = 33), SC_ERROR_OPTION,
+            "options.edge_edge_filter.ignore_rings is 33, but at most 32");
+    REFUSED(step, EDGE_EDGE(c.filter.ignore_count = 1), SC_ERROR_NULL,
+            "options.edge_edge_filter.ignore is NULL");
+    /* nine vertices, eight triangles */
+    REFUSED(step, VERTEX_FACE(IGNORE(9, 0)), SC_ERROR_PAIRS,
+            "options.vertex_face_filter.ignore[0] is no pair of this model");
+    REFUSED(step, VERTEX_FACE(IGNORE(8, 8)), SC_ERROR_PAIRS,
+            "options.vertex_face_filter.ignore[0] is no pair of this model");
+    REFUSED(step, EDGE_EDGE(IGNORE(5, 24)), SC_ERROR_PAIRS,
+            "options.edge_edge_filter.ignore[0] is no pair of this model");
+    REFUSED(step, EDGE_EDGE(IGNORE(5, 5)), SC_ERROR_PAIRS,
+            "options.edge_edge_filter.ignore[0] is no pair of this model");
+    c.pairs[1].a = 1;
+    c.pairs[1].b = 2;
+    REFUSED(step, EDGE_EDGE((IGNORE(1, 3), c.filter.ignore_count = 2)), SC_ERROR_PAIRS,
+            "options.edge_edge_filter.ignore[1] comes before the one before it");
+    REFUSED(step, c.step.rest_distance = 0.5, SC_ERROR_NULL, "options.rest is NULL");
+    REFUSED(step, REST(c.step.rest_distance = -1), SC_ERROR_OPTION,
+            "options.rest_distance is -1, but finite and at least 0");
+    REFUSED(step, REST(c.step.rest_distance = HUGE_VAL), SC_ERROR_OPTION,
+            "options.rest_distance is inf, but finite and at least 0");
+    REFUSED(step, REST(c.rest.vertex_count = 8), SC_ERROR_VERTEX_COUNT,
+            "options.rest.vertex_count is 8, but the model has 9");
+    REFUSED(step, REST(c.rest.positions = NULL), SC_ERROR_NULL,
+            "options.rest.positions is NULL");
+    REFUSED(step, REST(c.rest.position_type = 2), SC_ERROR_OPTION,
+            "options.rest.position_type is 2, but at most 1");
+    REFUSED(step, REST(c.rest.position_stride = 23), SC_ERROR_STRIDE,
+            "options.rest.position_stride is 23, but 0 or at least 24");
+    /* the last of each that is right, and an empty filter */
+    make_right(&c);
+    VERTEX_FACE(IGNORE(8, 7));
+    CHECK(step(&c) == SC_OK && c.log.errors == 0);
+    make_right(&c);
+    EDGE_EDGE(IGNORE(22, 23));
+    CHECK(step(&c) == SC_OK && c.log.errors == 0);
+    make_right(&c);
+    (void)REST(c.step.rest_distance = 0);
+    CHECK(step(&c) == SC_OK && c.log.errors == 0);
+    end(&c);
+}
+
 static void steps(void)
 {
     call c;
@@ -382,4 +445,4 @@ static void steps(void)
 }
 
 SC_TEST_MAIN(SC_TEST(builds), SC_TEST(orders_and_trees), SC_TEST(loads), SC_TEST(queries),
-             SC_TEST(tasks_filters_and_workspaces), SC_TEST(steps))
+             SC_TEST(tasks_filters_and_workspaces), SC_TEST(step_filters), SC_TEST(steps))

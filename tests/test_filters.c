@@ -9,13 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "filter_rules.h"
 #include "harness.h"
 #include "inputs.h"
 #include "run/workspace.h"
 #include "shapes.h"
 #include "starcontour.h"
-
-enum { FAR = 1000 };
 
 /* A mesh ready to be asked, and all there is to know of it by brute force. */
 typedef struct subject {
@@ -24,7 +23,7 @@ typedef struct subject {
     double *posed;
     input_choices choices;
     uint32_t *weld;
-    uint8_t *apart; /* vertex_count^2: edges from one representative to another, FAR or more: 255 */
+    uint8_t *apart; /* vertex_count^2: edges from one representative to another, 255: none */
     sc_model *model;
     sc_workspace *workspace;
     uint64_t state;
@@ -45,36 +44,6 @@ typedef struct accept_log {
     uint32_t salt; /* 0: accepts all */
 } accept_log;
 
-static void measure(subject *s)
-{
-    const uint32_t n = s->mesh.vertex_count;
-    uint8_t *apart = (uint8_t *)test_allocate((size_t)n * n);
-    int changed = 1;
-    memset(apart, 255, (size_t)n * n);
-    for (uint32_t v = 0; v < n; ++v) apart[(size_t)v * n + v] = 0;
-    for (uint32_t i = 0; i < 3 * s->mesh.triangle_count; ++i) {
-        uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
-        uint32_t a = s->weld[s->mesh.triangles[i]], b = s->weld[s->mesh.triangles[next]];
-        if (a != b) apart[(size_t)a * n + b] = apart[(size_t)b * n + a] = 1;
-    }
-    for (uint8_t d = 1; changed && d < 254; ++d) { /* one edge more at a time */
-        changed = 0;
-        for (uint32_t i = 0; i < 3 * s->mesh.triangle_count; ++i) {
-            uint32_t next = i % 3 == 2 ? i - 2 : i + 1;
-            uint32_t a = s->weld[s->mesh.triangles[i]], b = s->weld[s->mesh.triangles[next]];
-            for (uint32_t v = 0; v < n; ++v)
-                for (int side = 0; side < 2; ++side) {
-                    uint32_t from = side ? a : b, to = side ? b : a;
-                    if (apart[(size_t)v * n + from] != d || apart[(size_t)v * n + to] <= d + 1)
-                        continue;
-                    apart[(size_t)v * n + to] = (uint8_t)(d + 1);
-                    changed = 1;
-                }
-        }
-    }
-    s->apart = apart;
-}
-
 static int open_subject(subject *s, uint32_t maximum)
 {
     sc_mesh input;
@@ -87,7 +56,7 @@ static int open_subject(subject *s, uint32_t maximum)
     if (test_random_below(2)) soup_fold(s->posed, s->mesh.vertex_count);
     s->choices = input_choose(&s->mesh, test_random_below(3), test_random_below(4));
     s->weld = input_weld_of(&s->choices, &s->mesh);
-    measure(s);
+    s->apart = filter_rules_measure(&s->mesh, s->weld);
     input = input_plain_mesh(&s->mesh);
     return CHECK(sc_build(&input, &s->choices.options, &s->model) == SC_OK) &&
            CHECK(sc_workspace_create(s->model, NULL, &s->workspace) == SC_OK);
@@ -139,34 +108,6 @@ static uint32_t vertices_of(const subject *s, uint32_t number, int is_edge, uint
     return count;
 }
 
-static sc_group group_of(const sc_group *groups, const uint32_t *v, uint32_t count)
-{
-    sc_group g = {0, 0};
-    for (uint32_t i = 0; i < count; ++i) {
-        g.category |= groups[v[i]].category;
-        g.mask |= groups[v[i]].mask;
-    }
-    return g;
-}
-
-static int collide(sc_group a, sc_group b)
-{
-    return (a.category & b.mask) && (b.category & a.mask);
-}
-
-/* What accept is to say. */
-static int32_t is_liked(uint32_t salt, uint32_t a, uint32_t b)
-{
-    return salt == 0 || ((a * 2654435761u + b * 40503u + salt) >> 7 & 3) != 0;
-}
-
-static int compare_pairs(const void *left, const void *right)
-{
-    const sc_pair *x = (const sc_pair *)left, *y = (const sc_pair *)right;
-    if (x->a != y->a) return x->a < y->a ? -1 : 1;
-    return x->b < y->b ? -1 : x->b > y->b;
-}
-
 /* Everything but accept. */
 static int is_wanted(const subject *s, const sc_filter *f, uint32_t kind, sc_pair pair)
 {
@@ -177,14 +118,20 @@ static int is_wanted(const subject *s, const sc_filter *f, uint32_t kind, sc_pai
         for (uint32_t k = 0; k < b_count; ++k)
             if (s->apart[(size_t)a[i] * n + b[k]] < f->ignore_rings) return 0;
     if (f->triangle_groups &&
-        !collide(f->triangle_groups[kind == SC_PAIRS_EDGE ? pair.a / 3 : pair.a],
+        !filter_rules_collide(f->triangle_groups[kind == SC_PAIRS_EDGE ? pair.a / 3 : pair.a],
                  f->triangle_groups[pair.b]))
         return 0;
     if (f->vertex_groups &&
-        !collide(group_of(f->vertex_groups, a, a_count), group_of(f->vertex_groups, b, b_count)))
+        !filter_rules_collide(filter_rules_group_of(f->vertex_groups, a, a_count),
+                              filter_rules_group_of(f->vertex_groups, b, b_count)))
         return 0;
     return f->ignore_count == 0 || bsearch(&pair, f->ignore, (size_t)f->ignore_count,
-                                           sizeof(sc_pair), compare_pairs) == NULL;
+                                           sizeof(sc_pair), filter_rules_compare) == NULL;
+}
+
+static int log_likes(const accept_log *log, sc_pair pair)
+{
+    return filter_rules_is_liked(log->salt, pair.a, pair.b) != 0;
 }
 
 static int32_t log_call(void *user, uint32_t a, uint32_t b)
@@ -195,21 +142,10 @@ static int32_t log_call(void *user, uint32_t a, uint32_t b)
         log->called.pairs[log->called.count].b = b;
     }
     log->called.count++;
-    return is_liked(log->salt, a, b);
+    return filter_rules_is_liked(log->salt, a, b);
 }
 
 /* ---- random filters ---- */
-
-static sc_group *random_groups(uint32_t count)
-{
-    sc_group *groups = (sc_group *)test_allocate(count * sizeof(sc_group));
-    uint32_t bits = test_random_below(2) ? 3 : 0x80000101u;
-    for (uint32_t i = 0; i < count; ++i) {
-        groups[i].category = (uint32_t)test_random() & bits;
-        groups[i].mask = (uint32_t)test_random() & bits;
-    }
-    return groups;
-}
 
 /* Some of the pairs there are, some twice, and some that are none. */
 static pair_list random_ignore(const subject *s, uint32_t kind, const pair_list *all)
@@ -226,7 +162,7 @@ static pair_list random_ignore(const subject *s, uint32_t kind, const pair_list 
         p.b = test_random_below(n);
         if (kind == SC_PAIRS_EDGE || p.a < p.b) list.pairs[list.count++] = p;
     }
-    qsort(list.pairs, (size_t)list.count, sizeof(sc_pair), compare_pairs);
+    qsort(list.pairs, (size_t)list.count, sizeof(sc_pair), filter_rules_compare);
     return list;
 }
 
@@ -235,7 +171,7 @@ static pair_list random_ignore(const subject *s, uint32_t kind, const pair_list 
 static int is_head(const sc_pair *pairs, const pair_list *expected, uint64_t count)
 {
     for (uint64_t i = 0; i < count; ++i)
-        if (compare_pairs(&pairs[i], &expected->pairs[i]) != 0) return 0;
+        if (filter_rules_compare(&pairs[i], &expected->pairs[i]) != 0) return 0;
     return 1;
 }
 
@@ -264,7 +200,7 @@ static void check_method(const subject *s, sc_query_options options, const pair_
                   s->name, options.method, options.pairs, options.contact, options.output,
                   (int)status, result.count, capacity, s->state);
         if (!options.filter->accept || !CHECK(log->called.count <= log->capacity)) continue;
-        qsort(log->called.pairs, (size_t)log->called.count, sizeof(sc_pair), compare_pairs);
+        qsort(log->called.pairs, (size_t)log->called.count, sizeof(sc_pair), filter_rules_compare);
         if (round < 3) {
             CHECK_MSG(log->called.count == asked->count &&
                           is_head(log->called.pairs, asked, asked->count),
@@ -273,7 +209,7 @@ static void check_method(const subject *s, sc_query_options options, const pair_
         } else {
             uint64_t liked = 0;
             for (uint64_t i = 0; i < log->called.count; ++i)
-                liked += is_liked(log->salt, log->called.pairs[i].a, log->called.pairs[i].b) != 0;
+                liked += (uint64_t)log_likes(log, log->called.pairs[i]);
             CHECK_MSG(liked == (capacity > 0), "accept took %" PRIu64, liked);
         }
     }
@@ -296,7 +232,7 @@ static void check_filter(const subject *s, const sc_filter *filter, uint32_t kin
     for (uint64_t i = 0; i < all->count; ++i) {
         if (!is_wanted(s, &f, kind, all->pairs[i])) continue;
         asked.pairs[asked.count++] = all->pairs[i];
-        if (f.accept && !is_liked(salt, all->pairs[i].a, all->pairs[i].b)) continue;
+        if (f.accept && !filter_rules_is_liked(salt, all->pairs[i].a, all->pairs[i].b)) continue;
         expected.pairs[expected.count++] = all->pairs[i];
     }
     f.accept_user = &log;
@@ -332,8 +268,8 @@ static void every_filter(void)
                 for (uint32_t contact = 0; contact < 2; ++contact) {
                     pair_list all = find_all(&s, kind, contact);
                     pair_list ignore = random_ignore(&s, kind, &all);
-                    sc_group *vertex_groups = random_groups(s.mesh.vertex_count);
-                    sc_group *triangle_groups = random_groups(s.mesh.triangle_count);
+                    sc_group *vertex_groups = filter_rules_groups(s.mesh.vertex_count);
+                    sc_group *triangle_groups = filter_rules_groups(s.mesh.triangle_count);
                     for (uint32_t part = 0; part < 8; ++part) {
                         uint32_t parts = part < 5 ? 1u << part : 1 + test_random_below(31);
                         sc_filter f = no_filter();

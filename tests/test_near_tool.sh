@@ -22,6 +22,10 @@ c=$scratch/f2.obj
 frame "$a" 1
 frame "$b" 0.25
 frame "$c" 0.5
+frame "$scratch/below.obj" -1
+frame "$scratch/g0.obj" 0.25
+frame "$scratch/g1.obj" 0.5
+frame "$scratch/g2.obj" 0.125
 
 # ---- what it finds ----
 
@@ -41,9 +45,30 @@ check "poses" says 1 "^2 files: 1 clean, 1 colliding, 0 refused; first .*f1.obj"
     "$query" --near 0.5 --rest "$c" "$a" "$b"
 check "a pattern" says 1 "^3 files: 1 clean, 2 colliding" "$query" --near 0.5 "$scratch/f%d.obj"
 check "statistics" says 1 "orientation tests" "$query" --near 0.5 --stats "$c"
+check "rings leave out neighbours" says 0 " 0 .* 0 " \
+    "$query" --near 0.3 --ignore-rings 3 meshes/sphere.obj
+check "which are near" status 1 "$query" --near 0.3 meshes/sphere.obj
+echo "triangle 1 1 2" >"$scratch/groups"
+echo "triangle 0 4 8" >>"$scratch/groups"
+check "groups" says 0 " 0 .* 0 " "$query" --near 0.5 --groups "$scratch/groups" "$c"
+check "what is near at rest" says 0 " 0 .* 0 " "$query" --near 0.5 --ignore-rest 1 --rest "$a" "$b"
+check "or not" says 1 " 1 .* 0 " "$query" --near 0.5 --ignore-rest 0.9999 --rest "$a" "$b"
+check "at rest in the first frame" says 0 "^3 files: 3 clean" \
+    "$query" --near 0.5 --ignore-rest 0.25 "$scratch/g%d.obj"
+check "and in no other" says 1 "^3 files: 0 clean, 3 colliding" \
+    "$query" --near 0.5 --ignore-rest 0.2 "$scratch/g%d.obj"
+status 1 "$query" --near 0.5 --out "$scratch/known" --stencils "$c" 2>/dev/null
+check "a list of what is known" says 0 " 0 .* 0 " "$query" --near 0.5 --ignore "$scratch/known" "$c"
+"$query" --step --out "$scratch/known" "$a" "$scratch/below.obj" >/dev/null
+check "of a step" says 0 " 0 .* 0 " "$query" --near 0.5 --ignore "$scratch/known" "$c"
+"$query" --near 1 --out "$scratch/known" "$a" >/dev/null
+check "of what is near, in a step" says 0 " 0 .* 0 " \
+    "$query" --step --ignore "$scratch/known" "$a" "$scratch/below.obj"
 if [ -x "$SC_BIN/sc-partition" ]; then
     "$SC_BIN/sc-partition" "$a" -o "$scratch/model" >/dev/null 2>&1
     check "a saved model" says 1 " 1 .* 0 " "$query" --near 0.5 --model "$scratch/model" "$c"
+    check "at rest in the first file" says 1 " 0 .* 0 .*f2.obj" \
+        "$query" --near 0.5 --ignore-rest 0.25 --model "$scratch/model" "$c" "$b"
     check "of another mesh" says 2 "vertices" "$query" --near 1 --model "$scratch/model" meshes/sphere.obj
 fi
 
@@ -248,13 +273,15 @@ EOP
         print "v", rand() + k % 2 / 3, rand() + k / 7, rand(); print "f", 3 * i + 1, 3 * i + 2, 3 * i + 3 } }' >"$scratch/soup.obj"
     against 1 0 "$scratch/flat.obj" 500
     against 0.9999999999999999 0 "$scratch/flat.obj" 1
+    against 2 2 "$scratch/flat.obj" 20
+    against 2 2 "$scratch/wave.obj" 20
     against 1.5 0 "$scratch/wave.obj" 500
     against 0.02 0 "$scratch/soup.obj" 50
     against 0 0 meshes/folded_sheet.obj 50
     against 0 0 meshes/touching_cubes.obj 6
     against 0.5 0 meshes/crossing_tetrahedra.obj 1
     against 0.1 0 meshes/degenerate_soup.obj 1
-    against 0.1 0 meshes/seam_cloth.obj 0
+    against 0.2 2 meshes/seam_cloth.obj 0
     against 0.3 0 meshes/corner_on_face.obj 1
     check "brute force notices a pair too many" sh -c '! python3 "$1" "$2" 0.5 0 "$3" 2' - \
         "$scratch/brute.py" "$query" "$c"
@@ -292,10 +319,15 @@ check "without --near" says 2 "of --near" "$query" --kinds both "$a"
 check "any has no list" says 2 "no list" "$query" --near 1 --any --list "$a"
 check "nor a file" says 2 "no list" "$query" --near 1 --any --out "$scratch/x" "$a"
 for option in --proper "--pairs edge" --step "--record $scratch/x" "--replay $scratch/x" --times \
-    --contacts --no-rest-cache "--ignore x" "--groups x" "--ignore-rings 1" "--contour star" "--separation 1" "--tolerance 1"; do
+    --contacts --no-rest-cache "--contour star" "--separation 1" "--tolerance 1"; do
     # shellcheck disable=SC2086
     check "not with $option" says 2 "does not go with" "$query" --near 1 $option "$a"
 done
+check "groups that are not there" says 2 '"type":"near","file":".*absent"' \
+    "$query" --near 1 --json --groups "$scratch/absent" "$a"
+check "no list of pairs" says 2 "line 1: not a pair" "$query" --near 1 --ignore "$scratch/groups" "$a"
+check "a rest pose without --near" says 2 "of --step and --near" "$query" --ignore-rest 1 "$a"
+check "no distance at rest" says 2 "ignore-rest" "$query" --near 1 --ignore-rest -1 "$a"
 check "no folder to write to" says 2 "cannot be written" "$query" --near 1 --out "$scratch/no/x" "$a"
 check "nor to paint" says 2 "cannot be written" "$query" --near 1 --ply "$scratch/no/x" "$a"
 check "one mesh to paint" says 2 "one mesh" "$query" --near 1 --ply "$scratch/x.ply" "$a" "$b"

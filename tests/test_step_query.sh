@@ -73,6 +73,44 @@ for threads in 2 3 8; do
     check "are the same, at the same times" cmp "$scratch/steps.1" "$scratch/steps.$threads"
 done
 
+# ---- what is left out ----
+
+# A flat cloth with cells of 1.
+awk 'BEGIN { n = 30; for (y = 0; y <= n; y++) for (x = 0; x <= n; x++) print "v", x, y, 0
+    for (y = 0; y < n; y++) for (x = 1; x <= n; x++) {
+        a = y * (n + 1) + x; print "f", a, a + 1, a + n + 1; print "f", a + 1, a + n + 2, a + n + 1 } }' \
+    >"$scratch/flat.obj"
+thick() {
+    "$query" --step --separation 2 "$@" "$scratch/flat.obj" "$scratch/flat.obj"
+}
+check "a thick cloth at rest" says 1 " 0.0000000 " thick
+check "is free but for its rest shape" says 0 " 0  *0 .* 1.0000000 " thick --ignore-rest 2.001
+check "nearly" says 1 " 0.0000000 " thick --ignore-rest 1.9
+check "with rings" says 0 " 0  *0 .* 1.0000000 " thick --ignore-rings 6
+check "with few" says 1 " 0.0000000 " thick --ignore-rings 2
+check "JSON says so" says 0 '"ignore_rings":7,.*"ignore_rest":0.5' \
+    thick --json --ignore-rings 7 --ignore-rest 0.5
+check "a rest shape of another file" says 1 " 1 .* 0 " \
+    "$query" --step --ignore-rest 0.1 --rest "$c" "$a" "$b"
+check "in which they are near" status 0 "$query" --step --ignore-rest 0.6 --rest "$c" "$a" "$b"
+printf 'triangle 0 1 2\ntriangle 1 4 4\n' >"$scratch/groups"
+check "groups" says 0 " 0 .* 0 " "$query" --step --groups "$scratch/groups" "$a" "$b"
+printf 'vertex 3 1 1\nvertex 0-2 1 1\n' >"$scratch/groups"
+check "groups that collide" status 1 "$query" --step --groups "$scratch/groups" "$a" "$b"
+printf 'vertex 9 1 1\n' >"$scratch/groups"
+check "a group of no vertex" says 2 "no vertex 9" "$query" --step --groups "$scratch/groups" "$a" "$b"
+"$query" --step --out "$scratch/all.csv" "$scratch/fold0.obj" "$scratch/fold1.obj" >/dev/null
+check "pairs that were found before" status 0 "$query" --step --ignore "$scratch/all.csv" \
+    "$scratch/fold0.obj" "$scratch/fold1.obj"
+sed '2d' "$scratch/all.csv" >"$scratch/less.csv"
+check "all but one" says 1 ' \(1  *0\|0  *1\) ' "$query" --step --ignore "$scratch/less.csv" \
+    "$scratch/fold0.obj" "$scratch/fold1.obj"
+check "no list of a step" says 2 "line 1: not a pair as --step" \
+    "$query" --step --ignore "$scratch/groups" "$a" "$b"
+check "an absent list" says 2 "absent" "$query" --step --ignore "$scratch/absent" "$a" "$b"
+check "no distance" says 2 "not a number" "$query" --step --ignore-rest x "$a" "$b"
+check "only of steps" says 2 "is of --step and --near" "$query" --ignore-rest 1 "$a"
+
 # ---- what it prints ----
 
 check "times" says 1 "vertex-face 3 0 0\.\(4999\|5\)" "$query" --step --times "$a" "$b"
@@ -126,8 +164,8 @@ check "a method of queries" says 2 "two-boxes" "$query" --step --method aabb "$a
 check "a method of steps" says 2 "aabb-sctt" "$query" --method swept "$a"
 check "without --step" says 2 "of --step" "$query" --separation 1 "$a"
 check "any has no times" says 2 "no times" "$query" --step --any --times "$a" "$b"
-for option in --proper "--pairs edge" "--ply $scratch/x.ply" "--record $scratch/x" "--ignore-rings 1" \
-    --contacts --no-rest-cache "--groups x" "--ignore x"; do
+for option in --proper "--pairs edge" "--ply $scratch/x.ply" "--record $scratch/x" \
+    --contacts --no-rest-cache; do
     # shellcheck disable=SC2086
     check "not with $option" says 2 "does not go with" "$query" --step $option "$a" "$b"
 done

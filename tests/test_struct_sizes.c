@@ -138,6 +138,45 @@ static void struct_sizes_of_inputs(void)
     input_fixture_stop(&f);
 }
 
+/* Options of a step of any size that some version had or will have: what is behind is not read. */
+static void struct_sizes_of_steps(void)
+{
+    input_fixture f;
+    if (input_fixture_start(&f)) {
+        sc_workspace *workspace = NULL;
+        sc_workspace_options w;
+        sc_step_options options;
+        sc_step_result wanted, result;
+        memset(&w, 0, sizeof(w));
+        w.struct_size = sizeof(w);
+        w.flags = SC_WORKSPACE_STEP;
+        CHECK(sc_workspace_create_for(f.model, &w, &workspace) == SC_OK);
+        memset(&options, 0, sizeof(options));
+        options.struct_size = sizeof(options);
+        options.output = SC_OUTPUT_COUNT;
+        memset(&wanted, 0, sizeof(wanted));
+        wanted.struct_size = sizeof(wanted);
+        CHECK(sc_query_step(f.model, workspace, &f.pose, &f.pose, &options, &wanted) == SC_OK);
+        CHECK(wanted.vertex_face_count + wanted.edge_edge_count > 0);
+        for (uint32_t size = 8; size <= sizeof(options); size += (uint32_t)sizeof(void *)) {
+            sc_step_options *exact = (sc_step_options *)test_allocate(sizeof(options));
+            memset(exact, 0xee, sizeof(options));
+            memcpy(exact, &options, size);
+            exact->struct_size = size;
+            result = wanted;
+            result.vertex_face_count = result.edge_edge_count = 0;
+            CHECK_MSG(sc_query_step(f.model, workspace, &f.pose, &f.pose, exact, &result) ==
+                              SC_OK &&
+                          result.vertex_face_count == wanted.vertex_face_count &&
+                          result.edge_edge_count == wanted.edge_edge_count,
+                      "step options of size %u", (unsigned)size);
+            free(exact);
+        }
+        sc_workspace_free(workspace);
+    }
+    input_fixture_stop(&f);
+}
+
 /* Structures that the library fills: it writes as far as their size reaches and no further. */
 static void struct_sizes_of_outputs(void)
 {
@@ -231,4 +270,5 @@ static void struct_sizes_of_outputs(void)
     input_fixture_stop(&f);
 }
 
-SC_TEST_MAIN(SC_TEST(struct_sizes_of_inputs), SC_TEST(struct_sizes_of_outputs))
+SC_TEST_MAIN(SC_TEST(struct_sizes_of_inputs), SC_TEST(struct_sizes_of_steps),
+             SC_TEST(struct_sizes_of_outputs))

@@ -40,6 +40,18 @@ static bool grow(void **array, uint64_t count, size_t size)
     return true;
 }
 
+static bool add_pair(filter_file *file, int list, sc_pair pair, char reason[128])
+{
+    void *pairs = file->pairs[list];
+    if (!grow(&pairs, file->pair_count[list], sizeof pair)) {
+        snprintf(reason, 128, "out of memory");
+        return false;
+    }
+    file->pairs[list] = (sc_pair *)pairs;
+    file->pairs[list][file->pair_count[list]++] = pair;
+    return true;
+}
+
 static bool read_pair(filter_file *file, char *line, unsigned long number, uint32_t kind,
                       char reason[128])
 {
@@ -62,14 +74,58 @@ static bool read_pair(filter_file *file, char *line, unsigned long number, uint3
         snprintf(reason, 128, "no two numbers, separated by a comma, at its end");
         return false;
     }
-    void *pairs = file->pairs;
-    if (!grow(&pairs, file->pair_count, sizeof pair)) {
-        snprintf(reason, 128, "out of memory");
-        return false;
+    return add_pair(file, 0, pair, reason);
+}
+
+/* Of comma-separated values the beginnings of fields, at most so many; returns how many there
+   are. Commas become ends, but for those between quotation marks. */
+static int split_fields(char *line, char **fields, int most)
+{
+    bool is_quoted = false;
+    int count = 0;
+    if (count < most) fields[count] = line;
+    count++;
+    for (; *line; line++) {
+        is_quoted ^= *line == '"';
+        if (*line != ',' || is_quoted) continue;
+        *line = '\0';
+        if (count < most) fields[count] = line + 1;
+        count++;
     }
-    file->pairs = (sc_pair *)pairs;
-    file->pairs[file->pair_count++] = pair;
-    return true;
+    return count;
+}
+
+/* Lines of --step have ten fields, those of --near nine, or more with closest points. */
+static bool read_step_pair(filter_file *file, char *line, unsigned long number, uint32_t kind,
+                           char reason[128])
+{
+    enum {
+        FIELDS = 10,
+        STEP_KIND = 2,
+        STEP_FIRST = 7,
+        NEAR_FIELDS = 9,
+        NEAR_KIND = 1,
+        NEAR_FIRST = 6
+    };
+    static const char *const kinds[] = {"vertex-face", "edge-edge"};
+    char *fields[FIELDS];
+    sc_pair pair;
+    (void)kind;
+    if (!*line) return true;
+    const int count = split_fields(line, fields, FIELDS);
+    const bool is_step = count == FIELDS, is_whole = count >= NEAR_FIELDS;
+    const char *name = is_whole ? fields[is_step ? STEP_KIND : NEAR_KIND] : "";
+    if (number == 1 && strcmp(name, "kind") == 0) return true;
+    for (int list = 0; list < 2; list++) {
+        if (strcmp(name, kinds[list]) != 0) continue;
+        char **first = &fields[is_step ? STEP_FIRST : NEAR_FIRST];
+        if (!read_number(&first[0], UINT32_MAX, &pair.a) || *first[0] ||
+            !read_number(&first[1], UINT32_MAX, &pair.b) || *first[1])
+            break;
+        return add_pair(file, list, pair, reason);
+    }
+    snprintf(reason, 128, "not a pair as --step --out or --near --out writes it");
+    return false;
 }
 
 static bool read_group(filter_file *file, char *line, unsigned long number, uint32_t kind,
@@ -153,10 +209,14 @@ bool filter_file_read(filter_file *file, const char *pairs_path, const char *gro
 {
     memset(file, 0, sizeof *file);
     file->groups_path = groups_path;
-    if (pairs_path && !read_lines(file, pairs_path, kind, read_pair, error)) return false;
+    if (pairs_path && !read_lines(file, pairs_path, kind,
+                                  kind == FILTER_FILE_STEP ? read_step_pair : read_pair, error))
+        return false;
     if (groups_path && !read_lines(file, groups_path, kind, read_group, error)) return false;
-    if (file->pair_count)
-        qsort(file->pairs, (size_t)file->pair_count, sizeof *file->pairs, compare_pairs);
+    for (int i = 0; i < 2; i++) {
+        if (file->pair_count[i])
+            qsort(file->pairs[i], (size_t)file->pair_count[i], sizeof(sc_pair), compare_pairs);
+    }
     return true;
 }
 
@@ -199,14 +259,25 @@ bool filter_file_apply(filter_file *file, uint32_t vertex_count, uint32_t triang
         return false;
     filter->vertex_groups = file->groups[0];
     filter->triangle_groups = file->groups[1];
-    filter->ignore = file->pairs;
-    filter->ignore_count = file->pair_count;
+    filter->ignore = file->pairs[0];
+    filter->ignore_count = file->pair_count[0];
+    return true;
+}
+
+bool filter_file_apply_step(filter_file *file, uint32_t vertex_count, uint32_t triangle_count,
+                            sc_filter filters[2], char error[MESH_FILE_ERROR_SIZE])
+{
+    if (!filter_file_apply(file, vertex_count, triangle_count, &filters[0], error)) return false;
+    filters[1] = filters[0];
+    filters[1].ignore = file->pairs[1];
+    filters[1].ignore_count = file->pair_count[1];
     return true;
 }
 
 void filter_file_free(filter_file *file)
 {
-    free(file->pairs);
+    free(file->pairs[0]);
+    free(file->pairs[1]);
     free(file->lines);
     free(file->groups[0]);
     free(file->groups[1]);

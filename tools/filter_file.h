@@ -5,7 +5,9 @@
  *
  * Pairs: comma-separated values as sc-query --out writes them: the last two fields of a line are a
  * pair, in any order of lines. A first line whose last field is "triangle_b" or "triangle" says
- * which kind of pair they are. Repeats, as of several files, do no harm.
+ * which kind of pair they are. Repeats, as of several files, do no harm. Those of sc-query --step
+ * --out have ten fields: the third is the kind, the eighth and ninth are the pair. Those of --near
+ * --out have nine, or more: the second is the kind, the seventh and eighth are the pair.
  *
  * Groups: a line each,
  *
@@ -31,21 +33,28 @@ typedef struct filter_file_line {
 
 typedef struct filter_file {
     const char *groups_path; /* the caller's */
-    sc_pair *pairs;          /* sorted */
-    uint64_t pair_count;
+    sc_pair *pairs[2];       /* sorted; of steps those of a vertex and a face, and of two edges */
+    uint64_t pair_count[2];
     filter_file_line *lines;
     size_t line_count;
     sc_group *groups[2]; /* of vertices, of triangles, for the mesh at hand */
 } filter_file;
 
-/* Reads the files that are named; either may be NULL. kind is SC_PAIRS_... On failure error says
-   why, and *file is to be freed all the same. */
+/* As a kind of pair: those of steps, and of what is near. */
+enum { FILTER_FILE_STEP = 2 };
+
+/* Reads the files that are named; either may be NULL. kind is SC_PAIRS_... or FILTER_FILE_STEP. On
+   failure error says why, and *file is to be freed all the same. */
 bool filter_file_read(filter_file *file, const char *pairs_path, const char *groups_path,
                       uint32_t kind, char error[MESH_FILE_ERROR_SIZE]);
 
 /* Makes a filter for a mesh. Its arrays stay those of *file, until the next call. */
 bool filter_file_apply(filter_file *file, uint32_t vertex_count, uint32_t triangle_count,
                        sc_filter *filter, char error[MESH_FILE_ERROR_SIZE]);
+
+/* The same for both kinds of pairs of a step. */
+bool filter_file_apply_step(filter_file *file, uint32_t vertex_count, uint32_t triangle_count,
+                            sc_filter filters[2], char error[MESH_FILE_ERROR_SIZE]);
 
 void filter_file_free(filter_file *file);
 

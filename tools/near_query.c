@@ -17,15 +17,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const tool_choice near_kinds[] = {{"both", SC_NEAR_BOTH},
-                                  {"vertex-face", SC_NEAR_VERTEX_FACE},
-                                  {"edge-edge", SC_NEAR_EDGE_EDGE},
-                                  {NULL, 0}};
-const tool_choice near_methods[] = {{"auto", SC_NEAR_METHOD_DEFAULT},
-                                    {"sctt", SC_NEAR_METHOD_SCTT},
-                                    {"boxes", SC_NEAR_METHOD_BOXES},
-                                    {NULL, 0}};
-
 /* Pairs of one kind; grows and is kept. */
 typedef struct near_list {
     sc_pair *pairs;
@@ -39,6 +30,7 @@ typedef struct near_run {
     near_list lists[KINDS];
     query_summary summary;
     FILE *out;
+    mesh_file first; /* of a saved model: the first file, where --ignore-rest asks for it */
 } near_run;
 
 /* ------------------------------------------------------------------------------------------------
@@ -57,11 +49,13 @@ static bool make_room(near_list *list, uint64_t count)
     return list->pairs != NULL;
 }
 
-static sc_status find_near(near_run *run, const query_subject *subject, const sc_filter *filter,
-                           near_answer *answer)
+static sc_status find_near(near_run *run, const query_subject *subject,
+                           const sc_filter filters[KINDS], near_answer *answer)
 {
     const near_settings *set = run->set;
     const bool listed = near_wants_list(set) || near_names_objects(set, answer->mesh);
+    const mesh_file *mesh = run->first.positions ? &run->first : answer->mesh;
+    const sc_pose rest = tool_pose(mesh->positions, mesh->position_type, mesh->vertex_count);
     sc_near_options options;
     sc_near_result result;
     memset(&options, 0, sizeof options);
@@ -71,7 +65,12 @@ static sc_status find_near(near_run *run, const query_subject *subject, const sc
     options.kinds = set->kinds;
     options.method = set->method;
     options.distance = set->distance;
-    options.vertex_face_filter = options.edge_edge_filter = filter;
+    options.vertex_face_filter = &filters[VERTEX_FACE];
+    options.edge_edge_filter = &filters[EDGE_EDGE];
+    if (set->ignores_rest) {
+        options.rest = &rest;
+        options.rest_distance = set->ignore_rest;
+    }
     options.tasks = query_threads_tasks();
     options.budget = set->budget;
     result.struct_size = sizeof result;
@@ -110,7 +109,7 @@ static bool ask(near_run *run, const query_subject *subject, near_answer *answer
                 char error[MESH_FILE_ERROR_SIZE])
 {
     const near_settings *set = run->set;
-    sc_filter filter;
+    sc_filter filters[KINDS];
     answer->build_ms = subject->build_ms;
     answer->model = subject->model;
     answer->weld_map = subject->weld_map;
@@ -118,11 +117,11 @@ static bool ask(near_run *run, const query_subject *subject, near_answer *answer
     answer->nearest = HUGE_VAL;
     answer->info.struct_size = sizeof answer->info;
     sc_status status = sc_model_get_info(subject->model, &answer->info);
-    if (status == SC_OK && !filter_file_apply(set->filters, answer->info.vertex_count,
-                                              answer->info.triangle_count, &filter, error))
+    if (status == SC_OK && !filter_file_apply_step(set->filters, answer->info.vertex_count,
+                                                   answer->info.triangle_count, filters, error))
         return false;
-    filter.ignore_rings = set->ignore_rings;
-    if (status == SC_OK) status = find_near(run, subject, &filter, answer);
+    for (int kind = 0; kind < KINDS; kind++) filters[kind].ignore_rings = set->ignore_rings;
+    if (status == SC_OK) status = find_near(run, subject, filters, answer);
     if (status == SC_OK && near_wants_list(set)) status = near_report_nearest(answer);
     for (int kind = 0; kind < KINDS; kind++) {
         if (status == SC_OK && near_names_objects(set, answer->mesh) &&
@@ -221,6 +220,9 @@ static int do_files(near_run *run, char *const *paths, int count)
     } else if (set->model_path) {
         if (!query_subject_open(&run->rest, set->model_path, SC_WORKSPACE_NEAR, error))
             return near_report_failure(set->model_path, set, error);
+        if (set->ignores_rest && (!mesh_file_read(&run->first, paths[0], error) ||
+                                  !query_subject_fits(&run->rest, paths[0], &run->first, error)))
+            return near_report_failure(paths[0], set, error);
     }
     near_report_head(set);
     if (run->out) near_report_pairs_head(run->out, set);
@@ -274,6 +276,7 @@ int near_query_files(char **paths, int count, const near_settings *set)
         }
     }
     for (int kind = 0; kind < KINDS; kind++) free(run.lists[kind].pairs);
+    mesh_file_free(&run.first);
     query_subject_free(&run.rest);
     frame_paths_free(&found);
     return status;

@@ -15,6 +15,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+const tool_choice near_kinds[] = {{"both", SC_NEAR_BOTH},
+                                  {"vertex-face", SC_NEAR_VERTEX_FACE},
+                                  {"edge-edge", SC_NEAR_EDGE_EDGE},
+                                  {NULL, 0}};
+const tool_choice near_methods[] = {{"auto", SC_NEAR_METHOD_DEFAULT},
+                                    {"sctt", SC_NEAR_METHOD_SCTT},
+                                    {"boxes", SC_NEAR_METHOD_BOXES},
+                                    {NULL, 0}};
+
 static const char *const feature_names[] = {"", "vertex-vertex", "vertex-edge", "edge-edge",
                                             "vertex-face"};
 
@@ -315,6 +324,8 @@ static bool print_json_answer(const near_answer *answer, const near_settings *se
     if (set->rest_path) cJSON_AddStringToObject(object, "rest", set->rest_path);
     if (set->model_path) cJSON_AddStringToObject(object, "model", set->model_path);
     if (set->ignore_rings) cJSON_AddNumberToObject(object, "ignore_rings", set->ignore_rings);
+    if (set->ignore_path) cJSON_AddStringToObject(object, "ignore", set->ignore_path);
+    if (set->ignores_rest) cJSON_AddNumberToObject(object, "ignore_rest", set->ignore_rest);
     if (set->groups_path) cJSON_AddStringToObject(object, "groups", set->groups_path);
     if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
     if (set->stats) query_text_add_stats(object, &answer->stats);

@@ -8,7 +8,11 @@
 #define TOOLS_NEAR_REPORT_H
 
 #include "feature_pairs.h"
-#include "near_query.h"
+#include "near_settings.h"
+#include "tool.h"
+
+/* Values of --kinds, and of --method with --near. */
+extern const tool_choice near_kinds[], near_methods[];
 
 /* What there is to know about a pose. */
 typedef struct near_answer {

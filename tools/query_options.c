@@ -5,6 +5,7 @@
  */
 #include "query_options.h"
 
+#include "near_report.h"
 #include "query_text.h"
 
 #include <getopt.h>
@@ -79,6 +80,9 @@ static const char usage_continued[] =
     "vertex\n"
     "  --ignore FILE               those in FILE, as --out writes them; only --pairs are sought "
     "then\n"
+    "  --ignore-rest R             of --step and --near: those within R of each other in the mesh "
+    "of\n"
+    "                              --rest, else in the first frame\n"
     "  --groups FILE               those whose groups do not collide. Lines: triangle|vertex\n"
     "                              FIRST[-LAST] CATEGORY MASK; a category has to be in the other's "
     "mask\n"
@@ -181,6 +185,8 @@ static bool check_settings(const query_settings *set)
         reason = "--replay has no faces for --ply";
     else if (set->is_step_asked && !set->is_step)
         reason = "--separation, --tolerance and --times are of --step";
+    else if (set->step.ignores_rest && !set->is_step && !set->is_near)
+        reason = "--ignore-rest is of --step and --near";
     else if (set->is_near_asked && !set->is_near)
         reason = "--kinds, --list and --stencils are of --near";
     else if ((set->near.list || set->near.stencils) && set->any)
@@ -248,6 +254,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
         OPTION_NO_REST_CACHE,
         OPTION_IGNORE_RINGS,
         OPTION_IGNORE,
+        OPTION_IGNORE_REST,
         OPTION_GROUPS,
         OPTION_CONTACTS,
         OPTION_BUDGET,
@@ -283,6 +290,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
         {"no-rest-cache", no_argument, NULL, OPTION_NO_REST_CACHE},
         {"ignore-rings", required_argument, NULL, OPTION_IGNORE_RINGS},
         {"ignore", required_argument, NULL, OPTION_IGNORE},
+        {"ignore-rest", required_argument, NULL, OPTION_IGNORE_REST},
         {"groups", required_argument, NULL, OPTION_GROUPS},
         {"contacts", no_argument, NULL, OPTION_CONTACTS},
         {"budget", required_argument, NULL, OPTION_BUDGET},
@@ -301,14 +309,12 @@ int query_options_read(int argc, char **argv, query_settings *set)
     while ((option = getopt_long(argc, argv, "hV", options, &which)) != -1) {
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_PLY ||
             option == OPTION_RECORD || option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
-            option == OPTION_IGNORE_RINGS || option == OPTION_IGNORE || option == OPTION_GROUPS ||
             option == OPTION_CONTACTS)
             set->not_of_steps = options[which].name;
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_RECORD ||
-            option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE || option == OPTION_IGNORE ||
-            option == OPTION_IGNORE_RINGS || option == OPTION_GROUPS || option == OPTION_CONTACTS ||
-            option == OPTION_CONTOUR || option == OPTION_STEP || option == OPTION_SEPARATION ||
-            option == OPTION_TOLERANCE || option == OPTION_TIMES)
+            option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
+            option == OPTION_CONTACTS || option == OPTION_CONTOUR || option == OPTION_STEP ||
+            option == OPTION_SEPARATION || option == OPTION_TOLERANCE || option == OPTION_TIMES)
             set->not_of_near = options[which].name;
         set->is_near_asked |=
             option == OPTION_KINDS || option == OPTION_LIST || option == OPTION_STENCILS;
@@ -405,6 +411,10 @@ int query_options_read(int argc, char **argv, query_settings *set)
             break;
         case OPTION_IGNORE:
             set->ignore_path = optarg;
+            break;
+        case OPTION_IGNORE_REST:
+            valid &= tool_parse_real("--ignore-rest", optarg, &set->step.ignore_rest);
+            set->step.ignores_rest = true;
             break;
         case OPTION_GROUPS:
             set->groups_path = optarg;

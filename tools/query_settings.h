@@ -7,7 +7,7 @@
 #define TOOLS_QUERY_SETTINGS_H
 
 #include "filter_file.h"
-#include "near_query.h"
+#include "near_settings.h"
 #include "step_query.h"
 #include "tool.h"
 

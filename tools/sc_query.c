@@ -8,6 +8,7 @@
  * query_options.c for the options, and sc_query in starcontour.h for what a pair is.
  */
 #include "model_file.h"
+#include "near_query.h"
 #include "near_report.h"
 #include "query_options.h"
 #include "query_report.h"
@@ -396,6 +397,10 @@ static int do_steps(query_settings *set)
     step->model_path = set->model_path;
     step->out_path = set->out_path;
     step->budget = set->budget;
+    step->ignore_rings = set->ignore_rings;
+    step->ignore_path = set->ignore_path;
+    step->groups_path = set->groups_path;
+    step->filters = set->filters;
     step->any = set->any;
     step->json = set->json;
     step->stats = set->stats;
@@ -412,7 +417,10 @@ static int do_near(query_settings *set)
     near->model_path = set->model_path;
     near->out_path = set->out_path;
     near->ply_path = set->ply_path;
+    near->ignore_path = set->ignore_path;
     near->groups_path = set->groups_path;
+    near->ignores_rest = set->step.ignores_rest;
+    near->ignore_rest = set->step.ignore_rest;
     near->filters = set->filters;
     near->ignore_rings = set->ignore_rings;
     near->budget = set->budget;
@@ -439,11 +447,10 @@ int main(int argc, char **argv)
     status = TOOL_FAILED;
     memset(&filters, 0, sizeof filters);
     set.filters = &filters;
-    if (set.is_step)
-        status = do_steps(&set);
-    else if (filter_file_read(&filters, set.ignore_path, set.groups_path, query_chosen_pairs(&set),
-                              error))
-        status = set.is_near ? do_near(&set) : do_files(&set);
+    const bool is_plain = !set.is_step && !set.is_near;
+    if (filter_file_read(&filters, set.ignore_path, set.groups_path,
+                         is_plain ? query_chosen_pairs(&set) : FILTER_FILE_STEP, error))
+        status = set.is_step ? do_steps(&set) : set.is_near ? do_near(&set) : do_files(&set);
     else { /* one of the two files, with which the message begins */
         const char *path = set.ignore_path;
         if (!path || (set.groups_path && !strncmp(error, set.groups_path, strlen(set.groups_path))))

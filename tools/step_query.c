@@ -61,6 +61,8 @@ typedef struct step_run {
     uint32_t *vertex_objects; /* where they are told */
     query_summary summary;
     FILE *out;
+    sc_filter filters[KINDS];
+    sc_pose rest; /* the mesh as it was read */
 } step_run;
 
 /* Whether the pairs between each two objects are counted. */
@@ -105,6 +107,12 @@ static sc_step_options make_options(const step_run *run)
     options.tolerance = set->tolerance;
     options.tasks = query_threads_tasks();
     options.budget = set->budget;
+    options.vertex_face_filter = &run->filters[VERTEX_FACE];
+    options.edge_edge_filter = &run->filters[EDGE_EDGE];
+    if (set->ignores_rest) {
+        options.rest = &run->rest;
+        options.rest_distance = set->ignore_rest;
+    }
     return options;
 }
 
@@ -320,6 +328,10 @@ static bool print_json_answer(const step_answer *answer, const step_run *run)
         cJSON_AddNullToObject(object, "contour");
     if (set->rest_path) cJSON_AddStringToObject(object, "rest", set->rest_path);
     if (set->model_path) cJSON_AddStringToObject(object, "model", set->model_path);
+    if (set->ignore_rings) cJSON_AddNumberToObject(object, "ignore_rings", set->ignore_rings);
+    if (set->ignore_path) cJSON_AddStringToObject(object, "ignore", set->ignore_path);
+    if (set->groups_path) cJSON_AddStringToObject(object, "groups", set->groups_path);
+    if (set->ignores_rest) cJSON_AddNumberToObject(object, "ignore_rest", set->ignore_rest);
     if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
     if (set->stats) query_text_add_stats(object, &answer->stats);
     if (set->times) add_pairs(object, answer, run);
@@ -394,6 +406,12 @@ static bool open_run(step_run *run, const char *first, char error[MESH_FILE_ERRO
             return false;
         run->mesh = &run->subject.mesh;
     }
+    if (!filter_file_apply_step(set->filters, run->mesh->vertex_count, run->mesh->triangle_count,
+                                run->filters, error))
+        return false;
+    for (int kind = 0; kind < KINDS; kind++) run->filters[kind].ignore_rings = set->ignore_rings;
+    run->rest =
+        tool_pose(run->mesh->positions, run->mesh->position_type, run->mesh->vertex_count);
     if (wants_list(run)) {
         run->vertex_objects = mesh_vertex_objects(run->mesh);
         if (!run->vertex_objects) snprintf(error, MESH_FILE_ERROR_SIZE, "%s: out of memory", first);

@@ -10,6 +10,7 @@
 #ifndef TOOLS_STEP_QUERY_H
 #define TOOLS_STEP_QUERY_H
 
+#include "filter_file.h"
 #include "tool.h"
 
 typedef struct step_settings {
@@ -20,7 +21,11 @@ typedef struct step_settings {
     const char *model_path; /* a saved model in its place, or NULL */
     const char *out_path;   /* where to write pairs, or NULL */
     uint64_t budget;        /* 0: none */
-    bool any, times, json, stats;
+    uint32_t ignore_rings;  /* 0: none */
+    const char *ignore_path, *groups_path;
+    filter_file *filters; /* what these two say */
+    double ignore_rest;   /* the distance, where ignores_rest */
+    bool ignores_rest, any, times, json, stats;
 } step_settings;
 
 /* Names of the methods, and of the contour tests. */

@@ -8,6 +8,7 @@
 #include "step/within.h"
 #include "pose/positions.h"
 #include "step/step_candidates.h"
+#include "step/step_filter.h"
 #include "step/step_pairs.h"
 
 int sc_near_candidates_want_names(const sc_question *question)
@@ -15,14 +16,29 @@ int sc_near_candidates_want_names(const sc_question *question)
     return question->options.output != SC_OUTPUT_COUNT;
 }
 
+int sc_near_candidates_are_filtered(const sc_question *question)
+{
+    const sc_pair_filters *f = &question->step->filters;
+    return f->sifts[0] || f->sifts[1] || f->asks[0] || f->asks[1];
+}
+
 void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, uint32_t a, uint32_t b)
 {
-    (void)inner;
+    const sc_pair_filters *f = &w->step->question->filters;
+    sc_pair name;
     if (kind == SC_STEP_EDGE_EDGE && a > b) {
         const uint32_t t = a;
         a = b;
         b = t;
     }
+    name.a = a;
+    name.b = b;
+    if (f->sifts[kind]) {
+        uint32_t point[4];
+        sc_step_candidates_points(w->model, kind, &inner, point);
+        if (!sc_step_filter_admits(w, kind, inner, point, name)) return;
+    }
+    if (f->asks[kind] && !sc_step_filter_accepts(w, kind, name)) return;
     sc_step_pairs_take(w, kind, a, b, 0);
 }
 

@@ -12,6 +12,9 @@
 /* Whether pairs are wanted by name, and not only counted. */
 int sc_near_candidates_want_names(const sc_question *question);
 
+/* Whether some pairs are not wanted: all go through sc_near_candidates_take then. */
+int sc_near_candidates_are_filtered(const sc_question *question);
+
 /* Takes a pair that is near, which was not taken before: in numbers of places, and in the caller's
    numbers, edges in any order. */
 void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, uint32_t a, uint32_t b);

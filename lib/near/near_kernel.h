@@ -50,6 +50,7 @@ typedef struct near_search {
     float margin;
     uint32_t follows;
     int kinds, names; /* which are wanted, and whether they are wanted by name */
+    int filtered;     /* some are not wanted, of which the last stage is asked */
 } near_search;
 
 /* Points before the low sides of a box, and in the upper half those behind the high ones. */
@@ -169,6 +170,14 @@ static inline void take_near_faces(near_search *s, const near_side *p, const nea
         s->w->step->count[SC_STEP_VERTEX_FACE] += sc_bits_count(near);
         near = 0;
     }
+    for (; s->filtered && near; near &= near - 1) {
+        const uint32_t i = at + sc_bits_lowest(near);
+        sc_pair inner;
+        inner.a = p->leaf->point[list->a[i]];
+        inner.b = f->leaf->first + list->b[i];
+        sc_near_candidates_take(s->w, SC_STEP_VERTEX_FACE, inner, inner.a,
+                                f->leaf->face[list->b[i]]);
+    }
     for (; near; near &= near - 1) {
         const uint32_t i = at + sc_bits_lowest(near);
         some[count].a = p->leaf->point[list->a[i]];
@@ -207,6 +216,14 @@ static inline void take_near_edges(near_search *s, const near_list *list, uint32
     if (!s->names) {
         s->w->step->count[SC_STEP_EDGE_EDGE] += sc_bits_count(near);
         near = 0;
+    }
+    for (; s->filtered && near; near &= near - 1) {
+        const uint32_t i = at + sc_bits_lowest(near);
+        sc_pair inner;
+        inner.a = inner_near_edge(a, list->a[i]);
+        inner.b = inner_near_edge(b, list->b[i]);
+        sc_near_candidates_take(s->w, SC_STEP_EDGE_EDGE, inner, name_near_edge(a, list->a[i]),
+                                name_near_edge(b, list->b[i]));
     }
     for (; near; near &= near - 1, count++) {
         const uint32_t i = at + sc_bits_lowest(near);
@@ -486,7 +503,8 @@ static inline void begin_near_search(near_search *s, sc_worker *w)
     s->w = w;
     s->margin = w->frame->motion.margin;
     s->kinds = o->kinds == SC_NEAR_BOTH ? SC_NEAR_VERTEX_FACE | SC_NEAR_EDGE_EDGE : (int)o->kinds;
-    s->names = sc_near_candidates_want_names(w->question);
+    s->filtered = sc_near_candidates_are_filtered(w->question);
+    s->names = s->filtered || sc_near_candidates_want_names(w->question);
 }
 
 static inline void begin_near_pair(near_search *s, uint32_t item, const sc_near_leaf *a,

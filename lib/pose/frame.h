@@ -29,6 +29,7 @@ typedef struct sc_motion {
     sc_boxes boxes[2]; /* patch_end: of patches at the start and at the end */
     uint16_t
         *own_points; /* leaf_count: bit i: the leaf cluster is the first to have leaf_point i */
+    sc_group *vertex_groups; /* vertex_count: room for groups of vertices, see step/step_filter.h */
     float distance;  /* in the unit box: what is farther apart does not collide */
     float margin;    /* how far apart two sets of unit must be, so that the true ones are more than
                         that distance apart */

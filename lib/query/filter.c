@@ -14,19 +14,20 @@
 static int is_pair(const sc_model *model, uint32_t kind, sc_pair pair)
 {
     uint32_t count = model->triangle_count;
-    if (kind == SC_PAIRS_EDGE) return pair.a < 3 * count && pair.b < count;
-    return pair.a < pair.b && pair.b < count;
+    if (kind == SC_FILTER_EDGES) return pair.a < 3 * count && pair.b < count;
+    if (kind == SC_FILTER_VERTEX_FACE) return pair.a < model->vertex_count && pair.b < count;
+    return pair.a < pair.b && pair.b < (kind == SC_FILTER_EDGE_EDGE ? 3 * count : count);
 }
 
-static sc_status check_filter(const sc_hooks *hooks, const sc_model *model, uint32_t kind,
-                              const sc_filter *filter)
+static sc_status check_filter(const sc_hooks *hooks, const char *of, const sc_model *model,
+                              uint32_t kind, const sc_filter *filter)
 {
     const sc_choice rings = {"ignore_rings", filter->ignore_rings, SC_RINGS_MAX};
     const char *wrong = NULL;
     uint64_t i;
-    sc_status status = sc_arguments_choose(hooks, "options.filter", &rings, 1);
+    sc_status status = sc_arguments_choose(hooks, of, &rings, 1);
     if (!status && filter->ignore_count)
-        status = sc_arguments_need(hooks, "options.filter", "ignore", filter->ignore);
+        status = sc_arguments_need(hooks, of, "ignore", filter->ignore);
     for (i = 0; !status && i < filter->ignore_count; i++) {
         if (!is_pair(model, kind, filter->ignore[i]))
             wrong = "is no pair of this model";
@@ -34,25 +35,24 @@ static sc_status check_filter(const sc_hooks *hooks, const sc_model *model, uint
             wrong = "comes before the one before it";
         else
             continue;
-        sc_hooks_log(hooks, SC_LOG_ERROR, "options.filter.ignore[%" PRIu64 "] %s", i, wrong);
+        sc_hooks_log(hooks, SC_LOG_ERROR, "%s.ignore[%" PRIu64 "] %s", of, i, wrong);
         return SC_ERROR_PAIRS;
     }
     return status;
 }
 
-sc_status sc_filter_read(const sc_hooks *hooks, const sc_model *model, uint32_t kind,
-                         const sc_filter *from, sc_filter *filter)
+sc_status sc_filter_read(const sc_hooks *hooks, const char *of, const sc_model *model,
+                         uint32_t kind, const sc_filter *from, sc_filter *filter)
 {
-    sc_status status =
-        sc_arguments_read(hooks, "options.filter", filter, sizeof *filter, from, sizeof(void *));
-    return status ? status : check_filter(hooks, model, kind, filter);
+    sc_status status = sc_arguments_read(hooks, of, filter, sizeof *filter, from, sizeof(void *));
+    return status ? status : check_filter(hooks, of, model, kind, filter);
 }
 
 sc_status sc_filter_begin(sc_question *question, const sc_hooks *hooks, const sc_model *model,
                           const sc_filter *from, sc_filter *filter)
 {
     uint32_t kind = question->options.pairs;
-    sc_status status = sc_filter_read(hooks, model, kind, from, filter);
+    sc_status status = sc_filter_read(hooks, "options.filter", model, kind, from, filter);
     if (status) return status;
     question->filter = filter;
     question->sifts = filter->vertex_groups || filter->triangle_groups;
@@ -64,49 +64,58 @@ sc_status sc_filter_begin(sc_question *question, const sc_hooks *hooks, const sc
 
 /* ---- groups ---- */
 
-static int groups_collide(sc_group a, sc_group b)
+int sc_filter_groups_collide(sc_group a, sc_group b)
 {
     return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
 }
 
-/* The group of some points together. */
-static sc_group group_of_points(const sc_worker *w, const uint32_t *points, uint32_t count)
+sc_group sc_filter_group_of(const sc_group *groups, const uint32_t *points, uint32_t count)
 {
     sc_group all = {0, 0};
     uint32_t i;
     for (i = 0; i < count; i++) {
-        const sc_group *one = &w->question->filter->vertex_groups[points[i]];
-        all.category |= one->category;
-        all.mask |= one->mask;
+        all.category |= groups[points[i]].category;
+        all.mask |= groups[points[i]].mask;
     }
     return all;
 }
 
 /* ---- rings ---- */
 
-/* Marks the points at most steps edges away from the three of a triangle. */
-static void mark_ball(const sc_model *model, sc_ball *ball, const uint32_t center[3],
-                      uint32_t steps)
+/* Begins a ball with the points that it is round. It may grow by so many edges. */
+static void begin_ball(const sc_model *model, sc_ball *ball, const uint32_t *center, uint32_t count,
+                       uint32_t steps)
 {
-    const uint32_t *first = sc_model_around_first(model), *around = sc_model_around(model);
-    uint32_t head = 0, tail = 0, end, i;
+    uint32_t i;
     if (ball->epoch == 0xffff) {
         memset(ball->epoch_of, 0, model->vertex_count * sizeof *ball->epoch_of);
         ball->epoch = 0;
     }
     ball->epoch++;
-    for (i = 0; i < 3; i++)
+    ball->head = ball->tail = 0;
+    ball->steps = steps;
+    for (i = 0; i < count; i++)
         if (ball->epoch_of[center[i]] != ball->epoch) {
             ball->epoch_of[center[i]] = ball->epoch;
-            ball->queue[tail++] = center[i];
+            ball->queue[ball->tail++] = center[i];
         }
-    for (; steps && head < tail; steps--)
-        for (end = tail; head < end; head++)
-            for (i = first[ball->queue[head]]; i < first[ball->queue[head] + 1]; i++)
-                if (ball->epoch_of[around[i]] != ball->epoch) {
-                    ball->epoch_of[around[i]] = ball->epoch;
-                    ball->queue[tail++] = around[i];
-                }
+}
+
+/* Adds the points that are one edge farther away; 0: it is not to grow, or cannot. */
+static int grow_ball(const sc_model *model, sc_ball *ball)
+{
+    const uint32_t *first = sc_model_around_first(model), *around = sc_model_around(model);
+    const uint32_t end = ball->tail;
+    uint32_t i;
+    if (!ball->steps || ball->head == end) return 0;
+    ball->steps--;
+    for (; ball->head < end; ball->head++)
+        for (i = first[ball->queue[ball->head]]; i < first[ball->queue[ball->head] + 1]; i++)
+            if (ball->epoch_of[around[i]] != ball->epoch) {
+                ball->epoch_of[around[i]] = ball->epoch;
+                ball->queue[ball->tail++] = around[i];
+            }
+    return 1;
 }
 
 static const uint32_t *points_of(const sc_model *model, uint32_t triangle)
@@ -114,20 +123,23 @@ static const uint32_t *points_of(const sc_model *model, uint32_t triangle)
     return sc_model_triangle(model) + 3 * (uint64_t)sc_model_place(model)[triangle];
 }
 
-/*
- * Whether some points are less than ignore_rings edges away from a triangle. The ball round a
- * triangle serves all pairs with it that follow each other, as they mostly do.
- */
-static int is_near(sc_worker *w, uint32_t center, const uint32_t *points, uint32_t count)
+int sc_filter_is_near(const sc_model *model, sc_ball *ball, const sc_ball_side sides[2],
+                      uint32_t kind, uint32_t rings)
 {
+    const uint32_t center = ball->kind == kind ? ball->center : SC_NONE;
+    const sc_ball_side *other = &sides[1];
     uint32_t i;
-    if (w->ball.center != center) {
-        mark_ball(w->model, &w->ball, points_of(w->model, center),
-                  w->question->filter->ignore_rings - 1);
-        w->ball.center = center;
+    if (center != SC_NONE && center == sides[1].number) {
+        other = &sides[0];
+    } else if (center != sides[0].number) {
+        begin_ball(model, ball, sides[0].points, sides[0].count, rings - 1);
+        ball->center = sides[0].number;
+        ball->kind = (uint16_t)kind;
     }
-    for (i = 0; i < count; i++)
-        if (w->ball.epoch_of[points[i]] == w->ball.epoch) return 1;
+    do
+        for (i = 0; i < other->count; i++)
+            if (ball->epoch_of[other->points[i]] == ball->epoch) return 1;
+    while (grow_ball(model, ball));
     return 0;
 }
 
@@ -142,18 +154,20 @@ uint32_t sc_filter_sift(const sc_worker *w, sc_pair *pairs, uint32_t count)
     for (i = 0; i < count; i++) {
         const uint32_t a = pairs[i].a & SC_ITEM, b = pairs[i].b;
         if (f->triangle_groups &&
-            !groups_collide(f->triangle_groups[id[a]], f->triangle_groups[id[b]]))
+            !sc_filter_groups_collide(f->triangle_groups[id[a]], f->triangle_groups[id[b]]))
             continue;
         /* an edge's group is part of its triangle's */
-        if (f->vertex_groups && !groups_collide(group_of_points(w, triangle + 3 * (uint64_t)a, 3),
-                                                group_of_points(w, triangle + 3 * (uint64_t)b, 3)))
+        if (f->vertex_groups &&
+            !sc_filter_groups_collide(
+                sc_filter_group_of(f->vertex_groups, triangle + 3 * (uint64_t)a, 3),
+                sc_filter_group_of(f->vertex_groups, triangle + 3 * (uint64_t)b, 3)))
             continue;
         pairs[kept++] = pairs[i];
     }
     return kept;
 }
 
-static int is_ignored(const sc_filter *f, uint32_t a, uint32_t b)
+int sc_filter_ignores(const sc_filter *f, uint32_t a, uint32_t b)
 {
     uint64_t low = 0, high = f->ignore_count;
     sc_pair pair;
@@ -174,20 +188,21 @@ int sc_filter_admits(sc_worker *w, uint32_t a, uint32_t b)
     const sc_filter *f = w->question->filter;
     int is_edge = w->question->options.pairs == SC_PAIRS_EDGE;
     uint32_t triangle = is_edge ? a / 3 : a, count = is_edge ? 2 : 3, points[3], k;
-    const uint32_t *corner = points_of(w->model, triangle);
+    const uint32_t *corner = points_of(w->model, triangle), *other = points_of(w->model, b);
     for (k = 0; k < count; k++) points[k] = corner[is_edge ? (a + k) % 3 : k];
-    if (f->triangle_groups && !groups_collide(f->triangle_groups[triangle], f->triangle_groups[b]))
+    if (f->triangle_groups &&
+        !sc_filter_groups_collide(f->triangle_groups[triangle], f->triangle_groups[b]))
         return 0;
-    if (f->vertex_groups && !groups_collide(group_of_points(w, points, count),
-                                            group_of_points(w, points_of(w->model, b), 3)))
+    if (f->vertex_groups &&
+        !sc_filter_groups_collide(sc_filter_group_of(f->vertex_groups, points, count),
+                                  sc_filter_group_of(f->vertex_groups, other, 3)))
         return 0;
-    if (is_ignored(f, a, b)) return 0;
+    if (sc_filter_ignores(f, a, b)) return 0;
     if (f->ignore_rings) {
-        if (is_edge || w->ball.center != a) {
-            if (is_near(w, b, points, count)) return 0;
-        } else if (is_near(w, a, points_of(w->model, b), 3)) {
+        /* balls round triangles alone: those round edges would go by other numbers */
+        const sc_ball_side sides[2] = {{other, 3, b}, {points, count, is_edge ? SC_NONE : a}};
+        if (sc_filter_is_near(w->model, &w->ball, sides, SC_FILTER_TRIANGLES, f->ignore_rings))
             return 0;
-        }
     }
     return !f->accept || f->accept(f->accept_user, a, b);
 }

@@ -62,12 +62,17 @@ typedef struct sc_last {
     uint8_t *marks;  /* patch_end: where that is written down; the same, if one worker does all */
 } sc_last;
 
-/* Points near a triangle in number of edges, see query/filter.c. */
+/* Points near a triangle or an edge in number of edges, as far as they were sought; see
+   query/filter.h. */
 typedef struct sc_ball {
     uint16_t *epoch_of; /* vertex_count: epoch if in the ball */
-    uint32_t *queue;    /* point_count */
-    uint32_t center;    /* the caller's number of the triangle, or SC_NONE */
+    uint32_t *queue;    /* point_count: tail points in the ball; of those from head on the neighbors
+                           are not yet in it */
+    uint32_t head, tail;
+    uint32_t steps;     /* edges by which it may still grow */
+    uint32_t center;    /* the number of what it is round, or SC_NONE: of nothing */
     uint16_t epoch;
+    uint16_t kind; /* as which that number is meant: SC_FILTER_... */
 } sc_ball;
 
 /* Pairs that a worker collects before it gives them to the caller's array. */

@@ -54,6 +54,10 @@ static void fill_near_question(const sc_near_result *result, sc_near_question *q
     step->tasks = o->tasks;
     step->cancel = o->cancel;
     step->budget = o->budget;
+    step->vertex_face_filter = o->vertex_face_filter;
+    step->edge_edge_filter = o->edge_edge_filter;
+    step->rest = o->rest;
+    step->rest_distance = o->rest_distance;
     memset(&lists, 0, sizeof lists);
     lists.vertex_faces = result->vertex_faces;
     lists.vertex_face_capacity = result->vertex_face_capacity;
@@ -95,5 +99,5 @@ sc_status sc_near_question_read(const sc_model *model, const sc_workspace *works
     asked->pose[1] = asked->pose[0];
     asked->stride[1] = asked->stride[0];
     fill_near_question(result, question);
-    return SC_OK;
+    return sc_step_question_read_filters(hooks, model, asked, &question->step);
 }

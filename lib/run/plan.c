@@ -26,6 +26,7 @@
 #include "query/culling.h"
 #include "query/pairs.h"
 #include "run/runner.h"
+#include "step/step_filter.h"
 #include "step/step_motion.h"
 #include "step/step_pairs.h"
 
@@ -85,6 +86,7 @@ static const sc_tasks *tasks_for(const sc_model *model, const sc_question *quest
     if (question->filter && question->filter->accept &&
         !(o->output == SC_OUTPUT_PAIRS && question->capacity))
         return NULL;
+    if (question->step && !sc_step_filter_allows_workers(question->step)) return NULL;
     return sc_plan_tasks(model, question);
 }
 
@@ -628,6 +630,7 @@ static void finish(sc_workspace *workspace, const sc_question *question, const s
     sc_pair *spare = sc_workspace_spare(workspace, &room);
     if (question->step) {
         sc_step_pairs_finish(question->step, w->step->count, spare, room, tasks);
+        if (tasks) sc_step_filter_ask(w);
         return;
     }
     sc_pairs_finish(question, w->count, spare, room, tasks);

@@ -14,6 +14,8 @@
 typedef struct sc_asked {
     sc_pose pose[2];    /* of a query the first; of a step those at the start and at the end */
     uint64_t stride[2]; /* of these, in bytes */
+    sc_pose rest;       /* of a step whose options have one */
+    uint64_t rest_stride;
     sc_filter filter;
     sc_tasks tasks;
 } sc_asked;

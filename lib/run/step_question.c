@@ -11,6 +11,7 @@
 #include "base/assume.h"
 #include "run/question.h"
 #include "step/moving_contour.h"
+#include "step/step_filter.h"
 
 sc_status sc_step_question_check_length(const sc_hooks *hooks, const char *name, double length)
 {
@@ -33,7 +34,9 @@ static sc_status check_step_choices(const sc_hooks *hooks, const sc_step_options
     sc_status status =
         sc_arguments_choose(hooks, "options", choices, sizeof choices / sizeof *choices);
     if (!status) status = sc_step_question_check_length(hooks, "separation", o->separation);
-    return status ? status : sc_step_question_check_length(hooks, "tolerance", o->tolerance);
+    if (!status) status = sc_step_question_check_length(hooks, "tolerance", o->tolerance);
+    return status ? status
+                  : sc_step_question_check_length(hooks, "rest_distance", o->rest_distance);
 }
 
 /* On a model for boxes, what asks for no method and no contour test gets boxes. */
@@ -88,6 +91,23 @@ void sc_step_question_fill(const sc_step_result *result, sc_step_question *quest
     question->limits.latest = 1;
 }
 
+sc_status sc_step_question_read_filters(const sc_hooks *hooks, const sc_model *model,
+                                        sc_asked *asked, sc_step_question *question)
+{
+    sc_step_options *o = &question->options;
+    sc_status status = sc_step_filter_read(hooks, model, o->vertex_face_filter, o->edge_edge_filter,
+                                           &question->filters);
+    asked->rest_stride = 0;
+    if (!status && o->rest) {
+        status = sc_question_read_pose(hooks, "options.rest", model, o->rest, &asked->rest,
+                                       &asked->rest_stride);
+        o->rest = &asked->rest;
+    } else if (!status && o->rest_distance > 0) {
+        status = sc_arguments_need(hooks, "options", "rest", NULL);
+    }
+    return status;
+}
+
 sc_status sc_step_question_read(const sc_model *model, const sc_workspace *workspace,
                                 const sc_pose *start, const sc_pose *end,
                                 const sc_step_options *from, const sc_step_result *result,
@@ -112,6 +132,7 @@ sc_status sc_step_question_read(const sc_model *model, const sc_workspace *works
     if (!status)
         status =
             sc_question_read_pose(hooks, "end", model, end, &asked->pose[1], &asked->stride[1]);
+    if (!status) status = sc_step_question_read_filters(hooks, model, asked, question);
     if (!status && o->output == SC_OUTPUT_PAIRS && result->vertex_face_capacity)
         status = sc_arguments_need(hooks, "result", "vertex_faces", result->vertex_faces);
     if (!status && o->output == SC_OUTPUT_PAIRS && result->edge_edge_capacity)

@@ -20,4 +20,9 @@ sc_status sc_step_question_check_length(const sc_hooks *hooks, const char *name,
 /* What all queries are asked, and where the answer goes, from options that are complete. */
 void sc_step_question_fill(const sc_step_result *result, sc_step_question *question);
 
+/* Which pairs are not wanted, from options that are copied but for these; options.rest becomes
+   asked->rest. */
+sc_status sc_step_question_read_filters(const sc_hooks *hooks, const sc_model *model,
+                                        sc_asked *asked, sc_step_question *question);
+
 #endif

@@ -75,6 +75,7 @@ static void lay_out_frame(const sc_workspace_sizes *s, layout *l, sc_frame *fram
     frame->motion.unit = SC_PLACE(l, 8 * (uint64_t)s->vertices, float);
     for (k = 0; k < 2; k++) lay_out_boxes(s, l, &frame->motion.boxes[k]);
     frame->motion.own_points = SC_PLACE(l, s->leaves, uint16_t);
+    frame->motion.vertex_groups = SC_PLACE(l, s->vertices, sc_group);
 }
 
 /* Points of leaf clusters; next to them bounds of segments, and derived data of leaf clusters in

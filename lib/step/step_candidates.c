@@ -6,6 +6,7 @@
 #include "step/step_candidates.h"
 
 #include "pose/positions.h"
+#include "step/step_filter.h"
 #include "step/step_pairs.h"
 
 sc_pair sc_step_candidates_name(const sc_model *model, int kind, const sc_pair *pair)
@@ -22,42 +23,36 @@ sc_pair sc_step_candidates_name(const sc_model *model, int kind, const sc_pair *
     return name;
 }
 
-/* The answer must not depend on which of two edges was found first: the one with the lower name is
-   put first. */
-static sc_pair put_in_order(const sc_model *model, int kind, sc_pair pair, sc_pair *name)
-{
-    *name = sc_step_candidates_name(model, kind, &pair);
-    if (kind == SC_STEP_EDGE_EDGE && name->a > name->b) {
-        uint32_t t = name->a;
-        name->a = name->b;
-        name->b = t;
-        t = pair.a;
-        pair.a = pair.b;
-        pair.b = t;
-    }
-    return pair;
-}
-
 /* Decides a pair, or takes it, if candidates are wanted. */
 static void take_moving(sc_worker *w, int kind, sc_pair pair)
 {
     const sc_positions *positions = w->frame->positions;
-    const sc_impact_limits *limits = &w->step->question->limits;
+    const sc_step_question *question = w->step->question;
     double start[4][3], end[4][3], time = 0;
     const double(*from)[3] = (const double(*)[3])start, (*to)[3] = (const double(*)[3])end;
-    uint32_t point[4], k;
-    sc_pair name;
-    pair = put_in_order(w->model, kind, pair, &name);
-    if (w->step->question->options.pairs == SC_STEP_COLLISIONS) {
-        sc_step_candidates_points(w->model, kind, &pair, point);
+    sc_pair name = sc_step_candidates_name(w->model, kind, &pair);
+    uint32_t point[4], first = 0, k;
+    sc_step_candidates_points(w->model, kind, &pair, point);
+    /* The answer must not depend on which of two edges was found first: the one with the lower
+       name is put first. */
+    if (kind == SC_STEP_EDGE_EDGE && name.a > name.b) {
+        k = name.a;
+        name.a = name.b;
+        name.b = k;
+        first = 2;
+    }
+    if (question->filters.sifts[kind] && !sc_step_filter_admits(w, kind, pair, point, name)) return;
+    if (question->options.pairs == SC_STEP_COLLISIONS) {
         for (k = 0; k < 4; k++) {
-            sc_positions_get(&positions[0], point[k], start[k]);
-            sc_positions_get(&positions[1], point[k], end[k]);
+            sc_positions_get(&positions[0], point[k ^ first], start[k]);
+            sc_positions_get(&positions[1], point[k ^ first], end[k]);
         }
-        if (!(kind == SC_STEP_VERTEX_FACE ? sc_impact_vertex_face(from, to, limits, &time)
-                                          : sc_impact_edge_edge(from, to, limits, &time)))
+        if (!(kind == SC_STEP_VERTEX_FACE
+                  ? sc_impact_vertex_face(from, to, &question->limits, &time)
+                  : sc_impact_edge_edge(from, to, &question->limits, &time)))
             return;
     }
+    if (question->filters.asks[kind] && !sc_step_filter_accepts(w, kind, name)) return;
     sc_step_pairs_take(w, kind, name.a, name.b, time);
 }
 

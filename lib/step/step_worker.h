@@ -59,12 +59,23 @@ typedef struct sc_step_list {
     uint64_t capacity;
 } sc_step_list;
 
+/* Which pairs are not wanted, by kind. */
+typedef struct sc_pair_filters {
+    sc_filter of[2];      /* the caller's, checked; all 0 where there is none */
+    sc_positions rest;    /* the rest pose */
+    double rest_distance; /* pairs that are this near in it are left out; < 0: there is none */
+    const sc_group *vertex_groups; /* vertex_count: of all triangles at each vertex together; where
+                                      triangles have groups */
+    uint8_t sifts[2], asks[2];     /* there is something to ask: step/step_filter.h */
+} sc_pair_filters;
+
 /* What a step is asked, checked and complete. */
 typedef struct sc_step_question {
     sc_question query; /* what all queries are asked; its step is this */
     sc_step_options options;
     sc_impact_limits limits; /* of the narrow phase */
     sc_step_list list[2];
+    sc_pair_filters filters;
 } sc_step_question;
 
 /* What a worker has besides, for steps. */

@@ -83,6 +83,8 @@ namespace Starcontour
             public double separation, tolerance;
             public void* tasks, cancel;
             public ulong budget;
+            public void* vertex_face_filter, edge_edge_filter, rest;
+            public double rest_distance;
         }
 
         [StructLayout(LayoutKind.Sequential)]

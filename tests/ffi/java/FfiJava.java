@@ -74,12 +74,15 @@ public final class FfiJava {
     }
 
     @Structure.FieldOrder({"struct_size", "output", "pairs", "times", "method", "contour", "simd",
-        "reserved", "separation", "tolerance", "tasks", "cancel", "budget"})
+        "reserved", "separation", "tolerance", "tasks", "cancel", "budget", "vertex_face_filter",
+        "edge_edge_filter", "rest", "rest_distance"})
     public static class sc_step_options extends Structure {
         public int struct_size = size(), output, pairs, times, method, contour, simd, reserved;
         public double separation, tolerance;
         public Pointer tasks, cancel;
         public long budget;
+        public Pointer vertex_face_filter, edge_edge_filter, rest;
+        public double rest_distance;
         int at(String member) { return fieldOffset(member); }
     }
 

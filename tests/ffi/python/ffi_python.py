@@ -177,8 +177,8 @@ for asked in (model, model.workspace()):
     for name in ("step", "step_collides"):
         says("misspelt", f"{kind}.{name}() got an unexpected keyword argument 'seperation'; did you mean "
              "'separation'?", refused(TypeError, lambda: getattr(asked, name)(rest, rest, seperation=1)))
-    says("unknown", f"{kind}.step() got an unexpected keyword argument 'ignore_rings'",
-         refused(TypeError, lambda: asked.step(rest, rest, ignore_rings=1)))
+    says("unknown", f"{kind}.step() got an unexpected keyword argument 'contact'",
+         refused(TypeError, lambda: asked.step(rest, rest, contact="proper")))
     check("poses by name", same(asked.query(pose=rest), "rest") and asked.step(start=rest, end=rest) is not None)
 signature = inspect.signature(model.query)
 check("help shows keywords", "ignore_rings" in signature.parameters and signature.parameters["budget"].default == 0)
@@ -267,6 +267,30 @@ check("a step that is not", model.step_collides(above.astype(np.float32), below)
 check("as near as that", model.step(above, above, separation=20.0).earliest == 0)
 check("candidates", len(model.step(above, below, candidates=True).vertex_faces) >= len(step.vertex_faces))
 check("a workspace for steps", model.workspace().step(above, below).earliest == step.earliest)
+check("a step but for itself", len(model.step(above, below, ignore=step).vertex_faces) == 0
+      and len(model.step(above, below, ignore=step).edge_edges) == 0)
+less = model.step(above, below, ignore=(step.vertex_faces[1:], step.edge_edges))
+check("but for all but one", np.array_equal(less.vertex_faces, step.vertex_faces[:1]) and len(less.edge_edges) == 0
+      and less.earliest == step.vertex_face_times[0])
+groups = np.zeros((len(rest), 2), np.uint32)
+groups[:later], groups[later:] = (1, 2), (2, 1)
+kept = model.step(above, below, vertex_groups=groups)
+check("groups that collide in a step", all(np.array_equal(x, y) for x, y in zip(step, kept)))
+groups[:, 1] = groups[:, 0]
+check("groups that do not", not model.step_collides(above, below, vertex_groups=groups))
+groups = np.full((len(triangles), 2), (1, 0), np.uint32)
+check("triangle groups of a step", model.step(above, below, triangle_groups=groups).earliest == 1)
+thick = len(model.step(above, above, separation=2.0).vertex_faces)
+check("rings of a step", 0 < thick > len(model.step(above, above, separation=2.0, ignore_rings=2).vertex_faces))
+check("near at rest", model.step(above, above, separation=2.0, rest=above, rest_distance=2.001).earliest == 1)
+check("at rest as floats", model.step_collides(
+    above, below, separation=1.0, rest=above.astype(np.float32), rest_distance=1.001))
+says("no rest", "rest is NULL",
+     raised(_binding.SC_ERROR_NULL, lambda: model.step(above, below, rest_distance=1)))
+says("rings of a step", "ignore_rings is 99, but at most 32",
+     raised(_binding.SC_ERROR_OPTION, lambda: model.step(above, below, ignore_rings=99)))
+says("three lists", "ignore must be a Step, a Near or two arrays",
+     refused(ValueError, lambda: model.step(above, below, ignore=step.vertex_faces[:1])))
 check("a budget of a step", incomplete(lambda: model.step(above, below, budget=1)) is not None)
 spoilt = below.copy()
 spoilt[3, 0] = np.inf
@@ -328,6 +352,19 @@ keys = [frozenset((frozenset(v[w < 0]), frozenset(v[w > 0]))) for v, w, feature 
     merged["vertices"], merged["weights"], merged["feature"]) if feature <= 2]
 check("each vertex and edge once", len(keys) == len(set(keys)) > 0)
 check("no stencils", refused(TypeError, lambda: starcontour.merge_stencils(moved)))
+
+# What is near, but not what is not wanted.
+check("all that is known", model.near_counts(moved, 0.09, ignore=wide) == (0, 0))
+check("what is known of a step", model.near_counts(moved, 0.09, ignore=fall) != (0, 0) and model.near_counts(
+    moved, 0.09, ignore=(wide.vertex_faces[1:], wide.edge_edges)) == (1, 0))
+at_rest = [model.stencils(rest, pairs, kind=kind)["distance"] for pairs, kind in zip(
+    wide, ("vertex_face", "edge_edge"))]
+check("what was far at rest", all(np.array_equal(x, pairs[far > 0.05]) and 0 < len(x) < len(pairs) for x, pairs, far
+      in zip(model.near(moved, 0.09, rest=rest, rest_distance=0.05), wide, at_rest)))
+check("rings", sum(model.near_counts(moved, 0.3, ignore_rings=4)) < sum(model.near_counts(moved, 0.3)))
+check("groups", model.near_counts(moved, 0.09, vertex_groups=np.zeros((len(rest), 2), np.uint32)) == (0, 0))
+says("no rest pose", "rest is NULL", (raised(
+    _binding.SC_ERROR_NULL, lambda: model.near(moved, 1, rest_distance=1)) or ""))
 
 # Several threads: the same answer.
 big = np.concatenate([rest + (0, 0, 3 * k) for k in range(24)]).astype(np.float64)

@@ -34,6 +34,12 @@ What is near takes cancel and budget, too, and
     method    "default", "sctt" or "boxes": the answer is the same
     stencils  True: the closest points of each pair as well; see Model.stencils
 
+Steps and what is near take ignore_rings and both kinds of groups, too, and
+
+    ignore    leave out these pairs: a Step, a Near, or two arrays of shape (k, 2) as their first two
+
+    rest, rest_distance   leave out pairs that are within this distance of each other in this pose
+
 All take
 
     threads  how many threads the query may use, 1 (default) to 256: the answer is the same
@@ -175,7 +181,7 @@ class _Log:
 
     def check(self, status):
         """Raises an Error if status is one. Members of options are named as the keywords here are."""
-        reasons = [re.sub(r"^options\.(filter\.)?", "", reason) for reason in self._reasons]
+        reasons = [re.sub(r"^options\.(\w*filter\.)?", "", reason) for reason in self._reasons]
         self._reasons.clear()
         if status:
             raise Error(status, "; ".join(reasons))
@@ -421,6 +427,15 @@ def _filter(model, ignore_rings, ignore, vertex_groups, triangle_groups):
     return structure, arrays
 
 
+def _feature_filters(model, ignore_rings, ignore, vertex_groups, triangle_groups):
+    """An sc_filter for each of the two kinds of pairs, and the arrays that they refer to."""
+    ignored = (None, None) if ignore is None else tuple(ignore)[:2]
+    if len(ignored) != 2:
+        raise ValueError("ignore must be a Step, a Near or two arrays")
+    both = [_filter(model, ignore_rings, pairs, vertex_groups, triangle_groups) for pairs in ignored]
+    return [structure for structure, _ in both], [arrays for _, arrays in both]
+
+
 def _ask(model, scratch, pose, output, answer, *, pairs="triangle", contact="touching",
          method="default", rest_cache=True, ignore_rings=0, ignore=None, vertex_groups=None,
          triangle_groups=None, cancel=None, budget=0, threads=1):
@@ -476,8 +491,12 @@ def _step_collides(model, scratch, start, end, **options):
 
 
 def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tolerance=0.0,
-              method="default", candidates=False, cancel=None, budget=0, threads=1):
+              method="default", candidates=False, ignore_rings=0, ignore=None, vertex_groups=None,
+              triangle_groups=None, rest=None, rest_distance=0.0, cancel=None, budget=0,
+              threads=1):
     (given, positions), (goal, positions_then) = _pose(start), _pose(end)
+    filters, kept = _feature_filters(model, ignore_rings, ignore, vertex_groups, triangle_groups)
+    pose_at_rest, positions_at_rest = (None, None) if rest is None else _pose(rest)
     timed = output == _binding.SC_OUTPUT_PAIRS and not candidates
     options = _binding.sc_step_options(
         struct_size=ctypes.sizeof(_binding.sc_step_options),
@@ -489,6 +508,10 @@ def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tol
         tolerance=_length("tolerance", tolerance),
         cancel=_cancel(cancel),
         budget=_whole("budget", budget, 64),
+        vertex_face_filter=ctypes.addressof(filters[0]),
+        edge_edge_filter=ctypes.addressof(filters[1]),
+        rest=None if rest is None else ctypes.addressof(pose_at_rest),
+        rest_distance=_length("rest_distance", rest_distance),
     )
     result = _binding.sc_step_result(struct_size=ctypes.sizeof(_binding.sc_step_result))
     if not scratch.lock.acquire(blocking=False):
@@ -540,14 +563,21 @@ def _is_near(model, scratch, pose, distance, **options):
 
 
 def _ask_near(model, scratch, pose, distance, output, answer, *, kinds="both", method="default",
-              cancel=None, budget=0, threads=1):
+              ignore_rings=0, ignore=None, vertex_groups=None, triangle_groups=None, rest=None,
+              rest_distance=0.0, cancel=None, budget=0, threads=1):
     given, positions = _pose(pose)
+    filters, kept = _feature_filters(model, ignore_rings, ignore, vertex_groups, triangle_groups)
+    pose_at_rest, positions_at_rest = (None, None) if rest is None else _pose(rest)
     options = _binding.sc_near_options(
         struct_size=ctypes.sizeof(_binding.sc_near_options),
         output=output,
         kinds=_choice("kinds", kinds, _NEAR_KINDS),
         method=_choice("method", method, _NEAR_METHOD),
         distance=_length("distance", distance),
+        vertex_face_filter=ctypes.addressof(filters[0]),
+        edge_edge_filter=ctypes.addressof(filters[1]),
+        rest=None if rest is None else ctypes.addressof(pose_at_rest),
+        rest_distance=_length("rest_distance", rest_distance),
         cancel=_cancel(cancel),
         budget=_whole("budget", budget, 64),
     )

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: MIT
 import os
 from types import TracebackType
-from typing import Any, Literal, NamedTuple, Optional, Tuple, Type, TypeVar, Union
+from typing import Any, Literal, NamedTuple, Optional, Sequence, Tuple, Type, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -126,6 +126,12 @@ class _Queries:
         tolerance: float = 0.0,
         method: Literal["default", "sctt", "two_boxes", "swept"] = "default",
         candidates: bool = False,
+        ignore_rings: int = 0,
+        ignore: Union[Step, Near, Sequence[npt.ArrayLike], None] = None,
+        vertex_groups: Optional[npt.ArrayLike] = None,
+        triangle_groups: Optional[npt.ArrayLike] = None,
+        rest: Optional[npt.ArrayLike] = None,
+        rest_distance: float = 0.0,
         cancel: Optional[_Flag] = None,
         budget: int = 0,
         threads: int = 1,
@@ -139,6 +145,12 @@ class _Queries:
         tolerance: float = 0.0,
         method: Literal["default", "sctt", "two_boxes", "swept"] = "default",
         candidates: bool = False,
+        ignore_rings: int = 0,
+        ignore: Union[Step, Near, Sequence[npt.ArrayLike], None] = None,
+        vertex_groups: Optional[npt.ArrayLike] = None,
+        triangle_groups: Optional[npt.ArrayLike] = None,
+        rest: Optional[npt.ArrayLike] = None,
+        rest_distance: float = 0.0,
         cancel: Optional[_Flag] = None,
         budget: int = 0,
         threads: int = 1,
@@ -151,6 +163,12 @@ class _Queries:
         stencils: bool = False,
         kinds: Literal["both", "vertex_face", "edge_edge"] = "both",
         method: Literal["default", "sctt", "boxes"] = "default",
+        ignore_rings: int = 0,
+        ignore: Union[Step, Near, Sequence[npt.ArrayLike], None] = None,
+        vertex_groups: Optional[npt.ArrayLike] = None,
+        triangle_groups: Optional[npt.ArrayLike] = None,
+        rest: Optional[npt.ArrayLike] = None,
+        rest_distance: float = 0.0,
         cancel: Optional[_Flag] = None,
         budget: int = 0,
         threads: int = 1,
@@ -162,6 +180,12 @@ class _Queries:
         *,
         kinds: Literal["both", "vertex_face", "edge_edge"] = "both",
         method: Literal["default", "sctt", "boxes"] = "default",
+        ignore_rings: int = 0,
+        ignore: Union[Step, Near, Sequence[npt.ArrayLike], None] = None,
+        vertex_groups: Optional[npt.ArrayLike] = None,
+        triangle_groups: Optional[npt.ArrayLike] = None,
+        rest: Optional[npt.ArrayLike] = None,
+        rest_distance: float = 0.0,
         cancel: Optional[_Flag] = None,
         budget: int = 0,
         threads: int = 1,
@@ -173,6 +197,12 @@ class _Queries:
         *,
         kinds: Literal["both", "vertex_face", "edge_edge"] = "both",
         method: Literal["default", "sctt", "boxes"] = "default",
+        ignore_rings: int = 0,
+        ignore: Union[Step, Near, Sequence[npt.ArrayLike], None] = None,
+        vertex_groups: Optional[npt.ArrayLike] = None,
+        triangle_groups: Optional[npt.ArrayLike] = None,
+        rest: Optional[npt.ArrayLike] = None,
+        rest_distance: float = 0.0,
         cancel: Optional[_Flag] = None,
         budget: int = 0,
         threads: int = 1,

@@ -12,6 +12,7 @@ import sys
 from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_uint32, c_uint64, c_void_p
 
 # The enumerators that the package and its tests use.
+SC_ERROR_NULL = 1
 SC_ERROR_OPTION = 3
 SC_ERROR_EMPTY = 4
 SC_ERROR_INDEX = 7
@@ -224,6 +225,10 @@ class sc_step_options(ctypes.Structure):
         ("tasks", c_void_p),
         ("cancel", c_void_p),
         ("budget", c_uint64),
+        ("vertex_face_filter", c_void_p),
+        ("edge_edge_filter", c_void_p),
+        ("rest", c_void_p),
+        ("rest_distance", c_double),
     ]
 
 

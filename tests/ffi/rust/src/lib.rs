@@ -262,6 +262,10 @@ impl Workspace<'_> {
             tasks: ptr::null(),
             cancel: ptr::null(),
             budget: 0,
+            vertex_face_filter: ptr::null(),
+            edge_edge_filter: ptr::null(),
+            rest: ptr::null(),
+            rest_distance: 0.0,
         };
         loop {
             let [faces, edges] = &mut self.features;

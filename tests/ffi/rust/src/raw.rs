@@ -91,6 +91,10 @@ pub struct sc_step_options {
     pub tasks: *const c_void,
     pub cancel: *const u32,
     pub budget: u64,
+    pub vertex_face_filter: *const c_void,
+    pub edge_edge_filter: *const c_void,
+    pub rest: *const sc_pose,
+    pub rest_distance: f64,
 }
 
 #[repr(C)]
@@ -217,7 +221,8 @@ pub fn layouts() -> Vec<Layout> {
         layout!(sc_result: struct_size collides count capacity pairs stats verdict reserved),
         layout!(sc_workspace_options: struct_size flags workers reserved allocator),
         layout!(sc_step_options: struct_size output pairs times method contour simd reserved
-            separation tolerance tasks cancel budget),
+            separation tolerance tasks cancel budget vertex_face_filter edge_edge_filter rest
+            rest_distance),
         layout!(sc_step_result: struct_size collides verdict reserved vertex_face_count
             vertex_face_capacity vertex_faces vertex_face_times edge_edge_count
             edge_edge_capacity edge_edges edge_edge_times earliest stats),
