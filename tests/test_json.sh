@@ -90,6 +90,7 @@ check "--any knows no worst" says 1 "^2 files: 1 clean, 1 colliding, 0 refused; 
     "$query" --any "$scratch/clean.obj" "$scratch/hit.obj"
 check "no line after one file" status 0 "$query" "$scratch/clean.obj"
 check "but its own" test "$(wc -l <"$scratch/out")" -eq 2
+check "near pairs by objects" says 1 "body / wheel [0-9]*$" "$query" --near 2 "$scratch/clean.obj"
 check "steps" says 1 "^2 steps: 1 clean, 1 colliding, 0 refused; first .*clean.obj to .*hit.obj; worst" \
     "$query" --step "$scratch/clean.obj" "$scratch/clean.obj" "$scratch/hit.obj"
 
@@ -180,6 +181,16 @@ check "of steps by boxes" valid "step-collides" \
     "$query" --step --json --method swept --tolerance 0.01 "$scratch/clean.obj" "$scratch/hit.obj"
 check "of steps that cannot begin" valid "step-error" \
     "$query" --step --json "$scratch/broken.obj" "$scratch/hit.obj"
+check "of what is near" valid "near-clean near-near near-error summary" \
+    "$query" --near 0 --json --list "$scratch/clean.obj" meshes/folded_sheet.obj "$scratch/broken.obj"
+check "of closest points" valid "near-near" \
+    "$query" --near 2 --json --stencils --stats --method sctt "$scratch/hit.obj"
+check "of any that is near" valid "near-near" "$query" --near 2 --json --any "$scratch/hit.obj"
+check "of near poses" valid "near-near" \
+    "$query" --near 2 --json --model "$scratch/car.scm" --budget 100000 "$scratch/hit.obj"
+check "of near pairs, not all" valid "near-incomplete" "$query" --near 2 --json --budget 1 "$cloths"
+check "near what has no rest pose" valid "near-error" \
+    "$query" --near 2 --json --rest "$scratch/absent.obj" "$scratch/hit.obj"
 check "of a partition" valid "partition" "$partition" --json "$cloths"
 
 # Numbers in an object are those of the table.

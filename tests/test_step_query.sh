@@ -105,11 +105,11 @@ check "pairs that were found before" status 0 "$query" --step --ignore "$scratch
 sed '2d' "$scratch/all.csv" >"$scratch/less.csv"
 check "all but one" says 1 ' \(1  *0\|0  *1\) ' "$query" --step --ignore "$scratch/less.csv" \
     "$scratch/fold0.obj" "$scratch/fold1.obj"
-check "no list of a step" says 2 "line 1: not a pair of a step" \
+check "no list of a step" says 2 "line 1: not a pair as --step" \
     "$query" --step --ignore "$scratch/groups" "$a" "$b"
 check "an absent list" says 2 "absent" "$query" --step --ignore "$scratch/absent" "$a" "$b"
 check "no distance" says 2 "not a number" "$query" --step --ignore-rest x "$a" "$b"
-check "only of steps" says 2 "are of --step" "$query" --ignore-rest 1 "$a"
+check "only of steps" says 2 "is of --step and --near" "$query" --ignore-rest 1 "$a"
 
 # ---- what it prints ----
 

@@ -95,25 +95,36 @@ static int split_fields(char *line, char **fields, int most)
     return count;
 }
 
+/* Lines of --step have ten fields, those of --near nine, or more with closest points. */
 static bool read_step_pair(filter_file *file, char *line, unsigned long number, uint32_t kind,
                            char reason[128])
 {
-    enum { FIELDS = 10, KIND = 2, FIRST = 7 };
+    enum {
+        FIELDS = 10,
+        STEP_KIND = 2,
+        STEP_FIRST = 7,
+        NEAR_FIELDS = 9,
+        NEAR_KIND = 1,
+        NEAR_FIRST = 6
+    };
     static const char *const kinds[] = {"vertex-face", "edge-edge"};
     char *fields[FIELDS];
     sc_pair pair;
     (void)kind;
     if (!*line) return true;
-    const bool is_whole = split_fields(line, fields, FIELDS) == FIELDS;
-    if (is_whole && number == 1 && strcmp(fields[KIND], "kind") == 0) return true;
-    for (int list = 0; is_whole && list < 2; list++) {
-        if (strcmp(fields[KIND], kinds[list]) != 0) continue;
-        if (!read_number(&fields[FIRST], UINT32_MAX, &pair.a) || *fields[FIRST] ||
-            !read_number(&fields[FIRST + 1], UINT32_MAX, &pair.b) || *fields[FIRST + 1])
+    const int count = split_fields(line, fields, FIELDS);
+    const bool is_step = count == FIELDS, is_whole = count >= NEAR_FIELDS;
+    const char *name = is_whole ? fields[is_step ? STEP_KIND : NEAR_KIND] : "";
+    if (number == 1 && strcmp(name, "kind") == 0) return true;
+    for (int list = 0; list < 2; list++) {
+        if (strcmp(name, kinds[list]) != 0) continue;
+        char **first = &fields[is_step ? STEP_FIRST : NEAR_FIRST];
+        if (!read_number(&first[0], UINT32_MAX, &pair.a) || *first[0] ||
+            !read_number(&first[1], UINT32_MAX, &pair.b) || *first[1])
             break;
         return add_pair(file, list, pair, reason);
     }
-    snprintf(reason, 128, "not a pair of a step as --step --out writes it");
+    snprintf(reason, 128, "not a pair as --step --out or --near --out writes it");
     return false;
 }
 

@@ -6,7 +6,8 @@
  * Pairs: comma-separated values as sc-query --out writes them: the last two fields of a line are a
  * pair, in any order of lines. A first line whose last field is "triangle_b" or "triangle" says
  * which kind of pair they are. Repeats, as of several files, do no harm. Those of sc-query --step
- * --out have ten fields: the third is the kind, the eighth and ninth are the pair.
+ * --out have ten fields: the third is the kind, the eighth and ninth are the pair. Those of --near
+ * --out have nine, or more: the second is the kind, the seventh and eighth are the pair.
  *
  * Groups: a line each,
  *
@@ -39,7 +40,7 @@ typedef struct filter_file {
     sc_group *groups[2]; /* of vertices, of triangles, for the mesh at hand */
 } filter_file;
 
-/* As a kind of pair: those of steps. */
+/* As a kind of pair: those of steps, and of what is near. */
 enum { FILTER_FILE_STEP = 2 };
 
 /* Reads the files that are named; either may be NULL. kind is SC_PAIRS_... or FILTER_FILE_STEP. On

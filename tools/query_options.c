@@ -5,6 +5,7 @@
  */
 #include "query_options.h"
 
+#include "near_report.h"
 #include "query_text.h"
 
 #include <getopt.h>
@@ -13,6 +14,7 @@
 static const char usage[] =
     "Usage: sc-query [options] MESH...\n"
     "       sc-query --step [options] MESH MESH... | PATTERN\n"
+    "       sc-query --near D [options] MESH... | PATTERN\n"
     "Finds every self-collision of triangle meshes, exactly.\n"
     "\n"
     "Reads OBJ, OFF, PLY, STL and all other formats that assimp reads, packed by gzip or not; - "
@@ -57,6 +59,20 @@ static const char usage[] =
     "                              be among those reported, and none up to D is missing\n"
     "  --times                     each pair with its time, from 0 to 1\n";
 
+static const char usage_near[] =
+    "What is near in each MESH\n"
+    "  --near D                    vertex-face and edge-edge pairs that share no vertex and are D "
+    "or\n"
+    "                              less apart, exactly; D in units of the coordinates, 0: that "
+    "touch.\n"
+    "                              One pattern such as f%04d.obj is all frames, poses of the "
+    "first\n"
+    "  --kinds both|vertex-face|edge-edge  which pairs are sought (both)\n"
+    "  --list                      each pair with its distance\n"
+    "  --stencils                  each with its closest points, too: the kind of feature, "
+    "VERTEX:WEIGHT\n"
+    "                              and the vector from one to the other\n";
+
 /* In two: C99 has strings of up to 4095 characters. */
 static const char usage_continued[] =
     "Which pairs are left out\n"
@@ -64,9 +80,9 @@ static const char usage_continued[] =
     "vertex\n"
     "  --ignore FILE               those in FILE, as --out writes them; only --pairs are sought "
     "then\n"
-    "  --ignore-rest R             of --step: those within R of each other in the mesh that the "
-    "steps\n"
-    "                              are of: that of --rest, else the first frame\n"
+    "  --ignore-rest R             of --step and --near: those within R of each other in the mesh "
+    "of\n"
+    "                              --rest, else in the first frame\n"
     "  --groups FILE               those whose groups do not collide. Lines: triangle|vertex\n"
     "                              FIRST[-LAST] CATEGORY MASK; a category has to be in the other's "
     "mask\n"
@@ -76,7 +92,9 @@ static const char usage_continued[] =
     "  --out FILE                  write the pairs as comma-separated values, with the faces and\n"
     "                              objects of the file that they belong to. An edge is a number\n"
     "                              3 t + k: from vertex k to vertex k + 1 (mod 3) of triangle t\n"
-    "  --ply FILE                  write the mesh with colliding triangles in red; one MESH only\n"
+    "  --ply FILE                  write the mesh with colliding triangles in red, with --near "
+    "from\n"
+    "                              red to yellow by distance; one MESH only\n"
     "  --contacts                  where each pair meets, and how: a point, a segment, or an area\n"
     "  --stats                     time and count of the nine tasks of the query\n"
     "  --record FILE               write the query, with model, pose, options and filter, to "
@@ -92,7 +110,9 @@ static const char usage_continued[] =
     "                              --model, --record, --stats, --budget or what follows\n"
     "                              With --step: sctt (default), two-boxes or swept, plain trees "
     "of\n"
-    "                              boxes at both ends, or round the motion\n"
+    "                              boxes at both ends, or round the motion. With --near: auto, "
+    "sctt\n"
+    "                              or boxes\n"
     "  --contour exact|star|none   contour test of method sctt: is the contour simple (default), "
     "the\n"
     "                              star test, or none, which MISSES PAIRS and is for measuring\n"
@@ -133,6 +153,16 @@ static void choose_method(query_settings *set)
     if (set->contour == SC_CONTOUR_DEFAULT) set->contour = SC_CONTOUR_EXACT;
 }
 
+/* --method, which has other values with --step and --near. */
+static bool choose_method_named(query_settings *set)
+{
+    if (set->is_step)
+        return tool_choose("--method", set->method_name, step_methods, &set->step.method);
+    if (set->is_near)
+        return tool_choose("--method", set->method_name, near_methods, &set->near.method);
+    return tool_choose("--method", set->method_name, query_method_choices, &set->method);
+}
+
 /* What cannot be asked for together. */
 static bool check_settings(const query_settings *set)
 {
@@ -140,6 +170,10 @@ static bool check_settings(const query_settings *set)
     const char *reason = NULL;
     if (set->is_step && set->not_of_steps) {
         tool_error("--step does not go with --%s; see sc-query --help", set->not_of_steps);
+        return false;
+    }
+    if (set->is_near && set->not_of_near) {
+        tool_error("--near does not go with --%s; see sc-query --help", set->not_of_near);
         return false;
     }
     if (set->replay_path &&
@@ -150,7 +184,13 @@ static bool check_settings(const query_settings *set)
     else if (set->replay_path && set->ply_path)
         reason = "--replay has no faces for --ply";
     else if (set->is_step_asked && !set->is_step)
-        reason = "--separation, --tolerance, --times and --ignore-rest are of --step";
+        reason = "--separation, --tolerance and --times are of --step";
+    else if (set->step.ignores_rest && !set->is_step && !set->is_near)
+        reason = "--ignore-rest is of --step and --near";
+    else if (set->is_near_asked && !set->is_near)
+        reason = "--kinds, --list and --stencils are of --near";
+    else if ((set->near.list || set->near.stencils) && set->any)
+        reason = "--any finds no list";
     else if (set->step.times && set->any)
         reason = "--any finds no times";
     else if (path_count == 0 && !set->replay_path)
@@ -194,6 +234,10 @@ int query_options_read(int argc, char **argv, query_settings *set)
         OPTION_SEPARATION,
         OPTION_TOLERANCE,
         OPTION_TIMES,
+        OPTION_NEAR,
+        OPTION_KINDS,
+        OPTION_LIST,
+        OPTION_STENCILS,
         OPTION_ANY,
         OPTION_WELD,
         OPTION_REST,
@@ -227,6 +271,10 @@ int query_options_read(int argc, char **argv, query_settings *set)
         {"separation", required_argument, NULL, OPTION_SEPARATION},
         {"tolerance", required_argument, NULL, OPTION_TOLERANCE},
         {"times", no_argument, NULL, OPTION_TIMES},
+        {"near", required_argument, NULL, OPTION_NEAR},
+        {"kinds", required_argument, NULL, OPTION_KINDS},
+        {"list", no_argument, NULL, OPTION_LIST},
+        {"stencils", no_argument, NULL, OPTION_STENCILS},
         {"weld", required_argument, NULL, OPTION_WELD},
         {"rest", required_argument, NULL, OPTION_REST},
         {"json", no_argument, NULL, OPTION_JSON},
@@ -263,6 +311,13 @@ int query_options_read(int argc, char **argv, query_settings *set)
             option == OPTION_RECORD || option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
             option == OPTION_CONTACTS)
             set->not_of_steps = options[which].name;
+        if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_RECORD ||
+            option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
+            option == OPTION_CONTACTS || option == OPTION_CONTOUR || option == OPTION_STEP ||
+            option == OPTION_SEPARATION || option == OPTION_TOLERANCE || option == OPTION_TIMES)
+            set->not_of_near = options[which].name;
+        set->is_near_asked |=
+            option == OPTION_KINDS || option == OPTION_LIST || option == OPTION_STENCILS;
         set->is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
         set->is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER ||
                          option == OPTION_ANY || option == OPTION_WELD || option == OPTION_METHOD ||
@@ -294,6 +349,19 @@ int query_options_read(int argc, char **argv, query_settings *set)
             break;
         case OPTION_TIMES:
             set->step.times = set->is_step_asked = true;
+            break;
+        case OPTION_NEAR:
+            valid &= tool_parse_real("--near", optarg, &set->near.distance);
+            set->is_near = true;
+            break;
+        case OPTION_KINDS:
+            valid &= tool_choose("--kinds", optarg, near_kinds, &set->near.kinds);
+            break;
+        case OPTION_LIST:
+            set->near.list = true;
+            break;
+        case OPTION_STENCILS:
+            set->near.stencils = true;
             break;
         case OPTION_ANY:
             set->any = true;
@@ -346,7 +414,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
             break;
         case OPTION_IGNORE_REST:
             valid &= tool_parse_real("--ignore-rest", optarg, &set->step.ignore_rest);
-            set->step.ignores_rest = set->is_step_asked = true;
+            set->step.ignores_rest = true;
             break;
         case OPTION_GROUPS:
             set->groups_path = optarg;
@@ -370,6 +438,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
             return TOOL_CLEAN;
         case OPTION_HELP:
             fputs(usage, stdout);
+            fputs(usage_near, stdout);
             fputs(usage_continued, stdout);
             return TOOL_CLEAN;
         default:
@@ -378,15 +447,12 @@ int query_options_read(int argc, char **argv, query_settings *set)
             break;
         }
     }
-    if (set->method_name)
-        valid &= tool_choose("--method", set->method_name,
-                             set->is_step ? step_methods : query_method_choices,
-                             set->is_step ? &set->step.method : &set->method);
+    if (set->method_name) valid &= choose_method_named(set);
     set->paths = argv + optind;
     set->path_count = argc - optind;
     if (!valid || !check_settings(set) || !spares_files(set)) return TOOL_FAILED;
     choose_method(set);
-    if (set->contour == SC_CONTOUR_NONE &&
+    if (set->contour == SC_CONTOUR_NONE && !set->is_near &&
         (set->is_step ? set->step.method == SC_STEP_METHOD_SCTT : set->method == SC_METHOD_SCTT)) {
         tool_error("note: --contour none can miss pairs");
     }

@@ -7,6 +7,7 @@
 #define TOOLS_QUERY_SETTINGS_H
 
 #include "filter_file.h"
+#include "near_settings.h"
 #include "step_query.h"
 #include "tool.h"
 
@@ -14,9 +15,12 @@
 typedef struct query_settings {
     step_settings step;          /* what --step alone asks */
     bool is_step, is_step_asked; /* --step; an option that only it takes */
-    const char *method_name;     /* as given, or NULL */
-    const char *not_of_steps;    /* an option that --step does not take, if one was given */
-    uint32_t pairs;              /* a value of query_pair_choices; 2: none */
+    near_settings near;          /* what --near alone asks */
+    bool is_near, is_near_asked;
+    const char *not_of_near;  /* an option that --near does not take, if one was given */
+    const char *method_name;  /* as given, or NULL */
+    const char *not_of_steps; /* an option that --step does not take, if one was given */
+    uint32_t pairs;           /* a value of query_pair_choices; 2: none */
     uint32_t method, contour, partition, weld;
     uint32_t content; /* of the models that are built: SC_MODEL_... */
     bool proper, any, json, stats, no_rest_cache;

@@ -8,6 +8,8 @@
  * query_options.c for the options, and sc_query in starcontour.h for what a pair is.
  */
 #include "model_file.h"
+#include "near_query.h"
+#include "near_report.h"
 #include "query_options.h"
 #include "query_report.h"
 #include "query_subject.h"
@@ -405,6 +407,29 @@ static int do_steps(query_settings *set)
     return step_query_frames(set->paths, set->path_count, step);
 }
 
+/* What is near, in place of do_files. */
+static int do_near(query_settings *set)
+{
+    near_settings *near = &set->near;
+    near->weld = set->weld;
+    near->partition = set->partition;
+    near->rest_path = set->rest_path;
+    near->model_path = set->model_path;
+    near->out_path = set->out_path;
+    near->ply_path = set->ply_path;
+    near->ignore_path = set->ignore_path;
+    near->groups_path = set->groups_path;
+    near->ignores_rest = set->step.ignores_rest;
+    near->ignore_rest = set->step.ignore_rest;
+    near->filters = set->filters;
+    near->ignore_rings = set->ignore_rings;
+    near->budget = set->budget;
+    near->any = set->any;
+    near->json = set->json;
+    near->stats = set->stats;
+    return near_query_files(set->paths, set->path_count, near);
+}
+
 int main(int argc, char **argv)
 {
     static char name[] = "sc-query";
@@ -422,14 +447,19 @@ int main(int argc, char **argv)
     status = TOOL_FAILED;
     memset(&filters, 0, sizeof filters);
     set.filters = &filters;
+    const bool is_plain = !set.is_step && !set.is_near;
     if (filter_file_read(&filters, set.ignore_path, set.groups_path,
-                         set.is_step ? FILTER_FILE_STEP : query_chosen_pairs(&set), error))
-        status = set.is_step ? do_steps(&set) : do_files(&set);
+                         is_plain ? query_chosen_pairs(&set) : FILTER_FILE_STEP, error))
+        status = set.is_step ? do_steps(&set) : set.is_near ? do_near(&set) : do_files(&set);
     else { /* one of the two files, with which the message begins */
         const char *path = set.ignore_path;
         if (!path || (set.groups_path && !strncmp(error, set.groups_path, strlen(set.groups_path))))
             path = set.groups_path;
-        query_report_failure(path, &set, error);
+        set.near.json = set.json;
+        if (set.is_near)
+            near_report_failure(path, &set.near, error);
+        else
+            query_report_failure(path, &set, error);
     }
     filter_file_free(&filters);
     query_threads_stop();

@@ -5,8 +5,8 @@
  */
 #include "step_query.h"
 
+#include "feature_pairs.h"
 #include "frame_paths.h"
-#include "mesh_faces.h"
 #include "query_subject.h"
 #include "query_summary.h"
 #include "query_text.h"
@@ -23,10 +23,6 @@ const tool_choice step_methods[] = {{"sctt", SC_STEP_METHOD_SCTT},
                                     {"two-boxes", SC_STEP_METHOD_TWO_BOXES},
                                     {"swept", SC_STEP_METHOD_SWEPT},
                                     {NULL, 0}};
-
-enum { VERTEX_FACE = 0, EDGE_EDGE = 1, KINDS = 2 };
-
-static const char *const kind_names[KINDS] = {"vertex-face", "edge-edge"};
 
 /* A frame's positions. */
 typedef struct frame {
@@ -178,28 +174,14 @@ static sc_status count_candidates(step_run *run, const sc_pose poses[2], step_an
     return status;
 }
 
-/* The object of one side of a pair, 0 or 1; *triangle: what is a part of it, or SC_NONE of a
-   vertex. */
-static uint32_t object_of(const step_run *run, int kind, sc_pair pair, int side, uint32_t *triangle)
-{
-    const uint32_t number = side ? pair.b : pair.a;
-    *triangle = kind == EDGE_EDGE ? number / 3 : side ? number : SC_NONE;
-    if (*triangle != SC_NONE) return mesh_object_of(run->mesh, *triangle);
-    return run->vertex_objects[number];
-}
-
 /* How many pairs there are between each two objects; false if there is no memory. */
 static bool count_objects(step_run *run, step_answer *answer)
 {
     if (!names_objects(run)) return true;
     for (int kind = 0; kind < KINDS; kind++) {
-        for (uint64_t i = 0; i < answer->counts[kind]; i++) {
-            const sc_pair pair = run->lists[kind].pairs[i];
-            uint32_t of[2], triangle;
-            for (int side = 0; side < 2; side++)
-                of[side] = object_of(run, kind, pair, side, &triangle);
-            if (!mesh_tally_add(&answer->tally, of[0], of[1])) return false;
-        }
+        if (!feature_pairs_tally(&answer->tally, run->mesh, run->vertex_objects, kind,
+                                 run->lists[kind].pairs, answer->counts[kind]))
+            return false;
     }
     mesh_tally_sort(&answer->tally);
     return true;
@@ -265,19 +247,10 @@ static void print_table_row(const step_answer *answer, const step_run *run)
     for (int kind = 0; run->set->times && kind < KINDS; kind++) {
         const step_list *list = &run->lists[kind];
         for (uint64_t i = 0; i < answer->counts[kind]; i++) {
-            printf("    %s %lu %lu %.17g\n", kind_names[kind], (unsigned long)list->pairs[i].a,
-                   (unsigned long)list->pairs[i].b, list->times[i]);
+            printf("    %s %lu %lu %.17g\n", feature_pairs_names[kind],
+                   (unsigned long)list->pairs[i].a, (unsigned long)list->pairs[i].b,
+                   list->times[i]);
         }
-    }
-}
-
-/* Faces and objects of both sides; of a vertex no face. */
-static void add_owners(cJSON *object, const step_run *run, int kind, sc_pair pair)
-{
-    for (int side = 0; side < 2; side++) {
-        uint32_t triangle;
-        const uint32_t of = object_of(run, kind, pair, side, &triangle);
-        query_text_add_owner(object, side ? 'b' : 'a', run->mesh, triangle, of);
     }
 }
 
@@ -288,11 +261,11 @@ static void add_pairs(cJSON *object, const step_answer *answer, const step_run *
         const step_list *list = &run->lists[kind];
         for (uint64_t i = 0; i < answer->counts[kind]; i++) {
             cJSON *pair = cJSON_CreateObject();
-            cJSON_AddStringToObject(pair, "kind", kind_names[kind]);
+            cJSON_AddStringToObject(pair, "kind", feature_pairs_names[kind]);
             cJSON_AddNumberToObject(pair, "a", list->pairs[i].a);
             cJSON_AddNumberToObject(pair, "b", list->pairs[i].b);
             cJSON_AddNumberToObject(pair, "time", list->times[i]);
-            add_owners(pair, run, kind, list->pairs[i]);
+            feature_pairs_add_owners(pair, run->mesh, run->vertex_objects, kind, list->pairs[i]);
             cJSON_AddItemToArray(pairs, pair);
         }
     }
@@ -373,13 +346,9 @@ static void write_pairs(const step_answer *answer, const step_run *run)
             query_text_field(run->out, answer->start);
             fputc(',', run->out);
             query_text_field(run->out, answer->end);
-            fprintf(run->out, ",%s", kind_names[kind]);
-            for (int side = 0; side < 2; side++) {
-                uint32_t triangle;
-                const uint32_t of = object_of(run, kind, list->pairs[i], side, &triangle);
-                fputc(',', run->out);
-                query_text_owner(run->out, run->mesh, triangle, of);
-            }
+            fprintf(run->out, ",%s", feature_pairs_names[kind]);
+            feature_pairs_write_owners(run->out, run->mesh, run->vertex_objects, kind,
+                                       list->pairs[i]);
             fprintf(run->out, ",%lu,%lu,%.17g\n", (unsigned long)list->pairs[i].a,
                     (unsigned long)list->pairs[i].b, list->times[i]);
         }

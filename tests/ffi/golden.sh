@@ -1,6 +1,7 @@
 #!/bin/sh
 # Prints what tests/ffi/golden.txt should hold: the triangle pairs of meshes/crossing_cloths.obj at
-# rest and moved (see moved.awk), as sc-query finds them. To update the file after a change:
+# rest and moved (see moved.awk), the vertex-face and edge-edge pairs within 0.045 when it is moved,
+# and those that collide on the way from one pose to the other, as sc-query finds them. To update the file after a change:
 #
 #     tests/ffi/golden.sh > tests/ffi/golden.new && mv tests/ffi/golden.new tests/ffi/golden.txt
 #
@@ -15,7 +16,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
 awk -f "$here/moved.awk" "$mesh" >"$scratch/moved.obj"
-echo "# pose, triangle a, triangle b: meshes/crossing_cloths.obj by tests/ffi/golden.sh"
+echo "# pose or what is sought, a, b: meshes/crossing_cloths.obj by tests/ffi/golden.sh"
 for pose in rest moved; do
     file=$mesh
     [ "$pose" = rest ] || file=$scratch/moved.obj
@@ -24,3 +25,12 @@ for pose in rest moved; do
     [ "$status" -eq 1 ]
     sed -n "s/^.*,\([0-9][0-9]*\),\([0-9][0-9]*\)\$/$pose \1 \2/p" "$scratch/pairs"
 done
+
+status=0
+"$query" --near 0.045 --rest "$mesh" --out "$scratch/pairs" "$scratch/moved.obj" >/dev/null || status=$?
+[ "$status" -eq 1 ]
+awk -F, 'NR > 1 { print $2 == "vertex-face" ? "nearfaces" : "nearedges", $7, $8 }' "$scratch/pairs"
+status=0
+"$query" --step --out "$scratch/pairs" "$mesh" "$scratch/moved.obj" >/dev/null || status=$?
+[ "$status" -eq 1 ]
+awk -F, 'NR > 1 { print $3 == "vertex-face" ? "stepfaces" : "stepedges", $8, $9 }' "$scratch/pairs"

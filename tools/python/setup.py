@@ -120,6 +120,7 @@ class WithLibrary(Distribution):
 setup(
     version=version(),
     packages=["starcontour"],
+    package_data={"starcontour": ["py.typed", "*.pyi"]},
     distclass=WithLibrary,
     cmdclass={"build_py": Package, "bdist_wheel": Wheel, "sdist": Sources},
     options={

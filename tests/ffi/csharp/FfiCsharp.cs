@@ -34,7 +34,10 @@ static class FfiCsharp
     {
         var lines = File.ReadAllLines(path).Select(line => line.Split(' ')).ToList();
         foreach (var type in new[] { typeof(Native.sc_mesh), typeof(Native.sc_pose),
-            typeof(Native.sc_query_options), typeof(Native.sc_result), typeof(Pair) })
+            typeof(Native.sc_query_options), typeof(Native.sc_result), typeof(Pair),
+            typeof(Native.sc_workspace_options), typeof(Native.sc_step_options),
+            typeof(Native.sc_step_result), typeof(Native.sc_near_options),
+            typeof(Native.sc_near_result) })
         {
             var name = type == typeof(Pair) ? "sc_pair" : type.Name;
             var size = lines.Single(w => w[0] == "struct" && w[1] == name)[2];
@@ -86,6 +89,19 @@ static class FfiCsharp
                     () => new Model(rest, new uint[] { 0, 1, (uint)rest.Length })));
                 Check("no triangles", Refused(Status.Empty, "triangle", () => new Model(rest, new uint[3 * 0])));
                 Check("usable after errors", same(workspace.Query(rest), "rest"));
+                Check("no room for steps", Refused(Status.Workspace, "workspace",
+                    () => workspace.Step(rest, rest)));
+            }
+            using (var larger = model.CreateWorkspace(WorkspaceKind.Near))
+            {
+                var near = larger.Near(moved, 0.045);
+                Check("pairs that are near", same(near.VertexFaces, "nearfaces") && same(near.EdgeEdges, "nearedges"));
+                var step = larger.Step(rest.Select(x => (double)x).ToArray(), moved);
+                Check("pairs of a step", same(step.VertexFaces, "stepfaces") && same(step.EdgeEdges, "stepedges"));
+                Check("at their times", step.Earliest > 0 && step.VertexFaceTimes.Concat(
+                    step.EdgeEdgeTimes).Min() == step.Earliest);
+                Check("a step that is free", larger.Step(rest, rest).Earliest == 1);
+                Check("a distance below 0", Refused(Status.Option, "option", () => larger.Near(rest, -1)));
             }
 
             var right = 0;

@@ -20,6 +20,9 @@ namespace Starcontour
     public enum PairKind : uint { Triangle = 0, Edge = 1 }
     public enum Contact : uint { Touching = 0, Proper = 1 }
 
+    // What a workspace is for, besides queries; Near is for steps, too.
+    public enum WorkspaceKind : uint { Queries = 0, Steps = 1, Near = 2 }
+
     [StructLayout(LayoutKind.Sequential)]
     public struct Pair
     {
@@ -66,17 +69,77 @@ namespace Starcontour
             public uint verdict, reserved;
         }
 
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_workspace_options
+        {
+            public uint struct_size, flags, workers, reserved;
+            public void* allocator;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_step_options
+        {
+            public uint struct_size, output, pairs, times, method, contour, simd, reserved;
+            public double separation, tolerance;
+            public void* tasks, cancel;
+            public ulong budget;
+            public void* vertex_face_filter, edge_edge_filter, rest;
+            public double rest_distance;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_step_result
+        {
+            public uint struct_size, collides, verdict, reserved;
+            public ulong vertex_face_count, vertex_face_capacity;
+            public Pair* vertex_faces;
+            public double* vertex_face_times;
+            public ulong edge_edge_count, edge_edge_capacity;
+            public Pair* edge_edges;
+            public double* edge_edge_times;
+            public double earliest;
+            public void* stats;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_near_options
+        {
+            public uint struct_size, output, kinds, method, simd, reserved;
+            public double distance;
+            public void* vertex_face_filter, edge_edge_filter, rest;
+            public double rest_distance;
+            public void* tasks, cancel;
+            public ulong budget;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_near_result
+        {
+            public uint struct_size, found, verdict, reserved;
+            public ulong vertex_face_count, vertex_face_capacity;
+            public Pair* vertex_faces;
+            public ulong edge_edge_count, edge_edge_capacity;
+            public Pair* edge_edges;
+            public void* stats;
+        }
+
         [DllImport(Library)] public static extern IntPtr sc_status_string(Status status);
         [DllImport(Library)] public static extern IntPtr sc_version_string();
         [DllImport(Library)] public static extern Status sc_build(
             ref sc_mesh mesh, IntPtr options, out ModelHandle model);
         [DllImport(Library)] public static extern void sc_model_free(IntPtr model);
-        [DllImport(Library)] public static extern Status sc_workspace_create(
-            ModelHandle model, IntPtr allocator, out WorkspaceHandle workspace);
+        [DllImport(Library)] public static extern Status sc_workspace_create_for(
+            ModelHandle model, ref sc_workspace_options options, out WorkspaceHandle workspace);
         [DllImport(Library)] public static extern void sc_workspace_free(IntPtr workspace);
         [DllImport(Library)] public static extern Status sc_query(
             ModelHandle model, WorkspaceHandle workspace, ref sc_pose pose,
             ref sc_query_options options, ref sc_result result);
+        [DllImport(Library)] public static extern Status sc_query_step(
+            ModelHandle model, WorkspaceHandle workspace, ref sc_pose start, ref sc_pose end,
+            ref sc_step_options options, ref sc_step_result result);
+        [DllImport(Library)] public static extern Status sc_query_near(
+            ModelHandle model, WorkspaceHandle workspace, ref sc_pose pose,
+            ref sc_near_options options, ref sc_near_result result);
 
         public static void Check(Status status)
         {
@@ -131,8 +194,20 @@ namespace Starcontour
             }
         }
 
-        public Workspace CreateWorkspace() { return new Workspace(this); }
+        public Workspace CreateWorkspace(WorkspaceKind kind = WorkspaceKind.Queries)
+        {
+            return new Workspace(this, kind);
+        }
         public void Dispose() { Handle.Dispose(); }
+    }
+
+    // Pairs of a vertex and a triangle, and of two edges 3 t + k: views of the workspace's own arrays,
+    // overwritten by its next step or query of what is near. Of a step, when each collides.
+    public struct Features
+    {
+        public ArraySegment<Pair> VertexFaces, EdgeEdges;
+        public ArraySegment<double> VertexFaceTimes, EdgeEdgeTimes;
+        public double Earliest; // of a step: nothing collides before
     }
 
     // What queries write to; belongs to one call at a time.
@@ -140,12 +215,16 @@ namespace Starcontour
     {
         readonly Model model;
         readonly WorkspaceHandle handle;
-        Pair[] pairs = new Pair[16];
+        Pair[] pairs = new Pair[16], faces = new Pair[16], edges = new Pair[16];
+        double[] faceTimes = new double[16], edgeTimes = new double[16];
 
-        internal Workspace(Model model)
+        internal Workspace(Model model, WorkspaceKind kind)
         {
             this.model = model;
-            Native.Check(Native.sc_workspace_create(model.Handle, IntPtr.Zero, out handle));
+            var options = new Native.sc_workspace_options {
+                struct_size = (uint)sizeof(Native.sc_workspace_options), flags = (uint)kind
+            };
+            Native.Check(Native.sc_workspace_create_for(model.Handle, ref options, out handle));
         }
 
         // The pairs of a pose: a view of this workspace's own array, overwritten by the next query.
@@ -165,10 +244,7 @@ namespace Starcontour
 
         ArraySegment<Pair> Query(void* positions, int count, uint type, PairKind kind, Contact contact)
         {
-            var pose = new Native.sc_pose {
-                struct_size = (uint)sizeof(Native.sc_pose), vertex_count = (uint)count,
-                position_type = type, positions = positions
-            };
+            var pose = PoseOf(positions, count, type);
             var options = new Native.sc_query_options {
                 struct_size = (uint)sizeof(Native.sc_query_options),
                 pairs = (uint)kind, contact = (uint)contact
@@ -190,6 +266,116 @@ namespace Starcontour
                 }
                 pairs = new Pair[result.count + result.count / 4];
             }
+        }
+
+        // What comes as near as separation while all vertices move from one pose to another.
+        public Features Step(float[] start, float[] end, double separation = 0)
+        {
+            fixed (float* s = start)
+            fixed (float* e = end)
+                return Step(PoseOf(s, start.Length / 3, 0), PoseOf(e, end.Length / 3, 0), separation);
+        }
+
+        public Features Step(double[] start, double[] end, double separation = 0)
+        {
+            fixed (double* s = start)
+            fixed (double* e = end)
+                return Step(PoseOf(s, start.Length / 3, 1), PoseOf(e, end.Length / 3, 1), separation);
+        }
+
+        // What is within a distance in a pose, in units of the coordinates.
+        public Features Near(float[] positions, double distance)
+        {
+            fixed (float* p = positions) return Near(PoseOf(p, positions.Length / 3, 0), distance);
+        }
+
+        public Features Near(double[] positions, double distance)
+        {
+            fixed (double* p = positions) return Near(PoseOf(p, positions.Length / 3, 1), distance);
+        }
+
+        static Native.sc_pose PoseOf(void* positions, int count, uint type)
+        {
+            return new Native.sc_pose {
+                struct_size = (uint)sizeof(Native.sc_pose), vertex_count = (uint)count,
+                position_type = type, positions = positions
+            };
+        }
+
+        Features Step(Native.sc_pose start, Native.sc_pose end, double separation)
+        {
+            var options = new Native.sc_step_options {
+                struct_size = (uint)sizeof(Native.sc_step_options), separation = separation, times = 2
+            };
+            var result = new Native.sc_step_result { struct_size = (uint)sizeof(Native.sc_step_result) };
+            for (;;)
+            {
+                Status status;
+                fixed (Pair* f = faces, e = edges)
+                fixed (double* ft = faceTimes, et = edgeTimes)
+                {
+                    result.vertex_faces = f;
+                    result.vertex_face_times = ft;
+                    result.vertex_face_capacity = (ulong)faces.Length;
+                    result.edge_edges = e;
+                    result.edge_edge_times = et;
+                    result.edge_edge_capacity = (ulong)edges.Length;
+                    status = Native.sc_query_step(
+                        model.Handle, handle, ref start, ref end, ref options, ref result);
+                }
+                if (status != Status.ShortBuffer)
+                {
+                    Native.Check(status);
+                    var found = Found(result.vertex_face_count, result.edge_edge_count);
+                    found.VertexFaceTimes = new ArraySegment<double>(faceTimes, 0, found.VertexFaces.Count);
+                    found.EdgeEdgeTimes = new ArraySegment<double>(edgeTimes, 0, found.EdgeEdges.Count);
+                    found.Earliest = result.earliest;
+                    return found;
+                }
+                MakeRoom(result.vertex_face_count, result.edge_edge_count);
+            }
+        }
+
+        Features Near(Native.sc_pose pose, double distance)
+        {
+            var options = new Native.sc_near_options {
+                struct_size = (uint)sizeof(Native.sc_near_options), distance = distance
+            };
+            var result = new Native.sc_near_result { struct_size = (uint)sizeof(Native.sc_near_result) };
+            for (;;)
+            {
+                Status status;
+                fixed (Pair* f = faces, e = edges)
+                {
+                    result.vertex_faces = f;
+                    result.vertex_face_capacity = (ulong)faces.Length;
+                    result.edge_edges = e;
+                    result.edge_edge_capacity = (ulong)edges.Length;
+                    status = Native.sc_query_near(model.Handle, handle, ref pose, ref options, ref result);
+                }
+                if (status != Status.ShortBuffer)
+                {
+                    Native.Check(status);
+                    return Found(result.vertex_face_count, result.edge_edge_count);
+                }
+                MakeRoom(result.vertex_face_count, result.edge_edge_count);
+            }
+        }
+
+        Features Found(ulong faceCount, ulong edgeCount)
+        {
+            return new Features {
+                VertexFaces = new ArraySegment<Pair>(faces, 0, (int)faceCount),
+                EdgeEdges = new ArraySegment<Pair>(edges, 0, (int)edgeCount)
+            };
+        }
+
+        void MakeRoom(ulong faceCount, ulong edgeCount)
+        {
+            faces = new Pair[Math.Max(faceCount, (ulong)faces.Length)];
+            edges = new Pair[Math.Max(edgeCount, (ulong)edges.Length)];
+            faceTimes = new double[faces.Length];
+            edgeTimes = new double[edges.Length];
         }
 
         public void Dispose() { handle.Dispose(); }

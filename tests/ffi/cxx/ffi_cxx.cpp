@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -43,12 +44,16 @@ starcontour::Model build(const std::vector<Vertex> &rest, const std::vector<Tria
     return {positions(rest), triangles.empty() ? nullptr : triangles[0].data(), triangles.size()};
 }
 
-Pairs query(Workspace &workspace, const std::vector<Vertex> &vertices)
+Pairs plain(const std::vector<sc_pair> &found)
 {
     Pairs pairs;
-    for (const sc_pair &pair : workspace.query(positions(vertices)))
-        pairs.emplace_back(pair.a, pair.b);
+    for (const sc_pair &pair : found) pairs.emplace_back(pair.a, pair.b);
     return pairs;
+}
+
+Pairs query(Workspace &workspace, const std::vector<Vertex> &vertices)
+{
+    return plain(workspace.query(positions(vertices)));
 }
 
 int passed, failed;
@@ -92,14 +97,14 @@ void test(const char *mesh_path, const char *golden_path)
     for (auto i = rest.size() / 2; i < rest.size(); ++i)
         moved[i].position[2] += moved[i].position[0] / 4 - 0.25f;
 
-    Pairs golden_rest, golden_moved;
+    std::map<std::string, Pairs> golden;
     for (std::ifstream file(golden_path); std::getline(file, line);) {
         std::istringstream words(line);
         std::string pose;
         std::uint32_t a, b;
-        if (words >> pose >> a >> b)
-            (pose == "rest" ? golden_rest : golden_moved).emplace_back(a, b);
+        if (words >> pose >> a >> b) golden[pose].emplace_back(a, b);
     }
+    const Pairs golden_rest = golden["rest"], golden_moved = golden["moved"];
     check("there is something to compare", !golden_rest.empty() && golden_rest != golden_moved);
 
     const auto model = build(rest, triangles);
@@ -108,9 +113,9 @@ void test(const char *mesh_path, const char *golden_path)
     check("pairs when moved", query(workspace, moved) == golden_moved);
 
     bool fine[2] = {true, true};
-    const auto work = [&](bool &right, const std::vector<Vertex> &pose, const Pairs &golden) {
+    const auto work = [&](bool &right, const std::vector<Vertex> &pose, const Pairs &wanted) {
         Workspace own(model);
-        for (int i = 0; i < 200; ++i) right = right && query(own, pose) == golden;
+        for (int i = 0; i < 200; ++i) right = right && query(own, pose) == wanted;
     };
     std::thread one(work, std::ref(fine[0]), std::cref(rest), std::cref(golden_rest));
     std::thread two(work, std::ref(fine[1]), std::cref(moved), std::cref(golden_moved));
@@ -140,6 +145,26 @@ void test(const char *mesh_path, const char *golden_path)
     Workspace before(moved_away);
     auto after = std::move(before);
     check("moved model and workspace", query(after, rest) == golden_rest);
+
+    Workspace larger(model, SC_WORKSPACE_NEAR);
+    const auto near = larger.near(positions(moved), 0.045);
+    check("pairs that are near", plain(near.vertex_faces) == golden["nearfaces"] &&
+                                     plain(near.edge_edges) == golden["nearedges"]);
+    auto kind = starcontour::sized<sc_near_options>();
+    kind.kinds = SC_NEAR_EDGE_EDGE;
+    check("of one kind", larger.near(positions(moved), 0.045, &kind).vertex_faces.empty());
+    const auto step = larger.step(positions(rest), positions(moved));
+    check("pairs of a step", plain(step.vertex_faces) == golden["stepfaces"] &&
+                                 plain(step.edge_edges) == golden["stepedges"]);
+    bool later = step.vertex_face_times.size() == step.vertex_faces.size() && step.earliest > 0;
+    for (const double time : step.edge_edge_times) later = later && time >= step.earliest;
+    check("at their times", later && step.edge_edge_times.size() == step.edge_edges.size());
+    check("a step that is free", larger.step(positions(rest), positions(rest)).earliest == 1);
+    check("a distance below 0", refused(SC_ERROR_OPTION, "options.distance is -1",
+                                        [&] { larger.near(positions(rest), -1); }));
+    check("a workspace without room for steps", refused(SC_ERROR_WORKSPACE, "workspace", [&] {
+              workspace.step(positions(rest), positions(moved));
+          }));
 
     // Doubles are read as they are: as floats these two triangles do not meet.
     const double far[] = {500000.155, 5400000.362, 100.080, 500000.208, 5400000.167, 100.355,

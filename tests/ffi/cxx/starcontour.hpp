@@ -6,6 +6,10 @@
 //     starcontour::Workspace workspace(model);
 //     for (const sc_pair &pair : workspace.query({pose, vertex_count})) ...
 //
+//     starcontour::Workspace larger(model, SC_WORKSPACE_NEAR);
+//     larger.step({pose, vertex_count}, {next, vertex_count}).earliest
+//     larger.near({pose, vertex_count}, 0.01).vertex_faces
+//
 // SPDX-License-Identifier: MIT
 #ifndef STARCONTOUR_HPP
 #define STARCONTOUR_HPP
@@ -158,15 +162,26 @@ class Model
     std::unique_ptr<sc_model, detail::Free> model_;
 };
 
+// Pairs of a vertex and a face, and of two edges; of steps when each collides, if wanted.
+struct Features {
+    std::vector<sc_pair> vertex_faces, edge_edges;
+    std::vector<double> vertex_face_times, edge_edge_times;
+    double earliest = 1; // of a step: nothing collides before
+};
+
 // What one query at a time writes to. The model must outlive it.
 class Workspace
 {
   public:
-    explicit Workspace(const Model &model)
+    // flags: SC_WORKSPACE_..., for steps and for what is near; workers: threads that a query may use.
+    explicit Workspace(const Model &model, std::uint32_t flags = 0, std::uint32_t workers = 1)
         : model_(model.get()), log_(std::make_unique<detail::Log>())
     {
+        auto options = sized<sc_workspace_options>();
+        options.flags = flags;
+        options.workers = workers;
         sc_workspace *workspace = nullptr;
-        log_->check(sc_workspace_create(model_, nullptr, &workspace));
+        log_->check(sc_workspace_create_for(model_, &options, &workspace));
         workspace_.reset(workspace);
         log_->check(sc_workspace_set_hooks(workspace, &log_->hooks));
     }
@@ -194,16 +209,83 @@ class Workspace
         return pairs_;
     }
 
+    // What collides on the way from one pose to another; it stays until the next step or query of what
+    // is near. options: NULL, all pairs with their times; or as for sc_query_step.
+    const Features &step(const Positions &start, const Positions &end,
+                         const sc_step_options *options = nullptr)
+    {
+        auto all = sized<sc_step_options>();
+        all.times = SC_STEP_TIMES_EACH;
+        const auto &asked = options != nullptr ? *options : all;
+        const auto from = detail::pose_of(start), to = detail::pose_of(end);
+        auto result = sized<sc_step_result>();
+        const bool timed = asked.times == SC_STEP_TIMES_EACH;
+        find(result, asked.output, [&] {
+            if (timed) {
+                found_.vertex_face_times.resize(found_.vertex_faces.size());
+                found_.edge_edge_times.resize(found_.edge_edges.size());
+                result.vertex_face_times = found_.vertex_face_times.data();
+                result.edge_edge_times = found_.edge_edge_times.data();
+            }
+            return sc_query_step(model_, workspace_.get(), &from, &to, &asked, &result);
+        });
+        found_.vertex_face_times.resize(timed ? found_.vertex_faces.size() : 0);
+        found_.edge_edge_times.resize(timed ? found_.edge_edges.size() : 0);
+        found_.earliest = result.earliest;
+        return found_;
+    }
+
+    // What is within a distance in a pose. options: NULL, or as for sc_query_near, but for distance.
+    const Features &near(const Positions &positions, double distance,
+                         const sc_near_options *options = nullptr)
+    {
+        auto asked = options != nullptr ? *options : sized<sc_near_options>();
+        asked.distance = distance;
+        const auto pose = detail::pose_of(positions);
+        auto result = sized<sc_near_result>();
+        find(result, asked.output, [&] {
+            return sc_query_near(model_, workspace_.get(), &pose, &asked, &result);
+        });
+        found_.vertex_face_times.clear();
+        found_.edge_edge_times.clear();
+        return found_;
+    }
+
     sc_workspace *get() const
     {
         return workspace_.get();
     }
 
   private:
+    // Asks until both arrays are long enough. Of a query that only counts they stay empty.
+    template <typename Result, typename Ask>
+    void find(Result &result, std::uint32_t output, const Ask &ask)
+    {
+        const bool listed = output == SC_OUTPUT_PAIRS;
+        for (std::size_t faces = 64, edges = 64;;) {
+            found_.vertex_faces.resize(faces);
+            found_.edge_edges.resize(edges);
+            result.vertex_faces = found_.vertex_faces.data();
+            result.edge_edges = found_.edge_edges.data();
+            result.vertex_face_capacity = faces;
+            result.edge_edge_capacity = edges;
+            const sc_status status = ask();
+            if (status != SC_ERROR_SHORT_BUFFER) {
+                log_->check(status);
+                break;
+            }
+            faces = static_cast<std::size_t>(result.vertex_face_count);
+            edges = static_cast<std::size_t>(result.edge_edge_count);
+        }
+        found_.vertex_faces.resize(listed ? static_cast<std::size_t>(result.vertex_face_count) : 0);
+        found_.edge_edges.resize(listed ? static_cast<std::size_t>(result.edge_edge_count) : 0);
+    }
+
     const sc_model *model_;
     std::unique_ptr<detail::Log> log_;
     std::unique_ptr<sc_workspace, detail::Free> workspace_;
     std::vector<sc_pair> pairs_;
+    Features found_;
 };
 
 } // namespace starcontour

@@ -108,6 +108,33 @@ func main() {
 	one, two := <-answers, <-answers
 	expect("two goroutines, one model", one && two)
 
+	larger, err := model.WorkspaceFor(ForNear)
+	if err != nil {
+		fmt.Println(err)
+		os.Exit(1)
+	}
+	near, err := Near(larger, moved, 0.045)
+	expect("pairs that are near", err == nil && same(near.VertexFaces, golden["nearfaces"]) &&
+		same(near.EdgeEdges, golden["nearedges"]))
+	wide := make([][3]float64, len(rest))
+	for i, p := range rest {
+		wide[i] = [3]float64{float64(p[0]), float64(p[1]), float64(p[2])}
+	}
+	step, err := Step(larger, wide, moved, 0)
+	expect("pairs of a step", err == nil && same(step.VertexFaces, golden["stepfaces"]) &&
+		same(step.EdgeEdges, golden["stepedges"]))
+	later := step.Earliest > 0 && len(step.EdgeEdgeTimes) == len(step.EdgeEdges)
+	for _, time := range step.EdgeEdgeTimes {
+		later = later && time >= step.Earliest
+	}
+	expect("at their times", later)
+	step, err = Step(larger, moved, moved, 0)
+	expect("a step that is free", err == nil && step.Earliest == 1 && len(step.VertexFaces) == 0)
+	_, err = Near(larger, moved, -1)
+	expect("a distance below 0", refused(err, ErrorOption, "option"))
+	_, err = Step(workspace, moved, moved, 0)
+	expect("no room for steps", refused(err, ErrorWorkspace, "workspace"))
+
 	_, err = Query(workspace, moved[1:])
 	expect("number of vertices", refused(err, ErrorVertexCount, "vert"))
 	moved[3][2] = math.NaN()

@@ -31,6 +31,57 @@ static sc_status query(const sc_model *model, sc_workspace *workspace, const voi
     *count = result.count;
     return status;
 }
+
+static sc_pose pose_of(const void *positions, uint32_t vertex_count, uint32_t position_type)
+{
+    const sc_pose pose = {.struct_size = sizeof(pose), .vertex_count = vertex_count,
+                          .position_type = position_type, .positions = positions};
+    return pose;
+}
+
+static sc_status create(const sc_model *model, uint32_t flags, sc_workspace **workspace)
+{
+    const sc_workspace_options options = {.struct_size = sizeof(options), .flags = flags};
+    return sc_workspace_create_for(model, &options, workspace);
+}
+
+// Of the arrays of pairs and times, *face_count and *edge_count are the lengths, then what was found.
+static sc_status step(const sc_model *model, sc_workspace *workspace, const void *start,
+                      const void *end, uint32_t vertex_count, uint32_t position_type,
+                      double separation, sc_pair *faces, double *face_times, uint64_t *face_count,
+                      sc_pair *edges, double *edge_times, uint64_t *edge_count, double *earliest)
+{
+    const sc_pose from = pose_of(start, vertex_count, position_type);
+    const sc_pose to = pose_of(end, vertex_count, position_type);
+    const sc_step_options options = {.struct_size = sizeof(options), .separation = separation,
+                                     .times = SC_STEP_TIMES_EACH};
+    sc_step_result result = {.struct_size = sizeof(result),
+                             .vertex_faces = faces, .vertex_face_times = face_times,
+                             .vertex_face_capacity = *face_count,
+                             .edge_edges = edges, .edge_edge_times = edge_times,
+                             .edge_edge_capacity = *edge_count};
+    const sc_status status = sc_query_step(model, workspace, &from, &to, &options, &result);
+    *face_count = result.vertex_face_count;
+    *edge_count = result.edge_edge_count;
+    *earliest = result.earliest;
+    return status;
+}
+
+static sc_status near_pairs(const sc_model *model, sc_workspace *workspace, const void *positions,
+                            uint32_t vertex_count, uint32_t position_type, double distance,
+                            sc_pair *faces, uint64_t *face_count, sc_pair *edges,
+                            uint64_t *edge_count)
+{
+    const sc_pose pose = pose_of(positions, vertex_count, position_type);
+    const sc_near_options options = {.struct_size = sizeof(options), .distance = distance};
+    sc_near_result result = {.struct_size = sizeof(result),
+                             .vertex_faces = faces, .vertex_face_capacity = *face_count,
+                             .edge_edges = edges, .edge_edge_capacity = *edge_count};
+    const sc_status status = sc_query_near(model, workspace, &pose, &options, &result);
+    *face_count = result.vertex_face_count;
+    *edge_count = result.edge_edge_count;
+    return status;
+}
 */
 import "C"
 
@@ -46,10 +97,12 @@ type Pair struct{ A, B uint32 }
 type Error int32
 
 const (
+	ErrorOption      Error = C.SC_ERROR_OPTION
 	ErrorEmpty       Error = C.SC_ERROR_EMPTY
 	ErrorIndex       Error = C.SC_ERROR_INDEX
 	ErrorNotFinite   Error = C.SC_ERROR_NOT_FINITE
 	ErrorVertexCount Error = C.SC_ERROR_VERTEX_COUNT
+	ErrorWorkspace   Error = C.SC_ERROR_WORKSPACE
 )
 
 func (e Error) Error() string {
@@ -93,13 +146,24 @@ type Workspace struct {
 	model  *Model
 	handle *C.sc_workspace
 	pairs  []Pair
+	faces  []Pair
+	edges  []Pair
 }
 
-// Workspace makes a workspace for the model.
-func (m *Model) Workspace() (*Workspace, error) {
+// What a workspace is for, besides queries: steps; or steps and what is near.
+const (
+	ForSteps = C.SC_WORKSPACE_STEP
+	ForNear  = C.SC_WORKSPACE_NEAR
+)
+
+// Workspace makes a workspace for queries.
+func (m *Model) Workspace() (*Workspace, error) { return m.WorkspaceFor(0) }
+
+// WorkspaceFor makes a workspace for more than queries: ForSteps or ForNear.
+func (m *Model) WorkspaceFor(flags uint32) (*Workspace, error) {
 	w := &Workspace{model: m, pairs: make([]Pair, 16)}
 	var handle *C.sc_workspace
-	err := check(C.sc_workspace_create(m.handle, nil, &handle))
+	err := check(C.create(m.handle, C.uint32_t(flags), &handle))
 	runtime.KeepAlive(m)
 	if err != nil {
 		return nil, err
@@ -112,17 +176,20 @@ func (m *Model) Workspace() (*Workspace, error) {
 // Scalar is the type of a coordinate.
 type Scalar interface{ float32 | float64 }
 
+func positionType[T Scalar]() C.uint32_t {
+	var scalar T
+	if unsafe.Sizeof(scalar) == 8 {
+		return C.SC_DOUBLE
+	}
+	return C.SC_FLOAT
+}
+
 // Query finds all pairs in a pose, sorted. They stay as they are until the workspace's next query.
 func Query[T Scalar](w *Workspace, pose [][3]T) ([]Pair, error) {
-	var scalar T
-	positionType := C.uint32_t(C.SC_FLOAT)
-	if unsafe.Sizeof(scalar) == 8 {
-		positionType = C.SC_DOUBLE
-	}
 	for {
 		var count C.uint64_t
 		status := C.query(w.model.handle, w.handle, first(pose), C.uint32_t(len(pose)),
-			positionType, (*C.sc_pair)(first(w.pairs)), C.uint64_t(len(w.pairs)), &count)
+			positionType[T](), (*C.sc_pair)(first(w.pairs)), C.uint64_t(len(w.pairs)), &count)
 		runtime.KeepAlive(w)
 		if status == C.SC_ERROR_SHORT_BUFFER {
 			w.pairs = make([]Pair, count+count/4)
@@ -130,6 +197,57 @@ func Query[T Scalar](w *Workspace, pose [][3]T) ([]Pair, error) {
 		}
 		return w.pairs[:count], check(status)
 	}
+}
+
+// Features are pairs of a vertex and a triangle, and of two edges 3 t + k. They stay as they are
+// until the workspace's next step or query of what is near.
+type Features struct {
+	VertexFaces, EdgeEdges         []Pair
+	VertexFaceTimes, EdgeEdgeTimes []float64 // of a step: when each collides
+	Earliest                       float64   // of a step: nothing collides before
+}
+
+// find asks until both lists are long enough.
+func (w *Workspace) find(ask func(faces, edges *C.uint64_t) C.sc_status) error {
+	w.faces, w.edges = w.faces[:cap(w.faces)], w.edges[:cap(w.edges)]
+	for {
+		faces, edges := C.uint64_t(len(w.faces)), C.uint64_t(len(w.edges))
+		status := ask(&faces, &edges)
+		runtime.KeepAlive(w)
+		if status != C.SC_ERROR_SHORT_BUFFER {
+			w.faces, w.edges = w.faces[:faces], w.edges[:edges]
+			return check(status)
+		}
+		w.faces, w.edges = make([]Pair, faces), make([]Pair, edges)
+	}
+}
+
+// Step finds what comes as near as separation while vertices move from one pose to another.
+func Step[T Scalar](w *Workspace, start, end [][3]T, separation float64) (Features, error) {
+	if len(start) != len(end) {
+		return Features{}, ErrorVertexCount
+	}
+	var faceTimes, edgeTimes []float64
+	var earliest C.double
+	err := w.find(func(faces, edges *C.uint64_t) C.sc_status {
+		faceTimes, edgeTimes = make([]float64, *faces), make([]float64, *edges)
+		return C.step(w.model.handle, w.handle, first(start), first(end), C.uint32_t(len(start)),
+			positionType[T](), C.double(separation),
+			(*C.sc_pair)(first(w.faces)), (*C.double)(first(faceTimes)), faces,
+			(*C.sc_pair)(first(w.edges)), (*C.double)(first(edgeTimes)), edges, &earliest)
+	})
+	return Features{w.faces, w.edges, faceTimes[:len(w.faces)], edgeTimes[:len(w.edges)],
+		float64(earliest)}, err
+}
+
+// Near finds what is within a distance in a pose, in units of the coordinates.
+func Near[T Scalar](w *Workspace, pose [][3]T, distance float64) (Features, error) {
+	err := w.find(func(faces, edges *C.uint64_t) C.sc_status {
+		return C.near_pairs(w.model.handle, w.handle, first(pose), C.uint32_t(len(pose)),
+			positionType[T](), C.double(distance), (*C.sc_pair)(first(w.faces)), faces,
+			(*C.sc_pair)(first(w.edges)), edges)
+	})
+	return Features{VertexFaces: w.faces, EdgeEdges: w.edges}, err
 }
 
 // pairSize is the size of a pair in C, which that in Go has to be.

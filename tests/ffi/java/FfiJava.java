@@ -28,9 +28,14 @@ public final class FfiJava {
         String sc_status_string(int status);
         int sc_build(sc_mesh mesh, Pointer options, PointerByReference model);
         void sc_model_free(Pointer model);
-        int sc_workspace_create(Pointer model, Pointer allocator, PointerByReference workspace);
+        int sc_workspace_create_for(Pointer model, sc_workspace_options options,
+            PointerByReference workspace);
         void sc_workspace_free(Pointer workspace);
         int sc_query(Pointer model, Pointer workspace, sc_pose pose, Pointer options, sc_result result);
+        int sc_query_step(Pointer model, Pointer workspace, sc_pose start, sc_pose end,
+            sc_step_options options, sc_step_result result);
+        int sc_query_near(Pointer model, Pointer workspace, sc_pose pose, sc_near_options options,
+            sc_near_result result);
     }
 
     // Positions, indices and pairs are direct buffers: memory outside Java's heap, read in place.
@@ -58,6 +63,65 @@ public final class FfiJava {
         public long count, capacity;
         public Pointer pairs, stats;
         public int verdict, reserved;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "flags", "workers", "reserved", "allocator"})
+    public static class sc_workspace_options extends Structure {
+        public int struct_size = size(), flags, workers, reserved;
+        public Pointer allocator;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "output", "pairs", "times", "method", "contour", "simd",
+        "reserved", "separation", "tolerance", "tasks", "cancel", "budget", "vertex_face_filter",
+        "edge_edge_filter", "rest", "rest_distance"})
+    public static class sc_step_options extends Structure {
+        public int struct_size = size(), output, pairs, times, method, contour, simd, reserved;
+        public double separation, tolerance;
+        public Pointer tasks, cancel;
+        public long budget;
+        public Pointer vertex_face_filter, edge_edge_filter, rest;
+        public double rest_distance;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "collides", "verdict", "reserved", "vertex_face_count",
+        "vertex_face_capacity", "vertex_faces", "vertex_face_times", "edge_edge_count",
+        "edge_edge_capacity", "edge_edges", "edge_edge_times", "earliest", "stats"})
+    public static class sc_step_result extends Structure {
+        public int struct_size = size(), collides, verdict, reserved;
+        public long vertex_face_count, vertex_face_capacity;
+        public Pointer vertex_faces, vertex_face_times;
+        public long edge_edge_count, edge_edge_capacity;
+        public Pointer edge_edges, edge_edge_times;
+        public double earliest;
+        public Pointer stats;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "output", "kinds", "method", "simd", "reserved", "distance",
+        "vertex_face_filter", "edge_edge_filter", "rest", "rest_distance", "tasks", "cancel",
+        "budget"})
+    public static class sc_near_options extends Structure {
+        public int struct_size = size(), output, kinds, method, simd, reserved;
+        public double distance;
+        public Pointer vertex_face_filter, edge_edge_filter, rest;
+        public double rest_distance;
+        public Pointer tasks, cancel;
+        public long budget;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "found", "verdict", "reserved", "vertex_face_count",
+        "vertex_face_capacity", "vertex_faces", "edge_edge_count", "edge_edge_capacity",
+        "edge_edges", "stats"})
+    public static class sc_near_result extends Structure {
+        public int struct_size = size(), found, verdict, reserved;
+        public long vertex_face_count, vertex_face_capacity;
+        public Pointer vertex_faces;
+        public long edge_edge_count, edge_edge_capacity;
+        public Pointer edge_edges, stats;
         int at(String member) { return fieldOffset(member); }
     }
 
@@ -106,21 +170,28 @@ public final class FfiJava {
     static final class Workspace {
         final Model model;
         final Pointer handle;
+        static final int FOR_STEPS = 1, FOR_NEAR = 2;
         ByteBuffer pairs = direct(8 * 16);
+        ByteBuffer faces = direct(8 * 16), edges = direct(8 * 16);
 
         Workspace(Model model) {
+            this(model, 0);
+        }
+
+        /** For more than queries: FOR_STEPS, or FOR_NEAR, which is for both. */
+        Workspace(Model model, int flags) {
             this.model = model;
+            sc_workspace_options options = new sc_workspace_options();
+            options.flags = flags;
             PointerByReference out = new PointerByReference();
-            check(Starcontour.C.sc_workspace_create(model.handle, null, out));
+            check(Starcontour.C.sc_workspace_create_for(model.handle, options, out));
             Pointer made = out.getValue();
             handle = made;
             cleaner.register(this, () -> Starcontour.C.sc_workspace_free(made));
         }
 
         List<String> query(ByteBuffer positions) {
-            sc_pose pose = new sc_pose();
-            pose.vertex_count = positions.capacity() / 12;
-            pose.positions = address(positions);
+            sc_pose pose = poseOf(positions);
             sc_result result = new sc_result();
             for (;;) {
                 result.capacity = pairs.capacity() / 8;
@@ -132,13 +203,95 @@ public final class FfiJava {
                 }
                 pairs = direct(8 * Math.toIntExact(result.count));
             }
-            List<String> found = new ArrayList<>();
-            for (int i = 0; i < result.count; ++i) {
-                found.add(Integer.toUnsignedString(pairs.getInt(8 * i)) + " "
-                    + Integer.toUnsignedString(pairs.getInt(8 * i + 4)));
-            }
-            return found;
+            return listOf(pairs, result.count);
         }
+
+        /** What collides on the way from one pose to another, coming as near as separation. */
+        Features step(ByteBuffer start, ByteBuffer end, double separation) {
+            sc_step_options options = new sc_step_options();
+            options.separation = separation;
+            options.times = 2;
+            sc_pose from = poseOf(start), to = poseOf(end);
+            sc_step_result result = new sc_step_result();
+            for (;;) {
+                ByteBuffer faceTimes = direct(faces.capacity()), edgeTimes = direct(edges.capacity());
+                result.vertex_face_capacity = faces.capacity() / 8;
+                result.vertex_faces = address(faces);
+                result.vertex_face_times = address(faceTimes);
+                result.edge_edge_capacity = edges.capacity() / 8;
+                result.edge_edges = address(edges);
+                result.edge_edge_times = address(edgeTimes);
+                int status = Starcontour.C.sc_query_step(
+                    model.handle, handle, from, to, options, result);
+                if (status != 11) {
+                    check(status);
+                    Features found = new Features(faces, result.vertex_face_count, edges,
+                        result.edge_edge_count);
+                    for (int i = 0; i < result.vertex_face_count; ++i) {
+                        found.times.add(faceTimes.getDouble(8 * i));
+                    }
+                    for (int i = 0; i < result.edge_edge_count; ++i) {
+                        found.times.add(edgeTimes.getDouble(8 * i));
+                    }
+                    found.earliest = result.earliest;
+                    return found;
+                }
+                makeRoom(result.vertex_face_count, result.edge_edge_count);
+            }
+        }
+
+        /** What is within a distance in a pose, in units of the coordinates. */
+        Features near(ByteBuffer positions, double distance) {
+            sc_near_options options = new sc_near_options();
+            options.distance = distance;
+            sc_pose pose = poseOf(positions);
+            sc_near_result result = new sc_near_result();
+            for (;;) {
+                result.vertex_face_capacity = faces.capacity() / 8;
+                result.vertex_faces = address(faces);
+                result.edge_edge_capacity = edges.capacity() / 8;
+                result.edge_edges = address(edges);
+                int status = Starcontour.C.sc_query_near(model.handle, handle, pose, options, result);
+                if (status != 11) {
+                    check(status);
+                    return new Features(faces, result.vertex_face_count, edges, result.edge_edge_count);
+                }
+                makeRoom(result.vertex_face_count, result.edge_edge_count);
+            }
+        }
+
+        private void makeRoom(long faceCount, long edgeCount) {
+            faces = direct(Math.max(faces.capacity(), Math.toIntExact(8 * faceCount)));
+            edges = direct(Math.max(edges.capacity(), Math.toIntExact(8 * edgeCount)));
+        }
+    }
+
+    /** Pairs of a vertex and a triangle, and of two edges 3 t + k; of a step their times. */
+    static final class Features {
+        final List<String> faces, edges;
+        final List<Double> times = new ArrayList<>();
+        double earliest;
+
+        Features(ByteBuffer faces, long faceCount, ByteBuffer edges, long edgeCount) {
+            this.faces = listOf(faces, faceCount);
+            this.edges = listOf(edges, edgeCount);
+        }
+    }
+
+    static sc_pose poseOf(ByteBuffer positions) {
+        sc_pose pose = new sc_pose();
+        pose.vertex_count = positions.capacity() / 12;
+        pose.positions = address(positions);
+        return pose;
+    }
+
+    static List<String> listOf(ByteBuffer pairs, long count) {
+        List<String> found = new ArrayList<>();
+        for (int i = 0; i < count; ++i) {
+            found.add(Integer.toUnsignedString(pairs.getInt(8 * i)) + " "
+                + Integer.toUnsignedString(pairs.getInt(8 * i + 4)));
+        }
+        return found;
     }
 
     static int passed, failed;
@@ -219,6 +372,16 @@ public final class FfiJava {
         expectLayout(layout, "sc_pose", pose, pose::at);
         sc_result result = new sc_result();
         expectLayout(layout, "sc_result", result, result::at);
+        sc_workspace_options spaceOptions = new sc_workspace_options();
+        expectLayout(layout, "sc_workspace_options", spaceOptions, spaceOptions::at);
+        sc_step_options stepOptions = new sc_step_options();
+        expectLayout(layout, "sc_step_options", stepOptions, stepOptions::at);
+        sc_step_result stepResult = new sc_step_result();
+        expectLayout(layout, "sc_step_result", stepResult, stepResult::at);
+        sc_near_options nearOptions = new sc_near_options();
+        expectLayout(layout, "sc_near_options", nearOptions, nearOptions::at);
+        sc_near_result nearResult = new sc_near_result();
+        expectLayout(layout, "sc_near_result", nearResult, nearResult::at);
 
         Model model = new Model(rest, triangles);
         Workspace workspace = new Workspace(model);
@@ -240,6 +403,20 @@ public final class FfiJava {
         }
         for (Thread thread : threads) thread.join();
         expect("two threads, one model", right[0] && right[1]);
+
+        Workspace larger = new Workspace(model, Workspace.FOR_NEAR);
+        Features near = larger.near(moved, 0.045);
+        expect("pairs that are near", near.faces.equals(golden.get("nearfaces"))
+            && near.edges.equals(golden.get("nearedges")));
+        Features step = larger.step(rest, moved, 0);
+        expect("pairs of a step", step.faces.equals(golden.get("stepfaces"))
+            && step.edges.equals(golden.get("stepedges")));
+        expect("at their times", step.earliest > 0
+            && step.times.size() == step.faces.size() + step.edges.size()
+            && step.times.stream().allMatch(time -> time >= step.earliest));
+        expect("a step that is free", larger.step(moved, moved, 0).earliest == 1);
+        expect("a distance below 0", refused(3, "option", () -> larger.near(moved, -1)));
+        expect("no room for steps", refused(12, "workspace", () -> workspace.step(rest, moved, 0)));
 
         moved.putFloat(4, Float.NaN);
         expect("NaN", refused(8, "NaN", () -> workspace.query(moved)));

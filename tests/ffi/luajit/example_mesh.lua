@@ -31,12 +31,15 @@ function example.moved(mesh)
     return pose
 end
 
--- { rest = { "a b", ... }, moved = { ... } }
+-- { rest = { "a b", ... }, moved = { ... }, nearfaces = ... }
 function example.golden(path)
-    local golden = { rest = {}, moved = {} }
+    local golden = {}
     for line in io.lines(path) do
         local pose, pair = line:match("^(%a+) (%d+ %d+)$")
-        if pose then table.insert(golden[pose], pair) end
+        if pose then
+            golden[pose] = golden[pose] or {}
+            table.insert(golden[pose], pair)
+        end
     end
     return golden
 end

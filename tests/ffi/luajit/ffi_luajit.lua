@@ -66,11 +66,26 @@ mesh.triangles[1] = n
 check("vertex out of range", raised(sc.C.SC_ERROR_INDEX, ".", sc.build,
     mesh.vertices, n, mesh.triangles, mesh.triangle_count))
 
+-- Steps, and what is near.
+local larger = model:workspace({ flags = sc.C.SC_WORKSPACE_NEAR })
+moved = example.moved(mesh)
+local near = larger:near(moved, n, 0.045)
+check("pairs that are near", example.same(golden.nearfaces, near.vertex_faces, tonumber(near.vertex_face_count))
+    and example.same(golden.nearedges, near.edge_edges, tonumber(near.edge_edge_count)))
+local step = larger:step(mesh.vertices, moved, n)
+local later = step.earliest > 0
+for i = 0, tonumber(step.edge_edge_count) - 1 do later = later and step.edge_edge_times[i] >= step.earliest end
+check("pairs of a step", example.same(golden.stepfaces, step.vertex_faces, tonumber(step.vertex_face_count))
+    and example.same(golden.stepedges, step.edge_edges, tonumber(step.edge_edge_count)))
+check("at their times", later)
+check("a step that is free", larger:step(moved, moved, n).earliest == 1)
+check("a distance below 0", raised(sc.C.SC_ERROR_OPTION, ".", larger.near, larger, moved, n, -1))
+check("no room for steps", raised(sc.C.SC_ERROR_WORKSPACE, ".", one.step, one, moved, moved, n))
+
 -- Workspaces keep their model, and what is not needed goes.
-model, one = nil, nil
+model, one, larger = nil, nil, nil
 collectgarbage()
 collectgarbage()
-moved[10] = example.moved(mesh)[10]
 check("workspace keeps its model", example.same(golden.moved, two:query(moved, n)))
 
 os.exit(check.finish("luajit") == 0 and 0 or 1)

@@ -7,6 +7,11 @@
 --     local pairs, count = workspace:query(pose, vertex_count)
 --     -- pairs[0] to pairs[count - 1] have the fields a and b
 --
+--     local larger = model:workspace({ flags = sc.C.SC_WORKSPACE_NEAR })
+--     local step = larger:step(pose, next_pose, vertex_count)     -- a sc_step_result, or
+--     local near = larger:near(pose, vertex_count, 0.01)          -- a sc_near_result: vertex_faces[0]
+--     -- to vertex_faces[tonumber(vertex_face_count) - 1], edge_edges likewise; step.earliest
+--
 -- Vertices and poses are cdata arrays of float or double, three a vertex, triangles of uint32_t; they
 -- are read in place. What query returns stays as it is until the next query of the same workspace.
 -- Errors of the library are Lua errors: tables with status and message. What is not wrapped is in
@@ -66,15 +71,18 @@ function starcontour.load(header, library)
         return struct
     end
 
+    local function pose_of(positions, vertex_count)
+        return sized("sc_pose", {
+            vertex_count = vertex_count, position_type = scalar_type(C, positions),
+            positions = positions })
+    end
+
     local Workspace = {}
     Workspace.__index = Workspace
 
     -- options: members of sc_query_options by name, or nil.
     function Workspace:query(positions, vertex_count, options)
-        local pose = sized("sc_pose", {
-            vertex_count = vertex_count, position_type = scalar_type(C, positions),
-            positions = positions })
-        local asked = sized("sc_query_options", options)
+        local pose, asked = pose_of(positions, vertex_count), sized("sc_query_options", options)
         local result = self.result
         while true do
             result.capacity, result.pairs = self.capacity, self.pairs
@@ -88,12 +96,56 @@ function starcontour.load(header, library)
         end
     end
 
+    -- Asks until both arrays of the result are long enough; they stay alive with the workspace.
+    function Workspace:find(type, ask)
+        local result = sized(type)
+        self.features = { result }
+        while true do
+            local status = ask(result)
+            if status ~= C.SC_ERROR_SHORT_BUFFER then
+                check(status)
+                return result
+            end
+            for _, kind in ipairs({ "vertex_face", "edge_edge" }) do
+                local count = tonumber(result[kind .. "_count"])
+                local array = ffi.new("sc_pair[?]", count)
+                result[kind .. "_capacity"], result[kind .. "s"] = count, array
+                self.features[#self.features + 1] = array
+                if type == "sc_step_result" then
+                    local times = ffi.new("double[?]", count)
+                    result[kind .. "_times"] = times
+                    self.features[#self.features + 1] = times
+                end
+            end
+        end
+    end
+
+    -- What collides on the way from one pose to another. options: members of sc_step_options by name,
+    -- or nil: all pairs with their times. The result stays until the next step or near.
+    function Workspace:step(from, to, vertex_count, options)
+        local start, goal = pose_of(from, vertex_count), pose_of(to, vertex_count)
+        local asked = sized("sc_step_options", options or { times = C.SC_STEP_TIMES_EACH })
+        return self:find("sc_step_result", function(result)
+            return C.sc_query_step(self.model.handle, self.handle, start, goal, asked, result)
+        end)
+    end
+
+    -- What is within a distance in a pose. options: members of sc_near_options by name, or nil.
+    function Workspace:near(positions, vertex_count, distance, options)
+        local pose, asked = pose_of(positions, vertex_count), sized("sc_near_options", options)
+        asked.distance = distance
+        return self:find("sc_near_result", function(result)
+            return C.sc_query_near(self.model.handle, self.handle, pose, asked, result)
+        end)
+    end
+
     local Model = {}
     Model.__index = Model
 
-    function Model:workspace()
+    -- options: members of sc_workspace_options by name, or nil.
+    function Model:workspace(options)
         local out = ffi.new("sc_workspace *[1]")
-        check(C.sc_workspace_create(self.handle, nil, out))
+        check(C.sc_workspace_create_for(self.handle, sized("sc_workspace_options", options), out))
         return setmetatable({
             model = self, handle = ffi.gc(out[0], C.sc_workspace_free), capacity = 16,
             pairs = ffi.new("sc_pair[16]"), result = sized("sc_result") }, Workspace)

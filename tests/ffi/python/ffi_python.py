@@ -5,6 +5,8 @@
 SPDX-License-Identifier: MIT
 """
 
+import _thread
+import ast
 import ctypes
 import inspect
 import os
@@ -12,6 +14,7 @@ import pickle
 import sys
 import tempfile
 import threading
+import time
 
 import numpy as np
 import starcontour
@@ -60,12 +63,12 @@ moved = rest.astype(np.float64)
 later = len(rest) // 2
 moved[later:, 2] += moved[later:, 0] / 4 - 0.25
 
-golden = {"rest": [], "moved": []}
+golden = {}
 with open(golden_path) as file:
     for line in file:
         if not line.startswith("#"):
             pose, a, b = line.split()
-            golden[pose].append((int(a), int(b)))
+            golden.setdefault(pose, []).append((int(a), int(b)))
 golden = {pose: np.array(pairs, np.uint32) for pose, pairs in golden.items()}
 
 
@@ -89,10 +92,11 @@ for structure in _binding.structures:
                 for f, _ in structure._fields_]
     check(f"{name} is laid out as in the header",
           mirrored == layout["member"][name] and ctypes.sizeof(structure) == layout["struct"][name])
-dtype = np.dtype(_binding.sc_contact)
-check("sc_contact is laid out as in the header", dtype.itemsize == layout["struct"]["sc_contact"] and [
-    (name, dtype.fields[name][1], dtype.fields[name][0].itemsize) for name in dtype.names
-] == layout["member"]["sc_contact"])
+for name in ("sc_contact", "sc_near_stencil"):
+    dtype = np.dtype(getattr(_binding, name))
+    check(f"{name} is laid out as in the header", dtype.itemsize == layout["struct"][name] and [
+        (member, dtype.fields[member][1], dtype.fields[member][0].itemsize) for member in dtype.names
+    ] == layout["member"][name])
 enumerators = {name: value for name, value in vars(_binding).items() if name.startswith("SC_")}
 for name, value in enumerators.items():
     check(f"{name} is as in the header", layout["value"].get(name) == value)
@@ -285,7 +289,7 @@ says("no rest", "rest is NULL",
      raised(_binding.SC_ERROR_NULL, lambda: model.step(above, below, rest_distance=1)))
 says("rings of a step", "ignore_rings is 99, but at most 32",
      raised(_binding.SC_ERROR_OPTION, lambda: model.step(above, below, ignore_rings=99)))
-says("three lists", "ignore must be a Step or two arrays",
+says("three lists", "ignore must be a Step, a Near or two arrays",
      refused(ValueError, lambda: model.step(above, below, ignore=step.vertex_faces[:1])))
 check("a budget of a step", incomplete(lambda: model.step(above, below, budget=1)) is not None)
 spoilt = below.copy()
@@ -301,6 +305,165 @@ for side, weights in ((0, "weights_a"), (1, "weights_b")):
     check(f"contacts by {weights}", np.allclose(mixed, contacts["points"], rtol=0, atol=1e-14))
 check("kinds of contacts", set(contacts["kind"]) <= {1, 2, 3} and (contacts["kind"] == 2).any())
 check("contacts of none", raised(_binding.SC_ERROR_PAIRS, lambda: model.contacts(moved, [[0, len(triangles)]])))
+
+# What is near: a list within a distance is what is that near of a list within twice of it.
+wide, narrow = (model.near(moved, distance, stencils=True) for distance in (0.09, 0.045))
+for pairs, closest, fewer in ((wide.vertex_faces, wide.vertex_face_stencils, narrow.vertex_faces),
+                              (wide.edge_edges, wide.edge_edge_stencils, narrow.edge_edges)):
+    check("near pairs by distance", 0 < len(fewer) < len(pairs) and closest["distance"].max() <= 0.09
+          and np.array_equal(pairs[closest["distance"] <= 0.045], fewer))
+    mixed = np.einsum("nk,nkx->nx", closest["weights"], moved[closest["vertices"]])
+    check("vectors between closest points", np.allclose(mixed, closest["vector"], rtol=0, atol=1e-14)
+          and np.allclose(np.linalg.norm(mixed, axis=1), closest["distance"], rtol=0, atol=1e-14))
+check("vertices of stencils", np.array_equal(wide.vertex_face_stencils["vertices"], np.c_[
+    wide.vertex_faces[:, 0], triangles[wide.vertex_faces[:, 1]]]))
+check("vertices of edges", np.array_equal(
+    starcontour.edge_vertices(triangles, wide.edge_edges).reshape(-1, 4),
+    wide.edge_edge_stencils["vertices"]) and starcontour.edge_vertices(triangles, 5).tolist() == [
+    triangles[1][2], triangles[1][0]])
+check("pairs that are near", all(np.array_equal(x, golden[name]) for x, name in zip(
+    narrow, ("nearfaces", "nearedges"))))
+fall = model.step(rest, moved)
+check("pairs of a step", all(np.array_equal(x, golden[name]) for x, name in zip(
+    fall, ("stepfaces", "stepedges"))))
+check("counts of near pairs", model.near_counts(moved, 0.09) == (len(wide.vertex_faces), len(wide.edge_edges)))
+check("any", model.is_near(moved, 0.045) and not model.is_near(apart, 1e-5))
+check("without stencils", model.near(moved, 0.09).vertex_face_stencils is None)
+check("of one kind", len(model.near(moved, 0.09, kinds="vertex_face").edge_edges) == 0 and np.array_equal(
+    model.near(moved, 0.09, kinds="edge_edge").edge_edges, wide.edge_edges))
+for method in ("sctt", "boxes"):
+    other = model.near(moved, 0.09, method=method)
+    check(f"near by {method}", all(np.array_equal(x, y) for x, y in zip(other[:2], wide)))
+check("near in a workspace", np.array_equal(model.workspace().near(moved, 0.09).edge_edges, wide.edge_edges))
+check("a budget", incomplete(lambda: model.near(moved, 0.09, budget=1)) is not None)
+says("a distance below 0", "distance is -1, but finite and at least 0",
+     raised(_binding.SC_ERROR_OPTION, lambda: model.near(moved, -1)))
+says("no distance", "distance must be a number, not None", refused(TypeError, lambda: model.near(moved, None)))
+says("no kind", "kinds must be one of both, vertex_face, edge_edge, not 'edge'",
+     refused(ValueError, lambda: model.near(moved, 1, kinds="edge")))
+says("misspelt", "Model.near() got an unexpected keyword argument 'stencil'; did you mean 'stencils'?",
+     refused(TypeError, lambda: model.near(moved, 1, stencil=True)))
+check("a vertex with a face of its own", raised(_binding.SC_ERROR_PAIRS, lambda: model.stencils(
+    moved, [[triangles[0][0], 0]], kind="vertex_face")))
+merged, stand_for = starcontour.merge_stencils(wide.vertex_face_stencils, wide.edge_edge_stencils)
+check("merged stencils", stand_for.sum() == len(wide.vertex_faces) + len(wide.edge_edges)
+      and len(merged) == len(stand_for) < stand_for.sum() and stand_for.min() == 1)
+keys = [frozenset((frozenset(v[w < 0]), frozenset(v[w > 0]))) for v, w, feature in zip(
+    merged["vertices"], merged["weights"], merged["feature"]) if feature <= 2]
+check("each vertex and edge once", len(keys) == len(set(keys)) > 0)
+check("no stencils", refused(TypeError, lambda: starcontour.merge_stencils(moved)))
+
+# What is near, but not what is not wanted.
+check("all that is known", model.near_counts(moved, 0.09, ignore=wide) == (0, 0))
+check("what is known of a step", model.near_counts(moved, 0.09, ignore=fall) != (0, 0) and model.near_counts(
+    moved, 0.09, ignore=(wide.vertex_faces[1:], wide.edge_edges)) == (1, 0))
+at_rest = [model.stencils(rest, pairs, kind=kind)["distance"] for pairs, kind in zip(
+    wide, ("vertex_face", "edge_edge"))]
+check("what was far at rest", all(np.array_equal(x, pairs[far > 0.05]) and 0 < len(x) < len(pairs) for x, pairs, far
+      in zip(model.near(moved, 0.09, rest=rest, rest_distance=0.05), wide, at_rest)))
+check("rings", sum(model.near_counts(moved, 0.3, ignore_rings=4)) < sum(model.near_counts(moved, 0.3)))
+check("groups", model.near_counts(moved, 0.09, vertex_groups=np.zeros((len(rest), 2), np.uint32)) == (0, 0))
+says("no rest pose", "rest is NULL", (raised(
+    _binding.SC_ERROR_NULL, lambda: model.near(moved, 1, rest_distance=1)) or ""))
+
+# Several threads: the same answer.
+big = np.concatenate([rest + (0, 0, 3 * k) for k in range(24)]).astype(np.float64)
+many_triangles = np.concatenate([triangles + k * len(rest) for k in range(24)])
+crowd = starcontour.Model(big, many_triangles)
+lower = big.copy()
+lower[later:, 2] -= 1
+alone = crowd.query(lower), crowd.step(big, lower), crowd.near(lower, 0.1)
+for threads in (2, 3, 8):
+    check(f"pairs by {threads} threads", np.array_equal(crowd.query(lower, threads=threads), alone[0]))
+    check(f"a step by {threads} threads", all(
+        np.array_equal(x, y) for x, y in zip(crowd.step(big, lower, threads=threads), alone[1])))
+    check(f"what is near by {threads} threads", all(
+        np.array_equal(x, y) for x, y in zip(crowd.near(lower, 0.1, threads=threads)[:2], alone[2])))
+for threads in (0, 257):
+    says("threads", f"threads must be from 1 to 256, not {threads}",
+         refused(ValueError, lambda: crowd.query(big, threads=threads)))
+says("what is wrong, by threads", f"vertex {len(big) - 1} is NaN or infinite", raised(
+    _binding.SC_ERROR_NOT_FINITE, lambda: crowd.query(np.r_[big[:-1], [[0, 0, np.nan]]], threads=2)))
+
+
+def interrupt():
+    for _ in range(20):
+        time.sleep(0.01)
+        if interrupted:
+            return
+        _thread.interrupt_main()
+
+
+interrupted = False
+alarm = threading.Thread(target=interrupt)
+try:
+    alarm.start()
+    for _ in range(10**6):
+        crowd.near(lower, 0.2, threads=2)
+except KeyboardInterrupt:
+    interrupted = True
+while alarm.is_alive():
+    try:
+        alarm.join()
+    except KeyboardInterrupt:
+        pass
+check("an interrupted query", interrupted)
+check("and one after it", np.array_equal(crowd.query(lower, threads=2), alone[0]))
+
+# What is given back early, and what is shown.
+with starcontour.Model(rest, triangles) as closed, closed.workspace() as workspace:
+    check("a model and a workspace, shown", repr(workspace) == "<starcontour.Workspace of <starcontour.Model of "
+          f"{len(triangles)} triangles and {len(rest)} vertices>>")
+    check("in a with statement", same(workspace.query(rest), "rest") and same(closed.query(rest), "rest"))
+with model.workspace() as workspace:
+    pass
+says("a closed workspace", "the workspace is closed", refused(ValueError, lambda: workspace.query(rest)))
+says("a closed model", "the model is closed", refused(ValueError, lambda: closed.query(rest)))
+says("its workspace", "the model is closed", refused(ValueError, lambda: closed.workspace().query(rest)))
+check("a closed model, shown", repr(closed) == "<starcontour.Model, closed>")
+check("a step, shown", repr(step) == f"<starcontour.Step: {len(step.vertex_faces)} vertex-face and "
+      f"{len(step.edge_edges)} edge-edge pairs, earliest {step.earliest:.6g}>")
+check("what is near, shown", "vertex-face and" in repr(wide))
+
+# The types of the package say of each method what it takes.
+folder = os.path.dirname(starcontour.__file__)
+check("the package has types", os.path.exists(os.path.join(folder, "py.typed")))
+with open(os.path.join(folder, "__init__.pyi")) as file:
+    stub = ast.parse(file.read())
+
+
+def typed(definition):
+    arguments = definition.args
+    return [a.arg for a in arguments.args], sorted(a.arg for a in arguments.kwonlyargs), \
+        arguments.vararg.arg if arguments.vararg else None
+
+
+def taken(function):
+    parameters = inspect.signature(inspect.unwrap(function, stop=lambda f: hasattr(f, "__signature__"))).parameters
+    of = {kind: [p.name for p in parameters.values() if p.kind == kind] for kind in
+          (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.VAR_POSITIONAL)}
+    plain, keywords, rest_of_them = of.values()
+    return plain, sorted(keywords), rest_of_them[0] if rest_of_them else None
+
+
+compared = 0
+for entry in stub.body:
+    if isinstance(entry, ast.FunctionDef):
+        check(f"types of {entry.name}", typed(entry) == taken(getattr(starcontour, entry.name)))
+    if isinstance(entry, ast.ClassDef) and any(getattr(b, "id", "") == "NamedTuple" for b in entry.bases):
+        check(f"types of {entry.name}", getattr(starcontour, entry.name)._fields == tuple(
+            line.target.id for line in entry.body))
+    elif isinstance(entry, ast.ClassDef):
+        source = vars(getattr(starcontour, entry.name))
+        for method in entry.body:
+            if isinstance(method, ast.FunctionDef) and not method.name.startswith("__") and \
+                    not isinstance(source[method.name], property):
+                function = getattr(source[method.name], "__func__", source[method.name])
+                check(f"types of {entry.name}.{method.name}", typed(method) == taken(function))
+                compared += 1
+        public = {name for name in source if not name.startswith("_")} - {"model"}
+        check(f"types of all of {entry.name}", public <= {getattr(line, "name", None) for line in entry.body})
+check("types of all queries", compared >= 16)
 
 # Saved models.
 with tempfile.TemporaryDirectory() as folder:

@@ -3,6 +3,7 @@
     model = starcontour.Model(rest, triangles)      once per topology
     pairs = model.query(pose)                       once per pose: array of shape (n, 2)
     step = model.step(start, end)                   what collides on the way from one pose to another
+    near = model.near(pose, 0.01)                   what comes within a distance in a pose
 
 starcontour.h is the manual of the library that does the work: it says what a pair is, what is
 guaranteed, and what the options mean. Here they are keywords with the names of its enumerators:
@@ -20,15 +21,28 @@ guaranteed, and what the options mean. Here they are keywords with the names of 
     cancel            a uint32 array of one element: another thread ends the query by setting it
     budget            end the query after so many units of work; 0 (default): no limit
 
-Steps take cancel, budget, ignore_rings and both kinds of groups, too, and
+Steps take cancel and budget, too, and
 
     separation  how near is a collision: 0 (default), or a distance in units of the coordinates
     tolerance   how exactly distances are told, the same units; 0 (default): a millionth of the size
     method      "default", "sctt", "two_boxes" or "swept": the answer is the same
     candidates  True: what boxes and culling leave, in place of collisions; without times
-    ignore      leave out these pairs: a Step, or two arrays of shape (k, 2) as its first two
+
+What is near takes cancel and budget, too, and
+
+    kinds     "both" (default), "vertex_face" or "edge_edge"
+    method    "default", "sctt" or "boxes": the answer is the same
+    stencils  True: the closest points of each pair as well; see Model.stencils
+
+Steps and what is near take ignore_rings and both kinds of groups, too, and
+
+    ignore    leave out these pairs: a Step, a Near, or two arrays of shape (k, 2) as their first two
 
     rest, rest_distance   leave out pairs that are within this distance of each other in this pose
+
+All take
+
+    threads  how many threads the query may use, 1 (default) to 256: the answer is the same
 
 A query that cancel or budget ended raises Incomplete, which has what was found so far.
 
@@ -38,7 +52,8 @@ refused if it is not. Triangles are arrays of shape (m, 3) of integers; uint32 a
 place.
 
 A Model never changes and may be used by any number of threads at once. A Workspace belongs to one
-call at a time: another call on it meanwhile raises an Error. Queries release the global lock.
+call at a time: another call on it meanwhile raises an Error. Queries release the global lock. Both
+give back their memory when they are no longer referred to, or at the end of a with statement.
 
 SPDX-License-Identifier: MIT
 """
@@ -55,10 +70,11 @@ from collections import namedtuple
 
 import numpy as np
 
-from . import _binding
+from . import _binding, _threads
 from ._binding import lib
 
-__all__ = ["Error", "Incomplete", "Model", "ModelInfo", "Step", "Workspace", "version"]
+__all__ = ["Error", "Incomplete", "Model", "ModelInfo", "Near", "Step", "Workspace", "edge_vertices",
+           "merge_stencils", "version"]
 
 version = lib.sc_version_string().decode()
 
@@ -77,6 +93,16 @@ _STEP_METHOD = {
     "two_boxes": _binding.SC_STEP_METHOD_TWO_BOXES,
     "swept": _binding.SC_STEP_METHOD_SWEPT,
 }
+_NEAR_KINDS = {
+    "both": _binding.SC_NEAR_BOTH,
+    "vertex_face": _binding.SC_NEAR_VERTEX_FACE,
+    "edge_edge": _binding.SC_NEAR_EDGE_EDGE,
+}
+_NEAR_METHOD = {
+    "default": _binding.SC_NEAR_METHOD_DEFAULT,
+    "sctt": _binding.SC_NEAR_METHOD_SCTT,
+    "boxes": _binding.SC_NEAR_METHOD_BOXES,
+}
 _IN_USE = "the workspace is in use by another call"
 
 ModelInfo = namedtuple(
@@ -93,6 +119,25 @@ class Step(namedtuple("Step", "vertex_faces edge_edges vertex_face_times edge_ed
     """
 
     __slots__ = ()
+
+    def __repr__(self):
+        return (f"<starcontour.Step: {len(self.vertex_faces)} vertex-face and {len(self.edge_edges)} "
+                f"edge-edge pairs, earliest {self.earliest:.6g}>")
+
+
+class Near(namedtuple("Near", "vertex_faces edge_edges vertex_face_stencils edge_edge_stencils")):
+    """What is within a distance.
+
+    vertex_faces, edge_edges                  uint32 arrays of shape (n, 2), sorted: a vertex and a
+                                              triangle; two edges as in pairs "edge"
+    vertex_face_stencils, edge_edge_stencils  closest points, an entry for each; None if not wanted
+    """
+
+    __slots__ = ()
+
+    def __repr__(self):
+        return (f"<starcontour.Near: {len(self.vertex_faces)} vertex-face and {len(self.edge_edges)} "
+                "edge-edge pairs>")
 
 
 class Error(Exception):
@@ -159,7 +204,7 @@ def _keywords_of(source):
                 if name not in known:
                     near = difflib.get_close_matches(name, known, 1)
                     raise TypeError(
-                        f"{method.__qualname__}() got an unexpected keyword argument {name!r}"
+                        f"{type(arguments[0]).__name__}.{method.__name__}() got an unexpected keyword argument {name!r}"
                         + (f"; did you mean {near[0]!r}?" if near else ""))
             return method(*arguments, **options)
 
@@ -293,21 +338,57 @@ def _step_list(count):
     return np.empty((count, 2), np.uint32), np.empty(count, np.float64)
 
 
-class _Scratch:
-    """A workspace of the library, arrays for its pairs and times, and who may use them now."""
+class _Owned(ctypes.c_void_p):
+    """What the library made, freed when nothing refers to it any more."""
 
-    def __init__(self, model, flags=0):
-        handle = ctypes.c_void_p()
-        options = _binding.sc_workspace_options(
-            struct_size=ctypes.sizeof(_binding.sc_workspace_options), flags=flags)
-        _check(lib.sc_workspace_create_for(model, ctypes.byref(options), ctypes.byref(handle)))
-        weakref.finalize(self, lib.sc_workspace_free, handle)
+    def __init__(self, handle, free):
+        super().__init__(handle.value)
+        weakref.finalize(self, free, ctypes.c_void_p(handle.value))
+
+
+class _Scratch:
+    """A workspace of the library, made when it is needed, arrays for its pairs and times, and who may
+    use them now."""
+
+    def __init__(self):
         self.log = _Log()
-        _check(lib.sc_workspace_set_hooks(handle, ctypes.byref(self.log.hooks)))
-        self.handle = handle
+        self.handle, self.flags, self.workers, self.tasks = None, 0, 0, None
         self.pairs = np.empty((64, 2), np.uint32)
-        self.lists = [_step_list(64), _step_list(64)] if flags & _binding.SC_WORKSPACE_STEP else []
+        self.lists = [_step_list(64), _step_list(64)]
         self.lock = threading.Lock()
+        self.closed = False
+
+    def prepare(self, model, flags, threads):
+        """Makes the workspace fit for a query of that kind by so many threads, and returns the address
+        of sc_tasks for them. By the one who has the lock."""
+        if self.closed:
+            raise ValueError("the workspace is closed")
+        if not 1 <= _whole("threads", threads, 32) <= _binding.SC_WORKERS_MAX:
+            raise ValueError(f"threads must be from 1 to {_binding.SC_WORKERS_MAX}, not {threads}")
+        if flags & ~self.flags or threads > self.workers:
+            flags, workers = flags | self.flags, max(threads, self.workers)
+            options = _binding.sc_workspace_options(
+                struct_size=ctypes.sizeof(_binding.sc_workspace_options), flags=flags, workers=workers)
+            handle = ctypes.c_void_p()
+            _check(lib.sc_workspace_create_for(model, ctypes.byref(options), ctypes.byref(handle)))
+            self.handle = _Owned(handle, lib.sc_workspace_free)
+            self.flags, self.workers = flags, workers
+            _check(lib.sc_workspace_set_hooks(self.handle, ctypes.byref(self.log.hooks)))
+        if threads == 1:
+            return None
+        if not self.tasks or self.tasks.structure.workers != threads:
+            self.tasks = _threads.Tasks(threads)
+        return ctypes.addressof(self.tasks.structure)
+
+    def call(self, function, options, *arguments):
+        """Calls a query with these options."""
+        return self.tasks.call(function, *arguments) if options.tasks else function(*arguments)
+
+    def close(self):
+        if not self.lock.acquire(blocking=False):
+            raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
+        self.handle, self.closed = None, True
+        self.lock.release()
 
 
 def _query(model, scratch, pose, **options):
@@ -346,9 +427,18 @@ def _filter(model, ignore_rings, ignore, vertex_groups, triangle_groups):
     return structure, arrays
 
 
+def _feature_filters(model, ignore_rings, ignore, vertex_groups, triangle_groups):
+    """An sc_filter for each of the two kinds of pairs, and the arrays that they refer to."""
+    ignored = (None, None) if ignore is None else tuple(ignore)[:2]
+    if len(ignored) != 2:
+        raise ValueError("ignore must be a Step, a Near or two arrays")
+    both = [_filter(model, ignore_rings, pairs, vertex_groups, triangle_groups) for pairs in ignored]
+    return [structure for structure, _ in both], [arrays for _, arrays in both]
+
+
 def _ask(model, scratch, pose, output, answer, *, pairs="triangle", contact="touching",
          method="default", rest_cache=True, ignore_rings=0, ignore=None, vertex_groups=None,
-         triangle_groups=None, cancel=None, budget=0):
+         triangle_groups=None, cancel=None, budget=0, threads=1):
     given, positions = _pose(pose)
     filter, arrays = _filter(model, ignore_rings, ignore, vertex_groups, triangle_groups)
     options = _binding.sc_query_options(
@@ -366,9 +456,11 @@ def _ask(model, scratch, pose, output, answer, *, pairs="triangle", contact="tou
     if not scratch.lock.acquire(blocking=False):
         raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
     try:
+        handle = model._handle
+        options.tasks = scratch.prepare(handle, 0, threads)
         while True:
             result.capacity, result.pairs = len(scratch.pairs), scratch.pairs.ctypes.data
-            status = lib.sc_query(model._handle, scratch.handle, ctypes.byref(given),
+            status = scratch.call(lib.sc_query, options, handle, scratch.handle, ctypes.byref(given),
                                   ctypes.byref(options), ctypes.byref(result))
             if status == _binding.SC_ERROR_INCOMPLETE:
                 raise Incomplete(answer(result))
@@ -400,12 +492,10 @@ def _step_collides(model, scratch, start, end, **options):
 
 def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tolerance=0.0,
               method="default", candidates=False, ignore_rings=0, ignore=None, vertex_groups=None,
-              triangle_groups=None, rest=None, rest_distance=0.0, cancel=None, budget=0):
+              triangle_groups=None, rest=None, rest_distance=0.0, cancel=None, budget=0,
+              threads=1):
     (given, positions), (goal, positions_then) = _pose(start), _pose(end)
-    ignored = (None, None) if ignore is None else tuple(ignore)[:2]
-    if len(ignored) != 2:
-        raise ValueError("ignore must be a Step or two arrays")
-    filters = [_filter(model, ignore_rings, pairs, vertex_groups, triangle_groups) for pairs in ignored]
+    filters, kept = _feature_filters(model, ignore_rings, ignore, vertex_groups, triangle_groups)
     pose_at_rest, positions_at_rest = (None, None) if rest is None else _pose(rest)
     timed = output == _binding.SC_OUTPUT_PAIRS and not candidates
     options = _binding.sc_step_options(
@@ -418,8 +508,8 @@ def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tol
         tolerance=_length("tolerance", tolerance),
         cancel=_cancel(cancel),
         budget=_whole("budget", budget, 64),
-        vertex_face_filter=ctypes.addressof(filters[0][0]),
-        edge_edge_filter=ctypes.addressof(filters[1][0]),
+        vertex_face_filter=ctypes.addressof(filters[0]),
+        edge_edge_filter=ctypes.addressof(filters[1]),
         rest=None if rest is None else ctypes.addressof(pose_at_rest),
         rest_distance=_length("rest_distance", rest_distance),
     )
@@ -427,6 +517,8 @@ def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tol
     if not scratch.lock.acquire(blocking=False):
         raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
     try:
+        handle = model._handle
+        options.tasks = scratch.prepare(handle, _binding.SC_WORKSPACE_STEP, threads)
         while True:
             (faces, face_times), (edges, edge_times) = scratch.lists
             result.vertex_face_capacity, result.vertex_faces = len(faces), faces.ctypes.data
@@ -434,9 +526,9 @@ def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tol
             if timed:
                 result.vertex_face_times = face_times.ctypes.data
                 result.edge_edge_times = edge_times.ctypes.data
-            status = lib.sc_query_step(model._handle, scratch.handle, ctypes.byref(given),
-                                       ctypes.byref(goal), ctypes.byref(options),
-                                       ctypes.byref(result))
+            status = scratch.call(lib.sc_query_step, options, handle, scratch.handle,
+                                  ctypes.byref(given), ctypes.byref(goal), ctypes.byref(options),
+                                  ctypes.byref(result))
             if status == _binding.SC_ERROR_INCOMPLETE:
                 raise Incomplete(answer(result))
             if status != _binding.SC_ERROR_SHORT_BUFFER:
@@ -449,40 +541,178 @@ def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tol
         scratch.lock.release()
 
 
-class Workspace:
+def _near(model, scratch, pose, distance, *, stencils=False, **options):
+    def found(result):
+        counts = result.vertex_face_count, result.edge_edge_count
+        pairs = [array[:count].copy() for (array, _), count in zip(scratch.lists, counts)]
+        closest = [_stencils(model, pose, array, kind) if stencils else None
+                   for array, kind in zip(pairs, ("vertex_face", "edge_edge"))]
+        return Near(*pairs, *closest)
+
+    return _ask_near(model, scratch, pose, distance, _binding.SC_OUTPUT_PAIRS, found, **options)
+
+
+def _near_counts(model, scratch, pose, distance, **options):
+    return _ask_near(model, scratch, pose, distance, _binding.SC_OUTPUT_COUNT,
+                     lambda result: (result.vertex_face_count, result.edge_edge_count), **options)
+
+
+def _is_near(model, scratch, pose, distance, **options):
+    return _ask_near(model, scratch, pose, distance, _binding.SC_OUTPUT_ANY,
+                     lambda result: bool(result.found), **options)
+
+
+def _ask_near(model, scratch, pose, distance, output, answer, *, kinds="both", method="default",
+              ignore_rings=0, ignore=None, vertex_groups=None, triangle_groups=None, rest=None,
+              rest_distance=0.0, cancel=None, budget=0, threads=1):
+    given, positions = _pose(pose)
+    filters, kept = _feature_filters(model, ignore_rings, ignore, vertex_groups, triangle_groups)
+    pose_at_rest, positions_at_rest = (None, None) if rest is None else _pose(rest)
+    options = _binding.sc_near_options(
+        struct_size=ctypes.sizeof(_binding.sc_near_options),
+        output=output,
+        kinds=_choice("kinds", kinds, _NEAR_KINDS),
+        method=_choice("method", method, _NEAR_METHOD),
+        distance=_length("distance", distance),
+        vertex_face_filter=ctypes.addressof(filters[0]),
+        edge_edge_filter=ctypes.addressof(filters[1]),
+        rest=None if rest is None else ctypes.addressof(pose_at_rest),
+        rest_distance=_length("rest_distance", rest_distance),
+        cancel=_cancel(cancel),
+        budget=_whole("budget", budget, 64),
+    )
+    result = _binding.sc_near_result(struct_size=ctypes.sizeof(_binding.sc_near_result))
+    if not scratch.lock.acquire(blocking=False):
+        raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
+    try:
+        handle = model._handle
+        options.tasks = scratch.prepare(handle, _binding.SC_WORKSPACE_NEAR, threads)
+        while True:
+            (faces, _), (edges, _) = scratch.lists
+            result.vertex_face_capacity, result.vertex_faces = len(faces), faces.ctypes.data
+            result.edge_edge_capacity, result.edge_edges = len(edges), edges.ctypes.data
+            status = scratch.call(lib.sc_query_near, options, handle, scratch.handle,
+                                  ctypes.byref(given), ctypes.byref(options), ctypes.byref(result))
+            if status == _binding.SC_ERROR_INCOMPLETE:
+                raise Incomplete(answer(result))
+            if status != _binding.SC_ERROR_SHORT_BUFFER:
+                break
+            scratch.lists = [_step_list(count + count // 4) for count in
+                             (result.vertex_face_count, result.edge_edge_count)]
+        scratch.log.check(status)
+        return answer(result)
+    finally:
+        scratch.lock.release()
+
+
+def _stencils(model, pose, found, kind):
+    found, address = _table(found, None, "found")
+    stencils = np.zeros(len(found), _binding.sc_near_stencil)
+    given, positions = _pose(pose)
+    kind = _choice("kind", kind, {name: _NEAR_KINDS[name] for name in ("vertex_face", "edge_edge")})
+    _check(lib.sc_near_stencils(model._handle, ctypes.byref(given), kind, address, len(found),
+                                stencils.ctypes.data))
+    return stencils
+
+
+def merge_stencils(*stencils):
+    """One stencil for each two vertices, and each vertex and edge, of arrays of stencils; and how many
+    each stands for: two arrays. See sc_near_merge."""
+    for array in stencils:
+        if not isinstance(array, np.ndarray) or array.dtype != np.dtype(_binding.sc_near_stencil) \
+                or array.ndim != 1:
+            raise TypeError("stencils must be arrays as Model.stencils returns them")
+    merged = np.concatenate(stencils) if stencils else np.empty(0, _binding.sc_near_stencil)
+    multiplicities, count = np.empty(len(merged), np.uint32), ctypes.c_uint64()
+    _check(lib.sc_near_merge(merged.ctypes.data, len(merged), ctypes.byref(count),
+                             multiplicities.ctypes.data))
+    return merged[: count.value].copy(), multiplicities[: count.value].copy()
+
+
+def edge_vertices(triangles, edges):
+    """The two vertices of each edge: of edges 3 t + k, an array of any shape, those from corner k to
+    corner (k + 1) % 3 of triangle t. The result has one axis more, of length 2."""
+    triangles, edges = _triangles(triangles), _indices(edges).astype(np.int64)
+    return np.stack([triangles[edges // 3, edges % 3], triangles[edges // 3, (edges + 1) % 3]], -1)
+
+
+class _Queries:
+    """The queries of a Model, which uses a workspace of each thread's own, and of a Workspace."""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *exception):
+        self.close()
+
+    @_keywords_of(_ask)
+    def query(self, pose, **options):
+        """All pairs in a pose, sorted: a new uint32 array of shape (n, 2). Options: see the module."""
+        return _query(*self._asked(), pose, **options)
+
+    @_keywords_of(_ask)
+    def count(self, pose, **options):
+        """The number of pairs in a pose."""
+        return _count(*self._asked(), pose, **options)
+
+    @_keywords_of(_ask)
+    def collides(self, pose, **options):
+        """Whether there is any pair in a pose. Stops at the first."""
+        return _collides(*self._asked(), pose, **options)
+
+    @_keywords_of(_ask_step)
+    def step(self, start, end, **options):
+        """What collides while each vertex moves on a straight line from one pose to another: a Step.
+
+        Options: see the module. vertex_faces: a vertex and a triangle that it is no corner of;
+        edge_edges: two edges without a common vertex.
+        """
+        return _step(*self._asked(), start, end, **options)
+
+    @_keywords_of(_ask_step)
+    def step_collides(self, start, end, **options):
+        """Whether anything collides in a step. Stops at the first pair."""
+        return _step_collides(*self._asked(), start, end, **options)
+
+    @_keywords_of(_ask_near)
+    def near(self, pose, distance, *, stencils=False, **options):
+        """What is within a distance in a pose, in units of the coordinates: a Near. Compared exactly.
+
+        Options: see the module. vertex_faces: a vertex and a triangle that it is no corner of;
+        edge_edges: two edges without a common vertex.
+        """
+        return _near(*self._asked(), pose, distance, stencils=stencils, **options)
+
+    @_keywords_of(_ask_near)
+    def near_counts(self, pose, distance, **options):
+        """The numbers of vertex-face and of edge-edge pairs within a distance."""
+        return _near_counts(*self._asked(), pose, distance, **options)
+
+    @_keywords_of(_ask_near)
+    def is_near(self, pose, distance, **options):
+        """Whether any pair is within a distance. Stops at the first."""
+        return _is_near(*self._asked(), pose, distance, **options)
+
+
+class Workspace(_Queries):
     """What one query writes to. Made by Model.workspace(); its queries are those of Model."""
 
     def __init__(self, model):
         self.model = model
-        self._scratch = _Scratch(model._handle, _binding.SC_WORKSPACE_STEP)
+        self._scratch = _Scratch()
 
-    @_keywords_of(_ask)
-    def query(self, pose, **options):
-        """Like Model.query."""
-        return _query(self.model, self._scratch, pose, **options)
+    def __repr__(self):
+        return f"<starcontour.Workspace of {self.model!r}>"
 
-    @_keywords_of(_ask)
-    def count(self, pose, **options):
-        """Like Model.count."""
-        return _count(self.model, self._scratch, pose, **options)
+    def close(self):
+        """Gives back its memory; another query raises a ValueError."""
+        self._scratch.close()
 
-    @_keywords_of(_ask)
-    def collides(self, pose, **options):
-        """Like Model.collides."""
-        return _collides(self.model, self._scratch, pose, **options)
-
-    @_keywords_of(_ask_step)
-    def step(self, start, end, **options):
-        """Like Model.step."""
-        return _step(self.model, self._scratch, start, end, **options)
-
-    @_keywords_of(_ask_step)
-    def step_collides(self, start, end, **options):
-        """Like Model.step_collides."""
-        return _step_collides(self.model, self._scratch, start, end, **options)
+    def _asked(self):
+        return self.model, self._scratch
 
 
-class Model:
+class Model(_Queries):
     """A triangle mesh in its rest pose, made ready for queries.
 
     vertices   rest positions, shape (n, 3)
@@ -524,9 +754,26 @@ class Model:
         self._adopt(handle)
 
     def _adopt(self, handle):
-        self._handle = handle
+        self._owned = _Owned(handle, lib.sc_model_free)
         self._local = threading.local()
-        weakref.finalize(self, lib.sc_model_free, handle)
+
+    @property
+    def _handle(self):
+        if self._owned is None:
+            raise ValueError("the model is closed")
+        return self._owned
+
+    def __repr__(self):
+        if self._owned is None:
+            return "<starcontour.Model, closed>"
+        info = self.info
+        return f"<starcontour.Model of {info.triangle_count} triangles and {info.vertex_count} vertices>"
+
+    def close(self):
+        """Gives back its memory, once queries of other threads that are under way have ended; another
+        query raises a ValueError."""
+        self._owned = None
+        self._local = threading.local()
 
     @classmethod
     def frombytes(cls, data, *, topology_hash=0, in_place=False):
@@ -604,43 +851,17 @@ class Model:
         """A new Workspace, for queries that run at the same time as others in this thread's name."""
         return Workspace(self)
 
-    @_keywords_of(_ask)
-    def query(self, pose, **options):
-        """All pairs in a pose, sorted: a new uint32 array of shape (n, 2). Options: see the module."""
-        return _query(self, self._own(), pose, **options)
+    def stencils(self, pose, found, *, kind):
+        """The closest points of pairs, near or not: a structured array, an entry for each.
 
-    @_keywords_of(_ask)
-    def count(self, pose, **options):
-        """The number of pairs in a pose."""
-        return _count(self, self._own(), pose, **options)
-
-    @_keywords_of(_ask)
-    def collides(self, pose, **options):
-        """Whether there is any pair in a pose. Stops at the first."""
-        return _collides(self, self._own(), pose, **options)
-
-    @_keywords_of(_ask_step)
-    def step(self, start, end, **options):
-        """What collides while each vertex moves on a straight line from one pose to another: a Step.
-
-        Options: see the module. vertex_faces: a vertex and a triangle that it is no corner of;
-        edge_edges: two edges without a common vertex.
+        kind is "vertex_face" or "edge_edge". Fields: feature (1 two vertices, 2 a vertex and an edge,
+        3 two edges, 4 a vertex and a face), vertices and their weights, by which the sum of positions
+        is vector, from a to b, and distance. See sc_near_stencil.
         """
-        return _step(self, self._own_for_steps(), start, end, **options)
+        return _stencils(self, pose, found, kind)
 
-    @_keywords_of(_ask_step)
-    def step_collides(self, start, end, **options):
-        """Whether anything collides in a step. Stops at the first pair."""
-        return _step_collides(self, self._own_for_steps(), start, end, **options)
-
-    def _own_for_steps(self):
-        """This thread's workspace for steps, which is larger."""
-        if not hasattr(self._local, "step_scratch"):
-            self._local.step_scratch = _Scratch(self._handle, _binding.SC_WORKSPACE_STEP)
-        return self._local.step_scratch
-
-    def _own(self):
+    def _asked(self):
         """This thread's workspace."""
         if not hasattr(self._local, "scratch"):
-            self._local.scratch = _Scratch(self._handle)
-        return self._local.scratch
+            self._local.scratch = _Scratch()
+        return self, self._local.scratch

@@ -42,14 +42,34 @@ SC_PAIRS_TRIANGLE, SC_PAIRS_EDGE = 0, 1
 SC_CONTACT_TOUCHING, SC_CONTACT_PROPER = 0, 1
 SC_METHOD_DEFAULT, SC_METHOD_SCTT, SC_METHOD_AABB_SCTT, SC_METHOD_AABB = 0, 1, 2, 3
 SC_REST_CACHE_ON, SC_REST_CACHE_OFF = 0, 1
-SC_WORKSPACE_STEP = 1
+SC_WORKSPACE_STEP, SC_WORKSPACE_NEAR = 1, 2
+SC_WORKERS_MAX = 256
 SC_STEP_METHOD_DEFAULT, SC_STEP_METHOD_SCTT, SC_STEP_METHOD_TWO_BOXES, SC_STEP_METHOD_SWEPT = 0, 1, 2, 3
 SC_STEP_COLLISIONS, SC_STEP_CANDIDATES = 0, 1
 SC_STEP_TIMES_NONE, SC_STEP_TIMES_EARLIEST, SC_STEP_TIMES_EACH = 0, 1, 2
+SC_NEAR_BOTH, SC_NEAR_VERTEX_FACE, SC_NEAR_EDGE_EDGE = 0, 1, 2
+SC_NEAR_METHOD_DEFAULT, SC_NEAR_METHOD_SCTT, SC_NEAR_METHOD_BOXES = 0, 1, 2
+SC_FEATURE_VERTEX_VERTEX, SC_FEATURE_VERTEX_EDGE, SC_FEATURE_EDGE_EDGE, SC_FEATURE_VERTEX_FACE = 1, 2, 3, 4
+SC_STENCIL_PARALLEL = 1
 
 
 # The type of the member log of sc_hooks.
 sc_hooks_log = CFUNCTYPE(None, c_void_p, c_uint32, c_char_p)
+
+# What a job of a query calls for each part, and the members of sc_tasks.
+sc_tasks_run = CFUNCTYPE(None, c_void_p, c_uint32, c_uint32)
+sc_tasks_enqueue = CFUNCTYPE(c_void_p, c_void_p, sc_tasks_run, c_void_p, c_uint32)
+sc_tasks_finish = CFUNCTYPE(None, c_void_p, c_void_p)
+
+
+class sc_tasks(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("workers", c_uint32),
+        ("enqueue", sc_tasks_enqueue),
+        ("finish", sc_tasks_finish),
+        ("user", c_void_p),
+    ]
 
 
 class sc_hooks(ctypes.Structure):
@@ -231,7 +251,42 @@ class sc_step_result(ctypes.Structure):
     ]
 
 
-# An entry of a numpy array of contacts.
+class sc_near_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("output", c_uint32),
+        ("kinds", c_uint32),
+        ("method", c_uint32),
+        ("simd", c_uint32),
+        ("reserved", c_uint32),
+        ("distance", c_double),
+        ("vertex_face_filter", c_void_p),
+        ("edge_edge_filter", c_void_p),
+        ("rest", c_void_p),
+        ("rest_distance", c_double),
+        ("tasks", c_void_p),
+        ("cancel", c_void_p),
+        ("budget", c_uint64),
+    ]
+
+
+class sc_near_result(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("found", c_uint32),
+        ("verdict", c_uint32),
+        ("reserved", c_uint32),
+        ("vertex_face_count", c_uint64),
+        ("vertex_face_capacity", c_uint64),
+        ("vertex_faces", c_void_p),
+        ("edge_edge_count", c_uint64),
+        ("edge_edge_capacity", c_uint64),
+        ("edge_edges", c_void_p),
+        ("stats", c_void_p),
+    ]
+
+
+# An entry of a numpy array of contacts, and of stencils.
 sc_contact = [
     ("kind", "u4"),
     ("reserved", "u4"),
@@ -240,7 +295,16 @@ sc_contact = [
     ("weights_b", "f8", (2, 3)),
 ]
 
-structures = (sc_hooks, sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info,
+sc_near_stencil = [
+    ("feature", "u4"),
+    ("flags", "u4"),
+    ("vertices", "u4", 4),
+    ("weights", "f8", 4),
+    ("vector", "f8", 3),
+    ("distance", "f8"),
+]
+
+structures = (sc_hooks, sc_tasks, sc_near_options, sc_near_result, sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info,
               sc_query_options, sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result)
 
 _suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
@@ -272,3 +336,7 @@ _declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_q
 _declare("sc_contacts", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
 _declare("sc_query_step", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_pose),
          POINTER(sc_step_options), POINTER(sc_step_result))
+_declare("sc_query_near", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_near_options),
+         POINTER(sc_near_result))
+_declare("sc_near_stencils", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
+_declare("sc_near_merge", _status, c_void_p, c_uint64, POINTER(c_uint64), c_void_p)

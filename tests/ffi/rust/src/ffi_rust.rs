@@ -4,7 +4,7 @@
 //!
 //! SPDX-License-Identifier: MIT
 
-use starcontour::{raw, Error, Model, Options, Pair};
+use starcontour::{raw, Error, Model, Options, Pair, StepOptions};
 use std::collections::HashMap;
 use std::{env, fs, process, thread};
 
@@ -99,6 +99,24 @@ fn main() {
     let out_of_range = Model::build(&rest, &[[0, 1, rest.len() as u32]]);
     checks.check("vertex out of range", refused(out_of_range, starcontour::ERROR_INDEX, "vertex"));
     checks.check("usable after errors", workspace.query(&rest, &options).unwrap() == golden["rest"]);
+
+    let mut larger = model.workspace_for(starcontour::WORKSPACE_NEAR).expect("a workspace");
+    let near = larger.near(&moved, 0.045).unwrap();
+    let right = near.vertex_faces == golden["nearfaces"] && near.edge_edges == golden["nearedges"];
+    checks.check("pairs that are near", right);
+    let touching = StepOptions::default();
+    let step = larger.step(&rest, &moved, &touching).unwrap();
+    let right = step.vertex_faces == golden["stepfaces"] && step.edge_edges == golden["stepedges"];
+    checks.check("pairs of a step", right);
+    let times = step.vertex_face_times.iter().chain(step.edge_edge_times);
+    let first = times.fold(1.0, |a: f64, b| a.min(*b));
+    checks.check("at their times", step.earliest > 0.0 && first == step.earliest);
+    let free = larger.step(&moved, &moved, &touching).unwrap();
+    checks.check("a step that is free", free.earliest == 1.0 && free.edge_edges.is_empty());
+    let below = larger.near(&moved, -1.0);
+    checks.check("a distance below 0", refused(below, starcontour::ERROR_OPTION, "option"));
+    let no_room = workspace.step(&rest, &moved, &touching);
+    checks.check("no room for steps", refused(no_room, starcontour::ERROR_WORKSPACE, "workspace"));
 
     println!("rust: {} passed, {} failed", checks.passed, checks.failed);
     process::exit((checks.failed > 0).into());

@@ -9,6 +9,9 @@
 //! let model = Model::build(&rest, &triangles)?;
 //! let mut workspace = model.workspace()?;
 //! for pair in workspace.query(&pose, &Options::default())? { ... }
+//! let mut larger = model.workspace_for(WORKSPACE_NEAR)?;
+//! let free = larger.step(&pose, &next, &StepOptions::default())?.earliest;
+//! for pair in larger.near(&pose, 0.01)?.vertex_faces { ... }
 //! ```
 //!
 //! SPDX-License-Identifier: MIT
@@ -28,7 +31,13 @@ pub const ERROR_COUNT: Error = Error(5);
 pub const ERROR_INDEX: Error = Error(7);
 pub const ERROR_NOT_FINITE: Error = Error(8);
 pub const ERROR_VERTEX_COUNT: Error = Error(9);
+pub const ERROR_OPTION: Error = Error(3);
 pub const ERROR_SHORT_BUFFER: Error = Error(11);
+pub const ERROR_WORKSPACE: Error = Error(12);
+
+/// What a workspace is for, besides queries: steps; or steps and what is near.
+pub const WORKSPACE_STEP: u32 = 1;
+pub const WORKSPACE_NEAR: u32 = 2;
 
 impl fmt::Display for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
@@ -77,6 +86,33 @@ pub struct Options {
     pub proper: bool,
 }
 
+/// How a step is asked about; the default is what touches on the way.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StepOptions {
+    /// How near is a collision, in units of the coordinates.
+    pub separation: f64,
+    /// How exactly distances are told, the same units; 0: a millionth of the size.
+    pub tolerance: f64,
+}
+
+/// What collides in a step: a vertex and a triangle, or two edges 3 t + k; and when.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'workspace> {
+    pub vertex_faces: &'workspace [Pair],
+    pub edge_edges: &'workspace [Pair],
+    pub vertex_face_times: &'workspace [f64],
+    pub edge_edge_times: &'workspace [f64],
+    /// Nothing collides before; 1 if nothing does at all.
+    pub earliest: f64,
+}
+
+/// What is within a distance: pairs as in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Near<'workspace> {
+    pub vertex_faces: &'workspace [Pair],
+    pub edge_edges: &'workspace [Pair],
+}
+
 /// A mesh made ready for queries.
 #[derive(Debug)]
 pub struct Model(ptr::NonNull<raw::sc_model>);
@@ -106,13 +142,26 @@ impl Model {
         Ok(Model(ptr::NonNull::new(model).expect("a model that was built")))
     }
 
-    /// Makes a workspace for this model.
+    /// Makes a workspace for queries.
     pub fn workspace(&self) -> Result<Workspace<'_>, Error> {
+        self.workspace_for(0)
+    }
+
+    /// Makes a workspace for more than queries: `WORKSPACE_STEP` or `WORKSPACE_NEAR`.
+    pub fn workspace_for(&self, flags: u32) -> Result<Workspace<'_>, Error> {
+        let options = raw::sc_workspace_options {
+            struct_size: size_of::<raw::sc_workspace_options>(),
+            flags,
+            workers: 1,
+            reserved: 0,
+            allocator: ptr::null(),
+        };
         let mut handle = ptr::null_mut();
         // SAFETY: the model is alive.
-        check(unsafe { raw::sc_workspace_create(self.0.as_ptr(), ptr::null(), &mut handle) })?;
+        check(unsafe { raw::sc_workspace_create_for(self.0.as_ptr(), &options, &mut handle) })?;
         let handle = ptr::NonNull::new(handle).expect("a workspace that was made");
-        Ok(Workspace { model: self, handle, pairs: vec![Pair::default(); 16] })
+        let list = || vec![Pair::default(); 16];
+        Ok(Workspace { model: self, handle, pairs: list(), features: [list(), list()], times: Default::default() })
     }
 }
 
@@ -129,21 +178,27 @@ pub struct Workspace<'model> {
     model: &'model Model,
     handle: ptr::NonNull<raw::sc_workspace>,
     pairs: Vec<Pair>,
+    features: [Vec<Pair>; 2],
+    times: [Vec<f64>; 2],
 }
 
 // SAFETY: a workspace is memory of its own; only one thread at a time has it.
 unsafe impl Send for Workspace<'_> {}
 
+fn pose_of<T: Scalar>(positions: &[[T; 3]]) -> Result<raw::sc_pose, Error> {
+    Ok(raw::sc_pose {
+        struct_size: size_of::<raw::sc_pose>(),
+        vertex_count: positions.len().try_into().map_err(|_| ERROR_VERTEX_COUNT)?,
+        position_type: T::TYPE,
+        position_stride: 0,
+        positions: positions.as_ptr().cast(),
+    })
+}
+
 impl Workspace<'_> {
     /// All pairs in a pose, sorted.
     pub fn query<T: Scalar>(&mut self, pose: &[[T; 3]], options: &Options) -> Result<&[Pair], Error> {
-        let pose = raw::sc_pose {
-            struct_size: size_of::<raw::sc_pose>(),
-            vertex_count: pose.len().try_into().map_err(|_| ERROR_VERTEX_COUNT)?,
-            position_type: T::TYPE,
-            position_stride: 0,
-            positions: pose.as_ptr().cast(),
-        };
+        let pose = pose_of(pose)?;
         let options = raw::sc_query_options {
             struct_size: size_of::<raw::sc_query_options>(),
             output: 0,
@@ -180,6 +235,135 @@ impl Workspace<'_> {
             }
             check(status)?;
             return Ok(&self.pairs[..result.count as usize]);
+        }
+    }
+}
+
+impl Workspace<'_> {
+    /// What collides while every vertex moves on a straight line from one pose to another.
+    pub fn step<T: Scalar, U: Scalar>(
+        &mut self,
+        start: &[[T; 3]],
+        end: &[[U; 3]],
+        options: &StepOptions,
+    ) -> Result<Step<'_>, Error> {
+        let (start, end) = (pose_of(start)?, pose_of(end)?);
+        let options = raw::sc_step_options {
+            struct_size: size_of::<raw::sc_step_options>(),
+            output: 0,
+            pairs: 0,
+            times: 2,
+            method: 0,
+            contour: 0,
+            simd: 0,
+            reserved: 0,
+            separation: options.separation,
+            tolerance: options.tolerance,
+            tasks: ptr::null(),
+            cancel: ptr::null(),
+            budget: 0,
+            vertex_face_filter: ptr::null(),
+            edge_edge_filter: ptr::null(),
+            rest: ptr::null(),
+            rest_distance: 0.0,
+        };
+        loop {
+            let [faces, edges] = &mut self.features;
+            let [face_times, edge_times] = &mut self.times;
+            face_times.resize(faces.len(), 0.0);
+            edge_times.resize(edges.len(), 0.0);
+            let mut result = raw::sc_step_result {
+                struct_size: size_of::<raw::sc_step_result>(),
+                collides: 0,
+                verdict: 0,
+                reserved: 0,
+                vertex_face_count: 0,
+                vertex_face_capacity: faces.len() as u64,
+                vertex_faces: faces.as_mut_ptr(),
+                vertex_face_times: face_times.as_mut_ptr(),
+                edge_edge_count: 0,
+                edge_edge_capacity: edges.len() as u64,
+                edge_edges: edges.as_mut_ptr(),
+                edge_edge_times: edge_times.as_mut_ptr(),
+                earliest: 0.0,
+                stats: ptr::null_mut(),
+            };
+            // SAFETY: as in query; the times are as long as the pairs.
+            let status = unsafe {
+                raw::sc_query_step(
+                    self.model.0.as_ptr(), self.handle.as_ptr(), &start, &end, &options, &mut result)
+            };
+            let counts = [result.vertex_face_count as usize, result.edge_edge_count as usize];
+            if Error(status) == ERROR_SHORT_BUFFER {
+                self.make_room(counts);
+                continue;
+            }
+            check(status)?;
+            return Ok(Step {
+                vertex_faces: &self.features[0][..counts[0]],
+                edge_edges: &self.features[1][..counts[1]],
+                vertex_face_times: &self.times[0][..counts[0]],
+                edge_edge_times: &self.times[1][..counts[1]],
+                earliest: result.earliest,
+            });
+        }
+    }
+
+    /// What is within a distance in a pose, in units of the coordinates.
+    pub fn near<T: Scalar>(&mut self, pose: &[[T; 3]], distance: f64) -> Result<Near<'_>, Error> {
+        let pose = pose_of(pose)?;
+        let options = raw::sc_near_options {
+            struct_size: size_of::<raw::sc_near_options>(),
+            output: 0,
+            kinds: 0,
+            method: 0,
+            simd: 0,
+            reserved: 0,
+            distance,
+            vertex_face_filter: ptr::null(),
+            edge_edge_filter: ptr::null(),
+            rest: ptr::null(),
+            rest_distance: 0.0,
+            tasks: ptr::null(),
+            cancel: ptr::null(),
+            budget: 0,
+        };
+        loop {
+            let [faces, edges] = &mut self.features;
+            let mut result = raw::sc_near_result {
+                struct_size: size_of::<raw::sc_near_result>(),
+                found: 0,
+                verdict: 0,
+                reserved: 0,
+                vertex_face_count: 0,
+                vertex_face_capacity: faces.len() as u64,
+                vertex_faces: faces.as_mut_ptr(),
+                edge_edge_count: 0,
+                edge_edge_capacity: edges.len() as u64,
+                edge_edges: edges.as_mut_ptr(),
+                stats: ptr::null_mut(),
+            };
+            // SAFETY: as in query.
+            let status = unsafe {
+                raw::sc_query_near(
+                    self.model.0.as_ptr(), self.handle.as_ptr(), &pose, &options, &mut result)
+            };
+            let counts = [result.vertex_face_count as usize, result.edge_edge_count as usize];
+            if Error(status) == ERROR_SHORT_BUFFER {
+                self.make_room(counts);
+                continue;
+            }
+            check(status)?;
+            return Ok(Near {
+                vertex_faces: &self.features[0][..counts[0]],
+                edge_edges: &self.features[1][..counts[1]],
+            });
+        }
+    }
+
+    fn make_room(&mut self, counts: [usize; 2]) {
+        for (list, count) in self.features.iter_mut().zip(counts) {
+            list.resize(count.max(list.len()), Pair::default());
         }
     }
 }

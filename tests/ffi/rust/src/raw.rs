@@ -68,6 +68,87 @@ pub struct sc_result {
 }
 
 #[repr(C)]
+pub struct sc_workspace_options {
+    pub struct_size: u32,
+    pub flags: u32,
+    pub workers: u32,
+    pub reserved: u32,
+    pub allocator: *const c_void,
+}
+
+#[repr(C)]
+pub struct sc_step_options {
+    pub struct_size: u32,
+    pub output: u32,
+    pub pairs: u32,
+    pub times: u32,
+    pub method: u32,
+    pub contour: u32,
+    pub simd: u32,
+    pub reserved: u32,
+    pub separation: f64,
+    pub tolerance: f64,
+    pub tasks: *const c_void,
+    pub cancel: *const u32,
+    pub budget: u64,
+    pub vertex_face_filter: *const c_void,
+    pub edge_edge_filter: *const c_void,
+    pub rest: *const sc_pose,
+    pub rest_distance: f64,
+}
+
+#[repr(C)]
+pub struct sc_step_result {
+    pub struct_size: u32,
+    pub collides: u32,
+    pub verdict: u32,
+    pub reserved: u32,
+    pub vertex_face_count: u64,
+    pub vertex_face_capacity: u64,
+    pub vertex_faces: *mut sc_pair,
+    pub vertex_face_times: *mut f64,
+    pub edge_edge_count: u64,
+    pub edge_edge_capacity: u64,
+    pub edge_edges: *mut sc_pair,
+    pub edge_edge_times: *mut f64,
+    pub earliest: f64,
+    pub stats: *mut c_void,
+}
+
+#[repr(C)]
+pub struct sc_near_options {
+    pub struct_size: u32,
+    pub output: u32,
+    pub kinds: u32,
+    pub method: u32,
+    pub simd: u32,
+    pub reserved: u32,
+    pub distance: f64,
+    pub vertex_face_filter: *const c_void,
+    pub edge_edge_filter: *const c_void,
+    pub rest: *const sc_pose,
+    pub rest_distance: f64,
+    pub tasks: *const c_void,
+    pub cancel: *const u32,
+    pub budget: u64,
+}
+
+#[repr(C)]
+pub struct sc_near_result {
+    pub struct_size: u32,
+    pub found: u32,
+    pub verdict: u32,
+    pub reserved: u32,
+    pub vertex_face_count: u64,
+    pub vertex_face_capacity: u64,
+    pub vertex_faces: *mut sc_pair,
+    pub edge_edge_count: u64,
+    pub edge_edge_capacity: u64,
+    pub edge_edges: *mut sc_pair,
+    pub stats: *mut c_void,
+}
+
+#[repr(C)]
 pub struct sc_model {
     _opaque: [u8; 0],
 }
@@ -85,9 +166,9 @@ extern "C" {
         model: *mut *mut sc_model,
     ) -> sc_status;
     pub fn sc_model_free(model: *mut sc_model);
-    pub fn sc_workspace_create(
+    pub fn sc_workspace_create_for(
         model: *const sc_model,
-        allocator: *const c_void,
+        options: *const sc_workspace_options,
         workspace: *mut *mut sc_workspace,
     ) -> sc_status;
     pub fn sc_workspace_free(workspace: *mut sc_workspace);
@@ -97,6 +178,21 @@ extern "C" {
         pose: *const sc_pose,
         options: *const sc_query_options,
         result: *mut sc_result,
+    ) -> sc_status;
+    pub fn sc_query_step(
+        model: *const sc_model,
+        workspace: *mut sc_workspace,
+        start: *const sc_pose,
+        end: *const sc_pose,
+        options: *const sc_step_options,
+        result: *mut sc_step_result,
+    ) -> sc_status;
+    pub fn sc_query_near(
+        model: *const sc_model,
+        workspace: *mut sc_workspace,
+        pose: *const sc_pose,
+        options: *const sc_near_options,
+        result: *mut sc_near_result,
     ) -> sc_status;
 }
 
@@ -123,5 +219,16 @@ pub fn layouts() -> Vec<Layout> {
             simd filter cancel budget tasks),
         layout!(sc_pair: a b),
         layout!(sc_result: struct_size collides count capacity pairs stats verdict reserved),
+        layout!(sc_workspace_options: struct_size flags workers reserved allocator),
+        layout!(sc_step_options: struct_size output pairs times method contour simd reserved
+            separation tolerance tasks cancel budget vertex_face_filter edge_edge_filter rest
+            rest_distance),
+        layout!(sc_step_result: struct_size collides verdict reserved vertex_face_count
+            vertex_face_capacity vertex_faces vertex_face_times edge_edge_count
+            edge_edge_capacity edge_edges edge_edge_times earliest stats),
+        layout!(sc_near_options: struct_size output kinds method simd reserved distance
+            vertex_face_filter edge_edge_filter rest rest_distance tasks cancel budget),
+        layout!(sc_near_result: struct_size found verdict reserved vertex_face_count
+            vertex_face_capacity vertex_faces edge_edge_count edge_edge_capacity edge_edges stats),
     ]
 }

@@ -1,0 +1,18 @@
+/*
+ * sc-query --near: what comes within a distance in a mesh, or in the poses of one.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ * Each file is a mesh of its own, or a pose of one that is built once: of --rest or --model, or the
+ * frames that a pattern names. See sc_query_near in starcontour.h for what is near.
+ */
+#ifndef TOOLS_NEAR_QUERY_H
+#define TOOLS_NEAR_QUERY_H
+
+#include "near_settings.h"
+
+/* Does count files, or those of one pattern with a number. Returns an exit status; what is wrong is
+   on standard error. */
+int near_query_files(char **paths, int count, const near_settings *set);
+
+#endif /* TOOLS_NEAR_QUERY_H */

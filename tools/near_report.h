@@ -1,0 +1,67 @@
+/*
+ * What sc-query --near prints and writes of a pose: a row of the table or an object of JSON, pairs
+ * as comma-separated values, and the mesh coloured by distance.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#ifndef TOOLS_NEAR_REPORT_H
+#define TOOLS_NEAR_REPORT_H
+
+#include "feature_pairs.h"
+#include "near_settings.h"
+#include "tool.h"
+
+/* Values of --kinds, and of --method with --near. */
+extern const tool_choice near_kinds[], near_methods[];
+
+/* What there is to know about a pose. */
+typedef struct near_answer {
+    const char *path;
+    const mesh_file *mesh;          /* whose faces and objects pairs are told by */
+    const uint32_t *vertex_objects; /* where they are told, else NULL */
+    const uint32_t *weld_map;       /* the vertex that represents each, or NULL: itself */
+    const sc_model *model;
+    const sc_pose *pose;
+    sc_model_info info;
+    double build_ms, query_ms;
+    uint64_t counts[KINDS];
+    const sc_pair *pairs[KINDS]; /* where they are listed */
+    bool near, incomplete;
+    double nearest; /* the smallest distance; HUGE_VAL: not known, or none */
+    sc_stats stats;
+    mesh_tally tally;            /* pairs by their objects, if there are several */
+    bool rounded, has_animation; /* as in mesh_file */
+    uint32_t position_type;      /* of the pose */
+} near_answer;
+
+/* Whether pairs are told with their distances. */
+static inline bool near_wants_list(const near_settings *set)
+{
+    return set->list || set->stencils || set->out_path || set->ply_path;
+}
+
+/* Whether the pairs between each two objects are counted: for that they are listed, too. */
+static inline bool near_names_objects(const near_settings *set, const mesh_file *mesh)
+{
+    return mesh->object_count > 1 && !set->any;
+}
+
+/* Finds the smallest distance among the pairs. */
+sc_status near_report_nearest(near_answer *answer);
+
+/* The head of the table, and of the file of pairs. */
+void near_report_head(const near_settings *set);
+void near_report_pairs_head(FILE *out, const near_settings *set);
+
+/* Prints what came of a query, and writes its pairs to out unless that is NULL. Returns the exit
+   status. */
+int near_report(const near_answer *answer, const near_settings *set, FILE *out);
+
+/* Says why a file could not be done: as a message, and as an object if there is JSON. Returns
+   TOOL_FAILED. */
+int near_report_failure(const char *path, const near_settings *set, const char *error);
+
+/* Writes the file of --ply; otherwise says why not. */
+bool near_report_ply(const near_answer *answer, const near_settings *set);
+
+#endif /* TOOLS_NEAR_REPORT_H */
