@@ -8,7 +8,7 @@
 #include "batch.h"
 
 #include "manifest.h"
-#include "progress.h"
+#include "batch_progress.h"
 #include "query_report.h"
 #include "query_summary.h"
 #include "query_text.h"
@@ -48,7 +48,7 @@ typedef struct batch {
     char *start;     /* see line_start */
     result_file file;
     query_summary summary;
-    progress shown;
+    batch_progress shown;
     int status; /* so far */
 } batch;
 
@@ -275,7 +275,8 @@ static bool do_meshes(batch *self)
             if (!write_line(self, self->written)) return false;
             self->written++;
         }
-        progress_show(&self->shown, self->written, self->summary.colliding, self->summary.refused);
+        batch_progress_show(&self->shown, self->written, self->summary.colliding,
+                            self->summary.refused);
     }
     return true;
 }
@@ -346,10 +347,10 @@ int batch_run(const query_settings *set, batch_work work, void *user)
         is_done = false;
     } else if (is_done) {
         self.begun = self.written;
-        progress_begin(&self.shown, self.written, self.count);
+        batch_progress_begin(&self.shown, self.written, self.count);
         is_done = do_meshes(&self);
         end_meshes(&self);
-        progress_end(&self.shown);
+        batch_progress_end(&self.shown);
         if (!result_file_close(&self.file, error)) {
             tool_error("%s", error);
             is_done = false;

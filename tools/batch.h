@@ -19,9 +19,6 @@
 
 #include "query_settings.h"
 
-/* The most meshes at a time, and seconds of processor time that one may take unless told. */
-enum { BATCH_JOBS_MAX = 1024, BATCH_SECONDS = 600 };
-
 /* Prints the object of a file, or why there is none, to standard output; returns TOOL_.... */
 typedef int (*batch_work)(void *user, const char *path);
 

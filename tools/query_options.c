@@ -5,7 +5,6 @@
  */
 #include "query_options.h"
 
-#include "batch.h"
 #include "query_text.h"
 
 #include <getopt.h>

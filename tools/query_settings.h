@@ -11,6 +11,9 @@
 #include "step_query.h"
 #include "tool.h"
 
+/* Of --jsonl: the most meshes at a time, and seconds of processor time for one, unless told. */
+enum { BATCH_JOBS_MAX = 1024, BATCH_SECONDS = 600 };
+
 /* What the command line says. */
 typedef struct query_settings {
     step_settings step;          /* what --step alone asks */

@@ -184,7 +184,7 @@ def by_ray(model, data, wanted, folder):
 
     import ray
 
-    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR,
+    ray.init(num_cpus=4, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR,
              object_store_memory=100 << 20, _temp_dir=os.path.join(folder, "ray"))
     try:
         context = ray.data.DataContext.get_current()
@@ -202,7 +202,8 @@ def by_ray(model, data, wanted, folder):
             check("every pose", [row["id"] for row in rows] == list(range(COUNT)))
             return batch.found({name: [row[name] for row in rows] for name in rows[0]})
 
-        actors = poses().map_batches(Dying, fn_constructor_args=(held, folder), concurrency=2,
+        actors = poses().map_batches(Dying, fn_constructor_args=(held, folder),
+                                     compute=ray.data.ActorPoolStrategy(size=2),
                                      batch_size=PART, batch_format="numpy")
         check("the same by Ray's actors", same(gather(actors), wanted))
         check_workers(folder)

@@ -1,11 +1,11 @@
 /*
- * How far a run is; see progress.h.
+ * How far a run is; see batch_progress.h.
  *
  * SPDX-License-Identifier: MIT
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include "progress.h"
+#include "batch_progress.h"
 
 #include "tool.h"
 
@@ -14,7 +14,7 @@
 
 enum { BAR = 20 };
 
-void progress_begin(progress *state, uint64_t first, uint64_t end)
+void batch_progress_begin(batch_progress *state, uint64_t first, uint64_t end)
 {
     memset(state, 0, sizeof *state);
     state->is_shown = isatty(STDERR_FILENO) == 1;
@@ -24,7 +24,7 @@ void progress_begin(progress *state, uint64_t first, uint64_t end)
     state->end = end;
 }
 
-void progress_show(progress *state, uint64_t done, uint64_t colliding, uint64_t refused)
+void batch_progress_show(batch_progress *state, uint64_t done, uint64_t colliding, uint64_t refused)
 {
     const double now = tool_clock();
     if (!state->is_shown || (now - state->shown < 100 && done < state->end)) return;
@@ -46,7 +46,7 @@ void progress_show(progress *state, uint64_t done, uint64_t colliding, uint64_t 
     fflush(stderr);
 }
 
-void progress_end(progress *state)
+void batch_progress_end(batch_progress *state)
 {
     if (state->is_shown) fputs("\r\033[K", stderr);
 }
