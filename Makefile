@@ -691,6 +691,10 @@ mingw: ## build for Windows by mingw-w64; run its tests under wine, if that is t
 	$(call need,$(MINGW)-gcc,gcc-mingw-w64-x86-64)
 	@MAKE='$(MAKE)' tests/packages/mingw.sh '$(MINGW)' '$(BUILD)/mingw'
 
+.PHONY: test-batch
+test-batch: all ## many meshes and poses by a Slurm array, Dask and Ray Data (make deps with=batch test-batch); two minutes
+	@SC_BIN='$(bin)' SC_LIB='$(lib)' tests/run.sh tests/batch/*.sh
+
 .PHONY: test-packages
 test-packages: ## as users build it: archive, Conan, MSVC's restrictions, mingw, ARM and s390x by QEMU; some minutes for each machine
 	@MAKE='$(MAKE)' SC_FLAGS='$(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' tests/run.sh tests/packages/*.sh
@@ -711,7 +715,7 @@ help: ## this list
 	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
 
 #: config      release (the default), debug, or sanitize (address and undefined behaviour)
-#: with        groups of packages that make deps adds: analysis bench cgal docs ffi packages peers
+#: with        groups of packages that make deps adds: analysis batch bench cgal docs ffi packages peers
 #: CC          C compiler [cc]
 #: CLANG       clang, for fuzz and test-memory-clang [clang]
 #: CXX         C++ compiler, for test-cgal and one test of the header [g++]

@@ -36,6 +36,11 @@ program clang-tidy clang-tidy clang-tools-extra clang llvm
 program cppcheck cppcheck cppcheck cppcheck cppcheck
 program valgrind valgrind valgrind valgrind -
 sanitizers clang libclang-rt-dev compiler-rt compiler-rt -"
+group_batch="\
+program parallel parallel parallel parallel parallel
+program munged munge munge munge -
+program slurmctld slurm-wlm slurm-slurmctld,slurm-slurmd slurm-llnl -
+module venv,ensurepip python3-venv python3 python python"
 group_bench="\
 module matplotlib python3-matplotlib python3-matplotlib python-matplotlib python-matplotlib"
 group_docs="\
@@ -71,9 +76,9 @@ header fcl/config.h libfcl-dev fcl-devel fcl fcl
 module ensurepip python3-venv python3 python python"
 for group in ${WITH:-}; do
     case $group in
-    analysis | bench | cgal | docs | ffi | packages | peers) ;;
+    analysis | batch | bench | cgal | docs | ffi | packages | peers) ;;
     *)
-        echo "make deps: with=$group: the groups are analysis, bench, cgal, docs, ffi, packages, peers" >&2
+        echo "make deps: with=$group: the groups are analysis, batch, bench, cgal, docs, ffi, packages, peers" >&2
         exit 2
         ;;
     esac

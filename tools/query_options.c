@@ -15,6 +15,7 @@ static const char usage[] =
     "Usage: sc-query [options] MESH...\n"
     "       sc-query --step [options] MESH MESH... | PATTERN\n"
     "       sc-query --near D [options] MESH... | PATTERN\n"
+    "       sc-query --jsonl FILE [options] --manifest LIST | MESH...\n"
     "Finds every self-collision of triangle meshes, exactly.\n"
     "\n"
     "Reads OBJ, OFF, PLY, STL and all other formats that assimp reads, packed by gzip or not; - "
@@ -73,7 +74,7 @@ static const char usage_near[] =
     "VERTEX:WEIGHT\n"
     "                              and the vector from one to the other\n";
 
-/* In two: C99 has strings of up to 4095 characters. */
+/* In four: C99 has strings of up to 4095 characters. */
 static const char usage_continued[] =
     "Which pairs are left out\n"
     "  --ignore-rings N            those less than N edges of the mesh apart; 1: that share a "
@@ -100,6 +101,23 @@ static const char usage_continued[] =
     "  --record FILE               write the query, with model, pose, options and filter, to "
     "report\n"
     "                              a bug; one MESH only\n"
+    "Many meshes: each read by a process of its own, whose end is a line, not the run's\n"
+    "  --jsonl FILE                append a JSON object a line, whole, in the order of the meshes; "
+    "no\n"
+    "                              times, so that every run writes the same bytes\n"
+    "  --manifest LIST             the meshes, or poses of --rest or --model: a file a line\n"
+    "  --shard I/N                 only part I of N, from 1 on; the files of all parts, in order, "
+    "are\n"
+    "                              together that of a run over all\n"
+    "  --resume                    go on where a run that was ended stopped\n"
+    "  --jobs N                    meshes at a time (1)\n"
+    "  --limit-seconds S           processor time for a mesh (600), and ten times as long by the "
+    "clock;\n"
+    "                              0: no limit\n"
+    "  --limit-memory MB           address space for a mesh (0: no limit)\n"
+    "  --timings                   with build_ms and query_ms, and --stats if asked for\n";
+
+static const char usage_end[] =
     "How it is sought (the answer is the same, but for --contour none)\n"
     "  --method auto|sctt|aabb-sctt|aabb  self-collision test tree, boxes from that tree on, or "
     "the\n"
@@ -163,6 +181,35 @@ static bool choose_method_named(query_settings *set)
     return tool_choose("--method", set->method_name, query_method_choices, &set->method);
 }
 
+/* Reads i/n, the part of a list that is to be done. */
+static bool read_shard(const char *text, uint32_t *part, uint32_t *count)
+{
+    const char *slash = strchr(text, '/');
+    char number[16] = "";
+    if (slash && (size_t)(slash - text) < sizeof number)
+        memcpy(number, text, (size_t)(slash - text));
+    if (!tool_parse_number("--shard i/n", slash ? slash + 1 : "", 1, UINT32_MAX, count))
+        return false;
+    return tool_parse_number("--shard i/n", number, 1, *count, part);
+}
+
+/* Of many meshes, what cannot be asked for. */
+static const char *check_batch(const query_settings *set)
+{
+    if (!set->jsonl_path)
+        return set->is_batch ? "--manifest, --shard, --resume, --jobs, --timings and limits are of "
+                               "--jsonl"
+                             : NULL;
+    if (set->manifest_path && set->path_count > 0)
+        return "--manifest is in place of meshes on the command line";
+    if (set->is_step || set->is_near || set->out_path || set->ply_path || set->record_path ||
+        set->replay_path)
+        return "--jsonl does not go with --step, --near, --out, --ply, --record or --replay";
+    if (set->threads > 1) return "--jsonl has --jobs, meshes at a time, in place of --threads";
+    if (set->stats && !set->timings) return "--stats are times, which --jsonl has with --timings";
+    return NULL;
+}
+
 /* What cannot be asked for together. */
 static bool check_settings(const query_settings *set)
 {
@@ -193,7 +240,7 @@ static bool check_settings(const query_settings *set)
         reason = "--any finds no list";
     else if (set->step.times && set->any)
         reason = "--any finds no times";
-    else if (path_count == 0 && !set->replay_path)
+    else if (path_count == 0 && !set->replay_path && !set->manifest_path)
         reason = "no mesh given";
     else if (set->model_path && (set->rest_path || set->is_built))
         reason = "--model is in place of --rest, --weld and --partition";
@@ -205,6 +252,8 @@ static bool check_settings(const query_settings *set)
         reason = "--pairs none leaves no list for --out, --ply or --contacts";
     else if (set->ply_path && path_count > 1)
         reason = "--ply takes one mesh only";
+    else
+        reason = check_batch(set);
     if (!reason) return true;
     tool_error("%s; see sc-query --help", reason);
     return false;
@@ -213,10 +262,11 @@ static bool check_settings(const query_settings *set)
 /* No file that is to be read is written over. */
 static bool spares_files(const query_settings *set)
 {
-    const char *const out[] = {set->out_path, set->ply_path, set->record_path};
-    for (int i = 0; i < 3; i++) {
+    const char *const out[] = {set->out_path, set->ply_path, set->record_path, set->jsonl_path};
+    for (int i = 0; i < 4; i++) {
         if (!tool_spares(out[i], set->rest_path) || !tool_spares(out[i], set->model_path) ||
-            !tool_spares(out[i], set->replay_path) || !tool_spares(out[i], set->groups_path))
+            !tool_spares(out[i], set->replay_path) || !tool_spares(out[i], set->groups_path) ||
+            !tool_spares(out[i], set->manifest_path))
             return false;
         for (int path = 0; path < set->path_count; path++) {
             if (!tool_spares(out[i], set->paths[path])) return false;
@@ -260,6 +310,14 @@ int query_options_read(int argc, char **argv, query_settings *set)
         OPTION_BUDGET,
         OPTION_THREADS,
         OPTION_FORMAT,
+        OPTION_JSONL,
+        OPTION_MANIFEST,
+        OPTION_SHARD,
+        OPTION_RESUME,
+        OPTION_TIMINGS,
+        OPTION_JOBS,
+        OPTION_LIMIT_SECONDS,
+        OPTION_LIMIT_MEMORY,
         OPTION_VERSION = 'V',
         OPTION_HELP = 'h'
     };
@@ -296,6 +354,14 @@ int query_options_read(int argc, char **argv, query_settings *set)
         {"budget", required_argument, NULL, OPTION_BUDGET},
         {"threads", required_argument, NULL, OPTION_THREADS},
         {"format", required_argument, NULL, OPTION_FORMAT},
+        {"jsonl", required_argument, NULL, OPTION_JSONL},
+        {"manifest", required_argument, NULL, OPTION_MANIFEST},
+        {"shard", required_argument, NULL, OPTION_SHARD},
+        {"resume", no_argument, NULL, OPTION_RESUME},
+        {"timings", no_argument, NULL, OPTION_TIMINGS},
+        {"jobs", required_argument, NULL, OPTION_JOBS},
+        {"limit-seconds", required_argument, NULL, OPTION_LIMIT_SECONDS},
+        {"limit-memory", required_argument, NULL, OPTION_LIMIT_MEMORY},
         {"version", no_argument, NULL, OPTION_VERSION},
         {"help", no_argument, NULL, OPTION_HELP},
         {NULL, 0, NULL, 0}};
@@ -304,7 +370,8 @@ int query_options_read(int argc, char **argv, query_settings *set)
     set->step.method = SC_STEP_METHOD_SCTT;
     bool valid = true;
     uint32_t budget = 0, format = MESH_FORMAT_UNKNOWN;
-    set->threads = 1;
+    set->threads = set->shard = set->shard_count = set->jobs = 1;
+    set->limits.seconds = BATCH_SECONDS;
     int option, which = 0;
     while ((option = getopt_long(argc, argv, "hV", options, &which)) != -1) {
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_PLY ||
@@ -318,6 +385,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
             set->not_of_near = options[which].name;
         set->is_near_asked |=
             option == OPTION_KINDS || option == OPTION_LIST || option == OPTION_STENCILS;
+        set->is_batch |= option >= OPTION_MANIFEST && option <= OPTION_LIMIT_MEMORY;
         set->is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
         set->is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER ||
                          option == OPTION_ANY || option == OPTION_WELD || option == OPTION_METHOD ||
@@ -433,6 +501,32 @@ int query_options_read(int argc, char **argv, query_settings *set)
             valid &= tool_choose("--format", optarg, tool_formats, &format);
             mesh_file_assume(format);
             break;
+        case OPTION_JSONL:
+            set->jsonl_path = optarg;
+            break;
+        case OPTION_MANIFEST:
+            set->manifest_path = optarg;
+            break;
+        case OPTION_SHARD:
+            valid &= read_shard(optarg, &set->shard, &set->shard_count);
+            break;
+        case OPTION_RESUME:
+            set->resume = true;
+            break;
+        case OPTION_TIMINGS:
+            set->timings = true;
+            break;
+        case OPTION_JOBS:
+            valid &= tool_parse_number("--jobs", optarg, 1, BATCH_JOBS_MAX, &set->jobs);
+            break;
+        case OPTION_LIMIT_SECONDS:
+            valid &=
+                tool_parse_number("--limit-seconds", optarg, 0, 10000000, &set->limits.seconds);
+            break;
+        case OPTION_LIMIT_MEMORY:
+            valid &=
+                tool_parse_number("--limit-memory", optarg, 0, UINT32_MAX, &set->limits.megabytes);
+            break;
         case OPTION_VERSION:
             printf("sc-query (starcontour) %s\n", sc_version_string());
             return TOOL_CLEAN;
@@ -440,6 +534,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
             fputs(usage, stdout);
             fputs(usage_near, stdout);
             fputs(usage_continued, stdout);
+            fputs(usage_end, stdout);
             return TOOL_CLEAN;
         default:
             tool_error("see sc-query --help");

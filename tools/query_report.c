@@ -11,7 +11,6 @@
 #include "query_text.h"
 #include "tool_json.h"
 
-#include <cjson/cJSON.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -134,34 +133,18 @@ static void add_contacts(cJSON *object, const query_answer *answer, const query_
     }
 }
 
-static bool print_json_answer(const query_answer *answer, const query_settings *set,
-                              const query_list *list, const mesh_tally *tally)
+/* Lines of --jsonl are the same bytes in every run, so they have times on request only. */
+static void add_times(cJSON *object, const query_answer *answer, const query_settings *set)
 {
-    cJSON *object = tool_json_object("mesh");
-    cJSON_AddStringToObject(object, "file", answer->path);
-    cJSON_AddStringToObject(object, "status",
-                            answer->incomplete ? "incomplete"
-                            : answer->collides ? "collides"
-                                               : "clean");
-    cJSON_AddBoolToObject(object, "collides", answer->collides);
-    cJSON_AddStringToObject(object, "coordinates",
-                            tool_coordinates(answer->rounded, answer->position_type));
-    if (answer->has_animation) cJSON_AddStringToObject(object, "animation", "not played");
-    cJSON_AddNumberToObject(object, "vertices", answer->info.point_count);
-    cJSON_AddNumberToObject(object, "vertices_read", answer->info.vertex_count);
-    cJSON_AddNumberToObject(object, "triangles", answer->info.triangle_count);
-    cJSON_AddNumberToObject(object, "components", answer->info.component_count);
-    if (answer->mesh) {
-        cJSON_AddNumberToObject(object, "faces", answer->mesh->face_count);
-        cJSON_AddNumberToObject(object, "objects", answer->mesh->object_count);
-    }
-    if (query_names_objects(set, answer->mesh)) query_text_add_tally(object, tally, answer->mesh);
-    add_count(object, "triangle_pairs", answer, SC_PAIRS_TRIANGLE, set->any);
-    add_count(object, "edge_triangle_pairs", answer, SC_PAIRS_EDGE, set->any);
+    if (set->jsonl_path && !set->timings) return;
     cJSON_AddNumberToObject(object, "build_ms", query_text_rounded(answer->build_ms));
     add_time(object, "query_ms", answer, query_chosen_pairs(set));
     add_time(object, "triangle_query_ms", answer, SC_PAIRS_TRIANGLE);
     add_time(object, "edge_query_ms", answer, SC_PAIRS_EDGE);
+}
+
+void query_report_add_settings(cJSON *object, const query_settings *set)
+{
     cJSON_AddStringToObject(object, "pairs", tool_choice_name(query_pair_choices, set->pairs));
     cJSON_AddBoolToObject(object, "proper", set->proper);
     cJSON_AddBoolToObject(object, "any", set->any);
@@ -187,18 +170,46 @@ static bool print_json_answer(const query_answer *answer, const query_settings *
     if (set->ignore_path) cJSON_AddStringToObject(object, "ignore", set->ignore_path);
     if (set->groups_path) cJSON_AddStringToObject(object, "groups", set->groups_path);
     if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
+}
+
+static bool print_json_answer(const query_answer *answer, const query_settings *set,
+                              const query_list *list, const mesh_tally *tally)
+{
+    cJSON *object = tool_json_object("mesh");
+    cJSON_AddStringToObject(object, "file", answer->path);
+    cJSON_AddStringToObject(object, "status",
+                            answer->incomplete ? "incomplete"
+                            : answer->collides ? "collides"
+                                               : "clean");
+    cJSON_AddBoolToObject(object, "collides", answer->collides);
+    cJSON_AddStringToObject(object, "coordinates",
+                            tool_coordinates(answer->rounded, answer->position_type));
+    if (answer->has_animation) cJSON_AddStringToObject(object, "animation", "not played");
+    cJSON_AddNumberToObject(object, "vertices", answer->info.point_count);
+    cJSON_AddNumberToObject(object, "vertices_read", answer->info.vertex_count);
+    cJSON_AddNumberToObject(object, "triangles", answer->info.triangle_count);
+    cJSON_AddNumberToObject(object, "components", answer->info.component_count);
+    if (answer->mesh) {
+        cJSON_AddNumberToObject(object, "faces", answer->mesh->face_count);
+        cJSON_AddNumberToObject(object, "objects", answer->mesh->object_count);
+    }
+    if (query_names_objects(set, answer->mesh)) query_text_add_tally(object, tally, answer->mesh);
+    add_count(object, "triangle_pairs", answer, SC_PAIRS_TRIANGLE, set->any);
+    add_count(object, "edge_triangle_pairs", answer, SC_PAIRS_EDGE, set->any);
+    add_times(object, answer, set);
+    query_report_add_settings(object, set);
     if (set->stats) query_text_add_stats(object, &answer->stats);
     if (set->contacts) add_contacts(object, answer, set, list);
     return tool_json_print(object);
 }
 
-static bool print_json_error(const char *path, const char *error)
+cJSON *query_report_refusal(const char *path, const char *error)
 {
     cJSON *object = tool_json_object("mesh");
     cJSON_AddStringToObject(object, "file", path);
     cJSON_AddStringToObject(object, "status", "error");
     cJSON_AddStringToObject(object, "error", error);
-    return tool_json_print(object);
+    return object;
 }
 
 /* A number of pairs: with a + if there may be more, a - if they were not sought. */
@@ -265,7 +276,7 @@ static bool count_objects(const query_answer *answer, const query_settings *set,
 int query_report_failure(const char *path, const query_settings *set, const char *error)
 {
     tool_error("%s", error);
-    if (set->json) print_json_error(path, error);
+    if (set->json) tool_json_print(query_report_refusal(path, error));
     fflush(stdout);
     return TOOL_FAILED;
 }

@@ -9,6 +9,8 @@
 
 #include "query_settings.h"
 
+#include <cjson/cJSON.h>
+
 /* The head of the table, and of the file of pairs. */
 void query_report_head(const query_settings *set);
 void query_report_pairs_head(FILE *out, const query_settings *set);
@@ -21,6 +23,12 @@ int query_report(const query_answer *answer, const query_settings *set, const qu
 /* Says why a file could not be done: as a message, and as an object if there is JSON. Returns
    TOOL_FAILED. */
 int query_report_failure(const char *path, const query_settings *set, const char *error);
+
+/* The object that says why a file could not be done. */
+cJSON *query_report_refusal(const char *path, const char *error);
+
+/* Adds what was asked, as the objects of files have it. */
+void query_report_add_settings(cJSON *object, const query_settings *set);
 
 /* Writes the file of --ply; otherwise says why not. */
 bool query_report_ply(const mesh_file *mesh, const sc_pose *pose, const query_settings *set,

@@ -6,10 +6,14 @@
 #ifndef TOOLS_QUERY_SETTINGS_H
 #define TOOLS_QUERY_SETTINGS_H
 
+#include "apart.h"
 #include "filter_file.h"
 #include "near_settings.h"
 #include "step_query.h"
 #include "tool.h"
+
+/* Of --jsonl: the most meshes at a time, and seconds of processor time for one, unless told. */
+enum { BATCH_JOBS_MAX = 1024, BATCH_SECONDS = 600 };
 
 /* What the command line says. */
 typedef struct query_settings {
@@ -32,7 +36,12 @@ typedef struct query_settings {
     const char *ignore_path, *groups_path;
     bool contacts;
     uint32_t threads;
-    char **paths; /* path_count: the meshes, or frames */
+    const char *jsonl_path, *manifest_path; /* many meshes: see batch.h */
+    uint32_t shard, shard_count, jobs;
+    apart_limits limits;
+    bool resume, timings;
+    bool is_batch; /* an option was given that only --jsonl takes */
+    char **paths;  /* path_count: the meshes, or frames */
     int path_count;
     filter_file *filters;   /* what the two files say */
     const sc_filter *given; /* in place of these: what a record says */

@@ -7,6 +7,7 @@
  * before (--model). A file that cannot be done is reported and the others are still done. See
  * query_options.c for the options, and sc_query in starcontour.h for what a pair is.
  */
+#include "batch.h"
 #include "model_file.h"
 #include "near_query.h"
 #include "near_report.h"
@@ -332,6 +333,33 @@ static int do_replay(query_settings *set, FILE *out, query_list *list)
     return status;
 }
 
+/* What a process that does one mesh of many needs. */
+typedef struct batch_context {
+    const query_settings *set;
+    const query_subject *rest; /* as of do_file */
+} batch_context;
+
+static int do_batch_file(void *user, const char *path)
+{
+    const batch_context *context = (const batch_context *)user;
+    query_list list = {NULL, 0, 0, NULL};
+    query_summary summary;
+    memset(&summary, 0, sizeof summary);
+    const int status = do_file(path, context->set, context->rest, NULL, &list, &summary);
+    free(list.pairs);
+    free(list.contacts);
+    return status;
+}
+
+/* Many meshes, each by a process of its own. */
+static int do_batch(const query_settings *set, const query_subject *rest)
+{
+    query_settings lines = *set;
+    lines.json = true;
+    batch_context context = {&lines, rest};
+    return batch_run(set, do_batch_file, &context);
+}
+
 static int do_files(query_settings *set)
 {
     query_subject rest;
@@ -363,8 +391,10 @@ static int do_files(query_settings *set)
             query_report_pairs_head(out, set);
         }
     }
-    if (status == TOOL_CLEAN) {
-        const query_subject *common = set->rest_path || set->model_path ? &rest : NULL;
+    const query_subject *common = set->rest_path || set->model_path ? &rest : NULL;
+    if (status == TOOL_CLEAN && set->jsonl_path) {
+        status = do_batch(set, common);
+    } else if (status == TOOL_CLEAN) {
         query_report_head(set);
         if (set->replay_path) status = do_replay(set, out, &list);
         for (int i = 0; i < set->path_count; i++) {

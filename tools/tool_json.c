@@ -8,6 +8,8 @@
 #include "tool.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 cJSON *tool_json_object(const char *type)
 {
@@ -34,30 +36,41 @@ static size_t character_length(const char *text)
     return length;
 }
 
-static void print_line(const char *text)
+char *tool_json_line(cJSON *object, size_t *size)
 {
-    while (*text) {
-        const size_t length = character_length(text);
-        const unsigned byte = (unsigned char)*text;
-        if (length == 0) {
-            putchar((int)(0xc0 | byte >> 6));
-            putchar((int)(0x80 | (byte & 0x3f)));
+    char *text = cJSON_PrintUnformatted(object);
+    cJSON_Delete(object);
+    const size_t length = text ? strlen(text) : 0;
+    /* a byte of Latin-1 becomes two */
+    char *line = text && length < SIZE_MAX / 2 - 1 ? (char *)malloc(2 * length + 2) : NULL;
+    *size = 0;
+    for (const char *next = text; line && *next;) {
+        const size_t bytes = character_length(next);
+        const unsigned byte = (unsigned char)*next;
+        if (bytes == 0) {
+            line[(*size)++] = (char)(0xc0 | byte >> 6);
+            line[(*size)++] = (char)(0x80 | (byte & 0x3f));
         } else {
-            fwrite(text, 1, length, stdout);
+            memcpy(line + *size, next, bytes);
+            *size += bytes;
         }
-        text += length ? length : 1;
+        next += bytes ? bytes : 1;
     }
-    putchar('\n');
+    cJSON_free(text);
+    if (!line) {
+        tool_error("out of memory");
+        return NULL;
+    }
+    line[(*size)++] = '\n';
+    line[*size] = '\0';
+    return line;
 }
 
 bool tool_json_print(cJSON *object)
 {
-    char *text = cJSON_PrintUnformatted(object);
-    if (text)
-        print_line(text);
-    else
-        tool_error("out of memory");
-    cJSON_free(text);
-    cJSON_Delete(object);
-    return text != NULL;
+    size_t size;
+    char *line = tool_json_line(object, &size);
+    if (line) fwrite(line, 1, size, stdout);
+    free(line);
+    return line != NULL;
 }

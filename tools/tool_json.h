@@ -9,6 +9,7 @@
 #include <cjson/cJSON.h>
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* The number of the form that objects have, as starcontour.schema.json describes it: another one
    where a reader of this one would be misled. More members do not change it. */
@@ -18,8 +19,12 @@ enum { TOOL_JSON_SCHEMA = 1 };
    nothing, if there is no memory. */
 cJSON *tool_json_object(const char *type);
 
-/* Prints an object on a line of its own and frees it; false, with a message, if there is no memory.
-   JSON is UTF-8: bytes of names and paths that are not are taken for Latin-1. */
+/* An object as a line, with its end and a 0 behind it, of *size bytes, to be freed by free; the
+   object is freed. NULL, with a message, if there is no memory. JSON is UTF-8: bytes of names and
+   paths that are not are taken for Latin-1. */
+char *tool_json_line(cJSON *object, size_t *size);
+
+/* Prints such a line; false, with a message, if there is no memory. */
 bool tool_json_print(cJSON *object);
 
 #endif /* TOOLS_TOOL_JSON_H */

@@ -51,6 +51,8 @@ are read in place, whatever lies between the rows; other arrays are copied, if t
 refused if it is not. Triangles are arrays of shape (m, 3) of integers; uint32 and uint16 are read in
 place.
 
+starcontour.batch asks about many poses at a time, by the processes of Ray, Dask or others.
+
 A Model never changes and may be used by any number of threads at once. A Workspace belongs to one
 call at a time: another call on it meanwhile raises an Error. Queries release the global lock. Both
 give back their memory when they are no longer referred to, or at the end of a with statement.
@@ -148,6 +150,9 @@ class Error(Exception):
         super().__init__(text or lib.sc_status_string(status).decode())
         self.status = status
 
+    def __reduce__(self):
+        return Error, (self.status, str(self))
+
 
 class Incomplete(Error):
     """A query that was ended early. `found`: what it would have returned, as far as it is known.
@@ -158,6 +163,9 @@ class Incomplete(Error):
     def __init__(self, found):
         super().__init__(_binding.SC_ERROR_INCOMPLETE)
         self.found = found
+
+    def __reduce__(self):
+        return Incomplete, (self.found,)
 
 
 def _check(status):
