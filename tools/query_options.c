@@ -32,6 +32,7 @@ static const char usage[] =
     "                              share no vertex; none: only count, triangles decide\n"
     "  --proper                    only edges' interiors that pass through triangles' interiors;\n"
     "                              without it touching is enough\n"
+    "  --only self-collisions      no places and no defects besides: the row alone, soonest\n"
     "  --any                       stop at the first pair: whether there is one, not how many\n"
     "  --weld rest|none            join vertices at equal positions (default), or take them as "
     "they\n"
@@ -73,7 +74,8 @@ static const char usage_continued[] =
     "  --out FILE                  write the pairs as comma-separated values, with the faces and\n"
     "                              objects of the file that they belong to. An edge is a number\n"
     "                              3 t + k: from vertex k to vertex k + 1 (mod 3) of triangle t\n"
-    "  --ply FILE                  write the mesh with colliding triangles in red; one MESH only\n"
+    "  --ply FILE                  write the mesh with colliding triangles coloured by the places\n"
+    "                              they are of; one MESH only\n"
     "  --contacts                  where each pair meets, and how: a point, a segment, or an area\n"
     "  --stats                     time and count of the nine tasks of the query\n"
     "  --record FILE               write the query, with model, pose, options and filter, to "
@@ -112,6 +114,9 @@ const tool_choice query_method_choices[] = {{"auto", SC_METHOD_DEFAULT},
                                             {"aabb-sctt", SC_METHOD_AABB_SCTT},
                                             {"aabb", SC_METHOD_AABB},
                                             {NULL, 0}};
+/* What --only leaves. */
+static const tool_choice only_choices[] = {{"self-collisions", 1}, {NULL, 0}};
+
 /* What --method auto is, where models are built: boxes alone pay for one query. */
 static void choose_method(query_settings *set)
 {
@@ -144,8 +149,8 @@ static bool check_settings(const query_settings *set)
         reason = "--replay takes no mesh, rest mesh or model, and makes no record";
     else if (set->replay_path && set->is_asked)
         reason = "--replay asks what the record asks, and as it does";
-    else if (set->replay_path && set->ply_path)
-        reason = "--replay has no faces for --ply";
+    else if (set->replay_path && (set->ply_path || set->html_path || set->png_path))
+        reason = "--replay has no faces for --ply, --html or --png";
     else if (set->is_step_asked && !set->is_step)
         reason = "--separation, --tolerance and --times are of --step";
     else if (set->step.times && set->any)
@@ -157,11 +162,13 @@ static bool check_settings(const query_settings *set)
     else if (set->record_path && path_count > 1)
         reason = "--record takes one mesh only";
     else if (query_wants_list(set) && set->any)
-        reason = "--any finds no list for --out, --ply or --contacts";
+        reason = "--any finds no list for --out, --ply, --html, --png or --contacts";
     else if (query_wants_list(set) && set->pairs == 2)
-        reason = "--pairs none leaves no list for --out, --ply or --contacts";
+        reason = "--pairs none leaves no list for --out, --ply, --html, --png or --contacts";
     else if (set->ply_path && path_count > 1)
         reason = "--ply takes one mesh only";
+    else if (set->png_path && path_count > 1)
+        reason = "--png takes one mesh only";
     if (!reason) return true;
     tool_error("%s; see sc-query --help", reason);
     return false;
@@ -170,8 +177,9 @@ static bool check_settings(const query_settings *set)
 /* No file that is to be read is written over. */
 static bool spares_files(const query_settings *set)
 {
-    const char *const out[] = {set->out_path, set->ply_path, set->record_path};
-    for (int i = 0; i < 3; i++) {
+    const char *const out[] = {set->out_path, set->ply_path, set->record_path, set->html_path,
+                               set->png_path};
+    for (int i = 0; i < 5; i++) {
         if (!tool_spares(out[i], set->rest_path) || !tool_spares(out[i], set->model_path) ||
             !tool_spares(out[i], set->replay_path) || !tool_spares(out[i], set->groups_path))
             return false;
@@ -192,6 +200,9 @@ int query_options_read(int argc, char **argv, query_settings *set)
         OPTION_TOLERANCE,
         OPTION_TIMES,
         OPTION_ANY,
+        OPTION_ONLY,
+        OPTION_HTML,
+        OPTION_PNG,
         OPTION_WELD,
         OPTION_REST,
         OPTION_JSON,
@@ -219,6 +230,9 @@ int query_options_read(int argc, char **argv, query_settings *set)
         {"pairs", required_argument, NULL, OPTION_PAIRS},
         {"proper", no_argument, NULL, OPTION_PROPER},
         {"any", no_argument, NULL, OPTION_ANY},
+        {"only", required_argument, NULL, OPTION_ONLY},
+        {"html", required_argument, NULL, OPTION_HTML},
+        {"png", required_argument, NULL, OPTION_PNG},
         {"step", no_argument, NULL, OPTION_STEP},
         {"separation", required_argument, NULL, OPTION_SEPARATION},
         {"tolerance", required_argument, NULL, OPTION_TOLERANCE},
@@ -250,14 +264,15 @@ int query_options_read(int argc, char **argv, query_settings *set)
     memset(set, 0, sizeof *set);
     set->step.method = SC_STEP_METHOD_SCTT;
     bool valid = true;
-    uint32_t budget = 0, format = MESH_FORMAT_UNKNOWN;
+    uint32_t budget = 0, only = 0, format = MESH_FORMAT_UNKNOWN;
     set->threads = 1;
     int option, which = 0;
     while ((option = getopt_long(argc, argv, "hV", options, &which)) != -1) {
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_PLY ||
             option == OPTION_RECORD || option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
             option == OPTION_IGNORE_RINGS || option == OPTION_IGNORE || option == OPTION_GROUPS ||
-            option == OPTION_CONTACTS)
+            option == OPTION_CONTACTS || option == OPTION_ONLY || option == OPTION_HTML ||
+            option == OPTION_PNG)
             set->not_of_steps = options[which].name;
         set->is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
         set->is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER ||
@@ -293,6 +308,16 @@ int query_options_read(int argc, char **argv, query_settings *set)
             break;
         case OPTION_ANY:
             set->any = true;
+            break;
+        case OPTION_ONLY:
+            valid &= tool_choose("--only", optarg, only_choices, &only);
+            set->only_collisions = true;
+            break;
+        case OPTION_HTML:
+            set->html_path = optarg;
+            break;
+        case OPTION_PNG:
+            set->png_path = optarg;
             break;
         case OPTION_WELD:
             valid &= tool_choose("--weld", optarg, tool_welds, &set->weld);
