@@ -15,10 +15,10 @@
 
 /* A part. Triangles with two equal vertices have no edges here. */
 typedef struct mesh_part {
-    uint32_t first;          /* its lowest triangle */
-    uint32_t triangle_count; /* with degenerate ones */
-    uint32_t sides;          /* of triangles with three different vertices */
-    uint32_t open_edges;     /* of one triangle */
+    uint32_t first;              /* its lowest triangle */
+    uint32_t triangle_count;     /* with degenerate ones */
+    uint32_t sides;              /* of triangles with three different vertices */
+    uint32_t open_edges;         /* of one triangle */
     uint32_t non_manifold_edges; /* of three or more */
     uint32_t misoriented_edges;  /* of two that run the same way along it */
 } mesh_part;

@@ -39,13 +39,13 @@ typedef struct grid {
 typedef struct depths {
     const place_source *from;
     const place_list *places;
-    double *at;        /* 3 of each vertex */
-    double *normals;   /* 3 of each vertex, outwards; as long as twice the area round it */
-    int8_t *sign;      /* of each part: 1 outward, -1 inward, 0 it has no inside */
-    uint32_t *regions; /* of each vertex, as sets */
-    uint32_t *chosen;  /* of each region, at the vertex that tells it: one to ask about */
-    uint8_t *colliding; /* of each triangle */
-    uint8_t *state;     /* of each region: REGION_... */
+    double *at;                 /* 3 of each vertex */
+    double *normals;            /* 3 of each vertex, outwards; as long as twice the area round it */
+    int8_t *sign;               /* of each part: 1 outward, -1 inward, 0 it has no inside */
+    uint32_t *regions;          /* of each vertex, as sets */
+    uint32_t *chosen;           /* of each region, at the vertex that tells it: one to ask about */
+    uint8_t *colliding;         /* of each triangle */
+    uint8_t *state;             /* of each region: REGION_... */
     uint32_t *members, *starts; /* vertices by regions */
     double *depth;              /* of each region, negative: not looked at */
     grid cells;
@@ -218,8 +218,7 @@ static void enter(depths *d, cell_lists *lists, bool is_segment, uint32_t item)
 static bool fill_cells(depths *d, cell_lists *lists, bool is_segment)
 {
     const size_t cells = d->cells.large;
-    const uint32_t count =
-        is_segment ? d->places->segment_count : d->from->mesh->triangle_count;
+    const uint32_t count = is_segment ? d->places->segment_count : d->from->mesh->triangle_count;
     lists->starts = (uint32_t *)calloc(cells + 3, sizeof *lists->starts);
     if (!lists->starts) return false;
     for (uint32_t i = 0; i < count; i++) {
@@ -234,8 +233,8 @@ static bool fill_cells(depths *d, cell_lists *lists, bool is_segment)
     return true;
 }
 
-/* Makes the grid round all triangles that bound an inside: about as many cells as triangles. False if
-   there is no memory, or its size is more than a double holds. */
+/* Makes the grid round all triangles that bound an inside: about as many cells as triangles. False
+   if there is no memory, or its size is more than a double holds. */
 static bool make_grid(depths *d)
 {
     const mesh_file *mesh = d->from->mesh;
@@ -324,7 +323,7 @@ static uint8_t ask_region(const depths *d, uint32_t vertex)
         sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     double p[3];
     memcpy(p, d->at + 3 * (size_t)vertex, sizeof p);
-    /* twice an area, so its root is about the length of an edge; none round what bounds no inside */
+    /* twice an area, so its root is about the length of an edge; 0 where there is no inside */
     for (int k = 0; k < 3 && length > 0; k++) p[k] += OFFSET * normal[k] / sqrt(length);
     return insides(d, p) > 0 ? REGION_BURIED : REGION_EXPOSED;
 }
@@ -435,8 +434,7 @@ static double region_depth(depths *d, uint32_t region)
     for (uint32_t i = d->starts[region]; i < d->starts[region + 1]; i++) {
         if (d->looked_at > DISTANCES_MAX) break;
         const double square = surface_distance(d, d->members[i], deepest);
-        if (square > deepest && square < DBL_MAX && d->looked_at <= DISTANCES_MAX)
-            deepest = square;
+        if (square > deepest && square < DBL_MAX && d->looked_at <= DISTANCES_MAX) deepest = square;
     }
     return deepest < 0 ? -1 : sqrt(deepest);
 }
@@ -447,8 +445,7 @@ static void ask_regions(depths *d, const place_list *list, const place *one)
     for (uint32_t i = 0; i < 3 * one->triangle_count; i++) {
         const uint32_t region =
             d->regions[vertex_of(d, list->triangles[one->begin + i / 3], i % 3)];
-        if (d->state[region] == REGION_UNKNOWN)
-            d->state[region] = ask_region(d, d->chosen[region]);
+        if (d->state[region] == REGION_UNKNOWN) d->state[region] = ask_region(d, d->chosen[region]);
     }
 }
 

@@ -12,8 +12,8 @@
  * buried regions that it borders on.
  *
  * It is an estimate, in double precision, for telling scratches from gashes: only vertices are
- * looked at, and one of them answers for its region. Of a place where only edges pass through faces,
- * and no vertex is buried, and of one that no closed part takes part in, it is not known.
+ * looked at, and one of them answers for its region. It is not known of a place where only edges
+ * pass through faces and no vertex is buried, nor of one in which no closed part takes part.
  */
 #ifndef TOOLS_PLACE_DEPTH_H
 #define TOOLS_PLACE_DEPTH_H

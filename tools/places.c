@@ -188,8 +188,8 @@ static sc_status measure_places(place_list *list, const maker *make)
     if (!list->segments) return SC_ERROR_MEMORY;
     for (uint64_t begin = 0; begin < from->pair_count; begin += BATCH) {
         const uint64_t rest = from->pair_count - begin, count = rest < BATCH ? rest : BATCH;
-        const sc_status status = sc_contacts(from->model, from->pose, from->kind,
-                                             from->pairs + begin, count, contacts);
+        const sc_status status =
+            sc_contacts(from->model, from->pose, from->kind, from->pairs + begin, count, contacts);
         if (status != SC_OK) return status;
         for (uint64_t i = 0; i < count; i++) {
             uint32_t triangle[2];
@@ -220,8 +220,7 @@ sc_status places_make(place_list *list, const place_source *from)
         join_triangles(&make);
         if (make_places(list, &make) && find_owners(list, from))
             status = measure_places(list, &make);
-        if (status == SC_OK)
-            qsort(list->places, list->count, sizeof *list->places, compare_places);
+        if (status == SC_OK) qsort(list->places, list->count, sizeof *list->places, compare_places);
     }
     free(make.parents);
     free(make.vertices);

@@ -36,8 +36,8 @@ typedef struct place_list {
     uint32_t triangle_count; /* that collide */
     uint32_t *triangles;     /* by places */
     uint32_t *owners;
-    /* Where the first pairs meet, PLACES_SEGMENTS at most, in the order of the pairs: two ends each,
-       which are equal for a point; of an area, two of its corners. */
+    /* Where pairs meet, of the first PLACES_SEGMENTS and in their order: two ends each, which are
+       equal for a point; of an area, two of its corners. */
     double (*segments)[2][3];
     uint32_t segment_count;
 } place_list;

@@ -47,12 +47,11 @@ sc_status query_checks_pose(query_checks *checks, const mesh_file *mesh, const s
                             const sc_pose *pose, const query_settings *set, const query_list *list)
 {
     places_free(&checks->places);
-    checks->degenerate_faces =
-        mesh_check_degenerate(mesh, pose->positions, pose->position_type);
+    checks->degenerate_faces = mesh_check_degenerate(mesh, pose->positions, pose->position_type);
     checks->has_places = query_wants_places(set, mesh);
     if (!checks->has_places) return SC_OK;
-    const place_source source = {mesh,  checks->weld_map,        &checks->mesh, model,
-                                 pose,  query_chosen_pairs(set), list->pairs,   list->count};
+    const place_source source = {mesh, checks->weld_map,        &checks->mesh, model,
+                                 pose, query_chosen_pairs(set), list->pairs,   list->count};
     const sc_status status = places_make(&checks->places, &source);
     if (status != SC_OK) return status;
     return place_depths(&checks->places, &source) ? SC_OK : SC_ERROR_MEMORY;
@@ -156,10 +155,9 @@ static cJSON *make_place(const place_list *list, const mesh_check *check, const 
     cJSON *objects = cJSON_AddArrayToObject(object, "objects");
     for (uint32_t i = 0; i < one->object_count; i++) {
         const uint32_t owner = list->owners[one->objects + i];
-        cJSON_AddItemToArray(objects,
-                             owner == MESH_NO_OBJECT
-                                 ? cJSON_CreateNull()
-                                 : cJSON_CreateString(mesh_object_name(mesh, owner)));
+        cJSON_AddItemToArray(objects, owner == MESH_NO_OBJECT
+                                          ? cJSON_CreateNull()
+                                          : cJSON_CreateString(mesh_object_name(mesh, owner)));
     }
     cJSON *parts = cJSON_AddArrayToObject(object, "parts");
     bool is_closed = true;
@@ -181,8 +179,7 @@ cJSON *query_checks_places(const place_list *list, const mesh_check *check, cons
 {
     cJSON *array = cJSON_CreateArray();
     for (uint32_t i = 0; i < list->count && i < count; i++)
-        cJSON_AddItemToArray(array,
-                             make_place(list, check, mesh, &list->places[i], has_triangles));
+        cJSON_AddItemToArray(array, make_place(list, check, mesh, &list->places[i], has_triangles));
     return array;
 }
 
@@ -203,6 +200,16 @@ static cJSON *make_part(const mesh_part *part, const mesh_file *mesh)
     return object;
 }
 
+void query_checks_add_defects(cJSON *object, const mesh_check *check, uint32_t degenerate_faces)
+{
+    cJSON *defects = cJSON_AddObjectToObject(object, "defects");
+    cJSON_AddNumberToObject(defects, "open_edges", check->open_edges);
+    cJSON_AddNumberToObject(defects, "non_manifold_edges", check->non_manifold_edges);
+    cJSON_AddNumberToObject(defects, "misoriented_edges", check->misoriented_edges);
+    cJSON_AddNumberToObject(defects, "degenerate_faces", degenerate_faces);
+    cJSON_AddNumberToObject(defects, "duplicate_faces", check->duplicate_faces);
+}
+
 void query_checks_add(cJSON *object, const query_checks *checks, const mesh_file *mesh)
 {
     const mesh_check *check = &checks->mesh;
@@ -211,12 +218,7 @@ void query_checks_add(cJSON *object, const query_checks *checks, const mesh_file
         cJSON_AddItemToObject(
             object, "places",
             query_checks_places(&checks->places, check, mesh, checks->places.count, true));
-    cJSON *defects = cJSON_AddObjectToObject(object, "defects");
-    cJSON_AddNumberToObject(defects, "open_edges", check->open_edges);
-    cJSON_AddNumberToObject(defects, "non_manifold_edges", check->non_manifold_edges);
-    cJSON_AddNumberToObject(defects, "misoriented_edges", check->misoriented_edges);
-    cJSON_AddNumberToObject(defects, "degenerate_faces", checks->degenerate_faces);
-    cJSON_AddNumberToObject(defects, "duplicate_faces", check->duplicate_faces);
+    query_checks_add_defects(object, check, checks->degenerate_faces);
     cJSON_AddNumberToObject(object, "closed_parts", check->closed_parts);
     cJSON *parts = cJSON_AddArrayToObject(object, "parts");
     for (uint32_t i = 0; i < check->part_count && i < PARTS_LISTED; i++)

@@ -40,7 +40,10 @@ void query_checks_print(const query_checks *checks, const mesh_file *mesh);
 /* All of it as members of an object: "places", "defects" and "parts". */
 void query_checks_add(cJSON *object, const query_checks *checks, const mesh_file *mesh);
 
-/* The places of a list as an array, all or so many of them; with numbers of triangles, or without. */
+/* Defects as "defects". */
+void query_checks_add_defects(cJSON *object, const mesh_check *check, uint32_t degenerate_faces);
+
+/* The places of a list as an array, all or so many of them; with numbers of triangles, or not. */
 cJSON *query_checks_places(const place_list *list, const mesh_check *check, const mesh_file *mesh,
                            uint32_t count, bool has_triangles);
 

@@ -76,6 +76,12 @@ static const char usage_continued[] =
     "                              3 t + k: from vertex k to vertex k + 1 (mod 3) of triangle t\n"
     "  --ply FILE                  write the mesh with colliding triangles coloured by the places\n"
     "                              they are of; one MESH only\n"
+    "  --html FILE                 write a page to look at: the mesh turns, places are listed, "
+    "and\n"
+    "                              files with the same faces are frames of an animation\n"
+    "  --png FILE                  write three views as a picture, by a Chromium that is there; "
+    "one\n"
+    "                              MESH only\n"
     "  --contacts                  where each pair meets, and how: a point, a segment, or an area\n"
     "  --stats                     time and count of the nine tasks of the query\n"
     "  --record FILE               write the query, with model, pose, options and filter, to "
@@ -167,6 +173,8 @@ static bool check_settings(const query_settings *set)
         reason = "--pairs none leaves no list for --out, --ply, --html, --png or --contacts";
     else if (set->ply_path && path_count > 1)
         reason = "--ply takes one mesh only";
+    else if (set->png_path && set->html_path)
+        reason = "--png and --html do not go together";
     else if (set->png_path && path_count > 1)
         reason = "--png takes one mesh only";
     if (!reason) return true;

@@ -48,9 +48,9 @@ typedef struct query_answer {
     uint64_t counts[2];
     bool known[2]; /* whether counts and query_ms are there */
     bool collides;
-    bool incomplete;             /* a budget ended a query */
-    bool rounded, has_animation; /* as in mesh_file */
-    uint32_t position_type;      /* of the pose */
+    bool incomplete;                   /* a budget ended a query */
+    bool rounded, has_animation;       /* as in mesh_file */
+    uint32_t position_type;            /* of the pose */
     const struct query_checks *checks; /* see query_checks.h; NULL: none are asked for */
     sc_stats stats;
 } query_answer;

@@ -8,6 +8,8 @@
  * query_options.c for the options, and sc_query in starcontour.h for what a pair is.
  */
 #include "model_file.h"
+#include "page_picture.h"
+#include "page_write.h"
 #include "query_checks.h"
 #include "query_options.h"
 #include "query_report.h"
@@ -214,7 +216,60 @@ typedef struct query_run {
     query_list list;
     query_checks checks; /* of that subject's mesh, or of the last one */
     query_summary summary;
+    page_file *page;      /* of --html, or of --png alone */
+    char page_path[1024]; /* of the page that --png is drawn from */
 } query_run;
+
+/* Begins the page, if there is to be one. */
+static bool begin_page(query_run *run, const query_settings *set)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    const char *path = set->html_path;
+    if (!path && !set->png_path) return true;
+    if (!path) {
+        if (!page_picture_begin(run->page_path, sizeof run->page_path, error)) {
+            tool_error("%s", error);
+            run->page_path[0] = 0;
+            return false;
+        }
+        path = run->page_path;
+    }
+    run->page = page_open(path);
+    if (!run->page) tool_error("%s: cannot be written: %s", path, strerror(errno));
+    return run->page != NULL;
+}
+
+static bool add_to_page(query_run *run, const query_settings *set, const sc_pose *pose,
+                        const query_answer *answer)
+{
+    const uint32_t kind = query_chosen_pairs(set);
+    const page_frame frame = {answer->path,         answer->mesh,
+                              &run->checks.mesh,    pose,
+                              &run->checks.places,  run->checks.degenerate_faces,
+                              answer->counts[kind], answer->query_ms[kind],
+                              answer->incomplete};
+    if (!run->page || page_add(run->page, &frame)) return true;
+    tool_error("%s: out of memory for the page", answer->path);
+    return false;
+}
+
+/* Ends the page, and has it drawn. */
+static bool end_page(query_run *run, const query_settings *set)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    bool done = true;
+    if (run->page && !page_close(run->page)) {
+        tool_error("%s: could not be written to the end",
+                   set->html_path ? set->html_path : run->page_path);
+        done = false;
+    }
+    if (done && run->page && set->png_path) {
+        done = page_picture_draw(run->page_path, set->png_path, error);
+        if (!done) tool_error("%s", error);
+    }
+    if (run->page_path[0]) page_picture_end(run->page_path);
+    return done;
+}
 
 /* Does one file. Returns an exit status. */
 static int do_file(const char *path, const query_settings *set, query_run *run)
@@ -254,12 +309,12 @@ static int do_file(const char *path, const query_settings *set, query_run *run)
     answer.has_animation = set->rest_path ? moved.has_animation : mesh->has_animation;
     const bool recorded = !done || !set->record_path || write_record(subject, &pose, set);
     if (!set->rest_path) query_checks_free(&run->checks); /* they are of one mesh */
-    if (done)
-        done = run_pose(subject, path, &pose, set, &run->list, &run->checks, &answer, error);
+    if (done) done = run_pose(subject, path, &pose, set, &run->list, &run->checks, &answer, error);
     int status = report(&answer, set, done, error, run->out, &run->list, &run->summary);
     if (!recorded) status = TOOL_FAILED;
     if (done && set->ply_path && !query_report_ply(mesh, &pose, set, &run->checks.places))
         status = TOOL_FAILED;
+    if (done && !add_to_page(run, set, &pose, &answer)) status = TOOL_FAILED;
     mesh_pose_free(&moved);
     query_subject_free(&own);
     return status;
@@ -378,6 +433,7 @@ static int do_files(query_settings *set)
             query_report_pairs_head(run.out, set);
         }
     }
+    if (status == TOOL_CLEAN && !begin_page(&run, set)) status = TOOL_FAILED;
     if (status == TOOL_CLEAN) {
         run.rest = set->rest_path || set->model_path ? &rest : NULL;
         query_report_head(set);
@@ -388,6 +444,7 @@ static int do_files(query_settings *set)
         }
         if (!query_summary_print(&run.summary, false, set->json)) status = TOOL_FAILED;
     }
+    if (!end_page(&run, set)) status = TOOL_FAILED;
     if (run.out) {
         const bool written = !ferror(run.out);
         if (fclose(run.out) != 0 || !written) {

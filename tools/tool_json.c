@@ -34,30 +34,44 @@ static size_t character_length(const char *text)
     return length;
 }
 
-static void print_line(const char *text)
+/* A < stands in names only, which may write it as they like. */
+static void write_text(const char *text, bool in_page, FILE *file)
 {
     while (*text) {
         const size_t length = character_length(text);
         const unsigned byte = (unsigned char)*text;
         if (length == 0) {
-            putchar((int)(0xc0 | byte >> 6));
-            putchar((int)(0x80 | (byte & 0x3f)));
+            fputc((int)(0xc0 | byte >> 6), file);
+            fputc((int)(0x80 | (byte & 0x3f)), file);
+        } else if (in_page && byte == '<') {
+            fputs("\\u003c", file);
         } else {
-            fwrite(text, 1, length, stdout);
+            fwrite(text, 1, length, file);
         }
         text += length ? length : 1;
     }
-    putchar('\n');
 }
 
-bool tool_json_print(cJSON *object)
+static bool write_object(cJSON *object, bool in_page, FILE *file)
 {
     char *text = cJSON_PrintUnformatted(object);
     if (text)
-        print_line(text);
+        write_text(text, in_page, file);
     else
         tool_error("out of memory");
     cJSON_free(text);
     cJSON_Delete(object);
     return text != NULL;
+}
+
+bool tool_json_print(cJSON *object)
+{
+    const bool written = write_object(object, false, stdout);
+    if (written) putchar('\n');
+    return written;
+}
+
+bool tool_json_write(cJSON *object, FILE *file)
+{
+    return write_object(object, true, file);
 }

@@ -9,6 +9,7 @@
 #include <cjson/cJSON.h>
 
 #include <stdbool.h>
+#include <stdio.h>
 
 /* The number of the form that objects have, as starcontour.schema.json describes it: another one
    where a reader of this one would be misled. More members do not change it. */
@@ -21,5 +22,8 @@ cJSON *tool_json_object(const char *type);
 /* Prints an object on a line of its own and frees it; false, with a message, if there is no memory.
    JSON is UTF-8: bytes of names and paths that are not are taken for Latin-1. */
 bool tool_json_print(cJSON *object);
+
+/* The same within a page of HTML, to a file and without a line end: no text ends a script. */
+bool tool_json_write(cJSON *object, FILE *file);
 
 #endif /* TOOLS_TOOL_JSON_H */
