@@ -2,6 +2,7 @@
  * Looks at what sc-query --html and --png write, in Chromium without a window; for test_page.sh.
  *
  *     node tests/look.mjs MODULES BROWSER page FILE        prints "ok NAME" or "not ok NAME: why"
+ *     node tests/look.mjs MODULES BROWSER nothing FILE     the same of one without any mesh
  *     node tests/look.mjs MODULES BROWSER picture FILE     the same of a PNG file
  *     node tests/look.mjs MODULES BROWSER shot FILE PNG [KEY...]   after keys, as README.md shows it
  *
@@ -183,7 +184,16 @@ async function look_at_picture() {
     check('red in the first', found.red[0] > 200, JSON.stringify(found));
 }
 
+/* A page without a mesh says so. */
+async function look_at_nothing() {
+    const page = await open();
+    check('it says that there is no mesh',
+        (await page.locator('#title').innerText()) === 'No mesh could be read.');
+    check('no errors', errors.length === 0, errors.join('; '));
+}
+
 if (job === 'page') await look_at_page();
+else if (job === 'nothing') await look_at_nothing();
 else if (job === 'picture') await look_at_picture();
 else {
     const page = await open({viewport: {width: 1200, height: 760}, colorScheme: 'light'});

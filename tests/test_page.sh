@@ -103,7 +103,7 @@ for one in chromium chromium-browser google-chrome; do
 done
 looks=34
 if [ -z "$browser" ]; then
-    skip "pages and pictures: there is no chromium ('make deps with=page')" $((looks + 9))
+    skip "pages and pictures: there is no chromium ('make deps with=page')" $((looks + 12))
     finish
 fi
 picture() {
@@ -119,7 +119,7 @@ ready() {
         tools/page/build.sh --install
 }
 if ! ready >"$scratch/npm.log" 2>&1; then
-    skip "pages in a browser: no node, or npm cannot fetch playwright-core" $((looks + 7))
+    skip "pages in a browser: no node, or npm cannot fetch playwright-core" $((looks + 10))
     finish
 fi
 # look JOB FILE: each line of what it says is a check.
@@ -136,6 +136,8 @@ look page "$scratch/page.html"
 seen=$(wc -l <"$scratch/looks")
 check "page: all was looked at ($seen)" test "$seen" -eq "$looks"
 look picture "$scratch/picture.png"
+"$query" --html "$scratch/page.html" "$scratch/absent.obj" >/dev/null 2>&1
+look nothing "$scratch/page.html"
 
 built() {
     tools/page/build.sh "$scratch/built.html" && cmp tools/page/page.html "$scratch/built.html"

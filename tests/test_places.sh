@@ -123,6 +123,134 @@ check "more than are printed" says 1 "^    and 4 smaller places$" "$query" "$scr
 check "one triangle each" grep -q "place 5: 2 faces, 1 pairs" "$scratch/out"
 [ $have_json -eq 0 ] || check "JSON has all" is "9 1" 'str(len(places)) + " " + str(max(p["pairs"] for p in places))' "$scratch/rows.obj"
 
+# ---- by another program: places and defects of meshes, from their files and lists of pairs ----
+
+cat >"$scratch/oracle.py" <<'EOT'
+"""Compares places and defects in JSON with what the mesh and its pairs say, by sets and fractions."""
+import collections
+import csv
+import json
+import sys
+from fractions import Fraction
+
+mesh, pairs, answer, kind = sys.argv[1:5]
+points, faces = [], []
+for line in open(mesh, encoding="latin-1"):
+    words = line.split()
+    if words and words[0] == "v":
+        points.append(tuple(float(x) for x in words[1:4]))
+    elif words and words[0] == "f":
+        corners = [int(x.split("/")[0]) - 1 for x in words[1:]]
+        assert len(corners) == 3
+        faces.append(corners)
+answer = json.loads(open(answer).readline())
+
+at = [tuple(x + 0.0 for x in p) for p in points]  # vertices at equal positions are one
+faces = [tuple(at[v] for v in face) for face in faces]
+
+
+class Sets:
+    def __init__(self):
+        self.sets = {}
+
+    def find(self, x):
+        self.sets.setdefault(x, {x})
+        return self.sets[x]
+
+    def join(self, x, y):
+        one, other = self.find(x), self.find(y)
+        if one is other:
+            return
+        one |= other
+        for z in other:
+            self.sets[z] = one
+
+    def all(self):
+        return {id(one): one for one in self.sets.values()}.values()
+
+
+sets, count, by_vertex = Sets(), collections.Counter(), collections.defaultdict(set)
+found = []
+for row in list(csv.reader(open(pairs)))[1:]:
+    a, b = int(row[-2]), int(row[-1])
+    a = a // 3 if kind == "edge" else a
+    found.append(a)
+    sets.join(a, b)
+    for t in (a, b):
+        for v in faces[t]:
+            by_vertex[v].add(t)
+for together in by_vertex.values():
+    for t in together:
+        sets.join(t, min(together))
+for a in found:
+    count[min(sets.find(a))] += 1
+wanted = sorted((tuple(sorted(one)), count[min(one)]) for one in sets.all())
+got = sorted((tuple(one["triangle_numbers"]), one["pairs"]) for one in answer["places"])
+assert wanted == got, (wanted, got)
+sizes = [one["faces"] for one in answer["places"]]
+assert sizes == sorted(sizes, reverse=True), sizes
+
+edges, same, parts = collections.defaultdict(list), collections.Counter(), Sets()
+flat = 0
+for face in faces:
+    a, b, c = ([Fraction(x) for x in p] for p in face)
+    u, v = ([q - r for q, r in zip(p, a)] for p in (b, c))
+    flat += all(u[i] * v[j] == u[j] * v[i] for i, j in ((0, 1), (1, 2), (2, 0)))
+    for p in face:
+        parts.join(face[0], p)
+    if len(set(face)) < 3:
+        continue
+    same[frozenset(face)] += 1
+    for p, q in zip(face, face[1:] + face[:1]):
+        edges[frozenset((p, q))].append(p < q)
+kinds = collections.Counter(
+    "open" if len(sides) == 1 else "many" if len(sides) > 2 else "same" if sides[0] == sides[1] else "fine"
+    for sides in edges.values())
+defects = answer["defects"]
+assert defects["open_edges"] == kinds["open"], (defects, kinds)
+assert defects["non_manifold_edges"] == kinds["many"], (defects, kinds)
+assert defects["misoriented_edges"] == kinds["same"], (defects, kinds)
+assert defects["degenerate_faces"] == flat, (defects, flat)
+assert defects["duplicate_faces"] == sum(same.values()) - len(same), (defects, same)
+assert answer["components"] == len(parts.all()) == len(answer["parts"])
+broken = [edge for edge, sides in edges.items() if len(sides) != 2]
+edgy = {id(parts.find(p)) for edge in edges for p in edge}
+assert answer["closed_parts"] == len(edgy - {id(parts.find(p)) for edge in broken for p in edge})
+print(len(wanted), "places")
+EOT
+agrees() { # FILE KIND
+    "$query" --pairs "$2" --json --out "$scratch/pairs.csv" "$1" >"$scratch/json"
+    test $? -le 1 && "$python" "$scratch/oracle.py" "$1" "$scratch/pairs.csv" "$scratch/json" "$2"
+}
+# soup SEED TRIANGLES GRID: triangles with corners on a grid, so that they touch, repeat and are flat.
+soup() {
+    awk -v seed="$1" -v n="$2" -v grid="$3" 'BEGIN { srand(seed)
+        for (i = 0; i < 3 * n; i++) { if (i % 3 == 0) { x = int(rand() * grid); y = int(rand() * grid); z = int(rand() * grid) }
+            print "v", x + int(rand() * 3), y + int(rand() * 3), z + int(rand() * 3) }
+        for (i = 0; i < n; i++) print "f", 3 * i + 1, 3 * i + 2, 3 * i + 3 }'
+}
+if [ $have_json -eq 1 ]; then
+    for kind in triangle edge; do
+        for file in meshes/*.obj "$scratch/rows.obj"; do
+            check "$kind pairs of ${file##*/}" agrees "$file" $kind
+        done
+        for seed in 1 2 3 4 5 6 7 8; do
+            soup $seed 150 $((4 * seed)) >"$scratch/soup.obj"
+            check "$kind pairs of soup $seed" agrees "$scratch/soup.obj" $kind
+        done
+    done
+else
+    skip "places and defects by another program: there is no python3" 50
+fi
+
+# Sizes at the ends of what doubles hold: no depth or a number, and no more.
+for scale in 1e300 1e154 1e-160 1e-305; do
+    awk -v scale=$scale '$1 == "v" { printf "v %.17g %.17g %.17g\n", $2 * scale, $3 * scale, $4 * scale; next } { print }' \
+        meshes/touching_cubes.obj >"$scratch/scaled.obj"
+    check "cubes times $scale" says 1 "place 1: 12 faces" "$query" "$scratch/scaled.obj"
+    check "as a page" status 1 "$query" --html "$scratch/scaled.html" "$scratch/scaled.obj"
+done
+
 # ---- only collisions, and what else leaves them out ----
 
 check "only collisions" status 1 "$query" --only self-collisions "$scratch/rows.obj"

@@ -110,7 +110,7 @@ function frame_of(number) {
 
 /* For floats, all is told from the middle of the first frame on: far from the origin they are
    coarse. */
-const origin = frames[0].low.map((x, k) => (x + frames[0].high[k]) / 2);
+const origin = frames.length ? frames[0].low.map((x, k) => (x + frames[0].high[k]) / 2) : [0, 0, 0];
 for (const info of frames) info.origin = origin;
 
 /* -------------------------------------------------------------------------------------------------
@@ -419,7 +419,7 @@ const keys = {
     '?': () => at('keys').showModal()
 };
 addEventListener('keydown', event => {
-    if (event.ctrlKey || event.altKey || event.metaKey || at('keys').open) return;
+    if (current < 0 || event.ctrlKey || event.altKey || event.metaKey || at('keys').open) return;
     const inside = event.target.tagName;
     if (inside === 'INPUT' && event.key.length > 1) return; /* the slider's own keys */
     if (inside === 'BUTTON' && event.key === ' ') return;
@@ -496,7 +496,10 @@ const page = window.starcontour = {
         flying: !!flight, theme: document.documentElement.dataset.theme})
 };
 async function begin() {
-    if (is_picture) {
+    if (!frames.length) {
+        at('title').textContent = 'No mesh could be read.';
+        document.querySelector('header > span:last-child').hidden = true;
+    } else if (is_picture) {
         await draw_picture();
     } else {
         set_theme(matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
