@@ -288,14 +288,17 @@ check "duplicate faces, also the other way round, of joined vertices" \
     line "$scratch/twice.obj" "duplicate faces 1; 1 of 1 parts closed"
 check "which are not where none are joined" sh -c \
     "'$query' --weld none '$scratch/twice.obj' | grep -q 'open edges 4; 0 of 1'"
-# Three points of a line, in binary fractions; of one in doubles by chance of rounding only, which
-# differences in doubles would call flat; and a face with a vertex twice.
+# Three points of a line; some that are nearly on one, or that differences in doubles would put there
+# or take away from it; and a face with a vertex twice.
 printf 'v 0.125 0.25 0.5\nv 0.25 0.5 1\nv 0.5 1 2\nf 1 2 3\n' >"$scratch/flat.obj"
 check "degenerate faces" line "$scratch/flat.obj" "open edges 3, degenerate faces 1; 0 of 1 parts closed"
 printf 'v 0 0 0\nv 1 1 1e-300\nv 3 3.0000000000000004 0\nf 1 2 3\nv 5 0 0\nv 6 1e-150 0\nv 7 0 0\nf 4 5 6\n' >"$scratch/nearly.obj"
 check "nearly flat ones are not" line "$scratch/nearly.obj" "open edges 6; 0 of 2 parts closed"
 printf 'v 1 1 0\nv 2 2 0\nv 1e-18 0 0\nf 1 2 3\n' >"$scratch/exact.obj"
 check "nor one that rounds to flat" line "$scratch/exact.obj" "open edges 3; 0 of 1 parts closed"
+printf 'v 2251799813685249 6755399441055747 0\nv 5 15 0\nv 0.375 1.125 0\nf 1 2 3\n' >"$scratch/line.obj"
+check "one that rounds to an area is flat" line "$scratch/line.obj" \
+    "open edges 3, degenerate faces 1; 0 of 1 parts closed"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\nf 1 2 3\n' >"$scratch/same.obj"
 check "a vertex twice" line "$scratch/same.obj" "open edges 3, degenerate faces 1; 0 of 1 parts closed"
 check "a ball has none" sh -c "! '$query' meshes/sphere.obj | grep closed"
