@@ -296,7 +296,7 @@ printf 'v 0 0 0\nv 1 1 1e-300\nv 3 3.0000000000000004 0\nf 1 2 3\nv 5 0 0\nv 6 1
 check "nearly flat ones are not" line "$scratch/nearly.obj" "open edges 6; 0 of 2 parts closed"
 printf 'v 1 1 0\nv 2 2 0\nv 1e-18 0 0\nf 1 2 3\n' >"$scratch/exact.obj"
 check "nor one that rounds to flat" line "$scratch/exact.obj" "open edges 3; 0 of 1 parts closed"
-printf 'v 2251799813685249 6755399441055747 0\nv 5 15 0\nv 0.375 1.125 0\nf 1 2 3\n' >"$scratch/line.obj"
+printf 'v 0.10534066161402578 0.31602198484207733 0\nv 0.2753918260135757 0.8261754780407271 0\nv 7.9651518515639985 23.895455554691996 0\nf 1 2 3\n' >"$scratch/line.obj"
 check "one that rounds to an area is flat" line "$scratch/line.obj" \
     "open edges 3, degenerate faces 1; 0 of 1 parts closed"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\nf 1 2 3\n' >"$scratch/same.obj"
