@@ -133,7 +133,9 @@ metis_link := $(metis_library) $(static) $(if $(metis),-lmetis)
 program_sources := tools/sc_query.c tools/sc_partition.c bench/demo.c bench/sc_bench.c \
     bench/against.c \
     meshes/make_meshes.c meshes/subdivide.c
-tools_support := $(filter-out $(program_sources),$(wildcard tools/*.c))
+# What writes pages carries tools/page/page.html inside, and is linked only where it is used.
+page_support := tools/page_write.c tools/page_picture.c tools/page_bytes.c
+tools_support := $(filter-out $(program_sources) $(page_support),$(wildcard tools/*.c))
 bench_support := $(filter-out $(program_sources),$(wildcard bench/*.c bench/scenes/*.c))
 tests := $(sort $(wildcard tests/test_*.c))
 tests_support := $(filter-out $(tests),$(wildcard tests/*.c))
@@ -197,6 +199,18 @@ $(obj)/%.o: %.c $(obj)/flags
 	$(if $(Q),@echo "  cc   $<")
 	$(Q)$(CC) $(common) $(own) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
+# A page of HTML as an array: C99 promises no strings as long as that.
+$(work)/page_bytes.c: tools/page/page.html
+	@mkdir -p $(@D)
+	@{ echo '#include "page_bytes.h"'; echo 'const unsigned char page_bytes[] = {'; \
+	    od -An -v -tu1 $< | sed 's/\([0-9]\)\( \|$$\)/\1,\2/g'; echo '};'; \
+	    echo 'const size_t page_bytes_size = sizeof page_bytes;'; } > $@.new
+	@mv -f $@.new $@
+$(obj)/tools/page_bytes.o: $(work)/page_bytes.c $(obj)/flags
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  cc   $<")
+	$(Q)$(CC) $(common) -Itools $(mode) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+
 $(static): $(call objects,$(core_sources)) lib/sources.list
 	@mkdir -p $(@D)
 	$(if $(Q),@echo "  ar   $@")
@@ -226,9 +240,9 @@ endef
 mesh_libs := $(metis_link) -lassimp -lcjson -lz -lpthread
 # dlopen is in libc, or in a libdl of its own where that is old.
 $(bin)/sc-against: mesh_libs += $(if $(filter Linux,$(shell uname -s)),-ldl)
-$(bin)/sc-query: $(call objects,tools/sc_query.c $(tools_support))
+$(bin)/sc-query: $(call objects,tools/sc_query.c $(tools_support) $(page_support))
 $(bin)/sc-partition: $(call objects,tools/sc_partition.c $(tools_support))
-$(bin)/sc-demo: $(call objects,bench/demo.c $(bench_support) $(tools_support))
+$(bin)/sc-demo: $(call objects,bench/demo.c $(bench_support) $(tools_support) $(page_support))
 $(bin)/sc-bench: $(call objects,bench/sc_bench.c $(bench_support) $(tools_support))
 $(bin)/sc-against: $(call objects,bench/against.c bench/scene_folder.c $(tools_support))
 $(bin)/subdivide: $(call objects,meshes/subdivide.c $(tools_support))
@@ -247,7 +261,7 @@ deps: ## install what is missing to build and test everything (says first what t
 
 .PHONY: demo
 ifneq ($(strip $(missing_for_programs)),)
-demo: ## collisions of deforming cloth and bunny, frame by frame; worst frame as PLY
+demo: ## collisions of deforming cloth and bunny, frame by frame, and pages to look at them
 	@echo "make demo needs $(strip $(missing_for_programs)): run 'make deps' first" >&2; exit 1
 else
 demo: $(programs)
@@ -284,6 +298,11 @@ bench-against: $(programs) $(lib)/$(shared_link)
 	@CC='$(CC)' CFLAGS='$(CFLAGS)' MAKE='$(MAKE)' SCENE_DIRS='$(SCENE_DIRS)' \
 	    bench/against.sh '$(REV)' '$(bin)/sc-against' '$(bin)/sc-bench' '$(lib)/$(shared_link)' $(AGAINST)
 endif
+
+.PHONY: page
+page: ## build tools/page/page.html, which sc-query --html writes, anew from its sources (node, npm)
+	$(call need,npm,npm)
+	@BUILD='$(BUILD)' tools/page/build.sh && ls -l tools/page/page.html
 
 .PHONY: meshes
 meshes: $(programs) ## fetch real meshes into build/meshes (Debian packages, no root needed)
@@ -715,7 +734,7 @@ help: ## this list
 	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
 
 #: config      release (the default), debug, or sanitize (address and undefined behaviour)
-#: with        groups of packages that make deps adds: analysis batch bench cgal docs ffi packages peers
+#: with        groups of packages that make deps adds: analysis batch bench cgal docs ffi packages page peers
 #: CC          C compiler [cc]
 #: CLANG       clang, for fuzz and test-memory-clang [clang]
 #: CXX         C++ compiler, for test-cgal and one test of the header [g++]

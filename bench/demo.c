@@ -5,12 +5,17 @@
  *
  * A cloth twists and rolls up until it passes through itself; the bunny of glmark2, or a closed
  * surface if it is not there, is bent until its ends do. Each frame is a new pose of one model. All
- * methods run on a frame in turn, several times, and the shortest time counts. All must
- * find the same number of pairs; the program fails if they do not.
+ * methods run on a frame in turn, several times, and the shortest time counts. All must find the
+ * same number of pairs; the program fails if they do not. All frames of a scene end up in a page to
+ * look at, with the places in which they collide.
  */
 #define _POSIX_C_SOURCE 200809L
 
+#include "mesh_check.h"
 #include "mesh_file.h"
+#include "page_write.h"
+#include "place_depth.h"
+#include "places.h"
 #include "ply_write.h"
 #include "shape.h"
 #include "spatial_hash.h"
@@ -22,7 +27,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { FRAMES = 12, REPEATS = 3, HASH = 4, METHODS = 5 };
+enum { FRAMES = 12, REPEATS = 3, HASH = 4, METHODS = 5, PATH_SIZE = 1024 };
 
 static const char *const method_names[METHODS] = {"exact", "star", "aabb-sctt", "aabb", "hash"};
 static const uint32_t method_values[HASH] = {SC_METHOD_SCTT, SC_METHOD_SCTT, SC_METHOD_AABB_SCTT,
@@ -45,6 +50,10 @@ typedef struct demo_scene {
     uint64_t worst_count;
     int worst_frame;
     double sums[METHODS]; /* of the shortest times, over all frames */
+    uint32_t *weld_map;   /* for places on the page */
+    mesh_check check;
+    page_file *page;
+    char page_path[PATH_SIZE];
 } demo_scene;
 
 /*
@@ -136,6 +145,50 @@ static bool run_method(demo_scene *scene, int method, uint64_t *count, double *m
     return report(status, method_names[method]);
 }
 
+/* Asks once more for the pairs of a frame, of triangles now. They are to be freed; NULL if there
+   are none, or on failure. Returns the milliseconds of the query that listed them, or -1. */
+static double list_pairs(demo_scene *scene, const sc_pose *pose, sc_result *result)
+{
+    memset(result, 0, sizeof *result);
+    result->struct_size = sizeof *result;
+    double start = tool_clock();
+    sc_status status = sc_query(scene->model, scene->workspaces[0], pose, NULL, result);
+    if (status == SC_ERROR_SHORT_BUFFER) {
+        result->pairs = (sc_pair *)malloc((size_t)result->count * sizeof *result->pairs);
+        result->capacity = result->pairs ? result->count : 0;
+        start = tool_clock();
+        status = result->pairs ? sc_query(scene->model, scene->workspaces[0], pose, NULL, result)
+                               : SC_ERROR_MEMORY;
+    }
+    const double milliseconds = tool_clock() - start;
+    if (report(status, "triangle pairs")) return milliseconds;
+    free(result->pairs);
+    result->pairs = NULL;
+    return -1;
+}
+
+/* Adds a frame to the scene's page. name: what it is called there. */
+static bool add_to_page(demo_scene *scene, const char *name)
+{
+    const sc_pose pose = tool_pose(scene->positions, SC_FLOAT, scene->mesh->vertex_count);
+    sc_result result;
+    const double milliseconds = list_pairs(scene, &pose, &result);
+    if (milliseconds < 0) return false;
+    place_list places;
+    const place_source source = {scene->mesh, scene->weld_map,   &scene->check, scene->model,
+                                 &pose,       SC_PAIRS_TRIANGLE, result.pairs,  result.count};
+    sc_status status = places_make(&places, &source);
+    if (status == SC_OK && !place_depths(&places, &source)) status = SC_ERROR_MEMORY;
+    const page_frame frame = {
+        name,         scene->mesh,  &scene->check,
+        &pose,        &places,      mesh_check_degenerate(scene->mesh, scene->positions, SC_FLOAT),
+        result.count, milliseconds, false};
+    if (status == SC_OK && !page_add(scene->page, &frame)) status = SC_ERROR_MEMORY;
+    places_free(&places);
+    free(result.pairs);
+    return report(status, "page");
+}
+
 /* One frame: all methods in turn, several times. */
 static bool run_frame(demo_scene *scene, int frame)
 {
@@ -162,6 +215,9 @@ static bool run_frame(demo_scene *scene, int frame)
                    (double)counts[method]);
         return false;
     }
+    char name[64];
+    snprintf(name, sizeof name, "%s, frame %d", scene->name, frame);
+    if (!add_to_page(scene, name)) return false;
     if (counts[0] >= scene->worst_count) {
         scene->worst_count = counts[0];
         scene->worst_frame = frame;
@@ -171,24 +227,15 @@ static bool run_frame(demo_scene *scene, int frame)
     return true;
 }
 
-/* Asks once more for the pairs of the worst frame, of triangles now, and draws them. */
+/* Draws the worst frame. */
 static bool draw_worst(demo_scene *scene, const char *folder)
 {
     const sc_pose pose = tool_pose(scene->worst_positions, SC_FLOAT, scene->mesh->vertex_count);
     const uint32_t triangles = scene->mesh->triangle_count;
     sc_result result;
-    memset(&result, 0, sizeof result);
-    result.struct_size = sizeof result;
-    sc_status status = sc_query(scene->model, scene->workspaces[0], &pose, NULL, &result);
-    if (status == SC_ERROR_SHORT_BUFFER) {
-        result.pairs = (sc_pair *)malloc((size_t)result.count * sizeof *result.pairs);
-        result.capacity = result.pairs ? result.count : 0;
-        status = result.pairs ? sc_query(scene->model, scene->workspaces[0], &pose, NULL, &result)
-                              : SC_ERROR_MEMORY;
-    }
+    if (list_pairs(scene, &pose, &result) < 0) return false;
     uint8_t *colors = (uint8_t *)malloc(3 * (size_t)triangles);
-    if (!colors) status = SC_ERROR_MEMORY;
-    bool done = report(status, "worst frame");
+    bool done = report(colors ? SC_OK : SC_ERROR_MEMORY, "worst frame");
     if (done) {
         static const uint8_t red[3] = {220, 30, 30};
         char path[1024];
@@ -235,8 +282,29 @@ static bool scene_open(demo_scene *scene, const mesh_file *mesh, const char *nam
     for (int i = 0; i < HASH && status == SC_OK; i++) {
         status = sc_workspace_create(scene->model, NULL, &scene->workspaces[i]);
     }
-    if (!scene->positions || !scene->worst_positions) status = SC_ERROR_MEMORY;
+    scene->weld_map = mesh_file_weld_map(mesh);
+    if (!scene->positions || !scene->worst_positions || !scene->weld_map ||
+        !mesh_check_make(&scene->check, mesh, scene->weld_map))
+        status = SC_ERROR_MEMORY;
     return report(status, name);
+}
+
+static bool open_page(demo_scene *scene, const char *folder)
+{
+    snprintf(scene->page_path, sizeof scene->page_path, "%s/%s.html", folder, scene->name);
+    errno = 0;
+    scene->page = page_open(scene->page_path);
+    if (!scene->page) tool_error("%s: cannot be written: %s", scene->page_path, strerror(errno));
+    return scene->page != NULL;
+}
+
+/* Ends the page, if it was begun; false if not all could be written. */
+static bool close_page(demo_scene *scene)
+{
+    const bool written = !scene->page || page_close(scene->page);
+    scene->page = NULL;
+    if (!written) tool_error("%s: could not be written to the end", scene->page_path);
+    return written;
 }
 
 static void scene_close(demo_scene *scene)
@@ -244,18 +312,20 @@ static void scene_close(demo_scene *scene)
     for (int i = 0; i < HASH; i++) sc_workspace_free(scene->workspaces[i]);
     sc_model_free(scene->model);
     spatial_hash_free(scene->hash);
+    mesh_check_free(&scene->check);
+    free(scene->weld_map);
     free(scene->doubles);
     free(scene->positions);
     free(scene->worst_positions);
 }
 
-/* All frames of a scene. */
+/* All frames of a scene; page_path is where its page is then. */
 static bool run_scene(const mesh_file *mesh, const char *name, deformation deform,
-                      const char *folder)
+                      const char *folder, char page_path[PATH_SIZE])
 {
     demo_scene scene;
     double build_ms;
-    bool done = scene_open(&scene, mesh, name, &build_ms);
+    bool done = scene_open(&scene, mesh, name, &build_ms) && open_page(&scene, folder);
     if (done) {
         printf("%lu triangles; model built once in %.0f ms.\n\n",
                (unsigned long)mesh->triangle_count, build_ms);
@@ -283,11 +353,13 @@ static bool run_scene(const mesh_file *mesh, const char *name, deformation defor
         else
             printf("No frame collides.\n\n");
     }
+    if (!close_page(&scene)) done = false;
+    if (done) snprintf(page_path, PATH_SIZE, "%s", scene.page_path);
     scene_close(&scene);
     return done;
 }
 
-static bool run_cloth(const char *folder)
+static bool run_cloth(const char *folder, char page_path[PATH_SIZE])
 {
     mesh_file mesh;
     printf("A cloth twists and rolls up until it passes through itself.\n");
@@ -295,13 +367,13 @@ static bool run_cloth(const char *folder)
         tool_error("cloth: out of memory");
         return false;
     }
-    const bool done = run_scene(&mesh, "cloth", twist_cloth, folder);
+    const bool done = run_scene(&mesh, "cloth", twist_cloth, folder, page_path);
     mesh_file_free(&mesh);
     return done;
 }
 
 /* The bunny, or, if its file is not there, a sphere drawn out to a loaf. */
-static bool run_bunny(const char *meshes, const char *folder)
+static bool run_bunny(const char *meshes, const char *folder, char page_path[PATH_SIZE])
 {
     char path[1024], error[MESH_FILE_ERROR_SIZE];
     struct stat found;
@@ -328,7 +400,7 @@ static bool run_bunny(const char *meshes, const char *folder)
     if (!ready)
         tool_error("out of memory");
     else
-        ready = run_scene(&mesh, is_bunny ? "bunny" : "loaf", bend_solid, folder);
+        ready = run_scene(&mesh, is_bunny ? "bunny" : "loaf", bend_solid, folder, page_path);
     mesh_file_free(&mesh);
     return ready;
 }
@@ -382,6 +454,11 @@ int main(int argc, char **argv)
         "  hash       an optimised spatial hash\n"
         "All are exact and must agree. One thread; the shortest of %d runs.\n\n",
         sc_version_string(), REPEATS);
-    const bool done = run_cloth(folder) && run_bunny(meshes, folder);
+    char pages[2][PATH_SIZE];
+    const bool done = run_cloth(folder, pages[0]) && run_bunny(meshes, folder, pages[1]);
+    if (done)
+        printf("Pages to look at in a browser, with all frames and where they collide:\n"
+               "  %s\n  %s\n",
+               pages[0], pages[1]);
     return tool_finish(done ? TOOL_CLEAN : TOOL_FAILED);
 }

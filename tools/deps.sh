@@ -58,6 +58,9 @@ program cargo cargo cargo rust rust
 program go golang-go golang go go
 program javac default-jdk-headless java-devel jdk-openjdk openjdk
 file /usr/share/java/jna.jar libjna-java jna - -"
+group_page="\
+program chromium chromium chromium chromium -
+program npm npm,nodejs nodejs-npm npm,nodejs node"
 group_packages="\
 program cmake cmake cmake cmake cmake
 program clang clang clang clang llvm
@@ -76,9 +79,9 @@ header fcl/config.h libfcl-dev fcl-devel fcl fcl
 module ensurepip python3-venv python3 python python"
 for group in ${WITH:-}; do
     case $group in
-    analysis | batch | bench | cgal | docs | ffi | packages | peers) ;;
+    analysis | batch | bench | cgal | docs | ffi | packages | page | peers) ;;
     *)
-        echo "make deps: with=$group: the groups are analysis, batch, bench, cgal, docs, ffi, packages, peers" >&2
+        echo "make deps: with=$group: the groups are analysis, batch, bench, cgal, docs, ffi, packages, page, peers" >&2
         exit 2
         ;;
     esac

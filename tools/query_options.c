@@ -35,6 +35,7 @@ static const char usage[] =
     "                              share no vertex; none: only count, triangles decide\n"
     "  --proper                    only edges' interiors that pass through triangles' interiors;\n"
     "                              without it touching is enough\n"
+    "  --only self-collisions      no places and no defects besides: the row alone, soonest\n"
     "  --any                       stop at the first pair: whether there is one, not how many\n"
     "  --weld rest|none            join vertices at equal positions (default), or take them as "
     "they\n"
@@ -93,9 +94,14 @@ static const char usage_continued[] =
     "  --out FILE                  write the pairs as comma-separated values, with the faces and\n"
     "                              objects of the file that they belong to. An edge is a number\n"
     "                              3 t + k: from vertex k to vertex k + 1 (mod 3) of triangle t\n"
-    "  --ply FILE                  write the mesh with colliding triangles in red, with --near "
-    "from\n"
-    "                              red to yellow by distance; one MESH only\n"
+    "  --ply FILE                  write the mesh with colliding triangles coloured by the places\n"
+    "                              they are of, with --near by distance; one MESH only\n"
+    "  --html FILE                 write a page to look at: the mesh turns, places are listed, "
+    "and\n"
+    "                              files with the same faces are frames of an animation\n"
+    "  --png FILE                  write three views as a picture, by a Chromium that is there; "
+    "one\n"
+    "                              MESH only\n"
     "  --contacts                  where each pair meets, and how: a point, a segment, or an area\n"
     "  --stats                     time and count of the nine tasks of the query\n"
     "  --record FILE               write the query, with model, pose, options and filter, to "
@@ -153,6 +159,9 @@ const tool_choice query_method_choices[] = {{"auto", SC_METHOD_DEFAULT},
                                             {"aabb-sctt", SC_METHOD_AABB_SCTT},
                                             {"aabb", SC_METHOD_AABB},
                                             {NULL, 0}};
+/* What --only leaves. */
+static const tool_choice only_choices[] = {{"self-collisions", 1}, {NULL, 0}};
+
 /* What --method auto is, where models are built: boxes alone pay for one query. */
 static void choose_method(query_settings *set)
 {
@@ -202,9 +211,9 @@ static const char *check_batch(const query_settings *set)
                              : NULL;
     if (set->manifest_path && set->path_count > 0)
         return "--manifest is in place of meshes on the command line";
-    if (set->is_step || set->is_near || set->out_path || set->ply_path || set->record_path ||
-        set->replay_path)
-        return "--jsonl does not go with --step, --near, --out, --ply, --record or --replay";
+    if (set->is_step || set->is_near || set->out_path || set->ply_path || set->html_path ||
+        set->png_path || set->record_path || set->replay_path)
+        return "--jsonl does not go with --step, --near, --out, --ply, --html, --png, --record or --replay";
     if (set->threads > 1) return "--jsonl has --jobs, meshes at a time, in place of --threads";
     if (set->stats && !set->timings) return "--stats are times, which --jsonl has with --timings";
     return NULL;
@@ -228,8 +237,8 @@ static bool check_settings(const query_settings *set)
         reason = "--replay takes no mesh, rest mesh or model, and makes no record";
     else if (set->replay_path && set->is_asked)
         reason = "--replay asks what the record asks, and as it does";
-    else if (set->replay_path && set->ply_path)
-        reason = "--replay has no faces for --ply";
+    else if (set->replay_path && (set->ply_path || set->html_path || set->png_path))
+        reason = "--replay has no faces for --ply, --html or --png";
     else if (set->is_step_asked && !set->is_step)
         reason = "--separation, --tolerance and --times are of --step";
     else if (set->step.ignores_rest && !set->is_step && !set->is_near)
@@ -247,11 +256,15 @@ static bool check_settings(const query_settings *set)
     else if (set->record_path && path_count > 1)
         reason = "--record takes one mesh only";
     else if (query_wants_list(set) && set->any)
-        reason = "--any finds no list for --out, --ply or --contacts";
+        reason = "--any finds no list for --out, --ply, --html, --png or --contacts";
     else if (query_wants_list(set) && set->pairs == 2)
-        reason = "--pairs none leaves no list for --out, --ply or --contacts";
+        reason = "--pairs none leaves no list for --out, --ply, --html, --png or --contacts";
     else if (set->ply_path && path_count > 1)
         reason = "--ply takes one mesh only";
+    else if (set->png_path && set->html_path)
+        reason = "--png and --html do not go together";
+    else if (set->png_path && path_count > 1)
+        reason = "--png takes one mesh only";
     else
         reason = check_batch(set);
     if (!reason) return true;
@@ -262,8 +275,9 @@ static bool check_settings(const query_settings *set)
 /* No file that is to be read is written over. */
 static bool spares_files(const query_settings *set)
 {
-    const char *const out[] = {set->out_path, set->ply_path, set->record_path, set->jsonl_path};
-    for (int i = 0; i < 4; i++) {
+    const char *const out[] = {set->out_path,   set->ply_path, set->record_path,
+                               set->jsonl_path, set->html_path, set->png_path};
+    for (int i = 0; i < 6; i++) {
         if (!tool_spares(out[i], set->rest_path) || !tool_spares(out[i], set->model_path) ||
             !tool_spares(out[i], set->replay_path) || !tool_spares(out[i], set->groups_path) ||
             !tool_spares(out[i], set->manifest_path))
@@ -289,6 +303,9 @@ int query_options_read(int argc, char **argv, query_settings *set)
         OPTION_LIST,
         OPTION_STENCILS,
         OPTION_ANY,
+        OPTION_ONLY,
+        OPTION_HTML,
+        OPTION_PNG,
         OPTION_WELD,
         OPTION_REST,
         OPTION_JSON,
@@ -325,6 +342,9 @@ int query_options_read(int argc, char **argv, query_settings *set)
         {"pairs", required_argument, NULL, OPTION_PAIRS},
         {"proper", no_argument, NULL, OPTION_PROPER},
         {"any", no_argument, NULL, OPTION_ANY},
+        {"only", required_argument, NULL, OPTION_ONLY},
+        {"html", required_argument, NULL, OPTION_HTML},
+        {"png", required_argument, NULL, OPTION_PNG},
         {"step", no_argument, NULL, OPTION_STEP},
         {"separation", required_argument, NULL, OPTION_SEPARATION},
         {"tolerance", required_argument, NULL, OPTION_TOLERANCE},
@@ -369,18 +389,20 @@ int query_options_read(int argc, char **argv, query_settings *set)
     memset(set, 0, sizeof *set);
     set->step.method = SC_STEP_METHOD_SCTT;
     bool valid = true;
-    uint32_t budget = 0, format = MESH_FORMAT_UNKNOWN;
+    uint32_t budget = 0, only = 0, format = MESH_FORMAT_UNKNOWN;
     set->threads = set->shard = set->shard_count = set->jobs = 1;
     set->limits.seconds = BATCH_SECONDS;
     int option, which = 0;
     while ((option = getopt_long(argc, argv, "hV", options, &which)) != -1) {
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_PLY ||
             option == OPTION_RECORD || option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
-            option == OPTION_CONTACTS)
+            option == OPTION_CONTACTS || option == OPTION_ONLY || option == OPTION_HTML ||
+            option == OPTION_PNG)
             set->not_of_steps = options[which].name;
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_RECORD ||
-            option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
-            option == OPTION_CONTACTS || option == OPTION_CONTOUR || option == OPTION_STEP ||
+            option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE || option == OPTION_ONLY ||
+            option == OPTION_HTML || option == OPTION_PNG || option == OPTION_CONTACTS ||
+            option == OPTION_CONTOUR || option == OPTION_STEP ||
             option == OPTION_SEPARATION || option == OPTION_TOLERANCE || option == OPTION_TIMES)
             set->not_of_near = options[which].name;
         set->is_near_asked |=
@@ -433,6 +455,16 @@ int query_options_read(int argc, char **argv, query_settings *set)
             break;
         case OPTION_ANY:
             set->any = true;
+            break;
+        case OPTION_ONLY:
+            valid &= tool_choose("--only", optarg, only_choices, &only);
+            set->only_collisions = true;
+            break;
+        case OPTION_HTML:
+            set->html_path = optarg;
+            break;
+        case OPTION_PNG:
+            set->png_path = optarg;
             break;
         case OPTION_WELD:
             valid &= tool_choose("--weld", optarg, tool_welds, &set->weld);

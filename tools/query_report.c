@@ -7,6 +7,7 @@
 
 #include "mesh_faces.h"
 #include "ply_write.h"
+#include "query_checks.h"
 #include "query_options.h"
 #include "query_text.h"
 #include "tool_json.h"
@@ -16,7 +17,7 @@
 #include <string.h>
 
 bool query_report_ply(const mesh_file *mesh, const sc_pose *pose, const query_settings *set,
-                      const query_list *list)
+                      const place_list *places)
 {
     const uint32_t count = mesh->triangle_count;
     uint8_t *colors = (uint8_t *)malloc(3 * (size_t)count);
@@ -25,12 +26,10 @@ bool query_report_ply(const mesh_file *mesh, const sc_pose *pose, const query_se
         return false;
     }
     memset(colors, 200, 3 * (size_t)count);
-    for (uint64_t i = 0; i < list->count; i++) {
-        const sc_pair pair = list->pairs[i];
-        const uint32_t first = query_chosen_pairs(set) == SC_PAIRS_EDGE ? pair.a / 3 : pair.a;
-        const uint8_t red[3] = {220, 30, 30};
-        memcpy(colors + 3 * (size_t)first, red, 3);
-        memcpy(colors + 3 * (size_t)pair.b, red, 3);
+    for (uint32_t i = 0; i < places->count; i++) {
+        const place *one = &places->places[i];
+        for (size_t j = one->begin; j < one->begin + one->triangle_count; j++)
+            place_color(i, colors + 3 * (size_t)places->triangles[j]);
     }
     errno = 0;
     const bool written = ply_write(set->ply_path, pose->positions, pose->position_type,
@@ -56,11 +55,10 @@ void query_report_pairs_head(FILE *out, const query_settings *set)
           out);
 }
 
-/* The two triangles of a pair, of which the first may be an edge's. */
+/* The two triangles of a pair of the kind that decides. */
 static void find_triangles(const query_settings *set, sc_pair pair, uint32_t triangle[2])
 {
-    triangle[0] = query_chosen_pairs(set) == SC_PAIRS_EDGE ? pair.a / 3 : pair.a;
-    triangle[1] = pair.b;
+    places_triangles(query_chosen_pairs(set), pair, triangle);
 }
 
 static void write_pairs(FILE *out, const query_answer *answer, const query_settings *set,
@@ -200,6 +198,7 @@ static bool print_json_answer(const query_answer *answer, const query_settings *
     query_report_add_settings(object, set);
     if (set->stats) query_text_add_stats(object, &answer->stats);
     if (set->contacts) add_contacts(object, answer, set, list);
+    if (answer->checks) query_checks_add(object, answer->checks, answer->mesh);
     return tool_json_print(object);
 }
 
@@ -293,6 +292,7 @@ int query_report(const query_answer *answer, const query_settings *set, const qu
     } else {
         print_table_row(answer, set);
         if (answer->mesh) mesh_tally_print(&tally, answer->mesh);
+        if (answer->checks) query_checks_print(answer->checks, answer->mesh);
         if (set->contacts) print_contacts(answer, set, list);
     }
     if (written && out) write_pairs(out, answer, set, list);

@@ -1,12 +1,13 @@
 /*
  * What sc-query prints and writes of a pose: a row of the table or an object of JSON, pairs as
- * comma-separated values, and the mesh with colliding triangles in red.
+ * comma-separated values, and the mesh with its places coloured.
  *
  * SPDX-License-Identifier: MIT
  */
 #ifndef TOOLS_QUERY_REPORT_H
 #define TOOLS_QUERY_REPORT_H
 
+#include "places.h"
 #include "query_settings.h"
 
 #include <cjson/cJSON.h>
@@ -32,6 +33,6 @@ void query_report_add_settings(cJSON *object, const query_settings *set);
 
 /* Writes the file of --ply; otherwise says why not. */
 bool query_report_ply(const mesh_file *mesh, const sc_pose *pose, const query_settings *set,
-                      const query_list *list);
+                      const place_list *places);
 
 #endif /* TOOLS_QUERY_REPORT_H */

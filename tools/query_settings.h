@@ -35,6 +35,8 @@ typedef struct query_settings {
     uint32_t simd;         /* SC_SIMD_... */
     const char *ignore_path, *groups_path;
     bool contacts;
+    bool only_collisions;             /* --only: no places, no defects */
+    const char *html_path, *png_path; /* the page, and a picture of it */
     uint32_t threads;
     const char *jsonl_path, *manifest_path; /* many meshes: see batch.h */
     uint32_t shard, shard_count, jobs;
@@ -47,6 +49,8 @@ typedef struct query_settings {
     const sc_filter *given; /* in place of these: what a record says */
 } query_settings;
 
+struct query_checks;
+
 /* What there is to know about one file. Index SC_PAIRS_TRIANGLE and SC_PAIRS_EDGE. */
 typedef struct query_answer {
     const char *path;
@@ -57,9 +61,10 @@ typedef struct query_answer {
     uint64_t counts[2];
     bool known[2]; /* whether counts and query_ms are there */
     bool collides;
-    bool incomplete;             /* a budget ended a query */
-    bool rounded, has_animation; /* as in mesh_file */
-    uint32_t position_type;      /* of the pose */
+    bool incomplete;                   /* a budget ended a query */
+    bool rounded, has_animation;       /* as in mesh_file */
+    uint32_t position_type;            /* of the pose */
+    const struct query_checks *checks; /* see query_checks.h; NULL: none are asked for */
     sc_stats stats;
 } query_answer;
 
@@ -79,7 +84,20 @@ static inline uint32_t query_chosen_pairs(const query_settings *set)
 /* Whether pairs are wanted, and not only their number. */
 static inline bool query_wants_list(const query_settings *set)
 {
-    return set->out_path || set->ply_path || set->contacts;
+    return set->out_path || set->ply_path || set->contacts || set->html_path || set->png_path;
+}
+
+/* Whether the mesh is looked at for what is listed besides its pairs. */
+static inline bool query_wants_checks(const query_settings *set, const mesh_file *mesh)
+{
+    const bool draws = set->ply_path || set->html_path || set->png_path;
+    return mesh && !set->any && (!set->only_collisions || draws);
+}
+
+/* Whether pairs are joined into places. */
+static inline bool query_wants_places(const query_settings *set, const mesh_file *mesh)
+{
+    return query_wants_checks(set, mesh) && set->pairs != 2;
 }
 
 /* Whether the pairs between each two objects are counted: for that they are listed, too. */

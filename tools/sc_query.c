@@ -11,6 +11,9 @@
 #include "model_file.h"
 #include "near_query.h"
 #include "near_report.h"
+#include "page_picture.h"
+#include "page_write.h"
+#include "query_checks.h"
 #include "query_options.h"
 #include "query_report.h"
 #include "query_subject.h"
@@ -140,10 +143,10 @@ static sc_status find_contacts(const query_subject *subject, const sc_pose *pose
                        list->contacts);
 }
 
-/* All queries of one pose. */
+/* All queries of one pose, and what is listed besides; checks may be NULL. */
 static bool run_pose(const query_subject *subject, const char *path, const sc_pose *pose,
-                     const query_settings *set, query_list *list, query_answer *answer,
-                     char error[MESH_FILE_ERROR_SIZE])
+                     const query_settings *set, query_list *list, query_checks *checks,
+                     query_answer *answer, char error[MESH_FILE_ERROR_SIZE])
 {
     const uint32_t chosen = query_chosen_pairs(set);
     answer->build_ms = subject->build_ms;
@@ -157,7 +160,8 @@ static bool run_pose(const query_subject *subject, const char *path, const sc_po
         /* pairs to ignore are of one kind */
         if ((set->any || set->ignore_path || filter.ignore_count) && kind != chosen) continue;
         query_list *const kept =
-            kind == chosen && (query_wants_list(set) || query_names_objects(set, answer->mesh))
+            kind == chosen && (query_wants_list(set) || query_names_objects(set, answer->mesh) ||
+                               query_wants_places(set, answer->mesh))
                 ? list
                 : NULL;
         status = run_query(subject, pose, set, &filter, kind, kept, answer);
@@ -166,6 +170,12 @@ static bool run_pose(const query_subject *subject, const char *path, const sc_po
         status = SC_OK;
     }
     if (status == SC_OK && set->contacts) status = find_contacts(subject, pose, set, list);
+    if (status == SC_OK && checks && query_wants_checks(set, answer->mesh)) {
+        status = query_checks_mesh(checks, answer->mesh, subject->weld_map, set);
+        if (status == SC_OK)
+            status = query_checks_pose(checks, answer->mesh, subject->model, pose, set, list);
+        if (!set->only_collisions) answer->checks = checks;
+    }
     answer->collides = answer->counts[chosen] > 0;
     if (status != SC_OK) {
         snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, tool_why(status));
@@ -202,11 +212,72 @@ static int report(const query_answer *answer, const query_settings *set, bool do
     return status;
 }
 
-/* Does one file. rest is the common subject of --rest or --model, or NULL. Returns an exit
-   status. */
-static int do_file(const char *path, const query_settings *set, const query_subject *rest,
-                   FILE *out, query_list *list, query_summary *summary)
+/* What all files of a run share. */
+typedef struct query_run {
+    const query_subject *rest; /* the common subject of --rest or --model, or NULL */
+    FILE *out;
+    query_list list;
+    query_checks checks; /* of that subject's mesh, or of the last one */
+    query_summary summary;
+    page_file *page;      /* of --html, or of --png alone */
+    char page_path[1024]; /* of the page that --png is drawn from */
+} query_run;
+
+/* Begins the page, if there is to be one. */
+static bool begin_page(query_run *run, const query_settings *set)
 {
+    char error[MESH_FILE_ERROR_SIZE];
+    const char *path = set->html_path;
+    if (!path && !set->png_path) return true;
+    if (!path) {
+        if (!page_picture_begin(run->page_path, sizeof run->page_path, error)) {
+            tool_error("%s", error);
+            run->page_path[0] = 0;
+            return false;
+        }
+        path = run->page_path;
+    }
+    run->page = page_open(path);
+    if (!run->page) tool_error("%s: cannot be written: %s", path, strerror(errno));
+    return run->page != NULL;
+}
+
+static bool add_to_page(query_run *run, const query_settings *set, const sc_pose *pose,
+                        const query_answer *answer)
+{
+    const uint32_t kind = query_chosen_pairs(set);
+    const page_frame frame = {answer->path,         answer->mesh,
+                              &run->checks.mesh,    pose,
+                              &run->checks.places,  run->checks.degenerate_faces,
+                              answer->counts[kind], answer->query_ms[kind],
+                              answer->incomplete};
+    if (!run->page || page_add(run->page, &frame)) return true;
+    tool_error("%s: out of memory for the page", answer->path);
+    return false;
+}
+
+/* Ends the page, and has it drawn. */
+static bool end_page(query_run *run, const query_settings *set)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    bool done = true;
+    if (run->page && !page_close(run->page)) {
+        tool_error("%s: could not be written to the end",
+                   set->html_path ? set->html_path : run->page_path);
+        done = false;
+    }
+    if (done && run->page && set->png_path) {
+        done = page_picture_draw(run->page_path, set->png_path, error);
+        if (!done) tool_error("%s", error);
+    }
+    if (run->page_path[0]) page_picture_end(run->page_path);
+    return done;
+}
+
+/* Does one file. Returns an exit status. */
+static int do_file(const char *path, const query_settings *set, query_run *run)
+{
+    const query_subject *rest = run->rest;
     char error[MESH_FILE_ERROR_SIZE];
     query_subject own;
     memset(&own, 0, sizeof own);
@@ -240,10 +311,13 @@ static int do_file(const char *path, const query_settings *set, const query_subj
     answer.rounded = set->rest_path ? moved.rounded : mesh->rounded;
     answer.has_animation = set->rest_path ? moved.has_animation : mesh->has_animation;
     const bool recorded = !done || !set->record_path || write_record(subject, &pose, set);
-    if (done) done = run_pose(subject, path, &pose, set, list, &answer, error);
-    int status = report(&answer, set, done, error, out, list, summary);
+    if (!set->rest_path) query_checks_free(&run->checks); /* they are of one mesh */
+    if (done) done = run_pose(subject, path, &pose, set, &run->list, &run->checks, &answer, error);
+    int status = report(&answer, set, done, error, run->out, &run->list, &run->summary);
     if (!recorded) status = TOOL_FAILED;
-    if (done && set->ply_path && !query_report_ply(mesh, &pose, set, list)) status = TOOL_FAILED;
+    if (done && set->ply_path && !query_report_ply(mesh, &pose, set, &run->checks.places))
+        status = TOOL_FAILED;
+    if (done && !add_to_page(run, set, &pose, &answer)) status = TOOL_FAILED;
     mesh_pose_free(&moved);
     query_subject_free(&own);
     return status;
@@ -324,7 +398,7 @@ static int do_replay(query_settings *set, FILE *out, query_list *list)
     }
     if (done) follow_model(set, subject.model);
     if (done && out) query_report_pairs_head(out, set);
-    if (done) done = run_pose(&subject, set->replay_path, &pose, set, list, &answer, error);
+    if (done) done = run_pose(&subject, set->replay_path, &pose, set, list, NULL, &answer, error);
     const int status = done ? query_report(&answer, set, list, out)
                             : query_report_failure(set->replay_path, set, error);
     set->given = NULL;
@@ -342,12 +416,13 @@ typedef struct batch_context {
 static int do_batch_file(void *user, const char *path)
 {
     const batch_context *context = (const batch_context *)user;
-    query_list list = {NULL, 0, 0, NULL};
-    query_summary summary;
-    memset(&summary, 0, sizeof summary);
-    const int status = do_file(path, context->set, context->rest, NULL, &list, &summary);
-    free(list.pairs);
-    free(list.contacts);
+    query_run run;
+    memset(&run, 0, sizeof run);
+    run.rest = context->rest;
+    const int status = do_file(path, context->set, &run);
+    free(run.list.pairs);
+    free(run.list.contacts);
+    query_checks_free(&run.checks);
     return status;
 }
 
@@ -364,10 +439,8 @@ static int do_files(query_settings *set)
 {
     query_subject rest;
     memset(&rest, 0, sizeof rest);
-    query_list list = {NULL, 0, 0, NULL};
-    query_summary summary;
-    memset(&summary, 0, sizeof summary);
-    FILE *out = NULL;
+    query_run run;
+    memset(&run, 0, sizeof run);
     int status = TOOL_CLEAN;
 
     if (set->rest_path) {
@@ -383,35 +456,38 @@ static int do_files(query_settings *set)
         follow_model(set, rest.model);
     }
     if (status == TOOL_CLEAN && set->out_path) {
-        out = fopen(set->out_path, "w");
-        if (!out) {
+        run.out = fopen(set->out_path, "w");
+        if (!run.out) {
             tool_error("%s: cannot be written: %s", set->out_path, strerror(errno));
             status = TOOL_FAILED;
         } else if (!set->replay_path) {
-            query_report_pairs_head(out, set);
+            query_report_pairs_head(run.out, set);
         }
     }
-    const query_subject *common = set->rest_path || set->model_path ? &rest : NULL;
+    run.rest = set->rest_path || set->model_path ? &rest : NULL;
+    if (status == TOOL_CLEAN && !begin_page(&run, set)) status = TOOL_FAILED;
     if (status == TOOL_CLEAN && set->jsonl_path) {
-        status = do_batch(set, common);
+        status = do_batch(set, run.rest);
     } else if (status == TOOL_CLEAN) {
         query_report_head(set);
-        if (set->replay_path) status = do_replay(set, out, &list);
+        if (set->replay_path) status = do_replay(set, run.out, &run.list);
         for (int i = 0; i < set->path_count; i++) {
-            const int done = do_file(set->paths[i], set, common, out, &list, &summary);
+            const int done = do_file(set->paths[i], set, &run);
             status = query_text_worse(status, done);
         }
-        if (!query_summary_print(&summary, false, set->json)) status = TOOL_FAILED;
+        if (!query_summary_print(&run.summary, false, set->json)) status = TOOL_FAILED;
     }
-    if (out) {
-        const bool written = !ferror(out);
-        if (fclose(out) != 0 || !written) {
+    if (!end_page(&run, set)) status = TOOL_FAILED;
+    if (run.out) {
+        const bool written = !ferror(run.out);
+        if (fclose(run.out) != 0 || !written) {
             tool_error("%s: could not be written to the end", set->out_path);
             status = TOOL_FAILED;
         }
     }
-    free(list.pairs);
-    free(list.contacts);
+    free(run.list.pairs);
+    free(run.list.contacts);
+    query_checks_free(&run.checks);
     query_subject_free(&rest);
     return status;
 }

@@ -74,3 +74,18 @@ bool tool_json_print(cJSON *object)
     free(line);
     return line != NULL;
 }
+
+/* A < stands in names only, which may write it as they like. */
+bool tool_json_write(cJSON *object, FILE *file)
+{
+    size_t size;
+    char *line = tool_json_line(object, &size);
+    for (size_t i = 0; line && i + 1 < size; i++) {
+        if (line[i] == '<')
+            fputs("\\u003c", file);
+        else
+            fputc(line[i], file);
+    }
+    free(line);
+    return line != NULL;
+}

@@ -10,6 +10,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* The number of the form that objects have, as starcontour.schema.json describes it: another one
    where a reader of this one would be misled. More members do not change it. */
@@ -26,5 +27,8 @@ char *tool_json_line(cJSON *object, size_t *size);
 
 /* Prints such a line; false, with a message, if there is no memory. */
 bool tool_json_print(cJSON *object);
+
+/* The same within a page of HTML, to a file and without a line end: no text ends a script. */
+bool tool_json_write(cJSON *object, FILE *file);
 
 #endif /* TOOLS_TOOL_JSON_H */
