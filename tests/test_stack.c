@@ -251,9 +251,9 @@ static void calls_take_little_stack(void)
             CHECK_MSG(meeting > empty && c.status == SC_OK, "status %d", (int)c.status);
             if (meeting - empty > most_meeting) most_meeting = meeting - empty;
             c.apart = (sc_pair){0, 3 * 40 + (uint32_t)k % 3};
-            const size_t near = stack_of(find_closest, &c);
-            CHECK_MSG(near > empty && c.status == SC_OK, "status %d", (int)c.status);
-            if (near - empty > most_near) most_near = near - empty;
+            const size_t closest = stack_of(find_closest, &c);
+            CHECK_MSG(closest > empty && c.status == SC_OK, "status %d", (int)c.status);
+            if (closest - empty > most_near) most_near = closest - empty;
             c.separation = k % 2 ? 0.01 * units[u] : 0;
             c.stepped = (sc_step_result){.struct_size = sizeof(c.stepped),
                                          .vertex_face_capacity = PAIRS,
