@@ -58,6 +58,14 @@ static inline void leave_pairs(sc_worker *w, uint32_t most, int moves)
     sc_worker_count_boxes(w, 1, follow);
 }
 
+/* Has two patches wait, or one against itself. */
+static inline void add_patches(sc_worker *w, uint32_t item, uint32_t b)
+{
+    sc_pair *to = &w->lists.patches[w->lists.count[SC_LIST_PATCHES]++];
+    to->a = item;
+    to->b = b;
+}
+
 /* Two patches of a level whose boxes overlap: the descendants of one at the next level that is
    visited, sixteen at most, against the other's box, then row by row against the other's; rows of
    leaf clusters wait. */
@@ -92,15 +100,13 @@ static inline void open_patches(sc_worker *w, uint32_t item, uint32_t b, int mov
     for (; rows; rows &= rows - 1) {
         const uint32_t c = first_a + sc_bits_lowest(rows);
         unsigned mask = near_patches(w->frame, c, first_b, moves) & all_b;
-        for (; mask; mask &= mask - 1) {
-            sc_pair *to = &l->patches[l->count[SC_LIST_PATCHES]++];
-            to->a = c | bit;
-            to->b = first_b + sc_bits_lowest(mask);
-        }
+        for (; mask; mask &= mask - 1) add_patches(w, c | bit, first_b + sc_bits_lowest(mask));
     }
 }
 
-/* A patch against itself: its descendants at that level, and each of them with those behind it. */
+/* A patch against itself: its descendants at that level, and each of them with those behind it. The
+   list is a stack, so the last come first: then all of one patch is looked at, and its pairs with
+   others, before the next, while what it needs is in the cache. */
 static inline void open_patch(sc_worker *w, uint32_t item, int moves)
 {
     const sc_model *model = w->model;
@@ -116,28 +122,22 @@ static inline void open_patch(sc_worker *w, uint32_t item, int moves)
     first = box_child[a];
     count = box_child[a + 1] - first;
     sc_worker_count_boxes(w, sc_item_follows(item), count);
-    for (i = 0; i < count && first < leaves; i++) { /* below the pairs: the list is a stack */
-        l->patches[l->count[SC_LIST_PATCHES]].a = (first + i) | bit;
-        l->patches[l->count[SC_LIST_PATCHES]++].b = first + i;
+    if (first >= leaves) {
+        for (i = 0; i < count; i++) {
+            const uint32_t c = first + i - leaves, at = l->count[SC_LIST_ROWS];
+            l->row[0][at] = c | bit;
+            l->row[1][at] = c + 1;
+            l->row[2][at] = ((1u << count) - 1u) >> (i + 1); /* those behind it */
+            l->count[SC_LIST_ROWS] += i + 1 < count;
+            sc_worker_add_leaf(w, c | bit);
+        }
+        return;
     }
-    for (i = 0; i < count; i++) {
+    for (i = count; i-- > 0;) {
         const uint32_t c = first + i;
-        unsigned mask = ((1u << count) - 1u) >> (i + 1); /* those behind it */
-        if (c >= leaves) {
-            const uint32_t at = l->count[SC_LIST_ROWS];
-            l->row[0][at] = (c - leaves) | bit;
-            l->row[1][at] = c - leaves + 1;
-            l->row[2][at] = mask;
-            l->count[SC_LIST_ROWS] += mask != 0;
-            sc_worker_add_leaf(w, (c - leaves) | bit);
-            continue;
-        }
-        mask &= near_patches(w->frame, c, c + 1, moves);
-        for (; mask; mask &= mask - 1) {
-            sc_pair *to = &l->patches[l->count[SC_LIST_PATCHES]++];
-            to->a = c | bit;
-            to->b = c + 1 + sc_bits_lowest(mask);
-        }
+        unsigned mask = near_patches(w->frame, c, c + 1, moves) & ((1u << count) - 1u) >> (i + 1);
+        for (; mask; mask &= mask - 1) add_patches(w, c | bit, c + 1 + sc_bits_lowest(mask));
+        add_patches(w, c | bit, c);
     }
 }
 
