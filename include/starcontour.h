@@ -896,10 +896,10 @@ typedef struct sc_step_options {
     double tolerance;  /* how exactly distances are told, the same units: positive, or 0 for a
                           millionth of the longest side of the box that holds the mesh in both
                           poses */
-    const sc_tasks *tasks;           /* the host's threads, or NULL. See "Several threads" at
+    const sc_tasks *tasks;               /* the host's threads, or NULL. See "Several threads" at
                                         sc_query_step */
-    const volatile uint32_t *cancel; /* as in sc_query_options */
-    uint64_t budget;                 /* as in sc_query_options */
+    const volatile uint32_t *cancel;     /* as in sc_query_options */
+    uint64_t budget;                     /* as in sc_query_options */
     const sc_filter *vertex_face_filter; /* which pairs of a kind are not wanted, or NULL; see
                                             "Filters of pairs of features" at sc_query_step */
     const sc_filter *edge_edge_filter;
@@ -1041,11 +1041,7 @@ SC_API sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, c
  */
 
 /* Which kinds of pairs are sought. */
-enum {
-    SC_NEAR_BOTH = 0,
-    SC_NEAR_VERTEX_FACE = 1,
-    SC_NEAR_EDGE_EDGE = 2
-};
+enum { SC_NEAR_BOTH = 0, SC_NEAR_VERTEX_FACE = 1, SC_NEAR_EDGE_EDGE = 2 };
 
 /* Which way pairs are sought. The answer is the same. The default is SC_NEAR_METHOD_SCTT, on a model
    with SC_MODEL_BOXES SC_NEAR_METHOD_BOXES. */
@@ -1064,9 +1060,10 @@ typedef struct sc_near_options {
     uint32_t method;   /* SC_NEAR_METHOD_... */
     uint32_t simd;     /* SC_SIMD_... */
     uint32_t reserved; /* 0 */
-    double distance;   /* pairs that are this near or nearer are reported; 0 or more, finite, in units
+    double distance; /* pairs that are this near or nearer are reported; 0 or more, finite, in units
                           of the coordinates. 0: those that touch */
-    const sc_filter *vertex_face_filter; /* which pairs of a kind are not wanted, or NULL; see "Filters
+    const sc_filter
+        *vertex_face_filter; /* which pairs of a kind are not wanted, or NULL; see "Filters
                                             of pairs of features" at sc_query_step */
     const sc_filter *edge_edge_filter;
     const sc_pose *rest; /* a pose, or NULL; pairs that are within rest_distance of each other in it
@@ -1085,10 +1082,10 @@ typedef struct sc_near_options {
  */
 typedef struct sc_near_result {
     uint32_t struct_size;
-    uint32_t found;    /* out: 1 if there is a pair, else 0 */
-    uint32_t verdict;  /* out: SC_VERDICT_... */
-    uint32_t reserved; /* out: 0 */
-    uint64_t vertex_face_count;    /* out: the number of such pairs; of both kinds together 0 or 1 for
+    uint32_t found;             /* out: 1 if there is a pair, else 0 */
+    uint32_t verdict;           /* out: SC_VERDICT_... */
+    uint32_t reserved;          /* out: 0 */
+    uint64_t vertex_face_count; /* out: the number of such pairs; of both kinds together 0 or 1 for
                                       SC_OUTPUT_ANY */
     uint64_t vertex_face_capacity; /* in: entries of vertex_faces */
     sc_pair *vertex_faces;         /* in: the caller's array */

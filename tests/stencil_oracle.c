@@ -277,8 +277,8 @@ void stencil_oracle_find(stencil_oracle *o, uint32_t kind, double points[4][3])
         int order;
         if (!sets[i] || !try_set(o, sets[i])) continue;
         order = best ? mpq_cmp(o->least, o->square) : -1;
-        if (order > 0 || (order == 0 && (count_of(sets[i]) > count_of(best) ||
-                                         !is_preferred(o, sets[i], best))))
+        if (order > 0 ||
+            (order == 0 && (count_of(sets[i]) > count_of(best) || !is_preferred(o, sets[i], best))))
             continue;
         best = sets[i];
         mpq_set(o->square, o->least);

@@ -389,8 +389,7 @@ static void step_filters(void)
             "options.rest_distance is inf, but finite and at least 0");
     REFUSED(step, REST(c.rest.vertex_count = 8), SC_ERROR_VERTEX_COUNT,
             "options.rest.vertex_count is 8, but the model has 9");
-    REFUSED(step, REST(c.rest.positions = NULL), SC_ERROR_NULL,
-            "options.rest.positions is NULL");
+    REFUSED(step, REST(c.rest.positions = NULL), SC_ERROR_NULL, "options.rest.positions is NULL");
     REFUSED(step, REST(c.rest.position_type = 2), SC_ERROR_OPTION,
             "options.rest.position_type is 2, but at most 1");
     REFUSED(step, REST(c.rest.position_stride = 23), SC_ERROR_STRIDE,

@@ -119,7 +119,7 @@ static int is_wanted(const subject *s, const sc_filter *f, uint32_t kind, sc_pai
             if (s->apart[(size_t)a[i] * n + b[k]] < f->ignore_rings) return 0;
     if (f->triangle_groups &&
         !filter_rules_collide(f->triangle_groups[kind == SC_PAIRS_EDGE ? pair.a / 3 : pair.a],
-                 f->triangle_groups[pair.b]))
+                              f->triangle_groups[pair.b]))
         return 0;
     if (f->vertex_groups &&
         !filter_rules_collide(filter_rules_group_of(f->vertex_groups, a, a_count),

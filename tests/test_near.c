@@ -36,7 +36,7 @@ typedef struct scene {
     sc_pose pose;
     sc_model *model;
     sc_workspace *shared; /* for two workers */
-    double edge, extent; /* an edge's length, and the pose's along an axis */
+    double edge, extent;  /* an edge's length, and the pose's along an axis */
 } scene;
 
 /* Counts, so that a test can say that it saw what it is about. */
@@ -386,9 +386,9 @@ static void poses_of_steps(void)
 static void adversaries(void)
 {
     static adversary (*const makers[])(void) = {
-        adversary_slit,   adversary_strip,   adversary_petals,  adversary_doubled,
-        adversary_book,   adversary_moebius, adversary_klein,   adversary_degenerate,
-        adversary_sheets, adversary_upright, adversary_shallow, adversary_ring,
+        adversary_slit,    adversary_strip,   adversary_petals,  adversary_doubled,
+        adversary_book,    adversary_moebius, adversary_klein,   adversary_degenerate,
+        adversary_sheets,  adversary_upright, adversary_shallow, adversary_ring,
         adversary_corners, adversary_faces};
     enum { MAKERS = sizeof(makers) / sizeof(makers[0]) };
     tally sum;
@@ -507,8 +507,8 @@ static void layers_at_the_distance(void)
         if (scene_start(&s, "layers", mesh, posed, SC_DOUBLE, state)) {
             static const double parts[] = {1, 1 + 1e-8, 1 + 1e-6, 1 - 1e-6, 1 + 1e-4};
             for (int d = 0; d < 5; ++d) {
-                sc_near_options options = near_options_for(&near_ways[d % 2 ? 0 : 4],
-                                                           apart * parts[d]);
+                sc_near_options options =
+                    near_options_for(&near_ways[d % 2 ? 0 : 4], apart * parts[d]);
                 near_answer all = near_ask_all(&s.q, &options);
                 near_truth_check(&s.q, &s.m, &all, options.distance, "layers");
                 within += all.count[0] + all.count[1];
@@ -569,5 +569,5 @@ static void none_apart_and_all(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_scene), SC_TEST(poses_of_steps), SC_TEST(adversaries),
-             SC_TEST(soups_on_grids), SC_TEST(ties_on_flat_grids), SC_TEST(layers_at_the_distance), SC_TEST(many_edges_in_a_leaf),
-             SC_TEST(none_apart_and_all))
+             SC_TEST(soups_on_grids), SC_TEST(ties_on_flat_grids), SC_TEST(layers_at_the_distance),
+             SC_TEST(many_edges_in_a_leaf), SC_TEST(none_apart_and_all))

@@ -17,7 +17,7 @@
 
 /* The kernels, as simd/kernels_base.c has them. */
 #define SC_KERNELS near_bounds_kernels
-#define SC_LANES   SC_QUADS
+#define SC_LANES SC_QUADS
 
 #include "simd/all_kernels.h"
 
@@ -105,8 +105,8 @@ static attack draw_attack(int faces, int way)
         }
     }
     points = (const double(*)[3])a.truth;
-    a.distance = faces ? near_oracle_distance_vertex_face(points)
-                       : near_oracle_distance_edge_edge(points);
+    a.distance =
+        faces ? near_oracle_distance_vertex_face(points) : near_oracle_distance_edge_edge(points);
     a.size = faces ? extent_of(&a, 1, 3) : extent_of(&a, 0, 2) + extent_of(&a, 2, 2);
     return a;
 }

@@ -164,10 +164,10 @@ static void end(near_call *c)
 }
 
 #define REFUSED(change, wanted, message)                                                           \
-    do {                                                                                           \
-        change;                                                                                    \
-        expect(&c, ask(&c), wanted, message, __LINE__);                                            \
-    } while (0)
+  do {                                                                                             \
+    change;                                                                                        \
+    expect(&c, ask(&c), wanted, message, __LINE__);                                                \
+  } while (0)
 
 static void options_and_results(void)
 {
@@ -231,7 +231,8 @@ static void models_workspaces_and_poses(void)
         for (uint32_t i = 0; i < 27; ++i) {
             const double before = c.posed[i];
             c.posed[i] = i % 2 ? (double)NAN : HUGE_VAL;
-            CHECK(ask(&c) == SC_ERROR_NOT_FINITE && c.result.vertex_face_count == 0 && c.result.verdict == SC_VERDICT_NONE);
+            CHECK(ask(&c) == SC_ERROR_NOT_FINITE && c.result.vertex_face_count == 0 &&
+                  c.result.verdict == SC_VERDICT_NONE);
             c.posed[i] = before;
             CHECK(is_right(&c));
             make_right(&c);

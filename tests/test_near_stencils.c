@@ -159,13 +159,27 @@ static void make_exact(double points[4][3])
 static void make_any(double points[4][3])
 {
     switch (test_random_below(13)) {
-    case 10: make_perpendicular(points); break;
-    case 11: make_on_noisy_grid(points); break;
-    case 12: make_exact(points); break;
-    case 0: make_random(points); break;
-    case 1: make_on_grid(points, 2); break;
-    case 2: make_on_grid(points, 1 + test_random_below(6)); break;
-    case 3: make_on_grid(points, UINT32_C(1) << (10 + test_random_below(21))); break;
+    case 10:
+        make_perpendicular(points);
+        break;
+    case 11:
+        make_on_noisy_grid(points);
+        break;
+    case 12:
+        make_exact(points);
+        break;
+    case 0:
+        make_random(points);
+        break;
+    case 1:
+        make_on_grid(points, 2);
+        break;
+    case 2:
+        make_on_grid(points, 1 + test_random_below(6));
+        break;
+    case 3:
+        make_on_grid(points, UINT32_C(1) << (10 + test_random_below(21)));
+        break;
     case 4:
         make_random(points);
         put_on_line(points, 3, 1, 2);
@@ -175,8 +189,12 @@ static void make_any(double points[4][3])
         put_in_plane(points);
         if (test_random_below(2)) put_on_line(points, 3, 1, 2);
         break;
-    case 6: make_parallel(points); break;
-    case 7: make_parallel_fine(points); break;
+    case 6:
+        make_parallel(points);
+        break;
+    case 7:
+        make_parallel_fine(points);
+        break;
     case 8: /* points at one place, or nearly */
         make_random(points);
         for (int i = 0; i < 2; ++i) {

@@ -62,7 +62,7 @@ typedef struct accept_log {
     uint64_t count, capacity;
     uint32_t salt;
     pthread_t thread;
-    int strangers; /* calls by other threads */
+    int strangers;           /* calls by other threads */
     volatile uint32_t *flag; /* set after so many calls, if not NULL */
     uint64_t until;
 } accept_log;
@@ -426,15 +426,15 @@ static void check_way(const subject *s, const wish *w, sc_step_options o, int wa
                                : SC_STEP_TIMES_EACH;
     status = ask(s, &o, &r);
     if (o.times == SC_STEP_TIMES_NONE) earliest = v + e > 0 ? 0 : 1;
-    CHECK_MSG(status == (is_short ? SC_ERROR_SHORT_BUFFER : SC_OK) &&
-                  r.collides == (v + e > 0) && r.earliest == earliest &&
+    CHECK_MSG(status == (is_short ? SC_ERROR_SHORT_BUFFER : SC_OK) && r.collides == (v + e > 0) &&
+                  r.earliest == earliest &&
                   r.verdict == (v + e > 0 ? SC_VERDICT_FOUND : SC_VERDICT_CLEAN),
               "%s, way %d, method %u: status %d, collides %u, earliest %g instead of %g; state "
               "%" PRIu64,
               s->name, way, o.method, (int)status, r.collides, r.earliest, earliest, s->state);
     if (way >= ANY)
-        CHECK(r.vertex_face_count + r.edge_edge_count == (v + e > 0) &&
-              r.vertex_face_count <= v && r.edge_edge_count <= e);
+        CHECK(r.vertex_face_count + r.edge_edge_count == (v + e > 0) && r.vertex_face_count <= v &&
+              r.edge_edge_count <= e);
     else
         CHECK_MSG(r.vertex_face_count == v && r.edge_edge_count == e,
                   "%s, way %d, method %u, pairs %u: %" PRIu64 ", %" PRIu64 " instead of %" PRIu64

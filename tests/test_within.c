@@ -109,8 +109,7 @@ static int check(sc_within_kind kind, const points *q, double d, tally *t)
               by_words);
     if (test_failures() > failures) {
         test_note("kind %d, distance %a", (int)kind, d);
-        for (int i = 0; i < 4; ++i)
-            test_note("{%a, %a, %a}", q->p[i][0], q->p[i][1], q->p[i][2]);
+        for (int i = 0; i < 4; ++i) test_note("{%a, %a, %a}", q->p[i][0], q->p[i][1], q->p[i][2]);
     }
     return truth;
 }
@@ -215,8 +214,7 @@ static void make_on_grid(sc_within_kind kind, points *q)
     double place = test_random_below(2) ? whole(1000) : 0;
     (void)kind;
     for (int i = 0; i < 4; ++i) {
-        for (int k = 0; k < 3; ++k)
-            q->p[i][k] = k == 2 && flat ? 0 : (whole(range) + place) * edge;
+        for (int k = 0; k < 3; ++k) q->p[i][k] = k == 2 && flat ? 0 : (whole(range) + place) * edge;
     }
 }
 
@@ -236,11 +234,13 @@ static void make_degenerate(sc_within_kind kind, points *q)
             *x[3] = kind == SC_WITHIN_VERTEX_FACE ? *x[1] + s * (*x[2] - *x[1])
                                                   : *x[2] + s * (*x[1] - *x[0]);
             break;
-        case 1: *x[3] = *x[2]; break;
+        case 1:
+            *x[3] = *x[2];
+            break;
         default: /* next to each other */
             if (split == 1) {
-                *x[0] = *x[1] + fabs(s) * (*x[2] - *x[1]) +
-                        fabs(t) * (1 - fabs(s)) * (*x[3] - *x[1]);
+                *x[0] =
+                    *x[1] + fabs(s) * (*x[2] - *x[1]) + fabs(t) * (1 - fabs(s)) * (*x[3] - *x[1]);
             } else {
                 double there = *x[0] + fabs(s) * (*x[1] - *x[0]);
                 *x[3] = there + fabs(t) * (there - *x[2]);
@@ -257,9 +257,9 @@ static void make_degenerate(sc_within_kind kind, points *q)
  */
 static double make_exact(sc_within_kind kind, points *q)
 {
-    static const int vectors[][4] = {{0, 0, 1, 1},  {1, 2, 2, 3},  {2, 3, 6, 7},  {1, 4, 8, 9},
-                                     {4, 4, 7, 9},  {2, 6, 9, 11}, {3, 4, 12, 13}, {2, 5, 14, 15},
-                                     {0, 3, 4, 5},  {8, 9, 12, 17}};
+    static const int vectors[][4] = {{0, 0, 1, 1}, {1, 2, 2, 3},  {2, 3, 6, 7},   {1, 4, 8, 9},
+                                     {4, 4, 7, 9}, {2, 6, 9, 11}, {3, 4, 12, 13}, {2, 5, 14, 15},
+                                     {0, 3, 4, 5}, {8, 9, 12, 17}};
     const int *n = vectors[test_random_below(10)];
     int first = (int)test_random_below(3), step = 1 + (int)test_random_below(2), times;
     double a[3], u[3], v[3], power = exp2((double)test_random_below(40) - 20);
@@ -370,10 +370,17 @@ static void huge_and_tiny_pairs(void)
         else
             make_random(kind, &q);
         switch (test_random_below(4)) {
-        case 0: scale_all(&q, exp2(900)); break;
-        case 1: scale_all(&q, exp2(-900)); break;
-        case 2: scale_all(&q, exp2(-1030)); break; /* subnormal */
-        default: scale_all(&q, exp2(whole(300)));
+        case 0:
+            scale_all(&q, exp2(900));
+            break;
+        case 1:
+            scale_all(&q, exp2(-900));
+            break;
+        case 2:
+            scale_all(&q, exp2(-1030));
+            break; /* subnormal */
+        default:
+            scale_all(&q, exp2(whole(300)));
         }
         for (int j = 0; j < 12; ++j) {
             if (!(fabs(q.p[j / 3][j % 3]) <= DBL_MAX)) q.p[j / 3][j % 3] = DBL_MAX;
@@ -535,5 +542,4 @@ static void products_of_limbs(void)
 SC_TEST_MAIN(SC_TEST(random_pairs), SC_TEST(mixed_pairs), SC_TEST(pairs_on_a_grid),
              SC_TEST(degenerate_pairs), SC_TEST(exact_distances), SC_TEST(huge_and_tiny_pairs),
              SC_TEST(distances_that_vanish_when_scaled), SC_TEST(words_at_the_limit),
-             SC_TEST(touching_pairs),
-             SC_TEST(doubles_settle_most), SC_TEST(products_of_limbs))
+             SC_TEST(touching_pairs), SC_TEST(doubles_settle_most), SC_TEST(products_of_limbs))

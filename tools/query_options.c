@@ -213,7 +213,8 @@ static const char *check_batch(const query_settings *set)
         return "--manifest is in place of meshes on the command line";
     if (set->is_step || set->is_near || set->out_path || set->ply_path || set->html_path ||
         set->png_path || set->record_path || set->replay_path)
-        return "--jsonl does not go with --step, --near, --out, --ply, --html, --png, --record or --replay";
+        return "--jsonl does not go with --step, --near, --out, --ply, --html, --png, --record or "
+               "--replay";
     if (set->threads > 1) return "--jsonl has --jobs, meshes at a time, in place of --threads";
     if (set->stats && !set->timings) return "--stats are times, which --jsonl has with --timings";
     return NULL;
@@ -275,7 +276,7 @@ static bool check_settings(const query_settings *set)
 /* No file that is to be read is written over. */
 static bool spares_files(const query_settings *set)
 {
-    const char *const out[] = {set->out_path,   set->ply_path, set->record_path,
+    const char *const out[] = {set->out_path,   set->ply_path,  set->record_path,
                                set->jsonl_path, set->html_path, set->png_path};
     for (int i = 0; i < 6; i++) {
         if (!tool_spares(out[i], set->rest_path) || !tool_spares(out[i], set->model_path) ||
@@ -402,8 +403,8 @@ int query_options_read(int argc, char **argv, query_settings *set)
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_RECORD ||
             option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE || option == OPTION_ONLY ||
             option == OPTION_HTML || option == OPTION_PNG || option == OPTION_CONTACTS ||
-            option == OPTION_CONTOUR || option == OPTION_STEP ||
-            option == OPTION_SEPARATION || option == OPTION_TOLERANCE || option == OPTION_TIMES)
+            option == OPTION_CONTOUR || option == OPTION_STEP || option == OPTION_SEPARATION ||
+            option == OPTION_TOLERANCE || option == OPTION_TIMES)
             set->not_of_near = options[which].name;
         set->is_near_asked |=
             option == OPTION_KINDS || option == OPTION_LIST || option == OPTION_STENCILS;

@@ -410,8 +410,7 @@ static bool open_run(step_run *run, const char *first, char error[MESH_FILE_ERRO
                                 run->filters, error))
         return false;
     for (int kind = 0; kind < KINDS; kind++) run->filters[kind].ignore_rings = set->ignore_rings;
-    run->rest =
-        tool_pose(run->mesh->positions, run->mesh->position_type, run->mesh->vertex_count);
+    run->rest = tool_pose(run->mesh->positions, run->mesh->position_type, run->mesh->vertex_count);
     if (wants_list(run)) {
         run->vertex_objects = mesh_vertex_objects(run->mesh);
         if (!run->vertex_objects) snprintf(error, MESH_FILE_ERROR_SIZE, "%s: out of memory", first);

@@ -192,7 +192,8 @@ static void pass_by_digit(const sc_pair *from, sc_pair *to, uint64_t count, unsi
     uint32_t first[DIGIT_VALUES + 1], digit;
     uint64_t i;
     memset(first, 0, sizeof first);
-    for (i = 0; i < count; i++) first[(sc_sort_number(from[i]) >> shift & (DIGIT_VALUES - 1)) + 1]++;
+    for (i = 0; i < count; i++)
+        first[(sc_sort_number(from[i]) >> shift & (DIGIT_VALUES - 1)) + 1]++;
     for (digit = 0; digit < DIGIT_VALUES; digit++) first[digit + 1] += first[digit];
     for (i = 0; i < count; i++)
         to[first[sc_sort_number(from[i]) >> shift & (DIGIT_VALUES - 1)]++] = from[i];
@@ -238,8 +239,7 @@ void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count)
     bits_a = bits_of((uint32_t)(differ >> 32));
     bits_b = bits_of((uint32_t)differ);
     /* where many have the same a, by b as well; else what is left is near its place */
-    if (count >> bits_a >= SAME_FEW)
-        sorted = pass_by_digits(pairs, spare, count, 0, bits_b);
+    if (count >> bits_a >= SAME_FEW) sorted = pass_by_digits(pairs, spare, count, 0, bits_b);
     sorted = pass_by_digits(sorted, sorted == pairs ? spare : pairs, count, 32, bits_a);
     if (sorted != pairs) memcpy(pairs, sorted, (size_t)count * sizeof *pairs);
     if (!insertion_sort(pairs, count, 4 * count)) sc_sort_pairs(pairs, count);

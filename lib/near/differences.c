@@ -332,8 +332,7 @@ int sc_quad_is_zero(const sc_quad *quad, const sc_cross *n)
     int k;
     for (k = 0; k < 3; k++) {
         const sc_twofold *part = &n->part[k];
-        if (quad->is_moderate &&
-            fabs(part->high + part->low) > SC_BOUNDS_TWOFOLD * part->magnitude)
+        if (quad->is_moderate && fabs(part->high + part->low) > SC_BOUNDS_TWOFOLD * part->magnitude)
             return 0;
     }
     for (k = 0; k < 3; k++)

@@ -25,7 +25,7 @@ typedef struct sc_twofold {
 
 typedef struct sc_quad {
     const double *point[4];
-    int is_moderate; /* no operation on two doubles can overflow or underflow */
+    int is_moderate;  /* no operation on two doubles can overflow or underflow */
     int has_few_bits; /* and they are all exact */
 } sc_quad;
 

@@ -46,10 +46,10 @@ static inline lanes near_clamp(lanes x)
 static inline unsigned near_or_far(const lanes w[3], lanes g, const near_limits *limits)
 {
     const lanes square = near_inner(w, w);
-    const lanes_mask far = lanes_both(
-        lanes_both(lanes_below(lanes_all(0), g),
-                   lanes_below(lanes_all(SC_BOUNDS_NEAR_LEAST), square)),
-        lanes_below(lanes_multiply(square, limits->far), lanes_multiply(g, g)));
+    const lanes_mask far =
+        lanes_both(lanes_both(lanes_below(lanes_all(0), g),
+                              lanes_below(lanes_all(SC_BOUNDS_NEAR_LEAST), square)),
+                   lanes_below(lanes_multiply(square, limits->far), lanes_multiply(g, g)));
     return lanes_bits(lanes_not_above(square, limits->near)) | lanes_bits(far) << 16;
 }
 
@@ -80,9 +80,8 @@ static inline unsigned judge_faces(const lanes v[3], const lanes e[3], const lan
                                              lanes_subtract(lanes_subtract(ff, ef), back)));
     const lanes s3 = lanes_subtract(one, t3);
     const lanes d1 = near_along(s1, ee, ev), d2 = near_along(t2, ff, fv);
-    const lanes d3 =
-        lanes_add(lanes_add(near_along(s3, ee, ev), near_along(t3, ff, fv)),
-                  lanes_multiply(lanes_multiply(s3, t3), lanes_add(ef, ef)));
+    const lanes d3 = lanes_add(lanes_add(near_along(s3, ee, ev), near_along(t3, ff, fv)),
+                               lanes_multiply(lanes_multiply(s3, t3), lanes_add(ef, ef)));
     const lanes_mask second = lanes_below(d2, d1);
     const lanes_mask third = lanes_below(d3, lanes_smaller(d1, d2));
     const lanes scale = lanes_divide(one, det);
@@ -94,8 +93,8 @@ static inline unsigned judge_faces(const lanes v[3], const lanes e[3], const lan
     t = lanes_choose(inside, lanes_multiply(q, scale), t);
     SC_UNROLL
     for (k = 0; k < 3; k++)
-        w[k] = lanes_subtract(lanes_subtract(v[k], lanes_multiply(s, e[k])),
-                              lanes_multiply(t, f[k]));
+        w[k] =
+            lanes_subtract(lanes_subtract(v[k], lanes_multiply(s, e[k])), lanes_multiply(t, f[k]));
     return near_or_far(
         (const lanes *)w,
         lanes_subtract(near_inner((const lanes *)w, v),
@@ -111,8 +110,8 @@ static inline unsigned judge_edges(const lanes v[3], const lanes e[3], const lan
     const lanes ee = near_inner(e, e), ef = near_inner(e, f), ff = near_inner(f, f);
     const lanes ev = near_inner(e, v), fv = near_inner(f, v);
     const lanes det = lanes_subtract(lanes_multiply(ee, ff), lanes_multiply(ef, ef));
-    lanes s = near_clamp(lanes_divide(
-        lanes_subtract(lanes_multiply(ef, fv), lanes_multiply(ff, ev)), det));
+    lanes s = near_clamp(
+        lanes_divide(lanes_subtract(lanes_multiply(ef, fv), lanes_multiply(ff, ev)), det));
     const lanes t = near_clamp(lanes_divide(lanes_add(lanes_multiply(ef, s), fv), ff));
     lanes w[3];
     int k;

@@ -27,8 +27,8 @@ static inline void list_own_edges(const uint8_t *owned, uint32_t count, sc_near_
         const uint8_t *on = to->corner + SC_LEAF_MAX * ((k + 1) % 3);
         lanes_bytes_store(to->end[0] + edges, lanes_bytes_through(lanes_bytes_load(from), numbers));
         lanes_bytes_store(to->end[1] + edges, lanes_bytes_through(lanes_bytes_load(on), numbers));
-        lanes_bytes_store(to->of + edges, lanes_bytes_either(
-                                              numbers, lanes_bytes_all((uint8_t)(SC_LEAF_MAX * k))));
+        lanes_bytes_store(to->of + edges,
+                          lanes_bytes_either(numbers, lanes_bytes_all((uint8_t)(SC_LEAF_MAX * k))));
         to->owned[k] = (uint16_t)sides[k];
         edges += some;
     }

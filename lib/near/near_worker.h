@@ -14,24 +14,24 @@ enum { SC_NEAR_EDGES = 3 * SC_LEAF_MAX };
 /* The derived data of a leaf cluster, in the unit box; see near/near_leaf_kernel.h. Rows are filled
    with the last point or triangle; edges with the first. */
 typedef struct sc_near_leaf {
-    float at[3][SC_LEAF_POINTS];   /* points */
-    float side[6][SC_LEAF_MAX];    /* boxes of triangles: lows, then highs */
-    float normal[3][SC_LEAF_MAX];  /* of triangles, and the slabs that these are in along them: */
-    float slab[2][SC_LEAF_MAX];    /* the ends, moved outwards by the distance and by what they are
+    float at[3][SC_LEAF_POINTS];  /* points */
+    float side[6][SC_LEAF_MAX];   /* boxes of triangles: lows, then highs */
+    float normal[3][SC_LEAF_MAX]; /* of triangles, and the slabs that these are in along them: */
+    float slab[2][SC_LEAF_MAX];   /* the ends, moved outwards by the distance and by what they are
                                       off by */
-    float direction[3], leaf_slab[2];   /* the slab of all points, likewise */
-    float box[6];                  /* of all points, moved outwards by the margin: lows, highs */
-    float extent;                  /* the largest extent of an edge along an axis */
-    uint32_t leaf, first;          /* and the place of its first triangle */
-    const uint32_t *point;         /* SC_LEAF_POINTS: the caller's numbers of points */
-    const uint32_t *face;          /* and of triangles */
-    const uint8_t *corner;         /* 3 SC_LEAF_MAX: which points are corners of triangles */
-    uint8_t end[2][SC_NEAR_EDGES]; /* and ends of edges: first sides 0, then 1, then 2 */
-    uint8_t of[SC_NEAR_EDGES];     /* side k of triangle i as 16 k + i */
-    uint16_t owned[3];             /* bit i of k: triangle i names its side k */
-    uint16_t own;                  /* bit i: the leaf cluster is the first to have point i */
-    uint16_t triangles;            /* bit i: there is a triangle i */
-    uint16_t edges;                /* how many */
+    float direction[3], leaf_slab[2]; /* the slab of all points, likewise */
+    float box[6];                     /* of all points, moved outwards by the margin: lows, highs */
+    float extent;                     /* the largest extent of an edge along an axis */
+    uint32_t leaf, first;             /* and the place of its first triangle */
+    const uint32_t *point;            /* SC_LEAF_POINTS: the caller's numbers of points */
+    const uint32_t *face;             /* and of triangles */
+    const uint8_t *corner;            /* 3 SC_LEAF_MAX: which points are corners of triangles */
+    uint8_t end[2][SC_NEAR_EDGES];    /* and ends of edges: first sides 0, then 1, then 2 */
+    uint8_t of[SC_NEAR_EDGES];        /* side k of triangle i as 16 k + i */
+    uint16_t owned[3];                /* bit i of k: triangle i names its side k */
+    uint16_t own;                     /* bit i: the leaf cluster is the first to have point i */
+    uint16_t triangles;               /* bit i: there is a triangle i */
+    uint16_t edges;                   /* how many */
 } sc_near_leaf;
 
 /* Where there is no room for that of all leaf clusters, there is for so many: a power of two. */
@@ -50,7 +50,7 @@ typedef struct sc_near_worker {
     uint8_t *made;        /* leaf_count + SC_NEAR_KEPT: 1 if there is one at that place */
     uint32_t mask;        /* SC_KEEPS_ALL if all leaf clusters have a place of their own */
     uint32_t some;        /* SC_NEAR_KEPT, fewer in small models: */
-    sc_near_leaf *own;    /* 1 + some, the worker's own; the first is for the second of two that have
+    sc_near_leaf *own; /* 1 + some, the worker's own; the first is for the second of two that have
                              one place */
 } sc_near_worker;
 

@@ -30,11 +30,11 @@ typedef struct sc_motion {
     uint16_t
         *own_points; /* leaf_count: bit i: the leaf cluster is the first to have leaf_point i */
     sc_group *vertex_groups; /* vertex_count: room for groups of vertices, see step/step_filter.h */
-    float distance;  /* in the unit box: what is farther apart does not collide */
-    float margin;    /* how far apart two sets of unit must be, so that the true ones are more than
+    float distance;          /* in the unit box: what is farther apart does not collide */
+    float margin;   /* how far apart two sets of unit must be, so that the true ones are more than
                         that distance apart */
-    uint32_t swept;  /* boxes are those of the whole motion */
-    uint32_t ends;   /* 2; 1 where nothing moves, and what is of the end need not be there, but for
+    uint32_t swept; /* boxes are those of the whole motion */
+    uint32_t ends;  /* 2; 1 where nothing moves, and what is of the end need not be there, but for
                         unit */
 } sc_motion;
 

@@ -69,8 +69,8 @@ typedef struct sc_ball {
     uint32_t *queue;    /* point_count: tail points in the ball; of those from head on the neighbors
                            are not yet in it */
     uint32_t head, tail;
-    uint32_t steps;     /* edges by which it may still grow */
-    uint32_t center;    /* the number of what it is round, or SC_NONE: of nothing */
+    uint32_t steps;  /* edges by which it may still grow */
+    uint32_t center; /* the number of what it is round, or SC_NONE: of nothing */
     uint16_t epoch;
     uint16_t kind; /* as which that number is meant: SC_FILTER_... */
 } sc_ball;

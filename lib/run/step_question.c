@@ -35,7 +35,8 @@ static sc_status check_step_choices(const sc_hooks *hooks, const sc_step_options
         sc_arguments_choose(hooks, "options", choices, sizeof choices / sizeof *choices);
     if (!status) status = sc_step_question_check_length(hooks, "separation", o->separation);
     if (!status) status = sc_step_question_check_length(hooks, "tolerance", o->tolerance);
-    return status ? status : sc_step_question_check_length(hooks, "rest_distance", o->rest_distance);
+    return status ? status
+                  : sc_step_question_check_length(hooks, "rest_distance", o->rest_distance);
 }
 
 /* On a model for boxes, what asks for no method and no contour test gets boxes. */

@@ -28,7 +28,7 @@ static inline uint64_t sc_limbs_multiply_halves(uint64_t a, uint64_t b, uint64_t
 
 /* The same as the compiler does it best. */
 static inline uint64_t sc_limbs_multiply_add(uint64_t a, uint64_t b, uint64_t c, uint64_t d,
-                                                uint64_t *high)
+                                             uint64_t *high)
 {
 #if defined(__SIZEOF_INT128__)
     __extension__ typedef unsigned __int128 double_limb;
@@ -68,8 +68,7 @@ static inline void sc_limbs_add(uint64_t *a, const uint64_t *b, int n)
 }
 
 /* result = a - b; result may be a or b. */
-static inline void sc_limbs_subtract(uint64_t *result, const uint64_t *a, const uint64_t *b,
-                                        int n)
+static inline void sc_limbs_subtract(uint64_t *result, const uint64_t *a, const uint64_t *b, int n)
 {
     uint64_t borrow = 0;
     for (int i = 0; i < n; ++i) {
@@ -83,7 +82,7 @@ static inline void sc_limbs_subtract(uint64_t *result, const uint64_t *a, const 
 /* Subtracts from the limbs of a from the one numbered `from` on as many bits of b as mask has: all
    or none. a has n limbs, b n - from or more. */
 static inline void sc_limbs_take_masked(uint64_t *a, int n, int from, const uint64_t *b,
-                                           uint64_t mask)
+                                        uint64_t mask)
 {
     uint64_t borrow = 0;
     for (int i = from; i < n; ++i) {
@@ -100,8 +99,8 @@ static inline void sc_limbs_take_masked(uint64_t *a, int n, int from, const uint
  * where A and B are 1 for what is negative: modulo 2^(64 (an + bn)), A b 2^(64 an) + B a 2^(64 bn)
  * too much.
  */
-static inline void sc_limbs_multiply(uint64_t *result, const uint64_t *a, int an,
-                                        const uint64_t *b, int bn)
+static inline void sc_limbs_multiply(uint64_t *result, const uint64_t *a, int an, const uint64_t *b,
+                                     int bn)
 {
     for (int j = 0; j < bn; ++j) result[j] = 0;
     for (int i = 0; i < an; ++i) {

@@ -210,8 +210,8 @@ static void order_list(void *context, uint64_t first, uint64_t count)
                         (uint64_t)(part * (double)(first + count)) - from, count);
 }
 
-void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2],
-                          sc_pair *spare, uint64_t room, const sc_tasks *tasks)
+void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2], sc_pair *spare,
+                          uint64_t room, const sc_tasks *tasks)
 {
     int kind;
     if (question->options.output != SC_OUTPUT_PAIRS) return;

@@ -19,7 +19,7 @@ void sc_step_pairs_take_all(sc_worker *w, int kind, const sc_pair *pairs, uint32
 
 /* Sorts the lists, of which each was given so many pairs; spare is room for some. tasks share in it,
    unless NULL. */
-void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2],
-                          sc_pair *spare, uint64_t room, const sc_tasks *tasks);
+void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2], sc_pair *spare,
+                          uint64_t room, const sc_tasks *tasks);
 
 #endif

@@ -99,8 +99,8 @@ enum {
 static const int within_corner_count[2] = {3, 4};
 
 /* Corner i is the point [i][0] less the point [i][1]; of kinds one after the other. */
-static const unsigned char within_corner[2][WITHIN_CORNERS][2] = {
-    {{1, 0}, {2, 0}, {3, 0}, {0, 0}}, {{2, 0}, {3, 0}, {3, 1}, {2, 1}}};
+static const unsigned char within_corner[2][WITHIN_CORNERS][2] = {{{1, 0}, {2, 0}, {3, 0}, {0, 0}},
+                                                                  {{2, 0}, {3, 0}, {3, 1}, {2, 1}}};
 
 /* ------------------------------------------------------------------------------------------------
  * Doubles
@@ -226,8 +226,7 @@ static SC_INLINE int decide_in_doubles(int kind, const double p[4][3], double di
  */
 
 /* result = a . b, of an + bn limbs */
-static void within_dot(uint64_t *result, const uint64_t *a, int an, const uint64_t *b,
-                                 int bn)
+static void within_dot(uint64_t *result, const uint64_t *a, int an, const uint64_t *b, int bn)
 {
     uint64_t product[6 * WITHIN_LIMBS];
     sc_limbs_multiply(result, a, an, b, bn);
@@ -294,8 +293,7 @@ static int side_of_edge(const within_shape *s, const uint64_t *m)
 }
 
 /* Whether a <= the square of the distance times b, of an and bn limbs; an = bn + 2 n. */
-static int is_within(const within_shape *s, const uint64_t *a, int an, const uint64_t *b,
-                               int bn)
+static int is_within(const within_shape *s, const uint64_t *a, int an, const uint64_t *b, int bn)
 {
     uint64_t rest[6 * WITHIN_LIMBS];
     sc_limbs_multiply(rest, s->square, 2 * s->n, b, bn);

@@ -95,8 +95,8 @@ static SC_INLINE sc_words_four sc_words_multiply(sc_words_bits a, sc_words_bits 
     sc_words_bits right = (sc_words_bits)a_low * b_high + (uint64_t)left;
     sc_words_four product;
     product.low = (right << 64) | (uint64_t)low;
-    product.high = (sc_words_bits)a_high * b_high + (uint64_t)(left >> 64) +
-                   (uint64_t)(right >> 64);
+    product.high =
+        (sc_words_bits)a_high * b_high + (uint64_t)(left >> 64) + (uint64_t)(right >> 64);
     return product;
 }
 
@@ -132,9 +132,9 @@ static SC_INLINE sc_words_four sc_words_dot_two(const sc_words_two a[3], const s
         sc_words_four wide = {(sc_words_bits)sum, (sc_words_bits)(sum >> 127)};
         return wide;
     }
-    return sc_words_add(sc_words_add(sc_words_multiply_signed(a[0], b[0]),
-                                     sc_words_multiply_signed(a[1], b[1])),
-                        sc_words_multiply_signed(a[2], b[2]));
+    return sc_words_add(
+        sc_words_add(sc_words_multiply_signed(a[0], b[0]), sc_words_multiply_signed(a[1], b[1])),
+        sc_words_multiply_signed(a[2], b[2]));
 }
 
 static SC_INLINE sc_words_four sc_words_square(const sc_words_two a[3], int narrow)
@@ -151,8 +151,7 @@ static SC_INLINE void sc_words_edge(int64_t edge[3], const sc_words_shape *s, in
     for (int k = 0; k < 3; ++k) edge[k] = s->corner[j][k] - s->corner[i][k];
 }
 
-static SC_INLINE void sc_words_normal(sc_words_two normal[3], const sc_words_shape *s,
-                                      int narrow)
+static SC_INLINE void sc_words_normal(sc_words_two normal[3], const sc_words_shape *s, int narrow)
 {
     int64_t e[3], f[3];
     sc_words_edge(e, s, 0, 1);

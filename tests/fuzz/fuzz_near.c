@@ -47,7 +47,7 @@ static void ask_once(fuzz_bytes *bytes, const fuzz_scene *s)
     if (!(distance >= 0 && distance <= DBL_MAX) || !s->is_finite) {
         other = near_ask(&s->q, &options, 3, 3);
         FUZZ_CHECK(other.status == (distance >= 0 && distance <= DBL_MAX ? SC_ERROR_NOT_FINITE
-                                                                          : SC_ERROR_OPTION) &&
+                                                                         : SC_ERROR_OPTION) &&
                        other.count[0] == 0 && other.count[1] == 0,
                    "status %d", (int)other.status);
         near_answer_free(&other);
