@@ -120,7 +120,7 @@ static void workspaces_refused(void)
         check_refused(&f, &o, SC_ERROR_OPTION, "too many workers");
         o.workers = 0xffffffffu;
         check_refused(&f, &o, SC_ERROR_OPTION, "far too many workers");
-        for (uint32_t bit = 1; bit < 32; ++bit) {
+        for (uint32_t bit = 2; bit < 32; ++bit) {
             o = none;
             o.flags = 1u << bit;
             check_refused(&f, &o, SC_ERROR_OPTION, "an unknown flag");
