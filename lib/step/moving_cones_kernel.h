@@ -91,7 +91,7 @@ static inline uint32_t mask_over(const sc_motion *m, const uint32_t *corner, uin
     clear[0] = lanes_add(lanes_multiply(lanes_all(1.0001f * d * d), longest), lanes_all(FLT_MIN));
     clear[1] = lanes_multiply(lanes_all(3), clear[0]); /* of corners; of faces */
     for (s = 0; s < 7; s++) {
-        lanes low, high, up, down;
+        lanes low = none, high = none, up, down;
         lanes_mask good[2];
         for (k = 0; k < normals; k++) {
             lanes dot;

@@ -80,7 +80,7 @@ static void scale_step(void *context, uint32_t part, uint32_t first, uint32_t la
             for (k = 0; k < 3; k++)
                 unit[4 * end + k] = (float)((p[k] - frame->center[k]) * frame->scale);
         }
-        if (ends == 1) memcpy(unit + 4, unit, 4 * sizeof *unit);
+        for (k = 0; k < 3 && ends == 1; k++) unit[4 + k] = unit[k];
     }
 }
 

@@ -130,7 +130,7 @@ static SC_INLINE void within_outer(double result[3], const double a[3], const do
 /* The best point of all edges. What is not a number, where an edge is 0, becomes 0. */
 static SC_INLINE void guess_on_edges(within_polygon *g)
 {
-    double q[WITHIN_CORNERS][3], t[WITHIN_CORNERS], square[WITHIN_CORNERS];
+    double q[WITHIN_CORNERS][3], t[WITHIN_CORNERS] = {0}, square[WITHIN_CORNERS] = {0};
     int best = 0, next;
     for (int i = 0; i < g->corners; ++i) {
         const double *a = g->corner[i], *b = g->corner[i + 1 < g->corners ? i + 1 : 0];
