@@ -464,7 +464,8 @@ SC_API sc_status sc_workspace_create(const sc_model *model, const sc_allocator *
 enum {
     SC_WORKSPACE_STEP = 1, /* sc_query_step: about 34 bytes a triangle more, and 80 kilobytes a
                               worker */
-    SC_WORKSPACE_NEAR = 2  /* sc_query_near, and sc_query_step */
+    SC_WORKSPACE_NEAR = 2  /* sc_query_near, and sc_query_step: 90 kilobytes a worker more than for
+                              that alone */
 };
 
 /* The largest number of workers. */
@@ -951,10 +952,10 @@ typedef struct sc_step_result {
  * tolerance at some time; a smaller tolerance costs time where much is that near. Rounding sets a
  * limit to it: the tolerance of a pair is at least 2^-32 times the largest difference of a
  * coordinate in it. The list depends on mesh, welding, poses, separation, tolerance, filters and
- * rest pose and on nothing else: not on method, partition, number of threads, compiler or machine, for what is near
- * the limit is decided pair by pair and culling keeps clear of it. An edge that is through the
- * inside of a triangle from start to end collides with nothing by that: sc_query tells whether the
- * start is free.
+ * rest pose and on nothing else: not on method, partition, number of threads, compiler or machine,
+ * for what is near the limit is decided pair by pair and culling keeps clear of it. An edge that is
+ * through the inside of a triangle from start to end collides with nothing by that: sc_query tells
+ * whether the start is free.
  *
  * A pair's time is not after the first time at which it comes within separation, and at the time
  * itself it is within separation + tolerance. earliest is the least of all times. Candidates have
@@ -1004,10 +1005,11 @@ typedef struct sc_step_result {
  *                    out. It must not use the workspace. After SC_OUTPUT_ANY found a pair it is
  *                    called no more, unless the earliest time is sought
  *
- * All but accept is asked before a pair is decided. Cost: with a rest pose a pass over its vertices,
- * and about 0.1 microseconds for each pair that boxes and culling leave; with triangle_groups for
- * vertices a pass over the triangles; rings walk the mesh round each feature until they reach the
- * other, or as far as they go; a list is read once, and looked up for each of these pairs.
+ * All but accept is asked before a step decides a pair; sc_query_near asks only of pairs that are
+ * near. Cost: with a rest pose a pass over its vertices, and about 0.1 microseconds for each pair
+ * that is asked about; with triangle_groups for vertices a pass over the triangles; rings walk the
+ * mesh round each feature until they reach the other, or as far as they go; a list is read once, and
+ * looked up for each of these pairs.
  *
  * Several threads. With options->tasks the passes over both poses, the walk through the tree,
  * boxes, the narrow phase and the sorting are done by all workers. Answer and counts in statistics
@@ -1043,8 +1045,8 @@ SC_API sc_status sc_query_step(const sc_model *model, sc_workspace *workspace, c
 /* Which kinds of pairs are sought. */
 enum { SC_NEAR_BOTH = 0, SC_NEAR_VERTEX_FACE = 1, SC_NEAR_EDGE_EDGE = 2 };
 
-/* Which way pairs are sought. The answer is the same. The default is SC_NEAR_METHOD_SCTT, on a model
-   with SC_MODEL_BOXES SC_NEAR_METHOD_BOXES. */
+/* Which way pairs are sought. The answer is the same. The default is SC_NEAR_METHOD_SCTT, on a
+   model with SC_MODEL_BOXES SC_NEAR_METHOD_BOXES. */
 enum {
     SC_NEAR_METHOD_DEFAULT = 0,
     SC_NEAR_METHOD_SCTT = 1, /* self-collision test tree: contours that are simple with a clearance
@@ -1097,11 +1099,12 @@ typedef struct sc_near_result {
 
 /*
  * Finds what is within a distance in a pose: of each pair the Euclidean distance of the two closed
- * sets, of a point from a triangle or of two segments, compared exactly with options->distance. There
- * is no tolerance: a pair is reported if and only if its distance is that or less. So the list grows
- * with the distance, and depends on mesh, welding, pose, distance, filters and rest pose alone: not
- * on method, partition, number of threads, compiler or machine. options may be NULL: pairs of both
- * kinds that touch. The workspace was made with SC_WORKSPACE_NEAR; SC_ERROR_WORKSPACE if not.
+ * sets, of a point from a triangle or of two segments, compared exactly with options->distance.
+ * There is no tolerance: a pair is reported if and only if its distance is that or less. So the list
+ * grows with the distance, and depends on mesh, welding, pose, distance, filters and rest pose
+ * alone: not on method, partition, number of threads, compiler or machine. options may be NULL:
+ * pairs of both kinds that touch. The workspace was made with SC_WORKSPACE_NEAR; SC_ERROR_WORKSPACE
+ * if not.
  *
  * Returns SC_OK; SC_ERROR_SHORT_BUFFER if one of the arrays is too short: both counts are then what
  * is needed, and each array holds the first capacity pairs of its sorted list; or

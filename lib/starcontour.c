@@ -397,6 +397,10 @@ static sc_status read_frame(const sc_model *model, sc_workspace *workspace, cons
     frame->motion.ends = step->query.near ? 1 : 2;
     frame->motion.swept = step->options.method == SC_STEP_METHOD_SWEPT;
     status = sc_motion_read(model, asked->pose, asked->stride, &step->limits, frame);
+    if (status && step->query.near) {
+        log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], "");
+        return status;
+    }
     if (status) {
         log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], " at the start");
         log_not_finite(hooks, model, &asked->pose[1], asked->stride[1], " at the end");

@@ -133,15 +133,16 @@ static inline float sc_bounds_tube(float reach)
  * Distances in the unit box in floats (near/distance_kernel.h): what the length of a vector between
  * two points of a pair, and a place along its direction, are off by together. d is the distance
  * asked for; s the largest extent, along an axis, of an edge in one leaf cluster plus that in the
- * other. v, e and f are differences of points, of which the boxes of the two that they belong to are
- * nearer than d and 4e-6: |v_k| < d + s + 4e-6, and |e_k| + |f_k| <= s, of a face with weights that
- * add up to 1.
+ * other. v, e and f are differences of points, of which the boxes of the two that they belong to
+ * are nearer than d and 4e-6: |v_k| < d + s + 4e-6, and |e_k| + |f_k| <= s, of a face with weights
+ * that add up to 1.
  *
  * A point of each of the two is a convex combination of points, which are off by POINT: their
  * difference by 2 POINT, in length by sqrt(3) times that, 1.0393e-7. The rest is rounding:
  *   - of a vector w = v - s' e - t' f between two points, with |w| <= d, so that |v_k| <= d + s:
- *     differences, products and sums are off by v (2 |v_k| + 3 s + |w_k|), below v (3.01 d + 5.01 s);
- *     weights that add up to 1 + 4 v move the point by 4 v s: in length sqrt(3) v (3.01 d + 9.01 s);
+ *     differences, products and sums are off by v (2 |v_k| + 3 s + |w_k|), below
+ *     v (3.01 d + 5.01 s); weights that add up to 1 + 4 v move the point by 4 v s: in length
+ *     sqrt(3) v (3.01 d + 9.01 s);
  *   - of places along w, over |w|: the three differences, of each three products and two sums, and
  *     two sums of what comes out: 4.01 v (|v| + s) and 2.01 v (|v| + s) in lengths, which are
  *     sqrt(3) (d + 2 s + 4e-6) at most: 10.5 v (d + 2 s) and 3e-12.

@@ -138,8 +138,8 @@ static void sort_some(sc_pair *pairs, uint64_t count, int most)
 }
 
 /* Orders pairs by the highest bits in which they differ, of which there are so many values, 256 at
-   most: counts them, then takes each out of a wrong place to its own, and what was there on to where
-   that belongs. end: where those with each value end. Returns how many bits are below these. */
+   most: counts them, then takes each out of a wrong place to its own, and what was there on to
+   where that belongs. end: where those with each value end. Returns how many bits are below. */
 static unsigned split_by_bits(sc_pair *pairs, uint64_t count, unsigned values,
                               uint64_t end[BYTE_VALUES])
 {

@@ -37,8 +37,8 @@ void sc_sort_pairs(sc_pair *pairs, uint64_t count);
    half their count if there are 9 or more. */
 uint64_t sc_sort_split(sc_pair *pairs, uint64_t count);
 
-/* The same by the lowest `bits` bits of a, all others of which must be the same; pairs with equal a stay
-   in order. Linear: a pass for every ten bits. spare has room for as many. */
+/* The same by the lowest `bits` bits of a, all others of which must be the same; pairs with equal a
+   stay in order. Linear: a pass for every ten bits. spare has room for as many. */
 void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits);
 
 /* As sc_sort_pairs, in a third to a sixth of the time where there are thousands, unless many have

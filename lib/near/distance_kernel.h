@@ -11,8 +11,8 @@
  *     other, wherever these are, as weights are clamped;
  *   - far, if w separates: if all differences of points of the two are farther along w than the
  *     distance. The least of them is at corners.
- * Both with the bound of sc_bounds_near, where this is derived. What is neither, by rounding or by a
- * bad guess for thin triangles and parallel edges, is left open; so is what is NaN.
+ * Both with the bound of sc_bounds_near, where this is derived. What is neither, by rounding or by
+ * a bad guess for thin triangles and parallel edges, is left open; so is what is NaN.
  */
 
 /* Thresholds for squares of lengths. */

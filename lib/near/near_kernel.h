@@ -3,12 +3,13 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * First points, triangles and edges of each of the two that the box of the other is near, and the
- * slab of all its points. Then rows: a triangle of one with those points of the other, an edge with
- * those edges of the other, whose boxes are near; where the distance is small beside triangles, the
- * slabs of triangles strike out most of these: a point beyond that of the triangle; an edge of which
- * both ends are beyond the slab of a triangle that has the other edge. What rows leave is listed,
- * and its distances are computed sixteen at a time (near/distance_kernel.h).
+ * First, the points, triangles and edges of each cluster are kept that the other's box, and the slab
+ * of all its points, do not separate from it. Then come rows: a triangle of one with those points of
+ * the other, and an edge with those edges of the other, whose boxes are near. Where the distance is
+ * small beside triangles, slabs of triangles strike out most of these: points beyond the slab of the
+ * triangle, and edges of which both ends are beyond the slab of the triangle that names the other
+ * edge. What rows leave is listed, and its distances are computed sixteen at a time
+ * (near/distance_kernel.h).
  *
  * A vertex belongs to the first leaf cluster that has it, an edge to the triangle that names it: so
  * each vertex meets each triangle, and each edge each other edge, in one pair of leaf clusters, or
@@ -444,7 +445,8 @@ static inline void list_near_edges(const near_search *s, uint32_t e, uint64_t ma
         lanes_bytes_store(list->end[3] + at,
                           lanes_bytes_through(lanes_bytes_load(b->end[1] + first), numbers));
         lanes_bytes_store(list->a + at, lanes_bytes_all((uint8_t)e));
-        lanes_bytes_store(list->b + at, lanes_bytes_either(numbers, lanes_bytes_all((uint8_t)first)));
+        lanes_bytes_store(list->b + at,
+                          lanes_bytes_either(numbers, lanes_bytes_all((uint8_t)first)));
     }
 }
 

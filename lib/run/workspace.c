@@ -402,8 +402,8 @@ static void begin_worker(const sc_model *model, sc_workspace *workspace,
 }
 
 /* How many leaf clusters each of so many workers may keep, of so many bytes each, in the room of
-   points and derived data of leaf clusters in queries, which starts at *room; and, as a power of two,
-   in *kept. */
+   points and derived data of leaf clusters in queries, which starts at *room; and the same as a
+   power of two, in *kept. */
 static uint64_t room_for_each(const sc_workspace *w, uint32_t workers, size_t bytes, void **room,
                               uint32_t *kept)
 {

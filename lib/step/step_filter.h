@@ -40,9 +40,10 @@ sc_status sc_step_filter_begin(const sc_model *model, const sc_pose *rest, uint6
                                sc_pair_filters *filters);
 
 /*
- * Whether all but the caller's function leaves a pair. inner: the pair in the model's numbers, either
- * edge first, best the one that the next pairs have, too; point: its four points, as
- * sc_step_candidates_points gives them; name: the pair in the caller's numbers, the lower edge first.
+ * Whether all but the caller's function leaves a pair. inner: the pair in the model's numbers,
+ * either edge first, best the one that the next pairs have, too; point: its four points, as
+ * sc_step_candidates_points gives them; name: the pair in the caller's numbers, the lower edge
+ * first.
  */
 int sc_step_filter_admits(sc_worker *w, int kind, sc_pair inner, const uint32_t point[4],
                           sc_pair name);
