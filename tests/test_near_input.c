@@ -231,8 +231,13 @@ static void models_workspaces_and_poses(void)
         for (uint32_t i = 0; i < 27; ++i) {
             const double before = c.posed[i];
             c.posed[i] = i % 2 ? (double)NAN : HUGE_VAL;
+            char message[64];
+            snprintf(message, sizeof message, "vertex %u is NaN or infinite", i / 3);
+            c.log.count = 0;
             CHECK(ask(&c) == SC_ERROR_NOT_FINITE && c.result.vertex_face_count == 0 &&
                   c.result.verdict == SC_VERDICT_NONE);
+            CHECK_MSG(c.log.count == 1 && strcmp(c.log.text, message) == 0, "%u messages, %s",
+                      c.log.count, c.log.text);
             c.posed[i] = before;
             CHECK(is_right(&c));
             make_right(&c);
