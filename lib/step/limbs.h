@@ -30,7 +30,7 @@ static inline uint64_t sc_limbs_multiply_halves(uint64_t a, uint64_t b, uint64_t
 static inline uint64_t sc_limbs_multiply_add(uint64_t a, uint64_t b, uint64_t c, uint64_t d,
                                              uint64_t *high)
 {
-#if defined(__SIZEOF_INT128__)
+#if defined(__SIZEOF_INT128__) && defined(__GNUC__)
     __extension__ typedef unsigned __int128 double_limb;
     double_limb product = (double_limb)a * b + c + d;
     *high = (uint64_t)(product >> 64);

@@ -86,7 +86,7 @@
 #include "base/predicates.h"
 #include "step/limbs.h"
 #include "simd/isa.h"
-#if defined(__SIZEOF_INT128__)
+#if defined(__SIZEOF_INT128__) && defined(__GNUC__)
 #  include "step/words.h"
 #endif
 
@@ -449,7 +449,7 @@ static SC_INLINE int scale_to_words(int64_t *x, const double p[4][3], double dis
     return wrong == 0;
 }
 
-#if defined(__SIZEOF_INT128__)
+#if defined(__SIZEOF_INT128__) && defined(__GNUC__)
 
 static SC_INLINE int decide_scaled_words(int kind, const int64_t *x, int guess)
 {
