@@ -732,7 +732,7 @@ static void note_message(void *user, uint32_t level, const char *message)
 /* NaN and infinity in a rest pose are found, but in vertices that no triangle has. */
 static void rest_not_finite(void)
 {
-    static const double bad[] = {NAN, INFINITY, -INFINITY};
+    static const double bad[] = {(double)NAN, HUGE_VAL, -HUGE_VAL};
     soup mesh = soup_cloth(70, 70);
     subject s;
     memset(&s, 0, sizeof(s));

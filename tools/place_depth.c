@@ -353,7 +353,7 @@ static double segment_distance(const double *a, const double *b)
    or to the nearest side. */
 static double triangle_distance(const depths *d, size_t triangle, const double p[3])
 {
-    double v[3][3], normal[3], least = INFINITY;
+    double v[3][3], normal[3], least = HUGE_VAL;
     bool inside = true;
     for (size_t k = 0; k < 3; k++) {
         for (size_t i = 0; i < 3; i++)
@@ -410,7 +410,7 @@ static double surface_distance(depths *d, uint32_t vertex, double enough)
     const grid *g = &d->cells;
     const size_t x = cell_of(g, 0, p[0]), y = cell_of(g, 1, p[1]);
     const size_t rings = g->side[0] > g->side[1] ? g->side[0] : g->side[1];
-    double least = cell_distance(d, g->large, region, p, INFINITY);
+    double least = cell_distance(d, g->large, region, p, HUGE_VAL);
     for (size_t ring = 0; ring < rings && least > enough; ring++) {
         const double near = ring > 0 ? g->cell * (double)(ring - 1) : 0;
         if (near * near > least || d->looked_at > DISTANCES_MAX) break;
