@@ -97,19 +97,6 @@ static inline unsigned beyond_near_face(const sc_near_leaf *p, const sc_near_lea
     return beyond_near_slab(p, (const lanes *)n, a->slab[0][i], a->slab[1][i]);
 }
 
-/* The corners of triangles as sets, and the ends of edges first to first + 15. */
-static inline lanes_sets near_corners(const sc_near_leaf *a)
-{
-    return lanes_sets_join(lanes_sets_join(lanes_sets_of(a->corner),
-                                           lanes_sets_of(a->corner + SC_LEAF_MAX)),
-                           lanes_sets_of(a->corner + 2 * SC_LEAF_MAX));
-}
-
-static inline lanes_sets near_ends(const sc_near_leaf *a, uint32_t first)
-{
-    return lanes_sets_join(lanes_sets_of(a->end[0] + first), lanes_sets_of(a->end[1] + first));
-}
-
 /* Those of some edges that are neither all before one of so many sides nor all behind it. */
 static inline uint64_t near_edges_left(const sc_near_leaf *a, uint64_t edges,
                                        const unsigned *beyond, int count)
@@ -117,7 +104,7 @@ static inline uint64_t near_edges_left(const sc_near_leaf *a, uint64_t edges,
     uint64_t left = 0;
     uint32_t first;
     for (first = 0; edges >> first; first += SC_LEAF_MAX)
-        left |= (uint64_t)left_of(near_ends(a, first), beyond, count) << first;
+        left |= (uint64_t)left_of(lanes_sets_load(a->ends + first), beyond, count) << first;
     return left & edges;
 }
 
@@ -132,7 +119,7 @@ static inline int leave_of_near(near_side *a, const sc_near_leaf *other)
     unsigned beyond[4];
     beyond_near_box(a->leaf, other->box, beyond);
     beyond[3] = beyond_near_leaf(a->leaf, other);
-    a->triangles = left_of(near_corners(a->leaf), beyond, 4) & a->leaf->triangles;
+    a->triangles = left_of(lanes_sets_load(a->leaf->corners), beyond, 4) & a->leaf->triangles;
     if (!a->triangles) return 0;
     a->points = points_left(beyond, 4) & a->leaf->own;
     a->edges = near_edges_left(a->leaf, all_near_edges(a->leaf), beyond, 4);
@@ -364,7 +351,8 @@ static inline void make_near_boxes(const sc_near_leaf *a, float margin, near_box
    and notes what is beyond slabs; 0: nothing. */
 static inline int leave_by_slabs(near_side *a, near_side *b)
 {
-    const lanes_sets corners = near_corners(b->leaf), others = near_corners(a->leaf);
+    const lanes_sets corners = lanes_sets_load(b->leaf->corners);
+    const lanes_sets others = lanes_sets_load(a->leaf->corners);
     unsigned faces_a = 0, faces_b = 0, some;
     for (some = a->triangles; some; some &= some - 1) {
         const uint32_t i = sc_bits_lowest(some);
@@ -405,8 +393,10 @@ static inline uint64_t compare_near_slabs(const near_side *a, const near_side *b
 {
     uint64_t by_slab[SC_LEAF_MAX], edges, left = 0;
     unsigned some;
-    memset(by_slab, 0, sizeof by_slab);
-    memset(allowed, 0, SC_NEAR_EDGES * sizeof *allowed);
+    for (edges = a->edges; edges; edges &= edges - 1) {
+        const uint32_t e = sc_bits_lowest64(edges);
+        by_slab[a->leaf->of[e] % SC_LEAF_MAX] = allowed[e] = 0;
+    }
     for (some = a->triangles; some; some &= some - 1) {
         const uint32_t i = sc_bits_lowest(some);
         by_slab[i] = near_edges_left(b->leaf, b->edges, &a->beyond[i], 1);
@@ -483,7 +473,7 @@ static inline uint32_t compare_near_edges(near_search *s, int itself, int slabs)
                     lanes_not_above(lanes_all(around.side[k][e]),
                                     lanes_load(boxes.side[3 + k] + i)));
             mask = lanes_bits(lanes_both(lanes_both(apart[0], apart[1]), apart[2]));
-            if (shared) mask &= lanes_within(near_ends(b->leaf, i), ~shared & 0xffffu);
+            if (shared) mask &= lanes_within(lanes_sets_load(b->leaf->ends + i), ~shared & 0xffffu);
             near |= (uint64_t)mask << i;
         }
         near &= others;

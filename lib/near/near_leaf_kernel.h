@@ -33,6 +33,13 @@ static inline void list_own_edges(const uint8_t *owned, uint32_t count, sc_near_
         edges += some;
     }
     to->edges = (uint16_t)edges;
+    lanes_sets_store(to->corners,
+                     lanes_sets_join(lanes_sets_join(lanes_sets_of(to->corner),
+                                                     lanes_sets_of(to->corner + SC_LEAF_MAX)),
+                                     lanes_sets_of(to->corner + 2 * SC_LEAF_MAX)));
+    for (i = 0; i < edges; i += SC_LEAF_MAX)
+        lanes_sets_store(to->ends + i, lanes_sets_join(lanes_sets_of(to->end[0] + i),
+                                                       lanes_sets_of(to->end[1] + i)));
 }
 
 static inline void make_near_slabs(const sc_motion *m, lanes at[3], lanes corner[3][3],

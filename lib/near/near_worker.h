@@ -28,6 +28,8 @@ typedef struct sc_near_leaf {
     const uint8_t *corner;            /* 3 SC_LEAF_MAX: which points are corners of triangles */
     uint8_t end[2][SC_NEAR_EDGES];    /* and ends of edges: first sides 0, then 1, then 2 */
     uint8_t of[SC_NEAR_EDGES];        /* side k of triangle i as 16 k + i */
+    uint16_t corners[SC_LEAF_MAX];    /* the corners of triangles, */
+    uint16_t ends[SC_NEAR_EDGES];     /* and the ends of edges, as bits of points */
     uint16_t owned[3];                /* bit i of k: triangle i names its side k */
     uint16_t own;                     /* bit i: the leaf cluster is the first to have point i */
     uint16_t triangles;               /* bit i: there is a triangle i */

@@ -3,8 +3,8 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * Number i is in a set if bit i is set. lanes_sets_load reads sixteen sets, lanes_sets_of makes
- * them of one number each, lanes_sets_join joins each two. lanes_within tells which of them have no
+ * Number i is in a set if bit i is set. lanes_sets_load reads sixteen sets, lanes_sets_store writes
+ * them, lanes_sets_of makes them of one number each, lanes_sets_join joins each two. lanes_within tells which of them have no
  * number that is not in one set.
  */
 #if SC_LANES_AVX512 || SC_LANES_AVX2
@@ -14,6 +14,10 @@ typedef __m256i lanes_sets;
 static inline lanes_sets lanes_sets_load(const uint16_t *sets)
 {
     return _mm256_loadu_si256((const __m256i *)(const void *)sets);
+}
+static inline void lanes_sets_store(uint16_t *to, lanes_sets a)
+{
+    _mm256_storeu_si256((__m256i *)(void *)to, a);
 }
 static inline lanes_sets lanes_sets_join(lanes_sets a, lanes_sets b)
 {
@@ -65,6 +69,11 @@ static inline lanes_sets lanes_sets_load(const uint16_t *sets)
     r.v[1] = _mm_loadu_si128((const __m128i *)(const void *)(sets + 8));
     return r;
 }
+static inline void lanes_sets_store(uint16_t *to, lanes_sets a)
+{
+    _mm_storeu_si128((__m128i *)(void *)to, a.v[0]);
+    _mm_storeu_si128((__m128i *)(void *)(to + 8), a.v[1]);
+}
 static inline lanes_sets lanes_sets_join(lanes_sets a, lanes_sets b)
 {
     a.v[0] = _mm_or_si128(a.v[0], b.v[0]);
@@ -114,6 +123,10 @@ static inline lanes_sets lanes_sets_load(const uint16_t *sets)
     lanes_sets r;
     memcpy(r.v, sets, sizeof r.v);
     return r;
+}
+static inline void lanes_sets_store(uint16_t *to, lanes_sets a)
+{
+    memcpy(to, a.v, sizeof a.v);
 }
 static inline lanes_sets lanes_sets_join(lanes_sets a, lanes_sets b)
 {

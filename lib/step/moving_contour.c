@@ -57,8 +57,8 @@ static moving_vector contour_point(const sc_moving_contour *c, uint32_t i)
     moving_vector v;
     v.x[0] = (double)c->start.edges->at[0][i];
     v.y[0] = (double)c->start.edges->at[1][i];
-    v.x[1] = (double)c->end->at[0][i];
-    v.y[1] = (double)c->end->at[1][i];
+    v.x[1] = c->ends == 1 ? v.x[0] : (double)c->end->at[0][i];
+    v.y[1] = c->ends == 1 ? v.y[0] : (double)c->end->at[1][i];
     return v;
 }
 
@@ -231,6 +231,7 @@ static int stays_simple(sc_worker *w, const sc_projection *projection, uint32_t 
     int passed = sc_simple_list(&c.start, w->model, &w->contour, node);
     if (passed) {
         c.end = &w->step->contour;
+        c.ends = star ? 2 : (int)w->frame->motion.ends;
         sc_simple_axes(&c.start, projection);
         sc_simple_middle(&c.start, w->frame->motion.unit, 8, c.start.from);
         sc_simple_middle(&c.start, w->frame->motion.unit + 4, 8, c.from);

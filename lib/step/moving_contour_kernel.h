@@ -5,18 +5,21 @@
  *
  * Pairs of edges are gone through as query/simple_kernel.h does: sixteen edges with those that
  * follow at a distance of up to SC_CONTOUR_NEAR, then runs by their boxes at both ends of the step.
+ *
+ * ends is 2, or 1 where nothing moves, as in a search for what is near: then only the start is
+ * written and read, which takes about half the time.
  */
 
 /* Places of the listed points at both ends, and the error of their coordinates, see choose_axes in
    query/simple.c. */
-static void project_motion(sc_moving_contour *c, const float *unit)
+static SC_INLINE void project_ends(sc_moving_contour *c, const float *unit, const int ends)
 {
     const sc_contour_edges *e = c->start.edges;
     lanes size = lanes_all(0), d[3];
     uint32_t i, j;
     int k, end;
     for (i = 0; i < (c->start.blocks + 1) * SC_CONTOUR_BLOCK; i += SC_CONTOUR_BLOCK)
-        for (end = 0; end < 2; end++) {
+        for (end = 0; end < ends; end++) {
             float *const *to = end ? c->end->at : e->at;
             const float *from = end ? c->from : c->start.from, *point[SC_CONTOUR_BLOCK];
             for (j = 0; j < SC_CONTOUR_BLOCK; j++)
@@ -61,65 +64,80 @@ static inline lanes clear_along(const sc_moving_contour *c, const lanes m[2])
 }
 
 /* Bits of the edges e that are clear of f along m: beyond it, or on this side if that counts. */
-static inline unsigned are_apart_along(const sc_moving_contour *c, const lanes m[2],
-                                       const moving_lanes *e, const moving_lanes *f)
+static SC_INLINE unsigned are_apart_along(const sc_moving_contour *c, const lanes m[2],
+                                          const moving_lanes *e, const moving_lanes *f,
+                                          const int ends)
 {
     lanes clear = clear_along(c, m), e_least[2], e_most[2], f_least[2], f_most[2];
+    lanes above, below;
     int end;
-    for (end = 0; end < 2; end++) {
+    for (end = 0; end < ends; end++) {
         extent_along(m, e, end, &e_least[end], &e_most[end]);
         extent_along(m, f, end, &f_least[end], &f_most[end]);
     }
-    return lanes_bits(lanes_below(clear, lanes_smaller(lanes_subtract(f_least[0], e_most[0]),
-                                                       lanes_subtract(f_least[1], e_most[1])))) |
-           lanes_bits(lanes_below(clear, lanes_smaller(lanes_subtract(e_least[0], f_most[0]),
-                                                       lanes_subtract(e_least[1], f_most[1]))));
+    above = lanes_subtract(f_least[0], e_most[0]);
+    below = lanes_subtract(e_least[0], f_most[0]);
+    if (ends > 1) {
+        above = lanes_smaller(above, lanes_subtract(f_least[1], e_most[1]));
+        below = lanes_smaller(below, lanes_subtract(e_least[1], f_most[1]));
+    }
+    return lanes_bits(lanes_below(clear, above)) | lanes_bits(lanes_below(clear, below));
+}
+
+/* A coordinate of a point at both ends together: directions are made of these, whose length does
+   not matter. */
+static inline lanes both_ends(const lanes at[2][2], int k, const int ends)
+{
+    return ends == 1 ? at[0][k] : lanes_add(at[0][k], at[1][k]);
 }
 
 /* Bits of the edges e that are clear of f for certain, along the way from middle to middle or
    across one of the two. */
-static inline unsigned are_apart(const sc_moving_contour *c, const moving_lanes *e,
-                                 const moving_lanes *f, unsigned asked)
+static SC_INLINE unsigned are_apart(const sc_moving_contour *c, const moving_lanes *e,
+                                    const moving_lanes *f, unsigned asked, const int ends)
 {
     lanes m[2];
     unsigned left;
     int k;
     for (k = 0; k < 2; k++)
-        m[k] = lanes_subtract(
-            lanes_add(lanes_add(f->p[0][k], f->q[0][k]), lanes_add(f->p[1][k], f->q[1][k])),
-            lanes_add(lanes_add(e->p[0][k], e->q[0][k]), lanes_add(e->p[1][k], e->q[1][k])));
-    left = asked & ~are_apart_along(c, m, e, f);
+        m[k] = lanes_subtract(lanes_add(both_ends(f->p, k, ends), both_ends(f->q, k, ends)),
+                              lanes_add(both_ends(e->p, k, ends), both_ends(e->q, k, ends)));
+    left = asked & ~are_apart_along(c, m, e, f, ends);
     if (!left) return asked;
-    m[0] = lanes_subtract(lanes_add(e->q[0][1], e->q[1][1]), lanes_add(e->p[0][1], e->p[1][1]));
-    m[1] = lanes_subtract(lanes_add(e->p[0][0], e->p[1][0]), lanes_add(e->q[0][0], e->q[1][0]));
-    left &= ~are_apart_along(c, m, e, f);
+    m[0] = lanes_subtract(both_ends(e->q, 1, ends), both_ends(e->p, 1, ends));
+    m[1] = lanes_subtract(both_ends(e->p, 0, ends), both_ends(e->q, 0, ends));
+    left &= ~are_apart_along(c, m, e, f, ends);
     if (!left) return asked;
-    m[0] = lanes_subtract(lanes_add(f->q[0][1], f->q[1][1]), lanes_add(f->p[0][1], f->p[1][1]));
-    m[1] = lanes_subtract(lanes_add(f->p[0][0], f->p[1][0]), lanes_add(f->q[0][0], f->q[1][0]));
-    return asked & ~(left & ~are_apart_along(c, m, e, f));
+    m[0] = lanes_subtract(both_ends(f->q, 1, ends), both_ends(f->p, 1, ends));
+    m[1] = lanes_subtract(both_ends(f->p, 0, ends), both_ends(f->q, 0, ends));
+    return asked & ~(left & ~are_apart_along(c, m, e, f, ends));
+}
+
+/* The lesser of m . v and m . w. */
+static inline lanes along_both(const lanes m[2], const lanes v[2], const lanes w[2])
+{
+    return lanes_smaller(lanes_add(lanes_multiply(m[0], v[0]), lanes_multiply(m[1], v[1])),
+                         lanes_add(lanes_multiply(m[0], w[0]), lanes_multiply(m[1], w[1])));
 }
 
 /* Bits of edges e that are open to the next, f, which starts where they end: both run on along the
    sum of the two. */
-static inline unsigned run_on(const sc_moving_contour *c, const moving_lanes *e,
-                              const lanes next[2][2])
+static SC_INLINE unsigned run_on(const sc_moving_contour *c, const moving_lanes *e,
+                                 const lanes next[2][2], const int ends)
 {
-    lanes v[2][2], w[2][2], m[2], least, dot;
+    lanes v[2][2], w[2][2], m[2], least;
     int k, end;
-    for (end = 0; end < 2; end++)
+    for (end = 0; end < ends; end++)
         for (k = 0; k < 2; k++) {
             v[end][k] = lanes_subtract(e->q[end][k], e->p[end][k]);
             w[end][k] = lanes_subtract(next[end][k], e->q[end][k]);
         }
     for (k = 0; k < 2; k++)
-        m[k] = lanes_add(lanes_add(v[0][k], v[1][k]), lanes_add(w[0][k], w[1][k]));
-    least = lanes_add(lanes_multiply(m[0], v[0][0]), lanes_multiply(m[1], v[0][1]));
-    dot = lanes_add(lanes_multiply(m[0], v[1][0]), lanes_multiply(m[1], v[1][1]));
-    least = lanes_smaller(least, dot);
-    for (end = 0; end < 2; end++) {
-        dot = lanes_add(lanes_multiply(m[0], w[end][0]), lanes_multiply(m[1], w[end][1]));
-        least = lanes_smaller(least, dot);
-    }
+        m[k] = lanes_add(both_ends((const lanes(*)[2])v, k, ends),
+                         both_ends((const lanes(*)[2])w, k, ends));
+    least = along_both(m, (const lanes *)v[0], (const lanes *)w[0]);
+    if (ends > 1)
+        least = lanes_smaller(least, along_both(m, (const lanes *)v[1], (const lanes *)w[1]));
     return lanes_bits(lanes_below(clear_along(c, m), least));
 }
 
@@ -139,7 +157,7 @@ static inline void enclose_runs(const sc_moving_contour *c, uint32_t i, int end,
     }
 }
 
-static int are_near_clear(sc_moving_contour *c, uint32_t block)
+static SC_INLINE int are_near_clear(sc_moving_contour *c, uint32_t block, const int ends)
 {
     const sc_contour_edges *e = c->start.edges;
     uint32_t i = block * SC_CONTOUR_BLOCK, s;
@@ -147,28 +165,28 @@ static int are_near_clear(sc_moving_contour *c, uint32_t block)
     moving_lanes own, other;
     unsigned left;
     int k, end;
-    for (end = 0; end < 2; end++)
+    for (end = 0; end < ends; end++)
         for (k = 0; k < 2; k++) {
             const float *at = (end ? c->end->at[k] : e->at[k]) + i;
             own.p[end][k] = lanes_load(at);
             own.q[end][k] = lanes_load(at + 1);
             other.q[end][k] = lanes_load(at + 2);
         }
-    for (end = 0; end < 2; end++) enclose_runs(c, i, end, &own);
+    for (end = 0; end < ends; end++) enclose_runs(c, i, end, &own);
     left = edges & following >> 1;
-    for (left &= ~run_on(c, &own, (const lanes(*)[2])other.q); left; left &= left - 1) {
+    for (left &= ~run_on(c, &own, (const lanes(*)[2])other.q, ends); left; left &= left - 1) {
         uint32_t edge = i + sc_bits_lowest(left);
         if (!sc_moving_contour_are_clear(c, edge, edge + 1)) return 0;
     }
     for (s = 2; s <= SC_CONTOUR_NEAR; s++) {
-        for (end = 0; end < 2; end++)
+        for (end = 0; end < ends; end++)
             for (k = 0; k < 2; k++) {
                 other.p[end][k] = other.q[end][k];
                 other.q[end][k] = lanes_load((end ? c->end->at[k] : e->at[k]) + i + s + 1);
             }
         left = edges & following >> s;
         if (!left) continue;
-        for (left &= ~are_apart(c, &own, &other, left); left; left &= left - 1) {
+        for (left &= ~are_apart(c, &own, &other, left, ends); left; left &= left - 1) {
             uint32_t edge = i + sc_bits_lowest(left);
             if (!sc_moving_contour_are_clear(c, edge, edge + s)) return 0;
         }
@@ -177,7 +195,8 @@ static int are_near_clear(sc_moving_contour *c, uint32_t block)
 }
 
 /* The edges of two runs. */
-static int are_runs_clear(sc_moving_contour *c, uint32_t run, uint32_t other_run)
+static SC_INLINE int are_runs_clear(sc_moving_contour *c, uint32_t run, uint32_t other_run,
+                                    const int ends)
 {
     static const uint16_t four_times[16] = {0x0000, 0x000f, 0x00f0, 0x00ff, 0x0f00, 0x0f0f,
                                             0x0ff0, 0x0fff, 0xf000, 0xf00f, 0xf0f0, 0xf0ff,
@@ -190,7 +209,7 @@ static int are_runs_clear(sc_moving_contour *c, uint32_t run, uint32_t other_run
     moving_lanes own, other;
     int k, end;
     if (!left) return 1;
-    for (end = 0; end < 2; end++)
+    for (end = 0; end < ends; end++)
         for (k = 0; k < 2; k++) {
             const float *at = end ? c->end->at[k] : e->at[k];
             own.p[end][k] = lanes_each_four(at + i);
@@ -198,7 +217,7 @@ static int are_runs_clear(sc_moving_contour *c, uint32_t run, uint32_t other_run
             other.p[end][k] = lanes_four(at + j);
             other.q[end][k] = lanes_four(at + j + 1);
         }
-    for (left &= ~are_apart(c, &own, &other, left); left; left &= left - 1) {
+    for (left &= ~are_apart(c, &own, &other, left, ends); left; left &= left - 1) {
         unsigned pair = sc_bits_lowest(left);
         if (!sc_moving_contour_are_clear(c, i + pair / 4, j + pair % 4)) return 0;
     }
@@ -207,40 +226,43 @@ static int are_runs_clear(sc_moving_contour *c, uint32_t run, uint32_t other_run
 
 /* Bit k: box i of a is not apart on one side from box j + k of b at both ends, for k from 0 to
    15. */
-static inline unsigned near_in_plane(float *a[2][4], uint32_t i, float *b[2][4], uint32_t j)
+static SC_INLINE unsigned near_in_plane(float *a[2][4], uint32_t i, float *b[2][4], uint32_t j,
+                                        const int ends)
 {
     lanes least = lanes_all(0);
     int k;
     for (k = 0; k < 4; k += 2) {
-        lanes below =
-            lanes_larger(lanes_subtract(lanes_all(a[0][k + 1][i]), lanes_load(b[0][k] + j)),
-                         lanes_subtract(lanes_all(a[1][k + 1][i]), lanes_load(b[1][k] + j)));
-        lanes above =
-            lanes_larger(lanes_subtract(lanes_load(b[0][k + 1] + j), lanes_all(a[0][k][i])),
-                         lanes_subtract(lanes_load(b[1][k + 1] + j), lanes_all(a[1][k][i])));
+        lanes below = lanes_subtract(lanes_all(a[0][k + 1][i]), lanes_load(b[0][k] + j));
+        lanes above = lanes_subtract(lanes_load(b[0][k + 1] + j), lanes_all(a[0][k][i]));
+        if (ends > 1) {
+            below = lanes_larger(
+                below, lanes_subtract(lanes_all(a[1][k + 1][i]), lanes_load(b[1][k] + j)));
+            above = lanes_larger(
+                above, lanes_subtract(lanes_load(b[1][k + 1] + j), lanes_all(a[1][k][i])));
+        }
         least = lanes_smaller(least, lanes_smaller(below, above));
     }
     return ~lanes_bits(lanes_below(least, lanes_all(0))) & 0xffffu;
 }
 
 /* A run and some of sixteen runs from another on. */
-static int are_far_clear(sc_moving_contour *c, float *side[2][4], uint32_t run, uint32_t first,
-                         unsigned some)
+static SC_INLINE int are_far_clear(sc_moving_contour *c, float *side[2][4], uint32_t run,
+                                   uint32_t first, unsigned some, const int ends)
 {
-    for (some &= near_in_plane(side, run, side, first); some; some &= some - 1)
-        if (!are_runs_clear(c, run, first + sc_bits_lowest(some))) return 0;
+    for (some &= near_in_plane(side, run, side, first, ends); some; some &= some - 1)
+        if (!are_runs_clear(c, run, first + sc_bits_lowest(some), ends)) return 0;
     return 1;
 }
 
 /* Runs that do not follow each other, in groups of sixteen, first by the boxes of groups. */
-static int are_groups_clear(sc_moving_contour *c)
+static SC_INLINE int are_groups_clear(sc_moving_contour *c, const int ends)
 {
     const sc_contour_edges *e = c->start.edges;
     uint32_t runs = (c->start.count + SC_CONTOUR_RUN - 1) / SC_CONTOUR_RUN;
     uint32_t groups = (runs + 15) / 16, a, b, r;
     float *side[2][4], *group_side[2][4];
     int k, end;
-    for (end = 0; end < 2; end++)
+    for (end = 0; end < ends; end++)
         for (k = 0; k < 4; k++) {
             /* the last group is full, of boxes that are near nothing; and so is one of groups */
             const lanes nothing = lanes_all(k % 2 ? -FLT_MAX : FLT_MAX);
@@ -256,16 +278,16 @@ static int are_groups_clear(sc_moving_contour *c)
     for (a = 0; a < groups; a++) {
         uint32_t end_of = runs - 16 * a < 16 ? runs - 16 * a : 16;
         for (r = 0; r + 2 < end_of; r++)
-            if (!are_far_clear(c, side, 16 * a + r, 16 * a, 0xfffcu << r & 0xffffu)) return 0;
+            if (!are_far_clear(c, side, 16 * a + r, 16 * a, 0xfffcu << r & 0xffffu, ends)) return 0;
         for (b = a + 1; b < groups; b += 16) {
-            unsigned others = near_in_plane(group_side, a, group_side, b);
+            unsigned others = near_in_plane(group_side, a, group_side, b, ends);
             for (; others; others &= others - 1) {
                 uint32_t other = b + sc_bits_lowest(others);
-                unsigned rows = near_in_plane(group_side, other, side, 16 * a);
+                unsigned rows = near_in_plane(group_side, other, side, 16 * a, ends);
                 for (; rows; rows &= rows - 1) {
                     r = sc_bits_lowest(rows);
                     if (!are_far_clear(c, side, 16 * a + r, 16 * other,
-                                       r == 15 && other == a + 1 ? 0xfffeu : 0xffffu))
+                                       r == 15 && other == a + 1 ? 0xfffeu : 0xffffu, ends))
                         return 0;
                 }
             }
@@ -274,10 +296,23 @@ static int are_groups_clear(sc_moving_contour *c)
     return 1;
 }
 
-static int are_edges_clear(sc_moving_contour *c)
+static SC_INLINE int are_all_clear(sc_moving_contour *c, const int ends)
 {
     uint32_t a;
     for (a = 0; a < c->start.blocks; a++)
-        if (!are_near_clear(c, a)) return 0;
-    return are_groups_clear(c);
+        if (!are_near_clear(c, a, ends)) return 0;
+    return are_groups_clear(c, ends);
+}
+
+static void project_motion(sc_moving_contour *c, const float *unit)
+{
+    if (c->ends == 1)
+        project_ends(c, unit, 1);
+    else
+        project_ends(c, unit, 2);
+}
+
+static int are_edges_clear(sc_moving_contour *c)
+{
+    return c->ends == 1 ? are_all_clear(c, 1) : are_all_clear(c, 2);
 }

@@ -14,6 +14,7 @@
 typedef struct sc_moving_contour {
     sc_simple_contour start;
     const sc_moving_edges *end;
+    int ends;        /* 1: nothing moves, and end is not written; else 2 */
     float from[3];   /* at the end */
     float length[2]; /* of the axes: |axis|2, rounded up */
     /* Of a direction m, |m.x| clear[0] + |m.y| clear[1] is how far apart two computed sets must be
