@@ -1201,6 +1201,109 @@ SC_API sc_status sc_near_merge(sc_near_stencil *stencils, uint64_t count, uint64
                                uint32_t *multiplicities);
 
 /* ------------------------------------------------------------------------------------------------
+ * Several objects
+ *
+ * A scene of objects, each with a model of its own or one that it shares with others: cloth and a
+ * body, layers of clothes, many characters, a static level. One call finds what objects have with
+ * each other and with themselves; what did not move since the last call is not read again.
+ *
+ *     a workspace for each object: sc_workspace_create or _create_for
+ *     sc_query_objects(&objects, &options, &result)
+ */
+
+/*
+ * One object. The workspace was made for the model and is in no other object; what a call leaves in
+ * it is for the next call with the same object.
+ */
+typedef struct sc_object {
+    const sc_model *model;
+    sc_workspace *workspace;
+    const sc_pose *pose;
+    const sc_pose *end;    /* of a step; else NULL */
+    uint64_t pose_version; /* 0, or a number that changes whenever a coordinate does. If it is what
+                              the last call with this workspace was given, the positions are those
+                              of then, wherever they are now; and what was made of them is kept,
+                              unless the box of all objects has grown or shrunk much */
+    sc_group group;        /* what it collides with; 0 and 0: with everything */
+    uint32_t itself;       /* 1: its self-collisions are sought, too */
+    uint32_t reserved;     /* 0 */
+    const sc_filter *filter; /* which of these are not wanted, or NULL */
+} sc_object;
+
+/* The objects of a scene. */
+typedef struct sc_objects {
+    uint32_t struct_size;
+    uint32_t count;           /* how many there are */
+    const sc_object *objects; /* them */
+    uint64_t stride;          /* bytes from one to the next; 0: sizeof(sc_object) */
+    /* Of pairs of two objects, which are wanted; or NULL: all. Called for each pair that is found, in
+       any order, in the thread that called, with numbers of objects, triangles and edges as they
+       would be reported; 0 leaves it out. It must not use the workspaces. */
+    int (*accept)(void *user, uint32_t object_a, uint32_t object_b, uint32_t a, uint32_t b);
+    void *accept_user;
+} sc_objects;
+
+/* Which pairs are of which two objects: pairs[first] to pairs[first + count - 1]. */
+typedef struct sc_object_pairs {
+    uint32_t object_a, object_b;
+    uint64_t first, count;
+} sc_object_pairs;
+
+/*
+ * The answer. The caller sets struct_size and, for SC_OUTPUT_PAIRS, pairs and capacity, may give an
+ * array of ranges, and may set stats; the library sets the rest. Arrays may be NULL when their
+ * capacity is 0.
+ *
+ * Of two objects that have pairs, or of one that has some with itself, there is one range, sorted by
+ * object_a, then object_b; and ranges of pairs follow each other. Triangles: object_a <= object_b,
+ * and of two objects a is a triangle of object_a and b one of object_b. Edges with triangles
+ * (SC_PAIRS_EDGE): a is an edge of object_a, b a triangle of object_b, and there is a range for
+ * either order. Within a range pairs are sorted by a, then b; those of an object with itself are
+ * sc_query's.
+ */
+typedef struct sc_objects_result {
+    uint32_t struct_size;
+    uint32_t collides;       /* out: 1 if there is a pair, else 0 */
+    uint64_t count;          /* out: the number of pairs; 0 or 1 for SC_OUTPUT_ANY */
+    uint64_t capacity;       /* in: entries of pairs */
+    sc_pair *pairs;          /* in: the caller's array */
+    uint64_t range_count;    /* out: the number of ranges */
+    uint64_t range_capacity; /* in: entries of ranges; 0 where these are not wanted */
+    sc_object_pairs *ranges; /* in: the caller's array */
+    sc_stats *stats;         /* in: where to put statistics of all together, or NULL */
+    uint32_t verdict;        /* out: SC_VERDICT_... */
+    uint32_t reserved;       /* out: 0 */
+} sc_objects_result;
+
+/*
+ * Finds which pairs of objects have in common what, and with themselves: the same pairs, exactly, as
+ * one mesh of all objects would have in which no vertex of one is welded to one of another. options
+ * are those of sc_query, and may be NULL; their filter must be NULL and their budget 0
+ * (SC_ERROR_OPTION). Pairs of two objects are sought only if groups let them collide:
+ * (a.group.category & b.group.mask) && (b.group.category & a.group.mask), where a group of zeros
+ * collides with every other. Filters of objects are for their pairs with themselves.
+ *
+ * An object without the other's neighborhood costs little: of an object with a pose_version that is
+ * as before, and itself 0, only what is near others is looked at. Of two objects no more than boxes
+ * of both trees are culled, from the roots down. All objects are seen in one box, of which single
+ * precision sees 2^-24: objects far apart from each other take more time where they are near
+ * something, and have the same pairs.
+ *
+ * Returns SC_OK; SC_ERROR_SHORT_BUFFER if pairs or ranges do not fit: count and range_count are then
+ * what is needed, pairs holds all ranges that fit and ranges the first ones; SC_ERROR_INCOMPLETE if
+ * it was cancelled. Errors are those of sc_query, of the first object that has one, and the log of
+ * its workspace says what is wrong. Moreover SC_ERROR_WORKSPACE: a workspace is in two objects;
+ * SC_ERROR_STRIDE. On such errors count, collides and verdict are 0, and the arrays as they were.
+ *
+ * Tasks share in an object, or in two, whose workspaces have as many workers; else the calling
+ * thread does it. No memory is allocated. Workspaces of one call must not be used by another at the
+ * same time. Cost: reading what moved, sc_query for each object with itself = 1, 5 ns for two
+ * objects that are apart, and what is near between others.
+ */
+SC_API sc_status sc_query_objects(const sc_objects *objects, const sc_query_options *options,
+                                  sc_objects_result *result);
+
+/* ------------------------------------------------------------------------------------------------
  * Records
  *
  * One query in one block of bytes: the model, the pose and the options, as a bug report, or to look

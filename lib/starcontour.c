@@ -6,7 +6,6 @@
  */
 #include "starcontour.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -26,6 +25,7 @@
 #include "query/pairs.h"
 #include "query/recording.h"
 #include "run/near_question.h"
+#include "run/objects.h"
 #include "run/plan.h"
 #include "run/question.h"
 #include "run/rest.h"
@@ -351,22 +351,6 @@ void sc_workspace_free(sc_workspace *workspace)
 
 /* ---- queries ---- */
 
-/* Says which vertex it is that makes a pose not finite; where: the end of the message. */
-static void log_not_finite(const sc_hooks *hooks, const sc_model *model, const sc_pose *pose,
-                           uint64_t stride, const char *where)
-{
-    const uint8_t *use = sc_model_vertex_use(model);
-    double p[3];
-    uint32_t v;
-    for (v = 0; hooks->log && v < model->vertex_count; v++) {
-        if (use[v] == SC_VERTEX_UNUSED) continue;
-        sc_mesh_read_position(pose->positions, pose->position_type, stride, v, p);
-        if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])) continue;
-        sc_hooks_log(hooks, SC_LOG_ERROR, "vertex %" PRIu32 " is NaN or infinite%s", v, where);
-        return;
-    }
-}
-
 static int uses_star(const sc_query_options *o)
 {
     return o->method == SC_METHOD_SCTT && o->contour == SC_CONTOUR_STAR;
@@ -391,25 +375,25 @@ static sc_status read_frame(const sc_model *model, sc_workspace *workspace, cons
     sc_status status;
     if (!step) {
         status = sc_positions_read(model, &asked->pose[0], asked->stride[0], frame);
-        if (status) log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], "");
+        if (status) sc_question_log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], "");
         return status;
     }
     frame->motion.ends = step->query.near ? 1 : 2;
     frame->motion.swept = step->options.method == SC_STEP_METHOD_SWEPT;
     status = sc_motion_read(model, asked->pose, asked->stride, &step->limits, frame);
     if (status && step->query.near) {
-        log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], "");
+        sc_question_log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], "");
         return status;
     }
     if (status) {
-        log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], " at the start");
-        log_not_finite(hooks, model, &asked->pose[1], asked->stride[1], " at the end");
+        sc_question_log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], " at the start");
+        sc_question_log_not_finite(hooks, model, &asked->pose[1], asked->stride[1], " at the end");
         return status;
     }
     status = sc_step_filter_begin(model, step->options.rest, asked->rest_stride,
                                   step->options.rest_distance, frame->tasks,
                                   frame->motion.vertex_groups, &step->filters);
-    if (status) log_not_finite(hooks, model, &asked->rest, asked->rest_stride, " in the rest pose");
+    if (status) sc_question_log_not_finite(hooks, model, &asked->rest, asked->rest_stride, " in the rest pose");
     return status;
 }
 
@@ -476,6 +460,49 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
         if (!status && question.options.output == SC_OUTPUT_PAIRS && w->count > question.capacity)
             status = SC_ERROR_SHORT_BUFFER;
         if (has_answer(status)) fill_result(w, status, &r);
+    }
+    sc_structs_write(result, &r, sizeof r);
+    return status;
+}
+
+sc_status sc_query_objects(const sc_objects *objects, const sc_query_options *options,
+                           sc_objects_result *result)
+{
+    sc_objects_question question;
+    sc_objects_result r;
+    sc_stats stats;
+    sc_stats *wanted;
+    sc_status status = sc_arguments_need(NULL, "result", NULL, result);
+    if (!status)
+        status = sc_arguments_read(NULL, "result", &r, sizeof r, result,
+                                   SC_ARGUMENTS_UP_TO(sc_objects_result, pairs));
+    if (status) return status;
+    r.collides = 0;
+    r.count = r.range_count = 0;
+    r.verdict = SC_VERDICT_NONE;
+    r.reserved = 0;
+    wanted = r.stats;
+    status = sc_objects_read(objects, options, &question);
+    if (!status && question.options.output == SC_OUTPUT_PAIRS && r.capacity)
+        status = sc_arguments_need(NULL, "result", "pairs", r.pairs);
+    if (!status && r.range_capacity)
+        status = sc_arguments_need(NULL, "result", "ranges", r.ranges);
+    if (!status && wanted)
+        status = sc_arguments_check(NULL, "result.stats", wanted, sizeof stats,
+                                    SC_ARGUMENTS_DEFAULTS);
+    if (!status) {
+        memset(&stats, 0, sizeof stats);
+        r.stats = wanted ? &stats : NULL;
+        status = sc_objects_run(&question, &r);
+        r.stats = wanted;
+        if (has_answer(status)) {
+            r.collides = r.count > 0;
+            if (question.options.output == SC_OUTPUT_ANY) r.count = r.collides;
+            r.verdict = verdict_of(status, r.collides);
+            if (wanted) sc_structs_write(wanted, &stats, sizeof stats);
+        } else {
+            r.count = r.range_count = 0;
+        }
     }
     sc_structs_write(result, &r, sizeof r);
     return status;

@@ -510,9 +510,10 @@ static void eight_pairs(const double (*x)[N], int s, double share[N])
     sc_pair_lanes pairs;
     memset(&pairs, 0, sizeof pairs);
     pairs.pairs = pair;
-    pairs.triangle = triangle[0];
-    pairs.positions = (const unsigned char *)at;
-    pairs.stride = 3 * sizeof(double);
+    pairs.of[0].triangle = triangle[0];
+    pairs.of[0].positions = (const unsigned char *)at;
+    pairs.of[0].stride = 3 * sizeof(double);
+    pairs.of[1] = pairs.of[0];
     for (int half = 0; half < N; half += SC_PAIR_LANES) {
         eight_triangle_pairs e;
         for (int i = 0; i < SC_PAIR_LANES; ++i) {

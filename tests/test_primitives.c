@@ -162,9 +162,10 @@ static void clear_batch(batch *b)
 {
     memset(b, 0, sizeof *b);
     b->lanes.pairs = b->pairs;
-    b->lanes.triangle = b->triangle;
-    b->lanes.positions = (const unsigned char *)b->points;
-    b->lanes.stride = 3 * sizeof(double);
+    b->lanes.of[0].triangle = b->triangle;
+    b->lanes.of[0].positions = (const unsigned char *)b->points;
+    b->lanes.of[0].stride = 3 * sizeof(double);
+    b->lanes.of[1] = b->lanes.of[0];
 }
 
 /* Puts two triangles into a lane. Returns 0 if they share more than a batch's pairs may. */

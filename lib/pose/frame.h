@@ -44,9 +44,11 @@ typedef struct sc_frame {
     uint32_t epoch;            /* of this query; what was made in another one is stale */
 
     sc_positions positions[2]; /* valid only in a query; the second is the end of a step */
-    double center[3];          /* of the box of all points */
+    double low[3], high[3];    /* the box of all points; of a query */
+    double center[3];          /* of that box; between objects one for all of them */
     double radius;             /* largest distance of a coordinate from center */
-    double scale;   /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 */
+    double scale;   /* a power of two: scale * radius <= 1, and more than 1/2 if radius > 0 and the
+                       center is that of the box */
     int fits_float; /* that and what it scales are well within the range of floats */
 
     float *point_at; /* 4 SC_LEAF_POINTS per leaf: x, y, z of its points in the unit box, that is
@@ -55,6 +57,7 @@ typedef struct sc_frame {
     uint32_t leaves_ready;
     sc_boxes patch_boxes; /* patch_end */
     uint32_t boxes_ready;
+    uint32_t cones_ready;
     uint16_t *mask;     /* patch_end: discrete normal cones, see pose/dnc.h */
     uint32_t *prospect; /* patch_end: where culling has prospects, see query/culling.c */
     sc_motion motion;   /* where the workspace is for steps */

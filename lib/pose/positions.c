@@ -88,21 +88,40 @@ enum { FLOAT_RANGE = 64 };
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
                             sc_frame *frame)
 {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    int k, exponent;
+    double center[3];
+    int k;
     sc_positions_note(model, pose, stride, &frame->positions[0]);
-    frame->leaves_ready = frame->boxes_ready = 0;
-    if (!find_extent(model, frame, low, high)) return SC_ERROR_NOT_FINITE;
+    frame->leaves_ready = frame->boxes_ready = frame->cones_ready = 0;
+    for (k = 0; k < 3; k++) {
+        frame->low[k] = HUGE_VAL;
+        frame->high[k] = -HUGE_VAL;
+    }
+    if (!find_extent(model, frame, frame->low, frame->high)) return SC_ERROR_NOT_FINITE;
+    for (k = 0; k < 3; k++) {
+        center[k] = frame->low[k] / 2 + frame->high[k] / 2;
+        if (pose->position_type == SC_FLOAT) center[k] = (double)(float)center[k];
+    }
+    sc_positions_move(frame, center);
+    return SC_OK;
+}
+
+void sc_positions_move(sc_frame *frame, const double center[3])
+{
+    int k, exponent;
     frame->radius = 0;
     for (k = 0; k < 3; k++) {
-        frame->center[k] = low[k] / 2 + high[k] / 2;
-        if (pose->position_type == SC_FLOAT) frame->center[k] = (double)(float)frame->center[k];
-        if (high[k] - frame->center[k] > frame->radius) frame->radius = high[k] - frame->center[k];
-        if (frame->center[k] - low[k] > frame->radius) frame->radius = frame->center[k] - low[k];
+        const double above = frame->high[k] - center[k], below = center[k] - frame->low[k];
+        frame->center[k] = center[k];
+        if (above > frame->radius) frame->radius = above;
+        if (below > frame->radius) frame->radius = below;
     }
     /* the power of two above the radius, so that scaling is exact but where it underflows */
     (void)frexp(frame->radius, &exponent);
+    sc_positions_scale(frame, exponent);
+}
+
+void sc_positions_scale(sc_frame *frame, int exponent)
+{
     frame->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
     frame->fits_float = -FLOAT_RANGE <= exponent && exponent <= FLOAT_RANGE;
-    return SC_OK;
 }

@@ -20,6 +20,11 @@
 sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t stride,
                             sc_frame *frame);
 
+/* Moves the unit box of a frame, of which the box of all points is known: gives it a center, with
+   the radius and scale for that; or the scale for a radius below 2^exponent. */
+void sc_positions_move(sc_frame *frame, const double center[3]);
+void sc_positions_scale(sc_frame *frame, int exponent);
+
 /* Notes where the positions of a pose are. */
 void sc_positions_note(const sc_model *model, const sc_pose *pose, uint64_t stride,
                        sc_positions *positions);

@@ -13,31 +13,39 @@
  * many a pair of patches has.
  */
 
-/* Bit k: patch j + k of a step is not apart from patch i at all times. Behind the last patch, lows
-   are infinite and highs are -infinite: those are. */
-static inline unsigned stay_near(const sc_motion *m, uint64_t i, uint64_t j)
+/* Bit k: patch j + k of n is not apart from patch i of m at all times of a step. Behind the last
+   patch, lows are infinite and highs are -infinite: those are. */
+static inline unsigned stay_near(const sc_motion *m, uint64_t i, const sc_motion *n, uint64_t j)
 {
     lanes least = lanes_all(0);
     int k;
     SC_UNROLL
     for (k = 0; k < 3; k++) {
         float *const *s = m->boxes[0].side, *const *e = m->boxes[m->ends - 1].side;
+        float *const *t = n->boxes[0].side, *const *f = n->boxes[n->ends - 1].side;
         const lanes below =
-            lanes_larger(lanes_subtract(lanes_all(s[k + 3][i]), lanes_load(s[k] + j)),
-                         lanes_subtract(lanes_all(e[k + 3][i]), lanes_load(e[k] + j)));
+            lanes_larger(lanes_subtract(lanes_all(s[k + 3][i]), lanes_load(t[k] + j)),
+                         lanes_subtract(lanes_all(e[k + 3][i]), lanes_load(f[k] + j)));
         const lanes above =
-            lanes_larger(lanes_subtract(lanes_load(s[k + 3] + j), lanes_all(s[k][i])),
-                         lanes_subtract(lanes_load(e[k + 3] + j), lanes_all(e[k][i])));
+            lanes_larger(lanes_subtract(lanes_load(t[k + 3] + j), lanes_all(s[k][i])),
+                         lanes_subtract(lanes_load(f[k + 3] + j), lanes_all(e[k][i])));
         least = lanes_smaller(least, lanes_smaller(below, above));
     }
     return ~lanes_bits(lanes_below(least, lanes_all(0))) & ((1u << SC_LANES_COUNT) - 1u);
 }
 
+/* Bit k: patch j + k of one frame may meet patch i of another. */
+static inline unsigned near_others(const sc_frame *frame, uint64_t i, const sc_frame *other,
+                                   uint64_t j, int moves)
+{
+    if (moves) return stay_near(&frame->motion, i, &other->motion, j);
+    return overlap(&frame->patch_boxes, i, &other->patch_boxes, j);
+}
+
 /* Bit k: patch j + k may meet patch i. */
 static inline unsigned near_patches(const sc_frame *frame, uint64_t i, uint64_t j, int moves)
 {
-    if (moves) return stay_near(&frame->motion, i, j);
-    return overlap(&frame->patch_boxes, i, &frame->patch_boxes, j);
+    return near_others(frame, i, frame, j, moves);
 }
 
 /* Box tests of pairs of patches that nodes leave. */
@@ -271,7 +279,85 @@ static void list_moving_rows(sc_worker *w, uint32_t most)
     l->count[SC_LIST_ROWS] = i;
 }
 
+/* ---- two objects ---- */
+
+/* Lists leaf cluster a of the first object with some of the second's, numbered from first on; or,
+   where it is the other way round, leaf cluster b of the second with some of the first's. */
+static inline void list_between(sc_worker *w, uint32_t bit, uint32_t leaf, uint32_t first,
+                                unsigned mask, int turned, int moves)
+{
+    sc_lists *l = &w->lists;
+    uint32_t *far[2];
+    int i;
+    w->stats.leaf_pairs += sc_bits_count(mask);
+    if (moves) {
+        for (; mask; mask &= mask - 1) {
+            sc_cluster_pair *to = &l->clusters[l->count[SC_LIST_CLUSTERS]++];
+            const uint32_t other = first + sc_bits_lowest(mask);
+            to->a = turned ? other : leaf;
+            to->b = turned ? leaf : other;
+            to->shared = SC_NONE;
+            to->known = bit;
+        }
+        return;
+    }
+    for (i = 0; i < 2; i++) far[i] = l->far[i] + l->count[SC_LIST_FAR];
+    for (i = 0; i < SC_LANES_COUNT; i++) far[turned][i] = leaf | (turned ? 0 : bit);
+    l->count[SC_LIST_FAR] +=
+        lanes_list_from(mask, first | (turned ? bit : 0), far[1 - turned]);
+}
+
+/* A patch of each of two objects, whose boxes overlap: the larger one is opened, that is its
+   descendants at the next level that is visited are compared with the other's box. */
+static inline void open_two(sc_worker *w, uint32_t item, uint32_t b, int moves)
+{
+    const uint32_t a = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
+    const uint32_t leaves[2] = {sc_model_first_leaf_patch(w->model),
+                                sc_model_first_leaf_patch(w->second->model)};
+    const int turned = b < leaves[1] && (a >= leaves[0] || sc_model_leaves_of(w->model, a) <
+                                                               sc_model_leaves_of(
+                                                                   w->second->model, b));
+    const sc_worker *opened = turned ? w->second : w, *other = turned ? w : w->second;
+    const uint32_t *child = sc_model_box_child(opened->model) + (turned ? b : a);
+    const uint32_t kept = turned ? a : b, first = child[0], all = (1u << (child[1] - first)) - 1u;
+    unsigned mask;
+    if (a >= leaves[0] && b >= leaves[1]) {
+        list_between(w, bit, a - leaves[0], b - leaves[1], 1, 0, moves);
+        return;
+    }
+    mask = near_others(other->frame, kept, opened->frame, first, moves) & all;
+    sc_worker_count_boxes(w, sc_item_follows(item), sc_bits_count(all));
+    if (first >= leaves[turned] && kept >= leaves[1 - turned]) {
+        list_between(w, bit, kept - leaves[1 - turned], first - leaves[turned], mask, !turned,
+                     moves);
+        return;
+    }
+    for (; mask; mask &= mask - 1) {
+        const uint32_t c = first + sc_bits_lowest(mask);
+        add_patches(w, (turned ? a : c) | bit, turned ? c : b);
+    }
+}
+
+/* Pairs of patches of two objects. The list is a stack, to which each pair adds 15 more at most,
+   as often as there are levels to visit in both. */
+static inline void open_all_two(sc_worker *w, uint32_t most, int moves)
+{
+    sc_lists *l = &w->lists;
+    uint32_t *count = &l->count[SC_LIST_PATCHES];
+    for (; most && *count && l->count[SC_LIST_FAR] < SC_LEAF_LIST_ENOUGH &&
+           l->count[SC_LIST_CLUSTERS] <= SC_CLUSTERS_MAX - SC_LEAF_MAX;
+         most--) {
+        const sc_pair pair = l->patches[--*count];
+        open_two(w, pair.a, pair.b, moves);
+    }
+}
+
 /* ---- the same for poses and for steps ---- */
+
+static void open_between(sc_worker *w, uint32_t most)
+{
+    open_all_two(w, most, 0);
+}
 
 static void leave_patch_pairs(sc_worker *w, uint32_t most)
 {

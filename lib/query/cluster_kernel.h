@@ -45,7 +45,8 @@ static void part_far(sc_worker *w, uint32_t most)
     sc_lists *l = &w->lists;
     uint32_t *left = &l->count[SC_LIST_FAR], count = *left < most ? *left : most, kept = 0, i;
     const uint32_t *item = l->far[0] + (*left -= count), *other = l->far[1] + *left;
-    const int keeps_all = w->kept.mask == SC_KEEPS_ALL;
+    const sc_worker *v = w->second;
+    const int keeps_all = (w->kept.mask & v->kept.mask) == SC_KEEPS_ALL;
     sc_cluster_pair *to = l->clusters + l->count[SC_LIST_CLUSTERS];
     if (count < SC_LEAF_SLABS_FIRST) {
         for (i = 0; i < count; i++) list_far(item[i], other[i], SC_CLUSTERS_UNSLABBED, to + i);
@@ -56,16 +57,16 @@ static void part_far(sc_worker *w, uint32_t most)
         const uint32_t a = item[i] & SC_ITEM, b = other[i];
         if (i + SC_MADE_LEAVES < count) {
             sc_fetch(w->kept.slab + (item[i + SC_MADE_LEAVES] & SC_ITEM));
-            sc_fetch(w->kept.slab + other[i + SC_MADE_LEAVES]);
+            sc_fetch(v->kept.slab + other[i + SC_MADE_LEAVES]);
         }
         if (i % SC_MADE_LEAVES == 0 && keeps_all) {
             const uint32_t some = count - i < SC_MADE_LEAVES ? count - i : SC_MADE_LEAVES;
             make_slabs(w, item + i, some);
-            make_slabs(w, other + i, some);
+            make_slabs(v, other + i, some);
         }
-        if (i + SC_FETCH_POINTS < count) fetch_points(w, other[i + SC_FETCH_POINTS]);
+        if (i + SC_FETCH_POINTS < count) fetch_points(v, other[i + SC_FETCH_POINTS]);
         list_far(item[i], b, 0, to + kept);
-        kept += !slabs_part(w, a, derived_place(w, a), b, derived_place(w, b));
+        kept += !slabs_part(w, a, derived_place(w, a), b, derived_place(v, b));
     }
     l->count[SC_LIST_CLUSTERS] += kept;
 }
@@ -214,17 +215,18 @@ static unsigned take_shared(sc_worker *w, const sc_leaf_pair *p, unsigned pair, 
 /* Drops pairs of which the plane of the row's triangle has the other on one side. */
 static unsigned compare_planes(const sc_worker *w, sc_triangle_rows *rows, unsigned rows_count)
 {
+    const sc_worker *v = w->second;
     unsigned count = 0, r = 0;
     int k;
     while (r < rows_count) {
         const unsigned pair = rows->pair[r];
         const uint64_t leaf_b = rows->leaf[1][pair];
         const sc_leaf_derived *a = rows->derived[0][pair];
-        const uint8_t *where = sc_model_leaf_corner(w->model) + 3 * SC_LEAF_MAX * leaf_b;
+        const uint8_t *where = sc_model_leaf_corner(v->model) + 3 * SC_LEAF_MAX * leaf_b;
         const float extent = rows->extent[pair];
         lanes_index corner[3];
         lanes at[3];
-        lanes_coordinates(w->frame->point_at + 4 * SC_LEAF_POINTS * leaf_b, at);
+        lanes_coordinates(v->frame->point_at + 4 * SC_LEAF_POINTS * leaf_b, at);
         SC_UNROLL
         for (k = 0; k < 3; k++) corner[k] = lanes_index_load(where + SC_LEAF_MAX * k);
         do {
@@ -254,8 +256,8 @@ static unsigned compare_planes(const sc_worker *w, sc_triangle_rows *rows, unsig
    b. */
 static inline unsigned rows_at(const sc_worker *w, const sc_leaf_derived *derived, uint32_t b)
 {
-    const sc_boxes *boxes = &w->frame->patch_boxes;
-    uint64_t i = (uint64_t)sc_model_first_leaf_patch(w->model) + b;
+    const sc_boxes *boxes = &w->second->frame->patch_boxes;
+    uint64_t i = (uint64_t)sc_model_first_leaf_patch(w->second->model) + b;
     lanes_mask m[3];
     int k;
     SC_UNROLL
@@ -275,22 +277,28 @@ static inline kept_places places_of_pair(const sc_worker *w, const sc_cluster_pa
 {
     kept_places at;
     at.a = derived_place(w, p->a);
-    at.b = derived_place(w, p->b);
-    if (at.a == at.b && p->a != p->b) at.b = w->kept.spare;
+    at.b = derived_place(w->second, p->b);
+    if (at.a == at.b && p->a != p->b && !sc_worker_is_between(w)) at.b = w->kept.spare;
     return at;
+}
+
+/* Whether a pair is one leaf cluster, to be looked at by itself. */
+static inline int is_alone(const sc_worker *w, const sc_cluster_pair *p)
+{
+    return p->a == p->b && !sc_worker_is_between(w);
 }
 
 /* Whether one of the places of a pair is that of another leaf cluster that so many pairs are of. */
 static int is_taken(const sc_worker *w, const sc_cluster_pair *p, kept_places at, unsigned pairs)
 {
     const sc_triangle_rows *rows = w->lists.triangles;
-    const sc_leaf_derived *a = w->kept.derived + at.a, *b = w->kept.derived + at.b;
+    const sc_leaf_derived *a = w->kept.derived + at.a, *b = w->second->kept.derived + at.b;
     int taken = 0;
     unsigned k;
     if (!has_derived(w, p->a, at.a))
         for (k = 0; k < pairs; k++)
             taken |= (rows->derived[0][k] == a) | (rows->derived[1][k] == a);
-    if (!has_derived(w, p->b, at.b))
+    if (!has_derived(w->second, p->b, at.b))
         for (k = 0; k < pairs; k++)
             taken |= (rows->derived[0][k] == b) | (rows->derived[1][k] == b);
     return taken;
@@ -302,12 +310,13 @@ static inline void name_pair(const sc_worker *w, const sc_cluster_pair *p, kept_
                              unsigned k)
 {
     sc_triangle_rows *rows = w->lists.triangles;
-    const sc_leaf_known *known = w->kept.known;
+    const sc_kept_leaves *of_b = &w->second->kept;
     rows->leaf[0][k] = p->a | (p->known & SC_AFTER_CONTOUR);
     rows->leaf[1][k] = p->b;
     rows->derived[0][k] = w->kept.derived + at.a;
-    rows->derived[1][k] = w->kept.derived + at.b;
-    rows->extent[k] = known[at.a].extent + (p->a == p->b ? 0 : known[at.b].extent);
+    rows->derived[1][k] = of_b->derived + at.b;
+    rows->extent[k] =
+        w->kept.known[at.a].extent + (is_alone(w, p) ? 0 : of_b->known[at.b].extent);
 }
 
 /* Has these triangles wait as rows of a pair. Returns how many. */
@@ -345,13 +354,13 @@ static void add_clusters(sc_worker *w, const sc_cluster_pair *clusters, kept_pla
     const sc_leaf_derived *a = derived_leaf(w, clusters->a, at.a);
     sc_leaf_pair p;
     unsigned some;
-    if (clusters->a == clusters->b) {
+    if (is_alone(w, clusters)) {
         const uint32_t *first = sc_model_leaf_first(w->model) + clusters->a;
         some = (1u << (first[1] - first[0] - 1)) - 1u;
     } else {
         some = rows_at(w, a, clusters->b);
         if (!some) return;
-        (void)derived_leaf(w, clusters->b, at.b);
+        (void)derived_leaf(w->second, clusters->b, at.b);
         if (clusters->known & SC_CLUSTERS_UNSLABBED &&
             slabs_part(w, clusters->a, at.a, clusters->b, at.b))
             return;
@@ -397,8 +406,10 @@ static inline int have_room_for_clusters(const sc_worker *w)
    rows are compared first. */
 static void compare_clusters(sc_worker *w, uint32_t most)
 {
+    const sc_worker *v = w->second;
     const uint8_t *crowded = sc_model_share_crowded(w->model);
-    const int keeps_all = w->kept.mask == SC_KEEPS_ALL;
+    const uint8_t *others = sc_model_share_crowded(v->model);
+    const int keeps_all = (w->kept.mask & v->kept.mask) == SC_KEEPS_ALL;
     sc_lists *l = &w->lists;
     uint32_t left = l->count[SC_LIST_CLUSTERS];
     const uint32_t end = left < most ? 0 : left - most;
@@ -413,11 +424,11 @@ static void compare_clusters(sc_worker *w, uint32_t most)
         if (left > SC_FETCH_DERIVED) {
             const sc_cluster_pair *next = p - SC_FETCH_DERIVED;
             fetch_derived(w, next->a);
-            fetch_derived(w, next->b);
+            fetch_derived(v, next->b);
             if (!far) fetch_near(w, next);
         }
-        if (far && !((p->known & SC_CLUSTERS_UNSLABBED) | (crowded[p->a] & crowded[p->b])) &&
-            has_derived(w, p->a, at.a) & has_derived(w, p->b, at.b))
+        if (far && !((p->known & SC_CLUSTERS_UNSLABBED) | (crowded[p->a] & others[p->b])) &&
+            has_derived(w, p->a, at.a) & has_derived(v, p->b, at.b))
             add_far(w, p, at, &to);
         else if (have_room_for_clusters(w))
             add_clusters(w, p, at, &to);
@@ -449,6 +460,7 @@ static inline void fill_sixteen(const sc_worker *w, const rows_window *window, s
     int s, k;
     SC_UNROLL
     for (s = 0; s < 2; s++) {
+        const sc_worker *v = s ? w->second : w;
         picked *t = &x->of[s];
         t->numbers = window->numbers[s];
         SC_UNROLL
@@ -457,9 +469,9 @@ static inline void fill_sixteen(const sc_worker *w, const rows_window *window, s
             const uint32_t item = rows->leaf[s][pair];
             const uint64_t leaf = item & SC_ITEM;
             t->derived[k] = rows->derived[s][pair];
-            t->points[k] = w->frame->point_at + 4 * SC_LEAF_POINTS * leaf;
-            t->corner[k] = sc_model_leaf_corner(w->model) + 3 * SC_LEAF_MAX * leaf;
-            first[s][k] = sc_model_leaf_first(w->model)[leaf] | (item & SC_AFTER_CONTOUR);
+            t->points[k] = v->frame->point_at + 4 * SC_LEAF_POINTS * leaf;
+            t->corner[k] = sc_model_leaf_corner(v->model) + 3 * SC_LEAF_MAX * leaf;
+            first[s][k] = sc_model_leaf_first(v->model)[leaf] | (item & SC_AFTER_CONTOUR);
         }
     }
     x->split = window->split < window->count ? window->split : SC_LANES_COUNT;

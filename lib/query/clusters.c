@@ -37,6 +37,10 @@ void sc_clusters_enter(const sc_worker *w, const sc_cluster_pair *clusters, sc_l
     p->shared = nothing;
     p->wanted = !w->question->drops_neighbors;
     p->list = NULL;
+    if (sc_worker_is_between(w)) {
+        p->shares = 0;
+        return;
+    }
     if (sc_model_share_crowded(model)[p->a] & sc_model_share_crowded(model)[p->b]) {
         find_shared(model, p);
     } else if (p->a == p->b) {

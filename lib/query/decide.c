@@ -18,31 +18,45 @@
 #include "query/primitives.h"
 #include "query/query_kernels.h"
 
+/* Two triangles in the caller's numbers, the lower one first; of two objects as they are. */
+static sc_pair name_triangles(const sc_worker *w, const sc_pair *places)
+{
+    const uint32_t a = sc_model_triangle_id(w->model)[places->a];
+    const uint32_t b = sc_model_triangle_id(w->second->model)[places->b];
+    const int turns = b < a && !sc_worker_is_between(w);
+    sc_pair name;
+    name.a = turns ? b : a;
+    name.b = turns ? a : b;
+    return name;
+}
+
 /* Reports that two triangles meet. */
 static void take_triangles(sc_worker *w, const sc_pair *places)
 {
-    const uint32_t *id = sc_model_triangle_id(w->model);
-    uint32_t a = id[places->a], b = id[places->b];
-    sc_pairs_take(w, a < b ? a : b, a < b ? b : a);
+    const sc_pair name = name_triangles(w, places);
+    sc_pairs_take(w, name.a, name.b);
 }
 
 /* Reports edges that meet the other triangle. */
 static void take_edges(sc_worker *w, const sc_pair *places, unsigned hits)
 {
-    const uint32_t *id = sc_model_triangle_id(w->model);
+    const uint32_t a = sc_model_triangle_id(w->model)[places->a];
+    const uint32_t b = sc_model_triangle_id(w->second->model)[places->b];
     for (; hits; hits &= hits - 1) {
         uint32_t bit = sc_bits_lowest(hits);
         if (bit < 3)
-            sc_pairs_take(w, 3 * id[places->a] + bit, id[places->b]);
+            sc_pairs_take(w, 3 * a + bit, b);
         else
-            sc_pairs_take(w, 3 * id[places->b] + bit - 3, id[places->a]);
+            sc_pairs_take(w, 3 * b + bit - 3, a);
     }
 }
 
-/* The edges that bear the names of the two triangles' edges. */
+/* The edges that bear the names of the two triangles' edges; between two objects those of the
+   first. */
 static unsigned edges_wanted(const sc_worker *w, const sc_pair *places)
 {
     const uint8_t *owned = sc_model_edge_owned(w->model);
+    if (sc_worker_is_between(w)) return owned[places->a];
     return (unsigned)owned[places->a] | (unsigned)owned[places->b] << 3;
 }
 
@@ -98,8 +112,8 @@ static void mark_shared(sc_pair_lanes *lanes)
     int i, k;
     memset(lanes->shared, 0, sizeof lanes->shared);
     for (j = 0; j < SC_PAIR_LANES; j++) {
-        const uint32_t *a = lanes->triangle + 3 * (uint64_t)lanes->pairs[j].a;
-        const uint32_t *b = lanes->triangle + 3 * (uint64_t)lanes->pairs[j].b;
+        const uint32_t *a = lanes->of[0].triangle + 3 * (uint64_t)lanes->pairs[j].a;
+        const uint32_t *b = lanes->of[1].triangle + 3 * (uint64_t)lanes->pairs[j].b;
         for (i = 0; i < 3; i++)
             for (k = 0; k < 3; k++)
                 if (a[i] == b[k]) {
@@ -172,9 +186,11 @@ static uint64_t wanted_of_lanes(const sc_worker *w, const sc_pair *pairs)
 /* Reports what meets in some lanes. */
 static void take_lanes(sc_worker *w, const sc_pair *pairs, uint64_t meets)
 {
-    const uint32_t *id = sc_model_triangle_id(w->model);
+    const uint32_t *id[2];
     sc_pair found[6 * SC_PAIR_LANES];
     uint32_t count = 0;
+    id[0] = sc_model_triangle_id(w->model);
+    id[1] = sc_model_triangle_id(w->second->model);
     if (w->question->options.pairs == SC_PAIRS_EDGE) {
         meets &= turn_bits(wanted_of_lanes(w, pairs));
         if (sc_pairs_are_counted(w->question)) {
@@ -183,50 +199,46 @@ static void take_lanes(sc_worker *w, const sc_pair *pairs, uint64_t meets)
         }
         for (; meets; meets &= meets - 1) {
             uint32_t bit = sc_bits_lowest64(meets), k = bit / SC_PAIR_LANES;
-            sc_pair pair = pairs[bit % SC_PAIR_LANES];
-            uint32_t mine = k < 3 ? pair.a : pair.b, other = k < 3 ? pair.b : pair.a;
-            k -= k < 3 ? 0 : 3;
-            found[count].a = 3 * id[mine] + k;
-            found[count++].b = id[other];
+            const sc_pair *pair = &pairs[bit % SC_PAIR_LANES];
+            const uint32_t a = id[0][pair->a], b = id[1][pair->b];
+            found[count].a = k < 3 ? 3 * a + k : 3 * b + k - 3;
+            found[count++].b = k < 3 ? b : a;
         }
     } else {
         unsigned lanes = lanes_of(meets);
-        for (; lanes; lanes &= lanes - 1) {
-            sc_pair pair = pairs[sc_bits_lowest(lanes)];
-            uint32_t a = id[pair.a], b = id[pair.b];
-            found[count].a = a < b ? a : b;
-            found[count++].b = a < b ? b : a;
-        }
+        for (; lanes; lanes &= lanes - 1)
+            found[count++] = name_triangles(w, &pairs[sc_bits_lowest(lanes)]);
     }
     sc_pairs_take_all(w, found, count);
 }
 
-/* Asks for what is read of two triangles. */
-static inline void fetch_triangles(const sc_model *model, const sc_pair *item)
+/* Asks for what is read of a triangle. */
+static inline void fetch_triangle(const sc_model *model, uint32_t place)
 {
-    const uint32_t *triangle = sc_model_triangle(model), *id = sc_model_triangle_id(model);
-    const uint8_t *owned = sc_model_edge_owned(model);
-    const uint32_t a = item->a & SC_ITEM, b = item->b;
-    sc_fetch(triangle + 3 * (uint64_t)a);
-    sc_fetch(triangle + 3 * (uint64_t)b);
-    sc_fetch(id + a);
-    sc_fetch(id + b);
-    sc_fetch(owned + a);
-    sc_fetch(owned + b);
+    sc_fetch(sc_model_triangle(model) + 3 * (uint64_t)place);
+    sc_fetch(sc_model_triangle_id(model) + place);
+    sc_fetch(sc_model_edge_owned(model) + place);
+}
+
+static void find_triangles(const sc_worker *w, sc_triangle_source *source)
+{
+    const sc_positions *positions = &w->frame->positions[0];
+    source->triangle = sc_model_triangle(w->model);
+    source->positions = positions->at;
+    source->stride = positions->stride;
+    source->floats = positions->type == SC_FLOAT;
 }
 
 /* Decides pairs of a list that share nothing, or one point each. */
 static void decide_some(sc_worker *w, const sc_pair *items, uint32_t count, int share)
 {
-    const sc_positions *positions = &w->frame->positions[0];
+    const sc_worker *v = w->second;
     sc_pair pairs[SC_PAIR_LANES];
     sc_pair_lanes lanes;
     uint32_t i, j, follow = 0;
     lanes.pairs = pairs;
-    lanes.triangle = sc_model_triangle(w->model);
-    lanes.positions = positions->at;
-    lanes.stride = positions->stride;
-    lanes.floats = positions->type == SC_FLOAT;
+    find_triangles(w, &lanes.of[0]);
+    find_triangles(v, &lanes.of[1]);
     lanes.proper = w->question->options.contact == SC_CONTACT_PROPER;
     lanes.shares = share;
     memset(lanes.shared, 0, sizeof lanes.shared);
@@ -239,8 +251,10 @@ static void decide_some(sc_worker *w, const sc_pair *items, uint32_t count, int 
             follow += i + j < count ? sc_item_follows(pairs[j].a) : 0;
             pairs[j].a &= SC_ITEM;
         }
-        for (j = i + SC_PAIR_LANES; j < i + 2 * SC_PAIR_LANES && j < count; j++)
-            fetch_triangles(w->model, items + j);
+        for (j = i + SC_PAIR_LANES; j < i + 2 * SC_PAIR_LANES && j < count; j++) {
+            fetch_triangle(w->model, items[j].a & SC_ITEM);
+            fetch_triangle(v->model, items[j].b);
+        }
         if (share) mark_shared(&lanes);
         w->frame->kernels->query->decide(&lanes, &verdict);
         open = lanes_of(verdict.unsure) & of_all;
@@ -269,20 +283,25 @@ void sc_decide_neighbors(sc_worker *w, uint32_t most)
     decide_some(w, w->lists.neighbors + (*left -= count), count, 1);
 }
 
+/* Makes points of the second object other ones than those of the first: their numbers, as those of
+   items, are below 2^31. */
+#define OTHER_OBJECT 0x80000000u
+
 static void decide_exactly(sc_worker *w, const sc_pair *places)
 {
-    const sc_model *model = w->model;
-    const uint32_t *triangle = sc_model_triangle(model);
-    const sc_positions *positions = &w->frame->positions[0];
+    const sc_worker *v = w->second;
+    const uint32_t *a = sc_model_triangle(w->model) + 3 * (uint64_t)places->a;
+    const uint32_t *b = sc_model_triangle(v->model) + 3 * (uint64_t)places->b;
+    const uint32_t apart = sc_worker_is_between(w) ? OTHER_OBJECT : 0;
     const int proper = w->question->options.contact == SC_CONTACT_PROPER;
     double copy[2][3][4];
     sc_triangle_pair pair;
     int k;
     for (k = 0; k < 3; k++) {
-        pair.va[k] = triangle[3 * (uint64_t)places->a + (uint64_t)k];
-        pair.vb[k] = triangle[3 * (uint64_t)places->b + (uint64_t)k];
-        pair.a[k] = sc_positions_at(positions, pair.va[k], copy[0][k]);
-        pair.b[k] = sc_positions_at(positions, pair.vb[k], copy[1][k]);
+        pair.va[k] = a[k];
+        pair.vb[k] = b[k] | apart;
+        pair.a[k] = sc_positions_at(&w->frame->positions[0], a[k], copy[0][k]);
+        pair.b[k] = sc_positions_at(&v->frame->positions[0], b[k], copy[1][k]);
     }
     if (w->question->options.pairs == SC_PAIRS_EDGE)
         take_edges(w, places,

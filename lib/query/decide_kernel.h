@@ -35,28 +35,29 @@ typedef struct eight_triangle_pairs {
     doubles bound;       /* what is larger than this has a certain sign */
 } eight_triangle_pairs;
 
-static SC_INLINE void read_points(const sc_pair_lanes *pairs, int floats, doubles at[2][3][3])
+/* Corners of the first or the second triangles. */
+static SC_INLINE void read_points(const sc_pair_lanes *pairs, int s, int floats, doubles at[3][3])
 {
-    const uint32_t *triangle[2][SC_PAIR_LANES];
-    int s, k, i;
+    const sc_triangle_source *of = &pairs->of[s];
+    const unsigned char *positions = of->positions;
+    const uint64_t stride = of->stride;
+    const uint32_t *triangle[SC_PAIR_LANES];
+    int k, i;
     SC_UNROLL
-    for (i = 0; i < SC_PAIR_LANES; i++) {
-        triangle[0][i] = pairs->triangle + 3 * (uint64_t)pairs->pairs[i].a;
-        triangle[1][i] = pairs->triangle + 3 * (uint64_t)pairs->pairs[i].b;
+    for (i = 0; i < SC_PAIR_LANES; i++)
+        triangle[i] = of->triangle + 3 * (uint64_t)(s ? pairs->pairs[i].b : pairs->pairs[i].a);
+    for (k = 0; k < 3; k++) {
+        const unsigned char *point[SC_PAIR_LANES];
+        SC_UNROLL
+        for (i = 0; i < SC_PAIR_LANES; i++)
+            point[i] = positions + sc_alone((size_t)(stride * triangle[i][k]));
+        doubles_points(point, floats, at[k]);
     }
-    for (s = 0; s < 2; s++)
-        for (k = 0; k < 3; k++) {
-            const unsigned char *point[SC_PAIR_LANES];
-            SC_UNROLL
-            for (i = 0; i < SC_PAIR_LANES; i++)
-                point[i] = pairs->positions + sc_alone((size_t)(pairs->stride * triangle[s][i][k]));
-            doubles_points(point, floats, at[s][k]);
-        }
 }
 
-static SC_NOINLINE void read_floats(const sc_pair_lanes *pairs, doubles at[2][3][3])
+static SC_NOINLINE void read_floats(const sc_pair_lanes *pairs, int s, doubles at[3][3])
 {
-    read_points(pairs, 1, at);
+    read_points(pairs, s, 1, at);
 }
 
 static inline void cross_eight(const doubles e[3], const doubles f[3], doubles n[3])
@@ -80,10 +81,12 @@ static SC_INLINE void read_eight(const sc_pair_lanes *pairs, eight_triangle_pair
     doubles a[2][3], b[3][3], n[3], along[2][3], reach = doubles_all(SC_BOUNDS_EIGHT_LEAST);
     doubles *side = x->side[1], (*line)[3] = x->line;
     int k, i, c;
-    if (pairs->floats)
-        read_floats(pairs, x->at);
-    else
-        read_points(pairs, 0, x->at);
+    for (k = 0; k < 2; k++) {
+        if (pairs->of[k].floats)
+            read_floats(pairs, k, x->at[k]);
+        else
+            read_points(pairs, k, 0, x->at[k]);
+    }
     SC_UNROLL
     for (k = 0; k < 5; k++) {
         const doubles *from = x->at[0][0], *to = k < 2 ? x->at[0][k + 1] : x->at[1][k - 2];

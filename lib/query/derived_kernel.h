@@ -190,6 +190,7 @@ static inline unsigned is_beside(const sc_worker *w, uint32_t leaf, const sc_lea
 static inline unsigned slabs_part(const sc_worker *w, uint32_t a, uint32_t at_a, uint32_t b,
                                   uint32_t at_b)
 {
-    const sc_leaf_slab *of_a = slab_of(w, a, at_a), *of_b = slab_of(w, b, at_b);
-    return is_beside(w, b, of_a) | is_beside(w, a, of_b);
+    const sc_worker *v = w->second;
+    const sc_leaf_slab *of_a = slab_of(w, a, at_a), *of_b = slab_of(v, b, at_b);
+    return is_beside(v, b, of_a) | is_beside(w, a, of_b);
 }

@@ -62,6 +62,8 @@ enum {
     SC_LEFT_MAX = SC_LEFT_ENOUGH + SC_NODE_CHILDREN,
     /* two patches have 256 pairs of descendants at the next level */
     SC_PATCHES_CHILDREN = 256,
+    /* of two objects each visits every fourth level, and opening one of a pair adds 15 */
+    SC_PATCHES_BETWEEN = 2 * (SC_DEPTH_MAX / 4 + 1) * 15 + 1,
     SC_ROWS_ENOUGH = 128,
     SC_ROWS_MAX = SC_ROWS_ENOUGH + SC_LEAF_MAX,
     /* pairs of leaf clusters: a row adds sixteen */

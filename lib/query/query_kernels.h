@@ -12,14 +12,19 @@
 /* Pairs are decided by so many at a time. */
 enum { SC_PAIR_LANES = 8 };
 
-/* SC_PAIR_LANES pairs of triangles that share one point at most. Bit i of shared: in pair i the
-   corner is one of the other triangle's. */
-typedef struct sc_pair_lanes {
-    const sc_pair *pairs;           /* places of triangles */
+/* Where the corners of triangles are. */
+typedef struct sc_triangle_source {
     const uint32_t *triangle;       /* three points at each place */
     const unsigned char *positions; /* as in sc_positions */
     uint64_t stride;
     int floats; /* positions are floats */
+} sc_triangle_source;
+
+/* SC_PAIR_LANES pairs of triangles that share one point at most. Bit i of shared: in pair i the
+   corner is one of the other triangle's. */
+typedef struct sc_pair_lanes {
+    const sc_pair *pairs;     /* places of triangles */
+    sc_triangle_source of[2]; /* of the first and of the second of pairs */
     int proper; /* contacts are proper ones only */
     int shares; /* some points are shared */
     unsigned shared[2][3];

@@ -1,5 +1,5 @@
 /*
- * Stopping a query early. See worker.h.
+ * Stopping a query early, and what was counted. See worker.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -28,4 +28,18 @@ int sc_worker_ask_flag(sc_worker *w)
 int sc_worker_ask_budget(sc_worker *w)
 {
     return end_if(w, work(w) > w->question->options.budget);
+}
+
+void sc_worker_add_stats(sc_stats *sum, const sc_stats *stats)
+{
+    uint32_t k;
+    for (k = 0; k < SC_TASK_COUNT; k++) {
+        sum->counts[k] += stats->counts[k];
+        sum->nanoseconds[k] += stats->nanoseconds[k];
+    }
+    sum->nodes_visited += stats->nodes_visited;
+    sum->nodes_oriented += stats->nodes_oriented;
+    sum->nodes_culled += stats->nodes_culled;
+    sum->leaf_pairs += stats->leaf_pairs;
+    sum->exact_fallbacks += stats->exact_fallbacks;
 }

@@ -22,6 +22,7 @@ struct sc_worker;
 struct sc_step_question;
 struct sc_near_question;
 struct sc_near_worker;
+struct sc_workspace;
 
 /* What a query is asked, checked and complete; and the caller's array. */
 typedef struct sc_question {
@@ -41,6 +42,9 @@ typedef struct sc_question {
                                             it is a step that stays where it is; or NULL */
     sc_pair *pairs;                      /* the caller's array */
     uint64_t capacity;
+    int keeps; /* what is made of the pose may be needed by a later query, of an object */
+    struct sc_workspace *second; /* of the second of two objects, whose pose is read and boxes made,
+                                    if pairs between two are sought; or NULL */
 } sc_question;
 
 /* What the workers of a query have in common and write to, see run/plan.c. */
@@ -84,6 +88,9 @@ typedef struct sc_worker {
     const sc_question *question;
     const sc_hooks *hooks;
     sc_share *share; /* NULL, if one worker does all */
+    struct sc_worker *second; /* who has the model, the frame and what is kept of leaf clusters for
+                                 the second of pairs: itself; between two objects a worker of the
+                                 other's workspace */
 
     sc_contour_edges contour;  /* room for a contour under the projection at hand */
     sc_contour_bounds *bounds; /* for the star test; only one worker makes it */
@@ -106,6 +113,12 @@ typedef struct sc_worker {
     sc_stats stats;
     unsigned char apart[SC_ALIGNMENT]; /* no two workers write to one line of the cache */
 } sc_worker;
+
+/* Whether pairs are of two objects, and so have nothing in common, whatever their numbers. */
+static inline int sc_worker_is_between(const sc_worker *w)
+{
+    return w->second != w;
+}
 
 /* Asks the caller's flag, and the budget. Sets stop and incomplete, and returns stop. */
 int sc_worker_ask_flag(sc_worker *worker);
@@ -144,6 +157,9 @@ static inline uint32_t sc_item_follows(uint32_t item)
 {
     return item >> 31;
 }
+
+/* Adds what was counted. */
+void sc_worker_add_stats(sc_stats *sum, const sc_stats *stats);
 
 /* Counts box tests or primitive tests. */
 static inline void sc_worker_count_boxes(sc_worker *w, uint32_t follows, uint64_t tests)

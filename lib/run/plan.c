@@ -210,13 +210,14 @@ static int is_large_node(const sc_model *model, uint32_t node)
     return is_large(model, patches->a, LARGE_IN_NODE) || is_large(model, patches->b, LARGE_IN_NODE);
 }
 
-static int is_large_pair(const sc_model *model, sc_pair item)
+static int is_large_pair(const sc_worker *w, sc_pair item)
 {
+    const sc_model *model = w->model, *other = w->second->model;
     const uint32_t a = item.a & SC_ITEM, b = item.b;
-    if (sc_model_leaves_of(model, a) <= SMALL_PAIR && sc_model_leaves_of(model, b) <= SMALL_PAIR)
+    if (sc_model_leaves_of(model, a) <= SMALL_PAIR && sc_model_leaves_of(other, b) <= SMALL_PAIR)
         return 0;
-    if (a == b) return is_large(model, a, LARGE_BY_ITSELF);
-    return is_large(model, a, LARGE_IN_PAIR) || is_large(model, b, LARGE_IN_PAIR);
+    if (a == b && !sc_worker_is_between(w)) return is_large(model, a, LARGE_BY_ITSELF);
+    return is_large(model, a, LARGE_IN_PAIR) || is_large(other, b, LARGE_IN_PAIR);
 }
 
 /* Takes what waits in lists of the first worker: what is large is opened or tested next, the rest
@@ -251,7 +252,7 @@ static void sort_out(plan *p)
             add_part(p, SC_LIST_ORIENTED, l->oriented[i], 0);
     }
     for (i = 0; i < count[SC_LIST_PATCHES]; i++) {
-        if (is_large_pair(model, l->patches[i]) && !SC_HARDLY(p->pair_count == SC_PLAN_PAIRS))
+        if (is_large_pair(p->w, l->patches[i]) && !SC_HARDLY(p->pair_count == SC_PLAN_PAIRS))
             p->room->pairs[p->pair_count++] = l->patches[i];
         else
             add_part(p, SC_LIST_PATCHES, l->patches[i].a, l->patches[i].b);
@@ -475,17 +476,25 @@ static void walk_nodes(plan *p)
     do_parts(p);
 }
 
-static void walk_boxes(plan *p)
+/* The root against itself, or the roots of two objects. */
+static void add_roots(plan *p)
 {
     sc_pair *root = &p->w->lists.patches[p->w->lists.count[SC_LIST_PATCHES]++];
     root->a = root->b = 0;
+}
+
+static void walk_boxes(plan *p)
+{
     sc_runner_make_boxes(p->w);
+    add_roots(p);
     if (p->tasks) open_large(p);
     do_parts(p);
 }
 
 static void make_cones(sc_worker *w)
 {
+    if (w->frame->cones_ready) return;
+    w->frame->cones_ready = 1;
     sc_worker_switch(w, SC_TASK_UPDATE_NORMALS);
     if (w->question->step) {
         sc_motion_update_cones(w->model, w->frame);
@@ -518,16 +527,7 @@ static void begin_workers(plan *p)
 /* What a worker counted. */
 static void add_counts(sc_worker *sum, const sc_worker *w)
 {
-    uint32_t k;
-    for (k = 0; k < SC_TASK_COUNT; k++) {
-        sum->stats.counts[k] += w->stats.counts[k];
-        sum->stats.nanoseconds[k] += w->stats.nanoseconds[k];
-    }
-    sum->stats.nodes_visited += w->stats.nodes_visited;
-    sum->stats.nodes_oriented += w->stats.nodes_oriented;
-    sum->stats.nodes_culled += w->stats.nodes_culled;
-    sum->stats.leaf_pairs += w->stats.leaf_pairs;
-    sum->stats.exact_fallbacks += w->stats.exact_fallbacks;
+    sc_worker_add_stats(&sum->stats, &w->stats);
     sum->incomplete |= w->incomplete;
     sum->count += w->count;
 }
@@ -609,8 +609,8 @@ static int find_pairs(sc_workspace *workspace, const sc_tasks *tasks, plan *p)
         p->question.filter = &p->filter;
     }
     begin_workers(p);
-    if (o->method == SC_METHOD_SCTT) make_cones(p->w);
-    if (o->method == SC_METHOD_AABB)
+    if (o->method == SC_METHOD_SCTT && !question->second) make_cones(p->w);
+    if (o->method == SC_METHOD_AABB || question->second)
         walk_boxes(p);
     else if (o->method == SC_METHOD_AABB_SCTT)
         walk_nodes(p);
@@ -628,6 +628,7 @@ static void finish(sc_workspace *workspace, const sc_question *question, const s
     sc_worker *w = &workspace->worker[0];
     uint64_t room;
     sc_pair *spare = sc_workspace_spare(workspace, &room);
+    if (question->keeps) room = 0;
     if (question->step) {
         sc_step_pairs_finish(question->step, w->step->count, spare, room, tasks);
         if (tasks) sc_step_filter_ask(w);
@@ -645,7 +646,10 @@ void sc_plan_run(sc_workspace *workspace)
     const sc_stats before = w->stats;
     plan p;
     if (!find_pairs(workspace, tasks, &p)) {
-        sc_workspace_begin(w->model, workspace, question);
+        if (question->keeps)
+            (void)sc_workspace_resume(w->model, workspace, question);
+        else
+            (void)sc_workspace_begin(w->model, workspace, question);
         w->stats = before;
         if (question->timed) w->last_time = sc_clock_nanoseconds();
         tasks = NULL;

@@ -6,6 +6,7 @@
 #include "run/question.h"
 
 #include <inttypes.h>
+#include <math.h>
 
 #include "base/arguments.h"
 #include "base/assume.h"
@@ -32,6 +33,21 @@ sc_status sc_question_read_pose(const sc_hooks *hooks, const char *name, const s
     if (status) return status;
     /* where addresses have 32 bits: */
     return SC_HARDLY(*stride > SIZE_MAX / pose->vertex_count) ? SC_ERROR_COUNT : SC_OK;
+}
+
+void sc_question_log_not_finite(const sc_hooks *hooks, const sc_model *model, const sc_pose *pose,
+                                uint64_t stride, const char *where)
+{
+    const uint8_t *use = sc_model_vertex_use(model);
+    double p[3];
+    uint32_t v;
+    for (v = 0; hooks->log && v < model->vertex_count; v++) {
+        if (use[v] == SC_VERTEX_UNUSED) continue;
+        sc_mesh_read_position(pose->positions, pose->position_type, stride, v, p);
+        if (isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2])) continue;
+        sc_hooks_log(hooks, SC_LOG_ERROR, "vertex %" PRIu32 " is NaN or infinite%s", v, where);
+        return;
+    }
 }
 
 static sc_status check_choices(const sc_hooks *hooks, const sc_query_options *o)

@@ -25,6 +25,10 @@ typedef struct sc_asked {
 sc_status sc_question_read_pose(const sc_hooks *hooks, const char *name, const sc_model *model,
                                 const sc_pose *from, sc_pose *pose, uint64_t *stride);
 
+/* Tells the log which vertex makes a pose not finite; where: the end of the message. */
+void sc_question_log_not_finite(const sc_hooks *hooks, const sc_model *model, const sc_pose *pose,
+                                uint64_t stride, const char *where);
+
 /* Options of a query, which may be NULL. */
 sc_status sc_question_read_options(const sc_hooks *hooks, const sc_query_options *from,
                                    sc_query_options *options);

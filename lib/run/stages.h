@@ -32,6 +32,16 @@ static sc_stage *const query_stages[SC_LIST_COUNT] = {
     [SC_LIST_EXACT] = sc_decide_exactly,
 };
 
+/* Two objects: from a pair of roots on, what is far from each other in one. */
+static sc_stage *const between_stages[SC_LIST_COUNT] = {
+    [SC_LIST_PATCHES] = open_between,
+    [SC_LIST_FAR] = part_far,
+    [SC_LIST_CLUSTERS] = compare_clusters,
+    [SC_LIST_TRIANGLES] = compare_triangles,
+    [SC_LIST_CANDIDATES] = sc_decide_candidates,
+    [SC_LIST_EXACT] = sc_decide_exactly,
+};
+
 static sc_stage *const step_stages[SC_LIST_COUNT] = {
     [SC_LIST_FAILED] = sc_culling_open,
     [SC_LIST_ORIENTED] = sc_culling_test,

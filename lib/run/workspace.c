@@ -141,6 +141,7 @@ static void lay_out_lists(const sc_workspace_sizes *s, layout *l, sc_lists *list
     room[SC_LIST_ORIENTED] = SC_ORIENTED_MAX;
     room[SC_LIST_LEFT] = SC_LEFT_MAX;
     room[SC_LIST_PATCHES] = SC_LEFT_MAX + s->levels / 4 * SC_PATCHES_CHILDREN;
+    if (room[SC_LIST_PATCHES] < SC_PATCHES_BETWEEN) room[SC_LIST_PATCHES] = SC_PATCHES_BETWEEN;
     room[SC_LIST_ROWS] = SC_ROWS_MAX;
     room[SC_LIST_FAR] = room[SC_LIST_NEAR] = SC_LEAF_LIST_MAX;
     room[SC_LIST_CLUSTERS] = SC_CLUSTERS_MAX;
@@ -353,7 +354,7 @@ int sc_workspace_fits(const sc_workspace *w, const sc_model *model)
 /* Epochs up to here; then all that has one is cleared. */
 enum { EPOCH_MAX = 0x7fffffff };
 
-static void begin_epoch(sc_workspace *w)
+void sc_workspace_forget(sc_workspace *w)
 {
     uint32_t i;
     if (w->frame.epoch == EPOCH_MAX) {
@@ -366,7 +367,8 @@ static void begin_epoch(sc_workspace *w)
         w->frame.epoch = 0;
     }
     w->frame.epoch++;
-    w->frame.leaves_ready = w->frame.boxes_ready = 0;
+    w->frame.leaves_ready = w->frame.boxes_ready = w->frame.cones_ready = 0;
+    w->pose_version = 0;
 }
 
 static void begin_step_worker(const sc_step_question *question, sc_step_worker *step)
@@ -381,6 +383,7 @@ static void begin_step_worker(const sc_step_question *question, sc_step_worker *
 static void begin_worker(const sc_model *model, sc_workspace *workspace,
                          const sc_question *question, sc_share *share, sc_worker *w)
 {
+    w->second = question->second ? &question->second->worker[w - workspace->worker] : w;
     w->model = model;
     w->frame = &workspace->frame;
     w->question = question;
@@ -464,7 +467,13 @@ static void keep_leaves(sc_workspace *w, const sc_question *question, uint32_t w
 sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
                               const sc_question *question)
 {
-    begin_epoch(workspace);
+    sc_workspace_forget(workspace);
+    return sc_workspace_resume(model, workspace, question);
+}
+
+sc_worker *sc_workspace_resume(const sc_model *model, sc_workspace *workspace,
+                               const sc_question *question)
+{
     begin_worker(model, workspace, question, NULL, &workspace->worker[0]);
     keep_leaves(workspace, question, 1);
     return &workspace->worker[0];

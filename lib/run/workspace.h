@@ -57,6 +57,8 @@ struct sc_workspace {
     uint32_t owned; /* allocated by sc_workspace_create or _create_for */
     sc_hooks hooks;
     sc_frame frame;
+    uint64_t pose_version; /* as an object: of the pose that the frame is of, or 0, see run/objects.h */
+    uint32_t object;       /* its number, counted from 1, while a call about objects lasts */
     sc_contour_bounds bounds;     /* the first worker's */
     sc_leaf_derived *all_derived; /* leaf_count; 0 if there are no segments */
     sc_leaf_known *all_known;     /* the same */
@@ -82,6 +84,14 @@ int sc_workspace_fits(const sc_workspace *workspace, const sc_model *model);
 /* Starts a query or a step by one worker, and returns it: what earlier ones left is stale. */
 sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
                               const sc_question *question);
+
+/* The same of a query whose pose has been read and may have been looked at before: what is known
+   of it stays. */
+sc_worker *sc_workspace_resume(const sc_model *model, sc_workspace *workspace,
+                               const sc_question *question);
+
+/* What is known of an earlier pose is stale; sc_workspace_begin does this, too. */
+void sc_workspace_forget(sc_workspace *workspace);
 
 /* Lets so many workers share in the query that was begun, with this question and a share that is
    zero; what the first has counted stays. */

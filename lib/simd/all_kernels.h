@@ -90,5 +90,5 @@ static const sc_step_kernels step_kernels = {
 
 #include "run/stages.h"
 
-const sc_kernels SC_KERNELS = {&pose_kernels, &query_kernels, &step_kernels,
-                               query_stages,  step_stages,    near_stages};
+const sc_kernels SC_KERNELS = {&pose_kernels,  &query_kernels, &step_kernels, query_stages,
+                               between_stages, step_stages,    near_stages};
