@@ -386,14 +386,17 @@ static sc_status read_frame(const sc_model *model, sc_workspace *workspace, cons
         return status;
     }
     if (status) {
-        sc_question_log_not_finite(hooks, model, &asked->pose[0], asked->stride[0], " at the start");
+        sc_question_log_not_finite(hooks, model, &asked->pose[0], asked->stride[0],
+                                   " at the start");
         sc_question_log_not_finite(hooks, model, &asked->pose[1], asked->stride[1], " at the end");
         return status;
     }
     status = sc_step_filter_begin(model, step->options.rest, asked->rest_stride,
                                   step->options.rest_distance, frame->tasks,
                                   frame->motion.vertex_groups, &step->filters);
-    if (status) sc_question_log_not_finite(hooks, model, &asked->rest, asked->rest_stride, " in the rest pose");
+    if (status)
+        sc_question_log_not_finite(hooks, model, &asked->rest, asked->rest_stride,
+                                   " in the rest pose");
     return status;
 }
 
@@ -485,11 +488,10 @@ sc_status sc_query_objects(const sc_objects *objects, const sc_query_options *op
     status = sc_objects_read(objects, options, &question);
     if (!status && question.options.output == SC_OUTPUT_PAIRS && r.capacity)
         status = sc_arguments_need(NULL, "result", "pairs", r.pairs);
-    if (!status && r.range_capacity)
-        status = sc_arguments_need(NULL, "result", "ranges", r.ranges);
+    if (!status && r.range_capacity) status = sc_arguments_need(NULL, "result", "ranges", r.ranges);
     if (!status && wanted)
-        status = sc_arguments_check(NULL, "result.stats", wanted, sizeof stats,
-                                    SC_ARGUMENTS_DEFAULTS);
+        status =
+            sc_arguments_check(NULL, "result.stats", wanted, sizeof stats, SC_ARGUMENTS_DEFAULTS);
     if (!status) {
         memset(&stats, 0, sizeof stats);
         r.stats = wanted ? &stats : NULL;

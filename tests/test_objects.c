@@ -19,7 +19,7 @@ enum { OBJECTS_MAX = 20 };
 
 /* An object with what it is made of. */
 typedef struct thing {
-    soup mesh; /* its positions are the rest pose */
+    soup mesh;   /* its positions are the rest pose */
     int is_copy; /* mesh and model are those of another one */
     uint32_t weld;
     sc_model *model;
@@ -96,7 +96,7 @@ static void pose_thing(scene *s, uint32_t i)
             if (snaps) offset[k] = round(4 * offset[k]) / 4;
         }
         for (v = 0; v < count; ++v)
-            for (int k = 0; k < 3; ++k) t->posed[3 * v + k] += offset[k];
+            for (uint32_t k = 0; k < 3; ++k) t->posed[3 * v + k] += offset[k];
         if (snaps) soup_snap(t->posed, count, 0.125);
     }
     t->is_float = test_random_below(3) == 0;
@@ -272,9 +272,9 @@ static found_list expect(const scene *s, const sc_query_options *options)
             f->object_a = split(first, s->count, &a);
             f->a = edges ? 3 * a + result.pairs[i].a % 3 : a;
             f->object_b = split(first, s->count, &f->b);
-            if (f->object_a == f->object_b ? s->objects[f->object_a].itself
-                                           : groups_let(&s->objects[f->object_a],
-                                                        &s->objects[f->object_b]))
+            if (f->object_a == f->object_b
+                    ? s->objects[f->object_a].itself != 0
+                    : groups_let(&s->objects[f->object_a], &s->objects[f->object_b]))
                 list.count++;
         }
         qsort(list.at, list.count, sizeof *list.at, compare_found);
@@ -296,8 +296,8 @@ typedef struct asked {
     sc_stats stats;
 } asked;
 
-static void ask(const scene *s, const sc_query_options *options, uint64_t capacity,
-                uint64_t ranges, asked *a)
+static void ask(const scene *s, const sc_query_options *options, uint64_t capacity, uint64_t ranges,
+                asked *a)
 {
     sc_objects objects;
     memset(&objects, 0, sizeof objects);
@@ -355,15 +355,14 @@ static sc_query_options any_options(void)
                                        SC_METHOD_AABB};
     sc_query_options o = no_options();
     o.pairs = test_random_below(3) == 0 ? SC_PAIRS_EDGE : SC_PAIRS_TRIANGLE;
-    o.contact = test_random_below(4) == 0 ? SC_CONTACT_PROPER : SC_CONTACT_TOUCH;
+    o.contact = test_random_below(4) == 0 ? SC_CONTACT_PROPER : SC_CONTACT_TOUCHING;
     o.method = methods[test_random_below(4)];
     o.simd = test_random_below(4) == 0 ? SC_SIMD_BASE : SC_SIMD_BEST;
     return o;
 }
 
 /* Asks for pairs, for their number, for any, and with arrays that are too short. */
-static void check_answers(const scene *s, const sc_query_options *options,
-                          const found_list *wanted)
+static void check_answers(const scene *s, const sc_query_options *options, const found_list *wanted)
 {
     const uint64_t ranges = count_ranges(wanted);
     sc_query_options o = *options;
@@ -504,8 +503,8 @@ static void the_function_leaves_pairs_out(void)
         for (uint64_t i = 0; i < wanted.count; ++i) {
             const found *f = &wanted.at[i];
             between += f->object_a != f->object_b;
-            kept += f->object_a == f->object_b ||
-                    (f->object_a + f->object_b + f->a + f->b) % 3 != 0;
+            kept +=
+                f->object_a == f->object_b || (f->object_a + f->object_b + f->a + f->b) % 3 != 0;
         }
         memset(&objects, 0, sizeof objects);
         objects.struct_size = sizeof objects;

@@ -303,8 +303,7 @@ static inline void list_between(sc_worker *w, uint32_t bit, uint32_t leaf, uint3
     }
     for (i = 0; i < 2; i++) far[i] = l->far[i] + l->count[SC_LIST_FAR];
     for (i = 0; i < SC_LANES_COUNT; i++) far[turned][i] = leaf | (turned ? 0 : bit);
-    l->count[SC_LIST_FAR] +=
-        lanes_list_from(mask, first | (turned ? bit : 0), far[1 - turned]);
+    l->count[SC_LIST_FAR] += lanes_list_from(mask, first | (turned ? bit : 0), far[1 - turned]);
 }
 
 /* A patch of each of two objects, whose boxes overlap: the larger one is opened, that is its
@@ -314,9 +313,9 @@ static inline void open_two(sc_worker *w, uint32_t item, uint32_t b, int moves)
     const uint32_t a = item & SC_ITEM, bit = item & SC_AFTER_CONTOUR;
     const uint32_t leaves[2] = {sc_model_first_leaf_patch(w->model),
                                 sc_model_first_leaf_patch(w->second->model)};
-    const int turned = b < leaves[1] && (a >= leaves[0] || sc_model_leaves_of(w->model, a) <
-                                                               sc_model_leaves_of(
-                                                                   w->second->model, b));
+    const int turned = b < leaves[1] &&
+                       (a >= leaves[0] ||
+                        sc_model_leaves_of(w->model, a) < sc_model_leaves_of(w->second->model, b));
     const sc_worker *opened = turned ? w->second : w, *other = turned ? w : w->second;
     const uint32_t *child = sc_model_box_child(opened->model) + (turned ? b : a);
     const uint32_t kept = turned ? a : b, first = child[0], all = (1u << (child[1] - first)) - 1u;

@@ -315,8 +315,7 @@ static inline void name_pair(const sc_worker *w, const sc_cluster_pair *p, kept_
     rows->leaf[1][k] = p->b;
     rows->derived[0][k] = w->kept.derived + at.a;
     rows->derived[1][k] = of_b->derived + at.b;
-    rows->extent[k] =
-        w->kept.known[at.a].extent + (is_alone(w, p) ? 0 : of_b->known[at.b].extent);
+    rows->extent[k] = w->kept.known[at.a].extent + (is_alone(w, p) ? 0 : of_b->known[at.b].extent);
 }
 
 /* Has these triangles wait as rows of a pair. Returns how many. */

@@ -25,8 +25,8 @@ typedef struct sc_triangle_source {
 typedef struct sc_pair_lanes {
     const sc_pair *pairs;     /* places of triangles */
     sc_triangle_source of[2]; /* of the first and of the second of pairs */
-    int proper; /* contacts are proper ones only */
-    int shares; /* some points are shared */
+    int proper;               /* contacts are proper ones only */
+    int shares;               /* some points are shared */
     unsigned shared[2][3];
 } sc_pair_lanes;
 

@@ -87,7 +87,7 @@ typedef struct sc_worker {
     sc_frame *frame;
     const sc_question *question;
     const sc_hooks *hooks;
-    sc_share *share; /* NULL, if one worker does all */
+    sc_share *share;          /* NULL, if one worker does all */
     struct sc_worker *second; /* who has the model, the frame and what is kept of leaf clusters for
                                  the second of pairs: itself; between two objects a worker of the
                                  other's workspace */

@@ -311,8 +311,7 @@ static sc_status ask_itself(const objects_run *run, const sc_object *o, sc_quest
     begin_question(run, o, o, q);
     status = sc_question_choose(o->model, &q->options);
     q->has_last = q->options.method == SC_METHOD_SCTT;
-    if (!status && o->filter)
-        status = sc_filter_begin(q, hooks_of(o), o->model, o->filter, filter);
+    if (!status && o->filter) status = sc_filter_begin(q, hooks_of(o), o->model, o->filter, filter);
     return status;
 }
 

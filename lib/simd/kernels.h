@@ -24,7 +24,7 @@ typedef struct sc_kernels {
     const struct sc_query_kernels *query;
     const struct sc_step_kernels *step;
     sc_stage *const *query_stages, *const *between_stages, *const *step_stages,
-        *const *near_stages; /* by lists */
+                                                               *const *near_stages; /* by lists */
 } sc_kernels;
 
 extern const sc_kernels sc_kernels_base;
