@@ -154,8 +154,8 @@ typedef struct batch {
     sc_pair pairs[SC_PAIR_LANES];
     uint32_t triangle[6 * SC_PAIR_LANES];
     double points[3 * MOST_POINTS * SC_PAIR_LANES];
-    unsigned char
-        bytes[MOST_POINTS * SC_PAIR_LANES * 27]; /* the same with odd strides, or floats */
+    /* the same with odd strides, or floats, for first and for second triangles */
+    unsigned char bytes[2][MOST_POINTS * SC_PAIR_LANES * 27];
 } batch;
 
 static void clear_batch(batch *b)
@@ -166,6 +166,23 @@ static void clear_batch(batch *b)
     b->lanes.of[0].positions = (const unsigned char *)b->points;
     b->lanes.of[0].stride = 3 * sizeof(double);
     b->lanes.of[1] = b->lanes.of[0];
+}
+
+/* Has first or second triangles read from bytes. */
+static void put_bytes(batch *b, int side, int floats)
+{
+    sc_triangle_source *of = &b->lanes.of[side];
+    of->positions = b->bytes[side];
+    of->floats = floats;
+    of->stride = floats ? 13 : 27;
+    for (uint32_t i = 0; i < 3 * MOST_POINTS * SC_PAIR_LANES; ++i) {
+        unsigned char *at = b->bytes[side] + of->stride * (i / 3);
+        float f = (float)b->points[i];
+        if (floats)
+            memcpy(at + i % 3 * sizeof f, &f, sizeof f);
+        else
+            memcpy(at + i % 3 * sizeof(double), b->points + i, sizeof(double));
+    }
 }
 
 /* Puts two triangles into a lane. Returns 0 if they share more than a batch's pairs may. */
@@ -335,18 +352,8 @@ static void any_stride_and_type(void)
             set_lane(&b, lane, &t);
         }
         sc_kernels_base.query->decide(&b.lanes, &first);
-        b.lanes.positions = b.bytes;
-        for (int floats = 0; floats < 2; ++floats) {
-            b.lanes.floats = floats;
-            b.lanes.stride = floats ? 13 : 27;
-            for (uint32_t i = 0; i < 3 * MOST_POINTS * SC_PAIR_LANES; ++i) {
-                unsigned char *at = b.bytes + b.lanes.stride * (i / 3);
-                float f = (float)b.points[i];
-                if (floats)
-                    memcpy(at + i % 3 * sizeof f, &f, sizeof f);
-                else
-                    memcpy(at + i % 3 * sizeof(double), b.points + i, sizeof(double));
-            }
+        for (unsigned floats = 0; floats < 4; ++floats) { /* of the first and of the second */
+            for (int side = 0; side < 2; ++side) put_bytes(&b, side, (int)(floats >> side & 1u));
             for (uint32_t isa = SC_ISA_BASE; isa <= (uint32_t)sc_isa_best(); ++isa) {
                 sc_kernels_for(isa)->query->decide(&b.lanes, &verdict);
                 CHECK_MSG(!memcmp(&first, &verdict, sizeof verdict), "%s differs", isa_name[isa]);
