@@ -1200,6 +1200,27 @@ SC_API sc_status sc_near_stencils(const sc_model *model, const sc_pose *pose, ui
 SC_API sc_status sc_near_merge(sc_near_stencil *stencils, uint64_t count, uint64_t *merged_count,
                                uint32_t *multiplicities);
 
+/*
+ * Asks the same of many poses of one model, several at a time: for datasets, and for a thousand
+ * characters. results[i] is what sc_query says of poses[i] with these options, whatever is wrong with
+ * others, and statuses[i] what it returns. Each result has an array of its own, or none. The
+ * structures of an array are as far apart as the first one's struct_size says.
+ *
+ * options->tasks: the host's threads, each of which asks about one pose at a time, with a workspace
+ * of its own: workspaces has tasks->workers of them, 1 without tasks, each for one worker at least.
+ * Without pairs in common there is nothing to wait for: two threads take half the time of one, where
+ * memory is fast enough. A function in the filter is called in several threads at once. The flag of
+ * cancel ends all: what was not asked about is SC_ERROR_INCOMPLETE, with no pairs.
+ *
+ * Returns SC_OK if all queries do; else what the first one in order returned that does not, or, with
+ * no result touched, SC_ERROR_NULL, SC_ERROR_STRUCT_SIZE, or SC_ERROR_WORKSPACE for two workspaces
+ * that are one or more workers than there may be. No memory is allocated.
+ */
+SC_API sc_status sc_query_batch(const sc_model *model, sc_workspace *const *workspaces,
+                                const sc_pose *poses, uint32_t count,
+                                const sc_query_options *options, sc_result *results,
+                                sc_status *statuses);
+
 /* ------------------------------------------------------------------------------------------------
  * Several objects
  *

@@ -468,6 +468,78 @@ sc_status sc_query(const sc_model *model, sc_workspace *workspace, const sc_pose
     return status;
 }
 
+/* Many poses, and who asks about them. */
+typedef struct pose_batch {
+    const sc_model *model;
+    sc_workspace *const *workspaces;
+    const unsigned char *poses;
+    unsigned char *results;
+    uint64_t pose_bytes, result_bytes; /* from one to the next */
+    sc_query_options options;          /* of one query */
+    sc_status *statuses;
+} pose_batch;
+
+static void ask_pose(void *context, uint32_t part, uint32_t worker)
+{
+    const pose_batch *b = (const pose_batch *)context;
+    const sc_pose *pose = (const sc_pose *)(const void *)(b->poses + part * b->pose_bytes);
+    sc_result *result = (sc_result *)(void *)(b->results + part * b->result_bytes);
+    b->statuses[part] = sc_query(b->model, b->workspaces[worker], pose, &b->options, result);
+}
+
+/* The options of one query, and what shares in all. */
+static sc_status read_batch(sc_workspace *const *workspaces, const sc_query_options *options,
+                            pose_batch *b, sc_tasks *tasks)
+{
+    uint32_t i, k;
+    sc_status status = sc_question_read_options(NULL, options, &b->options);
+    memset(tasks, 0, sizeof *tasks);
+    if (!status && b->options.tasks) {
+        status = sc_arguments_read(NULL, "options.tasks", tasks, sizeof *tasks, b->options.tasks,
+                                   SC_ARGUMENTS_UP_TO(sc_tasks, finish));
+        if (!status && (!tasks->enqueue || !tasks->finish)) status = SC_ERROR_NULL;
+    }
+    if (status) return status;
+    b->options.tasks = NULL;
+    if (!tasks->workers) tasks->workers = 1;
+    if (tasks->workers > SC_WORKERS_MAX) return SC_ERROR_WORKSPACE;
+    for (i = 0; i < tasks->workers; i++) {
+        if (!workspaces[i]) return SC_ERROR_NULL;
+        for (k = 0; k < i; k++)
+            if (workspaces[k] == workspaces[i]) return SC_ERROR_WORKSPACE;
+    }
+    return SC_OK;
+}
+
+sc_status sc_query_batch(const sc_model *model, sc_workspace *const *workspaces,
+                         const sc_pose *poses, uint32_t count, const sc_query_options *options,
+                         sc_result *results, sc_status *statuses)
+{
+    pose_batch b;
+    sc_tasks tasks;
+    sc_status status;
+    uint32_t i;
+    if (!model || !workspaces || (count && (!poses || !results || !statuses))) return SC_ERROR_NULL;
+    status = read_batch(workspaces, options, &b, &tasks);
+    if (status || !count) return status;
+    b.model = model;
+    b.workspaces = workspaces;
+    b.poses = (const unsigned char *)(const void *)poses;
+    b.results = (unsigned char *)(void *)results;
+    b.pose_bytes = poses->struct_size;
+    b.result_bytes = results->struct_size;
+    b.statuses = statuses;
+    if (b.pose_bytes < SC_ARGUMENTS_UP_TO(sc_pose, positions) || b.pose_bytes % sizeof(void *) ||
+        b.result_bytes < SC_ARGUMENTS_UP_TO(sc_result, pairs) || b.result_bytes % sizeof(void *))
+        return SC_ERROR_STRUCT_SIZE;
+    if (tasks.workers > 1)
+        tasks.finish(tasks.user, tasks.enqueue(tasks.user, ask_pose, &b, count));
+    else
+        for (i = 0; i < count; i++) ask_pose(&b, i, 0);
+    for (i = 0; i < count && !status; i++) status = statuses[i];
+    return status;
+}
+
 sc_status sc_query_objects(const sc_objects *objects, const sc_query_options *options,
                            sc_objects_result *result)
 {

@@ -401,7 +401,7 @@ static void check_answers(const scene *s, const sc_query_options *options, const
 static void scenes_are_one_mesh(void)
 {
     uint64_t pairs = 0, between = 0, kept = 0;
-    for (uint32_t trial = test_iterations_at_least(600, 60); trial-- > 0;) {
+    for (uint32_t trial = test_iterations_at_least(300, 60); trial-- > 0 && !test_failures();) {
         scene s;
         if (!open_scene(&s, trial % 8 ? 6 : OBJECTS_MAX, trial % 16 ? 60 : 400, 1)) return;
         for (int call = 0; call < 3; ++call) {
@@ -460,7 +460,7 @@ static void what_stays_is_not_read(void)
 /* The host's tasks change nothing, nor does a workspace for fewer workers. */
 static void tasks_change_nothing(void)
 {
-    for (uint32_t trial = test_iterations_at_least(24, 6); trial-- > 0;) {
+    for (uint32_t trial = test_iterations_at_least(24, 6); trial-- > 0 && !test_failures();) {
         scene s;
         host h;
         int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
@@ -491,7 +491,7 @@ static int accept_some(void *user, uint32_t object_a, uint32_t object_b, uint32_
 static void the_function_leaves_pairs_out(void)
 {
     uint64_t calls = 0, between = 0;
-    for (uint32_t trial = test_iterations_at_least(60, 10); trial-- > 0;) {
+    for (uint32_t trial = test_iterations_at_least(60, 10); trial-- > 0 && !test_failures();) {
         scene s;
         sc_objects objects;
         sc_objects_result r;
