@@ -99,7 +99,7 @@ sc_status sc_positions_read(const sc_model *model, const sc_pose *pose, uint64_t
     if (!find_extent(model, frame, frame->low, frame->high)) return SC_ERROR_NOT_FINITE;
     for (k = 0; k < 3; k++) {
         center[k] = frame->low[k] / 2 + frame->high[k] / 2;
-        if (pose->position_type == SC_FLOAT) center[k] = (double)(float)center[k];
+        if (pose->position_type == SC_FLOAT) center[k] = sc_positions_rounded(center[k]);
     }
     sc_positions_move(frame, center);
     return SC_OK;

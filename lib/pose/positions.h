@@ -29,6 +29,14 @@ void sc_positions_scale(sc_frame *frame, int exponent);
 void sc_positions_note(const sc_model *model, const sc_pose *pose, uint64_t stride,
                        sc_positions *positions);
 
+/* The nearest float. By way of memory: gcc 12 at -O3 takes two numbers that are rounded to floats
+   next to each other for ones that need not be. */
+static inline double sc_positions_rounded(double number)
+{
+    volatile float rounded = (float)number;
+    return (double)rounded;
+}
+
 /* The position of a point. */
 static inline void sc_positions_get(const sc_positions *positions, uint32_t point,
                                     double position[3])

@@ -8,7 +8,6 @@
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/arguments.h"
@@ -142,9 +141,9 @@ static sc_status read_pose(const objects_run *run, const sc_object *o)
     sc_workspace_forget(w);
     status = sc_positions_read(o->model, &pose, stride, &w->frame);
     if (status) {
-        char where[32];
-        (void)snprintf(where, sizeof where, " in object %" PRIu32, w->object - 1);
-        sc_question_log_not_finite(&w->hooks, o->model, &pose, stride, where);
+        sc_hooks_log(&w->hooks, SC_LOG_ERROR, "object %" PRIu32 " has a vertex that is not finite",
+                     w->object - 1);
+        sc_question_log_not_finite(&w->hooks, o->model, &pose, stride, "");
     }
     return status;
 }
@@ -181,7 +180,7 @@ static void choose_box(const double low[3], const double high[3], int has_last, 
     if (has_last && fits_box(low, high, half, box)) return;
     for (k = 0; k < 3; k++) {
         const double middle = low[k] / 2 + high[k] / 2;
-        box->center[k] = fabs(middle) < (double)FLT_MAX ? (double)(float)middle : middle;
+        box->center[k] = fabs(middle) < (double)FLT_MAX ? sc_positions_rounded(middle) : middle;
     }
     (void)frexp(reach_of(low, high, box->center) * 1.000001, &box->exponent);
     if (box->exponent < -1022) box->exponent = -1022;
