@@ -1095,6 +1095,8 @@ typedef struct sc_near_result {
     uint64_t edge_edge_capacity;
     sc_pair *edge_edges;
     sc_stats *stats; /* in: where to put statistics, or NULL; see sc_stats */
+    double *vertex_bounds; /* in: NULL, or the caller's array, an entry for each vertex of the mesh:
+                              see "Bounds of vertices" at sc_query_near */
 } sc_near_result;
 
 /*
@@ -1111,6 +1113,19 @@ typedef struct sc_near_result {
  * SC_ERROR_INCOMPLETE, if it was cancelled or ran out of budget, see sc_query. On any other error
  * counts, found and verdict are 0, and the arrays as they were: those of sc_query_step,
  * SC_ERROR_OPTION for a distance or rest_distance that is negative or not finite.
+ *
+ * Bounds of vertices. vertex_bounds[v] becomes a number that is at most the distance of everything
+ * at v, itself, its edges and its faces, from everything that this shares no vertex with and that
+ * is not left out, and at most options->distance: the least of that and of the distances of all
+ * reported pairs of which v is the vertex, a corner of the face or an end of an edge, rounded down.
+ * So if a pose has no intersections, nothing is left out and every vertex moves by less than half
+ * its bound, wherever it goes, there are none after: step sizes for solvers without a continuous
+ * test (Offset Geometric Contact: Chen et al. 2025). Bounds are below these distances by at most
+ * 5e-7 times the longest side of the box of the mesh, plus 3e-5 times the distance and the longest
+ * extent of an edge; never above; and the same for every method, number of threads and machine. kinds other
+ * than both know less. A vertex that another one represents, and one of no triangle, has
+ * options->distance. With SC_OUTPUT_ANY they are refused (SC_ERROR_OPTION); after
+ * SC_ERROR_INCOMPLETE they are 0; after SC_ERROR_SHORT_BUFFER complete. 30 ns a pair more.
  *
  * Several threads: as for sc_query_step. No memory is allocated.
  */

@@ -18,6 +18,7 @@
 #include "build/pipeline.h"
 #include "build/saved_model.h"
 #include "near/merging.h"
+#include "near/near_candidates.h"
 #include "near/stencil.h"
 #include "pose/positions.h"
 #include "query/contacts.h"
@@ -414,6 +415,9 @@ static sc_status run(const sc_model *model, sc_workspace *workspace, const sc_as
     if (!step && !uses_star(&question->options)) sc_workspace_keep_all(workspace);
     status = read_frame(model, workspace, asked, step);
     if (status) return status;
+    if (question->near)
+        sc_near_candidates_set_bounds(question->near, model->vertex_count,
+                                      question->near->options.distance);
     sc_plan_run(workspace);
     stop_clock_of(w, start);
     return w->incomplete ? SC_ERROR_INCOMPLETE : SC_OK;
@@ -674,6 +678,8 @@ sc_status sc_query_near(const sc_model *model, sc_workspace *workspace, const sc
         const sc_worker *w = &workspace->worker[0];
         status = run(model, workspace, &asked, &question.step.query, &question.step);
         if (!status && is_short(w->step)) status = SC_ERROR_SHORT_BUFFER;
+        if (status == SC_ERROR_INCOMPLETE)
+            sc_near_candidates_set_bounds(&question, model->vertex_count, 0);
         if (has_answer(status)) fill_near_result(w, status, &r);
     }
     sc_structs_write(result, &r, sizeof r);

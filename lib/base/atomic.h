@@ -76,4 +76,18 @@ static inline int sc_atomic_claim(size_t *number, size_t *before, size_t after)
 #endif
 }
 
+/* Sets a number to another one if that is less. */
+static inline void sc_atomic_lessen(double *number, double less)
+{
+#if SC_ATOMIC
+    double now;
+    __atomic_load(number, &now, __ATOMIC_RELAXED);
+    while (less < now &&
+           !__atomic_compare_exchange(number, &now, &less, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+    }
+#else
+    if (less < *number) *number = less;
+#endif
+}
+
 #endif

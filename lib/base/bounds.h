@@ -158,6 +158,17 @@ static inline double sc_bounds_near(double distance, double size)
    of two of them by 2 v more: thresholds for them are moved by this times themselves. */
 #define SC_BOUNDS_NEAR_SQUARE (8 * (double)SC_BOUNDS_V)
 
+/*
+ * A bound of a distance (near/near_kernel.h). With g a place along w times |w|, both as computed, and
+ * r = g / |w|, the distance is more than each d' <= d for which r > (d' + E) (1 + SC_BOUNDS_NEAR_SQUARE)
+ * in squares, E being sc_bounds_near for d: so it is at least r (1 - 4 SC_BOUNDS_NEAR_SQUARE) - E.
+ */
+#define SC_BOUNDS_NEAR_BELOW (4 * SC_BOUNDS_NEAR_SQUARE)
+
+/* What the distance of a stencil is off by, over itself, with its rounding downwards; see
+   sc_near_stencil. */
+#define SC_BOUNDS_STENCIL 0x1p-49
+
 /* A direction whose square is below this tells nothing: what underflows is far less. */
 #define SC_BOUNDS_NEAR_LEAST 1e-15f
 

@@ -15,16 +15,24 @@
  * a bad guess for thin triangles and parallel edges, is left open; so is what is NaN.
  */
 
-/* Thresholds for squares of lengths. */
+/* Thresholds for squares of lengths, and the bound that they keep. */
 typedef struct near_limits {
     lanes near, far;
+    double error;
 } near_limits;
+
+/* What was measured of sixteen pairs: squares of lengths of w, and g, the least places along w, times
+   |w|. */
+typedef struct near_measured {
+    float square[SC_LANES_COUNT], g[SC_LANES_COUNT];
+} near_measured;
 
 static inline near_limits near_limits_for(double distance, double size)
 {
     const double error = sc_bounds_near(distance, size);
     const double low = distance - error, high = distance + error;
     near_limits limits;
+    limits.error = error;
     limits.near = lanes_all(low > 0 ? (float)(low * low * (1 - SC_BOUNDS_NEAR_SQUARE)) : -1.0f);
     limits.far = lanes_all((float)(high * high * (1 + 2 * SC_BOUNDS_NEAR_SQUARE)));
     return limits;
@@ -42,14 +50,34 @@ static inline lanes near_clamp(lanes x)
     return lanes_smaller(lanes_larger(x, lanes_all(0)), lanes_all(1));
 }
 
-/* Near ones, and in the upper half far ones: g is the least place along w, times |w|. */
-static inline unsigned near_or_far(const lanes w[3], lanes g, const near_limits *limits)
+/* At most the distance of one of them, in the unit box; less than 0 if what was guessed tells too
+   little: its distance is at most |w| + error. */
+static inline double near_bound(const near_measured *m, uint32_t i, const near_limits *limits)
+{
+    const double g = (double)m->g[i], length = sqrt((double)m->square[i]);
+    double bound;
+    if (length <= 2 * limits->error) return 0;
+    if (!(g > length * (length - 2 * limits->error) &&
+          (double)m->square[i] > (double)SC_BOUNDS_NEAR_LEAST))
+        return -1;
+    bound = g / length * (1 - SC_BOUNDS_NEAR_BELOW) - limits->error;
+    return bound > 0 ? bound : 0;
+}
+
+/* Near ones, and in the upper half far ones: g is the least place along w, times |w|. What is
+   measured is kept, unless that is NULL. */
+static inline unsigned near_or_far(const lanes w[3], lanes g, const near_limits *limits,
+                                   near_measured *measured)
 {
     const lanes square = near_inner(w, w);
     const lanes_mask far =
         lanes_both(lanes_both(lanes_below(lanes_all(0), g),
                               lanes_below(lanes_all(SC_BOUNDS_NEAR_LEAST), square)),
                    lanes_below(lanes_multiply(square, limits->far), lanes_multiply(g, g)));
+    if (measured) {
+        lanes_store(measured->square, square);
+        lanes_store(measured->g, g);
+    }
     return lanes_bits(lanes_not_above(square, limits->near)) | lanes_bits(far) << 16;
 }
 
@@ -61,7 +89,7 @@ static inline lanes near_along(lanes s, lanes ee, lanes ev)
 }
 
 static inline unsigned judge_faces(const lanes v[3], const lanes e[3], const lanes f[3],
-                                   const near_limits *limits)
+                                   const near_limits *limits, near_measured *measured)
 {
     const lanes zero = lanes_all(0), one = lanes_all(1);
     const lanes ee = near_inner(e, e), ef = near_inner(e, f), ff = near_inner(f, f);
@@ -100,11 +128,11 @@ static inline unsigned judge_faces(const lanes v[3], const lanes e[3], const lan
         lanes_subtract(near_inner((const lanes *)w, v),
                        lanes_larger(zero, lanes_larger(near_inner((const lanes *)w, e),
                                                        near_inner((const lanes *)w, f)))),
-        limits);
+        limits, measured);
 }
 
 static inline unsigned judge_edges(const lanes v[3], const lanes e[3], const lanes f[3],
-                                   const near_limits *limits)
+                                   const near_limits *limits, near_measured *measured)
 {
     const lanes zero = lanes_all(0);
     const lanes ee = near_inner(e, e), ef = near_inner(e, f), ff = near_inner(f, f);
@@ -124,5 +152,5 @@ static inline unsigned judge_edges(const lanes v[3], const lanes e[3], const lan
         lanes_subtract(lanes_add(near_inner((const lanes *)w, v),
                                  lanes_smaller(zero, near_inner((const lanes *)w, e))),
                        lanes_larger(zero, near_inner((const lanes *)w, f))),
-        limits);
+        limits, measured);
 }

@@ -5,26 +5,69 @@
  */
 #include "near/near_candidates.h"
 
-#include "step/within.h"
+#include "base/atomic.h"
+#include "base/bounds.h"
+#include "near/stencil.h"
 #include "pose/positions.h"
 #include "step/step_candidates.h"
 #include "step/step_filter.h"
 #include "step/step_pairs.h"
+#include "step/within.h"
 
 int sc_near_candidates_want_names(const sc_question *question)
 {
     const sc_pair_filters *f = &question->near->step.filters;
     return question->options.output != SC_OUTPUT_COUNT || f->sifts[0] || f->sifts[1] ||
-           f->asks[0] || f->asks[1];
+           f->asks[0] || f->asks[1] || question->near->bounds;
 }
 
 int sc_near_candidates_are_asked(const sc_worker *w, int kind)
 {
     const sc_pair_filters *f = &w->step->question->filters;
-    return f->sifts[kind] || f->asks[kind];
+    return f->sifts[kind] || f->asks[kind] || w->question->near->bounds;
 }
 
-void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner)
+void sc_near_candidates_set_bounds(const sc_near_question *question, uint32_t vertices,
+                                   double bound)
+{
+    uint32_t v;
+    for (v = 0; question->bounds && v < vertices; v++) question->bounds[v] = bound;
+}
+
+int sc_near_candidates_need_function(const sc_near_question *question)
+{
+    const sc_pair_filters *f = &question->step.filters;
+    return question->bounds && (f->of[0].accept || f->of[1].accept);
+}
+
+/* The distance of a pair, rounded down: a stencil's is off by 2^-50 of it. */
+static double find_bound(const sc_worker *w, int kind, const uint32_t point[4])
+{
+    double at[4][3];
+    const double *const points[4] = {at[0], at[1], at[2], at[3]};
+    sc_near_stencil stencil;
+    int k;
+    for (k = 0; k < 4; k++) sc_positions_get(&w->frame->positions[0], point[k], at[k]);
+    sc_stencil_find(kind == SC_STEP_VERTEX_FACE ? SC_NEAR_VERTEX_FACE : SC_NEAR_EDGE_EDGE, points,
+                    &stencil);
+    return stencil.distance * (1 - SC_BOUNDS_STENCIL);
+}
+
+/* Lowers the bounds of the four vertices of a pair. */
+static void lower_bounds(const sc_worker *w, int kind, const uint32_t point[4], double bound)
+{
+    double *bounds = w->question->near->bounds;
+    int k;
+    if (bound < 0) bound = find_bound(w, kind, point);
+    for (k = 0; k < 4; k++) {
+        if (w->share)
+            sc_atomic_lessen(&bounds[point[k]], bound);
+        else if (bound < bounds[point[k]])
+            bounds[point[k]] = bound;
+    }
+}
+
+void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, double bound)
 {
     const sc_pair_filters *f = &w->step->question->filters;
     sc_pair name = sc_step_candidates_name(w->model, kind, &inner);
@@ -35,11 +78,12 @@ void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner)
         name.a = name.b;
         name.b = t;
     }
+    sc_step_candidates_points(w->model, kind, &inner, point);
     if (f->sifts[kind]) {
-        sc_step_candidates_points(w->model, kind, &inner, point);
         if (!sc_step_filter_admits(w, kind, inner, point, name)) return;
     }
     if (f->asks[kind] && !sc_step_filter_accepts(w, kind, name)) return;
+    if (w->question->near->bounds) lower_bounds(w, kind, point, bound);
     sc_step_pairs_take(w, kind, name.a, name.b, 0);
 }
 
@@ -60,7 +104,7 @@ static void take_open(sc_worker *w, uint32_t most, int kind)
     uint32_t *left = &w->lists.count[SC_LIST_FACES + kind];
     for (; most && *left && !w->stop; most--) {
         const sc_pair pair = w->lists.moving[kind][--*left];
-        if (is_near_enough(w, kind, &pair)) sc_near_candidates_take(w, kind, pair);
+        if (is_near_enough(w, kind, &pair)) sc_near_candidates_take(w, kind, pair, -1);
     }
 }
 

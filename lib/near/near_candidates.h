@@ -15,9 +15,18 @@ int sc_near_candidates_want_names(const sc_question *question);
 /* Whether the caller's filters are asked of pairs of a kind. */
 int sc_near_candidates_are_asked(const sc_worker *w, int kind);
 
+/* Sets bounds of all vertices, if these are wanted. */
+void sc_near_candidates_set_bounds(const sc_near_question *question, uint32_t vertices,
+                                   double bound);
+
+/* Whether bounds are wanted of what the caller's function leaves, which it is asked as pairs are
+   found. */
+int sc_near_candidates_need_function(const sc_near_question *question);
+
 /* Takes a pair that is near, which was not taken before, in numbers of places, if filters leave
-   it. */
-void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner);
+   it; bound: at most its distance, for bounds of vertices if these are wanted; less than 0: it is to
+   be computed. */
+void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, double bound);
 
 /* Stages, see query/lists.h: by exact signs. */
 void sc_near_candidates_take_faces(sc_worker *w, uint32_t most);

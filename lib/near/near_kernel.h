@@ -51,7 +51,9 @@ typedef struct near_search {
     float margin;
     uint32_t follows;
     int kinds, names; /* which are wanted, and whether they are wanted by name */
-    int asked[2];     /* filters are, of vertices with faces and of edges */
+    int asked[2];     /* filters are, of vertices with faces and of edges; or bounds are wanted */
+    near_measured room, *measured; /* that, if bounds of distances are wanted, or NULL */
+    double unit;                   /* the unit of these */
 } near_search;
 
 /* Points before the low sides of a box, and in the upper half those behind the high ones. */
@@ -145,6 +147,12 @@ static inline void find_near_shared(near_side *a, near_side *b)
 
 /* ---- what is found ---- */
 
+/* At most the distance of the pair in lane i of what was measured last, if bounds are wanted. */
+static inline double bound_of_near(const near_search *s, uint32_t i)
+{
+    return s->measured ? near_bound(s->measured, i, &s->limits) * s->unit : 0;
+}
+
 /* Pairs that are near or, in the upper half, far; the rest is left to exact signs. */
 static inline void take_near_faces(near_search *s, const near_side *p, const near_side *f,
                                    const near_list *list, uint32_t at, unsigned judged,
@@ -159,11 +167,11 @@ static inline void take_near_faces(near_search *s, const near_side *p, const nea
         near = 0;
     }
     for (; near && s->asked[0]; near &= near - 1) {
-        const uint32_t i = at + sc_bits_lowest(near);
+        const uint32_t lane = sc_bits_lowest(near), i = at + lane;
         sc_pair inner;
         inner.a = p->leaf->point[list->a[i]];
         inner.b = f->leaf->first + list->b[i];
-        sc_near_candidates_take(s->w, SC_STEP_VERTEX_FACE, inner);
+        sc_near_candidates_take(s->w, SC_STEP_VERTEX_FACE, inner, bound_of_near(s, lane));
     }
     for (; near; near &= near - 1) {
         const uint32_t i = at + sc_bits_lowest(near);
@@ -205,11 +213,11 @@ static inline void take_near_edges(near_search *s, const near_list *list, uint32
         near = 0;
     }
     for (; near && s->asked[1]; near &= near - 1) {
-        const uint32_t i = at + sc_bits_lowest(near);
+        const uint32_t lane = sc_bits_lowest(near), i = at + lane;
         sc_pair inner;
         inner.a = inner_near_edge(a, list->a[i]);
         inner.b = inner_near_edge(b, list->b[i]);
-        sc_near_candidates_take(s->w, SC_STEP_EDGE_EDGE, inner);
+        sc_near_candidates_take(s->w, SC_STEP_EDGE_EDGE, inner, bound_of_near(s, lane));
     }
     for (; near; near &= near - 1, count++) {
         const uint32_t i = at + sc_bits_lowest(near);
@@ -253,7 +261,7 @@ static inline void decide_near_faces(near_search *s, const near_side *p, const n
         }
         take_near_faces(s, p, f, list, i,
                         judge_faces((const lanes *)v, (const lanes *)e, (const lanes *)g,
-                                    &s->limits),
+                                    &s->limits, s->measured),
                         wanted);
     }
     list->count = 0;
@@ -283,7 +291,7 @@ static inline void decide_near_edges(near_search *s, near_list *list, int all)
         }
         take_near_edges(s, list, i,
                         judge_edges((const lanes *)v, (const lanes *)e, (const lanes *)f,
-                                    &s->limits),
+                                    &s->limits, s->measured),
                         wanted);
     }
     list->count -= count;
@@ -496,6 +504,8 @@ static inline void begin_near_search(near_search *s, sc_worker *w)
     s->asked[0] = sc_near_candidates_are_asked(w, SC_STEP_VERTEX_FACE);
     s->asked[1] = sc_near_candidates_are_asked(w, SC_STEP_EDGE_EDGE);
     s->names = sc_near_candidates_want_names(w->question);
+    s->measured = w->question->near->bounds ? &s->room : NULL;
+    s->unit = 1 / w->frame->scale;
 }
 
 static inline void begin_near_pair(near_search *s, uint32_t item, const sc_near_leaf *a,
@@ -523,7 +533,9 @@ static void decide_near_clusters(sc_worker *w, uint32_t most)
     begin_near_search(&s, w);
     for (; most && *left && have_room_for_near(w); most--) {
         const sc_cluster_pair p = w->lists.clusters[--*left];
-        const sc_near_leaf *a = near_leaf(w, p.a), *b = other_near_leaf(w, p.a, p.b);
+        /* in their order, so that bounds of distances do not depend on who listed them */
+        const uint32_t one = p.a < p.b ? p.a : p.b, other = p.a < p.b ? p.b : p.a;
+        const sc_near_leaf *a = near_leaf(w, one), *b = other_near_leaf(w, one, other);
         uint32_t rows = 2;
         int slabs;
         begin_near_pair(&s, p.known, a, b);

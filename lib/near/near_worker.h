@@ -44,6 +44,7 @@ enum { SC_NEAR_KEPT = 64 };
 typedef struct sc_near_question {
     sc_step_question step; /* its query's near is this */
     sc_near_options options;
+    double *bounds; /* of vertices, the caller's, or NULL */
 } sc_near_question;
 
 /* What a worker has besides. */

@@ -62,6 +62,7 @@ static void fill_near_question(const sc_near_result *result, sc_near_question *q
     lists.stats = result->stats;
     sc_step_question_fill(&lists, &question->step);
     question->step.query.near = question;
+    question->bounds = result->vertex_bounds;
 }
 
 sc_status sc_near_question_read(const sc_model *model, const sc_workspace *workspace,
@@ -88,6 +89,10 @@ sc_status sc_near_question_read(const sc_model *model, const sc_workspace *works
         status = sc_arguments_need(hooks, "result", "vertex_faces", result->vertex_faces);
     if (!status && o->output == SC_OUTPUT_PAIRS && result->edge_edge_capacity)
         status = sc_arguments_need(hooks, "result", "edge_edges", result->edge_edges);
+    if (!status && result->vertex_bounds && o->output == SC_OUTPUT_ANY) {
+        sc_hooks_log(hooks, SC_LOG_ERROR, "result.vertex_bounds are not known from any pair");
+        status = SC_ERROR_OPTION;
+    }
     if (!status && result->stats)
         status = sc_arguments_check(hooks, "result.stats", result->stats, sizeof(sc_stats),
                                     SC_ARGUMENTS_DEFAULTS);

@@ -283,6 +283,7 @@ class sc_near_result(ctypes.Structure):
         ("edge_edge_capacity", c_uint64),
         ("edge_edges", c_void_p),
         ("stats", c_void_p),
+        ("vertex_bounds", c_void_p),
     ]
 
 
