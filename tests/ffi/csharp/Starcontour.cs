@@ -121,6 +121,7 @@ namespace Starcontour
             public ulong edge_edge_count, edge_edge_capacity;
             public Pair* edge_edges;
             public void* stats;
+            public double* vertex_bounds;
         }
 
         [DllImport(Library)] public static extern IntPtr sc_status_string(Status status);

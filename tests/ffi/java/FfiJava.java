@@ -121,7 +121,7 @@ public final class FfiJava {
         public long vertex_face_count, vertex_face_capacity;
         public Pointer vertex_faces;
         public long edge_edge_count, edge_edge_capacity;
-        public Pointer edge_edges, stats;
+        public Pointer edge_edges, stats, vertex_bounds;
         int at(String member) { return fieldOffset(member); }
     }
 

@@ -329,6 +329,13 @@ check("pairs of a step", all(np.array_equal(x, golden[name]) for x, name in zip(
 check("counts of near pairs", model.near_counts(moved, 0.09) == (len(wide.vertex_faces), len(wide.edge_edges)))
 check("any", model.is_near(moved, 0.045) and not model.is_near(apart, 1e-5))
 check("without stencils", model.near(moved, 0.09).vertex_face_stencils is None)
+bound = model.near(moved, 0.09, vertex_bound=True).vertex_bound
+least = np.full(len(rest), 0.09)
+for closest in wide[2:4]:
+    for corner in range(4):
+        np.minimum.at(least, closest["vertices"][:, corner], closest["distance"])
+check("bounds of vertices", np.all(bound <= least) and np.all(bound >= least - 1e-4) and bound.min() < 0.09)
+check("no bounds", wide.vertex_bound is None)
 check("of one kind", len(model.near(moved, 0.09, kinds="vertex_face").edge_edges) == 0 and np.array_equal(
     model.near(moved, 0.09, kinds="edge_edge").edge_edges, wide.edge_edges))
 for method in ("sctt", "boxes"):

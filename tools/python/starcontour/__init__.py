@@ -33,6 +33,9 @@ What is near takes cancel and budget, too, and
     kinds     "both" (default), "vertex_face" or "edge_edge"
     method    "default", "sctt" or "boxes": the answer is the same
     stencils  True: the closest points of each pair as well; see Model.stencils
+    vertex_bound  True: for each vertex, how far all that is at it is from all that is reported, at
+              least, and at most the distance: if nothing is left out and nothing intersects, vertices
+              may move by less than half of it
 
 Steps and what is near take ignore_rings and both kinds of groups, too, and
 
@@ -127,12 +130,14 @@ class Step(namedtuple("Step", "vertex_faces edge_edges vertex_face_times edge_ed
                 f"edge-edge pairs, earliest {self.earliest:.6g}>")
 
 
-class Near(namedtuple("Near", "vertex_faces edge_edges vertex_face_stencils edge_edge_stencils")):
+class Near(namedtuple("Near", "vertex_faces edge_edges vertex_face_stencils edge_edge_stencils vertex_bound")):
     """What is within a distance.
 
     vertex_faces, edge_edges                  uint32 arrays of shape (n, 2), sorted: a vertex and a
                                               triangle; two edges as in pairs "edge"
     vertex_face_stencils, edge_edge_stencils  closest points, an entry for each; None if not wanted
+    vertex_bound                              a float64 for each vertex, at most its distance from what
+                                              is near; None if not wanted
     """
 
     __slots__ = ()
@@ -549,15 +554,17 @@ def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tol
         scratch.lock.release()
 
 
-def _near(model, scratch, pose, distance, *, stencils=False, **options):
+def _near(model, scratch, pose, distance, *, stencils=False, vertex_bound=False, **options):
+    bounds = np.empty(model.info.vertex_count) if vertex_bound else None
+
     def found(result):
         counts = result.vertex_face_count, result.edge_edge_count
         pairs = [array[:count].copy() for (array, _), count in zip(scratch.lists, counts)]
         closest = [_stencils(model, pose, array, kind) if stencils else None
                    for array, kind in zip(pairs, ("vertex_face", "edge_edge"))]
-        return Near(*pairs, *closest)
+        return Near(*pairs, *closest, bounds)
 
-    return _ask_near(model, scratch, pose, distance, _binding.SC_OUTPUT_PAIRS, found, **options)
+    return _ask_near(model, scratch, pose, distance, _binding.SC_OUTPUT_PAIRS, found, bounds, **options)
 
 
 def _near_counts(model, scratch, pose, distance, **options):
@@ -570,7 +577,7 @@ def _is_near(model, scratch, pose, distance, **options):
                      lambda result: bool(result.found), **options)
 
 
-def _ask_near(model, scratch, pose, distance, output, answer, *, kinds="both", method="default",
+def _ask_near(model, scratch, pose, distance, output, answer, bounds=None, *, kinds="both", method="default",
               ignore_rings=0, ignore=None, vertex_groups=None, triangle_groups=None, rest=None,
               rest_distance=0.0, cancel=None, budget=0, threads=1):
     given, positions = _pose(pose)
@@ -589,7 +596,9 @@ def _ask_near(model, scratch, pose, distance, output, answer, *, kinds="both", m
         cancel=_cancel(cancel),
         budget=_whole("budget", budget, 64),
     )
-    result = _binding.sc_near_result(struct_size=ctypes.sizeof(_binding.sc_near_result))
+    result = _binding.sc_near_result(
+        struct_size=ctypes.sizeof(_binding.sc_near_result),
+        vertex_bounds=None if bounds is None else bounds.ctypes.data)
     if not scratch.lock.acquire(blocking=False):
         raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
     try:
@@ -683,13 +692,14 @@ class _Queries:
         return _step_collides(*self._asked(), start, end, **options)
 
     @_keywords_of(_ask_near)
-    def near(self, pose, distance, *, stencils=False, **options):
+    def near(self, pose, distance, *, stencils=False, vertex_bound=False, **options):
         """What is within a distance in a pose, in units of the coordinates: a Near. Compared exactly.
 
         Options: see the module. vertex_faces: a vertex and a triangle that it is no corner of;
         edge_edges: two edges without a common vertex.
         """
-        return _near(*self._asked(), pose, distance, stencils=stencils, **options)
+        return _near(*self._asked(), pose, distance, stencils=stencils, vertex_bound=vertex_bound,
+                     **options)
 
     @_keywords_of(_ask_near)
     def near_counts(self, pose, distance, **options):

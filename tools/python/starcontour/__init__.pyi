@@ -49,6 +49,7 @@ class Near(NamedTuple):
     edge_edges: _Pairs
     vertex_face_stencils: Optional[_Structured]
     edge_edge_stencils: Optional[_Structured]
+    vertex_bound: Optional[npt.NDArray[np.float64]]
 
 class Error(Exception):
     status: int
@@ -161,6 +162,7 @@ class _Queries:
         distance: float,
         *,
         stencils: bool = False,
+        vertex_bound: bool = False,
         kinds: Literal["both", "vertex_face", "edge_edge"] = "both",
         method: Literal["default", "sctt", "boxes"] = "default",
         ignore_rings: int = 0,

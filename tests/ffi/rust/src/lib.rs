@@ -342,6 +342,7 @@ impl Workspace<'_> {
                 edge_edge_capacity: edges.len() as u64,
                 edge_edges: edges.as_mut_ptr(),
                 stats: ptr::null_mut(),
+                vertex_bounds: ptr::null_mut(),
             };
             // SAFETY: as in query.
             let status = unsafe {

@@ -146,6 +146,7 @@ pub struct sc_near_result {
     pub edge_edge_capacity: u64,
     pub edge_edges: *mut sc_pair,
     pub stats: *mut c_void,
+    pub vertex_bounds: *mut f64,
 }
 
 #[repr(C)]
@@ -229,6 +230,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(sc_near_options: struct_size output kinds method simd reserved distance
             vertex_face_filter edge_edge_filter rest rest_distance tasks cancel budget),
         layout!(sc_near_result: struct_size found verdict reserved vertex_face_count
-            vertex_face_capacity vertex_faces edge_edge_count edge_edge_capacity edge_edges stats),
+            vertex_face_capacity vertex_faces edge_edge_count edge_edge_capacity edge_edges stats
+            vertex_bounds),
     ]
 }
