@@ -115,7 +115,7 @@ public final class FfiJava {
 
     @Structure.FieldOrder({"struct_size", "found", "verdict", "reserved", "vertex_face_count",
         "vertex_face_capacity", "vertex_faces", "edge_edge_count", "edge_edge_capacity",
-        "edge_edges", "stats"})
+        "edge_edges", "stats", "vertex_bounds"})
     public static class sc_near_result extends Structure {
         public int struct_size = size(), found, verdict, reserved;
         public long vertex_face_count, vertex_face_capacity;
