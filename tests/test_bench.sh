@@ -152,6 +152,39 @@ check "an unknown @" refuses "none of base" meshes/sphere.obj --methods exact@fa
 check "a method twice, with @" refuses "twice" meshes/sphere.obj --methods exact@base,exact@base
 check "@ on what is not the library's" refuses "only queries of the library" meshes/sphere.obj \
     --methods hash@base
+for mesh in crossing_cloths folded_sheet corner_on_face roll; do
+    for distance in 0.05 1; do
+        check "$mesh: within $distance edges" run meshes/$mesh.obj --pairs near --distance $distance --repeats 1
+    done
+done
+within_edges() {
+    small --once --pairs near --distance 0.5 --json >"$scratch/within" &&
+        grep -q '"distance_edges":0.5,"distance":[0-9]' "$scratch/within" &&
+        grep -q '"method":"near-count".*"pairs":[1-9][0-9]*,"missed":0,"extra":0' "$scratch/within" &&
+        grep -q '"method":"near-inflated".*"pairs":[1-9][0-9]*,"missed":0' "$scratch/within"
+}
+check "what is near, by every method" within_edges
+rings() {
+    pairs=$(small --once --pairs near --methods near --csv "$@" | awk -F, '/,near,/ { n += $9 } END { print n }')
+}
+fewer_with_rings() {
+    rings
+    all=$pairs
+    rings --ignore-rings 2 && echo "$all, without 2 rings $pairs" && test "$all" -gt "$pairs"
+}
+check "rings are left out" fewer_with_rings
+check "what is near, on two workers" small --once --pairs near --workers 2 --methods near,near@serial,near-boxes@base
+check "near-still alone is compared, too" small --once --pairs near --methods near-still
+check "no --distance of others" refuses "of --pairs near only" meshes/sphere.obj --distance 1
+check "no --ignore-rings of others" refuses "of --pairs near only" meshes/sphere.obj --ignore-rings 1
+check "no distance 0" refuses "above 0" meshes/sphere.obj --pairs near --distance 0
+check "no distance below 0" refuses "distance" meshes/sphere.obj --pairs near --distance -1
+check "no method of others" refuses "knows no distance" meshes/sphere.obj --pairs near --methods exact
+check "nor near elsewhere" refuses "is of what is near" meshes/sphere.obj --methods near
+check "near-still is as it is" refuses "only queries of the library" meshes/sphere.obj --pairs near \
+    --methods near-still@base
+check "no proper nearness" refuses "need not cross" meshes/sphere.obj --pairs near --proper
+check "no --one-shot of what is near" refuses "pairs that meet" meshes/sphere.obj --one-shot --pairs near
 near_pairs() {
     small --near --json --methods exact >"$scratch/near" &&
         ! sed 1d "$scratch/near" | grep -qv '"near_pairs":[0-9]' && grep -q '"near_pairs":[1-9]' "$scratch/near"
