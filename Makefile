@@ -373,10 +373,10 @@ $(work)/tests/cgal/compare: tests/cgal/compare.cpp include/starcontour.h tools/m
 	    -Itools -Itests $(CPPFLAGS) $(CXXFLAGS) $(LDFLAGS) -o $@ $< $(cgal_objects) $(static) \
 	    -lassimp -lz -lmpfr -lgmp $(LDLIBS) -lm
 
-# Comparison of steps with ipc-toolkit, from PyPI; by hand, too.
+# Comparison of steps and of what is near with ipc-toolkit, from PyPI; by hand, too.
 .PHONY: test-ipctk
 ifneq ($(strip $(missing_for_programs)),)
-test-ipctk: ## compare steps with ipc-toolkit's (PyPI) on all scenes; a minute or two
+test-ipctk: ## compare steps and what is near with ipc-toolkit's (PyPI) on all scenes; some minutes
 	@echo "make test-ipctk needs $(strip $(missing_for_programs)): run 'make deps' first" >&2; exit 1
 else
 test-ipctk: $(lib)/$(shared_link) $(programs)
