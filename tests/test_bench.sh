@@ -276,6 +276,10 @@ if command -v python3 >/dev/null 2>&1; then
     for methods in exact,none exact,aabb; do
         small --once --json --pairs edge --methods $methods >"$scratch/raw/$methods.jsonl"
     done
+    for distance in 0.2 1; do
+        small --once --json --pairs near --distance $distance >"$scratch/raw/near.$distance.jsonl"
+    done
+    small --once --json --pairs near --workers 2 --methods near,near@serial >"$scratch/raw/near.jsonl"
     for name in this other; do
         small --once --json --methods exact --pairs edge >"$scratch/raw/$name.twisted-cloth.1.built"
     done
@@ -288,7 +292,13 @@ if command -v python3 >/dev/null 2>&1; then
     check "it has worst frames, likewise" \
         grep -Eq "^\| twisted-cloth \| [0-9,]+ (\| [0-9.]+ ){7}\| – \| – \|$" \
         "$scratch/results/report.md"
-    for part in summary.csv frames.csv turns.csv shots.csv built.csv report.md; do
+    check "it has what is near, by all methods" \
+        grep -Eq "^\| twisted-cloth \| [0-9,]+ \| 1\.0 \| [0-9,]+ (\| [0-9.]+ ){8}\|$" "$scratch/results/report.md"
+    check "and what is to be reached" \
+        grep -Eq "^\| two workers: speed-up \| ≥ 1.80 \| [0-9.]+ \| twisted-cloth, 1.0 edges \| (met|\*\*not met\*\*) \|$" \
+        "$scratch/results/report.md"
+    check "what was not measured is not met" grep -q "^| closed meshes .*not measured |$" "$scratch/results/report.md"
+    for part in summary.csv frames.csv turns.csv shots.csv built.csv near.csv report.md; do
         check "with $part" test -s "$scratch/results/$part"
     done
     cp "$scratch/results/report.md" "$scratch/first.md"
@@ -360,7 +370,25 @@ this,cc,rod,500,fast,1,exact,4
 clang,clang,rod,500,fast,0,exact,4
 clang,clang,rod,500,fast,1,exact,2
 END
+    cat >"$scratch/results/near_peers.csv" <<'END'
+scene,triangles,frame,edges,peer,version,what,ms,ms_min,pairs,missing,extra
+crushed-cloth,500,0,0.2,starcontour,0.1.0,near,1,1,900,0,0
+crushed-cloth,500,0,0.2,starcontour,0.1.0,near; merged,2,2,300,0,0
+crushed-cloth,500,0,0.2,ipctk,1.6.1,Candidates,8,8,2000,0,0
+crushed-cloth,500,0,0.2,ipctk,1.6.1,NormalCollisions,16,16,304,1,4
+crushed-cloth,500,0,0.5,starcontour,0.1.0,near,2,2,4000,0,0
+crushed-cloth,500,0,0.5,starcontour,0.1.0,near; merged,4,4,600,0,0
+crushed-cloth,500,0,0.5,ipctk,1.6.1,Candidates,8,8,6000,2,1
+crushed-cloth,500,0,0.5,ipctk,1.6.1,NormalCollisions,20,20,700,,
+END
     check "a report with peers" python3 bench/draw_report.py "$scratch/results"
+    near_row="| crushed-cloth | 500 | 0.20 | 900 | 1.00 | 2.00 | 8.00 | 16.0 | 8.00 | 16.0 | 8.00 | right | 1 and 4 of 304 |"
+    check "what is near, beside ipc-toolkit" grep -Fq "$near_row" "$scratch/results/report.md"
+    check "wrong candidates are told" grep -q "| 3 wrong | – |$" "$scratch/results/report.md"
+    check "a target that is met" grep -Fq "× NormalCollisions | ≥ 15.0 | 16.0 | crushed-cloth, 500 | met |" \
+        "$scratch/results/report.md"
+    check "a target that is not met" grep -Fq \
+        "× NormalCollisions | ≥ 20.0 | 10.0 | crushed-cloth, 500 | **not met** |" "$scratch/results/report.md"
     for line in "| rod | 500 | 2 | 5 | 8.00 | 2.00 | 4.00 | – | – | – | 3 missing in 1 of 2 frames |" \
         "| rod | 500 | 1 | 4 | 30.0 | 3.00 | 10.0 | 20.0 | 5.00 | 4.00 | match |" \
         "| cgal 5.5.1 | swept | 1 | 10.0 | 4.00 | match |" \
