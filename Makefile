@@ -622,8 +622,8 @@ peer-meshlib: $(lib)/$(shared_link) $(peer_scenes) ## the same for MeshLib (PyPI
 peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (PyPI; for non-commercial use)
 	$(call python_peer,trueform)
 
-.PHONY: peer-near
-peer-near: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) beside what is near, into build/peers/near.csv; some minutes
+.PHONY: near-peers
+near-peers: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) beside what is near, into build/peers/near.csv; some minutes
 	@bench/peers/measure_near.sh '$(BUILD)/peers/near.csv' '$(SCENES)' '$(bin)/sc-bench' '$(lib)/$(shared_link)' '$(BUILD)'
 
 .PHONY: peers

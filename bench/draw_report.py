@@ -860,7 +860,7 @@ def add_near(out, results, drawn):
         out.append("Beside ipc-toolkit, in one process, taking turns: LBVH candidates with inflated boxes, and\n"
                    "`NormalCollisions`, which also tells distances and merges. *Merged*: `near`, stencils of all\n"
                    "pairs, and `sc_near_merge`, which is as much. *Pairs*: ours against its candidates that are near;\n"
-                   "*features* of the merged ones differ where several are as close. Made by `make peer-near`; see\n"
+                   "*features* of the merged ones differ where several are as close. Made by `make near-peers`; see\n"
                    "bench/peers/README.md.\n")
         out.append(beside)
     out.append("What is to be reached, and the worst figure of the scenes that are measured:\n")

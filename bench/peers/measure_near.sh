@@ -1,5 +1,5 @@
 #!/bin/sh
-# `make peer-near`: times ipc-toolkit beside what is near, by near.py, into a new CSV file.
+# `make near-peers`: times ipc-toolkit beside what is near, by near.py, into a new CSV file.
 #
 #     bench/peers/measure_near.sh CSV "SCENES" SC-BENCH LIBRARY BUILD     from the top of the repository
 #
