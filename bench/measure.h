@@ -14,8 +14,8 @@
  * Before each turn the pose is written anew to where queries read it, as a simulation would.
  *
  * Where steps are asked about (METHOD_STEPS), a frame is the step from it to the next. Where it is
- * asked what is near (METHOD_NEAR), a step that does not move may find more: that is counted, and no
- * disagreement.
+ * asked what is near (METHOD_NEAR), a step that does not move may find more: that is counted, and
+ * no disagreement.
  *
  * With several threads, each has a workspace of its own for the same model, and they work on as
  * many frames at once. A frame's time is then that of all of them, divided by their number: a

@@ -35,7 +35,7 @@ typedef struct method_kind {
 extern const method_kind method_kinds[];
 extern const size_t method_count;
 
-/* What it is asked about: SC_PAIRS_TRIANGLE for all that find pairs of either kind, or METHOD_... */
+/* What it is asked about: METHOD_..., or SC_PAIRS_TRIANGLE for all that find pairs that meet. */
 uint32_t method_asks(const method_kind *kind);
 
 /* The method of a name, or NULL. */
