@@ -373,10 +373,10 @@ $(work)/tests/cgal/compare: tests/cgal/compare.cpp include/starcontour.h tools/m
 	    -Itools -Itests $(CPPFLAGS) $(CXXFLAGS) $(LDFLAGS) -o $@ $< $(cgal_objects) $(static) \
 	    -lassimp -lz -lmpfr -lgmp $(LDLIBS) -lm
 
-# Comparison of steps with ipc-toolkit, from PyPI; by hand, too.
+# Comparison of steps and of what is near with ipc-toolkit, from PyPI; by hand, too.
 .PHONY: test-ipctk
 ifneq ($(strip $(missing_for_programs)),)
-test-ipctk: ## compare steps with ipc-toolkit's (PyPI) on all scenes; a minute or two
+test-ipctk: ## compare steps and what is near with ipc-toolkit's (PyPI) on all scenes; some minutes
 	@echo "make test-ipctk needs $(strip $(missing_for_programs)): run 'make deps' first" >&2; exit 1
 else
 test-ipctk: $(lib)/$(shared_link) $(programs)
@@ -621,6 +621,10 @@ peer-meshlib: $(lib)/$(shared_link) $(peer_scenes) ## the same for MeshLib (PyPI
 	$(call python_peer,meshlib)
 peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (PyPI; for non-commercial use)
 	$(call python_peer,trueform)
+
+.PHONY: near-peers
+near-peers: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) beside what is near, into build/peers/near.csv; some minutes
+	@bench/peers/measure_near.sh '$(BUILD)/peers/near.csv' '$(SCENES)' '$(bin)/sc-bench' '$(lib)/$(shared_link)' '$(BUILD)'
 
 .PHONY: peers
 peers: ## all peers that are there, into a new CSV; a minute or two for each

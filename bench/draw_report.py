@@ -21,6 +21,7 @@ import sys
 
 sys.dont_write_bytecode = True  # nothing is to appear beside this file
 
+import report_near
 import report_targets as targets
 from report_text import figure, mean, table, times, whole
 
@@ -204,7 +205,10 @@ def collect(raw, results, command, seconds):
         sys.exit("draw_report.py: results of different commits in " + raw)
     steps = [row for d, records in runs if d["pairs_kind"] == "step"
              for row in summarize_steps(d, records)]
-    runs = [(d, records) for d, records in runs if d["pairs_kind"] != "step"]
+    near = report_near.collect([run for run in runs if run[0]["pairs_kind"] == "near"])
+    runs = [(d, records) for d, records in runs if d["pairs_kind"] not in ("step", "near")]
+    if not runs:
+        sys.exit("draw_report.py: no run on pairs of triangles, or of edges and triangles, in " + raw)
     turns = [row for d, records in runs if targets.kind_of_turns(d, records)
              for row in targets.collect_turns(d, records)]
     runs = [(d, records) for d, records in runs if not targets.kind_of_turns(d, records)]
@@ -238,7 +242,8 @@ def collect(raw, results, command, seconds):
     write_csv(os.path.join(results, "frames.csv"), FRAMES, frames, description)
     for name, columns, rows in (("steps.csv", STEPS, steps), ("turns.csv", targets.TURNS, turns),
                                 ("shots.csv", targets.SHOTS, shots),
-                                ("built.csv", targets.BUILT, built)):
+                                ("built.csv", targets.BUILT, built),
+                                ("near.csv", report_near.NEAR, near)):
         if rows:
             write_csv(os.path.join(results, name), columns, rows, description)
 
@@ -252,10 +257,11 @@ class Results:
     def __init__(self, folder):
         self.rows, self.description = read_csv(os.path.join(folder, "summary.csv"))
         self.frames, _ = read_csv(os.path.join(folder, "frames.csv"))
-        self.steps, self.turns, self.shots, self.built = (
+        self.steps, self.turns, self.shots, self.built, self.near, self.near_peers = (
             read_csv(path)[0] if os.path.exists(path) else []
             for path in (os.path.join(folder, name + ".csv")
-                         for name in ("steps", "turns", "shots", "built")))
+                         for name in ("steps", "turns", "shots", "built", "near",
+                                      "near_peers")))
         peers = os.path.join(folder, "peers.csv")
         rows, skipped, self.peers_commit = read_peers(peers)
         self.peers_skipped = [line for line in skipped if "(step " not in line]
@@ -776,6 +782,11 @@ def draw_all(results, found, sizes, folder):
     drawn = ["frames"]
     if draw_scaling(pyplot, found, sizes, folder):
         drawn.append("scaling")
+    plot = report_near.draw(pyplot, results.near, results.near_peers)
+    if plot:
+        save(plot, folder, "near")
+        pyplot.close(plot)
+        drawn.append("near")
     return drawn
 
 
@@ -827,6 +838,33 @@ def add_targets(out, results):
         out.append("How many times as fast `exact` is, one thread, pairs of triangles, built-in partition; the section\n"
                    "on peers below has more.\n")
         out.append(rows)
+
+
+def add_near(out, results, drawn):
+    """What is within a distance, if it was measured."""
+    own, beside = report_near.own_table(results.near), report_near.peer_table(results.near_peers)
+    if not own and not beside:
+        return
+    out.append("## What is near\n")
+    if own:
+        out.append("Pairs of a vertex and a face, and of two edges, within a distance in median *edges* of the first\n"
+                   "frame; nothing left out, one thread, one query a frame. `near` sorts its pairs; *counted* lists\n"
+                   "none. How many times as fast it is as the plain tree of *boxes* with the same distances, a step\n"
+                   "that stands *still*, and such a step by *inflated* boxes; milliseconds of all frames.\n")
+        if min(row["cpu_share"] for row in results.near) < 0.95:
+            out.append("**Disturbed**: some of these runs had less than 95 % of a processor.\n")
+        out.append(own)
+    if "near" in drawn:
+        out.append("![What a pair costs, and how many times as long others take](near.svg)\n")
+    if beside:
+        out.append("Beside ipc-toolkit, in one process, taking turns: LBVH candidates with inflated boxes, and\n"
+                   "`NormalCollisions`, which also tells distances and merges. *Merged*: `near`, stencils of all\n"
+                   "pairs, and `sc_near_merge`, which is as much. *Pairs*: ours against its candidates that are near;\n"
+                   "*features* of the merged ones differ where several are as close. Made by `make near-peers`; see\n"
+                   "bench/peers/README.md.\n")
+        out.append(beside)
+    out.append("What is to be reached, and the worst figure of the scenes that are measured:\n")
+    out.append(report_near.goals(results.near, results.near_peers))
 
 
 def report(results, drawn, slope_table, reading):
@@ -917,6 +955,7 @@ def report(results, drawn, slope_table, reading):
         absent = "".join("- %s\n" % line for line in results.small_steps_skipped)
         if absent:
             out.append("Left out:\n\n" + absent)
+    add_near(out, results, drawn)
     out.append("## One query a frame, and repeated queries\n")
     out.append("The same frame asked for again and again, which favours what fits the cache.\n")
     out.append(modes(results))

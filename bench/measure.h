@@ -13,7 +13,9 @@
  *   MEASURE_WARM  as many queries of the same pose as repeats are asked for, one after the other.
  * Before each turn the pose is written anew to where queries read it, as a simulation would.
  *
- * Where steps are asked about (METHOD_STEPS), a frame is the step from it to the next.
+ * Where steps are asked about (METHOD_STEPS), a frame is the step from it to the next. Where it is
+ * asked what is near (METHOD_NEAR), a step that does not move may find more: that is counted, and
+ * no disagreement.
  *
  * With several threads, each has a workspace of its own for the same model, and they work on as
  * many frames at once. A frame's time is then that of all of them, divided by their number: a
@@ -33,6 +35,8 @@ typedef struct measure_options {
     uint32_t
         workers; /* threads of each query, which are those of query_threads.h; 1 with several threads */
     bool count_near; /* whether records are to have near */
+    double edges;    /* of METHOD_NEAR: the distance, in median edges of the first frame. That of
+                        question is not read */
 } measure_options;
 
 /* One method in one frame. */
@@ -56,6 +60,7 @@ typedef struct measurement {
     double floor_ms;     /* median over frames of one pass, see floor.h */
     double cpu_share;    /* processor time of the timed passes, divided by wall time: less than the
                             number of threads at work where other programs were in the way */
+    double distance;     /* of METHOD_NEAR: in units of the coordinates */
     bool disagrees;      /* a method that must not does */
 } measurement;
 

@@ -10,6 +10,7 @@
 #ifndef BENCH_METHODS_H
 #define BENCH_METHODS_H
 
+#include "near_method.h"
 #include "spatial_hash.h"
 #include "step_method.h"
 
@@ -27,11 +28,15 @@ typedef struct method_kind {
     bool is_step;  /* of a step from one pose to another, see step_method.h */
     uint32_t simd; /* SC_SIMD_... */
     bool serial;   /* one thread, however many the others have */
+    uint32_t near; /* of what is near in a pose: NEAR_... of near_method.h; else 0 */
 } method_kind;
 
 /* All methods, in the order in which they are listed. */
 extern const method_kind method_kinds[];
 extern const size_t method_count;
+
+/* What it is asked about: METHOD_..., or SC_PAIRS_TRIANGLE for all that find pairs that meet. */
+uint32_t method_asks(const method_kind *kind);
 
 /* The method of a name, or NULL. */
 const method_kind *method_find(const char *name);
@@ -61,16 +66,19 @@ typedef struct method_runner {
     sc_workspace *workspace;
     spatial_hash *hash;
     step_method step;
+    near_method near;
     sc_pair *pairs; /* of the last query, sorted */
     uint64_t count, room;
 } method_runner;
 
-/* In place of a kind of pairs: the collisions of steps. */
-enum { METHOD_STEPS = 2 };
+/* In place of a kind of pairs: the collisions of steps, and what is within a distance. */
+enum { METHOD_STEPS = 2, METHOD_NEAR = 3 };
 
-/* What is asked: SC_PAIRS_... or METHOD_STEPS, SC_CONTACT_... */
+/* What is asked: SC_PAIRS_... or METHOD_..., SC_CONTACT_...; of METHOD_NEAR alone the others. */
 typedef struct method_question {
     uint32_t pairs, contact;
+    double distance;       /* in units of the coordinates */
+    uint32_t ignore_rings; /* see sc_filter */
 } method_question;
 
 /* What a query is about: a pose in the mesh's type, and as doubles for the hash. Of a step, end is
@@ -94,9 +102,10 @@ bool method_reserve(method_runner *runner, uint64_t count);
  * NULL; asking for it costs time. Where the room for pairs is too small it is enlarged and the
  * query repeated: only the last counts. On failure false, and a message in *reason.
  *
- * Steps: pairs of both kinds are found, and with pairs_wanted also listed: those of edges last,
- * with 2^31 added to their numbers. Another query counts the candidates; runner->step has what it
- * found.
+ * Steps, and what is near: pairs of both kinds are found, and with pairs_wanted also listed: those
+ * of edges last, with 2^31 added to their numbers. Of steps another query counts the candidates;
+ * runner->step has what it found. A method that only counts lists in a query of its own, whose list
+ * must be as long.
  */
 bool method_query(method_runner *runner, const method_pose *pose, const method_question *question,
                   bool pairs_wanted, sc_stats *stats, double *milliseconds, const char **reason);

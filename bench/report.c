@@ -109,6 +109,9 @@ static void describe(report_fields *fields, const measurement *m, const report_c
     add_number(fields, "model_bytes", (double)m->info.model_bytes);
     add_number(fields, "workspace_bytes", (double)m->info.workspace_bytes);
     add_some(fields, "hash_bytes", m->hash_bytes > 0, (double)m->hash_bytes);
+    add_some(fields, "distance_edges", m->distance > 0.0, context->options->edges);
+    add_some(fields, "distance", m->distance > 0.0, m->distance);
+    add_some(fields, "ignore_rings", m->distance > 0.0, context->options->question.ignore_rings);
     add_number(fields, "floor_ns_per_triangle", floor_ns(m, context));
     add_number(fields, "cpu_share", m->cpu_share);
 }
@@ -238,6 +241,25 @@ static void print_candidates(const measurement *m)
     }
 }
 
+/* What a pair costs where there are some: means over the frames. */
+static void print_near(const measurement *m)
+{
+    printf("\n%-14s %14s %14s\n", "method", "pairs", "ns a pair");
+    for (size_t i = 0; i < m->method_count; i++) {
+        double pairs = 0.0, milliseconds = 0.0;
+        for (uint32_t frame = 0; frame < m->frame_count; frame++) {
+            const measure_record *record = &m->records[frame * m->method_count + i];
+            pairs += (double)record->pairs;
+            milliseconds += record->ms;
+        }
+        printf("%-14s %14.0f", m->methods[i]->name, pairs / m->frame_count);
+        if (pairs > 0.0)
+            printf(" %14.1f\n", 1e6 * milliseconds / pairs);
+        else
+            printf(" %14s\n", "-");
+    }
+}
+
 static void print_table(const measurement *m, const report_context *context)
 {
     printf("%s: %lu triangles, %lu frames; %s pairs, %s; %s partition, %s, %lu thread%s\n",
@@ -245,6 +267,13 @@ static void print_table(const measurement *m, const report_context *context)
            context->pairs_kind, context->contact, context->partition,
            context->options->mode == MEASURE_ONCE ? "one query a frame" : "repeated queries",
            (unsigned long)context->options->threads, context->options->threads > 1 ? "s" : "");
+    if (m->methods[0]->near) {
+        printf("within %.6g median edges of the first frame, that is %.6g", context->options->edges,
+               m->distance);
+        if (context->options->question.ignore_rings)
+            printf("; %lu rings left out", (unsigned long)context->options->question.ignore_rings);
+        putchar('\n');
+    }
     if (m->cpu_share < 0.95) {
         printf("DISTURBED: the timed queries had only %.0f %% of a processor\n",
                100.0 * m->cpu_share);
@@ -262,6 +291,7 @@ static void print_table(const measurement *m, const report_context *context)
         printf("\n");
     }
     if (m->methods[0]->is_step) print_candidates(m);
+    if (m->methods[0]->near) print_near(m);
     printf("\n%-14s %10s %10s %10s %12s %10s %9s %7s\n", "method", "at rest", "mean", "worst",
            "ns/triangle", "x floor", "missed", "extra");
     for (size_t i = 0; i < m->method_count; i++) {

@@ -5,8 +5,8 @@
 #
 # FOLDER is where results go; by default bench/results/<machine>, and the overview into README.md,
 # or, for quick, build/bench-quick. report measures nothing and makes the report anew from the CSV
-# files. What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv, if it
-# is there. From make come SC_BIN and PYTHON, the interpreter that draws.
+# files. What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv and
+# near.csv, if they are there. From make come SC_BIN and PYTHON, the interpreter that draws.
 #
 # Exit status 1 if methods disagree or no report could be made, 2 if nothing could be started.
 #
@@ -24,12 +24,14 @@ sets=exact@base,aabb@base
 if grep -qw avx2 /proc/cpuinfo 2>/dev/null; then sets=exact@avx2,aabb@avx2,$sets; fi
 if grep -qw avx512vl /proc/cpuinfo 2>/dev/null; then sets=exact@avx512,aabb@avx512,$sets; fi
 turns=exact,exact@serial,aabb,aabb@serial
+near_sets=$(echo "$sets" | sed 's/exact/near/g; s/aabb/near-boxes/g')
 
 # A line a run: scene, triangles, frames, passes, partition, pairs, methods or -, other options. The
 # default build, with the built-in partition; pairs of an edge and a triangle, as in the paper. The
 # other runs compare partitions (METIS, and the order that the maker of a cloth knows), resolutions,
 # kinds of pairs, threads, and repeated queries with single ones; instructions and threads of one
-# query; heavy contact, on the frames that peers get; and single queries from nothing.
+# query; heavy contact, on the frames that peers get; single queries from nothing; steps; and what is
+# near, at distances from a twentieth of an edge to two edges.
 full="\
 twisted-cloth 4096 60 3 fast edge -
 twisted-cloth 16384 60 3 fast edge -
@@ -116,7 +118,35 @@ horse 25000 60 1 fast step step,step-none,step-two-boxes
 wrinkled-cloth 6272 60 1 fast step -
 crushed-cloth 5776 60 1 fast step -
 tight-rods 6144 60 1 fast step -
-sphere 81920 60 1 fast step step,step-none,step-two-boxes"
+sphere 81920 60 1 fast step step,step-none,step-two-boxes
+twisted-cloth 65536 8 2 fast near - --distance 0.05
+cloth-sphere 80000 8 2 fast near - --distance 0.05
+bunny 54500 8 2 fast near - --distance 0.05
+crushed-cloth 92416 6 2 fast near - --distance 0.05
+twisted-cloth 65536 8 2 fast near - --distance 0.2
+cloth-sphere 80000 8 2 fast near - --distance 0.2
+bunny 54500 8 2 fast near - --distance 0.2
+crushed-cloth 92416 6 2 fast near - --distance 0.2
+twisted-cloth 65536 8 2 fast near - --distance 0.5
+cloth-sphere 80000 8 2 fast near - --distance 0.5
+bunny 54500 8 2 fast near - --distance 0.5
+crushed-cloth 92416 6 2 fast near - --distance 0.5
+twisted-cloth 65536 8 2 fast near - --distance 1
+cloth-sphere 80000 8 2 fast near - --distance 1
+bunny 54500 8 2 fast near - --distance 1
+crushed-cloth 92416 6 2 fast near - --distance 1
+twisted-cloth 65536 6 1 fast near - --distance 2
+bunny 54500 6 1 fast near - --distance 2
+crushed-cloth 5776 6 2 fast near - --distance 0.05
+crushed-cloth 5776 6 2 fast near - --distance 0.2
+crushed-cloth 5776 6 2 fast near - --distance 0.5
+crushed-cloth 5776 6 2 fast near - --distance 1
+crushed-cloth 5776 6 2 fast near - --distance 2
+twisted-cloth 65536 60 2 fast near near,near-boxes --distance 1 --ignore-rings 4
+twisted-cloth 65536 8 3 fast near $near_sets --distance 1
+crushed-cloth 92416 6 3 fast near $near_sets --distance 0.5
+twisted-cloth 65536 8 3 fast near near,near@serial --distance 1 --workers 2
+crushed-cloth 92416 6 3 fast near near,near@serial --distance 0.5 --workers 2"
 
 quick="\
 twisted-cloth 4096 8 3 fast edge -
@@ -141,7 +171,16 @@ crushed-cloth 5776 6 1 fast edge exact,aabb --near
 bunny 13600 8 3 fast edge exact,aabb --one-shot
 bunny 13600 8 1 metis edge exact --one-shot
 twisted-cloth 16384 8 1 fast step -
-bunny 13600 8 1 fast step -"
+bunny 13600 8 1 fast step -
+twisted-cloth 16384 4 1 fast near - --distance 0.05
+twisted-cloth 16384 4 1 fast near - --distance 0.2
+twisted-cloth 16384 4 1 fast near - --distance 0.5
+twisted-cloth 16384 4 1 fast near - --distance 1
+crushed-cloth 5776 6 1 fast near - --distance 0.05
+crushed-cloth 5776 6 1 fast near - --distance 0.2
+crushed-cloth 5776 6 1 fast near - --distance 0.5
+crushed-cloth 5776 6 1 fast near - --distance 1
+twisted-cloth 16384 4 1 fast near $near_sets --distance 1"
 
 # The two that the contour test's price, and that of culling in vain, are read from: two methods in
 # turn, so that each follows the other. Where all take turns, what follows the hash finds the caches
@@ -204,6 +243,9 @@ mkdir -p "$results" || exit 2
 if [ "$kind" != quick ] && [ -f build/peers/peers.csv ]; then
     cp build/peers/peers.csv "$results" || exit 2
 fi
+if [ "$kind" != quick ] && [ -f build/peers/near.csv ]; then
+    cp build/peers/near.csv "$results/near_peers.csv" || exit 2
+fi
 if [ "$kind" = report ]; then
     # shellcheck disable=SC2086
     exec "$python" bench/draw_report.py $readme "$results"
@@ -240,6 +282,7 @@ while read -r scene triangles frames passes partition pairs methods options; do
     if [ "$methods" = - ]; then
         methods=exact,star,none,aabb-sctt,aabb,hash
         [ "$pairs" = step ] && methods=step,step-star,step-none,step-two-boxes,step-swept
+        [ "$pairs" = near ] && methods=near,near-count,near-boxes,near-still,near-inflated
     fi
     mode=--once
     end=jsonl

@@ -40,12 +40,17 @@ static const char usage[] =
     "\n"
     "How:\n"
     "  --methods A,B,...  exact, star, none, aabb-sctt, aabb, hash (all; --list explains);\n"
-    "                     of steps: step, step-star, step-none, step-two-boxes, step-swept (all).\n"
+    "                     of steps: step, step-star, step-none, step-two-boxes, step-swept (all);\n"
+    "                     of what is near: near, near-count, near-boxes, near-still,\n"
+    "                     near-inflated (all).\n"
     "                     exact@avx2: with these instructions; likewise @base and @avx512.\n"
     "                     exact@serial: on one thread, whatever --workers says\n"
     "  --pairs KIND       triangle or edge: pairs of triangles, or of an edge and a triangle;\n"
-    "                     step: vertex-face and edge-edge pairs between each frame and the next\n"
+    "                     step: vertex-face and edge-edge pairs between each frame and the next;\n"
+    "                     near: those within a distance in each frame\n"
     "                     (triangle)\n"
+    "  --distance D       of --pairs near: in median edges of the first frame (1)\n"
+    "  --ignore-rings K   of --pairs near: without pairs within K rings on the surface (0)\n"
     "  --proper           only proper crossings, not every common point\n"
     "  --partition HOW    fast, metis, or structure: the scene's own order (fast)\n"
     "  --once             one query a frame in sequence, as a simulation runs; with --repeats, so\n"
@@ -76,8 +81,11 @@ static const char usage[] =
     "could\n"
     "not be done.\n";
 
-static const tool_choice pairs_choices[] = {
-    {"triangle", SC_PAIRS_TRIANGLE}, {"edge", SC_PAIRS_EDGE}, {"step", METHOD_STEPS}, {NULL, 0}};
+static const tool_choice pairs_choices[] = {{"triangle", SC_PAIRS_TRIANGLE},
+                                            {"edge", SC_PAIRS_EDGE},
+                                            {"step", METHOD_STEPS},
+                                            {"near", METHOD_NEAR},
+                                            {NULL, 0}};
 
 static const tool_choice partition_choices[] = {
     {"fast", BENCH_FAST}, {"metis", BENCH_METIS}, {"structure", BENCH_STRUCTURE}, {NULL, 0}};
@@ -86,7 +94,7 @@ typedef struct bench_settings {
     const char *scene, *scene_dir, *methods, *export_dir, *export_obj, *cache;
     uint32_t triangles, frames; /* 0: as the scene has it */
     uint32_t format;
-    bool list, one_shot;
+    bool list, one_shot, distance; /* distance: it was given */
     measure_options measure;
 } bench_settings;
 
@@ -174,7 +182,7 @@ typedef struct method_choice {
     size_t count;
 } method_choice;
 
-static bool add_method(method_choice *choice, const char *name, bool steps)
+static bool add_method(method_choice *choice, const char *name, uint32_t asked)
 {
     method_variant *variant = &choice->variants[choice->count];
     const char *reason;
@@ -186,9 +194,13 @@ static bool add_method(method_choice *choice, const char *name, bool steps)
         tool_error("--methods: %s: %s; see --list", name, reason);
         return false;
     }
-    if (variant->kind.is_step != steps) {
+    if (method_asks(&variant->kind) != asked) {
+        const uint32_t own = method_asks(&variant->kind);
         tool_error("--methods: %s %s", name,
-                   steps ? "knows no steps (--pairs step)" : "is of steps: --pairs step");
+                   own == METHOD_STEPS     ? "is of steps: --pairs step"
+                   : own == METHOD_NEAR    ? "is of what is near: --pairs near"
+                   : asked == METHOD_STEPS ? "knows no steps (--pairs step)"
+                                           : "knows no distance (--pairs near)");
         return false;
     }
     for (size_t i = 0; i < choice->count; i++) {
@@ -201,12 +213,12 @@ static bool add_method(method_choice *choice, const char *name, bool steps)
 }
 
 /* Those that text names, or all. */
-static bool choose_methods(const char *text, bool steps, method_choice *choice)
+static bool choose_methods(const char *text, uint32_t asked, method_choice *choice)
 {
     choice->count = 0;
     for (size_t i = 0; !text && i < method_count; i++) {
-        if (!method_kinds[i].missing && method_kinds[i].is_step == steps)
-            add_method(choice, method_kinds[i].name, steps);
+        if (!method_kinds[i].missing && method_asks(&method_kinds[i]) == asked)
+            add_method(choice, method_kinds[i].name, asked);
     }
     while (text && *text) {
         char name[32];
@@ -214,7 +226,7 @@ static bool choose_methods(const char *text, bool steps, method_choice *choice)
         snprintf(name, sizeof name, "%.*s", (int)(length < 31 ? length : 31), text);
         text += length;
         if (*text == ',') text++;
-        if (!add_method(choice, name, steps)) return false;
+        if (!add_method(choice, name, asked)) return false;
     }
     if (choice->count == 0) tool_error("--methods: names no method; see --list");
     return choice->count > 0;
@@ -226,7 +238,8 @@ static void show_disagreement(const measurement *m)
     for (size_t i = 0; i < m->method_count; i++) {
         for (uint32_t frame = 0; frame < m->frame_count; frame++) {
             const measure_record *record = &m->records[frame * m->method_count + i];
-            if (!record->extra && (!record->missed || m->methods[i]->unsound)) continue;
+            const bool loose = m->methods[i]->near == NEAR_STILL;
+            if ((!record->extra || loose) && (!record->missed || m->methods[i]->unsound)) continue;
             tool_error("frame %lu: %s misses %.0f pairs and has %.0f that are none: this is a bug, "
                        "please report it",
                        (unsigned long)frame, m->methods[i]->name, (double)record->missed,
@@ -241,8 +254,9 @@ static int measure_scene(const bench_settings *set, scene_folder *scene, const c
     method_choice choice;
     char error[MESH_FILE_ERROR_SIZE];
     measurement m;
-    if (!choose_methods(set->methods, set->measure.question.pairs == METHOD_STEPS, &choice))
-        return TOOL_FAILED;
+    const uint32_t pairs = set->measure.question.pairs;
+    const uint32_t asked = pairs == SC_PAIRS_EDGE ? SC_PAIRS_TRIANGLE : pairs;
+    if (!choose_methods(set->methods, asked, &choice)) return TOOL_FAILED;
     memset(&m, 0, sizeof m);
     m.methods = choice.kinds;
     m.method_count = choice.count;
@@ -279,7 +293,7 @@ static int measure_one_shot(const bench_settings *set, scene_folder *scene, cons
 {
     method_choice choice;
     char error[MESH_FILE_ERROR_SIZE];
-    if (!choose_methods(set->methods ? set->methods : "exact,aabb", false, &choice))
+    if (!choose_methods(set->methods ? set->methods : "exact,aabb", SC_PAIRS_TRIANGLE, &choice))
         return TOOL_FAILED;
     for (size_t i = 0; i < choice.count; i++) {
         if (!choice.kinds[i]->is_hash) continue;
@@ -335,13 +349,19 @@ static int export_scene(const bench_settings *set, scene_folder *scene)
 
 static int run(const bench_settings *set, char **paths, int path_count)
 {
-    if (set->measure.question.pairs == METHOD_STEPS &&
-        set->measure.question.contact == SC_CONTACT_PROPER) {
-        tool_error("--proper: a step has no proper crossings");
+    const bool near = set->measure.question.pairs == METHOD_NEAR;
+    const bool steps = set->measure.question.pairs == METHOD_STEPS;
+    if ((steps || near) && set->measure.question.contact == SC_CONTACT_PROPER) {
+        tool_error("--proper: %s",
+                   steps ? "a step has no proper crossings" : "what is near need not cross");
         return TOOL_FAILED;
     }
-    if (set->one_shot && set->measure.question.pairs == METHOD_STEPS) {
-        tool_error("--one-shot: a step is none");
+    if (set->one_shot && (steps || near)) {
+        tool_error("--one-shot: %s", steps ? "a step is none" : "only of pairs that meet");
+        return TOOL_FAILED;
+    }
+    if (!near && (set->distance || set->measure.question.ignore_rings)) {
+        tool_error("%s: of --pairs near only", set->distance ? "--distance" : "--ignore-rings");
         return TOOL_FAILED;
     }
     const int sources = (set->scene != NULL) + (set->scene_dir != NULL) + (path_count > 0);
@@ -369,6 +389,15 @@ static int run(const bench_settings *set, char **paths, int path_count)
     return status;
 }
 
+/* A positive, finite number of edges. */
+static bool parse_distance(const char *text, double *edges)
+{
+    if (!tool_parse_real("--distance", text, edges)) return false;
+    if (*edges > 0.0) return true;
+    tool_error("--distance: a number of edges above 0");
+    return false;
+}
+
 int main(int argc, char **argv)
 {
     enum {
@@ -378,6 +407,8 @@ int main(int argc, char **argv)
         OPTION_SCENE_DIR,
         OPTION_METHODS,
         OPTION_PAIRS,
+        OPTION_DISTANCE,
+        OPTION_IGNORE_RINGS,
         OPTION_PROPER,
         OPTION_PARTITION,
         OPTION_ONCE,
@@ -402,6 +433,8 @@ int main(int argc, char **argv)
         {"scene-dir", required_argument, NULL, OPTION_SCENE_DIR},
         {"methods", required_argument, NULL, OPTION_METHODS},
         {"pairs", required_argument, NULL, OPTION_PAIRS},
+        {"distance", required_argument, NULL, OPTION_DISTANCE},
+        {"ignore-rings", required_argument, NULL, OPTION_IGNORE_RINGS},
         {"proper", no_argument, NULL, OPTION_PROPER},
         {"partition", required_argument, NULL, OPTION_PARTITION},
         {"once", no_argument, NULL, OPTION_ONCE},
@@ -427,6 +460,7 @@ int main(int argc, char **argv)
     memset(&set, 0, sizeof set);
     set.cache = "build/scenes";
     set.measure.mode = MEASURE_WARM;
+    set.measure.edges = 1.0;
     set.measure.threads = set.measure.workers = 1;
     bool valid = true;
     int option;
@@ -449,6 +483,14 @@ int main(int argc, char **argv)
             break;
         case OPTION_PAIRS:
             valid &= tool_choose("--pairs", optarg, pairs_choices, &set.measure.question.pairs);
+            break;
+        case OPTION_DISTANCE:
+            set.distance = true;
+            valid &= parse_distance(optarg, &set.measure.edges);
+            break;
+        case OPTION_IGNORE_RINGS:
+            valid &= tool_parse_number("--ignore-rings", optarg, 1, 1000,
+                                       &set.measure.question.ignore_rings);
             break;
         case OPTION_PROPER:
             set.measure.question.contact = SC_CONTACT_PROPER;

@@ -152,6 +152,39 @@ check "an unknown @" refuses "none of base" meshes/sphere.obj --methods exact@fa
 check "a method twice, with @" refuses "twice" meshes/sphere.obj --methods exact@base,exact@base
 check "@ on what is not the library's" refuses "only queries of the library" meshes/sphere.obj \
     --methods hash@base
+for mesh in crossing_cloths folded_sheet corner_on_face roll; do
+    for distance in 0.05 1; do
+        check "$mesh: within $distance edges" run meshes/$mesh.obj --pairs near --distance $distance --repeats 1
+    done
+done
+within_edges() {
+    small --once --pairs near --distance 0.5 --json >"$scratch/within" &&
+        grep -q '"distance_edges":0.5,"distance":[0-9]' "$scratch/within" &&
+        grep -q '"method":"near-count".*"pairs":[1-9][0-9]*,"missed":0,"extra":0' "$scratch/within" &&
+        grep -q '"method":"near-inflated".*"pairs":[1-9][0-9]*,"missed":0' "$scratch/within"
+}
+check "what is near, by every method" within_edges
+rings() {
+    pairs=$(small --once --pairs near --methods near --csv "$@" | awk -F, '/,near,/ { n += $9 } END { print n }')
+}
+fewer_with_rings() {
+    rings
+    all=$pairs
+    rings --ignore-rings 2 && echo "$all, without 2 rings $pairs" && test "$all" -gt "$pairs"
+}
+check "rings are left out" fewer_with_rings
+check "what is near, on two workers" small --once --pairs near --workers 2 --methods near,near@serial,near-boxes@base
+check "near-still alone is compared, too" small --once --pairs near --methods near-still
+check "no --distance of others" refuses "of --pairs near only" meshes/sphere.obj --distance 1
+check "no --ignore-rings of others" refuses "of --pairs near only" meshes/sphere.obj --ignore-rings 1
+check "no distance 0" refuses "above 0" meshes/sphere.obj --pairs near --distance 0
+check "no distance below 0" refuses "distance" meshes/sphere.obj --pairs near --distance -1
+check "no method of others" refuses "knows no distance" meshes/sphere.obj --pairs near --methods exact
+check "nor near elsewhere" refuses "is of what is near" meshes/sphere.obj --methods near
+check "near-still is as it is" refuses "only queries of the library" meshes/sphere.obj --pairs near \
+    --methods near-still@base
+check "no proper nearness" refuses "need not cross" meshes/sphere.obj --pairs near --proper
+check "no --one-shot of what is near" refuses "pairs that meet" meshes/sphere.obj --one-shot --pairs near
 near_pairs() {
     small --near --json --methods exact >"$scratch/near" &&
         ! sed 1d "$scratch/near" | grep -qv '"near_pairs":[0-9]' && grep -q '"near_pairs":[1-9]' "$scratch/near"
@@ -243,6 +276,10 @@ if command -v python3 >/dev/null 2>&1; then
     for methods in exact,none exact,aabb; do
         small --once --json --pairs edge --methods $methods >"$scratch/raw/$methods.jsonl"
     done
+    for distance in 0.2 1; do
+        small --once --json --pairs near --distance $distance >"$scratch/raw/near.$distance.jsonl"
+    done
+    small --once --json --pairs near --workers 2 --methods near,near@serial >"$scratch/raw/near.jsonl"
     for name in this other; do
         small --once --json --methods exact --pairs edge >"$scratch/raw/$name.twisted-cloth.1.built"
     done
@@ -255,7 +292,13 @@ if command -v python3 >/dev/null 2>&1; then
     check "it has worst frames, likewise" \
         grep -Eq "^\| twisted-cloth \| [0-9,]+ (\| [0-9.]+ ){7}\| – \| – \|$" \
         "$scratch/results/report.md"
-    for part in summary.csv frames.csv turns.csv shots.csv built.csv report.md; do
+    check "it has what is near, by all methods" \
+        grep -Eq "^\| twisted-cloth \| [0-9,]+ \| 1\.0 \| [0-9,]+ (\| [0-9.]+ ){8}\|$" "$scratch/results/report.md"
+    check "and what is to be reached" \
+        grep -Eq "^\| two workers: speed-up \| ≥ 1.80 \| [0-9.]+ \| twisted-cloth, 1.0 edges \| (met|\*\*not met\*\*) \|$" \
+        "$scratch/results/report.md"
+    check "what was not measured is not met" grep -q "^| closed meshes .*not measured |$" "$scratch/results/report.md"
+    for part in summary.csv frames.csv turns.csv shots.csv built.csv near.csv report.md; do
         check "with $part" test -s "$scratch/results/$part"
     done
     cp "$scratch/results/report.md" "$scratch/first.md"
@@ -327,7 +370,25 @@ this,cc,rod,500,fast,1,exact,4
 clang,clang,rod,500,fast,0,exact,4
 clang,clang,rod,500,fast,1,exact,2
 END
+    cat >"$scratch/results/near_peers.csv" <<'END'
+scene,triangles,frame,edges,peer,version,what,ms,ms_min,pairs,missing,extra
+crushed-cloth,500,0,0.2,starcontour,0.1.0,near,1,1,900,0,0
+crushed-cloth,500,0,0.2,starcontour,0.1.0,near; merged,2,2,300,0,0
+crushed-cloth,500,0,0.2,ipctk,1.6.1,Candidates,8,8,2000,0,0
+crushed-cloth,500,0,0.2,ipctk,1.6.1,NormalCollisions,16,16,304,1,4
+crushed-cloth,500,0,0.5,starcontour,0.1.0,near,2,2,4000,0,0
+crushed-cloth,500,0,0.5,starcontour,0.1.0,near; merged,4,4,600,0,0
+crushed-cloth,500,0,0.5,ipctk,1.6.1,Candidates,8,8,6000,2,1
+crushed-cloth,500,0,0.5,ipctk,1.6.1,NormalCollisions,20,20,700,,
+END
     check "a report with peers" python3 bench/draw_report.py "$scratch/results"
+    near_row="| crushed-cloth | 500 | 0.20 | 900 | 1.00 | 2.00 | 8.00 | 16.0 | 8.00 | 16.0 | 8.00 | right | 1 and 4 of 304 |"
+    check "what is near, beside ipc-toolkit" grep -Fq "$near_row" "$scratch/results/report.md"
+    check "wrong candidates are told" grep -q "| 3 wrong | – |$" "$scratch/results/report.md"
+    check "a target that is met" grep -Fq "× NormalCollisions | ≥ 15.0 | 16.0 | crushed-cloth, 500 | met |" \
+        "$scratch/results/report.md"
+    check "a target that is not met" grep -Fq \
+        "× NormalCollisions | ≥ 20.0 | 10.0 | crushed-cloth, 500 | **not met** |" "$scratch/results/report.md"
     for line in "| rod | 500 | 2 | 5 | 8.00 | 2.00 | 4.00 | – | – | – | 3 missing in 1 of 2 frames |" \
         "| rod | 500 | 1 | 4 | 30.0 | 3.00 | 10.0 | 20.0 | 5.00 | 4.00 | match |" \
         "| cgal 5.5.1 | swept | 1 | 10.0 | 4.00 | match |" \

@@ -1,14 +1,14 @@
 #!/bin/sh
-# `make test-ipctk`: compares steps with those of ipc-toolkit, by compare.py, on all scenes of
-# sc-bench.
+# `make test-ipctk`: compares steps with those of ipc-toolkit, by compare.py, and what is near, by
+# compare_near.py, on all scenes of sc-bench.
 #
 #     tests/ipctk/ipctk.sh SC-BENCH LIBRARY BUILD     from the top of the repository
 #
 # ipc-toolkit comes from PyPI, into a virtual environment below BUILD; if it cannot be had, the
 # comparison is skipped with a message. Scenes are small: ipc-toolkit's candidates, hundreds of
-# thousands, are gone through in Python; of 60 frames every tenth step is taken. Scenes whose meshes
-# were not fetched are skipped, too. Last line: "N passed, N failed, N skipped", where scenes are
-# counted. A minute or two.
+# thousands, are gone through in Python; of 60 frames every tenth step is taken, and for what is near
+# two poses. Scenes whose meshes were not fetched are skipped, too. Last line: "N passed, N failed,
+# N skipped", where scenes are counted, each of them for steps and for what is near. Some minutes.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -73,5 +73,31 @@ if [ -d "$wrinkled" ]; then
         exit 1
     fi
 fi
-# shellcheck disable=SC2086
-compare --skipped "$skipped" $scenes
+compare_near() {
+    "$build/peers/venv/bin/python" tests/ipctk/compare_near.py --lib "$library" --every 30 "$@"
+}
+# It notices what is missing, and what is too much: a distance that is off by a thousandth.
+crushed=$build/ipctk/5776-60/crushed-cloth
+for shift in 0.999 1.001; do
+    [ -d "$crushed" ] || continue
+    compare_near --shift $shift "$crushed" >"$build/ipctk/shift.log"
+    if [ $? -ne 1 ]; then
+        cat "$build/ipctk/shift.log"
+        echo "failed: a wrong distance is not noticed"
+        echo "0 passed, 1 failed, $skipped skipped"
+        exit 1
+    fi
+done
+# Both, and one last line for them.
+status=0
+log=$build/ipctk/all.log
+: >"$log"
+for what in compare compare_near; do
+    # shellcheck disable=SC2086
+    $what --skipped "$skipped" $scenes >"$build/ipctk/$what.log" || status=1
+    grep -Ev '^[0-9]+ passed, ' "$build/ipctk/$what.log"
+    cat "$build/ipctk/$what.log" >>"$log"
+done
+awk '/^[0-9]+ passed, / { passed += $1; failed += $3; skipped += $5 }
+    END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped }' "$log"
+exit $status
