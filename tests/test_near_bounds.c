@@ -121,8 +121,9 @@ static unsigned judge(const attack *a, const near_limits *limits)
         e[k] = a->faces ? lanes_subtract(x[2][k], x[1][k]) : lanes_subtract(x[1][k], x[0][k]);
         f[k] = a->faces ? lanes_subtract(x[3][k], x[1][k]) : lanes_subtract(x[3][k], x[2][k]);
     }
-    return a->faces ? judge_faces((const lanes *)v, (const lanes *)e, (const lanes *)f, limits)
-                    : judge_edges((const lanes *)v, (const lanes *)e, (const lanes *)f, limits);
+    return a->faces
+               ? judge_faces((const lanes *)v, (const lanes *)e, (const lanes *)f, limits, NULL)
+               : judge_edges((const lanes *)v, (const lanes *)e, (const lanes *)f, limits, NULL);
 }
 
 /* Limits with a part of the bound. */
