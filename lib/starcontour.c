@@ -17,6 +17,7 @@
 #include "build/model.h"
 #include "build/pipeline.h"
 #include "build/saved_model.h"
+#include "near/masks.h"
 #include "near/merging.h"
 #include "near/near_candidates.h"
 #include "near/stencil.h"
@@ -773,6 +774,24 @@ static sc_status find_vertices(const sc_model *model, uint32_t kind, const sc_pa
         for (j = count_a; j < 4; j++)
             if (vertices[i] == vertices[j]) return SC_ERROR_PAIRS;
     return SC_OK;
+}
+
+sc_status sc_near_masks_create(const sc_model *model, uint32_t rings,
+                               const sc_allocator *allocator, sc_near_masks **masks)
+{
+    sc_allocator a;
+    sc_status status;
+    if (!masks) return SC_ERROR_NULL;
+    *masks = NULL;
+    if (!model) return SC_ERROR_NULL;
+    if (!rings || rings > SC_RINGS_MAX) return SC_ERROR_OPTION;
+    status = read_allocator(NULL, allocator, &a);
+    return status ? status : sc_masks_make(model, rings, &a, masks);
+}
+
+void sc_near_masks_free(sc_near_masks *masks)
+{
+    if (masks) masks->allocator.release(masks->allocator.user, masks, masks->bytes);
 }
 
 sc_status sc_near_stencils(const sc_model *model, const sc_pose *pose, uint32_t kind,

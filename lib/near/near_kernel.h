@@ -35,7 +35,8 @@ typedef struct near_side {
     unsigned points, triangles;      /* bits of those that are left */
     uint64_t edges;
     unsigned beyond[SC_LEAF_MAX];    /* of slabs of these triangles: points of the other */
-    uint16_t shared[SC_LEAF_POINTS]; /* which points of the other each point is */
+    uint16_t shared[SC_LEAF_POINTS]; /* which points of the other each point is, or is so near to on
+                                        the mesh that it is not wanted */
 } near_side;
 
 /* The boxes of edges, moved outwards by the margin or not. */
@@ -126,6 +127,18 @@ static inline int leave_of_near(near_side *a, const sc_near_leaf *other)
     a->points = points_left(beyond, 4) & a->leaf->own;
     a->edges = near_edges_left(a->leaf, all_near_edges(a->leaf), beyond, 4);
     return 1;
+}
+
+/* The same by masks of points that are near on the mesh; NULL: none is. */
+static inline void take_near_masks(const sc_leaf_mask *mask, near_side *a, near_side *b)
+{
+    if (mask) {
+        memcpy(a->shared, mask->near[0], sizeof a->shared);
+        memcpy(b->shared, mask->near[1], sizeof b->shared);
+    } else {
+        memset(a->shared, 0, sizeof a->shared);
+        memset(b->shared, 0, sizeof b->shared);
+    }
 }
 
 /* Finds which points of two leaf clusters are the same. */
@@ -319,16 +332,18 @@ static inline uint32_t compare_near_faces(near_search *s, const near_side *p, co
         const uint32_t i = sc_bits_lowest(some);
         unsigned points = p->points;
         lanes_mask near[3];
-        for (k = 0; k < 3; k++) {
+        for (k = 0; k < 3; k++)
             points &= ~(unsigned)f->shared[f->leaf->corner[SC_LEAF_MAX * k + (int)i]];
+        if (slabs) points &= ~(f->beyond[i] | f->beyond[i] >> 16);
+        if (!points) continue;
+        SC_UNROLL
+        for (k = 0; k < 3; k++)
             near[k] = lanes_both(
                 lanes_not_above(lanes_subtract(lanes_all(f->leaf->side[k][i]), margin),
                                 lanes_load(p->leaf->at[k])),
                 lanes_not_above(lanes_load(p->leaf->at[k]),
                                 lanes_add(lanes_all(f->leaf->side[3 + k][i]), margin)));
-        }
         points &= lanes_bits(lanes_both(lanes_both(near[0], near[1]), near[2]));
-        if (slabs) points &= ~(f->beyond[i] | f->beyond[i] >> 16);
         if (!points) continue;
         lanes_bytes_store(list.b + list.count, lanes_bytes_all((uint8_t)i));
         list.count += lanes_list(points, list.a + list.count);
@@ -468,6 +483,11 @@ static inline uint32_t compare_near_edges(near_search *s, int itself, int slabs)
             a->shared[a->leaf->end[0][e]] | (unsigned)a->shared[a->leaf->end[1][e]];
         uint64_t others = slabs ? allowed[e] : b->edges, near = 0;
         if (itself) others &= ~(uint64_t)0 << e << 1;
+        for (i = 0; shared && others >> i; i += SC_LEAF_MAX) {
+            const unsigned apart =
+                lanes_within(lanes_sets_load(b->leaf->ends + i), ~shared & 0xffffu);
+            others &= ~((uint64_t)(~apart & 0xffffu) << i);
+        }
         if (!others) continue;
         rows++;
         for (i = 0; others >> i; i += SC_LEAF_MAX) {
@@ -481,7 +501,6 @@ static inline uint32_t compare_near_edges(near_search *s, int itself, int slabs)
                     lanes_not_above(lanes_all(around.side[k][e]),
                                     lanes_load(boxes.side[3 + k] + i)));
             mask = lanes_bits(lanes_both(lanes_both(apart[0], apart[1]), apart[2]));
-            if (shared) mask &= lanes_within(lanes_sets_load(b->leaf->ends + i), ~shared & 0xffffu);
             near |= (uint64_t)mask << i;
         }
         near &= others;
@@ -528,6 +547,7 @@ static inline int have_room_for_near(const sc_worker *w)
 
 static void decide_near_clusters(sc_worker *w, uint32_t most)
 {
+    const sc_near_masks *masks = w->question->near->options.masks;
     uint32_t *left = &w->lists.count[SC_LIST_CLUSTERS];
     near_search s;
     begin_near_search(&s, w);
@@ -535,14 +555,23 @@ static void decide_near_clusters(sc_worker *w, uint32_t most)
         const sc_cluster_pair p = w->lists.clusters[--*left];
         /* in their order, so that bounds of distances do not depend on who listed them */
         const uint32_t one = p.a < p.b ? p.a : p.b, other = p.a < p.b ? p.b : p.a;
-        const sc_near_leaf *a = near_leaf(w, one), *b = other_near_leaf(w, one, other);
+        const sc_leaf_mask *mask = NULL;
+        const sc_near_leaf *a, *b;
         uint32_t rows = 2;
-        int slabs;
+        int slabs, leaves = 1;
+        if (masks) mask = sc_masks_find(masks, one, other, &leaves);
+        if (!leaves) continue;
+        if (mask) sc_fetch(mask);
+        a = near_leaf(w, one);
+        b = other_near_leaf(w, one, other);
         begin_near_pair(&s, p.known, a, b);
         if (leave_of_near(&s.a, b) && leave_of_near(&s.b, a)) {
             slabs = w->frame->motion.distance < NEAR_SLABS_PAY * (a->extent + b->extent);
             if (!slabs || leave_by_slabs(&s.a, &s.b)) {
-                find_near_shared(&s.a, &s.b);
+                if (masks)
+                    take_near_masks(mask, &s.a, &s.b);
+                else
+                    find_near_shared(&s.a, &s.b);
                 if (s.kinds & SC_NEAR_VERTEX_FACE) {
                     rows += compare_near_faces(&s, &s.a, &s.b, slabs);
                     rows += compare_near_faces(&s, &s.b, &s.a, slabs);
@@ -556,18 +585,26 @@ static void decide_near_clusters(sc_worker *w, uint32_t most)
 
 static void decide_near_alone(sc_worker *w, uint32_t most)
 {
+    const sc_near_masks *masks = w->question->near->options.masks;
     uint32_t *left = &w->lists.count[SC_LIST_NEAR];
     near_search s;
     begin_near_search(&s, w);
     for (; most && *left && have_room_for_near(w); most--) {
         const uint32_t item = w->lists.near[0][--*left];
-        const sc_near_leaf *a = near_leaf(w, item & SC_ITEM);
+        const uint32_t leaf = item & SC_ITEM;
+        const sc_leaf_mask *mask = NULL;
+        const sc_near_leaf *a;
         uint32_t rows = 0, i;
+        int leaves = 1;
+        if (masks) mask = sc_masks_find(masks, leaf, leaf, &leaves);
+        if (!leaves) continue;
+        a = near_leaf(w, leaf);
         begin_near_pair(&s, item, a, a);
         s.a.points = a->own;
         s.a.triangles = a->triangles;
         s.a.edges = all_near_edges(a);
-        for (i = 0; i < SC_LEAF_POINTS; i++) s.a.shared[i] = (uint16_t)(1u << i);
+        for (i = 0; i < SC_LEAF_POINTS; i++)
+            s.a.shared[i] = mask ? mask->near[0][i] : (uint16_t)(1u << i);
         s.b = s.a;
         if (s.kinds & SC_NEAR_VERTEX_FACE) rows += compare_near_faces(&s, &s.a, &s.b, 0);
         if (s.kinds & SC_NEAR_EDGE_EDGE) rows += compare_near_edges(&s, 1, 0);

@@ -6,6 +6,7 @@
 #ifndef SC_NEAR_WORKER_H
 #define SC_NEAR_WORKER_H
 
+#include "near/masks.h"
 #include "step/step_worker.h"
 
 /* Edges that a leaf cluster names at most: the sides of its triangles. */

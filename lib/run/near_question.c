@@ -89,6 +89,10 @@ sc_status sc_near_question_read(const sc_model *model, const sc_workspace *works
         status = sc_arguments_need(hooks, "result", "vertex_faces", result->vertex_faces);
     if (!status && o->output == SC_OUTPUT_PAIRS && result->edge_edge_capacity)
         status = sc_arguments_need(hooks, "result", "edge_edges", result->edge_edges);
+    if (!status && o->masks && !sc_masks_fit(o->masks, model)) {
+        sc_hooks_log(hooks, SC_LOG_ERROR, "options.masks are of another model");
+        status = SC_ERROR_OPTION;
+    }
     if (!status && result->vertex_bounds && o->output == SC_OUTPUT_ANY) {
         sc_hooks_log(hooks, SC_LOG_ERROR, "result.vertex_bounds are not known from any pair");
         status = SC_ERROR_OPTION;

@@ -110,6 +110,7 @@ namespace Starcontour
             public double rest_distance;
             public void* tasks, cancel;
             public ulong budget;
+            public void* masks;
         }
 
         [StructLayout(LayoutKind.Sequential)]

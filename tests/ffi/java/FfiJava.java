@@ -102,7 +102,7 @@ public final class FfiJava {
 
     @Structure.FieldOrder({"struct_size", "output", "kinds", "method", "simd", "reserved", "distance",
         "vertex_face_filter", "edge_edge_filter", "rest", "rest_distance", "tasks", "cancel",
-        "budget"})
+        "budget", "masks"})
     public static class sc_near_options extends Structure {
         public int struct_size = size(), output, kinds, method, simd, reserved;
         public double distance;
@@ -110,6 +110,7 @@ public final class FfiJava {
         public double rest_distance;
         public Pointer tasks, cancel;
         public long budget;
+        public Pointer masks;
         int at(String member) { return fieldOffset(member); }
     }
 

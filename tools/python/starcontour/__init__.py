@@ -14,7 +14,8 @@ guaranteed, and what the options mean. Here they are keywords with the names of 
     method      "default", "sctt", "aabb_sctt" or "aabb": the answer is the same
     rest_cache  True (default) or False: the answer is the same
 
-    ignore_rings      leave out pairs so near to each other on the mesh; 1: that share a vertex
+    ignore_rings      leave out pairs so near to each other on the mesh; 1: that share a vertex. The
+                      model keeps what that is for near, 0.1 s and 4 MB for 65,000 triangles and 4
     ignore            leave out these pairs: an array of shape (k, 2) as a query returns them
     vertex_groups     a category and a mask for each vertex, shape (n, 2), see sc_group
     triangle_groups   the same for each triangle
@@ -581,7 +582,9 @@ def _ask_near(model, scratch, pose, distance, output, answer, bounds=None, *, ki
               ignore_rings=0, ignore=None, vertex_groups=None, triangle_groups=None, rest=None,
               rest_distance=0.0, cancel=None, budget=0, threads=1):
     given, positions = _pose(pose)
-    filters, kept = _feature_filters(model, ignore_rings, ignore, vertex_groups, triangle_groups)
+    masks = model._near_masks(ignore_rings)
+    filters, kept = _feature_filters(model, 0 if masks else ignore_rings, ignore, vertex_groups,
+                                     triangle_groups)
     pose_at_rest, positions_at_rest = (None, None) if rest is None else _pose(rest)
     options = _binding.sc_near_options(
         struct_size=ctypes.sizeof(_binding.sc_near_options),
@@ -595,6 +598,7 @@ def _ask_near(model, scratch, pose, distance, output, answer, bounds=None, *, ki
         rest_distance=_length("rest_distance", rest_distance),
         cancel=_cancel(cancel),
         budget=_whole("budget", budget, 64),
+        masks=masks,
     )
     result = _binding.sc_near_result(
         struct_size=ctypes.sizeof(_binding.sc_near_result),
@@ -774,6 +778,7 @@ class Model(_Queries):
     def _adopt(self, handle):
         self._owned = _Owned(handle, lib.sc_model_free)
         self._local = threading.local()
+        self._masks, self._masks_lock = {}, threading.Lock()
 
     @property
     def _handle(self):
@@ -789,7 +794,7 @@ class Model(_Queries):
 
     def close(self):
         """Gives back its memory, once queries of other threads that are under way have ended; another
-        query raises a ValueError."""
+        self._owned, self._masks = None, {}
         self._owned = None
         self._local = threading.local()
 
@@ -877,6 +882,17 @@ class Model(_Queries):
         is vector, from a to b, and distance. See sc_near_stencil.
         """
         return _stencils(self, pose, found, kind)
+
+    def _near_masks(self, rings):
+        """What is within so many rings, made once; None where a filter does as well."""
+        if not 1 < _whole("ignore_rings", rings, 32) <= _binding.SC_RINGS_MAX:
+            return None
+        with self._masks_lock:
+            if rings not in self._masks:
+                handle = ctypes.c_void_p()
+                _check(lib.sc_near_masks_create(self._handle, rings, None, ctypes.byref(handle)))
+                self._masks[rings] = _Owned(handle, lib.sc_near_masks_free)
+            return self._masks[rings]
 
     def _asked(self):
         """This thread's workspace."""

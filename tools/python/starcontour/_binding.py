@@ -44,6 +44,7 @@ SC_METHOD_DEFAULT, SC_METHOD_SCTT, SC_METHOD_AABB_SCTT, SC_METHOD_AABB = 0, 1, 2
 SC_REST_CACHE_ON, SC_REST_CACHE_OFF = 0, 1
 SC_WORKSPACE_STEP, SC_WORKSPACE_NEAR = 1, 2
 SC_WORKERS_MAX = 256
+SC_RINGS_MAX = 32
 SC_STEP_METHOD_DEFAULT, SC_STEP_METHOD_SCTT, SC_STEP_METHOD_TWO_BOXES, SC_STEP_METHOD_SWEPT = 0, 1, 2, 3
 SC_STEP_COLLISIONS, SC_STEP_CANDIDATES = 0, 1
 SC_STEP_TIMES_NONE, SC_STEP_TIMES_EARLIEST, SC_STEP_TIMES_EACH = 0, 1, 2
@@ -267,6 +268,7 @@ class sc_near_options(ctypes.Structure):
         ("tasks", c_void_p),
         ("cancel", c_void_p),
         ("budget", c_uint64),
+        ("masks", c_void_p),
     ]
 
 
@@ -339,5 +341,7 @@ _declare("sc_query_step", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER
          POINTER(sc_step_options), POINTER(sc_step_result))
 _declare("sc_query_near", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_near_options),
          POINTER(sc_near_result))
+_declare("sc_near_masks_create", _status, c_void_p, c_uint32, c_void_p, POINTER(c_void_p))
+_declare("sc_near_masks_free", None, c_void_p)
 _declare("sc_near_stencils", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
 _declare("sc_near_merge", _status, c_void_p, c_uint64, POINTER(c_uint64), c_void_p)

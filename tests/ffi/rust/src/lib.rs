@@ -327,6 +327,7 @@ impl Workspace<'_> {
             tasks: ptr::null(),
             cancel: ptr::null(),
             budget: 0,
+            masks: ptr::null(),
         };
         loop {
             let [faces, edges] = &mut self.features;

@@ -131,6 +131,7 @@ pub struct sc_near_options {
     pub tasks: *const c_void,
     pub cancel: *const u32,
     pub budget: u64,
+    pub masks: *const c_void,
 }
 
 #[repr(C)]
@@ -228,7 +229,8 @@ pub fn layouts() -> Vec<Layout> {
             vertex_face_capacity vertex_faces vertex_face_times edge_edge_count
             edge_edge_capacity edge_edges edge_edge_times earliest stats),
         layout!(sc_near_options: struct_size output kinds method simd reserved distance
-            vertex_face_filter edge_edge_filter rest rest_distance tasks cancel budget),
+            vertex_face_filter edge_edge_filter rest rest_distance tasks cancel budget
+            masks),
         layout!(sc_near_result: struct_size found verdict reserved vertex_face_count
             vertex_face_capacity vertex_faces edge_edge_count edge_edge_capacity edge_edges stats
             vertex_bounds),
