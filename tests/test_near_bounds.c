@@ -111,7 +111,7 @@ static attack draw_attack(int faces, int way)
     return a;
 }
 
-static unsigned judge(const attack *a, const near_limits *limits)
+static unsigned judge(const attack *a, const near_limits *limits, near_measured *measured)
 {
     lanes v[3], e[3], f[3], x[4][3];
     for (int i = 0; i < 4; ++i)
@@ -122,8 +122,9 @@ static unsigned judge(const attack *a, const near_limits *limits)
         f[k] = a->faces ? lanes_subtract(x[3][k], x[1][k]) : lanes_subtract(x[3][k], x[2][k]);
     }
     return a->faces
-               ? judge_faces((const lanes *)v, (const lanes *)e, (const lanes *)f, limits, NULL)
-               : judge_edges((const lanes *)v, (const lanes *)e, (const lanes *)f, limits, NULL);
+               ? judge_faces((const lanes *)v, (const lanes *)e, (const lanes *)f, limits, measured)
+               : judge_edges((const lanes *)v, (const lanes *)e, (const lanes *)f, limits,
+                             measured);
 }
 
 /* Limits with a part of the bound. */
@@ -131,6 +132,7 @@ static near_limits limits_with(double distance, double size, double part)
 {
     const double error = part * sc_bounds_near(distance, size);
     near_limits limits;
+    limits.error = error;
     limits.near = lanes_all((float)(fmax(distance - error, 0) * fmax(distance - error, 0)));
     limits.far = lanes_all((float)((distance + error) * (distance + error)));
     return limits;
@@ -149,14 +151,14 @@ static void attack_limits(int faces, int way)
         const double d = a.distance * (1 - way * 1e-12);
         near_limits limits = near_limits_for(d, a.size);
         if (!(a.distance > 0)) continue;
-        CHECK_MSG(!(judge(&a, &limits) & mistake),
+        CHECK_MSG(!(judge(&a, &limits, NULL) & mistake),
                   "taken for %s: distance %a, size %g, state %" PRIu64, way > 0 ? "near" : "far", d,
                   a.size, state);
         limits = limits_with(d, a.size, 0.5);
-        wrong_by_half += (judge(&a, &limits) & mistake) != 0;
+        wrong_by_half += (judge(&a, &limits, NULL) & mistake) != 0;
         /* and what is a thousandth off is told */
         limits = near_limits_for(a.distance * (1 + way * 1e-3), a.size);
-        sure += a.distance > 1e-3 && (judge(&a, &limits) & mistake) != 0;
+        sure += a.distance > 1e-3 && (judge(&a, &limits, NULL) & mistake) != 0;
     }
     test_note("%" PRIu64 " of %" PRIu32 " with half of the bound; %" PRIu64 " told by it",
               wrong_by_half, count, sure);
@@ -183,4 +185,41 @@ static void far_edges(void)
     attack_limits(0, -1);
 }
 
-SC_TEST_MAIN(SC_TEST(near_faces), SC_TEST(far_faces), SC_TEST(near_edges), SC_TEST(far_edges))
+/* Bounds of distances, of pairs that are nearer in truth than their points are: none is above the
+   distance, but some with half of the error. */
+static void attack_bounds(int faces)
+{
+    const uint32_t count = test_iterations_at_least(300000, 60000);
+    uint64_t wrong_by_half = 0, told = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint64_t state = test_random_state();
+        const attack a = draw_attack(faces, -1);
+        const double d = a.distance * test_random_range(1, 1.2);
+        near_limits limits = near_limits_for(d, a.size);
+        near_measured measured;
+        double bound;
+        (void)judge(&a, &limits, &measured);
+        bound = near_bound(&measured, i % SC_LANES_COUNT, &limits);
+        CHECK_MSG(bound <= a.distance, "bound %a of distance %a, size %g, state %" PRIu64, bound,
+                  a.distance, a.size, state);
+        told += bound > a.distance - 5 * limits.error;
+        limits.error /= 2;
+        wrong_by_half += near_bound(&measured, 0, &limits) > a.distance;
+    }
+    test_note("%" PRIu64 " of %" PRIu32 " with half of the error; %" PRIu64 " told by it",
+              wrong_by_half, count, told);
+    CHECK(wrong_by_half > 10 && told > count / 10);
+}
+
+static void bounds_of_faces(void)
+{
+    attack_bounds(1);
+}
+
+static void bounds_of_edges(void)
+{
+    attack_bounds(0);
+}
+
+SC_TEST_MAIN(SC_TEST(bounds_of_faces), SC_TEST(bounds_of_edges), SC_TEST(near_faces),
+             SC_TEST(far_faces), SC_TEST(near_edges), SC_TEST(far_edges))
