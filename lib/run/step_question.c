@@ -30,6 +30,8 @@ static sc_status check_step_choices(const sc_hooks *hooks, const sc_step_options
         {"contour", o->contour, SC_CONTOUR_EXACT},
         {"simd", o->simd, SC_SIMD_AVX512},
         {"reserved", o->reserved, 0},
+        {"begun", o->begun, SC_STEP_BEGUN_NEARER},
+        {"reserved2", o->reserved2, 0},
     };
     sc_status status =
         sc_arguments_choose(hooks, "options", choices, sizeof choices / sizeof *choices);

@@ -45,10 +45,12 @@
  */
 #include "step/impact.h"
 
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 
 #include "base/assume.h"
+#include "step/within.h"
 
 enum {
     MAXIMUM_CORNERS = 4,
@@ -61,6 +63,9 @@ enum {
 #define LARGE 0x1p100
 #define SMALL 0x1p-100
 
+/* Pairs that have to be multiplied by more than this are too small for tolerances in doubles. */
+#define TINY_SCALE 0x1p900
+
 /* The least square of a vector's length that is relied upon. */
 #define LEAST_SQUARE 0x1p-500
 
@@ -68,8 +73,9 @@ enum {
 typedef struct motion {
     double start[MAXIMUM_CORNERS][3], end[MAXIMUM_CORNERS][3];
     double separation, tolerance;
-    double level; /* proved to be apart */
-    double reach; /* reported */
+    double level;         /* proved to be apart */
+    double reach;         /* reported */
+    double before, after; /* lengths here are those of the caller times both: powers of two */
 } motion;
 
 /* The polygon at a time, and its direction from the origin, if they are more than reach apart. */
@@ -529,6 +535,8 @@ static inline int read_motion(int count, const double start[4][3], const double 
         after = ldexp(1, exponent < -1000 ? 1000 : -exponent);
         size = write_corners(count, start, end, before, after, m);
     }
+    m->before = before;
+    m->after = after;
     m->separation = limits->separation * before * after;
     m->tolerance = limits->tolerance * before * after;
     if (m->separation > 2 * size) return 0;
@@ -558,6 +566,37 @@ int sc_impact_edge_edge(const double start[4][3], const double end[4][3],
     *time = 1;
     return !is_apart_on_an_axis(4, &m) && !is_apart_from_mean(4, &m) &&
            search(4, &m, limits->latest, time);
+}
+
+/*
+ * D, the distance at the start, is first that of the nearest point found. This is of the polygon,
+ * so D is not below the distance by more than T / 16 (see "Thresholds"). But it may be far above it
+ * where the polygon is almost without width. So halving by exact comparisons takes it down until
+ * what is less by 9 T / 16 is proved to be less than the distance: T is at least 2^-32 of the size,
+ * so about 35 of them are enough; nearly always one is.
+ */
+double sc_impact_nearer(int is_edges, const double start[4][3], const double end[4][3],
+                        const sc_impact_limits *limits)
+{
+    const int count = is_edges ? 4 : 3;
+    sc_impact_limits touching = *limits;
+    double nearest[3] = {0, 0, 0}, direction[3], low = 0, high, next;
+    motion m;
+    touching.separation = 0;
+    if (!read_motion(count, start, end, &touching, &m) || m.after > TINY_SCALE) return 0;
+    high = sqrt(find_nearest(count, m.start, nearest, direction));
+    next = high - 0.5 * m.tolerance;
+    while (high > 2 * m.tolerance && high - low > 0.5625 * m.tolerance) {
+        double length = next / m.after / m.before;
+        if (length <= DBL_MAX &&
+            (is_edges ? sc_within_edge_edge(start, length) : sc_within_vertex_face(start, length)))
+            high = next;
+        else
+            low = next;
+        next = 0.5 * (low + high);
+    }
+    high = (high - 2 * m.tolerance) / m.after / m.before;
+    return !(high > 0) ? 0 : high < limits->separation ? high : limits->separation;
 }
 
 double sc_impact_thickness(const sc_impact_limits *limits, double extent)

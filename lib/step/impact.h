@@ -55,6 +55,15 @@ int sc_impact_edge_edge(const double start[4][3], const double end[4][3],
                         const sc_impact_limits *limits, double *time);
 
 /*
+ * The separation with which a pair is asked whether it comes nearer than it began: D - 2 T, but at
+ * least 0 and at most the separation. D is the distance at the start, known to within - T / 16 and
+ * 9 T / 16. So what is answered 1 with it, where it is above 0, comes nearer by T / 4 at least. 0
+ * for pairs smaller than 2^-900.
+ */
+double sc_impact_nearer(int is_edges, const double start[4][3], const double end[4][3],
+                        const sc_impact_limits *limits);
+
+/*
  * A distance, rounded up, such that no pair that stays farther apart is answered 1. extent: the
  * largest difference of two coordinates on one axis, over all points that take part, at start and
  * end; it may be infinite, if the subtraction overflows.

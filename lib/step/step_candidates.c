@@ -23,6 +23,13 @@ sc_pair sc_step_candidates_name(const sc_model *model, int kind, const sc_pair *
     return name;
 }
 
+static int collides(int kind, const double from[4][3], const double to[4][3],
+                    const sc_impact_limits *limits, double *time)
+{
+    return kind == SC_STEP_VERTEX_FACE ? sc_impact_vertex_face(from, to, limits, time)
+                                       : sc_impact_edge_edge(from, to, limits, time);
+}
+
 /* Decides a pair, or takes it, if candidates are wanted. */
 static void take_moving(sc_worker *w, int kind, sc_pair pair)
 {
@@ -47,10 +54,15 @@ static void take_moving(sc_worker *w, int kind, sc_pair pair)
             sc_positions_get(&positions[0], point[k ^ first], start[k]);
             sc_positions_get(&positions[1], point[k ^ first], end[k]);
         }
-        if (!(kind == SC_STEP_VERTEX_FACE
-                  ? sc_impact_vertex_face(from, to, &question->limits, &time)
-                  : sc_impact_edge_edge(from, to, &question->limits, &time)))
-            return;
+        if (!collides(kind, from, to, &question->limits, &time)) return;
+        if (question->options.begun == SC_STEP_BEGUN_NEARER) {
+            sc_impact_limits own = question->limits;
+            own.separation =
+                sc_impact_nearer(kind == SC_STEP_EDGE_EDGE, from, to, &question->limits);
+            if (own.separation < question->limits.separation &&
+                !collides(kind, from, to, &own, &time))
+                return;
+        }
     }
     if (question->filters.asks[kind] && !sc_step_filter_accepts(w, kind, name)) return;
     sc_step_pairs_take(w, kind, name.a, name.b, time);
