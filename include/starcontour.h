@@ -1285,6 +1285,51 @@ SC_API sc_status sc_query_batch(const sc_model *model, sc_workspace *const *work
                                 const sc_query_options *options, sc_result *results,
                                 sc_status *statuses);
 
+/* Sums. */
+enum {
+    SC_STEP_APPROACHES = 1, /* at the start the two come nearer, or touch */
+    SC_STEP_NO_NORMAL = 2   /* they touch, and nothing tells from which side; normal is 0 */
+};
+
+/*
+ * A pair of a step at two times.
+ *
+ * normal is a unit vector from the point of a to that of b at the time; where they touch then, that
+ * of the start; and where they touch at both times, of vertex and face the face's normal at the
+ * start, of edges the cross product of the two, away from the side on which a began.
+ */
+typedef struct sc_step_stencil {
+    sc_near_stencil start;  /* the closest points at the start of the step */
+    sc_near_stencil impact; /* and at the time */
+    double time;
+    double normal[3];
+    int32_t side;   /* 1: the vertex began where the corners of the face are seen counter-clockwise, -1:
+                       where clockwise, 0: in its plane. Of edges the sign of (b0 - a0) . ((a1 - a0) x
+                       (b1 - b0)) at the start. Exact */
+    uint32_t flags; /* SC_STEP_APPROACHES, SC_STEP_NO_NORMAL */
+} sc_step_stencil;
+
+/*
+ * Finds the closest points of pairs of a step, at its start and at a time of each: stencils[i] is
+ * that of pairs[i] at times[i], such as sc_query_step found:
+ *
+ *     sc_step_stencils(model, &start, &end, SC_NEAR_VERTEX_FACE, result.vertex_faces,
+ *                      result.vertex_face_times, result.vertex_face_count, stencils);
+ *
+ * times are from 0 to 1; NULL: all are 0, and both stencils the same. A coordinate at a time t is
+ * (1 - t) start + t end, in doubles: two products and a sum, each rounded, the start itself at 0 and
+ * the end at 1. For these coordinates stencils are what sc_near_stencil promises. Whether two approach
+ * is told by the sum of weights times motions along the vector between the closest points, in
+ * doubles: within rounding of 0 it may be either, and where other points are as near, as between
+ * parallel edges, nothing is said of those.
+ *
+ * Errors, memory and threads are as for sc_near_stencils; SC_ERROR_OPTION: a time is NaN or not from
+ * 0 to 1. Twice the cost of that.
+ */
+SC_API sc_status sc_step_stencils(const sc_model *model, const sc_pose *start, const sc_pose *end,
+                                  uint32_t kind, const sc_pair *pairs, const double *times,
+                                  uint64_t count, sc_step_stencil *stencils);
+
 /* ------------------------------------------------------------------------------------------------
  * Several objects
  *

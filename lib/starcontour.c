@@ -20,6 +20,7 @@
 #include "near/masks.h"
 #include "near/merging.h"
 #include "near/near_candidates.h"
+#include "near/step_stencil.h"
 #include "near/stencil.h"
 #include "pose/positions.h"
 #include "query/contacts.h"
@@ -776,8 +777,8 @@ static sc_status find_vertices(const sc_model *model, uint32_t kind, const sc_pa
     return SC_OK;
 }
 
-sc_status sc_near_masks_create(const sc_model *model, uint32_t rings,
-                               const sc_allocator *allocator, sc_near_masks **masks)
+sc_status sc_near_masks_create(const sc_model *model, uint32_t rings, const sc_allocator *allocator,
+                               sc_near_masks **masks)
 {
     sc_allocator a;
     sc_status status;
@@ -809,6 +810,32 @@ sc_status sc_near_stencils(const sc_model *model, const sc_pose *pose, uint32_t 
         status = find_vertices(model, kind, &pairs[i], stencils[i].vertices);
         if (!status) status = read_vertices(&p, stride, stencils[i].vertices, at);
         if (!status) sc_stencil_find(kind, points, &stencils[i]);
+    }
+    return status;
+}
+
+sc_status sc_step_stencils(const sc_model *model, const sc_pose *start, const sc_pose *end,
+                           uint32_t kind, const sc_pair *pairs, const double *times, uint64_t count,
+                           sc_step_stencil *stencils)
+{
+    sc_pose poses[2];
+    sc_status status;
+    uint64_t stride[2], i;
+    if (!model || !start || !end || (count && (!pairs || !stencils))) return SC_ERROR_NULL;
+    if (kind != SC_NEAR_VERTEX_FACE && kind != SC_NEAR_EDGE_EDGE) return SC_ERROR_OPTION;
+    status = sc_question_read_pose(NULL, "start", model, start, &poses[0], &stride[0]);
+    if (!status) status = sc_question_read_pose(NULL, "end", model, end, &poses[1], &stride[1]);
+    for (i = 0; !status && i < count; i++) {
+        sc_step_stencil *s = &stencils[i];
+        double at[2][4][3];
+        s->time = times ? times[i] : 0;
+        if (!(s->time >= 0 && s->time <= 1)) return SC_ERROR_OPTION;
+        status = find_vertices(model, kind, &pairs[i], s->start.vertices);
+        if (!status) status = read_vertices(&poses[0], stride[0], s->start.vertices, at[0]);
+        if (!status) status = read_vertices(&poses[1], stride[1], s->start.vertices, at[1]);
+        if (status) return status;
+        memcpy(s->impact.vertices, s->start.vertices, sizeof s->start.vertices);
+        sc_step_stencil_find(kind, (const double(*)[3])at[0], (const double(*)[3])at[1], s);
     }
     return status;
 }

@@ -85,6 +85,7 @@ namespace Starcontour
             public ulong budget;
             public void* vertex_face_filter, edge_edge_filter, rest;
             public double rest_distance;
+            public uint begun, reserved2;
         }
 
         [StructLayout(LayoutKind.Sequential)]

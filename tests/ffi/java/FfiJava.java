@@ -75,7 +75,7 @@ public final class FfiJava {
 
     @Structure.FieldOrder({"struct_size", "output", "pairs", "times", "method", "contour", "simd",
         "reserved", "separation", "tolerance", "tasks", "cancel", "budget", "vertex_face_filter",
-        "edge_edge_filter", "rest", "rest_distance"})
+        "edge_edge_filter", "rest", "rest_distance", "begun", "reserved2"})
     public static class sc_step_options extends Structure {
         public int struct_size = size(), output, pairs, times, method, contour, simd, reserved;
         public double separation, tolerance;
@@ -83,6 +83,7 @@ public final class FfiJava {
         public long budget;
         public Pointer vertex_face_filter, edge_edge_filter, rest;
         public double rest_distance;
+        public int begun, reserved2;
         int at(String member) { return fieldOffset(member); }
     }
 

@@ -92,7 +92,7 @@ for structure in _binding.structures:
                 for f, _ in structure._fields_]
     check(f"{name} is laid out as in the header",
           mirrored == layout["member"][name] and ctypes.sizeof(structure) == layout["struct"][name])
-for name in ("sc_contact", "sc_near_stencil"):
+for name in ("sc_contact", "sc_near_stencil", "sc_step_stencil"):
     dtype = np.dtype(getattr(_binding, name))
     check(f"{name} is laid out as in the header", dtype.itemsize == layout["struct"][name] and [
         (member, dtype.fields[member][1], dtype.fields[member][0].itemsize) for member in dtype.names
@@ -362,6 +362,12 @@ check("no stencils", refused(TypeError, lambda: starcontour.merge_stencils(moved
 
 # What is near, but not what is not wanted.
 check("all that is known", model.near_counts(moved, 0.09, ignore=wide) == (0, 0))
+hits = model.step_stencils(rest, moved, fall.vertex_faces, fall.vertex_face_times, kind="vertex_face")
+check("pairs of a step", len(hits) and np.array_equal(hits["time"], fall.vertex_face_times) and np.array_equal(
+    hits["start"], model.stencils(rest, fall.vertex_faces, kind="vertex_face")))
+check("normals", np.allclose(np.linalg.norm(hits["normal"], axis=1), 1) and np.all(abs(hits["side"]) == 1))
+check("what comes no nearer", model.step(moved, moved, separation=0.09).earliest == 0 and not len(
+    model.step(np.asarray(moved) + 0, np.asarray(moved) + 1, separation=0.05, only_nearer=True).edge_edges))
 check("what is known of a step", model.near_counts(moved, 0.09, ignore=fall) != (0, 0) and model.near_counts(
     moved, 0.09, ignore=(wide.vertex_faces[1:], wide.edge_edges)) == (1, 0))
 at_rest = [model.stencils(rest, pairs, kind=kind)["distance"] for pairs, kind in zip(

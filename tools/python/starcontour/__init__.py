@@ -28,6 +28,8 @@ Steps take cancel and budget, too, and
     tolerance   how exactly distances are told, the same units; 0 (default): a millionth of the size
     method      "default", "sctt", "two_boxes" or "swept": the answer is the same
     candidates  True: what boxes and culling leave, in place of collisions; without times
+    only_nearer  True: of pairs that begin within the separation only those that come nearer than they
+                began, by more than two tolerances, or touch
 
 What is near takes cancel and budget, too, and
 
@@ -505,9 +507,9 @@ def _step_collides(model, scratch, start, end, **options):
 
 
 def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tolerance=0.0,
-              method="default", candidates=False, ignore_rings=0, ignore=None, vertex_groups=None,
-              triangle_groups=None, rest=None, rest_distance=0.0, cancel=None, budget=0,
-              threads=1):
+              method="default", candidates=False, only_nearer=False, ignore_rings=0, ignore=None,
+              vertex_groups=None, triangle_groups=None, rest=None, rest_distance=0.0, cancel=None,
+              budget=0, threads=1):
     (given, positions), (goal, positions_then) = _pose(start), _pose(end)
     filters, kept = _feature_filters(model, ignore_rings, ignore, vertex_groups, triangle_groups)
     pose_at_rest, positions_at_rest = (None, None) if rest is None else _pose(rest)
@@ -526,6 +528,7 @@ def _ask_step(model, scratch, start, end, output, answer, *, separation=0.0, tol
         edge_edge_filter=ctypes.addressof(filters[1]),
         rest=None if rest is None else ctypes.addressof(pose_at_rest),
         rest_distance=_length("rest_distance", rest_distance),
+        begun=_binding.SC_STEP_BEGUN_NEARER if only_nearer else _binding.SC_STEP_BEGUN_ALL,
     )
     result = _binding.sc_step_result(struct_size=ctypes.sizeof(_binding.sc_step_result))
     if not scratch.lock.acquire(blocking=False):
@@ -632,6 +635,21 @@ def _stencils(model, pose, found, kind):
     given, positions = _pose(pose)
     kind = _choice("kind", kind, {name: _NEAR_KINDS[name] for name in ("vertex_face", "edge_edge")})
     _check(lib.sc_near_stencils(model._handle, ctypes.byref(given), kind, address, len(found),
+                                stencils.ctypes.data))
+    return stencils
+
+
+def _step_stencils(model, start, end, found, times, kind):
+    found, address = _table(found, None, "found")
+    stencils = np.zeros(len(found), _binding.sc_step_stencil)
+    if times is not None:
+        times = np.ascontiguousarray(times, np.float64)
+        if times.shape != (len(found),):
+            raise ValueError(f"times must have the shape ({len(found)},), not {times.shape}")
+    (given, positions), (goal, positions_then) = _pose(start), _pose(end)
+    kind = _choice("kind", kind, {name: _NEAR_KINDS[name] for name in ("vertex_face", "edge_edge")})
+    _check(lib.sc_step_stencils(model._handle, ctypes.byref(given), ctypes.byref(goal), kind, address,
+                                None if times is None else times.ctypes.data, len(found),
                                 stencils.ctypes.data))
     return stencils
 
@@ -882,6 +900,15 @@ class Model(_Queries):
         is vector, from a to b, and distance. See sc_near_stencil.
         """
         return _stencils(self, pose, found, kind)
+
+    def step_stencils(self, start, end, found, times=None, *, kind):
+        """The closest points of pairs of a step, at its start and at a time of each: a structured
+        array, an entry for each.
+
+        Fields: start and impact, each as stencils has them; time; normal, a unit vector from a to b;
+        side on which the vertex began; flags (1: the two approach at the start). See sc_step_stencil.
+        """
+        return _step_stencils(self, start, end, found, times, kind)
 
     def _near_masks(self, rings):
         """What is within so many rings, made once; None where a filter does as well."""

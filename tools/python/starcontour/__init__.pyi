@@ -127,6 +127,7 @@ class _Queries:
         tolerance: float = 0.0,
         method: Literal["default", "sctt", "two_boxes", "swept"] = "default",
         candidates: bool = False,
+        only_nearer: bool = False,
         ignore_rings: int = 0,
         ignore: Union[Step, Near, Sequence[npt.ArrayLike], None] = None,
         vertex_groups: Optional[npt.ArrayLike] = None,
@@ -146,6 +147,7 @@ class _Queries:
         tolerance: float = 0.0,
         method: Literal["default", "sctt", "two_boxes", "swept"] = "default",
         candidates: bool = False,
+        only_nearer: bool = False,
         ignore_rings: int = 0,
         ignore: Union[Step, Near, Sequence[npt.ArrayLike], None] = None,
         vertex_groups: Optional[npt.ArrayLike] = None,
@@ -247,6 +249,15 @@ class Model(_Queries):
         self,
         pose: npt.ArrayLike,
         found: npt.ArrayLike,
+        *,
+        kind: Literal["vertex_face", "edge_edge"],
+    ) -> _Structured: ...
+    def step_stencils(
+        self,
+        start: npt.ArrayLike,
+        end: npt.ArrayLike,
+        found: npt.ArrayLike,
+        times: Optional[npt.ArrayLike] = None,
         *,
         kind: Literal["vertex_face", "edge_edge"],
     ) -> _Structured: ...

@@ -52,6 +52,7 @@ SC_NEAR_BOTH, SC_NEAR_VERTEX_FACE, SC_NEAR_EDGE_EDGE = 0, 1, 2
 SC_NEAR_METHOD_DEFAULT, SC_NEAR_METHOD_SCTT, SC_NEAR_METHOD_BOXES = 0, 1, 2
 SC_FEATURE_VERTEX_VERTEX, SC_FEATURE_VERTEX_EDGE, SC_FEATURE_EDGE_EDGE, SC_FEATURE_VERTEX_FACE = 1, 2, 3, 4
 SC_STENCIL_PARALLEL = 1
+SC_STEP_BEGUN_ALL, SC_STEP_BEGUN_NEARER = 0, 1
 
 
 # The type of the member log of sc_hooks.
@@ -230,6 +231,8 @@ class sc_step_options(ctypes.Structure):
         ("edge_edge_filter", c_void_p),
         ("rest", c_void_p),
         ("rest_distance", c_double),
+        ("begun", c_uint32),
+        ("reserved2", c_uint32),
     ]
 
 
@@ -307,6 +310,15 @@ sc_near_stencil = [
     ("distance", "f8"),
 ]
 
+sc_step_stencil = [
+    ("start", sc_near_stencil),
+    ("impact", sc_near_stencil),
+    ("time", "f8"),
+    ("normal", "f8", 3),
+    ("side", "i4"),
+    ("flags", "u4"),
+]
+
 structures = (sc_hooks, sc_tasks, sc_near_options, sc_near_result, sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info,
               sc_query_options, sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result)
 
@@ -344,4 +356,6 @@ _declare("sc_query_near", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER
 _declare("sc_near_masks_create", _status, c_void_p, c_uint32, c_void_p, POINTER(c_void_p))
 _declare("sc_near_masks_free", None, c_void_p)
 _declare("sc_near_stencils", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
+_declare("sc_step_stencils", _status, c_void_p, POINTER(sc_pose), POINTER(sc_pose), c_uint32, c_void_p,
+         c_void_p, c_uint64, c_void_p)
 _declare("sc_near_merge", _status, c_void_p, c_uint64, POINTER(c_uint64), c_void_p)

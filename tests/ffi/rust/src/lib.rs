@@ -266,6 +266,8 @@ impl Workspace<'_> {
             edge_edge_filter: ptr::null(),
             rest: ptr::null(),
             rest_distance: 0.0,
+            begun: 0,
+            reserved2: 0,
         };
         loop {
             let [faces, edges] = &mut self.features;

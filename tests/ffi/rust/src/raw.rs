@@ -95,6 +95,8 @@ pub struct sc_step_options {
     pub edge_edge_filter: *const c_void,
     pub rest: *const sc_pose,
     pub rest_distance: f64,
+    pub begun: u32,
+    pub reserved2: u32,
 }
 
 #[repr(C)]
@@ -224,7 +226,7 @@ pub fn layouts() -> Vec<Layout> {
         layout!(sc_workspace_options: struct_size flags workers reserved allocator),
         layout!(sc_step_options: struct_size output pairs times method contour simd reserved
             separation tolerance tasks cancel budget vertex_face_filter edge_edge_filter rest
-            rest_distance),
+            rest_distance begun reserved2),
         layout!(sc_step_result: struct_size collides verdict reserved vertex_face_count
             vertex_face_capacity vertex_faces vertex_face_times edge_edge_count
             edge_edge_capacity edge_edges edge_edge_times earliest stats),
