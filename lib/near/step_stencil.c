@@ -69,7 +69,7 @@ static int find_normal_by_side(uint32_t kind, const double at[4][3], int side, d
 }
 
 /* Positive where p is on the side of a, b, c from which they are seen counter-clockwise. */
-static int side_of(const double a[3], const double b[3], const double c[3], const double p[3])
+static int seen_from(const double a[3], const double b[3], const double c[3], const double p[3])
 {
     uint64_t fallbacks = 0;
     return sc_predicates_orient3d(a, b, c, p, &fallbacks);
@@ -77,9 +77,9 @@ static int side_of(const double a[3], const double b[3], const double c[3], cons
 
 static int find_side(uint32_t kind, const double at[4][3])
 {
-    if (kind == SC_NEAR_VERTEX_FACE) return side_of(at[1], at[2], at[3], at[0]);
+    if (kind == SC_NEAR_VERTEX_FACE) return seen_from(at[1], at[2], at[3], at[0]);
     /* for e, f along the edges and d from a0 to b0: (e x d) . (d + f) = -d . (e x f) */
-    return -side_of(at[0], at[1], at[2], at[3]);
+    return -seen_from(at[0], at[1], at[2], at[3]);
 }
 
 static int approaches(const sc_near_stencil *s, const double start[4][3], const double end[4][3])

@@ -812,8 +812,8 @@ class Model(_Queries):
 
     def close(self):
         """Gives back its memory, once queries of other threads that are under way have ended; another
+        query raises a ValueError."""
         self._owned, self._masks = None, {}
-        self._owned = None
         self._local = threading.local()
 
     @classmethod
