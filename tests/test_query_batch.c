@@ -102,7 +102,7 @@ static void each_is_a_query(void)
             sc_query_options o = no_options();
             sc_status status;
             host h;
-            if (workers == WORKERS) b.positions[7][100] = NAN;
+            if (workers == WORKERS) b.positions[7][100] = (double)NAN;
             make_room(&b);
             host_start(&h, way, workers);
             if (workers > 1) o.tasks = &h.tasks;

@@ -227,10 +227,10 @@ static void wrong_arguments(void)
     CHECK(sc_step_stencils(p.model, from, to, 1, &p.faces, &time, 1, &s) == SC_ERROR_OPTION);
     time = -DBL_MIN;
     CHECK(sc_step_stencils(p.model, from, to, 1, &p.faces, &time, 1, &s) == SC_ERROR_OPTION);
-    time = NAN;
+    time = (double)NAN;
     CHECK(sc_step_stencils(p.model, from, to, 1, &p.faces, &time, 1, &s) == SC_ERROR_OPTION);
     time = 0.5;
-    p.ends[1][3][0] = NAN;
+    p.ends[1][3][0] = (double)NAN;
     CHECK(sc_step_stencils(p.model, from, to, 1, &p.faces, &time, 1, &s) == SC_ERROR_NOT_FINITE);
     p.poses[1].vertex_count = 5;
     CHECK(sc_step_stencils(p.model, from, to, 1, &p.faces, &time, 1, &s) == SC_ERROR_VERTEX_COUNT);

@@ -239,7 +239,7 @@ static void other_results(void)
     CHECK(ask(&s, s.workspace, &o, bounds) == SC_ERROR_OPTION);
     for (uint32_t v = 0; v < mesh.vertex_count; ++v) CHECK(bounds[v] == -1);
     o.output = SC_OUTPUT_COUNT;
-    posed[4] = NAN;
+    posed[4] = (double)NAN;
     CHECK(ask(&s, s.workspace, &o, bounds) == SC_ERROR_NOT_FINITE);
     for (uint32_t v = 0; v < mesh.vertex_count; ++v) CHECK(bounds[v] == -1);
     posed[4] = 0;

@@ -604,7 +604,7 @@ static void decide_near_alone(sc_worker *w, uint32_t most)
         s.a.triangles = a->triangles;
         s.a.edges = all_near_edges(a);
         for (i = 0; i < SC_LEAF_POINTS; i++)
-            s.a.shared[i] = mask ? mask->near[0][i] : (uint16_t)(1u << i);
+            s.a.shared[i] = (uint16_t)(mask ? mask->near[0][i] : 1u << i);
         s.b = s.a;
         if (s.kinds & SC_NEAR_VERTEX_FACE) rows += compare_near_faces(&s, &s.a, &s.b, 0);
         if (s.kinds & SC_NEAR_EDGE_EDGE) rows += compare_near_edges(&s, 1, 0);

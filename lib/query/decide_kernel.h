@@ -60,6 +60,14 @@ static SC_NOINLINE void read_floats(const sc_pair_lanes *pairs, int s, doubles a
     read_points(pairs, s, 1, at);
 }
 
+static SC_INLINE void read_triangles(const sc_pair_lanes *pairs, int s, doubles at[3][3])
+{
+    if (pairs->of[s].floats)
+        read_floats(pairs, s, at);
+    else
+        read_points(pairs, s, 0, at);
+}
+
 static inline void cross_eight(const doubles e[3], const doubles f[3], doubles n[3])
 {
     int c;
@@ -81,12 +89,8 @@ static SC_INLINE void read_eight(const sc_pair_lanes *pairs, eight_triangle_pair
     doubles a[2][3], b[3][3], n[3], along[2][3], reach = doubles_all(SC_BOUNDS_EIGHT_LEAST);
     doubles *side = x->side[1], (*line)[3] = x->line;
     int k, i, c;
-    for (k = 0; k < 2; k++) {
-        if (pairs->of[k].floats)
-            read_floats(pairs, k, x->at[k]);
-        else
-            read_points(pairs, k, 0, x->at[k]);
-    }
+    read_triangles(pairs, 0, x->at[0]);
+    read_triangles(pairs, 1, x->at[1]);
     SC_UNROLL
     for (k = 0; k < 5; k++) {
         const doubles *from = x->at[0][0], *to = k < 2 ? x->at[0][k + 1] : x->at[1][k - 2];

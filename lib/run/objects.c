@@ -344,8 +344,8 @@ static sc_status look_at_itself(objects_run *run, const sc_object *o)
 static int groups_collide(const sc_object *a, const sc_object *b)
 {
     const sc_group all = {0xffffffffu, 0xffffffffu};
-    const sc_group x = a->group.category | a->group.mask ? a->group : all;
-    const sc_group y = b->group.category | b->group.mask ? b->group : all;
+    const sc_group x = a->group.category || a->group.mask ? a->group : all;
+    const sc_group y = b->group.category || b->group.mask ? b->group : all;
     return sc_filter_groups_collide(x, y);
 }
 
