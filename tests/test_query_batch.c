@@ -13,7 +13,7 @@
 #include "starcontour.h"
 #include "tasks.h"
 
-enum { POSES = 40, WORKERS = 4 };
+enum { POSES = 12, WORKERS = 3 };
 
 /* Poses of one mesh, and room for what is found. */
 typedef struct batch {
@@ -29,7 +29,7 @@ typedef struct batch {
 static int open_batch(batch *b)
 {
     const sc_workspace_options one = options_for_workers(1);
-    soup mesh = soup_cloth(24, 24);
+    soup mesh = soup_cloth(14, 14);
     memset(b, 0, sizeof *b);
     if (!fixture_start_plain(&b->f, mesh)) return 0;
     for (int i = 0; i < WORKERS; ++i)
@@ -52,7 +52,7 @@ static void make_room(batch *b)
         sc_result *r = &b->results[i];
         memset(r, 0, sizeof *r);
         r->struct_size = sizeof *r;
-        r->capacity = test_random_below(4) ? 100000 : test_random_below(30);
+        r->capacity = test_random_below(4) ? 20000 : test_random_below(30);
         free(b->pairs[i]);
         r->pairs = b->pairs[i] = (sc_pair *)test_allocate(sizeof(sc_pair) * r->capacity);
     }
