@@ -1171,9 +1171,10 @@ typedef struct sc_near_result {
  * its bound, wherever it goes, there are none after: step sizes for solvers without a continuous
  * test (Offset Geometric Contact: Chen et al. 2025). Bounds are below these distances by at most
  * 5e-7 times the longest side of the box of the mesh, plus 3e-5 times the distance and the longest
- * extent of an edge; never above; and the same for every method, number of threads and machine. kinds other
- * than both know less. A vertex that another one represents, and one of no triangle, has
- * options->distance. With SC_OUTPUT_ANY they are refused (SC_ERROR_OPTION); after
+ * extent of an edge, plus 2^-1020; never above; and the same for every method, number of threads and
+ * machine. kinds other than both know less. A vertex that another one represents, and one of no
+ * triangle, has options->distance: let the former move as the one that represents it, or the seam
+ * opens. With SC_OUTPUT_ANY they are refused (SC_ERROR_OPTION); after
  * SC_ERROR_INCOMPLETE they are 0; after SC_ERROR_SHORT_BUFFER complete. 30 ns a pair more.
  *
  * Several threads: as for sc_query_step. No memory is allocated.

@@ -182,6 +182,76 @@ static void bounds_of_any_mesh(void)
     }
 }
 
+/* Fails a check if a bound is above the exact distance of a pair at the vertex; counts those above
+   0. m is the pose times a power of two, up: where doubles next to each other are far apart, the
+   oracle tells of that what is between them. */
+static void check_sound(const scene *s, const step_motion *m, double up, const sc_near_options *o,
+                        uint64_t *positive)
+{
+    double *bounds = (double *)test_allocate(sizeof(double) * s->mesh.vertex_count);
+    uint64_t above = 0;
+    CHECK(ask(s, s->workspace, o, bounds) == SC_OK);
+    for (uint32_t v = 0; v < s->mesh.vertex_count; ++v)
+        above += !(bounds[v] >= 0 && bounds[v] <= o->distance);
+    for (int kind = 0; kind < 2; ++kind) {
+        oracle_list list = near_truth_find(m, kind, o->distance * up);
+        for (uint64_t i = 0; i < list.count; ++i) {
+            uint32_t at[4];
+            step_pair_vertices(m, kind, list.pairs[i], at);
+            for (int k = 0; k < 4; ++k) {
+                const double bound = bounds[at[k]] * up;
+                *positive += bound > 0;
+                above += bound > 0 &&
+                         near_truth_is_within(m, kind, list.pairs[i], nextafter(bound, 0));
+            }
+        }
+        free(list.pairs);
+    }
+    CHECK_MSG(above == 0, "d %a: %" PRIu64 " bounds too large; state %" PRIu64, o->distance, above,
+              s->state);
+    free(bounds);
+}
+
+/* Coordinates up to the largest doubles, and of a few of the smallest. */
+static void bounds_at_both_ends_of_the_range(void)
+{
+    uint64_t positive[2] = {0, 0};
+    for (uint32_t trial = test_iterations_at_least(200, 40); trial-- > 0 && !test_failures();) {
+        const uint64_t state = test_random_state();
+        const int tiny = trial % 2;
+        const char *name;
+        soup mesh = shape_any(2 + test_random_below(40), &name);
+        double *posed = soup_copy_positions(&mesh), *raised, most = 0;
+        const double up = tiny ? 0x1p600 : 1;
+        sc_near_options o;
+        scene s;
+        if (test_random_below(4)) soup_any_pose(posed, mesh.vertex_count);
+        for (size_t i = 0; i < 3 * (size_t)mesh.vertex_count; ++i) most = fmax(most, fabs(posed[i]));
+        if (!(most > 0)) most = 1;
+        for (size_t i = 0; i < 3 * (size_t)mesh.vertex_count; ++i)
+            posed[i] = tiny ? ldexp(posed[i] / most, -1074 + (int)(4 + trial / 2 % 70))
+                            : posed[i] / most * (trial % 4 ? DBL_MAX : 0x1p1022);
+        raised = (double *)test_allocate(3 * sizeof(double) * mesh.vertex_count);
+        for (size_t i = 0; i < 3 * (size_t)mesh.vertex_count; ++i) raised[i] = posed[i] * up;
+        if (open_scene(&s, mesh, posed, state)) {
+            step_motion m;
+            uint32_t *map;
+            memset(&o, 0, sizeof o);
+            o.struct_size = sizeof o;
+            o.output = SC_OUTPUT_COUNT;
+            o.distance = fmin(s.edge, DBL_MAX) * test_random_range(0.1, 0.6);
+            map = input_weld_of(&s.choices, &s.mesh);
+            m = step_motion_make(&s.mesh, raised, raised, map);
+            check_sound(&s, &m, up, &o, &positive[tiny]);
+            step_motion_free(&m);
+            free(map);
+        }
+        free(raised);
+        close_scene(&s);
+    }
+    CHECK_MSG(positive[0] > 0, "%" PRIu64 " huge bounds", positive[0]);
+}
+
 /* Whoever finds them; and what is cancelled has none. */
 static void bounds_by_many_workers(void)
 {
@@ -324,5 +394,6 @@ static void nothing_comes_together(void)
     CHECK_MSG(clean > 10, "%" PRIu64 " clean poses, %" PRIu64 " moves", clean, moved);
 }
 
-SC_TEST_MAIN(SC_TEST(bounds_of_any_mesh), SC_TEST(bounds_by_many_workers), SC_TEST(other_results),
+SC_TEST_MAIN(SC_TEST(bounds_of_any_mesh), SC_TEST(bounds_at_both_ends_of_the_range),
+             SC_TEST(bounds_by_many_workers), SC_TEST(other_results),
              SC_TEST(nothing_comes_together))

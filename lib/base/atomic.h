@@ -76,10 +76,17 @@ static inline int sc_atomic_claim(size_t *number, size_t *before, size_t after)
 #endif
 }
 
+/* Whether several threads may lower one double: where it is no longer than a pointer. */
+#if SC_ATOMIC && SIZE_MAX >= UINT64_MAX
+#  define SC_ATOMIC_DOUBLES 1
+#else
+#  define SC_ATOMIC_DOUBLES 0
+#endif
+
 /* Sets a number to another one if that is less. */
 static inline void sc_atomic_lessen(double *number, double less)
 {
-#if SC_ATOMIC
+#if SC_ATOMIC_DOUBLES
     double now;
     __atomic_load(number, &now, __ATOMIC_RELAXED);
     while (less < now &&

@@ -5,6 +5,8 @@
  */
 #include "near/near_candidates.h"
 
+#include <float.h>
+
 #include "base/atomic.h"
 #include "base/bounds.h"
 #include "near/stencil.h"
@@ -34,23 +36,27 @@ void sc_near_candidates_set_bounds(const sc_near_question *question, uint32_t ve
     for (v = 0; question->bounds && v < vertices; v++) question->bounds[v] = bound;
 }
 
-int sc_near_candidates_need_function(const sc_near_question *question)
+int sc_near_candidates_need_one_worker(const sc_near_question *question)
 {
     const sc_pair_filters *f = &question->step.filters;
-    return question->bounds && (f->of[0].accept || f->of[1].accept);
+    return question->bounds && (!SC_ATOMIC_DOUBLES || f->of[0].accept || f->of[1].accept);
 }
 
-/* The distance of a pair, rounded down: a stencil's is off by 2^-50 of it. */
+/* The distance of a pair, rounded down. That of a stencil may be infinite by its rounding alone, as
+   the pair is near. Below 2^-1021 the difference is exact; above, it rounds by less than what the
+   product leaves. */
 static double find_bound(const sc_worker *w, int kind, const uint32_t point[4])
 {
-    double at[4][3];
+    double at[4][3], bound;
     const double *const points[4] = {at[0], at[1], at[2], at[3]};
     sc_near_stencil stencil;
     int k;
     for (k = 0; k < 4; k++) sc_positions_get(&w->frame->positions[0], point[k], at[k]);
     sc_stencil_find(kind == SC_STEP_VERTEX_FACE ? SC_NEAR_VERTEX_FACE : SC_NEAR_EDGE_EDGE, points,
                     &stencil);
-    return stencil.distance * (1 - SC_BOUNDS_STENCIL);
+    bound = stencil.distance < DBL_MAX ? stencil.distance : DBL_MAX;
+    bound = bound * (1 - SC_BOUNDS_STENCIL) - SC_BOUNDS_STENCIL_LEAST;
+    return bound > 0 ? bound : 0;
 }
 
 /* Lowers the bounds of the four vertices of a pair. */

@@ -54,7 +54,8 @@ typedef struct near_search {
     int kinds, names; /* which are wanted, and whether they are wanted by name */
     int asked[2];     /* filters are, of vertices with faces and of edges; or bounds are wanted */
     near_measured room, *measured; /* that, if bounds of distances are wanted, or NULL */
-    double unit;                   /* the unit of these */
+    double scale; /* a power of two: of lengths in the unit box to those of the pose, whose inverse may
+                     be too large for a double */
 } near_search;
 
 /* Points before the low sides of a box, and in the upper half those behind the high ones. */
@@ -163,7 +164,7 @@ static inline void find_near_shared(near_side *a, near_side *b)
 /* At most the distance of the pair in lane i of what was measured last, if bounds are wanted. */
 static inline double bound_of_near(const near_search *s, uint32_t i)
 {
-    return s->measured ? near_bound(s->measured, i, &s->limits) * s->unit : 0;
+    return s->measured ? near_bound(s->measured, i, &s->limits) / s->scale : 0;
 }
 
 /* Pairs that are near or, in the upper half, far; the rest is left to exact signs. */
@@ -524,7 +525,7 @@ static inline void begin_near_search(near_search *s, sc_worker *w)
     s->asked[1] = sc_near_candidates_are_asked(w, SC_STEP_EDGE_EDGE);
     s->names = sc_near_candidates_want_names(w->question);
     s->measured = w->question->near->bounds ? &s->room : NULL;
-    s->unit = 1 / w->frame->scale;
+    s->scale = w->frame->scale;
 }
 
 static inline void begin_near_pair(near_search *s, uint32_t item, const sc_near_leaf *a,

@@ -88,7 +88,7 @@ static const sc_tasks *tasks_for(const sc_model *model, const sc_question *quest
         !(o->output == SC_OUTPUT_PAIRS && question->capacity))
         return NULL;
     if (question->step && !sc_step_filter_allows_workers(question->step)) return NULL;
-    if (question->near && sc_near_candidates_need_function(question->near)) return NULL;
+    if (question->near && sc_near_candidates_need_one_worker(question->near)) return NULL;
     return sc_plan_tasks(model, question);
 }
 
