@@ -106,18 +106,18 @@ static void pose_thing(scene *s, uint32_t i)
     t->pose.positions = t->is_float ? (const void *)t->floats : (const void *)t->posed;
 }
 
-static int open_thing(scene *s, uint32_t i, uint32_t maximum)
+/* An object of a mesh, which it takes over; NULL: of that of the one before it. */
+static int open_thing_of(scene *s, uint32_t i, const soup *mesh)
 {
     thing *t = &s->things[i];
     sc_object *o = &s->objects[i];
-    const char *name;
-    t->is_copy = i > 0 && test_random_below(3) == 0;
-    if (t->is_copy) {
+    t->is_copy = !mesh;
+    if (!mesh) {
         t->mesh = s->things[i - 1].mesh;
         t->model = s->things[i - 1].model;
         t->weld = s->things[i - 1].weld;
     } else {
-        t->mesh = shape_any(2 + test_random_below(maximum), &name);
+        t->mesh = *mesh;
         t->weld = test_random_below(2) ? SC_WELD_REST : SC_WELD_NONE;
         t->model = build(&t->mesh, t->weld, NULL);
         if (!t->model) return 0;
@@ -141,6 +141,15 @@ static int open_thing(scene *s, uint32_t i, uint32_t maximum)
     }
     pose_thing(s, i);
     return 1;
+}
+
+static int open_thing(scene *s, uint32_t i, uint32_t maximum)
+{
+    const char *name;
+    soup mesh;
+    if (i > 0 && test_random_below(3) == 0) return open_thing_of(s, i, NULL);
+    mesh = shape_any(2 + test_random_below(maximum), &name);
+    return open_thing_of(s, i, &mesh);
 }
 
 static int open_scene(scene *s, uint32_t most, uint32_t maximum, uint32_t workers)
@@ -482,6 +491,48 @@ static void tasks_change_nothing(void)
     }
 }
 
+/* Its rest pose, moved a little: no pose of large meshes in which most pairs need exact signs. */
+static void pose_large_thing(thing *t)
+{
+    for (uint32_t i = 0; i < 3 * t->mesh.vertex_count; ++i) {
+        t->posed[i] = t->mesh.positions[i] + 0.01 * (double)(i % 3);
+        t->floats[i] = (float)t->posed[i];
+        if (t->is_float) t->posed[i] = (double)t->floats[i];
+    }
+}
+
+/* Two objects of which each is worth a job, in workspaces that were never asked before. */
+static void large_objects_share_work(void)
+{
+    for (uint32_t trial = test_iterations_at_least(8, 2); trial-- > 0 && !test_failures();) {
+        const soup sphere = soup_sphere(60, 40 + test_random_below(40)), cloth = soup_cloth(60, 50);
+        scene s;
+        host h;
+        int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
+        sc_query_options o = any_options();
+        found_list wanted;
+        memset(&s, 0, sizeof s);
+        s.state = test_random_state();
+        s.workers = THREADS_MAX;
+        s.count = 2;
+        if (!open_thing_of(&s, trial % 2, &sphere) || !open_thing_of(&s, 1 - trial % 2, &cloth))
+            return;
+        for (uint32_t i = 0; i < 2; ++i) {
+            s.objects[i].group.category = s.objects[i].group.mask = 0;
+            s.objects[i].itself = test_random_below(2);
+            pose_large_thing(&s.things[i]);
+        }
+        wanted = expect(&s, &o);
+        host_start(&h, way, 2 + trial % 3);
+        o.tasks = &h.tasks;
+        check_answers(&s, &o, &wanted);
+        CHECK(h.mistakes == 0 && h.jobs > 0);
+        host_stop(&h);
+        free(wanted.at);
+        close_scene(&s);
+    }
+}
+
 static int accept_some(void *user, uint32_t object_a, uint32_t object_b, uint32_t a, uint32_t b)
 {
     ++*(uint64_t *)user;
@@ -590,5 +641,5 @@ static void bad_scenes_are_refused(void)
 }
 
 SC_TEST_MAIN(SC_TEST(scenes_are_one_mesh), SC_TEST(what_stays_is_not_read),
-             SC_TEST(tasks_change_nothing), SC_TEST(the_function_leaves_pairs_out),
-             SC_TEST(bad_scenes_are_refused))
+             SC_TEST(tasks_change_nothing), SC_TEST(large_objects_share_work),
+             SC_TEST(the_function_leaves_pairs_out), SC_TEST(bad_scenes_are_refused))

@@ -380,15 +380,13 @@ static void look_at_two(objects_run *run, const sc_object *a, const sc_object *b
 {
     const sc_objects *objects = &run->asked->objects;
     accept_between between;
-    sc_question q, none;
+    sc_question q;
     sc_filter filter;
     begin_question(run, a, b, &q);
     make_boxes(run, a, q.options.tasks);
     make_boxes(run, b, q.options.tasks);
-    memset(&none, 0, sizeof none);
-    (void)sc_workspace_resume(b->model, b->workspace, &none);
-    sc_workspace_keep_all(b->workspace);
     q.second = b->workspace;
+    sc_workspace_lend(b->model, b->workspace, &q, q.options.tasks ? q.options.tasks->workers : 1);
     q.options.method = SC_METHOD_AABB;
     q.options.contour = SC_CONTOUR_EXACT;
     if (objects->accept) {

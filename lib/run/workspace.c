@@ -511,6 +511,18 @@ void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc
     keep_leaves(workspace, question, workers);
 }
 
+void sc_workspace_lend(const sc_model *model, sc_workspace *w, const sc_question *question,
+                       uint32_t workers)
+{
+    uint32_t i;
+    for (i = 0; i < workers; i++) begin_worker(model, w, question, NULL, &w->worker[i]);
+    if (workers > 1)
+        keep_parts(w, workers);
+    else
+        sc_workspace_keep_all(w);
+    keep_leaves(w, question, workers);
+}
+
 void sc_workspace_keep_all(sc_workspace *w)
 {
     if (all_derived(&w->sizes))

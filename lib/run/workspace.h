@@ -99,6 +99,12 @@ void sc_workspace_forget(sc_workspace *workspace);
 void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc_question *question,
                         sc_share *share, uint32_t workers);
 
+/* Lets so many workers of a workspace serve those of another one that ask this question about two
+   objects, of which the model is the second: they have its frame, and keep what is made of its leaf
+   clusters. */
+void sc_workspace_lend(const sc_model *model, sc_workspace *workspace, const sc_question *question,
+                       uint32_t workers);
+
 /* Lets the first worker keep the derived data of all leaf clusters in this query, in which no star
    test is made, if there is room. */
 void sc_workspace_keep_all(sc_workspace *workspace);
