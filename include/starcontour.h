@@ -1032,8 +1032,8 @@ typedef struct sc_step_result {
  * All but accept is asked before a step decides a pair; sc_query_near asks only of pairs that are
  * near. Cost: with a rest pose a pass over its vertices, and about 0.1 microseconds for each pair
  * that is asked about; with triangle_groups for vertices a pass over the triangles; rings walk the
- * mesh round each feature until they reach the other, or as far as they go; a list is read once, and
- * looked up for each of these pairs.
+ * mesh round each feature until they reach the other, or as far as they go; a list is read once,
+ * and looked up for each of these pairs.
  *
  * Several threads. With options->tasks the passes over both poses, the walk through the tree,
  * boxes, the narrow phase and the sorting are done by all workers. Answer and counts in statistics
@@ -1080,8 +1080,8 @@ enum {
 };
 
 /*
- * What is near on the mesh, whatever the pose, for searches with a distance as large as triangles or
- * larger: there, most of what is near is the neighborhood of each feature, and a filter's
+ * What is near on the mesh, whatever the pose, for searches with a distance as large as triangles
+ * or larger: there, most of what is near is the neighborhood of each feature, and a filter's
  * ignore_rings is asked about each pair. Masks leave the same pairs out, but before distances are
  * computed.
  *
@@ -1151,8 +1151,8 @@ typedef struct sc_near_result {
 /*
  * Finds what is within a distance in a pose: of each pair the Euclidean distance of the two closed
  * sets, of a point from a triangle or of two segments, compared exactly with options->distance.
- * There is no tolerance: a pair is reported if and only if its distance is that or less. So the list
- * grows with the distance, and depends on mesh, welding, pose, distance, filters and rest pose
+ * There is no tolerance: a pair is reported if and only if its distance is that or less. So the
+ * list grows with the distance, and depends on mesh, welding, pose, distance, filters and rest pose
  * alone: not on method, partition, number of threads, compiler or machine. options may be NULL:
  * pairs of both kinds that touch. The workspace was made with SC_WORKSPACE_NEAR; SC_ERROR_WORKSPACE
  * if not.
@@ -1171,11 +1171,11 @@ typedef struct sc_near_result {
  * its bound, wherever it goes, there are none after: step sizes for solvers without a continuous
  * test (Offset Geometric Contact: Chen et al. 2025). Bounds are below these distances by at most
  * 5e-7 times the longest side of the box of the mesh, plus 3e-5 times the distance and the longest
- * extent of an edge, plus 2^-1020; never above; and the same for every method, number of threads and
- * machine. kinds other than both know less. A vertex that another one represents, and one of no
+ * extent of an edge, plus 2^-1020; never above; and the same for every method, number of threads
+ * and machine. kinds other than both know less. A vertex that another one represents, and one of no
  * triangle, has options->distance: let the former move as the one that represents it, or the seam
- * opens. With SC_OUTPUT_ANY they are refused (SC_ERROR_OPTION); after
- * SC_ERROR_INCOMPLETE they are 0; after SC_ERROR_SHORT_BUFFER complete. 30 ns a pair more.
+ * opens. With SC_OUTPUT_ANY they are refused (SC_ERROR_OPTION); after SC_ERROR_INCOMPLETE they are
+ * 0; after SC_ERROR_SHORT_BUFFER complete. 30 ns a pair more.
  *
  * Several threads: as for sc_query_step. No memory is allocated.
  */
@@ -1267,19 +1267,19 @@ SC_API sc_status sc_near_merge(sc_near_stencil *stencils, uint64_t count, uint64
 
 /*
  * Asks the same of many poses of one model, several at a time: for datasets, and for a thousand
- * characters. results[i] is what sc_query says of poses[i] with these options, whatever is wrong with
- * others, and statuses[i] what it returns. Each result has an array of its own, or none. The
+ * characters. results[i] is what sc_query says of poses[i] with these options, whatever is wrong
+ * with others, and statuses[i] what it returns. Each result has an array of its own, or none. The
  * structures of an array are as far apart as the first one's struct_size says.
  *
  * options->tasks: the host's threads, each of which asks about one pose at a time, with a workspace
  * of its own: workspaces has tasks->workers of them, 1 without tasks, each for one worker at least.
- * Without pairs in common there is nothing to wait for: two threads take half the time of one, where
- * memory is fast enough. A function in the filter is called in several threads at once. The flag of
- * cancel ends all: what was not asked about is SC_ERROR_INCOMPLETE, with no pairs.
+ * Without pairs in common there is nothing to wait for: two threads take half the time of one,
+ * where memory is fast enough. A function in the filter is called in several threads at once. The
+ * flag of cancel ends all: what was not asked about is SC_ERROR_INCOMPLETE, with no pairs.
  *
- * Returns SC_OK if all queries do; else what the first one in order returned that does not, or, with
- * no result touched, SC_ERROR_NULL, SC_ERROR_STRUCT_SIZE, or SC_ERROR_WORKSPACE for two workspaces
- * that are one or more workers than there may be. No memory is allocated.
+ * Returns SC_OK if all queries do; else what the first one in order returned that does not, or,
+ * with no result touched, SC_ERROR_NULL, SC_ERROR_STRUCT_SIZE, or SC_ERROR_WORKSPACE for two
+ * workspaces that are one or more workers than there may be. No memory is allocated.
  */
 SC_API sc_status sc_query_batch(const sc_model *model, sc_workspace *const *workspaces,
                                 const sc_pose *poses, uint32_t count,
@@ -1304,9 +1304,9 @@ typedef struct sc_step_stencil {
     sc_near_stencil impact; /* and at the time */
     double time;
     double normal[3];
-    int32_t side;   /* 1: the vertex began where the corners of the face are seen counter-clockwise, -1:
-                       where clockwise, 0: in its plane. Of edges the sign of (b0 - a0) . ((a1 - a0) x
-                       (b1 - b0)) at the start. Exact */
+    int32_t side;   /* 1: the vertex began where the corners of the face are seen counter-clockwise,
+                       -1: where clockwise, 0: in its plane. Of edges the sign of
+                       (b0 - a0) . ((a1 - a0) x (b1 - b0)) at the start. Exact */
     uint32_t flags; /* SC_STEP_APPROACHES, SC_STEP_NO_NORMAL */
 } sc_step_stencil;
 
@@ -1318,14 +1318,14 @@ typedef struct sc_step_stencil {
  *                      result.vertex_face_times, result.vertex_face_count, stencils);
  *
  * times are from 0 to 1; NULL: all are 0, and both stencils the same. A coordinate at a time t is
- * (1 - t) start + t end, in doubles: two products and a sum, each rounded, the start itself at 0 and
- * the end at 1. For these coordinates stencils are what sc_near_stencil promises. Whether two approach
- * is told by the sum of weights times motions along the vector between the closest points, in
- * doubles: within rounding of 0 it may be either, and where other points are as near, as between
+ * (1 - t) start + t end, in doubles: two products and a sum, each rounded, the start itself at 0
+ * and the end at 1. For these coordinates stencils are what sc_near_stencil promises. Whether two
+ * approach is told by the sum of weights times motions along the vector between the closest points,
+ * in doubles: within rounding of 0 it may be either, and where other points are as near, as between
  * parallel edges, nothing is said of those.
  *
- * Errors, memory and threads are as for sc_near_stencils; SC_ERROR_OPTION: a time is NaN or not from
- * 0 to 1. Twice the cost of that.
+ * Errors, memory and threads are as for sc_near_stencils; SC_ERROR_OPTION: a time is NaN or not
+ * from 0 to 1. Twice the cost of that.
  */
 SC_API sc_status sc_step_stencils(const sc_model *model, const sc_pose *start, const sc_pose *end,
                                   uint32_t kind, const sc_pair *pairs, const double *times,
@@ -1339,7 +1339,9 @@ SC_API sc_status sc_step_stencils(const sc_model *model, const sc_pose *start, c
  * each other and with themselves; what did not move since the last call is not read again.
  *
  *     a workspace for each object: sc_workspace_create or _create_for
- *     sc_query_objects(&objects, &options, &result)
+ *     sc_query_objects(&objects, &options, &result)            what intersects
+ *     sc_query_objects_near(&objects, &options, &lists)        what is near
+ *     sc_query_objects_step(&objects, &options, &lists)        what collides in a step
  */
 
 /*
@@ -1349,16 +1351,23 @@ SC_API sc_status sc_step_stencils(const sc_model *model, const sc_pose *start, c
 typedef struct sc_object {
     const sc_model *model;
     sc_workspace *workspace;
-    const sc_pose *pose;
-    const sc_pose *end;    /* of a step; else NULL */
+    const sc_pose *pose;   /* of a step that at its start */
+    const sc_pose *end;    /* of a step that at its end, or NULL: it stays where it is; else NULL */
     uint64_t pose_version; /* 0, or a number that changes whenever a coordinate does. If it is what
-                              the last call with this workspace was given, the positions are those
-                              of then, wherever they are now; and what was made of them is kept,
-                              unless the box of all objects has grown or shrunk much */
+                              the last call of the same function with this workspace was given, the
+                              positions are those of then, wherever they are now; and what was made
+                              of them is kept, unless the box of all objects has grown or shrunk
+                              much, or a query of another kind has been made */
     sc_group group;        /* what it collides with; 0 and 0: with everything */
-    uint32_t itself;       /* 1: its self-collisions are sought, too */
+    uint32_t itself;       /* 1: its pairs with itself are sought, too */
     uint32_t reserved;     /* 0 */
-    const sc_filter *filter; /* which of these are not wanted, or NULL */
+    /* Which pairs with itself are not wanted, or NULL. Of sc_query_objects: */
+    const sc_filter *filter;
+    /* Of what is near and of steps, as in sc_near_options and sc_step_options: */
+    const sc_filter *vertex_face_filter, *edge_edge_filter;
+    const sc_pose *rest;
+    double rest_distance;
+    const sc_near_masks *masks; /* of what is near */
 } sc_object;
 
 /* The objects of a scene. */
@@ -1367,11 +1376,14 @@ typedef struct sc_objects {
     uint32_t count;           /* how many there are */
     const sc_object *objects; /* them */
     uint64_t stride;          /* bytes from one to the next; 0: sizeof(sc_object) */
-    /* Of pairs of two objects, which are wanted; or NULL: all. Called for each pair that is found, in
-       any order, in the thread that called, with numbers of objects, triangles and edges as they
+    /* Of pairs of two objects, which are wanted; or NULL: all. Called for each pair that is found,
+       in any order, in the thread that called, with numbers of objects, triangles and edges as they
        would be reported; 0 leaves it out. It must not use the workspaces. */
     int (*accept)(void *user, uint32_t object_a, uint32_t object_b, uint32_t a, uint32_t b);
     void *accept_user;
+    /* The same of what is near and of steps; kind: SC_NEAR_VERTEX_FACE or SC_NEAR_EDGE_EDGE. */
+    int (*accept_near)(void *user, uint32_t kind, uint32_t object_a, uint32_t object_b, uint32_t a,
+                       uint32_t b);
 } sc_objects;
 
 /* Which pairs are of which two objects: pairs[first] to pairs[first + count - 1]. */
@@ -1385,12 +1397,12 @@ typedef struct sc_object_pairs {
  * array of ranges, and may set stats; the library sets the rest. Arrays may be NULL when their
  * capacity is 0.
  *
- * Of two objects that have pairs, or of one that has some with itself, there is one range, sorted by
- * object_a, then object_b; and ranges of pairs follow each other. Triangles: object_a <= object_b,
- * and of two objects a is a triangle of object_a and b one of object_b. Edges with triangles
- * (SC_PAIRS_EDGE): a is an edge of object_a, b a triangle of object_b, and there is a range for
- * either order. Within a range pairs are sorted by a, then b; those of an object with itself are
- * sc_query's.
+ * Of two objects that have pairs, or of one that has some with itself, there is one range, sorted
+ * by object_a, then object_b; and ranges of pairs follow each other. Triangles: object_a <=
+ * object_b, and of two objects a is a triangle of object_a and b one of object_b. Edges with
+ * triangles (SC_PAIRS_EDGE): a is an edge of object_a, b a triangle of object_b, and there is a
+ * range for either order. Within a range pairs are sorted by a, then b; those of an object with
+ * itself are sc_query's.
  */
 typedef struct sc_objects_result {
     uint32_t struct_size;
@@ -1407,9 +1419,9 @@ typedef struct sc_objects_result {
 } sc_objects_result;
 
 /*
- * Finds which pairs of objects have in common what, and with themselves: the same pairs, exactly, as
- * one mesh of all objects would have in which no vertex of one is welded to one of another. options
- * are those of sc_query, and may be NULL; their filter must be NULL and their budget 0
+ * Finds which pairs of objects have in common what, and with themselves: the same pairs, exactly,
+ * as one mesh of all objects would have in which no vertex of one is welded to one of another.
+ * options are those of sc_query, and may be NULL; their filter must be NULL and their budget 0
  * (SC_ERROR_OPTION). Pairs of two objects are sought only if groups let them collide:
  * (a.group.category & b.group.mask) && (b.group.category & a.group.mask), where a group of zeros
  * collides with every other. Filters of objects are for their pairs with themselves.
@@ -1420,11 +1432,12 @@ typedef struct sc_objects_result {
  * precision sees 2^-24: objects far apart from each other take more time where they are near
  * something, and have the same pairs.
  *
- * Returns SC_OK; SC_ERROR_SHORT_BUFFER if pairs or ranges do not fit: count and range_count are then
- * what is needed, pairs holds all ranges that fit and ranges the first ones; SC_ERROR_INCOMPLETE if
- * it was cancelled. Errors are those of sc_query, of the first object that has one, and the log of
- * its workspace says what is wrong. Moreover SC_ERROR_WORKSPACE: a workspace is in two objects;
- * SC_ERROR_STRIDE. On such errors count, collides and verdict are 0, and the arrays as they were.
+ * Returns SC_OK; SC_ERROR_SHORT_BUFFER if pairs or ranges do not fit: count and range_count are
+ * then what is needed, pairs holds all ranges that fit and ranges the first ones;
+ * SC_ERROR_INCOMPLETE if it was cancelled. Errors are those of sc_query, of the first object that
+ * has one, and the log of its workspace says what is wrong. Moreover SC_ERROR_WORKSPACE: a
+ * workspace is in two objects; SC_ERROR_STRIDE. On such errors count, collides and verdict are 0,
+ * and the arrays as they were.
  *
  * Tasks share in an object, or in two, whose workspaces have as many workers; else the calling
  * thread does it. No memory is allocated. Workspaces of one call must not be used by another at the
@@ -1433,6 +1446,68 @@ typedef struct sc_objects_result {
  */
 SC_API sc_status sc_query_objects(const sc_objects *objects, const sc_query_options *options,
                                   sc_objects_result *result);
+
+/*
+ * One of the two lists of what is near, or of what collides in a step. The caller sets capacities
+ * and, where these are not 0, arrays; the library sets the rest.
+ *
+ * Vertices with faces: a is a vertex of object_a, b a triangle of object_b, and there is a range
+ * for either order. Two edges: object_a <= object_b, and of two objects a is an edge of object_a
+ * and b one of object_b. Ranges are sorted by object_a, then object_b, and within one pairs by a,
+ * then b.
+ */
+typedef struct sc_object_list {
+    uint64_t count;          /* out: the number of pairs */
+    uint64_t capacity;       /* in: entries of pairs, and of times */
+    sc_pair *pairs;          /* in: the caller's array */
+    double *times;           /* in: of a step with SC_STEP_TIMES_EACH, those of pairs; or NULL */
+    uint64_t range_count;    /* out: the number of ranges */
+    uint64_t range_capacity; /* in: entries of ranges; 0 where these are not wanted */
+    sc_object_pairs *ranges; /* in: the caller's array */
+} sc_object_list;
+
+/* The answer of sc_query_objects_near and sc_query_objects_step. The caller sets struct_size and
+   the lists, and may set stats; the library sets the rest. */
+typedef struct sc_objects_lists {
+    uint32_t struct_size;
+    uint32_t collides; /* out: 1 if there is a pair, else 0 */
+    sc_object_list vertex_faces, edge_edges;
+    sc_stats *stats;   /* in: where to put statistics of all together, or NULL */
+    double earliest;   /* out: of a step: as in sc_step_result; else 0 */
+    uint32_t verdict;  /* out: SC_VERDICT_... */
+    uint32_t reserved; /* out: 0 */
+} sc_objects_lists;
+
+/*
+ * Finds which vertices are within a distance of which faces, and which edges of which edges, of two
+ * objects and of one: the same pairs, exactly, as sc_query_near finds in one mesh of all objects in
+ * which no vertex of one is welded to one of another. options are those of sc_query_near, and may
+ * be NULL; filters, rest pose and masks are those of objects, so that theirs must be NULL and 0,
+ * and so must their budget (SC_ERROR_OPTION). Workspaces were made with SC_WORKSPACE_NEAR.
+ *
+ * All else is as for sc_query_objects: groups, what is returned, what is kept. On
+ * SC_ERROR_SHORT_BUFFER each list has all ranges that fit, and the counts that are needed. Bounds
+ * of vertices are asked for by sc_query_near, of one mesh.
+ *
+ * Cost: reading what moved, some 5 ns a vertex; boxes; sc_query_near for each object with
+ * itself = 1; 5 ns for two objects that are farther apart than the distance, and 10 to 40 ns a
+ * pair.
+ */
+SC_API sc_status sc_query_objects_near(const sc_objects *objects, const sc_near_options *options,
+                                       sc_objects_lists *lists);
+
+/*
+ * Finds what collides while objects move from pose to end: the same pairs with the same times as
+ * sc_query_step finds in one mesh of all objects in which no vertex of one is welded to one of
+ * another. options are those of sc_query_step, and may be NULL; what objects have, and their
+ * budget, is to be left out as above. A tolerance of 0 stands for 1e-6 times the longest side of
+ * the box of all objects. Workspaces were made with SC_WORKSPACE_STEP or SC_WORKSPACE_NEAR.
+ *
+ * A pose_version that is as before says that both poses are; of what stays where it is, that it
+ * still does. Else as sc_query_objects_near.
+ */
+SC_API sc_status sc_query_objects_step(const sc_objects *objects, const sc_step_options *options,
+                                       sc_objects_lists *lists);
 
 /* ------------------------------------------------------------------------------------------------
  * Records

@@ -546,45 +546,147 @@ sc_status sc_query_batch(const sc_model *model, sc_workspace *const *workspaces,
     return status;
 }
 
+/* Arrays that the caller must give. */
+static sc_status need_list(const char *pairs, const char *ranges, const sc_object_list *list,
+                           uint32_t output)
+{
+    sc_status status = SC_OK;
+    if (output == SC_OUTPUT_PAIRS && list->capacity)
+        status = sc_arguments_need(NULL, "result", pairs, list->pairs);
+    if (!status && list->range_capacity)
+        status = sc_arguments_need(NULL, "result", ranges, list->ranges);
+    return status;
+}
+
+/* What was found of all objects; any: one pair is enough to know. wanted: the caller's
+   statistics. */
+static sc_status run_objects(sc_objects_question *question, sc_objects_answer *answer, int any,
+                             sc_stats *wanted, uint32_t *collides, uint32_t *verdict)
+{
+    sc_object_list *list = answer->list;
+    sc_stats stats;
+    sc_status status = SC_OK;
+    if (wanted)
+        status =
+            sc_arguments_check(NULL, "result.stats", wanted, sizeof stats, SC_ARGUMENTS_DEFAULTS);
+    if (!status) {
+        memset(&stats, 0, sizeof stats);
+        answer->stats = wanted ? &stats : NULL;
+        status = sc_objects_run(question, answer);
+    }
+    if (!has_answer(status)) {
+        list[0].count = list[0].range_count = list[1].count = list[1].range_count = 0;
+        answer->earliest = 0;
+        return status;
+    }
+    *collides = list[0].count + list[1].count > 0;
+    if (any) {
+        list[0].count = list[0].count > 0;
+        list[1].count = list[1].count > 0 && !list[0].count;
+    }
+    *verdict = verdict_of(status, *collides);
+    if (wanted) sc_structs_write(wanted, &stats, sizeof stats);
+    return status;
+}
+
 sc_status sc_query_objects(const sc_objects *objects, const sc_query_options *options,
                            sc_objects_result *result)
 {
     sc_objects_question question;
+    sc_objects_answer answer;
+    sc_object_list *list = answer.list;
     sc_objects_result r;
-    sc_stats stats;
-    sc_stats *wanted;
     sc_status status = sc_arguments_need(NULL, "result", NULL, result);
     if (!status)
         status = sc_arguments_read(NULL, "result", &r, sizeof r, result,
                                    SC_ARGUMENTS_UP_TO(sc_objects_result, pairs));
     if (status) return status;
-    r.collides = 0;
-    r.count = r.range_count = 0;
+    r.collides = r.reserved = 0;
     r.verdict = SC_VERDICT_NONE;
-    r.reserved = 0;
-    wanted = r.stats;
-    status = sc_objects_read(objects, options, &question);
-    if (!status && question.options.output == SC_OUTPUT_PAIRS && r.capacity)
-        status = sc_arguments_need(NULL, "result", "pairs", r.pairs);
-    if (!status && r.range_capacity) status = sc_arguments_need(NULL, "result", "ranges", r.ranges);
-    if (!status && wanted)
+    memset(&answer, 0, sizeof answer);
+    list->capacity = r.capacity;
+    list->pairs = r.pairs;
+    list->range_capacity = r.range_capacity;
+    list->ranges = r.ranges;
+    status = sc_objects_question_read(objects, options, &question);
+    if (!status) status = need_list("pairs", "ranges", list, question.output);
+    if (!status)
         status =
-            sc_arguments_check(NULL, "result.stats", wanted, sizeof stats, SC_ARGUMENTS_DEFAULTS);
-    if (!status) {
-        memset(&stats, 0, sizeof stats);
-        r.stats = wanted ? &stats : NULL;
-        status = sc_objects_run(&question, &r);
-        r.stats = wanted;
-        if (has_answer(status)) {
-            r.collides = r.count > 0;
-            if (question.options.output == SC_OUTPUT_ANY) r.count = r.collides;
-            r.verdict = verdict_of(status, r.collides);
-            if (wanted) sc_structs_write(wanted, &stats, sizeof stats);
-        } else {
-            r.count = r.range_count = 0;
-        }
-    }
+            run_objects(&question, &answer, question.ends_early, r.stats, &r.collides, &r.verdict);
+    r.count = list->count;
+    r.range_count = list->range_count;
     sc_structs_write(result, &r, sizeof r);
+    return status;
+}
+
+/* Checks and copies the caller's lists; *r is to be written back then. */
+static sc_status read_lists(sc_objects_lists *lists, sc_objects_lists *r, sc_objects_answer *answer)
+{
+    sc_object_list *const list[2] = {&r->vertex_faces, &r->edge_edges};
+    sc_status status = sc_arguments_need(NULL, "lists", NULL, lists);
+    int kind;
+    if (!status)
+        status = sc_arguments_read(NULL, "lists", r, sizeof *r, lists,
+                                   SC_ARGUMENTS_UP_TO(sc_objects_lists, edge_edges));
+    if (status) return status;
+    r->collides = r->reserved = 0;
+    r->verdict = SC_VERDICT_NONE;
+    r->earliest = 0;
+    memset(answer, 0, sizeof *answer);
+    for (kind = 0; kind < 2; kind++) {
+        answer->list[kind] = *list[kind];
+        answer->list[kind].count = answer->list[kind].range_count = 0;
+    }
+    return SC_OK;
+}
+
+/* Answers a question about two lists, unless it was refused, and writes them back. */
+static sc_status answer_lists(sc_objects_question *question, sc_status status,
+                              sc_objects_answer *answer, sc_objects_lists *r,
+                              sc_objects_lists *lists)
+{
+    sc_object_list *list = answer->list;
+    if (!status)
+        status = need_list("vertex_faces.pairs", "vertex_faces.ranges", &list[0], question->output);
+    if (!status)
+        status = need_list("edge_edges.pairs", "edge_edges.ranges", &list[1], question->output);
+    if (!status)
+        status = run_objects(question, answer, question->output == SC_OUTPUT_ANY, r->stats,
+                             &r->collides, &r->verdict);
+    r->vertex_faces = list[0];
+    r->edge_edges = list[1];
+    sc_structs_write(lists, r, sizeof *r);
+    return status;
+}
+
+sc_status sc_query_objects_near(const sc_objects *objects, const sc_near_options *options,
+                                sc_objects_lists *lists)
+{
+    sc_objects_question question;
+    sc_objects_answer answer;
+    sc_objects_lists r;
+    sc_status status = read_lists(lists, &r, &answer);
+    if (status) return status;
+    status = sc_objects_question_read_near(objects, options, &question);
+    return answer_lists(&question, status, &answer, &r, lists);
+}
+
+sc_status sc_query_objects_step(const sc_objects *objects, const sc_step_options *options,
+                                sc_objects_lists *lists)
+{
+    sc_objects_question question;
+    sc_objects_answer answer;
+    sc_objects_lists r;
+    uint32_t times;
+    sc_status status = read_lists(lists, &r, &answer);
+    if (status) return status;
+    status = sc_objects_question_read_step(objects, options, &question);
+    times = question.near.step.options.times;
+    status = answer_lists(&question, status, &answer, &r, lists);
+    r.earliest = answer.earliest;
+    if (status == SC_ERROR_INCOMPLETE || (r.collides && times == SC_STEP_TIMES_NONE))
+        r.earliest = 0;
+    sc_structs_write(lists, &r, sizeof r);
     return status;
 }
 

@@ -10,7 +10,6 @@
 #include "base/atomic.h"
 #include "base/bounds.h"
 #include "near/stencil.h"
-#include "pose/positions.h"
 #include "step/step_candidates.h"
 #include "step/step_filter.h"
 #include "step/step_pairs.h"
@@ -50,8 +49,7 @@ static double find_bound(const sc_worker *w, int kind, const uint32_t point[4])
     double at[4][3], bound;
     const double *const points[4] = {at[0], at[1], at[2], at[3]};
     sc_near_stencil stencil;
-    int k;
-    for (k = 0; k < 4; k++) sc_positions_get(&w->frame->positions[0], point[k], at[k]);
+    sc_step_candidates_positions(w, kind, point, 0, at);
     sc_stencil_find(kind == SC_STEP_VERTEX_FACE ? SC_NEAR_VERTEX_FACE : SC_NEAR_EDGE_EDGE, points,
                     &stencil);
     bound = stencil.distance < DBL_MAX ? stencil.distance : DBL_MAX;
@@ -76,15 +74,15 @@ static void lower_bounds(const sc_worker *w, int kind, const uint32_t point[4], 
 void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, double bound)
 {
     const sc_pair_filters *f = &w->step->question->filters;
-    sc_pair name = sc_step_candidates_name(w->model, kind, &inner);
+    sc_pair name = sc_step_candidates_name(w, kind, &inner);
     uint32_t point[4];
     if (w->stop) return;
-    if (kind == SC_STEP_EDGE_EDGE && name.a > name.b) {
+    if (sc_step_candidates_turn(w, kind, name)) {
         const uint32_t t = name.a;
         name.a = name.b;
         name.b = t;
     }
-    sc_step_candidates_points(w->model, kind, &inner, point);
+    sc_step_candidates_points(w, kind, &inner, point);
     if (f->sifts[kind]) {
         if (!sc_step_filter_admits(w, kind, inner, point, name)) return;
     }
@@ -98,9 +96,9 @@ static int is_near_enough(const sc_worker *w, int kind, const sc_pair *pair)
     const double distance = w->question->near->options.distance;
     double at[4][3];
     const double(*from)[3] = (const double(*)[3])at;
-    uint32_t point[4], k;
-    sc_step_candidates_points(w->model, kind, pair, point);
-    for (k = 0; k < 4; k++) sc_positions_get(&w->frame->positions[0], point[k], at[k]);
+    uint32_t point[4];
+    sc_step_candidates_points(w, kind, pair, point);
+    sc_step_candidates_positions(w, kind, point, 0, at);
     return kind == SC_STEP_VERTEX_FACE ? sc_within_vertex_face(from, distance)
                                        : sc_within_edge_edge(from, distance);
 }

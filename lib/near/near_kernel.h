@@ -53,6 +53,7 @@ typedef struct near_search {
     uint32_t follows;
     int kinds, names; /* which are wanted, and whether they are wanted by name */
     int asked[2];     /* filters are, of vertices with faces and of edges; or bounds are wanted */
+    int between;      /* side a is of one object, side b of another */
     near_measured room, *measured; /* that, if bounds of distances are wanted, or NULL */
     double scale; /* a power of two: of lengths in the unit box to those of the pose, whose inverse may
                      be too large for a double */
@@ -236,8 +237,8 @@ static inline void take_near_edges(near_search *s, const near_list *list, uint32
     for (; near; near &= near - 1, count++) {
         const uint32_t i = at + sc_bits_lowest(near);
         const uint32_t one = name_near_edge(a, list->a[i]), other = name_near_edge(b, list->b[i]);
-        some[count].a = one < other ? one : other;
-        some[count].b = one < other ? other : one;
+        some[count].a = one < other || s->between ? one : other;
+        some[count].b = one < other || s->between ? other : one;
     }
     if (count) sc_step_pairs_take_all(s->w, SC_STEP_EDGE_EDGE, some, count);
     for (; open; open &= open - 1) {
@@ -523,6 +524,7 @@ static inline void begin_near_search(near_search *s, sc_worker *w)
     s->kinds = o->kinds == SC_NEAR_BOTH ? SC_NEAR_VERTEX_FACE | SC_NEAR_EDGE_EDGE : (int)o->kinds;
     s->asked[0] = sc_near_candidates_are_asked(w, SC_STEP_VERTEX_FACE);
     s->asked[1] = sc_near_candidates_are_asked(w, SC_STEP_EDGE_EDGE);
+    s->between = sc_worker_is_between(w);
     s->names = sc_near_candidates_want_names(w->question);
     s->measured = w->question->near->bounds ? &s->room : NULL;
     s->scale = w->frame->scale;
@@ -546,6 +548,29 @@ static inline int have_room_for_near(const sc_worker *w)
            w->lists.count[SC_LIST_EDGES] < SC_MOVING_ENOUGH && !w->stop;
 }
 
+/* What is near of two leaf clusters; masks: of points that are near on the mesh, or NULL: these are
+   the points that they share, of which two objects have none. */
+static inline uint32_t compare_near_pair(near_search *s, const sc_near_leaf *a,
+                                         const sc_near_leaf *b, const sc_near_masks *masks,
+                                         const sc_leaf_mask *mask)
+{
+    uint32_t rows = 2;
+    int slabs;
+    if (!leave_of_near(&s->a, b) || !leave_of_near(&s->b, a)) return rows;
+    slabs = s->w->frame->motion.distance < NEAR_SLABS_PAY * (a->extent + b->extent);
+    if (slabs && !leave_by_slabs(&s->a, &s->b)) return rows;
+    if (masks || s->between)
+        take_near_masks(mask, &s->a, &s->b);
+    else
+        find_near_shared(&s->a, &s->b);
+    if (s->kinds & SC_NEAR_VERTEX_FACE) {
+        rows += compare_near_faces(s, &s->a, &s->b, slabs);
+        if (!s->between) rows += compare_near_faces(s, &s->b, &s->a, slabs);
+    }
+    if (s->kinds & SC_NEAR_EDGE_EDGE) rows += compare_near_edges(s, 0, slabs);
+    return rows;
+}
+
 static void decide_near_clusters(sc_worker *w, uint32_t most)
 {
     const sc_near_masks *masks = w->question->near->options.masks;
@@ -558,29 +583,29 @@ static void decide_near_clusters(sc_worker *w, uint32_t most)
         const uint32_t one = p.a < p.b ? p.a : p.b, other = p.a < p.b ? p.b : p.a;
         const sc_leaf_mask *mask = NULL;
         const sc_near_leaf *a, *b;
-        uint32_t rows = 2;
-        int slabs, leaves = 1;
+        int leaves = 1;
         if (masks) mask = sc_masks_find(masks, one, other, &leaves);
         if (!leaves) continue;
         if (mask) sc_fetch(mask);
         a = near_leaf(w, one);
         b = other_near_leaf(w, one, other);
         begin_near_pair(&s, p.known, a, b);
-        if (leave_of_near(&s.a, b) && leave_of_near(&s.b, a)) {
-            slabs = w->frame->motion.distance < NEAR_SLABS_PAY * (a->extent + b->extent);
-            if (!slabs || leave_by_slabs(&s.a, &s.b)) {
-                if (masks)
-                    take_near_masks(mask, &s.a, &s.b);
-                else
-                    find_near_shared(&s.a, &s.b);
-                if (s.kinds & SC_NEAR_VERTEX_FACE) {
-                    rows += compare_near_faces(&s, &s.a, &s.b, slabs);
-                    rows += compare_near_faces(&s, &s.b, &s.a, slabs);
-                }
-                if (s.kinds & SC_NEAR_EDGE_EDGE) rows += compare_near_edges(&s, 0, slabs);
-            }
-        }
-        sc_worker_count_boxes(w, s.follows, rows);
+        sc_worker_count_boxes(w, s.follows, compare_near_pair(&s, a, b, masks, mask));
+    }
+}
+
+/* Vertices and edges of leaf clusters of the first of two objects with triangles and edges of the
+   second. */
+static void decide_near_between(sc_worker *w, uint32_t most)
+{
+    uint32_t *left = &w->lists.count[SC_LIST_CLUSTERS];
+    near_search s;
+    begin_near_search(&s, w);
+    for (; most && *left && have_room_for_near(w); most--) {
+        const sc_cluster_pair p = w->lists.clusters[--*left];
+        const sc_near_leaf *a = near_leaf(w, p.a), *b = near_leaf(w->second, p.b);
+        begin_near_pair(&s, p.known, a, b);
+        sc_worker_count_boxes(w, s.follows, compare_near_pair(&s, a, b, NULL, NULL));
     }
 }
 

@@ -358,6 +358,11 @@ static void open_between(sc_worker *w, uint32_t most)
     open_all_two(w, most, 0);
 }
 
+static void open_moving_between(sc_worker *w, uint32_t most)
+{
+    open_all_two(w, most, 1);
+}
+
 static void leave_patch_pairs(sc_worker *w, uint32_t most)
 {
     leave_pairs(w, most, 0);

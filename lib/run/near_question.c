@@ -27,8 +27,15 @@ static sc_status check_near_choices(const sc_hooks *hooks, const sc_near_options
                   : sc_step_question_check_length(hooks, "rest_distance", o->rest_distance);
 }
 
-/* Puts in place of defaults what they stand for on this model and machine. */
-static sc_status choose_for_near(const sc_model *model, sc_near_options *o)
+sc_status sc_near_question_read_options(const sc_hooks *hooks, const sc_near_options *from,
+                                        sc_near_options *options)
+{
+    const sc_status status =
+        sc_arguments_read_options(hooks, "options", options, sizeof *options, from);
+    return status ? status : check_near_choices(hooks, options);
+}
+
+sc_status sc_near_question_choose(const sc_model *model, sc_near_options *o)
 {
     const uint32_t best = (uint32_t)sc_isa_best();
     const int boxes = sc_model_is_for_boxes(model);
@@ -39,8 +46,7 @@ static sc_status choose_for_near(const sc_model *model, sc_near_options *o)
     return SC_HARDLY(o->simd > best) ? SC_ERROR_UNSUPPORTED : SC_OK;
 }
 
-/* The same as a step that stays where it is. */
-static void fill_near_question(const sc_near_result *result, sc_near_question *question)
+void sc_near_question_fill(const sc_near_result *result, sc_near_question *question)
 {
     const sc_near_options *o = &question->options;
     sc_step_options *step = &question->step.options;
@@ -78,9 +84,8 @@ sc_status sc_near_question_read(const sc_model *model, const sc_workspace *works
     if ((status = sc_arguments_need(hooks, "model", NULL, model))) return status;
     if ((status = sc_arguments_need(hooks, "pose", NULL, pose))) return status;
     status = sc_question_check_workspace(model, workspace, SC_WORKSPACE_NEAR);
-    if (!status) status = sc_arguments_read_options(hooks, "options", o, sizeof *o, from);
-    if (!status) status = check_near_choices(hooks, o);
-    if (!status) status = choose_for_near(model, o);
+    if (!status) status = sc_near_question_read_options(hooks, from, o);
+    if (!status) status = sc_near_question_choose(model, o);
     if (!status) status = sc_question_read_tasks(workspace, &o->tasks, &asked->tasks);
     if (!status)
         status =
@@ -109,6 +114,6 @@ sc_status sc_near_question_read(const sc_model *model, const sc_workspace *works
     if (status) return status;
     asked->pose[1] = asked->pose[0];
     asked->stride[1] = asked->stride[0];
-    fill_near_question(result, question);
+    sc_near_question_fill(result, question);
     return SC_OK;
 }

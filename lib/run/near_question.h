@@ -16,4 +16,15 @@ sc_status sc_near_question_read(const sc_model *model, const sc_workspace *works
                                 const sc_near_result *result, sc_asked *asked,
                                 sc_near_question *question);
 
+/* Options of it, which may be NULL, checked; *options is zero before. */
+sc_status sc_near_question_read_options(const sc_hooks *hooks, const sc_near_options *from,
+                                        sc_near_options *options);
+
+/* Puts in place of defaults what they stand for on this model and machine. */
+sc_status sc_near_question_choose(const sc_model *model, sc_near_options *options);
+
+/* What a step that stays where it is is asked, and where the answer goes, from options that are
+   complete. */
+void sc_near_question_fill(const sc_near_result *result, sc_near_question *question);
+
 #endif

@@ -5,244 +5,58 @@
  */
 #include "run/objects.h"
 
-#include <float.h>
-#include <inttypes.h>
-#include <math.h>
 #include <string.h>
 
-#include "base/arguments.h"
 #include "base/clock.h"
 #include "base/hooks.h"
-#include "pose/positions.h"
-#include "pose/refit.h"
 #include "query/filter.h"
 #include "query/simple.h"
+#include "run/near_question.h"
+#include "run/objects_frame.h"
 #include "run/plan.h"
+#include "run/step_question.h"
+#include "step/step_filter.h"
 
-/* The call at hand. */
+/* The call at hand. Of a list's ranges those that fit are in the caller's array. */
 typedef struct objects_run {
     const sc_objects_question *asked;
-    sc_objects_result *result;
-    uint64_t ranges; /* found so far, of which those that fit are in the caller's array */
+    sc_objects_answer *answer;
+    double clearance;
     int incomplete;
 } objects_run;
 
-/* What the caller's function is asked with. */
+/* What one object, or two, are asked. */
+typedef struct part_question {
+    sc_question *query; /* of those below: */
+    sc_question plain;
+    sc_near_question near; /* of what is near, or its step is that of a step */
+    sc_asked asked;
+    sc_filter filter;
+} part_question;
+
+/* What the caller's functions are asked with. */
 typedef struct accept_between {
     const sc_objects *objects;
     uint32_t a, b;
 } accept_between;
 
-static const sc_object *object_at(const sc_objects *objects, uint32_t i)
+static const sc_object *object_at(const objects_run *run, uint32_t i)
 {
-    return (const sc_object *)(const void *)((const unsigned char *)(const void *)objects->objects +
-                                             i * objects->stride);
+    return sc_objects_question_object(&run->asked->objects, i);
 }
 
 static const sc_hooks *hooks_of(const sc_object *object)
 {
-    return object->workspace ? &object->workspace->hooks : NULL;
+    return &object->workspace->hooks;
 }
 
-/* ---- arguments ---- */
-
-static sc_status check_object(const sc_object *o)
+static int is_over(const objects_run *run)
 {
-    const sc_hooks *hooks = hooks_of(o);
-    const sc_choice choices[] = {{"itself", o->itself, 1}, {"reserved", o->reserved, 0}};
-    sc_status status = sc_arguments_need(hooks, "object", "workspace", o->workspace);
-    if (!status) status = sc_arguments_need(hooks, "object", "model", o->model);
-    if (!status) status = sc_arguments_need(hooks, "object", "pose", o->pose);
-    if (!status) status = sc_arguments_choose(hooks, "object", choices, 2);
-    if (!status && o->end) {
-        sc_hooks_log(hooks, SC_LOG_ERROR, "object.end is for steps");
-        status = SC_ERROR_OPTION;
-    }
-    return status ? status : sc_question_check_workspace(o->model, o->workspace, 0);
+    const sc_objects_answer *a = run->answer;
+    return run->incomplete || (run->asked->ends_early && a->list[0].count + a->list[1].count > 0);
 }
 
-/* Each object by itself, and that no workspace is in two: each gets the number of its object. */
-static sc_status check_objects(const sc_objects *objects)
-{
-    sc_status status;
-    uint32_t i;
-    for (i = 0; i < objects->count; i++) {
-        status = check_object(object_at(objects, i));
-        if (status) return status;
-        object_at(objects, i)->workspace->object = 0;
-    }
-    for (i = 0; i < objects->count; i++) {
-        sc_workspace *w = object_at(objects, i)->workspace;
-        if (w->object) {
-            sc_hooks_log(&w->hooks, SC_LOG_ERROR,
-                         "objects %" PRIu32 " and %" PRIu32 " have one workspace", w->object - 1,
-                         i);
-            return SC_ERROR_WORKSPACE;
-        }
-        w->object = i + 1;
-    }
-    return SC_OK;
-}
-
-static sc_status read_tasks(const sc_tasks *from, sc_objects_question *q)
-{
-    sc_status status;
-    if (!from) return SC_OK;
-    status = sc_arguments_read(NULL, "options.tasks", &q->tasks, sizeof q->tasks, from,
-                               SC_ARGUMENTS_UP_TO(sc_tasks, finish));
-    if (status) return status;
-    if (!q->tasks.enqueue || !q->tasks.finish) return SC_ERROR_NULL;
-    if (q->tasks.workers > SC_WORKERS_MAX) return SC_ERROR_OPTION;
-    if (q->tasks.workers > 1) q->given = &q->tasks;
-    return SC_OK;
-}
-
-sc_status sc_objects_read(const sc_objects *objects, const sc_query_options *options,
-                          sc_objects_question *q)
-{
-    sc_status status;
-    memset(q, 0, sizeof *q);
-    status = sc_arguments_need(NULL, "objects", NULL, objects);
-    if (!status)
-        status = sc_arguments_read(NULL, "objects", &q->objects, sizeof q->objects, objects,
-                                   SC_ARGUMENTS_UP_TO(sc_objects, objects));
-    if (!status) status = sc_question_read_options(NULL, options, &q->options);
-    if (status) return status;
-    if (q->objects.count && !q->objects.objects) return SC_ERROR_NULL;
-    if (!q->objects.stride) q->objects.stride = sizeof(sc_object);
-    if (q->objects.stride < sizeof(sc_object) || q->objects.stride % sizeof(void *))
-        return SC_ERROR_STRIDE;
-    if (q->options.filter || q->options.budget || q->options.contour == SC_CONTOUR_STAR ||
-        q->options.contour == SC_CONTOUR_NONE)
-        return SC_ERROR_OPTION;
-    if (q->options.simd > (uint32_t)sc_isa_best()) return SC_ERROR_UNSUPPORTED;
-    if (q->options.simd == SC_SIMD_BEST) q->options.simd = (uint32_t)sc_isa_best();
-    status = read_tasks(q->options.tasks, q);
-    return status ? status : check_objects(&q->objects);
-}
-
-/* ---- poses ---- */
-
-/* Notes where a pose is, and finds the box of its points; unless it is that of the last call. */
-static sc_status read_pose(const objects_run *run, const sc_object *o)
-{
-    sc_workspace *w = o->workspace;
-    sc_pose pose;
-    uint64_t stride;
-    sc_status status =
-        sc_question_read_pose(&w->hooks, "object.pose", o->model, o->pose, &pose, &stride);
-    if (status) return status;
-    w->frame.kernels = sc_kernels_for(run->asked->options.simd);
-    w->frame.tasks = NULL;
-    if (o->pose_version && o->pose_version == w->pose_version) {
-        sc_positions_note(o->model, &pose, stride, &w->frame.positions[0]);
-        return SC_OK;
-    }
-    sc_workspace_forget(w);
-    status = sc_positions_read(o->model, &pose, stride, &w->frame);
-    if (status) {
-        sc_hooks_log(&w->hooks, SC_LOG_ERROR, "object %" PRIu32 " has a vertex that is not finite",
-                     w->object - 1);
-        sc_question_log_not_finite(&w->hooks, o->model, &pose, stride, "");
-    }
-    return status;
-}
-
-/* The unit box of all objects. */
-typedef struct unit_box {
-    double center[3];
-    int exponent; /* of the radius */
-} unit_box;
-
-/* The largest distance of a coordinate of some box from a center. */
-static double reach_of(const double low[3], const double high[3], const double center[3])
-{
-    double reach = 0;
-    int k;
-    for (k = 0; k < 3; k++) reach = fmax(reach, fmax(high[k] - center[k], center[k] - low[k]));
-    return reach;
-}
-
-/* Whether all is within a unit box that is not much too large for it. */
-static int fits_box(const double low[3], const double high[3], double half, const unit_box *box)
-{
-    const double reach = ldexp(1, box->exponent);
-    return reach_of(low, high, box->center) * 1.000001 < reach && 8 * half >= reach;
-}
-
-/* A box of all objects, with a center that is of floats, as some positions may be; that of the last
-   call, *box, if it fits. */
-static void choose_box(const double low[3], const double high[3], int has_last, unit_box *box)
-{
-    double half = 0;
-    int k;
-    for (k = 0; k < 3; k++) half = fmax(half, high[k] / 2 - low[k] / 2);
-    if (has_last && fits_box(low, high, half, box)) return;
-    for (k = 0; k < 3; k++) {
-        const double middle = low[k] / 2 + high[k] / 2;
-        box->center[k] = fabs(middle) < (double)FLT_MAX ? sc_positions_rounded(middle) : middle;
-    }
-    (void)frexp(reach_of(low, high, box->center) * 1.000001, &box->exponent);
-    if (box->exponent < -1022) box->exponent = -1022;
-}
-
-/* That of a frame. */
-static void find_box(const sc_frame *frame, unit_box *box)
-{
-    memcpy(box->center, frame->center, sizeof box->center);
-    (void)frexp(frame->scale, &box->exponent);
-    box->exponent = 1 - box->exponent;
-}
-
-/* Reads all poses, and gives their frames one unit box. */
-static sc_status read_poses(const objects_run *run)
-{
-    const sc_objects *objects = &run->asked->objects;
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    unit_box box;
-    uint32_t i;
-    int k, has_last = 0;
-    for (i = 0; i < objects->count; i++) {
-        const sc_object *o = object_at(objects, i);
-        const sc_frame *f = &o->workspace->frame;
-        const sc_status status = read_pose(run, o);
-        if (status) return status;
-        if (o->workspace->pose_version && !has_last) {
-            find_box(f, &box);
-            has_last = 1;
-        }
-        for (k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], f->low[k]);
-            high[k] = fmax(high[k], f->high[k]);
-        }
-    }
-    if (!objects->count) return SC_OK;
-    choose_box(low, high, has_last, &box);
-    for (i = 0; i < objects->count; i++) {
-        const sc_object *o = object_at(objects, i);
-        sc_workspace *w = o->workspace;
-        unit_box own;
-        find_box(&w->frame, &own);
-        if (!w->pose_version || own.exponent != box.exponent ||
-            memcmp(own.center, box.center, sizeof box.center) != 0) {
-            sc_workspace_forget(w);
-            sc_positions_move(&w->frame, box.center);
-            sc_positions_scale(&w->frame, box.exponent);
-            w->pose_version = o->pose_version;
-        }
-    }
-    return SC_OK;
-}
-
-/* ---- queries ---- */
-
-/* Whether what is found is written into an array. */
-static uint64_t room_for_pairs(const objects_run *run)
-{
-    const sc_objects_result *r = run->result;
-    if (run->asked->options.output != SC_OUTPUT_PAIRS || r->count >= r->capacity) return 0;
-    return r->capacity - r->count;
-}
+/* ---- questions ---- */
 
 /* The tasks, if all workspaces are for as many workers. */
 static const sc_tasks *tasks_of(const objects_run *run, const sc_object *a, const sc_object *b)
@@ -254,88 +68,197 @@ static const sc_tasks *tasks_of(const objects_run *run, const sc_object *a, cons
     return tasks;
 }
 
-/* Has a question answered in a workspace, and takes down what was found. */
-static void answer(objects_run *run, const sc_object *a, const sc_object *b, sc_question *q)
+/* What of a list of the caller's is not written yet. */
+static sc_object_list rest_of(const objects_run *run, int kind)
 {
-    sc_objects_result *r = run->result;
-    sc_workspace *w = a->workspace;
-    sc_worker *worker = sc_workspace_resume(a->model, w, q);
-    const uint64_t start = q->timed ? sc_clock_nanoseconds() : 0;
-    worker->last_time = start;
-    sc_workspace_keep_all(w);
-    if (!sc_worker_stops(worker)) sc_plan_run(w);
-    if (q->timed) {
-        worker->stats.nanoseconds[worker->task] += sc_clock_nanoseconds() - worker->last_time;
-        sc_worker_add_stats(r->stats, &worker->stats);
-    }
-    run->incomplete |= worker->incomplete;
-    if (!worker->count) return;
-    if (run->ranges < r->range_capacity) {
-        sc_object_pairs *range = &r->ranges[run->ranges];
-        range->object_a = a->workspace->object - 1;
-        range->object_b = b->workspace->object - 1;
-        range->first = r->count;
-        range->count = worker->count;
-    }
-    run->ranges++;
-    r->count += worker->count;
+    sc_object_list rest = run->answer->list[kind];
+    const int has_room = run->asked->output == SC_OUTPUT_PAIRS && rest.count < rest.capacity;
+    rest.capacity = has_room ? rest.capacity - rest.count : 0;
+    rest.pairs = has_room ? rest.pairs + rest.count : NULL;
+    rest.times = has_room && rest.times ? rest.times + rest.count : NULL;
+    return rest;
 }
 
-static void begin_question(const objects_run *run, const sc_object *a, const sc_object *b,
-                           sc_question *q)
+static void begin_plain(const objects_run *run, const sc_tasks *tasks, part_question *q)
 {
-    const sc_query_options *o = &run->asked->options;
+    const sc_object_list rest = rest_of(run, 0);
+    q->query = &q->plain;
+    q->plain.options = run->asked->options;
+    q->plain.options.tasks = tasks;
+    q->plain.capacity = rest.capacity;
+    q->plain.pairs = rest.pairs;
+    q->plain.timed = run->answer->stats != NULL;
+    q->plain.ends_early = run->asked->ends_early;
+    q->plain.test = sc_simple_tests;
+}
+
+/* Options of what is near, on a model or between two objects; edges: whether any are wanted. */
+static sc_status begin_near(const objects_run *run, const sc_model *model, const sc_tasks *tasks,
+                            int edges, part_question *q)
+{
+    const sc_object_list faces = rest_of(run, SC_STEP_VERTEX_FACE);
+    const sc_object_list pairs = rest_of(run, SC_STEP_EDGE_EDGE);
+    sc_near_options *o = &q->near.options;
+    sc_near_result lists;
+    sc_status status;
+    q->near = run->asked->near;
+    q->query = &q->near.step.query;
+    o->tasks = tasks;
+    if (!model) o->method = SC_NEAR_METHOD_BOXES;
+    status = model ? sc_near_question_choose(model, o) : SC_OK;
+    if (!edges) o->kinds = SC_NEAR_VERTEX_FACE;
+    memset(&lists, 0, sizeof lists);
+    lists.vertex_faces = faces.pairs;
+    lists.vertex_face_capacity = faces.capacity;
+    lists.edge_edges = pairs.pairs;
+    lists.edge_edge_capacity = pairs.capacity;
+    lists.stats = run->answer->stats;
+    sc_near_question_fill(&lists, &q->near);
+    return status;
+}
+
+static sc_status begin_step(const objects_run *run, const sc_model *model, const sc_tasks *tasks,
+                            int edges, part_question *q)
+{
+    const sc_object_list faces = rest_of(run, SC_STEP_VERTEX_FACE);
+    const sc_object_list pairs = rest_of(run, SC_STEP_EDGE_EDGE);
+    sc_step_options *o = &q->near.step.options;
+    sc_step_result lists;
+    sc_status status;
+    q->near.step = run->asked->near.step;
+    q->query = &q->near.step.query;
+    o->tasks = tasks;
+    if (!model && o->method != SC_STEP_METHOD_SWEPT) o->method = SC_STEP_METHOD_TWO_BOXES;
+    status = model ? sc_step_question_choose(model, o) : SC_OK;
+    q->near.step.faces_only = !edges;
+    memset(&lists, 0, sizeof lists);
+    lists.vertex_faces = faces.pairs;
+    lists.vertex_face_times = faces.times;
+    lists.vertex_face_capacity = faces.capacity;
+    lists.edge_edges = pairs.pairs;
+    lists.edge_edge_times = pairs.times;
+    lists.edge_edge_capacity = pairs.capacity;
+    lists.stats = run->answer->stats;
+    sc_step_question_fill(&lists, &q->near.step);
+    q->near.step.limits = run->asked->near.step.limits;
+    return status;
+}
+
+/* A question without a filter; model: what it is asked of, or NULL: two objects. */
+static sc_status begin_question(const objects_run *run, const sc_model *model,
+                                const sc_tasks *tasks, int edges, part_question *q)
+{
+    sc_status status = SC_OK;
     memset(q, 0, sizeof *q);
-    q->options = *o;
-    q->options.tasks = tasks_of(run, a, b);
-    q->capacity = room_for_pairs(run);
-    q->pairs = q->capacity ? run->result->pairs + run->result->count : NULL;
-    q->timed = run->result->stats != NULL;
-    q->ends_early = o->output == SC_OUTPUT_ANY;
-    q->test = sc_simple_tests;
-    q->keeps = 1;
+    if (run->asked->about == SC_QUESTION_NEAR) {
+        status = begin_near(run, model, tasks, edges, q);
+    } else if (run->asked->about == SC_QUESTION_STEP) {
+        status = begin_step(run, model, tasks, edges, q);
+    } else {
+        begin_plain(run, tasks, q);
+        if (model) status = sc_question_choose(model, &q->plain.options);
+        q->plain.has_last = model && q->plain.options.method == SC_METHOD_SCTT;
+    }
+    q->query->keeps = 1;
+    return status;
 }
 
-static int is_over(const objects_run *run)
+/* Which pairs of an object with itself are not wanted. */
+static sc_status begin_filters(const objects_run *run, const sc_object *o, part_question *q)
 {
-    return run->incomplete ||
-           (run->asked->options.output == SC_OUTPUT_ANY && run->result->count > 0);
+    sc_step_question *step = &q->near.step;
+    sc_frame *frame = &o->workspace->frame;
+    sc_status status;
+    if (run->asked->about == SC_QUESTION_QUERY)
+        return o->filter ? sc_filter_begin(q->query, hooks_of(o), o->model, o->filter, &q->filter)
+                         : SC_OK;
+    step->options.vertex_face_filter = o->vertex_face_filter;
+    step->options.edge_edge_filter = o->edge_edge_filter;
+    step->options.rest = o->rest;
+    step->options.rest_distance = o->rest_distance;
+    q->near.options.masks = o->masks;
+    if (o->masks && !sc_masks_fit(o->masks, o->model)) {
+        sc_hooks_log(hooks_of(o), SC_LOG_ERROR, "object.masks are of another model");
+        return SC_ERROR_OPTION;
+    }
+    status = sc_step_question_read_filters(hooks_of(o), o->model, &q->asked, step);
+    if (status) return status;
+    status = sc_step_filter_begin(o->model, step->options.rest, q->asked.rest_stride,
+                                  step->options.rest_distance, NULL, frame->motion.vertex_groups,
+                                  &step->filters);
+    if (status)
+        sc_question_log_not_finite(hooks_of(o), o->model, &q->asked.rest, q->asked.rest_stride,
+                                   " in the rest pose");
+    return status;
 }
 
 /* What an object is asked about itself. */
-static sc_status ask_itself(const objects_run *run, const sc_object *o, sc_question *q,
-                            sc_filter *filter)
+static sc_status ask_itself(const objects_run *run, const sc_object *o, part_question *q)
 {
-    sc_status status;
-    begin_question(run, o, o, q);
-    status = sc_question_choose(o->model, &q->options);
-    q->has_last = q->options.method == SC_METHOD_SCTT;
-    if (!status && o->filter) status = sc_filter_begin(q, hooks_of(o), o->model, o->filter, filter);
+    const sc_status status = begin_question(run, o->model, tasks_of(run, o, o), 1, q);
+    return status ? status : begin_filters(run, o, q);
+}
+
+/* Whether all that are asked about themselves can be: before anything is written. */
+static sc_status check_those_asked(const objects_run *run)
+{
+    part_question q;
+    sc_status status = SC_OK;
+    uint32_t i;
+    for (i = 0; i < run->asked->objects.count && !status; i++)
+        if (object_at(run, i)->itself) status = ask_itself(run, object_at(run, i), &q);
     return status;
 }
 
-/* Whether all that do so can be: before anything is written. */
-static sc_status check_those_asked(const objects_run *run)
+/* ---- answers ---- */
+
+/* Takes down how many pairs of a list are of two objects. */
+static void add_range(objects_run *run, const sc_object *a, const sc_object *b, int kind,
+                      uint64_t count)
 {
-    const sc_objects *objects = &run->asked->objects;
-    sc_question q;
-    sc_filter filter;
-    sc_status status = SC_OK;
-    uint32_t i;
-    for (i = 0; i < objects->count && !status; i++)
-        if (object_at(objects, i)->itself)
-            status = ask_itself(run, object_at(objects, i), &q, &filter);
-    return status;
+    sc_object_list *list = &run->answer->list[kind];
+    if (!count) return;
+    if (list->range_count < list->range_capacity) {
+        sc_object_pairs *range = &list->ranges[list->range_count];
+        range->object_a = a->workspace->object - 1;
+        range->object_b = b->workspace->object - 1;
+        range->first = list->count;
+        range->count = count;
+    }
+    list->range_count++;
+    list->count += count;
+}
+
+/* Has a question answered in a workspace, and takes down what was found. */
+static void answer(objects_run *run, const sc_object *a, const sc_object *b, const sc_question *q)
+{
+    sc_workspace *w = a->workspace;
+    sc_worker *worker = sc_workspace_resume(a->model, w, q);
+    worker->last_time = q->timed ? sc_clock_nanoseconds() : 0;
+    if (!q->step) sc_workspace_keep_all(w);
+    if (!sc_worker_stops(worker)) sc_plan_run(w);
+    if (q->timed) {
+        worker->stats.nanoseconds[worker->task] += sc_clock_nanoseconds() - worker->last_time;
+        sc_worker_add_stats(run->answer->stats, &worker->stats);
+    }
+    run->incomplete |= worker->incomplete;
+    if (!q->step) {
+        add_range(run, a, b, 0, worker->count);
+        return;
+    }
+    add_range(run, a, b, SC_STEP_VERTEX_FACE, worker->step->count[SC_STEP_VERTEX_FACE]);
+    add_range(run, a, b, SC_STEP_EDGE_EDGE, worker->step->count[SC_STEP_EDGE_EDGE]);
+    if (worker->step->earliest < run->answer->earliest)
+        run->answer->earliest = worker->step->earliest;
 }
 
 static sc_status look_at_itself(objects_run *run, const sc_object *o)
 {
-    sc_question q;
-    sc_filter filter;
-    sc_status status = ask_itself(run, o, &q, &filter);
+    part_question q;
+    const sc_status status = ask_itself(run, o, &q);
     if (status) return status;
-    o->workspace->frame.tasks = sc_plan_tasks(o->model, &q);
-    answer(run, o, o, &q);
+    o->workspace->frame.tasks = sc_plan_tasks(o->model, q.query);
+    answer(run, o, o, q.query);
     return SC_OK;
 }
 
@@ -349,98 +272,124 @@ static int groups_collide(const sc_object *a, const sc_object *b)
     return sc_filter_groups_collide(x, y);
 }
 
-static int boxes_meet(const sc_frame *a, const sc_frame *b)
-{
-    int k, meet = 1;
-    for (k = 0; k < 3; k++) meet &= (a->low[k] <= b->high[k]) & (b->low[k] <= a->high[k]);
-    return meet;
-}
-
-/* Boxes and points of an object, for others to be compared with. */
-static void make_boxes(objects_run *run, const sc_object *o, const sc_tasks *tasks)
-{
-    sc_frame *frame = &o->workspace->frame;
-    const uint64_t start = run->result->stats ? sc_clock_nanoseconds() : 0;
-    if (frame->boxes_ready) return;
-    frame->tasks = o->model->leaf_count < 128 ? NULL : tasks;
-    sc_refit_boxes(o->model, frame);
-    if (!run->result->stats) return;
-    run->result->stats->counts[SC_TASK_UPDATE_BOXES] +=
-        (uint64_t)o->model->patch_end + o->model->triangle_count;
-    run->result->stats->nanoseconds[SC_TASK_UPDATE_BOXES] += sc_clock_nanoseconds() - start;
-}
-
 static int accept_pair(void *user, uint32_t a, uint32_t b)
 {
-    const accept_between *between = (const accept_between *)user;
-    return between->objects->accept(between->objects->accept_user, between->a, between->b, a, b);
+    const accept_between *at = (const accept_between *)user;
+    return at->objects->accept(at->objects->accept_user, at->a, at->b, a, b);
 }
 
-static void look_at_two(objects_run *run, const sc_object *a, const sc_object *b)
+static int accept_vertex_face(void *user, uint32_t a, uint32_t b)
+{
+    const accept_between *at = (const accept_between *)user;
+    return at->objects->accept_near(at->objects->accept_user, SC_NEAR_VERTEX_FACE, at->a, at->b, a,
+                                    b);
+}
+
+static int accept_edge_edge(void *user, uint32_t a, uint32_t b)
+{
+    const accept_between *at = (const accept_between *)user;
+    return at->objects->accept_near(at->objects->accept_user, SC_NEAR_EDGE_EDGE, at->a, at->b, a,
+                                    b);
+}
+
+/* Has the caller's functions asked. */
+static void begin_accept(const objects_run *run, accept_between *between, part_question *q)
 {
     const sc_objects *objects = &run->asked->objects;
-    accept_between between;
-    sc_question q;
-    sc_filter filter;
-    begin_question(run, a, b, &q);
-    make_boxes(run, a, q.options.tasks);
-    make_boxes(run, b, q.options.tasks);
-    q.second = b->workspace;
-    sc_workspace_lend(b->model, b->workspace, &q, q.options.tasks ? q.options.tasks->workers : 1);
-    q.options.method = SC_METHOD_AABB;
-    q.options.contour = SC_CONTOUR_EXACT;
-    if (objects->accept) {
-        between.objects = objects;
-        between.a = a->workspace->object - 1;
-        between.b = b->workspace->object - 1;
-        memset(&filter, 0, sizeof filter);
-        filter.struct_size = sizeof filter;
-        filter.accept = accept_pair;
-        filter.accept_user = &between;
-        q.filter = &filter;
+    sc_pair_filters *filters = &q->near.step.filters;
+    int kind;
+    filters->rest_distance = -1;
+    if (run->asked->about == SC_QUESTION_QUERY) {
+        if (!objects->accept) return;
+        q->filter.struct_size = sizeof q->filter;
+        q->filter.accept = accept_pair;
+        q->filter.accept_user = between;
+        q->plain.filter = &q->filter;
+        return;
     }
-    answer(run, a, b, &q);
+    for (kind = 0; kind < 2 && objects->accept_near; kind++) {
+        filters->asks[kind] = 1;
+        filters->of[kind].accept =
+            kind == SC_STEP_VERTEX_FACE ? accept_vertex_face : accept_edge_edge;
+        filters->of[kind].accept_user = between;
+    }
 }
 
-/* An object with itself and with those behind it; of edges with triangles, with those before it as
-   well. */
+/* Two objects, the first being that of triangles, of edges with triangles, or of vertices with
+   faces; edges: whether edges with edges are wanted. */
+static void look_at_two(objects_run *run, const sc_object *a, const sc_object *b, int edges)
+{
+    const sc_tasks *tasks = tasks_of(run, a, b);
+    const uint32_t about = run->asked->about;
+    accept_between between;
+    part_question q;
+    (void)begin_question(run, NULL, tasks, edges, &q);
+    sc_objects_frame_make_boxes(a, tasks, about, run->answer->stats);
+    sc_objects_frame_make_boxes(b, tasks, about, run->answer->stats);
+    q.query->second = b->workspace;
+    q.query->options.method = SC_METHOD_AABB;
+    q.query->options.contour = SC_CONTOUR_EXACT;
+    sc_workspace_lend(b->model, b->workspace, q.query, tasks ? tasks->workers : 1);
+    between.objects = &run->asked->objects;
+    between.a = a->workspace->object - 1;
+    between.b = b->workspace->object - 1;
+    begin_accept(run, &between, &q);
+    answer(run, a, b, q.query);
+}
+
+/* Whether pairs of two objects are wanted of which either may be the first. */
+static int has_order(const sc_objects_question *q)
+{
+    if (q->about == SC_QUESTION_QUERY) return q->options.pairs == SC_PAIRS_EDGE;
+    return q->about == SC_QUESTION_STEP || q->near.options.kinds != SC_NEAR_EDGE_EDGE;
+}
+
+/* An object with itself and with those behind it; and where pairs have an order, with those before
+   it as well. */
 static sc_status look_at(objects_run *run, uint32_t i)
 {
-    const sc_objects *objects = &run->asked->objects;
-    const sc_object *a = object_at(objects, i);
-    const int edges = run->asked->options.pairs == SC_PAIRS_EDGE;
+    const sc_objects_question *q = run->asked;
+    const sc_object *a = object_at(run, i);
     uint32_t j;
     sc_status status;
-    for (j = edges ? 0 : i; j < objects->count && !is_over(run); j++) {
-        const sc_object *b = object_at(objects, j);
+    for (j = has_order(q) ? 0 : i; j < q->objects.count && !is_over(run); j++) {
+        const sc_object *b = object_at(run, j);
         if (i == j) {
             if (a->itself && (status = look_at_itself(run, a))) return status;
-        } else if (boxes_meet(&a->workspace->frame, &b->workspace->frame) && groups_collide(a, b)) {
-            look_at_two(run, a, b);
+        } else if (groups_collide(a, b) &&
+                   sc_objects_frame_meet(&a->workspace->frame, &b->workspace->frame,
+                                         run->clearance)) {
+            look_at_two(run, a, b, i < j);
         }
     }
     return SC_OK;
 }
 
-sc_status sc_objects_run(const sc_objects_question *question, sc_objects_result *result)
+static int lacks_room(const sc_object_list *list, uint32_t output)
 {
-    const uint64_t start = result->stats ? sc_clock_nanoseconds() : 0;
+    return (output == SC_OUTPUT_PAIRS && list->count > list->capacity) ||
+           (list->range_capacity && list->range_count > list->range_capacity);
+}
+
+sc_status sc_objects_run(sc_objects_question *question, sc_objects_answer *answer)
+{
+    const uint64_t start = answer->stats ? sc_clock_nanoseconds() : 0;
     objects_run run;
     sc_status status;
     uint32_t i;
     memset(&run, 0, sizeof run);
     run.asked = question;
-    run.result = result;
+    run.answer = answer;
+    answer->earliest = 1;
     status = check_those_asked(&run);
-    if (!status) status = read_poses(&run);
+    if (!status) status = sc_objects_frame_read(question, &run.clearance);
     for (i = 0; !status && i < question->objects.count && !is_over(&run); i++)
         status = look_at(&run, i);
-    result->range_count = run.ranges;
-    if (result->stats) result->stats->total_nanoseconds = sc_clock_nanoseconds() - start;
+    if (answer->stats) answer->stats->total_nanoseconds = sc_clock_nanoseconds() - start;
     if (status) return status;
     if (run.incomplete) return SC_ERROR_INCOMPLETE;
-    if (question->options.output == SC_OUTPUT_PAIRS && result->count > result->capacity)
-        return SC_ERROR_SHORT_BUFFER;
-    return run.ranges > result->range_capacity && result->range_capacity ? SC_ERROR_SHORT_BUFFER
-                                                                         : SC_OK;
+    return lacks_room(&answer->list[0], question->output) ||
+                   lacks_room(&answer->list[1], question->output)
+               ? SC_ERROR_SHORT_BUFFER
+               : SC_OK;
 }

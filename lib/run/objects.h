@@ -3,32 +3,23 @@
  *
  * SPDX-License-Identifier: MIT
  *
- * The frames of all objects have one unit box, so that points of two can be compared. It stays what
- * it was in the last call as long as all objects are in it and fill an eighth of it: so what was made
- * of an object that does not move stays valid.
- *
  * Each object with itself, and each two whose boxes meet, is a query of its own, in the first one's
- * workspace (run/plan.h).
+ * workspace (run/plan.h). Vertices with faces, and edges with triangles, have an order: such two
+ * objects are two queries, and the second leaves out what has none.
  */
 #ifndef SC_RUN_OBJECTS_H
 #define SC_RUN_OBJECTS_H
 
-#include "run/question.h"
+#include "run/objects_question.h"
 
-/* What is asked: objects and options, checked and complete. */
-typedef struct sc_objects_question {
-    sc_objects objects; /* with a stride */
-    sc_query_options options;
-    sc_tasks tasks;
-    const sc_tasks *given; /* that, or NULL */
-} sc_objects_question;
+/* The answer: lists with the caller's arrays; of intersections the first alone. */
+typedef struct sc_objects_answer {
+    sc_object_list list[2]; /* SC_STEP_VERTEX_FACE, SC_STEP_EDGE_EDGE */
+    double earliest;
+    sc_stats *stats; /* a structure of this library's size, or NULL */
+} sc_objects_answer;
 
-/* Checks and copies all of it but the objects' poses. The log is the first object's. */
-sc_status sc_objects_read(const sc_objects *objects, const sc_query_options *options,
-                          sc_objects_question *question);
-
-/* Answers it; *result has the caller's arrays, and stats a structure of this library's size, or
-   NULL. */
-sc_status sc_objects_run(const sc_objects_question *question, sc_objects_result *result);
+/* Answers a question that was read; fills in what all objects together decide of it. */
+sc_status sc_objects_run(sc_objects_question *question, sc_objects_answer *answer);
 
 #endif

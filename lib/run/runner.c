@@ -50,11 +50,10 @@ static const list_rule rules[SC_LIST_COUNT] = {
 
 void sc_runner_run_stage(sc_worker *w, sc_list_id list, uint32_t most)
 {
-    const sc_kernels *kernels = w->frame->kernels;
-    (w->question->near         ? kernels->near_stages
-     : w->question->step       ? kernels->step_stages
-     : sc_worker_is_between(w) ? kernels->between_stages
-                               : kernels->query_stages)[list](w, most);
+    const int asked = w->question->near   ? SC_QUESTION_NEAR
+                      : w->question->step ? SC_QUESTION_STEP
+                                          : SC_QUESTION_QUERY;
+    w->frame->kernels->stages[asked][sc_worker_is_between(w)][list](w, most);
     SC_HOOKS_ASSERT(w->hooks, sc_lists_have_room(&w->lists));
 }
 

@@ -42,6 +42,23 @@ static sc_stage *const between_stages[SC_LIST_COUNT] = {
     [SC_LIST_EXACT] = sc_decide_exactly,
 };
 
+/* The same in a step, and for what is near: of boxes that move, or stay where they are. */
+static sc_stage *const step_between_stages[SC_LIST_COUNT] = {
+    [SC_LIST_PATCHES] = open_moving_between,
+    [SC_LIST_CLUSTERS] = compare_moving_between,
+    [SC_LIST_FACE_ROWS] = list_faces,
+    [SC_LIST_EDGE_ROWS] = list_edges,
+    [SC_LIST_FACES] = sc_step_candidates_take_faces,
+    [SC_LIST_EDGES] = sc_step_candidates_take_edges,
+};
+
+static sc_stage *const near_between_stages[SC_LIST_COUNT] = {
+    [SC_LIST_PATCHES] = open_moving_between,
+    [SC_LIST_CLUSTERS] = decide_near_between,
+    [SC_LIST_FACES] = sc_near_candidates_take_faces,
+    [SC_LIST_EDGES] = sc_near_candidates_take_edges,
+};
+
 static sc_stage *const step_stages[SC_LIST_COUNT] = {
     [SC_LIST_FAILED] = sc_culling_open,
     [SC_LIST_ORIENTED] = sc_culling_test,

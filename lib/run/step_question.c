@@ -50,8 +50,15 @@ static sc_status choose_step_method(const sc_model *model, uint32_t contour, uin
     return *method > SC_STEP_METHOD_SCTT ? SC_OK : SC_ERROR_BOXES_ONLY;
 }
 
-/* Puts in place of defaults what they stand for on this model and machine. */
-static sc_status choose_for_step(const sc_model *model, sc_step_options *o)
+sc_status sc_step_question_read_options(const sc_hooks *hooks, const sc_step_options *from,
+                                        sc_step_options *options)
+{
+    const sc_status status =
+        sc_arguments_read_options(hooks, "options", options, sizeof *options, from);
+    return status ? status : check_step_choices(hooks, options);
+}
+
+sc_status sc_step_question_choose(const sc_model *model, sc_step_options *o)
 {
     const uint32_t best = (uint32_t)sc_isa_best();
     sc_status status = choose_step_method(model, o->contour, &o->method);
@@ -124,9 +131,8 @@ sc_status sc_step_question_read(const sc_model *model, const sc_workspace *works
     if ((status = sc_arguments_need(hooks, "start", NULL, start))) return status;
     if ((status = sc_arguments_need(hooks, "end", NULL, end))) return status;
     status = sc_question_check_workspace(model, workspace, SC_WORKSPACE_STEP);
-    if (!status) status = sc_arguments_read_options(hooks, "options", o, sizeof *o, from);
-    if (!status) status = check_step_choices(hooks, o);
-    if (!status) status = choose_for_step(model, o);
+    if (!status) status = sc_step_question_read_options(hooks, from, o);
+    if (!status) status = sc_step_question_choose(model, o);
     if (!status) status = sc_question_read_tasks(workspace, &o->tasks, &asked->tasks);
     if (!status)
         status =

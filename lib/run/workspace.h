@@ -57,9 +57,10 @@ struct sc_workspace {
     uint32_t owned; /* allocated by sc_workspace_create or _create_for */
     sc_hooks hooks;
     sc_frame frame;
-    uint64_t
-        pose_version; /* as an object: of the pose that the frame is of, or 0, see run/objects.h */
-    uint32_t object;  /* its number, counted from 1, while a call about objects lasts */
+    uint64_t pose_version; /* as an object: of the pose that the frame is of, or 0, see
+                              run/objects_frame.h */
+    uint32_t pose_about;   /* and for which questions, SC_QUESTION_... */
+    uint32_t object;       /* its number, counted from 1, while a call about objects lasts */
     sc_contour_bounds bounds;     /* the first worker's */
     sc_leaf_derived *all_derived; /* leaf_count; 0 if there are no segments */
     sc_leaf_known *all_known;     /* the same */

@@ -90,5 +90,9 @@ static const sc_step_kernels step_kernels = {
 
 #include "run/stages.h"
 
-const sc_kernels SC_KERNELS = {&pose_kernels,  &query_kernels, &step_kernels, query_stages,
-                               between_stages, step_stages,    near_stages};
+const sc_kernels SC_KERNELS = {&pose_kernels,
+                               &query_kernels,
+                               &step_kernels,
+                               {{query_stages, between_stages},
+                                {step_stages, step_between_stages},
+                                {near_stages, near_between_stages}}};

@@ -19,12 +19,14 @@ struct sc_worker;        /* query/worker.h */
 /* A stage: takes `most` items of its list or fewer, see run/stages.h. */
 typedef void sc_stage(struct sc_worker *w, uint32_t most);
 
+/* What is asked: for intersections, in a step, or for what is near. */
+enum { SC_QUESTION_QUERY, SC_QUESTION_STEP, SC_QUESTION_NEAR, SC_QUESTIONS };
+
 typedef struct sc_kernels {
     const struct sc_pose_kernels *pose;
     const struct sc_query_kernels *query;
     const struct sc_step_kernels *step;
-    sc_stage *const *query_stages, *const *between_stages, *const *step_stages,
-                                                               *const *near_stages; /* by lists */
+    sc_stage *const *stages[SC_QUESTIONS][2]; /* by lists: of one object, and between two */
 } sc_kernels;
 
 extern const sc_kernels sc_kernels_base;

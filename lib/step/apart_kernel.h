@@ -19,19 +19,20 @@ typedef struct sc_candidate_points {
     uint32_t point[4][SC_LANES_COUNT];
 } sc_candidate_points;
 
-/* The points of sixteen candidates at the start or at the end, three coordinates each. */
+/* The points of sixteen candidates at the start or at the end, three coordinates each, those of the
+   first of a pair, `split` of them, being of the first mesh. */
 typedef struct candidate_lanes {
     lanes at[4][3];
 } candidate_lanes;
 
-static inline void read_candidates(const sc_motion *m, const sc_candidate_points *points, int end,
-                                   candidate_lanes *c)
+static inline void read_candidates(const sc_motion *const of[2], const sc_candidate_points *points,
+                                   int split, int end, candidate_lanes *c)
 {
     const float *at[SC_LANES_COUNT];
     int i, j;
     for (i = 0; i < 4; i++) {
         for (j = 0; j < SC_LANES_COUNT; j++)
-            at[j] = m->unit + 8 * (uint64_t)points->point[i][j] + 4 * end;
+            at[j] = of[i >= split]->unit + 8 * (uint64_t)points->point[i][j] + 4 * end;
         lanes_points(at, &c->at[i][0], &c->at[i][1], &c->at[i][2]);
     }
 }
@@ -85,14 +86,15 @@ static inline lanes clear_in_space(float distance, lanes reach)
                      lanes_multiply(reach, lanes_all(5 * SC_BOUNDS_V)));
 }
 
-static unsigned stay_apart(const sc_motion *motion, const sc_candidate_points *points, int split)
+static unsigned stay_apart(const sc_motion *const of[2], const sc_candidate_points *points,
+                           int split)
 {
     candidate_lanes c[2];
     lanes difference[8][3], sum[2][3], side[3][3], m[3], reach = lanes_all(0), clear;
     int i, j, k, end, count = 0;
     unsigned apart;
     for (end = 0; end < 2; end++) {
-        read_candidates(motion, points, end, &c[end]);
+        read_candidates(of, points, split, end, &c[end]);
         for (k = 0; k < 3; k++) sum[end][k] = lanes_all(0);
         for (i = 0; i < split; i++)
             for (j = split; j < 4; j++, count++)
@@ -103,7 +105,7 @@ static unsigned stay_apart(const sc_motion *motion, const sc_candidate_points *p
                     sum[end][k] = lanes_add(sum[end][k], r);
                 }
     }
-    clear = clear_in_space(motion->distance, reach);
+    clear = clear_in_space(of[0]->distance, reach);
     for (k = 0; k < 3; k++) m[k] = lanes_add(sum[0][k], sum[1][k]);
     apart = apart_in_space(m, difference, count, clear);
     side_in_space(c, split == 1 ? 1 : 0, split == 1 ? 2 : 1, side[0]);

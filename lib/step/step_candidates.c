@@ -9,18 +9,30 @@
 #include "step/step_filter.h"
 #include "step/step_pairs.h"
 
-sc_pair sc_step_candidates_name(const sc_model *model, int kind, const sc_pair *pair)
+sc_pair sc_step_candidates_name(const sc_worker *w, int kind, const sc_pair *pair)
 {
-    const uint32_t *id = sc_model_triangle_id(model);
+    const uint32_t *of_a = sc_model_triangle_id(w->model);
+    const uint32_t *of_b = sc_model_triangle_id(w->second->model);
     sc_pair name;
     if (kind == SC_STEP_VERTEX_FACE) {
         name.a = pair->a;
-        name.b = id[pair->b];
+        name.b = of_b[pair->b];
     } else {
-        name.a = 3 * id[pair->a / 3] + pair->a % 3;
-        name.b = 3 * id[pair->b / 3] + pair->b % 3;
+        name.a = 3 * of_a[pair->a / 3] + pair->a % 3;
+        name.b = 3 * of_b[pair->b / 3] + pair->b % 3;
     }
     return name;
+}
+
+void sc_step_candidates_positions(const sc_worker *w, int kind, const uint32_t point[4], int end,
+                                  double at[4][3])
+{
+    const uint32_t of_first = sc_step_points_of_first(kind);
+    uint32_t k;
+    for (k = 0; k < 4; k++) {
+        const sc_worker *side = k < of_first ? w : w->second;
+        sc_positions_get(&side->frame->positions[end], point[k], at[k]);
+    }
 }
 
 static int collides(int kind, const double from[4][3], const double to[4][3],
@@ -33,27 +45,26 @@ static int collides(int kind, const double from[4][3], const double to[4][3],
 /* Decides a pair, or takes it, if candidates are wanted. */
 static void take_moving(sc_worker *w, int kind, sc_pair pair)
 {
-    const sc_positions *positions = w->frame->positions;
     const sc_step_question *question = w->step->question;
     double start[4][3], end[4][3], time = 0;
     const double(*from)[3] = (const double(*)[3])start, (*to)[3] = (const double(*)[3])end;
-    sc_pair name = sc_step_candidates_name(w->model, kind, &pair);
-    uint32_t point[4], first = 0, k;
-    sc_step_candidates_points(w->model, kind, &pair, point);
+    sc_pair name = sc_step_candidates_name(w, kind, &pair);
+    uint32_t point[4], k;
     /* The answer must not depend on which of two edges was found first: the one with the lower
        name is put first. */
-    if (kind == SC_STEP_EDGE_EDGE && name.a > name.b) {
+    if (sc_step_candidates_turn(w, kind, name)) {
         k = name.a;
         name.a = name.b;
         name.b = k;
-        first = 2;
+        k = pair.a;
+        pair.a = pair.b;
+        pair.b = k;
     }
+    sc_step_candidates_points(w, kind, &pair, point);
     if (question->filters.sifts[kind] && !sc_step_filter_admits(w, kind, pair, point, name)) return;
     if (question->options.pairs == SC_STEP_COLLISIONS) {
-        for (k = 0; k < 4; k++) {
-            sc_positions_get(&positions[0], point[k ^ first], start[k]);
-            sc_positions_get(&positions[1], point[k ^ first], end[k]);
-        }
+        sc_step_candidates_positions(w, kind, point, 0, start);
+        sc_step_candidates_positions(w, kind, point, 1, end);
         if (!collides(kind, from, to, &question->limits, &time)) return;
         if (question->options.begun == SC_STEP_BEGUN_NEARER) {
             sc_impact_limits own = question->limits;

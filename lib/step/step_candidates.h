@@ -8,25 +8,37 @@
 
 #include "step/step_worker.h"
 
-/* The points of a pair, in the order in which the narrow phase takes them. */
-static inline void sc_step_candidates_points(const sc_model *model, int kind, const sc_pair *pair,
+/* The points of a pair, in the order in which the narrow phase takes them. Between two objects the
+   first of the pair is of the first object. */
+static inline void sc_step_candidates_points(const sc_worker *w, int kind, const sc_pair *pair,
                                              uint32_t point[4])
 {
-    const uint32_t *triangle = sc_model_triangle(model);
+    const uint32_t *of_a = sc_model_triangle(w->model), *of_b = sc_model_triangle(w->second->model);
     uint32_t k;
     if (kind == SC_STEP_VERTEX_FACE) {
         point[0] = pair->a;
-        for (k = 0; k < 3; k++) point[k + 1] = triangle[3 * (uint64_t)pair->b + k];
+        for (k = 0; k < 3; k++) point[k + 1] = of_b[3 * (uint64_t)pair->b + k];
         return;
     }
-    point[0] = triangle[pair->a];
-    point[1] = triangle[pair->a - pair->a % 3 + (pair->a + 1) % 3];
-    point[2] = triangle[pair->b];
-    point[3] = triangle[pair->b - pair->b % 3 + (pair->b + 1) % 3];
+    point[0] = of_a[pair->a];
+    point[1] = of_a[pair->a - pair->a % 3 + (pair->a + 1) % 3];
+    point[2] = of_b[pair->b];
+    point[3] = of_b[pair->b - pair->b % 3 + (pair->b + 1) % 3];
 }
 
 /* A pair in the caller's numbers. */
-sc_pair sc_step_candidates_name(const sc_model *model, int kind, const sc_pair *pair);
+sc_pair sc_step_candidates_name(const sc_worker *w, int kind, const sc_pair *pair);
+
+/* Whether two edges are named the other way round: the lower name is first. Between two objects the
+   first object's is. */
+static inline int sc_step_candidates_turn(const sc_worker *w, int kind, sc_pair name)
+{
+    return kind == SC_STEP_EDGE_EDGE && name.a > name.b && !sc_worker_is_between(w);
+}
+
+/* Where the points of a pair are at the start of a step (end: 0), or at its end (1). */
+void sc_step_candidates_positions(const sc_worker *w, int kind, const uint32_t point[4], int end,
+                                  double at[4][3]);
 
 /* Stages, see query/lists.h: the narrow phase of pairs, or, if candidates are wanted, these. */
 void sc_step_candidates_take_faces(sc_worker *w, uint32_t most);

@@ -8,13 +8,14 @@
    contour test, to the rows. */
 static void add_step_rows(sc_worker *w, uint32_t item, uint32_t other, const step_rows *rows)
 {
-    const uint32_t *first = sc_model_leaf_first(w->model);
     const uint32_t bit = item & SC_AFTER_CONTOUR, leaf[2] = {item & SC_ITEM, other};
+    const uint32_t first[2] = {sc_model_leaf_first(w->model)[leaf[0]],
+                               sc_model_leaf_first(w->second->model)[leaf[1]]};
     uint32_t *count = &w->lists.count[SC_LIST_FACE_ROWS], r, k;
     sc_moving_row *to = w->lists.moving_rows[0] + *count;
     for (r = 0; r < rows->faces; r++, to++) {
         const uint32_t of = rows->of[r];
-        to->of = first[leaf[of]] + rows->face[r];
+        to->of = first[of] + rows->face[r];
         to->leaf = leaf[1 - of] | bit;
         to->bits = rows->points[r];
     }
@@ -24,7 +25,7 @@ static void add_step_rows(sc_worker *w, uint32_t item, uint32_t other, const ste
     for (r = 0; r < rows->edges; r++) {
         const uint32_t edge = rows->edge[r];
         for (k = 0; k < 3; k++) {
-            to->of = 3 * (first[leaf[0]] + edge % SC_LEAF_MAX) + edge / SC_LEAF_MAX;
+            to->of = 3 * (first[0] + edge % SC_LEAF_MAX) + edge / SC_LEAF_MAX;
             to->leaf = leaf[1] | bit;
             to->bits = rows->others[r][k] | k << SC_LEAF_MAX;
             to += rows->others[r][k] != 0;
@@ -48,8 +49,7 @@ static void compare_moving_clusters(sc_worker *w, uint32_t most)
     for (; most && *left && have_room_for_rows(w); most--) {
         const sc_cluster_pair p = w->lists.clusters[--*left];
         const sc_leaf_motion *a = leaf_motion(w, p.a), *b = other_motion(w, p.a, p.b);
-        sc_worker_count_boxes(w, sc_item_follows(p.known),
-                              find_rows(w->model, &w->frame->motion, a, b, &rows));
+        sc_worker_count_boxes(w, sc_item_follows(p.known), find_rows(w, a, b, ROWS_ALL, &rows));
         add_step_rows(w, p.a | p.known, p.b, &rows);
     }
 }
@@ -61,17 +61,32 @@ static void compare_moving_leaves(sc_worker *w, uint32_t most)
     step_rows rows;
     for (; most && *left && have_room_for_rows(w); most--) {
         const uint32_t item = w->lists.near[0][--*left], leaf = item & SC_ITEM;
-        sc_worker_count_boxes(
-            w, sc_item_follows(item),
-            find_own_rows(w->model, &w->frame->motion, leaf_motion(w, leaf), &rows));
+        sc_worker_count_boxes(w, sc_item_follows(item),
+                              find_own_rows(w, leaf_motion(w, leaf), &rows));
         add_step_rows(w, item, leaf, &rows);
     }
 }
 
-/* Lists the pairs of a row; returns how many. */
-static uint32_t list_moving_row(const sc_model *model, const sc_moving_row *row, int kind,
-                                sc_pair *to)
+/* Vertices and edges of leaf clusters of the first of two objects with triangles and edges of the
+   second. */
+static void compare_moving_between(sc_worker *w, uint32_t most)
 {
+    const unsigned wanted = w->step->question->faces_only ? ROWS_SECOND : ROWS_SECOND | ROWS_EDGES;
+    uint32_t *left = &w->lists.count[SC_LIST_CLUSTERS];
+    step_rows rows;
+    for (; most && *left && have_room_for_rows(w); most--) {
+        const sc_cluster_pair p = w->lists.clusters[--*left];
+        const sc_leaf_motion *a = leaf_motion(w, p.a), *b = leaf_motion(w->second, p.b);
+        sc_worker_count_boxes(w, sc_item_follows(p.known), find_rows(w, a, b, wanted, &rows));
+        add_step_rows(w, p.a | p.known, p.b, &rows);
+    }
+}
+
+/* Lists the pairs of a row; returns how many. Between two objects a row of faces is one of the
+   second with vertices of the first, a row of edges one of the first with some of the second. */
+static uint32_t list_moving_row(const sc_worker *w, const sc_moving_row *row, int kind, sc_pair *to)
+{
+    const sc_model *model = kind == SC_STEP_VERTEX_FACE ? w->model : w->second->model;
     const uint32_t leaf = row->leaf & SC_ITEM, first = sc_model_leaf_first(model)[leaf];
     const uint32_t *point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)leaf;
     uint32_t bits = row->bits & ((1u << SC_LEAF_MAX) - 1u), count = 0;
@@ -89,12 +104,12 @@ static uint32_t list_moving_row(const sc_model *model, const sc_moving_row *row,
 }
 
 /* The points of up to sixteen pairs; the last one fills them up. */
-static void read_moving_pairs(const sc_model *model, const sc_pair *pairs, uint32_t count, int kind,
+static void read_moving_pairs(const sc_worker *w, const sc_pair *pairs, uint32_t count, int kind,
                               sc_candidate_points *to)
 {
     uint32_t i, k, point[4];
     for (i = 0; i < SC_LANES_COUNT; i++) {
-        sc_step_candidates_points(model, kind, &pairs[i < count ? i : count - 1], point);
+        sc_step_candidates_points(w, kind, &pairs[i < count ? i : count - 1], point);
         for (k = 0; k < 4; k++) to->point[k][i] = point[k];
     }
 }
@@ -104,13 +119,14 @@ static void read_moving_pairs(const sc_model *model, const sc_pair *pairs, uint3
 static void list_moving(sc_worker *w, uint32_t most, int kind)
 {
     const int part = w->step->question->options.pairs == SC_STEP_COLLISIONS;
+    const sc_motion *const of[2] = {&w->frame->motion, &w->second->frame->motion};
     sc_lists *l = &w->lists;
     uint32_t *left = &l->count[SC_LIST_FACE_ROWS + kind], *kept = &l->count[SC_LIST_FACES + kind];
     sc_pair pairs[SC_MOVING_LISTED + SC_LEAF_MAX];
     uint32_t count = 0, follow = 0, i;
     for (; most && *left && count < SC_MOVING_LISTED; most--) {
         const sc_moving_row *row = &l->moving_rows[kind][--*left];
-        const uint32_t some = list_moving_row(w->model, row, kind, pairs + count);
+        const uint32_t some = list_moving_row(w, row, kind, pairs + count);
         count += some;
         follow += sc_item_follows(row->leaf) * some;
     }
@@ -120,9 +136,8 @@ static void list_moving(sc_worker *w, uint32_t most, int kind)
         const uint32_t some = count - i < SC_LANES_COUNT ? count - i : SC_LANES_COUNT;
         unsigned mask = (1u << some) - 1u;
         sc_candidate_points points;
-        read_moving_pairs(w->model, pairs + i, some, kind, &points);
-        if (part)
-            mask &= ~stay_apart(&w->frame->motion, &points, kind == SC_STEP_VERTEX_FACE ? 1 : 2);
+        read_moving_pairs(w, pairs + i, some, kind, &points);
+        if (part) mask &= ~stay_apart(of, &points, (int)sc_step_points_of_first(kind));
         for (; mask; mask &= mask - 1) l->moving[kind][(*kept)++] = pairs[i + sc_bits_lowest(mask)];
     }
 }

@@ -105,18 +105,12 @@ sc_status sc_step_filter_begin(const sc_model *model, const sc_pose *rest, uint6
 
 /* ---- pairs ---- */
 
-/* How many of the four points of a pair are of its first. */
-static uint32_t points_of_first(int kind)
-{
-    return kind == SC_STEP_VERTEX_FACE ? 1 : 2;
-}
-
 /* Whether the groups of two leave their pair. */
 static int groups_leave(const sc_pair_filters *filters, int kind, const uint32_t point[4],
                         sc_pair name)
 {
     const sc_filter *f = &filters->of[kind];
-    const uint32_t first = points_of_first(kind);
+    const uint32_t first = sc_step_points_of_first(kind);
     if (f->triangle_groups) {
         const int is_vertex = kind == SC_STEP_VERTEX_FACE;
         const sc_group *a =
@@ -134,7 +128,7 @@ static int groups_leave(const sc_pair_filters *filters, int kind, const uint32_t
 static int is_in_rings(sc_worker *w, int kind, sc_pair inner, const uint32_t point[4],
                        uint32_t rings)
 {
-    const uint32_t first = points_of_first(kind);
+    const uint32_t first = sc_step_points_of_first(kind);
     sc_ball_side sides[2] = {{NULL, 0, SC_NONE}, {NULL, 0, SC_NONE}};
     const int is_vertex = kind == SC_STEP_VERTEX_FACE; /* round faces, not round vertices */
     sides[is_vertex].points = point;

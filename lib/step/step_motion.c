@@ -84,47 +84,69 @@ static void scale_step(void *context, uint32_t part, uint32_t first, uint32_t la
     }
 }
 
-sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
-                         sc_impact_limits *limits, sc_frame *frame)
+sc_status sc_motion_bound(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
+                          sc_frame *frame)
 {
     motion_pass pass;
-    bounds b;
-    double side = 0, distance;
     uint32_t part, parts;
-    int k, exponent;
+    int k;
     for (k = 0; k < 2; k++) sc_positions_note(model, &pose[k], stride[k], &frame->positions[k]);
     pass.model = model;
     pass.frame = frame;
     parts = sc_jobs_loop(frame->tasks, model->vertex_count, STEP_VERTICES_MIN, bound_poses, &pass);
-    b = pass.found[0];
+    for (k = 0; k < 3; k++) {
+        frame->low[k] = HUGE_VAL;
+        frame->high[k] = -HUGE_VAL;
+    }
     for (part = 0; part < parts; part++) {
         const bounds *found = &pass.found[part];
         if (found->not_finite != 0) return SC_ERROR_NOT_FINITE; /* NaN is not 0 */
         for (k = 0; k < 3; k++) {
-            b.low[k] = found->low[k] < b.low[k] ? found->low[k] : b.low[k];
-            b.high[k] = found->high[k] > b.high[k] ? found->high[k] : b.high[k];
+            frame->low[k] = found->low[k] < frame->low[k] ? found->low[k] : frame->low[k];
+            frame->high[k] = found->high[k] > frame->high[k] ? found->high[k] : frame->high[k];
         }
     }
-    frame->radius = 0;
-    for (k = 0; k < 3; k++) {
-        double half = b.high[k] / 2 - b.low[k] / 2;
-        frame->center[k] = b.low[k] / 2 + b.high[k] / 2;
-        if (b.high[k] - frame->center[k] > frame->radius)
-            frame->radius = b.high[k] - frame->center[k];
-        if (frame->center[k] - b.low[k] > frame->radius)
-            frame->radius = frame->center[k] - b.low[k];
-        if (half > side) side = half;
-    }
-    (void)frexp(frame->radius, &exponent);
-    frame->scale = ldexp(1, exponent > -1022 ? -exponent : 1022);
+    return SC_OK;
+}
+
+void sc_motion_scale(const sc_model *model, sc_frame *frame)
+{
+    motion_pass pass;
+    pass.model = model;
+    pass.frame = frame;
     (void)sc_jobs_loop(frame->tasks, model->vertex_count, STEP_VERTICES_MIN, scale_step, &pass);
-    if (limits->tolerance == 0) limits->tolerance = 2e-6 * side;
+}
+
+double sc_motion_clearance(sc_impact_limits *limits, double half_side)
+{
+    if (limits->tolerance == 0) limits->tolerance = 2e-6 * half_side;
+    return sc_impact_thickness(limits, 2 * half_side);
+}
+
+void sc_motion_keep_clear(double clearance, sc_frame *frame)
+{
     /* Rounded up: what is lost to rounding in double is less than is added. Infinite if it is
        beyond float: then nothing is apart. */
-    distance = sc_impact_thickness(limits, 2 * side) * frame->scale;
+    const double distance = clearance * frame->scale;
     frame->motion.distance =
         distance < (double)FLT_MAX / 2 ? (float)distance * 1.000001f + FLT_MIN : HUGE_VALF;
     frame->motion.margin = sc_motion_margin(frame->motion.distance);
+}
+
+sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
+                         sc_impact_limits *limits, sc_frame *frame)
+{
+    double half = 0, center[3];
+    int k;
+    const sc_status status = sc_motion_bound(model, pose, stride, frame);
+    if (status) return status;
+    for (k = 0; k < 3; k++) {
+        half = fmax(half, frame->high[k] / 2 - frame->low[k] / 2);
+        center[k] = frame->low[k] / 2 + frame->high[k] / 2;
+    }
+    sc_positions_move(frame, center);
+    sc_motion_scale(model, frame);
+    sc_motion_keep_clear(sc_motion_clearance(limits, half), frame);
     return SC_OK;
 }
 

@@ -27,11 +27,22 @@ static inline float sc_motion_margin(float distance)
     return distance * 1.000001f + SC_BOUNDS_MOVING_BOX;
 }
 
-/*
- * Notes where positions are, and fills center, radius and scale of the frame for the box of both
- * poses, and unit, distance and margin of its motion. A tolerance of 0 becomes the default.
- * The poses were checked but for what this reports: SC_ERROR_NOT_FINITE. About 6 ns a vertex.
- */
+/* Notes where positions are, and finds the box of both poses: low and high of the frame. The poses
+   were checked but for what this reports: SC_ERROR_NOT_FINITE. About 3 ns a vertex. */
+sc_status sc_motion_bound(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
+                          sc_frame *frame);
+
+/* Fills unit of the motion, by center and scale of the frame. About 3 ns a vertex. */
+void sc_motion_scale(const sc_model *model, sc_frame *frame);
+
+/* How far apart things must be, so that the narrow phase never reports them: half_side is half of
+   the longest side of the box of all there is. A tolerance of 0 becomes the default. */
+double sc_motion_clearance(sc_impact_limits *limits, double half_side);
+
+/* Fills distance and margin of the motion for that. */
+void sc_motion_keep_clear(double clearance, sc_frame *frame);
+
+/* All of these, of one mesh: its box is the unit box. */
 sc_status sc_motion_read(const sc_model *model, const sc_pose pose[2], const uint64_t stride[2],
                          sc_impact_limits *limits, sc_frame *frame);
 

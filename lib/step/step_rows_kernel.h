@@ -114,6 +114,7 @@ static inline unsigned points_left(const unsigned *beyond, int count)
 
 /* What is left of a leaf cluster. */
 typedef struct leaf_left {
+    const sc_motion *motion; /* of all of its mesh */
     const sc_leaf_motion *moving;
     const uint32_t *point;                /* its points, */
     const uint8_t *where;                 /* and which of these are the corners of triangles */
@@ -122,10 +123,12 @@ typedef struct leaf_left {
     uint16_t shared[SC_LEAF_POINTS];      /* which points of the other each point is */
 } leaf_left;
 
-static inline void begin_left(const sc_model *model, const sc_leaf_motion *moving, leaf_left *a)
+static inline void begin_left(const sc_worker *w, const sc_leaf_motion *moving, leaf_left *a)
 {
+    const sc_model *model = w->model;
     lanes_sets corner[3];
     int k;
+    a->motion = &w->frame->motion;
     a->moving = moving;
     a->point = sc_model_leaf_point(model) + SC_LEAF_POINTS * (uint64_t)moving->leaf;
     a->where = sc_model_leaf_corner(model) + 3 * SC_LEAF_MAX * (uint64_t)moving->leaf;
@@ -168,8 +171,8 @@ static inline void find_shared(leaf_left *a, leaf_left *b)
 
 /* Adds a triangle of one of two leaf clusters with those points of the other one b that its box
    does not tell apart from it. */
-static inline void add_face(const sc_motion *m, const leaf_left *a, uint32_t i, const leaf_left *b,
-                            unsigned points, unsigned of, step_rows *rows)
+static inline void add_face(const leaf_left *a, uint32_t i, const leaf_left *b, unsigned points,
+                            unsigned of, step_rows *rows)
 {
     uint32_t point[3];
     unsigned beyond[3];
@@ -181,7 +184,7 @@ static inline void add_face(const sc_motion *m, const leaf_left *a, uint32_t i, 
         point[k] = a->point[corner];
     }
     if (!points) return;
-    make_moving_box(m, point, 3, &box);
+    make_moving_box(a->motion, point, 3, &box);
     beyond_box(b->moving, &box, beyond);
     points &= points_left(beyond, 3);
     rows->of[rows->faces] = (uint8_t)of;
@@ -191,8 +194,8 @@ static inline void add_face(const sc_motion *m, const leaf_left *a, uint32_t i, 
 }
 
 /* The same for side k of triangle i, and edges. */
-static inline void add_edge(const sc_motion *m, const leaf_left *a, uint32_t i, int k,
-                            const leaf_left *b, const unsigned edges[3], step_rows *rows)
+static inline void add_edge(const leaf_left *a, uint32_t i, int k, const leaf_left *b,
+                            const unsigned edges[3], step_rows *rows)
 {
     const uint32_t first = a->where[SC_LEAF_MAX * k + (int)i];
     const uint32_t second = a->where[SC_LEAF_MAX * ((k + 1) % 3) + (int)i];
@@ -204,7 +207,7 @@ static inline void add_edge(const sc_motion *m, const leaf_left *a, uint32_t i, 
     SC_UNROLL
     for (l = 0; l < 3; l++) left[l] = edges[l] & lanes_within(b->ends[l], apart & 0xffffu);
     if (!(left[0] | left[1] | left[2])) return;
-    make_moving_box(m, point, 2, &box);
+    make_moving_box(a->motion, point, 2, &box);
     beyond_box(b->moving, &box, beyond);
     SC_UNROLL
     for (l = 0; l < 3; l++) {
@@ -215,9 +218,12 @@ static inline void add_edge(const sc_motion *m, const leaf_left *a, uint32_t i, 
     rows->edges += (left[0] | left[1] | left[2]) != 0;
 }
 
-/* Rows of two leaf clusters, of what is left of each. Returns how many slabs were compared with
-   points. */
-static uint32_t compare_faces(const sc_motion *m, leaf_left *a, leaf_left *b, step_rows *rows)
+/* Which rows are wanted of two leaf clusters: triangles of the first, of the second, and edges. */
+enum { ROWS_FIRST = 1, ROWS_SECOND = 2, ROWS_EDGES = 4, ROWS_ALL = 7 };
+
+/* Rows of two leaf clusters, of what is left of each; of one mesh, or of two, which share no point.
+   Returns how many slabs were compared with points. */
+static uint32_t compare_faces(leaf_left *a, leaf_left *b, unsigned wanted, step_rows *rows)
 {
     unsigned faces_a = 0, faces_b = 0, some; /* that are not apart from all of the other */
     unsigned beyond_a[SC_LEAF_MAX], near_a[SC_LEAF_MAX]; /* of faces_a: points, triangles of b */
@@ -234,7 +240,12 @@ static uint32_t compare_faces(const sc_motion *m, leaf_left *a, leaf_left *b, st
     }
     if (!faces_a) return count;
     count += sc_bits_count(faces_b);
-    find_shared(a, b);
+    if (a->motion == b->motion) {
+        find_shared(a, b);
+    } else {
+        memset(a->shared, 0, sizeof a->shared);
+        memset(b->shared, 0, sizeof b->shared);
+    }
     memset(sides, 0, sizeof sides);
     for (some = faces_b; some; some &= some - 1) {
         const uint32_t j = sc_bits_lowest(some);
@@ -243,7 +254,7 @@ static uint32_t compare_faces(const sc_motion *m, leaf_left *a, leaf_left *b, st
             faces_b &= ~(1u << j);
             continue;
         }
-        add_face(m, b, j, a, points_left(&beyond, 1) & a->points, 1, rows);
+        if (wanted & ROWS_SECOND) add_face(b, j, a, points_left(&beyond, 1) & a->points, 1, rows);
         SC_UNROLL
         for (k = 0; k < 3; k++)
             sides[k][j] = (uint16_t)(left_of(a->ends[k], &beyond, 1) & a->edges[k]);
@@ -255,14 +266,15 @@ static uint32_t compare_faces(const sc_motion *m, leaf_left *a, leaf_left *b, st
         const unsigned *beyond = &beyond_a[i];
         unsigned edges[3];
         if (!(near_a[i] & faces_b)) continue;
-        add_face(m, a, i, b, points_left(beyond, 1) & b->points, 0, rows);
+        if (wanted & ROWS_FIRST) add_face(a, i, b, points_left(beyond, 1) & b->points, 0, rows);
+        if (!(wanted & ROWS_EDGES)) continue;
         SC_UNROLL
         for (l = 0; l < 3; l++) edges[l] = left_of(b->ends[l], beyond, 1) & b->edges[l];
         SC_UNROLL
         for (k = 0; k < 3; k++) {
             const unsigned faces = ~lanes_within(left_by[k], ~(1u << i) & 0xffffu) & 0xffffu;
             const unsigned left[3] = {edges[0] & faces, edges[1] & faces, edges[2] & faces};
-            if (faces) add_edge(m, a, i, k, b, left, rows);
+            if (faces) add_edge(a, i, k, b, left, rows);
         }
     }
     return count;
@@ -270,27 +282,26 @@ static uint32_t compare_faces(const sc_motion *m, leaf_left *a, leaf_left *b, st
 
 /* Finds what is left of two leaf clusters. Returns how many slabs and boxes were compared with
    points. */
-static uint32_t find_rows(const sc_model *model, const sc_motion *m, const sc_leaf_motion *moving_a,
-                          const sc_leaf_motion *moving_b, step_rows *rows)
+static uint32_t find_rows(const sc_worker *w, const sc_leaf_motion *moving_a,
+                          const sc_leaf_motion *moving_b, unsigned wanted, step_rows *rows)
 {
     const unsigned slab_b = beyond_leaf(moving_b, moving_a);
     const unsigned slab_a = beyond_leaf(moving_a, moving_b);
     leaf_left a, b;
     rows->faces = rows->edges = 0;
     if (all_beyond(slab_a) | all_beyond(slab_b)) return 2;
-    begin_left(model, moving_a, &a);
+    begin_left(w, moving_a, &a);
     leave_near(&a, moving_b, slab_a);
     if (!a.triangles) return 3;
-    begin_left(model, moving_b, &b);
+    begin_left(w->second, moving_b, &b);
     leave_near(&b, moving_a, slab_b);
     if (!b.triangles) return 4;
-    return 4 + compare_faces(m, &a, &b, rows);
+    return 4 + compare_faces(&a, &b, wanted, rows);
 }
 
 /* The same for one: its triangles with its points, and its edges with those of triangles that come
    later. */
-static uint32_t find_own_rows(const sc_model *model, const sc_motion *m,
-                              const sc_leaf_motion *moving, step_rows *rows)
+static uint32_t find_own_rows(const sc_worker *w, const sc_leaf_motion *moving, step_rows *rows)
 {
     uint16_t sides[3][SC_LEAF_MAX];
     lanes_sets left_by[3];
@@ -299,12 +310,12 @@ static uint32_t find_own_rows(const sc_model *model, const sc_motion *m,
     int i, k;
     rows->faces = rows->edges = 0;
     memset(sides, 0, sizeof sides);
-    begin_left(model, moving, &a);
+    begin_left(w, moving, &a);
     for (i = 0; i < SC_LEAF_POINTS; i++) a.shared[i] = (uint16_t)(1u << i);
     for (some = moving->triangles; some; some &= some - 1) {
         const uint32_t j = sc_bits_lowest(some);
         const unsigned beyond = beyond_face(moving, moving, j);
-        add_face(m, &a, j, &a, points_left(&beyond, 1) & moving->own, 0, rows);
+        add_face(&a, j, &a, points_left(&beyond, 1) & moving->own, 0, rows);
         SC_UNROLL
         for (k = 0; k < 3; k++)
             sides[k][j] = (uint16_t)(left_of(a.ends[k], &beyond, 1) & moving->owned[k]);
@@ -319,7 +330,7 @@ static uint32_t find_own_rows(const sc_model *model, const sc_motion *m,
             const unsigned faces = ~lanes_within(left_by[k], ~(1u << j) & 0xffffu) & later;
             const unsigned left[3] = {sides[0][j] & faces, sides[1][j] & faces,
                                       sides[2][j] & faces};
-            if (faces) add_edge(m, &a, j, k, &a, left, rows);
+            if (faces) add_edge(&a, j, k, &a, left, rows);
         }
     }
     return sc_bits_count(moving->triangles);

@@ -52,6 +52,12 @@ typedef struct sc_moving_edges {
 /* Which of the caller's two lists. */
 enum { SC_STEP_VERTEX_FACE = 0, SC_STEP_EDGE_EDGE = 1 };
 
+/* How many of the four points of a pair are of its first: a vertex, or an edge. */
+static inline uint32_t sc_step_points_of_first(int kind)
+{
+    return kind == SC_STEP_VERTEX_FACE ? 1 : 2;
+}
+
 /* One of the caller's lists. */
 typedef struct sc_step_list {
     sc_pair *pairs;
@@ -73,6 +79,7 @@ typedef struct sc_pair_filters {
 typedef struct sc_step_question {
     sc_question query; /* what all queries are asked; its step is this */
     sc_step_options options;
+    int faces_only;          /* of two objects: edges are not asked for */
     sc_impact_limits limits; /* of the narrow phase */
     sc_step_list list[2];
     sc_pair_filters filters;
