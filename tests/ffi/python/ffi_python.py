@@ -438,11 +438,74 @@ check("a step, shown", repr(step) == f"<starcontour.Step: {len(step.vertex_faces
       f"{len(step.edge_edges)} edge-edge pairs, earliest {step.earliest:.6g}>")
 check("what is near, shown", "vertex-face and" in repr(wide))
 
+# Several objects: the same pairs as one mesh of all of them.
+scene = starcontour.Scene()
+offset = np.array([0.05, 0.02, 0.1])
+poses = [moved, moved + offset, rest + [0, 0, 0.3]]
+for number, pose in enumerate(poses):
+    scene.add(model, pose, itself=number < 2)
+whole_rest = np.concatenate([rest + [0, 0, 100.0 * k] for k in range(3)])
+whole_triangles = np.concatenate([triangles + k * len(rest) for k in range(3)])
+whole = starcontour.Model(whole_rest, whole_triangles)
+
+
+def joined(meetings, kind, timed=False):
+    """Meetings in numbers of the whole, sorted; those of the last object with itself are not there."""
+    def first(one, vertices):
+        return one.number * (len(rest) if vertices else len(triangles) * (3 if kind == "edge" else 1))
+
+    rows = [row for m in meetings for row in zip(
+        (m.pairs[:, 0].astype(int) + first(m.a, kind == "vertex_face")).tolist(),
+        (m.pairs[:, 1].astype(int) + first(m.b, False)).tolist(), m.times.tolist() if timed else m.pairs[:, 0] * 0)]
+    return sorted(rows)
+
+
+def of_whole(pairs, kind, times=None):
+    of = [len(rest) if kind == "vertex_face" else len(triangles) * (3 if kind == "edge" else 1),
+          len(triangles) * (3 if kind == "edge" else 1)]
+    rows = zip(pairs[:, 0].tolist(), pairs[:, 1].tolist(), [0] * len(pairs) if times is None else times.tolist())
+    return sorted(row for row in rows if not row[0] // of[0] == row[1] // of[1] == 2)
+
+
+ends = [pose + [0, 0, 0.05 * number] for number, pose in enumerate(poses)]
+for threads in (1, 2):
+    together = np.concatenate(poses)
+    check("a scene's pairs", joined(scene.query(threads=threads), "triangle") == of_whole(whole.query(together), "triangle"))
+    near_scene, near_whole = scene.near(0.2, threads=threads), whole.near(together, 0.2)
+    check("near in a scene", joined(near_scene.vertex_faces, "vertex_face") == of_whole(near_whole.vertex_faces, "vertex_face")
+          and joined(near_scene.edge_edges, "edge") == of_whole(near_whole.edge_edges, "edge")
+          and len(near_scene.edge_edges) > 2)
+    for one, end in zip(scene, ends):
+        one.end = end
+    step_scene, step_whole = scene.step(separation=0.05, threads=threads), whole.step(together, np.concatenate(ends), separation=0.05)
+    check("a step of a scene", joined(step_scene.vertex_faces, "vertex_face", True) == of_whole(
+        step_whole.vertex_faces, "vertex_face", step_whole.vertex_face_times) and joined(
+        step_scene.edge_edges, "edge", True) == of_whole(step_whole.edge_edges, "edge", step_whole.edge_edge_times))
+    scene.objects[1].pose = poses[1] = poses[1] + [0.01, 0, 0]
+    scene.objects[1].end = ends[1] = poses[1]
+check("a pose of a scene", np.array_equal(scene.objects[1].pose, poses[1]) and len(scene) == 3)
+scene.objects[0].group = (1, 2)
+scene.objects[1].group = (4, 4)
+check("groups of objects", not any(m.a is not m.b and m.a.number + m.b.number == 1 for m in scene.query()))
+says("an object without a pose", "object 3 has no pose", refused(ValueError, lambda: (scene.add(model), scene.query())))
+scene.objects[3].pose = np.full_like(rest, np.nan)
+says("an object that is not finite", "object 3 has a vertex that is not finite; vertex 0 is NaN or infinite",
+     raised(_binding.SC_ERROR_NOT_FINITE, scene.query))
+scene.objects[3].pose = rest[:-1]
+check("an object of another mesh", "vertex_count" in (raised(_binding.SC_ERROR_VERTEX_COUNT, scene.query) or ""))
+says("threads of a scene", "threads must be from 1 to 256, not 0", refused(ValueError, lambda: scene.query(threads=0)))
+check("an empty scene", starcontour.Scene().query() == [] and starcontour.Scene().step().earliest == 1)
+scene.objects.pop()
+found = incomplete(lambda: scene.near(0.2, cancel=np.ones(1, np.uint32)))
+check("a scene that was cancelled", found is not None)
+
 # The types of the package say of each method what it takes.
 folder = os.path.dirname(starcontour.__file__)
 check("the package has types", os.path.exists(os.path.join(folder, "py.typed")))
-with open(os.path.join(folder, "__init__.pyi")) as file:
-    stub = ast.parse(file.read())
+stub = ast.Module(body=[], type_ignores=[])
+for name in ("__init__.pyi", "scene.pyi"):
+    with open(os.path.join(folder, name)) as file:
+        stub.body += ast.parse(file.read()).body
 
 
 def typed(definition):

@@ -57,6 +57,8 @@ are read in place, whatever lies between the rows; other arrays are copied, if t
 refused if it is not. Triangles are arrays of shape (m, 3) of integers; uint32 and uint16 are read in
 place.
 
+A Scene has several objects, each with a Model, and finds what they have with each other.
+
 starcontour.batch asks about many poses at a time, by the processes of Ray, Dask or others.
 
 A Model never changes and may be used by any number of threads at once. A Workspace belongs to one
@@ -81,8 +83,8 @@ import numpy as np
 from . import _binding, _threads
 from ._binding import lib
 
-__all__ = ["Error", "Incomplete", "Model", "ModelInfo", "Near", "Step", "Workspace", "edge_vertices",
-           "merge_stencils", "version"]
+__all__ = ["Error", "Incomplete", "Meeting", "Model", "ModelInfo", "Near", "Scene", "SceneNear",
+           "SceneObject", "SceneStep", "Step", "Workspace", "edge_vertices", "merge_stencils", "version"]
 
 version = lib.sc_version_string().decode()
 
@@ -197,10 +199,15 @@ class _Log:
 
     def check(self, status):
         """Raises an Error if status is one. Members of options are named as the keywords here are."""
-        reasons = [re.sub(r"^options\.(\w*filter\.)?", "", reason) for reason in self._reasons]
-        self._reasons.clear()
+        reasons = self.take()
         if status:
             raise Error(status, "; ".join(reasons))
+
+    def take(self):
+        """What was logged since the last time."""
+        reasons = [re.sub(r"^(options|object)\.(\w*filter\.)?", "", reason) for reason in self._reasons]
+        self._reasons.clear()
+        return reasons
 
 
 def _keywords_of(source):
@@ -362,6 +369,11 @@ class _Owned(ctypes.c_void_p):
         weakref.finalize(self, free, ctypes.c_void_p(handle.value))
 
 
+def _check_threads(threads):
+    if not 1 <= _whole("threads", threads, 32) <= _binding.SC_WORKERS_MAX:
+        raise ValueError(f"threads must be from 1 to {_binding.SC_WORKERS_MAX}, not {threads}")
+
+
 class _Scratch:
     """A workspace of the library, made when it is needed, arrays for its pairs and times, and who may
     use them now."""
@@ -374,13 +386,11 @@ class _Scratch:
         self.lock = threading.Lock()
         self.closed = False
 
-    def prepare(self, model, flags, threads):
-        """Makes the workspace fit for a query of that kind by so many threads, and returns the address
-        of sc_tasks for them. By the one who has the lock."""
+    def fit(self, model, flags, threads):
+        """Makes the workspace fit for a query of that kind by so many threads. By the one who has the
+        lock."""
         if self.closed:
             raise ValueError("the workspace is closed")
-        if not 1 <= _whole("threads", threads, 32) <= _binding.SC_WORKERS_MAX:
-            raise ValueError(f"threads must be from 1 to {_binding.SC_WORKERS_MAX}, not {threads}")
         if flags & ~self.flags or threads > self.workers:
             flags, workers = flags | self.flags, max(threads, self.workers)
             options = _binding.sc_workspace_options(
@@ -390,6 +400,15 @@ class _Scratch:
             self.handle = _Owned(handle, lib.sc_workspace_free)
             self.flags, self.workers = flags, workers
             _check(lib.sc_workspace_set_hooks(self.handle, ctypes.byref(self.log.hooks)))
+
+    def prepare(self, model, flags, threads):
+        """The same, and returns the address of sc_tasks for them."""
+        _check_threads(threads)
+        self.fit(model, flags, threads)
+        return self.tasks_for(threads)
+
+    def tasks_for(self, threads):
+        """The address of sc_tasks for so many threads."""
         if threads == 1:
             return None
         if not self.tasks or self.tasks.structure.workers != threads:
@@ -926,3 +945,6 @@ class Model(_Queries):
         if not hasattr(self._local, "scratch"):
             self._local.scratch = _Scratch()
         return self, self._local.scratch
+
+
+from .scene import Meeting, Scene, SceneNear, SceneObject, SceneStep  # noqa: E402: needs what is above

@@ -8,8 +8,10 @@ from typing import Any, Literal, NamedTuple, Optional, Sequence, Tuple, Type, Ty
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Error", "Incomplete", "Model", "ModelInfo", "Near", "Step", "Workspace", "edge_vertices",
-           "merge_stencils", "version"]
+from .scene import Meeting, Scene, SceneNear, SceneObject, SceneStep
+
+__all__ = ["Error", "Incomplete", "Meeting", "Model", "ModelInfo", "Near", "Scene", "SceneNear",
+           "SceneObject", "SceneStep", "Step", "Workspace", "edge_vertices", "merge_stencils", "version"]
 
 version: str
 

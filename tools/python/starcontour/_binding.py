@@ -292,6 +292,85 @@ class sc_near_result(ctypes.Structure):
     ]
 
 
+class sc_group(ctypes.Structure):
+    _fields_ = [("category", c_uint32), ("mask", c_uint32)]
+
+
+class sc_object(ctypes.Structure):
+    _fields_ = [
+        ("model", c_void_p),
+        ("workspace", c_void_p),
+        ("pose", c_void_p),
+        ("end", c_void_p),
+        ("pose_version", c_uint64),
+        ("group", sc_group),
+        ("itself", c_uint32),
+        ("reserved", c_uint32),
+        ("filter", c_void_p),
+        ("vertex_face_filter", c_void_p),
+        ("edge_edge_filter", c_void_p),
+        ("rest", c_void_p),
+        ("rest_distance", c_double),
+        ("masks", c_void_p),
+    ]
+
+
+class sc_objects(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("count", c_uint32),
+        ("objects", c_void_p),
+        ("stride", c_uint64),
+        ("accept", c_void_p),
+        ("accept_user", c_void_p),
+        ("accept_near", c_void_p),
+    ]
+
+
+class sc_objects_result(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("collides", c_uint32),
+        ("count", c_uint64),
+        ("capacity", c_uint64),
+        ("pairs", c_void_p),
+        ("range_count", c_uint64),
+        ("range_capacity", c_uint64),
+        ("ranges", c_void_p),
+        ("stats", c_void_p),
+        ("verdict", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class sc_object_list(ctypes.Structure):
+    _fields_ = [
+        ("count", c_uint64),
+        ("capacity", c_uint64),
+        ("pairs", c_void_p),
+        ("times", c_void_p),
+        ("range_count", c_uint64),
+        ("range_capacity", c_uint64),
+        ("ranges", c_void_p),
+    ]
+
+
+class sc_objects_lists(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("collides", c_uint32),
+        ("vertex_faces", sc_object_list),
+        ("edge_edges", sc_object_list),
+        ("stats", c_void_p),
+        ("earliest", c_double),
+        ("verdict", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+# An entry of a numpy array of ranges of pairs.
+sc_object_pairs = [("object_a", "u4"), ("object_b", "u4"), ("first", "u8"), ("count", "u8")]
+
 # An entry of a numpy array of contacts, and of stencils.
 sc_contact = [
     ("kind", "u4"),
@@ -320,7 +399,8 @@ sc_step_stencil = [
 ]
 
 structures = (sc_hooks, sc_tasks, sc_near_options, sc_near_result, sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info,
-              sc_query_options, sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result)
+              sc_query_options, sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result,
+              sc_group, sc_object, sc_objects, sc_objects_result, sc_object_list, sc_objects_lists)
 
 _suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarcontour" + _suffix)
@@ -353,6 +433,12 @@ _declare("sc_query_step", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER
          POINTER(sc_step_options), POINTER(sc_step_result))
 _declare("sc_query_near", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_near_options),
          POINTER(sc_near_result))
+_declare("sc_query_objects", _status, POINTER(sc_objects), POINTER(sc_query_options),
+         POINTER(sc_objects_result))
+_declare("sc_query_objects_near", _status, POINTER(sc_objects), POINTER(sc_near_options),
+         POINTER(sc_objects_lists))
+_declare("sc_query_objects_step", _status, POINTER(sc_objects), POINTER(sc_step_options),
+         POINTER(sc_objects_lists))
 _declare("sc_near_masks_create", _status, c_void_p, c_uint32, c_void_p, POINTER(c_void_p))
 _declare("sc_near_masks_free", None, c_void_p)
 _declare("sc_near_stencils", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
