@@ -1397,12 +1397,12 @@ typedef struct sc_object_pairs {
  * array of ranges, and may set stats; the library sets the rest. Arrays may be NULL when their
  * capacity is 0.
  *
- * Of two objects that have pairs, or of one that has some with itself, there is one range, sorted
- * by object_a, then object_b; and ranges of pairs follow each other. Triangles: object_a <=
- * object_b, and of two objects a is a triangle of object_a and b one of object_b. Edges with
- * triangles (SC_PAIRS_EDGE): a is an edge of object_a, b a triangle of object_b, and there is a
- * range for either order. Within a range pairs are sorted by a, then b; those of an object with
- * itself are sc_query's.
+ * Of two objects that have pairs, or of one that has some with itself, there is one range; sorted
+ * by the lower of both numbers, then by the other, and ranges of pairs follow each other.
+ * Triangles: object_a <= object_b, and of two objects a is a triangle of object_a and b one of
+ * object_b. Edges with triangles (SC_PAIRS_EDGE): a is an edge of object_a, b a triangle of
+ * object_b, and there is a range for either order, first that in which object_a < object_b. Within
+ * a range pairs are sorted by a, then b; those of an object with itself are sc_query's.
  */
 typedef struct sc_objects_result {
     uint32_t struct_size;
@@ -1453,8 +1453,8 @@ SC_API sc_status sc_query_objects(const sc_objects *objects, const sc_query_opti
  *
  * Vertices with faces: a is a vertex of object_a, b a triangle of object_b, and there is a range
  * for either order. Two edges: object_a <= object_b, and of two objects a is an edge of object_a
- * and b one of object_b. Ranges are sorted by object_a, then object_b, and within one pairs by a,
- * then b.
+ * and b one of object_b. Ranges are sorted by the lower of both numbers, then by the other, then by
+ * object_a, and within one pairs by a, then b.
  */
 typedef struct sc_object_list {
     uint64_t count;          /* out: the number of pairs */
@@ -1487,7 +1487,8 @@ typedef struct sc_objects_lists {
  *
  * All else is as for sc_query_objects: groups, what is returned, what is kept. On
  * SC_ERROR_SHORT_BUFFER each list has all ranges that fit, and the counts that are needed. Bounds
- * of vertices are asked for by sc_query_near, of one mesh.
+ * of vertices are asked for by sc_query_near, of one mesh. SC_ERROR_COUNT: an object has more than
+ * 2^31 vertices.
  *
  * Cost: reading what moved, some 5 ns a vertex; boxes; sc_query_near for each object with
  * itself = 1; 5 ns for two objects that are farther apart than the distance, and 10 to 40 ns a

@@ -28,8 +28,14 @@ typedef struct found_list {
 static int compare_found(const void *x, const void *y)
 {
     const found *p = (const found *)x, *q = (const found *)y;
-    if (p->object_a != q->object_a) return p->object_a < q->object_a ? -1 : 1;
-    if (p->object_b != q->object_b) return p->object_b < q->object_b ? -1 : 1;
+    const int turned[2] = {p->object_a > p->object_b, q->object_a > q->object_b};
+    const uint32_t low[2] = {turned[0] ? p->object_b : p->object_a,
+                             turned[1] ? q->object_b : q->object_a};
+    const uint32_t high[2] = {turned[0] ? p->object_a : p->object_b,
+                              turned[1] ? q->object_a : q->object_b};
+    if (low[0] != low[1]) return low[0] < low[1] ? -1 : 1;
+    if (high[0] != high[1]) return high[0] < high[1] ? -1 : 1;
+    if (turned[0] != turned[1]) return turned[0] - turned[1];
     if (p->a != q->a) return p->a < q->a ? -1 : 1;
     return p->b == q->b ? 0 : p->b < q->b ? -1 : 1;
 }

@@ -44,12 +44,12 @@ int sc_near_candidates_need_one_worker(const sc_near_question *question)
 /* The distance of a pair, rounded down. That of a stencil may be infinite by its rounding alone, as
    the pair is near. Below 2^-1021 the difference is exact; above, it rounds by less than what the
    product leaves. */
-static double find_bound(const sc_worker *w, int kind, const uint32_t point[4])
+static double find_bound(const sc_worker *w, int kind, const sc_pair *pair, const uint32_t point[4])
 {
     double at[4][3], bound;
     const double *const points[4] = {at[0], at[1], at[2], at[3]};
     sc_near_stencil stencil;
-    sc_step_candidates_positions(w, kind, point, 0, at);
+    sc_step_candidates_positions(w, kind, pair, point, 0, at);
     sc_stencil_find(kind == SC_STEP_VERTEX_FACE ? SC_NEAR_VERTEX_FACE : SC_NEAR_EDGE_EDGE, points,
                     &stencil);
     bound = stencil.distance < DBL_MAX ? stencil.distance : DBL_MAX;
@@ -58,11 +58,12 @@ static double find_bound(const sc_worker *w, int kind, const uint32_t point[4])
 }
 
 /* Lowers the bounds of the four vertices of a pair. */
-static void lower_bounds(const sc_worker *w, int kind, const uint32_t point[4], double bound)
+static void lower_bounds(const sc_worker *w, int kind, const sc_pair *pair, const uint32_t point[4],
+                         double bound)
 {
     double *bounds = w->question->near->bounds;
     int k;
-    if (bound < 0) bound = find_bound(w, kind, point);
+    if (bound < 0) bound = find_bound(w, kind, pair, point);
     for (k = 0; k < 4; k++) {
         if (w->share)
             sc_atomic_lessen(&bounds[point[k]], bound);
@@ -87,7 +88,7 @@ void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, double bound
         if (!sc_step_filter_admits(w, kind, inner, point, name)) return;
     }
     if (f->asks[kind] && !sc_step_filter_accepts(w, kind, name)) return;
-    if (w->question->near->bounds) lower_bounds(w, kind, point, bound);
+    if (w->question->near->bounds) lower_bounds(w, kind, &inner, point, bound);
     sc_step_pairs_take(w, kind, name.a, name.b, 0);
 }
 
@@ -98,7 +99,7 @@ static int is_near_enough(const sc_worker *w, int kind, const sc_pair *pair)
     const double(*from)[3] = (const double(*)[3])at;
     uint32_t point[4];
     sc_step_candidates_points(w, kind, pair, point);
-    sc_step_candidates_positions(w, kind, point, 0, at);
+    sc_step_candidates_positions(w, kind, pair, point, 0, at);
     return kind == SC_STEP_VERTEX_FACE ? sc_within_vertex_face(from, distance)
                                        : sc_within_edge_edge(from, distance);
 }

@@ -174,30 +174,32 @@ static inline void take_near_faces(near_search *s, const near_side *p, const nea
                                    unsigned wanted)
 {
     sc_lists *l = &s->w->lists;
+    const uint32_t turned = s->between && p == &s->b ? SC_STEP_TURNED : 0;
     unsigned near = judged & wanted, open = ~(judged | judged >> 16) & wanted;
     sc_pair some[SC_LANES_COUNT];
     uint32_t count = 0;
     if (!s->names) {
         s->w->step->count[SC_STEP_VERTEX_FACE] += sc_bits_count(near);
+        s->w->step->turned += turned ? sc_bits_count(near) : 0;
         near = 0;
     }
     for (; near && s->asked[0]; near &= near - 1) {
         const uint32_t lane = sc_bits_lowest(near), i = at + lane;
         sc_pair inner;
-        inner.a = p->leaf->point[list->a[i]];
+        inner.a = p->leaf->point[list->a[i]] | turned;
         inner.b = f->leaf->first + list->b[i];
         sc_near_candidates_take(s->w, SC_STEP_VERTEX_FACE, inner, bound_of_near(s, lane));
     }
     for (; near; near &= near - 1) {
         const uint32_t i = at + sc_bits_lowest(near);
-        some[count].a = p->leaf->point[list->a[i]];
+        some[count].a = p->leaf->point[list->a[i]] | turned;
         some[count++].b = f->leaf->face[list->b[i]];
     }
     if (count) sc_step_pairs_take_all(s->w, SC_STEP_VERTEX_FACE, some, count);
     for (; open; open &= open - 1) {
         const uint32_t i = at + sc_bits_lowest(open);
         sc_pair *to = &l->moving[0][l->count[SC_LIST_FACES]++];
-        to->a = p->leaf->point[list->a[i]];
+        to->a = p->leaf->point[list->a[i]] | turned;
         to->b = f->leaf->first + list->b[i];
     }
 }
@@ -565,7 +567,7 @@ static inline uint32_t compare_near_pair(near_search *s, const sc_near_leaf *a,
         find_near_shared(&s->a, &s->b);
     if (s->kinds & SC_NEAR_VERTEX_FACE) {
         rows += compare_near_faces(s, &s->a, &s->b, slabs);
-        if (!s->between) rows += compare_near_faces(s, &s->b, &s->a, slabs);
+        rows += compare_near_faces(s, &s->b, &s->a, slabs);
     }
     if (s->kinds & SC_NEAR_EDGE_EDGE) rows += compare_near_edges(s, 0, slabs);
     return rows;
@@ -594,8 +596,7 @@ static void decide_near_clusters(sc_worker *w, uint32_t most)
     }
 }
 
-/* Vertices and edges of leaf clusters of the first of two objects with triangles and edges of the
-   second. */
+/* The same of leaf clusters of two objects. */
 static void decide_near_between(sc_worker *w, uint32_t most)
 {
     uint32_t *left = &w->lists.count[SC_LIST_CLUSTERS];

@@ -92,9 +92,9 @@ static void begin_plain(const objects_run *run, const sc_tasks *tasks, part_ques
     q->plain.test = sc_simple_tests;
 }
 
-/* Options of what is near, on a model or between two objects; edges: whether any are wanted. */
+/* Options of what is near, on a model or between two objects. */
 static sc_status begin_near(const objects_run *run, const sc_model *model, const sc_tasks *tasks,
-                            int edges, part_question *q)
+                            part_question *q)
 {
     const sc_object_list faces = rest_of(run, SC_STEP_VERTEX_FACE);
     const sc_object_list pairs = rest_of(run, SC_STEP_EDGE_EDGE);
@@ -106,7 +106,6 @@ static sc_status begin_near(const objects_run *run, const sc_model *model, const
     o->tasks = tasks;
     if (!model) o->method = SC_NEAR_METHOD_BOXES;
     status = model ? sc_near_question_choose(model, o) : SC_OK;
-    if (!edges) o->kinds = SC_NEAR_VERTEX_FACE;
     memset(&lists, 0, sizeof lists);
     lists.vertex_faces = faces.pairs;
     lists.vertex_face_capacity = faces.capacity;
@@ -118,7 +117,7 @@ static sc_status begin_near(const objects_run *run, const sc_model *model, const
 }
 
 static sc_status begin_step(const objects_run *run, const sc_model *model, const sc_tasks *tasks,
-                            int edges, part_question *q)
+                            part_question *q)
 {
     const sc_object_list faces = rest_of(run, SC_STEP_VERTEX_FACE);
     const sc_object_list pairs = rest_of(run, SC_STEP_EDGE_EDGE);
@@ -130,7 +129,6 @@ static sc_status begin_step(const objects_run *run, const sc_model *model, const
     o->tasks = tasks;
     if (!model && o->method != SC_STEP_METHOD_SWEPT) o->method = SC_STEP_METHOD_TWO_BOXES;
     status = model ? sc_step_question_choose(model, o) : SC_OK;
-    q->near.step.faces_only = !edges;
     memset(&lists, 0, sizeof lists);
     lists.vertex_faces = faces.pairs;
     lists.vertex_face_times = faces.times;
@@ -146,14 +144,14 @@ static sc_status begin_step(const objects_run *run, const sc_model *model, const
 
 /* A question without a filter; model: what it is asked of, or NULL: two objects. */
 static sc_status begin_question(const objects_run *run, const sc_model *model,
-                                const sc_tasks *tasks, int edges, part_question *q)
+                                const sc_tasks *tasks, part_question *q)
 {
     sc_status status = SC_OK;
     memset(q, 0, sizeof *q);
     if (run->asked->about == SC_QUESTION_NEAR) {
-        status = begin_near(run, model, tasks, edges, q);
+        status = begin_near(run, model, tasks, q);
     } else if (run->asked->about == SC_QUESTION_STEP) {
-        status = begin_step(run, model, tasks, edges, q);
+        status = begin_step(run, model, tasks, q);
     } else {
         begin_plain(run, tasks, q);
         if (model) status = sc_question_choose(model, &q->plain.options);
@@ -195,7 +193,7 @@ static sc_status begin_filters(const objects_run *run, const sc_object *o, part_
 /* What an object is asked about itself. */
 static sc_status ask_itself(const objects_run *run, const sc_object *o, part_question *q)
 {
-    const sc_status status = begin_question(run, o->model, tasks_of(run, o, o), 1, q);
+    const sc_status status = begin_question(run, o->model, tasks_of(run, o, o), q);
     return status ? status : begin_filters(run, o, q);
 }
 
@@ -229,6 +227,36 @@ static void add_range(objects_run *run, const sc_object *a, const sc_object *b, 
     list->count += count;
 }
 
+/* How many entries of a sorted list are not turned. */
+static uint64_t count_not_turned(const sc_pair *pairs, uint64_t count)
+{
+    uint64_t low = 0, high = count;
+    while (low < high) {
+        const uint64_t middle = low + (high - low) / 2;
+        if (pairs[middle].a < SC_STEP_TURNED)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Vertices with faces: in a list that fits, those of b with faces of a are behind the others. */
+static void add_vertex_faces(objects_run *run, const sc_object *a, const sc_object *b,
+                             const sc_step_worker *step)
+{
+    const sc_object_list rest = rest_of(run, SC_STEP_VERTEX_FACE);
+    const uint64_t count = step->count[SC_STEP_VERTEX_FACE];
+    const uint64_t there = count < rest.capacity ? count : rest.capacity;
+    const uint64_t first = count_not_turned(rest.pairs, there);
+    uint64_t turned = step->turned, i;
+    /* where the caller's function is asked in the end, what was found was more */
+    if (there == count) turned = count - first;
+    for (i = first; i < there; i++) rest.pairs[i].a &= ~SC_STEP_TURNED;
+    add_range(run, a, b, SC_STEP_VERTEX_FACE, count - turned);
+    add_range(run, b, a, SC_STEP_VERTEX_FACE, turned);
+}
+
 /* Has a question answered in a workspace, and takes down what was found. */
 static void answer(objects_run *run, const sc_object *a, const sc_object *b, const sc_question *q)
 {
@@ -246,7 +274,7 @@ static void answer(objects_run *run, const sc_object *a, const sc_object *b, con
         add_range(run, a, b, 0, worker->count);
         return;
     }
-    add_range(run, a, b, SC_STEP_VERTEX_FACE, worker->step->count[SC_STEP_VERTEX_FACE]);
+    add_vertex_faces(run, a, b, worker->step);
     add_range(run, a, b, SC_STEP_EDGE_EDGE, worker->step->count[SC_STEP_EDGE_EDGE]);
     if (worker->step->earliest < run->answer->earliest)
         run->answer->earliest = worker->step->earliest;
@@ -281,8 +309,10 @@ static int accept_pair(void *user, uint32_t a, uint32_t b)
 static int accept_vertex_face(void *user, uint32_t a, uint32_t b)
 {
     const accept_between *at = (const accept_between *)user;
-    return at->objects->accept_near(at->objects->accept_user, SC_NEAR_VERTEX_FACE, at->a, at->b, a,
-                                    b);
+    const int turned = a >= SC_STEP_TURNED;
+    return at->objects->accept_near(at->objects->accept_user, SC_NEAR_VERTEX_FACE,
+                                    turned ? at->b : at->a, turned ? at->a : at->b,
+                                    a & ~SC_STEP_TURNED, b);
 }
 
 static int accept_edge_edge(void *user, uint32_t a, uint32_t b)
@@ -315,15 +345,14 @@ static void begin_accept(const objects_run *run, accept_between *between, part_q
     }
 }
 
-/* Two objects, the first being that of triangles, of edges with triangles, or of vertices with
-   faces; edges: whether edges with edges are wanted. */
-static void look_at_two(objects_run *run, const sc_object *a, const sc_object *b, int edges)
+/* Two objects, the first being that of triangles, or of edges with triangles. */
+static void look_at_two(objects_run *run, const sc_object *a, const sc_object *b)
 {
     const sc_tasks *tasks = tasks_of(run, a, b);
     const uint32_t about = run->asked->about;
     accept_between between;
     part_question q;
-    (void)begin_question(run, NULL, tasks, edges, &q);
+    (void)begin_question(run, NULL, tasks, &q);
     sc_objects_frame_make_boxes(a, tasks, about, run->answer->stats);
     sc_objects_frame_make_boxes(b, tasks, about, run->answer->stats);
     q.query->second = b->workspace;
@@ -337,30 +366,25 @@ static void look_at_two(objects_run *run, const sc_object *a, const sc_object *b
     answer(run, a, b, q.query);
 }
 
-/* Whether pairs of two objects are wanted of which either may be the first. */
-static int has_order(const sc_objects_question *q)
-{
-    if (q->about == SC_QUESTION_QUERY) return q->options.pairs == SC_PAIRS_EDGE;
-    return q->about == SC_QUESTION_STEP || q->near.options.kinds != SC_NEAR_EDGE_EDGE;
-}
-
-/* An object with itself and with those behind it; and where pairs have an order, with those before
-   it as well. */
+/* An object with itself and with those behind it; of edges with triangles, either may be the
+   first. */
 static sc_status look_at(objects_run *run, uint32_t i)
 {
     const sc_objects_question *q = run->asked;
+    const int either = q->about == SC_QUESTION_QUERY && q->options.pairs == SC_PAIRS_EDGE;
     const sc_object *a = object_at(run, i);
     uint32_t j;
-    sc_status status;
-    for (j = has_order(q) ? 0 : i; j < q->objects.count && !is_over(run); j++) {
+    if (a->itself) {
+        const sc_status status = look_at_itself(run, a);
+        if (status) return status;
+    }
+    for (j = i + 1; j < q->objects.count && !is_over(run); j++) {
         const sc_object *b = object_at(run, j);
-        if (i == j) {
-            if (a->itself && (status = look_at_itself(run, a))) return status;
-        } else if (groups_collide(a, b) &&
-                   sc_objects_frame_meet(&a->workspace->frame, &b->workspace->frame,
-                                         run->clearance)) {
-            look_at_two(run, a, b, i < j);
-        }
+        if (!groups_collide(a, b) ||
+            !sc_objects_frame_meet(&a->workspace->frame, &b->workspace->frame, run->clearance))
+            continue;
+        look_at_two(run, a, b);
+        if (either && !is_over(run)) look_at_two(run, b, a);
     }
     return SC_OK;
 }

@@ -52,6 +52,8 @@ static sc_status check_object(const sc_object *o, uint32_t about)
         status = refuse(hooks, "object.masks are for what is near");
     if (!status && about != SC_QUESTION_QUERY)
         status = sc_step_question_check_length(hooks, "rest_distance", o->rest_distance);
+    if (!status && about != SC_QUESTION_QUERY && SC_HARDLY(o->model->vertex_count > SC_STEP_TURNED))
+        status = SC_ERROR_COUNT;
     return status ? status : sc_question_check_workspace(o->model, o->workspace, flags_for(about));
 }
 

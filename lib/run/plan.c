@@ -562,6 +562,7 @@ static int put_last_of_step(plan *p, const sc_worker *w)
         fits &= ends_well;
         if (step != sum) sum->count[kind] += step->count[kind];
     }
+    if (step != sum) sum->turned += step->turned;
     if (step->earliest < sum->earliest) sum->earliest = step->earliest;
     return fits;
 }
@@ -630,12 +631,12 @@ static void finish(sc_workspace *workspace, const sc_question *question, const s
     sc_worker *w = &workspace->worker[0];
     uint64_t room;
     sc_pair *spare = sc_workspace_spare(workspace, &room);
-    if (question->keeps) room = 0;
     if (question->step) {
         sc_step_pairs_finish(question->step, w->step->count, spare, room, tasks);
         if (tasks) sc_step_filter_ask(w);
         return;
     }
+    if (question->keeps) room = 0; /* what is kept of leaf clusters is there */
     sc_pairs_finish(question, w->count, spare, room, tasks);
     if (tasks && question->filter && question->filter->accept) ask_function(question->filter, w);
 }

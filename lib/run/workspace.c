@@ -376,6 +376,7 @@ static void begin_step_worker(const sc_step_question *question, sc_step_worker *
     int k;
     step->question = question;
     step->earliest = 1;
+    step->turned = 0;
     for (k = 0; k < 2; k++) step->count[k] = step->found_count[k] = 0;
 }
 

@@ -14,25 +14,23 @@
  * those of their sides and the way by which one moves past the other.
  */
 
-/* The points of sixteen candidates of a kind, as the narrow phase takes them. */
+/* The points of sixteen candidates of a kind, as the narrow phase takes them: where they are in the
+   unit box, at the start and at the end. */
 typedef struct sc_candidate_points {
-    uint32_t point[4][SC_LANES_COUNT];
+    const float *unit[4][SC_LANES_COUNT];
 } sc_candidate_points;
 
-/* The points of sixteen candidates at the start or at the end, three coordinates each, those of the
-   first of a pair, `split` of them, being of the first mesh. */
+/* The points of sixteen candidates at the start or at the end, three coordinates each. */
 typedef struct candidate_lanes {
     lanes at[4][3];
 } candidate_lanes;
 
-static inline void read_candidates(const sc_motion *const of[2], const sc_candidate_points *points,
-                                   int split, int end, candidate_lanes *c)
+static inline void read_candidates(const sc_candidate_points *points, int end, candidate_lanes *c)
 {
     const float *at[SC_LANES_COUNT];
     int i, j;
     for (i = 0; i < 4; i++) {
-        for (j = 0; j < SC_LANES_COUNT; j++)
-            at[j] = of[i >= split]->unit + 8 * (uint64_t)points->point[i][j] + 4 * end;
+        for (j = 0; j < SC_LANES_COUNT; j++) at[j] = points->unit[i][j] + 4 * end;
         lanes_points(at, &c->at[i][0], &c->at[i][1], &c->at[i][2]);
     }
 }
@@ -86,15 +84,14 @@ static inline lanes clear_in_space(float distance, lanes reach)
                      lanes_multiply(reach, lanes_all(5 * SC_BOUNDS_V)));
 }
 
-static unsigned stay_apart(const sc_motion *const of[2], const sc_candidate_points *points,
-                           int split)
+static unsigned stay_apart(float distance, const sc_candidate_points *points, int split)
 {
     candidate_lanes c[2];
     lanes difference[8][3], sum[2][3], side[3][3], m[3], reach = lanes_all(0), clear;
     int i, j, k, end, count = 0;
     unsigned apart;
     for (end = 0; end < 2; end++) {
-        read_candidates(of, points, split, end, &c[end]);
+        read_candidates(points, end, &c[end]);
         for (k = 0; k < 3; k++) sum[end][k] = lanes_all(0);
         for (i = 0; i < split; i++)
             for (j = split; j < 4; j++, count++)
@@ -105,7 +102,7 @@ static unsigned stay_apart(const sc_motion *const of[2], const sc_candidate_poin
                     sum[end][k] = lanes_add(sum[end][k], r);
                 }
     }
-    clear = clear_in_space(of[0]->distance, reach);
+    clear = clear_in_space(distance, reach);
     for (k = 0; k < 3; k++) m[k] = lanes_add(sum[0][k], sum[1][k]);
     apart = apart_in_space(m, difference, count, clear);
     side_in_space(c, split == 1 ? 1 : 0, split == 1 ? 2 : 1, side[0]);

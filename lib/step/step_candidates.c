@@ -11,8 +11,9 @@
 
 sc_pair sc_step_candidates_name(const sc_worker *w, int kind, const sc_pair *pair)
 {
-    const uint32_t *of_a = sc_model_triangle_id(w->model);
-    const uint32_t *of_b = sc_model_triangle_id(w->second->model);
+    const sc_pair_sides sides = sc_step_candidates_sides(w, kind, pair);
+    const uint32_t *of_a = sc_model_triangle_id(sides.a->model);
+    const uint32_t *of_b = sc_model_triangle_id(sides.b->model);
     sc_pair name;
     if (kind == SC_STEP_VERTEX_FACE) {
         name.a = pair->a;
@@ -24,13 +25,14 @@ sc_pair sc_step_candidates_name(const sc_worker *w, int kind, const sc_pair *pai
     return name;
 }
 
-void sc_step_candidates_positions(const sc_worker *w, int kind, const uint32_t point[4], int end,
-                                  double at[4][3])
+void sc_step_candidates_positions(const sc_worker *w, int kind, const sc_pair *pair,
+                                  const uint32_t point[4], int end, double at[4][3])
 {
+    const sc_pair_sides sides = sc_step_candidates_sides(w, kind, pair);
     const uint32_t of_first = sc_step_points_of_first(kind);
     uint32_t k;
     for (k = 0; k < 4; k++) {
-        const sc_worker *side = k < of_first ? w : w->second;
+        const sc_worker *side = k < of_first ? sides.a : sides.b;
         sc_positions_get(&side->frame->positions[end], point[k], at[k]);
     }
 }
@@ -63,8 +65,8 @@ static void take_moving(sc_worker *w, int kind, sc_pair pair)
     sc_step_candidates_points(w, kind, &pair, point);
     if (question->filters.sifts[kind] && !sc_step_filter_admits(w, kind, pair, point, name)) return;
     if (question->options.pairs == SC_STEP_COLLISIONS) {
-        sc_step_candidates_positions(w, kind, point, 0, start);
-        sc_step_candidates_positions(w, kind, point, 1, end);
+        sc_step_candidates_positions(w, kind, &pair, point, 0, start);
+        sc_step_candidates_positions(w, kind, &pair, point, 1, end);
         if (!collides(kind, from, to, &question->limits, &time)) return;
         if (question->options.begun == SC_STEP_BEGUN_NEARER) {
             sc_impact_limits own = question->limits;

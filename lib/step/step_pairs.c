@@ -78,6 +78,7 @@ void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double t
     const sc_step_list *list = &step->question->list[kind];
     const uint64_t count = ++step->count[kind];
     sc_pair pair;
+    if (kind == SC_STEP_VERTEX_FACE) step->turned += a >= SC_STEP_TURNED;
     pair.a = a;
     pair.b = b;
     if (time < step->earliest) step->earliest = time;
@@ -107,17 +108,20 @@ void sc_step_pairs_take_all(sc_worker *w, int kind, const sc_pair *pairs, uint32
 {
     sc_step_worker *step = w->step;
     const sc_step_list *list = &step->question->list[kind];
+    const int turned = kind == SC_STEP_VERTEX_FACE && pairs[0].a >= SC_STEP_TURNED;
     uint32_t i;
     if (step->question->options.output == SC_OUTPUT_PAIRS && !list->times && list->capacity) {
         if (!w->share && step->count[kind] + count <= list->capacity) {
             memcpy(list->pairs + step->count[kind], pairs, count * sizeof *pairs);
             step->count[kind] += count;
+            step->turned += turned ? count : 0;
             return;
         }
         if (w->share && step->found_count[kind] + count < SC_FOUND_MAX) {
             memcpy(step->found[kind] + step->found_count[kind], pairs, count * sizeof *pairs);
             step->found_count[kind] += count;
             step->count[kind] += count;
+            step->turned += turned ? count : 0;
             return;
         }
     }

@@ -218,12 +218,9 @@ static inline void add_edge(const leaf_left *a, uint32_t i, int k, const leaf_le
     rows->edges += (left[0] | left[1] | left[2]) != 0;
 }
 
-/* Which rows are wanted of two leaf clusters: triangles of the first, of the second, and edges. */
-enum { ROWS_FIRST = 1, ROWS_SECOND = 2, ROWS_EDGES = 4, ROWS_ALL = 7 };
-
 /* Rows of two leaf clusters, of what is left of each; of one mesh, or of two, which share no point.
    Returns how many slabs were compared with points. */
-static uint32_t compare_faces(leaf_left *a, leaf_left *b, unsigned wanted, step_rows *rows)
+static uint32_t compare_faces(leaf_left *a, leaf_left *b, step_rows *rows)
 {
     unsigned faces_a = 0, faces_b = 0, some; /* that are not apart from all of the other */
     unsigned beyond_a[SC_LEAF_MAX], near_a[SC_LEAF_MAX]; /* of faces_a: points, triangles of b */
@@ -254,7 +251,7 @@ static uint32_t compare_faces(leaf_left *a, leaf_left *b, unsigned wanted, step_
             faces_b &= ~(1u << j);
             continue;
         }
-        if (wanted & ROWS_SECOND) add_face(b, j, a, points_left(&beyond, 1) & a->points, 1, rows);
+        add_face(b, j, a, points_left(&beyond, 1) & a->points, 1, rows);
         SC_UNROLL
         for (k = 0; k < 3; k++)
             sides[k][j] = (uint16_t)(left_of(a->ends[k], &beyond, 1) & a->edges[k]);
@@ -266,8 +263,7 @@ static uint32_t compare_faces(leaf_left *a, leaf_left *b, unsigned wanted, step_
         const unsigned *beyond = &beyond_a[i];
         unsigned edges[3];
         if (!(near_a[i] & faces_b)) continue;
-        if (wanted & ROWS_FIRST) add_face(a, i, b, points_left(beyond, 1) & b->points, 0, rows);
-        if (!(wanted & ROWS_EDGES)) continue;
+        add_face(a, i, b, points_left(beyond, 1) & b->points, 0, rows);
         SC_UNROLL
         for (l = 0; l < 3; l++) edges[l] = left_of(b->ends[l], beyond, 1) & b->edges[l];
         SC_UNROLL
@@ -283,7 +279,7 @@ static uint32_t compare_faces(leaf_left *a, leaf_left *b, unsigned wanted, step_
 /* Finds what is left of two leaf clusters. Returns how many slabs and boxes were compared with
    points. */
 static uint32_t find_rows(const sc_worker *w, const sc_leaf_motion *moving_a,
-                          const sc_leaf_motion *moving_b, unsigned wanted, step_rows *rows)
+                          const sc_leaf_motion *moving_b, step_rows *rows)
 {
     const unsigned slab_b = beyond_leaf(moving_b, moving_a);
     const unsigned slab_a = beyond_leaf(moving_a, moving_b);
@@ -296,7 +292,7 @@ static uint32_t find_rows(const sc_worker *w, const sc_leaf_motion *moving_a,
     begin_left(w->second, moving_b, &b);
     leave_near(&b, moving_a, slab_b);
     if (!b.triangles) return 4;
-    return 4 + compare_faces(&a, &b, wanted, rows);
+    return 4 + compare_faces(&a, &b, rows);
 }
 
 /* The same for one: its triangles with its points, and its edges with those of triangles that come

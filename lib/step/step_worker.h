@@ -52,6 +52,10 @@ typedef struct sc_moving_edges {
 /* Which of the caller's two lists. */
 enum { SC_STEP_VERTEX_FACE = 0, SC_STEP_EDGE_EDGE = 1 };
 
+/* Between two objects: as a bit of a vertex's number, that it is of the second object and the face
+   of the first. */
+#define SC_STEP_TURNED 0x80000000u
+
 /* How many of the four points of a pair are of its first: a vertex, or an edge. */
 static inline uint32_t sc_step_points_of_first(int kind)
 {
@@ -79,7 +83,6 @@ typedef struct sc_pair_filters {
 typedef struct sc_step_question {
     sc_question query; /* what all queries are asked; its step is this */
     sc_step_options options;
-    int faces_only;          /* of two objects: edges are not asked for */
     sc_impact_limits limits; /* of the narrow phase */
     sc_step_list list[2];
     sc_pair_filters filters;
@@ -89,6 +92,7 @@ typedef struct sc_step_question {
 typedef struct sc_step_worker {
     const sc_step_question *question;
     uint64_t count[2];     /* pairs found */
+    uint64_t turned;       /* those of a vertex and a face that are */
     double earliest;       /* least time of one, else 1 */
     sc_pair *found[2];     /* SC_FOUND_MAX each: pairs that are not yet in the caller's lists */
     double *found_time[2]; /* theirs */

@@ -32,7 +32,7 @@ times   of a step, when: a lower bound from 0 to 1 for each; else None
 """
 
 SceneNear = namedtuple("SceneNear", "vertex_faces edge_edges")
-SceneNear.__doc__ = """What is within a distance: two lists of Meetings, by objects in their order.
+SceneNear.__doc__ = """What is within a distance: two lists of Meetings, by the lower number of their objects.
 
 vertex_faces  vertices of a and triangles of b; two objects may meet twice, either being a
 edge_edges    edges of a and of b, as in pairs "edge"; a is not behind b
