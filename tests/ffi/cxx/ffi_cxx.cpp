@@ -3,6 +3,7 @@
 //     ffi_cxx MESH GOLDEN
 //
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -72,6 +74,117 @@ template <typename Call> bool refused(sc_status status, const char *text, Call c
         return error.status == status && std::strstr(error.what(), text);
     }
     return false;
+}
+
+// Pairs in the numbers of the one mesh of all objects, with their times, or 0; sorted.
+using Timed = std::vector<std::tuple<std::size_t, std::size_t, double>>;
+
+// firsts: the number, in that mesh, of each object's first a and first b.
+Timed joined(const starcontour::Meetings &found, const std::array<std::size_t, 2> (&firsts)[2])
+{
+    Timed pairs;
+    for (const auto &range : found.ranges)
+        for (auto i = range.first; i < range.first + range.count; ++i)
+            pairs.emplace_back(found.pairs[i].a + firsts[range.object_a][0],
+                               found.pairs[i].b + firsts[range.object_b][1],
+                               found.times.empty() ? 0 : found.times[i]);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+Timed of_one(const std::vector<sc_pair> &found, const std::vector<double> &times = {})
+{
+    Timed pairs;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        pairs.emplace_back(found[i].a, found[i].b, times.empty() ? 0 : times[i]);
+    return pairs;
+}
+
+// The mesh's two cloths as two objects, whose poses are the two halves of the mesh's: the same pairs.
+void test_scene(const std::vector<Vertex> &rest, const std::vector<Vertex> &moved,
+                const std::vector<Triangle> &triangles)
+{
+    const std::size_t v = rest.size() / 2, t = triangles.size() / 2;
+    const std::vector<Triangle> one(triangles.begin(), triangles.begin() + static_cast<long>(t));
+    std::vector<Triangle> other(triangles.begin() + static_cast<long>(t), triangles.end());
+    for (auto &corners : other)
+        for (auto &corner : corners) corner -= static_cast<std::uint32_t>(v);
+    const auto half = [v](const std::vector<Vertex> &pose, std::size_t which) {
+        return starcontour::Positions(pose[which * v].position.data(), v, sizeof(Vertex));
+    };
+    const auto whole = build(rest, triangles);
+    const starcontour::Model models[] = {{half(rest, 0), one[0].data(), t},
+                                         {half(rest, 1), other[0].data(), t}};
+    const std::array<std::size_t, 2> of_triangles[] = {{0, 0}, {t, t}};
+    const std::array<std::size_t, 2> of_faces[] = {{0, 0}, {v, t}};
+    const std::array<std::size_t, 2> of_edges[] = {{0, 0}, {3 * t, 3 * t}};
+    // Each cloth folded along its middle, so that it meets itself: more pairs than there is room for.
+    auto folded = moved;
+    for (auto &vertex : folded) {
+        auto &[x, y, z] = vertex.position;
+        if (x > 1.5f) x = 3 - x, y += z / 8, z += (y - 1.5f) / 8;
+    }
+
+    Workspace workspace(whole, SC_WORKSPACE_NEAR);
+    starcontour::Scene scene(SC_WORKSPACE_NEAR);
+    for (std::size_t i = 0; i < 2; ++i) scene.add(models[i], half(rest, i));
+    for (const auto *pose : {&rest, &moved, &std::as_const(folded)}) {
+        for (std::size_t i = 0; i < 2; ++i) scene[i].set_pose(half(*pose, i));
+        check("pairs of two objects",
+              joined(scene.query(), of_triangles) == of_one(workspace.query(positions(*pose))));
+        const auto near = scene.near(0.045);
+        const auto near_one = workspace.near(positions(*pose), 0.045);
+        check("near of two objects",
+              joined(near.vertex_faces, of_faces) == of_one(near_one.vertex_faces) &&
+                  joined(near.edge_edges, of_edges) == of_one(near_one.edge_edges));
+        for (std::size_t i = 0; i < 2; ++i) scene[i].set_end(half(moved, i));
+        const auto step = scene.step();
+        const auto step_one = workspace.step(positions(*pose), positions(moved));
+        check("a step of two objects",
+              joined(step.vertex_faces, of_faces) ==
+                      of_one(step_one.vertex_faces, step_one.vertex_face_times) &&
+                  joined(step.edge_edges, of_edges) ==
+                      of_one(step_one.edge_edges, step_one.edge_edge_times) &&
+                  step.earliest == step_one.earliest);
+    }
+    const auto ranges = scene.query().ranges;
+    check("objects meet themselves and each other", ranges.size() == 3 && ranges[0].object_b == 0 &&
+                                                        ranges[1].object_b == 1 &&
+                                                        ranges[2].object_a == 1);
+    scene[1].stay();
+    const auto edges = scene.step().edge_edges.pairs.size();
+    scene[1].set_end(half(folded, 1));
+    check("what stays ends where it began",
+          edges > 0 && scene.step().edge_edges.pairs.size() == edges);
+    scene.options.accept = [](void *, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) {
+        return 0;
+    };
+    check("pairs that are not accepted", scene.query().ranges.size() == 2);
+    scene.options.accept = nullptr;
+    scene[0].options.group = {1, 2};
+    scene[1].options.group = {4, 4};
+    check("groups of objects", scene.query().ranges.size() == 2);
+    scene[1].options.itself = 0;
+    check("one with itself", scene.query().ranges.size() == 1);
+    auto count = starcontour::sized<sc_query_options>();
+    count.output = SC_OUTPUT_COUNT;
+    const auto counted = scene.query(&count);
+    check("only counted", counted.pairs.empty() && counted.ranges.size() == 1 &&
+                              counted.ranges[0].count == ranges[0].count);
+    count.method = 99;
+    check("option of a scene", refused(SC_ERROR_OPTION, "option", [&] { scene.query(&count); }));
+    auto spoilt = moved;
+    spoilt[v + 3].position[1] = NAN;
+    scene[1].set_pose(half(spoilt, 1));
+    check("NaN in an object",
+          refused(SC_ERROR_NOT_FINITE,
+                  "object 1 has a vertex that is not finite; vertex 3 is NaN or infinite",
+                  [&] { scene.query(); }));
+    starcontour::Scene nothing;
+    check("an empty scene", nothing.query().pairs.empty() && nothing.step().earliest == 1);
+    nothing.add(models[0], half(rest, 0));
+    check("a scene without room for steps",
+          refused(SC_ERROR_WORKSPACE, "workspace", [&] { nothing.step(); }));
 }
 
 void test(const char *mesh_path, const char *golden_path)
@@ -165,6 +278,8 @@ void test(const char *mesh_path, const char *golden_path)
     check("a workspace without room for steps", refused(SC_ERROR_WORKSPACE, "workspace", [&] {
               workspace.step(positions(rest), positions(moved));
           }));
+
+    test_scene(rest, moved, triangles);
 
     // Doubles are read as they are: as floats these two triangles do not meet.
     const double far[] = {500000.155, 5400000.362, 100.080, 500000.208, 5400000.167, 100.355,

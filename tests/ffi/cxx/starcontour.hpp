@@ -10,16 +10,24 @@
 //     larger.step({pose, vertex_count}, {next, vertex_count}).earliest
 //     larger.near({pose, vertex_count}, 0.01).vertex_faces
 //
+//     starcontour::Scene scene;
+//     auto &cloth = scene.add(model, {pose, vertex_count}), &body = scene.add(...);
+//     cloth.set_pose({pose, vertex_count});           again whenever it has moved
+//     for (const sc_object_pairs &range : scene.query().ranges) ...
+//
 // SPDX-License-Identifier: MIT
 #ifndef STARCONTOUR_HPP
 #define STARCONTOUR_HPP
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <starcontour.h>
@@ -85,9 +93,14 @@ class Log
 
     void check(sc_status status)
     {
-        const std::string reason = reason_;
-        reason_.clear();
+        const std::string reason = take();
         if (status != SC_OK) throw Error(status, reason);
+    }
+
+    // What was said since the last time.
+    std::string take()
+    {
+        return std::exchange(reason_, {});
     }
 
     sc_hooks hooks;
@@ -98,7 +111,9 @@ class Log
     {
         if (level != SC_LOG_ERROR) return;
         try {
-            static_cast<Log *>(user)->reason_ = message;
+            auto &reason = static_cast<Log *>(user)->reason_;
+            reason += reason.empty() ? "" : "; ";
+            reason += message;
         } catch (...) {
         }
     }
@@ -257,6 +272,8 @@ class Workspace
     }
 
   private:
+    friend class Scene; // reads the log
+
     // Asks until both arrays are long enough. Of a query that only counts they stay empty.
     template <typename Result, typename Ask>
     void find(Result &result, std::uint32_t output, const Ask &ask)
@@ -286,6 +303,224 @@ class Workspace
     std::unique_ptr<sc_workspace, detail::Free> workspace_;
     std::vector<sc_pair> pairs_;
     Features found_;
+};
+
+// What objects have with each other and with themselves: a range for each two, or one, that have
+// pairs, in the order that sc_objects_result and sc_object_list promise.
+struct Meetings {
+    std::vector<sc_pair> pairs;
+    std::vector<sc_object_pairs> ranges; // objects by their numbers, and which pairs they have
+    std::vector<double> times;           // of a step, if wanted, when each pair collides
+};
+
+// Meetings of a vertex and a face, and of two edges.
+struct FeatureMeetings {
+    Meetings vertex_faces, edge_edges;
+    double earliest = 1; // of a step: nothing collides before
+};
+
+// Several objects: cloth and a body, characters that share a model, a level. One call at a time. What
+// did not move since the last call of the same kind is not read again.
+class Scene
+{
+  public:
+    class Object
+    {
+      public:
+        // By Scene::add.
+        Object(const Model &model, const Positions &positions, std::uint32_t flags,
+               std::uint32_t workers, std::uint32_t its_number)
+            : number(its_number), model_(model.get()), workspace_(model, flags, workers)
+        {
+            options.itself = 1;
+            set_pose(positions);
+        }
+
+        // Where it is, of a step at its start. The array is read in place, and stays as it is until
+        // the next set_pose: that is how the scene knows what has moved.
+        void set_pose(const Positions &positions)
+        {
+            pose_ = detail::pose_of(positions);
+            ++version_;
+        }
+
+        // Of a step where it is at its end, likewise; without, or after stay(), where it began.
+        void set_end(const Positions &positions)
+        {
+            end_ = detail::pose_of(positions);
+            moves_ = true;
+            ++version_;
+        }
+        void stay()
+        {
+            moves_ = false;
+            ++version_;
+        }
+
+        const std::uint32_t number; // in ranges: that of the first object is 0
+        // group, itself (at first 1), filters, rest, rest_distance and masks, as for sc_object: each
+        // query takes those that it has use for. The other members are the scene's.
+        sc_object options{};
+
+      private:
+        friend class Scene;
+        const sc_model *model_;
+        Workspace workspace_;
+        sc_pose pose_{}, end_{};
+        bool moves_ = false;
+        std::uint64_t version_ = 0;
+    };
+
+    // flags and workers: of each object's workspace, see there.
+    explicit Scene(std::uint32_t flags = 0, std::uint32_t workers = 1)
+        : flags_(flags), workers_(workers)
+    {
+    }
+
+    // A new object, which lives as long as the scene. The model must outlive both.
+    Object &add(const Model &model, const Positions &positions)
+    {
+        return objects_.emplace_back(model, positions, flags_, workers_,
+                                     detail::number(objects_.size()));
+    }
+
+    std::size_t size() const
+    {
+        return objects_.size();
+    }
+    Object &operator[](std::size_t number)
+    {
+        return objects_[number];
+    }
+
+    // What intersects; it stays until the next query. asked: NULL, or as for sc_query_objects.
+    const Meetings &query(const sc_query_options *asked = nullptr)
+    {
+        auto result = sized<sc_objects_result>();
+        const auto objects = fill([](sc_object &one) {
+            one.end = one.rest = nullptr;
+            one.vertex_face_filter = one.edge_edge_filter = nullptr;
+            one.masks = nullptr;
+        });
+        do give(result, pairs_);
+        while (again(sc_query_objects(&objects, asked, &result)));
+        trim(result, pairs_, asked == nullptr || asked->output == SC_OUTPUT_PAIRS);
+        return pairs_;
+    }
+
+    // What is within a distance; it stays until the next step or query of what is near. wanted: NULL,
+    // or as for sc_query_objects_near, but for distance.
+    const FeatureMeetings &near(double distance, const sc_near_options *wanted = nullptr)
+    {
+        auto asked = wanted != nullptr ? *wanted : sized<sc_near_options>();
+        asked.distance = distance;
+        const auto objects = fill([](sc_object &one) {
+            one.end = nullptr;
+            one.filter = nullptr;
+        });
+        return find(asked.output, false, [&](sc_objects_lists &lists) {
+            return sc_query_objects_near(&objects, &asked, &lists);
+        });
+    }
+
+    // What collides while objects move from their pose to their end; it stays as long. wanted: NULL,
+    // all pairs with their times; or as for sc_query_objects_step.
+    const FeatureMeetings &step(const sc_step_options *wanted = nullptr)
+    {
+        auto all = sized<sc_step_options>();
+        all.times = SC_STEP_TIMES_EACH;
+        const auto &asked = wanted != nullptr ? *wanted : all;
+        const auto objects = fill([](sc_object &one) {
+            one.filter = nullptr;
+            one.masks = nullptr;
+        });
+        return find(asked.output, asked.times == SC_STEP_TIMES_EACH, [&](sc_objects_lists &lists) {
+            return sc_query_objects_step(&objects, &asked, &lists);
+        });
+    }
+
+    // accept, accept_near and accept_user, as for sc_objects; the other members are the scene's.
+    sc_objects options = sized<sc_objects>();
+
+  private:
+    // The objects as the library takes them; leave_out takes away what a query has no use for.
+    template <typename LeaveOut> sc_objects fill(const LeaveOut &leave_out)
+    {
+        list_.clear();
+        for (const Object &object : objects_) {
+            auto one = object.options;
+            one.model = object.model_;
+            one.workspace = object.workspace_.get();
+            one.pose = &object.pose_;
+            one.end = object.moves_ ? &object.end_ : nullptr;
+            one.pose_version = object.version_;
+            leave_out(one);
+            list_.push_back(one);
+        }
+        auto objects = options;
+        objects.count = detail::number(list_.size());
+        objects.objects = list_.data();
+        objects.stride = sizeof(sc_object);
+        return objects;
+    }
+
+    // Gives a list, or the result of query, arrays of the length that it said it needs, or more.
+    template <typename List> static void give(List &list, Meetings &found)
+    {
+        const auto count = static_cast<std::size_t>(list.count);
+        const auto range_count = static_cast<std::size_t>(list.range_count);
+        found.pairs.resize(std::max({std::size_t{64}, found.pairs.capacity(), count}));
+        found.ranges.resize(std::max({std::size_t{16}, found.ranges.capacity(), range_count}));
+        list.capacity = found.pairs.size();
+        list.pairs = found.pairs.data();
+        list.range_capacity = found.ranges.size();
+        list.ranges = found.ranges.data();
+    }
+
+    // Of a query that only counts there are ranges without pairs.
+    template <typename List> static void trim(const List &list, Meetings &found, bool listed)
+    {
+        found.pairs.resize(listed ? static_cast<std::size_t>(list.count) : 0);
+        found.ranges.resize(static_cast<std::size_t>(list.range_count));
+    }
+
+    bool again(sc_status status)
+    {
+        std::string reasons;
+        for (const Object &object : objects_) {
+            const auto reason = object.workspace_.log_->take();
+            reasons += reasons.empty() || reason.empty() ? reason : "; " + reason;
+        }
+        if (status != SC_OK && status != SC_ERROR_SHORT_BUFFER) throw Error(status, reasons);
+        return status == SC_ERROR_SHORT_BUFFER;
+    }
+
+    template <typename Ask>
+    const FeatureMeetings &find(std::uint32_t output, bool timed, const Ask &ask)
+    {
+        auto lists = sized<sc_objects_lists>();
+        const std::pair<sc_object_list &, Meetings &> both[] = {
+            {lists.vertex_faces, found_.vertex_faces}, {lists.edge_edges, found_.edge_edges}};
+        do {
+            for (const auto &[list, found] : both) {
+                give(list, found);
+                found.times.resize(timed ? found.pairs.size() : 0);
+                list.times = timed ? found.times.data() : nullptr;
+            }
+        } while (again(ask(lists)));
+        for (const auto &[list, found] : both) {
+            trim(list, found, output == SC_OUTPUT_PAIRS);
+            found.times.resize(timed ? found.pairs.size() : 0);
+        }
+        found_.earliest = lists.earliest;
+        return found_;
+    }
+
+    std::uint32_t flags_, workers_;
+    std::deque<Object> objects_;
+    std::vector<sc_object> list_;
+    Meetings pairs_;
+    FeatureMeetings found_;
 };
 
 } // namespace starcontour
