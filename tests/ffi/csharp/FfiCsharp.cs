@@ -37,7 +37,10 @@ static class FfiCsharp
             typeof(Native.sc_query_options), typeof(Native.sc_result), typeof(Pair),
             typeof(Native.sc_workspace_options), typeof(Native.sc_step_options),
             typeof(Native.sc_step_result), typeof(Native.sc_near_options),
-            typeof(Native.sc_near_result) })
+            typeof(Native.sc_near_result), typeof(Native.sc_group), typeof(Native.sc_object),
+            typeof(Native.sc_objects), typeof(Native.sc_object_pairs),
+            typeof(Native.sc_objects_result), typeof(Native.sc_object_list),
+            typeof(Native.sc_objects_lists) })
         {
             var name = type == typeof(Pair) ? "sc_pair" : type.Name;
             var size = lines.Single(w => w[0] == "struct" && w[1] == name)[2];
@@ -49,6 +52,60 @@ static class FfiCsharp
         var statuses = lines.Where(w => w[0] == "value" && (w[1] == "SC_OK" || w[1].StartsWith("SC_ERROR_")));
         Check("status values are the header's", statuses.Select(w => int.Parse(w[2])).SequenceEqual(
             Enum.GetValues(typeof(Status)).Cast<int>()));
+    }
+
+    // Meetings as pairs of the one mesh of two objects, sorted; firstA and firstB: the numbers of what
+    // is the second one's first there.
+    static IEnumerable<string> Joined(Meeting[] meetings, int firstA, int firstB)
+    {
+        return meetings.SelectMany(m => m.Pairs.Select(pair =>
+            new[] { pair.a + m.A * firstA, pair.b + m.B * firstB }))
+            .OrderBy(pair => pair[0]).ThenBy(pair => pair[1]).Select(pair => pair[0] + " " + pair[1]);
+    }
+
+    // The mesh's two cloths as two objects have the pairs that the mesh has.
+    static void CheckScene(double[] rest, double[] moved, uint[] triangles, ILookup<string, string> golden)
+    {
+        int vertices = rest.Length / 6, half = triangles.Length / 6;
+        Func<double[], int, double[]> part = (all, which) =>
+            all.Skip(which * 3 * vertices).Take(3 * vertices).ToArray();
+        using (var one = new Model(part(rest, 0).Select(x => (float)x).ToArray(),
+            triangles.Take(3 * half).ToArray()))
+        using (var two = new Model(part(rest, 1).Select(x => (float)x).ToArray(),
+            triangles.Skip(3 * half).Select(v => v - (uint)vertices).ToArray()))
+        using (var scene = new Scene(WorkspaceKind.Near))
+        {
+            var objects = new[] { scene.Add(one), scene.Add(two) };
+            Check("an object without a pose", Refused(Status.Null, "", () => scene.Query()));
+            for (var i = 0; i < 2; ++i) objects[i].SetPose(part(rest, i));
+            Check("pairs of two objects", Joined(scene.Query(), half, half).SequenceEqual(golden["rest"]));
+            for (var i = 0; i < 2; ++i) objects[i].SetEnd(part(moved, i));
+            var step = scene.Step();
+            Check("a step of two objects",
+                Joined(step.VertexFaces, vertices, half).SequenceEqual(golden["stepfaces"])
+                && Joined(step.EdgeEdges, 3 * half, 3 * half).SequenceEqual(golden["stepedges"])
+                && step.VertexFaces.Concat(step.EdgeEdges).SelectMany(m => m.Times).Min() == step.Earliest);
+            for (var i = 0; i < 2; ++i) objects[i].SetPose(part(moved, i));
+            var near = scene.Near(0.045);
+            Check("near of two objects",
+                Joined(near.VertexFaces, vertices, half).SequenceEqual(golden["nearfaces"])
+                && Joined(near.EdgeEdges, 3 * half, 3 * half).SequenceEqual(golden["nearedges"]));
+            Check("pairs when they moved", Joined(scene.Query(), half, half).SequenceEqual(golden["moved"]));
+            objects[0].Category = objects[0].Mask = 1;
+            objects[1].Category = objects[1].Mask = 2;
+            Check("groups of objects", scene.Query().Length == 0);
+            objects[0].SetPose(new double[3 * vertices]);
+            using (var workspace = one.CreateWorkspace())
+                Check("an object and itself", scene.Query().Single().Pairs.SequenceEqual(
+                    workspace.Query(new double[3 * vertices])));
+            objects[0].Itself = false;
+            Check("an object without itself", scene.Query().Length == 0);
+            one.Dispose();
+            var disposed = false;
+            try { scene.Query(); }
+            catch (ObjectDisposedException) { disposed = true; }
+            Check("a model that is gone", disposed);
+        }
     }
 
     static int Main(string[] arguments)
@@ -119,6 +176,8 @@ static class FfiCsharp
             threads.ForEach(thread => thread.Join());
             Check("two threads, one model", right == 200);
         }
+
+        CheckScene(rest.Select(x => (double)x).ToArray(), moved, triangles, golden);
 
         Console.WriteLine("c#: {0} passed, {1} failed", passed, failed);
         return failed == 0 ? 0 : 1;

@@ -4,6 +4,7 @@
 //
 // SPDX-License-Identifier: MIT
 using System;
+using System.Collections.Generic;
 using System.Runtime.InteropServices;
 
 namespace Starcontour
@@ -126,6 +127,73 @@ namespace Starcontour
             public double* vertex_bounds;
         }
 
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_group
+        {
+            public uint category, mask;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_object
+        {
+            public IntPtr model, workspace;
+            public sc_pose* pose, end;
+            public ulong pose_version;
+            public sc_group group;
+            public uint itself, reserved;
+            public void* filter, vertex_face_filter, edge_edge_filter, rest;
+            public double rest_distance;
+            public void* masks;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_objects
+        {
+            public uint struct_size, count;
+            public sc_object* objects;
+            public ulong stride;
+            public void* accept, accept_user, accept_near;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_object_pairs
+        {
+            public uint object_a, object_b;
+            public ulong first, count;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_objects_result
+        {
+            public uint struct_size, collides;
+            public ulong count, capacity;
+            public Pair* pairs;
+            public ulong range_count, range_capacity;
+            public sc_object_pairs* ranges;
+            public void* stats;
+            public uint verdict, reserved;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_object_list
+        {
+            public ulong count, capacity;
+            public Pair* pairs;
+            public double* times;
+            public ulong range_count, range_capacity;
+            public sc_object_pairs* ranges;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_objects_lists
+        {
+            public uint struct_size, collides;
+            public sc_object_list vertex_faces, edge_edges;
+            public void* stats;
+            public double earliest;
+            public uint verdict, reserved;
+        }
+
         [DllImport(Library)] public static extern IntPtr sc_status_string(Status status);
         [DllImport(Library)] public static extern IntPtr sc_version_string();
         [DllImport(Library)] public static extern Status sc_build(
@@ -143,6 +211,12 @@ namespace Starcontour
         [DllImport(Library)] public static extern Status sc_query_near(
             ModelHandle model, WorkspaceHandle workspace, ref sc_pose pose,
             ref sc_near_options options, ref sc_near_result result);
+        [DllImport(Library)] public static extern Status sc_query_objects(
+            ref sc_objects objects, ref sc_query_options options, ref sc_objects_result result);
+        [DllImport(Library)] public static extern Status sc_query_objects_near(
+            ref sc_objects objects, ref sc_near_options options, ref sc_objects_lists lists);
+        [DllImport(Library)] public static extern Status sc_query_objects_step(
+            ref sc_objects objects, ref sc_step_options options, ref sc_objects_lists lists);
 
         public static void Check(Status status)
         {
@@ -218,6 +292,7 @@ namespace Starcontour
     {
         readonly Model model;
         readonly WorkspaceHandle handle;
+        internal WorkspaceHandle Handle { get { return handle; } }
         Pair[] pairs = new Pair[16], faces = new Pair[16], edges = new Pair[16];
         double[] faceTimes = new double[16], edgeTimes = new double[16];
 
@@ -382,5 +457,239 @@ namespace Starcontour
         }
 
         public void Dispose() { handle.Dispose(); }
+    }
+
+    // What two objects of a scene have with each other, or one with itself: numbers of the two, pairs
+    // of what belongs to a and what belongs to b, and of a step when each collides. Views of the
+    // scene's own arrays, overwritten by its next question.
+    public struct Meeting
+    {
+        public int A, B;
+        public ArraySegment<Pair> Pairs;
+        public ArraySegment<double> Times;
+    }
+
+    // Meetings of a vertex and a triangle, and of two edges.
+    public struct FeatureMeetings
+    {
+        public Meeting[] VertexFaces, EdgeEdges;
+        public double Earliest; // of a step: nothing collides before
+    }
+
+    // An object of a scene. Arrays are read where they are, by the first question after each Set...:
+    // set again what was changed in place.
+    public sealed unsafe class SceneObject
+    {
+        public readonly Model Model;
+        public bool Itself = true;  // whether its pairs with itself are wanted
+        public uint Category, Mask; // its group, see sc_group; 0 and 0: it collides with all
+        internal readonly Workspace Workspace;
+        internal ulong Version;
+        internal Array Pose, End;
+
+        internal SceneObject(Model model, WorkspaceKind kind)
+        {
+            Model = model;
+            Workspace = model.CreateWorkspace(kind);
+        }
+
+        // Where it is, of a step at its start.
+        public void SetPose(float[] positions) { Pose = positions; ++Version; }
+        public void SetPose(double[] positions) { Pose = positions; ++Version; }
+
+        // Of a step, where it is at its end; without, it stays where it is.
+        public void SetEnd(float[] positions) { End = positions; ++Version; }
+        public void SetEnd(double[] positions) { End = positions; ++Version; }
+        public void Stay() { End = null; ++Version; }
+    }
+
+    // Several objects, which may share models. One call at a time.
+    public sealed unsafe class Scene : IDisposable
+    {
+        // Arrays for one list of pairs.
+        sealed class Room
+        {
+            internal Pair[] Pairs = new Pair[16];
+            internal double[] Times = new double[16];
+            internal Native.sc_object_pairs[] Ranges = new Native.sc_object_pairs[1];
+
+            internal void Fit(ref Native.sc_object_list list)
+            {
+                if (list.count > (ulong)Pairs.Length)
+                {
+                    Pairs = new Pair[list.count];
+                    Times = new double[list.count];
+                }
+                if (list.range_count > (ulong)Ranges.Length)
+                    Ranges = new Native.sc_object_pairs[list.range_count];
+            }
+
+            internal Meeting[] Meetings(ulong count)
+            {
+                var found = new Meeting[count];
+                for (var i = 0; i < found.Length; ++i)
+                {
+                    int first = (int)Ranges[i].first, length = (int)Ranges[i].count;
+                    found[i] = new Meeting {
+                        A = (int)Ranges[i].object_a, B = (int)Ranges[i].object_b,
+                        Pairs = new ArraySegment<Pair>(Pairs, first, length),
+                        Times = new ArraySegment<double>(Times, first, length)
+                    };
+                }
+                return found;
+            }
+        }
+
+        delegate Status Question(ref Native.sc_objects objects, ref Native.sc_objects_lists lists);
+
+        readonly WorkspaceKind kind;
+        readonly List<SceneObject> objects = new List<SceneObject>();
+        readonly Room faces = new Room(), edges = new Room();
+
+        public Scene(WorkspaceKind kind = WorkspaceKind.Queries) { this.kind = kind; }
+
+        // A new object, which has no pose yet. Its number is the number of those before it.
+        public SceneObject Add(Model model)
+        {
+            objects.Add(new SceneObject(model, kind));
+            return objects[objects.Count - 1];
+        }
+
+        // What intersects.
+        public Meeting[] Query(
+            PairKind pairs = PairKind.Triangle, Contact contact = Contact.Touching)
+        {
+            var options = new Native.sc_query_options {
+                struct_size = (uint)sizeof(Native.sc_query_options),
+                pairs = (uint)pairs, contact = (uint)contact
+            };
+            return Ask(false, (ref Native.sc_objects all, ref Native.sc_objects_lists lists) => {
+                var result = new Native.sc_objects_result {
+                    struct_size = (uint)sizeof(Native.sc_objects_result),
+                    capacity = lists.vertex_faces.capacity, pairs = lists.vertex_faces.pairs,
+                    range_capacity = lists.vertex_faces.range_capacity,
+                    ranges = lists.vertex_faces.ranges
+                };
+                var status = Native.sc_query_objects(ref all, ref options, ref result);
+                lists.vertex_faces.count = result.count;
+                lists.vertex_faces.range_count = result.range_count;
+                return status;
+            }).VertexFaces;
+        }
+
+        // What is within a distance, in units of the coordinates.
+        public FeatureMeetings Near(double distance)
+        {
+            var options = new Native.sc_near_options {
+                struct_size = (uint)sizeof(Native.sc_near_options), distance = distance
+            };
+            return Ask(false, (ref Native.sc_objects all, ref Native.sc_objects_lists lists) =>
+                Native.sc_query_objects_near(ref all, ref options, ref lists));
+        }
+
+        // What comes as near as separation while objects move from their pose to their end.
+        public FeatureMeetings Step(double separation = 0)
+        {
+            var options = new Native.sc_step_options {
+                struct_size = (uint)sizeof(Native.sc_step_options), separation = separation, times = 2
+            };
+            return Ask(true, (ref Native.sc_objects all, ref Native.sc_objects_lists lists) =>
+                Native.sc_query_objects_step(ref all, ref options, ref lists));
+        }
+
+        // Asks until all arrays are long enough. Handles are held and arrays pinned meanwhile.
+        FeatureMeetings Ask(bool moves, Question question)
+        {
+            var array = new Native.sc_object[objects.Count];
+            var poses = new Native.sc_pose[2 * objects.Count];
+            var held = new List<SafeHandle>();
+            var pins = new List<GCHandle>();
+            fixed (Native.sc_object* to = array)
+            fixed (Native.sc_pose* pose = poses)
+            try
+            {
+                for (var i = 0; i < objects.Count; ++i)
+                {
+                    var one = objects[i];
+                    to[i] = new Native.sc_object {
+                        model = Hold(one.Model.Handle, held),
+                        workspace = Hold(one.Workspace.Handle, held),
+                        pose_version = one.Version, itself = one.Itself ? 1u : 0,
+                        group = new Native.sc_group { category = one.Category, mask = one.Mask }
+                    };
+                    if (one.Pose != null)
+                    {
+                        pose[2 * i] = PoseOf(one.Pose, pins);
+                        to[i].pose = &pose[2 * i];
+                    }
+                    if (moves && one.End != null)
+                    {
+                        pose[2 * i + 1] = PoseOf(one.End, pins);
+                        to[i].end = &pose[2 * i + 1];
+                    }
+                }
+                var all = new Native.sc_objects {
+                    struct_size = (uint)sizeof(Native.sc_objects),
+                    count = (uint)objects.Count, objects = to
+                };
+                var lists = new Native.sc_objects_lists {
+                    struct_size = (uint)sizeof(Native.sc_objects_lists)
+                };
+                for (;;)
+                {
+                    Status status;
+                    fixed (Pair* f = faces.Pairs, e = edges.Pairs)
+                    fixed (double* ft = faces.Times, et = edges.Times)
+                    fixed (Native.sc_object_pairs* fr = faces.Ranges, er = edges.Ranges)
+                    {
+                        lists.vertex_faces = new Native.sc_object_list {
+                            capacity = (ulong)faces.Pairs.Length, pairs = f, times = moves ? ft : null,
+                            range_capacity = (ulong)faces.Ranges.Length, ranges = fr
+                        };
+                        lists.edge_edges = new Native.sc_object_list {
+                            capacity = (ulong)edges.Pairs.Length, pairs = e, times = moves ? et : null,
+                            range_capacity = (ulong)edges.Ranges.Length, ranges = er
+                        };
+                        status = question(ref all, ref lists);
+                    }
+                    if (status != Status.ShortBuffer)
+                    {
+                        Native.Check(status);
+                        return new FeatureMeetings {
+                            VertexFaces = faces.Meetings(lists.vertex_faces.range_count),
+                            EdgeEdges = edges.Meetings(lists.edge_edges.range_count),
+                            Earliest = lists.earliest
+                        };
+                    }
+                    faces.Fit(ref lists.vertex_faces);
+                    edges.Fit(ref lists.edge_edges);
+                }
+            }
+            finally
+            {
+                pins.ForEach(pin => pin.Free());
+                held.ForEach(handle => handle.DangerousRelease());
+            }
+        }
+
+        static IntPtr Hold(SafeHandle handle, List<SafeHandle> held)
+        {
+            var done = false;
+            handle.DangerousAddRef(ref done);
+            held.Add(handle);
+            return handle.DangerousGetHandle();
+        }
+
+        static Native.sc_pose PoseOf(Array positions, List<GCHandle> pins)
+        {
+            pins.Add(GCHandle.Alloc(positions, GCHandleType.Pinned));
+            return new Native.sc_pose {
+                struct_size = (uint)sizeof(Native.sc_pose), vertex_count = (uint)positions.Length / 3,
+                position_type = positions is double[] ? 1u : 0,
+                positions = pins[pins.Count - 1].AddrOfPinnedObject().ToPointer()
+            };
+        }
+
+        public void Dispose() { objects.ForEach(one => one.Workspace.Dispose()); }
     }
 }
