@@ -524,7 +524,7 @@ namespace Starcontour
                     Ranges = new Native.sc_object_pairs[list.range_count];
             }
 
-            internal Meeting[] Meetings(ulong count)
+            internal Meeting[] Meetings(ulong count, bool timed)
             {
                 var found = new Meeting[count];
                 for (var i = 0; i < found.Length; ++i)
@@ -533,7 +533,7 @@ namespace Starcontour
                     found[i] = new Meeting {
                         A = (int)Ranges[i].object_a, B = (int)Ranges[i].object_b,
                         Pairs = new ArraySegment<Pair>(Pairs, first, length),
-                        Times = new ArraySegment<double>(Times, first, length)
+                        Times = new ArraySegment<double>(Times, first, timed ? length : 0)
                     };
                 }
                 return found;
@@ -656,8 +656,8 @@ namespace Starcontour
                     {
                         Native.Check(status);
                         return new FeatureMeetings {
-                            VertexFaces = faces.Meetings(lists.vertex_faces.range_count),
-                            EdgeEdges = edges.Meetings(lists.edge_edges.range_count),
+                            VertexFaces = faces.Meetings(lists.vertex_faces.range_count, moves),
+                            EdgeEdges = edges.Meetings(lists.edge_edges.range_count, moves),
                             Earliest = lists.earliest
                         };
                     }
