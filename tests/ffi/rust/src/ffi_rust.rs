@@ -4,7 +4,7 @@
 //!
 //! SPDX-License-Identifier: MIT
 
-use starcontour::{raw, Error, Model, Options, Pair, StepOptions};
+use starcontour::{raw, Error, Group, Meeting, Model, Options, Pair, Scene, StepOptions};
 use std::collections::HashMap;
 use std::{env, fs, process, thread};
 
@@ -26,6 +26,75 @@ impl Checks {
 
 fn refused<T>(result: Result<T, Error>, error: Error, text: &str) -> bool {
     matches!(result, Err(found) if found == error && found.to_string().contains(text))
+}
+
+/// Meetings as pairs of the one mesh of two objects, sorted; firsts: the numbers there of what is the
+/// second object's first a and first b.
+fn joined(meetings: &[Meeting], firsts: [usize; 2]) -> Vec<Pair> {
+    let of_one = |m: &Meeting| {
+        let add = [m.a * firsts[0], m.b * firsts[1]].map(|n| n as u32);
+        m.pairs.iter().map(move |p| Pair { a: p.a + add[0], b: p.b + add[1] }).collect::<Vec<_>>()
+    };
+    let mut pairs: Vec<Pair> = meetings.iter().flat_map(of_one).collect();
+    pairs.sort_by_key(|pair| (pair.a, pair.b));
+    pairs
+}
+
+/// The mesh's two cloths as two objects have the pairs that the mesh has.
+fn check_scene(
+    checks: &mut Checks,
+    rest: &[[f32; 3]],
+    moved: &[[f64; 3]],
+    triangles: &[[u32; 3]],
+    golden: &HashMap<String, Vec<Pair>>,
+) {
+    let (vertices, half) = (rest.len() / 2, triangles.len() / 2);
+    let rests = [&rest[..vertices], &rest[vertices..]];
+    let ends = [&moved[..vertices], &moved[vertices..]];
+    let second: Vec<_> = triangles[half..].iter().map(|t| t.map(|v| v - vertices as u32)).collect();
+    let one = Model::build(rests[0], &triangles[..half]).expect("a model");
+    let other = Model::build(rests[1], &second).expect("a model");
+    let (of_faces, of_edges) = ([vertices, half], [3 * half; 2]);
+    let options = Options::default();
+
+    let mut scene = Scene::new(starcontour::WORKSPACE_NEAR);
+    let objects = [scene.add(&one).unwrap(), scene.add(&other).unwrap()];
+    let without = scene.query(&options).err();
+    checks.check("objects without a pose", without == Some(starcontour::ERROR_VERTEX_COUNT));
+    for i in objects {
+        scene.object(i).set_pose(rests[i]);
+        scene.object(i).set_end(Some(ends[i]));
+    }
+    let found = joined(&scene.query(&options).unwrap(), [half; 2]);
+    checks.check("pairs of two objects", found == golden["rest"]);
+    let step = scene.step(&StepOptions::default()).unwrap();
+    let right = joined(&step.vertex_faces, of_faces) == golden["stepfaces"]
+        && joined(&step.edge_edges, of_edges) == golden["stepedges"];
+    checks.check("a step of two objects", right);
+    let meetings = step.vertex_faces.iter().chain(&step.edge_edges);
+    let first = meetings.flat_map(|m| m.times).fold(1.0, |a: f64, b| a.min(*b));
+    checks.check("at their times", step.earliest > 0.0 && first == step.earliest);
+    for i in objects {
+        scene.object(i).set_pose(ends[i]);
+    }
+    let near = scene.near(0.045).unwrap();
+    let right = joined(&near.vertex_faces, of_faces) == golden["nearfaces"]
+        && joined(&near.edge_edges, of_edges) == golden["nearedges"];
+    checks.check("near of two objects", right && near.edge_edges[0].times.is_empty());
+    let found = joined(&scene.query(&options).unwrap(), [half; 2]);
+    checks.check("pairs when they moved", found == golden["moved"]);
+
+    scene.object(0).group = Group { category: 1, mask: 1 };
+    scene.object(1).group = Group { category: 2, mask: 2 };
+    checks.check("groups of objects", scene.query(&options).unwrap().is_empty());
+    let flat = vec![[0.0; 3]; vertices];
+    scene.object(0).set_pose(&flat);
+    let mut workspace = one.workspace().unwrap();
+    let alone = workspace.query(&flat, &options).unwrap();
+    let found = scene.query(&options).unwrap();
+    checks.check("an object and itself", found.len() == 1 && found[0].pairs == alone);
+    scene.object(0).itself = false;
+    checks.check("an object without itself", scene.query(&options).unwrap().is_empty());
 }
 
 fn main() {
@@ -117,6 +186,8 @@ fn main() {
     checks.check("a distance below 0", refused(below, starcontour::ERROR_OPTION, "option"));
     let no_room = workspace.step(&rest, &moved, &touching);
     checks.check("no room for steps", refused(no_room, starcontour::ERROR_WORKSPACE, "workspace"));
+
+    check_scene(&mut checks, &rest, &moved, &triangles, &golden);
 
     println!("rust: {} passed, {} failed", checks.passed, checks.failed);
     process::exit((checks.failed > 0).into());

@@ -12,13 +12,21 @@
 //! let mut larger = model.workspace_for(WORKSPACE_NEAR)?;
 //! let free = larger.step(&pose, &next, &StepOptions::default())?.earliest;
 //! for pair in larger.near(&pose, 0.01)?.vertex_faces { ... }
+//!
+//! let mut scene = Scene::new(WORKSPACE_NEAR);
+//! let (cloth, body) = (scene.add(&model)?, scene.add(&other)?);
+//! scene.object(cloth).set_pose(&pose);
+//! for meeting in scene.query(&Options::default())? { ... }
 //! ```
 //!
 //! SPDX-License-Identifier: MIT
 
 pub mod raw;
+mod scene;
 
+pub use raw::sc_group as Group;
 pub use raw::sc_pair as Pair;
+pub use scene::{FeatureMeetings, Meeting, Object, Scene};
 use std::ffi::CStr;
 use std::{fmt, mem, ptr};
 
@@ -64,7 +72,7 @@ mod sealed {
 }
 
 /// A coordinate: `f32` or `f64`.
-pub trait Scalar: sealed::Sealed {
+pub trait Scalar: sealed::Sealed + Copy + Into<f64> {
     #[doc(hidden)]
     const TYPE: u32;
 }
@@ -195,24 +203,72 @@ fn pose_of<T: Scalar>(positions: &[[T; 3]]) -> Result<raw::sc_pose, Error> {
     })
 }
 
+fn raw_options(options: &Options) -> raw::sc_query_options {
+    raw::sc_query_options {
+        struct_size: size_of::<raw::sc_query_options>(),
+        output: 0,
+        pairs: options.edges.into(),
+        contact: options.proper.into(),
+        method: 0,
+        contour: 0,
+        rest_cache: 0,
+        simd: 0,
+        filter: ptr::null(),
+        cancel: ptr::null(),
+        budget: 0,
+        tasks: ptr::null(),
+    }
+}
+
+fn raw_step_options(options: &StepOptions) -> raw::sc_step_options {
+    raw::sc_step_options {
+        struct_size: size_of::<raw::sc_step_options>(),
+        output: 0,
+        pairs: 0,
+        times: 2,
+        method: 0,
+        contour: 0,
+        simd: 0,
+        reserved: 0,
+        separation: options.separation,
+        tolerance: options.tolerance,
+        tasks: ptr::null(),
+        cancel: ptr::null(),
+        budget: 0,
+        vertex_face_filter: ptr::null(),
+        edge_edge_filter: ptr::null(),
+        rest: ptr::null(),
+        rest_distance: 0.0,
+        begun: 0,
+        reserved2: 0,
+    }
+}
+
+fn raw_near_options(distance: f64) -> raw::sc_near_options {
+    raw::sc_near_options {
+        struct_size: size_of::<raw::sc_near_options>(),
+        output: 0,
+        kinds: 0,
+        method: 0,
+        simd: 0,
+        reserved: 0,
+        distance,
+        vertex_face_filter: ptr::null(),
+        edge_edge_filter: ptr::null(),
+        rest: ptr::null(),
+        rest_distance: 0.0,
+        tasks: ptr::null(),
+        cancel: ptr::null(),
+        budget: 0,
+        masks: ptr::null(),
+    }
+}
+
 impl Workspace<'_> {
     /// All pairs in a pose, sorted.
     pub fn query<T: Scalar>(&mut self, pose: &[[T; 3]], options: &Options) -> Result<&[Pair], Error> {
         let pose = pose_of(pose)?;
-        let options = raw::sc_query_options {
-            struct_size: size_of::<raw::sc_query_options>(),
-            output: 0,
-            pairs: options.edges.into(),
-            contact: options.proper.into(),
-            method: 0,
-            contour: 0,
-            rest_cache: 0,
-            simd: 0,
-            filter: ptr::null(),
-            cancel: ptr::null(),
-            budget: 0,
-            tasks: ptr::null(),
-        };
+        let options = raw_options(options);
         loop {
             let mut result = raw::sc_result {
                 struct_size: size_of::<raw::sc_result>(),
@@ -248,27 +304,7 @@ impl Workspace<'_> {
         options: &StepOptions,
     ) -> Result<Step<'_>, Error> {
         let (start, end) = (pose_of(start)?, pose_of(end)?);
-        let options = raw::sc_step_options {
-            struct_size: size_of::<raw::sc_step_options>(),
-            output: 0,
-            pairs: 0,
-            times: 2,
-            method: 0,
-            contour: 0,
-            simd: 0,
-            reserved: 0,
-            separation: options.separation,
-            tolerance: options.tolerance,
-            tasks: ptr::null(),
-            cancel: ptr::null(),
-            budget: 0,
-            vertex_face_filter: ptr::null(),
-            edge_edge_filter: ptr::null(),
-            rest: ptr::null(),
-            rest_distance: 0.0,
-            begun: 0,
-            reserved2: 0,
-        };
+        let options = raw_step_options(options);
         loop {
             let [faces, edges] = &mut self.features;
             let [face_times, edge_times] = &mut self.times;
@@ -314,23 +350,7 @@ impl Workspace<'_> {
     /// What is within a distance in a pose, in units of the coordinates.
     pub fn near<T: Scalar>(&mut self, pose: &[[T; 3]], distance: f64) -> Result<Near<'_>, Error> {
         let pose = pose_of(pose)?;
-        let options = raw::sc_near_options {
-            struct_size: size_of::<raw::sc_near_options>(),
-            output: 0,
-            kinds: 0,
-            method: 0,
-            simd: 0,
-            reserved: 0,
-            distance,
-            vertex_face_filter: ptr::null(),
-            edge_edge_filter: ptr::null(),
-            rest: ptr::null(),
-            rest_distance: 0.0,
-            tasks: ptr::null(),
-            cancel: ptr::null(),
-            budget: 0,
-            masks: ptr::null(),
-        };
+        let options = raw_near_options(distance);
         loop {
             let [faces, edges] = &mut self.features;
             let mut result = raw::sc_near_result {

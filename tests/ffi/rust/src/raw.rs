@@ -4,7 +4,7 @@
 #![allow(non_camel_case_types)]
 
 use std::mem::{size_of, MaybeUninit};
-use std::os::raw::{c_char, c_void};
+use std::os::raw::{c_char, c_int, c_void};
 use std::ptr::addr_of;
 
 pub type sc_status = i32;
@@ -153,6 +153,89 @@ pub struct sc_near_result {
 }
 
 #[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct sc_group {
+    pub category: u32,
+    pub mask: u32,
+}
+
+#[repr(C)]
+pub struct sc_object {
+    pub model: *const sc_model,
+    pub workspace: *mut sc_workspace,
+    pub pose: *const sc_pose,
+    pub end: *const sc_pose,
+    pub pose_version: u64,
+    pub group: sc_group,
+    pub itself: u32,
+    pub reserved: u32,
+    pub filter: *const c_void,
+    pub vertex_face_filter: *const c_void,
+    pub edge_edge_filter: *const c_void,
+    pub rest: *const sc_pose,
+    pub rest_distance: f64,
+    pub masks: *const c_void,
+}
+
+#[repr(C)]
+pub struct sc_objects {
+    pub struct_size: u32,
+    pub count: u32,
+    pub objects: *const sc_object,
+    pub stride: u64,
+    pub accept: Option<extern "C" fn(*mut c_void, u32, u32, u32, u32) -> c_int>,
+    pub accept_user: *mut c_void,
+    pub accept_near: Option<extern "C" fn(*mut c_void, u32, u32, u32, u32, u32) -> c_int>,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct sc_object_pairs {
+    pub object_a: u32,
+    pub object_b: u32,
+    pub first: u64,
+    pub count: u64,
+}
+
+#[repr(C)]
+pub struct sc_objects_result {
+    pub struct_size: u32,
+    pub collides: u32,
+    pub count: u64,
+    pub capacity: u64,
+    pub pairs: *mut sc_pair,
+    pub range_count: u64,
+    pub range_capacity: u64,
+    pub ranges: *mut sc_object_pairs,
+    pub stats: *mut c_void,
+    pub verdict: u32,
+    pub reserved: u32,
+}
+
+#[repr(C)]
+pub struct sc_object_list {
+    pub count: u64,
+    pub capacity: u64,
+    pub pairs: *mut sc_pair,
+    pub times: *mut f64,
+    pub range_count: u64,
+    pub range_capacity: u64,
+    pub ranges: *mut sc_object_pairs,
+}
+
+#[repr(C)]
+pub struct sc_objects_lists {
+    pub struct_size: u32,
+    pub collides: u32,
+    pub vertex_faces: sc_object_list,
+    pub edge_edges: sc_object_list,
+    pub stats: *mut c_void,
+    pub earliest: f64,
+    pub verdict: u32,
+    pub reserved: u32,
+}
+
+#[repr(C)]
 pub struct sc_model {
     _opaque: [u8; 0],
 }
@@ -198,6 +281,21 @@ extern "C" {
         options: *const sc_near_options,
         result: *mut sc_near_result,
     ) -> sc_status;
+    pub fn sc_query_objects(
+        objects: *const sc_objects,
+        options: *const sc_query_options,
+        result: *mut sc_objects_result,
+    ) -> sc_status;
+    pub fn sc_query_objects_near(
+        objects: *const sc_objects,
+        options: *const sc_near_options,
+        lists: *mut sc_objects_lists,
+    ) -> sc_status;
+    pub fn sc_query_objects_step(
+        objects: *const sc_objects,
+        options: *const sc_step_options,
+        lists: *mut sc_objects_lists,
+    ) -> sc_status;
 }
 
 /// Name, size in bytes, and the names and offsets of the members.
@@ -236,5 +334,15 @@ pub fn layouts() -> Vec<Layout> {
         layout!(sc_near_result: struct_size found verdict reserved vertex_face_count
             vertex_face_capacity vertex_faces edge_edge_count edge_edge_capacity edge_edges stats
             vertex_bounds),
+        layout!(sc_group: category mask),
+        layout!(sc_object: model workspace pose end pose_version group itself reserved filter
+            vertex_face_filter edge_edge_filter rest rest_distance masks),
+        layout!(sc_objects: struct_size count objects stride accept accept_user accept_near),
+        layout!(sc_object_pairs: object_a object_b first count),
+        layout!(sc_objects_result: struct_size collides count capacity pairs range_count
+            range_capacity ranges stats verdict reserved),
+        layout!(sc_object_list: count capacity pairs times range_count range_capacity ranges),
+        layout!(sc_objects_lists: struct_size collides vertex_faces edge_edges stats earliest
+            verdict reserved),
     ]
 }
