@@ -12,6 +12,7 @@ import (
 	"fmt"
 	"math"
 	"os"
+	"sort"
 	"strings"
 	"unsafe"
 )
@@ -147,6 +148,8 @@ func main() {
 	pairs, err = Query(workspace, rest)
 	expect("usable after errors", err == nil && same(pairs, golden["rest"]))
 
+	expectScene(rest, triangles, golden)
+
 	fmt.Printf("go: %d passed, %d failed\n", passed, failed)
 	if failed > 0 {
 		os.Exit(1)
@@ -163,4 +166,86 @@ func repeat[T Scalar](model *Model, pose [][3]T, golden []Pair) bool {
 		}
 	}
 	return err == nil
+}
+
+// joined makes pairs of the one mesh of two objects of meetings, sorted; firstA and firstB are the
+// numbers there of what is the second object's first.
+func joined(meetings []Meeting, firstA, firstB int) []Pair {
+	var pairs []Pair
+	for _, m := range meetings {
+		for _, p := range m.Pairs {
+			pairs = append(pairs, Pair{p.A + uint32(m.A*firstA), p.B + uint32(m.B*firstB)})
+		}
+	}
+	sort.Slice(pairs, func(i, j int) bool {
+		a, b := pairs[i], pairs[j]
+		return a.A < b.A || a.A == b.A && a.B < b.B
+	})
+	return pairs
+}
+
+// expectScene asks about the mesh's two cloths as two objects, which have the pairs of the mesh.
+func expectScene(rest [][3]float32, triangles [][3]uint32, golden map[string][]Pair) {
+	vertices, half := len(rest)/2, len(triangles)/2
+	second := make([][3]uint32, half)
+	for i, t := range triangles[half:] {
+		for k, v := range t {
+			second[i][k] = v - uint32(vertices)
+		}
+	}
+	ends := append([][3]float32{}, rest...)
+	for i := vertices; i < len(ends); i++ {
+		ends[i][2] += ends[i][0]/4 - 0.25
+	}
+	one, err1 := Build(rest[:vertices], triangles[:half])
+	other, err2 := Build(rest[vertices:], second)
+	scene, err3 := NewScene(ForNear)
+	if err1 != nil || err2 != nil || err3 != nil {
+		expect("a scene", false)
+		return
+	}
+	a, err1 := scene.Add(one)
+	b, err2 := scene.Add(other)
+	_, err := scene.Query()
+	expect("objects without a pose", err1 == nil && err2 == nil && refused(err, ErrorNull, "NULL"))
+	err1, err2 = SetPose(a, rest[:vertices]), SetPose(b, rest[vertices:])
+	found, err := scene.Query()
+	expect("pairs of two objects", err1 == nil && err2 == nil && err == nil &&
+		same(joined(found, half, half), golden["rest"]))
+	err1, err2 = SetEnd(a, ends[:vertices]), SetEnd(b, ends[vertices:])
+	step, err := scene.Step(0)
+	expect("a step of two objects", err1 == nil && err2 == nil && err == nil &&
+		same(joined(step.VertexFaces, vertices, half), golden["stepfaces"]) &&
+		same(joined(step.EdgeEdges, 3*half, 3*half), golden["stepedges"]))
+	earliest := 1.0
+	for _, m := range append(step.VertexFaces, step.EdgeEdges...) {
+		for _, time := range m.Times {
+			earliest = math.Min(earliest, time)
+		}
+	}
+	expect("at their times", step.Earliest > 0 && step.Earliest == earliest)
+	err1, err2 = SetPose(a, ends[:vertices]), SetPose(b, ends[vertices:])
+	near, err := scene.Near(0.045)
+	expect("near of two objects", err1 == nil && err2 == nil && err == nil &&
+		same(joined(near.VertexFaces, vertices, half), golden["nearfaces"]) &&
+		same(joined(near.EdgeEdges, 3*half, 3*half), golden["nearedges"]))
+	found, err = scene.Query()
+	expect("pairs when they moved", err == nil && same(joined(found, half, half), golden["moved"]))
+
+	a.SetGroup(1, 1)
+	b.SetGroup(2, 2)
+	found, err = scene.Query()
+	expect("groups of objects", err == nil && len(found) == 0)
+	flat := make([][3]float64, vertices)
+	err1 = SetPose(a, flat)
+	found, err = scene.Query()
+	workspace, err2 := one.Workspace()
+	if err2 == nil {
+		alone, err2 := Query(workspace, flat)
+		expect("an object and itself", err == nil && err1 == nil && err2 == nil &&
+			len(found) == 1 && same(found[0].Pairs, alone))
+	}
+	a.SetItself(false)
+	found, err = scene.Query()
+	expect("an object without itself", err == nil && len(found) == 0)
 }

@@ -97,6 +97,7 @@ type Pair struct{ A, B uint32 }
 type Error int32
 
 const (
+	ErrorNull        Error = C.SC_ERROR_NULL
 	ErrorOption      Error = C.SC_ERROR_OPTION
 	ErrorEmpty       Error = C.SC_ERROR_EMPTY
 	ErrorIndex       Error = C.SC_ERROR_INDEX
