@@ -82,6 +82,61 @@ check("a step that is free", larger:step(moved, moved, n).earliest == 1)
 check("a distance below 0", raised(sc.C.SC_ERROR_OPTION, ".", larger.near, larger, moved, n, -1))
 check("no room for steps", raised(sc.C.SC_ERROR_WORKSPACE, ".", one.step, one, moved, moved, n))
 
+-- The mesh's two cloths as two objects have the pairs that the mesh has.
+mesh = example.read(arg[3])
+moved = example.moved(mesh)
+local half, half_count = n / 2, mesh.triangle_count / 2
+local later_triangles = ffi.new("uint32_t[?]", 3 * half_count)
+for i = 0, 3 * half_count - 1 do later_triangles[i] = mesh.triangles[3 * half_count + i] - half end
+local cloths = { sc.build(mesh.vertices, half, mesh.triangles, half_count),
+                 sc.build(mesh.vertices + 3 * half, half, later_triangles, half_count) }
+local scene = sc.scene({ flags = sc.C.SC_WORKSPACE_NEAR })
+local first, second = scene:add(cloths[1]), scene:add(cloths[2])
+
+-- Whether meetings are golden pairs; first_a and first_b: numbers in the mesh of what is the second
+-- cloth's first.
+local function joined(wanted, meetings, first_a, first_b)
+    local found = {}
+    for _, meeting in ipairs(meetings) do
+        for i = 0, meeting.count - 1 do
+            found[#found + 1] = { a = meeting.pairs[i].a + meeting.a * first_a,
+                                  b = meeting.pairs[i].b + meeting.b * first_b }
+        end
+    end
+    table.sort(found, function(p, q) return p.a < q.a or p.a == q.a and p.b < q.b end)
+    found[0] = table.remove(found, 1)
+    return example.same(wanted, found, #found + (found[0] and 1 or 0))
+end
+
+check("objects without a pose", raised(sc.C.SC_ERROR_NULL, ".", scene.query, scene))
+first:set_pose(mesh.vertices, half)
+second:set_pose(mesh.vertices + 3 * half, half)
+check("pairs of two objects", joined(golden.rest, scene:query(), half_count, half_count))
+first:set_end(moved, half)
+second:set_end(moved + 3 * half, half)
+local faces, edges, earliest = scene:step()
+check("a step of two objects", joined(golden.stepfaces, faces, half, half_count)
+    and joined(golden.stepedges, edges, 3 * half_count, 3 * half_count))
+later = earliest > 0 and earliest == step.earliest
+for i = 0, edges[1].count - 1 do later = later and edges[1].times[i] >= earliest end
+check("at the times of the mesh", later)
+first:set_pose(moved, half)
+second:set_pose(moved + 3 * half, half)
+faces, edges = scene:near(0.045)
+check("near of two objects", joined(golden.nearfaces, faces, half, half_count)
+    and joined(golden.nearedges, edges, 3 * half_count, 3 * half_count))
+check("pairs when they moved", joined(golden.moved, scene:query(), half_count, half_count))
+first.options.group, second.options.group = { 1, 1 }, { 2, 2 }
+check("groups of objects", #scene:query() == 0)
+local flat = ffi.new("double[?]", 3 * half)
+first:set_pose(flat, half)
+local alone, alone_count = cloths[1]:workspace():query(flat, half)
+local itself = scene:query()
+check("an object and itself", #itself == 1 and itself[1].count == alone_count
+    and ffi.string(itself[1].pairs, 8 * alone_count) == ffi.string(alone, 8 * alone_count))
+first.options.itself = 0
+check("an object without itself", #scene:query() == 0)
+
 -- Workspaces keep their model, and what is not needed goes.
 model, one, larger = nil, nil, nil
 collectgarbage()

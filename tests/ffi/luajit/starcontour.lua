@@ -12,6 +12,13 @@
 --     local near = larger:near(pose, vertex_count, 0.01)          -- a sc_near_result: vertex_faces[0]
 --     -- to vertex_faces[tonumber(vertex_face_count) - 1], edge_edges likewise; step.earliest
 --
+--     local scene = sc.scene()                                    -- several objects
+--     local cloth, body = scene:add(model), scene:add(other, { itself = 0 })
+--     cloth:set_pose(pose, vertex_count)                          -- again whenever it has moved
+--     for _, meeting in ipairs(scene:query()) do                  -- meeting.a, .b: numbers of two objects
+--         -- meeting.pairs[0] to meeting.pairs[meeting.count - 1], of a step meeting.times likewise
+--     end
+--
 -- Vertices and poses are cdata arrays of float or double, three a vertex, triangles of uint32_t; they
 -- are read in place. What query returns stays as it is until the next query of the same workspace.
 -- Errors of the library are Lua errors: tables with status and message. What is not wrapped is in
@@ -175,6 +182,125 @@ function starcontour.load(header, library)
         local out = ffi.new("sc_model *[1]")
         check(C.sc_build(mesh, sized("sc_build_options", options), out))
         return setmetatable({ handle = ffi.gc(out[0], C.sc_model_free) }, Model)
+    end
+
+    local Object = {}
+    Object.__index = Object
+
+    -- Where it is, of a step at its start. The array stays as it is until the next set_pose.
+    function Object:set_pose(positions, vertex_count)
+        self.positions, self.pose = positions, pose_of(positions, vertex_count)
+        self.options.pose_version = self.options.pose_version + 1
+    end
+
+    -- Of a step, where it is at its end, likewise; nil, as at first: where it began.
+    function Object:set_end(positions, vertex_count)
+        self.end_positions, self.goal = positions, positions and pose_of(positions, vertex_count)
+        self.options.pose_version = self.options.pose_version + 1
+    end
+
+    local Scene = {}
+    Scene.__index = Scene
+
+    local function room()
+        return { capacity = 16, pairs = ffi.new("sc_pair[16]"), times = ffi.new("double[16]"),
+                 range_capacity = 1, ranges = ffi.new("sc_object_pairs[1]") }
+    end
+
+    -- options: members of sc_workspace_options by name, for the workspace of each object, or nil.
+    function sc.scene(options)
+        return setmetatable({ options = options, objects = {}, rooms = { room(), room() } }, Scene)
+    end
+
+    -- A new object, without a pose. options: members of sc_object by name, such as itself (1, if it is
+    -- not given) and group, or nil; they may be changed later, in the object's options.
+    function Scene:add(model, options)
+        local object = { model = model, workspace = model:workspace(self.options),
+                         options = ffi.new("sc_object", options or {}) }
+        if not (options and options.itself) then object.options.itself = 1 end
+        object.options.model, object.options.workspace = model.handle, object.workspace.handle
+        self.objects[#self.objects + 1] = object
+        return setmetatable(object, Object)
+    end
+
+    -- Asks until the arrays of all lists are long enough. Each list becomes a table of meetings, which
+    -- stay until the scene's next question.
+    function Scene:ask(lists, moves, question)
+        local array = ffi.new("sc_object[?]", #self.objects)
+        for i, object in ipairs(self.objects) do
+            local options = object.options
+            options.pose, options["end"] = object.pose, moves and object.goal or nil
+            array[i - 1] = options
+        end
+        local objects = sized("sc_objects", { count = #self.objects, objects = array })
+        local status
+        repeat
+            for i, list in ipairs(lists) do
+                local own = self.rooms[i]
+                list.capacity, list.pairs = own.capacity, own.pairs
+                list.range_capacity, list.ranges = own.range_capacity, own.ranges
+                if moves then list.times = own.times end
+            end
+            status = question(objects)
+            if status == C.SC_ERROR_SHORT_BUFFER then
+                for i, list in ipairs(lists) do
+                    local own, count = self.rooms[i], tonumber(list.count)
+                    local range_count = tonumber(list.range_count)
+                    if count > own.capacity then
+                        own.capacity, own.pairs = count, ffi.new("sc_pair[?]", count)
+                        own.times = ffi.new("double[?]", count)
+                    end
+                    if range_count > own.range_capacity then
+                        own.range_capacity = range_count
+                        own.ranges = ffi.new("sc_object_pairs[?]", range_count)
+                    end
+                end
+            end
+        until status ~= C.SC_ERROR_SHORT_BUFFER
+        check(status)
+        local found = {}
+        for i, list in ipairs(lists) do
+            local own = self.rooms[i]
+            found[i] = {}
+            for k = 0, tonumber(list.range_count) - 1 do
+                local range = own.ranges[k]
+                local first = tonumber(range.first)
+                found[i][k + 1] = { a = range.object_a, b = range.object_b, count = tonumber(range.count),
+                                    pairs = own.pairs + first,
+                                    times = moves and own.times + first or nil,
+                                    arrays = { own.pairs, own.times } } -- keeps them alive
+            end
+        end
+        return unpack(found)
+    end
+
+    -- What intersects: a list of meetings. options: members of sc_query_options by name, or nil.
+    function Scene:query(options)
+        local asked, result = sized("sc_query_options", options), sized("sc_objects_result")
+        return self:ask({ result }, false, function(objects)
+            return C.sc_query_objects(objects, asked, result)
+        end)
+    end
+
+    -- What is within a distance: meetings of vertices and triangles, and of edges. options: members of
+    -- sc_near_options by name, or nil.
+    function Scene:near(distance, options)
+        local asked, result = sized("sc_near_options", options), sized("sc_objects_lists")
+        asked.distance = distance
+        return self:ask({ result.vertex_faces, result.edge_edges }, false, function(objects)
+            return C.sc_query_objects_near(objects, asked, result)
+        end)
+    end
+
+    -- What collides while objects move from their pose to their end: the same two lists, and the time
+    -- before which nothing does. options: members of sc_step_options by name, or nil.
+    function Scene:step(options)
+        local asked, result = sized("sc_step_options", options), sized("sc_objects_lists")
+        asked.times = C.SC_STEP_TIMES_EACH
+        local faces, edges = self:ask({ result.vertex_faces, result.edge_edges }, true, function(objects)
+            return C.sc_query_objects_step(objects, asked, result)
+        end)
+        return faces, edges, result.earliest
     end
 
     return sc
