@@ -10,6 +10,7 @@ import com.sun.jna.Pointer;
 import com.sun.jna.Structure;
 import com.sun.jna.ptr.PointerByReference;
 import java.lang.ref.Cleaner;
+import java.lang.ref.Reference;
 import java.nio.ByteBuffer;
 import java.nio.ByteOrder;
 import java.nio.file.Files;
@@ -19,6 +20,7 @@ import java.util.HashMap;
 import java.util.List;
 import java.util.Map;
 import java.util.stream.Collectors;
+import java.util.stream.Stream;
 
 public final class FfiJava {
     /** The library's functions, as in starcontour.h. */
@@ -36,6 +38,9 @@ public final class FfiJava {
             sc_step_options options, sc_step_result result);
         int sc_query_near(Pointer model, Pointer workspace, sc_pose pose, sc_near_options options,
             sc_near_result result);
+        int sc_query_objects(sc_objects objects, Pointer options, sc_objects_result result);
+        int sc_query_objects_near(sc_objects objects, sc_near_options options, sc_objects_lists lists);
+        int sc_query_objects_step(sc_objects objects, sc_step_options options, sc_objects_lists lists);
     }
 
     // Positions, indices and pairs are direct buffers: memory outside Java's heap, read in place.
@@ -124,6 +129,75 @@ public final class FfiJava {
         public Pointer vertex_faces;
         public long edge_edge_count, edge_edge_capacity;
         public Pointer edge_edges, stats, vertex_bounds;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"category", "mask"})
+    public static class sc_group extends Structure {
+        public int category, mask;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"model", "workspace", "pose", "end", "pose_version", "group", "itself",
+        "reserved", "filter", "vertex_face_filter", "edge_edge_filter", "rest", "rest_distance", "masks"})
+    public static class sc_object extends Structure {
+        public Pointer model, workspace, pose, end;
+        public long pose_version;
+        public sc_group group;
+        public int itself, reserved;
+        public Pointer filter, vertex_face_filter, edge_edge_filter, rest;
+        public double rest_distance;
+        public Pointer masks;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "count", "objects", "stride", "accept", "accept_user",
+        "accept_near"})
+    public static class sc_objects extends Structure {
+        public int struct_size = size(), count;
+        public Pointer objects;
+        public long stride;
+        public Pointer accept, accept_user, accept_near;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"object_a", "object_b", "first", "count"})
+    public static class sc_object_pairs extends Structure {
+        public int object_a, object_b;
+        public long first, count;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "collides", "count", "capacity", "pairs", "range_count",
+        "range_capacity", "ranges", "stats", "verdict", "reserved"})
+    public static class sc_objects_result extends Structure {
+        public int struct_size = size(), collides;
+        public long count, capacity;
+        public Pointer pairs;
+        public long range_count, range_capacity;
+        public Pointer ranges, stats;
+        public int verdict, reserved;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"count", "capacity", "pairs", "times", "range_count", "range_capacity",
+        "ranges"})
+    public static class sc_object_list extends Structure {
+        public long count, capacity;
+        public Pointer pairs, times;
+        public long range_count, range_capacity;
+        public Pointer ranges;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "collides", "vertex_faces", "edge_edges", "stats", "earliest",
+        "verdict", "reserved"})
+    public static class sc_objects_lists extends Structure {
+        public int struct_size = size(), collides;
+        public sc_object_list vertex_faces, edge_edges;
+        public Pointer stats;
+        public double earliest;
+        public int verdict, reserved;
         int at(String member) { return fieldOffset(member); }
     }
 
@@ -280,6 +354,185 @@ public final class FfiJava {
         }
     }
 
+    /** Several objects, which may share models; belongs to one call at a time. */
+    static final class Scene {
+        /** An object. Buffers are read in place and stay as they are until they are set again. */
+        static final class Placed {
+            final Workspace workspace;
+            boolean itself = true;
+            int category, mask; // its group; 0 and 0: it collides with all
+            private ByteBuffer pose, end;
+            private long version;
+
+            private Placed(Model model, int flags) {
+                workspace = new Workspace(model, flags);
+            }
+
+            /** Where it is, of a step at its start. */
+            void setPose(ByteBuffer positions) {
+                pose = positions;
+                ++version;
+            }
+
+            /** Of a step, where it is at its end; null, as at first: where it began. */
+            void setEnd(ByteBuffer positions) {
+                end = positions;
+                ++version;
+            }
+        }
+
+        /** Arrays for one list. */
+        private static final class Room {
+            ByteBuffer pairs = direct(8 * 16), times = direct(8 * 16), ranges = direct(24);
+
+            void give(sc_object_list list, boolean timed) {
+                list.capacity = pairs.capacity() / 8;
+                list.pairs = address(pairs);
+                list.times = timed ? address(times) : null;
+                list.range_capacity = ranges.capacity() / 24;
+                list.ranges = address(ranges);
+            }
+
+            void fit(sc_object_list list) {
+                int bytes = Math.max(pairs.capacity(), Math.toIntExact(8 * list.count));
+                pairs = direct(bytes);
+                times = direct(bytes);
+                ranges = direct(Math.max(ranges.capacity(), Math.toIntExact(24 * list.range_count)));
+            }
+
+            List<Meeting> meetings(sc_object_list list, boolean timed) {
+                List<Meeting> found = new ArrayList<>();
+                for (int i = 0; i < list.range_count; ++i) {
+                    Meeting one = new Meeting(ranges.getInt(24 * i), ranges.getInt(24 * i + 4));
+                    int first = Math.toIntExact(ranges.getLong(24 * i + 8));
+                    for (int k = first; k < first + ranges.getLong(24 * i + 16); ++k) {
+                        one.pairs.add(new int[] {pairs.getInt(8 * k), pairs.getInt(8 * k + 4)});
+                        if (timed) one.times.add(times.getDouble(8 * k));
+                    }
+                    found.add(one);
+                }
+                return found;
+            }
+        }
+
+        private interface Question {
+            int ask(sc_objects objects, sc_objects_lists lists);
+        }
+
+        private final int flags;
+        private final List<Placed> objects = new ArrayList<>();
+        private final Room faces = new Room(), edges = new Room();
+
+        /** For queries (0), or for more: Workspace.FOR_STEPS, or FOR_NEAR, which is for both. */
+        Scene(int flags) {
+            this.flags = flags;
+        }
+
+        /** A new object, which needs a pose before anything is asked. */
+        Placed add(Model model) {
+            objects.add(new Placed(model, flags));
+            return objects.get(objects.size() - 1);
+        }
+
+        /** What intersects. */
+        List<Meeting> query() {
+            return ask(false, (all, lists) -> {
+                sc_objects_result result = new sc_objects_result();
+                result.capacity = lists.vertex_faces.capacity;
+                result.pairs = lists.vertex_faces.pairs;
+                result.range_capacity = lists.vertex_faces.range_capacity;
+                result.ranges = lists.vertex_faces.ranges;
+                int status = Starcontour.C.sc_query_objects(all, null, result);
+                lists.vertex_faces.count = result.count;
+                lists.vertex_faces.range_count = result.range_count;
+                return status;
+            }).faces;
+        }
+
+        /** What is within a distance, in units of the coordinates. */
+        FeatureMeetings near(double distance) {
+            sc_near_options options = new sc_near_options();
+            options.distance = distance;
+            return ask(false, (all, lists) -> Starcontour.C.sc_query_objects_near(all, options, lists));
+        }
+
+        /** What comes as near as separation while objects move from their pose to their end. */
+        FeatureMeetings step(double separation) {
+            sc_step_options options = new sc_step_options();
+            options.separation = separation;
+            options.times = 2;
+            return ask(true, (all, lists) -> Starcontour.C.sc_query_objects_step(all, options, lists));
+        }
+
+        private FeatureMeetings ask(boolean moves, Question question) {
+            List<sc_pose> poses = new ArrayList<>();
+            sc_objects all = new sc_objects();
+            if (!objects.isEmpty()) {
+                sc_object[] array = (sc_object[]) new sc_object().toArray(objects.size());
+                for (int i = 0; i < array.length; ++i) {
+                    Placed one = objects.get(i);
+                    array[i].model = one.workspace.model.handle;
+                    array[i].workspace = one.workspace.handle;
+                    array[i].pose = written(one.pose, poses);
+                    array[i].end = written(moves ? one.end : null, poses);
+                    array[i].pose_version = one.version;
+                    array[i].group.category = one.category;
+                    array[i].group.mask = one.mask;
+                    array[i].itself = one.itself ? 1 : 0;
+                    array[i].write();
+                }
+                all.count = array.length;
+                all.objects = array[0].getPointer();
+            }
+            sc_objects_lists lists = new sc_objects_lists();
+            for (;;) {
+                faces.give(lists.vertex_faces, moves);
+                edges.give(lists.edge_edges, moves);
+                int status = question.ask(all, lists);
+                if (status != 11) {
+                    check(status);
+                    Reference.reachabilityFence(poses);
+                    return new FeatureMeetings(faces.meetings(lists.vertex_faces, moves),
+                        edges.meetings(lists.edge_edges, moves), lists.earliest);
+                }
+                faces.fit(lists.vertex_faces);
+                edges.fit(lists.edge_edges);
+            }
+        }
+
+        private static Pointer written(ByteBuffer positions, List<sc_pose> poses) {
+            if (positions == null) return null;
+            sc_pose pose = poseOf(positions);
+            pose.write();
+            poses.add(pose);
+            return pose.getPointer();
+        }
+    }
+
+    /** What two objects have with each other, or one with itself: pairs of what is a's and b's. */
+    static final class Meeting {
+        final int a, b;
+        final List<int[]> pairs = new ArrayList<>();
+        final List<Double> times = new ArrayList<>();
+
+        Meeting(int a, int b) {
+            this.a = a;
+            this.b = b;
+        }
+    }
+
+    /** Meetings of a vertex and a triangle, and of two edges 3 t + k. */
+    static final class FeatureMeetings {
+        final List<Meeting> faces, edges;
+        final double earliest; // of a step: nothing collides before
+
+        FeatureMeetings(List<Meeting> faces, List<Meeting> edges, double earliest) {
+            this.faces = faces;
+            this.edges = edges;
+            this.earliest = earliest;
+        }
+    }
+
     static sc_pose poseOf(ByteBuffer positions) {
         sc_pose pose = new sc_pose();
         pose.vertex_count = positions.capacity() / 12;
@@ -334,6 +587,62 @@ public final class FfiJava {
         expect(name + " is laid out as in the header", header.equals(own));
     }
 
+    /**
+     * Meetings as pairs of the one mesh of two objects, sorted; firstA, firstB: the numbers there of
+     * what is the second object's first.
+     */
+    static List<String> joined(List<Meeting> meetings, int firstA, int firstB) {
+        return meetings.stream()
+            .flatMap(m -> m.pairs.stream().map(p -> new int[] {p[0] + m.a * firstA, p[1] + m.b * firstB}))
+            .sorted((p, q) -> p[0] != q[0] ? p[0] - q[0] : p[1] - q[1])
+            .map(p -> p[0] + " " + p[1]).collect(Collectors.toList());
+    }
+
+    /** The mesh's two cloths, halves of its arrays, have as two objects the pairs that the mesh has. */
+    static void expectScene(ByteBuffer rest, ByteBuffer moved, ByteBuffer triangles,
+        Map<String, List<String>> golden) {
+        int vertices = rest.capacity() / 24, half = triangles.capacity() / 24;
+        ByteBuffer second = direct(12 * half);
+        for (int i = 0; i < 3 * half; ++i) {
+            second.putInt(4 * i, triangles.getInt(12 * half + 4 * i) - vertices);
+        }
+        Model[] models = {new Model(rest.slice(0, 12 * vertices), triangles.slice(0, 12 * half)),
+            new Model(rest.slice(12 * vertices, 12 * vertices), second)};
+        Scene scene = new Scene(Workspace.FOR_NEAR);
+        Scene.Placed[] objects = {scene.add(models[0]), scene.add(models[1])};
+        expect("objects without a pose", refused(1, "NULL", scene::query));
+        for (int i = 0; i < 2; ++i) {
+            objects[i].setPose(rest.slice(i * 12 * vertices, 12 * vertices));
+            objects[i].setEnd(moved.slice(i * 12 * vertices, 12 * vertices));
+        }
+        expect("pairs of two objects", joined(scene.query(), half, half).equals(golden.get("rest")));
+        FeatureMeetings step = scene.step(0);
+        expect("a step of two objects",
+            joined(step.faces, vertices, half).equals(golden.get("stepfaces"))
+                && joined(step.edges, 3 * half, 3 * half).equals(golden.get("stepedges")));
+        double first = Stream.concat(step.faces.stream(), step.edges.stream())
+            .flatMap(m -> m.times.stream()).min(Double::compare).orElse(1.0);
+        expect("at their times", step.earliest > 0 && step.earliest == first);
+        for (int i = 0; i < 2; ++i) {
+            objects[i].setPose(moved.slice(i * 12 * vertices, 12 * vertices));
+        }
+        FeatureMeetings near = scene.near(0.045);
+        expect("near of two objects",
+            joined(near.faces, vertices, half).equals(golden.get("nearfaces"))
+                && joined(near.edges, 3 * half, 3 * half).equals(golden.get("nearedges")));
+        expect("pairs when they moved", joined(scene.query(), half, half).equals(golden.get("moved")));
+
+        objects[0].category = objects[0].mask = 1;
+        objects[1].category = objects[1].mask = 2;
+        expect("groups of objects", scene.query().isEmpty());
+        ByteBuffer flat = direct(12 * vertices);
+        objects[0].setPose(flat);
+        expect("an object and itself", scene.query().size() == 1
+            && joined(scene.query(), 0, 0).equals(new Workspace(models[0]).query(flat)));
+        objects[0].itself = false;
+        expect("an object without itself", scene.query().isEmpty());
+    }
+
     public static void main(String[] arguments) throws Exception {
         List<float[]> vertices = new ArrayList<>();
         List<int[]> faces = new ArrayList<>();
@@ -385,6 +694,21 @@ public final class FfiJava {
         sc_near_result nearResult = new sc_near_result();
         expectLayout(layout, "sc_near_result", nearResult, nearResult::at);
 
+        sc_group group = new sc_group();
+        expectLayout(layout, "sc_group", group, group::at);
+        sc_object object = new sc_object();
+        expectLayout(layout, "sc_object", object, object::at);
+        sc_objects objects = new sc_objects();
+        expectLayout(layout, "sc_objects", objects, objects::at);
+        sc_object_pairs ranges = new sc_object_pairs();
+        expectLayout(layout, "sc_object_pairs", ranges, ranges::at);
+        sc_objects_result objectsResult = new sc_objects_result();
+        expectLayout(layout, "sc_objects_result", objectsResult, objectsResult::at);
+        sc_object_list list = new sc_object_list();
+        expectLayout(layout, "sc_object_list", list, list::at);
+        sc_objects_lists lists = new sc_objects_lists();
+        expectLayout(layout, "sc_objects_lists", lists, lists::at);
+
         Model model = new Model(rest, triangles);
         Workspace workspace = new Workspace(model);
         expect("pairs at rest", workspace.query(rest).equals(golden.get("rest")));
@@ -419,6 +743,8 @@ public final class FfiJava {
         expect("a step that is free", larger.step(moved, moved, 0).earliest == 1);
         expect("a distance below 0", refused(3, "option", () -> larger.near(moved, -1)));
         expect("no room for steps", refused(12, "workspace", () -> workspace.step(rest, moved, 0)));
+
+        expectScene(rest, moved, triangles, golden);
 
         moved.putFloat(4, Float.NaN);
         expect("NaN", refused(8, "NaN", () -> workspace.query(moved)));
