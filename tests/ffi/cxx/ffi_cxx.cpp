@@ -145,17 +145,21 @@ void test_scene(const std::vector<Vertex> &rest, const std::vector<Vertex> &move
                       of_one(step_one.vertex_faces, step_one.vertex_face_times) &&
                   joined(step.edge_edges, of_edges) ==
                       of_one(step_one.edge_edges, step_one.edge_edge_times) &&
-                  step.earliest == step_one.earliest);
+                  step.earliest == step_one.earliest &&
+                  step.edge_edges.times.size() == step.edge_edges.pairs.size());
     }
     const auto ranges = scene.query().ranges;
     check("objects meet themselves and each other", ranges.size() == 3 && ranges[0].object_b == 0 &&
                                                         ranges[1].object_b == 1 &&
                                                         ranges[2].object_a == 1);
+    const auto edges = [&] { return scene.step().edge_edges.pairs.size(); };
+    const auto moving = edges();
     scene[1].stay();
-    const auto edges = scene.step().edge_edges.pairs.size();
+    const auto staying = edges();
     scene[1].set_end(half(folded, 1));
-    check("what stays ends where it began",
-          edges > 0 && scene.step().edge_edges.pairs.size() == edges);
+    check("what stays ends where it began", staying != moving && edges() == staying);
+    scene[1].set_end(half(moved, 1));
+    check("what moves again", edges() == moving);
     scene.options.accept = [](void *, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) {
         return 0;
     };
@@ -180,6 +184,11 @@ void test_scene(const std::vector<Vertex> &rest, const std::vector<Vertex> &move
           refused(SC_ERROR_NOT_FINITE,
                   "object 1 has a vertex that is not finite; vertex 3 is NaN or infinite",
                   [&] { scene.query(); }));
+    starcontour::Scene crowd;
+    for (int i = 0; i < 7; ++i) crowd.add(models[0], half(rest, 0));
+    const auto &all = crowd.query();
+    check("a crowd of one model, all in one place",
+          all.ranges.size() == 21 && all.pairs.size() == 21 * all.ranges[20].count);
     starcontour::Scene nothing;
     check("an empty scene", nothing.query().pairs.empty() && nothing.step().earliest == 1);
     nothing.add(models[0], half(rest, 0));
