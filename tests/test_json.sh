@@ -179,6 +179,10 @@ check "of a replay" valid "mesh-collides" "$query" --json --replay "$scratch/one
 check "of steps" valid "step-clean step-collides step-error step-error summary" \
     "$query" --step --json --times --stats "$scratch/clean.obj" "$scratch/clean.obj" \
     "$scratch/hit.obj" "$scratch/broken.obj" "$scratch/hit.obj"
+check "of closest points in steps" valid "step-collides" \
+    "$query" --step --json --stencils "$scratch/clean.obj" "$scratch/hit.obj"
+check "of points that touch at both ends" valid "step-collides" \
+    "$query" --step --json --stencils meshes/corner_on_face.obj meshes/corner_on_face.obj
 check "of any in steps" valid "step-collides" \
     "$query" --step --json --any "$scratch/clean.obj" "$scratch/hit.obj"
 check "of steps by boxes" valid "step-collides" \

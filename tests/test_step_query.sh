@@ -121,6 +121,20 @@ for key in candidates earliest separation tolerance query_ms candidates_ms metho
     '"status":"collides"' '"kind":"vertex-face","a":3,"b":0,"time":0.'; do
     check "JSON has $key" grep -q "$key" "$scratch/json"
 done
+check "closest points" says 1 \
+    "^    vertex-face 3 0 0\.[0-9]* start 1 vertex-face 3:-1 0:0.5 1:0.25 2:0.25 vector 0 0 -1 impact [0-9.e-]* vertex-face 3:-1 0:0.5 1:0.25 2:0.25 vector 0 0 -[0-9.e-]* normal 0 0 -1 side 1 approaches$" \
+    "$query" --step --stencils "$a" "$b"
+check "and once, with times" test "$(grep -c "^    vertex-face" "$scratch/out")" -eq 1
+check "from the other side" says 1 " normal 0 0 1 side -1 approaches$" "$query" --step --stencils "$b" "$a"
+check "of what stays as near" says 1 " normal 0 0 -1 side 1$" \
+    "$query" --step --stencils --separation 0.5 "$c" "$c"
+check "JSON of closest points" says 1 \
+    '"start":{"distance":1,"feature":"vertex-face","parallel":false,"vertices":\[3,0,1,2\],"weights":\[-1,0.5,0.25,0.25\],"vector":\[0,0,-1\]},"impact":{"distance":.*},"normal":\[0,0,-1\],"side":1,"approaches":true' \
+    "$query" --step --json --stencils "$a" "$b"
+check "a file of pairs has times alone" status 1 \
+    "$query" --step --stencils --out "$scratch/with.csv" "$a" "$b"
+status 1 "$query" --step --out "$scratch/without.csv" "$a" "$b"
+check "as without closest points" cmp "$scratch/with.csv" "$scratch/without.csv"
 check "JSON without collision" says 0 '"status":"clean".*"earliest":1,' "$query" --step --json "$a" "$c"
 check "JSON of any" says 1 '"earliest":null' "$query" --step --json --any "$a" "$b"
 check "pairs to a file" status 1 "$query" --step --out "$scratch/pairs.csv" "$a" "$b"
@@ -163,6 +177,9 @@ check "no tolerance" says 2 "tolerance" "$query" --step --tolerance 0 "$a" "$b"
 check "a method of queries" says 2 "two-boxes" "$query" --step --method aabb "$a" "$b"
 check "a method of steps" says 2 "aabb-sctt" "$query" --method swept "$a"
 check "without --step" says 2 "of --step" "$query" --separation 1 "$a"
+check "any has no closest points" says 2 "no list" "$query" --step --any --stencils "$a" "$b"
+check "closest points of what is sought neither way" says 2 "of --near and --step" \
+    "$query" --stencils "$a"
 check "any has no times" says 2 "no times" "$query" --step --any --times "$a" "$b"
 for option in --proper "--pairs edge" "--ply $scratch/x.ply" "--record $scratch/x" \
     --contacts --no-rest-cache; do

@@ -7,6 +7,7 @@
 
 #include "ply_write.h"
 #include "query_text.h"
+#include "stencil_text.h"
 #include "tool_json.h"
 
 #include <cjson/cJSON.h>
@@ -23,9 +24,6 @@ const tool_choice near_methods[] = {{"auto", SC_NEAR_METHOD_DEFAULT},
                                     {"sctt", SC_NEAR_METHOD_SCTT},
                                     {"boxes", SC_NEAR_METHOD_BOXES},
                                     {NULL, 0}};
-
-static const char *const feature_names[] = {"", "vertex-vertex", "vertex-edge", "edge-edge",
-                                            "vertex-face"};
 
 /* ------------------------------------------------------------------------------------------------
  * Closest points
@@ -166,16 +164,7 @@ static void print_pair(void *context, int kind, sc_pair pair, const sc_near_sten
     const near_settings *set = (const near_settings *)context;
     printf("    %s %lu %lu %.17g", feature_pairs_names[kind], (unsigned long)pair.a,
            (unsigned long)pair.b, stencil->distance);
-    if (set->stencils) {
-        printf(" %s", feature_names[stencil->feature]);
-        for (int i = 0; i < 4; i++) {
-            if (stencil->weights[i] != 0)
-                printf(" %lu:%.17g", (unsigned long)stencil->vertices[i], stencil->weights[i]);
-        }
-        fputs(" vector", stdout);
-        for (int i = 0; i < 3; i++) printf(" %.17g", stencil->vector[i] + 0.0); /* no -0 */
-        if (stencil->flags & SC_STENCIL_PARALLEL) fputs(" parallel", stdout);
-    }
+    if (set->stencils) stencil_text_print(stencil);
     puts("");
 }
 
@@ -230,7 +219,7 @@ static void write_pair(void *context, int kind, sc_pair pair, const sc_near_sten
     fprintf(w->out, ",%lu,%lu,%.17g", (unsigned long)pair.a, (unsigned long)pair.b,
             stencil->distance);
     if (w->set->stencils) {
-        fprintf(w->out, ",%s,%d", feature_names[stencil->feature],
+        fprintf(w->out, ",%s,%d", stencil_text_feature(stencil->feature),
                 (stencil->flags & SC_STENCIL_PARALLEL) != 0);
         for (int i = 0; i < 4; i++) fprintf(w->out, ",%lu", (unsigned long)stencil->vertices[i]);
         for (int i = 0; i < 4; i++) fprintf(w->out, ",%.17g", stencil->weights[i]);
@@ -259,15 +248,7 @@ static void add_pair(void *context, int kind, sc_pair pair, const sc_near_stenci
     cJSON_AddNumberToObject(object, "distance", stencil->distance);
     feature_pairs_add_owners(object, adder->answer->mesh, adder->answer->vertex_objects, kind,
                              pair);
-    if (adder->set->stencils) {
-        cJSON_AddStringToObject(object, "feature", feature_names[stencil->feature]);
-        cJSON_AddBoolToObject(object, "parallel", (stencil->flags & SC_STENCIL_PARALLEL) != 0);
-        cJSON *vertices = cJSON_AddArrayToObject(object, "vertices");
-        for (int i = 0; i < 4; i++)
-            cJSON_AddItemToArray(vertices, cJSON_CreateNumber(stencil->vertices[i]));
-        cJSON_AddItemToObject(object, "weights", cJSON_CreateDoubleArray(stencil->weights, 4));
-        cJSON_AddItemToObject(object, "vector", cJSON_CreateDoubleArray(stencil->vector, 3));
-    }
+    if (adder->set->stencils) stencil_text_add(object, stencil);
     cJSON_AddItemToArray(adder->pairs, object);
 }
 

@@ -73,7 +73,9 @@ static const char usage_near[] =
     "  --list                      each pair with its distance\n"
     "  --stencils                  each with its closest points, too: the kind of feature, "
     "VERTEX:WEIGHT\n"
-    "                              and the vector from one to the other\n";
+    "                              and the vector from one to the other; with --step at the start "
+    "of\n"
+    "                              the step and at the pair's time, with the normal there\n";
 
 /* In four: C99 has strings of up to 4095 characters. */
 static const char usage_continued[] =
@@ -245,7 +247,9 @@ static bool check_settings(const query_settings *set)
     else if (set->step.ignores_rest && !set->is_step && !set->is_near)
         reason = "--ignore-rest is of --step and --near";
     else if (set->is_near_asked && !set->is_near)
-        reason = "--kinds, --list and --stencils are of --near";
+        reason = "--kinds and --list are of --near";
+    else if (set->near.stencils && !set->is_near && !set->is_step)
+        reason = "--stencils is of --near and --step";
     else if ((set->near.list || set->near.stencils) && set->any)
         reason = "--any finds no list";
     else if (set->step.times && set->any)
@@ -406,8 +410,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
             option == OPTION_CONTOUR || option == OPTION_STEP || option == OPTION_SEPARATION ||
             option == OPTION_TOLERANCE || option == OPTION_TIMES)
             set->not_of_near = options[which].name;
-        set->is_near_asked |=
-            option == OPTION_KINDS || option == OPTION_LIST || option == OPTION_STENCILS;
+        set->is_near_asked |= option == OPTION_KINDS || option == OPTION_LIST;
         set->is_batch |= option >= OPTION_MANIFEST && option <= OPTION_LIMIT_MEMORY;
         set->is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
         set->is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER ||

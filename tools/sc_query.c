@@ -507,6 +507,7 @@ static int do_steps(query_settings *set)
     step->ignore_path = set->ignore_path;
     step->groups_path = set->groups_path;
     step->filters = set->filters;
+    step->stencils = set->near.stencils;
     step->any = set->any;
     step->json = set->json;
     step->stats = set->stats;

@@ -11,6 +11,7 @@
 #include "query_summary.h"
 #include "query_text.h"
 #include "query_threads.h"
+#include "stencil_text.h"
 #include "tool_json.h"
 
 #include <cjson/cJSON.h>
@@ -62,7 +63,8 @@ typedef struct step_run {
     query_summary summary;
     FILE *out;
     sc_filter filters[KINDS];
-    sc_pose rest; /* the mesh as it was read */
+    sc_pose rest;     /* the mesh as it was read */
+    sc_pose poses[2]; /* of the step that is asked about */
 } step_run;
 
 /* Whether the pairs between each two objects are counted. */
@@ -73,7 +75,7 @@ static bool names_objects(const step_run *run)
 
 static bool wants_list(const step_run *run)
 {
-    return run->set->out_path || run->set->times || names_objects(run);
+    return run->set->out_path || run->set->times || run->set->stencils || names_objects(run);
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -116,8 +118,9 @@ static sc_step_options make_options(const step_run *run)
     return options;
 }
 
-static sc_status find_collisions(step_run *run, const sc_pose poses[2], step_answer *answer)
+static sc_status find_collisions(step_run *run, step_answer *answer)
 {
+    const sc_pose *poses = run->poses;
     const sc_step_options options = make_options(run);
     sc_step_result result;
     memset(&result, 0, sizeof result);
@@ -155,7 +158,7 @@ static sc_status find_collisions(step_run *run, const sc_pose poses[2], step_ans
 }
 
 /* How many pairs boxes and culling leave; not with a budget, which is the collisions'. */
-static sc_status count_candidates(step_run *run, const sc_pose poses[2], step_answer *answer)
+static sc_status count_candidates(step_run *run, step_answer *answer)
 {
     sc_step_options options = make_options(run);
     options.output = SC_OUTPUT_COUNT;
@@ -165,8 +168,8 @@ static sc_status count_candidates(step_run *run, const sc_pose poses[2], step_an
     memset(&result, 0, sizeof result);
     result.struct_size = sizeof result;
     const double start = tool_clock();
-    const sc_status status = sc_query_step(run->subject.model, run->subject.workspace, &poses[0],
-                                           &poses[1], &options, &result);
+    const sc_status status = sc_query_step(run->subject.model, run->subject.workspace,
+                                           &run->poses[0], &run->poses[1], &options, &result);
     answer->candidates_ms = tool_clock() - start;
     answer->candidates[VERTEX_FACE] = result.vertex_face_count;
     answer->candidates[EDGE_EDGE] = result.edge_edge_count;
@@ -191,8 +194,8 @@ static bool ask(step_run *run, const frame *from, const frame *to, step_answer *
                 char error[MESH_FILE_ERROR_SIZE])
 {
     const uint32_t count = run->mesh->vertex_count;
-    const sc_pose poses[2] = {tool_pose(from->pose.positions, from->pose.position_type, count),
-                              tool_pose(to->pose.positions, to->pose.position_type, count)};
+    run->poses[0] = tool_pose(from->pose.positions, from->pose.position_type, count);
+    run->poses[1] = tool_pose(to->pose.positions, to->pose.position_type, count);
     answer->build_ms = run->subject.build_ms;
     answer->rounded = from->pose.rounded || to->pose.rounded;
     answer->has_animation = from->pose.has_animation || to->pose.has_animation;
@@ -200,9 +203,9 @@ static bool ask(step_run *run, const frame *from, const frame *to, step_answer *
         from->pose.position_type == SC_DOUBLE ? SC_DOUBLE : to->pose.position_type;
     answer->info.struct_size = sizeof answer->info;
     sc_status status = sc_model_get_info(run->subject.model, &answer->info);
-    if (status == SC_OK) status = find_collisions(run, poses, answer);
+    if (status == SC_OK) status = find_collisions(run, answer);
     if (status == SC_OK && !run->set->any && !run->set->budget)
-        status = count_candidates(run, poses, answer);
+        status = count_candidates(run, answer);
     if (status == SC_OK && !count_objects(run, answer)) status = SC_ERROR_MEMORY;
     if (status != SC_OK)
         snprintf(error, MESH_FILE_ERROR_SIZE, "%s to %s: %s", answer->start, answer->end,
@@ -221,7 +224,63 @@ static void print_table_head(const step_settings *set)
            "earliest", "build ms", "query ms", "step");
 }
 
-static void print_table_row(const step_answer *answer, const step_run *run)
+/* What is done with a pair of a list; stencil: its closest points, or NULL where they are not asked
+   for. */
+typedef void step_visit(void *context, const step_run *run, int kind, uint64_t i,
+                        const sc_step_stencil *stencil);
+
+/* Visits all pairs in the order of the lists. Closest points are found for some at a time, as those
+   of all together would be thirty times as long as the lists. */
+static sc_status visit_pairs(const step_answer *answer, const step_run *run, step_visit *visit,
+                             void *context)
+{
+    enum { SOME = 256 };
+    static const uint32_t kinds[KINDS] = {SC_NEAR_VERTEX_FACE, SC_NEAR_EDGE_EDGE};
+    const bool wanted = run->set->stencils;
+    sc_step_stencil *stencils = wanted ? (sc_step_stencil *)malloc(SOME * sizeof *stencils) : NULL;
+    sc_status status = stencils || !wanted ? SC_OK : SC_ERROR_MEMORY;
+    for (int kind = 0; kind < KINDS; kind++) {
+        const step_list *list = &run->lists[kind];
+        const uint64_t count = answer->counts[kind];
+        for (uint64_t first = 0; status == SC_OK && first < count; first += SOME) {
+            const uint64_t some = count - first < SOME ? count - first : SOME;
+            if (wanted)
+                status = sc_step_stencils(run->subject.model, &run->poses[0], &run->poses[1],
+                                          kinds[kind], list->pairs + first, list->times + first,
+                                          some, stencils);
+            for (uint64_t i = 0; status == SC_OK && i < some; i++)
+                visit(context, run, kind, first + i, wanted ? &stencils[i] : NULL);
+        }
+    }
+    free(stencils);
+    return status;
+}
+
+static void print_pair(void *context, const step_run *run, int kind, uint64_t i,
+                       const sc_step_stencil *stencil)
+{
+    const step_list *list = &run->lists[kind];
+    (void)context;
+    printf("    %s %lu %lu %.17g", feature_pairs_names[kind], (unsigned long)list->pairs[i].a,
+           (unsigned long)list->pairs[i].b, list->times[i]);
+    if (stencil) {
+        printf(" start %.17g", stencil->start.distance);
+        stencil_text_print(&stencil->start);
+        printf(" impact %.17g", stencil->impact.distance);
+        stencil_text_print(&stencil->impact);
+        if (stencil->flags & SC_STEP_NO_NORMAL) {
+            fputs(" normal none", stdout);
+        } else {
+            fputs(" normal", stdout);
+            for (int k = 0; k < 3; k++) printf(" %.17g", stencil->normal[k] + 0.0); /* no -0 */
+        }
+        printf(" side %d", (int)stencil->side);
+        if (stencil->flags & SC_STEP_APPROACHES) fputs(" approaches", stdout);
+    }
+    puts("");
+}
+
+static bool print_table_row(const step_answer *answer, const step_run *run)
 {
     const char *const more = answer->incomplete ? "+" : " ";
     printf("%10lu %10lu ", (unsigned long)answer->info.point_count,
@@ -244,31 +303,39 @@ static void print_table_row(const step_answer *answer, const step_run *run)
            answer->end, tool_reading_note(answer->rounded, answer->has_animation));
     mesh_tally_print(&answer->tally, run->mesh);
     if (run->set->stats) query_text_stats(&answer->stats);
-    for (int kind = 0; run->set->times && kind < KINDS; kind++) {
-        const step_list *list = &run->lists[kind];
-        for (uint64_t i = 0; i < answer->counts[kind]; i++) {
-            printf("    %s %lu %lu %.17g\n", feature_pairs_names[kind],
-                   (unsigned long)list->pairs[i].a, (unsigned long)list->pairs[i].b,
-                   list->times[i]);
-        }
-    }
+    if (!run->set->times && !run->set->stencils) return true;
+    return visit_pairs(answer, run, print_pair, NULL) == SC_OK;
 }
 
-static void add_pairs(cJSON *object, const step_answer *answer, const step_run *run)
+static void add_closest(cJSON *pair, const char *name, const sc_near_stencil *stencil)
 {
-    cJSON *pairs = cJSON_AddArrayToObject(object, "pairs");
-    for (int kind = 0; kind < KINDS; kind++) {
-        const step_list *list = &run->lists[kind];
-        for (uint64_t i = 0; i < answer->counts[kind]; i++) {
-            cJSON *pair = cJSON_CreateObject();
-            cJSON_AddStringToObject(pair, "kind", feature_pairs_names[kind]);
-            cJSON_AddNumberToObject(pair, "a", list->pairs[i].a);
-            cJSON_AddNumberToObject(pair, "b", list->pairs[i].b);
-            cJSON_AddNumberToObject(pair, "time", list->times[i]);
-            feature_pairs_add_owners(pair, run->mesh, run->vertex_objects, kind, list->pairs[i]);
-            cJSON_AddItemToArray(pairs, pair);
-        }
+    cJSON *object = cJSON_AddObjectToObject(pair, name);
+    cJSON_AddNumberToObject(object, "distance", stencil->distance);
+    stencil_text_add(object, stencil);
+}
+
+static void add_pair(void *context, const step_run *run, int kind, uint64_t i,
+                     const sc_step_stencil *stencil)
+{
+    cJSON *pairs = (cJSON *)context;
+    const step_list *list = &run->lists[kind];
+    cJSON *pair = cJSON_CreateObject();
+    cJSON_AddStringToObject(pair, "kind", feature_pairs_names[kind]);
+    cJSON_AddNumberToObject(pair, "a", list->pairs[i].a);
+    cJSON_AddNumberToObject(pair, "b", list->pairs[i].b);
+    cJSON_AddNumberToObject(pair, "time", list->times[i]);
+    feature_pairs_add_owners(pair, run->mesh, run->vertex_objects, kind, list->pairs[i]);
+    if (stencil) {
+        add_closest(pair, "start", &stencil->start);
+        add_closest(pair, "impact", &stencil->impact);
+        if (stencil->flags & SC_STEP_NO_NORMAL)
+            cJSON_AddNullToObject(pair, "normal");
+        else
+            stencil_text_add_vector(pair, "normal", stencil->normal);
+        cJSON_AddNumberToObject(pair, "side", stencil->side);
+        cJSON_AddBoolToObject(pair, "approaches", (stencil->flags & SC_STEP_APPROACHES) != 0);
     }
+    cJSON_AddItemToArray(pairs, pair);
 }
 
 static void add_count(cJSON *object, const char *name, uint64_t count, bool known)
@@ -334,7 +401,11 @@ static bool print_json_answer(const step_answer *answer, const step_run *run)
     if (set->ignores_rest) cJSON_AddNumberToObject(object, "ignore_rest", set->ignore_rest);
     if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
     if (set->stats) query_text_add_stats(object, &answer->stats);
-    if (set->times) add_pairs(object, answer, run);
+    if ((set->times || set->stencils) &&
+        visit_pairs(answer, run, add_pair, cJSON_AddArrayToObject(object, "pairs")) != SC_OK) {
+        cJSON_Delete(object);
+        return false;
+    }
     return tool_json_print(object);
 }
 
@@ -372,14 +443,14 @@ static int report_failure(const step_answer *answer, const step_run *run, const 
 
 static int report(const step_answer *answer, const step_run *run)
 {
-    bool written = true;
-    if (run->set->json)
-        written = print_json_answer(answer, run);
-    else
-        print_table_row(answer, run);
+    const bool written =
+        run->set->json ? print_json_answer(answer, run) : print_table_row(answer, run);
     if (run->out) write_pairs(answer, run);
     fflush(stdout);
-    if (!written) return TOOL_FAILED;
+    if (!written) {
+        tool_error("%s to %s: out of memory", answer->start, answer->end);
+        return TOOL_FAILED;
+    }
     if (answer->incomplete) return TOOL_INCOMPLETE;
     return answer->collides ? TOOL_COLLIDES : TOOL_CLEAN;
 }

@@ -25,7 +25,7 @@ typedef struct step_settings {
     const char *ignore_path, *groups_path;
     filter_file *filters; /* what these two say */
     double ignore_rest;   /* the distance, where ignores_rest */
-    bool ignores_rest, any, times, json, stats;
+    bool ignores_rest, any, times, stencils, json, stats;
 } step_settings;
 
 /* Names of the methods, and of the contour tests. */
