@@ -193,6 +193,7 @@ check "of what is near" valid "near-clean near-near near-error summary" \
     "$query" --near 0 --json --list "$scratch/clean.obj" meshes/folded_sheet.obj "$scratch/broken.obj"
 check "of closest points" valid "near-near" \
     "$query" --near 2 --json --stencils --stats --method sctt "$scratch/hit.obj"
+check "of thickness" valid "near-near" "$query" --near 2 --json --thickness "$scratch/hit.obj"
 check "of any that is near" valid "near-near" "$query" --near 2 --json --any "$scratch/hit.obj"
 check "of near poses" valid "near-near" \
     "$query" --near 2 --json --model "$scratch/car.scm" --budget 100000 "$scratch/hit.obj"

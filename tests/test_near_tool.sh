@@ -287,16 +287,20 @@ EOP
         "$scratch/brute.py" "$query" "$c"
 
     # Colours: the face below the corner and the corner's own are at half of the way to yellow.
-    check "colours" python3 - "$scratch/near.ply" <<'EOP'
+    cat >"$scratch/colors.py" <<'EOP'
 import struct
 import sys
 
 data = open(sys.argv[1], "rb").read()
 head, body = data.split(b"end_header\n", 1)
-body = body[6 * 3 * (8 if b"double x" in head else 4):]
-colors = [struct.unpack("<BIIIBBB", body[16 * t:16 * t + 16])[4:] for t in range(2)]
+colors = [struct.unpack("<BIIIBBB", body[-32 + 16 * t:][:16])[4:] for t in range(2)]
 assert colors == [(228, 128, 75)] * 2, colors
 EOP
+    check "colours" python3 "$scratch/colors.py" "$scratch/near.ply"
+    # The same with each vertex there twice, of which faces take the second.
+    { grep '^v' "$c"; grep '^v' "$c"; printf 'f 7 8 9\nf 10 11 12\n'; } >"$scratch/twice.obj"
+    status 1 "$query" --near 1 --ply "$scratch/twice.ply" "$scratch/twice.obj"
+    check "colours behind vertices of no face" python3 "$scratch/colors.py" "$scratch/twice.ply"
 fi
 
 # ---- what is wrong ----

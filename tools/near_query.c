@@ -7,6 +7,7 @@
 
 #include "frame_paths.h"
 #include "near_report.h"
+#include "near_thickness.h"
 #include "query_subject.h"
 #include "query_summary.h"
 #include "query_text.h"
@@ -122,7 +123,7 @@ static bool ask(near_run *run, const query_subject *subject, near_answer *answer
         return false;
     for (int kind = 0; kind < KINDS; kind++) filters[kind].ignore_rings = set->ignore_rings;
     if (status == SC_OK) status = find_near(run, subject, filters, answer);
-    if (status == SC_OK && near_wants_list(set)) status = near_report_nearest(answer);
+    if (status == SC_OK && near_tells_distances(set)) status = near_report_nearest(answer);
     for (int kind = 0; kind < KINDS; kind++) {
         if (status == SC_OK && near_names_objects(set, answer->mesh) &&
             !feature_pairs_tally(&answer->tally, answer->mesh, answer->vertex_objects, kind,
@@ -130,7 +131,8 @@ static bool ask(near_run *run, const query_subject *subject, near_answer *answer
             status = SC_ERROR_MEMORY;
     }
     mesh_tally_sort(&answer->tally);
-    if (status == SC_OK) return true;
+    if (status == SC_OK)
+        return !set->thickness || near_thickness_find(answer, set->distance, error);
     snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", answer->path, tool_why(status));
     return false;
 }
@@ -202,6 +204,7 @@ static int do_file(near_run *run, const char *path)
     query_summary_add(&run->summary, status, answer.near, path, NULL,
                       set->any ? 0 : answer.counts[VERTEX_FACE] + answer.counts[EDGE_EDGE]);
     mesh_tally_free(&answer.tally);
+    free(answer.thickness);
     free(objects);
     mesh_pose_free(&moved);
     query_subject_free(&own);

@@ -8,6 +8,7 @@
 #include "ply_write.h"
 #include "query_text.h"
 #include "stencil_text.h"
+#include "thickness_text.h"
 #include "tool_json.h"
 
 #include <cjson/cJSON.h>
@@ -75,6 +76,7 @@ sc_status near_report_nearest(near_answer *answer)
 /* The smallest distance of each triangle and vertex, HUGE_VAL: none. */
 typedef struct paint {
     double *of_triangles, *of_vertices;
+    const uint32_t *weld_map; /* pairs may name another vertex of those at one place */
 } paint;
 
 static void lower(double *to, double distance)
@@ -86,7 +88,7 @@ static void lay_on(void *context, int kind, sc_pair pair, const sc_near_stencil 
 {
     const paint *p = (const paint *)context;
     if (kind == VERTEX_FACE)
-        lower(&p->of_vertices[pair.a], stencil->distance);
+        lower(&p->of_vertices[p->weld_map ? p->weld_map[pair.a] : pair.a], stencil->distance);
     else
         lower(&p->of_triangles[pair.a / 3], stencil->distance);
     lower(&p->of_triangles[kind == VERTEX_FACE ? pair.b : pair.b / 3], stencil->distance);
@@ -107,19 +109,21 @@ bool near_report_ply(const near_answer *answer, const near_settings *set)
     const size_t triangles = mesh->triangle_count, vertices = mesh->vertex_count;
     uint8_t *colors = (uint8_t *)malloc(3 * triangles + 1);
     double *distances = (double *)malloc((triangles + vertices + 1) * sizeof *distances);
-    const paint p = {distances, distances + triangles};
+    const uint32_t *const weld_map = answer->weld_map;
+    const paint p = {distances, distances + triangles, weld_map};
     sc_status status = colors && distances ? SC_OK : SC_ERROR_MEMORY;
     if (status == SC_OK) {
         for (size_t i = 0; i < triangles + vertices; i++) distances[i] = HUGE_VAL;
-        status = visit_pairs(answer, lay_on, (void *)(uintptr_t)&p);
+        if (!set->thickness) status = visit_pairs(answer, lay_on, (void *)(uintptr_t)&p);
     }
     bool written = status == SC_OK;
     if (written) {
         for (size_t c = 0; c < 3 * triangles; c++) {
             const uint32_t v = mesh->indices[c];
-            lower(&p.of_triangles[c / 3],
-                  p.of_vertices[answer->weld_map ? answer->weld_map[v] : v]);
+            lower(&p.of_triangles[c / 3], p.of_vertices[weld_map ? weld_map[v] : v]);
         }
+        for (size_t t = 0; set->thickness && t < triangles; t++)
+            p.of_triangles[t] = answer->thickness[mesh_face_of(mesh, (uint32_t)t)];
         memset(colors, 200, 3 * triangles);
         for (size_t t = 0; t < triangles; t++) {
             if (p.of_triangles[t] < HUGE_VAL)
@@ -186,6 +190,7 @@ static bool print_table_row(const near_answer *answer, const near_settings *set)
            tool_reading_note(answer->rounded, answer->has_animation));
     mesh_tally_print(&answer->tally, answer->mesh);
     if (set->stats) query_text_stats(&answer->stats);
+    if (set->thickness) thickness_text_print(&answer->spread);
     if (!set->list && !set->stencils) return true;
     return visit_pairs(answer, print_pair, (void *)(uintptr_t)set) == SC_OK;
 }
@@ -310,6 +315,8 @@ static bool print_json_answer(const near_answer *answer, const near_settings *se
     if (set->groups_path) cJSON_AddStringToObject(object, "groups", set->groups_path);
     if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
     if (set->stats) query_text_add_stats(object, &answer->stats);
+    if (set->thickness)
+        thickness_text_add(object, &answer->spread, answer->thickness, answer->mesh->face_count);
     if (set->list || set->stencils) {
         pair_adder adder = {cJSON_AddArrayToObject(object, "pairs"), answer, set};
         if (visit_pairs(answer, add_pair, &adder) != SC_OK) {

@@ -9,6 +9,7 @@
 
 #include "feature_pairs.h"
 #include "near_settings.h"
+#include "thickness.h"
 #include "tool.h"
 
 /* Values of --kinds, and of --method with --near. */
@@ -27,17 +28,25 @@ typedef struct near_answer {
     uint64_t counts[KINDS];
     const sc_pair *pairs[KINDS]; /* where they are listed */
     bool near, incomplete;
-    double nearest; /* the smallest distance; HUGE_VAL: not known, or none */
+    double nearest;    /* the smallest distance; HUGE_VAL: not known, or none */
+    double *thickness; /* of each face, with --thickness; HUGE_VAL: more than the distance */
+    thickness_spread spread;
     sc_stats stats;
     mesh_tally tally;            /* pairs by their objects, if there are several */
     bool rounded, has_animation; /* as in mesh_file */
     uint32_t position_type;      /* of the pose */
 } near_answer;
 
-/* Whether pairs are told with their distances. */
+/* Whether the distances of all pairs are told, or shown. */
+static inline bool near_tells_distances(const near_settings *set)
+{
+    return set->list || set->stencils || set->out_path || (set->ply_path && !set->thickness);
+}
+
+/* Whether pairs are wanted, and not only their number. */
 static inline bool near_wants_list(const near_settings *set)
 {
-    return set->list || set->stencils || set->out_path || set->ply_path;
+    return set->thickness || near_tells_distances(set);
 }
 
 /* Whether the pairs between each two objects are counted: for that they are listed, too. */

@@ -23,7 +23,7 @@ typedef struct near_settings {
     double ignore_rest;    /* the distance, where ignores_rest */
     uint32_t ignore_rings; /* 0: none */
     uint64_t budget;       /* 0: none */
-    bool ignores_rest, any, list, stencils, json, stats;
+    bool ignores_rest, any, list, stencils, thickness, json, stats;
 } near_settings;
 
 #endif /* TOOLS_NEAR_SETTINGS_H */

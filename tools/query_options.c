@@ -75,7 +75,12 @@ static const char usage_near[] =
     "VERTEX:WEIGHT\n"
     "                              and the vector from one to the other; with --step at the start "
     "of\n"
-    "                              the step and at the pair's time, with the normal there\n";
+    "                              the step and at the pair's time, with the normal there\n"
+    "  --thickness                 of each face the least distance, up to D, to what no path of "
+    "edges\n"
+    "                              shorter than 2 D joins it with: a histogram and percentiles, "
+    "with\n"
+    "                              --json of all faces, with --ply in colours\n";
 
 /* In four: C99 has strings of up to 4095 characters. */
 static const char usage_continued[] =
@@ -247,11 +252,15 @@ static bool check_settings(const query_settings *set)
     else if (set->step.ignores_rest && !set->is_step && !set->is_near)
         reason = "--ignore-rest is of --step and --near";
     else if (set->is_near_asked && !set->is_near)
-        reason = "--kinds and --list are of --near";
+        reason = "--kinds, --list and --thickness are of --near";
     else if (set->near.stencils && !set->is_near && !set->is_step)
         reason = "--stencils is of --near and --step";
     else if ((set->near.list || set->near.stencils) && set->any)
         reason = "--any finds no list";
+    else if (set->near.thickness && (set->any || set->budget))
+        reason = "--thickness takes all pairs: it does not go with --any or --budget";
+    else if (set->near.thickness && set->near.distance == 0)
+        reason = "--thickness is found up to the distance of --near, which has to be more than 0";
     else if (set->step.times && set->any)
         reason = "--any finds no times";
     else if (path_count == 0 && !set->replay_path && !set->manifest_path)
@@ -307,6 +316,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
         OPTION_KINDS,
         OPTION_LIST,
         OPTION_STENCILS,
+        OPTION_THICKNESS,
         OPTION_ANY,
         OPTION_ONLY,
         OPTION_HTML,
@@ -358,6 +368,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
         {"kinds", required_argument, NULL, OPTION_KINDS},
         {"list", no_argument, NULL, OPTION_LIST},
         {"stencils", no_argument, NULL, OPTION_STENCILS},
+        {"thickness", no_argument, NULL, OPTION_THICKNESS},
         {"weld", required_argument, NULL, OPTION_WELD},
         {"rest", required_argument, NULL, OPTION_REST},
         {"json", no_argument, NULL, OPTION_JSON},
@@ -410,7 +421,8 @@ int query_options_read(int argc, char **argv, query_settings *set)
             option == OPTION_CONTOUR || option == OPTION_STEP || option == OPTION_SEPARATION ||
             option == OPTION_TOLERANCE || option == OPTION_TIMES)
             set->not_of_near = options[which].name;
-        set->is_near_asked |= option == OPTION_KINDS || option == OPTION_LIST;
+        set->is_near_asked |=
+            option == OPTION_KINDS || option == OPTION_LIST || option == OPTION_THICKNESS;
         set->is_batch |= option >= OPTION_MANIFEST && option <= OPTION_LIMIT_MEMORY;
         set->is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
         set->is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER ||
@@ -456,6 +468,9 @@ int query_options_read(int argc, char **argv, query_settings *set)
             break;
         case OPTION_STENCILS:
             set->near.stencils = true;
+            break;
+        case OPTION_THICKNESS:
+            set->near.thickness = true;
             break;
         case OPTION_ANY:
             set->any = true;
