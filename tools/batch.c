@@ -9,7 +9,6 @@
 
 #include "manifest.h"
 #include "batch_progress.h"
-#include "query_report.h"
 #include "query_summary.h"
 #include "query_text.h"
 #include "result_file.h"
@@ -35,6 +34,7 @@ typedef struct batch_slot {
 
 typedef struct batch {
     const query_settings *set;
+    const batch_lines *lines;
     batch_work work;
     void *user;
     char **paths;   /* of this part */
@@ -44,8 +44,7 @@ typedef struct batch {
     struct pollfd *polled;  /* slot_count */
     uint64_t *polled_slots; /* slot_count: of which mesh */
     uint32_t slot_count, running;
-    cJSON *settings; /* of objects of this run */
-    char *start;     /* see line_start */
+    char *start; /* see line_start */
     result_file file;
     query_summary summary;
     batch_progress shown;
@@ -60,7 +59,7 @@ static const char *line_start(void *user, uint64_t index)
     free(self->start);
     self->start = NULL;
     if (index >= self->count) return NULL;
-    cJSON *object = tool_json_object("mesh");
+    cJSON *object = tool_json_object(self->lines->type);
     cJSON_AddStringToObject(object, "file", self->paths[index]);
     self->start = tool_json_line(object, &size);
     if (self->start) self->start[size - 2] = '\0'; /* without the brace */
@@ -70,17 +69,19 @@ static const char *line_start(void *user, uint64_t index)
 /* Adds a line that is in the file to the summary; false if it is no line of results. */
 static bool add_line(batch *self, uint64_t index, const cJSON *line)
 {
-    static const char *const names[] = {"clean", "collides", "error", "incomplete"};
+    const batch_lines *lines = self->lines;
+    const char *const names[] = {"clean", lines->found, "error", "incomplete"};
     const char *name = cJSON_GetStringValue(cJSON_GetObjectItem(line, "status"));
     int status = 0;
     while (name && status < 4 && strcmp(names[status], name) != 0) status++;
     if (!name || status == 4) return false;
-    const cJSON *pairs = cJSON_GetObjectItem(line, query_chosen_pairs(self->set) == SC_PAIRS_EDGE
-                                                       ? "edge_triangle_pairs"
-                                                       : "triangle_pairs");
-    query_summary_add(&self->summary, status, cJSON_IsTrue(cJSON_GetObjectItem(line, "collides")),
-                      self->paths[index], NULL,
-                      cJSON_IsNumber(pairs) ? (uint64_t)pairs->valuedouble : 0);
+    uint64_t pairs = 0;
+    for (int i = 0; i < 2 && lines->counts[i]; i++) {
+        const cJSON *count = cJSON_GetObjectItem(line, lines->counts[i]);
+        pairs += cJSON_IsNumber(count) ? (uint64_t)count->valuedouble : 0;
+    }
+    query_summary_add(&self->summary, status, cJSON_IsTrue(cJSON_GetObjectItem(line, lines->found)),
+                      self->paths[index], NULL, pairs);
     self->status = query_text_worse(self->status, status);
     return true;
 }
@@ -88,19 +89,19 @@ static bool add_line(batch *self, uint64_t index, const cJSON *line)
 /* Whether a line has what this run asks, and nothing that it does not ask. */
 static bool has_settings(const batch *self, const cJSON *line)
 {
-    static const char *const optional[] = {"rest",   "model", "ignore_rings", "ignore", "groups",
-                                           "budget", NULL};
-    for (const cJSON *asked = self->settings->child; asked; asked = asked->next) {
+    const batch_lines *lines = self->lines;
+    for (const cJSON *asked = lines->settings->child; asked; asked = asked->next) {
         if (!cJSON_Compare(asked, cJSON_GetObjectItem(line, asked->string), true)) return false;
     }
-    for (int i = 0; optional[i]; i++) {
-        if (cJSON_HasObjectItem(line, optional[i]) !=
-            cJSON_HasObjectItem(self->settings, optional[i]))
+    for (int i = 0; lines->optional[i]; i++) {
+        if (cJSON_HasObjectItem(line, lines->optional[i]) !=
+            cJSON_HasObjectItem(lines->settings, lines->optional[i]))
             return false;
     }
-    return cJSON_HasObjectItem(line, "build_ms") == (int)self->set->timings &&
-           cJSON_HasObjectItem(line, "stats") == (int)self->set->stats &&
-           cJSON_HasObjectItem(line, "contacts") == (int)self->set->contacts;
+    for (int i = 0; lines->members[i]; i++) {
+        if (cJSON_HasObjectItem(line, lines->members[i]) != (int)lines->wants[i]) return false;
+    }
+    return true;
 }
 
 static bool look_at_line(void *user, uint64_t index, const char *text,
@@ -252,7 +253,8 @@ static bool write_line(batch *self, uint64_t index)
         char why[128];
         apart_why(worker, &self->set->limits, why, sizeof why);
         snprintf(error, sizeof error, "%s: %s", self->paths[index], why);
-        text = refusal = tool_json_line(query_report_refusal(self->paths[index], error), &size);
+        text = refusal =
+            tool_json_line(tool_json_refusal(self->lines->type, self->paths[index], error), &size);
         line = refusal ? cJSON_Parse(refusal) : NULL;
     }
     bool is_written = line != NULL;
@@ -294,9 +296,7 @@ static bool allocate(batch *self)
     self->slots = (batch_slot *)calloc(self->slot_count, sizeof *self->slots);
     self->polled = (struct pollfd *)calloc(self->slot_count, sizeof *self->polled);
     self->polled_slots = (uint64_t *)calloc(self->slot_count, sizeof *self->polled_slots);
-    self->settings = cJSON_CreateObject();
-    query_report_add_settings(self->settings, self->set);
-    if (self->slots && self->polled && self->polled_slots && self->settings) return true;
+    if (self->slots && self->polled && self->polled_slots && self->lines->settings) return true;
     tool_error("out of memory");
     return false;
 }
@@ -308,7 +308,6 @@ static void release(batch *self)
     free(self->polled);
     free(self->polled_slots);
     free(self->start);
-    cJSON_Delete(self->settings);
 }
 
 /* The part of the list that is to be done. */
@@ -330,13 +329,14 @@ static bool take_list(batch *self, manifest *list)
     return true;
 }
 
-int batch_run(const query_settings *set, batch_work work, void *user)
+int batch_run(const query_settings *set, const batch_lines *lines, batch_work work, void *user)
 {
     batch self;
     manifest list;
     char error[MESH_FILE_ERROR_SIZE];
     memset(&self, 0, sizeof self);
     self.set = set;
+    self.lines = lines;
     self.work = work;
     self.user = user;
     if (!take_list(&self, &list)) return TOOL_FAILED;

@@ -19,10 +19,23 @@
 
 #include "query_settings.h"
 
+#include <cjson/cJSON.h>
+
 /* Prints the object of a file, or why there is none, to standard output; returns TOOL_.... */
 typedef int (*batch_work)(void *user, const char *path);
 
+/* What lines are about: what is asked is known by them when a run goes on. */
+typedef struct batch_lines {
+    const char *type;      /* of the objects: "mesh", "near" */
+    const char *found;     /* the status of a mesh that has pairs, and a member that says so */
+    const char *counts[2]; /* members whose sum is the number of pairs; the second may be NULL */
+    cJSON *settings;       /* members that all lines of this run have, and their values */
+    const char *const *members;  /* those that settings do not have and lines have on request */
+    const bool *wants;           /* for each of them whether it is asked for */
+    const char *const *optional; /* those of settings that lines of other runs may not have */
+} batch_lines;                   /* lists of names end with NULL */
+
 /* Does all meshes that set names. Returns an exit status. */
-int batch_run(const query_settings *set, batch_work work, void *user);
+int batch_run(const query_settings *set, const batch_lines *lines, batch_work work, void *user);
 
 #endif /* TOOLS_BATCH_H */

@@ -5,6 +5,7 @@
  */
 #include "near_query.h"
 
+#include "batch.h"
 #include "frame_paths.h"
 #include "near_report.h"
 #include "near_thickness.h"
@@ -211,11 +212,11 @@ static int do_file(near_run *run, const char *path)
     return status;
 }
 
-static int do_files(near_run *run, char *const *paths, int count)
+/* Makes what all files share: TOOL_CLEAN, or TOOL_FAILED, which has been reported. */
+static int open_rest(near_run *run)
 {
     const near_settings *set = run->set;
     char error[MESH_FILE_ERROR_SIZE];
-    int status = TOOL_CLEAN;
     if (run->rest_path) {
         const query_subject_how how = how_to_build(run);
         if (!query_subject_load(&run->rest, run->rest_path, &how, error))
@@ -223,10 +224,20 @@ static int do_files(near_run *run, char *const *paths, int count)
     } else if (set->model_path) {
         if (!query_subject_open(&run->rest, set->model_path, SC_WORKSPACE_NEAR, error))
             return near_report_failure(set->model_path, set, error);
-        if (set->ignores_rest && (!mesh_file_read(&run->first, paths[0], error) ||
-                                  !query_subject_fits(&run->rest, paths[0], &run->first, error)))
-            return near_report_failure(paths[0], set, error);
     }
+    return TOOL_CLEAN;
+}
+
+static int do_files(near_run *run, char *const *paths, int count)
+{
+    const near_settings *set = run->set;
+    char error[MESH_FILE_ERROR_SIZE];
+    int status = open_rest(run);
+    if (status != TOOL_CLEAN) return status;
+    if (set->model_path && set->ignores_rest &&
+        (!mesh_file_read(&run->first, paths[0], error) ||
+         !query_subject_fits(&run->rest, paths[0], &run->first, error)))
+        return near_report_failure(paths[0], set, error);
     near_report_head(set);
     if (run->out) near_report_pairs_head(run->out, set);
     for (int i = 0; i < count; i++) status = query_text_worse(status, do_file(run, paths[i]));
@@ -282,5 +293,41 @@ int near_query_files(char **paths, int count, const near_settings *set)
     mesh_file_free(&run.first);
     query_subject_free(&run.rest);
     frame_paths_free(&found);
+    return status;
+}
+
+static int do_batch_file(void *user, const char *path)
+{
+    near_run *run = (near_run *)user;
+    const int status = do_file(run, path);
+    for (int kind = 0; kind < KINDS; kind++) {
+        free(run->lists[kind].pairs);
+        memset(&run->lists[kind], 0, sizeof run->lists[kind]);
+    }
+    return status;
+}
+
+int near_query_batch(const query_settings *set)
+{
+    static const char *const optional[] = {"rest",        "model",  "ignore_rings", "ignore",
+                                           "ignore_rest", "groups", "budget",       NULL};
+    static const char *const members[] = {"build_ms", "stats", "thickness", NULL};
+    const bool wants[] = {set->timings, set->stats, set->near.thickness};
+    batch_lines lines = {"near", "near",  {"vertex_face_pairs", "edge_edge_pairs"}, NULL, members,
+                         wants,  optional};
+    near_settings own = set->near;
+    near_run run;
+    memset(&run, 0, sizeof run);
+    run.set = &own;
+    run.rest_path = own.rest_path;
+    int status = open_rest(&run);
+    if (status == TOOL_CLEAN) {
+        own.json = true;
+        lines.settings = cJSON_CreateObject();
+        near_report_add_settings(lines.settings, &set->near);
+        status = batch_run(set, &lines, do_batch_file, &run);
+        cJSON_Delete(lines.settings);
+    }
+    query_subject_free(&run.rest);
     return status;
 }

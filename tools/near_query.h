@@ -9,10 +9,14 @@
 #ifndef TOOLS_NEAR_QUERY_H
 #define TOOLS_NEAR_QUERY_H
 
-#include "near_settings.h"
+#include "query_settings.h"
 
 /* Does count files, or those of one pattern with a number. Returns an exit status; what is wrong is
    on standard error. */
 int near_query_files(char **paths, int count, const near_settings *set);
+
+/* Does many meshes, or poses of one, with a line of JSON each: see batch.h. set->near is what is
+   asked. */
+int near_query_batch(const query_settings *set);
 
 #endif /* TOOLS_NEAR_QUERY_H */

@@ -265,9 +265,31 @@ static void add_count(cJSON *object, const char *name, uint64_t count, bool know
         cJSON_AddNullToObject(object, name);
 }
 
+void near_report_add_settings(cJSON *object, const near_settings *set)
+{
+    cJSON_AddNumberToObject(object, "distance", set->distance);
+    cJSON_AddStringToObject(object, "kinds", tool_choice_name(near_kinds, set->kinds));
+    cJSON_AddBoolToObject(object, "any", set->any);
+    if (set->model_path) { /* they are the model's */
+        cJSON_AddNullToObject(object, "weld");
+        cJSON_AddNullToObject(object, "partition");
+    } else {
+        cJSON_AddStringToObject(object, "weld", tool_choice_name(tool_welds, set->weld));
+        cJSON_AddStringToObject(object, "partition",
+                                tool_choice_name(tool_partitions, set->partition));
+    }
+    cJSON_AddStringToObject(object, "method", tool_choice_name(near_methods, set->method));
+    if (set->rest_path) cJSON_AddStringToObject(object, "rest", set->rest_path);
+    if (set->model_path) cJSON_AddStringToObject(object, "model", set->model_path);
+    if (set->ignore_rings) cJSON_AddNumberToObject(object, "ignore_rings", set->ignore_rings);
+    if (set->ignore_path) cJSON_AddStringToObject(object, "ignore", set->ignore_path);
+    if (set->ignores_rest) cJSON_AddNumberToObject(object, "ignore_rest", set->ignore_rest);
+    if (set->groups_path) cJSON_AddStringToObject(object, "groups", set->groups_path);
+    if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
+}
+
 static bool print_json_answer(const near_answer *answer, const near_settings *set)
 {
-    const bool built = !set->model_path;
     cJSON *object = tool_json_object("near");
     cJSON_AddStringToObject(object, "file", answer->path);
     cJSON_AddStringToObject(object, "status",
@@ -293,30 +315,15 @@ static bool print_json_answer(const near_answer *answer, const near_settings *se
         cJSON_AddNumberToObject(object, "nearest", answer->nearest);
     else
         cJSON_AddNullToObject(object, "nearest");
-    cJSON_AddNumberToObject(object, "distance", set->distance);
-    cJSON_AddStringToObject(object, "kinds", tool_choice_name(near_kinds, set->kinds));
-    cJSON_AddBoolToObject(object, "any", set->any);
-    cJSON_AddNumberToObject(object, "build_ms", query_text_rounded(answer->build_ms));
-    cJSON_AddNumberToObject(object, "query_ms", query_text_rounded(answer->query_ms));
-    if (built) {
-        cJSON_AddStringToObject(object, "weld", tool_choice_name(tool_welds, set->weld));
-        cJSON_AddStringToObject(object, "partition",
-                                tool_choice_name(tool_partitions, set->partition));
-    } else { /* they are the model's */
-        cJSON_AddNullToObject(object, "weld");
-        cJSON_AddNullToObject(object, "partition");
+    if (set->timings) {
+        cJSON_AddNumberToObject(object, "build_ms", query_text_rounded(answer->build_ms));
+        cJSON_AddNumberToObject(object, "query_ms", query_text_rounded(answer->query_ms));
     }
-    cJSON_AddStringToObject(object, "method", tool_choice_name(near_methods, set->method));
-    if (set->rest_path) cJSON_AddStringToObject(object, "rest", set->rest_path);
-    if (set->model_path) cJSON_AddStringToObject(object, "model", set->model_path);
-    if (set->ignore_rings) cJSON_AddNumberToObject(object, "ignore_rings", set->ignore_rings);
-    if (set->ignore_path) cJSON_AddStringToObject(object, "ignore", set->ignore_path);
-    if (set->ignores_rest) cJSON_AddNumberToObject(object, "ignore_rest", set->ignore_rest);
-    if (set->groups_path) cJSON_AddStringToObject(object, "groups", set->groups_path);
-    if (set->budget) cJSON_AddNumberToObject(object, "budget", (double)set->budget);
+    near_report_add_settings(object, set);
     if (set->stats) query_text_add_stats(object, &answer->stats);
     if (set->thickness)
-        thickness_text_add(object, &answer->spread, answer->thickness, answer->mesh->face_count);
+        thickness_text_add(object, &answer->spread, set->is_line ? NULL : answer->thickness,
+                           answer->mesh->face_count);
     if (set->list || set->stencils) {
         pair_adder adder = {cJSON_AddArrayToObject(object, "pairs"), answer, set};
         if (visit_pairs(answer, add_pair, &adder) != SC_OK) {
@@ -334,13 +341,7 @@ static bool print_json_answer(const near_answer *answer, const near_settings *se
 int near_report_failure(const char *path, const near_settings *set, const char *error)
 {
     tool_error("%s", error);
-    if (set->json) {
-        cJSON *object = tool_json_object("near");
-        cJSON_AddStringToObject(object, "file", path);
-        cJSON_AddStringToObject(object, "status", "error");
-        cJSON_AddStringToObject(object, "error", error);
-        tool_json_print(object);
-    }
+    if (set->json) tool_json_print(tool_json_refusal("near", path, error));
     fflush(stdout);
     return TOOL_FAILED;
 }

@@ -37,10 +37,11 @@ typedef struct near_answer {
     uint32_t position_type;      /* of the pose */
 } near_answer;
 
-/* Whether the distances of all pairs are told, or shown. */
+/* Whether the distances of all pairs are told, or shown, or the smallest is. */
 static inline bool near_tells_distances(const near_settings *set)
 {
-    return set->list || set->stencils || set->out_path || (set->ply_path && !set->thickness);
+    return set->list || set->stencils || set->out_path || (set->ply_path && !set->thickness) ||
+           (set->is_line && !set->any);
 }
 
 /* Whether pairs are wanted, and not only their number. */
@@ -69,6 +70,9 @@ int near_report(const near_answer *answer, const near_settings *set, FILE *out);
 /* Says why a file could not be done: as a message, and as an object if there is JSON. Returns
    TOOL_FAILED. */
 int near_report_failure(const char *path, const near_settings *set, const char *error);
+
+/* Adds what was asked, as the objects of files have it. */
+void near_report_add_settings(cJSON *object, const near_settings *set);
 
 /* Writes the file of --ply; otherwise says why not. */
 bool near_report_ply(const near_answer *answer, const near_settings *set);

@@ -23,7 +23,8 @@ typedef struct near_settings {
     double ignore_rest;    /* the distance, where ignores_rest */
     uint32_t ignore_rings; /* 0: none */
     uint64_t budget;       /* 0: none */
-    bool ignores_rest, any, list, stencils, thickness, json, stats;
+    bool ignores_rest, any, list, stencils, thickness, json, stats, timings;
+    bool is_line; /* of --jsonl: what grows with the mesh is left out */
 } near_settings;
 
 #endif /* TOOLS_NEAR_SETTINGS_H */

@@ -114,7 +114,9 @@ static const char usage_continued[] =
     "  --record FILE               write the query, with model, pose, options and filter, to "
     "report\n"
     "                              a bug; one MESH only\n"
-    "Many meshes: each read by a process of its own, whose end is a line, not the run's\n"
+    "Many meshes, also with --near: each read by a process of its own, whose end is a line, not "
+    "the "
+    "run's\n"
     "  --jsonl FILE                append a JSON object a line, whole, in the order of the meshes; "
     "no\n"
     "                              times, so that every run writes the same bytes\n"
@@ -218,10 +220,13 @@ static const char *check_batch(const query_settings *set)
                              : NULL;
     if (set->manifest_path && set->path_count > 0)
         return "--manifest is in place of meshes on the command line";
-    if (set->is_step || set->is_near || set->out_path || set->ply_path || set->html_path ||
-        set->png_path || set->record_path || set->replay_path)
-        return "--jsonl does not go with --step, --near, --out, --ply, --html, --png, --record or "
-               "--replay";
+    if (set->is_step || set->out_path || set->ply_path || set->html_path || set->png_path ||
+        set->record_path || set->replay_path)
+        return "--jsonl does not go with --step, --out, --ply, --html, --png, --record or --replay";
+    if (set->near.list || set->near.stencils)
+        return "--list and --stencils are too long for lines of --jsonl";
+    if (set->is_near && set->model_path && set->step.ignores_rest)
+        return "--jsonl with --model has no rest pose for --ignore-rest; --rest has one";
     if (set->threads > 1) return "--jsonl has --jobs, meshes at a time, in place of --threads";
     if (set->stats && !set->timings) return "--stats are times, which --jsonl has with --timings";
     return NULL;

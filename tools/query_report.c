@@ -202,15 +202,6 @@ static bool print_json_answer(const query_answer *answer, const query_settings *
     return tool_json_print(object);
 }
 
-cJSON *query_report_refusal(const char *path, const char *error)
-{
-    cJSON *object = tool_json_object("mesh");
-    cJSON_AddStringToObject(object, "file", path);
-    cJSON_AddStringToObject(object, "status", "error");
-    cJSON_AddStringToObject(object, "error", error);
-    return object;
-}
-
 /* A number of pairs: with a + if there may be more, a - if they were not sought. */
 static void print_count(const query_answer *answer, uint32_t kind)
 {
@@ -275,7 +266,7 @@ static bool count_objects(const query_answer *answer, const query_settings *set,
 int query_report_failure(const char *path, const query_settings *set, const char *error)
 {
     tool_error("%s", error);
-    if (set->json) tool_json_print(query_report_refusal(path, error));
+    if (set->json) tool_json_print(tool_json_refusal("mesh", path, error));
     fflush(stdout);
     return TOOL_FAILED;
 }

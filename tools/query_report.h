@@ -25,9 +25,6 @@ int query_report(const query_answer *answer, const query_settings *set, const qu
    TOOL_FAILED. */
 int query_report_failure(const char *path, const query_settings *set, const char *error);
 
-/* The object that says why a file could not be done. */
-cJSON *query_report_refusal(const char *path, const char *error);
-
 /* Adds what was asked, as the objects of files have it. */
 void query_report_add_settings(cJSON *object, const query_settings *set);
 

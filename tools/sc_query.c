@@ -429,10 +429,25 @@ static int do_batch_file(void *user, const char *path)
 /* Many meshes, each by a process of its own. */
 static int do_batch(const query_settings *set, const query_subject *rest)
 {
-    query_settings lines = *set;
-    lines.json = true;
-    batch_context context = {&lines, rest};
-    return batch_run(set, do_batch_file, &context);
+    static const char *const optional[] = {"rest",   "model", "ignore_rings", "ignore", "groups",
+                                           "budget", NULL};
+    static const char *const members[] = {"build_ms", "stats", "contacts", NULL};
+    const bool wants[] = {set->timings, set->stats, set->contacts};
+    const bool is_edge = query_chosen_pairs(set) == SC_PAIRS_EDGE;
+    query_settings own = *set;
+    own.json = true;
+    batch_context context = {&own, rest};
+    batch_lines lines = {"mesh",
+                         "collides",
+                         {is_edge ? "edge_triangle_pairs" : "triangle_pairs", NULL},
+                         cJSON_CreateObject(),
+                         members,
+                         wants,
+                         optional};
+    query_report_add_settings(lines.settings, set);
+    const int status = batch_run(set, &lines, do_batch_file, &context);
+    cJSON_Delete(lines.settings);
+    return status;
 }
 
 static int do_files(query_settings *set)
@@ -534,6 +549,9 @@ static int do_near(query_settings *set)
     near->any = set->any;
     near->json = set->json;
     near->stats = set->stats;
+    near->timings = !set->jsonl_path || set->timings;
+    near->is_line = set->jsonl_path != NULL;
+    if (near->is_line) return near_query_batch(set);
     return near_query_files(set->paths, set->path_count, near);
 }
 

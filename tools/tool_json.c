@@ -20,6 +20,15 @@ cJSON *tool_json_object(const char *type)
     return object;
 }
 
+cJSON *tool_json_refusal(const char *type, const char *path, const char *error)
+{
+    cJSON *object = tool_json_object(type);
+    cJSON_AddStringToObject(object, "file", path);
+    cJSON_AddStringToObject(object, "status", "error");
+    cJSON_AddStringToObject(object, "error", error);
+    return object;
+}
+
 /* How many bytes of a string that ends in 0 are a character in UTF-8; 0: none are. */
 static size_t character_length(const char *text)
 {

@@ -20,6 +20,9 @@ enum { TOOL_JSON_SCHEMA = 1 };
    nothing, if there is no memory. */
 cJSON *tool_json_object(const char *type);
 
+/* The object of a type that says why a file could not be done. */
+cJSON *tool_json_refusal(const char *type, const char *path, const char *error);
+
 /* An object as a line, with its end and a 0 behind it, of *size bytes, to be freed by free; the
    object is freed. NULL, with a message, if there is no memory. JSON is UTF-8: bytes of names and
    paths that are not are taken for Latin-1. */
