@@ -19,7 +19,8 @@
  * What is not seen: walls within a D or so of their rim, round which a path leads; and walls of so
  * large triangles that all of their vertices are at the rim. And long triangles can be taken for
  * thin: a vertex that is near the middle of an edge of more than 4 D has no short path of edges to
- * the triangle beyond. So edges should not be much longer than D.
+ * the triangle beyond. So edges should not be much longer than D; with a few that are, pairs less
+ * than three edges apart are best left out of the search.
  *
  * It is not told whether material or air is between the two: a gap that is narrower than D counts
  * like a wall. Lengths are those of the pose, in doubles, added up from the first feature on.
