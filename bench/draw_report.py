@@ -22,6 +22,7 @@ import sys
 sys.dont_write_bytecode = True  # nothing is to appear beside this file
 
 import report_near
+import report_objects
 import report_targets as targets
 from report_text import figure, mean, table, times, whole
 
@@ -243,7 +244,8 @@ def collect(raw, results, command, seconds):
     for name, columns, rows in (("steps.csv", STEPS, steps), ("turns.csv", targets.TURNS, turns),
                                 ("shots.csv", targets.SHOTS, shots),
                                 ("built.csv", targets.BUILT, built),
-                                ("near.csv", report_near.NEAR, near)):
+                                ("near.csv", report_near.NEAR, near),
+                                ("objects.csv", report_objects.OBJECTS, report_objects.collect(raw))):
         if rows:
             write_csv(os.path.join(results, name), columns, rows, description)
 
@@ -257,11 +259,11 @@ class Results:
     def __init__(self, folder):
         self.rows, self.description = read_csv(os.path.join(folder, "summary.csv"))
         self.frames, _ = read_csv(os.path.join(folder, "frames.csv"))
-        self.steps, self.turns, self.shots, self.built, self.near, self.near_peers = (
+        (self.steps, self.turns, self.shots, self.built, self.near, self.near_peers, self.objects) = (
             read_csv(path)[0] if os.path.exists(path) else []
             for path in (os.path.join(folder, name + ".csv")
                          for name in ("steps", "turns", "shots", "built", "near",
-                                      "near_peers")))
+                                      "near_peers", "objects")))
         peers = os.path.join(folder, "peers.csv")
         rows, skipped, self.peers_commit = read_peers(peers)
         self.peers_skipped = [line for line in skipped if "(step " not in line]
@@ -956,6 +958,14 @@ def report(results, drawn, slope_table, reading):
         if absent:
             out.append("Left out:\n\n" + absent)
     add_near(out, results, drawn)
+    objects = report_objects.own_table(results.objects)
+    if objects:
+        out.append("## Several objects\n")
+        out.append("Milliseconds a frame, least of several rounds in turns. *Objects*: one call about all of them.\n"
+                   "*One mesh*: of all objects, with groups of vertices where one is not asked about itself.\n"
+                   "*Each alone*: those that are, in a call each, without what is between two. "
+                   + "; ".join("*%s*: %s" % item for item in report_objects.SCENES.items()) + ".\n")
+        out.append(objects)
     out.append("## One query a frame, and repeated queries\n")
     out.append("The same frame asked for again and again, which favours what fits the cache.\n")
     out.append(modes(results))

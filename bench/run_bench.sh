@@ -253,7 +253,7 @@ fi
 
 raw=build/bench/$kind
 mkdir -p "$raw" || exit 2
-rm -f "$raw"/*.jsonl "$raw"/*.shots "$raw"/*.built "$raw"/*.log
+rm -f "$raw"/*.jsonl "$raw"/*.shots "$raw"/*.built "$raw"/*.objects "$raw"/*.log
 
 # Makes sc-bench as the others of $builds have it, before anything is timed; $others are those that
 # can be run.
@@ -330,6 +330,15 @@ $built
 END
     done
 fi
+
+# Several objects, by one thread and by all.
+objects_scale=1
+[ "$kind" = quick ] && objects_scale=0.05
+for workers in $(printf '1\n%s\n' "$cores" | sort -nu); do
+    echo "bench: several objects, $workers threads, $(($(date +%s) - begin)) s" >&2
+    "$SC_BIN/sc-objects" --scale "$objects_scale" --workers "$workers" --csv "$raw/$workers.objects" \
+        >"$raw/$workers.objects.log" </dev/null || status=1
+done
 
 command="make bench"
 [ "$kind" = quick ] && command="make bench-quick"

@@ -419,6 +419,19 @@ else
     skip "the report: there is no python3"
 fi
 
+# ---- several objects ----
+
+objects=$SC_BIN/sc-objects
+check "several objects" says 0 "crowd *step *100 *2" "$objects" --scale 0.01 --frames 2 --rounds 1 \
+    --workers 2 --csv "$scratch/2.objects"
+check "a line for each way" test "$(grep -c '^\(body\|crowd\|layers\),\(query\|near\|step\),' "$scratch/2.objects")" -eq 27
+check "some pairs" grep -q '^layers,near,2,2,objects,[1-9]' "$scratch/2.objects"
+check "one scene" says 0 "layers" "$objects" --scene layers --scale 0.01 --frames 1 --rounds 1
+check "and no other" test "$(grep -c "^body" "$scratch/out")" -eq 0
+check "no such scene" says 2 "no scene 'sea'" "$objects" --scene sea
+check "no such scale" says 2 "0.001" "$objects" --scale 0
+check "where nothing can be written" says 2 "cannot be written" "$objects" --csv "$scratch/absent/a.csv"
+
 # ---- two builds of the library against each other ----
 
 against=$SC_BIN/sc-against

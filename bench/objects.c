@@ -1,0 +1,683 @@
+/*
+ * sc-objects: several objects in one query, beside one mesh of all of them and beside each of them
+ * alone.
+ *
+ * SPDX-License-Identifier: MIT
+ *
+ *     sc-objects [options]
+ *
+ * Scenes:
+ *   body    a cloth of 20,000 triangles that sinks onto a body of a million that does not move
+ *   crowd   a hundred characters of 10,000 triangles, which share one model, all of them moving
+ *   layers  two layers of cloth of 65,522 triangles, half an edge apart, moving in waves
+ * Questions:
+ *   query   what intersects
+ *   near    what is within half an edge
+ *   step    what collides on the way to the next frame, with a thousandth of an edge between
+ * Ways, in turns in each frame, of which the least time counts; the time of a scene is the sum over
+ * its frames divided by their number:
+ *   objects  one call about all objects; the version of what does not move stays
+ *   merged   one mesh of all of them; where something is not asked about itself, groups of vertices
+ *            leave its own pairs out
+ *   alone    each that is asked about itself by itself, in a call of its own
+ *
+ * Objects must have as many pairs as the mesh of all of them, or the exit status is 1. 2: something
+ * could not be done.
+ */
+#include "thread_pool.h"
+#include "tool.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char usage[] =
+    "Usage: sc-objects [options]\n"
+    "Times queries about several objects beside one mesh of all of them.\n"
+    "\n"
+    "  --scene NAME      body, crowd or layers; by default all\n"
+    "  --scale F         so many times the triangles (1)\n"
+    "  --frames N        frames of each scene (8)\n"
+    "  --rounds N        rounds in each frame (5)\n"
+    "  --workers N       threads of each query (1)\n"
+    "  --csv FILE        a line for each scene, question and way as well\n"
+    "  -h, --help\n"
+    "\n"
+    "Exit status: 0, 1 where numbers of pairs differ, 2 if something could not be done.\n";
+
+enum { OBJECTS_MAX = 100, QUERY = 0, NEAR = 1, STEP = 2, QUESTIONS = 3 };
+enum { OBJECTS = 0, MERGED = 1, ALONE = 2, WAYS = 3 };
+
+static const char *const question_names[QUESTIONS] = {"query", "near", "step"};
+static const char *const way_names[WAYS] = {"objects", "merged", "alone"};
+
+/* A mesh, and what the library made of it. */
+typedef struct part {
+    uint32_t vertex_count, triangle_count;
+    double *rest;
+    uint32_t *triangles;
+    sc_model *model;
+} part;
+
+/* An object: a part in two poses, of a frame and of the next one. */
+typedef struct object {
+    const part *of;
+    bool moves, itself;
+    double *at[2];
+    sc_workspace *workspace;
+    sc_pose pose[2];
+} object;
+
+typedef struct run {
+    double scale;
+    uint32_t frames, rounds, workers;
+    const char *scene, *csv;
+    FILE *csv_file;
+    thread_pool *pool;
+    bool differs;
+} run;
+
+typedef struct scene {
+    const char *name;
+    part parts[2], whole;
+    uint32_t part_count, count;
+    object objects[OBJECTS_MAX];
+    double *whole_at[2];
+    sc_pose whole_pose[2];
+    sc_workspace *whole_workspace;
+    sc_group *groups;           /* of vertices of the whole, or NULL */
+    sc_filter filter;           /* with these */
+    double edge;                /* a typical length of one */
+    double ms[QUESTIONS][WAYS]; /* sums over frames */
+    uint64_t pairs[QUESTIONS][WAYS];
+    sc_pair *lists[2];
+    double *times[2];
+    uint64_t room;
+} scene;
+
+/* ---- meshes ---- */
+
+static bool make_part(part *p, uint32_t vertices, uint32_t triangles)
+{
+    p->vertex_count = vertices;
+    p->triangle_count = triangles;
+    p->rest = (double *)malloc(sizeof(double) * 3 * vertices);
+    p->triangles = (uint32_t *)malloc(sizeof(uint32_t) * 3 * triangles);
+    return p->rest && p->triangles;
+}
+
+/* A cloth from -1 to 1 with n cells along each side. */
+static bool make_cloth(part *p, uint32_t n)
+{
+    uint32_t *t;
+    if (!make_part(p, (n + 1) * (n + 1), 2 * n * n)) return false;
+    for (uint32_t j = 0; j <= n; j++) {
+        for (uint32_t i = 0; i <= n; i++) {
+            double *const at = p->rest + 3 * (size_t)(j * (n + 1) + i);
+            at[0] = 2.0 * i / n - 1;
+            at[1] = 2.0 * j / n - 1;
+            at[2] = 0;
+        }
+    }
+    t = p->triangles;
+    for (uint32_t j = 0; j < n; j++) {
+        for (uint32_t i = 0; i < n; i++, t += 6) {
+            const uint32_t a = j * (n + 1) + i, b = a + n + 1;
+            const uint32_t two[6] = {a, a + 1, b + 1, a, b + 1, b};
+            memcpy(t, two, sizeof two);
+        }
+    }
+    return true;
+}
+
+/* A torus round the z axis, of about so many triangles as square as cells can be: of radius 0.7, and
+   0.3 thick on each side. */
+static bool make_torus(part *p, double triangles)
+{
+    const uint32_t around = (uint32_t)sqrt(triangles / 2 * 7 / 3), n = around * 3 / 7;
+    uint32_t *t;
+    if (!make_part(p, around * n, 2 * around * n)) return false;
+    for (uint32_t j = 0; j < around; j++) {
+        for (uint32_t i = 0; i < n; i++) {
+            const double turn = 2 * acos(-1) * j / around, angle = 2 * acos(-1) * i / n;
+            double *const at = p->rest + 3 * (size_t)(j * n + i);
+            at[0] = (0.7 + 0.3 * cos(angle)) * cos(turn);
+            at[1] = (0.7 + 0.3 * cos(angle)) * sin(turn);
+            at[2] = 0.3 * sin(angle);
+        }
+    }
+    t = p->triangles;
+    for (uint32_t j = 0; j < around; j++) {
+        for (uint32_t i = 0; i < n; i++, t += 6) {
+            const uint32_t a = j * n + i, b = j * n + (i + 1) % n;
+            const uint32_t c = (j + 1) % around * n + i, d = (j + 1) % around * n + (i + 1) % n;
+            const uint32_t two[6] = {a, c, d, a, d, b};
+            memcpy(t, two, sizeof two);
+        }
+    }
+    return true;
+}
+
+static bool build(part *p, const uint32_t *weld_map)
+{
+    sc_build_options options;
+    sc_mesh mesh;
+    memset(&mesh, 0, sizeof mesh);
+    mesh.struct_size = sizeof mesh;
+    mesh.vertex_count = p->vertex_count;
+    mesh.triangle_count = p->triangle_count;
+    mesh.position_type = SC_DOUBLE;
+    mesh.positions = p->rest;
+    mesh.indices = p->triangles;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.weld = weld_map ? SC_WELD_MAP : SC_WELD_NONE;
+    options.weld_map = weld_map;
+    options.hooks = tool_hooks();
+    return sc_build(&mesh, &options, &p->model) == SC_OK;
+}
+
+static void free_part(part *p)
+{
+    sc_model_free(p->model);
+    free(p->rest);
+    free(p->triangles);
+}
+
+/* ---- scenes ---- */
+
+static sc_workspace *work_for(const run *r, const sc_model *model)
+{
+    sc_workspace_options options;
+    sc_workspace *workspace = NULL;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.workers = r->workers;
+    options.flags = SC_WORKSPACE_NEAR;
+    (void)sc_workspace_create_for(model, &options, &workspace);
+    return workspace;
+}
+
+static bool add_object(const run *r, scene *s, const part *of, bool moves, bool itself)
+{
+    object *const o = &s->objects[s->count++];
+    o->of = of;
+    o->moves = moves;
+    o->itself = itself;
+    o->workspace = work_for(r, of->model);
+    for (int k = 0; k < 2; k++) {
+        o->at[k] = (double *)malloc(sizeof(double) * 3 * of->vertex_count);
+        if (!o->at[k]) return false;
+        memcpy(o->at[k], of->rest, sizeof(double) * 3 * of->vertex_count);
+        o->pose[k] = tool_pose(o->at[k], SC_DOUBLE, of->vertex_count);
+    }
+    return o->workspace != NULL;
+}
+
+static bool make_body(const run *r, scene *s)
+{
+    s->part_count = 2;
+    s->edge = 2 / (100 * sqrt(r->scale));
+    return make_cloth(&s->parts[0], (uint32_t)(100 * sqrt(r->scale))) &&
+           make_torus(&s->parts[1], 1e6 * r->scale) && build(&s->parts[0], NULL) &&
+           build(&s->parts[1], NULL) && add_object(r, s, &s->parts[0], true, true) &&
+           add_object(r, s, &s->parts[1], false, false);
+}
+
+static bool make_crowd(const run *r, scene *s)
+{
+    s->part_count = 1;
+    s->edge = 4.4 / sqrt(5000. * 7 / 3 * r->scale);
+    if (!make_torus(&s->parts[0], 1e4 * r->scale) || !build(&s->parts[0], NULL)) return false;
+    while (s->count < OBJECTS_MAX)
+        if (!add_object(r, s, &s->parts[0], true, true)) return false;
+    return true;
+}
+
+static bool make_layers(const run *r, scene *s)
+{
+    s->part_count = 1;
+    s->edge = 2 / (181 * sqrt(r->scale));
+    return make_cloth(&s->parts[0], (uint32_t)(181 * sqrt(r->scale))) &&
+           build(&s->parts[0], NULL) && add_object(r, s, &s->parts[0], true, true) &&
+           add_object(r, s, &s->parts[0], true, true);
+}
+
+/* Where vertex v of an object is at a time. */
+static void place_body(const scene *s, uint32_t number, double time, const double *rest, double *at)
+{
+    const double x = rest[0], y = rest[1];
+    (void)s;
+    memcpy(at, rest, 3 * sizeof *at);
+    if (number) return;
+    at[2] = 0.305 - 0.002 * time + 0.01 * sin(7 * x + time) * cos(5 * y);
+}
+
+static void place_crowd(const scene *s, uint32_t number, double time, const double *rest,
+                        double *at)
+{
+    const double phase = 1.7 * number + 0.3 * time;
+    (void)s;
+    at[0] = rest[0] * (1 + 0.1 * sin(9 * rest[2] + phase)) + 1.95 * (number % 10);
+    at[1] = rest[1] * (1 + 0.1 * cos(8 * rest[2] - phase)) + 1.95 * (number / 10);
+    at[2] = rest[2] + 0.1 * sin(phase);
+}
+
+static void place_layers(const scene *s, uint32_t number, double time, const double *rest,
+                         double *at)
+{
+    const double x = rest[0], y = rest[1];
+    at[0] = x + 0.2 * s->edge * number;
+    at[1] = y;
+    at[2] = 0.1 * sin(4 * x + 0.2 * time) * cos(3 * y) +
+            number * s->edge * (0.5 + 0.1 * sin(31 * x + time));
+}
+
+static const struct {
+    const char *name;
+    bool (*make)(const run *r, scene *s);
+    void (*place)(const scene *s, uint32_t number, double time, const double *rest, double *at);
+} kinds[] = {{"body", make_body, place_body},
+             {"crowd", make_crowd, place_crowd},
+             {"layers", make_layers, place_layers}};
+
+/* Groups by which what is not asked about itself does not collide with its like. */
+static bool make_groups(scene *s)
+{
+    bool wanted = false;
+    uint32_t at = 0;
+    for (uint32_t i = 0; i < s->count; i++) wanted |= !s->objects[i].itself;
+    if (!wanted) return true;
+    s->groups = (sc_group *)malloc(sizeof *s->groups * s->whole.vertex_count);
+    if (!s->groups) return false;
+    for (uint32_t i = 0; i < s->count; i++) {
+        const sc_group group = {s->objects[i].itself ? 1u : 2u, s->objects[i].itself ? 3u : 1u};
+        for (uint32_t v = 0; v < s->objects[i].of->vertex_count; v++) s->groups[at++] = group;
+    }
+    s->filter.struct_size = sizeof s->filter;
+    s->filter.vertex_groups = s->groups;
+    return true;
+}
+
+/* One mesh of all, in which nothing is welded. */
+static bool make_whole(const run *r, scene *s)
+{
+    uint32_t vertices = 0, triangles = 0, *map;
+    bool good;
+    for (uint32_t i = 0; i < s->count; i++) {
+        vertices += s->objects[i].of->vertex_count;
+        triangles += s->objects[i].of->triangle_count;
+    }
+    if (!make_part(&s->whole, vertices, triangles)) return false;
+    vertices = triangles = 0;
+    for (uint32_t i = 0; i < s->count; i++) {
+        const part *const p = s->objects[i].of;
+        memcpy(s->whole.rest + 3 * (size_t)vertices, s->objects[i].at[0],
+               sizeof(double) * 3 * p->vertex_count);
+        for (uint32_t k = 0; k < 3 * p->triangle_count; k++)
+            s->whole.triangles[3 * (size_t)triangles + k] = vertices + p->triangles[k];
+        vertices += p->vertex_count;
+        triangles += p->triangle_count;
+    }
+    map = (uint32_t *)malloc(sizeof *map * vertices);
+    for (uint32_t v = 0; map && v < vertices; v++) map[v] = v;
+    good = map && build(&s->whole, map);
+    free(map);
+    for (int k = 0; k < 2 && good; k++) {
+        s->whole_at[k] = (double *)malloc(sizeof(double) * 3 * vertices);
+        good = s->whole_at[k] != NULL;
+        s->whole_pose[k] = tool_pose(s->whole_at[k], SC_DOUBLE, vertices);
+    }
+    if (good) s->whole_workspace = work_for(r, s->whole.model);
+    return good && s->whole_workspace && make_groups(s);
+}
+
+/* Poses all for a frame and the next one. */
+static void place(scene *s, size_t kind, uint32_t frame)
+{
+    for (int k = 0; k < 2; k++) {
+        size_t first = 0;
+        for (uint32_t i = 0; i < s->count; i++) {
+            object *const o = &s->objects[i];
+            for (uint32_t v = 0; v < o->of->vertex_count; v++)
+                kinds[kind].place(s, i, (double)frame + k, o->of->rest + 3 * (size_t)v,
+                                  o->at[k] + 3 * (size_t)v);
+            memcpy(s->whole_at[k] + 3 * first, o->at[k], sizeof(double) * 3 * o->of->vertex_count);
+            first += o->of->vertex_count;
+        }
+    }
+}
+
+static void free_scene(scene *s)
+{
+    for (uint32_t i = 0; i < s->count; i++) {
+        sc_workspace_free(s->objects[i].workspace);
+        for (int k = 0; k < 2; k++) free(s->objects[i].at[k]);
+    }
+    for (uint32_t i = 0; i < 2; i++) {
+        free_part(&s->parts[i]);
+        free(s->whole_at[i]);
+        free(s->lists[i]);
+        free(s->times[i]);
+    }
+    free(s->groups);
+    sc_workspace_free(s->whole_workspace);
+    free_part(&s->whole);
+}
+
+/* ---- asking ---- */
+
+/* Room for that many pairs in both lists. */
+static bool make_room(scene *s, uint64_t count)
+{
+    s->room = count + count / 4 + 1000;
+    for (int k = 0; k < 2; k++) {
+        free(s->lists[k]);
+        free(s->times[k]);
+        s->lists[k] = (sc_pair *)malloc(sizeof(sc_pair) * s->room);
+        s->times[k] = (double *)malloc(sizeof(double) * s->room);
+        if (!s->lists[k] || !s->times[k]) return false;
+    }
+    return true;
+}
+
+static sc_step_options step_options(const run *r, const scene *s)
+{
+    sc_step_options o;
+    memset(&o, 0, sizeof o);
+    o.struct_size = sizeof o;
+    o.times = SC_STEP_TIMES_EACH;
+    o.separation = s->edge / 1000;
+    o.tolerance = s->edge / 10000;
+    o.tasks = thread_pool_tasks(r->pool);
+    return o;
+}
+
+static sc_near_options near_options(const run *r, const scene *s)
+{
+    sc_near_options o;
+    memset(&o, 0, sizeof o);
+    o.struct_size = sizeof o;
+    o.distance = s->edge / 2;
+    o.tasks = thread_pool_tasks(r->pool);
+    return o;
+}
+
+static sc_query_options query_options(const run *r)
+{
+    sc_query_options o;
+    memset(&o, 0, sizeof o);
+    o.struct_size = sizeof o;
+    o.tasks = thread_pool_tasks(r->pool);
+    return o;
+}
+
+/* A question about one mesh; count: how many pairs there are, of the longer list if there are
+   two. */
+static sc_status ask_one(const run *r, scene *s, int question, const sc_model *model,
+                         sc_workspace *workspace, const sc_pose pose[2], uint64_t *longest,
+                         uint64_t *count)
+{
+    const sc_filter *const filter = model == s->whole.model && s->groups ? &s->filter : NULL;
+    sc_status status;
+    if (question == QUERY) {
+        sc_query_options o = query_options(r);
+        sc_result result;
+        o.filter = filter;
+        memset(&result, 0, sizeof result);
+        result.struct_size = sizeof result;
+        result.pairs = s->lists[0];
+        result.capacity = s->room;
+        status = sc_query(model, workspace, &pose[0], &o, &result);
+        *longest = *count = result.count;
+    } else if (question == NEAR) {
+        sc_near_options o = near_options(r, s);
+        sc_near_result result;
+        o.vertex_face_filter = o.edge_edge_filter = filter;
+        memset(&result, 0, sizeof result);
+        result.struct_size = sizeof result;
+        result.vertex_faces = s->lists[0];
+        result.edge_edges = s->lists[1];
+        result.vertex_face_capacity = result.edge_edge_capacity = s->room;
+        status = sc_query_near(model, workspace, &pose[0], &o, &result);
+        *count = result.vertex_face_count + result.edge_edge_count;
+        *longest = result.vertex_face_count > result.edge_edge_count ? result.vertex_face_count
+                                                                     : result.edge_edge_count;
+    } else {
+        sc_step_options o = step_options(r, s);
+        sc_step_result result;
+        o.vertex_face_filter = o.edge_edge_filter = filter;
+        memset(&result, 0, sizeof result);
+        result.struct_size = sizeof result;
+        result.vertex_faces = s->lists[0];
+        result.edge_edges = s->lists[1];
+        result.vertex_face_times = s->times[0];
+        result.edge_edge_times = s->times[1];
+        result.vertex_face_capacity = result.edge_edge_capacity = s->room;
+        status = sc_query_step(model, workspace, &pose[0], &pose[1], &o, &result);
+        *count = result.vertex_face_count + result.edge_edge_count;
+        *longest = result.vertex_face_count > result.edge_edge_count ? result.vertex_face_count
+                                                                     : result.edge_edge_count;
+    }
+    return status;
+}
+
+static sc_status ask_objects(const run *r, scene *s, int question, uint64_t version,
+                             uint64_t *longest, uint64_t *count)
+{
+    sc_object objects[OBJECTS_MAX];
+    sc_objects all;
+    sc_status status;
+    memset(objects, 0, sizeof objects);
+    for (uint32_t i = 0; i < s->count; i++) {
+        const object *const o = &s->objects[i];
+        objects[i].model = o->of->model;
+        objects[i].workspace = o->workspace;
+        objects[i].pose = &o->pose[0];
+        objects[i].end = question == STEP && o->moves ? &o->pose[1] : NULL;
+        objects[i].pose_version = o->moves ? version : 1;
+        objects[i].itself = o->itself;
+    }
+    memset(&all, 0, sizeof all);
+    all.struct_size = sizeof all;
+    all.count = s->count;
+    all.objects = objects;
+    if (question == QUERY) {
+        const sc_query_options o = query_options(r);
+        sc_objects_result result;
+        memset(&result, 0, sizeof result);
+        result.struct_size = sizeof result;
+        result.pairs = s->lists[0];
+        result.capacity = s->room;
+        status = sc_query_objects(&all, &o, &result);
+        *longest = *count = result.count;
+    } else {
+        const sc_near_options near = near_options(r, s);
+        const sc_step_options step = step_options(r, s);
+        sc_objects_lists lists;
+        memset(&lists, 0, sizeof lists);
+        lists.struct_size = sizeof lists;
+        lists.vertex_faces.pairs = s->lists[0];
+        lists.edge_edges.pairs = s->lists[1];
+        lists.vertex_faces.times = s->times[0];
+        lists.edge_edges.times = s->times[1];
+        lists.vertex_faces.capacity = lists.edge_edges.capacity = s->room;
+        status = question == NEAR ? sc_query_objects_near(&all, &near, &lists)
+                                  : sc_query_objects_step(&all, &step, &lists);
+        *count = lists.vertex_faces.count + lists.edge_edges.count;
+        *longest = lists.vertex_faces.count > lists.edge_edges.count ? lists.vertex_faces.count
+                                                                     : lists.edge_edges.count;
+    }
+    return status;
+}
+
+/* Asks in one way, again with more room if that was too little; *ms is the time of the last time. */
+static bool ask(const run *r, scene *s, int question, int way, uint64_t version, double *ms,
+                uint64_t *count)
+{
+    sc_status status;
+    do {
+        const double start = tool_clock();
+        uint64_t longest = 0, some;
+        status = SC_OK;
+        if (way == OBJECTS)
+            status = ask_objects(r, s, question, version, &longest, count);
+        else if (way == MERGED)
+            status = ask_one(r, s, question, s->whole.model, s->whole_workspace, s->whole_pose,
+                             &longest, count);
+        else
+            *count = 0;
+        for (uint32_t i = 0; way == ALONE && i < s->count && !status; i++) {
+            const object *const o = &s->objects[i];
+            uint64_t most = 0;
+            if (!o->itself) continue;
+            status = ask_one(r, s, question, o->of->model, o->workspace, o->pose, &most, &some);
+            *count += some;
+            if (most > longest) longest = most;
+        }
+        *ms = tool_clock() - start;
+        if (status == SC_ERROR_SHORT_BUFFER && !make_room(s, longest)) return false;
+    } while (status == SC_ERROR_SHORT_BUFFER);
+    if (status) tool_error("%s: %s", s->name, tool_why(status));
+    return !status;
+}
+
+/* The three ways of all questions, in turns. What was kept is of the last call of the same question:
+   so in each round the version is a new one, and of what stays it is not. */
+static bool time_frame(run *r, scene *s)
+{
+    static uint64_t version = 2;
+    for (int question = 0; question < QUESTIONS; question++) {
+        double least[WAYS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, ms;
+        uint64_t count[WAYS] = {0, 0, 0};
+        for (uint32_t round = 0; round <= r->rounds; round++, version++) {
+            for (int way = 0; way < WAYS; way++) {
+                if (!ask(r, s, question, way, version, &ms, &count[way])) return false;
+                if (round && ms < least[way]) least[way] = ms;
+            }
+        }
+        for (int way = 0; way < WAYS; way++) {
+            s->ms[question][way] += least[way];
+            s->pairs[question][way] += count[way];
+        }
+    }
+    return true;
+}
+
+/* ---- the report ---- */
+
+/* Pairs of one object with itself, which are not asked of all objects, are in the mesh of all. */
+static bool time_scene(run *r, size_t kind)
+{
+    scene *const s = (scene *)calloc(1, sizeof *s);
+    bool good;
+    if (!s) return false;
+    s->name = kinds[kind].name;
+    good = make_room(s, 100000) && kinds[kind].make(r, s) && make_whole(r, s);
+    if (!good) tool_error("%s: out of memory", s->name);
+    for (uint32_t frame = 0; frame < r->frames && good; frame++) {
+        place(s, kind, frame);
+        good = time_frame(r, s);
+    }
+    for (int question = 0; question < QUESTIONS && good; question++) {
+        const double *const ms = s->ms[question];
+        const uint64_t *const pairs = s->pairs[question];
+        printf("%-8s %-6s %8u %8u %12.1f %10.3f %10.3f %10.3f %8.2f %8.2f\n", s->name,
+               question_names[question], s->count, r->workers, (double)pairs[OBJECTS] / r->frames,
+               ms[OBJECTS] / r->frames, ms[MERGED] / r->frames, ms[ALONE] / r->frames,
+               ms[MERGED] / ms[OBJECTS], ms[OBJECTS] / ms[ALONE]);
+        for (int way = 0; way < WAYS && r->csv_file; way++)
+            fprintf(r->csv_file, "%s,%s,%u,%u,%s,%.1f,%.4f\n", s->name, question_names[question],
+                    s->count, r->workers, way_names[way], (double)pairs[way] / r->frames,
+                    ms[way] / r->frames);
+        if (pairs[OBJECTS] != pairs[MERGED]) {
+            tool_error("%s, %s: objects have %llu pairs, the mesh of all of them %llu", s->name,
+                       question_names[question], (unsigned long long)pairs[OBJECTS],
+                       (unsigned long long)pairs[MERGED]);
+            r->differs = true;
+        }
+    }
+    free_scene(s);
+    free(s);
+    return good;
+}
+
+static bool run_scenes(run *r)
+{
+    bool good = true, known = !r->scene;
+    if (r->workers > 1 && !(r->pool = thread_pool_create(r->workers))) return false;
+    if (r->csv) {
+        r->csv_file = fopen(r->csv, "w");
+        if (!r->csv_file) {
+            tool_error("%s: cannot be written", r->csv);
+            return false;
+        }
+        fprintf(r->csv_file, "scene,question,objects,workers,way,pairs,ms\n");
+    }
+    printf("%-8s %-6s %8s %8s %12s %10s %10s %10s %8s %8s\n", "scene", "asked", "objects",
+           "workers", "pairs", "objects,ms", "merged,ms", "alone,ms", "gain", "/ alone");
+    for (size_t kind = 0; kind < sizeof kinds / sizeof *kinds && good; kind++) {
+        if (r->scene && strcmp(r->scene, kinds[kind].name) != 0) continue;
+        known = true;
+        good = time_scene(r, kind);
+    }
+    if (!known) tool_error("--scene: there is no scene '%s'; see sc-objects --help", r->scene);
+    if (r->csv_file && fclose(r->csv_file) != 0) good = false;
+    return good && known;
+}
+
+int main(int argc, char **argv)
+{
+    enum {
+        OPTION_SCENE = 256,
+        OPTION_SCALE,
+        OPTION_FRAMES,
+        OPTION_ROUNDS,
+        OPTION_WORKERS,
+        OPTION_CSV
+    };
+    static const struct option options[] = {{"scene", required_argument, NULL, OPTION_SCENE},
+                                            {"scale", required_argument, NULL, OPTION_SCALE},
+                                            {"frames", required_argument, NULL, OPTION_FRAMES},
+                                            {"rounds", required_argument, NULL, OPTION_ROUNDS},
+                                            {"workers", required_argument, NULL, OPTION_WORKERS},
+                                            {"csv", required_argument, NULL, OPTION_CSV},
+                                            {"help", no_argument, NULL, 'h'},
+                                            {NULL, 0, NULL, 0}};
+    run r;
+    bool good = true;
+    int option;
+    tool_set_name("sc-objects");
+    memset(&r, 0, sizeof r);
+    r.scale = 1;
+    r.frames = 8;
+    r.rounds = 5;
+    r.workers = 1;
+    while (good && (option = getopt_long(argc, argv, "h", options, NULL)) != -1) {
+        if (option == OPTION_SCENE)
+            r.scene = optarg;
+        else if (option == OPTION_SCALE)
+            good = tool_parse_real("--scale", optarg, &r.scale);
+        else if (option == OPTION_FRAMES)
+            good = tool_parse_number("--frames", optarg, 1, 1000, &r.frames);
+        else if (option == OPTION_ROUNDS)
+            good = tool_parse_number("--rounds", optarg, 1, 1000, &r.rounds);
+        else if (option == OPTION_WORKERS)
+            good = tool_parse_number("--workers", optarg, 1, SC_WORKERS_MAX, &r.workers);
+        else if (option == OPTION_CSV)
+            r.csv = optarg;
+        else if (option == 'h') {
+            fputs(usage, stdout);
+            return tool_finish(0);
+        } else
+            good = false;
+    }
+    if (good && !(r.scale >= 0.001 && r.scale <= 16)) {
+        tool_error("--scale must be from 0.001 to 16");
+        good = false;
+    }
+    if (good) good = run_scenes(&r);
+    thread_pool_free(r.pool);
+    return tool_finish(!good ? 2 : r.differs ? 1 : 0);
+}
