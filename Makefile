@@ -385,6 +385,11 @@ test-ipctk: $(lib)/$(shared_link) $(programs)
 	@tests/ipctk/ipctk.sh '$(bin)/sc-bench' '$(lib)/$(shared_link)' '$(BUILD)'
 endif
 
+# Programs that people already use, from PyPI, with the library inside.
+.PHONY: test-clients
+test-clients: $(lib)/$(shared_link) ## run programs that use the library inside (PyPI; what is there); a minute or two
+	@tools/clients/clients.sh '$(lib)/$(shared_link)' '$(BUILD)'
+
 # ------------------------------------------------------------------------------------------------
 # Other languages, and one engine, on the shared library.
 
