@@ -186,17 +186,20 @@ static void release_some(void *user, void *memory, uint64_t bytes)
 static void what_is_refused(void)
 {
     sc_near_masks *masks = NULL, *others = NULL;
+    sc_model *twin = NULL; /* of the same mesh and partition */
     sc_near_options o;
+    sc_mesh input;
     near_answer a;
-    scene s, other;
+    scene s;
     if (!open_scene(&s, soup_cloth(12, 12), "cloth")) return;
-    if (!open_scene(&other, soup_cloth(12, 12), "cloth")) return;
+    input = input_plain_mesh(&s.mesh);
+    if (!CHECK(sc_build(&input, &s.choices.options, &twin) == SC_OK)) return;
     CHECK(sc_near_masks_create(NULL, 2, NULL, &masks) == SC_ERROR_NULL && !masks);
     CHECK(sc_near_masks_create(s.model, 2, NULL, NULL) == SC_ERROR_NULL);
     CHECK(sc_near_masks_create(s.model, 0, NULL, &masks) == SC_ERROR_OPTION && !masks);
     CHECK(sc_near_masks_create(s.model, SC_RINGS_MAX + 1, NULL, &masks) == SC_ERROR_OPTION);
     sc_near_masks_free(NULL);
-    CHECK(sc_near_masks_create(other.model, 2, NULL, &others) == SC_OK);
+    CHECK(sc_near_masks_create(twin, 2, NULL, &others) == SC_OK);
     o = near_options_for(&near_ways[0], s.edge);
     o.masks = others;
     a = near_ask(&s.q, &o, 10, 10);
@@ -220,7 +223,7 @@ static void what_is_refused(void)
         break;
     }
     close_scene(&s);
-    close_scene(&other);
+    sc_model_free(twin);
 }
 
 SC_TEST_MAIN(SC_TEST(masks_are_rings), SC_TEST(many_workers), SC_TEST(what_is_refused))

@@ -204,6 +204,27 @@ static void touching_at_both_times(void)
     sc_model_free(p.model);
 }
 
+/* Two that are farther apart than a double can say: the vector has no direction, and the normal is
+   across both, from a to b. */
+static void distances_out_of_range(void)
+{
+    pair p;
+    if (!open_pair(&p)) return;
+    for (int i = 0; i < 4; ++i) {
+        const double up = i < 2 ? 0x1p1023 : -0x1p1023;
+        const double at[6][3] = {{0x1p1000, 0x1p1000, up}, {0x1p1002, 0x1p1000, up},  {0, 0, up},
+                                 {0x1p1001, 0, -up},       {0x1p1001, 0x1p1003, -up}, {0, 0, -up}};
+        sc_step_stencil s;
+        memcpy(p.ends[0], at, sizeof at);
+        memcpy(p.ends[1], at, sizeof at);
+        s = ask(&p, i % 2 ? SC_NEAR_VERTEX_FACE : SC_NEAR_EDGE_EDGE, 0.5);
+        CHECK(s.start.distance == HUGE_VAL && s.impact.distance == HUGE_VAL);
+        CHECK(!(s.flags & SC_STEP_NO_NORMAL) && fabs(s.normal[0]) < 1e-14 &&
+              fabs(s.normal[1]) < 1e-14 && s.normal[2] == (up > 0 ? -1 : 1));
+    }
+    sc_model_free(p.model);
+}
+
 static void wrong_arguments(void)
 {
     sc_step_stencil s;
@@ -237,4 +258,5 @@ static void wrong_arguments(void)
     sc_model_free(p.model);
 }
 
-SC_TEST_MAIN(SC_TEST(any_motion), SC_TEST(touching_at_both_times), SC_TEST(wrong_arguments))
+SC_TEST_MAIN(SC_TEST(any_motion), SC_TEST(touching_at_both_times), SC_TEST(distances_out_of_range),
+             SC_TEST(wrong_arguments))
