@@ -1,5 +1,6 @@
 /*
- * What filters mean, by brute force: for test_filters.c and test_step_filters.c.
+ * What filters mean, by brute force: for test_filters.c, test_step_filters.c and
+ * test_near_filters.c.
  *
  * SPDX-License-Identifier: MIT
  */

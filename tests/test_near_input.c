@@ -38,6 +38,10 @@ typedef struct near_call {
     sc_workspace *workspace, *plain, *step, *other, *for_boxes;
     sc_pose pose;
     sc_near_options options;
+    sc_filter filter; /* right, and asked for only where a test says so */
+    sc_pair ignore[2];
+    double resting[27]; /* a rest pose, likewise */
+    sc_pose rest;
     sc_near_result result;
     sc_stats stats;
     sc_pair faces[ROOM], edges[ROOM];
@@ -51,6 +55,10 @@ static void make_right(near_call *c)
     memset(&c->options, 0, sizeof(c->options));
     c->options.struct_size = sizeof(c->options);
     c->options.distance = 0.4;
+    memset(&c->filter, 0, sizeof(c->filter));
+    c->filter.struct_size = sizeof(c->filter);
+    memcpy(c->resting, c->s.positions, sizeof(c->resting));
+    c->rest = input_plain_pose(c->resting, c->s.vertex_count);
     memset(&c->stats, 0, sizeof(c->stats));
     c->stats.struct_size = sizeof(c->stats);
     memset(&c->result, 0, sizeof(c->result));
@@ -252,6 +260,104 @@ static void models_workspaces_and_poses(void)
     end(&c);
 }
 
+/* The filter of vertices and faces, that of edges, and the rest pose. */
+static void filters_and_rest(void)
+{
+    near_call c;
+    char text[200];
+#define FACES(change) (c.options.vertex_face_filter = &c.filter, change)
+#define EDGES(change) (c.options.edge_edge_filter = &c.filter, change)
+#define REST(change) (c.options.rest = &c.rest, c.options.rest_distance = 0.1, change)
+#define IGNORE(x, y)                                                                               \
+  (c.ignore[0].a = x, c.ignore[0].b = y, c.filter.ignore = c.ignore, c.filter.ignore_count = 1)
+    if (!begin(&c)) {
+        end(&c);
+        return;
+    }
+    snprintf(text, sizeof(text), "options.vertex_face_filter.struct_size is 4, but at least %u",
+             (unsigned)sizeof(void *));
+    REFUSED(FACES(c.filter.struct_size = 4), SC_ERROR_STRUCT_SIZE, text);
+    REFUSED(EDGES(c.filter.struct_size = 4), SC_ERROR_STRUCT_SIZE,
+            "options.edge_edge_filter.struct_size is 4, but at least");
+    REFUSED(FACES(c.filter.ignore_rings = SC_RINGS_MAX + 1), SC_ERROR_OPTION,
+            "options.vertex_face_filter.ignore_rings is 33, but at most 32");
+    REFUSED(EDGES(c.filter.ignore_rings = SC_RINGS_MAX + 1), SC_ERROR_OPTION,
+            "options.edge_edge_filter.ignore_rings is 33, but at most 32");
+    REFUSED(FACES(c.filter.ignore_count = 1), SC_ERROR_NULL,
+            "options.vertex_face_filter.ignore is NULL");
+    REFUSED(EDGES(c.filter.ignore_count = 1), SC_ERROR_NULL,
+            "options.edge_edge_filter.ignore is NULL");
+    /* nine vertices, eight triangles */
+    REFUSED(FACES(IGNORE(9, 0)), SC_ERROR_PAIRS,
+            "options.vertex_face_filter.ignore[0] is no pair of this model");
+    REFUSED(FACES(IGNORE(8, 8)), SC_ERROR_PAIRS,
+            "options.vertex_face_filter.ignore[0] is no pair of this model");
+    REFUSED(EDGES(IGNORE(5, 24)), SC_ERROR_PAIRS,
+            "options.edge_edge_filter.ignore[0] is no pair of this model");
+    REFUSED(EDGES(IGNORE(5, 5)), SC_ERROR_PAIRS,
+            "options.edge_edge_filter.ignore[0] is no pair of this model");
+    c.ignore[1].a = 1;
+    c.ignore[1].b = 2;
+    REFUSED(FACES((IGNORE(1, 3), c.filter.ignore_count = 2)), SC_ERROR_PAIRS,
+            "options.vertex_face_filter.ignore[1] comes before the one before it");
+    REFUSED(EDGES((IGNORE(1, 3), c.filter.ignore_count = 2)), SC_ERROR_PAIRS,
+            "options.edge_edge_filter.ignore[1] comes before the one before it");
+    REFUSED(c.options.rest_distance = 0.5, SC_ERROR_NULL, "options.rest is NULL");
+    REFUSED(REST(c.options.rest_distance = -1), SC_ERROR_OPTION,
+            "options.rest_distance is -1, but finite and at least 0");
+    REFUSED(REST(c.options.rest_distance = HUGE_VAL), SC_ERROR_OPTION,
+            "options.rest_distance is inf");
+    REFUSED(REST(c.rest.struct_size = 8), SC_ERROR_STRUCT_SIZE, "options.rest.struct_size is 8");
+    REFUSED(REST(c.rest.vertex_count = 8), SC_ERROR_VERTEX_COUNT,
+            "options.rest.vertex_count is 8, but the model has 9");
+    REFUSED(REST(c.rest.positions = NULL), SC_ERROR_NULL, "options.rest.positions is NULL");
+    REFUSED(REST(c.rest.position_type = 2), SC_ERROR_OPTION,
+            "options.rest.position_type is 2, but at most 1");
+    REFUSED(REST(c.rest.position_stride = 23), SC_ERROR_STRIDE,
+            "options.rest.position_stride is 23, but 0 or at least 24");
+    for (int i = 0; i < 27; ++i) {
+        snprintf(text, sizeof(text), "vertex %d is NaN or infinite in the rest pose", i / 3);
+        REFUSED(REST(c.resting[i] = i % 2 ? (double)NAN : HUGE_VAL), SC_ERROR_NOT_FINITE, text);
+    }
+    /* the last of each that is right, and an empty filter */
+    (void)FACES(IGNORE(8, 7));
+    CHECK(ask(&c) == SC_OK && c.log.count == 0);
+    make_right(&c);
+    (void)EDGES(IGNORE(22, 23));
+    CHECK(ask(&c) == SC_OK && c.log.count == 0);
+    make_right(&c);
+    (void)EDGES(c.options.vertex_face_filter = &c.filter);
+    CHECK(ask(&c) == SC_OK && c.log.count == 0 && c.result.vertex_face_count == c.count[0] &&
+          c.result.edge_edge_count == c.count[1]);
+    make_right(&c);
+    (void)REST(c.options.rest_distance = 0);
+    CHECK(ask(&c) == SC_OK && c.log.count == 0);
+    /* what leaves out all */
+    make_right(&c);
+    (void)REST(c.options.rest_distance = 9);
+    CHECK(ask(&c) == SC_OK && c.result.vertex_face_count == 0 && c.result.edge_edge_count == 0 &&
+          c.result.verdict == SC_VERDICT_CLEAN);
+    end(&c);
+}
+
+/* Masks of another model, and a bound for each vertex where one pair is enough. */
+static void masks_and_bounds(void)
+{
+    near_call c;
+    sc_near_masks *masks = NULL;
+    double bounds[9] = {7, 7, 7, 7, 7, 7, 7, 7, 7};
+    if (begin(&c)) {
+        CHECK(sc_near_masks_create(c.other_model, 2, NULL, &masks) == SC_OK);
+        REFUSED(c.options.masks = masks, SC_ERROR_OPTION, "options.masks are of another model");
+        sc_near_masks_free(masks);
+        c.options.output = SC_OUTPUT_ANY;
+        REFUSED(c.result.vertex_bounds = bounds, SC_ERROR_OPTION,
+                "result.vertex_bounds are not known from any pair");
+        for (int i = 0; i < 9; ++i) CHECK(bounds[i] == 7);
+    }
+    end(&c);
+}
+
 /* Without options: those that touch, of both kinds. Without arrays: numbers and an error. Workspaces
    for this serve queries and steps as well. */
 static void what_may_be_left_out(void)
@@ -283,4 +389,4 @@ static void what_may_be_left_out(void)
 }
 
 SC_TEST_MAIN(SC_TEST(options_and_results), SC_TEST(models_workspaces_and_poses),
-             SC_TEST(what_may_be_left_out))
+             SC_TEST(filters_and_rest), SC_TEST(masks_and_bounds), SC_TEST(what_may_be_left_out))
