@@ -194,6 +194,56 @@ static void near_by_many_workers(void)
     CHECK_MSG(jobs > 10, "%" PRIu64 " jobs", jobs);
 }
 
+/* Models for boxes have room for some of what is made of leaf clusters: two may have one place, and
+   the next search finds those of the last one. */
+static void more_leaf_clusters_than_places(void)
+{
+    uint64_t pairs = 0;
+    for (uint32_t i = 0; i < test_iterations_at_least(12, 4); ++i) {
+        near_fixture s;
+        if (start(&s, i % 4 == 3 ? 5 : (int)(i % 4), 0.3)) {
+            sc_build_options build;
+            sc_mesh mesh = input_plain_mesh(&s.f.mesh);
+            sc_model *model = NULL;
+            near_question few = s.serial, shared;
+            host h;
+            memset(&build, 0, sizeof(build));
+            build.struct_size = sizeof(build);
+            build.content = SC_MODEL_BOXES;
+            if (!CHECK(sc_build(&mesh, &build, &model) == SC_OK)) return;
+            host_start(&h, (int)(i % HOST_COUNT), THREADS_MAX);
+            few.model = model;
+            few.workspace = near_workspace(model, 1);
+            shared = few;
+            shared.workspace = near_workspace(model, THREADS_MAX);
+            for (int round = 0; round < 3; ++round) { /* places are taken */
+                sc_near_options options =
+                    near_options_for(&near_ways[0], s.edge * (round == 2 ? 0.1 : 1.2));
+                near_answer all = near_ask_all(&s.serial, &options), other;
+                other = near_ask(&few, &options, all.count[0], all.count[1]);
+                CHECK_MSG(near_answers_are_same(&all, &other), "%s, round %d, state %" PRIu64,
+                          s.serial.name, round, s.serial.state);
+                near_answer_free(&other);
+                options.tasks = &h.tasks;
+                other = near_ask(&shared, &options, all.count[0], all.count[1]);
+                CHECK_MSG(near_answers_are_same(&all, &other),
+                          "%s, round %d, host %d, state %" PRIu64, s.serial.name, round, h.way,
+                          s.serial.state);
+                near_answer_free(&other);
+                pairs += all.count[0] + all.count[1];
+                near_answer_free(&all);
+                soup_fold(s.f.posed, s.f.mesh.vertex_count);
+            }
+            host_stop(&h);
+            sc_workspace_free(few.workspace);
+            sc_workspace_free(shared.workspace);
+            sc_model_free(model);
+        }
+        stop(&s);
+    }
+    CHECK_MSG(pairs > 10000, "%" PRIu64 " pairs", pairs);
+}
+
 /* A flag and a budget: what was found is right, sorted, and incomplete. */
 static void near_stopped_early(void)
 {
@@ -239,4 +289,4 @@ static void near_stopped_early(void)
 }
 
 SC_TEST_MAIN(SC_TEST(culling_loses_nothing), SC_TEST(near_by_many_workers),
-             SC_TEST(near_stopped_early))
+             SC_TEST(more_leaf_clusters_than_places), SC_TEST(near_stopped_early))
