@@ -104,7 +104,7 @@ enum {
     SC_ERROR_UNSUPPORTED = 16,  /* not part of this build of the library */
     SC_ERROR_ALIGNMENT = 17,    /* memory that must be aligned to SC_ALIGNMENT is not */
     SC_ERROR_LEVEL = 18,        /* the model has no such level */
-    SC_ERROR_NOT_SAVED = 19,    /* the data are not what sc_model_save or sc_record_write writes */
+    SC_ERROR_NOT_SAVED = 19,    /* the data are no saved model, or no record */
     SC_ERROR_TRUNCATED = 20,    /* saved data that end too early */
     SC_ERROR_BYTE_ORDER = 21,   /* saved data of a machine with the other byte order */
     SC_ERROR_TOO_NEW = 22,      /* saved data in a later format than this library reads */
@@ -1513,11 +1513,11 @@ SC_API sc_status sc_query_objects_step(const sc_objects *objects, const sc_step_
 /* ------------------------------------------------------------------------------------------------
  * Records
  *
- * One query in one block of bytes: the model, the pose and the options, as a bug report, or to look
- * into later with `sc-query --replay FILE`. The bytes are for machines of one byte order, as saved
- * models. Of a filter everything is recorded but the caller's function; and a flag to cancel is
- * none. What was left out is written down in the record. Tasks, which change no answer, are not
- * recorded.
+ * One question in one block of bytes: the model, the pose or both poses, and the options of a query,
+ * a step or a search for what is near; as a bug report, or to look into later with `sc-query
+ * --replay FILE`. The bytes are for machines of one byte order, as saved models. Of a filter
+ * everything is recorded but the caller's function; and a flag to cancel is none. What was left out
+ * is written down in the record. Tasks, which change no answer, are not recorded.
  */
 
 /* Writes the number of bytes that sc_record_write writes. Errors are as for sc_query. */
@@ -1536,32 +1536,79 @@ SC_API sc_status sc_record_write(const sc_model *model, const sc_pose *pose,
                                  const sc_query_options *options, void *memory, uint64_t size,
                                  uint64_t *written);
 
-/* What the recorded query had and the record has not; a sum. */
+/*
+ * The same of the step that sc_query_step would run: with both poses, filters of both kinds and the
+ * rest pose. Errors are those of sc_query_step.
+ */
+SC_API sc_status sc_record_step_size(const sc_model *model, const sc_pose *start,
+                                     const sc_pose *end, const sc_step_options *options,
+                                     uint64_t *size);
+SC_API sc_status sc_record_step_write(const sc_model *model, const sc_pose *start,
+                                      const sc_pose *end, const sc_step_options *options,
+                                      void *memory, uint64_t size, uint64_t *written);
+
+/*
+ * The same of the search that sc_query_near would run. Of masks the number of rings is recorded:
+ * sc_near_masks_create makes the same ones from it and the model, and so nothing is left out. Bounds
+ * of vertices are asked for in the result, which is not recorded. Errors are those of
+ * sc_query_near.
+ */
+SC_API sc_status sc_record_near_size(const sc_model *model, const sc_pose *pose,
+                                     const sc_near_options *options, uint64_t *size);
+SC_API sc_status sc_record_near_write(const sc_model *model, const sc_pose *pose,
+                                      const sc_near_options *options, void *memory, uint64_t size,
+                                      uint64_t *written);
+
+/* What the recorded question had and the record has not; a sum. */
 enum {
-    SC_LEFT_OUT_ACCEPT = 1, /* sc_filter.accept */
-    SC_LEFT_OUT_CANCEL = 2  /* sc_query_options.cancel */
+    SC_LEFT_OUT_ACCEPT = 1, /* sc_filter.accept; of two filters that of either or both */
+    SC_LEFT_OUT_CANCEL = 2  /* the options' cancel */
 };
 
-/* What a record holds. Arrays are in the record. */
+/* What a record is of. */
+enum {
+    SC_RECORD_QUERY = 0, /* sc_query */
+    SC_RECORD_STEP = 1,  /* sc_query_step */
+    SC_RECORD_NEAR = 2   /* sc_query_near */
+};
+
+/*
+ * What a record holds. Arrays are in the record. Of the structures to fill, those may be NULL that
+ * only other kinds of records have, and those for what the record has not: so kinds are read that
+ * the caller knows what to do with, and others refused. Of a structure that is given, but of which
+ * the record has nothing, all members but struct_size become 0.
+ */
 typedef struct sc_record {
     uint32_t struct_size;
-    uint32_t left_out;         /* out: SC_LEFT_OUT_..., 0 if the record is the whole query */
-    sc_pose *pose;             /* in: what to fill, its struct_size set */
-    sc_query_options *options; /* in: the same. options->filter becomes filter, or NULL */
+    uint32_t left_out;         /* out: SC_LEFT_OUT_..., 0 if the record is the whole question */
+    sc_pose *pose;             /* in: what to fill, its struct_size set; of a step its start. Never
+                                  NULL */
+    sc_query_options *options; /* in: the same, of a query. options->filter becomes filter, or
+                                  NULL */
     const void *model;   /* out: for sc_model_load; aligned to SC_ALIGNMENT if the record is */
     uint64_t model_size; /* out */
-    sc_filter *filter;   /* in: the same; NULL, if records with a filter are to be refused */
+    sc_filter *filter;   /* in: the filter of a query, or of vertices and faces; NULL, if records
+                            with one are to be refused */
+    uint32_t kind;       /* out: SC_RECORD_... */
+    uint32_t mask_rings; /* out: of a search with masks, for sc_near_masks_create; near_options->
+                            masks is NULL, to be set to what that makes. Else 0 */
+    sc_step_options *step_options; /* in: those of a step. Filters and rest become those below, or
+                                      NULL, where there is none */
+    sc_near_options *near_options; /* in: those of a search. The same */
+    sc_pose *end;                  /* in: the end of a step */
+    sc_pose *rest;                 /* in: the rest pose of a step or a search */
+    sc_filter *edge_edge_filter;   /* in: the filter of two edges */
 } sc_record;
 
 /*
  * Finds the parts of a record: data, of which there are size bytes; those behind it are ignored.
  * Data that are no record are refused as by sc_model_load. On an error nothing is filled. The model
- * is checked by sc_model_load, and the rest by sc_query; a filter is good for queries on that model
- * only.
+ * is checked by sc_model_load, and the rest by sc_query, sc_query_step or sc_query_near; a filter is
+ * good for questions on that model only.
  *
- * Of records with a filter: SC_ERROR_NULL, if record->filter is NULL; SC_ERROR_ALIGNMENT, if data
- * are not aligned as uint32_t. SC_ERROR_STRUCT_SIZE: the record has what a structure of the
- * caller's is too small for.
+ * SC_ERROR_NULL: there is no structure for something that the record has. SC_ERROR_STRUCT_SIZE: the
+ * record has what a structure of the caller's is too small for. SC_ERROR_ALIGNMENT, of records with
+ * a filter: data are not aligned as uint32_t.
  */
 SC_API sc_status sc_record_read(const void *data, uint64_t size, sc_record *record);
 

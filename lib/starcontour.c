@@ -31,6 +31,7 @@
 #include "run/objects.h"
 #include "run/plan.h"
 #include "run/question.h"
+#include "run/recorded.h"
 #include "run/rest.h"
 #include "run/step_question.h"
 #include "step/step_filter.h"
@@ -1011,39 +1012,141 @@ sc_status sc_record_write(const sc_model *model, const sc_pose *pose,
     return SC_OK;
 }
 
+/* A step or a search, checked. */
+static sc_status write_features(const sc_model *model, const sc_recorded *recorded, void *memory,
+                                uint64_t size, uint64_t *written)
+{
+    const uint64_t bytes = sc_recording_features_bytes(model, recorded);
+    if (written) *written = bytes;
+    if (size < bytes) return SC_ERROR_SHORT_BUFFER;
+    if (!memory) return SC_ERROR_NULL;
+    sc_recording_features_write(model, recorded, memory);
+    return SC_OK;
+}
+
+sc_status sc_record_step_size(const sc_model *model, const sc_pose *start, const sc_pose *end,
+                              const sc_step_options *options, uint64_t *size)
+{
+    sc_recorded recorded;
+    sc_status status;
+    if (!size) return SC_ERROR_NULL;
+    status = sc_recorded_step(model, start, end, options, &recorded);
+    if (!status) *size = sc_recording_features_bytes(model, &recorded);
+    return status;
+}
+
+sc_status sc_record_step_write(const sc_model *model, const sc_pose *start, const sc_pose *end,
+                               const sc_step_options *options, void *memory, uint64_t size,
+                               uint64_t *written)
+{
+    sc_recorded recorded;
+    sc_status status;
+    if (written) *written = 0;
+    status = sc_recorded_step(model, start, end, options, &recorded);
+    return status ? status : write_features(model, &recorded, memory, size, written);
+}
+
+sc_status sc_record_near_size(const sc_model *model, const sc_pose *pose,
+                              const sc_near_options *options, uint64_t *size)
+{
+    sc_recorded recorded;
+    sc_status status;
+    if (!size) return SC_ERROR_NULL;
+    status = sc_recorded_near(model, pose, options, &recorded);
+    if (!status) *size = sc_recording_features_bytes(model, &recorded);
+    return status;
+}
+
+sc_status sc_record_near_write(const sc_model *model, const sc_pose *pose,
+                               const sc_near_options *options, void *memory, uint64_t size,
+                               uint64_t *written)
+{
+    sc_recorded recorded;
+    sc_status status;
+    if (written) *written = 0;
+    status = sc_recorded_near(model, pose, options, &recorded);
+    return status ? status : write_features(model, &recorded, memory, size, written);
+}
+
+/* A structure of the caller's, and what of the record it is for. */
+typedef struct record_part {
+    void *to; /* or NULL */
+    const void *from;
+    uint32_t size, least; /* as sc_arguments_check takes them */
+    int is_there;         /* the record has it */
+} record_part;
+
+enum { RECORD_PARTS = 8 };
+
+static void list_record_parts(const sc_record *r, const sc_recording *found,
+                              record_part parts[RECORD_PARTS])
+{
+    const uint32_t pose = SC_ARGUMENTS_UP_TO(sc_pose, positions), all = SC_ARGUMENTS_DEFAULTS;
+    const sc_step_options *step = &found->step_options;
+    const sc_near_options *search = &found->near_options;
+    const sc_pose *rest = &found->pose[SC_RECORDED_REST];
+    const record_part list[RECORD_PARTS] = {
+        {r->pose, &found->pose[SC_RECORDED_START], sizeof(sc_pose), pose, 1},
+        {r->end, &found->pose[SC_RECORDED_END], sizeof(sc_pose), pose,
+         found->kind == SC_RECORD_STEP},
+        {r->rest, rest, sizeof(sc_pose), pose, rest->positions != NULL},
+        {r->options, &found->options, sizeof(sc_query_options), all,
+         found->kind == SC_RECORD_QUERY},
+        {r->step_options, step, sizeof(sc_step_options), all, found->kind == SC_RECORD_STEP},
+        {r->near_options, search, sizeof(sc_near_options), all, found->kind == SC_RECORD_NEAR},
+        {r->filter, &found->filter[0], sizeof(sc_filter), all,
+         found->options.filter || step->vertex_face_filter || search->vertex_face_filter},
+        {r->edge_edge_filter, &found->filter[1], sizeof(sc_filter), all,
+         step->edge_edge_filter || search->edge_edge_filter},
+    };
+    memcpy(parts, list, sizeof list);
+}
+
+/* Filters and rest pose of options become the caller's. */
+static void place_record_filters(const sc_record *r, const sc_filter **vertex_face,
+                                 const sc_filter **edge_edge, const sc_pose **rest)
+{
+    if (*vertex_face) *vertex_face = r->filter;
+    if (*edge_edge) *edge_edge = r->edge_edge_filter;
+    if (*rest) *rest = r->rest;
+}
+
 sc_status sc_record_read(const void *data, uint64_t size, sc_record *record)
 {
+    record_part parts[RECORD_PARTS];
     sc_recording found;
+    sc_step_options *step = &found.step_options;
+    sc_near_options *search = &found.near_options;
     sc_record r;
     sc_status status;
+    int k;
     if (!data || !record) return SC_ERROR_NULL;
     status = sc_arguments_read(NULL, "record", &r, sizeof r, record,
                                SC_ARGUMENTS_UP_TO(sc_record, model_size));
     if (status) return status;
-    if (!r.pose || !r.options) return SC_ERROR_NULL;
-    status = sc_arguments_check(NULL, "record.pose", r.pose, sizeof found.pose,
-                                SC_ARGUMENTS_UP_TO(sc_pose, positions));
+    memset(&found, 0, sizeof found);
+    list_record_parts(&r, &found, parts);
+    for (k = 0; k < RECORD_PARTS && !status; k++)
+        if (parts[k].to)
+            status = sc_arguments_check(NULL, "record", parts[k].to, parts[k].size, parts[k].least);
+    if (!status) status = sc_recording_read(data, size, &found);
     if (status) return status;
-    status = sc_arguments_check(NULL, "record.options", r.options, sizeof found.options,
-                                SC_ARGUMENTS_DEFAULTS);
-    if (status) return status;
-    if (r.filter)
-        status = sc_arguments_check(NULL, "record.filter", r.filter, sizeof found.filter,
-                                    SC_ARGUMENTS_DEFAULTS);
-    if (status) return status;
-    status = sc_recording_read(data, size, &found);
-    if (status) return status;
-    if (found.options.filter && !r.filter) return SC_ERROR_NULL;
-    if (!sc_structs_reach(r.options, &found.options, sizeof found.options) ||
-        (r.filter && !sc_structs_reach(r.filter, &found.filter, sizeof found.filter)))
-        return SC_ERROR_STRUCT_SIZE;
+    list_record_parts(&r, &found, parts);
+    for (k = 0; k < RECORD_PARTS; k++)
+        if (parts[k].is_there && !parts[k].to) return SC_ERROR_NULL;
+    for (k = 0; k < RECORD_PARTS; k++)
+        if (parts[k].to && !sc_structs_reach(parts[k].to, parts[k].from, parts[k].size))
+            return SC_ERROR_STRUCT_SIZE;
     if (found.options.filter) found.options.filter = r.filter;
+    place_record_filters(&r, &step->vertex_face_filter, &step->edge_edge_filter, &step->rest);
+    place_record_filters(&r, &search->vertex_face_filter, &search->edge_edge_filter, &search->rest);
+    for (k = 0; k < RECORD_PARTS; k++)
+        if (parts[k].to) sc_structs_write(parts[k].to, parts[k].from, parts[k].size);
     r.left_out = found.left_out;
     r.model = found.model;
     r.model_size = found.model_size;
-    sc_structs_write(r.pose, &found.pose, sizeof found.pose);
-    sc_structs_write(r.options, &found.options, sizeof found.options);
-    if (r.filter) sc_structs_write(r.filter, &found.filter, sizeof found.filter);
+    r.kind = found.kind;
+    r.mask_rings = found.mask_rings;
     sc_structs_write(record, &r, sizeof r);
     return SC_OK;
 }
