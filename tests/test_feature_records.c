@@ -473,6 +473,11 @@ static void check_forged_counts(small_record *r, int is_full)
         unsigned char *count = r->data + sizeof(sc_saved_header) + at;
         uint64_t kept, more;
         memcpy(&kept, count, sizeof(kept));
+        CHECK(forge(r, at, 8, kept + (UINT64_MAX / 8 + 1)) == SC_ERROR_INCONSISTENT);
+        more = kept + r->model_size / 8 + 1; /* room for more than the model has */
+        memcpy(count, &more, sizeof(more));
+        CHECK(forge(r, MODEL_BYTES, 8, r->model_size - 8 * (more - kept)) == SC_ERROR_INCONSISTENT);
+        memcpy(count, &kept, sizeof(kept));
         CHECK(forge(r, at + FILTER_PARTS, 4, HAS_ALL + 1) == SC_ERROR_INCONSISTENT);
         CHECK(forge(r, at + FILTER_PARTS, 4, HAS_ALL - 1) == SC_ERROR_INCONSISTENT);
         if (is_full) { /* what one array loses another gains */
