@@ -1,7 +1,8 @@
 /*
- * Fuzz target: sc_model_load and sc_record_read. Bytes as they are; and saves of small models in
- * which some bytes are replaced and the checksum is made right again, so that the fuzzer gets
- * behind it. What is loaded is asked everything there is to ask; it may answer anything.
+ * Fuzz target: sc_model_load and sc_record_read. Bytes as they are; and saves of small models, and
+ * records of all kinds, in which some bytes are replaced and the checksum is made right again, so
+ * that the fuzzer gets behind it. What is loaded is asked everything there is to ask, and what the
+ * record asks; it may answer anything.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -14,6 +15,7 @@
 
 #include "base/saved.h"
 #include "harness.h"
+#include "record_ask.h"
 
 enum { MAXIMUM_EDITS = 24 };
 
@@ -27,16 +29,51 @@ static unsigned char *place(const void *from, size_t size, size_t off, void **me
     return data;
 }
 
-/* All methods and kinds, on a pose of small integers. */
-static void ask_all(sc_model *model, const sc_pose *pose, const sc_query_options *options)
+/* What a record asks, whatever comes of it. */
+static void ask_record(const sc_model *model, sc_workspace *workspace, const sc_record *record)
 {
+    sc_pair pairs[2][4];
+    sc_result result;
+    sc_step_result collisions;
+    sc_near_result found;
+    sc_near_masks *masks = NULL;
+    memset(&result, 0, sizeof(result));
+    memset(&collisions, 0, sizeof(collisions));
+    memset(&found, 0, sizeof(found));
+    result.struct_size = sizeof(result);
+    collisions.struct_size = sizeof(collisions);
+    found.struct_size = sizeof(found);
+    result.pairs = collisions.vertex_faces = found.vertex_faces = pairs[0];
+    collisions.edge_edges = found.edge_edges = pairs[1];
+    result.capacity = collisions.vertex_face_capacity = collisions.edge_edge_capacity =
+        found.vertex_face_capacity = found.edge_edge_capacity = 4;
+    if (record->kind == SC_RECORD_QUERY) {
+        sc_query(model, workspace, record->pose, record->options, &result);
+    } else if (record->kind == SC_RECORD_STEP) {
+        sc_query_step(model, workspace, record->pose, record->end, record->step_options,
+                      &collisions);
+    } else {
+        if (record->mask_rings)
+            FUZZ_CHECK(sc_near_masks_create(model, record->mask_rings, NULL, &masks) == SC_OK,
+                       "%u rings", (unsigned)record->mask_rings);
+        record->near_options->masks = masks;
+        sc_query_near(model, workspace, record->pose, record->near_options, &found);
+        sc_near_masks_free(masks);
+    }
+}
+
+/* All methods and kinds, on a pose of small integers; and what a record asks, if there is one. */
+static void ask_all(sc_model *model, const sc_record *record)
+{
+    const sc_workspace_options how = {.struct_size = sizeof(how),
+                                      .flags = record ? SC_WORKSPACE_NEAR : 0};
     sc_workspace *workspace = NULL;
     sc_model_info info;
     double *positions;
     memset(&info, 0, sizeof(info));
     info.struct_size = sizeof(info);
     FUZZ_CHECK(sc_model_get_info(model, &info) == SC_OK, "a loaded model");
-    FUZZ_CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK, "a loaded model");
+    FUZZ_CHECK(sc_workspace_create_for(model, &how, &workspace) == SC_OK, "a loaded model");
     positions = (double *)test_allocate(3 * (size_t)info.vertex_count * sizeof(double));
     for (size_t i = 0; i < 3 * (size_t)info.vertex_count; ++i) positions[i] = (double)(i * i % 7);
     for (uint32_t i = 0; i < 16; ++i) {
@@ -58,7 +95,7 @@ static void ask_all(sc_model *model, const sc_pose *pose, const sc_query_options
         result.capacity = ROOM;
         status = sc_query(model, workspace, &p, &o, &result);
         FUZZ_CHECK(status == SC_OK || status == SC_ERROR_SHORT_BUFFER, "status %d", (int)status);
-        if (i == 0 && pose) sc_query(model, workspace, pose, options, &result);
+        if (i == 0 && record) ask_record(model, workspace, record);
     }
     free(positions);
     for (uint32_t level = 0; level < info.level_count; ++level) {
@@ -72,8 +109,7 @@ static void ask_all(sc_model *model, const sc_pose *pose, const sc_query_options
     sc_workspace_free(workspace);
 }
 
-static int load(const void *data, size_t size, uint32_t mode, const sc_pose *pose,
-                const sc_query_options *options)
+static int load(const void *data, size_t size, uint32_t mode, const sc_record *record)
 {
     sc_load_options load_options;
     sc_model *model = NULL;
@@ -83,7 +119,7 @@ static int load(const void *data, size_t size, uint32_t mode, const sc_pose *pos
     load_options.mode = mode;
     status = sc_model_load(data, size, &load_options, &model);
     FUZZ_CHECK((status == SC_OK) == (model != NULL), "status %d", (int)status);
-    if (model) ask_all(model, pose, options);
+    if (model) ask_all(model, record);
     sc_model_free(model);
     return status == SC_OK;
 }
@@ -93,25 +129,12 @@ static void read_bytes(const void *data, size_t size, uint32_t how)
 {
     void *memory;
     unsigned char *copy = place(data, size, how & 1 ? how % 64 : 0, &memory);
-    sc_pose pose;
-    sc_query_options options;
-    sc_filter filter;
-    sc_record record;
-    load(copy, size, SC_LOAD_COPY, NULL, NULL);
-    if (!(how & 1)) load(copy, size, SC_LOAD_IN_PLACE, NULL, NULL);
-    memset(&pose, 0, sizeof(pose));
-    memset(&options, 0, sizeof(options));
-    memset(&filter, 0, sizeof(filter));
-    memset(&record, 0, sizeof(record));
-    pose.struct_size = sizeof(pose);
-    options.struct_size = sizeof(options);
-    record.struct_size = sizeof(record);
-    record.pose = &pose;
-    record.options = &options;
-    filter.struct_size = sizeof(filter);
-    record.filter = &filter;
-    if (sc_record_read(copy, size, &record) == SC_OK)
-        load(record.model, (size_t)record.model_size, SC_LOAD_COPY, &pose, &options);
+    record_opened o;
+    load(copy, size, SC_LOAD_COPY, NULL);
+    if (!(how & 1)) load(copy, size, SC_LOAD_IN_PLACE, NULL);
+    record_make_room(&o);
+    if (sc_record_read(copy, size, &o.record) == SC_OK)
+        load(o.record.model, (size_t)o.record.model_size, SC_LOAD_COPY, &o.record);
     free(memory);
 }
 
@@ -149,19 +172,16 @@ static void edit(fuzz_bytes *bytes, unsigned char *data, size_t size, size_t fro
     seal(data, size);
 }
 
-/* A question with some filter, or none. */
-static sc_query_options filtered(const soup *s, uint32_t how, sc_filter *filter, sc_group *groups,
-                                 sc_pair ignore[2])
+/* Some filter, or none, in options of every kind; of two filters both are the same. */
+static void set_filter(const soup *s, uint32_t how, record_opened *o, sc_group *groups,
+                       sc_pair ignore[2])
 {
-    sc_query_options options;
-    memset(&options, 0, sizeof(options));
-    options.struct_size = sizeof(options);
-    memset(filter, 0, sizeof(*filter));
-    filter->struct_size = sizeof(*filter);
+    sc_filter *filter = &o->filter[0];
     memset(groups, 0xff, (s->vertex_count + (size_t)s->triangle_count) * sizeof(*groups));
     memset(ignore, 0, 2 * sizeof(*ignore));
     ignore[0].b = ignore[1].b = 1;
-    if (how & 1) options.filter = filter;
+    memset(filter, 0, sizeof(*filter));
+    filter->struct_size = sizeof(*filter);
     if (how & 2) filter->vertex_groups = groups;
     if (how & 4) filter->triangle_groups = groups + s->vertex_count;
     if ((how & 8) && s->triangle_count > 1) {
@@ -169,53 +189,81 @@ static sc_query_options filtered(const soup *s, uint32_t how, sc_filter *filter,
         filter->ignore_count = 2;
     }
     filter->ignore_rings = how >> 4 & 3;
-    return options;
+    memset(&o->query, 0, sizeof(o->query));
+    memset(&o->step, 0, sizeof(o->step));
+    memset(&o->near_options, 0, sizeof(o->near_options));
+    o->query.struct_size = sizeof(o->query);
+    o->step.struct_size = sizeof(o->step);
+    o->near_options.struct_size = sizeof(o->near_options);
+    if (!(how & 1)) return;
+    o->query.filter = o->step.vertex_face_filter = o->near_options.vertex_face_filter = filter;
+    o->step.edge_edge_filter = o->near_options.edge_edge_filter = filter;
+    o->step.rest = o->near_options.rest = &o->pose[REST];
+}
+
+/* A record of a kind of the pose, at which a step stays. To be freed. */
+static unsigned char *write_record(const sc_model *model, const record_opened *o, uint32_t kind,
+                                   uint64_t *size)
+{
+    const record_question q = {kind,          model,    &o->pose[START],
+                               &o->pose[END], &o->step, &o->near_options};
+    const int is_query = kind == SC_RECORD_QUERY;
+    unsigned char *data;
+    FUZZ_CHECK((is_query ? sc_record_size(model, q.start, &o->query, size)
+                         : record_size_of(&q, size)) == SC_OK,
+               "a good question");
+    data = (unsigned char *)test_allocate((size_t)*size);
+    FUZZ_CHECK((is_query ? sc_record_write(model, q.start, &o->query, data, *size, NULL)
+                         : record_write_to(&q, data, *size, NULL)) == SC_OK,
+               "a good question");
+    return data;
 }
 
 /* A save or a record of a mesh made from the bytes, changed by what follows. */
 static void read_edited(fuzz_bytes *bytes, uint32_t how)
 {
     soup s = fuzz_mesh(bytes, 0);
+    const uint32_t kind = s.triangle_count % 3;
     sc_mesh mesh = input_plain_mesh(&s);
-    sc_pose pose = input_plain_pose(s.positions, s.vertex_count);
     input_choices choices;
+    sc_near_masks *masks = NULL;
     sc_model *model = NULL;
-    uint64_t size = 0;
+    uint64_t size = 0, model_size;
     unsigned char *data;
-    sc_filter filter;
-    sc_query_options options;
+    record_opened o;
     sc_pair ignore[2];
     sc_group *groups =
         (sc_group *)test_allocate((s.vertex_count + (size_t)s.triangle_count) * sizeof(*groups));
     test_random_reset(how);
     choices = input_choose(&s, how % 3, how / 4 % 4);
     FUZZ_CHECK(sc_build(&mesh, &choices.options, &model) == SC_OK, "a good mesh");
-    options = filtered(&s, how, &filter, groups, ignore);
-    if (how & 64)
-        FUZZ_CHECK(sc_record_size(model, &pose, &options, &size) == SC_OK, "a good query");
-    else
-        FUZZ_CHECK(sc_model_save_size(model, &size) == SC_OK, "a good model");
-    data = (unsigned char *)test_allocate((size_t)size);
+    FUZZ_CHECK(sc_model_save_size(model, &model_size) == SC_OK, "a good model");
+    for (int k = 0; k < POSES; ++k) o.pose[k] = input_plain_pose(s.positions, s.vertex_count);
+    set_filter(&s, how, &o, groups, ignore);
+    if (how & 2) {
+        FUZZ_CHECK(sc_near_masks_create(model, 1 + how % 3, NULL, &masks) == SC_OK, "good rings");
+        o.near_options.masks = masks;
+    }
     if (how & 64) {
-        FUZZ_CHECK(sc_record_write(model, &pose, &options, data, size, NULL) == SC_OK,
-                   "a good query");
+        data = write_record(model, &o, kind, &size);
         /* the model of a record has a checksum of its own */
         if (how & 128) {
-            const size_t at = 3 * SC_ALIGNMENT;
-            uint64_t model_size;
-            FUZZ_CHECK(sc_model_save_size(model, &model_size) == SC_OK, "a good model");
+            const size_t at = (kind == SC_RECORD_QUERY ? 3 : 4) * (size_t)SC_ALIGNMENT;
             edit(bytes, data + at, (size_t)model_size, sizeof(sc_saved_header));
             seal(data, (size_t)size);
         } else {
             edit(bytes, data, (size_t)size, sizeof(sc_saved_header));
         }
     } else {
+        size = model_size;
+        data = (unsigned char *)test_allocate((size_t)size);
         FUZZ_CHECK(sc_model_save(model, data, size, NULL) == SC_OK, "a good model");
         edit(bytes, data, (size_t)size, sizeof(sc_saved_header));
     }
     read_bytes(data, (size_t)size, how & 128 ? how : 0);
     free(data);
     free(groups);
+    sc_near_masks_free(masks);
     sc_model_free(model);
     input_free_choices(&choices);
     soup_free(&s);
