@@ -315,7 +315,7 @@ static void open_small(small_record *r, uint32_t kind, int is_full)
     for (int k = POSES - 1; k >= 0; --k) {
         if (k == END) soup_fold(s->mesh.positions, s->mesh.vertex_count);
         s->positions[k] = input_positions(s->mesh.positions, s->mesh.vertex_count,
-                                          k == END ? SC_FLOAT : SC_DOUBLE, 0);
+                                          k == START ? SC_DOUBLE : SC_FLOAT, 0);
         s->pose[k] = input_pose(s->mesh.vertex_count, &s->positions[k]);
     }
     s->step.struct_size = sizeof(s->step);
@@ -522,7 +522,7 @@ static void check_forged_kinds(small_record *r, int is_full)
         const int is_there = k == START || (k == END ? is_step : is_full);
         const uint64_t at = TYPES + 4 * (uint64_t)k;
         CHECK(forge(r, at, 4, 2) == SC_ERROR_INCONSISTENT);
-        CHECK(forge(r, at, 4, k == END ? SC_DOUBLE : SC_FLOAT) == SC_ERROR_INCONSISTENT);
+        CHECK(forge(r, at, 4, k == START ? SC_FLOAT : SC_DOUBLE) == SC_ERROR_INCONSISTENT);
         CHECK(forge(r, at, 4, SC_NONE) == (is_there ? SC_ERROR_INCONSISTENT : SC_OK));
     }
     CHECK(forge(r, MASK_RINGS, 4, SC_RINGS_MAX) == (is_step ? SC_ERROR_INCONSISTENT : SC_OK));
@@ -825,10 +825,10 @@ static void not_finite(void)
         const double nan = (double)NAN;
         const float nan_float = (float)NAN;
         open_small(&r, SC_RECORD_STEP, 1);
-        if (k == END)
-            memcpy(r.s.positions[k].data + 28, &nan_float, sizeof(nan_float));
-        else
+        if (k == START)
             memcpy(r.s.positions[k].data + 56, &nan, sizeof(nan));
+        else
+            memcpy(r.s.positions[k].data + 28, &nan_float, sizeof(nan_float));
         rewrite(&r);
         CHECK(record_open(r.data, r.size, &o) == SC_OK);
         record_answer a = record_replay(&o);

@@ -176,6 +176,12 @@ check "of groups that are not there" valid "mesh-error" \
 check "which are named" grep -q '"file":"[^"]*absent.txt"' "$scratch/json"
 check "a record" status 1 "$query" --record "$scratch/one.scq" "$scratch/hit.obj"
 check "of a replay" valid "mesh-collides" "$query" --json --replay "$scratch/one.scq" --contacts
+check "a record of a step" status 1 "$query" --step --record "$scratch/one.scq" \
+    "$scratch/hit.obj" "$scratch/hit.obj"
+check "of its replay" valid "step-collides" "$query" --json --replay "$scratch/one.scq"
+check "a record of what is near" status 1 "$query" --near 1 --record "$scratch/one.scq" \
+    "$scratch/hit.obj"
+check "of that one's replay" valid "near-near" "$query" --json --replay "$scratch/one.scq"
 check "of steps" valid "step-clean step-collides step-error step-error summary" \
     "$query" --step --json --times --stats "$scratch/clean.obj" "$scratch/clean.obj" \
     "$scratch/hit.obj" "$scratch/broken.obj" "$scratch/hit.obj"

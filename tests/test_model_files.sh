@@ -184,6 +184,62 @@ check "a record is no model" refuses "not a saved model" \
 check "a record that cannot be written is reported" refuses "cannot be written" \
     "$query" --record "$scratch/absent/query.scq" meshes/sphere.obj
 
+# Of steps and of what is near.
+features() {
+    to=$1
+    shift
+    "$query" --out "$scratch/list" "$@" >"$scratch/table" 2>&1
+    [ $? -lt 2 ] || { cat "$scratch/table"; return 1; }
+    sed -E 's/^.*,(vertex-face|edge-edge),/\1,/;1d' "$scratch/list" >"$to"
+    test -s "$to"
+}
+"$query" --near 0.1 --out "$scratch/list" meshes/crossing_cloths.obj >"$scratch/out"
+awk 'NR == 1 || NR % 3 == 0' "$scratch/list" >"$scratch/ignore_near.csv"
+for options in "--step --separation 0.05" "--step --separation 0.05 --method two-boxes" \
+    "--near 0.1" \
+    "--near 0.15 --kinds edge-edge --method sctt --ignore-rings 3" \
+    "--near 0.15 --ignore-rest 0.1 --rest meshes/crossing_cloths.obj" \
+    "--step --separation 0.1 --ignore $scratch/ignore_near.csv" \
+    "--step --separation 0.1 --groups $scratch/groups.txt --ignore-rest 0.05" \
+    "--near 0.1 --ignore $scratch/ignore_near.csv --groups $scratch/groups.txt"; do
+    name=$(echo "$options" | sed "s|$scratch/||g")
+    files=$scratch/moved.obj
+    case $options in --step*) files="meshes/crossing_cloths.obj $files" ;; esac
+    # shellcheck disable=SC2086
+    check "a record is written ($name)" features "$scratch/wanted" $options \
+        --record "$scratch/features.scq" $files
+    check "and replayed ($name)" features "$scratch/found" --replay "$scratch/features.scq"
+    check "with the same pairs ($name)" diff "$scratch/wanted" "$scratch/found"
+done
+"$query" --step --separation 0.05 --record "$scratch/step.scq" meshes/crossing_cloths.obj "$scratch/moved.obj" \
+    >"$scratch/out"
+check "a step as JSON" says 1 '"type":"step".*"separation":0.05,' \
+    "$query" --replay "$scratch/step.scq" --json --stats
+check "a search as JSON" says 1 '"type":"near".*"weld":null' \
+    "$query" --replay "$scratch/features.scq" --json --stats
+check "no contacts of a step" refuses "no pairs of triangles" \
+    "$query" --replay "$scratch/step.scq" --contacts
+check "a replay that cannot be written" refuses "cannot be written" \
+    "$query" --replay "$scratch/step.scq" --out "$scratch/absent/list"
+check "nor of a search" refuses "cannot be written" \
+    "$query" --replay "$scratch/features.scq" --out "$scratch/absent/list"
+check "a record of a step that cannot be written" refuses "cannot be written" "$query" --step \
+    --record "$scratch/absent/x.scq" meshes/crossing_cloths.obj "$scratch/moved.obj"
+check "nor one of a search" refuses "cannot be written" \
+    "$query" --near 1 --record "$scratch/absent/x.scq" meshes/sphere.obj
+for how in "--step --separation 0.05 --any" "--near 1 --any"; do
+    files=meshes/crossing_cloths.obj
+    case $how in --step*) files="$files $scratch/moved.obj" ;; esac
+    # shellcheck disable=SC2086
+    "$query" $how --record "$scratch/any.scq" $files >"$scratch/out"
+    check "a record of $how" status 1 "$query" --replay "$scratch/any.scq"
+    check "has no list ($how)" refuses "no list" \
+        "$query" --replay "$scratch/any.scq" --out "$scratch/list"
+done
+head -c $(($(wc -c <"$scratch/step.scq") - 1)) "$scratch/step.scq" >"$scratch/cut.scq"
+check "a step without its last byte is refused" refuses "end too early" \
+    "$query" --replay "$scratch/cut.scq"
+
 # What does not go together.
 check "--model and --rest" refuses "in place of" \
     "$query" --model "$scratch/cloths.scm" --rest meshes/sphere.obj meshes/sphere.obj

@@ -322,7 +322,7 @@ check "a method of queries" says 2 "boxes" "$query" --near 1 --method aabb "$a"
 check "without --near" says 2 "of --near" "$query" --kinds both "$a"
 check "any has no list" says 2 "no list" "$query" --near 1 --any --list "$a"
 check "nor a file" says 2 "no list" "$query" --near 1 --any --out "$scratch/x" "$a"
-for option in --proper "--pairs edge" --step "--record $scratch/x" "--replay $scratch/x" --times \
+for option in --proper "--pairs edge" --step "--replay $scratch/x" --times \
     --contacts --no-rest-cache "--contour star" "--separation 1" "--tolerance 1"; do
     # shellcheck disable=SC2086
     check "not with $option" says 2 "does not go with" "$query" --near 1 $option "$a"
@@ -335,6 +335,9 @@ check "no distance at rest" says 2 "ignore-rest" "$query" --near 1 --ignore-rest
 check "no folder to write to" says 2 "cannot be written" "$query" --near 1 --out "$scratch/no/x" "$a"
 check "nor to paint" says 2 "cannot be written" "$query" --near 1 --ply "$scratch/no/x" "$a"
 check "one mesh to paint" says 2 "one mesh" "$query" --near 1 --ply "$scratch/x.ply" "$a" "$b"
+check "one mesh to record" says 2 "one mesh" "$query" --near 1 --record "$scratch/x" "$a" "$b"
+check "and of a pattern" says 2 "one mesh" "$query" --near 1 --record "$scratch/x" "$scratch/f%d.obj"
+check "not over the mesh" says 2 "is to be read" "$query" --near 1 --record "$a" "$a"
 check "nor all of a pattern" says 2 "one mesh" "$query" --near 1 --ply "$scratch/x.ply" "$scratch/f%d.obj"
 cp "$a" "$scratch/g1.obj"
 check "not over a mesh" says 2 "g1.obj is to be read" \

@@ -181,11 +181,12 @@ check "any has no closest points" says 2 "no list" "$query" --step --any --stenc
 check "closest points of what is sought neither way" says 2 "of --near and --step" \
     "$query" --stencils "$a"
 check "any has no times" says 2 "no times" "$query" --step --any --times "$a" "$b"
-for option in --proper "--pairs edge" "--ply $scratch/x.ply" "--record $scratch/x" \
-    --contacts --no-rest-cache; do
+for option in --proper "--pairs edge" "--ply $scratch/x.ply" \
+    "--replay $scratch/x" --contacts --no-rest-cache; do
     # shellcheck disable=SC2086
     check "not with $option" says 2 "does not go with" "$query" --step $option "$a" "$b"
 done
+check "one step to record" says 2 "two frames" "$query" --step --record "$scratch/x" "$a" "$b" "$a"
 check "no folder to write to" says 2 "cannot be written" "$query" --step --out "$scratch/no/x" "$a" "$b"
 
 finish

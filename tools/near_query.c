@@ -13,6 +13,7 @@
 #include "query_summary.h"
 #include "query_text.h"
 #include "query_threads.h"
+#include "record_file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -51,6 +52,31 @@ static bool make_room(near_list *list, uint64_t count)
     return list->pairs != NULL;
 }
 
+/* What is asked. rest, and filters, are used where the settings say so. */
+static sc_near_options make_options(const near_settings *set, const sc_filter filters[KINDS],
+                                    const sc_pose *rest, bool listed)
+{
+    sc_near_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.kinds = set->kinds;
+    options.method = set->method;
+    options.distance = set->distance;
+    if (set->ignore_rings || set->ignore_path || set->groups_path) {
+        options.vertex_face_filter = &filters[VERTEX_FACE];
+        options.edge_edge_filter = &filters[EDGE_EDGE];
+    }
+    if (set->ignores_rest) {
+        options.rest = rest;
+        options.rest_distance = set->ignore_rest;
+    }
+    options.budget = set->budget;
+    if (set->replayed) options = set->replayed->search;
+    options.output = set->any ? SC_OUTPUT_ANY : listed ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT;
+    options.tasks = query_threads_tasks();
+    return options;
+}
+
 static sc_status find_near(near_run *run, const query_subject *subject,
                            const sc_filter filters[KINDS], near_answer *answer)
 {
@@ -58,23 +84,14 @@ static sc_status find_near(near_run *run, const query_subject *subject,
     const bool listed = near_wants_list(set) || near_names_objects(set, answer->mesh);
     const mesh_file *mesh = run->first.positions ? &run->first : answer->mesh;
     const sc_pose rest = tool_pose(mesh->positions, mesh->position_type, mesh->vertex_count);
-    sc_near_options options;
+    const sc_near_options options = make_options(set, filters, &rest, listed);
     sc_near_result result;
-    memset(&options, 0, sizeof options);
     memset(&result, 0, sizeof result);
-    options.struct_size = sizeof options;
-    options.output = set->any ? SC_OUTPUT_ANY : listed ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT;
-    options.kinds = set->kinds;
-    options.method = set->method;
-    options.distance = set->distance;
-    options.vertex_face_filter = &filters[VERTEX_FACE];
-    options.edge_edge_filter = &filters[EDGE_EDGE];
-    if (set->ignores_rest) {
-        options.rest = &rest;
-        options.rest_distance = set->ignore_rest;
+    if (set->record_path) {
+        const record_question question = {
+            .model = subject->model, .pose = answer->pose, .search = &options};
+        answer->unrecorded = !record_file_write(set->record_path, &question);
     }
-    options.tasks = query_threads_tasks();
-    options.budget = set->budget;
     result.struct_size = sizeof result;
     if (set->stats) {
         answer->stats.struct_size = sizeof answer->stats;
@@ -147,7 +164,8 @@ static query_subject_how how_to_build(const near_run *run)
 {
     const near_settings *set = run->set;
     const bool is_plain = set->method != SC_NEAR_METHOD_SCTT && !run->rest_path && !set->stats &&
-                          set->partition == TOOL_PARTITION_FAST && !set->budget;
+                          set->partition == TOOL_PARTITION_FAST && !set->budget &&
+                          !set->record_path;
     const query_subject_how how = {
         set->weld, set->partition, 0, is_plain ? SC_MODEL_BOXES : SC_MODEL_FULL, SC_WORKSPACE_NEAR,
         true};
@@ -202,6 +220,7 @@ static int do_file(near_run *run, const char *path)
     if (done) done = ask(run, subject, &answer, error);
     int status = done ? near_report(&answer, set, run->out) : near_report_failure(path, set, error);
     if (done && set->ply_path && !near_report_ply(&answer, set)) status = TOOL_FAILED;
+    if (answer.unrecorded) status = TOOL_FAILED;
     query_summary_add(&run->summary, status, answer.near, path, NULL,
                       set->any ? 0 : answer.counts[VERTEX_FACE] + answer.counts[EDGE_EDGE]);
     mesh_tally_free(&answer.tally);
@@ -249,10 +268,27 @@ static int do_files(near_run *run, char *const *paths, int count)
 static bool spares_files(char *const *paths, int count, const near_settings *set)
 {
     for (int i = 0; i < count; i++) {
-        if (!tool_spares(set->out_path, paths[i]) || !tool_spares(set->ply_path, paths[i]))
+        if (!tool_spares(set->out_path, paths[i]) || !tool_spares(set->ply_path, paths[i]) ||
+            !tool_spares(set->record_path, paths[i]))
             return false;
     }
     return true;
+}
+
+/* Ends what a run has begun; returns the exit status. */
+static int close_run(near_run *run, int status)
+{
+    if (run->out) {
+        const bool written = !ferror(run->out);
+        if (fclose(run->out) != 0 || !written) {
+            tool_error("%s: could not be written to the end", run->set->out_path);
+            status = TOOL_FAILED;
+        }
+    }
+    for (int kind = 0; kind < KINDS; kind++) free(run->lists[kind].pairs);
+    mesh_file_free(&run->first);
+    query_subject_free(&run->rest);
+    return status;
 }
 
 int near_query_files(char **paths, int count, const near_settings *set)
@@ -273,8 +309,9 @@ int near_query_files(char **paths, int count, const near_settings *set)
         count = (int)found.count;
         if (!set->rest_path && !set->model_path) run.rest_path = paths[0];
     }
-    if (set->ply_path && count > 1) {
-        tool_error("--ply takes one mesh only; see sc-query --help");
+    if ((set->ply_path || set->record_path) && count > 1) {
+        tool_error("--%s takes one mesh only; see sc-query --help",
+                   set->ply_path ? "ply" : "record");
     } else if (!spares_files(paths, count, set)) {
         status = TOOL_FAILED;
     } else if (set->out_path && !(run.out = fopen(set->out_path, "w"))) {
@@ -282,16 +319,7 @@ int near_query_files(char **paths, int count, const near_settings *set)
     } else {
         status = do_files(&run, paths, count);
     }
-    if (run.out) {
-        const bool written = !ferror(run.out);
-        if (fclose(run.out) != 0 || !written) {
-            tool_error("%s: could not be written to the end", set->out_path);
-            status = TOOL_FAILED;
-        }
-    }
-    for (int kind = 0; kind < KINDS; kind++) free(run.lists[kind].pairs);
-    mesh_file_free(&run.first);
-    query_subject_free(&run.rest);
+    status = close_run(&run, status);
     frame_paths_free(&found);
     return status;
 }
@@ -330,4 +358,60 @@ int near_query_batch(const query_settings *set)
     }
     query_subject_free(&run.rest);
     return status;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Records
+ */
+
+/* Sets what the record asks for; file->error says if it cannot be asked here. */
+static bool use_record(near_settings *set, record_file *file)
+{
+    const sc_near_options *o = &file->search;
+    set->kinds = o->kinds;
+    set->method = o->method;
+    set->distance = o->distance;
+    set->any = o->output == SC_OUTPUT_ANY;
+    set->budget = o->budget;
+    set->ignores_rest = o->rest != NULL;
+    set->ignore_rest = o->rest_distance;
+    if (o->output > SC_OUTPUT_ANY || o->kinds > SC_NEAR_EDGE_EDGE ||
+        o->method > SC_NEAR_METHOD_BOXES)
+        record_file_refuse(file, SC_ERROR_OPTION, NULL);
+    else if (set->any && near_wants_list(set))
+        record_file_refuse(file, SC_ERROR_OPTION, "the record asks for no list");
+    return !file->error[0];
+}
+
+int near_query_replay(near_settings *set)
+{
+    record_file *file = set->replayed;
+    near_answer answer;
+    near_run run;
+    uint32_t *objects = NULL;
+    int status;
+    memset(&answer, 0, sizeof answer);
+    memset(&run, 0, sizeof run);
+    run.set = set;
+    answer.path = file->path;
+    answer.mesh = &run.rest.mesh;
+    answer.pose = &file->pose;
+    bool done = use_record(set, file) && record_file_open(file, SC_WORKSPACE_NEAR, &run.rest);
+    if (done && set->out_path && !(run.out = fopen(set->out_path, "w"))) {
+        snprintf(file->error, sizeof file->error, "%s: cannot be written: %s", set->out_path,
+                 strerror(errno));
+        done = false;
+    }
+    near_report_head(set);
+    if (run.out) near_report_pairs_head(run.out, set);
+    if (done) {
+        answer.vertex_objects = objects = record_file_vertex_objects(&run.rest);
+        if (!objects) record_file_refuse(file, SC_ERROR_MEMORY, NULL);
+        done = objects && ask(&run, &run.rest, &answer, file->error);
+    }
+    status = done ? near_report(&answer, set, run.out)
+                  : near_report_failure(file->path, set, file->error);
+    mesh_tally_free(&answer.tally);
+    free(objects);
+    return close_run(&run, status);
 }

@@ -19,4 +19,7 @@ int near_query_files(char **paths, int count, const near_settings *set);
    asked. */
 int near_query_batch(const query_settings *set);
 
+/* Asks what set->replayed asks, in the same way; changes *set to what that says. */
+int near_query_replay(near_settings *set);
+
 #endif /* TOOLS_NEAR_QUERY_H */

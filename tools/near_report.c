@@ -270,7 +270,7 @@ void near_report_add_settings(cJSON *object, const near_settings *set)
     cJSON_AddNumberToObject(object, "distance", set->distance);
     cJSON_AddStringToObject(object, "kinds", tool_choice_name(near_kinds, set->kinds));
     cJSON_AddBoolToObject(object, "any", set->any);
-    if (set->model_path) { /* they are the model's */
+    if (set->model_path || set->replayed) { /* they are the model's */
         cJSON_AddNullToObject(object, "weld");
         cJSON_AddNullToObject(object, "partition");
     } else {

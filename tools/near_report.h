@@ -28,6 +28,7 @@ typedef struct near_answer {
     uint64_t counts[KINDS];
     const sc_pair *pairs[KINDS]; /* where they are listed */
     bool near, incomplete;
+    bool unrecorded;   /* --record failed, which was told */
     double nearest;    /* the smallest distance; HUGE_VAL: not known, or none */
     double *thickness; /* of each face, with --thickness; HUGE_VAL: more than the distance */
     thickness_spread spread;

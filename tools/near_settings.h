@@ -25,6 +25,8 @@ typedef struct near_settings {
     uint64_t budget;       /* 0: none */
     bool ignores_rest, any, list, stencils, thickness, json, stats, timings;
     bool is_line; /* of --jsonl: what grows with the mesh is left out */
+    const char *record_path;      /* where to write the one search, or NULL */
+    struct record_file *replayed; /* what is asked in place of all this, or NULL */
 } near_settings;
 
 #endif /* TOOLS_NEAR_SETTINGS_H */

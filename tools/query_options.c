@@ -45,7 +45,8 @@ static const char usage[] =
     "                              vertices and faces in the same order\n"
     "  --model FILE                the same, with the model that sc-partition -o wrote\n"
     "  --replay FILE               in place of meshes: the query that --record wrote, with its "
-    "options\n"
+    "options,\n"
+    "                              or the step or search for what is near\n"
     "What collides on the way from each MESH to the next\n"
     "  --step                      the files are frames, two or more, in which every vertex moves "
     "on "
@@ -113,10 +114,9 @@ static const char usage_continued[] =
     "  --stats                     time and count of the nine tasks of the query\n"
     "  --record FILE               write the query, with model, pose, options and filter, to "
     "report\n"
-    "                              a bug; one MESH only\n"
+    "                              a bug; one MESH only, with --step two\n"
     "Many meshes, also with --near: each read by a process of its own, whose end is a line, not "
-    "the "
-    "run's\n"
+    "the run's\n"
     "  --jsonl FILE                append a JSON object a line, whole, in the order of the meshes; "
     "no\n"
     "                              times, so that every run writes the same bytes\n"
@@ -272,8 +272,8 @@ static bool check_settings(const query_settings *set)
         reason = "no mesh given";
     else if (set->model_path && (set->rest_path || set->is_built))
         reason = "--model is in place of --rest, --weld and --partition";
-    else if (set->record_path && path_count > 1)
-        reason = "--record takes one mesh only";
+    else if (set->record_path && path_count > (set->is_step ? 2 : 1))
+        reason = "--record takes one mesh only, or the two frames of a step";
     else if (query_wants_list(set) && set->any)
         reason = "--any finds no list for --out, --ply, --html, --png or --contacts";
     else if (query_wants_list(set) && set->pairs == 2)
@@ -416,15 +416,15 @@ int query_options_read(int argc, char **argv, query_settings *set)
     int option, which = 0;
     while ((option = getopt_long(argc, argv, "hV", options, &which)) != -1) {
         if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_PLY ||
-            option == OPTION_RECORD || option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
+            option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE ||
             option == OPTION_CONTACTS || option == OPTION_ONLY || option == OPTION_HTML ||
             option == OPTION_PNG)
             set->not_of_steps = options[which].name;
-        if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_RECORD ||
-            option == OPTION_REPLAY || option == OPTION_NO_REST_CACHE || option == OPTION_ONLY ||
-            option == OPTION_HTML || option == OPTION_PNG || option == OPTION_CONTACTS ||
-            option == OPTION_CONTOUR || option == OPTION_STEP || option == OPTION_SEPARATION ||
-            option == OPTION_TOLERANCE || option == OPTION_TIMES)
+        if (option == OPTION_PAIRS || option == OPTION_PROPER || option == OPTION_REPLAY ||
+            option == OPTION_NO_REST_CACHE || option == OPTION_ONLY || option == OPTION_HTML ||
+            option == OPTION_PNG || option == OPTION_CONTACTS || option == OPTION_CONTOUR ||
+            option == OPTION_STEP || option == OPTION_SEPARATION || option == OPTION_TOLERANCE ||
+            option == OPTION_TIMES)
             set->not_of_near = options[which].name;
         set->is_near_asked |=
             option == OPTION_KINDS || option == OPTION_LIST || option == OPTION_THICKNESS;

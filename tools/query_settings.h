@@ -45,8 +45,9 @@ typedef struct query_settings {
     bool is_batch; /* an option was given that only --jsonl takes */
     char **paths;  /* path_count: the meshes, or frames */
     int path_count;
-    filter_file *filters;   /* what the two files say */
-    const sc_filter *given; /* in place of these: what a record says */
+    filter_file *filters;         /* what the two files say */
+    const sc_filter *given;       /* in place of these: what a record says */
+    struct record_file *replayed; /* of --replay */
 } query_settings;
 
 struct query_checks;

@@ -20,6 +20,7 @@
 #include "query_summary.h"
 #include "query_text.h"
 #include "query_threads.h"
+#include "record_file.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -100,34 +101,19 @@ static bool write_record(const query_subject *subject, const sc_pose *pose,
                          const query_settings *set)
 {
     sc_query_options options = make_options(set, query_chosen_pairs(set), query_wants_list(set));
+    const record_question question = {.model = subject->model, .pose = pose, .query = &options};
     char error[MESH_FILE_ERROR_SIZE];
-    uint64_t size = 0;
-    void *bytes = NULL;
     sc_model_info info;
     sc_filter filter;
     memset(&info, 0, sizeof info);
     info.struct_size = sizeof info;
-    sc_status status = sc_model_get_info(subject->model, &info);
-    if (status == SC_OK && !make_filter(&info, set, &filter, error)) {
-        tool_error("%s", error);
+    const sc_status status = sc_model_get_info(subject->model, &info);
+    if (status != SC_OK || !make_filter(&info, set, &filter, error)) {
+        tool_error("%s", status == SC_OK ? error : sc_status_string(status));
         return false;
     }
     if (set->ignore_rings || set->ignore_path || set->groups_path) options.filter = &filter;
-    if (status == SC_OK) status = sc_record_size(subject->model, pose, &options, &size);
-    if (status == SC_OK) {
-        bytes = size <= SIZE_MAX ? malloc((size_t)size) : NULL;
-        status = bytes ? sc_record_write(subject->model, pose, &options, bytes, size, NULL)
-                       : SC_ERROR_MEMORY;
-    }
-    bool written = status == SC_OK;
-    if (!written)
-        tool_error("%s: %s", set->record_path, sc_status_string(status));
-    else if (!model_file_dump(set->record_path, bytes, size, error)) {
-        tool_error("%s", error);
-        written = false;
-    }
-    free(bytes);
-    return written;
+    return record_file_write(set->record_path, &question);
 }
 
 /* Where the pairs of a list meet. */
@@ -345,65 +331,31 @@ static bool use_options(query_settings *set, const sc_query_options *options)
 /* Asks the query of --replay again. */
 static int do_replay(query_settings *set, FILE *out, query_list *list)
 {
-    char error[MESH_FILE_ERROR_SIZE], reason[256] = "";
-    uint64_t size;
+    record_file *file = set->replayed;
     query_answer answer;
     query_subject subject;
-    sc_query_options options;
-    sc_filter filter;
-    sc_record record;
-    sc_pose pose;
     memset(&answer, 0, sizeof answer);
     memset(&subject, 0, sizeof subject);
-    memset(&pose, 0, sizeof pose);
-    memset(&options, 0, sizeof options);
-    memset(&filter, 0, sizeof filter);
-    memset(&record, 0, sizeof record);
-    pose.struct_size = sizeof pose;
-    options.struct_size = sizeof options;
-    record.struct_size = sizeof record;
-    record.pose = &pose;
-    record.options = &options;
-    filter.struct_size = sizeof filter;
-    record.filter = &filter;
     answer.path = set->replay_path;
-    void *bytes = model_file_bytes(set->replay_path, &size, error);
-    bool done = bytes != NULL;
-    if (done) {
-        sc_status status = sc_record_read(bytes, size, &record);
-        if (status == SC_OK && !use_options(set, &options)) status = SC_ERROR_OPTION;
-        if (status == SC_OK && query_wants_list(set) && set->any) {
-            status = SC_ERROR_OPTION;
-            snprintf(reason, sizeof reason, "the record asks for no list");
-        }
-        if (status == SC_OK && record.left_out & SC_LEFT_OUT_ACCEPT)
-            tool_error(
-                "%s: note: the query had a function to refuse pairs (accept), which is not in "
-                "the record: there may be more pairs here",
-                set->replay_path);
-        if (status == SC_OK && record.left_out & SC_LEFT_OUT_CANCEL)
-            tool_error(
-                "%s: note: the query could be cancelled by a flag, which is not in the record",
-                set->replay_path);
-        const double start = tool_clock();
-        if (status == SC_OK)
-            status = model_file_load(record.model, record.model_size, &subject.model, reason);
-        subject.build_ms = tool_clock() - start;
-        if (status == SC_OK) status = query_threads_workspace(subject.model, 0, &subject.workspace);
-        done = status == SC_OK;
-        if (!done) {
-            snprintf(error, sizeof error, "%s: %s%s%s", set->replay_path, sc_status_string(status),
-                     reason[0] ? ": " : "", reason);
-        }
+    bool done = !file->error[0];
+    if (done && !use_options(set, &file->query)) {
+        record_file_refuse(file, SC_ERROR_OPTION, NULL);
+        done = false;
     }
+    if (done && query_wants_list(set) && set->any) {
+        record_file_refuse(file, SC_ERROR_OPTION, "the record asks for no list");
+        done = false;
+    }
+    if (done) done = record_file_open(file, 0, &subject);
     if (done) follow_model(set, subject.model);
     if (done && out) query_report_pairs_head(out, set);
-    if (done) done = run_pose(&subject, set->replay_path, &pose, set, list, NULL, &answer, error);
+    if (done)
+        done = run_pose(&subject, set->replay_path, &file->pose, set, list, NULL, &answer,
+                        file->error);
     const int status = done ? query_report(&answer, set, list, out)
-                            : query_report_failure(set->replay_path, set, error);
+                            : query_report_failure(set->replay_path, set, file->error);
     set->given = NULL;
     query_subject_free(&subject);
-    free(bytes);
     return status;
 }
 
@@ -526,7 +478,10 @@ static int do_steps(query_settings *set)
     step->any = set->any;
     step->json = set->json;
     step->stats = set->stats;
-    return step_query_frames(set->paths, set->path_count, step);
+    step->record_path = set->record_path;
+    step->replayed = set->replayed;
+    return step->replayed ? step_query_replay(step)
+                          : step_query_frames(set->paths, set->path_count, step);
 }
 
 /* What is near, in place of do_files. */
@@ -552,7 +507,29 @@ static int do_near(query_settings *set)
     near->timings = !set->jsonl_path || set->timings;
     near->is_line = set->jsonl_path != NULL;
     if (near->is_line) return near_query_batch(set);
-    return near_query_files(set->paths, set->path_count, near);
+    near->record_path = set->record_path;
+    near->replayed = set->replayed;
+    return near->replayed ? near_query_replay(near)
+                          : near_query_files(set->paths, set->path_count, near);
+}
+
+/* Asks what a record of any kind asks. */
+static int do_record(query_settings *set)
+{
+    record_file file;
+    int status = TOOL_FAILED;
+    set->replayed = &file;
+    if (record_file_read(&file, set->replay_path)) {
+        set->is_step = file.record.kind == SC_RECORD_STEP;
+        set->is_near = file.record.kind == SC_RECORD_NEAR;
+    }
+    if (set->contacts && (set->is_step || set->is_near))
+        tool_error("%s: the record asks for no pairs of triangles, of which there are --contacts",
+                   set->replay_path);
+    else
+        status = set->is_step ? do_steps(set) : set->is_near ? do_near(set) : do_files(set);
+    record_file_free(&file);
+    return status;
 }
 
 int main(int argc, char **argv)
@@ -575,7 +552,10 @@ int main(int argc, char **argv)
     const bool is_plain = !set.is_step && !set.is_near;
     if (filter_file_read(&filters, set.ignore_path, set.groups_path,
                          is_plain ? query_chosen_pairs(&set) : FILTER_FILE_STEP, error))
-        status = set.is_step ? do_steps(&set) : set.is_near ? do_near(&set) : do_files(&set);
+        status = set.replay_path ? do_record(&set)
+                 : set.is_step   ? do_steps(&set)
+                 : set.is_near   ? do_near(&set)
+                                 : do_files(&set);
     else { /* one of the two files, with which the message begins */
         const char *path = set.ignore_path;
         if (!path || (set.groups_path && !strncmp(error, set.groups_path, strlen(set.groups_path))))

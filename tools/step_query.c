@@ -11,6 +11,7 @@
 #include "query_summary.h"
 #include "query_text.h"
 #include "query_threads.h"
+#include "record_file.h"
 #include "stencil_text.h"
 #include "tool_json.h"
 
@@ -45,6 +46,7 @@ typedef struct step_answer {
     double build_ms, query_ms, candidates_ms;
     uint64_t counts[KINDS], candidates[KINDS];
     bool candidates_known, collides, incomplete;
+    bool unrecorded; /* --record failed, which was told */
     double earliest;
     sc_stats stats;
     mesh_tally tally;            /* pairs by their objects, if there are several */
@@ -100,21 +102,24 @@ static sc_step_options make_options(const step_run *run)
     sc_step_options options;
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
-    options.output = set->any ? SC_OUTPUT_ANY : wants_list(run) ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT;
-    options.times = set->any ? SC_STEP_TIMES_NONE : SC_STEP_TIMES_EARLIEST;
-    if (options.output == SC_OUTPUT_PAIRS) options.times = SC_STEP_TIMES_EACH;
     options.method = set->method;
     options.contour = set->method == SC_STEP_METHOD_SCTT ? set->contour : SC_CONTOUR_DEFAULT;
     options.separation = set->separation;
     options.tolerance = set->tolerance;
-    options.tasks = query_threads_tasks();
     options.budget = set->budget;
-    options.vertex_face_filter = &run->filters[VERTEX_FACE];
-    options.edge_edge_filter = &run->filters[EDGE_EDGE];
+    if (set->ignore_rings || set->ignore_path || set->groups_path) {
+        options.vertex_face_filter = &run->filters[VERTEX_FACE];
+        options.edge_edge_filter = &run->filters[EDGE_EDGE];
+    }
     if (set->ignores_rest) {
         options.rest = &run->rest;
         options.rest_distance = set->ignore_rest;
     }
+    if (set->replayed) options = set->replayed->step;
+    options.output = set->any ? SC_OUTPUT_ANY : wants_list(run) ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT;
+    options.times = set->any ? SC_STEP_TIMES_NONE : SC_STEP_TIMES_EARLIEST;
+    if (options.output == SC_OUTPUT_PAIRS) options.times = SC_STEP_TIMES_EACH;
+    options.tasks = query_threads_tasks();
     return options;
 }
 
@@ -125,6 +130,11 @@ static sc_status find_collisions(step_run *run, step_answer *answer)
     sc_step_result result;
     memset(&result, 0, sizeof result);
     result.struct_size = sizeof result;
+    if (run->set->record_path) {
+        const record_question question = {
+            .model = run->subject.model, .pose = &poses[0], .end = &poses[1], .step = &options};
+        answer->unrecorded = !record_file_write(run->set->record_path, &question);
+    }
     if (run->set->stats) {
         answer->stats.struct_size = sizeof answer->stats;
         result.stats = &answer->stats;
@@ -190,17 +200,13 @@ static bool count_objects(step_run *run, step_answer *answer)
     return true;
 }
 
-static bool ask(step_run *run, const frame *from, const frame *to, step_answer *answer,
+static bool ask(step_run *run, const sc_pose poses[2], step_answer *answer,
                 char error[MESH_FILE_ERROR_SIZE])
 {
-    const uint32_t count = run->mesh->vertex_count;
-    run->poses[0] = tool_pose(from->pose.positions, from->pose.position_type, count);
-    run->poses[1] = tool_pose(to->pose.positions, to->pose.position_type, count);
+    memcpy(run->poses, poses, sizeof run->poses);
     answer->build_ms = run->subject.build_ms;
-    answer->rounded = from->pose.rounded || to->pose.rounded;
-    answer->has_animation = from->pose.has_animation || to->pose.has_animation;
     answer->position_type =
-        from->pose.position_type == SC_DOUBLE ? SC_DOUBLE : to->pose.position_type;
+        poses[0].position_type == SC_DOUBLE ? SC_DOUBLE : poses[1].position_type;
     answer->info.struct_size = sizeof answer->info;
     sc_status status = sc_model_get_info(run->subject.model, &answer->info);
     if (status == SC_OK) status = find_collisions(run, answer);
@@ -213,6 +219,17 @@ static bool ask(step_run *run, const frame *from, const frame *to, step_answer *
     return status == SC_OK;
 }
 
+static bool ask_frames(step_run *run, const frame *from, const frame *to, step_answer *answer,
+                       char error[MESH_FILE_ERROR_SIZE])
+{
+    const uint32_t count = run->mesh->vertex_count;
+    const sc_pose poses[2] = {tool_pose(from->pose.positions, from->pose.position_type, count),
+                              tool_pose(to->pose.positions, to->pose.position_type, count)};
+    answer->rounded = from->pose.rounded || to->pose.rounded;
+    answer->has_animation = from->pose.has_animation || to->pose.has_animation;
+    return ask(run, poses, answer, error);
+}
+
 /* ------------------------------------------------------------------------------------------------
  * Telling
  */
@@ -222,6 +239,13 @@ static void print_table_head(const step_settings *set)
     printf("%10s %10s %14s %14s %12s %10s %9s %9s  %s\n", "vertices", "triangles",
            set->any ? "collides" : "vertex-face", set->any ? "" : "edge-edge", "candidates",
            "earliest", "build ms", "query ms", "step");
+}
+
+/* Of the table and of the file of pairs. */
+static void print_heads(const step_run *run)
+{
+    if (!run->set->json) print_table_head(run->set);
+    if (run->out) fputs("start,end,kind,object_a,face_a,object_b,face_b,a,b,time\n", run->out);
 }
 
 /* What is done with a pair of a list; stencil: its closest points, or NULL where they are not asked
@@ -299,8 +323,9 @@ static bool print_table_row(const step_answer *answer, const step_run *run)
         printf("%10s ", "-");
     else
         printf("%10.7f ", answer->earliest);
-    printf("%9.2f %9.3f  %s to %s%s\n", answer->build_ms, answer->query_ms, answer->start,
-           answer->end, tool_reading_note(answer->rounded, answer->has_animation));
+    printf("%9.2f %9.3f  %s", answer->build_ms, answer->query_ms, answer->start);
+    if (!run->set->replayed) printf(" to %s", answer->end);
+    printf("%s\n", tool_reading_note(answer->rounded, answer->has_animation));
     mesh_tally_print(&answer->tally, run->mesh);
     if (run->set->stats) query_text_stats(&answer->stats);
     if (!run->set->times && !run->set->stencils) return true;
@@ -535,8 +560,7 @@ static int do_steps(step_run *run, char **paths, uint32_t count)
         none.end = paths[1];
         return report_failure(&none, run, error);
     }
-    if (!run->set->json) print_table_head(run->set);
-    if (run->out) fputs("start,end,kind,object_a,face_a,object_b,face_b,a,b,time\n", run->out);
+    print_heads(run);
     frame *from = &run->frames[0], *to = &run->frames[1];
     take_first(run, paths[0], from);
     for (uint32_t i = 1; i < count; i++) {
@@ -546,8 +570,9 @@ static int do_steps(step_run *run, char **paths, uint32_t count)
         answer.end = paths[i];
         read_frame(run, paths[i], to);
         const char *reason = from->error[0] ? from->error : to->error[0] ? to->error : NULL;
-        if (!reason && !ask(run, from, to, &answer, error)) reason = error;
-        const int done = reason ? report_failure(&answer, run, reason) : report(&answer, run);
+        if (!reason && !ask_frames(run, from, to, &answer, error)) reason = error;
+        int done = reason ? report_failure(&answer, run, reason) : report(&answer, run);
+        if (answer.unrecorded) done = TOOL_FAILED;
         query_summary_add(&run->summary, done, answer.collides, answer.start, answer.end,
                           run->set->any ? 0 : answer.counts[0] + answer.counts[1]);
         mesh_tally_free(&answer.tally);
@@ -561,12 +586,34 @@ static int do_steps(step_run *run, char **paths, uint32_t count)
 }
 
 /* Also those of a pattern. */
-static bool spares_frames(char *const *paths, int count, const char *out)
+static bool spares_frames(char *const *paths, int count, const step_settings *set)
 {
     for (int i = 0; i < count; i++) {
-        if (!tool_spares(out, paths[i])) return false;
+        if (!tool_spares(set->out_path, paths[i]) || !tool_spares(set->record_path, paths[i]))
+            return false;
     }
     return true;
+}
+
+/* Ends what a run has begun; returns the exit status. */
+static int close_run(step_run *run, int status)
+{
+    if (run->out) {
+        const bool written = !ferror(run->out);
+        if (fclose(run->out) != 0 || !written) {
+            tool_error("%s: could not be written to the end", run->set->out_path);
+            status = TOOL_FAILED;
+        }
+    }
+    for (int i = 0; i < KINDS; i++) {
+        free(run->lists[i].pairs);
+        free(run->lists[i].times);
+        mesh_pose_free(&run->frames[i].pose);
+    }
+    free(run->vertex_objects);
+    mesh_file_free(&run->first);
+    query_subject_free(&run->subject);
+    return status;
 }
 
 int step_query_frames(char **paths, int count, const step_settings *set)
@@ -587,28 +634,84 @@ int step_query_frames(char **paths, int count, const step_settings *set)
     run.set = set;
     if (count < 2) {
         tool_error("--step takes two frames or more");
-    } else if (!spares_frames(paths, count, set->out_path)) {
+    } else if (set->record_path && count > 2) {
+        tool_error("--record takes the two frames of a step; see sc-query --help");
+    } else if (!spares_frames(paths, count, set)) {
         status = TOOL_FAILED;
     } else if (set->out_path && !(run.out = fopen(set->out_path, "w"))) {
         tool_error("%s: cannot be written: %s", set->out_path, strerror(errno));
     } else {
         status = do_steps(&run, paths, (uint32_t)count);
     }
-    if (run.out) {
-        const bool written = !ferror(run.out);
-        if (fclose(run.out) != 0 || !written) {
-            tool_error("%s: could not be written to the end", set->out_path);
-            status = TOOL_FAILED;
-        }
-    }
-    for (int i = 0; i < KINDS; i++) {
-        free(run.lists[i].pairs);
-        free(run.lists[i].times);
-        mesh_pose_free(&run.frames[i].pose);
-    }
-    free(run.vertex_objects);
-    mesh_file_free(&run.first);
-    query_subject_free(&run.subject);
+    status = close_run(&run, status);
     frame_paths_free(&found);
     return status;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Records
+ */
+
+/* Sets what the record asks for; file->error says if it cannot be asked here. */
+static bool use_record(step_settings *set, record_file *file)
+{
+    const sc_step_options *o = &file->step;
+    set->method = o->method;
+    set->contour = o->contour;
+    set->separation = o->separation;
+    set->tolerance = o->tolerance;
+    set->any = o->output == SC_OUTPUT_ANY;
+    set->budget = o->budget;
+    set->ignores_rest = o->rest != NULL;
+    set->ignore_rest = o->rest_distance;
+    if (o->output > SC_OUTPUT_ANY || o->method > SC_STEP_METHOD_SWEPT ||
+        o->contour > SC_CONTOUR_EXACT)
+        record_file_refuse(file, SC_ERROR_OPTION, NULL);
+    else if (o->pairs != SC_STEP_COLLISIONS)
+        record_file_refuse(file, SC_ERROR_OPTION, "the record asks for candidates alone");
+    else if (set->any && set->out_path)
+        record_file_refuse(file, SC_ERROR_OPTION, "the record asks for no list");
+    return !file->error[0];
+}
+
+/* In place of defaults, what they stand for on a model. */
+static bool choose_defaults(step_settings *set, const sc_model *model)
+{
+    sc_model_info info;
+    memset(&info, 0, sizeof info);
+    info.struct_size = sizeof info;
+    if (sc_model_get_info(model, &info) != SC_OK) return false;
+    if (set->method == SC_STEP_METHOD_DEFAULT)
+        set->method = info.node_count ? SC_STEP_METHOD_SCTT : SC_STEP_METHOD_TWO_BOXES;
+    if (set->contour == SC_CONTOUR_DEFAULT) set->contour = SC_CONTOUR_EXACT;
+    return true;
+}
+
+int step_query_replay(step_settings *set)
+{
+    record_file *file = set->replayed;
+    const sc_pose poses[2] = {file->pose, file->end};
+    step_answer answer;
+    step_run run;
+    memset(&answer, 0, sizeof answer);
+    memset(&run, 0, sizeof run);
+    run.set = set;
+    run.mesh = &run.subject.mesh;
+    answer.start = answer.end = file->path;
+    bool done = use_record(set, file) && record_file_open(file, SC_WORKSPACE_STEP, &run.subject) &&
+                choose_defaults(set, run.subject.model);
+    if (done && set->out_path && !(run.out = fopen(set->out_path, "w"))) {
+        snprintf(file->error, sizeof file->error, "%s: cannot be written: %s", set->out_path,
+                 strerror(errno));
+        done = false;
+    }
+    print_heads(&run);
+    if (done) {
+        run.vertex_objects = record_file_vertex_objects(&run.subject);
+        if (!run.vertex_objects) record_file_refuse(file, SC_ERROR_MEMORY, NULL);
+        done = run.vertex_objects && ask(&run, poses, &answer, file->error);
+    }
+    const int status = done ? report(&answer, &run) : report_failure(&answer, &run, file->error);
+    mesh_tally_free(&answer.tally);
+    return close_run(&run, status);
 }

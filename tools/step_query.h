@@ -26,6 +26,8 @@ typedef struct step_settings {
     filter_file *filters; /* what these two say */
     double ignore_rest;   /* the distance, where ignores_rest */
     bool ignores_rest, any, times, stencils, json, stats;
+    const char *record_path;      /* where to write the one step, or NULL */
+    struct record_file *replayed; /* what is asked in place of all this, or NULL */
 } step_settings;
 
 /* Names of the methods, and of the contour tests. */
@@ -34,5 +36,8 @@ extern const tool_choice step_methods[];
 /* Does all steps of count frames, or of those that one pattern with a number names. Returns an exit
    status; what is wrong is on standard error. */
 int step_query_frames(char **paths, int count, const step_settings *set);
+
+/* Asks what set->replayed asks, in the same way; changes *set to what that says. */
+int step_query_replay(step_settings *set);
 
 #endif /* TOOLS_STEP_QUERY_H */
