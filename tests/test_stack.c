@@ -135,6 +135,24 @@ static void *load(void *argument)
     return NULL;
 }
 
+/* A step with a rest pose, and back. */
+static void *record(void *argument)
+{
+    call *c = (call *)argument;
+    const sc_step_options options = {.struct_size = sizeof(options), .rest = c->start};
+    sc_step_options found = {.struct_size = sizeof(found)};
+    sc_pose poses[3] = {*c->pose, *c->pose, *c->pose};
+    sc_record read = {.struct_size = sizeof(read),
+                      .pose = &poses[0],
+                      .end = &poses[1],
+                      .rest = &poses[2],
+                      .step_options = &found};
+    c->status =
+        sc_record_step_write(c->model, c->start, c->pose, &options, c->saved, c->saved_size, NULL);
+    if (c->status == SC_OK) c->status = sc_record_read(c->saved, c->saved_size, &read);
+    return NULL;
+}
+
 /* Bytes of stack that a thread with this body has written to, 0 if there was no thread. */
 static size_t stack_of(void *(*body)(void *), call *c)
 {
@@ -224,6 +242,15 @@ static void calls_take_little_stack(void)
     CHECK(loading > empty && c.status == SC_OK);
     CHECK_MSG(loading - empty <= PROMISED, "%zu bytes", loading - empty);
     test_note("sc_model_load: %zu bytes", loading - empty);
+    free(c.saved);
+
+    c.saved_size *= 2; /* the model and three poses */
+    c.saved = malloc(c.saved_size);
+    if (!CHECK(c.saved)) return;
+    const size_t recording = stack_of(record, &c);
+    CHECK(recording > empty && c.status == SC_OK);
+    CHECK_MSG(recording - empty <= PROMISED, "%zu bytes", recording - empty);
+    test_note("sc_record_step_write, sc_record_read: %zu bytes", recording - empty);
     free(c.saved);
 
     static sc_pair pairs[PAIRS];
