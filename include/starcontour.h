@@ -1513,11 +1513,11 @@ SC_API sc_status sc_query_objects_step(const sc_objects *objects, const sc_step_
 /* ------------------------------------------------------------------------------------------------
  * Records
  *
- * One question in one block of bytes: the model, the pose or both poses, and the options of a query,
- * a step or a search for what is near; as a bug report, or to look into later with `sc-query
- * --replay FILE`. The bytes are for machines of one byte order, as saved models. Of a filter
- * everything is recorded but the caller's function; and a flag to cancel is none. What was left out
- * is written down in the record. Tasks, which change no answer, are not recorded.
+ * One question in one block of bytes: the model, the pose or both poses, and the options of a
+ * query, a step or a search for what is near; as a bug report, or to look into later with
+ * `sc-query --replay FILE`. The bytes are for machines of one byte order, as saved models. Of a
+ * filter everything is recorded but the caller's function, and of a flag to cancel nothing. What
+ * was left out is written down in the record. Tasks, which change no answer, are not recorded.
  */
 
 /* Writes the number of bytes that sc_record_write writes. Errors are as for sc_query. */
@@ -1549,8 +1549,8 @@ SC_API sc_status sc_record_step_write(const sc_model *model, const sc_pose *star
 
 /*
  * The same of the search that sc_query_near would run. Of masks the number of rings is recorded:
- * sc_near_masks_create makes the same ones from it and the model, and so nothing is left out. Bounds
- * of vertices are asked for in the result, which is not recorded. Errors are those of
+ * sc_near_masks_create makes the same ones from it and the model, and so nothing is left out.
+ * Bounds of vertices are asked for in the result, which is not recorded. Errors are those of
  * sc_query_near.
  */
 SC_API sc_status sc_record_near_size(const sc_model *model, const sc_pose *pose,
@@ -1603,8 +1603,8 @@ typedef struct sc_record {
 /*
  * Finds the parts of a record: data, of which there are size bytes; those behind it are ignored.
  * Data that are no record are refused as by sc_model_load. On an error nothing is filled. The model
- * is checked by sc_model_load, and the rest by sc_query, sc_query_step or sc_query_near; a filter is
- * good for questions on that model only.
+ * is checked by sc_model_load, and the rest by sc_query, sc_query_step or sc_query_near; a filter
+ * is good for questions on that model only.
  *
  * SC_ERROR_NULL: there is no structure for something that the record has. SC_ERROR_STRUCT_SIZE: the
  * record has what a structure of the caller's is too small for. SC_ERROR_ALIGNMENT, of records with
