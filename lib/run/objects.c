@@ -246,13 +246,15 @@ static void add_vertex_faces(objects_run *run, const sc_object *a, const sc_obje
                              const sc_step_worker *step)
 {
     const sc_object_list rest = rest_of(run, SC_STEP_VERTEX_FACE);
+    sc_pair *const pairs = rest.pairs;
     const uint64_t count = step->count[SC_STEP_VERTEX_FACE];
-    const uint64_t there = count < rest.capacity ? count : rest.capacity;
-    const uint64_t first = count_not_turned(rest.pairs, there);
-    uint64_t turned = step->turned, i;
+    const int fits = count <= rest.capacity;
+    const uint64_t there = fits ? count : rest.capacity;
+    const uint64_t first = count_not_turned(pairs, there);
     /* where the caller's function is asked in the end, what was found was more */
-    if (there == count) turned = count - first;
-    for (i = first; i < there; i++) rest.pairs[i].a &= ~SC_STEP_TURNED;
+    const uint64_t turned = fits ? count - first : step->turned;
+    uint64_t i;
+    for (i = first; i < there; i++) pairs[i].a &= ~SC_STEP_TURNED;
     add_range(run, a, b, SC_STEP_VERTEX_FACE, count - turned);
     add_range(run, b, a, SC_STEP_VERTEX_FACE, turned);
 }
