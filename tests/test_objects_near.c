@@ -595,7 +595,7 @@ static void bad_scenes_are_refused(void)
     step.separation = -1;
     CHECK(sc_query_objects_step(&objects, &step, &r) == SC_ERROR_OPTION);
     step.separation = 0;
-    near.distance = NAN;
+    near.distance = (double)NAN;
     CHECK(sc_query_objects_near(&objects, &near, &r) == SC_ERROR_OPTION);
     near.distance = 0;
     /* objects */
@@ -618,7 +618,7 @@ static void bad_scenes_are_refused(void)
     s.objects[0].masks = NULL;
     sc_near_masks_free(masks);
     s.objects[1].end = &s.things[1].pose[1];
-    s.things[1].posed[1][1] = NAN;
+    s.things[1].posed[1][1] = (double)NAN;
     s.things[1].pose[1].positions = s.things[1].posed[1];
     s.things[1].pose[1].position_type = SC_DOUBLE;
     s.objects[1].pose_version = 77;
