@@ -232,6 +232,21 @@ static int are_pairs_wanted(const found_list *wanted, const sc_object_list *list
     return 1;
 }
 
+/* Whether ranges are what is wanted, where pairs are counted alone or do not all fit. */
+static int are_ranges_wanted(const found_list *wanted, const sc_object_list *list)
+{
+    uint64_t i, at = 0;
+    for (i = 0; i < list->range_count && i < list->range_capacity; ++i) {
+        const sc_object_pairs *range = &list->ranges[i];
+        if (range->first != at || range->count == 0 || range->count > wanted->count - at) return 0;
+        for (uint64_t k = 0; k < range->count; ++k, ++at)
+            if (wanted->at[at].object_a != range->object_a ||
+                wanted->at[at].object_b != range->object_b)
+                return 0;
+    }
+    return at == wanted->count;
+}
+
 /* Asks for pairs, for their number, for any, and with arrays that are too short. */
 static void check_answers(scene *s, const question *question_of, const expected *e)
 {
@@ -269,7 +284,9 @@ static void check_answers(scene *s, const question *question_of, const expected 
     if (q.near.output == SC_OUTPUT_ANY)
         CHECK(a.lists.vertex_faces.count + a.lists.edge_edges.count == (uint64_t)found_any);
     else
-        CHECK(a.lists.vertex_faces.count == count[0] && a.lists.edge_edges.count == count[1]);
+        CHECK(a.lists.vertex_faces.count == count[0] && a.lists.edge_edges.count == count[1] &&
+              are_ranges_wanted(&e->list[0], &a.lists.vertex_faces) &&
+              are_ranges_wanted(&e->list[1], &a.lists.edge_edges));
     forget(&a);
     if (!count[0] && !count[1]) return;
     q.near.output = q.step.output = SC_OUTPUT_PAIRS;
@@ -280,7 +297,8 @@ static void check_answers(scene *s, const question *question_of, const expected 
     for (kind = 0; kind < 2; ++kind)
         CHECK(list_of(&a, kind)->count == count[kind] &&
               list_of(&a, kind)->range_count == ranges[kind] &&
-              are_pairs_wanted(&e->list[kind], list_of(&a, kind), timed));
+              are_pairs_wanted(&e->list[kind], list_of(&a, kind), timed) &&
+              are_ranges_wanted(&e->list[kind], list_of(&a, kind)));
     forget(&a);
 }
 
