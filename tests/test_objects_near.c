@@ -457,7 +457,7 @@ static int accept_some(void *user, uint32_t kind, uint32_t object_a, uint32_t ob
                        uint32_t b)
 {
     ++*(uint64_t *)user;
-    return (kind + object_a + object_b + a + b) % 3 != 0;
+    return (kind + 2 * object_a + object_b + a + b) % 3 != 0;
 }
 
 static void the_function_leaves_pairs_out(void)
@@ -478,7 +478,7 @@ static void the_function_leaves_pairs_out(void)
                 const uint32_t number = kind ? SC_NEAR_EDGE_EDGE : SC_NEAR_VERTEX_FACE;
                 between += f->object_a != f->object_b;
                 kept[kind] += f->object_a == f->object_b ||
-                              (number + f->object_a + f->object_b + f->a + f->b) % 3 != 0;
+                              (number + 2 * f->object_a + f->object_b + f->a + f->b) % 3 != 0;
             }
         for (uint32_t i = 0; i < s.count; ++i)
             s.objects[i].end = q.is_step ? &s.things[i].pose[1] : NULL;
