@@ -1441,7 +1441,7 @@ typedef struct sc_objects_result {
  *
  * Tasks share in an object, or in two, whose workspaces have as many workers; else the calling
  * thread does it. No memory is allocated. Workspaces of one call must not be used by another at the
- * same time. Cost: reading what moved, sc_query for each object with itself = 1, 5 ns for two
+ * same time. Cost: reading what moved, sc_query for each object with itself = 1, 6 ns for two
  * objects that are apart, and what is near between others.
  */
 SC_API sc_status sc_query_objects(const sc_objects *objects, const sc_query_options *options,
@@ -1490,9 +1490,9 @@ typedef struct sc_objects_lists {
  * of vertices are asked for by sc_query_near, of one mesh. SC_ERROR_COUNT: an object has more than
  * 2^31 vertices.
  *
- * Cost: reading what moved, some 5 ns a vertex; boxes; sc_query_near for each object with
- * itself = 1; 5 ns for two objects that are farther apart than the distance, and 10 to 40 ns a
- * pair.
+ * Cost: reading what moved, about 6 ns a vertex; boxes; sc_query_near for each object with
+ * itself = 1; 6 ns for two objects that are farther apart than the distance; and what is near
+ * between others.
  */
 SC_API sc_status sc_query_objects_near(const sc_objects *objects, const sc_near_options *options,
                                        sc_objects_lists *lists);
@@ -1505,7 +1505,8 @@ SC_API sc_status sc_query_objects_near(const sc_objects *objects, const sc_near_
  * the box of all objects. Workspaces were made with SC_WORKSPACE_STEP or SC_WORKSPACE_NEAR.
  *
  * A pose_version that is as before says that both poses are; of what stays where it is, that it
- * still does. Else as sc_query_objects_near.
+ * still does. Candidates (SC_STEP_CANDIDATES) of two objects are what the boxes of both leave, and
+ * not those of one mesh. Else as sc_query_objects_near.
  */
 SC_API sc_status sc_query_objects_step(const sc_objects *objects, const sc_step_options *options,
                                        sc_objects_lists *lists);

@@ -225,6 +225,41 @@ static void distances_out_of_range(void)
     sc_model_free(p.model);
 }
 
+/* Edges of a few of the smallest doubles, less than half of one apart: so the distance is 0, and the
+   normal that of both edges, of coordinates as whole numbers. */
+static void edges_of_the_smallest_doubles(void)
+{
+    uint32_t found = 0;
+    pair p;
+    if (!open_pair(&p)) return;
+    for (uint32_t trial = test_iterations_at_least(20000, 4000); trial-- > 0;) {
+        double at[6][3], e[3], f[3], n[3], length = 0;
+        sc_step_stencil s;
+        for (int i = 0; i < 18; ++i) at[i / 3][i % 3] = (double)test_random_below(13) - 6;
+        for (int i = 0; i < 18; ++i) {
+            const double tiny = ldexp(at[i / 3][i % 3], -1074);
+            p.ends[0][i / 3][i % 3] = p.ends[1][i / 3][i % 3] = tiny;
+        }
+        s = ask(&p, SC_NEAR_EDGE_EDGE, 0);
+        if (s.start.distance > 0 || !s.side) continue;
+        for (int k = 0; k < 3; ++k) {
+            e[k] = at[1][k] - at[0][k];
+            f[k] = at[4][k] - at[3][k];
+        }
+        for (int k = 0; k < 3; ++k) {
+            const int x = (k + 1) % 3, y = (k + 2) % 3;
+            n[k] = s.side * (e[x] * f[y] - e[y] * f[x]);
+            length += n[k] * n[k];
+        }
+        for (int k = 0; k < 3; ++k)
+            CHECK_MSG(fabs(s.normal[k] - n[k] / sqrt(length)) < 1e-14, "%g, not %g", s.normal[k],
+                      n[k] / sqrt(length));
+        ++found;
+    }
+    CHECK(found > 10);
+    sc_model_free(p.model);
+}
+
 static void wrong_arguments(void)
 {
     sc_step_stencil s;
@@ -259,4 +294,4 @@ static void wrong_arguments(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_motion), SC_TEST(touching_at_both_times), SC_TEST(distances_out_of_range),
-             SC_TEST(wrong_arguments))
+             SC_TEST(edges_of_the_smallest_doubles), SC_TEST(wrong_arguments))

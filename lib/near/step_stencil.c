@@ -33,10 +33,15 @@ static int make_unit(const double v[3], double unit[3])
    nor underflow to speak of. */
 static int find_way(const double from[3], const double to[3], double v[3])
 {
-    double half[3];
-    int k;
-    for (k = 0; k < 3; k++) half[k] = to[k] / 2 - from[k] / 2;
-    return make_unit(half, v);
+    double way[3];
+    int k, fits = 1;
+    for (k = 0; k < 3; k++) {
+        way[k] = to[k] - from[k];
+        fits &= way[k] - way[k] == 0;
+    }
+    /* halves only where they lose nothing: among the smallest doubles they would */
+    for (k = 0; k < 3 && !fits; k++) way[k] = to[k] / 2 - from[k] / 2;
+    return make_unit(way, v);
 }
 
 /* The direction of (p1 - p0) x (q1 - q0); 0: there is none. */
