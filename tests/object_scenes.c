@@ -252,3 +252,29 @@ uint32_t whole_scene_split(const whole_scene *whole, const uint32_t *first, uint
     *number -= first[i];
     return i;
 }
+
+/* ---- what is to be found ---- */
+
+int found_compare(const void *x, const void *y)
+{
+    const found *p = (const found *)x, *q = (const found *)y;
+    const int turned[2] = {p->object_a > p->object_b, q->object_a > q->object_b};
+    const uint32_t low[2] = {turned[0] ? p->object_b : p->object_a,
+                             turned[1] ? q->object_b : q->object_a};
+    const uint32_t high[2] = {turned[0] ? p->object_a : p->object_b,
+                              turned[1] ? q->object_a : q->object_b};
+    if (low[0] != low[1]) return low[0] < low[1] ? -1 : 1;
+    if (high[0] != high[1]) return high[0] < high[1] ? -1 : 1;
+    if (turned[0] != turned[1]) return turned[0] - turned[1];
+    if (p->a != q->a) return p->a < q->a ? -1 : 1;
+    return p->b == q->b ? 0 : p->b < q->b ? -1 : 1;
+}
+
+uint64_t found_list_ranges(const found_list *wanted)
+{
+    uint64_t count = 0, i;
+    for (i = 0; i < wanted->count; ++i)
+        count += i == 0 || wanted->at[i].object_a != wanted->at[i - 1].object_a ||
+                 wanted->at[i].object_b != wanted->at[i - 1].object_b;
+    return count;
+}

@@ -68,4 +68,21 @@ void whole_scene_close(whole_scene *whole);
 /* The object of a number of the whole, and its number there: first is one of the arrays above. */
 uint32_t whole_scene_split(const whole_scene *whole, const uint32_t *first, uint32_t *number);
 
+/* What is to be found: pairs with their objects, and times if there are any. */
+typedef struct found {
+    uint32_t object_a, object_b, a, b;
+    double time;
+} found;
+
+typedef struct found_list {
+    found *at;
+    uint64_t count;
+} found_list;
+
+/* For qsort: the order in which the library reports pairs of objects. */
+int found_compare(const void *x, const void *y);
+
+/* How many ranges a list in this order has. */
+uint64_t found_list_ranges(const found_list *wanted);
+
 #endif

@@ -15,31 +15,6 @@
 #include "starcontour.h"
 #include "tasks.h"
 
-/* What is to be found, or what was: pairs with their objects. */
-typedef struct found {
-    uint32_t object_a, object_b, a, b;
-} found;
-
-typedef struct found_list {
-    found *at;
-    uint64_t count;
-} found_list;
-
-static int compare_found(const void *x, const void *y)
-{
-    const found *p = (const found *)x, *q = (const found *)y;
-    const int turned[2] = {p->object_a > p->object_b, q->object_a > q->object_b};
-    const uint32_t low[2] = {turned[0] ? p->object_b : p->object_a,
-                             turned[1] ? q->object_b : q->object_a};
-    const uint32_t high[2] = {turned[0] ? p->object_a : p->object_b,
-                              turned[1] ? q->object_a : q->object_b};
-    if (low[0] != low[1]) return low[0] < low[1] ? -1 : 1;
-    if (high[0] != high[1]) return high[0] < high[1] ? -1 : 1;
-    if (turned[0] != turned[1]) return turned[0] - turned[1];
-    if (p->a != q->a) return p->a < q->a ? -1 : 1;
-    return p->b == q->b ? 0 : p->b < q->b ? -1 : 1;
-}
-
 /* What one mesh of all objects says. */
 static found_list expect(const scene *s, const sc_query_options *options)
 {
@@ -69,7 +44,7 @@ static found_list expect(const scene *s, const sc_query_options *options)
             f->object_b = whole_scene_split(&whole, whole.first_triangle, &f->b);
             list.count += (uint64_t)scene_asks_for(s, f->object_a, f->object_b);
         }
-        qsort(list.at, list.count, sizeof *list.at, compare_found);
+        qsort(list.at, list.count, sizeof *list.at, found_compare);
         free(result.pairs);
     }
     whole_scene_close(&whole);
@@ -109,20 +84,12 @@ static void forget(asked *a)
     free(a->result.ranges);
 }
 
-static uint64_t count_ranges(const found_list *wanted)
-{
-    uint64_t count = 0, i;
-    for (i = 0; i < wanted->count; ++i)
-        count += i == 0 || wanted->at[i].object_a != wanted->at[i - 1].object_a ||
-                 wanted->at[i].object_b != wanted->at[i - 1].object_b;
-    return count;
-}
-
 /* Whether an answer is what is wanted, pair by pair. */
 static int is_wanted(const found_list *wanted, const asked *a)
 {
     uint64_t i, k, at = 0;
-    if (a->result.count != wanted->count || a->result.range_count != count_ranges(wanted)) return 0;
+    if (a->result.count != wanted->count || a->result.range_count != found_list_ranges(wanted))
+        return 0;
     for (i = 0; i < a->result.range_count; ++i) {
         const sc_object_pairs *range = &a->result.ranges[i];
         if (range->first != at || range->count == 0) return 0;
@@ -152,7 +119,7 @@ static sc_query_options any_options(void)
 /* Asks for pairs, for their number, for any, and with arrays that are too short. */
 static void check_answers(const scene *s, const sc_query_options *options, const found_list *wanted)
 {
-    const uint64_t ranges = count_ranges(wanted);
+    const uint64_t ranges = found_list_ranges(wanted);
     sc_query_options o = *options;
     asked a;
     ask(s, &o, wanted->count, ranges, &a);

@@ -22,37 +22,11 @@ typedef struct question {
     sc_step_options step;
 } question;
 
-/* Pairs with their objects, and times if there are any. */
-typedef struct found {
-    uint32_t object_a, object_b, a, b;
-    double time;
-} found;
-
-typedef struct found_list {
-    found *at;
-    uint64_t count;
-} found_list;
-
 /* What one mesh says. */
 typedef struct expected {
     found_list list[2];
     double earliest;
 } expected;
-
-static int compare_found(const void *x, const void *y)
-{
-    const found *p = (const found *)x, *q = (const found *)y;
-    const int turned[2] = {p->object_a > p->object_b, q->object_a > q->object_b};
-    const uint32_t low[2] = {turned[0] ? p->object_b : p->object_a,
-                             turned[1] ? q->object_b : q->object_a};
-    const uint32_t high[2] = {turned[0] ? p->object_a : p->object_b,
-                              turned[1] ? q->object_a : q->object_b};
-    if (low[0] != low[1]) return low[0] < low[1] ? -1 : 1;
-    if (high[0] != high[1]) return high[0] < high[1] ? -1 : 1;
-    if (turned[0] != turned[1]) return turned[0] - turned[1];
-    if (p->a != q->a) return p->a < q->a ? -1 : 1;
-    return p->b == q->b ? 0 : p->b < q->b ? -1 : 1;
-}
 
 /* ---- one mesh of all ---- */
 
@@ -98,7 +72,7 @@ static found_list divide(const whole_scene *whole, const scene *s, int kind, con
         f->time = times ? times[i] : 0;
         list.count += (uint64_t)scene_asks_for(s, f->object_a, f->object_b);
     }
-    qsort(list.at, list.count, sizeof *list.at, compare_found);
+    qsort(list.at, list.count, sizeof *list.at, found_compare);
     return list;
 }
 
@@ -204,15 +178,6 @@ static void forget(asked *a)
     }
 }
 
-static uint64_t count_ranges(const found_list *wanted)
-{
-    uint64_t count = 0, i;
-    for (i = 0; i < wanted->count; ++i)
-        count += i == 0 || wanted->at[i].object_a != wanted->at[i - 1].object_a ||
-                 wanted->at[i].object_b != wanted->at[i - 1].object_b;
-    return count;
-}
-
 /* Whether the ranges that fit are what is wanted, pair by pair. */
 static int are_pairs_wanted(const found_list *wanted, const sc_object_list *list, int timed)
 {
@@ -252,7 +217,7 @@ static void check_answers(scene *s, const question *question_of, const expected 
 {
     question q = *question_of;
     const uint64_t count[2] = {e->list[0].count, e->list[1].count}, none[2] = {0, 0};
-    const uint64_t ranges[2] = {count_ranges(&e->list[0]), count_ranges(&e->list[1])};
+    const uint64_t ranges[2] = {found_list_ranges(&e->list[0]), found_list_ranges(&e->list[1])};
     const int timed = q.is_step && q.step.times == SC_STEP_TIMES_EACH;
     const int found_any = count[0] + count[1] > 0;
     uint64_t some[2];
