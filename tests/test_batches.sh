@@ -107,7 +107,8 @@ lines() {
 killed() { # JOBS
     rm -f "$out"
     for stop in 1 20 21 70 119; do
-        batch "$out" --jobs "$1" --resume >/dev/null 2>&1 &
+        "$query" --jsonl "$out" --manifest "$list" --jobs "$1" --resume \
+            >/dev/null 2>&1 &
         lines "$out" $stop || return 1
         kill -KILL $!
         wait $!

@@ -130,7 +130,8 @@ lines() {
 killed() { # JOBS
     rm -f "$out"
     for stop in 1 7 30 59; do
-        batch "$out" --jobs "$1" --resume >/dev/null 2>&1 &
+        "$query" --near 0.1 --thickness --jsonl "$out" --manifest "$list" --jobs "$1" --resume \
+            >/dev/null 2>&1 &
         lines "$out" $stop || return 1
         kill -KILL $!
         wait $!
