@@ -221,6 +221,47 @@ typedef struct sc_pose {
 } sc_pose;
 
 /* ------------------------------------------------------------------------------------------------
+ * Tasks
+ */
+
+/*
+ * The host's threads, for one query, or for building a model, to use several of: a job system, or a
+ * pool of threads. Without, a call runs in the thread that makes it. It cuts its work into jobs one
+ * after the other, and each job into parts that may run in any order and at once.
+ *
+ *   workers  how many parts may run at once; 0 and 1: one. For a query at most what the workspace
+ *            was made for (sc_workspace_options.workers), else SC_ERROR_WORKSPACE; for building at
+ *            most SC_WORKERS_MAX, else SC_ERROR_OPTION
+ *   enqueue  runs the count parts of a job, 1 or more: run(context, part, worker) once for each
+ *            part from 0 to count - 1, in any threads, worker being a number below workers that no
+ *            other running part of the job has. May return before they are done, or run them all
+ *            itself. What it returns is passed to finish and may be NULL
+ *   finish   returns when all parts of that job are done. What they wrote must be visible to the
+ *            caller then, as what the caller wrote before enqueue must be to the parts: so it is
+ *            with any locks, joins or queues of threads
+ *   user     passed through
+ *
+ * enqueue and finish are called in the thread that called the library, in turn: there is one job of
+ * a call at a time. run takes 32 kilobytes of stack, does not block and calls neither of them.
+ * They must not fail: without a free thread, run the parts in the caller's:
+ *
+ *     void *enqueue(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
+ *                   void *context, uint32_t count)
+ *     {
+ *         for (uint32_t part = 0; part < count; ++part) run(context, part, 0);
+ *         return NULL;
+ *     }
+ */
+typedef struct sc_tasks {
+    uint32_t struct_size;
+    uint32_t workers;
+    void *(*enqueue)(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
+                     void *context, uint32_t count);
+    void (*finish)(void *user, void *task);
+    void *user;
+} sc_tasks;
+
+/* ------------------------------------------------------------------------------------------------
  * Building
  */
 
@@ -314,6 +355,7 @@ typedef struct sc_build_options {
     const sc_hooks *hooks;         /* for this call */
     uint32_t rest;                 /* SC_REST_... */
     uint32_t content;              /* SC_MODEL_... */
+    const sc_tasks *tasks;         /* threads to build with, at most SC_WORKERS_MAX; NULL: one */
 } sc_build_options;
 
 /* A mesh made ready for queries: one block of flat arrays, immutable. */
@@ -325,6 +367,11 @@ typedef struct sc_model sc_model;
  * microseconds a triangle (regular grids and thin tubes least, irregular meshes of a million
  * triangles most) and, while it runs, up to 310 bytes a triangle; with METIS 5 to 7 microseconds a
  * triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 170 bytes a triangle.
+ *
+ * With options.tasks several of the host's threads build. The model is the same, bit for bit,
+ * whatever their number, and nearly all steps are shared out; not a cut by the caller (bisect) or by
+ * METIS, nor SC_REST_MARKED. The allocator, the hooks and bisect are called in the thread that
+ * called sc_build alone.
  */
 SC_API sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model);
 
@@ -500,46 +547,6 @@ SC_API sc_status sc_workspace_set_hooks(sc_workspace *workspace, const sc_hooks 
 /* Frees what sc_workspace_create(_for) made; does nothing to what sc_workspace_init(_for) made.
    NULL is allowed. */
 SC_API void sc_workspace_free(sc_workspace *workspace);
-
-/* ------------------------------------------------------------------------------------------------
- * Tasks
- */
-
-/*
- * The host's threads, for one query to use several of: a job system, or a pool of threads. Without,
- * a query runs in the thread that calls it. A query cuts its work into jobs one after the other,
- * and each job into parts that may run in any order and at once.
- *
- *   workers  how many parts may run at once, at most what the workspace was made for
- *            (sc_workspace_options.workers), else SC_ERROR_WORKSPACE; 0 and 1: one
- *   enqueue  runs the count parts of a job, 1 or more: run(context, part, worker) once for each
- *            part from 0 to count - 1, in any threads, worker being a number below workers that no
- *            other running part of the job has. May return before they are done, or run them all
- *            itself. What it returns is passed to finish and may be NULL
- *   finish   returns when all parts of that job are done. What they wrote must be visible to the
- *            caller then, as what the caller wrote before enqueue must be to the parts: so it is
- *            with any locks, joins or queues of threads
- *   user     passed through
- *
- * enqueue and finish are called in the thread that called the library, in turn: there is one job of
- * a query at a time. run takes 32 kilobytes of stack, does not block and calls neither of them.
- * They must not fail: without a free thread, run the parts in the caller's:
- *
- *     void *enqueue(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
- *                   void *context, uint32_t count)
- *     {
- *         for (uint32_t part = 0; part < count; ++part) run(context, part, 0);
- *         return NULL;
- *     }
- */
-typedef struct sc_tasks {
-    uint32_t struct_size;
-    uint32_t workers;
-    void *(*enqueue)(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
-                     void *context, uint32_t count);
-    void (*finish)(void *user, void *task);
-    void *user;
-} sc_tasks;
 
 /* ------------------------------------------------------------------------------------------------
  * Queries

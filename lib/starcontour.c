@@ -6,6 +6,7 @@
  */
 #include "starcontour.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -89,6 +90,15 @@ static sc_status read_allocator(const sc_hooks *hooks, const sc_allocator *from,
     return SC_ERROR_NULL;
 }
 
+static sc_status read_build_tasks(const sc_hooks *hooks, const sc_tasks *from, sc_tasks *tasks)
+{
+    sc_status status = sc_arguments_read_tasks(hooks, from, tasks);
+    if (status || tasks->workers <= SC_WORKERS_MAX) return status;
+    sc_hooks_log(hooks, SC_LOG_ERROR, "options.tasks.workers is %" PRIu32 ", more than %d",
+                 tasks->workers, SC_WORKERS_MAX);
+    return SC_ERROR_OPTION;
+}
+
 sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model)
 {
     sc_mesh m;
@@ -96,6 +106,7 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
     sc_hooks hooks;
     sc_allocator allocator;
     sc_scratch scratch;
+    sc_tasks tasks;
     sc_status status;
     if (!model) return SC_ERROR_NULL;
     *model = NULL;
@@ -109,8 +120,10 @@ sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_mode
                                    SC_ARGUMENTS_UP_TO(sc_mesh, indices));
     if (!status) status = check_build_choices(&o);
     if (!status) status = read_allocator(&hooks, o.allocator, &allocator);
+    if (!status) status = read_build_tasks(&hooks, o.tasks, &tasks);
     if (status) return status;
     sc_scratch_init(&scratch, &allocator);
+    if (tasks.workers > 1) scratch.tasks = &tasks;
     status = sc_pipeline_run(&m, &o, &scratch, model);
     if (!status) status = mark_rest(&m, &o, &scratch, model);
     sc_scratch_clear(&scratch);
@@ -500,15 +513,9 @@ static sc_status read_batch(sc_workspace *const *workspaces, const sc_query_opti
 {
     uint32_t i, k;
     sc_status status = sc_question_read_options(NULL, options, &b->options);
-    memset(tasks, 0, sizeof *tasks);
-    if (!status && b->options.tasks) {
-        status = sc_arguments_read(NULL, "options.tasks", tasks, sizeof *tasks, b->options.tasks,
-                                   SC_ARGUMENTS_UP_TO(sc_tasks, finish));
-        if (!status && (!tasks->enqueue || !tasks->finish)) status = SC_ERROR_NULL;
-    }
+    if (!status) status = sc_arguments_read_tasks(NULL, b->options.tasks, tasks);
     if (status) return status;
     b->options.tasks = NULL;
-    if (!tasks->workers) tasks->workers = 1;
     if (tasks->workers > SC_WORKERS_MAX) return SC_ERROR_WORKSPACE;
     for (i = 0; i < tasks->workers; i++) {
         if (!workspaces[i]) return SC_ERROR_NULL;

@@ -83,6 +83,24 @@ sc_status sc_arguments_read_options(const sc_hooks *hooks, const char *of, void 
     return SC_OK;
 }
 
+sc_status sc_arguments_read_tasks(const sc_hooks *hooks, const sc_tasks *caller, sc_tasks *tasks)
+{
+    sc_status status;
+    memset(tasks, 0, sizeof *tasks);
+    tasks->workers = 1;
+    if (!caller) return SC_OK;
+    status = sc_arguments_read(hooks, "options.tasks", tasks, sizeof *tasks, caller,
+                               SC_ARGUMENTS_UP_TO(sc_tasks, finish));
+    if (status) return status;
+    if (!tasks->enqueue || !tasks->finish) {
+        sc_hooks_log(hooks, SC_LOG_ERROR, "options.tasks.%s is NULL",
+                     tasks->enqueue ? "finish" : "enqueue");
+        return SC_ERROR_NULL;
+    }
+    if (!tasks->workers) tasks->workers = 1;
+    return SC_OK;
+}
+
 sc_status sc_arguments_read_hooks(const sc_hooks *caller, sc_hooks *hooks)
 {
     sc_status status;

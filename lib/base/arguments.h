@@ -55,6 +55,10 @@ sc_status sc_arguments_read(const sc_hooks *hooks, const char *of, void *to, uin
 sc_status sc_arguments_read_options(const sc_hooks *hooks, const char *of, void *to, uint32_t size,
                                     const void *from);
 
+/* Reads options.tasks: functions that are there, and one worker at least. NULL gives one worker and
+   no functions. */
+sc_status sc_arguments_read_tasks(const sc_hooks *hooks, const sc_tasks *caller, sc_tasks *tasks);
+
 /* Reads the caller's hooks; NULL gives none. */
 sc_status sc_arguments_read_hooks(const sc_hooks *caller, sc_hooks *hooks);
 

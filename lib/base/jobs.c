@@ -85,6 +85,15 @@ int sc_jobs_are_taken(const sc_jobs_ranges *ranges)
     return 1;
 }
 
+void sc_jobs_run(const sc_tasks *tasks, uint32_t parts, sc_jobs_part run, void *context)
+{
+    uint32_t part;
+    if (tasks && parts > 1)
+        tasks->finish(tasks->user, tasks->enqueue(tasks->user, run, context, parts));
+    else
+        for (part = 0; part < parts; part++) run(context, part, 0);
+}
+
 typedef struct loop {
     sc_jobs_body body;
     void *context;
@@ -145,15 +154,6 @@ static void run_order(void *context, uint32_t part, uint32_t worker)
     r->order(r->context, r->first[part], r->first[part + 1] - r->first[part]);
 }
 
-static void run_all(const sc_tasks *tasks, runs *r, uint32_t count,
-                    void (*run)(void *context, uint32_t part, uint32_t worker))
-{
-    if (count == 1)
-        run(r, 0, 0);
-    else
-        tasks->finish(tasks->user, tasks->enqueue(tasks->user, run, r, count));
-}
-
 void sc_jobs_sort(const sc_tasks *tasks, uint64_t count, sc_jobs_split split, sc_jobs_order order,
                   void *context)
 {
@@ -165,11 +165,11 @@ void sc_jobs_sort(const sc_tasks *tasks, uint64_t count, sc_jobs_split split, sc
     r.first[0] = 0;
     r.first[1] = count;
     for (n = 1; n < SC_JOBS_RUNS && count / n >= SC_JOBS_RUN_MIN; n *= 2) {
-        run_all(tasks, &r, n, run_split);
+        sc_jobs_run(tasks, n, run_split, &r);
         for (i = n; i > 0; i--) {
             r.first[2 * i] = r.first[i];
             r.first[2 * i - 1] = r.middle[i - 1];
         }
     }
-    run_all(tasks, &r, n, run_order);
+    sc_jobs_run(tasks, n, run_order, &r);
 }

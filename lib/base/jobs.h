@@ -40,6 +40,13 @@ uint32_t sc_jobs_take_some(sc_jobs_ranges *ranges, uint32_t worker, uint32_t *so
 /* Whether each part is taken: then a worker may see what is left to do besides. */
 int sc_jobs_are_taken(const sc_jobs_ranges *ranges);
 
+/* A part of a job, from 0; worker: a number below the tasks' workers that no other running part
+   has. */
+typedef void (*sc_jobs_part)(void *context, uint32_t part, uint32_t worker);
+
+/* Does so many parts, one or more: without tasks in order, by worker 0. */
+void sc_jobs_run(const sc_tasks *tasks, uint32_t parts, sc_jobs_part run, void *context);
+
 /* A loop is cut into so many parts at most. */
 enum { SC_JOBS_PARTS = 32 };
 

@@ -52,6 +52,7 @@ void sc_scratch_init(sc_scratch *scratch, const sc_allocator *allocator)
     scratch->allocator = *allocator;
     scratch->blocks = NULL;
     scratch->live_bytes = scratch->peak_bytes = scratch->allocations = 0;
+    scratch->tasks = NULL;
 }
 
 void *sc_scratch_allocate(sc_scratch *scratch, uint64_t bytes)

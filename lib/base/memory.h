@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * An sc_scratch is a list of allocations. Each can be given back at any time and all go at once
- * with sc_scratch_clear, so that an early return after a failed step leaks nothing. Not for
- * queries, which allocate nothing.
+ * with sc_scratch_clear, so that an early return after a failed step leaks nothing. One thread takes
+ * and gives, that which called the library. Not for queries, which allocate nothing.
  */
 #ifndef SC_BASE_MEMORY_H
 #define SC_BASE_MEMORY_H
@@ -19,6 +19,7 @@ typedef struct sc_scratch {
     sc_allocator allocator;
     sc_scratch_block *blocks;
     uint64_t live_bytes, peak_bytes, allocations; /* of these and of sc_scratch_allocate */
+    const sc_tasks *tasks; /* the host's threads for loops over the memory; NULL: there is one */
 } sc_scratch;
 
 /* The caller's allocator, or malloc and free if there is none. */

@@ -96,15 +96,8 @@ sc_status sc_question_read_tasks(const sc_workspace *workspace, const sc_tasks *
     const sc_hooks *hooks = &workspace->hooks;
     sc_status status;
     if (!*given) return SC_OK;
-    status = sc_arguments_read(hooks, "options.tasks", tasks, sizeof *tasks, *given,
-                               SC_ARGUMENTS_UP_TO(sc_tasks, finish));
+    status = sc_arguments_read_tasks(hooks, *given, tasks);
     if (status) return status;
-    if (!tasks->enqueue || !tasks->finish) {
-        sc_hooks_log(hooks, SC_LOG_ERROR, "options.tasks.%s is NULL",
-                     tasks->enqueue ? "finish" : "enqueue");
-        return SC_ERROR_NULL;
-    }
-    if (!tasks->workers) tasks->workers = 1;
     if (tasks->workers > workspace->sizes.workers) {
         sc_hooks_log(hooks, SC_LOG_ERROR,
                      "options.tasks.workers is %" PRIu32 ", but the workspace is for %" PRIu32,
