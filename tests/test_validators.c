@@ -240,7 +240,6 @@ static void check_long_chain(sc_scratch *scratch)
         hierarchy.order = order;
         hierarchy.corner = corner; /* all triangles at one point */
         hierarchy.nodes = nodes;
-        hierarchy.point_count = 1;
         hierarchy.triangle_count = hierarchy.leaf_count = length + 1;
         hierarchy.node_count = 2 * length + 1;
         hierarchy.depth = length + 1;
@@ -315,7 +314,6 @@ static void structures(void)
         CHECK(hierarchy.triangle_count == 2 * 9 * 9);
         for (k = 0; k < 3 * 2 * 9 * 9; ++k) corner[k] = k;
         apart.corner = corner;
-        apart.point_count = 3 * 2 * 9 * 9;
         CHECK(!sc_hierarchy_validate(&apart, &scratch));
     }
     CHECK(sc_hierarchy_validate(&hierarchy, &scratch));

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/assume.h"
+#include "base/jobs.h"
 #include "base/sort.h"
 #include "build/slices.h"
 #include "build/small_refinement.h"
@@ -39,6 +40,8 @@ enum { ODD_LEAVES = 15, ODD_LEAVES_OF_CALLER = 63 };
 enum { HELD = 2 };
 static const uint32_t DECIDED = 0x80000000u;
 
+/* Arrays are per triangle of the mesh, or per place of the patch at hand: then one after the other
+   in the patch's order, whatever else is in that room. */
 typedef struct bisection {
     const sc_points *points;
     const sc_adjacency *adjacency;
@@ -52,9 +55,9 @@ typedef struct bisection {
     uint32_t *neighbor;  /* 3 * triangle_count: across each side, triangle_count if there is none */
     uint32_t *label;     /* triangle_count + 1: 2 * number of the patch at hand, + 1 on side 1 */
     uint32_t *component; /* triangle_count + 1 */
-    uint32_t *queue;     /* triangle_count */
-    sc_pair *keys;       /* triangle_count */
-    uint32_t *sizes;     /* triangle_count: of components */
+    uint32_t *queue;     /* a place */
+    sc_pair *keys;       /* a place */
+    uint32_t *sizes;     /* a place: of components */
     int32_t *graph; /* 7 * triangle_count + 1, for the caller's cut: offsets, neighbors, weights */
     uint32_t patches; /* numbers given out */
     sc_refinement refinement;
@@ -74,7 +77,8 @@ static int is_with(const bisection *b, uint32_t t, uint32_t u, int by_side)
 static uint32_t number_components(bisection *b, const uint32_t *triangles, uint32_t count,
                                   int by_side, uint32_t least)
 {
-    uint32_t *parent = b->queue, found = count, i, k; /* of each triangle: a lower one, or itself */
+    /* of each triangle: a lower one, or itself; then its component, written over it */
+    uint32_t *parent = b->component, found = count, i, k;
     for (i = 0; i < count; i++) {
         uint32_t t = triangles[i], root = t;
         parent[t] = t;
@@ -97,7 +101,7 @@ static uint32_t number_components(bisection *b, const uint32_t *triangles, uint3
         if (parent[t] == t) {
             b->sizes[found] = 0;
             b->component[t] = found++;
-        } else {
+        } else { /* of a lower one it is known */
             b->component[t] = b->component[parent[t]];
         }
         b->sizes[b->component[t]]++;
@@ -160,14 +164,14 @@ static sc_status cut_by_caller(bisection *b, const uint32_t *triangles, uint32_t
     uint32_t i, k, zeros = 0, low = b->label[triangles[0]];
     int32_t arcs = 0;
     sc_status status;
-    for (i = 0; i < count; i++) b->queue[triangles[i]] = i; /* local numbers */
+    for (i = 0; i < count; i++) b->component[triangles[i]] = i; /* local numbers */
     for (i = 0; i < count; i++) {
         offsets[i] = arcs;
         for (k = 0; k < 3; k++) {
             uint32_t t = triangles[i], u = b->neighbor[3 * (uint64_t)t + k];
             float weight = 100 * b->costs[3 * (uint64_t)t + k];
             if (!is_with(b, t, u, 0)) continue;
-            neighbors[arcs] = (int32_t)b->queue[u];
+            neighbors[arcs] = (int32_t)b->component[u];
             weights[arcs++] = weight > 999 ? 1000 : weight >= 1 ? (int32_t)weight : 1;
         }
     }
@@ -376,7 +380,8 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count,
         for (i = 0; i < count; i++) size[b->label[triangles[i]] & 1]++;
         even_out(b, triangles, count, size, capacity);
     } else {
-        sc_straight_cut_run(&b->facets, triangles, count, left_target, b->refinement.gain,
+        sc_straight_cut_run(&b->facets, triangles, count, left_target,
+                            (float *)(void *)b->queue, /* not in use meanwhile */
                             (uint64_t *)(void *)b->keys, b->label, low);
         size[0] = left_target;
         size[1] = count - left_target;
@@ -389,37 +394,220 @@ static sc_status divide(bisection *b, const uint32_t *triangles, uint32_t count,
     return SC_OK;
 }
 
-/* whole: whether the patch is known to be connected. */
-static sc_status bisect_patch(bisection *b, uint32_t first, uint32_t count, uint32_t leaves,
-                              uint32_t depth, int whole, uint32_t *node)
+/* A range of the hierarchy's order that is to become so many leaves. */
+typedef struct patch {
+    uint32_t first, count, leaves, depth;
+    int whole; /* it is known to be connected */
+} patch;
+
+/* Divides a patch of two leaves or more, and puts the triangles of each half together. */
+static sc_status cut_patch(bisection *b, const patch *p, patch half[2])
 {
-    sc_hierarchy *hierarchy = b->hierarchy;
-    uint32_t *triangles = hierarchy->order + first, i, left = 0, right = 0, child;
-    uint32_t left_leaves, right_leaves;
+    uint32_t *triangles = b->hierarchy->order + p->first, i, left = 0, right = 0;
     int connected[2];
-    sc_status status;
-    if (leaves == 1 || SC_HARDLY(depth > DEPTH_MEASURED)) {
-        *node = sc_hierarchy_add_balanced(hierarchy, first, count, depth);
-        return SC_OK;
-    }
-    if ((whole || depth == 1) && sc_slices_add(&b->slices, hierarchy, first, count, depth, node))
-        return SC_OK;
-    *node = sc_hierarchy_add(hierarchy, first, count, depth);
-    status = divide(b, triangles, count, leaves, whole, connected);
+    sc_status status = divide(b, triangles, p->count, p->leaves, p->whole, connected);
     if (status) return status;
-    for (i = 0; i < count; i++) { /* without a branch, which no processor could foresee */
+    for (i = 0; i < p->count; i++) { /* without a branch, which no processor could foresee */
         uint32_t t = triangles[i], side = b->label[t] & 1;
         b->queue[right] = triangles[left] = t;
         right += side;
         left += !side;
     }
     memcpy(triangles + left, b->queue, right * sizeof *triangles);
-    share_leaves(b, leaves, left, right, &left_leaves, &right_leaves);
-    status = bisect_patch(b, first, left, left_leaves, depth + 1, connected[0], &child);
+    share_leaves(b, p->leaves, left, right, &half[0].leaves, &half[1].leaves);
+    half[0].first = p->first;
+    half[0].count = left;
+    half[1].first = p->first + left;
+    half[1].count = right;
+    for (i = 0; i < 2; i++) {
+        half[i].depth = p->depth + 1;
+        half[i].whole = connected[i];
+    }
+    return SC_OK;
+}
+
+static sc_status bisect_patch(bisection *b, const patch *p, uint32_t *node)
+{
+    sc_hierarchy *hierarchy = b->hierarchy;
+    patch half[2];
+    uint32_t child;
+    sc_status status;
+    if (p->leaves == 1 || SC_HARDLY(p->depth > DEPTH_MEASURED)) {
+        *node = sc_hierarchy_add_balanced(hierarchy, p->first, p->count, p->depth);
+        return SC_OK;
+    }
+    if ((p->whole || p->depth == 1) &&
+        sc_slices_add(&b->slices, hierarchy, p->first, p->count, p->depth, node))
+        return SC_OK;
+    *node = sc_hierarchy_add(hierarchy, p->first, p->count, p->depth);
+    status = cut_patch(b, p, half);
+    if (status) return status;
+    status = bisect_patch(b, &half[0], &child);
     if (status) return status;
     hierarchy->nodes[*node].left = child;
-    status = bisect_patch(b, first + left, right, right_leaves, depth + 1, connected[1], &child);
+    status = bisect_patch(b, &half[1], &child);
     hierarchy->nodes[*node].right = child;
+    return status;
+}
+
+/*
+ * With several threads the first cuts are made level by level, the patches of a level at the same
+ * time, until there are enough patches for all threads to have some; then each of these becomes a
+ * subtree by itself. A patch has room of its own: that of its triangles, and that of its places in
+ * the order. It reads nothing of others, since sides towards them count as sides without a
+ * neighbor, which is all the same where patches are told apart by their labels. With one thread all
+ * is one such patch.
+ */
+
+/* Levels of first cuts; patches below so many triangles are not cut then. */
+enum { FIRST_LEVELS = 6, FIRST_LEAST = 8192, FIRSTS = 1 << FIRST_LEVELS };
+
+/* Fewer are cut than are made. */
+typedef char has_room_for_firsts[(int)FIRSTS <= (int)SC_HIERARCHY_SPARE ? 1 : -1];
+
+/* A patch that the first cuts made: cut itself, or to become a subtree. */
+typedef struct top {
+    patch p;
+    uint32_t child; /* the number of the first of its halves, which follow each other; 0: not cut */
+    uint32_t nodes, leaves, depth; /* of its subtree */
+    sc_status status;
+} top;
+
+typedef struct tops {
+    bisection *b;
+    uint32_t count, begin; /* begin: the first of the level at hand */
+    uint32_t inner;        /* how many are cut */
+    top at[2 * FIRSTS];
+    patch half[2 * FIRSTS]; /* of those of a level */
+} tops;
+
+/* What a patch needs of a bisection, apart from all other patches. */
+static bisection room_of(const bisection *b, const patch *p)
+{
+    bisection own = *b;
+    own.queue += p->first;
+    own.keys += p->first;
+    own.sizes += p->first;
+    own.patches += p->first; /* of a patch come fewer than it has triangles */
+    own.refinement.moves = own.slices.before = own.queue;
+    own.refinement.border = own.sizes;
+    own.refinement.heap += 4 * (uint64_t)p->first;
+    own.slices.keys = own.keys;
+    return own;
+}
+
+/* From now on the halves of a patch are beside nothing of each other. */
+static void part_halves(bisection *b, const patch *p)
+{
+    const uint32_t *triangles = b->hierarchy->order + p->first, none = b->points->triangle_count;
+    uint32_t i, k;
+    for (i = 0; i < p->count; i++)
+        for (k = 0; k < 3; k++) {
+            uint32_t *u = &b->neighbor[3 * (uint64_t)triangles[i] + k];
+            if (b->label[*u] != b->label[triangles[i]]) *u = none;
+        }
+}
+
+static void cut_top(void *context, uint32_t part, uint32_t worker)
+{
+    tops *all = (tops *)context;
+    top *at = &all->at[all->begin + part];
+    bisection own = room_of(all->b, &at->p);
+    (void)worker;
+    if (at->p.count < FIRST_LEAST) return;
+    (void)cut_patch(&own, &at->p, all->half + 2 * part); /* the built-in cut does not fail */
+    part_halves(&own, &at->p);
+    at->child = 1;
+}
+
+static void make_firsts(tops *all, const sc_tasks *tasks)
+{
+    uint32_t level, end, i;
+    for (level = 0; tasks && level < FIRST_LEVELS; level++) {
+        end = all->count;
+        sc_jobs_run(tasks, end - all->begin, cut_top, all);
+        for (i = all->begin; i < end; i++) {
+            const patch *half = all->half + 2 * (i - all->begin);
+            if (!all->at[i].child) continue;
+            all->at[i].child = all->count;
+            all->at[all->count++].p = half[0];
+            all->at[all->count++].p = half[1];
+            all->inner++;
+        }
+        if (all->count == end) break;
+        all->begin = end;
+    }
+}
+
+/* The nodes of a subtree, until all of them are moved together: a tree has fewer than twice as many
+   as triangles. */
+static sc_tree_node *nodes_of(const tops *all, const top *at)
+{
+    return all->b->hierarchy->nodes + all->inner + 2 * (uint64_t)at->p.first;
+}
+
+static void make_subtree(void *context, uint32_t part, uint32_t worker)
+{
+    tops *all = (tops *)context;
+    top *at = &all->at[part];
+    sc_hierarchy hierarchy = *all->b->hierarchy;
+    bisection own;
+    uint32_t root;
+    (void)worker;
+    if (at->child) return;
+    own = room_of(all->b, &at->p);
+    own.hierarchy = &hierarchy;
+    hierarchy.nodes = nodes_of(all, at);
+    hierarchy.starts = (uint32_t *)(void *)own.refinement.heap; /* not in use meanwhile */
+    at->status = bisect_patch(&own, &at->p, &root);
+    at->nodes = hierarchy.node_count;
+    at->leaves = hierarchy.leaf_count;
+    at->depth = hierarchy.depth;
+}
+
+/* Moves the nodes of a patch behind those that are there, a node before those below it. There is
+   room: what was moved before has at most so many nodes as its room had, and inner nodes. */
+static uint32_t append_nodes(const tops *all, const top *at)
+{
+    sc_hierarchy *hierarchy = all->b->hierarchy;
+    sc_tree_node *nodes = hierarchy->nodes + hierarchy->node_count;
+    uint32_t first = hierarchy->node_count, i, child;
+    if (at->child) {
+        (void)sc_hierarchy_add(hierarchy, at->p.first, at->p.count, at->p.depth);
+        child = append_nodes(all, &all->at[at->child]);
+        nodes->left = child;
+        child = append_nodes(all, &all->at[at->child + 1]);
+        nodes->right = child;
+        return first;
+    }
+    memmove(nodes, nodes_of(all, at), at->nodes * sizeof *nodes);
+    for (i = 0; i < at->nodes; i++)
+        if (nodes[i].left != SC_NONE) {
+            nodes[i].left += first;
+            nodes[i].right += first;
+        }
+    hierarchy->node_count += at->nodes;
+    hierarchy->leaf_count += at->leaves;
+    if (at->depth > hierarchy->depth) hierarchy->depth = at->depth;
+    return first;
+}
+
+static sc_status bisect_all(bisection *b, const sc_tasks *tasks)
+{
+    tops all;
+    uint32_t i;
+    sc_status status = SC_OK;
+    memset(&all, 0, sizeof all);
+    all.b = b;
+    all.count = 1;
+    all.at[0].p.count = b->points->triangle_count;
+    all.at[0].p.leaves = leaves_for(b, b->points->triangle_count);
+    all.at[0].p.depth = 1;
+    if (b->cut) tasks = NULL; /* the caller's function may not be made for several threads */
+    make_firsts(&all, tasks);
+    sc_jobs_run(tasks, all.count, make_subtree, &all);
+    for (i = 0; i < all.count && !status; i++) status = all.at[i].status;
+    if (!status) (void)append_nodes(&all, &all.at[0]);
     return status;
 }
 
@@ -446,27 +634,31 @@ static float divisor_at(const float a[3], const float b[3])
     return turn > 1e-6f ? 1 + turn : 1;
 }
 
-/* Neighbors, centers and costs. */
-static void measure(bisection *b)
+/* Lengths are added up for so many triangles at a time, and then these sums: whatever the threads, in
+   the same order. */
+enum { BLOCK = 4096, BLOCKS_LEAST = 4 };
+
+typedef struct measuring {
+    bisection *b;
+    double scale;  /* of coordinates, so that nothing overflows */
+    double *sums;  /* of each block */
+    float inverse; /* of the mean length; 0 if that is */
+} measuring;
+
+static void measure_block(const measuring *m, uint32_t block)
 {
+    const bisection *b = m->b;
     const sc_points *points = b->points;
     const uint32_t *corner = points->triangles, count = points->triangle_count;
-    float *normals = b->normals;
-    double size = 0, scale, sum = 0;
-    float inverse;
-    uint64_t i, corners = 3 * (uint64_t)count;
+    uint64_t i = 3 * (uint64_t)BLOCK * block, end = i + 3 * BLOCK;
+    double sum = 0;
     uint32_t j, k;
-    int exponent;
-    /* everything relative to the largest coordinate, so that nothing overflows */
-    for (i = 0; i < 3 * (uint64_t)points->point_count; i++)
-        if (fabs(points->rest[i]) > size) size = fabs(points->rest[i]);
-    frexp(size, &exponent);
-    scale = ldexp(1, exponent < -1000 ? 1000 : -exponent);
-    for (i = 0; i < corners; i += 3) {
+    if (end > 3 * (uint64_t)count) end = 3 * (uint64_t)count;
+    for (; i < end; i += 3) {
         double at[3][3], sides[3][3];
         for (j = 0; j < 3; j++)
             for (k = 0; k < 3; k++)
-                at[j][k] = points->rest[3 * (uint64_t)corner[i + j] + k] * scale;
+                at[j][k] = points->rest[3 * (uint64_t)corner[i + j] + k] * m->scale;
         for (j = 0; j < 3; j++) {
             uint32_t h = b->adjacency->opposite[i + j];
             double square = 0;
@@ -482,23 +674,60 @@ static void measure(bisection *b)
             b->neighbor[i + j] = h == SC_NONE || h / 3 == i / 3 ? count : h / 3;
         }
         for (k = 0; k < 3; k++) b->centers[i + k] = (float)(at[0][k] + at[1][k] + at[2][k]);
-        find_normal(sides, normals + i);
+        find_normal(sides, b->normals + i);
     }
-    inverse = sum > 0 ? (float)((double)corners / sum) : 0;
-    for (i = 0; i < corners; i += 3)
+    m->sums[block] = sum;
+}
+
+static void measure_blocks(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    (void)part;
+    for (; first < end; first++) measure_block((const measuring *)context, first);
+}
+
+static void find_costs(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const measuring *m = (const measuring *)context;
+    const float *normals = m->b->normals;
+    uint32_t count = m->b->points->triangle_count, t, j;
+    (void)part;
+    for (t = first; t < end; t++)
         for (j = 0; j < 3; j++) {
-            uint32_t t = b->neighbor[i + j];
-            float cost = inverse > 0 ? b->costs[i + j] * inverse : 1;
-            if (t < count) cost /= divisor_at(normals + i, normals + 3 * (uint64_t)t);
-            b->costs[i + j] = cost;
+            const uint64_t side = 3 * (uint64_t)t + j;
+            uint32_t other = m->b->neighbor[side];
+            float cost = m->inverse > 0 ? m->b->costs[side] * m->inverse : 1;
+            if (other < count)
+                cost /= divisor_at(normals + 3 * (uint64_t)t, normals + 3 * (uint64_t)other);
+            m->b->costs[side] = cost;
         }
+}
+
+/* Neighbors, centers and costs. */
+static void measure(bisection *b, const sc_tasks *tasks)
+{
+    const sc_points *points = b->points;
+    uint32_t blocks = (points->triangle_count - 1) / BLOCK + 1, block;
+    double size = 0, sum = 0;
+    measuring m;
+    uint64_t i;
+    int exponent;
+    for (i = 0; i < 3 * (uint64_t)points->point_count; i++)
+        if (fabs(points->rest[i]) > size) size = fabs(points->rest[i]);
+    frexp(size, &exponent);
+    m.b = b;
+    m.scale = ldexp(1, exponent < -1000 ? 1000 : -exponent);
+    m.sums = (double *)(void *)b->keys; /* not in use meanwhile */
+    (void)sc_jobs_loop(tasks, blocks, BLOCKS_LEAST, measure_blocks, &m);
+    for (block = 0; block < blocks; block++) sum += m.sums[block];
+    m.inverse = sum > 0 ? (float)(3 * (double)points->triangle_count / sum) : 0;
+    (void)sc_jobs_loop(tasks, points->triangle_count, BLOCKS_LEAST * BLOCK, find_costs, &m);
 }
 
 sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjacency,
                              sc_bisect bisect, void *user, sc_scratch *scratch,
                              sc_hierarchy *hierarchy)
 {
-    uint32_t count = points->triangle_count, t, root;
+    uint32_t count = points->triangle_count, t;
     bisection b;
     sc_status status;
     memset(&b, 0, sizeof b);
@@ -544,9 +773,9 @@ sc_status sc_bisection_build(const sc_points *points, const sc_adjacency *adjace
     b.slices.keys = b.keys; /* these three are not in use meanwhile */
     b.slices.before = b.queue;
     b.slices.place = b.component;
-    measure(&b);
+    measure(&b, scratch->tasks);
     for (t = 0; t < count; t++) hierarchy->order[t] = t;
-    status = bisect_patch(&b, 0, count, leaves_for(&b, count), 1, 0, &root);
+    status = bisect_all(&b, scratch->tasks);
     sc_scratch_give(scratch, b.graph);
     sc_scratch_give(scratch, b.refinement.heap);
     sc_scratch_give(scratch, b.refinement.state);

@@ -7,15 +7,9 @@
 
 #include <string.h>
 
-/* So that leaf_end can be asked. */
-static sc_status prepare_runs(sc_hierarchy *hierarchy, sc_scratch *scratch)
-{
-    hierarchy->met = (uint32_t *)sc_scratch_take_filled(
-        scratch, (uint64_t)hierarchy->point_count + 1, sizeof(uint32_t), 0);
-    if (!hierarchy->met) return SC_ERROR_MEMORY;
-    hierarchy->runs = hierarchy->met + hierarchy->point_count;
-    return SC_OK;
-}
+/* Places for the points of a run of triangles, four times as many as a leaf cluster has: a power of
+   two, and the bits of that. */
+enum { PLACE_BITS = 6, PLACES = 1 << PLACE_BITS };
 
 sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, const sc_points *points, sc_scratch *scratch)
 {
@@ -23,23 +17,20 @@ sc_status sc_hierarchy_init(sc_hierarchy *hierarchy, const sc_points *points, sc
     hierarchy->triangle_count = triangle_count;
     hierarchy->node_count = hierarchy->leaf_count = hierarchy->depth = 0;
     hierarchy->order = (uint32_t *)sc_scratch_take(scratch, triangle_count, sizeof(uint32_t));
-    hierarchy->nodes = (sc_tree_node *)sc_scratch_take(scratch, 2 * (uint64_t)triangle_count,
-                                                       sizeof(sc_tree_node));
+    hierarchy->nodes = (sc_tree_node *)sc_scratch_take(
+        scratch, 2 * (uint64_t)triangle_count + SC_HIERARCHY_SPARE, sizeof(sc_tree_node));
     hierarchy->corner = points->triangles;
     /* five triangles always fit into a leaf */
     hierarchy->starts =
         (uint32_t *)sc_scratch_take(scratch, (uint64_t)triangle_count / 5 + 2, sizeof(uint32_t));
-    hierarchy->point_count = points->point_count;
-    if (!hierarchy->order || !hierarchy->nodes || !hierarchy->starts) return SC_ERROR_MEMORY;
-    return prepare_runs(hierarchy, scratch);
+    return hierarchy->order && hierarchy->nodes && hierarchy->starts ? SC_OK : SC_ERROR_MEMORY;
 }
 
 sc_status sc_hierarchy_finish(sc_hierarchy *hierarchy, sc_scratch *scratch)
 {
     sc_tree_node *nodes;
     sc_scratch_give(scratch, hierarchy->starts);
-    sc_scratch_give(scratch, hierarchy->met);
-    hierarchy->starts = hierarchy->met = hierarchy->runs = NULL;
+    hierarchy->starts = NULL;
     nodes = (sc_tree_node *)sc_scratch_take(scratch, hierarchy->node_count, sizeof *nodes);
     if (!nodes) return SC_ERROR_MEMORY;
     memcpy(nodes, hierarchy->nodes, hierarchy->node_count * sizeof *nodes);
@@ -58,16 +49,25 @@ uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t coun
     return hierarchy->node_count++;
 }
 
+/* Whether a point is not in the table yet, to which it is added: from the place that its number
+   hashes to, the next that is free. */
+static uint32_t is_new(uint32_t table[PLACES], uint32_t point)
+{
+    uint32_t at = (point * 0x9e3779b1u) >> (32 - PLACE_BITS);
+    while (table[at] != SC_NONE && table[at] != point) at = (at + 1) % PLACES;
+    if (table[at] == point) return 0;
+    table[at] = point;
+    return 1;
+}
+
 uint32_t sc_hierarchy_leaf_end(const sc_hierarchy *hierarchy, uint32_t first, uint32_t end)
 {
-    uint32_t *met = hierarchy->met, run = ++*hierarchy->runs, points = 0, k;
+    uint32_t table[PLACES], points = 0, k;
+    memset(table, 0xff, sizeof table);
     if (end - first > SC_LEAF_MAX) end = first + SC_LEAF_MAX;
     for (; first < end; first++) {
         const uint32_t *corner = hierarchy->corner + 3 * (uint64_t)hierarchy->order[first];
-        for (k = 0; k < 3; k++) {
-            points += met[corner[k]] != run;
-            met[corner[k]] = run;
-        }
+        for (k = 0; k < 3; k++) points += is_new(table, corner[k]);
         if (points > SC_LEAF_POINTS) break;
     }
     return first;
@@ -110,8 +110,7 @@ int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch)
 {
     uint32_t at = 0, leaves = 0, i, top = 0, stack[SC_DEPTH_MAX + 1];
     uint8_t *seen = (uint8_t *)sc_scratch_take_filled(scratch, hierarchy->triangle_count, 1, 0);
-    sc_hierarchy again = *hierarchy;
-    if (!seen || prepare_runs(&again, scratch)) return 0;
+    if (!seen) return 0;
     stack[top++] = 0;
     while (top) {
         uint32_t n = stack[--top];
@@ -137,11 +136,10 @@ int sc_hierarchy_validate(const sc_hierarchy *hierarchy, sc_scratch *scratch)
     for (i = 0; i < hierarchy->node_count; i++) {
         const sc_tree_node *node = &hierarchy->nodes[i];
         if (node->left == SC_NONE &&
-            sc_hierarchy_leaf_end(&again, node->first, node->first + node->count) !=
+            sc_hierarchy_leaf_end(hierarchy, node->first, node->first + node->count) !=
                 node->first + node->count)
             return 0;
     }
-    sc_scratch_give(scratch, again.met);
     sc_scratch_give(scratch, seen);
     return at == hierarchy->triangle_count && leaves == hierarchy->leaf_count;
 }

@@ -22,18 +22,18 @@ enum { SC_LEAVES_MAX = 0x0fffffff };
 /* Nodes from the root to a leaf are fewer: see build/partition.c and build/bisection.c. */
 enum { SC_DEPTH_MAX = 96 };
 
+/* Room for so many nodes more than there can be, while subtrees are made apart: see
+   build/bisection.c. */
+enum { SC_HIERARCHY_SPARE = 64 };
+
 /* All arrays are scratch memory. */
 typedef struct sc_hierarchy {
     uint32_t *order;     /* triangle_count triangles, in leaf order */
-    sc_tree_node *nodes; /* node_count; while it is made, room for 2 * triangle_count */
+    sc_tree_node *nodes; /* node_count; while it is made, room for 2 * triangle_count and spare */
     uint32_t triangle_count, node_count, leaf_count, depth;
     const uint32_t *corner; /* 3 * triangle_count: point numbers, see build/mesh.h */
-    uint32_t point_count;
     /* while it is made: */
     uint32_t *starts; /* room for where the leaves of a range start */
-    uint32_t
-        *met; /* point_count: the number of the run of triangles in which a point was last met */
-    uint32_t *runs; /* how many runs were looked at */
 } sc_hierarchy;
 
 /* Takes the memory; order is left unset. */
