@@ -462,13 +462,14 @@ static void check_sharing_lists(structures *s, const sc_sharing *sharing)
     const uint32_t *first = s->xbvh.leaf_first, *order = s->hierarchy.order;
     uint32_t leaves = s->xbvh.leaf_count, entries = sharing->first[leaves], wrong = 0;
     uint32_t triangles = first[leaves];
-    uint64_t words = sc_sharing_lists_count(sharing, &s->xbvh), at = 0;
+    sc_sharing_parts parts;
+    uint64_t words = sc_sharing_lists_count(sharing, &s->xbvh, NULL, &parts), at = 0;
     uint32_t *begin = (uint32_t *)test_allocate((entries + 1) * sizeof(uint32_t));
     uint32_t *corners = (uint32_t *)test_allocate(3 * (size_t)triangles * sizeof(uint32_t));
     uint16_t *list = (uint16_t *)test_allocate((size_t)words * sizeof(uint16_t));
     for (uint32_t i = 0; i < 3 * triangles; ++i)
         corners[i] = s->points.triangles[3 * order[i / 3] + i % 3];
-    sc_sharing_lists_write(sharing, &s->xbvh, corners, begin, list);
+    sc_sharing_lists_write(sharing, &s->xbvh, corners, NULL, &parts, begin, list);
     for (uint32_t a = 0; a < leaves; ++a)
         for (uint32_t i = sharing->first[a]; i < sharing->first[a + 1]; ++i) {
             const uint32_t b = sharing->leaf[i];

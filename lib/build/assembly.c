@@ -395,7 +395,10 @@ sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacenc
 {
     sc_model counts, *m;
     uint32_t *number, connected[SC_DEPTH_MAX] = {0};
-    uint64_t share_total = sc_sharing_lists_count(sharing, xbvh), i;
+    sc_sharing_parts share_parts;
+    const uint64_t share_total =
+        sc_sharing_lists_count(sharing, xbvh, scratch->tasks, &share_parts);
+    uint64_t i;
     const uint64_t around_total = count_around(points, adjacency);
     uint16_t *own_rows;
     surroundings around;
@@ -432,14 +435,14 @@ sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacenc
     write_around(points, &around, m);
     sc_scratch_give(scratch, around.points); /* before the loops need memory */
     sc_scratch_give(scratch, around.first);
-    sc_leaf_shapes_fans(m, NEW_ARRAY(m, leaf_fan, uint16_t));
-    sc_leaf_shapes_outlines(m, NEW_ARRAY(m, leaf_outline, uint8_t));
+    sc_leaf_shapes_fans(m, scratch->tasks, NEW_ARRAY(m, leaf_fan, uint16_t));
+    sc_leaf_shapes_outlines(m, scratch->tasks, NEW_ARRAY(m, leaf_outline, uint8_t));
     copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
          ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
     copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
-    sc_leaf_shapes_touches(m, NEW_ARRAY(m, share_touch, uint16_t));
-    sc_sharing_lists_write(sharing, xbvh, sc_model_triangle(m), NEW_ARRAY(m, share_begin, uint32_t),
-                           NEW_ARRAY(m, share_list, uint16_t));
+    sc_leaf_shapes_touches(m, scratch->tasks, NEW_ARRAY(m, share_touch, uint16_t));
+    sc_sharing_lists_write(sharing, xbvh, sc_model_triangle(m), scratch->tasks, &share_parts,
+                           NEW_ARRAY(m, share_begin, uint32_t), NEW_ARRAY(m, share_list, uint16_t));
     own_rows = NEW_ARRAY(m, share_own_rows, uint16_t);
     for (i = 0; i < m->leaf_count; i++)
         sc_sharing_fold(sharing->own_rows + SC_LEAF_MAX * i, own_rows + SC_OWN_WORDS * i);

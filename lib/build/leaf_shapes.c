@@ -8,7 +8,18 @@
 #include <string.h>
 
 #include "base/bits.h"
+#include "base/jobs.h"
 #include "build/sharing_lists.h"
+
+/* Parts of jobs have so many leaf clusters at least. */
+enum { SHAPES_LEAVES_MIN = 500 };
+
+/* The model, and the array of it that is to be filled. */
+typedef struct shapes_job {
+    const sc_model *model;
+    uint16_t *fan, *touch;
+    uint8_t *outline;
+} shapes_job;
 
 /* How the triangles of a cluster lie round one of its points: as places in leaf_point, where each
    begins and ends, counter- clockwise. */
@@ -32,12 +43,16 @@ static int are_one_fan(const turns *t, int *closed)
     return steps == t->count;
 }
 
-void sc_leaf_shapes_fans(const sc_model *m, uint16_t *fan)
+/* Those of some leaf clusters. */
+static void find_fans(void *context, uint32_t part, uint32_t leaf, uint32_t end_leaf)
 {
-    const uint32_t *first = sc_model_leaf_first(m);
-    const uint8_t *where = sc_model_leaf_corner(m);
-    uint32_t leaf, i, k;
-    for (leaf = 0; leaf < m->leaf_count; leaf++, where += 3 * SC_LEAF_MAX, fan += 2) {
+    const shapes_job *job = (const shapes_job *)context;
+    const uint32_t *first = sc_model_leaf_first(job->model);
+    const uint8_t *where = sc_model_leaf_corner(job->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
+    uint16_t *fan = job->fan + 2 * (uint64_t)leaf;
+    uint32_t i, k;
+    (void)part;
+    for (; leaf < end_leaf; leaf++, where += 3 * SC_LEAF_MAX, fan += 2) {
         turns at[SC_LEAF_POINTS];
         memset(at, 0, sizeof at);
         for (i = 0; i < first[leaf + 1] - first[leaf]; i++)
@@ -57,6 +72,15 @@ void sc_leaf_shapes_fans(const sc_model *m, uint16_t *fan)
             if (are_one_fan(&at[i], &closed)) fan[!closed] |= (uint16_t)(1u << i);
         }
     }
+}
+
+void sc_leaf_shapes_fans(const sc_model *m, const sc_tasks *tasks, uint16_t *fan)
+{
+    shapes_job job;
+    memset(&job, 0, sizeof job);
+    job.model = m;
+    job.fan = fan;
+    sc_jobs_loop(tasks, m->leaf_count, SHAPES_LEAVES_MIN, find_fans, &job);
 }
 
 /* Follows a chain of edges until it begins again; returns how many points it has. */
@@ -91,13 +115,16 @@ static void write_two_chains(const uint32_t to[SC_LEAF_POINTS], uint32_t edges, 
     outline[SC_LEAF_POINTS - 1] |= SC_OUTLINE_TWO;
 }
 
-void sc_leaf_shapes_outlines(const sc_model *m, uint8_t *outline)
+/* Those of some leaf clusters. */
+static void find_outlines(void *context, uint32_t part, uint32_t leaf, uint32_t end_leaf)
 {
-    const uint32_t *first = sc_model_leaf_first(m);
-    const uint8_t *where = sc_model_leaf_corner(m);
-    uint32_t leaf, i, k;
-    for (leaf = 0; leaf < m->leaf_count;
-         leaf++, where += 3 * SC_LEAF_MAX, outline += SC_LEAF_POINTS) {
+    const shapes_job *job = (const shapes_job *)context;
+    const uint32_t *first = sc_model_leaf_first(job->model);
+    const uint8_t *where = sc_model_leaf_corner(job->model) + 3 * SC_LEAF_MAX * (uint64_t)leaf;
+    uint8_t *outline = job->outline + SC_LEAF_POINTS * (uint64_t)leaf;
+    uint32_t i, k;
+    (void)part;
+    for (; leaf < end_leaf; leaf++, where += 3 * SC_LEAF_MAX, outline += SC_LEAF_POINTS) {
         uint32_t to[SC_LEAF_POINTS] = {0}, back[SC_LEAF_POINTS] = {0};
         uint32_t edges = 0, start = 0, count = 0;
         int is_chain = 1;
@@ -122,6 +149,15 @@ void sc_leaf_shapes_outlines(const sc_model *m, uint8_t *outline)
         else if (count < SC_LEAF_POINTS)
             outline[SC_LEAF_POINTS - 1] = (uint8_t)(SC_LEAF_POINTS + count);
     }
+}
+
+void sc_leaf_shapes_outlines(const sc_model *m, const sc_tasks *tasks, uint8_t *outline)
+{
+    shapes_job job;
+    memset(&job, 0, sizeof job);
+    job.model = m;
+    job.outline = outline;
+    sc_jobs_loop(tasks, m->leaf_count, SHAPES_LEAVES_MIN, find_outlines, &job);
 }
 
 /* Whether two leaf clusters whose outlines are two chains each share the points of just one of
@@ -180,15 +216,28 @@ static uint16_t find_touch(const uint32_t *points, const uint32_t *other)
     return (uint16_t)(SC_TOUCHES | at);
 }
 
-void sc_leaf_shapes_touches(const sc_model *m, uint16_t *touch)
+/* The touches of some leaf clusters with higher ones. */
+static void find_touches(void *context, uint32_t part, uint32_t leaf, uint32_t end)
 {
+    const shapes_job *job = (const shapes_job *)context;
+    const sc_model *m = job->model;
     const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
     const uint32_t *points = sc_model_leaf_point(m);
-    uint32_t leaf, i;
-    for (leaf = 0; leaf < m->leaf_count; leaf++)
+    uint32_t i;
+    (void)part;
+    for (; leaf < end; leaf++)
         for (i = first[leaf]; i < first[leaf + 1]; i++)
-            touch[i] = share_chain(m, leaf, other[i])
-                           ? SC_TOUCH_CHAIN
-                           : find_touch(points + SC_LEAF_POINTS * (uint64_t)leaf,
-                                        points + SC_LEAF_POINTS * (uint64_t)other[i]);
+            job->touch[i] = share_chain(m, leaf, other[i])
+                                ? SC_TOUCH_CHAIN
+                                : find_touch(points + SC_LEAF_POINTS * (uint64_t)leaf,
+                                             points + SC_LEAF_POINTS * (uint64_t)other[i]);
+}
+
+void sc_leaf_shapes_touches(const sc_model *m, const sc_tasks *tasks, uint16_t *touch)
+{
+    shapes_job job;
+    memset(&job, 0, sizeof job);
+    job.model = m;
+    job.touch = touch;
+    sc_jobs_loop(tasks, m->leaf_count, SHAPES_LEAVES_MIN, find_touches, &job);
 }

@@ -9,13 +9,47 @@
 
 #include "base/bits.h"
 
-uint64_t sc_sharing_lists_count(const sc_sharing *sharing, const sc_xbvh *xbvh)
+/* Parts of jobs have so many leaf clusters at least. */
+enum { SHARING_LEAVES_MIN = 500 };
+
+/* What the parts of jobs read and write. */
+typedef struct sharing_job {
+    const sc_sharing *sharing;
+    const sc_xbvh *xbvh;
+    const uint32_t *triangle;
+    sc_sharing_parts *parts;
+    uint32_t *begin;
+    uint16_t *list;
+} sharing_job;
+
+/* The words of the lists of some leaf clusters. */
+static void count_words(void *context, uint32_t part, uint32_t leaf, uint32_t end)
 {
-    const uint64_t entries = sharing->first[xbvh->leaf_count];
-    uint64_t count = SC_SHARE_ROWS * entries + SC_SHARE_BEHIND, i;
-    for (i = 0; i < SC_LEAF_MAX * entries; i++)
+    const sharing_job *job = (const sharing_job *)context;
+    const sc_sharing *sharing = job->sharing;
+    const uint64_t first = sharing->first[leaf], behind = sharing->first[end];
+    uint64_t count = SC_SHARE_ROWS * (behind - first), i;
+    for (i = SC_LEAF_MAX * first; i < SC_LEAF_MAX * behind; i++)
         count += sc_bits_count(sharing->rows[i]) + (sharing->rows[i] != 0);
-    return count;
+    job->parts->begin[part] = count;
+}
+
+uint64_t sc_sharing_lists_count(const sc_sharing *sharing, const sc_xbvh *xbvh,
+                                const sc_tasks *tasks, sc_sharing_parts *parts)
+{
+    sharing_job job;
+    uint64_t at = 0;
+    uint32_t part, count;
+    memset(&job, 0, sizeof job);
+    job.sharing = sharing;
+    job.parts = parts;
+    count = sc_jobs_loop(tasks, xbvh->leaf_count, SHARING_LEAVES_MIN, count_words, &job);
+    for (part = 0; part < count; part++) {
+        const uint64_t words = parts->begin[part];
+        parts->begin[part] = at;
+        at += words;
+    }
+    return at + SC_SHARE_BEHIND;
 }
 
 /* How the corners of two triangles are shared. */
@@ -80,18 +114,35 @@ static uint32_t write_run(const uint16_t rows[SC_LEAF_MAX], const uint32_t *t, c
     return at;
 }
 
-void sc_sharing_lists_write(const sc_sharing *sharing, const sc_xbvh *xbvh,
-                            const uint32_t *triangle, uint32_t *begin, uint16_t *list)
+/* The lists of some leaf clusters. */
+static void write_lists(void *context, uint32_t part, uint32_t leaf, uint32_t end)
 {
-    const uint32_t *first = xbvh->leaf_first;
-    uint32_t leaf, i, at = 0;
-    for (leaf = 0; leaf < xbvh->leaf_count; leaf++)
+    const sharing_job *job = (const sharing_job *)context;
+    const sc_sharing *sharing = job->sharing;
+    const uint32_t *first = job->xbvh->leaf_first, *triangle = job->triangle;
+    uint32_t i, at = (uint32_t)job->parts->begin[part];
+    for (; leaf < end; leaf++)
         for (i = sharing->first[leaf]; i < sharing->first[leaf + 1]; i++) {
-            begin[i] = at;
+            job->begin[i] = at;
             at += write_run(sharing->rows + SC_LEAF_MAX * (uint64_t)i,
                             triangle + 3 * (uint64_t)first[leaf],
-                            triangle + 3 * (uint64_t)first[sharing->leaf[i]], list + at);
+                            triangle + 3 * (uint64_t)first[sharing->leaf[i]], job->list + at);
         }
-    begin[sharing->first[xbvh->leaf_count]] = at;
-    memset(list + at, 0, SC_SHARE_BEHIND * sizeof *list);
+    if (leaf < job->xbvh->leaf_count) return;
+    job->begin[sharing->first[leaf]] = at;
+    memset(job->list + at, 0, SC_SHARE_BEHIND * sizeof *job->list);
+}
+
+void sc_sharing_lists_write(const sc_sharing *sharing, const sc_xbvh *xbvh,
+                            const uint32_t *triangle, const sc_tasks *tasks,
+                            sc_sharing_parts *parts, uint32_t *begin, uint16_t *list)
+{
+    sharing_job job;
+    job.sharing = sharing;
+    job.xbvh = xbvh;
+    job.triangle = triangle;
+    job.parts = parts;
+    job.begin = begin;
+    job.list = list;
+    sc_jobs_loop(tasks, xbvh->leaf_count, SHARING_LEAVES_MIN, write_lists, &job);
 }

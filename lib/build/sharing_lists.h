@@ -14,6 +14,7 @@
 #ifndef SC_BUILD_SHARING_LISTS_H
 #define SC_BUILD_SHARING_LISTS_H
 
+#include "base/jobs.h"
 #include "build/sharing.h"
 
 enum sc_share_word {
@@ -39,12 +40,19 @@ static inline unsigned sc_share_edges(const uint16_t *run)
 /* So many words behind the last run may be read. */
 enum { SC_SHARE_BEHIND = 16 };
 
-/* Words of all lists, with those behind. */
-uint64_t sc_sharing_lists_count(const sc_sharing *sharing, const sc_xbvh *xbvh);
+/* Where the lists begin that each part of a job writes, as many as there may be. */
+typedef struct sc_sharing_parts {
+    uint64_t begin[SC_JOBS_PARTS];
+} sc_sharing_parts;
+
+/* Words of all lists, with those behind; fills parts, for the same sharing and tasks. */
+uint64_t sc_sharing_lists_count(const sc_sharing *sharing, const sc_xbvh *xbvh,
+                                const sc_tasks *tasks, sc_sharing_parts *parts);
 
 /* Writes them: where they begin, and one more, and the words. triangle has three points a place, in
    leaf order. */
 void sc_sharing_lists_write(const sc_sharing *sharing, const sc_xbvh *xbvh,
-                            const uint32_t *triangle, uint32_t *begin, uint16_t *list);
+                            const uint32_t *triangle, const sc_tasks *tasks,
+                            sc_sharing_parts *parts, uint32_t *begin, uint16_t *list);
 
 #endif
