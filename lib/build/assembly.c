@@ -9,7 +9,18 @@
 
 #include "base/assume.h"
 #include "base/bits.h"
+#include "base/jobs.h"
 #include "build/leaf_shapes.h"
+
+/* Parts of jobs have so many at least. Leaf clusters are cut into so many parts at most, for each
+   has marks of its own. */
+enum {
+    TRIANGLES_PART_MIN = 10000,
+    POINTS_PART_MIN = 10000,
+    NODES_PART_MIN = 2000,
+    LEAVES_PART_MIN = 1000,
+    LEAVES_PARTS = 4
+};
 
 /* One array of the model while it is being written. */
 #define NEW_ARRAY(model, name, type)                                                               \
@@ -42,6 +53,29 @@ static uint64_t hash_topology(const sc_model *m)
     return sc_model_is_for_boxes(m) ? mix(hash, SC_MODEL_BOXES) : hash;
 }
 
+/* The points that edges join each point with, by old numbers, which are those of the order in which
+   they are in memory. */
+typedef struct surroundings {
+    uint32_t *first;  /* point_count + 1 */
+    uint32_t *points; /* by new numbers; and room to read AROUND_AT_ONCE behind */
+} surroundings;
+
+/* What the parts of jobs read, and the model, of which each writes its own share. */
+typedef struct assembly {
+    const sc_points *points;
+    const sc_adjacency *adjacency;
+    const uint32_t *order;
+    const sc_xbvh *xbvh;
+    const sc_sctt *sctt;
+    const sc_csf *csf;
+    const sc_sharing *sharing;
+    const uint32_t *number; /* of each point: the vertex that stands for it */
+    const uint32_t *connected;
+    surroundings around;
+    sc_model *model;
+    uint32_t leaf_parts; /* of the job that writes leaf clusters */
+} assembly;
+
 /* Numbers points as the vertices that stand for them. */
 static void number_points(const sc_points *points, uint32_t *number)
 {
@@ -50,38 +84,57 @@ static void number_points(const sc_points *points, uint32_t *number)
         if (points->slot[v] < SC_SLOT_WELDED) number[points->slot[v]] = v;
 }
 
-static void write_triangles(const sc_points *points, const sc_adjacency *adjacency,
-                            const uint32_t *order, const uint32_t *number, sc_model *m)
+/* Some triangles, by their places. */
+static void write_triangles(void *context, uint32_t part, uint32_t i, uint32_t end)
 {
-    uint32_t *triangle = NEW_ARRAY(m, triangle, uint32_t), i;
+    const assembly *a = (const assembly *)context;
+    const sc_points *points = a->points;
+    const uint32_t *order = a->order, *number = a->number;
+    const uint8_t *owned_edges = a->adjacency->owned;
+    sc_model *m = a->model;
+    uint32_t *triangle = NEW_ARRAY(m, triangle, uint32_t) + 3 * (uint64_t)i;
     uint32_t *id = NEW_ARRAY(m, triangle_id, uint32_t), *place = NEW_ARRAY(m, place, uint32_t);
-    uint8_t *owned = NEW_ARRAY(m, edge_owned, uint8_t), *use = NEW_ARRAY(m, vertex_use, uint8_t);
+    uint8_t *owned = NEW_ARRAY(m, edge_owned, uint8_t);
     int k;
-    for (i = 0; i < m->triangle_count; i++) {
+    (void)part;
+    for (; i < end; i++) {
         for (k = 0; k < 3; k++)
             *triangle++ = number[points->triangles[3 * (uint64_t)order[i] + (uint64_t)k]];
         id[i] = points->id[order[i]];
         place[id[i]] = i;
-        owned[i] = adjacency->owned[order[i]];
+        owned[i] = owned_edges[order[i]];
     }
+}
+
+static void write_vertex_use(const sc_points *points, sc_model *m)
+{
+    uint8_t *use = NEW_ARRAY(m, vertex_use, uint8_t);
+    uint32_t i;
     for (i = 0; i < m->vertex_count; i++)
         use[i] = points->slot[i] == SC_SLOT_UNUSED   ? SC_VERTEX_UNUSED
                  : points->slot[i] == SC_SLOT_WELDED ? SC_VERTEX_WELDED
                                                      : SC_VERTEX_POINT;
 }
 
-/* The points of leaf clusters, in the order in which their triangles use them, and where the
+/* The points of some leaf clusters, in the order in which their triangles use them, and where the
    corners are. */
-static void write_leaves(sc_model *m)
+static void write_leaves(void *context, uint32_t part, uint32_t worker)
 {
-    uint8_t *last_place =
-        NEW_ARRAY(m, around_first, uint8_t); /* of each vertex; to be written to later */
-    const uint32_t *first = sc_model_leaf_first(m), *corner = sc_model_triangle(m);
-    uint32_t *point = NEW_ARRAY(m, leaf_point, uint32_t), leaf, i, k;
-    uint8_t *where = NEW_ARRAY(m, leaf_corner, uint8_t);
+    const assembly *a = (const assembly *)context;
+    sc_model *m = a->model;
+    const uint32_t begin = (uint32_t)((uint64_t)m->leaf_count * part / a->leaf_parts);
+    const uint32_t end = (uint32_t)((uint64_t)m->leaf_count * (part + 1) / a->leaf_parts);
+    /* a place of each vertex, which may be of another cluster; LEAVES_PARTS times as many bytes are
+       there, to be written to later */
+    uint8_t *last_place = NEW_ARRAY(m, around_first, uint8_t) + (uint64_t)part * m->vertex_count;
+    const uint32_t *first = sc_model_leaf_first(m);
+    const uint32_t *corner = sc_model_triangle(m) + 3 * (uint64_t)first[begin];
+    uint32_t *point = NEW_ARRAY(m, leaf_point, uint32_t) + SC_LEAF_POINTS * (uint64_t)begin;
+    uint8_t *where = NEW_ARRAY(m, leaf_corner, uint8_t) + 3 * SC_LEAF_MAX * (uint64_t)begin;
+    uint32_t leaf, i, k;
+    (void)worker;
     memset(last_place, 0, m->vertex_count);
-    for (leaf = 0; leaf < m->leaf_count;
-         leaf++, point += SC_LEAF_POINTS, where += 3 * SC_LEAF_MAX) {
+    for (leaf = begin; leaf < end; leaf++, point += SC_LEAF_POINTS, where += 3 * SC_LEAF_MAX) {
         uint32_t count = first[leaf + 1] - first[leaf], points = 0, newest;
         uint32_t known[SC_LEAF_POINTS];
         for (i = 0; i < SC_LEAF_POINTS; i++) known[i] = SC_NONE;
@@ -104,13 +157,6 @@ static void write_leaves(sc_model *m)
 /* Lists of neighbors are copied so many points at once, as nearly all are shorter; what is too much
    is written over by the next. Their memory is asked for so many vertices ahead. */
 enum { AROUND_AT_ONCE = 8, AROUND_AHEAD = 16 };
-
-/* The points that edges join each point with, by old numbers, which are those of the order in which
-   they are in memory. */
-typedef struct surroundings {
-    uint32_t *first;  /* point_count + 1 */
-    uint32_t *points; /* by new numbers; and room to read AROUND_AT_ONCE behind */
-} surroundings;
 
 /* For each corner at a point the next one; the previous one as well if no half-edge runs back to
    it. */
@@ -171,11 +217,12 @@ static void write_box_children(const sc_xbvh *xbvh, sc_model *m)
     }
 }
 
-static void write_nodes(const sc_sctt *sctt, const sc_csf *csf, sc_model *m)
+static void write_nodes(const assembly *a, uint32_t n, uint32_t end)
 {
-    sc_node *node = NEW_ARRAY(m, node, sc_node);
-    uint32_t n;
-    for (n = 0; n < m->node_count; n++, node++) {
+    const sc_sctt *sctt = a->sctt;
+    const sc_csf *csf = a->csf;
+    sc_node *node = NEW_ARRAY(a->model, node, sc_node) + n;
+    for (; n < end; n++, node++) {
         node->patches = sctt->patches[n];
         node->child = sctt->child[n];
         node->loop = csf->loop_first[n];
@@ -185,21 +232,75 @@ static void write_nodes(const sc_sctt *sctt, const sc_csf *csf, sc_model *m)
         node->kind = csf->in_pieces[n] ? SC_NODE_PIECES : 0;
         if (sctt->touch[n] != SC_NONE) node->kind |= SC_NODE_TOUCHES;
     }
+}
+
+/* Behind the last node. */
+static void write_node_behind(sc_model *m)
+{
+    sc_node *node = NEW_ARRAY(m, node, sc_node) + m->node_count;
     memset(node, 0, sizeof *node);
     node->child = m->node_count;
     node->contour = m->contour_total;
 }
 
-static void write_segments(const sc_csf *csf, const uint32_t *number, const sc_sctt *sctt,
-                           sc_model *m)
+/* The node of each two leaf clusters that share points, among some nodes. No two nodes are of the
+   same two. */
+static void write_share_nodes(sc_model *m, uint32_t n, uint32_t end)
 {
-    uint32_t *list = NEW_ARRAY(m, points, uint32_t), *contours = NEW_ARRAY(m, contours, uint32_t),
-             i;
-    for (i = 0; i < m->segment_point_total; i++) list[i] = number[csf->points[i]];
-    copy(contours, csf->contours, m->contour_total * sizeof(uint32_t));
-    for (i = 0; i < m->node_count; i++)
-        if (sctt->touch[i] != SC_NONE)
-            contours[csf->contour_first[i]] = number[contours[csf->contour_first[i]]];
+    uint32_t *share_node = NEW_ARRAY(m, share_node, uint32_t), i;
+    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
+    const uint32_t *leaf = sc_model_leaf(m);
+    const sc_node *node = sc_model_node(m);
+    for (; n < end; n++) {
+        const uint32_t a = node[n].patches.a, b = node[n].patches.b;
+        if (a == b || !sc_node_is_leaf(&node[n])) continue;
+        for (i = first[leaf[a]]; i < first[leaf[a] + 1]; i++)
+            if (other[i] == leaf[b]) share_node[i] = n;
+    }
+}
+
+static void write_contours(const assembly *a, uint32_t n, uint32_t end)
+{
+    const sc_csf *csf = a->csf;
+    uint32_t *contours = NEW_ARRAY(a->model, contours, uint32_t);
+    const uint32_t first = csf->contour_first[n];
+    copy(contours + first, csf->contours + first,
+         (csf->contour_first[end] - first) * sizeof(uint32_t));
+    for (; n < end; n++)
+        if (a->sctt->touch[n] != SC_NONE)
+            contours[csf->contour_first[n]] = a->number[contours[csf->contour_first[n]]];
+}
+
+/* Some nodes, and all that is of each. */
+static void write_tree(void *context, uint32_t part, uint32_t n, uint32_t end)
+{
+    const assembly *a = (const assembly *)context;
+    (void)part;
+    write_nodes(a, n, end);
+    write_share_nodes(a->model, n, end);
+    write_contours(a, n, end);
+}
+
+/* Some points of segments. */
+static void write_segment_points(void *context, uint32_t part, uint32_t i, uint32_t end)
+{
+    const assembly *a = (const assembly *)context;
+    const uint32_t *number = a->number, *points = a->csf->points;
+    uint32_t *list = NEW_ARRAY(a->model, points, uint32_t);
+    (void)part;
+    for (; i < end; i++) list[i] = number[points[i]];
+}
+
+static void copy_segments(const sc_csf *csf, sc_model *m)
+{
+    copy(NEW_ARRAY(m, segment_first, uint32_t), csf->point_first,
+         m->segment_count * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, segment_last, uint32_t), csf->point_last,
+         m->segment_count * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, segment_children, uint32_t), csf->child_first,
+         ((uint64_t)m->segment_count - m->leaf_segment_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, children, uint32_t), csf->children,
+         m->segment_child_total * sizeof(uint32_t));
 }
 
 /* Of pieces that hang together: the first of the piece that i is in. */
@@ -372,20 +473,61 @@ static void count_arrays(const sc_points *points, const sc_adjacency *adjacency,
     m->segment_child_total = csf->child_first[csf->segment_count - csf->leaf_count];
 }
 
-/* The node of each two leaf clusters that share points. */
-static void write_share_nodes(sc_model *m)
+/* Steps of about the same length that need not wait for each other. */
+static void write_rest(void *context, uint32_t part, uint32_t worker)
 {
-    uint32_t *share_node = NEW_ARRAY(m, share_node, uint32_t), n, i;
-    const uint32_t *first = sc_model_share_first(m), *other = sc_model_share_leaf(m);
-    const uint32_t *leaf = sc_model_leaf(m);
-    const sc_node *node = sc_model_node(m);
-    memset(share_node, 0xff, m->share_count * sizeof *share_node);
-    for (n = 0; n < m->node_count; n++) {
-        const uint32_t a = node[n].patches.a, b = node[n].patches.b;
-        if (a == b || !sc_node_is_leaf(&node[n])) continue;
-        for (i = first[leaf[a]]; i < first[leaf[a] + 1]; i++)
-            if (other[i] == leaf[b]) share_node[i] = n;
+    const assembly *a = (const assembly *)context;
+    sc_model *m = a->model;
+    uint16_t *own_rows = NEW_ARRAY(m, share_own_rows, uint16_t);
+    uint64_t i;
+    (void)worker;
+    if (!part) {
+        m->topology_hash = hash_topology(m);
+        return;
     }
+    write_around(a->points, &a->around, m);
+    for (i = 0; i < m->leaf_count; i++)
+        sc_sharing_fold(a->sharing->own_rows + SC_LEAF_MAX * i, own_rows + SC_OWN_WORDS * i);
+    write_box_children(a->xbvh, m);
+    copy_segments(a->csf, m);
+    write_levels(a->xbvh, a->sctt, a->csf, a->connected, NEW_ARRAY(m, level_info, sc_level));
+}
+
+/* Arrays that others are made from. */
+static void copy_hierarchy(const sc_xbvh *xbvh, const sc_sharing *sharing, sc_model *m)
+{
+    copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
+         ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
+         ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, share_crowded, uint8_t), sharing->crowded, m->leaf_count);
+    copy(NEW_ARRAY(m, level_first, uint32_t), xbvh->level_first,
+         ((uint64_t)m->level_count + 1) * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, child, uint32_t), xbvh->child, m->patch_end * sizeof(uint32_t));
+    copy(NEW_ARRAY(m, leaf, uint32_t), xbvh->leaf, m->patch_end * sizeof(uint32_t));
+}
+
+/* Of each triangle, leaf cluster, node and segment. */
+static void write_arrays(assembly *a, const sc_tasks *tasks, sc_sharing_parts *parts)
+{
+    sc_model *m = a->model;
+    copy_hierarchy(a->xbvh, a->sharing, m);
+    write_vertex_use(a->points, m);
+    sc_jobs_loop(tasks, m->triangle_count, TRIANGLES_PART_MIN, write_triangles, a);
+    a->leaf_parts = tasks && m->leaf_count >= LEAVES_PARTS * LEAVES_PART_MIN ? LEAVES_PARTS : 1;
+    sc_jobs_run(tasks, a->leaf_parts, write_leaves, a);
+    sc_jobs_run(m->triangle_count < TRIANGLES_PART_MIN ? NULL : tasks, 2, write_rest, a);
+    sc_leaf_shapes_fans(m, tasks, NEW_ARRAY(m, leaf_fan, uint16_t));
+    sc_leaf_shapes_outlines(m, tasks, NEW_ARRAY(m, leaf_outline, uint8_t));
+    sc_leaf_shapes_touches(m, tasks, NEW_ARRAY(m, share_touch, uint16_t));
+    sc_sharing_lists_write(a->sharing, a->xbvh, sc_model_triangle(m), tasks, parts,
+                           NEW_ARRAY(m, share_begin, uint32_t), NEW_ARRAY(m, share_list, uint16_t));
+    memset(NEW_ARRAY(m, share_node, uint32_t), 0xff, m->share_count * sizeof(uint32_t));
+    if (m->node_count) sc_jobs_loop(tasks, m->node_count, NODES_PART_MIN, write_tree, a);
+    write_node_behind(m);
+    if (m->segment_point_total)
+        sc_jobs_loop(tasks, m->segment_point_total, POINTS_PART_MIN, write_segment_points, a);
 }
 
 sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacency,
@@ -398,10 +540,8 @@ sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacenc
     sc_sharing_parts share_parts;
     const uint64_t share_total =
         sc_sharing_lists_count(sharing, xbvh, scratch->tasks, &share_parts);
-    uint64_t i;
     const uint64_t around_total = count_around(points, adjacency);
-    uint16_t *own_rows;
-    surroundings around;
+    assembly all;
     sc_status status = SC_OK;
 
     memset(&counts, 0, sizeof counts);
@@ -411,13 +551,13 @@ sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacenc
     if (status) return status;
     if (SC_HARDLY(around_total > UINT32_MAX || share_total > UINT32_MAX)) return SC_ERROR_COUNT;
     number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
-    around.first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)points->point_count + 1,
-                                               sizeof *around.first);
-    around.points =
-        (uint32_t *)sc_scratch_take(scratch, around_total + AROUND_AT_ONCE, sizeof *around.points);
-    if (!number || !around.first || !around.points) return SC_ERROR_MEMORY;
+    all.around.first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)points->point_count + 1,
+                                                   sizeof *all.around.first);
+    all.around.points = (uint32_t *)sc_scratch_take(scratch, around_total + AROUND_AT_ONCE,
+                                                    sizeof *all.around.points);
+    if (!number || !all.around.first || !all.around.points) return SC_ERROR_MEMORY;
     number_points(points, number);
-    list_around(points, adjacency, number, &around);
+    list_around(points, adjacency, number, &all.around);
     counts.share_count = sharing->first[xbvh->leaf_count];
     counts.share_total = (uint32_t)share_total;
     counts.around_total = (uint32_t)around_total;
@@ -428,42 +568,19 @@ sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacenc
     if (!m) return SC_ERROR_MEMORY;
     *m = counts;
     sc_model_clear_gaps(m);
-    write_triangles(points, adjacency, hierarchy->order, number, m);
-    copy(NEW_ARRAY(m, leaf_first, uint32_t), xbvh->leaf_first,
-         ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
-    write_leaves(m);
-    write_around(points, &around, m);
-    sc_scratch_give(scratch, around.points); /* before the loops need memory */
-    sc_scratch_give(scratch, around.first);
-    sc_leaf_shapes_fans(m, scratch->tasks, NEW_ARRAY(m, leaf_fan, uint16_t));
-    sc_leaf_shapes_outlines(m, scratch->tasks, NEW_ARRAY(m, leaf_outline, uint8_t));
-    copy(NEW_ARRAY(m, share_first, uint32_t), sharing->first,
-         ((uint64_t)m->leaf_count + 1) * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, share_leaf, uint32_t), sharing->leaf, m->share_count * sizeof(uint32_t));
-    sc_leaf_shapes_touches(m, scratch->tasks, NEW_ARRAY(m, share_touch, uint16_t));
-    sc_sharing_lists_write(sharing, xbvh, sc_model_triangle(m), scratch->tasks, &share_parts,
-                           NEW_ARRAY(m, share_begin, uint32_t), NEW_ARRAY(m, share_list, uint16_t));
-    own_rows = NEW_ARRAY(m, share_own_rows, uint16_t);
-    for (i = 0; i < m->leaf_count; i++)
-        sc_sharing_fold(sharing->own_rows + SC_LEAF_MAX * i, own_rows + SC_OWN_WORDS * i);
-    copy(NEW_ARRAY(m, share_crowded, uint8_t), sharing->crowded, m->leaf_count);
-    copy(NEW_ARRAY(m, level_first, uint32_t), xbvh->level_first,
-         ((uint64_t)m->level_count + 1) * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, child, uint32_t), xbvh->child, m->patch_end * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, leaf, uint32_t), xbvh->leaf, m->patch_end * sizeof(uint32_t));
-    write_box_children(xbvh, m);
-    write_nodes(sctt, csf, m);
-    write_share_nodes(m);
-    copy(NEW_ARRAY(m, segment_first, uint32_t), csf->point_first,
-         m->segment_count * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, segment_last, uint32_t), csf->point_last,
-         m->segment_count * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, segment_children, uint32_t), csf->child_first,
-         ((uint64_t)m->segment_count - m->leaf_segment_count + 1) * sizeof(uint32_t));
-    copy(NEW_ARRAY(m, children, uint32_t), csf->children,
-         m->segment_child_total * sizeof(uint32_t));
-    write_segments(csf, number, sctt, m);
-    write_levels(xbvh, sctt, csf, connected, NEW_ARRAY(m, level_info, sc_level));
+    all.points = points;
+    all.adjacency = adjacency;
+    all.order = hierarchy->order;
+    all.xbvh = xbvh;
+    all.sctt = sctt;
+    all.csf = csf;
+    all.sharing = sharing;
+    all.number = number;
+    all.connected = connected;
+    all.model = m;
+    write_arrays(&all, scratch->tasks, &share_parts);
+    sc_scratch_give(scratch, all.around.points); /* before the loops need memory */
+    sc_scratch_give(scratch, all.around.first);
     if (!sc_model_is_for_boxes(m))
         status = sc_loops_write(csf, sctt, xbvh, hierarchy->order, sc_model_leaf_corner(m), scratch,
                                 NEW_ARRAY(m, loop, uint16_t));
@@ -471,7 +588,6 @@ sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacenc
         sc_model_release(m);
         return status;
     }
-    m->topology_hash = hash_topology(m);
     *model = m;
     return SC_OK;
 }
