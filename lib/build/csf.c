@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/assume.h"
+#include "base/jobs.h"
 #include "build/chains.h"
 
 /* The cosine up to which a run may turn from its first half-edge. */
@@ -16,6 +17,9 @@ static const double TURN_COSINE = 0.25;
 
 /* Room for the lists of nodes, so that it seldom has to grow. */
 enum { SEGMENTS_A_NODE = 10 };
+
+/* Loops over half-edges, triangles and the like are cut into parts of so many at least. */
+enum { PART_MIN = 4096, PART_LEAVES_MIN = 256 };
 
 /* The contour half-edges of one level; a place is a number below count. What leads from level to
    level are places, so that work at a level touches only what belongs to it. */
@@ -47,7 +51,33 @@ typedef struct builder {
        each begin. */
     uint32_t *run_out, *run_segment, *patch_first;
     uint32_t *kept; /* places that a level keeps of the one below; the same memory as run_out */
+    /* For the parts of loops: the level at hand, and its number; of each part, how much it has of
+       what is counted, and then how much those before it have. */
+    contour_level *level;
+    uint32_t number;
+    uint64_t counts[SC_JOBS_PARTS + 1], children_of[SC_JOBS_PARTS + 1];
 } builder;
+
+/* Returns how many parts there are. */
+static uint32_t in_parts(const builder *b, uint32_t count, uint32_t least, sc_jobs_body body,
+                         void *context)
+{
+    return count ? sc_jobs_loop(b->scratch->tasks, count, least, body, context) : 0;
+}
+
+/* From what each part has to what those before it have; returns what all have. */
+static uint64_t add_up(uint64_t counts[SC_JOBS_PARTS + 1], uint32_t parts)
+{
+    uint64_t part, sum = 0;
+    uint32_t i;
+    for (i = 0; i < parts; i++) {
+        part = counts[i];
+        counts[i] = sum;
+        sum += part;
+    }
+    counts[parts] = sum;
+    return sum;
+}
 
 /* Memory for the half-edges of a level. */
 static int take_level(sc_scratch *scratch, contour_level *level, uint32_t count)
@@ -82,21 +112,36 @@ static void give_level(sc_scratch *scratch, const contour_level *level)
     sc_scratch_give(scratch, level->start);
 }
 
-/* The last level: the half-edges between leaf clusters, in the order of the leaves, so that
-   segments that are near have near numbers. */
-static sc_status collect_leaves(builder *b, const uint32_t *order, contour_level *level)
+/* What collecting half-edges works with. */
+typedef struct collection {
+    builder *b;
+    const uint32_t *order;
+    uint32_t *patch;        /* triangle_count: the leaf cluster it is in */
+    uint32_t *place;        /* 3 * triangle_count: of half-edges in the last level, or SC_NONE */
+    uint32_t *all;          /* 3 * triangle_count: those of each part, from the part's first on */
+    const uint32_t *parent; /* of patches of the level below, counted from its first */
+    contour_level *level, *below;
+} collection;
+
+static void find_patches(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    const uint32_t *opposite = b->adjacency->opposite, *leaf_first = b->xbvh->leaf_first;
-    uint64_t corners = 3 * (uint64_t)b->points->triangle_count;
-    uint32_t leaf, i, k, e, base = b->xbvh->level_first[b->xbvh->level_count - 1], count = 0;
-    uint32_t *patch, *place, *all;
-    patch = (uint32_t *)sc_scratch_take(b->scratch, b->points->triangle_count, sizeof *patch);
-    place = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof *place);
-    all = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof *all);
-    if (!patch || !place || !all) return SC_ERROR_MEMORY;
-    for (leaf = 0; leaf < b->xbvh->leaf_count; leaf++)
-        for (i = leaf_first[leaf]; i < leaf_first[leaf + 1]; i++) patch[order[i]] = base + leaf;
-    for (i = 0; i < b->points->triangle_count; i++)
+    const collection *c = (const collection *)context;
+    const sc_xbvh *xbvh = c->b->xbvh;
+    uint32_t leaf, i, base = xbvh->level_first[xbvh->level_count - 1];
+    (void)part;
+    for (leaf = first; leaf < end; leaf++)
+        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++)
+            c->patch[c->order[i]] = base + leaf;
+}
+
+/* Lists the half-edges of triangles that are between leaf clusters. Their places are those among
+   the part's. */
+static void find_leaf_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const collection *c = (const collection *)context;
+    const uint32_t *opposite = c->b->adjacency->opposite, *patch = c->patch, *order = c->order;
+    uint32_t *place = c->place, *all = c->all + 3 * (size_t)first, i, k, count = 0;
+    for (i = first; i < end; i++)
         for (k = 0; k < 3; k++) { /* without branches, which no processor could foresee */
             uint32_t h = 3 * order[i] + k, other = opposite[h];
             uint32_t between = other == SC_NONE || patch[other / 3] != patch[order[i]];
@@ -104,10 +149,28 @@ static sc_status collect_leaves(builder *b, const uint32_t *order, contour_level
             all[count] = h;
             count += between;
         }
-    if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
-    memcpy(level->half_edges, all, count * sizeof *all);
-    sc_scratch_give(b->scratch, all);
-    for (e = 0; e < count; e++) {
+    c->b->counts[part] = count;
+}
+
+static void place_leaf_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const collection *c = (const collection *)context;
+    uint32_t e = (uint32_t)c->b->counts[part], stop = (uint32_t)c->b->counts[part + 1];
+    uint32_t *half_edges = c->level->half_edges;
+    (void)end;
+    memcpy(half_edges + e, c->all + 3 * (size_t)first, (stop - e) * sizeof *half_edges);
+    if (part == 0) return; /* they are those already */
+    for (; e < stop; e++) c->place[half_edges[e]] = e;
+}
+
+static void relate_leaf_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const collection *c = (const collection *)context;
+    const uint32_t *opposite = c->b->adjacency->opposite, *patch = c->patch, *place = c->place;
+    contour_level *level = c->level;
+    uint32_t e;
+    (void)part;
+    for (e = first; e < end; e++) {
         uint32_t h = level->half_edges[e], other = opposite[h];
         level->inside[e] = patch[h / 3];
         level->outside[e] = other == SC_NONE ? SC_NONE : patch[other / 3];
@@ -117,30 +180,73 @@ static sc_status collect_leaves(builder *b, const uint32_t *order, contour_level
         while (place[h] == SC_NONE) h = sc_adjacency_next(opposite[h]);
         level->next[e] = place[h];
     }
-    sc_scratch_give(b->scratch, patch);
-    sc_scratch_give(b->scratch, place);
+}
+
+/* The last level: the half-edges between leaf clusters, in the order of the leaves, so that
+   segments that are near have near numbers. */
+static sc_status collect_leaves(builder *b, const uint32_t *order, contour_level *level)
+{
+    uint32_t triangles = b->points->triangle_count, parts, count;
+    uint64_t corners = 3 * (uint64_t)triangles;
+    collection c;
+    c.b = b;
+    c.order = order;
+    c.level = level;
+    c.patch = (uint32_t *)sc_scratch_take(b->scratch, triangles, sizeof *c.patch);
+    c.place = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof *c.place);
+    c.all = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof *c.all);
+    if (!c.patch || !c.place || !c.all) return SC_ERROR_MEMORY;
+    (void)in_parts(b, b->xbvh->leaf_count, PART_LEAVES_MIN, find_patches, &c);
+    parts = in_parts(b, triangles, PART_MIN, find_leaf_edges, &c);
+    count = (uint32_t)add_up(b->counts, parts);
+    if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
+    (void)in_parts(b, triangles, PART_MIN, place_leaf_edges, &c);
+    sc_scratch_give(b->scratch, c.all);
+    (void)in_parts(b, count, PART_MIN, relate_leaf_edges, &c);
+    sc_scratch_give(b->scratch, c.patch);
+    sc_scratch_give(b->scratch, c.place);
     return SC_OK;
 }
 
-/* Any other level: what is left of those of the level below. */
-static sc_status collect_level(builder *b, uint32_t number, uint32_t *parent)
+/* Lists those of the level below that a level keeps, as find_leaf_edges does. */
+static void find_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    contour_level *level = &b->levels[number], *below = &b->levels[number + 1];
-    const sc_xbvh *xbvh = b->xbvh;
-    uint32_t begin = xbvh->level_first[number + 1], count = 0, p, c, e;
-    for (p = xbvh->level_first[number]; p + 1 < begin; p++)
-        for (c = xbvh->child[p]; c < xbvh->child[p + 1]; c++) parent[c - begin] = p;
-    for (e = 0; e < below->count; e++) { /* without branches, again */
+    const collection *c = (const collection *)context;
+    const contour_level *below = c->below;
+    const uint32_t *parent = c->parent;
+    uint32_t begin = c->b->xbvh->level_first[c->b->number + 1], e, count = 0;
+    uint32_t *kept = c->b->kept + first;
+    for (e = first; e < end; e++) { /* without branches, again */
         uint32_t out = below->outside[e];
         uint32_t between =
             out == SC_NONE || parent[out - begin] != parent[below->inside[e] - begin];
         below->above[e] = count | (between - 1);
-        b->kept[count] = e;
+        kept[count] = e;
         count += between;
     }
-    if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
-    memcpy(level->below, b->kept, count * sizeof *b->kept);
-    for (e = 0; e < count; e++) {
+    c->b->counts[part] = count;
+}
+
+static void place_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const collection *c = (const collection *)context;
+    uint32_t e = (uint32_t)c->b->counts[part], stop = (uint32_t)c->b->counts[part + 1];
+    uint32_t *places = c->level->below;
+    (void)end;
+    memcpy(places + e, c->b->kept + first, (stop - e) * sizeof *places);
+    if (part == 0) return; /* they are those already */
+    for (; e < stop; e++) c->below->above[places[e]] = e;
+}
+
+static void relate_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const collection *c = (const collection *)context;
+    const contour_level *below = c->below;
+    contour_level *level = c->level;
+    const uint32_t *parent = c->parent;
+    uint32_t begin = c->b->xbvh->level_first[c->b->number + 1], e;
+    (void)part;
+    for (e = first; e < end; e++) {
         uint32_t from = level->below[e], following;
         uint32_t out = below->outside[from], other = below->opposite[from];
         level->half_edges[e] = below->half_edges[from];
@@ -153,6 +259,27 @@ static sc_status collect_level(builder *b, uint32_t number, uint32_t *parent)
             following = below->next[below->opposite[following]];
         level->next[e] = below->above[following];
     }
+}
+
+/* Any other level: what is left of those of the level below. */
+static sc_status collect_level(builder *b, uint32_t number, uint32_t *parent)
+{
+    contour_level *level = &b->levels[number], *below = &b->levels[number + 1];
+    const sc_xbvh *xbvh = b->xbvh;
+    uint32_t begin = xbvh->level_first[number + 1], parts, count, p, i;
+    collection c;
+    c.b = b;
+    c.parent = parent;
+    c.level = level;
+    c.below = below;
+    b->number = number;
+    for (p = xbvh->level_first[number]; p + 1 < begin; p++)
+        for (i = xbvh->child[p]; i < xbvh->child[p + 1]; i++) parent[i - begin] = p;
+    parts = in_parts(b, below->count, PART_MIN, find_edges, &c);
+    count = (uint32_t)add_up(b->counts, parts);
+    if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
+    (void)in_parts(b, below->count, PART_MIN, place_edges, &c);
+    (void)in_parts(b, count, PART_MIN, relate_edges, &c);
     sc_scratch_give(b->scratch, below->opposite);
     below->opposite = NULL;
     return SC_OK;
