@@ -19,7 +19,7 @@ static const double TURN_COSINE = 0.25;
 enum { SEGMENTS_A_NODE = 10 };
 
 /* Loops over half-edges, triangles and the like are cut into parts of so many at least. */
-enum { PART_MIN = 4096, PART_LEAVES_MIN = 256 };
+enum { PART_MIN = 4096, PART_LEAVES_MIN = 256, PART_NODES_MIN = 1024 };
 
 /* The contour half-edges of one level; a place is a number below count. What leads from level to
    level are places, so that work at a level touches only what belongs to it. */
@@ -40,8 +40,8 @@ typedef struct builder {
     const sc_xbvh *xbvh;
     const sc_sctt *sctt;
     sc_scratch *scratch;
-    contour_level *levels; /* level_count */
-    uint32_t segments;
+    contour_level *levels;  /* level_count */
+    uint32_t leaf_segments; /* of the last level */
     sc_list points_first, half_edges, child_first, children;
     /* Node lists, written from the end of their room, the last node's first; how much of it is in
        use; and of each node, how much was then. */
@@ -55,7 +55,8 @@ typedef struct builder {
        what is counted, and then how much those before it have. */
     contour_level *level;
     uint32_t number;
-    uint64_t counts[SC_JOBS_PARTS + 1], children_of[SC_JOBS_PARTS + 1];
+    uint64_t counts[SC_JOBS_PARTS + 1], segments_of[SC_JOBS_PARTS + 1],
+        children_of[SC_JOBS_PARTS + 1];
 } builder;
 
 /* Returns how many parts there are. */
@@ -285,6 +286,22 @@ static sc_status collect_level(builder *b, uint32_t number, uint32_t *parent)
     return SC_OK;
 }
 
+/* Where the first patch begins that begins at place e or after it. The places of a patch follow each
+   other, so from one such place to another there are patches as a whole, with their loops. */
+static uint32_t patch_begin(const contour_level *level, uint32_t e)
+{
+    uint32_t low = e, high = level->count, middle;
+    if (e == 0) return 0;
+    while (low < high) {
+        middle = low + (high - low) / 2;
+        if (level->inside[middle] == level->inside[e - 1])
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 static void direction_of(const builder *b, uint32_t h, double direction[3])
 {
     const double *p = b->points->rest + 3 * (uint64_t)b->points->triangles[h];
@@ -336,59 +353,180 @@ static void cut_loop(const builder *b, contour_level *level, uint32_t e, uint8_t
     }
 }
 
-/* Decides where runs start, from the cuts of the levels above and its own. */
-static sc_status find_starts(builder *b, contour_level *level, const contour_level *above)
+static void hand_cuts_down(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
+    const contour_level *above = (const contour_level *)context, *level = above + 1;
+    uint32_t e;
+    (void)part;
+    for (e = first; e < end; e++) level->cut[above->below[e]] = above->cut[e];
+}
+
+/* What finding starts works with. */
+typedef struct start_search {
+    const builder *b;
+    contour_level *level;
+    uint8_t *seen; /* places */
+} start_search;
+
+static void find_starts_of_patches(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const start_search *s = (const start_search *)context;
+    contour_level *level = s->level;
     uint32_t e, f;
-    uint8_t *seen = (uint8_t *)sc_scratch_take_filled(b->scratch, level->count, 1, 0);
-    if (!seen) return SC_ERROR_MEMORY;
-    for (e = 0; above && e < above->count; e++) level->cut[above->below[e]] = above->cut[e];
-    for (e = 0; e < level->count; e++) { /* each follows one */
+    (void)part;
+    first = patch_begin(level, first);
+    end = patch_begin(level, end);
+    for (e = first; e < end; e++) { /* each follows one */
         f = level->next[e];
         level->start[f] = level->cut[f] | (level->outside[e] != level->outside[f]);
     }
-    for (e = 0; e < level->count; e++)
-        if (!seen[e]) cut_loop(b, level, e, seen);
-    sc_scratch_give(b->scratch, seen);
+    for (e = first; e < end; e++)
+        if (!s->seen[e]) cut_loop(s->b, level, e, s->seen);
+}
+
+/* Decides where runs start, from the cuts of the level above, if there is one, and its own. */
+static sc_status find_starts(builder *b, contour_level *level, contour_level *above)
+{
+    start_search search;
+    search.b = b;
+    search.level = level;
+    search.seen = (uint8_t *)sc_scratch_take_filled(b->scratch, level->count, 1, 0);
+    if (!search.seen) return SC_ERROR_MEMORY;
+    if (above) (void)in_parts(b, above->count, PART_MIN, hand_cuts_down, above);
+    (void)in_parts(b, level->count, PART_MIN, find_starts_of_patches, &search);
+    sc_scratch_give(b->scratch, search.seen);
     return SC_OK;
 }
 
-/* There is room in the lists. */
-static void add_leaf_segment(builder *b, contour_level *level, uint32_t start)
+/* Writes the half-edges of a run and one that starts at its last point; returns their number. */
+static uint32_t list_leaf_segment(contour_level *level, uint32_t start, uint32_t *half_edges)
 {
-    uint32_t e = start, h;
-    level->segment[start] = b->segments++;
-    sc_list_add(&b->points_first, (uint32_t)b->half_edges.count);
+    uint32_t e = start, h, count = 0;
     do {
         h = level->half_edges[e];
-        sc_list_add(&b->half_edges, h);
+        half_edges[count++] = h;
         level->end[start] = e;
         e = level->next[e];
     } while (!level->start[e]);
-    sc_list_add(&b->half_edges, sc_adjacency_next(h)); /* starts at the last point */
+    half_edges[count++] = sc_adjacency_next(h); /* starts at the last point */
+    return count;
 }
 
-static int add_parent_segment(builder *b, contour_level *level, const contour_level *below,
-                              uint32_t start)
+/* Writes the segments of the level below that a run consists of; returns their number. */
+static uint32_t list_children(contour_level *level, const contour_level *below, uint32_t start,
+                              uint32_t *children)
 {
-    uint32_t from = level->below[start], end = below->above[below->end[from]];
-    if (level->start[level->next[end]]) { /* one child: the segment stays */
-        level->segment[start] = below->segment[from];
-        level->end[start] = end;
-        return 1;
-    }
-    if (!sc_list_reserve(b->scratch, &b->child_first, 2)) return 0; /* one for the end of all */
-    sc_list_add(&b->child_first, (uint32_t)b->children.count);
+    uint32_t from = level->below[start], end, count = 0;
     for (;;) {
-        if (!sc_list_reserve(b->scratch, &b->children, 1)) return 0;
-        sc_list_add(&b->children, below->segment[from]);
+        children[count++] = below->segment[from];
         end = below->above[below->end[from]];
         if (level->start[level->next[end]]) break;
         from = level->below[level->next[end]];
     }
-    level->segment[start] = b->segments++;
     level->end[start] = end;
-    return 1;
+    return count;
+}
+
+static void count_runs(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    builder *b = (builder *)context;
+    const contour_level *level = b->level;
+    uint32_t e, runs = 0;
+    first = patch_begin(level, first);
+    end = patch_begin(level, end);
+    for (e = first; e < end; e++) runs += level->start[e];
+    b->counts[part] = runs;
+}
+
+/* Writes the places where a part's runs start. */
+static void list_runs(const builder *b, uint32_t part, uint32_t first)
+{
+    uint32_t i = (uint32_t)b->counts[part], end = (uint32_t)b->counts[part + 1], e;
+    for (e = first; i < end; e++) { /* nothing after the part's own */
+        b->run_segment[i] = e;
+        i += b->level->start[e];
+    }
+}
+
+/* Walks the runs of the last level: each is a segment. All half-edges are in one, and each has one
+   more. */
+static void walk_leaf_runs(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    builder *b = (builder *)context;
+    uint32_t i, stop = (uint32_t)b->counts[part + 1], *half_edges = b->half_edges.items;
+    uint64_t at;
+    (void)end;
+    first = patch_begin(b->level, first);
+    list_runs(b, part, first);
+    at = first + b->counts[part];
+    for (i = (uint32_t)b->counts[part]; i < stop; i++) {
+        uint32_t e = b->run_segment[i];
+        b->points_first.items[i] = (uint32_t)at;
+        at += list_leaf_segment(b->level, e, half_edges + at);
+        b->level->segment[e] = i;
+    }
+}
+
+/* Walks the runs of another level, and lists the children of those that have two or more from the
+   part's first place on, where the level below has what nothing needs any more: no more than there
+   are half-edges. Their number is in run_out, for now. */
+static void walk_parent_runs(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    builder *b = (builder *)context;
+    contour_level *level = b->level;
+    uint32_t i, stop = (uint32_t)b->counts[part + 1], segments = 0, count = 0, *children;
+    (void)end;
+    first = patch_begin(level, first);
+    children = level[1].next + first;
+    list_runs(b, part, first);
+    for (i = (uint32_t)b->counts[part]; i < stop; i++) {
+        uint32_t e = b->run_segment[i], more = list_children(level, level + 1, e, children + count);
+        b->run_out[i] = more;
+        level->segment[e] = children[count]; /* one child: the segment stays */
+        segments += more > 1;
+        count += more > 1 ? more : 0;
+    }
+    b->segments_of[part] = segments;
+    b->children_of[part] = count;
+}
+
+/* Numbers the segments that walk_parent_runs found, and puts their children where they belong. */
+static void number_parents(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    builder *b = (builder *)context;
+    contour_level *level = b->level;
+    uint32_t i, stop = (uint32_t)b->counts[part + 1];
+    uint64_t segment = b->child_first.count + b->segments_of[part];
+    uint64_t child = b->children.count + b->children_of[part];
+    uint64_t count = b->children_of[part + 1] - b->children_of[part];
+    (void)end;
+    if (count == 0) return;
+    first = patch_begin(level, first);
+    memcpy(b->children.items + child, level[1].next + first, (size_t)count * sizeof(uint32_t));
+    for (i = (uint32_t)b->counts[part]; i < stop; i++) {
+        if (b->run_out[i] == 1) continue;
+        b->child_first.items[segment] = (uint32_t)child;
+        child += b->run_out[i];
+        level->segment[b->run_segment[i]] = b->leaf_segments + (uint32_t)segment++;
+    }
+}
+
+/* Notes what is across runs, their segments, and where those of each patch begin. */
+static void finish_runs(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    builder *b = (builder *)context;
+    const contour_level *level = b->level;
+    uint32_t i, stop = (uint32_t)b->counts[part + 1], begin = b->xbvh->level_first[b->number];
+    uint32_t patch;
+    (void)end;
+    first = patch_begin(level, first);
+    patch = first ? level->inside[first - 1] + 1 : begin;
+    for (i = (uint32_t)b->counts[part]; i < stop; i++) {
+        uint32_t e = b->run_segment[i];
+        while (patch <= level->inside[e]) b->patch_first[patch++ - begin] = i;
+        b->run_out[i] = level->outside[e];
+        b->run_segment[i] = level->segment[e];
+    }
 }
 
 /* Room for more items before those that are in the node lists; 0 if memory ran out, or for more
@@ -410,37 +548,63 @@ static int reserve_lists(builder *b, uint64_t more)
     return 1;
 }
 
-static void list_before(builder *b, uint32_t item)
+/* How many segments of a patch are not towards another. */
+static uint32_t count_patch(const builder *b, uint32_t patch, uint32_t other)
 {
-    b->lists[b->room - ++b->listed] = item;
+    const uint32_t *first = b->patch_first + (patch - b->xbvh->level_first[b->number]);
+    uint32_t i, count = 0;
+    for (i = first[0]; i < first[1]; i++) count += b->run_out[i] != other;
+    return count;
 }
 
-/* Lists the segments of a patch, but for those towards another; returns their number. */
-static uint32_t list_patch(builder *b, uint32_t begin, uint32_t patch, uint32_t other)
+/* Lists the segments of a patch, but for those towards another; returns the end of the list. */
+static uint32_t *list_patch(const builder *b, uint32_t patch, uint32_t other, uint32_t *list)
 {
-    uint32_t first = b->patch_first[patch - begin], i = b->patch_first[patch - begin + 1];
-    uint64_t listed = b->listed;
-    while (i-- > first)
-        if (b->run_out[i] != other) list_before(b, b->run_segment[i]);
-    return (uint32_t)(b->listed - listed);
+    const uint32_t *first = b->patch_first + (patch - b->xbvh->level_first[b->number]);
+    uint32_t i;
+    for (i = first[0]; i < first[1]; i++)
+        if (b->run_out[i] != other) *list++ = b->run_segment[i];
+    return list;
 }
 
-static int list_node(builder *b, uint32_t begin, uint32_t n)
+/* Nodes of the level at hand, counted from its first: how long their lists are. */
+static void measure_nodes(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    uint32_t p = b->sctt->patches[n].a, q = b->sctt->patches[n].b, count;
-    const uint32_t *first = b->patch_first;
-    if (!reserve_lists(b, 2 + (uint64_t)first[p - begin + 1] - first[p - begin] +
-                              first[q - begin + 1] - first[q - begin]))
-        return 0;
-    if (p != q) (void)list_patch(b, begin, q, p);
-    /* no patch has the number patch_end, so that self nodes leave nothing out */
-    count = list_patch(b, begin, p, p == q ? b->xbvh->patch_end : q);
-    if (b->sctt->touch[n] != SC_NONE) {
-        list_before(b, count);
-        list_before(b, b->sctt->touch[n]);
+    builder *b = (builder *)context;
+    uint32_t n, level_first = b->sctt->level_first[b->number];
+    uint64_t sum = 0;
+    for (n = level_first + first; n < level_first + end; n++) {
+        uint32_t p = b->sctt->patches[n].a, q = b->sctt->patches[n].b;
+        /* no patch has the number patch_end, so that self nodes leave nothing out */
+        uint32_t count = count_patch(b, p, p == q ? b->xbvh->patch_end : q);
+        if (p != q) count += count_patch(b, q, p);
+        if (b->sctt->touch[n] != SC_NONE) count += 2;
+        b->node_place[n] = count;
+        sum += count;
     }
-    b->node_place[n] = (uint32_t)b->listed;
-    return 1;
+    b->counts[part] = sum;
+}
+
+static void list_nodes(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    builder *b = (builder *)context;
+    uint32_t n, level_first = b->sctt->level_first[b->number];
+    /* those of the level end where those of the levels below begin */
+    uint64_t left = b->listed - b->counts[part];
+    uint32_t *list = b->lists + (b->room - left);
+    for (n = level_first + first; n < level_first + end; n++) {
+        uint32_t p = b->sctt->patches[n].a, q = b->sctt->patches[n].b, *head = list;
+        uint64_t here = left;
+        left -= b->node_place[n];
+        b->node_place[n] = (uint32_t)here;
+        if (b->sctt->touch[n] != SC_NONE) {
+            *list++ = b->sctt->touch[n];
+            list++;
+        }
+        list = list_patch(b, p, p == q ? b->xbvh->patch_end : q, list);
+        if (b->sctt->touch[n] != SC_NONE) head[1] = (uint32_t)(list - head) - 2;
+        if (p != q) list = list_patch(b, q, p, list);
+    }
 }
 
 /* Room for the segments of the last level; one more for the end of all. */
@@ -452,34 +616,42 @@ static int reserve_for_leaves(builder *b, uint32_t half_edges, uint32_t runs)
 
 static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
 {
-    contour_level *level = &b->levels[number];
-    uint32_t e, i, n, runs = 0, last = b->xbvh->level_count - 1,
-                      begin = b->xbvh->level_first[number];
-    uint32_t patch = begin, *first = b->patch_first;
-    level->segment = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
-    level->end = (uint32_t *)sc_scratch_take(b->scratch, level->count, sizeof(uint32_t));
+    contour_level *level = b->level = &b->levels[number];
+    uint32_t parts, runs, patch,
+        last = b->xbvh->level_count - 1, count = level->count, begin = b->xbvh->level_first[number],
+        nodes = b->sctt->level_first[number + 1] - b->sctt->level_first[number];
+    b->number = number;
+    level->segment = (uint32_t *)sc_scratch_take(b->scratch, count, sizeof(uint32_t));
+    level->end = (uint32_t *)sc_scratch_take(b->scratch, count, sizeof(uint32_t));
     if (!level->segment || !level->end) return SC_ERROR_MEMORY;
-    for (e = 0; e < level->count; e++) {
-        b->run_segment[runs] = e; /* where it starts, for now */
-        runs += level->start[e];
-    }
-    if (number == last && !reserve_for_leaves(b, level->count, runs)) return SC_ERROR_MEMORY;
-    for (i = 0; i < runs; i++) {
-        e = b->run_segment[i];
-        if (number == last)
-            add_leaf_segment(b, level, e);
-        else if (!add_parent_segment(b, level, level + 1, e))
-            return SC_ERROR_MEMORY;
-        while (patch <= level->inside[e]) first[patch++ - begin] = i;
-        b->run_out[i] = level->outside[e];
-        b->run_segment[i] = level->segment[e];
-    }
+    parts = in_parts(b, count, PART_MIN, count_runs, b);
+    runs = (uint32_t)add_up(b->counts, parts);
     csf->level_segments[number] = runs;
-    if (number == last) csf->leaf_count = b->segments;
-    if (number < last) give_level(b->scratch, level + 1);
-    while (patch < b->xbvh->level_first[number + 1]) first[patch++ - begin] = runs;
-    for (n = b->sctt->level_first[number + 1]; n-- > b->sctt->level_first[number];)
-        if (!list_node(b, begin, n)) return SC_ERROR_MEMORY;
+    if (number == last) {
+        if (!reserve_for_leaves(b, count, runs)) return SC_ERROR_MEMORY;
+        (void)in_parts(b, count, PART_MIN, walk_leaf_runs, b);
+        b->points_first.count = csf->leaf_count = b->leaf_segments = runs;
+        b->half_edges.count = (uint64_t)count + runs;
+    } else {
+        uint64_t segments, children;
+        (void)in_parts(b, count, PART_MIN, walk_parent_runs, b);
+        segments = add_up(b->segments_of, parts);
+        children = add_up(b->children_of, parts);
+        if (!sc_list_reserve(b->scratch, &b->child_first, segments + 1) || /* and the end of all */
+            !sc_list_reserve(b->scratch, &b->children, children))
+            return SC_ERROR_MEMORY;
+        (void)in_parts(b, count, PART_MIN, number_parents, b);
+        b->child_first.count += segments;
+        b->children.count += children;
+        give_level(b->scratch, level + 1);
+    }
+    (void)in_parts(b, count, PART_MIN, finish_runs, b);
+    patch = count ? level->inside[count - 1] + 1 : begin;
+    while (patch < b->xbvh->level_first[number + 1]) b->patch_first[patch++ - begin] = runs;
+    parts = in_parts(b, nodes, PART_NODES_MIN, measure_nodes, b);
+    if (!reserve_lists(b, add_up(b->counts, parts))) return SC_ERROR_MEMORY;
+    b->listed += b->counts[parts];
+    (void)in_parts(b, nodes, PART_NODES_MIN, list_nodes, b);
     return SC_OK;
 }
 
@@ -677,7 +849,7 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
         status = build_level(&b, level, csf);
         if (status) return status;
     }
-    csf->segment_count = b.segments;
+    csf->segment_count = b.leaf_segments + (uint32_t)b.child_first.count;
     if (!sc_list_reserve(scratch, &b.child_first, 1) ||
         !sc_list_reserve(scratch, &b.half_edges, 1) || !sc_list_reserve(scratch, &b.children, 1))
         return SC_ERROR_MEMORY;
