@@ -10,6 +10,7 @@
 #include "base/assume.h"
 #include "base/bits.h"
 #include "base/jobs.h"
+#include "build/connected.h"
 #include "build/leaf_shapes.h"
 
 /* Parts of jobs have so many at least. Leaf clusters are cut into so many parts at most, for each
@@ -69,8 +70,9 @@ typedef struct assembly {
     const sc_sctt *sctt;
     const sc_csf *csf;
     const sc_sharing *sharing;
-    const uint32_t *number; /* of each point: the vertex that stands for it */
-    const uint32_t *connected;
+    sc_connected pieces;
+    uint32_t *number;                 /* of each point: the vertex that stands for it */
+    uint32_t connected[SC_DEPTH_MAX]; /* patches of each level, that are connected through edges */
     surroundings around;
     sc_model *model;
     uint32_t leaf_parts; /* of the job that writes leaf clusters */
@@ -303,137 +305,6 @@ static void copy_segments(const sc_csf *csf, sc_model *m)
          m->segment_child_total * sizeof(uint32_t));
 }
 
-/* Of pieces that hang together: the first of the piece that i is in. */
-static uint32_t find_first(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
-/* Joins the pieces of a and b; returns whether they were two. */
-static uint32_t join_pieces(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = find_first(parent, a);
-    b = find_first(parent, b);
-    parent[a < b ? b : a] = a < b ? a : b;
-    return a != b;
-}
-
-/* How many of the patches of a level are in one piece. */
-static uint32_t count_whole(const sc_xbvh *xbvh, uint32_t level, const uint32_t *pieces)
-{
-    uint32_t p, count = 0;
-    for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++)
-        count += pieces[p] == 1;
-    return count;
-}
-
-/* Parts of leaf clusters that hang together through edges, and the edges between them. */
-typedef struct leaf_parts {
-    uint32_t count;
-    uint32_t *of; /* triangle_count: the part of the triangle at a place in the hierarchy's order */
-    uint32_t *leaf;  /* of each part, as many as triangles at most */
-    sc_pair *joints; /* two parts of different leaf clusters for each edge between those */
-    uint64_t joint_count;
-} leaf_parts;
-
-/* Numbers the parts of a leaf cluster, of which each triangle is next to some; returns how many. */
-static uint32_t number_parts(const uint32_t near[SC_LEAF_MAX], uint32_t leaf, uint32_t first,
-                             uint32_t count, leaf_parts *p)
-{
-    uint32_t left = (1u << count) - 1, before = p->count;
-    while (left) {
-        uint32_t reached = left & (0u - left), next = reached;
-        while (next) {
-            uint32_t i = sc_bits_lowest(next);
-            p->of[first + i] = p->count;
-            next = (next & (next - 1)) | (near[i] & ~reached);
-            reached |= near[i];
-        }
-        p->leaf[p->count++] = leaf;
-        left &= ~reached;
-    }
-    return p->count - before;
-}
-
-/* Finds the parts of all leaf clusters, and how many each has. place: of each triangle in the
-   hierarchy's order. */
-static void find_parts(const sc_adjacency *adjacency, const uint32_t *order, const sc_xbvh *xbvh,
-                       const uint32_t *place, uint32_t *own, leaf_parts *p)
-{
-    uint32_t leaf, i, k;
-    for (leaf = 0; leaf < xbvh->leaf_count; leaf++) {
-        uint32_t first = xbvh->leaf_first[leaf], count = xbvh->leaf_first[leaf + 1] - first;
-        uint32_t near[SC_LEAF_MAX] = {0};
-        uint64_t n = p->joint_count;
-        for (i = 0; i < count; i++)
-            for (k = 0; k < 3; k++) {
-                uint32_t h = adjacency->opposite[3 * (uint64_t)order[first + i] + k], at;
-                if (h == SC_NONE) continue;
-                at = place[h / 3];
-                if (at - first < count) {
-                    near[i] |= 1u << (at - first);
-                } else if (at < first) {
-                    p->joints[p->joint_count].a = first + i;
-                    p->joints[p->joint_count++].b = p->of[at];
-                }
-            }
-        own[leaf] = number_parts(near, leaf, first, count, p);
-        for (; n < p->joint_count; n++) p->joints[n].a = p->of[p->joints[n].a];
-    }
-}
-
-/*
- * How many patches of each level are connected through edges. Edges between leaf clusters, fewer at
- * each level up, wait for a patch that has both of their triangles.
- */
-static sc_status count_connected(const sc_adjacency *adjacency, const sc_hierarchy *hierarchy,
-                                 const sc_xbvh *xbvh, sc_scratch *scratch, uint32_t *connected)
-{
-    uint32_t count = hierarchy->triangle_count, level = xbvh->level_count - 1, p, i, leaf;
-    uint32_t *place, *parent, *patch_at, *pieces;
-    uint64_t n, kept;
-    leaf_parts all;
-    place = (uint32_t *)sc_scratch_take(scratch, count, sizeof *place);
-    parent = (uint32_t *)sc_scratch_take(scratch, count, sizeof *parent);
-    patch_at = (uint32_t *)sc_scratch_take(scratch, xbvh->leaf_count, sizeof *patch_at);
-    pieces = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *pieces, 0);
-    all.of = (uint32_t *)sc_scratch_take(scratch, count, sizeof *all.of);
-    all.leaf = (uint32_t *)sc_scratch_take(scratch, count, sizeof *all.leaf);
-    all.joints = (sc_pair *)sc_scratch_take(scratch, 3 * (uint64_t)count / 2 + 1, sizeof(sc_pair));
-    all.count = 0;
-    all.joint_count = 0;
-    if (!place || !parent || !patch_at || !pieces || !all.of || !all.leaf || !all.joints)
-        return SC_ERROR_MEMORY;
-    for (i = 0; i < count; i++) place[hierarchy->order[i]] = i;
-    find_parts(adjacency, hierarchy->order, xbvh, place, pieces + xbvh->level_first[level], &all);
-    for (i = 0; i < all.count; i++) parent[i] = i;
-    connected[level] = count_whole(xbvh, level, pieces);
-    for (; level-- > 0; all.joint_count = kept) {
-        for (p = xbvh->level_first[level]; p + 1 < xbvh->level_first[level + 1]; p++) {
-            for (leaf = xbvh->leaf[p]; leaf < xbvh->leaf[p + 1]; leaf++) patch_at[leaf] = p;
-            for (i = xbvh->child[p]; i < xbvh->child[p + 1]; i++) pieces[p] += pieces[i];
-        }
-        for (n = kept = 0; n < all.joint_count; n++) {
-            sc_pair joint = all.joints[n];
-            p = patch_at[all.leaf[joint.a]];
-            if (p == patch_at[all.leaf[joint.b]])
-                pieces[p] -= join_pieces(parent, joint.a, joint.b);
-            else
-                all.joints[kept++] = joint;
-        }
-        connected[level] = count_whole(xbvh, level, pieces);
-    }
-    sc_scratch_give(scratch, all.joints);
-    sc_scratch_give(scratch, all.leaf);
-    sc_scratch_give(scratch, all.of);
-    sc_scratch_give(scratch, pieces);
-    sc_scratch_give(scratch, patch_at);
-    sc_scratch_give(scratch, parent);
-    sc_scratch_give(scratch, place);
-    return SC_OK;
-}
-
 static void write_levels(const sc_xbvh *xbvh, const sc_sctt *sctt, const sc_csf *csf,
                          const uint32_t *connected, sc_level *levels)
 {
@@ -530,34 +401,57 @@ static void write_arrays(assembly *a, const sc_tasks *tasks, sc_sharing_parts *p
         sc_jobs_loop(tasks, m->segment_point_total, POINTS_PART_MIN, write_segment_points, a);
 }
 
+/* Steps before there is a model, which need not wait for each other. */
+static void before_writing(void *context, uint32_t part, uint32_t worker)
+{
+    assembly *a = (assembly *)context;
+    (void)worker;
+    if (part) {
+        sc_connected_count(a->adjacency, a->order, a->xbvh, &a->pieces, a->connected);
+        return;
+    }
+    number_points(a->points, a->number);
+    list_around(a->points, a->adjacency, a->number, &a->around);
+}
+
 sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacency,
                            const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
                            const sc_csf *csf, const sc_sharing *sharing, sc_scratch *scratch,
                            sc_model **model)
 {
     sc_model counts, *m;
-    uint32_t *number, connected[SC_DEPTH_MAX] = {0};
+    assembly all;
     sc_sharing_parts share_parts;
     const uint64_t share_total =
         sc_sharing_lists_count(sharing, xbvh, scratch->tasks, &share_parts);
     const uint64_t around_total = count_around(points, adjacency);
-    assembly all;
+    const sc_tasks *tasks = points->triangle_count < TRIANGLES_PART_MIN ? NULL : scratch->tasks;
     sc_status status = SC_OK;
 
     memset(&counts, 0, sizeof counts);
     count_arrays(points, adjacency, xbvh, sctt, csf, &counts);
-    if (!sc_model_is_for_boxes(&counts))
-        status = count_connected(adjacency, hierarchy, xbvh, scratch, connected);
-    if (status) return status;
     if (SC_HARDLY(around_total > UINT32_MAX || share_total > UINT32_MAX)) return SC_ERROR_COUNT;
-    number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *number);
+    memset(&all, 0, sizeof all);
+    all.points = points;
+    all.adjacency = adjacency;
+    all.order = hierarchy->order;
+    all.xbvh = xbvh;
+    all.sctt = sctt;
+    all.csf = csf;
+    all.sharing = sharing;
+    all.number = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *all.number);
     all.around.first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)points->point_count + 1,
                                                    sizeof *all.around.first);
     all.around.points = (uint32_t *)sc_scratch_take(scratch, around_total + AROUND_AT_ONCE,
                                                     sizeof *all.around.points);
-    if (!number || !all.around.first || !all.around.points) return SC_ERROR_MEMORY;
-    number_points(points, number);
-    list_around(points, adjacency, number, &all.around);
+    if (!all.number || !all.around.first || !all.around.points) return SC_ERROR_MEMORY;
+    if (sc_model_is_for_boxes(&counts)) {
+        sc_jobs_run(tasks, 1, before_writing, &all); /* nobody asks whether patches are connected */
+    } else {
+        if ((status = sc_connected_take(xbvh, scratch, &all.pieces))) return status;
+        sc_jobs_run(tasks, 2, before_writing, &all);
+        sc_connected_give(scratch, &all.pieces);
+    }
     counts.share_count = sharing->first[xbvh->leaf_count];
     counts.share_total = (uint32_t)share_total;
     counts.around_total = (uint32_t)around_total;
@@ -568,15 +462,6 @@ sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacenc
     if (!m) return SC_ERROR_MEMORY;
     *m = counts;
     sc_model_clear_gaps(m);
-    all.points = points;
-    all.adjacency = adjacency;
-    all.order = hierarchy->order;
-    all.xbvh = xbvh;
-    all.sctt = sctt;
-    all.csf = csf;
-    all.sharing = sharing;
-    all.number = number;
-    all.connected = connected;
     all.model = m;
     write_arrays(&all, scratch->tasks, &share_parts);
     sc_scratch_give(scratch, all.around.points); /* before the loops need memory */
