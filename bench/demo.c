@@ -278,7 +278,7 @@ static bool scene_open(demo_scene *scene, const mesh_file *mesh, const char *nam
         return false;
     }
     sc_status status = tool_build(mesh, SC_WELD_REST, TOOL_PARTITION_FAST, SC_REST_MARKED,
-                                  SC_MODEL_FULL, &scene->model, build_ms);
+                                  SC_MODEL_FULL, NULL, &scene->model, build_ms);
     for (int i = 0; i < HASH && status == SC_OK; i++) {
         status = sc_workspace_create(scene->model, NULL, &scene->workspaces[i]);
     }

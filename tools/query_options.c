@@ -153,7 +153,7 @@ static const char usage_end[] =
     "  --no-rest-cache             test again what failed in the rest pose\n"
     "  --budget N                  stop each query after N tests; what was found so far is "
     "shown\n"
-    "  --threads K                 threads that a query uses (1)\n"
+    "  --threads K                 threads that building and a query use (1)\n"
     "\n"
     "  -V, --version, -h, --help\n"
     "\n"

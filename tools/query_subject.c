@@ -30,7 +30,8 @@ bool query_subject_load(query_subject *subject, const char *path, const query_su
     memset(subject, 0, sizeof *subject);
     if (!mesh_file_read(&subject->mesh, path, error)) return false;
     sc_status status = tool_build(&subject->mesh, how->weld, how->partition, how->rest,
-                                  how->content, &subject->model, &subject->build_ms);
+                                  how->content, query_threads_tasks(), &subject->model,
+                                  &subject->build_ms);
     if (status == SC_OK)
         status = query_threads_workspace(subject->model, how->flags, &subject->workspace);
     if (status == SC_OK && how->poses_follow && how->weld == SC_WELD_REST) {

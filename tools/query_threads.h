@@ -1,5 +1,5 @@
 /*
- * The threads that a program's queries use (--threads): one pool for all of them.
+ * The threads that building and queries of a program use (--threads): one pool for all of them.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -17,7 +17,7 @@ bool query_threads_start(uint32_t workers);
 /* Ends them. Queries are done by one thread then, as before the start. */
 void query_threads_stop(void);
 
-/* For sc_query_options.tasks: NULL if there is one worker. */
+/* For sc_build_options.tasks and sc_query_options.tasks: NULL if there is one worker. */
 const sc_tasks *query_threads_tasks(void);
 
 /* A workspace for queries by these workers. flags: SC_WORKSPACE_... */

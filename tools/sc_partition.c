@@ -163,8 +163,8 @@ static bool view_open(partition_view *view, const mesh_file *mesh, uint32_t part
     memset(view, 0, sizeof *view);
     view->mesh = mesh;
     view->info.struct_size = sizeof view->info;
-    sc_status status = tool_build(mesh, SC_WELD_REST, partition, rest, SC_MODEL_FULL, &view->model,
-                                  &view->build_ms);
+    sc_status status = tool_build(mesh, SC_WELD_REST, partition, rest, SC_MODEL_FULL, NULL,
+                                  &view->model, &view->build_ms);
     if (status == SC_OK) status = sc_model_get_info(view->model, &view->info);
     if (status != SC_OK) tool_error("%s: %s", name, tool_why(status));
     return status == SC_OK;

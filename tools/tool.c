@@ -137,7 +137,8 @@ bool tool_spares(const char *out, const char *in)
 }
 
 sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, uint32_t rest,
-                     uint32_t content, sc_model **model, double *milliseconds)
+                     uint32_t content, const sc_tasks *tasks, sc_model **model,
+                     double *milliseconds)
 {
     sc_mesh input;
     memset(&input, 0, sizeof input);
@@ -156,6 +157,7 @@ sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, u
     options.weld = weld;
     options.rest = rest;
     options.content = content;
+    options.tasks = tasks;
     if (partition == TOOL_PARTITION_METIS) {
         options.partition = SC_PARTITION_BISECT;
         options.bisect = sc_metis_bisect;

@@ -72,9 +72,10 @@ extern const tool_choice tool_formats[];
 extern const tool_choice tool_welds[];
 
 /* Builds a model with a partition of the list above; rest: SC_REST_..., content: SC_MODEL_...;
-   *milliseconds is how long it took. */
+   tasks: threads to build with, or NULL; *milliseconds is how long it took. */
 sc_status tool_build(const mesh_file *mesh, uint32_t weld, uint32_t partition, uint32_t rest,
-                     uint32_t content, sc_model **model, double *milliseconds);
+                     uint32_t content, const sc_tasks *tasks, sc_model **model,
+                     double *milliseconds);
 
 /* A pose of packed positions. */
 sc_pose tool_pose(const void *positions, uint32_t position_type, uint32_t vertex_count);

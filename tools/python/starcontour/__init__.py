@@ -782,9 +782,11 @@ class Model(_Queries):
                which form patches
     boxes      True: for few poses; what only culling needs is left out, which makes this four times
                faster and a query slower. Methods are "aabb" then, of steps "two_boxes" and "swept"
+    threads    how many threads may build, 1 (default) to 256: the model is the same
     """
 
-    def __init__(self, vertices, triangles, *, weld="rest", order=None, boxes=False):
+    def __init__(self, vertices, triangles, *, weld="rest", order=None, boxes=False, threads=1):
+        _check_threads(threads)
         vertices, triangles = _positions(vertices), _triangles(triangles)
         mesh = _binding.sc_mesh(
             struct_size=ctypes.sizeof(_binding.sc_mesh),
@@ -809,7 +811,14 @@ class Model(_Queries):
         options.content = _binding.SC_MODEL_BOXES if boxes else _binding.SC_MODEL_FULL
         log, handle = _Log(), ctypes.c_void_p()
         options.hooks = ctypes.addressof(log.hooks)
-        log.check(lib.sc_build(ctypes.byref(mesh), ctypes.byref(options), ctypes.byref(handle)))
+        built = ctypes.byref(mesh), ctypes.byref(options), ctypes.byref(handle)
+        if threads == 1:
+            status = lib.sc_build(*built)
+        else:
+            tasks = _threads.Tasks(threads)
+            options.tasks = ctypes.addressof(tasks.structure)
+            status = tasks.call(lib.sc_build, *built)
+        log.check(status)
         self._adopt(handle)
 
     def _adopt(self, handle):

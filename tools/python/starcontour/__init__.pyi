@@ -228,6 +228,7 @@ class Model(_Queries):
         weld: Union[Literal["rest", "none"], npt.ArrayLike] = "rest",
         order: Optional[npt.ArrayLike] = None,
         boxes: bool = False,
+        threads: int = 1,
     ) -> None: ...
     @classmethod
     def frombytes(cls, data: Any, *, topology_hash: int = 0, in_place: bool = False) -> Model: ...

@@ -124,6 +124,7 @@ class sc_build_options(ctypes.Structure):
         ("hooks", c_void_p),
         ("rest", c_uint32),
         ("content", c_uint32),
+        ("tasks", c_void_p),
     ]
 
 
