@@ -665,18 +665,15 @@ static void count_points(const sc_csf *csf, const uint32_t *segments, uint32_t c
     *points = *edges + count;
 }
 
-/* How long a node's loop is, of so many pieces and edges, where so much is taken by others; 0: it
-   gets none, see csf.h. */
-static uint64_t measure_loop(const sc_xbvh *xbvh, sc_pair patches, uint32_t pieces, uint64_t edges,
-                             uint64_t taken)
+/* How long a node's loop is, of so many pieces and edges; 0: it gets none, see csf.h. */
+static uint32_t measure_loop(const sc_xbvh *xbvh, sc_pair patches, uint32_t pieces, uint64_t edges)
 {
     uint32_t leaves = xbvh->leaf[patches.a + 1] - xbvh->leaf[patches.a];
     if (patches.b != patches.a) leaves += xbvh->leaf[patches.b + 1] - xbvh->leaf[patches.b];
-    (void)taken; /* where coverage is measured */
     if (leaves > SC_LOOP_LEAVES || edges > SC_LOOP_MAX) return 0;
-    if (SC_HARDLY(taken + edges >= 0xfffff000u)) return 0;
-    if (pieces < 2) return edges;
-    return pieces <= SC_LOOP_PIECES && edges <= SC_LOOP_PIECES_EDGES ? 1 + pieces + edges : 0;
+    if (pieces < 2) return (uint32_t)edges;
+    return pieces <= SC_LOOP_PIECES && edges <= SC_LOOP_PIECES_EDGES ? 1 + pieces + (uint32_t)edges
+                                                                     : 0;
 }
 
 /* Whether one of some segments starts at a point. */
@@ -688,50 +685,127 @@ static uint32_t start_at(const sc_csf *csf, const uint32_t *segments, uint32_t c
     return found;
 }
 
-/* Chains the segments of each node, and measures them. Those of patches that share one point stay
-   apart; as pieces, the chain through it on one side and that on the other are one. */
+/* What measuring contours works with. Each part has room of its own. */
+typedef struct measurement {
+    const builder *b;
+    sc_csf *csf;
+    uint32_t parts;
+    sc_chains chains[SC_JOBS_PARTS];
+    uint32_t most[SC_JOBS_PARTS]; /* points of a node's contour, of those of each part */
+} measurement;
+
+/* Chains the segments of a node, measures them and its loop, whose length loop_first has for now,
+   and returns how many points they have. Those of patches that share one point stay apart; as
+   pieces, the chain through it on one side and that on the other are one. */
+static uint32_t measure_contour(const measurement *m, const sc_chains *chains, uint32_t n)
+{
+    const sc_sctt *sctt = m->b->sctt;
+    sc_csf *csf = m->csf;
+    uint32_t *segments = csf->contours + csf->contour_first[n], first, pieces;
+    uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n], touch = sctt->touch[n];
+    uint64_t points, edges;
+    if (touch == SC_NONE) {
+        pieces = sc_chains_order(chains, segments, count);
+    } else {
+        first = segments[1];
+        segments += 2;
+        count -= 2;
+        pieces = sc_chains_order(chains, segments, first) +
+                 sc_chains_order(chains, segments + first, count - first) -
+                 (start_at(csf, segments, first, touch) &
+                  start_at(csf, segments + first, count - first, touch));
+    }
+    csf->in_pieces[n] = pieces > 1;
+    count_points(csf, segments, count, &points, &edges);
+    csf->loop_first[n] =
+        touch == SC_NONE ? measure_loop(m->b->xbvh, sctt->patches[n], pieces, edges) : 0;
+    return (uint32_t)points;
+}
+
+/* The first node of a part: each has about as many segments. */
+static uint32_t part_begin(const measurement *m, uint32_t part)
+{
+    const uint32_t *first = m->csf->contour_first;
+    uint32_t low = 0, high = m->b->sctt->node_count, middle;
+    uint32_t segment = (uint32_t)((uint64_t)first[high] * part / m->parts);
+    if (part == m->parts) return high;
+    while (low < high) {
+        middle = low + (high - low) / 2;
+        if (first[middle] < segment)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static void measure_part(void *context, uint32_t part, uint32_t worker)
+{
+    measurement *m = (measurement *)context;
+    uint32_t n, points, most = 0, end = part_begin(m, part + 1);
+    (void)worker;
+    for (n = part_begin(m, part); n < end; n++) {
+        points = measure_contour(m, &m->chains[part], n);
+        if (points > most) most = points;
+    }
+    m->most[part] = most;
+}
+
+/* Takes room for as many parts as there are workers, as long as that makes building take no more
+   memory in all than it has taken so far, for contours of up to so many segments. */
+static sc_status take_rooms(measurement *m, uint64_t longest)
+{
+    sc_scratch *scratch = m->b->scratch;
+    uint64_t before = scratch->live_bytes, room = 0, points = m->b->points->point_count;
+    uint32_t most = scratch->tasks ? scratch->tasks->workers : 1;
+    if (most > m->b->sctt->node_count / PART_NODES_MIN)
+        most = m->b->sctt->node_count / PART_NODES_MIN;
+    if (most > SC_JOBS_PARTS) most = SC_JOBS_PARTS;
+    m->parts = 0;
+    do {
+        sc_chains *chains = &m->chains[m->parts++];
+        chains->points = m->csf->points;
+        chains->first = m->csf->point_first;
+        chains->last = m->csf->point_last;
+        if (sc_chains_take(scratch, points, longest, chains)) return SC_ERROR_MEMORY;
+        if (m->parts == 1) room = scratch->live_bytes - before;
+    } while (m->parts < most && scratch->live_bytes + room <= scratch->peak_bytes);
+    return SC_OK;
+}
+
+/* Puts the loops one after the other, as far as there are numbers for where they begin. */
+static void place_loops(sc_csf *csf, uint32_t nodes)
+{
+    uint32_t n, length, taken = 0;
+    for (n = 0; n < nodes; n++) {
+        length = csf->loop_first[n];
+        csf->loop_first[n] = taken;
+        if (SC_HARDLY(length >= 0xfffff000u - taken)) continue;
+        taken += length;
+    }
+    csf->loop_first[nodes] = taken;
+}
+
 static sc_status measure_contours(builder *b, sc_csf *csf)
 {
-    const sc_sctt *sctt = b->sctt;
-    uint32_t nodes = sctt->node_count, n, longest = 0;
-    uint64_t loops = 0, points, edges;
-    sc_chains chains;
+    uint32_t nodes = b->sctt->node_count, n, part, longest = 0;
+    measurement m;
     for (n = 0; n < nodes; n++)
         if (csf->contour_first[n + 1] - csf->contour_first[n] > longest)
             longest = csf->contour_first[n + 1] - csf->contour_first[n];
-    chains.points = csf->points;
-    chains.first = csf->point_first;
-    chains.last = csf->point_last;
+    m.b = b;
+    m.csf = csf;
     csf->in_pieces = (uint8_t *)sc_scratch_take(b->scratch, nodes, 1);
     csf->loop_first =
         (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)nodes + 1, sizeof(uint32_t));
-    if (!csf->in_pieces || !csf->loop_first ||
-        sc_chains_take(b->scratch, b->points->point_count, longest, &chains))
-        return SC_ERROR_MEMORY;
+    if (!csf->in_pieces || !csf->loop_first || take_rooms(&m, longest)) return SC_ERROR_MEMORY;
+    sc_jobs_run(b->scratch->tasks, m.parts, measure_part, &m);
     csf->contour_max = 0;
-    for (n = 0; n < nodes; n++) {
-        uint32_t *segments = csf->contours + csf->contour_first[n], first, pieces;
-        uint32_t count = csf->contour_first[n + 1] - csf->contour_first[n];
-        if (sctt->touch[n] == SC_NONE) {
-            pieces = sc_chains_order(&chains, segments, count);
-        } else {
-            first = segments[1];
-            segments += 2;
-            count -= 2;
-            pieces = sc_chains_order(&chains, segments, first) +
-                     sc_chains_order(&chains, segments + first, count - first) -
-                     (start_at(csf, segments, first, sctt->touch[n]) &
-                      start_at(csf, segments + first, count - first, sctt->touch[n]));
-        }
-        csf->in_pieces[n] = pieces > 1;
-        count_points(csf, segments, count, &points, &edges);
-        if (points > csf->contour_max) csf->contour_max = (uint32_t)points;
-        csf->loop_first[n] = (uint32_t)loops;
-        if (sctt->touch[n] == SC_NONE)
-            loops += measure_loop(b->xbvh, sctt->patches[n], pieces, edges, loops);
+    for (part = 0; part < m.parts; part++) {
+        if (m.most[part] > csf->contour_max) csf->contour_max = m.most[part];
+        sc_chains_give(b->scratch, &m.chains[part]);
     }
-    csf->loop_first[nodes] = (uint32_t)loops;
-    sc_chains_give(b->scratch, &chains);
+    place_loops(csf, nodes);
     return SC_OK;
 }
 
