@@ -820,11 +820,51 @@ static sc_status place_contours(builder *b, sc_csf *csf)
     return measure_contours(b, csf);
 }
 
+/* What laying out points works with. */
+typedef struct layout {
+    const builder *b;
+    const sc_csf *csf;
+} layout;
+
+/* The last half-edges of segments of the last level; then come the others, where one of them is
+   first. */
+static void lay_out_last(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const layout *l = (const layout *)context;
+    const uint32_t *from = l->b->points_first.items, *half_edges = l->b->half_edges.items;
+    uint32_t s;
+    (void)part;
+    for (s = first; s < end; s++)
+        l->csf->half_edges[l->csf->point_last[s]] = half_edges[from[s + 1] - 1];
+}
+
+static void lay_out_others(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const layout *l = (const layout *)context;
+    const uint32_t *from = l->b->points_first.items, *half_edges = l->b->half_edges.items;
+    uint32_t s;
+    (void)part;
+    for (s = first; s < end; s++) {
+        uint32_t at = l->csf->point_first[s], count = l->csf->point_last[s] - at;
+        memcpy(l->csf->half_edges + at, half_edges + from[s], count * sizeof *half_edges);
+    }
+}
+
+static void find_points(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const layout *l = (const layout *)context;
+    uint32_t i;
+    (void)part;
+    for (i = first; i < end; i++)
+        l->csf->points[i] = l->b->points->triangles[l->csf->half_edges[i]];
+}
+
 /* Puts the points of all segments below one that has no parent into one range. */
 static sc_status lay_out_points(builder *b, sc_csf *csf)
 {
     uint32_t s, i, *from = b->points_first.items, *first, *last;
     uint64_t end = 0;
+    layout l;
     first = (uint32_t *)sc_scratch_take_filled(b->scratch, csf->segment_count, sizeof *first, 0xff);
     last = (uint32_t *)sc_scratch_take(b->scratch, csf->segment_count, sizeof *last);
     if (!first || !last) return SC_ERROR_MEMORY;
@@ -850,16 +890,14 @@ static sc_status lay_out_points(builder *b, sc_csf *csf)
     csf->points = (uint32_t *)sc_scratch_take(b->scratch, end, sizeof *csf->points);
     csf->half_edges = (uint32_t *)sc_scratch_take(b->scratch, end, sizeof *csf->half_edges);
     if (!csf->points || !csf->half_edges) return SC_ERROR_MEMORY;
-    for (s = 0; s < csf->leaf_count;
-         s++) /* last points; then the others, where one of them is first */
-        csf->half_edges[last[s]] = b->half_edges.items[from[s + 1] - 1];
-    for (s = 0; s < csf->leaf_count; s++)
-        memcpy(csf->half_edges + first[s], b->half_edges.items + from[s],
-               (size_t)(last[s] - first[s]) * sizeof *csf->half_edges);
-    for (i = 0; i < end; i++) csf->points[i] = b->points->triangles[csf->half_edges[i]];
     csf->point_first = first;
     csf->point_last = last;
     csf->point_count = (uint32_t)end;
+    l.b = b;
+    l.csf = csf;
+    (void)in_parts(b, csf->leaf_count, PART_NODES_MIN, lay_out_last, &l);
+    (void)in_parts(b, csf->leaf_count, PART_NODES_MIN, lay_out_others, &l);
+    (void)in_parts(b, csf->point_count, PART_MIN, find_points, &l);
     return SC_OK;
 }
 
