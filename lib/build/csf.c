@@ -821,16 +821,16 @@ static sc_status place_contours(builder *b, sc_csf *csf)
 }
 
 /* What laying out points works with. */
-typedef struct layout {
+typedef struct point_layout {
     const builder *b;
     const sc_csf *csf;
-} layout;
+} point_layout;
 
 /* The last half-edges of segments of the last level; then come the others, where one of them is
    first. */
-static void lay_out_last(void *context, uint32_t part, uint32_t first, uint32_t end)
+static void lay_out_last_points(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    const layout *l = (const layout *)context;
+    const point_layout *l = (const point_layout *)context;
     const uint32_t *from = l->b->points_first.items, *half_edges = l->b->half_edges.items;
     uint32_t s;
     (void)part;
@@ -838,9 +838,9 @@ static void lay_out_last(void *context, uint32_t part, uint32_t first, uint32_t 
         l->csf->half_edges[l->csf->point_last[s]] = half_edges[from[s + 1] - 1];
 }
 
-static void lay_out_others(void *context, uint32_t part, uint32_t first, uint32_t end)
+static void lay_out_other_points(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    const layout *l = (const layout *)context;
+    const point_layout *l = (const point_layout *)context;
     const uint32_t *from = l->b->points_first.items, *half_edges = l->b->half_edges.items;
     uint32_t s;
     (void)part;
@@ -852,7 +852,7 @@ static void lay_out_others(void *context, uint32_t part, uint32_t first, uint32_
 
 static void find_points(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    const layout *l = (const layout *)context;
+    const point_layout *l = (const point_layout *)context;
     uint32_t i;
     (void)part;
     for (i = first; i < end; i++)
@@ -864,7 +864,7 @@ static sc_status lay_out_points(builder *b, sc_csf *csf)
 {
     uint32_t s, i, *from = b->points_first.items, *first, *last;
     uint64_t end = 0;
-    layout l;
+    point_layout l;
     first = (uint32_t *)sc_scratch_take_filled(b->scratch, csf->segment_count, sizeof *first, 0xff);
     last = (uint32_t *)sc_scratch_take(b->scratch, csf->segment_count, sizeof *last);
     if (!first || !last) return SC_ERROR_MEMORY;
@@ -895,8 +895,8 @@ static sc_status lay_out_points(builder *b, sc_csf *csf)
     csf->point_count = (uint32_t)end;
     l.b = b;
     l.csf = csf;
-    (void)in_parts(b, csf->leaf_count, PART_NODES_MIN, lay_out_last, &l);
-    (void)in_parts(b, csf->leaf_count, PART_NODES_MIN, lay_out_others, &l);
+    (void)in_parts(b, csf->leaf_count, PART_NODES_MIN, lay_out_last_points, &l);
+    (void)in_parts(b, csf->leaf_count, PART_NODES_MIN, lay_out_other_points, &l);
     (void)in_parts(b, csf->point_count, PART_MIN, find_points, &l);
     return SC_OK;
 }
