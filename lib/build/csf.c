@@ -5,34 +5,17 @@
  */
 #include "build/csf.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "base/assume.h"
-#include "base/jobs.h"
 #include "build/chains.h"
-
-/* The cosine up to which a run may turn from its first half-edge. */
-static const double TURN_COSINE = 0.25;
+#include "build/contour_edges.h"
 
 /* Room for the lists of nodes, so that it seldom has to grow. */
 enum { SEGMENTS_A_NODE = 10 };
 
-/* Loops over half-edges, triangles and the like are cut into parts of so many at least. */
-enum { PART_MIN = 4096, PART_LEAVES_MIN = 256, PART_NODES_MIN = 1024 };
-
-/* The contour half-edges of one level; a place is a number below count. What leads from level to
-   level are places, so that work at a level touches only what belongs to it. */
-typedef struct contour_level {
-    uint32_t count;
-    uint32_t *half_edges; /* count */
-    uint32_t *below,
-        *above; /* count: places one level down and up, SC_NONE where it is none there */
-    uint32_t *opposite, *next;  /* count: places; opposite: SC_NONE at the outside */
-    uint32_t *inside, *outside; /* count: patches on its side and across, SC_NONE for the outside */
-    uint32_t *segment, *end; /* count: of the run that starts here: its segment, its last place */
-    uint8_t *cut, *start;    /* count: whether a run starts here, regardless or at all */
-} contour_level;
+/* Loops over nodes and segments are cut into parts of so many at least. */
+enum { PART_NODES_MIN = 1024 };
 
 typedef struct builder {
     const sc_points *points;
@@ -40,8 +23,8 @@ typedef struct builder {
     const sc_xbvh *xbvh;
     const sc_sctt *sctt;
     sc_scratch *scratch;
-    contour_level *levels;  /* level_count */
-    uint32_t leaf_segments; /* of the last level */
+    sc_contour_level *levels; /* level_count */
+    uint32_t leaf_segments;   /* of the last level */
     sc_list points_first, half_edges, child_first, children;
     /* Node lists, written from the end of their room, the last node's first; how much of it is in
        use; and of each node, how much was then. */
@@ -50,356 +33,16 @@ typedef struct builder {
     /* The runs of the level at hand, which are in the order of their patches, and where those of
        each begin. */
     uint32_t *run_out, *run_segment, *patch_first;
-    uint32_t *kept; /* places that a level keeps of the one below; the same memory as run_out */
     /* For the parts of loops: the level at hand, and its number; of each part, how much it has of
        what is counted, and then how much those before it have. */
-    contour_level *level;
+    sc_contour_level *level;
     uint32_t number;
     uint64_t counts[SC_JOBS_PARTS + 1], segments_of[SC_JOBS_PARTS + 1],
         children_of[SC_JOBS_PARTS + 1];
 } builder;
 
-/* Returns how many parts there are. */
-static uint32_t in_parts(const builder *b, uint32_t count, uint32_t least, sc_jobs_body body,
-                         void *context)
-{
-    return count ? sc_jobs_loop(b->scratch->tasks, count, least, body, context) : 0;
-}
-
-/* From what each part has to what those before it have; returns what all have. */
-static uint64_t add_up(uint64_t counts[SC_JOBS_PARTS + 1], uint32_t parts)
-{
-    uint64_t part, sum = 0;
-    uint32_t i;
-    for (i = 0; i < parts; i++) {
-        part = counts[i];
-        counts[i] = sum;
-        sum += part;
-    }
-    counts[parts] = sum;
-    return sum;
-}
-
-/* Memory for the half-edges of a level. */
-static int take_level(sc_scratch *scratch, contour_level *level, uint32_t count)
-{
-    uint32_t **const arrays[] = {&level->half_edges, &level->below, &level->above,
-                                 &level->opposite,   &level->next,  &level->inside,
-                                 &level->outside};
-    unsigned i;
-    level->count = count;
-    level->cut = (uint8_t *)sc_scratch_take_filled(scratch, count, 1, 0);
-    level->start = (uint8_t *)sc_scratch_take(scratch, count, 1);
-    if (!level->cut || !level->start) return 0;
-    for (i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        *arrays[i] = (uint32_t *)sc_scratch_take(scratch, count, sizeof(uint32_t));
-        if (!*arrays[i]) return 0;
-    }
-    return 1;
-}
-
-static void give_level(sc_scratch *scratch, const contour_level *level)
-{
-    sc_scratch_give(scratch, level->half_edges);
-    sc_scratch_give(scratch, level->below);
-    sc_scratch_give(scratch, level->above);
-    sc_scratch_give(scratch, level->opposite);
-    sc_scratch_give(scratch, level->next);
-    sc_scratch_give(scratch, level->inside);
-    sc_scratch_give(scratch, level->outside);
-    sc_scratch_give(scratch, level->segment);
-    sc_scratch_give(scratch, level->end);
-    sc_scratch_give(scratch, level->cut);
-    sc_scratch_give(scratch, level->start);
-}
-
-/* What collecting half-edges works with. */
-typedef struct collection {
-    builder *b;
-    const uint32_t *order;
-    uint32_t *patch;        /* triangle_count: the leaf cluster it is in */
-    uint32_t *place;        /* 3 * triangle_count: of half-edges in the last level, or SC_NONE */
-    uint32_t *all;          /* 3 * triangle_count: those of each part, from the part's first on */
-    const uint32_t *parent; /* of patches of the level below, counted from its first */
-    contour_level *level, *below;
-} collection;
-
-static void find_patches(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const collection *c = (const collection *)context;
-    const sc_xbvh *xbvh = c->b->xbvh;
-    uint32_t leaf, i, base = xbvh->level_first[xbvh->level_count - 1];
-    (void)part;
-    for (leaf = first; leaf < end; leaf++)
-        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++)
-            c->patch[c->order[i]] = base + leaf;
-}
-
-/* Lists the half-edges of triangles that are between leaf clusters. Their places are those among
-   the part's. */
-static void find_leaf_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const collection *c = (const collection *)context;
-    const uint32_t *opposite = c->b->adjacency->opposite, *patch = c->patch, *order = c->order;
-    uint32_t *place = c->place, *all = c->all + 3 * (size_t)first, i, k, count = 0;
-    for (i = first; i < end; i++)
-        for (k = 0; k < 3; k++) { /* without branches, which no processor could foresee */
-            uint32_t h = 3 * order[i] + k, other = opposite[h];
-            uint32_t between = other == SC_NONE || patch[other / 3] != patch[order[i]];
-            place[h] = count | (between - 1);
-            all[count] = h;
-            count += between;
-        }
-    c->b->counts[part] = count;
-}
-
-static void place_leaf_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const collection *c = (const collection *)context;
-    uint32_t e = (uint32_t)c->b->counts[part], stop = (uint32_t)c->b->counts[part + 1];
-    uint32_t *half_edges = c->level->half_edges;
-    (void)end;
-    memcpy(half_edges + e, c->all + 3 * (size_t)first, (stop - e) * sizeof *half_edges);
-    if (part == 0) return; /* they are those already */
-    for (; e < stop; e++) c->place[half_edges[e]] = e;
-}
-
-static void relate_leaf_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const collection *c = (const collection *)context;
-    const uint32_t *opposite = c->b->adjacency->opposite, *patch = c->patch, *place = c->place;
-    contour_level *level = c->level;
-    uint32_t e;
-    (void)part;
-    for (e = first; e < end; e++) {
-        uint32_t h = level->half_edges[e], other = opposite[h];
-        level->inside[e] = patch[h / 3];
-        level->outside[e] = other == SC_NONE ? SC_NONE : patch[other / 3];
-        level->opposite[e] = other == SC_NONE ? SC_NONE : place[other];
-        /* the one that follows: turns round the end point through triangles of the patch */
-        h = sc_adjacency_next(h);
-        while (place[h] == SC_NONE) h = sc_adjacency_next(opposite[h]);
-        level->next[e] = place[h];
-    }
-}
-
-/* The last level: the half-edges between leaf clusters, in the order of the leaves, so that
-   segments that are near have near numbers. */
-static sc_status collect_leaves(builder *b, const uint32_t *order, contour_level *level)
-{
-    uint32_t triangles = b->points->triangle_count, parts, count;
-    uint64_t corners = 3 * (uint64_t)triangles;
-    collection c;
-    c.b = b;
-    c.order = order;
-    c.level = level;
-    c.patch = (uint32_t *)sc_scratch_take(b->scratch, triangles, sizeof *c.patch);
-    c.place = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof *c.place);
-    c.all = (uint32_t *)sc_scratch_take(b->scratch, corners, sizeof *c.all);
-    if (!c.patch || !c.place || !c.all) return SC_ERROR_MEMORY;
-    (void)in_parts(b, b->xbvh->leaf_count, PART_LEAVES_MIN, find_patches, &c);
-    parts = in_parts(b, triangles, PART_MIN, find_leaf_edges, &c);
-    count = (uint32_t)add_up(b->counts, parts);
-    if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
-    (void)in_parts(b, triangles, PART_MIN, place_leaf_edges, &c);
-    sc_scratch_give(b->scratch, c.all);
-    (void)in_parts(b, count, PART_MIN, relate_leaf_edges, &c);
-    sc_scratch_give(b->scratch, c.patch);
-    sc_scratch_give(b->scratch, c.place);
-    return SC_OK;
-}
-
-/* Lists those of the level below that a level keeps, as find_leaf_edges does. */
-static void find_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const collection *c = (const collection *)context;
-    const contour_level *below = c->below;
-    const uint32_t *parent = c->parent;
-    uint32_t begin = c->b->xbvh->level_first[c->b->number + 1], e, count = 0;
-    uint32_t *kept = c->b->kept + first;
-    for (e = first; e < end; e++) { /* without branches, again */
-        uint32_t out = below->outside[e];
-        uint32_t between =
-            out == SC_NONE || parent[out - begin] != parent[below->inside[e] - begin];
-        below->above[e] = count | (between - 1);
-        kept[count] = e;
-        count += between;
-    }
-    c->b->counts[part] = count;
-}
-
-static void place_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const collection *c = (const collection *)context;
-    uint32_t e = (uint32_t)c->b->counts[part], stop = (uint32_t)c->b->counts[part + 1];
-    uint32_t *places = c->level->below;
-    (void)end;
-    memcpy(places + e, c->b->kept + first, (stop - e) * sizeof *places);
-    if (part == 0) return; /* they are those already */
-    for (; e < stop; e++) c->below->above[places[e]] = e;
-}
-
-static void relate_edges(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const collection *c = (const collection *)context;
-    const contour_level *below = c->below;
-    contour_level *level = c->level;
-    const uint32_t *parent = c->parent;
-    uint32_t begin = c->b->xbvh->level_first[c->b->number + 1], e;
-    (void)part;
-    for (e = first; e < end; e++) {
-        uint32_t from = level->below[e], following;
-        uint32_t out = below->outside[from], other = below->opposite[from];
-        level->half_edges[e] = below->half_edges[from];
-        level->inside[e] = parent[below->inside[from] - begin];
-        level->outside[e] = out == SC_NONE ? SC_NONE : parent[out - begin];
-        level->opposite[e] = other == SC_NONE ? SC_NONE : below->above[other];
-        /* the one that follows: turns round the end point through patches below */
-        following = below->next[from];
-        while (below->above[following] == SC_NONE)
-            following = below->next[below->opposite[following]];
-        level->next[e] = below->above[following];
-    }
-}
-
-/* Any other level: what is left of those of the level below. */
-static sc_status collect_level(builder *b, uint32_t number, uint32_t *parent)
-{
-    contour_level *level = &b->levels[number], *below = &b->levels[number + 1];
-    const sc_xbvh *xbvh = b->xbvh;
-    uint32_t begin = xbvh->level_first[number + 1], parts, count, p, i;
-    collection c;
-    c.b = b;
-    c.parent = parent;
-    c.level = level;
-    c.below = below;
-    b->number = number;
-    for (p = xbvh->level_first[number]; p + 1 < begin; p++)
-        for (i = xbvh->child[p]; i < xbvh->child[p + 1]; i++) parent[i - begin] = p;
-    parts = in_parts(b, below->count, PART_MIN, find_edges, &c);
-    count = (uint32_t)add_up(b->counts, parts);
-    if (!take_level(b->scratch, level, count)) return SC_ERROR_MEMORY;
-    (void)in_parts(b, below->count, PART_MIN, place_edges, &c);
-    (void)in_parts(b, count, PART_MIN, relate_edges, &c);
-    sc_scratch_give(b->scratch, below->opposite);
-    below->opposite = NULL;
-    return SC_OK;
-}
-
-/* Where the first patch begins that begins at place e or after it. The places of a patch follow each
-   other, so from one such place to another there are patches as a whole, with their loops. */
-static uint32_t patch_begin(const contour_level *level, uint32_t e)
-{
-    uint32_t low = e, high = level->count, middle;
-    if (e == 0) return 0;
-    while (low < high) {
-        middle = low + (high - low) / 2;
-        if (level->inside[middle] == level->inside[e - 1])
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-static void direction_of(const builder *b, uint32_t h, double direction[3])
-{
-    const double *p = b->points->rest + 3 * (uint64_t)b->points->triangles[h];
-    const double *q = b->points->rest + 3 * (uint64_t)b->points->triangles[sc_adjacency_next(h)];
-    int k;
-    for (k = 0; k < 3; k++) direction[k] = q[k] - p[k];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Walks the run that starts at place e and cuts it where it turns. */
-static void cut_run(const builder *b, contour_level *level, uint32_t e)
-{
-    double first[3], now[3];
-    direction_of(b, level->half_edges[e], first);
-    for (e = level->next[e]; !level->start[e]; e = level->next[e]) {
-        direction_of(b, level->half_edges[e], now);
-        if (dot(first, now) < TURN_COSINE * sqrt(dot(first, first)) * sqrt(dot(now, now))) {
-            level->cut[e] = level->start[e] = 1;
-            memcpy(first, now, sizeof first);
-        }
-    }
-}
-
-/* Walks the loop that place e is in, marks it seen, and cuts it where that is needed: runs at the
-   outside where they turn, and a loop in which no run starts first at its lowest half-edge. */
-static void cut_loop(const builder *b, contour_level *level, uint32_t e, uint8_t *seen)
-{
-    uint32_t f = e, lowest = e, starts = 0, outside = 0;
-    do {
-        seen[f] = 1;
-        starts |= level->start[f];
-        outside |= level->outside[f] == SC_NONE;
-        f = level->next[f];
-    } while (f != e);
-    if (!starts) {
-        for (f = level->next[e]; f != e; f = level->next[f])
-            if (level->half_edges[f] < level->half_edges[lowest]) lowest = f;
-        level->cut[lowest] = level->start[lowest] = 1;
-        cut_run(b, level, lowest);
-    } else if (outside) {
-        do {
-            if (level->start[f] && level->outside[f] == SC_NONE) cut_run(b, level, f);
-            f = level->next[f];
-        } while (f != e);
-    }
-}
-
-static void hand_cuts_down(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const contour_level *above = (const contour_level *)context, *level = above + 1;
-    uint32_t e;
-    (void)part;
-    for (e = first; e < end; e++) level->cut[above->below[e]] = above->cut[e];
-}
-
-/* What finding starts works with. */
-typedef struct start_search {
-    const builder *b;
-    contour_level *level;
-    uint8_t *seen; /* places */
-} start_search;
-
-static void find_starts_of_patches(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const start_search *s = (const start_search *)context;
-    contour_level *level = s->level;
-    uint32_t e, f;
-    (void)part;
-    first = patch_begin(level, first);
-    end = patch_begin(level, end);
-    for (e = first; e < end; e++) { /* each follows one */
-        f = level->next[e];
-        level->start[f] = level->cut[f] | (level->outside[e] != level->outside[f]);
-    }
-    for (e = first; e < end; e++)
-        if (!s->seen[e]) cut_loop(s->b, level, e, s->seen);
-}
-
-/* Decides where runs start, from the cuts of the level above, if there is one, and its own. */
-static sc_status find_starts(builder *b, contour_level *level, contour_level *above)
-{
-    start_search search;
-    search.b = b;
-    search.level = level;
-    search.seen = (uint8_t *)sc_scratch_take_filled(b->scratch, level->count, 1, 0);
-    if (!search.seen) return SC_ERROR_MEMORY;
-    if (above) (void)in_parts(b, above->count, PART_MIN, hand_cuts_down, above);
-    (void)in_parts(b, level->count, PART_MIN, find_starts_of_patches, &search);
-    sc_scratch_give(b->scratch, search.seen);
-    return SC_OK;
-}
-
 /* Writes the half-edges of a run and one that starts at its last point; returns their number. */
-static uint32_t list_leaf_segment(contour_level *level, uint32_t start, uint32_t *half_edges)
+static uint32_t list_leaf_segment(sc_contour_level *level, uint32_t start, uint32_t *half_edges)
 {
     uint32_t e = start, h, count = 0;
     do {
@@ -413,8 +56,8 @@ static uint32_t list_leaf_segment(contour_level *level, uint32_t start, uint32_t
 }
 
 /* Writes the segments of the level below that a run consists of; returns their number. */
-static uint32_t list_children(contour_level *level, const contour_level *below, uint32_t start,
-                              uint32_t *children)
+static uint32_t list_children(sc_contour_level *level, const sc_contour_level *below,
+                              uint32_t start, uint32_t *children)
 {
     uint32_t from = level->below[start], end, count = 0;
     for (;;) {
@@ -430,10 +73,10 @@ static uint32_t list_children(contour_level *level, const contour_level *below, 
 static void count_runs(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
     builder *b = (builder *)context;
-    const contour_level *level = b->level;
+    const sc_contour_level *level = b->level;
     uint32_t e, runs = 0;
-    first = patch_begin(level, first);
-    end = patch_begin(level, end);
+    first = sc_contour_patch_begin(level, first);
+    end = sc_contour_patch_begin(level, end);
     for (e = first; e < end; e++) runs += level->start[e];
     b->counts[part] = runs;
 }
@@ -456,7 +99,7 @@ static void walk_leaf_runs(void *context, uint32_t part, uint32_t first, uint32_
     uint32_t i, stop = (uint32_t)b->counts[part + 1], *half_edges = b->half_edges.items;
     uint64_t at;
     (void)end;
-    first = patch_begin(b->level, first);
+    first = sc_contour_patch_begin(b->level, first);
     list_runs(b, part, first);
     at = first + b->counts[part];
     for (i = (uint32_t)b->counts[part]; i < stop; i++) {
@@ -473,10 +116,10 @@ static void walk_leaf_runs(void *context, uint32_t part, uint32_t first, uint32_
 static void walk_parent_runs(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
     builder *b = (builder *)context;
-    contour_level *level = b->level;
+    sc_contour_level *level = b->level;
     uint32_t i, stop = (uint32_t)b->counts[part + 1], segments = 0, count = 0, *children;
     (void)end;
-    first = patch_begin(level, first);
+    first = sc_contour_patch_begin(level, first);
     children = level[1].next + first;
     list_runs(b, part, first);
     for (i = (uint32_t)b->counts[part]; i < stop; i++) {
@@ -494,14 +137,14 @@ static void walk_parent_runs(void *context, uint32_t part, uint32_t first, uint3
 static void number_parents(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
     builder *b = (builder *)context;
-    contour_level *level = b->level;
+    sc_contour_level *level = b->level;
     uint32_t i, stop = (uint32_t)b->counts[part + 1];
     uint64_t segment = b->child_first.count + b->segments_of[part];
     uint64_t child = b->children.count + b->children_of[part];
     uint64_t count = b->children_of[part + 1] - b->children_of[part];
     (void)end;
     if (count == 0) return;
-    first = patch_begin(level, first);
+    first = sc_contour_patch_begin(level, first);
     memcpy(b->children.items + child, level[1].next + first, (size_t)count * sizeof(uint32_t));
     for (i = (uint32_t)b->counts[part]; i < stop; i++) {
         if (b->run_out[i] == 1) continue;
@@ -515,11 +158,11 @@ static void number_parents(void *context, uint32_t part, uint32_t first, uint32_
 static void finish_runs(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
     builder *b = (builder *)context;
-    const contour_level *level = b->level;
+    const sc_contour_level *level = b->level;
     uint32_t i, stop = (uint32_t)b->counts[part + 1], begin = b->xbvh->level_first[b->number];
     uint32_t patch;
     (void)end;
-    first = patch_begin(level, first);
+    first = sc_contour_patch_begin(level, first);
     patch = first ? level->inside[first - 1] + 1 : begin;
     for (i = (uint32_t)b->counts[part]; i < stop; i++) {
         uint32_t e = b->run_segment[i];
@@ -616,7 +259,7 @@ static int reserve_for_leaves(builder *b, uint32_t half_edges, uint32_t runs)
 
 static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
 {
-    contour_level *level = b->level = &b->levels[number];
+    sc_contour_level *level = b->level = &b->levels[number];
     uint32_t parts, runs, patch,
         last = b->xbvh->level_count - 1, count = level->count, begin = b->xbvh->level_first[number],
         nodes = b->sctt->level_first[number + 1] - b->sctt->level_first[number];
@@ -624,34 +267,34 @@ static sc_status build_level(builder *b, uint32_t number, sc_csf *csf)
     level->segment = (uint32_t *)sc_scratch_take(b->scratch, count, sizeof(uint32_t));
     level->end = (uint32_t *)sc_scratch_take(b->scratch, count, sizeof(uint32_t));
     if (!level->segment || !level->end) return SC_ERROR_MEMORY;
-    parts = in_parts(b, count, PART_MIN, count_runs, b);
-    runs = (uint32_t)add_up(b->counts, parts);
+    parts = sc_contour_parts(b->scratch, count, SC_CONTOUR_PART_MIN, count_runs, b);
+    runs = (uint32_t)sc_contour_add_up(b->counts, parts);
     csf->level_segments[number] = runs;
     if (number == last) {
         if (!reserve_for_leaves(b, count, runs)) return SC_ERROR_MEMORY;
-        (void)in_parts(b, count, PART_MIN, walk_leaf_runs, b);
+        (void)sc_contour_parts(b->scratch, count, SC_CONTOUR_PART_MIN, walk_leaf_runs, b);
         b->points_first.count = csf->leaf_count = b->leaf_segments = runs;
         b->half_edges.count = (uint64_t)count + runs;
     } else {
         uint64_t segments, children;
-        (void)in_parts(b, count, PART_MIN, walk_parent_runs, b);
-        segments = add_up(b->segments_of, parts);
-        children = add_up(b->children_of, parts);
+        (void)sc_contour_parts(b->scratch, count, SC_CONTOUR_PART_MIN, walk_parent_runs, b);
+        segments = sc_contour_add_up(b->segments_of, parts);
+        children = sc_contour_add_up(b->children_of, parts);
         if (!sc_list_reserve(b->scratch, &b->child_first, segments + 1) || /* and the end of all */
             !sc_list_reserve(b->scratch, &b->children, children))
             return SC_ERROR_MEMORY;
-        (void)in_parts(b, count, PART_MIN, number_parents, b);
+        (void)sc_contour_parts(b->scratch, count, SC_CONTOUR_PART_MIN, number_parents, b);
         b->child_first.count += segments;
         b->children.count += children;
-        give_level(b->scratch, level + 1);
+        sc_contour_level_give(b->scratch, level + 1);
     }
-    (void)in_parts(b, count, PART_MIN, finish_runs, b);
+    (void)sc_contour_parts(b->scratch, count, SC_CONTOUR_PART_MIN, finish_runs, b);
     patch = count ? level->inside[count - 1] + 1 : begin;
     while (patch < b->xbvh->level_first[number + 1]) b->patch_first[patch++ - begin] = runs;
-    parts = in_parts(b, nodes, PART_NODES_MIN, measure_nodes, b);
-    if (!reserve_lists(b, add_up(b->counts, parts))) return SC_ERROR_MEMORY;
+    parts = sc_contour_parts(b->scratch, nodes, PART_NODES_MIN, measure_nodes, b);
+    if (!reserve_lists(b, sc_contour_add_up(b->counts, parts))) return SC_ERROR_MEMORY;
     b->listed += b->counts[parts];
-    (void)in_parts(b, nodes, PART_NODES_MIN, list_nodes, b);
+    (void)sc_contour_parts(b->scratch, nodes, PART_NODES_MIN, list_nodes, b);
     return SC_OK;
 }
 
@@ -895,40 +538,36 @@ static sc_status lay_out_points(builder *b, sc_csf *csf)
     csf->point_count = (uint32_t)end;
     l.b = b;
     l.csf = csf;
-    (void)in_parts(b, csf->leaf_count, PART_NODES_MIN, lay_out_last_points, &l);
-    (void)in_parts(b, csf->leaf_count, PART_NODES_MIN, lay_out_other_points, &l);
-    (void)in_parts(b, csf->point_count, PART_MIN, find_points, &l);
+    (void)sc_contour_parts(b->scratch, csf->leaf_count, PART_NODES_MIN, lay_out_last_points, &l);
+    (void)sc_contour_parts(b->scratch, csf->leaf_count, PART_NODES_MIN, lay_out_other_points, &l);
+    (void)sc_contour_parts(b->scratch, csf->point_count, SC_CONTOUR_PART_MIN, find_points, &l);
     return SC_OK;
 }
 
 static sc_status prepare(builder *b, const uint32_t *order, sc_csf *csf)
 {
-    uint32_t i, level_count = b->xbvh->level_count, contour, *parent;
+    uint32_t level_count = b->xbvh->level_count, contour;
     sc_status status;
-    parent = (uint32_t *)sc_scratch_take(b->scratch, b->xbvh->leaf_count, sizeof *parent);
     b->levels =
-        (contour_level *)sc_scratch_take_filled(b->scratch, level_count, sizeof *b->levels, 0);
+        (sc_contour_level *)sc_scratch_take_filled(b->scratch, level_count, sizeof *b->levels, 0);
     b->node_place = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->sctt->node_count + 1,
                                                 sizeof(uint32_t));
     csf->level_segments = (uint32_t *)sc_scratch_take(b->scratch, level_count, sizeof(uint32_t));
-    if (!parent || !b->levels || !b->node_place || !csf->level_segments) return SC_ERROR_MEMORY;
-    status = collect_leaves(b, order, &b->levels[level_count - 1]);
+    if (!b->levels || !b->node_place || !csf->level_segments) return SC_ERROR_MEMORY;
+    status =
+        sc_contour_edges_collect(b->points, b->adjacency, order, b->xbvh, b->scratch, b->levels);
     if (status) return status;
     contour = b->levels[level_count - 1].count;
-    b->kept = b->run_out = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
-    if (!b->kept) return SC_ERROR_MEMORY;
-    for (i = level_count - 1; !status && i-- > 0;) status = collect_level(b, i, parent);
-    if (status) return status;
-    sc_scratch_give(b->scratch, parent);
+    b->run_out = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
     b->run_segment = (uint32_t *)sc_scratch_take(b->scratch, contour, sizeof(uint32_t));
     b->patch_first = (uint32_t *)sc_scratch_take(b->scratch, (uint64_t)b->xbvh->leaf_count + 1,
                                                  sizeof(uint32_t));
-    return b->run_segment && b->patch_first ? SC_OK : SC_ERROR_MEMORY;
+    return b->run_out && b->run_segment && b->patch_first ? SC_OK : SC_ERROR_MEMORY;
 }
 
 static void give_back(builder *b)
 {
-    give_level(b->scratch, &b->levels[0]);
+    sc_contour_level_give(b->scratch, &b->levels[0]);
     sc_scratch_give(b->scratch, b->levels);
     sc_scratch_give(b->scratch, b->run_out);
     sc_scratch_give(b->scratch, b->run_segment);
@@ -954,7 +593,8 @@ sc_status sc_csf_build(const sc_points *points, const sc_adjacency *adjacency,
     if (status) return status;
     if (!reserve_lists(&b, SEGMENTS_A_NODE * (uint64_t)sctt->node_count)) return SC_ERROR_MEMORY;
     for (level = 0; level < xbvh->level_count; level++) { /* cuts go down */
-        status = find_starts(&b, &b.levels[level], level ? &b.levels[level - 1] : NULL);
+        status = sc_contour_edges_find_starts(points, scratch, &b.levels[level],
+                                              level ? &b.levels[level - 1] : NULL);
         if (status) return status;
     }
     for (level = xbvh->level_count; level-- > 0;) { /* segments grow up */
