@@ -18,6 +18,7 @@ sc_status structures_make(structures *s, const soup *mesh, const sc_build_option
 {
     sc_mesh m = input_plain_mesh(mesh);
     const uint32_t *order;
+    sc_sharing sharing;
     sc_status status;
     sc_allocator allocator = sc_memory_allocator(NULL);
     memset(s, 0, sizeof(*s));
@@ -32,8 +33,11 @@ sc_status structures_make(structures *s, const soup *mesh, const sc_build_option
     if (!status) status = sc_xbvh_build(&s->hierarchy, &s->scratch, &s->xbvh);
     order = s->hierarchy.order;
     if (!status)
-        status = sc_neighbors_build(&s->points, &s->adjacency, order, &s->xbvh, &s->scratch,
-                                    &s->neighbors);
+        status =
+            sc_sharing_build(&s->points, &s->adjacency, order, &s->xbvh, &s->scratch, &sharing);
+    if (!status)
+        status = sc_neighbors_build(&s->points, &s->adjacency, order, &s->xbvh, &sharing,
+                                    &s->scratch, &s->neighbors);
     if (!status) status = sc_sctt_build(&s->xbvh, &s->neighbors, &s->scratch, &s->sctt);
     if (!status)
         status = sc_csf_build(&s->points, &s->adjacency, order, &s->xbvh, &s->sctt, &s->scratch,

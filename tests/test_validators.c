@@ -269,6 +269,7 @@ static void structures(void)
     sc_adjacency adjacency;
     sc_hierarchy hierarchy;
     sc_xbvh xbvh;
+    sc_sharing sharing;
     sc_neighbors neighbors;
     sc_sctt sctt;
     sc_csf csf;
@@ -281,7 +282,9 @@ static void structures(void)
         !CHECK(!sc_adjacency_build(&points, &scratch, &adjacency)) ||
         !CHECK(!sc_partition_build(&points, &adjacency, &options, &scratch, &hierarchy)) ||
         !CHECK(!sc_xbvh_build(&hierarchy, &scratch, &xbvh)) ||
-        !CHECK(!sc_neighbors_build(&points, &adjacency, hierarchy.order, &xbvh, &scratch,
+        !CHECK(
+            !sc_sharing_build(&points, &adjacency, hierarchy.order, &xbvh, &scratch, &sharing)) ||
+        !CHECK(!sc_neighbors_build(&points, &adjacency, hierarchy.order, &xbvh, &sharing, &scratch,
                                    &neighbors)) ||
         !CHECK(!sc_sctt_build(&xbvh, &neighbors, &scratch, &sctt)) ||
         !CHECK(!sc_csf_build(&points, &adjacency, hierarchy.order, &xbvh, &sctt, &scratch, &csf)))

@@ -8,69 +8,79 @@
 #include <string.h>
 
 #include "base/assume.h"
+#include "base/jobs.h"
 #include "base/sort.h"
 
 /*
- * The points at which several patches meet, as records of a point, a number n and n different
- * patches of the level at hand in ascending order.
+ * The points of more triangles than sharing looks at, as records of a point, a number n and n
+ * different patches of the level at hand in ascending order, where there are several.
  */
 typedef struct meetings {
     uint32_t *words;
     uint64_t count;
 } meetings;
 
-/* Lists of up to this many numbers are sorted in place. */
-enum { SHORT_LIST = 24 };
+/* Patches of a level and those of the next, while they are listed. */
+typedef struct level_lists {
+    const sc_xbvh *xbvh;
+    const sc_sharing *sharing;
+    sc_neighbors *neighbors;
+    const uint32_t *parent; /* of patches of the next level, from its first on: of the same level */
+    uint32_t begin, below;  /* the first of the level and of the next */
+} level_lists;
 
-/* Sorts a list and drops repeats; returns what is left. keys: room for as many, if it is not
-   short. */
-static uint32_t sort_unique(uint32_t *list, uint32_t count, sc_pair *keys)
+/* Patches that parts of a loop list, at least. */
+enum { PATCHES_MIN = 1024 };
+
+/* Drops repeats from a sorted list; returns what is left. */
+static uint32_t drop_repeats(uint32_t *list, uint32_t count)
 {
-    uint32_t i, j, n = 0;
-    if (count <= SHORT_LIST) {
-        for (i = 0; i < count; i++) {
-            uint32_t item = list[i], k;
-            for (j = n; j > 0 && list[j - 1] > item; j--) continue;
-            if (j > 0 && list[j - 1] == item) continue;
-            for (k = n++; k > j; k--) list[k] = list[k - 1];
-            list[j] = item;
-        }
-        return n;
-    }
-    for (i = 0; i < count; i++) {
-        keys[i].a = list[i];
-        keys[i].b = 0;
-    }
-    sc_sort_pairs(keys, count);
+    uint32_t i, n = 0;
     for (i = 0; i < count; i++)
-        if (n == 0 || list[n - 1] != keys[i].a) list[n++] = keys[i].a;
+        if (n == 0 || list[n - 1] != list[i]) list[n++] = list[i];
     return n;
 }
 
+/* The leaf clusters that meet at points of very many triangles. keys: room for all of one. */
 static sc_status meet_at_leaves(const sc_points *points, const sc_adjacency *adjacency,
-                                const uint32_t *order, const sc_xbvh *xbvh, sc_pair *keys,
-                                sc_scratch *scratch, meetings *met)
+                                const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
+                                meetings *met)
 {
-    uint32_t leaf, i, p, *patch_of, base = xbvh->level_first[xbvh->level_count - 1];
-    patch_of = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof *patch_of);
-    met->words = (uint32_t *)sc_scratch_take(
-        scratch, 3 * (uint64_t)points->triangle_count + 2 * (uint64_t)points->point_count,
-        sizeof *met->words);
+    const uint32_t *first = adjacency->corner_first;
+    uint32_t leaf, i, p, longest = 0, base = xbvh->level_first[xbvh->level_count - 1], *patch_of;
+    uint64_t room = 0;
+    sc_pair *keys;
     met->count = 0;
-    if (!patch_of || !met->words) return SC_ERROR_MEMORY;
+    for (p = 0; p < points->point_count; p++) {
+        uint32_t corners = first[p + 1] - first[p];
+        if (corners <= SC_SHARING_CROWD) continue;
+        room += 2 + (uint64_t)corners;
+        if (corners > longest) longest = corners;
+    }
+    if (!room) return SC_OK;
+    met->words = (uint32_t *)sc_scratch_take(scratch, room, sizeof *met->words);
+    patch_of = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof *patch_of);
+    keys = (sc_pair *)sc_scratch_take(scratch, longest, sizeof *keys);
+    if (!met->words || !patch_of || !keys) return SC_ERROR_MEMORY;
     for (leaf = 0; leaf < xbvh->leaf_count; leaf++)
         for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++)
             patch_of[order[i]] = base + leaf;
     for (p = 0; p < points->point_count; p++) {
         uint32_t *record = met->words + met->count, n = 0;
-        for (i = adjacency->corner_first[p]; i < adjacency->corner_first[p + 1]; i++)
-            record[2 + n++] = patch_of[adjacency->corners[i] / 3];
-        n = sort_unique(record + 2, n, keys);
+        if (first[p + 1] - first[p] <= SC_SHARING_CROWD) continue;
+        for (i = first[p]; i < first[p + 1]; i++) {
+            keys[n].a = patch_of[adjacency->corners[i] / 3];
+            keys[n++].b = 0;
+        }
+        sc_sort_pairs(keys, n);
+        for (i = 0; i < n; i++) record[2 + i] = keys[i].a;
+        n = drop_repeats(record + 2, n);
         if (n < 2) continue;
         record[0] = p;
         record[1] = n;
         met->count += 2 + n;
     }
+    sc_scratch_give(scratch, keys);
     sc_scratch_give(scratch, patch_of);
     return SC_OK;
 }
@@ -112,61 +122,104 @@ static sc_status reserve_entries(sc_neighbors *neighbors, sc_scratch *scratch, u
     return SC_OK;
 }
 
-/* Lists the neighbors of all patches of a level. place: a number for each patch, which may be any:
-   the place of a neighbor among those of the patch at hand, if that neighbor is there. */
-static sc_status list_level(const meetings *met, uint32_t begin, uint32_t end, uint32_t *place,
-                            sc_scratch *scratch, sc_neighbors *neighbors)
+/* Counts what a level's lists may have, and where they begin behind those that are there. */
+static void count_level(const level_lists *l, uint32_t end, const meetings *met, uint64_t *total)
 {
-    uint32_t *count = neighbors->count, *first = neighbors->first, p;
-    uint64_t at, total = 0, i, j;
-    sc_status status;
-    sc_pair *entries;
-    for (p = begin; p < end; p++) count[p] = 0;
+    const uint32_t *child = l->xbvh->child;
+    uint32_t *count = l->neighbors->count, p;
+    uint64_t at, i;
+    for (p = l->begin; p < end; p++)
+        if (l->parent)
+            count[p] = count[child[p]] + (child[p + 1] - child[p] > 1 ? count[child[p] + 1] : 0);
+        else
+            count[p] = l->sharing->first[p - l->begin + 1] - l->sharing->first[p - l->begin];
     for (at = 0; at < met->count; at += 2 + met->words[at + 1]) {
         const uint32_t *record = met->words + at;
         if (record[1] > SC_NEIGHBORS_HUB) continue;
         for (i = 0; i + 1 < record[1]; i++) count[record[2 + i]] += record[1] - 1 - (uint32_t)i;
     }
-    for (p = begin; p < end; p++) total += count[p];
-    status = reserve_entries(neighbors, scratch, total);
-    if (status) return status;
-    entries = neighbors->entries;
-    total = neighbors->entry_count;
-    for (p = begin; p < end; p++) {
-        first[p] = (uint32_t)total;
-        total += count[p];
-        count[p] = 0;
-    }
+    for (p = l->begin, *total = 0; p < end; p++) *total += count[p];
+}
+
+/* Lists the patches that meet at points of very many triangles. */
+static void list_meetings(const meetings *met, sc_neighbors *neighbors)
+{
+    uint32_t *count = neighbors->count, p;
+    uint64_t at, i, j;
     for (at = 0; at < met->count; at += 2 + met->words[at + 1]) {
         const uint32_t *record = met->words + at;
         if (record[1] > SC_NEIGHBORS_HUB) continue;
         for (i = 0; i < record[1]; i++) {
             p = record[2 + i];
             for (j = i + 1; j < record[1]; j++) {
-                entries[first[p] + count[p]].a = record[2 + j];
-                entries[first[p] + count[p]++].b = record[0];
+                sc_pair *entry = neighbors->entries + neighbors->first[p] + count[p]++;
+                entry->a = record[2 + j];
+                entry->b = record[0];
             }
         }
     }
-    total = neighbors->entry_count;
-    for (p = begin; p < end; p++) { /* one entry for equal neighbors */
-        uint32_t n = 0, k;
-        sc_pair *list = entries + first[p], *kept = entries + total;
-        for (k = 0; k < count[p]; k++) {
-            uint32_t known = place[list[k].a];
-            if (known < n && kept[known].a == list[k].a) {
-                kept[known].b = SC_NONE;
-            } else {
-                place[list[k].a] = n;
-                kept[n++] = list[k];
+}
+
+/* Sorts a list, and makes one entry of those with the same patch: of a point if it is the same
+   for all. Returns how many are left. */
+static uint32_t unite_entries(sc_pair *list, uint32_t count)
+{
+    uint32_t i, n = 0;
+    sc_sort_pairs(list, count);
+    for (i = 0; i < count; i++)
+        if (n > 0 && list[n - 1].a == list[i].a) {
+            if (list[n - 1].b != list[i].b) list[n - 1].b = SC_NONE;
+        } else {
+            list[n++] = list[i];
+        }
+    return n;
+}
+
+/* Adds what the level below, or leaf clusters' sharing, says of patches, to what is listed. What
+   two patches share their children share. */
+static void list_patches(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const level_lists *l = (const level_lists *)context;
+    const uint32_t *child = l->xbvh->child;
+    uint32_t *count = l->neighbors->count, p, c, i;
+    (void)part;
+    for (p = l->begin + first; p < l->begin + end; p++) {
+        sc_pair *list = l->neighbors->entries + l->neighbors->first[p];
+        uint32_t n = count[p];
+        for (c = child[p]; l->parent && c < child[p + 1]; c++) {
+            const sc_pair *below = l->neighbors->entries + l->neighbors->first[c];
+            for (i = 0; i < count[c]; i++) {
+                list[n].a = l->parent[below[i].a - l->below];
+                list[n].b = below[i].b;
+                n += list[n].a != p;
             }
         }
-        sc_sort_pairs(kept, n);
-        first[p] = (uint32_t)total;
-        count[p] = n;
-        total += n;
+        for (i = l->parent ? 0 : l->sharing->first[p - l->begin];
+             !l->parent && i < l->sharing->first[p - l->begin + 1]; i++) {
+            list[n].a = l->begin + l->sharing->leaf[i];
+            list[n++].b = l->sharing->touch[i];
+        }
+        count[p] = unite_entries(list, n);
     }
-    neighbors->entry_count = total;
+}
+
+/* Lists the neighbors of all patches of a level. */
+static sc_status list_level(level_lists *l, uint32_t end, const meetings *met, sc_scratch *scratch)
+{
+    sc_neighbors *neighbors = l->neighbors;
+    uint64_t total;
+    uint32_t p;
+    sc_status status;
+    count_level(l, end, met, &total);
+    status = reserve_entries(neighbors, scratch, total);
+    if (status) return status;
+    for (p = l->begin; p < end; p++) {
+        neighbors->first[p] = (uint32_t)neighbors->entry_count;
+        neighbors->entry_count += neighbors->count[p];
+        neighbors->count[p] = 0;
+    }
+    list_meetings(met, neighbors);
+    sc_jobs_loop(scratch->tasks, end - l->begin, PATCHES_MIN, list_patches, l);
     return SC_OK;
 }
 
@@ -188,45 +241,42 @@ static void unmark_at_hubs(const meetings *met, uint32_t *hub_of, sc_neighbors *
 }
 
 sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjacency,
-                             const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
-                             sc_neighbors *neighbors)
+                             const uint32_t *order, const sc_xbvh *xbvh, const sc_sharing *sharing,
+                             sc_scratch *scratch, sc_neighbors *neighbors)
 {
-    uint32_t level, p, longest = 0, *parent, *hub_of, *place;
-    meetings met;
-    sc_pair *keys;
+    uint32_t level = xbvh->level_count - 1, p, c, *parent, *hub_of;
+    meetings met = {NULL, 0};
+    level_lists l;
     sc_status status;
     memset(neighbors, 0, sizeof *neighbors);
-    for (p = 0; p < points->point_count; p++)
-        if (adjacency->corner_first[p + 1] - adjacency->corner_first[p] > longest)
-            longest = adjacency->corner_first[p + 1] - adjacency->corner_first[p];
-    keys = (sc_pair *)sc_scratch_take(scratch, longest, sizeof *keys);
     parent = (uint32_t *)sc_scratch_take(scratch, xbvh->leaf_count, sizeof *parent);
     neighbors->first = (uint32_t *)sc_scratch_take(scratch, xbvh->patch_end, sizeof(uint32_t));
     neighbors->count =
         (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof(uint32_t), 0);
     hub_of = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *hub_of, 0xff);
-    place = (uint32_t *)sc_scratch_take_filled(scratch, xbvh->patch_end, sizeof *place, 0xff);
-    if (!keys || !parent || !hub_of || !place || !neighbors->first || !neighbors->count)
-        return SC_ERROR_MEMORY;
-    status = meet_at_leaves(points, adjacency, order, xbvh, keys, scratch, &met);
+    if (!parent || !hub_of || !neighbors->first || !neighbors->count) return SC_ERROR_MEMORY;
+    status = meet_at_leaves(points, adjacency, order, xbvh, scratch, &met);
     if (status) return status;
-    for (level = xbvh->level_count - 1;; level--) {
-        uint32_t begin = xbvh->level_first[level], end = xbvh->level_first[level + 1] - 1;
-        status = list_level(&met, begin, end, place, scratch, neighbors);
+    l.xbvh = xbvh;
+    l.sharing = sharing;
+    l.neighbors = neighbors;
+    l.parent = NULL;
+    l.below = 0;
+    for (;; level--) {
+        l.begin = xbvh->level_first[level];
+        status = list_level(&l, xbvh->level_first[level + 1] - 1, &met, scratch);
         if (status) return status;
         unmark_at_hubs(&met, hub_of, neighbors);
         if (level == 0) break;
-        for (p = xbvh->level_first[level - 1]; p + 1 < begin; p++) {
-            uint32_t c;
-            for (c = xbvh->child[p]; c < xbvh->child[p + 1]; c++) parent[c - begin] = p;
-        }
-        ascend(&met, parent, begin);
+        l.below = l.begin;
+        l.parent = parent;
+        for (p = xbvh->level_first[level - 1]; p + 1 < l.below; p++)
+            for (c = xbvh->child[p]; c < xbvh->child[p + 1]; c++) parent[c - l.below] = p;
+        ascend(&met, parent, l.below);
     }
     sc_scratch_give(scratch, met.words);
-    sc_scratch_give(scratch, place);
     sc_scratch_give(scratch, hub_of);
     sc_scratch_give(scratch, parent);
-    sc_scratch_give(scratch, keys);
     return SC_OK;
 }
 

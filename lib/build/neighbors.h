@@ -29,10 +29,11 @@ typedef struct sc_neighbors {
     uint64_t entry_count, capacity;
 } sc_neighbors;
 
-/* order[i] is the triangle at place i of the leaf order. */
+/* order[i] is the triangle at place i of the leaf order; sharing, with touch, is of the same
+   clusters. */
 sc_status sc_neighbors_build(const sc_points *points, const sc_adjacency *adjacency,
-                             const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
-                             sc_neighbors *neighbors);
+                             const uint32_t *order, const sc_xbvh *xbvh, const sc_sharing *sharing,
+                             sc_scratch *scratch, sc_neighbors *neighbors);
 
 void sc_neighbors_free(sc_neighbors *neighbors, sc_scratch *scratch);
 

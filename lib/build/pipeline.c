@@ -20,10 +20,10 @@ typedef struct steps {
     sc_adjacency adjacency;
     sc_hierarchy hierarchy;
     sc_xbvh xbvh;
+    sc_sharing sharing;
     sc_neighbors neighbors;
     sc_sctt sctt;
     sc_csf csf;
-    sc_sharing sharing;
     int has_tests; /* neighbors, sctt and csf were built */
 } steps;
 
@@ -69,8 +69,8 @@ static void validate_model(const sc_model *model, const sc_hooks *hooks)
 static sc_status build_tests(steps *s, sc_scratch *scratch)
 {
     const uint32_t *order = s->hierarchy.order;
-    sc_status status =
-        sc_neighbors_build(&s->points, &s->adjacency, order, &s->xbvh, scratch, &s->neighbors);
+    sc_status status = sc_neighbors_build(&s->points, &s->adjacency, order, &s->xbvh, &s->sharing,
+                                          scratch, &s->neighbors);
     if (!status) status = sc_sctt_build(&s->xbvh, &s->neighbors, scratch, &s->sctt);
     if (!status)
         status =
@@ -104,14 +104,15 @@ sc_status sc_pipeline_run(const sc_mesh *mesh, const sc_build_options *options, 
     if ((status = sc_partition_build(&s.points, &s.adjacency, options, scratch, &s.hierarchy)))
         return status;
     if ((status = sc_xbvh_build(&s.hierarchy, scratch, &s.xbvh))) return status;
-    status =
-        options->content == SC_MODEL_FULL ? build_tests(&s, scratch) : leave_out_tests(&s, scratch);
-    if (status) return status;
     if ((status = sc_sharing_build(&s.points, &s.adjacency, s.hierarchy.order, &s.xbvh, scratch,
                                    &s.sharing)))
         return status;
+    status =
+        options->content == SC_MODEL_FULL ? build_tests(&s, scratch) : leave_out_tests(&s, scratch);
+    if (status) return status;
     validate(&s, options->hooks);
     sc_neighbors_free(&s.neighbors, scratch);
+    sc_scratch_give(scratch, s.sharing.touch);
     if ((status = sc_assembly_make(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
                                    &s.sharing, scratch, model)))
         return status;

@@ -8,55 +8,88 @@
 #include <string.h>
 
 #include "base/assume.h"
+#include "base/jobs.h"
 
-/* Items of a list for the masks of all rows, which have 16 bits each. */
-enum { ROW_ITEMS = SC_LEAF_MAX / 2 };
-
-/* Room for so many neighbors a cluster with higher numbers, so that lists seldom have to grow. */
+/* Room for so many neighbors a cluster with higher numbers: few meshes have more. */
 enum { NEIGHBORS = 4 };
 
-/* The clusters that share a point with the one at hand, as they turn up. */
+/* A cluster has so many corners and other clusters round them at most, and a table of these has
+   more slots, a power of 2. */
+enum { CORNERS = 3 * SC_LEAF_MAX, OTHERS = CORNERS * SC_SHARING_CROWD, SLOTS = 4096 };
+typedef char a_slot_is_free[SLOTS > OTHERS ? 1 : -1];
+
+/* The points of a cluster that were looked at are found by their lowest bits. */
+enum { SEEN_SLOTS = 256 };
+
+/* The clusters with higher numbers that share a point with the one at hand, as they turn up. */
 typedef struct found {
-    uint32_t *entry; /* leaf_count: 1 + entry of a cluster in the lists, 0 if it did not turn up */
-    sc_list leaf;
-    sc_list rows; /* ROW_ITEMS an entry */
+    uint32_t count, leaf[OTHERS];
+    uint16_t slot[SLOTS]; /* 1 + place in the list of a cluster that belongs here or in one of the
+                             slots before, 0 if free */
+    uint8_t seen_at[SEEN_SLOTS]; /* any number: the place of a point in a list, if it is there */
+    uint64_t room;               /* for so many there are: */
+    uint16_t *rows;              /* SC_LEAF_MAX each */
+    uint32_t *touch;
+    uint16_t spare_rows[SC_LEAF_MAX]; /* for all others */
+    uint32_t spare_touch;
 } found;
 
-static uint16_t *rows_at(const found *f, uint64_t entry)
+/* A search through all clusters. */
+typedef struct leaf_search {
+    const sc_points *points;
+    const sc_adjacency *adjacency;
+    const uint32_t *order;
+    const sc_xbvh *xbvh;
+    uint32_t *place; /* of each triangle, SC_LEAF_MAX times its leaf cluster, and its place there */
+    sc_sharing *s;
+    int is_counted; /* the room of each part is what it needs, not what NEIGHBORS says */
+    uint32_t leaf[SC_JOBS_PARTS + 1];                    /* the first of each part, and the end */
+    uint64_t begin[SC_JOBS_PARTS], count[SC_JOBS_PARTS]; /* where each part writes, and how many */
+} leaf_search;
+
+static void clear_found(found *f)
 {
-    return (uint16_t *)(void *)(f->rows.items + ROW_ITEMS * entry);
+    uint32_t i, at;
+    for (i = 0; i < f->count; i++) /* each is in the run of taken slots that begins with its own */
+        for (at = f->leaf[i] % SLOTS; f->slot[at]; at = (at + 1) % SLOTS) f->slot[at] = 0;
+    f->count = 0;
 }
 
-/* The masks of another cluster, NULL if memory ran out. */
-static uint16_t *rows_of(sc_scratch *scratch, found *f, uint32_t other)
+/* The masks of another cluster, in which a triangle at point p is. */
+static uint16_t *rows_of(found *f, uint32_t other, uint32_t p)
 {
-    if (!f->entry[other]) {
-        if (!sc_list_reserve(scratch, &f->leaf, 1) ||
-            !sc_list_reserve(scratch, &f->rows, ROW_ITEMS))
-            return NULL;
-        memset(rows_at(f, f->leaf.count), 0, SC_LEAF_MAX * sizeof(uint16_t));
-        f->rows.count += ROW_ITEMS;
-        sc_list_add(&f->leaf, other);
-        f->entry[other] = (uint32_t)f->leaf.count;
+    uint32_t at = other % SLOTS, i;
+    uint16_t *rows;
+    uint32_t *touch;
+    while (f->slot[at] && f->leaf[f->slot[at] - 1u] != other) at = (at + 1) % SLOTS;
+    i = f->slot[at] ? f->slot[at] - 1u : f->count;
+    rows = i < f->room ? f->rows + SC_LEAF_MAX * (uint64_t)i : f->spare_rows;
+    touch = i < f->room ? f->touch + i : &f->spare_touch;
+    if (f->slot[at]) {
+        if (*touch != p) *touch = SC_NONE;
+        return rows;
     }
-    return rows_at(f, f->entry[other] - 1);
+    memset(rows, 0, SC_LEAF_MAX * sizeof *rows);
+    *touch = p;
+    f->leaf[f->count++] = other;
+    f->slot[at] = (uint16_t)f->count;
+    return rows;
 }
 
-/* Looks at the triangles round a point of a cluster. place: of each triangle, SC_LEAF_MAX times its
-   leaf cluster, and its place in that. */
-static int look_round(const sc_adjacency *adjacency, const uint32_t *place, uint32_t leaf,
-                      uint32_t p, sc_scratch *scratch, sc_sharing *s, found *f)
+/* Looks at the triangles round a point of a cluster. */
+static void look_round(const leaf_search *g, uint32_t leaf, uint32_t p, found *f)
 {
+    const sc_adjacency *adjacency = g->adjacency;
     uint32_t begin = adjacency->corner_first[p], end = adjacency->corner_first[p + 1], i, k;
     uint32_t mask = 0, own = 0, others = 0, other[SC_SHARING_CROWD];
     uint32_t first = SC_LEAF_MAX * leaf;
     uint8_t row[SC_SHARING_CROWD];
     if (end - begin > SC_SHARING_CROWD) {
-        s->crowded[leaf] = 1;
-        return 1;
+        g->s->crowded[leaf] = 1;
+        return;
     }
     for (i = begin; i < end; i++) {
-        uint32_t at = place[adjacency->corners[i] / 3], is_own = at - first < SC_LEAF_MAX;
+        uint32_t at = g->place[adjacency->corners[i] / 3], is_own = at - first < SC_LEAF_MAX;
         other[others] = at;
         others += at >= first + SC_LEAF_MAX;
         row[own] = (uint8_t)(at % SC_LEAF_MAX);
@@ -64,76 +97,161 @@ static int look_round(const sc_adjacency *adjacency, const uint32_t *place, uint
         own += is_own;
     }
     for (k = 0; k < own; k++) /* those in higher rows */
-        s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row[k]] |= (uint16_t)(mask & (~1u << row[k]));
-    if (!others) return 1;
+        g->s->own_rows[SC_LEAF_MAX * (uint64_t)leaf + row[k]] |= (uint16_t)(mask & (~1u << row[k]));
     for (i = 0; i < others; i++) {
-        uint16_t *rows = rows_of(scratch, f, other[i] / SC_LEAF_MAX);
+        uint16_t *rows = rows_of(f, other[i] / SC_LEAF_MAX, p);
         uint16_t bit = (uint16_t)(1u << other[i] % SC_LEAF_MAX);
-        if (!rows) return 0;
         for (k = 0; k < own; k++) rows[row[k]] |= bit;
     }
-    return 1;
 }
 
-/* Moves what was found for a cluster into the lists' tail, in ascending order. */
-static void sort_tail(found *f, uint64_t begin)
+/* Looks at each point of a cluster, nearly always once: twice does no harm. */
+static void look_at_leaf(const leaf_search *g, uint32_t leaf, found *f)
 {
-    uint64_t i, j;
-    for (i = begin; i < f->leaf.count; i++) {
-        uint32_t leaf = f->leaf.items[i];
-        uint16_t rows[SC_LEAF_MAX];
-        memcpy(rows, rows_at(f, i), sizeof rows);
-        f->entry[leaf] = 0;
-        for (j = i; j > begin && f->leaf.items[j - 1] > leaf; j--) {
-            f->leaf.items[j] = f->leaf.items[j - 1];
-            memcpy(rows_at(f, j), rows_at(f, j - 1), sizeof rows);
+    uint32_t seen[CORNERS], count = 0, i, c;
+    for (i = g->xbvh->leaf_first[leaf]; i < g->xbvh->leaf_first[leaf + 1]; i++)
+        for (c = 0; c < 3; c++) {
+            uint32_t p = g->points->triangles[3 * (uint64_t)g->order[i] + c];
+            uint8_t *at = &f->seen_at[p % SEEN_SLOTS];
+            if (*at < count && seen[*at] == p) continue;
+            *at = (uint8_t)count;
+            seen[count++] = p;
+            look_round(g, leaf, p, f);
         }
-        f->leaf.items[j] = leaf;
-        memcpy(rows_at(f, j), rows, sizeof rows);
+}
+
+/* Writes the list of what was found for a cluster, and brings it, masks and touch into ascending
+   order. */
+static void order_found(const found *f, uint32_t *list)
+{
+    uint32_t i, j;
+    for (i = 0; i < f->count; i++) {
+        uint32_t leaf = f->leaf[i], touch = f->touch[i];
+        uint16_t rows[SC_LEAF_MAX];
+        memcpy(rows, f->rows + SC_LEAF_MAX * (uint64_t)i, sizeof rows);
+        for (j = i; j > 0 && list[j - 1] > leaf; j--) {
+            list[j] = list[j - 1];
+            f->touch[j] = f->touch[j - 1];
+            memcpy(f->rows + SC_LEAF_MAX * (uint64_t)j, f->rows + SC_LEAF_MAX * (uint64_t)(j - 1),
+                   sizeof rows);
+        }
+        list[j] = leaf;
+        f->touch[j] = touch;
+        memcpy(f->rows + SC_LEAF_MAX * (uint64_t)j, rows, sizeof rows);
     }
 }
+
+static void place_triangles(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const leaf_search *g = (const leaf_search *)context;
+    uint32_t leaf, i;
+    (void)part;
+    for (leaf = first; leaf < end; leaf++)
+        for (i = g->xbvh->leaf_first[leaf]; i < g->xbvh->leaf_first[leaf + 1]; i++)
+            g->place[g->order[i]] = SC_LEAF_MAX * leaf + (i - g->xbvh->leaf_first[leaf]);
+}
+
+/* Lists what clusters share. If there is no room for all, what they need is counted. */
+static void look_at_leaves(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    leaf_search *g = (leaf_search *)context;
+    uint64_t room = NEIGHBORS * (uint64_t)(end - first), at, count = 0;
+    uint32_t leaf;
+    found f;
+    if (g->is_counted) {
+        room = g->count[part];
+    } else {
+        g->leaf[part] = first;
+        g->begin[part] = NEIGHBORS * (uint64_t)first;
+    }
+    f.count = 0;
+    memset(f.slot, 0, sizeof f.slot);
+    memset(f.seen_at, 0, sizeof f.seen_at);
+    for (leaf = first; leaf < end; leaf++) {
+        at = g->begin[part] + count;
+        f.room = count < room ? room - count : 0;
+        f.rows = g->s->rows + SC_LEAF_MAX * at;
+        f.touch = g->s->touch + at;
+        g->s->first[leaf] = (uint32_t)at;
+        look_at_leaf(g, leaf, &f);
+        count += f.count;
+        if (f.count <= f.room) order_found(&f, g->s->leaf + at);
+        clear_found(&f);
+    }
+    g->count[part] = count;
+}
+
+static int take_lists(sc_scratch *scratch, uint64_t entries, sc_sharing *s)
+{
+    s->leaf = (uint32_t *)sc_scratch_take(scratch, entries, sizeof *s->leaf);
+    s->touch = (uint32_t *)sc_scratch_take(scratch, entries, sizeof *s->touch);
+    s->rows = (uint16_t *)sc_scratch_take(scratch, SC_LEAF_MAX * entries, sizeof *s->rows);
+    return s->leaf && s->touch && s->rows;
+}
+
+/* Moves what parts found together, if there was room. Returns how many entries there are. */
+static uint32_t join_parts(const leaf_search *g, uint32_t parts)
+{
+    const sc_sharing *s = g->s;
+    uint32_t total = 0, part, leaf;
+    for (part = 0; part < parts; part++) {
+        const uint64_t from = g->begin[part], count = g->count[part];
+        const uint32_t back = (uint32_t)from - total;
+        if (back) {
+            memmove(s->leaf + total, s->leaf + from, (size_t)count * sizeof *s->leaf);
+            memmove(s->touch + total, s->touch + from, (size_t)count * sizeof *s->touch);
+            memmove(s->rows + SC_LEAF_MAX * (uint64_t)total, s->rows + SC_LEAF_MAX * from,
+                    (size_t)count * SC_LEAF_MAX * sizeof *s->rows);
+            for (leaf = g->leaf[part]; leaf < g->leaf[part + 1]; leaf++) s->first[leaf] -= back;
+        }
+        total += (uint32_t)count;
+    }
+    return total;
+}
+
+/* Clusters that parts of a loop look at, at least. */
+enum { CLUSTERS_MIN = 128 };
 
 sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacency,
                            const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
                            sc_sharing *s)
 {
-    uint32_t leaf, i, leaves = xbvh->leaf_count, *place;
-    uint32_t *looked; /* a point's last cluster */
-    found f;
-    memset(&f, 0, sizeof f);
-    place = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof *place);
-    f.entry = (uint32_t *)sc_scratch_take_filled(scratch, leaves, sizeof *f.entry, 0);
-    looked = (uint32_t *)sc_scratch_take_filled(scratch, points->point_count, sizeof *looked, 0xff);
+    uint32_t leaves = xbvh->leaf_count, part, parts;
+    uint64_t total = 0;
+    int is_short = 0;
+    leaf_search g;
+    g.points = points;
+    g.adjacency = adjacency;
+    g.order = order;
+    g.xbvh = xbvh;
+    g.s = s;
+    g.is_counted = 0;
+    g.place = (uint32_t *)sc_scratch_take(scratch, points->triangle_count, sizeof *g.place);
     s->first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)leaves + 1, sizeof *s->first);
     s->own_rows = (uint16_t *)sc_scratch_take_filled(scratch, (uint64_t)leaves * SC_LEAF_MAX,
                                                      sizeof *s->own_rows, 0);
     s->crowded = (uint8_t *)sc_scratch_take_filled(scratch, leaves, 1, 0);
-    if (!place || !f.entry || !looked || !s->first || !s->own_rows || !s->crowded)
-        return SC_ERROR_MEMORY;
-    if (!sc_list_reserve(scratch, &f.leaf, NEIGHBORS * (uint64_t)leaves) ||
-        !sc_list_reserve(scratch, &f.rows, ROW_ITEMS * NEIGHBORS * (uint64_t)leaves))
-        return SC_ERROR_MEMORY;
-    for (leaf = 0; leaf < leaves; leaf++)
-        for (i = xbvh->leaf_first[leaf]; i < xbvh->leaf_first[leaf + 1]; i++)
-            place[order[i]] = SC_LEAF_MAX * leaf + (i - xbvh->leaf_first[leaf]);
-    for (leaf = 0; leaf < leaves; leaf++) {
-        s->first[leaf] = (uint32_t)f.leaf.count;
-        for (i = 3 * xbvh->leaf_first[leaf]; i < 3 * xbvh->leaf_first[leaf + 1]; i++) {
-            uint32_t p = points->triangles[3 * (uint64_t)order[i / 3] + i % 3];
-            if (looked[p] == leaf) continue;
-            looked[p] = leaf;
-            if (!look_round(adjacency, place, leaf, p, scratch, s, &f)) return SC_ERROR_MEMORY;
-        }
-        /* 150 gigabytes; of a cluster there are fewer than 0xffff, so that no number wraps round */
-        if (SC_HARDLY(f.leaf.count > 0xffff0000u)) return SC_ERROR_COUNT;
-        sort_tail(&f, s->first[leaf]);
+    if (!g.place || !s->first || !s->own_rows || !s->crowded) return SC_ERROR_MEMORY;
+    if (!take_lists(scratch, NEIGHBORS * (uint64_t)leaves, s)) return SC_ERROR_MEMORY;
+    sc_jobs_loop(scratch->tasks, leaves, CLUSTERS_MIN, place_triangles, &g);
+    parts = sc_jobs_loop(scratch->tasks, leaves, CLUSTERS_MIN, look_at_leaves, &g);
+    g.leaf[parts] = leaves;
+    for (part = 0; part < parts; part++) {
+        is_short |= g.count[part] > NEIGHBORS * (uint64_t)(g.leaf[part + 1] - g.leaf[part]);
+        total += g.count[part];
     }
-    s->first[leaves] = (uint32_t)f.leaf.count;
-    s->leaf = f.leaf.items;
-    s->rows = rows_at(&f, 0);
-    sc_scratch_give(scratch, place);
-    sc_scratch_give(scratch, f.entry);
-    sc_scratch_give(scratch, looked);
+    if (SC_HARDLY(total > 0xffff0000u)) return SC_ERROR_COUNT; /* 150 gigabytes */
+    if (is_short) {
+        sc_scratch_give(scratch, s->leaf);
+        sc_scratch_give(scratch, s->touch);
+        sc_scratch_give(scratch, s->rows);
+        if (!take_lists(scratch, total, s)) return SC_ERROR_MEMORY;
+        g.is_counted = 1;
+        for (total = 0, part = 0; part < parts; total += g.count[part++]) g.begin[part] = total;
+        sc_jobs_loop(scratch->tasks, leaves, CLUSTERS_MIN, look_at_leaves, &g);
+    }
+    s->first[leaves] = join_parts(&g, parts);
+    sc_scratch_give(scratch, g.place);
     return SC_OK;
 }
 

@@ -23,6 +23,8 @@ typedef struct sc_sharing {
     uint32_t
         *first;     /* leaf_count + 1: entries of leaf cluster i are first[i] to first[i + 1] - 1 */
     uint32_t *leaf; /* first[leaf_count]: the other cluster, with a higher number, ascending */
+    uint32_t *touch; /* as many: the point that the two share if it is one, SC_NONE if several; may
+                        be given back */
     uint16_t
         *rows; /* SC_LEAF_MAX an entry: bit j of row i: triangle i shares with j of the other */
     uint16_t *own_rows; /* SC_LEAF_MAX a cluster: bit j > i of row i: its triangles i and j share */
