@@ -470,6 +470,7 @@ static void summarize(measure_state *s)
         const size_t timed = times_timed(s, i % m->method_count);
         m->records[i].ms = median(&s->times[i * repeats], timed);
         m->records[i].ms_min = s->times[i * repeats];
+        m->records[i].ms_max = s->times[i * repeats + timed - 1];
         m->records[i].candidates_ms = median(&s->broad_times[i * repeats], timed);
     }
     m->floor_ms = median(s->floor_times, s->floor_count);

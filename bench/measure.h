@@ -41,7 +41,7 @@ typedef struct measure_options {
 
 /* One method in one frame. */
 typedef struct measure_record {
-    double ms, ms_min; /* median and minimum of the repeats */
+    double ms, ms_min, ms_max; /* median, least and greatest of the repeats */
     uint64_t pairs, missed, extra;
     double candidates_ms; /* of steps: median, candidates alone */
     uint64_t candidates;  /* of steps */

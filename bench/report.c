@@ -152,6 +152,7 @@ static void list_record(report_fields *fields, const measurement *m, const repor
     add_number(fields, "exact_fallbacks", (double)stats->exact_fallbacks);
     add_some(fields, "contour_edges", library, (double)stats->counts[SC_TASK_UPDATE_CONTOURS]);
     add_some(fields, "near_pairs", context->options->count_near, (double)record->near);
+    add_number(fields, "ms_max", record->ms_max);
 }
 
 static bool print_json(const report_fields *fields)

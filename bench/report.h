@@ -16,6 +16,7 @@
  *     nodes, nodes_oriented, nodes_culled, boxes, primitives, leaf_pairs, exact_fallbacks    counts
  *     contour_edges                    that contour tests looked at; of star contours, segments
  *     near_pairs                       with --near: of the pose, see near_pairs.h
+ *     ms_max                           greatest of the repeats; ms_min where there is one only
  * What a method does not have is null, or empty in CSV.
  */
 #ifndef BENCH_REPORT_H

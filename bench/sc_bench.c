@@ -74,6 +74,7 @@ static const char usage[] =
     "  --export DIR       writes the scene as a folder that --scene-dir reads, and measures "
     "nothing\n"
     "  --export-obj DIR   writes the frames as OBJ files, and measures nothing\n"
+    "  --frame K          of --export-obj: frame K alone; the first is 0\n"
     "  --cache DIR        where generated scenes are kept (build/scenes)\n"
     "  -V, --version, -h, --help\n"
     "\n"
@@ -93,8 +94,8 @@ static const tool_choice partition_choices[] = {
 typedef struct bench_settings {
     const char *scene, *scene_dir, *methods, *export_dir, *export_obj, *cache;
     uint32_t triangles, frames; /* 0: as the scene has it */
-    uint32_t format;
-    bool list, one_shot, distance; /* distance: it was given */
+    uint32_t frame, format;
+    bool list, one_shot, distance, one_frame; /* distance, one_frame: it was given, a frame was */
     measure_options measure;
 } bench_settings;
 
@@ -339,10 +340,16 @@ static int export_scene(const bench_settings *set, scene_folder *scene)
 {
     char error[MESH_FILE_ERROR_SIZE];
     int result = 0;
+    if (set->one_frame && set->frame >= scene->frame_count) {
+        tool_error("--frame: the frames are 0 to %lu", (unsigned long)scene->frame_count - 1);
+        return TOOL_FAILED;
+    }
+    const uint32_t count = set->one_frame ? 1 : scene->frame_count;
     if (set->export_dir)
         result = scene_folder_export(scene, set->export_dir, false, error, sizeof error);
     if (result == 0 && set->export_obj)
-        result = scene_folder_export_obj(scene, set->export_obj, error, sizeof error);
+        result =
+            scene_folder_export_obj(scene, set->frame, count, set->export_obj, error, sizeof error);
     if (result != 0) tool_error("%s", error);
     return result == 0 ? TOOL_CLEAN : TOOL_FAILED;
 }
@@ -362,6 +369,10 @@ static int run(const bench_settings *set, char **paths, int path_count)
     }
     if (!near && (set->distance || set->measure.question.ignore_rings)) {
         tool_error("%s: of --pairs near only", set->distance ? "--distance" : "--ignore-rings");
+        return TOOL_FAILED;
+    }
+    if (set->one_frame && !set->export_obj) {
+        tool_error("--frame: of --export-obj only");
         return TOOL_FAILED;
     }
     const int sources = (set->scene != NULL) + (set->scene_dir != NULL) + (path_count > 0);
@@ -422,6 +433,7 @@ int main(int argc, char **argv)
         OPTION_LIST,
         OPTION_EXPORT,
         OPTION_EXPORT_OBJ,
+        OPTION_FRAME,
         OPTION_CACHE,
         OPTION_VERSION = 'V',
         OPTION_HELP = 'h'
@@ -448,6 +460,7 @@ int main(int argc, char **argv)
         {"list", no_argument, NULL, OPTION_LIST},
         {"export", required_argument, NULL, OPTION_EXPORT},
         {"export-obj", required_argument, NULL, OPTION_EXPORT_OBJ},
+        {"frame", required_argument, NULL, OPTION_FRAME},
         {"cache", required_argument, NULL, OPTION_CACHE},
         {"version", no_argument, NULL, OPTION_VERSION},
         {"help", no_argument, NULL, OPTION_HELP},
@@ -531,6 +544,10 @@ int main(int argc, char **argv)
             break;
         case OPTION_EXPORT_OBJ:
             set.export_obj = optarg;
+            break;
+        case OPTION_FRAME:
+            set.one_frame = true;
+            valid &= tool_parse_number("--frame", optarg, 0, 999999, &set.frame);
             break;
         case OPTION_CACHE:
             set.cache = optarg;

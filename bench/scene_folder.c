@@ -615,13 +615,14 @@ static bool write_obj(FILE *file, const scene_folder *scene, const double *posit
     return !ferror(file);
 }
 
-int scene_folder_export_obj(scene_folder *scene, const char *path, char *error, size_t error_size)
+int scene_folder_export_obj(scene_folder *scene, uint32_t first, uint32_t count, const char *path,
+                            char *error, size_t error_size)
 {
     if (make_folder(path, error, error_size) != 0) return -1;
     double *positions = (double *)malloc(3 * (size_t)scene->vertex_count * sizeof *positions);
     if (!positions) return fail(error, error_size, "%s: out of memory", path);
     int result = 0;
-    for (uint32_t frame = 0; frame < scene->frame_count && result == 0; frame++) {
+    for (uint32_t frame = first; frame < first + count && result == 0; frame++) {
         result = scene_folder_frame(scene, frame, positions, error, error_size);
         if (result != 0) break;
         char name[40];

@@ -53,10 +53,12 @@ int scene_folder_frame(scene_folder *scene, uint32_t frame, double *positions, c
 void scene_folder_close(scene_folder *scene);
 
 /*
- * Writes all frames as PATH/frame_0000.obj and so on; the folder is made. Digits are enough to read
- * back the same doubles, and so the same floats.
+ * Writes count frames from `first` on as PATH/frame_0000.obj and so on, named by their numbers in
+ * the scene, which has them all; the folder is made. Digits are enough to read back the same
+ * doubles, and so the same floats.
  */
-int scene_folder_export_obj(scene_folder *scene, const char *path, char *error, size_t error_size);
+int scene_folder_export_obj(scene_folder *scene, uint32_t first, uint32_t count, const char *path,
+                            char *error, size_t error_size);
 
 /* Writes the scene to a folder as described above, as doubles or as floats (rounded to nearest). */
 int scene_folder_export(scene_folder *scene, const char *path, bool single, char *error,

@@ -268,8 +268,9 @@ static void sequences_of_meshes_are_scenes(void)
     begin();
     write_example(at("one"), true);
     CHECK(scene_folder_open(at("one"), &scene, error, sizeof error) == 0);
-    CHECK(scene_folder_export_obj(&scene, at("obj"), error, sizeof error) == 0);
-    CHECK(scene_folder_export_obj(&scene, at("one/tris.u32"), error, sizeof error) == -1);
+    const uint32_t count = scene.frame_count;
+    CHECK(scene_folder_export_obj(&scene, 0, count, at("obj"), error, sizeof error) == 0);
+    CHECK(scene_folder_export_obj(&scene, 0, count, at("one/tris.u32"), error, sizeof error) == -1);
     scene_folder_close(&scene);
     if (CHECK_MSG(
             scene_folder_open_pattern(at("obj/frame_%04d.obj"), &scene, error, sizeof error) == 0,
