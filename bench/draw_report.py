@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes tables and plots of what was measured: summary.csv, frames.csv, report.md, SVG and PNG.
 
-    bench/draw_report.py [--command TEXT] [--seconds N] [--readme FILE] RESULTS [RAW]
+    bench/draw_report.py [--command TEXT] [--seconds N] [--readme FILE] [--programs FOLDER] RESULTS [RAW]
 
 RAW is a folder with JSON Lines of sc-bench; without it, the CSV files in RESULTS are taken as they are.
 peers.csv in RESULTS, if there is one, is what `make peers` wrote. Every figure in report.md comes from these
@@ -23,6 +23,8 @@ sys.dont_write_bytecode = True  # nothing is to appear beside this file
 
 import report_near
 import report_objects
+import report_pictures
+import report_plots
 import report_targets as targets
 from report_text import figure, mean, table, times, whole
 
@@ -30,7 +32,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 PEERS = ["cgal", "embree", "fcl", "ipctk", "libigl", "meshlib", "trueform"]
 
-METHODS = ["exact", "star", "none", "aabb-sctt", "aabb", "hash"]
+METHODS = list(report_plots.STYLES)
 
 STEP_METHODS = ["step", "step-star", "step-none", "step-two-boxes", "step-swept"]
 
@@ -41,32 +43,26 @@ TASKS = ["update_boxes", "update_normals", "orientation", "boxes_orientation",
 TASK_TITLES = ["update boxes", "update normals", "orientation", "boxes (o.)", "primitives (o.)",
                "update contours", "contour", "boxes (c.)", "primitives (c.)"]
 
-# Okabe and Ito's colours, which the colour-blind can tell apart, and markers for prints without
-# colour.
-STYLES = {
-    "exact": ("#0072B2", "o", "-"),
-    "star": ("#009E73", "s", "-"),
-    "none": ("#999999", "", ":"),
-    "aabb-sctt": ("#E69F00", "^", "--"),
-    "aabb": ("#D55E00", "v", "--"),
-    "hash": ("#CC79A7", "x", "-."),
-}
-
 SUMMARY = (["scene", "triangles", "vertices", "partition", "pairs_kind", "contact", "mode",
             "threads", "frames", "repeats", "method", "rest_ms", "mean_ms", "worst_ms",
             "mean_of_minima_ms", "ns_per_triangle", "times_floor", "floor_ns_per_triangle",
             "rest_pairs", "mean_pairs", "most_pairs", "missed", "most_missed", "missed_percent",
             "extra"] + [task + "_ms" for task in TASKS] +
            ["nodes", "boxes", "primitives", "build_ms", "model_bytes", "workspace_bytes",
-            "hash_bytes", "cpu_share", "rest_contour_ms", "rest_contour_edges"])
+            "hash_bytes", "cpu_share", "rest_contour_ms", "rest_contour_edges",
+            "mean_of_maxima_ms"])
 
 # Of steps: means over the animation, a line a scene and method.
 STEPS = ["scene", "triangles", "partition", "steps", "method", "collisions", "missed", "candidates",
          "candidates_ms", "mean_ms", "worst_ms", "cpu_share"]
 
-# A line a frame: milliseconds of each method, and the least of two of them.
+# Methods that are timed in every pass: all but the hash.
+REPEATED = [method for method in METHODS if method != "hash"]
+
+# A line a frame: milliseconds of each method; the least and the greatest of those with repeats.
 FRAMES = (["scene", "triangles", "partition", "frame", "pairs", "missed_by_none"] + METHODS +
-          ["exact_min", "aabb_min"])
+          ["exact_min", "aabb_min"] + [m + "_min" for m in REPEATED if m not in ("exact", "aabb")] +
+          [m + "_max" for m in REPEATED])
 
 
 # ---------------------------------------------------------------------------------------------------
@@ -123,6 +119,8 @@ def summarize(description, records):
             "missed_percent": 100.0 * missed / complete if complete else 0.0,
             "extra": sum(r["extra"] for r in own),
         })
+        if "ms_max" in own[0]:
+            row["mean_of_maxima_ms"] = mean(r["ms_max"] for r in own)
         if own[0]["nodes"] is not None:
             row["rest_contour_ms"] = own[0]["update_contours_ms"] + own[0]["contour_ms"]
             row["rest_contour_edges"] = own[0]["contour_edges"]
@@ -230,7 +228,8 @@ def collect(raw, results, command, seconds):
                    "frame": frame, "pairs": methods["exact"]["pairs"],
                    "missed_by_none": methods["none"]["missed"]}
             row.update({m: float("%.4g" % methods[m]["ms"]) for m in METHODS})
-            row.update({m + "_min": float("%.4g" % methods[m]["ms_min"]) for m in ("exact", "aabb")})
+            row.update({"%s_%s" % (m, end): float("%.4g" % methods[m]["ms_" + end])
+                        for m in REPEATED for end in ("min", "max") if "ms_" + end in methods[m]})
             frames.append(row)
     skipped = []
     log = os.path.join(raw, "skipped.log")
@@ -694,102 +693,32 @@ def peers_absent(results, groups):
 # ---------------------------------------------------------------------------------------------------
 # Plots
 
-def save(plot, folder, name):
-    plot.savefig(os.path.join(folder, name + ".svg"), metadata={"Date": None})
-    plot.savefig(os.path.join(folder, name + ".png"), dpi=110, metadata={"Software": None})
+def draw_figures(pyplot, results, folder):
+    """The plots, by name. Pictures of scenes are those that are in folder."""
+    _, found, sizes = slopes(results)
+    pictures = {scene: report_pictures.load(pyplot, folder, scene, triangles, frame)
+                for scene, triangles, _, frame in report_plots.wanted_pictures(results.frames)}
+    plots = (("frames", report_plots.draw_frames(pyplot, results, pictures)),
+             ("scaling", report_plots.draw_scaling(pyplot, results, found, sizes, pictures)),
+             ("near", report_near.draw(pyplot, results.near, results.near_peers, pictures)))
+    return collections.OrderedDict((name, plot) for name, plot in plots if plot)
 
 
-def draw_frames(pyplot, results, folder):
-    """Figure 8: milliseconds over frames, at the largest size with the most frames."""
-    series = collections.OrderedDict()
-    for row in results.frames:
-        key = (row["scene"], row["triangles"], row["partition"])
-        for method in METHODS:
-            series.setdefault(key, {}).setdefault(method, []).append(row[method])
-    chosen = collections.OrderedDict()
-    for key, methods in series.items():
-        length = len(next(iter(methods.values())))
-        if key[0] not in chosen or (length, key[1]) >= chosen[key[0]][0]:
-            chosen[key[0]] = ((length, key[1]), methods)
-    columns = 3
-    lines = (len(chosen) + columns - 1) // columns
-    plot, axes = pyplot.subplots(lines, columns, figsize=(11, 2.7 * lines + 0.6), squeeze=False)
-    for axis in axes.flat[len(chosen):]:
-        axis.set_axis_off()
-    for axis, (scene, ((length, triangles), methods)) in zip(axes.flat, chosen.items()):
-        for method in METHODS:
-            if method in methods:
-                color, _, line = STYLES[method]
-                axis.plot(range(length), methods[method], color=color, linestyle=line,
-                          linewidth=1.4, label=method)
-        axis.set_yscale("log")
-        axis.minorticks_off()
-        axis.xaxis.set_major_locator(pyplot.MaxNLocator(6, integer=True))
-        axis.set_title("%s, %s triangles" % (scene, whole(triangles)), fontsize=9)
-        axis.tick_params(labelsize=7)
-        axis.grid(True, which="major", color="#dddddd", linewidth=0.6)
-    for axis in axes[:, 0]:
-        axis.set_ylabel("ms", fontsize=8)
-    for axis in axes[-1, :]:
-        axis.set_xlabel("frame", fontsize=8)
-    handles, labels = axes.flat[0].get_legend_handles_labels()
-    plot.legend(handles, labels, loc="upper center", ncol=len(labels), frameon=False, fontsize=9)
-    plot.tight_layout(rect=(0, 0, 1, 1 - 0.35 / (2.7 * lines + 0.6)))
-    save(plot, folder, "frames")
-    pyplot.close(plot)
-
-
-def draw_scaling(pyplot, found, sizes, folder):
-    scenes = [scene for scene, runs in sizes.items() if len(runs) >= 3]
-    if not scenes:
-        return False
-    columns = min(3, len(scenes))
-    lines = (len(scenes) + columns - 1) // columns
-    plot, axes = pyplot.subplots(lines, columns, figsize=(3.8 * columns, 3.3 * lines + 0.3),
-                                 squeeze=False)
-    for axis in axes.flat[len(scenes):]:
-        axis.set_axis_off()
-    for axis, scene in zip(axes.flat, scenes):
-        for method in METHODS:
-            color, marker, line = STYLES[method]
-            axis.loglog([t for t, _ in sizes[scene]],
-                        [run[method]["mean_ms"] for _, run in sizes[scene]], color=color,
-                        marker=marker, linestyle=line, markersize=4, linewidth=1.4,
-                        label="%s %.2f" % (method, found[scene, method]))
-        axis.set_title(scene, fontsize=9)
-        axis.set_xlabel("triangles", fontsize=8)
-        axis.set_ylabel("ms a frame, mean", fontsize=8)
-        axis.tick_params(labelsize=7)
-        axis.grid(True, which="major", color="#dddddd", linewidth=0.6)
-        axis.legend(title="slope", fontsize=7, title_fontsize=7, frameon=False)
-    plot.tight_layout()
-    save(plot, folder, "scaling")
-    pyplot.close(plot)
-    return True
-
-
-def draw_all(results, found, sizes, folder):
-    """The names of the plots that were drawn; none without matplotlib."""
-    try:
-        import matplotlib
-    except ImportError:
+def draw_all(results, folder, programs, scenes):
+    """The names of the plots that were drawn; none without matplotlib. programs: a folder with sc-bench and
+    sc-query, which make the pictures of scenes anew; without it those are taken that are there."""
+    pyplot = report_plots.import_pyplot()
+    if not pyplot:
         print("draw_report.py: matplotlib is not there: plots are skipped "
               "('make deps with=bench')", file=sys.stderr)
         return []
-    matplotlib.use("Agg")
-    matplotlib.rcParams["svg.fonttype"] = "none"
-    matplotlib.rcParams["svg.hashsalt"] = "starcontour"
-    from matplotlib import pyplot
-    draw_frames(pyplot, results, folder)
-    drawn = ["frames"]
-    if draw_scaling(pyplot, found, sizes, folder):
-        drawn.append("scaling")
-    plot = report_near.draw(pyplot, results.near, results.near_peers)
-    if plot:
-        save(plot, folder, "near")
+    if programs:
+        report_pictures.make_all(pyplot, programs, scenes, folder, report_plots.wanted_pictures(results.frames))
+    plots = draw_figures(pyplot, results, folder)
+    for name, plot in plots.items():
+        report_plots.save(plot, folder, name)
         pyplot.close(plot)
-        drawn.append("near")
-    return drawn
+    return list(plots)
 
 
 # ---------------------------------------------------------------------------------------------------
@@ -1030,6 +959,8 @@ def main():
     parser.add_argument("--command", default="make bench")
     parser.add_argument("--seconds", default="?", help="how long it took")
     parser.add_argument("--readme", help="a README.md to put the overview into")
+    parser.add_argument("--programs", help="a folder with sc-bench and sc-query: make pictures of the scenes anew")
+    parser.add_argument("--scenes", default="build/scenes", help="where sc-bench keeps them")
     parser.add_argument("results")
     parser.add_argument("raw", nargs="?")
     arguments = parser.parse_args()
@@ -1038,10 +969,9 @@ def main():
     if not os.path.exists(os.path.join(arguments.results, "summary.csv")):
         sys.exit("draw_report.py: no summary.csv in %s: run 'make bench' first" % arguments.results)
     results = Results(arguments.results)
-    slope_table, found, sizes = slopes(results)
-    drawn = draw_all(results, found, sizes, arguments.results)
+    drawn = draw_all(results, arguments.results, arguments.programs, arguments.scenes)
     with open(os.path.join(arguments.results, "report.md"), "w", encoding="utf-8") as file:
-        file.write(report(results, drawn, slope_table,
+        file.write(report(results, drawn, slopes(results)[0],
                           os.path.relpath(os.path.join(HERE, "REPORT.md"), arguments.results)))
     if arguments.readme:
         update_readme(arguments.readme, results, arguments.results)

@@ -8,10 +8,11 @@ SPDX-License-Identifier: MIT
 
 import collections
 
+from report_plots import NO_PICTURES, band, format_axis, legend_above, show_picture
 from report_text import figure, ratio, table, times, whole
 
 NEAR = ["scene", "triangles", "partition", "workers", "edges", "ignore_rings", "frame", "method", "ms", "ms_min",
-        "pairs", "missed", "extra", "cpu_share"]
+        "pairs", "missed", "extra", "cpu_share", "ms_max"]
 
 METHODS = ["near", "near-count", "near-boxes", "near-still", "near-inflated"]
 
@@ -31,7 +32,8 @@ def collect(runs):
     return [{"scene": d["scene"], "triangles": d["triangles"], "partition": d["partition"], "workers": d["workers"],
              "edges": d["distance_edges"], "ignore_rings": d["ignore_rings"], "frame": r["frame"],
              "method": r["method"], "ms": r["ms"], "ms_min": r["ms_min"], "pairs": r["pairs"],
-             "missed": r["missed"], "extra": r["extra"], "cpu_share": d["cpu_share"]} for d, r in
+             "missed": r["missed"], "extra": r["extra"], "cpu_share": d["cpu_share"],
+             "ms_max": r.get("ms_max")} for d, r in
             ((d, r) for d, records in runs for r in records)]
 
 
@@ -196,8 +198,20 @@ def compared(rows, above, below):
 # The plot
 
 
-def draw(pyplot, rows, peers):
-    """Of each scene above what a pair costs by each method, below how many times as fast near is; or None."""
+def bounds(rows, divisor=None):
+    """Least and greatest nanoseconds a pair by the spread of the repeats, or, of two methods, quotients: the least
+    times of one over the greatest of the other, and the other way round. (None, None) where they are not known."""
+    if any(row.get("ms_max") is None for row in rows + (divisor or [])):
+        return None, None
+    if divisor:
+        return (total(rows, "ms_min") / total(divisor, "ms_max"), total(rows, "ms_max") / total(divisor, "ms_min"))
+    pairs = total(rows, "pairs")
+    return tuple(1e6 * total(rows, key) / pairs if pairs else None for key in ("ms_min", "ms_max"))
+
+
+def draw(pyplot, rows, peers, pictures):
+    """Of each scene above what a pair costs by each method, below how many times as fast near is; or None. On top
+    the scene's picture, if pictures has it: at some size, in the frame where most meets."""
     scenes = collections.OrderedDict()
     for (scene, triangles, edges), run in main_runs(rows).items():
         scenes.setdefault((scene, triangles), {})[edges] = run
@@ -205,17 +219,27 @@ def draw(pyplot, rows, peers):
     scenes = {key: found for key, found in scenes.items() if len(found) >= 2}
     if not scenes:
         return None
-    plot, axes = pyplot.subplots(2, len(scenes), figsize=(3.6 * len(scenes) + 0.4, 6.2), squeeze=False)
+    has_pictures = any(pictures.get(scene) is not None for scene, _ in scenes)
+    top = 1.3 if has_pictures else 0
+    width = max(3.6 * len(scenes) + 0.4, 8)
+    plot = pyplot.figure(figsize=(width, 7 + top))
+    cells = plot.add_gridspec(3 if has_pictures else 2, len(scenes),
+                              height_ratios=[top, 2.8, 2.8] if has_pictures else None)
+    has_bands, named = False, {}
     for column, ((scene, triangles), found) in enumerate(scenes.items()):
-        pairs_axis, ratio_axis = axes[0][column], axes[1][column]
+        pairs_axis, ratio_axis = (plot.add_subplot(cells[line - 2, column]) for line in (0, 1))
+        if has_pictures:
+            show_picture(plot.add_subplot(cells[0, column]), pictures.get(scene))
+        runs = sorted(found.items())
         for method in METHODS:
-            points = [(edges, per_pair(run[method]), quotient(run[method], run["near"]))
-                      for edges, run in sorted(found.items())]
-            line(pairs_axis, method, [(x, y) for x, y, _ in points])
+            has_bands |= line(pairs_axis, method, [(edges, per_pair(run[method])) + bounds(run[method])
+                                                   for edges, run in runs])
             if method != "near":
-                line(ratio_axis, method, [(x, y) for x, _, y in points])
+                has_bands |= line(ratio_axis, method, [
+                    (edges, quotient(run[method], run["near"])) + bounds(run[method], run["near"])
+                    for edges, run in runs])
         for what in ("Candidates", "NormalCollisions"):
-            line(ratio_axis, what, [(key[2], quotient(run[what], run["near"]))
+            line(ratio_axis, what, [(key[2], quotient(run[what], run["near"]), None, None)
                                     for key, run in sorted(beside.items(), key=lambda item: item[0][2])
                                     if key[:2] == (scene, triangles) and what in run])
         pairs_axis.set_title("%s, %s" % (scene, whole(triangles)), fontsize=9)
@@ -226,16 +250,26 @@ def draw(pyplot, rows, peers):
         for axis in (pairs_axis, ratio_axis):
             axis.set_xscale("log")
             axis.set_yscale("log")
-            axis.tick_params(labelsize=7)
-            axis.grid(True, which="major", color="#dddddd", linewidth=0.6)
-            axis.legend(fontsize=6, frameon=False)
-    plot.tight_layout()
+            format_axis(axis)
+            named.update(zip(*reversed(axis.get_legend_handles_labels())))
+    said = "What a pair costs, and how many times as long as near others take."
+    if has_bands:
+        said += (" Lines: medians of the passes.\nBands: from the least to the greatest; of quotients, from the least"
+                 " over the greatest to the greatest over the least.")
+    if has_pictures:
+        said += "\nPictures: the frame of the animation with the most pairs, faces that collide red, contacts dark."
+    else:
+        said += "\n" + NO_PICTURES
+    legend_above(plot, named, said)
     return plot
 
 
 def line(axis, name, points):
-    points = [(x, y) for x, y in points if y is not None]
-    if points:
-        color, marker, style = STYLES[name]
-        axis.plot([x for x, _ in points], [y for _, y in points], color=color, marker=marker, linestyle=style,
-                  markersize=4, linewidth=1.3, label=name)
+    """points: x, y and the least and the greatest y, or None; whether there is a band."""
+    points = [point for point in points if point[1] is not None]
+    if not points:
+        return False
+    color, marker, style = STYLES[name]
+    x, y, low, high = zip(*points)
+    axis.plot(x, y, color=color, marker=marker, linestyle=style, markersize=4, linewidth=1.3, label=name)
+    return band(axis, x, low, high, color)

@@ -344,5 +344,5 @@ command="make bench"
 [ "$kind" = quick ] && command="make bench-quick"
 # shellcheck disable=SC2086
 "$python" bench/draw_report.py --command "$command" --seconds $(($(date +%s) - begin)) $readme \
-    "$results" "$raw" || status=1
+    --programs "$SC_BIN" "$results" "$raw" || status=1
 exit $status

@@ -312,6 +312,24 @@ if command -v python3 >/dev/null 2>&1; then
     cp "$scratch/results/report.md" "$scratch/first.md"
     check "a report from its CSV files" python3 bench/draw_report.py "$scratch/results"
     check "which is the same" diff "$scratch/first.md" "$scratch/results/report.md"
+    mkdir "$scratch/twice" "$scratch/plots"
+    for triangles in 512 1152 2048; do
+        run --scene twisted-cloth --triangles $triangles --frames 3 --repeats 2 --once --json --pairs edge \
+            >"$scratch/twice/$triangles.jsonl"
+    done
+    for distance in 0.2 1; do
+        run --scene twisted-cloth --triangles 2048 --frames 3 --repeats 2 --once --json --pairs near \
+            --distance $distance >"$scratch/twice/near.$distance.jsonl"
+    done
+    check "a report of three sizes, two passes" python3 bench/draw_report.py "$scratch/plots" "$scratch/twice"
+    plots() {
+        python3 tests/bench/look_at_plots.py "$scratch/plots" bench/results/*/ >"$scratch/plots.log" 2>&1
+        plots_status=$?
+        cat "$scratch/plots.log"
+        [ $plots_status -eq 0 ] || [ $plots_status -eq 77 ]
+    }
+    check "plots: legends cover no line, repeats have bands, scenes have pictures" plots
+    [ $plots_status -ne 77 ] || skip "what plots look like: there is no matplotlib"
     cat >"$scratch/results/peers.csv" <<'END'
 # commit: abc
 # skipped: libigl: no wheel
