@@ -131,7 +131,7 @@ with_metis := $(if $(metis),-DSC_WITH_METIS)
 metis_link := $(metis_library) $(static) $(if $(metis),-lmetis)
 
 program_sources := tools/sc_query.c tools/sc_partition.c bench/demo.c bench/sc_bench.c \
-    bench/against.c bench/sc_objects.c \
+    bench/against.c bench/sc_objects.c bench/sc_dataset.c \
     meshes/make_meshes.c meshes/subdivide.c
 # What writes pages carries tools/page/page.html inside, and is linked only where it is used.
 page_support := tools/page_write.c tools/page_picture.c tools/page_bytes.c
@@ -148,7 +148,8 @@ offered = $(if $(wildcard $(2)),$(bin)/$(1))
 mesh_readers := $(call offered,sc-query,tools/sc_query.c) \
     $(call offered,sc-partition,tools/sc_partition.c) $(call offered,sc-demo,bench/demo.c) \
     $(call offered,sc-bench,bench/sc_bench.c) $(call offered,sc-against,bench/against.c) \
-    $(call offered,sc-objects,bench/sc_objects.c) $(call offered,subdivide,meshes/subdivide.c)
+    $(call offered,sc-objects,bench/sc_objects.c) $(call offered,sc-dataset,bench/sc_dataset.c) \
+    $(call offered,subdivide,meshes/subdivide.c)
 programs := $(call offered,make-meshes,meshes/make_meshes.c) \
     $(if $(strip $(missing_for_programs)),,$(mesh_readers))
 installed := $(filter %/sc-query %/sc-partition,$(programs))
@@ -246,6 +247,8 @@ $(bin)/sc-demo: $(call objects,bench/demo.c $(bench_support) $(tools_support) $(
 $(bin)/sc-bench: $(call objects,bench/sc_bench.c $(bench_support) $(tools_support))
 $(bin)/sc-against: $(call objects,bench/against.c bench/scene_folder.c $(tools_support))
 $(bin)/sc-objects: $(call objects,bench/sc_objects.c $(tools_support))
+$(bin)/sc-dataset: $(call objects,bench/sc_dataset.c bench/scene_folder.c bench/scenes/character.c \
+    $(tools_support))
 $(bin)/subdivide: $(call objects,meshes/subdivide.c $(tools_support))
 $(bin)/make-meshes: $(call objects,meshes/make_meshes.c)
 $(mesh_readers): $(static) $(metis_library)

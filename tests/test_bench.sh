@@ -458,6 +458,33 @@ check "no such scene" says 2 "no scene 'sea'" "$objects" --scene sea
 check "no such scale" says 2 "0.001" "$objects" --scale 0
 check "where nothing can be written" says 2 "cannot be written" "$objects" --csv "$scratch/absent/a.csv"
 
+# ---- many poses ----
+
+dataset=$SC_BIN/sc-dataset
+check "many poses by two threads" says 0 "all answers are the same" "$dataset" --poses 40 --triangles 3000 \
+    --chunk 16 --check 7 --csv "$scratch/dataset"
+check "a line for each number of workers" test "$(cut -d, -f 2-4 "$scratch/dataset" | tr '\n' ' ')" = \
+    "poses,chunk,workers 40,16,1 40,16,2 "
+check "with the same pairs, which there are some of" awk -F, '
+    NR == 2 { colliding = $7; pairs = $8 }
+    NR > 1 && !($5 > 0 && $6 > 0 && $7 == colliding && $8 == pairs && $7 > 5 && $7 < 40 && $8 > $7 &&
+        $9 == 6 && $10 == 0) { exit 1 }' "$scratch/dataset"
+pairs_of_dataset=$(awk -F, 'NR == 2 { print $8 }' "$scratch/dataset")
+check "by one alone" says 0 " 40 *1 .* $pairs_of_dataset$" "$dataset" --poses 40 --triangles 3000 --workers 1
+check "of which there is one row" test "$(grep -c '^ *[0-9]* *40 ' "$scratch/out")" -eq 1
+check "the poses as a scene" "$dataset" --poses 40 --triangles 3000 --export "$scratch/poses"
+check "with the rest pose before them" test "$(cut -d' ' -f 3 "$scratch/poses/meta.txt")" -eq 41
+check "and all pairs in them" test "$pairs_of_dataset" -eq "$("$SC_BIN/sc-bench" --scene-dir "$scratch/poses" \
+    --once --repeats 1 --methods aabb --pairs triangle --json |
+    sed -n 's/.*"pairs":\([0-9]*\).*/\1/p' | awk '{ sum += $1 } END { print sum }')"
+check "too few triangles" says 2 "2000 to" "$dataset" --triangles 500
+check "no poses" says 2 "--poses" "$dataset" --poses 0
+check "no such argument" says 2 "'poses' is no option" "$dataset" poses
+check "where no scene can be written" says 2 "absent" "$dataset" --poses 1 --triangles 2000 \
+    --export "$scratch/absent/deep/poses"
+check "where no lines can be written" says 2 "cannot be written" "$dataset" --poses 1 --triangles 2000 \
+    --csv "$scratch/absent/a.csv"
+
 # ---- two builds of the library against each other ----
 
 against=$SC_BIN/sc-against
