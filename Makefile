@@ -621,13 +621,19 @@ peer-embree: $(peer_scenes) ## the same for Embree's rtcCollide
 peer-fcl: $(peer_scenes) ## the same for FCL (Flexible Collision Library)
 	$(call compiled_peer,fcl,fcl/config.h)
 
-.PHONY: peer-ipctk peer-libigl peer-meshlib peer-trueform
+.PHONY: peer-ipctk peer-libigl peer-meshlib peer-open3d peer-pymeshlab peer-python-fcl peer-trueform
 peer-ipctk: $(lib)/$(shared_link) $(peer_scenes) ## the same for ipc-toolkit (PyPI)
 	$(call python_peer,ipctk)
 peer-libigl: $(lib)/$(shared_link) $(peer_scenes) ## the same for libigl (PyPI)
 	$(call python_peer,libigl)
 peer-meshlib: $(lib)/$(shared_link) $(peer_scenes) ## the same for MeshLib (PyPI; for non-commercial use)
 	$(call python_peer,meshlib)
+peer-open3d: $(lib)/$(shared_link) $(peer_scenes) ## the same for Open3D (PyPI), on small meshes
+	$(call python_peer,open3d)
+peer-pymeshlab: $(lib)/$(shared_link) $(peer_scenes) ## the same for PyMeshLab (PyPI)
+	$(call python_peer,pymeshlab)
+peer-python-fcl: $(lib)/$(shared_link) $(peer_scenes) ## the same for FCL from Python, as trimesh has it (PyPI), on small meshes
+	$(call python_peer,python-fcl)
 peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (PyPI; for non-commercial use)
 	$(call python_peer,trueform)
 
@@ -635,11 +641,19 @@ peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (Py
 near-peers: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) beside what is near, into build/peers/near.csv; some minutes
 	@bench/peers/measure_near.sh '$(BUILD)/peers/near.csv' '$(SCENES)' '$(bin)/sc-bench' '$(lib)/$(shared_link)' '$(BUILD)'
 
+.PHONY: dataset-peers
+dataset-peers: $(lib)/$(shared_link) $(filter %/sc-dataset,$(programs)) ## time those from PyPI on poses of a character, into build/peers/dataset.csv; some minutes
+ifneq ($(filter %/sc-dataset,$(programs)),)
+	@bench/peers/measure_dataset.sh '$(BUILD)/peers/dataset.csv' '$(bin)/sc-dataset' '$(lib)/$(shared_link)' '$(BUILD)'
+else
+	@echo "skipped: dataset-peers: needs $(strip $(missing_for_programs)) ('make deps')"
+endif
+
 .PHONY: peers
 peers: ## all peers that are there, into a new CSV; a minute or two for each
 	@mkdir -p '$(dir $(CSV))' && echo "# commit: $$(git describe --always --abbrev=12 --dirty=+ \
 	    --exclude='*' 2>/dev/null || echo unknown)" >'$(CSV)'
-	+@status=0; for peer in cgal embree fcl ipctk libigl meshlib trueform; do \
+	+@status=0; for peer in cgal embree fcl ipctk libigl meshlib open3d pymeshlab python-fcl trueform; do \
 	    $(MAKE) --no-print-directory peer-$$peer || status=1; done; exit $$status
 
 # ------------------------------------------------------------------------------------------------
@@ -741,7 +755,7 @@ clean: ## remove everything built; downloaded meshes stay
 help: ## this list
 	@echo "starcontour $(version)"; echo
 	@echo "Targets:"
-	@awk -F ':.*## ' '/^[a-z][a-z-]*:.*## / { printf "  %-16s %s\n", $$1, $$2 }' Makefile | sort -u
+	@awk -F ':.*## ' '/^[a-z][a-z0-9-]*:.*## / { printf "  %-16s %s\n", $$1, $$2 }' Makefile | sort -u
 	@echo; echo "Variables:"
 	@sed -n 's/^#: \([A-Za-z_]*\) *\(.*\)$$/\1#\2/p' Makefile | \
 	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'

@@ -21,6 +21,7 @@ import sys
 
 sys.dont_write_bytecode = True  # nothing is to appear beside this file
 
+import report_dataset
 import report_near
 import report_objects
 import report_pictures
@@ -30,7 +31,7 @@ from report_text import figure, mean, table, times, whole
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
-PEERS = ["cgal", "embree", "fcl", "ipctk", "libigl", "meshlib", "trueform"]
+PEERS = ["cgal", "embree", "fcl", "ipctk", "libigl", "meshlib", "open3d", "pymeshlab", "python-fcl", "trueform"]
 
 METHODS = list(report_plots.STYLES)
 
@@ -181,15 +182,15 @@ def read_csv(path):
     return rows, description
 
 
-def read_peers(path):
+def read_peers(path, last="processors"):
     """Rows of peers.csv, its lines "# skipped: ..." and the commit; nothing if it is not there, or has not
-    the columns that are read here."""
+    the columns that are read here, of which last is one."""
     if not os.path.exists(path):
         return [], [], "?"
     with open(path, encoding="utf-8") as file:
         skipped = [line[len("# skipped: "):].strip() for line in file if line.startswith("# skipped: ")]
     rows, description = read_csv(path)
-    if rows and "processors" not in rows[0]:
+    if rows and last not in rows[0]:
         print("draw_report.py: %s lacks columns: run 'make peers' again" % path, file=sys.stderr)
         rows = []
     return rows, skipped, description.get("commit", "?")
@@ -244,7 +245,8 @@ def collect(raw, results, command, seconds):
                                 ("shots.csv", targets.SHOTS, shots),
                                 ("built.csv", targets.BUILT, built),
                                 ("near.csv", report_near.NEAR, near),
-                                ("objects.csv", report_objects.OBJECTS, report_objects.collect(raw))):
+                                ("objects.csv", report_objects.OBJECTS, report_objects.collect(raw)),
+                                ("dataset.csv", report_dataset.DATASET, report_dataset.collect(raw))):
         if rows:
             write_csv(os.path.join(results, name), columns, rows, description)
 
@@ -258,11 +260,13 @@ class Results:
     def __init__(self, folder):
         self.rows, self.description = read_csv(os.path.join(folder, "summary.csv"))
         self.frames, _ = read_csv(os.path.join(folder, "frames.csv"))
-        (self.steps, self.turns, self.shots, self.built, self.near, self.near_peers, self.objects) = (
+        (self.steps, self.turns, self.shots, self.built, self.near, self.near_peers, self.objects,
+         self.dataset) = (
             read_csv(path)[0] if os.path.exists(path) else []
             for path in (os.path.join(folder, name + ".csv")
                          for name in ("steps", "turns", "shots", "built", "near",
-                                      "near_peers", "objects")))
+                                      "near_peers", "objects", "dataset")))
+        self.dataset_peers = read_peers(os.path.join(folder, "dataset_peers.csv"), "unequal")
         peers = os.path.join(folder, "peers.csv")
         rows, skipped, self.peers_commit = read_peers(peers)
         self.peers_skipped = [line for line in skipped if "(step " not in line]
@@ -895,6 +899,8 @@ def report(results, drawn, slope_table, reading):
                    "*Each alone*: those that are, in a call each, without what is between two. "
                    + "; ".join("*%s*: %s" % item for item in report_objects.SCENES.items()) + ".\n")
         out.append(objects)
+    peers, skipped, commit = results.dataset_peers
+    out += report_dataset.section(results.dataset, peers, commit, skipped)
     out.append("## One query a frame, and repeated queries\n")
     out.append("The same frame asked for again and again, which favours what fits the cache.\n")
     out.append(modes(results))

@@ -5,8 +5,9 @@
 #
 # FOLDER is where results go; by default bench/results/<machine>, and the overview into README.md,
 # or, for quick, build/bench-quick. report measures nothing and makes the report anew from the CSV
-# files. What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv and
-# near.csv, if they are there. From make come SC_BIN and PYTHON, the interpreter that draws.
+# files. What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv,
+# near.csv and dataset.csv, if they are there. From make come SC_BIN and PYTHON, the interpreter that
+# draws.
 #
 # Exit status 1 if methods disagree or no report could be made, 2 if nothing could be started.
 #
@@ -246,6 +247,9 @@ fi
 if [ "$kind" != quick ] && [ -f build/peers/near.csv ]; then
     cp build/peers/near.csv "$results/near_peers.csv" || exit 2
 fi
+if [ "$kind" != quick ] && [ -f build/peers/dataset.csv ]; then
+    cp build/peers/dataset.csv "$results/dataset_peers.csv" || exit 2
+fi
 if [ "$kind" = report ]; then
     # shellcheck disable=SC2086
     exec "$python" bench/draw_report.py $readme "$results"
@@ -253,7 +257,7 @@ fi
 
 raw=build/bench/$kind
 mkdir -p "$raw" || exit 2
-rm -f "$raw"/*.jsonl "$raw"/*.shots "$raw"/*.built "$raw"/*.objects "$raw"/*.log
+rm -f "$raw"/*.jsonl "$raw"/*.shots "$raw"/*.built "$raw"/*.objects "$raw"/*.dataset "$raw"/*.log
 
 # Makes sc-bench as the others of $builds have it, before anything is timed; $others are those that
 # can be run.
@@ -338,6 +342,16 @@ for workers in $(printf '1\n%s\n' "$cores" | sort -nu); do
     echo "bench: several objects, $workers threads, $(($(date +%s) - begin)) s" >&2
     "$SC_BIN/sc-objects" --scale "$objects_scale" --workers "$workers" --csv "$raw/$workers.objects" \
         >"$raw/$workers.objects.log" </dev/null || status=1
+done
+
+# Many poses of one model, by one thread beside two, and beside all.
+poses=100000
+[ "$kind" = quick ] && poses=2000
+for workers in $(printf '2\n%s\n' "$cores" | sort -nu); do
+    [ "$workers" -le "$cores" ] || continue
+    echo "bench: $poses poses of one model, 1 and $workers threads, $(($(date +%s) - begin)) s" >&2
+    "$SC_BIN/sc-dataset" --poses "$poses" --workers "$workers" --csv "$raw/$workers.dataset" \
+        >"$raw/$workers.dataset.log" </dev/null || status=1
 done
 
 command="make bench"

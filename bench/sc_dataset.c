@@ -23,6 +23,7 @@
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static const char usage[] =
     "Usage: sc-dataset [options]\n"
@@ -51,6 +52,7 @@ typedef struct way {
     sc_status *statuses;       /* chunk */
     sc_pair *pairs;            /* chunk * room */
     double ms, *chunk_ms;      /* of all calls, and a pose in each chunk */
+    double busy;               /* milliseconds of processors in all calls */
     uint64_t colliding, pair_count;
 } way;
 
@@ -164,14 +166,17 @@ static sc_query_options query_options(const way *w)
     return o;
 }
 
-/* Asks about the first count poses of the chunk; *ms is what the call took. */
-static sc_status ask(const run *r, const way *w, uint32_t count, double *ms)
+/* Asks about the first count poses of the chunk; *ms is what the call took, *busy the time of all
+   threads on processors. */
+static sc_status ask(const run *r, const way *w, uint32_t count, double *ms, double *busy)
 {
     const sc_query_options options = query_options(w);
+    const clock_t before = clock();
     const double start = tool_clock();
     const sc_status status =
         sc_query_batch(r->model, w->workspaces, r->at, count, &options, w->results, w->statuses);
     *ms = tool_clock() - start;
+    *busy = 1000.0 * (double)(clock() - before) / CLOCKS_PER_SEC;
     return status;
 }
 
@@ -225,8 +230,8 @@ static bool time_chunk(run *r, uint32_t chunk)
         character_pose(&r->body, first + k, r->positions + (size_t)3 * r->body.vertex_count * k);
     for (uint32_t turn = 0; turn < r->way_count; turn++) {
         way *const w = &r->ways[(turn + chunk) % r->way_count];
-        double ms;
-        sc_status status = ask(r, w, count, &ms);
+        double ms, busy;
+        sc_status status = ask(r, w, count, &ms, &busy);
         if (status == SC_ERROR_SHORT_BUFFER) {
             uint64_t most = 0;
             for (uint32_t k = 0; k < count; k++)
@@ -243,6 +248,7 @@ static bool time_chunk(run *r, uint32_t chunk)
             return false;
         }
         w->chunk_ms[chunk] = ms / count;
+        w->busy += busy;
     }
     for (uint32_t i = 0; i < r->way_count; i++) {
         way *const w = &r->ways[i];
@@ -264,8 +270,9 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Milliseconds a pose, by workers; times of one pose on one core are so many times that. Sorts the
-   times of chunks. */
+/* Milliseconds a pose, by workers: mean and median over chunks, which are sorted here; the mean for
+   each core; the time of all threads on processors; and which part of the time all workers were on
+   one, less than 1 where other programs were, too. */
 static bool report(run *r)
 {
     FILE *file = r->csv ? fopen(r->csv, "w") : NULL;
@@ -275,24 +282,24 @@ static bool report(run *r)
         return false;
     }
     if (file)
-        fprintf(file,
-                "triangles,poses,chunk,workers,ms,ms_median,colliding,pairs,checked,differs\n");
-    printf("%9s %9s %7s %12s %12s %12s %12s %10s %12s\n", "triangles", "poses", "workers",
-           "ms a pose", "median", "ms a core", "median", "colliding", "pairs");
+        fprintf(file, "triangles,poses,chunk,workers,ms,ms_median,cpu_share,colliding,pairs,"
+                      "checked,differs\n");
+    printf("%9s %9s %7s %10s %10s %10s %10s %9s %9s %12s\n", "triangles", "poses", "workers",
+           "ms a pose", "median", "ms a core", "cpu, ms", "cpu share", "colliding", "pairs");
     for (uint32_t i = 0; i < r->way_count; i++) {
         way *const w = &r->ways[i];
+        const double share = w->busy / (w->ms * w->workers);
+        const unsigned long long colliding = w->colliding, pairs = w->pair_count;
         qsort(w->chunk_ms, r->chunks, sizeof *w->chunk_ms, compare_doubles);
         median[i] = w->chunk_ms[r->chunks / 2];
         mean[i] = w->ms / r->poses;
-        printf("%9u %9u %7u %12.4f %12.4f %12.4f %12.4f %10llu %12llu\n", r->body.triangle_count,
-               r->poses, w->workers, mean[i], median[i], mean[i] * w->workers,
-               median[i] * w->workers, (unsigned long long)w->colliding,
-               (unsigned long long)w->pair_count);
+        printf("%9u %9u %7u %10.4f %10.4f %10.4f %10.4f %9.3f %9llu %12llu\n",
+               r->body.triangle_count, r->poses, w->workers, mean[i], median[i],
+               mean[i] * w->workers, w->busy / r->poses, share, colliding, pairs);
         if (file)
-            fprintf(file, "%u,%u,%u,%u,%.5f,%.5f,%llu,%llu,%u,%d\n", r->body.triangle_count,
-                    r->poses, r->chunk, w->workers, mean[i], median[i],
-                    (unsigned long long)w->colliding, (unsigned long long)w->pair_count, r->checked,
-                    r->differs);
+            fprintf(file, "%u,%u,%u,%u,%.5f,%.5f,%.4f,%llu,%llu,%u,%d\n", r->body.triangle_count,
+                    r->poses, r->chunk, w->workers, mean[i], median[i], share, colliding, pairs,
+                    r->checked, r->differs);
     }
     if (r->way_count > 1)
         printf("throughput of %u workers: %.3f times that of one; by medians %.3f\n", r->workers,

@@ -181,7 +181,7 @@ if ! command -v python3 >/dev/null 2>&1; then
     skip "peers.py: there is no python3"
 else
     python3 -B -S "$script" --list | sed 's/ .*//' >"$scratch/listed"
-    sed -n 's/^peer-\([a-z]*\):.*PyPI.*/\1/p' Makefile | sort >"$scratch/targets"
+    sed -n 's/^peer-\([a-z0-9-]*\):.*PyPI.*/\1/p' Makefile | sort >"$scratch/targets"
     check "peers.py lists what make has targets for" diff "$scratch/listed" "$scratch/targets"
     check "and there are some" test -s "$scratch/listed"
     for peer in $(cat "$scratch/listed"); do
@@ -268,6 +268,41 @@ for part, free, wanted in ((1, 0.4, (0, 0)), (1, 0.6, (1, 0)), (1, 1, (1, 0)),
 END
         check "a time after the first contact is wrong, and one in a free step too small" \
             python3 -B -S "$scratch/judge.py" "$falling" "$library"
+        # Triangles 2 and 6 meet at 2-6 alone, which is taken here for a pair with a common vertex.
+        cat >"$scratch/faces.py" <<'END'
+import sys
+sys.path.insert(0, "bench/peers")
+import dataset, peers
+scene = peers.Scene(sys.argv[1])
+scene.adjacent = lambda a, b: (a, b) == (2, 6)
+ours = peers.Starcontour(sys.argv[2], scene, "d")
+expected = [peers.Expected(ours, scene.frame(f, "d"), None) for f in (0, 1)]
+for frame, faces, wanted in ((0, range(6), (0, 0)), (0, range(7), (0, 0)), (0, (0, 6), (5, 0)),
+                             (1, range(4), (0, 0)), (1, (0, 1, 2, 3, 5, 6), (0, 2)), (1, (), (4, 0))):
+    assert expected[frame].judge(peers.FACES, list(faces)) == wanted, (frame, faces)
+assert not dataset.is_wrong(expected[0], peers.FACES, [0])
+assert dataset.is_wrong(expected[0], peers.FACES, [])
+assert not dataset.is_wrong(expected[1], peers.APART, [(0, 1)])
+assert dataset.is_wrong(expected[1], peers.APART, [])
+assert dataset.is_wrong(expected[1], peers.ANY_APART, False)
+expected[1].all = [(2, 6)]
+for answer in ([], [2, 6]):
+    assert not dataset.is_wrong(expected[1], peers.FACES, answer)
+assert dataset.is_wrong(expected[1], peers.APART, [(2, 6)])
+expected[1].all = []
+assert dataset.is_wrong(expected[1], peers.FACES, [2, 6])
+assert not dataset.is_wrong(expected[1], peers.ANY_APART, False)
+tally = dataset.Tally(peers.Way("some", peers.APART, None))
+tally.add(expected[0], expected[0].apart()[1:])
+tally.add(expected[0], expected[0].apart() + [(0, 6)])
+tally.add(expected[1], [(0, 6)])
+assert (tally.colliding, tally.wrong, tally.missing, tally.extra, tally.unequal) == (2, 1, 1, 2, 3)
+END
+        check "answers that name triangles, and verdicts on poses" \
+            python3 -B -S "$scratch/faces.py" "$scene" "$library"
+        check "a dataset's peer is skipped where it is absent" says "skipped: libigl: " \
+            python3 -B -S bench/peers/dataset.py --peer libigl --lib "$library" --csv "$scratch/poses.csv" "$scene"
+        check "and its file says so" grep -q "^# skipped: libigl: " "$scratch/poses.csv"
         # shellcheck disable=SC2086
         check "no step from the last frame" says "none follows" $ask --step 1/50 --from 0,1 "$falling"
         for part in 0 2 1/0 much; do
@@ -294,6 +329,10 @@ no_python() {
 }
 check "no python3 is said" says "skipped: peer-ipctk: there is no python3" no_python
 check "and has a status of its own" status 3 no_python
+unmade() {
+    ! bench/peers/measure_dataset.sh "$scratch/poses/dataset.csv" absent absent "$scratch/built" 2>/dev/null
+}
+check "poses that cannot be made are an error" unmade
 check "no scene is said" says "SCENES names folders" bench/peers/measure_peer.sh some "$scratch/x.csv" "" absent true
 check "and is an error" status 2 bench/peers/measure_peer.sh some "$scratch/x.csv" "" absent true
 measured() {

@@ -42,6 +42,7 @@ COLUMNS = ("scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_
 ALL = "all"  # all pairs of triangles
 APART = "apart"  # pairs of triangles that share no vertex
 ANY_APART = "any apart"  # whether there is one of those
+FACES = "faces"  # at least all triangles in pairs of APART, and none that is in no pair
 ANY_EDGE = "any edge"  # whether there is a pair of an edge and a triangle that share no vertex
 EDGES = "edges"  # at least all pairs of an edge and a triangle that share no vertex
 STEPS = "steps"  # at least all that collide in the step to the next frame; candidates are counted
@@ -349,6 +350,10 @@ class Expected:
             if first >= 1:  # nothing meets
                 return 0, int(answer < 1)
             return int(answer >= 1 or answer > first + TIME_SLACK), 0
+        if kind == FACES:
+            wanted, allowed = ({face for pair in pairs for face in pair}
+                               for pairs in (self.apart(), self.all))
+            return len(wanted - set(answer)), len(set(answer) - allowed)
         if kind == STEPS:  # the answer tells which of ours it has
             return sum(not there for there in answer(self.steps())), 0
         wanted = {ALL: lambda: self.all, APART: self.apart, EDGES: self.edges}[kind]()
@@ -367,7 +372,8 @@ class Way:
     kind     what its answer is compared with
     query    everything there is to do for a new pose, timed: takes what prepare made, and returns
              anything that answer understands. Of STEPS and TIME: for two poses
-    answer   not timed: a list of pairs, or whether there is one, as kind says. Of STEPS: how many
+    answer   not timed: a list of pairs, or whether there is one, as kind says. Of FACES: a list of
+             triangles. Of STEPS: how many
              candidates there are, and a function that says of each pair of a list whether it is one,
              or None if there are too many to look. Of TIME: the part of the step that is free
     prepare  not timed: brings an array of positions, vertices x 3, into the peer's form
@@ -485,6 +491,67 @@ def libigl(scene, np):
                 lambda found: without_neighbours(scene, found[1].tolist()))]
 
 
+def open3d(scene, np):
+    """Compares all triangles with all others; rounded arithmetic."""
+    import open3d as o3d
+
+    mesh = o3d.geometry.TriangleMesh()
+    mesh.triangles = o3d.utility.Vector3iVector(
+        np.array(scene.corners, dtype=np.int32).reshape(-1, 3))
+
+    def query(vertices):
+        mesh.vertices = vertices
+        return mesh.get_self_intersecting_triangles()
+
+    return [Way("get_self_intersecting_triangles: every two triangles; rounded arithmetic; all pairs",
+                APART, query, lambda found: without_neighbours(scene, np.asarray(found).tolist()),
+                o3d.utility.Vector3dVector, exact=False)]
+
+
+def pymeshlab(scene, np):
+    """Makes the mesh and a grid of boxes anew; rounded arithmetic; triangles, not pairs."""
+    import pymeshlab as ml
+
+    faces = np.array(scene.corners, dtype=np.int32).reshape(-1, 3)
+
+    def query(vertices):
+        meshes = ml.MeshSet()
+        meshes.add_mesh(ml.Mesh(vertices, faces))
+        meshes.compute_selection_by_self_intersections_per_face()
+        return meshes.current_mesh().face_selection_array()
+
+    def answer(found):
+        if len(found) != scene.triangles:
+            raise Unusable(f"{scene.name}: PyMeshLab has other triangles than the scene")
+        return np.flatnonzero(found).tolist()
+
+    return [Way("compute_selection_by_self_intersections_per_face: mesh and grid rebuilt; "
+                "rounded arithmetic; triangles", FACES, query, answer, exact=False)]
+
+
+def python_fcl(scene, np):
+    """Rebuilds a tree of boxes of triangles; rounded arithmetic; what trimesh asks."""
+    import fcl
+
+    faces = np.array(scene.corners, dtype=np.int32).reshape(-1, 3)
+
+    def query(vertices):
+        model = fcl.BVHModel()
+        model.beginModel(len(vertices), len(faces))
+        model.addSubModel(vertices, faces)
+        model.endModel()
+        one, other = (fcl.CollisionObject(model, fcl.Transform()) for _ in range(2))
+        result = fcl.CollisionResult()
+        # There is no pair that would not fit.
+        fcl.collide(one, other, fcl.CollisionRequest(num_max_contacts=2 ** 31 - 1), result)
+        return result.contacts
+
+    return [Way("collide of the mesh with itself: tree rebuilt; rounded arithmetic; all pairs in both "
+                "orders and with neighbours", APART, query,
+                lambda found: without_neighbours(
+                    scene, {(c.b1, c.b2) for c in found if c.b1 < c.b2}), exact=False)]
+
+
 def trueform(scene, np):
     """Rebuilds a tree of boxes of triangles."""
     import trueform as tf
@@ -518,6 +585,9 @@ PEERS = {
     "ipctk": (ipctk, "MIT", "d", True),
     "libigl": (libigl, "MPL-2.0", "d", False),
     "meshlib": (meshlib, "non-commercial, evaluation, education", "f", True),
+    "open3d": (open3d, "MIT", "d", False),
+    "pymeshlab": (pymeshlab, "GPL-3.0", "d", False),
+    "python-fcl": (python_fcl, "BSD-3-Clause", "d", False),
     "trueform": (trueform, "PolyForm Noncommercial 1.0.0", "d", True),
 }
 NOTHING_ELSE = "starcontour"

@@ -1,0 +1,51 @@
+#!/bin/sh
+# `make dataset-peers`: times libraries from PyPI beside ours on poses of sc-dataset's character, by
+# dataset.py, into a new CSV file.
+#
+#     bench/peers/measure_dataset.sh CSV SC-DATASET LIBRARY BUILD     from the top of the repository
+#
+# A peer that cannot be installed is skipped with a message, which the file keeps. Those that take
+# seconds a pose get fewer poses: the first ones of the same. $POSES: no peer gets more. Those that can
+# use more than one thread are run with all as well. The machine ought to be quiet.
+#
+# SPDX-License-Identifier: MIT
+set -u
+
+csv=$1
+dataset=$2
+library=$3
+build=$4
+here=${0%/*}
+poses=${POSES:-200}
+
+mkdir -p "${csv%/*}" && echo "# commit: $(git describe --always --abbrev=12 --dirty=+ --exclude='*' \
+    2>/dev/null || echo unknown)" >"$csv" || exit 2
+scene=$build/peers/scenes/dataset-$poses
+if [ ! -d "$scene" ]; then
+    rm -rf "$scene.new"
+    mkdir -p "${scene%/*}" && "$dataset" --poses "$poses" --export "$scene.new" </dev/null &&
+        mv "$scene.new" "$scene" || exit 2
+fi
+again=
+[ "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)" -eq 1 ] || again=all
+status=0
+# Peer, poses at most, and whether it can use all threads.
+while read -r peer most also; do
+    [ "$most" -le "$poses" ] || most=$poses
+    "$here/venv.sh" "$build/peers/venv" "$peer" "$csv" </dev/null || {
+        [ $? -eq 3 ] || status=1
+        continue
+    }
+    for threads in 1 ${also:+$again}; do
+        "$build/peers/venv/bin/python" "$here/dataset.py" --peer "$peer" --poses "$most" --threads "$threads" \
+            --lib "$library" --csv "$csv" "$scene" </dev/null || status=1
+    done
+done <<END
+libigl 200
+meshlib 200 all
+trueform 200 all
+pymeshlab 200
+python-fcl 40
+open3d 40
+END
+exit $status
