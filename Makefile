@@ -783,6 +783,7 @@ help: ## this list
 #: SCENE_DIRS  folders with more scenes for it [../shared/scenes]
 #: SCENES      folders of scenes that peer-... and peers measure [build/peers/scenes/*]
 #: CSV         where they add lines [build/peers/peers.csv]
+#: POSES       at most so many poses a peer for dataset-peers [200]
 #: LIMIT       seconds after which they give up on a scene [30]
 #: MEMORY      GB of memory a peer may take for it, or unlimited [8]
 #: V           1: show commands
