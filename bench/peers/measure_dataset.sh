@@ -46,6 +46,6 @@ meshlib 200 all
 trueform 200 all
 pymeshlab 200
 python-fcl 40
-open3d 40
+open3d 40 all
 END
 exit $status

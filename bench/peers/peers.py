@@ -585,7 +585,7 @@ PEERS = {
     "ipctk": (ipctk, "MIT", "d", True),
     "libigl": (libigl, "MPL-2.0", "d", False),
     "meshlib": (meshlib, "non-commercial, evaluation, education", "f", True),
-    "open3d": (open3d, "MIT", "d", False),
+    "open3d": (open3d, "MIT", "d", True),
     "pymeshlab": (pymeshlab, "GPL-3.0", "d", False),
     "python-fcl": (python_fcl, "BSD-3-Clause", "d", False),
     "trueform": (trueform, "PolyForm Noncommercial 1.0.0", "d", True),
