@@ -85,17 +85,18 @@ def answers(row):
 def peer_table(rows):
     by = {}
     for row in rows:
-        by.setdefault((row["peer"], str(row["version"]), row["what"], row["poses"]), {})[int(row["threads"])] = row
+        by.setdefault((row["scene"], row["peer"], str(row["version"]), row["what"], row["poses"]),
+                      {})[int(row["threads"])] = row
     lines = []
-    for (peer, version, what, poses), threads in by.items():
+    for (scene, peer, version, what, poses), threads in sorted(by.items()):
         one = threads.get(1) or threads[min(threads)]
         most = threads[max(threads)] if max(threads) > 1 else None
-        lines.append(["%s %s" % (peer, version), what, whole(poses), figure(one["ms"]), figure(one["ours_ms"]),
+        lines.append([scene, "%s %s" % (peer, version), what, whole(poses), figure(one["ms"]), figure(one["ours_ms"]),
                       times(one["ms"] / one["ours_ms"]), figure(most["ms"]) if most else "–",
                       times(most["ms"] / most["ours_ms"]) if most else "–",
                       "%s of %s" % (whole(one["wrong"]), whole(poses)), answers(one)])
-    return table(["peer", "what it does a pose", "poses", "ms", "exact, ms", "× exact", "all threads: ms", "× exact",
-                  "wrong verdicts", "wrong pairs"], lines, left=2) if lines else ""
+    return table(["scene", "peer", "what it does a pose", "poses", "ms", "exact, ms", "× exact", "all threads: ms", "× exact",
+                  "wrong verdicts", "wrong pairs"], lines, left=3) if lines else ""
 
 
 def peers_disturbed(rows):
@@ -125,7 +126,8 @@ def section(rows, peers, commit, skipped):
                    "by `make dataset-peers` at commit %s and explained in bench/peers/README.md. Medians over the\n"
                    "poses; `exact` runs on one thread in any case. *Wrong verdicts*: how often the answer to \"does it\n"
                    "collide?\" is wrong; *wrong pairs*, or triangles where the peer names these: how many are missing\n"
-                   "or none, and in how many poses.\n" % commit)
+                   "or none, and in how many poses. *Rounded*: coordinates are multiples of 1/512, as packed datasets\n"
+                   "have them, so that triangles touch, and some have no area.\n" % commit)
         if peers_disturbed(peers):
             out.append("**Disturbed**: other programs ran at the same time, so that single figures can be far off.\n")
         out.append(peer_table(peers))

@@ -21,6 +21,7 @@
 #include "tool.h"
 
 #include <getopt.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -34,6 +35,7 @@ static const char usage[] =
     "  --workers N       threads, with a query each (2)\n"
     "  --chunk N         poses of one call (256)\n"
     "  --check N         every N-th pose is asked about by sc_query as well; 0: none (100)\n"
+    "  --grid N          round coordinates to multiples of 1/N, as packed datasets do; 0: not (0)\n"
     "  --csv FILE        a line for each number of workers as well\n"
     "  --export FOLDER   write the character at rest and these poses as frames of a scene, and\n"
     "                    measure nothing\n"
@@ -57,7 +59,7 @@ typedef struct way {
 } way;
 
 typedef struct run {
-    uint32_t poses, triangles, workers, chunk, check;
+    uint32_t poses, triangles, workers, chunk, check, grid;
     const char *csv, *folder;
     character body;
     sc_model *model;
@@ -221,13 +223,20 @@ static void compare(run *r, uint32_t first, uint32_t count)
     }
 }
 
+static void make_pose(const run *r, uint32_t number, float *positions)
+{
+    character_pose(&r->body, number, positions);
+    for (size_t i = 0; r->grid && i < 3 * (size_t)r->body.vertex_count; i++)
+        positions[i] = (float)(rint((double)positions[i] * r->grid) / r->grid);
+}
+
 /* Makes a chunk of poses and asks about it in both ways. */
 static bool time_chunk(run *r, uint32_t chunk)
 {
     const uint32_t first = chunk * r->chunk;
     const uint32_t count = r->poses - first < r->chunk ? r->poses - first : r->chunk;
     for (uint32_t k = 0; k < count; k++)
-        character_pose(&r->body, first + k, r->positions + (size_t)3 * r->body.vertex_count * k);
+        make_pose(r, first + k, r->positions + (size_t)3 * r->body.vertex_count * k);
     for (uint32_t turn = 0; turn < r->way_count; turn++) {
         way *const w = &r->ways[(turn + chunk) % r->way_count];
         double ms, busy;
@@ -328,7 +337,7 @@ static bool export_poses(const run *r)
     good = writer != NULL;
     for (uint32_t frame = 0; frame <= r->poses && good; frame++) {
         if (frame)
-            character_pose(&r->body, frame - 1, floats);
+            make_pose(r, frame - 1, floats);
         else
             memcpy(floats, r->body.rest, sizeof(float) * numbers);
         for (size_t i = 0; i < numbers; i++) doubles[i] = (double)floats[i];
@@ -376,6 +385,7 @@ int main(int argc, char **argv)
         OPTION_WORKERS,
         OPTION_CHUNK,
         OPTION_CHECK,
+        OPTION_GRID,
         OPTION_CSV,
         OPTION_EXPORT
     };
@@ -385,6 +395,7 @@ int main(int argc, char **argv)
         {"workers", required_argument, NULL, OPTION_WORKERS},
         {"chunk", required_argument, NULL, OPTION_CHUNK},
         {"check", required_argument, NULL, OPTION_CHECK},
+        {"grid", required_argument, NULL, OPTION_GRID},
         {"csv", required_argument, NULL, OPTION_CSV},
         {"export", required_argument, NULL, OPTION_EXPORT},
         {"help", no_argument, NULL, 'h'},
@@ -411,6 +422,8 @@ int main(int argc, char **argv)
             good = tool_parse_number("--chunk", optarg, 1, 1000000, &r.chunk);
         else if (option == OPTION_CHECK)
             good = tool_parse_number("--check", optarg, 0, 100000000, &r.check);
+        else if (option == OPTION_GRID)
+            good = tool_parse_number("--grid", optarg, 0, 1u << 20, &r.grid);
         else if (option == OPTION_CSV)
             r.csv = optarg;
         else if (option == OPTION_EXPORT)

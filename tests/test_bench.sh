@@ -424,10 +424,10 @@ END
     cat >"$scratch/results/dataset_peers.csv" <<'END'
 # commit: def
 # skipped: open3d: no such wheel
-peer,version,what,threads,triangles,poses,ms,ours_ms,mean,ours_mean,colliding,wrong,missing,extra,unequal
-meshlib,3.1,refitted,1,24992,200,50,0.5,50,0.8,90,3,40,2,7
-meshlib,3.1,refitted,2,24992,200,30,0.5,30,0.5,90,3,40,2,7
-libigl,2.6.3,rebuilt,1,24992,200,100,0.4,100,0.4,90,0,0,0,0
+scene,peer,version,what,threads,triangles,poses,ms,ours_ms,mean,ours_mean,colliding,wrong,missing,extra,unequal
+poses,meshlib,3.1,refitted,1,24992,200,50,0.5,50,0.8,90,3,40,2,7
+poses,meshlib,3.1,refitted,2,24992,200,30,0.5,30,0.5,90,3,40,2,7
+rounded,libigl,2.6.3,rebuilt,1,24992,200,100,0.4,100,0.4,90,0,0,0,0
 END
     check "a report with peers" python3 bench/draw_report.py "$scratch/results"
     near_row="| crushed-cloth | 500 | 0.20 | 900 | 1.00 | 2.00 | 8.00 | 16.0 | 8.00 | 16.0 | 8.00 | right | 1 and 4 of 304 |"
@@ -442,8 +442,8 @@ END
         "| 25,000 triangles: ms a pose and core | ≤ 0.600 | 0.800 | one worker | **not met** |" \
         "| two workers: throughput | ≥ 1.90 | 2.00 | 100,000 poses | met |" \
         "had less than 95 % of their processors" "other programs ran at the same time, so that single" \
-        "| meshlib 3.1 | refitted | 200 | 50.0 | 0.500 | 100.0 | 30.0 | 60.0 | 3 of 200 | 40 missing, 2 extra in 7 |" \
-        "| libigl 2.6.3 | rebuilt | 200 | 100 | 0.400 | 250.0 | – | – | 0 of 200 | – |" \
+        "| poses | meshlib 3.1 | refitted | 200 | 50.0 | 0.500 | 100.0 | 30.0 | 60.0 | 3 of 200 | 40 missing, 2 extra in 7 |" \
+        "| rounded | libigl 2.6.3 | rebuilt | 200 | 100 | 0.400 | 250.0 | – | – | 0 of 200 | – |" \
         "by \`make dataset-peers\` at commit def" "- open3d: no such wheel" \
         "| rod | 500 | 2 | 5 | 8.00 | 2.00 | 4.00 | – | – | – | 3 missing in 1 of 2 frames |" \
         "| rod | 500 | 1 | 4 | 30.0 | 3.00 | 10.0 | 20.0 | 5.00 | 4.00 | match |" \
@@ -502,6 +502,12 @@ check "with the same pairs, which there are some of" awk -F, '
 pairs_of_dataset=$(awk -F, 'NR == 2 { print $9 }' "$scratch/dataset")
 check "by one alone" says 0 " 40 *1 .* $pairs_of_dataset$" "$dataset" --poses 40 --triangles 3000 --workers 1
 check "of which there is one row" test "$(grep -c '^ *[0-9]* *40 ' "$scratch/out")" -eq 1
+check "rounded coordinates" says 0 "all answers are the same" "$dataset" --poses 40 --triangles 3000 \
+    --grid 64 --check 1
+more_pairs() {
+    awk -v before="$pairs_of_dataset" '$2 == 40 && $3 == 2 { more = $NF > before } END { exit !more }' "$scratch/out"
+}
+check "touch more often" more_pairs
 check "the poses as a scene" "$dataset" --poses 40 --triangles 3000 --export "$scratch/poses"
 check "with the rest pose before them" test "$(cut -d' ' -f 3 "$scratch/poses/meta.txt")" -eq 41
 check "and all pairs in them" test "$pairs_of_dataset" -eq "$("$SC_BIN/sc-bench" --scene-dir "$scratch/poses" \

@@ -8,6 +8,7 @@ are built, every other one a pose. Both are asked about each pose in turn, in on
 peers.py has it, and sc_query for all pairs, by one thread. The first pose is asked about once more
 before, without a clock. A line of the CSV file is a way of the peer:
 
+    scene                           the folder's name
     peer, version, what, threads    as in peers.csv
     triangles, poses                of the character; how many poses were asked about
     ms, ours_ms                     medians over the poses
@@ -36,7 +37,7 @@ sys.dont_write_bytecode = True  # nothing is to appear beside this file
 
 import peers
 
-COLUMNS = ("peer,version,what,threads,triangles,poses,ms,ours_ms,mean,ours_mean,colliding,wrong,missing,"
+COLUMNS = ("scene,peer,version,what,threads,triangles,poses,ms,ours_ms,mean,ours_mean,colliding,wrong,missing,"
            "extra,unequal")
 
 # What a peer may be asked of one pose.
@@ -94,12 +95,12 @@ def measure(scene, arguments, out):
     right = True
     for tally in tallies:
         way = tally.way
-        print(arguments.peer, version, way.what, arguments.threads, scene.triangles, poses,
+        print(scene.name, arguments.peer, version, way.what, arguments.threads, scene.triangles, poses,
               *(f"{middle(times):.4f}" for middle in (statistics.median, statistics.fmean)
                 for times in (tally.ms, tally.ours)),
               tally.colliding, tally.wrong, tally.missing, tally.extra, tally.unequal, sep=",", file=out)
         if arguments.csv:
-            print(f"{arguments.peer:<12} {arguments.threads} thread{' ' if arguments.threads == 1 else 's'}"
+            print(f"{scene.name:<8} {arguments.peer:<12} {arguments.threads} thread{' ' if arguments.threads == 1 else 's'}"
                   f"{statistics.median(tally.ms):12.3f} ms a pose, "
                   f"ours {statistics.median(tally.ours):.3f}; "
                   f"{tally.unequal} of {poses} answers are not ours")

@@ -1,6 +1,7 @@
 #!/bin/sh
-# `make dataset-peers`: times libraries from PyPI beside ours on poses of sc-dataset's character, by
-# dataset.py, into a new CSV file.
+# `make dataset-peers`: times libraries from PyPI beside ours on poses of sc-dataset's character, and
+# on the same poses with coordinates rounded to multiples of 1/512, by dataset.py, into a new CSV file.
+# Fails where a peer that claims exactness is wrong, as libigl is on some triangles without area.
 #
 #     bench/peers/measure_dataset.sh CSV SC-DATASET LIBRARY BUILD     from the top of the repository
 #
@@ -20,12 +21,16 @@ poses=${POSES:-200}
 
 mkdir -p "${csv%/*}" && echo "# commit: $(git describe --always --abbrev=12 --dirty=+ --exclude='*' \
     2>/dev/null || echo unknown)" >"$csv" || exit 2
-scene=$build/peers/scenes/dataset-$poses
-if [ ! -d "$scene" ]; then
-    rm -rf "$scene.new"
-    mkdir -p "${scene%/*}" && "$dataset" --poses "$poses" --export "$scene.new" </dev/null &&
-        mv "$scene.new" "$scene" || exit 2
-fi
+scenes=$build/peers/scenes/$poses-poses
+for scene in poses rounded; do
+    [ ! -d "$scenes/$scene" ] || continue
+    grid=0
+    [ "$scene" = poses ] || grid=512
+    rm -rf "$scenes/$scene.new"
+    mkdir -p "$scenes" &&
+        "$dataset" --poses "$poses" --grid "$grid" --export "$scenes/$scene.new" </dev/null &&
+        mv "$scenes/$scene.new" "$scenes/$scene" || exit 2
+done
 again=
 [ "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)" -eq 1 ] || again=all
 status=0
@@ -36,9 +41,11 @@ while read -r peer most also; do
         [ $? -eq 3 ] || status=1
         continue
     }
-    for threads in 1 ${also:+$again}; do
-        "$build/peers/venv/bin/python" "$here/dataset.py" --peer "$peer" --poses "$most" --threads "$threads" \
-            --lib "$library" --csv "$csv" "$scene" </dev/null || status=1
+    for scene in poses rounded; do
+        for threads in 1 ${also:+$again}; do
+            "$build/peers/venv/bin/python" "$here/dataset.py" --peer "$peer" --poses "$most" \
+                --threads "$threads" --lib "$library" --csv "$csv" "$scenes/$scene" </dev/null || status=1
+        done
     done
 done <<END
 libigl 200
