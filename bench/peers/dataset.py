@@ -21,7 +21,7 @@ before, without a clock. A line of the CSV file is a way of the peer:
 
 Pairs of triangles that share a vertex are left out, as in peers.csv.
 
-Exit status: 0; 1 if a peer that claims exactness was wrong; 2 if the scene cannot be read or an option
+Exit status: 0; 3 if a peer that claims exactness was wrong; 2 if the scene cannot be read or an option
 is wrong.
 
 SPDX-License-Identifier: MIT
@@ -153,7 +153,7 @@ def main():
                 print(f"# skipped: {arguments.peer}: {reason}", file=out)
         if arguments.csv:
             out.close()
-        return 0 if right else 1
+        return 0 if right else 3
     except (OSError, peers.Unusable) as error:
         print(error, file=sys.stderr)
         return 2

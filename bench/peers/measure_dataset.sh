@@ -1,7 +1,7 @@
 #!/bin/sh
 # `make dataset-peers`: times libraries from PyPI beside ours on poses of sc-dataset's character, and
 # on the same poses with coordinates rounded to multiples of 1/512, by dataset.py, into a new CSV file.
-# Fails where a peer that claims exactness is wrong, as libigl is on some triangles without area.
+# Wrong answers are no failure, but what the file is about.
 #
 #     bench/peers/measure_dataset.sh CSV SC-DATASET LIBRARY BUILD     from the top of the repository
 #
@@ -44,7 +44,8 @@ while read -r peer most also; do
     for scene in poses rounded; do
         for threads in 1 ${also:+$again}; do
             "$build/peers/venv/bin/python" "$here/dataset.py" --peer "$peer" --poses "$most" \
-                --threads "$threads" --lib "$library" --csv "$csv" "$scenes/$scene" </dev/null || status=1
+                --threads "$threads" --lib "$library" --csv "$csv" "$scenes/$scene" </dev/null ||
+                [ $? -eq 3 ] || status=1
         done
     done
 done <<END
