@@ -389,9 +389,17 @@ test-ipctk: $(lib)/$(shared_link) $(programs)
 endif
 
 # Programs that people already use, from PyPI, with the library inside.
-.PHONY: test-clients
-test-clients: $(lib)/$(shared_link) ## run programs that use the library inside (PyPI; what is there); a minute or two
-	@tools/clients/clients.sh '$(lib)/$(shared_link)' '$(BUILD)'
+addon := $(BUILD)/clients/starcontour-blender-$(version).zip
+
+.PHONY: test-clients blender-addon
+test-clients: $(lib)/$(shared_link) $(addon) $(programs) ## run programs that use the library inside (PyPI; what is there); a minute or two
+	@SC_QUERY='$(bin)/sc-query' ADDON='$(addon)' tools/clients/clients.sh '$(lib)/$(shared_link)' '$(BUILD)'
+
+blender-addon: $(addon) ## pack the add-on for Blender, for this platform: build/clients/starcontour-blender-VERSION.zip
+
+$(addon): tools/clients/blender/pack.py $(wildcard tools/clients/blender/starcontour_checks/*) \
+    $(wildcard tools/python/starcontour/*.py) $(shared)
+	@OBJCOPY='$(OBJCOPY)' python3 $< '$(shared)' '$(version)' '$@'
 
 # ------------------------------------------------------------------------------------------------
 # Other languages, and one engine, on the shared library.

@@ -3,7 +3,7 @@
 #
 #     bench/peers/venv.sh DIRECTORY PACKAGE CSV
 #
-# Versions stand in requirements.txt; only wheels are taken. If the package cannot be had, that
+# Versions stand in requirements.txt, or in the file VERSIONS; only wheels are taken. If the package cannot be had, that
 # is said, also in the CSV file (see skip.sh), and the exit status is 3.
 #
 # SPDX-License-Identifier: MIT
@@ -13,7 +13,7 @@ venv=$1
 package=$2
 csv=$3
 here=${0%/*}
-versions=$here/requirements.txt
+versions=${VERSIONS:-$here/requirements.txt}
 log=$venv.log
 
 skip() {

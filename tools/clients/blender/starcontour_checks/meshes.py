@@ -1,0 +1,109 @@
+"""Meshes of Blender as arrays: evaluated ones of a frame, and which faces of the object's own mesh they
+come from.
+
+SPDX-License-Identifier: MIT
+"""
+
+from collections import namedtuple
+
+import bmesh
+import numpy as np
+
+# A face attribute that is there while a check runs: the number of each face, counted from 1, which
+# modifiers copy to the faces that they make of it. Faces of other meshes that they join get 0.
+ORIGIN = "starcontour_origin"
+
+Snapshot = namedtuple("Snapshot", "positions triangles polygons polygon_count matrix origins")
+Snapshot.__doc__ = """An object in a frame, as modifiers, armatures and shape keys leave it.
+
+positions      float32 of shape (n, 3): local coordinates, as Blender has them
+triangles      uint32 of shape (m, 3): Blender's own triangulation (loop triangles)
+polygons       int32 of shape (m,): the face of the evaluated mesh that each triangle is of
+polygon_count  how many faces the evaluated mesh has
+matrix         float64 of shape (4, 4): from local coordinates to the world's
+origins        int32 of shape (polygon_count,): the face of the object's own mesh that each comes from;
+               -1: of none that is known
+"""
+
+
+def _read(items, name, shape, dtype):
+    array = np.empty(shape, dtype)
+    items.foreach_get(name, array.ravel())
+    return array
+
+
+def _origins(mesh, own):
+    """The own mesh's face of each face of the evaluated one."""
+    attribute = mesh.attributes.get(ORIGIN)
+    count = len(mesh.polygons)
+    if attribute is not None and attribute.domain == "FACE" and len(attribute.data) == count:
+        origins = _read(attribute.data, "value", count, np.int32) - 1
+        origins[(origins < 0) | (origins >= len(own.polygons))] = -1
+        return origins
+    if count == len(own.polygons):
+        return np.arange(count, dtype=np.int32)
+    return np.full(count, -1, np.int32)
+
+
+def snapshot(thing, depsgraph):
+    """A Snapshot of a mesh object. In object mode, between number_faces and forget_numbers."""
+    evaluated = thing.evaluated_get(depsgraph)
+    mesh = evaluated.to_mesh()
+    try:
+        mesh.calc_loop_triangles()
+        count = len(mesh.loop_triangles)
+        return Snapshot(
+            _read(mesh.vertices, "co", (len(mesh.vertices), 3), np.float32),
+            _read(mesh.loop_triangles, "vertices", (count, 3), np.int32).astype(np.uint32),
+            _read(mesh.loop_triangles, "polygon_index", count, np.int32),
+            len(mesh.polygons),
+            np.array(evaluated.matrix_world, np.float64),
+            _origins(mesh, thing.data))
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def number_faces(things):
+    """Gives each face of the objects' own meshes its number as an attribute. Meshes that cannot be
+    edited, as they are linked from another file, stay as they are."""
+    for mesh in {thing.data for thing in things}:
+        if mesh.library is None and ORIGIN not in mesh.attributes:
+            attribute = mesh.attributes.new(ORIGIN, "INT", "FACE")
+            attribute.data.foreach_set("value", np.arange(1, len(mesh.polygons) + 1, dtype=np.int32))
+            mesh.update()
+
+
+def forget_numbers(things):
+    """Takes away what number_faces gave."""
+    for mesh in {thing.data for thing in things}:
+        attribute = mesh.attributes.get(ORIGIN)
+        if attribute is not None and mesh.library is None:
+            mesh.attributes.remove(attribute)
+            mesh.update()
+
+
+def in_world(shot, positions=None):
+    """Positions, float64 of shape (n, 3): local ones (those of the snapshot) to the world's."""
+    given = np.asarray(shot.positions if positions is None else positions, np.float64)
+    world = np.tile(shot.matrix[:3, 3], (len(given), 1))
+    for k in range(3):  # no product of matrices: its sums may be rounded in another way by machine
+        world += given[:, k:k + 1] * shot.matrix[:3, k]
+    return world
+
+
+def vertices_of_faces(mesh, faces):
+    """Of an object's own mesh the vertices, as a mask, of the faces of a mask."""
+    corners = np.repeat(faces, _read(mesh.polygons, "loop_total", len(mesh.polygons), np.int32))
+    mask = np.zeros(len(mesh.vertices), bool)
+    mask[_read(mesh.loops, "vertex_index", len(mesh.loops), np.int32)[corners]] = True
+    return mask
+
+
+def select_faces(mesh, faces):
+    """Selects these faces of an object's own mesh, with their edges and vertices; hidden ones are not. In
+    edit mode, with nothing selected."""
+    edited = bmesh.from_edit_mesh(mesh)
+    edited.faces.ensure_lookup_table()
+    for number in np.flatnonzero(faces).tolist():
+        edited.faces[number].select_set(True)
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)

@@ -1,0 +1,339 @@
+"""The operators: they read meshes, ask the library, and write down what it found.
+
+SPDX-License-Identifier: MIT
+"""
+
+import bpy
+import numpy as np
+
+from . import checks, meshes, results
+from .thickness import thickness
+
+WHAT = (("COLLISION", "Colliding", "Faces that a check found"),
+        ("THIN", "Thin", "Faces that the search for thin walls found"))
+
+
+def wanted(context):
+    """The selected mesh objects, the overlay excepted; else the active one."""
+    active = context.view_layer.objects.active
+    for some in (context.selected_objects, [active] if active is not None else []):
+        things = [thing for thing in some if thing.type == "MESH" and thing.name != results.OVERLAY]
+        if things:
+            return things
+    return []
+
+
+class Work:
+    """Reads objects in object mode, with their faces numbered. Mode and frame are at the end what they
+    were."""
+
+    def __init__(self, context, things):
+        self.context, self.things = context, things
+        self.mode = None
+
+    def __enter__(self):
+        scene = self.context.scene
+        self.frame = scene.frame_current, scene.frame_subframe
+        if any(thing.mode != "OBJECT" for thing in self.things):
+            self.mode = self.context.view_layer.objects.active.mode
+            bpy.ops.object.mode_set(mode="OBJECT")
+        meshes.number_faces(self.things)
+        return self
+
+    def __exit__(self, *exception):
+        self.back()
+        meshes.forget_numbers(self.things)
+        if self.mode is not None:
+            bpy.ops.object.mode_set(mode=self.mode)
+
+    def back(self):
+        """Goes back to the frame of before."""
+        scene = self.context.scene
+        if (scene.frame_current, scene.frame_subframe) != self.frame:
+            scene.frame_set(self.frame[0], subframe=self.frame[1])
+
+    def read(self):
+        """A Snapshot of each object as it is now."""
+        self.context.view_layer.update()
+        depsgraph = self.context.evaluated_depsgraph_get()
+        return [meshes.snapshot(thing, depsgraph) for thing in self.things]
+
+
+class Tally:
+    """In how many frames each face and each vertex of the objects' own meshes collides. Objects may
+    share a mesh: a face of it collides if it does in one of them."""
+
+    def __init__(self, things):
+        self.things = things
+        self.users = {}
+        for number, thing in enumerate(things):
+            self.users.setdefault(thing.data, []).append(number)
+        self.faces = {mesh: np.zeros(len(mesh.polygons), np.int32) for mesh in self.users}
+        self.vertices = {mesh: np.zeros(len(mesh.vertices), np.int32) for mesh in self.users}
+        self.rows, self.unknown = [], 0  # (frame, pairs, faces of evaluated meshes); faces of no own face
+
+    def add(self, frame, found, shots):
+        masks = [checks.faces_of(found, shots, number) for number in range(len(shots))]
+        for mesh, users in self.users.items():
+            own = np.zeros(len(mesh.polygons), bool)
+            for number in users:
+                own |= checks.own_faces(shots[number], masks[number], len(own))
+            self.faces[mesh] += own
+            self.vertices[mesh] += meshes.vertices_of_faces(mesh, own)
+        self.unknown += sum(int((shot.origins[mask] < 0).sum()) for shot, mask in zip(shots, masks))
+        self.rows.append((frame, sum(len(one.pairs) for one in found), sum(int(mask.sum()) for mask in masks)))
+
+    def write(self, settings):
+        for mesh, users in self.users.items():
+            results.write_attribute(mesh, results.FRAMES, "INT", self.faces[mesh])
+            weights = self.vertices[mesh] / len(self.rows)
+            if settings.weights == "UNION":
+                weights = np.ceil(weights)
+            for number in users:
+                results.write_group(self.things[number], results.COLLISION, weights)
+        settings.frames.clear()
+        settings.checked.clear()
+        for frame, pairs, faces in self.rows:
+            row = settings.frames.add()
+            row.frame, row.pairs, row.faces = frame, pairs, faces
+        for thing in self.things:
+            settings.checked.add().thing = thing
+        settings.pairs = sum(row[1] for row in self.rows)
+        settings.faces = sum(int((faces > 0).sum()) for faces in self.faces.values())
+        settings.colliding_frames = sum(row[1] > 0 for row in self.rows)
+        settings.state = "CHECKED"
+
+
+def _checker(settings, things, once):
+    return checks.Checker([thing.name for thing in things], settings.weld, settings.contact.lower(),
+                          settings.itself, settings.between, once)
+
+
+def _show(context, settings, checker, shots, found):
+    if not settings.overlay:
+        return
+    radius = settings.overlay_radius
+    if not radius:
+        spans = [np.ptp(meshes.in_world(shot), axis=0).max() for shot in shots if len(shot.positions)]
+        radius = 0.002 * max(spans, default=0.0)
+    results.show_contacts(context.scene, checker.contacts(shots, found), radius)
+
+
+def show_now(context, settings):
+    """Shows where the objects that were checked meet in this frame. Raises checks.Refused."""
+    things = [one.thing for one in settings.checked
+              if one.thing is not None and one.thing.name in context.view_layer.objects]
+    if things and settings.overlay:
+        checker = _checker(settings, things, True)
+        with Work(context, things) as work:
+            shots = work.read()
+            _show(context, settings, checker, shots, checker.check(shots))
+
+
+class _Asks:
+    """What operators that ask about objects have in common: which, and how refusals are reported."""
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        things = wanted(context)
+        try:
+            if not things:
+                raise checks.Refused("no mesh object is selected")
+            for thing in things:
+                if thing.library is not None or thing.data.library is not None:
+                    raise checks.Refused(f"{thing.name} is linked from another file, so that results cannot "
+                                         "be written to it: make it local")
+            self.run(context, context.scene.starcontour, things)
+            return {"FINISHED"}
+        except checks.Refused as refusal:
+            self.report({"ERROR"}, str(refusal))
+        except MemoryError:
+            self.report({"ERROR"}, "there is not enough memory")
+        return {"CANCELLED"}
+
+    def tell(self, tally, settings):
+        text = f"{settings.pairs} pairs of triangles, {settings.faces} faces"
+        if len(tally.rows) > 1:
+            text += f", in {settings.colliding_frames} of {len(tally.rows)} frames"
+        if tally.unknown:
+            text += f"; {tally.unknown} faces made by modifiers are of no face of the mesh, and only counted " \
+                    "in the list"
+        self.report({"WARNING" if settings.pairs else "INFO"}, text)
+
+
+class STARCONTOUR_OT_check(_Asks, bpy.types.Operator):
+    """Find what intersects in the selected objects, as modifiers leave them in this frame"""
+
+    bl_idname = "starcontour.check"
+    bl_label = "Check This Frame"
+
+    def run(self, context, settings, things):
+        checker, tally = _checker(settings, things, True), Tally(things)
+        with Work(context, things) as work:
+            shots = work.read()
+            found = checker.check(shots)
+            tally.add(context.scene.frame_current, found, shots)
+            tally.write(settings)
+            _show(context, settings, checker, shots, found)
+        self.tell(tally, settings)
+
+
+class STARCONTOUR_OT_check_frames(_Asks, bpy.types.Operator):
+    """Find what intersects in the selected objects in each frame of a range"""
+
+    bl_idname = "starcontour.check_frames"
+    bl_label = "Check Frames"
+
+    def run(self, context, settings, things):
+        scene, windows = context.scene, context.window_manager
+        first, last = scene.frame_start, scene.frame_end
+        if settings.own_range:
+            first, last = settings.first, settings.last
+        numbers = range(first, last + 1, settings.step)
+        if not numbers:
+            raise checks.Refused(f"there is no frame from {first} to {last}")
+        checker, tally = _checker(settings, things, False), Tally(things)
+        windows.progress_begin(0, len(numbers))
+        try:
+            with Work(context, things) as work:
+                for done, number in enumerate(numbers):
+                    scene.frame_set(number)
+                    shots = work.read()
+                    try:
+                        found = checker.check(shots)
+                    except checks.Refused as refusal:
+                        raise checks.Refused(f"frame {number}: {refusal}") from None
+                    tally.add(number, found, shots)
+                    windows.progress_update(done + 1)
+                work.back()
+                tally.write(settings)
+                if settings.overlay:
+                    shots = work.read()
+                    _show(context, settings, checker, shots, checker.check(shots))
+        finally:
+            windows.progress_end()
+        self.tell(tally, settings)
+
+
+class STARCONTOUR_OT_thickness(_Asks, bpy.types.Operator):
+    """Find faces of the selected objects that are nearer than a distance to what is not near them on the
+    surface: thin walls and narrow gaps"""
+
+    bl_idname = "starcontour.thickness"
+    bl_label = "Find Thin Faces"
+
+    def run(self, context, settings, things):
+        distance = settings.distance
+        if not distance > 0:
+            raise checks.Refused("the distance must be more than 0")
+        least, count = {}, 0
+        with Work(context, things) as work:
+            for thing, shot in zip(things, work.read()):
+                thick = np.full(len(thing.data.polygons), np.inf)
+                if len(shot.triangles):
+                    threads = checks.threads_for([shot])
+                    try:
+                        values = thickness(meshes.in_world(shot), shot.triangles, distance, threads)
+                    except checks.starcontour.Error as error:
+                        raise checks.Refused(f"{thing.name}: {error}") from None
+                    origins = shot.origins[shot.polygons]
+                    np.minimum.at(thick, origins[origins >= 0], values[origins >= 0])
+                of_mesh = least.setdefault(thing.data, thick)
+                np.minimum(of_mesh, thick, out=of_mesh)
+            for mesh, thick in least.items():
+                thin = np.isfinite(thick)
+                count += int(thin.sum())
+                results.write_attribute(mesh, results.THICKNESS, "FLOAT", thick.astype(np.float32))
+                weights = meshes.vertices_of_faces(mesh, thin).astype(float)
+                for thing in things:
+                    if thing.data == mesh:
+                        results.write_group(thing, results.THIN, weights)
+        settings.thin = count
+        settings.least = min((float(thick.min()) for thick in least.values() if len(thick)), default=np.inf)
+        text = f"{count} faces are at most {distance:g} thick"
+        if count:
+            text += f", the thinnest {settings.least:.6g}"
+        self.report({"WARNING" if count else "INFO"}, text)
+
+
+class STARCONTOUR_OT_select(bpy.types.Operator):
+    """Go to edit mode and select the faces that were found"""
+
+    bl_idname = "starcontour.select"
+    bl_label = "Select Faces"
+    bl_options = {"REGISTER", "UNDO"}
+
+    what: bpy.props.EnumProperty(name="What", items=WHAT, default="COLLISION")
+
+    def execute(self, context):
+        things = wanted(context)
+        masks = {}
+        if things and any(thing.mode != "OBJECT" for thing in things):
+            bpy.ops.object.mode_set(mode="OBJECT")
+        for thing in things:
+            if self.what == "COLLISION":
+                counts = results.read_attribute(thing.data, results.FRAMES, np.int32)
+                mask = None if counts is None else counts > 0
+            else:
+                thick = results.read_attribute(thing.data, results.THICKNESS, np.float32)
+                mask = None if thick is None else np.isfinite(thick)
+            if mask is not None:
+                masks[thing] = mask
+        if not masks:
+            self.report({"ERROR"}, "nothing was searched for in the selected objects")
+            return {"CANCELLED"}
+        active = context.view_layer.objects.active
+        if active not in masks:
+            context.view_layer.objects.active = next(iter(masks))
+        context.tool_settings.mesh_select_mode = (False, False, True)
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="DESELECT")
+        for thing, mask in masks.items():
+            meshes.select_faces(thing.data, mask)
+        self.report({"INFO"}, f"{sum(int(mask.sum()) for mask in masks.values())} faces are selected")
+        return {"FINISHED"}
+
+
+class STARCONTOUR_OT_jump(bpy.types.Operator):
+    """Go to a frame, and show where the objects that were checked meet in it"""
+
+    bl_idname = "starcontour.jump"
+    bl_label = "Go to Frame"
+
+    frame: bpy.props.IntProperty(name="Frame")
+
+    def execute(self, context):
+        context.scene.frame_set(self.frame)
+        try:
+            show_now(context, context.scene.starcontour)
+        except checks.Refused as refusal:
+            self.report({"ERROR"}, str(refusal))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class STARCONTOUR_OT_clear(bpy.types.Operator):
+    """Take away what checks left: vertex groups and attributes of the selected objects, the list of frames
+    and the overlay"""
+
+    bl_idname = "starcontour.clear"
+    bl_label = "Clear"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        settings, things = context.scene.starcontour, wanted(context)
+        if any(thing.mode != "OBJECT" for thing in things):
+            bpy.ops.object.mode_set(mode="OBJECT")
+        for thing in things:
+            results.forget(thing)
+        results.hide_contacts()
+        for name in ("frames", "checked"):
+            getattr(settings, name).clear()
+        for name in ("pairs", "faces", "colliding_frames", "thin", "least", "state"):
+            settings.property_unset(name)
+        return {"FINISHED"}
+
+
+classes = (STARCONTOUR_OT_check, STARCONTOUR_OT_check_frames, STARCONTOUR_OT_thickness,
+           STARCONTOUR_OT_select, STARCONTOUR_OT_jump, STARCONTOUR_OT_clear)

@@ -1,0 +1,520 @@
+"""The add-on in Blender without a window (bpy), installed from its zip into a fresh profile: what it finds
+beside sc-query on the exported frames.
+
+    python test_addon.py ZIP SC_QUERY [NAME...]      names of tests, default: all
+
+The character (character.py) is made of boxes, subdivided, with bones and weights; in some frames its arms go
+through its body, and its legs through each other. Exit status 1 if anything differs.
+
+SPDX-License-Identifier: MIT
+"""
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+from pathlib import Path
+
+ZIP, SC_QUERY = (os.path.abspath(path) for path in sys.argv[1:3])
+FOLDER = tempfile.TemporaryDirectory(prefix="starcontour-blender-")
+os.environ["BLENDER_USER_RESOURCES"] = FOLDER.name  # a fresh profile; read when bpy is loaded
+os.environ.pop("STARCONTOUR_LIBRARY", None)         # the library in the zip is what is tested
+
+import bpy  # noqa: E402: reads the environment
+import bmesh  # noqa: E402: is there after bpy
+import numpy as np  # noqa: E402
+
+from character import LAST, make_character, new_object, only  # noqa: E402
+
+MODULE = "bl_ext.user_default.starcontour_checks"
+FRAMES = range(1, LAST + 1)
+
+
+def addon(name=""):
+    return sys.modules[MODULE + name]
+
+
+def settings():
+    return bpy.context.scene.starcontour
+
+
+# ------------------------------------------------------------------------------------------------
+# What Blender has
+
+
+def evaluated(thing):
+    """Positions, triangles and the face of each, as Blender has them in this frame."""
+    bpy.context.view_layer.update()
+    at = thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = at.to_mesh()
+    mesh.calc_loop_triangles()
+    answer = ([tuple(vertex.co) for vertex in mesh.vertices],
+              [tuple(triangle.vertices) for triangle in mesh.loop_triangles],
+              [triangle.polygon_index for triangle in mesh.loop_triangles])
+    at.to_mesh_clear()
+    return answer
+
+
+def world(thing, positions):
+    """World coordinates in doubles, as the add-on says it makes them."""
+    m = [list(row) for row in thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world]
+    return [tuple(((m[i][3] + x * m[i][0]) + y * m[i][1]) + z * m[i][2] for i in range(3))
+            for x, y, z in positions]
+
+
+# ------------------------------------------------------------------------------------------------
+# sc-query
+
+
+def export(name, positions, triangles):
+    """An OBJ file with decimals that stand for exactly these doubles."""
+    path = Path(FOLDER.name) / (name + ".obj")
+    lines = ["v %.17g %.17g %.17g" % tuple(one) for one in positions]
+    lines += ["f %d %d %d" % tuple(corner + 1 for corner in one) for one in triangles]
+    path.write_text("\n".join(lines) + "\n")
+    return str(path)
+
+
+def sc_query(*arguments):
+    run = subprocess.run([SC_QUERY, *arguments], capture_output=True, text=True)
+    if run.returncode not in (0, 1):
+        raise AssertionError(f"sc-query {' '.join(arguments)}: {run.stderr}")
+    return run.stdout
+
+
+def pairs_by_sc_query(*arguments):
+    """Pairs of triangles by file: a list of pairs for each path."""
+    out = str(Path(FOLDER.name) / "pairs.csv")
+    if os.path.exists(out):
+        os.remove(out)
+    sc_query(*arguments, "--only", "self-collisions", "--out", out)
+    found = {}
+    with open(out) as file:
+        for row in csv.DictReader(file):
+            found.setdefault(row["file"], []).append([int(row["triangle_a"]), int(row["triangle_b"])])
+    return found
+
+
+def pairs_by_addon(*things, **options):
+    """The same by the add-on's own modules, as Meetings with lists of pairs."""
+    operators, checks = addon(".operators"), addon(".checks")
+    with operators.Work(bpy.context, things) as work:
+        shots = work.read()
+        found = checks.Checker([thing.name for thing in things], **options).check(shots)
+    return [(one.a, one.b, one.pairs.tolist()) for one in found]
+
+
+def attribute(thing, name):
+    return [item.value for item in thing.data.attributes[name].data]
+
+
+def group_weights(thing, name):
+    number = thing.vertex_groups[name].index
+    weights = [0.0] * len(thing.data.vertices)
+    for vertex in thing.data.vertices:
+        for entry in vertex.groups:
+            if entry.group == number:
+                weights[vertex.index] = entry.weight
+    return weights
+
+
+# ------------------------------------------------------------------------------------------------
+
+
+class Addon(unittest.TestCase):
+    def setUp(self):
+        for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.armatures, bpy.data.materials):
+            for one in list(kind):
+                kind.remove(one)
+        bpy.context.scene.frame_set(1)
+        bpy.context.scene.frame_start, bpy.context.scene.frame_end = FRAMES[0], FRAMES[-1]
+        for name in settings().bl_rna.properties.keys():
+            if name not in ("rna_type", "name"):
+                settings().property_unset(name)
+
+    def refused(self, operator, text, **options):
+        """The operator says that it cannot do it, and why, without a traceback."""
+        with self.assertRaises(RuntimeError) as caught:
+            operator(**options)
+        self.assertIn(text, str(caught.exception))
+        self.assertNotIn("Traceback", str(caught.exception))
+
+    def test_library_of_the_zip(self):
+        package = addon(".starcontour")
+        self.assertTrue(package.__file__.startswith(FOLDER.name), package.__file__)
+        self.assertTrue(package.lib._name.startswith(FOLDER.name), package.lib._name)
+        self.assertTrue(hasattr(bpy.types, "STARCONTOUR_PT_panel"))
+
+    def test_character_frame_by_frame(self):
+        """Each frame: pairs, faces of the evaluated mesh, and faces and vertices of the own mesh."""
+        thing = make_character()
+        counts = []
+        for frame in FRAMES:
+            bpy.context.scene.frame_set(frame)
+            positions, triangles, polygons = evaluated(thing)
+            path = export("frame", positions, triangles)
+            wanted = pairs_by_sc_query(path).get(path, [])
+            counts.append(len(wanted))
+            found = pairs_by_addon(thing)
+            self.assertEqual(found, [(0, 0, wanted)] if wanted else [])
+
+            self.assertEqual(bpy.ops.starcontour.check(), {"FINISHED"})
+            faces = {polygons[triangle] for pair in wanted for triangle in pair}
+            self.assertEqual(settings().pairs, len(wanted))
+            self.assertEqual([(row.frame, row.pairs, row.faces) for row in settings().frames],
+                             [(frame, len(wanted), len(faces))])
+            # The first level of Catmull-Clark makes four faces of each quad, in their order.
+            own = {face // 4 for face in faces}
+            self.assertEqual(settings().faces, len(own))
+            self.assertEqual({face for face, value in
+                              enumerate(attribute(thing, "self_collision_frames")) if value}, own)
+            corners = {corner for face in own for corner in thing.data.polygons[face].vertices}
+            self.assertEqual([corner for corner, weight in enumerate(group_weights(thing, "self_collision"))
+                              if weight], sorted(corners))
+            overlay = bpy.data.objects["Starcontour contacts"]
+            self.assertEqual(len(overlay.data.vertices), 10 * len(wanted))
+        self.assertIn(0, counts)
+        self.assertGreater(max(counts), 100)
+        self.assertNotIn("starcontour_origin", thing.data.attributes)
+
+    def test_range_of_frames(self):
+        """The list of frames; weights as union and share; the frame of before; a jump."""
+        thing = make_character()
+        bpy.context.scene.frame_set(5)
+        wanted, paths, masks = [], [], []
+        for frame in FRAMES:
+            bpy.context.scene.frame_set(frame)
+            positions, triangles, polygons = evaluated(thing)
+            paths.append(export(f"frame{frame}", positions, triangles))
+        found = pairs_by_sc_query("--rest", paths[0], *paths)
+        for frame, path in zip(FRAMES, paths):
+            pairs = found.get(path, [])
+            wanted.append((frame, len(pairs), len({polygons[triangle] for pair in pairs for triangle in pair})))
+            own = {polygons[triangle] // 4 for pair in pairs for triangle in pair}
+            masks.append([number in own for number in range(len(thing.data.polygons))])
+        bpy.context.scene.frame_set(5)
+        self.assertEqual(bpy.ops.starcontour.check_frames(), {"FINISHED"})
+        self.assertEqual(bpy.context.scene.frame_current, 5)
+        self.assertEqual([(row.frame, row.pairs, row.faces) for row in settings().frames], wanted)
+        self.assertEqual(settings().colliding_frames, sum(row[1] > 0 for row in wanted))
+        self.assertEqual(attribute(thing, "self_collision_frames"), [sum(column) for column in zip(*masks)])
+        union = group_weights(thing, "self_collision")
+        self.assertEqual(set(union), {0.0, 1.0})
+
+        settings().weights = "SHARE"
+        bpy.ops.starcontour.check_frames()
+        shares = [0] * len(thing.data.vertices)
+        for mask in masks:
+            for corner in {corner for face, hit in enumerate(mask) if hit
+                           for corner in thing.data.polygons[face].vertices}:
+                shares[corner] += 1
+        for given, share, one in zip(group_weights(thing, "self_collision"), shares, union):
+            self.assertAlmostEqual(given, share / len(FRAMES), 6)
+            self.assertEqual(one, float(share > 0))
+
+        worst = max(range(len(wanted)), key=lambda k: wanted[k][1])
+        settings().active_frame = worst  # a click on a row
+        self.assertEqual(bpy.context.scene.frame_current, wanted[worst][0])
+        overlay = bpy.data.objects["Starcontour contacts"]
+        self.assertEqual(len(overlay.data.vertices), 10 * wanted[worst][1])
+        bpy.ops.starcontour.jump(frame=1)
+        self.assertEqual((bpy.context.scene.frame_current, len(overlay.data.vertices)), (1, 0))
+
+        settings().own_range, settings().first, settings().last, settings().step = True, 3, 20, 4
+        bpy.ops.starcontour.check_frames()
+        self.assertEqual([row.frame for row in settings().frames], [3, 7, 11, 15, 19])
+        settings().last = 2
+        self.refused(bpy.ops.starcontour.check_frames, "there is no frame from 3 to 2")
+
+    def test_contacts_lie_on_the_surface(self):
+        """The overlay is in world coordinates, where the two triangles of each pair are."""
+        thing = make_character()
+        bpy.context.scene.frame_set(12)
+        settings().overlay_radius = 1e-4
+        bpy.ops.starcontour.check()
+        positions, triangles, _ = evaluated(thing)
+        at = np.array(world(thing, positions))
+        corners = np.array([tuple(vertex.co) for vertex in
+                            bpy.data.objects["Starcontour contacts"].data.vertices]).reshape(-1, 10, 3)
+        ends = np.stack([corners[:, 1:5].mean(1), corners[:, 5:9].mean(1)], 1)
+        pairs = np.array(pairs_by_addon(thing)[0][2])
+        for side in (0, 1):
+            a, b, c = (at[np.array(triangles)[pairs[:, side], k]][:, None] for k in range(3))
+            normal = np.cross(b - a, c - a)
+            normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+            self.assertLess(np.abs(((ends - a) * normal).sum(-1)).max(), 1e-5)
+            low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+            self.assertTrue(((ends > low - 1e-5) & (ends < high + 1e-5)).all())
+
+    def test_polygons(self):
+        """A concave face of eight corners, and one through it."""
+        star = [(math.cos(k * math.pi / 4) * (2 if k % 2 else 1), math.sin(k * math.pi / 4) * (2 if k % 2 else 1),
+                 0.01 * k) for k in range(8)]
+        thing = new_object("Polygons", star + [(0, 0, -1), (1, 1, -1), (1, 1, 1), (0, 0, 1)] +
+                           [(5, 0, 0), (6, 0, 0), (6, 1, 0), (5, 1, 0)], [range(8), range(8, 12), range(12, 16)])
+        positions, triangles, polygons = evaluated(thing)
+        path = export("polygons", positions, triangles)
+        wanted = pairs_by_sc_query(path)[path]
+        self.assertEqual(pairs_by_addon(thing), [(0, 0, wanted)])
+        self.assertEqual(polygons.count(0), 6)
+        bpy.ops.starcontour.check()
+        self.assertEqual((settings().pairs, settings().faces), (len(wanted), 2))
+        self.assertEqual(attribute(thing, "self_collision_frames"), [1, 1, 0])
+        self.assertEqual(bpy.ops.starcontour.select(), {"FINISHED"})
+        self.assertEqual(thing.mode, "EDIT")
+        edited = bmesh.from_edit_mesh(thing.data)
+        for edge in edited.edges:
+            self.assertEqual(edge.select, any(face.index < 2 for face in edge.link_faces))
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual([face.select for face in thing.data.polygons], [True, True, False])
+        self.assertEqual([vertex.select for vertex in thing.data.vertices], [True] * 12 + [False] * 4)
+
+    def test_coplanar_and_touching_faces(self):
+        """What overlaps in a plane, or touches in a point, collides, but does not cross."""
+        quad = [(0, 0), (2, 0), (2, 2), (0, 2)]
+        thing = new_object("Flat", [(x, y, 0) for x, y in quad] + [(x + 1, y + 1, 0) for x, y in quad] +
+                           [(0, 0, 0.5), (-1, 0, 0.5), (0, 1, 0)] + [(9, 9, 9), (9, 8, 9), (8, 9, 9)],
+                           [range(4), range(4, 8), range(8, 11), range(11, 14)])
+        positions, triangles, _ = evaluated(thing)
+        path = export("flat", positions, triangles)
+        self.assertEqual(pairs_by_addon(thing), [(0, 0, pairs_by_sc_query(path)[path])])
+        bpy.ops.starcontour.check()
+        self.assertEqual(attribute(thing, "self_collision_frames"), [1, 1, 1, 0])
+        settings().contact = "PROPER"
+        bpy.ops.starcontour.check()
+        self.assertEqual((settings().pairs, settings().faces), (0, 0))
+        self.assertEqual(set(group_weights(thing, "self_collision")), {0.0})
+
+    def test_seams(self):
+        """Two quads with vertices of their own along a common side: joined, or touching."""
+        thing = new_object("Seam", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (1, 0, 0), (2, 0, 1), (2, 1, 1),
+                                    (1, 1, 0)], [range(4), range(4, 8)])
+        bpy.ops.starcontour.check()
+        self.assertEqual(settings().pairs, 0)
+        settings().weld = False
+        bpy.ops.starcontour.check()
+        positions, triangles, _ = evaluated(thing)
+        path = export("seam", positions, triangles)
+        self.assertEqual(settings().pairs, len(pairs_by_sc_query("--weld", "none", path)[path]))
+        self.assertEqual(settings().faces, 2)
+
+    def test_several_objects(self):
+        """Two objects that are turned and scaled and one apart, and one without faces: pairs with each
+        other in world coordinates, with themselves in local ones."""
+        ball = make_character(levels=0)
+        bpy.context.scene.frame_set(12)
+        other = new_object("Plane", [(-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0), (0, 0, 1), (1, 0, -1),
+                                     (0, 1, -1)], [range(4), range(4, 7)])
+        other.location, other.rotation_euler, other.scale = (3.1, -2.2, 0.7), (0.3, 0.2, 0.1), (1, 2, 3)
+        away = new_object("Away", [(50, 0, 0), (51, 0, 0), (50, 1, 0)], [range(3)])
+        points = new_object("Points", [(0, 0, 0)], [])
+        things = [points, ball, other, away]
+        only(*things)
+        bpy.context.view_layer.update()
+        joined, faces, firsts, local = [], [], [], []
+        for thing in things:
+            positions, triangles, _ = evaluated(thing)
+            firsts.append(len(faces))
+            local.append((positions, triangles))
+            faces += [tuple(corner + len(joined) for corner in triangle) for triangle in triangles]
+            joined += world(thing, positions)
+        path = export("joined", joined, faces)
+        wanted = []
+        for number, (positions, triangles) in enumerate(local):
+            if triangles:
+                own = export("own", positions, triangles)
+                wanted += [(number, number, pairs_by_sc_query(own).get(own, []))]
+        ends = firsts[1:] + [len(faces)]
+
+        def owner(triangle):
+            return next(k for k, end in enumerate(ends) if triangle < end)
+
+        between = {}
+        for a, b in pairs_by_sc_query(path)[path]:
+            if owner(a) != owner(b):
+                between.setdefault((owner(a), owner(b)), []).append([a - firsts[owner(a)], b - firsts[owner(b)]])
+        wanted = sorted([one for one in wanted if one[2]] + [(*key, pairs) for key, pairs in between.items()])
+        self.assertEqual([one[:2] for one in wanted], [(1, 1), (1, 2), (2, 2)])
+        self.assertEqual(pairs_by_addon(*things), wanted)
+        bpy.ops.starcontour.check()
+        self.assertEqual(settings().pairs, sum(len(one[2]) for one in wanted))
+        self.assertEqual(attribute(other, "self_collision_frames"), [1, 1])
+        self.assertEqual(attribute(away, "self_collision_frames"), [0])
+        self.assertEqual(len(bpy.data.objects["Starcontour contacts"].data.vertices), 10 * settings().pairs)
+        settings().itself = False
+        bpy.ops.starcontour.check()
+        self.assertEqual(settings().pairs, len(wanted[1][2]))
+        settings().itself, settings().between = True, False
+        bpy.ops.starcontour.check()
+        self.assertEqual(settings().pairs, len(wanted[0][2]) + len(wanted[2][2]))
+
+    def test_objects_that_share_a_mesh(self):
+        """Linked duplicates: a face collides if it does in one of them."""
+        first = new_object("First", [(0, 0, 0), (2, 0, 0), (0, 2, 0), (5, 5, 5), (6, 5, 5), (5, 6, 5)],
+                           [range(3), range(3, 6)])
+        second = bpy.data.objects.new("Second", first.data)
+        bpy.context.collection.objects.link(second)
+        second.rotation_euler, second.location = (math.pi / 2, 0, 0), (0.2, 0.5, -0.5)
+        only(first, second)
+        bpy.ops.starcontour.check()
+        self.assertEqual((settings().pairs, settings().faces), (1, 1))
+        self.assertEqual(attribute(first, "self_collision_frames"), [1, 0])
+
+    def test_thickness(self):
+        """The least distances of faces, of the posed character and of one that was moved and scaled."""
+        thing = make_character()
+        bpy.context.scene.frame_set(10)
+        for distance in (0.1, 0.22, 0.33):
+            positions, triangles, polygons = evaluated(thing)
+            at = world(thing, positions)
+            path = export("thick", at, triangles)
+            answer = json.loads(sc_query("--near", repr(float(np.float32(distance))), "--thickness", "--json", path))
+            by_triangle = answer["thickness"]["faces"]
+            own = [math.inf] * len(thing.data.polygons)
+            for polygon, value in zip(polygons, by_triangle):
+                if value is not None:
+                    own[polygon // 4] = min(own[polygon // 4], value)
+            settings().distance = distance
+            self.assertEqual(bpy.ops.starcontour.thickness(), {"FINISHED"})
+            found = attribute(thing, "thickness")
+            self.assertEqual([math.isinf(value) for value in found], [math.isinf(value) for value in own])
+            for value, right in zip(found, own):
+                if not math.isinf(right):
+                    self.assertAlmostEqual(value, right, delta=2e-7 * distance)
+            thin = {face for face, value in enumerate(own) if not math.isinf(value)}
+            self.assertEqual(settings().thin, len(thin))
+            corners = {corner for face in thin for corner in thing.data.polygons[face].vertices}
+            self.assertEqual([vertex for vertex, weight in enumerate(group_weights(thing, "thin")) if weight],
+                             sorted(corners))
+        self.assertGreater(len(thin), 50)
+        self.assertLess(len(thin), len(own))
+        bpy.ops.starcontour.select(what="THIN")
+        bpy.ops.object.mode_set(mode="OBJECT")
+        self.assertEqual({face.index for face in thing.data.polygons if face.select}, thin)
+        settings().distance = 0
+        self.refused(bpy.ops.starcontour.thickness, "must be more than 0")
+
+    def test_meshes_that_cannot_be_checked(self):
+        thing = new_object("Broken", [(0, 0, 0), (1, 0, 0), (0, 1, math.nan), (0, 0, 1)], [range(3), (0, 1, 3)])
+        self.refused(bpy.ops.starcontour.check, "Broken: vertex 2 is NaN or infinite")
+        self.refused(bpy.ops.starcontour.check_frames, "frame 1: Broken: vertex 2 is NaN or infinite")
+        self.refused(bpy.ops.starcontour.thickness, "Broken: vertex 2 is NaN or infinite")
+        self.assertNotIn("starcontour_origin", thing.data.attributes)
+        new_object("Points", [(0, 0, 0), (1, 0, 0)], [])
+        self.assertEqual(bpy.ops.starcontour.check(), {"FINISHED"})
+        self.assertEqual(bpy.ops.starcontour.thickness(), {"FINISHED"})
+        self.assertEqual((settings().pairs, settings().thin), (0, 0))
+        new_object("Empty", [], [])
+        self.assertEqual(bpy.ops.starcontour.check(), {"FINISHED"})
+        flat = new_object("Flat", [(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 0, 0)], [range(3), (0, 1, 3)])
+        self.assertEqual(bpy.ops.starcontour.check(), {"FINISHED"})
+        positions, triangles, _ = evaluated(flat)
+        path = export("degenerate", positions, triangles)
+        self.assertEqual(settings().pairs, len(pairs_by_sc_query(path).get(path, [])))
+        for other in bpy.context.view_layer.objects:
+            other.select_set(False)
+        bpy.context.view_layer.objects.active = None
+        self.refused(bpy.ops.starcontour.check, "no mesh object is selected")
+        only(thing)
+        self.refused(bpy.ops.starcontour.select, "nothing was searched for")
+
+    def test_modifiers(self):
+        """Faces that a modifier makes are of the face that they come from; those of another mesh, or made
+        of the shape alone, are of none, and are counted nevertheless."""
+        box = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        thing = new_object("Box", box, faces)
+        array = thing.modifiers.new("Twice", "ARRAY")
+        array.use_relative_offset, array.use_constant_offset = False, True
+        array.constant_offset_displace = (0.5, 0.25, 0.125)
+        bpy.ops.starcontour.check()
+        positions, triangles, polygons = evaluated(thing)
+        path = export("box", positions, triangles)
+        wanted = pairs_by_sc_query(path)[path]
+        own = {polygons[triangle] % 6 for pair in wanted for triangle in pair}
+        self.assertEqual(settings().pairs, len(wanted))
+        self.assertEqual({face for face, value in enumerate(attribute(thing, "self_collision_frames")) if value}, own)
+
+        thing.modifiers.clear()
+        remesh = thing.modifiers.new("Other faces", "REMESH")
+        remesh.mode, remesh.octree_depth = "BLOCKS", 3
+        array = thing.modifiers.new("Twice", "ARRAY")
+        array.use_relative_offset, array.use_constant_offset = False, True
+        array.constant_offset_displace = (0.51, 0.26, 0.127)
+        bpy.ops.starcontour.check()
+        positions, triangles, _ = evaluated(thing)
+        path = export("remeshed", positions, triangles)
+        self.assertEqual(settings().pairs, len(pairs_by_sc_query(path)[path]))
+        self.assertEqual(attribute(thing, "self_collision_frames"), [0] * 6)
+
+    def test_faces_that_bend(self):
+        """A quad that Blender cuts along another diagonal when a shape key bends it: triangles change
+        from frame to frame, and each frame is checked by its own."""
+        thing = new_object("Bent", [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0.5, 0.7, -1), (0.7, 0.5, -1),
+                                    (0.6, 0.6, 1)], [range(4), range(4, 7)])
+        thing.shape_key_add(name="Basis")
+        key = thing.shape_key_add(name="Dent")
+        key.data[1].co = (0.5, 1.4, 0)
+        for frame, value in ((1, 0.0), (24, 1.0)):
+            key.value = value
+            key.keyframe_insert("value", frame=frame)
+        wanted, kinds = [], set()
+        for frame in FRAMES:
+            bpy.context.scene.frame_set(frame)
+            positions, triangles, _ = evaluated(thing)
+            kinds.add(tuple(triangles))
+            path = export("bent", positions, triangles)
+            wanted.append(len(pairs_by_sc_query(path).get(path, [])))
+        self.assertEqual(len(kinds), 2)
+        self.assertGreater(len(set(wanted)), 1)
+        bpy.ops.starcontour.check_frames()
+        self.assertEqual([row.pairs for row in settings().frames], wanted)
+
+    def test_edit_mode(self):
+        """A check from edit mode sees what was edited, and goes back."""
+        thing = new_object("Edited", [(0, 0, 0), (4, 0, 0), (0, 4, 0), (1, 1, 1), (2, 1, 1), (1, 2, 1)],
+                           [range(3), range(3, 6)])
+        bpy.ops.object.mode_set(mode="EDIT")
+        mesh = bmesh.from_edit_mesh(thing.data)
+        mesh.verts.ensure_lookup_table()
+        mesh.verts[3].co.z = -1
+        bmesh.update_edit_mesh(thing.data)
+        bpy.ops.starcontour.check()
+        self.assertEqual((thing.mode, settings().pairs), ("EDIT", 1))
+        bpy.ops.starcontour.select()
+        self.assertEqual(thing.mode, "EDIT")
+        bpy.ops.starcontour.clear()
+        self.assertEqual(settings().state, "NONE")
+        self.assertNotIn("self_collision_frames", thing.data.attributes)
+        self.assertNotIn("self_collision", thing.vertex_groups)
+        self.assertNotIn("Starcontour contacts", bpy.data.objects)
+
+    def test_zz_disable_and_enable(self):
+        """After all others, as it takes the add-on away."""
+        import addon_utils
+        addon_utils.disable(MODULE)
+        self.assertFalse(hasattr(bpy.types.Scene, "starcontour"))
+        self.assertFalse(hasattr(bpy.types, "STARCONTOUR_PT_panel"))
+        self.assertIsNotNone(addon_utils.enable(MODULE))
+        self.assertTrue(hasattr(bpy.types, "STARCONTOUR_PT_panel"))
+        new_object("One", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [range(3)])
+        self.assertEqual(bpy.ops.starcontour.check(), {"FINISHED"})
+
+
+def main():
+    with zipfile.ZipFile(ZIP) as archive:
+        assert archive.testzip() is None
+    answer = bpy.ops.extensions.package_install_files(filepath=ZIP, repo="user_default", enable_on_install=True)
+    if answer != {"FINISHED"} or MODULE not in sys.modules:
+        sys.exit(f"{ZIP} could not be installed")
+    names = [f"Addon.{name}" for name in sys.argv[3:]] or None
+    unittest.main(argv=sys.argv[:1], defaultTest=names)
+
+
+if __name__ == "__main__":
+    main()
