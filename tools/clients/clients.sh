@@ -28,6 +28,19 @@ absolute() {
     esac
 }
 
+# Runs a test: name, command.
+run() {
+    name=$1
+    shift
+    if "$@"; then
+        echo "passed: $name"
+        passed=$((passed + 1))
+    else
+        echo "failed: $name"
+        failed=$((failed + 1))
+    fi
+}
+
 # Runs a test of a client in an environment that has a package: name, package, script, arguments.
 client() {
     bench/peers/venv.sh "$build/clients/$1" "$2" "$build/clients/$1.skipped"
@@ -40,14 +53,8 @@ client() {
         ;;
     *) exit 1 ;;
     esac
-    if STARCONTOUR_LIBRARY=$(absolute "$library") PYTHONPATH="$PWD/tools/python" \
-        "$build/clients/$1/bin/python" "$3" ${4+"$4" "$5"}; then
-        echo "passed: $1"
-        passed=$((passed + 1))
-    else
-        echo "failed: $1"
-        failed=$((failed + 1))
-    fi
+    run "$1" env STARCONTOUR_LIBRARY="$(absolute "$library")" PYTHONPATH="$PWD/tools/python" \
+        "$build/clients/$1/bin/python" "$3" ${4+"$4" "$5"}
 }
 
 client ipctk ipctk tools/clients/ipctk/test_client.py
@@ -55,6 +62,21 @@ if [ -x "${SC_QUERY-}" ]; then
     export VERSIONS=tools/clients/blender/requirements.txt
     client blender bpy tools/clients/blender/test_addon.py "$ADDON" "$SC_QUERY"
     unset VERSIONS
+    # The Blender that is installed, if there is one, in a fresh profile.
+    if ! command -v blender >/dev/null 2>&1; then
+        echo "skipped: the installed Blender: there is none"
+        skipped=$((skipped + 1))
+    elif ! blender -b --python-exit-code 1 --python-expr 'import numpy' >/dev/null 2>&1; then
+        echo "skipped: the installed Blender: it has no numpy (Debian: python3-numpy)"
+        skipped=$((skipped + 1))
+    else
+        profile=$(absolute "$build/clients/blender_profile")
+        rm -rf "$profile"
+        mkdir -p "$profile"
+        run "the installed Blender" env BLENDER_USER_CONFIG="$profile" BLENDER_USER_SCRIPTS="$profile/scripts" \
+            BLENDER_USER_RESOURCES="$profile" blender -b --python-exit-code 1 \
+            --python tools/clients/blender/test_addon.py -- "$ADDON" "$SC_QUERY"
+    fi
 else
     echo "skipped: blender: there is no sc-query to compare with ('make deps')"
     skipped=$((skipped + 1))

@@ -2,6 +2,10 @@
 beside sc-query on the exported frames.
 
     python test_addon.py ZIP SC_QUERY [NAME...]      names of tests, default: all
+    blender -b --python-exit-code 1 --python test_addon.py -- ZIP SC_QUERY [NAME...]
+
+By the second line in the Blender that is installed, with BLENDER_USER_CONFIG, BLENDER_USER_SCRIPTS and
+BLENDER_USER_RESOURCES set to an empty folder. Before 4.2 the zip is installed as an add-on of the old kind.
 
 The character (character.py) is made of boxes, subdivided, with bones and weights; in some frames its arms go
 through its body, and its legs through each other. Exit status 1 if anything differs.
@@ -20,18 +24,23 @@ import unittest
 import zipfile
 from pathlib import Path
 
-ZIP, SC_QUERY = (os.path.abspath(path) for path in sys.argv[1:3])
+ARGUMENTS = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else sys.argv[1:]
+ZIP, SC_QUERY = (os.path.abspath(path) for path in ARGUMENTS[:2])
 FOLDER = tempfile.TemporaryDirectory(prefix="starcontour-blender-")
-os.environ["BLENDER_USER_RESOURCES"] = FOLDER.name  # a fresh profile; read when bpy is loaded
-os.environ.pop("STARCONTOUR_LIBRARY", None)         # the library in the zip is what is tested
+if "bpy" not in sys.modules:
+    os.environ["BLENDER_USER_RESOURCES"] = FOLDER.name  # a fresh profile; read when bpy is loaded
+os.environ.pop("STARCONTOUR_LIBRARY", None)  # the library in the zip is what is tested
 
 import bpy  # noqa: E402: reads the environment
 import bmesh  # noqa: E402: is there after bpy
 import numpy as np  # noqa: E402
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from character import LAST, make_character, new_object, only  # noqa: E402
+sys.path = [path for path in sys.path if path != sys.path[0]]  # the add-on is there, too, unpacked
 
-MODULE = "bl_ext.user_default.starcontour_checks"
+EXTENSIONS = bpy.app.version >= (4, 2, 0)
+MODULE = ("bl_ext.user_default." if EXTENSIONS else "") + "starcontour_checks"
 FRAMES = range(1, LAST + 1)
 
 
@@ -146,8 +155,9 @@ class Addon(unittest.TestCase):
 
     def test_library_of_the_zip(self):
         package = addon(".starcontour")
-        self.assertTrue(package.__file__.startswith(FOLDER.name), package.__file__)
-        self.assertTrue(package.lib._name.startswith(FOLDER.name), package.lib._name)
+        profile = bpy.utils.user_resource("EXTENSIONS" if EXTENSIONS else "SCRIPTS")
+        for path in (package.__file__, package.lib._name):
+            self.assertTrue(path.startswith(profile), f"{path} is not in {profile}")
         self.assertTrue(hasattr(bpy.types, "STARCONTOUR_PT_panel"))
 
     def test_character_frame_by_frame(self):
@@ -509,10 +519,14 @@ class Addon(unittest.TestCase):
 def main():
     with zipfile.ZipFile(ZIP) as archive:
         assert archive.testzip() is None
-    answer = bpy.ops.extensions.package_install_files(filepath=ZIP, repo="user_default", enable_on_install=True)
-    if answer != {"FINISHED"} or MODULE not in sys.modules:
+    if EXTENSIONS:
+        bpy.ops.extensions.package_install_files(filepath=ZIP, repo="user_default", enable_on_install=True)
+    else:
+        bpy.ops.preferences.addon_install(filepath=ZIP)
+        bpy.ops.preferences.addon_enable(module=MODULE)
+    if MODULE not in sys.modules:
         sys.exit(f"{ZIP} could not be installed")
-    names = [f"Addon.{name}" for name in sys.argv[3:]] or None
+    names = [f"Addon.{name}" for name in ARGUMENTS[2:]] or None
     unittest.main(argv=sys.argv[:1], defaultTest=names)
 
 

@@ -12,17 +12,22 @@ import numpy as np
 
 from .checks import starcontour
 
-SOURCES = 4096  # searched from at a time, which limits memory
+ENTRIES = 1 << 22  # of the tables that paths are sought with
+RINGS_MAX = 8      # more of them take longer to find than they save
 
 
 def _welds(positions):
     """The first vertex at the same position as each."""
-    _, first, which = np.unique(positions + 0.0, axis=0, return_index=True, return_inverse=True)
-    return first[which.ravel()].astype(np.int64)
+    order = np.lexsort((np.arange(len(positions)), *positions.T))
+    at = positions[order]
+    starts = np.concatenate([[True], (at[1:] != at[:-1]).any(1)])
+    welds = np.empty(len(positions), np.int64)
+    welds[order] = order[starts][np.cumsum(starts) - 1]
+    return welds
 
 
 class _Lists:
-    """For each of count keys the values that it has: starts and values."""
+    """For each of count keys the values that it has."""
 
     def __init__(self, keys, values, count):
         order = np.argsort(keys, kind="stable")
@@ -31,10 +36,11 @@ class _Lists:
 
     def expand(self, keys):
         """All values of each key; and for each value which of the keys it is of."""
-        counts = self.starts[keys + 1] - self.starts[keys]
+        first = self.starts[keys]
+        counts = self.starts[keys + 1] - first
         which = np.repeat(np.arange(len(keys)), counts)
-        offsets = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
-        return self.values[self.starts[keys][which] + offsets], which
+        offsets = np.arange(len(which)) - (np.cumsum(counts) - counts)[which]
+        return self.values[first[which] + offsets], which
 
 
 class _Paths:
@@ -42,51 +48,60 @@ class _Paths:
 
     def __init__(self, positions, triangles, limit):
         count = len(positions)
-        sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-        sides = np.concatenate([sides, sides[:, ::-1]])
-        sides = np.unique(sides[sides[:, 0] != sides[:, 1]], axis=0)
-        way = positions[sides[:, 0]] - positions[sides[:, 1]]
+        a = triangles.ravel()
+        b = triangles[:, [1, 2, 0]].ravel()
+        sides = np.unique(np.concatenate([a * count + b, b * count + a]))
+        a, b = sides // count, sides % count
+        way = positions[a] - positions[b]
         lengths = np.sqrt(way[:, 0] * way[:, 0] + way[:, 1] * way[:, 1] + way[:, 2] * way[:, 2])
+        short = (lengths < limit) & (a != b)
         self.count, self.limit = count, limit
-        short = lengths < limit
-        self.next = _Lists(sides[short, 0], np.arange(short.sum()), count)
-        self.ends, self.lengths = sides[short, 1], lengths[short]
+        self.longest = lengths.max(initial=0.0)
+        self.edges = _Lists(a[short], np.arange(short.sum()), count)
+        self.ends, self.lengths = b[short], lengths[short]
 
-    def reached(self, sources):
-        """Keys source * count + vertex, sorted, of all that paths from some sources reach: rounds in
-        which each path that became shorter is led on by an edge (Bellman 1958)."""
-        keys = sources * self.count + sources
-        lengths = np.zeros(len(keys))
-        order = np.argsort(keys)
-        keys, lengths, fresh = keys[order], lengths[order], np.ones(len(keys), bool)
-        while fresh.any():
-            edges, which = self.next.expand(keys[fresh] % self.count)
-            longer = lengths[fresh][which] + self.lengths[edges]
-            new = (keys[fresh] // self.count)[which] * self.count + self.ends[edges]
-            near = longer < self.limit
-            all_keys = np.concatenate([keys, new[near]])
-            all_lengths = np.concatenate([lengths, longer[near]])
-            old = np.arange(len(all_keys)) < len(keys)
-            order = np.lexsort((~old, all_lengths, all_keys))  # of one key the shortest, old ones first
-            order = order[np.concatenate([[True], np.diff(all_keys[order]) > 0])]
-            keys, lengths, fresh = all_keys[order], all_lengths[order], ~old[order]
-        return keys
+    def rings(self):
+        """So many rings that what is in them is joined: one edge less than that is a path that is short
+        enough, whichever edges it has."""
+        if not self.longest > 0:
+            return 1
+        return int(min(np.ceil(self.limit / (self.longest * (1 + 1e-9))), RINGS_MAX))
+
+    def reach(self, sources, table, owners):
+        """Writes into table[k * count + v] the shortest path from sources[k] to each vertex v that one
+        reaches, and returns which entries were written. All paths go on by an edge at a time, where they
+        became shorter (Bellman 1958). Entries of the table are infinite before."""
+        grown = np.arange(len(sources)) * self.count + sources
+        table[grown] = 0
+        written = [grown]
+        while len(grown):
+            edges, which = self.edges.expand(grown % self.count)
+            longer = table[grown][which] + self.lengths[edges]
+            to = (grown - grown % self.count)[which] + self.ends[edges]
+            better = (longer < self.limit) & (longer < table[to])
+            to, longer = to[better], longer[better]
+            np.minimum.at(table, to, longer)
+            owners[to] = np.arange(len(to))  # of those to one vertex, one goes on
+            grown = to[owners[to] == np.arange(len(to))]
+            written.append(grown)
+        return np.concatenate(written)
 
     def join(self, firsts, seconds):
         """Whether a path joins one of the vertices firsts[i] to one of seconds[i]: arrays of shapes
         (n, j) and (n, k)."""
         joined = np.zeros(len(firsts), bool)
         sources = np.unique(firsts)
-        for part in np.array_split(sources, max(1, -(-len(sources) // SOURCES))):
-            if not len(part):
-                continue
-            keys = self.reached(part)
-            for j in range(firsts.shape[1]):
-                some = np.flatnonzero((firsts[:, j] >= part[0]) & (firsts[:, j] <= part[-1]) & ~joined)
-                for k in range(seconds.shape[1]):
-                    wanted = firsts[some, j] * self.count + seconds[some, k]
-                    at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
-                    joined[some] |= keys[at] == wanted
+        at_once = max(1, min(len(sources), ENTRIES // self.count))
+        table = np.full(at_once * self.count, np.inf)
+        owners = np.zeros(len(table), np.int64)
+        pairs = _Lists(firsts.ravel(), np.repeat(np.arange(len(firsts)), firsts.shape[1]), self.count)
+        for begin in range(0, len(sources), at_once):
+            some = sources[begin:begin + at_once]
+            written = self.reach(some, table, owners)
+            found, which = pairs.expand(some)
+            for k in range(seconds.shape[1]):
+                joined[found[table[which * self.count + seconds[found, k]] < np.inf]] = True
+            table[written] = np.inf
         return joined
 
 
@@ -94,30 +109,28 @@ def thickness(positions, triangles, distance, threads=1):
     """For each triangle its thickness, inf: more than the distance. positions: float64 of shape (n, 3);
     vertices at equal positions are one. Raises starcontour.Error."""
     thick = np.full(len(triangles), np.inf)
-    model = starcontour.Model(positions, triangles, boxes=True)
-    near = model.near(positions, distance, threads=threads)
-    welded = _welds(positions)[triangles.astype(np.int64)]  # corners, as first vertices at their places
-    count = len(positions)
+    model = starcontour.Model(positions, triangles)
+    count, welds = len(positions), _welds(positions)
+    welded = welds[triangles.astype(np.int64)]
     paths = _Paths(positions, welded, 2 * distance)
+    near = model.near(positions, distance, ignore_rings=paths.rings(), threads=threads)
     at_vertex = _Lists(welded.ravel(), np.repeat(np.arange(len(welded)), 3), count)
-    welds = _welds(positions)
 
     # A vertex and a face.
-    firsts, faces = welds[near.vertex_faces[:, 0].astype(np.int64)], near.vertex_faces[:, 1].astype(np.int64)
-    counts = ~paths.join(firsts[:, None], welded[faces])
+    vertices, faces = welds[near.vertex_faces[:, 0].astype(np.int64)], near.vertex_faces[:, 1].astype(np.int64)
+    counts = ~paths.join(vertices[:, None], welded[faces])
     far = model.stencils(positions, near.vertex_faces[counts], kind="vertex_face")["distance"]
     np.minimum.at(thick, faces[counts], far)
-    around, which = at_vertex.expand(firsts[counts])
+    around, which = at_vertex.expand(vertices[counts])
     np.minimum.at(thick, around, far[which])
 
     # Two edges: each counts for the triangles that have it as a side.
     edges = near.edge_edges.astype(np.int64)
-    corners = np.stack([welded[edges // 3, edges % 3], welded[edges // 3, (edges + 1) % 3]], -1)
-    counts = ~paths.join(corners[:, 0], corners[:, 1])
+    ends = np.stack([welded[edges // 3, edges % 3], welded[edges // 3, (edges + 1) % 3]], -1)
+    counts = ~paths.join(ends[:, 0], ends[:, 1])
     far = model.stencils(positions, near.edge_edges[counts], kind="edge_edge")["distance"]
-    for side in (0, 1):
-        ends = corners[counts, side]
-        around, which = at_vertex.expand(ends[:, 0])
-        has = (welded[around] == ends[which, 1:]).any(1)
+    for side in ends[counts].transpose(1, 0, 2):
+        around, which = at_vertex.expand(side[:, 0])
+        has = (welded[around] == side[which, 1:]).any(1)
         np.minimum.at(thick, around[has], far[which[has]])
     return thick
