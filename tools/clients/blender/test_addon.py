@@ -156,8 +156,8 @@ class Addon(unittest.TestCase):
     def test_library_of_the_zip(self):
         package = addon(".starcontour")
         profile = bpy.utils.user_resource("EXTENSIONS" if EXTENSIONS else "SCRIPTS")
-        for path in (package.__file__, package.lib._name):
-            self.assertTrue(path.startswith(profile), f"{path} is not in {profile}")
+        self.assertTrue(package.__file__.startswith(profile), f"{package.__file__} is not in {profile}")
+        self.assertIn("starcontour_checks-", package.lib._name)  # a copy of the one beside it
         self.assertTrue(hasattr(bpy.types, "STARCONTOUR_PT_panel"))
 
     def test_character_frame_by_frame(self):
@@ -515,15 +515,34 @@ class Addon(unittest.TestCase):
         new_object("One", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [range(3)])
         self.assertEqual(bpy.ops.starcontour.check(), {"FINISHED"})
 
+    def test_zz_install_again(self):
+        """While its library is loaded and in use."""
+        thing = make_character()
+        bpy.context.scene.frame_set(12)
+        bpy.ops.starcontour.check()
+        pairs, before = settings().pairs, addon(".checks")
+        checker = before.Checker(["kept"])
+        with addon(".operators").Work(bpy.context, [thing]) as work:
+            shots = work.read()
+        install()
+        self.assertIsNot(addon(".checks"), before)
+        bpy.ops.starcontour.check()
+        self.assertEqual(settings().pairs, pairs)
+        self.assertEqual([len(one.pairs) for one in checker.check(shots)], [pairs])
 
-def main():
-    with zipfile.ZipFile(ZIP) as archive:
-        assert archive.testzip() is None
+
+def install():
     if EXTENSIONS:
         bpy.ops.extensions.package_install_files(filepath=ZIP, repo="user_default", enable_on_install=True)
     else:
         bpy.ops.preferences.addon_install(filepath=ZIP)
         bpy.ops.preferences.addon_enable(module=MODULE)
+
+
+def main():
+    with zipfile.ZipFile(ZIP) as archive:
+        assert archive.testzip() is None
+    install()
     if MODULE not in sys.modules:
         sys.exit(f"{ZIP} could not be installed")
     names = [f"Addon.{name}" for name in ARGUMENTS[2:]] or None

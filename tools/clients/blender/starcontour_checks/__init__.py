@@ -21,7 +21,14 @@ bl_info = {
     "category": "Mesh",
 }
 
-from . import panel  # noqa: E402: Blender reads bl_info without running the rest
+import sys  # noqa: E402: Blender reads bl_info without running the rest
+
+# Installed again, the add-on is loaded again, and so have to be its parts.
+for name in [name for name in sys.modules if name.startswith(__name__ + ".")]:
+    del sys.modules[name]
+    globals().pop(name[len(__name__) + 1:], None)
+
+from . import panel  # noqa: E402
 
 
 def register():

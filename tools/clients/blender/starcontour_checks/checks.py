@@ -4,16 +4,39 @@ SPDX-License-Identifier: MIT
 """
 
 import os
+import shutil
+import tempfile
 from collections import namedtuple
+from pathlib import Path
 
 import numpy as np
 
 from . import meshes
 
-try:
-    from . import starcontour  # the copy that `make blender-addon` packs
-except ImportError:
-    import starcontour
+
+def _package():
+    """The copy of the Python package that `make blender-addon` packs, else the one that is installed.
+
+    The library is loaded from a copy that is deleted then: an add-on of the old kind that is installed
+    again is written over where it lies, and a library that is in use does not survive that."""
+    packed = sorted((Path(__file__).parent / "starcontour").glob("libstarcontour.*"))
+    if not packed:
+        import starcontour
+        return starcontour
+    name = "STARCONTOUR_LIBRARY"
+    before = os.environ.get(name)
+    with tempfile.TemporaryDirectory(prefix="starcontour_checks-", ignore_cleanup_errors=True) as folder:
+        os.environ[name] = shutil.copy(packed[0], folder)
+        try:
+            from . import starcontour
+        finally:
+            del os.environ[name]
+            if before is not None:
+                os.environ[name] = before
+    return starcontour
+
+
+starcontour = _package()
 
 THREADS_FROM = 20000  # triangles: with fewer, one thread is as fast
 
