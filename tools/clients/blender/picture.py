@@ -61,7 +61,7 @@ def main():
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location = (1.5, -4.4, 1.2)
     camera.rotation_euler = (Vector((0, 0, 0.13)) - camera.location).to_track_quat("-Z", "Y").to_euler()
-    camera.data.lens = 60
+    camera.data.lens = 75
     for thing in (sun, camera):
         scene.collection.objects.link(thing)
     scene.camera, scene.render.filepath = camera, PNG

@@ -9,9 +9,10 @@ from collections import namedtuple
 import bmesh
 import numpy as np
 
-# A face attribute that is there while a check runs: the number of each face, counted from 1, which
-# modifiers copy to the faces that they make of it. Faces of other meshes that they join get 0.
-ORIGIN = "starcontour_origin"
+# How the face attribute is called that is there while a check runs, with a number for each mesh: the
+# number of each face, counted from 1, which modifiers copy to the faces that they make of it. Faces of
+# other meshes that they join get 0.
+ORIGIN = "starcontour_origin_"
 
 Snapshot = namedtuple("Snapshot", "positions triangles polygons polygon_count matrix origins")
 Snapshot.__doc__ = """An object in a frame, as modifiers, armatures and shape keys leave it.
@@ -32,9 +33,9 @@ def _read(items, name, shape, dtype):
     return array
 
 
-def _origins(mesh, own):
-    """The own mesh's face of each face of the evaluated one."""
-    attribute = mesh.attributes.get(ORIGIN)
+def _origins(mesh, own, name):
+    """The own mesh's face of each face of the evaluated one, which has the attribute of that name."""
+    attribute = mesh.attributes.get(name)
     count = len(mesh.polygons)
     if attribute is not None and attribute.domain == "FACE" and len(attribute.data) == count:
         origins = _read(attribute.data, "value", count, np.int32) - 1
@@ -45,8 +46,9 @@ def _origins(mesh, own):
     return np.full(count, -1, np.int32)
 
 
-def snapshot(thing, depsgraph):
-    """A Snapshot of a mesh object. In object mode, between number_faces and forget_numbers."""
+def snapshot(thing, depsgraph, names):
+    """A Snapshot of a mesh object. In object mode, between number_faces, which gave names, and
+    forget_numbers."""
     evaluated = thing.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh()
     try:
@@ -58,26 +60,29 @@ def snapshot(thing, depsgraph):
             _read(mesh.loop_triangles, "polygon_index", count, np.int32),
             len(mesh.polygons),
             np.array(evaluated.matrix_world, np.float64),
-            _origins(mesh, thing.data))
+            _origins(mesh, thing.data, names[thing.data]))
     finally:
         evaluated.to_mesh_clear()
 
 
 def number_faces(things):
-    """Gives each face of the objects' own meshes its number as an attribute. Meshes that cannot be
-    edited, as they are linked from another file, stay as they are."""
-    for mesh in {thing.data for thing in things}:
-        if mesh.library is None and ORIGIN not in mesh.attributes:
-            attribute = mesh.attributes.new(ORIGIN, "INT", "FACE")
+    """Gives each face of the objects' own meshes its number as an attribute. Returns its name for each
+    mesh."""
+    names = {}
+    for mesh in (thing.data for thing in things):
+        if mesh not in names:
+            attribute = mesh.attributes.new(f"{ORIGIN}{len(names)}", "INT", "FACE")
+            names[mesh] = attribute.name
             attribute.data.foreach_set("value", np.arange(1, len(mesh.polygons) + 1, dtype=np.int32))
             mesh.update()
+    return names
 
 
-def forget_numbers(things):
+def forget_numbers(names):
     """Takes away what number_faces gave."""
-    for mesh in {thing.data for thing in things}:
-        attribute = mesh.attributes.get(ORIGIN)
-        if attribute is not None and mesh.library is None:
+    for mesh, name in names.items():
+        attribute = mesh.attributes.get(name)
+        if attribute is not None:
             mesh.attributes.remove(attribute)
             mesh.update()
 

@@ -37,12 +37,12 @@ class Work:
         if any(thing.mode != "OBJECT" for thing in self.things):
             self.mode = self.context.view_layer.objects.active.mode
             bpy.ops.object.mode_set(mode="OBJECT")
-        meshes.number_faces(self.things)
+        self.names = meshes.number_faces(self.things)
         return self
 
     def __exit__(self, *exception):
         self.back()
-        meshes.forget_numbers(self.things)
+        meshes.forget_numbers(self.names)
         if self.mode is not None:
             bpy.ops.object.mode_set(mode=self.mode)
 
@@ -56,7 +56,7 @@ class Work:
         """A Snapshot of each object as it is now."""
         self.context.view_layer.update()
         depsgraph = self.context.evaluated_depsgraph_get()
-        return [meshes.snapshot(thing, depsgraph) for thing in self.things]
+        return [meshes.snapshot(thing, depsgraph, self.names) for thing in self.things]
 
 
 class Tally:
@@ -115,7 +115,7 @@ def _show(context, settings, checker, shots, found):
     radius = settings.overlay_radius
     if not radius:
         spans = [np.ptp(meshes.in_world(shot), axis=0).max() for shot in shots if len(shot.positions)]
-        radius = 0.002 * max(spans, default=0.0)
+        radius = 0.003 * max(spans, default=0.0)
     results.show_contacts(context.scene, checker.contacts(shots, found), radius)
 
 

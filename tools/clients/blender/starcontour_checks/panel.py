@@ -38,13 +38,13 @@ class STARCONTOUR_PG_settings(bpy.types.PropertyGroup):
     """What is wanted, and what was found last."""
 
     itself: BoolProperty(
-        name="With Themselves", default=True,
+        name="Themselves", default=True,
         description="Find where objects intersect themselves: in local coordinates, as they are stored")
     between: BoolProperty(
-        name="With Each Other", default=True,
+        name="Each Other", default=True,
         description="Find where several selected objects intersect: in world coordinates, in doubles")
     weld: BoolProperty(
-        name="Join Equal Vertices", default=True,
+        name="Join Vertices", default=True,
         description="Take vertices at equal positions (of a range: in its first frame) for one, so that "
                     "meshes that are split at seams do not touch themselves there")
     contact: EnumProperty(
@@ -59,8 +59,8 @@ class STARCONTOUR_PG_settings(bpy.types.PropertyGroup):
     weights: EnumProperty(
         name="Weights", default="UNION",
         description="Weights in the vertex group self_collision of vertices whose faces collide",
-        items=(("UNION", "1", "1 where a vertex is of a face that collides in any frame"),
-               ("SHARE", "Share of Frames", "In how many of the frames its faces collide, from 0 to 1")))
+        items=(("UNION", "Any Frame", "1 where a vertex is of a face that collides in any frame"),
+               ("SHARE", "Share", "In how many of the frames its faces collide, from 0 to 1")))
     overlay: BoolProperty(
         name="Show Contacts", default=True,
         description="Make an object that shows where faces meet in the current frame")
@@ -89,10 +89,8 @@ class STARCONTOUR_UL_frames(bpy.types.UIList):
     """The frames that were checked."""
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index=0, flag=0):
-        row = layout.row()
-        row.label(text=f"{item.frame}", icon="ERROR" if item.pairs else "CHECKMARK")
-        row.label(text=f"{item.pairs} pairs")
-        row.label(text=f"{item.faces} faces")
+        layout.label(text=f"{item.frame}:  {item.pairs} pairs, {item.faces} faces",
+                     icon="ERROR" if item.pairs else "CHECKMARK")
 
     def filter_items(self, context, data, property_name):
         rows = getattr(data, property_name)
@@ -112,11 +110,11 @@ class STARCONTOUR_PT_panel(bpy.types.Panel):
         layout, settings = self.layout, context.scene.starcontour
         layout.use_property_split = True
         layout.use_property_decorate = False
-        column = layout.column(heading="Intersections")
+        column = layout.column(heading="Check With")
         column.prop(settings, "itself")
         column.prop(settings, "between")
-        column.prop(settings, "weld")
         layout.prop(settings, "contact")
+        layout.row(heading="Seams").prop(settings, "weld")
         layout.prop(settings, "weights")
         row = layout.row(heading="Overlay")
         row.prop(settings, "overlay", text="")
@@ -139,6 +137,7 @@ class STARCONTOUR_PT_panel(bpy.types.Panel):
             if len(settings.frames) > 1:
                 box.label(text=f"in {settings.colliding_frames} of {len(settings.frames)} frames")
                 box.template_list("STARCONTOUR_UL_frames", "", settings, "frames", settings, "active_frame")
+                box.use_property_split = False
                 box.prop(settings, "only_colliding")
             box.operator("starcontour.select").what = "COLLISION"
         layout.separator()
