@@ -10,8 +10,9 @@
 #include "base/assume.h"
 #include "base/jobs.h"
 
-/* Room for so many neighbors a cluster with higher numbers: few meshes have more. */
-enum { NEIGHBORS = 4 };
+/* Room for so many neighbors a cluster with higher numbers, until it is known how many there are:
+   few meshes have more. */
+enum { NEIGHBORS = 6 };
 
 /* A cluster has so many corners and other clusters round them at most, and a table of these has
    more slots, a power of 2. */
@@ -181,6 +182,9 @@ static void look_at_leaves(void *context, uint32_t part, uint32_t first, uint32_
     g->count[part] = count;
 }
 
+/* Clusters that parts of a loop look at, at least. */
+enum { CLUSTERS_MIN = 128 };
+
 static int take_lists(sc_scratch *scratch, uint64_t entries, sc_sharing *s)
 {
     s->leaf = (uint32_t *)sc_scratch_take(scratch, entries, sizeof *s->leaf);
@@ -189,36 +193,72 @@ static int take_lists(sc_scratch *scratch, uint64_t entries, sc_sharing *s)
     return s->leaf && s->touch && s->rows;
 }
 
-/* Moves what parts found together, if there was room. Returns how many entries there are. */
-static uint32_t join_parts(const leaf_search *g, uint32_t parts)
+/* What parts found, to be put together. */
+typedef struct joining {
+    const leaf_search *g;
+    sc_sharing from;
+    uint64_t begin[SC_JOBS_PARTS]; /* where they found room */
+} joining;
+
+static void join_part(void *context, uint32_t part, uint32_t worker)
 {
+    const joining *j = (const joining *)context;
+    const leaf_search *g = j->g;
     const sc_sharing *s = g->s;
-    uint32_t total = 0, part, leaf;
-    for (part = 0; part < parts; part++) {
-        const uint64_t from = g->begin[part], count = g->count[part];
-        const uint32_t back = (uint32_t)from - total;
-        if (back) {
-            memmove(s->leaf + total, s->leaf + from, (size_t)count * sizeof *s->leaf);
-            memmove(s->touch + total, s->touch + from, (size_t)count * sizeof *s->touch);
-            memmove(s->rows + SC_LEAF_MAX * (uint64_t)total, s->rows + SC_LEAF_MAX * from,
-                    (size_t)count * SC_LEAF_MAX * sizeof *s->rows);
-            for (leaf = g->leaf[part]; leaf < g->leaf[part + 1]; leaf++) s->first[leaf] -= back;
-        }
-        total += (uint32_t)count;
+    const uint64_t from = j->begin[part], to = g->begin[part], count = g->count[part];
+    uint32_t leaf;
+    (void)worker;
+    if (count) {
+        memcpy(s->leaf + to, j->from.leaf + from, (size_t)count * sizeof *s->leaf);
+        memcpy(s->touch + to, j->from.touch + from, (size_t)count * sizeof *s->touch);
+        memcpy(s->rows + SC_LEAF_MAX * to, j->from.rows + SC_LEAF_MAX * from,
+               (size_t)count * SC_LEAF_MAX * sizeof *s->rows);
     }
-    return total;
+    for (leaf = g->leaf[part]; leaf < g->leaf[part + 1]; leaf++)
+        s->first[leaf] -= (uint32_t)(from - to);
 }
 
-/* Clusters that parts of a loop look at, at least. */
-enum { CLUSTERS_MIN = 128 };
+static void give_lists(sc_scratch *scratch, const sc_sharing *s)
+{
+    sc_scratch_give(scratch, s->leaf);
+    sc_scratch_give(scratch, s->touch);
+    sc_scratch_give(scratch, s->rows);
+}
+
+/* Puts what parts found into lists of just that length; if they had no room, they look again. */
+static sc_status join_parts(leaf_search *g, uint32_t parts, sc_scratch *scratch)
+{
+    joining j;
+    uint64_t total = 0;
+    uint32_t part, leaves = g->leaf[parts];
+    int is_short = 0;
+    j.g = g;
+    j.from = *g->s;
+    for (part = 0; part < parts; total += g->count[part++]) {
+        j.begin[part] = g->begin[part];
+        g->begin[part] = total;
+        is_short |= g->count[part] > NEIGHBORS * (uint64_t)(g->leaf[part + 1] - g->leaf[part]);
+    }
+    if (SC_HARDLY(total > 0xffff0000u)) return SC_ERROR_COUNT; /* 150 gigabytes */
+    if (is_short) give_lists(scratch, &j.from);
+    if (!take_lists(scratch, total, g->s)) return SC_ERROR_MEMORY;
+    if (is_short) {
+        g->is_counted = 1;
+        (void)sc_jobs_loop(scratch->tasks, leaves, CLUSTERS_MIN, look_at_leaves, g);
+    } else {
+        sc_jobs_run(scratch->tasks, parts, join_part, &j);
+        give_lists(scratch, &j.from);
+    }
+    g->s->first[leaves] = (uint32_t)total;
+    return SC_OK;
+}
 
 sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacency,
                            const uint32_t *order, const sc_xbvh *xbvh, sc_scratch *scratch,
                            sc_sharing *s)
 {
-    uint32_t leaves = xbvh->leaf_count, part, parts;
-    uint64_t total = 0;
-    int is_short = 0;
+    uint32_t leaves = xbvh->leaf_count, parts;
+    sc_status status;
     leaf_search g;
     g.points = points;
     g.adjacency = adjacency;
@@ -236,23 +276,9 @@ sc_status sc_sharing_build(const sc_points *points, const sc_adjacency *adjacenc
     sc_jobs_loop(scratch->tasks, leaves, CLUSTERS_MIN, place_triangles, &g);
     parts = sc_jobs_loop(scratch->tasks, leaves, CLUSTERS_MIN, look_at_leaves, &g);
     g.leaf[parts] = leaves;
-    for (part = 0; part < parts; part++) {
-        is_short |= g.count[part] > NEIGHBORS * (uint64_t)(g.leaf[part + 1] - g.leaf[part]);
-        total += g.count[part];
-    }
-    if (SC_HARDLY(total > 0xffff0000u)) return SC_ERROR_COUNT; /* 150 gigabytes */
-    if (is_short) {
-        sc_scratch_give(scratch, s->leaf);
-        sc_scratch_give(scratch, s->touch);
-        sc_scratch_give(scratch, s->rows);
-        if (!take_lists(scratch, total, s)) return SC_ERROR_MEMORY;
-        g.is_counted = 1;
-        for (total = 0, part = 0; part < parts; total += g.count[part++]) g.begin[part] = total;
-        sc_jobs_loop(scratch->tasks, leaves, CLUSTERS_MIN, look_at_leaves, &g);
-    }
-    s->first[leaves] = join_parts(&g, parts);
+    status = join_parts(&g, parts, scratch);
     sc_scratch_give(scratch, g.place);
-    return SC_OK;
+    return status;
 }
 
 static int share(const sc_points *points, uint32_t t, uint32_t u)
