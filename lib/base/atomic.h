@@ -76,6 +76,14 @@ static inline int sc_atomic_claim(size_t *number, size_t *before, size_t after)
 #endif
 }
 
+/* Sets a number to another one if that is less. */
+static inline void sc_atomic_least(size_t *number, size_t less)
+{
+    size_t before = sc_atomic_get(number);
+    while (less < before && !sc_atomic_claim(number, &before, less)) {
+    }
+}
+
 /* Whether several threads may lower one double: where it is no longer than a pointer. */
 #if SC_ATOMIC && SIZE_MAX >= UINT64_MAX
 #  define SC_ATOMIC_DOUBLES 1

@@ -14,14 +14,18 @@
 
 /* Entries of the caller's array are claimed for many pairs at once, so that no two workers write to
    one. */
-static void deliver(sc_worker *w)
+void sc_pairs_deliver(sc_worker *w)
 {
-    uint64_t at = sc_atomic_add(&w->share->claimed[0], SC_FOUND_MAX);
+    const sc_question *q = w->question;
+    const uint32_t count = w->found_count;
+    const uint64_t at = sc_atomic_add(&w->share->claimed[0], count);
+    uint32_t i;
     w->found_count = 0;
-    if (at + SC_FOUND_MAX <= w->question->capacity)
-        memcpy(w->question->pairs + at, w->found, sizeof(sc_pair) * SC_FOUND_MAX);
-    else
+    for (i = 0; q->packs && i < count; i++) w->found[i] = sc_pairs_pack(q->prefix, w->found[i]);
+    if (at + count > q->capacity)
         sc_atomic_write(&w->share->halt, 1); /* too short for certain */
+    else if (count)
+        memcpy(q->pairs + at, w->found, sizeof(sc_pair) * count);
 }
 
 static void take_shared(sc_worker *w, const sc_pair *pairs, uint32_t count)
@@ -31,7 +35,7 @@ static void take_shared(sc_worker *w, const sc_pair *pairs, uint32_t count)
         some = SC_FOUND_MAX - w->found_count < count ? SC_FOUND_MAX - w->found_count : count;
         memcpy(w->found + w->found_count, pairs, some * sizeof *pairs);
         w->found_count += some;
-        if (w->found_count == SC_FOUND_MAX) deliver(w);
+        if (w->found_count == SC_FOUND_MAX) sc_pairs_deliver(w);
     }
 }
 

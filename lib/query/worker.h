@@ -45,6 +45,9 @@ typedef struct sc_question {
     int keeps; /* what is made of the pose may be needed by a later query, of an object */
     struct sc_workspace *second; /* of the second of two objects, whose pose is read and boxes made,
                                     if pairs between two are sought; or NULL */
+    uint32_t packs;  /* 1: it is one of several whose pairs go to one array: sc_pairs_pack */
+    uint32_t prefix; /* what tells its pairs from theirs: twice its number, and 1 if all of its
+                        pairs are turned */
 } sc_question;
 
 /* What the workers of a query have in common and write to, see run/plan.c. */
@@ -111,6 +114,7 @@ typedef struct sc_worker {
     uint64_t last_time;
     double follow_part; /* of the last box or primitive tests, those that follow a contour test */
     sc_stats stats;
+    sc_stats total; /* of several questions, each of which it answered by itself in some workspace */
     unsigned char apart[SC_ALIGNMENT]; /* no two workers write to one line of the cache */
 } sc_worker;
 

@@ -7,15 +7,19 @@
 
 #include <string.h>
 
+#include "base/atomic.h"
 #include "base/clock.h"
 #include "base/hooks.h"
 #include "query/filter.h"
+#include "query/pairs.h"
 #include "query/simple.h"
 #include "run/near_question.h"
 #include "run/objects_frame.h"
+#include "run/objects_sweep.h"
 #include "run/plan.h"
 #include "run/step_question.h"
 #include "step/step_filter.h"
+#include "step/step_pairs.h"
 
 /* The call at hand. Of a list's ranges those that fit are in the caller's array. */
 typedef struct objects_run {
@@ -23,7 +27,16 @@ typedef struct objects_run {
     sc_objects_answer *answer;
     double clearance;
     int incomplete;
+    int alone;          /* the calling thread does without tasks */
+    sc_workspace *lead; /* where tasks share in units: the first of so many workers, whose plan has
+                           room for them; or NULL */
 } objects_run;
+
+/* What the caller's functions are asked with. */
+typedef struct accept_between {
+    const sc_objects *objects;
+    uint32_t a, b;
+} accept_between;
 
 /* What one object, or two, are asked. */
 typedef struct part_question {
@@ -32,13 +45,8 @@ typedef struct part_question {
     sc_near_question near; /* of what is near, or its step is that of a step */
     sc_asked asked;
     sc_filter filter;
+    accept_between between;
 } part_question;
-
-/* What the caller's functions are asked with. */
-typedef struct accept_between {
-    const sc_objects *objects;
-    uint32_t a, b;
-} accept_between;
 
 static const sc_object *object_at(const objects_run *run, uint32_t i)
 {
@@ -62,7 +70,7 @@ static int is_over(const objects_run *run)
 static const sc_tasks *tasks_of(const objects_run *run, const sc_object *a, const sc_object *b)
 {
     const sc_tasks *tasks = run->asked->given;
-    if (!tasks || a->workspace->sizes.workers < tasks->workers ||
+    if (!tasks || run->alone || a->workspace->sizes.workers < tasks->workers ||
         b->workspace->sizes.workers < tasks->workers)
         return NULL;
     return tasks;
@@ -191,9 +199,10 @@ static sc_status begin_filters(const objects_run *run, const sc_object *o, part_
 }
 
 /* What an object is asked about itself. */
-static sc_status ask_itself(const objects_run *run, const sc_object *o, part_question *q)
+static sc_status ask_itself(const objects_run *run, const sc_object *o, const sc_tasks *tasks,
+                            part_question *q)
 {
-    const sc_status status = begin_question(run, o->model, tasks_of(run, o, o), q);
+    const sc_status status = begin_question(run, o->model, tasks, q);
     return status ? status : begin_filters(run, o, q);
 }
 
@@ -203,8 +212,13 @@ static sc_status check_those_asked(const objects_run *run)
     part_question q;
     sc_status status = SC_OK;
     uint32_t i;
-    for (i = 0; i < run->asked->objects.count && !status; i++)
-        if (object_at(run, i)->itself) status = ask_itself(run, object_at(run, i), &q);
+    for (i = 0; i < run->asked->objects.count && !status; i++) {
+        const sc_object *o = object_at(run, i);
+        if (!o->itself) continue;
+        status = ask_itself(run, o, NULL, &q);
+        o->workspace->scene.asks =
+            q.filter.accept || q.near.step.filters.of[0].accept || q.near.step.filters.of[1].accept;
+    }
     return status;
 }
 
@@ -218,8 +232,8 @@ static void add_range(objects_run *run, const sc_object *a, const sc_object *b, 
     if (!count) return;
     if (list->range_count < list->range_capacity) {
         sc_object_pairs *range = &list->ranges[list->range_count];
-        range->object_a = a->workspace->object - 1;
-        range->object_b = b->workspace->object - 1;
+        range->object_a = a->workspace->scene.number - 1;
+        range->object_b = b->workspace->scene.number - 1;
         range->first = list->count;
         range->count = count;
     }
@@ -285,7 +299,7 @@ static void answer(objects_run *run, const sc_object *a, const sc_object *b, con
 static sc_status look_at_itself(objects_run *run, const sc_object *o)
 {
     part_question q;
-    const sc_status status = ask_itself(run, o, &q);
+    const sc_status status = ask_itself(run, o, tasks_of(run, o, o), &q);
     if (status) return status;
     o->workspace->frame.tasks = sc_plan_tasks(o->model, q.query);
     answer(run, o, o, q.query);
@@ -293,14 +307,6 @@ static sc_status look_at_itself(objects_run *run, const sc_object *o)
 }
 
 /* ---- two objects ---- */
-
-static int groups_collide(const sc_object *a, const sc_object *b)
-{
-    const sc_group all = {0xffffffffu, 0xffffffffu};
-    const sc_group x = a->group.category || a->group.mask ? a->group : all;
-    const sc_group y = b->group.category || b->group.mask ? b->group : all;
-    return sc_filter_groups_collide(x, y);
-}
 
 static int accept_pair(void *user, uint32_t a, uint32_t b)
 {
@@ -325,9 +331,10 @@ static int accept_edge_edge(void *user, uint32_t a, uint32_t b)
 }
 
 /* Has the caller's functions asked. */
-static void begin_accept(const objects_run *run, accept_between *between, part_question *q)
+static void begin_accept(const objects_run *run, part_question *q)
 {
     const sc_objects *objects = &run->asked->objects;
+    accept_between *between = &q->between;
     sc_pair_filters *filters = &q->near.step.filters;
     int kind;
     filters->rest_distance = -1;
@@ -347,48 +354,304 @@ static void begin_accept(const objects_run *run, accept_between *between, part_q
     }
 }
 
-/* Two objects, the first being that of triangles, or of edges with triangles. */
+/* What two objects are asked, the first being that of triangles, or of edges with triangles. */
+static void ask_two(const objects_run *run, const sc_object *a, const sc_object *b,
+                    const sc_tasks *tasks, part_question *q)
+{
+    (void)begin_question(run, NULL, tasks, q);
+    q->query->second = b->workspace;
+    q->query->options.method = SC_METHOD_AABB;
+    q->query->options.contour = SC_CONTOUR_EXACT;
+    q->between.objects = &run->asked->objects;
+    q->between.a = a->workspace->scene.number - 1;
+    q->between.b = b->workspace->scene.number - 1;
+    begin_accept(run, q);
+}
+
 static void look_at_two(objects_run *run, const sc_object *a, const sc_object *b)
 {
     const sc_tasks *tasks = tasks_of(run, a, b);
-    const uint32_t about = run->asked->about;
-    accept_between between;
     part_question q;
-    (void)begin_question(run, NULL, tasks, &q);
-    sc_objects_frame_make_boxes(a, tasks, about, run->answer->stats);
-    sc_objects_frame_make_boxes(b, tasks, about, run->answer->stats);
-    q.query->second = b->workspace;
-    q.query->options.method = SC_METHOD_AABB;
-    q.query->options.contour = SC_CONTOUR_EXACT;
+    sc_objects_frame_make_boxes(a, tasks, run->asked->about, run->answer->stats);
+    sc_objects_frame_make_boxes(b, tasks, run->asked->about, run->answer->stats);
+    ask_two(run, a, b, tasks, &q);
     sc_workspace_lend(b->model, b->workspace, q.query, tasks ? tasks->workers : 1);
-    between.objects = &run->asked->objects;
-    between.a = a->workspace->object - 1;
-    between.b = b->workspace->object - 1;
-    begin_accept(run, &between, &q);
     answer(run, a, b, q.query);
 }
 
-/* An object with itself and with those behind it; of edges with triangles, either may be the
-   first. */
-static sc_status look_at(objects_run *run, uint32_t i)
+/* Of edges with triangles, either of two objects may be that of edges. */
+static int goes_both_ways(const objects_run *run)
 {
-    const sc_objects_question *q = run->asked;
-    const int either = q->about == SC_QUESTION_QUERY && q->options.pairs == SC_PAIRS_EDGE;
-    const sc_object *a = object_at(run, i);
-    uint32_t j;
-    if (a->itself) {
-        const sc_status status = look_at_itself(run, a);
-        if (status) return status;
-    }
-    for (j = i + 1; j < q->objects.count && !is_over(run); j++) {
-        const sc_object *b = object_at(run, j);
-        if (!groups_collide(a, b) ||
-            !sc_objects_frame_meet(&a->workspace->frame, &b->workspace->frame, run->clearance))
-            continue;
-        look_at_two(run, a, b);
-        if (either && !is_over(run)) look_at_two(run, b, a);
-    }
+    return run->asked->about == SC_QUESTION_QUERY && run->asked->options.pairs == SC_PAIRS_EDGE;
+}
+
+/* An object with itself, or two. */
+static sc_status look_at(objects_run *run, sc_pair unit)
+{
+    const sc_object *a = object_at(run, unit.a), *b = object_at(run, unit.b);
+    if (a == b) return look_at_itself(run, a);
+    look_at_two(run, a, b);
+    if (goes_both_ways(run) && !is_over(run)) look_at_two(run, b, a);
     return SC_OK;
+}
+
+/* ---- units, each by one worker ---- */
+
+/*
+ * Questions about small objects are answered whole, each by one worker, many at a time: those of
+ * objects with themselves first, together with the boxes of all that come near others; then those
+ * of two, for which worker k of either workspace, and a part of its room, is at the service of the
+ * thread that is worker k. What they find goes to one array and is sorted there, since a pair is
+ * packed with its unit's number; the same whoever did what.
+ */
+typedef struct units_job {
+    objects_run *run;
+    const sc_tasks *tasks;
+    sc_plan_room *room; /* of the lead, with the units; and the job's items: objects in tests, and
+                           in open their units, counted from 1 */
+    uint32_t count;     /* of units */
+    uint32_t item_count;
+    sc_share share;
+    size_t first_found; /* where one pair is enough: no unit behind this one is of interest */
+} units_job;
+
+/* Smaller objects are not worth sharing inside. */
+enum { WHOLE_LEAVES = 1024 };
+
+/* Whether one worker may answer a question about them by itself. */
+static int is_unit(const objects_run *run, sc_pair unit)
+{
+    const sc_object *a = object_at(run, unit.a), *b = object_at(run, unit.b);
+    const sc_objects *objects = &run->asked->objects;
+    if (!run->lead || !tasks_of(run, a, b)) return 0;
+    if (a->model->leaf_count > WHOLE_LEAVES && b->model->leaf_count > WHOLE_LEAVES) return 0;
+    if (!sc_pairs_can_be_packed(a->model) || !sc_pairs_can_be_packed(b->model)) return 0;
+    /* the caller's functions are asked by the calling thread */
+    return a == b ? !a->workspace->scene.asks : !objects->accept && !objects->accept_near;
+}
+
+/* What a worker found in a question of a unit, and counted. */
+static void look_by_worker(units_job *job, const sc_object *a, const sc_object *b,
+                           const sc_question *q, sc_unit *unit, uint32_t worker)
+{
+    const uint32_t parts = a == b ? 1 : job->tasks->workers, part = a == b ? 0 : worker;
+    sc_share *share = q->ends_early ? NULL : &job->share;
+    sc_worker *w;
+    if (a != b) (void)sc_workspace_join(b->model, b->workspace, q, NULL, worker, part, parts);
+    w = sc_workspace_join(a->model, a->workspace, q, share, worker, part, parts);
+    w->last_time = q->timed ? sc_clock_nanoseconds() : 0;
+    if (!sc_worker_stops(w)) sc_plan_run_whole(a->workspace, worker);
+    if (q->timed) {
+        w->stats.nanoseconds[w->task] += sc_clock_nanoseconds() - w->last_time;
+        sc_worker_add_stats(&job->run->lead->worker[worker].total, &w->stats);
+    }
+    unit->incomplete |= (uint32_t)w->incomplete;
+    if (!q->step) {
+        unit->count[0] += w->count;
+        unit->turned += q->prefix & 1 ? w->count : 0;
+        return;
+    }
+    unit->count[0] = w->step->count[0];
+    unit->count[1] = w->step->count[1];
+    unit->turned = w->step->turned;
+    unit->earliest = w->step->earliest;
+}
+
+static void answer_unit(units_job *job, uint32_t number, uint32_t worker)
+{
+    objects_run *run = job->run;
+    sc_unit *unit = &job->room->units[number];
+    const sc_object *a = object_at(run, unit->a), *b = object_at(run, unit->b);
+    const uint32_t ways = a != b && goes_both_ways(run) ? 2 : 1;
+    part_question q;
+    uint32_t way;
+    for (way = 0; way < ways && number < sc_atomic_get(&job->first_found); way++) {
+        const sc_object *first = way ? b : a, *second = way ? a : b;
+        if (a == b)
+            (void)ask_itself(run, a, NULL, &q); /* as it was checked */
+        else
+            ask_two(run, first, second, NULL, &q);
+        q.query->packs = 1;
+        q.query->prefix = 2 * number + way;
+        look_by_worker(job, first, second, q.query, unit, worker);
+        if (run->asked->ends_early && unit->count[0] + unit->count[1] > 0)
+            sc_atomic_least(&job->first_found, number);
+    }
+}
+
+/* An object with itself, if it is asked that, and its boxes, if others are near. */
+static void run_object(void *context, uint32_t part, uint32_t worker)
+{
+    units_job *job = (units_job *)context;
+    const objects_run *run = job->run;
+    const sc_object *o = object_at(run, job->room->tests[part]);
+    const uint32_t unit = job->room->open[part];
+    o->workspace->frame.tasks = NULL;
+    if (unit) answer_unit(job, unit - 1, worker);
+    if (job->room->passed[part])
+        sc_objects_frame_make_boxes(o, NULL, run->asked->about,
+                                    run->answer->stats ? &run->lead->worker[worker].total : NULL);
+}
+
+static void run_two(void *context, uint32_t part, uint32_t worker)
+{
+    units_job *job = (units_job *)context;
+    const sc_unit *unit = &job->room->units[part];
+    if (unit->a != unit->b) answer_unit(job, part, worker);
+}
+
+/* The item of an object, which is listed unless it is already. */
+static uint32_t item_of(units_job *job, uint32_t object)
+{
+    sc_in_scene *scene = &object_at(job->run, object)->workspace->scene;
+    if (!scene->item) {
+        const uint32_t at = job->item_count++;
+        job->room->tests[at] = object;
+        job->room->open[at] = job->room->passed[at] = 0;
+        scene->item = at + 1;
+    }
+    return scene->item - 1;
+}
+
+static void list_items(units_job *job)
+{
+    uint32_t i;
+    for (i = 0; i < job->count; i++) {
+        const sc_unit *unit = &job->room->units[i];
+        if (unit->a == unit->b)
+            job->room->open[item_of(job, unit->a)] = i + 1;
+        else
+            job->room->passed[item_of(job, unit->a)] = job->room->passed[item_of(job, unit->b)] = 1;
+    }
+    for (i = 0; i < job->item_count; i++)
+        object_at(job->run, job->room->tests[i])->workspace->scene.item = 0;
+}
+
+/* Sorts what was found, and takes it down unit by unit. */
+static void finish_units(units_job *job)
+{
+    objects_run *run = job->run;
+    const uint64_t found[2] = {job->share.claimed[0], job->share.claimed[1]};
+    uint64_t room, k;
+    sc_pair *spare = sc_workspace_spare(run->lead, &room);
+    part_question q;
+    uint32_t i;
+    int kind;
+    (void)begin_question(run, NULL, NULL, &q);
+    if (q.query->step)
+        sc_step_pairs_finish(q.query->step, found, spare, room, job->tasks);
+    else
+        sc_pairs_finish(q.query, found[0], NULL, 0, job->tasks);
+    for (kind = 0; kind < 2; kind++) {
+        sc_pair *pairs = rest_of(run, kind).pairs;
+        for (k = 0; k < found[kind]; k++) pairs[k] = sc_pairs_unpack(pairs[k]);
+    }
+    for (i = 0; i < job->count && !is_over(run); i++) {
+        const sc_unit *unit = &job->room->units[i];
+        const sc_object *a = object_at(run, unit->a), *b = object_at(run, unit->b);
+        add_range(run, a, b, 0, unit->count[0] - unit->turned);
+        add_range(run, b, a, 0, unit->turned);
+        add_range(run, a, b, 1, unit->count[1]);
+        run->incomplete |= unit->incomplete != 0;
+        if (unit->earliest < run->answer->earliest) run->answer->earliest = unit->earliest;
+    }
+}
+
+/* What workers counted; of units that are asked again, in their passes over poses alone. */
+static void add_totals(const units_job *job, int again)
+{
+    sc_stats *sum = job->run->answer->stats;
+    uint32_t i, task;
+    for (i = 0; sum && i < job->tasks->workers; i++) {
+        const sc_stats *total = &job->run->lead->worker[i].total;
+        if (!again) sc_worker_add_stats(sum, total);
+        for (task = 0; again && task < SC_TASK_ORIENTATION; task++) {
+            sum->counts[task] += total->counts[task];
+            sum->nanoseconds[task] += total->nanoseconds[task];
+        }
+    }
+}
+
+/* Answers units of the lead's list; where the caller's arrays turn out to be too short, by the
+   calling thread. */
+static sc_status answer_units(objects_run *run, uint32_t count)
+{
+    const sc_tasks *tasks = run->asked->given;
+    sc_status status = SC_OK;
+    units_job job;
+    uint32_t i;
+    memset(&job, 0, sizeof job);
+    job.run = run;
+    job.tasks = tasks;
+    job.room = &run->lead->plan;
+    job.count = count;
+    job.first_found = count;
+    for (i = 0; i < tasks->workers; i++) memset(&run->lead->worker[i].total, 0, sizeof(sc_stats));
+    list_items(&job);
+    tasks->finish(tasks->user, tasks->enqueue(tasks->user, run_object, &job, job.item_count));
+    tasks->finish(tasks->user, tasks->enqueue(tasks->user, run_two, &job, count));
+    add_totals(&job, job.share.halt != 0);
+    if (!job.share.halt) finish_units(&job);
+    run->alone = job.share.halt != 0; /* with tasks the list's room were for parts */
+    for (i = 0; run->alone && i < count && !status && !is_over(run); i++) {
+        const sc_pair unit = {job.room->units[i].a, job.room->units[i].b};
+        status = look_at(run, unit);
+    }
+    run->alone = 0;
+    return status;
+}
+
+/* ---- all together ---- */
+
+/* Goes on to the next unit; returns 0 if there is none. */
+static int find_next(const objects_run *run, sc_pair *unit)
+{
+    const sc_objects *objects = &run->asked->objects;
+    for (;;) {
+        unit->b = sc_objects_sweep_next(objects, run->clearance, unit->a, unit->b);
+        if (unit->b < objects->count) return 1;
+        if (++unit->a >= objects->count) return 0;
+        unit->b = unit->a;
+        if (object_at(run, unit->a)->itself) return 1;
+    }
+}
+
+/* The object whose workspace is where tasks share in units: the first that is for so many. */
+static sc_workspace *find_lead(const objects_run *run)
+{
+    const sc_objects *objects = &run->asked->objects;
+    uint32_t i;
+    for (i = 0; SC_ATOMIC && i < objects->count; i++)
+        if (tasks_of(run, object_at(run, i), object_at(run, i)))
+            return object_at(run, i)->workspace;
+    return NULL;
+}
+
+/* All units, in order: those that follow each other and are small together, others by themselves. */
+static sc_status look_at_all(objects_run *run)
+{
+    sc_pair unit = {0, 0};
+    sc_status status = SC_OK;
+    int more = run->asked->objects.count && (object_at(run, 0)->itself || find_next(run, &unit));
+    run->lead = find_lead(run);
+    while (more && !status && !is_over(run)) {
+        const sc_pair first = unit;
+        uint32_t count = 0;
+        for (; more && count < SC_UNITS_MAX && is_unit(run, unit); more = find_next(run, &unit)) {
+            sc_unit *u = &run->lead->plan.units[count++];
+            memset(u, 0, sizeof *u);
+            u->a = unit.a;
+            u->b = unit.b;
+            u->earliest = 1;
+        }
+        if (count > 1) {
+            status = answer_units(run, count);
+        } else {
+            status = look_at(run, first);
+            if (!count) more = find_next(run, &unit);
+        }
+    }
+    return status;
 }
 
 static int lacks_room(const sc_object_list *list, uint32_t output)
@@ -402,15 +665,16 @@ sc_status sc_objects_run(sc_objects_question *question, sc_objects_answer *answe
     const uint64_t start = answer->stats ? sc_clock_nanoseconds() : 0;
     objects_run run;
     sc_status status;
-    uint32_t i;
     memset(&run, 0, sizeof run);
     run.asked = question;
     run.answer = answer;
     answer->earliest = 1;
     status = check_those_asked(&run);
     if (!status) status = sc_objects_frame_read(question, &run.clearance);
-    for (i = 0; !status && i < question->objects.count && !is_over(&run); i++)
-        status = look_at(&run, i);
+    if (!status) {
+        sc_objects_sweep_run(&question->objects, run.clearance);
+        status = look_at_all(&run);
+    }
     if (answer->stats) answer->stats->total_nanoseconds = sc_clock_nanoseconds() - start;
     if (status) return status;
     if (run.incomplete) return SC_ERROR_INCOMPLETE;

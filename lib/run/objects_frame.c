@@ -10,14 +10,19 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/atomic.h"
 #include "base/clock.h"
 #include "base/hooks.h"
+#include "base/jobs.h"
 #include "pose/positions.h"
 #include "pose/refit.h"
 #include "step/step_motion.h"
 
 /* Fewer leaf clusters are not worth a job. */
 enum { BOXES_MIN = 128 };
+
+/* Nor are the poses of fewer vertices in all. */
+enum { READ_MIN = 10000 };
 
 /* The limits of the narrow phase of what is asked. */
 static sc_impact_limits *limits_of(sc_objects_question *q)
@@ -52,15 +57,15 @@ static void log_not_finite(const sc_objects_question *q, const sc_object *o, con
     const sc_workspace *w = o->workspace;
     int k;
     sc_hooks_log(&w->hooks, SC_LOG_ERROR, "object %" PRIu32 " has a vertex that is not finite",
-                 w->object - 1);
+                 w->scene.number - 1);
     for (k = 0; k < count_poses(q); k++)
         sc_question_log_not_finite(&w->hooks, o->model, &pose[k], stride[k],
                                    count_poses(q) > 1 ? where[k] : "");
 }
 
 /* Notes where the poses of an object are, and finds their box; unless they are those of the last
-   call. */
-static sc_status read_pose(const sc_objects_question *q, const sc_object *o)
+   call. Errors are logged unless hooks are NULL. */
+static sc_status read_pose(const sc_objects_question *q, const sc_object *o, const sc_hooks *hooks)
 {
     sc_workspace *w = o->workspace;
     const sc_pose *const from[2] = {o->pose, o->end ? o->end : o->pose};
@@ -69,8 +74,8 @@ static sc_status read_pose(const sc_objects_question *q, const sc_object *o)
     sc_status status;
     int k;
     for (k = 0; k < 2; k++) {
-        status = sc_question_read_pose(&w->hooks, k ? "object.end" : "object.pose", o->model,
-                                       from[k], &pose[k], &stride[k]);
+        status = sc_question_read_pose(hooks, k ? "object.end" : "object.pose", o->model, from[k],
+                                       &pose[k], &stride[k]);
         if (status) return status;
     }
     w->frame.kernels = sc_kernels_for(q->simd);
@@ -82,7 +87,7 @@ static sc_status read_pose(const sc_objects_question *q, const sc_object *o)
     }
     sc_workspace_forget(w);
     status = read_positions(q, o, (const sc_pose *)pose, (const uint64_t *)stride);
-    if (status) log_not_finite(q, o, (const sc_pose *)pose, (const uint64_t *)stride);
+    if (status && hooks) log_not_finite(q, o, (const sc_pose *)pose, (const uint64_t *)stride);
     return status;
 }
 
@@ -169,50 +174,104 @@ static void keep_clear(const sc_objects_question *q, double clearance, sc_frame 
     frame->motion.swept = swept;
 }
 
+/* ---- all objects ---- */
+
+typedef struct frames_pass {
+    sc_objects_question *question;
+    const unit_box *box;
+    double clearance;
+    size_t bad; /* the first object that cannot be read */
+} frames_pass;
+
+static void read_some(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    frames_pass *pass = (frames_pass *)context;
+    uint32_t i;
+    (void)part;
+    for (i = first; i < end; i++) {
+        const sc_object *o = sc_objects_question_object(&pass->question->objects, i);
+        if (!read_pose(pass->question, o, NULL)) continue;
+        sc_atomic_least(&pass->bad, i);
+        return;
+    }
+}
+
+static void move_some(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const frames_pass *pass = (const frames_pass *)context;
+    const sc_objects_question *q = pass->question;
+    uint32_t i;
+    (void)part;
+    for (i = first; i < end; i++) {
+        const sc_object *o = sc_objects_question_object(&q->objects, i);
+        move_into(q, o, pass->box);
+        if (q->about != SC_QUESTION_QUERY) keep_clear(q, pass->clearance, &o->workspace->frame);
+    }
+}
+
+/* The tasks that share in reading, if it is worth it. */
+static const sc_tasks *tasks_to_read(const sc_objects_question *q)
+{
+    uint64_t vertices = 0;
+    uint32_t i;
+    for (i = 0; SC_ATOMIC && q->given && i < q->objects.count && vertices < READ_MIN; i++)
+        vertices += sc_objects_question_object(&q->objects, i)->model->vertex_count;
+    return vertices < READ_MIN ? NULL : q->given;
+}
+
 sc_status sc_objects_frame_read(sc_objects_question *q, double *clearance)
 {
     const sc_objects *objects = &q->objects;
+    const sc_tasks *tasks = tasks_to_read(q);
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    frames_pass pass;
     unit_box box;
     uint32_t i;
     int k, has_last = 0;
     *clearance = 0;
+    if (!objects->count) return SC_OK;
+    pass.question = q;
+    pass.bad = objects->count;
+    (void)sc_jobs_loop(tasks, objects->count, 1, read_some, &pass);
+    if (pass.bad < objects->count) { /* again, so that the log says why */
+        const sc_object *o = sc_objects_question_object(objects, (uint32_t)pass.bad);
+        return read_pose(q, o, &o->workspace->hooks);
+    }
     for (i = 0; i < objects->count; i++) {
-        const sc_object *o = sc_objects_question_object(objects, i);
-        const sc_frame *f = &o->workspace->frame;
-        const sc_status status = read_pose(q, o);
-        if (status) return status;
-        if (o->workspace->pose_version && !has_last) {
-            find_box(f, &box);
+        const sc_workspace *w = sc_objects_question_object(objects, i)->workspace;
+        if (w->pose_version && !has_last) {
+            find_box(&w->frame, &box);
             has_last = 1;
         }
         for (k = 0; k < 3; k++) {
-            low[k] = fmin(low[k], f->low[k]);
-            high[k] = fmax(high[k], f->high[k]);
+            low[k] = fmin(low[k], w->frame.low[k]);
+            high[k] = fmax(high[k], w->frame.high[k]);
         }
     }
-    if (!objects->count) return SC_OK;
     if (q->about != SC_QUESTION_QUERY)
         *clearance = sc_motion_clearance(limits_of(q), half_side_of(low, high));
     choose_box(low, high, has_last, &box);
-    for (i = 0; i < objects->count; i++) {
-        const sc_object *o = sc_objects_question_object(objects, i);
-        move_into(q, o, &box);
-        if (q->about != SC_QUESTION_QUERY) keep_clear(q, *clearance, &o->workspace->frame);
-    }
+    pass.box = &box;
+    pass.clearance = *clearance;
+    (void)sc_jobs_loop(tasks, objects->count, 1, move_some, &pass);
     return SC_OK;
 }
 
 /* ---- boxes ---- */
 
-int sc_objects_frame_meet(const sc_frame *a, const sc_frame *b, double clearance)
+int sc_objects_frame_apart(const sc_frame *a, const sc_frame *b, int axis, double clearance)
 {
     /* a difference is off by 2^-53 of it; one that is infinite is more than any clearance that is
        not */
-    const double most = clearance * 1.000001;
+    return b->low[axis] - a->high[axis] > clearance * 1.000001;
+}
+
+int sc_objects_frame_meet(const sc_frame *a, const sc_frame *b, double clearance)
+{
     int k, apart = 0;
     for (k = 0; k < 3; k++)
-        apart |= (b->low[k] - a->high[k] > most) | (a->low[k] - b->high[k] > most);
+        apart |=
+            sc_objects_frame_apart(a, b, k, clearance) | sc_objects_frame_apart(b, a, k, clearance);
     return !apart;
 }
 

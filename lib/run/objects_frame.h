@@ -16,6 +16,9 @@
    intersections it is 0. */
 sc_status sc_objects_frame_read(sc_objects_question *question, double *clearance);
 
+/* Whether the box of an object ends, along an axis, farther than that before another one begins. */
+int sc_objects_frame_apart(const sc_frame *a, const sc_frame *b, int axis, double clearance);
+
 /* Whether the boxes of two objects come as near as that. */
 int sc_objects_frame_meet(const sc_frame *a, const sc_frame *b, double clearance);
 

@@ -65,17 +65,17 @@ static sc_status check_objects(const sc_objects *objects, uint32_t about)
     for (i = 0; i < objects->count; i++) {
         status = check_object(sc_objects_question_object(objects, i), about);
         if (status) return status;
-        sc_objects_question_object(objects, i)->workspace->object = 0;
+        sc_objects_question_object(objects, i)->workspace->scene.number = 0;
     }
     for (i = 0; i < objects->count; i++) {
         sc_workspace *w = sc_objects_question_object(objects, i)->workspace;
-        if (w->object) {
+        if (w->scene.number) {
             sc_hooks_log(&w->hooks, SC_LOG_ERROR,
-                         "objects %" PRIu32 " and %" PRIu32 " have one workspace", w->object - 1,
+                         "objects %" PRIu32 " and %" PRIu32 " have one workspace", w->scene.number - 1,
                          i);
             return SC_ERROR_WORKSPACE;
         }
-        w->object = i + 1;
+        w->scene.number = i + 1;
     }
     return SC_OK;
 }

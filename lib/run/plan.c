@@ -59,7 +59,7 @@ enum { PARTS_OF_ONE = SC_PATCHES_CHILDREN + 2 * SC_NODE_CHILDREN };
 typedef struct plan {
     sc_workspace *workspace;
     sc_plan_room *room;
-    sc_worker *w; /* the first, as which the calling thread plans, and the sums in the end */
+    sc_worker *w; /* the first of them, who plans, and has the sums in the end */
     const sc_tasks *tasks; /* of two workers or more, or NULL: of one */
     uint32_t workers;
     sc_share share;
@@ -97,7 +97,7 @@ static const sc_tasks *tasks_for(const sc_model *model, const sc_question *quest
 /* A worker begins and ends a part; its clock stands still between parts. */
 static sc_worker *begin_part(const plan *p, uint32_t worker)
 {
-    sc_worker *w = &p->workspace->worker[worker];
+    sc_worker *w = &p->w[worker];
     if (p->question.timed) w->last_time = sc_clock_nanoseconds();
     return w;
 }
@@ -179,7 +179,7 @@ static void do_waiting(plan *p)
 {
     uint32_t i, k, waits = 0;
     for (i = 0; i < p->workers; i++)
-        for (k = 0; k < SC_LIST_COUNT; k++) waits |= p->workspace->worker[i].lists.count[k];
+        for (k = 0; k < SC_LIST_COUNT; k++) waits |= p->w[i].lists.count[k];
     if (waits) run_job(p, run_waiting, p->workers, 0);
 }
 
@@ -341,7 +341,7 @@ static void join_marks(plan *p)
     uint8_t *culled = p->room->culled;
     uint32_t worker, i, end = p->w->model->patch_end;
     for (worker = 0; p->tasks && worker < p->workers; worker++) {
-        const uint8_t *marks = p->workspace->worker[worker].last.marks;
+        const uint8_t *marks = p->w[worker].last.marks;
         for (i = 0; i < end; i++) culled[i] |= marks[i];
     }
 }
@@ -353,7 +353,7 @@ static const sc_last *find_last(plan *p, uint32_t *part, uint32_t worker)
     *part = sc_jobs_take(&p->ranges, *part, worker);
     while (*part >= p->last_end[k]) k++;
     *part -= k ? p->last_end[k - 1] : 0;
-    return &p->workspace->worker[k].last;
+    return &p->w[k].last;
 }
 
 /* Some nodes of one patch, of which those are tested that are not culled by now. */
@@ -403,7 +403,7 @@ static void do_selfs(plan *p)
     while (count && !sc_worker_stops(p->w)) {
         join_marks(p);
         for (count = i = 0; i < p->workers; i++) {
-            sc_last *last = &p->workspace->worker[i].last;
+            sc_last *last = &p->w[i].last;
             last->self_first = last->self_end;
             last->self_end = last->self_count;
             count += divide_up(last->self_end - last->self_first, NODES_AT_ONCE);
@@ -421,7 +421,7 @@ static void do_alone(plan *p)
     if (sc_worker_stops(p->w)) return;
     join_marks(p);
     for (i = 0; i < p->workers; i++) {
-        count += divide_up(p->workspace->worker[i].last.alone_count, ALONE_AT_ONCE);
+        count += divide_up(p->w[i].last.alone_count, ALONE_AT_ONCE);
         p->last_end[i] = count;
     }
     run_job(p, run_alone, count, 0);
@@ -520,7 +520,7 @@ static void begin_workers(plan *p)
         memset(p->room->culled, 0, model->patch_end);
     }
     for (i = 0; i < p->workers; i++) {
-        sc_last *last = &p->workspace->worker[i].last;
+        sc_last *last = &p->w[i].last;
         memset(last->marks, 0, model->patch_end);
         last->culled = p->tasks ? p->room->culled : last->marks;
     }
@@ -575,7 +575,7 @@ static int gather(plan *p)
     int fits = 1;
     uint32_t i;
     for (i = 0; p->tasks && i < p->workers; i++) {
-        const sc_worker *w = &p->workspace->worker[i];
+        const sc_worker *w = &p->w[i];
         fits &= q->step ? put_last_of_step(p, w)
                         : put_last(q->pairs, q->capacity, w->found, w->found_count,
                                    &p->share.claimed[0]);
@@ -594,15 +594,16 @@ static void ask_function(const sc_filter *f, sc_worker *w)
     w->count = kept;
 }
 
-/* Finds all pairs; 0: the caller's array is too short for several workers. */
-static int find_pairs(sc_workspace *workspace, const sc_tasks *tasks, plan *p)
+/* Finds all pairs, by this worker or from this one on by several; 0: the caller's array is too short
+   for those. */
+static int find_pairs(sc_workspace *workspace, sc_worker *worker, const sc_tasks *tasks, plan *p)
 {
-    const sc_question *question = workspace->worker[0].question;
+    const sc_question *question = worker->question;
     const sc_query_options *o = &question->options;
     memset(p, 0, sizeof *p);
     p->workspace = workspace;
     p->room = &workspace->plan;
-    p->w = &workspace->worker[0];
+    p->w = worker;
     p->tasks = tasks;
     p->workers = tasks ? tasks->workers : 1;
     p->question = *question;
@@ -648,7 +649,7 @@ void sc_plan_run(sc_workspace *workspace)
     const sc_tasks *tasks = tasks_for(w->model, question);
     const sc_stats before = w->stats;
     plan p;
-    if (!find_pairs(workspace, tasks, &p)) {
+    if (!find_pairs(workspace, w, tasks, &p)) {
         if (question->keeps)
             (void)sc_workspace_resume(w->model, workspace, question);
         else
@@ -656,7 +657,19 @@ void sc_plan_run(sc_workspace *workspace)
         w->stats = before;
         if (question->timed) w->last_time = sc_clock_nanoseconds();
         tasks = NULL;
-        (void)find_pairs(workspace, tasks, &p);
+        (void)find_pairs(workspace, w, tasks, &p);
     }
     finish(workspace, question, tasks);
+}
+
+void sc_plan_run_whole(sc_workspace *workspace, uint32_t worker)
+{
+    sc_worker *w = &workspace->worker[worker];
+    plan p;
+    (void)find_pairs(workspace, w, NULL, &p);
+    if (!w->share) return;
+    if (w->question->step)
+        sc_step_pairs_deliver(w);
+    else
+        sc_pairs_deliver(w);
 }

@@ -25,4 +25,8 @@ const sc_tasks *sc_plan_tasks(const sc_model *model, const sc_question *question
  */
 void sc_plan_run(sc_workspace *workspace);
 
+/* The same of a query that this worker has joined as a whole one among others (sc_workspace_join):
+   what it found is in the shared array, in any order. */
+void sc_plan_run_whole(sc_workspace *workspace, uint32_t worker);
+
 #endif

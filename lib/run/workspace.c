@@ -97,6 +97,7 @@ static void lay_out_bounds(const sc_workspace_sizes *s, layout *l, sc_workspace 
 
 static void lay_out_plan(const sc_workspace_sizes *s, layout *l, sc_plan_room *plan)
 {
+    plan->units = (sc_unit *)place(l, 0, sizeof(sc_unit)); /* in the place of parts, less */
     plan->parts = SC_PLACE(l, SC_PARTS_MAX, sc_part);
     plan->tests = SC_PLACE(l, SC_PARTS_MAX, uint32_t);
     plan->open = SC_PLACE(l, SC_PARTS_MAX, uint32_t);
@@ -420,49 +421,46 @@ static uint64_t room_for_each(const sc_workspace *w, uint32_t workers, size_t by
     return count;
 }
 
-/* Lets each of so many workers keep leaf clusters for a step, there or in its own room, and forget
-   those of the last step. */
-static void keep_motions(sc_workspace *w, uint32_t workers)
+/* Lets a worker keep leaf clusters for a step, in one of so many parts of that room or in its own,
+   and forget those of the last step. */
+static void keep_motions(sc_workspace *w, uint32_t worker, uint32_t part, uint32_t parts)
 {
+    sc_kept_motions *motions = &w->step[worker].kept;
     void *room;
-    uint32_t kept, i;
-    const uint64_t count = room_for_each(w, workers, sizeof(sc_leaf_motion), &room, &kept);
-    for (i = 0; i < workers; i++) {
-        sc_kept_motions *motions = &w->step[i].kept;
-        motions->leaves = (sc_leaf_motion *)room + i * count;
-        motions->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
-        if (count < w->sizes.leaves && kept <= motions->some) {
-            motions->leaves = motions->own + 1;
-            motions->mask = motions->some - 1;
-        }
-        memset(motions->made, 0, w->sizes.leaves + (size_t)SC_MOTIONS_KEPT);
+    uint32_t kept;
+    const uint64_t count = room_for_each(w, parts, sizeof(sc_leaf_motion), &room, &kept);
+    motions->leaves = (sc_leaf_motion *)room + part * count;
+    motions->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
+    if (count < w->sizes.leaves && kept <= motions->some) {
+        motions->leaves = motions->own + 1;
+        motions->mask = motions->some - 1;
     }
+    memset(motions->made, 0, w->sizes.leaves + (size_t)SC_MOTIONS_KEPT);
 }
 
 /* The same for what is near. */
-static void keep_near(sc_workspace *w, uint32_t workers)
+static void keep_near(sc_workspace *w, uint32_t worker, uint32_t part, uint32_t parts)
 {
+    sc_near_worker *near = &w->near[worker];
     void *room;
-    uint32_t kept, i;
-    const uint64_t count = room_for_each(w, workers, sizeof(sc_near_leaf), &room, &kept);
-    for (i = 0; i < workers; i++) {
-        sc_near_worker *near = &w->near[i];
-        near->leaves = (sc_near_leaf *)room + i * count;
-        near->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
-        if (count < w->sizes.leaves && kept <= near->some) {
-            near->leaves = near->own + 1;
-            near->mask = near->some - 1;
-        }
-        memset(near->made, 0, w->sizes.leaves + (size_t)SC_NEAR_KEPT);
+    uint32_t kept;
+    const uint64_t count = room_for_each(w, parts, sizeof(sc_near_leaf), &room, &kept);
+    near->leaves = (sc_near_leaf *)room + part * count;
+    near->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
+    if (count < w->sizes.leaves && kept <= near->some) {
+        near->leaves = near->own + 1;
+        near->mask = near->some - 1;
     }
+    memset(near->made, 0, w->sizes.leaves + (size_t)SC_NEAR_KEPT);
 }
 
-static void keep_leaves(sc_workspace *w, const sc_question *question, uint32_t workers)
+static void keep_leaves(sc_workspace *w, const sc_question *question, uint32_t worker,
+                        uint32_t part, uint32_t parts)
 {
     if (question->near)
-        keep_near(w, workers);
+        keep_near(w, worker, part, parts);
     else if (question->step)
-        keep_motions(w, workers);
+        keep_motions(w, worker, part, parts);
 }
 
 sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
@@ -476,21 +474,21 @@ sc_worker *sc_workspace_resume(const sc_model *model, sc_workspace *workspace,
                                const sc_question *question)
 {
     begin_worker(model, workspace, question, NULL, &workspace->worker[0]);
-    keep_leaves(workspace, question, 1);
+    keep_leaves(workspace, question, 0, 0, 1);
     return &workspace->worker[0];
 }
 
-/* Gives each of so many workers a part of the room for all leaf clusters, if that is more than it
+/* Gives a worker one of so many parts of the room for all leaf clusters, if that is more than it
    has by itself. */
-static void keep_parts(sc_workspace *w, uint32_t workers)
+static void keep_part(sc_workspace *w, uint32_t worker, uint32_t part, uint32_t parts)
 {
-    const uint32_t room = all_derived(&w->sizes) / workers;
-    uint32_t kept = 1, i;
+    const uint32_t room = all_derived(&w->sizes) / parts;
+    const uint64_t first = (uint64_t)part * room;
+    sc_kept_leaves *some = &w->worker[worker].kept;
+    uint32_t kept = 1;
     while (2 * kept < room) kept *= 2; /* and one place more */
-    if (kept <= w->worker[0].kept.some) return;
-    for (i = 0; i < workers; i++)
-        sc_kept_leaves_in(&w->worker[i].kept, w->all_derived + (uint64_t)i * room,
-                          w->all_known + (uint64_t)i * room, kept);
+    if (kept > some->some)
+        sc_kept_leaves_in(some, w->all_derived + first, w->all_known + first, kept);
 }
 
 void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc_question *question,
@@ -507,21 +505,31 @@ void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc
     first->task = task;
     first->last_time = last_time;
     first->stats = stats;
-    if (!SC_ALWAYS(workers)) return;
-    if (keeps_all) keep_parts(workspace, workers);
-    keep_leaves(workspace, question, workers);
+    for (i = 0; i < workers; i++) {
+        if (keeps_all) keep_part(workspace, i, i, workers);
+        keep_leaves(workspace, question, i, i, workers);
+    }
+}
+
+sc_worker *sc_workspace_join(const sc_model *model, sc_workspace *w, const sc_question *question,
+                             sc_share *share, uint32_t worker, uint32_t part, uint32_t parts)
+{
+    sc_worker *one = &w->worker[worker];
+    begin_worker(model, w, question, share, one);
+    if (parts > 1)
+        keep_part(w, worker, part, parts);
+    else if (all_derived(&w->sizes))
+        sc_kept_leaves_in(&one->kept, w->all_derived, w->all_known, SC_KEEPS_ALL);
+    keep_leaves(w, question, worker, part, parts);
+    return one;
 }
 
 void sc_workspace_lend(const sc_model *model, sc_workspace *w, const sc_question *question,
                        uint32_t workers)
 {
     uint32_t i;
-    for (i = 0; i < workers; i++) begin_worker(model, w, question, NULL, &w->worker[i]);
-    if (workers > 1)
-        keep_parts(w, workers);
-    else
-        sc_workspace_keep_all(w);
-    keep_leaves(w, question, workers);
+    for (i = 0; i < workers; i++)
+        (void)sc_workspace_join(model, w, question, NULL, i, i, workers);
 }
 
 void sc_workspace_keep_all(sc_workspace *w)

@@ -21,18 +21,28 @@
 #define SC_RUN_WORKSPACE_H
 
 #include "near/near_worker.h"
-#include "query/worker.h"
+#include "query/pairs.h"
 
 /* A part of a query for a worker to do by itself: an item of a list, see run/plan.c. */
 typedef struct sc_part {
     uint32_t list, a, b;
 } sc_part;
 
-/* How many parts are listed at once, and large pairs of patches. */
-enum { SC_PARTS_MAX = 4096, SC_PLAN_PAIRS = 512 };
+/* How many parts are listed at once, and large pairs of patches; and units. */
+enum { SC_PARTS_MAX = 4096, SC_PLAN_PAIRS = 512, SC_UNITS_MAX = SC_PACKED_QUESTIONS };
+
+/* An object with itself (a = b), or two, for a worker to do by itself, see run/objects_units.h. */
+typedef struct sc_unit {
+    uint32_t a, b;       /* their numbers */
+    uint64_t count[2];   /* pairs found, of the caller's lists */
+    uint64_t turned;     /* of the first of these, those in which b comes first */
+    double earliest;     /* of a step, the least time of one, else 1 */
+    uint32_t incomplete; /* it was to end early */
+} sc_unit;
 
 /* What is to be done, where there are several workers. */
 typedef struct sc_plan_room {
+    sc_unit *units;  /* SC_UNITS_MAX, while there are no parts */
     sc_part *parts;  /* SC_PARTS_MAX */
     uint32_t *tests; /* SC_PARTS_MAX: nodes to test */
     uint32_t *open;  /* SC_PARTS_MAX: nodes that failed */
@@ -49,6 +59,19 @@ typedef struct sc_workspace_sizes {
     uint32_t flags;   /* SC_WORKSPACE_... */
 } sc_workspace_sizes;
 
+/* Of how many objects behind it an object knows that their boxes come near its own. */
+enum { SC_MEETS_MAX = 15 };
+
+/* Of an object, while a call about several lasts. */
+typedef struct sc_in_scene {
+    struct sc_workspace *next;    /* the next object as they are swept, see run/objects_sweep.h */
+    uint32_t number;              /* its own, counted from 1 */
+    uint32_t meet_count;          /* how many objects behind it, in number, come near it; and them, */
+    uint32_t meets[SC_MEETS_MAX]; /* in order, unless they are more */
+    uint32_t asks;                /* the caller's function is asked of its pairs with itself */
+    uint32_t item;                /* its place in a list of a job, counted from 1; 0: in none */
+} sc_in_scene;
+
 struct sc_workspace {
     uint64_t bytes;
     uint64_t topology_hash; /* of the model it is for */
@@ -60,7 +83,7 @@ struct sc_workspace {
     uint64_t pose_version; /* as an object: of the pose that the frame is of, or 0, see
                               run/objects_frame.h */
     uint32_t pose_about;   /* and for which questions, SC_QUESTION_... */
-    uint32_t object;       /* its number, counted from 1, while a call about objects lasts */
+    sc_in_scene scene;
     sc_contour_bounds bounds;     /* the first worker's */
     sc_leaf_derived *all_derived; /* leaf_count; 0 if there are no segments */
     sc_leaf_known *all_known;     /* the same */
@@ -94,6 +117,13 @@ sc_worker *sc_workspace_resume(const sc_model *model, sc_workspace *workspace,
 
 /* What is known of an earlier pose is stale; sc_workspace_begin does this, too. */
 void sc_workspace_forget(sc_workspace *workspace);
+
+/* Starts a query by one worker of several, each of which asks something else, whose pose has been
+   read, and returns the worker. What it finds goes to the share. Of leaf clusters it keeps what one
+   of so many parts of the room for all has room for. */
+sc_worker *sc_workspace_join(const sc_model *model, sc_workspace *workspace,
+                             const sc_question *question, sc_share *share, uint32_t worker,
+                             uint32_t part, uint32_t parts);
 
 /* Lets so many workers share in the query that was begun, with this question and a share that is
    zero; what the first has counted stays. */

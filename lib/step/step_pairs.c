@@ -11,6 +11,7 @@
 #include "base/atomic.h"
 #include "base/jobs.h"
 #include "base/sort.h"
+#include "query/pairs.h"
 
 /* Restores the heap, greatest pair first, where entry at alone may be too small. */
 static void sift(const sc_step_list *list, uint64_t count, uint64_t at)
@@ -48,19 +49,30 @@ static void swap(const sc_step_list *list, uint64_t i, uint64_t j)
 }
 
 /* Entries of a list are claimed for many pairs at once, as in query/pairs.c. */
-static void deliver_of_step(const sc_worker *w, int kind)
+static void deliver_kind(const sc_worker *w, int kind)
 {
     sc_step_worker *step = w->step;
+    const sc_question *q = w->question;
     const sc_step_list *list = &step->question->list[kind];
-    const uint64_t at = sc_atomic_add(&w->share->claimed[kind], SC_FOUND_MAX);
+    const uint32_t count = step->found_count[kind];
+    const uint64_t at = sc_atomic_add(&w->share->claimed[kind], count);
+    sc_pair *found = step->found[kind];
+    uint32_t i;
     step->found_count[kind] = 0;
-    if (at + SC_FOUND_MAX > list->capacity) {
+    if (at + count > list->capacity) {
         sc_atomic_write(&w->share->halt, 1); /* too short for certain */
         return;
     }
-    memcpy(list->pairs + at, step->found[kind], sizeof(sc_pair) * SC_FOUND_MAX);
-    if (list->times)
-        memcpy(list->times + at, step->found_time[kind], sizeof(double) * SC_FOUND_MAX);
+    for (i = 0; q->packs && i < count; i++) found[i] = sc_pairs_pack(q->prefix, found[i]);
+    if (count) memcpy(list->pairs + at, found, sizeof(sc_pair) * count);
+    if (count && list->times)
+        memcpy(list->times + at, step->found_time[kind], sizeof(double) * count);
+}
+
+void sc_step_pairs_deliver(const sc_worker *w)
+{
+    deliver_kind(w, SC_STEP_VERTEX_FACE);
+    deliver_kind(w, SC_STEP_EDGE_EDGE);
 }
 
 static void take_shared_of_step(const sc_worker *w, int kind, sc_pair pair, double time)
@@ -68,7 +80,7 @@ static void take_shared_of_step(const sc_worker *w, int kind, sc_pair pair, doub
     sc_step_worker *step = w->step;
     step->found[kind][step->found_count[kind]] = pair;
     step->found_time[kind][step->found_count[kind]++] = time;
-    if (step->found_count[kind] == SC_FOUND_MAX) deliver_of_step(w, kind);
+    if (step->found_count[kind] == SC_FOUND_MAX) deliver_kind(w, kind);
 }
 
 void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double time)

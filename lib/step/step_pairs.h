@@ -17,6 +17,9 @@ void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double t
 /* The same for some pairs without times, fewer than SC_FOUND_MAX. */
 void sc_step_pairs_take_all(sc_worker *w, int kind, const sc_pair *pairs, uint32_t count);
 
+/* Gives what a worker has found to the lists that several share, as sc_pairs_deliver. */
+void sc_step_pairs_deliver(const sc_worker *w);
+
 /* Sorts the lists, of which each was given so many pairs; spare is room for some pairs. tasks share
    in it, unless NULL. */
 void sc_step_pairs_finish(const sc_step_question *question, const uint64_t found[2], sc_pair *spare,
