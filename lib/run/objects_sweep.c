@@ -38,7 +38,7 @@ static int longest_axis(const sc_objects *objects)
 }
 
 /* Two sorted lists as one, of those with one lower end the first list's first. */
-static sc_workspace *merge_lists(sc_workspace *a, sc_workspace *b, int axis)
+static sc_workspace *merge_sorted(sc_workspace *a, sc_workspace *b, int axis)
 {
     sc_workspace *first, **end = &first;
     while (a && b) {
@@ -61,12 +61,12 @@ static sc_workspace *sort_by_ends(const sc_objects *objects, int axis)
         sc_workspace *list = workspace_at(objects, i);
         list->scene.next = NULL;
         for (k = 0; lists[k]; k++) {
-            list = merge_lists(lists[k], list, axis);
+            list = merge_sorted(lists[k], list, axis);
             lists[k] = NULL;
         }
         lists[k] = list;
     }
-    for (k = 0; k < 33; k++) all = merge_lists(lists[k], all, axis);
+    for (k = 0; k < 33; k++) all = merge_sorted(lists[k], all, axis);
     return all;
 }
 

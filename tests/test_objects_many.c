@@ -1,0 +1,520 @@
+/*
+ * Many objects, or several small ones, in one query: swept, and answered by several workers, each of
+ * which does whole questions: the same answers bit for bit as by one, in the same order.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness.h"
+#include "object_scenes.h"
+#include "soups.h"
+#include "starcontour.h"
+#include "tasks.h"
+
+enum { QUERY, NEAR, STEP };
+
+typedef struct question {
+    int about;
+    sc_query_options query;
+    sc_near_options near;
+    sc_step_options step;
+} question;
+
+/* Intersections have one list. */
+typedef struct asked {
+    sc_status status;
+    uint32_t collides, verdict;
+    double earliest;
+    sc_object_list list[2]; /* with arrays of the caller */
+    sc_stats stats;
+} asked;
+
+static void ask(const sc_objects *objects, const question *q, const sc_tasks *tasks,
+                const uint64_t capacity[2], asked *a)
+{
+    sc_objects_result result;
+    sc_objects_lists lists;
+    memset(a, 0, sizeof *a);
+    memset(&result, 0, sizeof result);
+    memset(&lists, 0, sizeof lists);
+    a->stats.struct_size = sizeof a->stats;
+    result.struct_size = sizeof result;
+    lists.struct_size = sizeof lists;
+    result.stats = lists.stats = &a->stats;
+    for (int kind = 0; kind < 2; ++kind) {
+        sc_object_list *list = &a->list[kind];
+        list->capacity = capacity[kind];
+        list->range_capacity = capacity[kind];
+        list->pairs = (sc_pair *)test_allocate(sizeof(sc_pair) * capacity[kind]);
+        list->times = (double *)test_allocate(sizeof(double) * capacity[kind]);
+        list->ranges = (sc_object_pairs *)test_allocate(sizeof(sc_object_pairs) * capacity[kind]);
+    }
+    if (q->about == QUERY) {
+        sc_query_options o = q->query;
+        o.tasks = tasks;
+        result.capacity = result.range_capacity = capacity[0];
+        result.pairs = a->list[0].pairs;
+        result.ranges = a->list[0].ranges;
+        a->status = sc_query_objects(objects, &o, &result);
+        a->list[0].count = result.count;
+        a->list[0].range_count = result.range_count;
+        a->collides = result.collides;
+        a->verdict = result.verdict;
+        return;
+    }
+    lists.vertex_faces = a->list[0];
+    lists.edge_edges = a->list[1];
+    if (q->about == NEAR) {
+        sc_near_options o = q->near;
+        o.tasks = tasks;
+        a->status = sc_query_objects_near(objects, &o, &lists);
+    } else {
+        sc_step_options o = q->step;
+        o.tasks = tasks;
+        a->status = sc_query_objects_step(objects, &o, &lists);
+    }
+    a->list[0] = lists.vertex_faces;
+    a->list[1] = lists.edge_edges;
+    a->collides = lists.collides;
+    a->verdict = lists.verdict;
+    a->earliest = lists.earliest;
+}
+
+static void forget(asked *a)
+{
+    for (int kind = 0; kind < 2; ++kind) {
+        free(a->list[kind].pairs);
+        free(a->list[kind].times);
+        free(a->list[kind].ranges);
+    }
+}
+
+/* Whether two lists are the same, as far as ranges fit. */
+static int is_same_list(const sc_object_list *x, const sc_object_list *y, int has_pairs, int timed)
+{
+    if (x->count != y->count || x->range_count != y->range_count) return 0;
+    for (uint64_t i = 0; i < x->range_count && i < x->range_capacity; ++i) {
+        const sc_object_pairs *p = &x->ranges[i], *q = &y->ranges[i];
+        if (p->object_a != q->object_a || p->object_b != q->object_b || p->first != q->first ||
+            p->count != q->count)
+            return 0;
+        if (!has_pairs || p->first + p->count > x->capacity) continue;
+        for (uint64_t k = p->first; k < p->first + p->count; ++k)
+            if (x->pairs[k].a != y->pairs[k].a || x->pairs[k].b != y->pairs[k].b ||
+                (timed && memcmp(&x->times[k], &y->times[k], sizeof x->times[k]) != 0))
+                return 0;
+    }
+    return 1;
+}
+
+static int is_same(const question *q, const asked *x, const asked *y)
+{
+    const int has_pairs = q->query.output == SC_OUTPUT_PAIRS;
+    const int timed = q->about == STEP && q->step.times == SC_STEP_TIMES_EACH;
+    return x->status == y->status && x->collides == y->collides && x->verdict == y->verdict &&
+           memcmp(&x->earliest, &y->earliest, sizeof x->earliest) == 0 &&
+           is_same_list(&x->list[0], &y->list[0], has_pairs, timed) &&
+           is_same_list(&x->list[1], &y->list[1], has_pairs, timed);
+}
+
+static int counts_are_same(const sc_stats *x, const sc_stats *y)
+{
+    return memcmp(x->counts, y->counts, sizeof x->counts) == 0 &&
+           x->nodes_visited == y->nodes_visited && x->nodes_oriented == y->nodes_oriented &&
+           x->nodes_culled == y->nodes_culled && x->leaf_pairs == y->leaf_pairs &&
+           x->exact_fallbacks == y->exact_fallbacks;
+}
+
+static question any_question(void)
+{
+    static const uint32_t methods[] = {SC_METHOD_DEFAULT, SC_METHOD_SCTT, SC_METHOD_AABB_SCTT,
+                                       SC_METHOD_AABB};
+    question q;
+    memset(&q, 0, sizeof q);
+    q.query.struct_size = sizeof q.query;
+    q.near.struct_size = sizeof q.near;
+    q.step.struct_size = sizeof q.step;
+    q.about = (int)test_random_below(3);
+    q.query.pairs = test_random_below(2) ? SC_PAIRS_EDGE : SC_PAIRS_TRIANGLE;
+    q.query.method = methods[test_random_below(4)];
+    q.near.distance = q.step.separation = test_random_below(2) ? 0.05 * test_random_unit() : 0;
+    q.step.times = test_random_below(2) ? SC_STEP_TIMES_EACH : SC_STEP_TIMES_NONE;
+    return q;
+}
+
+static void set_output(question *q, uint32_t output)
+{
+    q->query.output = q->near.output = q->step.output = output;
+}
+
+/* ---- workers ---- */
+
+/* Workspaces that were never asked. */
+static int renew(scene *s)
+{
+    for (uint32_t i = 0; i < s->count; ++i) {
+        sc_workspace_options options = options_for_workers(s->workers);
+        options.flags = s->flags;
+        sc_workspace_free(s->things[i].workspace);
+        s->things[i].workspace = NULL;
+        if (!CHECK(sc_workspace_create_for(s->things[i].model, &options, &s->things[i].workspace) ==
+                   SC_OK))
+            return 0;
+        s->objects[i].workspace = s->things[i].workspace;
+    }
+    return 1;
+}
+
+/* Asks by so many workers, in new workspaces or in those of before. */
+static int ask_workers(scene *s, const question *q, int way, uint32_t workers, int is_new,
+                       const uint64_t capacity[2], asked *a)
+{
+    sc_objects objects;
+    host h;
+    memset(&objects, 0, sizeof objects);
+    objects.struct_size = sizeof objects;
+    objects.count = s->count;
+    objects.objects = s->objects;
+    for (uint32_t i = 0; i < s->count; ++i)
+        s->objects[i].end = q->about == STEP ? &s->things[i].pose[1] : NULL;
+    if (is_new && !renew(s)) return 0;
+    if (workers == 1) {
+        ask(&objects, q, NULL, capacity, a);
+        return 1;
+    }
+    host_start(&h, way, workers);
+    ask(&objects, q, &h.tasks, capacity, a);
+    CHECK(h.mistakes == 0);
+    host_stop(&h);
+    return 1;
+}
+
+/* One worker, two and five, with arrays that fit exactly, or are too short; and for counts alone. */
+static void workers_say_the_same(scene *s, const question *asked_for, int way, int is_large)
+{
+    static const uint32_t outputs[] = {SC_OUTPUT_PAIRS, SC_OUTPUT_COUNT, SC_OUTPUT_ANY};
+    question q = *asked_for;
+    uint64_t capacity[2] = {0, 0};
+    asked one, some, others;
+    set_output(&q, SC_OUTPUT_COUNT);
+    if (!ask_workers(s, &q, way, 1, 1, capacity, &one)) return;
+    for (int kind = 0; kind < 2; ++kind) capacity[kind] = one.list[kind].count;
+    forget(&one);
+    for (int round = 0; round < 5; ++round) {
+        const int is_short = round == 3;
+        set_output(&q, outputs[round % 3]);
+        for (int kind = 0; is_short && kind < 2; ++kind)
+            if (capacity[kind]) capacity[kind] = test_random_below((uint32_t)capacity[kind]);
+        if (!ask_workers(s, &q, way, 1, 1, capacity, &one)) return;
+        if (!ask_workers(s, &q, way, 2, round < 4, capacity, &some)) return;
+        if (!ask_workers(s, &q, way, 5, round < 4, capacity, &others)) return;
+        if (is_large && q.query.output == SC_OUTPUT_ANY) /* of one object, any pair */
+            CHECK(some.collides == one.collides && others.collides == one.collides);
+        else
+            CHECK_MSG(is_same(&q, &one, &some) && is_same(&q, &one, &others),
+                      "about %d, round %d, %u objects, way %d, state %" PRIu64, q.about, round,
+                      s->count, way, s->state);
+        if (round < 2 && one.status == SC_OK) CHECK(counts_are_same(&some.stats, &others.stats));
+        forget(&one);
+        forget(&some);
+        forget(&others);
+    }
+}
+
+static void small_objects_are_shared_out(void)
+{
+    for (uint32_t trial = test_iterations_at_least(200, 24); trial-- > 0 && !test_failures();) {
+        scene s;
+        const question q = any_question();
+        const int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
+        if (!scene_open(&s, trial % 4 ? 6 : OBJECTS_MAX, trial % 4 ? 100 : 40, 5,
+                        SC_WORKSPACE_NEAR))
+            return;
+        workers_say_the_same(&s, &q, way, 0);
+        scene_close(&s);
+    }
+}
+
+/* A large object among small ones, which the list of units ends at; and one for a single worker. */
+static void large_ones_are_among_small_ones(void)
+{
+    for (uint32_t trial = test_iterations_at_least(8, 1); trial-- > 0 && !test_failures();) {
+        const soup sphere = soup_sphere(150, 70);
+        scene s;
+        question q = any_question();
+        const int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
+        memset(&s, 0, sizeof s);
+        s.state = test_random_state();
+        s.workers = 5;
+        s.flags = SC_WORKSPACE_NEAR;
+        for (; s.count < 5; ++s.count)
+            if (s.count == 3 ? !scene_open_thing_of(&s, s.count, &sphere)
+                             : !scene_open_thing(&s, s.count, 100))
+                return;
+        memcpy(s.things[3].posed[0], sphere.positions, sizeof(double) * 3 * sphere.vertex_count);
+        memcpy(s.things[3].posed[1], sphere.positions, sizeof(double) * 3 * sphere.vertex_count);
+        for (int end = 0; end < 2; ++end) {
+            s.things[3].pose[end].position_type = SC_DOUBLE;
+            s.things[3].pose[end].positions = s.things[3].posed[end];
+        }
+        q.near.distance = q.step.separation = 0;
+        workers_say_the_same(&s, &q, way, 1);
+        scene_close(&s);
+    }
+}
+
+/* A flag that is set on the way ends it, and what is not ended is right. */
+static void a_flag_ends_units(void)
+{
+    uint64_t ended = 0;
+    for (uint32_t trial = test_iterations_at_least(60, 12); trial-- > 0 && !test_failures();) {
+        const uint64_t none[2] = {0, 0};
+        scene s;
+        question q = any_question();
+        sc_objects objects;
+        breaker b;
+        asked all, some;
+        if (!scene_open(&s, 6, 60, 4, SC_WORKSPACE_NEAR)) return;
+        set_output(&q, SC_OUTPUT_COUNT);
+        if (!ask_workers(&s, &q, 0, 1, 1, none, &all) || !renew(&s)) return;
+        memset(&objects, 0, sizeof objects);
+        objects.struct_size = sizeof objects;
+        objects.count = s.count;
+        objects.objects = s.objects;
+        breaker_start(&b, 4, test_random_below(12));
+        q.query.cancel = q.near.cancel = q.step.cancel = &b.flag;
+        ask(&objects, &q, &b.tasks, none, &some);
+        if (some.status == SC_ERROR_INCOMPLETE) {
+            CHECK(some.verdict == SC_VERDICT_INCOMPLETE && b.flag == 1 &&
+                  some.list[0].count <= all.list[0].count);
+            ++ended;
+        } else {
+            CHECK(is_same(&q, &all, &some));
+        }
+        forget(&all);
+        forget(&some);
+        scene_close(&s);
+    }
+    CHECK(ended > 0);
+}
+
+/* ---- thousands ---- */
+
+/* Objects of four triangles each, all of one model, and one mesh of them. */
+typedef struct crowd {
+    uint32_t count, workers;
+    soup one, all;
+    sc_model *model, *whole;
+    sc_workspace *whole_workspace, **workspaces;
+    sc_pose *poses;
+    sc_object *objects;
+} crowd;
+
+enum { CORNERS = 4, FACES = 4 };
+
+static sc_model *model_of(const soup *mesh)
+{
+    sc_build_options options;
+    sc_model *model = NULL;
+    sc_mesh m;
+    memset(&m, 0, sizeof m);
+    m.struct_size = sizeof m;
+    m.vertex_count = mesh->vertex_count;
+    m.triangle_count = mesh->triangle_count;
+    m.position_type = SC_DOUBLE;
+    m.positions = mesh->positions;
+    m.indices = mesh->triangles;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.weld = SC_WELD_NONE;
+    CHECK(sc_build(&m, &options, &model) == SC_OK);
+    return model;
+}
+
+static double *corner_of(const crowd *c, uint32_t i, uint32_t v)
+{
+    return c->all.positions + 3 * ((size_t)CORNERS * i + v);
+}
+
+/* Tetrahedra in a cube, some on a grid, so that their boxes begin in the same place, and a few that
+   reach far. */
+static void place_crowd(crowd *c, double size)
+{
+    for (uint32_t i = 0; i < c->count; ++i) {
+        const double scale = test_random_below(200) ? size * test_random_range(0.2, 1) : 20 * size;
+        double at[3];
+        for (int k = 0; k < 3; ++k) {
+            at[k] = test_random_unit();
+            if (i % 3 == 0) at[k] = (double)test_random_below(16) / 16;
+        }
+        for (uint32_t v = 0; v < CORNERS; ++v)
+            for (int k = 0; k < 3; ++k)
+                corner_of(c, i, v)[k] = at[k] + scale * c->one.positions[3 * v + (uint32_t)k];
+    }
+}
+
+static int crowd_open(crowd *c, uint32_t count, uint32_t workers)
+{
+    static const double corners[3 * CORNERS] = {0, 0, 0, 1, 0, 0.1, 0.1, 1, 0, 0, 0.2, 1};
+    static const uint32_t faces[3 * FACES] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+    sc_workspace_options options = options_for_workers(workers);
+    memset(c, 0, sizeof *c);
+    c->count = count;
+    c->one = soup_make(CORNERS, FACES);
+    c->all = soup_make(CORNERS * count, FACES * count);
+    memcpy(c->one.positions, corners, sizeof corners);
+    memcpy(c->one.triangles, faces, sizeof faces);
+    for (uint32_t i = 0; i < 3 * FACES * count; ++i)
+        c->all.triangles[i] = i / (3 * FACES) * CORNERS + faces[i % (3 * FACES)];
+    place_crowd(c, 0.05);
+    c->workspaces = (sc_workspace **)test_allocate(sizeof(sc_workspace *) * count);
+    c->poses = (sc_pose *)test_allocate(sizeof(sc_pose) * count);
+    c->objects = (sc_object *)test_allocate(sizeof(sc_object) * count);
+    memset(c->poses, 0, sizeof(sc_pose) * count);
+    memset(c->objects, 0, sizeof(sc_object) * count);
+    c->model = model_of(&c->one);
+    c->whole = model_of(&c->all);
+    if (!c->model || !c->whole ||
+        !CHECK(sc_workspace_create(c->whole, NULL, &c->whole_workspace) == SC_OK))
+        return 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        sc_object *o = &c->objects[i];
+        if (!CHECK(sc_workspace_create_for(c->model, &options, &c->workspaces[i]) == SC_OK))
+            return 0;
+        c->poses[i].struct_size = sizeof c->poses[i];
+        c->poses[i].vertex_count = CORNERS;
+        c->poses[i].position_type = SC_DOUBLE;
+        c->poses[i].positions = corner_of(c, i, 0);
+        o->model = c->model;
+        o->workspace = c->workspaces[i];
+        o->pose = &c->poses[i];
+        o->itself = i % 2;
+        if (i % 5 == 0) o->group.category = o->group.mask = 1 + i % 3;
+    }
+    return 1;
+}
+
+static void crowd_close(crowd *c)
+{
+    for (uint32_t i = 0; i < c->count; ++i) sc_workspace_free(c->workspaces[i]);
+    sc_workspace_free(c->whole_workspace);
+    sc_model_free(c->model);
+    sc_model_free(c->whole);
+    soup_free(&c->one);
+    soup_free(&c->all);
+    free(c->workspaces);
+    free(c->poses);
+    free(c->objects);
+}
+
+static int groups_collide(const sc_object *a, const sc_object *b)
+{
+    const sc_group all = {~0u, ~0u};
+    const sc_group x = a->group.mask ? a->group : all, y = b->group.mask ? b->group : all;
+    return (x.category & y.mask) && (y.category & x.mask);
+}
+
+/* The pairs of one mesh, which has a triangle of every two objects, in the order of objects. */
+static found_list expect_crowd(const crowd *c, uint64_t *most)
+{
+    sc_pose pose;
+    sc_result result;
+    found_list list = {NULL, 0};
+    uint32_t *partners = (uint32_t *)test_allocate(sizeof(uint32_t) * c->count);
+    memset(partners, 0, sizeof(uint32_t) * c->count);
+    memset(&pose, 0, sizeof pose);
+    memset(&result, 0, sizeof result);
+    pose.struct_size = sizeof pose;
+    pose.vertex_count = c->all.vertex_count;
+    pose.position_type = SC_DOUBLE;
+    pose.positions = c->all.positions;
+    result.struct_size = sizeof result;
+    result.capacity = 100 * (uint64_t)c->count;
+    result.pairs = (sc_pair *)test_allocate(sizeof(sc_pair) * result.capacity);
+    CHECK(sc_query(c->whole, c->whole_workspace, &pose, NULL, &result) == SC_OK);
+    list.at = (found *)test_allocate(sizeof(found) * (result.count + 1));
+    for (uint64_t i = 0; i < result.count; ++i) {
+        found *f = &list.at[list.count];
+        f->object_a = result.pairs[i].a / FACES;
+        f->object_b = result.pairs[i].b / FACES;
+        f->a = result.pairs[i].a % FACES;
+        f->b = result.pairs[i].b % FACES;
+        list.count += (uint64_t)groups_collide(&c->objects[f->object_a], &c->objects[f->object_b]);
+    }
+    qsort(list.at, list.count, sizeof *list.at, found_compare);
+    for (uint64_t i = 0; i < list.count; ++i)
+        if (!i || found_compare(&list.at[i - 1], &list.at[i])) {
+            const found *f = &list.at[i];
+            partners[f->object_a] += !i || f->object_a != list.at[i - 1].object_a ||
+                                     f->object_b != list.at[i - 1].object_b;
+            if (partners[f->object_a] > *most) *most = partners[f->object_a];
+        }
+    free(result.pairs);
+    free(partners);
+    return list;
+}
+
+static void check_crowd(crowd *c, const sc_tasks *tasks, uint64_t *ranges, uint64_t *most)
+{
+    const found_list wanted = expect_crowd(c, most);
+    const uint64_t capacity[2] = {wanted.count, 0};
+    const question q = {QUERY, no_options(), {0}, {0}};
+    sc_objects objects;
+    uint64_t at = 0;
+    asked a;
+    memset(&objects, 0, sizeof objects);
+    objects.struct_size = sizeof objects;
+    objects.count = c->count;
+    objects.objects = c->objects;
+    ask(&objects, &q, tasks, capacity, &a);
+    CHECK_MSG(a.status == SC_OK && a.list[0].count == wanted.count &&
+                  a.list[0].range_count == found_list_ranges(&wanted),
+              "%s: %" PRIu64 " pairs of %" PRIu64, sc_status_string(a.status), a.list[0].count,
+              wanted.count);
+    for (uint64_t i = 0; i < a.list[0].range_count && !test_failures(); ++i) {
+        const sc_object_pairs *r = &a.list[0].ranges[i];
+        CHECK(r->first == at);
+        for (uint64_t k = 0; k < r->count; ++k, ++at)
+            CHECK(wanted.at[at].object_a == r->object_a && wanted.at[at].object_b == r->object_b &&
+                  wanted.at[at].a == a.list[0].pairs[at].a &&
+                  wanted.at[at].b == a.list[0].pairs[at].b);
+    }
+    *ranges += a.list[0].range_count;
+    forget(&a);
+    free(wanted.at);
+}
+
+/* Some of which come near more others than an object takes down. */
+static void thousands_are_swept(void)
+{
+    uint64_t ranges = 0, most = 0;
+    crowd c;
+    if (crowd_open(&c, 3000, 1)) check_crowd(&c, NULL, &ranges, &most);
+    CHECK_MSG(ranges > 512 && most > 20, "%" PRIu64 " ranges, at most %" PRIu64, ranges, most);
+    crowd_close(&c);
+}
+
+/* More units than are listed at once. */
+static void lists_of_units_follow_each_other(void)
+{
+    for (int way = HOST_FIRST; way < HOST_COUNT; ++way) {
+        uint64_t ranges = 0, most = 0;
+        crowd c;
+        host h;
+        host_start(&h, way, 2);
+        if (crowd_open(&c, 400, 2)) {
+            place_crowd(&c, 0.3);
+            check_crowd(&c, &h.tasks, &ranges, &most);
+        }
+        CHECK_MSG(ranges > 512 && h.mistakes == 0, "%" PRIu64 " ranges", ranges);
+        host_stop(&h);
+        crowd_close(&c);
+    }
+}
+
+SC_TEST_MAIN(SC_TEST(small_objects_are_shared_out), SC_TEST(large_ones_are_among_small_ones),
+             SC_TEST(a_flag_ends_units), SC_TEST(thousands_are_swept),
+             SC_TEST(lists_of_units_follow_each_other))
