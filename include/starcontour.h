@@ -1446,9 +1446,9 @@ typedef struct sc_objects_result {
  * workspace is in two objects; SC_ERROR_STRIDE. On such errors count, collides and verdict are 0,
  * and the arrays as they were.
  *
- * Tasks share in what is asked of objects, or of two, whose workspaces have as many workers; else the
- * calling thread does it. Objects up to about 14,000 triangles, by themselves or with any other, are
- * asked many at a time, each by one worker, and larger ones one after the other by all workers; but
+ * Tasks share in what is asked of objects, or of two, whose workspaces have as many workers; else
+ * the calling thread does it. Objects up to about 14,000 triangles, by themselves or with any
+ * other, are asked many at a time, each by one worker, and larger ones one after the other by all workers; but
  * where a function is to be asked, all are. Which pair is found of SC_OUTPUT_ANY is up to chance
  * with the latter alone; all else is the same whoever did what. No memory is allocated. Workspaces
  * of one call must not be used by another at the same time. Cost: reading what moved, sc_query for

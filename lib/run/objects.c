@@ -627,7 +627,7 @@ static sc_workspace *find_lead(const objects_run *run)
     return NULL;
 }
 
-/* All units, in order: those that follow each other and are small together, others by themselves. */
+/* All units, in order: small ones that follow each other together, others by themselves. */
 static sc_status look_at_all(objects_run *run)
 {
     sc_pair unit = {0, 0};

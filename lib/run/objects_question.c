@@ -71,8 +71,8 @@ static sc_status check_objects(const sc_objects *objects, uint32_t about)
         sc_workspace *w = sc_objects_question_object(objects, i)->workspace;
         if (w->scene.number) {
             sc_hooks_log(&w->hooks, SC_LOG_ERROR,
-                         "objects %" PRIu32 " and %" PRIu32 " have one workspace", w->scene.number - 1,
-                         i);
+                         "objects %" PRIu32 " and %" PRIu32 " have one workspace",
+                         w->scene.number - 1, i);
             return SC_ERROR_WORKSPACE;
         }
         w->scene.number = i + 1;

@@ -594,8 +594,8 @@ static void ask_function(const sc_filter *f, sc_worker *w)
     w->count = kept;
 }
 
-/* Finds all pairs, by this worker or from this one on by several; 0: the caller's array is too short
-   for those. */
+/* Finds all pairs, by this worker or from this one on by several; 0: the caller's array is too
+   short for those. */
 static int find_pairs(sc_workspace *workspace, sc_worker *worker, const sc_tasks *tasks, plan *p)
 {
     const sc_question *question = worker->question;

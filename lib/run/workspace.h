@@ -66,7 +66,7 @@ enum { SC_MEETS_MAX = 15 };
 typedef struct sc_in_scene {
     struct sc_workspace *next;    /* the next object as they are swept, see run/objects_sweep.h */
     uint32_t number;              /* its own, counted from 1 */
-    uint32_t meet_count;          /* how many objects behind it, in number, come near it; and them, */
+    uint32_t meet_count;          /* how many objects behind it come near it; and their numbers, */
     uint32_t meets[SC_MEETS_MAX]; /* in order, unless they are more */
     uint32_t asks;                /* the caller's function is asked of its pairs with itself */
     uint32_t item;                /* its place in a list of a job, counted from 1; 0: in none */
