@@ -12,7 +12,7 @@
 
 /* Room for so many neighbors a cluster with higher numbers, until it is known how many there are:
    few meshes have more. */
-enum { NEIGHBORS = 6 };
+enum { NEIGHBORS = 8 };
 
 /* A cluster has so many corners and other clusters round them at most, and a table of these has
    more slots, a power of 2. */
