@@ -38,6 +38,32 @@ static inline void sc_atomic_write(volatile uint32_t *flag, uint32_t value)
 #endif
 }
 
+/* Sets a byte to 1. Shared: several threads do that at once, to bytes near each other as well. Then
+   only one that is not yet, as they would wait for each other; without, a test costs more. */
+static inline void sc_atomic_mark(uint8_t *mark, int is_shared)
+{
+#if SC_ATOMIC
+    if (!is_shared || !__atomic_load_n(mark, __ATOMIC_RELAXED))
+        __atomic_store_n(mark, 1, __ATOMIC_RELAXED);
+#else
+    (void)is_shared;
+    *mark = 1;
+#endif
+}
+
+/* Sets a byte to another one if that is less. */
+static inline void sc_atomic_lessen_byte(uint8_t *number, uint8_t less)
+{
+#if SC_ATOMIC
+    uint8_t now = __atomic_load_n(number, __ATOMIC_RELAXED);
+    while (less < now && !__atomic_compare_exchange_n(number, &now, less, 0, __ATOMIC_RELAXED,
+                                                      __ATOMIC_RELAXED)) {
+    }
+#else
+    if (less < *number) *number = less;
+#endif
+}
+
 /* Adds to a number and returns what it was before. */
 static inline size_t sc_atomic_add(size_t *number, size_t more)
 {

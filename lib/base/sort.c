@@ -5,6 +5,8 @@
  */
 #include "base/sort.h"
 
+#include "base/jobs.h"
+
 enum {
     INSERTION_MAX = 24,
     BYTE_VALUES = 256,
@@ -184,39 +186,81 @@ void sc_sort_pairs(sc_pair *pairs, uint64_t count)
     sort_some(pairs, count, BYTES_MOST);
 }
 
-enum { DIGIT_BITS = 10, DIGIT_VALUES = 1 << DIGIT_BITS };
+enum { DIGIT_BITS = 10, DIGIT_VALUES = 1 << DIGIT_BITS, DIGIT_PAIRS_MIN = 5000 };
 
-/* One pass by the ten bits from shift on; pairs that have the same stay in order. */
-static void pass_by_digit(const sc_pair *from, sc_pair *to, uint64_t count, unsigned shift)
+/* Sorts by the ten bits from shift on; pairs that have the same stay in order. */
+typedef struct digit_sort {
+    const sc_tasks *tasks;
+    const sc_pair *from;
+    sc_pair *to;
+    unsigned shift;
+    uint32_t *first; /* DIGIT_VALUES for each part: how many pairs have each; then where they go */
+} digit_sort;
+
+static uint64_t digit_of(const digit_sort *s, uint64_t i)
 {
-    uint32_t first[DIGIT_VALUES + 1], digit;
-    uint64_t i;
-    memset(first, 0, sizeof first);
-    for (i = 0; i < count; i++)
-        first[(sc_sort_number(from[i]) >> shift & (DIGIT_VALUES - 1)) + 1]++;
-    for (digit = 0; digit < DIGIT_VALUES; digit++) first[digit + 1] += first[digit];
-    for (i = 0; i < count; i++)
-        to[first[sc_sort_number(from[i]) >> shift & (DIGIT_VALUES - 1)]++] = from[i];
+    return sc_sort_number(s->from[i]) >> s->shift & (DIGIT_VALUES - 1);
+}
+
+static void count_digits(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const digit_sort *s = (const digit_sort *)context;
+    uint32_t *count = s->first + (size_t)part * DIGIT_VALUES, i;
+    memset(count, 0, DIGIT_VALUES * sizeof *count);
+    for (i = first; i < end; i++) count[digit_of(s, i)]++;
+}
+
+static void move_by_digit(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const digit_sort *s = (const digit_sort *)context;
+    uint32_t *next = s->first + (size_t)part * DIGIT_VALUES, i;
+    for (i = first; i < end; i++) s->to[next[digit_of(s, i)]++] = s->from[i];
+}
+
+static void pass_by_digit(digit_sort *s, uint32_t count)
+{
+    uint32_t parts = sc_jobs_loop(s->tasks, count, DIGIT_PAIRS_MIN, count_digits, s), part, digit,
+             sum = 0;
+    for (digit = 0; digit < DIGIT_VALUES; digit++)
+        for (part = 0; part < parts; part++) {
+            uint32_t *first = s->first + (size_t)part * DIGIT_VALUES + digit, some = *first;
+            *first = sum;
+            sum += some;
+        }
+    sc_jobs_loop(s->tasks, count, DIGIT_PAIRS_MIN, move_by_digit, s);
 }
 
 /* By some bits of the number of a pair, from lowest on; returns where the sorted ones are. */
-static sc_pair *pass_by_digits(sc_pair *from, sc_pair *to, uint64_t count, unsigned lowest,
-                               unsigned bits)
+static sc_pair *pass_by_digits(sc_pair *from, sc_pair *to, uint32_t count, unsigned lowest,
+                               unsigned bits, const sc_tasks *tasks, uint32_t *room)
 {
+    uint32_t of_one[DIGIT_VALUES];
+    digit_sort s;
     unsigned done;
+    s.tasks = tasks;
+    s.first = tasks ? room : of_one;
     for (done = 0; done < bits; done += DIGIT_BITS) {
         sc_pair *swapped = from;
-        pass_by_digit(from, to, count, lowest + done);
+        s.from = from;
+        s.to = to;
+        s.shift = lowest + done;
+        pass_by_digit(&s, count);
         from = to;
         to = swapped;
     }
     return from;
 }
 
-void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits)
+sc_pair *sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint32_t count, unsigned bits,
+                           const sc_tasks *tasks, uint32_t *room)
 {
-    const sc_pair *sorted = pass_by_digits(pairs, spare, count, 32, bits);
-    if (sorted != pairs) memcpy(pairs, sorted, (size_t)count * sizeof *pairs);
+    return pass_by_digits(pairs, spare, count, 32, bits, tasks, room);
+}
+
+uint32_t sc_sort_digits_room(uint32_t count)
+{
+    uint32_t parts = (count - 1) / DIGIT_PAIRS_MIN + 1;
+    return DIGIT_VALUES * (parts < SC_JOBS_PARTS ? parts : SC_JOBS_PARTS);
 }
 
 static unsigned bits_of(uint32_t number)
@@ -239,8 +283,10 @@ void sc_sort_with_room(sc_pair *pairs, sc_pair *spare, uint64_t count)
     bits_a = bits_of((uint32_t)(differ >> 32));
     bits_b = bits_of((uint32_t)differ);
     /* where many have the same a, by b as well; else what is left is near its place */
-    if (count >> bits_a >= SAME_FEW) sorted = pass_by_digits(pairs, spare, count, 0, bits_b);
-    sorted = pass_by_digits(sorted, sorted == pairs ? spare : pairs, count, 32, bits_a);
+    if (count >> bits_a >= SAME_FEW)
+        sorted = pass_by_digits(pairs, spare, (uint32_t)count, 0, bits_b, NULL, NULL);
+    sorted = pass_by_digits(sorted, sorted == pairs ? spare : pairs, (uint32_t)count, 32, bits_a,
+                            NULL, NULL);
     if (sorted != pairs) memcpy(pairs, sorted, (size_t)count * sizeof *pairs);
     if (!insertion_sort(pairs, count, 4 * count)) sc_sort_pairs(pairs, count);
 }

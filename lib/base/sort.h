@@ -37,9 +37,13 @@ void sc_sort_pairs(sc_pair *pairs, uint64_t count);
    half their count if there are 9 or more. */
 uint64_t sc_sort_split(sc_pair *pairs, uint64_t count);
 
-/* The same by the lowest `bits` bits of a, all others of which must be the same; pairs with equal a
-   stay in order. Linear: a pass for every ten bits. spare has room for as many. */
-void sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint64_t count, unsigned bits);
+/* The same by the lowest `bits` bits of a; pairs with equal a stay in order. Linear: a pass for
+   every ten bits, by the host's tasks if there are any. There are 1 to 2^32 - 1 pairs, and spare
+   has room for as many. With tasks, room is for so many numbers as sc_sort_digits_room says.
+   Returns where the sorted pairs are: in spare after an odd number of passes. */
+sc_pair *sc_sort_by_digits(sc_pair *pairs, sc_pair *spare, uint32_t count, unsigned bits,
+                           const sc_tasks *tasks, uint32_t *room);
+uint32_t sc_sort_digits_room(uint32_t count);
 
 /* As sc_sort_pairs, in a third to a sixth of the time where there are thousands, unless many have
    the same a. spare has room for as many. */

@@ -6,8 +6,14 @@
 #include "build/locality.h"
 
 #include <math.h>
+#include <string.h>
 
+#include "base/atomic.h"
+#include "base/jobs.h"
 #include "base/sort.h"
+
+/* Triangles and points of the shortest part of a loop. */
+enum { ALONG_TRIANGLES_MIN = 5000, ALONG_POINTS_MIN = 5000 };
 
 /* Cells along each axis: 2 to the power of this. */
 enum { CELL_BITS = 10 };
@@ -50,92 +56,194 @@ static void turn_to_hilbert(uint32_t cell[3])
     cell[1] ^= flip;
 }
 
-/* low and factor of each axis: a center c is in cell (c - low) * factor. Eighths of coordinates, so
-   that nothing overflows. */
-static void measure_box(const sc_points *points, double low[3], double *factor)
+/* What is done to the points, in parts. */
+typedef struct renumbering {
+    sc_points *points;
+    int curve;
+    double low[SC_JOBS_PARTS][3], high[SC_JOBS_PARTS][3]; /* of each part: eighths of coordinates */
+    double factor;                                        /* see measure_box */
+    sc_pair *keys;
+    uint32_t *triangles;            /* in the order of the keys */
+    double *rest;                   /* of points in their new order */
+    uint8_t *owner;                 /* the first part that uses a point; 0 if there is one */
+    uint32_t *number;               /* of each point among its owner's, or SC_NONE */
+    uint32_t before[SC_JOBS_PARTS]; /* how many points each part owns; then all before it */
+} renumbering;
+
+static void measure_some(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    double high[3], size = 0;
+    renumbering *n = (renumbering *)context;
+    double low[3], high[3];
     uint64_t i;
     int k;
     for (k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
-    for (i = 0; i < points->point_count; i++)
+    for (i = first; i < end; i++)
         for (k = 0; k < 3; k++) {
-            double x = points->rest[3 * i + (uint64_t)k] / 8;
+            double x = n->points->rest[3 * i + (uint64_t)k] / 8;
             if (x < low[k]) low[k] = x;
             if (x > high[k]) high[k] = x;
+        }
+    memcpy(n->low[part], low, sizeof low);
+    memcpy(n->high[part], high, sizeof high);
+}
+
+/* low[0] and factor of each axis: a center c is in cell (c - low) * factor. Eighths of coordinates,
+   so that nothing overflows. */
+static void measure_box(renumbering *n, const sc_tasks *tasks)
+{
+    uint32_t parts = sc_jobs_loop(tasks, n->points->point_count, ALONG_POINTS_MIN, measure_some, n),
+             part;
+    double *low = n->low[0], *high = n->high[0], size = 0;
+    int k;
+    for (part = 1; part < parts; part++)
+        for (k = 0; k < 3; k++) {
+            if (n->low[part][k] < low[k]) low[k] = n->low[part][k];
+            if (n->high[part][k] > high[k]) high[k] = n->high[part][k];
         }
     for (k = 0; k < 3; k++) {
         if (high[k] - low[k] > size) size = high[k] - low[k];
         low[k] *= 3;
     }
-    *factor = (1 << CELL_BITS) / (3 * size);
+    n->factor = (1 << CELL_BITS) / (3 * size);
 }
 
-static void list_keys(const sc_points *points, int curve, sc_pair *keys)
+static void list_keys(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    double low[3], factor;
+    const renumbering *n = (const renumbering *)context;
+    const sc_points *points = n->points;
+    const double factor = n->factor;
     uint32_t t, k;
-    measure_box(points, low, &factor);
-    for (t = 0; t < points->triangle_count; t++) {
+    (void)part;
+    for (t = first; t < end; t++) {
         const uint32_t *corner = points->triangles + 3 * (uint64_t)t;
         const double *p = points->rest + 3 * (uint64_t)corner[0];
         const double *q = points->rest + 3 * (uint64_t)corner[1];
         const double *r = points->rest + 3 * (uint64_t)corner[2];
         uint32_t cell[3];
         for (k = 0; k < 3; k++) {
-            double at = (p[k] / 8 + q[k] / 8 + r[k] / 8 - low[k]) * factor;
+            double at = (p[k] / 8 + q[k] / 8 + r[k] / 8 - n->low[0][k]) * factor;
             cell[k] = 0; /* as well if at is NaN: a mesh as small as rounding */
             if (at > 0) cell[k] = at < (1 << CELL_BITS) - 1 ? (uint32_t)at : (1 << CELL_BITS) - 1;
         }
-        if (curve == SC_LOCALITY_HILBERT) turn_to_hilbert(cell);
-        keys[t].a = spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2;
-        keys[t].b = t;
+        if (n->curve == SC_LOCALITY_HILBERT) turn_to_hilbert(cell);
+        n->keys[t].a = spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2;
+        n->keys[t].b = t;
     }
 }
 
-/* Puts the triangles in the order of the keys, and numbers points anew. */
-static void renumber_along(sc_points *points, const sc_pair *keys, uint32_t *triangles,
-                           uint32_t *number, double *rest)
+/* Puts triangles in the order of the keys, and marks whose their points are. */
+static void gather_triangles(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    uint32_t t, k, v, next = 0;
-    for (t = 0; t < points->triangle_count; t++)
+    const renumbering *n = (const renumbering *)context;
+    uint32_t *corner = n->triangles + 3 * (uint64_t)first, t, k;
+    for (t = first; t < end; t++, corner += 3) {
+        const uint32_t *from = n->points->triangles + 3 * (uint64_t)n->keys[t].b;
         for (k = 0; k < 3; k++) {
-            uint32_t p = points->triangles[3 * (uint64_t)keys[t].b + k];
-            if (number[p] == SC_NONE) {
-                const double *from = points->rest + 3 * (uint64_t)p;
-                double *to = rest + 3 * (uint64_t)next;
-                to[0] = from[0];
-                to[1] = from[1];
-                to[2] = from[2];
-                number[p] = next++;
-            }
-            triangles[3 * (uint64_t)t + k] = number[p];
+            corner[k] = from[k];
+            sc_atomic_lessen_byte(&n->owner[from[k]], (uint8_t)part);
         }
-    for (t = 0; t < points->triangle_count; t++) points->id[t] = keys[t].b;
-    for (v = 0; v < points->vertex_count; v++)
-        if (points->slot[v] < SC_SLOT_WELDED) points->slot[v] = number[points->slot[v]];
+        n->points->id[t] = n->keys[t].b;
+    }
+}
+
+/* Numbers the points that a part owns, in the order in which it uses them. */
+static void number_own(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    renumbering *n = (renumbering *)context;
+    const uint32_t *p = n->triangles + 3 * (uint64_t)first;
+    const uint32_t *last = n->triangles + 3 * (uint64_t)end;
+    uint32_t next = 0;
+    for (; p < last; p++)
+        if (n->owner[*p] == part && n->number[*p] == SC_NONE) n->number[*p] = next++;
+    n->before[part] = next;
+}
+
+static uint32_t new_number(const renumbering *n, uint32_t point)
+{
+    return n->before[n->owner[point]] + n->number[point];
+}
+
+static void name_anew(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const renumbering *n = (const renumbering *)context;
+    uint32_t *p = n->triangles + 3 * (uint64_t)first;
+    const uint32_t *last = n->triangles + 3 * (uint64_t)end;
+    (void)part;
+    for (; p < last; p++) *p = new_number(n, *p);
+}
+
+static void move_points(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const renumbering *n = (const renumbering *)context;
+    uint32_t p;
+    (void)part;
+    for (p = first; p < end; p++) {
+        const double *from = n->points->rest + 3 * (uint64_t)p;
+        double *to = n->rest + 3 * (uint64_t)new_number(n, p);
+        to[0] = from[0];
+        to[1] = from[1];
+        to[2] = from[2];
+    }
+}
+
+static void renumber_slots(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const renumbering *n = (const renumbering *)context;
+    uint32_t *slot = n->points->slot, v;
+    (void)part;
+    for (v = first; v < end; v++)
+        if (slot[v] < SC_SLOT_WELDED) slot[v] = new_number(n, slot[v]);
+}
+
+/* Numbers points in the order in which triangles first use them: those of which a part is the first
+   to use them come after those of all parts before it. */
+static void renumber_along(renumbering *n, const sc_tasks *tasks)
+{
+    sc_points *points = n->points;
+    uint32_t part, parts, sum = 0;
+    parts = sc_jobs_loop(tasks, points->triangle_count, ALONG_TRIANGLES_MIN, gather_triangles, n);
+    n->number = points->triangles; /* which have been read; each point is in one */
+    memset(n->number, 0xff, points->point_count * sizeof *n->number);
+    sc_jobs_loop(tasks, points->triangle_count, ALONG_TRIANGLES_MIN, number_own, n);
+    for (part = 0; part < parts; part++) {
+        uint32_t own = n->before[part];
+        n->before[part] = sum;
+        sum += own;
+    }
+    sc_jobs_loop(tasks, points->triangle_count, ALONG_TRIANGLES_MIN, name_anew, n);
+    sc_jobs_loop(tasks, points->point_count, ALONG_POINTS_MIN, move_points, n);
+    sc_jobs_loop(tasks, points->vertex_count, ALONG_POINTS_MIN, renumber_slots, n);
 }
 
 sc_status sc_locality_sort(sc_points *points, int curve, sc_scratch *scratch)
 {
-    uint32_t count = points->triangle_count, *triangles, *number;
+    const sc_tasks *tasks = scratch->tasks;
+    uint32_t count = points->triangle_count, *room = NULL;
     sc_pair *keys, *spare;
-    double *rest;
+    renumbering n;
+    n.points = points;
+    n.curve = curve;
+    n.triangles = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof(uint32_t));
     keys = (sc_pair *)sc_scratch_take(scratch, count, sizeof *keys);
-    triangles = (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)count, sizeof *triangles);
-    if (!keys || !triangles) return SC_ERROR_MEMORY;
-    spare = (sc_pair *)(void *)triangles; /* until the keys are sorted */
-    list_keys(points, curve, keys);
-    sc_sort_by_digits(keys, spare, count, 3 * CELL_BITS);
-    rest = (double *)sc_scratch_take(scratch, 3 * (uint64_t)points->point_count, sizeof *rest);
-    number = (uint32_t *)sc_scratch_take_filled(scratch, points->point_count, sizeof *number, 0xff);
-    if (!rest || !number) return SC_ERROR_MEMORY;
-    renumber_along(points, keys, triangles, number, rest);
+    if (tasks)
+        room = (uint32_t *)sc_scratch_take(scratch, sc_sort_digits_room(count), sizeof *room);
+    if (!keys || !n.triangles || (tasks && !room)) return SC_ERROR_MEMORY;
+    spare = (sc_pair *)(void *)n.triangles; /* until keys are sorted: by three passes, into keys */
+    n.keys = spare;
+    measure_box(&n, tasks);
+    sc_jobs_loop(tasks, count, ALONG_TRIANGLES_MIN, list_keys, &n);
+    n.keys = sc_sort_by_digits(spare, keys, count, 3 * CELL_BITS, tasks, room);
+    sc_scratch_give(scratch, room);
+    n.rest = (double *)sc_scratch_take(scratch, 3 * (uint64_t)points->point_count, sizeof(double));
+    n.owner = (uint8_t *)sc_scratch_take_filled(scratch, points->point_count, 1,
+                                                tasks ? SC_JOBS_PARTS : 0);
+    if (!n.rest || !n.owner) return SC_ERROR_MEMORY;
+    renumber_along(&n, tasks);
     sc_scratch_give(scratch, keys);
-    sc_scratch_give(scratch, number);
+    sc_scratch_give(scratch, n.owner);
     sc_scratch_give(scratch, points->triangles);
     sc_scratch_give(scratch, points->rest);
-    points->triangles = triangles;
-    points->rest = rest;
+    points->triangles = n.triangles;
+    points->rest = n.rest;
     return SC_OK;
 }
