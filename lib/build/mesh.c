@@ -11,9 +11,14 @@
 
 #include "base/arguments.h"
 #include "base/assume.h"
+#include "base/atomic.h"
+#include "base/jobs.h"
 
 #define MAX_TRIANGLES 0x55555554u
 #define MAX_VERTICES 0xfffffff0u
+
+/* Triangles and vertices of the shortest part that is read by itself. */
+enum { READ_TRIANGLES_MIN = 5000, READ_VERTICES_MIN = 5000 };
 
 void sc_mesh_read_position(const void *positions, uint32_t type, uint64_t stride, uint64_t e,
                            double position[3])
@@ -50,29 +55,108 @@ static sc_status read_index_stride(const sc_hooks *hooks, const sc_mesh *mesh, u
                                3 * (narrow ? sizeof(uint16_t) : sizeof(uint32_t)), stride);
 }
 
-static sc_status read_triangles(const sc_mesh *mesh, uint64_t stride, const sc_hooks *hooks,
-                                uint32_t *triangles)
+/* A mesh that is read in parts. */
+typedef struct reading {
+    const sc_mesh *mesh;
+    const sc_hooks *hooks;
+    const sc_tasks *tasks;
+    const uint32_t *weld_map; /* NULL: the caller gave none */
+    uint64_t position_stride, index_stride;
+    sc_points *points;
+    uint32_t *representative;       /* of each used vertex */
+    uint8_t *used;                  /* whether a vertex is; set by all parts */
+    uint32_t wrong[SC_JOBS_PARTS];  /* the first triangle or vertex of a part that is, or SC_NONE */
+    uint32_t number[SC_JOBS_PARTS]; /* how many points a part has; then the number of its first */
+} reading;
+
+/* The first wrong triangle or vertex, if any: a part ends at its first, and all before it are
+   right. */
+static uint32_t first_wrong(const reading *r, uint32_t parts)
 {
-    const unsigned char *at = (const unsigned char *)mesh->indices;
-    uint32_t t;
+    uint32_t part = 0;
+    while (part < parts && r->wrong[part] == SC_NONE) part++;
+    return part < parts ? r->wrong[part] : SC_NONE;
+}
+
+static void read_some_triangles(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    reading *r = (reading *)context;
+    const uint64_t stride = r->index_stride;
+    const uint32_t vertex_count = r->mesh->vertex_count, *weld_map = r->weld_map;
+    const int is_narrow = r->mesh->index_type == SC_UINT16, is_shared = r->tasks != NULL;
+    const unsigned char *at = (const unsigned char *)r->mesh->indices + stride * first;
+    uint8_t *used = r->used;
+    uint32_t *corners = r->points->triangles + 3 * (uint64_t)first, t;
     int k;
-    for (t = 0; t < mesh->triangle_count; t++, at += stride, triangles += 3) {
-        if (mesh->index_type == SC_UINT16) {
+    r->wrong[part] = SC_NONE;
+    for (t = first; t < end; t++, at += stride, corners += 3) {
+        if (is_narrow) {
             uint16_t narrow[3];
             memcpy(narrow, at, sizeof narrow);
-            for (k = 0; k < 3; k++) triangles[k] = narrow[k];
+            for (k = 0; k < 3; k++) corners[k] = narrow[k];
         } else {
-            memcpy(triangles, at, 3 * sizeof(uint32_t));
+            memcpy(corners, at, 3 * sizeof(uint32_t));
         }
-        for (k = 0; k < 3; k++)
-            if (triangles[k] >= mesh->vertex_count) {
-                sc_hooks_log(hooks, SC_LOG_ERROR,
-                             "triangle %" PRIu32 " names vertex %" PRIu32 " of %" PRIu32, t,
-                             triangles[k], mesh->vertex_count);
-                return SC_ERROR_INDEX;
+        for (k = 0; k < 3; k++) {
+            uint32_t v = corners[k];
+            if (v >= vertex_count) {
+                r->wrong[part] = t;
+                return;
             }
+            sc_atomic_mark(&used[v], is_shared);
+            /* what stands for a used vertex is used */
+            if (weld_map) sc_atomic_mark(&used[weld_map[v]], is_shared);
+        }
     }
-    return SC_OK;
+}
+
+static sc_status read_triangles(reading *r)
+{
+    const sc_mesh *mesh = r->mesh;
+    const uint32_t parts = sc_jobs_loop(r->tasks, mesh->triangle_count, READ_TRIANGLES_MIN,
+                                        read_some_triangles, r),
+                   t = first_wrong(r, parts);
+    const uint32_t *corner;
+    if (t == SC_NONE) return SC_OK;
+    corner = r->points->triangles + 3 * (uint64_t)t;
+    while (*corner < mesh->vertex_count) corner++;
+    sc_hooks_log(r->hooks, SC_LOG_ERROR,
+                 "triangle %" PRIu32 " names vertex %" PRIu32 " of %" PRIu32, t, *corner,
+                 mesh->vertex_count);
+    return SC_ERROR_INDEX;
+}
+
+static void read_vertex(const reading *r, uint32_t v, double position[3])
+{
+    sc_mesh_read_position(r->mesh->positions, r->mesh->position_type, r->position_stride, v,
+                          position);
+}
+
+static void check_some_vertices(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    reading *r = (reading *)context;
+    uint32_t v;
+    r->wrong[part] = SC_NONE;
+    for (v = first; v < end; v++) {
+        double p[3];
+        if (!r->used[v]) continue;
+        read_vertex(r, v, p);
+        if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))) {
+            r->wrong[part] = v;
+            return;
+        }
+        r->representative[v] = r->weld_map ? r->weld_map[v] : v;
+    }
+}
+
+static sc_status check_vertices(reading *r)
+{
+    const uint32_t parts = sc_jobs_loop(r->tasks, r->mesh->vertex_count, READ_VERTICES_MIN,
+                                        check_some_vertices, r),
+                   v = first_wrong(r, parts);
+    if (v == SC_NONE) return SC_OK;
+    sc_hooks_log(r->hooks, SC_LOG_ERROR, "vertex %" PRIu32 " is NaN or infinite", v);
+    return SC_ERROR_NOT_FINITE;
 }
 
 static uint64_t hash_position(const double position[3])
@@ -89,31 +173,97 @@ static uint64_t hash_position(const double position[3])
 }
 
 /* representative[v] for all used vertices: the lowest used vertex at the same position. */
-static sc_status weld_rest(const sc_mesh *mesh, uint64_t stride, const uint8_t *used,
-                           sc_scratch *scratch, uint32_t *representative)
+static sc_status weld_rest(reading *r, sc_scratch *scratch)
 {
+    const uint32_t count = r->mesh->vertex_count;
     uint64_t size = 16, at;
     uint32_t *table, v;
-    while (size < 2 * (uint64_t)mesh->vertex_count) size *= 2;
+    while (size < 2 * (uint64_t)count) size *= 2;
     table = (uint32_t *)sc_scratch_take_filled(scratch, size, sizeof *table, 0xff);
     if (!table) return SC_ERROR_MEMORY;
-    for (v = 0; v < mesh->vertex_count; v++) {
+    for (v = 0; v < count; v++) {
         double p[3], q[3];
-        if (!used[v]) continue;
-        sc_mesh_read_position(mesh->positions, mesh->position_type, stride, v, p);
+        if (!r->used[v]) continue;
+        read_vertex(r, v, p);
         for (at = hash_position(p) & (size - 1);; at = (at + 1) & (size - 1)) {
             if (table[at] == SC_NONE) {
-                table[at] = representative[v] = v;
+                table[at] = r->representative[v] = v;
                 break;
             }
-            sc_mesh_read_position(mesh->positions, mesh->position_type, stride, table[at], q);
+            read_vertex(r, table[at], q);
             if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
-                representative[v] = table[at];
+                r->representative[v] = table[at];
                 break;
             }
         }
     }
     sc_scratch_give(scratch, table);
+    return SC_OK;
+}
+
+static int is_point(const reading *r, uint32_t v)
+{
+    return r->used[v] && r->representative[v] == v;
+}
+
+static void count_representatives(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    reading *r = (reading *)context;
+    uint32_t v, count = 0;
+    for (v = first; v < end; v++) count += (uint32_t)is_point(r, v);
+    r->number[part] = count;
+}
+
+static void number_representatives(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const reading *r = (const reading *)context;
+    uint32_t v, next = r->number[part];
+    for (v = first; v < end; v++)
+        r->points->slot[v] = !r->used[v]                 ? SC_SLOT_UNUSED
+                             : r->representative[v] != v ? SC_SLOT_WELDED
+                                                         : next++;
+}
+
+static void name_points(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const reading *r = (const reading *)context;
+    uint32_t *corner = r->points->triangles + 3 * (uint64_t)first, t;
+    int k;
+    (void)part;
+    for (t = first; t < end; t++, corner += 3) {
+        for (k = 0; k < 3; k++) corner[k] = r->points->slot[r->representative[corner[k]]];
+        r->points->id[t] = t;
+    }
+}
+
+static void copy_rest_pose(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const reading *r = (const reading *)context;
+    uint32_t v;
+    (void)part;
+    for (v = first; v < end; v++)
+        if (r->points->slot[v] < SC_SLOT_WELDED)
+            read_vertex(r, v, r->points->rest + 3 * (uint64_t)r->points->slot[v]);
+}
+
+/* Numbers points in the order of their vertices, and names them in triangles. */
+static sc_status make_points(reading *r, sc_scratch *scratch)
+{
+    sc_points *points = r->points;
+    uint32_t parts, part;
+    parts =
+        sc_jobs_loop(r->tasks, points->vertex_count, READ_VERTICES_MIN, count_representatives, r);
+    for (points->point_count = part = 0; part < parts; part++) {
+        uint32_t count = r->number[part];
+        r->number[part] = points->point_count;
+        points->point_count += count;
+    }
+    points->rest =
+        (double *)sc_scratch_take(scratch, 3 * (uint64_t)points->point_count, sizeof(double));
+    if (!points->rest) return SC_ERROR_MEMORY;
+    sc_jobs_loop(r->tasks, points->vertex_count, READ_VERTICES_MIN, number_representatives, r);
+    sc_jobs_loop(r->tasks, points->triangle_count, READ_TRIANGLES_MIN, name_points, r);
+    sc_jobs_loop(r->tasks, points->vertex_count, READ_VERTICES_MIN, copy_rest_pose, r);
     return SC_OK;
 }
 
@@ -160,63 +310,35 @@ static sc_status check_mesh(const sc_mesh *mesh, const sc_hooks *hooks, uint64_t
 sc_status sc_mesh_read(const sc_mesh *mesh, const sc_build_options *options, sc_scratch *scratch,
                        sc_points *points)
 {
-    uint64_t position_stride, index_stride, h, corners;
-    uint32_t *representative, v, t;
-    uint8_t *used;
+    reading r;
     sc_status status;
 
-    status = check_mesh(mesh, options->hooks, &position_stride, &index_stride);
+    status = check_mesh(mesh, options->hooks, &r.position_stride, &r.index_stride);
     if (!status && options->weld == SC_WELD_MAP)
         status = check_weld_map(options, mesh->vertex_count);
     if (status) return status;
 
-    corners = 3 * (uint64_t)mesh->triangle_count;
     points->vertex_count = mesh->vertex_count;
     points->triangle_count = mesh->triangle_count;
-    points->triangles = (uint32_t *)sc_scratch_take(scratch, corners, sizeof(uint32_t));
+    points->triangles =
+        (uint32_t *)sc_scratch_take(scratch, 3 * (uint64_t)mesh->triangle_count, sizeof(uint32_t));
     points->id = (uint32_t *)sc_scratch_take(scratch, mesh->triangle_count, sizeof(uint32_t));
     points->slot = (uint32_t *)sc_scratch_take(scratch, mesh->vertex_count, sizeof(uint32_t));
-    representative = (uint32_t *)sc_scratch_take(scratch, mesh->vertex_count, sizeof(uint32_t));
-    used = (uint8_t *)sc_scratch_take_filled(scratch, mesh->vertex_count, 1, 0);
-    if (!points->triangles || !points->id || !points->slot || !representative || !used)
+    r.mesh = mesh;
+    r.hooks = options->hooks;
+    r.tasks = scratch->tasks;
+    r.weld_map = options->weld == SC_WELD_MAP ? options->weld_map : NULL;
+    r.points = points;
+    r.representative = (uint32_t *)sc_scratch_take(scratch, mesh->vertex_count, sizeof(uint32_t));
+    r.used = (uint8_t *)sc_scratch_take_filled(scratch, mesh->vertex_count, 1, 0);
+    if (!points->triangles || !points->id || !points->slot || !r.representative || !r.used)
         return SC_ERROR_MEMORY;
-    status = read_triangles(mesh, index_stride, options->hooks, points->triangles);
+    status = read_triangles(&r);
+    if (!status) status = check_vertices(&r);
+    if (!status && options->weld == SC_WELD_REST) status = weld_rest(&r, scratch);
+    if (!status) status = make_points(&r, scratch);
     if (status) return status;
-
-    for (h = 0; h < corners; h++) used[points->triangles[h]] = 1;
-    if (options->weld == SC_WELD_MAP) /* what stands for a used vertex is used */
-        for (h = 0; h < corners; h++) used[options->weld_map[points->triangles[h]]] = 1;
-    for (v = 0; v < mesh->vertex_count; v++) {
-        double p[3];
-        if (!used[v]) continue;
-        sc_mesh_read_position(mesh->positions, mesh->position_type, position_stride, v, p);
-        if (!(isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]))) {
-            sc_hooks_log(options->hooks, SC_LOG_ERROR, "vertex %" PRIu32 " is NaN or infinite", v);
-            return SC_ERROR_NOT_FINITE;
-        }
-        representative[v] = options->weld == SC_WELD_MAP ? options->weld_map[v] : v;
-    }
-    if (options->weld == SC_WELD_REST) {
-        status = weld_rest(mesh, position_stride, used, scratch, representative);
-        if (status) return status;
-    }
-
-    points->point_count = 0;
-    for (v = 0; v < mesh->vertex_count; v++)
-        points->slot[v] = !used[v]                 ? SC_SLOT_UNUSED
-                          : representative[v] != v ? SC_SLOT_WELDED
-                                                   : points->point_count++;
-    for (h = 0; h < corners; h++)
-        points->triangles[h] = points->slot[representative[points->triangles[h]]];
-    points->rest =
-        (double *)sc_scratch_take(scratch, 3 * (uint64_t)points->point_count, sizeof(double));
-    if (!points->rest) return SC_ERROR_MEMORY;
-    for (v = 0; v < mesh->vertex_count; v++)
-        if (points->slot[v] < SC_SLOT_WELDED)
-            sc_mesh_read_position(mesh->positions, mesh->position_type, position_stride, v,
-                                  points->rest + 3 * (uint64_t)points->slot[v]);
-    for (t = 0; t < mesh->triangle_count; t++) points->id[t] = t;
-    sc_scratch_give(scratch, representative);
-    sc_scratch_give(scratch, used);
+    sc_scratch_give(scratch, r.representative);
+    sc_scratch_give(scratch, r.used);
     return SC_OK;
 }
