@@ -467,6 +467,73 @@ static bool read_element(ply_reader *reader, const ply_element *element)
            fail_memory(reader);
 }
 
+/* The 32 bits at a place of a binary file. */
+static uint32_t word_at(const ply_reader *reader, const char *at)
+{
+    const unsigned char *b = (const unsigned char *)at;
+    return reader->format == PLY_BIG
+               ? (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3]
+               : (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0];
+}
+
+/* The same as read_element for the first vertices of a binary file, as far as they are there, if x,
+   y and z are floats and nothing is a list. Adds to *count how many were read. */
+static bool read_float_vertices(ply_reader *reader, const ply_element *element, uint64_t *count)
+{
+    const ply_property *properties = reader->properties + element->first_property;
+    size_t offsets[3] = {0, 0, 0}, size = 0;
+    if (reader->format == PLY_TEXT || element->kind != PLY_VERTICES) return true;
+    for (size_t i = 0; i < element->property_count; i++) {
+        const ply_property *property = &properties[i];
+        if (property->is_list || (property->role < 3 && property->type != PLY_FLOAT)) return true;
+        if (property->role < 3) offsets[property->role] = size;
+        size += type_sizes[property->type];
+    }
+    for (; *count < element->count && (size_t)(reader->end - reader->at) >= size; ++*count) {
+        double position[3];
+        for (size_t k = 0; k < 3; k++) {
+            const uint32_t bits = word_at(reader, reader->at + offsets[k]);
+            float single;
+            memcpy(&single, &bits, sizeof single);
+            position[k] = (double)single;
+        }
+        if (!polygon_mesh_add_vertex(reader->mesh, position)) return fail_memory(reader);
+        reader->at += size;
+    }
+    return true;
+}
+
+/* The same as read_element for the first faces of a binary file, up to the first one that is no
+   triangle or is not as it should be, if they are lists of 32-bit numbers with a byte for their
+   length and nothing else. Adds to *count how many were read. */
+static bool read_triangles(ply_reader *reader, const ply_element *element, uint64_t *count)
+{
+    const ply_property *property = reader->properties + element->first_property;
+    const size_t size = 1 + 3 * 4;
+    if (reader->format == PLY_TEXT || property->role != PLY_CORNERS ||
+        element->property_count != 1 || type_sizes[property->count_type] != 1 ||
+        (property->type != PLY_INT32 && property->type != PLY_UINT32) ||
+        reader->vertex_count > INT32_MAX)
+        return true;
+    const size_t room = (size_t)(reader->end - reader->at) / size;
+    const size_t wanted = element->count < room ? (size_t)element->count : room;
+    if (!polygon_mesh_reserve_faces(reader->mesh, wanted) ||
+        !polygon_mesh_reserve_corners(reader->mesh, 3 * wanted))
+        return fail_memory(reader);
+    for (; *count < wanted && *reader->at == 3; ++*count) {
+        uint32_t corners[3];
+        bool known = true; /* negative numbers are larger than that of any vertex */
+        for (size_t k = 0; k < 3; k++) {
+            corners[k] = word_at(reader, reader->at + 1 + 4 * k);
+            known &= corners[k] < reader->vertex_count;
+        }
+        if (!known) break;
+        if (!polygon_mesh_add_face(reader->mesh, corners, 3)) return fail_memory(reader);
+        reader->at += size;
+    }
+    return true;
+}
+
 static bool read_data(ply_reader *reader)
 {
     for (size_t i = 0; i < reader->element_count; i++) {
@@ -476,7 +543,10 @@ static bool read_data(ply_reader *reader)
         if (element->kind == PLY_VERTICES &&
             !polygon_mesh_reserve_vertices(reader->mesh, (size_t)element->count))
             return fail_memory(reader);
-        for (uint64_t k = 0; k < element->count; k++) {
+        uint64_t done = 0;
+        if (!read_float_vertices(reader, element, &done) || !read_triangles(reader, element, &done))
+            return false;
+        for (; done < element->count; done++) {
             if (!read_element(reader, element)) return false;
         }
     }

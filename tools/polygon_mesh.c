@@ -42,12 +42,12 @@ bool polygon_mesh_reserve_corners(polygon_mesh *mesh, size_t count)
     return done;
 }
 
-static bool reserve_face(polygon_mesh *mesh)
+bool polygon_mesh_reserve_faces(polygon_mesh *mesh, size_t count)
 {
-    if (mesh->face_count >= UINT32_MAX - 1) return false;
+    if (count > UINT32_MAX - 1 - mesh->face_count) return false;
     void *array = mesh->offsets;
     const bool done =
-        reserve(&array, &mesh->face_room, mesh->face_count + 2, sizeof *mesh->offsets);
+        reserve(&array, &mesh->face_room, mesh->face_count + count + 1, sizeof *mesh->offsets);
     mesh->offsets = (size_t *)array;
     return done;
 }
@@ -55,7 +55,7 @@ static bool reserve_face(polygon_mesh *mesh)
 bool polygon_mesh_init(polygon_mesh *mesh)
 {
     memset(mesh, 0, sizeof *mesh);
-    if (!reserve_face(mesh)) return false;
+    if (!polygon_mesh_reserve_faces(mesh, 1)) return false;
     mesh->offsets[0] = 0;
     return true;
 }
@@ -90,7 +90,7 @@ bool polygon_mesh_add_corner(polygon_mesh *mesh, size_t index, uint32_t corner)
 
 bool polygon_mesh_end_face(polygon_mesh *mesh, size_t count)
 {
-    if (!reserve_face(mesh)) return false;
+    if (!polygon_mesh_reserve_faces(mesh, 1)) return false;
     mesh->offsets[mesh->face_count + 1] = mesh->offsets[mesh->face_count] + count;
     mesh->face_count++;
     return true;

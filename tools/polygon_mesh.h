@@ -43,9 +43,10 @@ bool polygon_mesh_init(polygon_mesh *mesh);
 /* Frees the arrays and empties the mesh; an all-zero mesh is allowed. */
 void polygon_mesh_free(polygon_mesh *mesh);
 
-/* Gets ready for so many more vertices, or corners, so that adding them needs no memory. */
+/* Gets ready for so many more vertices, corners or faces, so that adding them needs no memory. */
 bool polygon_mesh_reserve_vertices(polygon_mesh *mesh, size_t count);
 bool polygon_mesh_reserve_corners(polygon_mesh *mesh, size_t count);
+bool polygon_mesh_reserve_faces(polygon_mesh *mesh, size_t count);
 
 /* All return false if there is no memory or the count does not fit into 32 bits. */
 bool polygon_mesh_add_vertex(polygon_mesh *mesh, const double position[3]);
