@@ -326,6 +326,7 @@ static int open_rest(scene_folder *scene, char *error, size_t error_size)
     if (!mesh_file_read(&source->rest, source->paths[0], message)) {
         return fail(error, error_size, "%s", message);
     }
+    source->rest.face_hash = mesh_file_hash(&source->rest);
     const size_t corners = 3 * (size_t)source->rest.triangle_count;
     scene->triangle_count = source->rest.triangle_count;
     scene->vertex_count = source->rest.vertex_count;

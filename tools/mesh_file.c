@@ -34,15 +34,29 @@ static void add_to_hash(uint64_t *hash, uint32_t value)
     }
 }
 
-/* FNV-1a (Fowler, Noll, Vo) over corner counts and corners. */
+/* The FNV-1a hash (Fowler, Noll, Vo) of nothing. */
+#define EMPTY_HASH UINT64_C(0xcbf29ce484222325)
+
+/* FNV-1a over corner counts and corners. */
 static uint64_t hash_faces(const polygon_mesh *polygons)
 {
-    uint64_t hash = UINT64_C(0xcbf29ce484222325);
+    uint64_t hash = EMPTY_HASH;
     for (size_t f = 0; f < polygons->face_count; f++) {
         add_to_hash(&hash, (uint32_t)(polygons->offsets[f + 1] - polygons->offsets[f]));
         for (size_t c = polygons->offsets[f]; c < polygons->offsets[f + 1]; c++) {
             add_to_hash(&hash, polygons->corners[c]);
         }
+    }
+    return hash;
+}
+
+uint64_t mesh_file_hash(const mesh_file *mesh)
+{
+    if (mesh->face_hash || mesh->face_of_triangle) return mesh->face_hash;
+    uint64_t hash = EMPTY_HASH; /* the same as of the polygons that the triangles were */
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        add_to_hash(&hash, 3);
+        for (size_t k = 0; k < 3; k++) add_to_hash(&hash, mesh->indices[3 * t + k]);
     }
     return hash;
 }
@@ -164,28 +178,38 @@ static void *take_positions(polygon_mesh *polygons, uint32_t *position_type)
     return fitting ? fitting : positions;
 }
 
+/* Takes the corners out of polygons that are triangles. */
+static void take_triangles(mesh_file *mesh, polygon_mesh *polygons)
+{
+    uint32_t *corners = polygons->corners;
+    polygons->corners = NULL;
+    void *fitting = realloc(corners, 3 * (size_t)mesh->triangle_count * sizeof *corners);
+    mesh->indices = fitting ? (uint32_t *)fitting : corners;
+}
+
 /* Cuts faces into triangles, and notes which are of which face if that is not plain. */
-static bool make_triangles(mesh_file *mesh, const polygon_mesh *polygons)
+static bool make_triangles(mesh_file *mesh, polygon_mesh *polygons)
 {
     mesh->face_count = (uint32_t)polygons->face_count;
-    mesh->indices = (uint32_t *)malloc(3 * (size_t)mesh->triangle_count * sizeof(uint32_t));
     bool plain = mesh->face_count == mesh->triangle_count;
     for (size_t f = 0; plain && f < polygons->face_count; f++) {
         plain = polygons->offsets[f + 1] - polygons->offsets[f] == 3;
     }
-    if (!plain)
-        mesh->face_of_triangle =
-            (uint32_t *)malloc((size_t)mesh->triangle_count * sizeof(uint32_t));
-    if (!mesh->indices || (!plain && !mesh->face_of_triangle)) return false;
+    if (plain) {
+        take_triangles(mesh, polygons);
+        return true;
+    }
+    mesh->face_hash = hash_faces(polygons);
+    mesh->indices = (uint32_t *)malloc(3 * (size_t)mesh->triangle_count * sizeof(uint32_t));
+    mesh->face_of_triangle = (uint32_t *)malloc((size_t)mesh->triangle_count * sizeof(uint32_t));
+    if (!mesh->indices || !mesh->face_of_triangle) return false;
     size_t triangle = 0;
     for (size_t f = 0; f < polygons->face_count; f++) {
         const uint32_t *corners = polygons->corners + polygons->offsets[f];
         const uint32_t count = (uint32_t)(polygons->offsets[f + 1] - polygons->offsets[f]);
         if (count < 3) continue;
         polygon_mesh_triangulate(polygons->positions, corners, count, mesh->indices + 3 * triangle);
-        for (uint32_t t = 2; t < count; t++, triangle++) {
-            if (!plain) mesh->face_of_triangle[triangle] = (uint32_t)f;
-        }
+        for (uint32_t t = 2; t < count; t++) mesh->face_of_triangle[triangle++] = (uint32_t)f;
     }
     return true;
 }
@@ -206,7 +230,6 @@ bool mesh_file_read(mesh_file *mesh, const char *path, char error[MESH_FILE_ERRO
         snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, reason);
         mesh_file_free(mesh);
     } else {
-        mesh->face_hash = hash_faces(&polygons);
         mesh->positions = take_positions(&polygons, &mesh->position_type);
         mesh->object_count = polygons.object_count;
         mesh->object_names = polygons.object_names;
@@ -225,16 +248,17 @@ bool mesh_file_read(mesh_file *mesh, const char *path, char error[MESH_FILE_ERRO
 static bool check_pose(const mesh_file *rest, const char *path, uint64_t vertex_count,
                        uint64_t face_hash, char error[MESH_FILE_ERROR_SIZE])
 {
+    const bool same_faces = face_hash == mesh_file_hash(rest);
     if (vertex_count != rest->vertex_count) {
         snprintf(error, MESH_FILE_ERROR_SIZE,
                  "%s: not a pose of the rest mesh: %lu vertices, the rest mesh has %lu", path,
                  (unsigned long)vertex_count, (unsigned long)rest->vertex_count);
-    } else if (face_hash != rest->face_hash) {
+    } else if (!same_faces) {
         snprintf(error, MESH_FILE_ERROR_SIZE,
                  "%s: not a pose of the rest mesh: its faces differ in number, order or vertices",
                  path);
     }
-    return vertex_count == rest->vertex_count && face_hash == rest->face_hash;
+    return vertex_count == rest->vertex_count && same_faces;
 }
 
 bool mesh_file_read_pose(const mesh_file *rest, const char *path, mesh_pose *pose,
@@ -355,6 +379,7 @@ bool mesh_file_join(mesh_file *mesh)
 {
     uint32_t *map = mesh_file_weld_map(mesh);
     if (!map) return false;
+    mesh->face_hash = mesh_file_hash(mesh); /* of the faces as read */
     const size_t size = 3 * number_size(mesh->position_type);
     char *positions = (char *)mesh->positions;
     uint32_t count = 0;

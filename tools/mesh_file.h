@@ -43,7 +43,7 @@ typedef struct mesh_file {
     uint32_t object_count;    /* 0: the file names none */
     char **object_names;      /* object_count */
     uint32_t *object_of_face; /* face_count; NULL: at most one object */
-    uint64_t face_hash;       /* of the faces as read, before triangulation */
+    uint64_t face_hash;       /* use mesh_file_hash; 0: not known yet */
     bool rounded; /* a reader gave floats of a format that can hold more; the answer is for these */
     bool has_animation; /* of what assimp reads: it is not played, positions are the bind pose's */
 } mesh_file;
@@ -73,6 +73,13 @@ enum { MESH_FILE_ERROR_SIZE = 1024 };
 
 /* Reads a mesh. On failure error says why, beginning with the path, and *mesh is empty. */
 bool mesh_file_read(mesh_file *mesh, const char *path, char error[MESH_FILE_ERROR_SIZE]);
+
+/*
+ * A hash of the faces as read, before triangulation, the same in every run and on every machine.
+ * It is made when the mesh is read, or, if all faces are triangles, anew with every call: keep it in
+ * face_hash where several files are compared with one.
+ */
+uint64_t mesh_file_hash(const mesh_file *mesh);
 
 /*
  * Reads the positions of another file with the vertices and faces of rest, which must match in

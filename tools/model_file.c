@@ -105,7 +105,7 @@ bool model_file_write(const char *path, const sc_model *model, const mesh_file *
         face_part part;
         memset(&part, 0, sizeof part);
         memcpy(part.magic, face_magic, sizeof part.magic);
-        part.face_hash = mesh->face_hash;
+        part.face_hash = mesh_file_hash(mesh);
         part.vertex_count = mesh->vertex_count;
         part.checksum = map_checksum(part.face_hash, map, part.vertex_count);
         memcpy(bytes + model_size, &part, sizeof part);

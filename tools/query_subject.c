@@ -29,6 +29,7 @@ bool query_subject_load(query_subject *subject, const char *path, const query_su
 {
     memset(subject, 0, sizeof *subject);
     if (!mesh_file_read(&subject->mesh, path, error)) return false;
+    if (how->poses_follow) subject->mesh.face_hash = mesh_file_hash(&subject->mesh);
     sc_status status = tool_build(&subject->mesh, how->weld, how->partition, how->rest,
                                   how->content, query_threads_tasks(), &subject->model,
                                   &subject->build_ms);
@@ -74,7 +75,7 @@ bool query_subject_fits(const query_subject *subject, const char *path, const me
                  (unsigned long)info.vertex_count, (unsigned long)info.triangle_count);
         return false;
     }
-    if (subject->file.face_hash && mesh->face_hash != subject->file.face_hash) {
+    if (subject->file.face_hash && mesh_file_hash(mesh) != subject->file.face_hash) {
         snprintf(error, MESH_FILE_ERROR_SIZE,
                  "%s: faces differ from those of the mesh that the model was built from", path);
         return false;

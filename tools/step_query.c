@@ -495,6 +495,7 @@ static bool open_run(step_run *run, const char *first, char error[MESH_FILE_ERRO
             !mesh_file_read(&run->first, first, error) ||
             !query_subject_fits(&run->subject, first, &run->first, error))
             return false;
+        run->first.face_hash = mesh_file_hash(&run->first);
         run->mesh = &run->first;
     } else {
         if (!query_subject_load(&run->subject, set->rest_path ? set->rest_path : first, &how,
