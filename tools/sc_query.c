@@ -26,6 +26,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Room for so many pairs at first. */
+enum { LIST_ROOM = 65536 };
+
 /* What to ask for one kind of pair. With list the pairs are wanted, else only their number. */
 static sc_query_options make_options(const query_settings *set, uint32_t kind, bool list)
 {
@@ -58,6 +61,11 @@ static sc_status run_query(const query_subject *subject, const sc_pose *pose,
         memset(&answer->stats, 0, sizeof answer->stats);
         answer->stats.struct_size = sizeof answer->stats;
         result.stats = &answer->stats;
+    }
+    if (list && !list->pairs) { /* so that one query does for a mesh with few of them */
+        list->pairs = (sc_pair *)malloc(LIST_ROOM * sizeof *list->pairs);
+        if (!list->pairs) return SC_ERROR_MEMORY;
+        list->capacity = LIST_ROOM;
     }
     for (;;) {
         if (list) {
