@@ -516,7 +516,7 @@ static bool find_depths(depths *d, place_list *list)
 bool place_depths(place_list *list, const place_source *source)
 {
     depths d;
-    if (source->check->closed_parts == 0) return true;
+    if (source->check->closed_parts == 0 || list->count == 0) return true;
     memset(&d, 0, sizeof d);
     d.from = source;
     d.places = list;
