@@ -21,7 +21,7 @@ enum { CELLS_MAX = 64 };
 
 enum { REGION_UNKNOWN = 0, REGION_EXPOSED = 1, REGION_BURIED = 2 };
 
-/* Items by the cells of the grid that they reach over. Those of a cell are from starts[cell] up to
+/* Items by the wanted cells of the grid that they reach over. Those of a cell are from starts[cell] up to
    starts[cell + 1]; those that reach over very many come behind the last cell. */
 typedef struct cell_lists {
     uint32_t *starts, *items;
@@ -32,6 +32,7 @@ typedef struct grid {
     double low[2], cell; /* the lower corner; the side of a cell */
     size_t side[2];      /* how many cells */
     size_t large;        /* the cell behind the last */
+    uint8_t *wanted;     /* of each cell: whether it will be looked at */
     cell_lists surface;  /* triangles that bound an inside */
     cell_lists segments; /* where pairs meet: numbers in place_list.segments */
 } grid;
@@ -45,6 +46,7 @@ typedef struct depths {
     uint32_t *regions;          /* of each vertex, as sets */
     uint32_t *chosen;           /* of each region, at the vertex that tells it: one to ask about */
     uint8_t *colliding;         /* of each triangle */
+    uint8_t *entered;           /* of each triangle: whether it is in a list of cells */
     uint8_t *state;             /* of each region: REGION_... */
     uint32_t *members, *starts; /* vertices by regions */
     double *depth;              /* of each region, negative: not looked at */
@@ -191,44 +193,59 @@ static size_t reach_of(const depths *d, bool is_segment, size_t item, size_t fir
     return (last[0] - first[0] + 1) * (last[1] - first[1] + 1);
 }
 
-/* Enters an item: counts it, or, where there is room for items, puts it where it belongs. */
-static void enter(depths *d, cell_lists *lists, bool is_segment, uint32_t item)
+/* Enters an item: counts it, or, where there is room for items, puts it where it belongs. Returns
+   whether it belongs anywhere. */
+static bool enter(depths *d, cell_lists *lists, bool is_segment, uint32_t item)
 {
     const grid *g = &d->cells;
+    bool entered = false;
     size_t first[2], last[2];
     if (reach_of(d, is_segment, item, first, last) > CELLS_MAX) {
         if (lists->items)
             lists->items[lists->starts[g->large + 1]++] = item;
         else
             lists->starts[g->large + 2]++;
-        return;
+        return true;
     }
     for (size_t y = first[1]; y <= last[1]; y++) {
         for (size_t x = first[0]; x <= last[0]; x++) {
             const size_t cell = y * g->side[0] + x;
+            if (!g->wanted[cell]) continue;
+            entered = true;
             if (lists->items)
                 lists->items[lists->starts[cell + 1]++] = item;
             else
                 lists->starts[cell + 2]++;
         }
     }
+    return entered;
 }
 
-/* Makes lists of all segments, or of all triangles that bound an inside. */
+static void free_cells(cell_lists *lists)
+{
+    free(lists->starts);
+    free(lists->items);
+    memset(lists, 0, sizeof *lists);
+}
+
+/* Makes lists of all segments, or of all triangles that bound an inside, in place of those that
+   there are. */
 static bool fill_cells(depths *d, cell_lists *lists, bool is_segment)
 {
     const size_t cells = d->cells.large;
     const uint32_t count = is_segment ? d->places->segment_count : d->from->mesh->triangle_count;
+    free_cells(lists);
     lists->starts = (uint32_t *)calloc(cells + 3, sizeof *lists->starts);
     if (!lists->starts) return false;
     for (uint32_t i = 0; i < count; i++) {
-        if (is_segment || sign_of(d, i)) enter(d, lists, is_segment, i);
+        const bool entered = (is_segment || sign_of(d, i)) && enter(d, lists, is_segment, i);
+        if (!is_segment) d->entered[i] = entered;
     }
     for (size_t i = 2; i < cells + 3; i++) lists->starts[i] += lists->starts[i - 1];
     lists->items = (uint32_t *)malloc(((size_t)lists->starts[cells + 2] + 1) * sizeof(uint32_t));
     if (!lists->items) return false;
     for (uint32_t i = 0; i < count; i++) {
-        if (is_segment || sign_of(d, i)) enter(d, lists, is_segment, i);
+        if (is_segment || d->entered[i]) enter(d, lists, is_segment, i);
     }
     return true;
 }
@@ -261,7 +278,8 @@ static bool make_grid(depths *d)
     g->side[0] = (size_t)(width / g->cell) + 1;
     g->side[1] = (size_t)(height / g->cell) + 1;
     g->large = g->side[0] * g->side[1];
-    return fill_cells(d, &g->surface, false) && fill_cells(d, &g->segments, true);
+    g->wanted = (uint8_t *)calloc(g->large + 1, 1);
+    return g->wanted != NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -315,16 +333,22 @@ static int insides(const depths *d, const double p[3])
     return count;
 }
 
-/* Whether a vertex of a region is buried, which tells all of it. */
-static uint8_t ask_region(const depths *d, uint32_t vertex)
+/* A point just outside of a vertex. */
+static void point_outside(const depths *d, uint32_t vertex, double p[3])
 {
     const double *normal = d->normals + 3 * (size_t)vertex;
     const double length =
         sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    double p[3];
-    memcpy(p, d->at + 3 * (size_t)vertex, sizeof p);
+    memcpy(p, d->at + 3 * (size_t)vertex, 3 * sizeof *p);
     /* twice an area, so its root is about the length of an edge; 0 where there is no inside */
     for (int k = 0; k < 3 && length > 0; k++) p[k] += OFFSET * normal[k] / sqrt(length);
+}
+
+/* Whether a vertex of a region is buried, which tells all of it. */
+static uint8_t ask_region(const depths *d, uint32_t vertex)
+{
+    double p[3];
+    point_outside(d, vertex, p);
     return insides(d, p) > 0 ? REGION_BURIED : REGION_EXPOSED;
 }
 
@@ -439,21 +463,86 @@ static double region_depth(depths *d, uint32_t region)
     return deepest < 0 ? -1 : sqrt(deepest);
 }
 
+/* The region of a corner of a triangle of a place, by the number of the corner there. */
+static uint32_t region_at(const depths *d, const place *one, uint32_t corner)
+{
+    return d->regions[vertex_of(d, d->places->triangles[one->begin + corner / 3], corner % 3)];
+}
+
+/* Wants the cells that ask_regions looks at. */
+static void want_asked(depths *d, const place *one)
+{
+    grid *g = &d->cells;
+    for (uint32_t i = 0; i < 3 * one->triangle_count; i++) {
+        double p[3];
+        point_outside(d, d->chosen[region_at(d, one, i)], p);
+        g->wanted[cell_of(g, 1, p[1]) * g->side[0] + cell_of(g, 0, p[0])] = 1;
+    }
+}
+
+/* Wants the cells that region_depth looks at, or more. What is in the box of a place, where some
+   segment is, is as far away from a vertex as its farthest corner at most: rings further out than
+   that are not looked at. */
+static void want_region(depths *d, const place *one, uint32_t region)
+{
+    grid *g = &d->cells;
+    const size_t longest = g->side[0] > g->side[1] ? g->side[0] : g->side[1];
+    size_t first[2] = {g->side[0], g->side[1]}, last[2] = {0, 0};
+    double far = 0;
+    for (uint32_t i = d->starts[region]; i < d->starts[region + 1]; i++) {
+        const double *p = d->at + 3 * (size_t)d->members[i];
+        double sum = 0;
+        for (int k = 0; k < 3; k++)
+            sum += fmax(fabs(p[k] - one->low[k]), fabs(p[k] - one->high[k]));
+        far = fmax(far, sum);
+        for (int axis = 0; axis < 2; axis++) {
+            const size_t cell = cell_of(g, axis, p[axis]);
+            if (cell < first[axis]) first[axis] = cell;
+            if (cell > last[axis]) last[axis] = cell;
+        }
+    }
+    /* A cell more as the segment may be at the far end of its own, one as ring n is n - 1 cells
+       away at least, one for the ring that ends it, and one for rounding. */
+    const double rings = far / g->cell + 4;
+    const size_t around = d->from->pair_count <= d->places->segment_count && rings < (double)longest
+                              ? (size_t)rings
+                              : longest;
+    for (int axis = 0; axis < 2; axis++) {
+        first[axis] = first[axis] > around ? first[axis] - around : 0;
+        last[axis] = last[axis] + around < g->side[axis] ? last[axis] + around : g->side[axis] - 1;
+    }
+    for (size_t y = first[1]; y <= last[1]; y++)
+        memset(g->wanted + y * g->side[0] + first[0], 1, last[0] - first[0] + 1);
+}
+
+/* Wants the cells that measure looks at; false: none. Uses depth to do each region once. */
+static bool want_buried(depths *d, const place *one)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < 3 * one->triangle_count; i++) {
+        const uint32_t region = region_at(d, one, i);
+        if (d->state[region] != REGION_BURIED) continue;
+        any = true;
+        if (d->depth[region] < -1) continue;
+        d->depth[region] = -2; /* as little known as with -1 */
+        want_region(d, one, region);
+    }
+    return any;
+}
+
 /* Asks about all regions that a place borders on. */
-static void ask_regions(depths *d, const place_list *list, const place *one)
+static void ask_regions(depths *d, const place *one)
 {
     for (uint32_t i = 0; i < 3 * one->triangle_count; i++) {
-        const uint32_t region =
-            d->regions[vertex_of(d, list->triangles[one->begin + i / 3], i % 3)];
+        const uint32_t region = region_at(d, one, i);
         if (d->state[region] == REGION_UNKNOWN) d->state[region] = ask_region(d, d->chosen[region]);
     }
 }
 
-static void measure(depths *d, const place_list *list, place *one)
+static void measure(depths *d, place *one)
 {
     for (uint32_t i = 0; i < 3 * one->triangle_count; i++) {
-        const uint32_t region =
-            d->regions[vertex_of(d, list->triangles[one->begin + i / 3], i % 3)];
+        const uint32_t region = region_at(d, one, i);
         if (d->state[region] != REGION_BURIED) continue;
         if (d->depth[region] < 0) d->depth[region] = region_depth(d, region);
         if (d->depth[region] > one->depth) one->depth = d->depth[region];
@@ -469,12 +558,13 @@ static bool allocate(depths *d)
     d->regions = (uint32_t *)malloc(vertices * sizeof *d->regions);
     d->chosen = (uint32_t *)malloc(vertices * sizeof *d->chosen);
     d->colliding = (uint8_t *)calloc(triangles, 1);
+    d->entered = (uint8_t *)calloc(triangles, 1);
     d->state = (uint8_t *)calloc(vertices, 1);
     d->members = (uint32_t *)malloc(vertices * sizeof *d->members);
     d->starts = (uint32_t *)malloc(vertices * sizeof *d->starts);
     d->depth = (double *)calloc(vertices, sizeof *d->depth);
-    return d->at && d->normals && d->regions && d->chosen && d->colliding && d->state &&
-           d->members && d->starts && d->depth;
+    return d->at && d->normals && d->regions && d->chosen && d->colliding && d->entered &&
+           d->state && d->members && d->starts && d->depth;
 }
 
 static void release(depths *d)
@@ -485,14 +575,14 @@ static void release(depths *d)
     free(d->regions);
     free(d->chosen);
     free(d->colliding);
+    free(d->entered);
     free(d->state);
     free(d->members);
     free(d->starts);
     free(d->depth);
-    free(d->cells.surface.starts);
-    free(d->cells.surface.items);
-    free(d->cells.segments.starts);
-    free(d->cells.segments.items);
+    free(d->cells.wanted);
+    free_cells(&d->cells.surface);
+    free_cells(&d->cells.segments);
 }
 
 static bool find_depths(depths *d, place_list *list)
@@ -508,8 +598,17 @@ static bool find_depths(depths *d, place_list *list)
     list_members(d);
     for (size_t v = 0; v < from->mesh->vertex_count; v++) /* no path is left to follow */
         d->regions[v] = mesh_sets_find(d->regions, (uint32_t)v);
-    for (uint32_t i = 0; i < list->count; i++) ask_regions(d, list, &list->places[i]);
-    for (uint32_t i = 0; i < list->count; i++) measure(d, list, &list->places[i]);
+    for (uint32_t i = 0; i < list->count; i++) want_asked(d, &list->places[i]);
+    if (!fill_cells(d, &d->cells.surface, false)) return false;
+    for (uint32_t i = 0; i < list->count; i++) ask_regions(d, &list->places[i]);
+
+    bool any = false;
+    memset(d->cells.wanted, 0, d->cells.large);
+    for (uint32_t i = 0; i < list->count; i++) any |= want_buried(d, &list->places[i]);
+    if (!any) return true;
+    if (!fill_cells(d, &d->cells.surface, false) || !fill_cells(d, &d->cells.segments, true))
+        return false;
+    for (uint32_t i = 0; i < list->count; i++) measure(d, &list->places[i]);
     return true;
 }
 
