@@ -40,14 +40,15 @@ typedef struct grid {
 typedef struct depths {
     const place_source *from;
     const place_list *places;
-    double *at;                 /* 3 of each vertex */
-    double *normals;            /* 3 of each vertex, outwards; as long as twice the area round it */
-    int8_t *sign;               /* of each part: 1 outward, -1 inward, 0 it has no inside */
-    uint32_t *regions;          /* of each vertex, as sets */
-    uint32_t *chosen;           /* of each region, at the vertex that tells it: one to ask about */
-    uint8_t *colliding;         /* of each triangle */
-    uint8_t *entered;           /* of each triangle: whether it is in a list of cells */
-    uint8_t *state;             /* of each region: REGION_... */
+    double *at;         /* 3 of each vertex */
+    double *normals;    /* 3 of each vertex, outwards, if asked; twice the area round it long */
+    int8_t *sign;       /* of each part: 1 outward, -1 inward, 0 it has no inside */
+    uint32_t *regions;  /* of each vertex, as sets */
+    uint32_t *chosen;   /* of each region, at the vertex that tells it: one to ask about */
+    uint8_t *asked;     /* of each vertex: whether its normal is wanted */
+    uint8_t *colliding; /* of each triangle */
+    uint8_t *entered;   /* of each triangle: whether it is in a list of cells */
+    uint8_t *state;     /* of each region: REGION_... */
     uint32_t *members, *starts; /* vertices by regions */
     double *depth;              /* of each region, negative: not looked at */
     grid cells;
@@ -63,6 +64,12 @@ static uint32_t vertex_of(const depths *d, size_t triangle, size_t k)
 static int sign_of(const depths *d, size_t triangle)
 {
     return d->sign[d->from->check->part_of_triangle[triangle]];
+}
+
+/* The region of a corner of a triangle of a place, by the number of the corner there. */
+static uint32_t region_at(const depths *d, const place *one, uint32_t corner)
+{
+    return d->regions[vertex_of(d, d->places->triangles[one->begin + corner / 3], corner % 3)];
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -108,11 +115,20 @@ static bool find_signs(depths *d)
     return true;
 }
 
+/* Those of the vertices that ask_regions asks about. */
 static void find_normals(depths *d)
 {
+    for (uint32_t i = 0; i < d->places->count; i++) {
+        const place *one = &d->places->places[i];
+        for (uint32_t k = 0; k < 3 * one->triangle_count; k++)
+            d->asked[d->chosen[region_at(d, one, k)]] = 1;
+    }
     for (size_t t = 0; t < d->from->mesh->triangle_count; t++) {
         const double *p[3];
         double normal[3];
+        bool asked = false;
+        for (size_t k = 0; k < 3; k++) asked |= d->asked[vertex_of(d, t, k)];
+        if (!asked) continue;
         for (size_t k = 0; k < 3; k++) p[k] = d->at + 3 * (size_t)vertex_of(d, t, k);
         cross_sides(p[0], p[1], p[2], normal);
         for (size_t k = 0; k < 3; k++) {
@@ -463,12 +479,6 @@ static double region_depth(depths *d, uint32_t region)
     return deepest < 0 ? -1 : sqrt(deepest);
 }
 
-/* The region of a corner of a triangle of a place, by the number of the corner there. */
-static uint32_t region_at(const depths *d, const place *one, uint32_t corner)
-{
-    return d->regions[vertex_of(d, d->places->triangles[one->begin + corner / 3], corner % 3)];
-}
-
 /* Wants the cells that ask_regions looks at. */
 static void want_asked(depths *d, const place *one)
 {
@@ -557,14 +567,15 @@ static bool allocate(depths *d)
     d->normals = (double *)calloc(3 * vertices, sizeof *d->normals);
     d->regions = (uint32_t *)malloc(vertices * sizeof *d->regions);
     d->chosen = (uint32_t *)malloc(vertices * sizeof *d->chosen);
+    d->asked = (uint8_t *)calloc(vertices, 1);
     d->colliding = (uint8_t *)calloc(triangles, 1);
     d->entered = (uint8_t *)calloc(triangles, 1);
     d->state = (uint8_t *)calloc(vertices, 1);
     d->members = (uint32_t *)malloc(vertices * sizeof *d->members);
     d->starts = (uint32_t *)malloc(vertices * sizeof *d->starts);
     d->depth = (double *)calloc(vertices, sizeof *d->depth);
-    return d->at && d->normals && d->regions && d->chosen && d->colliding && d->entered &&
-           d->state && d->members && d->starts && d->depth;
+    return d->at && d->normals && d->regions && d->chosen && d->asked && d->colliding &&
+           d->entered && d->state && d->members && d->starts && d->depth;
 }
 
 static void release(depths *d)
@@ -574,6 +585,7 @@ static void release(depths *d)
     free(d->sign);
     free(d->regions);
     free(d->chosen);
+    free(d->asked);
     free(d->colliding);
     free(d->entered);
     free(d->state);
@@ -593,11 +605,11 @@ static bool find_depths(depths *d, place_list *list)
         mesh_file_position(from->pose->positions, from->pose->position_type, v, d->at + 3 * v);
     for (uint32_t i = 0; i < list->triangle_count; i++) d->colliding[list->triangles[i]] = 1;
     if (!find_signs(d) || !make_grid(d)) return false;
-    find_normals(d);
     find_regions(d);
     list_members(d);
     for (size_t v = 0; v < from->mesh->vertex_count; v++) /* no path is left to follow */
         d->regions[v] = mesh_sets_find(d->regions, (uint32_t)v);
+    find_normals(d);
     for (uint32_t i = 0; i < list->count; i++) want_asked(d, &list->places[i]);
     if (!fill_cells(d, &d->cells.surface, false)) return false;
     for (uint32_t i = 0; i < list->count; i++) ask_regions(d, &list->places[i]);

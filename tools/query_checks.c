@@ -26,16 +26,16 @@ void query_checks_free(query_checks *checks)
     memset(checks, 0, sizeof *checks);
 }
 
-sc_status query_checks_mesh(query_checks *checks, const mesh_file *mesh, const uint32_t *weld_map,
-                            const query_settings *set)
+sc_status query_checks_mesh(query_checks *checks, const mesh_file *mesh,
+                            const query_subject *subject, const query_settings *set)
 {
     if (checks->is_made) return SC_OK;
-    if (weld_map) {
-        const size_t size = (size_t)mesh->vertex_count * sizeof *weld_map;
+    if (subject->weld_map) {
+        const size_t size = (size_t)mesh->vertex_count * sizeof *checks->weld_map;
         checks->weld_map = (uint32_t *)malloc(size + 1);
         if (!checks->weld_map) return SC_ERROR_MEMORY;
-        memcpy(checks->weld_map, weld_map, size);
-    } else if (set->weld == SC_WELD_REST) {
+        memcpy(checks->weld_map, subject->weld_map, size);
+    } else if (set->weld == SC_WELD_REST && !subject->is_apart) {
         checks->weld_map = mesh_file_weld_map(mesh);
         if (!checks->weld_map) return SC_ERROR_MEMORY;
     }

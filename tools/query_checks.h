@@ -9,6 +9,7 @@
 
 #include "places.h"
 #include "query_settings.h"
+#include "query_subject.h"
 
 #include <cjson/cJSON.h>
 
@@ -22,10 +23,10 @@ typedef struct query_checks {
     uint32_t degenerate_faces; /* in that pose */
 } query_checks;
 
-/* Looks at a mesh, unless that was done before. weld_map: that of a model that was saved, or NULL;
-   then set->weld tells how vertices are joined. */
-sc_status query_checks_mesh(query_checks *checks, const mesh_file *mesh, const uint32_t *weld_map,
-                            const query_settings *set);
+/* Looks at a mesh, unless that was done before. Of the subject is the map of its vertices, if it has
+   one; otherwise set->weld tells how they are joined. */
+sc_status query_checks_mesh(query_checks *checks, const mesh_file *mesh,
+                            const query_subject *subject, const query_settings *set);
 
 /* Looks at a pose of it: the places of a list of pairs, if set asks for them. */
 sc_status query_checks_pose(query_checks *checks, const mesh_file *mesh, const sc_model *model,

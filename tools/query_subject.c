@@ -24,6 +24,15 @@ void query_subject_free(query_subject *subject)
     memset(subject, 0, sizeof *subject);
 }
 
+/* Whether a model has a point of its own for each vertex. */
+static bool has_all_points(const sc_model *model)
+{
+    sc_model_info info;
+    memset(&info, 0, sizeof info);
+    info.struct_size = sizeof info;
+    return sc_model_get_info(model, &info) == SC_OK && info.point_count == info.vertex_count;
+}
+
 bool query_subject_load(query_subject *subject, const char *path, const query_subject_how *how,
                         char error[MESH_FILE_ERROR_SIZE])
 {
@@ -39,6 +48,7 @@ bool query_subject_load(query_subject *subject, const char *path, const query_su
         subject->weld_map = mesh_file_weld_map(&subject->mesh);
         if (!subject->weld_map) status = SC_ERROR_MEMORY;
     }
+    subject->is_apart = status == SC_OK && has_all_points(subject->model);
     if (status == SC_OK) return true;
     snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", path, tool_why(status));
     query_subject_free(subject);

@@ -24,6 +24,7 @@ typedef struct query_subject {
     sc_model *model;
     sc_workspace *workspace;
     double build_ms;
+    bool is_apart; /* the model was built from the mesh, no two vertices of which are one */
 } query_subject;
 
 /* How to build: weld and partition as in tool.h, rest and content as in sc_build_options. */

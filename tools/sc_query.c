@@ -165,7 +165,7 @@ static bool run_pose(const query_subject *subject, const char *path, const sc_po
     }
     if (status == SC_OK && set->contacts) status = find_contacts(subject, pose, set, list);
     if (status == SC_OK && checks && query_wants_checks(set, answer->mesh)) {
-        status = query_checks_mesh(checks, answer->mesh, subject->weld_map, set);
+        status = query_checks_mesh(checks, answer->mesh, subject, set);
         if (status == SC_OK)
             status = query_checks_pose(checks, answer->mesh, subject->model, pose, set, list);
         if (!set->only_collisions) answer->checks = checks;
