@@ -489,15 +489,15 @@ static bool read_float_vertices(ply_reader *reader, const ply_element *element, 
         if (property->role < 3) offsets[property->role] = size;
         size += type_sizes[property->type];
     }
+    polygon_mesh *mesh = reader->mesh; /* has room for all */
     for (; *count < element->count && (size_t)(reader->end - reader->at) >= size; ++*count) {
-        double position[3];
+        double *position = mesh->positions + 3 * mesh->vertex_count++;
         for (size_t k = 0; k < 3; k++) {
             const uint32_t bits = word_at(reader, reader->at + offsets[k]);
             float single;
             memcpy(&single, &bits, sizeof single);
             position[k] = (double)single;
         }
-        if (!polygon_mesh_add_vertex(reader->mesh, position)) return fail_memory(reader);
         reader->at += size;
     }
     return true;
@@ -517,18 +517,20 @@ static bool read_triangles(ply_reader *reader, const ply_element *element, uint6
         return true;
     const size_t room = (size_t)(reader->end - reader->at) / size;
     const size_t wanted = element->count < room ? (size_t)element->count : room;
-    if (!polygon_mesh_reserve_faces(reader->mesh, wanted) ||
-        !polygon_mesh_reserve_corners(reader->mesh, 3 * wanted))
+    polygon_mesh *mesh = reader->mesh;
+    if (!polygon_mesh_reserve_faces(mesh, wanted) ||
+        !polygon_mesh_reserve_corners(mesh, 3 * wanted))
         return fail_memory(reader);
     for (; *count < wanted && *reader->at == 3; ++*count) {
-        uint32_t corners[3];
+        const size_t used = mesh->offsets[mesh->face_count];
+        uint32_t *corners = mesh->corners + used;
         bool known = true; /* negative numbers are larger than that of any vertex */
         for (size_t k = 0; k < 3; k++) {
             corners[k] = word_at(reader, reader->at + 1 + 4 * k);
             known &= corners[k] < reader->vertex_count;
         }
         if (!known) break;
-        if (!polygon_mesh_add_face(reader->mesh, corners, 3)) return fail_memory(reader);
+        mesh->offsets[++mesh->face_count] = used + 3;
         reader->at += size;
     }
     return true;
