@@ -5,6 +5,7 @@
  * SPDX-License-Identifier: MIT
  */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,6 +21,8 @@
 /* Memory that a build may take more of with several threads, whatever the mesh: lists of their
    parts. */
 enum { MORE_BYTES = 1 << 16 };
+
+enum { MESSAGE = 200 };
 
 static sc_model_info info_of(const sc_model *model)
 {
@@ -167,35 +170,52 @@ static void cut_by_the_caller(void)
     soup_free(&s);
 }
 
+/* What a build said last. */
+static void note_message(void *user, uint32_t level, const char *message)
+{
+    (void)level;
+    snprintf((char *)user, MESSAGE, "%s", message);
+}
+
 /* The first of several wrong numbers is named, whichever part of the work sees it. */
 static void wrong_meshes(void)
 {
-    soup s = soup_cloth(120, 120);
     for (uint32_t i = 0; i < test_iterations(20); ++i) {
+        soup s = soup_cloth(120, 120);
         const sc_mesh input = input_plain_mesh(&s);
         const uint32_t is_index = i % 2;
+        char expected_message[MESSAGE] = "", message[MESSAGE] = "";
+        sc_hooks hooks;
         sc_build_options options;
         sc_model *model = NULL;
         sc_status expected;
         host h;
-        uint32_t corner = test_random_below(3 * s.triangle_count), kept = s.triangles[corner];
-        double *x = s.positions + 3 * (size_t)test_random_below(s.vertex_count), was = *x;
-        if (is_index)
-            s.triangles[corner] = s.vertex_count + test_random_below(5);
-        else
-            *x = HUGE_VAL;
+        for (uint32_t k = 0; k < 3; ++k) { /* one of them among the first */
+            const uint32_t part = k ? 1 : 20;
+            if (is_index)
+                s.triangles[test_random_below(3 * s.triangle_count / part)] =
+                    s.vertex_count + test_random_below(5);
+            else
+                s.positions[3 * (size_t)test_random_below(s.vertex_count / part)] = HUGE_VAL;
+        }
+        memset(&hooks, 0, sizeof(hooks));
+        hooks.struct_size = sizeof(hooks);
+        hooks.log = note_message;
+        hooks.user = expected_message;
         memset(&options, 0, sizeof(options));
         options.struct_size = sizeof(options);
+        options.hooks = &hooks;
         expected = sc_build(&input, &options, &model);
         CHECK(expected == (is_index ? SC_ERROR_INDEX : SC_ERROR_NOT_FINITE) && !model);
         host_start(&h, (int)(i % HOST_COUNT), 1 + test_random_below(THREADS_MAX));
         options.tasks = &h.tasks;
+        hooks.user = message;
         CHECK(sc_build(&input, &options, &model) == expected && !model && !h.mistakes);
+        CHECK_MSG(*message && strcmp(message, expected_message) == 0, "'%s', not '%s'", message,
+                  expected_message);
         host_stop(&h);
-        s.triangles[corner] = kept;
-        *x = was;
+        soup_free(&s);
     }
-    soup_free(&s);
 }
 
 /* An allocator that fails at one call. */

@@ -482,7 +482,7 @@ typedef struct tops {
 } tops;
 
 /* What a patch needs of a bisection, apart from all other patches. */
-static bisection room_of(const bisection *b, const patch *p)
+static bisection own_room(const bisection *b, const patch *p)
 {
     bisection own = *b;
     own.queue += p->first;
@@ -512,7 +512,7 @@ static void cut_top(void *context, uint32_t part, uint32_t worker)
 {
     tops *all = (tops *)context;
     top *at = &all->at[all->begin + part];
-    bisection own = room_of(all->b, &at->p);
+    bisection own = own_room(all->b, &at->p);
     (void)worker;
     if (at->p.count < FIRST_LEAST) return;
     (void)cut_patch(&own, &at->p, all->half + 2 * part); /* the built-in cut does not fail */
@@ -555,7 +555,7 @@ static void make_subtree(void *context, uint32_t part, uint32_t worker)
     uint32_t root;
     (void)worker;
     if (at->child) return;
-    own = room_of(all->b, &at->p);
+    own = own_room(all->b, &at->p);
     own.hierarchy = &hierarchy;
     hierarchy.nodes = nodes_of(all, at);
     hierarchy.starts = (uint32_t *)(void *)own.refinement.heap; /* not in use meanwhile */
