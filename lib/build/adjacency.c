@@ -277,3 +277,11 @@ sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_ad
     list_corners(points, adjacency);
     return pair_half_edges(points, scratch, adjacency);
 }
+
+void sc_adjacency_give_walks(sc_adjacency *adjacency, sc_scratch *scratch)
+{
+    sc_scratch_give(scratch, adjacency->opposite);
+    sc_scratch_give(scratch, adjacency->corner_first);
+    sc_scratch_give(scratch, adjacency->corners);
+    adjacency->opposite = adjacency->corner_first = adjacency->corners = NULL;
+}

@@ -37,6 +37,9 @@ static inline uint32_t sc_adjacency_previous(uint32_t h)
 /* O(n log n) at worst in the number of edges at a point, linear otherwise. */
 sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_adjacency *adjacency);
 
+/* Gives back what only walks need: all but which sides name their edges. */
+void sc_adjacency_give_walks(sc_adjacency *adjacency, sc_scratch *scratch);
+
 /* lowest: point_count; becomes the lowest number of a point in the same component, for each
    point. */
 void sc_adjacency_find_components(const sc_points *points, uint32_t *lowest);

@@ -414,7 +414,7 @@ static void before_writing(void *context, uint32_t part, uint32_t worker)
     list_around(a->points, a->adjacency, a->number, &a->around);
 }
 
-sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacency,
+sc_status sc_assembly_make(const sc_points *points, sc_adjacency *adjacency,
                            const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
                            const sc_csf *csf, const sc_sharing *sharing, sc_scratch *scratch,
                            sc_model **model)
@@ -452,6 +452,7 @@ sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacenc
         sc_jobs_run(tasks, 2, before_writing, &all);
         sc_connected_give(scratch, &all.pieces);
     }
+    sc_adjacency_give_walks(adjacency, scratch); /* before the model needs memory */
     counts.share_count = sharing->first[xbvh->leaf_count];
     counts.share_total = (uint32_t)share_total;
     counts.around_total = (uint32_t)around_total;

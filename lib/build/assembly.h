@@ -14,7 +14,7 @@
 
 /* Makes the model, with all of its arrays. What the rest pose says of nodes and levels is left at
    zero. SC_ERROR_COUNT or SC_ERROR_MEMORY, and then there is no model. */
-sc_status sc_assembly_make(const sc_points *points, const sc_adjacency *adjacency,
+sc_status sc_assembly_make(const sc_points *points, sc_adjacency *adjacency,
                            const sc_hierarchy *hierarchy, const sc_xbvh *xbvh, const sc_sctt *sctt,
                            const sc_csf *csf, const sc_sharing *sharing, sc_scratch *scratch,
                            sc_model **model);

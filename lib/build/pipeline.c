@@ -113,6 +113,7 @@ sc_status sc_pipeline_run(const sc_mesh *mesh, const sc_build_options *options, 
     validate(&s, options->hooks);
     sc_neighbors_free(&s.neighbors, scratch);
     sc_scratch_give(scratch, s.sharing.touch);
+    sc_scratch_give(scratch, s.points.rest);
     if ((status = sc_assembly_make(&s.points, &s.adjacency, &s.hierarchy, &s.xbvh, &s.sctt, &s.csf,
                                    &s.sharing, scratch, model)))
         return status;
