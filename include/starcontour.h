@@ -365,12 +365,12 @@ typedef struct sc_model sc_model;
  * Builds a model of a mesh. options may be NULL. On success *model is the new model, to be freed
  * with sc_model_free; otherwise *model is NULL. With the built-in partition, 0.4 to 1.4
  * microseconds a triangle (regular grids and thin tubes least, irregular meshes of a million
- * triangles most) and, while it runs, up to 310 bytes a triangle; with METIS 5 to 7 microseconds a
- * triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 170 bytes a triangle.
+ * triangles most) and, while it runs, up to 300 bytes a triangle; with METIS 5 to 7 microseconds a
+ * triangle; with SC_MODEL_BOXES 0.2 to 0.5 microseconds and 130 bytes a triangle.
  *
  * With options.tasks several of the host's threads build. The model is the same, bit for bit,
- * whatever their number, and nearly all steps are shared out; not a cut by the caller (bisect) or by
- * METIS, nor SC_REST_MARKED. The allocator, the hooks and bisect are called in the thread that
+ * whatever their number, and nearly all steps are shared out; not a cut by the caller (bisect) or
+ * by METIS, nor SC_REST_MARKED. The allocator, the hooks and bisect are called in the thread that
  * called sc_build alone.
  */
 SC_API sc_status sc_build(const sc_mesh *mesh, const sc_build_options *options, sc_model **model);
@@ -1448,12 +1448,12 @@ typedef struct sc_objects_result {
  *
  * Tasks share in what is asked of objects, or of two, whose workspaces have as many workers; else
  * the calling thread does it. Objects up to about 14,000 triangles, by themselves or with any
- * other, are asked many at a time, each by one worker, and larger ones one after the other by all workers; but
- * where a function is to be asked, all are. Which pair is found of SC_OUTPUT_ANY is up to chance
- * with the latter alone; all else is the same whoever did what. No memory is allocated. Workspaces
- * of one call must not be used by another at the same time. Cost: reading what moved, sc_query for
- * each object with itself = 1, and what is near between others; sorting boxes along one side, and 6
- * ns for two objects whose boxes overlap along it.
+ * other, are asked many at a time, each by one worker, and larger ones one after the other by all
+ * workers; but where a function is to be asked, all are. Which pair is found of SC_OUTPUT_ANY is up
+ * to chance with the latter alone; all else is the same whoever did what. No memory is allocated.
+ * Workspaces of one call must not be used by another at the same time. Cost: reading what moved,
+ * sc_query for each object with itself = 1, and what is near between others; sorting boxes along
+ * one side, and 6 ns for two objects whose boxes overlap along it.
  */
 SC_API sc_status sc_query_objects(const sc_objects *objects, const sc_query_options *options,
                                   sc_objects_result *result);
