@@ -4,8 +4,8 @@
  * SPDX-License-Identifier: MIT
  *
  * An sc_scratch is a list of allocations. Each can be given back at any time and all go at once
- * with sc_scratch_clear, so that an early return after a failed step leaks nothing. One thread takes
- * and gives, that which called the library. Not for queries, which allocate nothing.
+ * with sc_scratch_clear, so that an early return after a failed step leaks nothing. The thread that
+ * called the library takes and gives, no other. Not for queries, which allocate nothing.
  */
 #ifndef SC_BASE_MEMORY_H
 #define SC_BASE_MEMORY_H

@@ -634,8 +634,8 @@ static float divisor_at(const float a[3], const float b[3])
     return turn > 1e-6f ? 1 + turn : 1;
 }
 
-/* Lengths are added up for so many triangles at a time, and then these sums: whatever the threads, in
-   the same order. */
+/* Lengths are added up for so many triangles at a time, and then these sums: in the same order,
+   whatever the threads. */
 enum { BLOCK = 4096, BLOCKS_LEAST = 4 };
 
 typedef struct measuring {

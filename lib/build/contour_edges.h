@@ -29,7 +29,7 @@ typedef struct sc_contour_level {
     uint8_t *cut, *start;    /* count: whether a run starts here, regardless or at all */
 } sc_contour_level;
 
-/* Does 0 to count - 1, which may be none, in parts, see sc_jobs_loop; returns how many there are. */
+/* Does 0 to count - 1, which may be none, in parts, see sc_jobs_loop; returns how many parts. */
 static inline uint32_t sc_contour_parts(const sc_scratch *scratch, uint32_t count, uint32_t least,
                                         sc_jobs_body body, void *context)
 {
@@ -39,8 +39,8 @@ static inline uint32_t sc_contour_parts(const sc_scratch *scratch, uint32_t coun
 /* From what each part has to what those before it have; returns what all have. */
 uint64_t sc_contour_add_up(uint64_t counts[SC_JOBS_PARTS + 1], uint32_t parts);
 
-/* Where the first patch begins that begins at place e or after it. The places of a patch follow each
-   other, so from one such place to another there are patches as a whole, with their loops. */
+/* Where the first patch begins that begins at place e or after it. The places of a patch follow
+   each other, so from one such place to another there are whole patches, with their loops. */
 uint32_t sc_contour_patch_begin(const sc_contour_level *level, uint32_t e);
 
 /* Collects the half-edges of all levels, which are zeroed before. */
