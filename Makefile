@@ -586,6 +586,7 @@ format: ## clang-format on all C and C++ files, in place
 SCENES ?=
 CSV ?= $(BUILD)/peers/peers.csv
 LIMIT ?= 30
+POSES ?= 200
 MEMORY ?= 8
 
 peer_scenes := $(filter %/sc-bench,$(programs))
@@ -652,7 +653,7 @@ near-peers: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) besi
 .PHONY: dataset-peers
 dataset-peers: $(lib)/$(shared_link) $(filter %/sc-dataset,$(programs)) ## time those from PyPI on poses of a character, into build/peers/dataset.csv; some minutes
 ifneq ($(filter %/sc-dataset,$(programs)),)
-	@bench/peers/measure_dataset.sh '$(BUILD)/peers/dataset.csv' '$(bin)/sc-dataset' '$(lib)/$(shared_link)' '$(BUILD)'
+	@POSES='$(POSES)' bench/peers/measure_dataset.sh '$(BUILD)/peers/dataset.csv' '$(bin)/sc-dataset' '$(lib)/$(shared_link)' '$(BUILD)'
 else
 	@echo "skipped: dataset-peers: needs $(strip $(missing_for_programs)) ('make deps')"
 endif

@@ -13,10 +13,10 @@ remake() {
 # make help
 
 remake help 2>/dev/null |
-    sed -n -e '/^Targets:/,/^Variables:/s/^  \([a-z-]*\) .*/\1/p' | sort >"$scratch/listed"
+    sed -n -e '/^Targets:/,/^Variables:/s/^  \([a-z0-9-]*\) .*/\1/p' | sort >"$scratch/listed"
 sed -n 's/^\.PHONY: //p' Makefile | tr ' ' '\n' | grep -v -x -e FORCE -e after-deps -e '\$.*' |
     sort -u >"$scratch/phony"
-remake -p -n -q help 2>/dev/null | sed -n 's/^\([a-z][a-z-]*\):.*/\1/p' | sort -u >"$scratch/rules"
+remake -p -n -q help 2>/dev/null | sed -n 's/^\([a-z][a-z0-9-]*\):.*/\1/p' | sort -u >"$scratch/rules"
 
 check "make help lists targets" test -s "$scratch/listed"
 check "each target that make help lists exists" \
