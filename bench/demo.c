@@ -175,14 +175,14 @@ static bool add_to_page(demo_scene *scene, const char *name)
     const double milliseconds = list_pairs(scene, &pose, &result);
     if (milliseconds < 0) return false;
     place_list places;
-    const place_source source = {scene->mesh, scene->weld_map,   &scene->check, scene->model,
-                                 &pose,       SC_PAIRS_TRIANGLE, result.pairs,  result.count};
+    const place_source source = {scene->mesh,  scene->weld_map, &scene->check,
+                                 scene->model, &pose,           SC_PAIRS_TRIANGLE,
+                                 result.pairs, result.count,    NULL};
     sc_status status = places_make(&places, &source);
     if (status == SC_OK && !place_depths(&places, &source)) status = SC_ERROR_MEMORY;
-    const page_frame frame = {
-        name,         scene->mesh,  &scene->check,
-        &pose,        &places,      mesh_check_degenerate(scene->mesh, scene->positions, SC_FLOAT),
-        result.count, milliseconds, false};
+    const uint32_t flat = mesh_check_degenerate(scene->mesh, scene->positions, SC_FLOAT, NULL);
+    const page_frame frame = {name, scene->mesh,  &scene->check, &pose, &places,
+                              flat, result.count, milliseconds,  false};
     if (status == SC_OK && !page_add(scene->page, &frame)) status = SC_ERROR_MEMORY;
     places_free(&places);
     free(result.pairs);
@@ -284,7 +284,7 @@ static bool scene_open(demo_scene *scene, const mesh_file *mesh, const char *nam
     }
     scene->weld_map = mesh_file_weld_map(mesh);
     if (!scene->positions || !scene->worst_positions || !scene->weld_map ||
-        !mesh_check_make(&scene->check, mesh, scene->weld_map))
+        !mesh_check_make(&scene->check, mesh, scene->weld_map, NULL))
         status = SC_ERROR_MEMORY;
     return report(status, name);
 }

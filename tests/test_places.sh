@@ -243,6 +243,21 @@ else
     skip "places and defects by another program: there is no python3" 50
 fi
 
+# Several threads say the same, of places, depths and defects; but for times and settings.
+same_by_threads() { # FILE
+    for threads in 1 2 3; do
+        "$query" --threads $threads --json "$1" | sed 's/"[a-z_]*_ms":[^,]*,//g' >"$scratch/by$threads"
+    done
+    grep -q '"defects"' "$scratch/by1" && cmp "$scratch/by1" "$scratch/by2" && cmp "$scratch/by1" "$scratch/by3"
+}
+for file in meshes/*.obj "$scratch/boxes.obj" "$scratch/leaf.obj" "$scratch/rows.obj" "$scratch/inward.obj"; do
+    check "${file##*/} by several threads" same_by_threads "$file"
+done
+for seed in 1 2 3 4; do
+    soup $seed 400 $((4 * seed)) >"$scratch/soup.obj"
+    check "soup $seed by several threads" same_by_threads "$scratch/soup.obj"
+done
+
 # Sizes at the ends of what doubles hold: no depth or a number, and no more.
 for scale in 1e300 1e154 1e-160 1e-305; do
     awk -v scale=$scale '$1 == "v" { printf "v %.17g %.17g %.17g\n", $2 * scale, $3 * scale, $4 * scale; next } { print }' \

@@ -13,6 +13,8 @@
 
 #include "mesh_file.h"
 
+#include "starcontour.h"
+
 /* A part. Triangles with two equal vertices have no edges here. */
 typedef struct mesh_part {
     uint32_t first;              /* its lowest triangle */
@@ -32,8 +34,10 @@ typedef struct mesh_check {
     uint32_t duplicate_faces; /* triangles with the vertices of an earlier one, in any order */
 } mesh_check;
 
-/* Looks at a mesh. False, and *check is empty, if there is no memory. */
-bool mesh_check_make(mesh_check *check, const mesh_file *mesh, const uint32_t *weld_map);
+/* Looks at a mesh, by the threads of tasks, or by one if that is NULL: with the same result. False,
+   and *check is empty, if there is no memory. */
+bool mesh_check_make(mesh_check *check, const mesh_file *mesh, const uint32_t *weld_map,
+                     const sc_tasks *tasks);
 
 /* Frees the arrays and empties the check. An all-zero one is allowed. */
 void mesh_check_free(mesh_check *check);
@@ -44,9 +48,10 @@ bool mesh_part_is_closed(const mesh_part *part);
 /*
  * How many triangles have no area in a pose: their vertices are on a line or in a point. Exact as
  * long as products of two coordinates neither overflow nor underflow: from about 1e-140 to 1e140.
+ * tasks: threads, or NULL.
  */
-uint32_t mesh_check_degenerate(const mesh_file *mesh, const void *positions,
-                               uint32_t position_type);
+uint32_t mesh_check_degenerate(const mesh_file *mesh, const void *positions, uint32_t position_type,
+                               const sc_tasks *tasks);
 
 /* Sets of numbers from 0, as a forest: each begins as its own set. The set of an item is told by
    its lowest number. */

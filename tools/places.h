@@ -54,6 +54,7 @@ typedef struct place_source {
     uint32_t kind; /* of pairs: SC_PAIRS_... */
     const sc_pair *pairs;
     uint64_t pair_count;
+    const sc_tasks *tasks; /* threads, or NULL */
 } place_source;
 
 /* Finds all places. On failure *list is empty. */

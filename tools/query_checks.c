@@ -8,6 +8,7 @@
 #include "mesh_faces.h"
 #include "place_depth.h"
 #include "query_text.h"
+#include "query_threads.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -39,7 +40,7 @@ sc_status query_checks_mesh(query_checks *checks, const mesh_file *mesh,
         checks->weld_map = mesh_file_weld_map(mesh);
         if (!checks->weld_map) return SC_ERROR_MEMORY;
     }
-    checks->is_made = mesh_check_make(&checks->mesh, mesh, checks->weld_map);
+    checks->is_made = mesh_check_make(&checks->mesh, mesh, checks->weld_map, query_threads_tasks());
     return checks->is_made ? SC_OK : SC_ERROR_MEMORY;
 }
 
@@ -47,11 +48,13 @@ sc_status query_checks_pose(query_checks *checks, const mesh_file *mesh, const s
                             const sc_pose *pose, const query_settings *set, const query_list *list)
 {
     places_free(&checks->places);
-    checks->degenerate_faces = mesh_check_degenerate(mesh, pose->positions, pose->position_type);
+    checks->degenerate_faces =
+        mesh_check_degenerate(mesh, pose->positions, pose->position_type, query_threads_tasks());
     checks->has_places = query_wants_places(set, mesh);
     if (!checks->has_places) return SC_OK;
-    const place_source source = {mesh, checks->weld_map,        &checks->mesh, model,
-                                 pose, query_chosen_pairs(set), list->pairs,   list->count};
+    const place_source source = {
+        mesh,        checks->weld_map, &checks->mesh,        model, pose, query_chosen_pairs(set),
+        list->pairs, list->count,      query_threads_tasks()};
     const sc_status status = places_make(&checks->places, &source);
     if (status != SC_OK) return status;
     return place_depths(&checks->places, &source) ? SC_OK : SC_ERROR_MEMORY;
