@@ -5,6 +5,8 @@
  */
 #include "place_depth.h"
 
+#include "task_loop.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -52,6 +54,7 @@ typedef struct depths {
     uint32_t *members, *starts; /* vertices by regions */
     double *depth;              /* of each region, negative: not looked at */
     grid cells;
+    bool has_grid; /* whether there was memory for it, and its size is one */
     uint64_t looked_at;
 } depths;
 
@@ -196,12 +199,15 @@ static const double *corner_of(const depths *d, bool is_segment, size_t item, si
 static size_t reach_of(const depths *d, bool is_segment, size_t item, size_t first[2],
                        size_t last[2])
 {
+    const size_t corners = is_segment ? 2 : 3;
+    const double *at[3];
+    for (size_t k = 0; k < corners; k++) at[k] = corner_of(d, is_segment, item, k);
     for (int axis = 0; axis < 2; axis++) {
-        double low = 0, high = 0;
-        for (size_t k = 0; k < (is_segment ? 2u : 3u); k++) {
-            const double x = corner_of(d, is_segment, item, k)[axis];
-            if (k == 0 || x < low) low = x;
-            if (k == 0 || x > high) high = x;
+        double low = at[0][axis], high = low;
+        for (size_t k = 1; k < corners; k++) { /* in this form without branches */
+            const double x = at[k][axis];
+            low = x < low ? x : low;
+            high = x > high ? x : high;
         }
         first[axis] = cell_of(&d->cells, axis, low);
         last[axis] = cell_of(&d->cells, axis, high);
@@ -209,32 +215,49 @@ static size_t reach_of(const depths *d, bool is_segment, size_t item, size_t fir
     return (last[0] - first[0] + 1) * (last[1] - first[1] + 1);
 }
 
-/* Enters an item: counts it, or, where there is room for items, puts it where it belongs. Returns
-   whether it belongs anywhere. */
-static bool enter(depths *d, cell_lists *lists, bool is_segment, uint32_t item)
+/* Marks those of a range of triangles that are in any list: that bound an inside and reach over a
+   wanted cell, or over very many. */
+static void mark_entered(void *context, size_t begin, size_t end)
+{
+    depths *d = (depths *)context;
+    const grid *g = &d->cells;
+    for (size_t t = begin; t < end; t++) {
+        size_t first[2], last[2];
+        d->entered[t] = 0;
+        if (!sign_of(d, t)) continue;
+        if (reach_of(d, false, t, first, last) > CELLS_MAX) {
+            d->entered[t] = 1;
+            continue;
+        }
+        for (size_t y = first[1]; y <= last[1]; y++) {
+            for (size_t x = first[0]; x <= last[0]; x++)
+                d->entered[t] |= g->wanted[y * g->side[0] + x];
+        }
+    }
+}
+
+/* Enters an item: counts it, or, where there is room for items, puts it where it belongs. */
+static void enter(depths *d, cell_lists *lists, bool is_segment, uint32_t item)
 {
     const grid *g = &d->cells;
-    bool entered = false;
     size_t first[2], last[2];
     if (reach_of(d, is_segment, item, first, last) > CELLS_MAX) {
         if (lists->items)
             lists->items[lists->starts[g->large + 1]++] = item;
         else
             lists->starts[g->large + 2]++;
-        return true;
+        return;
     }
     for (size_t y = first[1]; y <= last[1]; y++) {
         for (size_t x = first[0]; x <= last[0]; x++) {
             const size_t cell = y * g->side[0] + x;
             if (!g->wanted[cell]) continue;
-            entered = true;
             if (lists->items)
                 lists->items[lists->starts[cell + 1]++] = item;
             else
                 lists->starts[cell + 2]++;
         }
     }
-    return entered;
 }
 
 static void free_cells(cell_lists *lists)
@@ -253,9 +276,9 @@ static bool fill_cells(depths *d, cell_lists *lists, bool is_segment)
     free_cells(lists);
     lists->starts = (uint32_t *)calloc(cells + 3, sizeof *lists->starts);
     if (!lists->starts) return false;
+    if (!is_segment) task_loop(d->from->tasks, count, mark_entered, d);
     for (uint32_t i = 0; i < count; i++) {
-        const bool entered = (is_segment || sign_of(d, i)) && enter(d, lists, is_segment, i);
-        if (!is_segment) d->entered[i] = entered;
+        if (is_segment || d->entered[i]) enter(d, lists, is_segment, i);
     }
     for (size_t i = 2; i < cells + 3; i++) lists->starts[i] += lists->starts[i - 1];
     lists->items = (uint32_t *)malloc(((size_t)lists->starts[cells + 2] + 1) * sizeof(uint32_t));
@@ -525,28 +548,27 @@ static void want_region(depths *d, const place *one, uint32_t region)
         memset(g->wanted + y * g->side[0] + first[0], 1, last[0] - first[0] + 1);
 }
 
-/* Wants the cells that measure looks at; false: none. Uses depth to do each region once. */
-static bool want_buried(depths *d, const place *one)
+/* Wants the cells that measure looks at. Uses depth to do each region once. */
+static void want_buried(depths *d, const place *one)
+{
+    for (uint32_t i = 0; i < 3 * one->triangle_count; i++) {
+        const uint32_t region = region_at(d, one, i);
+        if (d->state[region] != REGION_BURIED || d->depth[region] < -1) continue;
+        d->depth[region] = -2; /* as little known as with -1 */
+        want_region(d, one, region);
+    }
+}
+
+/* Asks about all regions that a place borders on; whether any is buried. */
+static bool ask_regions(depths *d, const place *one)
 {
     bool any = false;
     for (uint32_t i = 0; i < 3 * one->triangle_count; i++) {
         const uint32_t region = region_at(d, one, i);
-        if (d->state[region] != REGION_BURIED) continue;
-        any = true;
-        if (d->depth[region] < -1) continue;
-        d->depth[region] = -2; /* as little known as with -1 */
-        want_region(d, one, region);
+        if (d->state[region] == REGION_UNKNOWN) d->state[region] = ask_region(d, d->chosen[region]);
+        any |= d->state[region] == REGION_BURIED;
     }
     return any;
-}
-
-/* Asks about all regions that a place borders on. */
-static void ask_regions(depths *d, const place *one)
-{
-    for (uint32_t i = 0; i < 3 * one->triangle_count; i++) {
-        const uint32_t region = region_at(d, one, i);
-        if (d->state[region] == REGION_UNKNOWN) d->state[region] = ask_region(d, d->chosen[region]);
-    }
 }
 
 static void measure(depths *d, place *one)
@@ -597,27 +619,46 @@ static void release(depths *d)
     free_cells(&d->cells.segments);
 }
 
+static void read_positions(void *context, size_t begin, size_t end)
+{
+    const depths *d = (const depths *)context;
+    const sc_pose *pose = d->from->pose;
+    for (size_t v = begin; v < end; v++)
+        mesh_file_position(pose->positions, pose->position_type, v, d->at + 3 * v);
+}
+
+/* The grid, and the regions, which have nothing to do with it. */
+static void run_grid_or_regions(void *context, uint32_t part, uint32_t worker)
+{
+    depths *d = (depths *)context;
+    (void)worker;
+    if (part == 0) {
+        d->has_grid = find_signs(d) && make_grid(d);
+        return;
+    }
+    find_regions(d);
+    for (uint32_t v = 0; v < d->from->mesh->vertex_count; v++) /* no path is left to follow */
+        d->regions[v] = mesh_sets_find(d->regions, v);
+}
+
 static bool find_depths(depths *d, place_list *list)
 {
     const place_source *from = d->from;
     if (!allocate(d)) return false;
-    for (size_t v = 0; v < from->mesh->vertex_count; v++)
-        mesh_file_position(from->pose->positions, from->pose->position_type, v, d->at + 3 * v);
+    task_loop(from->tasks, from->mesh->vertex_count, read_positions, d);
     for (uint32_t i = 0; i < list->triangle_count; i++) d->colliding[list->triangles[i]] = 1;
-    if (!find_signs(d) || !make_grid(d)) return false;
-    find_regions(d);
-    list_members(d);
-    for (size_t v = 0; v < from->mesh->vertex_count; v++) /* no path is left to follow */
-        d->regions[v] = mesh_sets_find(d->regions, (uint32_t)v);
+    task_parts(from->tasks, 2, run_grid_or_regions, d);
+    if (!d->has_grid) return false;
     find_normals(d);
     for (uint32_t i = 0; i < list->count; i++) want_asked(d, &list->places[i]);
     if (!fill_cells(d, &d->cells.surface, false)) return false;
-    for (uint32_t i = 0; i < list->count; i++) ask_regions(d, &list->places[i]);
-
     bool any = false;
-    memset(d->cells.wanted, 0, d->cells.large);
-    for (uint32_t i = 0; i < list->count; i++) any |= want_buried(d, &list->places[i]);
+    for (uint32_t i = 0; i < list->count; i++) any |= ask_regions(d, &list->places[i]);
     if (!any) return true;
+
+    list_members(d);
+    memset(d->cells.wanted, 0, d->cells.large);
+    for (uint32_t i = 0; i < list->count; i++) want_buried(d, &list->places[i]);
     if (!fill_cells(d, &d->cells.surface, false) || !fill_cells(d, &d->cells.segments, true))
         return false;
     for (uint32_t i = 0; i < list->count; i++) measure(d, &list->places[i]);
