@@ -58,35 +58,56 @@ static int compare_numbers(const void *left, const void *right)
     return a < b ? -1 : a > b;
 }
 
-/* What is needed while places are made. */
+/* What is needed while places are made. Of arrays as large as the mesh only what belongs to
+   colliding triangles is read or written, so that where few collide, little memory is used. */
 typedef struct maker {
     const place_source *from;
+    uint32_t *colliding; /* these triangles, in order */
+    uint32_t colliding_count;
     uint32_t *parents;  /* sets of triangles */
-    uint32_t *vertices; /* for each the first colliding triangle that has it, or SC_NONE */
-    uint32_t *place_of; /* for each triangle, or SC_NONE */
+    uint32_t *vertices; /* for each 1 + the first colliding triangle that has it, or 0 */
+    uint32_t *place_of; /* for each triangle */
 } maker;
+
+/* Lists the colliding triangles. */
+static bool list_colliding(maker *make)
+{
+    const place_source *from = make->from;
+    const uint32_t triangles = from->mesh->triangle_count;
+    uint8_t *collides = (uint8_t *)calloc((size_t)triangles + 1, 1);
+    uint32_t pair[2], count = 0;
+    if (!collides) return false;
+    for (uint64_t i = 0; i < from->pair_count; i++) {
+        places_triangles(from->kind, from->pairs[i], pair);
+        collides[pair[0]] = collides[pair[1]] = 1;
+    }
+    for (uint32_t t = 0; t < triangles; t++) count += collides[t];
+    make->colliding = (uint32_t *)malloc(((size_t)count + 1) * sizeof(uint32_t));
+    for (uint32_t t = 0; make->colliding && t < triangles; t++) {
+        if (collides[t]) make->colliding[make->colliding_count++] = t;
+    }
+    free(collides);
+    return make->colliding != NULL;
+}
 
 /* Joins triangles that collide with each other, and those of them that share a vertex. */
 static void join_triangles(maker *make)
 {
     const place_source *from = make->from;
-    const size_t triangles = from->mesh->triangle_count;
     uint32_t pair[2];
-    for (uint32_t t = 0; t < triangles; t++) make->parents[t] = t;
-    for (size_t t = 0; t < triangles; t++) make->place_of[t] = SC_NONE;
-    for (size_t v = 0; v < from->mesh->vertex_count; v++) make->vertices[v] = SC_NONE;
+    for (uint32_t i = 0; i < make->colliding_count; i++)
+        make->parents[make->colliding[i]] = make->colliding[i];
     for (uint64_t i = 0; i < from->pair_count; i++) {
         places_triangles(from->kind, from->pairs[i], pair);
         mesh_sets_join(make->parents, pair[0], pair[1]);
-        make->place_of[pair[0]] = make->place_of[pair[1]] = 0; /* it collides */
     }
-    for (uint32_t t = 0; t < triangles; t++) {
-        if (make->place_of[t] == SC_NONE) continue;
+    for (uint32_t i = 0; i < make->colliding_count; i++) {
+        const uint32_t t = make->colliding[i];
         for (size_t k = 0; k < 3; k++) {
             uint32_t v = from->mesh->indices[3 * (size_t)t + k];
             if (from->weld_map) v = from->weld_map[v];
-            if (make->vertices[v] == SC_NONE) make->vertices[v] = t;
-            mesh_sets_join(make->parents, make->vertices[v], t);
+            if (make->vertices[v] == 0) make->vertices[v] = t + 1;
+            mesh_sets_join(make->parents, make->vertices[v] - 1, t);
         }
     }
 }
@@ -95,19 +116,17 @@ static void join_triangles(maker *make)
    triangle is told by its lowest one. */
 static bool make_places(place_list *list, maker *make)
 {
-    const size_t triangles = make->from->mesh->triangle_count;
-    for (uint32_t t = 0; t < triangles; t++) {
-        if (make->place_of[t] == SC_NONE) continue;
-        const uint32_t set = mesh_sets_find(make->parents, t);
-        make->place_of[t] = set == t ? list->count++ : make->place_of[set];
-        list->triangle_count++;
+    const uint32_t *own = make->colliding;
+    list->triangle_count = make->colliding_count;
+    for (uint32_t i = 0; i < list->triangle_count; i++) {
+        const uint32_t set = mesh_sets_find(make->parents, own[i]);
+        make->place_of[own[i]] = set == own[i] ? list->count++ : make->place_of[set];
     }
     list->places = (place *)calloc((size_t)list->count + 1, sizeof *list->places);
     list->triangles = (uint32_t *)malloc(((size_t)list->triangle_count + 1) * sizeof(uint32_t));
     if (!list->places || !list->triangles) return false;
-    for (size_t t = 0; t < triangles; t++) {
-        if (make->place_of[t] != SC_NONE) list->places[make->place_of[t]].triangle_count++;
-    }
+    for (uint32_t i = 0; i < list->triangle_count; i++)
+        list->places[make->place_of[own[i]]].triangle_count++;
     size_t begin = 0;
     for (uint32_t i = 0; i < list->count; i++) {
         list->places[i].begin = begin;
@@ -115,10 +134,9 @@ static bool make_places(place_list *list, maker *make)
         list->places[i].triangle_count = 0;
         list->places[i].depth = -1;
     }
-    for (uint32_t t = 0; t < triangles; t++) {
-        if (make->place_of[t] == SC_NONE) continue;
-        place *one = &list->places[make->place_of[t]];
-        list->triangles[one->begin + one->triangle_count++] = t;
+    for (uint32_t i = 0; i < list->triangle_count; i++) {
+        place *one = &list->places[make->place_of[own[i]]];
+        list->triangles[one->begin + one->triangle_count++] = own[i];
     }
     return true;
 }
@@ -212,16 +230,20 @@ sc_status places_make(place_list *list, const place_source *from)
     const size_t triangles = (size_t)from->mesh->triangle_count + 1;
     memset(list, 0, sizeof *list);
     if (from->pair_count == 0) return SC_OK;
-    maker make = {from, (uint32_t *)malloc(triangles * sizeof(uint32_t)),
-                  (uint32_t *)malloc(((size_t)from->mesh->vertex_count + 1) * sizeof(uint32_t)),
-                  (uint32_t *)malloc(triangles * sizeof(uint32_t))};
+    maker make;
+    memset(&make, 0, sizeof make);
+    make.from = from;
+    make.parents = (uint32_t *)malloc(triangles * sizeof(uint32_t));
+    make.vertices = (uint32_t *)calloc((size_t)from->mesh->vertex_count + 1, sizeof(uint32_t));
+    make.place_of = (uint32_t *)malloc(triangles * sizeof(uint32_t));
     sc_status status = SC_ERROR_MEMORY;
-    if (make.parents && make.vertices && make.place_of) {
+    if (make.parents && make.vertices && make.place_of && list_colliding(&make)) {
         join_triangles(&make);
         if (make_places(list, &make) && find_owners(list, from))
             status = measure_places(list, &make);
         if (status == SC_OK) qsort(list->places, list->count, sizeof *list->places, compare_places);
     }
+    free(make.colliding);
     free(make.parents);
     free(make.vertices);
     free(make.place_of);
