@@ -241,8 +241,8 @@ static void small_objects_are_shared_out(void)
 /* A large object among small ones, which the list of units ends at; and one for a single worker. */
 static void large_ones_are_among_small_ones(void)
 {
-    for (uint32_t trial = test_iterations_at_least(8, 1); trial-- > 0 && !test_failures();) {
-        const soup sphere = soup_sphere(150, 70);
+    for (uint32_t trial = test_iterations_at_least(2, 1); trial-- > 0 && !test_failures();) {
+        const soup sphere = soup_sphere(130, 60);
         scene s;
         question q = any_question();
         const int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
