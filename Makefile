@@ -388,12 +388,12 @@ test-ipctk: $(lib)/$(shared_link) $(programs)
 	@tests/ipctk/ipctk.sh '$(bin)/sc-bench' '$(lib)/$(shared_link)' '$(BUILD)'
 endif
 
-# Programs that people already use, from PyPI, with the library inside.
+# Programs that people already use, from PyPI and Debian, with the library inside.
 addon := $(BUILD)/clients/starcontour-blender-$(version).zip
 
 .PHONY: test-clients blender-addon
-test-clients: $(lib)/$(shared_link) $(addon) $(programs) ## run programs that use the library inside (PyPI; what is there); a minute or two
-	@SC_QUERY='$(bin)/sc-query' ADDON='$(addon)' tools/clients/clients.sh '$(lib)/$(shared_link)' '$(BUILD)'
+test-clients: $(lib)/$(shared_link) $(addon) $(programs) ## run programs that use the library inside (PyPI, Bullet; what is there); a minute or two
+	@CXX='$(CXX)' SC_QUERY='$(bin)/sc-query' ADDON='$(addon)' tools/clients/clients.sh '$(lib)/$(shared_link)' '$(BUILD)'
 
 blender-addon: $(addon) ## pack the add-on for Blender, for this platform: build/clients/starcontour-blender-VERSION.zip
 

@@ -5,9 +5,11 @@
 #
 #     SC_QUERY   the program to compare with, if it is there
 #     ADDON      the add-on for Blender
+#     CXX        the compiler for C++, c++ if it is not set
 #
-# Each comes from PyPI, into a virtual environment below BUILD; what cannot be had is said and counted
-# as skipped. Last line: "N passed, N failed, N skipped".
+# Those in Python come from PyPI, into a virtual environment below BUILD; Bullet is looked for by
+# pkg-config. What cannot be had is said and counted as skipped. Last line: "N passed, N failed, N
+# skipped".
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -57,6 +59,17 @@ client() {
         "$build/clients/$1/bin/python" "$3" ${4+"$4" "$5"}
 }
 
+# Builds a program on Bullet, and runs it: the module of pkg-config, which says whether Bullet's numbers
+# are single or double.
+bullet() {
+    program=$build/clients/$1_cloth
+    # The flags are words; warnings are for what is not Bullet's.
+    # shellcheck disable=SC2046
+    ${CXX:-c++} -std=c++11 -O2 -Wall -Wextra -Iinclude -o "$program" tools/clients/bullet/cloth.cpp \
+        $(pkg-config --cflags "$1" | sed 's/-I/-isystem /g') "$(absolute "$library")" -Wl,-rpath,"$(dirname "$(absolute "$library")")" \
+        $(pkg-config --libs "$1") && "$program" --nodes 32 --frames 120
+}
+
 client ipctk ipctk tools/clients/ipctk/test_client.py
 if [ -x "${SC_QUERY-}" ]; then
     export VERSIONS=tools/clients/blender/requirements.txt
@@ -81,6 +94,15 @@ else
     echo "skipped: blender: there is no sc-query to compare with ('make deps')"
     skipped=$((skipped + 1))
 fi
+
+for module in bullet bullet-float64; do
+    if pkg-config --exists "$module" 2>/dev/null; then
+        run "$module" bullet "$module"
+    else
+        echo "skipped: $module: pkg-config does not find it (Debian: libbullet-dev)"
+        skipped=$((skipped + 1))
+    fi
+done
 
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

@@ -238,13 +238,16 @@ class Ruler
         bounds_.resize(mesh.vertex_count);
     }
 
-    void measure(const World &world, Measured &measured)
+    // Says whether the positions are numbers at all.
+    bool measure(const World &world, Measured &measured)
     {
         const sc_pose pose = SelfContacts::pose(*world.cloth, &btSoftBody::Node::m_x);
         auto count = SelfContacts::sized<sc_query_options>();
         count.output = SC_OUTPUT_COUNT;
         auto result = SelfContacts::sized<sc_result>();
-        SelfContacts::check(sc_query(model_.get(), workspace_.get(), &pose, &count, &result));
+        const sc_status status = sc_query(model_.get(), workspace_.get(), &pose, &count, &result);
+        if (status == SC_ERROR_NOT_FINITE) return false;
+        SelfContacts::check(status);
         measured.pairs = result.count;
         auto options = SelfContacts::sized<sc_near_options>();
         options.output = SC_OUTPUT_COUNT;
@@ -253,6 +256,7 @@ class Ruler
         near.vertex_bounds = bounds_.data();
         SelfContacts::check(sc_query_near(model_.get(), workspace_.get(), &pose, &options, &near));
         measured.distance = *std::min_element(bounds_.begin(), bounds_.end());
+        return true;
     }
 
   private:
@@ -275,7 +279,7 @@ int run(const Settings &settings)
 
     std::vector<double> ms[WAYS], parts[3];
     uint64_t most[WAYS] = {}, last[WAYS] = {};
-    int frames[WAYS] = {}, stopped = 0, full = 0;
+    int frames[WAYS] = {}, lost[WAYS] = {}, stopped = 0, full = 0;
     double least[WAYS];
     std::fill(least, least + WAYS, 1.0);
     unsigned most_contacts = 0, most_rounds = 0;
@@ -283,9 +287,13 @@ int run(const Settings &settings)
     for (int frame = 0; frame < settings.frames; ++frame)
         for (int turn = 0; turn < WAYS; ++turn) {
             const int way = (frame + turn) % WAYS;
+            if (lost[way] != 0) continue;
             Measured m;
             m.ms = worlds[way]->step();
-            ruler.measure(*worlds[way], m);
+            if (!ruler.measure(*worlds[way], m)) {
+                lost[way] = frame + 1;
+                continue;
+            }
             ms[way].push_back(m.ms);
             most[way] = std::max(most[way], last[way] = m.pairs);
             frames[way] += m.pairs != 0;
@@ -329,6 +337,10 @@ int run(const Settings &settings)
                     static_cast<unsigned long long>(last[way]), least[way]);
         if (settings.obj != nullptr) worlds[way]->write(settings.obj);
     }
+    for (int way = 0; way < WAYS; ++way)
+        if (lost[way] != 0)
+            std::printf("%s: positions are no numbers in frame %d, the last one\n", names[way],
+                        lost[way] - 1);
     std::printf("frames hit: with intersections; distance: the least, in thicknesses\n");
     std::printf("clusters: at most %d contacts\n", int(joints));
     std::printf(
@@ -336,7 +348,8 @@ int run(const Settings &settings)
         "%u rounds of holding back; %d frames stopped, %d with too many contacts\n",
         median(parts[0]), median(parts[1]), median(parts[2]), most_contacts, most_rounds, stopped,
         full);
-    const bool good = frames[STARCONTOUR] == 0 && least[STARCONTOUR] >= 0.125;
+    const bool good =
+        lost[STARCONTOUR] == 0 && frames[STARCONTOUR] == 0 && least[STARCONTOUR] >= 0.125;
     if (!good) std::printf("FAILED: intersections, or nearer than an eighth of the thickness\n");
     return good ? 0 : 1;
 }

@@ -273,7 +273,7 @@ class SelfContacts : public btDefaultSoftBodySolver
         auto options = sized<sc_step_options>();
         options.times = SC_STEP_TIMES_EACH;
         options.separation = c.least;
-        options.tolerance = c.least / 1000;
+        options.tolerance = c.least / 10000;
         options.begun = SC_STEP_BEGUN_NEARER; // what began nearer may stay, or move apart
         c.held = 0;
         c.stopped = false;
