@@ -165,6 +165,7 @@ offenders=$(
             may["tests/packages"] = "include"
             may["tests/cgal"] = "include tools tests tests/cgal"
             may["tests/ffi/cxx"] = "include tests/ffi/cxx"
+            may["tools/clients/bullet"] = "include tools/clients/bullet"
         }
 
         { known[$0] = 1; order[++count] = $0 }
