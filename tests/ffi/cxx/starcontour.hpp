@@ -274,12 +274,15 @@ class Workspace
   private:
     friend class Scene; // reads the log
 
-    // Asks until both arrays are long enough. Of a query that only counts they stay empty.
+    // Asks until both arrays are long enough; they begin as long as they ever were. Of a query that
+    // only counts they stay empty.
     template <typename Result, typename Ask>
     void find(Result &result, std::uint32_t output, const Ask &ask)
     {
         const bool listed = output == SC_OUTPUT_PAIRS;
-        for (std::size_t faces = 64, edges = 64;;) {
+        auto faces = std::max(std::size_t{64}, found_.vertex_faces.capacity());
+        auto edges = std::max(std::size_t{64}, found_.edge_edges.capacity());
+        for (;;) {
             found_.vertex_faces.resize(faces);
             found_.edge_edges.resize(edges);
             result.vertex_faces = found_.vertex_faces.data();
