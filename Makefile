@@ -246,7 +246,7 @@ $(bin)/sc-partition: $(call objects,tools/sc_partition.c $(tools_support))
 $(bin)/sc-demo: $(call objects,bench/demo.c $(bench_support) $(tools_support) $(page_support))
 $(bin)/sc-bench: $(call objects,bench/sc_bench.c $(bench_support) $(tools_support))
 $(bin)/sc-against: $(call objects,bench/against.c bench/scene_folder.c $(tools_support))
-$(bin)/sc-objects: $(call objects,bench/sc_objects.c $(tools_support))
+$(bin)/sc-objects: $(call objects,bench/sc_objects.c bench/scene_folder.c $(tools_support))
 $(bin)/sc-dataset: $(call objects,bench/sc_dataset.c bench/scene_folder.c bench/scenes/character.c \
     $(tools_support))
 $(bin)/subdivide: $(call objects,meshes/subdivide.c $(tools_support))

@@ -23,14 +23,22 @@
  *
  * Objects must have as many pairs as the mesh of all of them, or the exit status is 1. 2: something
  * could not be done.
+ *
+ * With --export nothing is timed: scenes are written for others to be timed on (bench/peers), each
+ * as a folder with a file objects.txt. It has a line "FOLDER ITSELF" for each object: a scene folder
+ * (scene_folder.h) in it, of one frame if the object does not move, and whether it is asked about
+ * itself, 1 or 0.
  */
+#include "scene_folder.h"
 #include "thread_pool.h"
 #include "tool.h"
 
+#include <errno.h>
 #include <getopt.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char usage[] =
     "Usage: sc-objects [options]\n"
@@ -42,6 +50,8 @@ static const char usage[] =
     "  --rounds N        rounds in each frame (5)\n"
     "  --workers N       threads of each query (1)\n"
     "  --csv FILE        a line for each scene, question and way as well\n"
+    "  --export FOLDER   time nothing, but write each scene into a folder there, for other\n"
+    "                    libraries: bench/peers/README.md\n"
     "  -h, --help\n"
     "\n"
     "Exit status: 0, 1 where numbers of pairs differ, 2 if something could not be done.\n";
@@ -72,7 +82,7 @@ typedef struct object {
 typedef struct run {
     double scale;
     uint32_t frames, rounds, workers;
-    const char *scene, *csv;
+    const char *scene, *csv, *folder;
     FILE *csv_file;
     thread_pool *pool;
     bool differs;
@@ -603,11 +613,76 @@ static bool time_scene(run *r, size_t kind)
     return good;
 }
 
+/* ---- scenes for others ---- */
+
+static bool make_folder(const char *path)
+{
+    errno = 0;
+    if (mkdir(path, 0777) == 0 || errno == EEXIST) return true;
+    tool_error("%s: cannot be made: %s", path, strerror(errno));
+    return false;
+}
+
+/* An object in all frames, or in one if it does not move. */
+static bool export_object(const run *r, scene *s, size_t kind, uint32_t number, const char *path)
+{
+    const object *const o = &s->objects[number];
+    const part *const p = o->of;
+    char error[512] = "", more[256];
+    scene_writer *const writer = scene_writer_begin(path, p->triangle_count, p->vertex_count,
+                                                    p->triangles, NULL, false, error, sizeof error);
+    bool good = writer != NULL;
+    for (uint32_t frame = 0; frame < (o->moves ? r->frames : 1) && good; frame++) {
+        for (uint32_t v = 0; v < p->vertex_count; v++)
+            kinds[kind].place(s, number, frame, p->rest + 3 * (size_t)v, o->at[0] + 3 * (size_t)v);
+        good = scene_writer_frame(writer, o->at[0], error, sizeof error) == 0;
+    }
+    if (writer && scene_writer_end(writer, good, more, sizeof more) != 0 && good) {
+        tool_error("%s", more);
+        return false;
+    }
+    if (!good) tool_error("%s", error);
+    return good;
+}
+
+/* The list comes last, so that what was broken off is no scene. */
+static bool export_scene(const run *r, size_t kind)
+{
+    scene *const s = (scene *)calloc(1, sizeof *s);
+    const size_t room = strlen(r->folder) + strlen(kinds[kind].name) + 32;
+    char *const path = (char *)malloc(room);
+    FILE *list = NULL;
+    bool good = s && path && kinds[kind].make(r, s);
+    if (!good) tool_error("%s: out of memory", kinds[kind].name);
+    if (good) {
+        snprintf(path, room, "%s/%s", r->folder, kinds[kind].name);
+        good = make_folder(r->folder) && make_folder(path);
+    }
+    for (uint32_t i = 0; i < (s ? s->count : 0) && good; i++) {
+        snprintf(path, room, "%s/%s/%u", r->folder, kinds[kind].name, i);
+        good = export_object(r, s, kind, i, path);
+    }
+    if (good) {
+        snprintf(path, room, "%s/%s/objects.txt", r->folder, kinds[kind].name);
+        list = fopen(path, "w");
+        for (uint32_t i = 0; list && i < s->count; i++)
+            fprintf(list, "%u %d\n", i, s->objects[i].itself);
+        good = list && fclose(list) == 0;
+        if (!good) tool_error("%s: cannot be written", path);
+    }
+    if (s) free_scene(s);
+    free(s);
+    free(path);
+    return good;
+}
+
+/* ---- all that was asked for ---- */
+
 static bool run_scenes(run *r)
 {
     bool good = true, known = !r->scene;
     if (r->workers > 1 && !(r->pool = thread_pool_create(r->workers))) return false;
-    if (r->csv) {
+    if (r->csv && !r->folder) {
         r->csv_file = fopen(r->csv, "w");
         if (!r->csv_file) {
             tool_error("%s: cannot be written", r->csv);
@@ -615,12 +690,13 @@ static bool run_scenes(run *r)
         }
         fprintf(r->csv_file, "scene,question,objects,workers,way,pairs,ms\n");
     }
-    printf("%-8s %-6s %8s %8s %12s %10s %10s %10s %8s %8s\n", "scene", "asked", "objects",
-           "workers", "pairs", "objects,ms", "merged,ms", "alone,ms", "gain", "/ alone");
+    if (!r->folder)
+        printf("%-8s %-6s %8s %8s %12s %10s %10s %10s %8s %8s\n", "scene", "asked", "objects",
+               "workers", "pairs", "objects,ms", "merged,ms", "alone,ms", "gain", "/ alone");
     for (size_t kind = 0; kind < sizeof kinds / sizeof *kinds && good; kind++) {
         if (r->scene && strcmp(r->scene, kinds[kind].name) != 0) continue;
         known = true;
-        good = time_scene(r, kind);
+        good = r->folder ? export_scene(r, kind) : time_scene(r, kind);
     }
     if (!known) tool_error("--scene: there is no scene '%s'; see sc-objects --help", r->scene);
     if (r->csv_file && fclose(r->csv_file) != 0) good = false;
@@ -635,7 +711,8 @@ int main(int argc, char **argv)
         OPTION_FRAMES,
         OPTION_ROUNDS,
         OPTION_WORKERS,
-        OPTION_CSV
+        OPTION_CSV,
+        OPTION_EXPORT
     };
     static const struct option options[] = {{"scene", required_argument, NULL, OPTION_SCENE},
                                             {"scale", required_argument, NULL, OPTION_SCALE},
@@ -643,6 +720,7 @@ int main(int argc, char **argv)
                                             {"rounds", required_argument, NULL, OPTION_ROUNDS},
                                             {"workers", required_argument, NULL, OPTION_WORKERS},
                                             {"csv", required_argument, NULL, OPTION_CSV},
+                                            {"export", required_argument, NULL, OPTION_EXPORT},
                                             {"help", no_argument, NULL, 'h'},
                                             {NULL, 0, NULL, 0}};
     run r;
@@ -667,6 +745,8 @@ int main(int argc, char **argv)
             good = tool_parse_number("--workers", optarg, 1, SC_WORKERS_MAX, &r.workers);
         else if (option == OPTION_CSV)
             r.csv = optarg;
+        else if (option == OPTION_EXPORT)
+            r.folder = optarg;
         else if (option == 'h') {
             fputs(usage, stdout);
             return tool_finish(0);
