@@ -594,6 +594,7 @@ peer_programs := $(patsubst %,$(work)/peers/%,cgal embree fcl)
 
 $(obj)/bench/peers/cgal.o: peer_flags = -frounding-math
 $(obj)/bench/peers/fcl.o: peer_flags = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I fcl))
+$(obj)/bench/peers/objects_driver.o: peer_flags = -Itools
 $(obj)/bench/peers/%.o: bench/peers/%.cpp $(obj)/flags
 	@mkdir -p $(@D)
 	$(if $(Q),@echo "  c++  $<")
@@ -604,7 +605,8 @@ $(work)/peers/cgal: peer_libs = -ltbb -ltbbmalloc -lmpfr -lgmp
 $(work)/peers/embree: peer_libs = -lembree3
 $(work)/peers/fcl: peer_libs = $(shell pkg-config --libs fcl)
 $(peer_programs) $(work)/peers/brute: $(work)/peers/%: $(obj)/bench/peers/%.o \
-    $(obj)/bench/peers/driver.o $(obj)/bench/peers/triangle_test.o $(static)
+    $(obj)/bench/peers/driver.o $(obj)/bench/peers/objects_driver.o $(obj)/bench/peers/triangle_test.o \
+    $(obj)/tools/thread_pool.o $(static)
 	@mkdir -p $(@D)
 	$(if $(Q),@echo "  ld   $@")
 	$(Q)$(CXX) $(link_mode) $(CXXFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(static) $(peer_libs) \

@@ -77,12 +77,72 @@ class brute : public peer
     }
 };
 
+/* The same of several objects. */
+class brute_objects : public objects_peer
+{
+    const object_scene *all = nullptr;
+
+  public:
+    std::string name() const override
+    {
+        return "brute";
+    }
+    std::string version() const override
+    {
+        return "-";
+    }
+    std::string what() const override
+    {
+        return "all pairs; exact triangle test of ours";
+    }
+    bool threaded() const override
+    {
+        return false;
+    }
+
+    void build(const object_scene &scene, unsigned) override
+    {
+        all = &scene;
+    }
+
+    void query(size_t frame, pair_list &found) override
+    {
+        for (size_t i = 0; i < all->objects.size(); ++i)
+            for (size_t j = i; j < all->objects.size(); ++j) ask(i, j, frame, found);
+    }
+
+  private:
+    void ask(size_t i, size_t j, size_t frame, pair_list &found) const
+    {
+        const object &one = all->objects[i], &other = all->objects[j];
+        if (i == j && !one.itself) return;
+        for (uint32_t a = 0; a < one.mesh.triangles; ++a) {
+            for (uint32_t b = i == j ? a + 1 : 0; b < other.mesh.triangles; ++b) {
+                const double *p[3], *q[3];
+                for (size_t k = 0; k < 3; ++k) {
+                    p[k] = one.frame(frame) + 3 * size_t(one.mesh.corners[3 * size_t(a) + k]);
+                    q[k] = other.frame(frame) + 3 * size_t(other.mesh.corners[3 * size_t(b) + k]);
+                }
+                if (i == j && one.mesh.adjacent(a, b)) continue;
+                if (triangles_meet(p, q)) found.push_back(pair(one.first + a, other.first + b));
+            }
+        }
+    }
+};
+
 } // namespace
 
 std::vector<std::unique_ptr<peer>> make_peers()
 {
     std::vector<std::unique_ptr<peer>> list;
     list.push_back(std::make_unique<brute>());
+    return list;
+}
+
+std::vector<std::unique_ptr<objects_peer>> make_objects_peers()
+{
+    std::vector<std::unique_ptr<objects_peer>> list;
+    list.push_back(std::make_unique<brute_objects>());
     return list;
 }
 

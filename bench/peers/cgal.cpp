@@ -113,4 +113,10 @@ std::vector<std::unique_ptr<peer>> make_peers()
     return list;
 }
 
+/* self_intersections takes one mesh. */
+std::vector<std::unique_ptr<objects_peer>> make_objects_peers()
+{
+    return {};
+}
+
 } // namespace peers

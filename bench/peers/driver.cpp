@@ -4,7 +4,8 @@
  *     PEER [--threads 1|all|N] [--repeats N] [--frames N] [--csv FILE] SCENE...
  *
  * A SCENE is a folder: meta.txt ("triangles vertices frames"), tris.u32 (3 little-endian uint32 a
- * triangle), frames.f64 or frames.f32 (frames x vertices x 3, little-endian).
+ * triangle), frames.f64 or frames.f32 (frames x vertices x 3, little-endian). One with objects.txt
+ * has several objects: see objects_driver.cpp.
  *
  * All ways of the peer and three of starcontour (exact contours, the default; star contours; boxes)
  * take turns frame by frame, one query each, as a simulation would ask: no query meets warm caches.
@@ -31,7 +32,7 @@
 #  define _GNU_SOURCE
 #endif
 
-#include "peer.h"
+#include "driver.h"
 
 #include <starcontour.h>
 
@@ -55,14 +56,6 @@ namespace
 
 using namespace peers;
 
-struct settings {
-    unsigned threads = 1;
-    size_t repeats = 5;
-    size_t frames = SIZE_MAX;
-    const char *csv = nullptr;
-    std::vector<std::string> scenes;
-};
-
 /* starcontour's ways, asked for by name so that they stay what they are called. The first is the
    default. */
 const struct {
@@ -74,17 +67,6 @@ const struct {
                 {"aabb", SC_METHOD_AABB, SC_CONTOUR_DEFAULT, false},
                 {"one shot", SC_METHOD_AABB, SC_CONTOUR_DEFAULT, true}};
 const size_t own_way_count = sizeof(own_ways) / sizeof(*own_ways);
-
-/* A way to find pairs that takes turns with others. */
-struct contender {
-    peer *other = nullptr; /* or starcontour in this of own_ways: */
-    size_t way = 0;
-    size_t frames = 0; /* in so many of the first it has a turn */
-    std::string name, version, what;
-    unsigned threads = 1;
-    std::vector<std::vector<double>> times;    /* of each frame: milliseconds of each repeat */
-    std::vector<size_t> pairs, missing, extra; /* of each frame */
-};
 
 /* ------------------------------------------------------------------------------------------------
  * Scenes
@@ -102,6 +84,17 @@ template <typename number> std::vector<number> read_numbers(const std::string &p
     return numbers;
 }
 
+} // namespace
+
+namespace peers
+{
+
+std::string last_part(std::string folder)
+{
+    while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
+    return folder.substr(folder.rfind('/') + 1); /* npos + 1 is 0 */
+}
+
 scene read_scene(std::string folder)
 {
     const int32_t one = 1;
@@ -111,7 +104,7 @@ scene read_scene(std::string folder)
 
     while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
     scene s;
-    s.name = folder.substr(folder.rfind('/') + 1); /* npos + 1 is 0 */
+    s.name = last_part(folder);
     std::FILE *file = std::fopen((folder + "/meta.txt").c_str(), "r");
     if (!file) throw std::runtime_error(folder + "/meta.txt: cannot be opened");
     unsigned long triangles = 0, vertices = 0, frames = 0;
@@ -142,6 +135,11 @@ scene read_scene(std::string folder)
     }
     return s;
 }
+
+} // namespace peers
+
+namespace
+{
 
 /* ------------------------------------------------------------------------------------------------
  * starcontour
@@ -268,35 +266,25 @@ size_t count_lacking(const pair_list &a, const pair_list &b)
 }
 
 /* Walks the animation once; compares pairs if first, else records times. */
-void walk(const scene &mesh, starcontour &ours, std::vector<contender> &contenders, size_t frames,
-          bool first)
+void walk(const subject &asked, std::vector<contender> &contenders, size_t frames, bool first)
 {
-    pair_list found, all;
+    pair_list found, all, apart;
     for (size_t f = 0; f < frames; ++f) {
-        const double *positions = mesh.frame(f);
-        if (first) {
-            ours.query(0, positions);
-            all = ours.select(kind::all);
-        }
-        const pair_list apart = first ? ours.select(kind::apart) : pair_list();
+        if (first) asked.reference(f, all, apart);
         for (contender &c : contenders) {
             if (f >= c.frames) continue;
             found.clear();
             const double start = milliseconds();
-            if (c.other)
-                c.other->query(positions, found);
-            else
-                ours.query(c.way, positions);
+            c.query(f, found);
             const double time = milliseconds() - start;
             if (!first) {
                 c.times[f].push_back(time);
                 continue;
             }
-            if (!c.other) found = ours.select(kind::all);
+            if (c.listed) found = c.listed();
             std::sort(found.begin(), found.end());
             c.pairs.push_back(found.size());
-            const bool every = !c.other || c.other->finds() == kind::all;
-            const pair_list &wanted = every ? all : apart;
+            const pair_list &wanted = c.finds == kind::all ? all : apart;
             c.missing.push_back(count_lacking(wanted, found));
             c.extra.push_back(count_lacking(found, wanted));
         }
@@ -304,12 +292,15 @@ void walk(const scene &mesh, starcontour &ours, std::vector<contender> &contende
 }
 
 std::vector<contender> line_up(const std::vector<std::unique_ptr<peer>> &list, const scene &mesh,
-                               const settings &s, size_t frames, std::FILE *out)
+                               starcontour &ours, const settings &s, size_t frames, std::FILE *out)
 {
     std::vector<contender> contenders;
     for (const auto &p : list) {
         contender c;
-        c.other = p.get();
+        c.query = [&mesh, other = p.get()](size_t f, pair_list &found) {
+            other->query(mesh.frame(f), found);
+        };
+        c.finds = p->finds();
         c.name = p->name();
         c.version = p->version();
         c.what = p->what();
@@ -323,10 +314,7 @@ std::vector<contender> line_up(const std::vector<std::unique_ptr<peer>> &list, c
         try {
             p->build(mesh, s.threads);
         } catch (const std::runtime_error &error) {
-            std::printf("skipped: %s on %s: %s\n", c.name.c_str(), mesh.name.c_str(), error.what());
-            if (s.csv)
-                std::fprintf(out, "# skipped: %s on %s: %s\n", c.name.c_str(), mesh.name.c_str(),
-                             error.what());
+            say_skipped(c.name, mesh.name, error.what(), s, out);
             continue;
         }
         contenders.push_back(c);
@@ -334,7 +322,8 @@ std::vector<contender> line_up(const std::vector<std::unique_ptr<peer>> &list, c
     if (contenders.empty()) return contenders;
     for (size_t way = 0; way < own_way_count; ++way) {
         contender c;
-        c.way = way;
+        c.query = [&mesh, &ours, way](size_t f, pair_list &) { ours.query(way, mesh.frame(f)); };
+        c.listed = [&ours] { return ours.select(kind::all); };
         c.name = "starcontour";
         c.version = sc_version_string();
         c.what = own_ways[way].name;
@@ -349,12 +338,38 @@ bool run(const scene &mesh, const std::vector<std::unique_ptr<peer>> &list, cons
          std::FILE *out)
 {
     starcontour ours(mesh, SC_MODEL_FULL);
-    const size_t frames = std::min(s.frames, mesh.frames);
-    std::vector<contender> contenders = line_up(list, mesh, s, frames, out);
-    if (contenders.empty()) return true;
+    subject asked;
+    asked.name = mesh.name;
+    asked.triangles = mesh.triangles;
+    asked.frames = std::min(s.frames, mesh.frames);
+    asked.reference = [&mesh, &ours](size_t f, pair_list &all, pair_list &apart) {
+        ours.query(0, mesh.frame(f));
+        all = ours.select(kind::all);
+        apart = ours.select(kind::apart);
+    };
+    std::vector<contender> contenders = line_up(list, mesh, ours, s, asked.frames, out);
+    return contenders.empty() || measure(asked, contenders, list[0]->name(), s, out);
+}
+
+} // namespace
+
+namespace peers
+{
+
+void say_skipped(const std::string &name, const std::string &scene, const std::string &reason,
+                 const settings &s, std::FILE *out)
+{
+    std::printf("skipped: %s on %s: %s\n", name.c_str(), scene.c_str(), reason.c_str());
+    if (s.csv)
+        std::fprintf(out, "# skipped: %s on %s: %s\n", name.c_str(), scene.c_str(), reason.c_str());
+}
+
+bool measure(const subject &asked, std::vector<contender> &contenders, const std::string &beside,
+             const settings &s, std::FILE *out)
+{
     for (contender &c : contenders) c.times.resize(c.frames);
     for (size_t repeat = 0; repeat <= s.repeats; ++repeat)
-        walk(mesh, ours, contenders, frames, repeat == 0);
+        walk(asked, contenders, asked.frames, repeat == 0);
 
     bool same = true;
     for (contender &c : contenders) {
@@ -368,23 +383,28 @@ bool run(const scene &mesh, const std::vector<std::unique_ptr<peer>> &list, cons
             const bool matches = c.missing[f] == 0 && c.extra[f] == 0;
             different += !matches;
             std::fprintf(out, "%s,%zu,%zu,%s,%s,%s,%u,%.4f,%zu,%s,%.4f,%zu,%zu,%s,%u\n",
-                         mesh.name.c_str(), mesh.triangles, f, c.name.c_str(), c.version.c_str(),
+                         asked.name.c_str(), asked.triangles, f, c.name.c_str(), c.version.c_str(),
                          c.what.c_str(), c.threads, median, c.pairs[f], matches ? "yes" : "no",
-                         t[0], c.missing[f], c.extra[f], list[0]->name().c_str(), s.threads);
+                         t[0], c.missing[f], c.extra[f], beside.c_str(), s.threads);
         }
         std::fflush(out);
         if (s.csv)
-            std::printf("%-14s %-12s %u thread%s %9.3f ms a frame  %s\n", mesh.name.c_str(),
+            std::printf("%-14s %-12s %u thread%s %9.3f ms a frame  %s\n", asked.name.c_str(),
                         c.name.c_str(), c.threads, c.threads == 1 ? " " : "s",
                         sum / double(c.frames), c.what.c_str());
         if (different > 0) {
             same = false;
             std::printf("different pairs in %zu of %zu frames: %s on %s\n", different, c.frames,
-                        c.name.c_str(), mesh.name.c_str());
+                        c.name.c_str(), asked.name.c_str());
         }
     }
     return same;
 }
+
+} // namespace peers
+
+namespace
+{
 
 /* ------------------------------------------------------------------------------------------------
  * Command line
@@ -493,8 +513,9 @@ int main(int argc, char **argv)
     int status = 0;
     try {
         for (const std::string &folder : s.scenes) {
-            const scene mesh = read_scene(folder);
-            if (!run(mesh, make_peers(), s, out)) status = 1;
+            const bool same = is_of_objects(folder) ? run_objects(folder, s, out)
+                                                    : run(read_scene(folder), make_peers(), s, out);
+            if (!same) status = 1;
         }
     } catch (const std::exception &error) {
         std::fprintf(stderr, "%s\n", error.what());

@@ -74,6 +74,52 @@ class peer
 /* The ways of using a library that are measured. */
 std::vector<std::unique_ptr<peer>> make_peers();
 
+/* ------------------------------------------------------------------------------------------------
+ * Several objects. Their triangles are numbered one object after the other, and pairs are of such
+ * numbers.
+ */
+
+/* One of them; what does not move has one frame. */
+struct object {
+    scene mesh;
+    bool itself = false; /* its pairs with itself are wanted */
+    uint32_t first = 0;  /* the number of its first triangle */
+
+    bool moves() const
+    {
+        return mesh.frames > 1;
+    }
+    const double *frame(size_t f) const
+    {
+        return mesh.frame(moves() ? f : 0);
+    }
+};
+
+struct object_scene {
+    std::string name;
+    size_t triangles = 0, frames = 0;
+    std::vector<object> objects;
+};
+
+/* As peer, about several objects. It finds the pairs of triangles of two objects, and those of one
+   object that is asked about itself of which the triangles share no vertex. */
+class objects_peer
+{
+  public:
+    virtual ~objects_peer() = default;
+    virtual std::string name() const = 0;
+    virtual std::string version() const = 0;
+    virtual std::string what() const = 0;
+    virtual bool threaded() const = 0;
+    virtual void build(const object_scene &scene, unsigned threads) = 0;
+
+    /* Everything there is to do for a frame; timed. What does not move was built before. */
+    virtual void query(size_t frame, pair_list &found) = 0;
+};
+
+/* None for a library that takes one mesh. */
+std::vector<std::unique_ptr<objects_peer>> make_objects_peers();
+
 } // namespace peers
 
 #endif /* PEERS_PEER_H */
