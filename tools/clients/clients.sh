@@ -6,6 +6,8 @@
 #     SC_QUERY   the program to compare with, if it is there
 #     ADDON      the add-on for Blender
 #     CXX        the compiler for C++, c++ if it is not set
+#     IPC_TOOLKIT_FLAGS   what compiles and links with an installed ipc-toolkit; by default, headers
+#                that stand in for it are taken, and Eigen where Debian has it
 #
 # Those in Python come from PyPI, into a virtual environment below BUILD; Bullet is looked for by
 # pkg-config. What cannot be had is said and counted as skipped. Last line: "N passed, N failed, N
@@ -71,6 +73,24 @@ bullet() {
 }
 
 client ipctk ipctk tools/clients/ipctk/test_client.py
+
+# The broad phase in C++.
+in_cxx() {
+    # shellcheck disable=SC2086
+    ${CXX:-c++} -std=c++17 -O1 -Iinclude -Itests/ffi/cxx tools/clients/ipctk/test_broad_phase.cpp \
+        ${IPC_TOOLKIT_FLAGS--Itools/clients/ipctk/stand_in -I/usr/include/eigen3} "$library" -lm \
+        -Wl,-rpath,"$(absolute "${library%/*}")" -o "$build/clients/test_broad_phase" &&
+        "$build/clients/test_broad_phase"
+}
+if [ -z "${IPC_TOOLKIT_FLAGS-}" ] && [ ! -e /usr/include/eigen3/Eigen/Core ]; then
+    echo "skipped: ipctk in C++: there is no Eigen (Debian: libeigen3-dev)"
+    skipped=$((skipped + 1))
+elif ! command -v "${CXX:-c++}" >/dev/null 2>&1; then
+    echo "skipped: ipctk in C++: there is no ${CXX:-c++}"
+    skipped=$((skipped + 1))
+else
+    run "ipctk in C++" in_cxx
+fi
 if [ -x "${SC_QUERY-}" ]; then
     export VERSIONS=tools/clients/blender/requirements.txt
     client blender bpy tools/clients/blender/test_addon.py "$ADDON" "$SC_QUERY"
