@@ -660,6 +660,21 @@ else
 	@echo "skipped: dataset-peers: needs $(strip $(missing_for_programs)) ('make deps')"
 endif
 
+# The longest takes two minutes a scene, at one thread.
+.PHONY: objects-peers
+objects-peers: $(filter %/sc-objects,$(programs)) ## time Embree and FCL on several objects, into build/peers/objects.csv; some minutes
+ifneq ($(filter %/sc-objects,$(programs)),)
+	@mkdir -p '$(BUILD)/peers' && echo "# commit: $$(git describe --always --abbrev=12 --dirty=+ \
+	    --exclude='*' 2>/dev/null || echo unknown)" >'$(BUILD)/peers/objects.csv'
+	@cd '$(BUILD)/peers' && { [ -d objects ] || { rm -rf objects.new && \
+	    '$(abspath $(bin))/sc-objects' --frames 3 --export objects.new && mv objects.new objects; }; }
+	+@status=0; for peer in embree fcl; do \
+	    $(MAKE) --no-print-directory peer-$$peer CSV='$(BUILD)/peers/objects.csv' LIMIT=300 \
+	        SCENES="$(patsubst %,$(BUILD)/peers/objects/%,body crowd layers)" || status=1; done; exit $$status
+else
+	@echo "skipped: objects-peers: needs $(strip $(missing_for_programs)) ('make deps')"
+endif
+
 .PHONY: peers
 peers: ## all peers that are there, into a new CSV; a minute or two for each
 	@mkdir -p '$(dir $(CSV))' && echo "# commit: $$(git describe --always --abbrev=12 --dirty=+ \

@@ -266,6 +266,7 @@ class Results:
             for path in (os.path.join(folder, name + ".csv")
                          for name in ("steps", "turns", "shots", "built", "near",
                                       "near_peers", "objects", "dataset")))
+        self.objects_peers = read_peers(os.path.join(folder, "objects_peers.csv"))
         self.dataset_peers = read_peers(os.path.join(folder, "dataset_peers.csv"), "unequal")
         peers = os.path.join(folder, "peers.csv")
         rows, skipped, self.peers_commit = read_peers(peers)
@@ -899,6 +900,7 @@ def report(results, drawn, slope_table, reading):
                    "*Each alone*: those that are, in a call each, without what is between two. "
                    + "; ".join("*%s*: %s" % item for item in report_objects.SCENES.items()) + ".\n")
         out.append(objects)
+    out += report_objects.peer_section(results.objects_peers)
     peers, skipped, commit = results.dataset_peers
     out += report_dataset.section(results.dataset, peers, commit, skipped)
     out.append("## One query a frame, and repeated queries\n")

@@ -1,6 +1,7 @@
-"""Several objects in one query, for the reports that draw_report.py makes: a table.
+"""Several objects in one query, for the reports that draw_report.py makes: two tables.
 
-objects.csv has a line a scene, question, number of workers and way, as sc-objects --csv writes it.
+objects.csv has a line a scene, question, number of workers and way, as sc-objects --csv writes it;
+objects_peers.csv is what `make objects-peers` wrote, with the columns of peers.csv.
 
 SPDX-License-Identifier: MIT
 """
@@ -9,7 +10,7 @@ import csv
 import glob
 import os
 
-from report_text import figure, ratio, table, whole
+from report_text import figure, mean, ratio, table, whole
 
 OBJECTS = ["scene", "question", "objects", "workers", "way", "pairs", "ms"]
 
@@ -40,8 +41,48 @@ def own_table(rows):
         if set(ways) < {"objects", "merged", "alone"}:
             continue
         ms = {way: row["ms"] for way, row in ways.items()}
-        lines.append([scene, QUESTIONS.get(question, question), str(workers), whole(ways["objects"]["pairs"]),
+        lines.append([scene, QUESTIONS.get(question, question), whole(workers), whole(ways["objects"]["pairs"]),
                       figure(ms["objects"]), figure(ms["merged"]), ratio(ms["merged"], ms["objects"]),
                       figure(ms["alone"])])
     return table(["Scene", "Question", "Threads", "Pairs", "Objects, ms", "One mesh, ms", "Gain", "Each alone, ms"],
                  lines, 2) if lines else ""
+
+
+def peer_table(rows):
+    """Peers beside sc_query_objects, which ran in the same process. "" without rows."""
+    by = {}
+    for row in rows:
+        by.setdefault((row["scene"], int(row["processors"]), row["beside"]), {}).setdefault(
+            (row["peer"], str(row["version"]), row["what"]), []).append(row)
+    lines = []
+    for (scene, threads, _), ways in sorted(by.items()):
+        ours = [frames for (peer, _, what), frames in ways.items() if (peer, what) == ("starcontour", "objects")]
+        if not ours:
+            continue
+        own = mean(row["ms"] for row in ours[0])
+        for (peer, version, what), frames in ways.items():
+            if peer == "starcontour":
+                continue
+            ms = mean(row["ms"] for row in frames)
+            wrong = sum(row["missing"] + row["extra"] for row in frames)
+            lines.append([scene, "%s %s" % (peer, version), what, str(threads),
+                          whole(mean(row["pairs"] for row in frames)), figure(ms), figure(own), ratio(ms, own),
+                          "%s wrong" % whole(wrong) if wrong else "match"])
+    return table(["Scene", "Peer", "What it does a frame", "Threads", "Pairs", "ms", "Objects, ms", "× objects",
+                  "Answers"], lines, 3) if lines else ""
+
+
+def peer_section(peers):
+    """Lines of the report; peers: rows, what was left out, and the commit, as read_peers gives them."""
+    rows, skipped, commit = peers
+    shown = peer_table(rows)
+    out = []
+    if shown:
+        out += ["Other libraries on the same objects, in one process with `sc_query_objects` (*objects*), in turns, both\n"
+                "with so many threads; made by `make objects-peers` at commit %s and explained in\n"
+                "bench/peers/README.md. What intersects; means over the frames of medians. A tree for each object, of\n"
+                "which those that do not move are built once. *Pairs*: of triangles that share no vertex.\n" % commit,
+                shown]
+    if skipped:
+        out.append("Left out:\n\n" + "".join("- %s\n" % line for line in skipped))
+    return out

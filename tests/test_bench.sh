@@ -429,6 +429,25 @@ poses,meshlib,3.1,refitted,1,24992,200,50,0.5,50,0.8,90,3,40,2,7
 poses,meshlib,3.1,refitted,2,24992,200,30,0.5,30,0.5,90,3,40,2,7
 rounded,libigl,2.6.3,rebuilt,1,24992,200,100,0.4,100,0.4,90,0,0,0,0
 END
+    cat >"$scratch/results/objects.csv" <<'END'
+scene,question,objects,workers,way,pairs,ms
+body,query,2,1,objects,2000,1
+body,query,2,1,merged,2000,3
+body,query,2,1,alone,0,0.5
+END
+    cat >"$scratch/results/objects_peers.csv" <<'END'
+# commit: fed
+# skipped: fcl on crowd: took more than 300 s
+scene,triangles,frame,peer,version,what,threads,ms,pairs,matches,ms_min,missing,extra,beside,processors
+body,500,0,embree,3.13.5,two scenes: refitted,1,20,100,yes,20,0,0,embree,1
+body,500,1,embree,3.13.5,two scenes: refitted,1,40,300,yes,40,0,0,embree,1
+body,500,0,embree,3.13.5,two scenes: rebuilt,1,60,100,yes,20,0,0,embree,1
+body,500,1,embree,3.13.5,two scenes: rebuilt,1,60,298,no,40,3,2,embree,1
+body,500,0,starcontour,0.1.0,objects,1,2,110,yes,2,0,0,embree,1
+body,500,1,starcontour,0.1.0,objects,1,4,310,yes,4,0,0,embree,1
+body,500,0,embree,3.13.5,two scenes: refitted,2,9,100,yes,20,0,0,embree,2
+body,500,0,starcontour,0.1.0,objects,2,3,110,yes,2,0,0,embree,2
+END
     check "a report with peers" python3 bench/draw_report.py "$scratch/results"
     near_row="| crushed-cloth | 500 | 0.20 | 900 | 1.00 | 2.00 | 8.00 | 16.0 | 8.00 | 16.0 | 8.00 | right | 1 and 4 of 304 |"
     check "what is near, beside ipc-toolkit" grep -Fq "$near_row" "$scratch/results/report.md"
@@ -444,6 +463,11 @@ END
         "had less than 95 % of their processors" "other programs ran at the same time, so that single" \
         "| poses | meshlib 3.1 | refitted | 200 | 50.0 | 0.500 | 100.0 | 30.0 | 60.0 | 3 of 200 | 40 missing, 2 extra in 7 |" \
         "| rounded | libigl 2.6.3 | rebuilt | 200 | 100 | 0.400 | 250.0 | – | – | 0 of 200 | – |" \
+        "| body | intersections | 1 | 2,000 | 1.00 | 3.00 | 3.00 | 0.500 |" \
+        "| body | embree 3.13.5 | two scenes: refitted | 1 | 200 | 30.0 | 3.00 | 10.0 | match |" \
+        "| body | embree 3.13.5 | two scenes: rebuilt | 1 | 199 | 60.0 | 3.00 | 20.0 | 5 wrong |" \
+        "| body | embree 3.13.5 | two scenes: refitted | 2 | 100 | 9.00 | 3.00 | 3.00 | match |" \
+        "made by \`make objects-peers\` at commit fed" "- fcl on crowd: took more than 300 s" \
         "by \`make dataset-peers\` at commit def" "- open3d: no such wheel" \
         "| rod | 500 | 2 | 5 | 8.00 | 2.00 | 4.00 | – | – | – | 3 missing in 1 of 2 frames |" \
         "| rod | 500 | 1 | 4 | 30.0 | 3.00 | 10.0 | 20.0 | 5.00 | 4.00 | match |" \
@@ -487,6 +511,12 @@ check "and no other" test "$(grep -c "^body" "$scratch/out")" -eq 0
 check "no such scene" says 2 "no scene 'sea'" "$objects" --scene sea
 check "no such scale" says 2 "0.001" "$objects" --scale 0
 check "where nothing can be written" says 2 "cannot be written" "$objects" --csv "$scratch/absent/a.csv"
+check "scenes for others" "$objects" --scale 0.01 --frames 2 --export "$scratch/objects"
+check "a list of objects" test "$(cat "$scratch/objects/body/objects.txt")" = "$(printf '0 1\n1 0')"
+check "one that moves" test "$(cut -d' ' -f 1,3 "$scratch/objects/body/0/meta.txt")" = "200 2"
+check "and one that does not" test "$(cut -d' ' -f 3 "$scratch/objects/body/1/meta.txt")" -eq 1
+check "a hundred of them" test "$(wc -l <"$scratch/objects/crowd/objects.txt")" -eq 100
+check "where no scene can be written" says 2 "absent" "$objects" --scale 0.01 --export "$scratch/absent/deep"
 
 # ---- many poses ----
 

@@ -173,6 +173,36 @@ else
     skip "the triangle test on a soup: there is no python3"
 fi
 
+# Several objects: one that moves and is asked about itself, its first frame standing still, and it
+# again. Two of the same pose have each pair in both orders, and each triangle with itself.
+many=$scratch/many
+mkdir -p "$many/still"
+cp -r "$scene" "$many/moving"
+cp -r "$scene" "$many/again"
+cp "$scene/tris.u32" "$many/still"
+echo "7 21 1" >"$many/still/meta.txt"
+head -c $((21 * 24)) "$scene/frames.f64" >"$many/still/frames.f64"
+printf 'moving 1\nstill 0\nagain 0\n' >"$many/objects.txt"
+check "the driver takes several objects" "$brute" --repeats 3 --csv "$scratch/many.csv" "$many/"
+check "their lines have their columns" rows "$scratch/many.csv"
+check "a line for each frame of both" test "$(wc -l <"$scratch/many.csv")" -eq 5
+between=$((2 * pairs_0 + 7))
+check "all pairs of two objects, and of the first with itself" test \
+    "$(found "$scratch/many.csv" starcontour objects 0)" = "$((pairs_0 + 3 * between)) yes"
+for frame in 0 1; do
+    check "the triangle test finds them in frame $frame" test \
+        "$(found "$scratch/many.csv" brute "all pairs" $frame)" = \
+        "$(found "$scratch/many.csv" starcontour objects $frame)"
+done
+check "in frame 1 there are fewer" test "$(found "$scratch/many.csv" brute "" 1)" != \
+    "$(found "$scratch/many.csv" brute "" 0)"
+for line in "moving" "moving 2" "moving 1 more" "absent 1"; do
+    echo "$line" >"$many/objects.txt"
+    check "a list with '$line'" status 2 "$brute" "$many"
+done
+: >"$many/objects.txt"
+check "a list without objects is said" says "no objects" "$brute" "$many"
+
 # ------------------------------------------------------------------------------------------------
 # The Python driver. Without site-packages (-S) there are no peers.
 
