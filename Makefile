@@ -392,7 +392,7 @@ endif
 addon := $(BUILD)/clients/starcontour-blender-$(version).zip
 
 .PHONY: test-clients blender-addon
-test-clients: $(lib)/$(shared_link) $(addon) $(programs) ## run programs that use the library inside (PyPI, Bullet; what is there); a minute or two
+test-clients: $(lib)/$(shared_link) $(addon) $(programs) ## run programs that use the library inside (PyPI, Bullet; what is there); a few minutes
 	@CXX='$(CXX)' SC_QUERY='$(bin)/sc-query' ADDON='$(addon)' tools/clients/clients.sh '$(lib)/$(shared_link)' '$(BUILD)'
 
 blender-addon: $(addon) ## pack the add-on for Blender, for this platform: build/clients/starcontour-blender-VERSION.zip

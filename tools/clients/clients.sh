@@ -91,6 +91,11 @@ elif ! command -v "${CXX:-c++}" >/dev/null 2>&1; then
 else
     run "ipctk in C++" in_cxx
 fi
+export VERSIONS=tools/clients/newton/requirements.txt
+WARP_CACHE_PATH=$(absolute "$build/clients/newton_kernels") # what newton compiles, the first time for a minute
+export WARP_CACHE_PATH
+client newton newton tools/clients/newton/test_newton.py
+unset VERSIONS WARP_CACHE_PATH
 if [ -x "${SC_QUERY-}" ]; then
     export VERSIONS=tools/clients/blender/requirements.txt
     client blender bpy tools/clients/blender/test_addon.py "$ADDON" "$SC_QUERY"
