@@ -1,17 +1,22 @@
 """What newton's detector of self-contacts loses, what that does to the cloth, and how long both detectors take.
 
-    python measure.py twist|shirt DRIVER [--frames N] [--speed S] [--save FILE.npz]
+    python measure.py twist|shirt DRIVER [--frames N] [--speed S] [--thickness T] [--save FILE.npz]
+    python measure.py twist|shirt times --poses FILE.npz
 
 DRIVER is whose contacts the solver gets: `ours`, `example` (newton's detector, rows as long as in newton's own
 example), or `default` (rows as long as SolverVBD makes them if it is not told: 32 and 64). The other detector
 is asked about the same positions in the first substep of each frame, by turns before and after; these
 substeps are the ones whose times are printed.
 
-twist  newton.examples.cloth_twist as it is; --speed 3 turns the ends three times as fast
+twist  newton.examples.cloth_twist as it is; --speed 3 turns the ends three times as fast,
+       --thickness 3 makes margin and gap three times as large
 shirt  the shirt of newton.examples.cloth_franka, with the parameters it has there, on a body of capsules
 
 A line a frame: pairs of triangles that intersect (starcontour's count), pairs that were found, those that did not
 fit into rows of either length, the longest rows, milliseconds of newton's detector and of ours. Both run in one thread.
+
+times  asks both about each pose that was saved, nine times by turns, and prints the least milliseconds of each,
+       and of the search of the library in ours
 
 SPDX-License-Identifier: MIT
 """
@@ -60,11 +65,11 @@ class Both:
         if self.turn % 2:
             detectors.reverse()
         for detector in detectors:
-            begin = time.perf_counter()
+            begin = time.process_time()
             getattr(detector, method)(*arguments, **options)
             if self.timed:
                 name = "ours" if detector is self.ours else "stock"
-                self.milliseconds[name] = self.milliseconds.get(name, 0) + 1e3 * (time.perf_counter() - begin)
+                self.milliseconds[name] = self.milliseconds.get(name, 0) + 1e3 * (time.process_time() - begin)
 
     def rebuild(self, *arguments):
         for detector in (self.stock, self.ours):
@@ -129,8 +134,16 @@ class Shirt:
 
 
 class Twist(example_cloth_twist.Example):
-    def __init__(self, speed):
+    def __init__(self, speed, thickness):
+        make = newton.solvers.SolverVBD
+
+        def make_thick(*arguments, particle_self_contact_margin, particle_self_contact_gap, **options):
+            return make(*arguments, particle_self_contact_margin=thickness * particle_self_contact_margin,
+                        particle_self_contact_gap=thickness * particle_self_contact_gap, **options)
+
+        newton.solvers.SolverVBD = make_thick
         super().__init__(ViewerNull(), None)
+        newton.solvers.SolverVBD = make
         self.rot_angular_velocity *= speed
         self.rot_end_time /= speed
 
@@ -138,19 +151,56 @@ class Twist(example_cloth_twist.Example):
         self.graph = None
 
 
+def times(detectors, solver, poses):
+    """Both detectors on saved poses."""
+    searcher, near, inside = detectors.ours.searcher, detectors.ours.searcher.near, []
+
+    def timed_near(*arguments, **options):
+        begin = time.process_time()
+        found = near(*arguments, **options)
+        inside[-1] += 1e3 * (time.process_time() - begin)
+        return found
+
+    searcher.near = timed_near
+    print("pose intersections pairs lost_example lost_default stock_ms ours_ms of_that_near_ms")
+    for k, pose in enumerate(poses):
+        least, inside = {}, []
+        state = wp.array(pose, dtype=wp.vec3)
+        detectors.rebuild(state)
+        for _ in range(9):
+            detectors.timed, detectors.milliseconds = True, {}
+            inside.append(0)
+            detectors.refit(state)
+            for method in ("vertex_triangle_collision_detection", "edge_edge_collision_detection"):
+                getattr(detectors, method)(solver._self_contact_query_radius,
+                                           min_query_radius=solver.particle_rest_shape_contact_exclusion_radius,
+                                           min_distance_filtering_ref_pos=solver.particle_q_rest)
+            for name, value in detectors.milliseconds.items():
+                least[name] = min(least.get(name, np.inf), value)
+        info = detectors.ours.collision_info
+        pairs = info.vertex_colliding_triangles_count.numpy().sum() + info.edge_colliding_edges_count.numpy().sum()
+        print("%d %d %d %d %d %.2f %.2f %.2f" % (
+            k, searcher.count(pose), pairs, detectors.lost(detectors.example_rows), detectors.lost(DEFAULT_ROWS),
+            least["stock"], least["ours"], min(inside)), flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("scene", choices=("twist", "shirt"))
-    parser.add_argument("driver", choices=("ours", "example", "default"))
+    parser.add_argument("driver", choices=("ours", "example", "default", "times"))
+    parser.add_argument("--poses", help="what --save left")
     parser.add_argument("--frames", type=int, default=300)
     parser.add_argument("--speed", type=float, default=1.0)
+    parser.add_argument("--thickness", type=float, default=1.0)
     parser.add_argument("--save", help="positions of every tenth frame and the table go there")
     options = parser.parse_args()
     wp.set_device("cpu")
     Both.driver = options.driver
     starcontour_newton.install(Both)
-    example = Twist(options.speed) if options.scene == "twist" else Shirt()
+    example = Twist(options.speed, options.thickness) if options.scene == "twist" else Shirt()
     detectors, solver = Both.made, example.solver
+    if options.driver == "times":
+        return times(detectors, solver, np.load(options.poses)["poses"])
     step = solver.step
 
     def timed_step(*arguments):
@@ -159,15 +209,15 @@ def main():
 
     solver.step = timed_step
     searcher = detectors.ours.searcher
-    print(f"{options.scene}, {options.driver}: {example.model.tri_count} triangles, {example.model.particle_count} "
+    print(f"{options.scene}, {options.driver}: radius {solver._self_contact_query_radius:g}, {example.model.tri_count} triangles, {example.model.particle_count} "
           f"vertices; rows of the example {detectors.example_rows}, by default {DEFAULT_ROWS}")
     print("frame intersections pairs lost_example lost_default longest_vt longest_ee stock_ms ours_ms frame_s")
     table, poses = [], []
     for frame in range(options.frames):
         detectors.timed, detectors.milliseconds = True, {}
-        begin = time.perf_counter()
+        begin = time.process_time()
         example.simulate()
-        seconds = time.perf_counter() - begin
+        seconds = time.process_time() - begin
         position = example.state_0.particle_q.numpy().copy()
         # The pairs of the substep that was timed are still in newton's arrays if ours drives; else of the last one.
         info = detectors.stock.collision_info

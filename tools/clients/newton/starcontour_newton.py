@@ -59,6 +59,11 @@ def _round_down(distances):
     return np.where(rounded > distances, np.nextafter(rounded, np.float32(-1)), rounded)
 
 
+def _largest(values, vertices):
+    """Of each column of vertices the largest value."""
+    return np.maximum.reduce([values[row] for row in vertices])
+
+
 def _order(rows, row_count):
     """Which order sorts rows, stably. numpy counts digits of short integers, which is faster."""
     return np.argsort(rows.astype(np.uint16) if row_count <= 1 << 16 else rows, kind="stable")
@@ -92,7 +97,7 @@ class Detector(TriMeshCollisionDetector):
         self.enlarged = 0
         triangles = model.tri_indices.numpy().reshape(-1, 3)
         edges = model.edge_indices.numpy()[:, 2:] if model.edge_count else np.empty((0, 2), np.int32)
-        self._triangles, self._edges = triangles, np.ascontiguousarray(edges)
+        self._corners, self._ends = np.ascontiguousarray(triangles.T), np.ascontiguousarray(edges.T)
         self._numbers = number_edges(triangles, edges)
         self._unnumbered = bool((self._numbers < 0).any())
         self.searcher = starcontour.Model(model.particle_q.numpy(), triangles.astype(np.uint32), weld="none")
@@ -190,7 +195,7 @@ class Detector(TriMeshCollisionDetector):
         pairs, keep = found.vertex_faces, None
         if self.vertex_triangle_filtering_list is not None:
             keep = ~self._listed(self.vertex_triangle_filtering_list, self.vertex_triangle_filtering_list_offsets,
-                                 pairs, len(self._triangles))
+                                 pairs, self.model.tri_count)
         if self._worlds is not None:
             a, b = self._worlds[0][pairs[:, 0]], self._triangle_worlds[pairs[:, 1]]
             meet = (a == b) | (a < 0) | (b < 0)
@@ -209,7 +214,7 @@ class Detector(TriMeshCollisionDetector):
         else:
             bound = _round_down(found.vertex_bound)
             info.vertex_colliding_triangles_min_dist.numpy()[:] = bound
-            of_triangles[:] = bound[self._triangles].max(axis=1)
+            of_triangles[:] = _largest(bound, self._corners)
         if self.record_triangle_contacting_vertices:
             pairs = pairs[_order(pairs[:, 1], model.tri_count)]
             self._write_rows("triangle_colliding_vertices", pairs[:, 1], np.ascontiguousarray(pairs[:, 0]),
@@ -245,7 +250,7 @@ class Detector(TriMeshCollisionDetector):
             distances = distances if keep is None else distances[keep]
             self._write_least(least, max_query_radius, distances[order], counts, offsets)
         else:
-            least.numpy()[:] = _round_down(found.vertex_bound)[self._edges].max(axis=1, initial=0)
+            least.numpy()[:] = _largest(_round_down(found.vertex_bound), self._ends)
 
 
 def install(detector=Detector):
