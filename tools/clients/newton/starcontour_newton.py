@@ -12,9 +12,9 @@ each edge the other edges, how many, and the least distances. Three things diffe
   (Detector.enlarged counts how often), so nothing is dropped.
 - What is within the radius is decided exactly, on the floats that the simulation has. Newton rounds, and
   takes edges for points whose squared length is at most particle_edge_parallel_epsilon.
-- The least distances of vertices, edges and triangles are lower bounds, at most the radius, and of what
-  is nearest to the three together they are exact but for rounding: newton.solvers reads the least of them
-  round a vertex, if anything. With distances=True they are each row's own, which takes much longer.
+- The least distances of vertices, edges and triangles are lower bounds, chosen so that the least of them
+  round a vertex is the same (but for 3e-5 of the radius and the longest edge). With distances=True they are
+  each row's own, as newton has them, which takes about three times as long.
 
 SPDX-License-Identifier: MIT
 """

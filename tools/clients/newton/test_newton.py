@@ -1,6 +1,6 @@
 """newton's detector of self-contacts beside the one on starcontour: the same contacts, and none dropped.
 
-    python test_client.py
+    python test_newton.py
 
 Crumpled cloths of random shape are given to both. Pairs are compared with distances computed here in doubles:
 ours must be right but for rounding at the radius; newton's must be ours where its rows are long enough and edges
