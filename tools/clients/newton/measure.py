@@ -3,16 +3,17 @@
     python measure.py twist|shirt DRIVER [--frames N] [--speed S] [--thickness T] [--save FILE.npz]
     python measure.py twist|shirt times --poses FILE.npz
 
-DRIVER is whose contacts the solver gets: `ours`, or newton's with rows `default` or `short`, see below. The other detector
-is asked about the same positions in the first substep of each frame, by turns before and after; these
-substeps are the ones whose times are printed.
+DRIVER is whose contacts the solver gets: `ours`, or newton's with rows `default` or `short`, see below. The other
+detector is asked about the same positions in the first substep of each frame, by turns before and after;
+these substeps are the ones whose times are printed.
 
 twist  newton.examples.cloth_twist as it is; --speed 3 turns the ends three times as fast,
        --thickness 3 makes margin and gap three times as large
 shirt  the shirt of newton.examples.cloth_franka, with the parameters it has there, on a body of capsules
 
 A line a frame: pairs of triangles that intersect (starcontour's count), pairs that were found, those that do
-not fit into rows of either length, the longest rows, milliseconds of newton's detector and of ours. Both run in one thread.
+not fit into rows of either length, the longest rows, milliseconds of processor time of newton's
+detector and of ours. Both run in one thread.
 
 times  asks both about each pose that was saved, nine times by turns, and prints the least milliseconds of each,
        and of the search of the library in ours
@@ -106,7 +107,8 @@ class Shirt:
         scene.color()
         along_y = wp.quat_from_axis_angle(wp.vec3(1.0, 0.0, 0.0), np.pi / 2)
         along_x = wp.quat_from_axis_angle(wp.vec3(0.0, 1.0, 0.0), np.pi / 2)
-        for where, turn, radius, half in (((0.0, 0.0, 9.0), along_y, 9.0, 25.0), ((0.0, -8.0, 9.0), along_x, 5.0, 32.0)):
+        for where, turn, radius, half in (((0.0, 0.0, 9.0), along_y, 9.0, 25.0),
+                                          ((0.0, -8.0, 9.0), along_x, 5.0, 32.0)):
             scene.add_shape_capsule(-1, xform=wp.transform(wp.vec3(*where), turn), radius=radius, half_height=half)
         scene.add_ground_plane()
         self.model = scene.finalize()
@@ -208,8 +210,8 @@ def main():
 
     solver.step = timed_step
     searcher = detectors.ours.searcher
-    print(f"{options.scene}, {options.driver}: radius {solver._self_contact_query_radius:g}, {example.model.tri_count} triangles, {example.model.particle_count} "
-          f"vertices; short rows {SHORT_ROWS}, by default {DEFAULT_ROWS}")
+    print(f"{options.scene}, {options.driver}: radius {solver._self_contact_query_radius:g}, "
+          f"{example.model.tri_count} triangles, {example.model.particle_count} vertices; short rows {SHORT_ROWS}, by default {DEFAULT_ROWS}")
     print("frame intersections pairs lost_short lost_default longest_vt longest_ee stock_ms ours_ms frame_s")
     table, poses = [], []
     for frame in range(options.frames):

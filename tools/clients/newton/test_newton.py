@@ -142,8 +142,10 @@ def bounds(model, info, radius):
 def same(found, right, radius, what, slack=1e-6):
     """found: a set of pairs; right: rows, columns and distances of all pairs."""
     a, b, distances = right
-    within = {(int(i), int(j)) for i, j in zip(a[distances < radius * (1 - slack)], b[distances < radius * (1 - slack)])}
-    may = {(int(i), int(j)) for i, j in zip(a[distances < radius * (1 + slack)], b[distances < radius * (1 + slack)])}
+    def nearer(limit):
+        return set(zip(a[distances < limit].tolist(), b[distances < limit].tolist()))
+
+    within, may = nearer(radius * (1 - slack)), nearer(radius * (1 + slack))
     check(within <= found, f"{what}: {len(within - found)} pairs are missing")
     check(found <= may, f"{what}: {len(found - may)} pairs are too far, or left out")
     return len(found), len(within - found)
@@ -185,7 +187,8 @@ def test_random():
                 more = bounds(model, ours.collision_info, radius) - loose
                 check((more > -1e-6).all() and (more < below).all(), f"bounds of vertices differ, seed {seed}")
             loose = bounds(model, ours.collision_info, radius)
-        check(not stock.resize_flags.numpy().any() and count > 1000, f"seed {seed}: rows are too short, or all is empty")
+        check(not stock.resize_flags.numpy().any() and count > 1000,
+              f"seed {seed}: rows are too short, or all is empty")
         print(f"seed {seed}, rings {rings}: {count // 2} pairs, the same by both")
 
 
@@ -248,7 +251,8 @@ def test_filters():
     scene.add_world(cloth)
     model = finish(scene)
     at = crumple(model, np.random.default_rng(9), 2.0)
-    theirs, mine = (search(make(kind, model), at, 0.3) for kind in (TriMeshCollisionDetector, starcontour_newton.Detector))
+    theirs, mine = (search(make(kind, model), at, 0.3)
+                    for kind in (TriMeshCollisionDetector, starcontour_newton.Detector))
     for k in range(2):
         check(len(theirs[k] ^ mine[k]) <= 2 and mine[k], f"worlds: {len(theirs[k] ^ mine[k])} pairs differ")
 
