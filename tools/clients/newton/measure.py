@@ -211,7 +211,8 @@ def main():
     solver.step = timed_step
     searcher = detectors.ours.searcher
     print(f"{options.scene}, {options.driver}: radius {solver._self_contact_query_radius:g}, "
-          f"{example.model.tri_count} triangles, {example.model.particle_count} vertices; short rows {SHORT_ROWS}, by default {DEFAULT_ROWS}")
+          f"{example.model.tri_count} triangles, {example.model.particle_count} vertices; "
+          f"short rows {SHORT_ROWS}, by default {DEFAULT_ROWS}")
     print("frame intersections pairs lost_short lost_default longest_vt longest_ee stock_ms ours_ms frame_s")
     table, poses = [], []
     for frame in range(options.frames):
