@@ -1,6 +1,6 @@
 """Draws what measure.py saved: the last pose of two runs, triangles that intersect in red, and both tables.
 
-    python picture.py THEIRS.npz OURS.npz PICTURE.png [--pose N] [--eye ELEVATION AZIMUTH]
+    python twist_picture.py THEIRS.npz OURS.npz PICTURE.png [--pose N] [--eye ELEVATION AZIMUTH]
 
 Needs matplotlib. SPDX-License-Identifier: MIT
 """
