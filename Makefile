@@ -528,7 +528,7 @@ bare_flags := -std=c99 $(exact) -Iinclude -Ilib
 
 # gcc 12 warns wrongly in some files: it loses count of loops over three coordinates, and does not
 # see that a loop's condition asks for NULL.
-analyzer_wrong = $(if $(filter %/bisection.c %/decide.c %/contacts.c %/kernels_base.c %/kernels_avx2.c %/kernels_avx512.c,$(1)),-Wno-analyzer-use-of-uninitialized-value) \
+analyzer_wrong = $(if $(filter %/bisection.c %/sharing.c %/decide.c %/contacts.c %/kernels_base.c %/kernels_avx2.c %/kernels_avx512.c,$(1)),-Wno-analyzer-use-of-uninitialized-value) \
     $(if $(filter %/partition_metis.c,$(1)),-Wno-analyzer-possible-null-dereference)
 
 .PHONY: analyze-gcc

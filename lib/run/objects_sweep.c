@@ -40,7 +40,7 @@ static int longest_axis(const sc_objects *objects)
 /* Two sorted lists as one, of those with one lower end the first list's first. */
 static sc_workspace *merge_sorted(sc_workspace *a, sc_workspace *b, int axis)
 {
-    sc_workspace *first, **end = &first;
+    sc_workspace *first = NULL, **end = &first;
     while (a && b) {
         sc_workspace **less = b->frame.low[axis] < a->frame.low[axis] ? &b : &a;
         *end = *less;
