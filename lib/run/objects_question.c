@@ -82,12 +82,8 @@ static sc_status check_objects(const sc_objects *objects, uint32_t about)
 
 static sc_status read_tasks(const sc_tasks *from, sc_objects_question *q)
 {
-    sc_status status;
-    if (!from) return SC_OK;
-    status = sc_arguments_read(NULL, "options.tasks", &q->tasks, sizeof q->tasks, from,
-                               SC_ARGUMENTS_UP_TO(sc_tasks, finish));
+    const sc_status status = sc_arguments_read_tasks(NULL, from, &q->tasks);
     if (status) return status;
-    if (!q->tasks.enqueue || !q->tasks.finish) return SC_ERROR_NULL;
     if (q->tasks.workers > SC_WORKERS_MAX) return SC_ERROR_OPTION;
     if (q->tasks.workers > 1) q->given = &q->tasks;
     return SC_OK;
