@@ -54,11 +54,16 @@ static uint64_t hash_topology(const sc_model *m)
     return sc_model_is_for_boxes(m) ? mix(hash, SC_MODEL_BOXES) : hash;
 }
 
+/* What is round points is listed in so many parts. */
+enum { AROUND_PARTS = 16 };
+
 /* The points that edges join each point with, by old numbers, which are those of the order in which
    they are in memory. */
 typedef struct surroundings {
-    uint32_t *first;  /* point_count + 1 */
-    uint32_t *points; /* by new numbers; and room to read AROUND_AT_ONCE behind */
+    uint32_t *first;                  /* point_count + 1 */
+    uint32_t *points;                 /* by new numbers; and room to read AROUND_AT_ONCE behind */
+    uint32_t length;                  /* points of a part */
+    uint64_t begin[AROUND_PARTS + 1]; /* where the list of each part begins; how many all have */
 } surroundings;
 
 /* What the parts of jobs read, and the model, of which each writes its own share. */
@@ -163,11 +168,12 @@ enum { AROUND_AT_ONCE = 8, AROUND_AHEAD = 16 };
 /* For each corner at a point the next one; the previous one as well if no half-edge runs back to
    it. */
 static void list_around(const sc_points *points, const sc_adjacency *adjacency,
-                        const uint32_t *number, surroundings *s)
+                        const uint32_t *number, uint32_t part, surroundings *s)
 {
     const uint32_t *triangles = points->triangles;
-    uint32_t p, i, at = 0;
-    for (p = 0; p < points->point_count; p++) {
+    uint32_t p, i, at = (uint32_t)s->begin[part];
+    const uint32_t end = part + 1 < AROUND_PARTS ? (part + 1) * s->length : points->point_count;
+    for (p = part * s->length; p < end; p++) {
         s->first[p] = at;
         for (i = adjacency->corner_first[p]; i < adjacency->corner_first[p + 1]; i++) {
             uint32_t h = adjacency->corners[i], before = sc_adjacency_previous(h);
@@ -175,16 +181,24 @@ static void list_around(const sc_points *points, const sc_adjacency *adjacency,
             if (adjacency->opposite[before] == SC_NONE) s->points[at++] = number[triangles[before]];
         }
     }
-    s->first[p] = at;
+    if (part + 1 == AROUND_PARTS) s->first[p] = at;
 }
 
-/* How long these lists are together. */
-static uint64_t count_around(const sc_points *points, const sc_adjacency *adjacency)
+/* How long these lists are, and those of the parts before each. */
+static void count_around(const sc_points *points, const sc_adjacency *adjacency, surroundings *s)
 {
-    const uint64_t corners = 3 * (uint64_t)points->triangle_count;
-    uint64_t count = corners, h;
-    for (h = 0; h < corners; h++) count += adjacency->opposite[h] == SC_NONE;
-    return count;
+    const uint32_t corners = 3 * points->triangle_count;
+    uint64_t single[AROUND_PARTS] = {0}, before = 0; /* half-edges that no other runs back to */
+    uint32_t h, part;
+    s->length = points->point_count / AROUND_PARTS;
+    for (h = 0; h < corners; h++)
+        if (adjacency->opposite[h] == SC_NONE) {
+            part = s->length ? points->triangles[sc_adjacency_next(h)] / s->length : AROUND_PARTS;
+            single[part < AROUND_PARTS ? part : AROUND_PARTS - 1]++;
+        }
+    for (part = 0; part < AROUND_PARTS; before += single[part++])
+        s->begin[part] = adjacency->corner_first[part * s->length] + before;
+    s->begin[part] = corners + before;
 }
 
 static void write_around(const sc_points *points, const surroundings *s, sc_model *m)
@@ -406,12 +420,10 @@ static void before_writing(void *context, uint32_t part, uint32_t worker)
 {
     assembly *a = (assembly *)context;
     (void)worker;
-    if (part) {
+    if (part)
+        list_around(a->points, a->adjacency, a->number, part - 1, &a->around);
+    else if (a->sctt->node_count) /* of models for boxes nobody asks */
         sc_connected_count(a->adjacency, a->order, a->xbvh, &a->pieces, a->connected);
-        return;
-    }
-    number_points(a->points, a->number);
-    list_around(a->points, a->adjacency, a->number, &a->around);
 }
 
 sc_status sc_assembly_make(const sc_points *points, sc_adjacency *adjacency,
@@ -424,14 +436,16 @@ sc_status sc_assembly_make(const sc_points *points, sc_adjacency *adjacency,
     sc_sharing_parts share_parts;
     const uint64_t share_total =
         sc_sharing_lists_count(sharing, xbvh, scratch->tasks, &share_parts);
-    const uint64_t around_total = count_around(points, adjacency);
     const sc_tasks *tasks = points->triangle_count < TRIANGLES_PART_MIN ? NULL : scratch->tasks;
+    uint64_t around_total;
     sc_status status = SC_OK;
 
     memset(&counts, 0, sizeof counts);
-    count_arrays(points, adjacency, xbvh, sctt, csf, &counts);
-    if (SC_HARDLY(around_total > UINT32_MAX || share_total > UINT32_MAX)) return SC_ERROR_COUNT;
     memset(&all, 0, sizeof all);
+    count_arrays(points, adjacency, xbvh, sctt, csf, &counts);
+    count_around(points, adjacency, &all.around);
+    around_total = all.around.begin[AROUND_PARTS];
+    if (SC_HARDLY(around_total > UINT32_MAX || share_total > UINT32_MAX)) return SC_ERROR_COUNT;
     all.points = points;
     all.adjacency = adjacency;
     all.order = hierarchy->order;
@@ -445,13 +459,11 @@ sc_status sc_assembly_make(const sc_points *points, sc_adjacency *adjacency,
     all.around.points = (uint32_t *)sc_scratch_take(scratch, around_total + AROUND_AT_ONCE,
                                                     sizeof *all.around.points);
     if (!all.number || !all.around.first || !all.around.points) return SC_ERROR_MEMORY;
-    if (sc_model_is_for_boxes(&counts)) {
-        sc_jobs_run(tasks, 1, before_writing, &all); /* nobody asks whether patches are connected */
-    } else {
-        if ((status = sc_connected_take(xbvh, scratch, &all.pieces))) return status;
-        sc_jobs_run(tasks, 2, before_writing, &all);
-        sc_connected_give(scratch, &all.pieces);
-    }
+    if (sctt->node_count) status = sc_connected_take(xbvh, scratch, &all.pieces);
+    if (status) return status;
+    number_points(points, all.number);
+    sc_jobs_run(tasks, 1 + AROUND_PARTS, before_writing, &all);
+    sc_connected_give(scratch, &all.pieces);
     sc_adjacency_give_walks(adjacency, scratch); /* before the model needs memory */
     counts.share_count = sharing->first[xbvh->leaf_count];
     counts.share_total = (uint32_t)share_total;

@@ -172,32 +172,83 @@ static uint64_t hash_position(const double position[3])
     return hash;
 }
 
+/* Vertices to be welded are shared out by the lowest bits of their hashes, so that those at one
+   position are in one share. Without tasks all are. */
+enum { WELD_SHARES = 8 };
+
+/* What welding by positions works with. */
+typedef struct welding {
+    const reading *r;
+    uint32_t shares;
+    uint32_t *hash;                             /* of each used vertex */
+    uint32_t *table;                            /* those of the shares, one after the other */
+    uint64_t begin[WELD_SHARES + 1];            /* of each share's table */
+    uint32_t count[SC_JOBS_PARTS][WELD_SHARES]; /* vertices of each part, by shares */
+} welding;
+
+static void hash_some_vertices(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    welding *w = (welding *)context;
+    uint32_t v;
+    memset(w->count[part], 0, sizeof w->count[part]);
+    for (v = first; v < end; v++) {
+        double p[3];
+        if (!w->r->used[v]) continue;
+        read_vertex(w->r, v, p);
+        w->hash[v] = (uint32_t)hash_position(p);
+        w->count[part][w->hash[v] % w->shares]++;
+    }
+}
+
+static int is_at_same_position(const reading *r, uint32_t v, uint32_t other)
+{
+    double p[3], q[3];
+    read_vertex(r, v, p);
+    read_vertex(r, other, q);
+    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+}
+
+static void weld_share(void *context, uint32_t share, uint32_t worker)
+{
+    const welding *w = (const welding *)context;
+    const reading *r = w->r;
+    uint32_t *table = w->table + w->begin[share], v;
+    const uint64_t size = w->begin[share + 1] - w->begin[share];
+    (void)worker;
+    memset(table, 0xff, (size_t)size * sizeof *table);
+    for (v = 0; v < r->mesh->vertex_count; v++) {
+        uint32_t hash = w->hash[v], other;
+        uint64_t at;
+        if (hash % w->shares != share || !r->used[v]) continue;
+        for (at = (hash * size) >> 32; (other = table[at]) != SC_NONE;
+             at = at + 1 < size ? at + 1 : 0)
+            if (w->hash[other] == hash && is_at_same_position(r, v, other)) break;
+        if (other == SC_NONE) table[at] = other = v;
+        r->representative[v] = other;
+    }
+}
+
 /* representative[v] for all used vertices: the lowest used vertex at the same position. */
 static sc_status weld_rest(reading *r, sc_scratch *scratch)
 {
     const uint32_t count = r->mesh->vertex_count;
-    uint64_t size = 16, at;
-    uint32_t *table, v;
-    while (size < 2 * (uint64_t)count) size *= 2;
-    table = (uint32_t *)sc_scratch_take_filled(scratch, size, sizeof *table, 0xff);
-    if (!table) return SC_ERROR_MEMORY;
-    for (v = 0; v < count; v++) {
-        double p[3], q[3];
-        if (!r->used[v]) continue;
-        read_vertex(r, v, p);
-        for (at = hash_position(p) & (size - 1);; at = (at + 1) & (size - 1)) {
-            if (table[at] == SC_NONE) {
-                table[at] = r->representative[v] = v;
-                break;
-            }
-            read_vertex(r, table[at], q);
-            if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
-                r->representative[v] = table[at];
-                break;
-            }
-        }
+    uint32_t parts, part, share;
+    welding w;
+    w.r = r;
+    w.shares = r->tasks && count >= READ_VERTICES_MIN ? WELD_SHARES : 1;
+    w.hash = (uint32_t *)sc_scratch_take_filled(scratch, count, sizeof *w.hash, 0);
+    if (!w.hash) return SC_ERROR_MEMORY;
+    parts = sc_jobs_loop(r->tasks, count, READ_VERTICES_MIN, hash_some_vertices, &w);
+    for (w.begin[0] = share = 0; share < w.shares; share++) {
+        uint64_t members = 0; /* half as many as there are slots */
+        for (part = 0; part < parts; part++) members += w.count[part][share];
+        w.begin[share + 1] = w.begin[share] + 2 * members + 1;
     }
-    sc_scratch_give(scratch, table);
+    w.table = (uint32_t *)sc_scratch_take(scratch, w.begin[w.shares], sizeof *w.table);
+    if (!w.table) return SC_ERROR_MEMORY;
+    sc_jobs_run(r->tasks, w.shares, weld_share, &w);
+    sc_scratch_give(scratch, w.table);
+    sc_scratch_give(scratch, w.hash);
     return SC_OK;
 }
 
