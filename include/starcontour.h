@@ -850,6 +850,119 @@ SC_API sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_
                              const sc_pair *pairs, uint64_t count, sc_contact *contacts);
 
 /* ------------------------------------------------------------------------------------------------
+ * Contours of intersections
+ *
+ * Where two sheets of a mesh intersect, they do so along a curve: its contour (Baraff, Witkin, Kass
+ * 2003; Volino, Magnenat-Thalmann 2006). sc_trace puts the edges that meet triangles, as sc_query
+ * finds them, into the order in which contours pass through them.
+ *
+ * Ties are decided as if each vertex had moved a little, by amounts too small to be written down
+ * that depend on vertex numbers alone (after welding; Simulation of Simplicity, Edelsbrunner and
+ * Muecke 1990). No four vertices are in a plane then. Two triangles without a common vertex have a
+ * segment in common or nothing; two with one common vertex nothing else or a segment from there;
+ * two with a common edge nothing else. So sheets that touch may have contours of their own, or
+ * none, and which they have depends on the order of the vertices; but all contours fit together, on
+ * coplanar and equal sheets, edges in edges and vertices on faces too. Where nothing is in a plane
+ * with anything, the order of vertices means nothing.
+ */
+
+/* Where a contour begins and ends. */
+enum {
+    SC_TRACE_CLOSED = 0, /* nowhere: behind its last node comes its first */
+    SC_TRACE_BORDER = 1, /* at an edge of one triangle */
+    SC_TRACE_BRANCH = 2, /* at an edge of three or more triangles: of each of them a contour begins or
+                            ends in a node with this edge and triangle */
+    SC_TRACE_VERTEX = 3  /* at a vertex that the two triangles share */
+};
+
+/* Instead of an edge: the node is a vertex. */
+#define SC_TRACE_NO_EDGE 0xffffffffu
+
+/*
+ * A node of a contour: where an edge of one sheet passes through a triangle of the other. From one
+ * node to the next the contour is a straight segment that two triangles have in common, one of each
+ * sheet.
+ *
+ * along and weights are as accurate as those of an sc_contact, and so is point. Where ties were
+ * decided and edge and triangle have a segment in common they are those of its middle.
+ */
+typedef struct sc_trace_node {
+    uint32_t edge;      /* as SC_PAIRS_EDGE names it, or SC_TRACE_NO_EDGE */
+    uint32_t triangle;  /* that it passes through; where there is no edge, the vertex, which stands
+                           for all that are welded to it */
+    uint32_t sheet;     /* on which of the two sheets, 0 or 1, the edge is; the triangle is on the
+                           other. 0 at a vertex, which is on both */
+    uint32_t sheets[2]; /* the triangles in which the contour goes on to the next node, one of each
+                           sheet; SC_TRACE_NO_EDGE at the end of one that is not closed */
+    uint32_t reserved;  /* 0 */
+    double along;       /* where on the edge: from 0 at its first vertex to 1 */
+    double weights[3];  /* where in the triangle: weights of its corners in the order of the mesh; 0
+                           at a vertex */
+    double point[3];
+} sc_trace_node;
+
+/* The two sheets of a contour are one, and going round it once leads from one side to the other:
+   sheets of its last node and of its first are exchanged. */
+enum { SC_TRACE_ONE_SHEET = 1 };
+
+/*
+ * A contour: nodes first to first + count - 1. On the surface it is two curves that are each
+ * other's partner: through the triangles sheets[0] of its nodes, and through sheets[1].
+ */
+typedef struct sc_trace_contour {
+    uint64_t first, count;
+    uint32_t begin, end; /* SC_TRACE_...; both are SC_TRACE_CLOSED or none is */
+    uint32_t flags;      /* SC_TRACE_ONE_SHEET or 0 */
+    uint32_t reserved;   /* 0 */
+    double length;       /* the sum of that of its segments, in the order of nodes */
+} sc_trace_contour;
+
+/* Options; all may be zero. */
+typedef struct sc_trace_options {
+    uint32_t struct_size;
+    uint32_t reserved;               /* 0 */
+    const sc_allocator *allocator;   /* for memory until the call returns, or NULL: malloc */
+    const sc_hooks *hooks;           /* for this call, or NULL */
+    const sc_tasks *tasks;           /* the host's threads, or NULL */
+    const volatile uint32_t *cancel; /* not 0: stop; or NULL */
+} sc_trace_options;
+
+/* Contours, and the caller's arrays for them. */
+typedef struct sc_trace_result {
+    uint32_t struct_size;
+    uint32_t reserved;         /* out: 0 */
+    uint64_t node_count;       /* out: nodes of all contours; one with a branch counts in each */
+    uint64_t node_capacity;    /* in: entries of nodes */
+    sc_trace_node *nodes;      /* in: the caller's array */
+    uint64_t contour_count;    /* out */
+    uint64_t contour_capacity; /* in: entries of contours */
+    sc_trace_contour *contours; /* in: the caller's array */
+} sc_trace_result;
+
+/*
+ * Traces the contours of a pose. pairs are its pairs of edges and triangles, all of them and sorted,
+ * as sc_query finds them with SC_PAIRS_EDGE, SC_CONTACT_TOUCHING and no filter. options may be NULL.
+ *
+ * Contours that are not closed come first: from borders and branches on in the order of edges, then
+ * triangles, and of a branch of the triangles that have the edge; then those from vertex to vertex;
+ * then closed ones, from their lowest node on. So the answer depends on the mesh, the welding and
+ * the pose alone.
+ *
+ * Triangles of which welding has made two corners one are no part of any sheet.
+ *
+ * Returns SC_OK, or SC_ERROR_SHORT_BUFFER if an array is too short: counts are then what is needed,
+ * and arrays may have been written to in part. SC_ERROR_PAIRS: pairs are not sorted, name what does
+ * not exist, or some are missing, which is noticed where a contour does not go on. SC_ERROR_COUNT:
+ * more than 2^30 pairs. SC_ERROR_NOT_FINITE: a vertex of a pair is NaN or infinite. SC_ERROR_MEMORY.
+ * SC_ERROR_INCOMPLETE: cancelled. On these and other errors counts are 0.
+ *
+ * Memory: about 80 bytes a pair and one byte a vertex, given back before it returns. With
+ * options->tasks pairs, triangles and coordinates are shared out; the answer is the same.
+ */
+SC_API sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pairs,
+                          uint64_t count, const sc_trace_options *options, sc_trace_result *result);
+
+/* ------------------------------------------------------------------------------------------------
  * Steps
  *
  * Continuous collision: what happens while the mesh moves from one pose to another, as solvers for

@@ -37,6 +37,7 @@
 #include "run/step_question.h"
 #include "step/step_filter.h"
 #include "step/step_motion.h"
+#include "trace/trace.h"
 #include "step/step_pairs.h"
 
 /* ---- building ---- */
@@ -840,6 +841,76 @@ sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_t kind,
         for (s = 0; s < 2; s++)
             for (k = 0; k < 3; k++) corners[s][k] = at[s][k];
         if (!status) sc_contacts_find(corners[0], corners[1], &contacts[i]);
+    }
+    return status;
+}
+
+/* ---- contours of intersections ---- */
+
+/* More pairs than this are refused. */
+#define TRACE_PAIRS_MAX (UINT64_C(1) << 30)
+
+/* Reads options.hooks, allocator, tasks and cancel, which are checked. */
+static sc_status read_trace_options(const sc_trace_options *options, sc_trace_options *o,
+                                    sc_hooks *hooks, sc_allocator *allocator, sc_tasks *tasks)
+{
+    sc_status status = sc_arguments_read_options(NULL, "options", o, sizeof *o, options);
+    if (!status) status = sc_arguments_read_hooks(o->hooks, hooks);
+    if (!status) {
+        const sc_choice reserved = {"reserved", o->reserved, 0};
+        status = sc_arguments_choose(hooks, "options", &reserved, 1);
+    }
+    if (!status) status = read_allocator(hooks, o->allocator, allocator);
+    return status ? status : read_build_tasks(hooks, o->tasks, tasks);
+}
+
+static sc_status read_trace_result(const sc_hooks *hooks, const sc_trace_result *result,
+                                   sc_trace_result *r)
+{
+    sc_status status = sc_arguments_read(hooks, "result", r, sizeof *r, result,
+                                         SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
+    if (status) return status;
+    r->reserved = 0;
+    r->node_count = r->contour_count = 0;
+    if (r->node_capacity) status = sc_arguments_need(hooks, "result", "nodes", r->nodes);
+    if (!status && r->contour_capacity)
+        status = sc_arguments_need(hooks, "result", "contours", r->contours);
+    return status;
+}
+
+sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pairs, uint64_t count,
+                   const sc_trace_options *options, sc_trace_result *result)
+{
+    sc_trace_options o;
+    sc_trace_subject subject;
+    sc_hooks hooks;
+    sc_allocator allocator;
+    sc_tasks tasks;
+    sc_scratch scratch;
+    sc_trace_result r;
+    sc_pose p;
+    uint64_t stride;
+    sc_status status;
+    if (!model || !pose || !result || (count && !pairs)) return SC_ERROR_NULL;
+    status = read_trace_options(options, &o, &hooks, &allocator, &tasks);
+    if (!status) status = read_trace_result(&hooks, result, &r);
+    if (!status) {
+        status = sc_question_read_pose(&hooks, "pose", model, pose, &p, &stride);
+        if (!status && count > TRACE_PAIRS_MAX) status = SC_ERROR_COUNT;
+        if (!status) {
+            sc_positions_note(model, &p, stride, &subject.positions);
+            subject.model = model;
+            subject.pairs = pairs;
+            subject.count = (uint32_t)count;
+            subject.hooks = &hooks;
+            subject.cancel = o.cancel;
+            sc_scratch_init(&scratch, &allocator);
+            if (tasks.workers > 1) scratch.tasks = &tasks;
+            status = sc_trace_run(&subject, &scratch, &r);
+            sc_scratch_clear(&scratch);
+        }
+        if (status && status != SC_ERROR_SHORT_BUFFER) r.node_count = r.contour_count = 0;
+        sc_structs_write(result, &r, sizeof r);
     }
     return status;
 }

@@ -4,7 +4,7 @@
 #     tools/check_layering.sh [DIRECTORY]      default: the directory above this script
 #
 #   - Folders include only what `may` below allows: lib/ in the order base, simd, build, pose,
-#     query, step, near, run, and programs only the public headers. No "../", no circles, where a header
+#     query, step, near, trace, run, and programs only the public headers. No "../", no circles, where a header
 #     and the C file of its name count as one, nothing that does not exist. In lib/simd,
 #     all_kernels.h and kernels_SET.c see all of lib/, as if they stood beside starcontour.c.
 #   - The oracle of the tests reaches no header of lib/, however indirectly.
@@ -54,7 +54,7 @@ offenders=$(
         files | sed -n -e '/^lib\/build\/partition_metis\.c$/d' -e 's/^\(lib\/.*\.c\)$/found \1/p'
     } | awk '
         function layer(path) {
-            if (path ~ /^lib\/simd\/kernels_/) return 9
+            if (path ~ /^lib\/simd\/kernels_/) return 10
             if (path ~ /^lib\/base\//) return 1
             if (path ~ /^lib\/simd\//) return 2
             if (path ~ /^lib\/build\//) return 3
@@ -62,8 +62,9 @@ offenders=$(
             if (path ~ /^lib\/query\//) return 5
             if (path ~ /^lib\/step\//) return 6
             if (path ~ /^lib\/near\//) return 7
-            if (path ~ /^lib\/run\//) return 8
-            return 9
+            if (path ~ /^lib\/trace\//) return 8
+            if (path ~ /^lib\/run\//) return 9
+            return 10
         }
         $1 == "listed" {
             if ($2 in listed) print "lib/sources.list: names " $2 " twice"
@@ -152,7 +153,8 @@ offenders=$(
             may["lib/query"] = may["lib/pose"] " lib/query"
             may["lib/step"] = may["lib/query"] " lib/step"
             may["lib/near"] = may["lib/step"] " lib/near"
-            may["lib/run"] = may["lib/near"] " lib/run"
+            may["lib/trace"] = may["lib/query"] " lib/trace"
+            may["lib/run"] = may["lib/near"] " lib/trace lib/run"
             may["lib"] = may["lib/run"] " lib"
             may["tools"] = "include tools"
             may["bench"] = may["bench/scenes"] = "include tools bench bench/scenes"

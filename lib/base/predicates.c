@@ -191,7 +191,7 @@ static double multiply_factors(const factor *a, const factor *b, double *error)
 }
 
 /*
- * The determinant as a sum of two doubles.
+ * The determinant as a sum of two doubles, and how far these are off at most.
  *
  * Let u = 2^-53, P = |u_j v_k| + |u_k v_j| of a minor, M the sum of the three P |w_i|, and all to
  * first order. A minor is h + l, the difference of two products and what their roundings and that
@@ -203,7 +203,7 @@ static double multiply_factors(const factor *a, const factor *b, double *error)
  * rounded eight times each: 64 u^2 M. All that is below 100 u^2 M; the bound is 256 u^2 M, room for
  * what is not of first order and for the rounding of M included.
  */
-static int sign_of_two(const differences *x)
+static double sum_of_two(const differences *x, double *bound)
 {
     factor u[3], v[3], w[3];
     double first = 0.0, second = 0.0, magnitude = 0.0;
@@ -231,9 +231,14 @@ static int sign_of_two(const differences *x)
                                          w[i].value;
         }
     }
-    if (first + second > SC_BOUNDS_SIGN_SUMS * magnitude) return 1;
-    if (first + second < -SC_BOUNDS_SIGN_SUMS * magnitude) return -1;
-    return UNCERTAIN;
+    *bound = SC_BOUNDS_SIGN_SUMS * magnitude;
+    return first + second;
+}
+
+static int sign_of_two(const differences *x)
+{
+    double bound, sum = sum_of_two(x, &bound);
+    return sum > bound ? 1 : sum < -bound ? -1 : UNCERTAIN;
 }
 
 static int find_sign_3d(const double a[3], const double b[3], const double c[3], const double d[3])
@@ -378,11 +383,17 @@ sc_predicates_value sc_predicates_orient2d_value(const double a[2], const double
 sc_predicates_value sc_predicates_orient3d_value(const double a[3], const double b[3],
                                                  const double c[3], const double d[3])
 {
-    double terms[DETERMINANT_TERMS];
+    double terms[DETERMINANT_TERMS], bound;
     sc_predicates_value value = {0.0, 0};
-    if (all_moderate_3d(a, b, c, d))
-        value.number = sum_of_terms(terms, expand_3d(terms, a, b, c, d));
-    else
+    differences x;
+    if (!all_moderate_3d(a, b, c, d)) {
         value.number = sc_wide_orient3d_value(a, b, c, d, &value.exponent);
+        return value;
+    }
+    /* off by 2^-52, and by half as much when the two are added */
+    find_differences(&x, a, b, c, d);
+    value.number = sum_of_two(&x, &bound);
+    if (!(fabs(value.number) > 0x1p+52 * bound))
+        value.number = sum_of_terms(terms, expand_3d(terms, a, b, c, d));
     return value;
 }

@@ -418,3 +418,17 @@ void sc_contacts_find(const double *const a[3], const double *const b[3], sc_con
     contact->kind = i < e.count ? SC_MEET_SEGMENT : SC_MEET_POINT;
     write_end(&e, &e.list[i < e.count ? i : 0], contact, 1);
 }
+
+double sc_contacts_pass(const double *const edge[2], const double *const triangle[3],
+                        double weights[3], double point[3])
+{
+    const double *const ends[3] = {edge[0], edge[1], edge[1]};
+    const int whole[2] = {0, 1};
+    double on_edge[3];
+    hull own, other;
+    own.p = ends;
+    other.p = triangle;
+    weigh_passage(&own, whole, &other, on_edge, weights);
+    find_mean(&own, whole, on_edge, point);
+    return on_edge[1];
+}

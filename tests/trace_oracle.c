@@ -1,0 +1,218 @@
+/*
+ * The oracle of contours. See trace_oracle.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "trace_oracle.h"
+
+#include <gmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness.h"
+
+enum { EXPONENTS = 1 << 12 };
+
+/* A polynomial: coefficients of those powers that have one. Made when first needed, and kept. */
+static mpq_t coefficient[EXPONENTS];
+static int is_used[EXPONENTS], used[EXPONENTS], used_count;
+
+static mpq_t *coefficient_of(int exponent)
+{
+    if (!is_used[exponent]) {
+        is_used[exponent] = 1;
+        used[used_count++] = exponent;
+        mpq_init(coefficient[exponent]);
+    }
+    return &coefficient[exponent];
+}
+
+/* The rank of each point among the four: exponents of higher powers, in the same order. */
+static void rank_points(const uint32_t numbers[4], int rank[4])
+{
+    for (int i = 0; i < 4; ++i) {
+        rank[i] = 0;
+        for (int j = 0; j < 4; ++j) rank[i] += numbers[j] < numbers[i];
+    }
+}
+
+/* Adds the products of a permutation: of each row after the first the coordinate or its power. */
+static void add_products(const double *const points[4], const int rank[4], const int column[4],
+                         int sign)
+{
+    mpq_t product, factor;
+    mpq_inits(product, factor, NULL);
+    for (int chosen = 0; chosen < 16; ++chosen) {
+        int exponent = 0, is_product = 1;
+        mpq_set_si(product, sign, 1);
+        for (int row = 0; row < 4; ++row) {
+            const int c = column[row] - 1;
+            if (chosen >> row & 1) {
+                if (c < 0) is_product = 0; /* ones have not moved */
+                if (c >= 0) exponent |= 1 << (3 * rank[row] + c);
+            } else if (c >= 0) {
+                mpq_set_d(factor, points[row][c]);
+                mpq_mul(product, product, factor);
+            }
+        }
+        if (is_product) mpq_add(*coefficient_of(exponent), *coefficient_of(exponent), product);
+    }
+    mpq_clears(product, factor, NULL);
+}
+
+static int sign_of_permutation(const int column[4])
+{
+    int inversions = 0;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < i; ++j) inversions += column[j] > column[i];
+    return inversions % 2 ? -1 : 1;
+}
+
+/* The sign of those that have not moved, or 0. */
+static int plain_sign(const double *const points[4])
+{
+    mpq_t u[3][3], t, sum;
+    int sign;
+    mpq_inits(t, sum, NULL);
+    for (int i = 0; i < 9; ++i) {
+        mpq_init(u[i / 3][i % 3]);
+        mpq_set_d(u[i / 3][i % 3], points[1 + i / 3][i % 3]);
+        mpq_set_d(t, points[0][i % 3]);
+        mpq_sub(u[i / 3][i % 3], u[i / 3][i % 3], t);
+    }
+    for (int i = 0; i < 3; ++i)
+        for (int turned = 0; turned < 2; ++turned) {
+            const int j = (i + 1 + turned) % 3, k = (i + 2 - turned) % 3;
+            mpq_mul(t, u[0][i], u[1][j]);
+            mpq_mul(t, t, u[2][k]);
+            if (turned) mpq_neg(t, t);
+            mpq_add(sum, sum, t);
+        }
+    sign = mpq_sgn(sum);
+    for (int i = 0; i < 9; ++i) mpq_clear(u[i / 3][i % 3]);
+    mpq_clears(t, sum, NULL);
+    return sign;
+}
+
+int trace_oracle_sign(const double *const points[4], const uint32_t numbers[4])
+{
+    int rank[4], sign = plain_sign(points);
+    if (sign) return sign;
+    for (int i = 0; i < used_count; ++i) mpq_set_si(coefficient[used[i]], 0, 1);
+    rank_points(numbers, rank);
+    for (int code = 0; code < 256; ++code) {
+        const int column[4] = {code & 3, code >> 2 & 3, code >> 4 & 3, code >> 6 & 3};
+        int seen = 0;
+        for (int i = 0; i < 4; ++i) seen |= 1 << column[i];
+        if (seen == 15) add_products(points, rank, column, sign_of_permutation(column));
+    }
+    for (int i = 0; i < EXPONENTS && !sign; ++i)
+        if (is_used[i]) sign = mpq_sgn(coefficient[i]);
+    return sign;
+}
+
+int trace_oracle_crosses(const double *const points[5], const uint32_t numbers[5])
+{
+    int side[2], turn[3];
+    for (int end = 0; end < 2; ++end) {
+        const double *const p[4] = {points[2], points[3], points[4], points[end]};
+        const uint32_t n[4] = {numbers[2], numbers[3], numbers[4], numbers[end]};
+        side[end] = trace_oracle_sign(p, n);
+    }
+    if (side[0] == side[1]) return 0;
+    for (int k = 0; k < 3; ++k) {
+        const int i = 2 + k, j = 2 + (k + 1) % 3;
+        const double *const p[4] = {points[0], points[1], points[i], points[j]};
+        const uint32_t n[4] = {numbers[0], numbers[1], numbers[i], numbers[j]};
+        turn[k] = trace_oracle_sign(p, n);
+    }
+    return turn[0] == turn[1] && turn[1] == turn[2];
+}
+
+static int is_collapsed(const uint32_t *t)
+{
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+static int has_corner(const uint32_t *t, uint32_t v)
+{
+    return t[0] == v || t[1] == v || t[2] == v;
+}
+
+/* Adds side k of triangle t to its edge, or a new one. */
+static void add_side(trace_oracle_answer *a, const uint32_t *triangles, uint32_t t, uint32_t k)
+{
+    const uint32_t *corner = triangles + 3 * (size_t)t;
+    const uint32_t u = corner[k], v = corner[(k + 1) % 3];
+    trace_oracle_edge *edge = a->edges;
+    if (u == v) return;
+    while (edge < a->edges + a->edge_count && !((edge->ends[0] == u && edge->ends[1] == v) ||
+                                                (edge->ends[0] == v && edge->ends[1] == u)))
+        ++edge;
+    if (edge == a->edges + a->edge_count) {
+        ++a->edge_count;
+        memset(edge, 0, sizeof *edge);
+        edge->name = 3 * t + k;
+        edge->ends[0] = u;
+        edge->ends[1] = v;
+    }
+    if (is_collapsed(corner)) return;
+    edge->triangles =
+        (uint32_t *)realloc(edge->triangles, (edge->count + 1) * sizeof *edge->triangles);
+    if (!edge->triangles) abort();
+    edge->triangles[edge->count++] = t;
+}
+
+/* Whether the boxes of two lists of points have a common point: else nothing crosses. */
+static int boxes_meet(const double *const *p, int count, const double *const *q, int other)
+{
+    for (int k = 0; k < 3; ++k) {
+        double low = p[0][k], high = p[0][k], other_low = q[0][k], other_high = q[0][k];
+        for (int i = 1; i < count; ++i) {
+            if (p[i][k] < low) low = p[i][k];
+            if (p[i][k] > high) high = p[i][k];
+        }
+        for (int i = 1; i < other; ++i) {
+            if (q[i][k] < other_low) other_low = q[i][k];
+            if (q[i][k] > other_high) other_high = q[i][k];
+        }
+        if (low > other_high || other_low > high) return 0;
+    }
+    return 1;
+}
+
+trace_oracle_answer trace_oracle_find(const uint32_t *triangles, uint32_t triangle_count,
+                                      const double *positions)
+{
+    trace_oracle_answer a = {0, 0, NULL, NULL};
+    uint32_t capacity = 0;
+    a.edges = (trace_oracle_edge *)test_allocate(3 * (size_t)triangle_count * sizeof *a.edges);
+    for (uint32_t t = 0; t < triangle_count; ++t)
+        for (uint32_t k = 0; k < 3; ++k) add_side(&a, triangles, t, k);
+    for (uint32_t e = 0; e < a.edge_count; ++e)
+        for (uint32_t t = 0; t < triangle_count; ++t) {
+            const uint32_t *corner = triangles + 3 * (size_t)t, *ends = a.edges[e].ends;
+            const uint32_t numbers[5] = {ends[0], ends[1], corner[0], corner[1], corner[2]};
+            const double *p[5];
+            for (int i = 0; i < 5; ++i) p[i] = positions + 3 * (size_t)numbers[i];
+            if (is_collapsed(corner) || has_corner(corner, ends[0]) || has_corner(corner, ends[1]))
+                continue;
+            if (!boxes_meet(p, 2, p + 2, 3) || !trace_oracle_crosses(p, numbers)) continue;
+            if (a.crossing_count == capacity) {
+                capacity = 2 * capacity + 16;
+                a.crossings =
+                    (trace_oracle_crossing *)realloc(a.crossings, capacity * sizeof *a.crossings);
+                if (!a.crossings) abort();
+            }
+            a.crossings[a.crossing_count].edge = e;
+            a.crossings[a.crossing_count++].triangle = t;
+        }
+    return a;
+}
+
+void trace_oracle_free(trace_oracle_answer *answer)
+{
+    for (uint32_t e = 0; e < answer->edge_count; ++e) free(answer->edges[e].triangles);
+    free(answer->edges);
+    free(answer->crossings);
+}
