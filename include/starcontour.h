@@ -920,7 +920,7 @@ typedef struct sc_trace_contour {
 /* Options; all may be zero. */
 typedef struct sc_trace_options {
     uint32_t struct_size;
-    uint32_t reserved;               /* 0 */
+    uint32_t simd;                   /* SC_SIMD_... */
     const sc_allocator *allocator;   /* for memory until the call returns, or NULL: malloc */
     const sc_hooks *hooks;           /* for this call, or NULL */
     const sc_tasks *tasks;           /* the host's threads, or NULL */
@@ -956,7 +956,7 @@ typedef struct sc_trace_result {
  * more than 2^30 pairs. SC_ERROR_NOT_FINITE: a vertex of a pair is NaN or infinite. SC_ERROR_MEMORY.
  * SC_ERROR_INCOMPLETE: cancelled. On these and other errors counts are 0.
  *
- * Memory: about 80 bytes a pair and one byte a vertex, given back before it returns. With
+ * Memory: about 150 bytes a pair and five a vertex, given back before it returns. With
  * options->tasks pairs, triangles and coordinates are shared out; the answer is the same.
  */
 SC_API sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pairs,

@@ -855,12 +855,15 @@ static sc_status read_trace_options(const sc_trace_options *options, sc_trace_op
                                     sc_hooks *hooks, sc_allocator *allocator, sc_tasks *tasks)
 {
     sc_status status = sc_arguments_read_options(NULL, "options", o, sizeof *o, options);
+    sc_choice simd = {"simd", 0, SC_SIMD_AVX512};
     if (!status) status = sc_arguments_read_hooks(o->hooks, hooks);
-    if (!status) {
-        const sc_choice reserved = {"reserved", o->reserved, 0};
-        status = sc_arguments_choose(hooks, "options", &reserved, 1);
-    }
-    if (!status) status = read_allocator(hooks, o->allocator, allocator);
+    if (status) return status;
+    simd.value = o->simd;
+    status = sc_arguments_choose(hooks, "options", &simd, 1);
+    if (status) return status;
+    if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
+    if (SC_HARDLY(o->simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;
+    status = read_allocator(hooks, o->allocator, allocator);
     return status ? status : read_build_tasks(hooks, o->tasks, tasks);
 }
 
@@ -900,6 +903,7 @@ sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pa
         if (!status) {
             sc_positions_note(model, &p, stride, &subject.positions);
             subject.model = model;
+            subject.kernels = sc_kernels_for(o.simd)->trace;
             subject.pairs = pairs;
             subject.count = (uint32_t)count;
             subject.hooks = &hooks;

@@ -540,14 +540,14 @@ typedef struct scene {
 } scene;
 
 /* Takes the mesh, which is posed as it is. */
-static int open_scene(scene *s, soup mesh, uint32_t partition)
+static int open_scene(scene *s, soup mesh, uint32_t content)
 {
     sc_build_options options;
     memset(s, 0, sizeof *s);
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
     options.weld = SC_WELD_NONE;
-    options.content = partition;
+    options.content = content;
     s->mesh = mesh;
     s->input = input_plain_mesh(&s->mesh);
     s->pose = input_plain_pose(s->mesh.positions, s->mesh.vertex_count);
@@ -601,6 +601,39 @@ static void threads_change_nothing(void)
             }
     }
     close_scene(&s);
+}
+
+/* Every instruction set, floats and doubles of the same values. */
+static void instructions_change_nothing(void)
+{
+    for (uint32_t n = test_iterations(10); n > 0; --n) {
+        soup mesh = crossing_cloths(5 + test_random_below(12));
+        scene s;
+        soup_round_to_float(mesh.positions, mesh.vertex_count);
+        if (test_random_below(2)) soup_snap(mesh.positions, mesh.vertex_count, 0x1p-5);
+        if (open_scene(&s, mesh, SC_MODEL_FULL))
+            for (uint32_t simd = SC_SIMD_BASE; simd <= SC_SIMD_AVX512; ++simd)
+                for (uint32_t floats = 0; floats < 2; ++floats) {
+                    input_array positions =
+                        input_positions(s.mesh.positions, s.mesh.vertex_count,
+                                        floats ? SC_FLOAT : SC_DOUBLE, test_random_below(9));
+                    const sc_pose pose = input_pose(s.mesh.vertex_count, &positions);
+                    sc_trace_options options;
+                    sc_trace_result other = no_room();
+                    memset(&options, 0, sizeof options);
+                    options.struct_size = sizeof options;
+                    options.simd = simd;
+                    if (sc_trace(s.model, &pose, s.pairs, s.count, &options, &other) ==
+                        SC_ERROR_UNSUPPORTED) {
+                        CHECK(simd != SC_SIMD_BASE);
+                    } else if (trace_pairs(s.model, &pose, s.pairs, s.count, &options, &other)) {
+                        CHECK(is_same_result(&s.result, &other));
+                        free_result(&other);
+                    }
+                    input_free(&positions);
+                }
+        close_scene(&s);
+    }
 }
 
 static void models_change_nothing(void)
@@ -794,9 +827,9 @@ static void wrong_arguments(void)
         CHECK(sc_trace(s.model, &s.pose, s.pairs, s.count, NULL, &r) == SC_ERROR_SHORT_BUFFER &&
               r.node_count == s.result.node_count && r.contour_count == s.result.contour_count);
         r = s.result;
-        options.reserved = 1;
+        options.simd = SC_SIMD_AVX512 + 1;
         CHECK(sc_trace(s.model, &s.pose, s.pairs, s.count, &options, &r) == SC_ERROR_OPTION);
-        options.reserved = 0;
+        options.simd = SC_SIMD_BEST;
         options.struct_size = 4;
         CHECK(sc_trace(s.model, &s.pose, s.pairs, s.count, &options, &r) == SC_ERROR_STRUCT_SIZE);
         options.struct_size = sizeof options;

@@ -51,6 +51,13 @@
 #define SC_BOUNDS_EIGHT (4.25 * SC_BOUNDS_U)
 #define SC_BOUNDS_EIGHT_LEAST 0x1p-300
 
+/* Determinants of eight crossings (trace/crossing_kernel.h): certain if larger than this part of M;
+   in what range; and what part of W tells D from it. */
+#define SC_BOUNDS_CROSSING 0x1p-44
+#define SC_BOUNDS_CROSSING_LEAST 0x1p-450
+#define SC_BOUNDS_CROSSING_MOST 0x1p+250
+#define SC_BOUNDS_CROSSING_SHARE 0x1p-50
+
 /* The distance of a point and a triangle, or of two segments, compared with another in doubles: so
    much of the sum of that and of the largest distance of two of their points. step/within.c. */
 #define SC_BOUNDS_WITHIN (8.0 * SC_BOUNDS_U)

@@ -26,6 +26,7 @@
 #include "step/step_kernels.h"
 #include "step/step_motion.h"
 #include "step/step_pairs.h"
+#include "trace/trace_kernels.h"
 
 #include "simd/target_begin.h"
 
@@ -62,6 +63,8 @@
 #include "near/near_leaf_kernel.h"
 #include "near/near_kernel.h"
 
+#include "trace/crossing_kernel.h"
+
 #include "simd/target_end.h"
 
 static const sc_pose_kernels pose_kernels = {
@@ -88,11 +91,16 @@ static const sc_step_kernels step_kernels = {
     .are_edges_clear = are_edges_clear,
 };
 
+static const sc_trace_kernels trace_kernels = {
+    .look = look_at_crossings,
+};
+
 #include "run/stages.h"
 
 const sc_kernels SC_KERNELS = {&pose_kernels,
                                &query_kernels,
                                &step_kernels,
+                               &trace_kernels,
                                {{query_stages, between_stages},
                                 {step_stages, step_between_stages},
                                 {near_stages, near_between_stages}}};

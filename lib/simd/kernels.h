@@ -14,6 +14,7 @@
 struct sc_pose_kernels;  /* pose/pose_kernels.h */
 struct sc_query_kernels; /* query/query_kernels.h */
 struct sc_step_kernels;  /* step/step_kernels.h */
+struct sc_trace_kernels; /* trace/trace_kernels.h */
 struct sc_worker;        /* query/worker.h */
 
 /* A stage: takes `most` items of its list or fewer, see run/stages.h. */
@@ -26,6 +27,7 @@ typedef struct sc_kernels {
     const struct sc_pose_kernels *pose;
     const struct sc_query_kernels *query;
     const struct sc_step_kernels *step;
+    const struct sc_trace_kernels *trace;
     sc_stage *const *stages[SC_QUESTIONS][2]; /* by lists: of one object, and between two */
 } sc_kernels;
 

@@ -2,6 +2,9 @@
  * Pairs that cross, and where. See crossings.h.
  *
  * SPDX-License-Identifier: MIT
+ *
+ * Nearly all pairs are decided eight at a time (trace/crossing_kernel.h). The rest, in which four
+ * points are in a plane or nearly so, are decided here, each by itself.
  */
 #include "trace/crossings.h"
 
@@ -15,8 +18,8 @@
 #include "query/contacts.h"
 #include "query/primitives.h"
 
-/* Pairs and nodes of the shortest part that is done by itself. */
-enum { PART_PAIRS_MIN = 500, PART_NODES_MIN = 200, PAIRS_BETWEEN_LOOKS = 1000 };
+/* Pairs of the shortest part that is looked at by itself, and between looks at the flag. */
+enum { PART_PAIRS_MIN = 500, PAIRS_BETWEEN_LOOKS = 1000 };
 
 int sc_trace_is_cancelled(const sc_trace_subject *subject)
 {
@@ -26,12 +29,22 @@ int sc_trace_is_cancelled(const sc_trace_subject *subject)
 /* A search through the pairs. */
 typedef struct pair_search {
     const sc_trace_subject *subject;
-    sc_pair *list;                   /* those of each part, from the part's first pair on */
+    sc_pair *pairs; /* those that cross of each part, from the part's first pair on */
+    sc_crossing_place *places;
     uint32_t count[SC_JOBS_PARTS];   /* how many these are */
     uint32_t first[SC_JOBS_PARTS];   /* the part's first pair */
     uint32_t wrong[SC_JOBS_PARTS];   /* the first pair that is wrong, or SC_NONE; */
     sc_status status[SC_JOBS_PARTS]; /* what is wrong with it */
 } pair_search;
+
+/* ---- one pair ---- */
+
+/* Five points: the ends of an edge and the corners of a triangle. */
+typedef struct five_points {
+    uint32_t number[5];
+    double position[5][3];
+    const double *p[5]; /* these */
+} five_points;
 
 static int is_finite(const double p[3])
 {
@@ -40,37 +53,80 @@ static int is_finite(const double p[3])
     return finite;
 }
 
-/* Whether an edge crosses a triangle: five points with different numbers, of the edge first. */
-static int crosses(const double *const p[5], const uint32_t number[5])
+/* The sign of four of the points, by their places. */
+static int sign_of_four(const five_points *five, int i, int j, int k, int l)
 {
+    const double *const p[4] = {five->p[i], five->p[j], five->p[k], five->p[l]};
+    const uint32_t number[4] = {five->number[i], five->number[j], five->number[k], five->number[l]};
     uint64_t fallbacks = 0;
-    const double *side[4] = {p[2], p[3], p[4], p[0]};
-    uint32_t side_number[4] = {number[2], number[3], number[4], number[0]};
-    int first, k, sign[3];
-    first = sc_perturbed_orient3d(side, side_number, &fallbacks);
-    side[3] = p[1];
-    side_number[3] = number[1];
-    if (sc_perturbed_orient3d(side, side_number, &fallbacks) == first) return 0;
-    for (k = 0; k < 3; k++) {
-        const int i = 2 + k, j = 2 + (k + 1) % 3;
-        const double *const line[4] = {p[0], p[1], p[i], p[j]};
-        const uint32_t line_number[4] = {number[0], number[1], number[i], number[j]};
-        sign[k] = sc_perturbed_orient3d(line, line_number, &fallbacks);
-        if (sign[k] != sign[0]) return 0;
+    return sc_perturbed_orient3d(p, number, &fallbacks);
+}
+
+/* Whether the edge crosses the triangle. The numbers differ. */
+static int crosses(const five_points *five)
+{
+    int turn;
+    if (sign_of_four(five, 2, 3, 4, 0) == sign_of_four(five, 2, 3, 4, 1)) return 0;
+    turn = sign_of_four(five, 0, 1, 2, 3);
+    return sign_of_four(five, 0, 1, 3, 4) == turn && sign_of_four(five, 0, 1, 4, 2) == turn;
+}
+
+/* Where they cross: in the middle of what they have in common, if that is more than a point. */
+static void place_five(const five_points *five, sc_crossing_place *place)
+{
+    const double *const *p = five->p;
+    const double *const edge[3] = {p[0], p[1], p[1]};
+    uint64_t fallbacks = 0;
+    sc_contact contact;
+    int k;
+    if (sc_primitives_segment_meets(p[0], p[1], p + 2, 1, &fallbacks)) {
+        place->along = sc_contacts_pass(edge, p + 2, place->weights, place->point);
+        return;
     }
+    sc_contacts_find(edge, p + 2, &contact);
+    place->along = contact.weights_a[0][1] / 2 + contact.weights_a[1][1] / 2;
+    for (k = 0; k < 3; k++) {
+        place->weights[k] = contact.weights_b[0][k] / 2 + contact.weights_b[1][k] / 2;
+        place->point[k] = contact.points[0][k] / 2 + contact.points[1][k] / 2;
+    }
+}
+
+/* Looks at a pair by itself: whether it crosses, and where. */
+static int look_at_pair(const sc_trace_subject *s, const uint32_t number[5],
+                        sc_crossing_place *place, sc_status *status)
+{
+    five_points five;
+    int k;
+    for (k = 0; k < 5; k++) {
+        five.number[k] = number[k];
+        five.p[k] = five.position[k];
+        sc_positions_get(&s->positions, number[k], five.position[k]);
+        if (is_finite(five.position[k])) continue;
+        *status = SC_ERROR_NOT_FINITE;
+        return 0;
+    }
+    if (!crosses(&five)) return 0;
+    place_five(&five, place);
     return 1;
 }
 
-/* Whether the pair crosses; or SC_ERROR_... in *status. */
-static int look_at_pair(const sc_trace_subject *s, uint32_t i, sc_status *status)
+/* ---- eight pairs ---- */
+
+typedef struct pair_block {
+    uint32_t count, pair[SC_CROSSING_LANES];
+    uint32_t number[SC_CROSSING_LANES][5];
+    sc_crossing_lanes lanes;
+    sc_crossing_values values;
+} pair_block;
+
+/* Whether pair i is one that sc_query may find, and its points; else what is wrong in *status. One
+   of a triangle that welding has collapsed is none that crosses. */
+static int name_five(const sc_trace_subject *s, uint32_t i, uint32_t number[5], sc_status *status)
 {
     const sc_model *model = s->model;
     const sc_pair pair = s->pairs[i];
     const uint32_t *corner;
-    uint32_t number[5];
-    double position[5][3];
-    const double *p[5];
-    int k;
+    int k, shared = 0;
     *status = SC_ERROR_PAIRS;
     if (pair.a / 3 >= model->triangle_count || pair.b >= model->triangle_count ||
         (i > 0 && !sc_sort_less(s->pairs[i - 1], pair)))
@@ -79,46 +135,108 @@ static int look_at_pair(const sc_trace_subject *s, uint32_t i, sc_status *status
     sc_trace_ends(model, pair.a, number);
     for (k = 0; k < 3; k++) {
         number[2 + k] = corner[k];
-        if (corner[k] == number[0] || corner[k] == number[1]) return 0;
+        shared |= corner[k] == number[0] || corner[k] == number[1];
     }
-    *status = SC_ERROR_NOT_FINITE;
-    for (k = 0; k < 5; k++) {
-        sc_positions_get(&s->positions, number[k], position[k]);
-        if (!is_finite(position[k])) return 0;
-        p[k] = position[k];
-    }
+    if (shared) return 0;
     *status = SC_OK;
-    return number[0] != number[1] && !sc_trace_is_collapsed(corner) && crosses(p, number);
+    return number[0] != number[1] && !sc_trace_is_collapsed(corner);
+}
+
+/* Adds pair i, whose points are named at the end of the block. */
+static void add_to_block(const sc_trace_subject *s, pair_block *block, uint32_t i)
+{
+    const uint32_t at = block->count++;
+    int k;
+    block->pair[at] = i;
+    for (k = 0; k < 5; k++)
+        block->lanes.point[k][at] = s->positions.at + s->positions.stride * block->number[at][k];
+}
+
+/* The place of a pair whose determinants are certain. */
+static void place_lane(const sc_trace_subject *s, const pair_block *block, uint32_t at,
+                       sc_crossing_place *place)
+{
+    const sc_crossing_values *v = &block->values;
+    const double sum = v->weights[0][at] + v->weights[1][at] + v->weights[2][at];
+    double p[3], q[3];
+    int k;
+    sc_positions_get(&s->positions, block->number[at][0], p);
+    sc_positions_get(&s->positions, block->number[at][1], q);
+    place->along = v->along[at] / sum;
+    for (k = 0; k < 3; k++) {
+        const double mean = (1 - place->along) * p[k] + place->along * q[k];
+        const double low = p[k] < q[k] ? p[k] : q[k], high = p[k] < q[k] ? q[k] : p[k];
+        place->weights[k] = v->weights[k][at] / sum;
+        place->point[k] = mean < low ? low : mean > high ? high : mean;
+    }
+}
+
+/* Looks at the pairs of a block: together, and those of which it is not certain then each by itself.
+   Returns 0 after one that is wrong. */
+static int look_at_block(pair_search *search, pair_block *block, uint32_t part)
+{
+    const sc_trace_subject *s = search->subject;
+    const uint32_t first = search->first[part];
+    uint32_t i, k;
+    if (!block->count) return 1;
+    for (i = block->count; i < SC_CROSSING_LANES; i++) /* something is in all lanes */
+        for (k = 0; k < 5; k++) block->lanes.point[k][i] = block->lanes.point[k][0];
+    s->kernels->look(&block->lanes, &block->values);
+    for (i = 0; i < block->count; i++) {
+        const uint32_t to = first + search->count[part];
+        sc_crossing_place *place = &search->places[to];
+        if (block->values.apart >> i & 1) continue;
+        if (block->values.cross >> i & 1) {
+            place_lane(s, block, i, place);
+        } else if (!look_at_pair(s, block->number[i], place, &search->status[part])) {
+            if (!search->status[part]) continue;
+            search->wrong[part] = block->pair[i];
+            return 0;
+        }
+        search->pairs[to] = s->pairs[block->pair[i]];
+        search->count[part]++;
+    }
+    block->count = 0;
+    return 1;
 }
 
 static void look_at_some_pairs(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
     pair_search *search = (pair_search *)context;
-    uint32_t i, count = 0;
+    const sc_trace_subject *s = search->subject;
+    pair_block block;
+    sc_status status = SC_OK;
+    uint32_t i;
     search->first[part] = first;
+    search->count[part] = 0;
     search->wrong[part] = SC_NONE;
+    search->status[part] = SC_OK;
+    block.count = 0;
+    block.lanes.floats = s->positions.type == SC_FLOAT;
     for (i = first; i < end; i++) {
-        if (i % PAIRS_BETWEEN_LOOKS == 0 && sc_trace_is_cancelled(search->subject)) break;
-        if (look_at_pair(search->subject, i, &search->status[part]))
-            search->list[first + count++] = search->subject->pairs[i];
-        if (search->status[part]) {
-            search->wrong[part] = i;
-            break;
-        }
+        if (i % PAIRS_BETWEEN_LOOKS == 0 && sc_trace_is_cancelled(s)) return;
+        if (name_five(s, i, block.number[block.count], &status)) add_to_block(s, &block, i);
+        if (status) break;
+        if (block.count == SC_CROSSING_LANES && !look_at_block(search, &block, part)) return;
     }
-    search->count[part] = count;
+    if (!look_at_block(search, &block, part) || !status) return;
+    search->wrong[part] = i;
+    search->status[part] = status;
 }
 
 sc_status sc_crossings_find(const sc_trace_subject *subject, sc_scratch *scratch,
-                            sc_pair **crossings, uint32_t *count)
+                            sc_crossings *crossings)
 {
     pair_search search;
     uint32_t parts, part;
     search.subject = subject;
-    search.list = (sc_pair *)sc_scratch_take(scratch, subject->count, sizeof *search.list);
-    if (!search.list) return SC_ERROR_MEMORY;
-    *crossings = search.list;
-    *count = 0;
+    search.pairs = (sc_pair *)sc_scratch_take(scratch, subject->count, sizeof *search.pairs);
+    search.places =
+        (sc_crossing_place *)sc_scratch_take(scratch, subject->count, sizeof *search.places);
+    if (!search.pairs || !search.places) return SC_ERROR_MEMORY;
+    crossings->pairs = search.pairs;
+    crossings->places = search.places;
+    crossings->count = 0;
     if (!subject->count) return SC_OK;
     parts =
         sc_jobs_loop(scratch->tasks, subject->count, PART_PAIRS_MIN, look_at_some_pairs, &search);
@@ -131,73 +249,11 @@ sc_status sc_crossings_find(const sc_trace_subject *subject, sc_scratch *scratch
                          wrong.a, wrong.b, sc_status_string(search.status[part]));
             return search.status[part];
         }
-        memmove(search.list + *count, search.list + search.first[part],
-                search.count[part] * sizeof *search.list);
-        *count += search.count[part];
+        memmove(search.pairs + crossings->count, search.pairs + search.first[part],
+                search.count[part] * sizeof *search.pairs);
+        memmove(search.places + crossings->count, search.places + search.first[part],
+                search.count[part] * sizeof *search.places);
+        crossings->count += search.count[part];
     }
     return SC_OK;
-}
-
-/* What nodes are placed with. */
-typedef struct placing {
-    const sc_trace_subject *subject;
-    sc_trace_node *nodes;
-    uint64_t first; /* of the nodes that are placed now */
-} placing;
-
-static void place_node(const sc_trace_subject *s, sc_trace_node *node)
-{
-    double position[5][3];
-    const double *edge[3] = {position[0], position[1], position[1]};
-    const double *triangle[3] = {position[2], position[3], position[4]};
-    const uint32_t *corner;
-    uint32_t ends[2];
-    uint64_t fallbacks = 0;
-    sc_contact contact;
-    int k;
-    memset(node->weights, 0, sizeof node->weights);
-    node->along = 0;
-    if (node->edge == SC_TRACE_NO_EDGE) {
-        sc_positions_get(&s->positions, node->triangle, node->point);
-        return;
-    }
-    corner = sc_trace_corners(s->model, node->triangle);
-    sc_trace_ends(s->model, node->edge, ends);
-    for (k = 0; k < 2; k++) sc_positions_get(&s->positions, ends[k], position[k]);
-    for (k = 0; k < 3; k++) sc_positions_get(&s->positions, corner[k], position[2 + k]);
-    if (sc_primitives_segment_meets(edge[0], edge[1], triangle, 1, &fallbacks)) {
-        node->along = sc_contacts_pass(edge, triangle, node->weights, node->point);
-        return;
-    }
-    sc_contacts_find(edge, triangle, &contact);
-    node->along = contact.weights_a[0][1] / 2 + contact.weights_a[1][1] / 2;
-    for (k = 0; k < 3; k++) {
-        node->weights[k] = contact.weights_b[0][k] / 2 + contact.weights_b[1][k] / 2;
-        node->point[k] = contact.points[0][k] / 2 + contact.points[1][k] / 2;
-    }
-}
-
-static void place_some_nodes(void *context, uint32_t part, uint32_t first, uint32_t end)
-{
-    const placing *p = (const placing *)context;
-    uint32_t i;
-    (void)part;
-    for (i = first; i < end; i++) {
-        if (i % PAIRS_BETWEEN_LOOKS == 0 && sc_trace_is_cancelled(p->subject)) return;
-        place_node(p->subject, &p->nodes[p->first + i]);
-    }
-}
-
-void sc_crossings_place(const sc_trace_subject *subject, const sc_tasks *tasks,
-                        sc_trace_node *nodes, uint64_t count)
-{
-    const uint64_t most = UINT32_MAX / 2;
-    placing p;
-    p.subject = subject;
-    p.nodes = nodes;
-    for (p.first = 0; p.first < count; p.first += most) {
-        const uint64_t left = count - p.first;
-        sc_jobs_loop(tasks, (uint32_t)(left < most ? left : most), PART_NODES_MIN, place_some_nodes,
-                     &p);
-    }
 }

@@ -9,11 +9,13 @@
 
 #include "base/memory.h"
 #include "pose/positions.h"
+#include "trace/trace_kernels.h"
 
 /* What is traced: the caller's arguments, checked. */
 typedef struct sc_trace_subject {
     const sc_model *model;
     sc_positions positions;
+    const sc_trace_kernels *kernels;
     const sc_pair *pairs;
     uint32_t count;
     const sc_hooks *hooks;
@@ -42,13 +44,20 @@ static inline int sc_trace_is_collapsed(const uint32_t corner[3])
     return corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0];
 }
 
-/* Checks the pairs and lists those that cross, in their order, in *crossings, which are scratch
-   memory. */
-sc_status sc_crossings_find(const sc_trace_subject *subject, sc_scratch *scratch,
-                            sc_pair **crossings, uint32_t *count);
+/* Where an edge crosses a triangle, as in sc_trace_node. */
+typedef struct sc_crossing_place {
+    double along, weights[3], point[3];
+} sc_crossing_place;
 
-/* Fills in along, weights and point of some nodes, which are the caller's and have all else. */
-void sc_crossings_place(const sc_trace_subject *subject, const sc_tasks *tasks,
-                        sc_trace_node *nodes, uint64_t count);
+/* The pairs that cross, in their order. Scratch memory. */
+typedef struct sc_crossings {
+    uint32_t count;
+    sc_pair *pairs;
+    sc_crossing_place *places;
+} sc_crossings;
+
+/* Checks all pairs, and finds those. */
+sc_status sc_crossings_find(const sc_trace_subject *subject, sc_scratch *scratch,
+                            sc_crossings *crossings);
 
 #endif

@@ -14,141 +14,168 @@
 /* Triangles of the shortest part that is looked through by itself. */
 enum { PART_PLACES_MIN = 5000 };
 
-/* The edges that cross, found by their ends, and the triangles that have them. */
-typedef struct edge_table {
+/* The edges that cross, by their lower ends, and the triangles that have them. */
+typedef struct crossing_edges {
     const sc_trace_subject *subject;
     uint32_t count;
     sc_pair *ends;     /* of each edge, the lower one first */
-    uint32_t *slot;    /* size: 1 + the number of an edge that belongs here or in a slot before */
-    uint64_t size;     /* a power of two */
-    uint8_t *is_end;   /* of each vertex: whether an edge ends there */
-    sc_pair *triangle; /* of edges and triangles that have them: those of each part */
-    uint64_t begin[SC_JOBS_PARTS];
-    uint32_t found[SC_JOBS_PARTS];
-    int is_counted; /* there is room for what was found, which is to be written now */
-} edge_table;
-
-/* u < v */
-static uint64_t slot_of(const edge_table *t, uint64_t u, uint64_t v)
-{
-    const uint64_t hash = (u * 0x9e3779b97f4a7c15u) ^ (v * 0xc2b2ae3d27d4eb4fu);
-    return (hash ^ hash >> 32) & (t->size - 1);
-}
+    uint32_t *first;   /* vertex_count + 1: edges with lower end v are first[v] to first[v + 1] */
+    sc_pair *by_end;   /* of these, the upper end and the number */
+    uint8_t *is_end;   /* vertex_count: whether an edge ends there */
+    uint32_t *place;   /* of each part, from its first on: places that may have an edge */
+    sc_pair *triangle; /* of edges, and triangles that have them */
+    uint64_t total;    /* how many these are */
+    uint32_t found[SC_JOBS_PARTS], begin[SC_JOBS_PARTS]; /* places of each part, and its first */
+    uint64_t to[SC_JOBS_PARTS];                          /* where each part writes */
+} crossing_edges;
 
 /* The number of the edge between two vertices, or SC_NONE. */
-static uint32_t find_edge(const edge_table *t, uint32_t u, uint32_t v)
+static uint32_t find_edge(const crossing_edges *e, uint32_t u, uint32_t v)
 {
     const uint32_t low = u < v ? u : v, high = u < v ? v : u;
-    uint64_t at = slot_of(t, low, high);
-    for (; t->slot[at]; at = (at + 1) & (t->size - 1)) {
-        const sc_pair ends = t->ends[t->slot[at] - 1];
-        if (ends.a == low && ends.b == high) return t->slot[at] - 1;
-    }
+    uint32_t i;
+    for (i = e->first[low]; i < e->first[low + 1]; i++)
+        if (e->by_end[i].a == high) return e->by_end[i].b;
     return SC_NONE;
 }
 
-/* Lists the edges of crossings, which are sorted by them. SC_ERROR_PAIRS: one has two names. */
-static sc_status list_edges(edge_table *t, const sc_pair *crossings, uint32_t count,
-                            sc_scratch *scratch)
+/* Sorts edges by their lower ends. */
+static void sort_crossing_edges(crossing_edges *e)
 {
-    uint32_t i, low, ends[2];
-    for (t->size = 16; t->size < 2 * (uint64_t)count;) t->size *= 2;
-    t->ends = (sc_pair *)sc_scratch_take(scratch, count, sizeof *t->ends);
-    t->slot = (uint32_t *)sc_scratch_take_filled(scratch, t->size, sizeof *t->slot, 0);
-    t->is_end = (uint8_t *)sc_scratch_take_filled(scratch, t->subject->model->vertex_count, 1, 0);
-    if (!t->ends || !t->slot || !t->is_end) return SC_ERROR_MEMORY;
-    for (t->count = i = 0; i < count; i++) {
-        uint64_t at;
-        if (i > 0 && crossings[i].a == crossings[i - 1].a) continue;
-        sc_trace_ends(t->subject->model, crossings[i].a, ends);
-        if (find_edge(t, ends[0], ends[1]) != SC_NONE) {
-            sc_hooks_log(t->subject->hooks, SC_LOG_ERROR, "pairs have two names of edge %" PRIu32,
-                         crossings[i].a);
-            return SC_ERROR_PAIRS;
-        }
-        low = ends[0] < ends[1] ? 0 : 1;
-        t->ends[t->count].a = ends[low];
-        t->ends[t->count++].b = ends[1 - low];
-        at = slot_of(t, ends[low], ends[1 - low]);
-        while (t->slot[at]) at = (at + 1) & (t->size - 1);
-        t->slot[at] = t->count;
-        t->is_end[ends[0]] = t->is_end[ends[1]] = 1;
+    const uint32_t vertices = e->subject->model->vertex_count;
+    uint32_t i, v;
+    for (i = 0; i < e->count; i++) e->first[e->ends[i].a + 1]++;
+    for (v = 0; v < vertices; v++) e->first[v + 1] += e->first[v];
+    for (i = e->count; i-- > 0;) { /* fills each list from its end, which moves to its begin */
+        const uint32_t at = --e->first[e->ends[i].a + 1];
+        e->by_end[at].a = e->ends[i].b;
+        e->by_end[at].b = i;
     }
+    for (v = 0; v < vertices; v++) e->first[v] = e->first[v + 1];
+    e->first[vertices] = e->count;
+}
+
+/* Lists the edges of crossings, which are sorted by them. */
+static sc_status list_crossing_edges(crossing_edges *e, const sc_pair *crossings, uint32_t count,
+                                     sc_scratch *scratch)
+{
+    const uint32_t vertices = e->subject->model->vertex_count;
+    uint32_t i, low, ends[2];
+    e->ends = (sc_pair *)sc_scratch_take(scratch, count, sizeof *e->ends);
+    e->by_end = (sc_pair *)sc_scratch_take(scratch, count, sizeof *e->by_end);
+    e->first =
+        (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)vertices + 1, sizeof *e->first, 0);
+    e->is_end = (uint8_t *)sc_scratch_take_filled(scratch, vertices, 1, 0);
+    if (!e->ends || !e->by_end || !e->first || !e->is_end) return SC_ERROR_MEMORY;
+    for (e->count = i = 0; i < count; i++) {
+        if (i > 0 && crossings[i].a == crossings[i - 1].a) continue;
+        sc_trace_ends(e->subject->model, crossings[i].a, ends);
+        low = ends[0] < ends[1] ? 0 : 1;
+        e->ends[e->count].a = ends[low];
+        e->ends[e->count++].b = ends[1 - low];
+        e->is_end[ends[0]] = e->is_end[ends[1]] = 1;
+    }
+    sort_crossing_edges(e);
     return SC_OK;
 }
 
-static void look_at_places(void *context, uint32_t part, uint32_t first, uint32_t end)
+/* Lists the places that have two corners at which edges end. */
+static void find_some_places(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    edge_table *t = (edge_table *)context;
-    const uint32_t *corner = sc_model_triangle(t->subject->model) + 3 * (uint64_t)first;
-    const uint32_t *id = sc_model_triangle_id(t->subject->model);
+    crossing_edges *e = (crossing_edges *)context;
+    const uint32_t *corner = sc_model_triangle(e->subject->model) + 3 * (uint64_t)first;
+    uint32_t i, count = 0;
+    for (i = first; i < end; i++, corner += 3) { /* without branches */
+        e->place[first + count] = i;
+        count += e->is_end[corner[0]] + e->is_end[corner[1]] + e->is_end[corner[2]] >= 2;
+    }
+    e->begin[part] = first;
+    e->found[part] = count;
+}
+
+/* Of these the edges; how many there are instead of how many places. */
+static void find_some_sides(void *context, uint32_t part, uint32_t worker)
+{
+    crossing_edges *e = (crossing_edges *)context;
+    const uint32_t *triangle = sc_model_triangle(e->subject->model);
+    const uint32_t *id = sc_model_triangle_id(e->subject->model);
+    const uint32_t *place = e->place + e->begin[part];
+    sc_pair *to = e->triangle + e->to[part];
     uint32_t i, k, count = 0;
-    for (i = first; i < end; i++, corner += 3) {
-        if (t->is_end[corner[0]] + t->is_end[corner[1]] + t->is_end[corner[2]] < 2) continue;
+    (void)worker;
+    for (i = 0; i < e->found[part]; i++) {
+        const uint32_t *corner = triangle + 3 * (uint64_t)place[i];
         if (sc_trace_is_collapsed(corner)) continue;
         for (k = 0; k < 3; k++) {
-            const uint32_t u = corner[k], v = corner[(k + 1) % 3];
-            const uint32_t edge = t->is_end[u] && t->is_end[v] ? find_edge(t, u, v) : SC_NONE;
+            const uint32_t edge = find_edge(e, corner[k], corner[k < 2 ? k + 1 : 0]);
             if (edge == SC_NONE) continue;
-            if (t->is_counted) {
-                t->triangle[t->begin[part] + count].a = edge;
-                t->triangle[t->begin[part] + count].b = id[i];
-            }
-            count++;
+            to[count].a = edge;
+            to[count++].b = id[place[i]];
         }
     }
-    t->found[part] = count;
+    e->found[part] = count;
 }
 
-/* Lists which triangles have which edges: sorted by the number of the edge, then that of the
-   triangle. */
-static sc_status list_triangles(edge_table *t, sc_scratch *scratch, uint64_t *total)
+/* Lists which triangles have which edges. */
+static sc_status list_triangles(crossing_edges *e, sc_scratch *scratch)
 {
-    const uint32_t triangles = t->subject->model->triangle_count;
-    sc_pair *spare;
+    const uint32_t triangles = e->subject->model->triangle_count;
+    uint64_t room = 0;
     uint32_t parts, part;
-    t->is_counted = 0;
-    parts = sc_jobs_loop(scratch->tasks, triangles, PART_PLACES_MIN, look_at_places, t);
-    for (*total = part = 0; part < parts; part++) {
-        t->begin[part] = *total;
-        *total += t->found[part];
+    e->place = (uint32_t *)sc_scratch_take(scratch, triangles, sizeof *e->place);
+    if (!e->place) return SC_ERROR_MEMORY;
+    parts = sc_jobs_loop(scratch->tasks, triangles, PART_PLACES_MIN, find_some_places, e);
+    for (part = 0; part < parts; part++) {
+        e->to[part] = room;
+        room += 3 * (uint64_t)e->found[part];
     }
-    t->triangle = (sc_pair *)sc_scratch_take(scratch, *total, sizeof *t->triangle);
-    spare = (sc_pair *)sc_scratch_take(scratch, *total, sizeof *spare);
-    if (!t->triangle || !spare) return SC_ERROR_MEMORY;
-    t->is_counted = 1;
-    sc_jobs_loop(scratch->tasks, triangles, PART_PLACES_MIN, look_at_places, t);
-    sc_sort_in_room(t->triangle, spare, *total, *total);
-    sc_scratch_give(scratch, spare);
+    e->triangle = (sc_pair *)sc_scratch_take(scratch, room, sizeof *e->triangle);
+    if (!e->triangle) return SC_ERROR_MEMORY;
+    sc_jobs_run(scratch->tasks, parts, find_some_sides, e);
+    sc_scratch_give(scratch, e->place);
+    for (e->total = part = 0; part < parts; part++) {
+        memmove(e->triangle + e->total, e->triangle + e->to[part],
+                e->found[part] * sizeof *e->triangle);
+        e->total += e->found[part];
+    }
     return SC_OK;
 }
 
-static void give_table(sc_scratch *scratch, const edge_table *t)
+static void give_edges(sc_scratch *scratch, const crossing_edges *e)
 {
-    sc_scratch_give(scratch, t->triangle);
-    sc_scratch_give(scratch, t->is_end);
-    sc_scratch_give(scratch, t->slot);
-    sc_scratch_give(scratch, t->ends);
+    sc_scratch_give(scratch, e->triangle);
+    sc_scratch_give(scratch, e->is_end);
+    sc_scratch_give(scratch, e->first);
+    sc_scratch_give(scratch, e->by_end);
+    sc_scratch_give(scratch, e->ends);
 }
 
-/* Where the triangles of each edge begin among them; NULL if there is no memory. */
-static uint32_t *index_triangles(const edge_table *t, uint64_t total, sc_scratch *scratch)
+/* Sorts triangles by edges, each edge's in ascending order; returns where those of each edge begin,
+   or NULL if there is no memory. */
+static uint32_t *sort_triangles(crossing_edges *e, sc_scratch *scratch)
 {
-    uint32_t *first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)t->count + 1, sizeof *first);
+    uint32_t *first =
+        (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)e->count + 1, sizeof *first, 0);
+    sc_pair *sorted = (sc_pair *)sc_scratch_take(scratch, e->total, sizeof *sorted);
     uint32_t edge;
-    uint64_t i = 0;
-    for (edge = 0; first && edge <= t->count; edge++) {
-        while (i < total && t->triangle[i].a < edge) i++;
-        first[edge] = (uint32_t)i;
-    }
+    uint64_t i;
+    if (!first || !sorted) return NULL;
+    for (i = 0; i < e->total; i++) first[e->triangle[i].a + 1]++;
+    for (edge = 0; edge < e->count; edge++) first[edge + 1] += first[edge];
+    for (i = e->total; i-- > 0;) sorted[--first[e->triangle[i].a + 1]] = e->triangle[i];
+    for (edge = 0; edge < e->count; edge++) first[edge] = first[edge + 1];
+    first[edge] = (uint32_t)e->total;
+    for (edge = 0; edge < e->count; edge++)
+        sc_sort_pairs(sorted + first[edge], first[edge + 1] - first[edge]);
+    sc_scratch_give(scratch, e->triangle);
+    e->triangle = sorted;
     return first;
 }
 
 /* Gives each crossing a branch for each triangle of its edge. */
-static sc_status list_branches(sc_sheets *s, const edge_table *t, uint64_t triangles,
-                               sc_scratch *scratch)
+static sc_status list_branches(sc_sheets *s, crossing_edges *t, sc_scratch *scratch)
 {
-    const uint32_t *of_edge = index_triangles(t, triangles, scratch);
+    const uint32_t *of_edge = sort_triangles(t, scratch);
     uint64_t total = 0;
     uint32_t i, edge = 0, at, branch = 0;
     s->first = (uint32_t *)sc_scratch_take(scratch, (uint64_t)s->count + 1, sizeof *s->first);
@@ -197,31 +224,31 @@ uint32_t sc_sheets_shared_vertex(const sc_model *model, uint32_t a, uint32_t b)
     return count == 1 ? shared : SC_NONE;
 }
 
-/* Joins the branches of one segment. Two triangles that share a vertex have one crossing, others
-   two: of the segment between them they are the ends. */
+/* Joins the branches of one segment, of which they are the ends; or one end is a vertex. */
 static int join_segment(const sc_trace_subject *subject, sc_sheets *s, const sc_pair *branches,
                         uint64_t count)
 {
     const sc_pair segment = segment_of(s, branches[0].b);
-    const int is_at_vertex =
-        sc_sheets_shared_vertex(subject->model, segment.a, segment.b) != SC_NONE;
-    if (count == (is_at_vertex ? 1 : 2)) {
-        s->other[branches[0].b] = count == 1 ? SC_NONE : branches[1].b;
-        if (count == 2) s->other[branches[1].b] = branches[0].b;
+    if (count == 2) {
+        s->other[branches[0].b] = branches[1].b;
+        s->other[branches[1].b] = branches[0].b;
         return 1;
     }
+    s->other[branches[0].b] = SC_NONE;
+    if (count == 1 && sc_sheets_shared_vertex(subject->model, segment.a, segment.b) != SC_NONE)
+        return 1;
     sc_hooks_log(subject->hooks, SC_LOG_ERROR,
                  "pairs lack an end of what triangles %" PRIu32 " and %" PRIu32 " have in common",
                  segment.a, segment.b);
     return 0;
 }
 
-/* Joins branches of which the lower triangle is the same. */
+/* Joins branches of which the lower triangle is the same, by the other one: the first of each
+   pair. */
 static int join_some(const sc_trace_subject *subject, sc_sheets *s, sc_pair *branches,
                      uint64_t count)
 {
     uint64_t i, end;
-    for (i = 0; i < count; i++) branches[i].a = segment_of(s, branches[i].b).b;
     sc_sort_pairs(branches, count);
     for (i = 0; i < count; i = end) {
         for (end = i + 1; end < count && branches[end].a == branches[i].a;) end++;
@@ -232,25 +259,26 @@ static int join_some(const sc_trace_subject *subject, sc_sheets *s, sc_pair *bra
 
 static sc_status join_branches(const sc_trace_subject *subject, sc_sheets *s, sc_scratch *scratch)
 {
-    const uint32_t count = s->first[s->count];
-    sc_pair *list = (sc_pair *)sc_scratch_take(scratch, count, sizeof *list), *sorted;
-    sc_pair *spare = (sc_pair *)sc_scratch_take(scratch, count, sizeof *spare);
-    uint32_t i, end, lower;
-    unsigned bits = 1;
-    if (!list || !spare) return SC_ERROR_MEMORY;
-    if (!count) return SC_OK;
-    for (i = 0; i < count; i++) {
-        list[i].a = segment_of(s, i).a;
-        list[i].b = i;
+    const uint32_t triangles = subject->model->triangle_count, count = s->first[s->count];
+    sc_pair *list = (sc_pair *)sc_scratch_take(scratch, count, sizeof *list);
+    uint32_t *first =
+        (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)triangles + 1, sizeof *first, 0);
+    uint32_t i;
+    if (!list || !first) return SC_ERROR_MEMORY;
+    for (i = 0; i < count; i++) first[segment_of(s, i).a + 1]++;
+    for (i = 0; i < triangles; i++) first[i + 1] += first[i];
+    for (i = 0; i < count; i++) { /* afterwards first[t] is where those of t end */
+        const sc_pair segment = segment_of(s, i);
+        const uint32_t at = first[segment.a]++;
+        list[at].a = segment.b;
+        list[at].b = i;
     }
-    while (bits < 32 && subject->model->triangle_count >> bits) bits++;
-    sorted = sc_sort_by_digits(list, spare, count, bits, NULL, NULL);
-    for (i = 0; i < count; i = end) {
-        lower = sorted[i].a;
-        for (end = i + 1; end < count && sorted[end].a == lower;) end++;
-        if (!join_some(subject, s, sorted + i, end - i)) return SC_ERROR_PAIRS;
+    for (i = 0; i < triangles; i++) {
+        const uint32_t begin = i ? first[i - 1] : 0;
+        if (first[i] > begin && !join_some(subject, s, list + begin, first[i] - begin))
+            return SC_ERROR_PAIRS;
     }
-    sc_scratch_give(scratch, spare);
+    sc_scratch_give(scratch, first);
     sc_scratch_give(scratch, list);
     return SC_OK;
 }
@@ -258,18 +286,17 @@ static sc_status join_branches(const sc_trace_subject *subject, sc_sheets *s, sc
 sc_status sc_sheets_find(const sc_trace_subject *subject, const sc_pair *crossings, uint32_t count,
                          sc_scratch *scratch, sc_sheets *sheets)
 {
-    edge_table table;
-    uint64_t triangles = 0;
+    crossing_edges edges;
     sc_status status;
     memset(sheets, 0, sizeof *sheets);
     sheets->crossings = crossings;
     sheets->count = count;
-    memset(&table, 0, sizeof table);
-    table.subject = subject;
-    status = list_edges(&table, crossings, count, scratch);
-    if (!status) status = list_triangles(&table, scratch, &triangles);
-    if (!status) status = list_branches(sheets, &table, triangles, scratch);
-    give_table(scratch, &table);
+    memset(&edges, 0, sizeof edges);
+    edges.subject = subject;
+    status = list_crossing_edges(&edges, crossings, count, scratch);
+    if (!status) status = list_triangles(&edges, scratch);
+    if (!status) status = list_branches(sheets, &edges, scratch);
+    give_edges(scratch, &edges);
     if (!status && sc_trace_is_cancelled(subject)) status = SC_ERROR_INCOMPLETE;
     return status ? status : join_branches(subject, sheets, scratch);
 }

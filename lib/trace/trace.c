@@ -16,6 +16,7 @@
 /* A walk along all contours. */
 typedef struct trace_walk {
     const sc_trace_subject *subject;
+    const sc_crossings *crossings;
     const sc_sheets *sheets;
     uint8_t *is_done; /* of each branch */
     sc_trace_result *result;
@@ -28,39 +29,49 @@ static uint32_t branch_count(const sc_sheets *s, uint32_t crossing)
 }
 
 /* The kind of end that a crossing is, or SC_TRACE_CLOSED if contours go on there. */
-static uint32_t kind_of(const sc_sheets *s, uint32_t crossing)
+static uint32_t end_kind(const sc_sheets *s, uint32_t crossing)
 {
     const uint32_t count = branch_count(s, crossing);
     return count == 2 ? SC_TRACE_CLOSED : count == 1 ? SC_TRACE_BORDER : SC_TRACE_BRANCH;
 }
 
-/* Adds a node, behind which comes the segment at hand if there is one. */
-static void add_node(trace_walk *w, uint32_t edge, uint32_t triangle, uint32_t sheet, int goes_on)
+/* Adds a node, if there is room for it, behind which comes the segment at hand if there is one. */
+static sc_trace_node *add_trace_node(trace_walk *w, int goes_on)
 {
     sc_trace_result *r = w->result;
+    sc_trace_node *node = NULL;
     if (r->node_count < r->node_capacity) {
-        sc_trace_node *node = &r->nodes[r->node_count];
+        node = &r->nodes[r->node_count];
         memset(node, 0, sizeof *node);
-        node->edge = edge;
-        node->triangle = triangle;
-        node->sheet = sheet;
         node->sheets[0] = goes_on ? w->now[0] : SC_TRACE_NO_EDGE;
         node->sheets[1] = goes_on ? w->now[1] : SC_TRACE_NO_EDGE;
     }
     r->node_count++;
+    return node;
 }
 
 static void add_crossing(trace_walk *w, uint32_t crossing, uint32_t sheet, int goes_on)
 {
-    const sc_pair pair = w->sheets->crossings[crossing];
-    add_node(w, pair.a, pair.b, sheet, goes_on);
+    const sc_crossing_place *place = &w->crossings->places[crossing];
+    sc_trace_node *node = add_trace_node(w, goes_on);
+    if (!node) return;
+    node->edge = w->crossings->pairs[crossing].a;
+    node->triangle = w->crossings->pairs[crossing].b;
+    node->sheet = sheet;
+    node->along = place->along;
+    memcpy(node->weights, place->weights, sizeof node->weights);
+    memcpy(node->point, place->point, sizeof node->point);
 }
 
 /* Adds the vertex that the triangles of the segment at hand share. */
 static void add_vertex(trace_walk *w, int goes_on)
 {
-    const uint32_t v = sc_sheets_shared_vertex(w->subject->model, w->now[0], w->now[1]);
-    add_node(w, SC_TRACE_NO_EDGE, v, 0, goes_on);
+    const sc_trace_subject *s = w->subject;
+    sc_trace_node *node = add_trace_node(w, goes_on);
+    if (!node) return;
+    node->edge = SC_TRACE_NO_EDGE;
+    node->triangle = sc_sheets_shared_vertex(s->model, w->now[0], w->now[1]);
+    sc_positions_get(&s->positions, node->triangle, node->point);
 }
 
 static void begin_segment(trace_walk *w, uint32_t branch)
@@ -88,7 +99,7 @@ static uint32_t follow(trace_walk *w, uint32_t branch, int *is_one_sheet)
         }
         w->is_done[next] = 1;
         crossing = s->crossing[next];
-        kind = kind_of(s, crossing);
+        kind = end_kind(s, crossing);
         sheet = w->now[0] != s->triangle[next]; /* that of the edge, which has this triangle */
         if (kind != SC_TRACE_CLOSED) {
             add_crossing(w, crossing, sheet, 0);
@@ -125,7 +136,7 @@ static void add_contour(trace_walk *w, uint64_t first, uint32_t begin, uint32_t 
 static void follow_from(trace_walk *w, uint32_t branch)
 {
     const uint64_t first = w->result->node_count;
-    const uint32_t crossing = w->sheets->crossing[branch], begin = kind_of(w->sheets, crossing);
+    const uint32_t crossing = w->sheets->crossing[branch], begin = end_kind(w->sheets, crossing);
     uint32_t end;
     int is_one_sheet;
     begin_segment(w, branch);
@@ -158,7 +169,7 @@ static void follow_all(trace_walk *w)
     const uint32_t branches = s->first[s->count];
     uint32_t i;
     for (i = 0; i < branches; i++)
-        if (!w->is_done[i] && kind_of(s, s->crossing[i]) != SC_TRACE_CLOSED) follow_from(w, i);
+        if (!w->is_done[i] && end_kind(s, s->crossing[i]) != SC_TRACE_CLOSED) follow_from(w, i);
     for (i = 0; i < branches; i++)
         if (!w->is_done[i] && s->other[i] == SC_NONE) follow_from_vertex(w, i);
     for (i = 0; i < branches; i++)
@@ -171,7 +182,7 @@ static double distance_between(const double p[3], const double q[3])
     return sqrt(x * x + y * y + z * z);
 }
 
-static void measure(const sc_trace_result *r)
+static void measure_traces(const sc_trace_result *r)
 {
     uint64_t i, k;
     for (i = 0; i < r->contour_count; i++) {
@@ -187,24 +198,24 @@ static void measure(const sc_trace_result *r)
 sc_status sc_trace_run(const sc_trace_subject *subject, sc_scratch *scratch,
                        sc_trace_result *result)
 {
+    sc_crossings crossings;
     sc_sheets sheets;
     trace_walk walk;
-    sc_pair *crossings;
-    uint32_t count;
-    sc_status status = sc_crossings_find(subject, scratch, &crossings, &count);
-    if (!status) status = sc_sheets_find(subject, crossings, count, scratch, &sheets);
+    sc_status status = sc_crossings_find(subject, scratch, &crossings);
+    if (!status)
+        status = sc_sheets_find(subject, crossings.pairs, crossings.count, scratch, &sheets);
     if (status) return status;
     walk.subject = subject;
+    walk.crossings = &crossings;
     walk.sheets = &sheets;
     walk.result = result;
-    walk.is_done = (uint8_t *)sc_scratch_take_filled(scratch, sheets.first[count], 1, 0);
+    walk.is_done = (uint8_t *)sc_scratch_take_filled(scratch, sheets.first[crossings.count], 1, 0);
     if (!walk.is_done) return SC_ERROR_MEMORY;
     follow_all(&walk);
+    if (sc_trace_is_cancelled(subject)) return SC_ERROR_INCOMPLETE;
     if (result->node_count > result->node_capacity ||
         result->contour_count > result->contour_capacity)
         return SC_ERROR_SHORT_BUFFER;
-    sc_crossings_place(subject, scratch->tasks, result->nodes, result->node_count);
-    if (sc_trace_is_cancelled(subject)) return SC_ERROR_INCOMPLETE;
-    measure(result);
+    measure_traces(result);
     return SC_OK;
 }
