@@ -68,16 +68,18 @@ static int sign_of_permutation(const int column[4])
     return inversions % 2 ? -1 : 1;
 }
 
-/* The sign of those that have not moved, or 0. */
-static int plain_sign(const double *const points[4])
+/* The determinant of the differences of three points from the first. */
+static void find_volume(mpq_t sum, const double *p, const double *a, const double *b,
+                        const double *c)
 {
-    mpq_t u[3][3], t, sum;
-    int sign;
-    mpq_inits(t, sum, NULL);
+    const double *to[3] = {a, b, c};
+    mpq_t u[3][3], t;
+    mpq_init(t);
+    mpq_set_si(sum, 0, 1);
     for (int i = 0; i < 9; ++i) {
         mpq_init(u[i / 3][i % 3]);
-        mpq_set_d(u[i / 3][i % 3], points[1 + i / 3][i % 3]);
-        mpq_set_d(t, points[0][i % 3]);
+        mpq_set_d(u[i / 3][i % 3], to[i / 3][i % 3]);
+        mpq_set_d(t, p[i % 3]);
         mpq_sub(u[i / 3][i % 3], u[i / 3][i % 3], t);
     }
     for (int i = 0; i < 3; ++i)
@@ -88,10 +90,120 @@ static int plain_sign(const double *const points[4])
             if (turned) mpq_neg(t, t);
             mpq_add(sum, sum, t);
         }
-    sign = mpq_sgn(sum);
     for (int i = 0; i < 9; ++i) mpq_clear(u[i / 3][i % 3]);
-    mpq_clears(t, sum, NULL);
+    mpq_clear(t);
+}
+
+/* The sign of those that have not moved, or 0. */
+static int plain_sign(const double *const points[4])
+{
+    mpq_t volume;
+    int sign;
+    mpq_init(volume);
+    find_volume(volume, points[0], points[1], points[2], points[3]);
+    sign = mpq_sgn(volume);
+    mpq_clear(volume);
     return sign;
+}
+
+/* Whether a number is off by no more than 2^-bits of a size, or 2^-1070. */
+static int is_close(double number, const mpq_t truth, const mpq_t size, unsigned bits)
+{
+    mpq_t off, most;
+    int close;
+    mpq_inits(off, most, NULL);
+    mpq_set_d(off, number);
+    mpq_sub(off, off, truth);
+    mpq_abs(off, off);
+    mpq_abs(most, size);
+    mpq_div_2exp(most, most, bits);
+    close = mpq_cmp(off, most) <= 0;
+    mpq_set_d(most, 0x1p-1070);
+    close |= mpq_cmp(off, most) <= 0;
+    mpq_clears(off, most, NULL);
+    return close;
+}
+
+/* The largest absolute value of a coordinate of the five. */
+static void find_size(mpq_t size, const double *const points[5], int k)
+{
+    double largest = 0;
+    for (int i = 0; i < 5; ++i)
+        if (largest < (points[i][k] < 0 ? -points[i][k] : points[i][k]))
+            largest = points[i][k] < 0 ? -points[i][k] : points[i][k];
+    mpq_set_d(size, largest);
+}
+
+/* The sum of positions times weights. */
+static void find_mean(mpq_t mean, const double *const *points, const mpq_t *weights, int count,
+                      int k)
+{
+    mpq_t t;
+    mpq_init(t);
+    mpq_set_si(mean, 0, 1);
+    for (int i = 0; i < count; ++i) {
+        mpq_set_d(t, points[i][k]);
+        mpq_mul(t, t, weights[i]);
+        mpq_add(mean, mean, t);
+    }
+    mpq_clear(t);
+}
+
+/* Whether the points of both that have the weights are the point. */
+static int has_weights(const double *const points[5], double along, const double weights[3],
+                       const double point[3])
+{
+    mpq_t w[5], mean, size;
+    int has = along >= 0 && along <= 1;
+    mpq_inits(mean, size, NULL);
+    for (int i = 0; i < 5; ++i) {
+        mpq_init(w[i]);
+        mpq_set_d(w[i], i < 2 ? along : weights[i - 2]);
+        has &= mpq_sgn(w[i]) >= 0;
+    }
+    mpq_set_si(mean, 1, 1);
+    mpq_sub(w[0], mean, w[0]);
+    for (int k = 0; k < 3 && has; ++k) {
+        find_size(size, points, k);
+        find_mean(mean, points, (const mpq_t *)w, 2, k);
+        has = is_close(point[k], mean, size, 46);
+        find_mean(mean, points + 2, (const mpq_t *)(w + 2), 3, k);
+        has = has && is_close(point[k], mean, size, 46);
+    }
+    for (int i = 0; i < 5; ++i) mpq_clear(w[i]);
+    mpq_clears(mean, size, NULL);
+    return has;
+}
+
+int trace_oracle_is_placed(const double *const points[5], double along, const double weights[3],
+                           const double point[3])
+{
+    const double *const *p = points;
+    mpq_t w[5], sum, size; /* w[0], w[1]: of the ends */
+    int placed = 1, is_flat;
+    mpq_inits(sum, size, NULL);
+    for (int i = 0; i < 5; ++i) mpq_init(w[i]);
+    find_volume(w[1], p[0], p[2], p[3], p[4]);
+    for (int k = 0; k < 3; ++k) {
+        find_volume(w[2 + k], p[0], p[1], p[2 + (k + 1) % 3], p[2 + (k + 2) % 3]);
+        mpq_add(sum, sum, w[2 + k]);
+    }
+    is_flat = mpq_sgn(sum) == 0;
+    if (!is_flat) {
+        for (int i = 1; i < 5; ++i) mpq_div(w[i], w[i], sum);
+        mpq_set_si(w[0], 1, 1);
+        mpq_sub(w[0], w[0], w[1]);
+        placed = is_close(along, w[1], w[1], 49);
+        for (int k = 0; k < 3; ++k) placed &= is_close(weights[k], w[2 + k], w[2 + k], 49);
+        for (int k = 0; k < 3 && placed; ++k) {
+            find_mean(sum, p, (const mpq_t *)w, 2, k);
+            find_size(size, p, k);
+            placed = is_close(point[k], sum, size, 49);
+        }
+    }
+    for (int i = 0; i < 5; ++i) mpq_clear(w[i]);
+    mpq_clears(sum, size, NULL);
+    return is_flat ? has_weights(points, along, weights, point) : placed;
 }
 
 int trace_oracle_sign(const double *const points[4], const uint32_t numbers[4])
