@@ -941,7 +941,8 @@ typedef struct sc_trace_result {
 
 /*
  * Traces the contours of a pose. pairs are its pairs of edges and triangles, all of them and sorted,
- * as sc_query finds them with SC_PAIRS_EDGE, SC_CONTACT_TOUCHING and no filter. options may be NULL.
+ * as sc_query finds them with SC_PAIRS_EDGE, SC_CONTACT_TOUCHING and no filter; others that do not
+ * meet change nothing. options may be NULL.
  *
  * Contours that are not closed come first: from borders and branches on in the order of edges, then
  * triangles, and of a branch of the triangles that have the edge; then those from vertex to vertex;

@@ -330,6 +330,33 @@ static int check_contours(const traced *t)
     return is_right;
 }
 
+/* Whether all pairs of an edge and a triangle without a common vertex, most of which do not meet,
+   give the same contours. */
+static int check_all_pairs(const traced *t, const sc_model *model, const sc_pose *pose)
+{
+    const size_t room = (size_t)t->truth.edge_count * t->triangle_count;
+    sc_pair *pairs = (sc_pair *)test_allocate(room * sizeof *pairs);
+    sc_trace_result other;
+    uint64_t count = 0;
+    int is_right;
+    for (uint32_t e = 0; e < t->truth.edge_count; ++e)
+        for (uint32_t b = 0; b < t->triangle_count; ++b) {
+            const trace_oracle_edge *edge = &t->truth.edges[e];
+            if (has_vertex(corners(t, b), edge->ends[0]) ||
+                has_vertex(corners(t, b), edge->ends[1]))
+                continue;
+            pairs[count].a = edge->name;
+            pairs[count++].b = b;
+        }
+    is_right = trace_pairs(model, pose, pairs, count, NULL, &other);
+    if (is_right) {
+        is_right = CHECK_MSG(is_same_result(&t->result, &other), "other pairs change contours");
+        free_result(&other);
+    }
+    free(pairs);
+    return is_right;
+}
+
 /* Traces a mesh in a pose, in some way of building, and checks all. Adds up what was seen. */
 typedef struct tally {
     uint64_t contours, closed, one_sheet, border, branch, vertex;
@@ -354,8 +381,8 @@ static int check_mesh(const soup *mesh, const double *pose, uint32_t weld, uint3
         t.positions = pose;
         t.pairs = find_pairs(model, &p, &t.pair_count);
         t.truth = trace_oracle_find(t.triangles, t.triangle_count, pose);
-        is_right =
-            trace_pairs(model, &p, t.pairs, t.pair_count, NULL, &t.result) && check_contours(&t);
+        is_right = trace_pairs(model, &p, t.pairs, t.pair_count, NULL, &t.result) &&
+                   check_contours(&t) && check_all_pairs(&t, model, &p);
         for (uint64_t i = 0; i < t.result.contour_count && is_right && sum; ++i) {
             const sc_trace_contour *c = &t.result.contours[i];
             ++sum->contours;

@@ -306,6 +306,21 @@ for side, weights in ((0, "weights_a"), (1, "weights_b")):
 check("kinds of contacts", set(contacts["kind"]) <= {1, 2, 3} and (contacts["kind"] == 2).any())
 check("contacts of none", raised(_binding.SC_ERROR_PAIRS, lambda: model.contacts(moved, [[0, len(triangles)]])))
 
+# Contours: the same from pairs that are given, by threads, and by points of edges and of triangles.
+traced = model.trace(moved)
+edges = model.query(moved, pairs="edge")
+for name, other in (("pairs", model.trace(moved, edges)), ("threads", model.trace(moved, threads=2))):
+    check(f"contours by {name}", all((a == b).all() for a, b in zip(traced, other)))
+lines = traced.polylines()
+check("contours", len(lines) == len(traced.contours) > 0 and (traced.contours["length"] > 0).any())
+steps = [np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines]
+check("lengths of contours", np.allclose(steps, traced.contours["length"], rtol=1e-12, atol=0))
+crossings = traced.nodes[traced.nodes["edge"] != 0xFFFFFFFF]
+mixed = np.einsum("nk,nkx->nx", crossings["weights"], corners[crossings["triangle"]])
+check("contours by weights", np.allclose(mixed, crossings["point"], rtol=0, atol=1e-14))
+lack = raised(_binding.SC_ERROR_PAIRS, lambda: model.trace(moved, edges[1:]))
+check(f"contours of pairs that lack one: {lack}", lack is not None and "lack an end" in lack)
+
 # What is near: a list within a distance is what is that near of a list within twice of it.
 wide, narrow = (model.near(moved, distance, stencils=True) for distance in (0.09, 0.045))
 for pairs, closest, fewer in ((wide.vertex_faces, wide.vertex_face_stencils, narrow.vertex_faces),
@@ -528,7 +543,7 @@ for entry in stub.body:
         check(f"types of {entry.name}", typed(entry) == taken(getattr(starcontour, entry.name)))
     if isinstance(entry, ast.ClassDef) and any(getattr(b, "id", "") == "NamedTuple" for b in entry.bases):
         check(f"types of {entry.name}", getattr(starcontour, entry.name)._fields == tuple(
-            line.target.id for line in entry.body))
+            line.target.id for line in entry.body if isinstance(line, ast.AnnAssign)))
     elif isinstance(entry, ast.ClassDef):
         source = vars(getattr(starcontour, entry.name))
         for method in entry.body:

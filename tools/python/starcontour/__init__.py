@@ -135,6 +135,25 @@ class Step(namedtuple("Step", "vertex_faces edge_edges vertex_face_times edge_ed
                 f"edge-edge pairs, earliest {self.earliest:.6g}>")
 
 
+class Trace(namedtuple("Trace", "nodes contours")):
+    """Contours of intersections, two structured arrays; see sc_trace_node and sc_trace_contour.
+
+    nodes      fields edge, triangle, sheet, sheets (two), along, weights (three) and point (three)
+    contours   fields first and count (which nodes), begin and end (0 closed, 1 border, 2 branch,
+               3 vertex), flags (1: its two sheets are one) and length
+    """
+
+    __slots__ = ()
+
+    def polylines(self):
+        """The points of each contour, (count, 3); of closed ones the first again at the end."""
+        lines = []
+        for contour in self.contours:
+            points = self.nodes["point"][contour["first"] : contour["first"] + contour["count"]]
+            lines.append(np.vstack([points, points[:1]]) if contour["begin"] == 0 else points.copy())
+        return lines
+
+
 class Near(namedtuple("Near", "vertex_faces edge_edges vertex_face_stencils edge_edge_stencils vertex_bound")):
     """What is within a distance.
 
@@ -915,6 +934,37 @@ class Model(_Queries):
         _check(lib.sc_contacts(self._handle, ctypes.byref(given), _choice("pairs", pairs, _PAIRS),
                                address, len(found), contacts.ctypes.data))
         return contacts
+
+    def trace(self, pose, found=None, *, threads=1):
+        """Contours of intersections in a pose: a Trace. See sc_trace.
+
+        found: the edge pairs of the pose, all of them, as query(pose, pairs="edge") finds them; None:
+        they are found. threads: how many may work; the answer is the same.
+        """
+        _check_threads(threads)
+        if found is None:
+            found = self.query(pose, pairs="edge", threads=threads)
+        found, address = _table(found, None, "found")
+        given, positions = _pose(pose)
+        options = _binding.sc_trace_options(struct_size=ctypes.sizeof(_binding.sc_trace_options))
+        log = _Log()
+        options.hooks = ctypes.addressof(log.hooks)
+        call = lib.sc_trace
+        if threads > 1:
+            tasks = _threads.Tasks(threads)
+            options.tasks = ctypes.addressof(tasks.structure)
+            call = functools.partial(tasks.call, lib.sc_trace)
+        result = _binding.sc_trace_result(struct_size=ctypes.sizeof(_binding.sc_trace_result))
+        while True:
+            nodes = np.zeros(result.node_count, _binding.sc_trace_node)
+            contours = np.zeros(result.contour_count, _binding.sc_trace_contour)
+            result.nodes, result.node_capacity = nodes.ctypes.data, len(nodes)
+            result.contours, result.contour_capacity = contours.ctypes.data, len(contours)
+            status = call(self._handle, ctypes.byref(given), address, len(found), ctypes.byref(options),
+                          ctypes.byref(result))
+            if status != _binding.SC_ERROR_SHORT_BUFFER:
+                log.check(status)
+                return Trace(nodes, contours)
 
     def workspace(self):
         """A new Workspace, for queries that run at the same time as others in this thread's name."""

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: MIT
 import os
 from types import TracebackType
-from typing import Any, Literal, NamedTuple, Optional, Sequence, Tuple, Type, TypeVar, Union
+from typing import Any, List, Literal, NamedTuple, Optional, Sequence, Tuple, Type, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -45,6 +45,11 @@ class Step(NamedTuple):
     vertex_face_times: Optional[_Times]
     edge_edge_times: Optional[_Times]
     earliest: float
+
+class Trace(NamedTuple):
+    nodes: _Structured
+    contours: _Structured
+    def polylines(self) -> List[npt.NDArray[np.float64]]: ...
 
 class Near(NamedTuple):
     vertex_faces: _Pairs
@@ -248,6 +253,9 @@ class Model(_Queries):
         *,
         pairs: Literal["triangle", "edge"] = "triangle",
     ) -> _Structured: ...
+    def trace(
+        self, pose: npt.ArrayLike, found: Optional[npt.ArrayLike] = None, *, threads: int = 1
+    ) -> Trace: ...
     def stencils(
         self,
         pose: npt.ArrayLike,

@@ -399,9 +399,57 @@ sc_step_stencil = [
     ("flags", "u4"),
 ]
 
+# An entry of a numpy array of a contour's nodes, and of contours.
+sc_trace_node = [
+    ("edge", "u4"),
+    ("triangle", "u4"),
+    ("sheet", "u4"),
+    ("sheets", "u4", 2),
+    ("reserved", "u4"),
+    ("along", "f8"),
+    ("weights", "f8", 3),
+    ("point", "f8", 3),
+]
+
+sc_trace_contour = [
+    ("first", "u8"),
+    ("count", "u8"),
+    ("begin", "u4"),
+    ("end", "u4"),
+    ("flags", "u4"),
+    ("reserved", "u4"),
+    ("length", "f8"),
+]
+
+
+class sc_trace_options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("simd", c_uint32),
+        ("allocator", c_void_p),
+        ("hooks", c_void_p),
+        ("tasks", c_void_p),
+        ("cancel", c_void_p),
+    ]
+
+
+class sc_trace_result(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("node_count", c_uint64),
+        ("node_capacity", c_uint64),
+        ("nodes", c_void_p),
+        ("contour_count", c_uint64),
+        ("contour_capacity", c_uint64),
+        ("contours", c_void_p),
+    ]
+
+
 structures = (sc_hooks, sc_tasks, sc_near_options, sc_near_result, sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info,
               sc_query_options, sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result,
-              sc_group, sc_object, sc_objects, sc_objects_result, sc_object_list, sc_objects_lists)
+              sc_group, sc_object, sc_objects, sc_objects_result, sc_object_list, sc_objects_lists,
+              sc_trace_options, sc_trace_result)
 
 _suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarcontour" + _suffix)
@@ -430,6 +478,8 @@ _declare("sc_workspace_free", None, c_void_p)
 _declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_query_options),
          POINTER(sc_result))
 _declare("sc_contacts", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
+_declare("sc_trace", _status, c_void_p, POINTER(sc_pose), c_void_p, c_uint64,
+         POINTER(sc_trace_options), POINTER(sc_trace_result))
 _declare("sc_query_step", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_pose),
          POINTER(sc_step_options), POINTER(sc_step_result))
 _declare("sc_query_near", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_near_options),
