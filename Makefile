@@ -758,6 +758,10 @@ amalgamation: ## build/amalgamation/starcontour.c and .h: the library as one fil
 dist: ## build/starcontour-VERSION.tar.gz: the tracked files, the same bytes each time
 	@tools/dist.sh '$(version)' '$(BUILD)'
 
+.PHONY: wheels
+wheels: ## build/wheels: the Python package as source distribution and wheel (manylinux)
+	@PYTHON='$(or $(PYTHON),python3)' tools/python/make_wheels.sh '$(BUILD)/wheels'
+
 .PHONY: mingw
 mingw: ## build for Windows by mingw-w64; run its tests under wine, if that is there
 	$(call need,$(MINGW)-gcc,gcc-mingw-w64-x86-64)
