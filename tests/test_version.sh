@@ -21,21 +21,32 @@ abi_of() {
     esac
 }
 
-# Where a version is written out: FILE and what of a line is before it. A file that is not there, or
+# Where a version is written out: FILE, and what of the line is before it, as an extended regular
+# expression. The first such line counts. A file that is not there, or
 # has no such line, counts as wrong.
 written='
 tools/packaging/vcpkg/starcontour/vcpkg.json|^ *"version": "
 tests/ffi/rust/Cargo.toml|^version = "
 tests/ffi/rust/Cargo.lock|^version = "
+tools/packaging/rust/starcontour-sys.toml|^version = "
+tools/packaging/rust/starcontour.toml|^version = "
+tools/packaging/rust/starcontour.toml|^starcontour-sys = \{ version = "=
+tools/packaging/nuget/starcontour.nuspec| *<version>
+tools/packaging/nuget/Starcontour.csproj| *<Version>
+tools/packaging/debian/changelog|^starcontour \(
 CHANGELOG.md|^## '
 # The same of what ends in the soname's number.
 written_abi='
-README.md|.*find_package(starcontour 
-tests/packages/CMakeLists.txt|.*find_package(starcontour '
+README.md|.*find_package\(starcontour 
+tests/packages/CMakeLists.txt|.*find_package\(starcontour 
+tools/packaging/debian/control|^Package: libstarcontour
+tools/packaging/debian/control|^Depends: libstarcontour
+tools/packaging/debian/libstarcontour0.1.symbols|^libstarcontour.so.
+tools/packaging/debian/libstarcontour0.1.symbols|.* libstarcontour'
 
 # first FILE WORDS: the number behind the first of these words.
 first() {
-    sed -n "s/$2\([0-9][0-9.]*[0-9]\).*/\1/p" "$1" 2>/dev/null | head -n 1
+    sed -nE "s/$2([0-9]+(\.[0-9]+)*).*/\1/p" "$1" 2>/dev/null | head -n 1
 }
 # disagreeing TOP: the files there that name another version, a line each.
 disagreeing() {
@@ -54,7 +65,7 @@ agree() {
     test ! -s "$scratch/disagreeing"
 }
 names() {
-    printf '%s\n%s\n' "$written" "$written_abi" | sed -n 's/|.*//p' | sort
+    printf '%s\n%s\n' "$written" "$written_abi" | sed -n 's/|.*//p' | sort -u
 }
 check "the header has a version" test -n "$version"
 check "files that write the version out agree with the header ($version)" agree
@@ -68,8 +79,8 @@ for file in $(names) include/starcontour.h; do
 done
 noticed() {
     sed "s/^\(#define SC_VERSION_$1\) .*/\1 77/" include/starcontour.h >"$next/include/starcontour.h"
-    disagreeing "$next" | sort >"$scratch/noticed"
-    "$2" | sort | diff - "$scratch/noticed"
+    disagreeing "$next" | sort -u >"$scratch/noticed"
+    "$2" | sort -u | diff - "$scratch/noticed"
 }
 names_in_full() {
     printf '%s\n' "$written" | sed -n 's/|.*//p'
@@ -82,7 +93,7 @@ unlisted() {
     find tools tests/ffi tests/packages -type f \( -name '*.json' -o -name '*.toml' -o -name '*.nuspec' \
         -o -name '*.csproj' -o -name 'changelog' \) -not -path '*/node_modules/*' \
         -not -name package-lock.json -exec grep -lE \
-        '^ *"?version"? *[:=] *"[0-9]|<[Vv]ersion>[0-9]|^starcontour \([0-9]' {} + |
+        '^ *"?version"? *[:=] *"[0-9]|<[Vv]ersion>[0-9.]+<|^starcontour \([0-9]' {} + |
         while read -r file; do names | grep -qxF "$file" || echo "$file"; done >"$scratch/unlisted"
     cat "$scratch/unlisted"
     test ! -s "$scratch/unlisted"
