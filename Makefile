@@ -772,8 +772,12 @@ test-batch: all ## many meshes and poses by a Slurm array, Dask and Ray Data (ma
 	@SC_BIN='$(bin)' SC_LIB='$(lib)' tests/run.sh tests/batch/*.sh
 
 .PHONY: test-packages
-test-packages: ## as users build it: archive, Conan, MSVC's restrictions, mingw, ARM and s390x by QEMU; some minutes for each machine
+test-packages: ## as users build it: archive, wheels, crates, Debian, NuGet, Conan, vcpkg, mingw, ARM and s390x by QEMU; some minutes for each
 	@MAKE='$(MAKE)' SC_FLAGS='$(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' tests/run.sh tests/packages/*.sh
+
+.PHONY: release-check
+release-check: all ## what a release needs (versions, tests, interface, all packages), and a table of it; steps="version abi": only these
+	@MAKE='$(MAKE)' CC='$(CC)' SC_BIN='$(bin)' SC_LIB='$(lib)' tools/release_check.sh '$(BUILD)/release-check' $(steps)
 
 .PHONY: clean
 clean: ## remove everything built; downloaded meshes stay
@@ -816,6 +820,7 @@ help: ## this list
 #: POSES       at most so many poses a peer for dataset-peers [200]
 #: LIMIT       seconds after which they give up on a scene [30]
 #: MEMORY      GB of memory a peer may take for it, or unlimited [8]
+#: steps       which steps release-check runs [all]
 #: V           1: show commands
 #: BUILD       where everything goes [build]
 #: DESTDIR     put before every path of install and uninstall

@@ -44,9 +44,14 @@ check "lintian finds nothing" clean
 
 root=$scratch/root
 mkdir "$root"
+# deb NAME: the file of a package; that of its debug symbols is another.
+deb() {
+    find "$scratch" -maxdepth 1 -name "${1}_${version}_*.deb"
+}
+library=$(sed -n 's/^Package: \(libstarcontour[0-9.]*\)$/\1/p' tools/packaging/debian/control)
 unpacks() {
-    for name in libstarcontour libstarcontour-dev starcontour-tools; do
-        dpkg-deb -x "$(find "$scratch" -maxdepth 1 -name "${name}[0-9_]*${version}_*.deb")" "$root" || return 1
+    for name in "$library" libstarcontour-dev starcontour-tools; do
+        dpkg-deb -x "$(deb "$name")" "$root" || return 1
     done
 }
 check "there is a library, its development files and tools" unpacks
@@ -62,14 +67,14 @@ own() {
 check "a program that uses the library works" own compile-consumer
 check "the tools work" own ask-sc-query
 exports() {
-    dpkg-deb -I "$(echo "$scratch"/libstarcontour[0-9]*_"$version"_*.deb)" symbols | sed -n 's/^ \([^@]*\)@.*/\1/p' |
+    dpkg-deb -I "$(deb "$library")" symbols | sed -n 's/^ \([^@]*\)@.*/\1/p' |
         diff tests/abi/symbols.txt -
 }
 check "the symbols are those of tests/abi" exports
 
 if [ -n "${SC_TESTBED:-}" ] && command -v autopkgtest >/dev/null 2>&1; then
     # shellcheck disable=SC2086
-    check "autopkgtest passes" autopkgtest "$changes" -- $SC_TESTBED
+    check "autopkgtest passes" autopkgtest --setup-commands='apt-get -q update' "$changes" -- $SC_TESTBED
 else
     skip "autopkgtest: it runs where SC_TESTBED says"
 fi
