@@ -3,7 +3,7 @@
 //!
 //! SPDX-License-Identifier: MIT
 
-use starcontour::{Error, Model, Options, Pair};
+use starcontour::{Error, Model, Options, Pair, Scene, Workspace};
 
 const SIDE: u32 = 24;
 
@@ -76,4 +76,15 @@ fn errors_have_names() {
     assert_eq!(Error::from_code(8), Error::NotFinite);
     assert_eq!(Error::from_code(999).code(), 999);
     assert!(workspace.query(&wound, &Options::default()).is_ok());
+}
+
+/// What the header says of threads: a model may be shared, a workspace handed on.
+#[test]
+fn threads_may_have_them() {
+    fn shared<T: Sync>() {}
+    fn handed_on<T: Send>() {}
+    shared::<Model>();
+    handed_on::<Model>();
+    handed_on::<Workspace>();
+    handed_on::<Scene>();
 }

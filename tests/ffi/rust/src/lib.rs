@@ -273,7 +273,28 @@ impl Drop for Model {
     }
 }
 
-/// What queries write to.
+/// What queries write to. It may go to another thread, and has to go before its model:
+///
+/// ```
+/// # use starcontour::{Error, Model, Options};
+/// # let rest = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
+/// let model = Model::build(&rest, &[[0, 1, 2]])?;
+/// let mut workspace = model.workspace()?;
+/// workspace.query(&rest, &Options::default())?;
+/// drop(workspace);
+/// drop(model);
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// ```compile_fail
+/// # use starcontour::{Error, Model, Options};
+/// # let rest = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
+/// let model = Model::build(&rest, &[[0, 1, 2]])?;
+/// let mut workspace = model.workspace()?;
+/// drop(model);
+/// workspace.query(&rest, &Options::default())?; // does not compile: the model is gone
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Workspace<'model> {
     model: &'model Model,
