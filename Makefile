@@ -759,7 +759,7 @@ dist: ## build/starcontour-VERSION.tar.gz: the tracked files, the same bytes eac
 	@tools/dist.sh '$(version)' '$(BUILD)'
 
 .PHONY: wheels
-wheels: ## build/wheels: the Python package as source distribution and wheel (manylinux)
+wheels: ## build/wheels: the Python package as source distribution and wheel (manylinux); two minutes
 	@PYTHON='$(or $(PYTHON),python3)' tools/python/make_wheels.sh '$(BUILD)/wheels'
 
 .PHONY: mingw
@@ -776,7 +776,7 @@ test-packages: ## as users build it: archive, wheels, crates, Debian, NuGet, Con
 	@MAKE='$(MAKE)' SC_FLAGS='$(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' tests/run.sh tests/packages/*.sh
 
 .PHONY: release-check
-release-check: all ## what a release needs (versions, tests, interface, all packages), and a table of it; steps="version abi": only these
+release-check: all ## what a release needs (versions, tests, interface, all packages), and a table of it; an hour
 	@MAKE='$(MAKE)' CC='$(CC)' SC_BIN='$(bin)' SC_LIB='$(lib)' tools/release_check.sh '$(BUILD)/release-check' $(steps)
 
 .PHONY: clean
@@ -820,7 +820,7 @@ help: ## this list
 #: POSES       at most so many poses a peer for dataset-peers [200]
 #: LIMIT       seconds after which they give up on a scene [30]
 #: MEMORY      GB of memory a peer may take for it, or unlimited [8]
-#: steps       which steps release-check runs [all]
+#: steps       which steps release-check runs, such as "version abi debian" [all]
 #: V           1: show commands
 #: BUILD       where everything goes [build]
 #: DESTDIR     put before every path of install and uninstall
