@@ -1,7 +1,7 @@
 #!/bin/sh
 # Everything that names the version names the one in include/starcontour.h: the built library,
-# packages for each manager, CHANGELOG.md, and what README.md tells CMake users to ask for. Files that
-# read the header (Makefile, CMakeLists.txt, setup.py, the Conan recipe) must go on doing so.
+# packages for each manager, CHANGELOG.md, and what README.md tells CMake users to ask for. Files
+# that read the header (Makefile, CMakeLists.txt, setup.py, the Conan recipe) must go on doing so.
 #
 # With SC_RELEASE=1, CHANGELOG.md must say on which day this version was released.
 #

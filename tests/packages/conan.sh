@@ -1,7 +1,7 @@
 #!/bin/sh
 # The Conan recipe in tools/packaging/conan builds the checkout, and a CMake project that requires
-# the package finds it and works; static and shared. Needs CMake, and Conan 2 or a network, from which it
-# comes into build/conan.
+# the package finds it and works; static and shared. Needs CMake, and Conan 2 or a network, from
+# which it comes into build/conan.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

@@ -1,7 +1,7 @@
 #!/bin/sh
-# The crates starcontour-sys and starcontour, as tools/packaging/rust puts them together: their tests and
-# those in their documents pass, the pairs are those that the library finds in C, and `cargo package`
-# packs both and builds what it packed. Needs cargo, and a network for the crate cc.
+# The crates starcontour-sys and starcontour, as tools/packaging/rust puts them together: their
+# tests and those in their documents pass, the pairs are those that the library finds in C, and
+# `cargo package` packs both and builds what it packed. Needs cargo, and a network for the crate cc.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

@@ -1,6 +1,7 @@
 #!/bin/sh
-# The Debian packages: dpkg-buildpackage builds them from the archive of `make dist`, lintian finds nothing,
-# and what they install passes their own tests. With SC_TESTBED, autopkgtest runs these there:
+# The Debian packages: dpkg-buildpackage builds them from the archive of `make dist`, lintian finds
+# nothing, and what they install passes their own tests. With SC_TESTBED, autopkgtest runs these
+# there:
 #
 #     SC_TESTBED='chroot /srv/bookworm' tests/run.sh tests/packages/debian.sh
 #     SC_TESTBED=null ...                     on this machine, where packages stay installed
@@ -34,8 +35,8 @@ builds() {
 }
 check "dpkg-buildpackage builds it" builds
 changes=$(echo "$scratch/starcontour_${version}"_*.changes)
-# Left out: that a first upload closes a wish in Debian's tracker, and that there is a home page. There
-# are none.
+# Left out: that a first upload closes a wish in Debian's tracker, and that there is a home page.
+# There are none.
 clean() {
     lintian --info --pedantic --fail-on error,warning,pedantic --suppress-tags \
         initial-upload-closes-no-bugs,no-homepage-field "$changes"

@@ -1,7 +1,7 @@
 #!/bin/sh
-# The package for NuGet, unpacked: the program of tests/ffi/csharp, compiled with its assembly, passes
-# with its native library, and so does README.md's example. Needs Mono and Debian's nuget, and unzip;
-# `dotnet pack` is taken where there is dotnet.
+# The package for NuGet, unpacked: the program of tests/ffi/csharp, compiled with its assembly,
+# passes with its native library, and so does README.md's example. Needs Mono, Debian's nuget and
+# Python 3; `dotnet pack` is taken where there is dotnet.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh

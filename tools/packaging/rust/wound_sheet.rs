@@ -1,5 +1,5 @@
-//! The sheet of tests/packages/consumer.c, flat and wound up: the same pairs, which are printed as there
-//! (cargo test -- --nocapture), from one thread and from several.
+//! The sheet of tests/packages/consumer.c, flat and wound up: the same pairs, which are
+//! written as there to the file that SC_PRINTED names, from one thread and from several.
 //!
 //! SPDX-License-Identifier: MIT
 
