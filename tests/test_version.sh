@@ -22,8 +22,7 @@ abi_of() {
 }
 
 # Where a version is written out: FILE, and what of the line is before it, as an extended regular
-# expression. The first such line counts. A file that is not there, or
-# has no such line, counts as wrong.
+# expression. The first such line counts. A file that is not there, or has no such line, is wrong.
 written='
 tools/packaging/vcpkg/starcontour/vcpkg.json|^ *"version": "
 tests/ffi/rust/Cargo.toml|^version = "
@@ -34,11 +33,13 @@ tools/packaging/rust/starcontour.toml|^starcontour-sys = \{ version = "=
 tools/packaging/nuget/starcontour.nuspec| *<version>
 tools/packaging/nuget/Starcontour.csproj| *<Version>
 tools/packaging/debian/changelog|^starcontour \(
-CHANGELOG.md|^## '
+CHANGELOG.md|^## +
+README.md|^Version +'
 # The same of what ends in the soname's number.
 written_abi='
-README.md|.*find_package\(starcontour 
-tests/packages/CMakeLists.txt|.*find_package\(starcontour 
+README.md|.*find_package\(starcontour +
+README.md|^. apt .*libstarcontour
+tests/packages/CMakeLists.txt|.*find_package\(starcontour +
 tools/packaging/debian/control|^Package: libstarcontour
 tools/packaging/debian/control|^Depends: libstarcontour
 tools/packaging/debian/libstarcontour0.1.symbols|^libstarcontour.so.
