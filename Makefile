@@ -758,6 +758,10 @@ amalgamation: ## build/amalgamation/starcontour.c and .h: the library as one fil
 dist: ## build/starcontour-VERSION.tar.gz: the tracked files, the same bytes each time
 	@tools/dist.sh '$(version)' '$(BUILD)'
 
+.PHONY: wheels
+wheels: ## build/wheels: the Python package as source distribution and wheel (manylinux); two minutes
+	@PYTHON='$(or $(PYTHON),python3)' tools/python/make_wheels.sh '$(BUILD)/wheels'
+
 .PHONY: mingw
 mingw: ## build for Windows by mingw-w64; run its tests under wine, if that is there
 	$(call need,$(MINGW)-gcc,gcc-mingw-w64-x86-64)
@@ -768,8 +772,12 @@ test-batch: all ## many meshes and poses by a Slurm array, Dask and Ray Data (ma
 	@SC_BIN='$(bin)' SC_LIB='$(lib)' tests/run.sh tests/batch/*.sh
 
 .PHONY: test-packages
-test-packages: ## as users build it: archive, Conan, MSVC's restrictions, mingw, ARM and s390x by QEMU; some minutes for each machine
+test-packages: ## as users build it: archive, wheels, crates, Debian, NuGet, Conan, vcpkg, mingw, ARM and s390x by QEMU; some minutes for each
 	@MAKE='$(MAKE)' SC_FLAGS='$(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' tests/run.sh tests/packages/*.sh
+
+.PHONY: release-check
+release-check: all ## what a release needs (versions, tests, interface, all packages), and a table of it; an hour
+	@MAKE='$(MAKE)' CC='$(CC)' SC_BIN='$(bin)' SC_LIB='$(lib)' tools/release_check.sh '$(BUILD)/release-check' $(steps)
 
 .PHONY: clean
 clean: ## remove everything built; downloaded meshes stay
@@ -812,6 +820,7 @@ help: ## this list
 #: POSES       at most so many poses a peer for dataset-peers [200]
 #: LIMIT       seconds after which they give up on a scene [30]
 #: MEMORY      GB of memory a peer may take for it, or unlimited [8]
+#: steps       which steps release-check runs, such as "version abi debian" [all]
 #: V           1: show commands
 #: BUILD       where everything goes [build]
 #: DESTDIR     put before every path of install and uninstall

@@ -38,6 +38,14 @@ for target in $(grep -o '`make [^`]*`' README.md | tr -d '`' | tr ' ' '\n' |
     check "make $target exists" grep -qx "$target" "$scratch/targets"
 done
 
+# Whoever has other machines need only push: Linux runs what has to pass, and targets exist.
+workflow=.github/workflows/test.yml
+check "the workflow runs .ci/run" grep -qxF '      - run: .ci/run' $workflow
+for target in $(sed -nE 's/^ *(- run: )?(PATH=[^ ]* )?make (.*)$/\3/p' $workflow | sed 's/"[^"]*"//g' |
+    tr ' ' '\n' | grep '^[a-z]' | grep -v = | sort -u); do
+    check "make $target, which the workflow runs, exists" grep -qx "$target" "$scratch/targets"
+done
+
 for file in $(grep -o '`[a-z]*/[a-z_./]*`' README.md | tr -d '`' | grep -v '^build/' | sort -u); do
     check "$file exists" test -e "$file"
 done

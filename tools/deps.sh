@@ -70,7 +70,16 @@ program wine wine wine wine -
 program aarch64-linux-gnu-gcc gcc-aarch64-linux-gnu,libc6-dev-arm64-cross - - -
 program arm-linux-gnueabihf-gcc gcc-arm-linux-gnueabihf,libc6-dev-armhf-cross - - -
 program s390x-linux-gnu-gcc gcc-s390x-linux-gnu,libc6-dev-s390x-cross - - -
-program qemu-aarch64 qemu-user qemu-user qemu-user -"
+program qemu-aarch64 qemu-user qemu-user qemu-user -
+module venv,ensurepip python3-venv python3 python python
+module numpy python3-numpy python3-numpy python-numpy numpy
+program cargo cargo cargo rust rust
+program dh debhelper debhelper - -
+program lintian lintian lintian - -
+program autopkgtest autopkgtest - - -
+program mcs mono-mcs mono-devel mono mono
+program mono mono-runtime mono-core mono mono
+program nuget nuget nuget - -"
 group_peers="\
 header CGAL/version.h libcgal-dev CGAL-devel cgal cgal
 header tbb/scalable_allocator.h libtbb-dev tbb-devel onetbb tbb

@@ -1,11 +1,17 @@
 #!/bin/sh
 # The Conan recipe in tools/packaging/conan builds the checkout, and a CMake project that requires
-# the package finds it and works; static and shared. Needs Conan 2 (python3 -m pip install conan),
-# CMake, and no network.
+# the package finds it and works; static and shared. Needs CMake, and Conan 2 or a network, from
+# which it comes into build/conan.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
 
+if ! command -v conan >/dev/null 2>&1; then
+    [ -x build/conan/bin/conan ] || {
+        python3 -m venv build/conan && build/conan/bin/python -m pip install --quiet conan
+    } >"$scratch/log" 2>&1
+    PATH=$PATH:$PWD/build/conan/bin
+fi
 for program in conan cmake; do
     if ! command -v $program >/dev/null 2>&1; then
         skip "the Conan recipe is untested here: no $program"

@@ -40,7 +40,8 @@ class Starcontour(ConanFile):
 
     def export_sources(self):
         for pattern in ("CMakeLists.txt", "*.md", "LICENSE", "include/*", "lib/*", "tests/ffi/*",
-                        "tools/*.in", "tools/example.awk", "tools/install_binary.sh"):
+                        "tools/*.in", "tools/example.awk", "tools/install_binary.sh",
+                        "tools/starcontour.schema.json"):
             copy(self, pattern, self.top, self.export_sources_folder)
 
     def layout(self):

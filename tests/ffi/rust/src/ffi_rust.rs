@@ -60,7 +60,7 @@ fn check_scene(
     let mut scene = Scene::new(starcontour::WORKSPACE_NEAR);
     let objects = [scene.add(&one).unwrap(), scene.add(&other).unwrap()];
     let without = scene.query(&options).err();
-    checks.check("objects without a pose", without == Some(starcontour::ERROR_VERTEX_COUNT));
+    checks.check("objects without a pose", without == Some(Error::VertexCount));
     for i in objects {
         scene.object(i).set_pose(rests[i]);
         scene.object(i).set_end(Some(ends[i]));
@@ -136,6 +136,20 @@ fn main() {
         checks.check(&format!("{name} is laid out as in the header"), header == lines);
     }
 
+    // Each error has the number of its namesake in the header, and none is missing.
+    let mut in_header: Vec<(String, i32)> = layout
+        .lines()
+        .filter_map(|line| line.strip_prefix("value SC_ERROR_"))
+        .map(|line| line.split_once(' ').expect("a name and a number"))
+        .map(|(name, code)| (name.replace('_', "").to_lowercase(), code.parse().unwrap()))
+        .collect();
+    let mut ours: Vec<_> = Error::NAMES.iter().map(|(n, code)| (n.to_lowercase(), *code)).collect();
+    in_header.sort();
+    ours.sort();
+    checks.check("errors are those of the header", ours == in_header && !ours.is_empty());
+    let right = ours.iter().all(|(_, code)| Error::from_code(*code).code() == *code);
+    checks.check("errors keep their numbers", right);
+
     let model = Model::build(&rest, &triangles).expect("a model");
     let options = Options::default();
     let mut workspace = model.workspace().expect("a workspace");
@@ -160,13 +174,13 @@ fn main() {
     let mut spoilt = moved.clone();
     spoilt[4][0] = f64::NAN;
     let answer = workspace.query(&spoilt, &options);
-    checks.check("NaN", refused(answer, starcontour::ERROR_NOT_FINITE, "NaN"));
+    checks.check("NaN", refused(answer, Error::NotFinite, "NaN"));
     let answer = workspace.query(&moved[1..], &options);
-    checks.check("number of vertices", refused(answer, starcontour::ERROR_VERTEX_COUNT, "vert"));
+    checks.check("number of vertices", refused(answer, Error::VertexCount, "vert"));
     let model_of_none = Model::build(&rest, &[]);
-    checks.check("no triangles", refused(model_of_none, starcontour::ERROR_EMPTY, "triangle"));
+    checks.check("no triangles", refused(model_of_none, Error::Empty, "triangle"));
     let out_of_range = Model::build(&rest, &[[0, 1, rest.len() as u32]]);
-    checks.check("vertex out of range", refused(out_of_range, starcontour::ERROR_INDEX, "vertex"));
+    checks.check("vertex out of range", refused(out_of_range, Error::Index, "vertex"));
     checks.check("usable after errors", workspace.query(&rest, &options).unwrap() == golden["rest"]);
 
     let mut larger = model.workspace_for(starcontour::WORKSPACE_NEAR).expect("a workspace");
@@ -183,9 +197,9 @@ fn main() {
     let free = larger.step(&moved, &moved, &touching).unwrap();
     checks.check("a step that is free", free.earliest == 1.0 && free.edge_edges.is_empty());
     let below = larger.near(&moved, -1.0);
-    checks.check("a distance below 0", refused(below, starcontour::ERROR_OPTION, "option"));
+    checks.check("a distance below 0", refused(below, Error::Option, "option"));
     let no_room = workspace.step(&rest, &moved, &touching);
-    checks.check("no room for steps", refused(no_room, starcontour::ERROR_WORKSPACE, "workspace"));
+    checks.check("no room for steps", refused(no_room, Error::Workspace, "workspace"));
 
     check_scene(&mut checks, &rest, &moved, &triangles, &golden);
 

@@ -5,18 +5,27 @@
 //! - a [`Workspace`] belongs to one call at a time (`&mut self`) and goes before its model;
 //! - the pairs that a query returns live until the next query of that workspace.
 //!
-//! ```ignore
-//! let model = Model::build(&rest, &triangles)?;
-//! let mut workspace = model.workspace()?;
-//! for pair in workspace.query(&pose, &Options::default())? { ... }
-//! let mut larger = model.workspace_for(WORKSPACE_NEAR)?;
-//! let free = larger.step(&pose, &next, &StepOptions::default())?.earliest;
-//! for pair in larger.near(&pose, 0.01)?.vertex_faces { ... }
+//! ```
+//! use starcontour::{Model, Options, Scene, StepOptions, WORKSPACE_NEAR};
 //!
-//! let mut scene = Scene::new(WORKSPACE_NEAR);
-//! let (cloth, body) = (scene.add(&model)?, scene.add(&other)?);
-//! scene.object(cloth).set_pose(&pose);
-//! for meeting in scene.query(&Options::default())? { ... }
+//! let rest = [[0., 0., 0.], [4., 0., 0.], [0., 4., 0.], [1., 1., 1.], [2., 1., 1.], [1., 2., 1.]];
+//! let model = Model::build(&rest, &[[0, 1, 2], [3, 4, 5]])?;
+//! let mut workspace = model.workspace_for(WORKSPACE_NEAR)?;
+//! let mut next = rest;
+//! next[3][2] = -1.; // a corner of one triangle is pulled through the other
+//! for pair in workspace.query(&next, &Options::default())? {
+//!     assert_eq!((pair.a, pair.b), (0, 1));
+//! }
+//! let free = workspace.step(&rest, &next, &StepOptions::default())?.earliest;
+//! assert!(free > 0.49 && free <= 0.5);
+//! assert_eq!(workspace.near(&rest, 1.)?.vertex_faces.len(), 3);
+//!
+//! let mut scene = Scene::new(WORKSPACE_NEAR); // two objects of one model
+//! let (one, other) = (scene.add(&model)?, scene.add(&model)?);
+//! scene.object(one).set_pose(&rest);
+//! scene.object(other).set_pose(&rest.map(|[x, y, z]| [x, y, z + 9.]));
+//! assert!(scene.query(&Options::default())?.is_empty());
+//! # Ok::<(), starcontour::Error>(())
 //! ```
 //!
 //! SPDX-License-Identifier: MIT
@@ -30,18 +39,102 @@ pub use scene::{FeatureMeetings, Meeting, Object, Scene};
 use std::ffi::CStr;
 use std::{fmt, mem, ptr};
 
-/// What the library refused: an SC_ERROR_... of the header.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Error(pub i32);
+/// Declares [`Error`] and both ways between it and the header's numbers.
+macro_rules! errors {
+    ($($(#[$text:meta])* $name:ident = $code:literal,)*) => {
+        /// What the library refused: the SC_ERROR_... of the header.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum Error {
+            $($(#[$text])* $name,)*
+            /// A status that this version of the binding does not know.
+            Other(i32),
+        }
 
-pub const ERROR_EMPTY: Error = Error(4);
-pub const ERROR_COUNT: Error = Error(5);
-pub const ERROR_INDEX: Error = Error(7);
-pub const ERROR_NOT_FINITE: Error = Error(8);
-pub const ERROR_VERTEX_COUNT: Error = Error(9);
-pub const ERROR_OPTION: Error = Error(3);
-pub const ERROR_SHORT_BUFFER: Error = Error(11);
-pub const ERROR_WORKSPACE: Error = Error(12);
+        impl Error {
+            /// The header's number.
+            pub fn code(self) -> i32 {
+                match self {
+                    $(Error::$name => $code,)*
+                    Error::Other(code) => code,
+                }
+            }
+
+            /// The error of a number of the header, which is not 0.
+            pub fn from_code(code: i32) -> Error {
+                match code {
+                    $($code => Error::$name,)*
+                    _ => Error::Other(code),
+                }
+            }
+
+            /// Names and numbers of all but `Other`, for the test that compares them with the header.
+            #[doc(hidden)]
+            pub const NAMES: &'static [(&'static str, i32)] = &[$((stringify!($name), $code)),*];
+        }
+    };
+}
+
+errors! {
+    /// A pointer that the call needs is NULL.
+    Null = 1,
+    /// A struct_size this library cannot read.
+    StructSize = 2,
+    /// A member has a value that it cannot have.
+    Option = 3,
+    /// A mesh without triangles or without vertices.
+    Empty = 4,
+    /// More vertices or triangles than can be indexed or addressed.
+    Count = 5,
+    /// A stride smaller than what it steps over.
+    Stride = 6,
+    /// A triangle names a vertex that does not exist.
+    Index = 7,
+    /// NaN or infinity at a vertex that a triangle uses.
+    NotFinite = 8,
+    /// The pose's number of vertices is not the model's.
+    VertexCount = 9,
+    /// An allocation failed.
+    Memory = 10,
+    /// The caller's array is too short; the count needed is reported.
+    ShortBuffer = 11,
+    /// The workspace was made for another model or fewer workers, or is too small.
+    Workspace = 12,
+    /// A weld map entry out of range or not a representative.
+    WeldMap = 13,
+    /// The caller's leaf order or tree is not one, or is too deep.
+    Tree = 14,
+    /// The caller's bisection function failed or broke its contract.
+    Partition = 15,
+    /// Not part of this build of the library.
+    Unsupported = 16,
+    /// Memory that must be aligned to SC_ALIGNMENT is not.
+    Alignment = 17,
+    /// The model has no such level.
+    Level = 18,
+    /// The data are no saved model, or no record.
+    NotSaved = 19,
+    /// Saved data that end too early.
+    Truncated = 20,
+    /// Saved data of a machine with the other byte order.
+    ByteOrder = 21,
+    /// Saved data in a later format than this library reads.
+    TooNew = 22,
+    /// Saved data in an earlier format than this library reads.
+    TooOld = 23,
+    /// Saved data that were changed since.
+    Checksum = 24,
+    /// Saved data that nobody saved: whole, but contradictory.
+    Inconsistent = 25,
+    /// The saved model is not the one that was asked for.
+    Topology = 26,
+    /// A list of pairs is not sorted or names what does not exist.
+    Pairs = 27,
+    /// A query was cancelled or ran out of budget: see its verdict.
+    Incomplete = 28,
+    /// Asks for culling on a model without what it needs: SC_MODEL_BOXES.
+    BoxesOnly = 29,
+}
 
 /// What a workspace is for, besides queries: steps; or steps and what is near.
 pub const WORKSPACE_STEP: u32 = 1;
@@ -50,7 +143,7 @@ pub const WORKSPACE_NEAR: u32 = 2;
 impl fmt::Display for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         // SAFETY: the text is the library's, never NULL, and static.
-        let text = unsafe { CStr::from_ptr(raw::sc_status_string(self.0)) };
+        let text = unsafe { CStr::from_ptr(raw::sc_status_string(self.code())) };
         formatter.write_str(&text.to_string_lossy())
     }
 }
@@ -58,7 +151,7 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {}
 
 fn check(status: i32) -> Result<(), Error> {
-    if status == 0 { Ok(()) } else { Err(Error(status)) }
+    if status == 0 { Ok(()) } else { Err(Error::from_code(status)) }
 }
 
 fn size_of<T>() -> u32 {
@@ -134,8 +227,8 @@ impl Model {
     pub fn build<T: Scalar>(positions: &[[T; 3]], triangles: &[[u32; 3]]) -> Result<Model, Error> {
         let mesh = raw::sc_mesh {
             struct_size: size_of::<raw::sc_mesh>(),
-            vertex_count: positions.len().try_into().map_err(|_| ERROR_COUNT)?,
-            triangle_count: triangles.len().try_into().map_err(|_| ERROR_COUNT)?,
+            vertex_count: positions.len().try_into().map_err(|_| Error::Count)?,
+            triangle_count: triangles.len().try_into().map_err(|_| Error::Count)?,
             position_type: T::TYPE,
             position_stride: 0,
             index_type: 0,
@@ -180,7 +273,28 @@ impl Drop for Model {
     }
 }
 
-/// What queries write to.
+/// What queries write to. It may go to another thread, and has to go before its model:
+///
+/// ```
+/// # use starcontour::{Error, Model, Options};
+/// # let rest = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
+/// let model = Model::build(&rest, &[[0, 1, 2]])?;
+/// let mut workspace = model.workspace()?;
+/// workspace.query(&rest, &Options::default())?;
+/// drop(workspace);
+/// drop(model);
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// ```compile_fail
+/// # use starcontour::{Error, Model, Options};
+/// # let rest = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
+/// let model = Model::build(&rest, &[[0, 1, 2]])?;
+/// let mut workspace = model.workspace()?;
+/// drop(model);
+/// workspace.query(&rest, &Options::default())?; // does not compile: the model is gone
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Workspace<'model> {
     model: &'model Model,
@@ -196,7 +310,7 @@ unsafe impl Send for Workspace<'_> {}
 fn pose_of<T: Scalar>(positions: &[[T; 3]]) -> Result<raw::sc_pose, Error> {
     Ok(raw::sc_pose {
         struct_size: size_of::<raw::sc_pose>(),
-        vertex_count: positions.len().try_into().map_err(|_| ERROR_VERTEX_COUNT)?,
+        vertex_count: positions.len().try_into().map_err(|_| Error::VertexCount)?,
         position_type: T::TYPE,
         position_stride: 0,
         positions: positions.as_ptr().cast(),
@@ -285,7 +399,7 @@ impl Workspace<'_> {
             let status = unsafe {
                 raw::sc_query(self.model.0.as_ptr(), self.handle.as_ptr(), &pose, &options, &mut result)
             };
-            if Error(status) == ERROR_SHORT_BUFFER {
+            if Error::from_code(status) == Error::ShortBuffer {
                 self.pairs.resize(result.count as usize, Pair::default());
                 continue;
             }
@@ -332,7 +446,7 @@ impl Workspace<'_> {
                     self.model.0.as_ptr(), self.handle.as_ptr(), &start, &end, &options, &mut result)
             };
             let counts = [result.vertex_face_count as usize, result.edge_edge_count as usize];
-            if Error(status) == ERROR_SHORT_BUFFER {
+            if Error::from_code(status) == Error::ShortBuffer {
                 self.make_room(counts);
                 continue;
             }
@@ -373,7 +487,7 @@ impl Workspace<'_> {
                     self.model.0.as_ptr(), self.handle.as_ptr(), &pose, &options, &mut result)
             };
             let counts = [result.vertex_face_count as usize, result.edge_edge_count as usize];
-            if Error(status) == ERROR_SHORT_BUFFER {
+            if Error::from_code(status) == Error::ShortBuffer {
                 self.make_room(counts);
                 continue;
             }

@@ -4,7 +4,7 @@
 
 use crate::{
     check, pose_of, raw, raw_near_options, raw_options, raw_step_options, size_of, Error, Group, Model,
-    Options, Pair, Scalar, StepOptions, Workspace, ERROR_COUNT, ERROR_SHORT_BUFFER,
+    Options, Pair, Scalar, StepOptions, Workspace,
 };
 use std::ptr;
 
@@ -217,7 +217,7 @@ impl<'model> Scene<'model> {
         let array: Vec<_> = self.objects.iter().zip(&poses).map(with_pose).collect();
         let objects = raw::sc_objects {
             struct_size: size_of::<raw::sc_objects>(),
-            count: array.len().try_into().map_err(|_| ERROR_COUNT)?,
+            count: array.len().try_into().map_err(|_| Error::Count)?,
             objects: array.as_ptr(),
             stride: 0,
             accept: None,
@@ -237,7 +237,7 @@ impl<'model> Scene<'model> {
                 reserved: 0,
             };
             let status = question(&objects, &mut lists);
-            if Error(status) == ERROR_SHORT_BUFFER {
+            if Error::from_code(status) == Error::ShortBuffer {
                 faces.fit(&lists.vertex_faces);
                 edges.fit(&lists.edge_edges);
                 continue;
