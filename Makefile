@@ -684,19 +684,21 @@ peers: ## all peers that are there, into a new CSV; a minute or two for each
 
 # ------------------------------------------------------------------------------------------------
 # WebAssembly, by emscripten: with 128-bit vectors (SIMD128), which is what is shipped, and without,
-# for test-wasm. tools/npm/make_package.sh makes the package.
+# for test-wasm. tools/npm/make_package.sh makes the package and the page.
 
 EMCC ?= emcc
 EMAR ?= emar
 wasm := $(BUILD)/wasm
 # clang tells of each loop that it does not unroll.
 wasm_flags := -std=c99 -O3 -DNDEBUG $(exact) -fvisibility=hidden $(warnings) -Wno-pass-failed $(werror)
-wasm_parts := $(wildcard tools/npm/*.*)
+wasm_parts := $(wildcard tools/npm/*.* tools/npm/page/*)
 
-.PHONY: wasm wasm-pack wasm-compiler test-wasm
+.PHONY: wasm wasm-pack wasm-page wasm-compiler test-wasm
 wasm: $(wasm)/simd/libstarcontour.a $(wasm)/package/package.json ## for browsers and Node: static library and ES module, in build/wasm (make deps with=wasm wasm)
 wasm-pack: $(wasm)/package/package.json ## pack that module for npm: build/wasm/starcontour-VERSION.tgz
 	@BUILD='$(BUILD)' tools/npm/make_package.sh pack
+wasm-page: $(wasm)/package/package.json ## build/wasm/page.html: cloth and meshes in the browser, in one file (node, npm)
+	@BUILD='$(BUILD)' tools/npm/make_package.sh page
 wasm-compiler:
 	@command -v '$(EMCC)' >/dev/null 2>&1 || { echo "make wasm needs $(EMCC): run 'make deps with=wasm' first" >&2; exit 1; }
 
@@ -719,7 +721,7 @@ $(wasm)/starcontour.wasm: $(wasm)/simd/tools/npm/layouts.o $(wasm)/simd/libstarc
 $(wasm)/package/package.json: $(wasm)/starcontour.wasm $(wasm_parts)
 	@BUILD='$(BUILD)' tools/npm/make_package.sh package '$(version)'
 
-test-wasm: all $(wasm)/simd/libstarcontour.a $(wasm)/plain/libstarcontour.a $(wasm)/package/package.json ## the same answers in Node as here; half a minute
+test-wasm: all $(wasm)/simd/libstarcontour.a $(wasm)/plain/libstarcontour.a $(wasm)/package/package.json ## the same answers in Node and Chromium as here, and the page; two minutes
 	@CC='$(CC)' SC_BIN='$(bin)' SC_LIB='$(lib)' BUILD='$(BUILD)' EMCC='$(EMCC)' tests/run.sh tests/wasm/*.sh
 
 # ------------------------------------------------------------------------------------------------

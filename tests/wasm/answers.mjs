@@ -47,8 +47,8 @@ export function answers({Model}, name, text) {
         sum = 2166136261;
     };
     const add_stencils = ({feature, vertices, weights, vector, distance}) => {
-        for (const some of rows(feature.length, [feature, 1], [vertices, 4], [weights, 4], [vector, 3], [distance, 1]))
-            add(some);
+        const columns = [[feature, 1], [vertices, 4], [weights, 4], [vector, 3], [distance, 1]];
+        for (const some of rows(feature.length, ...columns)) add(some);
     };
     const size = rest.reduce((a, b) => Math.max(a, b)) - rest.reduce((a, b) => Math.min(a, b));
     for (let i = 0; i < POSES; ++i) {
@@ -69,7 +69,8 @@ export function answers({Model}, name, text) {
         add_stencils(near.edgeEdgeStencils);
         tell(i, 'stencils', count);
         const step = model.step(pose, end, {separation: size / 64 / 4});
-        for (const array of [step.vertexFaces, step.edgeEdges, step.vertexFaceTimes, step.edgeEdgeTimes]) add(array);
+        for (const array of [step.vertexFaces, step.edgeEdges]) add(array);
+        for (const array of [step.vertexFaceTimes, step.edgeEdgeTimes]) add(array);
         add(Float64Array.of(step.earliest));
         tell(i, 'step', (step.vertexFaces.length + step.edgeEdges.length) / 2);
     }

@@ -1,9 +1,11 @@
 #!/bin/sh
-# Makes the package for npm, or packs it. The Makefile calls it, which
+# Makes the package for npm, packs it, or makes the page with it. The Makefile calls it, which
 # compiles build/wasm/starcontour.wasm before.
 #
 #     tools/npm/make_package.sh package VERSION   build/wasm/package
 #     tools/npm/make_package.sh pack              build/wasm/starcontour-VERSION.tgz; needs npm
+#     tools/npm/make_package.sh page              build/wasm/page.html; needs node and npm, and
+#                                                 fetches what tools/page/package-lock.json names
 #
 # SPDX-License-Identifier: MIT
 set -eu
@@ -30,5 +32,22 @@ pack)
     command -v npm >/dev/null 2>&1 || { echo "make wasm-pack needs npm" >&2; exit 1; }
     (cd "$package" && npm pack --silent --pack-destination ..) >/dev/null
     ls "$work"/*.tgz
+    ;;
+page)
+    command -v npm >/dev/null 2>&1 || { echo "make wasm-page needs node and npm" >&2; exit 1; }
+    tools/page/build.sh --install
+    modules=${BUILD:-build}/page
+    cp "$here/page"/*.js "$package"/*.js "$modules"
+    (cd "$modules" && node_modules/.bin/esbuild cloth.js --bundle --minify --format=esm \
+        --target=es2022 --legal-comments=none --log-level=warning --outfile=cloth_bundle.js)
+    {
+        sed '/^\/\* SCRIPT \*\/$/,$d' "$here/page/cloth.html"
+        printf '/*! Uses three.js:\n'
+        cat "$modules/node_modules/three/LICENSE"
+        printf '*/\n'
+        cat "$modules/cloth_bundle.js"
+        sed '1,/^\/\* SCRIPT \*\/$/d' "$here/page/cloth.html"
+    } >"$work/page.html"
+    ls "$work/page.html"
     ;;
 esac
