@@ -693,7 +693,7 @@ wasm := $(BUILD)/wasm
 wasm_flags := -std=c99 -O3 -DNDEBUG $(exact) -fvisibility=hidden $(warnings) -Wno-pass-failed $(werror)
 wasm_parts := $(wildcard tools/npm/*.* tools/npm/page/*)
 
-.PHONY: wasm wasm-pack wasm-page bench-wasm wasm-compiler test-wasm
+.PHONY: wasm wasm-pack wasm-page bench-wasm test-wasm $(wasm)/compiler
 wasm: $(wasm)/simd/libstarcontour.a $(wasm)/package/package.json ## for browsers and Node: static library and ES module, in build/wasm (make deps with=wasm wasm)
 wasm-pack: $(wasm)/package/package.json ## pack that module for npm: build/wasm/starcontour-VERSION.tgz
 	@BUILD='$(BUILD)' tools/npm/make_package.sh pack
@@ -701,7 +701,7 @@ wasm-page: $(wasm)/package/package.json ## build/wasm/page.html: cloth and meshe
 	@BUILD='$(BUILD)' tools/npm/make_package.sh page
 bench-wasm: $(wasm)/package/package.json $(filter %/sc-bench,$(programs)) ## time that module in Node beside the library, into build/peers/wasm.csv; some minutes
 	@bench/wasm_times.sh '$(BUILD)/peers/wasm.csv' '$(bin)/sc-bench' '$(wasm)/package/index.js' '$(wasm)/scenes'
-wasm-compiler:
+$(wasm)/compiler:
 	@command -v '$(EMCC)' >/dev/null 2>&1 || { echo "make wasm needs $(EMCC): run 'make deps with=wasm' first" >&2; exit 1; }
 
 # $(call compile_wasm,FLAGS)
@@ -710,9 +710,9 @@ define compile_wasm
 	$(if $(Q),@echo "  emcc $<")
 	$(Q)$(EMCC) $(wasm_flags) $(1) -Iinclude -Ilib -MMD -MP -c -o $@ $<
 endef
-$(wasm)/simd/%.o: %.c | wasm-compiler
+$(wasm)/simd/%.o: %.c | $(wasm)/compiler
 	$(call compile_wasm,-msimd128)
-$(wasm)/plain/%.o: %.c | wasm-compiler
+$(wasm)/plain/%.o: %.c | $(wasm)/compiler
 	$(call compile_wasm)
 $(wasm)/simd/libstarcontour.a $(wasm)/plain/libstarcontour.a: $(wasm)/%/libstarcontour.a: \
     $(addprefix $(wasm)/%/,$(core_sources:.c=.o))

@@ -80,7 +80,7 @@ module ensurepip python3-venv python3 python python"
 group_wasm="\
 program emcc emscripten emscripten emscripten emscripten
 program chromium chromium chromium chromium -
-program node nodejs nodejs nodejs node"
+program npm npm,nodejs nodejs-npm npm,nodejs node"
 for group in ${WITH:-}; do
     case $group in
     analysis | batch | bench | cgal | docs | ffi | packages | page | peers | wasm) ;;

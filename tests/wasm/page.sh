@@ -17,7 +17,7 @@ ready() {
         tools/npm/make_package.sh page
 }
 if ! BUILD=$build ready >"$scratch/npm.log" 2>&1; then
-    skip "in a browser: no chromium, node or npm, or npm cannot fetch ('make deps with=\"page wasm\"')" $((looks + 5))
+    skip "in a browser: no chromium, node or npm, or npm cannot fetch ('make deps with=wasm')" $((looks + 5))
     finish
 fi
 

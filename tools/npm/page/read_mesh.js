@@ -30,7 +30,8 @@ export function read_mesh(name, buffer) {
     if (kind !== 'ply' && kind !== 'stl') throw new Error(`${name} is neither OBJ nor PLY nor STL`);
     const geometry = kind === 'ply' ? new PLYLoader().parse(buffer) : new STLLoader().parse(buffer);
     const {position} = geometry.attributes;
-    if (!position?.count) throw new Error(`${name} has no vertices`);
+    if (!position?.count || (kind === 'ply' && !geometry.index)) throw new Error(`${name} has no faces`);
+    // STL has three corners of its own for each triangle.
     const triangles = geometry.index ? Uint32Array.from(geometry.index.array)
         : Uint32Array.from({length: position.count}, (_, i) => i);
     return {positions: Float32Array.from(position.array), triangles};
