@@ -62,18 +62,36 @@ static void ask_pairs(const sc_model *model, sc_workspace *workspace, const sc_p
     tell(file, number, "contacts", r.count);
 }
 
+static void add_stencil(const sc_near_stencil *stencil)
+{
+    add(&stencil->feature, sizeof(stencil->feature));
+    add(stencil->vertices, sizeof(stencil->vertices));
+    add(stencil->weights, sizeof(stencil->weights));
+    add(stencil->vector, sizeof(stencil->vector));
+    add(&stencil->distance, sizeof(stencil->distance));
+}
+
 static void add_stencils(const sc_model *model, const sc_pose *pose, uint32_t kind,
                          const sc_pair *pairs, uint64_t count)
 {
     static sc_near_stencil stencils[CAPACITY];
     need(sc_near_stencils(model, pose, kind, pairs, count, stencils), "sc_near_stencils");
-    for (uint64_t i = 0; i < count; ++i) {
-        add(&stencils[i].feature, sizeof(stencils[i].feature));
-        add(stencils[i].vertices, sizeof(stencils[i].vertices));
-        add(stencils[i].weights, sizeof(stencils[i].weights));
-        add(stencils[i].vector, sizeof(stencils[i].vector));
-        add(&stencils[i].distance, sizeof(stencils[i].distance));
-    }
+    for (uint64_t i = 0; i < count; ++i) add_stencil(&stencils[i]);
+}
+
+static void add_step_stencils(const sc_model *model, const sc_pose *start, const sc_pose *end,
+                              uint32_t kind, const sc_pair *pairs, const double *times,
+                              uint64_t count)
+{
+    static sc_step_stencil stencils[CAPACITY];
+    need(sc_step_stencils(model, start, end, kind, pairs, times, count, stencils),
+         "sc_step_stencils");
+    for (uint64_t i = 0; i < count; ++i) add_stencil(&stencils[i].start);
+    for (uint64_t i = 0; i < count; ++i) add_stencil(&stencils[i].impact);
+    for (uint64_t i = 0; i < count; ++i) add(&stencils[i].time, sizeof(stencils[i].time));
+    for (uint64_t i = 0; i < count; ++i) add(stencils[i].normal, sizeof(stencils[i].normal));
+    for (uint64_t i = 0; i < count; ++i) add(&stencils[i].side, sizeof(stencils[i].side));
+    for (uint64_t i = 0; i < count; ++i) add(&stencils[i].flags, sizeof(stencils[i].flags));
 }
 
 static void ask_features(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
@@ -105,6 +123,9 @@ static void ask_features(const sc_model *model, sc_workspace *workspace, const s
     add(face_times, s.vertex_face_count * sizeof(*face_times));
     add(edge_times, s.edge_edge_count * sizeof(*edge_times));
     add(&s.earliest, sizeof(s.earliest));
+    add_step_stencils(model, pose, end, SC_NEAR_VERTEX_FACE, faces, face_times,
+                      s.vertex_face_count);
+    add_step_stencils(model, pose, end, SC_NEAR_EDGE_EDGE, edges, edge_times, s.edge_edge_count);
     tell(file, number, "step", s.vertex_face_count + s.edge_edge_count);
     free(bounds);
 }

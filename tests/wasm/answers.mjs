@@ -72,6 +72,14 @@ export function answers({Model}, name, text) {
         for (const array of [step.vertexFaces, step.edgeEdges]) add(array);
         for (const array of [step.vertexFaceTimes, step.edgeEdgeTimes]) add(array);
         add(Float64Array.of(step.earliest));
+        for (const some of [
+            model.stepStencils(pose, end, step.vertexFaces, step.vertexFaceTimes, 'vertex_face'),
+            model.stepStencils(pose, end, step.edgeEdges, step.edgeEdgeTimes, 'edge_edge')
+        ]) {
+            add_stencils(some.start);
+            add_stencils(some.impact);
+            for (const array of [some.time, some.normal, some.side, some.flags]) add(array);
+        }
         tell(i, 'step', (step.vertexFaces.length + step.edgeEdges.length) / 2);
     }
     const saved = model.toBytes();

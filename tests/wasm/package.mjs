@@ -87,6 +87,22 @@ check('welding', new Model(rest, triangles, {weld: 'none'}).info.pointCount === 
 const boxes = new Model(rest, triangles, {boxes: true});
 check('boxes', same(boxes.query(pose), [0, 1]) && boxes.info.modelBytes < model.info.modelBytes);
 
+// Who collides with whom: categories 1 and 2, which want each other, themselves or nobody.
+const groups = (...masks) => masks.flatMap((mask, i) => [1 + Math.floor(i * 2 / masks.length), mask]);
+const both = {triangleGroups: groups(2, 1)}, own = {triangleGroups: groups(1, 2)};
+check('groups of triangles', model.count(pose, both) === 1 && model.count(pose, own) === 0);
+check('groups of vertices', model.count(pose, {vertexGroups: groups(2, 2, 2, 1, 1, 1)}) === 1 &&
+    model.count(pose, {vertexGroups: groups(1, 1, 1, 2, 2, 2)}) === 0);
+check('of what is near', same(model.nearCounts(rest, 1, own), [0, 0]) && same(model.nearCounts(rest, 1, both), [3, 0]));
+check('of steps', !model.stepCollides(rest, pose, own) && model.stepCollides(rest, pose, both));
+const left = model.step(rest, pose, {candidates: true});
+check('candidates', left.vertexFaces.length >= 2 && left.vertexFaceTimes === null && left.earliest === 0);
+const impact = model.stepStencils(rest, pose, step.vertexFaces, step.vertexFaceTimes, 'vertex_face');
+check('closest points of a step', impact.start.distance[0] === 1 && impact.impact.distance[0] < 1e-5 &&
+    impact.time[0] === step.earliest && Math.abs(impact.normal[2]) === 1 && impact.side[0] === 1 && impact.flags[0] === 1,
+    JSON.stringify(impact));
+check('an order', same(new Model(rest, triangles, {order: [1, 0]}).query(pose), [0, 1]));
+
 // All methods, and a copy, on a mesh with many pairs.
 const roll = read_obj(readFileSync(files.find(file => file.endsWith('touching_cubes.obj')), 'utf8'));
 const large = new Model(roll.positions, roll.triangles), all = large.query(roll.positions);
@@ -134,6 +150,10 @@ refuses('half an index', RangeError, /triangles/, () => new Model(rest, [0, 1, 0
 refuses('no triangle', StarcontourError, /no triangles/, () => new Model(rest, []), 4);
 refuses('a weld map', StarcontourError, /./, () => new Model(rest, triangles, {weld: [9, 9, 9, 9, 9, 9]}), 13);
 refuses('a short one', RangeError, /weld/, () => new Model(rest, triangles, {weld: [0]}));
+refuses('no permutation', StarcontourError, /./, () => new Model(rest, triangles, {order: [1, 1]}), 14);
+refuses('too few groups', RangeError, /vertexGroups must have 12/, () => model.query(pose, {vertexGroups: [1, 1]}));
+refuses('too few times', TypeError, /times must be/, () => model.stepStencils(rest, pose, [3, 0], [], 'vertex_face'));
+refuses('a time', StarcontourError, /./, () => model.stepStencils(rest, pose, [3, 0], Float64Array.of(2), 'vertex_face'), 3);
 refuses('a boxes-only model', StarcontourError, /./, () => boxes.query(pose, {method: 'sctt'}), 29);
 refuses('no bytes', TypeError, /Uint8Array/, () => Model.fromBytes([1, 2]));
 refuses('foreign bytes', StarcontourError, /./, () => Model.fromBytes(new Uint8Array(99)), 19);

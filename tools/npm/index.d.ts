@@ -28,6 +28,8 @@ export interface BuildOptions {
     /** Which vertices are one: those at equal rest positions ("rest", the default), none, or, as an
      *  array, for each vertex the one that represents it. */
     weld?: 'rest' | 'none' | Numbers;
+    /** A permutation of the triangles, consecutive ones of which form patches; else the library's. */
+    order?: Numbers;
     /** For few poses: built in a third of the time, and queries take longer. */
     boxes?: boolean;
 }
@@ -37,6 +39,9 @@ interface Common<Ignored> {
     ignoreRings?: number;
     /** Leaves out these pairs, sorted as a query returns them. */
     ignore?: Ignored;
+    /** A category and a mask for each vertex, or for each triangle: see sc_group in starcontour.h. */
+    vertexGroups?: Numbers;
+    triangleGroups?: Numbers;
     /** Ends the query by an Incomplete after so many units of work; 0: no limit. */
     budget?: number;
 }
@@ -67,6 +72,8 @@ export interface StepOptions extends FeatureOptions {
     /** How exactly distances are told; 0: a millionth of the size. */
     tolerance?: number;
     method?: 'default' | 'sctt' | 'two_boxes' | 'swept';
+    /** What boxes and culling leave, in place of collisions; without times. */
+    candidates?: boolean;
     /** Of pairs that begin within the separation only those that come nearer, or touch. */
     onlyNearer?: boolean;
 }
@@ -99,6 +106,21 @@ export interface Stencils {
     distance: Float64Array;
 }
 
+/** Of n pairs of a step: closest points at its start and at a time, and how they stand then; see
+ *  sc_step_stencil in starcontour.h. */
+export interface StepStencils {
+    start: Stencils;
+    impact: Stencils;
+    /** n. */
+    time: Float64Array;
+    /** 3 n. */
+    normal: Float64Array;
+    /** n: the side of the face on which the vertex began, 1, -1 or 0. */
+    side: Int32Array;
+    /** n: a sum of 1, they approach, and 2, there is no normal. */
+    flags: Uint32Array;
+}
+
 /** Of n pairs where they meet: a point, the ends of a segment, or two corners of an area. */
 export interface Contacts {
     /** n: 0 nowhere, 1 point, 2 segment, 3 area. */
@@ -121,9 +143,9 @@ export interface Near {
 export interface Step {
     vertexFaces: Uint32Array;
     edgeEdges: Uint32Array;
-    /** When each pair collides, from 0 to 1: lower bounds. */
-    vertexFaceTimes: Float64Array;
-    edgeEdgeTimes: Float64Array;
+    /** When each pair collides, from 0 to 1: lower bounds; null of candidates. */
+    vertexFaceTimes: Float64Array | null;
+    edgeEdgeTimes: Float64Array | null;
     /** Nothing collides before this time; 1 if nothing does at all. */
     earliest: number;
 }
@@ -157,6 +179,8 @@ export class Model {
     nearCounts(pose: Positions, distance: number, options?: NearCountOptions): [number, number];
     isNear(pose: Positions, distance: number, options?: NearCountOptions): boolean;
     stencils(pose: Positions, pairs: Numbers, kind: 'vertex_face' | 'edge_edge'): Stencils;
+    stepStencils(start: Positions, end: Positions, pairs: Numbers, times: Float64Array | null,
+        kind: 'vertex_face' | 'edge_edge'): StepStencils;
     contacts(pose: Positions, found: Numbers, options?: {pairs?: 'triangle' | 'edge'}): Contacts;
     /** Gives back the memory. Also done some time after nothing refers to the model any more, and, in
      *  engines that have it, at the end of a block with `using`. */

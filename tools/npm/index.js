@@ -229,21 +229,32 @@ function pose_in(call, name, array) {
     });
 }
 
-function filter_in(call, {ignoreRings = 0}, ignore) {
+/* Whole numbers, `each` for each of so many things, that may be left out. */
+function numbers_of(name, array, count, each) {
+    if (!array) return null;
+    array = numbers(name, array, each);
+    if (array.length !== each * count)
+        throw new RangeError(`${name} must have ${each * count} numbers, not ${array.length}`);
+    return array;
+}
+
+function filter_in(call, info, {ignoreRings = 0, vertexGroups, triangleGroups}, ignore) {
     if (ignore) ignore = numbers('ignore', ignore, 2);
     return call.structure('sc_filter', {
         ignore_rings: whole('ignoreRings', ignoreRings),
+        vertex_groups: call.copy(numbers_of('vertexGroups', vertexGroups, info.vertexCount, 2)),
+        triangle_groups: call.copy(numbers_of('triangleGroups', triangleGroups, info.triangleCount, 2)),
         ignore: call.copy(ignore),
         ignore_count: ignore ? ignore.length / 2 : 0
     });
 }
 
 /* The members of sc_step_options and sc_near_options that say which pairs are not wanted. */
-function features_in(call, options) {
+function features_in(call, info, options) {
     const {ignore = {}, rest, restDistance = 0} = options;
     return {
-        vertex_face_filter: filter_in(call, options, ignore.vertexFaces),
-        edge_edge_filter: filter_in(call, options, ignore.edgeEdges),
+        vertex_face_filter: filter_in(call, info, options, ignore.vertexFaces),
+        edge_edge_filter: filter_in(call, info, options, ignore.edgeEdges),
         rest: rest ? pose_in(call, 'rest', rest) : 0,
         rest_distance: real('restDistance', restDistance)
     };
@@ -255,9 +266,9 @@ function features_in(call, options) {
 
 const PAIRS = 0, COUNT = 1, ANY = 2; // SC_OUTPUT_...
 const WORKSPACE_NEAR = 2;
-const COMMON = ['ignoreRings', 'ignore', 'budget'];
+const COMMON = ['ignoreRings', 'ignore', 'vertexGroups', 'triangleGroups', 'budget'];
 const QUERY = ['pairs', 'contact', 'method', ...COMMON];
-const STEP = ['separation', 'tolerance', 'method', 'onlyNearer', 'rest', 'restDistance', ...COMMON];
+const STEP = ['separation', 'tolerance', 'method', 'candidates', 'onlyNearer', 'rest', 'restDistance', ...COMMON];
 const NEAR = ['kinds', 'method', 'rest', 'restDistance', ...COMMON];
 
 // Of models that nobody has freed and nobody refers to any more.
@@ -277,6 +288,31 @@ function grow(list, count, size) {
     Object.assign(list, {address: 0, bytes: 0});
     list.address = allocate(count * size);
     list.bytes = count * size;
+}
+
+// Members of structures, as arrays with so many numbers for each.
+const STENCIL = {
+    feature: [Uint32Array, 1], flags: [Uint32Array, 1], vertices: [Uint32Array, 4],
+    weights: [Float64Array, 4], vector: [Float64Array, 3], distance: [Float64Array, 1]
+};
+const STEP_STENCIL = {
+    time: [Float64Array, 1], normal: [Float64Array, 3], side: [Int32Array, 1], flags: [Uint32Array, 1]
+};
+const CONTACT = {
+    kind: [Uint32Array, 1], points: [Float64Array, 6], weights_a: [Float64Array, 6], weights_b: [Float64Array, 6]
+};
+
+/* An array of each member of count structures that are so many bytes apart. */
+function columns(rows, count, size, name, members) {
+    const made = {};
+    for (const [member, [Type, width]] of Object.entries(members)) {
+        const array = made[member] = new Type(count * width), [offset] = layouts.get(name).members.get(member);
+        const get = {Uint32Array: 'getUint32', Int32Array: 'getInt32', Float64Array: 'getFloat64'}[Type.name];
+        for (let i = 0; i < count; ++i)
+            for (let k = 0; k < width; ++k)
+                array[width * i + k] = view[get](rows + size * i + offset + Type.BYTES_PER_ELEMENT * k, true);
+    }
+    return made;
 }
 
 /* What the constructor is called with by fromBytes. */
@@ -359,7 +395,7 @@ export class Model {
                 pairs: choice('pairs', pairs),
                 contact: choice('contact', contact),
                 method: choice('method', method),
-                filter: filter_in(call, options, ignore),
+                filter: filter_in(call, this.#info, options, ignore),
                 budget: whole('budget', budget, Number.MAX_SAFE_INTEGER)
             });
             const where = pose_in(call, 'pose', pose);
@@ -370,8 +406,9 @@ export class Model {
     /** What collides while all vertices move on straight lines from one pose to another. */
     step(start, end, options = {}) {
         return this.#step(start, end, options, PAIRS, (result, first, second) => {
-            const {pairs: vertexFaces, times: vertexFaceTimes} = timed(result, first, 'vertex_face');
-            const {pairs: edgeEdges, times: edgeEdgeTimes} = timed(result, second, 'edge_edge');
+            const {candidates = false} = options;
+            const {pairs: vertexFaces, times: vertexFaceTimes} = timed(result, first, 'vertex_face', candidates);
+            const {pairs: edgeEdges, times: edgeEdgeTimes} = timed(result, second, 'edge_edge', candidates);
             const earliest = read('sc_step_result', result, 'earliest');
             return {vertexFaces, edgeEdges, vertexFaceTimes, edgeEdgeTimes, earliest};
         });
@@ -383,19 +420,20 @@ export class Model {
     }
 
     #step(start, end, options, output, answer) {
-        const {separation = 0, tolerance = 0, method = 'default', onlyNearer = false, budget = 0} =
-            known(options, STEP);
+        const {separation = 0, tolerance = 0, method = 'default', candidates = false} = known(options, STEP);
+        const {onlyNearer = false, budget = 0} = options;
         const lists = ['vertex_face', 'edge_edge'];
         return this.#ask(WORKSPACE_NEAR, 'sc_step_result', lists, answer, (call, workspace) => {
             const how = call.structure('sc_step_options', {
                 output,
-                times: output === PAIRS ? 2 : 0,
+                pairs: candidates ? 1 : 0,
+                times: output === PAIRS && !candidates ? 2 : 0,
                 method: choice('method', method, CHOICES.step_method),
                 separation: real('separation', separation),
                 tolerance: real('tolerance', tolerance),
                 begun: onlyNearer ? 1 : 0,
                 budget: whole('budget', budget, Number.MAX_SAFE_INTEGER),
-                ...features_in(call, options)
+                ...features_in(call, this.#info, options)
             });
             const from = pose_in(call, 'start', start), to = pose_in(call, 'end', end);
             return result => library.sc_query_step(this.#handles.model, workspace, from, to, how, result);
@@ -441,7 +479,7 @@ export class Model {
                 method: choice('method', method, CHOICES.near_method),
                 distance: real('distance', distance),
                 budget: whole('budget', budget, Number.MAX_SAFE_INTEGER),
-                ...features_in(call, options)
+                ...features_in(call, this.#info, options)
             });
             const where = pose_in(call, 'pose', pose);
             if (with_bounds) bounds = call.room(8 * this.#info.vertexCount);
@@ -457,8 +495,25 @@ export class Model {
         const number = choice('kind', kind);
         return this.#columns(pose, pairs, 'sc_near_stencil',
             (...call) => library.sc_near_stencils(call[0], call[1], number, ...call.slice(2)),
-            {feature: 1, flags: 1, vertices: 4},
-            {weights: 4, vector: 3, distance: 1});
+            STENCIL);
+    }
+
+    /** The same of pairs of a step, at its start and at a time of each; without times, at its start. */
+    stepStencils(start, end, pairs, times, kind) {
+        const number = choice('kind', kind), at = layouts.get('sc_step_stencil').members;
+        const count = numbers('pairs', pairs, 2).length / 2;
+        if (times && !(times instanceof Float64Array && times.length === count))
+            throw new TypeError(`times must be null or a Float64Array with a number for each of ${count} pairs`);
+        return calling(call => {
+            const to = pose_in(call, 'end', end), when = call.copy(times);
+            const inside = (name, rows, size) =>
+                columns(rows + at.get(name)[0], count, size, 'sc_near_stencil', STENCIL);
+            return this.#columns(start, pairs, 'sc_step_stencil',
+                (model, from, list, length, rows) =>
+                    library.sc_step_stencils(model, from, to, number, list, when, length, rows),
+                STEP_STENCIL,
+                (rows, size) => ({start: inside('start', rows, size), impact: inside('impact', rows, size)}));
+        });
     }
 
     /** Where pairs meet: arrays with an entry, or several, for each. */
@@ -467,29 +522,20 @@ export class Model {
         const {kind, points, weights_a: weightsA, weights_b: weightsB} =
             this.#columns(pose, found, 'sc_contact',
                 (...call) => library.sc_contacts(call[0], call[1], number, ...call.slice(2)),
-                {kind: 1},
-                {points: 6, weights_a: 6, weights_b: 6});
+                CONTACT);
         return {kind, points, weightsA, weightsB};
     }
 
-    /* Calls a function that fills a structure for each pair, and makes an array of each member. */
-    #columns(pose, pairs, name, ask, whole_members, real_members) {
-        const model = this.#model(), {size, members} = layouts.get(name);
+    /* Calls a function that fills a structure for each pair, and makes an array of each member; and
+       what more(rows, size) makes of these structures. */
+    #columns(pose, pairs, name, ask, members, more = () => ({})) {
+        const model = this.#model(), {size} = layouts.get(name);
         pairs = numbers('pairs', pairs, 2);
         return calling(call => {
             const count = pairs.length / 2, where = pose_in(call, 'pose', pose);
-            const list = call.copy(pairs), rows = call.room(count * size), columns = {};
+            const list = call.copy(pairs), rows = call.room(count * size);
             check(ask(model, where, list, BigInt(count), rows));
-            const column = (Type, get) => ([member, width]) => {
-                const array = columns[member] = new Type(count * width), [offset] = members.get(member);
-                const bytes = Type.BYTES_PER_ELEMENT;
-                for (let i = 0; i < count; ++i)
-                    for (let k = 0; k < width; ++k)
-                        array[width * i + k] = view[get](rows + size * i + offset + bytes * k, true);
-            };
-            Object.entries(whole_members).forEach(column(Uint32Array, 'getUint32'));
-            Object.entries(real_members).forEach(column(Float64Array, 'getFloat64'));
-            return columns;
+            return {...columns(rows, count, size, name, members), ...more(rows, size)};
         });
     }
 
@@ -562,22 +608,22 @@ function listed(result, name, list, kind, bytes = 8) {
     return words(list.address, 2 * Math.min(count, Math.floor(list.bytes / bytes)));
 }
 
-function timed(result, list, kind) {
+function timed(result, list, kind, candidates) {
     const pairs = listed(result, 'sc_step_result', list, kind, 16);
-    return {pairs, times: reals(read('sc_step_result', result, `${kind}_times`), pairs.length / 2)};
+    const times = read('sc_step_result', result, `${kind}_times`);
+    return {pairs, times: candidates ? null : reals(times, pairs.length / 2)};
 }
 
 const camel = name => name.replace(/_(.)/g, (_, letter) => letter.toUpperCase());
 
 /* Each returns what makes a model: of a Call and the place for it, a status. */
 function built(vertices, triangles, options) {
-    const {weld = 'rest', boxes = false} = known(options, ['weld', 'boxes']);
-    const map = typeof weld === 'string' ? null : numbers('weld', weld, 1);
-    const how = map ? 1 : choice('weld', weld, ['rest', '', 'none']);
+    const {weld = 'rest', order, boxes = false} = known(options, ['weld', 'order', 'boxes']);
     vertices = positions('vertices', vertices);
     triangles = numbers('triangles', triangles, 3);
-    if (map && map.length !== vertices.length / 3)
-        throw new RangeError(`weld must have a number for each of ${vertices.length / 3} vertices`);
+    const map = typeof weld === 'string' ? null : numbers_of('weld', weld, vertices.length / 3, 1);
+    const how = map ? 1 : choice('weld', weld, ['rest', '', 'none']);
+    const patches = numbers_of('order', order, triangles.length / 3, 1);
     return (call, model) => library.sc_build(
         call.structure('sc_mesh', {
             vertex_count: vertices.length / 3,
@@ -589,6 +635,8 @@ function built(vertices, triangles, options) {
         call.structure('sc_build_options', {
             weld: how,
             weld_map: call.copy(map),
+            partition: patches ? 1 : 0,
+            order: call.copy(patches),
             hooks: library.sc_refusal_hooks(),
             content: boxes ? 1 : 0
         }),

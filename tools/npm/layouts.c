@@ -52,7 +52,9 @@ static const layout_entry entries[] = {
     STRUCTURE(sc_build_options),
     WORD(sc_build_options, struct_size),
     WORD(sc_build_options, weld),
+    WORD(sc_build_options, partition),
     WORD(sc_build_options, weld_map),
+    WORD(sc_build_options, order),
     WORD(sc_build_options, hooks),
     WORD(sc_build_options, content),
     STRUCTURE(sc_load_options),
@@ -77,6 +79,8 @@ static const layout_entry entries[] = {
     STRUCTURE(sc_filter),
     WORD(sc_filter, struct_size),
     WORD(sc_filter, ignore_rings),
+    WORD(sc_filter, vertex_groups),
+    WORD(sc_filter, triangle_groups),
     WORD(sc_filter, ignore),
     LONG(sc_filter, ignore_count),
     STRUCTURE(sc_query_options),
@@ -152,6 +156,13 @@ static const layout_entry entries[] = {
     ARRAY(sc_near_stencil, weights),
     ARRAY(sc_near_stencil, vector),
     REAL(sc_near_stencil, distance),
+    STRUCTURE(sc_step_stencil),
+    ARRAY(sc_step_stencil, start),
+    ARRAY(sc_step_stencil, impact),
+    REAL(sc_step_stencil, time),
+    ARRAY(sc_step_stencil, normal),
+    WORD(sc_step_stencil, side),
+    WORD(sc_step_stencil, flags),
 };
 
 enum { ENTRIES = sizeof entries / sizeof *entries };
