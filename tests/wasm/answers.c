@@ -101,14 +101,21 @@ static void ask_features(const sc_model *model, sc_workspace *workspace, const s
     static double face_times[CAPACITY], edge_times[CAPACITY];
     double *bounds = (double *)test_allocate(pose->vertex_count * sizeof(*bounds));
     sc_near_options o = {.struct_size = sizeof(o), .distance = distance};
-    sc_near_result r = {.struct_size = sizeof(r), .vertex_faces = faces, .edge_edges = edges,
-                        .vertex_face_capacity = CAPACITY, .edge_edge_capacity = CAPACITY,
+    sc_near_result r = {.struct_size = sizeof(r),
+                        .vertex_faces = faces,
+                        .edge_edges = edges,
+                        .vertex_face_capacity = CAPACITY,
+                        .edge_edge_capacity = CAPACITY,
                         .vertex_bounds = bounds};
-    sc_step_options how = {.struct_size = sizeof(how), .times = SC_STEP_TIMES_EACH,
-                           .separation = distance / 4};
-    sc_step_result s = {.struct_size = sizeof(s), .vertex_faces = faces, .edge_edges = edges,
-                        .vertex_face_capacity = CAPACITY, .edge_edge_capacity = CAPACITY,
-                        .vertex_face_times = face_times, .edge_edge_times = edge_times};
+    sc_step_options how = {
+        .struct_size = sizeof(how), .times = SC_STEP_TIMES_EACH, .separation = distance / 4};
+    sc_step_result s = {.struct_size = sizeof(s),
+                        .vertex_faces = faces,
+                        .edge_edges = edges,
+                        .vertex_face_capacity = CAPACITY,
+                        .edge_edge_capacity = CAPACITY,
+                        .vertex_face_times = face_times,
+                        .edge_edge_times = edge_times};
     need(sc_query_near(model, workspace, pose, &o, &r), "sc_query_near");
     add(faces, r.vertex_face_count * sizeof(*faces));
     add(edges, r.edge_edge_count * sizeof(*edges));

@@ -28,12 +28,27 @@ typedef struct layout_entry {
 } layout_entry;
 
 #define WIDTH(of, member) sizeof(((of *)0)->member)
-#define STRUCTURE(of) {#of, sizeof(of), 's', 1}
-#define WORD(of, member) {#member, offsetof(of, member), 'w', WIDTH(of, member) == 4}
-#define LONG(of, member) {#member, offsetof(of, member), 'l', WIDTH(of, member) == 8}
-#define REAL(of, member) {#member, offsetof(of, member), 'd', WIDTH(of, member) == 8}
+#define STRUCTURE(of)                                                                              \
+  {                                                                                                \
+#    of, sizeof(of), 's', 1                                                                        \
+  }
+#define WORD(of, member)                                                                           \
+  {                                                                                                \
+#    member, offsetof(of, member), 'w', WIDTH(of, member) == 4                                     \
+  }
+#define LONG(of, member)                                                                           \
+  {                                                                                                \
+#    member, offsetof(of, member), 'l', WIDTH(of, member) == 8                                     \
+  }
+#define REAL(of, member)                                                                           \
+  {                                                                                                \
+#    member, offsetof(of, member), 'd', WIDTH(of, member) == 8                                     \
+  }
 /* An array, of which only the place is wanted. */
-#define ARRAY(of, member) {#member, offsetof(of, member), 'w', 1}
+#define ARRAY(of, member)                                                                          \
+  {                                                                                                \
+#    member, offsetof(of, member), 'w', 1                                                          \
+  }
 
 static const layout_entry entries[] = {
     STRUCTURE(sc_mesh),
@@ -174,7 +189,8 @@ const char *sc_layouts(void)
     char *end = text;
     for (int i = 0; i < ENTRIES; ++i) {
         if (!entries[i].fits) return NULL;
-        end += sprintf(end, "%c %s %u\n", entries[i].kind, entries[i].name, (unsigned)entries[i].at);
+        end +=
+            sprintf(end, "%c %s %u\n", entries[i].kind, entries[i].name, (unsigned)entries[i].at);
     }
     return text;
 }
