@@ -683,6 +683,50 @@ peers: ## all peers that are there, into a new CSV; a minute or two for each
 	    $(MAKE) --no-print-directory peer-$$peer || status=1; done; exit $$status
 
 # ------------------------------------------------------------------------------------------------
+# WebAssembly, by emscripten: with 128-bit vectors (SIMD128), which is what is shipped, and without,
+# for test-wasm. tools/npm/make_package.sh makes the package and the page.
+
+EMCC ?= emcc
+EMAR ?= emar
+wasm := $(BUILD)/wasm
+# clang tells of each loop that it does not unroll.
+wasm_flags := -std=c99 -O3 -DNDEBUG $(exact) -fvisibility=hidden $(warnings) -Wno-pass-failed $(werror)
+wasm_parts := $(wildcard tools/npm/*.* tools/npm/page/*)
+
+.PHONY: wasm wasm-pack wasm-page bench-wasm test-wasm $(wasm)/compiler
+wasm: $(wasm)/simd/libstarcontour.a $(wasm)/package/package.json ## for browsers and Node: static library and ES module, in build/wasm (make deps with=wasm wasm)
+wasm-pack: $(wasm)/package/package.json ## pack that module for npm: build/wasm/starcontour-VERSION.tgz
+	@BUILD='$(BUILD)' tools/npm/make_package.sh pack
+wasm-page: $(wasm)/package/package.json ## build/wasm/page.html: cloth and meshes in the browser, in one file (node, npm)
+	@BUILD='$(BUILD)' tools/npm/make_package.sh page
+bench-wasm: $(wasm)/package/package.json $(filter %/sc-bench,$(programs)) ## time that module in Node beside the library, into build/peers/wasm.csv; some minutes
+	@bench/wasm_times.sh '$(BUILD)/peers/wasm.csv' '$(bin)/sc-bench' '$(wasm)/package/index.js' '$(wasm)/scenes'
+$(wasm)/compiler:
+	@command -v '$(EMCC)' >/dev/null 2>&1 || { echo "make wasm needs $(EMCC): run 'make deps with=wasm' first" >&2; exit 1; }
+
+# $(call compile_wasm,FLAGS)
+define compile_wasm
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  emcc $<")
+	$(Q)$(EMCC) $(wasm_flags) $(1) -Iinclude -Ilib -MMD -MP -c -o $@ $<
+endef
+$(wasm)/simd/%.o: %.c | $(wasm)/compiler
+	$(call compile_wasm,-msimd128)
+$(wasm)/plain/%.o: %.c | $(wasm)/compiler
+	$(call compile_wasm)
+$(wasm)/simd/libstarcontour.a $(wasm)/plain/libstarcontour.a: $(wasm)/%/libstarcontour.a: \
+    $(addprefix $(wasm)/%/,$(core_sources:.c=.o))
+	@rm -f $@ && $(EMAR) rcs $@ $^
+$(wasm)/starcontour.wasm: $(wasm)/simd/tools/npm/layouts.o $(wasm)/simd/libstarcontour.a tools/npm/exports.txt
+	$(Q)$(EMCC) -O3 -msimd128 -sSTANDALONE_WASM -sWASM_BIGINT -sALLOW_MEMORY_GROWTH --no-entry \
+	    -sEXPORTED_FUNCTIONS=@tools/npm/exports.txt -o $@ $(filter %.o %.a,$^)
+$(wasm)/package/package.json: $(wasm)/starcontour.wasm $(wasm_parts)
+	@BUILD='$(BUILD)' tools/npm/make_package.sh package '$(version)'
+
+test-wasm: all $(wasm)/simd/libstarcontour.a $(wasm)/plain/libstarcontour.a $(wasm)/package/package.json ## the same answers in Node and Chromium as here, and the page; two minutes
+	@CC='$(CC)' SC_BIN='$(bin)' SC_LIB='$(lib)' BUILD='$(BUILD)' EMCC='$(EMCC)' tests/run.sh tests/wasm/*.sh
+
+# ------------------------------------------------------------------------------------------------
 # Installing.
 
 headers := include/starcontour.h $(if $(metis),include/starcontour_metis.h) \
@@ -795,12 +839,13 @@ help: ## this list
 	    awk -F'#' '{ printf "  %-16s %s\n", $$1, $$2 }'
 
 #: config      release (the default), debug, or sanitize (address and undefined behaviour)
-#: with        groups of packages that make deps adds: analysis batch bench cgal docs ffi packages page peers
+#: with        groups of packages that make deps adds: analysis batch bench cgal docs ffi packages page peers wasm
 #: CC          C compiler [cc]
 #: CLANG       clang, for fuzz and test-memory-clang [clang]
 #: CXX         C++ compiler, for test-cgal and one test of the header [g++]
 #: PYTHON      Python with matplotlib, for the plots of bench [python3, the system's]
 #: CPPFLAGS    added when preprocessing, such as -I of a library in an unusual place
+#: EMCC        emscripten's compiler, for wasm; EMAR its archiver [emcc, emar]
 #: CFLAGS      added after our own flags when compiling and linking C
 #: CXXFLAGS    the same for C++
 #: LDFLAGS     added when linking
@@ -832,6 +877,6 @@ help: ## this list
 #: DOCDIR      [PREFIX/share/doc/starcontour]
 #: OBJCOPY     strips what is installed; empty: it is installed as it was built [objcopy]
 
--include $(shell find $(obj) -name '*.d' 2>/dev/null)
+-include $(shell find $(obj) $(wasm)/simd $(wasm)/plain -name '*.d' 2>/dev/null)
 
 endif

@@ -27,6 +27,7 @@ import report_objects
 import report_pictures
 import report_plots
 import report_targets as targets
+import report_wasm
 from report_text import figure, mean, table, times, whole
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -268,6 +269,7 @@ class Results:
                                       "near_peers", "objects", "dataset")))
         self.objects_peers = read_peers(os.path.join(folder, "objects_peers.csv"))
         self.dataset_peers = read_peers(os.path.join(folder, "dataset_peers.csv"), "unequal")
+        self.wasm = read_peers(os.path.join(folder, "wasm.csv"), "same")
         peers = os.path.join(folder, "peers.csv")
         rows, skipped, self.peers_commit = read_peers(peers)
         self.peers_skipped = [line for line in skipped if "(step " not in line]
@@ -903,6 +905,7 @@ def report(results, drawn, slope_table, reading):
     out += report_objects.peer_section(results.objects_peers)
     peers, skipped, commit = results.dataset_peers
     out += report_dataset.section(results.dataset, peers, commit, skipped)
+    out += report_wasm.section(results.wasm[0], results.wasm[2])
     out.append("## One query a frame, and repeated queries\n")
     out.append("The same frame asked for again and again, which favours what fits the cache.\n")
     out.append(modes(results))

@@ -6,8 +6,8 @@
 # FOLDER is where results go; by default bench/results/<machine>, and the overview into README.md,
 # or, for quick, build/bench-quick. report measures nothing and makes the report anew from the CSV
 # files. What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv,
-# near.csv, objects.csv and dataset.csv, if they are there. From make come SC_BIN and PYTHON, the interpreter that
-# draws.
+# near.csv, objects.csv, dataset.csv and wasm.csv, if they are there. From make come SC_BIN and PYTHON,
+# the interpreter that draws.
 #
 # Exit status 1 if methods disagree or no report could be made, 2 if nothing could be started.
 #
@@ -252,6 +252,9 @@ if [ "$kind" != quick ] && [ -f build/peers/objects.csv ]; then
 fi
 if [ "$kind" != quick ] && [ -f build/peers/dataset.csv ]; then
     cp build/peers/dataset.csv "$results/dataset_peers.csv" || exit 2
+fi
+if [ "$kind" != quick ] && [ -f build/peers/wasm.csv ]; then
+    cp build/peers/wasm.csv "$results/wasm.csv" || exit 2
 fi
 if [ "$kind" = report ]; then
     # shellcheck disable=SC2086

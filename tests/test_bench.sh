@@ -429,6 +429,13 @@ poses,meshlib,3.1,refitted,1,24992,200,50,0.5,50,0.8,90,3,40,2,7
 poses,meshlib,3.1,refitted,2,24992,200,30,0.5,30,0.5,90,3,40,2,7
 rounded,libigl,2.6.3,rebuilt,1,24992,200,100,0.4,100,0.4,90,0,0,0,0
 END
+    cat >"$scratch/results/wasm.csv" <<'END'
+# commit: efd
+# node: v20
+scene,triangles,frames,pairs,best_ms,base_ms,wasm_ms,same
+twisted-cloth,65536,60,1000,1,2,4,1
+sphere,81920,60,0,0.2,0.5,2.5,0
+END
     cat >"$scratch/results/objects.csv" <<'END'
 scene,question,objects,workers,way,pairs,ms
 body,query,2,1,objects,2000,1
@@ -469,6 +476,10 @@ END
         "| body | embree 3.13.5 | two scenes: refitted | 2 | 100 | 9.00 | 3.00 | 3.00 | match |" \
         "made by \`make objects-peers\` at commit fed" "- fcl on crowd: took more than 300 s" \
         "by \`make dataset-peers\` at commit def" "- open3d: no such wheel" \
+        "| twisted-cloth | 65,536 | 1,000 | 1.00 | 2.00 | 4.00 | 0.50 | match |" \
+        "| sphere | 81,920 | 0 | 0.200 | 0.500 | 2.50 | 0.20 | differ |" \
+        "| part of SSE2's speed | ≥ 0.250 | 0.200 | sphere, 81,920 | **not met** |" \
+        "by \`make bench-wasm\` at commit efd" \
         "| rod | 500 | 2 | 5 | 8.00 | 2.00 | 4.00 | – | – | – | 3 missing in 1 of 2 frames |" \
         "| rod | 500 | 1 | 4 | 30.0 | 3.00 | 10.0 | 20.0 | 5.00 | 4.00 | match |" \
         "| cgal 5.5.1 | swept | 1 | 10.0 | 4.00 | match |" \

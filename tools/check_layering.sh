@@ -164,7 +164,8 @@ offenders=$(
             may["tests/fuzz"] = may["tests/runs"] = may["tests"]
             may["tests/bench"] = may["bench"] " tests tests/bench"
             may["tests/abi"] = "tests tests/abi"
-            may["tests/packages"] = "include"
+            may["tests/packages"] = may["tools/npm"] = "include"
+            may["tests/wasm"] = "include tests"
             may["tests/cgal"] = "include tools tests tests/cgal"
             may["tests/ffi/cxx"] = "include tests/ffi/cxx"
             may["tools/clients/bullet"] = "include tools/clients/bullet"

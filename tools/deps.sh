@@ -86,11 +86,15 @@ header tbb/scalable_allocator.h libtbb-dev tbb-devel onetbb tbb
 header embree3/rtcore.h libembree-dev - - -
 header fcl/config.h libfcl-dev fcl-devel fcl fcl
 module ensurepip python3-venv python3 python python"
+group_wasm="\
+program emcc emscripten emscripten emscripten emscripten
+program chromium chromium chromium chromium -
+program npm npm,nodejs nodejs-npm npm,nodejs node"
 for group in ${WITH:-}; do
     case $group in
-    analysis | batch | bench | cgal | docs | ffi | packages | page | peers) ;;
+    analysis | batch | bench | cgal | docs | ffi | packages | page | peers | wasm) ;;
     *)
-        echo "make deps: with=$group: the groups are analysis, batch, bench, cgal, docs, ffi, packages, page, peers" >&2
+        echo "make deps: with=$group: the groups are analysis, batch, bench, cgal, docs, ffi, packages, page, peers, wasm" >&2
         exit 2
         ;;
     esac

@@ -1,0 +1,195 @@
+/*
+ * Looks at the page with the cloth, and at the package, in Chromium without a window; for page.sh.
+ *
+ *     node tests/wasm/looks.mjs MODULES BROWSER page FILE MESH...  "ok NAME" or "not ok NAME: why"
+ *     node tests/wasm/looks.mjs MODULES BROWSER answers PACKAGE MESH...      lines, as answers.c
+ *     node tests/wasm/looks.mjs MODULES BROWSER shot FILE PNG      a picture, as README.md shows it
+ *
+ * MODULES: the folder in whose node_modules playwright-core is. MESHes of page: see page.sh.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+import {readFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {basename, resolve} from 'node:path';
+import {pathToFileURL} from 'node:url';
+
+const [modules, browser_path, job, file, ...rest] = process.argv.slice(2);
+const {chromium} = createRequire(resolve(modules) + '/')('playwright-core');
+const browser = await chromium.launch({
+    executablePath: browser_path,
+    args: ['--no-sandbox', '--enable-unsafe-swiftshader']
+});
+const errors = [], requests = [];
+
+async function open(options) {
+    const page = await browser.newPage(options);
+    page.on('pageerror', error => errors.push(error.message));
+    page.on('console', message => message.type() === 'error' && errors.push(message.text()));
+    page.on('request', request => requests.push(request.url()));
+    return page;
+}
+
+function check(name, is_true, why = '') {
+    console.log(is_true ? `ok ${name}` : `not ok ${name}: ${why}`);
+}
+
+/* Red pixels of the canvas, and a sum over all. */
+const look = page => page.evaluate(() => {
+    const from = document.getElementById('canvas'), copy = document.createElement('canvas');
+    copy.width = from.width;
+    copy.height = from.height;
+    const context = copy.getContext('2d');
+    context.drawImage(from, 0, 0);
+    const {data} = context.getImageData(0, 0, copy.width, copy.height);
+    let red = 0, sum = 0;
+    for (let i = 0; i < data.length; i += 4) {
+        sum = (sum * 31 + data[i] + 7 * data[i + 1] + 13 * data[i + 2]) % 1000000007;
+        red += data[i] > 120 && data[i + 1] < 0.45 * data[i] && data[i + 2] < 0.45 * data[i];
+    }
+    return {red, sum};
+});
+
+const frames_on = (page, count) => page.evaluate(count => new Promise(done => {
+    const wait = left => left ? requestAnimationFrame(() => wait(left - 1)) : done();
+    wait(count);
+}), count);
+
+const CELLS = 48, vertex = (i, j) => i * (CELLS + 1) + j;
+
+/* Leads the lower edge of the cloth up, to both sides and down again; says what the most pairs and the
+   most red pixels were meanwhile, and leaves the mouse pressed. */
+async function pull(page) {
+    const most = {pairs: 0, red: 0};
+    const where = (i, j) => page.evaluate(v => starcontour.project(v), vertex(i, j));
+    const [begin, top] = [await where(2, 24), await where(44, 24)];
+    const [left, right] = [await where(30, 2), await where(30, 46)];
+    let at = begin;
+    await page.mouse.move(...at);
+    await page.mouse.down();
+    for (const to of [top, left, right, top, begin, left]) {
+        for (let i = 1; i <= 8; ++i) {
+            await page.mouse.move(...at.map((x, k) => x + (to[k] - x) * i / 8));
+            await frames_on(page, 2);
+            const [{pairs}, {red}] = [await page.evaluate('starcontour.state()'), await look(page)];
+            most.pairs = Math.max(most.pairs, pairs);
+            most.red = Math.max(most.red, red);
+        }
+        at = to;
+    }
+    return most;
+}
+
+async function look_at_page([hit, moved, apart, ply, stl, bad]) {
+    const page = await open({viewport: {width: 900, height: 700}, colorScheme: 'light'});
+    const state = () => page.evaluate('starcontour.state()');
+    const text = id => page.locator(id).innerText();
+    const drop = async (...files) => {
+        await page.locator('#files').setInputFiles(files);
+        await page.waitForFunction(name => document.getElementById('title').textContent === name,
+            basename(files[0]), {timeout: 20000});
+        await frames_on(page, 2);
+    };
+    await page.goto(pathToFileURL(resolve(file)).href);
+    await page.waitForFunction(() => window.starcontour?.state().ready, null, {timeout: 60000});
+    check('a cloth', (await state()).mode === 'cloth', JSON.stringify(await state()));
+    check('of many triangles', (await text('#title')).includes('4,608'), await text('#title'));
+    const first = await look(page);
+    check('without red', first.red === 0 && (await state()).pairs === 0, JSON.stringify(first));
+    await frames_on(page, 20);
+    const second = await look(page);
+    check('which moves', second.sum !== first.sum);
+    const said = await text('#said');
+    check('milliseconds are said', /\d ms to find what collides, .*\d ms with/.test(said), said);
+    const most = await pull(page), third = await look(page);
+    check('pulled, it collides', most.pairs > 20, most.pairs);
+    check('and is red there', most.red > 20, most.red);
+    check('the picture is another', third.sum !== second.sum);
+    await page.mouse.up();
+    check('the camera stood still', await page.evaluate(() => {
+        const [x, y] = starcontour.project(48 * 49), [a, b] = starcontour.project(48 * 49 + 48);
+        return Math.abs(y - b) < 60 && x < a;
+    }));
+
+    await page.locator('#apart').click();
+    await frames_on(page, 5);
+    check('kept apart, it is the cloth again', (await state()).pairs === 0 && (await look(page)).red === 0);
+    const kept = await pull(page), fourth = await look(page);
+    await page.mouse.up();
+    check('and pulled the same way never collides', kept.pairs === 0 && kept.red === 0, JSON.stringify(kept));
+    check('though it moves', fourth.sum !== first.sum && fourth.sum !== third.sum);
+
+    await drop(hit);
+    const found = await text('#said');
+    check('a mesh', found.startsWith('15 pairs of 24 triangles'), found);
+    check('is red', (await look(page)).red > 20, JSON.stringify(await look(page)));
+    check('has no slider', !await page.locator('#slider').isVisible());
+    await drop(apart);
+    check('one without collisions is not', (await look(page)).red === 0 && (await state()).pairs === 0);
+    await drop(ply);
+    check('PLY', (await state()).pairs === 1, await text('#said'));
+    await drop(stl);
+    check('STL', (await state()).pairs === 1, await text('#said'));
+    await page.locator('#files').setInputFiles([bad]);
+    await page.waitForFunction(() => starcontour.state().error, null, {timeout: 20000});
+    check('a bad file is told', (await text('#hint')).includes('names vertex 8 of 3'), await text('#hint'));
+    check('and changes nothing', (await text('#title')) === basename(stl));
+
+    await drop(apart, moved);
+    const slide = async number => {
+        await page.locator('#slider').fill(`${number}`);
+        await page.waitForFunction(n => starcontour.state().number === n, number);
+        await frames_on(page, 2);
+        return {...await state(), ...await look(page)};
+    };
+    const [still, later] = [await slide(0), await slide(1)];
+    check('an animation', still.pairs === 0 && later.pairs === 1 && later.red > 20, JSON.stringify([still, later]));
+    check('of one mesh', (await text('#said')).includes('a pose of the first mesh'), await text('#said'));
+    await page.locator('#play').click();
+    await page.waitForFunction(() => starcontour.state().number === 0);
+    check('plays', true);
+    await page.evaluate(text => {
+        const data = new DataTransfer();
+        data.items.add(new File([text], 'dropped.obj'));
+        document.body.dispatchEvent(new DragEvent('drop', {dataTransfer: data, bubbles: true}));
+    }, readFileSync(moved, 'utf8'));
+    await page.waitForFunction(() => document.getElementById('title').textContent === 'dropped.obj');
+    check('a file that is dropped', (await state()).pairs === 1, await text('#said'));
+    await page.locator('#cloth').click();
+    await frames_on(page, 2);
+    check('and back to the cloth', (await state()).mode === 'cloth');
+    check('no errors', errors.length === 0, errors.join('; '));
+    const fetched = requests.filter(url => !url.startsWith('blob:'));
+    check('nothing is fetched but the page', fetched.length === 1, fetched.join(' '));
+}
+
+/* A site that has the package, the questions and the meshes. */
+async function look_at_answers(meshes) {
+    const page = await open();
+    await page.route('http://localhost/**', route => {
+        const name = new URL(route.request().url()).pathname.slice(1);
+        if (name === '') return route.fulfill({contentType: 'text/html', body: '<!doctype html>'});
+        const path = name === 'answers.mjs' ? 'tests/wasm/answers.mjs' : `${file}/${name}`;
+        return route.fulfill({contentType: 'text/javascript', body: readFileSync(path)});
+    });
+    await page.goto('http://localhost/');
+    for (const mesh of meshes) {
+        const lines = await page.evaluate(async ([name, text]) => {
+            const [package_, {answers}] = await Promise.all([import('/index.js'), import('/answers.mjs')]);
+            return answers(package_, name, text).lines;
+        }, [basename(mesh), readFileSync(mesh, 'utf8')]);
+        console.log(lines.join('\n'));
+    }
+    if (errors.length) throw new Error(errors.join('; '));
+}
+
+if (job === 'page') await look_at_page(rest);
+else if (job === 'answers') await look_at_answers(rest);
+else {
+    const page = await open({viewport: {width: 1000, height: 700}, colorScheme: 'light'});
+    await page.goto(pathToFileURL(resolve(file)).href);
+    await page.waitForFunction(() => window.starcontour?.state().ready, null, {timeout: 60000});
+    await pull(page);
+    await page.screenshot({path: rest[0]});
+}
+await browser.close();
