@@ -138,7 +138,7 @@ fi
 
 # The day of the release, or that it is not released.
 dated() {
-    grep -m 1 '^## ' CHANGELOG.md | grep -Ex "## $version \\($1\\)"
+    grep -m 1 '^## ' CHANGELOG.md | grep -Ex "## $version \\(($1)\\)"
 }
 day='20[0-9][0-9]-[01][0-9]-[0-3][0-9]'
 if [ "${SC_RELEASE:-0}" = 1 ]; then
