@@ -963,6 +963,83 @@ typedef struct sc_trace_result {
 SC_API sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pairs,
                           uint64_t count, const sc_trace_options *options, sc_trace_result *result);
 
+/* A part of the surface that no contour divides. */
+typedef struct sc_region {
+    uint32_t component;    /* the lowest vertex of the connected part of the mesh that it is in */
+    uint32_t vertex_count; /* vertices in it; 0 for a strip or a disc between vertices */
+    double area;           /* of all that is in it */
+    int32_t inside;        /* on request: how often closed components go round it, on the side to which
+                              its normals point: 0 outside of all. SC_REGION_UNKNOWN if that was not
+                              asked for, or contours pass through all of its triangles */
+    uint32_t reserved;     /* 0 */
+} sc_region;
+
+#define SC_REGION_UNKNOWN (-0x7fffffff - 1)
+
+/* What is asked of regions; a sum. */
+enum {
+    SC_REGIONS_INSIDE = 1 /* fill sc_region.inside: the time of all triangles for each region, about 20
+                             ns a triangle */
+};
+
+/* What is on both sides of a contour, on each of its sheets: regions. Equal ones: the contour does
+   not divide the sheet. */
+typedef struct sc_contour_sides {
+    uint32_t sides[2][2]; /* sides[s][0]: on sheet s, at the first node whose edge is on it, where the
+                             edge begins (along 0); sides[s][1]: where it goes on. Of a contour
+                             without such a node, which is within one triangle: within the contour,
+                             and round it; if it is not closed, the region it is in, twice */
+} sc_contour_sides;
+
+/* Regions, and the caller's arrays for them. */
+typedef struct sc_regions_result {
+    uint32_t struct_size;
+    uint32_t flags;            /* in: SC_REGIONS_... */
+    uint64_t region_count;     /* out */
+    uint64_t region_capacity;  /* in: entries of regions */
+    sc_region *regions;        /* in: the caller's array, or NULL if the capacity is 0 */
+    uint32_t *vertex_regions;  /* in: vertex_count entries, or NULL: the region of each vertex. Of
+                                  welded ones that of the one that stands for them; SC_TRACE_NO_EDGE
+                                  for those of no triangle */
+    sc_contour_sides *sides;   /* in: trace->contour_count entries, or NULL */
+} sc_regions_result;
+
+/*
+ * Finds the regions into which the contours of a pose divide the surface: what can be reached from
+ * each other without crossing a contour (global intersection analysis: Baraff, Witkin, Kass 2003,
+ * section 4). All contours count, closed or not; those that end inside a sheet divide nothing there
+ * by themselves. trace is what sc_trace filled for this model and pose; options as there, may be
+ * NULL.
+ *
+ * Regions are in the order of their lowest vertices; those without a vertex come last. Together they
+ * have the area of the mesh (but for triangles that welding has collapsed). Nothing is chosen: which
+ * side of a contour is the wrong one the library cannot know. sc_region_hint names the smaller. A
+ * component is closed if each of its edges is passed as often one way as the other. Where all of a mesh
+ * is closed and is to be intersection-free, what has inside above 0 is in it.
+ *
+ * Limits. Along an edge crossings are ordered by sc_trace_node.along: two that are the same in double
+ * precision may be exchanged, which leaves a region of next to no area, or joins two that have one
+ * between them. Regions that touch in nothing but a vertex at which contours end are one. Where
+ * contours cross in a triangle, as three sheets meet, its area is shared out by the length of its
+ * sides in each region, and what touches no side is not counted. Where ties were decided, nodes are
+ * not where those of the moved vertices are: areas may be off there, even below 0.
+ *
+ * Returns SC_OK, or SC_ERROR_SHORT_BUFFER if there are more regions than fit, whose number is then
+ * told; vertex_regions and sides are written all the same. SC_ERROR_PAIRS: trace names what does not
+ * exist. SC_ERROR_NOT_FINITE: a vertex is NaN or infinite. SC_ERROR_MEMORY, SC_ERROR_INCOMPLETE.
+ *
+ * Cost: about 20 ns a triangle, 100 ns a node; memory: about 25 bytes a vertex and 100 a node, given
+ * back before it returns.
+ */
+SC_API sc_status sc_trace_regions(const sc_model *model, const sc_pose *pose,
+                                  const sc_trace_result *trace, const sc_trace_options *options,
+                                  sc_regions_result *result);
+
+/* Which side of a contour on sheet 0 or 1 has the smaller area: 0 or 1; SC_TRACE_NO_EDGE if both are
+   one region, or as large, or there is no such sheet. */
+SC_API uint32_t sc_region_hint(const sc_region *regions, const sc_contour_sides *contour,
+                               uint32_t sheet);
+
 /* ------------------------------------------------------------------------------------------------
  * Steps
  *

@@ -37,6 +37,7 @@
 #include "run/step_question.h"
 #include "step/step_filter.h"
 #include "step/step_motion.h"
+#include "trace/regions.h"
 #include "trace/trace.h"
 #include "step/step_pairs.h"
 
@@ -850,73 +851,137 @@ sc_status sc_contacts(const sc_model *model, const sc_pose *pose, uint32_t kind,
 /* More pairs than this are refused. */
 #define TRACE_PAIRS_MAX (UINT64_C(1) << 30)
 
-/* Reads options.hooks, allocator, tasks and cancel, which are checked. */
-static sc_status read_trace_options(const sc_trace_options *options, sc_trace_options *o,
-                                    sc_hooks *hooks, sc_allocator *allocator, sc_tasks *tasks)
+/* What a call about contours was given, checked. */
+typedef struct trace_call {
+    sc_hooks hooks;
+    sc_allocator allocator;
+    sc_tasks tasks;
+    sc_trace_subject subject; /* but for pairs */
+} trace_call;
+
+static sc_status read_trace_call(const sc_model *model, const sc_pose *pose,
+                                 const sc_trace_options *options, trace_call *call)
 {
-    sc_status status = sc_arguments_read_options(NULL, "options", o, sizeof *o, options);
+    sc_trace_options o;
     sc_choice simd = {"simd", 0, SC_SIMD_AVX512};
-    if (!status) status = sc_arguments_read_hooks(o->hooks, hooks);
+    sc_pose p;
+    uint64_t stride;
+    sc_status status = sc_arguments_read_options(NULL, "options", &o, sizeof o, options);
+    if (!status) status = sc_arguments_read_hooks(o.hooks, &call->hooks);
     if (status) return status;
-    simd.value = o->simd;
-    status = sc_arguments_choose(hooks, "options", &simd, 1);
+    simd.value = o.simd;
+    status = sc_arguments_choose(&call->hooks, "options", &simd, 1);
     if (status) return status;
-    if (o->simd == SC_SIMD_BEST) o->simd = (uint32_t)sc_isa_best();
-    if (SC_HARDLY(o->simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;
-    status = read_allocator(hooks, o->allocator, allocator);
-    return status ? status : read_build_tasks(hooks, o->tasks, tasks);
+    if (o.simd == SC_SIMD_BEST) o.simd = (uint32_t)sc_isa_best();
+    if (SC_HARDLY(o.simd > (uint32_t)sc_isa_best())) return SC_ERROR_UNSUPPORTED;
+    status = read_allocator(&call->hooks, o.allocator, &call->allocator);
+    if (!status) status = read_build_tasks(&call->hooks, o.tasks, &call->tasks);
+    if (!status) status = sc_question_read_pose(&call->hooks, "pose", model, pose, &p, &stride);
+    if (status) return status;
+    memset(&call->subject, 0, sizeof call->subject);
+    call->subject.model = model;
+    sc_positions_note(model, &p, stride, &call->subject.positions);
+    call->subject.kernels = sc_kernels_for(o.simd)->trace;
+    call->subject.hooks = &call->hooks;
+    call->subject.cancel = o.cancel;
+    return SC_OK;
 }
 
-static sc_status read_trace_result(const sc_hooks *hooks, const sc_trace_result *result,
-                                   sc_trace_result *r)
+/* Arrays of a trace: the caller's, to be filled, or of one that was. */
+static sc_status need_trace_arrays(const sc_hooks *hooks, const char *of, const sc_trace_result *r,
+                                   uint64_t nodes, uint64_t contours)
 {
-    sc_status status = sc_arguments_read(hooks, "result", r, sizeof *r, result,
-                                         SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
+    sc_status status = nodes ? sc_arguments_need(hooks, of, "nodes", r->nodes) : SC_OK;
+    if (!status && contours) status = sc_arguments_need(hooks, of, "contours", r->contours);
+    return status;
+}
+
+static sc_status find_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pairs,
+                            uint64_t count, const sc_trace_options *options, sc_trace_result *r)
+{
+    trace_call call;
+    sc_scratch scratch;
+    sc_status status = read_trace_call(model, pose, options, &call);
+    if (!status)
+        status = need_trace_arrays(&call.hooks, "result", r, r->node_capacity, r->contour_capacity);
+    if (!status && count > TRACE_PAIRS_MAX) status = SC_ERROR_COUNT;
     if (status) return status;
-    r->reserved = 0;
-    r->node_count = r->contour_count = 0;
-    if (r->node_capacity) status = sc_arguments_need(hooks, "result", "nodes", r->nodes);
-    if (!status && r->contour_capacity)
-        status = sc_arguments_need(hooks, "result", "contours", r->contours);
+    call.subject.pairs = pairs;
+    call.subject.count = (uint32_t)count;
+    sc_scratch_init(&scratch, &call.allocator);
+    if (call.tasks.workers > 1) scratch.tasks = &call.tasks;
+    status = sc_trace_run(&call.subject, &scratch, r);
+    sc_scratch_clear(&scratch);
     return status;
 }
 
 sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pairs, uint64_t count,
                    const sc_trace_options *options, sc_trace_result *result)
 {
-    sc_trace_options o;
-    sc_trace_subject subject;
-    sc_hooks hooks;
-    sc_allocator allocator;
-    sc_tasks tasks;
-    sc_scratch scratch;
     sc_trace_result r;
-    sc_pose p;
-    uint64_t stride;
     sc_status status;
     if (!model || !pose || !result || (count && !pairs)) return SC_ERROR_NULL;
-    status = read_trace_options(options, &o, &hooks, &allocator, &tasks);
-    if (!status) status = read_trace_result(&hooks, result, &r);
-    if (!status) {
-        status = sc_question_read_pose(&hooks, "pose", model, pose, &p, &stride);
-        if (!status && count > TRACE_PAIRS_MAX) status = SC_ERROR_COUNT;
-        if (!status) {
-            sc_positions_note(model, &p, stride, &subject.positions);
-            subject.model = model;
-            subject.kernels = sc_kernels_for(o.simd)->trace;
-            subject.pairs = pairs;
-            subject.count = (uint32_t)count;
-            subject.hooks = &hooks;
-            subject.cancel = o.cancel;
-            sc_scratch_init(&scratch, &allocator);
-            if (tasks.workers > 1) scratch.tasks = &tasks;
-            status = sc_trace_run(&subject, &scratch, &r);
-            sc_scratch_clear(&scratch);
-        }
-        if (status && status != SC_ERROR_SHORT_BUFFER) r.node_count = r.contour_count = 0;
-        sc_structs_write(result, &r, sizeof r);
-    }
+    status = sc_arguments_read(NULL, "result", &r, sizeof r, result,
+                               SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
+    if (status) return status;
+    r.reserved = 0;
+    r.node_count = r.contour_count = 0;
+    status = find_trace(model, pose, pairs, count, options, &r);
+    if (status && status != SC_ERROR_SHORT_BUFFER) r.node_count = r.contour_count = 0;
+    sc_structs_write(result, &r, sizeof r);
     return status;
+}
+
+static sc_status find_regions(const sc_model *model, const sc_pose *pose,
+                              const sc_trace_result *trace, const sc_trace_options *options,
+                              sc_regions_result *r)
+{
+    const sc_choice flags = {"flags", r->flags, SC_REGIONS_INSIDE};
+    trace_call call;
+    sc_scratch scratch;
+    sc_trace_result t;
+    sc_status status = read_trace_call(model, pose, options, &call);
+    if (!status) status = sc_arguments_choose(&call.hooks, "result", &flags, 1);
+    if (!status)
+        status = sc_arguments_read(&call.hooks, "trace", &t, sizeof t, trace,
+                                   SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
+    if (!status)
+        status = need_trace_arrays(&call.hooks, "trace", &t, t.node_count, t.contour_count);
+    if (!status && (t.node_count > TRACE_PAIRS_MAX || t.contour_count > TRACE_PAIRS_MAX))
+        status = SC_ERROR_COUNT;
+    if (!status && r->region_capacity)
+        status = sc_arguments_need(&call.hooks, "result", "regions", r->regions);
+    if (status) return status;
+    sc_scratch_init(&scratch, &call.allocator);
+    status = sc_regions_find(&call.subject, &t, &scratch, r);
+    sc_scratch_clear(&scratch);
+    return status;
+}
+
+sc_status sc_trace_regions(const sc_model *model, const sc_pose *pose, const sc_trace_result *trace,
+                           const sc_trace_options *options, sc_regions_result *result)
+{
+    sc_regions_result r;
+    sc_status status;
+    if (!model || !pose || !trace || !result) return SC_ERROR_NULL;
+    status = sc_arguments_read(NULL, "result", &r, sizeof r, result,
+                               SC_ARGUMENTS_UP_TO(sc_regions_result, sides));
+    if (status) return status;
+    r.region_count = 0;
+    status = find_regions(model, pose, trace, options, &r);
+    if (status && status != SC_ERROR_SHORT_BUFFER) r.region_count = 0;
+    sc_structs_write(result, &r, sizeof r);
+    return status;
+}
+
+uint32_t sc_region_hint(const sc_region *regions, const sc_contour_sides *contour, uint32_t sheet)
+{
+    uint32_t first, second;
+    if (!regions || !contour || sheet > 1) return SC_TRACE_NO_EDGE;
+    first = contour->sides[sheet][0];
+    second = contour->sides[sheet][1];
+    if (first == second || regions[first].area == regions[second].area) return SC_TRACE_NO_EDGE;
+    return regions[second].area < regions[first].area;
 }
 
 /* ---- proximity ---- */

@@ -21,6 +21,7 @@
 #include "starcontour.h"
 #include "tasks.h"
 #include "trace_oracle.h"
+#include "trace_scene.h"
 
 /* ---- signs ---- */
 
@@ -71,62 +72,6 @@ typedef struct traced {
     sc_trace_result result;
     trace_oracle_answer truth;
 } traced;
-
-static sc_trace_result no_room(void)
-{
-    sc_trace_result r;
-    memset(&r, 0, sizeof r);
-    r.struct_size = sizeof r;
-    return r;
-}
-
-/* The pairs of a pose, which the caller frees. */
-static sc_pair *find_pairs(const sc_model *model, const sc_pose *pose, uint64_t *count)
-{
-    sc_query_options options = input_query(SC_PAIRS_EDGE, SC_CONTACT_TOUCHING, SC_METHOD_DEFAULT);
-    sc_workspace *workspace = NULL;
-    sc_result r;
-    sc_pair *pairs = NULL;
-    memset(&r, 0, sizeof r);
-    r.struct_size = sizeof r;
-    *count = 0;
-    if (!CHECK(sc_workspace_create(model, NULL, &workspace) == SC_OK)) return NULL;
-    sc_query(model, workspace, pose, &options, &r);
-    pairs = (sc_pair *)test_allocate(r.count * sizeof *pairs);
-    r.pairs = pairs;
-    r.capacity = r.count;
-    CHECK(sc_query(model, workspace, pose, &options, &r) == SC_OK);
-    *count = r.count;
-    sc_workspace_free(workspace);
-    return pairs;
-}
-
-/* Asks for counts first, then for all. */
-static int trace_pairs(const sc_model *model, const sc_pose *pose, const sc_pair *pairs,
-                       uint64_t count, const sc_trace_options *options, sc_trace_result *result)
-{
-    sc_status status;
-    *result = no_room();
-    status = sc_trace(model, pose, pairs, count, options, result);
-    if (!CHECK_MSG(status == (result->node_count ? SC_ERROR_SHORT_BUFFER : SC_OK), "%s",
-                   sc_status_string(status)))
-        return 0;
-    result->nodes = (sc_trace_node *)test_allocate(result->node_count * sizeof *result->nodes);
-    result->contours =
-        (sc_trace_contour *)test_allocate(result->contour_count * sizeof *result->contours);
-    result->node_capacity = result->node_count;
-    result->contour_capacity = result->contour_count;
-    status = sc_trace(model, pose, pairs, count, options, result);
-    return CHECK_MSG(status == SC_OK, "%s", sc_status_string(status)) &&
-           CHECK(result->node_count == result->node_capacity &&
-                 result->contour_count == result->contour_capacity);
-}
-
-static void free_result(sc_trace_result *result)
-{
-    free(result->nodes);
-    free(result->contours);
-}
 
 static int is_same_result(const sc_trace_result *a, const sc_trace_result *b)
 {
@@ -348,10 +293,10 @@ static int check_all_pairs(const traced *t, const sc_model *model, const sc_pose
             pairs[count].a = edge->name;
             pairs[count++].b = b;
         }
-    is_right = trace_pairs(model, pose, pairs, count, NULL, &other);
+    is_right = trace_scene_trace(model, pose, pairs, count, NULL, &other);
     if (is_right) {
         is_right = CHECK_MSG(is_same_result(&t->result, &other), "other pairs change contours");
-        free_result(&other);
+        trace_scene_free_result(&other);
     }
     free(pairs);
     return is_right;
@@ -379,9 +324,9 @@ static int check_mesh(const soup *mesh, const double *pose, uint32_t weld, uint3
         for (uint32_t i = 0; i < 3 * t.triangle_count; ++i)
             t.triangles[i] = map[mesh->triangles[i]];
         t.positions = pose;
-        t.pairs = find_pairs(model, &p, &t.pair_count);
+        t.pairs = trace_scene_find_pairs(model, &p, &t.pair_count);
         t.truth = trace_oracle_find(t.triangles, t.triangle_count, pose);
-        is_right = trace_pairs(model, &p, t.pairs, t.pair_count, NULL, &t.result) &&
+        is_right = trace_scene_trace(model, &p, t.pairs, t.pair_count, NULL, &t.result) &&
                    check_contours(&t) && check_all_pairs(&t, model, &p);
         for (uint64_t i = 0; i < t.result.contour_count && is_right && sum; ++i) {
             const sc_trace_contour *c = &t.result.contours[i];
@@ -392,7 +337,7 @@ static int check_mesh(const soup *mesh, const double *pose, uint32_t weld, uint3
             sum->branch += c->begin == SC_TRACE_BRANCH;
             sum->vertex += c->end == SC_TRACE_VERTEX;
         }
-        free_result(&t.result);
+        trace_scene_free_result(&t.result);
         trace_oracle_free(&t.truth);
         free(t.pairs);
         free(t.triangles);
@@ -442,6 +387,8 @@ static void meshes(void)
         int is_right;
         soup_any_pose(pose, s.vertex_count);
         if (test_random_below(3) == 0) soup_snap(pose, s.vertex_count, 0.125);
+        if (test_random_below(4) == 0)
+            soup_scale(pose, s.vertex_count, ldexp(1, (int)test_random_below(1900) - 950));
         is_right = check_mesh(&s, pose, test_random_below(3), any_partition(), &sum);
         free(pose);
         soup_free(&s);
@@ -492,40 +439,11 @@ static void adversaries(void)
     test_note("%" PRIu64 " contours", sum.contours);
 }
 
-/* Two strips that cross along a ring, and turn as they go round it so often by a right angle: after
-   an odd number each goes on as the other, and the two are one. */
-static soup crossing_strips(uint32_t stations, uint32_t turns)
-{
-    soup s = soup_make(4 * stations, 4 * stations);
-    uint32_t *t = s.triangles;
-    for (uint32_t i = 0; i < stations; ++i)
-        for (uint32_t k = 0; k < 4; ++k) {
-            const double round = 6.283185307179586 * i / stations;
-            const double angle = 1.5707963267948966 * (k + (double)turns * i / stations);
-            const double out = 3 + cos(angle);
-            double *p = s.positions + 3 * (size_t)(4 * i + k);
-            p[0] = out * cos(round);
-            p[1] = out * sin(round);
-            p[2] = sin(angle);
-        }
-    soup_noise(s.positions, s.vertex_count, 0.01);
-    for (uint32_t i = 0; i < stations; ++i)
-        for (uint32_t strip = 0; strip < 2; ++strip) {
-            const uint32_t next = (i + 1) % stations, shift = next ? 0 : turns;
-            const uint32_t a = 4 * i + strip, b = a + 2, c = 4 * next + (strip + shift) % 4,
-                           d = 4 * next + (strip + shift + 2) % 4;
-            const uint32_t corner[6] = {a, b, c, b, d, c};
-            memcpy(t, corner, sizeof corner);
-            t += 6;
-        }
-    return s;
-}
-
 static void strips_that_are_one(void)
 {
     for (uint32_t turns = 0; turns < 6; ++turns)
         for (uint32_t n = test_iterations(5); n > 0; --n) {
-            soup s = crossing_strips(20 + test_random_below(20), turns);
+            soup s = trace_scene_strips(20 + test_random_below(20), turns);
             tally sum;
             memset(&sum, 0, sizeof sum);
             if (check_mesh(&s, s.positions, SC_WELD_NONE, SC_PARTITION_FAST, &sum))
@@ -538,60 +456,13 @@ static void strips_that_are_one(void)
 
 /* ---- what does not change contours ---- */
 
-/* A mesh in a pose and its pairs, the caller's arrays that the library gets. */
-typedef struct scene {
-    soup mesh;
-    sc_mesh input;
-    sc_pose pose;
-    sc_model *model;
-    sc_pair *pairs;
-    uint64_t count;
-    sc_trace_result result;
-} scene;
-
-/* Takes the mesh, which is posed as it is. */
-static int open_scene(scene *s, soup mesh, uint32_t content)
-{
-    sc_build_options options;
-    memset(s, 0, sizeof *s);
-    memset(&options, 0, sizeof options);
-    options.struct_size = sizeof options;
-    options.weld = SC_WELD_NONE;
-    options.content = content;
-    s->mesh = mesh;
-    s->input = input_plain_mesh(&s->mesh);
-    s->pose = input_plain_pose(s->mesh.positions, s->mesh.vertex_count);
-    if (!CHECK(sc_build(&s->input, &options, &s->model) == SC_OK)) return 0;
-    s->pairs = find_pairs(s->model, &s->pose, &s->count);
-    return CHECK(s->pairs) && trace_pairs(s->model, &s->pose, s->pairs, s->count, NULL, &s->result);
-}
-
-static void close_scene(scene *s)
-{
-    free_result(&s->result);
-    free(s->pairs);
-    sc_model_free(s->model);
-    soup_free(&s->mesh);
-}
-
-/* Crossing cloths with much noise: thousands of crossings. */
-static soup crossing_cloths(uint32_t across)
-{
-    soup one = soup_cloth(across, across), two = soup_cloth(across, across), both;
-    soup_smooth(one.positions, one.vertex_count, 0.1);
-    soup_smooth(two.positions, two.vertex_count, 0.1);
-    soup_noise(one.positions, one.vertex_count, 0.3 / across);
-    soup_noise(two.positions, two.vertex_count, 0.3 / across);
-    both = soup_join(&one, &two);
-    soup_free(&one);
-    soup_free(&two);
-    return both;
-}
-
 static void threads_change_nothing(void)
 {
-    scene s;
-    if (open_scene(&s, crossing_cloths(80), SC_MODEL_FULL)) {
+    soup mesh = trace_scene_cloths(80);
+    trace_scene s;
+    soup_snap(mesh.positions, mesh.vertex_count, 0x1p-8); /* some pairs that touch do not cross */
+    if (trace_scene_open(&s, mesh, SC_MODEL_FULL)) {
+        CHECK(s.count > s.result.node_count);
         CHECK_MSG(s.result.node_count > 500, "%" PRIu64 " nodes", s.result.node_count);
         for (int way = HOST_FIRST; way < HOST_COUNT; ++way)
             for (uint32_t workers = 1; workers <= 3; ++workers) {
@@ -602,26 +473,26 @@ static void threads_change_nothing(void)
                 options.struct_size = sizeof options;
                 host_start(&h, way, workers);
                 options.tasks = &h.tasks;
-                if (trace_pairs(s.model, &s.pose, s.pairs, s.count, &options, &other)) {
+                if (trace_scene_trace(s.model, &s.pose, s.pairs, s.count, &options, &other)) {
                     CHECK(is_same_result(&s.result, &other));
-                    free_result(&other);
+                    trace_scene_free_result(&other);
                 }
                 CHECK(!h.mistakes && (workers == 1 || h.parts > 0));
                 host_stop(&h);
             }
     }
-    close_scene(&s);
+    trace_scene_close(&s);
 }
 
 /* Every instruction set, floats and doubles of the same values. */
 static void instructions_change_nothing(void)
 {
     for (uint32_t n = test_iterations(10); n > 0; --n) {
-        soup mesh = crossing_cloths(5 + test_random_below(12));
-        scene s;
+        soup mesh = trace_scene_cloths(5 + test_random_below(12));
+        trace_scene s;
         soup_round_to_float(mesh.positions, mesh.vertex_count);
         if (test_random_below(2)) soup_snap(mesh.positions, mesh.vertex_count, 0x1p-5);
-        if (open_scene(&s, mesh, SC_MODEL_FULL))
+        if (trace_scene_open(&s, mesh, SC_MODEL_FULL))
             for (uint32_t simd = SC_SIMD_BASE; simd <= SC_SIMD_AVX512; ++simd)
                 for (uint32_t floats = 0; floats < 2; ++floats) {
                     input_array positions =
@@ -629,33 +500,34 @@ static void instructions_change_nothing(void)
                                         floats ? SC_FLOAT : SC_DOUBLE, test_random_below(9));
                     const sc_pose pose = input_pose(s.mesh.vertex_count, &positions);
                     sc_trace_options options;
-                    sc_trace_result other = no_room();
+                    sc_trace_result other = trace_scene_no_room();
                     memset(&options, 0, sizeof options);
                     options.struct_size = sizeof options;
                     options.simd = simd;
                     if (sc_trace(s.model, &pose, s.pairs, s.count, &options, &other) ==
                         SC_ERROR_UNSUPPORTED) {
                         CHECK(simd != SC_SIMD_BASE);
-                    } else if (trace_pairs(s.model, &pose, s.pairs, s.count, &options, &other)) {
+                    } else if (trace_scene_trace(s.model, &pose, s.pairs, s.count, &options,
+                                                 &other)) {
                         CHECK(is_same_result(&s.result, &other));
-                        free_result(&other);
+                        trace_scene_free_result(&other);
                     }
                     input_free(&positions);
                 }
-        close_scene(&s);
+        trace_scene_close(&s);
     }
 }
 
 static void models_change_nothing(void)
 {
     for (uint32_t n = test_iterations(10); n > 0; --n) {
-        soup mesh = crossing_cloths(5 + test_random_below(10));
-        scene full, boxes;
-        const int is_open = open_scene(&full, soup_copy(&mesh), SC_MODEL_FULL);
-        if (open_scene(&boxes, mesh, SC_MODEL_BOXES) && is_open)
+        soup mesh = trace_scene_cloths(5 + test_random_below(10));
+        trace_scene full, boxes;
+        const int is_open = trace_scene_open(&full, soup_copy(&mesh), SC_MODEL_FULL);
+        if (trace_scene_open(&boxes, mesh, SC_MODEL_BOXES) && is_open)
             CHECK(is_same_result(&full.result, &boxes.result));
-        close_scene(&full);
-        close_scene(&boxes);
+        trace_scene_close(&full);
+        trace_scene_close(&boxes);
     }
 }
 
@@ -670,10 +542,10 @@ static int compare_lengths(const void *a, const void *b)
 static void names_change_nothing(void)
 {
     for (uint32_t n = test_iterations(10); n > 0; --n) {
-        soup mesh = crossing_cloths(4 + test_random_below(8)), other = soup_copy(&mesh);
+        soup mesh = trace_scene_cloths(4 + test_random_below(8)), other = soup_copy(&mesh);
         const uint32_t count = mesh.vertex_count;
         uint32_t *name = (uint32_t *)test_allocate(count * sizeof *name);
-        scene a, b;
+        trace_scene a, b;
         int is_open;
         for (uint32_t v = 0; v < count; ++v) {
             const uint32_t w = test_random_below(v + 1);
@@ -686,8 +558,8 @@ static void names_change_nothing(void)
         for (uint32_t i = 0; i < 3 * mesh.triangle_count; ++i)
             other.triangles[i] = name[mesh.triangles[i]];
         free(name);
-        is_open = open_scene(&a, mesh, SC_MODEL_FULL);
-        if (open_scene(&b, other, SC_MODEL_FULL) && is_open &&
+        is_open = trace_scene_open(&a, mesh, SC_MODEL_FULL);
+        if (trace_scene_open(&b, other, SC_MODEL_FULL) && is_open &&
             CHECK(a.result.node_count == b.result.node_count &&
                   a.result.contour_count == b.result.contour_count)) {
             const uint64_t contours = a.result.contour_count;
@@ -704,8 +576,8 @@ static void names_change_nothing(void)
                     break;
             free(length);
         }
-        close_scene(&a);
-        close_scene(&b);
+        trace_scene_close(&a);
+        trace_scene_close(&b);
     }
 }
 
@@ -738,9 +610,9 @@ static void release(void *user, void *memory, uint64_t bytes)
 
 static void failing_memory(void)
 {
-    scene s;
+    trace_scene s;
     int is_done = 0;
-    if (open_scene(&s, crossing_cloths(6), SC_MODEL_FULL))
+    if (trace_scene_open(&s, trace_scene_cloths(6), SC_MODEL_FULL))
         for (uint32_t times = 0; !is_done && times < 100; ++times) {
             sc_trace_options options;
             sc_trace_result r = s.result;
@@ -761,11 +633,11 @@ static void failing_memory(void)
             CHECK(f.live == 0);
         }
     CHECK(is_done);
-    close_scene(&s);
+    trace_scene_close(&s);
 }
 
 /* The status of a trace of the first so many pairs. */
-static sc_status try_pairs(const scene *s, const sc_pair *pairs, uint64_t count)
+static sc_status try_pairs(const trace_scene *s, const sc_pair *pairs, uint64_t count)
 {
     sc_trace_result r = s->result;
     const sc_status status = sc_trace(s->model, &s->pose, pairs, count, NULL, &r);
@@ -776,8 +648,8 @@ static sc_status try_pairs(const scene *s, const sc_pair *pairs, uint64_t count)
 
 static void wrong_pairs(void)
 {
-    scene s;
-    if (open_scene(&s, crossing_cloths(8), SC_MODEL_FULL) && CHECK(s.count > 8)) {
+    trace_scene s;
+    if (trace_scene_open(&s, trace_scene_cloths(8), SC_MODEL_FULL) && CHECK(s.count > 8)) {
         sc_pair *pairs = (sc_pair *)test_allocate((size_t)(s.count + 1) * sizeof *pairs);
         for (uint64_t left_out = 0; left_out < s.count; ++left_out) {
             memcpy(pairs, s.pairs, (size_t)left_out * sizeof *pairs);
@@ -801,13 +673,13 @@ static void wrong_pairs(void)
         CHECK(try_pairs(&s, NULL, 0) == SC_OK);
         free(pairs);
     }
-    close_scene(&s);
+    trace_scene_close(&s);
 }
 
 static void wrong_arguments(void)
 {
-    scene s;
-    if (open_scene(&s, crossing_cloths(8), SC_MODEL_FULL)) {
+    trace_scene s;
+    if (trace_scene_open(&s, trace_scene_cloths(8), SC_MODEL_FULL)) {
         sc_trace_result r = s.result;
         sc_trace_options options;
         sc_pose pose = s.pose;
@@ -854,7 +726,7 @@ static void wrong_arguments(void)
         CHECK(sc_trace(s.model, &pose, s.pairs, s.count, NULL, &r) == SC_ERROR_NOT_FINITE);
         free(bad);
     }
-    close_scene(&s);
+    trace_scene_close(&s);
 }
 
 SC_TEST_MAIN(SC_TEST(signs_are_those_of_polynomials), SC_TEST(soups), SC_TEST(meshes),

@@ -10,84 +10,33 @@
 #include "base/hooks.h"
 #include "base/jobs.h"
 #include "base/sort.h"
+#include "trace/crossed_edges.h"
 
 /* Triangles of the shortest part that is looked through by itself. */
 enum { PART_PLACES_MIN = 5000 };
 
-/* The edges that cross, by their lower ends, and the triangles that have them. */
-typedef struct crossing_edges {
+/* The edges that cross, and the triangles that have them. */
+typedef struct edge_owners {
     const sc_trace_subject *subject;
-    uint32_t count;
-    sc_pair *ends;     /* of each edge, the lower one first */
-    uint32_t *first;   /* vertex_count + 1: edges with lower end v are first[v] to first[v + 1] */
-    sc_pair *by_end;   /* of these, the upper end and the number */
-    uint8_t *is_end;   /* vertex_count: whether an edge ends there */
+    sc_crossed_edges edges;
     uint32_t *place;   /* of each part, from its first on: places that may have an edge */
     sc_pair *triangle; /* of edges, and triangles that have them */
     uint64_t total;    /* how many these are */
     uint32_t found[SC_JOBS_PARTS], begin[SC_JOBS_PARTS]; /* places of each part, and its first */
     uint64_t to[SC_JOBS_PARTS];                          /* where each part writes */
-} crossing_edges;
-
-/* The number of the edge between two vertices, or SC_NONE. */
-static uint32_t find_edge(const crossing_edges *e, uint32_t u, uint32_t v)
-{
-    const uint32_t low = u < v ? u : v, high = u < v ? v : u;
-    uint32_t i;
-    for (i = e->first[low]; i < e->first[low + 1]; i++)
-        if (e->by_end[i].a == high) return e->by_end[i].b;
-    return SC_NONE;
-}
-
-/* Sorts edges by their lower ends. */
-static void sort_crossing_edges(crossing_edges *e)
-{
-    const uint32_t vertices = e->subject->model->vertex_count;
-    uint32_t i, v;
-    for (i = 0; i < e->count; i++) e->first[e->ends[i].a + 1]++;
-    for (v = 0; v < vertices; v++) e->first[v + 1] += e->first[v];
-    for (i = e->count; i-- > 0;) { /* fills each list from its end, which moves to its begin */
-        const uint32_t at = --e->first[e->ends[i].a + 1];
-        e->by_end[at].a = e->ends[i].b;
-        e->by_end[at].b = i;
-    }
-    for (v = 0; v < vertices; v++) e->first[v] = e->first[v + 1];
-    e->first[vertices] = e->count;
-}
-
-/* Lists the edges of crossings, which are sorted by them. */
-static sc_status list_crossing_edges(crossing_edges *e, const sc_pair *crossings, uint32_t count,
-                                     sc_scratch *scratch)
-{
-    const uint32_t vertices = e->subject->model->vertex_count;
-    uint32_t i, low, ends[2];
-    e->ends = (sc_pair *)sc_scratch_take(scratch, count, sizeof *e->ends);
-    e->by_end = (sc_pair *)sc_scratch_take(scratch, count, sizeof *e->by_end);
-    e->first =
-        (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)vertices + 1, sizeof *e->first, 0);
-    e->is_end = (uint8_t *)sc_scratch_take_filled(scratch, vertices, 1, 0);
-    if (!e->ends || !e->by_end || !e->first || !e->is_end) return SC_ERROR_MEMORY;
-    for (e->count = i = 0; i < count; i++) {
-        if (i > 0 && crossings[i].a == crossings[i - 1].a) continue;
-        sc_trace_ends(e->subject->model, crossings[i].a, ends);
-        low = ends[0] < ends[1] ? 0 : 1;
-        e->ends[e->count].a = ends[low];
-        e->ends[e->count++].b = ends[1 - low];
-        e->is_end[ends[0]] = e->is_end[ends[1]] = 1;
-    }
-    sort_crossing_edges(e);
-    return SC_OK;
-}
+} edge_owners;
 
 /* Lists the places that have two corners at which edges end. */
 static void find_some_places(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    crossing_edges *e = (crossing_edges *)context;
+    edge_owners *e = (edge_owners *)context;
     const uint32_t *corner = sc_model_triangle(e->subject->model) + 3 * (uint64_t)first;
     uint32_t i, count = 0;
     for (i = first; i < end; i++, corner += 3) { /* without branches */
         e->place[first + count] = i;
-        count += e->is_end[corner[0]] + e->is_end[corner[1]] + e->is_end[corner[2]] >= 2;
+        count +=
+            e->edges.is_end[corner[0]] + e->edges.is_end[corner[1]] + e->edges.is_end[corner[2]] >=
+            2;
     }
     e->begin[part] = first;
     e->found[part] = count;
@@ -96,7 +45,7 @@ static void find_some_places(void *context, uint32_t part, uint32_t first, uint3
 /* Of these the edges; how many there are instead of how many places. */
 static void find_some_sides(void *context, uint32_t part, uint32_t worker)
 {
-    crossing_edges *e = (crossing_edges *)context;
+    edge_owners *e = (edge_owners *)context;
     const uint32_t *triangle = sc_model_triangle(e->subject->model);
     const uint32_t *id = sc_model_triangle_id(e->subject->model);
     const uint32_t *place = e->place + e->begin[part];
@@ -107,7 +56,8 @@ static void find_some_sides(void *context, uint32_t part, uint32_t worker)
         const uint32_t *corner = triangle + 3 * (uint64_t)place[i];
         if (sc_trace_is_collapsed(corner)) continue;
         for (k = 0; k < 3; k++) {
-            const uint32_t edge = find_edge(e, corner[k], corner[k < 2 ? k + 1 : 0]);
+            const uint32_t edge =
+                sc_crossed_edges_find(&e->edges, corner[k], corner[k < 2 ? k + 1 : 0]);
             if (edge == SC_NONE) continue;
             to[count].a = edge;
             to[count++].b = id[place[i]];
@@ -117,7 +67,7 @@ static void find_some_sides(void *context, uint32_t part, uint32_t worker)
 }
 
 /* Lists which triangles have which edges. */
-static sc_status list_triangles(crossing_edges *e, sc_scratch *scratch)
+static sc_status list_triangles(edge_owners *e, sc_scratch *scratch)
 {
     const uint32_t triangles = e->subject->model->triangle_count;
     uint64_t room = 0;
@@ -141,31 +91,22 @@ static sc_status list_triangles(crossing_edges *e, sc_scratch *scratch)
     return SC_OK;
 }
 
-static void give_edges(sc_scratch *scratch, const crossing_edges *e)
-{
-    sc_scratch_give(scratch, e->triangle);
-    sc_scratch_give(scratch, e->is_end);
-    sc_scratch_give(scratch, e->first);
-    sc_scratch_give(scratch, e->by_end);
-    sc_scratch_give(scratch, e->ends);
-}
-
 /* Sorts triangles by edges, each edge's in ascending order; returns where those of each edge begin,
    or NULL if there is no memory. */
-static uint32_t *sort_triangles(crossing_edges *e, sc_scratch *scratch)
+static uint32_t *sort_triangles(edge_owners *e, sc_scratch *scratch)
 {
     uint32_t *first =
-        (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)e->count + 1, sizeof *first, 0);
+        (uint32_t *)sc_scratch_take_filled(scratch, (uint64_t)e->edges.count + 1, sizeof *first, 0);
     sc_pair *sorted = (sc_pair *)sc_scratch_take(scratch, e->total, sizeof *sorted);
     uint32_t edge;
     uint64_t i;
     if (!first || !sorted) return NULL;
     for (i = 0; i < e->total; i++) first[e->triangle[i].a + 1]++;
-    for (edge = 0; edge < e->count; edge++) first[edge + 1] += first[edge];
+    for (edge = 0; edge < e->edges.count; edge++) first[edge + 1] += first[edge];
     for (i = e->total; i-- > 0;) sorted[--first[e->triangle[i].a + 1]] = e->triangle[i];
-    for (edge = 0; edge < e->count; edge++) first[edge] = first[edge + 1];
+    for (edge = 0; edge < e->edges.count; edge++) first[edge] = first[edge + 1];
     first[edge] = (uint32_t)e->total;
-    for (edge = 0; edge < e->count; edge++)
+    for (edge = 0; edge < e->edges.count; edge++)
         sc_sort_pairs(sorted + first[edge], first[edge + 1] - first[edge]);
     sc_scratch_give(scratch, e->triangle);
     e->triangle = sorted;
@@ -173,7 +114,7 @@ static uint32_t *sort_triangles(crossing_edges *e, sc_scratch *scratch)
 }
 
 /* Gives each crossing a branch for each triangle of its edge. */
-static sc_status list_branches(sc_sheets *s, crossing_edges *t, sc_scratch *scratch)
+static sc_status list_branches(sc_sheets *s, edge_owners *t, sc_scratch *scratch)
 {
     const uint32_t *of_edge = sort_triangles(t, scratch);
     uint64_t total = 0;
@@ -286,17 +227,18 @@ static sc_status join_branches(const sc_trace_subject *subject, sc_sheets *s, sc
 sc_status sc_sheets_find(const sc_trace_subject *subject, const sc_pair *crossings, uint32_t count,
                          sc_scratch *scratch, sc_sheets *sheets)
 {
-    crossing_edges edges;
+    edge_owners owners;
     sc_status status;
     memset(sheets, 0, sizeof *sheets);
     sheets->crossings = crossings;
     sheets->count = count;
-    memset(&edges, 0, sizeof edges);
-    edges.subject = subject;
-    status = list_crossing_edges(&edges, crossings, count, scratch);
-    if (!status) status = list_triangles(&edges, scratch);
-    if (!status) status = list_branches(sheets, &edges, scratch);
-    give_edges(scratch, &edges);
+    memset(&owners, 0, sizeof owners);
+    owners.subject = subject;
+    status = sc_crossed_edges_list(subject, crossings, count, scratch, &owners.edges);
+    if (!status) status = list_triangles(&owners, scratch);
+    if (!status) status = list_branches(sheets, &owners, scratch);
+    sc_scratch_give(scratch, owners.triangle);
+    sc_crossed_edges_give(scratch, &owners.edges);
     if (!status && sc_trace_is_cancelled(subject)) status = SC_ERROR_INCOMPLETE;
     return status ? status : join_branches(subject, sheets, scratch);
 }

@@ -1,0 +1,517 @@
+/*
+ * Regions: of closed surfaces that pass through each other, against the winding number of the other
+ * one round each vertex, which knows nothing of contours; of planes through spheres, against areas
+ * by formulas; of any meshes, what is true of all: areas add up, and ends of edges that nothing
+ * crosses are in one region; and arguments that cannot be.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#define _POSIX_C_SOURCE 200112L /* posix_memalign */
+#include <float.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "harness.h"
+#include "trace_scene.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* A scene and its regions. */
+typedef struct divided_scene {
+    trace_scene s;
+    sc_regions_result regions;
+} divided_scene;
+
+static sc_regions_result no_regions(void)
+{
+    sc_regions_result r;
+    memset(&r, 0, sizeof r);
+    r.struct_size = sizeof r;
+    return r;
+}
+
+/* Takes the mesh. Asks for the count first. */
+static int divide(divided_scene *d, soup mesh)
+{
+    sc_regions_result *r = &d->regions;
+    sc_status status;
+    *r = no_regions();
+    r->flags = SC_REGIONS_INSIDE;
+    if (!trace_scene_open(&d->s, mesh, SC_MODEL_FULL)) return 0;
+    status = sc_trace_regions(d->s.model, &d->s.pose, &d->s.result, NULL, r);
+    if (!CHECK_MSG(status == SC_ERROR_SHORT_BUFFER && r->region_count > 0, "%s",
+                   sc_status_string(status)))
+        return 0;
+    r->region_capacity = r->region_count;
+    r->regions = (sc_region *)test_allocate((size_t)r->region_count * sizeof *r->regions);
+    r->vertex_regions =
+        (uint32_t *)test_allocate(d->s.mesh.vertex_count * sizeof *r->vertex_regions);
+    r->sides =
+        (sc_contour_sides *)test_allocate((size_t)d->s.result.contour_count * sizeof *r->sides);
+    status = sc_trace_regions(d->s.model, &d->s.pose, &d->s.result, NULL, r);
+    return CHECK_MSG(status == SC_OK && r->region_count == r->region_capacity, "%s",
+                     sc_status_string(status));
+}
+
+static void undivide(divided_scene *d)
+{
+    free(d->regions.regions);
+    free(d->regions.vertex_regions);
+    free(d->regions.sides);
+    trace_scene_close(&d->s);
+}
+
+static const double *corner_of(const soup *s, uint32_t triangle, uint32_t k)
+{
+    return s->positions + 3 * (size_t)s->triangles[3 * (size_t)triangle + k];
+}
+
+static double area_of(const soup *s, uint32_t triangle)
+{
+    const double *p = corner_of(s, triangle, 0), *q = corner_of(s, triangle, 1),
+                 *r = corner_of(s, triangle, 2);
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        const double n = (q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i]);
+        sum += n * n;
+    }
+    return sqrt(sum) / 2;
+}
+
+static int is_collapsed(const soup *s, uint32_t t)
+{
+    const uint32_t *v = s->triangles + 3 * (size_t)t;
+    return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+}
+
+/* The edges that contours cross: 1 in crossed[3 t + k]. */
+static uint8_t *find_crossed(const divided_scene *d)
+{
+    const soup *s = &d->s.mesh;
+    uint8_t *crossed = (uint8_t *)calloc(3 * (size_t)s->triangle_count, 1);
+    if (!crossed) abort();
+    for (uint64_t i = 0; i < d->s.result.node_count; ++i) {
+        const sc_trace_node *n = &d->s.result.nodes[i];
+        uint32_t u, v;
+        if (n->edge == SC_TRACE_NO_EDGE) continue;
+        u = s->triangles[n->edge];
+        v = s->triangles[n->edge - n->edge % 3 + (n->edge + 1) % 3];
+        for (uint32_t h = 0; h < 3 * s->triangle_count; ++h) {
+            const uint32_t a = s->triangles[h], b = s->triangles[h - h % 3 + (h + 1) % 3];
+            crossed[h] |= (a == u && b == v) || (a == v && b == u);
+        }
+    }
+    return crossed;
+}
+
+/* What is true of all meshes. No area is below this share of the whole: of generic ones, one that
+   rounding explains; where ties were decided, nodes are not quite where contours are. */
+static int check_any(const divided_scene *d, double least)
+{
+    const soup *s = &d->s.mesh;
+    const sc_regions_result *r = &d->regions;
+    double whole = 0, sum = 0;
+    uint64_t vertices = 0, used = 0;
+    uint8_t *crossed = find_crossed(d);
+    int is_right = 1;
+    for (uint32_t t = 0; t < s->triangle_count; ++t)
+        if (!is_collapsed(s, t)) whole += area_of(s, t);
+    for (uint64_t i = 0; i < r->region_count; ++i) {
+        sum += r->regions[i].area;
+        vertices += r->regions[i].vertex_count;
+        is_right = is_right && CHECK_MSG(r->regions[i].area >= least * whole, "area %g of %g",
+                                         r->regions[i].area, whole);
+    }
+    is_right =
+        is_right && CHECK_MSG(fabs(sum - whole) <= 1e-9 * whole, "%.17g and %.17g", sum, whole);
+    for (uint32_t h = 0; h < 3 * s->triangle_count && is_right; ++h) {
+        const uint32_t a = s->triangles[h], b = s->triangles[h - h % 3 + (h + 1) % 3];
+        if (crossed[h] || is_collapsed(s, h / 3)) continue;
+        is_right = CHECK(r->vertex_regions[a] == r->vertex_regions[b]);
+    }
+    for (uint32_t v = 0; v < s->vertex_count && is_right; ++v) {
+        used += r->vertex_regions[v] != SC_TRACE_NO_EDGE;
+        is_right = CHECK(r->vertex_regions[v] == SC_TRACE_NO_EDGE ||
+                         r->vertex_regions[v] < r->region_count);
+    }
+    is_right = is_right && CHECK(used == vertices);
+    for (uint64_t i = 0; i < d->s.result.contour_count && is_right; ++i)
+        for (int k = 0; k < 4; ++k)
+            is_right = is_right && CHECK(r->sides[i].sides[k / 2][k % 2] < r->region_count);
+    free(crossed);
+    return is_right;
+}
+
+/* How often triangles first to end - 1, a closed surface, go round a point: the sum of the solid
+   angles of its triangles (van Oosterom, Strackee 1983). */
+static double winding(const soup *s, uint32_t first, uint32_t end, const double *point)
+{
+    double sum = 0;
+    for (uint32_t t = first; t < end; ++t) {
+        double v[3][3], length[3], dot[3], volume = 0;
+        for (int i = 0; i < 3; ++i) {
+            const double *p = corner_of(s, t, (uint32_t)i);
+            for (int k = 0; k < 3; ++k) v[i][k] = p[k] - point[k];
+            length[i] = sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+        }
+        for (int i = 0; i < 3; ++i) {
+            const double *a = v[i], *b = v[(i + 1) % 3];
+            dot[i] = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            volume += v[0][i] * (v[1][(i + 1) % 3] * v[2][(i + 2) % 3] -
+                                 v[1][(i + 2) % 3] * v[2][(i + 1) % 3]);
+        }
+        sum += 2 * atan2(volume, length[0] * length[1] * length[2] + dot[0] * length[2] +
+                                     dot[1] * length[0] + dot[2] * length[1]);
+    }
+    return fabs(sum) / (4 * pi);
+}
+
+/* Two spheres, one of them moved, a little uneven; and what the first one has. */
+static soup two_spheres(uint32_t around, double offset, double radius, uint32_t *vertices,
+                        uint32_t *triangles)
+{
+    soup a = soup_sphere(around, around / 2), b = soup_sphere(around + 1, around / 2 + 1), both;
+    soup_smooth(a.positions, a.vertex_count, 0.05);
+    soup_scale(b.positions, b.vertex_count, radius);
+    soup_smooth(b.positions, b.vertex_count, 0.05 * radius);
+    for (uint32_t v = 0; v < b.vertex_count; ++v) b.positions[3 * (size_t)v] += offset;
+    both = soup_join(&a, &b);
+    *vertices = a.vertex_count;
+    *triangles = a.triangle_count;
+    soup_free(&a);
+    soup_free(&b);
+    return both;
+}
+
+/* Whether the normal of the first triangle points away from the middle. */
+static int is_outwards(const soup *s)
+{
+    const double *p = corner_of(s, 0, 0), *q = corner_of(s, 0, 1), *r = corner_of(s, 0, 2);
+    return p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) +
+               p[2] * (q[0] * r[1] - q[1] * r[0]) >
+           0;
+}
+
+static void spheres_through_each_other(void)
+{
+    uint32_t divided_ones = 0, known = 0;
+    for (uint32_t n = test_iterations(40); n > 0; --n) {
+        const uint32_t around = 6 + test_random_below(14);
+        uint32_t first_vertices, first_triangles;
+        soup mesh = two_spheres(around, test_random_range(0.1, 1.2), test_random_range(0.3, 1.2),
+                                &first_vertices, &first_triangles);
+        divided_scene d;
+        if (divide(&d, mesh) && check_any(&d, -1e-9)) {
+            const soup *s = &d.s.mesh;
+            const uint64_t count = d.regions.region_count;
+            int *inside = (int *)test_allocate((size_t)count * sizeof *inside);
+            for (uint64_t i = 0; i < count; ++i) inside[i] = -1;
+            for (uint32_t v = 0; v < s->vertex_count; ++v) {
+                const int is_first = v < first_vertices;
+                const double times = winding(s, is_first ? first_triangles : 0,
+                                             is_first ? s->triangle_count : first_triangles,
+                                             s->positions + 3 * (size_t)v);
+                const int is_inside = times > 0.5;
+                const uint32_t region = d.regions.vertex_regions[v];
+                CHECK_MSG(fabs(times - is_inside) < 1e-6, "%g times", times);
+                CHECK(d.regions.regions[region].component == (is_first ? 0 : first_vertices));
+                if (inside[region] < 0) inside[region] = is_inside;
+                if (!CHECK_MSG(inside[region] == is_inside, "a region is inside and outside"))
+                    break;
+            }
+            for (uint64_t i = 0; i < count; ++i) {
+                const int wanted = is_outwards(s) ? inside[i] : -1 - inside[i];
+                known += inside[i] >= 0 && d.regions.regions[i].inside == wanted;
+                CHECK_MSG(d.regions.regions[i].inside == SC_REGION_UNKNOWN || inside[i] < 0 ||
+                              d.regions.regions[i].inside == wanted,
+                          "%d times round, not %d", d.regions.regions[i].inside, wanted);
+            }
+            for (uint64_t i = 0; i < d.s.result.contour_count; ++i) {
+                const sc_contour_sides *c = &d.regions.sides[i];
+                CHECK(d.s.result.contours[i].begin == SC_TRACE_CLOSED);
+                for (int sheet = 0; sheet < 2; ++sheet) {
+                    const uint32_t a = c->sides[sheet][0], b = c->sides[sheet][1];
+                    const uint32_t hint = sc_region_hint(d.regions.regions, c, (uint32_t)sheet);
+                    CHECK(a != b && (inside[a] < 0 || inside[b] < 0 || inside[a] != inside[b]));
+                    CHECK(hint < 2 && d.regions.regions[c->sides[sheet][hint]].area <
+                                          d.regions.regions[c->sides[sheet][1 - hint]].area);
+                    ++divided_ones;
+                }
+            }
+            free(inside);
+        }
+        undivide(&d);
+    }
+    CHECK_MSG((divided_ones > 0 && known > 0) || !test_is_full(), "no contour, or no side known");
+}
+
+/* A sphere and a plane through it at some height: caps. */
+static void planes_through_spheres(void)
+{
+    for (uint32_t n = test_iterations(10); n > 0; --n) {
+        const double height = test_random_range(-0.7, 0.7), size = 4 + test_random_unit();
+        soup ball = soup_sphere(60, 30), plane = soup_cloth(1 + test_random_below(30), 5), both;
+        double radius = 0, sphere = 0, disc, cap;
+        divided_scene d;
+        for (uint32_t v = 0; v < ball.vertex_count; ++v) {
+            const double *p = ball.positions + 3 * (size_t)v;
+            const double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+            if (length > radius) radius = length;
+        }
+        for (uint32_t v = 0; v < plane.vertex_count; ++v) {
+            double *p = plane.positions + 3 * (size_t)v;
+            p[0] = size * radius * (p[0] - 0.5013);
+            p[1] = size * radius * (p[1] - 0.5017);
+            p[2] = height * radius;
+        }
+        sphere = 4 * pi * radius * radius;
+        cap = 2 * pi * radius * radius * (1 - height);
+        disc = pi * radius * radius * (1 - height * height);
+        both = soup_join(&ball, &plane);
+        soup_free(&ball);
+        soup_free(&plane);
+        if (divide(&d, both) && check_any(&d, -1e-9) &&
+            CHECK_MSG(d.regions.region_count == 4, "%" PRIu64 " regions", d.regions.region_count) &&
+            CHECK(d.s.result.contour_count == 1)) {
+            const sc_contour_sides *c = d.regions.sides;
+            for (int sheet = 0; sheet < 2; ++sheet) {
+                const double a = d.regions.regions[c->sides[sheet][0]].area;
+                const double b = d.regions.regions[c->sides[sheet][1]].area;
+                const uint32_t hint = sc_region_hint(d.regions.regions, c, (uint32_t)sheet);
+                const int is_plane = d.regions.regions[c->sides[sheet][0]].component >= 2 + 29 * 60;
+                const double small = a < b ? a : b;
+                const double wanted = is_plane ? disc : cap < sphere - cap ? cap : sphere - cap;
+                CHECK(c->sides[sheet][0] != c->sides[sheet][1]);
+                CHECK_MSG(fabs(small - wanted) < 0.02 * sphere, "%g, not %g", small, wanted);
+                CHECK(hint == (b < a));
+            }
+        }
+        undivide(&d);
+    }
+}
+
+/* A small ball within one triangle: a loop inside of it, and one in that. */
+static void loops_in_a_triangle(void)
+{
+    for (uint32_t n = test_iterations(10); n > 0; --n) {
+        const double scale[2] = {test_random_range(0.1, 0.2), test_random_range(0.02, 0.05)};
+        const uint32_t count = 1 + test_random_below(2);
+        soup all = soup_make(3, 1);
+        divided_scene d;
+        const double big[9] = {-3, -2, 0, 3, -2, 0, 0, 4, 0};
+        memcpy(all.positions, big, sizeof big);
+        for (uint32_t i = 0; i < 3; ++i) all.triangles[i] = i;
+        for (uint32_t i = 0; i < count; ++i) {
+            soup ball = soup_sphere(12, 6), both;
+            soup_scale(ball.positions, ball.vertex_count, scale[i]);
+            soup_move(ball.positions, ball.vertex_count, 0.011);
+            both = soup_join(&all, &ball);
+            soup_free(&all);
+            soup_free(&ball);
+            all = both;
+        }
+        if (divide(&d, all) && check_any(&d, -1e-9) &&
+            CHECK_MSG(d.regions.region_count == 1 + 3 * count, "%" PRIu64 " regions",
+                      d.regions.region_count)) {
+            double ring = 0;
+            for (uint64_t i = 0; i < d.s.result.contour_count; ++i) {
+                const sc_contour_sides *c = &d.regions.sides[i];
+                const sc_trace_node *node = d.s.result.nodes + d.s.result.contours[i].first;
+                const uint32_t flat = 1 - node->sheet; /* the balls have all the edges */
+                const sc_region *in = &d.regions.regions[c->sides[flat][0]];
+                const sc_region *round = &d.regions.regions[c->sides[flat][1]];
+                CHECK(node->triangle == 0 && in->vertex_count == 0 && in->area > 0);
+                CHECK(in->component == 0 && round->component == 0);
+                CHECK(in != round && in->area < round->area + (count == 2 ? 1 : 0));
+                ring += in->area;
+            }
+            CHECK_MSG(fabs(ring + d.regions.regions[d.regions.vertex_regions[0]].area -
+                           area_of(&d.s.mesh, 0)) < 1e-9,
+                      "areas of loops do not add up");
+        }
+        undivide(&d);
+    }
+}
+
+/* Whatever there is: nothing but what is true of all. */
+static void any_meshes(void)
+{
+    uint64_t regions = 0, contours = 0;
+    for (uint32_t n = test_iterations(200); n > 0; --n) {
+        const char *name;
+        soup s = test_random_below(3) ? soup_any_mesh(150, &name)
+                                      : soup_on_grid(2 + test_random_below(6));
+        divided_scene d;
+        if (test_random_below(2)) soup_any_pose(s.positions, s.vertex_count);
+        for (uint32_t i = 0; i < 3 * s.vertex_count; ++i)
+            if (!(fabs(s.positions[i]) < 1e100)) s.positions[i] = 0;
+        if (divide(&d, s)) {
+            check_any(&d, -0.2);
+            regions += d.regions.region_count;
+            contours += d.s.result.contour_count;
+        }
+        undivide(&d);
+    }
+    test_note("%" PRIu64 " regions, %" PRIu64 " contours", regions, contours);
+}
+
+/* Strips that are one: contours of one sheet. */
+static void strips(void)
+{
+    for (uint32_t turns = 0; turns < 6; ++turns) {
+        divided_scene d;
+        if (divide(&d, trace_scene_strips(24, turns)) && check_any(&d, -1e-9)) {
+            /* halves of two strips; of strips that a half turn joins; of one strip */
+            const uint64_t wanted = turns % 2 ? 1 : turns % 4 ? 2 : 4;
+            CHECK_MSG(d.regions.region_count == wanted, "%u turns: %" PRIu64 " regions", turns,
+                      d.regions.region_count);
+        }
+        undivide(&d);
+    }
+}
+
+/* ---- what cannot be ---- */
+
+typedef struct failing {
+    sc_allocator allocator;
+    uint32_t left;
+    uint64_t live;
+} failing;
+
+static void *fail_to_allocate(void *user, uint64_t bytes, uint64_t alignment)
+{
+    failing *f = (failing *)user;
+    void *memory = NULL;
+    if (!f->left) return NULL;
+    --f->left;
+    ++f->live;
+    if (posix_memalign(&memory, (size_t)alignment, (size_t)bytes)) abort();
+    return memory;
+}
+
+static void give_back(void *user, void *memory, uint64_t bytes)
+{
+    (void)bytes;
+    --((failing *)user)->live;
+    free(memory);
+}
+
+static void failing_memory(void)
+{
+    divided_scene d;
+    uint32_t vertices, triangles;
+    int is_done = 0;
+    if (divide(&d, two_spheres(10, 0.5, 0.7, &vertices, &triangles)))
+        for (uint32_t times = 0; !is_done && times < 100; ++times) {
+            sc_trace_options options;
+            sc_regions_result r = d.regions;
+            failing f;
+            sc_status status;
+            memset(&options, 0, sizeof options);
+            options.struct_size = sizeof options;
+            options.allocator = &f.allocator;
+            memset(&f, 0, sizeof f);
+            f.allocator.user = &f;
+            f.allocator.allocate = fail_to_allocate;
+            f.allocator.release = give_back;
+            f.left = times;
+            status = sc_trace_regions(d.s.model, &d.s.pose, &d.s.result, &options, &r);
+            is_done = status == SC_OK;
+            CHECK(is_done || (status == SC_ERROR_MEMORY && !r.region_count));
+            CHECK(f.live == 0);
+        }
+    CHECK(is_done);
+    undivide(&d);
+}
+
+static sc_status ask(const divided_scene *d, const sc_trace_result *trace)
+{
+    sc_regions_result r = d->regions;
+    const sc_status status = sc_trace_regions(d->s.model, &d->s.pose, trace, NULL, &r);
+    CHECK(status == SC_OK || status == SC_ERROR_SHORT_BUFFER || r.region_count == 0);
+    return status;
+}
+
+static void wrong_arguments(void)
+{
+    divided_scene d;
+    uint32_t vertices, triangles;
+    if (divide(&d, two_spheres(10, 0.5, 0.7, &vertices, &triangles)) &&
+        CHECK(d.s.result.node_count > 2)) {
+        const size_t bytes = (size_t)d.s.result.node_count * sizeof(sc_trace_node);
+        sc_trace_result t = d.s.result;
+        sc_regions_result r = d.regions;
+        sc_trace_contour contour = t.contours[0];
+        sc_trace_options options;
+        sc_pose pose = d.s.pose;
+        volatile uint32_t flag = 1;
+        double *bad;
+        sc_trace_node *nodes = (sc_trace_node *)test_allocate(bytes);
+        memcpy(nodes, t.nodes, bytes);
+        CHECK(sc_trace_regions(NULL, &pose, &t, NULL, &r) == SC_ERROR_NULL);
+        CHECK(sc_trace_regions(d.s.model, NULL, &t, NULL, &r) == SC_ERROR_NULL);
+        CHECK(sc_trace_regions(d.s.model, &pose, NULL, NULL, &r) == SC_ERROR_NULL);
+        CHECK(sc_trace_regions(d.s.model, &pose, &t, NULL, NULL) == SC_ERROR_NULL);
+        r.regions = NULL;
+        CHECK(sc_trace_regions(d.s.model, &pose, &t, NULL, &r) == SC_ERROR_NULL);
+        r = d.regions;
+        r.flags = 2;
+        CHECK(sc_trace_regions(d.s.model, &pose, &t, NULL, &r) == SC_ERROR_OPTION);
+        r = d.regions;
+        r.struct_size = 4;
+        CHECK(sc_trace_regions(d.s.model, &pose, &t, NULL, &r) == SC_ERROR_STRUCT_SIZE);
+        r = d.regions;
+        r.region_capacity--;
+        CHECK(sc_trace_regions(d.s.model, &pose, &t, NULL, &r) == SC_ERROR_SHORT_BUFFER &&
+              r.region_count == d.regions.region_count);
+        t.nodes = NULL;
+        CHECK(ask(&d, &t) == SC_ERROR_NULL);
+        t = d.s.result;
+        t.contours = NULL;
+        CHECK(ask(&d, &t) == SC_ERROR_NULL);
+        t = d.s.result;
+        t.nodes = nodes;
+        nodes[1].edge = 3 * d.s.mesh.triangle_count;
+        CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+        nodes[1] = d.s.result.nodes[1];
+        nodes[1].triangle = d.s.mesh.triangle_count;
+        CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+        nodes[1] = d.s.result.nodes[1];
+        nodes[1].sheet = 2;
+        CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+        nodes[1] = d.s.result.nodes[1];
+        nodes[1].sheets[0] = d.s.mesh.triangle_count;
+        nodes[1].sheets[1] = d.s.mesh.triangle_count;
+        CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+        nodes[1] = d.s.result.nodes[1];
+        t.contours = &contour;
+        t.contour_count = 1;
+        contour.count = t.node_count + 1;
+        CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+        contour.count = 1;
+        CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+        t = d.s.result;
+        memset(&options, 0, sizeof options);
+        options.struct_size = sizeof options;
+        options.cancel = &flag;
+        r = d.regions;
+        CHECK(sc_trace_regions(d.s.model, &pose, &t, &options, &r) == SC_ERROR_INCOMPLETE &&
+              r.region_count == 0);
+        bad = soup_copy_positions(&d.s.mesh);
+        bad[4] = (double)INFINITY;
+        pose = input_plain_pose(bad, d.s.mesh.vertex_count);
+        CHECK(sc_trace_regions(d.s.model, &pose, &t, NULL, &r) == SC_ERROR_NOT_FINITE);
+        free(bad);
+        free(nodes);
+        CHECK(sc_region_hint(NULL, d.regions.sides, 0) == SC_TRACE_NO_EDGE);
+        CHECK(sc_region_hint(d.regions.regions, d.regions.sides, 2) == SC_TRACE_NO_EDGE);
+    }
+    undivide(&d);
+}
+
+SC_TEST_MAIN(SC_TEST(spheres_through_each_other), SC_TEST(planes_through_spheres),
+             SC_TEST(loops_in_a_triangle), SC_TEST(any_meshes), SC_TEST(strips),
+             SC_TEST(failing_memory), SC_TEST(wrong_arguments))
