@@ -107,6 +107,26 @@ static uint8_t *find_crossed(const divided_scene *d)
     return crossed;
 }
 
+/* Whether both sides of a contour on a sheet are the ends of the edge at its first node there, if
+   nothing else crosses that. */
+static int check_sides(const divided_scene *d, const sc_trace_contour *c, const uint32_t sides[2],
+                       uint32_t sheet)
+{
+    const sc_trace_result *t = &d->s.result;
+    const uint32_t *v = d->s.mesh.triangles;
+    uint64_t i = c->first, others = 0;
+    uint32_t edge;
+    while (i < c->first + c->count &&
+           (t->nodes[i].edge == SC_TRACE_NO_EDGE || t->nodes[i].sheet != sheet))
+        ++i;
+    if (i == c->first + c->count) return 1;
+    edge = t->nodes[i].edge;
+    for (uint64_t k = 0; k < t->node_count; ++k) others += t->nodes[k].edge == edge;
+    return others != 1 ||
+           (CHECK(d->regions.vertex_regions[v[edge]] == sides[0]) &&
+            CHECK(d->regions.vertex_regions[v[edge - edge % 3 + (edge + 1) % 3]] == sides[1]));
+}
+
 /* What is true of all meshes. No area is below this share of the whole: of generic ones, one that
    rounding explains; where ties were decided, nodes are not quite where contours are. */
 static int check_any(const divided_scene *d, double least)
@@ -140,7 +160,9 @@ static int check_any(const divided_scene *d, double least)
     is_right = is_right && CHECK(used == vertices);
     for (uint64_t i = 0; i < d->s.result.contour_count && is_right; ++i)
         for (int k = 0; k < 4; ++k)
-            is_right = is_right && CHECK(r->sides[i].sides[k / 2][k % 2] < r->region_count);
+            is_right =
+                is_right && CHECK(r->sides[i].sides[k / 2][k % 2] < r->region_count) &&
+                check_sides(d, &d->s.result.contours[i], r->sides[i].sides[k / 2], (uint32_t)k / 2);
     free(crossed);
     return is_right;
 }
@@ -335,6 +357,14 @@ static void loops_in_a_triangle(void)
                 CHECK(in->component == 0 && round->component == 0);
                 CHECK(in != round && in->area < round->area + (count == 2 ? 1 : 0));
                 ring += in->area;
+            }
+            if (count == 2) { /* balls with one middle: one loop is in the other */
+                const sc_trace_node *node = d.s.result.nodes + d.s.result.contours[0].first;
+                const uint32_t flat = 1 - node->sheet;
+                const uint32_t *a = d.regions.sides[0].sides[flat];
+                const uint32_t *b = d.regions.sides[1].sides[flat];
+                CHECK(a[0] == b[1] || b[0] == a[1]);
+                CHECK(a[1] == d.regions.vertex_regions[0] || b[1] == d.regions.vertex_regions[0]);
             }
             CHECK_MSG(fabs(ring + d.regions.regions[d.regions.vertex_regions[0]].area -
                            area_of(&d.s.mesh, 0)) < 1e-9,

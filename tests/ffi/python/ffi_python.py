@@ -318,6 +318,11 @@ check("lengths of contours", np.allclose(steps, traced.contours["length"], rtol=
 crossings = traced.nodes[traced.nodes["edge"] != 0xFFFFFFFF]
 mixed = np.einsum("nk,nkx->nx", crossings["weights"], corners[crossings["triangle"]])
 check("contours by weights", np.allclose(mixed, crossings["point"], rtol=0, atol=1e-14))
+regions, of_vertices, sides = model.regions(moved, traced, inside=True)
+check("regions", len(regions) > 1 and regions["vertex_count"].sum() == (of_vertices < len(regions)).sum())
+sheared = np.cross(*(corners[:, k].astype(float) - corners[:, 0] for k in (1, 2)))
+check("areas of regions", np.isclose(regions["area"].sum(), np.linalg.norm(sheared, axis=1).sum() / 2, rtol=1e-6))
+check("sides of contours", sides.shape == (len(lines), 2, 2) and (sides < len(regions)).all())
 lack = raised(_binding.SC_ERROR_PAIRS, lambda: model.trace(moved, edges[1:]))
 check(f"contours of pairs that lack one: {lack}", lack is not None and "lack an end" in lack)
 

@@ -154,6 +154,17 @@ class Trace(namedtuple("Trace", "nodes contours")):
         return lines
 
 
+class Regions(namedtuple("Regions", "regions vertex_regions sides")):
+    """The parts into which contours divide a surface; see sc_region and sc_contour_sides.
+
+    regions          structured array: component, vertex_count, area, inside
+    vertex_regions   of each vertex the region it is in; 0xffffffff of those in no triangle
+    sides            (contours, 2, 2): of each contour, on both sheets, the regions on both sides
+    """
+
+    __slots__ = ()
+
+
 class Near(namedtuple("Near", "vertex_faces edge_edges vertex_face_stencils edge_edge_stencils vertex_bound")):
     """What is within a distance.
 
@@ -965,6 +976,43 @@ class Model(_Queries):
             if status != _binding.SC_ERROR_SHORT_BUFFER:
                 log.check(status)
                 return Trace(nodes, contours)
+
+    def regions(self, pose, traced=None, *, inside=False):
+        """The regions into which contours divide the surface in a pose: Regions. See sc_trace_regions.
+
+        traced: what trace(pose) gave; None: it is found. inside: whether to find how often closed
+        components go round each region (-2147483648 where that is not known).
+        """
+        nodes, contours = self.trace(pose) if traced is None else traced
+        nodes = np.ascontiguousarray(nodes, _binding.sc_trace_node)
+        contours = np.ascontiguousarray(contours, _binding.sc_trace_contour)
+        given, positions = _pose(pose)
+        options = _binding.sc_trace_options(struct_size=ctypes.sizeof(_binding.sc_trace_options))
+        log = _Log()
+        options.hooks = ctypes.addressof(log.hooks)
+        trace = _binding.sc_trace_result(
+            struct_size=ctypes.sizeof(_binding.sc_trace_result),
+            node_count=len(nodes),
+            nodes=nodes.ctypes.data,
+            contour_count=len(contours),
+            contours=contours.ctypes.data,
+        )
+        vertex_regions = np.empty(given.vertex_count, np.uint32)
+        sides = np.empty((len(contours), 2, 2), np.uint32)
+        result = _binding.sc_regions_result(
+            struct_size=ctypes.sizeof(_binding.sc_regions_result),
+            vertex_regions=vertex_regions.ctypes.data,
+            sides=sides.ctypes.data,
+        )
+        while True:
+            regions = np.zeros(result.region_count, _binding.sc_region)
+            result.regions, result.region_capacity = regions.ctypes.data, len(regions)
+            result.flags = _binding.SC_REGIONS_INSIDE if inside and len(regions) else 0
+            status = lib.sc_trace_regions(self._handle, ctypes.byref(given), ctypes.byref(trace),
+                                          ctypes.byref(options), ctypes.byref(result))
+            if status != _binding.SC_ERROR_SHORT_BUFFER:
+                log.check(status)
+                return Regions(regions, vertex_regions, sides)
 
     def workspace(self):
         """A new Workspace, for queries that run at the same time as others in this thread's name."""

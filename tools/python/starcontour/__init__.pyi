@@ -51,6 +51,11 @@ class Trace(NamedTuple):
     contours: _Structured
     def polylines(self) -> List[npt.NDArray[np.float64]]: ...
 
+class Regions(NamedTuple):
+    regions: _Structured
+    vertex_regions: npt.NDArray[np.uint32]
+    sides: npt.NDArray[np.uint32]
+
 class Near(NamedTuple):
     vertex_faces: _Pairs
     edge_edges: _Pairs
@@ -256,6 +261,9 @@ class Model(_Queries):
     def trace(
         self, pose: npt.ArrayLike, found: Optional[npt.ArrayLike] = None, *, threads: int = 1
     ) -> Trace: ...
+    def regions(
+        self, pose: npt.ArrayLike, traced: Optional[Trace] = None, *, inside: bool = False
+    ) -> Regions: ...
     def stencils(
         self,
         pose: npt.ArrayLike,

@@ -422,6 +422,29 @@ sc_trace_contour = [
 ]
 
 
+sc_region = [
+    ("component", "u4"),
+    ("vertex_count", "u4"),
+    ("area", "f8"),
+    ("inside", "i4"),
+    ("reserved", "u4"),
+]
+
+SC_REGIONS_INSIDE = 1
+
+
+class sc_regions_result(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("flags", c_uint32),
+        ("region_count", c_uint64),
+        ("region_capacity", c_uint64),
+        ("regions", c_void_p),
+        ("vertex_regions", c_void_p),
+        ("sides", c_void_p),
+    ]
+
+
 class sc_trace_options(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -449,7 +472,7 @@ class sc_trace_result(ctypes.Structure):
 structures = (sc_hooks, sc_tasks, sc_near_options, sc_near_result, sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info,
               sc_query_options, sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result,
               sc_group, sc_object, sc_objects, sc_objects_result, sc_object_list, sc_objects_lists,
-              sc_trace_options, sc_trace_result)
+              sc_trace_options, sc_trace_result, sc_regions_result)
 
 _suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarcontour" + _suffix)
@@ -480,6 +503,8 @@ _declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_q
 _declare("sc_contacts", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
 _declare("sc_trace", _status, c_void_p, POINTER(sc_pose), c_void_p, c_uint64,
          POINTER(sc_trace_options), POINTER(sc_trace_result))
+_declare("sc_trace_regions", _status, c_void_p, POINTER(sc_pose), POINTER(sc_trace_result),
+         POINTER(sc_trace_options), POINTER(sc_regions_result))
 _declare("sc_query_step", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_pose),
          POINTER(sc_step_options), POINTER(sc_step_result))
 _declare("sc_query_near", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_near_options),
