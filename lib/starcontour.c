@@ -37,6 +37,7 @@
 #include "run/step_question.h"
 #include "step/step_filter.h"
 #include "step/step_motion.h"
+#include "trace/gradients.h"
 #include "trace/trace.h"
 #include "step/step_pairs.h"
 
@@ -917,6 +918,27 @@ sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pa
         sc_structs_write(result, &r, sizeof r);
     }
     return status;
+}
+
+sc_status sc_trace_gradients(const sc_model *model, const sc_pose *pose,
+                             const sc_trace_result *traced, sc_trace_gradient *gradients)
+{
+    sc_trace_result r;
+    sc_positions positions;
+    sc_pose p;
+    uint64_t stride;
+    sc_status status;
+    if (!model || !pose || !traced) return SC_ERROR_NULL;
+    status = sc_arguments_read(NULL, "traced", &r, sizeof r, traced,
+                               SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
+    if (!status) status = sc_question_read_pose(NULL, "pose", model, pose, &p, &stride);
+    if (status) return status;
+    if (r.node_count > r.node_capacity || r.contour_count > r.contour_capacity)
+        return SC_ERROR_SHORT_BUFFER;
+    if ((r.node_count && (!r.nodes || !gradients)) || (r.contour_count && !r.contours))
+        return SC_ERROR_NULL;
+    sc_positions_note(model, &p, stride, &positions);
+    return sc_gradients_find(model, &positions, &r, gradients);
 }
 
 /* ---- proximity ---- */
