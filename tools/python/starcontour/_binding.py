@@ -422,6 +422,15 @@ sc_trace_contour = [
 ]
 
 
+# The stencil of a node: the gradient of its contour's length.
+sc_trace_gradient = [
+    ("vertices", "u4", 5),
+    ("flags", "u4"),
+    ("weights", "f8", 5),
+    ("vectors", "f8", (2, 3)),
+]
+
+
 class sc_trace_options(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -480,6 +489,7 @@ _declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_q
 _declare("sc_contacts", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
 _declare("sc_trace", _status, c_void_p, POINTER(sc_pose), c_void_p, c_uint64,
          POINTER(sc_trace_options), POINTER(sc_trace_result))
+_declare("sc_trace_gradients", _status, c_void_p, POINTER(sc_pose), POINTER(sc_trace_result), c_void_p)
 _declare("sc_query_step", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_pose),
          POINTER(sc_step_options), POINTER(sc_step_result))
 _declare("sc_query_near", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_near_options),
