@@ -1025,7 +1025,8 @@ typedef struct sc_regions_result {
  * not where those of the moved vertices are: areas may be off there, even below 0.
  *
  * Returns SC_OK, or SC_ERROR_SHORT_BUFFER if there are more regions than fit, whose number is then
- * told; vertex_regions and sides are written all the same. SC_ERROR_PAIRS: trace names what does not
+ * told; vertex_regions and sides are written all the same. The same error, and no regions, if trace
+ * itself was short. SC_ERROR_PAIRS: trace names what does not
  * exist. SC_ERROR_NOT_FINITE: a vertex is NaN or infinite. SC_ERROR_MEMORY, SC_ERROR_INCOMPLETE.
  *
  * Cost: about 20 ns a triangle, 100 ns a node; memory: about 25 bytes a vertex and 100 a node, given
@@ -1039,6 +1040,66 @@ SC_API sc_status sc_trace_regions(const sc_model *model, const sc_pose *pose,
    one region, or as large, or there is no such sheet. */
 SC_API uint32_t sc_region_hint(const sc_region *regions, const sc_contour_sides *contour,
                                uint32_t sheet);
+/* A sum. */
+enum {
+    SC_GRADIENT_FLAT = 1, /* the edge is parallel to the triangle or nearly so, or the triangle is
+                             nearly a line (a b < 2^-39, see below). Vectors are 0 */
+    SC_GRADIENT_SHORT = 2 /* a segment at the node has no length, or one that is no double. It is as
+                             if it were not there */
+};
+
+/*
+ * How the length of a contour changes as the vertices of a node move: its derivative by the
+ * position of vertices[i] is weights[i] times vectors[0] for the ends of the edge, i = 0 and 1, and
+ * weights[i] times vectors[1] for the corners of the triangle, i = 2, 3 and 4. The sums over all
+ * nodes of a contour are the gradient of its length, a vector for each vertex:
+ *
+ *     for (i = 0; i < 5; i++)
+ *         for (k = 0; k < 3; k++)
+ *             gradient[g->vertices[i]][k] += g->weights[i] * g->vectors[i >= 2][k];
+ *
+ * A node at a shared vertex has that five times in vertices, with the weights 1, 0, 0, 0 and 0.
+ */
+typedef struct sc_trace_gradient {
+    uint32_t vertices[5]; /* the ends of the edge and the corners of the triangle, in the order of
+                             the mesh. Of welded vertices, those that represent the others */
+    uint32_t flags;       /* SC_GRADIENT_... */
+    double weights[5];    /* where the node is on the edge, and in the triangle: 1 for each */
+    double vectors[2][3]; /* the derivative as edge and as triangle move as a whole; no units */
+} sc_trace_gradient;
+
+/*
+ * Finds the gradients of the lengths of contours: gradients[i] is the stencil of traced->nodes[i],
+ * an array of traced->node_count entries. traced is what sc_trace answered for this pose with
+ * SC_OK. Steps against the gradients shorten contours until they vanish, which takes sheets out of
+ * each other without a word of which side is the right one; that does not do where a contour can be
+ * short and the intersection deep, such as a thin limb's that goes straight through a sheet. The
+ * gradient of each contour is that of its own nodes, so contours can have weights of their own.
+ *
+ * This is the scheme of Volino and Magnenat-Thalmann ("Resolving surface collisions through
+ * intersection contour minimization", 2006). They move an edge as a whole against a triangle, and
+ * ask how the contour's two segments at their crossing change: vectors[0]. Here it is divided among
+ * the five vertices such that the sums are the derivative of the polyline's length, exactly. A
+ * contour whose nodes are not SC_GRADIENT_FLAT has no force and no torque on the mesh as a whole.
+ *
+ * vectors become large where edges are nearly parallel to triangles, by 1 / a for an angle with the
+ * sine a: limit steps. Length has no derivative where a contour branches, appears, or goes through
+ * a vertex or an edge of both sheets; what is found there is that of the contours as they were
+ * traced.
+ *
+ * Each component of vectors is off by at most 2^-45 (C / l + 1 / (a b)) / a, with C the largest
+ * coordinate of the node's vertices and its neighbours', l the length of the shorter segment at the
+ * node, and b the sine of the angle at the triangle's first corner. All numbers are finite. No
+ * memory is taken, and any number of threads may ask about one model. 0.4 us a node.
+ *
+ * SC_ERROR_NULL; SC_ERROR_STRUCT_SIZE; SC_ERROR_VERTEX_COUNT and what else a pose may lack.
+ * SC_ERROR_SHORT_BUFFER: traced has less room than there are nodes or contours. SC_ERROR_PAIRS: a
+ * contour has nodes that there are not, or a node names what does not exist. SC_ERROR_NOT_FINITE: a
+ * vertex of a node, or a number of it, is NaN or infinite. On errors gradients may have been
+ * written to in part.
+ */
+SC_API sc_status sc_trace_gradients(const sc_model *model, const sc_pose *pose,
+                                    const sc_trace_result *traced, sc_trace_gradient *gradients);
 
 /* ------------------------------------------------------------------------------------------------
  * Steps

@@ -37,6 +37,7 @@
 #include "run/step_question.h"
 #include "step/step_filter.h"
 #include "step/step_motion.h"
+#include "trace/gradients.h"
 #include "trace/regions.h"
 #include "trace/trace.h"
 #include "step/step_pairs.h"
@@ -947,6 +948,8 @@ static sc_status find_regions(const sc_model *model, const sc_pose *pose,
                                    SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
     if (!status)
         status = need_trace_arrays(&call.hooks, "trace", &t, t.node_count, t.contour_count);
+    if (!status && (t.node_count > t.node_capacity || t.contour_count > t.contour_capacity))
+        status = SC_ERROR_SHORT_BUFFER; /* not all are there */
     if (!status && (t.node_count > TRACE_PAIRS_MAX || t.contour_count > TRACE_PAIRS_MAX))
         status = SC_ERROR_COUNT;
     if (!status && r->region_capacity)
@@ -982,6 +985,27 @@ uint32_t sc_region_hint(const sc_region *regions, const sc_contour_sides *contou
     second = contour->sides[sheet][1];
     if (first == second || regions[first].area == regions[second].area) return SC_TRACE_NO_EDGE;
     return regions[second].area < regions[first].area;
+}
+
+sc_status sc_trace_gradients(const sc_model *model, const sc_pose *pose,
+                             const sc_trace_result *traced, sc_trace_gradient *gradients)
+{
+    sc_trace_result r;
+    sc_positions positions;
+    sc_pose p;
+    uint64_t stride;
+    sc_status status;
+    if (!model || !pose || !traced) return SC_ERROR_NULL;
+    status = sc_arguments_read(NULL, "traced", &r, sizeof r, traced,
+                               SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
+    if (!status) status = sc_question_read_pose(NULL, "pose", model, pose, &p, &stride);
+    if (status) return status;
+    if (r.node_count > r.node_capacity || r.contour_count > r.contour_capacity)
+        return SC_ERROR_SHORT_BUFFER;
+    if ((r.node_count && (!r.nodes || !gradients)) || (r.contour_count && !r.contours))
+        return SC_ERROR_NULL;
+    sc_positions_note(model, &p, stride, &positions);
+    return sc_gradients_find(model, &positions, &r, gradients);
 }
 
 /* ---- proximity ---- */

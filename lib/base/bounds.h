@@ -58,6 +58,10 @@
 #define SC_BOUNDS_CROSSING_MOST 0x1p+250
 #define SC_BOUNDS_CROSSING_SHARE 0x1p-50
 
+/* Below this part of M a determinant in doubles, which is off by 8 u M, is taken for 0: an edge is
+   parallel to a triangle then. trace/gradients.c. */
+#define SC_BOUNDS_GRADIENT 0x1p-40
+
 /* The distance of a point and a triangle, or of two segments, compared with another in doubles: so
    much of the sum of that and of the largest distance of two of their points. step/within.c. */
 #define SC_BOUNDS_WITHIN (8.0 * SC_BOUNDS_U)

@@ -73,6 +73,7 @@ bullet() {
 }
 
 client ipctk ipctk tools/clients/ipctk/test_client.py
+client untangle numpy tools/untangle/test_untangle.py
 
 # The broad phase in C++.
 in_cxx() {

@@ -326,6 +326,29 @@ check("sides of contours", sides.shape == (len(lines), 2, 2) and (sides < len(re
 lack = raised(_binding.SC_ERROR_PAIRS, lambda: model.trace(moved, edges[1:]))
 check(f"contours of pairs that lack one: {lack}", lack is not None and "lack an end" in lack)
 
+# Their length, and its gradient: against differences where vertices move by so little that contours
+# stay as they are, away from where sheets are in a plane; and it neither pushes nor turns the mesh.
+shaken = moved + np.random.default_rng(1).normal(0, 1e-3, moved.shape)
+length, gradient = model.trace_length(shaken)
+stencils = model.trace_gradients(shaken, model.trace(shaken))
+check("length of contours", length > 0 and gradient.shape == shaken.shape and not stencils["flags"].any())
+check("weights of stencils", np.allclose(stencils["weights"][:, 2:].sum(1), 1, rtol=0, atol=1e-14))
+for vertex in np.argsort(np.linalg.norm(gradient, axis=1))[-40::4]:
+    for axis in range(3):
+        lengths = []
+        for by in (1e-7, -1e-7):
+            shaken[vertex, axis] += by
+            lengths.append(model.trace_length(shaken)[0])
+            shaken[vertex, axis] -= by
+        check(f"derivative by vertex {vertex}", abs((lengths[0] - lengths[1]) / 2e-7 - gradient[vertex, axis])
+              <= 1e-5 * (1 + np.abs(gradient).max()))
+check("no push, no turn", np.abs(gradient.sum(0)).max() < 1e-9 and np.abs(
+    np.cross(shaken, gradient).sum(0)).max() < 1e-9)
+check("no contours", model.trace_length(above)[0] == 0)
+check("nodes of another pose", raised(_binding.SC_ERROR_PAIRS, lambda: model.trace_gradients(
+    moved, traced._replace(nodes=traced.nodes[:1]))))
+check("nodes alone", refused(TypeError, lambda: model.trace_gradients(moved, traced.nodes)))
+
 # What is near: a list within a distance is what is that near of a list within twice of it.
 wide, narrow = (model.near(moved, distance, stencils=True) for distance in (0.09, 0.045))
 for pairs, closest, fewer in ((wide.vertex_faces, wide.vertex_face_stencils, narrow.vertex_faces),

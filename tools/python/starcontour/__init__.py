@@ -993,8 +993,10 @@ class Model(_Queries):
         trace = _binding.sc_trace_result(
             struct_size=ctypes.sizeof(_binding.sc_trace_result),
             node_count=len(nodes),
+            node_capacity=len(nodes),
             nodes=nodes.ctypes.data,
             contour_count=len(contours),
+            contour_capacity=len(contours),
             contours=contours.ctypes.data,
         )
         vertex_regions = np.empty(given.vertex_count, np.uint32)
@@ -1013,6 +1015,45 @@ class Model(_Queries):
             if status != _binding.SC_ERROR_SHORT_BUFFER:
                 log.check(status)
                 return Regions(regions, vertex_regions, sides)
+
+    def trace_gradients(self, pose, traced):
+        """How lengths of contours change as vertices move: a structured array, an entry for each node
+        of `traced`, the Trace of this pose.
+
+        Fields: vertices (five: the ends of an edge and the corners of a triangle), weights (five),
+        vectors (two, three coordinates each), of which the first, times its weight, is the derivative
+        by the position of each end, and the second by that of each corner; flags (1: the edge is
+        parallel to the triangle, and vectors are 0; 2: a segment has no length). See
+        sc_trace_gradient.
+        """
+        if not isinstance(traced, Trace):
+            raise TypeError("traced must be a Trace as Model.trace returns it")
+        nodes = np.ascontiguousarray(traced.nodes, _binding.sc_trace_node)
+        contours = np.ascontiguousarray(traced.contours, _binding.sc_trace_contour)
+        result = _binding.sc_trace_result(
+            struct_size=ctypes.sizeof(_binding.sc_trace_result),
+            node_count=len(nodes), node_capacity=len(nodes), nodes=nodes.ctypes.data,
+            contour_count=len(contours), contour_capacity=len(contours), contours=contours.ctypes.data,
+        )
+        gradients = np.zeros(len(nodes), _binding.sc_trace_gradient)
+        given, positions = _pose(pose)
+        _check(lib.sc_trace_gradients(self._handle, ctypes.byref(given), ctypes.byref(result),
+                                      gradients.ctypes.data))
+        return gradients
+
+    def trace_length(self, pose, found=None, *, threads=1):
+        """The length of all contours in a pose, 0 where nothing intersects, and its gradient: how it
+        changes as each vertex moves, a float64 array of shape (n, 3). found and threads as in trace.
+
+        Of vertices that were welded to one, this one has the gradient of all. Nodes at edges that are
+        parallel to triangles add nothing; see sc_trace_gradients for what else has no derivative.
+        """
+        traced = self.trace(pose, found, threads=threads)
+        stencils = self.trace_gradients(pose, traced)
+        gradient = np.zeros((len(pose), 3))
+        vectors = np.repeat(stencils["vectors"], [2, 3], axis=1)  # one for each of the five
+        np.add.at(gradient, stencils["vertices"], stencils["weights"][:, :, None] * vectors)
+        return float(traced.contours["length"].sum()), gradient
 
     def workspace(self):
         """A new Workspace, for queries that run at the same time as others in this thread's name."""

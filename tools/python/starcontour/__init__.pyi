@@ -264,6 +264,10 @@ class Model(_Queries):
     def regions(
         self, pose: npt.ArrayLike, traced: Optional[Trace] = None, *, inside: bool = False
     ) -> Regions: ...
+    def trace_gradients(self, pose: npt.ArrayLike, traced: Trace) -> _Structured: ...
+    def trace_length(
+        self, pose: npt.ArrayLike, found: Optional[npt.ArrayLike] = None, *, threads: int = 1
+    ) -> Tuple[float, npt.NDArray[np.float64]]: ...
     def stencils(
         self,
         pose: npt.ArrayLike,

@@ -445,6 +445,15 @@ class sc_regions_result(ctypes.Structure):
     ]
 
 
+# The stencil of a node: the gradient of its contour's length.
+sc_trace_gradient = [
+    ("vertices", "u4", 5),
+    ("flags", "u4"),
+    ("weights", "f8", 5),
+    ("vectors", "f8", (2, 3)),
+]
+
+
 class sc_trace_options(ctypes.Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -505,6 +514,8 @@ _declare("sc_trace", _status, c_void_p, POINTER(sc_pose), c_void_p, c_uint64,
          POINTER(sc_trace_options), POINTER(sc_trace_result))
 _declare("sc_trace_regions", _status, c_void_p, POINTER(sc_pose), POINTER(sc_trace_result),
          POINTER(sc_trace_options), POINTER(sc_regions_result))
+
+_declare("sc_trace_gradients", _status, c_void_p, POINTER(sc_pose), POINTER(sc_trace_result), c_void_p)
 _declare("sc_query_step", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_pose),
          POINTER(sc_step_options), POINTER(sc_step_result))
 _declare("sc_query_near", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_near_options),
