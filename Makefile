@@ -816,12 +816,12 @@ test-batch: all ## many meshes and poses by a Slurm array, Dask and Ray Data (ma
 	@SC_BIN='$(bin)' SC_LIB='$(lib)' tests/run.sh tests/batch/*.sh
 
 .PHONY: test-packages
-test-packages: ## as users build it: archive, wheels, crates, Debian, NuGet, Conan, vcpkg, mingw, ARM and s390x by QEMU; some minutes for each
+test-packages: ## as users build it: archive, wheels, crates, Debian, NuGet, Conan, vcpkg, mingw, clang-cl, macOS's ABI, ARM and s390x by QEMU; some minutes for each
 	@MAKE='$(MAKE)' SC_FLAGS='$(CPPFLAGS) $(CFLAGS) $(LDFLAGS)' tests/run.sh tests/packages/*.sh
 
 .PHONY: release-check
-release-check: all ## what a release needs (versions, tests, interface, all packages), and a table of it; an hour
-	@MAKE='$(MAKE)' CC='$(CC)' SC_BIN='$(bin)' SC_LIB='$(lib)' tools/release_check.sh '$(BUILD)/release-check' $(steps)
+release-check: all ## what a release needs (versions, tests, interface, all packages, WebAssembly), and a table of it; an hour
+	@MAKE='$(MAKE)' CC='$(CC)' EMCC='$(EMCC)' SC_BIN='$(bin)' SC_LIB='$(lib)' tools/release_check.sh '$(BUILD)/release-check' $(steps)
 
 .PHONY: clean
 clean: ## remove everything built; downloaded meshes stay

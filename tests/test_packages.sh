@@ -69,54 +69,13 @@ else
 fi
 
 # ------------------------------------------------------------------------------------------------
-# MSVC's restrictions: clang, as if it were MSVC, with no headers but those declared here. No
-# variable length arrays, no GNU syntax; nothing of the C library but what is here.
+# MSVC's restrictions: clang, as if it were MSVC, with no headers but those of tests/packages/libc.
+# No variable length arrays, no GNU syntax; nothing of the C library but what is there.
 
-stubs() {
-    mkdir "$scratch/msvc" && cd "$scratch/msvc" || return 1
-    cat >string.h <<'EOF'
-#include <stddef.h>
-void *memcpy(void *, const void *, size_t);
-void *memmove(void *, const void *, size_t);
-void *memset(void *, int, size_t);
-int memcmp(const void *, const void *, size_t);
-void *memchr(const void *, int, size_t);
-size_t strlen(const char *);
-EOF
-    cat >stdlib.h <<'EOF'
-#include <stddef.h>
-void *malloc(size_t);
-void free(void *);
-EOF
-    cat >math.h <<'EOF'
-double fabs(double), fmin(double, double), fmax(double, double), sqrt(double), floor(double);
-double ceil(double), frexp(double, int *), ldexp(double, int);
-float fabsf(float), fminf(float, float), fmaxf(float, float), sqrtf(float), floorf(float), ceilf(float);
-#define INFINITY ((float)(1e300 * 1e300))
-#define NAN (-(float)(INFINITY * 0.0F))
-#define HUGE_VAL ((double)INFINITY)
-#define HUGE_VALF INFINITY
-#define isfinite(x) ((x) - (x) == 0)
-EOF
-    cat >stdio.h <<'EOF'
-#include <stdarg.h>
-#include <stddef.h>
-int vsnprintf(char *, size_t, const char *, va_list);
-EOF
-    cat >inttypes.h <<'EOF'
-#include <stdint.h>
-#define PRIu32 "u"
-#define PRIu64 "llu"
-#define PRIx64 "llx"
-EOF
-    echo '#include <stddef.h>' >time.h
-    status=$?
-    cd "$top" && return $status
-}
 # shellcheck disable=SC2086
 like_msvc() {
     clang --target=x86_64-pc-windows-msvc -std=c99 -ffreestanding -nostdlibinc -U__SSE2__ \
-        -isystem "$scratch/msvc" -I"$one/amalgamation" "$@"
+        -isystem tests/packages/libc -I"$one/amalgamation" "$@"
 }
 accepted() {
     like_msvc -fsyntax-only -Wpedantic -Wgnu -Wvla -Werror "$1"
@@ -135,7 +94,6 @@ refused() {
         ! { accepted "$scratch/gnu.c" && no_builtins "$scratch/gnu.c"; }
 }
 if command -v clang >/dev/null 2>&1; then
-    check "stub headers" stubs
     check "MSVC's restrictions are kept" accepted "$one/amalgamation/starcontour.c"
     check "no builtins or attributes" no_builtins "$one/amalgamation/starcontour.c"
     check "an array of variable length is refused" refused 'int f(int n); int f(int n) { char a[n]; return a[0]; }'

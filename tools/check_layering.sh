@@ -165,6 +165,7 @@ offenders=$(
             may["tests/bench"] = may["bench"] " tests tests/bench"
             may["tests/abi"] = "tests tests/abi"
             may["tests/packages"] = may["tools/npm"] = "include"
+            may["tests/packages/libc"] = "tests/packages/libc"
             may["tests/wasm"] = "include tests"
             may["tests/cgal"] = "include tools tests tests/cgal"
             may["tests/ffi/cxx"] = "include tests/ffi/cxx"

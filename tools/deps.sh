@@ -67,6 +67,8 @@ program clang clang clang clang llvm
 program abidiff abigail-tools libabigail - -
 program x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64 mingw64-gcc mingw-w64-gcc mingw-w64
 program wine wine wine wine -
+program ld.lld lld lld lld lld
+program llvm-lib llvm llvm llvm llvm
 program aarch64-linux-gnu-gcc gcc-aarch64-linux-gnu,libc6-dev-arm64-cross - - -
 program arm-linux-gnueabihf-gcc gcc-arm-linux-gnueabihf,libc6-dev-armhf-cross - - -
 program s390x-linux-gnu-gcc gcc-s390x-linux-gnu,libc6-dev-s390x-cross - - -

@@ -6,7 +6,8 @@
 #
 # Each step's output goes to FOLDER/STEP.log. Steps are committed (nothing is left uncommitted),
 # version (every file agrees, and CHANGELOG.md has a day), layering, tests (make test), abi (make
-# abi-check), and a package each: the scripts of tests/packages. MAKE: the make to use.
+# abi-check), wasm (make test-wasm: the package for npm, packed as npm packs it), and a package each:
+# the scripts of tests/packages. MAKE: the make to use; EMCC: emscripten's compiler.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -16,7 +17,7 @@ folder=$1
 shift
 packages=$(for script in tests/packages/*.sh; do basename "$script" .sh; done)
 # shellcheck disable=SC2086
-[ $# -gt 0 ] || set -- committed version layering tests abi $packages
+[ $# -gt 0 ] || set -- committed version layering tests abi wasm $packages
 make=${MAKE:-make}
 failures=0
 mkdir -p "$folder"
@@ -37,6 +38,13 @@ for step; do
     layering) set -- sh tools/check_layering.sh ;;
     tests) set -- "$make" --no-print-directory test ;;
     abi) set -- "$make" --no-print-directory abi-check ;;
+    wasm)
+        if command -v "${EMCC:-emcc}" >/dev/null 2>&1; then
+            set -- "$make" --no-print-directory test-wasm
+        else
+            set -- printf '%s\n' "skipped: no ${EMCC:-emcc}" 'wasm: 0 passed, 0 failed, 1 skipped'
+        fi
+        ;;
     *) set -- sh "tests/packages/$step.sh" ;;
     esac
     log=$folder/$step.log

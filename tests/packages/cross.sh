@@ -12,20 +12,32 @@
 # SPDX-License-Identifier: MIT
 machines=${*:-aarch64-linux-gnu arm-linux-gnueabihf s390x-linux-gnu}
 . tests/script.sh
+. tests/portable.sh
 
-tests='base structures validators'
 flags='-std=c99 -D_POSIX_C_SOURCE=200809L -O2 -ffp-contract=off -Iinclude -Ilib -Itests'
 core="$(grep '^lib/' lib/sources.list) lib/build/partition_metis.c"
-support='tests/adversaries.c tests/harness.c tests/inputs.c tests/oracle_weld.c tests/shapes.c tests/soups.c'
+same_input='tests/adversaries.c tests/harness.c tests/inputs.c tests/oracle_weld.c tests/shapes.c tests/soups.c'
 same_math='-include tests/packages/same_math.h'
 
-# library COMPILER FOLDER: the objects of the library, as many at a time as there are processors.
-library() {
-    mkdir -p "$2" || return 1
-    for source in $core; do
-        echo "$source" "$2/$(echo "$source" | tr / _).o"
+# compile COMPILER FOLDER SOURCE...: their objects, as many at a time as there are processors.
+compile() {
+    compiler=$1
+    folder=$2
+    shift 2
+    mkdir -p "$folder" || return 1
+    for source; do
+        echo "$source" "$folder/$(echo "$source" | tr / _).o"
     done | xargs -n 2 -P "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)" \
-        sh -c "$1 $flags -Werror -Wall -Wextra -c"' "$0" -o "$1"'
+        sh -c "$compiler $flags -Werror -Wall -Wextra -c"' "$0" -o "$1"'
+}
+# library COMPILER FOLDER; support COMPILER FOLDER ARCHIVER: what tests share, as an archive
+library() {
+    # shellcheck disable=SC2086
+    compile "$1" "$2" $core
+}
+support() {
+    # shellcheck disable=SC2086
+    compile "$1" "$2/support" $portable_support && "$3" rcs "$2/support.a" "$2"/support/*.o
 }
 # link COMPILER FOLDER PROGRAM SOURCE...
 link() {
@@ -34,12 +46,12 @@ link() {
     program=$3
     shift 3
     # shellcheck disable=SC2086
-    $compiler $flags "$@" $support "$folder"/*.o -o "$folder/$program" -lm
+    $compiler $flags "$@" "$folder"/*.o -o "$folder/$program" -lm
 }
 
 check "the library here" library "$CC" "$scratch/here"
 # shellcheck disable=SC2086
-check "determinism here" link "$CC" "$scratch/here" determinism $same_math tests/runs/determinism.c
+check "determinism here" link "$CC" "$scratch/here" determinism $same_math tests/runs/determinism.c $same_input
 # Elsewhere there is one set of instructions, and so fewer queries.
 hash() {
     "$@" meshes/*.obj | sed 's/ .*//'
@@ -61,16 +73,18 @@ for machine in $machines; do
     check "$machine: the library" library "$cross" "$at"
     # shellcheck disable=SC2086
     check "$machine: determinism links" link "$cross -static" "$at" determinism $same_math \
-        tests/runs/determinism.c
-    for test in $tests; do
-        check "$machine: test_$test links" link "$cross -static" "$at" "test_$test" "tests/test_$test.c"
+        tests/runs/determinism.c $same_input
+    check "$machine: what tests share" support "$cross" "$at" "$machine-ar"
+    for test in $portable_tests; do
+        check "$machine: test_$test links" link "$cross -static" "$at" "test_$test" "tests/test_$test.c" \
+            "$at/support.a"
     done
     if ! command -v "$emulator" >/dev/null 2>&1; then
         skip "nothing built for $machine was run: no $emulator"
         continue
     fi
     check "$machine: the same pairs as here, by all methods, of meshes in many poses" same_hash
-    for test in $tests; do
+    for test in $portable_tests; do
         check "$machine: test_$test passes" "$emulator" "$at/test_$test" --scale 20
     done
 done

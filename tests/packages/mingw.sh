@@ -9,6 +9,7 @@
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
+. tests/portable.sh
 set +u
 prefix=${1:-x86_64-w64-mingw32}
 at=${2:-build/mingw}
@@ -39,36 +40,28 @@ link() {
         -o "$at/$program.exe" -lm
 }
 
-# Tests: those that the oracle's big integers and libccd are not needed for.
-tests='base queries structures underflow validators'
-support=$(for file in tests/*.c; do
-    case $file in
-    tests/test_*.c | tests/oracle.c | tests/step_oracle.c | tests/rounding_search.c) ;;
-    *) echo "$at/release/obj/${file%.c}.o" ;;
-    esac
-done)
-left_out=$(for file in tests/test_*.c; do
-    name=$(basename "$file" .c)
-    case " $tests " in
-    *" ${name#test_} "*) ;;
-    *) echo "$name" ;;
-    esac
-done)
 # shellcheck disable=SC2086
-skip "$(echo $left_out): not built for Windows; they need GMP, libccd or POSIX, which are not there" \
-    "$(echo "$left_out" | wc -l)"
+skip "$(echo $portable_left_out): not built for Windows; they need GMP, libccd or POSIX, which are not there" \
+    "$(echo "$portable_left_out" | wc -l)"
+# objects SOURCE...: theirs, as make names them
+objects() {
+    for file; do echo "$at/release/obj/${file%.c}.o"; done
+}
 
 static=$at/lib/libstarcontour.a
-# shellcheck disable=SC2086
-check "static library, make-meshes, objects of tests" cross_make "$at" -D__USE_MINGW_ANSI_STDIO=1 \
-    "$static" "$at/lib/libstarcontour_metis.a" "$at/bin/make-meshes" $support \
-    $(for test in $tests; do echo "$at/release/obj/tests/test_$test.o"; done)
-[ "$checks_failed" -eq 0 ] || finish
-for test in $tests; do
-    # shellcheck disable=SC2086
-    check "test_$test links" link "test_$test" "$at/release/obj/tests/test_$test.o" $support \
-        "$at/lib/libstarcontour_metis.a" "$static"
-done
+# shellcheck disable=SC2046,SC2086
+{
+    check "static library, make-meshes, objects of tests" cross_make "$at" -D__USE_MINGW_ANSI_STDIO=1 \
+        "$static" "$at/lib/libstarcontour_metis.a" "$at/bin/make-meshes" \
+        $(objects $portable_support $(printf 'tests/test_%s.c ' $portable_tests))
+    [ "$checks_failed" -eq 0 ] || finish
+    rm -f "$at/support.a"
+    check "what tests share" "$prefix-ar" rcs "$at/support.a" $(objects $portable_support)
+    for test in $portable_tests; do
+        check "test_$test links" link "test_$test" $(objects "tests/test_$test.c") "$at/support.a" \
+            "$at/lib/libstarcontour_metis.a" "$static"
+    done
+}
 same_input='-include tests/packages/same_math.h -Ilib -Itests
     tests/runs/determinism.c tests/adversaries.c tests/harness.c tests/inputs.c tests/oracle_weld.c
     tests/shapes.c tests/soups.c'
@@ -136,7 +129,7 @@ plain() {
     tr -d '\r'
 }
 check "wine starts" windows test_base --list
-for test in $tests; do
+for test in $portable_tests; do
     check "test_$test passes" windows "test_$test" --scale 20
 done
 check "a program of version 0.1 runs with the DLL" windows old_caller

@@ -1,0 +1,11 @@
+/* All that lib/ takes from <time.h>, for compilers of systems whose headers are not here.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#if defined(__APPLE__)
+struct timespec {
+    long tv_sec, tv_nsec;
+};
+int clock_gettime(int clock, struct timespec *time);
+#  define CLOCK_MONOTONIC 6
+#endif
