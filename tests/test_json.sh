@@ -206,6 +206,13 @@ check "of near poses" valid "near-near" \
 check "of near pairs, not all" valid "near-incomplete" "$query" --near 2 --json --budget 1 "$cloths"
 check "near what has no rest pose" valid "near-error" \
     "$query" --near 2 --json --rest "$scratch/absent.obj" "$scratch/hit.obj"
+check "of contours" valid "trace-clean trace-contours trace-error summary" \
+    "$query" --trace --json "$scratch/clean.obj" meshes/folded_sheet.obj "$scratch/broken.obj"
+check "of closed ones" valid "trace-contours" "$query" --trace --json meshes/crossing_tetrahedra.obj
+check "of contours of poses" valid "trace-contours" \
+    "$query" --trace --json --model "$scratch/car.scm" "$scratch/hit.obj"
+check "of contours that have no rest pose" valid "trace-error" \
+    "$query" --trace --json --rest "$scratch/absent.obj" "$scratch/hit.obj"
 check "of a partition" valid "partition" "$partition" --json "$cloths"
 
 # Numbers in an object are those of the table.

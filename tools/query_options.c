@@ -15,6 +15,7 @@ static const char usage[] =
     "Usage: sc-query [options] MESH...\n"
     "       sc-query --step [options] MESH MESH... | PATTERN\n"
     "       sc-query --near D [options] MESH... | PATTERN\n"
+    "       sc-query --trace [options] MESH... | PATTERN\n"
     "       sc-query --jsonl FILE [options] --manifest LIST | MESH...\n"
     "Finds every self-collision of triangle meshes, exactly.\n"
     "\n"
@@ -81,7 +82,13 @@ static const char usage_near[] =
     "edges\n"
     "                              shorter than 2 D joins it with: a histogram and percentiles, "
     "with\n"
-    "                              --json of all faces, with --ply in colours\n";
+    "                              --json of all faces, with --ply in colours\n"
+    "Along which curves each MESH intersects itself\n"
+    "  --trace                     its contours, the longest first: length, nodes, whether closed "
+    "or how\n"
+    "                              it begins and ends; with --list all, not five; with --json all "
+    "nodes;\n"
+    "                              --ply writes them as lines. A pattern as with --near\n";
 
 /* In four: C99 has strings of up to 4095 characters. */
 static const char usage_continued[] =
@@ -245,6 +252,10 @@ static bool check_settings(const query_settings *set)
         tool_error("--near does not go with --%s; see sc-query --help", set->not_of_near);
         return false;
     }
+    if (set->is_trace && set->not_of_trace) {
+        tool_error("--trace does not go with --%s; see sc-query --help", set->not_of_trace);
+        return false;
+    }
     if (set->replay_path &&
         (path_count > 0 || set->rest_path || set->model_path || set->record_path))
         reason = "--replay takes no mesh, rest mesh or model, and makes no record";
@@ -257,7 +268,9 @@ static bool check_settings(const query_settings *set)
     else if (set->step.ignores_rest && !set->is_step && !set->is_near)
         reason = "--ignore-rest is of --step and --near";
     else if (set->is_near_asked && !set->is_near)
-        reason = "--kinds, --list and --thickness are of --near";
+        reason = "--kinds and --thickness are of --near";
+    else if (set->near.list && !set->is_near && !set->is_trace)
+        reason = "--list is of --near and --trace";
     else if (set->near.stencils && !set->is_near && !set->is_step)
         reason = "--stencils is of --near and --step";
     else if ((set->near.list || set->near.stencils) && set->any)
@@ -322,6 +335,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
         OPTION_LIST,
         OPTION_STENCILS,
         OPTION_THICKNESS,
+        OPTION_TRACE,
         OPTION_ANY,
         OPTION_ONLY,
         OPTION_HTML,
@@ -374,6 +388,7 @@ int query_options_read(int argc, char **argv, query_settings *set)
         {"list", no_argument, NULL, OPTION_LIST},
         {"stencils", no_argument, NULL, OPTION_STENCILS},
         {"thickness", no_argument, NULL, OPTION_THICKNESS},
+        {"trace", no_argument, NULL, OPTION_TRACE},
         {"weld", required_argument, NULL, OPTION_WELD},
         {"rest", required_argument, NULL, OPTION_REST},
         {"json", no_argument, NULL, OPTION_JSON},
@@ -426,8 +441,12 @@ int query_options_read(int argc, char **argv, query_settings *set)
             option == OPTION_STEP || option == OPTION_SEPARATION || option == OPTION_TOLERANCE ||
             option == OPTION_TIMES)
             set->not_of_near = options[which].name;
-        set->is_near_asked |=
-            option == OPTION_KINDS || option == OPTION_LIST || option == OPTION_THICKNESS;
+        if (option != OPTION_TRACE && option != OPTION_LIST && option != OPTION_WELD &&
+            option != OPTION_REST && option != OPTION_JSON && option != OPTION_PLY &&
+            option != OPTION_MODEL && option != OPTION_PARTITION && option != OPTION_THREADS &&
+            option != OPTION_FORMAT && option >= OPTION_PAIRS)
+            set->not_of_trace = options[which].name;
+        set->is_near_asked |= option == OPTION_KINDS || option == OPTION_THICKNESS;
         set->is_batch |= option >= OPTION_MANIFEST && option <= OPTION_LIMIT_MEMORY;
         set->is_built |= option == OPTION_WELD || option == OPTION_PARTITION;
         set->is_asked |= option == OPTION_PAIRS || option == OPTION_PROPER ||
@@ -476,6 +495,9 @@ int query_options_read(int argc, char **argv, query_settings *set)
             break;
         case OPTION_THICKNESS:
             set->near.thickness = true;
+            break;
+        case OPTION_TRACE:
+            set->is_trace = true;
             break;
         case OPTION_ANY:
             set->any = true;

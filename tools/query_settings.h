@@ -21,6 +21,8 @@ typedef struct query_settings {
     bool is_step, is_step_asked; /* --step; an option that only it takes */
     near_settings near;          /* what --near alone asks */
     bool is_near, is_near_asked;
+    bool is_trace;
+    const char *not_of_trace; /* an option that --trace does not take, if one was given */
     const char *not_of_near;  /* an option that --near does not take, if one was given */
     const char *method_name;  /* as given, or NULL */
     const char *not_of_steps; /* an option that --step does not take, if one was given */

@@ -21,6 +21,7 @@
 #include "query_text.h"
 #include "query_threads.h"
 #include "record_file.h"
+#include "trace_query.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -521,6 +522,21 @@ static int do_near(query_settings *set)
                           : near_query_files(set->paths, set->path_count, near);
 }
 
+/* Contours, in place of do_files. */
+static int do_trace(const query_settings *set)
+{
+    trace_settings trace;
+    memset(&trace, 0, sizeof trace);
+    trace.weld = set->weld;
+    trace.partition = set->partition;
+    trace.rest_path = set->rest_path;
+    trace.model_path = set->model_path;
+    trace.ply_path = set->ply_path;
+    trace.list = set->near.list;
+    trace.json = set->json;
+    return trace_query_files(set->paths, set->path_count, &trace);
+}
+
 /* Asks what a record of any kind asks. */
 static int do_record(query_settings *set)
 {
@@ -563,6 +579,7 @@ int main(int argc, char **argv)
         status = set.replay_path ? do_record(&set)
                  : set.is_step   ? do_steps(&set)
                  : set.is_near   ? do_near(&set)
+                 : set.is_trace  ? do_trace(&set)
                                  : do_files(&set);
     else { /* one of the two files, with which the message begins */
         const char *path = set.ignore_path;

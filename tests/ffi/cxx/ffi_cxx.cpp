@@ -268,6 +268,35 @@ void test(const char *mesh_path, const char *golden_path)
     auto after = std::move(before);
     check("moved model and workspace", query(after, rest) == golden_rest);
 
+    // Nodes follow each other contour after contour, and so does the length of their segments.
+    const auto traced = workspace.trace(positions(moved));
+    std::uint64_t nodes = 0;
+    bool lengths = !traced.contours.empty();
+    for (const auto &contour : traced.contours) {
+        double length = 0;
+        const bool closed = contour.begin == SC_TRACE_CLOSED;
+        for (std::uint64_t i = 0; i + (closed ? 0 : 1) < contour.count; ++i) {
+            const auto &p = traced.nodes[contour.first + i].point;
+            const auto &q = traced.nodes[contour.first + (i + 1) % contour.count].point;
+            length += std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+        }
+        lengths = lengths && contour.first == nodes &&
+                  std::abs(length - contour.length) <= 1e-12 * contour.length;
+        nodes += contour.count;
+    }
+    check("contours and their lengths", lengths && nodes == traced.nodes.size());
+    check("contours of another pose", workspace.trace(positions(rest)).nodes.size() != nodes);
+    check("contours again", workspace.trace(positions(moved)).nodes.size() == nodes);
+    std::uint32_t stop = 1;
+    auto stopped = starcontour::sized<sc_trace_options>();
+    stopped.cancel = &stop;
+    check("contours that are not wanted any more",
+          refused(SC_ERROR_INCOMPLETE, "", [&] { workspace.trace(positions(moved), &stopped); }));
+    auto not_finite = moved;
+    not_finite[3].position[1] = NAN;
+    check("contours of NaN", refused(SC_ERROR_NOT_FINITE, "vertex 3 is NaN or infinite",
+                                     [&] { workspace.trace(positions(not_finite)); }));
+
     Workspace larger(model, SC_WORKSPACE_NEAR);
     const auto near = larger.near(positions(moved), 0.045);
     check("pairs that are near", plain(near.vertex_faces) == golden["nearfaces"] &&

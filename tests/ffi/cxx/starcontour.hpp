@@ -5,6 +5,7 @@
 //     const starcontour::Model model({rest, vertex_count}, triangles, triangle_count);
 //     starcontour::Workspace workspace(model);
 //     for (const sc_pair &pair : workspace.query({pose, vertex_count})) ...
+//     for (const sc_trace_contour &contour : workspace.trace({pose, vertex_count}).contours) ...
 //
 //     starcontour::Workspace larger(model, SC_WORKSPACE_NEAR);
 //     larger.step({pose, vertex_count}, {next, vertex_count}).earliest
@@ -184,6 +185,12 @@ struct Features {
     double earliest = 1; // of a step: nothing collides before
 };
 
+// Contours of a pose; each names its first node and how many it has.
+struct Contours {
+    std::vector<sc_trace_node> nodes;
+    std::vector<sc_trace_contour> contours;
+};
+
 // What one query at a time writes to. The model must outlive it.
 class Workspace
 {
@@ -266,6 +273,44 @@ class Workspace
         return found_;
     }
 
+    // Contours of the intersections in a pose; they stay until the next trace. Its pairs of edges and
+    // triangles are found first, in place of those of the last query. options: NULL, or as for
+    // sc_trace; its tasks are also those of the query.
+    const Contours &trace(const Positions &positions, const sc_trace_options *options = nullptr)
+    {
+        auto asked = options != nullptr ? *options : sized<sc_trace_options>();
+        if (asked.hooks == nullptr) asked.hooks = &log_->hooks;
+        auto edges = sized<sc_query_options>();
+        edges.pairs = SC_PAIRS_EDGE;
+        edges.simd = asked.simd;
+        edges.tasks = asked.tasks;
+        edges.cancel = asked.cancel;
+        query(positions, &edges);
+        const auto pose = detail::pose_of(positions);
+        auto result = sized<sc_trace_result>();
+        auto nodes = std::max(std::size_t{64}, traced_.nodes.capacity());
+        auto contours = std::max(std::size_t{8}, traced_.contours.capacity());
+        for (;;) {
+            traced_.nodes.resize(nodes);
+            traced_.contours.resize(contours);
+            result.nodes = traced_.nodes.data();
+            result.node_capacity = nodes;
+            result.contours = traced_.contours.data();
+            result.contour_capacity = contours;
+            const auto status =
+                sc_trace(model_, &pose, pairs_.data(), pairs_.size(), &asked, &result);
+            if (status != SC_ERROR_SHORT_BUFFER) {
+                log_->check(status);
+                break;
+            }
+            nodes = std::max(nodes, static_cast<std::size_t>(result.node_count));
+            contours = std::max(contours, static_cast<std::size_t>(result.contour_count));
+        }
+        traced_.nodes.resize(static_cast<std::size_t>(result.node_count));
+        traced_.contours.resize(static_cast<std::size_t>(result.contour_count));
+        return traced_;
+    }
+
     sc_workspace *get() const
     {
         return workspace_.get();
@@ -306,6 +351,7 @@ class Workspace
     std::unique_ptr<sc_workspace, detail::Free> workspace_;
     std::vector<sc_pair> pairs_;
     Features found_;
+    Contours traced_;
 };
 
 // What objects have with each other and with themselves: a range for each two, or one, that have

@@ -1,0 +1,210 @@
+#!/bin/sh
+# sc-query --trace: contours of meshes whose contours are known; what it prints and writes, the exit
+# status, and what it refuses.
+#
+# SPDX-License-Identifier: MIT
+. tests/script.sh
+
+query=$SC_BIN/sc-query
+if [ ! -x "$query" ]; then
+    skip "sc-query was not built"
+    check "there is something to skip" test ! -x "$query"
+    finish
+fi
+cloths=meshes/crossing_cloths.obj
+solids=meshes/crossing_tetrahedra.obj
+sheets=meshes/folded_sheet.obj
+
+# Two triangles that cross: from (1, 1, 0), where an edge of the second goes through the first, to
+# (3, 1, 0), where its other edge does or not at all, by the height of its top.
+frame() { # FILE HEIGHT
+    printf 'v 0 0 0\nv 8 0 0\nv 0 8 0\nv 1 1 %s\nv 1 1 -1\nv 5 1 %s\nf 1 2 3\nf 4 5 6\n' \
+        "$2" "$2" >"$1"
+}
+a=$scratch/f0.obj
+b=$scratch/f1.obj
+c=$scratch/f2.obj
+frame "$a" 1
+frame "$b" -2
+frame "$c" 3
+
+# ---- what it finds ----
+
+check "one segment, 2 long" says 1 "^    contour 1: length 2, 2 nodes, border to border$" \
+    "$query" --trace "$a"
+check "its row" says 1 "^ *6  *2  *2  *1  *0  *2  .*f0.obj$" "$query" --trace "$a"
+check "nothing" says 0 "^ *6  *2  *0  *0  *0  *0  .*f1.obj$" "$query" --trace "$b"
+check "two cloths" says 1 "^    contour 1: length [0-9.]*, [0-9]* nodes, border to border$" \
+    "$query" --trace "$cloths"
+# Of the slanting face, x + y + z = 4, the corner at (0.5, 0.625, 0.75) cuts an equilateral triangle
+# of sides 2.125 times the square root of 2.
+check "a closed one" says 1 "^    contour 1: length 9.01561, 3 nodes, closed$" \
+    "$query" --trace "$solids"
+check "a mesh without" status 0 "$query" --trace meshes/sphere.obj
+check "several: the longest five" says 1 "^    and 2 shorter contours$" "$query" --trace "$sheets"
+check "or all" says 1 "^    contour 7: " "$query" --trace --list "$sheets"
+check "none is left then" sh -c "! '$query' --trace --list '$sheets' | grep -q shorter"
+check "the longest first" sh -c "'$query' --trace --list '$sheets' |
+    sed -n 's/.*length \([0-9.]*\),.*/\1/p' | sort -g -r -c"
+check "ends at vertices" says 1 "border to vertex" "$query" --trace "$sheets"
+
+# ---- poses ----
+
+check "files, each a mesh of its own" says 1 "^3 files: 1 clean, 2 colliding" \
+    "$query" --trace "$a" "$b" "$solids"
+check "poses" says 1 "^2 files: 1 clean, 1 colliding, 0 refused; first .*f2.obj" \
+    "$query" --trace --rest "$a" "$b" "$c"
+check "a pattern" says 1 "^3 files: 1 clean, 2 colliding" "$query" --trace "$scratch/f%d.obj"
+if [ -x "$SC_BIN/sc-partition" ]; then
+    "$SC_BIN/sc-partition" "$a" -o "$scratch/model" >/dev/null 2>&1
+    check "a saved model" says 1 "length 1, 2 nodes" "$query" --trace --model "$scratch/model" "$c"
+    check "of another mesh" says 2 "vertices" "$query" --trace --model "$scratch/model" "$solids"
+fi
+printf 'v 0 0 0\nv 8 0 0\nv 0 8 0\nv 1 1 1\nv 1 1 -1\nv 1 1 1\nv 1 1 -1\nv 5 1 1\n' >"$scratch/seam.obj"
+printf 'f 1 2 3\nf 4 5 8\nf 6 8 7\n' >>"$scratch/seam.obj"
+check "joined" says 1 "^ *6  *3 " "$query" --trace "$scratch/seam.obj"
+check "not joined" says 1 "^ *8  *3 " "$query" --trace --weld none "$scratch/seam.obj"
+
+# ---- what it writes ----
+
+without_times() {
+    "$query" --trace --json "$@" | sed 's/"[a-z]*_ms":[^,]*,//g'
+}
+without_times "$sheets" >"$scratch/one"
+check "there are contours" grep -q '"contours":\[{"length":' "$scratch/one"
+for threads in 2 3; do
+    without_times --threads $threads "$sheets" >"$scratch/more"
+    check "the same by $threads threads" cmp "$scratch/one" "$scratch/more"
+done
+check "JSON" says 1 '"type":"trace".*"status":"contours".*"edge_pairs":2,"closed":0,"length":2,' \
+    "$query" --trace --json "$a"
+check "and of none" says 0 '"status":"clean".*"contours":\[\]' "$query" --trace --json "$b"
+check "lines" status 1 "$query" --trace --ply "$scratch/lines.ply" "$a"
+cat >"$scratch/lines" <<'EOT'
+ply
+format ascii 1.0
+comment written by starcontour: contours, the longest first
+element vertex 2
+property double x
+property double y
+property double z
+element edge 1
+property int vertex1
+property int vertex2
+property int contour
+end_header
+EOT
+check "their head" sh -c "head -n 12 '$scratch/lines.ply' | diff '$scratch/lines' -"
+check "their ends" sh -c "sed -n 13,14p '$scratch/lines.ply' | sort | tr '\n' ' ' |
+    grep -qx '1 1 0 3 1 0 '"
+check "the line" sh -c "sed -n 15p '$scratch/lines.ply' | grep -qx '0 1 0'"
+"$query" --trace --ply "$scratch/lines.ply" "$solids" >/dev/null
+check "a closed one ends where it begins" sh -c "tail -n 1 '$scratch/lines.ply' | grep -qx '2 0 0'"
+check "none to write" status 0 "$query" --trace --ply "$scratch/lines.ply" "$b"
+check "an empty file of lines" grep -qx "element edge 0" "$scratch/lines.ply"
+
+if ! command -v python3 >/dev/null 2>&1; then
+    skip "nodes and lines, against each other and the mesh: there is no python3"
+else
+    cat >"$scratch/nodes.py" <<'EOP'
+"""Nodes of a mesh are where edges and triangles meet; lines of the file of --ply are theirs.
+
+nodes.py MESH JSON PLY"""
+import json
+import math
+import sys
+
+points, triangles = [], []
+with open(sys.argv[1]) as file:
+    for line in file:
+        words = line.split()
+        if words and words[0] == "v":
+            points.append([float(x) for x in words[1:4]])
+        if words and words[0] == "f":
+            triangles.append([int(word.split("/")[0]) - 1 for word in words[1:4]])
+with open(sys.argv[2]) as file:
+    answer = json.load(file)
+assert answer["contours"] and answer["status"] == "contours"
+lengths = [contour["length"] for contour in answer["contours"]]
+assert lengths == sorted(lengths, reverse=True), lengths
+assert math.isclose(sum(lengths), answer["length"], rel_tol=1e-12)
+assert sum(c["begin"] == "closed" for c in answer["contours"]) == answer["closed"]
+
+
+def mix(weights, corners):
+    return [sum(w * points[v][k] for w, v in zip(weights, corners)) for k in range(3)]
+
+
+used = set()
+lines, every = [], []
+for number, contour in enumerate(answer["contours"]):
+    nodes, first = contour["nodes"], len(every)
+    closed = contour["begin"] == "closed"
+    assert closed == (contour["end"] == "closed")
+    for i, node in enumerate(nodes):
+        every.append(node["point"])
+        assert (node["sheets"] is None) == (i + 1 == len(nodes) and not closed)
+        if "vertex" in node:
+            assert node["point"] == points[node["vertex"]]
+            continue
+        triangle, side = divmod(node["edge"], 3)
+        ends = [triangles[triangle][side], triangles[triangle][(side + 1) % 3]]
+        for there in (mix([1 - node["along"], node["along"]], ends),
+                      mix(node["weights"], triangles[node["triangle"]])):
+            assert math.dist(there, node["point"]) < 1e-5, (there, node)
+        used.add((node["edge"], node["triangle"]))
+    pieces = [(first + i, first + i + 1) for i in range(len(nodes) - 1)]
+    if closed:
+        pieces.append((first + len(nodes) - 1, first))
+    total = sum(math.dist(every[i], every[k]) for i, k in pieces)
+    assert math.isclose(total, contour["length"], rel_tol=1e-12)
+    lines += [(i, k, number) for i, k in pieces]
+assert len(used) <= answer["edge_pairs"], (len(used), answer["edge_pairs"])
+with open(sys.argv[3]) as file:
+    head, body = file.read().split("end_header\n")
+rows = body.splitlines()
+for row, point in zip(rows, every):
+    assert math.dist([float(x) for x in row.split()], point) <= 1e-14, (row, point)
+assert [tuple(map(int, row.split())) for row in rows[len(every):]] == lines
+assert f"element vertex {len(every)}\n" in head and f"element edge {len(lines)}\n" in head
+EOP
+    for mesh in "$a" "$cloths" "$solids" "$sheets" meshes/touching_cubes.obj; do
+        "$query" --trace --json --ply "$scratch/lines.ply" "$mesh" >"$scratch/json"
+        check "nodes of $(basename "$mesh")" \
+            python3 "$scratch/nodes.py" "$mesh" "$scratch/json" "$scratch/lines.ply"
+    done
+fi
+
+# ---- what is wrong ----
+
+check "no mesh" says 2 "no mesh" "$query" --trace
+check "an absent one" says 2 absent "$query" --trace "$scratch/absent.obj"
+check "as JSON too" says 2 '"type":"trace".*"status":"error"' \
+    "$query" --trace --json "$scratch/absent.obj"
+check "the others are done" says 2 "2 files: 0 clean, 1 colliding, 1 refused" \
+    "$query" --trace "$scratch/absent.obj" "$a"
+check "another mesh" says 2 "not a pose" "$query" --trace --rest "$a" meshes/sphere.obj
+check "no rest pose" says 2 '"type":"trace","file":".*absent' \
+    "$query" --trace --json --rest "$scratch/absent.obj" "$a"
+printf 'v 0 0 0\nv 8 0 0\nv 0 8 0\nv 1 1 nan\nv 1 1 -1\nv 5 1 1\nf 1 2 3\nf 4 5 6\n' >"$scratch/nan.obj"
+check "not a number" says 2 "nan.obj: .*vertex 3 is NaN or infinite" \
+    "$query" --trace --rest "$a" "$scratch/nan.obj"
+for option in --proper "--pairs edge" --step "--near 1" "--replay $scratch/x" --times --contacts \
+    --any "--only self-collisions" --no-rest-cache "--contour star" "--method sctt" --stats \
+    "--budget 9" "--ignore-rings 1" "--ignore $scratch/x" "--ignore-rest 1" "--groups $scratch/x" \
+    "--out $scratch/x" "--html $scratch/x" "--png $scratch/x" "--record $scratch/x" --stencils \
+    --thickness "--kinds both" "--jsonl $scratch/x" --timings; do
+    # shellcheck disable=SC2086
+    check "not with $option" says 2 "does not go with" "$query" --trace ${option} "$a"
+done
+check "a list of what" says 2 "of --near and --trace" "$query" --list "$a"
+check "no folder to write to" says 2 "cannot be written" "$query" --trace --ply "$scratch/no/x" "$a"
+check "one mesh to write" says 2 "one mesh" "$query" --trace --ply "$scratch/x.ply" "$a" "$b"
+check "nor all of a pattern" says 2 "one mesh" \
+    "$query" --trace --ply "$scratch/x.ply" "$scratch/f%d.obj"
+check "not over the mesh" says 2 "is to be read" "$query" --trace --ply "$a" "$a"
+cp "$a" "$scratch/g1.obj"
+check "nor over one of a pattern" says 2 "g1.obj is to be read" \
+    "$query" --trace --ply "$scratch/g1.obj" "$scratch/g%d.obj"
+check "which is whole" cmp "$a" "$scratch/g1.obj"
+finish

@@ -1,0 +1,252 @@
+/*
+ * sc-query --trace; see trace_query.h.
+ *
+ * SPDX-License-Identifier: MIT
+ */
+#include "trace_query.h"
+
+#include "frame_paths.h"
+#include "query_subject.h"
+#include "query_summary.h"
+#include "query_text.h"
+#include "query_threads.h"
+#include "trace_report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct trace_run {
+    const trace_settings *set;
+    const char *rest_path; /* --rest, or the first frame of a pattern, or NULL */
+    query_subject rest;    /* of that, or the saved model */
+    query_summary summary;
+    /* Arrays of one pose; they grow and are kept. */
+    sc_pair *pairs;
+    sc_trace_node *nodes;
+    sc_trace_contour *contours;
+    uint64_t pair_capacity, node_capacity, contour_capacity;
+} trace_run;
+
+/* ------------------------------------------------------------------------------------------------
+ * Asking
+ */
+
+/* Makes room for count elements of some bytes each, if there is less; what was in *array is lost.
+   False if there is no memory. */
+static bool make_room(void **array, uint64_t *capacity, uint64_t count, size_t size)
+{
+    if (count <= *capacity) return true;
+    free(*array);
+    *array = count > SIZE_MAX / size ? NULL : malloc((size_t)count * size);
+    *capacity = *array ? count : 0;
+    return *array != NULL;
+}
+
+static bool make_room_for_pairs(trace_run *run, uint64_t count)
+{
+    void *array = run->pairs;
+    const bool made = make_room(&array, &run->pair_capacity, count, sizeof *run->pairs);
+    run->pairs = (sc_pair *)array;
+    return made;
+}
+
+static bool make_room_for_trace(trace_run *run, uint64_t nodes, uint64_t contours)
+{
+    void *array = run->nodes;
+    bool made = make_room(&array, &run->node_capacity, nodes, sizeof *run->nodes);
+    run->nodes = (sc_trace_node *)array;
+    array = run->contours;
+    made &= make_room(&array, &run->contour_capacity, contours, sizeof *run->contours);
+    run->contours = (sc_trace_contour *)array;
+    return made;
+}
+
+/* All pairs of edges and triangles. */
+static sc_status find_pairs(trace_run *run, const query_subject *subject, const sc_pose *pose,
+                            trace_answer *answer)
+{
+    sc_query_options options;
+    sc_result result;
+    sc_status status;
+    memset(&options, 0, sizeof options);
+    memset(&result, 0, sizeof result);
+    options.struct_size = sizeof options;
+    options.output = SC_OUTPUT_PAIRS;
+    options.pairs = SC_PAIRS_EDGE;
+    options.contact = SC_CONTACT_TOUCHING;
+    options.tasks = query_threads_tasks();
+    result.struct_size = sizeof result;
+    do {
+        if (!make_room_for_pairs(run, result.count)) return SC_ERROR_MEMORY;
+        result.pairs = run->pairs;
+        result.capacity = run->pair_capacity;
+        const double start = tool_clock();
+        status = sc_query(subject->model, subject->workspace, pose, &options, &result);
+        answer->query_ms = tool_clock() - start;
+    } while (status == SC_ERROR_SHORT_BUFFER);
+    answer->pair_count = result.count;
+    return status;
+}
+
+static sc_status trace_pairs(trace_run *run, const query_subject *subject, const sc_pose *pose,
+                             trace_answer *answer)
+{
+    sc_trace_options options;
+    sc_trace_result result;
+    sc_status status;
+    memset(&options, 0, sizeof options);
+    memset(&result, 0, sizeof result);
+    options.struct_size = sizeof options;
+    options.hooks = tool_hooks();
+    options.tasks = query_threads_tasks();
+    result.struct_size = sizeof result;
+    do {
+        if (!make_room_for_trace(run, result.node_count, result.contour_count))
+            return SC_ERROR_MEMORY;
+        result.nodes = run->nodes;
+        result.node_capacity = run->node_capacity;
+        result.contours = run->contours;
+        result.contour_capacity = run->contour_capacity;
+        const double start = tool_clock();
+        status = sc_trace(subject->model, pose, run->pairs, answer->pair_count, &options, &result);
+        answer->trace_ms = tool_clock() - start;
+    } while (status == SC_ERROR_SHORT_BUFFER);
+    answer->nodes = run->nodes;
+    answer->node_count = result.node_count;
+    answer->contours = run->contours;
+    answer->contour_count = result.contour_count;
+    return status;
+}
+
+/* All about one pose. */
+static bool ask(trace_run *run, const query_subject *subject, const sc_pose *pose,
+                trace_answer *answer, char error[MESH_FILE_ERROR_SIZE])
+{
+    answer->build_ms = subject->build_ms;
+    answer->position_type = pose->position_type;
+    answer->info.struct_size = sizeof answer->info;
+    sc_status status = sc_model_get_info(subject->model, &answer->info);
+    if (status == SC_OK) status = find_pairs(run, subject, pose, answer);
+    if (status == SC_OK) status = trace_pairs(run, subject, pose, answer);
+    if (status != SC_OK)
+        snprintf(error, MESH_FILE_ERROR_SIZE, "%s: %s", answer->path, tool_why(status));
+    else
+        trace_report_sort(answer);
+    return status == SC_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Files
+ */
+
+/* How to build. For one query the plain tree alone pays, which is built fastest. */
+static query_subject_how how_to_build(const trace_run *run)
+{
+    const trace_settings *set = run->set;
+    const bool is_plain = !run->rest_path && set->partition == TOOL_PARTITION_FAST;
+    const query_subject_how how = {set->weld, set->partition,
+                                   0,         is_plain ? SC_MODEL_BOXES : SC_MODEL_FULL,
+                                   0,         run->rest_path != NULL};
+    return how;
+}
+
+static int do_file(trace_run *run, const char *path)
+{
+    const trace_settings *set = run->set;
+    char error[MESH_FILE_ERROR_SIZE];
+    query_subject own;
+    mesh_pose moved; /* of run->rest_path */
+    trace_answer answer;
+    memset(&own, 0, sizeof own);
+    memset(&moved, 0, sizeof moved);
+    memset(&answer, 0, sizeof answer);
+    answer.path = path;
+
+    const query_subject *subject = run->rest.model ? &run->rest : &own;
+    const mesh_file *mesh = run->rest_path ? &run->rest.mesh : &own.mesh;
+    bool done;
+    if (run->rest_path) {
+        done = mesh_file_read_pose(mesh, path, &moved, error) &&
+               query_subject_keeps_welds(subject, mesh, path, moved.positions, moved.position_type,
+                                         error);
+    } else if (set->model_path) {
+        done = mesh_file_read(&own.mesh, path, error) &&
+               query_subject_fits(subject, path, mesh, error) &&
+               query_subject_keeps_welds(subject, mesh, path, mesh->positions, mesh->position_type,
+                                         error);
+    } else {
+        const query_subject_how how = how_to_build(run);
+        done = query_subject_load(&own, path, &how, error);
+    }
+    const sc_pose pose = run->rest_path
+                             ? tool_pose(moved.positions, moved.position_type, mesh->vertex_count)
+                             : tool_pose(mesh->positions, mesh->position_type, mesh->vertex_count);
+    answer.rounded = run->rest_path ? moved.rounded : mesh->rounded;
+    answer.has_animation = run->rest_path ? moved.has_animation : mesh->has_animation;
+    if (done) done = ask(run, subject, &pose, &answer, error);
+    int status = done ? trace_report(&answer, set) : trace_report_failure(path, set, error);
+    if (done && set->ply_path && !trace_report_ply(&answer, set)) status = TOOL_FAILED;
+    query_summary_add(&run->summary, status, answer.contour_count > 0, path, NULL,
+                      answer.pair_count);
+    mesh_pose_free(&moved);
+    query_subject_free(&own);
+    return status;
+}
+
+static int do_files(trace_run *run, char *const *paths, int count)
+{
+    const trace_settings *set = run->set;
+    char error[MESH_FILE_ERROR_SIZE];
+    int status = TOOL_CLEAN;
+    if (run->rest_path) {
+        const query_subject_how how = how_to_build(run);
+        if (!query_subject_load(&run->rest, run->rest_path, &how, error))
+            return trace_report_failure(run->rest_path, set, error);
+    } else if (set->model_path) {
+        if (!query_subject_open(&run->rest, set->model_path, 0, error))
+            return trace_report_failure(set->model_path, set, error);
+    }
+    trace_report_head(set);
+    for (int i = 0; i < count; i++) status = query_text_worse(status, do_file(run, paths[i]));
+    if (!query_summary_print(&run->summary, false, set->json)) status = TOOL_FAILED;
+    return status;
+}
+
+/* Also those of a pattern. */
+static bool spares_files(char *const *paths, int count, const trace_settings *set)
+{
+    for (int i = 0; i < count; i++) {
+        if (!tool_spares(set->ply_path, paths[i])) return false;
+    }
+    return true;
+}
+
+int trace_query_files(char **paths, int count, const trace_settings *set)
+{
+    char error[MESH_FILE_ERROR_SIZE];
+    frame_paths found = {NULL, 0};
+    int status = TOOL_FAILED;
+    trace_run run;
+    memset(&run, 0, sizeof run);
+    run.set = set;
+    run.rest_path = set->rest_path;
+    if (count == 1 && strchr(paths[0], '%')) {
+        if (!frame_paths_find(&found, paths[0], error)) {
+            tool_error("%s", error);
+            return TOOL_FAILED;
+        }
+        paths = found.paths;
+        count = (int)found.count;
+        if (!set->rest_path && !set->model_path) run.rest_path = paths[0];
+    }
+    if (set->ply_path && count > 1)
+        tool_error("--ply takes one mesh only; see sc-query --help");
+    else if (spares_files(paths, count, set))
+        status = do_files(&run, paths, count);
+    free(run.pairs);
+    free(run.nodes);
+    free(run.contours);
+    query_subject_free(&run.rest);
+    frame_paths_free(&found);
+    return status;
+}
