@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: MIT
  */
 double fabs(double), fmin(double, double), fmax(double, double), sqrt(double), floor(double);
-double ceil(double), frexp(double, int *), ldexp(double, int);
+double atan2(double, double), ceil(double), frexp(double, int *), ldexp(double, int);
 float fabsf(float), fminf(float, float), fmaxf(float, float), sqrtf(float), floorf(float), ceilf(float);
 #define INFINITY ((float)(1e300 * 1e300))
 #define NAN (-(float)(INFINITY * 0.0F))
