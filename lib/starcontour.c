@@ -942,6 +942,7 @@ static sc_status find_regions(const sc_model *model, const sc_pose *pose,
     sc_scratch scratch;
     sc_trace_result t;
     sc_status status = read_trace_call(model, pose, options, &call);
+    memset(&t, 0, sizeof t);
     if (!status) status = sc_arguments_choose(&call.hooks, "result", &flags, 1);
     if (!status)
         status = sc_arguments_read(&call.hooks, "trace", &t, sizeof t, trace,

@@ -426,6 +426,8 @@ double sc_contacts_pass(const double *const edge[2], const double *const triangl
     const int whole[2] = {0, 1};
     double on_edge[3];
     hull own, other;
+    memset(&own, 0, sizeof own);
+    memset(&other, 0, sizeof other);
     own.p = ends;
     other.p = triangle;
     weigh_passage(&own, whole, &other, on_edge, weights);

@@ -149,9 +149,8 @@ static void sort_along(region_work *w, uint32_t edge)
             const uint32_t moved = order[i];
             for (j = i; j >= gap; j -= gap) {
                 const uint32_t other = order[j - gap];
-                if (w->along[other] < w->along[moved] ||
-                    (w->along[other] == w->along[moved] && other < moved))
-                    break;
+                const double before = w->along[other], behind = w->along[moved];
+                if (before < behind || (before == behind && other < moved)) break;
                 order[j] = other;
             }
             order[j] = moved;
