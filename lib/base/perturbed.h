@@ -15,9 +15,9 @@
 #include <stdint.h>
 
 /*
- * The sign of sc_predicates_orient3d, 1 or -1, of four points that have different numbers. *fallbacks
- * is as in base/predicates.h. 5 to 10 ns where the points are not in a plane, else up to about
- * 1 us.
+ * The sign of sc_predicates_orient3d, 1 or -1, of four points that have different numbers.
+ * *fallbacks is as in base/predicates.h. Costs what that sign does where the points are not in a
+ * plane.
  */
 int sc_perturbed_orient3d(const double *const points[4], const uint32_t numbers[4],
                           uint64_t *fallbacks);

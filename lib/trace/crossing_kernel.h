@@ -7,16 +7,17 @@
  * Seen from the first end of the edge, let q be its other end and a, b, c the corners. With
  *   D = det(a, b, c),  W_a = det(q, b, c),  W_b = det(q, c, a),  W_c = det(q, a, b),
  * and W the sum of these three, the line of the edge meets the plane of the triangle at D / W of
- * the way to q, at the point whose weights are W_a / W, W_b / W and W_c / W. So the edge crosses the
- * triangle if all four have one sign and D is less than W.
+ * the way to q, at the point whose weights are W_a / W, W_b / W and W_c / W. So the edge crosses
+ * the triangle if all four have one sign and D is less than W.
  *
  * Each is computed as base/predicates.c (sum_of_two) has it, and off by 2^-98 M at most before its
  * two doubles are added, M being the sum of the absolute values of its products. It is taken for
  * certain if it is larger than 2^-44 M: then it is off by 2^-54 of itself, and with the addition by
- * 1.5 u, u = 2^-53. W is off by 3.5 u then, a weight and D / W by 6 u with the division. The point p
- * + (D / W)(q - p), as a mean of p and q with weights 1 - D / W and D / W, is off by 12 u of the
+ * 1.5 u, u = 2^-53. W is off by 3.5 u then, a weight and D / W by 6 u with the division. The point
+ * p + (D / W)(q - p), as a mean of p and q with weights 1 - D / W and D / W, is off by 12 u of the
  * larger of the two coordinates, and by 3 u more for the difference, the products and the sum: less
- * than the 16 u of a contact. Whether D is less than W is certain unless they are equal up to 2^-50.
+ * than the 16 u of a contact. Whether D is less than W is certain unless they are equal up to
+ * 2^-50.
  *
  * A product that underflows is off by 2^-1022 at most, however subnormal numbers are treated; then
  * it is multiplied by two components of at most 2^250, and there are fewer than 2^10 of them. That

@@ -171,8 +171,8 @@ static void place_lane(const sc_trace_subject *s, const pair_block *block, uint3
     }
 }
 
-/* Looks at the pairs of a block: together, and those of which it is not certain then each by itself.
-   Returns 0 after one that is wrong. */
+/* Looks at the pairs of a block: together, and those of which it is not certain then each by
+   itself. Returns 0 after one that is wrong. */
 static int look_at_block(pair_search *search, pair_block *block, uint32_t part)
 {
     const sc_trace_subject *s = search->subject;

@@ -4,9 +4,10 @@
  * SPDX-License-Identifier: MIT
  *
  * Areas. In a triangle with corners 0, 1, 2 a point is given by its weights of corners 1 and 2; a
- * part of the triangle is that share of it which is the sum of x_i y_i+1 - x_i+1 y_i round the part.
- * So each interval on the border adds a term to the part that it is of, and each chain the same terms
- * to the parts on its two sides, with opposite signs. No polygon is put together for that.
+ * part of the triangle is that share of it which is the sum of x_i y_i+1 - x_i+1 y_i round the
+ * part. So each interval on the border adds a term to the part that it is of, and each chain the
+ * same terms to the parts on its two sides, with opposite signs. No polygon is put together for
+ * that.
  */
 #include "trace/regions.h"
 
@@ -16,8 +17,8 @@
 #include "base/sort.h"
 #include "trace/crossed_edges.h"
 
-/* A part of a contour in one triangle: nodes of a contour, counted on from its first, round it if it
-   is closed. */
+/* A part of a contour in one triangle: nodes of a contour, counted on from its first, round it if
+   it is closed. */
 typedef struct region_chain {
     uint32_t triangle;
     uint32_t contour;
@@ -194,8 +195,8 @@ static uint64_t node_at(const sc_trace_contour *c, uint64_t i)
     return c->first + i % c->count;
 }
 
-/* The number that a sheet has at node i, counted on round a contour whose sheets are one: there each
-   round leads from one to the other. */
+/* The number that a sheet has at node i, counted on round a contour whose sheets are one: there
+   each round leads from one to the other. */
 static uint32_t sheet_at(const sc_trace_contour *c, uint32_t sheet, uint64_t i)
 {
     return c->flags == SC_TRACE_ONE_SHEET && i / c->count % 2 ? 1 - sheet : sheet;
@@ -324,7 +325,7 @@ static double turn_of(const double p[2], const double q[2])
     return p[0] * q[1] - q[0] * p[1];
 }
 
-/* The signed share of what a chain and corner 0 enclose; a loop has its first node at its end, too. */
+/* The signed share of what a chain and corner 0 enclose; a loop ends with its first node. */
 static double chain_turn(const region_work *w, const region_chain *chain)
 {
     const sc_trace_contour *c = &w->trace->contours[chain->contour];
@@ -408,8 +409,8 @@ static int mark_chains(const region_work *w, divided *d)
     return 1;
 }
 
-/* Finds the parts of the border: a chain that begins opens one, and when it ends the one before goes
-   on, unless others have begun since that have not ended: then they cross. */
+/* Finds the parts of the border: a chain that begins opens one, and when it ends the one before
+   goes on, unless others have begun since that have not ended: then they cross. */
 static void find_border_parts(divided *d)
 {
     uint32_t i, open = 0, now = 0, *before = d->part; /* of open chains: where they begin */
@@ -530,8 +531,8 @@ static uint32_t element_of_part(const divided *d, uint32_t part)
     return d->marks[i].element;
 }
 
-/* The element that chain i lies in: of a loop round it that is the smallest, or of a part; and takes
-   from that the share of a loop. */
+/* The element that chain i lies in: of a loop round it that is the smallest, or of a part; and
+   takes from that the share of a loop. */
 static uint32_t find_round(const region_work *w, divided *d, uint32_t i, const uint32_t *loops)
 {
     const region_chain *chain = &d->chains[i];
@@ -554,7 +555,7 @@ static uint32_t find_round(const region_work *w, divided *d, uint32_t i, const u
     return element_of_part(d, j);
 }
 
-/* What is on both sides of contours of which no node is on an edge of a sheet: see regions_sides. */
+/* Notes both sides of a contour that has no node on an edge of a sheet. */
 static void note_sides(region_work *w, const region_chain *chain, uint32_t within, uint32_t round)
 {
     sc_contour_sides *sides = &w->sides[chain->contour];
@@ -749,8 +750,8 @@ static double solid_angle(const region_work *w, uint32_t triangle, const double 
     return volume == 0 && below == 0 ? 0 : atan2(volume, below) / 6.283185307179586;
 }
 
-/* How often closed components go round the middle of a triangle, where its normal points: that of its
-   own component is half of what it is on both sides. */
+/* How often closed components go round the middle of a triangle, where its normal points: that of
+   its own component is half of what it is on both sides. */
 static int32_t count_round(const region_work *w, uint32_t triangle, const uint64_t *open)
 {
     const sc_model *model = w->subject->model;
@@ -771,7 +772,7 @@ static int32_t count_round(const region_work *w, uint32_t triangle, const uint64
     return (int32_t)floor(sum + 0.5);
 }
 
-/* Fills in sc_region.inside, by the first triangle of each region through which no contour passes. */
+/* Fills in sc_region.inside, by each region's first triangle through which no contour passes. */
 static sc_status find_inside(region_work *w, sc_regions_result *r)
 {
     const sc_model *model = w->subject->model;
