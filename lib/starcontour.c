@@ -921,13 +921,15 @@ sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pa
 {
     sc_trace_result r;
     sc_status status;
-    if (!model || !pose || !result || (count && !pairs)) return SC_ERROR_NULL;
+    if (!result) return SC_ERROR_NULL;
     status = sc_arguments_read(NULL, "result", &r, sizeof r, result,
                                SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
     if (status) return status;
     r.reserved = 0;
     r.node_count = r.contour_count = 0;
-    status = find_trace(model, pose, pairs, count, options, &r);
+    status = !model || !pose || (count && !pairs)
+                 ? SC_ERROR_NULL
+                 : find_trace(model, pose, pairs, count, options, &r);
     if (status && status != SC_ERROR_SHORT_BUFFER) r.node_count = r.contour_count = 0;
     sc_structs_write(result, &r, sizeof r);
     return status;
@@ -967,12 +969,13 @@ sc_status sc_trace_regions(const sc_model *model, const sc_pose *pose, const sc_
 {
     sc_regions_result r;
     sc_status status;
-    if (!model || !pose || !trace || !result) return SC_ERROR_NULL;
+    if (!result) return SC_ERROR_NULL;
     status = sc_arguments_read(NULL, "result", &r, sizeof r, result,
                                SC_ARGUMENTS_UP_TO(sc_regions_result, sides));
     if (status) return status;
     r.region_count = 0;
-    status = find_regions(model, pose, trace, options, &r);
+    status =
+        !model || !pose || !trace ? SC_ERROR_NULL : find_regions(model, pose, trace, options, &r);
     if (status && status != SC_ERROR_SHORT_BUFFER) r.region_count = 0;
     sc_structs_write(result, &r, sizeof r);
     return status;

@@ -6,7 +6,6 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#define _POSIX_C_SOURCE 200112L /* posix_memalign */
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
@@ -583,31 +582,6 @@ static void names_change_nothing(void)
 
 /* ---- what cannot be ---- */
 
-/* An allocator that fails after so many times, and counts what is not given back. */
-typedef struct failing {
-    sc_allocator allocator;
-    uint32_t left;
-    uint64_t live;
-} failing;
-
-static void *allocate(void *user, uint64_t bytes, uint64_t alignment)
-{
-    failing *f = (failing *)user;
-    void *memory = NULL;
-    if (!f->left) return NULL;
-    --f->left;
-    ++f->live;
-    if (posix_memalign(&memory, (size_t)alignment, (size_t)bytes)) abort();
-    return memory;
-}
-
-static void release(void *user, void *memory, uint64_t bytes)
-{
-    (void)bytes;
-    --((failing *)user)->live;
-    free(memory);
-}
-
 static void failing_memory(void)
 {
     trace_scene s;
@@ -616,21 +590,17 @@ static void failing_memory(void)
         for (uint32_t times = 0; !is_done && times < 100; ++times) {
             sc_trace_options options;
             sc_trace_result r = s.result;
-            failing f;
+            scarce_memory memory;
             sc_status status;
             memset(&options, 0, sizeof options);
             options.struct_size = sizeof options;
-            options.allocator = &f.allocator;
-            memset(&f, 0, sizeof f);
-            f.allocator.user = &f;
-            f.allocator.allocate = allocate;
-            f.allocator.release = release;
-            f.left = times;
+            options.allocator = &memory.allocator;
+            scarce_memory_start(&memory, times);
             status = sc_trace(s.model, &s.pose, s.pairs, s.count, &options, &r);
             is_done = status == SC_OK;
             CHECK(is_done ? r.node_count == s.result.node_count
                           : status == SC_ERROR_MEMORY && !r.node_count && !r.contour_count);
-            CHECK(f.live == 0);
+            CHECK(memory.live == 0);
         }
     CHECK(is_done);
     trace_scene_close(&s);
@@ -687,7 +657,8 @@ static void wrong_arguments(void)
         double *bad;
         memset(&options, 0, sizeof options);
         options.struct_size = sizeof options;
-        CHECK(sc_trace(NULL, &s.pose, s.pairs, s.count, NULL, &r) == SC_ERROR_NULL);
+        CHECK(sc_trace(NULL, &s.pose, s.pairs, s.count, NULL, &r) == SC_ERROR_NULL &&
+              !r.node_count && !r.contour_count);
         CHECK(sc_trace(s.model, NULL, s.pairs, s.count, NULL, &r) == SC_ERROR_NULL);
         CHECK(sc_trace(s.model, &s.pose, NULL, s.count, NULL, &r) == SC_ERROR_NULL);
         CHECK(sc_trace(s.model, &s.pose, s.pairs, s.count, NULL, NULL) == SC_ERROR_NULL);

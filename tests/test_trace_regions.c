@@ -6,7 +6,6 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#define _POSIX_C_SOURCE 200112L /* posix_memalign */
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
@@ -413,30 +412,6 @@ static void strips(void)
 
 /* ---- what cannot be ---- */
 
-typedef struct failing {
-    sc_allocator allocator;
-    uint32_t left;
-    uint64_t live;
-} failing;
-
-static void *fail_to_allocate(void *user, uint64_t bytes, uint64_t alignment)
-{
-    failing *f = (failing *)user;
-    void *memory = NULL;
-    if (!f->left) return NULL;
-    --f->left;
-    ++f->live;
-    if (posix_memalign(&memory, (size_t)alignment, (size_t)bytes)) abort();
-    return memory;
-}
-
-static void give_back(void *user, void *memory, uint64_t bytes)
-{
-    (void)bytes;
-    --((failing *)user)->live;
-    free(memory);
-}
-
 static void failing_memory(void)
 {
     divided_scene d;
@@ -446,20 +421,16 @@ static void failing_memory(void)
         for (uint32_t times = 0; !is_done && times < 100; ++times) {
             sc_trace_options options;
             sc_regions_result r = d.regions;
-            failing f;
+            scarce_memory memory;
             sc_status status;
             memset(&options, 0, sizeof options);
             options.struct_size = sizeof options;
-            options.allocator = &f.allocator;
-            memset(&f, 0, sizeof f);
-            f.allocator.user = &f;
-            f.allocator.allocate = fail_to_allocate;
-            f.allocator.release = give_back;
-            f.left = times;
+            options.allocator = &memory.allocator;
+            scarce_memory_start(&memory, times);
             status = sc_trace_regions(d.s.model, &d.s.pose, &d.s.result, &options, &r);
             is_done = status == SC_OK;
             CHECK(is_done || (status == SC_ERROR_MEMORY && !r.region_count));
-            CHECK(f.live == 0);
+            CHECK(memory.live == 0);
         }
     CHECK(is_done);
     undivide(&d);
@@ -489,7 +460,7 @@ static void wrong_arguments(void)
         double *bad;
         sc_trace_node *nodes = (sc_trace_node *)test_allocate(bytes);
         memcpy(nodes, t.nodes, bytes);
-        CHECK(sc_trace_regions(NULL, &pose, &t, NULL, &r) == SC_ERROR_NULL);
+        CHECK(sc_trace_regions(NULL, &pose, &t, NULL, &r) == SC_ERROR_NULL && !r.region_count);
         CHECK(sc_trace_regions(d.s.model, NULL, &t, NULL, &r) == SC_ERROR_NULL);
         CHECK(sc_trace_regions(d.s.model, &pose, NULL, NULL, &r) == SC_ERROR_NULL);
         CHECK(sc_trace_regions(d.s.model, &pose, &t, NULL, NULL) == SC_ERROR_NULL);

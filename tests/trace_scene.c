@@ -3,6 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#define _POSIX_C_SOURCE 200112L /* posix_memalign */
 #include "trace_scene.h"
 
 #include <math.h>
@@ -128,4 +129,31 @@ soup trace_scene_strips(uint32_t stations, uint32_t turns)
             t += 6;
         }
     return s;
+}
+
+static void *allocate_scarce(void *user, uint64_t bytes, uint64_t alignment)
+{
+    scarce_memory *m = (scarce_memory *)user;
+    void *memory = NULL;
+    if (!m->left) return NULL;
+    --m->left;
+    ++m->live;
+    if (posix_memalign(&memory, (size_t)alignment, (size_t)bytes)) abort();
+    return memory;
+}
+
+static void release_scarce(void *user, void *memory, uint64_t bytes)
+{
+    (void)bytes;
+    --((scarce_memory *)user)->live;
+    free(memory);
+}
+
+void scarce_memory_start(scarce_memory *memory, uint32_t left)
+{
+    memset(memory, 0, sizeof *memory);
+    memory->allocator.user = memory;
+    memory->allocator.allocate = allocate_scarce;
+    memory->allocator.release = release_scarce;
+    memory->left = left;
 }
