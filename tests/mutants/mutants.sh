@@ -13,10 +13,14 @@
 # first, then all others, one function at a time, quick programs first; scripts are not run.
 # lib/ is compiled with -O1 instead of -O3, which changes no answer, and each change compiles only
 # what depends on it; after a fault, what it changed is copied back, so nothing is compiled twice.
+# Kernels take the longest to compile. So the tests that are named run first with a library in which
+# the kernels of this machine's best instruction set stand for those of all; what they do not notice
+# there is planted in a whole one. A test that fails has to pass without the fault, in a library of
+# the same kind.
 #
 # Prints a line for each fault when its fate is known, and as the last line "killed N, survived M".
-# Exit status 1 if any survived, does not fit or does not compile, or if a test fails without any
-# fault. CC and MAKE are taken from the environment.
+# Exit status 1 if any survived, does not fit or does not compile, or if a test fails without it as
+# well. CC and MAKE are taken from the environment.
 #
 # SPDX-License-Identifier: MIT
 set -u
@@ -42,7 +46,8 @@ done
 scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
 trap 'kill $(jobs -p) 2>/dev/null; exit 1' HUP INT TERM
-pristine=$scratch/pristine
+whole=$scratch/whole # a tree without faults
+brief=$scratch/brief # the same, with the kernels of one instruction set
 tests=build/release/tests
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
@@ -51,7 +56,7 @@ make_in() (
     tree=$1 threads=$2
     shift 2
     exec "${MAKE:-make}" -s -C "$tree" -j"$threads" CC="${CC:-cc}" config=release BUILD=build WERROR=0 \
-        mode='-O1 -DNDEBUG' test_mode=-O1 "$@" >"$tree.make.log" 2>&1
+        mode='-O1 -w -DNDEBUG' test_mode='-O1 -w' "$@" >"$tree.make.log" 2>&1
 )
 
 # run_test TREE PROGRAM NAME: one test function; it may take five minutes and 8 GB.
@@ -76,9 +81,9 @@ reason() {
 order_programs() {
     quick="predicates primitives input structures memory oracle ccd metis contours"
     for program in $quick; do
-        [ -f "$pristine/tests/test_$program.c" ] && echo "test_$program"
+        [ -f "$whole/tests/test_$program.c" ] && echo "test_$program"
     done
-    for source in "$pristine"/tests/test_*.c; do
+    for source in "$whole"/tests/test_*.c; do
         program=$(basename "$source" .c)
         case " $quick culling pairs " in
         *" ${program#test_} "*) ;;
@@ -89,63 +94,82 @@ order_programs() {
     echo test_pairs
 }
 
-# try TREE PROGRAM [NAME]: builds and runs one test function, or each by itself; 0 if one failed,
-# with the reason in $killer. If there is no such program or test, or the fault does not compile,
-# $killer is empty.
+# passes PRISTINE PROGRAM NAME: whether a test passes without any fault. Each is run once.
+passes() {
+    known=$scratch/passed/$(basename "$1"):$2:$3
+    [ -f "$known" ] && return 0
+    run_test "$1" "$2" "$3" && touch "$known"
+}
+
+# try PRISTINE PROGRAM [NAME]: builds and runs one test function in $tree, or each by itself; 0 if
+# one failed, with the reason in $killer. If there is no such program or test, or the fault does not
+# compile, $killer is empty.
 try() {
     killer=
-    make_in "$1" 1 "$tests/$2" || return 0
-    for one in ${3:-$("$1/$tests/$2" --list)}; do
-        run_test "$1" "$2" "$one" && continue
-        if grep -q ': no such test$' "$1.test.log"; then
-            echo "$2: no test $3" >"$1.make.log"
+    make_in "$tree" 1 "$tests/$2" || return 0
+    for one in ${3:-$("$tree/$tests/$2" --list)}; do
+        run_test "$tree" "$2" "$one" && continue
+        if grep -q ': no such test$' "$tree.test.log"; then
+            echo "$2: no test $3" >"$tree.make.log"
+        elif ! passes "$1" "$2" "$one"; then
+            echo "$2: $one fails without any fault" >"$tree.make.log"
         else
-            killer=$(reason "$1" "$2")
+            killer=$(reason "$tree" "$2")
         fi
         return 0
     done
     return 1
 }
 
+# plant TREE NAME
+plant() {
+    awk -f "$here/plant.awk" -v name="$2" -v root="$1" "$faults" >/dev/null
+}
+
 # hunt TREE HINTS: the tests to try first, then all functions of all programs. 0 if one failed.
 hunt() {
+    tree=$1.brief
     for hint in $2; do
-        try "$1" "${hint%%:*}" "${hint#*:}" && return 0
+        try "$brief" "${hint%%:*}" "${hint#*:}" && return 0
     done
+    tree=$1
     killer=
-    make_in "$1" 1 all || return 0
+    make_in "$tree" 1 all || return 0
+    for hint in $2; do
+        try "$whole" "${hint%%:*}" "${hint#*:}" && return 0
+    done
     for program in $(order_programs); do
-        try "$1" "$program" && return 0
+        try "$whole" "$program" && return 0
     done
     return 1
 }
 
-# restore TREE: makes it again what the pristine tree is, modification times included.
+# restore PRISTINE TREE: makes it again what PRISTINE is, modification times included.
 restore() {
-    find "$1" -type f -newer "$1.marker" >"$1.changed"
+    find "$2" -type f -newer "$2.marker" >"$2.changed"
     while read -r file; do
-        if [ -f "$pristine/${file#"$1"/}" ]; then
-            cp -p "$pristine/${file#"$1"/}" "$file"
+        if [ -f "$1/${file#"$2"/}" ]; then
+            cp -p "$1/${file#"$2"/}" "$file"
         else
             rm -f "$file"
         fi
-    done <"$1.changed"
+    done <"$2.changed"
 }
 
 # one_fault TREE NAME HINTS: prints its line and leaves its fate in a file of its name.
 one_fault() {
     begin=$(date +%s)
     fate=broken
-    if ! awk -f "$here/plant.awk" -v name="$2" -v root="$1" "$faults" >/dev/null; then
+    if ! plant "$1" "$2"; then
         result="DOES NOT FIT"
     elif [ $check -eq 1 ]; then
         result=fits
         fate=fits
-    elif hunt "$1" "$3" </dev/null; then
+    elif plant "$1.brief" "$2" && hunt "$1" "$3" </dev/null; then
         result=$killer
         if [ -z "$result" ]; then
-            result="DOES NOT COMPILE OR HAS NO SUCH TEST"
-            sed 's/^/    /' "$1.make.log" | head -n 20
+            result="DOES NOT COMPILE OR IS NOT TESTED"
+            sed 's/^/    /' "$tree.make.log" | head -n 20
         else
             fate=killed
         fi
@@ -155,13 +179,14 @@ one_fault() {
     fi
     printf '%-28s %-50s %4d s\n' "$2" "$result" $(($(date +%s) - begin))
     echo "$fate" >"$scratch/fates/$2"
-    restore "$1"
+    restore "$whole" "$1"
+    restore "$brief" "$1.brief"
 }
 
 # worker TREE: takes the next fault that nobody has taken, until none is left.
 worker() {
-    cp -Rp "$pristine" "$1" || exit 1
-    touch "$1.marker"
+    cp -Rp "$whole" "$1" && cp -Rp "$brief" "$1.brief" || exit 1
+    touch "$1.marker" "$1.brief.marker"
     sleep 1
     while read -r name hints; do
         mkdir "$scratch/taken/$name" 2>/dev/null || continue
@@ -169,12 +194,38 @@ worker() {
     done <"$scratch/list"
 }
 
-mkdir "$pristine" "$scratch/fates" "$scratch/taken" || exit 1
+# one_set TREE: makes the kernels of this machine's best instruction set stand for those of all.
+one_set() {
+    echo '#include <stdio.h>
+        #include "simd/isa.h"
+        int main(void) { return SC_ISA_X86 ? !printf("%d", (int)sc_isa_best()) : 0; }' |
+        "${CC:-cc}" -I"$1/lib" -x c -o "$1.best" - || exit 1
+    case $("$1.best") in
+    1) best=base others='avx2 avx512' ;;
+    2) best=avx2 others='base avx512' ;;
+    3) best=avx512 others='base avx2' ;;
+    *) return ;;
+    esac
+    for set in $others; do
+        echo 'typedef int sc_kernels_are_elsewhere;' >"$1/lib/simd/kernels_$set.c"
+        echo "extern const sc_kernels sc_kernels_$set __attribute__((alias(\"sc_kernels_$best\")));"
+    done >>"$1/lib/simd/kernels_$best.c"
+}
+
+# build_clean TREE: without any fault.
+build_clean() {
+    make_in "$1" "$jobs" all $(order_programs | sed "s|^|$tests/|") && return
+    cat "$1.make.log"
+    echo "does not build without any fault"
+    exit 1
+}
+
+mkdir "$whole" "$scratch/fates" "$scratch/taken" "$scratch/passed" || exit 1
 for entry in "$top"/*; do
-    [ "$(basename "$entry")" = build ] || cp -Rp "$entry" "$pristine/" || exit 1
+    [ "$(basename "$entry")" = build ] || cp -Rp "$entry" "$whole/" || exit 1
 done
-mkdir -p "$pristine/build"
-[ -d "$top/build/meshes" ] && ln -s "$top/build/meshes" "$pristine/build/meshes"
+mkdir -p "$whole/build"
+[ -d "$top/build/meshes" ] && ln -s "$top/build/meshes" "$whole/build/meshes"
 
 awk -f "$here/plant.awk" "$faults" >"$scratch/all" || exit 1
 for word in "$@"; do echo "^[^ ]*$word"; done >"$scratch/words"
@@ -182,19 +233,11 @@ for word in "$@"; do echo "^[^ ]*$word"; done >"$scratch/words"
 grep -f "$scratch/words" "$scratch/all" |
     awk -v part="${shard%/*}" -v of="${shard#*/}" '(NR - part) % of == 0' >"$scratch/list"
 
+[ $check -eq 1 ] || build_clean "$whole"
+cp -Rp "$whole" "$brief" || exit 1
 if [ $check -eq 0 ]; then
-    if ! make_in "$pristine" "$jobs" all $(order_programs | sed "s|^|$tests/|"); then
-        cat "$pristine.make.log"
-        echo "does not build without any fault"
-        exit 1
-    fi
-    if [ $# -eq 0 ]; then
-        if ! (cd "$pristine" && SC_LIB=build/lib TEST_JOBS=$jobs \
-            tests/run.sh $(order_programs | sed "s|^|$tests/|")); then
-            echo "tests fail without any fault"
-            exit 1
-        fi
-    fi
+    one_set "$brief"
+    build_clean "$brief"
 fi
 
 i=0
