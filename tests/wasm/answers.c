@@ -4,8 +4,9 @@
  *
  *     answers FOLDER FILE.obj...     also writes FOLDER/FILE.obj.scm, the saved model
  *
- * Questions: pairs of triangles and of edges, where they meet, what is near, its closest points and
- * bounds, and steps with times; each on three poses, which are made by additions and products alone.
+ * Questions: pairs of triangles and of edges, where they meet, contours, their gradients and regions,
+ * what is near, its closest points and bounds, and steps with times; each on three poses, which are
+ * made by additions and products alone.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -42,6 +43,66 @@ static void need(sc_status status, const char *what)
     exit(1);
 }
 
+static void ask_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pairs,
+                      uint64_t count, const char *file, int number)
+{
+    static sc_trace_node nodes[CAPACITY];
+    static sc_trace_contour contours[CAPACITY];
+    static sc_trace_gradient gradients[CAPACITY];
+    static sc_region regions[CAPACITY];
+    static sc_contour_sides sides[CAPACITY];
+    uint32_t *vertex_regions = (uint32_t *)test_allocate(pose->vertex_count * sizeof(uint32_t));
+    sc_trace_result t = {.struct_size = sizeof(t),
+                         .node_capacity = CAPACITY,
+                         .nodes = nodes,
+                         .contour_capacity = CAPACITY,
+                         .contours = contours};
+    sc_regions_result r = {.struct_size = sizeof(r),
+                           .flags = SC_REGIONS_INSIDE,
+                           .region_capacity = CAPACITY,
+                           .regions = regions,
+                           .vertex_regions = vertex_regions,
+                           .sides = sides};
+    need(sc_trace(model, pose, pairs, count, NULL, &t), "sc_trace");
+    for (uint64_t i = 0; i < t.node_count; ++i) {
+        add(&nodes[i].edge, sizeof(nodes[i].edge));
+        add(&nodes[i].triangle, sizeof(nodes[i].triangle));
+        add(&nodes[i].sheet, sizeof(nodes[i].sheet));
+        add(nodes[i].sheets, sizeof(nodes[i].sheets));
+        add(&nodes[i].along, sizeof(nodes[i].along));
+        add(nodes[i].weights, sizeof(nodes[i].weights));
+        add(nodes[i].point, sizeof(nodes[i].point));
+    }
+    for (uint64_t i = 0; i < t.contour_count; ++i) {
+        const uint32_t range[2] = {(uint32_t)contours[i].first, (uint32_t)contours[i].count};
+        add(range, sizeof(range));
+        add(&contours[i].begin, sizeof(contours[i].begin));
+        add(&contours[i].end, sizeof(contours[i].end));
+        add(&contours[i].flags, sizeof(contours[i].flags));
+        add(&contours[i].length, sizeof(contours[i].length));
+    }
+    tell(file, number, "trace", t.node_count);
+    need(sc_trace_gradients(model, pose, &t, gradients), "sc_trace_gradients");
+    for (uint64_t i = 0; i < t.node_count; ++i) {
+        add(gradients[i].vertices, sizeof(gradients[i].vertices));
+        add(&gradients[i].flags, sizeof(gradients[i].flags));
+        add(gradients[i].weights, sizeof(gradients[i].weights));
+        add(gradients[i].vectors, sizeof(gradients[i].vectors));
+    }
+    tell(file, number, "gradients", t.node_count);
+    need(sc_trace_regions(model, pose, &t, NULL, &r), "sc_trace_regions");
+    for (uint64_t i = 0; i < r.region_count; ++i) {
+        add(&regions[i].component, sizeof(regions[i].component));
+        add(&regions[i].vertex_count, sizeof(regions[i].vertex_count));
+        add(&regions[i].area, sizeof(regions[i].area));
+        add(&regions[i].inside, sizeof(regions[i].inside));
+    }
+    add(vertex_regions, pose->vertex_count * sizeof(*vertex_regions));
+    add(sides, t.contour_count * sizeof(*sides));
+    tell(file, number, "regions", r.region_count);
+    free(vertex_regions);
+}
+
 static void ask_pairs(const sc_model *model, sc_workspace *workspace, const sc_pose *pose,
                       uint32_t kind, const char *file, int number)
 {
@@ -60,6 +121,7 @@ static void ask_pairs(const sc_model *model, sc_workspace *workspace, const sc_p
         add(contacts[i].weights_b, sizeof(contacts[i].weights_b));
     }
     tell(file, number, "contacts", r.count);
+    if (kind == SC_PAIRS_EDGE) ask_trace(model, pose, pairs, r.count, file, number);
 }
 
 static void add_stencil(const sc_near_stencil *stencil)

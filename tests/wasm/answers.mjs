@@ -50,6 +50,23 @@ export function answers({Model}, name, text) {
         const columns = [[feature, 1], [vertices, 4], [weights, 4], [vector, 3], [distance, 1]];
         for (const some of rows(feature.length, ...columns)) add(some);
     };
+    const add_trace = (pose, found, i) => {
+        const traced = model.trace(pose, found), {nodes, contours} = traced, count = nodes.edge.length;
+        const of_nodes = [[nodes.edge, 1], [nodes.triangle, 1], [nodes.sheet, 1], [nodes.sheets, 2],
+            [nodes.along, 1], [nodes.weights, 3], [nodes.point, 3]];
+        const of_contours = ['first', 'count', 'begin', 'end', 'flags', 'length'].map(name => [contours[name], 1]);
+        for (const some of rows(count, ...of_nodes)) add(some);
+        for (const some of rows(contours.first.length, ...of_contours)) add(some);
+        tell(i, 'trace', count);
+        const {vertices, flags, weights, vectors} = model.traceGradients(pose, traced);
+        for (const some of rows(count, [vertices, 5], [flags, 1], [weights, 5], [vectors, 6])) add(some);
+        tell(i, 'gradients', count);
+        const {regions, vertexRegions, sides} = model.regions(pose, traced, {inside: true});
+        const of_regions = ['component', 'vertexCount', 'area', 'inside'].map(name => [regions[name], 1]);
+        for (const some of rows(regions.area.length, ...of_regions)) add(some);
+        for (const array of [vertexRegions, sides]) add(array);
+        tell(i, 'regions', regions.area.length);
+    };
     const size = rest.reduce((a, b) => Math.max(a, b)) - rest.reduce((a, b) => Math.min(a, b));
     for (let i = 0; i < POSES; ++i) {
         const pose = move(rest, i), end = move(rest, (i + 1) % POSES);
@@ -60,6 +77,7 @@ export function answers({Model}, name, text) {
             const {kind, points, weightsA, weightsB} = model.contacts(pose, found, {pairs});
             for (const some of rows(count, [kind, 1], [points, 6], [weightsA, 6], [weightsB, 6])) add(some);
             tell(i, 'contacts', count);
+            if (pairs === 'edge') add_trace(pose, found, i);
         }
         const near = model.near(pose, size / 64, {stencils: true, vertexBound: true});
         const count = (near.vertexFaces.length + near.edgeEdges.length) / 2;

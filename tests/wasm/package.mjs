@@ -101,6 +101,11 @@ const impact = model.stepStencils(rest, pose, step.vertexFaces, step.vertexFaceT
 check('closest points of a step', impact.start.distance[0] === 1 && impact.impact.distance[0] < 1e-5 &&
     impact.time[0] === step.earliest && Math.abs(impact.normal[2]) === 1 && impact.side[0] === 1 && impact.flags[0] === 1,
     JSON.stringify(impact));
+const {length, gradient} = model.traceLength(pose), traced = model.trace(pose);
+check('contours', length > 0 && gradient.length === rest.length && traced.contours.begin[0] === 1 &&
+    traced.nodes.point.length === 3 * traced.nodes.edge.length, JSON.stringify(traced));
+const {regions} = model.regions(pose);
+check('regions', same(regions.area, [8, 0.375, 1.125]) && same(regions.vertexCount, [3, 1, 2]), JSON.stringify(regions));
 check('an order', same(new Model(rest, triangles, {order: [1, 0]}).query(pose), [0, 1]));
 
 // All methods, and a copy, on a mesh with many pairs.
@@ -142,6 +147,8 @@ refuses('a negative budget', RangeError, /budget/, () => model.query(pose, {budg
 refuses('rings', StarcontourError, /ignore_rings is 99/, () => model.query(pose, {ignoreRings: 99}), 3);
 refuses('unsorted pairs', StarcontourError, /ignore/, () => large.query(roll.positions, {ignore: [1, 2, 0, 1]}), 27);
 refuses('half a pair', RangeError, /2 numbers/, () => model.contacts(pose, [1]));
+refuses('foreign contours', TypeError, /what trace returned/, () => model.traceGradients(pose, {}));
+refuses('too many pairs for a trace', StarcontourError, /./, () => model.trace(pose, [3, 0, 0, 3]), 27);
 refuses('no such pair', StarcontourError, /./, () => model.contacts(pose, [0, 2]), 27);
 refuses('no such kind', RangeError, /kind must be/, () => model.stencils(pose, [0, 1], ''));
 refuses('an index', StarcontourError, /triangle 0 names vertex 9/, () => new Model(rest, [0, 1, 9]), 7);

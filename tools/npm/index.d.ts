@@ -132,6 +132,65 @@ export interface Contacts {
     weightsB: Float64Array;
 }
 
+/** Contours of intersections. On the surface each is two curves, through the triangles sheets[0] and
+ *  sheets[1] of its nodes; see sc_trace in starcontour.h. */
+export interface Trace {
+    /** Of n nodes: where an edge of one sheet passes through a triangle of the other. */
+    nodes: {
+        /** n: 3 t + k; 0xffffffff where a contour ends in a vertex. */
+        edge: Uint32Array;
+        /** n: which the edge passes through; at such an end, the vertex. */
+        triangle: Uint32Array;
+        /** n: the sheet, 0 or 1, that the edge is on. */
+        sheet: Uint32Array;
+        /** 2 n: the triangles that the contour goes on in. */
+        sheets: Uint32Array;
+        /** n: where on the edge, from 0 to 1. */
+        along: Float64Array;
+        /** 3 n: where in the triangle. */
+        weights: Float64Array;
+        /** 3 n. */
+        point: Float64Array;
+    };
+    /** Of m contours: which nodes, how they begin and end (0 closed, 1 border, 2 branch, 3 vertex),
+     *  flags (1: its two sheets are one) and length. */
+    contours: {
+        first: Uint32Array;
+        count: Uint32Array;
+        begin: Uint32Array;
+        end: Uint32Array;
+        flags: Uint32Array;
+        length: Float64Array;
+    };
+}
+
+/** The parts into which contours divide a surface; see sc_trace_regions in starcontour.h. */
+export interface Regions {
+    regions: {
+        component: Uint32Array;
+        vertexCount: Uint32Array;
+        area: Float64Array;
+        /** How often closed components go round it; -2147483648 where that is not known. */
+        inside: Int32Array;
+    };
+    /** Of each vertex the region it is in; 0xffffffff of those in no triangle. */
+    vertexRegions: Uint32Array;
+    /** 4 m: of each contour, on both sheets, the regions on both sides. */
+    sides: Uint32Array;
+}
+
+/** Of each node of a Trace how its contour's length changes; see sc_trace_gradient in starcontour.h. */
+export interface TraceGradients {
+    /** 5 n: the ends of the edge, and the corners of the triangle. */
+    vertices: Uint32Array;
+    /** n: a sum of 1, the edge is parallel to the triangle, and 2, a segment has no length. */
+    flags: Uint32Array;
+    /** 5 n. */
+    weights: Float64Array;
+    /** 6 n: times weights the derivatives by the positions of the ends, and of the corners. */
+    vectors: Float64Array;
+}
+
 export interface Near {
     vertexFaces: Uint32Array;
     edgeEdges: Uint32Array;
@@ -182,6 +241,10 @@ export class Model {
     stepStencils(start: Positions, end: Positions, pairs: Numbers, times: Float64Array | null,
         kind: 'vertex_face' | 'edge_edge'): StepStencils;
     contacts(pose: Positions, found: Numbers, options?: {pairs?: 'triangle' | 'edge'}): Contacts;
+    trace(pose: Positions, found?: Numbers | null): Trace;
+    regions(pose: Positions, traced?: Trace | null, options?: {inside?: boolean}): Regions;
+    traceGradients(pose: Positions, traced: Trace): TraceGradients;
+    traceLength(pose: Positions, found?: Numbers | null): {length: number, gradient: Float64Array};
     /** Gives back the memory. Also done some time after nothing refers to the model any more, and, in
      *  engines that have it, at the end of a block with `using`. */
     free(): void;

@@ -302,6 +302,21 @@ const CONTACT = {
     kind: [Uint32Array, 1], points: [Float64Array, 6], weights_a: [Float64Array, 6], weights_b: [Float64Array, 6]
 };
 
+const NODE = {
+    edge: [Uint32Array, 1], triangle: [Uint32Array, 1], sheet: [Uint32Array, 1], sheets: [Uint32Array, 2],
+    along: [Float64Array, 1], weights: [Float64Array, 3], point: [Float64Array, 3]
+};
+const CONTOUR = { // of first and count, which have 64 bits, the lower half: memory has no room for more
+    first: [Uint32Array, 1], count: [Uint32Array, 1], begin: [Uint32Array, 1], end: [Uint32Array, 1],
+    flags: [Uint32Array, 1], length: [Float64Array, 1]
+};
+const REGION = {
+    component: [Uint32Array, 1], vertex_count: [Uint32Array, 1], area: [Float64Array, 1], inside: [Int32Array, 1]
+};
+const GRADIENT = {
+    vertices: [Uint32Array, 5], flags: [Uint32Array, 1], weights: [Float64Array, 5], vectors: [Float64Array, 6]
+};
+
 /* An array of each member of count structures that are so many bytes apart. */
 function columns(rows, count, size, name, members) {
     const made = {};
@@ -313,6 +328,20 @@ function columns(rows, count, size, name, members) {
                 array[width * i + k] = view[get](rows + size * i + offset + Type.BYTES_PER_ELEMENT * k, true);
     }
     return made;
+}
+
+// Of each answer of Model.trace: sc_trace_node and sc_trace_contour as bytes.
+const traces = new WeakMap();
+
+/* A result of sc_trace that was traced. */
+function traced_in(call, traced) {
+    const bytes = traces.get(traced);
+    if (!bytes) throw new TypeError('traced must be what trace returned');
+    const node_count = traced.nodes.edge.length, contour_count = traced.contours.first.length;
+    return call.structure('sc_trace_result', {
+        node_count, node_capacity: node_count, nodes: call.copy(bytes.nodes),
+        contour_count, contour_capacity: contour_count, contours: call.copy(bytes.contours)
+    });
 }
 
 /* What the constructor is called with by fromBytes. */
@@ -524,6 +553,90 @@ export class Model {
                 (...call) => library.sc_contacts(call[0], call[1], number, ...call.slice(2)),
                 CONTACT);
         return {kind, points, weightsA, weightsB};
+    }
+
+    /** Contours of intersections. found: the edge pairs of the pose, all of them; without, they are found. */
+    trace(pose, found = null) {
+        const model = this.#model();
+        const pairs = numbers('found', found ?? this.query(pose, {pairs: 'edge'}), 2);
+        return calling(call => {
+            const where = pose_in(call, 'pose', pose), list = call.copy(pairs);
+            const how = call.structure('sc_trace_options', {hooks: library.sc_refusal_hooks()});
+            const result = call.structure('sc_trace_result', {});
+            const ask = () => library.sc_trace(model, where, list, BigInt(pairs.length / 2), how, result);
+            const number = member => read('sc_trace_result', result, member);
+            let status = ask();
+            refresh();
+            if (status === ERROR_SHORT_BUFFER) {
+                const node_capacity = number('node_count'), contour_capacity = number('contour_count');
+                const nodes = call.room(layouts.get('sc_trace_node').size * node_capacity);
+                const contours = call.room(layouts.get('sc_trace_contour').size * contour_capacity);
+                write('sc_trace_result', result, {node_capacity, nodes, contour_capacity, contours});
+                status = ask();
+            }
+            check(status);
+            const list_of = (name, count, array, members) => {
+                const {size} = layouts.get(name), rows = number(array);
+                return [columns(rows, number(count), size, name, members), heap.slice(rows, rows + size * number(count))];
+            };
+            const [nodes, nodes_as_bytes] = list_of('sc_trace_node', 'node_count', 'nodes', NODE);
+            const [contours, contours_as_bytes] = list_of('sc_trace_contour', 'contour_count', 'contours', CONTOUR);
+            const traced = {nodes, contours};
+            traces.set(traced, {nodes: nodes_as_bytes, contours: contours_as_bytes});
+            return traced;
+        });
+    }
+
+    /** The regions into which contours divide the surface. traced: what trace said of this pose. */
+    regions(pose, traced = null, {inside = false} = {}) {
+        const model = this.#model();
+        traced ??= this.trace(pose);
+        return calling(call => {
+            const where = pose_in(call, 'pose', pose), trace = traced_in(call, traced);
+            const how = call.structure('sc_trace_options', {hooks: library.sc_refusal_hooks()});
+            const contours = traced.contours.first.length, {size} = layouts.get('sc_region');
+            const vertex_regions = call.room(4 * this.#info.vertexCount), sides = call.room(16 * contours);
+            const result = call.structure('sc_regions_result', {vertex_regions, sides});
+            const ask = () => library.sc_trace_regions(model, where, trace, how, result);
+            let status = ask(), count = 0, regions = 0;
+            refresh();
+            if (status === ERROR_SHORT_BUFFER) {
+                count = read('sc_regions_result', result, 'region_count');
+                regions = call.room(size * count);
+                write('sc_regions_result', result, {region_capacity: count, regions, flags: inside ? 1 : 0});
+                status = ask();
+            }
+            check(status);
+            const {vertex_count: vertexCount, ...others} = columns(regions, count, size, 'sc_region', REGION);
+            return {
+                regions: {...others, vertexCount},
+                vertexRegions: words(vertex_regions, this.#info.vertexCount),
+                sides: words(sides, 4 * contours)
+            };
+        });
+    }
+
+    /** How lengths of contours change as vertices move: arrays with entries for each node of traced. */
+    traceGradients(pose, traced) {
+        const model = this.#model(), {size} = layouts.get('sc_trace_gradient');
+        return calling(call => {
+            const where = pose_in(call, 'pose', pose), trace = traced_in(call, traced);
+            const count = traced.nodes.edge.length, rows = call.room(size * count);
+            check(library.sc_trace_gradients(model, where, trace, rows));
+            return columns(rows, count, size, 'sc_trace_gradient', GRADIENT);
+        });
+    }
+
+    /** The length of all contours, and how it changes as each vertex moves: three numbers for each. */
+    traceLength(pose, found = null) {
+        const traced = this.trace(pose, found), {vertices, weights, vectors} = this.traceGradients(pose, traced);
+        const gradient = new Float64Array(3 * this.#info.vertexCount);
+        vertices.forEach((vertex, i) => {
+            const node = Math.floor(i / 5), of_triangle = i % 5 < 2 ? 0 : 1;
+            for (let k = 0; k < 3; ++k)
+                gradient[3 * vertex + k] += weights[i] * vectors[6 * node + 3 * of_triangle + k];
+        });
+        return {length: traced.contours.length.reduce((sum, length) => sum + length, 0), gradient};
     }
 
     /* Calls a function that fills a structure for each pair, and makes an array of each member; and
