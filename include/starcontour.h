@@ -1047,7 +1047,8 @@ SC_API uint32_t sc_region_hint(const sc_region *regions, const sc_contour_sides 
 /* A sum. */
 enum {
     SC_GRADIENT_FLAT = 1, /* the edge is parallel to the triangle or nearly so, or the triangle is
-                             nearly a line (a b < 2^-39, see below). Vectors are 0 */
+                             nearly a line (a b < 2^-39, see below), or the edge or a side of the
+                             triangle has a length that is no double. Vectors are 0 */
     SC_GRADIENT_SHORT = 2 /* a segment at the node has no length, or one that is no double. It is as
                              if it were not there */
 };
