@@ -954,8 +954,9 @@ typedef struct sc_trace_result {
  * Returns SC_OK, or SC_ERROR_SHORT_BUFFER if an array is too short: counts are then what is needed,
  * and arrays may have been written to in part. SC_ERROR_PAIRS: pairs are not sorted, name what does
  * not exist, or some are missing, which is noticed where a contour does not go on. SC_ERROR_COUNT:
- * more than 2^30 pairs. SC_ERROR_NOT_FINITE: a vertex of a pair is NaN or infinite.
- * SC_ERROR_MEMORY. SC_ERROR_INCOMPLETE: cancelled. On these and other errors counts are 0.
+ * more than 2^30 pairs, or their edges have 2^31 triangles, counted for each pair.
+ * SC_ERROR_NOT_FINITE: a vertex of a pair is NaN or infinite. SC_ERROR_MEMORY.
+ * SC_ERROR_INCOMPLETE: cancelled. On these and other errors counts are 0.
  *
  * Cost (Zen 4, AVX-512): 0.2 to 0.3 us a pair on generic meshes; pairs with four points in a
  * plane take longer, as in sc_contacts. Memory: about 125 bytes a pair and 13 a vertex, given back
@@ -1028,8 +1029,9 @@ typedef struct sc_regions_result {
  *
  * Returns SC_OK, or SC_ERROR_SHORT_BUFFER if there are more regions than fit, whose number is then
  * told; vertex_regions and sides are written all the same. The same error, and no regions, if trace
- * itself was short. SC_ERROR_PAIRS: trace names what does not exist. SC_ERROR_NOT_FINITE: a vertex
- * is NaN or infinite. SC_ERROR_MEMORY, SC_ERROR_INCOMPLETE.
+ * itself was short. SC_ERROR_PAIRS: trace names what does not exist, or contours are such as no
+ * mesh has. SC_ERROR_COUNT: more than 2^30 nodes or contours. SC_ERROR_NOT_FINITE: a vertex is NaN
+ * or infinite. SC_ERROR_MEMORY, SC_ERROR_INCOMPLETE.
  *
  * Cost (Zen 4): 30 ns a triangle and 0.5 us a node, by the calling thread. Memory: about 33 bytes a
  * vertex and 100 a node, given back before it returns.
@@ -1045,7 +1047,8 @@ SC_API uint32_t sc_region_hint(const sc_region *regions, const sc_contour_sides 
 /* A sum. */
 enum {
     SC_GRADIENT_FLAT = 1, /* the edge is parallel to the triangle or nearly so, or the triangle is
-                             nearly a line (a b < 2^-39, see below). Vectors are 0 */
+                             nearly a line (a b < 2^-39, see below), or the edge or a side of the
+                             triangle has a length that is no double. Vectors are 0 */
     SC_GRADIENT_SHORT = 2 /* a segment at the node has no length, or one that is no double. It is as
                              if it were not there */
 };

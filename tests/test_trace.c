@@ -606,6 +606,34 @@ static void failing_memory(void)
     trace_scene_close(&s);
 }
 
+/* Cancelled by the allocator, each time it is called: so after each step. */
+static void cancelling(void)
+{
+    trace_scene s;
+    int is_done = 0;
+    if (trace_scene_open(&s, trace_scene_cloths(6), SC_MODEL_FULL))
+        for (uint32_t times = 0; !is_done && times < 100; ++times) {
+            sc_trace_options options;
+            sc_trace_result r = s.result;
+            scarce_memory memory;
+            sc_status status;
+            memset(&options, 0, sizeof options);
+            options.struct_size = sizeof options;
+            scarce_memory_start(&memory, times);
+            memory.cancels = 1;
+            options.allocator = &memory.allocator;
+            options.cancel = &memory.cancelled;
+            status = sc_trace(s.model, &s.pose, s.pairs, s.count, &options, &r);
+            is_done = !memory.cancelled;
+            CHECK(is_done
+                      ? status == SC_OK && is_same_result(&r, &s.result)
+                      : status == SC_ERROR_INCOMPLETE && r.node_count == 0 && r.contour_count == 0);
+            CHECK(memory.live == 0);
+        }
+    CHECK(is_done);
+    trace_scene_close(&s);
+}
+
 /* The status of a trace of the first so many pairs. */
 static sc_status try_pairs(const trace_scene *s, const sc_pair *pairs, uint64_t count)
 {
@@ -646,6 +674,103 @@ static void wrong_pairs(void)
     trace_scene_close(&s);
 }
 
+/* Triangles with corners on a moment curve: none in a plane with another. */
+static soup triangles_of(const uint32_t *corners, uint32_t count, uint32_t vertices)
+{
+    soup s = soup_make(vertices, count);
+    memcpy(s.triangles, corners, 3 * (size_t)count * sizeof *corners);
+    for (uint32_t v = 0; v < vertices; ++v)
+        for (int k = 0; k < 3; ++k) s.positions[3 * (size_t)v + (size_t)k] = pow(v + 1, k + 1);
+    return s;
+}
+
+/* Edges that end at a corner of the triangle, which sc_query does not pair with it. */
+static void pairs_that_share_vertices(void)
+{
+    static const uint32_t corners[9] = {0, 1, 2, 0, 3, 4, 5, 1, 6};
+    static const sc_pair pairs[] = {{0, 0}, {0, 1}, {0, 2}, {1, 0}, {2, 1}, {3, 0}, {7, 0}};
+    static const sc_pair apart[] = {{0, 3}, {1, 1}};
+    trace_scene s;
+    if (trace_scene_open(&s, triangles_of(corners, 3, 7), SC_MODEL_FULL)) {
+        for (size_t i = 0; i < sizeof pairs / sizeof *pairs; ++i)
+            CHECK(try_pairs(&s, pairs + i, 1) == SC_ERROR_PAIRS);
+        CHECK(try_pairs(&s, apart, 1) == SC_ERROR_PAIRS); /* there is no triangle 3 */
+        CHECK(try_pairs(&s, apart + 1, 1) == SC_OK);
+    }
+    trace_scene_close(&s);
+}
+
+/* An upright triangle through a lying one: two crossings. Of a third welding makes a line from one
+   point of the first to another: its edges, and what passes through it, change nothing. */
+static void collapsed_triangles(void)
+{
+    static const double positions[27] = {0,  0, 0, 8, 0, 0, 0,  8, 0, 1,  1, -2, 3, 1,
+                                         -2, 2, 2, 2, 1, 1, -2, 1, 1, -2, 2, 2,  2};
+    soup mesh = soup_make(9, 3);
+    sc_build_options options;
+    sc_model *model = NULL;
+    sc_mesh m;
+    sc_pose pose;
+    memcpy(mesh.positions, positions, sizeof positions);
+    for (uint32_t i = 0; i < 9; ++i) mesh.triangles[i] = i;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.weld = SC_WELD_REST;
+    m = input_plain_mesh(&mesh);
+    pose = input_plain_pose(mesh.positions, mesh.vertex_count);
+    if (CHECK(sc_build(&m, &options, &model) == SC_OK)) {
+        static const sc_pair right[] = {{4, 0}, {5, 0}};
+        static const sc_pair more[] = {{0, 2}, {1, 2}, {4, 0}, {5, 0}, {6, 0}};
+        sc_trace_result a, b;
+        if (trace_scene_trace(model, &pose, right, 2, NULL, &a)) {
+            CHECK(a.node_count == 2 && a.contour_count == 1);
+            if (trace_scene_trace(model, &pose, more, 5, NULL, &b)) {
+                CHECK(is_same_result(&a, &b));
+                trace_scene_free_result(&b);
+            }
+            trace_scene_free_result(&a);
+        }
+    }
+    sc_model_free(model);
+    soup_free(&mesh);
+}
+
+/* An edge of 2^16 triangles and another triangle 2^15 times, each of which it crosses. */
+static void too_many_branches(void)
+{
+    const uint32_t fan = 1u << 16, crossed = 1u << 15;
+    static const double positions[18] = {1, 1, -1, 1, 1, 1, 9, 9, 0, 0, 0, 0, 4, 0, 0, 0, 4, 0};
+    soup mesh = soup_make(6, fan + crossed);
+    sc_pair *pairs = (sc_pair *)test_allocate(crossed * sizeof *pairs);
+    sc_build_options options;
+    sc_model *model = NULL;
+    sc_mesh m;
+    sc_pose pose;
+    memcpy(mesh.positions, positions, sizeof positions);
+    for (uint32_t i = 0; i < 3 * mesh.triangle_count; ++i)
+        mesh.triangles[i] = i % 3 + (i < 3 * fan ? 0 : 3);
+    for (uint32_t i = 0; i < crossed; ++i) {
+        pairs[i].a = 0;
+        pairs[i].b = fan + i;
+    }
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.weld = SC_WELD_NONE;
+    options.content = SC_MODEL_BOXES;
+    m = input_plain_mesh(&mesh);
+    pose = input_plain_pose(mesh.positions, mesh.vertex_count);
+    if (CHECK(sc_build(&m, &options, &model) == SC_OK)) {
+        sc_trace_result r = trace_scene_no_room();
+        CHECK(sc_trace(model, &pose, pairs, crossed, NULL, &r) == SC_ERROR_COUNT);
+        CHECK(r.node_count == 0 && r.contour_count == 0);
+        /* two of them are not too many, but other ends are missing */
+        CHECK(sc_trace(model, &pose, pairs, 2, NULL, &r) == SC_ERROR_PAIRS);
+    }
+    sc_model_free(model);
+    free(pairs);
+    soup_free(&mesh);
+}
+
 static void wrong_arguments(void)
 {
     trace_scene s;
@@ -654,6 +779,8 @@ static void wrong_arguments(void)
         sc_trace_options options;
         sc_pose pose = s.pose;
         volatile uint32_t flag = 1;
+        sc_allocator allocator;
+        sc_tasks tasks;
         double *bad;
         memset(&options, 0, sizeof options);
         options.struct_size = sizeof options;
@@ -689,12 +816,22 @@ static void wrong_arguments(void)
         options.cancel = &flag;
         CHECK(sc_trace(s.model, &s.pose, s.pairs, s.count, &options, &r) == SC_ERROR_INCOMPLETE &&
               r.node_count == 0);
+        options.cancel = NULL;
+        memset(&allocator, 0, sizeof allocator);
+        options.allocator = &allocator;
+        CHECK(sc_trace(s.model, &s.pose, s.pairs, s.count, &options, &r) == SC_ERROR_NULL);
+        options.allocator = NULL;
+        memset(&tasks, 0, sizeof tasks);
+        tasks.struct_size = 4;
+        options.tasks = &tasks;
+        CHECK(sc_trace(s.model, &s.pose, s.pairs, s.count, &options, &r) == SC_ERROR_STRUCT_SIZE);
         --pose.vertex_count;
         CHECK(sc_trace(s.model, &pose, s.pairs, s.count, NULL, &r) == SC_ERROR_VERTEX_COUNT);
         bad = soup_copy_positions(&s.mesh);
         for (uint32_t i = 0; i < 3 * s.mesh.vertex_count; ++i) bad[i] = (double)NAN;
         pose = input_plain_pose(bad, s.mesh.vertex_count);
         CHECK(sc_trace(s.model, &pose, s.pairs, s.count, NULL, &r) == SC_ERROR_NOT_FINITE);
+        CHECK(sc_trace(s.model, &pose, s.pairs, 3, NULL, &r) == SC_ERROR_NOT_FINITE);
         free(bad);
     }
     trace_scene_close(&s);
@@ -704,4 +841,5 @@ SC_TEST_MAIN(SC_TEST(signs_are_those_of_polynomials), SC_TEST(soups), SC_TEST(me
              SC_TEST(equal_sheets), SC_TEST(adversaries), SC_TEST(strips_that_are_one),
              SC_TEST(threads_change_nothing), SC_TEST(instructions_change_nothing),
              SC_TEST(models_change_nothing), SC_TEST(names_change_nothing), SC_TEST(failing_memory),
-             SC_TEST(wrong_pairs), SC_TEST(wrong_arguments))
+             SC_TEST(cancelling), SC_TEST(wrong_pairs), SC_TEST(pairs_that_share_vertices),
+             SC_TEST(collapsed_triangles), SC_TEST(too_many_branches), SC_TEST(wrong_arguments))

@@ -662,6 +662,45 @@ static sc_status ask(small_scene *s)
     return sc_trace_gradients(s->model, &s->pose, &s->traced, s->gradients);
 }
 
+/* An edge so close to a line of a triangle that is all but a line that the product of all underflows,
+   though nothing is rounded. */
+static void products_underflow(void)
+{
+    static const double p[18] = {0,       0, 0, 1,      0, 0,        1, 0x1p-500, 0,
+                                 -0x1p-1, 0, 0, 0x1p-1, 0, 0x1p-450, 9, 9,        9};
+    small_scene s;
+    if (open_small(&s, p) && CHECK(ask(&s) == SC_OK)) {
+        CHECK(s.gradients[0].flags & SC_GRADIENT_FLAT);
+        CHECK(norm(s.gradients[0].vectors[0]) == 0 && norm(s.gradients[0].vectors[1]) == 0);
+    }
+    sc_model_free(s.model);
+}
+
+/* Lengths that are no doubles, of an edge and of a segment. */
+static void lengths_overflow(void)
+{
+    small_scene s;
+    double p[18];
+    memcpy(p, crossing, sizeof p);
+    p[11] = -0x1.8p1023;
+    p[14] = 0x1.8p1023;
+    if (open_small(&s, p) && CHECK(ask(&s) == SC_OK)) {
+        CHECK(s.gradients[0].flags == SC_GRADIENT_FLAT);
+        CHECK(norm(s.gradients[0].vectors[0]) == 0 && norm(s.gradients[0].vectors[1]) == 0);
+        CHECK(s.gradients[1].flags == 0 && norm(s.gradients[1].vectors[0]) > 0.99);
+    }
+    sc_model_free(s.model);
+    if (open_small(&s, crossing)) {
+        s.nodes[0].point[2] = -0x1.8p1023;
+        s.nodes[1].point[2] = 0x1.8p1023;
+        CHECK(ask(&s) == SC_OK);
+        for (int i = 0; i < 2; ++i)
+            CHECK(s.gradients[i].flags == SC_GRADIENT_SHORT &&
+                  norm(s.gradients[i].vectors[0]) == 0 && norm(s.gradients[i].vectors[1]) == 0);
+    }
+    sc_model_free(s.model);
+}
+
 static void wrong_arguments(void)
 {
     small_scene s;
@@ -750,4 +789,5 @@ static void by_hand(void)
 
 SC_TEST_MAIN(SC_TEST(by_hand), SC_TEST(generic_scenes), SC_TEST(soups_on_grids),
              SC_TEST(adversaries), SC_TEST(all_sizes), SC_TEST(floats_are_doubles),
-             SC_TEST(edges_in_planes), SC_TEST(wrong_arguments), SC_TEST(wrong_nodes))
+             SC_TEST(edges_in_planes), SC_TEST(products_underflow), SC_TEST(lengths_overflow),
+             SC_TEST(wrong_arguments), SC_TEST(wrong_nodes))

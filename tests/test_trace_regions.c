@@ -1,7 +1,7 @@
 /*
  * Regions: of closed surfaces that pass through each other, against the winding number of the other
  * one round each vertex, which knows nothing of contours; of planes through spheres, against areas
- * by formulas; of any meshes, what is true of all: areas add up, and ends of edges that nothing
+ * by formulas; of loops and ends within a triangle, by hand; of any meshes, what is true of all: areas add up, and ends of edges that nothing
  * crosses are in one region; and arguments that cannot be.
  *
  * SPDX-License-Identifier: MIT
@@ -373,6 +373,124 @@ static void loops_in_a_triangle(void)
     }
 }
 
+/* Adds s to all, and frees it. */
+static void add_soup(soup *all, soup s)
+{
+    const soup both = soup_join(all, &s);
+    soup_free(all);
+    soup_free(&s);
+    *all = both;
+}
+
+/* An octahedron whose lower half z = 0 cuts in the middle: in a square of the area r^2 / 2. */
+static soup octahedron(double r)
+{
+    static const uint32_t corners[24] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4,
+                                         1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5};
+    const double positions[18] = {r, 0,  r / 2, 0, r, r / 2,     -r, 0, r / 2,
+                                  0, -r, r / 2, 0, 0, r * 3 / 2, 0,  0, -r / 2};
+    soup s = soup_make(6, 8);
+    memcpy(s.triangles, corners, sizeof corners);
+    memcpy(s.positions, positions, sizeof positions);
+    return s;
+}
+
+/* A small upright triangle that z = 0 cuts at a third of its height, at x. */
+static soup small_flag(double x)
+{
+    const double r = 0x1p-8;
+    const double positions[9] = {x - r, r / 2, -r, x + r, r / 4, -r, x + r / 8, -r / 3, 2 * r};
+    soup s = soup_make(3, 1);
+    memcpy(s.positions, positions, sizeof positions);
+    for (uint32_t i = 0; i < 3; ++i) s.triangles[i] = i;
+    return s;
+}
+
+/* The area of a region that is on a side of the contour on sheet 0's or 1's triangle 0. */
+static double area_at(const divided_scene *d, uint64_t contour, int side)
+{
+    const sc_trace_result *t = &d->s.result;
+    const sc_trace_node *node = t->nodes + t->contours[contour].first;
+    CHECK(node->triangle == 0 && node->edge != SC_TRACE_NO_EDGE);
+    return d->regions.regions[d->regions.sides[contour].sides[1 - node->sheet][side]].area;
+}
+
+/* By hand: a triangle of the area 18, in it squares of the areas 1/2, 1/8 and 1/32, one in the
+   other, in any order; and small triangles through it, whose contours end in it and divide nothing,
+   in each of the four regions. */
+static void loops_by_hand(void)
+{
+    static const double big[9] = {-3, -2, 0, 3, -2, 0, 0, 4, 0};
+    static const double at[4] = {0, 0.1875, 0.375, 1};
+    static const double areas[4] = {1. / 32, 3. / 32, 3. / 8, 17.5};
+    for (uint32_t order = 0; order < 6; ++order) {
+        const uint32_t first = order / 2, second = (first + 1 + order % 2) % 3;
+        const uint32_t sizes[3] = {first, second, 3 - first - second};
+        soup all = soup_make(3, 1);
+        divided_scene d;
+        memcpy(all.positions, big, sizeof big);
+        for (uint32_t i = 0; i < 3; ++i) all.triangles[i] = i;
+        for (uint32_t i = 0; i < 3; ++i) add_soup(&all, octahedron(ldexp(1, (int)sizes[i] - 2)));
+        for (uint32_t i = 0; i < 4; ++i) add_soup(&all, small_flag(at[i]));
+        if (divide(&d, all) && check_any(&d, 0) && CHECK(d.s.result.contour_count == 7) &&
+            CHECK(d.regions.region_count == 1 + 2 * 3 + 3 + 2 * 4)) {
+            const double flag = area_of(&d.s.mesh, 25);
+            for (uint64_t i = 0; i < 4; ++i) { /* those that are not closed come first */
+                const sc_contour_sides *c = &d.regions.sides[i];
+                const uint32_t flat = 1 - d.s.result.nodes[d.s.result.contours[i].first].sheet;
+                const double a = d.regions.regions[c->sides[1 - flat][0]].area;
+                const double b = d.regions.regions[c->sides[1 - flat][1]].area;
+                CHECK(c->sides[flat][0] == c->sides[flat][1]);
+                CHECK(sc_region_hint(d.regions.regions, c, flat) == SC_TRACE_NO_EDGE);
+                CHECK(sc_region_hint(d.regions.regions, c, 1 - flat) == (b < a));
+                CHECK_MSG(fabs(area_at(&d, i, 0) - areas[i]) < 1e-14, "%g, not %g",
+                          area_at(&d, i, 0), areas[i]);
+                CHECK_MSG(fabs((a < b ? a : b) - flag * 4 / 9) < 1e-14 &&
+                              fabs((a < b ? b : a) - flag * 5 / 9) < 1e-14,
+                          "%g and %g of %g", a, b, flag);
+            }
+            for (uint64_t i = 4; i < 7; ++i) {
+                const uint32_t k = sizes[i - 4];
+                CHECK_MSG(fabs(area_at(&d, i, 0) - areas[k]) < 1e-14, "%g within, not %g",
+                          area_at(&d, i, 0), areas[k]);
+                CHECK_MSG(fabs(area_at(&d, i, 1) - areas[k + 1]) < 1e-14, "%g round, not %g",
+                          area_at(&d, i, 1), areas[k + 1]);
+            }
+            CHECK(d.regions.vertex_regions[0] == 0 &&
+                  fabs(d.regions.regions[0].area - areas[3]) < 1e-14);
+        }
+        undivide(&d);
+    }
+}
+
+/* Two triangles that pass through each other such that one is divided in the middle of its height:
+   hints of regions that are as large, and none of what is inside if nobody asks for that. */
+static void equal_regions(void)
+{
+    static const double positions[18] = {-8, -8, 0, 8, -8, 0, 0, 8, 0, 1, 0, 4, 1, 0, -4, -1, 0, 0};
+    soup mesh = soup_make(6, 2);
+    divided_scene d;
+    memcpy(mesh.positions, positions, sizeof positions);
+    for (uint32_t i = 0; i < 6; ++i) mesh.triangles[i] = i;
+    if (divide(&d, mesh) && CHECK(d.regions.region_count == 3) &&
+        CHECK(d.s.result.contour_count == 1)) {
+        sc_regions_result r = d.regions;
+        const sc_contour_sides *c = d.regions.sides;
+        for (uint32_t sheet = 0; sheet < 2; ++sheet) {
+            const double area = r.regions[c->sides[sheet][0]].area;
+            const int is_divided = c->sides[sheet][0] != c->sides[sheet][1];
+            CHECK(sc_region_hint(r.regions, c, sheet) == SC_TRACE_NO_EDGE);
+            CHECK_MSG(area == (is_divided ? 4 : 128), "%g", area);
+        }
+        r.flags = 0;
+        memset(r.regions, 0x55, (size_t)r.region_count * sizeof *r.regions);
+        CHECK(sc_trace_regions(d.s.model, &d.s.pose, &d.s.result, NULL, &r) == SC_OK);
+        for (uint64_t i = 0; i < r.region_count; ++i)
+            CHECK(r.regions[i].inside == SC_REGION_UNKNOWN);
+    }
+    undivide(&d);
+}
+
 /* Whatever there is: nothing but what is true of all. */
 static void any_meshes(void)
 {
@@ -436,12 +554,143 @@ static void failing_memory(void)
     undivide(&d);
 }
 
+/* Cancelled by the allocator, each time it is called: so after each step. */
+static void cancelling(void)
+{
+    divided_scene d;
+    uint32_t vertices, triangles;
+    int is_done = 0;
+    if (divide(&d, two_spheres(10, 0.5, 0.7, &vertices, &triangles)))
+        for (uint32_t times = 0; !is_done && times < 100; ++times) {
+            sc_trace_options options;
+            sc_regions_result r = d.regions;
+            scarce_memory memory;
+            sc_status status;
+            memset(&options, 0, sizeof options);
+            options.struct_size = sizeof options;
+            scarce_memory_start(&memory, times);
+            memory.cancels = 1;
+            options.allocator = &memory.allocator;
+            options.cancel = &memory.cancelled;
+            status = sc_trace_regions(d.s.model, &d.s.pose, &d.s.result, &options, &r);
+            is_done = !memory.cancelled;
+            CHECK(is_done ? status == SC_OK && r.region_count == d.regions.region_count
+                          : status == SC_ERROR_INCOMPLETE && r.region_count == 0);
+            CHECK(memory.live == 0);
+        }
+    CHECK(is_done);
+    undivide(&d);
+}
+
 static sc_status ask(const divided_scene *d, const sc_trace_result *trace)
 {
     sc_regions_result r = d->regions;
     const sc_status status = sc_trace_regions(d->s.model, &d->s.pose, trace, NULL, &r);
     CHECK(status == SC_OK || status == SC_ERROR_SHORT_BUFFER || r.region_count == 0);
     return status;
+}
+
+/* Another name of an edge of a closed surface: that of its other triangle. */
+static uint32_t other_name(const soup *s, uint32_t edge)
+{
+    const uint32_t *v = s->triangles;
+    uint32_t h = 0;
+    while (v[h] != v[edge - edge % 3 + (edge + 1) % 3] || v[h - h % 3 + (h + 1) % 3] != v[edge])
+        ++h;
+    return h;
+}
+
+/* Traces that name what exists, but in contours that cannot be. */
+static void impossible_contours(void)
+{
+    divided_scene d;
+    uint32_t vertices, triangles;
+    uint64_t i = 1;
+    if (divide(&d, two_spheres(10, 0.5, 0.7, &vertices, &triangles)) &&
+        CHECK(d.s.result.node_count > 8 && d.s.result.contours[0].begin == SC_TRACE_CLOSED)) {
+        const size_t bytes = (size_t)d.s.result.node_count * sizeof(sc_trace_node);
+        sc_trace_result t = d.s.result;
+        sc_trace_contour contours[2];
+        sc_trace_node *nodes = (sc_trace_node *)test_allocate(bytes);
+        uint32_t s;
+        memcpy(nodes, t.nodes, bytes);
+        t.nodes = nodes;
+        CHECK(ask(&d, &t) == SC_OK);
+        /* from edge to edge through a triangle that has none of them, or not the second one */
+        while (i + 1 < t.contours[0].count && nodes[i].sheet != nodes[i + 1].sheet) ++i;
+        s = nodes[i].sheet;
+        if (CHECK(i + 1 < t.contours[0].count)) {
+            nodes[i].sheets[s] = d.s.result.nodes[i].sheets[1 - s];
+            CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+            nodes[i].sheets[s] = nodes[i - 1].sheets[s];
+            CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+            nodes[i] = d.s.result.nodes[i];
+        }
+        /* through an edge, and by the same back into the triangle it came from */
+        for (i = 0; i + 1 < t.contours[0].count && nodes[i].sheet == nodes[i + 1].sheet;) ++i;
+        t.contours = contours;
+        t.contour_count = 1;
+        contours[0] = d.s.result.contours[0];
+        contours[0].first = i;
+        contours[0].count = 2;
+        CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+        /* nodes that are in two contours, and that are not there */
+        contours[0] = contours[1] = d.s.result.contours[0];
+        CHECK(contours[0].count > t.node_count / 2);
+        t.contour_count = t.contour_capacity = 2;
+        CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+        t.contour_count = 1;
+        contours[0].count = 2;
+        contours[0].first = t.node_count + 1;
+        CHECK(ask(&d, &t) == SC_ERROR_PAIRS);
+        free(nodes);
+    }
+    undivide(&d);
+}
+
+/* An octahedron, and two triangles that cross its lower edges: one edge by two names. */
+static void edges_with_two_names(void)
+{
+    soup all = octahedron(1);
+    divided_scene d;
+    for (int i = 0; i < 2; ++i) {
+        const double z = -0.25 * i;
+        const double big[9] = {-3, -2, z, 3, -2, z, 0, 4, z};
+        soup one = soup_make(3, 1);
+        memcpy(one.positions, big, sizeof big);
+        for (uint32_t k = 0; k < 3; ++k) one.triangles[k] = k;
+        add_soup(&all, one);
+    }
+    if (divide(&d, all) && CHECK(d.s.result.node_count == 8)) {
+        sc_trace_node *node = d.s.result.nodes;
+        CHECK(ask(&d, &d.s.result) == SC_OK);
+        node->edge = other_name(&d.s.mesh, node->edge);
+        node->along = 1 - node->along;
+        CHECK(ask(&d, &d.s.result) == SC_ERROR_PAIRS);
+    }
+    undivide(&d);
+}
+
+/* Traces of more than there is room for, or of more than can be. */
+static void wrong_counts(void)
+{
+    divided_scene d;
+    uint32_t vertices, triangles;
+    if (divide(&d, two_spheres(10, 0.5, 0.7, &vertices, &triangles))) {
+        sc_trace_result t = d.s.result;
+        --t.node_capacity;
+        CHECK(ask(&d, &t) == SC_ERROR_SHORT_BUFFER);
+        t = d.s.result;
+        --t.contour_capacity;
+        CHECK(ask(&d, &t) == SC_ERROR_SHORT_BUFFER);
+        t = d.s.result;
+        t.node_count = t.node_capacity = (UINT64_C(1) << 30) + 1;
+        CHECK(ask(&d, &t) == SC_ERROR_COUNT);
+        t = d.s.result;
+        t.contour_count = t.contour_capacity = (UINT64_C(1) << 30) + 1;
+        CHECK(ask(&d, &t) == SC_ERROR_COUNT);
+    }
+    undivide(&d);
 }
 
 static void wrong_arguments(void)
@@ -515,12 +764,18 @@ static void wrong_arguments(void)
         CHECK(sc_trace_regions(d.s.model, &pose, &t, NULL, &r) == SC_ERROR_NOT_FINITE);
         free(bad);
         free(nodes);
+        options.cancel = NULL;
+        options.simd = SC_SIMD_AVX512 + 1;
+        CHECK(sc_trace_regions(d.s.model, &d.s.pose, &t, &options, &r) == SC_ERROR_OPTION);
         CHECK(sc_region_hint(NULL, d.regions.sides, 0) == SC_TRACE_NO_EDGE);
+        CHECK(sc_region_hint(d.regions.regions, NULL, 0) == SC_TRACE_NO_EDGE);
         CHECK(sc_region_hint(d.regions.regions, d.regions.sides, 2) == SC_TRACE_NO_EDGE);
     }
     undivide(&d);
 }
 
 SC_TEST_MAIN(SC_TEST(spheres_through_each_other), SC_TEST(planes_through_spheres),
-             SC_TEST(loops_in_a_triangle), SC_TEST(any_meshes), SC_TEST(strips),
-             SC_TEST(failing_memory), SC_TEST(wrong_arguments))
+             SC_TEST(loops_in_a_triangle), SC_TEST(loops_by_hand), SC_TEST(equal_regions),
+             SC_TEST(any_meshes), SC_TEST(strips), SC_TEST(failing_memory), SC_TEST(cancelling),
+             SC_TEST(impossible_contours), SC_TEST(edges_with_two_names), SC_TEST(wrong_counts),
+             SC_TEST(wrong_arguments))

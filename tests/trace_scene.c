@@ -135,8 +135,12 @@ static void *allocate_scarce(void *user, uint64_t bytes, uint64_t alignment)
 {
     scarce_memory *m = (scarce_memory *)user;
     void *memory = NULL;
-    if (!m->left) return NULL;
-    --m->left;
+    if (m->left)
+        --m->left;
+    else if (m->cancels)
+        m->cancelled = 1;
+    else
+        return NULL;
     ++m->live;
     if (posix_memalign(&memory, (size_t)alignment, (size_t)bytes)) abort();
     return memory;

@@ -45,10 +45,13 @@ soup trace_scene_cloths(uint32_t across);
    an odd number each goes on as the other, and the two are one. */
 soup trace_scene_strips(uint32_t stations, uint32_t turns);
 
-/* An allocator that fails after so many times, and counts what is not given back. */
+/* An allocator that fails after so many times, or then cancels the call instead; and counts what is
+   not given back. */
 typedef struct scarce_memory {
     sc_allocator allocator; /* its user is this */
     uint32_t left;
+    int cancels;
+    volatile uint32_t cancelled; /* for sc_trace_options.cancel */
     uint64_t live;
 } scarce_memory;
 

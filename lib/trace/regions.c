@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assume.h"
 #include "base/sort.h"
 #include "trace/crossed_edges.h"
 
@@ -159,6 +160,15 @@ static void sort_along(region_work *w, uint32_t edge)
     for (i = 0; i < count; i++) w->rank[order[i]] = i;
 }
 
+/* Whether no two edges have the same ends: one has one name. */
+static int are_edges_named_once(const sc_crossed_edges *e)
+{
+    uint32_t i;
+    for (i = 0; i < e->count; i++)
+        if (sc_crossed_edges_find(e, e->ends[i].a, e->ends[i].b) != i) return 0;
+    return 1;
+}
+
 /* Puts the crossings of each edge in order, from its lower end on. */
 static sc_status order_crossings(region_work *w)
 {
@@ -169,6 +179,7 @@ static sc_status order_crossings(region_work *w)
     sc_status status =
         sc_crossed_edges_list(w->subject, w->crossings, count, w->scratch, &w->edges);
     if (status) return status;
+    if (!are_edges_named_once(&w->edges)) return SC_ERROR_PAIRS;
     w->edge_first = (uint32_t *)sc_scratch_take(w->scratch, (uint64_t)w->edges.count + 1,
                                                 sizeof *w->edge_first);
     w->order = (uint32_t *)sc_scratch_take(w->scratch, count, sizeof *w->order);
@@ -374,7 +385,7 @@ static void list_marks(const region_work *w, divided *d)
     }
 }
 
-/* The mark of a crossing on the border. */
+/* The mark of a crossing on the border, or SC_NONE if its edge is none of the triangle's. */
 static uint32_t mark_of(const region_work *w, const divided *d, const sc_trace_node *node)
 {
     const uint32_t *corner = sc_trace_corners(w->subject->model, d->triangle);
@@ -386,14 +397,15 @@ static uint32_t mark_of(const region_work *w, const divided *d, const sc_trace_n
         const uint32_t count = edge == SC_NONE ? 0 : w->edge_first[edge + 1] - w->edge_first[edge];
         if ((u == ends[0] && v == ends[1]) || (u == ends[1] && v == ends[0])) {
             const uint32_t rank = w->rank[crossing_of(w, node)];
-            return count ? at + 1 + (u < v ? rank : count - 1 - rank) : SC_NONE;
+            return at + 1 + (u < v ? rank : count - 1 - rank);
         }
         at += 1 + count;
     }
     return SC_NONE;
 }
 
-/* Notes where chains across begin and end. 0 if they do so nowhere on the border. */
+/* Notes where chains across begin and end. 0 if they do so nowhere on the border, or at one place:
+   where a contour crosses an edge it leaves the triangle. */
 static int mark_chains(const region_work *w, divided *d)
 {
     uint32_t i;
@@ -403,7 +415,7 @@ static int mark_chains(const region_work *w, divided *d)
         if (chain->kind != CHAIN_ACROSS) continue;
         d->begin[i] = mark_of(w, d, &w->trace->nodes[node_at(c, chain->begin)]);
         d->end[i] = mark_of(w, d, &w->trace->nodes[node_at(c, chain->begin + chain->nodes - 1)]);
-        if (d->begin[i] == SC_NONE || d->end[i] == SC_NONE) return 0;
+        if (d->begin[i] == SC_NONE || d->end[i] == SC_NONE || d->begin[i] == d->end[i]) return 0;
         d->marks[d->begin[i]].chain = d->marks[d->end[i]].chain = i;
     }
     return 1;
@@ -422,7 +434,7 @@ static void find_border_parts(divided *d)
             const uint32_t from = d->begin[chain] < d->end[chain] ? d->begin[chain] : d->end[chain];
             now = before[from - 1]; /* there is a corner before any crossing */
             open--;
-        } else if (chain != SC_NONE && d->begin[chain] != d->end[chain]) {
+        } else if (chain != SC_NONE) {
             d->crosses |= (d->begin[chain] == i ? d->end[chain] : d->begin[chain]) < i;
             d->stack[open++] = chain;
             now = d->part_count++;
@@ -527,7 +539,7 @@ static uint32_t part_at(const region_work *w, const divided *d, const double at[
 static uint32_t element_of_part(const divided *d, uint32_t part)
 {
     uint32_t i = 0;
-    while (i + 1 < d->mark_count && d->part[i] != part) i++;
+    while (d->part[i] != part) i++; /* each part has an interval */
     return d->marks[i].element;
 }
 
@@ -862,7 +874,7 @@ static sc_status take_elements(region_work *w)
     const uint64_t inner = (uint64_t)w->crossing_count - w->edges.count;
     const uint64_t count = vertices + inner + w->chain_count;
     uint32_t i;
-    if (count > UINT32_MAX / 2) return SC_ERROR_COUNT;
+    if (SC_HARDLY(count > UINT32_MAX / 2)) return SC_ERROR_COUNT; /* 25 gigabytes */
     w->interval_first = vertices;
     w->loop_first = (uint32_t)(vertices + inner);
     w->element_count = (uint32_t)count;
@@ -881,14 +893,17 @@ static sc_status take_elements(region_work *w)
     return SC_OK;
 }
 
-/* Whether contours have nodes that there are, two at least. */
+/* Whether contours have nodes that there are, two at least, and no more together: so many chains
+   at most there are on each sheet. */
 static int are_contours_there(const sc_trace_result *t)
 {
-    uint64_t i;
+    uint64_t i, left = t->node_count;
     for (i = 0; i < t->contour_count; i++) {
         const sc_trace_contour *c = &t->contours[i];
-        if (c->count < 2 || c->first > t->node_count || c->count > t->node_count - c->first)
+        if (c->count < 2 || c->first > t->node_count || c->count > t->node_count - c->first ||
+            c->count > left)
             return 0;
+        left -= c->count;
     }
     return 1;
 }

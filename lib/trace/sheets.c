@@ -7,6 +7,7 @@
 
 #include <inttypes.h>
 
+#include "base/assume.h"
 #include "base/hooks.h"
 #include "base/jobs.h"
 #include "base/sort.h"
@@ -165,7 +166,8 @@ uint32_t sc_sheets_shared_vertex(const sc_model *model, uint32_t a, uint32_t b)
     return count == 1 ? shared : SC_NONE;
 }
 
-/* Joins the branches of one segment, of which they are the ends; or one end is a vertex. */
+/* Joins the branches of one segment, of which they are the ends; or one end is a vertex. There are
+   not more than two: all cross, and of two names of one edge only the first has branches. */
 static int join_segment(const sc_trace_subject *subject, sc_sheets *s, const sc_pair *branches,
                         uint64_t count)
 {
@@ -176,7 +178,8 @@ static int join_segment(const sc_trace_subject *subject, sc_sheets *s, const sc_
         return 1;
     }
     s->other[branches[0].b] = SC_NONE;
-    if (count == 1 && sc_sheets_shared_vertex(subject->model, segment.a, segment.b) != SC_NONE)
+    if (SC_ALWAYS(count == 1) &&
+        sc_sheets_shared_vertex(subject->model, segment.a, segment.b) != SC_NONE)
         return 1;
     sc_hooks_log(subject->hooks, SC_LOG_ERROR,
                  "pairs lack an end of what triangles %" PRIu32 " and %" PRIu32 " have in common",
