@@ -201,6 +201,13 @@ static void touching_at_both_times(void)
     p.ends[0][0][2] = -0.5;
     s = ask(&p, SC_NEAR_VERTEX_FACE, 1);
     CHECK(s.side == -1 && s.normal[2] == 1);
+    for (int side = -1; side < 2; side += 2) { /* by a quarter of the smallest double: none */
+        memcpy(p.ends[0], face, sizeof face);
+        p.ends[0][4][2] = side * -0x1p-1074;
+        s = ask(&p, SC_NEAR_VERTEX_FACE, 1);
+        CHECK(s.side == side && s.flags == SC_STEP_APPROACHES && s.start.distance == 0);
+        CHECK(s.normal[2] == -side && fabs(s.normal[0]) + fabs(s.normal[1]) < 0x1p-900);
+    }
     sc_model_free(p.model);
 }
 
