@@ -3,6 +3,7 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,6 +37,53 @@ static void own_separations(void)
                            own >= wanted - 0.07 * tolerance,
                        "%.17g, should be %.17g", own, wanted))
             return;
+    }
+}
+
+/* The same where rounding hides that the nearest point is inside: of thin pairs in any direction,
+   whose distance is about half their width. */
+static void own_separations_of_slivers(void)
+{
+    for (int i = 0, n = (int)test_iterations_at_least(40000, 20000); i < n; ++i) {
+        double p[4][3], axis[3], size = 0, own, wanted, tolerance;
+        const double(*at)[3] = (const double(*)[3])p;
+        const double width = ldexp(1, -25 - (int)test_random_below(5));
+        const int is_edges = i & 1, first = is_edges ? 2 : 1;
+        sc_impact_limits limits = {8, 0, 1};
+        for (int k = 0; k < 3; ++k) axis[k] = test_random_range(-1, 1);
+        for (int j = 0; j < 4; ++j) {
+            const double along = test_random_range(-1, 1);
+            for (int k = 0; k < 3; ++k) p[j][k] = along * axis[k] + test_random_range(0, width);
+        }
+        for (int j = 0; j < first; ++j)
+            for (int k = first; k < 4; ++k)
+                for (int c = 0; c < 3; ++c) size = fmax(size, fabs(p[k][c] - p[j][c]));
+        tolerance = SC_IMPACT_FLOOR * size;
+        own = sc_impact_nearer(is_edges, at, at, &limits);
+        wanted = distance_of(is_edges, at) - 2 * tolerance;
+        if (!CHECK_MSG(own <= (wanted > 0 ? wanted : 0) + 0.57 * tolerance &&
+                           own >= wanted - 0.07 * tolerance,
+                       "%.17g, should be %.17g", own, wanted))
+            return;
+    }
+}
+
+/* The separation of those farther apart than a double can say is all that is asked for; of pairs
+   that are too small for a tolerance it is 0. */
+static void own_separations_out_of_range(void)
+{
+    static const double sizes[3] = {0x1.8p1023, 1, 0x1.8p-904};
+    for (int i = 0; i < 6; ++i) {
+        const int is_edges = i & 1;
+        const double size = sizes[i / 2];
+        const sc_impact_limits limits = {size > 1 ? DBL_MAX : 1, 0, 1};
+        double p[4][3], own;
+        const double(*at)[3] = (const double(*)[3])p;
+        for (int k = 0; k < 12; ++k) p[k / 3][k % 3] = k < (is_edges ? 6 : 3) ? size : -size;
+        p[3][2] = size;
+        CHECK(distance_of(is_edges, at) > size);
+        own = sc_impact_nearer(is_edges, at, at, &limits);
+        CHECK_MSG(own == (size < 1 ? 0 : limits.separation), "%g", own);
     }
 }
 
@@ -93,4 +141,5 @@ static void cloth_at_rest(void)
     soup_free(&mesh);
 }
 
-SC_TEST_MAIN(SC_TEST(own_separations), SC_TEST(cloth_at_rest))
+SC_TEST_MAIN(SC_TEST(own_separations), SC_TEST(own_separations_of_slivers),
+             SC_TEST(own_separations_out_of_range), SC_TEST(cloth_at_rest))

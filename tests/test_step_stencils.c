@@ -201,6 +201,13 @@ static void touching_at_both_times(void)
     p.ends[0][0][2] = -0.5;
     s = ask(&p, SC_NEAR_VERTEX_FACE, 1);
     CHECK(s.side == -1 && s.normal[2] == 1);
+    for (int side = -1; side < 2; side += 2) { /* by a quarter of the smallest double: none */
+        memcpy(p.ends[0], face, sizeof face);
+        p.ends[0][4][2] = side * -0x1p-1074;
+        s = ask(&p, SC_NEAR_VERTEX_FACE, 1);
+        CHECK(s.side == side && s.flags == SC_STEP_APPROACHES && s.start.distance == 0);
+        CHECK(s.normal[2] == -side && fabs(s.normal[0]) + fabs(s.normal[1]) < 0x1p-900);
+    }
     sc_model_free(p.model);
 }
 
@@ -221,6 +228,76 @@ static void distances_out_of_range(void)
         CHECK(s.start.distance == HUGE_VAL && s.impact.distance == HUGE_VAL);
         CHECK(!(s.flags & SC_STEP_NO_NORMAL) && fabs(s.normal[0]) < 1e-14 &&
               fabs(s.normal[1]) < 1e-14 && s.normal[2] == (up > 0 ? -1 : 1));
+    }
+    sc_model_free(p.model);
+}
+
+/* A vertex far from a small face, as no double can say, both on a diagonal through the origin: the
+   normal is along it, also where they are near at the start. They approach as they change places, and
+   do not as they move on. */
+static void points_out_of_range(void)
+{
+    const double far = 0x1.8p1023;
+    pair p;
+    sc_step_stencil s;
+    if (!open_pair(&p)) return;
+    memset(p.ends, 0, sizeof p.ends);
+    for (int k = 0; k < 3; ++k) {
+        p.ends[0][0][k] = far;
+        p.ends[0][3 + k][k] = p.ends[1][3 + k][k] = 1; /* the face, */
+        for (int i = 3; i < 6; ++i) {
+            p.ends[0][i][k] -= far; /* which rounds to one point, */
+            p.ends[1][i][k] += far;
+        }
+        p.ends[1][0][k] = -far;
+    }
+    for (int at_end = 0; at_end < 2; ++at_end) {
+        const double wanted = at_end ? sqrt(1 / 3.0) : -sqrt(1 / 3.0);
+        s = ask(&p, SC_NEAR_VERTEX_FACE, at_end);
+        CHECK(s.start.distance == HUGE_VAL && s.impact.distance == HUGE_VAL && s.side == 0);
+        CHECK(s.flags == SC_STEP_APPROACHES);
+        for (int k = 0; k < 3; ++k) CHECK(fabs(s.normal[k] - wanted) < 1e-14);
+    }
+    for (int i = 0; i < 18; ++i) p.ends[0][i / 3][i % 3] = 0.75 * p.ends[1][i / 3][i % 3];
+    s = ask(&p, SC_NEAR_VERTEX_FACE, 1);
+    CHECK(s.flags == 0 && s.start.distance == HUGE_VAL);
+    memset(p.ends[0], 0, sizeof p.ends[0]); /* near at the start, along z */
+    p.ends[0][0][2] = 1;
+    s = ask(&p, SC_NEAR_VERTEX_FACE, 1);
+    CHECK(s.start.distance == 1);
+    for (int k = 0; k < 3; ++k) CHECK(fabs(s.normal[k] - sqrt(1 / 3.0)) < 1e-14);
+    sc_model_free(p.model);
+}
+
+/* Edges that cross at less than half of the smallest double, so that they touch: the normal is
+   across both, though it would not be so by products of rounded differences, as the edges are almost
+   parallel, or these are infinite. */
+static void touching_edges_almost_parallel(void)
+{
+    const double tiny = 0x1p-1074, far = 0x1.8p1023, u = 0x1p-54;
+    const double edges[2][4][3] = {
+        /* across a at a third of b, and 3/2 2^-54 (1, 1, 0) times all but nothing along z */
+        {{-0.5, -0.5, 0}, {1, 1 - 2 * u, 0}, {-0.5 + u, -0.5, 0}, {1, 1, tiny}},
+        {{-far, 0, 0}, {far, 0, 0}, {0, -0.25, 0}, {0, 0.75, tiny}},
+    };
+    pair p;
+    if (!open_pair(&p)) return;
+    for (int i = 0; i < 8; ++i) {
+        const double(*e)[3] = edges[i % 2];
+        const int turn = i / 2 % 2, mirror = i / 4;
+        sc_step_stencil s;
+        memset(p.ends, 0, sizeof p.ends);
+        memcpy(p.ends[0][0], e[turn], sizeof e[0]);
+        memcpy(p.ends[0][1], e[!turn], sizeof e[0]);
+        memcpy(p.ends[0][3], e[2], sizeof e[0]);
+        memcpy(p.ends[0][4], e[3], sizeof e[0]);
+        for (int k = 0; k < 6; ++k) p.ends[0][k][2] *= mirror ? -1 : 1;
+        memcpy(p.ends[1], p.ends[0], sizeof p.ends[0]);
+        s = ask(&p, SC_NEAR_EDGE_EDGE, 1);
+        CHECK(s.start.distance == 0 && s.side != 0 && s.flags == SC_STEP_APPROACHES);
+        CHECK_MSG(s.normal[2] == (mirror ? -1 : 1) && fabs(s.normal[0]) < 0x1p-900 &&
+                      fabs(s.normal[1]) < 0x1p-900,
+                  "%d: %g %g %g", i, s.normal[0], s.normal[1], s.normal[2]);
     }
     sc_model_free(p.model);
 }
@@ -294,4 +371,5 @@ static void wrong_arguments(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_motion), SC_TEST(touching_at_both_times), SC_TEST(distances_out_of_range),
+             SC_TEST(points_out_of_range), SC_TEST(touching_edges_almost_parallel),
              SC_TEST(edges_of_the_smallest_doubles), SC_TEST(wrong_arguments))

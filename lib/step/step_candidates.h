@@ -11,7 +11,7 @@
 /* Whether it is a vertex of the second object and a face of the first. */
 static inline int sc_step_candidates_are_turned(const sc_worker *w, int kind, const sc_pair *pair)
 {
-    return kind == SC_STEP_VERTEX_FACE && pair->a >= SC_STEP_TURNED && sc_worker_is_between(w);
+    return kind == SC_STEP_VERTEX_FACE && sc_worker_is_between(w) && pair->a >= SC_STEP_TURNED;
 }
 
 /* Whose model and frame the first and the second of a pair have. */

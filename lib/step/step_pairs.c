@@ -122,7 +122,7 @@ void sc_step_pairs_take_all(sc_worker *w, int kind, const sc_pair *pairs, uint32
     const sc_step_list *list = &step->question->list[kind];
     const int turned = kind == SC_STEP_VERTEX_FACE && pairs[0].a >= SC_STEP_TURNED;
     uint32_t i;
-    if (step->question->options.output == SC_OUTPUT_PAIRS && !list->times && list->capacity) {
+    if (step->question->options.output == SC_OUTPUT_PAIRS && list->capacity) {
         if (!w->share && step->count[kind] + count <= list->capacity) {
             memcpy(list->pairs + step->count[kind], pairs, count * sizeof *pairs);
             step->count[kind] += count;

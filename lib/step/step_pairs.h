@@ -14,7 +14,7 @@
 /* Takes a pair that was not taken before, in the caller's numbers. */
 void sc_step_pairs_take(sc_worker *w, int kind, uint32_t a, uint32_t b, double time);
 
-/* The same for some pairs without times, fewer than SC_FOUND_MAX. */
+/* The same for some pairs, fewer than SC_FOUND_MAX, of a list without times. */
 void sc_step_pairs_take_all(sc_worker *w, int kind, const sc_pair *pairs, uint32_t count);
 
 /* Gives what a worker has found to the lists that several share, as sc_pairs_deliver. */

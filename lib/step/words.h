@@ -14,6 +14,7 @@
 
 #include <stdint.h>
 
+#include "base/assume.h"
 #include "base/bits.h"
 #include "simd/isa.h"
 
@@ -247,7 +248,8 @@ static SC_INLINE int sc_words_decide_shape(sc_words_shape *s, int guess, int nar
     int answer;
     s->square = (sc_words_bits)s->distance * (sc_words_bits)s->distance;
     answer = sc_words_decide_at(s, guess, narrow);
-    for (int i = 0; answer == SC_WORDS_UNSURE && i <= 2 * s->corners; ++i)
+    /* one of them is the nearest point, as in step/within.c */
+    for (int i = 0; answer == SC_WORDS_UNSURE && SC_ALWAYS(i <= 2 * s->corners); ++i)
         answer = sc_words_decide_at(s, i, narrow);
     return answer == 1;
 }
