@@ -764,9 +764,79 @@ static void workspaces_and_forged_hashes(void)
     soup_free(&large);
 }
 
+/* A model in place of another one, loaded in the same memory: masks of that one are refused, whether
+   the new one has other triangles, as many leaf clusters or more, or only claims to have the same. */
+static void masks_and_forged_hashes(void)
+{
+    soup mesh[3] = {soup_cloth(8, 8), soup_cloth(20, 20), soup_cloth(8, 8)};
+    saved_model saved[3], here;
+    uint64_t hash = 0;
+    uint32_t leaf_count = 0;
+    sc_workspace_options options;
+    sc_near_masks *masks = NULL;
+    memset(&options, 0, sizeof(options));
+    options.struct_size = sizeof(options);
+    options.flags = SC_WORKSPACE_NEAR;
+    for (uint32_t i = 0; i < 3; ++i) { /* the last one: two triangles swapped */
+        const uint32_t first = mesh[2].triangles[i];
+        mesh[2].triangles[i] = mesh[2].triangles[3 + i];
+        mesh[2].triangles[3 + i] = first;
+    }
+    for (int i = 0; i < 3; ++i) {
+        sc_model *model =
+            saved_model_build(&mesh[i], SC_WELD_REST, SC_PARTITION_FAST, SC_MODEL_FULL);
+        saved[i] = saved_model_of(model);
+        if (i == 0) {
+            hash = model->topology_hash;
+            leaf_count = model->leaf_count;
+        }
+        CHECK((model->topology_hash == hash) == (i == 0));
+        CHECK((model->leaf_count == leaf_count) == (i != 1));
+        sc_model_free(model);
+    }
+    here = saved_model_make(saved[1].size, 0);
+    for (int way = 0; way < 5; ++way) { /* way 3: the second one claims to be the first */
+        const int which = way == 3 ? 1 : way % 4;
+        const sc_pose pose = input_plain_pose(mesh[which].positions, mesh[which].vertex_count);
+        sc_model *model = NULL;
+        sc_workspace *workspace = NULL;
+        sc_near_options o;
+        sc_near_result result;
+        sc_status status;
+        memcpy(here.data, saved[which].data, (size_t)saved[which].size);
+        here.size = saved[which].size;
+        if (way == 3) {
+            ((sc_model *)(void *)(here.data + sizeof(sc_saved_header)))->topology_hash = hash;
+            saved_model_seal(&here);
+        }
+        if (!CHECK(saved_model_load(&here, SC_LOAD_IN_PLACE, &model) == SC_OK)) break;
+        if (way == 0) CHECK(sc_near_masks_create(model, 1, NULL, &masks) == SC_OK);
+        CHECK(sc_workspace_create_for(model, &options, &workspace) == SC_OK);
+        memset(&o, 0, sizeof(o));
+        o.struct_size = sizeof(o);
+        o.output = SC_OUTPUT_COUNT;
+        o.distance = 0.1;
+        memset(&result, 0, sizeof(result));
+        result.struct_size = sizeof(result);
+        CHECK(sc_query_near(model, workspace, &pose, &o, &result) == SC_OK);
+        o.masks = masks;
+        status = sc_query_near(model, workspace, &pose, &o, &result);
+        CHECK_MSG(status == (which ? SC_ERROR_OPTION : SC_OK), "way %d: %s", way,
+                  sc_status_string(status));
+        sc_workspace_free(workspace);
+        sc_model_free(model);
+    }
+    sc_near_masks_free(masks);
+    free(here.memory);
+    for (int i = 0; i < 3; ++i) {
+        free(saved[i].memory);
+        soup_free(&mesh[i]);
+    }
+}
+
 SC_TEST_MAIN(SC_TEST(forged_arrays), SC_TEST(forged_counts), SC_TEST(forged_uses),
              SC_TEST(forged_contour), SC_TEST(forged_touches), SC_TEST(forged_nodes),
              SC_TEST(forged_sharing), SC_TEST(forged_nodes_of_sharing), SC_TEST(forged_lists),
              SC_TEST(forged_pieces), SC_TEST(forged_loops), SC_TEST(forged_short_loops),
              SC_TEST(forged_sizes), SC_TEST(forged_chain), SC_TEST(messages),
-             SC_TEST(workspaces_and_forged_hashes))
+             SC_TEST(workspaces_and_forged_hashes), SC_TEST(masks_and_forged_hashes))

@@ -74,15 +74,22 @@ static void close_scene(scene *s)
     free(s->posed);
 }
 
+/* The caller's lists are in the result. */
+static sc_status ask_into(const scene *s, sc_workspace *workspace, const sc_near_options *options,
+                          double *bounds, sc_near_result *result)
+{
+    result->struct_size = sizeof *result;
+    result->vertex_bounds = bounds;
+    for (uint32_t v = 0; v < s->mesh.vertex_count; ++v) bounds[v] = -1;
+    return sc_query_near(s->model, workspace, &s->pose, options, result);
+}
+
 static sc_status ask(const scene *s, sc_workspace *workspace, const sc_near_options *options,
                      double *bounds)
 {
     sc_near_result result;
     memset(&result, 0, sizeof result);
-    result.struct_size = sizeof result;
-    result.vertex_bounds = bounds;
-    for (uint32_t v = 0; v < s->mesh.vertex_count; ++v) bounds[v] = -1;
-    return sc_query_near(s->model, workspace, &s->pose, options, &result);
+    return ask_into(s, workspace, options, bounds, &result);
 }
 
 static int accept_even(void *user, uint32_t a, uint32_t b)
@@ -252,7 +259,82 @@ static void bounds_at_both_ends_of_the_range(void)
     CHECK_MSG(positive[0] > 0, "%" PRIu64 " huge bounds", positive[0]);
 }
 
-/* Whoever finds them; and what is cancelled has none. */
+/* Two edges of triangles whose middles are a vector apart, at random across it; the third corners are
+   behind them. */
+static double *draw_edges_apart(const double apart[3], double length)
+{
+    double *posed = (double *)test_allocate(18 * sizeof(double));
+    for (int i = 0; i < 6; i += 3) {
+        const double half = i ? 0.5 : -0.5;
+        double along[3], part = 0;
+        for (int k = 0; k < 3; ++k) {
+            along[k] = length * test_random_range(-0.1, 0.1);
+            part += along[k] * apart[k] / (length * length);
+        }
+        for (int k = 0; k < 3; ++k) {
+            posed[3 * i + k] = half * apart[k] + (along[k] - part * apart[k]);
+            posed[3 * i + 3 + k] = half * apart[k] - (along[k] - part * apart[k]);
+            posed[3 * i + 6 + k] = 1.2 * half * apart[k] + along[(k + 1) % 3];
+        }
+    }
+    return posed;
+}
+
+/* Edges that are nearer than the largest double, by so little that their distance is more by its
+   rounding: a bound of it is a double all the same. */
+static void bounds_of_the_largest_distances(void)
+{
+    uint64_t pairs = 0, infinite = 0;
+    for (uint32_t trial = test_iterations_at_least(3000, 1500); trial-- > 0 && !test_failures();) {
+        const uint64_t state = test_random_state();
+        const double apart[3] = {test_random_range(-1, 1), test_random_range(-1, 1),
+                                 test_random_range(0.5, 1)};
+        const double length = sqrt(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]);
+        const double factor = (1 - test_random_below(4) * 0x1p-53) / length;
+        soup mesh = soup_make(6, 2);
+        double *posed = draw_edges_apart(apart, length);
+        sc_near_options o;
+        scene s;
+        for (uint32_t i = 0; i < 18; ++i) {
+            mesh.positions[i] = posed[i];
+            posed[i] = ldexp(posed[i] * factor, 1024);
+        }
+        for (uint32_t i = 0; i < 6; ++i) mesh.triangles[i] = i;
+        memset(&o, 0, sizeof o);
+        o.struct_size = sizeof o;
+        o.output = SC_OUTPUT_PAIRS;
+        o.kinds = SC_NEAR_EDGE_EDGE;
+        o.distance = DBL_MAX;
+        if (open_scene(&s, mesh, posed, state)) {
+            sc_near_result result;
+            sc_pair edges[9];
+            sc_near_stencil stencils[9];
+            double bounds[6];
+            memset(&result, 0, sizeof result);
+            result.edge_edges = edges;
+            result.edge_edge_capacity = 9;
+            CHECK(ask_into(&s, s.workspace, &o, bounds, &result) == SC_OK);
+            CHECK(sc_near_stencils(s.model, &s.pose, SC_NEAR_EDGE_EDGE, edges,
+                                   result.edge_edge_count, stencils) == SC_OK);
+            for (uint64_t i = 0; i < result.edge_edge_count; ++i) {
+                const double truth = near_truth_distance(&s.m, STEP_EDGE_EDGE, edges[i]);
+                uint32_t at[4];
+                step_pair_vertices(&s.m, STEP_EDGE_EDGE, edges[i], at);
+                for (int k = 0; k < 4; ++k)
+                    CHECK_MSG(bounds[at[k]] >= 0 && bounds[at[k]] <= truth,
+                              "bound %a of %a, state %" PRIu64, bounds[at[k]], truth, state);
+                infinite += stencils[i].distance > DBL_MAX;
+                pairs++;
+            }
+        }
+        close_scene(&s);
+    }
+    test_note("%" PRIu64 " of %" PRIu64 " distances are infinite", infinite, pairs);
+    CHECK(infinite > 0 && pairs > infinite);
+}
+
+/* Whoever finds them, with a function that is asked about either kind of pair, both or none; and what
+   is cancelled has none. */
 static void bounds_by_many_workers(void)
 {
     static const volatile uint32_t set = 1;
@@ -261,6 +343,7 @@ static void bounds_by_many_workers(void)
         const size_t bytes = sizeof(double) * mesh.vertex_count;
         double *posed = soup_copy_positions(&mesh), *alone, *together;
         sc_near_options o;
+        sc_near_result lists;
         sc_filter filter;
         scene s;
         host h;
@@ -276,12 +359,26 @@ static void bounds_by_many_workers(void)
         memset(&filter, 0, sizeof filter);
         filter.struct_size = sizeof filter;
         filter.accept = accept_even;
-        if (trial % 3 == 0) o.vertex_face_filter = o.edge_edge_filter = &filter;
-        CHECK(ask(&s, s.workspace, &o, alone) == SC_OK);
+        if (trial % 4 & 1) o.vertex_face_filter = &filter;
+        if (trial % 4 & 2) o.edge_edge_filter = &filter;
+        memset(&lists, 0, sizeof lists);
+        CHECK(ask_into(&s, s.workspace, &o, alone, &lists) == SC_OK);
         host_start(&h, HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST)), THREADS_MAX);
         o.tasks = &h.tasks;
-        if (trial % 2) o.output = SC_OUTPUT_PAIRS;
-        (void)ask(&s, s.shared, &o, together);
+        CHECK(ask(&s, s.shared, &o, together) == SC_OK);
+        CHECK(!memcmp(alone, together, bytes));
+        /* with room for all pairs the function could be asked at the end */
+        o.output = SC_OUTPUT_PAIRS;
+        lists.vertex_face_capacity = lists.vertex_face_count;
+        lists.edge_edge_capacity = lists.edge_edge_count;
+        lists.vertex_faces = (sc_pair *)test_allocate(sizeof(sc_pair) * lists.vertex_face_count);
+        lists.edge_edges = (sc_pair *)test_allocate(sizeof(sc_pair) * lists.edge_edge_count);
+        CHECK(lists.vertex_face_count > 0 && lists.edge_edge_count > 0);
+        CHECK(ask_into(&s, s.shared, &o, together, &lists) == SC_OK);
+        CHECK(!memcmp(alone, together, bytes));
+        free(lists.vertex_faces);
+        free(lists.edge_edges);
+        CHECK(ask(&s, s.shared, &o, together) == SC_ERROR_SHORT_BUFFER);
         CHECK(!memcmp(alone, together, bytes));
         o.cancel = &set;
         CHECK(ask(&s, s.shared, &o, together) == SC_ERROR_INCOMPLETE);
@@ -395,5 +492,5 @@ static void nothing_comes_together(void)
 }
 
 SC_TEST_MAIN(SC_TEST(bounds_of_any_mesh), SC_TEST(bounds_at_both_ends_of_the_range),
-             SC_TEST(bounds_by_many_workers), SC_TEST(other_results),
-             SC_TEST(nothing_comes_together))
+             SC_TEST(bounds_of_the_largest_distances), SC_TEST(bounds_by_many_workers),
+             SC_TEST(other_results), SC_TEST(nothing_comes_together))

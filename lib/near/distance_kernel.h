@@ -51,14 +51,14 @@ static inline lanes near_clamp(lanes x)
 }
 
 /* At most the distance of one of them, in the unit box; less than 0 if what was guessed tells too
-   little: its distance is at most |w| + error. */
+   little: its distance is at most |w| + error. Where |w| is more than twice the error, its square is
+   far above SC_BOUNDS_NEAR_LEAST. */
 static inline double near_bound(const near_measured *m, uint32_t i, const near_limits *limits)
 {
     const double g = (double)m->g[i], length = sqrt((double)m->square[i]);
     double bound;
     if (length <= 2 * limits->error) return 0;
-    if (!(g > length * (length - 2 * limits->error) &&
-          (double)m->square[i] > (double)SC_BOUNDS_NEAR_LEAST))
+    if (!(g > length * (length - 2 * limits->error))) /* or NaN */
         return -1;
     bound = g / length * (1 - SC_BOUNDS_NEAR_BELOW) - limits->error;
     return bound > 0 ? bound : 0;

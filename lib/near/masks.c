@@ -11,6 +11,7 @@
 
 #include <string.h>
 
+#include "base/assume.h"
 #include "base/memory.h"
 
 typedef struct mask_walk {
@@ -95,7 +96,8 @@ static void walk_round(mask_walk *w, uint32_t leaf, uint32_t i)
     }
 }
 
-/* Sorts what was found of a leaf cluster, by insertion: neighbors were mostly found in order. */
+/* Sorts what was found of a leaf cluster, by insertion: neighbors were mostly found in order. The
+   first is the leaf cluster itself, the lowest: it has the point where the first walk begins. */
 static void sort_found(mask_walk *w)
 {
     uint32_t i, k;
@@ -104,7 +106,7 @@ static void sort_found(mask_walk *w)
         sc_leaf_mask mask;
         if (w->found[i - 1] <= other) continue;
         mask = w->mask[i];
-        for (k = i; k > 0 && w->found[k - 1] > other; k--) {
+        for (k = i; SC_ALWAYS(k > 0) && w->found[k - 1] > other; k--) {
             w->found[k] = w->found[k - 1];
             w->mask[k] = w->mask[k - 1];
         }
@@ -193,7 +195,8 @@ static sc_status fill_masks(mask_walk *w, sc_near_masks **made)
     }
     bytes = head + count * (sizeof *mask + sizeof *other) +
             ((uint64_t)model->leaf_count + 1) * sizeof *first;
-    if (count > 0xffffffffu || bytes > SIZE_MAX) return SC_ERROR_MEMORY;
+    if (SC_HARDLY(count > 0xffffffffu || bytes > SIZE_MAX)) /* 290 gigabytes; 32-bit addresses */
+        return SC_ERROR_MEMORY;
     block = (unsigned char *)a.allocate(a.user, bytes, SC_ALIGNMENT);
     if (!block) return SC_ERROR_MEMORY;
     *made = (sc_near_masks *)(void *)block;

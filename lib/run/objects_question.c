@@ -5,6 +5,7 @@
  */
 #include "run/objects_question.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <string.h>
 
@@ -50,8 +51,9 @@ static sc_status check_object(const sc_object *o, uint32_t about)
                                "intersections");
     if (!status && about == SC_QUESTION_STEP && o->masks)
         status = refuse(hooks, "object.masks are for what is near");
-    if (!status && about != SC_QUESTION_QUERY)
-        status = sc_step_question_check_length(hooks, "rest_distance", o->rest_distance);
+    if (!status && about != SC_QUESTION_QUERY &&
+        !(o->rest_distance >= 0 && o->rest_distance <= DBL_MAX))
+        status = refuse(hooks, "object.rest_distance must be finite and at least 0");
     if (!status && about != SC_QUESTION_QUERY && SC_HARDLY(o->model->vertex_count > SC_STEP_TURNED))
         status = SC_ERROR_COUNT;
     return status ? status : sc_question_check_workspace(o->model, o->workspace, flags_for(about));
