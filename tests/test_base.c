@@ -241,6 +241,7 @@ static void bits_of_masks(void)
 typedef struct lowered {
     size_t least;
     double least_double;
+    uint8_t least_byte;
 } lowered;
 
 enum { LOWERED = 200000, LOWERING = 3 };
@@ -259,6 +260,7 @@ static void *lower(void *context)
         sc_atomic_least(&l->its->least, value);
         l->mistakes += sc_atomic_get(&l->its->least) > value;
         sc_atomic_lessen(&l->its->least_double, value);
+        sc_atomic_lessen_byte(&l->its->least_byte, (uint8_t)(3 + (value >> 12)));
     }
     return NULL;
 }
@@ -266,7 +268,7 @@ static void *lower(void *context)
 /* Each number stays at the least that it was given, whoever was quicker. */
 static void lowered_by_threads(void)
 {
-    lowered its = {SIZE_MAX, 1e300};
+    lowered its = {SIZE_MAX, 1e300, 0xff};
     lowering l[LOWERING];
     pthread_t threads[LOWERING];
     for (uint32_t t = 0; t < LOWERING; ++t) {
@@ -287,10 +289,11 @@ static void lowered_by_threads(void)
 #endif
         CHECK(l[t].mistakes == 0);
     }
-    CHECK(its.least == 5 && its.least_double == 5);
+    CHECK(its.least == 5 && its.least_double == 5 && its.least_byte == 3);
     sc_atomic_least(&its.least, 6);
     sc_atomic_lessen(&its.least_double, 6);
-    CHECK(its.least == 5 && its.least_double == 5);
+    sc_atomic_lessen_byte(&its.least_byte, 4);
+    CHECK(its.least == 5 && its.least_double == 5 && its.least_byte == 3);
 }
 
 SC_TEST_MAIN(SC_TEST(sorting), SC_TEST(sorting_in_room), SC_TEST(splitting), SC_TEST(heaps),

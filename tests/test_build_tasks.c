@@ -187,6 +187,24 @@ static void many_workers(void)
     soup_free(&s);
 }
 
+/* Triangles that share nothing, all of whose edges are in the contours: a worker's room to chain
+   these is such a part of the memory that only some workers get it. */
+static void little_room(void)
+{
+    enum { SIDE = 300, COUNT = SIDE * SIDE };
+    soup s = soup_make(3 * COUNT, COUNT);
+    for (uint32_t v = 0; v < s.vertex_count; ++v) {
+        const uint32_t t = v / 3;
+        s.triangles[v] = v;
+        s.positions[3 * v] = t % SIDE + (v % 3 == 1 ? 0.5 : 0);
+        s.positions[3 * v + 1] = t / SIDE + (v % 3 == 2 ? 0.5 : 0);
+        s.positions[3 * v + 2] = 0;
+    }
+    check_hosts(&s, SC_WELD_NONE, SC_PARTITION_FAST, SC_MODEL_FULL, 40, HOST_BACKWARDS,
+                HOST_BACKWARDS, "triangles");
+    soup_free(&s);
+}
+
 /* What a build said last. */
 static void note_message(void *user, uint32_t level, const char *message)
 {
@@ -326,5 +344,5 @@ static void wrong_tasks(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_mesh), SC_TEST(large_meshes), SC_TEST(shuffled_mesh),
-             SC_TEST(cut_by_the_caller), SC_TEST(many_workers), SC_TEST(wrong_meshes),
-             SC_TEST(memory_runs_out), SC_TEST(wrong_tasks))
+             SC_TEST(cut_by_the_caller), SC_TEST(many_workers), SC_TEST(little_room),
+             SC_TEST(wrong_meshes), SC_TEST(memory_runs_out), SC_TEST(wrong_tasks))

@@ -56,9 +56,10 @@ static inline void sc_atomic_lessen_byte(uint8_t *number, uint8_t less)
 {
 #if SC_ATOMIC
     uint8_t now = __atomic_load_n(number, __ATOMIC_RELAXED);
-    while (less < now && !__atomic_compare_exchange_n(number, &now, less, 0, __ATOMIC_RELAXED,
-                                                      __ATOMIC_RELAXED)) {
-    }
+    int is_set = 0;
+    while (less < now && !is_set)
+        is_set =
+            __atomic_compare_exchange_n(number, &now, less, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 #else
     if (less < *number) *number = less;
 #endif
