@@ -57,7 +57,7 @@ static inline void sc_atomic_lessen_byte(uint8_t *number, uint8_t less)
 #if SC_ATOMIC
     uint8_t now = __atomic_load_n(number, __ATOMIC_RELAXED);
     int is_set = 0;
-    while (less < now && !is_set)
+    while (!is_set && less < now)
         is_set =
             __atomic_compare_exchange_n(number, &now, less, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 #else
@@ -108,7 +108,7 @@ static inline void sc_atomic_least(size_t *number, size_t less)
 {
     size_t before = sc_atomic_get(number);
     int is_set = 0;
-    while (less < before && !is_set) is_set = sc_atomic_claim(number, &before, less);
+    while (!is_set && less < before) is_set = sc_atomic_claim(number, &before, less);
 }
 
 /* Whether several threads may lower one double: where it is no longer than a pointer. */
@@ -125,7 +125,7 @@ static inline void sc_atomic_lessen(double *number, double less)
     double now;
     int is_set = 0;
     __atomic_load(number, &now, __ATOMIC_RELAXED);
-    while (less < now && !is_set)
+    while (!is_set && less < now)
         is_set =
             __atomic_compare_exchange(number, &now, &less, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 #else
