@@ -33,9 +33,10 @@ static sc_model_info info_of(const sc_model *model)
     return info;
 }
 
-/* Builds by every kind of host, by so many workers, and compares with one thread. */
-static void check_build(const soup *mesh, uint32_t weld, uint32_t partition, uint32_t content,
-                        uint32_t workers, const char *name)
+/* Builds by some kinds of hosts, first to last, by so many workers, and compares with one
+   thread. */
+static void check_hosts(const soup *mesh, uint32_t weld, uint32_t partition, uint32_t content,
+                        uint32_t workers, int first, int last, const char *name)
 {
     const sc_mesh input = input_plain_mesh(mesh);
     input_choices choices = input_choose(mesh, weld, partition);
@@ -47,7 +48,7 @@ static void check_build(const soup *mesh, uint32_t weld, uint32_t partition, uin
     saved_model expected = saved_model_of(model);
     const uint64_t peak = info_of(model).peak_bytes;
     sc_model_free(model);
-    for (int way = HOST_FIRST; way < HOST_COUNT; ++way) {
+    for (int way = first; way <= last; ++way) {
         host h;
         saved_model saved;
         host_start(&h, way, workers);
@@ -68,6 +69,13 @@ static void check_build(const soup *mesh, uint32_t weld, uint32_t partition, uin
     }
     free(expected.memory);
     input_free_choices(&choices);
+}
+
+/* By every kind. */
+static void check_build(const soup *mesh, uint32_t weld, uint32_t partition, uint32_t content,
+                        uint32_t workers, const char *name)
+{
+    check_hosts(mesh, weld, partition, content, workers, HOST_FIRST, HOST_COUNT - 1, name);
 }
 
 static void any_mesh(void)
@@ -167,6 +175,33 @@ static void cut_by_the_caller(void)
 {
     soup s = soup_cloth(90, 90);
     check_build(&s, SC_WELD_NONE, SC_PARTITION_BISECT, SC_MODEL_FULL, 4, "cut by the caller");
+    soup_free(&s);
+}
+
+/* More workers than a step has parts at most, and a mesh that is enough for all parts. */
+static void many_workers(void)
+{
+    soup s = soup_cloth(375, 375);
+    check_hosts(&s, SC_WELD_NONE, SC_PARTITION_FAST, SC_MODEL_FULL, 40, HOST_BACKWARDS,
+                HOST_BACKWARDS, "large cloth");
+    soup_free(&s);
+}
+
+/* Triangles that share nothing, all of whose edges are in the contours: a worker's room to chain
+   these is such a part of the memory that only some workers get it. */
+static void little_room(void)
+{
+    enum { SIDE = 300, COUNT = SIDE * SIDE };
+    soup s = soup_make(3 * COUNT, COUNT);
+    for (uint32_t v = 0; v < s.vertex_count; ++v) {
+        const uint32_t t = v / 3;
+        s.triangles[v] = v;
+        s.positions[3 * v] = t % SIDE + (v % 3 == 1 ? 0.5 : 0);
+        s.positions[3 * v + 1] = t / SIDE + (v % 3 == 2 ? 0.5 : 0);
+        s.positions[3 * v + 2] = 0;
+    }
+    check_hosts(&s, SC_WELD_NONE, SC_PARTITION_FAST, SC_MODEL_FULL, 40, HOST_BACKWARDS,
+                HOST_BACKWARDS, "triangles");
     soup_free(&s);
 }
 
@@ -309,5 +344,5 @@ static void wrong_tasks(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_mesh), SC_TEST(large_meshes), SC_TEST(shuffled_mesh),
-             SC_TEST(cut_by_the_caller), SC_TEST(wrong_meshes), SC_TEST(memory_runs_out),
-             SC_TEST(wrong_tasks))
+             SC_TEST(cut_by_the_caller), SC_TEST(many_workers), SC_TEST(little_room),
+             SC_TEST(wrong_meshes), SC_TEST(memory_runs_out), SC_TEST(wrong_tasks))

@@ -198,6 +198,15 @@ static void what_is_refused(void)
     CHECK(sc_near_masks_create(s.model, 2, NULL, NULL) == SC_ERROR_NULL);
     CHECK(sc_near_masks_create(s.model, 0, NULL, &masks) == SC_ERROR_OPTION && !masks);
     CHECK(sc_near_masks_create(s.model, SC_RINGS_MAX + 1, NULL, &masks) == SC_ERROR_OPTION);
+    {
+        counter c = {1000, 0};
+        sc_allocator half;
+        memset(&half, 0, sizeof half);
+        half.allocate = allocate_some;
+        half.user = &c;
+        CHECK(sc_near_masks_create(s.model, 2, &half, &masks) == SC_ERROR_NULL && !masks);
+        CHECK(c.left == 1000 && c.blocks == 0); /* nothing is asked of it */
+    }
     sc_near_masks_free(NULL);
     CHECK(sc_near_masks_create(twin, 2, NULL, &others) == SC_OK);
     o = near_options_for(&near_ways[0], s.edge);

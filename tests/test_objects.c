@@ -327,6 +327,7 @@ static void bad_scenes_are_refused(void)
     sc_objects_result r;
     sc_query_options o = no_options();
     sc_filter filter;
+    sc_stats stats;
     if (!scene_open(&s, 1, 40, 1, 0)) return;
     while (s.count < 3)
         if (!scene_open_thing(&s, s.count++, 40)) return;
@@ -384,6 +385,13 @@ static void bad_scenes_are_refused(void)
     r.capacity = 0;
     r.range_capacity = 1;
     CHECK(sc_query_objects(&objects, &o, &r) == SC_ERROR_NULL);
+    r.range_capacity = 0;
+    memset(&stats, 0, sizeof stats);
+    stats.struct_size = sizeof stats + 4;
+    r.stats = &stats;
+    r.count = 7;
+    CHECK(sc_query_objects(&objects, &o, &r) == SC_ERROR_STRUCT_SIZE && r.count == 0 &&
+          r.verdict == SC_VERDICT_NONE);
     scene_close(&s);
 }
 

@@ -552,6 +552,7 @@ static void bad_scenes_are_refused(void)
     CHECK(sc_query_objects_near(&objects, NULL, &r) == SC_OK && r.verdict == SC_VERDICT_CLEAN);
     CHECK(sc_query_objects_step(&objects, NULL, &r) == SC_OK && r.earliest == 1);
     CHECK(sc_query_objects_near(NULL, NULL, &r) == SC_ERROR_NULL);
+    CHECK(sc_query_objects_near(&objects, NULL, NULL) == SC_ERROR_NULL);
     CHECK(sc_query_objects_step(&objects, NULL, NULL) == SC_ERROR_NULL);
     r.struct_size = 8;
     CHECK(sc_query_objects_step(&objects, NULL, &r) == SC_ERROR_STRUCT_SIZE);

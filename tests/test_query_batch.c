@@ -117,6 +117,34 @@ static void each_is_a_query(void)
     close_batch(&b);
 }
 
+/* With room for all pairs each query does, and so does the batch; a batch of the first ones says
+   nothing of what is behind them. */
+static void all_are_answered(void)
+{
+    sc_query_options o = no_options();
+    uint64_t all;
+    batch b;
+    if (!open_batch(&b)) return;
+    all = (uint64_t)b.f.mesh.triangle_count * b.f.mesh.triangle_count / 2;
+    make_room(&b);
+    for (int i = 0; i < POSES; ++i) {
+        free(b.pairs[i]);
+        b.results[i].capacity = all;
+        b.results[i].pairs = b.pairs[i] = (sc_pair *)test_allocate(sizeof(sc_pair) * all);
+    }
+    CHECK(sc_query_batch(b.f.model, b.workspaces, b.poses, POSES, &o, b.results, b.statuses) ==
+          SC_OK);
+    CHECK(check_each(&b, &o) == SC_OK);
+    b.positions[POSES - 1][0] = (double)NAN;
+    CHECK(sc_query_batch(b.f.model, b.workspaces, b.poses, POSES - 1, &o, b.results, b.statuses) ==
+          SC_OK);
+    CHECK(b.statuses[POSES - 1] == SC_OK);
+    CHECK(sc_query_batch(b.f.model, b.workspaces, b.poses, POSES, &o, b.results, b.statuses) ==
+          SC_ERROR_NOT_FINITE);
+    CHECK(check_each(&b, &o) == SC_ERROR_NOT_FINITE);
+    close_batch(&b);
+}
+
 /* The flag ends all of it. */
 static void a_flag_ends_it(void)
 {
@@ -168,6 +196,10 @@ static void wrong_arguments(void)
         same[1] = NULL;
         CHECK(sc_query_batch(b.f.model, same, b.poses, 1, &o, b.results, b.statuses) ==
               SC_ERROR_NULL);
+        h.tasks.workers = SC_WORKERS_MAX + 1;
+        CHECK(sc_query_batch(b.f.model, same, b.poses, 1, &o, b.results, b.statuses) ==
+              SC_ERROR_WORKSPACE);
+        CHECK(h.jobs == 0);
         host_stop(&h);
     }
     o = no_options();
@@ -178,11 +210,18 @@ static void wrong_arguments(void)
     b.poses[0].struct_size = 12;
     CHECK(sc_query_batch(b.f.model, b.workspaces, b.poses, 1, &o, b.results, b.statuses) ==
           SC_ERROR_STRUCT_SIZE);
+    b.poses[0].struct_size = sizeof(sc_pose) + 4; /* the next one's pointers would lie between */
+    CHECK(sc_query_batch(b.f.model, b.workspaces, b.poses, 1, &o, b.results, b.statuses) ==
+          SC_ERROR_STRUCT_SIZE);
     b.poses[0].struct_size = sizeof(sc_pose);
     b.results[0].struct_size = 4;
+    CHECK(sc_query_batch(b.f.model, b.workspaces, b.poses, 1, &o, b.results, b.statuses) ==
+          SC_ERROR_STRUCT_SIZE);
+    b.results[0].struct_size = sizeof(sc_result) + 4;
     CHECK(sc_query_batch(b.f.model, b.workspaces, b.poses, 1, &o, b.results, b.statuses) ==
           SC_ERROR_STRUCT_SIZE);
     close_batch(&b);
 }
 
-SC_TEST_MAIN(SC_TEST(each_is_a_query), SC_TEST(a_flag_ends_it), SC_TEST(wrong_arguments))
+SC_TEST_MAIN(SC_TEST(each_is_a_query), SC_TEST(all_are_answered), SC_TEST(a_flag_ends_it),
+             SC_TEST(wrong_arguments))

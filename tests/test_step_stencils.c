@@ -363,6 +363,9 @@ static void wrong_arguments(void)
     time = (double)NAN;
     CHECK(sc_step_stencils(p.model, from, to, 1, &p.faces, &time, 1, &s) == SC_ERROR_OPTION);
     time = 0.5;
+    p.poses[0].vertex_count = 5;
+    CHECK(sc_step_stencils(p.model, from, to, 1, &p.faces, &time, 1, &s) == SC_ERROR_VERTEX_COUNT);
+    p.poses[0].vertex_count = p.poses[1].vertex_count;
     p.ends[1][3][0] = (double)NAN;
     CHECK(sc_step_stencils(p.model, from, to, 1, &p.faces, &time, 1, &s) == SC_ERROR_NOT_FINITE);
     p.poses[1].vertex_count = 5;

@@ -634,6 +634,38 @@ static void longest_loop(void)
     }
 }
 
+/* Pairs of positions that differ in one coordinate and have the same hash, found by trying a million
+   of each: only what is at the same position is welded. */
+static void positions_of_one_hash(void)
+{
+    static const double alike[3][2] = {{75280, 88139}, {355, 43085}, {126313 / 3.0, 787089 / 3.0}};
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+        soup s = soup_make(6, 2);
+        sc_mesh mesh = input_plain_mesh(&s);
+        sc_build_options options;
+        sc_allocator allocator = sc_memory_allocator(NULL);
+        sc_scratch scratch;
+        sc_points points;
+        memset(s.positions, 0, 18 * sizeof(double));
+        for (uint32_t v = 0; v < 6; ++v) {
+            s.triangles[v] = v;
+            s.positions[3 * v + axis] = v % 3 < 2 ? alike[axis][v % 3] : -1;
+        }
+        memset(&options, 0, sizeof(options));
+        options.weld = SC_WELD_REST;
+        sc_scratch_init(&scratch, &allocator);
+        if (CHECK(sc_mesh_read(&mesh, &options, &scratch, &points) == SC_OK)) {
+            CHECK(points.point_count == 3);
+            for (uint32_t v = 0; v < 6; ++v) {
+                CHECK(points.triangles[v] == points.triangles[v % 3]);
+                CHECK(points.rest[3 * points.triangles[v] + axis] == s.positions[3 * v + axis]);
+            }
+        }
+        sc_scratch_clear(&scratch);
+        soup_free(&s);
+    }
+}
+
 static void *allocate_nothing(void *user, uint64_t size, uint64_t alignment)
 {
     (void)user, (void)size, (void)alignment;
@@ -669,5 +701,5 @@ static void most_leaves(void)
 
 SC_TEST_MAIN(SC_TEST(locality), SC_TEST(curve), SC_TEST(named_meshes), SC_TEST(hubs),
              SC_TEST(copies), SC_TEST(creases), SC_TEST(edges_of_all_lengths), SC_TEST(slices),
-             SC_TEST(two_legs), SC_TEST(longest_loop), SC_TEST(random_meshes), SC_TEST(validators),
-             SC_TEST(most_leaves))
+             SC_TEST(two_legs), SC_TEST(longest_loop), SC_TEST(positions_of_one_hash),
+             SC_TEST(random_meshes), SC_TEST(validators), SC_TEST(most_leaves))

@@ -56,9 +56,10 @@ static inline void sc_atomic_lessen_byte(uint8_t *number, uint8_t less)
 {
 #if SC_ATOMIC
     uint8_t now = __atomic_load_n(number, __ATOMIC_RELAXED);
-    while (less < now && !__atomic_compare_exchange_n(number, &now, less, 0, __ATOMIC_RELAXED,
-                                                      __ATOMIC_RELAXED)) {
-    }
+    int is_set = 0;
+    while (!is_set && less < now)
+        is_set =
+            __atomic_compare_exchange_n(number, &now, less, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 #else
     if (less < *number) *number = less;
 #endif
@@ -106,8 +107,8 @@ static inline int sc_atomic_claim(size_t *number, size_t *before, size_t after)
 static inline void sc_atomic_least(size_t *number, size_t less)
 {
     size_t before = sc_atomic_get(number);
-    while (less < before && !sc_atomic_claim(number, &before, less)) {
-    }
+    int is_set = 0;
+    while (!is_set && less < before) is_set = sc_atomic_claim(number, &before, less);
 }
 
 /* Whether several threads may lower one double: where it is no longer than a pointer. */
@@ -122,10 +123,11 @@ static inline void sc_atomic_lessen(double *number, double less)
 {
 #if SC_ATOMIC_DOUBLES
     double now;
+    int is_set = 0;
     __atomic_load(number, &now, __ATOMIC_RELAXED);
-    while (less < now &&
-           !__atomic_compare_exchange(number, &now, &less, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-    }
+    while (!is_set && less < now)
+        is_set =
+            __atomic_compare_exchange(number, &now, &less, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
 #else
     if (less < *number) *number = less;
 #endif

@@ -606,7 +606,8 @@ static sc_status bisect_all(bisection *b, const sc_tasks *tasks)
     if (b->cut) tasks = NULL; /* the caller's function may not be made for several threads */
     make_firsts(&all, tasks);
     sc_jobs_run(tasks, all.count, make_subtree, &all);
-    for (i = 0; i < all.count && !status; i++) status = all.at[i].status;
+    for (i = 0; i < all.count; i++)
+        if (all.at[i].status) status = all.at[i].status; /* of the caller's cut, hence of one */
     if (!status) (void)append_nodes(&all, &all.at[0]);
     return status;
 }

@@ -29,6 +29,9 @@ typedef struct level_lists {
     uint32_t begin, below;  /* the first of the level and of the next */
 } level_lists;
 
+/* So many corners are in several leaf clusters, even if all of each triangle are at one point. */
+typedef char has_several_leaves[(int)SC_SHARING_CROWD >= 3 * (int)SC_LEAF_MAX ? 1 : -1];
+
 /* Patches that parts of a loop list, at least. */
 enum { PATCHES_MIN = 1024 };
 
@@ -74,8 +77,7 @@ static sc_status meet_at_leaves(const sc_points *points, const sc_adjacency *adj
         }
         sc_sort_pairs(keys, n);
         for (i = 0; i < n; i++) record[2 + i] = keys[i].a;
-        n = drop_repeats(record + 2, n);
-        if (n < 2) continue;
+        n = drop_repeats(record + 2, n); /* two at least, see has_several_leaves */
         record[0] = p;
         record[1] = n;
         met->count += 2 + n;
