@@ -224,8 +224,8 @@ static int ask_workers(scene *s, const question *q, int way, uint32_t workers, i
     objects.count = s->count;
     objects.objects = s->objects;
     if (q->asks) {
-        objects.accept = accept_between;
-        objects.accept_near = accept_near_between;
+        if (q->about == QUERY) objects.accept = accept_between;
+        if (q->about != QUERY) objects.accept_near = accept_near_between;
         objects.accept_user = q->asks;
     }
     for (uint32_t i = 0; i < s->count; ++i)
