@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "harness.h"
+#include "inputs.h"
 #include "object_scenes.h"
 #include "soups.h"
 #include "starcontour.h"
@@ -320,6 +321,112 @@ static void the_function_leaves_pairs_out(void)
     CHECK(calls == between && calls > 0);
 }
 
+/* A group that is of nothing, or collides with nothing, and is not both. */
+static void half_a_group_collides_with_nothing(void)
+{
+    static const sc_group half[] = {{0, 0xffffffffu}, {0xffffffffu, 0}};
+    const sc_query_options o = no_options();
+    const soup mesh = soup_cloth(4, 4);
+    scene s;
+    asked a;
+    memset(&s, 0, sizeof s);
+    s.workers = 1;
+    s.count = 2;
+    if (!scene_open_thing_of(&s, 0, &mesh) || !scene_open_thing_of(&s, 1, NULL)) return;
+    for (uint32_t i = 0; i < 2; ++i) {
+        pose_large_thing(&s.things[i]);
+        s.objects[i].itself = 0;
+        s.objects[i].group.category = s.objects[i].group.mask = 0;
+    }
+    ask(&s, &o, 1000, 10, &a);
+    CHECK(a.status == SC_OK && a.result.count > 0 && a.result.range_count == 1);
+    forget(&a);
+    for (uint32_t i = 0; i < 4; ++i) {
+        const sc_group all = {0, 0};
+        s.objects[i % 2].group = half[i / 2];
+        s.objects[1 - i % 2].group = all;
+        ask(&s, &o, 1000, 10, &a);
+        CHECK(a.status == SC_OK && a.result.verdict == SC_VERDICT_CLEAN && a.result.count == 0);
+        forget(&a);
+    }
+    scene_close(&s);
+}
+
+/* Whole numbers times a power of two, down to the smallest doubles and up to where no float is as
+   large as the middle of the box: the same pairs. */
+static void scenes_are_of_any_size(void)
+{
+    static const int exponents[] = {-1074, -1040, -149, 130, 1000};
+    uint64_t pairs = 0;
+    for (uint32_t trial = test_iterations_at_least(40, 8); trial-- > 0 && !test_failures();) {
+        const sc_query_options o = any_options();
+        scene s;
+        found_list wanted;
+        if (!scene_open(&s, 5, 60, 1, 0)) return;
+        for (uint32_t i = 0; i < s.count; ++i) {
+            thing *t = &s.things[i];
+            s.objects[i].pose_version = 0;
+            t->pose[0].position_type = SC_DOUBLE;
+            t->pose[0].positions = t->posed[0];
+            for (uint32_t v = 0; v < 3 * t->mesh.vertex_count; ++v)
+                t->posed[0][v] = floor(8 * t->posed[0][v]) + 100;
+        }
+        wanted = expect(&s, &o);
+        pairs += wanted.count;
+        for (uint32_t k = 0; k < sizeof exponents / sizeof exponents[0]; ++k) {
+            for (uint32_t i = 0; i < s.count; ++i)
+                for (uint32_t v = 0; v < 3 * s.things[i].mesh.vertex_count; ++v)
+                    s.things[i].posed[0][v] =
+                        ldexp(s.things[i].posed[0][v], exponents[k] - (k ? exponents[k - 1] : 0));
+            check_answers(&s, &o, &wanted);
+        }
+        free(wanted.at);
+        scene_close(&s);
+    }
+    CHECK(pairs > 100);
+}
+
+/* Of a model for boxes that is asked about itself, no culling. */
+static void boxes_alone_are_not_culled(void)
+{
+    scene s;
+    sc_mesh mesh;
+    sc_build_options options;
+    sc_model *full, *boxes = NULL;
+    sc_query_options o = no_options();
+    asked a;
+    if (!scene_open(&s, 1, 40, 1, 0)) return;
+    mesh = input_plain_mesh(&s.things[0].mesh);
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.rest = SC_REST_UNMARKED;
+    options.content = SC_MODEL_BOXES;
+    full = s.things[0].model;
+    sc_workspace_free(s.things[0].workspace);
+    s.things[0].workspace = NULL;
+    if (CHECK(sc_build(&mesh, &options, &boxes) == SC_OK) &&
+        CHECK(sc_workspace_create(boxes, NULL, &s.things[0].workspace) == SC_OK)) {
+        s.objects[0].model = boxes;
+        s.objects[0].workspace = s.things[0].workspace;
+        o.output = SC_OUTPUT_COUNT;
+        for (uint32_t itself = 0; itself < 2; ++itself) {
+            s.objects[0].itself = itself;
+            o.method = SC_METHOD_SCTT;
+            ask(&s, &o, 0, 0, &a);
+            CHECK(a.status == (itself ? SC_ERROR_BOXES_ONLY : SC_OK));
+            CHECK(a.result.verdict == (itself ? SC_VERDICT_NONE : SC_VERDICT_CLEAN));
+            o.method = SC_METHOD_DEFAULT;
+            ask(&s, &o, 0, 0, &a);
+            CHECK(a.status == SC_OK);
+        }
+    }
+    sc_workspace_free(s.things[0].workspace);
+    s.things[0].workspace = NULL;
+    sc_model_free(boxes);
+    s.things[0].model = full;
+    scene_close(&s);
+}
+
 static void bad_scenes_are_refused(void)
 {
     scene s;
@@ -397,4 +504,6 @@ static void bad_scenes_are_refused(void)
 
 SC_TEST_MAIN(SC_TEST(scenes_are_one_mesh), SC_TEST(what_stays_is_not_read),
              SC_TEST(tasks_change_nothing), SC_TEST(large_objects_share_work),
-             SC_TEST(the_function_leaves_pairs_out), SC_TEST(bad_scenes_are_refused))
+             SC_TEST(the_function_leaves_pairs_out), SC_TEST(half_a_group_collides_with_nothing),
+             SC_TEST(scenes_are_of_any_size), SC_TEST(boxes_alone_are_not_culled),
+             SC_TEST(bad_scenes_are_refused))

@@ -5,6 +5,9 @@
  * SPDX-License-Identifier: MIT
  */
 #include <inttypes.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,8 +19,15 @@
 
 enum { QUERY, NEAR, STEP };
 
+/* The caller's functions, and how often they are called. */
+typedef struct functions {
+    pthread_t thread;
+    uint64_t between, alone, elsewhere; /* elsewhere: by another thread */
+} functions;
+
 typedef struct question {
     int about;
+    functions *asks; /* between objects, or NULL */
     sc_query_options query;
     sc_near_options near;
     sc_step_options step;
@@ -150,6 +160,41 @@ static void set_output(question *q, uint32_t output)
     q->query.output = q->near.output = q->step.output = output;
 }
 
+/* ---- functions ---- */
+
+static int is_wanted_between(uint32_t object_a, uint32_t object_b, uint32_t a, uint32_t b)
+{
+    return (object_a + object_b + a + b) % 3 != 0;
+}
+
+static int is_wanted_alone(uint32_t a, uint32_t b)
+{
+    return (a + b) % 2 != 0;
+}
+
+static int accept_between(void *user, uint32_t object_a, uint32_t object_b, uint32_t a, uint32_t b)
+{
+    functions *f = (functions *)user;
+    f->elsewhere += !pthread_equal(pthread_self(), f->thread);
+    ++f->between;
+    return is_wanted_between(object_a, object_b, a, b);
+}
+
+static int accept_near_between(void *user, uint32_t kind, uint32_t object_a, uint32_t object_b,
+                               uint32_t a, uint32_t b)
+{
+    (void)kind;
+    return accept_between(user, object_a, object_b, a, b);
+}
+
+static int32_t accept_alone(void *user, uint32_t a, uint32_t b)
+{
+    functions *f = (functions *)user;
+    f->elsewhere += !pthread_equal(pthread_self(), f->thread);
+    ++f->alone;
+    return is_wanted_alone(a, b);
+}
+
 /* ---- workers ---- */
 
 /* Workspaces that were never asked. */
@@ -178,6 +223,11 @@ static int ask_workers(scene *s, const question *q, int way, uint32_t workers, i
     objects.struct_size = sizeof objects;
     objects.count = s->count;
     objects.objects = s->objects;
+    if (q->asks) {
+        if (q->about == QUERY) objects.accept = accept_between;
+        if (q->about != QUERY) objects.accept_near = accept_near_between;
+        objects.accept_user = q->asks;
+    }
     for (uint32_t i = 0; i < s->count; ++i)
         s->objects[i].end = q->about == STEP ? &s->things[i].pose[1] : NULL;
     if (is_new && !renew(s)) return 0;
@@ -238,11 +288,91 @@ static void small_objects_are_shared_out(void)
     }
 }
 
+/* How many pairs of a list the functions leave. */
+static uint64_t count_wanted(const sc_object_list *list, int alone, int between)
+{
+    uint64_t count = 0;
+    for (uint64_t i = 0; i < list->range_count; ++i) {
+        const sc_object_pairs *r = &list->ranges[i];
+        for (uint64_t k = r->first; k < r->first + r->count; ++k) {
+            const sc_pair p = list->pairs[k];
+            count +=
+                (uint64_t)(r->object_a == r->object_b
+                               ? !alone || is_wanted_alone(p.a, p.b)
+                               : !between || is_wanted_between(r->object_a, r->object_b, p.a, p.b));
+        }
+    }
+    return count;
+}
+
+/* What is left where a function is asked of objects by themselves (of vertices with faces, of edges
+   with edges or of both), of two, or of all: by the calling thread, as often as by one worker. */
+static void functions_are_asked_by_the_calling_thread(void)
+{
+    uint64_t alone = 0, between = 0;
+    for (uint32_t trial = test_iterations_at_least(60, 24); trial-- > 0 && !test_failures();) {
+        const int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
+        const int kinds = 1 + (int)test_random_below(3), who = 1 + (int)test_random_below(3);
+        uint64_t capacity[2] = {0, 0};
+        question q = any_question();
+        functions f;
+        sc_filter filter;
+        scene s;
+        asked all, a[3];
+        if (!scene_open(&s, 6, 60, 5, SC_WORKSPACE_NEAR)) return;
+        set_output(&q, SC_OUTPUT_COUNT);
+        if (!ask_workers(&s, &q, way, 1, 1, capacity, &all)) return;
+        for (int kind = 0; kind < 2; ++kind) capacity[kind] = all.list[kind].count;
+        forget(&all);
+        set_output(&q, SC_OUTPUT_PAIRS);
+        if (!ask_workers(&s, &q, way, 1, 1, capacity, &all)) return;
+        memset(&f, 0, sizeof f);
+        f.thread = pthread_self();
+        memset(&filter, 0, sizeof filter);
+        filter.struct_size = sizeof filter;
+        filter.accept = accept_alone;
+        filter.accept_user = &f;
+        for (uint32_t i = 0; (who & 1) && i < s.count; ++i) {
+            if (q.about == QUERY) s.objects[i].filter = &filter;
+            if (q.about != QUERY && (kinds & 1)) s.objects[i].vertex_face_filter = &filter;
+            if (q.about != QUERY && (kinds & 2)) s.objects[i].edge_edge_filter = &filter;
+        }
+        if (who & 2) q.asks = &f;
+        for (int round = 0; round < 3; ++round) { /* arrays that fit, that are short, and none */
+            static const uint32_t workers[3] = {1, 2, 5};
+            functions asked_of[3];
+            set_output(&q, round < 2 ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT);
+            for (int kind = 0; round == 1 && kind < 2; ++kind) capacity[kind] /= 3;
+            for (int k = 0; k < 3; ++k) {
+                f.alone = f.between = 0;
+                if (!ask_workers(&s, &q, way, workers[k], 1, capacity, &a[k])) return;
+                asked_of[k] = f;
+                for (int kind = 0; kind < 2; ++kind)
+                    CHECK(a[k].list[kind].count ==
+                          count_wanted(&all.list[kind],
+                                       (who & 1) && (q.about == QUERY || (kinds >> kind & 1)),
+                                       who & 2));
+                CHECK(f.alone == asked_of[0].alone && f.between == asked_of[0].between &&
+                      f.elsewhere == 0);
+            }
+            CHECK_MSG(is_same(&q, &a[0], &a[1]) && is_same(&q, &a[0], &a[2]),
+                      "about %d, round %d, who %d, kinds %d, way %d, state %" PRIu64, q.about,
+                      round, who, kinds, way, s.state);
+            alone += f.alone;
+            between += f.between;
+            for (int k = 0; k < 3; ++k) forget(&a[k]);
+        }
+        forget(&all);
+        scene_close(&s);
+    }
+    CHECK(alone > 0 && between > 0);
+}
+
 /* A large object among small ones, which the list of units ends at; and one for a single worker. */
 static void large_ones_are_among_small_ones(void)
 {
     for (uint32_t trial = test_iterations_at_least(2, 1); trial-- > 0 && !test_failures();) {
-        const soup sphere = soup_sphere(130, 60);
+        const soup sphere = soup_sphere(130, 60), small = soup_sphere(8, 6);
         scene s;
         question q = any_question();
         const int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
@@ -259,6 +389,16 @@ static void large_ones_are_among_small_ones(void)
         for (int end = 0; end < 2; ++end) {
             s.things[3].pose[end].position_type = SC_DOUBLE;
             s.things[3].pose[end].positions = s.things[3].posed[end];
+        }
+        if (!scene_open_thing_of(&s, s.count++, &small)) return;
+        s.objects[3].group.category = s.objects[3].group.mask = 0;
+        s.objects[5].group.category = s.objects[5].group.mask = 0;
+        for (int end = 0; end < 2; ++end) { /* inside the large one, which it comes near */
+            thing *t = &s.things[5];
+            for (uint32_t i = 0; i < 3 * small.vertex_count; ++i)
+                t->posed[end][i] = 0.2 * small.positions[i];
+            t->pose[end].position_type = SC_DOUBLE;
+            t->pose[end].positions = t->posed[end];
         }
         q.near.distance = q.step.separation = 0;
         workers_say_the_same(&s, &q, way, 1);
@@ -461,7 +601,7 @@ static void check_crowd(crowd *c, const sc_tasks *tasks, uint64_t *ranges, uint6
 {
     const found_list wanted = expect_crowd(c, most);
     const uint64_t capacity[2] = {wanted.count, 0};
-    const question q = {QUERY, no_options(), {0}, {0}};
+    const question q = {QUERY, NULL, no_options(), {0}, {0}};
     sc_objects objects;
     uint64_t at = 0;
     asked a;
@@ -487,13 +627,127 @@ static void check_crowd(crowd *c, const sc_tasks *tasks, uint64_t *ranges, uint6
     free(wanted.at);
 }
 
-/* Some of which come near more others than an object takes down. */
+/* Some of which come near more others than an object takes down. Their poses are read by one worker,
+   then, while the workspaces are for one, by two. */
 static void thousands_are_swept(void)
 {
     uint64_t ranges = 0, most = 0;
     crowd c;
-    if (crowd_open(&c, 3000, 1)) check_crowd(&c, NULL, &ranges, &most);
-    CHECK_MSG(ranges > 512 && most > 20, "%" PRIu64 " ranges, at most %" PRIu64, ranges, most);
+    host h;
+    host_start(&h, HOST_THREADS, 2);
+    if (crowd_open(&c, 3000, 1)) {
+        check_crowd(&c, NULL, &ranges, &most);
+        check_crowd(&c, &h.tasks, &ranges, &most);
+    }
+    CHECK_MSG(ranges > 1024 && most > 20, "%" PRIu64 " ranges, at most %" PRIu64, ranges, most);
+    CHECK(h.jobs == 2 && h.mistakes == 0);
+    host_stop(&h);
+    crowd_close(&c);
+}
+
+typedef struct heard {
+    int count;
+    char first[100];
+} heard;
+
+static void hear(void *user, uint32_t level, const char *message)
+{
+    heard *log = (heard *)user;
+    (void)level;
+    if (log->count++ == 0) (void)snprintf(log->first, sizeof log->first, "%s", message);
+}
+
+/* Of poses that are read by many, the first that is not finite is told, by the calling thread. */
+static void the_first_bad_pose_is_told(void)
+{
+    for (int way = HOST_FIRST; way < HOST_COUNT && !test_failures(); ++way) {
+        const uint64_t none[2] = {0, 0};
+        const question q = {QUERY, NULL, no_options(), {0}, {0}};
+        heard logs[2];
+        sc_objects objects;
+        crowd c;
+        host h;
+        asked a;
+        if (!crowd_open(&c, 2600, 1)) return;
+        memset(logs, 0, sizeof logs);
+        for (uint32_t i = 0; i < 2; ++i) {
+            sc_hooks hooks;
+            memset(&hooks, 0, sizeof hooks);
+            hooks.struct_size = sizeof hooks;
+            hooks.log = hear;
+            hooks.user = &logs[i];
+            CHECK(sc_workspace_set_hooks(c.workspaces[1200 + i], &hooks) == SC_OK);
+            corner_of(&c, 1200 + i, 2)[1] = (double)NAN;
+        }
+        memset(&objects, 0, sizeof objects);
+        objects.struct_size = sizeof objects;
+        objects.count = c.count;
+        objects.objects = c.objects;
+        host_start(&h, way, 2);
+        ask(&objects, &q, &h.tasks, none, &a);
+        CHECK(a.status == SC_ERROR_NOT_FINITE && a.verdict == SC_VERDICT_NONE && h.jobs == 1);
+        CHECK_MSG(logs[0].count > 0 && logs[1].count == 0 &&
+                      strcmp(logs[0].first, "object 1200 has a vertex that is not finite") == 0,
+                  "%s", logs[0].first);
+        forget(&a);
+        host_stop(&h);
+        crowd_close(&c);
+    }
+}
+
+/* A host that sets the flag after so many jobs. */
+typedef struct ender {
+    sc_tasks tasks;
+    volatile uint32_t flag;
+    uint32_t left;
+} ender;
+
+static void *ender_enqueue(void *user, void (*run)(void *context, uint32_t part, uint32_t worker),
+                           void *context, uint32_t count)
+{
+    ender *e = (ender *)user;
+    for (uint32_t part = 0; part < count; ++part) run(context, part, part % e->tasks.workers);
+    if (e->left && --e->left == 0) e->flag = 1;
+    return NULL;
+}
+
+static void ender_finish(void *user, void *task)
+{
+    (void)user;
+    (void)task;
+}
+
+/* Units find that an array is too short, in two jobs; and what is asked again by the calling thread
+   ends with a flag. */
+static void a_flag_ends_what_is_asked_again(void)
+{
+    const uint64_t one[2] = {1, 0};
+    question q = {QUERY, NULL, no_options(), {0}, {0}};
+    sc_objects objects;
+    crowd c;
+    if (!crowd_open(&c, 20, 2)) return;
+    place_crowd(&c, 1);
+    memset(&objects, 0, sizeof objects);
+    objects.struct_size = sizeof objects;
+    objects.count = c.count;
+    objects.objects = c.objects;
+    for (uint32_t jobs = 0; jobs < 3; ++jobs) {
+        ender e;
+        asked a;
+        memset(&e, 0, sizeof e);
+        e.tasks.struct_size = sizeof e.tasks;
+        e.tasks.workers = 2;
+        e.tasks.enqueue = ender_enqueue;
+        e.tasks.finish = ender_finish;
+        e.tasks.user = &e;
+        e.left = jobs;
+        q.query.cancel = &e.flag;
+        ask(&objects, &q, &e.tasks, one, &a);
+        CHECK(a.status == (jobs ? SC_ERROR_INCOMPLETE : SC_ERROR_SHORT_BUFFER));
+        CHECK(a.verdict == (jobs ? SC_VERDICT_INCOMPLETE : SC_VERDICT_FOUND));
+        CHECK(jobs ? a.list[0].count == 0 : a.list[0].count > 20);
+        forget(&a);
+    }
     crowd_close(&c);
 }
 
@@ -515,6 +769,8 @@ static void lists_of_units_follow_each_other(void)
     }
 }
 
-SC_TEST_MAIN(SC_TEST(small_objects_are_shared_out), SC_TEST(large_ones_are_among_small_ones),
-             SC_TEST(a_flag_ends_units), SC_TEST(thousands_are_swept),
-             SC_TEST(lists_of_units_follow_each_other))
+SC_TEST_MAIN(SC_TEST(small_objects_are_shared_out),
+             SC_TEST(functions_are_asked_by_the_calling_thread),
+             SC_TEST(large_ones_are_among_small_ones), SC_TEST(a_flag_ends_units),
+             SC_TEST(thousands_are_swept), SC_TEST(the_first_bad_pose_is_told),
+             SC_TEST(a_flag_ends_what_is_asked_again), SC_TEST(lists_of_units_follow_each_other))

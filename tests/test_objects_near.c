@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "harness.h"
+#include "inputs.h"
 #include "object_scenes.h"
 #include "starcontour.h"
 #include "tasks.h"
@@ -526,6 +527,81 @@ static void objects_have_filters(void)
     CHECK(left_out > 0);
 }
 
+/* A rest pose with NaN, masks of another mesh, and culling by a model for boxes: refused of what is
+   asked about itself, and not looked at where nothing is. */
+static void an_object_by_itself_is_refused(void)
+{
+    const soup cloth = soup_cloth(4, 3), sphere = soup_sphere(6, 5);
+    const uint64_t none[2] = {0, 0};
+    sc_mesh mesh = input_plain_mesh(&cloth);
+    sc_workspace_options options = options_for_workers(1);
+    sc_build_options build;
+    sc_near_masks *masks = NULL;
+    sc_model *boxes = NULL;
+    sc_workspace *for_boxes = NULL;
+    double *positions = (double *)test_allocate(sizeof(double) * 3 * cloth.vertex_count);
+    sc_pose rest;
+    scene s;
+    question q = any_question();
+    asked a;
+    memset(&s, 0, sizeof s);
+    s.workers = 1;
+    s.flags = options.flags = SC_WORKSPACE_NEAR;
+    s.count = 2;
+    q.near.output = q.step.output = SC_OUTPUT_COUNT;
+    memset(&build, 0, sizeof build);
+    build.struct_size = sizeof build;
+    build.content = SC_MODEL_BOXES;
+    build.rest = SC_REST_UNMARKED;
+    if (!scene_open_thing_of(&s, 0, &cloth) || !scene_open_thing_of(&s, 1, &sphere)) return;
+    CHECK(sc_near_masks_create(s.objects[1].model, 2, NULL, &masks) == SC_OK);
+    if (!CHECK(sc_build(&mesh, &build, &boxes) == SC_OK) ||
+        !CHECK(sc_workspace_create_for(boxes, &options, &for_boxes) == SC_OK))
+        return;
+    memcpy(positions, cloth.positions, sizeof(double) * 3 * cloth.vertex_count);
+    positions[4] = (double)NAN;
+    rest = s.things[0].pose[0];
+    rest.position_type = SC_DOUBLE;
+    rest.positions = positions;
+    for (int trial = 0; trial < 2; ++trial) {
+        sc_object *o = &s.objects[0];
+        for (q.is_step = 0; q.is_step < 2; ++q.is_step) {
+            const sc_object kept = *o;
+            o->itself = (uint32_t)trial;
+            q.near.method = SC_NEAR_METHOD_SCTT;
+            q.step.method = SC_STEP_METHOD_SCTT;
+            o->rest = &rest;
+            o->rest_distance = 0.1;
+            ask(&s, &q, none, none, &a);
+            CHECK(a.status == (trial ? SC_ERROR_NOT_FINITE : SC_OK));
+            CHECK((a.lists.verdict == SC_VERDICT_NONE) == trial);
+            forget(&a);
+            o->rest = NULL;
+            o->rest_distance = 0;
+            if (!q.is_step) {
+                o->masks = masks;
+                ask(&s, &q, none, none, &a);
+                CHECK(a.status == (trial ? SC_ERROR_OPTION : SC_OK));
+                CHECK((a.lists.verdict == SC_VERDICT_NONE) == trial);
+                forget(&a);
+                o->masks = NULL;
+            }
+            o->model = boxes;
+            o->workspace = for_boxes;
+            ask(&s, &q, none, none, &a);
+            CHECK(a.status == (trial ? SC_ERROR_BOXES_ONLY : SC_OK));
+            CHECK((a.lists.verdict == SC_VERDICT_NONE) == trial);
+            forget(&a);
+            *o = kept;
+        }
+    }
+    free(positions);
+    sc_near_masks_free(masks);
+    sc_workspace_free(for_boxes);
+    sc_model_free(boxes);
+    scene_close(&s);
+}
+
 static void bad_scenes_are_refused(void)
 {
     scene s;
@@ -642,5 +718,5 @@ static void a_flag_ends_it(void)
 
 SC_TEST_MAIN(SC_TEST(scenes_are_one_mesh), SC_TEST(what_stays_is_asked_for_other_distances),
              SC_TEST(large_objects_share_work), SC_TEST(the_function_leaves_pairs_out),
-             SC_TEST(objects_have_filters), SC_TEST(bad_scenes_are_refused),
-             SC_TEST(a_flag_ends_it))
+             SC_TEST(objects_have_filters), SC_TEST(an_object_by_itself_is_refused),
+             SC_TEST(bad_scenes_are_refused), SC_TEST(a_flag_ends_it))

@@ -37,7 +37,7 @@ typedef struct sc_near_leaf {
     uint16_t edges;                   /* how many */
 } sc_near_leaf;
 
-/* Where there is no room for that of all leaf clusters, there is for so many: a power of two. */
+/* A worker has room of its own for that of so many leaf clusters: a power of two. */
 enum { SC_NEAR_KEPT = 64 };
 
 /* What is asked, checked and complete. As a step that stays where it is, it has the culling, the
@@ -52,7 +52,7 @@ typedef struct sc_near_question {
 typedef struct sc_near_worker {
     sc_near_leaf *leaves; /* leaf cluster i is kept at i & mask, if it is there */
     uint8_t *made;        /* leaf_count + SC_NEAR_KEPT: 1 if there is one at that place */
-    uint32_t mask;        /* SC_KEEPS_ALL if all leaf clusters have a place of their own */
+    uint32_t mask;        /* how many have a place, a power of two, minus 1 */
     uint32_t some;        /* SC_NEAR_KEPT, fewer in small models: */
     sc_near_leaf *own; /* 1 + some, the worker's own; the first is for the second of two that have
                              one place */

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "base/assume.h"
 #include "base/atomic.h"
 #include "base/clock.h"
 #include "base/hooks.h"
@@ -198,7 +199,7 @@ static sc_status begin_filters(const objects_run *run, const sc_object *o, part_
     return status;
 }
 
-/* What an object is asked about itself. */
+/* What an object is asked about itself; of one that was checked, SC_OK. */
 static sc_status ask_itself(const objects_run *run, const sc_object *o, const sc_tasks *tasks,
                             part_question *q)
 {
@@ -296,14 +297,12 @@ static void answer(objects_run *run, const sc_object *a, const sc_object *b, con
         run->answer->earliest = worker->step->earliest;
 }
 
-static sc_status look_at_itself(objects_run *run, const sc_object *o)
+static void look_at_itself(objects_run *run, const sc_object *o)
 {
     part_question q;
-    const sc_status status = ask_itself(run, o, tasks_of(run, o, o), &q);
-    if (status) return status;
+    (void)ask_itself(run, o, tasks_of(run, o, o), &q);
     o->workspace->frame.tasks = sc_plan_tasks(o->model, q.query);
     answer(run, o, o, q.query);
-    return SC_OK;
 }
 
 /* ---- two objects ---- */
@@ -386,13 +385,15 @@ static int goes_both_ways(const objects_run *run)
 }
 
 /* An object with itself, or two. */
-static sc_status look_at(objects_run *run, sc_pair unit)
+static void look_at(objects_run *run, sc_pair unit)
 {
     const sc_object *a = object_at(run, unit.a), *b = object_at(run, unit.b);
-    if (a == b) return look_at_itself(run, a);
+    if (a == b) {
+        look_at_itself(run, a);
+        return;
+    }
     look_at_two(run, a, b);
     if (goes_both_ways(run) && !is_over(run)) look_at_two(run, b, a);
-    return SC_OK;
 }
 
 /* ---- units, each by one worker ---- */
@@ -425,7 +426,8 @@ static int is_unit(const objects_run *run, sc_pair unit)
     const sc_objects *objects = &run->asked->objects;
     if (!run->lead || !tasks_of(run, a, b)) return 0;
     if (a->model->leaf_count > WHOLE_LEAVES && b->model->leaf_count > WHOLE_LEAVES) return 0;
-    if (!sc_pairs_can_be_packed(a->model) || !sc_pairs_can_be_packed(b->model)) return 0;
+    if (SC_HARDLY(!sc_pairs_can_be_packed(a->model) || !sc_pairs_can_be_packed(b->model)))
+        return 0; /* a model of more than 44 million triangles takes gigabytes */
     /* the caller's functions are asked by the calling thread */
     return a == b ? !a->workspace->scene.asks : !objects->accept && !objects->accept_near;
 }
@@ -468,7 +470,7 @@ static void answer_unit(units_job *job, uint32_t number, uint32_t worker)
     for (way = 0; way < ways && number < sc_atomic_get(&job->first_found); way++) {
         const sc_object *first = way ? b : a, *second = way ? a : b;
         if (a == b)
-            (void)ask_itself(run, a, NULL, &q); /* as it was checked */
+            (void)ask_itself(run, a, NULL, &q);
         else
             ask_two(run, first, second, NULL, &q);
         q.query->packs = 1;
@@ -574,10 +576,9 @@ static void add_totals(const units_job *job, int again)
 
 /* Answers units of the lead's list; where the caller's arrays turn out to be too short, by the
    calling thread. */
-static sc_status answer_units(objects_run *run, uint32_t count)
+static void answer_units(objects_run *run, uint32_t count)
 {
     const sc_tasks *tasks = run->asked->given;
-    sc_status status = SC_OK;
     units_job job;
     uint32_t i;
     memset(&job, 0, sizeof job);
@@ -593,12 +594,11 @@ static sc_status answer_units(objects_run *run, uint32_t count)
     add_totals(&job, job.share.halt != 0);
     if (!job.share.halt) finish_units(&job);
     run->alone = job.share.halt != 0; /* with tasks the list's room were for parts */
-    for (i = 0; run->alone && i < count && !status && !is_over(run); i++) {
+    for (i = 0; run->alone && i < count && !is_over(run); i++) {
         const sc_pair unit = {job.room->units[i].a, job.room->units[i].b};
-        status = look_at(run, unit);
+        look_at(run, unit);
     }
     run->alone = 0;
-    return status;
 }
 
 /* ---- all together ---- */
@@ -628,13 +628,12 @@ static sc_workspace *find_lead(const objects_run *run)
 }
 
 /* All units, in order: small ones that follow each other together, others by themselves. */
-static sc_status look_at_all(objects_run *run)
+static void look_at_all(objects_run *run)
 {
     sc_pair unit = {0, 0};
-    sc_status status = SC_OK;
     int more = run->asked->objects.count && (object_at(run, 0)->itself || find_next(run, &unit));
     run->lead = find_lead(run);
-    while (more && !status && !is_over(run)) {
+    while (more && !is_over(run)) {
         const sc_pair first = unit;
         uint32_t count = 0;
         for (; more && count < SC_UNITS_MAX && is_unit(run, unit); more = find_next(run, &unit)) {
@@ -645,13 +644,12 @@ static sc_status look_at_all(objects_run *run)
             u->earliest = 1;
         }
         if (count > 1) {
-            status = answer_units(run, count);
+            answer_units(run, count);
         } else {
-            status = look_at(run, first);
+            look_at(run, first);
             if (!count) more = find_next(run, &unit);
         }
     }
-    return status;
 }
 
 static int lacks_room(const sc_object_list *list, uint32_t output)
@@ -673,7 +671,7 @@ sc_status sc_objects_run(sc_objects_question *question, sc_objects_answer *answe
     if (!status) status = sc_objects_frame_read(question, &run.clearance);
     if (!status) {
         sc_objects_sweep_run(&question->objects, run.clearance);
-        status = look_at_all(&run);
+        look_at_all(&run);
     }
     if (answer->stats) answer->stats->total_nanoseconds = sc_clock_nanoseconds() - start;
     if (status) return status;

@@ -613,8 +613,8 @@ static int find_pairs(sc_workspace *workspace, sc_worker *worker, const sc_tasks
         p->question.filter = &p->filter;
     }
     begin_workers(p);
-    if (o->method == SC_METHOD_SCTT && !question->second) make_cones(p->w);
-    if (o->method == SC_METHOD_AABB || question->second)
+    if (o->method == SC_METHOD_SCTT) make_cones(p->w);
+    if (o->method == SC_METHOD_AABB) /* as of two objects always */
         walk_boxes(p);
     else if (o->method == SC_METHOD_AABB_SCTT)
         walk_nodes(p);

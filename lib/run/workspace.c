@@ -438,7 +438,8 @@ static void keep_motions(sc_workspace *w, uint32_t worker, uint32_t part, uint32
     memset(motions->made, 0, w->sizes.leaves + (size_t)SC_MOTIONS_KEPT);
 }
 
-/* The same for what is near. */
+/* The same for what is near, of which there never is room for all: it takes more bytes than the
+   points and the derived data of a leaf cluster. */
 static void keep_near(sc_workspace *w, uint32_t worker, uint32_t part, uint32_t parts)
 {
     sc_near_worker *near = &w->near[worker];
@@ -446,8 +447,8 @@ static void keep_near(sc_workspace *w, uint32_t worker, uint32_t part, uint32_t 
     uint32_t kept;
     const uint64_t count = room_for_each(w, parts, sizeof(sc_near_leaf), &room, &kept);
     near->leaves = (sc_near_leaf *)room + part * count;
-    near->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
-    if (count < w->sizes.leaves && kept <= near->some) {
+    near->mask = kept - 1;
+    if (kept <= near->some) {
         near->leaves = near->own + 1;
         near->mask = near->some - 1;
     }
