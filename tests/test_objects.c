@@ -369,7 +369,7 @@ static void scenes_are_of_any_size(void)
             t->pose[0].position_type = SC_DOUBLE;
             t->pose[0].positions = t->posed[0];
             for (uint32_t v = 0; v < 3 * t->mesh.vertex_count; ++v)
-                t->posed[0][v] = floor(8 * t->posed[0][v]) + 100;
+                t->posed[0][v] = floor(8 * fmod(t->posed[0][v], 64)) + 100;
         }
         wanted = expect(&s, &o);
         pairs += wanted.count;
