@@ -134,7 +134,8 @@ program_sources := tools/sc_query.c tools/sc_partition.c bench/demo.c bench/sc_b
     bench/against.c bench/sc_objects.c bench/sc_dataset.c \
     meshes/make_meshes.c meshes/subdivide.c
 # What writes pages carries tools/page/page.html inside, and is linked only where it is used.
-page_support := tools/page_write.c tools/page_picture.c tools/page_bytes.c
+page_support := tools/page_write.c tools/page_picture.c tools/page_output.c tools/trace_query.c \
+    tools/page_bytes.c
 tools_support := $(filter-out $(program_sources) $(page_support),$(wildcard tools/*.c))
 bench_support := $(filter-out $(program_sources),$(wildcard bench/*.c bench/scenes/*.c))
 tests := $(sort $(wildcard tests/test_*.c))

@@ -2,12 +2,14 @@
  * Looks at what sc-query --html and --png write, in Chromium without a window; for test_page.sh.
  *
  *     node tests/look.mjs MODULES BROWSER page FILE        prints "ok NAME" or "not ok NAME: why"
+ *     node tests/look.mjs MODULES BROWSER contours FILE    the same of a page of --trace
  *     node tests/look.mjs MODULES BROWSER nothing FILE     the same of one without any mesh
  *     node tests/look.mjs MODULES BROWSER picture FILE     the same of a PNG file
+ *     node tests/look.mjs MODULES BROWSER contour-picture FILE    the same of one of --trace
  *     node tests/look.mjs MODULES BROWSER shot FILE PNG [KEY...]   after keys, as README.md shows it
  *
- * MODULES: the folder in whose node_modules playwright-core is. FILE of page: two frames of
- * test_page.sh.
+ * MODULES: the folder in whose node_modules playwright-core is. FILE of page and contours: two frames
+ * of test_page.sh.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -158,10 +160,195 @@ async function look_at_page() {
         requests.join(' '));
 }
 
-/* A picture: how large, and what is in each view, and whether there is red in the first. */
-async function look_at_picture() {
+/*
+ * Contours of the frame that is shown, in the canvas: how many pixels have their color, how many of
+ * these are far from all of them, and of points along each contour the part that has such a pixel
+ * near. counts: of the segments of each.
+ */
+const look_along = (page, counts) => page.evaluate(async counts => {
+    const {lines} = await starcontour.contours();
+    const from = document.getElementById('canvas'), copy = document.createElement('canvas');
+    copy.width = from.width;
+    copy.height = from.height;
+    const context = copy.getContext('2d');
+    context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--contour').trim();
+    context.fillRect(0, 0, 1, 1);
+    const wanted = context.getImageData(0, 0, 1, 1).data;
+    context.drawImage(from, 0, 0);
+    const {data} = context.getImageData(0, 0, copy.width, copy.height);
+    const has = new Uint8Array(copy.width * copy.height), near = new Uint8Array(has.length);
+    let colored = 0, stray = 0;
+    for (let i = 0; i < has.length; i++)
+        colored += has[i] = [0, 1, 2].every(k => Math.abs(data[4 * i + k] - wanted[k]) < 10);
+    const round = ([x, y], act) => {
+        for (let v = Math.round(y) - 5; v <= y + 5; v++) {
+            for (let u = Math.round(x) - 5; u <= x + 5; u++)
+                if (u >= 0 && v >= 0 && u < copy.width && v < copy.height) act(v * copy.width + u);
+        }
+    };
+    let segment = 0;
+    const parts = counts.map(count => {
+        let hit = 0, points = 0;
+        for (const end = segment + count; segment < end; segment++) {
+            for (let i = 0; i <= 200; i++, points++) {
+                let found = 0;
+                round(starcontour.project([0, 1, 2].map(k => {
+                    const a = lines[6 * segment + k];
+                    return a + i / 200 * (lines[6 * segment + 3 + k] - a);
+                })), at => {
+                    found |= has[at];
+                    near[at] = 1;
+                });
+                hit += found;
+            }
+        }
+        return hit / points;
+    });
+    for (let i = 0; i < has.length; i++) stray += has[i] && !near[i];
+    return {colored, stray, parts, segments: lines.length / 6};
+}, counts);
+
+/* The colors of the canvas at points of the mesh. */
+const colors_at = (page, points) => page.evaluate(points => {
+    const from = document.getElementById('canvas'), copy = document.createElement('canvas');
+    copy.width = from.width;
+    copy.height = from.height;
+    const context = copy.getContext('2d');
+    context.drawImage(from, 0, 0);
+    return points.map(point => {
+        const [x, y] = starcontour.project(point);
+        return [...context.getImageData(Math.round(x), Math.round(y), 1, 1).data.slice(0, 3)];
+    });
+}, points);
+
+/* What there is of each region: its area, and whether it is the smaller side of a contour. */
+const region_areas = page => page.evaluate(async () => {
+    const {parts, smaller} = await starcontour.contours();
+    return parts.map(({region, corners}) => {
+        let area = 0;
+        for (let i = 0; i < corners.length; i += 3) {
+            const [a, b, c] = corners.slice(i, i + 3);
+            const u = b.map((x, k) => x - a[k]), v = c.map((x, k) => x - a[k]);
+            area += Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
+        }
+        return {area, is_smaller: smaller[region]};
+    });
+});
+
+/* A spike through a floor, which cuts its tip off and a triangle out of the floor; and a wall, of which
+   a third is above the floor. Then all apart. */
+async function look_at_contours() {
+    const page = await open({viewport: {width: 1100, height: 700}, colorScheme: 'light'});
+    const state = () => page.evaluate('starcontour.state()');
+    const frames = await page.evaluate('starcontour.frames'), contours = frames[0].places;
+    await settle(page);
+    check('two frames of one mesh', frames.length === 2 && frames[1].mesh === frames[0].mesh, frames.length);
+    check('two contours', contours.length === 2 && frames[0].place_count === 2, contours.length);
+    check('the longest first', contours[0].length > 4 && Math.abs(contours[1].length - 2) < 1e-12,
+        JSON.stringify(contours.map(one => one.length)));
+    const rows = await page.locator('#places button').allInnerTexts();
+    check('one is closed and one is open', /long, closed/.test(rows[0]) && /long, open\n.*border to border/.test(rows[1]),
+        rows.join(' | '));
+    check('and their marks tell so', await page.locator('li:nth-child(1) .swatch.closed').count() === 1 &&
+        await page.locator('li:nth-child(2) .swatch.open').count() === 1);
+    check('what they cut off is told', rows[0].includes('cuts off 0.889 and') && rows[1].includes('cuts off 2'),
+        rows.join(' | '));
+
+    /* The spike is two thirds as wide at the floor as at its base, of area 2; vertices have 16 bits. */
+    const areas = await region_areas(page);
+    const has_area = (area, is_smaller) => areas.some(one =>
+        Math.abs(one.area - area) < 1e-3 && one.is_smaller === is_smaller);
+    check('six regions', frames[0].regions === 6 && areas.length === 6, JSON.stringify(areas));
+    check('the floor is divided', has_area(8 / 9, true) && has_area(32 - 8 / 9, false), JSON.stringify(areas));
+    check('and the wall', has_area(2, true) && has_area(4, false), JSON.stringify(areas));
+    check('and the spike, by its smaller side',
+        areas.filter(one => one.is_smaller).some(one => Math.abs(one.area - Math.max(...contours[0].areas)) < 1e-3),
+        JSON.stringify([areas, contours[0].areas]));
+
+    const counts = [contours[0].nodes, contours[1].nodes - 1];
+    const first = await look_along(page, counts);
+    check('all segments are there', first.segments === counts[0] + counts[1], JSON.stringify(first));
+    check('contours are drawn where they are', first.parts[0] > 0.6 && first.parts[1] > 0.9, JSON.stringify(first));
+    check('and nowhere else', first.colored > 200 && first.stray === 0, JSON.stringify(first));
+
+    /* on the floor, the tip, and the upper part of the wall */
+    const spots = [[4.3, 3, 0], [2.1, 1.5, 1.1], [6, 2, 0.6]];
+    const spread = color => Math.max(...color) - Math.min(...color);
+    const seen = await colors_at(page, spots);
+    check('regions have colors', seen.every((color, i) => seen.every((other, k) => k === i || distance(color, other) > 30)),
+        JSON.stringify(seen));
+    check('the smaller ones stronger', Math.min(spread(seen[1]), spread(seen[2])) > 1.5 * spread(seen[0]),
+        JSON.stringify(seen));
+    const before_colors = await look(page);
+    await page.keyboard.press('c');
+    await settle(page);
+    const plain = await colors_at(page, spots);
+    check('C takes them away', plain.every(color => spread(color) < 20), JSON.stringify(plain));
+    await page.keyboard.press('c');
+    await settle(page);
+    check('and back', (await look(page)).sum === before_colors.sum);
+
+    for (const [i, one] of contours.entries()) {
+        const before = await state();
+        await page.locator('#places button').nth(i).click();
+        await settle(page);
+        const after = await state(), along = await look_along(page, counts);
+        const target = one.center.map((x, k) => x - (frames[0].low[k] + frames[0].high[k]) / 2);
+        check(`a click on contour ${i + 1} moves the camera`, distance(before.eye, after.eye) > 0.1,
+            JSON.stringify([before.eye, after.eye]));
+        check('towards it', distance(after.target, target) < 1e-6, JSON.stringify([after.target, target]));
+        check('where it is drawn', along.parts[i] > 0.4, JSON.stringify(along));
+        check('and it is marked', await page.locator('#places button').nth(i).getAttribute('aria-current') === 'true');
+    }
+    await page.keyboard.press('n');
+    await settle(page);
+    check('the key N goes on', (await state()).place === 0, (await state()).place);
+    await page.keyboard.press('f');
+    await settle(page);
+    const fitted = await look(page);
+    await page.keyboard.press('x');
+    await settle(page);
+    const through = await look_along(page, counts);
+    check('X shows all of the contours', through.parts.every(part => part > 0.95), JSON.stringify(through));
+    await page.keyboard.press('x');
+    await page.keyboard.press('t');
+    await settle(page);
+    const dark = await look_along(page, counts);
+    check('in the dark they have a color, too', dark.parts[1] > 0.9 && dark.stray === 0, JSON.stringify(dark));
+    await page.keyboard.press('t');
+    await page.locator('#slider').focus();
+    await page.keyboard.press('End');
+    await page.waitForFunction(() => starcontour.state().frame === 1);
+    await settle(page);
+    const none = await look_along(page, []);
+    check('the other frame has none', none.colored === 0 && none.segments === 0, JSON.stringify(none));
+    check('and says so', (await page.locator('#count').innerText()) === 'No contour');
+    check('two curves', await page.locator('#curve polyline').count() === 2);
+    await page.locator('#canvas').focus();
+    await page.keyboard.press('ArrowLeft');
+    await page.waitForFunction(() => starcontour.state().frame === 0);
+    await settle(page);
+    check('a key goes back to the first picture', (await look(page)).sum === fitted.sum);
+    await page.locator('#help').click();
+    check('help is about contours', (await page.locator('#keys').innerText()).includes('the next contour'));
+    await page.close();
+
+    const phone = await open({viewport: {width: 390, height: 780}, hasTouch: true, isMobile: true, deviceScaleFactor: 2});
+    check('on a phone nothing is cut off', await phone.evaluate('document.documentElement.scrollWidth <= innerWidth'));
+    await phone.locator('#places button').nth(1).tap();
+    await settle(phone);
+    check('a tap flies there', (await phone.evaluate('starcontour.state()')).place === 1);
+    await phone.close();
+    check('no errors', errors.length === 0, errors.join('; '));
+    check('nothing is fetched but the page', requests.length === 2 && requests.every(url => url.startsWith('file:')),
+        requests.join(' '));
+}
+
+/* A picture: how large, and what is in each view, and whether the first has red, or a contour's
+   color. */
+async function look_at_picture(is_of_contours) {
     const page = await browser.newPage();
-    const found = await page.evaluate(async text => {
+    const found = await page.evaluate(async ([text, is_of_contours]) => {
         const image = new Image();
         image.src = `data:image/png;base64,${text}`;
         await image.decode();
@@ -174,14 +361,15 @@ async function look_at_picture() {
         const red = [0, 0, 0], drawn = [0, 0, 0];
         for (let i = 0; i < data.length; i += 4) {
             const third = Math.floor(3 * (i / 4 % image.width) / image.width);
-            red[third] += data[i] > 120 && data[i + 1] < 0.45 * data[i];
+            red[third] += data[i] > 120 && data[i + 1] < 0.45 * data[i] &&
+                (!is_of_contours || data[i + 1] < 20 && data[i + 2] > 80);
             drawn[third] += data[i] < 250;
         }
         return {width: image.width, height: image.height, red, drawn};
-    }, readFileSync(file).toString('base64'));
+    }, [readFileSync(file).toString('base64'), is_of_contours]);
     check('1500 by 500 pixels', found.width === 1500 && found.height === 500, JSON.stringify(found));
     check('something in each view', found.drawn.every(count => count > 1000), JSON.stringify(found));
-    check('red in the first', found.red[0] > 200, JSON.stringify(found));
+    check(is_of_contours ? 'a contour in the first' : 'red in the first', found.red[0] > 200, JSON.stringify(found));
 }
 
 /* A page without a mesh says so. */
@@ -194,7 +382,8 @@ async function look_at_nothing() {
 
 if (job === 'page') await look_at_page();
 else if (job === 'nothing') await look_at_nothing();
-else if (job === 'picture') await look_at_picture();
+else if (job === 'contours') await look_at_contours();
+else if (job.endsWith('picture')) await look_at_picture(job !== 'picture');
 else {
     const page = await open({viewport: {width: 1200, height: 760}, colorScheme: 'light'});
     for (const key of rest.slice(1)) {

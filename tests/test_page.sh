@@ -56,6 +56,34 @@ clean="$scratch/clean<!--<script>.obj"
 make_mesh "$hit" -1
 make_mesh "$clean" 2
 
+# A spike through a floor and a wall through it, and both below it: for contours.
+make_floor() { # FILE TOP-OF-SPIKE TOP-OF-WALL BOTTOM-OF-WALL
+    cat >"$1" <<EOT
+v 0 0 0
+v 8 0 0
+v 8 4 0
+v 0 4 0
+f 1 2 3 4
+v 1 1 -1
+v 3 1 -1
+v 2 3 -1
+v 2 1.7 $2
+f 5 7 6
+f 5 6 8
+f 6 7 8
+f 7 5 8
+v 6 1 $4
+v 6 3 $4
+v 6 3 $3
+v 6 1 $3
+f 9 10 11 12
+EOT
+}
+through="$scratch/through.obj"
+below="$scratch/below.obj"
+make_floor "$through" 2 1 -2
+make_floor "$below" -0.5 -1 -4
+
 # ---- without a browser ----
 
 check "a page" status 1 "$query" --html "$scratch/page.html" "$hit" "$clean"
@@ -102,14 +130,18 @@ for one in chromium chromium-browser google-chrome; do
     [ -z "$browser" ] && browser=$(command -v $one)
 done
 looks=34
+looks_at_contours=37
 if [ -z "$browser" ]; then
-    skip "pages and pictures: there is no chromium ('make deps with=page')" $((looks + 12))
+    skip "pages and pictures: there is no chromium ('make deps with=page')" \
+        $((looks + looks_at_contours + 19))
     finish
 fi
 picture() {
     status 1 env TMPDIR="$scratch/tmp" "$query" --png "$scratch/picture.png" "$hit"
 }
 check "a picture" picture
+check "one of contours" status 1 env TMPDIR="$scratch/tmp" \
+    "$query" --trace --png "$scratch/contours.png" "$through"
 check "and nothing is left behind" sh -c "test -z \"\$(ls '$scratch/tmp')\""
 
 # What npm fetches goes to build/page, and is asked for once.
@@ -119,7 +151,8 @@ ready() {
         tools/page/build.sh --install
 }
 if ! ready >"$scratch/npm.log" 2>&1; then
-    skip "pages in a browser: no node, or npm cannot fetch playwright-core" $((looks + 10))
+    skip "pages in a browser: no node, or npm cannot fetch playwright-core" \
+        $((looks + looks_at_contours + 16))
     finish
 fi
 # look JOB FILE: each line of what it says is a check.
@@ -135,7 +168,12 @@ look() {
 look page "$scratch/page.html"
 seen=$(wc -l <"$scratch/looks")
 check "page: all was looked at ($seen)" test "$seen" -eq "$looks"
+"$query" --trace --html "$scratch/page.html" "$through" "$below" >/dev/null
+look contours "$scratch/page.html"
+seen=$(wc -l <"$scratch/looks")
+check "contours: all was looked at ($seen)" test "$seen" -eq "$looks_at_contours"
 look picture "$scratch/picture.png"
+look contour-picture "$scratch/contours.png"
 "$query" --html "$scratch/page.html" "$scratch/absent.obj" >/dev/null 2>&1
 look nothing "$scratch/page.html"
 

@@ -103,8 +103,31 @@ check "a closed one ends where it begins" sh -c "tail -n 1 '$scratch/lines.ply' 
 check "none to write" status 0 "$query" --trace --ply "$scratch/lines.ply" "$b"
 check "an empty file of lines" grep -qx "element edge 0" "$scratch/lines.ply"
 
+page=$scratch/page.html
+has() { # COUNT WORDS: so many lines of the page have them
+    test "$(grep -c "$2" "$page")" -eq "$1"
+}
+check "a page" status 1 "$query" --trace --html "$page" "$a" "$b"
+check "of two frames" has 2 '^<script type="application/json" data-frame='
+check "one with a contour" has 1 '"place_count":1,"places":\[{"length":2,"nodes":2,"begin":"border"'
+check "and one without" has 1 '"place_count":0,"places":\[\]'
+check "of one mesh" has 1 'data-block="mesh-'
+check "poses" status 1 "$query" --trace --html "$page" --rest "$a" "$b" "$c"
+check "are frames, too" has 2 'data-block="frame-'
+check "so are files of a pattern" status 1 "$query" --trace --html "$page" "$scratch/f%d.obj"
+check "all of them" has 3 'data-block="frame-'
+check "a file that cannot be done" status 2 "$query" --trace --html "$page" "$scratch/absent.obj" "$a"
+check "is left out" has 1 'data-block="frame-'
+if [ -x "$SC_BIN/sc-partition" ]; then
+    check "of a saved model" status 1 "$query" --trace --html "$page" --model "$scratch/model" "$c"
+    check "with its contour" has 1 '"places":\[{"length":1,"nodes":2,'
+fi
+"$query" --trace --json "$sheets" | sed 's/"[a-z]*_ms":[^,]*,//g' >"$scratch/one"
+"$query" --trace --json --html "$page" "$sheets" | sed 's/"[a-z]*_ms":[^,]*,//g' >"$scratch/more"
+check "with a page the answer is the same" cmp "$scratch/one" "$scratch/more"
+
 if ! command -v python3 >/dev/null 2>&1; then
-    skip "nodes and lines, against each other and the mesh: there is no python3"
+    skip "nodes, lines and pages, against each other and the mesh: there is no python3"
 else
     cat >"$scratch/nodes.py" <<'EOP'
 """Nodes of a mesh are where edges and triangles meet; lines of the file of --ply are theirs.
@@ -168,10 +191,97 @@ for row, point in zip(rows, every):
 assert [tuple(map(int, row.split())) for row in rows[len(every):]] == lines
 assert f"element vertex {len(every)}\n" in head and f"element edge {len(lines)}\n" in head
 EOP
+    cat >"$scratch/page.py" <<'EOP'
+"""A page has the contours of the answer, and of each vertex and side a region; see page_write.h.
+
+page.py JSON PAGE"""
+import base64
+import json
+import re
+import sys
+import zlib
+
+with open(sys.argv[1]) as file:
+    answer = json.load(file)
+with open(sys.argv[2], encoding="utf-8") as file:
+    text = file.read()
+frame = json.loads(re.search(r'data-frame="0">(.*)</script>', text).group(1))
+block = re.search(r'data-block="frame-0">(.*)</script>', text).group(1)
+data = iter(zlib.decompress(base64.b64decode(block))[6 * frame["vertices"]:])
+
+
+def number():
+    value = shift = 0
+    for byte in data:
+        value |= (byte & 127) << shift
+        shift += 7
+        if byte < 128:
+            return value
+    raise AssertionError("the block is too short")
+
+
+class Steps:
+    """Numbers, each told by its difference from the one before."""
+
+    def __init__(self):
+        self.last = 0
+
+    def next(self):
+        value = number()
+        self.last += -(value + 1) // 2 if value % 2 else value // 2
+        return self.last
+
+
+assert frame["vertices"] == answer["vertices_read"]
+assert frame["length"] == answer["length"] and frame["closed"] == answer["closed"]
+assert frame["place_count"] == frame["drawn"] == len(answer["contours"])
+count = number()
+smaller = [number() for _ in range(count)]
+assert count == frame["regions"] and sum(smaller) == frame["smaller"] and set(smaller) <= {0, 1}
+steps = Steps()
+regions = [steps.next() for _ in range(frame["vertices"])]
+assert all(0 <= region <= count for region in regions)
+# Regions are in the order of their lowest vertices; the last ones have none.
+seen = list(dict.fromkeys(region for region in regions if region < count))
+assert seen == list(range(len(seen))), seen
+assert number() == len(answer["contours"])
+sides, named = [Steps() for _ in range(4)], set()
+for listed, contour in zip(frame["places"], answer["contours"]):
+    closed = contour["begin"] == "closed"
+    assert number() == 2 * len(contour["nodes"]) + closed
+    around = [side.next() for side in sides]
+    assert all(0 <= side <= count for side in around)
+    pairs = [around[:2], around[2:]]
+    divided = [pair for pair in pairs if pair[0] != pair[1]]
+    assert len(listed["areas"]) <= len(divided)
+    assert len(listed["areas"]) <= sum(smaller[a] or smaller[b] for a, b in divided)
+    named.update(side for pair in divided for side in pair)
+    assert listed["length"] == contour["length"] and listed["nodes"] == len(contour["nodes"])
+    assert (listed["begin"], listed["end"]) == (contour["begin"], contour["end"])
+    for k in range(3):
+        row = [node["point"][k] for node in contour["nodes"]]
+        assert abs(listed["size"][k] - (max(row) - min(row))) < 1e-12
+        assert abs(listed["center"][k] - (max(row) + min(row)) / 2) < 1e-12
+assert {region for region in range(count) if smaller[region]} <= named
+edge, vertex, sheets = Steps(), Steps(), [Steps(), Steps()]
+for contour in answer["contours"]:
+    for node in contour["nodes"]:
+        if edge.next() == 0:
+            assert vertex.next() == node["vertex"]
+        else:
+            assert edge.last == node["edge"] + 1
+            assert abs(number() / 65535 - node["along"]) <= 0.5001 / 65535
+        if node["sheets"]:
+            assert [sheet.next() for sheet in sheets] == node["sheets"]
+assert next(data, None) is None, "there is more in the block"
+EOP
     for mesh in "$a" "$cloths" "$solids" "$sheets" meshes/touching_cubes.obj; do
         "$query" --trace --json --ply "$scratch/lines.ply" "$mesh" >"$scratch/json"
         check "nodes of $(basename "$mesh")" \
             python3 "$scratch/nodes.py" "$mesh" "$scratch/json" "$scratch/lines.ply"
+        "$query" --trace --html "$page" "$mesh" >/dev/null
+        check "the page of $(basename "$mesh")" \
+            python3 "$scratch/page.py" "$scratch/json" "$page"
     done
 fi
 
@@ -192,7 +302,7 @@ check "not a number" says 2 "nan.obj: .*vertex 3 is NaN or infinite" \
 for option in --proper "--pairs edge" --step "--near 1" "--replay $scratch/x" --times --contacts \
     --any "--only self-collisions" --no-rest-cache "--contour star" "--method sctt" --stats \
     "--budget 9" "--ignore-rings 1" "--ignore $scratch/x" "--ignore-rest 1" "--groups $scratch/x" \
-    "--out $scratch/x" "--html $scratch/x" "--png $scratch/x" "--record $scratch/x" --stencils \
+    "--out $scratch/x" "--record $scratch/x" --stencils \
     --thickness "--kinds both" "--jsonl $scratch/x" --timings; do
     # shellcheck disable=SC2086
     check "not with $option" says 2 "does not go with" "$query" --trace ${option} "$a"
@@ -202,9 +312,21 @@ check "no folder to write to" says 2 "cannot be written" "$query" --trace --ply 
 check "one mesh to write" says 2 "one mesh" "$query" --trace --ply "$scratch/x.ply" "$a" "$b"
 check "nor all of a pattern" says 2 "one mesh" \
     "$query" --trace --ply "$scratch/x.ply" "$scratch/f%d.obj"
+check "no folder for a page" says 2 "cannot be written" \
+    "$query" --trace --html "$scratch/no/x" "$a"
+check "one mesh for a picture" says 2 "one mesh" "$query" --trace --png "$scratch/x.png" "$a" "$b"
+check "nor all of a pattern, either" says 2 "png takes one mesh" \
+    "$query" --trace --png "$scratch/x.png" "$scratch/f%d.obj"
+check "or a page" says 2 "together" \
+    "$query" --trace --png "$scratch/x.png" --html "$scratch/x.html" "$a"
+check "a picture needs a browser" says 2 "no browser" \
+    env SC_BROWSER="$scratch/absent" "$query" --trace --png "$scratch/x.png" "$a"
+check "none of these wrote a file" sh -c "! ls '$scratch'/x.*"
 check "not over the mesh" says 2 "is to be read" "$query" --trace --ply "$a" "$a"
 cp "$a" "$scratch/g1.obj"
 check "nor over one of a pattern" says 2 "g1.obj is to be read" \
     "$query" --trace --ply "$scratch/g1.obj" "$scratch/g%d.obj"
+check "nor a page" says 2 "g1.obj is to be read" \
+    "$query" --trace --html "$scratch/g1.obj" "$scratch/g%d.obj"
 check "which is whole" cmp "$a" "$scratch/g1.obj"
 finish

@@ -15,8 +15,9 @@
 #include <zlib.h>
 
 enum {
-    PLACES_LISTED = 200,    /* in the list at the side; all are coloured */
-    SEGMENTS_SHOWN = 100000 /* of a frame */
+    PLACES_LISTED = 200,     /* in the list at the side; all are coloured */
+    SEGMENTS_SHOWN = 100000, /* of a frame */
+    NODES_SHOWN = 500000     /* of a frame's contours, or all of the longest */
 };
 
 struct page_file {
@@ -203,18 +204,26 @@ static void put_segments(bytes *to, const place_list *places, uint32_t count, co
     }
 }
 
+/* What frames of both kinds have. */
+static cJSON *describe_mesh(const page_file *page, const char *name, const mesh_file *mesh,
+                            const double low[3], const double high[3])
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddNumberToObject(object, "number", page->frame_count);
+    cJSON_AddNumberToObject(object, "mesh", page->mesh_count - 1);
+    cJSON_AddStringToObject(object, "name", name);
+    cJSON_AddNumberToObject(object, "vertices", mesh->vertex_count);
+    cJSON_AddNumberToObject(object, "triangles", mesh->triangle_count);
+    cJSON_AddItemToObject(object, "low", cJSON_CreateDoubleArray(low, 3));
+    cJSON_AddItemToObject(object, "high", cJSON_CreateDoubleArray(high, 3));
+    return object;
+}
+
 static cJSON *describe(const page_file *page, const page_frame *frame, uint32_t segments,
                        const double low[3], const double high[3])
 {
     const mesh_check *check = frame->check;
-    cJSON *object = cJSON_CreateObject();
-    cJSON_AddNumberToObject(object, "number", page->frame_count);
-    cJSON_AddNumberToObject(object, "mesh", page->mesh_count - 1);
-    cJSON_AddStringToObject(object, "name", frame->name);
-    cJSON_AddNumberToObject(object, "vertices", frame->mesh->vertex_count);
-    cJSON_AddNumberToObject(object, "triangles", frame->mesh->triangle_count);
-    cJSON_AddItemToObject(object, "low", cJSON_CreateDoubleArray(low, 3));
-    cJSON_AddItemToObject(object, "high", cJSON_CreateDoubleArray(high, 3));
+    cJSON *object = describe_mesh(page, frame->name, frame->mesh, low, high);
     cJSON_AddNumberToObject(object, "pairs", (double)frame->pairs);
     cJSON_AddBoolToObject(object, "incomplete", frame->is_incomplete);
     cJSON_AddNumberToObject(object, "ms", query_text_rounded(frame->milliseconds));
@@ -226,6 +235,136 @@ static cJSON *describe(const page_file *page, const page_frame *frame, uint32_t 
     cJSON_AddItemToObject(
         object, "places",
         query_checks_places(frame->places, check, frame->mesh, PLACES_LISTED, false));
+    return object;
+}
+
+/* ------------------------------------------------------------------------------------------------
+ * Contours
+ */
+
+/* How many of the longest are drawn. */
+static uint64_t count_drawn(const trace_answer *answer)
+{
+    uint64_t count = 0, nodes = 0;
+    while (count < answer->contour_count) {
+        nodes += answer->contours[count].contour.count;
+        if (count > 0 && nodes > NODES_SHOWN) break;
+        count++;
+    }
+    return count;
+}
+
+/* A number for a region, or for none. */
+static uint32_t region_or_none(const trace_answer *answer, uint32_t region)
+{
+    return region < answer->region_count ? region : (uint32_t)answer->region_count;
+}
+
+/* The smaller side of a contour on a sheet; SC_TRACE_NO_EDGE if there is none. */
+static uint32_t smaller_side(const trace_answer *answer, const trace_listed *one, uint32_t sheet)
+{
+    const uint32_t side = sc_region_hint(answer->regions, &one->sides, sheet);
+    return side < 2 ? one->sides.sides[sheet][side] : SC_TRACE_NO_EDGE;
+}
+
+/* Whether each region is the smaller side of a contour, and the regions of vertices. Returns how
+   many are such a side. */
+static uint64_t put_regions(bytes *to, const trace_answer *answer, uint32_t vertex_count)
+{
+    put_number(to, answer->region_count);
+    uint8_t *is_smaller = append(to, (size_t)answer->region_count);
+    uint64_t count = 0;
+    if (!is_smaller) return 0;
+    memset(is_smaller, 0, (size_t)answer->region_count);
+    for (uint64_t i = 0; i < answer->contour_count; i++) {
+        for (uint32_t sheet = 0; sheet < 2; sheet++) {
+            const uint32_t region = smaller_side(answer, &answer->contours[i], sheet);
+            if (region >= answer->region_count || is_smaller[region]) continue;
+            is_smaller[region] = 1;
+            count++;
+        }
+    }
+    uint32_t last = 0;
+    for (uint32_t v = 0; v < vertex_count; v++)
+        put_step(to, &last, region_or_none(answer, answer->vertex_regions[v]));
+    return count;
+}
+
+static void put_contours(bytes *to, const trace_answer *answer, uint64_t count)
+{
+    uint32_t last[4] = {0, 0, 0, 0}, edge = 0, vertex = 0, sheets[2] = {0, 0};
+    put_number(to, count);
+    for (uint64_t i = 0; i < count; i++) {
+        const trace_listed *one = &answer->contours[i];
+        put_number(to, 2 * one->contour.count + (one->contour.begin == SC_TRACE_CLOSED));
+        for (int k = 0; k < 4; k++)
+            put_step(to, &last[k], region_or_none(answer, one->sides.sides[k / 2][k % 2]));
+    }
+    for (uint64_t i = 0; i < count; i++) {
+        const sc_trace_contour *one = &answer->contours[i].contour;
+        for (uint64_t k = 0; k < one->count; k++) {
+            const sc_trace_node *node = &answer->nodes[one->first + k];
+            const bool is_vertex = node->edge == SC_TRACE_NO_EDGE;
+            put_step(to, &edge, is_vertex ? 0 : node->edge + 1);
+            if (is_vertex)
+                put_step(to, &vertex, node->triangle);
+            else
+                put_number(to, quantized(node->along, 0, 1));
+            if (one->begin != SC_TRACE_CLOSED && k + 1 == one->count) continue;
+            for (int s = 0; s < 2; s++) put_step(to, &sheets[s], node->sheets[s]);
+        }
+    }
+}
+
+/* A contour for the list: how long it is and where, and the areas of the smaller sides. */
+static cJSON *describe_contour(const trace_answer *answer, const trace_listed *one)
+{
+    const sc_trace_contour *contour = &one->contour;
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
+    for (uint64_t i = 0; i < contour->count; i++) {
+        const double *point = answer->nodes[contour->first + i].point;
+        for (int k = 0; k < 3; k++) {
+            if (i == 0 || point[k] < low[k]) low[k] = point[k];
+            if (i == 0 || point[k] > high[k]) high[k] = point[k];
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        const double half = high[k] / 2 - low[k] / 2;
+        low[k] += half;
+        high[k] = 2 * half;
+    }
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddNumberToObject(object, "length", contour->length);
+    cJSON_AddNumberToObject(object, "nodes", (double)contour->count);
+    cJSON_AddStringToObject(object, "begin", tool_choice_name(trace_ends, contour->begin));
+    cJSON_AddStringToObject(object, "end", tool_choice_name(trace_ends, contour->end));
+    cJSON_AddBoolToObject(object, "one_sheet", (contour->flags & SC_TRACE_ONE_SHEET) != 0);
+    cJSON_AddItemToObject(object, "center", cJSON_CreateDoubleArray(low, 3));
+    cJSON_AddItemToObject(object, "size", cJSON_CreateDoubleArray(high, 3));
+    cJSON *areas = cJSON_AddArrayToObject(object, "areas");
+    for (uint32_t sheet = 0; sheet < 2; sheet++) {
+        const uint32_t region = smaller_side(answer, one, sheet);
+        if (region < answer->region_count)
+            cJSON_AddItemToArray(areas, cJSON_CreateNumber(answer->regions[region].area));
+    }
+    return object;
+}
+
+static cJSON *describe_trace(const page_file *page, const page_trace *frame, uint64_t drawn,
+                             uint64_t smaller, const double low[3], const double high[3])
+{
+    const trace_answer *answer = frame->answer;
+    cJSON *object = describe_mesh(page, frame->name, frame->mesh, low, high);
+    cJSON_AddNumberToObject(object, "ms", query_text_rounded(frame->milliseconds));
+    cJSON_AddNumberToObject(object, "length", trace_report_length(answer));
+    cJSON_AddNumberToObject(object, "closed", (double)trace_report_closed(answer));
+    cJSON_AddNumberToObject(object, "regions", (double)answer->region_count);
+    cJSON_AddNumberToObject(object, "smaller", (double)smaller);
+    cJSON_AddNumberToObject(object, "drawn", (double)drawn);
+    cJSON_AddNumberToObject(object, "place_count", (double)answer->contour_count);
+    cJSON *contours = cJSON_AddArrayToObject(object, "places");
+    for (uint64_t i = 0; i < answer->contour_count && i < PLACES_LISTED; i++)
+        cJSON_AddItemToArray(contours, describe_contour(answer, &answer->contours[i]));
     return object;
 }
 
@@ -255,6 +394,17 @@ page_file *page_open(const char *path)
     return page;
 }
 
+/* Writes the rest of a frame, which is then counted, and frees it. */
+static bool write_description(page_file *page, cJSON *object)
+{
+    fprintf(page->file, "<script type=\"application/json\" data-frame=\"%lu\">",
+            (unsigned long)page->frame_count);
+    const bool written = tool_json_write(object, page->file);
+    fputs("</script>\n", page->file);
+    page->frame_count++;
+    return written;
+}
+
 bool page_add(page_file *page, const page_frame *frame)
 {
     double low[3], high[3];
@@ -268,13 +418,21 @@ bool page_add(page_file *page, const page_frame *frame)
     put_places(&block, places);
     put_segments(&block, places, segments, low, high);
     if (!write_block(page->file, "frame", page->frame_count, &block)) return false;
-    cJSON *object = describe(page, frame, segments, low, high);
-    fprintf(page->file, "<script type=\"application/json\" data-frame=\"%lu\">",
-            (unsigned long)page->frame_count);
-    const bool written = tool_json_write(object, page->file);
-    fputs("</script>\n", page->file);
-    page->frame_count++;
-    return written;
+    return write_description(page, describe(page, frame, segments, low, high));
+}
+
+bool page_add_trace(page_file *page, const page_trace *frame)
+{
+    double low[3], high[3];
+    bytes block = {NULL, 0, 0, false};
+    const uint64_t drawn = count_drawn(frame->answer);
+    if (!add_mesh(page, frame->mesh)) return false;
+    find_box(frame->pose, low, high);
+    put_positions(&block, frame->pose, low, high);
+    const uint64_t smaller = put_regions(&block, frame->answer, frame->mesh->vertex_count);
+    put_contours(&block, frame->answer, drawn);
+    if (!write_block(page->file, "frame", page->frame_count, &block)) return false;
+    return write_description(page, describe_trace(page, frame, drawn, smaller, low, high));
 }
 
 bool page_close(page_file *page)

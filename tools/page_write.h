@@ -15,7 +15,8 @@
  *                            y, then z, as steps modulo 65536, all low bytes, then all high
  *                            bytes; number of places; triangles of each; all their triangles, as
  *                            steps; two ends of each segment in which a pair meets, 16 bits a
- *                            coordinate
+ *                            coordinate. Of a frame of contours other numbers follow the
+ *                            vertices: see page_add_trace
  *     data-frame="F"         the rest, as JSON
  *
  * A step is the difference from the number before, with its sign as its lowest bit. Numbers have
@@ -26,6 +27,7 @@
 #define TOOLS_PAGE_WRITE_H
 
 #include "places.h"
+#include "trace_report.h"
 
 typedef struct page_file page_file;
 
@@ -42,11 +44,33 @@ typedef struct page_frame {
     bool is_incomplete; /* there may be more pairs */
 } page_frame;
 
+/* A frame of contours: what came of the trace of a pose. */
+typedef struct page_trace {
+    const char *name;
+    const mesh_file *mesh;
+    const sc_pose *pose; /* positions without a stride */
+    const trace_answer *answer;
+    double milliseconds;
+} page_trace;
+
 /* Begins a page; NULL, and errno says why, if it cannot be. */
 page_file *page_open(const char *path);
 
 /* Adds a frame; false if there is no memory. */
 bool page_add(page_file *page, const page_frame *frame);
+
+/*
+ * Adds a frame of contours; false if there is no memory. A page has frames of one kind.
+ *
+ * Behind the vertices its block has: number of regions; of each 1 if it is the smaller side of a
+ * contour, else 0; the region of each vertex, as steps; number of contours that are drawn, the
+ * longest first; of each twice its nodes, and 1 more if it is closed, then its four sides, each as a
+ * step from that of the contour before; the nodes of all. A node is its edge + 1, as a step, and
+ * then where on it, as a number up to 65535; or, of a vertex, 0 and its number, as a step. Where the
+ * contour goes on, its two triangles follow, as steps from those before. The number of regions
+ * stands for no region.
+ */
+bool page_add_trace(page_file *page, const page_trace *frame);
 
 /* Ends the page and frees it. False if it could not be written to the end. A page without any frame
    is written, and says so. */

@@ -88,7 +88,10 @@ static const char usage_near[] =
     "or how\n"
     "                              it begins and ends; with --list all, not five; with --json all "
     "nodes;\n"
-    "                              --ply writes them as lines. A pattern as with --near\n";
+    "                              --ply writes them as lines, and --html and --png show them "
+    "with\n"
+    "                              the parts of the surface between them. A pattern as with "
+    "--near\n";
 
 /* In four: C99 has strings of up to 4095 characters. */
 static const char usage_continued[] =
@@ -113,7 +116,9 @@ static const char usage_continued[] =
     "                              they are of, with --near by distance; one MESH only\n"
     "  --html FILE                 write a page to look at: the mesh turns, places are listed, "
     "and\n"
-    "                              files with the same faces are frames of an animation\n"
+    "                              files with the same faces are frames of an animation; also "
+    "with\n"
+    "                              --trace\n"
     "  --png FILE                  write three views as a picture, by a Chromium that is there; "
     "one\n"
     "                              MESH only\n"
@@ -444,7 +449,8 @@ int query_options_read(int argc, char **argv, query_settings *set)
         if (option != OPTION_TRACE && option != OPTION_LIST && option != OPTION_WELD &&
             option != OPTION_REST && option != OPTION_JSON && option != OPTION_PLY &&
             option != OPTION_MODEL && option != OPTION_PARTITION && option != OPTION_THREADS &&
-            option != OPTION_FORMAT && option >= OPTION_PAIRS)
+            option != OPTION_HTML && option != OPTION_PNG && option != OPTION_FORMAT &&
+            option >= OPTION_PAIRS)
             set->not_of_trace = options[which].name;
         set->is_near_asked |= option == OPTION_KINDS || option == OPTION_THICKNESS;
         set->is_batch |= option >= OPTION_MANIFEST && option <= OPTION_LIMIT_MEMORY;

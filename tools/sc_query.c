@@ -11,8 +11,7 @@
 #include "model_file.h"
 #include "near_query.h"
 #include "near_report.h"
-#include "page_picture.h"
-#include "page_write.h"
+#include "page_output.h"
 #include "query_checks.h"
 #include "query_options.h"
 #include "query_report.h"
@@ -214,28 +213,8 @@ typedef struct query_run {
     query_list list;
     query_checks checks; /* of that subject's mesh, or of the last one */
     query_summary summary;
-    page_file *page;      /* of --html, or of --png alone */
-    char page_path[1024]; /* of the page that --png is drawn from */
+    page_output output; /* of --html or --png */
 } query_run;
-
-/* Begins the page, if there is to be one. */
-static bool begin_page(query_run *run, const query_settings *set)
-{
-    char error[MESH_FILE_ERROR_SIZE];
-    const char *path = set->html_path;
-    if (!path && !set->png_path) return true;
-    if (!path) {
-        if (!page_picture_begin(run->page_path, sizeof run->page_path, error)) {
-            tool_error("%s", error);
-            run->page_path[0] = 0;
-            return false;
-        }
-        path = run->page_path;
-    }
-    run->page = page_open(path);
-    if (!run->page) tool_error("%s: cannot be written: %s", path, strerror(errno));
-    return run->page != NULL;
-}
 
 static bool add_to_page(query_run *run, const query_settings *set, const sc_pose *pose,
                         const query_answer *answer)
@@ -246,27 +225,9 @@ static bool add_to_page(query_run *run, const query_settings *set, const sc_pose
                               &run->checks.places,  run->checks.degenerate_faces,
                               answer->counts[kind], answer->query_ms[kind],
                               answer->incomplete};
-    if (!run->page || page_add(run->page, &frame)) return true;
+    if (!run->output.page || page_add(run->output.page, &frame)) return true;
     tool_error("%s: out of memory for the page", answer->path);
     return false;
-}
-
-/* Ends the page, and has it drawn. */
-static bool end_page(query_run *run, const query_settings *set)
-{
-    char error[MESH_FILE_ERROR_SIZE];
-    bool done = true;
-    if (run->page && !page_close(run->page)) {
-        tool_error("%s: could not be written to the end",
-                   set->html_path ? set->html_path : run->page_path);
-        done = false;
-    }
-    if (done && run->page && set->png_path) {
-        done = page_picture_draw(run->page_path, set->png_path, error);
-        if (!done) tool_error("%s", error);
-    }
-    if (run->page_path[0]) page_picture_end(run->page_path);
-    return done;
 }
 
 /* Does one file. Returns an exit status. */
@@ -441,7 +402,8 @@ static int do_files(query_settings *set)
         }
     }
     run.rest = set->rest_path || set->model_path ? &rest : NULL;
-    if (status == TOOL_CLEAN && !begin_page(&run, set)) status = TOOL_FAILED;
+    if (status == TOOL_CLEAN && !page_output_begin(&run.output, set->html_path, set->png_path))
+        status = TOOL_FAILED;
     if (status == TOOL_CLEAN && set->jsonl_path) {
         status = do_batch(set, run.rest);
     } else if (status == TOOL_CLEAN) {
@@ -453,7 +415,7 @@ static int do_files(query_settings *set)
         }
         if (!query_summary_print(&run.summary, false, set->json)) status = TOOL_FAILED;
     }
-    if (!end_page(&run, set)) status = TOOL_FAILED;
+    if (!page_output_end(&run.output)) status = TOOL_FAILED;
     if (run.out) {
         const bool written = !ferror(run.out);
         if (fclose(run.out) != 0 || !written) {
@@ -532,6 +494,8 @@ static int do_trace(const query_settings *set)
     trace.rest_path = set->rest_path;
     trace.model_path = set->model_path;
     trace.ply_path = set->ply_path;
+    trace.html_path = set->html_path;
+    trace.png_path = set->png_path;
     trace.list = set->near.list;
     trace.json = set->json;
     return trace_query_files(set->paths, set->path_count, &trace);

@@ -6,6 +6,7 @@
 #include "trace_query.h"
 
 #include "frame_paths.h"
+#include "page_output.h"
 #include "query_subject.h"
 #include "query_summary.h"
 #include "query_text.h"
@@ -20,11 +21,18 @@ typedef struct trace_run {
     const char *rest_path; /* --rest, or the first frame of a pattern, or NULL */
     query_subject rest;    /* of that, or the saved model */
     query_summary summary;
+    page_output output; /* of --html or --png */
     /* Arrays of one pose; they grow and are kept. */
     sc_pair *pairs;
     sc_trace_node *nodes;
     sc_trace_contour *contours;
-    uint64_t pair_capacity, node_capacity, contour_capacity;
+    trace_listed *listed; /* of contours */
+    uint64_t pair_capacity, node_capacity, contour_capacity, listed_capacity;
+    /* With a page. */
+    sc_region *regions;
+    sc_contour_sides *sides;  /* of contours */
+    uint32_t *vertex_regions; /* of each vertex */
+    uint64_t region_capacity, sides_capacity, vertex_capacity;
 } trace_run;
 
 /* ------------------------------------------------------------------------------------------------
@@ -61,6 +69,29 @@ static bool make_room_for_trace(trace_run *run, uint64_t nodes, uint64_t contour
     return made;
 }
 
+static bool make_room_for_list(trace_run *run, uint64_t contours)
+{
+    void *array = run->listed;
+    const bool made = make_room(&array, &run->listed_capacity, contours, sizeof *run->listed);
+    run->listed = (trace_listed *)array;
+    return made;
+}
+
+static bool make_room_for_regions(trace_run *run, uint64_t regions, uint64_t contours,
+                                  uint64_t vertices)
+{
+    void *array = run->regions;
+    bool made = make_room(&array, &run->region_capacity, regions, sizeof *run->regions);
+    run->regions = (sc_region *)array;
+    array = run->sides;
+    made &= make_room(&array, &run->sides_capacity, contours, sizeof *run->sides);
+    run->sides = (sc_contour_sides *)array;
+    array = run->vertex_regions;
+    made &= make_room(&array, &run->vertex_capacity, vertices, sizeof *run->vertex_regions);
+    run->vertex_regions = (uint32_t *)array;
+    return made;
+}
+
 /* All pairs of edges and triangles. */
 static sc_status find_pairs(trace_run *run, const query_subject *subject, const sc_pose *pose,
                             trace_answer *answer)
@@ -88,6 +119,31 @@ static sc_status find_pairs(trace_run *run, const query_subject *subject, const 
     return status;
 }
 
+/* The regions of a pose, of which contours are known. */
+static sc_status find_regions(trace_run *run, const query_subject *subject, const sc_pose *pose,
+                              const sc_trace_result *trace, const sc_trace_options *options,
+                              trace_answer *answer)
+{
+    sc_regions_result result;
+    sc_status status;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    do {
+        if (!make_room_for_regions(run, result.region_count, trace->contour_count,
+                                   answer->info.vertex_count))
+            return SC_ERROR_MEMORY;
+        result.regions = run->regions;
+        result.region_capacity = run->region_capacity;
+        result.vertex_regions = run->vertex_regions;
+        result.sides = run->sides;
+        status = sc_trace_regions(subject->model, pose, trace, options, &result);
+    } while (status == SC_ERROR_SHORT_BUFFER);
+    answer->regions = run->regions;
+    answer->region_count = result.region_count;
+    answer->vertex_regions = run->vertex_regions;
+    return status;
+}
+
 static sc_status trace_pairs(trace_run *run, const query_subject *subject, const sc_pose *pose,
                              trace_answer *answer)
 {
@@ -111,11 +167,20 @@ static sc_status trace_pairs(trace_run *run, const query_subject *subject, const
         status = sc_trace(subject->model, pose, run->pairs, answer->pair_count, &options, &result);
         answer->trace_ms = tool_clock() - start;
     } while (status == SC_ERROR_SHORT_BUFFER);
+    if (status == SC_OK && run->output.page)
+        status = find_regions(run, subject, pose, &result, &options, answer);
+    if (status != SC_OK) return status;
+    if (!make_room_for_list(run, result.contour_count)) return SC_ERROR_MEMORY;
+    for (uint64_t i = 0; i < result.contour_count; i++) {
+        memset(&run->listed[i], 0, sizeof run->listed[i]);
+        run->listed[i].contour = run->contours[i];
+        if (run->output.page) run->listed[i].sides = run->sides[i];
+    }
     answer->nodes = run->nodes;
     answer->node_count = result.node_count;
-    answer->contours = run->contours;
+    answer->contours = run->listed;
     answer->contour_count = result.contour_count;
-    return status;
+    return SC_OK;
 }
 
 /* All about one pose. */
@@ -133,6 +198,16 @@ static bool ask(trace_run *run, const query_subject *subject, const sc_pose *pos
     else
         trace_report_sort(answer);
     return status == SC_OK;
+}
+
+static bool add_to_page(const trace_run *run, const mesh_file *mesh, const sc_pose *pose,
+                        const trace_answer *answer)
+{
+    const page_trace frame = {answer->path, mesh, pose, answer,
+                              answer->query_ms + answer->trace_ms};
+    if (!run->output.page || page_add_trace(run->output.page, &frame)) return true;
+    tool_error("%s: out of memory for the page", answer->path);
+    return false;
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -186,6 +261,7 @@ static int do_file(trace_run *run, const char *path)
     if (done) done = ask(run, subject, &pose, &answer, error);
     int status = done ? trace_report(&answer, set) : trace_report_failure(path, set, error);
     if (done && set->ply_path && !trace_report_ply(&answer, set)) status = TOOL_FAILED;
+    if (done && !add_to_page(run, mesh, &pose, &answer)) status = TOOL_FAILED;
     query_summary_add(&run->summary, status, answer.contour_count > 0, path, NULL,
                       answer.pair_count);
     mesh_pose_free(&moved);
@@ -206,9 +282,11 @@ static int do_files(trace_run *run, char *const *paths, int count)
         if (!query_subject_open(&run->rest, set->model_path, 0, error))
             return trace_report_failure(set->model_path, set, error);
     }
+    if (!page_output_begin(&run->output, set->html_path, set->png_path)) return TOOL_FAILED;
     trace_report_head(set);
     for (int i = 0; i < count; i++) status = query_text_worse(status, do_file(run, paths[i]));
     if (!query_summary_print(&run->summary, false, set->json)) status = TOOL_FAILED;
+    if (!page_output_end(&run->output)) status = TOOL_FAILED;
     return status;
 }
 
@@ -216,7 +294,9 @@ static int do_files(trace_run *run, char *const *paths, int count)
 static bool spares_files(char *const *paths, int count, const trace_settings *set)
 {
     for (int i = 0; i < count; i++) {
-        if (!tool_spares(set->ply_path, paths[i])) return false;
+        if (!tool_spares(set->ply_path, paths[i]) || !tool_spares(set->html_path, paths[i]) ||
+            !tool_spares(set->png_path, paths[i]))
+            return false;
     }
     return true;
 }
@@ -239,13 +319,17 @@ int trace_query_files(char **paths, int count, const trace_settings *set)
         count = (int)found.count;
         if (!set->rest_path && !set->model_path) run.rest_path = paths[0];
     }
-    if (set->ply_path && count > 1)
-        tool_error("--ply takes one mesh only; see sc-query --help");
+    if ((set->ply_path || set->png_path) && count > 1)
+        tool_error("--%s takes one mesh only; see sc-query --help", set->ply_path ? "ply" : "png");
     else if (spares_files(paths, count, set))
         status = do_files(&run, paths, count);
     free(run.pairs);
     free(run.nodes);
     free(run.contours);
+    free(run.listed);
+    free(run.regions);
+    free(run.sides);
+    free(run.vertex_regions);
     query_subject_free(&run.rest);
     frame_paths_free(&found);
     return status;

@@ -15,16 +15,16 @@
 
 enum { CONTOURS_PRINTED = 5 }; /* without --list */
 
-static const tool_choice end_names[] = {{"closed", SC_TRACE_CLOSED},
-                                        {"border", SC_TRACE_BORDER},
-                                        {"branch", SC_TRACE_BRANCH},
-                                        {"vertex", SC_TRACE_VERTEX},
-                                        {NULL, 0}};
+const tool_choice trace_ends[] = {{"closed", SC_TRACE_CLOSED},
+                                  {"border", SC_TRACE_BORDER},
+                                  {"branch", SC_TRACE_BRANCH},
+                                  {"vertex", SC_TRACE_VERTEX},
+                                  {NULL, 0}};
 
 static int compare_lengths(const void *left, const void *right)
 {
-    const sc_trace_contour *a = (const sc_trace_contour *)left;
-    const sc_trace_contour *b = (const sc_trace_contour *)right;
+    const sc_trace_contour *a = &((const trace_listed *)left)->contour;
+    const sc_trace_contour *b = &((const trace_listed *)right)->contour;
     if (a->length != b->length) return a->length > b->length ? -1 : 1;
     return a->first < b->first ? -1 : a->first > b->first;
 }
@@ -36,18 +36,18 @@ void trace_report_sort(trace_answer *answer)
               compare_lengths);
 }
 
-static uint64_t count_closed(const trace_answer *answer)
+uint64_t trace_report_closed(const trace_answer *answer)
 {
     uint64_t closed = 0;
     for (uint64_t i = 0; i < answer->contour_count; i++)
-        closed += answer->contours[i].begin == SC_TRACE_CLOSED;
+        closed += answer->contours[i].contour.begin == SC_TRACE_CLOSED;
     return closed;
 }
 
-static double sum_lengths(const trace_answer *answer)
+double trace_report_length(const trace_answer *answer)
 {
     double sum = 0;
-    for (uint64_t i = 0; i < answer->contour_count; i++) sum += answer->contours[i].length;
+    for (uint64_t i = 0; i < answer->contour_count; i++) sum += answer->contours[i].contour.length;
     return sum;
 }
 
@@ -70,8 +70,8 @@ static void print_contour(const sc_trace_contour *contour, uint64_t number)
     if (contour->begin == SC_TRACE_CLOSED)
         fputs("closed", stdout);
     else
-        printf("%s to %s", tool_choice_name(end_names, contour->begin),
-               tool_choice_name(end_names, contour->end));
+        printf("%s to %s", tool_choice_name(trace_ends, contour->begin),
+               tool_choice_name(trace_ends, contour->end));
     puts(contour->flags & SC_TRACE_ONE_SHEET ? ", one sheet" : "");
 }
 
@@ -79,12 +79,13 @@ static void print_table_row(const trace_answer *answer, const trace_settings *se
 {
     printf("%10lu %10lu %14.0f %9.0f %9.0f %12.6g %9.2f %9.3f %9.3f  %s%s\n",
            (unsigned long)answer->info.point_count, (unsigned long)answer->info.triangle_count,
-           (double)answer->pair_count, (double)answer->contour_count, (double)count_closed(answer),
-           sum_lengths(answer), answer->build_ms, answer->query_ms, answer->trace_ms, answer->path,
+           (double)answer->pair_count, (double)answer->contour_count,
+           (double)trace_report_closed(answer), trace_report_length(answer), answer->build_ms,
+           answer->query_ms, answer->trace_ms, answer->path,
            tool_reading_note(answer->rounded, answer->has_animation));
     uint64_t count = answer->contour_count;
     if (!set->list && count > CONTOURS_PRINTED) count = CONTOURS_PRINTED;
-    for (uint64_t i = 0; i < count; i++) print_contour(&answer->contours[i], i + 1);
+    for (uint64_t i = 0; i < count; i++) print_contour(&answer->contours[i].contour, i + 1);
     if (count < answer->contour_count)
         printf("    and %.0f shorter contours\n", (double)(answer->contour_count - count));
 }
@@ -124,8 +125,8 @@ static cJSON *make_contour(const trace_answer *answer, const sc_trace_contour *c
 {
     cJSON *object = cJSON_CreateObject();
     cJSON_AddNumberToObject(object, "length", contour->length);
-    cJSON_AddStringToObject(object, "begin", tool_choice_name(end_names, contour->begin));
-    cJSON_AddStringToObject(object, "end", tool_choice_name(end_names, contour->end));
+    cJSON_AddStringToObject(object, "begin", tool_choice_name(trace_ends, contour->begin));
+    cJSON_AddStringToObject(object, "end", tool_choice_name(trace_ends, contour->end));
     cJSON_AddBoolToObject(object, "one_sheet", (contour->flags & SC_TRACE_ONE_SHEET) != 0);
     cJSON *nodes = cJSON_AddArrayToObject(object, "nodes");
     for (uint64_t i = 0; i < contour->count; i++)
@@ -145,8 +146,8 @@ static bool print_json_answer(const trace_answer *answer, const trace_settings *
     cJSON_AddNumberToObject(object, "vertices_read", answer->info.vertex_count);
     cJSON_AddNumberToObject(object, "triangles", answer->info.triangle_count);
     cJSON_AddNumberToObject(object, "edge_pairs", (double)answer->pair_count);
-    cJSON_AddNumberToObject(object, "closed", (double)count_closed(answer));
-    cJSON_AddNumberToObject(object, "length", sum_lengths(answer));
+    cJSON_AddNumberToObject(object, "closed", (double)trace_report_closed(answer));
+    cJSON_AddNumberToObject(object, "length", trace_report_length(answer));
     cJSON_AddNumberToObject(object, "build_ms", query_text_rounded(answer->build_ms));
     cJSON_AddNumberToObject(object, "query_ms", query_text_rounded(answer->query_ms));
     cJSON_AddNumberToObject(object, "trace_ms", query_text_rounded(answer->trace_ms));
@@ -162,7 +163,7 @@ static bool print_json_answer(const trace_answer *answer, const trace_settings *
     if (set->model_path) cJSON_AddStringToObject(object, "model", set->model_path);
     cJSON *contours = cJSON_AddArrayToObject(object, "contours");
     for (uint64_t i = 0; i < answer->contour_count; i++)
-        cJSON_AddItemToArray(contours, make_contour(answer, &answer->contours[i]));
+        cJSON_AddItemToArray(contours, make_contour(answer, &answer->contours[i].contour));
     return tool_json_print(object);
 }
 
@@ -195,8 +196,9 @@ static void write_lines(const trace_answer *answer, FILE *file)
 {
     uint64_t nodes = 0, segments = 0;
     for (uint64_t i = 0; i < answer->contour_count; i++) {
-        nodes += answer->contours[i].count;
-        segments += answer->contours[i].count - (answer->contours[i].begin != SC_TRACE_CLOSED);
+        nodes += answer->contours[i].contour.count;
+        segments += answer->contours[i].contour.count -
+                    (answer->contours[i].contour.begin != SC_TRACE_CLOSED);
     }
     fprintf(file,
             "ply\nformat ascii 1.0\ncomment written by starcontour: contours, the longest first\n"
@@ -205,14 +207,14 @@ static void write_lines(const trace_answer *answer, FILE *file)
             "end_header\n",
             (double)nodes, (double)segments);
     for (uint64_t i = 0; i < answer->contour_count; i++) {
-        const sc_trace_node *node = answer->nodes + answer->contours[i].first;
-        for (uint64_t k = 0; k < answer->contours[i].count; k++, node++)
+        const sc_trace_node *node = answer->nodes + answer->contours[i].contour.first;
+        for (uint64_t k = 0; k < answer->contours[i].contour.count; k++, node++)
             fprintf(file, "%.17g %.17g %.17g\n", node->point[0], node->point[1], node->point[2]);
     }
     uint64_t first = 0;
     for (uint64_t i = 0; i < answer->contour_count; i++) {
-        const uint64_t count = answer->contours[i].count;
-        const bool is_closed = answer->contours[i].begin == SC_TRACE_CLOSED;
+        const uint64_t count = answer->contours[i].contour.count;
+        const bool is_closed = answer->contours[i].contour.begin == SC_TRACE_CLOSED;
         for (uint64_t k = 0; k + !is_closed < count; k++)
             fprintf(file, "%.0f %.0f %.0f\n", (double)(first + k),
                     (double)(first + (k + 1) % count), (double)i);

@@ -14,6 +14,7 @@ typedef struct trace_settings {
     const char *rest_path;  /* the mesh to build from, or NULL: each file, or the first frame */
     const char *model_path; /* a saved model in its place, or NULL */
     const char *ply_path;   /* where to write contours, or NULL */
+    const char *html_path, *png_path; /* the page, and a picture of it, or NULL */
     bool list, json;
 } trace_settings;
 

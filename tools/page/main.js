@@ -1,6 +1,6 @@
 /*
  * The page that sc-query --html writes: a mesh that turns, its colliding faces, and the places where
- * they are.
+ * they are; with --trace contours in place of places, and the regions that they divide it into.
  *
  * SPDX-License-Identifier: MIT
  *
@@ -13,6 +13,10 @@ import {
     Vector3, WebGLRenderer
 } from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
+import {LineSegments2} from 'three/addons/lines/LineSegments2.js';
+import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
+import {divide, read_contours} from './contours.js';
 
 const at = id => document.getElementById(id);
 const is_picture = location.hash === '#picture';
@@ -23,6 +27,7 @@ const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
  */
 
 const frames = [...document.querySelectorAll('script[data-frame]')].map(s => JSON.parse(s.textContent));
+const has_contours = frames.some(info => info.regions !== undefined); /* of --trace: all have */
 const block = name => document.querySelector(`script[data-block="${name}"]`).textContent;
 
 async function bytes_of(name) {
@@ -85,6 +90,10 @@ async function decode_frame(info) {
     const [indices, bytes] = await Promise.all([mesh_of(info.mesh), bytes_of(`frame-${info.number}`)]);
     const positions = decode_positions(bytes, info.vertices, info);
     const numbers = new Numbers(bytes, 6 * info.vertices);
+    if (has_contours) {
+        const read = read_contours(numbers, info.vertices);
+        return {indices, read, ...divide(read, positions, indices)};
+    }
     const sizes = Array.from({length: numbers.next()}, () => numbers.next());
     const colliding = new Uint32Array(3 * sizes.reduce((sum, size) => sum + size, 0));
     for (let i = 0; i < colliding.length; i += 3) {
@@ -141,11 +150,24 @@ const lines = new LineSegments(new BufferGeometry(),
 const box = new Box3Helper(new Box3(), new Color('#000000'));
 box.visible = false;
 lines.renderOrder = 2;
-for (const object of [all, hits, lines]) object.frustumCulled = false;
-scene.add(all, hits, lines, box);
+
+/* Contours, thick: paler where the mesh hides them, above which those that it does not hide. They are
+   opaque, as short segments overlap, and drawn after the mesh. Regions: soft colors, and then the
+   same in full, of the smaller sides of contours. */
+const curves = [[false, 3], [true, 4]].map(([depthTest, renderOrder]) => {
+    const material = new LineMaterial({linewidth: is_picture ? 3 : 4, depthTest, transparent: true,
+        depthWrite: false});
+    return Object.assign(new LineSegments2(new LineSegmentsGeometry(), material), {renderOrder});
+});
+const soft = ['#4a7fd0', '#2f9e62', '#d99a2b', '#8a68cc', '#24a0b0', '#a97a48', '#93a233', '#6c7aa6'];
+const tints = [...soft, ...soft, soft[0]].map(() => new MeshLambertMaterial({
+    side: DoubleSide, flatShading: true, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4
+}));
+for (const object of [all, hits, lines, ...curves]) object.frustumCulled = false;
+scene.add(all, hits, lines, box, ...(has_contours ? curves : []));
 
 let current = -1, place = -1, size = 1, drawn = null, asked = false, flight = null, wanted = 0;
-let has_colors = false, sees_through = false;
+let has_colors = has_contours, sees_through = false;
 
 function redraw() {
     if (asked || is_picture) return;
@@ -176,15 +198,48 @@ function paint() {
     renderer.setClearColor(is_picture ? new Color('#ffffff') : color('--ground'));
     surface.color = color('--mesh');
     lines.material.color = box.material.color = color('--mark');
-    surface.transparent = sees_through;
-    surface.opacity = sees_through ? 0.18 : 1;
-    surface.depthWrite = !sees_through;
-    surface.needsUpdate = true;
+    tints.forEach((tint, i) => {
+        tint.color = i === 2 * soft.length ? color('--mesh')
+            : color('--mesh').lerp(new Color(soft[i % soft.length]), i < soft.length ? 0.35 : 1);
+    });
+    for (const material of [surface, ...tints]) {
+        material.transparent = sees_through;
+        material.opacity = sees_through ? 0.18 : 1;
+        material.depthWrite = !sees_through;
+        material.needsUpdate = true;
+    }
+    curves[0].material.color = color('--mesh').lerp(color('--contour'), 0.4);
+    curves[1].material.color = color('--contour');
+    if (has_contours) all.material = has_colors ? tints : tints[2 * soft.length];
     hits.material = has_colors ? paints : paints[0];
     redraw();
 }
 
+/* A place among tints for a region; the last one for what is in none. */
+const tint_of = (region, smaller) => region < smaller.length
+    ? region % soft.length + (smaller[region] ? soft.length : 0) : 2 * soft.length;
+
+function show_contours(data) {
+    let begin = 0;
+    const indices = new Uint32Array([...data.parts.values()].reduce((sum, part) => sum + part.length, 0));
+    for (const object of [all, ...curves]) object.geometry.dispose();
+    all.geometry = new BufferGeometry();
+    all.geometry.setAttribute('position', new BufferAttribute(data.positions, 3));
+    for (const [region, part] of data.parts) {
+        indices.set(part, begin);
+        all.geometry.addGroup(begin, part.length, tint_of(region, data.read.smaller));
+        begin += part.length;
+    }
+    all.geometry.setIndex(new BufferAttribute(indices, 1));
+    for (const curve of curves) {
+        curve.geometry = new LineSegmentsGeometry();
+        curve.geometry.setPositions(data.lines);
+        curve.visible = data.lines.length > 0;
+    }
+}
+
 function show_geometry(data) {
+    if (has_contours) return show_contours(data);
     const positions = new BufferAttribute(data.positions, 3);
     for (const object of [all, hits, lines]) object.geometry.dispose();
     all.geometry = new BufferGeometry();
@@ -291,24 +346,49 @@ function choose(number) {
     redraw();
 }
 
+/* What the list says of a place, and below. */
+function tell_place(one, info) {
+    const owners = one.objects.length ? one.objects.map(name => name ?? '(unnamed)')
+        : info.parts > 1 ? one.parts.map(part => `part ${part}`) : [];
+    return [plural(one.faces, 'face'), owners.slice(0, 4).join(' / ') + (owners.length > 4 ? ' …' : ''),
+        plural(one.pairs, 'pair'), one.size.map(x => number_of(x)).join(' × '),
+        one.depth === null ? '' : `about ${number_of(one.depth, 2)} deep`];
+}
+
+/* The same of a contour. */
+function tell_contour(one) {
+    return [`${number_of(one.length)} long, ${one.begin === 'closed' ? 'closed' : 'open'}`,
+        one.begin === 'closed' ? '' : `${one.begin} to ${one.end}`, plural(one.nodes, 'node'),
+        one.one_sheet ? 'one sheet' : '',
+        one.areas.length ? `cuts off ${one.areas.map(area => number_of(area)).join(' and ')}` : 'cuts nothing off'];
+}
+
 function list_places(info) {
-    at('count').textContent = info.place_count ? plural(info.place_count, 'place') : 'No collision';
+    const word = has_contours ? 'contour' : 'place';
+    at('count').textContent = info.place_count ? plural(info.place_count, word)
+        : has_contours ? 'No contour' : 'No collision';
     at('places').replaceChildren(...info.places.map((one, i) => {
         const item = document.createElement('li'), button = document.createElement('button');
         const swatch = document.createElement('span'), small = document.createElement('small');
         swatch.className = 'swatch';
-        swatch.style.background = palette[has_colors ? i % palette.length : 0];
-        const owners = one.objects.length ? one.objects.map(name => name ?? '(unnamed)')
-            : info.parts > 1 ? one.parts.map(part => `part ${part}`) : [];
-        small.textContent = [owners.slice(0, 4).join(' / ') + (owners.length > 4 ? ' …' : ''),
-            plural(one.pairs, 'pair'), one.size.map(x => number_of(x)).join(' × '),
-            one.depth === null ? '' : `about ${number_of(one.depth, 2)} deep`].filter(text => text).join(', ');
-        button.append(swatch, `${i + 1}: ${plural(one.faces, 'face')}`, small);
+        if (has_contours) swatch.classList.add(one.begin === 'closed' ? 'closed' : 'open');
+        else swatch.style.background = palette[has_colors ? i % palette.length : 0];
+        const [head, ...others] = has_contours ? tell_contour(one) : tell_place(one, info);
+        small.textContent = others.filter(text => text).join(', ');
+        button.append(swatch, `${i + 1}: ${head}`, small);
         button.addEventListener('click', () => visit(i));
         item.append(button);
         return item;
     }));
     const left = info.place_count - info.places.length;
+    if (has_contours) {
+        at('defects').textContent = [left > 0 ? `and ${plural(left, 'shorter contour')}.` : '',
+            info.drawn < info.place_count ? `Drawn are the longest ${info.drawn}.` : '',
+            info.place_count ? `${info.closed} closed.` : '', `${plural(info.regions, 'region')} of the surface.`,
+            info.smaller ? 'Those in stronger colors are the smaller side of a contour.'
+                : info.place_count ? 'No contour cuts anything off.' : ''].filter(text => text).join(' ');
+        return;
+    }
     const defects = Object.entries(info.defects ?? {}).filter(([, count]) => count)
         .map(([name, count]) => `${name.replace('_', ' ').replace('non manifold', 'non-manifold')} ${count}`);
     at('defects').textContent = [left > 0 ? `and ${plural(left, 'smaller place')}` : '',
@@ -319,9 +399,10 @@ function list_places(info) {
 
 function say(info) {
     at('title').textContent = info.name;
-    document.title = `${info.name}: self-collisions`;
-    at('said').textContent = `${info.incomplete ? 'at least ' : ''}${plural(info.pairs, 'pair')} of ` +
-        `${plural(info.triangles, 'triangle')}, ${number_of(info.ms)} ms`;
+    document.title = `${info.name}: ${has_contours ? 'contours' : 'self-collisions'}`;
+    const found = has_contours ? `${plural(info.place_count, 'contour')}, ${number_of(info.length)} long,`
+        : `${info.incomplete ? 'at least ' : ''}${plural(info.pairs, 'pair')} of`;
+    at('said').textContent = `${found} ${plural(info.triangles, 'triangle')}, ${number_of(info.ms)} ms`;
     at('name').textContent = `${info.number + 1} / ${frames.length}`;
 }
 
@@ -332,13 +413,14 @@ const svg = (name, members, text) => {
     return element;
 };
 
-/* Two rows, pairs and milliseconds, each from 0 to its largest value. */
+/* Two rows, pairs or lengths and milliseconds, each from 0 to its largest value. */
 function draw_curve() {
     if (frames.length < 2) return;
     const chart = at('curve'), width = chart.clientWidth || 300;
     const x = i => 4 + (width - 8) * i / (frames.length - 1);
     chart.replaceChildren();
-    [['pairs', 'pairs', 'var(--pairs)'], ['ms', 'ms', 'var(--time)']].forEach(([key, unit, color], row) => {
+    const [key, color] = has_contours ? ['length', 'var(--contour)'] : ['pairs', 'var(--pairs)'];
+    [[key, key, color], ['ms', 'ms', 'var(--time)']].forEach(([key, unit, color], row) => {
         const top = 14 + 38 * row, height = 22;
         const most = frames.reduce((m, info) => Math.max(m, info[key]), 0);
         const y = value => top + height * (1 - (most ? value / most : 0));
@@ -483,6 +565,14 @@ async function draw_picture() {
     addEventListener('resize', draw_views); /* a browser without a window takes its size late */
 }
 
+/* The words of a page with contours. */
+function name_contours() {
+    for (const word of document.querySelectorAll('[data-contours]')) word.textContent = word.dataset.contours;
+    at('colors').title = 'Colors of regions (C)';
+    at('colors').setAttribute('aria-pressed', has_colors);
+    at('curve').setAttribute('aria-label', 'Length of contours and milliseconds over the frames');
+}
+
 /* What tests look at. */
 const page = window.starcontour = {
     ready: false,
@@ -492,10 +582,17 @@ const page = window.starcontour = {
         return [(x + 1) / 2 * canvas.width, (1 - y) / 2 * canvas.height];
     },
     frames,
+    /* of this frame: the ends of all segments of contours, and of each region its triangles' corners */
+    contours: () => frame_of(current).then(data => {
+        const point = i => [...data.positions.slice(3 * i, 3 * i + 3)].map((x, k) => x + origin[k]);
+        return {lines: [...data.lines].map((x, i) => x + origin[i % 3]), smaller: data.read.smaller,
+            parts: [...data.parts].map(([region, part]) => ({region, corners: part.map(point)}))};
+    }),
     state: () => ({frame: current, place, eye: camera.position.toArray(), target: controls.target.toArray(),
         flying: !!flight, theme: document.documentElement.dataset.theme})
 };
 async function begin() {
+    if (has_contours) name_contours();
     if (!frames.length) {
         at('title').textContent = 'No mesh could be read.';
         document.querySelector('header > span:last-child').hidden = true;
