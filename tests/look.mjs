@@ -205,7 +205,9 @@ const look_along = (page, counts) => page.evaluate(async counts => {
         return hit / points;
     });
     for (let i = 0; i < has.length; i++) stray += has[i] && !near[i];
-    return {colored, stray, parts, segments: lines.length / 6};
+    let length = 0;
+    for (let i = 0; i < lines.length; i += 6) length += Math.hypot(...[0, 1, 2].map(k => lines[i + 3 + k] - lines[i + k]));
+    return {colored, stray, parts, length, segments: lines.length / 6};
 }, counts);
 
 /* The colors of the canvas at points of the mesh. */
@@ -235,40 +237,44 @@ const region_areas = page => page.evaluate(async () => {
     });
 });
 
-/* A spike through a floor, which cuts its tip off and a triangle out of the floor; and a wall, of which
-   a third is above the floor. Then all apart. */
+/* Two spikes through a floor, which cut their tips off and triangles out of the floor, one of them out
+   of both halves; and a wall, of which a third is above the floor. Then all apart. */
 async function look_at_contours() {
     const page = await open({viewport: {width: 1100, height: 700}, colorScheme: 'light'});
     const state = () => page.evaluate('starcontour.state()');
     const frames = await page.evaluate('starcontour.frames'), contours = frames[0].places;
     await settle(page);
     check('two frames of one mesh', frames.length === 2 && frames[1].mesh === frames[0].mesh, frames.length);
-    check('two contours', contours.length === 2 && frames[0].place_count === 2, contours.length);
-    check('the longest first', contours[0].length > 4 && Math.abs(contours[1].length - 2) < 1e-12,
-        JSON.stringify(contours.map(one => one.length)));
+    check('three contours', contours.length === 3 && frames[0].place_count === 3, contours.length);
+    check('the longest first', contours[0].length > 4 && Math.abs(contours[1].length * 2 - contours[0].length) < 1e-9 &&
+        Math.abs(contours[2].length - 2) < 1e-12, JSON.stringify(contours.map(one => one.length)));
     const rows = await page.locator('#places button').allInnerTexts();
-    check('one is closed and one is open', /long, closed/.test(rows[0]) && /long, open\n.*border to border/.test(rows[1]),
+    check('closed and open', /long, closed/.test(rows[0]) && /long, open\n.*border to border/.test(rows[2]),
         rows.join(' | '));
     check('and their marks tell so', await page.locator('li:nth-child(1) .swatch.closed').count() === 1 &&
-        await page.locator('li:nth-child(2) .swatch.open').count() === 1);
-    check('what they cut off is told', rows[0].includes('cuts off 0.889 and') && rows[1].includes('cuts off 2'),
-        rows.join(' | '));
+        await page.locator('li:nth-child(3) .swatch.open').count() === 1);
+    check('what they cut off is told', rows[0].includes('0.889') && rows[1].includes('0.222') &&
+        rows[2].includes('cuts off 2'), rows.join(' | '));
 
     /* The spike is two thirds as wide at the floor as at its base, of area 2; vertices have 16 bits. */
     const areas = await region_areas(page);
     const has_area = (area, is_smaller) => areas.some(one =>
         Math.abs(one.area - area) < 1e-3 && one.is_smaller === is_smaller);
-    check('six regions', frames[0].regions === 6 && areas.length === 6, JSON.stringify(areas));
-    check('the floor is divided', has_area(8 / 9, true) && has_area(32 - 8 / 9, false), JSON.stringify(areas));
+    check('nine regions', frames[0].regions === 9 && areas.length === 9, JSON.stringify(areas));
+    check('the floor is divided', has_area(8 / 9, true) && has_area(2 / 9, true) && has_area(32 - 10 / 9, false),
+        JSON.stringify(areas));
     check('and the wall', has_area(2, true) && has_area(4, false), JSON.stringify(areas));
     check('and the spike, by its smaller side',
         areas.filter(one => one.is_smaller).some(one => Math.abs(one.area - Math.max(...contours[0].areas)) < 1e-3),
         JSON.stringify([areas, contours[0].areas]));
 
-    const counts = [contours[0].nodes, contours[1].nodes - 1];
+    const counts = [contours[0].nodes, contours[1].nodes, contours[2].nodes - 1];
     const first = await look_along(page, counts);
-    check('all segments are there', first.segments === counts[0] + counts[1], JSON.stringify(first));
-    check('contours are drawn where they are', first.parts[0] > 0.6 && first.parts[1] > 0.9, JSON.stringify(first));
+    check('all segments are there', first.segments === counts[0] + counts[1] + counts[2], JSON.stringify(first));
+    check('as long as is told', Math.abs(first.length - frames[0].length) < 1e-3,
+        JSON.stringify([first.length, frames[0].length]));
+    check('contours are drawn where they are', first.parts[0] > 0.6 && first.parts[2] > 0.9, JSON.stringify(first));
+    check('paler where the mesh hides them', first.parts[0] < 0.9, JSON.stringify(first));
     check('and nowhere else', first.colored > 200 && first.stray === 0, JSON.stringify(first));
 
     /* on the floor, the tip, and the upper part of the wall */
@@ -314,7 +320,7 @@ async function look_at_contours() {
     await page.keyboard.press('t');
     await settle(page);
     const dark = await look_along(page, counts);
-    check('in the dark they have a color, too', dark.parts[1] > 0.9 && dark.stray === 0, JSON.stringify(dark));
+    check('in the dark they have a color, too', dark.parts[2] > 0.9 && dark.stray === 0, JSON.stringify(dark));
     await page.keyboard.press('t');
     await page.locator('#slider').focus();
     await page.keyboard.press('End');
@@ -335,9 +341,9 @@ async function look_at_contours() {
 
     const phone = await open({viewport: {width: 390, height: 780}, hasTouch: true, isMobile: true, deviceScaleFactor: 2});
     check('on a phone nothing is cut off', await phone.evaluate('document.documentElement.scrollWidth <= innerWidth'));
-    await phone.locator('#places button').nth(1).tap();
+    await phone.locator('#places button').nth(2).tap();
     await settle(phone);
-    check('a tap flies there', (await phone.evaluate('starcontour.state()')).place === 1);
+    check('a tap flies there', (await phone.evaluate('starcontour.state()')).place === 2);
     await phone.close();
     check('no errors', errors.length === 0, errors.join('; '));
     check('nothing is fetched but the page', requests.length === 2 && requests.every(url => url.startsWith('file:')),

@@ -56,14 +56,15 @@ clean="$scratch/clean<!--<script>.obj"
 make_mesh "$hit" -1
 make_mesh "$clean" 2
 
-# A spike through a floor and a wall through it, and both below it: for contours.
+# Two spikes through a floor, of which two halves are joined, and a wall through it; and all below it:
+# for contours.
 make_floor() { # FILE TOP-OF-SPIKE TOP-OF-WALL BOTTOM-OF-WALL
     cat >"$1" <<EOT
 v 0 0 0
 v 8 0 0
 v 8 4 0
 v 0 4 0
-f 1 2 3 4
+f 1 2 3
 v 1 1 -1
 v 3 1 -1
 v 2 3 -1
@@ -77,6 +78,17 @@ v 6 3 $4
 v 6 3 $3
 v 6 1 $3
 f 9 10 11 12
+v 0 0 0
+v 8 4 0
+f 13 14 4
+v 0.5 2.5 -1
+v 1.5 2.5 -1
+v 1 3.5 -1
+v 1 2.8 $2
+f 15 17 16
+f 15 16 18
+f 16 17 18
+f 17 15 18
 EOT
 }
 through="$scratch/through.obj"
@@ -130,7 +142,7 @@ for one in chromium chromium-browser google-chrome; do
     [ -z "$browser" ] && browser=$(command -v $one)
 done
 looks=34
-looks_at_contours=37
+looks_at_contours=43
 if [ -z "$browser" ]; then
     skip "pages and pictures: there is no chromium ('make deps with=page')" \
         $((looks + looks_at_contours + 19))

@@ -62,13 +62,13 @@ bool page_add(page_file *page, const page_frame *frame);
 /*
  * Adds a frame of contours; false if there is no memory. A page has frames of one kind.
  *
- * Behind the vertices its block has: number of regions; of each 1 if it is the smaller side of a
- * contour, else 0; the region of each vertex, as steps; number of contours that are drawn, the
- * longest first; of each twice its nodes, and 1 more if it is closed, then its four sides, each as a
- * step from that of the contour before; the nodes of all. A node is its edge + 1, as a step, and
- * then where on it, as a number up to 65535; or, of a vertex, 0 and its number, as a step. Where the
- * contour goes on, its two triangles follow, as steps from those before. The number of regions
- * stands for no region.
+ * Behind the vertices its block has: the number of regions; of each 1 if it is the smaller side of
+ * a contour, else 0; the region of each vertex, as steps; the number of contours that are drawn,
+ * the longest first; of each twice its nodes, and 1 more if it is closed, then its four sides, each
+ * as a step from that of the contour before; the nodes of all. A node is its edge + 1, as a step,
+ * and then where on it, as a number up to 65535; or, of a vertex, 0 and its number, as a step.
+ * Where the contour goes on, its two triangles follow, as steps from those before. The number of
+ * regions stands for no region.
  */
 bool page_add_trace(page_file *page, const page_trace *frame);
 

@@ -7,8 +7,9 @@
  * A triangle through which no contour passes is in the region of its corners. Another is cut along
  * its chords, the segments of contours in it: its faces are found by walking along chords and sides,
  * always turning left as far as possible. A face at a corner has the region of that corner's vertex;
- * from there on, across a chord the region changes from one side of its contour to the other. Where
- * chords cross, at points where three sheets meet, faces overlap there.
+ * from there on, across a chord the region changes from one side of its contour to the other. That is
+ * not known behind points where chords cross, as three sheets meet: such a face, if it is at no
+ * corner, may have the region of its neighbour.
  */
 import {ShapeUtils, Vector2} from 'three';
 
@@ -59,11 +60,29 @@ function place_nodes(contours, positions, indices) {
     }
 }
 
+/* Of more chords in a triangle it is not looked for where they cross, and faces overlap there. */
+const CROSSED = 500;
+
 const same = (a, b) => a[0] === b[0] && a[1] === b[1] && a[2] === b[2];
 const minus = (a, b) => a.map((x, k) => x - b[k]);
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const unit = a => a.map(x => x / Math.sqrt(dot(a, a)));
+
+/* Of vertices that are joined only one may have a region; the others are at the same place. */
+function share_regions(vertex_regions, count, positions) {
+    const key = v => `${positions[3 * v]} ${positions[3 * v + 1]} ${positions[3 * v + 2]}`;
+    const wanting = new Map();
+    vertex_regions.forEach((region, v) => {
+        if (region < count) return;
+        if (!wanting.has(key(v))) wanting.set(key(v), []);
+        wanting.get(key(v)).push(v);
+    });
+    if (!wanting.size) return;
+    vertex_regions.forEach((region, v) => {
+        if (region < count) for (const other of wanting.get(key(v)) ?? []) vertex_regions[other] = region;
+    });
+}
 
 /* The chords of each triangle that has any. */
 function find_chords(contours) {
@@ -93,6 +112,21 @@ function is_within(points, p) {
         if (a.y > p.y !== b.y > p.y && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
     });
     return inside;
+}
+
+/* Where two chords from point a to point b cross, they get a point between. */
+function cross_rows(one, other, points) {
+    if (one.a === other.a || one.a === other.b || one.b === other.a || one.b === other.b) return;
+    const side = (row, p) => {
+        const a = points[row.a], b = points[row.b];
+        return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+    };
+    const [u, v] = [other.a, other.b].map(i => side(one, points[i]));
+    const [s, t] = [one.a, one.b].map(i => side(other, points[i]));
+    if (!(u * v < 0 && s * t < 0)) return;
+    const number = points.push(points[one.a].clone().lerp(points[one.b], s / (s - t))) - 1;
+    one.between.push({number, along: s / (s - t)});
+    other.between.push({number, along: u / (u - v)});
 }
 
 /*
@@ -136,13 +170,19 @@ function cut(corners, regions, chords) {
         (leaving[from] ??= []).push(half);
         return half;
     };
-    for (const chord of chords) {
-        const [a, b] = chord.ends.map(number_of);
-        if (a === b) continue;
-        const there = add(a, b, chord), back = add(b, a, chord);
-        there.twin = back;
-        back.twin = there;
-    }
+    const rows = chords.map(chord => chord.ends.map(number_of)).map(([a, b]) => ({a, b, between: []}));
+    for (let i = 0; i < rows.length && rows.length <= CROSSED; i++)
+        for (let k = 0; k < i; k++) cross_rows(rows[k], rows[i], points);
+    rows.forEach(({a, b, between}, i) => {
+        between.sort((one, other) => one.along - other.along);
+        const row = [a, ...between.map(one => one.number), b];
+        for (let k = 0; k + 1 < row.length; k++) {
+            if (row[k] === row[k + 1]) continue;
+            const there = add(row[k], row[k + 1], chords[i]), back = add(row[k + 1], row[k], chords[i]);
+            there.twin = back;
+            back.twin = there;
+        }
+    });
     sides.forEach((side, k) => {
         side.sort((a, b) => a.along - b.along);
         const row = [k, ...side.map(one => one.number), (k + 1) % 3];
@@ -227,7 +267,8 @@ function cut(corners, regions, chords) {
 
 /* The lines of contours, two points each, and the surface by regions: positions, and of each region
    the corners of its triangles. */
-export function divide({contours, vertex_regions}, positions, indices) {
+export function divide({contours, vertex_regions, smaller}, positions, indices) {
+    share_regions(vertex_regions, smaller.length, positions);
     place_nodes(contours, positions, indices);
     const chords = find_chords(contours), parts = new Map(), more = [], lines = [];
     const first = positions.length / 3;
