@@ -151,12 +151,11 @@ const box = new Box3Helper(new Box3(), new Color('#000000'));
 box.visible = false;
 lines.renderOrder = 2;
 
-/* Contours, thick: paler where the mesh hides them, above which those that it does not hide. They are
-   opaque, as short segments overlap, and drawn after the mesh. Regions: soft colors, and then the
-   same in full, of the smaller sides of contours. */
-const curves = [[false, 3], [true, 4]].map(([depthTest, renderOrder]) => {
-    const material = new LineMaterial({linewidth: is_picture ? 3 : 4, depthTest, transparent: true,
-        depthWrite: false});
+/* Contours, thick; below them all that the mesh hides, thinner and paler. They are opaque, as short
+   segments overlap, and drawn after the mesh. Regions: soft colors, and then the same in full, of the
+   smaller sides of contours. */
+const curves = [[false, 2, 3], [true, 4, 4]].map(([depthTest, linewidth, renderOrder]) => {
+    const material = new LineMaterial({linewidth, depthTest, transparent: true, depthWrite: false});
     return Object.assign(new LineSegments2(new LineSegmentsGeometry(), material), {renderOrder});
 });
 const soft = ['#4a7fd0', '#2f9e62', '#d99a2b', '#8a68cc', '#24a0b0', '#a97a48', '#93a233', '#6c7aa6'];
