@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from . import checks, meshes, results
+from .contours import Tracer, own_labels
 from .thickness import thickness
 
 WHAT = (("COLLISION", "Colliding", "Faces that a check found"),
@@ -109,25 +110,46 @@ def _checker(settings, things, once):
                           settings.itself, settings.between, once)
 
 
+def _tracer(settings, things):
+    return Tracer([thing.name for thing in things], settings.weld, itself=settings.itself,
+                  between=settings.between, once=True)
+
+
+def _radius(settings, shots):
+    """Of lines that are shown."""
+    if settings.overlay_radius:
+        return settings.overlay_radius
+    spans = [np.ptp(meshes.in_world(shot), axis=0).max() for shot in shots if len(shot.positions)]
+    return 0.003 * max(spans, default=0.0)
+
+
 def _show(context, settings, checker, shots, found):
-    if not settings.overlay:
-        return
-    radius = settings.overlay_radius
-    if not radius:
-        spans = [np.ptp(meshes.in_world(shot), axis=0).max() for shot in shots if len(shot.positions)]
-        radius = 0.003 * max(spans, default=0.0)
-    results.show_contacts(context.scene, checker.contacts(shots, found), radius)
+    if settings.overlay:
+        results.show_contacts(context.scene, checker.contacts(shots, found), _radius(settings, shots))
+
+
+def _still_there(context, rows):
+    """The objects of a list that are in the view layer."""
+    return [one.thing for one in rows
+            if one.thing is not None and one.thing.name in context.view_layer.objects]
 
 
 def show_now(context, settings):
-    """Shows where the objects that were checked meet in this frame. Raises checks.Refused."""
-    things = [one.thing for one in settings.checked
-              if one.thing is not None and one.thing.name in context.view_layer.objects]
+    """Shows where the objects that were checked meet in this frame, and contours of those that were
+    traced. Raises checks.Refused."""
+    things = _still_there(context, settings.checked)
     if things and settings.overlay:
         checker = _checker(settings, things, True)
         with Work(context, things) as work:
             shots = work.read()
             _show(context, settings, checker, shots, checker.check(shots))
+    things = _still_there(context, settings.traced)
+    shown = bpy.data.objects.get(results.CONTOURS)
+    if things and shown is not None and shown.type == "CURVE":
+        with Work(context, things) as work:
+            shots = work.read()
+            found = _tracer(settings, things).trace(shots)
+            results.show_contours(context.scene, found.lines, _radius(settings, shots))
 
 
 class _Asks:
@@ -214,6 +236,44 @@ class STARCONTOUR_OT_check_frames(_Asks, bpy.types.Operator):
         finally:
             windows.progress_end()
         self.tell(tally, settings)
+
+
+class STARCONTOUR_OT_contours(_Asks, bpy.types.Operator):
+    """Draw the contours at which surfaces of the selected objects pass through each other in this frame, and
+    mark the smaller part of the surface beside each: what has gone through, as a rule"""
+
+    bl_idname = "starcontour.contours"
+    bl_label = "Trace Contours"
+
+    def run(self, context, settings, things):
+        other = bpy.data.objects.get(results.CONTOURS)
+        if other is not None and other.type != "CURVE":
+            raise checks.Refused(f"{other.name} is not a curve, so contours cannot be drawn: rename it")
+        with Work(context, things) as work:
+            shots = work.read()
+            found = _tracer(settings, things).trace(shots)
+            marks = {}
+            for thing, shot, labels in zip(things, shots, found.labels):
+                own = own_labels(shot, labels, thing.data)
+                before = marks.get(thing.data, own)
+                marks[thing.data] = np.where(before < 0, own, before)
+            results.show_contours(context.scene, found.lines, _radius(settings, shots))
+            for mesh, own in marks.items():
+                results.write_regions(mesh, own)
+                for thing in things:
+                    if thing.data == mesh:
+                        results.write_group(thing, results.INTERSECTED, (own >= 0).astype(float))
+        settings.traced.clear()
+        for thing in things:
+            settings.traced.add().thing = thing
+        settings.contours = len(found.lines)
+        settings.closed = sum(closed for _, closed in found.lines)
+        settings.marked = sum(int((own >= 0).sum()) for own in marks.values())
+        text = f"{settings.contours} contours, {settings.closed} of them closed; {settings.marked} vertices " \
+               "are on the smaller side of one"
+        if found.undecided:
+            text += f"; {found.undecided} have no smaller side on one of their sheets"
+        self.report({"WARNING" if settings.contours else "INFO"}, text)
 
 
 class STARCONTOUR_OT_thickness(_Asks, bpy.types.Operator):
@@ -314,8 +374,8 @@ class STARCONTOUR_OT_jump(bpy.types.Operator):
 
 
 class STARCONTOUR_OT_clear(bpy.types.Operator):
-    """Take away what checks left: vertex groups and attributes of the selected objects, the list of frames
-    and the overlay"""
+    """Take away what checks left: vertex groups and attributes of the selected objects, the list of frames,
+    contacts and contours"""
 
     bl_idname = "starcontour.clear"
     bl_label = "Clear"
@@ -327,13 +387,13 @@ class STARCONTOUR_OT_clear(bpy.types.Operator):
             bpy.ops.object.mode_set(mode="OBJECT")
         for thing in things:
             results.forget(thing)
-        results.hide_contacts()
-        for name in ("frames", "checked"):
+        results.hide()
+        for name in ("frames", "checked", "traced"):
             getattr(settings, name).clear()
-        for name in ("pairs", "faces", "colliding_frames", "thin", "least", "state"):
+        for name in ("pairs", "faces", "colliding_frames", "thin", "least", "state", "contours", "closed", "marked"):
             settings.property_unset(name)
         return {"FINISHED"}
 
 
-classes = (STARCONTOUR_OT_check, STARCONTOUR_OT_check_frames, STARCONTOUR_OT_thickness,
-           STARCONTOUR_OT_select, STARCONTOUR_OT_jump, STARCONTOUR_OT_clear)
+classes = (STARCONTOUR_OT_check, STARCONTOUR_OT_check_frames, STARCONTOUR_OT_contours,
+           STARCONTOUR_OT_thickness, STARCONTOUR_OT_select, STARCONTOUR_OT_jump, STARCONTOUR_OT_clear)

@@ -19,7 +19,7 @@ class STARCONTOUR_PG_frame(bpy.types.PropertyGroup):
 
 
 class STARCONTOUR_PG_thing(bpy.types.PropertyGroup):
-    """An object that was checked."""
+    """An object that was checked or traced."""
 
     thing: PointerProperty(type=bpy.types.Object)
 
@@ -66,7 +66,7 @@ class STARCONTOUR_PG_settings(bpy.types.PropertyGroup):
         description="Make an object that shows where faces meet in the current frame")
     overlay_radius: FloatProperty(
         name="Radius", subtype="DISTANCE", unit="LENGTH", min=0.0, precision=4,
-        description="Of lines that show contacts; 0: a part of the objects' size")
+        description="Of lines that show contacts and contours; 0: a part of the objects' size")
     distance: FloatProperty(
         name="Distance", subtype="DISTANCE", unit="LENGTH", min=0.0, default=0.01, precision=4,
         description="Faces are thin that are as near as this to what is not near them on the surface, in "
@@ -81,6 +81,10 @@ class STARCONTOUR_PG_settings(bpy.types.PropertyGroup):
     pairs: IntProperty(name="Pairs", description="Of all frames that were checked together")
     faces: IntProperty(name="Faces", description="Of the objects' own meshes, in any frame")
     colliding_frames: IntProperty(name="Frames", description="In which something intersects")
+    traced: CollectionProperty(type=STARCONTOUR_PG_thing)
+    contours: IntProperty(name="Contours", default=-1)
+    closed: IntProperty(name="Closed", description="Contours that are closed")
+    marked: IntProperty(name="Vertices", description="On the smaller side of a contour")
     thin: IntProperty(name="Thin Faces", default=-1)
     least: FloatProperty(name="Least Thickness")
 
@@ -140,6 +144,14 @@ class STARCONTOUR_PT_panel(bpy.types.Panel):
                 box.use_property_split = False
                 box.prop(settings, "only_colliding")
             box.operator("starcontour.select").what = "COLLISION"
+        layout.separator()
+        layout.operator("starcontour.contours", icon="CURVE_DATA")
+        if settings.contours >= 0:
+            box = layout.box()
+            box.label(text=f"{settings.contours} contours, {settings.closed} closed",
+                      icon="ERROR" if settings.contours else "CHECKMARK")
+            if settings.contours:
+                box.label(text=f"{settings.marked} vertices on a smaller side")
         layout.separator()
         layout.prop(settings, "distance")
         layout.operator("starcontour.thickness", icon="MOD_THICKNESS")
