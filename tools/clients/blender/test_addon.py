@@ -402,6 +402,8 @@ class Addon(unittest.TestCase):
         settings().weld, settings().itself = False, False
         bpy.ops.starcontour.contours()
         self.assertEqual((settings().contours, settings().closed), (4, 0))
+        lower = {k for k in range(80, 96) if split[k][2] < 0}  # the smaller parts of the uppermost faces
+        self.assertEqual((marked(things[0]), len(lower)), (lower, 8))
 
     def test_contours_of_objects_that_share_a_mesh(self):
         """Linked duplicates: a vertex is marked if it is in one of them."""
@@ -410,12 +412,65 @@ class Addon(unittest.TestCase):
         second = bpy.data.objects.new("Second", first.data)
         bpy.context.collection.objects.link(second)
         second.location = (5, 0, -0.5)
+        third = bpy.data.objects.new("Third", first.data)
+        bpy.context.collection.objects.link(third)
+        third.location = (-5, 0, 0)
         away = new_object("Away", [(x + 5, y, z) for x, y, z in plate], plate_faces)
-        only(first, second, away)
+        only(first, second, third, away)
         bpy.ops.starcontour.contours()
         self.assertEqual((settings().contours, settings().marked), (1, 4 + 25))
-        for thing in (first, second):
+        for thing in (first, second, third):
             self.assertEqual(marked(thing), {24, 25, 26, 27})
+
+    def test_contours_within_contours(self):
+        """A plate that a rod of the same mesh goes through, and round it a rod of another object: each part
+        has a colour of its own, that of the mesh's contours with itself where there are two."""
+        (rod, rod_faces), (plate, plate_faces) = rod_and_plate(2)
+        both = new_object("Both", rod + plate, rod_faces + [[len(rod) + corner for corner in face]
+                                                            for face in plate_faces])
+        paint = both.data.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
+        both.data.attributes.active_color = paint
+        wide = new_object("Wide", [(2 * x, 2 * y, 1.5 * z) for x, y, z in rod], rod_faces)
+        only(both, wide)
+        bpy.ops.starcontour.contours()
+        self.assertEqual((settings().contours, settings().closed), (2, 2))
+        colors = [tuple(item.color) for item in both.data.color_attributes["intersected_regions"].data]
+        of_wide = [tuple(item.color) for item in wide.data.color_attributes["intersected_regions"].data]
+        parts = {}
+        for corner, color in zip(rod + plate, colors):
+            reach = max(abs(corner[0]), abs(corner[1]))
+            part = ("above" if corner[2] > 0 else "below") if reach == 0.6 else \
+                "in" if reach < 0.6 else "between" if reach < 1.2 else "out"
+            parts.setdefault(part, set()).add(color)
+        self.assertEqual({part: len(some) for part, some in parts.items()},
+                         {"above": 1, "below": 1, "in": 1, "between": 1, "out": 1})
+        self.assertEqual(parts["below"], parts["out"])
+        self.assertEqual(len(set(colors)), 4)
+        self.assertEqual(len(set(colors) | set(of_wide)), 5)
+        self.assertEqual(both.data.attributes.active_color.name, "intersected_regions")
+        self.assertEqual(len(marked(both)), 8 + 81)
+        bpy.ops.starcontour.clear()
+        self.assertEqual(both.data.color_attributes.keys(), ["Paint"])
+
+    def test_contours_and_modifiers(self):
+        """Vertices in another order than those of the own mesh; and faces that come from no own face."""
+        (rod, rod_faces), (plate, plate_faces) = rod_and_plate(1)
+        thing, other = new_object("Rod", rod, rod_faces), new_object("Plate", plate, plate_faces)
+        build = thing.modifiers.new("In some order", "BUILD")
+        build.use_random_order, build.frame_start, build.frame_duration = True, -9, 1
+        only(thing, other)
+        bpy.ops.starcontour.contours()
+        positions = evaluated(thing)[0]
+        self.assertEqual(len(positions), len(rod))
+        self.assertNotEqual(rounded([(positions, 0)]), rounded([(rod, 0)]))
+        self.assertEqual(marked(thing), set(range(20, 28)))  # all vertices of faces that have one above
+        thing.modifiers.clear()
+        remesh = thing.modifiers.new("Other faces", "REMESH")
+        remesh.mode, remesh.octree_depth = "BLOCKS", 4
+        bpy.ops.starcontour.contours()
+        self.assertGreater(settings().contours, 0)
+        self.assertEqual(marked(thing), set())
+        self.assertGreater(len(marked(other)), 0)
 
     def test_contours_of_several_objects(self):
         """The character, which goes through itself and through a plane, and an object without faces."""
@@ -459,7 +514,10 @@ class Addon(unittest.TestCase):
         self.assertEqual(contours_shown(), [([(1.5, 1.5, 0), (1, 1.5, 0)], False)])
         self.assertEqual((settings().contours, settings().closed), (1, 0))
         self.assertIn(curve.name, bpy.context.scene.collection.all_objects)
-        self.assertFalse({0, 1, 2} & marked(thing))
+        self.assertEqual(marked(thing), {5})
+        with addon(".operators").Work(bpy.context, [thing]) as work:
+            found = addon(".contours").Tracer(["Two"]).trace(work.read())
+        self.assertEqual((len(found.lines), found.regions, found.undecided), (1, 1, 1))
 
         thing.shape_key_add(name="Basis")
         key = thing.shape_key_add(name="Away")
@@ -479,7 +537,7 @@ class Addon(unittest.TestCase):
         self.assertEqual([one.name for one in bpy.data.objects if one.type == "CURVE"], ["Starcontour contours"])
         self.assertEqual([one.name for one in bpy.data.curves], ["Starcontour contours"])
         self.assertEqual([one.name for one in bpy.data.materials], ["Starcontour contours"])
-        self.assertEqual(marked(thing), set())
+        self.assertEqual((marked(thing), len(settings().traced)), (set(), 1))
 
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.starcontour.contours()
@@ -513,6 +571,11 @@ class Addon(unittest.TestCase):
         only(broken)
         self.refused(bpy.ops.starcontour.contours, "vertex 2 is NaN or infinite")
         self.assertEqual((contours_shown(), len(bpy.data.curves)), (before, 1))
+        good.location = (math.nan, 0, 0)
+        only(good)
+        self.refused(bpy.ops.starcontour.contours, "Good: its place in the world is NaN or infinite")
+        self.assertEqual((contours_shown(), len(bpy.data.curves)), (before, 1))
+        good.location = (0, 0, 0)
         bpy.ops.starcontour.clear()
         new_object("Starcontour contours", [(0, 0, 0)], [])
         only(good)

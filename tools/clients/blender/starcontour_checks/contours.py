@@ -41,6 +41,9 @@ class Tracer(Checker):
     def trace(self, shots):
         """The Contours of a frame; shots: a Snapshot for each object. Raises Refused. Of a vertex that is in
         regions of an object's contours with itself and with others, the first count."""
+        for name, shot in zip(self.names, shots):
+            if not np.isfinite(shot.matrix).all():
+                raise Refused(f"{name}: its place in the world is NaN or infinite")
         threads = threads_for(shots)
         models = [self._model(number, shot) for number, shot in enumerate(shots)]
         found = Contours([], [np.full(len(shot.positions), -1, np.int32) for shot in shots], 0, 0)
