@@ -352,6 +352,39 @@ class Addon(unittest.TestCase):
         self.assertEqual(marked(thing), {corner for face in faces for corner in thing.data.polygons[face].vertices})
         self.assertFalse([name for name in thing.data.attributes.keys() if "starcontour" in name])
 
+    def test_contours_in_a_range_of_frames(self):
+        """Weights as union and share; contours and colours of the frame of before."""
+        thing = make_character(levels=0)
+        small = {}
+        for frame in FRAMES[::3]:
+            bpy.context.scene.frame_set(frame)
+            small[frame] = smaller_side(*evaluated(thing)[:2])
+        bpy.context.scene.frame_set(11)
+        positions, triangles, _ = evaluated(thing)
+        settings().step = 3
+        for weights in ("UNION", "SHARE"):
+            settings().weights = weights
+            self.assertEqual(bpy.ops.starcontour.contours_frames(), {"FINISHED"})
+            self.assertEqual(bpy.context.scene.frame_current, 11)
+            for vertex, weight in enumerate(group_weights(thing, "intersected_side")):
+                share = sum(vertex in one for one in small.values()) / len(small)
+                self.assertAlmostEqual(weight, float(share > 0) if weights == "UNION" else share, 6)
+            self.assertEqual(contours_shown(), rounded((world(thing, points), closed) for points, closed in
+                                                       contours_by_sc_query(positions, triangles)))
+            self.assertEqual((settings().traced_frames, settings().contour_frames),
+                             (8, sum(len(one) > 0 for one in small.values())))
+            self.assertEqual(settings().marked, len(set().union(*small.values())))
+        self.assertEqual({vertex for vertex, item in
+                          enumerate(thing.data.color_attributes["intersected_regions"].data)
+                          if max(item.color[:3]) - min(item.color[:3]) > 0.2}, smaller_side(positions, triangles))
+        self.assertIn(set(), small.values())
+        settings().own_range, settings().first, settings().last = True, 3, 2
+        self.refused(bpy.ops.starcontour.contours_frames, "there is no frame from 3 to 2")
+        new_object("Broken", [(0, 0, 0), (1, 0, 0), (0, 1, math.nan)], [range(3)])
+        settings().last = 5
+        self.refused(bpy.ops.starcontour.contours_frames, "frame 3: Broken: vertex 2 is NaN or infinite")
+        self.assertEqual(bpy.context.scene.frame_current, 11)
+
     def test_contours_of_one_mesh_and_of_two(self):
         """A rod through a plate, whose ends above it and what of the plate is in the rod are known."""
         for through, ends in ((1, {24, 25, 26, 27}), (2, set(range(20, 28)))):

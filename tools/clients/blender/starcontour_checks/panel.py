@@ -58,7 +58,8 @@ class STARCONTOUR_PG_settings(bpy.types.PropertyGroup):
     step: IntProperty(name="Step", default=1, min=1, description="Check each so many frames")
     weights: EnumProperty(
         name="Weights", default="UNION",
-        description="Weights in the vertex group self_collision of vertices whose faces collide",
+        description="Weights in the vertex group self_collision of vertices whose faces collide, and in "
+                    "intersected_side",
         items=(("UNION", "Any Frame", "1 where a vertex is of a face that collides in any frame"),
                ("SHARE", "Share", "In how many of the frames its faces collide, from 0 to 1")))
     overlay: BoolProperty(
@@ -84,7 +85,9 @@ class STARCONTOUR_PG_settings(bpy.types.PropertyGroup):
     traced: CollectionProperty(type=STARCONTOUR_PG_thing)
     contours: IntProperty(name="Contours", default=-1)
     closed: IntProperty(name="Closed", description="Contours that are closed")
-    marked: IntProperty(name="Vertices", description="On the smaller side of a contour")
+    marked: IntProperty(name="Vertices", description="On the smaller side of a contour, in any frame")
+    traced_frames: IntProperty(name="Frames", description="That were traced")
+    contour_frames: IntProperty(name="Frames", description="In which there are contours")
     thin: IntProperty(name="Thin Faces", default=-1)
     least: FloatProperty(name="Least Thickness")
 
@@ -146,12 +149,14 @@ class STARCONTOUR_PT_panel(bpy.types.Panel):
             box.operator("starcontour.select").what = "COLLISION"
         layout.separator()
         layout.operator("starcontour.contours", icon="CURVE_DATA")
+        layout.operator("starcontour.contours_frames", icon="RENDER_ANIMATION")
         if settings.contours >= 0:
             box = layout.box()
             box.label(text=f"{settings.contours} contours, {settings.closed} closed",
-                      icon="ERROR" if settings.contours else "CHECKMARK")
-            if settings.contours:
-                box.label(text=f"{settings.marked} vertices on a smaller side")
+                      icon="ERROR" if settings.contour_frames else "CHECKMARK")
+            if settings.traced_frames > 1:
+                box.label(text=f"in {settings.contour_frames} of {settings.traced_frames} frames")
+            box.label(text=f"{settings.marked} vertices on a smaller side")
         layout.separator()
         layout.prop(settings, "distance")
         layout.operator("starcontour.thickness", icon="MOD_THICKNESS")
