@@ -133,11 +133,74 @@ def group_weights(thing, name):
 
 
 # ------------------------------------------------------------------------------------------------
+# Contours
+
+
+def contours_by_sc_query(positions, triangles):
+    """Of each contour its points, and whether it is closed, in the order of their points."""
+    answer = json.loads(sc_query("--trace", "--json", export("contours", positions, triangles)))
+    return sorted(([tuple(node["point"]) for node in one["nodes"]], one["begin"] == "closed")
+                  for one in answer["contours"])
+
+
+def contours_shown():
+    """The same of the curve that shows them."""
+    splines = bpy.data.objects["Starcontour contours"].data.splines
+    for spline in splines:
+        assert spline.type == "POLY" and all(point.co[3] == 1 for point in spline.points)
+    return sorted(([tuple(point.co[:3]) for point in spline.points], spline.use_cyclic_u) for spline in splines)
+
+
+def rounded(lines):
+    """As floats, which Blender stores."""
+    return sorted(([tuple(float(np.float32(c)) for c in point) for point in points], closed)
+                  for points, closed in lines)
+
+
+def smaller_side(positions, triangles):
+    """The vertices that the library's regions have on the smaller side of a contour."""
+    model = addon(".starcontour").Model(np.array(positions, np.float32), np.array(triangles, np.uint32))
+    regions = model.regions(np.array(positions, np.float32))
+    small = set()
+    for sides in regions.sides.reshape(-1, 2).tolist():
+        areas = [regions.regions["area"][side] for side in sides]
+        if areas[0] != areas[1]:
+            small.add(sides[areas.index(min(areas))])
+    return {vertex for vertex, region in enumerate(regions.vertex_regions.tolist()) if region in small}
+
+
+def marked(thing):
+    """The vertices that are marked: those of the group, which are those with a colour."""
+    group = {vertex for vertex, weight in enumerate(group_weights(thing, "intersected_side")) if weight}
+    colors = [tuple(item.color) for item in thing.data.color_attributes["intersected_regions"].data]
+    assert len(colors) == len(thing.data.vertices)
+    assert group == {vertex for vertex, color in enumerate(colors) if max(color[:3]) - min(color[:3]) > 0.2}
+    return group
+
+
+def rod_and_plate(through):
+    """A square rod of closed rings, and a plate of quads that so many of them have gone through: vertices
+    and faces of both."""
+    rod, rod_faces = [], []
+    for k in range(7):
+        rod += [(x, y, 0.5 * k - 3.1 + 0.5 * through) for x, y in ((-.6, -.6), (.6, -.6), (.6, .6), (-.6, .6))]
+    for k in range(6):
+        rod_faces += [(4 * k + j, 4 * k + (j + 1) % 4, 4 * k + 4 + (j + 1) % 4, 4 * k + 4 + j) for j in range(4)]
+    rod_faces += [(3, 2, 1, 0), (24, 25, 26, 27)]
+    side = range(-8, 9)
+    plate = [(0.25 * x, 0.25 * y, 0.003 * x) for y in side for x in side]
+    plate_faces = [(17 * y + x, 17 * y + x + 1, 17 * y + x + 18, 17 * y + x + 17)
+                   for y in range(16) for x in range(16)]
+    return (rod, rod_faces), (plate, plate_faces)
+
+
+# ------------------------------------------------------------------------------------------------
 
 
 class Addon(unittest.TestCase):
     def setUp(self):
-        for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.armatures, bpy.data.materials):
+        for kind in (bpy.data.objects, bpy.data.meshes, bpy.data.curves, bpy.data.armatures,
+                     bpy.data.materials):
             for one in list(kind):
                 kind.remove(one)
         bpy.context.scene.frame_set(1)
@@ -260,6 +323,303 @@ class Addon(unittest.TestCase):
             self.assertLess(np.abs(((ends - a) * normal).sum(-1)).max(), 1e-5)
             low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
             self.assertTrue(((ends > low - 1e-5) & (ends < high + 1e-5)).all())
+
+    def test_contours_frame_by_frame(self):
+        """Of the character: points, closed ones, and what is marked, by a modifier and without."""
+        thing = make_character(levels=0)
+        counts = []
+        for frame in (1, 6, 12, 17):
+            bpy.context.scene.frame_set(frame)
+            positions, triangles, _ = evaluated(thing)
+            wanted = contours_by_sc_query(positions, triangles)
+            self.assertEqual(bpy.ops.starcontour.contours(), {"FINISHED"})
+            self.assertEqual(contours_shown(), rounded((world(thing, points), closed) for points, closed in wanted))
+            self.assertEqual((settings().contours, settings().closed), (len(wanted), sum(one[1] for one in wanted)))
+            counts.append(settings().contours)
+            self.assertEqual(marked(thing), smaller_side(positions, triangles))
+            self.assertEqual(settings().marked, len(marked(thing)))
+        self.assertEqual(counts[0], 0)
+        self.assertGreater(max(counts), 2)
+        self.assertGreater(settings().marked, 10)
+
+        thing.modifiers.new("Smooth", "SUBSURF").levels = 1
+        positions, triangles, polygons = evaluated(thing)
+        bpy.ops.starcontour.contours()
+        self.assertEqual(contours_shown(), rounded((world(thing, points), closed) for points, closed in
+                                                   contours_by_sc_query(positions, triangles)))
+        small = smaller_side(positions, triangles)
+        faces = {polygons[number] // 4 for number, corners in enumerate(triangles) if small & set(corners)}
+        self.assertEqual(marked(thing), {corner for face in faces for corner in thing.data.polygons[face].vertices})
+        self.assertFalse([name for name in thing.data.attributes.keys() if "starcontour" in name])
+
+    def test_contours_in_a_range_of_frames(self):
+        """Weights as union and share; contours and colours of the frame of before."""
+        thing = make_character(levels=0)
+        small = {}
+        for frame in FRAMES[::3]:
+            bpy.context.scene.frame_set(frame)
+            small[frame] = smaller_side(*evaluated(thing)[:2])
+        bpy.context.scene.frame_set(11)
+        positions, triangles, _ = evaluated(thing)
+        settings().step = 3
+        for weights in ("UNION", "SHARE"):
+            settings().weights = weights
+            self.assertEqual(bpy.ops.starcontour.contours_frames(), {"FINISHED"})
+            self.assertEqual(bpy.context.scene.frame_current, 11)
+            for vertex, weight in enumerate(group_weights(thing, "intersected_side")):
+                share = sum(vertex in one for one in small.values()) / len(small)
+                self.assertAlmostEqual(weight, float(share > 0) if weights == "UNION" else share, 6)
+            self.assertEqual(contours_shown(), rounded((world(thing, points), closed) for points, closed in
+                                                       contours_by_sc_query(positions, triangles)))
+            self.assertEqual((settings().traced_frames, settings().contour_frames),
+                             (8, sum(len(one) > 0 for one in small.values())))
+            self.assertEqual(settings().marked, len(set().union(*small.values())))
+        self.assertEqual({vertex for vertex, item in
+                          enumerate(thing.data.color_attributes["intersected_regions"].data)
+                          if max(item.color[:3]) - min(item.color[:3]) > 0.2}, smaller_side(positions, triangles))
+        self.assertIn(set(), small.values())
+        settings().own_range, settings().first, settings().last = True, 3, 2
+        self.refused(bpy.ops.starcontour.contours_frames, "there is no frame from 3 to 2")
+        new_object("Broken", [(0, 0, 0), (1, 0, 0), (0, 1, math.nan)], [range(3)])
+        settings().last = 5
+        self.refused(bpy.ops.starcontour.contours_frames, "frame 3: Broken: vertex 2 is NaN or infinite")
+        self.assertEqual(bpy.context.scene.frame_current, 11)
+
+    def test_contours_of_one_mesh_and_of_two(self):
+        """A rod through a plate, whose ends above it and what of the plate is in the rod are known."""
+        for through, ends in ((1, {24, 25, 26, 27}), (2, set(range(20, 28)))):
+            (rod, rod_faces), (plate, plate_faces) = rod_and_plate(through)
+            inside = {k for k, (x, y, _) in enumerate(plate) if abs(x) < 0.6 and abs(y) < 0.6}
+            self.assertEqual({k for k, corner in enumerate(rod) if corner[2] > 0}, ends)
+            both = new_object("Both", rod + plate, rod_faces + [[len(rod) + corner for corner in face]
+                                                                for face in plate_faces])
+            bpy.ops.starcontour.contours()
+            self.assertEqual((settings().contours, settings().closed), (1, 1))
+            self.assertEqual(marked(both), ends | {len(rod) + k for k in inside})
+            colors = {tuple(item.color) for item in both.data.color_attributes["intersected_regions"].data}
+            self.assertEqual(len(colors), 3)  # of two regions, and of what is in none
+            self.assertEqual(both.data.attributes.active_color.name, "intersected_regions")
+
+            things = [new_object("Rod", rod, rod_faces), new_object("Plate", plate, plate_faces)]
+            for thing in things:
+                thing.location, thing.rotation_euler = (3.1, -2.2, 0.7), (0.3, 0.2, 0.1)
+            only(*things)
+            settings().itself = False
+            bpy.ops.starcontour.contours()
+            self.assertEqual((settings().contours, settings().closed), (1, 1))
+            self.assertEqual([marked(thing) for thing in things], [ends, inside])
+            settings().itself, settings().between = True, False
+            bpy.ops.starcontour.contours()
+            self.assertEqual(settings().contours, 0)
+            self.assertEqual([marked(thing) for thing in things], [set(), set()])
+            settings().between = True
+
+    def test_contours_at_seams(self):
+        """Faces of a rod that have vertices of their own, and one between vertices at one position: joined,
+        there is a closed contour. Not joined, there is one for each side of the rod."""
+        (rod, rod_faces), (plate, plate_faces) = rod_and_plate(1)
+        split = [rod[corner] for face in rod_faces for corner in face]
+        faces = [range(4 * k, 4 * k + 4) for k in range(len(rod_faces))] + [(len(split), len(split) + 1, 0)]
+        split += [split[0], split[1]]
+        things = [new_object("Rod", split, faces), new_object("Plate", plate, plate_faces)]
+        both = new_object("Both", split + plate, faces + [[len(split) + corner for corner in face]
+                                                          for face in plate_faces])
+        for some in ([both], things):
+            only(*some)
+            settings().weld = True
+            bpy.ops.starcontour.contours()
+            self.assertEqual((settings().contours, settings().closed), (1, 1))
+            above = {k for k, corner in enumerate(split) if corner[2] > 0}
+            self.assertEqual({k for k in marked(some[0]) if k < len(split)}, above)
+            self.assertEqual(settings().marked, len(above) + 25)
+        settings().weld, settings().itself = False, False
+        bpy.ops.starcontour.contours()
+        self.assertEqual((settings().contours, settings().closed), (4, 0))
+        lower = {k for k in range(80, 96) if split[k][2] < 0}  # the smaller parts of the uppermost faces
+        self.assertEqual((marked(things[0]), len(lower)), (lower, 8))
+
+    def test_contours_of_objects_that_share_a_mesh(self):
+        """Linked duplicates: a vertex is marked if it is in one of them."""
+        (rod, rod_faces), (plate, plate_faces) = rod_and_plate(2)
+        first = new_object("First", rod, rod_faces)
+        second = bpy.data.objects.new("Second", first.data)
+        bpy.context.collection.objects.link(second)
+        second.location = (5, 0, -0.5)
+        third = bpy.data.objects.new("Third", first.data)
+        bpy.context.collection.objects.link(third)
+        third.location = (-5, 0, 0)
+        away = new_object("Away", [(x + 5, y, z) for x, y, z in plate], plate_faces)
+        only(first, second, third, away)
+        bpy.ops.starcontour.contours()
+        self.assertEqual((settings().contours, settings().marked), (1, 4 + 25))
+        for thing in (first, second, third):
+            self.assertEqual(marked(thing), {24, 25, 26, 27})
+
+    def test_contours_within_contours(self):
+        """A plate that a rod of the same mesh goes through, and round it a rod of another object: each part
+        has a colour of its own, that of the mesh's contours with itself where there are two."""
+        (rod, rod_faces), (plate, plate_faces) = rod_and_plate(2)
+        both = new_object("Both", rod + plate, rod_faces + [[len(rod) + corner for corner in face]
+                                                            for face in plate_faces])
+        paint = both.data.color_attributes.new("Paint", "FLOAT_COLOR", "POINT")
+        both.data.attributes.active_color = paint
+        wide = new_object("Wide", [(2 * x, 2 * y, 1.5 * z) for x, y, z in rod], rod_faces)
+        only(both, wide)
+        bpy.ops.starcontour.contours()
+        self.assertEqual((settings().contours, settings().closed), (2, 2))
+        colors = [tuple(item.color) for item in both.data.color_attributes["intersected_regions"].data]
+        of_wide = [tuple(item.color) for item in wide.data.color_attributes["intersected_regions"].data]
+        parts = {}
+        for corner, color in zip(rod + plate, colors):
+            reach = max(abs(corner[0]), abs(corner[1]))
+            part = ("above" if corner[2] > 0 else "below") if reach == 0.6 else \
+                "in" if reach < 0.6 else "between" if reach < 1.2 else "out"
+            parts.setdefault(part, set()).add(color)
+        self.assertEqual({part: len(some) for part, some in parts.items()},
+                         {"above": 1, "below": 1, "in": 1, "between": 1, "out": 1})
+        self.assertEqual(parts["below"], parts["out"])
+        self.assertEqual(len(set(colors)), 4)
+        self.assertEqual(len(set(colors) | set(of_wide)), 5)
+        self.assertEqual(both.data.attributes.active_color.name, "intersected_regions")
+        self.assertEqual(len(marked(both)), 8 + 81)
+        bpy.ops.starcontour.clear()
+        self.assertEqual(both.data.color_attributes.keys(), ["Paint"])
+
+    def test_contours_and_modifiers(self):
+        """Vertices in another order than those of the own mesh; and faces that come from no own face."""
+        (rod, rod_faces), (plate, plate_faces) = rod_and_plate(1)
+        thing, other = new_object("Rod", rod, rod_faces), new_object("Plate", plate, plate_faces)
+        build = thing.modifiers.new("In some order", "BUILD")
+        build.use_random_order, build.frame_start, build.frame_duration = True, -9, 1
+        only(thing, other)
+        bpy.ops.starcontour.contours()
+        positions = evaluated(thing)[0]
+        self.assertEqual(len(positions), len(rod))
+        self.assertNotEqual(rounded([(positions, 0)]), rounded([(rod, 0)]))
+        self.assertEqual(marked(thing), set(range(20, 28)))  # all vertices of faces that have one above
+        thing.modifiers.clear()
+        remesh = thing.modifiers.new("Other faces", "REMESH")
+        remesh.mode, remesh.octree_depth = "BLOCKS", 4
+        bpy.ops.starcontour.contours()
+        self.assertGreater(settings().contours, 0)
+        self.assertEqual(marked(thing), set())
+        self.assertGreater(len(marked(other)), 0)
+
+    def test_contours_of_several_objects(self):
+        """The character, which goes through itself and through a plane, and an object without faces."""
+        ball = make_character(levels=0)
+        bpy.context.scene.frame_set(12)
+        other = new_object("Plane", [(-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0)], [range(4)])
+        other.location, other.rotation_euler, other.scale = (3.1, -2.2, 0.7), (0.3, 0.2, 0.1), (1, 2, 3)
+        points = new_object("Points", [(0, 0, 0)], [])
+        only(ball, points, other)
+        bpy.context.view_layer.update()
+        at, triangles, _ = evaluated(ball)
+        own = rounded((world(ball, points), closed) for points, closed in contours_by_sc_query(at, triangles))
+        joined, count = world(ball, at), len(triangles)
+        positions, more, _ = evaluated(other)
+        triangles += [tuple(corner + len(joined) for corner in one) for one in more]
+        joined += world(other, positions)
+        answer = json.loads(sc_query("--trace", "--json", export("joined", joined, triangles)))
+        between = []
+        for one in answer["contours"]:
+            kinds = {(node["edge"] // 3 < count) != (node["triangle"] < count) for node in one["nodes"]}
+            self.assertEqual(len(kinds), 1)
+            if True in kinds:
+                between.append(([tuple(node["point"]) for node in one["nodes"]], one["begin"] == "closed"))
+        self.assertGreater(min(len(own), len(between)), 0)
+        bpy.ops.starcontour.contours()
+        self.assertEqual(contours_shown(), sorted(own + rounded(between)))
+        settings().itself = False
+        bpy.ops.starcontour.contours()
+        self.assertEqual(contours_shown(), rounded(between))
+        settings().weld = False
+        bpy.ops.starcontour.contours()
+        self.assertEqual(contours_shown(), rounded(between))
+
+    def test_contours_that_are_not_closed(self):
+        """They are not cyclic, and where they divide nothing, nothing is marked. A second click takes the
+        first curve's place; so does a jump to a frame, and clearing takes all of it away."""
+        thing = new_object("Two", [(0, 0, 0), (4, 0, 0), (0, 4, 0), (1, 1, 1), (2, 1, 1), (1, 2, -1)],
+                           [range(3), range(3, 6)])
+        bpy.ops.starcontour.contours()
+        curve = bpy.data.objects["Starcontour contours"]
+        self.assertEqual(contours_shown(), [([(1.5, 1.5, 0), (1, 1.5, 0)], False)])
+        self.assertEqual((settings().contours, settings().closed), (1, 0))
+        self.assertIn(curve.name, bpy.context.scene.collection.all_objects)
+        self.assertEqual(marked(thing), {5})
+        with addon(".operators").Work(bpy.context, [thing]) as work:
+            found = addon(".contours").Tracer(["Two"]).trace(work.read())
+        self.assertEqual((len(found.lines), found.regions, found.undecided), (1, 1, 1))
+
+        thing.shape_key_add(name="Basis")
+        key = thing.shape_key_add(name="Away")
+        for number in range(3):
+            key.data[number].co.z = -9
+        for frame, value in ((1, 0.0), (24, 1.0)):
+            key.value = value
+            key.keyframe_insert("value", frame=frame)
+        bpy.ops.starcontour.jump(frame=24)
+        self.assertEqual(contours_shown(), [])
+        bpy.ops.starcontour.jump(frame=1)
+        self.assertEqual(len(contours_shown()), 1)
+        bpy.context.scene.frame_set(24)
+        only(thing)
+        bpy.ops.starcontour.contours()
+        self.assertEqual(contours_shown(), [])
+        self.assertEqual([one.name for one in bpy.data.objects if one.type == "CURVE"], ["Starcontour contours"])
+        self.assertEqual([one.name for one in bpy.data.curves], ["Starcontour contours"])
+        self.assertEqual([one.name for one in bpy.data.materials], ["Starcontour contours"])
+        self.assertEqual((marked(thing), len(settings().traced)), (set(), 1))
+
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.starcontour.contours()
+        self.assertEqual(thing.mode, "EDIT")
+        bpy.ops.starcontour.clear()
+        self.assertEqual((len(bpy.data.curves), len(bpy.data.materials), len(bpy.data.objects)), (0, 0, 1))
+        self.assertNotIn("intersected_regions", thing.data.attributes)
+        self.assertNotIn("intersected_side", thing.vertex_groups)
+        self.assertEqual((settings().contours, len(settings().traced)), (-1, 0))
+
+    def test_contours_that_cannot_be_traced(self):
+        """Nothing is left behind, and what was there stays."""
+        good = new_object("Good", [(0, 0, 0), (4, 0, 0), (0, 4, 0), (1, 1, 1), (2, 1, 1), (1, 2, -1)],
+                          [range(3), range(3, 6)])
+        broken = new_object("Broken", [(0, 0, 0), (1, 0, 0), (0, 1, math.nan), (0, 0, 1)], [range(3), (0, 1, 3)])
+        for itself in (True, False):
+            settings().itself = itself
+            only(good, broken)
+            self.refused(bpy.ops.starcontour.contours, "Broken: vertex 2 is NaN or infinite")
+            self.assertEqual((len(bpy.data.curves), len(bpy.data.materials), len(bpy.data.objects)), (0, 0, 2))
+            for thing in (good, broken):
+                self.assertEqual(len(thing.vertex_groups), 0)
+                self.assertEqual(len(thing.data.color_attributes), 0)
+                self.assertFalse([name for name in thing.data.attributes.keys() if "starcontour" in name])
+            self.assertEqual(settings().contours, -1)
+        settings().itself = True
+        only(good)
+        bpy.ops.starcontour.contours()
+        before = contours_shown()
+        self.assertEqual(len(before), 1)
+        only(broken)
+        self.refused(bpy.ops.starcontour.contours, "vertex 2 is NaN or infinite")
+        self.assertEqual((contours_shown(), len(bpy.data.curves)), (before, 1))
+        good.location = (math.nan, 0, 0)
+        only(good)
+        self.refused(bpy.ops.starcontour.contours, "Good: its place in the world is NaN or infinite")
+        self.assertEqual((contours_shown(), len(bpy.data.curves)), (before, 1))
+        good.location = (0, 0, 0)
+        bpy.ops.starcontour.clear()
+        new_object("Starcontour contours", [(0, 0, 0)], [])
+        only(good)
+        self.refused(bpy.ops.starcontour.contours, "rename it")
+        bpy.ops.starcontour.clear()
+        self.assertIn("Starcontour contours", bpy.data.objects)
+        new_object("Empty", [], [])
+        self.assertEqual(bpy.ops.starcontour.check(), {"FINISHED"})
+        bpy.data.objects["Starcontour contours"].name = "Other"
+        self.assertEqual(bpy.ops.starcontour.contours(), {"FINISHED"})
+        self.assertEqual(contours_shown(), [])
 
     def test_polygons(self):
         """A concave face of eight corners, and one through it."""

@@ -1,9 +1,11 @@
 """Starcontour for Blender: the intersections of meshes with themselves and with each other, exactly, in
-a frame or in a range of frames, and thin walls. In the sidebar of the 3D view, and for scripts:
+a frame or in a range of frames, their contours, and thin walls. In the sidebar of the 3D view, and for scripts:
 
     settings = bpy.context.scene.starcontour      what is wanted, see Settings in panel.py
     bpy.ops.starcontour.check()                   the selected objects in this frame
     bpy.ops.starcontour.check_frames()            in each frame of a range
+    bpy.ops.starcontour.contours()                contours in this frame, and what is beside them
+    bpy.ops.starcontour.contours_frames()         what is beside them in each frame of a range
     bpy.ops.starcontour.thickness()               faces thinner than settings.distance
     bpy.ops.starcontour.select(what="COLLISION")  select what was found, in edit mode
     settings.pairs, settings.faces, settings.frames[i].frame, .pairs, .faces

@@ -96,11 +96,18 @@ def in_world(shot, positions=None):
     return world
 
 
+def corners(mesh):
+    """Of an object's own mesh the vertices of its faces, those of face f from starts[f] to starts[f + 1]."""
+    totals = _read(mesh.polygons, "loop_total", len(mesh.polygons), np.int32)
+    return (_read(mesh.loops, "vertex_index", len(mesh.loops), np.int32).astype(np.int64),
+            np.concatenate([[0], np.cumsum(totals)]))
+
+
 def vertices_of_faces(mesh, faces):
     """Of an object's own mesh the vertices, as a mask, of the faces of a mask."""
-    corners = np.repeat(faces, _read(mesh.polygons, "loop_total", len(mesh.polygons), np.int32))
+    vertices, starts = corners(mesh)
     mask = np.zeros(len(mesh.vertices), bool)
-    mask[_read(mesh.loops, "vertex_index", len(mesh.loops), np.int32)[corners]] = True
+    mask[vertices[np.repeat(faces, np.diff(starts))]] = True
     return mask
 
 

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from . import checks, meshes, results
+from .contours import Tracer, own_labels
 from .thickness import thickness
 
 WHAT = (("COLLISION", "Colliding", "Faces that a check found"),
@@ -104,30 +105,77 @@ class Tally:
         settings.state = "CHECKED"
 
 
+def _each_frame(context, settings, work, look):
+    """Goes through the frames that are wanted, and back to the frame of before. Gives for each its number,
+    the Snapshots, and what look finds in them. Raises checks.Refused."""
+    scene, windows = context.scene, context.window_manager
+    first, last = scene.frame_start, scene.frame_end
+    if settings.own_range:
+        first, last = settings.first, settings.last
+    numbers = range(first, last + 1, settings.step)
+    if not numbers:
+        raise checks.Refused(f"there is no frame from {first} to {last}")
+    windows.progress_begin(0, len(numbers))
+    try:
+        for done, number in enumerate(numbers):
+            scene.frame_set(number)
+            shots = work.read()
+            try:
+                found = look(shots)
+            except checks.Refused as refusal:
+                raise checks.Refused(f"frame {number}: {refusal}") from None
+            yield number, shots, found
+            windows.progress_update(done + 1)
+        work.back()
+    finally:
+        windows.progress_end()
+
+
 def _checker(settings, things, once):
     return checks.Checker([thing.name for thing in things], settings.weld, settings.contact.lower(),
                           settings.itself, settings.between, once)
 
 
+def _tracer(settings, things, once):
+    return Tracer([thing.name for thing in things], settings.weld, itself=settings.itself,
+                  between=settings.between, once=once)
+
+
+def _radius(settings, shots):
+    """Of lines that are shown."""
+    if settings.overlay_radius:
+        return settings.overlay_radius
+    spans = [np.ptp(meshes.in_world(shot), axis=0).max() for shot in shots if len(shot.positions)]
+    return 0.003 * max(spans, default=0.0)
+
+
 def _show(context, settings, checker, shots, found):
-    if not settings.overlay:
-        return
-    radius = settings.overlay_radius
-    if not radius:
-        spans = [np.ptp(meshes.in_world(shot), axis=0).max() for shot in shots if len(shot.positions)]
-        radius = 0.003 * max(spans, default=0.0)
-    results.show_contacts(context.scene, checker.contacts(shots, found), radius)
+    if settings.overlay:
+        results.show_contacts(context.scene, checker.contacts(shots, found), _radius(settings, shots))
+
+
+def _still_there(context, rows):
+    """The objects of a list that are in the view layer."""
+    return [one.thing for one in rows
+            if one.thing is not None and one.thing.name in context.view_layer.objects]
 
 
 def show_now(context, settings):
-    """Shows where the objects that were checked meet in this frame. Raises checks.Refused."""
-    things = [one.thing for one in settings.checked
-              if one.thing is not None and one.thing.name in context.view_layer.objects]
+    """Shows where the objects that were checked meet in this frame, and contours of those that were
+    traced. Raises checks.Refused."""
+    things = _still_there(context, settings.checked)
     if things and settings.overlay:
         checker = _checker(settings, things, True)
         with Work(context, things) as work:
             shots = work.read()
             _show(context, settings, checker, shots, checker.check(shots))
+    things = _still_there(context, settings.traced)
+    shown = bpy.data.objects.get(results.CONTOURS)
+    if things and shown is not None and shown.type == "CURVE":
+        with Work(context, things) as work:
+            shots = work.read()
+            found = _tracer(settings, things, True).trace(shots)
+            results.show_contours(context.scene, found.lines, _radius(settings, shots))
 
 
 class _Asks:
@@ -186,34 +234,93 @@ class STARCONTOUR_OT_check_frames(_Asks, bpy.types.Operator):
     bl_label = "Check Frames"
 
     def run(self, context, settings, things):
-        scene, windows = context.scene, context.window_manager
-        first, last = scene.frame_start, scene.frame_end
-        if settings.own_range:
-            first, last = settings.first, settings.last
-        numbers = range(first, last + 1, settings.step)
-        if not numbers:
-            raise checks.Refused(f"there is no frame from {first} to {last}")
         checker, tally = _checker(settings, things, False), Tally(things)
-        windows.progress_begin(0, len(numbers))
-        try:
-            with Work(context, things) as work:
-                for done, number in enumerate(numbers):
-                    scene.frame_set(number)
-                    shots = work.read()
-                    try:
-                        found = checker.check(shots)
-                    except checks.Refused as refusal:
-                        raise checks.Refused(f"frame {number}: {refusal}") from None
-                    tally.add(number, found, shots)
-                    windows.progress_update(done + 1)
-                work.back()
-                tally.write(settings)
-                if settings.overlay:
-                    shots = work.read()
-                    _show(context, settings, checker, shots, checker.check(shots))
-        finally:
-            windows.progress_end()
+        with Work(context, things) as work:
+            for number, shots, found in _each_frame(context, settings, work, checker.check):
+                tally.add(number, found, shots)
+            tally.write(settings)
+            if settings.overlay:
+                shots = work.read()
+                _show(context, settings, checker, shots, checker.check(shots))
         self.tell(tally, settings)
+
+
+class _Traces(_Asks):
+    """What operators that trace contours have in common."""
+
+    def run(self, context, settings, things):
+        other = bpy.data.objects.get(results.CONTOURS)
+        if other is not None and other.type != "CURVE":
+            raise checks.Refused(f"{other.name} is not a curve, so contours cannot be drawn: rename it")
+        tracer = _tracer(settings, things, not self.in_range)
+        counts = {thing.data: np.zeros(len(thing.data.vertices)) for thing in things}
+        frames = []  # whether there are contours in each
+        with Work(context, things) as work:
+            if self.in_range:
+                for _, shots, found in _each_frame(context, settings, work, tracer.trace):
+                    for mesh, labels in self.labels(things, shots, found).items():
+                        counts[mesh] += labels >= 0
+                    frames.append(bool(found.lines))
+            shots = work.read()
+            found = tracer.trace(shots)
+            labels = self.labels(things, shots, found)
+            if not self.in_range:
+                counts = {mesh: (own >= 0).astype(float) for mesh, own in labels.items()}
+                frames = [bool(found.lines)]
+            results.show_contours(context.scene, found.lines, _radius(settings, shots))
+            for mesh, own in labels.items():
+                results.write_regions(mesh, own)
+            for thing in things:
+                weights = counts[thing.data] / len(frames)
+                results.write_group(thing, results.INTERSECTED,
+                                    np.ceil(weights) if settings.weights == "UNION" else weights)
+        settings.traced.clear()
+        for thing in things:
+            settings.traced.add().thing = thing
+        settings.contours = len(found.lines)
+        settings.closed = sum(closed for _, closed in found.lines)
+        settings.marked = sum(int((count > 0).sum()) for count in counts.values())
+        settings.traced_frames, settings.contour_frames = len(frames), sum(frames)
+        self.tell_contours(found, settings)
+
+    def labels(self, things, shots, found):
+        """The labels of vertices of the own meshes. Of objects that share one, those of the first that has
+        one."""
+        of_meshes = {}
+        for thing, shot, labels in zip(things, shots, found.labels):
+            own = own_labels(shot, labels, thing.data)
+            before = of_meshes.get(thing.data, own)
+            of_meshes[thing.data] = np.where(before < 0, own, before)
+        return of_meshes
+
+    def tell_contours(self, found, settings):
+        text = f"{settings.contours} contours, {settings.closed} of them closed; {settings.marked} vertices " \
+               "are on the smaller side of one"
+        if found.undecided:
+            text += f"; {found.undecided} have no smaller side on one of their sheets"
+        if self.in_range:
+            text = f"contours in {settings.contour_frames} of {settings.traced_frames} frames, in which " \
+                   f"{settings.marked} vertices are on the smaller side of one; {settings.contours} contours " \
+                   "in this frame"
+        self.report({"WARNING" if settings.contour_frames else "INFO"}, text)
+
+
+class STARCONTOUR_OT_contours(_Traces, bpy.types.Operator):
+    """Draw the contours at which surfaces of the selected objects pass through each other in this frame, and
+    mark the smaller part of the surface beside each: what has gone through, as a rule"""
+
+    bl_idname = "starcontour.contours"
+    bl_label = "Trace Contours"
+    in_range = False
+
+
+class STARCONTOUR_OT_contours_frames(_Traces, bpy.types.Operator):
+    """Mark what is on the smaller side of a contour in the frames of a range, and draw the contours of this
+    frame"""
+
+    bl_idname = "starcontour.contours_frames"
+    bl_label = "Trace Frames"
+    in_range = True
 
 
 class STARCONTOUR_OT_thickness(_Asks, bpy.types.Operator):
@@ -314,8 +421,8 @@ class STARCONTOUR_OT_jump(bpy.types.Operator):
 
 
 class STARCONTOUR_OT_clear(bpy.types.Operator):
-    """Take away what checks left: vertex groups and attributes of the selected objects, the list of frames
-    and the overlay"""
+    """Take away what checks left: vertex groups and attributes of the selected objects, the list of frames,
+    contacts and contours"""
 
     bl_idname = "starcontour.clear"
     bl_label = "Clear"
@@ -327,13 +434,14 @@ class STARCONTOUR_OT_clear(bpy.types.Operator):
             bpy.ops.object.mode_set(mode="OBJECT")
         for thing in things:
             results.forget(thing)
-        results.hide_contacts()
-        for name in ("frames", "checked"):
+        results.hide()
+        for name in ("frames", "checked", "traced"):
             getattr(settings, name).clear()
-        for name in ("pairs", "faces", "colliding_frames", "thin", "least", "state"):
+        for name in ("pairs", "faces", "colliding_frames", "thin", "least", "state", "contours", "closed", "marked",
+                     "traced_frames", "contour_frames"):
             settings.property_unset(name)
         return {"FINISHED"}
 
 
-classes = (STARCONTOUR_OT_check, STARCONTOUR_OT_check_frames, STARCONTOUR_OT_thickness,
-           STARCONTOUR_OT_select, STARCONTOUR_OT_jump, STARCONTOUR_OT_clear)
+classes = (STARCONTOUR_OT_check, STARCONTOUR_OT_check_frames, STARCONTOUR_OT_contours,
+           STARCONTOUR_OT_contours_frames, STARCONTOUR_OT_thickness, STARCONTOUR_OT_select, STARCONTOUR_OT_jump, STARCONTOUR_OT_clear)

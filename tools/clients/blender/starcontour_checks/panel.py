@@ -19,7 +19,7 @@ class STARCONTOUR_PG_frame(bpy.types.PropertyGroup):
 
 
 class STARCONTOUR_PG_thing(bpy.types.PropertyGroup):
-    """An object that was checked."""
+    """An object that was checked or traced."""
 
     thing: PointerProperty(type=bpy.types.Object)
 
@@ -58,7 +58,8 @@ class STARCONTOUR_PG_settings(bpy.types.PropertyGroup):
     step: IntProperty(name="Step", default=1, min=1, description="Check each so many frames")
     weights: EnumProperty(
         name="Weights", default="UNION",
-        description="Weights in the vertex group self_collision of vertices whose faces collide",
+        description="Weights in the vertex group self_collision of vertices whose faces collide, and in "
+                    "intersected_side",
         items=(("UNION", "Any Frame", "1 where a vertex is of a face that collides in any frame"),
                ("SHARE", "Share", "In how many of the frames its faces collide, from 0 to 1")))
     overlay: BoolProperty(
@@ -66,7 +67,7 @@ class STARCONTOUR_PG_settings(bpy.types.PropertyGroup):
         description="Make an object that shows where faces meet in the current frame")
     overlay_radius: FloatProperty(
         name="Radius", subtype="DISTANCE", unit="LENGTH", min=0.0, precision=4,
-        description="Of lines that show contacts; 0: a part of the objects' size")
+        description="Of lines that show contacts and contours; 0: a part of the objects' size")
     distance: FloatProperty(
         name="Distance", subtype="DISTANCE", unit="LENGTH", min=0.0, default=0.01, precision=4,
         description="Faces are thin that are as near as this to what is not near them on the surface, in "
@@ -81,6 +82,12 @@ class STARCONTOUR_PG_settings(bpy.types.PropertyGroup):
     pairs: IntProperty(name="Pairs", description="Of all frames that were checked together")
     faces: IntProperty(name="Faces", description="Of the objects' own meshes, in any frame")
     colliding_frames: IntProperty(name="Frames", description="In which something intersects")
+    traced: CollectionProperty(type=STARCONTOUR_PG_thing)
+    contours: IntProperty(name="Contours", default=-1)
+    closed: IntProperty(name="Closed", description="Contours that are closed")
+    marked: IntProperty(name="Vertices", description="On the smaller side of a contour, in any frame")
+    traced_frames: IntProperty(name="Frames", description="That were traced")
+    contour_frames: IntProperty(name="Frames", description="In which there are contours")
     thin: IntProperty(name="Thin Faces", default=-1)
     least: FloatProperty(name="Least Thickness")
 
@@ -140,6 +147,16 @@ class STARCONTOUR_PT_panel(bpy.types.Panel):
                 box.use_property_split = False
                 box.prop(settings, "only_colliding")
             box.operator("starcontour.select").what = "COLLISION"
+        layout.separator()
+        layout.operator("starcontour.contours", icon="CURVE_DATA")
+        layout.operator("starcontour.contours_frames", icon="RENDER_ANIMATION")
+        if settings.contours >= 0:
+            box = layout.box()
+            box.label(text=f"{settings.contours} contours, {settings.closed} closed",
+                      icon="ERROR" if settings.contour_frames else "CHECKMARK")
+            if settings.traced_frames > 1:
+                box.label(text=f"in {settings.contour_frames} of {settings.traced_frames} frames")
+            box.label(text=f"{settings.marked} vertices on a smaller side")
         layout.separator()
         layout.prop(settings, "distance")
         layout.operator("starcontour.thickness", icon="MOD_THICKNESS")

@@ -1,4 +1,4 @@
-"""What checks leave in a file: face attributes, vertex groups, and an object that shows contacts.
+"""What checks leave in a file: attributes, vertex groups, and objects that show contacts and contours.
 
 SPDX-License-Identifier: MIT
 """
@@ -10,7 +10,15 @@ COLLISION = "self_collision"      # vertex group
 FRAMES = "self_collision_frames"  # face attribute: in how many of the frames that were checked
 THIN = "thin"                     # vertex group
 THICKNESS = "thickness"           # face attribute; infinity: more than the distance
+INTERSECTED = "intersected_side"  # vertex group
+REGIONS = "intersected_regions"   # color attribute
 OVERLAY = "Starcontour contacts"
+CONTOURS = "Starcontour contours"
+
+# Colours of regions, in turn, chosen so that neighbours in this list differ; light grey is what is in none.
+_REGION_COLORS = np.array([[0.9, 0.3, 0.0], [0.0, 0.35, 0.8], [0.95, 0.75, 0.0], [0.0, 0.6, 0.35],
+                           [0.7, 0.15, 0.6], [0.3, 0.7, 0.95], [0.6, 0.0, 0.1], [0.45, 0.75, 0.1]])
+_NO_REGION = [0.8, 0.8, 0.8]
 
 
 def write_attribute(mesh, name, kind, values):
@@ -45,9 +53,28 @@ def write_group(thing, name, weights):
         group.add(np.flatnonzero(weights == weight).tolist(), float(weight), "REPLACE")
 
 
+def write_regions(mesh, labels):
+    """Writes a colour for each vertex by the number of its region, -1: in none. In the 3D view it is what
+    is seen with the shading's color "Attribute"."""
+    _forget_regions(mesh)
+    colors = np.ones((len(labels), 4), np.float32)
+    colors[:, :3] = np.where(labels[:, None] < 0, _NO_REGION, _REGION_COLORS[labels % len(_REGION_COLORS)])
+    attribute = mesh.color_attributes.new(REGIONS, "FLOAT_COLOR", "POINT")
+    attribute.data.foreach_set("color", colors.ravel())
+    mesh.attributes.active_color = attribute
+    mesh.update()
+
+
+def _forget_regions(mesh):
+    attribute = mesh.color_attributes.get(REGIONS)
+    if attribute is not None:
+        mesh.color_attributes.remove(attribute)
+
+
 def forget(thing):
     """Takes away groups and attributes of an object."""
-    for name in (COLLISION, THIN):
+    _forget_regions(thing.data)
+    for name in (COLLISION, THIN, INTERSECTED):
         group = thing.vertex_groups.get(name)
         if group is not None:
             thing.vertex_groups.remove(group)
@@ -79,18 +106,18 @@ def _tubes(segments, radius):
             (first[:, :, None] + np.array(quads)).reshape(-1, 4))
 
 
-def _material():
-    material = bpy.data.materials.get(OVERLAY)
+def _material(name, color):
+    material = bpy.data.materials.get(name)
     if material is None:
-        material = bpy.data.materials.new(OVERLAY)
-        material.diffuse_color = (1.0, 0.05, 0.02, 1.0)
+        material = bpy.data.materials.new(name)
+        material.diffuse_color = color
         if bpy.app.version < (5, 0, 0):
             material.use_nodes = True
         for node in material.node_tree.nodes:
             if node.type == "BSDF_PRINCIPLED":
-                node.inputs["Base Color"].default_value = (1.0, 0.05, 0.02, 1.0)
+                node.inputs["Base Color"].default_value = color
                 emission = node.inputs.get("Emission Color") or node.inputs.get("Emission")
-                emission.default_value = (1.0, 0.05, 0.02, 1.0)
+                emission.default_value = color
                 node.inputs["Emission Strength"].default_value = 1.0
     return material
 
@@ -111,15 +138,35 @@ def show_contacts(scene, segments, radius):
     if bpy.app.version < (4, 1, 0):
         mesh.polygons.foreach_set("loop_total", totals)
     mesh.update(calc_edges=True)
-    mesh.materials.append(_material())
-    overlay = bpy.data.objects.get(OVERLAY)
+    mesh.materials.append(_material(OVERLAY, (1.0, 0.05, 0.02, 1.0)))
+    return _show(scene, OVERLAY, mesh, bpy.data.meshes)
+
+
+def show_contours(scene, lines, radius):
+    """Makes the object that shows contours, or makes it anew: a curve with a spline for each line, which
+    are pairs of points in world coordinates and whether it is closed. In front of all else as contacts."""
+    curve = bpy.data.curves.new(CONTOURS, "CURVE")
+    curve.dimensions = "3D"
+    curve.bevel_depth, curve.bevel_resolution, curve.use_fill_caps = radius, 1, True
+    for points, closed in lines:
+        spline = curve.splines.new("POLY")
+        spline.points.add(len(points) - 1)  # it has one
+        spline.points.foreach_set("co", np.hstack([points, np.ones((len(points), 1))]).astype(np.float32).ravel())
+        spline.use_cyclic_u = closed
+    curve.materials.append(_material(CONTOURS, (1.0, 0.8, 0.0, 1.0)))
+    return _show(scene, CONTOURS, curve, bpy.data.curves)
+
+
+def _show(scene, name, data, kind):
+    """The overlay object of a name with this data, in place of what it had."""
+    overlay = bpy.data.objects.get(name)
     if overlay is None:
-        overlay = bpy.data.objects.new(OVERLAY, mesh)
+        overlay = bpy.data.objects.new(name, data)
     else:
-        old, overlay.data = overlay.data, mesh
+        old, overlay.data = overlay.data, data
         if old.users == 0:
-            bpy.data.meshes.remove(old)
-        mesh.name = OVERLAY
+            kind.remove(old)
+        data.name = name
     if overlay.name not in scene.collection.all_objects:
         scene.collection.objects.link(overlay)
     overlay.show_in_front = True
@@ -127,14 +174,15 @@ def show_contacts(scene, segments, radius):
     return overlay
 
 
-def hide_contacts():
-    """Takes the overlay object away."""
-    overlay = bpy.data.objects.get(OVERLAY)
-    if overlay is not None:
-        mesh = overlay.data
-        bpy.data.objects.remove(overlay)
-        if mesh.users == 0:
-            bpy.data.meshes.remove(mesh)
-    material = bpy.data.materials.get(OVERLAY)
-    if material is not None and material.users == 0:
-        bpy.data.materials.remove(material)
+def hide():
+    """Takes the overlay objects away."""
+    for name, kind, of_type in ((OVERLAY, bpy.data.meshes, "MESH"), (CONTOURS, bpy.data.curves, "CURVE")):
+        overlay = bpy.data.objects.get(name)
+        if overlay is not None and overlay.type == of_type:
+            data = overlay.data
+            bpy.data.objects.remove(overlay)
+            if data.users == 0:
+                kind.remove(data)
+        material = bpy.data.materials.get(name)
+        if material is not None and material.users == 0:
+            bpy.data.materials.remove(material)

@@ -16,7 +16,7 @@ ENTRIES = 1 << 22  # of the tables that paths are sought with
 RINGS_MAX = 8      # more of them take longer to find than they save
 
 
-def _welds(positions):
+def welds(positions):
     """The first vertex at the same position as each."""
     order = np.lexsort((np.arange(len(positions)), *positions.T))
     at = positions[order]
@@ -110,14 +110,14 @@ def thickness(positions, triangles, distance, threads=1):
     vertices at equal positions are one. Raises starcontour.Error."""
     thick = np.full(len(triangles), np.inf)
     model = starcontour.Model(positions, triangles)
-    count, welds = len(positions), _welds(positions)
-    welded = welds[triangles.astype(np.int64)]
+    count, joined = len(positions), welds(positions)
+    welded = joined[triangles.astype(np.int64)]
     paths = _Paths(positions, welded, 2 * distance)
     near = model.near(positions, distance, ignore_rings=paths.rings(), threads=threads)
     at_vertex = _Lists(welded.ravel(), np.repeat(np.arange(len(welded)), 3), count)
 
     # A vertex and a face.
-    vertices, faces = welds[near.vertex_faces[:, 0].astype(np.int64)], near.vertex_faces[:, 1].astype(np.int64)
+    vertices, faces = joined[near.vertex_faces[:, 0].astype(np.int64)], near.vertex_faces[:, 1].astype(np.int64)
     counts = ~paths.join(vertices[:, None], welded[faces])
     far = model.stencils(positions, near.vertex_faces[counts], kind="vertex_face")["distance"]
     np.minimum.at(thick, faces[counts], far)
