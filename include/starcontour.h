@@ -1001,9 +1001,9 @@ typedef struct sc_regions_result {
     uint64_t region_count;     /* out */
     uint64_t region_capacity;  /* in: entries of regions */
     sc_region *regions;        /* in: the caller's array, or NULL if the capacity is 0 */
-    uint32_t *vertex_regions;  /* in: vertex_count entries, or NULL: the region of each vertex. Of
-                                  welded ones that of the one that stands for them; SC_TRACE_NO_EDGE
-                                  for those of no triangle */
+    uint32_t *vertex_regions;  /* in: vertex_count entries, or NULL: the region of each vertex.
+                                  SC_TRACE_NO_EDGE for those of no triangle, and for those that are
+                                  welded to another one, which has their region */
     sc_contour_sides *sides;   /* in: trace->contour_count entries, or NULL */
 } sc_regions_result;
 

@@ -528,6 +528,42 @@ static void strips(void)
     }
 }
 
+/* Two triangles of which the edge between them has its own vertices on either side, and a vertex of
+   none: each place has one region, and that is of the vertex that stands for the others. */
+static void welded_vertices(void)
+{
+    static double at[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 9, 9, 9};
+    static uint32_t corners[] = {0, 1, 2, 3, 5, 4};
+    static const uint32_t wanted[7] = {
+        0, 0, 0, SC_TRACE_NO_EDGE, SC_TRACE_NO_EDGE, 0, SC_TRACE_NO_EDGE};
+    const sc_pose pose = input_plain_pose(at, 7);
+    sc_mesh mesh;
+    sc_model *model = NULL;
+    sc_trace_result t = trace_scene_no_room();
+    sc_regions_result r;
+    sc_region region;
+    uint32_t of[7];
+    memset(&mesh, 0, sizeof mesh);
+    mesh.struct_size = sizeof mesh;
+    mesh.vertex_count = 7;
+    mesh.triangle_count = 2;
+    mesh.position_type = SC_DOUBLE;
+    mesh.index_type = SC_UINT32;
+    mesh.positions = at;
+    mesh.indices = corners;
+    memset(&r, 0, sizeof r);
+    r.struct_size = sizeof r;
+    r.region_capacity = 1;
+    r.regions = &region;
+    r.vertex_regions = of;
+    if (!CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) return;
+    CHECK(sc_trace(model, &pose, NULL, 0, NULL, &t) == SC_OK && t.node_count == 0);
+    CHECK(sc_trace_regions(model, &pose, &t, NULL, &r) == SC_OK && r.region_count == 1);
+    CHECK(region.vertex_count == 4 && region.component == 0 && region.area == 1);
+    for (int i = 0; i < 7; ++i) CHECK(of[i] == wanted[i]);
+    sc_model_free(model);
+}
+
 /* ---- what cannot be ---- */
 
 static void failing_memory(void)
@@ -774,8 +810,8 @@ static void wrong_arguments(void)
     undivide(&d);
 }
 
-SC_TEST_MAIN(SC_TEST(spheres_through_each_other), SC_TEST(planes_through_spheres),
-             SC_TEST(loops_in_a_triangle), SC_TEST(loops_by_hand), SC_TEST(equal_regions),
-             SC_TEST(any_meshes), SC_TEST(strips), SC_TEST(failing_memory), SC_TEST(cancelling),
-             SC_TEST(impossible_contours), SC_TEST(edges_with_two_names), SC_TEST(wrong_counts),
-             SC_TEST(wrong_arguments))
+SC_TEST_MAIN(SC_TEST(welded_vertices), SC_TEST(spheres_through_each_other),
+             SC_TEST(planes_through_spheres), SC_TEST(loops_in_a_triangle), SC_TEST(loops_by_hand),
+             SC_TEST(equal_regions), SC_TEST(any_meshes), SC_TEST(strips), SC_TEST(failing_memory),
+             SC_TEST(cancelling), SC_TEST(impossible_contours), SC_TEST(edges_with_two_names),
+             SC_TEST(wrong_counts), SC_TEST(wrong_arguments))

@@ -173,7 +173,8 @@ export interface Regions {
         /** How often closed components go round it; -2147483648 where that is not known. */
         inside: Int32Array;
     };
-    /** Of each vertex the region it is in; 0xffffffff of those in no triangle. */
+    /** Of each vertex the region it is in; 0xffffffff of those in no triangle, and of those that are
+     *  welded to another one, which has their region. */
     vertexRegions: Uint32Array;
     /** 4 m: of each contour, on both sheets, the regions on both sides. */
     sides: Uint32Array;

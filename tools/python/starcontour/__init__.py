@@ -158,7 +158,8 @@ class Regions(namedtuple("Regions", "regions vertex_regions sides")):
     """The parts into which contours divide a surface; see sc_region and sc_contour_sides.
 
     regions          structured array: component, vertex_count, area, inside
-    vertex_regions   of each vertex the region it is in; 0xffffffff of those in no triangle
+    vertex_regions   of each vertex the region it is in; 0xffffffff of those in no triangle, and of
+                     those that are welded to another one, which has their region
     sides            (contours, 2, 2): of each contour, on both sheets, the regions on both sides
     """
 
