@@ -280,7 +280,7 @@ bench-report: ## make that report anew from its CSV files and build/peers/peers.
 
 .PHONY: bench bench-quick
 ifneq ($(strip $(missing_for_programs)),)
-bench: ## measure all methods on all scenes; report and plots in bench/results/<machine>; a quarter of an hour
+bench: ## measure all methods on all scenes; report and plots in bench/results/<machine>; half an hour
 bench-quick: ## a small version of bench, in build/bench-quick; two minutes
 bench bench-quick:
 	@echo "make $@ needs $(strip $(missing_for_programs)): run 'make deps with=bench' first" >&2; exit 1
