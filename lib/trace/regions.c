@@ -539,7 +539,7 @@ static uint32_t part_at(const region_work *w, const divided *d, const double at[
 static uint32_t element_of_part(const divided *d, uint32_t part)
 {
     uint32_t i = 0;
-    while (d->part[i] != part) i++; /* each part has an interval */
+    while (SC_ALWAYS(i + 1 < d->mark_count) && d->part[i] != part) i++; /* each has an interval */
     return d->marks[i].element;
 }
 
