@@ -415,9 +415,11 @@ static void boxes_alone_are_not_culled(void)
             ask(&s, &o, 0, 0, &a);
             CHECK(a.status == (itself ? SC_ERROR_BOXES_ONLY : SC_OK));
             CHECK(a.result.verdict == (itself ? SC_VERDICT_NONE : SC_VERDICT_CLEAN));
+            forget(&a);
             o.method = SC_METHOD_DEFAULT;
             ask(&s, &o, 0, 0, &a);
             CHECK(a.status == SC_OK);
+            forget(&a);
         }
     }
     sc_workspace_free(s.things[0].workspace);
