@@ -13,15 +13,12 @@
 # SPDX-License-Identifier: MIT
 . tests/script.sh
 . tests/portable.sh
+. tests/wine.sh
 set +u
 mingw=${1:-x86_64-w64-mingw32}
 set -u
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
-# tool NAME: where clang has that program, else PATH.
-tool() {
-    found=$(clang -print-prog-name="$1" 2>/dev/null) && command -v "$found"
-}
 libraries=/usr/$mingw/lib
 headers=
 for folder in "/usr/share/mingw-w64/include" "/usr/$mingw/include"; do
@@ -38,7 +35,6 @@ if [ -n "$missing" ]; then
     skip "nothing was built by clang-cl; not there:$missing"
     finish
 fi
-jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 at=$scratch/made
 mkdir "$at"
 
@@ -201,10 +197,8 @@ skip "$(echo $portable_left_out): not built by clang-cl; they need GMP, libccd o
         check "test_$test links" link "test_$test" "$at/tests/test_$test.obj" "$at/tests/support.lib" \
             "$at/tests/partition_metis.obj" "$static"
     done
-    same='adversaries harness inputs oracle_weld shapes soups'
-    same=$(printf 'tests/%s.c ' $same)tests/runs/determinism.c
-    check "determinism compiles" compile "$at/same" /FItests/packages/same_math.h -- $same
-    check "determinism links" link determinism $(objects "$at/same" $same) "$static"
+    check "determinism compiles" compile "$at/same" /FItests/packages/same_math.h -- $portable_determinism
+    check "determinism links" link determinism $(objects "$at/same" $portable_determinism) "$static"
     check "a user compiles" compile "$at/user" -- tests/packages/consumer.c
     check "a user of the static library links" link consumer "$at/user/consumer.obj" "$static"
     check "a user of the DLL compiles" compile "$at/dll/user" /DSC_SHARED -- tests/packages/consumer.c
@@ -222,43 +216,13 @@ one_file() {
 }
 check "the amalgamation" one_file
 
-# The layouts of 64 bits, here where long has 32; and they are noticed if they are others.
-layouts() {
-    awk -f tests/abi/asserted.awk "$1" >"$at/asserted.c" &&
-        $clang_cl /nologo /Zs /std:c11 /WX /Iinclude $settings "$at/asserted.c"
-}
-other_layouts() {
-    sed '/^struct sc_pose: /s/[0-9]* bytes/4 bytes/' tests/abi/interface_64.txt >"$at/other.txt"
-    ! layouts "$at/other.txt"
-}
-check "structures, enumerators and calls are those of tests/abi" layouts tests/abi/interface_64.txt
-check "another layout is noticed" other_layouts
+# The layouts of 64 bits, here where long has 32.
+layouts_hold "" $clang_cl /nologo /Zs /std:c11 /WX /Iinclude $settings
 # ------------------------------------------------------------------------------------------------
 # Running
 
-wine=
-for candidate in wine64 wine; do
-    [ -n "$wine" ] || ! command -v "$candidate" >/dev/null 2>&1 || wine=$candidate
-done
-if [ -z "$wine" ]; then
-    skip "nothing built by clang-cl was run, only linked: no wine"
-    finish
-fi
-export WINEPREFIX="$scratch/wine" WINEDEBUG=-all
-trap '$(command -v wineserver || echo true) -k 2>/dev/null; rm -rf "$scratch"' EXIT
-# windows PROGRAM ARGUMENT...
-windows() {
-    program=$1
-    shift
-    "$wine" "$at/$program.exe" "$@" 2>/dev/null
-}
-plain() {
-    tr -d '\r'
-}
-check "wine starts" windows test_base --list
-for test in $portable_tests; do
-    check "test_$test passes" windows "test_$test" --scale 20
-done
+start_wine "by clang-cl"
+portable_tests_pass
 check "a program of version 0.1 runs with the DLL" windows dll/old_caller
 same_pairs() {
     for program in consumer dll/consumer amalgamated; do
@@ -269,8 +233,8 @@ check "the same pairs as everywhere" same_pairs
 # Here, as there is one set of instructions there, queries are more: the hash is compared.
 same_hash() {
     # shellcheck disable=SC2046,SC2086
-    $CC -std=c99 -O1 -ffp-contract=off -include tests/packages/same_math.h -Iinclude -Ilib -Itests $same \
-        $(grep '^lib/' lib/sources.list) -lm -o "$scratch/determinism" &&
+    $CC -std=c99 -O1 -ffp-contract=off -include tests/packages/same_math.h -Iinclude -Ilib -Itests \
+        $portable_determinism $(grep '^lib/' lib/sources.list) -lm -o "$scratch/determinism" &&
         "$scratch/determinism" meshes/*.obj | sed 's/ .*//' >"$scratch/hash" && test -s "$scratch/hash" &&
         windows determinism meshes/*.obj | plain | sed 's/ .*//' | diff "$scratch/hash" -
 }

@@ -16,8 +16,7 @@ machines=${*:-aarch64-linux-gnu arm-linux-gnueabihf s390x-linux-gnu}
 
 flags='-std=c99 -D_POSIX_C_SOURCE=200809L -O2 -ffp-contract=off -Iinclude -Ilib -Itests'
 core="$(grep '^lib/' lib/sources.list) lib/build/partition_metis.c"
-same_input='tests/adversaries.c tests/harness.c tests/inputs.c tests/oracle_weld.c tests/shapes.c tests/soups.c'
-same_math='-include tests/packages/same_math.h'
+same_input="-include tests/packages/same_math.h $portable_determinism"
 
 # compile COMPILER FOLDER SOURCE...: their objects, as many at a time as there are processors.
 compile() {
@@ -27,8 +26,7 @@ compile() {
     mkdir -p "$folder" || return 1
     for source; do
         echo "$source" "$folder/$(echo "$source" | tr / _).o"
-    done | xargs -n 2 -P "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)" \
-        sh -c "$compiler $flags -Werror -Wall -Wextra -c"' "$0" -o "$1"'
+    done | xargs -n 2 -P "$jobs" sh -c "$compiler $flags -Werror -Wall -Wextra -c"' "$0" -o "$1"'
 }
 # library COMPILER FOLDER; support COMPILER FOLDER ARCHIVER: what tests share, as an archive
 library() {
@@ -51,7 +49,7 @@ link() {
 
 check "the library here" library "$CC" "$scratch/here"
 # shellcheck disable=SC2086
-check "determinism here" link "$CC" "$scratch/here" determinism $same_math tests/runs/determinism.c $same_input
+check "determinism here" link "$CC" "$scratch/here" determinism $same_input
 # Elsewhere there is one set of instructions, and so fewer queries.
 hash() {
     "$@" meshes/*.obj | sed 's/ .*//'
@@ -72,8 +70,7 @@ for machine in $machines; do
     fi
     check "$machine: the library" library "$cross" "$at"
     # shellcheck disable=SC2086
-    check "$machine: determinism links" link "$cross -static" "$at" determinism $same_math \
-        tests/runs/determinism.c $same_input
+    check "$machine: determinism links" link "$cross -static" "$at" determinism $same_input
     check "$machine: what tests share" support "$cross" "$at" "$machine-ar"
     for test in $portable_tests; do
         check "$machine: test_$test links" link "$cross -static" "$at" "test_$test" "tests/test_$test.c" \

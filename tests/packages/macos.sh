@@ -20,9 +20,6 @@ given=$1
 set -u
 unset MAKEFLAGS MFLAGS MAKELEVEL
 
-tool() {
-    found=$(clang -print-prog-name="$1" 2>/dev/null) && command -v "$found"
-}
 missing=
 for name in ld64.lld llvm-ar llvm-nm llvm-objdump; do
     tool "$name" >/dev/null || missing="$missing $name"
@@ -31,7 +28,6 @@ if [ -n "$missing" ]; then
     skip "nothing was built for macOS; not there:$missing"
     finish
 fi
-jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 version=$(sed -n 's/^#define SC_VERSION_[MP][A-Z]* \([0-9]*\)$/\1/p' include/starcontour.h | paste -sd. -)
 case $version in
 0.*) soname=${version%.*} ;;
@@ -116,14 +112,6 @@ alone() {
         grep -v libstarcontour | sort -u >"$scratch/used"
     echo /usr/lib/libSystem.B.dylib | diff - "$scratch/used"
 }
-layouts() {
-    awk -f tests/abi/asserted.awk "$1" >"$scratch/asserted.c" &&
-        $compiler -std=c11 -Wall -Wextra -Werror -fsyntax-only -Iinclude "$scratch/asserted.c"
-}
-other_layouts() {
-    sed '/^struct sc_pose: /s/[0-9]* bytes/4 bytes/' tests/abi/interface_64.txt >"$scratch/other.txt"
-    ! layouts "$scratch/other.txt"
-}
 one_file() {
     "$MAKE" --no-print-directory amalgamation BUILD="$at" &&
         $compiler -std=c99 -ffp-contract=off -O0 -Wall -Wextra -Werror -Wno-pass-failed \
@@ -157,8 +145,7 @@ for machine in arm64 x86_64; do
     check "$machine: what else is in the static library is hidden" hidden
     check "$machine: the shared library has its name" named
     check "$machine: it needs libSystem alone" alone
-    check "$machine: structures, enumerators and calls are those of tests/abi" layouts tests/abi/interface_64.txt
-    check "$machine: another layout is noticed" other_layouts
+    layouts_hold "$machine: " $compiler -std=c11 -Wall -Wextra -Werror -fsyntax-only -Iinclude
     check "$machine: the amalgamation" one_file
     [ "$sdk" != "$stand_ins" ] || continue
     check "$machine: a user links" link consumer -std=c99 -Iinclude tests/packages/consumer.c

@@ -10,6 +10,7 @@
 # SPDX-License-Identifier: MIT
 . tests/script.sh
 . tests/portable.sh
+. tests/wine.sh
 set +u
 prefix=${1:-x86_64-w64-mingw32}
 at=${2:-build/mingw}
@@ -21,7 +22,6 @@ if ! command -v "$cross" >/dev/null 2>&1; then
     finish
 fi
 unset MAKEFLAGS MFLAGS MAKELEVEL
-jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 mkdir -p "$at"
 
 # cross_make FOLDER CPPFLAGS TARGET...; not warned of: mingw's isfinite converts, and its formats
@@ -62,9 +62,7 @@ static=$at/lib/libstarcontour.a
             "$at/lib/libstarcontour_metis.a" "$static"
     done
 }
-same_input='-include tests/packages/same_math.h -Ilib -Itests
-    tests/runs/determinism.c tests/adversaries.c tests/harness.c tests/inputs.c tests/oracle_weld.c
-    tests/shapes.c tests/soups.c'
+same_input="-include tests/packages/same_math.h -Ilib -Itests $portable_determinism"
 # shellcheck disable=SC2086
 check "determinism links" link determinism $same_input "$static"
 check "a user of the static library links" link consumer tests/packages/consumer.c "$static"
@@ -105,33 +103,8 @@ check "the amalgamation" amalgamated
 # ------------------------------------------------------------------------------------------------
 # Running
 
-wine=
-for candidate in wine64 wine; do
-    if command -v "$candidate" >/dev/null 2>&1; then
-        wine=$candidate
-        break
-    fi
-done
-if [ -z "$wine" ]; then
-    skip "nothing built for Windows was run, only linked: no wine"
-    finish
-fi
-export WINEPREFIX="$scratch/wine" WINEDEBUG=-all
-# The server stays for some seconds after a program ends; without it each would wait for a new one.
-trap '$(command -v wineserver || echo true) -k 2>/dev/null; rm -rf "$scratch"' EXIT
-
-windows() {
-    program=$1
-    shift
-    "$wine" "$at/$program.exe" "$@" 2>/dev/null
-}
-plain() {
-    tr -d '\r'
-}
-check "wine starts" windows test_base --list
-for test in $portable_tests; do
-    check "test_$test passes" windows "test_$test" --scale 20
-done
+start_wine "for Windows"
+portable_tests_pass
 check "a program of version 0.1 runs with the DLL" windows old_caller
 # here PROGRAM SOURCE...: the same, compiled for this system.
 here() {
