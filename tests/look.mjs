@@ -14,31 +14,21 @@
  * SPDX-License-Identifier: MIT
  */
 import {readFileSync} from 'node:fs';
-import {createRequire} from 'node:module';
-import {resolve} from 'node:path';
-import {pathToFileURL} from 'node:url';
+
+import {check, errors, launch, look, open_file, open_page, requests} from './browser.mjs';
 
 const [modules, browser_path, job, file, ...rest] = process.argv.slice(2);
-const {chromium} = createRequire(resolve(modules) + '/')('playwright-core');
-const browser = await chromium.launch({
-    executablePath: browser_path,
-    args: ['--no-sandbox', '--enable-unsafe-swiftshader']
-});
-const errors = [], requests = [];
+const browser = await launch(modules, browser_path);
+const wide = {viewport: {width: 1100, height: 700}, colorScheme: 'light'};
+const phone = {viewport: {width: 390, height: 780}, hasTouch: true, isMobile: true, deviceScaleFactor: 2};
 
 async function open(options) {
-    const page = await browser.newPage(options);
-    page.on('pageerror', error => errors.push(error.message));
-    page.on('console', message => message.type() === 'error' && errors.push(message.text()));
-    page.on('request', request => requests.push(request.url()));
-    await page.goto(pathToFileURL(resolve(file)).href);
-    await page.waitForFunction(() => window.starcontour?.ready, null, {timeout: 60000});
+    const page = await open_page(browser, options);
+    await open_file(page, file, () => window.starcontour?.ready);
     return page;
 }
 
-function check(name, is_true, why = '') {
-    console.log(is_true ? `ok ${name}` : `not ok ${name}: ${why}`);
-}
+const state = page => page.evaluate('starcontour.state()');
 
 /* Waits until the camera stands still and has been drawn. */
 async function settle(page) {
@@ -47,31 +37,52 @@ async function settle(page) {
         requestAnimationFrame(() => requestAnimationFrame(done))));
 }
 
-/* Red pixels of the canvas, those of them near a point, and a sum over all. */
-const look = (page, point) => page.evaluate(point => {
-    const from = document.getElementById('canvas'), copy = document.createElement('canvas');
-    copy.width = from.width;
-    copy.height = from.height;
-    const context = copy.getContext('2d');
-    context.drawImage(from, 0, 0);
-    const {data} = context.getImageData(0, 0, copy.width, copy.height);
-    const center = point && starcontour.project(point), near = copy.width / 12;
-    let red = 0, there = 0, sum = 0;
-    for (let i = 0; i < data.length; i += 4) {
-        sum = (sum * 31 + data[i] + 7 * data[i + 1] + 13 * data[i + 2]) % 1000000007;
-        if (data[i] < 120 || data[i + 1] > 0.45 * data[i] || data[i + 2] > 0.45 * data[i]) continue;
-        red++;
-        const x = i / 4 % copy.width, y = Math.floor(i / 4 / copy.width);
-        there += center && Math.hypot(x - center[0], y - center[1]) < near;
-    }
-    return {red, there, sum, center};
-}, point);
+/* Presses keys, one after the other. */
+async function press(page, ...keys) {
+    for (const key of keys) await page.keyboard.press(key);
+    await settle(page);
+}
+
+/* Presses a key where a selector points, which leads to another frame. */
+async function press_at(page, selector, key, frame) {
+    await page.locator(selector).focus();
+    await page.keyboard.press(key);
+    await page.waitForFunction(frame => starcontour.state().frame === frame, frame);
+    await settle(page);
+}
 
 const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
 
+/* Clicks on one of the list beside the mesh of a frame, which is a place or a contour. */
+async function click_on(page, word, i, frame) {
+    const button = page.locator('#places button').nth(i), before = await state(page);
+    await button.click();
+    await settle(page);
+    const after = await state(page);
+    const target = frame.places[i].center.map((x, k) => x - (frame.low[k] + frame.high[k]) / 2);
+    check(`a click on ${word} ${i + 1} moves the camera`, distance(before.eye, after.eye) > 0.1,
+        JSON.stringify([before.eye, after.eye]));
+    check('towards it', distance(after.target, target) < 1e-6, JSON.stringify([after.target, target]));
+    check('and it is marked', await button.getAttribute('aria-current') === 'true');
+}
+
+async function tap_on(page, i) {
+    await page.locator('#places button').nth(i).tap();
+    await settle(page);
+    check('a tap flies there', (await state(page)).place === i);
+}
+
+const fits = page => page.evaluate('document.documentElement.scrollWidth <= innerWidth');
+
+/* At the end, when the file was opened so many times. */
+function check_quiet(opened) {
+    check('no errors', errors.length === 0, errors.join('; '));
+    check('nothing is fetched but the page',
+        requests.length === opened && requests.every(url => url.startsWith('file:')), requests.join(' '));
+}
+
 async function look_at_page() {
-    const page = await open({viewport: {width: 1100, height: 700}, colorScheme: 'light'});
-    const state = () => page.evaluate('starcontour.state()');
+    const page = await open(wide);
     const frames = await page.evaluate('starcontour.frames');
     await settle(page);
     const places = frames[0].places;
@@ -87,40 +98,24 @@ async function look_at_page() {
     check('there is red', first.red > 20, first.red);
 
     for (const [i, one] of places.entries()) {
-        const before = await state();
-        await page.locator('#places button').nth(i).click();
-        await settle(page);
-        const after = await state(), seen = await look(page, one.center);
-        const target = one.center.map((x, k) => x - (frames[0].low[k] + frames[0].high[k]) / 2);
-        check(`a click on place ${i + 1} moves the camera`, distance(before.eye, after.eye) > 0.1,
-            JSON.stringify([before.eye, after.eye]));
-        check('towards it', distance(after.target, target) < 1e-6, JSON.stringify([after.target, target]));
+        await click_on(page, 'place', i, frames[0]);
+        const seen = await look(page, one.center);
         check('where it is red', seen.there > 20, JSON.stringify(seen));
-        check('and it is marked', await page.locator('#places button').nth(i).getAttribute('aria-current') === 'true');
     }
-    await page.keyboard.press('c');
-    await settle(page);
+    await press(page, 'c');
     check('the second place has another color', (await look(page, places[1].center)).there === 0);
-    await page.keyboard.press('c');
-    await settle(page);
+    await press(page, 'c');
     check('or is red again', (await look(page, places[1].center)).there > 20);
-    await page.keyboard.press('n');
-    await settle(page);
-    check('the key N goes on', (await state()).place === 0, (await state()).place);
-    await page.keyboard.press('f');
-    await settle(page);
+    await press(page, 'n');
+    check('the key N goes on', (await state(page)).place === 0, (await state(page)).place);
+    await press(page, 'f');
     const fitted = await look(page);
-    await page.keyboard.press('x');
-    await settle(page);
+    await press(page, 'x');
     check('X sees through the mesh', (await look(page)).sum !== fitted.sum);
-    await page.keyboard.press('x');
-    await settle(page);
+    await press(page, 'x');
     check('and back', (await look(page)).sum === fitted.sum);
 
-    await page.locator('#slider').focus();
-    await page.keyboard.press('End');
-    await page.waitForFunction(() => starcontour.state().frame === 1);
-    await settle(page);
+    await press_at(page, '#slider', 'End', 1);
     const second = await look(page);
     check('the slider changes the picture', second.sum !== fitted.sum);
     check('the other frame has no red', second.red === 0, second.red);
@@ -128,36 +123,28 @@ async function look_at_page() {
     check('and its name', (await page.locator('#title').innerText()).includes('clean<!--<script>.obj'),
         await page.locator('#title').innerText());
     check('two curves', await page.locator('#curve polyline').count() === 2);
-    await page.locator('#canvas').focus();
-    await page.keyboard.press('ArrowLeft');
-    await page.waitForFunction(() => starcontour.state().frame === 0);
-    await settle(page);
+    await press_at(page, '#canvas', 'ArrowLeft', 0);
     check('a key goes back to the first picture', (await look(page)).sum === fitted.sum);
     const curve = await page.locator('#curve').boundingBox();
     await page.mouse.click(curve.x + curve.width - 6, curve.y + curve.height / 2);
     await page.waitForFunction(() => starcontour.state().frame === 1);
-    check('the curve is a slider, too', (await state()).frame === 1);
-    await page.keyboard.press('t');
-    await settle(page);
-    check('T makes it dark', (await state()).theme === 'dark' && (await look(page)).sum !== second.sum);
+    check('the curve is a slider, too', (await state(page)).frame === 1);
+    await press(page, 't');
+    check('T makes it dark', (await state(page)).theme === 'dark' && (await look(page)).sum !== second.sum);
     await page.locator('#help').click();
     check('help opens', await page.locator('#keys').isVisible());
     await page.close();
 
     const dark = await open({viewport: {width: 600, height: 500}, colorScheme: 'dark'});
-    check('dark where the system is', (await dark.evaluate('starcontour.state()')).theme === 'dark');
+    check('dark where the system is', (await state(dark)).theme === 'dark');
     await dark.close();
-    const phone = await open({viewport: {width: 390, height: 780}, hasTouch: true, isMobile: true, deviceScaleFactor: 2});
-    const {width, height} = await phone.locator('#canvas').boundingBox();
+    const small = await open(phone);
+    const {width, height} = await small.locator('#canvas').boundingBox();
     check('on a phone the mesh has room', width >= 380 && height >= 240, `${width} x ${height}`);
-    check('and nothing is cut off', await phone.evaluate('document.documentElement.scrollWidth <= innerWidth'));
-    await phone.locator('#places button').first().tap();
-    await settle(phone);
-    check('a tap flies there', (await phone.evaluate('starcontour.state()')).place === 0);
-    await phone.close();
-    check('no errors', errors.length === 0, errors.join('; '));
-    check('nothing is fetched but the page', requests.length === 3 && requests.every(url => url.startsWith('file:')),
-        requests.join(' '));
+    check('and nothing is cut off', await fits(small));
+    await tap_on(small, 0);
+    await small.close();
+    check_quiet(3);
 }
 
 /*
@@ -167,23 +154,19 @@ async function look_at_page() {
  */
 const look_along = (page, counts) => page.evaluate(async counts => {
     const {lines} = await starcontour.contours();
-    const from = document.getElementById('canvas'), copy = document.createElement('canvas');
-    copy.width = from.width;
-    copy.height = from.height;
-    const context = copy.getContext('2d');
+    const context = copy_canvas(), {width, height} = context.canvas;
+    const {data} = context.getImageData(0, 0, width, height);
     context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--contour').trim();
     context.fillRect(0, 0, 1, 1);
     const wanted = context.getImageData(0, 0, 1, 1).data;
-    context.drawImage(from, 0, 0);
-    const {data} = context.getImageData(0, 0, copy.width, copy.height);
-    const has = new Uint8Array(copy.width * copy.height), near = new Uint8Array(has.length);
+    const has = new Uint8Array(width * height), near = new Uint8Array(has.length);
     let colored = 0, stray = 0;
     for (let i = 0; i < has.length; i++)
         colored += has[i] = [0, 1, 2].every(k => Math.abs(data[4 * i + k] - wanted[k]) < 10);
     const round = ([x, y], act) => {
         for (let v = Math.round(y) - 5; v <= y + 5; v++) {
             for (let u = Math.round(x) - 5; u <= x + 5; u++)
-                if (u >= 0 && v >= 0 && u < copy.width && v < copy.height) act(v * copy.width + u);
+                if (u >= 0 && v >= 0 && u < width && v < height) act(v * width + u);
         }
     };
     let segment = 0;
@@ -212,11 +195,7 @@ const look_along = (page, counts) => page.evaluate(async counts => {
 
 /* The colors of the canvas at points of the mesh. */
 const colors_at = (page, points) => page.evaluate(points => {
-    const from = document.getElementById('canvas'), copy = document.createElement('canvas');
-    copy.width = from.width;
-    copy.height = from.height;
-    const context = copy.getContext('2d');
-    context.drawImage(from, 0, 0);
+    const context = copy_canvas();
     return points.map(point => {
         const [x, y] = starcontour.project(point);
         return [...context.getImageData(Math.round(x), Math.round(y), 1, 1).data.slice(0, 3)];
@@ -240,8 +219,7 @@ const region_areas = page => page.evaluate(async () => {
 /* Two spikes through a floor, which cut their tips off and triangles out of the floor, one of them out
    of both halves; and a wall, of which a third is above the floor. Then all apart. */
 async function look_at_contours() {
-    const page = await open({viewport: {width: 1100, height: 700}, colorScheme: 'light'});
-    const state = () => page.evaluate('starcontour.state()');
+    const page = await open(wide);
     const frames = await page.evaluate('starcontour.frames'), contours = frames[0].places;
     await settle(page);
     check('two frames of one mesh', frames.length === 2 && frames[1].mesh === frames[0].mesh, frames.length);
@@ -286,68 +264,44 @@ async function look_at_contours() {
     check('the smaller ones stronger', Math.min(spread(seen[1]), spread(seen[2])) > 1.5 * spread(seen[0]),
         JSON.stringify(seen));
     const before_colors = await look(page);
-    await page.keyboard.press('c');
-    await settle(page);
+    await press(page, 'c');
     const plain = await colors_at(page, spots);
     check('C takes them away', plain.every(color => spread(color) < 20), JSON.stringify(plain));
-    await page.keyboard.press('c');
-    await settle(page);
+    await press(page, 'c');
     check('and back', (await look(page)).sum === before_colors.sum);
 
-    for (const [i, one] of contours.entries()) {
-        const before = await state();
-        await page.locator('#places button').nth(i).click();
-        await settle(page);
-        const after = await state(), along = await look_along(page, counts);
-        const target = one.center.map((x, k) => x - (frames[0].low[k] + frames[0].high[k]) / 2);
-        check(`a click on contour ${i + 1} moves the camera`, distance(before.eye, after.eye) > 0.1,
-            JSON.stringify([before.eye, after.eye]));
-        check('towards it', distance(after.target, target) < 1e-6, JSON.stringify([after.target, target]));
+    for (const i of contours.keys()) {
+        await click_on(page, 'contour', i, frames[0]);
+        const along = await look_along(page, counts);
         check('where it is drawn', along.parts[i] > 0.4, JSON.stringify(along));
-        check('and it is marked', await page.locator('#places button').nth(i).getAttribute('aria-current') === 'true');
     }
-    await page.keyboard.press('n');
-    await settle(page);
-    check('the key N goes on', (await state()).place === 0, (await state()).place);
-    await page.keyboard.press('f');
-    await settle(page);
+    await press(page, 'n');
+    check('the key N goes on', (await state(page)).place === 0, (await state(page)).place);
+    await press(page, 'f');
     const fitted = await look(page);
-    await page.keyboard.press('x');
-    await settle(page);
+    await press(page, 'x');
     const through = await look_along(page, counts);
     check('X shows all of the contours', through.parts.every(part => part > 0.95), JSON.stringify(through));
-    await page.keyboard.press('x');
-    await page.keyboard.press('t');
-    await settle(page);
+    await press(page, 'x', 't');
     const dark = await look_along(page, counts);
     check('in the dark they have a color, too', dark.parts[2] > 0.9 && dark.stray === 0, JSON.stringify(dark));
     await page.keyboard.press('t');
-    await page.locator('#slider').focus();
-    await page.keyboard.press('End');
-    await page.waitForFunction(() => starcontour.state().frame === 1);
-    await settle(page);
+    await press_at(page, '#slider', 'End', 1);
     const none = await look_along(page, []);
     check('the other frame has none', none.colored === 0 && none.segments === 0, JSON.stringify(none));
     check('and says so', (await page.locator('#count').innerText()) === 'No contour');
     check('two curves', await page.locator('#curve polyline').count() === 2);
-    await page.locator('#canvas').focus();
-    await page.keyboard.press('ArrowLeft');
-    await page.waitForFunction(() => starcontour.state().frame === 0);
-    await settle(page);
+    await press_at(page, '#canvas', 'ArrowLeft', 0);
     check('a key goes back to the first picture', (await look(page)).sum === fitted.sum);
     await page.locator('#help').click();
     check('help is about contours', (await page.locator('#keys').innerText()).includes('the next contour'));
     await page.close();
 
-    const phone = await open({viewport: {width: 390, height: 780}, hasTouch: true, isMobile: true, deviceScaleFactor: 2});
-    check('on a phone nothing is cut off', await phone.evaluate('document.documentElement.scrollWidth <= innerWidth'));
-    await phone.locator('#places button').nth(2).tap();
-    await settle(phone);
-    check('a tap flies there', (await phone.evaluate('starcontour.state()')).place === 2);
-    await phone.close();
-    check('no errors', errors.length === 0, errors.join('; '));
-    check('nothing is fetched but the page', requests.length === 2 && requests.every(url => url.startsWith('file:')),
-        requests.join(' '));
+    const small = await open(phone);
+    check('on a phone nothing is cut off', await fits(small));
+    await tap_on(small, 2);
+    await small.close();
+    check_quiet(2);
 }
 
 /* A picture: how large, and what is in each view, and whether the first has red, or a contour's

@@ -10,45 +10,18 @@
  * SPDX-License-Identifier: MIT
  */
 import {readFileSync} from 'node:fs';
-import {createRequire} from 'node:module';
-import {basename, resolve} from 'node:path';
-import {pathToFileURL} from 'node:url';
+import {basename} from 'node:path';
+
+import {check, errors, launch, look, open_file, open_page, requests} from '../browser.mjs';
 
 const [modules, browser_path, job, file, ...rest] = process.argv.slice(2);
-const {chromium} = createRequire(resolve(modules) + '/')('playwright-core');
-const browser = await chromium.launch({
-    executablePath: browser_path,
-    args: ['--no-sandbox', '--enable-unsafe-swiftshader']
-});
-const errors = [], requests = [];
+const browser = await launch(modules, browser_path);
 
-async function open(options) {
-    const page = await browser.newPage(options);
-    page.on('pageerror', error => errors.push(error.message));
-    page.on('console', message => message.type() === 'error' && errors.push(message.text()));
-    page.on('request', request => requests.push(request.url()));
+async function open_cloth(options) {
+    const page = await open_page(browser, {...options, colorScheme: 'light'});
+    await open_file(page, file, () => window.starcontour?.state().ready);
     return page;
 }
-
-function check(name, is_true, why = '') {
-    console.log(is_true ? `ok ${name}` : `not ok ${name}: ${why}`);
-}
-
-/* Red pixels of the canvas, and a sum over all. */
-const look = page => page.evaluate(() => {
-    const from = document.getElementById('canvas'), copy = document.createElement('canvas');
-    copy.width = from.width;
-    copy.height = from.height;
-    const context = copy.getContext('2d');
-    context.drawImage(from, 0, 0);
-    const {data} = context.getImageData(0, 0, copy.width, copy.height);
-    let red = 0, sum = 0;
-    for (let i = 0; i < data.length; i += 4) {
-        sum = (sum * 31 + data[i] + 7 * data[i + 1] + 13 * data[i + 2]) % 1000000007;
-        red += data[i] > 120 && data[i + 1] < 0.45 * data[i] && data[i + 2] < 0.45 * data[i];
-    }
-    return {red, sum};
-});
 
 const frames_on = (page, count) => page.evaluate(count => new Promise(done => {
     const wait = left => left ? requestAnimationFrame(() => wait(left - 1)) : done();
@@ -81,7 +54,7 @@ async function pull(page) {
 }
 
 async function look_at_page([hit, moved, apart, ply, stl, bad]) {
-    const page = await open({viewport: {width: 900, height: 700}, colorScheme: 'light'});
+    const page = await open_cloth({viewport: {width: 900, height: 700}});
     const state = () => page.evaluate('starcontour.state()');
     const text = id => page.locator(id).innerText();
     const drop = async (...files) => {
@@ -90,8 +63,6 @@ async function look_at_page([hit, moved, apart, ply, stl, bad]) {
             basename(files[0]), {timeout: 20000});
         await frames_on(page, 2);
     };
-    await page.goto(pathToFileURL(resolve(file)).href);
-    await page.waitForFunction(() => window.starcontour?.state().ready, null, {timeout: 60000});
     check('a cloth', (await state()).mode === 'cloth', JSON.stringify(await state()));
     check('of many triangles', (await text('#title')).includes('4,608'), await text('#title'));
     const first = await look(page);
@@ -165,7 +136,7 @@ async function look_at_page([hit, moved, apart, ply, stl, bad]) {
 
 /* A site that has the package, the questions and the meshes. */
 async function look_at_answers(meshes) {
-    const page = await open();
+    const page = await open_page(browser);
     await page.route('http://localhost/**', route => {
         const name = new URL(route.request().url()).pathname.slice(1);
         if (name === '') return route.fulfill({contentType: 'text/html', body: '<!doctype html>'});
@@ -186,9 +157,7 @@ async function look_at_answers(meshes) {
 if (job === 'page') await look_at_page(rest);
 else if (job === 'answers') await look_at_answers(rest);
 else {
-    const page = await open({viewport: {width: 1000, height: 700}, colorScheme: 'light'});
-    await page.goto(pathToFileURL(resolve(file)).href);
-    await page.waitForFunction(() => window.starcontour?.state().ready, null, {timeout: 60000});
+    const page = await open_cloth({viewport: {width: 1000, height: 700}});
     await pull(page);
     await page.screenshot({path: rest[0]});
 }
