@@ -37,7 +37,7 @@ page)
     command -v npm >/dev/null 2>&1 || { echo "make wasm-page needs node and npm" >&2; exit 1; }
     tools/page/build.sh --install
     modules=${BUILD:-build}/page
-    cp "$here/page"/*.js "$package"/*.js "$modules"
+    cp "$here/page"/*.js tools/page/view.js "$package"/*.js "$modules"
     (cd "$modules" && node_modules/.bin/esbuild cloth.js --bundle --minify --format=esm \
         --target=es2022 --legal-comments=none --log-level=warning --outfile=cloth_bundle.js)
     {

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds tools/page/page.html, which sc-query carries inside: template.html with main.js,
-# contours.js and what they use of three.js as one script, behind the license of three.js.
+# Builds tools/page/page.html, which sc-query carries inside: template.html with main.js, what it
+# imports of this folder, and what they use of three.js as one script, behind the license of three.js.
 #
 #     tools/page/build.sh [FILE]      from the top of the repository; needs node and npm
 #     tools/page/build.sh --install   only fetches what package-lock.json names, for this and tests
@@ -20,7 +20,7 @@ if ! cmp -s "$here/package-lock.json" "$work/installed"; then
 fi
 [ "${1:-}" != --install ] || exit 0
 
-cp "$here/main.js" "$here/contours.js" "$work"
+cp "$here"/*.js "$work"
 (cd "$work" && node_modules/.bin/esbuild main.js --bundle --minify --format=iife --target=es2020 \
     --legal-comments=none --log-level=warning --outfile=bundle.js)
 {

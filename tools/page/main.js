@@ -8,17 +8,15 @@
  * what is in them. A frame is decoded when it is looked at.
  */
 import {
-    AmbientLight, Box3, Box3Helper, BufferAttribute, BufferGeometry, Color, DirectionalLight,
-    DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, PerspectiveCamera, Scene,
-    Vector3, WebGLRenderer
+    Box3, Box3Helper, BufferAttribute, BufferGeometry, Color, DoubleSide, LineBasicMaterial, LineSegments,
+    MeshLambertMaterial, Vector3
 } from 'three';
-import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {LineMaterial} from 'three/addons/lines/LineMaterial.js';
 import {LineSegments2} from 'three/addons/lines/LineSegments2.js';
 import {LineSegmentsGeometry} from 'three/addons/lines/LineSegmentsGeometry.js';
 import {divide, read_contours} from './contours.js';
+import {at, color_of, fit_to_room, make_view, plural} from './view.js';
 
-const at = id => document.getElementById(id);
 const is_picture = location.hash === '#picture';
 const still = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
@@ -127,24 +125,8 @@ for (const info of frames) info.origin = origin;
  */
 
 const palette = ['#dc1e1e', '#1e6edc', '#f09614', '#149650', '#a03cbe', '#e65a96', '#14a0b4', '#96781e'];
-const canvas = at('canvas');
-const renderer = new WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
-const camera = new PerspectiveCamera(40, 1, 0.01, 100);
-const controls = new OrbitControls(camera, canvas);
-const scene = new Scene();
-const lamp = new DirectionalLight('#ffffff', 2.2);
-lamp.position.set(0.4, 0.7, 1);
-camera.add(lamp);
-scene.add(camera, new AmbientLight('#ffffff', 1.1));
-const surface = new MeshLambertMaterial({
-    side: DoubleSide, flatShading: true, polygonOffset: true, polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1
-});
-const paints = palette.map(color => new MeshLambertMaterial({
-    color, emissive: color, emissiveIntensity: 0.45, side: DoubleSide, flatShading: true
-}));
-const all = new Mesh(new BufferGeometry(), surface);
-const hits = new Mesh(new BufferGeometry(), paints[0]);
+const view = make_view(palette);
+const {canvas, renderer, camera, controls, scene, surface, paints, all, hits} = view;
 const lines = new LineSegments(new BufferGeometry(),
     new LineBasicMaterial({color: '#000000', depthTest: false, transparent: true, opacity: 0.55}));
 const box = new Box3Helper(new Box3(), new Color('#000000'));
@@ -162,8 +144,8 @@ const soft = ['#4a7fd0', '#2f9e62', '#d99a2b', '#8a68cc', '#24a0b0', '#a97a48', 
 const tints = [...soft, ...soft, soft[0]].map(() => new MeshLambertMaterial({
     side: DoubleSide, flatShading: true, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4
 }));
-for (const object of [all, hits, lines, ...curves]) object.frustumCulled = false;
-scene.add(all, hits, lines, box, ...(has_contours ? curves : []));
+for (const object of [lines, ...curves]) object.frustumCulled = false;
+scene.add(lines, box, ...(has_contours ? curves : []));
 
 let current = -1, place = -1, size = 1, drawn = null, asked = false, flight = null, wanted = 0;
 let has_colors = has_contours, sees_through = false;
@@ -181,25 +163,18 @@ function redraw() {
 controls.addEventListener('change', redraw);
 
 function resize() {
-    const {clientWidth: width, clientHeight: height} = at('view');
-    if (!width || !height) return;
-    renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    renderer.setSize(width, height, false);
-    camera.aspect = width / height;
-    camera.updateProjectionMatrix();
+    if (!fit_to_room(view)) return;
     redraw();
     draw_curve();
 }
 
 function paint() {
-    const style = getComputedStyle(document.documentElement);
-    const color = name => new Color(style.getPropertyValue(name).trim());
-    renderer.setClearColor(is_picture ? new Color('#ffffff') : color('--ground'));
-    surface.color = color('--mesh');
-    lines.material.color = box.material.color = color('--mark');
+    renderer.setClearColor(is_picture ? new Color('#ffffff') : color_of('--ground'));
+    surface.color = color_of('--mesh');
+    lines.material.color = box.material.color = color_of('--mark');
     tints.forEach((tint, i) => {
-        tint.color = i === 2 * soft.length ? color('--mesh')
-            : color('--mesh').lerp(new Color(soft[i % soft.length]), i < soft.length ? 0.35 : 1);
+        tint.color = i === 2 * soft.length ? color_of('--mesh')
+            : color_of('--mesh').lerp(new Color(soft[i % soft.length]), i < soft.length ? 0.35 : 1);
     });
     for (const material of [surface, ...tints]) {
         material.transparent = sees_through;
@@ -207,8 +182,8 @@ function paint() {
         material.depthWrite = !sees_through;
         material.needsUpdate = true;
     }
-    curves[0].material.color = color('--mesh').lerp(color('--contour'), 0.4);
-    curves[1].material.color = color('--contour');
+    curves[0].material.color = color_of('--mesh').lerp(color_of('--contour'), 0.4);
+    curves[1].material.color = color_of('--contour');
     if (has_contours) all.material = has_colors ? tints : tints[2 * soft.length];
     hits.material = has_colors ? paints : paints[0];
     redraw();
@@ -325,7 +300,6 @@ function visit(number) {
 const number_of = (value, digits = 3) =>
     value !== 0 && (Math.abs(value) < 1e-4 || Math.abs(value) >= 1e9) ? value.toExponential(digits - 1)
         : value.toLocaleString('en', {maximumSignificantDigits: digits});
-const plural = (count, word) => `${count.toLocaleString('en')} ${word}${count === 1 ? '' : 's'}`;
 
 function choose(number) {
     place = number;

@@ -4,56 +4,23 @@
  *
  * SPDX-License-Identifier: MIT
  */
-import {
-    AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Mesh,
-    MeshLambertMaterial, PerspectiveCamera, Plane, Raycaster, Scene, Vector2, Vector3, WebGLRenderer
-} from 'three';
-import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+import {BufferAttribute, BufferGeometry, Plane, Raycaster, Vector2, Vector3} from 'three';
 
 import {Model, version} from './index.js';
 import {read_mesh} from './read_mesh.js';
 import {Sheet} from './sheet.js';
-
-const at = id => document.getElementById(id);
+import {at, color_of, fit_to_room, make_view, plural} from './view.js'; // of tools/page
 
 /* ------------------------------------------------------------------------------------------------
  * The view
  */
 
-const canvas = at('canvas');
-const renderer = new WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
-const camera = new PerspectiveCamera(40, 1, 0.01, 100);
-const controls = new OrbitControls(camera, canvas);
-const scene = new Scene();
-const lamp = new DirectionalLight('#ffffff', 2.2);
-lamp.position.set(0.4, 0.7, 1);
-camera.add(lamp);
-scene.add(camera, new AmbientLight('#ffffff', 1.1));
-const surface = new MeshLambertMaterial({
-    side: DoubleSide, flatShading: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1
-});
-const red = new MeshLambertMaterial({
-    color: '#dc1e1e', emissive: '#dc1e1e', emissiveIntensity: 0.45, side: DoubleSide, flatShading: true
-});
-const all = new Mesh(new BufferGeometry(), surface);
-const hits = new Mesh(new BufferGeometry(), red);
-for (const object of [all, hits]) object.frustumCulled = false;
-scene.add(all, hits);
+const view = make_view(['#dc1e1e']);
+const {canvas, renderer, camera, controls, scene, surface, all, hits} = view;
 
 function paint() {
-    const style = getComputedStyle(document.documentElement);
-    const color = name => new Color(style.getPropertyValue(name).trim());
-    renderer.setClearColor(color('--ground'));
-    surface.color = color('--mesh');
-}
-
-function resize() {
-    const {clientWidth: width, clientHeight: height} = at('view');
-    if (!width || !height) return;
-    renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    renderer.setSize(width, height, false);
-    camera.aspect = width / height;
-    camera.updateProjectionMatrix();
+    renderer.setClearColor(color_of('--ground'));
+    surface.color = color_of('--mesh');
 }
 
 /* For floats, all is told from the middle of what is first seen: far from the origin they are
@@ -113,7 +80,6 @@ function say(...parts) {
     at('said').textContent = parts.join(', ');
 }
 
-const plural = (count, word) => `${count.toLocaleString('en')} ${word}${count === 1 ? '' : 's'}`;
 const milliseconds = time => `${time.toFixed(time < 10 ? 2 : 1)} ms`;
 
 /* A mean over the last frames, as single times jump. */
@@ -284,9 +250,9 @@ function turn(time) {
     state.ready = true;
 }
 
-new ResizeObserver(resize).observe(at('view'));
+new ResizeObserver(() => fit_to_room(view)).observe(at('view'));
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', paint);
-resize();
+fit_to_room(view);
 paint();
 hang_up();
 requestAnimationFrame(turn);
