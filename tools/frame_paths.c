@@ -93,6 +93,17 @@ bool frame_paths_find(frame_paths *found, const char *pattern, char error[MESH_F
     return done;
 }
 
+bool frame_paths_expand(frame_paths *found, char ***paths, int *count,
+                        char error[MESH_FILE_ERROR_SIZE])
+{
+    memset(found, 0, sizeof *found);
+    if (*count != 1 || !strchr((*paths)[0], '%')) return true;
+    if (!frame_paths_find(found, (*paths)[0], error)) return false;
+    *paths = found->paths;
+    *count = (int)found->count;
+    return true;
+}
+
 void frame_paths_free(frame_paths *found)
 {
     for (uint32_t i = 0; i < found->count; i++) free(found->paths[i]);

@@ -9,7 +9,7 @@
 #include "frame_paths.h"
 #include "near_report.h"
 #include "near_thickness.h"
-#include "query_subject.h"
+#include "query_pose.h"
 #include "query_summary.h"
 #include "query_text.h"
 #include "query_threads.h"
@@ -184,40 +184,19 @@ static int do_file(near_run *run, const char *path)
 {
     const near_settings *set = run->set;
     char error[MESH_FILE_ERROR_SIZE];
-    query_subject own;
-    mesh_pose moved; /* of run->rest_path */
+    query_pose pose;
     near_answer answer;
     uint32_t *objects = NULL;
-    memset(&own, 0, sizeof own);
-    memset(&moved, 0, sizeof moved);
     memset(&answer, 0, sizeof answer);
     answer.path = path;
-
-    const query_subject *subject = run->rest.model ? &run->rest : &own;
-    const mesh_file *mesh = run->rest_path ? &run->rest.mesh : &own.mesh;
-    bool done;
-    if (run->rest_path) {
-        done = mesh_file_read_pose(mesh, path, &moved, error) &&
-               query_subject_keeps_welds(subject, mesh, path, moved.positions, moved.position_type,
-                                         error);
-    } else if (set->model_path) {
-        done = mesh_file_read(&own.mesh, path, error) &&
-               query_subject_fits(subject, path, mesh, error) &&
-               query_subject_keeps_welds(subject, mesh, path, mesh->positions, mesh->position_type,
-                                         error);
-    } else {
-        const query_subject_how how = how_to_build(run);
-        done = query_subject_load(&own, path, &how, error);
-    }
-    const sc_pose pose = run->rest_path
-                             ? tool_pose(moved.positions, moved.position_type, mesh->vertex_count)
-                             : tool_pose(mesh->positions, mesh->position_type, mesh->vertex_count);
-    answer.mesh = mesh;
-    answer.pose = &pose;
-    answer.rounded = run->rest_path ? moved.rounded : mesh->rounded;
-    answer.has_animation = run->rest_path ? moved.has_animation : mesh->has_animation;
+    const query_subject_how how = how_to_build(run);
+    bool done = query_pose_read(&pose, path, &run->rest, &how, error);
+    answer.mesh = pose.mesh;
+    answer.pose = &pose.pose;
+    answer.rounded = pose.rounded;
+    answer.has_animation = pose.has_animation;
     if (done) done = name_vertices(&answer, &objects, error);
-    if (done) done = ask(run, subject, &answer, error);
+    if (done) done = ask(run, pose.subject, &answer, error);
     int status = done ? near_report(&answer, set, run->out) : near_report_failure(path, set, error);
     if (done && set->ply_path && !near_report_ply(&answer, set)) status = TOOL_FAILED;
     if (answer.unrecorded) status = TOOL_FAILED;
@@ -226,8 +205,7 @@ static int do_file(near_run *run, const char *path)
     mesh_tally_free(&answer.tally);
     free(answer.thickness);
     free(objects);
-    mesh_pose_free(&moved);
-    query_subject_free(&own);
+    query_pose_free(&pose);
     return status;
 }
 
@@ -236,15 +214,10 @@ static int open_rest(near_run *run)
 {
     const near_settings *set = run->set;
     char error[MESH_FILE_ERROR_SIZE];
-    if (run->rest_path) {
-        const query_subject_how how = how_to_build(run);
-        if (!query_subject_load(&run->rest, run->rest_path, &how, error))
-            return near_report_failure(run->rest_path, set, error);
-    } else if (set->model_path) {
-        if (!query_subject_open(&run->rest, set->model_path, SC_WORKSPACE_NEAR, error))
-            return near_report_failure(set->model_path, set, error);
-    }
-    return TOOL_CLEAN;
+    const query_subject_how how = how_to_build(run);
+    if (query_subject_begin(&run->rest, run->rest_path, set->model_path, &how, error))
+        return TOOL_CLEAN;
+    return near_report_failure(run->rest_path ? run->rest_path : set->model_path, set, error);
 }
 
 static int do_files(near_run *run, char *const *paths, int count)
@@ -278,13 +251,7 @@ static bool spares_files(char *const *paths, int count, const near_settings *set
 /* Ends what a run has begun; returns the exit status. */
 static int close_run(near_run *run, int status)
 {
-    if (run->out) {
-        const bool written = !ferror(run->out);
-        if (fclose(run->out) != 0 || !written) {
-            tool_error("%s: could not be written to the end", run->set->out_path);
-            status = TOOL_FAILED;
-        }
-    }
+    if (!tool_close(run->out, run->set->out_path)) status = TOOL_FAILED;
     for (int kind = 0; kind < KINDS; kind++) free(run->lists[kind].pairs);
     mesh_file_free(&run->first);
     query_subject_free(&run->rest);
@@ -300,15 +267,11 @@ int near_query_files(char **paths, int count, const near_settings *set)
     memset(&run, 0, sizeof run);
     run.set = set;
     run.rest_path = set->rest_path;
-    if (count == 1 && strchr(paths[0], '%')) {
-        if (!frame_paths_find(&found, paths[0], error)) {
-            tool_error("%s", error);
-            return TOOL_FAILED;
-        }
-        paths = found.paths;
-        count = (int)found.count;
-        if (!set->rest_path && !set->model_path) run.rest_path = paths[0];
+    if (!frame_paths_expand(&found, &paths, &count, error)) {
+        tool_error("%s", error);
+        return TOOL_FAILED;
     }
+    if (found.count && !set->rest_path && !set->model_path) run.rest_path = paths[0];
     if ((set->ply_path || set->record_path) && count > 1) {
         tool_error("--%s takes one mesh only; see sc-query --help",
                    set->ply_path ? "ply" : "record");

@@ -71,6 +71,15 @@ bool query_subject_open(query_subject *subject, const char *path, uint32_t flags
     return false;
 }
 
+bool query_subject_begin(query_subject *subject, const char *rest_path, const char *model_path,
+                         const query_subject_how *how, char error[MESH_FILE_ERROR_SIZE])
+{
+    if (rest_path) return query_subject_load(subject, rest_path, how, error);
+    if (model_path) return query_subject_open(subject, model_path, how->flags, error);
+    memset(subject, 0, sizeof *subject);
+    return true;
+}
+
 bool query_subject_fits(const query_subject *subject, const char *path, const mesh_file *mesh,
                         char error[MESH_FILE_ERROR_SIZE])
 {

@@ -14,8 +14,8 @@
 #include "page_output.h"
 #include "query_checks.h"
 #include "query_options.h"
+#include "query_pose.h"
 #include "query_report.h"
-#include "query_subject.h"
 #include "query_summary.h"
 #include "query_text.h"
 #include "query_threads.h"
@@ -233,49 +233,29 @@ static bool add_to_page(query_run *run, const query_settings *set, const sc_pose
 /* Does one file. Returns an exit status. */
 static int do_file(const char *path, const query_settings *set, query_run *run)
 {
-    const query_subject *rest = run->rest;
     char error[MESH_FILE_ERROR_SIZE];
-    query_subject own;
-    memset(&own, 0, sizeof own);
-    mesh_pose moved; /* of --rest */
-    memset(&moved, 0, sizeof moved);
+    query_pose pose;
     query_answer answer;
     memset(&answer, 0, sizeof answer);
     answer.path = path;
 
     const query_subject_how how = {set->weld, set->partition, rest_marks(set), set->content,
                                    0,         false};
-    const query_subject *subject = rest ? rest : &own;
-    const mesh_file *mesh = set->rest_path ? &rest->mesh : &own.mesh;
-    bool done;
-    if (set->rest_path) {
-        done = mesh_file_read_pose(&rest->mesh, path, &moved, error) &&
-               query_subject_keeps_welds(rest, mesh, path, moved.positions, moved.position_type,
-                                         error);
-    } else if (rest) {
-        done = mesh_file_read(&own.mesh, path, error) &&
-               query_subject_fits(rest, path, mesh, error) &&
-               query_subject_keeps_welds(rest, mesh, path, mesh->positions, mesh->position_type,
-                                         error);
-    } else {
-        done = query_subject_load(&own, path, &how, error);
-    }
-    const sc_pose pose = set->rest_path
-                             ? tool_pose(moved.positions, moved.position_type, mesh->vertex_count)
-                             : tool_pose(mesh->positions, mesh->position_type, mesh->vertex_count);
-    answer.mesh = mesh;
-    answer.rounded = set->rest_path ? moved.rounded : mesh->rounded;
-    answer.has_animation = set->rest_path ? moved.has_animation : mesh->has_animation;
-    const bool recorded = !done || !set->record_path || write_record(subject, &pose, set);
+    bool done = query_pose_read(&pose, path, run->rest, &how, error);
+    answer.mesh = pose.mesh;
+    answer.rounded = pose.rounded;
+    answer.has_animation = pose.has_animation;
+    const bool recorded = !done || !set->record_path || write_record(pose.subject, &pose.pose, set);
     if (!set->rest_path) query_checks_free(&run->checks); /* they are of one mesh */
-    if (done) done = run_pose(subject, path, &pose, set, &run->list, &run->checks, &answer, error);
+    if (done)
+        done =
+            run_pose(pose.subject, path, &pose.pose, set, &run->list, &run->checks, &answer, error);
     int status = report(&answer, set, done, error, run->out, &run->list, &run->summary);
     if (!recorded) status = TOOL_FAILED;
-    if (done && set->ply_path && !query_report_ply(mesh, &pose, set, &run->checks.places))
+    if (done && set->ply_path && !query_report_ply(pose.mesh, &pose.pose, set, &run->checks.places))
         status = TOOL_FAILED;
-    if (done && !add_to_page(run, set, &pose, &answer)) status = TOOL_FAILED;
-    mesh_pose_free(&moved);
-    query_subject_free(&own);
+    if (done && !add_to_page(run, set, &pose.pose, &answer)) status = TOOL_FAILED;
+    query_pose_free(&pose);
     return status;
 }
 
@@ -375,23 +355,16 @@ static int do_batch(const query_settings *set, const query_subject *rest)
 static int do_files(query_settings *set)
 {
     query_subject rest;
-    memset(&rest, 0, sizeof rest);
     query_run run;
     memset(&run, 0, sizeof run);
     int status = TOOL_CLEAN;
 
-    if (set->rest_path) {
-        const query_subject_how how = {set->weld, set->partition, rest_marks(set), set->content, 0,
-                                       true};
-        char error[MESH_FILE_ERROR_SIZE];
-        if (!query_subject_load(&rest, set->rest_path, &how, error))
-            return query_report_failure(set->rest_path, set, error);
-    } else if (set->model_path) {
-        char error[MESH_FILE_ERROR_SIZE];
-        if (!query_subject_open(&rest, set->model_path, 0, error))
-            return query_report_failure(set->model_path, set, error);
-        follow_model(set, rest.model);
-    }
+    const query_subject_how how = {set->weld, set->partition, rest_marks(set), set->content, 0,
+                                   true};
+    char error[MESH_FILE_ERROR_SIZE];
+    if (!query_subject_begin(&rest, set->rest_path, set->model_path, &how, error))
+        return query_report_failure(set->rest_path ? set->rest_path : set->model_path, set, error);
+    if (set->model_path) follow_model(set, rest.model);
     if (status == TOOL_CLEAN && set->out_path) {
         run.out = fopen(set->out_path, "w");
         if (!run.out) {
@@ -416,13 +389,7 @@ static int do_files(query_settings *set)
         if (!query_summary_print(&run.summary, false, set->json)) status = TOOL_FAILED;
     }
     if (!page_output_end(&run.output)) status = TOOL_FAILED;
-    if (run.out) {
-        const bool written = !ferror(run.out);
-        if (fclose(run.out) != 0 || !written) {
-            tool_error("%s: could not be written to the end", set->out_path);
-            status = TOOL_FAILED;
-        }
-    }
+    if (!tool_close(run.out, set->out_path)) status = TOOL_FAILED;
     free(run.list.pairs);
     free(run.list.contacts);
     query_checks_free(&run.checks);

@@ -599,13 +599,7 @@ static bool spares_frames(char *const *paths, int count, const step_settings *se
 /* Ends what a run has begun; returns the exit status. */
 static int close_run(step_run *run, int status)
 {
-    if (run->out) {
-        const bool written = !ferror(run->out);
-        if (fclose(run->out) != 0 || !written) {
-            tool_error("%s: could not be written to the end", run->set->out_path);
-            status = TOOL_FAILED;
-        }
-    }
+    if (!tool_close(run->out, run->set->out_path)) status = TOOL_FAILED;
     for (int i = 0; i < KINDS; i++) {
         free(run->lists[i].pairs);
         free(run->lists[i].times);
@@ -622,13 +616,9 @@ int step_query_frames(char **paths, int count, const step_settings *set)
     char error[MESH_FILE_ERROR_SIZE];
     frame_paths found = {NULL, 0};
     int status = TOOL_FAILED;
-    if (count == 1 && strchr(paths[0], '%')) {
-        if (!frame_paths_find(&found, paths[0], error)) {
-            tool_error("%s", error);
-            return TOOL_FAILED;
-        }
-        paths = found.paths;
-        count = (int)found.count;
+    if (!frame_paths_expand(&found, &paths, &count, error)) {
+        tool_error("%s", error);
+        return TOOL_FAILED;
     }
     step_run run;
     memset(&run, 0, sizeof run);

@@ -46,6 +46,15 @@ void tool_error(const char *format, ...)
     fputc('\n', stderr);
 }
 
+bool tool_close(FILE *out, const char *path)
+{
+    if (!out) return true;
+    const bool written = !ferror(out);
+    if (fclose(out) == 0 && written) return true;
+    tool_error("%s: could not be written to the end", path);
+    return false;
+}
+
 double tool_clock(void)
 {
     struct timespec now;

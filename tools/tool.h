@@ -39,6 +39,9 @@ const char *tool_why(sc_status status);
    Each may be NULL. */
 bool tool_spares(const char *out, const char *in);
 
+/* Closes a file that was written. Otherwise says that not all could be written. out may be NULL. */
+bool tool_close(FILE *out, const char *path);
+
 /* Milliseconds on a clock that never goes back. */
 double tool_clock(void);
 

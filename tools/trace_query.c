@@ -7,7 +7,7 @@
 
 #include "frame_paths.h"
 #include "page_output.h"
-#include "query_subject.h"
+#include "query_pose.h"
 #include "query_summary.h"
 #include "query_text.h"
 #include "query_threads.h"
@@ -200,10 +200,9 @@ static bool ask(trace_run *run, const query_subject *subject, const sc_pose *pos
     return status == SC_OK;
 }
 
-static bool add_to_page(const trace_run *run, const mesh_file *mesh, const sc_pose *pose,
-                        const trace_answer *answer)
+static bool add_to_page(const trace_run *run, const query_pose *pose, const trace_answer *answer)
 {
-    const page_trace frame = {answer->path, mesh, pose, answer,
+    const page_trace frame = {answer->path, pose->mesh, &pose->pose, answer,
                               answer->query_ms + answer->trace_ms};
     if (!run->output.page || page_add_trace(run->output.page, &frame)) return true;
     tool_error("%s: out of memory for the page", answer->path);
@@ -229,43 +228,21 @@ static int do_file(trace_run *run, const char *path)
 {
     const trace_settings *set = run->set;
     char error[MESH_FILE_ERROR_SIZE];
-    query_subject own;
-    mesh_pose moved; /* of run->rest_path */
+    query_pose pose;
     trace_answer answer;
-    memset(&own, 0, sizeof own);
-    memset(&moved, 0, sizeof moved);
     memset(&answer, 0, sizeof answer);
     answer.path = path;
-
-    const query_subject *subject = run->rest.model ? &run->rest : &own;
-    const mesh_file *mesh = run->rest_path ? &run->rest.mesh : &own.mesh;
-    bool done;
-    if (run->rest_path) {
-        done = mesh_file_read_pose(mesh, path, &moved, error) &&
-               query_subject_keeps_welds(subject, mesh, path, moved.positions, moved.position_type,
-                                         error);
-    } else if (set->model_path) {
-        done = mesh_file_read(&own.mesh, path, error) &&
-               query_subject_fits(subject, path, mesh, error) &&
-               query_subject_keeps_welds(subject, mesh, path, mesh->positions, mesh->position_type,
-                                         error);
-    } else {
-        const query_subject_how how = how_to_build(run);
-        done = query_subject_load(&own, path, &how, error);
-    }
-    const sc_pose pose = run->rest_path
-                             ? tool_pose(moved.positions, moved.position_type, mesh->vertex_count)
-                             : tool_pose(mesh->positions, mesh->position_type, mesh->vertex_count);
-    answer.rounded = run->rest_path ? moved.rounded : mesh->rounded;
-    answer.has_animation = run->rest_path ? moved.has_animation : mesh->has_animation;
-    if (done) done = ask(run, subject, &pose, &answer, error);
+    const query_subject_how how = how_to_build(run);
+    bool done = query_pose_read(&pose, path, &run->rest, &how, error);
+    answer.rounded = pose.rounded;
+    answer.has_animation = pose.has_animation;
+    if (done) done = ask(run, pose.subject, &pose.pose, &answer, error);
     int status = done ? trace_report(&answer, set) : trace_report_failure(path, set, error);
     if (done && set->ply_path && !trace_report_ply(&answer, set)) status = TOOL_FAILED;
-    if (done && !add_to_page(run, mesh, &pose, &answer)) status = TOOL_FAILED;
+    if (done && !add_to_page(run, &pose, &answer)) status = TOOL_FAILED;
     query_summary_add(&run->summary, status, answer.contour_count > 0, path, NULL,
                       answer.pair_count);
-    mesh_pose_free(&moved);
-    query_subject_free(&own);
+    query_pose_free(&pose);
     return status;
 }
 
@@ -274,14 +251,9 @@ static int do_files(trace_run *run, char *const *paths, int count)
     const trace_settings *set = run->set;
     char error[MESH_FILE_ERROR_SIZE];
     int status = TOOL_CLEAN;
-    if (run->rest_path) {
-        const query_subject_how how = how_to_build(run);
-        if (!query_subject_load(&run->rest, run->rest_path, &how, error))
-            return trace_report_failure(run->rest_path, set, error);
-    } else if (set->model_path) {
-        if (!query_subject_open(&run->rest, set->model_path, 0, error))
-            return trace_report_failure(set->model_path, set, error);
-    }
+    const query_subject_how how = how_to_build(run);
+    if (!query_subject_begin(&run->rest, run->rest_path, set->model_path, &how, error))
+        return trace_report_failure(run->rest_path ? run->rest_path : set->model_path, set, error);
     if (!page_output_begin(&run->output, set->html_path, set->png_path)) return TOOL_FAILED;
     trace_report_head(set);
     for (int i = 0; i < count; i++) status = query_text_worse(status, do_file(run, paths[i]));
@@ -310,15 +282,11 @@ int trace_query_files(char **paths, int count, const trace_settings *set)
     memset(&run, 0, sizeof run);
     run.set = set;
     run.rest_path = set->rest_path;
-    if (count == 1 && strchr(paths[0], '%')) {
-        if (!frame_paths_find(&found, paths[0], error)) {
-            tool_error("%s", error);
-            return TOOL_FAILED;
-        }
-        paths = found.paths;
-        count = (int)found.count;
-        if (!set->rest_path && !set->model_path) run.rest_path = paths[0];
+    if (!frame_paths_expand(&found, &paths, &count, error)) {
+        tool_error("%s", error);
+        return TOOL_FAILED;
     }
+    if (found.count && !set->rest_path && !set->model_path) run.rest_path = paths[0];
     if ((set->ply_path || set->png_path) && count > 1)
         tool_error("--%s takes one mesh only; see sc-query --help", set->ply_path ? "ply" : "png");
     else if (spares_files(paths, count, set))
