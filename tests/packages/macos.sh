@@ -48,8 +48,8 @@ install-name: '/usr/lib/libSystem.B.dylib'
 exports:
   - targets: [ x86_64-macos, arm64-macos ]
     symbols: [ _bzero, _memchr, _memcmp, _memcpy, _memmove, _memset, ___bzero, _strlen, _malloc, _free,
-               _clock_gettime, _vsnprintf, _frexp, _ldexp, _floor, _ceil, _fmin, _fmax, dyld_stub_binder,
-               _memset_pattern16, ___stack_chk_fail, ___stack_chk_guard, ____chkstk_darwin ]
+               _clock_gettime, _vsnprintf, _atan2, _frexp, _ldexp, _floor, _ceil, _fmin, _fmax,
+               dyld_stub_binder, _memset_pattern16, ___stack_chk_fail, ___stack_chk_guard, ____chkstk_darwin ]
 ...
 EOC
 }
