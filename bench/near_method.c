@@ -15,6 +15,7 @@ void near_method_free(near_method *near)
 {
     free(near->lists[0]);
     free(near->lists[1]);
+    sc_near_masks_free(near->masks);
     memset(near, 0, sizeof *near);
 }
 
@@ -26,6 +27,19 @@ static bool reserve(near_method *near, int kind, uint64_t count)
     near->lists[kind] = (sc_pair *)malloc((size_t)near->room[kind] * sizeof(sc_pair));
     if (!near->lists[kind]) near->room[kind] = 0;
     return near->lists[kind] != NULL;
+}
+
+/* Makes masks for a question, if there are none yet or those for other rings. */
+static sc_status make_masks(near_method *near, const sc_model *model,
+                            const near_method_question *question)
+{
+    if (near->rings == question->ignore_rings) return SC_OK;
+    sc_near_masks_free(near->masks);
+    near->rings = 0;
+    const sc_status status =
+        sc_near_masks_create(model, question->ignore_rings, NULL, &near->masks);
+    if (status == SC_OK) near->rings = question->ignore_rings;
+    return status;
 }
 
 /* One call of sc_query_near. */
@@ -43,6 +57,7 @@ static sc_status query_once(near_method *near, const sc_model *model, sc_workspa
     options.simd = question->simd;
     options.distance = question->distance;
     options.vertex_face_filter = options.edge_edge_filter = filter;
+    options.masks = question->ignore_rings && !filter ? near->masks : NULL;
     options.tasks = question->tasks;
     result.struct_size = sizeof result;
     result.vertex_faces = near->lists[0];
@@ -96,7 +111,11 @@ sc_status near_method_query(near_method *near, const sc_model *model, sc_workspa
     memset(&filter, 0, sizeof filter);
     filter.struct_size = sizeof filter;
     filter.ignore_rings = question->ignore_rings;
-    const sc_filter *const used = question->ignore_rings ? &filter : NULL;
+    const bool masked = question->ignore_rings && question->as != NEAR_STILL &&
+                        question->method == SC_NEAR_METHOD_SCTT;
+    const sc_filter *const used = question->ignore_rings && !masked ? &filter : NULL;
+    const sc_status made = masked ? make_masks(near, model, question) : SC_OK;
+    if (made != SC_OK) return made;
     for (;;) {
         const sc_status status = (question->as == NEAR_STILL ? step_once : query_once)(
             near, model, workspace, pose, question, used, stats);

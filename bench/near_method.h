@@ -23,7 +23,8 @@ enum {
 /* What is asked. */
 typedef struct near_method_question {
     double distance;       /* in units of the coordinates */
-    uint32_t ignore_rings; /* as in sc_filter, for both kinds of pairs */
+    uint32_t ignore_rings; /* as in sc_filter, for both kinds of pairs; a test tree of NEAR_LIST and
+                              NEAR_COUNT leaves them out by masks, all others by filters */
     uint32_t as;           /* NEAR_... */
     uint32_t method, simd; /* SC_NEAR_METHOD_..., or for NEAR_STILL SC_STEP_METHOD_... */
     const sc_tasks *tasks; /* or NULL */
@@ -33,7 +34,9 @@ typedef struct near_method_question {
 typedef struct near_method {
     sc_pair *lists[2]; /* vertex-face and edge-edge pairs of the last query that lists them */
     uint64_t count[2], room[2];
-    double ms; /* of the last query, without those whose lists were too short */
+    double ms; /* of the last query, without those whose lists were too short, nor making masks */
+    sc_near_masks *masks; /* of the model, of as many rings as the last query left out, or NULL */
+    uint32_t rings;
 } near_method;
 
 /* One query; lists grow as needed. stats may be NULL. */

@@ -156,7 +156,7 @@ def goals(rows, peers):
                 ("twisted-cloth", 65536, 1, 4, 1, "near"):
             rings[row["frame"]] = row["ms"]
     middle = sorted(rings)[len(rings) // 2] if rings else None
-    lines.append(goal("twisted cloth, 65,536 triangles, 1 edge, 4 rings left out, middle frame: ms", 6,
+    lines.append(goal("twisted cloth, 65,536 triangles, 1 edge, 4 rings left out by masks, middle frame: ms", 6,
                       [(rings[middle], "frame %d" % middle)] if rings else [], True))
     for edges, wanted in ((0.05, 8), (0.2, 15), (0.5, 20), (1, 30)):
         found = [(quotient(run["NormalCollisions"], run["near"]), "%s, %s" % (key[0], whole(key[1])))
