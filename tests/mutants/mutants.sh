@@ -18,6 +18,9 @@
 # there is planted in a whole one. A test that fails has to pass without the fault, in a library of
 # the same kind.
 #
+# A fault that needs instructions which this machine does not have is not planted, and is counted in
+# a line of its own: such a run is not whole.
+#
 # Prints a line for each fault when its fate is known, and as the last line "killed N, survived M".
 # Exit status 1 if any survived, does not fit or does not compile, or if a test fails without it as
 # well. CC and MAKE are taken from the environment.
@@ -160,12 +163,20 @@ restore() {
 one_fault() {
     begin=$(date +%s)
     fate=broken
+    needed=
+    hints=$3
+    case $hints in
+    needs:*) needed=${hints%% *} hints=${hints#"$needed"} needed=${needed#needs:} ;;
+    esac
     if ! plant "$1" "$2"; then
         result="DOES NOT FIT"
     elif [ $check -eq 1 ]; then
         result=fits
         fate=fits
-    elif plant "$1.brief" "$2" && hunt "$1" "$3" </dev/null; then
+    elif [ -n "$needed" ] && [ "$needed" != "$best" ]; then
+        result="cannot be seen without $needed"
+        fate=unseen
+    elif plant "$1.brief" "$2" && hunt "$1" "$hints" </dev/null; then
         result=$killer
         if [ -z "$result" ]; then
             result="DOES NOT COMPILE OR IS NOT TESTED"
@@ -204,7 +215,7 @@ one_set() {
     1) best=base others='avx2 avx512' ;;
     2) best=avx2 others='base avx512' ;;
     3) best=avx512 others='base avx2' ;;
-    *) return ;;
+    *) best= && return ;;
     esac
     for set in $others; do
         echo 'typedef int sc_kernels_are_elsewhere;' >"$1/lib/simd/kernels_$set.c"
@@ -252,5 +263,6 @@ how_many() { cat "$scratch"/fates/* /dev/null | grep -c "^$1\$"; }
 lost=$(($(wc -l <"$scratch/list") - $(how_many '.*')))
 broken=$(($(how_many broken) + lost))
 [ $broken -eq 0 ] || echo "$broken do not fit or do not compile"
+[ "$(how_many unseen)" -eq 0 ] || echo "$(how_many unseen) cannot be seen on this machine"
 [ $check -eq 1 ] || echo "killed $(how_many killed), survived $(how_many survived)"
 [ "$(how_many survived)" -eq 0 ] && [ $broken -eq 0 ]

@@ -1,7 +1,8 @@
 # Plants one fault of tests/mutants/faults.txt in a tree, or lists them.
 #
 #     awk -f plant.awk -v name=NAME -v root=FOLDER faults.txt     changes files below FOLDER, prints them
-#     awk -f plant.awk faults.txt                                 prints NAME and tests to try, a line each
+#     awk -f plant.awk faults.txt                                 prints NAME and tests to try, a line each;
+#                                                                 before these needs:INSTRUCTIONS, if any
 #
 # Exit status 1, and nothing is changed, if there is no such fault, or if lines that it replaces are
 # not in their file, or are there more than once.
@@ -66,8 +67,12 @@ function finish_fault() {
     if (fault == name) seen++
     next
 }
+/^\? / {
+    tests = "needs:" $2
+    next
+}
 /^> / {
-    tests = substr($0, 3)
+    tests = tests (tests == "" ? "" : " ") substr($0, 3)
     next
 }
 root == "" || fault != name { next }
