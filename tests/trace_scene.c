@@ -3,7 +3,6 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#define _POSIX_C_SOURCE 200112L /* posix_memalign */
 #include "trace_scene.h"
 
 #include <math.h>
@@ -134,7 +133,7 @@ soup trace_scene_strips(uint32_t stations, uint32_t turns)
 static void *allocate_scarce(void *user, uint64_t bytes, uint64_t alignment)
 {
     scarce_memory *m = (scarce_memory *)user;
-    void *memory = NULL;
+    unsigned char *block, *memory;
     if (m->left)
         --m->left;
     else if (m->cancels)
@@ -142,7 +141,11 @@ static void *allocate_scarce(void *user, uint64_t bytes, uint64_t alignment)
     else
         return NULL;
     ++m->live;
-    if (posix_memalign(&memory, (size_t)alignment, (size_t)bytes)) abort();
+    /* Not every system has an aligned malloc: the block is kept in front of what is handed out. */
+    block = (unsigned char *)test_allocate((size_t)(bytes + alignment + sizeof(void *)));
+    memory = block + sizeof(void *);
+    memory += (0u - (uintptr_t)memory) & (uintptr_t)(alignment - 1);
+    memcpy(memory - sizeof(void *), &block, sizeof block);
     return memory;
 }
 
@@ -150,6 +153,7 @@ static void release_scarce(void *user, void *memory, uint64_t bytes)
 {
     (void)bytes;
     --((scarce_memory *)user)->live;
+    memcpy(&memory, (unsigned char *)memory - sizeof(void *), sizeof memory);
     free(memory);
 }
 

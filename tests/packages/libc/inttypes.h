@@ -2,7 +2,12 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#ifndef TESTS_LIBC_INTTYPES_H
+#define TESTS_LIBC_INTTYPES_H
+
 #include <stdint.h>
 #define PRIu32 "u"
 #define PRIu64 "llu"
 #define PRIx64 "llx"
+
+#endif /* TESTS_LIBC_INTTYPES_H */

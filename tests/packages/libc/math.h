@@ -2,6 +2,9 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#ifndef TESTS_LIBC_MATH_H
+#define TESTS_LIBC_MATH_H
+
 double fabs(double), fmin(double, double), fmax(double, double), sqrt(double), floor(double);
 double atan2(double, double), ceil(double), frexp(double, int *), ldexp(double, int);
 float fabsf(float), fminf(float, float), fmaxf(float, float), sqrtf(float), floorf(float), ceilf(float);
@@ -10,3 +13,5 @@ float fabsf(float), fminf(float, float), fmaxf(float, float), sqrtf(float), floo
 #define HUGE_VAL ((double)INFINITY)
 #define HUGE_VALF INFINITY
 #define isfinite(x) ((x) - (x) == 0)
+
+#endif /* TESTS_LIBC_MATH_H */

@@ -2,6 +2,9 @@
  *
  * SPDX-License-Identifier: MIT
  */
+#ifndef TESTS_LIBC_TIME_H
+#define TESTS_LIBC_TIME_H
+
 #if defined(__APPLE__)
 struct timespec {
     long tv_sec, tv_nsec;
@@ -9,3 +12,5 @@ struct timespec {
 int clock_gettime(int clock, struct timespec *time);
 #  define CLOCK_MONOTONIC 6
 #endif
+
+#endif /* TESTS_LIBC_TIME_H */
