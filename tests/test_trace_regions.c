@@ -608,8 +608,9 @@ static void compare_sizes(const divided_scene *known, int exponent)
 static void any_size(void)
 {
     static const int exponents[] = {-480, -300, -250, -1, 1, 250, 300, 505, 900};
-    static const double at[] = {-3, -2.5, 0,   3, -2.75, 0, 0,  4,    0.25, -3.25, 0,    -3, 3, 0,
-                                -2, 0,    0.5, 4, 0,     3, -3, 0.25, -3.5, -3,    -0.5, 0,  4};
+    static const double at[] = {-12, -10, 0,  12,  -11, 0,  0,  16,  1, /* the largest, z about 0 */
+                                -3,  0,   -3, 3,   0,   -2, 0,  0.5, 4, /* in it two cross: y */
+                                0,   6,   -6, 0.5, -7,  -6, -1, 0,   8}; /* x about 0 */
     static const uint32_t corners[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
     for (int kind = 0; kind < 2; ++kind) {
         divided_scene d;
@@ -670,8 +671,8 @@ static void areas_of_triangles(void)
 
 /* ---- what welding has collapsed ---- */
 
-/* A triangle; one that has collapsed and hangs on it by a vertex; one that does so by none, and one
-   by whose edge (1, 2) a crossing may be named. */
+/* A triangle; one that has collapsed and hangs on it by a vertex; one that does so by none; and one
+   that does so by an edge. */
 static void vertices_of_collapsed_triangles(void)
 {
     static const double at[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5, 6, 6, 6, 7, 7, 7};
@@ -700,6 +701,7 @@ static void vertices_of_collapsed_triangles(void)
         memset(nodes, 0, sizeof nodes);
         memset(&contour, 0, sizeof contour);
         nodes[0].edge = nodes[1].edge = 6;
+        nodes[0].sheets[0] = nodes[0].sheets[1] = 2;
         nodes[1].sheets[0] = nodes[1].sheets[1] = SC_TRACE_NO_EDGE;
         contour.begin = contour.end = SC_TRACE_BORDER;
         contour.count = t.node_count = t.node_capacity = 2;
