@@ -426,8 +426,9 @@ SECONDS ?= 60
 SOAK ?= 100000
 TRIALS ?= 100000000
 
-fuzz_targets := fuzz_build fuzz_query fuzz_near fuzz_options fuzz_load
-fuzz_sources := tests/fuzz/fuzz_support.c $(patsubst %,tests/fuzz/%.c,$(fuzz_targets))
+fuzz_targets := fuzz_build fuzz_query fuzz_near fuzz_options fuzz_load fuzz_trace
+fuzz_sources := tests/fuzz/fuzz_support.c tests/fuzz/trace_checks.c \
+    $(patsubst %,tests/fuzz/%.c,$(fuzz_targets))
 fuzz_programs := $(patsubst %,$(work)/fuzz/%,$(fuzz_targets))
 run_programs := $(patsubst tests/runs/%.c,$(work)/runs/%,$(wildcard tests/runs/*.c))
 

@@ -949,7 +949,8 @@ typedef struct sc_trace_result {
  * then closed ones, from their lowest node on. So the answer depends on the mesh, the welding and
  * the pose alone.
  *
- * Triangles of which welding has made two corners one are no part of any sheet.
+ * Triangles of which welding has made two corners one are no part of any sheet: pairs with them are
+ * looked at for vertices that are not finite, and for nothing else.
  *
  * Returns SC_OK, or SC_ERROR_SHORT_BUFFER if an array is too short: counts are then what is needed,
  * and arrays may have been written to in part. SC_ERROR_PAIRS: pairs are not sorted, name what does
@@ -970,7 +971,8 @@ SC_API sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_p
 typedef struct sc_region {
     uint32_t component;    /* the lowest vertex of the connected part of the mesh that it is in */
     uint32_t vertex_count; /* vertices in it; 0 for a strip or a disc between vertices */
-    double area;           /* of all that is in it */
+    double area;           /* of all that is in it; where that of one of its triangles is beyond
+                              the range of doubles, too small, and infinite where the sum is */
     int32_t inside;        /* on request: how often closed components go round it, on the side to
                               which its normals point: 0 outside of all. SC_REGION_UNKNOWN if that
                               was not asked for, or contours pass through all of its triangles */
@@ -1002,8 +1004,9 @@ typedef struct sc_regions_result {
     uint64_t region_capacity;  /* in: entries of regions */
     sc_region *regions;        /* in: the caller's array, or NULL if the capacity is 0 */
     uint32_t *vertex_regions;  /* in: vertex_count entries, or NULL: the region of each vertex.
-                                  SC_TRACE_NO_EDGE for those of no triangle, and for those that are
-                                  welded to another one, which has their region */
+                                  SC_TRACE_NO_EDGE for those of no triangle, or of none but such as
+                                  welding has collapsed, and for those that are welded to
+                                  another one, which has their region */
     sc_contour_sides *sides;   /* in: trace->contour_count entries, or NULL */
 } sc_regions_result;
 
@@ -1030,10 +1033,10 @@ typedef struct sc_regions_result {
  * Returns SC_OK, or SC_ERROR_SHORT_BUFFER if there are more regions than fit, whose number is then
  * told; vertex_regions and sides are written all the same. The same error, and no regions, if trace
  * itself was short. SC_ERROR_PAIRS: trace names what does not exist, or contours are such as no
- * mesh has. SC_ERROR_COUNT: more than 2^30 nodes or contours. SC_ERROR_NOT_FINITE: a vertex is NaN
- * or infinite. SC_ERROR_MEMORY, SC_ERROR_INCOMPLETE.
+ * mesh has. SC_ERROR_COUNT: more than 2^30 nodes or contours. SC_ERROR_NOT_FINITE: a vertex of a
+ * triangle, after welding, is NaN or infinite. SC_ERROR_MEMORY, SC_ERROR_INCOMPLETE.
  *
- * Cost (Zen 4): 30 ns a triangle and 0.5 us a node, by the calling thread. Memory: about 33 bytes a
+ * Cost (Zen 4): 30 ns a triangle and 0.5 us a node, by the calling thread. Memory: about 34 bytes a
  * vertex and 100 a node, given back before it returns.
  */
 SC_API sc_status sc_trace_regions(const sc_model *model, const sc_pose *pose,

@@ -8,6 +8,12 @@
  *     node tests/look.mjs MODULES BROWSER contour-picture FILE    the same of one of --trace
  *     node tests/look.mjs MODULES BROWSER shot FILE PNG [KEY...]   after keys, as README.md shows it
  *
+ * tools/page/contours.png is such a shot, of a pose of tools/untangle:
+ *
+ *     python tools/untangle/untangle.py body --write build
+ *     (cd build && bin/sc-query --trace --html body.html body-before.obj)
+ *     node tests/look.mjs build/page BROWSER shot build/body.html tools/page/contours.png x
+ *
  * MODULES: the folder in whose node_modules playwright-core is. FILE of page and contours: two frames
  * of test_page.sh.
  *

@@ -18,11 +18,9 @@ typedef struct target {
     int (*run)(const uint8_t *data, size_t size);
 } target;
 
-static const target targets[] = {{"fuzz_build", fuzz_build},
-                                 {"fuzz_query", fuzz_query},
-                                 {"fuzz_options", fuzz_options},
-                                 {"fuzz_load", fuzz_load},
-                                 {"fuzz_near", fuzz_near}};
+static const target targets[] = {{"fuzz_build", fuzz_build},     {"fuzz_query", fuzz_query},
+                                 {"fuzz_options", fuzz_options}, {"fuzz_load", fuzz_load},
+                                 {"fuzz_near", fuzz_near},       {"fuzz_trace", fuzz_trace}};
 enum { TARGETS = sizeof(targets) / sizeof(targets[0]) };
 
 /* Runs a target on a copy that ends where it ends. */

@@ -1,8 +1,9 @@
 /*
  * Regions: of closed surfaces that pass through each other, against the winding number of the other
  * one round each vertex, which knows nothing of contours; of planes through spheres, against areas
- * by formulas; of loops and ends within a triangle, by hand; of any meshes, what is true of all: areas add up, and ends of edges that nothing
- * crosses are in one region; and arguments that cannot be.
+ * by formulas; of loops and ends within a triangle, by hand; of any meshes, what is true of all:
+ * areas add up, and ends of edges that nothing crosses are in one region; of sizes up to the ends
+ * of the range of doubles; and arguments that cannot be.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -564,6 +565,164 @@ static void welded_vertices(void)
     sc_model_free(model);
 }
 
+/* A mesh of these triangles at these places, which are not to be welded; the caller frees it. */
+static soup soup_of(const double *at, uint32_t vertices, const uint32_t *corners,
+                    uint32_t triangles)
+{
+    soup s;
+    memset(&s, 0, sizeof s);
+    s.vertex_count = vertices;
+    s.triangle_count = triangles;
+    s.positions = (double *)test_allocate(3 * vertices * sizeof *s.positions);
+    s.triangles = (uint32_t *)test_allocate(3 * triangles * sizeof *s.triangles);
+    memcpy(s.positions, at, 3 * vertices * sizeof *s.positions);
+    memcpy(s.triangles, corners, 3 * triangles * sizeof *s.triangles);
+    return s;
+}
+
+/* ---- sizes ---- */
+
+/* Regions of a mesh whose coordinates are 2^exponent times as large: all the same, areas that much
+   larger; where these are beyond the range of doubles they are more than 0 still. */
+static void compare_sizes(const divided_scene *known, int exponent)
+{
+    soup larger = soup_copy(&known->s.mesh);
+    divided_scene d;
+    for (uint32_t i = 0; i < 3 * larger.vertex_count; ++i)
+        larger.positions[i] = ldexp(larger.positions[i], exponent);
+    if (divide(&d, larger) && CHECK(d.regions.region_count == known->regions.region_count))
+        for (uint32_t i = 0; i < d.regions.region_count; ++i) {
+            const sc_region *a = &known->regions.regions[i], *b = &d.regions.regions[i];
+            const double area = ldexp(a->area, 2 * exponent);
+            CHECK_MSG(area < DBL_MAX ? fabs(b->area - area) <= 1e-9 * area : b->area > 0,
+                      "area %g instead of %g, sizes 2^%d", b->area, area, exponent);
+            CHECK_MSG(a->inside == b->inside && a->vertex_count == b->vertex_count &&
+                          a->component == b->component,
+                      "inside %" PRId32 " instead of %" PRId32 ", sizes 2^%d", b->inside, a->inside,
+                      exponent);
+        }
+    undivide(&d);
+}
+
+/* Spheres, and three sheets through each other in large triangles. */
+static void any_size(void)
+{
+    static const int exponents[] = {-480, -300, -250, -1, 1, 250, 300, 505, 900};
+    static const double at[] = {-12, -10, 0,  12,  -11, 0,  0,  16,  1, /* the largest, z about 0 */
+                                -3,  0,   -3, 3,   0,   -2, 0,  0.5, 4, /* in it two cross: y */
+                                0,   6,   -6, 0.5, -7,  -6, -1, 0,   8}; /* x about 0 */
+    static const uint32_t corners[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    for (int kind = 0; kind < 2; ++kind) {
+        divided_scene d;
+        uint32_t vertices, triangles;
+        if (divide(&d, kind ? soup_of(at, 9, corners, 3)
+                            : two_spheres(10, 0.5, 0.7, &vertices, &triangles)))
+            for (size_t i = 0; i < sizeof exponents / sizeof *exponents; ++i)
+                compare_sizes(&d, exponents[i]);
+        undivide(&d);
+    }
+}
+
+/* Areas of single triangles near the ends of the range of doubles, by hand. */
+static void areas_of_triangles(void)
+{
+    static const struct {
+        double at[9], area;
+    } cases[] = {
+        {{0, 0, 0, 3, 0, 0, 0, 4, 0}, 6},
+        {{0, 0, 0, 0x1p1000, 0, 0, 0, 0x1p-1000, 0}, 0.5},
+        {{0, 0, 0, 0x1p-520, 0, 0, 0, 0x1p-520, 0}, 0x1p-1041},
+        {{0, 0, 0, 0, 0x1p511, 0, 0, 0, 0x1p512}, 0x1p1022},
+        {{0, 0x1p-600, 0, 0, 0, 0x1p-400, 0, 0, 0}, 0x1p-1001},
+        {{-0x1.8p1023, 0, 0, 0x1.8p1023, 0, 0, 0, 0x1p-1000, 0}, 0x1.8p23},
+        {{0, 0, 0, 0x1p-1074, 0, 0, 0, 0x1p1000, 0}, 0x1p-75},
+        {{0, 0, 0, 0x1p-1074, 0, 0, 0, 0x1p10, 0}, 0x1p-1065},
+        {{-DBL_MAX, 0, 0, DBL_MAX, 0, 0, 0, 0x1p-1074, 0}, 0x1p-50},
+        {{0, 0, 0, 0x1p600, 0x1p600, 0, 0x1p-600, -0x1p-600, 0}, 1},
+        {{0, 0, 0, 0x1p600, 0, 0, 0, 0x1p600, 0}, DBL_MAX},
+        {{0, 0, 0, 0x1p600, 0, 0, -0x1p600, 0, 0}, 0},
+        {{0x1p-600, 0, 0, 0x1p-600, 0, 0, 0x1p-600, 0, 0}, 0},
+        {{0, 0, 0, 0x1p-300, 0x1p-320, 0, 0x1p-300, 0, 0}, 0x1p-621},
+    };
+    static const uint32_t corners[] = {0, 1, 2};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        sc_mesh mesh;
+        soup s = soup_of(cases[i].at, 3, corners, 1);
+        const sc_pose pose = input_plain_pose(s.positions, 3);
+        sc_build_options options;
+        sc_model *model = NULL;
+        sc_trace_result t = trace_scene_no_room();
+        sc_regions_result r = no_regions();
+        sc_region region;
+        memset(&options, 0, sizeof options);
+        options.struct_size = sizeof options;
+        options.weld = SC_WELD_NONE;
+        r.region_capacity = 1;
+        r.regions = &region;
+        mesh = input_plain_mesh(&s);
+        if (!CHECK(sc_build(&mesh, &options, &model) == SC_OK)) return;
+        CHECK(sc_trace_regions(model, &pose, &t, NULL, &r) == SC_OK && r.region_count == 1);
+        CHECK_MSG(fabs(region.area - cases[i].area) <= 1e-15 * cases[i].area, "%g instead of %g",
+                  region.area, cases[i].area);
+        sc_model_free(model);
+        soup_free(&s);
+    }
+}
+
+/* ---- what welding has collapsed ---- */
+
+/* A triangle; one that has collapsed and hangs on it by a vertex; one that does so by none; and one
+   that does so by an edge. */
+static void vertices_of_collapsed_triangles(void)
+{
+    static const double at[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5, 6, 6, 6, 7, 7, 7};
+    static const uint32_t corners[] = {0, 1, 2, 1, 3, 3, 4, 5, 5, 1, 2, 2};
+    static const uint32_t wanted[6] = {
+        0, 0, 0, SC_TRACE_NO_EDGE, SC_TRACE_NO_EDGE, SC_TRACE_NO_EDGE};
+    soup s = soup_of(at, 6, corners, 4);
+    const sc_pose pose = input_plain_pose(s.positions, 6);
+    sc_mesh mesh = input_plain_mesh(&s);
+    sc_model *model = NULL;
+    sc_trace_result t = trace_scene_no_room();
+    sc_trace_node nodes[2];
+    sc_trace_contour contour;
+    sc_regions_result r = no_regions();
+    sc_region region;
+    uint32_t of[6];
+    const sc_pair pairs[] = {{0, 2}, {6, 0}};
+    r.region_capacity = 1;
+    r.regions = &region;
+    r.vertex_regions = of;
+    if (CHECK(sc_build(&mesh, NULL, &model) == SC_OK)) {
+        CHECK(sc_trace_regions(model, &pose, &t, NULL, &r) == SC_OK && r.region_count == 1);
+        CHECK(region.vertex_count == 3 && region.component == 0 && region.area == 0.5);
+        for (int i = 0; i < 6; ++i) CHECK_MSG(of[i] == wanted[i], "%d: %" PRIu32, i, of[i]);
+        /* a contour through an edge that no sheet has */
+        memset(nodes, 0, sizeof nodes);
+        memset(&contour, 0, sizeof contour);
+        nodes[0].edge = nodes[1].edge = 6;
+        nodes[0].sheets[0] = nodes[0].sheets[1] = 2;
+        nodes[1].sheets[0] = nodes[1].sheets[1] = SC_TRACE_NO_EDGE;
+        contour.begin = contour.end = SC_TRACE_BORDER;
+        contour.count = t.node_count = t.node_capacity = 2;
+        t.contour_count = t.contour_capacity = 1;
+        t.nodes = nodes;
+        t.contours = &contour;
+        CHECK(sc_trace_regions(model, &pose, &t, NULL, &r) == SC_ERROR_PAIRS &&
+              r.region_count == 0);
+        /* not finite: vertices of collapsed triangles too */
+        t = trace_scene_no_room();
+        s.positions[3 * 5 + 1] = (double)NAN;
+        CHECK(sc_trace(model, &pose, pairs, 1, NULL, &t) == SC_ERROR_NOT_FINITE);
+        CHECK(sc_trace(model, &pose, pairs + 1, 1, NULL, &t) == SC_ERROR_NOT_FINITE);
+        CHECK(sc_trace_regions(model, &pose, &t, NULL, &r) == SC_ERROR_NOT_FINITE);
+        s.positions[3 * 5 + 1] = 7;
+        CHECK(sc_trace(model, &pose, pairs, 2, NULL, &t) == SC_OK && t.node_count == 0);
+    }
+    sc_model_free(model);
+    soup_free(&s);
+}
+
 /* ---- what cannot be ---- */
 
 static void failing_memory(void)
@@ -810,8 +969,10 @@ static void wrong_arguments(void)
     undivide(&d);
 }
 
-SC_TEST_MAIN(SC_TEST(welded_vertices), SC_TEST(spheres_through_each_other),
-             SC_TEST(planes_through_spheres), SC_TEST(loops_in_a_triangle), SC_TEST(loops_by_hand),
-             SC_TEST(equal_regions), SC_TEST(any_meshes), SC_TEST(strips), SC_TEST(failing_memory),
-             SC_TEST(cancelling), SC_TEST(impossible_contours), SC_TEST(edges_with_two_names),
-             SC_TEST(wrong_counts), SC_TEST(wrong_arguments))
+SC_TEST_MAIN(SC_TEST(any_size), SC_TEST(areas_of_triangles),
+             SC_TEST(vertices_of_collapsed_triangles), SC_TEST(welded_vertices),
+             SC_TEST(spheres_through_each_other), SC_TEST(planes_through_spheres),
+             SC_TEST(loops_in_a_triangle), SC_TEST(loops_by_hand), SC_TEST(equal_regions),
+             SC_TEST(any_meshes), SC_TEST(strips), SC_TEST(failing_memory), SC_TEST(cancelling),
+             SC_TEST(impossible_contours), SC_TEST(edges_with_two_names), SC_TEST(wrong_counts),
+             SC_TEST(wrong_arguments))

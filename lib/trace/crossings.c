@@ -120,7 +120,7 @@ typedef struct pair_block {
 } pair_block;
 
 /* Whether pair i is one that sc_query may find, and its points; else what is wrong in *status. One
-   of a triangle that welding has collapsed is none that crosses. */
+   of a triangle that welding has collapsed is none that crosses, but has to be finite too. */
 static int name_five(const sc_trace_subject *s, uint32_t i, uint32_t number[5], sc_status *status)
 {
     const sc_model *model = s->model;
@@ -139,7 +139,13 @@ static int name_five(const sc_trace_subject *s, uint32_t i, uint32_t number[5], 
     }
     if (shared) return 0;
     *status = SC_OK;
-    return number[0] != number[1] && !sc_trace_is_collapsed(corner);
+    if (number[0] != number[1] && !sc_trace_is_collapsed(corner)) return 1;
+    for (k = 0; k < 5; k++) {
+        double p[3];
+        sc_positions_get(&s->positions, number[k], p);
+        if (!is_finite(p)) *status = SC_ERROR_NOT_FINITE;
+    }
+    return 0;
 }
 
 /* Adds pair i, whose points are named at the end of the block. */

@@ -153,10 +153,12 @@ sc_status sc_gradients_find(const sc_model *model, const sc_positions *positions
     for (i = 0; i < traced->node_count; i++) memset(&gradients[i], 0, sizeof *gradients);
     for (i = 0; !status && i < traced->contour_count; i++) {
         const sc_trace_contour *c = &traced->contours[i];
-        const sc_trace_node *node = traced->nodes + c->first;
         const int is_closed = c->begin == SC_TRACE_CLOSED;
+        const sc_trace_node *node;
         if (c->first > traced->node_count || c->count > traced->node_count - c->first)
             return SC_ERROR_PAIRS;
+        if (!c->count) continue; /* there may be no array of nodes */
+        node = traced->nodes + c->first;
         for (k = 0; !status && k < c->count; k++) {
             const sc_trace_node *before = k > 0       ? &node[k - 1]
                                           : is_closed ? &node[c->count - 1]

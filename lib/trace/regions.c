@@ -11,11 +11,13 @@
  */
 #include "trace/regions.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/assume.h"
 #include "base/sort.h"
+#include "base/wide.h"
 #include "trace/crossed_edges.h"
 
 /* A part of a contour in one triangle: nodes of a contour, counted on from its first, round it if
@@ -63,8 +65,11 @@ typedef struct region_work {
     sc_contour_sides *sides; /* of each contour: elements */
     region_chain *chains;    /* sorted by triangles */
     uint32_t chain_count;
-    uint32_t *component; /* vertex_count: parents, without cuts */
-    uint32_t *region;    /* of each element that is its own parent */
+    uint32_t *component;  /* vertex_count: parents, without cuts */
+    uint8_t *is_on_sheet; /* vertex_count: it is in a triangle that welding has not collapsed */
+    double largest;       /* coordinate of those of triangles */
+    double unit;          /* what makes that 1 at most */
+    uint32_t *region;     /* of each element that is its own parent */
 } region_work;
 
 /* ---- elements ---- */
@@ -599,31 +604,111 @@ static void divide_inside(region_work *w, divided *d, uint32_t *loops)
     }
 }
 
-/* Area and lengths of sides. */
-static sc_status measure_triangle(const region_work *w, uint32_t triangle, double *area,
-                                  double side[3])
+/* The corners' positions, doubles that are all finite; and notes the largest coordinate. */
+static sc_status get_finite_corners(region_work *w, const uint32_t *corner, double p[3][3])
 {
-    const uint32_t *corner = sc_trace_corners(w->subject->model, triangle);
-    double p[3][3], u[3], v[3], n[3];
     int k, i;
     for (k = 0; k < 3; k++) {
         sc_positions_get(&w->subject->positions, corner[k], p[k]);
-        for (i = 0; i < 3; i++)
+        for (i = 0; i < 3; i++) {
             if (p[k][i] - p[k][i] != 0) return SC_ERROR_NOT_FINITE;
+            if (w->largest < fabs(p[k][i])) w->largest = fabs(p[k][i]);
+        }
     }
+    return SC_OK;
+}
+
+static double square_of(const double v[3])
+{
+    return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+}
+
+/* A number of any size: part 2^exponent. part is 1/2 to 1 or -1/2 to -1, or 0, whose exponent is
+   below that of any other. */
+typedef struct sized_number {
+    double part;
+    int exponent;
+} sized_number;
+
+enum { EXPONENT_OF_ZERO = -100000 };
+
+static sized_number take_size(double part, int exponent)
+{
+    sized_number x;
+    int own;
+    x.part = frexp(part, &own);
+    x.exponent = x.part == 0 ? EXPONENT_OF_ZERO : exponent + own;
+    return x;
+}
+
+static int largest_exponent(const sized_number *x, int count)
+{
+    int most = x[0].exponent, i;
+    for (i = 1; i < count; i++)
+        if (most < x[i].exponent) most = x[i].exponent;
+    return most;
+}
+
+/* The length of a vector, in units of 2^exponent. */
+static double sized_norm(const sized_number v[3], int exponent)
+{
+    double parts[3];
+    int i;
+    for (i = 0; i < 3; i++) parts[i] = ldexp(v[i].part, v[i].exponent - exponent);
+    return sqrt(square_of(parts));
+}
+
+/* The area of a triangle of any size, DBL_MAX at most. */
+static double area_by_parts(double p[3][3])
+{
+    sized_number n[3];
+    double area;
+    int i, k, most;
+    for (i = 0; i < 3; i++) {
+        double flat[3][2], part;
+        int exponent;
+        for (k = 0; k < 3; k++) {
+            flat[k][0] = p[k][(i + 1) % 3];
+            flat[k][1] = p[k][(i + 2) % 3];
+        }
+        part = sc_wide_orient2d_value(flat[0], flat[1], flat[2], &exponent);
+        n[i] = take_size(part, exponent);
+    }
+    most = largest_exponent(n, 3);
+    area = ldexp(sized_norm(n, most), most - 1);
+    return area < DBL_MAX ? area : DBL_MAX;
+}
+
+/* Where squares are far from the ends of the range of doubles, the same by the plain formula. */
+static double area_of_triangle(double p[3][3])
+{
+    double u[3], v[3], n[3], square;
+    int i;
     for (i = 0; i < 3; i++) {
         u[i] = p[1][i] - p[0][i];
         v[i] = p[2][i] - p[0][i];
     }
     for (i = 0; i < 3; i++)
         n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-    *area = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2;
-    for (k = 0; k < 3; k++) {
-        double sum = 0;
-        for (i = 0; i < 3; i++)
-            sum += (p[(k + 1) % 3][i] - p[k][i]) * (p[(k + 1) % 3][i] - p[k][i]);
-        side[k] = sqrt(sum);
-    }
+    square = square_of(n);
+    return square > 1e-250 && square < 1e250 ? sqrt(square) / 2 : area_by_parts(p);
+}
+
+/* Area of a triangle, and, if a contour passes through it, lengths of its sides in some unit. */
+static sc_status measure_triangle(region_work *w, divided *d, double side[3])
+{
+    sized_number v[9];
+    double p[3][3];
+    int k, i, most;
+    if (get_finite_corners(w, sc_trace_corners(w->subject->model, d->triangle), p))
+        return SC_ERROR_NOT_FINITE;
+    d->area = area_of_triangle(p);
+    if (!d->chain_count) return SC_OK;
+    for (k = 0; k < 3; k++)
+        for (i = 0; i < 3; i++) /* halves: no difference of them is infinite */
+            v[3 * k + i] = take_size(p[(k + 1) % 3][i] / 2 - p[k][i] / 2, 0);
+    most = largest_exponent(v, 9);
+    for (k = 0; k < 3; k++) side[k] = sized_norm(v + 3 * k, most);
     return SC_OK;
 }
 
@@ -695,10 +780,11 @@ static sc_status divide_all(region_work *w)
         d.chains = w->chains + chain;
         for (d.chain_count = 0; chain < w->chain_count && w->chains[chain].triangle == t; chain++)
             d.chain_count++;
-        if (sc_trace_is_collapsed(corner)) continue;
-        for (k = 0; k < 2; k++) join_elements(w->component, corner[k], corner[k + 1]);
-        status = measure_triangle(w, t, &d.area, side);
+        status = measure_triangle(w, &d, side);
         if (status) break;
+        if (sc_trace_is_collapsed(corner)) continue;
+        for (k = 0; k < 3; k++) w->is_on_sheet[corner[k]] = 1;
+        for (k = 0; k < 2; k++) join_elements(w->component, corner[k], corner[k + 1]);
         if (d.chain_count) {
             status = divide_triangle(w, &d, side, loops);
             continue;
@@ -740,7 +826,8 @@ static uint64_t *find_open(region_work *w)
     return open;
 }
 
-/* The solid angle of a triangle seen from a point, over 4 pi (van Oosterom, Strackee 1983). */
+/* The solid angle of a triangle seen from a point, which is in units of w->unit, over 4 pi (van
+   Oosterom, Strackee 1983). */
 static double solid_angle(const region_work *w, uint32_t triangle, const double at[3])
 {
     const uint32_t *corner = sc_trace_corners(w->subject->model, triangle);
@@ -748,8 +835,8 @@ static double solid_angle(const region_work *w, uint32_t triangle, const double 
     int i, k;
     for (i = 0; i < 3; i++) {
         sc_positions_get(&w->subject->positions, corner[i], v[i]);
-        for (k = 0; k < 3; k++) v[i][k] -= at[k];
-        length[i] = sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1] + v[i][2] * v[i][2]);
+        for (k = 0; k < 3; k++) v[i][k] = w->unit * v[i][k] - at[k];
+        length[i] = sqrt(square_of(v[i]));
     }
     for (i = 0; i < 3; i++) {
         const double *p = v[i], *q = v[(i + 1) % 3];
@@ -772,7 +859,7 @@ static int32_t count_round(const region_work *w, uint32_t triangle, const uint64
     uint32_t t, k, i;
     for (k = 0; k < 3; k++) {
         sc_positions_get(&w->subject->positions, corner[k], p);
-        for (i = 0; i < 3; i++) at[i] += p[i] / 3;
+        for (i = 0; i < 3; i++) at[i] += w->unit * p[i] / 3;
     }
     for (t = 0; t < model->triangle_count; t++) {
         const uint32_t *other = sc_trace_corners(model, t);
@@ -790,7 +877,10 @@ static sc_status find_inside(region_work *w, sc_regions_result *r)
     const sc_model *model = w->subject->model;
     const uint64_t *open = find_open(w);
     uint32_t t, chain = 0;
+    int exponent;
     if (!open) return SC_ERROR_MEMORY;
+    frexp(w->largest, &exponent);
+    w->unit = ldexp(1, exponent < -1000 ? 1000 : -exponent);
     for (t = 0; t < model->triangle_count; t++) {
         const uint32_t *corner = sc_trace_corners(model, t);
         const uint32_t before = chain, region = w->region[region_root(w->parent, corner[0])];
@@ -805,6 +895,15 @@ static sc_status find_inside(region_work *w, sc_regions_result *r)
 }
 
 /* ---- the answer ---- */
+
+/* Whether the ends of all crossed edges are on sheets. */
+static int are_ends_on_sheets(const region_work *w)
+{
+    uint32_t i;
+    for (i = 0; i < w->edges.count; i++)
+        if (!w->is_on_sheet[w->edges.ends[i].a] || !w->is_on_sheet[w->edges.ends[i].b]) return 0;
+    return 1;
+}
 
 /* Sides at the first node of a contour that is on an edge of a sheet. */
 static void find_sides_of(region_work *w, uint32_t contour, uint32_t sheet)
@@ -829,11 +928,10 @@ static void find_sides_of(region_work *w, uint32_t contour, uint32_t sheet)
 static sc_status write_regions(region_work *w, sc_regions_result *r)
 {
     const sc_model *model = w->subject->model;
-    const uint8_t *use = sc_model_vertex_use(model);
     uint32_t i, count = 0, s, k;
     for (i = 0; i < w->element_count; i++) {
         sc_region *region;
-        if (w->parent[i] != i || (i < model->vertex_count && use[i] != SC_VERTEX_POINT) ||
+        if (w->parent[i] != i || (i < model->vertex_count && !w->is_on_sheet[i]) ||
             i >= w->loop_first + w->loop_count)
             continue;
         w->region[i] = count++;
@@ -847,7 +945,7 @@ static sc_status write_regions(region_work *w, sc_regions_result *r)
     r->region_count = count;
     for (i = 0; i < w->loop_first + w->loop_count; i++) {
         uint32_t number;
-        if (i < model->vertex_count && use[i] != SC_VERTEX_POINT) continue;
+        if (i < model->vertex_count && !w->is_on_sheet[i]) continue;
         number = w->region[region_root(w->parent, i)];
         if (number >= r->region_capacity) continue;
         r->regions[number].area += w->area[i];
@@ -855,7 +953,7 @@ static sc_status write_regions(region_work *w, sc_regions_result *r)
     }
     for (i = 0; r->vertex_regions && i < model->vertex_count; i++)
         r->vertex_regions[i] =
-            use[i] == SC_VERTEX_POINT ? w->region[region_root(w->parent, i)] : SC_TRACE_NO_EDGE;
+            w->is_on_sheet[i] ? w->region[region_root(w->parent, i)] : SC_TRACE_NO_EDGE;
     for (i = 0; r->sides && i < w->trace->contour_count; i++)
         for (s = 0; s < 2; s++)
             for (k = 0; k < 2; k++)
@@ -884,9 +982,11 @@ static sc_status take_elements(region_work *w)
     w->anchor =
         (uint32_t *)sc_scratch_take_filled(w->scratch, count - vertices, sizeof *w->anchor, 0);
     w->component = (uint32_t *)sc_scratch_take(w->scratch, vertices, sizeof *w->component);
+    w->is_on_sheet = (uint8_t *)sc_scratch_take_filled(w->scratch, vertices, 1, 0);
     w->sides = (sc_contour_sides *)sc_scratch_take_filled(w->scratch, w->trace->contour_count,
                                                           sizeof *w->sides, 0);
-    if (!w->parent || !w->region || !w->area || !w->anchor || !w->component || !w->sides)
+    if (!w->parent || !w->region || !w->area || !w->anchor || !w->component || !w->is_on_sheet ||
+        !w->sides)
         return SC_ERROR_MEMORY;
     for (i = 0; i < w->element_count; i++) w->parent[i] = i;
     for (i = 0; i < vertices; i++) w->component[i] = i;
@@ -923,6 +1023,7 @@ sc_status sc_regions_find(const sc_trace_subject *subject, const sc_trace_result
     if (!status) status = list_chains(&w);
     if (!status) status = take_elements(&w);
     if (!status) status = divide_all(&w);
+    if (!status && !are_ends_on_sheets(&w)) status = SC_ERROR_PAIRS;
     if (!status && sc_trace_is_cancelled(subject)) status = SC_ERROR_INCOMPLETE;
     if (status) return status;
     for (i = 0; i < trace->contour_count; i++)

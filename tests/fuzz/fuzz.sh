@@ -15,7 +15,7 @@ export LC_ALL=C
 at=$1
 seconds=$2
 shift 2
-[ $# -gt 0 ] || set -- fuzz_build fuzz_query fuzz_near fuzz_options fuzz_load
+[ $# -gt 0 ] || set -- fuzz_build fuzz_query fuzz_near fuzz_options fuzz_load fuzz_trace
 case $seconds in
 '' | *[!0-9]*)
     echo "fuzz: SECONDS=$seconds: must be a number" >&2

@@ -24,6 +24,7 @@ int fuzz_query(const uint8_t *data, size_t size);   /* poses and query options, 
 int fuzz_near(const uint8_t *data, size_t size);    /* poses and distances, what is near */
 int fuzz_options(const uint8_t *data, size_t size); /* structures of every size and content */
 int fuzz_load(const uint8_t *data, size_t size);    /* saved models and records, right and wrong */
+int fuzz_trace(const uint8_t *data, size_t size);   /* contours, their gradients, and regions */
 
 /* Ends the program unless cond holds; the rest as for printf. */
 #define FUZZ_CHECK(cond, ...)                                                                      \
