@@ -360,9 +360,10 @@ static void step_filters(void)
         return;
     }
     snprintf(text, sizeof(text),
-             "options.vertex_face_filter.struct_size is 4, but at least %u and a multiple of %u",
-             (unsigned)sizeof(void *), (unsigned)sizeof(void *));
-    REFUSED(step, VERTEX_FACE(c.filter.struct_size = 4), SC_ERROR_STRUCT_SIZE, text);
+             "options.vertex_face_filter.struct_size is %u, but at least %u and a multiple of %u",
+             (unsigned)sizeof(void *) / 2, (unsigned)sizeof(void *), (unsigned)sizeof(void *));
+    REFUSED(step, VERTEX_FACE(c.filter.struct_size = sizeof(void *) / 2), SC_ERROR_STRUCT_SIZE,
+            text);
     REFUSED(step, VERTEX_FACE(c.filter.ignore_rings = 33), SC_ERROR_OPTION,
             "options.vertex_face_filter.ignore_rings is 33, but at most 32");
     REFUSED(step, EDGE_EDGE(c.filter.ignore_rings = 33), SC_ERROR_OPTION,

@@ -791,7 +791,7 @@ static void bad_filters(void)
             r.ignore[0].b = 1;
             f->ignore = NULL;
             CHECK(is_refused(&r, SC_ERROR_NULL));
-            f->struct_size = 4;
+            f->struct_size = sizeof(void *) / 2;
             CHECK(is_refused(&r, SC_ERROR_STRUCT_SIZE));
             *f = kept;
         }
