@@ -1,7 +1,7 @@
 /*
  * CGAL's curves of self-intersection, as a shared library that trace_curves.py loads:
  * Polygon_mesh_processing::experimental::surface_self_intersection. Its order of nodes along
- * polylines, and all decisions, come from exact arithmetic; points are rounded at the end.
+ * polylines, all decisions and points come from exact arithmetic; points are rounded at the end.
  *
  * A polyline ends where three sheets meet, so that a curve that passes through such a point comes
  * in parts; trace_curves.py joins them.
@@ -10,7 +10,7 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/intersection.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/version_macros.h>
@@ -25,7 +25,7 @@
 namespace
 {
 
-typedef CGAL::Exact_predicates_inexact_constructions_kernel kernel;
+typedef CGAL::Exact_predicates_exact_constructions_kernel kernel;
 typedef CGAL::Surface_mesh<kernel::Point_3> surface;
 
 } // namespace
@@ -101,7 +101,9 @@ const double *trace_cgal_points(trace_cgal *t)
 {
     t->points.clear();
     for (const auto &line : t->polylines) {
-        for (const auto &p : line) t->points.insert(t->points.end(), {p.x(), p.y(), p.z()});
+        for (const auto &p : line) {
+            for (int k = 0; k < 3; ++k) t->points.push_back(CGAL::to_double(CGAL::exact(p[k])));
+        }
     }
     return t->points.data();
 }
