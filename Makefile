@@ -654,6 +654,21 @@ peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (Py
 near-peers: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) beside what is near, into build/peers/near.csv; some minutes
 	@bench/peers/measure_near.sh '$(BUILD)/peers/near.csv' '$(SCENES)' '$(bin)/sc-bench' '$(lib)/$(shared_link)' '$(BUILD)'
 
+# CGAL's side is a shared library, which the same process loads.
+trace_cgal := $(work)/peers/trace_cgal.so
+$(obj)/bench/peers/trace_cgal.o: peer_flags = -frounding-math -fPIC -fvisibility=hidden
+$(trace_cgal): $(obj)/bench/peers/trace_cgal.o
+	@mkdir -p $(@D)
+	$(if $(Q),@echo "  ld   $@")
+	$(Q)$(CXX) -shared $(link_mode) $(CXXFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) -lmpfr -lgmp $(LDLIBS)
+
+.PHONY: trace-peers
+trace-peers: $(lib)/$(shared_link) $(peer_scenes) ## compare and time contours: libigl, MeshLib (PyPI) and CGAL beside sc_trace, into build/peers/trace.csv
+	+@has_cgal=$(and $(call has,CGAL/version.h),$(call has,gmp.h)); \
+	    [ -z "$$has_cgal" ] || $(MAKE) --no-print-directory '$(trace_cgal)' || exit; \
+	    $(if $(filter-out file,$(origin LIMIT)),LIMIT='$(LIMIT)') bench/peers/measure_trace.sh '$(BUILD)/peers/trace.csv' \
+	    '$(SCENES)' '$(bin)/sc-bench' '$(lib)/$(shared_link)' "$${has_cgal:+$(trace_cgal)}" '$(BUILD)'
+
 .PHONY: dataset-peers
 dataset-peers: $(lib)/$(shared_link) $(filter %/sc-dataset,$(programs)) ## time those from PyPI on poses of a character, into build/peers/dataset.csv; some minutes
 ifneq ($(filter %/sc-dataset,$(programs)),)

@@ -27,6 +27,7 @@ import report_objects
 import report_pictures
 import report_plots
 import report_targets as targets
+import report_trace
 import report_wasm
 from report_text import figure, mean, table, times, whole
 
@@ -269,6 +270,7 @@ class Results:
                                       "near_peers", "objects", "dataset")))
         self.objects_peers = read_peers(os.path.join(folder, "objects_peers.csv"))
         self.dataset_peers = read_peers(os.path.join(folder, "dataset_peers.csv"), "unequal")
+        self.trace_peers = read_peers(os.path.join(folder, "trace_peers.csv"), "verdict")
         self.wasm = read_peers(os.path.join(folder, "wasm.csv"), "same")
         peers = os.path.join(folder, "peers.csv")
         rows, skipped, self.peers_commit = read_peers(peers)
@@ -894,6 +896,7 @@ def report(results, drawn, slope_table, reading):
         if absent:
             out.append("Left out:\n\n" + absent)
     add_near(out, results, drawn)
+    out += report_trace.section(results.trace_peers)
     objects = report_objects.own_table(results.objects)
     if objects:
         out.append("## Several objects\n")

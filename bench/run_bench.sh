@@ -6,8 +6,8 @@
 # FOLDER is where results go; by default bench/results/<machine>, and the overview into README.md,
 # or, for quick, build/bench-quick. report measures nothing and makes the report anew from the CSV
 # files. What sc-bench prints is kept in build/bench/. Peers come from build/peers/peers.csv,
-# near.csv, objects.csv, dataset.csv and wasm.csv, if they are there. From make come SC_BIN and PYTHON,
-# the interpreter that draws.
+# near.csv, trace.csv, objects.csv, dataset.csv and wasm.csv, if they are there. From make come SC_BIN
+# and PYTHON, the interpreter that draws.
 #
 # Exit status 1 if methods disagree or no report could be made, 2 if nothing could be started.
 #
@@ -246,6 +246,9 @@ if [ "$kind" != quick ] && [ -f build/peers/peers.csv ]; then
 fi
 if [ "$kind" != quick ] && [ -f build/peers/near.csv ]; then
     cp build/peers/near.csv "$results/near_peers.csv" || exit 2
+fi
+if [ "$kind" != quick ] && [ -f build/peers/trace.csv ]; then
+    cp build/peers/trace.csv "$results/trace_peers.csv" || exit 2
 fi
 if [ "$kind" != quick ] && [ -f build/peers/objects.csv ]; then
     cp build/peers/objects.csv "$results/objects_peers.csv" || exit 2

@@ -455,6 +455,25 @@ body,500,1,starcontour,0.1.0,objects,1,4,310,yes,4,0,0,embree,1
 body,500,0,embree,3.13.5,two scenes: refitted,2,9,100,yes,20,0,0,embree,2
 body,500,0,starcontour,0.1.0,objects,2,3,110,yes,2,0,0,embree,2
 END
+    cat >"$scratch/results/trace_peers.csv" <<'END'
+# commit: dcf
+# skipped: cgal: its headers were not found
+scene,triangles,frame,peer,version,what,ms,ms_min,pairs,closed,open,length,off,verdict,beside
+bunny,500,0,starcontour,0.1.0,pairs,2,2,300,,,,,,libigl
+bunny,500,0,starcontour,0.1.0,sc_trace,1,1,300,2,1,5,,,libigl
+bunny,500,0,libigl,2.6.3,remesh,90,90,300,2,1,5,2e-15,match,libigl
+bunny,500,1,starcontour,0.1.0,pairs,2,2,100,,,,,,libigl
+bunny,500,1,starcontour,0.1.0,sc_trace,3,3,100,2,1,5,,,libigl
+bunny,500,1,libigl,2.6.3,remesh,70,30,100,1,3,5,0.1,differ,libigl
+bunny,500,0,starcontour,0.1.0,pairs,2,2,300,,,,,,meshlib
+bunny,500,0,starcontour,0.1.0,sc_trace,1,1,300,2,1,5,,,meshlib
+bunny,500,0,meshlib,3.1,pairs alone,6,6,300,,,,,,meshlib
+bunny,500,0,meshlib,3.1,contours,36,36,300,2,1,,,match,meshlib
+bunny,500,1,starcontour,0.1.0,pairs,2,2,50,,,,,,meshlib
+bunny,500,1,starcontour,0.1.0,sc_trace,9,9,50,2,1,5,,,meshlib
+bunny,500,1,meshlib,3.1,pairs alone,6,6,50,,,,,,meshlib
+bunny,500,1,meshlib,3.1,contours,8,8,50,2,1,,,degenerate,meshlib
+END
     check "a report with peers" python3 bench/draw_report.py "$scratch/results"
     near_row="| crushed-cloth | 500 | 0.20 | 900 | 1.00 | 2.00 | 8.00 | 16.0 | 8.00 | 16.0 | 8.00 | right | 1 and 4 of 304 |"
     check "what is near, beside ipc-toolkit" grep -Fq "$near_row" "$scratch/results/report.md"
@@ -470,6 +489,13 @@ END
         "had less than 95 % of their processors" "other programs ran at the same time, so that single" \
         "| poses | meshlib 3.1 | refitted | 200 | 50.0 | 0.500 | 100.0 | 30.0 | 60.0 | 3 of 200 | 40 missing, 2 extra in 7 |" \
         "| rounded | libigl 2.6.3 | rebuilt | 200 | 100 | 0.400 | 250.0 | – | – | 0 of 200 | – |" \
+        "| bunny | 500 | libigl 2.6.3 | remesh | 200 | 2.00 | 2.00 | 1.00 | 80.0 | 20.0 | 1 differ, 1 match | 2.0e-15 |" \
+        "| bunny | 500 | meshlib 3.1 | pairs alone | 175 | 2.00 | 5.00 | 2.50 | 6.00 | 0.86 | – | – |" \
+        "| bunny | 500 | meshlib 3.1 | contours | 175 | 2.00 | 5.00 | 2.50 | 22.0 | 3.14 | 1 degenerate, 1 match | – |" \
+        "| sc_trace: × the query that finds its pairs | ≤ 1.30 | 1.50 | bunny, 500, frame 1 | **not met** |" \
+        "| query and sc_trace: × MeshLib | ≥ 10.0 | 12.0 | bunny, 500, frame 0 | met |" \
+        "| query and sc_trace: × libigl | ≥ 20.0 | 14.0 | bunny, 500, frame 1 | **not met** |" \
+        "made by \`make trace-peers\` at commit dcf" "- cgal: its headers were not found" \
         "| body | intersections | 1 | 2,000 | 1.00 | 3.00 | 3.00 | 0.500 |" \
         "| body | embree 3.13.5 | two scenes: refitted | 1 | 200 | 30.0 | 3.00 | 10.0 | match |" \
         "| body | embree 3.13.5 | two scenes: rebuilt | 1 | 199 | 60.0 | 3.00 | 20.0 | 5 wrong |" \

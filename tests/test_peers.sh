@@ -333,6 +333,64 @@ END
         check "a dataset's peer is skipped where it is absent" says "skipped: libigl: " \
             python3 -B -S bench/peers/dataset.py --peer libigl --lib "$library" --csv "$scratch/poses.csv" "$scene"
         check "and its file says so" grep -q "^# skipped: libigl: " "$scratch/poses.csv"
+        cat >"$scratch/curves.py" <<'END'
+import math, re, sys
+sys.path.insert(0, "bench/peers")
+import numpy as np
+import peers, trace_curves as tc
+header = re.sub(r"/\*.*?\*/", "", open("include/starcontour.h").read(), flags=re.S)
+for name, members in (("sc_trace_node", tc.NODE.names), ("sc_trace_contour", tc.CONTOUR.names),
+                      ("sc_trace_result", [field[0] for field in tc.sc_trace_result._fields_])):
+    body = re.search(r"typedef struct %s {(.*?)} %s;" % (name, name), header, re.S).group(1)
+    wanted = [re.search(r"(\w+)\s*(\[\d\])?$", member.strip()).group(1)
+              for line in body.split(";") for member in line.split(",") if member.strip()]
+    assert list(members) == wanted, (name, members, wanted)
+# In frame 1 a corner of one triangle is through the other: a curve from border to border.
+scene = peers.Scene(sys.argv[2])
+ours, poses = tc.Trace(sys.argv[3], scene, "d"), [scene.frame(f, "d") for f in (0, 1)]
+length = math.sqrt(2) / 3
+assert ours.pairs(poses[0]) == 0 and ours.pairs(poses[1]) == 2
+ours.contours_of(poses[1])
+assert not ours.touches(poses[1])
+for lengths, closed, same in (([length], [False], True), ([length], [True], False), ([], [], False),
+                              ([length * (1 + 1e-9)], [False], False),
+                              ([length * (1 + 5e-13)], [False], True),
+                              ([length / 2, length / 2], [False, False], False)):
+    assert ours.judge(poses[1], tc.Curves(lengths, closed)) == same, (lengths, closed)
+touching = peers.Scene(sys.argv[1])
+assert tc.Trace(sys.argv[3], touching, "d").touches(touching.frame(0, "d"))
+# The same, cut by hand at p and q.
+vertices, corners = np.array(poses[1]).reshape(-1, 3), np.array(scene.corners).reshape(-1, 3)
+points = np.vstack([vertices, [[4 / 3, 1, 0], [1, 4 / 3, 0]]])
+p, q = 6, 7
+faces = np.array([(0, 1, p), (0, p, q), (0, q, 2), (1, 2, q), (1, q, p), (3, p, q), (p, 4, 5), (p, 5, q)])
+births = np.array([0] * 5 + [1] * 3)
+found = tc.by_triangles(points, faces, births, corners, vertices)
+assert ours.judge(poses[1], found), (found.closed, found.open)
+assert tc.by_triangles(points, faces[[1, 4, 5]], births[[1, 4, 5]], corners, vertices) is None
+# A cycle in two parts, and three lines through a point, of which one comes back to it: all but that
+# one are open. What ends at a vertex of the mesh is not joined.
+def line(*points):
+    return np.array(points, float)
+o = (0, 0, 0)
+lines = [line((5, 0, 0), (6, 0, 0), (6, 1, 0)), line((6, 1, 0), (5, 1, 0), (5, 0, 0)),
+         line(o, (1, 0, 0), (1, 0, 9), (-1, 0, 9), (-1, 0, 0), o), line((0, -1, 0), o), line(o, (0, 2, 0)),
+         line((1, 1, 1), o), line(o, (-1, -1, -1))]
+found = tc.by_directions(lines, vertices[3:])
+assert np.allclose(found.closed, [4, 22]) and np.allclose(found.open, [3, 12 ** 0.5]), (found.closed, found.open)
+found = tc.by_directions(lines, line(o, (6, 0, 0)))
+assert not len(found.closed) and len(found.open) == 6, (found.closed, found.open)
+END
+        if python3 -c 'import numpy' 2>/dev/null; then
+            check "curves put together of parts, and what is the same" \
+                python3 -B "$scratch/curves.py" "$scene" "$falling" "$library"
+            check "a peer of contours is skipped where it is absent" says "skipped: cgal on falling: " \
+                python3 -B bench/peers/trace_curves.py --peer cgal --cgal absent --lib "$library" \
+                --csv "$scratch/trace.csv" "$falling"
+            check "and its file says so" grep -q "^# skipped: cgal on falling: " "$scratch/trace.csv"
+        else
+            skip "curves put together of parts: there is no numpy"
+        fi
         # shellcheck disable=SC2086
         check "no step from the last frame" says "none follows" $ask --step 1/50 --from 0,1 "$falling"
         for part in 0 2 1/0 much; do

@@ -37,16 +37,7 @@ if [ -n "$scenes" ]; then
 fi
 # Name, triangles, frames, distances; the largest lists have some ten million pairs.
 while read -r name triangles frames distances; do
-    scene=$build/peers/scenes/$triangles-$frames/$name
-    if [ ! -d "$scene" ]; then
-        rm -rf "$scene.new"
-        mkdir -p "${scene%/*}"
-        if ! "$bench" --scene "$name" --triangles "$triangles" --frames "$frames" \
-            --cache "$build/scenes" --export "$scene.new" </dev/null || ! mv "$scene.new" "$scene"; then
-            echo "skipped: $name, $triangles triangles: sc-bench could not write it" >&2
-            continue
-        fi
-    fi
+    scene=$("$here/write_scene.sh" "$bench" "$build" "$name" "$triangles" "$frames") || continue
     near "$scene" "$distances" </dev/null
 done <<END_OF_SCENES
 twisted-cloth 65536 6 0.05,0.2,0.5,1,2

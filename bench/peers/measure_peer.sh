@@ -77,13 +77,7 @@ crushed-cloth 92416 60 0 19 39 58"
 
 # Writes a scene, and says in which folder.
 write_scene() {
-    scene=build/peers/scenes/$2-$3/$1
-    if [ ! -d "$scene" ]; then
-        rm -rf "$scene.new"
-        mkdir -p "${scene%/*}" && "$bench" --scene "$1" --triangles "$2" --frames "$3" \
-            --export "$scene.new" </dev/null >&2 && mv "$scene.new" "$scene" || return
-    fi
-    echo "$scene"
+    "$here/write_scene.sh" "$bench" build "$1" "$2" "$3"
 }
 
 # What Python, C++ and C libraries say when they get no memory.
@@ -149,8 +143,6 @@ while read -r name triangles frames also; do
         measured=1
         measure 1 "$scene" "$@" --repeats 3 || status=$?
         [ -z "$also" ] || [ -z "$again" ] || measure all "$scene" "$@" --repeats 3 || status=$?
-    else
-        echo "skipped: $name, $triangles triangles: sc-bench could not write it" >&2
     fi
 done <<END
 $usual

@@ -188,6 +188,7 @@ SC_STEP_COLLISIONS, SC_STEP_CANDIDATES = 0, 1
 SC_STEP_TIMES_NONE, SC_STEP_TIMES_EARLIEST, SC_STEP_TIMES_EACH = 0, 1, 2
 SC_OUTPUT_ANY = 2
 SC_ERROR_SHORT_BUFFER, SC_WELD_NONE, SC_PAIRS_TRIANGLE, SC_PAIRS_EDGE = 11, 2, 0, 1
+SC_CONTACT_TOUCHING, SC_CONTACT_PROPER = 0, 1
 SC_METHOD_SCTT, SC_METHOD_AABB = 1, 3
 SC_CONTOUR_DEFAULT, SC_CONTOUR_STAR, SC_CONTOUR_NONE, SC_CONTOUR_EXACT = 0, 1, 2, 3
 
@@ -236,7 +237,7 @@ class Starcontour:
         if status != 0:
             raise Unusable("starcontour: " + self.library.sc_status_string(status).decode())
 
-    def query(self, way, positions, kind=SC_PAIRS_TRIANGLE):
+    def query(self, way, positions, kind=SC_PAIRS_TRIANGLE, contact=SC_CONTACT_TOUCHING):
         """Finds pairs in a pose, an array of the scalar type given at first."""
         if way not in self.workspaces:
             workspace = POINTER()
@@ -246,7 +247,7 @@ class Starcontour:
                        position_type=self.type, positions=positions.buffer_info()[0])
         method, contour = OWN_WAYS[way]
         options = sc_query_options(struct_size=ctypes.sizeof(sc_query_options), method=method,
-                                   contour=contour, pairs=kind)
+                                   contour=contour, pairs=kind, contact=contact)
         while True:
             result = sc_result(struct_size=ctypes.sizeof(sc_result), capacity=len(self.pairs) // 2,
                                pairs=self.pairs.buffer_info()[0])
@@ -451,8 +452,9 @@ def ipctk(scene, np):
     return ways
 
 
-def meshlib(scene, np):
-    """Refits a tree of boxes of triangles; takes floats and an oriented 2-manifold."""
+def meshlib_mesh(scene, np):
+    """A mesh of MeshLib's, and a function that places its vertices and refits its boxes; it takes floats and
+    an oriented 2-manifold."""
     from meshlib import mrmeshnumpy, mrmeshpy
 
     faces = np.array(scene.corners, dtype=np.int32).reshape(-1, 3)
@@ -463,12 +465,24 @@ def meshlib(scene, np):
         raise Skipped("the mesh is not an oriented 2-manifold")
     every = mrmeshpy.VertBitSet()
     every.resize(scene.vertices, True)
-    part = mrmeshpy.MeshPart(mesh)
     mesh.getAABBTree()
 
-    def query(vertices):
+    def place(vertices):
         ctypes.memmove(mesh.points.vec.data_pointer(), vertices.ctypes.data, vertices.nbytes)
         mesh.updateCaches(every)
+
+    return mesh, place
+
+
+def meshlib(scene, np):
+    """Refits a tree of boxes of triangles; takes floats and an oriented 2-manifold."""
+    from meshlib import mrmeshpy
+
+    mesh, place = meshlib_mesh(scene, np)
+    part = mrmeshpy.MeshPart(mesh)
+
+    def query(vertices):
+        place(vertices)
         return mrmeshpy.findSelfCollidingTriangles(part, touchIsIntersection=True)
 
     def answer(found):
