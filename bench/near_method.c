@@ -35,6 +35,7 @@ static sc_status make_masks(near_method *near, const sc_model *model,
 {
     if (near->rings == question->ignore_rings) return SC_OK;
     sc_near_masks_free(near->masks);
+    near->masks = NULL;
     near->rings = 0;
     const sc_status status =
         sc_near_masks_create(model, question->ignore_rings, NULL, &near->masks);

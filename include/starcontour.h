@@ -971,8 +971,8 @@ SC_API sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_p
 typedef struct sc_region {
     uint32_t component;    /* the lowest vertex of the connected part of the mesh that it is in */
     uint32_t vertex_count; /* vertices in it; 0 for a strip or a disc between vertices */
-    double area;           /* of all that is in it; where that of one of its triangles is beyond
-                              the range of doubles, too small, and infinite where the sum is */
+    double area;           /* of all that is in it. A triangle whose own area is beyond the range of
+                              doubles counts as DBL_MAX; a sum beyond that range is infinite */
     int32_t inside;        /* on request: how often closed components go round it, on the side to
                               which its normals point: 0 outside of all. SC_REGION_UNKNOWN if that
                               was not asked for, or contours pass through all of its triangles */
