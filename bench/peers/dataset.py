@@ -28,7 +28,6 @@ SPDX-License-Identifier: MIT
 """
 
 import argparse
-import os
 import statistics
 import sys
 import time
@@ -131,32 +130,22 @@ def parse():
 
 def main():
     arguments = parse()
-    # Before a library looks how many processors there are.
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, peers.processors()[: arguments.threads])
-    try:
-        headed = arguments.csv and peers.has_heading(arguments.csv)
-        out = open(arguments.csv, "a", encoding="utf-8") if arguments.csv else sys.stdout
-        if not headed:
-            print(COLUMNS, file=out)
-        right = True
+
+    def measure_all(out):
         if arguments.threads > 1 and not peers.PEERS[arguments.peer][3]:
             print(f"skipped: {arguments.peer}: it uses one thread only", flush=True)
-        else:
-            scene = peers.Scene(arguments.scene)
-            if scene.frames < 2:
-                raise peers.Unusable(f"{scene.name}: there is no pose behind the rest pose")
-            try:
-                right = measure(scene, arguments, out)
-            except peers.Skipped as reason:
-                print(f"skipped: {arguments.peer}: {reason}", flush=True)
-                print(f"# skipped: {arguments.peer}: {reason}", file=out)
-        if arguments.csv:
-            out.close()
-        return 0 if right else 3
-    except (OSError, peers.Unusable) as error:
-        print(error, file=sys.stderr)
-        return 2
+            return 0
+        scene = peers.Scene(arguments.scene)
+        if scene.frames < 2:
+            raise peers.Unusable(f"{scene.name}: there is no pose behind the rest pose")
+        try:
+            return 0 if measure(scene, arguments, out) else 3
+        except peers.Skipped as reason:
+            print(f"skipped: {arguments.peer}: {reason}", flush=True)
+            print(f"# skipped: {arguments.peer}: {reason}", file=out)
+            return 0
+
+    return peers.run_measured(arguments.csv, COLUMNS, arguments.threads, measure_all)
 
 
 if __name__ == "__main__":

@@ -32,7 +32,6 @@ SPDX-License-Identifier: MIT
 import argparse
 import ctypes
 import importlib.metadata
-import os
 import statistics
 import sys
 import time
@@ -420,22 +419,12 @@ def parse():
 
 def main():
     arguments = parse()
-    if hasattr(os, "sched_setaffinity"):  # before a library looks how many processors there are
-        os.sched_setaffinity(0, peers.processors()[:1])
-    try:
-        headed = arguments.csv and peers.has_heading(arguments.csv)
-        out = open(arguments.csv, "a", encoding="utf-8") if arguments.csv else sys.stdout
-        if not headed:
-            print(COLUMNS, file=out)
-        right = True
-        for folder in arguments.scenes:
-            right &= measure(peers.Scene(folder), arguments, out)
-        if arguments.csv:
-            out.close()
-        return 0 if right else 1
-    except (OSError, peers.Unusable) as error:
-        print(error, file=sys.stderr)
-        return 2
+
+    def measure_all(out):
+        right = [measure(peers.Scene(folder), arguments, out) for folder in arguments.scenes]
+        return 0 if all(right) else 1
+
+    return peers.run_measured(arguments.csv, COLUMNS, 1, measure_all)
 
 
 if __name__ == "__main__":

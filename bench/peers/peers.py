@@ -24,6 +24,7 @@ SPDX-License-Identifier: MIT
 
 import argparse
 import array
+import contextlib
 import ctypes
 import fractions
 import glob
@@ -745,6 +746,23 @@ def has_heading(path):
         return any(not line.startswith("#") for line in file)
 
 
+def run_measured(path, columns, threads, measure_all):
+    """Measures on so many processors, and adds lines to a CSV file, or writes them to standard output where
+    path is None. measure_all takes the open file and returns the exit status; 2 if a file cannot be used."""
+    if hasattr(os, "sched_setaffinity"):  # before a library looks how many processors there are
+        os.sched_setaffinity(0, processors()[:threads])
+    try:
+        headed = path and has_heading(path)
+        with contextlib.ExitStack() as files:
+            out = files.enter_context(open(path, "a", encoding="utf-8")) if path else sys.stdout
+            if not headed:
+                print(columns, file=out)
+            return measure_all(out)
+    except (OSError, Unusable) as error:
+        print(error, file=sys.stderr)
+        return 2
+
+
 def read_step(parser, arguments):
     """--step as a Fraction, --from as a list of numbers."""
     try:
@@ -819,25 +837,16 @@ def main():
         return 0
     if not arguments.peer:
         return run_each()
-    # Before a library looks how many processors there are.
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, processors()[: arguments.threads])
-    try:
-        headed = arguments.csv and has_heading(arguments.csv)
-        out = open(arguments.csv, "a", encoding="utf-8") if arguments.csv else sys.stdout
-        if not headed:
-            print(COLUMNS, file=out)
+
+    def measure_all(out):
         same = True
         for folder in arguments.scenes:
             scene = Scene(folder)
             scene.part = arguments.step
             same &= measure(arguments.peer, scene, arguments, out)
-        if arguments.csv:
-            out.close()
         return 0 if same else 1
-    except (OSError, Unusable) as error:
-        print(error, file=sys.stderr)
-        return 2
+
+    return run_measured(arguments.csv, COLUMNS, arguments.threads, measure_all)
 
 
 if __name__ == "__main__":

@@ -38,7 +38,6 @@ import collections
 import ctypes
 import importlib.metadata
 import math
-import os
 import statistics
 import sys
 import time
@@ -418,13 +417,8 @@ def parse():
 
 def main():
     arguments = parse()
-    if hasattr(os, "sched_setaffinity"):  # before a library looks how many processors there are
-        os.sched_setaffinity(0, peers.processors()[:1])
-    try:
-        headed = arguments.csv and peers.has_heading(arguments.csv)
-        out = open(arguments.csv, "a", encoding="utf-8") if arguments.csv else sys.stdout
-        if not headed:
-            print(COLUMNS, file=out)
+
+    def measure_all(out):
         status = 0
         for folder in arguments.scenes:
             scene = peers.Scene(folder)
@@ -435,12 +429,9 @@ def main():
                 print(f"skipped: {arguments.peer} on {scene.name}: {reason}", flush=True)
                 print(f"# skipped: {arguments.peer} on {scene.name}: {reason}", file=out, flush=True)
                 status = status or 3
-        if arguments.csv:
-            out.close()
         return status
-    except (OSError, peers.Unusable) as error:
-        print(error, file=sys.stderr)
-        return 2
+
+    return peers.run_measured(arguments.csv, COLUMNS, 1, measure_all)
 
 
 if __name__ == "__main__":
