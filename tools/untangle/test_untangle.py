@@ -10,6 +10,7 @@ import sys
 
 import numpy as np
 
+import anny_body
 import starcontour
 import untangle
 
@@ -46,4 +47,11 @@ body = untangle.body(44, 14)
 check("body: none at rest",
       starcontour.Model(body.rest, body.triangles, weld="none").count(body.rest) == 0)
 check_scene("body", body)
+if anny_body.folder():
+    character = untangle.anny("notoes_collapse10pc")
+    check("anny: none at rest",
+          starcontour.Model(character.rest, character.triangles, weld="none").count(character.rest) == 0)
+    check_scene("anny", character)
+else:
+    print(f"skipped: anny: {anny_body.MISSING}")
 sys.exit(failures > 0)

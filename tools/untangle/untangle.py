@@ -3,8 +3,8 @@ lengths, and where these stall, of the regions that contours cut out.
 
     python untangle.py [SCENE...] [--no-regions] [--plot FILE] [--write FOLDER] [--iterations N] [--seconds S]
 
-SCENE: cloths, layers, limb or body; all by default. Needs numpy and the package starcontour, and
-matplotlib for --plot. See README.md.
+SCENE: cloths, layers, limb, body or anny; all by default, anny where its package is. Needs numpy and the
+package starcontour, and matplotlib for --plot. See README.md.
 
 SPDX-License-Identifier: MIT
 """
@@ -16,6 +16,7 @@ import time
 
 import numpy as np
 
+import anny_body
 import starcontour
 
 
@@ -148,7 +149,14 @@ def body(along=100, around=28):
     return Scene(rest, triangles, pose + np.random.default_rng(3).normal(0, 1e-4, pose.shape))
 
 
-SCENES = {"cloths": cloths, "layers": layers, "limb": limb, "body": body}
+def anny(topology="notoes"):
+    """The body of the package anny, an arm let down until it is within the flank. At rest it is nearly."""
+    model = anny_body.Body(topology)
+    rest, pose = (model.pose({"upperarm_l": anny_body.turn([0, 0, 1], angle)}) for angle in (-30, -50))
+    return Scene(rest, model.triangles, pose + np.random.default_rng(3).normal(0, 1e-5, pose.shape))
+
+
+SCENES = {"cloths": cloths, "layers": layers, "limb": limb, "body": body, "anny": anny}
 
 
 class Edges:
@@ -277,7 +285,12 @@ def main(arguments=None):
             parser.error(f"no scene {name}")
     histories, left = {}, 0
     for name in given.scenes or SCENES:
-        scene = SCENES[name]()
+        try:
+            scene = SCENES[name]()
+        except ImportError as reason:
+            print(f"{name}: skipped: {reason}", flush=True)
+            left += bool(given.scenes)
+            continue
         begin = time.perf_counter()
 
         def report(iteration, pairs, length, error):
