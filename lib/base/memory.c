@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/jobs.h"
+
 /* Stands before each scratch allocation and fills one alignment unit. */
 struct sc_scratch_block {
     sc_scratch_block *previous, *next;
@@ -81,11 +83,35 @@ void *sc_scratch_take(sc_scratch *scratch, uint64_t count, size_t size)
     return (unsigned char *)block + SC_ALIGNMENT;
 }
 
+/* Memory is filled by several threads in pieces, where there are some: the system clears pages when
+   they are first written to. */
+enum { PIECE_BYTES = 1 << 16, PIECES_A_PART = 8 };
+
+typedef struct filling {
+    unsigned char *memory;
+    uint64_t bytes;
+    int byte;
+} filling;
+
+static void fill_pieces(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    const filling *f = (const filling *)context;
+    uint64_t from = (uint64_t)first * PIECE_BYTES, to = (uint64_t)end * PIECE_BYTES;
+    (void)part;
+    if (to > f->bytes) to = f->bytes;
+    memset(f->memory + from, f->byte, (size_t)(to - from));
+}
+
 void *sc_scratch_take_filled(sc_scratch *scratch, uint64_t count, size_t size, int byte)
 {
-    void *memory = sc_scratch_take(scratch, count, size);
-    if (memory) memset(memory, byte, (size_t)(count * size));
-    return memory;
+    filling f;
+    f.memory = (unsigned char *)sc_scratch_take(scratch, count, size);
+    f.bytes = count * size;
+    f.byte = byte;
+    if (f.memory && f.bytes)
+        (void)sc_jobs_loop(scratch->tasks, (uint32_t)((f.bytes - 1) / PIECE_BYTES + 1),
+                           PIECES_A_PART, fill_pieces, &f);
+    return f.memory;
 }
 
 void sc_scratch_give(sc_scratch *scratch, void *memory)

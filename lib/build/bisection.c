@@ -59,7 +59,8 @@ typedef struct bisection {
     sc_pair *keys;       /* a place */
     uint32_t *sizes;     /* a place: of components */
     int32_t *graph; /* 7 * triangle_count + 1, for the caller's cut: offsets, neighbors, weights */
-    uint32_t patches; /* numbers given out */
+    uint32_t patches;      /* numbers given out */
+    const sc_tasks *tasks; /* to share a cut out, or NULL: then one thread makes it */
     sc_refinement refinement;
     sc_slices slices;
 } bisection;
@@ -70,6 +71,60 @@ static int is_with(const bisection *b, uint32_t t, uint32_t u, int by_side)
     return (b->label[u] ^ b->label[t]) <= !by_side;
 }
 
+/* Ranges of a patch that are joined by themselves. */
+typedef struct range_joins {
+    bisection *b;
+    const uint32_t *triangles;
+    int by_side;
+    uint32_t first[SC_JOBS_PARTS];
+    uint32_t joins[SC_JOBS_PARTS];  /* that made two components one */
+    uint32_t across[SC_JOBS_PARTS]; /* triangles beside one of an earlier range: in b->sizes, from
+                                       first on */
+} range_joins;
+
+/* Ranges of fewer triangles than this are not worth it. */
+enum { JOINED_LEAST = 16384 };
+
+/* Joins a triangle with those beside it from lowest to end - 1; returns how often that made two
+   components one. */
+static uint32_t join_triangle(const range_joins *j, uint32_t t, uint32_t lowest, uint32_t end)
+{
+    /* of each triangle: a lower one, or itself */
+    uint32_t *parent = j->b->component, root = t, joins = 0, k;
+    while (parent[root] != root) root = parent[root];
+    for (k = 0; k < 3; k++) {
+        uint32_t u = j->b->neighbor[3 * (uint64_t)t + k];
+        if (u >= end || u < lowest || !is_with(j->b, t, u, j->by_side)) continue;
+        while (parent[u] != u) u = parent[u] = parent[parent[u]];
+        if (u == root) continue;
+        joins++;
+        if (u < root)
+            root = parent[root] = u;
+        else
+            parent[u] = root;
+    }
+    return joins;
+}
+
+static void join_range(void *context, uint32_t part, uint32_t first, uint32_t end)
+{
+    range_joins *j = (range_joins *)context;
+    const uint32_t lowest = j->triangles[first];
+    uint32_t joins = 0, across = 0, i, k;
+    for (i = first; i < end; i++) {
+        uint32_t t = j->triangles[i], is_across = 0;
+        j->b->component[t] = t;
+        joins += join_triangle(j, t, lowest, t);
+        for (k = 0; first > 0 && k < 3; k++)
+            is_across |= j->b->neighbor[3 * (uint64_t)t + k] < lowest;
+        j->b->sizes[first + across] = t;
+        across += is_across;
+    }
+    j->first[part] = first;
+    j->joins[part] = joins;
+    j->across[part] = across;
+}
+
 /* Numbers the components of a patch in the order of their first triangles, where crossing from side
    0 to side 1 does or does not count as connected, and writes their sizes; returns how many. If
    they are no more than least, there are no numbers. Triangles of a patch are ascending: so a pass
@@ -77,26 +132,20 @@ static int is_with(const bisection *b, uint32_t t, uint32_t u, int by_side)
 static uint32_t number_components(bisection *b, const uint32_t *triangles, uint32_t count,
                                   int by_side, uint32_t least)
 {
-    /* of each triangle: a lower one, or itself; then its component, written over it */
-    uint32_t *parent = b->component, found = count, i, k;
-    for (i = 0; i < count; i++) {
-        uint32_t t = triangles[i], root = t;
-        parent[t] = t;
-        for (k = 0; k < 3; k++) {
-            uint32_t u = b->neighbor[3 * (uint64_t)t + k];
-            if (u >= t || !is_with(b, t, u, by_side)) continue;
-            while (parent[u] != u) u = parent[u] = parent[parent[u]];
-            if (u == root) continue;
-            found--;
-            if (u < root)
-                root = parent[root] = u;
-            else
-                parent[u] = root;
-        }
+    uint32_t *parent = b->component, found = count, parts, part, i;
+    range_joins j;
+    j.b = b;
+    j.triangles = triangles;
+    j.by_side = by_side;
+    parts = sc_jobs_loop(b->tasks, count, JOINED_LEAST, join_range, &j);
+    for (part = 0; part < parts; part++) {
+        found -= j.joins[part];
+        for (i = 0; i < j.across[part]; i++)
+            found -= join_triangle(&j, b->sizes[j.first[part] + i], 0, triangles[j.first[part]]);
     }
     if (found <= least) return found;
     found = 0;
-    for (i = 0; i < count; i++) {
+    for (i = 0; i < count; i++) { /* components, written over lower triangles */
         uint32_t t = triangles[i];
         if (parent[t] == t) {
             b->sizes[found] = 0;
@@ -477,6 +526,7 @@ typedef struct tops {
     bisection *b;
     uint32_t count, begin; /* begin: the first of the level at hand */
     uint32_t inner;        /* how many are cut */
+    const sc_tasks *tasks; /* to share a cut out, or NULL where several are made at the same time */
     top at[2 * FIRSTS];
     patch half[2 * FIRSTS]; /* of those of a level */
 } tops;
@@ -497,11 +547,14 @@ static bisection own_room(const bisection *b, const patch *p)
 }
 
 /* From now on the halves of a patch are beside nothing of each other. */
-static void part_halves(bisection *b, const patch *p)
+static void part_range(void *context, uint32_t part, uint32_t first, uint32_t end)
 {
-    const uint32_t *triangles = b->hierarchy->order + p->first, none = b->points->triangle_count;
+    bisection *b = ((const range_joins *)context)->b;
+    const uint32_t *triangles = ((const range_joins *)context)->triangles,
+                   none = b->points->triangle_count;
     uint32_t i, k;
-    for (i = 0; i < p->count; i++)
+    (void)part;
+    for (i = first; i < end; i++)
         for (k = 0; k < 3; k++) {
             uint32_t *u = &b->neighbor[3 * (uint64_t)triangles[i] + k];
             if (b->label[*u] != b->label[triangles[i]]) *u = none;
@@ -513,10 +566,14 @@ static void cut_top(void *context, uint32_t part, uint32_t worker)
     tops *all = (tops *)context;
     top *at = &all->at[all->begin + part];
     bisection own = own_room(all->b, &at->p);
+    range_joins halves;
     (void)worker;
+    own.tasks = all->tasks;
     if (at->p.count < FIRST_LEAST) return;
     (void)cut_patch(&own, &at->p, all->half + 2 * part); /* the built-in cut does not fail */
-    part_halves(&own, &at->p);
+    halves.b = &own;
+    halves.triangles = own.hierarchy->order + at->p.first;
+    (void)sc_jobs_loop(own.tasks, at->p.count, JOINED_LEAST, part_range, &halves);
     at->child = 1;
 }
 
@@ -525,7 +582,11 @@ static void make_firsts(tops *all, const sc_tasks *tasks)
     uint32_t level, end, i;
     for (level = 0; tasks && level < FIRST_LEVELS; level++) {
         end = all->count;
-        sc_jobs_run(tasks, end - all->begin, cut_top, all);
+        all->tasks = level == 0 ? tasks : NULL;
+        if (level == 0)
+            cut_top(all, 0, 0);
+        else
+            sc_jobs_run(tasks, end - all->begin, cut_top, all);
         for (i = all->begin; i < end; i++) {
             const patch *half = all->half + 2 * (i - all->begin);
             if (!all->at[i].child) continue;
