@@ -46,6 +46,8 @@ function starcontour.declarations(header)
             depth = depth - 1
         elseif line:match("^#define SC_[A-Z_]+ %d%w*$") then
             lines[#lines + 1] = line:gsub("#define (%S+) (%w-)u?$", "static const uint32_t %1 = %2;")
+        elseif line:match("^#define SC_[A-Z_]+ %(%-.*%)$") then
+            lines[#lines + 1] = line:gsub("#define (%S+) (.*)$", "static const int32_t %1 = %2;")
         elseif not line:match("^%s*#") and not skipped then
             lines[#lines + 1] = line
         end
