@@ -1,7 +1,8 @@
 #!/bin/sh
 # Prints what tests/ffi/golden.txt should hold: the triangle pairs of meshes/crossing_cloths.obj at
 # rest and moved (see moved.awk), the vertex-face and edge-edge pairs within 0.045 when it is moved,
-# and those that collide on the way from one pose to the other, as sc-query finds them. To update the file after a change:
+# those that collide on the way from one pose to the other, and the contours at rest (contours.awk),
+# as sc-query finds them. To update the file after a change:
 #
 #     tests/ffi/golden.sh > tests/ffi/golden.new && mv tests/ffi/golden.new tests/ffi/golden.txt
 #
@@ -34,3 +35,9 @@ status=0
 "$query" --step --out "$scratch/pairs" "$mesh" "$scratch/moved.obj" >/dev/null || status=$?
 [ "$status" -eq 1 ]
 awk -F, 'NR > 1 { print $3 == "vertex-face" ? "stepfaces" : "stepedges", $8, $9 }' "$scratch/pairs"
+status=0
+"$query" --trace --json "$mesh" >"$scratch/contours" || status=$?
+[ "$status" -eq 1 ]
+echo "# contour: nodes, begin, end, length. node: edge, triangle"
+tr '{' '\n' <"$scratch/contours" | awk -f "$here/contours.awk" |
+    sort -k1,1n -k2,2n -k3,3n -k4,4n | cut -d ' ' -f 5-

@@ -37,21 +37,65 @@ static class FfiCsharp
             typeof(Native.sc_query_options), typeof(Native.sc_result), typeof(Pair),
             typeof(Native.sc_workspace_options), typeof(Native.sc_step_options),
             typeof(Native.sc_step_result), typeof(Native.sc_near_options),
-            typeof(Native.sc_near_result), typeof(Native.sc_group), typeof(Native.sc_object),
+            typeof(Native.sc_near_result), typeof(ContourNode), typeof(Contour),
+            typeof(Native.sc_trace_options), typeof(Native.sc_trace_result),
+            typeof(Native.sc_group), typeof(Native.sc_object),
             typeof(Native.sc_objects), typeof(Native.sc_object_pairs),
             typeof(Native.sc_objects_result), typeof(Native.sc_object_list),
             typeof(Native.sc_objects_lists) })
         {
-            var name = type == typeof(Pair) ? "sc_pair" : type.Name;
+            var name = type == typeof(Pair) ? "sc_pair"
+                : type == typeof(ContourNode) ? "sc_trace_node"
+                : type == typeof(Contour) ? "sc_trace_contour" : type.Name;
             var size = lines.Single(w => w[0] == "struct" && w[1] == name)[2];
             var header = lines.Where(w => w[0] == "member" && w[1] == name).Select(w => w[2] + " " + w[3]);
-            var own = type.GetFields().Select(f => f.Name + " " + Marshal.OffsetOf(type, f.Name));
+            var own = type.GetFields().Where(f => !f.IsLiteral)
+                .Select(f => f.Name + " " + Marshal.OffsetOf(type, f.Name));
             Check(name + " is laid out as in the header",
                 Marshal.SizeOf(type).ToString() == size && header.SequenceEqual(own));
         }
         var statuses = lines.Where(w => w[0] == "value" && (w[1] == "SC_OK" || w[1].StartsWith("SC_ERROR_")));
         Check("status values are the header's", statuses.Select(w => int.Parse(w[2])).SequenceEqual(
             Enum.GetValues(typeof(Status)).Cast<int>()));
+        var ends = Enum.GetValues(typeof(ContourEnd)).Cast<ContourEnd>().Select(
+            end => "SC_TRACE_" + end.ToString().ToUpperInvariant() + " " + (uint)end);
+        var others = new[] {
+            "SC_TRACE_ONE_SHEET " + Contour.OneSheet, "SC_TRACE_NO_EDGE " + ContourNode.NoEdge
+        };
+        Check("constants of contours are the header's", new HashSet<string>(ends.Concat(others)).SetEquals(
+            lines.Where(w => w[0] == "value" && w[1].StartsWith("SC_TRACE_")).Select(w => w[1] + " " + w[2])));
+    }
+
+    static bool Close(double a, double b) { return Math.Abs(a - b) <= 1e-12 * b; }
+
+    // The contours are those of the golden file: nodes, and of contours number of nodes, begin, end
+    // and length.
+    static bool Same(TracedContours found, ILookup<string, string> golden)
+    {
+        var wanted = golden["contour"].Select(line => line.Split(' ')).ToList();
+        return wanted.Count == found.Contours.Count && found.Nodes.Select(
+                node => node.edge + " " + node.triangle).SequenceEqual(golden["node"])
+            && found.Contours.Zip(wanted, (contour, w) =>
+                contour.count + " " + (uint)contour.begin + " " + (uint)contour.end
+                    == string.Join(" ", w.Take(3))
+                && Close(contour.length, double.Parse(w[3], CultureInfo.InvariantCulture))).All(x => x);
+    }
+
+    // Nodes follow each other contour after contour, and so does the length of their segments.
+    static bool LengthsFit(TracedContours found)
+    {
+        ulong next = 0;
+        foreach (var contour in found.Contours)
+        {
+            var points = found.Nodes.Skip((int)contour.first).Take((int)contour.count).Select(
+                node => node.point).ToList();
+            if (contour.begin == ContourEnd.Closed) points.Add(points[0]);
+            var length = points.Zip(points.Skip(1), (p, q) => Math.Sqrt((p.x - q.x) * (p.x - q.x)
+                + (p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z))).Sum();
+            if (contour.first != next || !Close(length, contour.length)) return false;
+            next += contour.count;
+        }
+        return next == (ulong)found.Nodes.Count;
     }
 
     // Meetings as pairs of the one mesh of two objects, sorted; firstA and firstB: the numbers of what
@@ -138,9 +182,16 @@ static class FfiCsharp
                 Check("pairs when moved", same(workspace.Query(moved), "moved"));
                 Check("edges, proper", workspace.Query(rest, PairKind.Edge, Contact.Proper).Count > 0);
 
+                var traced = workspace.Trace(rest);
+                Check("contours at rest", Same(traced, golden) && traced.Contours.Count > 0);
+                Check("lengths of contours", LengthsFit(traced));
+                traced = workspace.Trace(moved);
+                Check("contours when moved", !Same(traced, golden) && LengthsFit(traced));
+
                 var spoilt = (double[])moved.Clone();
                 spoilt[5] = double.NaN;
                 Check("NaN", Refused(Status.NotFinite, "NaN", () => workspace.Query(spoilt)));
+                Check("contours of NaN", Refused(Status.NotFinite, "NaN", () => workspace.Trace(spoilt)));
                 Check("number of vertices", Refused(Status.VertexCount, "vert",
                     () => workspace.Query(rest.Take(rest.Length - 3).ToArray())));
                 Check("vertex out of range", Refused(Status.Index, "vertex",

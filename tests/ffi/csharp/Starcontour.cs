@@ -31,6 +31,37 @@ namespace Starcontour
         public override string ToString() { return a + " " + b; }
     }
 
+    // Where a contour begins and ends: nowhere, at an edge of one triangle, at an edge of three or
+    // more, or at a vertex that both triangles share.
+    public enum ContourEnd : uint { Closed = 0, Border = 1, Branch = 2, Vertex = 3 }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Vector { public double x, y, z; }
+
+    // Where an edge passes through a triangle: a sc_trace_node of the header. weights are those of the
+    // triangle's corners; sheets are the triangles in which the contour goes on to the next node.
+    [StructLayout(LayoutKind.Sequential)]
+    public struct ContourNode
+    {
+        public const uint NoEdge = 0xffffffff; // instead of an edge or sheets
+        public uint edge, triangle, sheet;
+        public Pair sheets;
+        public uint reserved;
+        public double along;
+        public Vector weights, point;
+    }
+
+    // A contour: nodes first to first + count - 1; a sc_trace_contour of the header.
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Contour
+    {
+        public const uint OneSheet = 1; // in flags: its two sheets are one
+        public ulong first, count;
+        public ContourEnd begin, end;
+        public uint flags, reserved;
+        public double length;
+    }
+
     // The structures, as in starcontour.h. Names are the header's.
     public static unsafe class Native
     {
@@ -128,6 +159,23 @@ namespace Starcontour
         }
 
         [StructLayout(LayoutKind.Sequential)]
+        public struct sc_trace_options
+        {
+            public uint struct_size, simd;
+            public void* allocator, hooks, tasks, cancel;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public struct sc_trace_result
+        {
+            public uint struct_size, reserved;
+            public ulong node_count, node_capacity;
+            public ContourNode* nodes;
+            public ulong contour_count, contour_capacity;
+            public Contour* contours;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
         public struct sc_group
         {
             public uint category, mask;
@@ -211,6 +259,9 @@ namespace Starcontour
         [DllImport(Library)] public static extern Status sc_query_near(
             ModelHandle model, WorkspaceHandle workspace, ref sc_pose pose,
             ref sc_near_options options, ref sc_near_result result);
+        [DllImport(Library)] public static extern Status sc_trace(
+            ModelHandle model, ref sc_pose pose, Pair* pairs, ulong count,
+            ref sc_trace_options options, ref sc_trace_result result);
         [DllImport(Library)] public static extern Status sc_query_objects(
             ref sc_objects objects, ref sc_query_options options, ref sc_objects_result result);
         [DllImport(Library)] public static extern Status sc_query_objects_near(
@@ -287,6 +338,14 @@ namespace Starcontour
         public double Earliest; // of a step: nothing collides before
     }
 
+    // Contours of a pose; each names its first node and how many it has. Views of the workspace's own
+    // arrays, overwritten by its next trace.
+    public struct TracedContours
+    {
+        public ArraySegment<ContourNode> Nodes;
+        public ArraySegment<Contour> Contours;
+    }
+
     // What queries write to; belongs to one call at a time.
     public sealed unsafe class Workspace : IDisposable
     {
@@ -295,6 +354,8 @@ namespace Starcontour
         internal WorkspaceHandle Handle { get { return handle; } }
         Pair[] pairs = new Pair[16], faces = new Pair[16], edges = new Pair[16];
         double[] faceTimes = new double[16], edgeTimes = new double[16];
+        ContourNode[] nodes = new ContourNode[16];
+        Contour[] contours = new Contour[4];
 
         internal Workspace(Model model, WorkspaceKind kind)
         {
@@ -372,6 +433,20 @@ namespace Starcontour
             fixed (double* p = positions) return Near(PoseOf(p, positions.Length / 3, 1), distance);
         }
 
+        // Contours of the intersections in a pose. Its pairs of edges and triangles are found first, in
+        // place of those of the last query.
+        public TracedContours Trace(float[] positions)
+        {
+            var found = Query(positions, PairKind.Edge);
+            fixed (float* p = positions) return Trace(PoseOf(p, positions.Length / 3, 0), found);
+        }
+
+        public TracedContours Trace(double[] positions)
+        {
+            var found = Query(positions, PairKind.Edge);
+            fixed (double* p = positions) return Trace(PoseOf(p, positions.Length / 3, 1), found);
+        }
+
         static Native.sc_pose PoseOf(void* positions, int count, uint type)
         {
             return new Native.sc_pose {
@@ -437,6 +512,41 @@ namespace Starcontour
                     return Found(result.vertex_face_count, result.edge_edge_count);
                 }
                 MakeRoom(result.vertex_face_count, result.edge_edge_count);
+            }
+        }
+
+        TracedContours Trace(Native.sc_pose pose, ArraySegment<Pair> found)
+        {
+            var options = new Native.sc_trace_options {
+                struct_size = (uint)sizeof(Native.sc_trace_options)
+            };
+            var result = new Native.sc_trace_result {
+                struct_size = (uint)sizeof(Native.sc_trace_result)
+            };
+            for (;;)
+            {
+                Status status;
+                fixed (Pair* p = found.Array)
+                fixed (ContourNode* n = nodes)
+                fixed (Contour* c = contours)
+                {
+                    result.nodes = n;
+                    result.node_capacity = (ulong)nodes.Length;
+                    result.contours = c;
+                    result.contour_capacity = (ulong)contours.Length;
+                    status = Native.sc_trace(
+                        model.Handle, ref pose, p, (ulong)found.Count, ref options, ref result);
+                }
+                if (status != Status.ShortBuffer)
+                {
+                    Native.Check(status);
+                    return new TracedContours {
+                        Nodes = new ArraySegment<ContourNode>(nodes, 0, (int)result.node_count),
+                        Contours = new ArraySegment<Contour>(contours, 0, (int)result.contour_count)
+                    };
+                }
+                nodes = new ContourNode[Math.Max(result.node_count, (ulong)nodes.Length)];
+                contours = new Contour[Math.Max(result.contour_count, (ulong)contours.Length)];
             }
         }
 

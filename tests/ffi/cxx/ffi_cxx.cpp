@@ -220,11 +220,19 @@ void test(const char *mesh_path, const char *golden_path)
         moved[i].position[2] += moved[i].position[0] / 4 - 0.25f;
 
     std::map<std::string, Pairs> golden;
+    std::vector<std::tuple<std::uint64_t, std::uint32_t, std::uint32_t>> golden_contours;
+    std::vector<double> golden_lengths;
     for (std::ifstream file(golden_path); std::getline(file, line);) {
         std::istringstream words(line);
         std::string pose;
         std::uint32_t a, b;
         if (words >> pose >> a >> b) golden[pose].emplace_back(a, b);
+        std::uint32_t end;
+        double length;
+        if (pose == "contour" && words >> end >> length) {
+            golden_contours.emplace_back(a, b, end);
+            golden_lengths.push_back(length);
+        }
     }
     const Pairs golden_rest = golden["rest"], golden_moved = golden["moved"];
     check("there is something to compare", !golden_rest.empty() && golden_rest != golden_moved);
@@ -285,7 +293,19 @@ void test(const char *mesh_path, const char *golden_path)
         nodes += contour.count;
     }
     check("contours and their lengths", lengths && nodes == traced.nodes.size());
-    check("contours of another pose", workspace.trace(positions(rest)).nodes.size() != nodes);
+    const auto &at_rest = workspace.trace(positions(rest));
+    check("contours of another pose", at_rest.nodes.size() != nodes);
+    Pairs crossings;
+    for (const auto &node : at_rest.nodes) crossings.emplace_back(node.edge, node.triangle);
+    decltype(golden_contours) contours;
+    bool long_enough = at_rest.contours.size() == golden_lengths.size() && !golden_lengths.empty();
+    for (const auto &contour : at_rest.contours) {
+        contours.emplace_back(contour.count, contour.begin, contour.end);
+        const double wanted = long_enough ? golden_lengths[contours.size() - 1] : 0;
+        long_enough = long_enough && std::abs(contour.length - wanted) <= 1e-12 * wanted;
+    }
+    check("contours at rest",
+          crossings == golden["node"] && contours == golden_contours && long_enough);
     check("contours again", workspace.trace(positions(moved)).nodes.size() == nodes);
     std::uint32_t stop = 1;
     auto stopped = starcontour::sized<sc_trace_options>();

@@ -1,6 +1,6 @@
-// Go: pairs of two poses, errors, one model in two goroutines.
+// Go: pairs of two poses, the structures' layout, errors, one model in two goroutines.
 //
-//	ffi_go MESH GOLDEN
+//	ffi_go MESH GOLDEN LAYOUT
 //
 // SPDX-License-Identifier: MIT
 
@@ -12,9 +12,9 @@ import (
 	"fmt"
 	"math"
 	"os"
+	"reflect"
 	"sort"
 	"strings"
-	"unsafe"
 )
 
 var passed, failed int
@@ -58,6 +58,82 @@ func same(pairs []Pair, golden []Pair) bool {
 	return true
 }
 
+// goldenContour is a contour of the golden file.
+type goldenContour struct {
+	count      uint64
+	begin, end uint32
+	length     float64
+}
+
+func alike(a, b float64) bool { return math.Abs(a-b) <= 1e-12*b }
+
+// sameContours tells whether these are the golden contours, with these nodes: edges and triangles.
+func sameContours(found Contours, golden []goldenContour, nodes []Pair) bool {
+	if len(found.Contours) != len(golden) || len(found.Nodes) != len(nodes) {
+		return false
+	}
+	for i, node := range found.Nodes {
+		if (Pair{node.Edge, node.Triangle}) != nodes[i] {
+			return false
+		}
+	}
+	for i, contour := range found.Contours {
+		wanted := golden[i]
+		if contour.Count != wanted.count || contour.Begin != wanted.begin ||
+			contour.End != wanted.end || !alike(contour.Length, wanted.length) {
+			return false
+		}
+	}
+	return true
+}
+
+// lengthsFit tells whether nodes follow each other contour after contour, and so does the length of
+// their segments.
+func lengthsFit(found Contours) bool {
+	var next uint64
+	for _, contour := range found.Contours {
+		if contour.First != next {
+			return false
+		}
+		next += contour.Count
+		nodes := found.Nodes[contour.First:next]
+		length := 0.0
+		for i, node := range nodes {
+			if i+1 == len(nodes) && contour.Begin != ContourClosed {
+				break
+			}
+			p, q := node.Point, nodes[(i+1)%len(nodes)].Point
+			x, y, z := p[0]-q[0], p[1]-q[1], p[2]-q[2]
+			length += math.Sqrt(x*x + y*y + z*z)
+		}
+		if !alike(length, contour.Length) {
+			return false
+		}
+	}
+	return next == uint64(len(found.Nodes))
+}
+
+// expectLayout compares members of a structure, their places and sizes with the header's.
+func expectLayout(layout []string, name string, structure any) {
+	kind := reflect.TypeOf(structure)
+	own := []string{fmt.Sprintf("struct %s %d", name, kind.Size())}
+	for i := 0; i < kind.NumField(); i++ {
+		field := kind.Field(i)
+		member := strings.ToLower(field.Name)
+		if member == "_" {
+			member = "reserved"
+		}
+		own = append(own, fmt.Sprintf("member %s %s %d %d", name, member, field.Offset, field.Type.Size()))
+	}
+	var header []string
+	for _, line := range layout {
+		if strings.Split(line, " ")[1] == name {
+			header = append(header, line)
+		}
+	}
+	expect(name+" is laid out as in the header", reflect.DeepEqual(own, header))
+}
+
 func main() {
 	var rest [][3]float32
 	var triangles [][3]uint32
@@ -78,15 +154,23 @@ func main() {
 		}
 	}
 	golden := map[string][]Pair{}
+	var contours []goldenContour
 	for _, line := range lines(os.Args[2]) {
 		var pose string
 		var pair Pair
-		if n, _ := fmt.Sscan(line, &pose, &pair.A, &pair.B); n == 3 {
+		var contour goldenContour
+		if n, _ := fmt.Sscanf(line, "contour %d %d %d %g", &contour.count, &contour.begin,
+			&contour.end, &contour.length); n == 4 {
+			contours = append(contours, contour)
+		} else if n, _ := fmt.Sscan(line, &pose, &pair.A, &pair.B); n == 3 {
 			golden[pose] = append(golden[pose], pair)
 		}
 	}
 	expect("there is something to compare", len(golden["rest"]) > 0 && len(golden["moved"]) > 0)
-	expect("pairs are laid out as in the header", unsafe.Sizeof(Pair{}) == pairSize)
+	layout := lines(os.Args[3])
+	expectLayout(layout, "sc_pair", Pair{})
+	expectLayout(layout, "sc_trace_node", ContourNode{})
+	expectLayout(layout, "sc_trace_contour", Contour{})
 
 	model, err := Build(rest, triangles)
 	if err != nil {
@@ -102,6 +186,14 @@ func main() {
 	expect("pairs at rest", err == nil && same(pairs, golden["rest"]))
 	pairs, err = Query(workspace, moved)
 	expect("pairs when moved", err == nil && same(pairs, golden["moved"]))
+
+	traced, err := Trace(workspace, rest)
+	expect("contours at rest", err == nil && len(contours) > 0 &&
+		sameContours(traced, contours, golden["node"]))
+	expect("lengths of contours", lengthsFit(traced))
+	traced, err = Trace(workspace, moved)
+	expect("contours when moved", err == nil && lengthsFit(traced) &&
+		!sameContours(traced, contours, golden["node"]))
 
 	answers := make(chan bool, 2)
 	go func() { answers <- repeat(model, rest, golden["rest"]) }()
@@ -141,6 +233,8 @@ func main() {
 	moved[3][2] = math.NaN()
 	_, err = Query(workspace, moved)
 	expect("NaN", refused(err, ErrorNotFinite, "NaN"))
+	_, err = Trace(workspace, moved)
+	expect("contours of NaN", refused(err, ErrorNotFinite, "NaN"))
 	_, err = Build(rest, nil)
 	expect("no triangles", refused(err, ErrorEmpty, "triangle"))
 	_, err = Build(rest, [][3]uint32{{0, 1, uint32(len(rest))}})

@@ -82,6 +82,35 @@ static sc_status near_pairs(const sc_model *model, sc_workspace *workspace, cons
     *edge_count = result.edge_edge_count;
     return status;
 }
+
+static sc_status edge_pairs(const sc_model *model, sc_workspace *workspace, const void *positions,
+                            uint32_t vertex_count, uint32_t position_type, sc_pair *pairs,
+                            uint64_t *count)
+{
+    const sc_pose pose = pose_of(positions, vertex_count, position_type);
+    const sc_query_options options = {.struct_size = sizeof(options), .pairs = SC_PAIRS_EDGE};
+    sc_result result = {.struct_size = sizeof(result), .capacity = *count, .pairs = pairs};
+    const sc_status status = sc_query(model, workspace, &pose, &options, &result);
+    *count = result.count;
+    return status;
+}
+
+// Of the arrays of nodes and contours, *node_count and *contour_count are the lengths, then what was
+// found.
+static sc_status trace(const sc_model *model, const void *positions, uint32_t vertex_count,
+                       uint32_t position_type, const sc_pair *pairs, uint64_t count,
+                       sc_trace_node *nodes, uint64_t *node_count, sc_trace_contour *contours,
+                       uint64_t *contour_count)
+{
+    const sc_pose pose = pose_of(positions, vertex_count, position_type);
+    sc_trace_result result = {.struct_size = sizeof(result),
+                              .nodes = nodes, .node_capacity = *node_count,
+                              .contours = contours, .contour_capacity = *contour_count};
+    const sc_status status = sc_trace(model, &pose, pairs, count, NULL, &result);
+    *node_count = result.node_count;
+    *contour_count = result.contour_count;
+    return status;
+}
 */
 import "C"
 
@@ -144,11 +173,13 @@ func Build(positions [][3]float32, triangles [][3]uint32) (*Model, error) {
 
 // Workspace is what queries write to. It belongs to one call at a time.
 type Workspace struct {
-	model  *Model
-	handle *C.sc_workspace
-	pairs  []Pair
-	faces  []Pair
-	edges  []Pair
+	model    *Model
+	handle   *C.sc_workspace
+	pairs    []Pair
+	faces    []Pair
+	edges    []Pair
+	nodes    []ContourNode
+	contours []Contour
 }
 
 // What a workspace is for, besides queries: steps; or steps and what is near.
@@ -251,5 +282,78 @@ func Near[T Scalar](w *Workspace, pose [][3]T, distance float64) (Features, erro
 	return Features{VertexFaces: w.faces, EdgeEdges: w.edges}, err
 }
 
-// pairSize is the size of a pair in C, which that in Go has to be.
-const pairSize = C.sizeof_sc_pair
+// ContourNode is where an edge passes through a triangle: a sc_trace_node of the header.
+type ContourNode struct {
+	Edge, Triangle uint32 // NoEdge, and a vertex, where the node is one
+	Sheet          uint32
+	Sheets         [2]uint32 // the triangles of the segment to the next node; NoEdge at an end
+	_              uint32
+	Along          float64
+	Weights, Point [3]float64
+}
+
+// Contour is a contour's nodes, First to First+Count-1: a sc_trace_contour of the header.
+type Contour struct {
+	First, Count uint64
+	Begin, End   uint32 // ContourClosed and so on
+	Flags        uint32 // ContourOneSheet or 0
+	_            uint32
+	Length       float64
+}
+
+// Where a contour begins and ends; in its flags, that its two sheets are one; and what is in place of
+// an edge or of sheets.
+const (
+	ContourClosed   = C.SC_TRACE_CLOSED
+	ContourBorder   = C.SC_TRACE_BORDER
+	ContourBranch   = C.SC_TRACE_BRANCH
+	ContourVertex   = C.SC_TRACE_VERTEX
+	ContourOneSheet = C.SC_TRACE_ONE_SHEET
+	NoEdge          = C.SC_TRACE_NO_EDGE
+)
+
+// Contours are those of a pose; each names its first node and how many it has. They stay as they are
+// until the workspace's next Trace.
+type Contours struct {
+	Nodes    []ContourNode
+	Contours []Contour
+}
+
+// Trace finds the contours of the intersections in a pose. Its pairs of edges and triangles are found
+// first, in place of those of the last query.
+func Trace[T Scalar](w *Workspace, pose [][3]T) (Contours, error) {
+	var count C.uint64_t
+	for {
+		count = C.uint64_t(len(w.pairs))
+		status := C.edge_pairs(w.model.handle, w.handle, first(pose), C.uint32_t(len(pose)),
+			positionType[T](), (*C.sc_pair)(first(w.pairs)), &count)
+		runtime.KeepAlive(w)
+		if status == C.SC_OK {
+			break
+		}
+		if status != C.SC_ERROR_SHORT_BUFFER {
+			return Contours{}, check(status)
+		}
+		w.pairs = make([]Pair, count+count/4)
+	}
+	for {
+		nodes, contours := C.uint64_t(len(w.nodes)), C.uint64_t(len(w.contours))
+		status := C.trace(w.model.handle, first(pose), C.uint32_t(len(pose)), positionType[T](),
+			(*C.sc_pair)(first(w.pairs)), count,
+			(*C.sc_trace_node)(first(w.nodes)), &nodes,
+			(*C.sc_trace_contour)(first(w.contours)), &contours)
+		runtime.KeepAlive(w)
+		if status == C.SC_OK {
+			return Contours{w.nodes[:nodes], w.contours[:contours]}, nil
+		}
+		if status != C.SC_ERROR_SHORT_BUFFER {
+			return Contours{}, check(status)
+		}
+		if int(nodes) > len(w.nodes) {
+			w.nodes = make([]ContourNode, nodes)
+		}
+		if int(contours) > len(w.contours) {
+			w.contours = make([]Contour, contours)
+		}
+	}
+}

@@ -16,9 +16,11 @@ import java.nio.ByteOrder;
 import java.nio.file.Files;
 import java.nio.file.Path;
 import java.util.ArrayList;
+import java.util.Arrays;
 import java.util.HashMap;
 import java.util.List;
 import java.util.Map;
+import java.util.Set;
 import java.util.stream.Collectors;
 import java.util.stream.Stream;
 
@@ -33,11 +35,14 @@ public final class FfiJava {
         int sc_workspace_create_for(Pointer model, sc_workspace_options options,
             PointerByReference workspace);
         void sc_workspace_free(Pointer workspace);
-        int sc_query(Pointer model, Pointer workspace, sc_pose pose, Pointer options, sc_result result);
+        int sc_query(Pointer model, Pointer workspace, sc_pose pose, sc_query_options options,
+            sc_result result);
         int sc_query_step(Pointer model, Pointer workspace, sc_pose start, sc_pose end,
             sc_step_options options, sc_step_result result);
         int sc_query_near(Pointer model, Pointer workspace, sc_pose pose, sc_near_options options,
             sc_near_result result);
+        int sc_trace(Pointer model, sc_pose pose, Pointer pairs, long count, sc_trace_options options,
+            sc_trace_result result);
         int sc_query_objects(sc_objects objects, Pointer options, sc_objects_result result);
         int sc_query_objects_near(sc_objects objects, sc_near_options options, sc_objects_lists lists);
         int sc_query_objects_step(sc_objects objects, sc_step_options options, sc_objects_lists lists);
@@ -58,6 +63,16 @@ public final class FfiJava {
     public static class sc_pose extends Structure {
         public int struct_size = size(), vertex_count, position_type, position_stride;
         public Pointer positions;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "output", "pairs", "contact", "method", "contour",
+        "rest_cache", "simd", "filter", "cancel", "budget", "tasks"})
+    public static class sc_query_options extends Structure {
+        public int struct_size = size(), output, pairs, contact, method, contour, rest_cache, simd;
+        public Pointer filter, cancel;
+        public long budget;
+        public Pointer tasks;
         int at(String member) { return fieldOffset(member); }
     }
 
@@ -129,6 +144,48 @@ public final class FfiJava {
         public Pointer vertex_faces;
         public long edge_edge_count, edge_edge_capacity;
         public Pointer edge_edges, stats, vertex_bounds;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    /** Where an edge passes through a triangle; NO_EDGE is in place of an edge or of sheets. */
+    @Structure.FieldOrder({"edge", "triangle", "sheet", "sheets", "reserved", "along", "weights",
+        "point"})
+    public static class sc_trace_node extends Structure {
+        public static final int NO_EDGE = -1;
+        public int edge, triangle, sheet;
+        public int[] sheets = new int[2];
+        public int reserved;
+        public double along;
+        public double[] weights = new double[3], point = new double[3];
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    /** A contour's nodes, first to first + count - 1, where it begins and ends, and its length. */
+    @Structure.FieldOrder({"first", "count", "begin", "end", "flags", "reserved", "length"})
+    public static class sc_trace_contour extends Structure {
+        public static final int CLOSED = 0, BORDER = 1, BRANCH = 2, VERTEX = 3; // begin and end
+        public static final int ONE_SHEET = 1; // in flags
+        public long first, count;
+        public int begin, end, flags, reserved;
+        public double length;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "simd", "allocator", "hooks", "tasks", "cancel"})
+    public static class sc_trace_options extends Structure {
+        public int struct_size = size(), simd;
+        public Pointer allocator, hooks, tasks, cancel;
+        int at(String member) { return fieldOffset(member); }
+    }
+
+    @Structure.FieldOrder({"struct_size", "reserved", "node_count", "node_capacity", "nodes",
+        "contour_count", "contour_capacity", "contours"})
+    public static class sc_trace_result extends Structure {
+        public int struct_size = size(), reserved;
+        public long node_count, node_capacity;
+        public Pointer nodes;
+        public long contour_count, contour_capacity;
+        public Pointer contours;
         int at(String member) { return fieldOffset(member); }
     }
 
@@ -249,6 +306,7 @@ public final class FfiJava {
         static final int FOR_STEPS = 1, FOR_NEAR = 2;
         ByteBuffer pairs = direct(8 * 16);
         ByteBuffer faces = direct(8 * 16), edges = direct(8 * 16);
+        private int nodeRoom = 16, contourRoom = 4;
 
         Workspace(Model model) {
             this(model, 0);
@@ -267,19 +325,24 @@ public final class FfiJava {
         }
 
         List<String> query(ByteBuffer positions) {
+            long count = find(positions, null);
+            return listOf(pairs, count);
+        }
+
+        /** Fills pairs, and returns how many there are. */
+        private long find(ByteBuffer positions, sc_query_options options) {
             sc_pose pose = poseOf(positions);
             sc_result result = new sc_result();
             for (;;) {
                 result.capacity = pairs.capacity() / 8;
                 result.pairs = address(pairs);
-                int status = Starcontour.C.sc_query(model.handle, handle, pose, null, result);
+                int status = Starcontour.C.sc_query(model.handle, handle, pose, options, result);
                 if (status != 11) {
                     check(status);
-                    break;
+                    return result.count;
                 }
                 pairs = direct(8 * Math.toIntExact(result.count));
             }
-            return listOf(pairs, result.count);
         }
 
         /** What collides on the way from one pose to another, coming as near as separation. */
@@ -336,6 +399,33 @@ public final class FfiJava {
             }
         }
 
+        /** Contours of the intersections in a pose; its pairs of edges and triangles are found first. */
+        Contours trace(ByteBuffer positions) {
+            sc_query_options edgePairs = new sc_query_options();
+            edgePairs.pairs = 1;
+            long count = find(positions, edgePairs);
+            sc_pose pose = poseOf(positions);
+            sc_trace_options options = new sc_trace_options();
+            sc_trace_result result = new sc_trace_result();
+            for (;;) {
+                sc_trace_node[] nodes = (sc_trace_node[]) new sc_trace_node().toArray(nodeRoom);
+                sc_trace_contour[] contours =
+                    (sc_trace_contour[]) new sc_trace_contour().toArray(contourRoom);
+                result.node_capacity = nodeRoom;
+                result.nodes = nodes[0].getPointer();
+                result.contour_capacity = contourRoom;
+                result.contours = contours[0].getPointer();
+                int status = Starcontour.C.sc_trace(
+                    model.handle, pose, address(pairs), count, options, result);
+                if (status != 11) {
+                    check(status);
+                    return new Contours(nodes, result.node_count, contours, result.contour_count);
+                }
+                nodeRoom = Math.max(nodeRoom, Math.toIntExact(result.node_count));
+                contourRoom = Math.max(contourRoom, Math.toIntExact(result.contour_count));
+            }
+        }
+
         private void makeRoom(long faceCount, long edgeCount) {
             faces = direct(Math.max(faces.capacity(), Math.toIntExact(8 * faceCount)));
             edges = direct(Math.max(edges.capacity(), Math.toIntExact(8 * edgeCount)));
@@ -351,6 +441,24 @@ public final class FfiJava {
         Features(ByteBuffer faces, long faceCount, ByteBuffer edges, long edgeCount) {
             this.faces = listOf(faces, faceCount);
             this.edges = listOf(edges, edgeCount);
+        }
+    }
+
+    /** Contours of a pose; each names its first node and how many it has. */
+    static final class Contours {
+        final List<sc_trace_node> nodes;
+        final List<sc_trace_contour> contours;
+
+        Contours(sc_trace_node[] nodes, long nodeCount, sc_trace_contour[] contours,
+            long contourCount) {
+            this.nodes = read(nodes, nodeCount);
+            this.contours = read(contours, contourCount);
+        }
+
+        private static <T extends Structure> List<T> read(T[] array, long count) {
+            List<T> all = Arrays.asList(array).subList(0, (int) count);
+            all.forEach(Structure::read);
+            return all;
         }
     }
 
@@ -569,6 +677,48 @@ public final class FfiJava {
         return false;
     }
 
+    static boolean close(double a, double b) {
+        return Math.abs(a - b) <= 1e-12 * b;
+    }
+
+    /**
+     * The contours are those of the golden file: nodes, and of contours number of nodes, begin, end
+     * and length.
+     */
+    static boolean same(Contours found, Map<String, List<String>> golden) {
+        List<String> wanted = golden.get("contour");
+        boolean right = wanted.size() == found.contours.size();
+        for (int i = 0; right && i < wanted.size(); ++i) {
+            sc_trace_contour one = found.contours.get(i);
+            int last = wanted.get(i).lastIndexOf(' ');
+            right = wanted.get(i).substring(0, last).equals(one.count + " " + one.begin + " " + one.end)
+                && close(one.length, Double.parseDouble(wanted.get(i).substring(last)));
+        }
+        return right && found.nodes.stream()
+            .map(node -> Integer.toUnsignedString(node.edge) + " "
+                + Integer.toUnsignedString(node.triangle))
+            .collect(Collectors.toList()).equals(golden.get("node"));
+    }
+
+    /** Nodes follow each other contour after contour, and so does the length of their segments. */
+    static boolean lengthsFit(Contours found) {
+        int next = 0;
+        for (sc_trace_contour contour : found.contours) {
+            if (contour.first != next) return false;
+            double length = 0;
+            int segments = (int) contour.count - (contour.begin == sc_trace_contour.CLOSED ? 0 : 1);
+            for (int i = 0; i < segments; ++i) {
+                double[] p = found.nodes.get(next + i).point;
+                double[] q = found.nodes.get(next + (i + 1) % (int) contour.count).point;
+                double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+                length += Math.sqrt(x * x + y * y + z * z);
+            }
+            if (!close(length, contour.length)) return false;
+            next += (int) contour.count;
+        }
+        return next == found.nodes.size();
+    }
+
     interface Offset {
         int at(String member);
     }
@@ -681,6 +831,8 @@ public final class FfiJava {
         expectLayout(layout, "sc_mesh", mesh, mesh::at);
         sc_pose pose = new sc_pose();
         expectLayout(layout, "sc_pose", pose, pose::at);
+        sc_query_options queryOptions = new sc_query_options();
+        expectLayout(layout, "sc_query_options", queryOptions, queryOptions::at);
         sc_result result = new sc_result();
         expectLayout(layout, "sc_result", result, result::at);
         sc_workspace_options spaceOptions = new sc_workspace_options();
@@ -693,6 +845,22 @@ public final class FfiJava {
         expectLayout(layout, "sc_near_options", nearOptions, nearOptions::at);
         sc_near_result nearResult = new sc_near_result();
         expectLayout(layout, "sc_near_result", nearResult, nearResult::at);
+        sc_trace_node node = new sc_trace_node();
+        expectLayout(layout, "sc_trace_node", node, node::at);
+        sc_trace_contour contour = new sc_trace_contour();
+        expectLayout(layout, "sc_trace_contour", contour, contour::at);
+        sc_trace_options traceOptions = new sc_trace_options();
+        expectLayout(layout, "sc_trace_options", traceOptions, traceOptions::at);
+        sc_trace_result traceResult = new sc_trace_result();
+        expectLayout(layout, "sc_trace_result", traceResult, traceResult::at);
+        expect("constants of contours are the header's", layout.stream()
+            .filter(line -> line.startsWith("value SC_TRACE_")).collect(Collectors.toSet())
+            .equals(Set.of("value SC_TRACE_CLOSED " + sc_trace_contour.CLOSED,
+                "value SC_TRACE_BORDER " + sc_trace_contour.BORDER,
+                "value SC_TRACE_BRANCH " + sc_trace_contour.BRANCH,
+                "value SC_TRACE_VERTEX " + sc_trace_contour.VERTEX,
+                "value SC_TRACE_ONE_SHEET " + sc_trace_contour.ONE_SHEET,
+                "value SC_TRACE_NO_EDGE " + Integer.toUnsignedString(sc_trace_node.NO_EDGE))));
 
         sc_group group = new sc_group();
         expectLayout(layout, "sc_group", group, group::at);
@@ -713,6 +881,12 @@ public final class FfiJava {
         Workspace workspace = new Workspace(model);
         expect("pairs at rest", workspace.query(rest).equals(golden.get("rest")));
         expect("pairs when moved", workspace.query(moved).equals(golden.get("moved")));
+
+        Contours traced = workspace.trace(rest);
+        expect("contours at rest", same(traced, golden) && !traced.contours.isEmpty());
+        expect("lengths of contours", lengthsFit(traced));
+        traced = workspace.trace(moved);
+        expect("contours when moved", !same(traced, golden) && lengthsFit(traced));
 
         boolean[] right = {true, true};
         Thread[] threads = new Thread[2];
@@ -748,6 +922,7 @@ public final class FfiJava {
 
         moved.putFloat(4, Float.NaN);
         expect("NaN", refused(8, "NaN", () -> workspace.query(moved)));
+        expect("contours of NaN", refused(8, "NaN", () -> workspace.trace(moved)));
         expect("number of vertices", refused(9, "vert", () -> workspace.query(direct(12 * (n - 1)))));
         expect("no triangles", refused(4, "triangle", () -> new Model(rest, direct(0))));
         triangles.putInt(0, n);

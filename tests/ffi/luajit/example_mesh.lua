@@ -31,11 +31,12 @@ function example.moved(mesh)
     return pose
 end
 
--- { rest = { "a b", ... }, moved = { ... }, nearfaces = ... }
+-- { rest = { "a b", ... }, moved = { ... }, nearfaces = ..., node = ..., contour = { "count begin end
+-- length", ... } }
 function example.golden(path)
     local golden = {}
     for line in io.lines(path) do
-        local pose, pair = line:match("^(%a+) (%d+ %d+)$")
+        local pose, pair = line:match("^(%a+) (%d+ %d+.*)$")
         if pose then
             golden[pose] = golden[pose] or {}
             table.insert(golden[pose], pair)
@@ -52,6 +53,45 @@ function example.same(golden, pairs, count)
         if golden[i] ~= string.format("%d %d", pair.a, pair.b) then return false end
     end
     return true
+end
+
+local function close(a, b)
+    return math.abs(a - b) <= 1e-12 * b
+end
+
+-- Whether these are the golden contours: nodes, and of contours number of nodes, begin, end and length.
+function example.same_contours(golden, traced)
+    if traced.node_count ~= #golden.node or traced.contour_count ~= #golden.contour then return false end
+    for i = 1, #golden.node do
+        local node = traced.nodes[i - 1]
+        if golden.node[i] ~= string.format("%d %d", node.edge, node.triangle) then return false end
+    end
+    for i = 1, #golden.contour do
+        local contour = traced.contours[i - 1]
+        local numbers, length = golden.contour[i]:match("^(%d+ %d+ %d+) (%S+)$")
+        if numbers ~= string.format("%d %d %d", tonumber(contour.count), contour.begin, contour["end"])
+            or not close(contour.length, tonumber(length)) then
+            return false
+        end
+    end
+    return true
+end
+
+-- Whether nodes follow each other contour after contour, and so does the length of their segments.
+function example.lengths_fit(traced, closed)
+    local following = 0
+    for i = 0, tonumber(traced.contour_count) - 1 do
+        local contour = traced.contours[i]
+        local count, length = tonumber(contour.count), 0
+        if contour.first ~= following then return false end
+        for k = 0, count - (contour.begin == closed and 1 or 2) do
+            local p, q = traced.nodes[following + k].point, traced.nodes[following + (k + 1) % count].point
+            length = length + math.sqrt((p[0] - q[0]) ^ 2 + (p[1] - q[1]) ^ 2 + (p[2] - q[2]) ^ 2)
+        end
+        if not close(length, contour.length) then return false end
+        following = following + count
+    end
+    return traced.node_count == following
 end
 
 -- Counts checks: check(what, condition); check.finish(name) prints the sum and returns the failures.

@@ -46,6 +46,17 @@ local one, two = model:workspace(), model:workspace()
 check("pairs at rest", example.same(golden.rest, one:query(mesh.vertices, n)))
 check("pairs when moved", example.same(golden.moved, two:query(moved, n)))
 
+-- Contours.
+local traced = one:trace(mesh.vertices, n)
+check("contours at rest", traced.contour_count > 0 and example.same_contours(golden, traced))
+check("lengths of contours", example.lengths_fit(traced, sc.C.SC_TRACE_CLOSED))
+local traced_later = two:trace(moved, n)
+check("contours when moved", not example.same_contours(golden, traced_later)
+    and example.lengths_fit(traced_later, sc.C.SC_TRACE_CLOSED))
+local stop = ffi.new("uint32_t[1]", 1)
+check("contours that are not wanted any more", raised(sc.C.SC_ERROR_INCOMPLETE, ".",
+    one.trace, one, moved, n, { cancel = stop }))
+
 -- In turns, each workspace on its own pose.
 local fine = true
 for _ = 1, 100 do
@@ -61,6 +72,7 @@ check("unknown option", raised(sc.C.SC_ERROR_OPTION, ".", one.query, one, moved,
 check("number of vertices", raised(sc.C.SC_ERROR_VERTEX_COUNT, "vert", one.query, one, moved, n - 1))
 moved[10] = 0 / 0
 check("NaN", raised(sc.C.SC_ERROR_NOT_FINITE, "NaN", one.query, one, moved, n))
+check("contours of NaN", raised(sc.C.SC_ERROR_NOT_FINITE, "NaN", one.trace, one, moved, n))
 check("usable after errors", example.same(golden.rest, one:query(mesh.vertices, n)))
 mesh.triangles[1] = n
 check("vertex out of range", raised(sc.C.SC_ERROR_INDEX, ".", sc.build,

@@ -12,6 +12,9 @@
 --     local near = larger:near(pose, vertex_count, 0.01)          -- a sc_near_result: vertex_faces[0]
 --     -- to vertex_faces[tonumber(vertex_face_count) - 1], edge_edges likewise; step.earliest
 --
+--     local traced = workspace:trace(pose, vertex_count)          -- a sc_trace_result: contours[0] to
+--     -- contours[tonumber(contour_count) - 1]; nodes[contour.first] is a contour's first
+--
 --     local scene = sc.scene()                                    -- several objects
 --     local cloth, body = scene:add(model), scene:add(other, { itself = 0 })
 --     cloth:set_pose(pose, vertex_count)                          -- again whenever it has moved
@@ -46,6 +49,8 @@ function starcontour.declarations(header)
             depth = depth - 1
         elseif line:match("^#define SC_[A-Z_]+ %d%w*$") then
             lines[#lines + 1] = line:gsub("#define (%S+) (%w-)u?$", "static const uint32_t %1 = %2;")
+        elseif line:match("^#define SC_[A-Z_]+ %(%-.*%)$") then
+            lines[#lines + 1] = line:gsub("#define (%S+) (.*)$", "static const int32_t %1 = %2;")
         elseif not line:match("^%s*#") and not skipped then
             lines[#lines + 1] = line
         end
@@ -144,6 +149,29 @@ function starcontour.load(header, library)
         return self:find("sc_near_result", function(result)
             return C.sc_query_near(self.model.handle, self.handle, pose, asked, result)
         end)
+    end
+
+    -- Contours of the intersections in a pose. Its pairs of edges and triangles are found first, in place
+    -- of those of the last query. options: members of sc_trace_options by name, or nil; simd, tasks and
+    -- cancel are the query's, too. The result stays until the next trace.
+    function Workspace:trace(positions, vertex_count, options)
+        local pose, asked = pose_of(positions, vertex_count), sized("sc_trace_options", options)
+        local pairs, count = self:query(positions, vertex_count, {
+            pairs = C.SC_PAIRS_EDGE, simd = asked.simd, tasks = asked.tasks, cancel = asked.cancel })
+        local result = sized("sc_trace_result")
+        self.traced = { result }
+        while true do
+            local status = C.sc_trace(self.model.handle, pose, pairs, count, asked, result)
+            if status ~= C.SC_ERROR_SHORT_BUFFER then
+                check(status)
+                return result
+            end
+            local nodes = ffi.new("sc_trace_node[?]", tonumber(result.node_count))
+            local contours = ffi.new("sc_trace_contour[?]", tonumber(result.contour_count))
+            result.node_capacity, result.nodes = result.node_count, nodes
+            result.contour_capacity, result.contours = result.contour_count, contours
+            self.traced = { result, nodes, contours }
+        end
     end
 
     local Model = {}

@@ -64,11 +64,15 @@ later = len(rest) // 2
 moved[later:, 2] += moved[later:, 0] / 4 - 0.25
 
 golden = {}
+golden_contours = []
 with open(golden_path) as file:
     for line in file:
         if not line.startswith("#"):
-            pose, a, b = line.split()
-            golden.setdefault(pose, []).append((int(a), int(b)))
+            pose, a, b, *more = line.split()
+            if pose == "contour":
+                golden_contours.append((int(a), int(b), int(more[0]), float(more[1])))
+            else:
+                golden.setdefault(pose, []).append((int(a), int(b)))
 golden = {pose: np.array(pairs, np.uint32) for pose, pairs in golden.items()}
 
 
@@ -92,7 +96,7 @@ for structure in _binding.structures:
                 for f, _ in structure._fields_]
     check(f"{name} is laid out as in the header",
           mirrored == layout["member"][name] and ctypes.sizeof(structure) == layout["struct"][name])
-for name in ("sc_contact", "sc_near_stencil", "sc_step_stencil"):
+for name in ("sc_contact", "sc_near_stencil", "sc_step_stencil", "sc_trace_node", "sc_trace_contour"):
     dtype = np.dtype(getattr(_binding, name))
     check(f"{name} is laid out as in the header", dtype.itemsize == layout["struct"][name] and [
         (member, dtype.fields[member][1], dtype.fields[member][0].itemsize) for member in dtype.names
@@ -105,6 +109,11 @@ model = starcontour.Model(rest, triangles)
 check("info", model.info.vertex_count == len(rest) and model.info.triangle_count == len(triangles))
 check("pairs at rest", same(model.query(rest), "rest"))
 check("pairs when moved", same(model.query(moved), "moved"))
+at_rest, wanted = model.trace(rest), np.array(golden_contours)
+check("contours at rest", len(wanted) == len(at_rest.contours) > 0 and np.array_equal(
+    np.c_[at_rest.nodes["edge"], at_rest.nodes["triangle"]], golden["node"]) and all(
+    np.array_equal(at_rest.contours[name], wanted[:, i]) for i, name in enumerate(("count", "begin", "end")))
+    and np.allclose(at_rest.contours["length"], wanted[:, 3], rtol=1e-12, atol=0))
 check("count and any", model.count(moved) == len(golden["moved"]) and model.collides(moved))
 apart = rest.copy()
 apart[later:, 2] += 9

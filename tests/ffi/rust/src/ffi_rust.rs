@@ -4,7 +4,9 @@
 //!
 //! SPDX-License-Identifier: MIT
 
-use starcontour::{raw, Error, Group, Meeting, Model, Options, Pair, Scene, StepOptions};
+use starcontour::{
+    raw, Contours, Error, Group, Meeting, Model, Options, Pair, Scene, StepOptions, TRACE_CLOSED,
+};
 use std::collections::HashMap;
 use std::{env, fs, process, thread};
 
@@ -26,6 +28,39 @@ impl Checks {
 
 fn refused<T>(result: Result<T, Error>, error: Error, text: &str) -> bool {
     matches!(result, Err(found) if found == error && found.to_string().contains(text))
+}
+
+/// A contour of the golden file: number of nodes, begin, end; and its length.
+type GoldenContour = ([u32; 3], f64);
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 * b
+}
+
+/// The contours are the golden ones, with these nodes: edges and triangles.
+fn same_contours(found: &Contours, golden: &[GoldenContour], nodes: &[Pair]) -> bool {
+    found.nodes.iter().map(|n| Pair { a: n.edge, b: n.triangle }).eq(nodes.iter().copied())
+        && found.contours.len() == golden.len()
+        && found.contours.iter().zip(golden).all(|(c, (numbers, length))| {
+            [c.count as u32, c.begin, c.end] == *numbers && close(c.length, *length)
+        })
+}
+
+/// Nodes follow each other contour after contour, and so does the length of their segments.
+fn lengths_fit(found: &Contours) -> bool {
+    let mut next = 0;
+    let fits = found.contours.iter().all(|contour| {
+        let nodes = found.nodes_of(contour);
+        let behind = nodes[1..].iter().chain(&nodes[..(contour.begin == TRACE_CLOSED).into()]);
+        let distance = |p: &[f64; 3], q: &[f64; 3]| {
+            (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt()
+        };
+        let length = nodes.iter().zip(behind).map(|(p, q)| distance(&p.point, &q.point)).sum();
+        let begins = contour.first == next;
+        next += contour.count;
+        begins && close(length, contour.length)
+    });
+    fits && next == found.nodes.len() as u64
 }
 
 /// Meetings as pairs of the one mesh of two objects, sorted; firsts: the numbers there of what is the
@@ -116,8 +151,14 @@ fn main() {
         p[2] += p[0] / 4.0 - 0.25;
     }
     let mut golden = HashMap::<String, Vec<Pair>>::new();
+    let mut golden_contours = Vec::<GoldenContour>::new();
     for line in read(2).lines().filter(|line| !line.starts_with('#')) {
         let words: Vec<&str> = line.split(' ').collect();
+        if words[0] == "contour" {
+            let numbers = [1, 2, 3].map(|i| words[i].parse().unwrap());
+            golden_contours.push((numbers, words[4].parse().unwrap()));
+            continue;
+        }
         let pair = Pair { a: words[1].parse().unwrap(), b: words[2].parse().unwrap() };
         golden.entry(words[0].into()).or_default().push(pair);
     }
@@ -134,6 +175,19 @@ fn main() {
             .map(|line| line.splitn(5, ' ').take(4).collect::<Vec<_>>().join(" "))
             .collect();
         checks.check(&format!("{name} is laid out as in the header"), header == lines);
+    }
+
+    let values = [
+        ("SC_TRACE_CLOSED", TRACE_CLOSED),
+        ("SC_TRACE_BORDER", starcontour::TRACE_BORDER),
+        ("SC_TRACE_BRANCH", starcontour::TRACE_BRANCH),
+        ("SC_TRACE_VERTEX", starcontour::TRACE_VERTEX),
+        ("SC_TRACE_ONE_SHEET", starcontour::TRACE_ONE_SHEET),
+        ("SC_TRACE_NO_EDGE", starcontour::TRACE_NO_EDGE),
+    ];
+    for (name, value) in values {
+        let line = format!("value {name} {value}");
+        checks.check(&format!("{name} is the header's"), layout.lines().any(|l| l == line));
     }
 
     // Each error has the number of its namesake in the header, and none is missing.
@@ -182,6 +236,15 @@ fn main() {
     let out_of_range = Model::build(&rest, &[[0, 1, rest.len() as u32]]);
     checks.check("vertex out of range", refused(out_of_range, Error::Index, "vertex"));
     checks.check("usable after errors", workspace.query(&rest, &options).unwrap() == golden["rest"]);
+
+    let traced = workspace.trace(&rest).unwrap();
+    let right = same_contours(&traced, &golden_contours, &golden["node"]);
+    checks.check("contours at rest", right && !golden_contours.is_empty());
+    checks.check("lengths of contours", lengths_fit(&traced));
+    let traced = workspace.trace(&moved).unwrap();
+    let other = !same_contours(&traced, &golden_contours, &golden["node"]);
+    checks.check("contours when moved", other && lengths_fit(&traced));
+    checks.check("contours of NaN", refused(workspace.trace(&spoilt), Error::NotFinite, "NaN"));
 
     let mut larger = model.workspace_for(starcontour::WORKSPACE_NEAR).expect("a workspace");
     let near = larger.near(&moved, 0.045).unwrap();

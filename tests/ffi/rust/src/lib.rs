@@ -19,6 +19,8 @@
 //! let free = workspace.step(&rest, &next, &StepOptions::default())?.earliest;
 //! assert!(free > 0.49 && free <= 0.5);
 //! assert_eq!(workspace.near(&rest, 1.)?.vertex_faces.len(), 3);
+//! let traced = workspace.trace(&next)?; // from one edge of the triangle to the other
+//! assert_eq!((traced.contours.len(), traced.nodes[0].point), (1, [1.5, 1., 0.]));
 //!
 //! let mut scene = Scene::new(WORKSPACE_NEAR); // two objects of one model
 //! let (one, other) = (scene.add(&model)?, scene.add(&model)?);
@@ -35,6 +37,8 @@ mod scene;
 
 pub use raw::sc_group as Group;
 pub use raw::sc_pair as Pair;
+pub use raw::sc_trace_contour as Contour;
+pub use raw::sc_trace_node as ContourNode;
 pub use scene::{FeatureMeetings, Meeting, Object, Scene};
 use std::ffi::CStr;
 use std::{fmt, mem, ptr};
@@ -140,6 +144,19 @@ errors! {
 pub const WORKSPACE_STEP: u32 = 1;
 pub const WORKSPACE_NEAR: u32 = 2;
 
+/// Where a contour begins and ends: nowhere, at an edge of one triangle, at an edge of three or more
+/// triangles, or at a vertex that both triangles share.
+pub const TRACE_CLOSED: u32 = 0;
+pub const TRACE_BORDER: u32 = 1;
+pub const TRACE_BRANCH: u32 = 2;
+pub const TRACE_VERTEX: u32 = 3;
+
+/// In `flags` of a contour: its two sheets are one.
+pub const TRACE_ONE_SHEET: u32 = 1;
+
+/// Instead of an edge, where a node is a vertex; instead of `sheets`, where a contour ends.
+pub const TRACE_NO_EDGE: u32 = 0xffff_ffff;
+
 impl fmt::Display for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         // SAFETY: the text is the library's, never NULL, and static.
@@ -214,6 +231,20 @@ pub struct Near<'workspace> {
     pub edge_edges: &'workspace [Pair],
 }
 
+/// Contours of the intersections in a pose; each names its first node and how many it has.
+#[derive(Clone, Copy, Debug)]
+pub struct Contours<'workspace> {
+    pub nodes: &'workspace [ContourNode],
+    pub contours: &'workspace [Contour],
+}
+
+impl Contours<'_> {
+    /// The nodes of one of these contours.
+    pub fn nodes_of(&self, contour: &Contour) -> &[ContourNode] {
+        &self.nodes[contour.first as usize..][..contour.count as usize]
+    }
+}
+
 /// A mesh made ready for queries.
 #[derive(Debug)]
 pub struct Model(ptr::NonNull<raw::sc_model>);
@@ -262,7 +293,15 @@ impl Model {
         check(unsafe { raw::sc_workspace_create_for(self.0.as_ptr(), &options, &mut handle) })?;
         let handle = ptr::NonNull::new(handle).expect("a workspace that was made");
         let list = || vec![Pair::default(); 16];
-        Ok(Workspace { model: self, handle, pairs: list(), features: [list(), list()], times: Default::default() })
+        Ok(Workspace {
+            model: self,
+            handle,
+            pairs: list(),
+            features: [list(), list()],
+            times: Default::default(),
+            nodes: Vec::new(),
+            contours: Vec::new(),
+        })
     }
 }
 
@@ -302,6 +341,8 @@ pub struct Workspace<'model> {
     pairs: Vec<Pair>,
     features: [Vec<Pair>; 2],
     times: [Vec<f64>; 2],
+    nodes: Vec<ContourNode>,
+    contours: Vec<Contour>,
 }
 
 // SAFETY: a workspace is memory of its own; only one thread at a time has it.
@@ -496,6 +537,38 @@ impl Workspace<'_> {
                 vertex_faces: &self.features[0][..counts[0]],
                 edge_edges: &self.features[1][..counts[1]],
             });
+        }
+    }
+
+    /// Contours of the intersections in a pose. Its pairs of edges and triangles are found first.
+    pub fn trace<T: Scalar>(&mut self, pose: &[[T; 3]]) -> Result<Contours<'_>, Error> {
+        let count = self.query(pose, &Options { edges: true, proper: false })?.len();
+        let pose = pose_of(pose)?;
+        loop {
+            let mut result = raw::sc_trace_result {
+                struct_size: size_of::<raw::sc_trace_result>(),
+                reserved: 0,
+                node_count: 0,
+                node_capacity: self.nodes.len() as u64,
+                nodes: self.nodes.as_mut_ptr(),
+                contour_count: 0,
+                contour_capacity: self.contours.len() as u64,
+                contours: self.contours.as_mut_ptr(),
+            };
+            // SAFETY: as in query; the pairs are those that it found.
+            let status = unsafe {
+                raw::sc_trace(
+                    self.model.0.as_ptr(), &pose, self.pairs.as_ptr(), count as u64, ptr::null(),
+                    &mut result)
+            };
+            let (nodes, contours) = (result.node_count as usize, result.contour_count as usize);
+            if Error::from_code(status) == Error::ShortBuffer {
+                self.nodes.resize(nodes.max(self.nodes.len()), ContourNode::default());
+                self.contours.resize(contours.max(self.contours.len()), Contour::default());
+                continue;
+            }
+            check(status)?;
+            return Ok(Contours { nodes: &self.nodes[..nodes], contours: &self.contours[..contours] });
         }
     }
 

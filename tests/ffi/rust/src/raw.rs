@@ -153,6 +153,53 @@ pub struct sc_near_result {
 }
 
 #[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct sc_trace_node {
+    pub edge: u32,
+    pub triangle: u32,
+    pub sheet: u32,
+    pub sheets: [u32; 2],
+    pub reserved: u32,
+    pub along: f64,
+    pub weights: [f64; 3],
+    pub point: [f64; 3],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct sc_trace_contour {
+    pub first: u64,
+    pub count: u64,
+    pub begin: u32,
+    pub end: u32,
+    pub flags: u32,
+    pub reserved: u32,
+    pub length: f64,
+}
+
+#[repr(C)]
+pub struct sc_trace_options {
+    pub struct_size: u32,
+    pub simd: u32,
+    pub allocator: *const c_void,
+    pub hooks: *const c_void,
+    pub tasks: *const c_void,
+    pub cancel: *const u32,
+}
+
+#[repr(C)]
+pub struct sc_trace_result {
+    pub struct_size: u32,
+    pub reserved: u32,
+    pub node_count: u64,
+    pub node_capacity: u64,
+    pub nodes: *mut sc_trace_node,
+    pub contour_count: u64,
+    pub contour_capacity: u64,
+    pub contours: *mut sc_trace_contour,
+}
+
+#[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct sc_group {
     pub category: u32,
@@ -281,6 +328,14 @@ extern "C" {
         options: *const sc_near_options,
         result: *mut sc_near_result,
     ) -> sc_status;
+    pub fn sc_trace(
+        model: *const sc_model,
+        pose: *const sc_pose,
+        pairs: *const sc_pair,
+        count: u64,
+        options: *const sc_trace_options,
+        result: *mut sc_trace_result,
+    ) -> sc_status;
     pub fn sc_query_objects(
         objects: *const sc_objects,
         options: *const sc_query_options,
@@ -334,6 +389,11 @@ pub fn layouts() -> Vec<Layout> {
         layout!(sc_near_result: struct_size found verdict reserved vertex_face_count
             vertex_face_capacity vertex_faces edge_edge_count edge_edge_capacity edge_edges stats
             vertex_bounds),
+        layout!(sc_trace_node: edge triangle sheet sheets reserved along weights point),
+        layout!(sc_trace_contour: first count begin end flags reserved length),
+        layout!(sc_trace_options: struct_size simd allocator hooks tasks cancel),
+        layout!(sc_trace_result: struct_size reserved node_count node_capacity nodes
+            contour_count contour_capacity contours),
         layout!(sc_group: category mask),
         layout!(sc_object: model workspace pose end pose_version group itself reserved filter
             vertex_face_filter edge_edge_filter rest rest_distance masks),
