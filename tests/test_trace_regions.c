@@ -583,14 +583,26 @@ static soup soup_of(const double *at, uint32_t vertices, const uint32_t *corners
 /* ---- sizes ---- */
 
 /* Regions of a mesh whose coordinates are 2^exponent times as large: all the same, areas that much
-   larger; where these are beyond the range of doubles they are more than 0 still. */
+   larger; where these are beyond the range of doubles they are more than 0 still. So are contours'
+   lengths. */
 static void compare_sizes(const divided_scene *known, int exponent)
 {
     soup larger = soup_copy(&known->s.mesh);
     divided_scene d;
     for (uint32_t i = 0; i < 3 * larger.vertex_count; ++i)
         larger.positions[i] = ldexp(larger.positions[i], exponent);
-    if (divide(&d, larger) && CHECK(d.regions.region_count == known->regions.region_count))
+    if (!divide(&d, larger)) {
+        undivide(&d);
+        return;
+    }
+    if (CHECK(d.s.result.contour_count == known->s.result.contour_count))
+        for (uint64_t i = 0; i < d.s.result.contour_count; ++i) {
+            const double length = ldexp(known->s.result.contours[i].length, exponent);
+            const double found = d.s.result.contours[i].length;
+            CHECK_MSG(fabs(found - length) <= 1e-9 * length, "length %g instead of %g, sizes 2^%d",
+                      found, length, exponent);
+        }
+    if (CHECK(d.regions.region_count == known->regions.region_count))
         for (uint32_t i = 0; i < d.regions.region_count; ++i) {
             const sc_region *a = &known->regions.regions[i], *b = &d.regions.regions[i];
             const double area = ldexp(a->area, 2 * exponent);

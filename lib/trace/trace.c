@@ -9,6 +9,7 @@
  */
 #include "trace/trace.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "trace/sheets.h"
@@ -179,7 +180,18 @@ static void follow_all(trace_walk *w)
 static double distance_between(const double p[3], const double q[3])
 {
     const double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
-    return sqrt(x * x + y * y + z * z);
+    const double square = x * x + y * y + z * z;
+    double largest = fabs(x) > fabs(y) ? fabs(x) : fabs(y), u, v, w;
+    int exponent;
+    if (square > 1e-250 && square < 1e250) return sqrt(square);
+    /* Squares may be beyond the range of doubles: the same in units of the largest's size. */
+    if (fabs(z) > largest) largest = fabs(z);
+    if (!(largest > 0 && largest <= DBL_MAX)) return largest;
+    (void)frexp(largest, &exponent);
+    u = ldexp(x, -exponent);
+    v = ldexp(y, -exponent);
+    w = ldexp(z, -exponent);
+    return ldexp(sqrt(u * u + v * v + w * w), exponent);
 }
 
 static void measure_traces(const sc_trace_result *r)
