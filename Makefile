@@ -139,7 +139,10 @@ page_support := tools/page_write.c tools/page_picture.c tools/page_output.c tool
 tools_support := $(filter-out $(program_sources) $(page_support),$(wildcard tools/*.c))
 bench_support := $(filter-out $(program_sources),$(wildcard bench/*.c bench/scenes/*.c))
 tests := $(sort $(wildcard tests/test_*.c))
-tests_support := $(filter-out $(tests),$(wildcard tests/*.c))
+# These hold kernels, and take the longest to compile: each is linked only with what asks for it.
+lanes_support := $(wildcard tests/lanes_*.c)
+rounding_support := $(wildcard tests/rounding_*.c)
+tests_support := $(filter-out $(tests) $(lanes_support) $(rounding_support),$(wildcard tests/*.c))
 test_scripts := $(sort $(wildcard tests/test_*.sh))
 
 # A program is built if its source is there and what it needs is: those that read meshes share
@@ -447,6 +450,8 @@ $(fuzz_programs) $(work)/fuzz/make_seeds: $(call objects,$(fuzz_sources) $(tests
 	$(call link,$(fuzz_entry) $(test_libs))
 $(work)/fuzz/make_seeds: $(call objects,tests/fuzz/make_seeds.c)
 $(work)/tests/test_reproducers: $(call objects,$(fuzz_sources))
+$(work)/tests/test_lanes: $(call objects,$(lanes_support))
+$(work)/tests/test_rounding $(work)/runs/search_rounding: $(call objects,$(rounding_support))
 
 $(run_programs): $(work)/runs/%: $(obj)/tests/runs/%.o $(call objects,$(tests_support)) \
     $(static) $(metis_library)

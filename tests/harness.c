@@ -28,6 +28,14 @@ static const char *running_name;
 static uint64_t running_checks, running_failures, running_skips;
 static uint64_t seed = 1, random_state;
 static uint32_t scale = TEST_DEFAULT_SCALE;
+static int ends_at_failure; /* the program does, at the first check that fails */
+
+static void print_failed(void)
+{
+    printf("FAILED %s: %" PRIu64 " of %" PRIu64 " checks\n", running_name, running_failures,
+           running_checks);
+    fflush(stdout);
+}
 
 int test_check(int ok, const char *file, int line, const char *condition, const char *format, ...)
 {
@@ -42,6 +50,10 @@ int test_check(int ok, const char *file, int line, const char *condition, const 
         printf("\n    (--seed %" PRIu64 " --scale %" PRIu32 ", random state %" PRIu64 ")\n", seed,
                scale, random_state);
         fflush(stdout);
+    }
+    if (ends_at_failure) {
+        print_failed();
+        exit(1);
     }
     return 0;
 }
@@ -185,9 +197,15 @@ int test_main(int argc, char **argv, const test_case *cases, size_t count)
             for (size_t k = 0; k < count; ++k) printf("%s\n", cases[k].name);
             return 0;
         }
+        if (strcmp(argv[i], "--first") == 0) {
+            ends_at_failure = 1;
+            argv[i] = NULL;
+            continue;
+        }
         if (strcmp(argv[i], "--seed") != 0 && strcmp(argv[i], "--scale") != 0) {
             if (argv[i][0] != '-') continue;
-            fprintf(stderr, "usage: %s [--seed N] [--scale PERCENT] [--list] [NAME...]\n", program);
+            fprintf(stderr, "usage: %s [--seed N] [--scale PERCENT] [--first] [--list] [NAME...]\n",
+                    program);
             return 2;
         }
         if (i + 1 >= argc || !read_number(argv[i + 1], &number)) {
@@ -216,8 +234,7 @@ int test_main(int argc, char **argv, const test_case *cases, size_t count)
             running_failures = 1;
         }
         if (running_failures != 0) {
-            printf("FAILED %s: %" PRIu64 " of %" PRIu64 " checks\n", running_name, running_failures,
-                   running_checks);
+            print_failed();
             ++failed;
         } else if (running_checks != 0) {
             ++passed;

@@ -13,7 +13,8 @@
  *
  * Arguments: words that select the test functions whose names contain one of them; --seed N for the
  * random numbers; --scale P to run P percent of the random trials (default: SC_TEST_SCALE of the
- * environment, else 100, or 20 under sanitizers); --list.
+ * environment, else 100, or 20 under sanitizers); --first to end at the first CHECK that fails;
+ * --list.
  * The last line printed is "<program>: N passed, N failed, N skipped": functions that passed, those
  * that failed, and what test_skip left out. The exit status is 1 if one failed, 2 for wrong
  * arguments. A function without any CHECK fails; one that only skips neither passes nor fails.

@@ -11,7 +11,7 @@
 # A fault is killed if a test program that `make test` runs fails, crashes or hangs with it: then
 # `make test` fails as well, and so it is not run to its end. The tests that faults.txt names come
 # first, then all others, one function at a time, quick programs first; scripts are not run.
-# lib/ is compiled with -O1 instead of -O3, which changes no answer, and each change compiles only
+# lib/ is compiled with -Og instead of -O3, which changes no answer, and each change compiles only
 # what depends on it; after a fault, what it changed is copied back, so nothing is compiled twice.
 # Kernels take the longest to compile. So the tests that are named run first with a library in which
 # the kernels of this machine's best instruction set stand for those of all; what they do not notice
@@ -59,17 +59,18 @@ make_in() (
     tree=$1 threads=$2
     shift 2
     exec "${MAKE:-make}" -s -C "$tree" -j"$threads" CC="${CC:-cc}" config=release BUILD=build WERROR=0 \
-        mode='-O1 -w -DNDEBUG' test_mode='-O1 -w' "$@" >"$tree.make.log" 2>&1
+        mode='-Og -w -DNDEBUG' test_mode='-O1 -w' "$@" >"$tree.make.log" 2>&1
 )
 
-# run_test TREE PROGRAM NAME: one test function; it may take five minutes and 8 GB.
+# run_test TREE PROGRAM NAME: one test function, to the first check that fails; it may take five
+# minutes and 8 GB.
 run_test() {
     ( # not exec: so that this shell, whose output goes to the log, is the one to speak of crashes
         ulimit -c 0
         ulimit -t 300
         ulimit -v 8000000 2>/dev/null
         cd "$1" || exit 1
-        SC_LIB=build/lib "$tests/$2" "$3"
+        SC_LIB=build/lib "$tests/$2" --first "$3"
         exit $?
     ) >"$1.test.log" 2>&1
 }
