@@ -914,7 +914,8 @@ typedef struct sc_trace_contour {
     uint32_t begin, end; /* SC_TRACE_...; both are SC_TRACE_CLOSED or none is */
     uint32_t flags;      /* SC_TRACE_ONE_SHEET or 0 */
     uint32_t reserved;   /* 0 */
-    double length;       /* the sum of that of its segments, in the order of nodes */
+    double length;       /* the sum of that of its segments, in the order of nodes; infinite beyond
+                            the range of doubles */
 } sc_trace_contour;
 
 /* Options; all may be zero. */

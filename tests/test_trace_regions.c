@@ -635,6 +635,20 @@ static void any_size(void)
     }
 }
 
+/* A contour that is longer than any double: of a triangle in z = 0 and one in y = 0. */
+static void endless_contour(void)
+{
+    static const double at[] = {-1.7e308, -1e308,  0,      1.7e308,  -1e308, 0,
+                                0,        1.7e308, 0,      -1.7e308, 0,      -1e308,
+                                1.7e308,  0,       -1e308, 0,        0,      1.7e308};
+    static const uint32_t corners[] = {0, 1, 2, 3, 4, 5};
+    trace_scene s;
+    if (trace_scene_open(&s, soup_of(at, 6, corners, 2), SC_MODEL_FULL))
+        CHECK(s.result.contour_count == 1 && s.result.contours[0].count == 2 &&
+              s.result.contours[0].length == HUGE_VAL);
+    trace_scene_close(&s);
+}
+
 /* Areas of single triangles near the ends of the range of doubles, by hand. */
 static void areas_of_triangles(void)
 {
@@ -981,7 +995,7 @@ static void wrong_arguments(void)
     undivide(&d);
 }
 
-SC_TEST_MAIN(SC_TEST(any_size), SC_TEST(areas_of_triangles),
+SC_TEST_MAIN(SC_TEST(any_size), SC_TEST(endless_contour), SC_TEST(areas_of_triangles),
              SC_TEST(vertices_of_collapsed_triangles), SC_TEST(welded_vertices),
              SC_TEST(spheres_through_each_other), SC_TEST(planes_through_spheres),
              SC_TEST(loops_in_a_triangle), SC_TEST(loops_by_hand), SC_TEST(equal_regions),
