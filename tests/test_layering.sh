@@ -1,11 +1,12 @@
 #!/bin/sh
 # The repository keeps its layering, and tools/check_layering.sh sees each kind of offence: planted
-# in a copy, one at a time.
+# in a copy, one at a time. The faults of tests/mutants are such as can be planted.
 #
 # SPDX-License-Identifier: MIT
 . tests/script.sh
 
 check "the repository has no offenders" tools/check_layering.sh
+check "planted faults fit the sources" tests/mutants/mutants.sh --check
 
 copy=$scratch/copy
 mkdir "$copy"

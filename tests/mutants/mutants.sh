@@ -2,7 +2,7 @@
 # Plants the faults of faults.txt one at a time in a copy of the tree and looks which test fails.
 #
 #     tests/mutants/mutants.sh [--jobs N] [--shard I/N] [WORD...]
-#     tests/mutants/mutants.sh --check [WORD...]      only whether each still fits the sources
+#     tests/mutants/mutants.sh --check                only whether each still fits the sources
 #
 # With words: the faults whose names contain one of them; else all. --shard 2/3: of these the
 # second, fifth, eighth and so on, for runs on several machines. --jobs: how many at a time (by
@@ -34,10 +34,9 @@ top=$(cd "$here/../.." && pwd)
 faults=$here/faults.txt
 jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
 shard=1/1
-check=0
 while [ $# -gt 0 ]; do
     case $1 in
-    --check) check=1 ;;
+    --check) exec awk -f "$here/plant.awk" -v root="$top" "$faults" ;;
     --jobs) jobs=${2:?} && shift ;;
     --shard) shard=${2:?} && shift ;;
     --*) echo "mutants.sh: unknown option $1" >&2 && exit 2 ;;
@@ -171,9 +170,6 @@ one_fault() {
     esac
     if ! plant "$1" "$2"; then
         result="DOES NOT FIT"
-    elif [ $check -eq 1 ]; then
-        result=fits
-        fate=fits
     elif [ -n "$needed" ] && [ "$needed" != "$best" ]; then
         result="cannot be seen without $needed"
         fate=unseen
@@ -245,12 +241,10 @@ for word in "$@"; do echo "^[^ ]*$word"; done >"$scratch/words"
 grep -f "$scratch/words" "$scratch/all" |
     awk -v part="${shard%/*}" -v of="${shard#*/}" '(NR - part) % of == 0' >"$scratch/list"
 
-[ $check -eq 1 ] || build_clean "$whole"
+build_clean "$whole"
 cp -Rp "$whole" "$brief" || exit 1
-if [ $check -eq 0 ]; then
-    one_set "$brief"
-    build_clean "$brief"
-fi
+one_set "$brief"
+build_clean "$brief"
 
 i=0
 while [ $i -lt "$jobs" ]; do
@@ -265,5 +259,5 @@ lost=$(($(wc -l <"$scratch/list") - $(how_many '.*')))
 broken=$(($(how_many broken) + lost))
 [ $broken -eq 0 ] || echo "$broken do not fit or do not compile"
 [ "$(how_many unseen)" -eq 0 ] || echo "$(how_many unseen) cannot be seen on this machine"
-[ $check -eq 1 ] || echo "killed $(how_many killed), survived $(how_many survived)"
+echo "killed $(how_many killed), survived $(how_many survived)"
 [ "$(how_many survived)" -eq 0 ] && [ $broken -eq 0 ]
