@@ -733,6 +733,10 @@ static void wrong_arguments(void)
         s.traced.nodes = NULL;
         s.traced.contours = NULL;
         CHECK(sc_trace_gradients(s.model, &s.pose, &s.traced, NULL) == SC_OK);
+        s.traced.contours = traced.contours; /* one that has no nodes */
+        s.traced.contour_count = 1;
+        s.contour.count = 0;
+        CHECK(sc_trace_gradients(s.model, &s.pose, &s.traced, NULL) == SC_OK);
     }
     sc_model_free(s.model);
 }

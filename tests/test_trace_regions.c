@@ -619,7 +619,7 @@ static void compare_sizes(const divided_scene *known, int exponent)
 /* Spheres, and three sheets through each other in large triangles. */
 static void any_size(void)
 {
-    static const int exponents[] = {-480, -300, -250, -1, 1, 250, 300, 505, 900};
+    static const int exponents[] = {-1010, -480, -300, -250, -1, 1, 250, 300, 505, 900};
     static const double at[] = {-12, -10, 0,  12,  -11, 0,  0,  16,  1, /* the largest, z about 0 */
                                 -3,  0,   -3, 3,   0,   -2, 0,  0.5, 4, /* in it two cross: y */
                                 0,   6,   -6, 0.5, -7,  -6, -1, 0,   8}; /* x about 0 */

@@ -901,7 +901,7 @@ static int are_ends_on_sheets(const region_work *w)
 {
     uint32_t i;
     for (i = 0; i < w->edges.count; i++)
-        if (!w->is_on_sheet[w->edges.ends[i].a] || !w->is_on_sheet[w->edges.ends[i].b]) return 0;
+        if (!(w->is_on_sheet[w->edges.ends[i].a] & w->is_on_sheet[w->edges.ends[i].b])) return 0;
     return 1;
 }
 
