@@ -642,11 +642,15 @@ static void endless_contour(void)
                                 0,        1.7e308, 0,      -1.7e308, 0,      -1e308,
                                 1.7e308,  0,       -1e308, 0,        0,      1.7e308};
     static const uint32_t corners[] = {0, 1, 2, 3, 4, 5};
-    trace_scene s;
-    if (trace_scene_open(&s, soup_of(at, 6, corners, 2), SC_MODEL_FULL))
-        CHECK(s.result.contour_count == 1 && s.result.contours[0].count == 2 &&
-              s.result.contours[0].length == HUGE_VAL);
-    trace_scene_close(&s);
+    for (int turn = 0; turn < 3; ++turn) { /* along each axis */
+        double turned[18];
+        trace_scene s;
+        for (int i = 0; i < 18; ++i) turned[i - i % 3 + (i + turn) % 3] = at[i];
+        if (trace_scene_open(&s, soup_of(turned, 6, corners, 2), SC_MODEL_FULL))
+            CHECK(s.result.contour_count == 1 && s.result.contours[0].count == 2 &&
+                  s.result.contours[0].length == HUGE_VAL);
+        trace_scene_close(&s);
+    }
 }
 
 /* Areas of single triangles near the ends of the range of doubles, by hand. */
