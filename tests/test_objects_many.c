@@ -657,9 +657,11 @@ static void hear(void *user, uint32_t level, const char *message)
     if (log->count++ == 0) (void)snprintf(log->first, sizeof log->first, "%s", message);
 }
 
-/* Of poses that are read by many, the first that is not finite is told, by the calling thread. */
+/* Of poses that are read by many, the first that is not finite is told, by the calling thread. The
+   second is far behind it, so that others read it: before the first, after it, or at a time. */
 static void the_first_bad_pose_is_told(void)
 {
+    const uint32_t bad[2] = {1200, 2500};
     for (int way = HOST_FIRST; way < HOST_COUNT && !test_failures(); ++way) {
         const uint64_t none[2] = {0, 0};
         const question q = {QUERY, NULL, no_options(), {0}, {0}};
@@ -676,8 +678,8 @@ static void the_first_bad_pose_is_told(void)
             hooks.struct_size = sizeof hooks;
             hooks.log = hear;
             hooks.user = &logs[i];
-            CHECK(sc_workspace_set_hooks(c.workspaces[1200 + i], &hooks) == SC_OK);
-            corner_of(&c, 1200 + i, 2)[1] = (double)NAN;
+            CHECK(sc_workspace_set_hooks(c.workspaces[bad[i]], &hooks) == SC_OK);
+            corner_of(&c, bad[i], 2)[1] = (double)NAN;
         }
         memset(&objects, 0, sizeof objects);
         objects.struct_size = sizeof objects;
