@@ -5,7 +5,10 @@
  */
 #include "trace_oracle.h"
 
+#include <float.h>
 #include <gmp.h>
+#include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,17 +17,44 @@
 enum { EXPONENTS = 1 << 12 };
 
 /* A polynomial: coefficients of those powers that have one. Made when first needed, and kept. */
-static mpq_t coefficient[EXPONENTS];
+static mpz_t coefficient[EXPONENTS];
 static int is_used[EXPONENTS], used[EXPONENTS], used_count;
 
-static mpq_t *coefficient_of(int exponent)
+static mpz_t *coefficient_of(int exponent)
 {
     if (!is_used[exponent]) {
         is_used[exponent] = 1;
         used[used_count++] = exponent;
-        mpq_init(coefficient[exponent]);
+        mpz_init(coefficient[exponent]);
     }
     return &coefficient[exponent];
+}
+
+/* The coordinates of four points, and 1 before those of each: as multiples of the same power of
+   two, but for the ones. So all products of a coefficient are multiples of the same power. The
+   numbers, and one for products, are made when first needed, and kept. */
+static mpz_t rows[4][4], product;
+
+static void make_rows(const double *const points[4])
+{
+    static int is_made;
+    int least = INT_MAX;
+    if (!is_made) {
+        for (int i = 0; i < 16; ++i) mpz_init_set_si(rows[i / 4][i % 4], 1);
+        mpz_init(product);
+        is_made = 1;
+    }
+    for (int i = 0; i < 12; ++i) {
+        int exponent;
+        if (frexp(points[i / 3][i % 3], &exponent) != 0 && exponent < least) least = exponent;
+    }
+    for (int i = 0; i < 12; ++i) {
+        mpz_t *row = &rows[i / 3][1 + i % 3];
+        int exponent;
+        const double part = frexp(points[i / 3][i % 3], &exponent);
+        mpz_set_d(*row, ldexp(part, DBL_MANT_DIG));
+        if (part != 0) mpz_mul_2exp(*row, *row, (unsigned)(exponent - least));
+    }
 }
 
 /* The rank of each point among the four: exponents of higher powers, in the same order. */
@@ -36,28 +66,19 @@ static void rank_points(const uint32_t numbers[4], int rank[4])
     }
 }
 
-/* Adds the products of a permutation: of each row after the first the coordinate or its power. */
-static void add_products(const double *const points[4], const int rank[4], const int column[4],
-                         int sign)
+/* Adds the product of a permutation: of each chosen row its power, of the others the coordinate. */
+static void add_product(const int rank[4], const int column[4], int sign, int chosen)
 {
-    mpq_t product, factor;
-    mpq_inits(product, factor, NULL);
-    for (int chosen = 0; chosen < 16; ++chosen) {
-        int exponent = 0, is_product = 1;
-        mpq_set_si(product, sign, 1);
-        for (int row = 0; row < 4; ++row) {
-            const int c = column[row] - 1;
-            if (chosen >> row & 1) {
-                if (c < 0) is_product = 0; /* ones have not moved */
-                if (c >= 0) exponent |= 1 << (3 * rank[row] + c);
-            } else if (c >= 0) {
-                mpq_set_d(factor, points[row][c]);
-                mpq_mul(product, product, factor);
-            }
+    int exponent = 0;
+    for (int row = 0; row < 4; ++row)
+        if (chosen >> row & 1) {
+            if (!column[row]) return; /* ones have not moved */
+            exponent |= 1 << (3 * rank[row] + column[row] - 1);
         }
-        if (is_product) mpq_add(*coefficient_of(exponent), *coefficient_of(exponent), product);
-    }
-    mpq_clears(product, factor, NULL);
+    mpz_set_si(product, sign);
+    for (int row = 0; row < 4; ++row)
+        if (!(chosen >> row & 1)) mpz_mul(product, product, rows[row][column[row]]);
+    mpz_add(*coefficient_of(exponent), *coefficient_of(exponent), product);
 }
 
 static int sign_of_permutation(const int column[4])
@@ -66,6 +87,24 @@ static int sign_of_permutation(const int column[4])
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < i; ++j) inversions += column[j] > column[i];
     return inversions % 2 ? -1 : 1;
+}
+
+enum { PERMUTATIONS = 24 };
+
+/* All permutations of four columns. Made when first needed, and kept. */
+static const int (*all_permutations(void))[4]
+{
+    static int columns[PERMUTATIONS][4];
+    int count = 0;
+    if (columns[0][0] != 0) return (const int(*)[4])columns;
+    for (int code = 0; code < 256; ++code) {
+        int seen = 0;
+        for (int i = 0; i < 4; ++i) seen |= 1 << (code >> 2 * i & 3);
+        if (seen != 15) continue;
+        for (int i = 0; i < 4; ++i) columns[count][i] = code >> 2 * i & 3;
+        ++count;
+    }
+    return (const int(*)[4])columns;
 }
 
 /* The determinant of the differences of three points from the first. */
@@ -92,18 +131,6 @@ static void find_volume(mpq_t sum, const double *p, const double *a, const doubl
         }
     for (int i = 0; i < 9; ++i) mpq_clear(u[i / 3][i % 3]);
     mpq_clear(t);
-}
-
-/* The sign of those that have not moved, or 0. */
-static int plain_sign(const double *const points[4])
-{
-    mpq_t volume;
-    int sign;
-    mpq_init(volume);
-    find_volume(volume, points[0], points[1], points[2], points[3]);
-    sign = mpq_sgn(volume);
-    mpq_clear(volume);
-    return sign;
 }
 
 /* Whether a number is off by no more than 2^-bits of a size, or 2^-1070. */
@@ -206,26 +233,31 @@ int trace_oracle_is_placed(const double *const points[5], double along, const do
     return is_flat ? has_weights(points, along, weights, point) : placed;
 }
 
+/* Adds the products of all permutations in which these rows are chosen. */
+static void add_products(const int rank[4], int chosen)
+{
+    const int(*columns)[4] = all_permutations();
+    for (int i = 0; i < PERMUTATIONS; ++i)
+        add_product(rank, columns[i], sign_of_permutation(columns[i]), chosen);
+}
+
 int trace_oracle_sign(const double *const points[4], const uint32_t numbers[4])
 {
-    int rank[4], sign = plain_sign(points);
-    if (sign) return sign;
-    for (int i = 0; i < used_count; ++i) mpq_set_si(coefficient[used[i]], 0, 1);
+    int rank[4], sign;
+    for (int i = 0; i < used_count; ++i) mpz_set_si(coefficient[used[i]], 0);
     rank_points(numbers, rank);
-    for (int code = 0; code < 256; ++code) {
-        const int column[4] = {code & 3, code >> 2 & 3, code >> 4 & 3, code >> 6 & 3};
-        int seen = 0;
-        for (int i = 0; i < 4; ++i) seen |= 1 << column[i];
-        if (seen == 15) add_products(points, rank, column, sign_of_permutation(column));
-    }
-    for (int i = 0; i < EXPONENTS && !sign; ++i)
-        if (is_used[i]) sign = mpq_sgn(coefficient[i]);
+    make_rows(points);
+    add_products(rank, 0);
+    sign = mpz_sgn(*coefficient_of(0));
+    for (int chosen = 1; chosen < 16 && !sign; ++chosen) add_products(rank, chosen);
+    for (int i = 1; i < EXPONENTS && !sign; ++i)
+        if (is_used[i]) sign = mpz_sgn(coefficient[i]);
     return sign;
 }
 
 int trace_oracle_crosses(const double *const points[5], const uint32_t numbers[5])
 {
-    int side[2], turn[3];
+    int side[2], turn = 0;
     for (int end = 0; end < 2; ++end) {
         const double *const p[4] = {points[2], points[3], points[4], points[end]};
         const uint32_t n[4] = {numbers[2], numbers[3], numbers[4], numbers[end]};
@@ -236,9 +268,11 @@ int trace_oracle_crosses(const double *const points[5], const uint32_t numbers[5
         const int i = 2 + k, j = 2 + (k + 1) % 3;
         const double *const p[4] = {points[0], points[1], points[i], points[j]};
         const uint32_t n[4] = {numbers[0], numbers[1], numbers[i], numbers[j]};
-        turn[k] = trace_oracle_sign(p, n);
+        const int sign = trace_oracle_sign(p, n);
+        if (k == 0) turn = sign;
+        if (sign != turn) return 0;
     }
-    return turn[0] == turn[1] && turn[1] == turn[2];
+    return 1;
 }
 
 static int is_collapsed(const uint32_t *t)
