@@ -155,4 +155,23 @@ collectgarbage()
 collectgarbage()
 check("workspace keeps its model", example.same(golden.moved, two:query(moved, n)))
 
+-- A program that ends with an error frees what it has before the library is unloaded.
+local ends = [[
+    package.path = %q
+    local ffi = require("ffi")
+    local sc = require("starcontour").load(%q, %q)
+    local model = sc.build(ffi.new("double[9]", {0, 0, 0, 1, 0, 0, 0, 1, 0}), 3, ffi.new("uint32_t[3]", {0, 1, 2}), 1)
+    local workspace = model:workspace()
+    error("it ends here")
+]]
+local program = os.tmpname()
+local file = assert(io.open(program, "w"))
+file:write(ends:format(package.path, arg[1], arg[2]))
+file:close()
+local child = assert(io.popen(("%s %s 2>&1; echo status $?"):format(arg[-1], program)))
+local said = child:read("*a")
+child:close()
+os.remove(program)
+check("a program that ends with an error", said:match("it ends here") and said:match("status 1%s*$"))
+
 os.exit(check.finish("luajit") == 0 and 0 or 1)

@@ -32,6 +32,10 @@ local ffi = require("ffi")
 
 local starcontour = {}
 
+-- What was loaded stays so as long as this module does: else a collection that takes a library and
+-- handles of it at once may unload the library first, and then call it to free them.
+local libraries = {}
+
 -- The header's text without comments, directives, what is for C++ only, and SC_API. Macros that are
 -- numbers become constants.
 function starcontour.declarations(header)
@@ -69,6 +73,7 @@ end
 function starcontour.load(header, library)
     ffi.cdef(starcontour.declarations(header))
     local C = ffi.load(library)
+    libraries[#libraries + 1] = C
     local sc = { C = C, ffi = ffi }
 
     local function check(status)
