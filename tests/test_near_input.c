@@ -274,11 +274,11 @@ static void filters_and_rest(void)
         end(&c);
         return;
     }
-    snprintf(text, sizeof(text), "options.vertex_face_filter.struct_size is 4, but at least %u",
+    snprintf(text, sizeof(text), "options.vertex_face_filter.struct_size is 3, but at least %u",
              (unsigned)sizeof(void *));
-    REFUSED(FACES(c.filter.struct_size = 4), SC_ERROR_STRUCT_SIZE, text);
-    REFUSED(EDGES(c.filter.struct_size = 4), SC_ERROR_STRUCT_SIZE,
-            "options.edge_edge_filter.struct_size is 4, but at least");
+    REFUSED(FACES(c.filter.struct_size = 3), SC_ERROR_STRUCT_SIZE, text);
+    REFUSED(EDGES(c.filter.struct_size = 3), SC_ERROR_STRUCT_SIZE,
+            "options.edge_edge_filter.struct_size is 3, but at least");
     REFUSED(FACES(c.filter.ignore_rings = SC_RINGS_MAX + 1), SC_ERROR_OPTION,
             "options.vertex_face_filter.ignore_rings is 33, but at most 32");
     REFUSED(EDGES(c.filter.ignore_rings = SC_RINGS_MAX + 1), SC_ERROR_OPTION,
