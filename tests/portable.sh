@@ -1,7 +1,7 @@
 # Sourced, after script.sh, by those of tests/packages/ that build tests for other systems, where
 # there is C and the library (with partition_metis.c, without METIS), and neither GMP nor libccd nor POSIX:
 #
-#     $portable_tests          the tests, NAME of tests/test_NAME.c
+#     $portable_tests          the tests, NAME of tests/test_NAME.c; the longest first
 #     $portable_support        C files that they are linked with, as an archive
 #     $portable_left_out       the tests that need more
 #     $portable_determinism    C files of the program of tests/runs that hashes pairs of all methods
@@ -12,7 +12,7 @@
 #                              writing anything, and that others are noticed; WHERE begins their names
 #
 # SPDX-License-Identifier: MIT
-portable_tests='arguments base feature_records filters flattening forged_models hooks lanes near_input
+portable_tests='forged_models arguments base feature_records filters flattening hooks lanes near_input
     queries records refinement step_slabs step_stencils steps structures underflow'
 portable_support=$(awk -f tests/packages/portable.awk tests/*.[ch] | grep -v '^tests/test_')
 portable_determinism='tests/runs/determinism.c tests/adversaries.c tests/harness.c tests/inputs.c

@@ -279,16 +279,13 @@ static void release_one(void *user, void *memory, uint64_t size)
    first allocations, where little has been done, then at every so many. */
 static void memory_runs_out(void)
 {
-    const uint64_t each = 60;
     soup s = soup_cloth(75, 75);
     const sc_mesh input = input_plain_mesh(&s);
     const uint64_t step = 1 + 2000 / (20 * (uint64_t)test_iterations(100));
+    const uint64_t each = 60 + test_random_below((uint32_t)step);
     for (uint32_t content = SC_MODEL_FULL; content <= SC_MODEL_BOXES; ++content) {
         sc_status status = SC_ERROR_MEMORY;
-        for (uint64_t n = 1; status == SC_ERROR_MEMORY;
-             n += n < each    ? 1
-                  : n == each ? 1 + test_random_below((uint32_t)step)
-                              : step) {
+        for (uint64_t n = 1; status == SC_ERROR_MEMORY; n += n < each ? 1 : step) {
             failing state = {sc_memory_allocator(NULL), n, 0};
             const sc_allocator allocator = {allocate_some, release_one, &state};
             sc_build_options options;

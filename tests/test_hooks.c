@@ -124,7 +124,7 @@ static void hooks_are_read(void)
     memset(&options, 0, sizeof(options));
     options.struct_size = sizeof(options);
     options.hooks = &hooks;
-    hooks.struct_size = 3; /* less than any pointer */
+    hooks.struct_size = sizeof(void *) / 2 * 3; /* no multiple of a pointer's size */
     CHECK(sc_build(&m, &options, &model) == SC_ERROR_STRUCT_SIZE && model == NULL);
     hooks.struct_size = sizeof(hooks);
     hooks.reserved = 3;

@@ -263,6 +263,7 @@ static void models_workspaces_and_poses(void)
 /* The filter of vertices and faces, that of edges, and the rest pose. */
 static void filters_and_rest(void)
 {
+    const uint32_t half = sizeof(void *) / 2; /* less than any structure may have */
     near_call c;
     char text[200];
 #define FACES(change) (c.options.vertex_face_filter = &c.filter, change)
@@ -274,11 +275,12 @@ static void filters_and_rest(void)
         end(&c);
         return;
     }
-    snprintf(text, sizeof(text), "options.vertex_face_filter.struct_size is 3, but at least %u",
-             (unsigned)sizeof(void *));
-    REFUSED(FACES(c.filter.struct_size = 3), SC_ERROR_STRUCT_SIZE, text);
-    REFUSED(EDGES(c.filter.struct_size = 3), SC_ERROR_STRUCT_SIZE,
-            "options.edge_edge_filter.struct_size is 3, but at least");
+    snprintf(text, sizeof(text), "options.vertex_face_filter.struct_size is %u, but at least %u",
+             (unsigned)half, (unsigned)sizeof(void *));
+    REFUSED(FACES(c.filter.struct_size = half), SC_ERROR_STRUCT_SIZE, text);
+    snprintf(text, sizeof(text), "options.edge_edge_filter.struct_size is %u, but at least",
+             (unsigned)half);
+    REFUSED(EDGES(c.filter.struct_size = half), SC_ERROR_STRUCT_SIZE, text);
     REFUSED(FACES(c.filter.ignore_rings = SC_RINGS_MAX + 1), SC_ERROR_OPTION,
             "options.vertex_face_filter.ignore_rings is 33, but at most 32");
     REFUSED(EDGES(c.filter.ignore_rings = SC_RINGS_MAX + 1), SC_ERROR_OPTION,

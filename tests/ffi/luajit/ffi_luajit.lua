@@ -160,7 +160,8 @@ local ends = [[
     package.path = %q
     local ffi = require("ffi")
     local sc = require("starcontour").load(%q, %q)
-    local model = sc.build(ffi.new("double[9]", {0, 0, 0, 1, 0, 0, 0, 1, 0}), 3, ffi.new("uint32_t[3]", {0, 1, 2}), 1)
+    local corners = ffi.new("double[9]", { 0, 0, 0, 1, 0, 0, 0, 1, 0 })
+    local model = sc.build(corners, 3, ffi.new("uint32_t[3]", { 0, 1, 2 }), 1)
     local workspace = model:workspace()
     error("it ends here")
 ]]

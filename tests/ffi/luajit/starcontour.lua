@@ -32,8 +32,8 @@ local ffi = require("ffi")
 
 local starcontour = {}
 
--- What was loaded stays so as long as this module does: else a collection that takes a library and
--- handles of it at once may unload the library first, and then call it to free them.
+-- Libraries stay loaded as long as this module does: a garbage collection that takes a library
+-- together with handles of it may unload the library first, and then call it to free them.
 local libraries = {}
 
 -- The header's text without comments, directives, what is for C++ only, and SC_API. Macros that are
