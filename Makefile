@@ -330,7 +330,7 @@ test_libs := $(metis_link) -lgmp -lccd -lpthread
 
 .PHONY: test
 ifneq ($(strip $(missing_for_tests)),)
-test: ## build and run all tests; about five minutes
+test: ## build and run all tests; five to ten minutes
 	@echo "make test needs $(strip $(missing_for_tests)): run 'make deps' first" >&2; exit 1
 else
 test: all $(test_programs)
