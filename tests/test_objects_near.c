@@ -213,6 +213,22 @@ static int are_ranges_wanted(const found_list *wanted, const sc_object_list *lis
     return at == wanted->count;
 }
 
+/* Asks for counts alone: of all pairs, and of each two objects. */
+static void check_counts(scene *s, const question *question_of, const expected *e)
+{
+    question q = *question_of;
+    const uint64_t count[2] = {e->list[0].count, e->list[1].count}, none[2] = {0, 0};
+    const uint64_t ranges[2] = {found_list_ranges(&e->list[0]), found_list_ranges(&e->list[1])};
+    asked a;
+    q.near.output = q.step.output = SC_OUTPUT_COUNT;
+    ask(s, &q, none, ranges, &a);
+    CHECK(a.status == SC_OK && a.lists.collides == (uint32_t)(count[0] + count[1] > 0));
+    CHECK(a.lists.vertex_faces.count == count[0] && a.lists.edge_edges.count == count[1] &&
+          are_ranges_wanted(&e->list[0], &a.lists.vertex_faces) &&
+          are_ranges_wanted(&e->list[1], &a.lists.edge_edges));
+    forget(&a);
+}
+
 /* Asks for pairs, for their number, for any, and with arrays that are too short. */
 static void check_answers(scene *s, const question *question_of, const expected *e)
 {
@@ -244,16 +260,15 @@ static void check_answers(scene *s, const question *question_of, const expected 
     else
         CHECK(a.lists.earliest == 0);
     forget(&a);
-    q.near.output = q.step.output = test_random_below(2) ? SC_OUTPUT_COUNT : SC_OUTPUT_ANY;
-    ask(s, &q, none, ranges, &a);
-    CHECK(a.status == SC_OK && a.lists.collides == (uint32_t)found_any);
-    if (q.near.output == SC_OUTPUT_ANY)
-        CHECK(a.lists.vertex_faces.count + a.lists.edge_edges.count == (uint64_t)found_any);
-    else
-        CHECK(a.lists.vertex_faces.count == count[0] && a.lists.edge_edges.count == count[1] &&
-              are_ranges_wanted(&e->list[0], &a.lists.vertex_faces) &&
-              are_ranges_wanted(&e->list[1], &a.lists.edge_edges));
-    forget(&a);
+    if (test_random_below(2)) {
+        check_counts(s, &q, e);
+    } else {
+        q.near.output = q.step.output = SC_OUTPUT_ANY;
+        ask(s, &q, none, ranges, &a);
+        CHECK(a.status == SC_OK && a.lists.collides == (uint32_t)found_any &&
+              a.lists.vertex_faces.count + a.lists.edge_edges.count == (uint64_t)found_any);
+        forget(&a);
+    }
     if (!count[0] && !count[1]) return;
     q.near.output = q.step.output = SC_OUTPUT_PAIRS;
     for (kind = 0; kind < 2; ++kind)
@@ -367,9 +382,9 @@ static void what_stays_is_asked_for_other_distances(void)
 }
 
 /* A cloth in small waves, that falls some way during a step, or a sphere below it. */
-static int open_large_thing(scene *s, uint32_t i, int is_cloth)
+static int open_large_thing(scene *s, uint32_t i, int is_cloth, uint32_t side)
 {
-    const soup mesh = is_cloth ? soup_cloth(50, 40) : soup_sphere(50, 40);
+    const soup mesh = is_cloth ? soup_cloth(side, side) : soup_sphere(side, side);
     thing *t = &s->things[i];
     if (!scene_open_thing_of(s, i, &mesh)) return 0;
     s->objects[i].group.category = s->objects[i].group.mask = 0;
@@ -402,9 +417,9 @@ static void large_objects_share_work(void)
         s.workers = THREADS_MAX;
         s.flags = SC_WORKSPACE_NEAR;
         s.count = 2;
-        if (!open_large_thing(&s, 0, trial % 2 == 0)) return;
+        if (!open_large_thing(&s, 0, trial % 2 == 0, 45)) return;
         if (trial % 4 == 0) s.workers = 1;
-        if (!open_large_thing(&s, 1, trial % 2 != 0)) return;
+        if (!open_large_thing(&s, 1, trial % 2 != 0, 45)) return;
         e = expect(&s, &q);
         for (uint64_t i = 0; i < e.list[0].count; ++i)
             between += e.list[0].at[i].object_a != e.list[0].at[i].object_b;
@@ -417,6 +432,37 @@ static void large_objects_share_work(void)
         scene_close(&s);
     }
     CHECK(between > 0);
+}
+
+/* Two objects so large that workers share what they have with each other: of vertices of the second
+   and faces of the first each counts its own. */
+static void large_objects_are_counted(void)
+{
+    for (uint32_t trial = 0; trial < 4 && !test_failures(); ++trial) {
+        scene s;
+        host h;
+        question q;
+        expected e;
+        memset(&q, 0, sizeof q);
+        q.near.struct_size = sizeof q.near;
+        q.step.struct_size = sizeof q.step;
+        q.is_step = (int)(trial / 2);
+        q.near.distance = q.step.separation = 0.02;
+        memset(&s, 0, sizeof s);
+        s.state = test_random_state();
+        s.workers = THREADS_MAX;
+        s.flags = SC_WORKSPACE_NEAR;
+        s.count = 2;
+        if (!open_large_thing(&s, 0, 0, 100) || !open_large_thing(&s, 1, 1, 100)) return;
+        e = expect(&s, &q);
+        host_start(&h, trial % 2 ? HOST_BACKWARDS : HOST_FORWARDS, 3);
+        q.near.tasks = q.step.tasks = &h.tasks;
+        check_counts(&s, &q, &e);
+        CHECK(h.mistakes == 0 && h.parts > 1 && e.list[0].count > 100);
+        host_stop(&h);
+        expected_free(&e);
+        scene_close(&s);
+    }
 }
 
 static int accept_some(void *user, uint32_t kind, uint32_t object_a, uint32_t object_b, uint32_t a,
@@ -717,6 +763,7 @@ static void a_flag_ends_it(void)
 }
 
 SC_TEST_MAIN(SC_TEST(scenes_are_one_mesh), SC_TEST(what_stays_is_asked_for_other_distances),
-             SC_TEST(large_objects_share_work), SC_TEST(the_function_leaves_pairs_out),
-             SC_TEST(objects_have_filters), SC_TEST(an_object_by_itself_is_refused),
-             SC_TEST(bad_scenes_are_refused), SC_TEST(a_flag_ends_it))
+             SC_TEST(large_objects_share_work), SC_TEST(large_objects_are_counted),
+             SC_TEST(the_function_leaves_pairs_out), SC_TEST(objects_have_filters),
+             SC_TEST(an_object_by_itself_is_refused), SC_TEST(bad_scenes_are_refused),
+             SC_TEST(a_flag_ends_it))

@@ -272,14 +272,16 @@ static void layers_far_away(void)
    any two of them may have one place. */
 static void more_leaf_clusters_than_places(void)
 {
-    enum { SHEETS = 12 };
+    enum { SHEETS = 16 };
     double heights[2][SHEETS];
-    soup mesh = make_sheets(SHEETS, 7);
+    soup mesh = make_sheets(SHEETS, 8);
     sc_build_options build;
     step_subject s;
-    for (uint32_t i = 0; i < SHEETS; ++i) {
-        heights[0][i] = 0.01 * i;
-        heights[1][i] = 0.01 * (i % 3 ? i : i + 1.1);
+    for (uint32_t i = 0; i < SHEETS; ++i) { /* half of them from here is another one's neighbour: */
+        const uint32_t layer =
+            2 * i % SHEETS + 2 * i / SHEETS; /* 64 or 128 leaf clusters from it */
+        heights[0][i] = 0.01 * layer;
+        heights[1][i] = 0.01 * (layer % 2 ? layer : layer + 1.1);
     }
     memset(&build, 0, sizeof(build));
     build.struct_size = sizeof(build);

@@ -208,8 +208,8 @@ static void check_sound(const scene *s, const step_motion *m, double up, const s
             for (int k = 0; k < 4; ++k) {
                 const double bound = bounds[at[k]] * up;
                 *positive += bound > 0;
-                above += bound > 0 &&
-                         near_truth_is_within(m, kind, list.pairs[i], nextafter(bound, 0));
+                above +=
+                    bound > 0 && near_truth_is_within(m, kind, list.pairs[i], nextafter(bound, 0));
             }
         }
         free(list.pairs);
@@ -233,7 +233,8 @@ static void bounds_at_both_ends_of_the_range(void)
         sc_near_options o;
         scene s;
         if (test_random_below(4)) soup_any_pose(posed, mesh.vertex_count);
-        for (size_t i = 0; i < 3 * (size_t)mesh.vertex_count; ++i) most = fmax(most, fabs(posed[i]));
+        for (size_t i = 0; i < 3 * (size_t)mesh.vertex_count; ++i)
+            most = fmax(most, fabs(posed[i]));
         if (!(most > 0)) most = 1;
         for (size_t i = 0; i < 3 * (size_t)mesh.vertex_count; ++i)
             posed[i] = tiny ? ldexp(posed[i] / most, -1074 + (int)(4 + trial / 2 % 70))
@@ -278,6 +279,36 @@ static double *draw_edges_apart(const double apart[3], double length)
         }
     }
     return posed;
+}
+
+/* A distance beyond all that there is, however far, leaves bounds what they are. */
+static void bounds_of_endless_distances(void)
+{
+    soup mesh = soup_cloth(6, 6);
+    double *posed = soup_copy_positions(&mesh);
+    scene s;
+    soup_smooth(posed, mesh.vertex_count, 0.3);
+    if (open_scene(&s, mesh, posed, test_random_state())) {
+        double *bounds = (double *)test_allocate(sizeof(double) * mesh.vertex_count);
+        double *others = (double *)test_allocate(sizeof(double) * mesh.vertex_count);
+        sc_near_options o;
+        memset(&o, 0, sizeof o);
+        o.struct_size = sizeof o;
+        o.output = SC_OUTPUT_COUNT;
+        o.distance = 20 * s.size;
+        CHECK(ask(&s, s.workspace, &o, bounds) == SC_OK);
+        for (int i = 1; i < 300; i += 30) {
+            o.distance = s.size * pow(10, i);
+            CHECK(ask(&s, s.workspace, &o, others) == SC_OK);
+            for (uint32_t v = 0; v < mesh.vertex_count; ++v)
+                if (!CHECK_MSG(bounds[v] > 0 && bounds[v] == others[v], "%g, not %g", others[v],
+                               bounds[v]))
+                    break;
+        }
+        free(bounds);
+        free(others);
+    }
+    close_scene(&s);
 }
 
 /* Edges that are nearer than the largest double, by so little that their distance is more by its
@@ -492,5 +523,6 @@ static void nothing_comes_together(void)
 }
 
 SC_TEST_MAIN(SC_TEST(bounds_of_any_mesh), SC_TEST(bounds_at_both_ends_of_the_range),
-             SC_TEST(bounds_of_the_largest_distances), SC_TEST(bounds_by_many_workers),
-             SC_TEST(other_results), SC_TEST(nothing_comes_together))
+             SC_TEST(bounds_of_endless_distances), SC_TEST(bounds_of_the_largest_distances),
+             SC_TEST(bounds_by_many_workers), SC_TEST(other_results),
+             SC_TEST(nothing_comes_together))
