@@ -40,6 +40,7 @@
 #include "trace/gradients.h"
 #include "trace/regions.h"
 #include "trace/trace.h"
+#include "trace/triples.h"
 #include "step/step_pairs.h"
 
 /* ---- building ---- */
@@ -935,6 +936,60 @@ sc_status sc_trace(const sc_model *model, const sc_pose *pose, const sc_pair *pa
     return status;
 }
 
+/* What a call about a trace was given, checked but for numbers in the trace. */
+static sc_status read_traced_call(const sc_model *model, const sc_pose *pose,
+                                  const sc_trace_result *trace, const sc_trace_options *options,
+                                  trace_call *call, sc_trace_result *t)
+{
+    sc_status status = read_trace_call(model, pose, options, call);
+    memset(t, 0, sizeof *t);
+    if (!status)
+        status = sc_arguments_read(&call->hooks, "trace", t, sizeof *t, trace,
+                                   SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
+    if (!status)
+        status = need_trace_arrays(&call->hooks, "trace", t, t->node_count, t->contour_count);
+    if (!status && (t->node_count > t->node_capacity || t->contour_count > t->contour_capacity))
+        status = SC_ERROR_SHORT_BUFFER; /* not all are there */
+    if (!status && (t->node_count > TRACE_PAIRS_MAX || t->contour_count > TRACE_PAIRS_MAX))
+        status = SC_ERROR_COUNT;
+    return status;
+}
+
+static sc_status find_triples(const sc_model *model, const sc_pose *pose,
+                              const sc_trace_result *trace, const sc_trace_options *options,
+                              sc_triples_result *r)
+{
+    trace_call call;
+    sc_scratch scratch;
+    sc_trace_result t;
+    sc_status status = read_traced_call(model, pose, trace, options, &call, &t);
+    if (!status && r->capacity)
+        status = sc_arguments_need(&call.hooks, "result", "triples", r->triples);
+    if (status) return status;
+    sc_scratch_init(&scratch, &call.allocator);
+    status = sc_triples_find(&call.subject, &t, &scratch, r);
+    sc_scratch_clear(&scratch);
+    return status;
+}
+
+sc_status sc_trace_triples(const sc_model *model, const sc_pose *pose, const sc_trace_result *trace,
+                           const sc_trace_options *options, sc_triples_result *result)
+{
+    sc_triples_result r;
+    sc_status status;
+    if (!result) return SC_ERROR_NULL;
+    status = sc_arguments_read(NULL, "result", &r, sizeof r, result,
+                               SC_ARGUMENTS_UP_TO(sc_triples_result, triples));
+    if (status) return status;
+    r.reserved = 0;
+    r.count = 0;
+    status =
+        !model || !pose || !trace ? SC_ERROR_NULL : find_triples(model, pose, trace, options, &r);
+    if (status && status != SC_ERROR_SHORT_BUFFER) r.count = 0;
+    sc_structs_write(result, &r, sizeof r);
+    return status;
+}
+
 static sc_status find_regions(const sc_model *model, const sc_pose *pose,
                               const sc_trace_result *trace, const sc_trace_options *options,
                               sc_regions_result *r)
@@ -943,18 +998,8 @@ static sc_status find_regions(const sc_model *model, const sc_pose *pose,
     trace_call call;
     sc_scratch scratch;
     sc_trace_result t;
-    sc_status status = read_trace_call(model, pose, options, &call);
-    memset(&t, 0, sizeof t);
+    sc_status status = read_traced_call(model, pose, trace, options, &call, &t);
     if (!status) status = sc_arguments_choose(&call.hooks, "result", &flags, 1);
-    if (!status)
-        status = sc_arguments_read(&call.hooks, "trace", &t, sizeof t, trace,
-                                   SC_ARGUMENTS_UP_TO(sc_trace_result, contours));
-    if (!status)
-        status = need_trace_arrays(&call.hooks, "trace", &t, t.node_count, t.contour_count);
-    if (!status && (t.node_count > t.node_capacity || t.contour_count > t.contour_capacity))
-        status = SC_ERROR_SHORT_BUFFER; /* not all are there */
-    if (!status && (t.node_count > TRACE_PAIRS_MAX || t.contour_count > TRACE_PAIRS_MAX))
-        status = SC_ERROR_COUNT;
     if (!status && r->region_capacity)
         status = sc_arguments_need(&call.hooks, "result", "regions", r->regions);
     if (status) return status;

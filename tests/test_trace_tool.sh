@@ -48,6 +48,15 @@ check "the longest first" sh -c "'$query' --trace --list '$sheets' |
     sed -n 's/.*length \([0-9.]*\),.*/\1/p' | sort -g -r -c"
 check "ends at vertices" says 1 "border to vertex" "$query" --trace "$sheets"
 
+# Three squares' halves that meet in (0, 1, 2).
+printf 'v 0 -4 -4\nv 0 12 -4\nv 0 -4 12\nv -4 1 -4\nv 12 1 -4\nv -4 1 12\n' >"$scratch/three.obj"
+printf 'v -4 -4 2\nv 12 -4 2\nv -4 12 2\nf 1 2 3\nf 4 5 6\nf 7 8 9\n' >>"$scratch/three.obj"
+check "three sheets" says 1 "^    three sheets meet in 1 point$" "$query" --trace "$scratch/three.obj"
+check "where they do" says 1 '"triples":\[{"point":\[0,1,2\],"triangles":\[0,1,2\]}\]}' \
+    "$query" --trace --json "$scratch/three.obj"
+check "not of two" sh -c "! '$query' --trace '$a' | grep -q 'sheets meet'"
+check "nor in JSON" says 1 '"triples":\[\]}' "$query" --trace --json "$a"
+
 # ---- poses ----
 
 check "files, each a mesh of its own" says 1 "^3 files: 1 clean, 2 colliding" \

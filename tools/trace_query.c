@@ -27,7 +27,8 @@ typedef struct trace_run {
     sc_trace_node *nodes;
     sc_trace_contour *contours;
     trace_listed *listed; /* of contours */
-    uint64_t pair_capacity, node_capacity, contour_capacity, listed_capacity;
+    sc_trace_triple *triples;
+    uint64_t pair_capacity, node_capacity, contour_capacity, listed_capacity, triple_capacity;
     /* With a page. */
     sc_region *regions;
     sc_contour_sides *sides;  /* of contours */
@@ -77,6 +78,14 @@ static bool make_room_for_list(trace_run *run, uint64_t contours)
     return made;
 }
 
+static bool make_room_for_triples(trace_run *run, uint64_t count)
+{
+    void *array = run->triples;
+    const bool made = make_room(&array, &run->triple_capacity, count, sizeof *run->triples);
+    run->triples = (sc_trace_triple *)array;
+    return made;
+}
+
 static bool make_room_for_regions(trace_run *run, uint64_t regions, uint64_t contours,
                                   uint64_t vertices)
 {
@@ -116,6 +125,26 @@ static sc_status find_pairs(trace_run *run, const query_subject *subject, const 
         answer->query_ms = tool_clock() - start;
     } while (status == SC_ERROR_SHORT_BUFFER);
     answer->pair_count = result.count;
+    return status;
+}
+
+/* Where contours cross, of a pose of which they are known. */
+static sc_status find_triples(trace_run *run, const query_subject *subject, const sc_pose *pose,
+                              const sc_trace_result *trace, const sc_trace_options *options,
+                              trace_answer *answer)
+{
+    sc_triples_result result;
+    sc_status status;
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    do {
+        if (!make_room_for_triples(run, result.count)) return SC_ERROR_MEMORY;
+        result.triples = run->triples;
+        result.capacity = run->triple_capacity;
+        status = sc_trace_triples(subject->model, pose, trace, options, &result);
+    } while (status == SC_ERROR_SHORT_BUFFER);
+    answer->triples = run->triples;
+    answer->triple_count = result.count;
     return status;
 }
 
@@ -167,6 +196,7 @@ static sc_status trace_pairs(trace_run *run, const query_subject *subject, const
         status = sc_trace(subject->model, pose, run->pairs, answer->pair_count, &options, &result);
         answer->trace_ms = tool_clock() - start;
     } while (status == SC_ERROR_SHORT_BUFFER);
+    if (status == SC_OK) status = find_triples(run, subject, pose, &result, &options, answer);
     if (status == SC_OK && run->output.page)
         status = find_regions(run, subject, pose, &result, &options, answer);
     if (status != SC_OK) return status;
@@ -295,6 +325,7 @@ int trace_query_files(char **paths, int count, const trace_settings *set)
     free(run.nodes);
     free(run.contours);
     free(run.listed);
+    free(run.triples);
     free(run.regions);
     free(run.sides);
     free(run.vertex_regions);

@@ -88,6 +88,9 @@ static void print_table_row(const trace_answer *answer, const trace_settings *se
     for (uint64_t i = 0; i < count; i++) print_contour(&answer->contours[i].contour, i + 1);
     if (count < answer->contour_count)
         printf("    and %.0f shorter contours\n", (double)(answer->contour_count - count));
+    if (answer->triple_count)
+        printf("    three sheets meet in %.0f point%s\n", (double)answer->triple_count,
+               answer->triple_count == 1 ? "" : "s");
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -134,6 +137,15 @@ static cJSON *make_contour(const trace_answer *answer, const sc_trace_contour *c
     return object;
 }
 
+static cJSON *make_triple(const sc_trace_triple *triple)
+{
+    cJSON *object = cJSON_CreateObject();
+    const double triangles[3] = {triple->triangles[0], triple->triangles[1], triple->triangles[2]};
+    add_numbers(object, "point", triple->point, 3);
+    add_numbers(object, "triangles", triangles, 3);
+    return object;
+}
+
 static bool print_json_answer(const trace_answer *answer, const trace_settings *set)
 {
     cJSON *object = tool_json_object("trace");
@@ -164,6 +176,9 @@ static bool print_json_answer(const trace_answer *answer, const trace_settings *
     cJSON *contours = cJSON_AddArrayToObject(object, "contours");
     for (uint64_t i = 0; i < answer->contour_count; i++)
         cJSON_AddItemToArray(contours, make_contour(answer, &answer->contours[i].contour));
+    cJSON *triples = cJSON_AddArrayToObject(object, "triples");
+    for (uint64_t i = 0; i < answer->triple_count; i++)
+        cJSON_AddItemToArray(triples, make_triple(&answer->triples[i]));
     return tool_json_print(object);
 }
 

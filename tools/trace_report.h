@@ -24,6 +24,8 @@ typedef struct trace_answer {
     uint64_t pair_count, node_count, contour_count;
     const sc_trace_node *nodes;
     trace_listed *contours;         /* the longest first: see trace_report_sort */
+    uint64_t triple_count;          /* points where three sheets meet */
+    const sc_trace_triple *triples; /* triple_count */
     uint64_t region_count;          /* 0 unless regions are asked for */
     const sc_region *regions;       /* region_count */
     const uint32_t *vertex_regions; /* of each vertex of the mesh as it was read */

@@ -1,5 +1,5 @@
 /*
- * Fuzz target: sc_trace, sc_trace_gradients and sc_trace_regions. A small mesh, or two or three
+ * Fuzz target: sc_trace, sc_trace_triples, sc_trace_gradients and sc_trace_regions. A small mesh, or two or three
  * that are the same, built in some way, in poses of any coordinates. What is found is held against
  * the oracle's crossings and against what is true of all contours and regions; then with arrays too
  * short, memory that runs out, pairs and contours that were tampered with, and coordinates that are
@@ -261,6 +261,50 @@ static void divide(fuzz_bytes *bytes, const fuzz_subject *s, const trace_facts *
     free_regions(&all);
 }
 
+/* ---- triples ---- */
+
+static sc_triples_result triples_room(uint64_t triples)
+{
+    sc_triples_result r;
+    memset(&r, 0, sizeof r);
+    r.struct_size = sizeof r;
+    r.reserved = 7;
+    r.count = 77;
+    r.capacity = triples;
+    r.triples = (sc_trace_triple *)test_allocate((size_t)triples * sizeof *r.triples);
+    memset(r.triples, 0xa5, (size_t)triples * sizeof *r.triples);
+    return r;
+}
+
+/* Where contours of a trace cross; the same with memory that may run out, and too little room. */
+static void cross(fuzz_bytes *bytes, const fuzz_subject *s, const trace_facts *facts)
+{
+    const uint32_t how = fuzz_byte(bytes);
+    sc_trace_options o = plain_options(s->simd);
+    fuzz_memory memory;
+    const sc_allocator allocator = fuzz_allocator(&memory, how / 2 % 8);
+    sc_triples_result none = triples_room(0), all, again;
+    sc_status status = sc_trace_triples(s->model, &s->pose, &facts->trace, NULL, &none);
+    FUZZ_CHECK(status == (none.count ? SC_ERROR_SHORT_BUFFER : SC_OK) && !none.reserved,
+               "%s, %" PRIu64 " triples", sc_status_string(status), none.count);
+    all = triples_room(none.count);
+    status = sc_trace_triples(s->model, &s->pose, &facts->trace, NULL, &all);
+    FUZZ_CHECK(status == SC_OK && all.count == none.count, "%s, %" PRIu64 " triples",
+               sc_status_string(status), all.count);
+    trace_check_triples(facts, &all);
+    again = triples_room(none.count);
+    if (how & 1) o.allocator = &allocator;
+    status = sc_trace_triples(s->model, &s->pose, &facts->trace, &o, &again);
+    FUZZ_CHECK(status == (memory.refused ? SC_ERROR_MEMORY : SC_OK) && memory.live == 0 &&
+                   again.count == (status ? 0 : all.count) &&
+                   (status || memcmp(again.triples, all.triples,
+                                     (size_t)all.count * sizeof *all.triples) == 0),
+               "%s, %" PRIu64 " triples", sc_status_string(status), again.count);
+    free(none.triples);
+    free(all.triples);
+    free(again.triples);
+}
+
 /* ---- traces that were tampered with ---- */
 
 static uint64_t any_count(fuzz_bytes *bytes, uint64_t near_to)
@@ -306,6 +350,7 @@ static void ask_tampered(fuzz_bytes *bytes, const fuzz_subject *s, const sc_trac
     sc_trace_gradient *gradients =
         (sc_trace_gradient *)test_allocate((size_t)t.node_count * sizeof *gradients);
     sc_regions_result r = regions_room(s, 0, fuzz_byte(bytes) % 32, t.contour_count);
+    sc_triples_result triples = triples_room(r.region_capacity);
     const uint32_t counts = fuzz_byte(bytes);
     int is_short;
     sc_status status;
@@ -329,8 +374,18 @@ static void ask_tampered(fuzz_bytes *bytes, const fuzz_subject *s, const sc_trac
     if (is_short ? status != SC_ERROR_SHORT_BUFFER
                  : status != SC_OK && status != SC_ERROR_PAIRS && status != SC_ERROR_NOT_FINITE)
         forbid("gradients of what was tampered with", status);
+    status = sc_trace_triples(s->model, &s->pose, &t, NULL, &triples);
+    if (is_short)
+        FUZZ_CHECK(status == SC_ERROR_SHORT_BUFFER && !triples.count, "%s",
+                   sc_status_string(status));
+    else if (status == SC_ERROR_PAIRS || status == SC_ERROR_NOT_FINITE)
+        FUZZ_CHECK(!triples.count, "%" PRIu64 " triples", triples.count);
+    else
+        FUZZ_CHECK(status == (triples.count > triples.capacity ? SC_ERROR_SHORT_BUFFER : SC_OK),
+                   "%s, %" PRIu64 " triples", sc_status_string(status), triples.count);
     free_trace(&t);
     free_regions(&r);
+    free(triples.triples);
     free(gradients);
 }
 
@@ -437,6 +492,7 @@ static void look_at_pose(fuzz_bytes *bytes, const fuzz_subject *s)
     divide(bytes, s, &facts);
     for (uint32_t i = 0; i < how % 4; ++i) trace_wrong_pairs(bytes, s, &pairs);
     for (uint32_t i = 0; i < how / 4 % 8; ++i) ask_tampered(bytes, s, &facts.trace);
+    cross(bytes, s, &facts);
     free_trace(&facts.trace);
     free(pairs.pairs);
 }

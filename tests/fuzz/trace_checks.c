@@ -1,5 +1,5 @@
 /*
- * Checks of contours, gradients and regions. See trace_checks.h.
+ * Checks of contours, triples, gradients and regions. See trace_checks.h.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -13,6 +13,7 @@
 
 #include "fuzz_support.h"
 #include "harness.h"
+#include "triple_oracle.h"
 
 static const uint32_t *corners_of(const trace_facts *f, uint32_t triangle)
 {
@@ -217,6 +218,77 @@ void trace_check_contours(const trace_facts *facts, const trace_oracle_answer *t
                    "triangles %" PRIu32 " and %" PRIu32 " twice", w.segments[i].a, w.segments[i].b);
     free(w.segments);
     free(w.met);
+}
+
+/* ---- triples ---- */
+
+enum { TRIPLES_LOOKED_AT = 4 };
+
+/* The node behind a node of a contour that is not its end. */
+static const sc_trace_node *node_behind(const trace_facts *f, uint64_t node)
+{
+    const sc_trace_result *r = &f->trace;
+    for (uint64_t i = 0; i < r->contour_count; ++i)
+        if (node - r->contours[i].first < r->contours[i].count)
+            return &r->nodes[r->contours[i].first +
+                             (node + 1 - r->contours[i].first) % r->contours[i].count];
+    FUZZ_CHECK(0, "node %" PRIu64 " is in no contour", node);
+    return NULL;
+}
+
+/* On which side of a triangle's plane a node is. */
+static int side_of_node(const trace_facts *f, const sc_trace_node *node, uint32_t triangle)
+{
+    const double *p[8];
+    uint32_t v[8];
+    if (node->edge == SC_TRACE_NO_EDGE) {
+        memcpy(v, corners_of(f, triangle), 3 * sizeof *v);
+        v[3] = node->triangle;
+        for (int i = 0; i < 4; ++i) p[i] = position_of(f, v[i]);
+        return has_corner(f, triangle, node->triangle) ? 0 : trace_oracle_sign(p, v);
+    }
+    name_vertices(f, node, v);
+    memcpy(v + 5, corners_of(f, triangle), 3 * sizeof *v);
+    for (int i = 0; i < 8; ++i) p[i] = position_of(f, v[i]);
+    return triple_oracle_side(p, v);
+}
+
+static void check_triple(const trace_facts *f, const sc_trace_triple *t, int is_looked_at)
+{
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t a = t->triangles[(i + 1) % 3], b = t->triangles[(i + 2) % 3];
+        const sc_trace_node *node, *next;
+        FUZZ_CHECK(t->nodes[i] < f->trace.node_count && t->along[i] >= 0 && t->along[i] <= 1,
+                   "node %" PRIu64 ", %a behind it", t->nodes[i], t->along[i]);
+        node = &f->trace.nodes[t->nodes[i]];
+        next = node_behind(f, t->nodes[i]);
+        FUZZ_CHECK((node->sheets[0] == a && node->sheets[1] == b) ||
+                       (node->sheets[0] == b && node->sheets[1] == a),
+                   "behind node %" PRIu64 " is another segment", t->nodes[i]);
+        for (int k = 0; k < 3 && i == 2; ++k)
+            FUZZ_CHECK(t->point[k] >= fmin(node->point[k], next->point[k]) &&
+                           t->point[k] <= fmax(node->point[k], next->point[k]),
+                       "%a is beside the segment", t->point[k]);
+        FUZZ_CHECK(
+            !is_looked_at ||
+                side_of_node(f, node, t->triangles[i]) * side_of_node(f, next, t->triangles[i]) < 0,
+            "triangle %" PRIu32 " is not passed through", t->triangles[i]);
+    }
+}
+
+void trace_check_triples(const trace_facts *facts, const sc_triples_result *triples)
+{
+    for (uint64_t i = 0; i < triples->count; ++i) {
+        const sc_trace_triple *t = &triples->triples[i], *last = i ? t - 1 : NULL;
+        const uint32_t *now = t->triangles;
+        FUZZ_CHECK(now[0] < now[1] && now[1] < now[2] && !t->reserved, "triple %" PRIu64, i);
+        FUZZ_CHECK(!last || last->triangles[0] < now[0] ||
+                       (last->triangles[0] == now[0] &&
+                        (last->triangles[1] < now[1] ||
+                         (last->triangles[1] == now[1] && last->triangles[2] < now[2]))),
+                   "triple %" PRIu64 " comes too late", i);
+        check_triple(facts, t, i < TRIPLES_LOOKED_AT);
+    }
 }
 
 /* ---- gradients ---- */

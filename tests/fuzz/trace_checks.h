@@ -1,5 +1,5 @@
 /*
- * What is true of contours, of their gradients and of regions, whatever the mesh and the pose. For
+ * What is true of contours, of where they cross, of their gradients and of regions, whatever the mesh and the pose. For
  * the fuzz target of traces: each function ends the program at what is not.
  *
  * SPDX-License-Identifier: MIT
@@ -26,6 +26,11 @@ void trace_check_contours(const trace_facts *facts, const trace_oracle_answer *t
 /* Vertices, weights and flags are those of the nodes; numbers are finite; and contours without flat
    nodes push nothing, up to the errors that starcontour.h allows. */
 void trace_check_gradients(const trace_facts *facts, const sc_trace_gradient *gradients);
+
+/* Triples come in the order of their triangles, each two of which have the segment behind a node,
+   between whose ends the point is. The ends of segments of the first few are on different sides of
+   the third triangle's plane, as the oracle has them. */
+void trace_check_triples(const trace_facts *facts, const sc_triples_result *triples);
 
 /* What no contour crosses is in one region. Regions are in order, and know their components; areas
    add up to that of the mesh; hints name the smaller side. The result has all arrays. */

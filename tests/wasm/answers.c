@@ -5,7 +5,7 @@
  *     answers FOLDER FILE.obj...     also writes FOLDER/FILE.obj.scm, the saved model
  *
  * Questions: pairs of triangles and of edges, where they meet, contours, their gradients and regions,
- * what is near, its closest points and bounds, and steps with times; each on three poses, which are
+ * where they cross, what is near, its closest points and bounds, and steps with times; each on three poses, which are
  * made by additions and products alone.
  *
  * SPDX-License-Identifier: MIT
@@ -49,6 +49,7 @@ static void ask_trace(const sc_model *model, const sc_pose *pose, const sc_pair 
     static sc_trace_node nodes[CAPACITY];
     static sc_trace_contour contours[CAPACITY];
     static sc_trace_gradient gradients[CAPACITY];
+    static sc_trace_triple triples[CAPACITY];
     static sc_region regions[CAPACITY];
     static sc_contour_sides sides[CAPACITY];
     uint32_t *vertex_regions = (uint32_t *)test_allocate(pose->vertex_count * sizeof(uint32_t));
@@ -57,6 +58,7 @@ static void ask_trace(const sc_model *model, const sc_pose *pose, const sc_pair 
                          .nodes = nodes,
                          .contour_capacity = CAPACITY,
                          .contours = contours};
+    sc_triples_result p = {.struct_size = sizeof(p), .capacity = CAPACITY, .triples = triples};
     sc_regions_result r = {.struct_size = sizeof(r),
                            .flags = SC_REGIONS_INSIDE,
                            .region_capacity = CAPACITY,
@@ -90,6 +92,17 @@ static void ask_trace(const sc_model *model, const sc_pose *pose, const sc_pair 
         add(gradients[i].vectors, sizeof(gradients[i].vectors));
     }
     tell(file, number, "gradients", t.node_count);
+    need(sc_trace_triples(model, pose, &t, NULL, &p), "sc_trace_triples");
+    for (uint64_t i = 0; i < p.count; ++i) {
+        add(triples[i].triangles, sizeof(triples[i].triangles));
+        for (int k = 0; k < 3; ++k) {
+            const uint32_t node = (uint32_t)triples[i].nodes[k];
+            add(&node, sizeof(node));
+        }
+        add(triples[i].along, sizeof(triples[i].along));
+        add(triples[i].point, sizeof(triples[i].point));
+    }
+    tell(file, number, "triples", p.count);
     need(sc_trace_regions(model, pose, &t, NULL, &r), "sc_trace_regions");
     for (uint64_t i = 0; i < r.region_count; ++i) {
         add(&regions[i].component, sizeof(regions[i].component));

@@ -61,6 +61,9 @@ export function answers({Model}, name, text) {
         const {vertices, flags, weights, vectors} = model.traceGradients(pose, traced);
         for (const some of rows(count, [vertices, 5], [flags, 1], [weights, 5], [vectors, 6])) add(some);
         tell(i, 'gradients', count);
+        const {triangles: three, nodes: at, along, point} = model.traceTriples(pose, traced);
+        for (const some of rows(point.length / 3, [three, 3], [at, 3], [along, 3], [point, 3])) add(some);
+        tell(i, 'triples', point.length / 3);
         const {regions, vertexRegions, sides} = model.regions(pose, traced, {inside: true});
         const of_regions = ['component', 'vertexCount', 'area', 'inside'].map(name => [regions[name], 1]);
         for (const some of rows(regions.area.length, ...of_regions)) add(some);

@@ -104,6 +104,10 @@ check('closest points of a step', impact.start.distance[0] === 1 && impact.impac
 const {length, gradient} = model.traceLength(pose), traced = model.trace(pose);
 check('contours', length > 0 && gradient.length === rest.length && traced.contours.begin[0] === 1 &&
     traced.nodes.point.length === 3 * traced.nodes.edge.length, JSON.stringify(traced));
+const squares = [0, -4, -4, 0, 12, -4, 0, -4, 12, -4, 1, -4, 12, 1, -4, -4, 1, 12, -4, -4, 2, 12, -4, 2, -4, 12, 2];
+const triples = new Model(squares, [0, 1, 2, 3, 4, 5, 6, 7, 8], {weld: 'none'}).traceTriples(squares);
+check('triples', same(triples.triangles, [0, 1, 2]) && same(triples.point, [0, 1, 2]) &&
+    model.traceTriples(pose, traced).point.length === 0, JSON.stringify(triples));
 const {regions} = model.regions(pose);
 check('regions', same(regions.area, [8, 0.375, 1.125]) && same(regions.vertexCount, [3, 1, 2]), JSON.stringify(regions));
 check('an order', same(new Model(rest, triangles, {order: [1, 0]}).query(pose), [0, 1]));

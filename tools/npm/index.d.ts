@@ -164,6 +164,18 @@ export interface Trace {
     };
 }
 
+/** Points where three sheets meet; see sc_trace_triple in starcontour.h. */
+export interface TraceTriples {
+    /** 3 n: ascending. */
+    triangles: Uint32Array;
+    /** 3 n: behind each node is what the other two triangles have in common, */
+    nodes: Uint32Array;
+    /** 3 n: and where on it the point is, from 0 to 1. */
+    along: Float64Array;
+    /** 3 n. */
+    point: Float64Array;
+}
+
 /** The parts into which contours divide a surface; see sc_trace_regions in starcontour.h. */
 export interface Regions {
     regions: {
@@ -243,6 +255,7 @@ export class Model {
         kind: 'vertex_face' | 'edge_edge'): StepStencils;
     contacts(pose: Positions, found: Numbers, options?: {pairs?: 'triangle' | 'edge'}): Contacts;
     trace(pose: Positions, found?: Numbers | null): Trace;
+    traceTriples(pose: Positions, traced?: Trace | null): TraceTriples;
     regions(pose: Positions, traced?: Trace | null, options?: {inside?: boolean}): Regions;
     traceGradients(pose: Positions, traced: Trace): TraceGradients;
     traceLength(pose: Positions, found?: Numbers | null): {length: number, gradient: Float64Array};

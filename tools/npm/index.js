@@ -310,6 +310,9 @@ const CONTOUR = { // of first and count, which have 64 bits, the lower half: mem
     first: [Uint32Array, 1], count: [Uint32Array, 1], begin: [Uint32Array, 1], end: [Uint32Array, 1],
     flags: [Uint32Array, 1], length: [Float64Array, 1]
 };
+const TRIPLE = { // nodes as above
+    triangles: [Uint32Array, 3], nodes: [Uint32Array, 3, 8], along: [Float64Array, 3], point: [Float64Array, 3]
+};
 const REGION = {
     component: [Uint32Array, 1], vertex_count: [Uint32Array, 1], area: [Float64Array, 1], inside: [Int32Array, 1]
 };
@@ -320,12 +323,12 @@ const GRADIENT = {
 /* An array of each member of count structures that are so many bytes apart. */
 function columns(rows, count, size, name, members) {
     const made = {};
-    for (const [member, [Type, width]] of Object.entries(members)) {
+    for (const [member, [Type, width, apart = Type.BYTES_PER_ELEMENT]] of Object.entries(members)) {
         const array = made[member] = new Type(count * width), [offset] = layouts.get(name).members.get(member);
         const get = {Uint32Array: 'getUint32', Int32Array: 'getInt32', Float64Array: 'getFloat64'}[Type.name];
         for (let i = 0; i < count; ++i)
             for (let k = 0; k < width; ++k)
-                array[width * i + k] = view[get](rows + size * i + offset + Type.BYTES_PER_ELEMENT * k, true);
+                array[width * i + k] = view[get](rows + size * i + offset + apart * k, true);
     }
     return made;
 }
@@ -584,6 +587,28 @@ export class Model {
             const traced = {nodes, contours};
             traces.set(traced, {nodes: nodes_as_bytes, contours: contours_as_bytes});
             return traced;
+        });
+    }
+
+    /** Points where three sheets meet. traced: what trace said of this pose. */
+    traceTriples(pose, traced = null) {
+        const model = this.#model(), {size} = layouts.get('sc_trace_triple');
+        traced ??= this.trace(pose);
+        return calling(call => {
+            const where = pose_in(call, 'pose', pose), trace = traced_in(call, traced);
+            const how = call.structure('sc_trace_options', {hooks: library.sc_refusal_hooks()});
+            const result = call.structure('sc_triples_result', {});
+            const ask = () => library.sc_trace_triples(model, where, trace, how, result);
+            let status = ask(), count = 0, triples = 0;
+            refresh();
+            if (status === ERROR_SHORT_BUFFER) {
+                count = read('sc_triples_result', result, 'count');
+                triples = call.room(size * count);
+                write('sc_triples_result', result, {capacity: count, triples});
+                status = ask();
+            }
+            check(status);
+            return columns(triples, count, size, 'sc_trace_triple', TRIPLE);
         });
     }
 

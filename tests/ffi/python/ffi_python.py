@@ -327,6 +327,14 @@ check("lengths of contours", np.allclose(steps, traced.contours["length"], rtol=
 crossings = traced.nodes[traced.nodes["edge"] != 0xFFFFFFFF]
 mixed = np.einsum("nk,nkx->nx", crossings["weights"], corners[crossings["triangle"]])
 check("contours by weights", np.allclose(mixed, crossings["point"], rtol=0, atol=1e-14))
+three = starcontour.Model(np.eye(3).repeat(3, axis=0), np.arange(9).reshape(3, 3), weld="none")
+squares = np.array([[[0, -4, -4], [0, 8, -4], [0, -4, 8]], [[-4, 1, -4], [8, 1, -4], [-4, 1, 8]],
+                    [[-4, -4, 2], [8, -4, 2], [-4, 8, 2]]], float).reshape(9, 3)
+met, crossed = three.trace_triples(squares), three.trace(squares)
+check("triples", met["triangles"].tolist() == [[0, 1, 2]] and np.allclose(met["point"], [[0, 1, 2]], rtol=0, atol=1e-14))
+from_to = crossed.nodes["point"][met["nodes"][0]], crossed.nodes["point"][met["nodes"][0] + 1]
+check("triples on segments", np.allclose(from_to[0] + met["along"][0][:, None] * (from_to[1] - from_to[0]), [0, 1, 2]))
+check("triples of a trace", three.trace_triples(squares, crossed).tobytes() == met.tobytes())
 regions, of_vertices, sides = model.regions(moved, traced, inside=True)
 check("regions", len(regions) > 1 and regions["vertex_count"].sum() == (of_vertices < len(regions)).sum())
 sheared = np.cross(*(corners[:, k].astype(float) - corners[:, 0] for k in (1, 2)))

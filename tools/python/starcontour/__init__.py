@@ -374,6 +374,22 @@ def _table(values, rows, what):
     return array, array.ctypes.data
 
 
+def _traced(nodes, contours):
+    """An sc_trace_result of contours that were found, and the arrays that it refers to."""
+    nodes = np.ascontiguousarray(nodes, _binding.sc_trace_node)
+    contours = np.ascontiguousarray(contours, _binding.sc_trace_contour)
+    structure = _binding.sc_trace_result(
+        struct_size=ctypes.sizeof(_binding.sc_trace_result),
+        node_count=len(nodes),
+        node_capacity=len(nodes),
+        nodes=nodes.ctypes.data,
+        contour_count=len(contours),
+        contour_capacity=len(contours),
+        contours=contours.ctypes.data,
+    )
+    return structure, (nodes, contours)
+
+
 def _pose(pose):
     """An sc_pose, and the array that it refers to."""
     positions = _positions(pose)
@@ -978,6 +994,30 @@ class Model(_Queries):
                 log.check(status)
                 return Trace(nodes, contours)
 
+    def trace_triples(self, pose, traced=None):
+        """Points where three sheets meet, in which contours cross: a structured array. See
+        sc_trace_triples.
+
+        Fields: triangles (three, ascending), point (three coordinates), nodes (three: behind nodes[i]
+        of the trace is what the two triangles other than triangles[i] have in common) and along
+        (three: so far on it, from 0 to 1). traced: what trace(pose) gave; None: it is found.
+        """
+        nodes, contours = self.trace(pose) if traced is None else traced
+        trace, arrays = _traced(nodes, contours)
+        given, positions = _pose(pose)
+        options = _binding.sc_trace_options(struct_size=ctypes.sizeof(_binding.sc_trace_options))
+        log = _Log()
+        options.hooks = ctypes.addressof(log.hooks)
+        result = _binding.sc_triples_result(struct_size=ctypes.sizeof(_binding.sc_triples_result))
+        while True:
+            triples = np.zeros(result.count, _binding.sc_trace_triple)
+            result.triples, result.capacity = triples.ctypes.data, len(triples)
+            status = lib.sc_trace_triples(self._handle, ctypes.byref(given), ctypes.byref(trace),
+                                          ctypes.byref(options), ctypes.byref(result))
+            if status != _binding.SC_ERROR_SHORT_BUFFER:
+                log.check(status)
+                return triples
+
     def regions(self, pose, traced=None, *, inside=False):
         """The regions into which contours divide the surface in a pose: Regions. See sc_trace_regions.
 
@@ -985,21 +1025,11 @@ class Model(_Queries):
         components go round each region (-2147483648 where that is not known).
         """
         nodes, contours = self.trace(pose) if traced is None else traced
-        nodes = np.ascontiguousarray(nodes, _binding.sc_trace_node)
-        contours = np.ascontiguousarray(contours, _binding.sc_trace_contour)
+        trace, arrays = _traced(nodes, contours)
         given, positions = _pose(pose)
         options = _binding.sc_trace_options(struct_size=ctypes.sizeof(_binding.sc_trace_options))
         log = _Log()
         options.hooks = ctypes.addressof(log.hooks)
-        trace = _binding.sc_trace_result(
-            struct_size=ctypes.sizeof(_binding.sc_trace_result),
-            node_count=len(nodes),
-            node_capacity=len(nodes),
-            nodes=nodes.ctypes.data,
-            contour_count=len(contours),
-            contour_capacity=len(contours),
-            contours=contours.ctypes.data,
-        )
         vertex_regions = np.empty(given.vertex_count, np.uint32)
         sides = np.empty((len(contours), 2, 2), np.uint32)
         result = _binding.sc_regions_result(
@@ -1029,14 +1059,8 @@ class Model(_Queries):
         """
         if not isinstance(traced, Trace):
             raise TypeError("traced must be a Trace as Model.trace returns it")
-        nodes = np.ascontiguousarray(traced.nodes, _binding.sc_trace_node)
-        contours = np.ascontiguousarray(traced.contours, _binding.sc_trace_contour)
-        result = _binding.sc_trace_result(
-            struct_size=ctypes.sizeof(_binding.sc_trace_result),
-            node_count=len(nodes), node_capacity=len(nodes), nodes=nodes.ctypes.data,
-            contour_count=len(contours), contour_capacity=len(contours), contours=contours.ctypes.data,
-        )
-        gradients = np.zeros(len(nodes), _binding.sc_trace_gradient)
+        result, arrays = _traced(*traced)
+        gradients = np.zeros(len(traced.nodes), _binding.sc_trace_gradient)
         given, positions = _pose(pose)
         _check(lib.sc_trace_gradients(self._handle, ctypes.byref(given), ctypes.byref(result),
                                       gradients.ctypes.data))

@@ -261,6 +261,9 @@ class Model(_Queries):
     def trace(
         self, pose: npt.ArrayLike, found: Optional[npt.ArrayLike] = None, *, threads: int = 1
     ) -> Trace: ...
+    def trace_triples(
+        self, pose: npt.ArrayLike, traced: Optional[Trace] = None
+    ) -> _Structured: ...
     def regions(
         self, pose: npt.ArrayLike, traced: Optional[Trace] = None, *, inside: bool = False
     ) -> Regions: ...

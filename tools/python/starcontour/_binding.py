@@ -445,6 +445,26 @@ class sc_regions_result(ctypes.Structure):
     ]
 
 
+# A point that three triangles have in common.
+sc_trace_triple = [
+    ("triangles", "u4", 3),
+    ("reserved", "u4"),
+    ("nodes", "u8", 3),
+    ("along", "f8", 3),
+    ("point", "f8", 3),
+]
+
+
+class sc_triples_result(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("count", c_uint64),
+        ("capacity", c_uint64),
+        ("triples", c_void_p),
+    ]
+
+
 # The stencil of a node: the gradient of its contour's length.
 sc_trace_gradient = [
     ("vertices", "u4", 5),
@@ -481,7 +501,7 @@ class sc_trace_result(ctypes.Structure):
 structures = (sc_hooks, sc_tasks, sc_near_options, sc_near_result, sc_mesh, sc_pose, sc_build_options, sc_load_options, sc_model_info,
               sc_query_options, sc_filter, sc_result, sc_workspace_options, sc_step_options, sc_step_result,
               sc_group, sc_object, sc_objects, sc_objects_result, sc_object_list, sc_objects_lists,
-              sc_trace_options, sc_trace_result, sc_regions_result)
+              sc_trace_options, sc_trace_result, sc_triples_result, sc_regions_result)
 
 _suffix = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 _own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarcontour" + _suffix)
@@ -512,9 +532,10 @@ _declare("sc_query", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_q
 _declare("sc_contacts", _status, c_void_p, POINTER(sc_pose), c_uint32, c_void_p, c_uint64, c_void_p)
 _declare("sc_trace", _status, c_void_p, POINTER(sc_pose), c_void_p, c_uint64,
          POINTER(sc_trace_options), POINTER(sc_trace_result))
+_declare("sc_trace_triples", _status, c_void_p, POINTER(sc_pose), POINTER(sc_trace_result),
+         POINTER(sc_trace_options), POINTER(sc_triples_result))
 _declare("sc_trace_regions", _status, c_void_p, POINTER(sc_pose), POINTER(sc_trace_result),
          POINTER(sc_trace_options), POINTER(sc_regions_result))
-
 _declare("sc_trace_gradients", _status, c_void_p, POINTER(sc_pose), POINTER(sc_trace_result), c_void_p)
 _declare("sc_query_step", _status, c_void_p, c_void_p, POINTER(sc_pose), POINTER(sc_pose),
          POINTER(sc_step_options), POINTER(sc_step_result))
