@@ -185,20 +185,21 @@ static int sign_by_values(const minor_products *sum)
     double difference;
     sc_predicates_value product[2];
     int i, k;
-    if (sum->count != 2 || sum->factors[0][0].count != 4) return 0;
+    if (sum->count != 2) return 0;
     for (i = 0; i < 2; i++) {
         product[i].number = sum->signs[i];
         product[i].exponent = 0;
         for (k = 0; k < 2; k++) {
             const double *const *p = sum->factors[i][k].rows;
-            const sc_predicates_value v = sc_predicates_orient3d_value(p[0], p[1], p[2], p[3]);
+            sc_predicates_value v;
             int exponent;
+            if (sum->factors[i][k].count != 4) return 0;
+            v = sc_predicates_orient3d_value(p[0], p[1], p[2], p[3]);
             product[i].number *= frexp(v.number, &exponent);
             product[i].exponent += v.exponent + exponent;
         }
     }
     i = product[1].exponent - product[0].exponent;
-    if (i < -60 || i > 60) return 0;
     difference = product[0].number + ldexp(product[1].number, i);
     return fabs(difference) <= 0x1p-48 * fabs(product[0].number) ? 0 : difference > 0 ? 1 : -1;
 }
