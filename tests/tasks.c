@@ -69,7 +69,7 @@ void host_start(host *h, int way, uint32_t workers)
     memset(h, 0, sizeof(*h));
     h->way = way < HOST_FIRST ? HOST_FIRST : way;
     h->tasks.struct_size = sizeof(h->tasks);
-    h->tasks.workers = workers;
+    h->tasks.workers = h->way == HOST_THREADS && workers > THREADS_MAX ? THREADS_MAX : workers;
     h->tasks.enqueue = host_enqueue;
     h->tasks.finish = host_finish;
     h->tasks.user = h;
