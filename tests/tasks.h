@@ -18,7 +18,8 @@
 /*
  * At once: each part when it is handed over, by worker 0. Forwards and backwards: when the query
  * waits for them, from the first to the last or the other way round, each by a random worker.
- * Threads: each worker, THREADS_MAX at most, is a thread, and takes the next part as soon as it can.
+ * Threads: each worker is a thread, THREADS_MAX at most, and takes the next part as soon as it
+ * can.
  */
 enum { HOST_AT_ONCE, HOST_FORWARDS, HOST_BACKWARDS, HOST_THREADS, HOST_COUNT };
 
