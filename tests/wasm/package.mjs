@@ -106,7 +106,7 @@ check('contours', length > 0 && gradient.length === rest.length && traced.contou
     traced.nodes.point.length === 3 * traced.nodes.edge.length, JSON.stringify(traced));
 const squares = [0, -4, -4, 0, 12, -4, 0, -4, 12, -4, 1, -4, 12, 1, -4, -4, 1, 12, -4, -4, 2, 12, -4, 2, -4, 12, 2];
 const triples = new Model(squares, [0, 1, 2, 3, 4, 5, 6, 7, 8], {weld: 'none'}).traceTriples(squares);
-check('triples', same(triples.triangles, [0, 1, 2]) && same(triples.point, [0, 1, 2]) &&
+check('triples', same(triples.triangles, [0, 1, 2]) && triples.point.every((x, i) => Math.abs(x - i) < 1e-14) &&
     model.traceTriples(pose, traced).point.length === 0, JSON.stringify(triples));
 const {regions} = model.regions(pose);
 check('regions', same(regions.area, [8, 0.375, 1.125]) && same(regions.vertexCount, [3, 1, 2]), JSON.stringify(regions));
