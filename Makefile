@@ -515,7 +515,7 @@ coverage := $(BUILD)/coverage
 coverage_tests := $(patsubst tests/%.c,$(coverage)/release/tests/%,$(tests))
 
 .PHONY: coverage
-coverage: ## lines and branches of lib/ that the tests run (gcc, AVX-512); fails if any is left out; half an hour
+coverage: ## lines and branches of lib/ that the tests run (gcc, AVX-512); fails if any is left out; three quarters of an hour
 	$(call need,gcov,gcc)
 	+$(Q)$(MAKE) --no-print-directory config=release BUILD='$(coverage)' CC=gcc \
 	    mode='-O0 -g -DSC_COVERAGE --coverage -fprofile-update=atomic' test_mode='-O2 -g' \

@@ -23,8 +23,8 @@
 
 /* ---- sides ---- */
 
-/* Eight points of a small grid, often the same or in a plane, or far out; numbers of which an end of
-   the edge, or a corner of the triangle, may be one of the plane's. */
+/* Eight points of a small grid, often the same or in a plane, or far out. An end of the edge may be
+   a corner of the plane, and so may a corner of the triangle. */
 static void draw_points(double position[8][3], const double *points[8], uint32_t numbers[8])
 {
     const uint32_t range = 1 + test_random_below(4), shared = test_random_below(4);
@@ -404,8 +404,8 @@ static void meshes(void)
     note_triples(&sum);
 }
 
-/* Three triangles whose planes have a line in common but for rounding: both ends of each segment are
-   so near to the third plane that nothing is left of their heights in doubles. */
+/* Three triangles whose planes have a line in common but for rounding: both ends of each segment
+   are so near to the third plane that nothing is left of their heights in doubles. */
 static void planes_through_a_line(void)
 {
     triple_tally sum = {0, 0};
