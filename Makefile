@@ -346,9 +346,12 @@ $(patsubst tests/%.c,$(work)/tests/%,$(tests)): $(work)/tests/%: $(obj)/tests/%.
     $(call objects,$(tests_support)) $(static) $(metis_library)
 	$(call link,$(test_libs))
 
-$(bench_tests): $(work)/tests/%: $(obj)/tests/%.o $(call objects,tests/harness.c \
+# What these take of the others' support: contours and their oracle.
+bench_tests_support := $(patsubst %,tests/%.c,bench/scratch harness inputs \
+    oracle_weld soups trace_check trace_oracle trace_scene)
+$(bench_tests): $(work)/tests/%: $(obj)/tests/%.o $(call objects,$(bench_tests_support) \
     $(bench_support) $(tools_support)) $(static) $(metis_library)
-	$(call link,$(mesh_libs))
+	$(call link,$(mesh_libs) -lgmp)
 
 $(work)/tests/header_cxx: tests/header_cxx.cpp include/starcontour.h $(obj)/flags $(static)
 	@mkdir -p $(@D)

@@ -285,28 +285,58 @@ static int has_corner(const uint32_t *t, uint32_t v)
     return t[0] == v || t[1] == v || t[2] == v;
 }
 
-/* Adds side k of triangle t to its edge, or a new one. */
-static void add_side(trace_oracle_answer *a, const uint32_t *triangles, uint32_t t, uint32_t k)
+/* A side of a triangle: its ends, the lower number first, and its name, 3 t + k. */
+typedef struct side {
+    uint32_t low, high, name;
+} side;
+
+static int compare_sides(const void *a, const void *b)
 {
-    const uint32_t *corner = triangles + 3 * (size_t)t;
-    const uint32_t u = corner[k], v = corner[(k + 1) % 3];
-    trace_oracle_edge *edge = a->edges;
-    if (u == v) return;
-    while (edge < a->edges + a->edge_count && !((edge->ends[0] == u && edge->ends[1] == v) ||
-                                                (edge->ends[0] == v && edge->ends[1] == u)))
-        ++edge;
-    if (edge == a->edges + a->edge_count) {
-        ++a->edge_count;
-        memset(edge, 0, sizeof *edge);
-        edge->name = 3 * t + k;
-        edge->ends[0] = u;
-        edge->ends[1] = v;
+    const side *p = (const side *)a, *q = (const side *)b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    if (p->high != q->high) return p->high < q->high ? -1 : 1;
+    return (p->name > q->name) - (p->name < q->name);
+}
+
+static int compare_edges(const void *a, const void *b)
+{
+    const trace_oracle_edge *p = (const trace_oracle_edge *)a, *q = (const trace_oracle_edge *)b;
+    return (p->name > q->name) - (p->name < q->name);
+}
+
+/* Makes an edge of each run of sides with the same ends; the first of them names it. */
+static void find_edges(trace_oracle_answer *a, const uint32_t *triangles, uint32_t triangle_count)
+{
+    side *sides = (side *)test_allocate(3 * (size_t)triangle_count * sizeof *sides);
+    trace_oracle_edge *edge = NULL;
+    uint32_t count = 0;
+    a->edges = (trace_oracle_edge *)test_allocate(3 * (size_t)triangle_count * sizeof *a->edges);
+    for (uint32_t name = 0; name < 3 * triangle_count; ++name) {
+        const uint32_t u = triangles[name], v = triangles[name % 3 == 2 ? name - 2 : name + 1];
+        if (u == v) continue;
+        sides[count].low = u < v ? u : v;
+        sides[count].high = u < v ? v : u;
+        sides[count++].name = name;
     }
-    if (is_collapsed(corner)) return;
-    edge->triangles =
-        (uint32_t *)realloc(edge->triangles, (edge->count + 1) * sizeof *edge->triangles);
-    if (!edge->triangles) abort();
-    edge->triangles[edge->count++] = t;
+    qsort(sides, count, sizeof *sides, compare_sides);
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t name = sides[i].name, t = name / 3, k = name % 3;
+        const uint32_t *corner = triangles + 3 * (size_t)t;
+        if (i == 0 || sides[i].low != sides[i - 1].low || sides[i].high != sides[i - 1].high) {
+            edge = &a->edges[a->edge_count++];
+            memset(edge, 0, sizeof *edge);
+            edge->name = name;
+            edge->ends[0] = corner[k];
+            edge->ends[1] = corner[(k + 1) % 3];
+        }
+        if (is_collapsed(corner)) continue;
+        edge->triangles =
+            (uint32_t *)realloc(edge->triangles, (edge->count + 1) * sizeof *edge->triangles);
+        if (!edge->triangles) abort();
+        edge->triangles[edge->count++] = t;
+    }
+    free(sides);
+    qsort(a->edges, a->edge_count, sizeof *a->edges, compare_edges);
 }
 
 /* Whether the boxes of two lists of points have a common point: else nothing crosses. */
@@ -327,32 +357,104 @@ static int boxes_meet(const double *const *p, int count, const double *const *q,
     return 1;
 }
 
+/* A triangle from its lowest to its highest x, and the highest of all until here. */
+typedef struct stretch {
+    double low, high, highest;
+    uint32_t triangle;
+} stretch;
+
+static int compare_stretches(const void *a, const void *b)
+{
+    const stretch *p = (const stretch *)a, *q = (const stretch *)b;
+    if (p->low != q->low) return p->low < q->low ? -1 : 1;
+    return (p->triangle > q->triangle) - (p->triangle < q->triangle);
+}
+
+/* All triangles that have three corners, in the order of their lowest x. */
+static stretch *sort_triangles(const uint32_t *triangles, uint32_t triangle_count,
+                               const double *positions, uint32_t *count)
+{
+    stretch *list = (stretch *)test_allocate(triangle_count * sizeof *list);
+    *count = 0;
+    for (uint32_t t = 0; t < triangle_count; ++t) {
+        const uint32_t *corner = triangles + 3 * (size_t)t;
+        stretch *s = &list[*count];
+        if (is_collapsed(corner)) continue;
+        s->triangle = t;
+        s->low = s->high = positions[3 * (size_t)corner[0]];
+        for (int i = 1; i < 3; ++i) {
+            const double x = positions[3 * (size_t)corner[i]];
+            if (s->low > x) s->low = x;
+            if (s->high < x) s->high = x;
+        }
+        ++*count;
+    }
+    qsort(list, *count, sizeof *list, compare_stretches);
+    for (uint32_t i = 0; i < *count; ++i) {
+        list[i].highest = list[i].high;
+        if (i && list[i - 1].highest > list[i].highest) list[i].highest = list[i - 1].highest;
+    }
+    return list;
+}
+
+/* The first of the list that may reach to x. */
+static uint32_t find_first(const stretch *list, uint32_t count, double x)
+{
+    uint32_t low = 0, high = count;
+    while (low < high) {
+        const uint32_t middle = (low + high) / 2;
+        if (list[middle].highest < x)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static int compare_crossings(const void *a, const void *b)
+{
+    const trace_oracle_crossing *p = (const trace_oracle_crossing *)a;
+    const trace_oracle_crossing *q = (const trace_oracle_crossing *)b;
+    if (p->edge != q->edge) return p->edge < q->edge ? -1 : 1;
+    return (p->triangle > q->triangle) - (p->triangle < q->triangle);
+}
+
+static void add_crossing(trace_oracle_answer *a, uint32_t *capacity, uint32_t edge, uint32_t t)
+{
+    if (a->crossing_count == *capacity) {
+        *capacity = 2 * *capacity + 16;
+        a->crossings =
+            (trace_oracle_crossing *)realloc(a->crossings, *capacity * sizeof *a->crossings);
+        if (!a->crossings) abort();
+    }
+    a->crossings[a->crossing_count].edge = edge;
+    a->crossings[a->crossing_count++].triangle = t;
+}
+
 trace_oracle_answer trace_oracle_find(const uint32_t *triangles, uint32_t triangle_count,
                                       const double *positions)
 {
     trace_oracle_answer a = {0, 0, NULL, NULL};
-    uint32_t capacity = 0;
-    a.edges = (trace_oracle_edge *)test_allocate(3 * (size_t)triangle_count * sizeof *a.edges);
-    for (uint32_t t = 0; t < triangle_count; ++t)
-        for (uint32_t k = 0; k < 3; ++k) add_side(&a, triangles, t, k);
-    for (uint32_t e = 0; e < a.edge_count; ++e)
-        for (uint32_t t = 0; t < triangle_count; ++t) {
-            const uint32_t *corner = triangles + 3 * (size_t)t, *ends = a.edges[e].ends;
+    uint32_t capacity = 0, count;
+    stretch *list = sort_triangles(triangles, triangle_count, positions, &count);
+    find_edges(&a, triangles, triangle_count);
+    for (uint32_t e = 0; e < a.edge_count; ++e) {
+        const uint32_t *ends = a.edges[e].ends;
+        const double x = positions[3 * (size_t)ends[0]], other = positions[3 * (size_t)ends[1]];
+        const double low = x < other ? x : other, high = x < other ? other : x;
+        for (uint32_t i = find_first(list, count, low); i < count && list[i].low <= high; ++i) {
+            const uint32_t *corner = triangles + 3 * (size_t)list[i].triangle;
             const uint32_t numbers[5] = {ends[0], ends[1], corner[0], corner[1], corner[2]};
             const double *p[5];
-            for (int i = 0; i < 5; ++i) p[i] = positions + 3 * (size_t)numbers[i];
-            if (is_collapsed(corner) || has_corner(corner, ends[0]) || has_corner(corner, ends[1]))
-                continue;
-            if (!boxes_meet(p, 2, p + 2, 3) || !trace_oracle_crosses(p, numbers)) continue;
-            if (a.crossing_count == capacity) {
-                capacity = 2 * capacity + 16;
-                a.crossings =
-                    (trace_oracle_crossing *)realloc(a.crossings, capacity * sizeof *a.crossings);
-                if (!a.crossings) abort();
-            }
-            a.crossings[a.crossing_count].edge = e;
-            a.crossings[a.crossing_count++].triangle = t;
+            for (int k = 0; k < 5; ++k) p[k] = positions + 3 * (size_t)numbers[k];
+            if (has_corner(corner, ends[0]) || has_corner(corner, ends[1])) continue;
+            if (boxes_meet(p, 2, p + 2, 3) && trace_oracle_crosses(p, numbers))
+                add_crossing(&a, &capacity, e, list[i].triangle);
         }
+    }
+    free(list);
+    if (a.crossing_count)
+        qsort(a.crossings, a.crossing_count, sizeof *a.crossings, compare_crossings);
     return a;
 }
 

@@ -1,6 +1,7 @@
 /*
  * The oracle of contours: which edges cross which triangles if every vertex has moved by its power
- * of an infinitesimal number, in exact arithmetic, by comparing all edges with all triangles.
+ * of an infinitesimal number, in exact arithmetic, by comparing each edge with all triangles that
+ * its box touches.
  *
  * It shares nothing with the library: determinants are written out as polynomials (GMP, the GNU
  * multiple precision library), term by term, of which the lowest is looked for.

@@ -12,6 +12,7 @@
 #include "scene_folder.h"
 #include "scenes/decimate.h"
 #include "scenes/scene.h"
+#include "scratch.h"
 #include "shape.h"
 
 #include "starcontour.h"
@@ -24,44 +25,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static char scratch[64];
 static char error[512];
 
 /* ------------------------------------------------------------------------------------------------
  * Files.
  */
-
-static int remove_entry(const char *path, const struct stat *info, int type, struct FTW *place)
-{
-    (void)info;
-    (void)type;
-    (void)place;
-    return remove(path);
-}
-
-static void begin(void)
-{
-    strcpy(scratch, "/tmp/test_scenes.XXXXXX");
-    if (!mkdtemp(scratch)) {
-        fprintf(stderr, "no folder can be made in /tmp\n");
-        exit(2);
-    }
-}
-
-static void end(void)
-{
-    nftw(scratch, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
-}
-
-/* A path in the scratch folder, one of four that take turns. */
-static const char *at(const char *name)
-{
-    static char paths[4][200];
-    static int turn;
-    turn = (turn + 1) % 4;
-    snprintf(paths[turn], sizeof paths[turn], "%s/%s", scratch, name);
-    return paths[turn];
-}
 
 static void write_file(const char *path, const void *bytes, size_t size)
 {
@@ -146,21 +114,23 @@ static void check_example(scene_folder *scene, bool single, bool with_order)
 
 static void folders_read_back(void)
 {
-    begin();
+    scratch_begin();
     for (int single = 0; single < 2; single++) {
         scene_folder scene;
-        write_example(at("one"), single != 0);
-        if (!CHECK_MSG(scene_folder_open(at("one"), &scene, error, sizeof error) == 0, "%s", error))
+        write_example(scratch_at("one"), single != 0);
+        if (!CHECK_MSG(scene_folder_open(scratch_at("one"), &scene, error, sizeof error) == 0, "%s",
+                       error))
             continue;
         check_example(&scene, single != 0, true);
-        CHECK(scene_folder_export(&scene, at("two"), single != 0, error, sizeof error) == 0);
+        CHECK(scene_folder_export(&scene, scratch_at("two"), single != 0, error, sizeof error) ==
+              0);
         scene_folder_close(&scene);
         CHECK(scene.triangles == NULL && scene.source == NULL);
-        CHECK(scene_folder_open(at("two"), &scene, error, sizeof error) == 0);
+        CHECK(scene_folder_open(scratch_at("two"), &scene, error, sizeof error) == 0);
         check_example(&scene, single != 0, true);
         scene_folder_close(&scene);
     }
-    end();
+    scratch_end();
 }
 
 /* Opening the folder, or else reading its last frame, fails with a message that has these words. */
@@ -207,25 +177,25 @@ static void damaged_folders_are_refused(void)
         {"frames.f64", "", 0, "frames.f64: has 0 bytes"},
     };
     char path[100];
-    begin();
+    scratch_begin();
     for (size_t i = 0; i < sizeof damages / sizeof damages[0]; i++) {
-        write_example(at("one"), false);
+        write_example(scratch_at("one"), false);
         snprintf(path, sizeof path, "one/%s", damages[i].file);
-        write_file(at(path), damages[i].bytes, damages[i].size);
-        check_refused(at("one"), damages[i].words);
+        write_file(scratch_at(path), damages[i].bytes, damages[i].size);
+        check_refused(scratch_at("one"), damages[i].words);
     }
-    check_refused(at("nowhere"), "meta.txt: No such file");
+    check_refused(scratch_at("nowhere"), "meta.txt: No such file");
     static const char *const needed[] = {"meta.txt", "tris.u32", "frames.f64"};
     for (size_t i = 0; i < 3; i++) {
-        write_example(at("one"), false);
+        write_example(scratch_at("one"), false);
         snprintf(path, sizeof path, "one/%s", needed[i]);
-        CHECK(remove(at(path)) == 0);
-        check_refused(at("one"), needed[i]);
+        CHECK(remove(scratch_at(path)) == 0);
+        check_refused(scratch_at("one"), needed[i]);
     }
-    write_example(at("one"), false);
-    CHECK(remove(at("one/tris.u32")) == 0 && mkdir(at("one/tris.u32"), 0777) == 0);
-    check_refused(at("one"), "tris.u32");
-    end();
+    write_example(scratch_at("one"), false);
+    CHECK(remove(scratch_at("one/tris.u32")) == 0 && mkdir(scratch_at("one/tris.u32"), 0777) == 0);
+    check_refused(scratch_at("one"), "tris.u32");
+    scratch_end();
 }
 
 static void numbers_that_are_not_finite_are_refused(void)
@@ -233,48 +203,49 @@ static void numbers_that_are_not_finite_are_refused(void)
     const double bad[3] = {(double)NAN, (double)INFINITY, -(double)INFINITY};
     double frames[FRAMES * NUMBERS];
     double positions[NUMBERS] = {0.0};
-    begin();
+    scratch_begin();
     for (int k = 0; k < 3; k++) {
         for (int single = 0; single < 2; single++) {
-            write_example(at("one"), single != 0);
+            write_example(scratch_at("one"), single != 0);
             for (int i = 0; i < FRAMES * NUMBERS; i++) frames[i] = 1.0;
             frames[FRAMES * NUMBERS - 2] = bad[k];
             float floats[FRAMES * NUMBERS];
             for (int i = 0; i < FRAMES * NUMBERS; i++) floats[i] = (float)frames[i];
             if (single)
-                write_file(at("one/frames.f32"), floats, sizeof floats);
+                write_file(scratch_at("one/frames.f32"), floats, sizeof floats);
             else
-                write_file(at("one/frames.f64"), frames, sizeof frames);
-            check_refused(at("one"), "frame 2: vertex 3 is not finite");
+                write_file(scratch_at("one/frames.f64"), frames, sizeof frames);
+            check_refused(scratch_at("one"), "frame 2: vertex 3 is not finite");
         }
         positions[4] = bad[k];
-        scene_writer *writer = scene_writer_begin(at("two"), TRIANGLES, VERTICES, two_triangles,
-                                                  NULL, false, error, sizeof error);
+        scene_writer *writer = scene_writer_begin(scratch_at("two"), TRIANGLES, VERTICES,
+                                                  two_triangles, NULL, false, error, sizeof error);
         CHECK(scene_writer_frame(writer, positions, error, sizeof error) == -1);
         CHECK(scene_writer_end(writer, false, error, sizeof error) == 0);
-        check_refused(at("two"), "meta.txt");
+        check_refused(scratch_at("two"), "meta.txt");
     }
     positions[4] = 1e39;
-    scene_writer *writer = scene_writer_begin(at("two"), TRIANGLES, VERTICES, two_triangles, NULL,
-                                              true, error, sizeof error);
+    scene_writer *writer = scene_writer_begin(scratch_at("two"), TRIANGLES, VERTICES, two_triangles,
+                                              NULL, true, error, sizeof error);
     CHECK(scene_writer_frame(writer, positions, error, sizeof error) == -1);
     CHECK(scene_writer_end(writer, false, error, sizeof error) == 0);
-    end();
+    scratch_end();
 }
 
 static void sequences_of_meshes_are_scenes(void)
 {
     scene_folder scene;
-    begin();
-    write_example(at("one"), true);
-    CHECK(scene_folder_open(at("one"), &scene, error, sizeof error) == 0);
+    scratch_begin();
+    write_example(scratch_at("one"), true);
+    CHECK(scene_folder_open(scratch_at("one"), &scene, error, sizeof error) == 0);
     const uint32_t count = scene.frame_count;
-    CHECK(scene_folder_export_obj(&scene, 0, count, at("obj"), error, sizeof error) == 0);
-    CHECK(scene_folder_export_obj(&scene, 0, count, at("one/tris.u32"), error, sizeof error) == -1);
+    CHECK(scene_folder_export_obj(&scene, 0, count, scratch_at("obj"), error, sizeof error) == 0);
+    CHECK(scene_folder_export_obj(&scene, 0, count, scratch_at("one/tris.u32"), error,
+                                  sizeof error) == -1);
     scene_folder_close(&scene);
-    if (CHECK_MSG(
-            scene_folder_open_pattern(at("obj/frame_%04d.obj"), &scene, error, sizeof error) == 0,
-            "%s", error)) {
+    if (CHECK_MSG(scene_folder_open_pattern(scratch_at("obj/frame_%04d.obj"), &scene, error,
+                                            sizeof error) == 0,
+                  "%s", error)) {
         check_example(&scene, true, false);
         scene_folder_close(&scene);
     }
@@ -283,11 +254,11 @@ static void sequences_of_meshes_are_scenes(void)
         char from[40], to[40];
         snprintf(from, sizeof from, "obj/frame_%04d.obj", k);
         snprintf(to, sizeof to, "%%%d.obj", k + 1);
-        CHECK(rename(at(from), at(to)) == 0);
+        CHECK(rename(scratch_at(from), scratch_at(to)) == 0);
     }
-    write_file(at("%3.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n", 40);
+    write_file(scratch_at("%3.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n", 40);
     char pattern[100];
-    snprintf(pattern, sizeof pattern, "%s/%%%%%%d.obj", scratch);
+    snprintf(pattern, sizeof pattern, "%s/%%%%%%d.obj", scratch_at("."));
     if (CHECK_MSG(scene_folder_open_pattern(pattern, &scene, error, sizeof error) == 0, "%s",
                   error)) {
         double positions[NUMBERS];
@@ -304,10 +275,10 @@ static void sequences_of_meshes_are_scenes(void)
                   bad[i]);
         CHECK(strstr(error, "not a pattern") != NULL && scene.source == NULL);
     }
-    CHECK(scene_folder_open_pattern(at("no%d.obj"), &scene, error, sizeof error) == -1);
+    CHECK(scene_folder_open_pattern(scratch_at("no%d.obj"), &scene, error, sizeof error) == -1);
     CHECK(strstr(error, "number 0 or 1") != NULL);
     CHECK(scene_folder_open_files(NULL, 0, &scene, error, sizeof error) == -1);
-    end();
+    scratch_end();
 }
 
 /* ------------------------------------------------------------------------------------------------
@@ -347,22 +318,24 @@ static void scenes_are_sound_and_repeatable(void)
 {
     size_t count;
     const scene_kind *kinds = scene_kinds(&count);
-    begin();
+    scratch_begin();
     CHECK(count == 12);
     for (size_t k = 0; k < count; k++) {
         const char *name = kinds[k].name;
         scene_folder scene;
         error[0] = '\0';
         CHECK(kinds[k].frames >= 60 && kinds[k].about[0] && kinds[k].sizes[0] > 0);
-        if (scene_make(name, 600, 5, at("one"), NULL, NULL, error, sizeof error) != 0) {
+        if (scene_make(name, 600, 5, scratch_at("one"), NULL, NULL, error, sizeof error) != 0) {
             CHECK_MSG(is_missing(name), "%s: %s", name, error);
             continue;
         }
-        CHECK(scene_make(name, 600, 5, at("two"), NULL, NULL, error, sizeof error) == 0);
-        CHECK_MSG(same_files(at("one/frames.f32"), at("two/frames.f32")), "%s: differs", name);
-        CHECK_MSG(same_files(at("one/tris.u32"), at("two/tris.u32")), "%s: differs", name);
-        if (!CHECK_MSG(scene_folder_open(at("one"), &scene, error, sizeof error) == 0, "%s: %s",
-                       name, error))
+        CHECK(scene_make(name, 600, 5, scratch_at("two"), NULL, NULL, error, sizeof error) == 0);
+        CHECK_MSG(same_files(scratch_at("one/frames.f32"), scratch_at("two/frames.f32")),
+                  "%s: differs", name);
+        CHECK_MSG(same_files(scratch_at("one/tris.u32"), scratch_at("two/tris.u32")), "%s: differs",
+                  name);
+        if (!CHECK_MSG(scene_folder_open(scratch_at("one"), &scene, error, sizeof error) == 0,
+                       "%s: %s", name, error))
             continue;
         CHECK_MSG(scene.triangle_count >= 300 && scene.triangle_count <= 1280, "%s: %lu triangles",
                   name, (unsigned long)scene.triangle_count);
@@ -383,25 +356,26 @@ static void scenes_are_sound_and_repeatable(void)
         free(now);
         scene_folder_close(&scene);
     }
-    end();
+    scratch_end();
 }
 
 /* Fewer frames are the same motion in longer steps. */
 static void animations_are_whole(void)
 {
     static const char *const names[] = {"twisted-cloth", "cloth-sphere", "crushed-cloth", "horse"};
-    begin();
+    scratch_begin();
     for (size_t k = 0; k < 4; k++) {
         scene_folder coarse, fine;
         double difference = 0.0;
         error[0] = '\0';
-        if (scene_make(names[k], 300, 3, at("one"), NULL, NULL, error, sizeof error) != 0) {
+        if (scene_make(names[k], 300, 3, scratch_at("one"), NULL, NULL, error, sizeof error) != 0) {
             CHECK_MSG(is_missing(names[k]), "%s", error);
             continue;
         }
-        CHECK(scene_make(names[k], 300, 5, at("two"), NULL, NULL, error, sizeof error) == 0);
-        CHECK(scene_folder_open(at("one"), &coarse, error, sizeof error) == 0);
-        CHECK(scene_folder_open(at("two"), &fine, error, sizeof error) == 0);
+        CHECK(scene_make(names[k], 300, 5, scratch_at("two"), NULL, NULL, error, sizeof error) ==
+              0);
+        CHECK(scene_folder_open(scratch_at("one"), &coarse, error, sizeof error) == 0);
+        CHECK(scene_folder_open(scratch_at("two"), &fine, error, sizeof error) == 0);
         const size_t size = 3 * coarse.vertex_count * sizeof(double);
         double *a = (double *)test_allocate(size), *b = (double *)test_allocate(size);
         for (uint32_t frame = 0; frame < 3; frame++) {
@@ -417,23 +391,24 @@ static void animations_are_whole(void)
         scene_folder_close(&coarse);
         scene_folder_close(&fine);
     }
-    end();
+    scratch_end();
 }
 
 static void usual_sizes_are_met(void)
 {
     size_t count;
     const scene_kind *kinds = scene_kinds(&count);
-    begin();
+    scratch_begin();
     for (size_t k = 0; k < count; k++) {
         for (const uint32_t *size = kinds[k].sizes; *size > 0 && *size <= 20000; size++) {
             scene_folder scene;
             error[0] = '\0';
-            if (scene_make(kinds[k].name, *size, 1, at("one"), NULL, NULL, error, sizeof error)) {
+            if (scene_make(kinds[k].name, *size, 1, scratch_at("one"), NULL, NULL, error,
+                           sizeof error)) {
                 CHECK_MSG(is_missing(kinds[k].name), "%s", error);
                 break;
             }
-            CHECK(scene_folder_open(at("one"), &scene, error, sizeof error) == 0);
+            CHECK(scene_folder_open(scratch_at("one"), &scene, error, sizeof error) == 0);
             CHECK_MSG(abs((int)scene.triangle_count - (int)*size) <= (int)(*size / 100),
                       "%s: %lu triangles in place of %lu", kinds[k].name,
                       (unsigned long)scene.triangle_count, (unsigned long)*size);
@@ -441,7 +416,7 @@ static void usual_sizes_are_met(void)
             scene_folder_close(&scene);
         }
     }
-    end();
+    scratch_end();
 }
 
 /* The number of pairs of triangles in a frame, or UINT64_MAX. */
@@ -492,17 +467,17 @@ static void contacts_build_up(void)
         {"twisted-cloth", 4096, 300}, {"cloth-sphere", 5000, 300}, {"wrinkled-cloth", 5000, 500},
         {"crushed-cloth", 5000, 20},  {"tight-rods", 20480, 300},  {"squeezed-rods", 20480, 5000},
         {"sphere", 5120, 0},          {"bunny", 3400, 100},        {"horse", 1600, 100}};
-    begin();
+    scratch_begin();
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         scene_folder scene;
         uint64_t most = 0;
         error[0] = '\0';
-        if (scene_make(cases[k].name, cases[k].triangles, 7, at("one"), NULL, NULL, error,
+        if (scene_make(cases[k].name, cases[k].triangles, 7, scratch_at("one"), NULL, NULL, error,
                        sizeof error) != 0) {
             CHECK_MSG(is_missing(cases[k].name), "%s", error);
             continue;
         }
-        CHECK(scene_folder_open(at("one"), &scene, error, sizeof error) == 0);
+        CHECK(scene_folder_open(scratch_at("one"), &scene, error, sizeof error) == 0);
         const uint64_t first = count_pairs(&scene, 0);
         CHECK_MSG(first < 10, "%s: %lu pairs at rest", cases[k].name, (unsigned long)first);
         for (uint32_t frame = 1; frame < 7; frame++) {
@@ -513,7 +488,7 @@ static void contacts_build_up(void)
                   "%s: %lu pairs", cases[k].name, (unsigned long)most);
         scene_folder_close(&scene);
     }
-    end();
+    scratch_end();
 }
 
 static void wrong_requests_are_refused(void)
@@ -521,23 +496,26 @@ static void wrong_requests_are_refused(void)
     char folder[200];
     const char *kept = getenv("SC_MESHES");
     char *meshes = kept ? strcpy((char *)test_allocate(strlen(kept) + 1), kept) : NULL;
-    begin();
-    CHECK(scene_make("tiger", 100, 2, at("one"), NULL, NULL, error, sizeof error) == -1);
+    scratch_begin();
+    CHECK(scene_make("tiger", 100, 2, scratch_at("one"), NULL, NULL, error, sizeof error) == -1);
     CHECK(strstr(error, "no such scene") != NULL);
-    CHECK(scene_make("sphere", 100, 0, at("one"), NULL, NULL, error, sizeof error) == -1);
+    CHECK(scene_make("sphere", 100, 0, scratch_at("one"), NULL, NULL, error, sizeof error) == -1);
     CHECK(strstr(error, "frame") != NULL);
-    CHECK(scene_make("sphere", 0, 2, at("one"), NULL, NULL, error, sizeof error) == -1);
-    CHECK(scene_make("sphere", UINT32_MAX, 2, at("one"), NULL, NULL, error, sizeof error) == -1);
-    CHECK(scene_make("sphere", 100, 2, at("no/where"), NULL, NULL, error, sizeof error) == -1);
+    CHECK(scene_make("sphere", 0, 2, scratch_at("one"), NULL, NULL, error, sizeof error) == -1);
+    CHECK(scene_make("sphere", UINT32_MAX, 2, scratch_at("one"), NULL, NULL, error, sizeof error) ==
+          -1);
+    CHECK(scene_make("sphere", 100, 2, scratch_at("no/where"), NULL, NULL, error, sizeof error) ==
+          -1);
     CHECK(strstr(error, "cannot be made") != NULL);
-    CHECK(scene_cached("tiger", 100, 2, at("cache"), NULL, NULL, folder, sizeof folder, error,
+    CHECK(scene_cached("tiger", 100, 2, scratch_at("cache"), NULL, NULL, folder, sizeof folder,
+                       error, sizeof error) == -1);
+    CHECK(scene_cached("sphere", 100, 2, scratch_at("cache"), NULL, NULL, folder, 10, error,
                        sizeof error) == -1);
-    CHECK(scene_cached("sphere", 100, 2, at("cache"), NULL, NULL, folder, 10, error,
-                       sizeof error) == -1);
-    setenv("SC_MESHES", scratch, 1);
+    setenv("SC_MESHES", scratch_at("."), 1);
     static const char *const models[] = {"cat", "bunny", "bunny-bumpy", "bunny-spiky", "horse"};
     for (size_t k = 0; k < 5; k++) {
-        CHECK(scene_make(models[k], 100, 2, at("one"), NULL, NULL, error, sizeof error) == -1);
+        CHECK(scene_make(models[k], 100, 2, scratch_at("one"), NULL, NULL, error, sizeof error) ==
+              -1);
         CHECK_MSG(strstr(error, "make meshes") != NULL, "%s", error);
     }
     if (meshes)
@@ -545,7 +523,7 @@ static void wrong_requests_are_refused(void)
     else
         unsetenv("SC_MESHES");
     free(meshes);
-    end();
+    scratch_end();
 }
 
 static void count_frames(void *user, uint32_t frame, uint32_t frames)
@@ -560,8 +538,8 @@ static uint32_t open_cached(char *folder, size_t folder_size)
 {
     uint32_t made = 0;
     scene_folder scene;
-    CHECK_MSG(scene_cached("tight-rods", 2048, 4, at("a/cache"), count_frames, &made, folder,
-                           folder_size, error, sizeof error) == 0,
+    CHECK_MSG(scene_cached("tight-rods", 2048, 4, scratch_at("a/cache"), count_frames, &made,
+                           folder, folder_size, error, sizeof error) == 0,
               "%s", error);
     CHECK_MSG(scene_folder_open(folder, &scene, error, sizeof error) == 0, "%s", error);
     CHECK(scene.frame_count == 4);
@@ -572,19 +550,19 @@ static uint32_t open_cached(char *folder, size_t folder_size)
 static void scenes_are_kept(void)
 {
     char folder[200];
-    begin();
+    scratch_begin();
     CHECK(open_cached(folder, sizeof folder) == 4);
-    CHECK(strcmp(folder, at("a/cache/tight-rods-2048-4")) == 0);
+    CHECK(strcmp(folder, scratch_at("a/cache/tight-rods-2048-4")) == 0);
     CHECK(open_cached(folder, sizeof folder) == 0);
-    CHECK(truncate(at("a/cache/tight-rods-2048-4/frames.f32"), 100) == 0);
+    CHECK(truncate(scratch_at("a/cache/tight-rods-2048-4/frames.f32"), 100) == 0);
     CHECK(open_cached(folder, sizeof folder) == 4);
-    write_file(at("a/cache/tight-rods-2048-4/version.txt"), "0\n", 2);
+    write_file(scratch_at("a/cache/tight-rods-2048-4/version.txt"), "0\n", 2);
     CHECK(open_cached(folder, sizeof folder) == 4);
     CHECK(open_cached(folder, sizeof folder) == 0);
     /* Nothing is left beside the scene. */
-    CHECK(rename(folder, at("moved")) == 0);
-    CHECK(rmdir(at("a/cache")) == 0);
-    end();
+    CHECK(rename(folder, scratch_at("moved")) == 0);
+    CHECK(rmdir(scratch_at("a/cache")) == 0);
+    scratch_end();
 }
 
 /* ------------------------------------------------------------------------------------------------
