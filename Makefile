@@ -347,8 +347,8 @@ $(patsubst tests/%.c,$(work)/tests/%,$(tests)): $(work)/tests/%: $(obj)/tests/%.
 	$(call link,$(test_libs))
 
 # What these take of the others' support: contours and their oracle.
-bench_tests_support := $(patsubst %,tests/%.c,bench/scratch harness inputs \
-    oracle_weld soups trace_check trace_oracle trace_scene)
+bench_tests_support := $(patsubst %,tests/%.c,bench/scratch harness inputs oracle_weld soups \
+    trace_oracle trace_scene traced_pose)
 $(bench_tests): $(work)/tests/%: $(obj)/tests/%.o $(call objects,$(bench_tests_support) \
     $(bench_support) $(tools_support)) $(static) $(metis_library)
 	$(call link,$(mesh_libs) -lgmp)

@@ -19,9 +19,9 @@
 #include "soups.h"
 #include "starcontour.h"
 #include "tasks.h"
-#include "trace_check.h"
 #include "trace_oracle.h"
 #include "trace_scene.h"
+#include "traced_pose.h"
 
 /* ---- signs ---- */
 
@@ -127,7 +127,7 @@ static int check_mesh(const soup *mesh, const double *pose, uint32_t weld, uint3
         pairs = trace_scene_find_pairs(model, &p, &pair_count);
         t.truth = trace_oracle_find(t.triangles, t.triangle_count, pose);
         is_right = trace_scene_trace(model, &p, pairs, pair_count, NULL, &t.result) &&
-                   trace_check_contours(&t) && check_all_pairs(&t, model, &p);
+                   traced_pose_check(&t) && check_all_pairs(&t, model, &p);
         for (uint64_t i = 0; i < t.result.contour_count && is_right && sum; ++i) {
             const sc_trace_contour *c = &t.result.contours[i];
             ++sum->contours;

@@ -10,8 +10,8 @@
 #include "scene_folder.h"
 #include "scenes/scene.h"
 #include "scratch.h"
-#include "trace_check.h"
 #include "trace_scene.h"
+#include "traced_pose.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -39,7 +39,7 @@ static int check_frame(const scene_folder *scene, const sc_model *model, const d
     t.truth = trace_oracle_find(t.triangles, t.triangle_count, positions);
     pairs = trace_scene_find_pairs(model, &pose, &count);
     is_right = pairs && trace_scene_trace(model, &pose, pairs, count, NULL, &t.result) &&
-               trace_check_contours(&t);
+               traced_pose_check(&t);
     ++sum->frames;
     sum->nodes += t.result.node_count;
     sum->contours += t.result.contour_count;

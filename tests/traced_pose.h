@@ -6,8 +6,8 @@
  *
  * SPDX-License-Identifier: MIT
  */
-#ifndef SC_TESTS_TRACE_CHECK_H
-#define SC_TESTS_TRACE_CHECK_H
+#ifndef SC_TESTS_TRACED_POSE_H
+#define SC_TESTS_TRACED_POSE_H
 
 #include <stdint.h>
 
@@ -25,6 +25,6 @@ typedef struct traced_pose {
 
 /* Checks all contours of the result: 1, or 0 after a failed check. Where contours begin at vertices
    that two triangles have follows from the rest and is not looked for by itself. */
-int trace_check_contours(const traced_pose *t);
+int traced_pose_check(const traced_pose *t);
 
 #endif

@@ -1,9 +1,9 @@
 /*
- * The checker of contours. See trace_check.h.
+ * The checker of contours. See traced_pose.h.
  *
  * SPDX-License-Identifier: MIT
  */
-#include "trace_check.h"
+#include "traced_pose.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -191,7 +191,7 @@ static int check_contour(const traced_pose *t, const sc_trace_contour *c, uint32
 
 /* Each of the oracle's crossings is there once, or once for each triangle of an edge where contours
    branch; and each segment once. */
-int trace_check_contours(const traced_pose *t)
+int traced_pose_check(const traced_pose *t)
 {
     const sc_trace_result *r = &t->result;
     uint32_t *seen = (uint32_t *)calloc(t->truth.crossing_count + 1u, sizeof *seen);
