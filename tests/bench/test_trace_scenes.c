@@ -94,14 +94,11 @@ static int check_folder(const char *path, const char *name, uint32_t frames, tal
     return is_right;
 }
 
-static void scenes_of_bench(void)
+/* Every scene of bench/, of about so many triangles. */
+static void check_bench(uint32_t triangles, uint32_t frames, tally *all)
 {
-    const uint32_t triangles = test_iterations_at_least(800, 600);
-    const uint32_t frames = test_iterations_at_least(200, 200) / 100;
     size_t count;
     const scene_kind *kinds = scene_kinds(&count);
-    tally all;
-    memset(&all, 0, sizeof all);
     scratch_begin();
     for (size_t k = 0; k < count; ++k) {
         const char *name = kinds[k].name;
@@ -111,28 +108,34 @@ static void scenes_of_bench(void)
                 test_skip("%s: %s", name, error);
             continue;
         }
-        check_folder(scratch_at("scene"), name, frames, &all);
+        check_folder(scratch_at("scene"), name, frames, all);
     }
     scratch_end();
-    CHECK(!test_is_full() || (all.closed > 0 && all.border > 0));
 }
 
-static void scenes_in_folders(void)
+/* Folders with colons between. */
+static void check_folders(const char *at, uint32_t frames, tally *all)
 {
-    const char *at = getenv("SC_SCENES");
-    const uint32_t frames = test_iterations_at_least(200, 200) / 100;
-    tally all;
-    memset(&all, 0, sizeof all);
-    CHECK(1);
-    while (at && *at) {
+    while (*at) {
         char path[400];
         const size_t length = strcspn(at, ":");
         if (!CHECK(length < sizeof path)) return;
         memcpy(path, at, length);
         path[length] = '\0';
-        check_folder(path, path, frames, &all);
+        check_folder(path, path, frames, all);
         at += length + (at[length] == ':');
     }
 }
 
-SC_TEST_MAIN(SC_TEST(scenes_of_bench), SC_TEST(scenes_in_folders))
+static void contours_of_scenes(void)
+{
+    const uint32_t frames = test_iterations_at_least(200, 200) / 100;
+    const char *folders = getenv("SC_SCENES");
+    tally all;
+    memset(&all, 0, sizeof all);
+    check_bench(test_iterations_at_least(800, 600), frames, &all);
+    if (folders) check_folders(folders, frames, &all);
+    CHECK(!test_is_full() || (all.closed > 0 && all.border > 0));
+}
+
+SC_TEST_MAIN(SC_TEST(contours_of_scenes))
