@@ -156,6 +156,18 @@ static uint32_t count_points(const sc_hierarchy *h, uint32_t first, uint32_t cou
     return points;
 }
 
+void structures_check_full_leaves(const structures *s)
+{
+    const uint32_t *first = s->xbvh.leaf_first;
+    uint32_t not_full = 0;
+    for (uint32_t leaf = 0; leaf + 1 < s->xbvh.leaf_count; ++leaf) {
+        uint32_t count = first[leaf + 1] - first[leaf];
+        not_full += count < SC_LEAF_MAX &&
+                    count_points(&s->hierarchy, first[leaf], count + 1) <= SC_LEAF_POINTS;
+    }
+    CHECK_MSG(not_full == 0, "%s: %" PRIu32 " leaf clusters are not full", s->name, not_full);
+}
+
 static void visit(const sc_hierarchy *h, uint32_t node, uint32_t level, structures_patches *out)
 {
     const sc_tree_node *n = &h->nodes[node];

@@ -61,6 +61,9 @@ typedef struct structures_patches {
 structures_patches structures_find_patches(const structures *s);
 void structures_free_patches(structures_patches *p);
 
+/* Of leaf clusters cut from an order: none but the last could take one triangle more. */
+void structures_check_full_leaves(const structures *s);
+
 /* Levels, children and sizes of patches. */
 void structures_check_xbvh(const structures *s, const structures_patches *p);
 

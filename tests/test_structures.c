@@ -47,6 +47,7 @@ static void check_all(const char *name, const soup *mesh, const sc_build_options
         CHECK_MSG(sc_csf_validate(&s.csf, &s.sctt, &s.scratch) == 1, "%s", name);
         structures_check_edges(&s);
         structures_check_components(&s);
+        if (options->partition == SC_PARTITION_ORDER) structures_check_full_leaves(&s);
         structures_check_xbvh(&s, &p);
         structures_check_sctt(&s, &p);
         structures_check_leaf_pairs(&s);

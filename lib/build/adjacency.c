@@ -137,29 +137,31 @@ void sc_adjacency_find_components(const sc_points *points, uint32_t *lowest)
         lowest[p] = lowest[lowest[p]]; /* lower numbers first */
 }
 
-/* The pairing of half-edges by ranges of points, and beside it the counting of components. */
+/* The pairing of half-edges by ranges of points. */
 typedef struct pairing {
     const sc_points *points;
     sc_adjacency *adjacency;
     edge_table table; /* of the first part; the others' follow it */
     uint32_t edges_room, parts;
-    uint8_t *names;   /* 3 * triangle_count: whether a half-edge names its edge */
-    uint32_t *lowest; /* point_count: see sc_adjacency_find_components */
+    uint8_t *names; /* 3 * triangle_count: whether a half-edge names its edge */
     uint32_t edge_count[SC_JOBS_PARTS], boundary[SC_JOBS_PARTS], irregular[SC_JOBS_PARTS];
 } pairing;
 
-static void pair_range(pairing *all, uint32_t part)
+static void pair_range(void *context, uint32_t part, uint32_t worker)
 {
+    pairing *all = (pairing *)context;
     const sc_points *points = all->points;
     const uint64_t count = points->point_count;
     uint32_t *opposite = all->adjacency->opposite, p, i;
+    uint32_t edges = 0, boundary = 0, irregular = 0; /* others' are in the same lines of cache */
     const uint32_t end = (uint32_t)(count * (part + 1) / all->parts);
     edge_table table = all->table;
+    (void)worker;
     table.edges += (uint64_t)all->edges_room * part;
     table.slots += ((uint64_t)table.mask + 1) * part;
     for (p = (uint32_t)(count * part / all->parts); p < end; p++) {
         const uint32_t n = list_edges(points, all->adjacency, p, &table);
-        all->edge_count[part] += n;
+        edges += n;
         for (i = 0; i < n; i++) {
             const edge *e = &table.edges[i];
             all->names[e->owner] = 1;
@@ -167,12 +169,15 @@ static void pair_range(pairing *all, uint32_t part)
                 opposite[e->there] = e->back;
                 opposite[e->back] = e->there;
             } else if (e->count_there + e->count_back == 1) {
-                all->boundary[part]++;
+                boundary++;
             } else {
-                all->irregular[part]++;
+                irregular++;
             }
         }
     }
+    all->edge_count[part] = edges;
+    all->boundary[part] = boundary;
+    all->irregular[part] = irregular;
 }
 
 static void count_components(const sc_points *points, uint32_t *lowest, sc_adjacency *adjacency)
@@ -180,16 +185,6 @@ static void count_components(const sc_points *points, uint32_t *lowest, sc_adjac
     uint32_t p;
     sc_adjacency_find_components(points, lowest);
     for (p = 0; p < points->point_count; p++) adjacency->component_count += lowest[p] == p;
-}
-
-static void pair_part(void *context, uint32_t part, uint32_t worker)
-{
-    pairing *all = (pairing *)context;
-    (void)worker;
-    if (part)
-        pair_range(all, part - 1);
-    else /* first, as it takes longest */
-        count_components(all->points, all->lowest, all->adjacency);
 }
 
 static void write_owned(void *context, uint32_t part, uint32_t first, uint32_t end)
@@ -244,37 +239,60 @@ static sc_status pair_half_edges(const sc_points *points, sc_scratch *scratch,
                                                      sizeof(edge), 0);
     all.names =
         (uint8_t *)sc_scratch_take_filled(scratch, 3 * (uint64_t)points->triangle_count, 1, 0);
-    all.lowest = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof(uint32_t));
-    if (!all.table.slots || !all.table.edges || !all.names || !all.lowest) return SC_ERROR_MEMORY;
-    sc_jobs_run(scratch->tasks, 1 + all.parts, pair_part, &all);
+    if (!all.table.slots || !all.table.edges || !all.names) return SC_ERROR_MEMORY;
+    sc_jobs_run(scratch->tasks, all.parts, pair_range, &all);
     (void)sc_jobs_loop(scratch->tasks, points->triangle_count, TRIANGLES_A_PART, write_owned, &all);
     for (part = 0; part < all.parts; part++) {
         adjacency->edge_count += all.edge_count[part];
         adjacency->boundary_edges += all.boundary[part];
         adjacency->irregular_edges += all.irregular[part];
     }
-    sc_scratch_give(scratch, all.lowest);
     sc_scratch_give(scratch, all.names);
     sc_scratch_give(scratch, all.table.edges);
     sc_scratch_give(scratch, all.table.slots);
     return SC_OK;
 }
 
+/* Steps before that, which need not wait for each other. */
+typedef struct listing {
+    const sc_points *points;
+    sc_adjacency *adjacency;
+    uint32_t *lowest; /* point_count: see sc_adjacency_find_components */
+} listing;
+
+static void before_pairing(void *context, uint32_t part, uint32_t worker)
+{
+    const listing *all = (const listing *)context;
+    const size_t half_edges = 3 * (size_t)all->points->triangle_count;
+    (void)worker;
+    if (part == 0)
+        list_corners(all->points, all->adjacency);
+    else if (part == 1)
+        count_components(all->points, all->lowest, all->adjacency);
+    else
+        memset(all->adjacency->opposite, 0xff, half_edges * sizeof(uint32_t));
+}
+
 sc_status sc_adjacency_build(const sc_points *points, sc_scratch *scratch, sc_adjacency *adjacency)
 {
-    uint64_t corners = 3 * (uint64_t)points->triangle_count;
+    const uint64_t corners = 3 * (uint64_t)points->triangle_count;
+    listing all;
     adjacency->edge_count = adjacency->boundary_edges = adjacency->irregular_edges = 0;
     adjacency->component_count = 0;
-    adjacency->opposite =
-        (uint32_t *)sc_scratch_take_filled(scratch, corners, sizeof(uint32_t), 0xff);
+    adjacency->opposite = (uint32_t *)sc_scratch_take(scratch, corners, sizeof(uint32_t));
     adjacency->owned = (uint8_t *)sc_scratch_take(scratch, points->triangle_count, 1);
     adjacency->corner_first = (uint32_t *)sc_scratch_take_filled(
         scratch, (uint64_t)points->point_count + 1, sizeof(uint32_t), 0);
     adjacency->corners = (uint32_t *)sc_scratch_take(scratch, corners, sizeof(uint32_t));
+    all.points = points;
+    all.adjacency = adjacency;
+    all.lowest = (uint32_t *)sc_scratch_take(scratch, points->point_count, sizeof *all.lowest);
     if (!adjacency->opposite || !adjacency->owned || !adjacency->corner_first ||
-        !adjacency->corners)
+        !adjacency->corners || !all.lowest)
         return SC_ERROR_MEMORY;
-    list_corners(points, adjacency);
+    sc_jobs_run(points->triangle_count < TRIANGLES_A_PART ? NULL : scratch->tasks, 3,
+                before_pairing, &all);
+    sc_scratch_give(scratch, all.lowest);
     return pair_half_edges(points, scratch, adjacency);
 }
 

@@ -96,6 +96,30 @@ uint32_t sc_hierarchy_add_leaves(sc_hierarchy *hierarchy, uint32_t count, uint32
     return add_leaves(hierarchy, hierarchy->starts, count, depth);
 }
 
+sc_status sc_hierarchy_cut_order(sc_hierarchy *hierarchy, uint32_t point_count, sc_scratch *scratch)
+{
+    const uint32_t count = hierarchy->triangle_count;
+    uint32_t leaves = 0, at = 0, end, points, k;
+    uint32_t *last = (uint32_t *)sc_scratch_take_filled(scratch, point_count, sizeof *last, 0xff);
+    if (!last) return SC_ERROR_MEMORY;
+    for (; at < count; leaves++) {
+        hierarchy->starts[leaves] = at;
+        end = count - at > SC_LEAF_MAX ? at + SC_LEAF_MAX : count;
+        for (points = 0; at < end; at++) {
+            const uint32_t *corner = hierarchy->corner + 3 * (uint64_t)hierarchy->order[at];
+            for (k = 0; k < 3; k++) {
+                points += last[corner[k]] != leaves;
+                last[corner[k]] = leaves;
+            }
+            if (points > SC_LEAF_POINTS) break;
+        }
+    }
+    hierarchy->starts[leaves] = at;
+    (void)sc_hierarchy_add_leaves(hierarchy, leaves, 1);
+    sc_scratch_give(scratch, last);
+    return SC_OK;
+}
+
 uint32_t sc_hierarchy_add_balanced(sc_hierarchy *hierarchy, uint32_t first, uint32_t count,
                                    uint32_t depth)
 {

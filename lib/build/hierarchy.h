@@ -50,6 +50,10 @@ uint32_t sc_hierarchy_add(sc_hierarchy *hierarchy, uint32_t first, uint32_t coun
 uint32_t sc_hierarchy_add_balanced(sc_hierarchy *hierarchy, uint32_t first, uint32_t count,
                                    uint32_t depth);
 
+/* The same for all of order: faster, with four bytes a point of scratch memory. */
+sc_status sc_hierarchy_cut_order(sc_hierarchy *hierarchy, uint32_t point_count,
+                                 sc_scratch *scratch);
+
 /* The end of the longest run of order[first .. end) that fits into a leaf cluster. */
 uint32_t sc_hierarchy_leaf_end(const sc_hierarchy *hierarchy, uint32_t first, uint32_t end);
 

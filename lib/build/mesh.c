@@ -173,7 +173,7 @@ static uint64_t hash_position(const double position[3])
 }
 
 /* Vertices to be welded are shared out by the lowest bits of their hashes, so that those at one
-   position are in one share. Without tasks all are. */
+   position are in one share: a power of two, or without tasks one. */
 enum { WELD_SHARES = 8 };
 
 /* What welding by positions works with. */
@@ -196,7 +196,7 @@ static void hash_some_vertices(void *context, uint32_t part, uint32_t first, uin
         if (!w->r->used[v]) continue;
         read_vertex(w->r, v, p);
         w->hash[v] = (uint32_t)hash_position(p);
-        w->count[part][w->hash[v] % w->shares]++;
+        w->count[part][w->hash[v] & (w->shares - 1)]++;
     }
 }
 
@@ -219,7 +219,7 @@ static void weld_share(void *context, uint32_t share, uint32_t worker)
     for (v = 0; v < r->mesh->vertex_count; v++) {
         uint32_t hash = w->hash[v], other;
         uint64_t at;
-        if (hash % w->shares != share || !r->used[v]) continue;
+        if ((hash & (w->shares - 1)) != share || !r->used[v]) continue;
         for (at = (hash * size) >> 32; (other = table[at]) != SC_NONE;
              at = at + 1 < size ? at + 1 : 0)
             if (w->hash[other] == hash && is_at_same_position(r, v, other)) break;

@@ -169,16 +169,14 @@ static sc_status make_hierarchy(const sc_points *points, const sc_adjacency *adj
     }
     status = sc_hierarchy_init(hierarchy, points, scratch);
     if (status) return status;
+    if (options->partition == SC_PARTITION_TREE) return copy_tree(options, scratch, hierarchy);
     if (options->partition == SC_PARTITION_FAST) {
         status = follow_curve(points, adjacency, scratch, hierarchy->order);
         if (status) return status;
-        sc_hierarchy_add_balanced(hierarchy, 0, count, 1);
-        return SC_OK;
+    } else {
+        memcpy(hierarchy->order, options->order, count * sizeof *hierarchy->order);
     }
-    if (options->partition == SC_PARTITION_TREE) return copy_tree(options, scratch, hierarchy);
-    memcpy(hierarchy->order, options->order, count * sizeof *hierarchy->order);
-    sc_hierarchy_add_balanced(hierarchy, 0, count, 1);
-    return SC_OK;
+    return sc_hierarchy_cut_order(hierarchy, points->point_count, scratch);
 }
 
 sc_status sc_partition_build(const sc_points *points, const sc_adjacency *adjacency,
