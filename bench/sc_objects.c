@@ -49,6 +49,7 @@ static const char usage[] =
     "  --frames N        frames of each scene (8)\n"
     "  --rounds N        rounds in each frame (5)\n"
     "  --workers N       threads of each query (1)\n"
+    "  --own-rooms       objects of one model do not use one room\n"
     "  --csv FILE        a line for each scene, question and way as well\n"
     "  --export FOLDER   time nothing, but write each scene into a folder there, for other\n"
     "                    libraries: bench/peers/README.md\n"
@@ -68,11 +69,13 @@ typedef struct part {
     double *rest;
     uint32_t *triangles;
     sc_model *model;
+    uint32_t object_count;
+    sc_workspace *room; /* whose room all objects of it but the first use, or NULL: each its own */
 } part;
 
 /* An object: a part in two poses, of a frame and of the next one. */
 typedef struct object {
-    const part *of;
+    part *of;
     bool moves, itself;
     double *at[2];
     sc_workspace *workspace;
@@ -84,6 +87,7 @@ typedef struct run {
     uint32_t frames, rounds, workers;
     const char *scene, *csv, *folder;
     FILE *csv_file;
+    bool own_rooms;
     thread_pool *pool;
     bool differs;
 } run;
@@ -190,6 +194,7 @@ static bool build(part *p, const uint32_t *weld_map)
 
 static void free_part(part *p)
 {
+    sc_workspace_free(p->room);
     sc_model_free(p->model);
     free(p->rest);
     free(p->triangles);
@@ -197,25 +202,29 @@ static void free_part(part *p)
 
 /* ---- scenes ---- */
 
-static sc_workspace *work_for(const run *r, const sc_model *model)
+static sc_workspace *work_for(const run *r, const sc_model *model, uint32_t flags,
+                              sc_workspace *room)
 {
     sc_workspace_options options;
     sc_workspace *workspace = NULL;
     memset(&options, 0, sizeof options);
     options.struct_size = sizeof options;
     options.workers = r->workers;
-    options.flags = SC_WORKSPACE_NEAR;
+    options.flags = SC_WORKSPACE_NEAR | flags;
+    options.room = room;
     (void)sc_workspace_create_for(model, &options, &workspace);
     return workspace;
 }
 
-static bool add_object(const run *r, scene *s, const part *of, bool moves, bool itself)
+static bool add_object(const run *r, scene *s, part *of, bool moves, bool itself)
 {
     object *const o = &s->objects[s->count++];
     o->of = of;
     o->moves = moves;
     o->itself = itself;
-    o->workspace = work_for(r, of->model);
+    if (of->object_count++ && !of->room && !r->own_rooms)
+        of->room = work_for(r, of->model, SC_WORKSPACE_ROOM, NULL);
+    o->workspace = work_for(r, of->model, 0, of->room);
     for (int k = 0; k < 2; k++) {
         o->at[k] = (double *)malloc(sizeof(double) * 3 * of->vertex_count);
         if (!o->at[k]) return false;
@@ -339,7 +348,7 @@ static bool make_whole(const run *r, scene *s)
         good = s->whole_at[k] != NULL;
         s->whole_pose[k] = tool_pose(s->whole_at[k], SC_DOUBLE, vertices);
     }
-    if (good) s->whole_workspace = work_for(r, s->whole.model);
+    if (good) s->whole_workspace = work_for(r, s->whole.model, 0, NULL);
     return good && s->whole_workspace && make_groups(s);
 }
 
@@ -711,6 +720,7 @@ int main(int argc, char **argv)
         OPTION_FRAMES,
         OPTION_ROUNDS,
         OPTION_WORKERS,
+        OPTION_OWN_ROOMS,
         OPTION_CSV,
         OPTION_EXPORT
     };
@@ -719,6 +729,7 @@ int main(int argc, char **argv)
                                             {"frames", required_argument, NULL, OPTION_FRAMES},
                                             {"rounds", required_argument, NULL, OPTION_ROUNDS},
                                             {"workers", required_argument, NULL, OPTION_WORKERS},
+                                            {"own-rooms", no_argument, NULL, OPTION_OWN_ROOMS},
                                             {"csv", required_argument, NULL, OPTION_CSV},
                                             {"export", required_argument, NULL, OPTION_EXPORT},
                                             {"help", no_argument, NULL, 'h'},
@@ -743,6 +754,8 @@ int main(int argc, char **argv)
             good = tool_parse_number("--rounds", optarg, 1, 1000, &r.rounds);
         else if (option == OPTION_WORKERS)
             good = tool_parse_number("--workers", optarg, 1, SC_WORKERS_MAX, &r.workers);
+        else if (option == OPTION_OWN_ROOMS)
+            r.own_rooms = true;
         else if (option == OPTION_CSV)
             r.csv = optarg;
         else if (option == OPTION_EXPORT)

@@ -511,8 +511,10 @@ SC_API sc_status sc_workspace_create(const sc_model *model, const sc_allocator *
 enum {
     SC_WORKSPACE_STEP = 1, /* sc_query_step: about 34 bytes a triangle more, and 80 kilobytes a
                               worker */
-    SC_WORKSPACE_NEAR = 2  /* sc_query_near, and sc_query_step: 90 kilobytes a worker more than for
+    SC_WORKSPACE_NEAR = 2, /* sc_query_near, and sc_query_step: 90 kilobytes a worker more than for
                               that alone */
+    SC_WORKSPACE_ROOM = 4  /* other workspaces may use its room, see sc_workspace_options.room:
+                              each worker takes twice as much */
 };
 
 /* The largest number of workers. */
@@ -525,13 +527,22 @@ typedef struct sc_workspace_options {
                           most SC_WORKERS_MAX */
     uint32_t reserved; /* 0 */
     const sc_allocator *allocator; /* for sc_workspace_create_for: copied */
+    /*
+     * NULL, or a workspace of the same model, for as many workers and with the same flags and
+     * SC_WORKSPACE_ROOM. Then this one is small: it keeps what is of a pose, and uses the rest of
+     * the other one, which must stay where it is as long as this one is asked. One call at a time
+     * may use a room, about one of its workspaces, or about several as objects: many characters of
+     * one model.
+     */
+    sc_workspace *room;
 } sc_workspace_options;
 
 /*
  * The same three for a workspace of any kind; options may be NULL, then they are the same. Such a
  * workspace also serves plain queries. Each worker but the first takes about 12 bytes a vertex and
  * 130 kilobytes more, the second some 100 kilobytes besides. SC_ERROR_OPTION: unknown flags, too
- * many workers, or reserved is not 0.
+ * many workers, reserved is not 0, or flags or workers are not those of the room; SC_ERROR_WORKSPACE:
+ * the room is of another model.
  */
 SC_API sc_status sc_workspace_size_for(const sc_model *model, const sc_workspace_options *options,
                                        uint64_t *size);
@@ -1661,7 +1672,8 @@ SC_API sc_status sc_step_stencils(const sc_model *model, const sc_pose *start, c
 
 /*
  * One object. The workspace was made for the model and is in no other object; what a call leaves in
- * it is for the next call with the same object.
+ * it is for the next call with the same object. Workspaces of many objects of one model may use one
+ * room, see sc_workspace_options.
  */
 typedef struct sc_object {
     const sc_model *model;

@@ -267,18 +267,27 @@ sc_status sc_model_load(const void *data, uint64_t size, const sc_load_options *
 
 /* ---- workspaces ---- */
 
+/* Whether a workspace of that kind may use the room of another one. */
+static sc_status check_room(const sc_model *model, const sc_workspace_options *o)
+{
+    const sc_workspace_sizes *s = &o->room->sizes;
+    if (!sc_workspace_fits(o->room, model)) return SC_ERROR_WORKSPACE;
+    if (s->flags != o->flags + SC_WORKSPACE_ROOM || s->workers != o->workers)
+        return SC_ERROR_OPTION;
+    return SC_OK;
+}
+
 /* The options of a workspace, all of them set. */
-static sc_status read_workspace_options(const sc_workspace_options *options,
+static sc_status read_workspace_options(const sc_model *model, const sc_workspace_options *options,
                                         sc_workspace_options *o)
 {
+    const uint32_t flags = SC_WORKSPACE_STEP | SC_WORKSPACE_NEAR | SC_WORKSPACE_ROOM;
     sc_status status = sc_arguments_read_options(NULL, "options", o, sizeof *o, options);
     if (status) return status;
-    if ((o->flags & ~(uint32_t)(SC_WORKSPACE_STEP | SC_WORKSPACE_NEAR)) ||
-        o->workers > SC_WORKERS_MAX || o->reserved)
-        return SC_ERROR_OPTION;
+    if ((o->flags & ~flags) || o->workers > SC_WORKERS_MAX || o->reserved) return SC_ERROR_OPTION;
     if (o->flags & SC_WORKSPACE_NEAR) o->flags |= SC_WORKSPACE_STEP;
     if (!o->workers) o->workers = 1;
-    return SC_OK;
+    return o->room ? check_room(model, o) : SC_OK;
 }
 
 sc_status sc_workspace_size_for(const sc_model *model, const sc_workspace_options *options,
@@ -287,7 +296,7 @@ sc_status sc_workspace_size_for(const sc_model *model, const sc_workspace_option
     sc_workspace_options o;
     sc_status status;
     if (!model || !size) return SC_ERROR_NULL;
-    status = read_workspace_options(options, &o);
+    status = read_workspace_options(model, options, &o);
     if (!status) *size = sc_workspace_bytes(model, &o);
     return status;
 }
@@ -300,7 +309,7 @@ sc_status sc_workspace_init_for(const sc_model *model, const sc_workspace_option
     if (!workspace) return SC_ERROR_NULL;
     *workspace = NULL;
     if (!model || !memory) return SC_ERROR_NULL;
-    status = read_workspace_options(options, &o);
+    status = read_workspace_options(model, options, &o);
     if (status) return status;
     if ((uintptr_t)memory % SC_ALIGNMENT) return SC_ERROR_ALIGNMENT;
     if (size < sc_workspace_bytes(model, &o)) return SC_ERROR_WORKSPACE;
@@ -319,7 +328,7 @@ sc_status sc_workspace_create_for(const sc_model *model, const sc_workspace_opti
     if (!workspace) return SC_ERROR_NULL;
     *workspace = NULL;
     if (!model) return SC_ERROR_NULL;
-    status = read_workspace_options(options, &o);
+    status = read_workspace_options(model, options, &o);
     if (status) return status;
     status = read_allocator(NULL, o.allocator, &a);
     if (status) return status;
@@ -524,7 +533,7 @@ static sc_status read_batch(sc_workspace *const *workspaces, const sc_query_opti
     for (i = 0; i < tasks->workers; i++) {
         if (!workspaces[i]) return SC_ERROR_NULL;
         for (k = 0; k < i; k++)
-            if (workspaces[k] == workspaces[i]) return SC_ERROR_WORKSPACE;
+            if (workspaces[k]->room == workspaces[i]->room) return SC_ERROR_WORKSPACE;
     }
     return SC_OK;
 }

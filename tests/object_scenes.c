@@ -45,6 +45,40 @@ static sc_workspace *work_for(const sc_model *model, uint32_t workers, uint32_t 
     return workspace;
 }
 
+/* Makes the workspace of an object, which takes its room from another one or not. */
+static int open_work(scene *s, uint32_t i)
+{
+    thing *t = &s->things[i];
+    sc_workspace_options options = options_for_workers(t->workers);
+    options.flags = s->flags;
+    if (t->lender == i + 1) options.flags |= SC_WORKSPACE_ROOM;
+    if (t->lender && t->lender <= i) options.room = s->things[t->lender - 1].workspace;
+    t->workspace = NULL;
+    CHECK(sc_workspace_create_for(t->model, &options, &t->workspace) == SC_OK);
+    s->objects[i].workspace = t->workspace;
+    return t->workspace != NULL;
+}
+
+int scene_renew_work(scene *s)
+{
+    for (uint32_t i = s->count; i-- > 0;) sc_workspace_free(s->things[i].workspace);
+    for (uint32_t i = 0; i < s->count; ++i)
+        if (!open_work(s, i)) return 0;
+    return 1;
+}
+
+/* Half of all models have room for others, which most of their copies use. */
+static void choose_lender(scene *s, uint32_t i)
+{
+    thing *t = &s->things[i];
+    const thing *before = t->is_copy ? &s->things[i - 1] : NULL;
+    const int lends = test_random_below(2) != 0, uses = test_random_below(4) != 0;
+    t->workers = s->workers;
+    t->lender = lends ? i + 1 : 0;
+    if (before && before->lender && before->workers == t->workers)
+        t->lender = uses ? before->lender : 0;
+}
+
 /* Hands the poses over as floats or as doubles. */
 static void set_poses(thing *t)
 {
@@ -108,8 +142,9 @@ int scene_open_thing_of(scene *s, uint32_t i, const soup *mesh)
         t->model = build(&t->mesh, t->weld, NULL);
         if (!t->model) return 0;
     }
-    t->workspace = work_for(t->model, s->workers, s->flags);
-    if (!t->workspace) return 0;
+    memset(o, 0, sizeof *o);
+    choose_lender(s, i);
+    if (!open_work(s, i)) return 0;
     memset(t->pose, 0, sizeof t->pose);
     for (int end = 0; end < 2; ++end) {
         t->posed[end] = (double *)test_allocate(sizeof(double) * 3 * t->mesh.vertex_count);
@@ -117,9 +152,7 @@ int scene_open_thing_of(scene *s, uint32_t i, const soup *mesh)
         t->pose[end].struct_size = sizeof t->pose[end];
         t->pose[end].vertex_count = t->mesh.vertex_count;
     }
-    memset(o, 0, sizeof *o);
     o->model = t->model;
-    o->workspace = t->workspace;
     o->pose = &t->pose[0];
     o->itself = test_random_below(4) > 0;
     o->pose_version = test_random_below(2);
@@ -154,7 +187,7 @@ int scene_open(scene *s, uint32_t most, uint32_t maximum, uint32_t workers, uint
 
 void scene_close(scene *s)
 {
-    for (uint32_t i = 0; i < s->count; ++i) {
+    for (uint32_t i = s->count; i-- > 0;) { /* those that others use last */
         thing *t = &s->things[i];
         sc_workspace_free(t->workspace);
         for (int end = 0; end < 2; ++end) {

@@ -21,6 +21,9 @@ typedef struct thing {
     uint32_t weld;
     sc_model *model;
     sc_workspace *workspace;
+    uint32_t workers; /* that it is for */
+    uint32_t lender;  /* whose room it has, counted from 1: its own, where others may use it, or that
+                         of an object before it; 0: its own */
     double *posed[2]; /* 3 * vertex_count, at the start and at the end of a step */
     float *floats[2]; /* the same, if the poses are of floats */
     int is_float;
@@ -44,6 +47,9 @@ void scene_close(scene *s);
    model of the one before it. */
 int scene_open_thing(scene *s, uint32_t i, uint32_t maximum);
 int scene_open_thing_of(scene *s, uint32_t i, const soup *mesh);
+
+/* Has all asked in new workspaces. 0: one is not there, and a check has failed. */
+int scene_renew_work(scene *s);
 
 /* Poses an object near the others, often on a grid or in the place of another one; and for the end of
    a step some way from there. */

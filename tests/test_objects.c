@@ -337,6 +337,7 @@ static void half_a_group_collides_with_nothing(void)
         pose_large_thing(&s.things[i]);
         s.objects[i].itself = 0;
         s.objects[i].group.category = s.objects[i].group.mask = 0;
+        s.objects[i].pose = &s.things[0].pose[0]; /* in one place */
     }
     ask(&s, &o, 1000, 10, &a);
     CHECK(a.status == SC_OK && a.result.count > 0 && a.result.range_count == 1);

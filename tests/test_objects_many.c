@@ -12,153 +12,17 @@
 #include <string.h>
 
 #include "harness.h"
+#include "object_ask.h"
 #include "object_scenes.h"
 #include "soups.h"
 #include "starcontour.h"
 #include "tasks.h"
-
-enum { QUERY, NEAR, STEP };
 
 /* The caller's functions, and how often they are called. */
 typedef struct functions {
     pthread_t thread;
     uint64_t between, alone, elsewhere; /* elsewhere: by another thread */
 } functions;
-
-typedef struct question {
-    int about;
-    functions *asks; /* between objects, or NULL */
-    sc_query_options query;
-    sc_near_options near;
-    sc_step_options step;
-} question;
-
-/* Intersections have one list. */
-typedef struct asked {
-    sc_status status;
-    uint32_t collides, verdict;
-    double earliest;
-    sc_object_list list[2]; /* with arrays of the caller */
-    sc_stats stats;
-} asked;
-
-static void ask(const sc_objects *objects, const question *q, const sc_tasks *tasks,
-                const uint64_t capacity[2], asked *a)
-{
-    sc_objects_result result;
-    sc_objects_lists lists;
-    memset(a, 0, sizeof *a);
-    memset(&result, 0, sizeof result);
-    memset(&lists, 0, sizeof lists);
-    a->stats.struct_size = sizeof a->stats;
-    result.struct_size = sizeof result;
-    lists.struct_size = sizeof lists;
-    result.stats = lists.stats = &a->stats;
-    for (int kind = 0; kind < 2; ++kind) {
-        sc_object_list *list = &a->list[kind];
-        list->capacity = capacity[kind];
-        list->range_capacity = capacity[kind];
-        list->pairs = (sc_pair *)test_allocate(sizeof(sc_pair) * capacity[kind]);
-        list->times = (double *)test_allocate(sizeof(double) * capacity[kind]);
-        list->ranges = (sc_object_pairs *)test_allocate(sizeof(sc_object_pairs) * capacity[kind]);
-    }
-    if (q->about == QUERY) {
-        sc_query_options o = q->query;
-        o.tasks = tasks;
-        result.capacity = result.range_capacity = capacity[0];
-        result.pairs = a->list[0].pairs;
-        result.ranges = a->list[0].ranges;
-        a->status = sc_query_objects(objects, &o, &result);
-        a->list[0].count = result.count;
-        a->list[0].range_count = result.range_count;
-        a->collides = result.collides;
-        a->verdict = result.verdict;
-        return;
-    }
-    lists.vertex_faces = a->list[0];
-    lists.edge_edges = a->list[1];
-    if (q->about == NEAR) {
-        sc_near_options o = q->near;
-        o.tasks = tasks;
-        a->status = sc_query_objects_near(objects, &o, &lists);
-    } else {
-        sc_step_options o = q->step;
-        o.tasks = tasks;
-        a->status = sc_query_objects_step(objects, &o, &lists);
-    }
-    a->list[0] = lists.vertex_faces;
-    a->list[1] = lists.edge_edges;
-    a->collides = lists.collides;
-    a->verdict = lists.verdict;
-    a->earliest = lists.earliest;
-}
-
-static void forget(asked *a)
-{
-    for (int kind = 0; kind < 2; ++kind) {
-        free(a->list[kind].pairs);
-        free(a->list[kind].times);
-        free(a->list[kind].ranges);
-    }
-}
-
-/* Whether two lists are the same, as far as ranges fit. */
-static int is_same_list(const sc_object_list *x, const sc_object_list *y, int has_pairs, int timed)
-{
-    if (x->count != y->count || x->range_count != y->range_count) return 0;
-    for (uint64_t i = 0; i < x->range_count && i < x->range_capacity; ++i) {
-        const sc_object_pairs *p = &x->ranges[i], *q = &y->ranges[i];
-        if (p->object_a != q->object_a || p->object_b != q->object_b || p->first != q->first ||
-            p->count != q->count)
-            return 0;
-        if (!has_pairs || p->first + p->count > x->capacity) continue;
-        for (uint64_t k = p->first; k < p->first + p->count; ++k)
-            if (x->pairs[k].a != y->pairs[k].a || x->pairs[k].b != y->pairs[k].b ||
-                (timed && memcmp(&x->times[k], &y->times[k], sizeof x->times[k]) != 0))
-                return 0;
-    }
-    return 1;
-}
-
-static int is_same(const question *q, const asked *x, const asked *y)
-{
-    const int has_pairs = q->query.output == SC_OUTPUT_PAIRS;
-    const int timed = q->about == STEP && q->step.times == SC_STEP_TIMES_EACH;
-    return x->status == y->status && x->collides == y->collides && x->verdict == y->verdict &&
-           memcmp(&x->earliest, &y->earliest, sizeof x->earliest) == 0 &&
-           is_same_list(&x->list[0], &y->list[0], has_pairs, timed) &&
-           is_same_list(&x->list[1], &y->list[1], has_pairs, timed);
-}
-
-static int counts_are_same(const sc_stats *x, const sc_stats *y)
-{
-    return memcmp(x->counts, y->counts, sizeof x->counts) == 0 &&
-           x->nodes_visited == y->nodes_visited && x->nodes_oriented == y->nodes_oriented &&
-           x->nodes_culled == y->nodes_culled && x->leaf_pairs == y->leaf_pairs &&
-           x->exact_fallbacks == y->exact_fallbacks;
-}
-
-static question any_question(void)
-{
-    static const uint32_t methods[] = {SC_METHOD_DEFAULT, SC_METHOD_SCTT, SC_METHOD_AABB_SCTT,
-                                       SC_METHOD_AABB};
-    question q;
-    memset(&q, 0, sizeof q);
-    q.query.struct_size = sizeof q.query;
-    q.near.struct_size = sizeof q.near;
-    q.step.struct_size = sizeof q.step;
-    q.about = (int)test_random_below(3);
-    q.query.pairs = test_random_below(2) ? SC_PAIRS_EDGE : SC_PAIRS_TRIANGLE;
-    q.query.method = methods[test_random_below(4)];
-    q.near.distance = q.step.separation = test_random_below(2) ? 0.05 * test_random_unit() : 0;
-    q.step.times = test_random_below(2) ? SC_STEP_TIMES_EACH : SC_STEP_TIMES_NONE;
-    return q;
-}
-
-static void set_output(question *q, uint32_t output)
-{
-    q->query.output = q->near.output = q->step.output = output;
-}
 
 /* ---- functions ---- */
 
@@ -197,25 +61,9 @@ static int32_t accept_alone(void *user, uint32_t a, uint32_t b)
 
 /* ---- workers ---- */
 
-/* Workspaces that were never asked. */
-static int renew(scene *s)
-{
-    for (uint32_t i = 0; i < s->count; ++i) {
-        sc_workspace_options options = options_for_workers(s->workers);
-        options.flags = s->flags;
-        sc_workspace_free(s->things[i].workspace);
-        s->things[i].workspace = NULL;
-        if (!CHECK(sc_workspace_create_for(s->things[i].model, &options, &s->things[i].workspace) ==
-                   SC_OK))
-            return 0;
-        s->objects[i].workspace = s->things[i].workspace;
-    }
-    return 1;
-}
-
 /* Asks by so many workers, in new workspaces or in those of before. */
-static int ask_workers(scene *s, const question *q, int way, uint32_t workers, int is_new,
-                       const uint64_t capacity[2], asked *a)
+static int ask_workers(scene *s, const object_question *q, int way, uint32_t workers, int is_new,
+                       const uint64_t capacity[2], object_answer *a)
 {
     sc_objects objects;
     host h;
@@ -224,38 +72,38 @@ static int ask_workers(scene *s, const question *q, int way, uint32_t workers, i
     objects.count = s->count;
     objects.objects = s->objects;
     if (q->asks) {
-        if (q->about == QUERY) objects.accept = accept_between;
-        if (q->about != QUERY) objects.accept_near = accept_near_between;
+        if (q->about == OBJECTS_QUERY) objects.accept = accept_between;
+        if (q->about != OBJECTS_QUERY) objects.accept_near = accept_near_between;
         objects.accept_user = q->asks;
     }
     for (uint32_t i = 0; i < s->count; ++i)
-        s->objects[i].end = q->about == STEP ? &s->things[i].pose[1] : NULL;
-    if (is_new && !renew(s)) return 0;
+        s->objects[i].end = q->about == OBJECTS_STEP ? &s->things[i].pose[1] : NULL;
+    if (is_new && !scene_renew_work(s)) return 0;
     if (workers == 1) {
-        ask(&objects, q, NULL, capacity, a);
+        object_ask(&objects, q, NULL, capacity, a);
         return 1;
     }
     host_start(&h, way, workers);
-    ask(&objects, q, &h.tasks, capacity, a);
+    object_ask(&objects, q, &h.tasks, capacity, a);
     CHECK(h.mistakes == 0);
     host_stop(&h);
     return 1;
 }
 
 /* One worker, two and five, with arrays that fit exactly, or are too short; and for counts alone. */
-static void workers_say_the_same(scene *s, const question *asked_for, int way, int is_large)
+static void workers_say_the_same(scene *s, const object_question *asked_for, int way, int is_large)
 {
     static const uint32_t outputs[] = {SC_OUTPUT_PAIRS, SC_OUTPUT_COUNT, SC_OUTPUT_ANY};
-    question q = *asked_for;
+    object_question q = *asked_for;
     uint64_t capacity[2] = {0, 0};
-    asked one, some, others;
-    set_output(&q, SC_OUTPUT_COUNT);
+    object_answer one, some, others;
+    object_question_set_output(&q, SC_OUTPUT_COUNT);
     if (!ask_workers(s, &q, way, 1, 1, capacity, &one)) return;
     for (int kind = 0; kind < 2; ++kind) capacity[kind] = one.list[kind].count;
-    forget(&one);
+    object_answer_forget(&one);
     for (int round = 0; round < 5; ++round) {
         const int is_short = round == 3;
-        set_output(&q, outputs[round % 3]);
+        object_question_set_output(&q, outputs[round % 3]);
         for (int kind = 0; is_short && kind < 2; ++kind)
             if (capacity[kind]) capacity[kind] = test_random_below((uint32_t)capacity[kind]);
         if (!ask_workers(s, &q, way, 1, 1, capacity, &one)) return;
@@ -264,13 +112,13 @@ static void workers_say_the_same(scene *s, const question *asked_for, int way, i
         if (is_large && q.query.output == SC_OUTPUT_ANY) /* of one object, any pair */
             CHECK(some.collides == one.collides && others.collides == one.collides);
         else
-            CHECK_MSG(is_same(&q, &one, &some) && is_same(&q, &one, &others),
+            CHECK_MSG(object_answers_are_same(&q, &one, &some) && object_answers_are_same(&q, &one, &others),
                       "about %d, round %d, %u objects, way %d, state %" PRIu64, q.about, round,
                       s->count, way, s->state);
-        if (round < 2 && one.status == SC_OK) CHECK(counts_are_same(&some.stats, &others.stats));
-        forget(&one);
-        forget(&some);
-        forget(&others);
+        if (round < 2 && one.status == SC_OK) CHECK(object_counts_are_same(&some.stats, &others.stats));
+        object_answer_forget(&one);
+        object_answer_forget(&some);
+        object_answer_forget(&others);
     }
 }
 
@@ -278,7 +126,7 @@ static void small_objects_are_shared_out(void)
 {
     for (uint32_t trial = test_iterations_at_least(200, 24); trial-- > 0 && !test_failures();) {
         scene s;
-        const question q = any_question();
+        const object_question q = object_question_any();
         const int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
         if (!scene_open(&s, trial % 4 ? 6 : OBJECTS_MAX, trial % 4 ? 100 : 40, 5,
                         SC_WORKSPACE_NEAR))
@@ -314,17 +162,17 @@ static void functions_are_asked_by_the_calling_thread(void)
         const int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
         const int kinds = 1 + (int)test_random_below(3), who = 1 + (int)test_random_below(3);
         uint64_t capacity[2] = {0, 0};
-        question q = any_question();
+        object_question q = object_question_any();
         functions f;
         sc_filter filter;
         scene s;
-        asked all, a[3];
+        object_answer all, a[3];
         if (!scene_open(&s, 6, 60, 5, SC_WORKSPACE_NEAR)) return;
-        set_output(&q, SC_OUTPUT_COUNT);
+        object_question_set_output(&q, SC_OUTPUT_COUNT);
         if (!ask_workers(&s, &q, way, 1, 1, capacity, &all)) return;
         for (int kind = 0; kind < 2; ++kind) capacity[kind] = all.list[kind].count;
-        forget(&all);
-        set_output(&q, SC_OUTPUT_PAIRS);
+        object_answer_forget(&all);
+        object_question_set_output(&q, SC_OUTPUT_PAIRS);
         if (!ask_workers(&s, &q, way, 1, 1, capacity, &all)) return;
         memset(&f, 0, sizeof f);
         f.thread = pthread_self();
@@ -333,15 +181,15 @@ static void functions_are_asked_by_the_calling_thread(void)
         filter.accept = accept_alone;
         filter.accept_user = &f;
         for (uint32_t i = 0; (who & 1) && i < s.count; ++i) {
-            if (q.about == QUERY) s.objects[i].filter = &filter;
-            if (q.about != QUERY && (kinds & 1)) s.objects[i].vertex_face_filter = &filter;
-            if (q.about != QUERY && (kinds & 2)) s.objects[i].edge_edge_filter = &filter;
+            if (q.about == OBJECTS_QUERY) s.objects[i].filter = &filter;
+            if (q.about != OBJECTS_QUERY && (kinds & 1)) s.objects[i].vertex_face_filter = &filter;
+            if (q.about != OBJECTS_QUERY && (kinds & 2)) s.objects[i].edge_edge_filter = &filter;
         }
         if (who & 2) q.asks = &f;
         for (int round = 0; round < 3; ++round) { /* arrays that fit, that are short, and none */
             static const uint32_t workers[3] = {1, 2, 5};
             functions asked_of[3];
-            set_output(&q, round < 2 ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT);
+            object_question_set_output(&q, round < 2 ? SC_OUTPUT_PAIRS : SC_OUTPUT_COUNT);
             for (int kind = 0; round == 1 && kind < 2; ++kind) capacity[kind] /= 3;
             for (int k = 0; k < 3; ++k) {
                 f.alone = f.between = 0;
@@ -350,19 +198,19 @@ static void functions_are_asked_by_the_calling_thread(void)
                 for (int kind = 0; kind < 2; ++kind)
                     CHECK(a[k].list[kind].count ==
                           count_wanted(&all.list[kind],
-                                       (who & 1) && (q.about == QUERY || (kinds >> kind & 1)),
+                                       (who & 1) && (q.about == OBJECTS_QUERY || (kinds >> kind & 1)),
                                        who & 2));
                 CHECK(f.alone == asked_of[0].alone && f.between == asked_of[0].between &&
                       f.elsewhere == 0);
             }
-            CHECK_MSG(is_same(&q, &a[0], &a[1]) && is_same(&q, &a[0], &a[2]),
+            CHECK_MSG(object_answers_are_same(&q, &a[0], &a[1]) && object_answers_are_same(&q, &a[0], &a[2]),
                       "about %d, round %d, who %d, kinds %d, way %d, state %" PRIu64, q.about,
                       round, who, kinds, way, s.state);
             alone += f.alone;
             between += f.between;
-            for (int k = 0; k < 3; ++k) forget(&a[k]);
+            for (int k = 0; k < 3; ++k) object_answer_forget(&a[k]);
         }
-        forget(&all);
+        object_answer_forget(&all);
         scene_close(&s);
     }
     CHECK(alone > 0 && between > 0);
@@ -374,7 +222,7 @@ static void large_ones_are_among_small_ones(void)
     for (uint32_t trial = test_iterations_at_least(2, 1); trial-- > 0 && !test_failures();) {
         const soup sphere = soup_sphere(130, 60), small = soup_sphere(8, 6);
         scene s;
-        question q = any_question();
+        object_question q = object_question_any();
         const int way = HOST_FIRST + (int)(trial % (HOST_COUNT - HOST_FIRST));
         memset(&s, 0, sizeof s);
         s.state = test_random_state();
@@ -413,29 +261,29 @@ static void a_flag_ends_units(void)
     for (uint32_t trial = test_iterations_at_least(60, 12); trial-- > 0 && !test_failures();) {
         const uint64_t none[2] = {0, 0};
         scene s;
-        question q = any_question();
+        object_question q = object_question_any();
         sc_objects objects;
         breaker b;
-        asked all, some;
+        object_answer all, some;
         if (!scene_open(&s, 6, 60, 4, SC_WORKSPACE_NEAR)) return;
-        set_output(&q, SC_OUTPUT_COUNT);
-        if (!ask_workers(&s, &q, 0, 1, 1, none, &all) || !renew(&s)) return;
+        object_question_set_output(&q, SC_OUTPUT_COUNT);
+        if (!ask_workers(&s, &q, 0, 1, 1, none, &all) || !scene_renew_work(&s)) return;
         memset(&objects, 0, sizeof objects);
         objects.struct_size = sizeof objects;
         objects.count = s.count;
         objects.objects = s.objects;
         breaker_start(&b, 4, test_random_below(12));
         q.query.cancel = q.near.cancel = q.step.cancel = &b.flag;
-        ask(&objects, &q, &b.tasks, none, &some);
+        object_ask(&objects, &q, &b.tasks, none, &some);
         if (some.status == SC_ERROR_INCOMPLETE) {
             CHECK(some.verdict == SC_VERDICT_INCOMPLETE && b.flag == 1 &&
                   some.list[0].count <= all.list[0].count);
             ++ended;
         } else {
-            CHECK(is_same(&q, &all, &some));
+            CHECK(object_answers_are_same(&q, &all, &some));
         }
-        forget(&all);
-        forget(&some);
+        object_answer_forget(&all);
+        object_answer_forget(&some);
         scene_close(&s);
     }
     CHECK(ended > 0);
@@ -601,15 +449,15 @@ static void check_crowd(crowd *c, const sc_tasks *tasks, uint64_t *ranges, uint6
 {
     const found_list wanted = expect_crowd(c, most);
     const uint64_t capacity[2] = {wanted.count, 0};
-    const question q = {QUERY, NULL, no_options(), {0}, {0}};
+    const object_question q = {OBJECTS_QUERY, NULL, no_options(), {0}, {0}};
     sc_objects objects;
     uint64_t at = 0;
-    asked a;
+    object_answer a;
     memset(&objects, 0, sizeof objects);
     objects.struct_size = sizeof objects;
     objects.count = c->count;
     objects.objects = c->objects;
-    ask(&objects, &q, tasks, capacity, &a);
+    object_ask(&objects, &q, tasks, capacity, &a);
     CHECK_MSG(a.status == SC_OK && a.list[0].count == wanted.count &&
                   a.list[0].range_count == found_list_ranges(&wanted),
               "%s: %" PRIu64 " pairs of %" PRIu64, sc_status_string(a.status), a.list[0].count,
@@ -623,7 +471,7 @@ static void check_crowd(crowd *c, const sc_tasks *tasks, uint64_t *ranges, uint6
                   wanted.at[at].b == a.list[0].pairs[at].b);
     }
     *ranges += a.list[0].range_count;
-    forget(&a);
+    object_answer_forget(&a);
     free(wanted.at);
 }
 
@@ -665,12 +513,12 @@ static void the_first_bad_pose_is_told(void)
     const uint32_t bad[3] = {1200, 1201, 2500};
     for (int way = HOST_FIRST; way < HOST_COUNT && !test_failures(); ++way) {
         const uint64_t none[2] = {0, 0};
-        const question q = {QUERY, NULL, no_options(), {0}, {0}};
+        const object_question q = {OBJECTS_QUERY, NULL, no_options(), {0}, {0}};
         heard logs[3];
         sc_objects objects;
         crowd c;
         host h;
-        asked a;
+        object_answer a;
         if (!crowd_open(&c, 2600, 1)) return;
         memset(logs, 0, sizeof logs);
         for (uint32_t i = 0; i < 3; ++i) {
@@ -687,12 +535,12 @@ static void the_first_bad_pose_is_told(void)
         objects.count = c.count;
         objects.objects = c.objects;
         host_start(&h, way, 2);
-        ask(&objects, &q, &h.tasks, none, &a);
+        object_ask(&objects, &q, &h.tasks, none, &a);
         CHECK(a.status == SC_ERROR_NOT_FINITE && a.verdict == SC_VERDICT_NONE && h.jobs == 1);
         CHECK_MSG(logs[0].count > 0 && logs[1].count == 0 && logs[2].count == 0 &&
                       strcmp(logs[0].first, "object 1200 has a vertex that is not finite") == 0,
                   "%s", logs[0].first);
-        forget(&a);
+        object_answer_forget(&a);
         host_stop(&h);
         crowd_close(&c);
     }
@@ -725,7 +573,7 @@ static void ender_finish(void *user, void *task)
 static void a_flag_ends_what_is_asked_again(void)
 {
     const uint64_t one[2] = {1, 0};
-    question q = {QUERY, NULL, no_options(), {0}, {0}};
+    object_question q = {OBJECTS_QUERY, NULL, no_options(), {0}, {0}};
     sc_objects objects;
     crowd c;
     if (!crowd_open(&c, 20, 2)) return;
@@ -736,7 +584,7 @@ static void a_flag_ends_what_is_asked_again(void)
     objects.objects = c.objects;
     for (uint32_t jobs = 0; jobs < 3; ++jobs) {
         ender e;
-        asked a;
+        object_answer a;
         memset(&e, 0, sizeof e);
         e.tasks.struct_size = sizeof e.tasks;
         e.tasks.workers = 2;
@@ -745,11 +593,11 @@ static void a_flag_ends_what_is_asked_again(void)
         e.tasks.user = &e;
         e.left = jobs;
         q.query.cancel = &e.flag;
-        ask(&objects, &q, &e.tasks, one, &a);
+        object_ask(&objects, &q, &e.tasks, one, &a);
         CHECK(a.status == (jobs ? SC_ERROR_INCOMPLETE : SC_ERROR_SHORT_BUFFER));
         CHECK(a.verdict == (jobs ? SC_VERDICT_INCOMPLETE : SC_VERDICT_FOUND));
         CHECK(jobs ? a.list[0].count == 0 : a.list[0].count > 20);
-        forget(&a);
+        object_answer_forget(&a);
     }
     crowd_close(&c);
 }

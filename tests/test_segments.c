@@ -279,7 +279,7 @@ static void ticks(void)
     if (!posed_model_open(&s, "cloth", &mesh, SC_WELD_REST, SC_PARTITION_FAST)) return;
     for (uint32_t i = 0; i < 12; ++i) {
         if (i == 4) s.workspace->bounds.epoch = 0xfffe;
-        if (i == 8) s.workspace->frame.epoch = 0x7ffffffe;
+        if (i == 8) s.workspace->epochs = 0x7ffffffe;
         posed_model_any_pose(s.pose, s.mesh.vertex_count);
         if (i % 2) soup_shuffle(s.pose, s.mesh.vertex_count);
         if (posed_model_load(&s)) check_bounds(&s, &tally);
@@ -311,7 +311,7 @@ static void first_tick_again(void)
         }
     }
     for (int round = 0; round < 2; ++round) {
-        s.workspace->frame.epoch = round == 0 ? 0 : 0x7fffffff;
+        s.workspace->epochs = round == 0 ? 0 : 0x7fffffff;
         for (uint32_t i = 0; i < 3 * s.mesh.vertex_count && round == 1; ++i)
             s.pose[i] = test_random_unit();
         s.workspace->worker->kept.some_known[0].epoch = s.workspace->all_known[0].epoch = 1;

@@ -120,7 +120,7 @@ static void workspaces_refused(void)
         check_refused(&f, &o, SC_ERROR_OPTION, "too many workers");
         o.workers = 0xffffffffu;
         check_refused(&f, &o, SC_ERROR_OPTION, "far too many workers");
-        for (uint32_t bit = 2; bit < 32; ++bit) {
+        for (uint32_t bit = 3; bit < 32; ++bit) {
             o = none;
             o.flags = 1u << bit;
             check_refused(&f, &o, SC_ERROR_OPTION, "an unknown flag");
@@ -639,7 +639,7 @@ static void ticks_of_workers(void)
             CHECK(sc_workspace_create_for(f.model, &o, &workspace) == SC_OK);
             check_workers(&f, workspace, &options);
             CHECK(workspace->frame.epoch == 2);
-            workspace->frame.epoch = 0x7fffffff;
+            workspace->epochs = 0x7fffffff;
             soup_twist(f.posed, f.mesh.vertex_count, 2);
             soup_noise(f.posed, f.mesh.vertex_count, 0.1);
             check_workers(&f, workspace, &options);

@@ -45,6 +45,7 @@ typedef struct sc_question {
     int keeps; /* what is made of the pose may be needed by a later query, of an object */
     struct sc_workspace *second; /* of the second of two objects, whose pose is read and boxes made,
                                     if pairs between two are sought; or NULL */
+    int one_room;    /* which has its room where the first has it, see run/workspace.h */
     uint32_t packs;  /* 1: it is one of several whose pairs go to one array: sc_pairs_pack */
     uint32_t prefix; /* what tells its pairs from theirs: twice its number, and 1 if all of its
                         pairs are turned */

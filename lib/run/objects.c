@@ -359,6 +359,7 @@ static void ask_two(const objects_run *run, const sc_object *a, const sc_object 
 {
     (void)begin_question(run, NULL, tasks, q);
     q->query->second = b->workspace;
+    q->query->one_room = a->workspace->room == b->workspace->room;
     q->query->options.method = SC_METHOD_AABB;
     q->query->options.contour = SC_CONTOUR_EXACT;
     q->between.objects = &run->asked->objects;
@@ -436,7 +437,8 @@ static int is_unit(const objects_run *run, sc_pair unit)
 static void look_by_worker(units_job *job, const sc_object *a, const sc_object *b,
                            const sc_question *q, sc_unit *unit, uint32_t worker)
 {
-    const uint32_t parts = a == b ? 1 : job->tasks->workers, part = a == b ? 0 : worker;
+    const int alone = a == b && !sc_workspace_is_shared(a->workspace);
+    const uint32_t parts = alone ? 1 : job->tasks->workers, part = alone ? 0 : worker;
     sc_share *share = q->ends_early ? NULL : &job->share;
     sc_worker *w;
     if (a != b) (void)sc_workspace_join(b->model, b->workspace, q, NULL, worker, part, parts);

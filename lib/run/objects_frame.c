@@ -230,6 +230,9 @@ sc_status sc_objects_frame_read(sc_objects_question *q, double *clearance)
     int k, has_last = 0;
     *clearance = 0;
     if (!objects->count) return SC_OK;
+    for (i = 0; i < objects->count; i++)
+        sc_workspace_renew(sc_objects_question_object(objects, i)->workspace,
+                           q->about == SC_QUESTION_QUERY);
     pass.question = q;
     pass.bad = objects->count;
     (void)sc_jobs_loop(tasks, objects->count, 1, read_some, &pass);

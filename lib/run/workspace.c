@@ -27,6 +27,9 @@ static void *place(layout *l, uint64_t count, size_t size)
 
 #define SC_PLACE(layout, count, type) ((type *)place((layout), (count), sizeof(type)))
 
+/* What a workspace has that takes its room from another one. */
+#define SHARES_ROOM 0x80000000u
+
 static sc_workspace_sizes sizes_for(const sc_model *model, uint32_t workers, uint32_t flags)
 {
     sc_workspace_sizes s;
@@ -58,6 +61,15 @@ static uint32_t all_derived(const sc_workspace_sizes *s)
     return s->segments ? s->leaves : 0;
 }
 
+/* Its own, or those of which it may use some. */
+static sc_workspace_sizes sizes_asked(const sc_model *model, const sc_workspace_options *o)
+{
+    if (!o) return sizes_for(model, 1, 0);
+    if (!o->room) return sizes_for(model, o->workers, o->flags);
+    return sizes_for(model, o->room->sizes.workers,
+                     (o->room->sizes.flags & ~(uint32_t)SC_WORKSPACE_ROOM) | SHARES_ROOM);
+}
+
 static void lay_out_boxes(const sc_workspace_sizes *s, layout *l, sc_boxes *boxes)
 {
     int k;
@@ -71,21 +83,21 @@ static void lay_out_frame(const sc_workspace_sizes *s, layout *l, sc_frame *fram
     lay_out_boxes(s, l, &frame->patch_boxes);
     frame->mask = SC_PLACE(l, s->patches, uint16_t);
     frame->prospect = SC_PLACE(l, s->patches, uint32_t);
-    if (!(s->flags & SC_WORKSPACE_STEP)) return;
-    frame->motion.unit = SC_PLACE(l, 8 * (uint64_t)s->vertices, float);
-    for (k = 0; k < 2; k++) lay_out_boxes(s, l, &frame->motion.boxes[k]);
-    frame->motion.own_points = SC_PLACE(l, s->leaves, uint16_t);
-    frame->motion.vertex_groups = SC_PLACE(l, s->vertices, sc_group);
+    if (s->flags & SC_WORKSPACE_STEP) {
+        frame->motion.unit = SC_PLACE(l, 8 * (uint64_t)s->vertices, float);
+        for (k = 0; k < 2; k++) lay_out_boxes(s, l, &frame->motion.boxes[k]);
+        frame->motion.own_points = SC_PLACE(l, s->leaves, uint16_t);
+        frame->motion.vertex_groups = SC_PLACE(l, s->vertices, sc_group);
+    }
+    frame->point_at = SC_PLACE(l, 4 * SC_LEAF_POINTS * (uint64_t)s->leaves, float);
 }
 
-/* Points of leaf clusters; next to them bounds of segments, and derived data of leaf clusters in
-   the same place. */
+/* Bounds of segments, and derived data of leaf clusters in the same place. */
 static void lay_out_bounds(const sc_workspace_sizes *s, layout *l, sc_workspace *w)
 {
-    uint64_t start, end;
+    const uint64_t start = l->at;
+    uint64_t end;
     int k;
-    w->frame.point_at = SC_PLACE(l, 4 * SC_LEAF_POINTS * (uint64_t)s->leaves, float);
-    start = l->at;
     w->all_derived = SC_PLACE(l, all_derived(s), sc_leaf_derived);
     end = l->at;
     l->at = start;
@@ -240,36 +252,49 @@ static void lay_out_worker(const sc_workspace_sizes *s, layout *l, sc_worker *wo
     if (s->flags & SC_WORKSPACE_NEAR) lay_out_near(s, l, near);
 }
 
-/* Places all arrays behind a workspace, or of a workspace that is nowhere; returns its size. */
-static uint64_t lay_out(const sc_workspace_sizes *s, unsigned char *block, sc_workspace *w)
+/* How many workers there are in a room: where workspaces share it, another one for each, that
+   serves the second of two objects. */
+static uint32_t all_workers(const sc_workspace_sizes *s)
+{
+    return s->flags & SC_WORKSPACE_ROOM ? 2 * s->workers : s->workers;
+}
+
+/* What a pose need not keep. */
+static void lay_out_room(const sc_workspace_sizes *s, layout *l, sc_workspace *w)
 {
     const int steps = (s->flags & SC_WORKSPACE_STEP) != 0;
     const int near = (s->flags & SC_WORKSPACE_NEAR) != 0;
+    const uint32_t workers = all_workers(s);
     sc_worker no_worker;
     sc_step_worker no_step;
     sc_near_worker no_near;
     uint32_t i;
+    lay_out_bounds(s, l, w);
+    if (s->workers > 1) lay_out_plan(s, l, &w->plan);
+    w->worker = SC_PLACE(l, workers, sc_worker);
+    if (steps) w->step = SC_PLACE(l, workers, sc_step_worker);
+    if (near) w->near = SC_PLACE(l, workers, sc_near_worker);
+    for (i = 0; i < workers; i++)
+        lay_out_worker(s, l, l->block ? &w->worker[i] : &no_worker,
+                       l->block && steps ? &w->step[i] : &no_step,
+                       l->block && near ? &w->near[i] : &no_near);
+}
+
+/* Places all arrays behind a workspace, or of a workspace that is nowhere; returns its size. */
+static uint64_t lay_out(const sc_workspace_sizes *s, unsigned char *block, sc_workspace *w)
+{
     layout l;
     l.block = block;
     l.at = 0;
     (void)place(&l, 1, sizeof *w);
     lay_out_frame(s, &l, &w->frame);
-    lay_out_bounds(s, &l, w);
-    if (s->workers > 1) lay_out_plan(s, &l, &w->plan);
-    w->worker = SC_PLACE(&l, s->workers, sc_worker);
-    if (steps) w->step = SC_PLACE(&l, s->workers, sc_step_worker);
-    if (near) w->near = SC_PLACE(&l, s->workers, sc_near_worker);
-    for (i = 0; i < s->workers; i++)
-        lay_out_worker(s, &l, block ? &w->worker[i] : &no_worker,
-                       block && steps ? &w->step[i] : &no_step,
-                       block && near ? &w->near[i] : &no_near);
+    if (!(s->flags & SHARES_ROOM)) lay_out_room(s, &l, w);
     return l.at;
 }
 
 uint64_t sc_workspace_bytes(const sc_model *model, const sc_workspace_options *options)
 {
-    const sc_workspace_sizes sizes =
-        sizes_for(model, options ? options->workers : 1, options ? options->flags : 0);
+    const sc_workspace_sizes sizes = sizes_asked(model, options);
     sc_workspace nowhere;
     return lay_out(&sizes, NULL, &nowhere);
 }
@@ -302,17 +327,64 @@ static void find_own_points(const sc_model *model, uint16_t *own_points, uint16_
     memset(seen, 0, model->vertex_count * sizeof *seen);
 }
 
-/* Nothing is known yet in the arrays of a worker. */
+/* What is read of the arrays of a worker before it is written. */
 static void clear_worker(const sc_workspace_sizes *s, const sc_worker *worker)
 {
     /* whole lanes of places and spans are read, with some behind the last that was written */
     unsigned char *places = (unsigned char *)(void *)worker->contour.at[0];
     memset(places, 0, (size_t)((unsigned char *)(void *)worker->contour.is_edge - places));
-    memset(worker->kept.some_known, 0,
-           ((size_t)worker->kept.some + 1) * sizeof *worker->kept.some_known);
     memset(worker->lists.open, 0, sizeof *worker->lists.open); /* which are read, too */
-    memset(worker->kept.slab, 0, s->leaves * sizeof *worker->kept.slab);
     memset(worker->ball.epoch_of, 0, s->vertices * sizeof *worker->ball.epoch_of);
+}
+
+/* Nothing is known of what is in the room for all leaf clusters. */
+static void forget_derived(const sc_workspace *w)
+{
+    memset(w->all_known, 0, all_derived(&w->sizes) * sizeof *w->all_known);
+}
+
+/* Nor of what is elsewhere in what workspaces may share. */
+static void clear_room(const sc_workspace *w)
+{
+    const sc_workspace_sizes *s = &w->sizes;
+    const uint32_t count = all_workers(s);
+    uint32_t i;
+    forget_derived(w);
+    for (i = 0; i < count; i++) {
+        const sc_kept_leaves *kept = &w->worker[i].kept;
+        memset(kept->some_known, 0, ((size_t)kept->some + 1) * sizeof *kept->some_known);
+        memset(kept->slab, 0, s->leaves * sizeof *kept->slab);
+    }
+}
+
+static void begin_room(sc_workspace *w)
+{
+    const sc_workspace_sizes *s = &w->sizes;
+    uint32_t i;
+    int k;
+    w->others = w->worker + (all_workers(s) - s->workers);
+    for (k = 0; k < 2; k++) memset(w->bounds.epoch_of[k], 0, s->segments * sizeof(uint16_t));
+    for (i = 0; i < all_workers(s); i++) {
+        w->worker[i].step = w->step ? &w->step[i] : NULL;
+        w->worker[i].near = w->near ? &w->near[i] : NULL;
+        clear_worker(s, &w->worker[i]);
+    }
+    clear_room(w);
+    w->worker[0].bounds = &w->bounds;
+}
+
+/* Has a workspace use the room of another one, which stays where it is. */
+static void use_room(sc_workspace *w, sc_workspace *room)
+{
+    w->room = room;
+    w->all_derived = room->all_derived;
+    w->all_known = room->all_known;
+    w->plan = room->plan;
+    w->worker = room->worker;
+    w->others = room->others;
+    w->step = room->step;
+    w->near = room->near;
+    w->round = room->rounds;
 }
 
 sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_options *options,
@@ -324,23 +396,24 @@ sc_workspace *sc_workspace_place(const sc_model *model, const sc_workspace_optio
     int k;
     memset(w, 0, sizeof *w);
     w->topology_hash = model->topology_hash;
-    *s = sizes_for(model, options ? options->workers : 1, options ? options->flags : 0);
+    *s = sizes_asked(model, options);
     w->bytes = lay_out(s, (unsigned char *)memory, w);
     w->frame.kernels = sc_kernels_for((uint32_t)sc_isa_best());
     clear_boxes(s, &w->frame.patch_boxes);
     memset(w->frame.mask, 0, s->patches * sizeof *w->frame.mask);
-    for (k = 0; k < 2; k++) memset(w->bounds.epoch_of[k], 0, s->segments * sizeof(uint16_t));
-    memset(w->all_known, 0, all_derived(s) * sizeof *w->all_known);
-    for (i = 0; i < s->workers; i++) {
-        w->worker[i].step = w->step ? &w->step[i] : NULL;
-        w->worker[i].near = w->near ? &w->near[i] : NULL;
-        clear_worker(s, &w->worker[i]);
-    }
-    w->worker[0].bounds = &w->bounds;
+    w->room = w;
+    if (s->flags & SHARES_ROOM)
+        use_room(w, options->room);
+    else
+        begin_room(w);
     if (!w->step) return w;
     for (k = 0; k < 2; k++) clear_boxes(s, &w->frame.motion.boxes[k]);
     memset(w->frame.motion.unit, 0, 8 * (size_t)s->vertices * sizeof *w->frame.motion.unit);
-    find_own_points(model, w->frame.motion.own_points, w->worker[0].ball.epoch_of);
+    if (w->room == w)
+        find_own_points(model, w->frame.motion.own_points, w->worker[0].ball.epoch_of);
+    else
+        for (i = 0; i < s->leaves; i++)
+            w->frame.motion.own_points[i] = w->room->frame.motion.own_points[i];
     return w;
 }
 
@@ -352,22 +425,27 @@ int sc_workspace_fits(const sc_workspace *w, const sc_model *model)
 
 /* ---- queries ---- */
 
-/* Epochs up to here; then all that has one is cleared. */
+/* Where so many epochs were given out before a call, all that has one is cleared. A call gives out
+   two for an object, and there are 2^32. */
 enum { EPOCH_MAX = 0x7fffffff };
+
+void sc_workspace_renew(sc_workspace *w, int keeps)
+{
+    sc_workspace *room = w->room;
+    if (room->epochs >= EPOCH_MAX) {
+        clear_room(room);
+        room->epochs = 0;
+        room->rounds++;
+    }
+    if (keeps && room->spoiled) forget_derived(room);
+    room->spoiled = !keeps;
+    if (w->round != room->rounds) w->pose_version = 0; /* its epoch may come again */
+    w->round = room->rounds;
+}
 
 void sc_workspace_forget(sc_workspace *w)
 {
-    uint32_t i;
-    if (w->frame.epoch == EPOCH_MAX) {
-        for (i = 0; i < w->sizes.workers; i++) {
-            const sc_kept_leaves *kept = &w->worker[i].kept;
-            memset(kept->some_known, 0, ((size_t)kept->some + 1) * sizeof *kept->some_known);
-            memset(kept->slab, 0, w->sizes.leaves * sizeof *kept->slab);
-        }
-        memset(w->all_known, 0, all_derived(&w->sizes) * sizeof *w->all_known);
-        w->frame.epoch = 0;
-    }
-    w->frame.epoch++;
+    w->frame.epoch = (uint32_t)sc_atomic_add(&w->room->epochs, 1) + 1;
     w->frame.leaves_ready = w->frame.boxes_ready = w->frame.cones_ready = 0;
     w->pose_version = 0;
 }
@@ -381,11 +459,21 @@ static void begin_step_worker(const sc_step_question *question, sc_step_worker *
     for (k = 0; k < 2; k++) step->count[k] = step->found_count[k] = 0;
 }
 
-/* Nothing waits, nothing is found. */
-static void begin_worker(const sc_model *model, sc_workspace *workspace,
-                         const sc_question *question, sc_share *share, sc_worker *w)
+/* Of a question about two objects, the workers that have the second: where both are in one room, the
+   others there. */
+static sc_worker *seconds_of(const sc_question *question)
 {
-    w->second = question->second ? &question->second->worker[w - workspace->worker] : w;
+    return question->one_room ? question->second->others : question->second->worker;
+}
+
+/* A worker for a question that a workspace is asked, or that it is the second object of: nothing
+   waits, nothing is found. */
+static sc_worker *begin_worker(const sc_model *model, sc_workspace *workspace,
+                               const sc_question *question, sc_share *share, uint32_t worker)
+{
+    sc_worker *second = question->second ? &seconds_of(question)[worker] : NULL;
+    sc_worker *w = workspace == question->second ? second : &workspace->worker[worker];
+    w->second = second ? second : w;
     w->model = model;
     w->frame = &workspace->frame;
     w->question = question;
@@ -404,18 +492,34 @@ static void begin_worker(const sc_model *model, sc_workspace *workspace,
     w->follow_part = 0;
     memset(&w->stats, 0, sizeof w->stats);
     if (question->step) begin_step_worker(question->step, w->step);
+    return w;
+}
+
+/* Which of so many parts of a room a worker has: where both of two objects are in one room, half of
+   it for each. */
+typedef struct room_part {
+    uint32_t part, parts;
+} room_part;
+
+static room_part part_of_room(const sc_workspace *w, const sc_question *q, uint32_t part,
+                              uint32_t parts)
+{
+    room_part p;
+    p.part = q->one_room ? 2 * part + (w == q->second) : part;
+    p.parts = q->one_room ? 2 * parts : parts;
+    return p;
 }
 
 /* How many leaf clusters each of so many workers may keep, of so many bytes each, in the room of
-   points and derived data of leaf clusters in queries, which starts at *room; and the same as a
-   power of two, in *kept. */
+   derived data of leaf clusters in queries, and of their points, unless it is shared; which starts
+   at *room. And the same as a power of two, in *kept. */
 static uint64_t room_for_each(const sc_workspace *w, uint32_t workers, size_t bytes, void **room,
                               uint32_t *kept)
 {
     const unsigned char *end =
         (const unsigned char *)(const void *)(w->all_derived + all_derived(&w->sizes));
     uint64_t count;
-    *room = w->frame.point_at;
+    *room = sc_workspace_is_shared(w) ? (void *)w->all_derived : (void *)w->frame.point_at;
     count = (uint64_t)(end - (const unsigned char *)*room) / bytes / workers;
     for (*kept = 1; *kept <= count / 2;) *kept *= 2;
     return count;
@@ -423,13 +527,12 @@ static uint64_t room_for_each(const sc_workspace *w, uint32_t workers, size_t by
 
 /* Lets a worker keep leaf clusters for a step, in one of so many parts of that room or in its own,
    and forget those of the last step. */
-static void keep_motions(sc_workspace *w, uint32_t worker, uint32_t part, uint32_t parts)
+static void keep_motions(const sc_workspace *w, sc_kept_motions *motions, room_part p)
 {
-    sc_kept_motions *motions = &w->step[worker].kept;
     void *room;
     uint32_t kept;
-    const uint64_t count = room_for_each(w, parts, sizeof(sc_leaf_motion), &room, &kept);
-    motions->leaves = (sc_leaf_motion *)room + part * count;
+    const uint64_t count = room_for_each(w, p.parts, sizeof(sc_leaf_motion), &room, &kept);
+    motions->leaves = (sc_leaf_motion *)room + p.part * count;
     motions->mask = count >= w->sizes.leaves ? SC_KEEPS_ALL : kept - 1;
     if (count < w->sizes.leaves && kept <= motions->some) {
         motions->leaves = motions->own + 1;
@@ -440,13 +543,12 @@ static void keep_motions(sc_workspace *w, uint32_t worker, uint32_t part, uint32
 
 /* The same for what is near, of which there never is room for all: it takes more bytes than the
    points and the derived data of a leaf cluster. */
-static void keep_near(sc_workspace *w, uint32_t worker, uint32_t part, uint32_t parts)
+static void keep_near(const sc_workspace *w, sc_near_worker *near, room_part p)
 {
-    sc_near_worker *near = &w->near[worker];
     void *room;
     uint32_t kept;
-    const uint64_t count = room_for_each(w, parts, sizeof(sc_near_leaf), &room, &kept);
-    near->leaves = (sc_near_leaf *)room + part * count;
+    const uint64_t count = room_for_each(w, p.parts, sizeof(sc_near_leaf), &room, &kept);
+    near->leaves = (sc_near_leaf *)room + p.part * count;
     near->mask = kept - 1;
     if (kept <= near->some) {
         near->leaves = near->own + 1;
@@ -455,18 +557,41 @@ static void keep_near(sc_workspace *w, uint32_t worker, uint32_t part, uint32_t 
     memset(near->made, 0, w->sizes.leaves + (size_t)SC_NEAR_KEPT);
 }
 
-static void keep_leaves(sc_workspace *w, const sc_question *question, uint32_t worker,
-                        uint32_t part, uint32_t parts)
+/* Of steps and of what is near. */
+static void keep_leaves(const sc_workspace *w, const sc_question *question, sc_worker *worker,
+                        room_part p)
 {
     if (question->near)
-        keep_near(w, worker, part, parts);
+        keep_near(w, worker->near, p);
     else if (question->step)
-        keep_motions(w, worker, part, parts);
+        keep_motions(w, &worker->step->kept, p);
+}
+
+/* Gives a worker a part of the room for all leaf clusters, if that is more than it has by itself.
+ */
+static void keep_part(const sc_workspace *w, sc_kept_leaves *some, room_part p)
+{
+    const uint32_t room = all_derived(&w->sizes) / p.parts;
+    const uint64_t first = (uint64_t)p.part * room;
+    uint32_t kept = 1;
+    while (2 * kept < room) kept *= 2; /* and one place more */
+    if (kept > some->some)
+        sc_kept_leaves_in(some, w->all_derived + first, w->all_known + first, kept);
+}
+
+/* The same, or all of it. */
+static void keep_derived(const sc_workspace *w, sc_kept_leaves *kept, room_part p)
+{
+    if (p.parts > 1)
+        keep_part(w, kept, p);
+    else if (all_derived(&w->sizes))
+        sc_kept_leaves_in(kept, w->all_derived, w->all_known, SC_KEEPS_ALL);
 }
 
 sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
                               const sc_question *question)
 {
+    sc_workspace_renew(workspace, 0);
     sc_workspace_forget(workspace);
     return sc_workspace_resume(model, workspace, question);
 }
@@ -474,54 +599,38 @@ sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
 sc_worker *sc_workspace_resume(const sc_model *model, sc_workspace *workspace,
                                const sc_question *question)
 {
-    begin_worker(model, workspace, question, NULL, &workspace->worker[0]);
-    keep_leaves(workspace, question, 0, 0, 1);
-    return &workspace->worker[0];
-}
-
-/* Gives a worker one of so many parts of the room for all leaf clusters, if that is more than it
-   has by itself. */
-static void keep_part(sc_workspace *w, uint32_t worker, uint32_t part, uint32_t parts)
-{
-    const uint32_t room = all_derived(&w->sizes) / parts;
-    const uint64_t first = (uint64_t)part * room;
-    sc_kept_leaves *some = &w->worker[worker].kept;
-    uint32_t kept = 1;
-    while (2 * kept < room) kept *= 2; /* and one place more */
-    if (kept > some->some)
-        sc_kept_leaves_in(some, w->all_derived + first, w->all_known + first, kept);
+    sc_worker *w = begin_worker(model, workspace, question, NULL, 0);
+    keep_leaves(workspace, question, w, part_of_room(workspace, question, 0, 1));
+    return w;
 }
 
 void sc_workspace_share(const sc_model *model, sc_workspace *workspace, const sc_question *question,
                         sc_share *share, uint32_t workers)
 {
     sc_worker *first = &workspace->worker[0];
-    const int keeps_all = first->kept.mask == SC_KEEPS_ALL;
+    const int keeps_all = first->kept.derived != first->kept.some_derived;
     const uint32_t task = first->task;
     const uint64_t last_time = first->last_time;
     const sc_stats stats = first->stats;
     uint32_t i;
-    for (i = 0; i < workers; i++)
-        begin_worker(model, workspace, question, share, &workspace->worker[i]);
+    for (i = 0; i < workers; i++) {
+        sc_worker *w = begin_worker(model, workspace, question, share, i);
+        const room_part p = part_of_room(workspace, question, i, workers);
+        if (keeps_all) keep_part(workspace, &w->kept, p);
+        keep_leaves(workspace, question, w, p);
+    }
     first->task = task;
     first->last_time = last_time;
     first->stats = stats;
-    for (i = 0; i < workers; i++) {
-        if (keeps_all) keep_part(workspace, i, i, workers);
-        keep_leaves(workspace, question, i, i, workers);
-    }
 }
 
 sc_worker *sc_workspace_join(const sc_model *model, sc_workspace *w, const sc_question *question,
                              sc_share *share, uint32_t worker, uint32_t part, uint32_t parts)
 {
-    sc_worker *one = &w->worker[worker];
-    begin_worker(model, w, question, share, one);
-    if (parts > 1)
-        keep_part(w, worker, part, parts);
-    else if (all_derived(&w->sizes))
-        sc_kept_leaves_in(&one->kept, w->all_derived, w->all_known, SC_KEEPS_ALL);
-    keep_leaves(w, question, worker, part, parts);
+    sc_worker *one = begin_worker(model, w, question, share, worker);
+    const room_part p = part_of_room(w, question, part, parts);
+    keep_derived(w, &one->kept, p);
+    keep_leaves(w, question, one, p);
     return one;
 }
 
@@ -535,8 +644,8 @@ void sc_workspace_lend(const sc_model *model, sc_workspace *w, const sc_question
 
 void sc_workspace_keep_all(sc_workspace *w)
 {
-    if (all_derived(&w->sizes))
-        sc_kept_leaves_in(&w->worker[0].kept, w->all_derived, w->all_known, SC_KEEPS_ALL);
+    sc_worker *first = &w->worker[0];
+    keep_derived(w, &first->kept, part_of_room(w, first->question, 0, 1));
 }
 
 sc_pair *sc_workspace_spare(const sc_workspace *w, uint64_t *count)

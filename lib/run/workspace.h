@@ -3,16 +3,24 @@
  *
  * SPDX-License-Identifier: MIT
  *
- *     | sc_workspace | arrays of the frame | point_at | bounds or all_derived | epochs of these |
- *       arrays of the plan | sc_worker, sc_worker, ... | arrays of a worker | arrays of a worker |
- *       ... |
+ *     | sc_workspace | arrays of the frame | point_at |   and its room:   | bounds or all_derived |
+ *       epochs of these | arrays of the plan | sc_worker, sc_worker, ... | arrays of a worker |
+ *       arrays of a worker | ... |
+ *
+ * What is of a pose and may be needed again is in the frame. All else is the room. A workspace may
+ * use that of another one of its model; then it ends behind point_at, and one question at a time
+ * has the room, or several of one call, each by one worker with a part of the room. Epochs are given
+ * out by the room, so that what was made of one frame is never taken for that of another. Two
+ * objects in one room are asked about by a worker and another one, of a second set, which has the
+ * second object; the part of the room is halved.
  *
  * Arrays start at multiples of SC_ALIGNMENT. How long they are depends on sc_workspace_sizes alone.
  * The star test's bounds and derived data of leaf clusters are never needed by one query, so they
  * share their memory; what tells whether they are of this query stands elsewhere. There is no room
  * for all leaf clusters in a query with the star test; several workers divide that room, where it
  * is more than they have by themselves. A step needs neither of them, nor point_at, which stands
- * next to them: together they have room for what a step keeps of all leaf clusters.
+ * next to them: together they have room for what a step keeps of all leaf clusters. In a room that
+ * is shared point_at is not used for that, as it may be of a pose that stays.
  *
  * It keeps nothing from one query to the next but epochs, by which what an earlier query left is
  * known to be stale.
@@ -84,12 +92,20 @@ struct sc_workspace {
                               run/objects_frame.h */
     uint32_t pose_about;   /* and for which questions, SC_QUESTION_... */
     sc_in_scene scene;
+    struct sc_workspace *room;    /* whose the rest is, which a pose need not keep: itself, or one
+                                     that was made with SC_WORKSPACE_ROOM */
+    size_t epochs;                /* of a room: how many were given out; */
+    uint32_t rounds;              /* and how often that began anew */
+    uint32_t round;               /* in which of these rounds the frame has its epoch */
+    int spoiled;                  /* of a room: of derived data of all leaf clusters, what is known
+                                     does not hold */
     sc_contour_bounds bounds;     /* the first worker's */
     sc_leaf_derived *all_derived; /* leaf_count; 0 if there are no segments */
     sc_leaf_known *all_known;     /* the same */
     sc_plan_room plan;
-    sc_worker *worker;    /* sizes.workers */
-    sc_step_worker *step; /* as many, of workspaces for steps */
+    sc_worker *worker;    /* sizes.workers; and of a room that others may use as many more: */
+    sc_worker *others;    /* for the second of two objects in one room; else the same */
+    sc_step_worker *step; /* as many as there are in all, of workspaces for steps */
     sc_near_worker *near; /* and for what is near */
 };
 
@@ -115,8 +131,19 @@ sc_worker *sc_workspace_begin(const sc_model *model, sc_workspace *workspace,
 sc_worker *sc_workspace_resume(const sc_model *model, sc_workspace *workspace,
                                const sc_question *question);
 
-/* What is known of an earlier pose is stale; sc_workspace_begin does this, too. */
+/* To be called by one thread before a pose is read: makes sure that there are epochs. If these had to
+   begin anew, what is known of an earlier pose is stale. keeps: the room for derived data of all
+   leaf clusters is not used for anything else until the next call. */
+void sc_workspace_renew(sc_workspace *workspace, int keeps);
+
+/* What is known of an earlier pose is stale; sc_workspace_begin does both, too. */
 void sc_workspace_forget(sc_workspace *workspace);
+
+/* Whether its room is, or may be, that of others, too. */
+static inline int sc_workspace_is_shared(const sc_workspace *w)
+{
+    return (w->room->sizes.flags & SC_WORKSPACE_ROOM) != 0;
+}
 
 /* Starts a query by one worker of several, each of which asks something else, whose pose has been
    read, and returns the worker. What it finds goes to the share. Of leaf clusters it keeps what one

@@ -105,7 +105,7 @@ namespace Starcontour
         public struct sc_workspace_options
         {
             public uint struct_size, flags, workers, reserved;
-            public void* allocator;
+            public void* allocator, room;
         }
 
         [StructLayout(LayoutKind.Sequential)]

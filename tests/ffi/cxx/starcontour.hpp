@@ -25,6 +25,7 @@
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -196,12 +197,16 @@ class Workspace
 {
   public:
     // flags: SC_WORKSPACE_..., for steps and for what is near; workers: threads that a query may use.
-    explicit Workspace(const Model &model, std::uint32_t flags = 0, std::uint32_t workers = 1)
+    // room: NULL, or a workspace for the same and SC_WORKSPACE_ROOM, whose room this one uses; it
+    // outlives this one.
+    explicit Workspace(const Model &model, std::uint32_t flags = 0, std::uint32_t workers = 1,
+                       const Workspace *room = nullptr)
         : model_(model.get()), log_(std::make_unique<detail::Log>())
     {
         auto options = sized<sc_workspace_options>();
         options.flags = flags;
         options.workers = workers;
+        options.room = room != nullptr ? room->get() : nullptr;
         sc_workspace *workspace = nullptr;
         log_->check(sc_workspace_create_for(model_, &options, &workspace));
         workspace_.reset(workspace);
@@ -378,8 +383,8 @@ class Scene
       public:
         // By Scene::add.
         Object(const Model &model, const Positions &positions, std::uint32_t flags,
-               std::uint32_t workers, std::uint32_t its_number)
-            : number(its_number), model_(model.get()), workspace_(model, flags, workers)
+               std::uint32_t workers, const Workspace *room, std::uint32_t its_number)
+            : number(its_number), model_(model.get()), workspace_(model, flags, workers, room)
         {
             options.itself = 1;
             set_pose(positions);
@@ -426,10 +431,18 @@ class Scene
     {
     }
 
-    // A new object, which lives as long as the scene. The model must outlive both.
+    // A new object, which lives as long as the scene. The model must outlive both. Objects of one
+    // model are small: all but the first use one room.
     Object &add(const Model &model, const Positions &positions)
     {
-        return objects_.emplace_back(model, positions, flags_, workers_,
+        const auto is_copy = std::any_of(objects_.begin(), objects_.end(), [&](const Object &one) {
+            return one.model_ == model.get();
+        });
+        const Workspace *room = nullptr;
+        if (is_copy)
+            room = &rooms_.try_emplace(model.get(), model, flags_ | SC_WORKSPACE_ROOM, workers_)
+                        .first->second;
+        return objects_.emplace_back(model, positions, flags_, workers_, room,
                                      detail::number(objects_.size()));
     }
 
@@ -566,6 +579,7 @@ class Scene
     }
 
     std::uint32_t flags_, workers_;
+    std::map<const sc_model *, Workspace> rooms_;
     std::deque<Object> objects_;
     std::vector<sc_object> list_;
     Meetings pairs_;

@@ -86,10 +86,10 @@ public final class FfiJava {
         int at(String member) { return fieldOffset(member); }
     }
 
-    @Structure.FieldOrder({"struct_size", "flags", "workers", "reserved", "allocator"})
+    @Structure.FieldOrder({"struct_size", "flags", "workers", "reserved", "allocator", "room"})
     public static class sc_workspace_options extends Structure {
         public int struct_size = size(), flags, workers, reserved;
-        public Pointer allocator;
+        public Pointer allocator, room;
         int at(String member) { return fieldOffset(member); }
     }
 

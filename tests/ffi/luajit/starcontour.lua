@@ -242,13 +242,35 @@ function starcontour.load(header, library)
 
     -- options: members of sc_workspace_options by name, for the workspace of each object, or nil.
     function sc.scene(options)
-        return setmetatable({ options = options, objects = {}, rooms = { room(), room() } }, Scene)
+        return setmetatable({ options = options, objects = {}, lenders = {},
+                              rooms = { room(), room() } }, Scene)
+    end
+
+    -- The scene's options for workspaces, and others beside.
+    local function options_with(scene, flags, lender)
+        local all = {}
+        for name, value in pairs(scene.options or {}) do all[name] = value end
+        all.flags = (all.flags or 0) + flags
+        all.room = lender and lender.handle
+        return all
+    end
+
+    -- Objects of one model have one room, but for the first, which has its own: nil.
+    local function lender_for(scene, model)
+        local known = scene.lenders[model]
+        if known == nil then
+            scene.lenders[model] = false
+        elseif not known then
+            scene.lenders[model] = model:workspace(options_with(scene, C.SC_WORKSPACE_ROOM))
+        end
+        return scene.lenders[model] or nil
     end
 
     -- A new object, without a pose. options: members of sc_object by name, such as itself (1, if it is
     -- not given) and group, or nil; they may be changed later, in the object's options.
     function Scene:add(model, options)
-        local object = { model = model, workspace = model:workspace(self.options),
+        local lender = lender_for(self, model)
+        local object = { model = model, workspace = model:workspace(options_with(self, 0, lender)),
                          options = ffi.new("sc_object", options or {}) }
         if not (options and options.itself) then object.options.itself = 1 end
         object.options.model, object.options.workspace = model.handle, object.workspace.handle

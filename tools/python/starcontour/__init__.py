@@ -428,24 +428,29 @@ class _Scratch:
     def __init__(self):
         self.log = _Log()
         self.handle, self.flags, self.workers, self.tasks = None, 0, 0, None
+        self.room = None  # the workspace whose room this one uses
         self.pairs = np.empty((64, 2), np.uint32)
         self.lists = [_step_list(64), _step_list(64)]
         self.lock = threading.Lock()
         self.closed = False
 
-    def fit(self, model, flags, threads):
-        """Makes the workspace fit for a query of that kind by so many threads. By the one who has the
-        lock."""
+    def fit(self, model, flags, threads, lender=None):
+        """Makes the workspace fit for a query of that kind by so many threads; with the room of
+        lender, another _Scratch of the model that fits already. By the one who has the lock."""
         if self.closed:
             raise ValueError("the workspace is closed")
-        if flags & ~self.flags or threads > self.workers:
+        room = lender.handle if lender else None
+        if flags & ~self.flags or threads > self.workers or room is not self.room:
             flags, workers = flags | self.flags, max(threads, self.workers)
+            if lender:
+                flags, workers = lender.flags & ~_binding.SC_WORKSPACE_ROOM, lender.workers
             options = _binding.sc_workspace_options(
-                struct_size=ctypes.sizeof(_binding.sc_workspace_options), flags=flags, workers=workers)
+                struct_size=ctypes.sizeof(_binding.sc_workspace_options), flags=flags, workers=workers,
+                room=room.value if room else None)
             handle = ctypes.c_void_p()
             _check(lib.sc_workspace_create_for(model, ctypes.byref(options), ctypes.byref(handle)))
             self.handle = _Owned(handle, lib.sc_workspace_free)
-            self.flags, self.workers = flags, workers
+            self.flags, self.workers, self.room = flags, workers, room
             _check(lib.sc_workspace_set_hooks(self.handle, ctypes.byref(self.log.hooks)))
 
     def prepare(self, model, flags, threads):

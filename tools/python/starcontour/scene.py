@@ -13,7 +13,7 @@ SPDX-License-Identifier: MIT
 
 import ctypes
 import threading
-from collections import namedtuple
+from collections import Counter, namedtuple
 
 import numpy as np
 
@@ -87,11 +87,11 @@ class SceneObject:
         self._end = None if positions is None else _pose(positions)
         self._version += 1
 
-    def _fill(self, structure, flags, threads):
-        """Fills an sc_object."""
+    def _fill(self, structure, flags, threads, lender):
+        """Fills an sc_object. lender: None, or the _Scratch whose room its workspace uses."""
         if self._pose is None:
             raise ValueError(f"object {self.number} has no pose")
-        self._scratch.fit(self.model._handle, flags, threads)
+        self._scratch.fit(self.model._handle, flags, threads, lender)
         structure.model, structure.workspace = self.model._handle.value, self._scratch.handle.value
         structure.pose = ctypes.addressof(self._pose[0])
         structure.pose_version = self._version
@@ -148,6 +148,7 @@ class Scene:
         self.objects = []
         self._lists = [_List(), _List()]
         self._scratch = _Scratch()  # threads
+        self._lenders = {}  # of models that several objects have: a _Scratch whose room they use
         self._lock = threading.Lock()
 
     def __repr__(self):
@@ -229,14 +230,24 @@ class Scene:
         return self._ask(lib.sc_query_objects_step, options, result, lists,
                          _binding.SC_WORKSPACE_NEAR, threads, answer, moves=True)
 
+    def _fit_lenders(self, flags, threads):
+        """Makes those of models that several objects have fit."""
+        counts = Counter(one.model for one in self.objects)
+        self._lenders = {model: self._lenders.get(model) or _Scratch()
+                         for model, count in counts.items() if count > 1}
+        for model, lender in self._lenders.items():
+            lender.fit(model._handle, flags | _binding.SC_WORKSPACE_ROOM, threads)
+        return self._lenders
+
     def _ask(self, function, options, result, lists, flags, threads, answer, moves=False):
         _check_threads(threads)
         if not self._lock.acquire(blocking=False):
             raise Error(_binding.SC_ERROR_WORKSPACE, _IN_USE)
         try:
             array = (_binding.sc_object * max(1, len(self.objects)))()
+            lenders = self._fit_lenders(flags, threads)
             for one, structure in zip(self.objects, array):
-                one._fill(structure, flags, threads)
+                one._fill(structure, flags, threads, lenders.get(one.model))
                 if moves and one._end:
                     structure.end = ctypes.addressof(one._end[0])
             objects = _binding.sc_objects(struct_size=ctypes.sizeof(_binding.sc_objects),

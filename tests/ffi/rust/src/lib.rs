@@ -287,6 +287,7 @@ impl Model {
             workers: 1,
             reserved: 0,
             allocator: ptr::null(),
+            room: ptr::null_mut(),
         };
         let mut handle = ptr::null_mut();
         // SAFETY: the model is alive.

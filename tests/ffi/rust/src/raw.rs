@@ -74,6 +74,7 @@ pub struct sc_workspace_options {
     pub workers: u32,
     pub reserved: u32,
     pub allocator: *const c_void,
+    pub room: *mut sc_workspace,
 }
 
 #[repr(C)]
@@ -376,7 +377,7 @@ pub fn layouts() -> Vec<Layout> {
             simd filter cancel budget tasks),
         layout!(sc_pair: a b),
         layout!(sc_result: struct_size collides count capacity pairs stats verdict reserved),
-        layout!(sc_workspace_options: struct_size flags workers reserved allocator),
+        layout!(sc_workspace_options: struct_size flags workers reserved allocator room),
         layout!(sc_step_options: struct_size output pairs times method contour simd reserved
             separation tolerance tasks cancel budget vertex_face_filter edge_edge_filter rest
             rest_distance begun reserved2),
