@@ -88,7 +88,8 @@ static int is_same_list(const sc_object_list *x, const sc_object_list *y, int ha
     return 1;
 }
 
-int object_answers_are_same(const object_question *q, const object_answer *x, const object_answer *y)
+int object_answers_are_same(const object_question *q, const object_answer *x,
+                            const object_answer *y)
 {
     const int has_pairs = q->query.output == SC_OUTPUT_PAIRS;
     const int timed = q->about == OBJECTS_STEP && q->step.times == SC_STEP_TIMES_EACH;

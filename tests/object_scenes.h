@@ -22,7 +22,7 @@ typedef struct thing {
     sc_model *model;
     sc_workspace *workspace;
     uint32_t workers; /* that it is for */
-    uint32_t lender;  /* whose room it has, counted from 1: its own, where others may use it, or that
+    uint32_t lender; /* whose room it has, counted from 1: its own, where others may use it, or that
                          of an object before it; 0: its own */
     double *posed[2]; /* 3 * vertex_count, at the start and at the end of a step */
     float *floats[2]; /* the same, if the poses are of floats */

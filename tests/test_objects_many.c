@@ -112,10 +112,12 @@ static void workers_say_the_same(scene *s, const object_question *asked_for, int
         if (is_large && q.query.output == SC_OUTPUT_ANY) /* of one object, any pair */
             CHECK(some.collides == one.collides && others.collides == one.collides);
         else
-            CHECK_MSG(object_answers_are_same(&q, &one, &some) && object_answers_are_same(&q, &one, &others),
+            CHECK_MSG(object_answers_are_same(&q, &one, &some) &&
+                          object_answers_are_same(&q, &one, &others),
                       "about %d, round %d, %u objects, way %d, state %" PRIu64, q.about, round,
                       s->count, way, s->state);
-        if (round < 2 && one.status == SC_OK) CHECK(object_counts_are_same(&some.stats, &others.stats));
+        if (round < 2 && one.status == SC_OK)
+            CHECK(object_counts_are_same(&some.stats, &others.stats));
         object_answer_forget(&one);
         object_answer_forget(&some);
         object_answer_forget(&others);
@@ -196,14 +198,16 @@ static void functions_are_asked_by_the_calling_thread(void)
                 if (!ask_workers(&s, &q, way, workers[k], 1, capacity, &a[k])) return;
                 asked_of[k] = f;
                 for (int kind = 0; kind < 2; ++kind)
-                    CHECK(a[k].list[kind].count ==
-                          count_wanted(&all.list[kind],
-                                       (who & 1) && (q.about == OBJECTS_QUERY || (kinds >> kind & 1)),
-                                       who & 2));
+                    CHECK(
+                        a[k].list[kind].count ==
+                        count_wanted(&all.list[kind],
+                                     (who & 1) && (q.about == OBJECTS_QUERY || (kinds >> kind & 1)),
+                                     who & 2));
                 CHECK(f.alone == asked_of[0].alone && f.between == asked_of[0].between &&
                       f.elsewhere == 0);
             }
-            CHECK_MSG(object_answers_are_same(&q, &a[0], &a[1]) && object_answers_are_same(&q, &a[0], &a[2]),
+            CHECK_MSG(object_answers_are_same(&q, &a[0], &a[1]) &&
+                          object_answers_are_same(&q, &a[0], &a[2]),
                       "about %d, round %d, who %d, kinds %d, way %d, state %" PRIu64, q.about,
                       round, who, kinds, way, s.state);
             alone += f.alone;

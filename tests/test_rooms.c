@@ -92,9 +92,9 @@ static void others_are_refused(void)
         CHECK(wrong == NULL);
         o.flags = SC_WORKSPACE_STEP;
         o.room = room;
-        CHECK(sc_workspace_init_for(f.model, &o, memory + SC_ALIGNMENT -
-                                                     (uintptr_t)memory % SC_ALIGNMENT,
-                                    1000, &wrong) == SC_ERROR_WORKSPACE);
+        CHECK(sc_workspace_init_for(f.model, &o,
+                                    memory + SC_ALIGNMENT - (uintptr_t)memory % SC_ALIGNMENT, 1000,
+                                    &wrong) == SC_ERROR_WORKSPACE);
         /* two that have one room do not serve two workers of a batch */
         memset(&result, 0, sizeof result);
         result.struct_size = sizeof result;
@@ -171,10 +171,9 @@ static int open_crowd(scene *s, uint32_t count, const soup *mesh, uint32_t worke
 }
 
 /* Asks both about all objects, by several workers or by one (tasks: HOST_..., or -1). */
-static void ask_both(scene *s, separate *own, int way)
+static void ask_both(scene *s, separate *own, object_question q, int way)
 {
     const sc_objects objects = all_of(s, s->objects), others = all_of(s, own->objects);
-    object_question q = object_question_any();
     uint64_t capacity[2] = {0, 0};
     object_answer x, y;
     host h;
@@ -263,7 +262,7 @@ static void they_answer_as_others_do(void)
         for (int call = 0; call < 10; ++call) {
             sc_workspace *room = s.things[0].workspace->room;
             if (call == 4) room->epochs = 0x7fffffff - test_random_below(2);
-            if (test_random_below(3)) ask_both(&s, &own, any_way(&s));
+            if (test_random_below(3)) ask_both(&s, &own, object_question_any(), any_way(&s));
             if (test_random_below(3) == 0) ask_one(&s, &own, test_random_below(count), &pairs);
             move_some(&s);
             rounds += room->rounds;
@@ -277,17 +276,19 @@ static void they_answer_as_others_do(void)
 /* Many of one room, each by a thread. */
 static void threads_have_parts_of_it(void)
 {
-    for (uint32_t trial = test_iterations_at_least(10, 10); trial-- > 0 && !test_failures();) {
-        const soup mesh = soup_sphere(24, 16);
+    for (uint32_t trial = test_iterations_at_least(5, 5); trial-- > 0 && !test_failures();) {
+        const soup mesh = soup_sphere(16, 12);
+        object_question q = object_question_any();
         separate own;
         scene s;
+        q.about = OBJECTS_QUERY; /* the quickest */
         if (!open_crowd(&s, OBJECTS_MAX, &mesh, 4) || !separate_open(&own, &s)) return;
         for (uint32_t i = 0; i < s.count; ++i) { /* none with another */
             s.objects[i].itself = own.objects[i].itself = 1;
             s.objects[i].group.category = own.objects[i].group.category = 1;
             s.objects[i].group.mask = own.objects[i].group.mask = 2;
         }
-        for (int call = 0; call < 2; ++call) ask_both(&s, &own, HOST_THREADS);
+        for (int call = 0; call < 2; ++call) ask_both(&s, &own, q, HOST_THREADS);
         separate_close(&own, &s);
         scene_close(&s);
     }
@@ -372,7 +373,7 @@ static void what_others_leave_is_not_taken(void)
 /* Two of one room that are large enough to be shared out, to each other and to themselves. */
 static void large_ones_share_a_room(void)
 {
-    for (uint32_t trial = test_iterations_at_least(8, 4); trial-- > 0 && !test_failures();) {
+    for (uint32_t trial = test_iterations_at_least(4, 3); trial-- > 0 && !test_failures();) {
         const soup mesh = soup_sphere(130, 60 + test_random_below(20));
         separate own;
         scene s;
@@ -391,7 +392,8 @@ static void large_ones_share_a_room(void)
             s.objects[i].pose_version = 0;
         }
         if (!separate_open(&own, &s)) return;
-        for (int call = 0; call < 4; ++call) ask_both(&s, &own, call % 2 ? any_way(&s) : -1);
+        for (int call = 0; call < 4; ++call)
+            ask_both(&s, &own, object_question_any(), call % 2 ? any_way(&s) : -1);
         separate_close(&own, &s);
         scene_close(&s);
     }

@@ -115,7 +115,7 @@ typedef struct sc_worker {
     uint64_t last_time;
     double follow_part; /* of the last box or primitive tests, those that follow a contour test */
     sc_stats stats;
-    sc_stats total; /* of several questions, each of which it answered by itself in some workspace */
+    sc_stats total; /* of questions that it answered by itself, each in some workspace */
     unsigned char apart[SC_ALIGNMENT]; /* no two workers write to one line of the cache */
 } sc_worker;
 

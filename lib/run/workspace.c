@@ -471,9 +471,12 @@ static sc_worker *seconds_of(const sc_question *question)
 static sc_worker *begin_worker(const sc_model *model, sc_workspace *workspace,
                                const sc_question *question, sc_share *share, uint32_t worker)
 {
-    sc_worker *second = question->second ? &seconds_of(question)[worker] : NULL;
-    sc_worker *w = workspace == question->second ? second : &workspace->worker[worker];
-    w->second = second ? second : w;
+    sc_worker *w = &workspace->worker[worker], *second = w;
+    if (question->second) {
+        second = &seconds_of(question)[worker];
+        if (workspace == question->second) w = second;
+    }
+    w->second = second;
     w->model = model;
     w->frame = &workspace->frame;
     w->question = question;
@@ -638,8 +641,7 @@ void sc_workspace_lend(const sc_model *model, sc_workspace *w, const sc_question
                        uint32_t workers)
 {
     uint32_t i;
-    for (i = 0; i < workers; i++)
-        (void)sc_workspace_join(model, w, question, NULL, i, i, workers);
+    for (i = 0; i < workers; i++) (void)sc_workspace_join(model, w, question, NULL, i, i, workers);
 }
 
 void sc_workspace_keep_all(sc_workspace *w)
