@@ -901,10 +901,15 @@ def report(results, drawn, slope_table, reading):
     if objects:
         out.append("## Several objects\n")
         out.append("Milliseconds a frame, least of several rounds in turns. *Objects*: one call about all of them.\n"
+                   "*Cut*: the same, where of what does not move no more is there than what comes near the rest.\n"
                    "*One mesh*: of all objects, with groups of vertices where one is not asked about itself.\n"
                    "*Each alone*: those that are, in a call each, without what is between two. "
                    + "; ".join("*%s*: %s" % item for item in report_objects.SCENES.items()) + ".\n")
         out.append(objects)
+        target = report_objects.target_table(results.objects)
+        if target:
+            out.append("What is to be reached:\n")
+            out.append(target)
     out += report_objects.peer_section(results.objects_peers)
     peers, skipped, commit = results.dataset_peers
     out += report_dataset.section(results.dataset, peers, commit, skipped)

@@ -10,6 +10,7 @@ import csv
 import glob
 import os
 
+from report_near import goal
 from report_text import figure, mean, ratio, table, whole
 
 OBJECTS = ["scene", "question", "objects", "workers", "way", "pairs", "ms"]
@@ -41,11 +42,24 @@ def own_table(rows):
         if set(ways) < {"objects", "merged", "alone"}:
             continue
         ms = {way: row["ms"] for way, row in ways.items()}
+        cut = [figure(ms["cut"]), ratio(ms["objects"], ms["cut"])] if "cut" in ms else ["–", "–"]
         lines.append([scene, QUESTIONS.get(question, question), whole(workers), whole(ways["objects"]["pairs"]),
-                      figure(ms["objects"]), figure(ms["merged"]), ratio(ms["merged"], ms["objects"]),
+                      figure(ms["objects"]), *cut, figure(ms["merged"]), ratio(ms["merged"], ms["objects"]),
                       figure(ms["alone"])])
-    return table(["Scene", "Question", "Threads", "Pairs", "Objects, ms", "One mesh, ms", "Gain", "Each alone, ms"],
-                 lines, 2) if lines else ""
+    return table(["Scene", "Question", "Threads", "Pairs", "Objects, ms", "Cut, ms", "Objects ÷ cut", "One mesh, ms",
+                  "One mesh ÷ objects", "Each alone, ms"], lines, 2) if lines else ""
+
+
+def target_table(rows):
+    """What a body that stays may cost, beside what of it is near. "" without such a body."""
+    by = {}
+    for row in rows:
+        by.setdefault((row["scene"], row["question"], row["workers"]), {})[row["way"]] = row["ms"]
+    ratios = [(ms["objects"] / ms["cut"],
+               "%s, %s, %d thread%s" % (scene, QUESTIONS.get(question, question), workers, "s" * (workers > 1)))
+              for (scene, question, workers), ms in by.items() if ms.get("cut")]
+    return table(["what", "wanted", "worst", "where", ""],
+                 [goal("objects ÷ cut", 1.2, ratios, True)]) if ratios else ""
 
 
 def peer_table(rows):

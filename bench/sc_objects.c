@@ -17,11 +17,13 @@
  * Ways, in turns in each frame, of which the least time counts; the time of a scene is the sum over
  * its frames divided by their number:
  *   objects  one call about all objects; the version of what does not move stays
+ *   cut      the same, where something does not move: of it no more than the triangles that come near
+ *            what moves, in any frame
  *   merged   one mesh of all of them; where something is not asked about itself, groups of vertices
  *            leave its own pairs out
  *   alone    each that is asked about itself by itself, in a call of its own
  *
- * Objects must have as many pairs as the mesh of all of them, or the exit status is 1. 2: something
+ * The first three must have as many pairs as one another, or the exit status is 1. 2: something
  * could not be done.
  *
  * With --export nothing is timed: scenes are written for others to be timed on (bench/peers), each
@@ -58,10 +60,10 @@ static const char usage[] =
     "Exit status: 0, 1 where numbers of pairs differ, 2 if something could not be done.\n";
 
 enum { OBJECTS_MAX = 100, QUERY = 0, NEAR = 1, STEP = 2, QUESTIONS = 3 };
-enum { OBJECTS = 0, MERGED = 1, ALONE = 2, WAYS = 3 };
+enum { OBJECTS = 0, CUT = 1, MERGED = 2, ALONE = 3, WAYS = 4 };
 
 static const char *const question_names[QUESTIONS] = {"query", "near", "step"};
-static const char *const way_names[WAYS] = {"objects", "merged", "alone"};
+static const char *const way_names[WAYS] = {"objects", "cut", "merged", "alone"};
 
 /* A mesh, and what the library made of it. */
 typedef struct part {
@@ -97,6 +99,9 @@ typedef struct scene {
     part parts[2], whole;
     uint32_t part_count, count;
     object objects[OBJECTS_MAX];
+    part near;      /* of an object that does not move, what comes near others */
+    object cut;     /* that as an object, */
+    uint32_t still; /* in place of this one; or as many as there are objects: none */
     double *whole_at[2];
     sc_pose whole_pose[2];
     sc_workspace *whole_workspace;
@@ -216,9 +221,8 @@ static sc_workspace *work_for(const run *r, const sc_model *model, uint32_t flag
     return workspace;
 }
 
-static bool add_object(const run *r, scene *s, part *of, bool moves, bool itself)
+static bool make_object(const run *r, object *o, part *of, bool moves, bool itself)
 {
-    object *const o = &s->objects[s->count++];
     o->of = of;
     o->moves = moves;
     o->itself = itself;
@@ -232,6 +236,11 @@ static bool add_object(const run *r, scene *s, part *of, bool moves, bool itself
         o->pose[k] = tool_pose(o->at[k], SC_DOUBLE, of->vertex_count);
     }
     return o->workspace != NULL;
+}
+
+static bool add_object(const run *r, scene *s, part *of, bool moves, bool itself)
+{
+    return make_object(r, &s->objects[s->count++], of, moves, itself);
 }
 
 static bool make_body(const run *r, scene *s)
@@ -368,12 +377,64 @@ static void place(scene *s, size_t kind, uint32_t frame)
     }
 }
 
+/* The box of all that moves, in all frames, and half an edge round it. */
+static void find_reach(const run *r, const scene *s, size_t kind, double low[3], double high[3])
+{
+    for (int k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
+    for (uint32_t i = 0; i < s->count; i++) {
+        const part *const p = s->objects[i].of;
+        for (uint32_t frame = 0; frame <= r->frames && s->objects[i].moves; frame++) {
+            for (uint32_t v = 0; v < p->vertex_count; v++) {
+                double at[3];
+                kinds[kind].place(s, i, frame, p->rest + 3 * (size_t)v, at);
+                for (int k = 0; k < 3; k++) {
+                    low[k] = fmin(low[k], at[k] - s->edge / 2);
+                    high[k] = fmax(high[k], at[k] + s->edge / 2);
+                }
+            }
+        }
+    }
+}
+
+/* Cuts an object that does not move down to the triangles whose boxes meet that box. */
+static bool make_cut(const run *r, scene *s, size_t kind)
+{
+    const part *all;
+    double low[3], high[3];
+    uint32_t count = 0;
+    for (s->still = 0; s->still < s->count && s->objects[s->still].moves;) s->still++;
+    if (s->still == s->count) return true;
+    all = s->objects[s->still].of;
+    if (!make_part(&s->near, all->vertex_count, all->triangle_count)) return false;
+    memcpy(s->near.rest, all->rest, sizeof(double) * 3 * all->vertex_count);
+    find_reach(r, s, kind, low, high);
+    for (uint32_t t = 0; t < all->triangle_count; t++) {
+        const uint32_t *const corner = all->triangles + 3 * (size_t)t;
+        bool meets = true;
+        for (int k = 0; k < 3; k++) {
+            const double a = all->rest[3 * (size_t)corner[0] + k];
+            const double b = all->rest[3 * (size_t)corner[1] + k];
+            const double c = all->rest[3 * (size_t)corner[2] + k];
+            meets = meets && fmin(a, fmin(b, c)) <= high[k] && fmax(a, fmax(b, c)) >= low[k];
+        }
+        if (meets) memcpy(s->near.triangles + 3 * (size_t)count++, corner, 3 * sizeof *corner);
+    }
+    s->near.triangle_count = count;
+    return build(&s->near, NULL) &&
+           make_object(r, &s->cut, &s->near, false, s->objects[s->still].itself);
+}
+
+static void free_object(const object *o)
+{
+    sc_workspace_free(o->workspace);
+    for (int k = 0; k < 2; k++) free(o->at[k]);
+}
+
 static void free_scene(scene *s)
 {
-    for (uint32_t i = 0; i < s->count; i++) {
-        sc_workspace_free(s->objects[i].workspace);
-        for (int k = 0; k < 2; k++) free(s->objects[i].at[k]);
-    }
+    for (uint32_t i = 0; i < s->count; i++) free_object(&s->objects[i]);
+    free_object(&s->cut);
+    free_part(&s->near);
     for (uint32_t i = 0; i < 2; i++) {
         free_part(&s->parts[i]);
         free(s->whole_at[i]);
@@ -482,7 +543,7 @@ static sc_status ask_one(const run *r, scene *s, int question, const sc_model *m
     return status;
 }
 
-static sc_status ask_objects(const run *r, scene *s, int question, uint64_t version,
+static sc_status ask_objects(const run *r, scene *s, int question, int way, uint64_t version,
                              uint64_t *longest, uint64_t *count)
 {
     sc_object objects[OBJECTS_MAX];
@@ -490,7 +551,7 @@ static sc_status ask_objects(const run *r, scene *s, int question, uint64_t vers
     sc_status status;
     memset(objects, 0, sizeof objects);
     for (uint32_t i = 0; i < s->count; i++) {
-        const object *const o = &s->objects[i];
+        const object *const o = way == CUT && i == s->still ? &s->cut : &s->objects[i];
         objects[i].model = o->of->model;
         objects[i].workspace = o->workspace;
         objects[i].pose = &o->pose[0];
@@ -540,8 +601,8 @@ static bool ask(const run *r, scene *s, int question, int way, uint64_t version,
         const double start = tool_clock();
         uint64_t longest = 0, some;
         status = SC_OK;
-        if (way == OBJECTS)
-            status = ask_objects(r, s, question, version, &longest, count);
+        if (way == OBJECTS || way == CUT)
+            status = ask_objects(r, s, question, way, version, &longest, count);
         else if (way == MERGED)
             status = ask_one(r, s, question, s->whole.model, s->whole_workspace, s->whole_pose,
                              &longest, count);
@@ -562,21 +623,28 @@ static bool ask(const run *r, scene *s, int question, int way, uint64_t version,
     return !status;
 }
 
-/* The three ways of all questions, in turns. What was kept is of the last call of the same question:
-   so in each round the version is a new one, and of what stays it is not. */
+static bool is_asked(const scene *s, int way)
+{
+    return way != CUT || s->still < s->count;
+}
+
+/* The ways of all questions, in turns. What was kept is of the last call of the same question: so in
+   each call the version is a new one, and of what stays it is not. */
 static bool time_frame(run *r, scene *s)
 {
     static uint64_t version = 2;
     for (int question = 0; question < QUESTIONS; question++) {
-        double least[WAYS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, ms;
-        uint64_t count[WAYS] = {0, 0, 0};
-        for (uint32_t round = 0; round <= r->rounds; round++, version++) {
-            for (int way = 0; way < WAYS; way++) {
+        double least[WAYS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}, ms;
+        uint64_t count[WAYS] = {0, 0, 0, 0};
+        for (uint32_t round = 0; round <= r->rounds; round++) {
+            for (int way = 0; way < WAYS; way++, version++) {
+                if (!is_asked(s, way)) continue;
                 if (!ask(r, s, question, way, version, &ms, &count[way])) return false;
                 if (round && ms < least[way]) least[way] = ms;
             }
         }
         for (int way = 0; way < WAYS; way++) {
+            if (!is_asked(s, way)) continue;
             s->ms[question][way] += least[way];
             s->pairs[question][way] += count[way];
         }
@@ -586,6 +654,26 @@ static bool time_frame(run *r, scene *s)
 
 /* ---- the report ---- */
 
+static void print_line(const run *r, const scene *s, int question)
+{
+    const double *const ms = s->ms[question];
+    const uint64_t *const pairs = s->pairs[question];
+    char cut[32] = "-", ratio[32] = "-";
+    if (is_asked(s, CUT)) {
+        snprintf(cut, sizeof cut, "%.3f", ms[CUT] / r->frames);
+        snprintf(ratio, sizeof ratio, "%.2f", ms[OBJECTS] / ms[CUT]);
+    }
+    printf("%-8s %-6s %8u %8u %12.1f %10.3f %10s %10.3f %10.3f %8s %8.2f %8.2f\n", s->name,
+           question_names[question], s->count, r->workers, (double)pairs[OBJECTS] / r->frames,
+           ms[OBJECTS] / r->frames, cut, ms[MERGED] / r->frames, ms[ALONE] / r->frames, ratio,
+           ms[MERGED] / ms[OBJECTS], ms[OBJECTS] / ms[ALONE]);
+    for (int way = 0; way < WAYS && r->csv_file; way++)
+        if (is_asked(s, way))
+            fprintf(r->csv_file, "%s,%s,%u,%u,%s,%.1f,%.4f\n", s->name, question_names[question],
+                    s->count, r->workers, way_names[way], (double)pairs[way] / r->frames,
+                    ms[way] / r->frames);
+}
+
 /* Pairs of one object with itself, which are not asked of all objects, are in the mesh of all. */
 static bool time_scene(run *r, size_t kind)
 {
@@ -593,27 +681,22 @@ static bool time_scene(run *r, size_t kind)
     bool good;
     if (!s) return false;
     s->name = kinds[kind].name;
-    good = make_room(s, 100000) && kinds[kind].make(r, s) && make_whole(r, s);
+    good =
+        make_room(s, 100000) && kinds[kind].make(r, s) && make_whole(r, s) && make_cut(r, s, kind);
     if (!good) tool_error("%s: out of memory", s->name);
     for (uint32_t frame = 0; frame < r->frames && good; frame++) {
         place(s, kind, frame);
         good = time_frame(r, s);
     }
     for (int question = 0; question < QUESTIONS && good; question++) {
-        const double *const ms = s->ms[question];
         const uint64_t *const pairs = s->pairs[question];
-        printf("%-8s %-6s %8u %8u %12.1f %10.3f %10.3f %10.3f %8.2f %8.2f\n", s->name,
-               question_names[question], s->count, r->workers, (double)pairs[OBJECTS] / r->frames,
-               ms[OBJECTS] / r->frames, ms[MERGED] / r->frames, ms[ALONE] / r->frames,
-               ms[MERGED] / ms[OBJECTS], ms[OBJECTS] / ms[ALONE]);
-        for (int way = 0; way < WAYS && r->csv_file; way++)
-            fprintf(r->csv_file, "%s,%s,%u,%u,%s,%.1f,%.4f\n", s->name, question_names[question],
-                    s->count, r->workers, way_names[way], (double)pairs[way] / r->frames,
-                    ms[way] / r->frames);
-        if (pairs[OBJECTS] != pairs[MERGED]) {
-            tool_error("%s, %s: objects have %llu pairs, the mesh of all of them %llu", s->name,
+        print_line(r, s, question);
+        for (int way = CUT; way <= MERGED; way++) {
+            if (!is_asked(s, way) || pairs[OBJECTS] == pairs[way]) continue;
+            tool_error("%s, %s: objects have %llu pairs, %s %llu", s->name,
                        question_names[question], (unsigned long long)pairs[OBJECTS],
-                       (unsigned long long)pairs[MERGED]);
+                       way == CUT ? "with what is near of them" : "the mesh of all of them",
+                       (unsigned long long)pairs[way]);
             r->differs = true;
         }
     }
@@ -700,8 +783,9 @@ static bool run_scenes(run *r)
         fprintf(r->csv_file, "scene,question,objects,workers,way,pairs,ms\n");
     }
     if (!r->folder)
-        printf("%-8s %-6s %8s %8s %12s %10s %10s %10s %8s %8s\n", "scene", "asked", "objects",
-               "workers", "pairs", "objects,ms", "merged,ms", "alone,ms", "gain", "/ alone");
+        printf("%-8s %-6s %8s %8s %12s %10s %10s %10s %10s %8s %8s %8s\n", "scene", "asked",
+               "objects", "workers", "pairs", "objects,ms", "cut,ms", "merged,ms", "alone,ms",
+               "/ cut", "gain", "/ alone");
     for (size_t kind = 0; kind < sizeof kinds / sizeof *kinds && good; kind++) {
         if (r->scene && strcmp(r->scene, kinds[kind].name) != 0) continue;
         known = true;

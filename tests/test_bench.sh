@@ -439,6 +439,7 @@ END
     cat >"$scratch/results/objects.csv" <<'END'
 scene,question,objects,workers,way,pairs,ms
 body,query,2,1,objects,2000,1
+body,query,2,1,cut,2000,0.8
 body,query,2,1,merged,2000,3
 body,query,2,1,alone,0,0.5
 END
@@ -496,7 +497,8 @@ END
         "| query and sc_trace: × MeshLib | ≥ 10.0 | 12.0 | bunny, 500, frame 0 | met |" \
         "| query and sc_trace: × libigl | ≥ 20.0 | 14.0 | bunny, 500, frame 1 | **not met** |" \
         "made by \`make trace-peers\` at commit dcf" "- cgal: its headers were not found" \
-        "| body | intersections | 1 | 2,000 | 1.00 | 3.00 | 3.00 | 0.500 |" \
+        "| body | intersections | 1 | 2,000 | 1.00 | 0.800 | 1.25 | 3.00 | 3.00 | 0.500 |" \
+        "| objects ÷ cut | ≤ 1.20 | 1.25 | body, intersections, 1 thread | **not met** |" \
         "| body | embree 3.13.5 | two scenes: refitted | 1 | 200 | 30.0 | 3.00 | 10.0 | match |" \
         "| body | embree 3.13.5 | two scenes: rebuilt | 1 | 199 | 60.0 | 3.00 | 20.0 | 5 wrong |" \
         "| body | embree 3.13.5 | two scenes: refitted | 2 | 100 | 9.00 | 3.00 | 3.00 | match |" \
@@ -541,7 +543,7 @@ fi
 objects=$SC_BIN/sc-objects
 check "several objects" says 0 "crowd *step *100 *2" "$objects" --scale 0.01 --frames 2 --rounds 1 \
     --workers 2 --csv "$scratch/2.objects"
-check "a line for each way" test "$(grep -c '^\(body\|crowd\|layers\),\(query\|near\|step\),' "$scratch/2.objects")" -eq 27
+check "a line for each way" test "$(grep -c '^\(body\|crowd\|layers\),\(query\|near\|step\),' "$scratch/2.objects")" -eq 30
 check "some pairs" grep -q '^layers,near,2,2,objects,[1-9]' "$scratch/2.objects"
 check "one scene" says 0 "layers" "$objects" --scene layers --scale 0.01 --frames 1 --rounds 1
 check "and no other" test "$(grep -c "^body" "$scratch/out")" -eq 0
