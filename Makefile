@@ -473,7 +473,7 @@ fuzz: ## fuzz each target for SECONDS (clang); findings go to tests/fuzz/reprodu
 soak: $(work)/runs/soak ## SOAK queries on changing poses of one model, in bounded memory; half a minute
 	$< $(SOAK)
 
-thread_tests := test_tasks test_task_steps test_near_tasks test_build_tasks test_objects_many
+thread_tests := test_tasks test_task_steps test_near_tasks test_build_tasks test_objects_many test_rooms
 .PHONY: search-rounding
 search-rounding: $(work)/runs/search_rounding ## which share of each error bound rounding reaches, by TRIALS a bound
 	nice -n 10 $< $(TRIALS)
