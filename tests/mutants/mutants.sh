@@ -61,12 +61,12 @@ make_in() (
         mode='-Og -w -DNDEBUG' test_mode='-O1 -w' "$@" >"$tree.make.log" 2>&1
 )
 
-# run_test TREE PROGRAM NAME: one test function, to the first check that fails; it may take five
-# minutes and 8 GB.
+# run_test TREE PROGRAM NAME: one test function, to the first check that fails; it may take two
+# minutes of a processor and 8 GB.
 run_test() {
     ( # not exec: so that this shell, whose output goes to the log, is the one to speak of crashes
         ulimit -c 0
-        ulimit -t 300
+        ulimit -t 120
         ulimit -v 8000000 2>/dev/null
         cd "$1" || exit 1
         SC_LIB=build/lib "$tests/$2" --first "$3"
