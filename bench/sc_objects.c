@@ -14,8 +14,8 @@
  *   query   what intersects
  *   near    what is within half an edge
  *   step    what collides on the way to the next frame, with a thousandth of an edge between
- * Ways, in turns in each frame, of which the least time counts; the time of a scene is the sum over
- * its frames divided by their number:
+ * Ways, one after the other in each frame, of which the least time counts; the time of a scene is
+ * the sum over its frames divided by their number:
  *   objects  one call about all objects; the version of what does not move stays
  *   cut      the same, where something does not move: of it no more than the triangles that come near
  *            what moves, in any frame
@@ -412,9 +412,9 @@ static bool make_cut(const run *r, scene *s, size_t kind)
         const uint32_t *const corner = all->triangles + 3 * (size_t)t;
         bool meets = true;
         for (int k = 0; k < 3; k++) {
-            const double a = all->rest[3 * (size_t)corner[0] + k];
-            const double b = all->rest[3 * (size_t)corner[1] + k];
-            const double c = all->rest[3 * (size_t)corner[2] + k];
+            const double a = all->rest[3 * (size_t)corner[0] + (size_t)k];
+            const double b = all->rest[3 * (size_t)corner[1] + (size_t)k];
+            const double c = all->rest[3 * (size_t)corner[2] + (size_t)k];
             meets = meets && fmin(a, fmin(b, c)) <= high[k] && fmax(a, fmax(b, c)) >= low[k];
         }
         if (meets) memcpy(s->near.triangles + 3 * (size_t)count++, corner, 3 * sizeof *corner);
@@ -628,17 +628,17 @@ static bool is_asked(const scene *s, int way)
     return way != CUT || s->still < s->count;
 }
 
-/* The ways of all questions, in turns. What was kept is of the last call of the same question: so in
-   each call the version is a new one, and of what stays it is not. */
+/* The ways of all questions, one after the other, as a way that comes after another one finds the
+   processor's caches full of that one's. In each call the version is a new one, and of what stays
+   it is not. */
 static bool time_frame(run *r, scene *s)
 {
     static uint64_t version = 2;
     for (int question = 0; question < QUESTIONS; question++) {
         double least[WAYS] = {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}, ms;
         uint64_t count[WAYS] = {0, 0, 0, 0};
-        for (uint32_t round = 0; round <= r->rounds; round++) {
-            for (int way = 0; way < WAYS; way++, version++) {
-                if (!is_asked(s, way)) continue;
+        for (int way = 0; way < WAYS; way++) {
+            for (uint32_t round = 0; round <= r->rounds && is_asked(s, way); round++, version++) {
                 if (!ask(r, s, question, way, version, &ms, &count[way])) return false;
                 if (round && ms < least[way]) least[way] = ms;
             }
