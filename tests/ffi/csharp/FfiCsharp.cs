@@ -145,6 +145,15 @@ static class FfiCsharp
                     workspace.Query(new double[3 * vertices])));
             objects[0].Itself = false;
             Check("an object without itself", scene.Query().Length == 0);
+            using (var copies = new Scene(WorkspaceKind.Near))
+            {
+                for (var i = 0; i < 3; ++i)
+                    copies.Add(one).SetPose(i < 2 ? part(rest, i)
+                        : part(rest, 0).Select(x => x + 100).ToArray());
+                Check("objects of one model, which have one room",
+                    Joined(copies.Query(), half, half).SequenceEqual(golden["rest"])
+                    && copies.Lenders.Count == 1);
+            }
             one.Dispose();
             var disposed = false;
             try { scene.Query(); }

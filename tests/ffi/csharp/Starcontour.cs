@@ -357,11 +357,15 @@ namespace Starcontour
         ContourNode[] nodes = new ContourNode[16];
         Contour[] contours = new Contour[4];
 
-        internal Workspace(Model model, WorkspaceKind kind)
+        // room: null, or a workspace that lends its room.
+        internal Workspace(Model model, WorkspaceKind kind, Workspace room = null, bool lends = false)
         {
+            const uint lendsRoom = 4;
+            var lender = room == null ? IntPtr.Zero : room.handle.DangerousGetHandle();
             this.model = model;
             var options = new Native.sc_workspace_options {
-                struct_size = (uint)sizeof(Native.sc_workspace_options), flags = (uint)kind
+                struct_size = (uint)sizeof(Native.sc_workspace_options),
+                flags = (uint)kind | (lends ? lendsRoom : 0), room = lender.ToPointer()
             };
             Native.Check(Native.sc_workspace_create_for(model.Handle, ref options, out handle));
         }
@@ -597,10 +601,10 @@ namespace Starcontour
         internal ulong Version;
         internal Array Pose, End;
 
-        internal SceneObject(Model model, WorkspaceKind kind)
+        internal SceneObject(Model model, WorkspaceKind kind, Workspace room)
         {
             Model = model;
-            Workspace = model.CreateWorkspace(kind);
+            Workspace = new Workspace(model, kind, room);
         }
 
         // Where it is, of a step at its start.
@@ -655,14 +659,24 @@ namespace Starcontour
         readonly WorkspaceKind kind;
         readonly List<SceneObject> objects = new List<SceneObject>();
         readonly Room faces = new Room(), edges = new Room();
+        // Of models that several objects have: whose room all but the first of them use.
+        internal readonly Dictionary<Model, Workspace> Lenders = new Dictionary<Model, Workspace>();
 
         public Scene(WorkspaceKind kind = WorkspaceKind.Queries) { this.kind = kind; }
 
         // A new object, which has no pose yet. Its number is the number of those before it.
         public SceneObject Add(Model model)
         {
-            objects.Add(new SceneObject(model, kind));
+            objects.Add(new SceneObject(model, kind, LenderFor(model)));
             return objects[objects.Count - 1];
+        }
+
+        Workspace LenderFor(Model model)
+        {
+            Workspace lender = null;
+            if (objects.Exists(one => one.Model == model) && !Lenders.TryGetValue(model, out lender))
+                Lenders[model] = lender = new Workspace(model, kind, null, true);
+            return lender;
         }
 
         // What intersects.
@@ -718,6 +732,7 @@ namespace Starcontour
             fixed (Native.sc_pose* pose = poses)
             try
             {
+                foreach (var lender in Lenders.Values) Hold(lender.Handle, held);
                 for (var i = 0; i < objects.Count; ++i)
                 {
                     var one = objects[i];
@@ -800,6 +815,10 @@ namespace Starcontour
             };
         }
 
-        public void Dispose() { objects.ForEach(one => one.Workspace.Dispose()); }
+        public void Dispose()
+        {
+            objects.ForEach(one => one.Workspace.Dispose());
+            foreach (var lender in Lenders.Values) lender.Dispose();
+        }
     }
 }

@@ -342,4 +342,24 @@ func expectScene(rest [][3]float32, triangles [][3]uint32, golden map[string][]P
 	a.SetItself(false)
 	found, err = scene.Query()
 	expect("an object without itself", err == nil && len(found) == 0)
+
+	copies, err := NewScene(ForNear)
+	if err != nil {
+		expect("a scene of copies", false)
+		return
+	}
+	away := make([][3]float32, vertices)
+	for i, p := range rest[:vertices] {
+		away[i] = [3]float32{p[0] + 100, p[1], p[2]}
+	}
+	for _, pose := range [][][3]float32{rest[:vertices], rest[vertices:], away} {
+		var c Object
+		if c, err = copies.Add(one); err == nil {
+			err = SetPose(c, pose)
+		}
+		expect("a copy", err == nil)
+	}
+	found, err = copies.Query()
+	expect("objects of one model, which have one room", err == nil &&
+		same(joined(found, half, half), golden["rest"]) && copies.lends(0))
 }

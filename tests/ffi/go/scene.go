@@ -10,10 +10,12 @@ package main
 #include <stdlib.h>
 #include <string.h>
 
-// An object of a scene, and its positions, which are its own.
+// An object of a scene, and its positions, which are its own. lender: of the first object of a model
+// that others have as well, the workspace whose room those use.
 typedef struct placed {
     sc_object object;
     sc_pose pose, end;
+    sc_workspace *lender;
 } placed;
 
 typedef struct scene {
@@ -24,9 +26,31 @@ typedef struct scene {
 
 enum { ASK_QUERY, ASK_NEAR, ASK_STEP };
 
+// Whose room one more object of a model uses: NULL for the first, which has its own.
+static sc_status scene_lender(scene *all, const sc_model *model, uint32_t flags,
+                              sc_workspace **lender)
+{
+    const sc_workspace_options options = {.struct_size = sizeof(options),
+                                          .flags = flags | SC_WORKSPACE_ROOM};
+    *lender = NULL;
+    for (uint32_t i = 0; i < all->count; ++i) {
+        placed *one = &all->objects[i];
+        if (one->object.model != model) continue;
+        if (!one->lender) {
+            const sc_status status = sc_workspace_create_for(model, &options, &one->lender);
+            if (status != SC_OK) return status;
+        }
+        *lender = one->lender;
+        return SC_OK;
+    }
+    return SC_OK;
+}
+
 static sc_status scene_add(scene *all, const sc_model *model, uint32_t flags)
 {
-    const sc_workspace_options options = {.struct_size = sizeof(options), .flags = flags};
+    sc_workspace_options options = {.struct_size = sizeof(options), .flags = flags};
+    sc_status status = scene_lender(all, model, flags, &options.room);
+    if (status != SC_OK) return status;
     placed *objects = realloc(all->objects, (all->count + (size_t)1) * sizeof *objects);
     if (!objects) return SC_ERROR_MEMORY;
     all->objects = objects;
@@ -34,7 +58,7 @@ static sc_status scene_add(scene *all, const sc_model *model, uint32_t flags)
     memset(objects, 0, sizeof *objects);
     objects->object.model = model;
     objects->object.itself = 1;
-    const sc_status status = sc_workspace_create_for(model, &options, &objects->object.workspace);
+    status = sc_workspace_create_for(model, &options, &objects->object.workspace);
     if (status == SC_OK) all->count++;
     return status;
 }
@@ -115,6 +139,7 @@ static void scene_free(scene *all)
 {
     for (uint32_t i = 0; i < all->count; ++i) {
         sc_workspace_free(all->objects[i].object.workspace);
+        sc_workspace_free(all->objects[i].lender);
         free((void *)all->objects[i].pose.positions);
         free((void *)all->objects[i].end.positions);
     }
@@ -150,6 +175,11 @@ func NewScene(flags uint32) (*Scene, error) {
 	}
 	runtime.SetFinalizer(s, func(s *Scene) { C.scene_free(s.handle) })
 	return s, nil
+}
+
+// lends tells whether others use the room that belongs to an object's model.
+func (s *Scene) lends(number int) bool {
+	return unsafe.Slice(s.handle.objects, len(s.models))[number].lender != nil
 }
 
 // Object is an object of a scene. Number is that of the objects before it.

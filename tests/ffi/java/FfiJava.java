@@ -304,6 +304,7 @@ public final class FfiJava {
         final Model model;
         final Pointer handle;
         static final int FOR_STEPS = 1, FOR_NEAR = 2;
+        private static final int LENDS_ROOM = 4;
         ByteBuffer pairs = direct(8 * 16);
         ByteBuffer faces = direct(8 * 16), edges = direct(8 * 16);
         private int nodeRoom = 16, contourRoom = 4;
@@ -314,9 +315,15 @@ public final class FfiJava {
 
         /** For more than queries: FOR_STEPS, or FOR_NEAR, which is for both. */
         Workspace(Model model, int flags) {
+            this(model, flags, null);
+        }
+
+        /** room: null, or a workspace that lends its room. */
+        private Workspace(Model model, int flags, Workspace room) {
             this.model = model;
             sc_workspace_options options = new sc_workspace_options();
             options.flags = flags;
+            options.room = room == null ? null : room.handle;
             PointerByReference out = new PointerByReference();
             check(Starcontour.C.sc_workspace_create_for(model.handle, options, out));
             Pointer made = out.getValue();
@@ -472,8 +479,8 @@ public final class FfiJava {
             private ByteBuffer pose, end;
             private long version;
 
-            private Placed(Model model, int flags) {
-                workspace = new Workspace(model, flags);
+            private Placed(Model model, int flags, Workspace room) {
+                workspace = new Workspace(model, flags, room);
             }
 
             /** Where it is, of a step at its start. */
@@ -530,6 +537,8 @@ public final class FfiJava {
         private final int flags;
         private final List<Placed> objects = new ArrayList<>();
         private final Room faces = new Room(), edges = new Room();
+        /** Of models that several objects have: whose room all but the first of them use. */
+        private final Map<Model, Workspace> lenders = new HashMap<>();
 
         /** For queries (0), or for more: Workspace.FOR_STEPS, or FOR_NEAR, which is for both. */
         Scene(int flags) {
@@ -538,8 +547,14 @@ public final class FfiJava {
 
         /** A new object, which needs a pose before anything is asked. */
         Placed add(Model model) {
-            objects.add(new Placed(model, flags));
+            objects.add(new Placed(model, flags, lenderFor(model)));
             return objects.get(objects.size() - 1);
+        }
+
+        private Workspace lenderFor(Model model) {
+            if (objects.stream().noneMatch(one -> one.workspace.model == model)) return null;
+            return lenders.computeIfAbsent(model,
+                it -> new Workspace(it, flags | Workspace.LENDS_ROOM, null));
         }
 
         /** What intersects. */
@@ -791,6 +806,17 @@ public final class FfiJava {
             && joined(scene.query(), 0, 0).equals(new Workspace(models[0]).query(flat)));
         objects[0].itself = false;
         expect("an object without itself", scene.query().isEmpty());
+
+        Scene copies = new Scene(Workspace.FOR_NEAR);
+        ByteBuffer away = direct(12 * vertices);
+        for (int i = 0; i < 3 * vertices; ++i) away.putFloat(4 * i, rest.getFloat(4 * i) + 100);
+        for (int i = 0; i < 2; ++i) {
+            copies.add(models[0]).setPose(rest.slice(i * 12 * vertices, 12 * vertices));
+        }
+        copies.add(models[0]).setPose(away);
+        expect("objects of one model, which have one room",
+            joined(copies.query(), half, half).equals(golden.get("rest"))
+                && copies.lenders.size() == 1);
     }
 
     public static void main(String[] arguments) throws Exception {

@@ -130,6 +130,20 @@ fn check_scene(
     checks.check("an object and itself", found.len() == 1 && found[0].pairs == alone);
     scene.object(0).itself = false;
     checks.check("an object without itself", scene.query(&options).unwrap().is_empty());
+
+    let mut copies = Scene::new(starcontour::WORKSPACE_NEAR);
+    let mut elsewhere = Scene::new(0);
+    let away = |far| rests[0].iter().map(|[x, y, z]| [x + far, *y, *z]).collect::<Vec<_>>();
+    for pose in [&away(100.0), rests[1], &away(200.0)] {
+        let number = copies.add(&one).unwrap();
+        copies.object(number).set_pose(pose);
+    }
+    elsewhere.add(&one).unwrap();
+    elsewhere.object(0).set_pose(rests[0]);
+    checks.check("objects of one model", copies.query(&options).unwrap().is_empty());
+    std::mem::swap(copies.object(0), elsewhere.object(0));
+    let found = joined(&copies.query(&options).unwrap(), [half; 2]);
+    checks.check("an object of another scene", found == golden["rest"]);
 }
 
 fn main() {

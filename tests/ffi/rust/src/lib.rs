@@ -281,16 +281,21 @@ impl Model {
 
     /// Makes a workspace for more than queries: `WORKSPACE_STEP` or `WORKSPACE_NEAR`.
     pub fn workspace_for(&self, flags: u32) -> Result<Workspace<'_>, Error> {
+        self.workspace_in(flags, None)
+    }
+
+    /// room: a workspace that lends its room. It outlives this one, and nobody uses both at a time.
+    fn workspace_in(&self, flags: u32, room: Option<&Workspace<'_>>) -> Result<Workspace<'_>, Error> {
         let options = raw::sc_workspace_options {
             struct_size: size_of::<raw::sc_workspace_options>(),
             flags,
             workers: 1,
             reserved: 0,
             allocator: ptr::null(),
-            room: ptr::null_mut(),
+            room: room.map_or(ptr::null_mut(), |lender| lender.handle.as_ptr()),
         };
         let mut handle = ptr::null_mut();
-        // SAFETY: the model is alive.
+        // SAFETY: model and room are alive.
         check(unsafe { raw::sc_workspace_create_for(self.0.as_ptr(), &options, &mut handle) })?;
         let handle = ptr::NonNull::new(handle).expect("a workspace that was made");
         let list = || vec![Pair::default(); 16];

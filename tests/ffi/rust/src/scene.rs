@@ -7,6 +7,10 @@ use crate::{
     Options, Pair, Scalar, StepOptions, Workspace,
 };
 use std::ptr;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A workspace that lends its room.
+const WORKSPACE_ROOM: u32 = 4;
 
 /// What two objects have with each other, or one with itself.
 #[derive(Clone, Copy, Debug)]
@@ -32,12 +36,11 @@ pub struct FeatureMeetings<'scene> {
 /// An object of a scene. It keeps a copy of its positions: so none can change unseen, and what is not
 /// set again is not read again.
 #[derive(Debug)]
-pub struct Object<'model> {
+pub struct Object {
     /// Whether its pairs with itself are wanted.
     pub itself: bool,
     /// What it collides with; the default is everything.
     pub group: Group,
-    workspace: Workspace<'model>,
     pose: Vec<[f64; 3]>,
     end: Option<Vec<[f64; 3]>>,
     version: u64,
@@ -47,17 +50,23 @@ fn doubles<T: Scalar>(positions: &[[T; 3]]) -> Vec<[f64; 3]> {
     positions.iter().map(|p| p.map(T::into)).collect()
 }
 
-impl Object<'_> {
+/// A number that no pose had before: so one object may take the place of another one.
+fn new_version() -> u64 {
+    static LAST: AtomicU64 = AtomicU64::new(0);
+    LAST.fetch_add(1, Ordering::Relaxed) + 1
+}
+
+impl Object {
     /// Where it is, of a step at its start.
     pub fn set_pose<T: Scalar>(&mut self, positions: &[[T; 3]]) {
         self.pose = doubles(positions);
-        self.version += 1;
+        self.version = new_version();
     }
 
     /// Of a step, where it is at its end; None, as at first: where it began.
     pub fn set_end<T: Scalar>(&mut self, positions: Option<&[[T; 3]]>) {
         self.end = positions.map(doubles);
-        self.version += 1;
+        self.version = new_version();
     }
 }
 
@@ -111,22 +120,37 @@ impl Room {
 #[derive(Debug)]
 pub struct Scene<'model> {
     flags: u32,
-    objects: Vec<Object<'model>>,
+    objects: Vec<Object>,
     rooms: [Room; 2],
+    /// Of each object. Those of one model use one room, but for the first, which has its own.
+    workspaces: Vec<Workspace<'model>>,
+    lenders: Vec<Workspace<'model>>,
 }
 
 impl<'model> Scene<'model> {
     /// A scene without objects, for queries (0), or for more: `WORKSPACE_STEP` or `WORKSPACE_NEAR`.
     pub fn new(flags: u32) -> Self {
-        Scene { flags, objects: Vec::new(), rooms: [Room::new(), Room::new()] }
+        Scene {
+            flags,
+            objects: Vec::new(),
+            rooms: [Room::new(), Room::new()],
+            workspaces: Vec::new(),
+            lenders: Vec::new(),
+        }
     }
 
     /// A new object, which needs a pose before anything is asked; and its number.
     pub fn add(&mut self, model: &'model Model) -> Result<usize, Error> {
+        let is_of = |workspace: &Workspace| ptr::eq(workspace.model, model);
+        let is_copy = self.workspaces.iter().any(is_of);
+        if is_copy && !self.lenders.iter().any(is_of) {
+            self.lenders.push(model.workspace_for(self.flags | WORKSPACE_ROOM)?);
+        }
+        let lender = self.lenders.iter().find(|one| is_of(one));
+        self.workspaces.push(model.workspace_in(self.flags, lender)?);
         self.objects.push(Object {
             itself: true,
             group: Group::default(),
-            workspace: model.workspace_for(self.flags)?,
             pose: Vec::new(),
             end: None,
             version: 0,
@@ -135,7 +159,7 @@ impl<'model> Scene<'model> {
     }
 
     /// The object of a number.
-    pub fn object(&mut self, number: usize) -> &mut Object<'model> {
+    pub fn object(&mut self, number: usize) -> &mut Object {
         &mut self.objects[number]
     }
 
@@ -196,10 +220,11 @@ impl<'model> Scene<'model> {
         for object in &self.objects {
             poses.push((pose_of(&object.pose)?, object.end.as_deref().map(pose_of).transpose()?));
         }
-        let with_pose = |(object, (pose, end)): (&Object, &(raw::sc_pose, Option<raw::sc_pose>))| {
+        let with_pose = |(i, (pose, end)): (usize, &(raw::sc_pose, Option<raw::sc_pose>))| {
+            let (object, workspace) = (&self.objects[i], &self.workspaces[i]);
             raw::sc_object {
-                model: object.workspace.model.0.as_ptr(),
-                workspace: object.workspace.handle.as_ptr(),
+                model: workspace.model.0.as_ptr(),
+                workspace: workspace.handle.as_ptr(),
                 pose,
                 end: end.as_ref().filter(|_| moves).map_or(ptr::null(), |end| end),
                 pose_version: object.version,
@@ -214,7 +239,7 @@ impl<'model> Scene<'model> {
                 masks: ptr::null(),
             }
         };
-        let array: Vec<_> = self.objects.iter().zip(&poses).map(with_pose).collect();
+        let array: Vec<_> = poses.iter().enumerate().map(with_pose).collect();
         let objects = raw::sc_objects {
             struct_size: size_of::<raw::sc_objects>(),
             count: array.len().try_into().map_err(|_| Error::Count)?,
