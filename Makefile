@@ -628,11 +628,10 @@ compiled_peer = +@$(if $(filter-out yes,$(foreach header,$(2),$(or $(call has,$(
     $(MAKE) --no-print-directory '$(work)/peers/$(1)' && \
     LIMIT='$(LIMIT)' MEMORY='$(MEMORY)' bench/peers/measure_peer.sh $(1) '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' '$(work)/peers/$(1)')
 
-# $(call python_peer,PACKAGE): measured if it can be installed into a virtual environment in build/.
+# $(call python_peer,PACKAGE,SCRIPT): measured if it can be installed into a virtual environment in build/.
 python_peer = @bench/peers/venv.sh '$(BUILD)/peers/venv' $(1) '$(CSV)' || { test $$? -eq 3 && exit 0; exit 1; }; \
     LIMIT='$(LIMIT)' MEMORY='$(MEMORY)' bench/peers/measure_peer.sh $(1) '$(CSV)' '$(SCENES)' '$(bin)/sc-bench' \
-    '$(BUILD)/peers/venv/bin/python' bench/peers/peers.py \
-    --peer $(1) --lib '$(lib)/$(shared_link)'
+    '$(BUILD)/peers/venv/bin/python' $(or $(2),bench/peers/peers.py --peer $(1)) --lib '$(lib)/$(shared_link)'
 
 .PHONY: peer-cgal peer-embree peer-fcl
 peer-cgal: $(peer_scenes) ## time CGAL's self_intersections beside ours on SCENES, into CSV
@@ -657,6 +656,11 @@ peer-python-fcl: $(lib)/$(shared_link) $(peer_scenes) ## the same for FCL from P
 	$(call python_peer,python-fcl)
 peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (PyPI; for non-commercial use)
 	$(call python_peer,trueform)
+
+# On SCENES of several objects: see objects-peers.
+.PHONY: peer-objects-ipctk
+peer-objects-ipctk: $(lib)/$(shared_link) $(peer_scenes)
+	$(call python_peer,ipctk,bench/peers/objects.py)
 
 .PHONY: near-peers
 near-peers: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) beside what is near, into build/peers/near.csv; some minutes
@@ -687,13 +691,13 @@ endif
 
 # The longest takes two minutes a scene, at one thread.
 .PHONY: objects-peers
-objects-peers: $(filter %/sc-objects,$(programs)) ## time Embree and FCL on several objects, into build/peers/objects.csv; some minutes
+objects-peers: $(filter %/sc-objects,$(programs)) ## time Embree, FCL and ipc-toolkit on several objects, into build/peers/objects.csv; some minutes
 ifneq ($(filter %/sc-objects,$(programs)),)
 	@mkdir -p '$(BUILD)/peers' && echo "# commit: $$(git describe --always --abbrev=12 --dirty=+ \
 	    --exclude='*' 2>/dev/null || echo unknown)" >'$(BUILD)/peers/objects.csv'
 	@cd '$(BUILD)/peers' && { [ -d objects ] || { rm -rf objects.new && \
 	    '$(abspath $(bin))/sc-objects' --frames 3 --export objects.new && mv objects.new objects; }; }
-	+@status=0; for peer in embree fcl; do \
+	+@status=0; for peer in embree fcl objects-ipctk; do \
 	    $(MAKE) --no-print-directory peer-$$peer CSV='$(BUILD)/peers/objects.csv' LIMIT=300 \
 	        SCENES="$(patsubst %,$(BUILD)/peers/objects/%,body crowd layers)" || status=1; done; exit $$status
 else

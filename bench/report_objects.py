@@ -81,6 +81,7 @@ def peer_table(rows):
             wrong = sum(row["missing"] + row["extra"] for row in frames)
             lines.append([scene, "%s %s" % (peer, version), what, str(threads),
                           whole(mean(row["pairs"] for row in frames)), figure(ms), figure(own), ratio(ms, own),
+                          "–" if any(row["matches"] == "unknown" for row in frames) else
                           "%s wrong" % whole(wrong) if wrong else "match"])
     return table(["Scene", "Peer", "What it does a frame", "Threads", "Pairs", "ms", "Objects, ms", "× objects",
                   "Answers"], lines, 3) if lines else ""
@@ -94,8 +95,10 @@ def peer_section(peers):
     if shown:
         out += ["Other libraries on the same objects, in one process with `sc_query_objects` (*objects*), in turns, both\n"
                 "with so many threads; made by `make objects-peers` at commit %s and explained in\n"
-                "bench/peers/README.md. What intersects; means over the frames of medians. A tree for each object, of\n"
-                "which those that do not move are built once. *Pairs*: of triangles that share no vertex.\n" % commit,
+                "bench/peers/README.md; means over the frames of medians. Embree and FCL: what intersects; a tree for\n"
+                "each object, of which those that do not move are built once. *Pairs*: of triangles that share no\n"
+                "vertex. ipc-toolkit: boxes of one mesh of all objects, within half an edge or along a step; *match*:\n"
+                "no pair of `sc_query_objects_near` or `sc_query_objects_step` is missing there.\n" % commit,
                 shown]
     if skipped:
         out.append("Left out:\n\n" + "".join("- %s\n" % line for line in skipped))

@@ -455,6 +455,9 @@ body,500,0,starcontour,0.1.0,objects,1,2,110,yes,2,0,0,embree,1
 body,500,1,starcontour,0.1.0,objects,1,4,310,yes,4,0,0,embree,1
 body,500,0,embree,3.13.5,two scenes: refitted,2,9,100,yes,20,0,0,embree,2
 body,500,0,starcontour,0.1.0,objects,2,3,110,yes,2,0,0,embree,2
+body,500,0,ipctk,1.6.1,one mesh: Candidates,1,90,500,yes,90,0,0,ipctk near,1
+body,500,0,ipctk,1.6.1,one mesh: NormalCollisions,1,80,200,unknown,80,0,0,ipctk near,1
+body,500,0,starcontour,0.1.0,objects,1,4,400,yes,4,0,0,ipctk near,1
 END
     cat >"$scratch/results/trace_peers.csv" <<'END'
 # commit: dcf
@@ -502,6 +505,8 @@ END
         "| body | embree 3.13.5 | two scenes: refitted | 1 | 200 | 30.0 | 3.00 | 10.0 | match |" \
         "| body | embree 3.13.5 | two scenes: rebuilt | 1 | 199 | 60.0 | 3.00 | 20.0 | 5 wrong |" \
         "| body | embree 3.13.5 | two scenes: refitted | 2 | 100 | 9.00 | 3.00 | 3.00 | match |" \
+        "| body | ipctk 1.6.1 | one mesh: Candidates | 1 | 500 | 90.0 | 4.00 | 22.5 | match |" \
+        "| body | ipctk 1.6.1 | one mesh: NormalCollisions | 1 | 200 | 80.0 | 4.00 | 20.0 | – |" \
         "made by \`make objects-peers\` at commit fed" "- fcl on crowd: took more than 300 s" \
         "by \`make dataset-peers\` at commit def" "- open3d: no such wheel" \
         "| twisted-cloth | 65,536 | 1,000 | 1.00 | 2.00 | 4.00 | 0.50 | match |" \
