@@ -657,9 +657,8 @@ peer-python-fcl: $(lib)/$(shared_link) $(peer_scenes) ## the same for FCL from P
 peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (PyPI; for non-commercial use)
 	$(call python_peer,trueform)
 
-# On SCENES of several objects: see objects-peers.
 .PHONY: peer-objects-ipctk
-peer-objects-ipctk: $(lib)/$(shared_link) $(peer_scenes)
+peer-objects-ipctk: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) on SCENES of several objects, as objects-peers does
 	$(call python_peer,ipctk,bench/peers/objects.py)
 
 .PHONY: near-peers
