@@ -657,8 +657,8 @@ peer-python-fcl: $(lib)/$(shared_link) $(peer_scenes) ## the same for FCL from P
 peer-trueform: $(lib)/$(shared_link) $(peer_scenes) ## the same for trueform (PyPI; for non-commercial use)
 	$(call python_peer,trueform)
 
-.PHONY: peer-objects-ipctk
-peer-objects-ipctk: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) on SCENES of several objects, as objects-peers does
+.PHONY: objects-peer-ipctk
+objects-peer-ipctk: $(lib)/$(shared_link) $(peer_scenes) ## time ipc-toolkit (PyPI) on SCENES of several objects, as objects-peers does
 	$(call python_peer,ipctk,bench/peers/objects.py)
 
 .PHONY: near-peers
@@ -696,8 +696,8 @@ ifneq ($(filter %/sc-objects,$(programs)),)
 	    --exclude='*' 2>/dev/null || echo unknown)" >'$(BUILD)/peers/objects.csv'
 	@cd '$(BUILD)/peers' && { [ -d objects ] || { rm -rf objects.new && \
 	    '$(abspath $(bin))/sc-objects' --frames 3 --export objects.new && mv objects.new objects; }; }
-	+@status=0; for peer in embree fcl objects-ipctk; do \
-	    $(MAKE) --no-print-directory peer-$$peer CSV='$(BUILD)/peers/objects.csv' LIMIT=300 \
+	+@status=0; for target in peer-embree peer-fcl objects-peer-ipctk; do \
+	    $(MAKE) --no-print-directory $$target CSV='$(BUILD)/peers/objects.csv' LIMIT=300 \
 	        SCENES="$(patsubst %,$(BUILD)/peers/objects/%,body crowd layers)" || status=1; done; exit $$status
 else
 	@echo "skipped: objects-peers: needs $(strip $(missing_for_programs)) ('make deps')"
