@@ -465,6 +465,58 @@ static void ties_on_flat_grids(void)
     CHECK(ties > within / 5);
 }
 
+/* Right-angled triangles in any direction and of any size, and as a distance the length of one of
+   their sides, to the last bits: many pairs are as far apart at two of their points, but for a few
+   roundings. Every fourth cloth has a point so far off that floats tell nothing of the others. */
+static void points_at_the_distance(void)
+{
+    static const double units[] = {1, 0x1p-195, 0x1p195, 0x1p-205, 0x1p205, 0x1p-505, 0x1p900};
+    enum { UNITS = sizeof units / sizeof *units };
+    uint64_t within = 0, ties = 0;
+    for (uint32_t i = 0; i < test_iterations_at_least(84, 28); ++i) {
+        const uint64_t state = test_random_state();
+        const double unit = units[i % UNITS];
+        const int far_off = i / UNITS % 4 == 3, floats = unit == 1 && i % 2;
+        soup mesh = soup_cloth(3 + test_random_below(3), 3);
+        const uint32_t count = mesh.vertex_count, *t = mesh.triangles;
+        double *posed = copy_positions(mesh.positions, count);
+        scene s;
+        if (i % 3) posed_model_rotate(posed, count);
+        soup_scale(posed, count, unit);
+        for (uint32_t c = 0; floats && c < 3 * count; ++c) posed[c] = (double)(float)posed[c];
+        if (far_off) posed[3 * count - 1] = unit < 0x1p900 ? 0x1p60 * unit : 0x1p1000;
+        if (scene_start(&s, "cloth", mesh, posed, floats ? SC_FLOAT : SC_DOUBLE, state)) {
+            const uint32_t side = test_random_below(3);
+            const double *a = posed + 3 * (size_t)t[side], *b = posed + 3 * (size_t)t[side ? 0 : 1];
+            const double d = hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+            const double distance[] = {d,
+                                       nextafter(d, 0),
+                                       nextafter(d, HUGE_VAL),
+                                       d * (1 - 0x1p-50),
+                                       d < 0x1p190 ? d : 0x1p190,
+                                       d * (1 + 0x1p-50)};
+            uint64_t least = UINT64_MAX, most = 0;
+            for (int k = 0; k < 6; ++k) {
+                sc_near_options options = near_options_for(&near_ways[k % 2 ? 0 : 4], distance[k]);
+                near_answer all = near_ask_all(&s.q, &options);
+                const uint64_t pairs = all.count[0] + all.count[1];
+                near_truth_check(&s.q, &s.m, &all, distance[k], "points");
+                if (k == 0) check_ways(&s, options, &all);
+                if (k != 4) {
+                    least = pairs < least ? pairs : least;
+                    most = pairs > most ? pairs : most;
+                }
+                near_answer_free(&all);
+            }
+            within += most;
+            ties += most - least;
+        }
+        scene_stop(&s);
+    }
+    test_note("%" PRIu64 " pairs, %" PRIu64 " of them within a few roundings", within, ties);
+    CHECK(ties > within / 5);
+}
+
 /* Triangles between any three of a few points: leaf clusters of which triangles share few edges. */
 static void many_edges_in_a_leaf(void)
 {
@@ -569,5 +621,6 @@ static void none_apart_and_all(void)
 }
 
 SC_TEST_MAIN(SC_TEST(any_scene), SC_TEST(poses_of_steps), SC_TEST(adversaries),
-             SC_TEST(soups_on_grids), SC_TEST(ties_on_flat_grids), SC_TEST(layers_at_the_distance),
-             SC_TEST(many_edges_in_a_leaf), SC_TEST(none_apart_and_all))
+             SC_TEST(soups_on_grids), SC_TEST(ties_on_flat_grids), SC_TEST(points_at_the_distance),
+             SC_TEST(layers_at_the_distance), SC_TEST(many_edges_in_a_leaf),
+             SC_TEST(none_apart_and_all))

@@ -66,6 +66,10 @@
    much of the sum of that and of the largest distance of two of their points. step/within.c. */
 #define SC_BOUNDS_WITHIN (8.0 * SC_BOUNDS_U)
 
+/* The square of the distance of two points less that of another, in sums of two doubles: certainly
+   below 0 if below so much of the latter. near/corner_kernel.h. */
+#define SC_BOUNDS_CORNER 0x1p-96
+
 /*
  * Polynomials of differences of points (near/differences.c). As a sum of two doubles: 256 u^2 M,
  * derived there. In plain arithmetic, n as above: a dot product 2 differences, 1 product, 2 sums;

@@ -104,21 +104,11 @@ static int is_near_enough(const sc_worker *w, int kind, const sc_pair *pair)
                                        : sc_within_edge_edge(from, distance);
 }
 
-static void take_open(sc_worker *w, uint32_t most, int kind)
+void sc_near_candidates_decide(sc_worker *w, int kind, sc_pair inner, int is_near)
 {
-    uint32_t *left = &w->lists.count[SC_LIST_FACES + kind];
-    for (; most && *left && !w->stop; most--) {
-        const sc_pair pair = w->lists.moving[kind][--*left];
-        if (is_near_enough(w, kind, &pair)) sc_near_candidates_take(w, kind, pair, -1);
-    }
-}
-
-void sc_near_candidates_take_faces(sc_worker *w, uint32_t most)
-{
-    take_open(w, most, SC_STEP_VERTEX_FACE);
-}
-
-void sc_near_candidates_take_edges(sc_worker *w, uint32_t most)
-{
-    take_open(w, most, SC_STEP_EDGE_EDGE);
+    if (!is_near && !is_near_enough(w, kind, &inner)) return;
+    if (sc_near_candidates_want_names(w->question))
+        sc_near_candidates_take(w, kind, inner, -1);
+    else
+        sc_step_pairs_take(w, kind, inner.a, inner.b, 0); /* counts it */
 }

@@ -1,6 +1,6 @@
 /*
  * Pairs of a vertex and a triangle, or of two edges, in a search for what is near: what becomes of
- * those that are near, and the last stages, of those that floats leave open.
+ * those that are near, and which of those that floats leave open are.
  *
  * SPDX-License-Identifier: MIT
  */
@@ -28,8 +28,8 @@ int sc_near_candidates_need_one_worker(const sc_near_question *question);
    be computed. */
 void sc_near_candidates_take(sc_worker *w, int kind, sc_pair inner, double bound);
 
-/* Stages, see query/lists.h: by exact signs. */
-void sc_near_candidates_take_faces(sc_worker *w, uint32_t most);
-void sc_near_candidates_take_edges(sc_worker *w, uint32_t most);
+/* Decides a pair that floats left open by exact signs, unless it is known to be near, and takes it if
+   it is. */
+void sc_near_candidates_decide(sc_worker *w, int kind, sc_pair inner, int is_near);
 
 #endif

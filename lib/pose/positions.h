@@ -37,11 +37,17 @@ static inline double sc_positions_rounded(double number)
     return (double)rounded;
 }
 
+/* Where that of a point is. */
+static inline const unsigned char *sc_positions_place(const sc_positions *positions, uint32_t point)
+{
+    return positions->at + point * positions->stride;
+}
+
 /* The position of a point. */
 static inline void sc_positions_get(const sc_positions *positions, uint32_t point,
                                     double position[3])
 {
-    const unsigned char *at = positions->at + point * positions->stride;
+    const unsigned char *at = sc_positions_place(positions, point);
     if (positions->type == SC_DOUBLE) {
         memcpy(position, at, 3 * sizeof *position);
     } else {

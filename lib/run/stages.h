@@ -55,8 +55,8 @@ static sc_stage *const step_between_stages[SC_LIST_COUNT] = {
 static sc_stage *const near_between_stages[SC_LIST_COUNT] = {
     [SC_LIST_PATCHES] = open_moving_between,
     [SC_LIST_CLUSTERS] = decide_near_between,
-    [SC_LIST_FACES] = sc_near_candidates_take_faces,
-    [SC_LIST_EDGES] = sc_near_candidates_take_edges,
+    [SC_LIST_FACES] = take_near_open_faces,
+    [SC_LIST_EDGES] = take_near_open_edges,
 };
 
 static sc_stage *const step_stages[SC_LIST_COUNT] = {
@@ -87,6 +87,6 @@ static sc_stage *const near_stages[SC_LIST_COUNT] = {
     [SC_LIST_NEAR] = decide_near_alone,
     [SC_LIST_CLUSTERS] = decide_near_clusters,
     /* what rounding leaves open, by exact signs */
-    [SC_LIST_FACES] = sc_near_candidates_take_faces,
-    [SC_LIST_EDGES] = sc_near_candidates_take_edges,
+    [SC_LIST_FACES] = take_near_open_faces,
+    [SC_LIST_EDGES] = take_near_open_edges,
 };

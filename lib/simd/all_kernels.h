@@ -31,6 +31,7 @@
 #include "simd/target_begin.h"
 
 #include "simd/lanes.h"
+#include "simd/exact_doubles.h"
 
 #include "pose/extent_kernel.h"
 #include "pose/points_kernel.h"
@@ -62,6 +63,7 @@
 #include "near/distance_kernel.h"
 #include "near/near_leaf_kernel.h"
 #include "near/near_kernel.h"
+#include "near/corner_kernel.h"
 
 #include "trace/crossing_kernel.h"
 

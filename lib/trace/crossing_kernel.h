@@ -24,65 +24,23 @@
  * is below 2^-510, less than 2^-54 of what is larger than 2^-450.
  */
 
-/* Doubles and what they are rounded from: value + tail; and the value cut in two halves. */
-typedef struct crossing_number {
-    doubles value, high, low, tail;
-} crossing_number;
-
-/* The difference of two rows of coordinates. */
-static inline crossing_number crossing_difference(doubles to, doubles from)
-{
-    crossing_number n;
-    doubles from_part, to_part, scaled;
-    n.value = doubles_subtract(to, from);
-    from_part = doubles_subtract(n.value, to); /* - from */
-    to_part = doubles_subtract(n.value, from_part);
-    n.tail = doubles_subtract(doubles_subtract(to, to_part), doubles_add(from, from_part));
-    scaled = doubles_multiply(doubles_all(134217729.0), n.value); /* 2^27 + 1 */
-    n.high = doubles_subtract(scaled, doubles_subtract(scaled, n.value));
-    n.low = doubles_subtract(n.value, n.high);
-    return n;
-}
-
-static inline doubles crossing_sum(doubles a, doubles b, doubles *error)
-{
-    doubles sum = doubles_add(a, b), b_part = doubles_subtract(sum, a);
-    doubles a_part = doubles_subtract(sum, b_part);
-    *error = doubles_add(doubles_subtract(a, a_part), doubles_subtract(b, b_part));
-    return sum;
-}
-
-static inline doubles crossing_product(const crossing_number *a, const crossing_number *b,
-                                       doubles *error)
-{
-    doubles product = doubles_multiply(a->value, b->value);
-    doubles rest = doubles_subtract(doubles_multiply(a->high, b->high), product);
-    rest = doubles_add(rest, doubles_multiply(a->high, b->low));
-    rest = doubles_add(rest, doubles_multiply(a->low, b->high));
-    *error = doubles_add(rest, doubles_multiply(a->low, b->low));
-    return product;
-}
-
 /* A component of a cross product: high + low, what tails add to it, and the sum of its absolute
    products. */
 typedef struct crossing_minor {
-    crossing_number high;
+    exact_doubles high;
     doubles low, tails, magnitude;
 } crossing_minor;
 
-static SC_INLINE crossing_minor crossing_minor_of(const crossing_number u[3],
-                                                  const crossing_number v[3], int i)
+static SC_INLINE crossing_minor crossing_minor_of(const exact_doubles u[3],
+                                                  const exact_doubles v[3], int i)
 {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     crossing_minor m;
-    doubles left_error, right_error, error, scaled;
-    const doubles left = crossing_product(&u[j], &v[k], &left_error);
-    const doubles right = crossing_product(&u[k], &v[j], &right_error);
-    m.high.value = crossing_sum(left, doubles_subtract(doubles_all(0), right), &error);
-    scaled = doubles_multiply(doubles_all(134217729.0), m.high.value);
-    m.high.high = doubles_subtract(scaled, doubles_subtract(scaled, m.high.value));
-    m.high.low = doubles_subtract(m.high.value, m.high.high);
-    m.high.tail = doubles_all(0);
+    doubles left_error, right_error, error;
+    const doubles left = exact_product(&u[j], &v[k], &left_error);
+    const doubles right = exact_product(&u[k], &v[j], &right_error);
+    const doubles high = exact_sum(left, doubles_subtract(doubles_all(0), right), &error);
+    m.high = exact_halves(high, doubles_all(0));
     m.low = doubles_add(error, doubles_subtract(left_error, right_error));
     m.tails = doubles_subtract(doubles_add(doubles_multiply(u[j].tail, v[k].value),
                                            doubles_multiply(u[j].value, v[k].tail)),
@@ -93,7 +51,7 @@ static SC_INLINE crossing_minor crossing_minor_of(const crossing_number u[3],
 }
 
 /* The determinant, and the lanes in which it is certain. */
-static SC_INLINE doubles crossing_determinant(const crossing_minor m[3], const crossing_number w[3],
+static SC_INLINE doubles crossing_determinant(const crossing_minor m[3], const exact_doubles w[3],
                                               unsigned *certain)
 {
     doubles first = doubles_all(0), second = doubles_all(0), magnitude = doubles_all(0);
@@ -102,8 +60,8 @@ static SC_INLINE doubles crossing_determinant(const crossing_minor m[3], const c
     SC_UNROLL
     for (i = 0; i < 3; i++) {
         doubles product_error, sum_error;
-        const doubles product = crossing_product(&m[i].high, &w[i], &product_error);
-        first = crossing_sum(first, product, &sum_error);
+        const doubles product = exact_product(&m[i].high, &w[i], &product_error);
+        first = exact_sum(first, product, &sum_error);
         second = doubles_add(second, doubles_add(sum_error, product_error));
         second = doubles_add(second, doubles_multiply(m[i].low, w[i].value));
         second = doubles_add(second, doubles_multiply(m[i].high.value, w[i].tail));
@@ -122,7 +80,7 @@ static SC_INLINE doubles crossing_determinant(const crossing_minor m[3], const c
 static void look_at_crossings(const sc_crossing_lanes *of, sc_crossing_values *values)
 {
     doubles at[5][3], reach = doubles_all(0), w[3], d = reach, sum, share;
-    crossing_number to[4][3]; /* q, a, b, c */
+    exact_doubles to[4][3]; /* q, a, b, c */
     crossing_minor m[3];
     unsigned certain[4], known, one_sign, inside, outside, reached;
     int k, c;
@@ -132,13 +90,13 @@ static void look_at_crossings(const sc_crossing_lanes *of, sc_crossing_values *v
     for (k = 0; k < 4; k++) {
         SC_UNROLL
         for (c = 0; c < 3; c++) {
-            to[k][c] = crossing_difference(at[k + 1][c], at[0][c]);
+            to[k][c] = exact_difference(at[k + 1][c], at[0][c]);
             reach = doubles_larger_size(reach, to[k][c].value);
         }
     }
     reached = doubles_bits(doubles_below(reach, doubles_all(SC_BOUNDS_CROSSING_MOST)));
     for (k = 0; k < 3; k++) {
-        const crossing_number *u = to[1 + (k + 1) % 3], *v = to[1 + (k + 2) % 3];
+        const exact_doubles *u = to[1 + (k + 1) % 3], *v = to[1 + (k + 2) % 3];
         SC_UNROLL
         for (c = 0; c < 3; c++) m[c] = crossing_minor_of(u, v, c);
         w[k] = crossing_determinant(m, to[0], &certain[k]);
