@@ -3,8 +3,9 @@ simulation with barriers.
 
     python test_client.py [--frames N] [--cells N]
 
-A cloth falls on a sphere (fall.py); each step is cut to what is free of collisions. In each frame both broad
-phases are asked for NormalCollisions and for the step size. Prints how long both took. Exit status 1 if anything differs.
+A cloth falls on a sphere (fall.py); each step is cut to what is free of collisions. In each frame both
+broad phases are asked for NormalCollisions and for the step size. Prints how long both took. Exit status
+1 if anything differs.
 
 SPDX-License-Identifier: MIT
 """
