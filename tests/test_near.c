@@ -326,6 +326,13 @@ static double *copy_positions(const double *positions, uint32_t count)
     return copy;
 }
 
+static int floats_hold(const double *positions, uint32_t count)
+{
+    for (uint32_t c = 0; c < 3 * count; ++c)
+        if (!(fabs(positions[c]) < (double)FLT_MAX)) return 0;
+    return 1;
+}
+
 /* Any mesh in any pose, of any size and place. */
 static void any_scene(void)
 {
@@ -346,8 +353,9 @@ static void any_scene(void)
         if (test_random_below(3) == 0) {
             const int size = sizes[test_random_below(10)];
             soup_scale(posed, mesh.vertex_count, ldexp(1, size));
-            if (size > 60 || size < -60) type = SC_DOUBLE; /* floats hold no more */
+            if (size < -60) type = SC_DOUBLE; /* floats hold no less */
         }
+        if (!floats_hold(posed, mesh.vertex_count)) type = SC_DOUBLE;
         if (type == SC_FLOAT) soup_round_to_float(posed, mesh.vertex_count);
         if (scene_start(&s, name, mesh, posed, type, state)) check_scene(&s, &sum);
         scene_stop(&s);
