@@ -13,23 +13,26 @@
  * sum of two doubles. u = 2^-53, D = d d. Each component of c is known as a value and a tail, at
  * most u of it; the square of a value as a product and a rest, at most u of it; the sum of the
  * products as s and two rests; D as a product and a rest. So the difference is t = s - D and a sum
- * R of nine terms; left out are squares of tails, u^2 D. Let s be from D / 2 to 2 D. Then t has no
- * rounding (Sterbenz), the terms of R come to 8 u D in size, and their rounding to 100 u^2 D: so t
- * + R is off by less than 2^-98 D, but for its own rounding, which changes no sign. Below -2^-96 D
- * (SC_BOUNDS_CORNER) the difference is less than 0. Where s is smaller it is so without doubt, as R
- * is small beside D / 2; where s is larger, or overflows, t + R is above 0 or no number.
+ * R of nine terms; left out are squares of tails, 2 u^2 D. Let s be from D / 2 to 2 D. Then t has
+ * no rounding (Sterbenz), the terms of R come to 11 u D in size, and their rounding to 94 u^2 D: so
+ * t + R is off by less than 2^-98 D, but for its own rounding, which changes no sign. Below -2^-96
+ * D (SC_BOUNDS_CORNER) the difference is less than 0. Where s is smaller it is so without doubt, as
+ * R is small beside D / 2; where s is larger, or overflows, t + R is above 0 or no number. The
+ * largest error in three million pairs made for it was 2^-103 D.
  *
  * Far, if c separates: q . c_i > |q| d for all corners c_i and any q says so, as in step/within.c;
- * q is c. Let R be the largest |c_i|, which |x| + |y| + |z| is not below. Scalar products are off
- * by 4.1 u R |q|, with the rounding of corners. They are compared with |q| f by squares, of which
- * the roundings make |q| f (1 - 3.1 u) at least, where f = d + 8 u (R + d) (SC_BOUNDS_WITHIN) with
- * its own is d (1 + 7 u) + 8 u R or more: that is above |q| (d + 4.1 u R).
+ * q is c. Let R be the largest |c_i|, which |x| + |y| + |z|, as computed, is not below by more than
+ * u. Scalar products are off by 4.1 u R |q|, with the rounding of corners. They are compared with
+ * |q| f by squares, of which the roundings make |q| f (1 - 3.1 u) at least, where f = d + 8 u (R +
+ * d) (SC_BOUNDS_WITHIN) with its own is d (1 + 7 u) + 7.9 u R or more: that is above |q| (d + 4.1 u
+ * R).
  *
- * Underflow, also where subnormal numbers count as 0: d is from 2^-200 to 2^200, and corners of
- * what is far are shorter than 2^250. c is one of the corners, so its square is the least scalar
- * product at most, and is more than f f if that is to be above |c| f. So squares that are compared
- * are above 2^-801 and below 2^1001, and what is lost, less than 2^-1000, is nothing beside u R |q|
- * and 2^-98 D.
+ * Underflow, also where subnormal numbers count as 0 (of floats: GUARANTEE.md, at its beginning): d
+ * is from 2^-200 to 2^200, and corners of what is far are shorter than 2^250. c is one of the
+ * corners, so the least scalar product is at most its square, which is more than f f if that
+ * product is above |c| f. So squares that are compared are above 2^-801 and below 2^1001; and what
+ * is lost, 2^-1021 |q| of a scalar product and 2^-820 of a difference of squares, is nothing beside
+ * u R |q|, above 2^-254 |q|, and 2^-98 D, above 2^-499.
  */
 
 /* Fewer are decided one by one. */
