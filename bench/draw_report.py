@@ -897,9 +897,10 @@ def report(results, drawn, slope_table, reading):
             out.append("Left out:\n\n" + absent)
     add_near(out, results, drawn)
     out += report_trace.section(results.trace_peers)
-    objects = report_objects.own_table(results.objects)
-    if objects:
+    objects, beside = report_objects.own_table(results.objects), report_objects.peer_section(results.objects_peers)
+    if objects or beside:
         out.append("## Several objects\n")
+    if objects:
         out.append("Milliseconds a frame, least of several rounds in turns. *Objects*: one call about all of them.\n"
                    "*Cut*: the same, where of what does not move no more is there than what comes near the rest.\n"
                    "*One mesh*: of all objects, with groups of vertices where one is not asked about itself.\n"
@@ -910,7 +911,7 @@ def report(results, drawn, slope_table, reading):
         if target:
             out.append("What is to be reached:\n")
             out.append(target)
-    out += report_objects.peer_section(results.objects_peers)
+    out += beside
     peers, skipped, commit = results.dataset_peers
     out += report_dataset.section(results.dataset, peers, commit, skipped)
     out += report_wasm.section(results.wasm[0], results.wasm[2])
