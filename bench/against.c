@@ -33,7 +33,8 @@ static const char usage[] =
     "pairs they find.\n"
     "\n"
     "  --ways WAY,...    METHOD[@SET][*WORKERS] each, METHOD one of exact, star, none, aabb-sctt,\n"
-    "                    aabb, step, swept; SET avx512, avx2 or base; by default\n"
+    "                    aabb, boxes (model for boxes), step, swept; SET\n"
+    "                    avx512, avx2 or base; by default\n"
     "                    exact,aabb,exact@avx2,aabb@avx2,exact@base,exact*2,step,step*2\n"
     "  --frames N        frames of each scene, evenly spread, with the first and the last (6)\n"
     "  --rounds N        rounds in each frame at least (5); more while they take less than 20 ms\n"
@@ -61,7 +62,7 @@ typedef struct library {
 typedef struct way {
     char name[48];
     bool is_step;
-    uint32_t method, contour, simd, workers;
+    uint32_t method, contour, content, simd, workers;
     double log_sum; /* of the ratios of scenes */
     uint32_t scenes;
 } way;
@@ -78,14 +79,15 @@ typedef struct run {
 static const struct {
     const char *name;
     bool is_step;
-    uint32_t method, contour;
-} methods[] = {{"exact", false, SC_METHOD_SCTT, SC_CONTOUR_EXACT},
-               {"star", false, SC_METHOD_SCTT, SC_CONTOUR_STAR},
-               {"none", false, SC_METHOD_SCTT, SC_CONTOUR_NONE},
-               {"aabb-sctt", false, SC_METHOD_AABB_SCTT, 0},
-               {"aabb", false, SC_METHOD_AABB, 0},
-               {"step", true, SC_STEP_METHOD_SCTT, SC_CONTOUR_EXACT},
-               {"swept", true, SC_STEP_METHOD_SWEPT, 0}};
+    uint32_t method, contour, content;
+} methods[] = {{"exact", false, SC_METHOD_SCTT, SC_CONTOUR_EXACT, SC_MODEL_FULL},
+               {"star", false, SC_METHOD_SCTT, SC_CONTOUR_STAR, SC_MODEL_FULL},
+               {"none", false, SC_METHOD_SCTT, SC_CONTOUR_NONE, SC_MODEL_FULL},
+               {"aabb-sctt", false, SC_METHOD_AABB_SCTT, 0, SC_MODEL_FULL},
+               {"aabb", false, SC_METHOD_AABB, 0, SC_MODEL_FULL},
+               {"boxes", false, SC_METHOD_AABB, 0, SC_MODEL_BOXES},
+               {"step", true, SC_STEP_METHOD_SCTT, SC_CONTOUR_EXACT, SC_MODEL_FULL},
+               {"swept", true, SC_STEP_METHOD_SWEPT, 0, SC_MODEL_FULL}};
 
 /* ISO C does not let a pointer to data become one to a function, POSIX does. */
 static bool find(library *l, const char *name, void *function)
@@ -137,6 +139,7 @@ static bool open_model(library *l, const scene_folder *scene, const float *posit
     mesh.indices = scene->triangles;
     build.struct_size = sizeof build;
     build.partition = SC_PARTITION_FAST;
+    build.content = how->content;
     build.rest = how->contour == SC_CONTOUR_STAR ? SC_REST_MARKED : SC_REST_UNMARKED;
     options.struct_size = sizeof options;
     options.workers = how->workers;
@@ -319,6 +322,7 @@ static bool parse_way(const char *text, size_t length, way *how)
         how->is_step = methods[i].is_step;
         how->method = methods[i].method;
         how->contour = methods[i].contour;
+        how->content = methods[i].content;
         return true;
     }
     tool_error("--ways: there is no method '%s'; see sc-against --help", part);
