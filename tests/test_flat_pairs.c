@@ -647,6 +647,29 @@ static void two_clusters_in_a_plane(void)
     }
 }
 
+/* Two leaf clusters in a plane that are a band which goes round until a corner of its end comes to
+   one of its beginning, a little before it or past it. From there edges lead away on both sides,
+   some in a straight row with one another. */
+static void two_clusters_in_a_row(void)
+{
+    uint32_t rounds = test_iterations(4000);
+    for (uint32_t i = 0; i < rounds; ++i) {
+        uint64_t state = test_random_state();
+        uint32_t count = 12 + test_random_below(4), from = count % 2, to = 1 - from;
+        double tiny = exp2(-(double)test_random_range(4, i % 8 ? 26 : 45)), away = to ? 1 : -1;
+        double gap = tiny * test_random_range(-1, 0.5), off = tiny * test_random_range(-1, 1);
+        flat_mesh m;
+        m.points = m.triangles = 0;
+        flat_make_band(&m, count, test_random_range(0.7, 0.95));
+        flat_put_beside(&m, from, to, 1 + gap, i % 3 ? off : 0, count + 1);
+        flat_put_beside(&m, from, to, 1 + test_random_range(0, 0.3),
+                        away * test_random_range(0.2, 0.8), count);
+        flat_put_beside(&m, from, to, 1 + test_random_range(0.3, 1),
+                        i % 2 ? 0 : away * test_random_range(0, 0.2), count - 1);
+        check_flat(state, &m, 0, i / 8 % 3 != 0);
+    }
+}
+
 /* Two leaf clusters in a plane that touch in a point, and all but touch or meet beside it. */
 static void two_clusters_at_a_point(void)
 {
@@ -691,5 +714,5 @@ static void fans_that_fold_flat(void)
 SC_TEST_MAIN(SC_TEST(fans_in_a_plane), SC_TEST(outlines_in_a_plane), SC_TEST(bands_in_a_plane),
              SC_TEST(tubes), SC_TEST(tubes_that_are_no_bands), SC_TEST(sleeves),
              SC_TEST(tubes_turned_inside_out), SC_TEST(strips_from_one_point),
-             SC_TEST(two_clusters_in_a_plane), SC_TEST(two_clusters_at_a_point),
-             SC_TEST(fans_that_fold_flat))
+             SC_TEST(two_clusters_in_a_plane), SC_TEST(two_clusters_in_a_row),
+             SC_TEST(two_clusters_at_a_point), SC_TEST(fans_that_fold_flat))

@@ -14,9 +14,10 @@
  * sixteen points or fewer then.
  *
  * A loop is simple if of each two edges that do not follow each other one is on one side of the
- * line of the other. None folds back on the next then: one of the two would have the other's far
- * end on it, where a third begins or ends; and one of three edges has an area, as all triangles
- * have.
+ * line of the other; or, where both lie in a straight row, as in a regular grid, ahead of the other
+ * or behind it: on one side of the line across it at one of its ends. None folds back on the next
+ * then: one of the two would have the other's far end on it, where a third begins or ends; and one
+ * of three edges has an area, as all triangles have.
  *
  * The projection is as in query/simple.c: a coordinate is at most 1.01 D, where D is the largest
  * component of any point of the clusters relative to the middle, and off by d = error >= 4.1 v D, v
@@ -24,7 +25,9 @@
  * compared with e x p. Moving points changes e x (q - p) by 2 d (|e|1 + |q - p|1) + 8 d^2; by
  * rounding, e is off by v |e|1 times what it is multiplied with, and either product by 3.01 v |e|1
  * 1.01 D; to add a bound to one takes v (1.02 |e|1 D + bound). As |q - p|1 <= 4.04 D, all is below
- * d (4 |e|1 + 8.1 D + 8.1 d); what underflows is within a few FLT_MIN.
+ * d (4 |e|1 + 8.1 D + 8.1 d); what underflows is within a few FLT_MIN. All of this holds of e . q,
+ * too, compared with e at its ends: its two products have the same factors. There twice the bound is
+ * added, of which the second half is more than what rounding takes from it.
  */
 
 /* Points of a contour that is looked at, at most; edges of one of which all are compared; pairs of
@@ -74,6 +77,12 @@ static SC_INLINE edges_at find_edges(const short_points *c, unsigned first)
 static inline lanes place_of(lanes e_x, lanes e_y, lanes q_x, lanes q_y)
 {
     return lanes_subtract(lanes_multiply(e_x, q_y), lanes_multiply(e_y, q_x));
+}
+
+/* How far along the edges: e . q. */
+static inline lanes along(lanes e_x, lanes e_y, lanes q_x, lanes q_y)
+{
+    return lanes_add(lanes_multiply(e_x, q_x), lanes_multiply(e_y, q_y));
 }
 
 /* Lets the first sixteen of a row follow so many. */
@@ -195,23 +204,47 @@ static SC_INLINE lanes room_between(const short_points *c, const short_edges *e,
     return room;
 }
 
+/* The same along edges in place of across: above 0 where each certainly lies behind or ahead of that
+   so many further on, or that one of it. */
+static SC_INLINE lanes room_along(const short_points *c, const short_edges *e, unsigned on)
+{
+    lanes room = lanes_all(-INFINITY);
+    int s;
+    SC_UNROLL
+    for (s = 0; s < 2; s++) {
+        const unsigned own = s ? on : 0, other = s ? 0 : on;
+        const lanes x = lanes_load(e->x + own), y = lanes_load(e->y + own);
+        const lanes bound = lanes_subtract(lanes_load(e->to + own), lanes_load(e->from + own));
+        const lanes begin = along(x, y, lanes_load(c->x + own), lanes_load(c->y + own));
+        const lanes end = along(x, y, lanes_load(c->x + own + 1), lanes_load(c->y + own + 1));
+        const lanes p = along(x, y, lanes_load(c->x + other), lanes_load(c->y + other));
+        const lanes q = along(x, y, lanes_load(c->x + other + 1), lanes_load(c->y + other + 1));
+        room = lanes_larger(room, lanes_subtract(lanes_smaller(p, q), lanes_add(end, bound)));
+        room = lanes_larger(room, lanes_subtract(lanes_subtract(begin, bound), lanes_larger(p, q)));
+    }
+    return room;
+}
+
+/* Whether each edge is certainly apart from that so many further on. Along edges few have to be
+   looked at: those in a straight row. */
+static inline int edges_are_apart(const short_points *c, const short_edges *e, unsigned on,
+                                  lanes *at)
+{
+    const lanes none = lanes_all(0);
+    const unsigned all = (1u << c->count) - 1u;
+    const unsigned open = ~lanes_bits(lanes_below(none, room_between(c, e, on, at))) & all;
+    return !open || !(open & ~lanes_bits(lanes_below(none, room_along(c, e, on))));
+}
+
 /* Whether a contour of SHORT_EDGES edges or fewer is certainly simple. */
 static inline int is_simple(const short_points *c, const short_edges *e)
 {
     lanes at =
         place_of(lanes_load(e->x), lanes_load(e->y), lanes_load(c->x + 2), lanes_load(c->y + 2));
-    lanes least = lanes_all(INFINITY);
     unsigned on;
-    if (c->count >
-        SC_LANES_COUNT / 2 + 1) { /* all at most; some pairs twice, but none that follow */
-        SC_UNROLL
-        for (on = 2; on <= SC_LANES_COUNT / 2; on++)
-            least = lanes_smaller(least, room_between(c, e, on, &at));
-    } else {
-        for (on = 2; 2 * on <= c->count; on++)
-            least = lanes_smaller(least, room_between(c, e, on, &at));
-    }
-    return !(~lanes_bits(lanes_below(lanes_all(0), least)) & ((1u << c->count) - 1u));
+    for (on = 2; 2 * on <= c->count; on++)
+        if (!edges_are_apart(c, e, on, &at)) return 0;
+    return 1;
 }
 
 /* The contour of two leaf clusters that share points: a loop, and how many points it has, 0 if it
